@@ -1,0 +1,351 @@
+/* Skein: real-time particle dynamics in plain C.
+ *
+ * Everything is particles under rules, and a method that turns rules into motion. A world holds
+ * particles, rules (constraints, forces, colliders) and one method; bodies are builders that lay
+ * down particles and rules. See docs/guide.md for a walk through, examples/ for whole programs.
+ *
+ * Conventions
+ *   Units     SI: metres, kilograms, seconds, newtons. Angles in degrees where a field says so.
+ *   Axes      right handed, y up (nothing but the default gravity and "top" depends on it).
+ *   Positions are four `skein_real`: x, y, z, inverse mass (1/kg; 0 means the particle is held).
+ *   Errors    every call that can fail returns a `skein_status`; the words are in `skein_error`.
+ *   Threads   a world belongs to one thread at a time; different worlds are independent.
+ *   Bits      the same input gives the same bits, for any number of threads.
+ */
+#ifndef SKEIN_H
+#define SKEIN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define SKEIN_VERSION "0.1.0"
+
+/* The library computes in float, or in double when built with -DSKEIN_DOUBLE=ON. */
+#ifdef SKEIN_DOUBLE
+typedef double skein_real;
+#else
+typedef float skein_real;
+#endif
+
+/* ---- Status and errors --------------------------------------------------------------------- */
+
+typedef enum skein_status {
+    SKEIN_OK = 0,
+    SKEIN_ERROR_MEMORY, /* the allocator returned NULL */
+    SKEIN_ERROR_VALUE,  /* a value has the wrong type or is out of range */
+    SKEIN_ERROR_NAME,   /* no kind, field or body of that name */
+    SKEIN_ERROR_HANDLE, /* the handle is stale or of another category */
+    SKEIN_ERROR_MESH,   /* the mesh cannot be what was asked of it */
+    SKEIN_ERROR_FILE,   /* a file cannot be read or written */
+    SKEIN_ERROR_SYNTAX, /* a file or text is malformed */
+    SKEIN_ERROR_LIMIT   /* more than an index can count; the message names the need */
+} skein_status;
+
+/* What went wrong, in words. `where` names the place (a field's path, a file and line) or is "". */
+typedef struct skein_error {
+    skein_status status;
+    char where[256];
+    char message[512];
+} skein_error;
+
+/* A constant word for a status: "ok", "out of memory", ... */
+const char *skein_status_text(skein_status status);
+
+/* ---- Values, fields and kinds: every parameter is described once ------------------------------ */
+
+typedef enum skein_field_type {
+    SKEIN_FIELD_BOOL,
+    SKEIN_FIELD_INT,
+    SKEIN_FIELD_INT2, /* two whole numbers, as in a grid's rows and columns */
+    SKEIN_FIELD_REAL,
+    SKEIN_FIELD_REAL2,
+    SKEIN_FIELD_VEC3,
+    SKEIN_FIELD_CHOICE, /* one word of `choices` */
+    SKEIN_FIELD_TEXT
+} skein_field_type;
+
+/* One parameter of a kind. Defaults, the scene reader, its messages, `--set`, `skein list` and the
+ * reference page all come from tables of these. */
+typedef struct skein_field {
+    const char *name; /* dots make groups: "stretch.stiffness" */
+    skein_field_type type;
+    size_t offset;         /* of the value in the kind's parameters; internal */
+    const char *unit;      /* "N/m"; "" where there is none */
+    double initial[3];     /* the default's numbers (a choice: its place in the list) */
+    double least, most;    /* the range of every component, inclusive */
+    const char *choices;   /* "area|uniform|angle", or NULL */
+    const char *text;      /* the default of a text field, or NULL */
+    const char *help;      /* one line */
+} skein_field;
+
+typedef enum skein_category {
+    SKEIN_BODY,
+    SKEIN_CONSTRAINT,
+    SKEIN_FORCE,
+    SKEIN_COLLIDER,
+    SKEIN_METHOD,
+    SKEIN_SCENE,
+    SKEIN_EXPORTER,
+    SKEIN_CATEGORY_COUNT
+} skein_category;
+
+/* A kind of body, constraint, force, collider, method or exporter, with its own fields. */
+typedef struct skein_kind {
+    const char *name;
+    const char *help; /* one or two lines */
+    skein_category category;
+    const skein_field *fields;
+    size_t field_count;
+    size_t params_size; /* internal */
+} skein_kind;
+
+/* A value for a field: `count` numbers, or a text when `count` is 0. A bool is 0 or 1; a choice is
+ * given by its word or by its place, and read as its place. */
+typedef struct skein_value {
+    int count;
+    double number[3];
+    const char *text;
+} skein_value;
+
+/* One field set by name. A list of settings ends with a NULL name:
+ *     SKEIN_SETTINGS(SKEIN_REAL("radius", 0.3), SKEIN_VEC3("centre", 0, 1, 0))
+ * Fields not named keep their defaults. */
+typedef struct skein_setting {
+    const char *name;
+    skein_value value;
+} skein_setting;
+
+#define SKEIN_REAL(name_, x_) {(name_), {1, {(double)(x_), 0, 0}, NULL}}
+#define SKEIN_PAIR(name_, x_, y_) {(name_), {2, {(double)(x_), (double)(y_), 0}, NULL}}
+#define SKEIN_VEC3(name_, x_, y_, z_) {(name_), {3, {(double)(x_), (double)(y_), (double)(z_)}, NULL}}
+#define SKEIN_TEXT(name_, text_) {(name_), {0, {0, 0, 0}, (text_)}}
+#define SKEIN_SETTINGS(...) ((const skein_setting[]){__VA_ARGS__, {NULL, {0, {0, 0, 0}, NULL}}})
+
+/* The library's kinds of a category, `index` from 0; NULL past the end. */
+const skein_kind *skein_kind_at(skein_category category, size_t index);
+/* The kind of that name; NULL (and the nearest right name in `error`) where there is none. */
+const skein_kind *skein_kind_find(skein_category category, const char *name, skein_error *error);
+/* "body", "constraint", ... */
+const char *skein_category_text(skein_category category);
+/* Fields that every kind of the category has besides its own ("enabled", "visible", ...). */
+const skein_field *skein_common_fields(skein_category category, size_t *count);
+/* A kind's own or common field by name; NULL (and the nearest right name in `error`) if none. */
+const skein_field *skein_field_find(const skein_kind *kind, const char *name, skein_error *error);
+/* Checks a value against a field's type and range without setting anything. */
+skein_status skein_field_check(const skein_field *field, const skein_value *value, skein_error *error);
+
+/* Prints a value as a scene would show it; returns the length that it needs, as snprintf does. */
+size_t skein_value_text(const skein_field *field, const skein_value *value, char *text, size_t size);
+
+/* ---- Worlds ------------------------------------------------------------------------------------ */
+
+typedef struct skein_world skein_world;
+
+/* A body, rule or collider. A handle that outlived its object is an error, never a crash. */
+typedef struct skein_handle {
+    uint32_t index, generation;
+} skein_handle;
+
+typedef enum skein_log_level { SKEIN_LOG_INFO, SKEIN_LOG_WARNING } skein_log_level;
+
+/* What a world takes from its surroundings. Fill with skein_default_world_desc(), then change. */
+typedef struct skein_world_desc {
+    /* Memory: returns NULL when there is none; `alignment` is a power of two. Both or neither. */
+    void *(*allocate)(void *user, size_t size, size_t alignment);
+    void (*release)(void *user, void *memory, size_t size);
+    void *memory_user;
+    /* Messages, one line each without a newline. NULL keeps quiet. */
+    void (*log)(void *user, skein_log_level level, const char *message);
+    void *log_user;
+    /* Tasks: runs task(data, 0) ... task(data, task_count - 1), at once or in any order, and
+     * returns when all are done. NULL uses the world's own threads. */
+    void (*run_tasks)(void *user, void (*task)(void *data, int index), void *data, int task_count);
+    void *tasks_user;
+    /* Threads of the world's own pool, the caller included, 1 to 64; or the tasks to cut a row
+     * into where `run_tasks` is given. The result does not depend on it. */
+    int thread_count;
+} skein_world_desc;
+
+skein_world_desc skein_default_world_desc(void);
+
+/* Makes an empty world under XPBD. `desc` NULL means the defaults. NULL on failure: see `error`. */
+skein_world *skein_world_create(const skein_world_desc *desc, skein_error *error);
+void skein_world_destroy(skein_world *world); /* NULL is allowed */
+
+/* The last failure of a call on this world; its status is SKEIN_OK if none failed yet. */
+const skein_error *skein_world_error(const skein_world *world);
+
+/* ---- Building ---------------------------------------------------------------------------------- */
+
+/* A polygon mesh, only read during the call it is given to. Faces are stored one after the other:
+ * face f has `face_sizes[f]` corners (3 or more), 0-based indices into the vertices. */
+typedef struct skein_mesh {
+    const double *positions; /* vertex_count x 3, metres */
+    size_t vertex_count;
+    const uint32_t *face_sizes; /* face_count */
+    size_t face_count;
+    const uint32_t *face_vertices; /* sum of face_sizes */
+    size_t face_vertex_count;
+} skein_mesh;
+
+/* Adds loose particles, in order. `positions` and `velocities` are count x 3 (velocities may be
+ * NULL: at rest); `masses` are in kg, 0 holds the particle where it is. `first` receives the index
+ * of the first one and may be NULL. Indices never change. */
+skein_status skein_particles_add(skein_world *world, size_t count, const double *positions,
+                                 const double *velocities, const double *masses, uint32_t *first);
+
+/* Adds a body of a kind of SKEIN_BODY ("cloth", ...). `mesh` may be NULL where the kind can do
+ * without. `settings` may be NULL; so may `handle`. */
+skein_status skein_body_add(skein_world *world, const char *kind, const skein_mesh *mesh,
+                            const skein_setting *settings, skein_handle *handle);
+/* Adds `count` constraints of one kind, each on the kind's number of particles, with the rest
+ * values of the present positions (`distance`: 2 particles each). They share their settings. */
+skein_status skein_constraint_add(skein_world *world, const char *kind, const uint32_t *particles,
+                                  size_t count, const skein_setting *settings, skein_handle *handle);
+skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings,
+                             skein_handle *handle);
+skein_status skein_collider_add(skein_world *world, const char *kind, const skein_setting *settings,
+                                skein_handle *handle);
+/* Sets the method; its former settings are gone. The world's own fields are kept. */
+skein_status skein_method_set(skein_world *world, const char *kind, const skein_setting *settings);
+/* Removes a constraint, force or collider. (Bodies stay: particle indices never change.) */
+skein_status skein_remove(skein_world *world, skein_handle handle);
+
+/* ---- Fields of living objects ------------------------------------------------------------------ */
+
+/* Sets or gets one field of an object. A field that shapes what was already built (a grid's size)
+ * is refused with SKEIN_ERROR_VALUE. A text that is returned lives until the field changes. */
+skein_status skein_set(skein_world *world, skein_handle handle, const char *field, skein_value value);
+skein_status skein_get(const skein_world *world, skein_handle handle, const char *field, skein_value *value);
+/* The same by path: "bodies.0.stretch.stiffness", "colliders.ball.radius" (a name), "method.substeps".
+ * Numbers count objects of the category in the order of their making. */
+skein_status skein_set_path(skein_world *world, const char *path, skein_value value);
+skein_status skein_get_path(const skein_world *world, const char *path, skein_value *value);
+/* Shorthands for values. */
+static inline skein_value skein_number(double x) {
+    skein_value v = {1, {x, 0, 0}, NULL};
+    return v;
+}
+static inline skein_value skein_vector(double x, double y, double z) {
+    skein_value v = {3, {x, y, z}, NULL};
+    return v;
+}
+static inline skein_value skein_text(const char *text) {
+    skein_value v = {0, {0, 0, 0}, text};
+    return v;
+}
+
+/* Living objects of a category, in the order of their making. */
+size_t skein_object_count(const skein_world *world, skein_category category);
+skein_handle skein_object_at(const skein_world *world, skein_category category, size_t index);
+/* The kind of an object; NULL for a stale handle. The method's handle is skein_object_at(..., SKEIN_METHOD, 0). */
+const skein_kind *skein_object_kind(const skein_world *world, skein_handle handle);
+bool skein_handle_valid(const skein_world *world, skein_handle handle);
+
+/* ---- Stepping ---------------------------------------------------------------------------------- */
+
+#define SKEIN_DEFAULT_STEP (1.0 / 90.0) /* seconds */
+
+/* Advances the world by `dt` seconds (greater than 0), in the method's substeps. */
+skein_status skein_world_step(skein_world *world, double dt);
+/* Positions as they were built; velocities, forces, time and counters zero. */
+skein_status skein_world_reset(skein_world *world);
+double skein_world_time(const skein_world *world); /* seconds of simulated time */
+
+/* A fixed step for a loop with uneven frames: time goes in, whole steps come out, the rest is kept.
+ * Feed it frame times only, never the time spent loading. */
+typedef struct skein_pacer {
+    double step;      /* seconds */
+    int most_steps;   /* at most so many steps a feed; what is beyond is dropped (the world slows down) */
+    double remainder; /* seconds fed but not yet stepped, under one step */
+    double dropped;   /* seconds dropped so far */
+} skein_pacer;
+
+skein_pacer skein_default_pacer(void); /* SKEIN_DEFAULT_STEP, at most 8 steps a feed */
+/* Adds `seconds` (NaN and negative count as 0) and returns the number of steps to take now. */
+int skein_pacer_feed(skein_pacer *pacer, double seconds);
+/* How far the present lies between the last two states, 0 to 1. */
+double skein_pacer_blend(const skein_pacer *pacer);
+
+/* ---- Reading and writing the state ------------------------------------------------------------- */
+
+/* The state without a copy, valid until the next step or change. Particle i stands at
+ * xyzw[4 * slot_of[i]]; slots are in the order that is good for speed. */
+typedef struct skein_view {
+    const skein_real *xyzw;
+    const uint32_t *slot_of;
+    size_t count;
+} skein_view;
+
+size_t skein_particle_count(const skein_world *world);
+skein_view skein_position_view(const skein_world *world); /* w is the inverse mass */
+skein_view skein_velocity_view(const skein_world *world); /* w is the mass, kg (held ones too) */
+/* Copies `count` particles from `first` on, in the user's order, into out[count x 3]. */
+skein_status skein_positions_copy(const skein_world *world, size_t first, size_t count, double *out);
+skein_status skein_velocities_copy(const skein_world *world, size_t first, size_t count, double *out);
+/* Positions between the last two steps: 0 gives the state before the last step, 1 the present. */
+skein_status skein_positions_blend(const skein_world *world, double blend, size_t first, size_t count,
+                                   double *out);
+/* Writes positions or velocities, count x 3. Finite numbers only. */
+skein_status skein_positions_set(skein_world *world, size_t first, size_t count, const double *xyz);
+skein_status skein_velocities_set(skein_world *world, size_t first, size_t count, const double *xyz);
+/* Holds a particle where it is, or lets it go with the mass it was built with. */
+skein_status skein_particle_hold(skein_world *world, size_t particle, bool held);
+
+/* What a body drew and its particles. Pointers live as long as the body. */
+typedef struct skein_surface {
+    uint32_t first_particle, particle_count;
+    const uint32_t *particle_of_vertex; /* vertex_count: where the mesh's vertices are (welding) */
+    size_t vertex_count;
+    const uint32_t *face_sizes; /* as they came */
+    size_t face_count;
+    const uint32_t *face_vertices; /* vertices, not particles */
+    size_t face_vertex_count;
+    uint32_t grid_rows, grid_columns; /* 0 where the body is not a grid */
+} skein_surface;
+skein_status skein_body_surface(const skein_world *world, skein_handle body, skein_surface *surface);
+
+/* Where a collider stands now, for drawing. `shape` is the kind's name. */
+typedef struct skein_pose {
+    double position[3];    /* a sphere's centre, a point of a plane */
+    double rotation[9];    /* rows of a rotation matrix */
+} skein_pose;
+skein_status skein_collider_pose(const skein_world *world, skein_handle collider, skein_pose *pose);
+
+/* ---- Measures ---------------------------------------------------------------------------------- */
+
+typedef struct skein_statistics {
+    uint64_t steps, substeps;
+    double time;               /* s, simulated */
+    double kinetic_energy;     /* J */
+    double momentum[3];        /* kg m/s */
+    double max_stretch;        /* largest (length - rest)/rest of the edges; 0.01 is one per cent */
+    double p99_stretch;        /* 99 % of the edges stretch at most so much */
+    double max_penetration;    /* m, below a collider's thickness */
+    size_t contacts;           /* pairs of a particle and a collider that touch */
+    size_t particles, held_particles, constraints;
+    size_t nonfinite;          /* particles with a position or velocity that is not finite */
+    size_t memory_bytes;       /* held by the world now */
+    uint64_t state_hash;       /* of positions and velocities in the user's order */
+} skein_statistics;
+
+/* Measures the present state; costs about one step, and scratch memory for the edges. */
+skein_status skein_world_statistics(skein_world *world, skein_statistics *statistics);
+/* Only the hash. */
+uint64_t skein_world_hash(const skein_world *world);
+
+/* ---- The plan ---------------------------------------------------------------------------------- */
+
+/* Writes the plan's rows as text, a line each, for a step of `dt`. Lines go to `write` in order. */
+skein_status skein_world_explain(skein_world *world, double dt,
+                                 void (*write)(void *user, const char *line), void *user);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,63 @@
+#include "base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A block's header keeps its size and the 64-byte alignment of what follows. */
+enum { HEADER = 64 };
+
+static void *default_allocate(void *user, size_t size, size_t alignment) {
+    (void)user;
+    return aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+}
+
+static void default_release(void *user, void *memory, size_t size) {
+    (void)user;
+    (void)size;
+    free(memory);
+}
+
+sk_allocator sk_default_allocator(void) {
+    return (sk_allocator){default_allocate, default_release, NULL, 0};
+}
+
+void *sk_allocate(sk_allocator *allocator, size_t size) {
+    if (size > SIZE_MAX - 2 * HEADER) return NULL;
+    size_t whole = (size + HEADER + HEADER - 1) / HEADER * HEADER;
+    char *block = allocator->allocate(allocator->user, whole, HEADER);
+    if (!block) return NULL;
+    memset(block, 0, whole);
+    memcpy(block, &whole, sizeof whole);
+    allocator->bytes += whole;
+    return block + HEADER;
+}
+
+void sk_release(sk_allocator *allocator, void *memory) {
+    if (!memory) return;
+    char *block = (char *)memory - HEADER;
+    size_t whole;
+    memcpy(&whole, block, sizeof whole);
+    allocator->bytes -= whole;
+    allocator->release(allocator->user, block, whole);
+}
+
+char *sk_copy_text(sk_allocator *allocator, const char *text) {
+    size_t length = text ? strlen(text) : 0;
+    char *copy = sk_allocate(allocator, length + 1);
+    if (copy && length) memcpy(copy, text, length);
+    return copy;
+}
+
+bool sk_reserve(sk_allocator *allocator, void **data, size_t *capacity, size_t need, size_t element_size) {
+    if (need <= *capacity) return true;
+    size_t room = *capacity * 2 > need ? *capacity * 2 : need;
+    if (room < 8) room = 8;
+    if (room > SIZE_MAX / 2 / element_size) return false;
+    void *grown = sk_allocate(allocator, room * element_size);
+    if (!grown) return false;
+    if (*data) memcpy(grown, *data, *capacity * element_size);
+    sk_release(allocator, *data);
+    *data = grown;
+    *capacity = room;
+    return true;
+}

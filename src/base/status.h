@@ -1,0 +1,17 @@
+/* Filling in a skein_error: the words of every failure. */
+#ifndef SK_BASE_STATUS_H
+#define SK_BASE_STATUS_H
+
+#include <skein/skein.h>
+
+/* Writes `status`, `where` and a formatted message into `error` (which may be NULL); returns `status`. */
+skein_status sk_fail(skein_error *error, skein_status status, const char *where, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+/* The failure of an allocation, said in one way everywhere. */
+skein_status sk_fail_memory(skein_error *error, const char *what);
+
+/* Of `count` names, the one nearest to `name` by edit distance, or NULL if none is near. */
+const char *sk_nearest_name(const char *name, const char *const *names, size_t count);
+
+#endif

@@ -1,0 +1,166 @@
+/* The default pool: workers wait for a new ticket, first spinning, then asleep.
+ *
+ *   caller                          worker i
+ *   ticket = ticket + 1  ------->   sees a new ticket, runs task(data, i)
+ *   runs task(data, 0)              remaining = remaining - 1
+ *   waits until remaining == 0 <----
+ *
+ * `task` and `data` are written before the ticket and read after it: the ticket publishes them. */
+#include "base/tasks.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
+
+enum {
+    MOST_THREADS = 64,
+    SPINS = 4000,          /* pauses before a waiter sleeps */
+    SMALLEST_SHARE = 4096, /* elements below which the caller runs a row alone */
+};
+
+typedef struct worker {
+    sk_tasks *tasks;
+    int index;
+    pthread_t thread;
+} worker;
+
+struct sk_tasks {
+    sk_allocator *allocator;
+    void (*run_tasks)(void *user, void (*task)(void *data, int index), void *data, int task_count);
+    void *user;
+    int count;   /* pieces a range is cut into */
+    int started; /* workers alive */
+    void (*task)(void *data, int index);
+    void *data;
+    _Atomic uint32_t ticket;
+    _Atomic int remaining;
+    _Atomic bool stop;
+    int sleepers; /* under the mutex */
+    pthread_mutex_t mutex;
+    pthread_cond_t wake;
+    worker workers[MOST_THREADS];
+};
+
+static inline void pause_briefly(void) {
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    __asm__ volatile("yield");
+#endif
+}
+
+/* Waits for a ticket other than `seen`: spins a while, then sleeps. */
+static uint32_t wait_for_ticket(sk_tasks *tasks, uint32_t seen) {
+    for (int i = 0; i < SPINS; i++) {
+        uint32_t now = atomic_load_explicit(&tasks->ticket, memory_order_acquire);
+        if (now != seen) return now;
+        pause_briefly();
+    }
+    pthread_mutex_lock(&tasks->mutex);
+    tasks->sleepers++;
+    uint32_t now;
+    while ((now = atomic_load(&tasks->ticket)) == seen) pthread_cond_wait(&tasks->wake, &tasks->mutex);
+    tasks->sleepers--;
+    pthread_mutex_unlock(&tasks->mutex);
+    return now;
+}
+
+static void *worker_main(void *argument) {
+    worker *self = argument;
+    sk_tasks *tasks = self->tasks;
+    uint32_t seen = 0;
+    for (;;) {
+        seen = wait_for_ticket(tasks, seen);
+        if (atomic_load(&tasks->stop)) return NULL;
+        tasks->task(tasks->data, self->index);
+        atomic_fetch_sub_explicit(&tasks->remaining, 1, memory_order_release);
+    }
+}
+
+static void publish(sk_tasks *tasks) {
+    pthread_mutex_lock(&tasks->mutex);
+    atomic_fetch_add(&tasks->ticket, 1);
+    if (tasks->sleepers) pthread_cond_broadcast(&tasks->wake);
+    pthread_mutex_unlock(&tasks->mutex);
+}
+
+sk_tasks *sk_tasks_create(sk_allocator *allocator, const skein_world_desc *desc) {
+    sk_tasks *tasks = sk_allocate(allocator, sizeof *tasks);
+    if (!tasks) return NULL;
+    tasks->allocator = allocator;
+    tasks->run_tasks = desc->run_tasks;
+    tasks->user = desc->tasks_user;
+    tasks->count = desc->thread_count < 1 ? 1 : desc->thread_count > MOST_THREADS ? MOST_THREADS : desc->thread_count;
+    pthread_mutex_init(&tasks->mutex, NULL);
+    pthread_cond_init(&tasks->wake, NULL);
+    if (tasks->run_tasks) return tasks;
+    for (int i = 1; i < tasks->count; i++) {
+        worker *w = &tasks->workers[i];
+        *w = (worker){tasks, i, 0};
+        if (pthread_create(&w->thread, NULL, worker_main, w)) {
+            sk_tasks_destroy(tasks);
+            return NULL;
+        }
+        tasks->started++;
+    }
+    return tasks;
+}
+
+void sk_tasks_destroy(sk_tasks *tasks) {
+    if (!tasks) return;
+    atomic_store(&tasks->stop, true);
+    publish(tasks);
+    for (int i = 1; i <= tasks->started; i++) pthread_join(tasks->workers[i].thread, NULL);
+    pthread_cond_destroy(&tasks->wake);
+    pthread_mutex_destroy(&tasks->mutex);
+    sk_release(tasks->allocator, tasks);
+}
+
+int sk_tasks_count(const sk_tasks *tasks) {
+    return tasks->count;
+}
+
+void sk_tasks_run(sk_tasks *tasks, void (*task)(void *data, int index), void *data) {
+    if (tasks->count == 1) {
+        task(data, 0);
+        return;
+    }
+    if (tasks->run_tasks) {
+        tasks->run_tasks(tasks->user, task, data, tasks->count);
+        return;
+    }
+    tasks->task = task;
+    tasks->data = data;
+    atomic_store(&tasks->remaining, tasks->count - 1);
+    publish(tasks);
+    task(data, 0);
+    // on a machine with fewer cores than threads a pure spin would starve the workers
+    for (int spins = 0; atomic_load_explicit(&tasks->remaining, memory_order_acquire) > 0; spins++) {
+        if (spins < SPINS) pause_briefly();
+        else sched_yield();
+    }
+}
+
+typedef struct range_job {
+    sk_range_body *body;
+    void *data;
+    size_t begin, end, share;
+} range_job;
+
+static void run_share(void *data, int index) {
+    const range_job *job = data;
+    size_t begin = job->begin + job->share * (size_t)index;
+    size_t end = begin + job->share < job->end ? begin + job->share : job->end;
+    if (begin < end) job->body(job->data, begin, end);
+}
+
+void sk_parallel_for(sk_tasks *tasks, size_t begin, size_t end, sk_range_body *body, void *data) {
+    if (end <= begin) return;
+    if (tasks->count == 1 || end - begin < SMALLEST_SHARE) {
+        body(data, begin, end);
+        return;
+    }
+    size_t share = (end - begin + (size_t)tasks->count - 1) / (size_t)tasks->count;
+    range_job job = {body, data, begin, end, (share + 15) / 16 * 16};
+    sk_tasks_run(tasks, run_share, &job);
+}

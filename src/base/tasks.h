@@ -1,0 +1,22 @@
+/* Tasks: cutting a range of elements over threads. The world owns one; the runner calls it. */
+#ifndef SK_BASE_TASKS_H
+#define SK_BASE_TASKS_H
+
+#include "base/memory.h"
+
+typedef struct sk_tasks sk_tasks;
+
+/* Starts the pool of the description (or takes its callback). NULL when there is no memory or no thread. */
+sk_tasks *sk_tasks_create(sk_allocator *allocator, const skein_world_desc *desc);
+void sk_tasks_destroy(sk_tasks *tasks); /* NULL is allowed */
+int sk_tasks_count(const sk_tasks *tasks);
+
+/* Runs task(data, 0) ... task(data, sk_tasks_count - 1) at once and returns when all are done. */
+void sk_tasks_run(sk_tasks *tasks, void (*task)(void *data, int index), void *data);
+
+/* Runs body over [begin, end) cut into one piece a thread; short ranges run on the caller, for handing
+ * them over costs more than they do. Cuts are multiples of 16 elements from `begin`. */
+typedef void sk_range_body(void *data, size_t begin, size_t end);
+void sk_parallel_for(sk_tasks *tasks, size_t begin, size_t end, sk_range_body *body, void *data);
+
+#endif

@@ -1,0 +1,229 @@
+/* Cloth from any mesh: a particle a vertex, springs along edges, across quads and over folds.
+ *
+ *   sheet (mesh or grid, placed, welded) --> springs --> pins --> particles, batches, triangles, tethers
+ *
+ * Stiffness is the material's, in N/m of a sheet, shared out to springs by the area that each stands
+ * for, so that a cloth hangs and swings the same at any resolution. */
+#include <math.h>
+#include <string.h>
+
+#include "bodies/body.h"
+#include "bodies/faults.h"
+#include "bodies/geodesic.h"
+#include "bodies/selection.h"
+#include "bodies/sheet.h"
+#include "bodies/springs.h"
+
+typedef struct cloth_params {
+    char *mesh;
+    int32_t grid[2];
+    double size[2], position[3], rotation[3], scale, velocity[3];
+    double density, weld;
+    char *pins;
+    sk_material stretch, shear, bend;
+    double stretch_limit;
+} cloth_params;
+
+static const skein_field fields[] = {
+    SK_TEXT(cloth_params, mesh, "mesh", "", "file of a mesh, OBJ or OFF (in scenes; a program passes the mesh itself)"),
+    SK_INT2(cloth_params, grid, "grid", "", 0, 0, 0, 65536, "instead of a mesh: rows and columns of particles"),
+    SK_REAL2(cloth_params, size, "size", "m", 1, 1, 1e-6, 1e9, "of a grid, along x and z before it is turned"),
+    SK_VEC3(cloth_params, position, "position", "m", 0, 0, 0, "where the mesh's origin (a grid's middle) is put"),
+    SK_VEC3(cloth_params, rotation, "rotation", "deg", 0, 0, 0, "turned about x, then y, then z, before it is put there"),
+    SK_REAL(cloth_params, scale, "scale", "", 1, 1e-9, 1e9, "factor on the mesh's coordinates"),
+    SK_VEC3(cloth_params, velocity, "velocity", "m/s", 0, 0, 0, "at the start"),
+    SK_REAL(cloth_params, density, "density", "kg/m2", 0.2, 1e-9, 1e9, "mass of a square metre, shared out to the corners"),
+    SK_REAL(cloth_params, weld, "weld", "m", 0, 0, SK_FAR, "vertices nearer than this become one particle; 0 joins none"),
+    SK_TEXT(cloth_params, pins, "pins", "",
+            "held particles: \"corners\", \"top corners\", \"top edge\", numbers, \"box x y z x y z\", \"sphere x y z r\""),
+    SK_REAL(cloth_params, stretch.stiffness, "stretch.stiffness", "N/m", 2e4, 0, SK_UNBOUNDED,
+            "of the sheet along its threads (1e4 is a firm cotton)"),
+    SK_REAL(cloth_params, stretch.damping, "stretch.damping", "N s/m", 0, 0, SK_FAR, "of stretching; other motion is free"),
+    SK_REAL(cloth_params, shear.stiffness, "shear.stiffness", "N/m", 2e3, 0, SK_UNBOUNDED, "across the threads"),
+    SK_REAL(cloth_params, shear.damping, "shear.damping", "N s/m", 0, 0, SK_FAR, "of shearing"),
+    SK_REAL(cloth_params, bend.stiffness, "bend.stiffness", "N/m", 20, 0, SK_UNBOUNDED, "of the springs over folds"),
+    SK_REAL(cloth_params, bend.damping, "bend.damping", "N s/m", 0, 0, SK_FAR, "of bending"),
+    SK_REAL(cloth_params, stretch_limit, "stretch.limit", "", 0.01, 0, 1e6,
+            "tethers: no particle gets farther from a pin than along the cloth, times 1 + this"),
+};
+
+enum { MOST_SINGLE_ANCHORS = 4 };
+
+/* What one build needs; all of it scratch. */
+typedef struct tailor {
+    skein_world *world;
+    sk_body *body;
+    const cloth_params *params;
+    skein_error *error;
+    sk_sheet sheet;
+    sk_springs springs;
+    bool *pinned;
+    double *mass;
+} tailor;
+
+static skein_status make_sheet(tailor *t, const skein_mesh *mesh) {
+    const cloth_params *p = t->params;
+    sk_allocator *allocator = &t->world->allocator;
+    bool grid = p->grid[0] || p->grid[1];
+    if (mesh && grid) return sk_fail(t->error, SKEIN_ERROR_VALUE, "grid", "a cloth has a grid or a mesh, not both");
+    if (!mesh && !grid) return sk_fail(t->error, SKEIN_ERROR_VALUE, "mesh", "a cloth needs a mesh or a grid");
+    skein_status status = mesh ? sk_sheet_from_mesh(&t->sheet, allocator, mesh, t->error)
+                               : sk_sheet_from_grid(&t->sheet, allocator, p->grid, p->size, t->error);
+    if (status) return status;
+    sk_sheet_transform(&t->sheet, p->scale, p->rotation, p->position);
+    if ((status = sk_sheet_weld(&t->sheet, p->weld, t->error))) return status;
+    return sk_springs_find(&t->springs, &t->sheet, t->error);
+}
+
+/* Masses, pins and velocities; a particle without a mass (of no face) is held. */
+static skein_status add_particles(tailor *t) {
+    sk_allocator *allocator = &t->world->allocator;
+    size_t count = t->sheet.particle_count;
+    t->pinned = sk_allocate(allocator, count * sizeof *t->pinned);
+    t->mass = sk_allocate(allocator, count * sizeof *t->mass);
+    double(*velocity)[3] = sk_allocate(allocator, count * sizeof *velocity);
+    skein_status status = t->pinned && t->mass && velocity ? SKEIN_OK : sk_fail_memory(t->error, "particles");
+    if (!status) status = sk_selection_apply(t->params->pins, &t->sheet, &t->springs, "pins", t->pinned, t->error);
+    for (size_t i = 0; i < count && !status; i++) {
+        t->mass[i] = t->params->density * t->sheet.particle_area[i];
+        if (t->mass[i] < 1e-15) t->mass[i] = 0;
+        if (t->mass[i] > 0 && !t->pinned[i]) memcpy(velocity[i], t->params->velocity, sizeof velocity[i]);
+    }
+    if (!status)
+        status = sk_world_add_particles(t->world, count, (const double *)t->sheet.position, (const double *)velocity, t->mass, t->error);
+    for (size_t i = 0; i < count && !status; i++)
+        if (t->pinned[i]) sk_particle_hold(&t->world->particles, t->body->first_particle + i, true);
+    sk_release(allocator, velocity);
+    return status;
+}
+
+static skein_status add_springs(tailor *t) {
+    static const char *const labels[] = {"stretch", "shear", "bend"};
+    const sk_material *materials[] = {&t->params->stretch, &t->params->shear, &t->params->bend};
+    for (int sort = 0; sort < SK_SPRING_SORTS; sort++) {
+        struct sk_spring_list *list = &t->springs.list[sort];
+        for (size_t i = 0; i < 2 * list->count; i++) list->pairs[i] += t->body->first_particle;
+        skein_status status = sk_world_add_body_batch(t->world, t->body, &sk_distance, labels[sort], *materials[sort],
+                                                      sort == SK_STRETCH, list->count, list->pairs, list->rest, list->scale, t->error);
+        if (status) return status;
+    }
+    return SKEIN_OK;
+}
+
+/* Triangles of the faces, as fans, for forces on areas. */
+static skein_status add_triangles(tailor *t) {
+    const sk_sheet *sheet = &t->sheet;
+    uint32_t(*corners)[3] = sk_allocate(&t->world->allocator, sheet->corner_count * sizeof *corners);
+    if (!corners) return sk_fail_memory(t->error, "triangles");
+    size_t count = 0;
+    for (size_t f = 0; f < sheet->face_count; f++) {
+        const uint32_t *c = sheet->corners + sheet->face_start[f];
+        size_t size = sheet->face_start[f + 1] - sheet->face_start[f];
+        for (size_t k = 1; k + 1 < size; k++, count++)
+            for (int j = 0; j < 3; j++) corners[count][j] = t->body->first_particle + c[j == 0 ? 0 : k + (size_t)j - 1];
+    }
+    skein_status status = sk_world_add_triangles(t->world, count, (const uint32_t(*)[3])corners, t->error);
+    sk_release(&t->world->allocator, corners);
+    return status;
+}
+
+/* Tethers to one set of anchors: an element for each free particle that they reach. */
+static skein_status add_tether_set(tailor *t, sk_geodesic *geodesic, const bool *source, double *distance, uint32_t *nearest) {
+    size_t count = t->sheet.particle_count, filled = 0;
+    if (!sk_geodesic_from(geodesic, source, distance, nearest)) return sk_fail_memory(t->error, "tethers");
+    uint32_t *pairs = sk_allocate(&t->world->allocator, 2 * count * sizeof *pairs);
+    real *lengths = sk_allocate(&t->world->allocator, count * sizeof *lengths);
+    skein_status status = pairs && lengths ? SKEIN_OK : sk_fail_memory(t->error, "tethers");
+    for (size_t i = 0; i < count && !status; i++) {
+        if (t->pinned[i] || !(t->mass[i] > 0) || !(distance[i] < INFINITY)) continue;
+        pairs[2 * filled] = t->body->first_particle + (uint32_t)i;
+        pairs[2 * filled + 1] = t->body->first_particle + nearest[i];
+        lengths[filled++] = (real)distance[i];
+    }
+    if (!status) status = sk_world_add_tethers(t->world, t->body, filled, pairs, lengths, t->error);
+    sk_release(&t->world->allocator, pairs);
+    sk_release(&t->world->allocator, lengths);
+    return status;
+}
+
+/* A few pins hold every particle each on its own; many (an edge) hold it by the nearest one. */
+static skein_status add_tethers(tailor *t) {
+    size_t count = t->sheet.particle_count, pins = 0;
+    for (size_t i = 0; i < count; i++) pins += t->pinned[i];
+    t->body->stretch_bound = t->params->stretch_limit;
+    if (!pins || pins == count) return SKEIN_OK;
+    sk_allocator *allocator = &t->world->allocator;
+    sk_geodesic *geodesic = sk_geodesic_create(&t->sheet);
+    double *distance = sk_allocate(allocator, count * sizeof *distance);
+    uint32_t *nearest = sk_allocate(allocator, count * sizeof *nearest);
+    bool *source = sk_allocate(allocator, count * sizeof *source);
+    skein_status status = geodesic && distance && nearest && source ? SKEIN_OK : sk_fail_memory(t->error, "tethers");
+    if (!status && pins > MOST_SINGLE_ANCHORS) status = add_tether_set(t, geodesic, t->pinned, distance, nearest);
+    for (size_t i = 0; i < count && !status && pins <= MOST_SINGLE_ANCHORS; i++) {
+        if (!t->pinned[i]) continue;
+        memset(source, 0, count * sizeof *source);
+        source[i] = true;
+        status = add_tether_set(t, geodesic, source, distance, nearest);
+    }
+    sk_geodesic_release(geodesic);
+    sk_release(allocator, distance);
+    sk_release(allocator, nearest);
+    sk_release(allocator, source);
+    return status;
+}
+
+/* The body keeps the surface as it came: the sheet's arrays change owners. */
+static void hand_over_surface(tailor *t) {
+    sk_body *body = t->body;
+    sk_sheet *sheet = &t->sheet;
+    for (size_t v = 0; v < sheet->vertex_count; v++) sheet->particle_of_vertex[v] += body->first_particle;
+    body->particle_of_vertex = sheet->particle_of_vertex;
+    body->face_sizes = sheet->face_sizes;
+    body->face_vertices = sheet->face_vertices;
+    body->vertex_count = sheet->vertex_count;
+    body->face_count = sheet->face_count;
+    body->face_vertex_count = sheet->corner_count;
+    body->grid_rows = sheet->grid_rows;
+    body->grid_columns = sheet->grid_columns;
+    sheet->particle_of_vertex = sheet->face_sizes = sheet->face_vertices = NULL;
+}
+
+static skein_status build(skein_world *world, sk_body *body, const void *params, const skein_mesh *mesh, skein_error *error) {
+    tailor t = {.world = world, .body = body, .params = params, .error = error};
+    skein_status status = make_sheet(&t, mesh);
+    if (!status) status = sk_report_faults(world, body->label, &t.sheet, &t.springs, error);
+    if (!status) status = add_particles(&t);
+    if (!status) status = add_springs(&t);
+    if (!status) status = add_triangles(&t);
+    if (!status) status = add_tethers(&t);
+    if (!status) hand_over_surface(&t);
+    sk_release(&world->allocator, t.pinned);
+    sk_release(&world->allocator, t.mass);
+    sk_springs_release(&t.springs);
+    sk_sheet_release(&t.sheet);
+    return status;
+}
+
+static bool live(const char *field) {
+    static const char *const names[] = {"stretch.stiffness", "stretch.damping", "shear.stiffness", "shear.damping",
+                                        "bend.stiffness",    "bend.damping",    "stretch.limit"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (!strcmp(field, names[i])) return true;
+    return false;
+}
+
+static void change(sk_body *body, const void *data) {
+    const cloth_params *params = data;
+    *body->material[SK_STRETCH] = params->stretch;
+    *body->material[SK_SHEAR] = params->shear;
+    *body->material[SK_BEND] = params->bend;
+    body->stretch_bound = params->stretch_limit;
+}
+
+const sk_body_type sk_cloth = {
+    .kind = {"cloth", "a sheet from a triangle or quad mesh, or a grid: edges, shear and bending as springs, tethers to pins",
+             SKEIN_BODY, fields, sizeof fields / sizeof *fields, sizeof(cloth_params)},
+    .build = build,
+    .live = live,
+    .change = change,
+};

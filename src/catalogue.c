@@ -1,0 +1,69 @@
+/* The catalogue: every kind that ships with the library, by category, and the public calls that take a
+ * kind by its name. A new kind is its own file and one row here. The roof of the house: it sees all
+ * floors, and nothing sees it. */
+#include <string.h>
+
+#include "bodies/body.h"
+
+static const sk_body_type *const bodies[] = {&sk_cloth};
+static const sk_constraint_type *const constraints[] = {&sk_distance};
+static const sk_force_type *const forces[] = {&sk_gravity, &sk_wind, &sk_surface_wind, &sk_drag, &sk_separation};
+static const sk_collider_type *const colliders[] = {&sk_plane, &sk_sphere};
+static const sk_method_type *const methods[] = {&sk_symplectic_euler, &sk_xpbd};
+
+#define COUNT(list) (sizeof(list) / sizeof *(list))
+
+const skein_kind *skein_kind_at(skein_category category, size_t index) {
+    switch (category) {
+    case SKEIN_BODY: return index < COUNT(bodies) ? &bodies[index]->kind : NULL;
+    case SKEIN_CONSTRAINT: return index < COUNT(constraints) ? &constraints[index]->kind : NULL;
+    case SKEIN_FORCE: return index < COUNT(forces) ? &forces[index]->kind : NULL;
+    case SKEIN_COLLIDER: return index < COUNT(colliders) ? &colliders[index]->kind : NULL;
+    case SKEIN_METHOD: return index < COUNT(methods) ? &methods[index]->kind : NULL;
+    default: return NULL;
+    }
+}
+
+const skein_kind *skein_kind_find(skein_category category, const char *name, skein_error *error) {
+    const char *names[64];
+    size_t count = 0;
+    for (const skein_kind *kind; count < 64 && (kind = skein_kind_at(category, count)); count++) {
+        if (!strcmp(kind->name, name)) return kind;
+        names[count] = kind->name;
+    }
+    const char *nearest = sk_nearest_name(name, names, count);
+    sk_fail(error, SKEIN_ERROR_NAME, "type", "there is no %s '%s'%s%s%s", skein_category_text(category), name,
+            nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
+    return NULL;
+}
+
+/* Every type begins with its kind, so the kind's address is the type's. */
+static const void *type_of(const skein_world *world, skein_category category, const char *name) {
+    return skein_kind_find(category, name, sk_world_error(world));
+}
+
+skein_status skein_body_add(skein_world *world, const char *kind, const skein_mesh *mesh, const skein_setting *settings, skein_handle *handle) {
+    const sk_body_type *type = type_of(world, SKEIN_BODY, kind);
+    return type ? sk_world_add_body(world, type, mesh, settings, handle) : SKEIN_ERROR_NAME;
+}
+
+skein_status skein_constraint_add(skein_world *world, const char *kind, const uint32_t *particles, size_t count,
+                                  const skein_setting *settings, skein_handle *handle) {
+    const sk_constraint_type *type = type_of(world, SKEIN_CONSTRAINT, kind);
+    return type ? sk_world_add_constraint(world, type, particles, count, settings, handle) : SKEIN_ERROR_NAME;
+}
+
+skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings, skein_handle *handle) {
+    const sk_force_type *type = type_of(world, SKEIN_FORCE, kind);
+    return type ? sk_world_add_force(world, type, settings, handle) : SKEIN_ERROR_NAME;
+}
+
+skein_status skein_collider_add(skein_world *world, const char *kind, const skein_setting *settings, skein_handle *handle) {
+    const sk_collider_type *type = type_of(world, SKEIN_COLLIDER, kind);
+    return type ? sk_world_add_collider(world, type, settings, handle) : SKEIN_ERROR_NAME;
+}
+
+skein_status skein_method_set(skein_world *world, const char *kind, const skein_setting *settings) {
+    const sk_method_type *type = type_of(world, SKEIN_METHOD, kind);
+    return type ? sk_world_set_method(world, type, settings) : SKEIN_ERROR_NAME;
+}

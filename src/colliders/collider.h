@@ -1,0 +1,70 @@
+/* Colliders: solid shapes that particles may not enter, and how contact answers.
+ *
+ * A *type* is one file: its fields, where it stands, and `probe`, the signed distance and unit normal
+ * of a block of particles. What contact does is the same for all types (contact.c), in the four kernels
+ * that methods put into their plans. Particles touch when their distance is under the thickness. */
+#ifndef SK_COLLIDERS_COLLIDER_H
+#define SK_COLLIDERS_COLLIDER_H
+
+#include "base/fields.h"
+#include "plan/row.h"
+
+/* Where a collider stands at a time, and how it moves there. */
+typedef struct sk_pose {
+    sk_vec3 position;
+    real rotation[9];   /* rows of the matrix that turns the shape as built into the shape now */
+    sk_vec3 velocity;   /* of `position`, m/s */
+    sk_vec3 spin;       /* angular velocity, rad/s */
+} sk_pose;
+
+typedef struct sk_contact {
+    sk_vec3 normal; /* unit, out of the solid */
+    real distance;  /* to the surface, negative inside */
+} sk_contact;
+
+/* What every collider has besides its shape. */
+typedef struct sk_collider_common {
+    char *name;
+    bool enabled, visible;
+    double thickness, friction, restitution;
+    double velocity[3], axis[3], spin, start;
+} sk_collider_common;
+
+typedef struct sk_collider_type {
+    skein_kind kind;
+    /* NULL if the parameters are good as they are. */
+    skein_status (*check)(const void *params, skein_error *error);
+    /* The shape's own point: a sphere's centre, a point of a plane. */
+    void (*place)(const void *params, double position[3]);
+    void (*probe)(const void *params, const sk_pose *pose, const sk_vec4 *x, size_t count, sk_contact *contact);
+} sk_collider_type;
+
+typedef struct sk_collider {
+    const sk_collider_type *type;
+    const void *params;
+    const sk_collider_common *common;
+    const char *label;
+} sk_collider;
+
+/* Fields of sk_collider_common. */
+extern const skein_field sk_collider_fields[];
+extern const size_t sk_collider_field_count;
+
+sk_pose sk_collider_pose_at(const sk_collider *collider, double time);
+
+/* Force methods: cancels the inward part of F and adds Coulomb friction that never reverses a slide. */
+sk_row_kernel sk_contact_force;
+/* Force methods: reflects and rubs the inward part of V. */
+sk_row_kernel sk_contact_impulse;
+/* All methods: moves X out to the thickness. With a second source (X0), friction against it. */
+sk_row_kernel sk_contact_push;
+/* Position methods: gives V the bounce that V0, its second source, had coming. */
+sk_row_kernel sk_contact_restitution;
+
+/* Deepest penetration below the thickness (m) and the number of particles in touch. */
+void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4 *x,
+                         const uint32_t *slot_of, size_t particle_count, double *penetration, size_t *contacts);
+
+extern const sk_collider_type sk_plane, sk_sphere;
+
+#endif

@@ -1,0 +1,31 @@
+/* Forces: what pushes particles besides constraints and contact. Each type is one file.
+ *
+ * A force's kernel adds newtons to F over its domain: particles (slots), triangles of the bodies'
+ * surfaces, or particles with their neighbours in the grid. */
+#ifndef SK_FORCES_FORCE_H
+#define SK_FORCES_FORCE_H
+
+#include "base/fields.h"
+#include "plan/row.h"
+
+typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOURS } sk_domain;
+
+typedef struct sk_force_type {
+    skein_kind kind;
+    sk_domain domain;
+    sk_row_kernel *kernel;
+    /* Neighbour rules: how far they reach, m; NULL else. */
+    double (*radius)(const void *params);
+} sk_force_type;
+
+/* A force as methods see it: a type with its parameters. A row's rule is one of these. */
+typedef struct sk_force {
+    const sk_force_type *type;
+    const void *params;
+    const char *label;
+    const bool *enabled;
+} sk_force;
+
+extern const sk_force_type sk_gravity, sk_wind, sk_surface_wind, sk_drag, sk_separation;
+
+#endif

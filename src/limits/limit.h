@@ -1,0 +1,27 @@
+/* Limits: corrections of positions at the end of a substep, whatever the method.
+ *
+ * Tethers keep cloth from stretching like rubber (Kim, Chentanez, Mueller 2012): a particle may not be
+ * farther from a held one than its distance along the cloth, times 1 + bound. One pass does for a whole
+ * sheet what thousands of spring sweeps would. Each element moves its own particle: free order. */
+#ifndef SK_LIMITS_LIMIT_H
+#define SK_LIMITS_LIMIT_H
+
+#include "base/fields.h"
+#include "plan/row.h"
+
+typedef struct sk_limit {
+    sk_row_kernel *kernel;
+    const char *label;
+    const bool *enabled;
+    const double *bound; /* of the stretch: 0.05 lets it grow by 5 % */
+    size_t count;
+    uint32_t *particle;  /* the tethered one and its anchor, count x 2, user's indices; no particle twice */
+    uint32_t *slot;      /* the same as slots */
+    real *length;        /* along the cloth at rest, m */
+} sk_limit;
+
+sk_limit *sk_tethers_create(sk_allocator *allocator, size_t count, const uint32_t *particles, const real *lengths);
+void sk_limit_release(sk_limit *limit, sk_allocator *allocator);
+void sk_limit_refresh(sk_limit *limit, const uint32_t *slot_of);
+
+#endif

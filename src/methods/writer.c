@@ -1,0 +1,153 @@
+#include "methods/writer.h"
+
+#include "base/status.h"
+#include "methods/method.h"
+
+static void add(sk_writer *writer, sk_row row) {
+    row.dt = writer->h;
+    if (!sk_plan_add(writer->plan, writer->allocator, row)) writer->no_memory = true;
+}
+
+size_t sk_write_repeat(sk_writer *writer, size_t times, double h) {
+    writer->h = h;
+    add(writer, (sk_row){.kind = SK_ROW_REPEAT, .end = times, .order = SK_ORDERED, .label = "repeat"});
+    return writer->plan->count - 1;
+}
+
+void sk_write_end(sk_writer *writer, size_t repeat) {
+    if (!writer->no_memory) writer->plan->data[repeat].length = writer->plan->count - repeat - 1;
+}
+
+static void add_combine(sk_writer *writer, sk_row_kernel *kernel, sk_vector dst, double a, sk_vector p, double b, sk_vector q) {
+    add(writer, (sk_row){.kind = SK_ROW_COMBINE, .order = SK_FREE, .kernel = kernel, .dst = dst, .source = {p, q, SK_NONE},
+                         .coefficient = {a, b, 0}, .end = writer->slot_count});
+}
+
+void sk_write_sum(sk_writer *writer, sk_vector dst, double a, sk_vector p, double b, sk_vector q) {
+    add_combine(writer, sk_combine_sum, dst, a, p, b, q);
+}
+
+void sk_write_clear(sk_writer *writer, sk_vector dst) {
+    add_combine(writer, sk_combine_sum, dst, 0, SK_NONE, 0, SK_NONE);
+}
+
+void sk_write_difference(sk_writer *writer, sk_vector dst, double a, sk_vector p, sk_vector q) {
+    add_combine(writer, sk_combine_difference, dst, a, p, 0, q);
+}
+
+void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_vector q) {
+    add_combine(writer, sk_combine_kick, dst, a, p, 0, q);
+}
+
+/* The grid's row: sorts all particles into cells of at least coefficient[0]. */
+static void build_grid(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    (void)begin;
+    if (!sk_grid_build(run->grid, run->allocator, run->vector[row->source[0]], run->slot_of, end,
+                       (real)row->coefficient[0]))
+        run->no_memory = true;
+}
+
+/* The widest reach of the enabled neighbour rules; 0 if there is none. */
+static double widest_radius(const sk_rules *rules) {
+    double widest = 0;
+    for (size_t i = 0; i < rules->forces.count; i++) {
+        const sk_force *force = rules->forces.data[i];
+        if (!*force->enabled || force->type->domain != SK_OVER_NEIGHBOURS) continue;
+        double radius = force->type->radius(force->params);
+        if (radius > widest) widest = radius;
+    }
+    return widest;
+}
+
+void sk_write_fields(sk_writer *writer) {
+    const sk_rules *rules = writer->rules;
+    sk_write_clear(writer, SK_F);
+    double radius = widest_radius(rules);
+    if (radius > 0)
+        add(writer, (sk_row){.kind = SK_ROW_GRID, .order = SK_ORDERED, .kernel = build_grid, .source = {SK_X},
+                             .coefficient = {radius}, .label = "cells", .end = writer->particle_count});
+    for (size_t i = 0; i < rules->forces.count; i++) {
+        const sk_force *force = rules->forces.data[i];
+        if (!*force->enabled) continue;
+        sk_row row = {.kind = SK_ROW_FIELD, .order = SK_FREE, .kernel = force->type->kernel, .dst = SK_F,
+                      .source = {SK_X, SK_V}, .rule = force, .label = force->label, .end = writer->slot_count};
+        if (force->type->domain == SK_OVER_TRIANGLES) {
+            row.order = SK_ORDERED; // neighbouring triangles write the same corners
+            row.end = writer->triangle_count;
+        } else if (force->type->domain == SK_OVER_NEIGHBOURS) {
+            row.kind = SK_ROW_NEIGHBOUR;
+            row.end = writer->particle_count;
+        }
+        add(writer, row);
+    }
+}
+
+void sk_write_forces(sk_writer *writer) {
+    for (size_t i = 0; i < writer->rules->batches.count; i++) {
+        const sk_batch *batch = writer->rules->batches.data[i];
+        if (!*batch->enabled || !batch->count) continue;
+        add(writer, (sk_row){.kind = SK_ROW_FORCE, .order = SK_ORDERED, .kernel = batch->type->force, .dst = SK_F,
+                             .source = {SK_X, SK_V}, .rule = batch, .label = batch->label, .end = batch->count});
+    }
+}
+
+void sk_write_projections(sk_writer *writer, int passes) {
+    const sk_rules *rules = writer->rules;
+    for (size_t i = 0; i < rules->batches.count && passes > 1; i++) {
+        const sk_batch *batch = rules->batches.data[i];
+        if (!*batch->enabled || !batch->count) continue;
+        add(writer, (sk_row){.kind = SK_ROW_MULTIPLIER, .order = SK_FREE, .kernel = sk_batch_clear_multipliers,
+                             .rule = batch, .label = batch->label, .end = batch->count});
+    }
+    for (int pass = 0; pass < passes; pass++)
+        for (size_t i = 0; i < rules->batches.count; i++) {
+            const sk_batch *batch = rules->batches.data[i];
+            if (!*batch->enabled || !batch->count) continue;
+            bool plain = passes == 1 && sk_batch_damping_time(batch) == 0;
+            add(writer, (sk_row){.kind = SK_ROW_PROJECT, .order = SK_ORDERED,
+                                 .kernel = plain ? batch->type->project : batch->type->project_damped, .dst = SK_X,
+                                 .source = {SK_X, plain ? SK_NONE : SK_X0}, .rule = batch, .label = batch->label,
+                                 .end = batch->count});
+        }
+}
+
+void sk_write_contacts(sk_writer *writer, sk_contact_sort sort, sk_vector before) {
+    static const struct {
+        sk_row_kind kind;
+        sk_row_kernel *kernel;
+        sk_vector dst;
+    } sorts[] = {
+        [SK_CONTACT_FORCE] = {SK_ROW_CONTACT_FORCE, sk_contact_force, SK_F},
+        [SK_CONTACT_IMPULSE] = {SK_ROW_CONTACT_VELOCITY, sk_contact_impulse, SK_V},
+        [SK_CONTACT_PUSH] = {SK_ROW_CONTACT_POSITION, sk_contact_push, SK_X},
+        [SK_CONTACT_RESTITUTION] = {SK_ROW_CONTACT_VELOCITY, sk_contact_restitution, SK_V},
+    };
+    for (size_t i = 0; i < writer->rules->colliders.count; i++) {
+        const sk_collider *collider = writer->rules->colliders.data[i];
+        if (!collider->common->enabled) continue;
+        add(writer, (sk_row){.kind = sorts[sort].kind, .order = SK_FREE, .kernel = sorts[sort].kernel,
+                             .dst = sorts[sort].dst, .source = {SK_X, before}, .rule = collider,
+                             .label = collider->label, .end = writer->slot_count});
+    }
+}
+
+void sk_write_limits(sk_writer *writer) {
+    for (size_t i = 0; i < writer->rules->limits.count; i++) {
+        const sk_limit *limit = writer->rules->limits.data[i];
+        if (!*limit->enabled || !limit->count) continue;
+        add(writer, (sk_row){.kind = SK_ROW_LIMIT, .order = SK_FREE, .kernel = limit->kernel, .dst = SK_X,
+                             .source = {SK_X}, .rule = limit, .label = limit->label, .end = limit->count});
+    }
+}
+
+skein_status sk_refuse_rigid(const sk_rules *rules, const char *method, skein_error *error) {
+    for (size_t i = 0; i < rules->batches.count; i++) {
+        const sk_batch *batch = rules->batches.data[i];
+        const sk_material *material = batch->params;
+        if (*batch->enabled && material->stiffness >= SK_UNBOUNDED)
+            return sk_fail(error, SKEIN_ERROR_VALUE, "method.type",
+                           "%s needs finite stiffness, but '%s' is rigid: give it a stiffness or use xpbd", method,
+                           batch->label);
+    }
+    return SKEIN_OK;
+}

@@ -1,0 +1,49 @@
+/* The pen that methods write plans with: one call a row, or a row for each enabled rule of a sort. */
+#ifndef SK_METHODS_WRITER_H
+#define SK_METHODS_WRITER_H
+
+#include "colliders/collider.h"
+#include "constraints/constraint.h"
+#include "forces/force.h"
+#include "limits/limit.h"
+
+/* Everything that acts, in the order of its making. Owned by the world. */
+typedef struct sk_rules {
+    struct { sk_batch **data; size_t count, capacity; } batches;
+    struct { sk_force **data; size_t count, capacity; } forces;
+    struct { sk_collider **data; size_t count, capacity; } colliders;
+    struct { sk_limit **data; size_t count, capacity; } limits;
+} sk_rules;
+
+typedef struct sk_writer {
+    sk_plan *plan;
+    sk_allocator *allocator;
+    const sk_rules *rules;
+    size_t slot_count, particle_count, triangle_count;
+    double h;       /* of the present substep, s */
+    bool no_memory; /* the plan is incomplete */
+} sk_writer;
+
+/* Opens a repeat of `times` substeps of `h` seconds; sk_write_end closes it. Returns its place. */
+size_t sk_write_repeat(sk_writer *writer, size_t times, double h);
+void sk_write_end(sk_writer *writer, size_t repeat);
+
+/* dst = a p + b q (q may be SK_NONE); dst = 0; dst = a (p - q); dst = p + a w q. */
+void sk_write_sum(sk_writer *writer, sk_vector dst, double a, sk_vector p, double b, sk_vector q);
+void sk_write_clear(sk_writer *writer, sk_vector dst);
+void sk_write_difference(sk_writer *writer, sk_vector dst, double a, sk_vector p, sk_vector q);
+void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_vector q);
+
+/* F = all forces on X moving with V: the grid if a rule wants neighbours, then fields and neighbours. */
+void sk_write_fields(sk_writer *writer);
+/* F += the springs of every batch. */
+void sk_write_forces(sk_writer *writer);
+/* X: `passes` sweeps over every batch; X0 is the state at the start of the substep. */
+void sk_write_projections(sk_writer *writer, int passes);
+
+typedef enum sk_contact_sort { SK_CONTACT_FORCE, SK_CONTACT_IMPULSE, SK_CONTACT_PUSH, SK_CONTACT_RESTITUTION } sk_contact_sort;
+/* A row for each collider; `before` is X0 for a push with friction, V0 for restitution, else SK_NONE. */
+void sk_write_contacts(sk_writer *writer, sk_contact_sort sort, sk_vector before);
+void sk_write_limits(sk_writer *writer);
+
+#endif

@@ -1,0 +1,47 @@
+/* XPBD, extended position based dynamics (Macklin, Mueller, Chentanez 2016) with small substeps
+ * (Macklin and others 2019): predict, project every constraint with its compliance, and take the
+ * velocity from the way that was made. Stable at any stiffness; a constraint's compliance, not the
+ * number of passes, says how stiff it is. */
+#include "methods/method.h"
+
+typedef struct xpbd_params {
+    int32_t substeps, iterations;
+} xpbd_params;
+
+static const skein_field fields[] = {
+    SK_INT(xpbd_params, substeps, "substeps", "", 10, 1, 100000,
+           "equal parts that a step is cut into; more is firmer and more exact"),
+    SK_INT(xpbd_params, iterations, "iterations", "", 1, 1, 1000,
+           "passes over the constraints in a substep; more substeps are better spent"),
+};
+
+static int substeps(const void *params) {
+    return ((const xpbd_params *)params)->substeps;
+}
+
+static void write(sk_writer *writer, const void *data, double dt) {
+    const xpbd_params *params = data;
+    double h = dt / params->substeps;
+    size_t repeat = sk_write_repeat(writer, (size_t)params->substeps, h);
+    // predict
+    sk_write_fields(writer);
+    sk_write_kick(writer, SK_V, SK_V, h, SK_F);
+    if (writer->rules->colliders.count) sk_write_sum(writer, SK_V0, 1, SK_V, 0, SK_NONE);
+    sk_write_sum(writer, SK_X0, 1, SK_X, 0, SK_NONE);
+    sk_write_sum(writer, SK_X, 1, SK_X, h, SK_V);
+    // correct
+    sk_write_projections(writer, params->iterations);
+    sk_write_limits(writer);
+    sk_write_contacts(writer, SK_CONTACT_PUSH, SK_X0);
+    // learn the velocity
+    sk_write_difference(writer, SK_V, 1 / h, SK_X, SK_X0);
+    sk_write_contacts(writer, SK_CONTACT_RESTITUTION, SK_V0);
+    sk_write_end(writer, repeat);
+}
+
+const sk_method_type sk_xpbd = {
+    .kind = {"xpbd", "positions corrected constraint by constraint; stable at any stiffness", SKEIN_METHOD, fields,
+             sizeof fields / sizeof *fields, sizeof(xpbd_params)},
+    .write = write,
+    .substeps = substeps,
+};

@@ -1,0 +1,102 @@
+/* The rows of a plan: what a step does, as data.
+ *
+ * A row names vectors, a kernel and a range of elements; the runner (world/run.c) knows nothing else.
+ * Methods write rows (methods/writer.h), rules bring the kernels (constraints/, forces/, colliders/).
+ *
+ *   kind     dst   sources        coefficients   rule                 range
+ *   field    F     X V                           gravity              [0, particles)
+ *   force    F     X V                           batch of distances   [0, elements)
+ *   combine  V     V F            1, h                                [0, slots)
+ */
+#ifndef SK_PLAN_ROW_H
+#define SK_PLAN_ROW_H
+
+#include "base/memory.h"
+#include "base/vector.h"
+#include "space/grid.h"
+
+/* The state vectors, one sk_vec4 a slot. */
+typedef enum sk_vector {
+    SK_NONE,
+    SK_X,        /* position, inverse mass */
+    SK_V,        /* velocity, mass */
+    SK_F,        /* force */
+    SK_X0,       /* position saved at the start of a substep */
+    SK_V0,       /* velocity saved likewise */
+    SK_PREVIOUS, /* position at the start of the step, for blending between frames */
+    SK_VECTOR_COUNT
+} sk_vector;
+
+typedef enum sk_row_kind {
+    SK_ROW_COMBINE,
+    SK_ROW_GRID,
+    SK_ROW_FIELD,
+    SK_ROW_NEIGHBOUR,
+    SK_ROW_FORCE,
+    SK_ROW_PROJECT,
+    SK_ROW_MULTIPLIER,
+    SK_ROW_CONTACT_FORCE,
+    SK_ROW_CONTACT_VELOCITY,
+    SK_ROW_CONTACT_POSITION,
+    SK_ROW_LIMIT,
+    SK_ROW_REPEAT,
+    SK_ROW_KIND_COUNT
+} sk_row_kind;
+
+/* Free: each element writes only its own slot, so any cut over threads gives the same bits.
+ * Ordered: the sequential order is the answer. */
+typedef enum sk_order { SK_FREE, SK_ORDERED } sk_order;
+
+/* Triangles of all bodies' surfaces, as slots, for forces that act on areas. */
+typedef struct sk_triangles {
+    uint32_t (*corner)[3];
+    size_t count, capacity;
+} sk_triangles;
+
+/* What a kernel may touch while a plan runs. */
+typedef struct sk_run {
+    sk_vec4 *vector[SK_VECTOR_COUNT];
+    size_t slot_count;         /* a multiple of 16; the slots past the particles are zero */
+    const uint32_t *slot_of;   /* of the user's particles */
+    size_t particle_count;
+    const sk_triangles *triangles;
+    sk_grid *grid;
+    sk_allocator *allocator;
+    double time;    /* at the end of the present substep, s */
+    bool no_memory; /* a growing list could not grow: the step fails and says so */
+} sk_run;
+
+typedef struct sk_row sk_row;
+typedef void sk_row_kernel(sk_run *run, const sk_row *row, size_t begin, size_t end);
+
+struct sk_row {
+    sk_row_kind kind;
+    sk_order order;
+    sk_row_kernel *kernel; /* NULL for a repeat */
+    sk_vector dst, source[3];
+    double coefficient[3];
+    double dt;          /* of the substep, s */
+    const void *rule;   /* a force, a collider, a batch */
+    const char *label;  /* its name in `skein explain` */
+    size_t begin, end;  /* elements; a repeat: the number of turns is `end` */
+    size_t length;      /* a repeat: how many rows after it are repeated */
+};
+
+typedef struct sk_plan {
+    sk_row *data;
+    size_t count, capacity;
+} sk_plan;
+
+/* Appends a row; false when there is no memory. */
+bool sk_plan_add(sk_plan *plan, sk_allocator *allocator, sk_row row);
+/* One line about a row, as `skein explain` shows it. */
+void sk_row_describe(const sk_row *row, char *text, size_t size);
+const char *sk_row_kind_text(sk_row_kind kind);
+
+/* The arithmetic of vectors: the kernels of combine rows. The w components stay as they are.
+ *   dst = a p + b q + c r        (a source of SK_NONE is left out)
+ *   dst = a (p - q)              velocity from positions, without cancelling after scaling
+ *   dst = p + a w q              a kick: w is the inverse mass */
+sk_row_kernel sk_combine_sum, sk_combine_difference, sk_combine_kick;
+
+#endif

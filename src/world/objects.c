@@ -1,0 +1,286 @@
+/* Objects: what users hold handles of. Adding, removing and finding them. */
+#include <stdio.h>
+#include <string.h>
+
+#include "world/world.h"
+
+/* ---- handles ---- */
+
+sk_object *sk_object_of(const skein_world *world, skein_handle handle) {
+    if (handle.index >= world->objects.count) return NULL;
+    sk_object *object = world->objects.data[handle.index];
+    return object->generation == handle.generation && handle.generation % 2 ? object : NULL;
+}
+
+bool skein_handle_valid(const skein_world *world, skein_handle handle) {
+    return sk_object_of(world, handle) != NULL;
+}
+
+static skein_handle handle_of(const skein_world *world, const sk_object *object) {
+    for (size_t i = 0; i < world->objects.count; i++)
+        if (world->objects.data[i] == object) return (skein_handle){(uint32_t)i, object->generation};
+    return (skein_handle){UINT32_MAX, 0};
+}
+
+/* A new object with its parameters set; it lives (its generation turns odd) once its rule is made. */
+static skein_status make_object(skein_world *world, const skein_kind *kind, const skein_setting *settings,
+                                sk_object **made, skein_error *error) {
+    sk_allocator *allocator = &world->allocator;
+    if (!SK_RESERVE(allocator, &world->objects, world->objects.count + 1)) return sk_fail_memory(error, kind->name);
+    sk_object *object = sk_allocate(allocator, sizeof *object);
+    void *params = object ? sk_allocate(allocator, kind->params_size) : NULL;
+    if (!params) {
+        sk_release(allocator, object);
+        return sk_fail_memory(error, kind->name);
+    }
+    object->category = kind->category;
+    object->params = params;
+    size_t common_count;
+    const skein_field *common = sk_common_fields(kind->category, &common_count);
+    skein_status status = sk_settings_apply(allocator, kind, params, common, common_count, sk_common_of(object), settings, error);
+    if (status) {
+        sk_release(allocator, params);
+        sk_release(allocator, object);
+        return status;
+    }
+    object->kind = kind;
+    const char *name = kind->category == SKEIN_COLLIDER ? object->common.collider.name : object->common.plain.name;
+    snprintf(object->label, sizeof object->label, "%s", name[0] ? name : kind->name);
+    world->objects.data[world->objects.count++] = object;
+    *made = object;
+    return SKEIN_OK;
+}
+
+/* Takes the newest object back. */
+static void unmake_object(skein_world *world, sk_object *object) {
+    sk_allocator *allocator = &world->allocator;
+    size_t common_count;
+    const skein_field *common = sk_common_fields(object->category, &common_count);
+    sk_fields_clear(allocator, object->kind->fields, object->kind->field_count, object->params);
+    sk_fields_clear(allocator, common, common_count, sk_common_of(object));
+    sk_release(allocator, object->params);
+    sk_release(allocator, object);
+    world->objects.count--;
+}
+
+static skein_status finish_object(skein_world *world, sk_object *object, skein_handle *handle) {
+    object->generation = 1;
+    world->plan_stale = true;
+    if (handle) *handle = handle_of(world, object);
+    return SKEIN_OK;
+}
+
+/* ---- adding ---- */
+
+skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, const skein_setting *settings, skein_handle *handle) {
+    skein_error *error = sk_world_error(world);
+    sk_object *object;
+    skein_status status = make_object(world, &type->kind, settings, &object, error);
+    if (status) return status;
+    sk_force *force = SK_RESERVE(&world->allocator, &world->rules.forces, world->rules.forces.count + 1)
+                          ? sk_allocate(&world->allocator, sizeof *force) : NULL;
+    if (!force) {
+        unmake_object(world, object);
+        return sk_fail_memory(error, type->kind.name);
+    }
+    *force = (sk_force){type, object->params, object->label, &object->common.plain.enabled};
+    world->rules.forces.data[world->rules.forces.count++] = force;
+    object->as.force = force;
+    return finish_object(world, object, handle);
+}
+
+skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *type, const skein_setting *settings, skein_handle *handle) {
+    skein_error *error = sk_world_error(world);
+    sk_object *object;
+    skein_status status = make_object(world, &type->kind, settings, &object, error);
+    if (status) return status;
+    if (type->check && (status = type->check(object->params, error))) {
+        unmake_object(world, object);
+        return status;
+    }
+    sk_collider *collider = SK_RESERVE(&world->allocator, &world->rules.colliders, world->rules.colliders.count + 1)
+                                ? sk_allocate(&world->allocator, sizeof *collider) : NULL;
+    if (!collider) {
+        unmake_object(world, object);
+        return sk_fail_memory(error, type->kind.name);
+    }
+    *collider = (sk_collider){type, object->params, &object->common.collider, object->label};
+    world->rules.colliders.data[world->rules.colliders.count++] = collider;
+    object->as.collider = collider;
+    return finish_object(world, object, handle);
+}
+
+skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_type *type, const uint32_t *particles,
+                                     size_t count, const skein_setting *settings, skein_handle *handle) {
+    skein_error *error = sk_world_error(world);
+    sk_allocator *allocator = &world->allocator;
+    // rest values from where the particles stand
+    size_t arity = (size_t)type->arity;
+    if (count > SIZE_MAX / 64) return sk_fail(error, SKEIN_ERROR_LIMIT, "", "%zu constraints are too many", count);
+    for (size_t i = 0; i < count * arity; i++)
+        if (particles[i] >= world->particles.count)
+            return sk_fail(error, SKEIN_ERROR_VALUE, "", "%s %zu: there is no particle %u (the world has %zu)",
+                           type->kind.name, i / arity, particles[i], world->particles.count);
+    real *rest = sk_allocate(allocator, count * sizeof *rest);
+    if (!rest) return sk_fail_memory(error, type->kind.name);
+    for (size_t e = 0; e < count; e++) {
+        double x[8][3];
+        for (size_t k = 0; k < arity; k++) {
+            sk_vec4 p = world->particles.vector[SK_X][world->particles.slot_of[particles[e * arity + k]]];
+            x[k][0] = (double)p.x, x[k][1] = (double)p.y, x[k][2] = (double)p.z;
+        }
+        rest[e] = (real)type->rest((const double(*)[3])x);
+    }
+    sk_object *object;
+    skein_status status = make_object(world, &type->kind, settings, &object, error);
+    if (status) {
+        sk_release(allocator, rest);
+        return status;
+    }
+    sk_batch *batch = SK_RESERVE(allocator, &world->rules.batches, world->rules.batches.count + 1)
+                          ? sk_batch_create(allocator, type, count, particles, rest, NULL) : NULL;
+    sk_release(allocator, rest);
+    if (!batch) {
+        unmake_object(world, object);
+        return sk_fail_memory(error, type->kind.name);
+    }
+    batch->params = object->params;
+    batch->label = object->label;
+    batch->enabled = &object->common.plain.enabled;
+    batch->measured = true;
+    world->rules.batches.data[world->rules.batches.count++] = batch;
+    object->as.batch = batch;
+    return finish_object(world, object, handle);
+}
+
+/* Takes back what a builder that failed has added since the marks. */
+static void undo_body(skein_world *world, sk_object *object, size_t particles, size_t triangles, size_t batches, size_t limits) {
+    sk_allocator *allocator = &world->allocator;
+    sk_body *body = object->as.body;
+    sk_rules *rules = &world->rules;
+    while (rules->batches.count > batches) sk_batch_release(rules->batches.data[--rules->batches.count], allocator);
+    while (rules->limits.count > limits) sk_limit_release(rules->limits.data[--rules->limits.count], allocator);
+    sk_particles_truncate(&world->particles, particles);
+    world->triangles.count = world->slots_of_triangles.count = triangles;
+    for (size_t i = 0; i < body->batch_count; i++) sk_release(allocator, body->material[i]);
+    sk_release(allocator, body->particle_of_vertex);
+    sk_release(allocator, body->face_sizes);
+    sk_release(allocator, body->face_vertices);
+    sk_release(allocator, body);
+    unmake_object(world, object);
+}
+
+skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, const skein_mesh *mesh,
+                               const skein_setting *settings, skein_handle *handle) {
+    skein_error *error = sk_world_error(world);
+    sk_object *object;
+    skein_status status = make_object(world, &type->kind, settings, &object, error);
+    if (status) return status;
+    sk_body *body = sk_allocate(&world->allocator, sizeof *body);
+    if (!body) {
+        unmake_object(world, object);
+        return sk_fail_memory(error, type->kind.name);
+    }
+    object->as.body = body;
+    object->body_type = type;
+    body->label = object->label;
+    body->enabled = object->common.plain.enabled;
+    body->first_particle = (uint32_t)world->particles.count;
+    size_t particles = world->particles.count, triangles = world->triangles.count;
+    size_t batches = world->rules.batches.count, limits = world->rules.limits.count;
+    status = type->build(world, body, object->params, mesh, error);
+    if (status) {
+        undo_body(world, object, particles, triangles, batches, limits);
+        return status;
+    }
+    body->particle_count = (uint32_t)(world->particles.count - particles);
+    return finish_object(world, object, handle);
+}
+
+skein_status sk_world_set_method(skein_world *world, const sk_method_type *type, const skein_setting *settings) {
+    skein_error *error = sk_world_error(world);
+    void *params = sk_allocate(&world->allocator, type->kind.params_size);
+    if (!params) return sk_fail_memory(error, type->kind.name);
+    skein_status status = sk_settings_apply(&world->allocator, &type->kind, params, NULL, 0, NULL, settings, error);
+    if (status) {
+        sk_release(&world->allocator, params);
+        return status;
+    }
+    if (world->method)
+        sk_fields_clear(&world->allocator, world->method->kind.fields, world->method->kind.field_count, world->method_params);
+    sk_release(&world->allocator, world->method_params);
+    world->method = type;
+    world->method_params = params;
+    world->plan_stale = true;
+    return SKEIN_OK;
+}
+
+/* ---- removing ---- */
+
+static void drop_pointer(void **data, size_t *count, const void *pointer) {
+    for (size_t i = 0; i < *count; i++)
+        if (data[i] == pointer) {
+            memmove(data + i, data + i + 1, (*count - i - 1) * sizeof *data);
+            --*count;
+            return;
+        }
+}
+
+skein_status skein_remove(skein_world *world, skein_handle handle) {
+    sk_object *object = sk_object_of(world, handle);
+    skein_error *error = sk_world_error(world);
+    if (!object) return sk_fail(error, SKEIN_ERROR_HANDLE, "", "there is no such object: its handle is stale");
+    sk_rules *rules = &world->rules;
+    switch (object->category) {
+    case SKEIN_CONSTRAINT:
+        drop_pointer((void **)rules->batches.data, &rules->batches.count, object->as.batch);
+        sk_batch_release(object->as.batch, &world->allocator);
+        break;
+    case SKEIN_FORCE:
+        drop_pointer((void **)rules->forces.data, &rules->forces.count, object->as.force);
+        sk_release(&world->allocator, object->as.force);
+        break;
+    case SKEIN_COLLIDER:
+        drop_pointer((void **)rules->colliders.data, &rules->colliders.count, object->as.collider);
+        sk_release(&world->allocator, object->as.collider);
+        break;
+    default: return sk_fail(error, SKEIN_ERROR_HANDLE, "", "a %s cannot be removed", skein_category_text(object->category));
+    }
+    object->generation++;
+    world->plan_stale = true;
+    return SKEIN_OK;
+}
+
+/* ---- looking up ---- */
+
+/* The method's handle: no object has this index. */
+static const uint32_t method_index = UINT32_MAX - 1;
+
+static bool is_method(skein_handle handle) {
+    return handle.index == method_index;
+}
+
+size_t skein_object_count(const skein_world *world, skein_category category) {
+    if (category == SKEIN_METHOD) return 1;
+    size_t count = 0;
+    for (size_t i = 0; i < world->objects.count; i++)
+        count += world->objects.data[i]->generation % 2 && world->objects.data[i]->category == category;
+    return count;
+}
+
+skein_handle skein_object_at(const skein_world *world, skein_category category, size_t index) {
+    if (category == SKEIN_METHOD && index == 0) return (skein_handle){method_index, 1};
+    for (size_t i = 0; i < world->objects.count; i++) {
+        const sk_object *object = world->objects.data[i];
+        if (!(object->generation % 2) || object->category != category) continue;
+        if (index-- == 0) return (skein_handle){(uint32_t)i, object->generation};
+    }
+    return (skein_handle){UINT32_MAX, 0};
+}
+
+const skein_kind *skein_object_kind(const skein_world *world, skein_handle handle) {
+    if (is_method(handle)) return &world->method->kind;
+    const sk_object *object = sk_object_of(world, handle);
+    return object ? object->kind : NULL;
+}
+

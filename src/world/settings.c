@@ -1,0 +1,190 @@
+/* Fields of objects: the ones that a category shares, applying settings, and reaching one field of a
+ * living object by handle or by path. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "world/world.h"
+
+static const skein_field body_fields[] = {
+    SK_TEXT(sk_common, name, "name", "", "for paths, messages and the names of files"),
+    SK_BOOL(sk_common, enabled, "enabled", 1, "false: its constraints rest (its particles still move)"),
+    SK_BOOL(sk_common, visible, "visible", 1, "whether it is drawn"),
+};
+static const skein_field rule_fields[] = {
+    SK_TEXT(sk_common, name, "name", "", "for paths and messages"),
+    SK_BOOL(sk_common, enabled, "enabled", 1, "false: as if it were not there"),
+    SK_BOOL(sk_common, visible, "visible", 1, "whether it is drawn"),
+};
+
+const skein_field *sk_common_fields(skein_category category, size_t *count) {
+    switch (category) {
+    case SKEIN_BODY: *count = sizeof body_fields / sizeof *body_fields; return body_fields;
+    case SKEIN_CONSTRAINT:
+    case SKEIN_FORCE: *count = sizeof rule_fields / sizeof *rule_fields; return rule_fields;
+    case SKEIN_COLLIDER: *count = sk_collider_field_count; return sk_collider_fields;
+    default: *count = 0; return NULL;
+    }
+}
+
+const skein_field *skein_common_fields(skein_category category, size_t *count) {
+    return sk_common_fields(category, count);
+}
+
+void *sk_common_of(sk_object *object) {
+    return &object->common;
+}
+
+const skein_field *sk_kind_field(const skein_kind *kind, const char *name, skein_error *error) {
+    size_t common_count;
+    const skein_field *common = sk_common_fields(kind->category, &common_count);
+    const skein_field *field = sk_field_named(kind->fields, kind->field_count, name);
+    if (!field) field = sk_field_named(common, common_count, name);
+    if (field) return field;
+
+    const char *names[64];
+    size_t count = 0;
+    for (size_t i = 0; i < kind->field_count && count < 64; i++) names[count++] = kind->fields[i].name;
+    for (size_t i = 0; i < common_count && count < 64; i++) names[count++] = common[i].name;
+    const char *nearest = sk_nearest_name(name, names, count);
+    sk_fail(error, SKEIN_ERROR_NAME, name, "%s has no field '%s'%s%s%s", kind->name, name,
+            nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
+    return NULL;
+}
+
+const skein_field *skein_field_find(const skein_kind *kind, const char *name, skein_error *error) {
+    return sk_kind_field(kind, name, error);
+}
+
+skein_status sk_settings_apply(sk_allocator *allocator, const skein_kind *kind, void *params, const skein_field *common,
+                               size_t common_count, void *common_params, const skein_setting *settings, skein_error *error) {
+    skein_status status = SKEIN_OK;
+    if (!sk_fields_default(allocator, kind->fields, kind->field_count, params) ||
+        !sk_fields_default(allocator, common, common_count, common_params))
+        status = sk_fail_memory(error, kind->name);
+    for (; !status && settings && settings->name; settings++) {
+        const skein_field *field = sk_kind_field(kind, settings->name, error);
+        if (!field) {
+            status = SKEIN_ERROR_NAME;
+            break;
+        }
+        bool own = field >= kind->fields && field < kind->fields + kind->field_count;
+        status = sk_field_store(allocator, field, own ? params : common_params, &settings->value, error);
+    }
+    if (status) {
+        sk_fields_clear(allocator, kind->fields, kind->field_count, params);
+        sk_fields_clear(allocator, common, common_count, common_params);
+    }
+    return status;
+}
+
+/* ---- one field of a living object ---- */
+
+/* Where a field of an object is stored; NULL with an error if the handle or the name is wrong. */
+static const skein_field *locate(const skein_world *world, skein_handle handle, const char *name, void **params,
+                                 sk_object **object, skein_error *error) {
+    const skein_kind *kind = skein_object_kind(world, handle);
+    if (!kind) {
+        sk_fail(error, SKEIN_ERROR_HANDLE, name, "there is no such object: its handle is stale");
+        return NULL;
+    }
+    const skein_field *field = sk_kind_field(kind, name, error);
+    if (!field) return NULL;
+    *object = sk_object_of(world, handle); // NULL: the method
+    bool own = field >= kind->fields && field < kind->fields + kind->field_count;
+    *params = !*object ? world->method_params : own ? (*object)->params : sk_common_of(*object);
+    return field;
+}
+
+skein_status skein_set(skein_world *world, skein_handle handle, const char *name, skein_value value) {
+    skein_error *error = sk_world_error(world);
+    sk_object *object;
+    void *params;
+    const skein_field *field = locate(world, handle, name, &params, &object, error);
+    if (!field) return error->status;
+    skein_value old = sk_field_load(field, params);
+    // what shaped a body that stands cannot change any more
+    const sk_body_type *body = object && object->category == SKEIN_BODY ? object->body_type : NULL;
+    if (body && params == object->params && !body->live(name))
+        return sk_fail(error, SKEIN_ERROR_VALUE, name, "%s shapes what is already built: set it when the body is added", name);
+    skein_status status = sk_field_store(&world->allocator, field, params, &value, error);
+    if (status) return status;
+    if (object && object->category == SKEIN_COLLIDER && object->as.collider->type->check &&
+        (status = object->as.collider->type->check(object->params, error))) {
+        sk_field_store(&world->allocator, field, params, &old, NULL);
+        return status;
+    }
+    if (body) {
+        body->change(object->as.body, object->params);
+        object->as.body->enabled = object->common.plain.enabled;
+    }
+    if (object && !strcmp(name, "name"))
+        snprintf(object->label, sizeof object->label, "%s", value.text[0] ? value.text : object->kind->name);
+    world->plan_stale = true;
+    return SKEIN_OK;
+}
+
+skein_status skein_get(const skein_world *world, skein_handle handle, const char *name, skein_value *value) {
+    skein_error error = {SKEIN_OK, "", ""};
+    sk_object *object;
+    void *params;
+    const skein_field *field = locate(world, handle, name, &params, &object, &error);
+    if (!field) return error.status;
+    *value = sk_field_load(field, params);
+    return SKEIN_OK;
+}
+
+/* ---- paths ---- */
+
+static const struct {
+    const char *word;
+    skein_category category;
+} lists[] = {
+    {"bodies", SKEIN_BODY}, {"constraints", SKEIN_CONSTRAINT}, {"forces", SKEIN_FORCE}, {"colliders", SKEIN_COLLIDER},
+};
+
+/* Splits "colliders.ball.radius" into an object and "radius". */
+static skein_status resolve(const skein_world *world, const char *path, skein_handle *handle, const char **field, skein_error *error) {
+    if (!strncmp(path, "method.", 7)) {
+        *handle = skein_object_at(world, SKEIN_METHOD, 0);
+        *field = path + 7;
+        return SKEIN_OK;
+    }
+    for (size_t l = 0; l < sizeof lists / sizeof *lists; l++) {
+        size_t length = strlen(lists[l].word);
+        if (strncmp(path, lists[l].word, length) || path[length] != '.') continue;
+        const char *which = path + length + 1, *dot = strchr(which, '.');
+        if (!dot) break;
+        char *end;
+        unsigned long index = strtoul(which, &end, 10);
+        size_t count = skein_object_count(world, lists[l].category);
+        for (size_t i = 0; i < count; i++) {
+            *handle = skein_object_at(world, lists[l].category, i);
+            sk_object *object = sk_object_of(world, *handle);
+            const char *name = lists[l].category == SKEIN_COLLIDER ? object->common.collider.name : object->common.plain.name;
+            bool by_number = end == dot && end != which && i == index;
+            bool by_name = strlen(name) == (size_t)(dot - which) && !strncmp(name, which, (size_t)(dot - which));
+            if (!by_number && !by_name) continue;
+            *field = dot + 1;
+            return SKEIN_OK;
+        }
+        return sk_fail(error, SKEIN_ERROR_NAME, path, "there is no %.*s among the %zu %s", (int)(dot - which), which,
+                       count, lists[l].word);
+    }
+    return sk_fail(error, SKEIN_ERROR_NAME, path,
+                   "expected bodies, constraints, forces or colliders, then a number or name and a field, or method and a field");
+}
+
+skein_status skein_set_path(skein_world *world, const char *path, skein_value value) {
+    skein_handle handle;
+    const char *field;
+    skein_status status = resolve(world, path, &handle, &field, sk_world_error(world));
+    return status ? status : skein_set(world, handle, field, value);
+}
+
+skein_status skein_get_path(const skein_world *world, const char *path, skein_value *value) {
+    skein_handle handle;
+    const char *field;
+    skein_status status = resolve(world, path, &handle, &field, NULL);
+    return status ? status : skein_get(world, handle, field, value);
+}

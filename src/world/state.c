@@ -1,0 +1,107 @@
+/* Reading and writing the state: views, copies in the user's order, holding particles, surfaces. */
+#include <string.h>
+
+#include "world/world.h"
+
+size_t skein_particle_count(const skein_world *world) {
+    return world->particles.count;
+}
+
+static skein_view view_of(const skein_world *world, sk_vector vector) {
+    return (skein_view){(const skein_real *)(const void *)world->particles.vector[vector], world->particles.slot_of,
+                        world->particles.count};
+}
+
+skein_view skein_position_view(const skein_world *world) {
+    return view_of(world, SK_X);
+}
+
+skein_view skein_velocity_view(const skein_world *world) {
+    return view_of(world, SK_V);
+}
+
+/* Whether [first, first + count) are particles. */
+static skein_status check_range(const skein_world *world, size_t first, size_t count) {
+    size_t have = world->particles.count;
+    if (first <= have && count <= have - first) return SKEIN_OK;
+    return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "",
+                   "particles %zu to %zu: the world has %zu", first, first + count, have);
+}
+
+static skein_status copy_out(const skein_world *world, sk_vector vector, size_t first, size_t count, double *out) {
+    skein_status status = check_range(world, first, count);
+    if (status) return status;
+    for (size_t i = 0; i < count; i++) {
+        sk_vec4 p = world->particles.vector[vector][world->particles.slot_of[first + i]];
+        out[3 * i] = (double)p.x, out[3 * i + 1] = (double)p.y, out[3 * i + 2] = (double)p.z;
+    }
+    return SKEIN_OK;
+}
+
+skein_status skein_positions_copy(const skein_world *world, size_t first, size_t count, double *out) {
+    return copy_out(world, SK_X, first, count, out);
+}
+
+skein_status skein_velocities_copy(const skein_world *world, size_t first, size_t count, double *out) {
+    return copy_out(world, SK_V, first, count, out);
+}
+
+skein_status skein_positions_blend(const skein_world *world, double blend, size_t first, size_t count, double *out) {
+    skein_status status = copy_out(world, SK_X, first, count, out);
+    for (size_t i = 0; i < count && !status; i++) {
+        sk_vec4 old = world->particles.vector[SK_PREVIOUS][world->particles.slot_of[first + i]];
+        const double from[3] = {(double)old.x, (double)old.y, (double)old.z};
+        for (int k = 0; k < 3; k++) out[3 * i + (size_t)k] = from[k] + blend * (out[3 * i + (size_t)k] - from[k]);
+    }
+    return status;
+}
+
+static skein_status copy_in(skein_world *world, sk_vector vector, size_t first, size_t count, const double *xyz) {
+    skein_status status = check_range(world, first, count);
+    if (status) return status;
+    for (size_t i = 0; i < 3 * count; i++)
+        if (!(xyz[i] >= -SK_FAR && xyz[i] <= SK_FAR))
+            return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "", "particle %zu: numbers must be finite, under 1e15",
+                           first + i / 3);
+    for (size_t i = 0; i < count; i++) {
+        sk_vec4 *p = &world->particles.vector[vector][world->particles.slot_of[first + i]];
+        *p = (sk_vec4){(real)xyz[3 * i], (real)xyz[3 * i + 1], (real)xyz[3 * i + 2], p->w};
+    }
+    return SKEIN_OK;
+}
+
+skein_status skein_positions_set(skein_world *world, size_t first, size_t count, const double *xyz) {
+    skein_status status = copy_in(world, SK_X, first, count, xyz);
+    // a particle that was moved by hand did not travel: there is nothing to blend
+    return status ? status : copy_in(world, SK_PREVIOUS, first, count, xyz);
+}
+
+skein_status skein_velocities_set(skein_world *world, size_t first, size_t count, const double *xyz) {
+    return copy_in(world, SK_V, first, count, xyz);
+}
+
+skein_status skein_particle_hold(skein_world *world, size_t particle, bool held) {
+    skein_status status = check_range(world, particle, 1);
+    if (!status) sk_particle_hold(&world->particles, particle, held);
+    return status;
+}
+
+skein_status skein_body_surface(const skein_world *world, skein_handle handle, skein_surface *surface) {
+    const sk_object *object = sk_object_of(world, handle);
+    if (!object || object->category != SKEIN_BODY) return SKEIN_ERROR_HANDLE;
+    const sk_body *body = object->as.body;
+    *surface = (skein_surface){body->first_particle, body->particle_count, body->particle_of_vertex, body->vertex_count,
+                               body->face_sizes, body->face_count, body->face_vertices, body->face_vertex_count,
+                               body->grid_rows, body->grid_columns};
+    return SKEIN_OK;
+}
+
+skein_status skein_collider_pose(const skein_world *world, skein_handle handle, skein_pose *out) {
+    const sk_object *object = sk_object_of(world, handle);
+    if (!object || object->category != SKEIN_COLLIDER) return SKEIN_ERROR_HANDLE;
+    sk_pose pose = sk_collider_pose_at(object->as.collider, world->time);
+    const double position[3] = {(double)pose.position.x, (double)pose.position.y, (double)pose.position.z};
+    memcpy(out->position, position, sizeof position);
+    for (int i = 0; i < 9; i++) out->rotation[i] = (double)pose.rotation[i];
+    return SKEIN_OK;
+}

@@ -1,0 +1,106 @@
+/* Measures of the present state. Sums are taken in blocks of 1,024 particles in the user's order, so
+ * that they do not depend on slots or threads. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/hash.h"
+#include "world/world.h"
+
+enum { SUM_BLOCK = 1024 };
+
+uint64_t skein_world_hash(const skein_world *world) {
+    uint64_t hash = SK_HASH_START;
+    for (size_t i = 0; i < world->particles.count; i++) {
+        uint32_t slot = world->particles.slot_of[i];
+        for (sk_vector vector = SK_X; vector <= SK_V; vector++) {
+            const sk_vec4 *p = &world->particles.vector[vector][slot];
+            const real xyz[3] = {p->x, p->y, p->z};
+            for (int k = 0; k < 3; k++) {
+                uint64_t word = 0;
+                memcpy(&word, &xyz[k], sizeof xyz[k]);
+                hash = sk_hash_word(hash, word);
+            }
+        }
+    }
+    return hash;
+}
+
+static bool is_finite(sk_vec4 p) {
+    return sk_abs(p.x) <= SK_REAL_MAX && sk_abs(p.y) <= SK_REAL_MAX && sk_abs(p.z) <= SK_REAL_MAX;
+}
+
+static void measure_motion(const skein_world *world, skein_statistics *s) {
+    const sk_particles *all = &world->particles;
+    for (size_t first = 0; first < all->count; first += SUM_BLOCK) {
+        size_t last = first + SUM_BLOCK < all->count ? first + SUM_BLOCK : all->count;
+        double energy = 0, momentum[3] = {0, 0, 0};
+        for (size_t i = first; i < last; i++) {
+            sk_vec4 v = all->vector[SK_V][all->slot_of[i]], x = all->vector[SK_X][all->slot_of[i]];
+            s->nonfinite += !is_finite(v) || !is_finite(x);
+            s->held_particles += !(x.w > 0);
+            if (!(x.w > 0)) continue;
+            double m = (double)v.w, u[3] = {(double)v.x, (double)v.y, (double)v.z};
+            energy += 0.5 * m * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+            for (int k = 0; k < 3; k++) momentum[k] += m * u[k];
+        }
+        s->kinetic_energy += energy;
+        for (int k = 0; k < 3; k++) s->momentum[k] += momentum[k];
+    }
+}
+
+static int compare_reals(const void *a, const void *b) {
+    real x = *(const real *)a, y = *(const real *)b;
+    return (x > y) - (x < y);
+}
+
+static skein_status measure_stretch(skein_world *world, skein_statistics *s, skein_error *error) {
+    const sk_rules *rules = &world->rules;
+    size_t edges = 0;
+    for (size_t i = 0; i < rules->batches.count; i++) {
+        s->constraints += rules->batches.data[i]->count;
+        if (rules->batches.data[i]->measured) edges += rules->batches.data[i]->count;
+    }
+    if (!edges) return SKEIN_OK;
+    real *strain = sk_allocate(&world->allocator, edges * sizeof *strain);
+    if (!strain) return sk_fail_memory(error, "statistics");
+    size_t filled = 0;
+    for (size_t i = 0; i < rules->batches.count; i++) {
+        const sk_batch *batch = rules->batches.data[i];
+        if (!batch->measured) continue;
+        batch->type->strain(batch, world->particles.vector[SK_X], 0, batch->count, strain + filled);
+        filled += batch->count;
+    }
+    // NaN would confuse the sort; it is counted as nonfinite anyway
+    for (size_t i = 0; i < edges; i++)
+        if (!(sk_abs(strain[i]) <= SK_REAL_MAX)) strain[i] = SK_REAL_MAX;
+    qsort(strain, edges, sizeof *strain, compare_reals);
+    s->max_stretch = (double)sk_max(strain[edges - 1], 0);
+    s->p99_stretch = (double)sk_max(strain[(size_t)((double)(edges - 1) * 0.99)], 0);
+    sk_release(&world->allocator, strain);
+    return SKEIN_OK;
+}
+
+skein_status skein_world_statistics(skein_world *world, skein_statistics *statistics) {
+    skein_error *error = sk_world_error(world);
+    memset(statistics, 0, sizeof *statistics);
+    const sk_particles *all = &world->particles;
+    statistics->memory_bytes = world->allocator.bytes;
+    statistics->steps = world->steps;
+    statistics->substeps = world->substeps;
+    statistics->time = world->time;
+    statistics->particles = all->count;
+    if (world->plan_stale) { // slots of new rules may not be known yet
+        for (size_t i = 0; i < world->rules.batches.count; i++)
+            sk_batch_refresh(world->rules.batches.data[i], all->slot_of);
+    }
+    measure_motion(world, statistics);
+    for (size_t i = 0; i < world->rules.colliders.count; i++) {
+        const sk_collider *collider = world->rules.colliders.data[i];
+        if (!collider->common->enabled) continue;
+        sk_collider_measure(collider, world->time, all->vector[SK_X], all->slot_of, all->count,
+                            &statistics->max_penetration, &statistics->contacts);
+    }
+    skein_status status = measure_stretch(world, statistics, error);
+    statistics->state_hash = skein_world_hash(world);
+    return status;
+}

@@ -1,0 +1,121 @@
+/* Stepping: bring the plan up to date, run it, move the clock. */
+#include <math.h>
+#include <string.h>
+
+#include "world/world.h"
+
+/* Everything that is stored by slot follows the slots and the parameters. */
+static void refresh(skein_world *world) {
+    const uint32_t *slot_of = world->particles.slot_of;
+    for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i], slot_of);
+    for (size_t i = 0; i < world->rules.limits.count; i++) sk_limit_refresh(world->rules.limits.data[i], slot_of);
+    for (size_t t = 0; t < world->triangles.count; t++)
+        for (int k = 0; k < 3; k++)
+            world->slots_of_triangles.corner[t][k] = slot_of[world->triangles.corner[t][k]];
+}
+
+skein_status sk_world_compile(skein_world *world, double dt, skein_error *error) {
+    if (!(dt > 0) || !(dt <= 1e6)) return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0", dt);
+    if (!world->plan_stale && world->plan_dt == dt) return SKEIN_OK;
+    const sk_method_type *method = world->method;
+    if (method->check) {
+        skein_status status = method->check(world->method_params, &world->rules, error);
+        if (status) return status;
+    }
+    refresh(world);
+    world->plan.count = 0;
+    sk_writer writer = {
+        .plan = &world->plan,
+        .allocator = &world->allocator,
+        .rules = &world->rules,
+        .slot_count = world->particles.slot_count,
+        .particle_count = world->particles.count,
+        .triangle_count = world->triangles.count,
+        .h = dt,
+    };
+    sk_write_sum(&writer, SK_PREVIOUS, 1, SK_X, 0, SK_NONE);
+    method->write(&writer, world->method_params, dt);
+    if (writer.no_memory) return sk_fail_memory(error, "the plan");
+    world->plan_dt = dt;
+    world->plan_stale = false;
+    return SKEIN_OK;
+}
+
+sk_run sk_world_run_context(skein_world *world) {
+    sk_run run = {
+        .slot_count = world->particles.slot_count,
+        .slot_of = world->particles.slot_of,
+        .particle_count = world->particles.count,
+        .triangles = &world->slots_of_triangles,
+        .grid = &world->grid,
+        .allocator = &world->allocator,
+        .time = world->time,
+    };
+    memcpy(run.vector, world->particles.vector, sizeof run.vector);
+    return run;
+}
+
+skein_status skein_world_step(skein_world *world, double dt) {
+    skein_error *error = sk_world_error(world);
+    skein_status status = sk_world_compile(world, dt, error);
+    if (status) return status;
+    sk_run run = sk_world_run_context(world);
+    sk_run_plan(&run, world->tasks, &world->plan);
+    if (run.no_memory) return sk_fail_memory(error, "the neighbour grid; the step was not finished");
+    world->time += dt;
+    world->steps++;
+    world->substeps += (uint64_t)world->method->substeps(world->method_params);
+    return SKEIN_OK;
+}
+
+skein_status skein_world_reset(skein_world *world) {
+    sk_particles_reset(&world->particles);
+    world->time = 0;
+    world->steps = world->substeps = 0;
+    return SKEIN_OK;
+}
+
+double skein_world_time(const skein_world *world) {
+    return world->time;
+}
+
+skein_status skein_world_explain(skein_world *world, double dt, void (*write)(void *user, const char *line), void *user) {
+    skein_status status = sk_world_compile(world, dt, sk_world_error(world));
+    if (status) return status;
+    size_t open_until = 0;
+    for (size_t r = 0; r < world->plan.count; r++) {
+        const sk_row *row = &world->plan.data[r];
+        char line[384] = "    ";
+        size_t indent = r < open_until ? 4 : 0;
+        sk_row_describe(row, line + indent, sizeof line - indent);
+        write(user, line);
+        if (row->kind == SK_ROW_REPEAT) open_until = r + row->length + 1;
+    }
+    return SKEIN_OK;
+}
+
+/* ---- a fixed step for loops with uneven frames ---- */
+
+skein_pacer skein_default_pacer(void) {
+    return (skein_pacer){.step = SKEIN_DEFAULT_STEP, .most_steps = 8};
+}
+
+int skein_pacer_feed(skein_pacer *pacer, double seconds) {
+    if (!(seconds > 0)) seconds = 0;
+    pacer->remainder += seconds;
+    // a hair of tolerance, so that 1/60 s fed twice is the same as 1/30 s fed once
+    double whole = floor(pacer->remainder / pacer->step + 1e-9);
+    if (whole > pacer->most_steps) {
+        pacer->dropped += (whole - pacer->most_steps) * pacer->step;
+        pacer->remainder -= (whole - pacer->most_steps) * pacer->step;
+        whole = pacer->most_steps;
+    }
+    pacer->remainder -= whole * pacer->step;
+    if (pacer->remainder < 0) pacer->remainder = 0;
+    return (int)whole;
+}
+
+double skein_pacer_blend(const skein_pacer *pacer) {
+    double blend = pacer->remainder / pacer->step;
+    return blend < 0 ? 0 : blend > 1 ? 1 : blend;
+}

@@ -1,0 +1,190 @@
+/* The world's life: made, filled by builders, destroyed. */
+#include "world/world.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+skein_world_desc skein_default_world_desc(void) {
+    return (skein_world_desc){.thread_count = 1};
+}
+
+skein_world *skein_world_create(const skein_world_desc *desc, skein_error *error) {
+    skein_world_desc taken = desc ? *desc : skein_default_world_desc();
+    if (taken.thread_count < 1 || taken.thread_count > 64) {
+        sk_fail(error, SKEIN_ERROR_VALUE, "thread_count", "%d threads: expected 1 to 64", taken.thread_count);
+        return NULL;
+    }
+    if (!taken.allocate != !taken.release) {
+        sk_fail(error, SKEIN_ERROR_VALUE, "allocate", "a world takes both allocate and release, or neither");
+        return NULL;
+    }
+    sk_allocator allocator = sk_default_allocator();
+    if (taken.allocate) allocator = (sk_allocator){taken.allocate, taken.release, taken.memory_user, 0};
+    skein_world *world = sk_allocate(&allocator, sizeof *world);
+    if (!world) {
+        sk_fail_memory(error, "a world");
+        return NULL;
+    }
+    world->allocator = allocator;
+    world->error = &world->words;
+    world->desc = taken;
+    world->plan_stale = true;
+    world->tasks = sk_tasks_create(&world->allocator, &world->desc);
+    if (!world->tasks || sk_world_set_method(world, &sk_xpbd, NULL)) {
+        sk_fail(error, SKEIN_ERROR_MEMORY, "", "no memory or no threads for a world of %d threads", taken.thread_count);
+        skein_world_destroy(world);
+        return NULL;
+    }
+    return world;
+}
+
+static void release_body(skein_world *world, sk_body *body) {
+    sk_allocator *allocator = &world->allocator;
+    for (size_t i = 0; i < body->batch_count; i++) sk_release(allocator, body->material[i]);
+    sk_release(allocator, body->particle_of_vertex);
+    sk_release(allocator, body->face_sizes);
+    sk_release(allocator, body->face_vertices);
+    sk_release(allocator, body);
+}
+
+/* Releases an object's parameters and itself; its rules are released with the world's lists. */
+static void release_object(skein_world *world, sk_object *object) {
+    sk_allocator *allocator = &world->allocator;
+    size_t common_count;
+    const skein_field *common = sk_common_fields(object->category, &common_count);
+    if (object->kind) {
+        sk_fields_clear(allocator, object->kind->fields, object->kind->field_count, object->params);
+        sk_fields_clear(allocator, common, common_count, sk_common_of(object));
+    }
+    sk_release(allocator, object->params);
+    if (object->category == SKEIN_BODY && object->as.body) release_body(world, object->as.body);
+    sk_release(allocator, object);
+}
+
+void skein_world_destroy(skein_world *world) {
+    if (!world) return;
+    sk_allocator *allocator = &world->allocator;
+    sk_rules *rules = &world->rules;
+    sk_tasks_destroy(world->tasks);
+    for (size_t i = 0; i < rules->batches.count; i++) sk_batch_release(rules->batches.data[i], allocator);
+    for (size_t i = 0; i < rules->forces.count; i++) sk_release(allocator, rules->forces.data[i]);
+    for (size_t i = 0; i < rules->colliders.count; i++) sk_release(allocator, rules->colliders.data[i]);
+    for (size_t i = 0; i < rules->limits.count; i++) sk_limit_release(rules->limits.data[i], allocator);
+    sk_release(allocator, rules->batches.data);
+    sk_release(allocator, rules->forces.data);
+    sk_release(allocator, rules->colliders.data);
+    sk_release(allocator, rules->limits.data);
+    for (size_t i = 0; i < world->objects.count; i++) release_object(world, world->objects.data[i]);
+    sk_release(allocator, world->objects.data);
+    if (world->method) sk_fields_clear(allocator, world->method->kind.fields, world->method->kind.field_count, world->method_params);
+    sk_release(allocator, world->method_params);
+    sk_release(allocator, world->triangles.corner);
+    sk_release(allocator, world->slots_of_triangles.corner);
+    sk_release(allocator, world->plan.data);
+    sk_grid_release(&world->grid, allocator);
+    sk_particles_release(&world->particles, allocator);
+    sk_allocator last = world->allocator;
+    sk_release(&last, world);
+}
+
+const skein_error *skein_world_error(const skein_world *world) {
+    return world->error;
+}
+
+skein_error *sk_world_error(const skein_world *world) {
+    return world->error;
+}
+
+void sk_world_log(skein_world *world, skein_log_level level, const char *format, ...) {
+    if (!world->desc.log) return;
+    char message[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    world->desc.log(world->desc.log_user, level, message);
+}
+
+/* ---- what builders call ---- */
+
+/* The largest magnitude that a position or velocity may have, so that squares stay finite. */
+static bool is_sane(double x) {
+    return x >= -SK_FAR && x <= SK_FAR;
+}
+
+skein_status sk_world_add_particles(skein_world *world, size_t count, const double *positions,
+                                    const double *velocities, const double *masses, skein_error *error) {
+    if (count > (size_t)UINT32_MAX - 64 - world->particles.count)
+        return sk_fail(error, SKEIN_ERROR_LIMIT, "", "%zu more particles: a world holds at most %u", count, UINT32_MAX - 64);
+    for (size_t i = 0; i < 3 * count; i++) {
+        if (!is_sane(positions[i]) || (velocities && !is_sane(velocities[i])))
+            return sk_fail(error, SKEIN_ERROR_VALUE, "", "particle %zu: positions and velocities must be finite, under 1e15", i / 3);
+        if (!(masses[i / 3] >= 0) || masses[i / 3] > SK_FAR || (masses[i / 3] > 0 && masses[i / 3] < 1e-15))
+            return sk_fail(error, SKEIN_ERROR_VALUE, "", "particle %zu: a mass of %g kg; expected 0 (held) or 1e-15 to 1e15",
+                           i / 3, masses[i / 3]);
+    }
+    if (!sk_particles_add(&world->particles, &world->allocator, count, positions, velocities, masses))
+        return sk_fail_memory(error, "particles");
+    world->plan_stale = true;
+    return SKEIN_OK;
+}
+
+skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk_constraint_type *type,
+                                     const char *label, sk_material material, bool measured, size_t count,
+                                     const uint32_t *particles, const real *rest, const real *scale, skein_error *error) {
+    sk_allocator *allocator = &world->allocator;
+    if (body->batch_count == SK_MOST_BODY_BATCHES)
+        return sk_fail(error, SKEIN_ERROR_LIMIT, "", "a body has at most %d batches", SK_MOST_BODY_BATCHES);
+    if (!SK_RESERVE(allocator, &world->rules.batches, world->rules.batches.count + 1)) return sk_fail_memory(error, label);
+    sk_material *own = sk_allocate(allocator, sizeof *own);
+    sk_batch *batch = own ? sk_batch_create(allocator, type, count, particles, rest, scale) : NULL;
+    if (!batch) {
+        sk_release(allocator, own);
+        return sk_fail_memory(error, label);
+    }
+    *own = material;
+    batch->params = own;
+    batch->label = label;
+    batch->enabled = &body->enabled;
+    batch->measured = measured;
+    body->batch[body->batch_count] = batch;
+    body->material[body->batch_count++] = own;
+    world->rules.batches.data[world->rules.batches.count++] = batch;
+    world->plan_stale = true;
+    return SKEIN_OK;
+}
+
+skein_status sk_world_add_tethers(skein_world *world, sk_body *body, size_t count, const uint32_t *particles,
+                                  const real *lengths, skein_error *error) {
+    if (!SK_RESERVE(&world->allocator, &world->rules.limits, world->rules.limits.count + 1))
+        return sk_fail_memory(error, "tethers");
+    sk_limit *limit = sk_tethers_create(&world->allocator, count, particles, lengths);
+    if (!limit) return sk_fail_memory(error, "tethers");
+    limit->label = "tethers";
+    limit->enabled = &body->enabled;
+    limit->bound = &body->stretch_bound;
+    world->rules.limits.data[world->rules.limits.count++] = limit;
+    world->plan_stale = true;
+    return SKEIN_OK;
+}
+
+skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error) {
+    sk_triangles *all = &world->triangles, *slots = &world->slots_of_triangles;
+    size_t need = all->count + count;
+    if (!sk_reserve(&world->allocator, (void **)&all->corner, &all->capacity, need, sizeof *all->corner) ||
+        !sk_reserve(&world->allocator, (void **)&slots->corner, &slots->capacity, need, sizeof *slots->corner))
+        return sk_fail_memory(error, "triangles");
+    if (count) memcpy(all->corner + all->count, corners, count * sizeof *corners);
+    all->count = slots->count = need;
+    world->plan_stale = true;
+    return SKEIN_OK;
+}
+
+skein_status skein_particles_add(skein_world *world, size_t count, const double *positions, const double *velocities,
+                                 const double *masses, uint32_t *first) {
+    uint32_t place = (uint32_t)skein_particle_count(world);
+    skein_status status = sk_world_add_particles(world, count, positions, velocities, masses, sk_world_error(world));
+    if (!status && first) *first = place;
+    return status;
+}

@@ -1,0 +1,137 @@
+/* The world: particles, objects, rules and the plan, and the functions that builders may call.
+ *
+ *   objects   what users hold handles of: bodies, constraints, forces, colliders
+ *   rules     what methods see: batches, forces, colliders, limits, in the order of their making
+ *   plan      the rows that the method wrote for these rules and this step; rewritten when they change
+ *
+ * Nothing in src/world/ knows a kind by name: types come in as pointers from the catalogue above. */
+#ifndef SK_WORLD_WORLD_H
+#define SK_WORLD_WORLD_H
+
+#include "base/status.h"
+#include "base/tasks.h"
+#include "methods/method.h"
+#include "particles/particles.h"
+
+typedef struct sk_body sk_body;
+
+/* A builder: lays down particles and rules through the functions below. */
+typedef struct sk_body_type {
+    skein_kind kind;
+    /* Builds the body. What it added is taken back if it fails. */
+    skein_status (*build)(skein_world *world, sk_body *body, const void *params, const skein_mesh *mesh,
+                          skein_error *error);
+    /* Whether a field can change once the body is built (a stiffness can, a grid's size cannot). */
+    bool (*live)(const char *field);
+    /* Passes changed parameters on to the body's rules. */
+    void (*change)(sk_body *body, const void *params);
+} sk_body_type;
+
+enum { SK_MOST_BODY_BATCHES = 8 };
+
+/* What a body added to the world. */
+struct sk_body {
+    uint32_t first_particle, particle_count;
+    uint32_t *particle_of_vertex, *face_sizes, *face_vertices; /* the surface as it came */
+    size_t vertex_count, face_count, face_vertex_count;
+    uint32_t grid_rows, grid_columns; /* 0: not a grid */
+    sk_batch *batch[SK_MOST_BODY_BATCHES];
+    sk_material *material[SK_MOST_BODY_BATCHES]; /* of the batch beside it */
+    size_t batch_count;
+    double stretch_bound; /* of its tethers */
+    bool enabled;
+    const char *label; /* its name, else its kind's */
+};
+
+/* What bodies, constraints and forces have besides their own fields. */
+typedef struct sk_common {
+    char *name;
+    bool enabled, visible;
+} sk_common;
+
+typedef struct sk_object {
+    uint32_t generation; /* odd while it lives */
+    skein_category category;
+    const skein_kind *kind;
+    void *params; /* the kind's fields */
+    union {
+        sk_common plain;
+        sk_collider_common collider;
+    } common;
+    char label[96];
+    const sk_body_type *body_type; /* bodies only */
+    union {
+        sk_body *body;
+        sk_batch *batch;
+        sk_force *force;
+        sk_collider *collider;
+    } as;
+} sk_object;
+
+struct skein_world {
+    sk_allocator allocator;
+    skein_world_desc desc;
+    skein_error words; /* the last failure; reached through `error`, also where the world is constant */
+    skein_error *error;
+    sk_tasks *tasks;
+    sk_particles particles;
+    sk_triangles triangles; /* as user's indices */
+    sk_triangles slots_of_triangles;
+    sk_rules rules;
+    struct { sk_object **data; size_t count, capacity; } objects; /* a handle's index leads here */
+    const sk_method_type *method;
+    void *method_params;
+    sk_plan plan;
+    double plan_dt;    /* the step that the plan was written for */
+    bool plan_stale;   /* rules, settings or the method have changed */
+    sk_grid grid;
+    double time;
+    uint64_t steps, substeps;
+};
+
+/* ---- for the catalogue: adding objects of a known type ---- */
+
+skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, const skein_mesh *mesh,
+                               const skein_setting *settings, skein_handle *handle);
+skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_type *type, const uint32_t *particles,
+                                     size_t count, const skein_setting *settings, skein_handle *handle);
+skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, const skein_setting *settings,
+                                skein_handle *handle);
+skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *type, const skein_setting *settings,
+                                   skein_handle *handle);
+skein_status sk_world_set_method(skein_world *world, const sk_method_type *type, const skein_setting *settings);
+/* The error of a call on this world, to fill in; clear of the last one. */
+skein_error *sk_world_error(const skein_world *world);
+
+/* ---- for builders ---- */
+
+skein_status sk_world_add_particles(skein_world *world, size_t count, const double *positions,
+                                    const double *velocities, const double *masses, skein_error *error);
+/* A batch of a body. `measured` ones count in the stretch statistics. Empty batches are allowed. */
+skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk_constraint_type *type,
+                                     const char *label, sk_material material, bool measured, size_t count,
+                                     const uint32_t *particles, const real *rest, const real *scale, skein_error *error);
+skein_status sk_world_add_tethers(skein_world *world, sk_body *body, size_t count, const uint32_t *particles,
+                                  const real *lengths, skein_error *error);
+skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error);
+void sk_world_log(skein_world *world, skein_log_level level, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* ---- between the world's own files ---- */
+
+sk_object *sk_object_of(const skein_world *world, skein_handle handle);
+/* Fields that objects of a category share, and where they are stored. */
+const skein_field *sk_common_fields(skein_category category, size_t *count);
+void *sk_common_of(sk_object *object);
+/* Defaults, then settings, each checked. On failure nothing is left in `params`. */
+skein_status sk_settings_apply(sk_allocator *allocator, const skein_kind *kind, void *params, const skein_field *common,
+                               size_t common_count, void *common_params, const skein_setting *settings, skein_error *error);
+const skein_field *sk_kind_field(const skein_kind *kind, const char *name, skein_error *error);
+/* Brings the plan up to date for a step of dt. */
+skein_status sk_world_compile(skein_world *world, double dt, skein_error *error);
+/* The run context of the world's present state. */
+sk_run sk_world_run_context(skein_world *world);
+/* Runs all rows once: a whole step. */
+void sk_run_plan(sk_run *run, sk_tasks *tasks, const sk_plan *plan);
+
+#endif
