@@ -127,48 +127,54 @@ static skein_status add_triangles(tailor *t) {
     return status;
 }
 
-/* Tethers to one set of anchors: an element for each free particle that they reach. */
-static skein_status add_tether_set(tailor *t, sk_geodesic *geodesic, const bool *source, double *distance, uint32_t *nearest) {
-    size_t count = t->sheet.particle_count, filled = 0;
-    if (!sk_geodesic_from(geodesic, source, distance, nearest)) return sk_fail_memory(t->error, "tethers");
-    uint32_t *pairs = sk_allocate(&t->world->allocator, 2 * count * sizeof *pairs);
-    real *lengths = sk_allocate(&t->world->allocator, count * sizeof *lengths);
-    skein_status status = pairs && lengths ? SKEIN_OK : sk_fail_memory(t->error, "tethers");
-    for (size_t i = 0; i < count && !status; i++) {
-        if (t->pinned[i] || !(t->mass[i] > 0) || !(distance[i] < INFINITY)) continue;
-        pairs[2 * filled] = t->body->first_particle + (uint32_t)i;
-        pairs[2 * filled + 1] = t->body->first_particle + nearest[i];
-        lengths[filled++] = (real)distance[i];
+/* Notes the distances of all particles from one set of anchors as column `k` of the tethers. */
+static bool measure_tethers(tailor *t, sk_geodesic *geodesic, const bool *source, size_t k, size_t anchors,
+                            uint32_t *particles, real *lengths, double *distance, uint32_t *nearest) {
+    if (!sk_geodesic_from(geodesic, source, distance, nearest)) return false;
+    size_t filled = 0;
+    for (size_t i = 0; i < t->sheet.particle_count; i++) {
+        if (t->pinned[i] || !(t->mass[i] > 0)) continue;
+        bool reached = distance[i] < INFINITY;
+        particles[filled * (1 + anchors)] = t->body->first_particle + (uint32_t)i;
+        particles[filled * (1 + anchors) + 1 + k] = t->body->first_particle + (uint32_t)(reached ? nearest[i] : i);
+        lengths[filled++ * anchors + k] = (real)(reached ? distance[i] : SK_FAR);
     }
-    if (!status) status = sk_world_add_tethers(t->world, t->body, filled, pairs, lengths, t->error);
-    sk_release(&t->world->allocator, pairs);
-    sk_release(&t->world->allocator, lengths);
-    return status;
+    return true;
 }
 
 /* A few pins hold every particle each on its own; many (an edge) hold it by the nearest one. */
 static skein_status add_tethers(tailor *t) {
-    size_t count = t->sheet.particle_count, pins = 0;
-    for (size_t i = 0; i < count; i++) pins += t->pinned[i];
-    t->body->stretch_bound = t->params->stretch_limit;
-    if (!pins || pins == count) return SKEIN_OK;
     sk_allocator *allocator = &t->world->allocator;
+    size_t count = t->sheet.particle_count, pins = 0, tethered = 0;
+    for (size_t i = 0; i < count; i++) pins += t->pinned[i];
+    for (size_t i = 0; i < count; i++) tethered += !t->pinned[i] && t->mass[i] > 0;
+    t->body->stretch_bound = t->params->stretch_limit;
+    if (!pins || !tethered) return SKEIN_OK;
+    size_t anchors = pins <= MOST_SINGLE_ANCHORS ? pins : 1;
+
     sk_geodesic *geodesic = sk_geodesic_create(&t->sheet);
     double *distance = sk_allocate(allocator, count * sizeof *distance);
     uint32_t *nearest = sk_allocate(allocator, count * sizeof *nearest);
     bool *source = sk_allocate(allocator, count * sizeof *source);
-    skein_status status = geodesic && distance && nearest && source ? SKEIN_OK : sk_fail_memory(t->error, "tethers");
-    if (!status && pins > MOST_SINGLE_ANCHORS) status = add_tether_set(t, geodesic, t->pinned, distance, nearest);
-    for (size_t i = 0; i < count && !status && pins <= MOST_SINGLE_ANCHORS; i++) {
+    uint32_t *particles = sk_allocate(allocator, tethered * (1 + anchors) * sizeof *particles);
+    real *lengths = sk_allocate(allocator, tethered * anchors * sizeof *lengths);
+    bool good = geodesic && distance && nearest && source && particles && lengths;
+    if (good && anchors < pins)
+        good = measure_tethers(t, geodesic, t->pinned, 0, anchors, particles, lengths, distance, nearest);
+    for (size_t i = 0, k = 0; i < count && good && anchors == pins; i++) {
         if (!t->pinned[i]) continue;
         memset(source, 0, count * sizeof *source);
         source[i] = true;
-        status = add_tether_set(t, geodesic, source, distance, nearest);
+        good = measure_tethers(t, geodesic, source, k++, anchors, particles, lengths, distance, nearest);
     }
+    skein_status status = good ? sk_world_add_tethers(t->world, t->body, tethered, anchors, particles, lengths, t->error)
+                               : sk_fail_memory(t->error, "tethers");
     sk_geodesic_release(geodesic);
     sk_release(allocator, distance);
     sk_release(allocator, nearest);
     sk_release(allocator, source);
+    sk_release(allocator, particles);
+    sk_release(allocator, lengths);
     return status;
 }
 

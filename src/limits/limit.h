@@ -1,8 +1,8 @@
 /* Limits: corrections of positions at the end of a substep, whatever the method.
  *
  * Tethers keep cloth from stretching like rubber (Kim, Chentanez, Mueller 2012): a particle may not be
- * farther from a held one than its distance along the cloth, times 1 + bound. One pass does for a whole
- * sheet what thousands of spring sweeps would. Each element moves its own particle: free order. */
+ * farther from a held one, its anchor, than its distance along the cloth, times 1 + bound. One pass does
+ * for a whole sheet what thousands of spring sweeps would. Each element moves its own particle: free. */
 #ifndef SK_LIMITS_LIMIT_H
 #define SK_LIMITS_LIMIT_H
 
@@ -15,12 +15,14 @@ typedef struct sk_limit {
     const bool *enabled;
     const double *bound; /* of the stretch: 0.05 lets it grow by 5 % */
     size_t count;
-    uint32_t *particle;  /* the tethered one and its anchor, count x 2, user's indices; no particle twice */
+    size_t anchors;      /* of each element */
+    uint32_t *particle;  /* the tethered one, then its anchors: count x (1 + anchors), user's indices */
     uint32_t *slot;      /* the same as slots */
-    real *length;        /* along the cloth at rest, m */
+    real *length;        /* count x anchors: along the cloth at rest, m; infinite where there is no way */
 } sk_limit;
 
-sk_limit *sk_tethers_create(sk_allocator *allocator, size_t count, const uint32_t *particles, const real *lengths);
+/* Copies; no particle is tethered twice. NULL when there is no memory. */
+sk_limit *sk_tethers_create(sk_allocator *allocator, size_t count, size_t anchors, const uint32_t *particles, const real *lengths);
 void sk_limit_release(sk_limit *limit, sk_allocator *allocator);
 void sk_limit_refresh(sk_limit *limit, const uint32_t *slot_of);
 

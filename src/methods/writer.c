@@ -131,12 +131,12 @@ void sk_write_contacts(sk_writer *writer, sk_contact_sort sort, sk_vector before
     }
 }
 
-void sk_write_limits(sk_writer *writer) {
+void sk_write_limits(sk_writer *writer, sk_vector velocity) {
     for (size_t i = 0; i < writer->rules->limits.count; i++) {
         const sk_limit *limit = writer->rules->limits.data[i];
         if (!*limit->enabled || !limit->count) continue;
         add(writer, (sk_row){.kind = SK_ROW_LIMIT, .order = SK_FREE, .kernel = limit->kernel, .dst = SK_X,
-                             .source = {SK_X}, .rule = limit, .label = limit->label, .end = limit->count});
+                             .source = {SK_X, velocity}, .rule = limit, .label = limit->label, .end = limit->count});
     }
 }
 

@@ -44,6 +44,7 @@ void sk_write_projections(sk_writer *writer, int passes);
 typedef enum sk_contact_sort { SK_CONTACT_FORCE, SK_CONTACT_IMPULSE, SK_CONTACT_PUSH, SK_CONTACT_RESTITUTION } sk_contact_sort;
 /* A row for each collider; `before` is X0 for a push with friction, V0 for restitution, else SK_NONE. */
 void sk_write_contacts(sk_writer *writer, sk_contact_sort sort, sk_vector before);
-void sk_write_limits(sk_writer *writer);
+/* Limits move X; `velocity` is SK_V where the method does not take velocities from positions, else SK_NONE. */
+void sk_write_limits(sk_writer *writer, sk_vector velocity);
 
 #endif

@@ -31,7 +31,7 @@ static void write(sk_writer *writer, const void *data, double dt) {
     sk_write_sum(writer, SK_X, 1, SK_X, h, SK_V);
     // correct
     sk_write_projections(writer, params->iterations);
-    sk_write_limits(writer);
+    sk_write_limits(writer, SK_NONE);
     sk_write_contacts(writer, SK_CONTACT_PUSH, SK_X0);
     // learn the velocity
     sk_write_difference(writer, SK_V, 1 / h, SK_X, SK_X0);

@@ -111,8 +111,8 @@ skein_status sk_world_add_particles(skein_world *world, size_t count, const doub
 skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk_constraint_type *type,
                                      const char *label, sk_material material, bool measured, size_t count,
                                      const uint32_t *particles, const real *rest, const real *scale, skein_error *error);
-skein_status sk_world_add_tethers(skein_world *world, sk_body *body, size_t count, const uint32_t *particles,
-                                  const real *lengths, skein_error *error);
+skein_status sk_world_add_tethers(skein_world *world, sk_body *body, size_t count, size_t anchors,
+                                  const uint32_t *particles, const real *lengths, skein_error *error);
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error);
 void sk_world_log(skein_world *world, skein_log_level level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
