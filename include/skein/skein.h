@@ -341,7 +341,8 @@ uint64_t skein_world_hash(const skein_world *world);
 
 /* ---- The plan ---------------------------------------------------------------------------------- */
 
-/* Writes the plan's rows as text, a line each, for a step of `dt`. Lines go to `write` in order. */
+/* Writes the plan's rows as text, a line each, for a step of `dt`. Lines go to `write` in order; NULL only
+ * makes the plan, which says whether the method can run the rules. */
 skein_status skein_world_explain(skein_world *world, double dt,
                                  void (*write)(void *user, const char *line), void *user);
 

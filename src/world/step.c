@@ -82,6 +82,7 @@ double skein_world_time(const skein_world *world) {
 skein_status skein_world_explain(skein_world *world, double dt, void (*write)(void *user, const char *line), void *user) {
     skein_status status = sk_world_compile(world, dt, sk_world_error(world));
     if (status) return status;
+    if (!write) return SKEIN_OK;
     size_t open_until = 0;
     for (size_t r = 0; r < world->plan.count; r++) {
         const sk_row *row = &world->plan.data[r];

@@ -1,0 +1,18 @@
+/* What a run leaves behind: point caches that grow frame by frame, meshes and pictures at the end. */
+#ifndef SKEIN_APP_OUTPUTS_H
+#define SKEIN_APP_OUTPUTS_H
+
+#include "app/command.h"
+
+typedef struct app_outputs app_outputs;
+
+/* Makes the folder and begins what grows with the run. NULL after a printed fault. */
+app_outputs *app_outputs_begin(const app_scene *loaded, const char *folder);
+/* Adds the world's present state as a frame, 0 being the start. False after a printed fault. */
+bool app_outputs_frame(app_outputs *outputs, int frame);
+/* Writes what comes last, gives all files their names and lists them in `report` (one a line, printed
+ * by the caller). False after a printed fault. Frees `outputs` in any case. */
+bool app_outputs_finish(app_outputs *outputs, void (*wrote)(void *user, const char *path), void *user);
+void app_outputs_abandon(app_outputs *outputs); /* NULL is allowed */
+
+#endif

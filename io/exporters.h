@@ -1,0 +1,23 @@
+/* The exporters and their fields, described like every other kind.
+ *
+ * Owns: the parameters of the exporters. Called by the scene reader and by `skein list`. Invariant: a
+ * parameter struct has a member for each field of its table, at the table's offset; a choice is stored
+ * as its place in the list.
+ */
+#ifndef SKEIN_IO_EXPORTERS_H
+#define SKEIN_IO_EXPORTERS_H
+
+#include <skein/skein.h>
+
+typedef struct io_obj_params {
+    int32_t normals; /* an io_normals */
+} io_obj_params;
+
+typedef struct io_pc2_params {
+    int32_t every; /* frames from one sample to the next */
+} io_pc2_params;
+
+/* The exporters, `index` from 0; NULL past the end. */
+const skein_kind *io_exporter_at(size_t index);
+
+#endif

@@ -1,0 +1,101 @@
+/* Unit vertex normals of polygon meshes: see normals.h for the contract.
+ *
+ *         next            A face's normal is Newell's: the sum of the cross products around it, taken
+ *        /                from its first corner so that a mesh far from the origin loses nothing. Its
+ *   corner --- ...        length is twice the area, for concave and slightly bent polygons as well.
+ *        \                The angle at a corner runs from the edge to `next` to the edge to `previous`;
+ *         previous        where they turn against the face's normal the corner is a reflex one.
+ *
+ * The three ways: Gouraud 1971 (uniform), Thuermer and Wuethrich 1998 (angle), Max 1999 (area and more).
+ */
+#include "io/normals.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+static const double *corner_position(const skein_mesh *mesh, const uint32_t *face, uint32_t corner) {
+    assert(face[corner] < mesh->vertex_count);
+    return mesh->positions + 3 * (size_t)face[corner];
+}
+
+static void subtract(double out[3], const double a[3], const double b[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = a[k] - b[k];
+}
+
+static void cross(double out[3], const double a[3], const double b[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Divides by the largest component first: no overflow, and a vector along an axis comes out exact. */
+static bool normalise(double v[3]) {
+    double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    if (!(largest > 0) || !isfinite(largest))
+        return false;
+    for (int k = 0; k < 3; k++)
+        v[k] /= largest;
+    double length = sqrt(dot(v, v));
+    for (int k = 0; k < 3; k++)
+        v[k] = v[k] / length + 0.0; // and no -0
+    return true;
+}
+
+/* Newell's normal, twice the area long. False where the face has no area beyond rounding. */
+static bool face_normal(const skein_mesh *mesh, const uint32_t *face, uint32_t size, double out[3]) {
+    const double *origin = corner_position(mesh, face, 0);
+    double a[3], b[3], product[3], squares = 0;
+    memset(out, 0, 3 * sizeof *out);
+    subtract(a, corner_position(mesh, face, 1), origin);
+    for (uint32_t corner = 2; corner < size; corner++) {
+        subtract(b, corner_position(mesh, face, corner), origin);
+        cross(product, a, b);
+        for (int k = 0; k < 3; k++)
+            out[k] += product[k];
+        squares += dot(a, a) + dot(b, b);
+        memcpy(a, b, sizeof a);
+    }
+    return sqrt(dot(out, out)) > 1e-10 * squares;
+}
+
+/* The angle at a corner, 0 to 2 pi. `unit` is the face's unit normal. */
+static double corner_angle(const skein_mesh *mesh, const uint32_t *face, uint32_t size, uint32_t corner,
+                           const double unit[3]) {
+    const double *here = corner_position(mesh, face, corner);
+    double next[3], previous[3], product[3];
+    subtract(next, corner_position(mesh, face, corner + 1 < size ? corner + 1 : 0), here);
+    subtract(previous, corner_position(mesh, face, corner > 0 ? corner - 1 : size - 1), here);
+    cross(product, next, previous);
+    double angle = atan2(sqrt(dot(product, product)), dot(next, previous));
+    return dot(product, unit) < 0 ? 2 * 3.14159265358979323846 - angle : angle;
+}
+
+void io_normals_compute(const skein_mesh *mesh, io_normals mode, double *out) {
+    memset(out, 0, 3 * mesh->vertex_count * sizeof *out);
+    const uint32_t *face = mesh->face_vertices;
+    for (size_t f = 0; f < mesh->face_count; face += mesh->face_sizes[f++]) {
+        uint32_t size = mesh->face_sizes[f];
+        double normal[3];
+        assert(size >= 3);
+        if (!face_normal(mesh, face, size, normal) || (mode != IO_NORMALS_AREA && !normalise(normal)))
+            continue;
+        for (uint32_t corner = 0; corner < size; corner++) {
+            double weight = mode == IO_NORMALS_ANGLE ? corner_angle(mesh, face, size, corner, normal) : 1;
+            for (int k = 0; k < 3; k++)
+                out[3 * (size_t)face[corner] + (size_t)k] += weight * normal[k];
+        }
+    }
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        double *normal = out + 3 * v;
+        if (!normalise(normal)) {
+            normal[0] = normal[2] = 0;
+            normal[1] = 1;
+        }
+    }
+}

@@ -1,0 +1,121 @@
+/* Writes Wavefront OBJ: see mesh.h for the contract.
+ *
+ *   # header: version, units, counts
+ *   v x y z        every vertex, in the mesh's order, used or not
+ *   vn x y z       as many normals: the same number serves both
+ *   f a//a b//b c//c ...
+ */
+#include "io/mesh.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+size_t io_float_print(float value, char out[IO_FLOAT_SIZE]) {
+    assert(isfinite(value));
+    // Nine digits and an exponent as printf rounds them; whatever the locale's point is, it is skipped.
+    char text[32], digits[9];
+    snprintf(text, sizeof text, "%.8e", fabs((double)value));
+    size_t at = 0;
+    int count = 0;
+    const char *p = text;
+    for (; *p != 'e'; p++)
+        if (is_digit(*p) && count < 9)
+            digits[count++] = *p;
+    int exponent = atoi(p + 1);
+    while (count > 1 && digits[count - 1] == '0')
+        count--;
+
+    // Laid out as %g does: with an exponent only where the number would be long.
+    if (value < 0)
+        out[at++] = '-';
+    bool scientific = exponent < -4 || exponent > 8;
+    int first = scientific || exponent > 0 ? 0 : exponent, units = scientific ? 0 : exponent;
+    for (int digit = first; digit < count || digit <= units; digit++) {
+        if (digit == units + 1)
+            out[at++] = '.';
+        out[at++] = digit >= 0 && digit < count ? digits[digit] : '0';
+    }
+    out[at] = '\0';
+    if (scientific)
+        at += (size_t)snprintf(out + at, IO_FLOAT_SIZE - at, "e%c%02d", exponent < 0 ? '-' : '+',
+                               abs(exponent));
+    return at;
+}
+
+/* "v 1 2 3" */
+static void write_vector(io_output *output, const char *keyword, const double vector[3]) {
+    char line[4 + 3 * IO_FLOAT_SIZE];
+    size_t at = strlen(keyword);
+    memcpy(line, keyword, at);
+    for (int k = 0; k < 3; k++) {
+        line[at++] = ' ';
+        at += io_float_print((float)vector[k], line + at);
+    }
+    line[at++] = '\n';
+    io_output_write(output, line, at);
+}
+
+/* "f 1//1 2//2 3//3" */
+static void write_face(io_output *output, const uint32_t *corners, uint32_t size) {
+    io_output_write(output, "f", 1);
+    for (uint32_t corner = 0; corner < size; corner++) {
+        uint64_t number = (uint64_t)corners[corner] + 1;
+        io_output_write(output, " ", 1);
+        io_output_count(output, number);
+        io_output_write(output, "//", 2);
+        io_output_count(output, number);
+    }
+    io_output_write(output, "\n", 1);
+}
+
+/* No reader knows what to do with nan, so no such file is made. */
+static skein_status check_positions(const char *path, const skein_mesh *mesh, skein_error *error) {
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
+        if (isfinite((float)mesh->positions[i]))
+            continue;
+        size_t vertex = i / 3;
+        return io_error_set(error, SKEIN_ERROR_VALUE, path,
+                            "not written: vertex %zu is at (%g, %g, %g), which is not finite as a float "
+                            "(has the motion blown up?)",
+                            vertex, mesh->positions[3 * vertex], mesh->positions[3 * vertex + 1],
+                            mesh->positions[3 * vertex + 2]);
+    }
+    return SKEIN_OK;
+}
+
+skein_status io_obj_write(const char *path, const skein_mesh *mesh, io_normals normals, skein_error *error) {
+    skein_error unseen;
+    error = error ? error : &unseen;
+    skein_status status = check_positions(path, mesh, error);
+    if (status != SKEIN_OK)
+        return status;
+    double *vectors = malloc((mesh->vertex_count + 1) * 3 * sizeof *vectors);
+    if (!vectors)
+        return io_error_set(error, SKEIN_ERROR_MEMORY, path, "out of memory for %zu normals",
+                            mesh->vertex_count);
+    io_normals_compute(mesh, normals, vectors);
+
+    io_output *output = io_output_open(path, error);
+    if (output) {
+        io_output_printf(output, "# Skein %s: metres, y up; %zu vertices, %zu faces\n", SKEIN_VERSION,
+                         mesh->vertex_count, mesh->face_count);
+        for (size_t v = 0; v < mesh->vertex_count; v++)
+            write_vector(output, "v", mesh->positions + 3 * v);
+        for (size_t v = 0; v < mesh->vertex_count; v++)
+            write_vector(output, "vn", vectors + 3 * v);
+        const uint32_t *corners = mesh->face_vertices;
+        for (size_t f = 0; f < mesh->face_count; corners += mesh->face_sizes[f++])
+            write_face(output, corners, mesh->face_sizes[f]);
+        status = io_output_commit(output, error);
+    } else
+        status = error->status;
+    free(vectors);
+    return status;
+}

@@ -1,0 +1,54 @@
+/* Scenes: a JSON file (SI units) becomes a world.
+ *
+ *   file --io_scene_read--> description (JSON, with --set applied) --io_scene_build--> world
+ *
+ * Owns: the scene's document and the meshes that it names. Called by the command. Every fault is named
+ * with its place, the path in the scene ("bodies.0.stretch.stiffness") or the line and column, and what
+ * was expected; reading goes on after a fault, so that one look shows them all. */
+#ifndef SKEIN_IO_SCENE_H
+#define SKEIN_IO_SCENE_H
+
+#include "io/file.h"
+
+typedef struct io_scene io_scene;
+
+/* What a scene says besides its objects. Its table is the kind "scene". */
+typedef struct io_scene_settings {
+    int32_t version;
+    char *name, *description;
+    int32_t frames, threads;
+    double fps, step;
+} io_scene_settings;
+
+/* The kind "scene": its fields and their defaults. */
+const skein_kind *io_scene_kind(void);
+
+/* Where faults go, one a call; `error` holds place and words. */
+typedef struct io_faults {
+    void (*report)(void *user, const skein_error *error);
+    void *user;
+    size_t count; /* so far */
+} io_faults;
+
+/* Reads a scene file and applies `sets`, each "path=value" (NULL-terminated list, or NULL). `exporters` are
+ * the kinds that its "output" may name, NULL-terminated. NULL on failure; the faults say why. */
+io_scene *io_scene_read(const char *path, const char *const *sets, const skein_kind *const *exporters, io_faults *faults);
+void io_scene_free(io_scene *scene); /* NULL is allowed */
+
+const io_scene_settings *io_scene_get(const io_scene *scene);
+
+/* Checks everything and builds the world. NULL if there was any fault. `desc` as for skein_world_create. */
+skein_world *io_scene_build(io_scene *scene, const skein_world_desc *desc, io_faults *faults);
+
+/* The exporters that the scene asks for, in its order (one of each there is if it asks for none). Fills up
+ * to `most`; the parameter structs are freed with the scene. */
+typedef struct io_export {
+    const skein_kind *kind;
+    const void *params;
+} io_export;
+size_t io_scene_exports(const io_scene *scene, io_export *exports, size_t most);
+
+/* How many whole steps of which length make one frame: the scene's step, made to fit. */
+int io_scene_steps_per_frame(const io_scene_settings *settings, double *dt);
+
+#endif

@@ -1,0 +1,37 @@
+/* From JSON to settings: an object's members become a list of skein_setting, checked against a kind's
+ * fields. Between the files of the scene reader only. */
+#ifndef SKEIN_IO_SCENE_SETTINGS_H
+#define SKEIN_IO_SCENE_SETTINGS_H
+
+#include <jansson.h>
+
+#include "io/scene.h"
+
+typedef struct io_settings {
+    skein_setting *data; /* ends with a NULL name */
+    size_t count, capacity;
+    char **texts; /* names and joined texts that the settings point to */
+    size_t text_count, text_capacity;
+} io_settings;
+
+/* Where in the scene a value stands, and whom to tell about faults. */
+typedef struct io_place {
+    const char *file, *path; /* path: "bodies.0", or "" for the top */
+    io_faults *faults;
+} io_place;
+
+void io_fault(io_place place, const char *member, skein_status status, const char *format, ...) IO_PRINTF(4, 5);
+/* Reads the members of `object`, but for those named in `skip` (NULL-terminated). Faults are reported;
+ * false when there was one. */
+bool io_settings_read(io_settings *settings, io_place place, const json_t *object, const skein_kind *kind, const char *const *skip);
+/* The text of a setting, or NULL. */
+const char *io_settings_text(const io_settings *settings, const char *name);
+void io_settings_free(io_settings *settings);
+
+/* Sets "path=value" in a document; names stand for places in lists. */
+bool io_scene_override(json_t *root, const char *set, io_place place);
+
+/* Builds a world from a whole document; NULL if there was any fault. */
+skein_world *io_world_from_document(const json_t *root, const char *file, const skein_world_desc *desc, io_faults *faults);
+
+#endif

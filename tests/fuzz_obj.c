@@ -1,0 +1,123 @@
+/* Feeds any bytes to the readers of OBJ and OFF, and judges what they make of them.
+ *
+ * Owns nothing. Called by libFuzzer (clang -fsanitize=fuzzer,address), or, built with
+ * -DSKEIN_FUZZ_REPLAY, by its own main with files and directories of a corpus as arguments.
+ * Invariant: a mesh that was read keeps the promise of io/mesh.h; a refusal has a place and words.
+ */
+#include "io/mesh.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void require(bool fine) {
+    if (!fine)
+        abort();
+}
+
+static void judge_mesh(const io_mesh *mesh) {
+    require(mesh->vertex_count > 0 && mesh->face_count > 0);
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+        require(isfinite(mesh->positions[i]));
+    size_t corner = 0;
+    for (size_t f = 0; f < mesh->face_count; f++) {
+        uint32_t size = mesh->face_sizes[f];
+        require(size >= 3 && size <= mesh->face_vertex_count - corner);
+        for (uint32_t i = 0; i < size; i++, corner++) {
+            require(mesh->face_vertices[corner] < mesh->vertex_count);
+            require(mesh->face_uvs[corner] == IO_NO_UV || mesh->face_uvs[corner] < mesh->uv_count);
+            require(i == 0 || mesh->face_vertices[corner] != mesh->face_vertices[corner - 1]);
+        }
+    }
+    require(corner == mesh->face_vertex_count);
+}
+
+static void judge_normals(const io_mesh *mesh) {
+    skein_mesh view = io_mesh_view(mesh);
+    double *normals = malloc(3 * mesh->vertex_count * sizeof *normals);
+    require(normals != NULL);
+    for (int mode = IO_NORMALS_AREA; mode <= IO_NORMALS_ANGLE; mode++) {
+        io_normals_compute(&view, (io_normals)mode, normals);
+        for (const double *n = normals; n < normals + 3 * mesh->vertex_count; n += 3)
+            require(fabs(sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) - 1) < 1e-12);
+    }
+    free(normals);
+}
+
+static void ignore(void *user, const char *line) {
+    (void)user;
+    require(strlen(line) > 0);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    for (int format = 0; format < 2; format++) {
+        io_mesh mesh;
+        skein_error error = {SKEIN_OK, "", ""};
+        skein_status status = (format == 0 ? io_obj_read : io_off_read)(
+            (const char *)data, size, "input", &mesh, (io_warnings){ignore, NULL}, &error);
+        if (status == SKEIN_OK) {
+            judge_mesh(&mesh);
+            judge_normals(&mesh);
+        } else
+            require(error.status == status && strncmp(error.where, "input", 5) == 0 && error.message[0]);
+        io_mesh_free(&mesh);
+    }
+    return 0;
+}
+
+#ifdef SKEIN_FUZZ_REPLAY
+
+#include <dirent.h>
+#include <stdio.h>
+
+static int replay_file(const char *path) {
+    skein_error error;
+    io_bytes bytes;
+    if (io_file_read(path, (size_t)1 << 30, &bytes, &error) != SKEIN_OK) {
+        fprintf(stderr, "%s: %s\n", error.where, error.message);
+        return 1;
+    }
+    // Exactly as large as the input, so that a sanitizer sees the first byte too many.
+    uint8_t *copy = malloc(bytes.size + (bytes.size == 0));
+    require(copy != NULL);
+    memcpy(copy, bytes.data, bytes.size);
+    LLVMFuzzerTestOneInput(copy, bytes.size);
+    // And cut off at every place, as a full disk leaves it.
+    for (size_t cut = 0; cut < bytes.size && bytes.size <= 4096; cut++) {
+        uint8_t *part = malloc(cut + (cut == 0));
+        require(part != NULL);
+        memcpy(part, bytes.data, cut);
+        LLVMFuzzerTestOneInput(part, cut);
+        free(part);
+    }
+    free(copy);
+    io_bytes_free(&bytes);
+    return 0;
+}
+
+int main(int argument_count, char **arguments) {
+    int failures = 0, count = 0;
+    for (int i = 1; i < argument_count; i++) {
+        DIR *folder = opendir(arguments[i]);
+        if (!folder) {
+            failures += replay_file(arguments[i]);
+            count++;
+            continue;
+        }
+        for (struct dirent *entry; (entry = readdir(folder)) != NULL;) {
+            char path[4096];
+            if (entry->d_name[0] == '.')
+                continue;
+            snprintf(path, sizeof path, "%s/%s", arguments[i], entry->d_name);
+            failures += replay_file(path);
+            count++;
+        }
+        closedir(folder);
+    }
+    printf("%d inputs replayed\n", count);
+    return failures > 0 || count == 0;
+}
+
+#endif
