@@ -16,7 +16,7 @@ static void print_field(const skein_field *field) {
     if (field->type == SKEIN_FIELD_TEXT) initial = skein_text(field->text ? field->text : "");
     else if (field->type == SKEIN_FIELD_VEC3) initial.count = 3;
     else if (field->type == SKEIN_FIELD_INT2 || field->type == SKEIN_FIELD_REAL2) initial.count = 2;
-    char value[128], range[64] = "", low[32], high[32];
+    char value[128], range[96] = "", low[32], high[32];
     skein_value_text(field, &initial, value, sizeof value);
     bool numeric = field->type != SKEIN_FIELD_TEXT && field->type != SKEIN_FIELD_BOOL && field->type != SKEIN_FIELD_CHOICE;
     if (numeric && (fabs(field->least) < 1e15 || fabs(field->most) < 1e15)) {

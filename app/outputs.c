@@ -14,7 +14,7 @@
 #include "render/picture.h"
 #endif
 
-enum { MOST_EXPORTS = 16, PATH_SIZE = 1024 };
+enum { MOST_EXPORTS = 16, FOLDER_SIZE = 1024, PATH_SIZE = FOLDER_SIZE + 160 };
 
 /* One body's growing file. */
 typedef struct cache {
@@ -26,7 +26,7 @@ typedef struct cache {
 
 struct app_outputs {
     const app_scene *loaded;
-    char folder[PATH_SIZE];
+    char folder[FOLDER_SIZE];
     char stem[128]; /* the scene's name, for pictures */
     io_export exports[MOST_EXPORTS];
     size_t export_count;
@@ -46,7 +46,11 @@ static void file_name(const char *name, char *out, size_t size) {
 
 /* Makes every folder of a path. */
 static bool make_folders(const char *path) {
-    char part[PATH_SIZE];
+    char part[FOLDER_SIZE];
+    if (strlen(path) >= sizeof part) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
     snprintf(part, sizeof part, "%s", path);
     for (char *at = part + 1; *at; at++) {
         if (*at != '/') continue;

@@ -21,7 +21,7 @@ typedef struct cloth_params {
     double density, weld;
     char *pins;
     sk_material stretch, shear, bend;
-    double stretch_limit;
+    double tether, limit;
 } cloth_params;
 
 static const skein_field fields[] = {
@@ -43,8 +43,10 @@ static const skein_field fields[] = {
     SK_REAL(cloth_params, shear.damping, "shear.damping", "N s/m", 0, 0, SK_FAR, "of shearing"),
     SK_REAL(cloth_params, bend.stiffness, "bend.stiffness", "N/m", 20, 0, SK_UNBOUNDED, "of the springs over folds"),
     SK_REAL(cloth_params, bend.damping, "bend.damping", "N s/m", 0, 0, SK_FAR, "of bending"),
-    SK_REAL(cloth_params, stretch_limit, "stretch.limit", "", 0.01, 0, 1e6,
-            "tethers: no particle gets farther from a pin than along the cloth, times 1 + this"),
+    SK_REAL(cloth_params, limit, "stretch.limit", "", 0.05, 0, SK_UNBOUNDED,
+            "strain limit: no edge gets longer than rest times 1 + this; \"infinite\" is none"),
+    SK_REAL(cloth_params, tether, "stretch.tether", "", 0.01, 0, SK_UNBOUNDED,
+            "no particle gets farther from a pin than along the cloth, times 1 + this; \"infinite\" is none"),
 };
 
 enum { MOST_SINGLE_ANCHORS = 4 };
@@ -97,9 +99,11 @@ static skein_status add_particles(tailor *t) {
     return status;
 }
 
+/* Sweeps take batches in the order of their making, and what is swept last is kept best: edges. Measured on
+ * a draped grid, 12 substeps: 5.7 % of stretch at most, against 15.8 % with the edges first. */
 static skein_status add_springs(tailor *t) {
-    static const char *const labels[] = {"stretch", "shear", "bend"};
-    const sk_material *materials[] = {&t->params->stretch, &t->params->shear, &t->params->bend};
+    static const char *const labels[] = {"bend", "shear", "stretch"};
+    const sk_material *materials[] = {&t->params->bend, &t->params->shear, &t->params->stretch};
     for (int sort = 0; sort < SK_SPRING_SORTS; sort++) {
         struct sk_spring_list *list = &t->springs.list[sort];
         for (size_t i = 0; i < 2 * list->count; i++) list->pairs[i] += t->body->first_particle;
@@ -107,7 +111,7 @@ static skein_status add_springs(tailor *t) {
                                                       sort == SK_STRETCH, list->count, list->pairs, list->rest, list->scale, t->error);
         if (status) return status;
     }
-    return SKEIN_OK;
+    return sk_world_add_strain_limit(t->world, t->body, t->error);
 }
 
 /* Triangles of the faces, as fans, for forces on areas. */
@@ -148,7 +152,6 @@ static skein_status add_tethers(tailor *t) {
     size_t count = t->sheet.particle_count, pins = 0, tethered = 0;
     for (size_t i = 0; i < count; i++) pins += t->pinned[i];
     for (size_t i = 0; i < count; i++) tethered += !t->pinned[i] && t->mass[i] > 0;
-    t->body->stretch_bound = t->params->stretch_limit;
     if (!pins || !tethered) return SKEIN_OK;
     size_t anchors = pins <= MOST_SINGLE_ANCHORS ? pins : 1;
 
@@ -194,25 +197,9 @@ static void hand_over_surface(tailor *t) {
     sheet->particle_of_vertex = sheet->face_sizes = sheet->face_vertices = NULL;
 }
 
-static skein_status build(skein_world *world, sk_body *body, const void *params, const skein_mesh *mesh, skein_error *error) {
-    tailor t = {.world = world, .body = body, .params = params, .error = error};
-    skein_status status = make_sheet(&t, mesh);
-    if (!status) status = sk_report_faults(world, body->label, &t.sheet, &t.springs, error);
-    if (!status) status = add_particles(&t);
-    if (!status) status = add_springs(&t);
-    if (!status) status = add_triangles(&t);
-    if (!status) status = add_tethers(&t);
-    if (!status) hand_over_surface(&t);
-    sk_release(&world->allocator, t.pinned);
-    sk_release(&world->allocator, t.mass);
-    sk_springs_release(&t.springs);
-    sk_sheet_release(&t.sheet);
-    return status;
-}
-
 static bool live(const char *field) {
-    static const char *const names[] = {"stretch.stiffness", "stretch.damping", "shear.stiffness", "shear.damping",
-                                        "bend.stiffness",    "bend.damping",    "stretch.limit"};
+    static const char *const names[] = {"stretch.stiffness", "stretch.damping", "shear.stiffness", "shear.damping", "bend.stiffness",
+                                        "bend.damping",      "stretch.limit",   "stretch.tether"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (!strcmp(field, names[i])) return true;
     return false;
@@ -223,7 +210,27 @@ static void change(sk_body *body, const void *data) {
     *body->material[SK_STRETCH] = params->stretch;
     *body->material[SK_SHEAR] = params->shear;
     *body->material[SK_BEND] = params->bend;
-    body->stretch_bound = params->stretch_limit;
+    body->tether_bound = params->tether;
+    body->strain_bound = params->limit;
+}
+
+static skein_status build(skein_world *world, sk_body *body, const void *params, const skein_mesh *mesh, skein_error *error) {
+    tailor t = {.world = world, .body = body, .params = params, .error = error};
+    skein_status status = make_sheet(&t, mesh);
+    if (!status) status = sk_report_faults(world, body->label, &t.sheet, &t.springs, error);
+    if (!status) status = add_particles(&t);
+    if (!status) status = add_springs(&t);
+    if (!status) status = add_triangles(&t);
+    if (!status) status = add_tethers(&t);
+    if (!status) {
+        hand_over_surface(&t);
+        change(body, params);
+    }
+    sk_release(&world->allocator, t.pinned);
+    sk_release(&world->allocator, t.mass);
+    sk_springs_release(&t.springs);
+    sk_sheet_release(&t.sheet);
+    return status;
 }
 
 const sk_body_type sk_cloth = {

@@ -13,7 +13,8 @@
 #include "base/vector.h"
 #include "bodies/sheet.h"
 
-typedef enum sk_spring_sort { SK_STRETCH, SK_SHEAR, SK_BEND, SK_SPRING_SORTS } sk_spring_sort;
+/* In the order of sweeps. */
+typedef enum sk_spring_sort { SK_BEND, SK_SHEAR, SK_STRETCH, SK_SPRING_SORTS } sk_spring_sort;
 
 typedef struct sk_edge {
     uint32_t a, b;       /* a < b */

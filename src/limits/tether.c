@@ -45,6 +45,7 @@ sk_limit *sk_tethers_create(sk_allocator *allocator, size_t count, size_t anchor
     if (!limit) return NULL;
     size_t indices = count * (1 + anchors);
     limit->kernel = keep_tethers;
+    limit->order = SK_FREE;
     limit->count = count;
     limit->anchors = anchors;
     limit->particle = sk_allocate(allocator, indices * sizeof *limit->particle);
@@ -59,16 +60,4 @@ sk_limit *sk_tethers_create(sk_allocator *allocator, size_t count, size_t anchor
         memcpy(limit->length, lengths, count * anchors * sizeof *lengths);
     }
     return limit;
-}
-
-void sk_limit_release(sk_limit *limit, sk_allocator *allocator) {
-    if (!limit) return;
-    sk_release(allocator, limit->particle);
-    sk_release(allocator, limit->slot);
-    sk_release(allocator, limit->length);
-    sk_release(allocator, limit);
-}
-
-void sk_limit_refresh(sk_limit *limit, const uint32_t *slot_of) {
-    for (size_t i = 0; i < limit->count * (1 + limit->anchors); i++) limit->slot[i] = slot_of[limit->particle[i]];
 }

@@ -91,11 +91,16 @@ void sk_write_forces(sk_writer *writer) {
     }
 }
 
+/* Without damping and with one pass a substep, the multiplier is zero whenever it is read. */
+static bool keeps_multiplier(const sk_batch *batch, int passes) {
+    return passes > 1 || sk_batch_damping_time(batch) > 0;
+}
+
 void sk_write_projections(sk_writer *writer, int passes) {
     const sk_rules *rules = writer->rules;
-    for (size_t i = 0; i < rules->batches.count && passes > 1; i++) {
+    for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
-        if (!*batch->enabled || !batch->count) continue;
+        if (!*batch->enabled || !batch->count || !keeps_multiplier(batch, passes)) continue;
         add(writer, (sk_row){.kind = SK_ROW_MULTIPLIER, .order = SK_FREE, .kernel = sk_batch_clear_multipliers,
                              .rule = batch, .label = batch->label, .end = batch->count});
     }
@@ -103,10 +108,10 @@ void sk_write_projections(sk_writer *writer, int passes) {
         for (size_t i = 0; i < rules->batches.count; i++) {
             const sk_batch *batch = rules->batches.data[i];
             if (!*batch->enabled || !batch->count) continue;
-            bool plain = passes == 1 && sk_batch_damping_time(batch) == 0;
+            bool keeps = keeps_multiplier(batch, passes);
             add(writer, (sk_row){.kind = SK_ROW_PROJECT, .order = SK_ORDERED,
-                                 .kernel = plain ? batch->type->project : batch->type->project_damped, .dst = SK_X,
-                                 .source = {SK_X, plain ? SK_NONE : SK_X0}, .rule = batch, .label = batch->label,
+                                 .kernel = keeps ? batch->type->project_damped : batch->type->project, .dst = SK_X,
+                                 .source = {SK_X, keeps ? SK_X0 : SK_NONE}, .rule = batch, .label = batch->label,
                                  .end = batch->count});
         }
 }
@@ -134,8 +139,8 @@ void sk_write_contacts(sk_writer *writer, sk_contact_sort sort, sk_vector before
 void sk_write_limits(sk_writer *writer, sk_vector velocity) {
     for (size_t i = 0; i < writer->rules->limits.count; i++) {
         const sk_limit *limit = writer->rules->limits.data[i];
-        if (!*limit->enabled || !limit->count) continue;
-        add(writer, (sk_row){.kind = SK_ROW_LIMIT, .order = SK_FREE, .kernel = limit->kernel, .dst = SK_X,
+        if (!*limit->enabled || !limit->count || *limit->bound >= SK_UNBOUNDED) continue;
+        add(writer, (sk_row){.kind = SK_ROW_LIMIT, .order = limit->order, .kernel = limit->kernel, .dst = SK_X,
                              .source = {SK_X, velocity}, .rule = limit, .label = limit->label, .end = limit->count});
     }
 }

@@ -155,6 +155,14 @@ skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk
     return SKEIN_OK;
 }
 
+/* The list has room. */
+static skein_status add_limit(skein_world *world, sk_body *body, sk_limit *limit) {
+    limit->enabled = &body->enabled;
+    world->rules.limits.data[world->rules.limits.count++] = limit;
+    world->plan_stale = true;
+    return SKEIN_OK;
+}
+
 skein_status sk_world_add_tethers(skein_world *world, sk_body *body, size_t count, size_t anchors,
                                   const uint32_t *particles, const real *lengths, skein_error *error) {
     if (!SK_RESERVE(&world->allocator, &world->rules.limits, world->rules.limits.count + 1))
@@ -162,11 +170,19 @@ skein_status sk_world_add_tethers(skein_world *world, sk_body *body, size_t coun
     sk_limit *limit = sk_tethers_create(&world->allocator, count, anchors, particles, lengths);
     if (!limit) return sk_fail_memory(error, "tethers");
     limit->label = "tethers";
-    limit->enabled = &body->enabled;
-    limit->bound = &body->stretch_bound;
-    world->rules.limits.data[world->rules.limits.count++] = limit;
-    world->plan_stale = true;
-    return SKEIN_OK;
+    limit->bound = &body->tether_bound;
+    return add_limit(world, body, limit);
+}
+
+skein_status sk_world_add_strain_limit(skein_world *world, sk_body *body, skein_error *error) {
+    const sk_batch *edges = body->batch[body->batch_count - 1];
+    if (!SK_RESERVE(&world->allocator, &world->rules.limits, world->rules.limits.count + 1))
+        return sk_fail_memory(error, "strain limit");
+    sk_limit *limit = sk_strain_limit_create(&world->allocator, edges->count, (sk_limited_edges){edges->slot, edges->rest});
+    if (!limit) return sk_fail_memory(error, "strain limit");
+    limit->label = "strain";
+    limit->bound = &body->strain_bound;
+    return add_limit(world, body, limit);
 }
 
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error) {

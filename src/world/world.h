@@ -38,7 +38,7 @@ struct sk_body {
     sk_batch *batch[SK_MOST_BODY_BATCHES];
     sk_material *material[SK_MOST_BODY_BATCHES]; /* of the batch beside it */
     size_t batch_count;
-    double stretch_bound; /* of its tethers */
+    double tether_bound, strain_bound; /* of its limits */
     bool enabled;
     const char *label; /* its name, else its kind's */
 };
@@ -113,6 +113,8 @@ skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk
                                      const uint32_t *particles, const real *rest, const real *scale, skein_error *error);
 skein_status sk_world_add_tethers(skein_world *world, sk_body *body, size_t count, size_t anchors,
                                   const uint32_t *particles, const real *lengths, skein_error *error);
+/* Keeps the edges of the body's newest batch under its strain bound. */
+skein_status sk_world_add_strain_limit(skein_world *world, sk_body *body, skein_error *error);
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error);
 void sk_world_log(skein_world *world, skein_log_level level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -1,0 +1,32 @@
+# The short way in: each line below runs one script of tools/, and the scripts run CMake.
+# CMake alone does as well: cmake --preset release && cmake --build --preset release
+
+.PHONY: all demo test setup debug format clean help
+
+all: ## (or plain make) build the command: build/skein
+	@tools/build release
+
+demo: ## set up, build, and drop a real mesh as cloth: files, a picture and a report in out/demo
+	@tools/setup build
+	@tools/build release
+	@tools/demo
+
+test: ## set up, build and pass every test, in every build: 20 minutes at the most
+	@tools/setup test
+	@tools/test
+
+setup: ## install the Debian packages that building and testing need
+	@tools/setup test
+
+debug: ## build with assertions: build-debug/skein
+	@tools/build debug
+
+format: ## put the C files into the house's style (needs clang-format)
+	@tools/format
+
+clean: ## remove everything that was built
+	rm -rf build build-debug build-asan build-tsan build-clang build-double build-fuzz
+
+help: ## this list
+	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | while IFS="$$(printf '\t')" read -r name words; do \
+	    printf '  make %-8s %s\n' "$$name" "$$words"; done

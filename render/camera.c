@@ -1,0 +1,85 @@
+/* The camera; see camera.h. */
+#include "render/camera.h"
+
+#include "render/linear.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double degree = 0.017453292519943295;
+
+/* The house's view: three quarters from the front, low enough for the horizon to be in the picture. */
+static const double house_azimuth = 27, house_elevation = 13, house_fov = 34;
+/* The part of the picture's width and height that the box fills at most. */
+static const double house_fill = 0.78;
+
+/* Along one axis of the picture: the least distance at which the corners fit between two lines of
+ * slope `tangent`, and, for a given distance, where the eye stands. Corners are (x, z) pairs. */
+static void fit(const double x[8], const double z[8], double tangent, double *high, double *low) {
+    *high = -INFINITY, *low = INFINITY;
+    for (int i = 0; i < 8; i++) {
+        *high = fmax(*high, x[i] + tangent * z[i]);
+        *low = fmin(*low, x[i] - tangent * z[i]);
+    }
+}
+
+render_camera render_camera_framing(const render_bounds *bounds, double aspect) {
+    render_bounds box = *bounds;
+    render_camera camera = {.up = {0, 1, 0}, .fov = house_fov};
+    double radius = render_bounds_radius(&box), centre[3], right[3], up[3], back[3];
+
+    // a point, or nothing, still needs room around it
+    render_bounds_centre(&box, centre);
+    if (radius < 1e-9) render_bounds_add(&box, centre, 0.5);
+    radius = render_bounds_radius(&box);
+
+    double azimuth = house_azimuth * degree, elevation = house_elevation * degree;
+    back[0] = sin(azimuth) * cos(elevation), back[1] = sin(elevation), back[2] = cos(azimuth) * cos(elevation);
+    render_basis(back, right, up);
+
+    // the corners of the box along the picture's axes
+    double x[8], y[8], z[8], nearest = -INFINITY;
+    for (int i = 0; i < 8; i++) {
+        double corner[3];
+        for (int k = 0; k < 3; k++) corner[k] = ((i >> k & 1) ? box.most[k] : box.least[k]) - centre[k];
+        x[i] = render_dot(corner, right), y[i] = render_dot(corner, up), z[i] = render_dot(corner, back);
+        nearest = fmax(nearest, z[i]);
+    }
+
+    // the least distance that serves both width and height; the eye in the middle of what is left
+    double ty = tan(0.5 * house_fov * degree) * house_fill, tx = ty * aspect, x_high, x_low, y_high, y_low;
+    fit(x, z, tx, &x_high, &x_low);
+    fit(y, z, ty, &y_high, &y_low);
+    double distance = fmax((x_high - x_low) / (2 * tx), (y_high - y_low) / (2 * ty));
+    distance = fmax(distance, nearest + 0.5 * radius);
+    double shift_x = 0.5 * (x_high + x_low), shift_y = 0.5 * (y_high + y_low);
+    for (int k = 0; k < 3; k++) {
+        camera.target[k] = centre[k] + shift_x * right[k] + shift_y * up[k];
+        camera.eye[k] = camera.target[k] + distance * back[k];
+    }
+    camera.near = fmax(0.1 * (distance - nearest), 1e-6 * radius);
+    return camera;
+}
+
+void render_camera_axes(const render_camera *camera, double right[3], double up[3], double back[3]) {
+    for (int k = 0; k < 3; k++) back[k] = camera->eye[k] - camera->target[k];
+    render_normalise(back);
+    render_cross(camera->up, back, right);
+    render_normalise(right);
+    render_cross(back, right, up);
+}
+
+void render_camera_view(const render_camera *camera, double matrix[16]) {
+    double right[3], up[3], back[3];
+    render_camera_axes(camera, right, up, back);
+    render_look_along(right, up, back, camera->eye, matrix);
+}
+
+void render_camera_projection(const render_camera *camera, double aspect, double matrix[16]) {
+    double scale = 1.0 / tan(0.5 * camera->fov * degree);
+    memset(matrix, 0, 16 * sizeof *matrix);
+    matrix[0] = scale / aspect;
+    matrix[5] = scale;
+    matrix[11] = -1;           // w is the distance
+    matrix[14] = camera->near; // z / w = near / distance
+}

@@ -1,0 +1,418 @@
+/* Drawing a frame; see draw.h. */
+#include "render/draw.h"
+
+#include "render/fail.h"
+#include "render/instances.h"
+#include "render/light.h"
+#include "render/linear.h"
+#include "render/meshes.h"
+#include "render/shader.h"
+
+#include <epoxy/gl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Those that have a depth-only twin for the light maps, DEPTH_ONLY further on, come first. */
+enum { PLANE, SURFACE, BALL, DEPTH_ONLY, SKY = 2 * DEPTH_ONLY, LINE, PROGRAM_COUNT };
+
+struct render_draw {
+    GLuint programs[PROGRAM_COUNT];
+    GLuint uniforms; /* the pass blocks, then the scene block */
+    GLuint no_arrays;
+    render_light light;
+    render_shape disc, square;
+    render_shape sphere, pearl; /* fine for colliders, coarse for particles */
+    render_instances balls, particles, lines;
+    render_mesh *meshes; /* by the surface's place in the frame */
+    size_t mesh_count;
+};
+
+/* What a frame comes to, worked out before the first triangle. */
+typedef struct drawing {
+    const render_frame *frame;
+    const render_camera *camera;
+    int width, height;
+    double radius, middle[3]; /* of everything finite */
+    bool has_ground;
+    double ground;            /* height of the ground */
+    render_scene_block block;
+} drawing;
+
+static const double degree = 0.017453292519943295;
+
+/* A square slab stands for a tilted plane: so many radii of the scene from its middle to its side. */
+static const double slab_size = 1.25;
+/* The ground ends so many radii away, where the haze has long swallowed it. */
+static const double ground_size = 60;
+/* Cloth that lies on something wins against it: it is drawn nearer by this part of its distance. */
+static const float lift = 5e-4f;
+
+/* ---- Making --------------------------------------------------------------------------------- */
+
+static skein_status make_all(render_draw *draw, skein_error *error) {
+    static const char *const stages[PROGRAM_COUNT][2] = {
+        [SKY] = {"sky.vert", "display,sky.frag"},
+        [PLANE] = {"plane.vert", "display,light,plane.frag"},
+        [SURFACE] = {"surface.vert", "display,light,surface.frag"},
+        [BALL] = {"ball.vert", "display,light,ball.frag"},
+        [PLANE + DEPTH_ONLY] = {"plane.vert", NULL},
+        [SURFACE + DEPTH_ONLY] = {"surface.vert", NULL},
+        [BALL + DEPTH_ONLY] = {"ball.vert", NULL},
+        [LINE] = {"line.vert", "display,line.frag"},
+    };
+    for (int i = 0; i < PROGRAM_COUNT; i++) {
+        draw->programs[i] = render_shader_link(stages[i][0], stages[i][1], error);
+        if (!draw->programs[i]) return SKEIN_ERROR_VALUE;
+    }
+    skein_status status = render_light_create(&draw->light, error);
+    if (status == SKEIN_OK) status = render_shape_disc(&draw->disc, error);
+    if (status == SKEIN_OK) status = render_shape_square(&draw->square, error);
+    if (status == SKEIN_OK) status = render_shape_sphere(&draw->sphere, 40, error);
+    if (status == SKEIN_OK) status = render_shape_sphere(&draw->pearl, 10, error);
+    if (status != SKEIN_OK) return status;
+
+    render_instances_make_balls(&draw->balls, &draw->sphere);
+    render_instances_make_balls(&draw->particles, &draw->pearl);
+    render_instances_make_lines(&draw->lines);
+    glCreateVertexArrays(1, &draw->no_arrays);
+    glCreateBuffers(1, &draw->uniforms);
+    glNamedBufferStorage(draw->uniforms, RENDER_SCENE_OFFSET + sizeof(render_scene_block), NULL,
+                         GL_DYNAMIC_STORAGE_BIT);
+    return SKEIN_OK;
+}
+
+render_draw *render_draw_create(skein_error *error) {
+    render_draw *draw = calloc(1, sizeof *draw);
+    if (!draw) {
+        render_fail_memory(error, "the renderer");
+        return NULL;
+    }
+    if (make_all(draw, error) != SKEIN_OK) {
+        render_draw_destroy(draw);
+        return NULL;
+    }
+    return draw;
+}
+
+void render_draw_destroy(render_draw *draw) {
+    if (!draw) return;
+    for (int i = 0; i < PROGRAM_COUNT; i++) {
+        if (draw->programs[i]) glDeleteProgram(draw->programs[i]);
+    }
+    for (size_t i = 0; i < draw->mesh_count; i++) render_mesh_destroy(&draw->meshes[i]);
+    free(draw->meshes);
+    render_instances_destroy(&draw->balls);
+    render_instances_destroy(&draw->particles);
+    render_instances_destroy(&draw->lines);
+    render_shape_destroy(&draw->disc);
+    render_shape_destroy(&draw->square);
+    render_shape_destroy(&draw->sphere);
+    render_shape_destroy(&draw->pearl);
+    render_light_destroy(&draw->light);
+    glDeleteVertexArrays(1, &draw->no_arrays);
+    glDeleteBuffers(1, &draw->uniforms);
+    free(draw);
+}
+
+/* ---- Bringing a frame to the card ----------------------------------------------------------- */
+
+static skein_status bring_surfaces(render_draw *draw, const render_frame *frame, skein_error *error) {
+    if (frame->surface_count > draw->mesh_count) {
+        render_mesh *meshes = realloc(draw->meshes, frame->surface_count * sizeof *meshes);
+        if (!meshes) return render_fail_memory(error, "the surfaces");
+        memset(meshes + draw->mesh_count, 0, (frame->surface_count - draw->mesh_count) * sizeof *meshes);
+        draw->meshes = meshes;
+        draw->mesh_count = frame->surface_count;
+    }
+    for (size_t i = 0; i < frame->surface_count; i++) {
+        skein_status status = render_mesh_update(&draw->meshes[i], &frame->surfaces[i], error);
+        if (status != SKEIN_OK) return status;
+    }
+    return SKEIN_OK;
+}
+
+static skein_status bring(render_draw *draw, const render_frame *frame, skein_error *error) {
+    skein_status status = bring_surfaces(draw, frame, error);
+    if (status == SKEIN_OK) status = render_instances_bring_spheres(&draw->balls, frame, error);
+    if (status == SKEIN_OK) status = render_instances_bring_points(&draw->particles, frame, error);
+    if (status == SKEIN_OK) status = render_instances_bring_lines(&draw->lines, frame, error);
+    return status;
+}
+
+/* A side of the grid's cells that reads well: 1, 2 or 5 times a power of ten. */
+static double nice_cell(double about) {
+    double power = pow(10, floor(log10(about))), times = about / power;
+    return power * (times < 2 ? 1 : times < 5 ? 2 : 5);
+}
+
+/* The slab of a tilted plane: its middle (the scene's, brought on to the plane), two half sides, of which
+ * the first is level, and its normal. */
+static void place_slab(const drawing *d, const render_plane *plane, double vectors[4][3]) {
+    double off[3], side = slab_size * d->radius, *normal = vectors[3];
+    for (int k = 0; k < 3; k++) normal[k] = plane->normal[k], off[k] = plane->point[k] - d->middle[k];
+    render_normalise(normal);
+    render_basis(normal, vectors[1], vectors[2]);
+    double distance = render_dot(off, normal);
+    for (int k = 0; k < 3; k++) {
+        vectors[0][k] = d->middle[k] + distance * normal[k];
+        vectors[1][k] *= side, vectors[2][k] *= side;
+    }
+}
+
+/* Everything that casts a shadow: what is finite, and the slabs. */
+static render_bounds casters(const drawing *d, const render_bounds *finite) {
+    render_bounds bounds = *finite;
+    for (size_t i = 0; i < d->frame->plane_count; i++) {
+        if (render_plane_level(&d->frame->planes[i])) continue;
+        double v[4][3];
+        place_slab(d, &d->frame->planes[i], v);
+        for (int c = 0; c < 4; c++) {
+            double corner[3];
+            for (int k = 0; k < 3; k++) corner[k] = v[0][k] + (c & 1 ? 1 : -1) * v[1][k] + (c & 2 ? 1 : -1) * v[2][k];
+            render_bounds_add(&bounds, corner, 0);
+        }
+    }
+    return bounds;
+}
+
+/* The highest ground that there is. */
+static void find_ground(drawing *d) {
+    const render_frame *frame = d->frame;
+    d->has_ground = frame->look.floor;
+    d->ground = frame->look.floor_height;
+    for (size_t i = 0; i < frame->plane_count; i++) {
+        if (!render_plane_level(&frame->planes[i])) continue;
+        double height = frame->planes[i].point[1];
+        if (!d->has_ground || height > d->ground) d->ground = height;
+        d->has_ground = true;
+    }
+}
+
+static void store(const double v[3], double w, float out[4]) {
+    for (int i = 0; i < 3; i++) out[i] = (float)v[i];
+    out[3] = (float)w;
+}
+
+/* The scene block, but for what belongs to the light maps. */
+static void fill_block(drawing *d, const double sun[3], double tangent) {
+    static const float white[3] = {1.0f, 0.975f, 0.935f};
+    const render_look *look = &d->frame->look;
+    render_scene_block *block = &d->block;
+    double right[3], up[3], back[3], tall = tan(0.5 * d->camera->fov * degree), wide = tall * d->width / d->height;
+
+    render_camera_axes(d->camera, right, up, back);
+    store(d->camera->eye, 1, block->eye);
+    for (int k = 0; k < 3; k++) {
+        block->view_right[k] = (float)(right[k] * wide);
+        block->view_up[k] = (float)(up[k] * tall);
+        block->view_forward[k] = (float)-back[k];
+    }
+    block->view_right[3] = 2.0f / (float)d->width;
+    block->view_up[3] = 2.0f / (float)d->height;
+    store(sun, tangent, block->sun);
+    store(d->middle, d->radius, block->middle);
+    render_to_light(white, 1.15f, block->sun_light);
+    block->sun_light[3] = (float)look->exposure;
+    render_to_light(look->zenith, 1, block->zenith);
+    render_to_light(look->horizon, 1, block->horizon);
+    render_to_light(look->ground, 1, block->ground);
+    block->ground[3] = (float)d->ground;
+
+    size_t balls = d->frame->sphere_count < RENDER_BALL_COUNT ? d->frame->sphere_count : RENDER_BALL_COUNT;
+    for (size_t i = 0; i < balls; i++) {
+        store(d->frame->spheres[i].centre, d->frame->spheres[i].radius, block->balls[i]);
+    }
+    block->counts[0] = (int32_t)balls;
+}
+
+static void send_matrix(const render_draw *draw, render_pass pass, const double matrix[16]) {
+    float numbers[16];
+    for (int i = 0; i < 16; i++) numbers[i] = (float)matrix[i];
+    glNamedBufferSubData(draw->uniforms, pass * RENDER_PASS_STRIDE, sizeof numbers, numbers);
+}
+
+/* Works out light, camera and matrices, and sends them. */
+static void aim(render_draw *draw, drawing *d) {
+    double sun[3], view[16], projection[16], camera[16], to_sun[16], to_below[16];
+    render_bounds finite = render_frame_bounds(d->frame);
+    double tangent = tan(d->frame->look.sun_spread * degree);
+
+    d->radius = render_bounds_radius(&finite);
+    if (d->radius < 1e-9) d->radius = 1;
+    render_bounds_centre(&finite, d->middle);
+    find_ground(d);
+    for (int k = 0; k < 3; k++) sun[k] = d->frame->look.sun[k];
+    render_normalise(sun);
+    fill_block(d, sun, tangent);
+
+    render_bounds shading = casters(d, &finite);
+    render_light_aim(&draw->light, sun, tangent, &shading, d->has_ground ? &d->ground : NULL, &d->block, to_sun,
+                     to_below);
+    render_camera_view(d->camera, view);
+    render_camera_projection(d->camera, (double)d->width / d->height, projection);
+    render_multiply(projection, view, camera);
+    send_matrix(draw, RENDER_PASS_CAMERA, camera);
+    send_matrix(draw, RENDER_PASS_SUN, to_sun);
+    send_matrix(draw, RENDER_PASS_BELOW, to_below);
+    glNamedBufferSubData(draw->uniforms, RENDER_SCENE_OFFSET, sizeof d->block, &d->block);
+}
+
+/* ---- Drawing -------------------------------------------------------------------------------- */
+
+static void draw_shape(const render_shape *shape, GLuint arrays, size_t instance_count) {
+    glBindVertexArray(arrays);
+    glDrawElementsInstanced(GL_TRIANGLES, shape->index_count, GL_UNSIGNED_SHORT, NULL, (GLsizei)instance_count);
+}
+
+static void draw_plane(const render_draw *draw, int twin, const render_shape *shape, const double vectors[4][3],
+                       double cell, bool ground) {
+    GLuint program = draw->programs[PLANE + twin];
+    glUseProgram(program);
+    for (GLint i = 0; i < (twin ? 3 : 4); i++) {
+        glProgramUniform3f(program, i, (float)vectors[i][0], (float)vectors[i][1], (float)vectors[i][2]);
+    }
+    if (!twin) {
+        glProgramUniform1f(program, 4, (float)cell);
+        glProgramUniform1i(program, 5, ground);
+    }
+    draw_shape(shape, shape->arrays, 1);
+}
+
+static void draw_slabs(const render_draw *draw, const drawing *d, int twin) {
+    for (size_t i = 0; i < d->frame->plane_count; i++) {
+        double vectors[4][3];
+        if (render_plane_level(&d->frame->planes[i])) continue;
+        place_slab(d, &d->frame->planes[i], vectors);
+        draw_plane(draw, twin, &draw->square, (const double(*)[3])vectors, nice_cell(0.25 * d->radius), false);
+    }
+}
+
+static void draw_ground(const render_draw *draw, const drawing *d) {
+    // from beneath there is no ground to see
+    if (!d->has_ground || d->camera->eye[1] <= d->ground) return;
+    double size = ground_size * d->radius;
+    const double vectors[4][3] = {{d->middle[0], d->ground, d->middle[2]}, {size, 0, 0}, {0, 0, -size}, {0, 1, 0}};
+    draw_plane(draw, 0, &draw->disc, vectors, nice_cell(0.25 * d->radius), true);
+}
+
+static void set_material(GLuint program, const render_material *material, bool has_uv) {
+    const float *const colours[3] = {material->colour, material->accent, material->lining};
+    for (GLint i = 0; i < 3; i++) {
+        float light[3];
+        render_to_light(colours[i], 1, light);
+        glProgramUniform3fv(program, 1 + i, 1, light);
+    }
+    glProgramUniform1i(program, 4, has_uv ? (GLint)material->pattern : RENDER_PLAIN);
+    glProgramUniform2fv(program, 5, 1, material->repeats);
+    glProgramUniform1f(program, 6, material->translucency);
+}
+
+static void draw_surfaces(const render_draw *draw, const drawing *d, int twin) {
+    GLuint program = draw->programs[SURFACE + twin];
+    glUseProgram(program);
+    glProgramUniform1f(program, 0, twin ? 0 : lift);
+    for (size_t i = 0; i < d->frame->surface_count; i++) {
+        const render_mesh *mesh = &draw->meshes[i];
+        if (!twin) set_material(program, &d->frame->surfaces[i].material, mesh->uv != 0);
+        glBindVertexArray(mesh->arrays);
+        glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
+    }
+}
+
+static void draw_balls(const render_draw *draw, int twin) {
+    GLuint program = draw->programs[BALL + twin];
+    glUseProgram(program);
+    glEnable(GL_CULL_FACE);
+    if (!twin) glProgramUniform1i(program, 1, 1);
+    if (draw->balls.count > 0) draw_shape(&draw->sphere, draw->balls.arrays, draw->balls.count);
+    if (!twin) glProgramUniform1i(program, 1, 0);
+    if (draw->particles.count > 0) draw_shape(&draw->pearl, draw->particles.arrays, draw->particles.count);
+    glDisable(GL_CULL_FACE);
+}
+
+static void draw_lines(const render_draw *draw, const drawing *d) {
+    GLuint program = draw->programs[LINE], first = 0;
+    glUseProgram(program);
+    glBindVertexArray(draw->lines.arrays);
+    for (size_t i = 0; i < d->frame->lines_count; i++) {
+        const render_lines *lines = &d->frame->lines[i];
+        float light[3];
+        render_to_light(lines->colour, 1, light);
+        glProgramUniform3fv(program, 1, 1, light);
+        glProgramUniform3f(program, 0, 1.0f / (float)d->width, 1.0f / (float)d->height, (float)lines->width);
+        glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)lines->count, first);
+        first += (GLuint)lines->count;
+    }
+}
+
+static void use_pass(const render_draw *draw, render_pass pass) {
+    glBindBufferRange(GL_UNIFORM_BUFFER, 1, draw->uniforms, pass * RENDER_PASS_STRIDE, 16 * sizeof(float));
+}
+
+/* Both maps of the light: nothing but depth is kept. */
+static void draw_light(const render_draw *draw, const drawing *d) {
+    if (render_light_begin_sun(&draw->light)) {
+        use_pass(draw, RENDER_PASS_SUN);
+        draw_surfaces(draw, d, DEPTH_ONLY);
+        draw_balls(draw, DEPTH_ONLY);
+        draw_slabs(draw, d, DEPTH_ONLY);
+    }
+    if (render_light_begin_below(&draw->light)) {
+        use_pass(draw, RENDER_PASS_BELOW);
+        draw_surfaces(draw, d, DEPTH_ONLY);
+        draw_balls(draw, DEPTH_ONLY);
+        render_light_end_below(&draw->light);
+    }
+}
+
+static void draw_picture(const render_draw *draw, const drawing *d, unsigned framebuffer) {
+    static const float nearest_nothing = 0.0f;
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, d->width, d->height);
+    glEnable(GL_MULTISAMPLE);
+    glDisable(GL_DEPTH_CLAMP);
+    glDepthMask(GL_TRUE);
+    glClearBufferfv(GL_DEPTH, 0, &nearest_nothing);
+
+    // the sky fills every pixel, so colours need no clearing
+    use_pass(draw, RENDER_PASS_CAMERA);
+    render_light_bind(&draw->light);
+    glDisable(GL_DEPTH_TEST);
+    glUseProgram(draw->programs[SKY]);
+    glBindVertexArray(draw->no_arrays);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+
+    // what hides most comes first (depth alone in a pass before saved nothing, on llvmpipe)
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GREATER);
+    draw_surfaces(draw, d, 0);
+    draw_balls(draw, 0);
+    draw_slabs(draw, d, 0);
+    draw_ground(draw, d);
+    draw_lines(draw, d);
+}
+
+skein_status render_draw_frame(render_draw *draw, const render_frame *frame, const render_camera *camera,
+                               unsigned framebuffer, int width, int height, skein_error *error) {
+    drawing d = {.frame = frame, .camera = camera, .width = width, .height = height};
+    skein_status status = bring(draw, frame, error);
+    if (status != SKEIN_OK) return status;
+    aim(draw, &d);
+
+    // whatever a window's panels left behind
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_STENCIL_TEST);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glEnable(GL_FRAMEBUFFER_SRGB);
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glBindBufferRange(GL_UNIFORM_BUFFER, 0, draw->uniforms, RENDER_SCENE_OFFSET, sizeof d.block);
+
+    draw_light(draw, &d);
+    draw_picture(draw, &d, framebuffer);
+    glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    return SKEIN_OK;
+}

@@ -1,0 +1,25 @@
+/* Drawing a frame with OpenGL 4.5, into whatever framebuffer is given: offscreen or a window's.
+ *
+ *     frame --bring--> meshes, instances --sun, below--> light maps --camera--> picture
+ *
+ * Called by picture.c, by films and by the window. Needs a current context; makes its resources once
+ * and uses them again for every frame. It sets all OpenGL state that it relies on, and gives the
+ * clip control back as OpenGL has it at first. */
+#ifndef SKEIN_RENDER_DRAW_H
+#define SKEIN_RENDER_DRAW_H
+
+#include "render/camera.h"
+#include "render/frame.h"
+#include "skein/skein.h"
+
+typedef struct render_draw render_draw;
+
+/* NULL on failure: `error` holds the reason, such as a shader that the driver refuses. */
+render_draw *render_draw_create(skein_error *error);
+void render_draw_destroy(render_draw *draw); /* NULL is allowed; the context must be current */
+
+/* Draws a frame into a framebuffer that has sRGB colour and float depth (see target.h). */
+skein_status render_draw_frame(render_draw *draw, const render_frame *frame, const render_camera *camera,
+                               unsigned framebuffer, int width, int height, skein_error *error);
+
+#endif

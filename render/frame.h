@@ -1,0 +1,124 @@
+/* A frame: all that is in one picture, as plain data.
+ *
+ *     world --world_frame.c--> frame --draw.c--> target --> image, film or window
+ *
+ * Whoever wants a picture fills a frame (world_frame.c does it from a world; tests do it by hand);
+ * draw.c reads it. A frame owns nothing: every pointer belongs to whoever filled it and must live until
+ * the frame is drawn. Lengths are metres, y is up. Colours are as a screen shows them (sRGB), 0 to 1. */
+#ifndef SKEIN_RENDER_FRAME_H
+#define SKEIN_RENDER_FRAME_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef enum render_pattern {
+    RENDER_PLAIN,
+    RENDER_CHECKER, /* squares of colour and accent, by UV */
+    RENDER_WEAVE    /* gingham: woven bands of colour and accent with fine threads, by UV */
+} render_pattern;
+
+typedef struct render_material {
+    float colour[3];      /* the front */
+    float accent[3];      /* the pattern's other colour */
+    float lining[3];      /* the back */
+    render_pattern pattern;
+    float repeats[2];     /* how often the pattern repeats along u and v */
+    float translucency;   /* light that passes through from behind, 0 to 1 */
+} render_material;
+
+/* A triangle mesh, drawn with smooth normals that the renderer computes. */
+typedef struct render_surface {
+    const double *positions; /* vertex_count x 3 */
+    size_t vertex_count;
+    const uint32_t *triangles; /* triangle_count x 3, each below vertex_count */
+    size_t triangle_count;
+    const uint32_t *weld; /* the vertex whose normal each one takes: itself, or one at the same place; or NULL */
+    const float *uv;      /* vertex_count x 2; or NULL: the pattern is not drawn */
+    uint64_t shape;       /* changes whenever triangles, weld or uv do; 0: they may be new every frame */
+    render_material material;
+} render_surface;
+
+/* An infinite plane. One that lies level is drawn as ground out to the horizon, others as a slab
+ * about as large as the rest of the picture. */
+typedef struct render_plane {
+    double point[3];
+    double normal[3]; /* towards the free side; of any length */
+} render_plane;
+
+typedef struct render_sphere {
+    double centre[3];
+    double radius;
+    double rotation[9]; /* rows of a rotation matrix; turns the marking */
+    float colour[3], marking[3];
+} render_sphere;
+
+/* Particles as little balls of one size and colour. */
+typedef struct render_points {
+    const double *positions; /* count x 3 */
+    size_t count;
+    double radius;
+    float colour[3];
+} render_points;
+
+/* Straight lines, `width` pixels wide wherever they are. */
+typedef struct render_lines {
+    const double *positions; /* count x 6: both ends */
+    size_t count;
+    double width;
+    float colour[3];
+} render_lines;
+
+/* Light and surroundings. Start from render_default_look(). */
+typedef struct render_look {
+    double sun[3];      /* direction to the sun, of any length */
+    double sun_spread;  /* degrees from the sun's middle to its rim: how soft shadows are */
+    float zenith[3];    /* the sky straight above */
+    float horizon[3];   /* the sky at the horizon; the ground fades into it */
+    float ground[3];    /* the ground's own colour */
+    double exposure;    /* 1 is as it is */
+    bool floor;         /* a ground of no effect, where no plane gives one */
+    double floor_height;
+} render_look;
+
+typedef struct render_frame {
+    const render_surface *surfaces;
+    size_t surface_count;
+    const render_plane *planes;
+    size_t plane_count;
+    const render_sphere *spheres;
+    size_t sphere_count;
+    const render_points *points;
+    size_t points_count;
+    const render_lines *lines;
+    size_t lines_count;
+    render_look look;
+} render_frame;
+
+/* A box along the axes; empty while least > most. */
+typedef struct render_bounds {
+    double least[3], most[3];
+} render_bounds;
+
+/* A frame with nothing in it, under the default light. */
+render_frame render_default_frame(void);
+render_look render_default_look(void);
+/* Gingham in a warm colour, another one for each `index`; plain where a surface has no uv. */
+render_material render_default_material(size_t index);
+/* A painted ball at the origin: radius 1, not turned. */
+render_sphere render_default_sphere(void);
+
+/* The box around everything finite: surfaces, spheres, points, lines. Points that are not finite
+ * do not count. */
+render_bounds render_frame_bounds(const render_frame *frame);
+render_bounds render_bounds_nothing(void);
+bool render_bounds_empty(const render_bounds *bounds);
+void render_bounds_add(render_bounds *bounds, const double point[3], double radius);
+/* Half the box's diagonal; 0 for an empty one. */
+double render_bounds_radius(const render_bounds *bounds);
+void render_bounds_centre(const render_bounds *bounds, double centre[3]);
+
+/* True where the plane lies level, facing up, so that it is drawn as ground. */
+bool render_plane_level(const render_plane *plane);
+
+#endif

@@ -1,0 +1,133 @@
+/* What is drawn many times over; see instances.h. */
+#include "render/instances.h"
+
+#include "render/fail.h"
+
+#include <epoxy/gl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Floats of a ball: centre and radius, three rows of its rotation, paint, marking; of a line: both ends. */
+enum { ball_floats = 4 + 9 + 3 + 3, line_floats = 6 };
+
+void render_to_light(const float colour[3], float strength, float out[3]) {
+    for (int i = 0; i < 3; i++) {
+        float c = colour[i];
+        out[i] = strength * (c <= 0.04045f ? c / 12.92f : powf((c + 0.055f) / 1.055f, 2.4f));
+    }
+}
+
+/* ---- Making --------------------------------------------------------------------------------- */
+
+/* Attributes `first` and on read parts[i] floats each of a buffer at binding 1 that steps by instance. */
+static void make_attributes(GLuint arrays, GLuint first, const GLint *parts, GLuint count) {
+    GLuint offset = 0;
+    for (GLuint i = 0; i < count; i++) {
+        glVertexArrayAttribFormat(arrays, first + i, parts[i], GL_FLOAT, GL_FALSE, offset);
+        glVertexArrayAttribBinding(arrays, first + i, 1);
+        glEnableVertexArrayAttrib(arrays, first + i);
+        offset += (GLuint)parts[i] * (GLuint)sizeof(float);
+    }
+    glVertexArrayBindingDivisor(arrays, 1, 1);
+}
+
+void render_instances_make_balls(render_instances *instances, const render_shape *shape) {
+    static const GLint parts[6] = {4, 3, 3, 3, 3, 3};
+    glCreateVertexArrays(1, &instances->arrays);
+    glVertexArrayVertexBuffer(instances->arrays, 0, shape->vertices, 0, 3 * sizeof(float));
+    glVertexArrayAttribFormat(instances->arrays, 0, 3, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(instances->arrays, 0, 0);
+    glEnableVertexArrayAttrib(instances->arrays, 0);
+    glVertexArrayElementBuffer(instances->arrays, shape->indices);
+    make_attributes(instances->arrays, 1, parts, 6);
+}
+
+void render_instances_make_lines(render_instances *instances) {
+    static const GLint parts[2] = {3, 3};
+    glCreateVertexArrays(1, &instances->arrays);
+    make_attributes(instances->arrays, 0, parts, 2);
+}
+
+void render_instances_destroy(render_instances *instances) {
+    glDeleteVertexArrays(1, &instances->arrays);
+    glDeleteBuffers(1, &instances->buffer);
+    free(instances->staged);
+    memset(instances, 0, sizeof *instances);
+}
+
+/* Room for `count` instances of `floats` floats, on the card and in `staged`. */
+static skein_status reserve(render_instances *instances, size_t count, size_t floats, skein_error *error) {
+    size_t need = count * floats * sizeof(float);
+    instances->count = 0;
+    if (need > instances->room) {
+        float *staged = realloc(instances->staged, 2 * need);
+        if (!staged) return render_fail_memory(error, "what is drawn");
+        instances->staged = staged;
+        instances->room = 2 * need;
+        glDeleteBuffers(1, &instances->buffer);
+        glCreateBuffers(1, &instances->buffer);
+        glNamedBufferStorage(instances->buffer, (GLsizeiptr)instances->room, NULL, GL_DYNAMIC_STORAGE_BIT);
+        glVertexArrayVertexBuffer(instances->arrays, 1, instances->buffer, 0, (GLsizei)(floats * sizeof(float)));
+    }
+    instances->count = count;
+    return SKEIN_OK;
+}
+
+static void send(const render_instances *instances, size_t floats) {
+    size_t size = instances->count * floats * sizeof(float);
+    if (size > 0) glNamedBufferSubData(instances->buffer, 0, (GLsizeiptr)size, instances->staged);
+}
+
+/* ---- Bringing ------------------------------------------------------------------------------- */
+
+static void stage_ball(float *out, const double centre[3], double radius, const double rotation[9],
+                       const float paint[3], const float marking[3]) {
+    for (int i = 0; i < 3; i++) out[i] = (float)centre[i];
+    out[3] = (float)radius;
+    for (int i = 0; i < 9; i++) out[4 + i] = (float)rotation[i];
+    render_to_light(paint, 1.0f, out + 13);
+    render_to_light(marking, 1.0f, out + 16);
+}
+
+skein_status render_instances_bring_spheres(render_instances *instances, const render_frame *frame, skein_error *error) {
+    skein_status status = reserve(instances, frame->sphere_count, ball_floats, error);
+    if (status != SKEIN_OK) return status;
+    for (size_t i = 0; i < frame->sphere_count; i++) {
+        const render_sphere *sphere = &frame->spheres[i];
+        stage_ball(&instances->staged[i * ball_floats], sphere->centre, sphere->radius, sphere->rotation,
+                   sphere->colour, sphere->marking);
+    }
+    send(instances, ball_floats);
+    return SKEIN_OK;
+}
+
+skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame, skein_error *error) {
+    static const double unturned[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    size_t count = 0, next = 0;
+    for (size_t g = 0; g < frame->points_count; g++) count += frame->points[g].count;
+    skein_status status = reserve(instances, count, ball_floats, error);
+    if (status != SKEIN_OK) return status;
+    for (size_t g = 0; g < frame->points_count; g++) {
+        const render_points *points = &frame->points[g];
+        for (size_t i = 0; i < points->count; i++) {
+            stage_ball(&instances->staged[next++ * ball_floats], &points->positions[3 * i], points->radius, unturned,
+                       points->colour, points->colour);
+        }
+    }
+    send(instances, ball_floats);
+    return SKEIN_OK;
+}
+
+skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame, skein_error *error) {
+    size_t count = 0, next = 0;
+    for (size_t g = 0; g < frame->lines_count; g++) count += frame->lines[g].count;
+    skein_status status = reserve(instances, count, line_floats, error);
+    if (status != SKEIN_OK) return status;
+    for (size_t g = 0; g < frame->lines_count; g++) {
+        const render_lines *lines = &frame->lines[g];
+        for (size_t i = 0; i < lines->count * line_floats; i++) instances->staged[next++] = (float)lines->positions[i];
+    }
+    send(instances, line_floats);
+    return SKEIN_OK;
+}

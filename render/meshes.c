@@ -1,0 +1,180 @@
+/* Geometry on the card; see meshes.h. */
+#include "render/meshes.h"
+
+#include "render/fail.h"
+
+#include <epoxy/gl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Surfaces that move --------------------------------------------------------------------- */
+
+void render_surface_normals(const render_surface *surface, float *normals) {
+    const double *x = surface->positions;
+    const uint32_t *weld = surface->weld;
+    memset(normals, 0, 3 * surface->vertex_count * sizeof *normals);
+
+    // the cross product of two sides is the unit normal times twice the area
+    for (size_t t = 0; t < surface->triangle_count; t++) {
+        const uint32_t *corner = &surface->triangles[3 * t];
+        const double *a = &x[3 * corner[0]], *b = &x[3 * corner[1]], *c = &x[3 * corner[2]];
+        double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+        float n[3] = {(float)(u[1] * v[2] - u[2] * v[1]), (float)(u[2] * v[0] - u[0] * v[2]),
+                      (float)(u[0] * v[1] - u[1] * v[0])};
+        for (int k = 0; k < 3; k++) {
+            float *sum = &normals[3 * (weld ? weld[corner[k]] : corner[k])];
+            sum[0] += n[0], sum[1] += n[1], sum[2] += n[2];
+        }
+    }
+
+    for (size_t i = 0; i < surface->vertex_count; i++) {
+        float *n = &normals[3 * i];
+        double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
+        float scale = length > 0 && isfinite(length) ? (float)(1.0 / length) : 0.0f;
+        for (int k = 0; k < 3; k++) n[k] = scale > 0 ? n[k] * scale : 0.0f;
+    }
+
+    // copies at the same place (along a seam) take their owner's
+    for (size_t i = 0; weld && i < surface->vertex_count; i++) {
+        if (weld[i] != i) memcpy(&normals[3 * i], &normals[3 * weld[i]], 3 * sizeof *normals);
+    }
+}
+
+static GLuint make_buffer(size_t size, const void *data, GLbitfield flags) {
+    GLuint buffer = 0;
+    glCreateBuffers(1, &buffer);
+    glNamedBufferStorage(buffer, (GLsizeiptr)(size ? size : 4), size ? data : NULL, flags);
+    return buffer;
+}
+
+/* Makes attribute `location` of a vertex array read `parts` floats from its own buffer. */
+static void attach(GLuint arrays, GLuint location, GLuint buffer, GLint parts) {
+    glVertexArrayVertexBuffer(arrays, location, buffer, 0, (GLsizei)((size_t)parts * sizeof(float)));
+    glVertexArrayAttribFormat(arrays, location, parts, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(arrays, location, location);
+    glEnableVertexArrayAttrib(arrays, location);
+}
+
+void render_mesh_destroy(render_mesh *mesh) {
+    const GLuint buffers[4] = {mesh->positions, mesh->normals, mesh->uv, mesh->triangles};
+    glDeleteBuffers(4, buffers);
+    glDeleteVertexArrays(1, &mesh->arrays);
+    free(mesh->staged);
+    memset(mesh, 0, sizeof *mesh);
+}
+
+/* All that stays while a surface moves. */
+static skein_status rebuild(render_mesh *mesh, const render_surface *surface, skein_error *error) {
+    size_t vertices = surface->vertex_count * 3 * sizeof(float);
+    render_mesh_destroy(mesh);
+    mesh->staged = malloc(2 * vertices + 1);
+    if (!mesh->staged) return render_fail_memory(error, "a surface");
+
+    mesh->vertex_count = surface->vertex_count;
+    mesh->triangle_count = surface->triangle_count;
+    mesh->shape = surface->shape;
+    mesh->positions = make_buffer(vertices, NULL, GL_DYNAMIC_STORAGE_BIT);
+    mesh->normals = make_buffer(vertices, NULL, GL_DYNAMIC_STORAGE_BIT);
+    mesh->triangles = make_buffer(surface->triangle_count * 3 * sizeof(uint32_t), surface->triangles, 0);
+    glCreateVertexArrays(1, &mesh->arrays);
+    attach(mesh->arrays, 0, mesh->positions, 3);
+    attach(mesh->arrays, 1, mesh->normals, 3);
+    if (surface->uv) {
+        mesh->uv = make_buffer(surface->vertex_count * 2 * sizeof(float), surface->uv, 0);
+        attach(mesh->arrays, 2, mesh->uv, 2);
+    }
+    glVertexArrayElementBuffer(mesh->arrays, mesh->triangles);
+    return SKEIN_OK;
+}
+
+skein_status render_mesh_update(render_mesh *mesh, const render_surface *surface, skein_error *error) {
+    bool same = mesh->arrays && surface->shape != 0 && mesh->shape == surface->shape &&
+                mesh->vertex_count == surface->vertex_count && mesh->triangle_count == surface->triangle_count &&
+                (mesh->uv != 0) == (surface->uv != NULL);
+    if (!same) {
+        skein_status status = rebuild(mesh, surface, error);
+        if (status != SKEIN_OK) return status;
+    }
+    if (mesh->vertex_count == 0) return SKEIN_OK;
+
+    size_t numbers = 3 * mesh->vertex_count;
+    float *positions = mesh->staged, *normals = mesh->staged + numbers;
+    for (size_t i = 0; i < numbers; i++) positions[i] = (float)surface->positions[i];
+    render_surface_normals(surface, normals);
+    glNamedBufferSubData(mesh->positions, 0, (GLsizeiptr)(numbers * sizeof(float)), positions);
+    glNamedBufferSubData(mesh->normals, 0, (GLsizeiptr)(numbers * sizeof(float)), normals);
+    return SKEIN_OK;
+}
+
+/* ---- Fixed shapes --------------------------------------------------------------------------- */
+
+/* A grid of rings x sectors quads over vertices that `place` computes; `parts` floats each. */
+static skein_status make_shape(render_shape *shape, int rings, int sectors, int parts,
+                               void (*place)(double along, double around, float *out), skein_error *error) {
+    size_t vertex_count = (size_t)(rings + 1) * (size_t)(sectors + 1);
+    size_t index_count = (size_t)rings * (size_t)sectors * 6, i = 0;
+    float *vertices = malloc(vertex_count * (size_t)parts * sizeof *vertices);
+    uint16_t *indices = malloc(index_count * sizeof *indices);
+    if (!vertices || !indices) {
+        free(vertices);
+        free(indices);
+        return render_fail_memory(error, "the fixed shapes");
+    }
+    for (int r = 0; r <= rings; r++) {
+        for (int s = 0; s <= sectors; s++) {
+            int v = r * (sectors + 1) + s;
+            place((double)r / rings, (double)s / sectors, &vertices[v * parts]);
+            if (r == rings || s == sectors) continue;
+            const int corners[6] = {v, v + sectors + 1, v + 1, v + 1, v + sectors + 1, v + sectors + 2};
+            for (int k = 0; k < 6; k++) indices[i++] = (uint16_t)corners[k];
+        }
+    }
+    shape->index_count = (int)index_count;
+    shape->vertices = make_buffer(vertex_count * (size_t)parts * sizeof *vertices, vertices, 0);
+    shape->indices = make_buffer(index_count * sizeof *indices, indices, 0);
+    glCreateVertexArrays(1, &shape->arrays);
+    attach(shape->arrays, 0, shape->vertices, parts);
+    glVertexArrayElementBuffer(shape->arrays, shape->indices);
+    free(vertices);
+    free(indices);
+    return SKEIN_OK;
+}
+
+static const double pi = 3.141592653589793;
+
+static void place_sphere(double along, double around, float *out) {
+    out[0] = (float)(sin(pi * along) * cos(2 * pi * around));
+    out[1] = (float)cos(pi * along);
+    out[2] = (float)(-sin(pi * along) * sin(2 * pi * around));
+}
+
+static void place_disc(double along, double around, float *out) {
+    // rings grow by a power, so that what is near has triangles of its own
+    out[0] = (float)(along * along * along * cos(2 * pi * around));
+    out[1] = (float)(-along * along * along * sin(2 * pi * around));
+}
+
+static void place_square(double along, double around, float *out) {
+    out[0] = (float)(2 * around - 1);
+    out[1] = (float)(1 - 2 * along);
+}
+
+skein_status render_shape_sphere(render_shape *shape, int rings, skein_error *error) {
+    return make_shape(shape, rings, 2 * rings, 3, place_sphere, error);
+}
+
+skein_status render_shape_disc(render_shape *shape, skein_error *error) {
+    return make_shape(shape, 12, 48, 2, place_disc, error);
+}
+
+skein_status render_shape_square(render_shape *shape, skein_error *error) {
+    return make_shape(shape, 1, 1, 2, place_square, error);
+}
+
+void render_shape_destroy(render_shape *shape) {
+    const GLuint buffers[2] = {shape->vertices, shape->indices};
+    glDeleteBuffers(2, buffers);
+    glDeleteVertexArrays(1, &shape->arrays);
+    memset(shape, 0, sizeof *shape);
+}

@@ -1,0 +1,40 @@
+/* Geometry on the card: surfaces that move, and the fixed shapes (sphere, disc, square).
+ *
+ * Called by draw.c. A moving surface's triangles and uv go to the card once; its positions and normals
+ * go there every frame into the buffers that stand ready. */
+#ifndef SKEIN_RENDER_MESHES_H
+#define SKEIN_RENDER_MESHES_H
+
+#include "render/frame.h"
+#include "skein/skein.h"
+
+/* One surface on the card. Start from {0}. */
+typedef struct render_mesh {
+    unsigned arrays, positions, normals, uv, triangles;
+    size_t vertex_count, triangle_count;
+    uint64_t shape; /* of the surface whose triangles are there */
+    float *staged;  /* vertex_count x 3, twice: what goes to the card next */
+} render_mesh;
+
+/* Brings a surface to the card: all of it when its shape is new, else only what moved. */
+skein_status render_mesh_update(render_mesh *mesh, const render_surface *surface, skein_error *error);
+void render_mesh_destroy(render_mesh *mesh);
+
+/* Smooth unit normals of a surface, vertex_count x 3: its triangles' normals, weighted by area, 0 where
+ * no triangle of any area meets. */
+void render_surface_normals(const render_surface *surface, float *normals);
+
+/* A fixed shape. Indexed by 16 bits; the first attribute is at location 0. */
+typedef struct render_shape {
+    unsigned arrays, vertices, indices;
+    int index_count;
+} render_shape;
+
+/* The unit sphere with `rings` from pole to pole; attribute: direction (3 floats). */
+skein_status render_shape_sphere(render_shape *shape, int rings, skein_error *error);
+/* The unit disc, finer in the middle, and the square from -1 to 1; attribute: place (2 floats). */
+skein_status render_shape_disc(render_shape *shape, skein_error *error);
+skein_status render_shape_square(render_shape *shape, skein_error *error);
+void render_shape_destroy(render_shape *shape);
+
+#endif

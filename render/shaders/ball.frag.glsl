@@ -1,0 +1,41 @@
+centroid in vec3 facing;
+centroid in vec3 own;
+flat in vec4 ball;
+flat in vec3 ball_paint;
+flat in vec3 ball_marking;
+flat in int number;
+out vec4 colour;
+
+// 1 for colliders, whose numbers are those of scene.balls; 0 for particles
+layout(location = 1) uniform int collider;
+
+// A band about the great circle across `axis`, of half-width `half_width` (radii), with soft edges.
+float band(vec3 axis, float half_width, vec3 where) {
+    float off = abs(dot(axis, where));
+    float edge = max(fwidth(dot(axis, where)), 1e-5);
+    return 1.0 - smoothstep(half_width - 0.7 * edge, half_width + 0.7 * edge, off);
+}
+
+void main() {
+    vec3 n = normalize(facing), where = normalize(own);
+    vec3 world = ball.xyz + ball.w * n;
+    vec3 view = normalize(scene.eye.xyz - world);
+
+    // four meridians and the equator, so that a turn about any axis shows
+    float marked = max(band(vec3(0.924, 0.0, 0.383), 0.028, where), band(vec3(-0.383, 0.0, 0.924), 0.028, where));
+    marked = max(marked, band(vec3(0.0, 1.0, 0.0), 0.075, where));
+    vec3 albedo = mix(ball_paint, ball_marking, marked);
+
+    float seen = sun_seen(world, n);
+    vec3 sun = scene.sun_light.rgb * seen * max(dot(n, scene.sun.xyz), 0.0);
+    float open = balls_seen(world, n, collider == 1 ? number : -1);
+    vec3 ambient = ambient_light(n, ground_seen(world)) * open;
+
+    // glaze: the sky and the ground mirrored, more so at grazing angles, and the sun's soft spot
+    vec3 mirror = reflect(-view, n);
+    vec3 around = mix(scene.ground.rgb * 0.7, sky_colour(mirror), smoothstep(-0.3, 0.3, mirror.y));
+    float glance = 0.035 + 0.5 * pow(1.0 - clamp(dot(n, view), 0.0, 1.0), 5.0);
+    vec3 half_way = normalize(scene.sun.xyz + view);
+    vec3 spot = scene.sun_light.rgb * seen * 0.5 * pow(max(dot(n, half_way), 0.0), 160.0);
+    colour = vec4(display(albedo * (sun + ambient) + around * glance * open * ground_seen(world) + spot), 1.0);
+}

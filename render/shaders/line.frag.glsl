@@ -1,0 +1,6 @@
+layout(location = 1) uniform vec3 paint;
+out vec4 colour;
+
+void main() {
+    colour = vec4(display(paint), 1.0);
+}

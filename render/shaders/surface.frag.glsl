@@ -1,0 +1,65 @@
+centroid in vec3 world;
+in vec3 unmoved;
+centroid in vec3 facing;
+in vec2 place;
+out vec4 colour;
+
+layout(location = 1) uniform vec3 front;
+layout(location = 2) uniform vec3 accent;
+layout(location = 3) uniform vec3 lining;
+layout(location = 4) uniform int pattern;
+layout(location = 5) uniform vec2 repeats;
+layout(location = 6) uniform float translucency;
+
+// A wave of -1 and 1 with period 2, averaged over `width`: never aliases.
+vec2 square_wave(vec2 x, vec2 width) {
+    vec2 from = abs(fract((x - 0.5 * width) * 0.5) - 0.5), to = abs(fract((x + 0.5 * width) * 0.5) - 0.5);
+    return 2.0 * (from - to) / width;
+}
+
+vec3 pattern_colour(vec3 base) {
+    vec2 x = place * repeats * 2.0;
+    vec2 width = max(fwidth(x), vec2(1e-4));
+    vec2 wave = square_wave(x, width);
+    if (pattern == 1) return mix(base, accent, 0.5 + 0.5 * wave.x * wave.y);
+    if (pattern != 2) return base;
+
+    // gingham: both dyed, one dyed, none; then threads that run across each other
+    float dye = 0.5 + 0.25 * (wave.x + wave.y);
+    vec3 cloth = mix(accent, base, dye);
+    const float threads = 7.0;
+    vec2 seen = clamp(1.0 - 1.6 * width * threads, 0.0, 1.0);
+    vec2 ridge = cos(x * threads * 6.2831853) * seen;
+    return cloth * (1.0 + 0.07 * ridge.x * (1.0 - 0.5 * ridge.y) + 0.05 * ridge.y);
+}
+
+// The triangle's own normal, for its shadow; the smooth one where the triangle is too small or too steep to
+// the view to tell.
+vec3 plane_normal(vec3 smooth_normal) {
+    vec3 normal = cross(dFdx(unmoved), dFdy(unmoved));
+    float size = dot(normal, normal), turned = dot(normal, smooth_normal);
+    return turned * turned > 0.6 * size ? normal * inversesqrt(size) : smooth_normal;
+}
+
+void main() {
+    // the side that we look at: the normal is made to point to it
+    vec3 view = normalize(scene.eye.xyz - world);
+    vec3 n = dot(facing, facing) > 0.0 ? normalize(gl_FrontFacing ? facing : -facing) : view;
+    vec3 albedo = pattern_colour(gl_FrontFacing ? front : lining);
+
+    float cosine = dot(n, scene.sun.xyz);
+    float seen = sun_seen(world, plane_normal(n));
+    vec3 sun = scene.sun_light.rgb * seen * max(cosine, 0.0);
+    vec3 through = scene.sun_light.rgb * seen * max(-cosine, 0.0) * translucency;
+
+    float open = balls_seen(world, n, -1);
+    vec3 ambient = ambient_light(n, ground_seen(world)) * open;
+
+    // fibres that stand up catch light at grazing angles
+    float rim = pow(1.0 - clamp(dot(n, view), 0.0, 1.0), 4.0);
+    vec3 sheen = (0.10 * sun + 0.16 * ambient) * rim;
+    vec3 half_way = normalize(scene.sun.xyz + view);
+    vec3 gloss = sun * 0.05 * pow(max(dot(n, half_way), 0.0), 18.0);
+
+    colour = vec4(display(albedo * (sun + ambient) + albedo * albedo * through + sheen + gloss), 1.0);
+}

@@ -1,0 +1,22 @@
+/* stb's code, compiled here and nowhere else, with warnings off (CMakeLists.txt); see stb.h. */
+#include "render/stb.h"
+
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#include <stb/stb_image_write.h>
+
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#include <stb/stb_image.h>
+
+uint8_t *render_stb_encode_png(const uint8_t *pixels, int width, int height, int *length) {
+    return stbi_write_png_to_mem(pixels, 3 * width, width, height, 3, length);
+}
+
+uint8_t *render_stb_decode(FILE *file, int *width, int *height, const char **problem) {
+    int channels = 0;
+    uint8_t *pixels = stbi_load_from_file(file, width, height, &channels, 3);
+    if (!pixels) *problem = stbi_failure_reason();
+    return pixels;
+}

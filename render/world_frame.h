@@ -1,0 +1,33 @@
+/* A frame from a world, through the public API alone.
+ *
+ *     world --update--> frame (its positions lie here) --draw.c--> picture
+ *
+ * Made once for a world and updated for every picture; called by picture.c, films and the window. What
+ * stays (triangles, uv) is worked out once for a body. Invariant: the frame is valid until the next
+ * update; bodies and colliders that are not `visible` are not in it. */
+#ifndef SKEIN_RENDER_WORLD_FRAME_H
+#define SKEIN_RENDER_WORLD_FRAME_H
+
+#include "render/camera.h"
+#include "render/frame.h"
+#include "skein/skein.h"
+
+typedef struct render_world_frame render_world_frame;
+
+/* NULL where there is no memory. */
+render_world_frame *render_world_frame_create(skein_error *error);
+void render_world_frame_destroy(render_world_frame *frame); /* NULL is allowed */
+
+/* Takes the world's present state. Where it has no level plane, a ground is put under the first
+ * state seen, and stays there. */
+skein_status render_world_frame_update(render_world_frame *frame, const skein_world *world, skein_error *error);
+const render_frame *render_world_frame_get(const render_world_frame *frame);
+
+/* For a picture that stands alone: brings such a ground close under the present state. (In a film it
+ * must stay where things have room to move.) */
+void render_world_frame_settle(render_world_frame *frame);
+
+/* A camera for the present state; the ground shows if it is near. */
+render_camera render_world_frame_camera(const render_world_frame *frame, double aspect);
+
+#endif

@@ -1,0 +1,155 @@
+#!/bin/sh
+# Checks the rules of the house, which no compiler checks: house.sh ROOT [C-COMPILER [C++-COMPILER]]
+#   1  src/ includes only the C library, <skein/...> and floors below or beside it in its own folder
+#   2  no method has a loop: src/methods/ writes rows, and only writer.c walks over rules
+#   3  src/world/ names no kind: what the catalogue lists is unknown to the step
+#   4  each public header compiles alone, as C17 and as C++17
+# Prints each fault as FILE:LINE: words, and fails if there is one.
+set -u
+cd "$1" || exit 2
+cc=${2:-cc} cxx=${3:-}
+export LC_ALL=C
+faults=$(mktemp) || exit 2
+trap 'rm -f "$faults"' EXIT
+
+files=$(find src -name '*.[ch]' | sort)
+[ -n "$files" ] || { echo "house: no files in src/"; exit 1; }
+
+# ---- 1: the floors, from below; those on one line do not include each other ----
+floors='
+base
+formula
+space
+plan
+particles
+constraints forces colliders limits
+methods
+world
+bodies
+gpu
+'
+libc='assert complex ctype errno fenv float inttypes limits locale math setjmp signal stdalign stdarg
+stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath time wchar
+dirent dlfcn fcntl pthread sched semaphore strings unistd sys/mman sys/stat sys/types sys/time
+cpuid immintrin arm_neon'
+
+awk -v floors="$floors" -v libc="$libc" '
+    BEGIN {
+        count = split(floors, lines, "\n")
+        for (i = 1; i <= count; i++) {
+            n = split(lines[i], names, " ")
+            for (j = 1; j <= n; j++) height[names[j]] = i
+        }
+        n = split(libc, names, /[ \n]+/)
+        for (j = 1; j <= n; j++) system_header["<" names[j] ".h>"] = 1
+    }
+    FNR == 1 {
+        n = split(FILENAME, path, "/")
+        own = n > 2 ? path[2] : "" # a file in src/ itself is the roof: it sees all floors
+        if (own != "" && !(own in height)) print FILENAME ":1: the folder is no floor that tests/house.sh knows"
+    }
+    /^[ \t]*#[ \t]*include/ {
+        what = $0
+        sub(/^[ \t]*#[ \t]*include[ \t]*/, "", what)
+        if (what ~ /^</) {
+            sub(/>.*/, ">", what)
+            if (what !~ /^<skein\// && !(what in system_header))
+                print FILENAME ":" FNR ": includes " what ", which is no header of the C library"
+            next
+        }
+        sub(/^"/, "", what)
+        sub(/".*/, "", what)
+        split(what, path, "/")
+        floor = path[1]
+        if (!(floor in height))
+            print FILENAME ":" FNR ": includes \"" what "\", which is on no floor of src/"
+        else if (own != "" && floor != own && height[floor] == height[own])
+            print FILENAME ":" FNR ": includes \"" what "\", of a neighbour on the same floor"
+        else if (own != "" && height[floor] > height[own])
+            print FILENAME ":" FNR ": includes \"" what "\", from a floor above its own"
+    }' $files >>"$faults"
+
+# ---- The code alone: comments blanked, and (strings=0) what stands in quotes ----
+code() {
+    awk -v strings="$1" '
+        FNR == 1 { comment = 0 }
+        {
+            line = $0
+            out = ""
+            while (line != "") {
+                if (comment) {
+                    at = index(line, "*/")
+                    if (!at) break
+                    line = substr(line, at + 2)
+                    comment = 0
+                    continue
+                }
+                if (!match(line, /\/\*|\/\/|"|\047/)) {
+                    out = out line
+                    break
+                }
+                out = out substr(line, 1, RSTART - 1) " "
+                mark = substr(line, RSTART, RLENGTH)
+                line = substr(line, RSTART + RLENGTH)
+                if (mark == "//") break
+                if (mark == "/*") {
+                    comment = 1
+                    continue
+                }
+                for (i = 1; i <= length(line) && substr(line, i, 1) != mark; i++)
+                    if (substr(line, i, 1) == "\\") i++
+                if (strings) out = out substr(line, 1, i - 1) " "
+                line = substr(line, i + 1)
+            }
+            print FILENAME ":" FNR ": " out
+        }' $2
+}
+
+# ---- 2: no loops in methods ----
+methods=$(find src/methods -name '*.[ch]' ! -name 'writer.c' | sort)
+code 0 "$methods" | awk '
+    {
+        place = $1
+        sub(/^[^ ]*/, "")
+        if (match($0, /(^|[^A-Za-z0-9_])(for|while|do|goto)([^A-Za-z0-9_]|$)/))
+            print place " a loop in a method: a method writes rows, the plan runs them"
+    }' >>"$faults"
+
+# ---- 3: the world knows no kind ----
+kinds=$(code 0 src/catalogue.c | awk '
+    /const sk_(body|constraint|force|collider|limit)_type [*]const / {
+        while (match($0, /&sk_[a-z0-9_]+/)) {
+            print substr($0, RSTART + 4, RLENGTH - 4)
+            $0 = substr($0, RSTART + RLENGTH)
+        }
+    }')
+ordinary='area formula mesh self volume' # kinds whose names are ordinary words too
+[ -n "$kinds" ] || echo "src/catalogue.c:1: tests/house.sh finds no kind in it" >>"$faults"
+code 1 "$(find src/world -name '*.[ch]' | sort)" | awk -v kinds="$kinds lattice rope flock" -v ordinary=" $ordinary " '
+    BEGIN { count = split(kinds, kind, /[ \n]+/) }
+    {
+        place = $1
+        sub(/^[^ ]*/, "")
+        words = "_" tolower($0) "_"
+        gsub(/[^a-z0-9]+/, "_", words)
+        for (i = 1; i <= count; i++)
+            if (index(words, "_" kind[i] "_") && !index(ordinary, " " kind[i] " "))
+                print place " names the kind \"" kind[i] "\": the step knows none"
+    }' >>"$faults"
+
+# ---- 4: headers that stand alone ----
+compile_alone() { # HEADER LANGUAGE STANDARD COMPILER
+    printf '#include <%s>\n#include <%s>\n' "${1#include/}" "${1#include/}" |
+        $4 -x "$2" -std="$3" -Wall -Wextra -Wpedantic -Werror -Iinclude -fsyntax-only - >"$faults.words" 2>&1 ||
+        { sed 's/^/    /' "$faults.words"; echo "$1:1: does not compile alone as $3"; } >>"$faults"
+    rm -f "$faults.words"
+}
+for header in include/skein/*.h; do
+    compile_alone "$header" c c17 "$cc"
+    [ -z "$cxx" ] || compile_alone "$header" c++ c++17 "$cxx"
+done
+[ -n "$cxx" ] || echo "house: no C++ compiler, so the headers were not tried as C++"
+
+cat "$faults"
+echo "house: $(echo "$files" | wc -l) files, $(echo "$kinds" | wc -l) kinds, $(grep -c '^[^ ]' "$faults") faults"
+[ ! -s "$faults" ]
