@@ -28,10 +28,10 @@ typedef struct sk_writer {
 size_t sk_write_repeat(sk_writer *writer, size_t times, double h);
 void sk_write_end(sk_writer *writer, size_t repeat);
 
-/* dst = a p + b q (q may be SK_NONE); dst = 0; dst = a (p - q); dst = p + a w q. */
+/* dst = a p + b q (q may be SK_NONE); dst = 0; dst += a (p - (q + b dst)); dst = p + a w q. */
 void sk_write_sum(sk_writer *writer, sk_vector dst, double a, sk_vector p, double b, sk_vector q);
 void sk_write_clear(sk_writer *writer, sk_vector dst);
-void sk_write_difference(sk_writer *writer, sk_vector dst, double a, sk_vector p, sk_vector q);
+void sk_write_correction(sk_writer *writer, sk_vector dst, double a, sk_vector p, sk_vector q, double b);
 void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_vector q);
 
 /* F = all forces on X moving with V: the grid if a rule wants neighbours, then fields and neighbours. */

@@ -28,8 +28,9 @@ static const char *vector_text(sk_vector vector) {
 /* A combine row as the formula that it computes. */
 static void describe_combine(const sk_row *row, char *text, size_t size) {
     const char *p = vector_text(row->source[0]), *q = vector_text(row->source[1]);
-    if (row->kernel == sk_combine_difference) {
-        snprintf(text, size, "%g (%s - %s)", row->coefficient[0], p, q);
+    if (row->kernel == sk_combine_correction) {
+        const char *dst = vector_text(row->dst);
+        snprintf(text, size, "%s + %g (%s - %s - %g %s)", dst, row->coefficient[0], p, q, row->coefficient[1], dst);
         return;
     }
     if (row->kernel == sk_combine_kick) {
@@ -93,12 +94,16 @@ void sk_combine_sum(sk_run *run, const sk_row *row, size_t begin, size_t end) {
                            a * p[i].z + b * q[i].z + c * r[i].z, dst[i].w};
 }
 
-void sk_combine_difference(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void sk_combine_correction(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     sk_vec4 *dst = run->vector[row->dst];
     const sk_vec4 *p = run->vector[row->source[0]], *q = run->vector[row->source[1]];
-    real a = (real)row->coefficient[0];
-    for (size_t i = begin; i < end; i++)
-        dst[i] = (sk_vec4){a * (p[i].x - q[i].x), a * (p[i].y - q[i].y), a * (p[i].z - q[i].z), dst[i].w};
+    real a = (real)row->coefficient[0], b = (real)row->coefficient[1];
+    for (size_t i = begin; i < end; i++) {
+        // the same operations as the sum that predicted p, so that an untouched p corrects nothing
+        sk_vec4 u = dst[i];
+        sk_vec3 alone = {q[i].x + b * u.x, q[i].y + b * u.y, q[i].z + b * u.z};
+        dst[i] = (sk_vec4){u.x + a * (p[i].x - alone.x), u.y + a * (p[i].y - alone.y), u.z + a * (p[i].z - alone.z), u.w};
+    }
 }
 
 void sk_combine_kick(sk_run *run, const sk_row *row, size_t begin, size_t end) {

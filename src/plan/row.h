@@ -95,8 +95,8 @@ const char *sk_row_kind_text(sk_row_kind kind);
 
 /* The arithmetic of vectors: the kernels of combine rows. The w components stay as they are.
  *   dst = a p + b q + c r        (a source of SK_NONE is left out)
- *   dst = a (p - q)              velocity from positions, without cancelling after scaling
+ *   dst += a (p - (q + b dst))   velocity: what moved p away from where dst alone would have taken q
  *   dst = p + a w q              a kick: w is the inverse mass */
-sk_row_kernel sk_combine_sum, sk_combine_difference, sk_combine_kick;
+sk_row_kernel sk_combine_sum, sk_combine_correction, sk_combine_kick;
 
 #endif
