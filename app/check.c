@@ -9,15 +9,17 @@ static int print_summary(const app_scene *loaded) {
         app_print_error(skein_world_error(loaded->world));
         return EXIT_FAILURE_RUN;
     }
-    size_t forces = skein_object_count(loaded->world, SKEIN_FORCE), colliders = skein_object_count(loaded->world, SKEIN_COLLIDER);
-    printf("%s: good; %zu particles (%zu held), %zu constraints, %zu force%s, %zu collider%s, %s; %zu warning%s\n", loaded->path, s.particles,
-           s.held_particles, s.constraints, forces, forces == 1 ? "" : "s", colliders, colliders == 1 ? "" : "s", app_method(loaded),
-           loaded->warnings, loaded->warnings == 1 ? "" : "s");
+    size_t forces = skein_object_count(loaded->world, SKEIN_FORCE),
+           colliders = skein_object_count(loaded->world, SKEIN_COLLIDER);
+    printf("%s: good; %zu particles (%zu held), %zu constraints, %zu force%s, %zu collider%s, %s; %zu warning%s\n",
+           loaded->path, s.particles, s.held_particles, s.constraints, forces, forces == 1 ? "" : "s", colliders,
+           colliders == 1 ? "" : "s", app_method(loaded), loaded->warnings, loaded->warnings == 1 ? "" : "s");
     return EXIT_OK;
 }
 
 static int check(int argc, char **argv) {
-    app_option options[] = {{"--set", "PATH=VALUE", "change a value first, as for `skein run`; may be repeated", true, NULL, 0}};
+    app_option options[] = {
+        {"--set", "PATH=VALUE", "change a value first, as for `skein run`; may be repeated", true, NULL, 0}};
     const char *path;
     int status = app_parse(&app_check_command, argc, argv, options, 1, "scene", &path);
     if (status < 0) {
@@ -31,7 +33,8 @@ static int check(int argc, char **argv) {
 }
 
 const app_command app_check_command = {
-    "check", "SCENE [--set PATH=VALUE]...",
+    "check",
+    "SCENE [--set PATH=VALUE]...",
     "read and validate a scene; every fault is named, exit status 2 if there is one\n\n"
     "Faults name the file, the line or the path in the scene, what was found and what was expected.\n"
     "Warnings (a mesh with holes in its seams, vertices of no face) do not fail the check.",

@@ -38,19 +38,22 @@ bool app_option_add(app_option *option, const char *value) {
     return true;
 }
 
-static int unknown_option(const app_command *command, const app_option *options, size_t option_count, const char *name) {
+static int unknown_option(const app_command *command, const app_option *options, size_t option_count,
+                          const char *name) {
     const char *names[16];
     char hint[IO_HINT_SIZE];
     size_t count = 0;
     // without the dashes, which all have in common
     for (; count < option_count && count < 16; count++) names[count] = options[count].name + 2;
     io_hint(name + strspn(name, "-"), names, count, hint);
-    fprintf(stderr, "skein %s: there is no option %s%s `skein %s --help` shows all\n", command->name, name, hint[0] ? hint : ";", command->name);
+    fprintf(stderr, "skein %s: there is no option %s%s `skein %s --help` shows all\n", command->name, name,
+            hint[0] ? hint : ";", command->name);
     return EXIT_FAULT;
 }
 
 /* One option and its value: --name value or --name=value. Moves *a on. Returns as app_parse does. */
-static int parse_option(const app_command *command, int argc, char **argv, int *a, app_option *options, size_t option_count) {
+static int parse_option(const app_command *command, int argc, char **argv, int *a, app_option *options,
+                        size_t option_count) {
     char name[64];
     const char *argument = argv[*a], *equals = strchr(argument, '=');
     snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - argument) : 63, argument);
@@ -61,14 +64,15 @@ static int parse_option(const app_command *command, int argc, char **argv, int *
     const char *value = equals ? equals + 1 : NULL;
     if (option->argument && !value && *a + 1 < argc) value = argv[++*a];
     if (!option->argument != !value) {
-        fprintf(stderr, "skein %s: %s takes %s\n", command->name, name, option->argument ? option->argument : "no value");
+        fprintf(stderr, "skein %s: %s takes %s\n", command->name, name,
+                option->argument ? option->argument : "no value");
         return EXIT_FAULT;
     }
     return app_option_add(option, value ? value : option->name) ? -1 : EXIT_FAILURE_RUN;
 }
 
-int app_parse(const app_command *command, int argc, char **argv, app_option *options, size_t option_count, const char *needed,
-              const char **word) {
+int app_parse(const app_command *command, int argc, char **argv, app_option *options, size_t option_count,
+              const char *needed, const char **word) {
     int status = -1;
     bool only_words = false; // behind "--"
     *word = NULL;
@@ -83,7 +87,8 @@ int app_parse(const app_command *command, int argc, char **argv, app_option *opt
         } else if (!is_word) {
             status = parse_option(command, argc, argv, &a, options, option_count);
         } else if (*word) {
-            fprintf(stderr, "skein %s: '%s' is one argument too many; usage: skein %s %s\n", command->name, argument, command->name, command->usage);
+            fprintf(stderr, "skein %s: '%s' is one argument too many; usage: skein %s %s\n", command->name, argument,
+                    command->name, command->usage);
             status = EXIT_FAULT;
         } else {
             *word = argument;

@@ -27,8 +27,8 @@ extern const app_command app_run_command, app_check_command, app_explain_command
 
 /* Sorts arguments into options and at most one word (NULL if there is none, which is a fault where it is
  * `needed`, as in "scene"); prints help for --help. Returns -1 to go on, else an exit status. */
-int app_parse(const app_command *command, int argc, char **argv, app_option *options, size_t option_count, const char *needed,
-              const char **word);
+int app_parse(const app_command *command, int argc, char **argv, app_option *options, size_t option_count,
+              const char *needed, const char **word);
 void app_options_free(app_option *options, size_t option_count);
 /* The option's last value, or NULL. */
 const char *app_value(const app_option *options, size_t option_count, const char *name);

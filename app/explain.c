@@ -18,7 +18,8 @@ static int print_plan(const app_scene *loaded) {
 }
 
 static int explain(int argc, char **argv) {
-    app_option options[] = {{"--set", "PATH=VALUE", "change a value first, as for `skein run`; may be repeated", true, NULL, 0}};
+    app_option options[] = {
+        {"--set", "PATH=VALUE", "change a value first, as for `skein run`; may be repeated", true, NULL, 0}};
     const char *path;
     int status = app_parse(&app_explain_command, argc, argv, options, 1, "scene", &path);
     if (status < 0) {
@@ -32,7 +33,8 @@ static int explain(int argc, char **argv) {
 }
 
 const app_command app_explain_command = {
-    "explain", "SCENE [--set PATH=VALUE]...",
+    "explain",
+    "SCENE [--set PATH=VALUE]...",
     "print the plan of a scene: what one step does, row by row\n\n"
     "A row names its kind, the vector it writes, what it reads, how many elements it runs over, and whether\n"
     "their order is part of the answer. Vectors: X positions, V velocities, F forces, X0 and V0 the state\n"

@@ -12,8 +12,9 @@ static const struct {
     const char *word;
     skein_category category;
 } lists[] = {
-    {"scene", SKEIN_SCENE},         {"bodies", SKEIN_BODY},    {"constraints", SKEIN_CONSTRAINT}, {"forces", SKEIN_FORCE},
-    {"colliders", SKEIN_COLLIDER}, {"methods", SKEIN_METHOD}, {"exporters", SKEIN_EXPORTER},
+    {"scene", SKEIN_SCENE},        {"bodies", SKEIN_BODY},        {"constraints", SKEIN_CONSTRAINT},
+    {"forces", SKEIN_FORCE},       {"colliders", SKEIN_COLLIDER}, {"methods", SKEIN_METHOD},
+    {"exporters", SKEIN_EXPORTER},
 };
 enum { LIST_COUNT = sizeof lists / sizeof *lists };
 
@@ -82,7 +83,8 @@ static void range_text(const skein_field *field, char *text, size_t size) {
 }
 
 static void default_text(const skein_field *field, char *text, size_t size) {
-    static const int counts[] = {[SKEIN_FIELD_INT2] = 2, [SKEIN_FIELD_REAL2] = 2, [SKEIN_FIELD_VEC3] = 3, [SKEIN_FIELD_TEXT] = 0};
+    static const int counts[] = {
+        [SKEIN_FIELD_INT2] = 2, [SKEIN_FIELD_REAL2] = 2, [SKEIN_FIELD_VEC3] = 3, [SKEIN_FIELD_TEXT] = 0};
     int count = counts[field->type];
     skein_value initial = {count ? count : 1, {field->initial[0], field->initial[1], field->initial[2]}, NULL};
     char value[128];
@@ -166,10 +168,12 @@ static int report_unknown(const char *name) {
     size_t count = 0;
     for (size_t l = 0; l < LIST_COUNT; l++) {
         names[count++] = lists[l].word;
-        for (size_t i = 0; kind_at(lists[l].category, i) && count < 60; i++) names[count++] = kind_at(lists[l].category, i)->name;
+        for (size_t i = 0; kind_at(lists[l].category, i) && count < 60; i++)
+            names[count++] = kind_at(lists[l].category, i)->name;
     }
     io_hint(name, names, count, hint);
-    fprintf(stderr, "skein list: there is no list or kind '%s'%s usage: skein list %s\n", name, hint[0] ? hint : ";", app_list_command.usage);
+    fprintf(stderr, "skein list: there is no list or kind '%s'%s usage: skein list %s\n", name, hint[0] ? hint : ";",
+            app_list_command.usage);
     return EXIT_FAULT;
 }
 
@@ -183,7 +187,8 @@ static int list(int argc, char **argv) {
 }
 
 const app_command app_list_command = {
-    "list", "[scene|bodies|constraints|forces|colliders|methods|exporters|KIND]",
+    "list",
+    "[scene|bodies|constraints|forces|colliders|methods|exporters|KIND]",
     "every kind with its fields: name, default, unit, range and help\n\n"
     "In a scene, dots are groups: stretch.stiffness is { \"stretch\": { \"stiffness\": ... } }. A range to\n"
     "infinite takes the word \"infinite\", too. A kind by its name: skein list cloth",

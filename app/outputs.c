@@ -28,9 +28,9 @@ typedef struct cache {
 struct app_outputs {
     const app_scene *loaded;
     char folder[FOLDER_SIZE];
-    bool made[FOLDER_SIZE];      /* by length: this part of the folder's path was made here */
-    char stem[NAME_SIZE];        /* the scene's name, for pictures */
-    char (*names)[NAME_SIZE];    /* the bodies' names, all different */
+    bool made[FOLDER_SIZE];   /* by length: this part of the folder's path was made here */
+    char stem[NAME_SIZE];     /* the scene's name, for pictures */
+    char (*names)[NAME_SIZE]; /* the bodies' names, all different */
     io_export exports[MOST_EXPORTS];
     size_t export_count, body_count, cache_count;
     cache *caches;
@@ -43,7 +43,9 @@ struct app_outputs {
 static void file_name(const char *name, const char *nameless, char out[NAME_SIZE]) {
     const size_t most = NAME_SIZE - 24; // room to tell namesakes apart
     size_t length = 0;
-    for (; *name && length < most; name++) out[length++] = isalnum((unsigned char)*name) || (unsigned char)*name >= 0x80 || strchr("-_.", *name) ? *name : '_';
+    for (; *name && length < most; name++)
+        out[length++] =
+            isalnum((unsigned char)*name) || (unsigned char)*name >= 0x80 || strchr("-_.", *name) ? *name : '_';
     while (*name && length && ((unsigned char)*name & 0xc0) == 0x80) name--, length--; // half a letter
     out[length] = 0;
     if (!length || out[0] == '.') snprintf(out, NAME_SIZE, "%s", nameless);
@@ -64,7 +66,8 @@ static bool is_taken(const app_outputs *outputs, size_t body) {
 
 /* Names all bodies; namesakes get their place behind the name, the first of them keeps its name. */
 static void name_bodies(app_outputs *outputs) {
-    for (size_t i = 0; i < outputs->body_count; i++) file_name(body_text(outputs->loaded->world, i), "body", outputs->names[i]);
+    for (size_t i = 0; i < outputs->body_count; i++)
+        file_name(body_text(outputs->loaded->world, i), "body", outputs->names[i]);
     for (size_t i = outputs->body_count; i-- > 0;) {
         size_t length = strlen(outputs->names[i]);
         for (int turn = 0; is_taken(outputs, i) && turn < 100; turn++)
@@ -103,7 +106,8 @@ static int prepare_folder(app_outputs *outputs, const char *folder) {
     size_t length = strlen(folder);
     while (length > 1 && folder[length - 1] == '/') length--;
     if (!length || length >= FOLDER_SIZE) {
-        fprintf(stderr, "skein run: --out %s: expected the name of a folder, up to %d bytes\n", length ? "..." : "''", FOLDER_SIZE - 1);
+        fprintf(stderr, "skein run: --out %s: expected the name of a folder, up to %d bytes\n", length ? "..." : "''",
+                FOLDER_SIZE - 1);
         return EXIT_FAULT;
     }
     snprintf(outputs->folder, sizeof outputs->folder, "%.*s", (int)length, folder);
@@ -116,7 +120,8 @@ static int prepare_folder(app_outputs *outputs, const char *folder) {
 /* ---- beginning ---- */
 
 static skein_status surface_of(const app_outputs *outputs, size_t body, skein_surface *surface) {
-    return skein_body_surface(outputs->loaded->world, skein_object_at(outputs->loaded->world, SKEIN_BODY, body), surface);
+    return skein_body_surface(outputs->loaded->world, skein_object_at(outputs->loaded->world, SKEIN_BODY, body),
+                              surface);
 }
 
 /* Begins the point caches of all bodies that have a surface. */
@@ -163,7 +168,8 @@ static int begin(app_outputs *outputs, const char *folder) {
     name_bodies(outputs);
     int status = prepare_folder(outputs, folder);
     for (size_t e = 0; e < outputs->export_count && !status; e++)
-        if (!strcmp(outputs->exports[e].kind->name, "pc2") && !begin_caches(outputs, outputs->exports[e].params)) status = EXIT_FAILURE_RUN;
+        if (!strcmp(outputs->exports[e].kind->name, "pc2") && !begin_caches(outputs, outputs->exports[e].params))
+            status = EXIT_FAILURE_RUN;
     return status;
 }
 
@@ -223,7 +229,8 @@ static void write_objs(const app_outputs *outputs, const io_obj_params *params, 
         skein_error error = {SKEIN_OK, "", ""};
         if (surface_of(outputs, b, &s)) continue;
         gather_vertices(outputs, &s);
-        skein_mesh mesh = {outputs->positions, s.vertex_count, s.face_sizes, s.face_count, s.face_vertices, s.face_vertex_count};
+        skein_mesh mesh = {outputs->positions, s.vertex_count,  s.face_sizes,
+                           s.face_count,       s.face_vertices, s.face_vertex_count};
         snprintf(path, sizeof path, "%s/%s.obj", outputs->folder, outputs->names[b]);
         note(book, path, io_obj_write(path, &mesh, (io_normals)params->normals, &error), &error);
     }

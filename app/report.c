@@ -68,7 +68,8 @@ static json_t *make_document(const app_report *r) {
     };
     json_t *root = json_object();
     bool good = true;
-    for (size_t i = 0; i < sizeof members / sizeof *members; i++) good &= !json_object_set_new(root, members[i].key, members[i].value);
+    for (size_t i = 0; i < sizeof members / sizeof *members; i++)
+        good &= !json_object_set_new(root, members[i].key, members[i].value);
     if (good) return root;
     json_decref(root);
     return NULL;
@@ -103,11 +104,13 @@ static const char *plural(uint64_t n) {
 
 void app_report_print(const app_report *r) {
     const skein_statistics *s = &r->statistics;
-    printf("%zu particles, %zu constraints; %d frame%s, %" PRIu64 " step%s of %.4g ms%s\n", s->particles, s->constraints, r->frames,
-           plural((uint64_t)r->frames), s->steps, plural(s->steps), 1e3 * r->dt, r->interrupted ? " (interrupted)" : "");
+    printf("%zu particles, %zu constraints; %d frame%s, %" PRIu64 " step%s of %.4g ms%s\n", s->particles,
+           s->constraints, r->frames, plural((uint64_t)r->frames), s->steps, plural(s->steps), 1e3 * r->dt,
+           r->interrupted ? " (interrupted)" : "");
     printf("%.3f ms a step, %.2f times real time\n", ms_per_step(r), realtime_factor(r));
-    printf("kinetic energy %.3g J, stretch at most %.2f %% (99 %% of edges under %.2f %%), penetration at most %.2g mm\n",
-           s->kinetic_energy, 100 * s->max_stretch, 100 * s->p99_stretch, 1e3 * s->max_penetration);
+    printf(
+        "kinetic energy %.3g J, stretch at most %.2f %% (99 %% of edges under %.2f %%), penetration at most %.2g mm\n",
+        s->kinetic_energy, 100 * s->max_stretch, 100 * s->p99_stretch, 1e3 * s->max_penetration);
     printf("state hash %016" PRIx64 "\n", s->state_hash);
     size_t index;
     json_t *file;

@@ -34,7 +34,8 @@ typedef struct progress {
 } progress;
 
 static progress start_progress(int frames, bool quiet) {
-    return (progress){.quiet = quiet || !frames, .terminal = isatty(STDERR_FILENO) != 0, .frames = frames, .start = app_seconds()};
+    return (progress){
+        .quiet = quiet || !frames, .terminal = isatty(STDERR_FILENO) != 0, .frames = frames, .start = app_seconds()};
 }
 
 /* On a terminal a bar that is drawn again in place, 20 times a second at most; else ten lines a run. */
@@ -46,8 +47,8 @@ static void show_progress(progress *p, int frame) {
     char bar[31];
     for (int i = 0; i < 30; i++) bar[i] = i < (int)(30.0 * frame / p->frames) ? '#' : '.';
     bar[30] = 0;
-    fprintf(stderr, "%s[%s] frame %d of %d, %.1f s, %.0f s left%s", p->terminal ? "\r" : "", bar, frame, p->frames, elapsed,
-            elapsed / frame * (p->frames - frame), p->terminal ? "   " : "\n");
+    fprintf(stderr, "%s[%s] frame %d of %d, %.1f s, %.0f s left%s", p->terminal ? "\r" : "", bar, frame, p->frames,
+            elapsed, elapsed / frame * (p->frames - frame), p->terminal ? "   " : "\n");
     p->line_open = p->terminal;
 }
 
@@ -98,7 +99,9 @@ static bool run_frame(app_report *r, progress *p) {
     // said at once, instead of writing such files to the end
     end_progress(p);
     if (measure(r))
-        fprintf(stderr, "skein: %s: blew up in frame %d: %zu of %zu particles are no longer finite; more substeps or less stiffness help\n",
+        fprintf(stderr,
+                "skein: %s: blew up in frame %d: %zu of %zu particles are no longer finite; "
+                "more substeps or less stiffness help\n",
                 r->loaded->path, r->frames, r->statistics.nonfinite, r->statistics.particles);
     return false;
 }
@@ -140,7 +143,8 @@ static int simulate(app_report *r, const char *folder, bool quiet) {
 
 /* An option that stands for a field of the scene becomes one more --set; `text` holds that. False after a
  * printed fault. */
-static bool override_field(app_option *options, size_t option_count, const char *name, app_option *sets, char text[64]) {
+static bool override_field(app_option *options, size_t option_count, const char *name, app_option *sets,
+                           char text[64]) {
     const char *given = app_value(options, option_count, name);
     if (!given) return true;
     const skein_field *field = skein_field_find(io_scene_kind(), name + 2, NULL);
@@ -156,7 +160,8 @@ static bool override_field(app_option *options, size_t option_count, const char 
 
 static int run(int argc, char **argv) {
     app_option options[] = {
-        {"--set", "PATH=VALUE", "change a value of the scene: bodies.0.stretch.stiffness=2e4; may be repeated", true, NULL, 0},
+        {"--set", "PATH=VALUE", "change a value of the scene: bodies.0.stretch.stiffness=2e4; may be repeated", true,
+         NULL, 0},
         {"--out", "FOLDER", "write the scene's outputs and report.json there (made if missing)", false, NULL, 0},
         {"--frames", "N", "frames to run, instead of the scene's", false, NULL, 0},
         {"--fps", "N", "frames a second of simulated time, instead of the scene's", false, NULL, 0},
@@ -176,7 +181,8 @@ static int run(int argc, char **argv) {
         if (!status) {
             app_report report = {.loaded = &loaded, .files = json_array()};
             report.steps_per_frame = io_scene_steps_per_frame(&loaded.settings, &report.dt);
-            status = simulate(&report, app_value(options, COUNT, "--out"), app_value(options, COUNT, "--quiet") != NULL);
+            status =
+                simulate(&report, app_value(options, COUNT, "--out"), app_value(options, COUNT, "--quiet") != NULL);
             json_decref(report.files);
         }
         app_unload(&loaded);
@@ -186,7 +192,8 @@ static int run(int argc, char **argv) {
 }
 
 const app_command app_run_command = {
-    "run", "SCENE [--out FOLDER] [options]",
+    "run",
+    "SCENE [--out FOLDER] [options]",
     "simulate a scene; with --out, write meshes, point caches, a picture and report.json\n\n"
     "  skein run scenes/drape.json --out out/\n"
     "  skein run scenes/flag.json --frames 240 --fps 60 --threads 2 --set bodies.0.stretch.stiffness=2e4\n\n"

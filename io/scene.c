@@ -19,8 +19,8 @@ struct io_scene {
 
 /* ---- what stands at the top of a scene ---- */
 
-#define FIELD(member, name, type, unit, initial, least, most, text, help)                                             \
-    {name, type, offsetof(io_scene_settings, member), unit, {initial, 0, 0}, least, most, NULL, text, help}
+#define FIELD(member, name, type, unit, initial, least, most, text, help) \
+    { name, type, offsetof(io_scene_settings, member), unit, {initial, 0, 0}, least, most, NULL, text, help }
 
 static const skein_field scene_fields[] = {
     FIELD(version, "skein", SKEIN_FIELD_INT, "", SCENE_VERSION, 1, SCENE_VERSION, NULL, "version of the scene format"),
@@ -39,13 +39,18 @@ static const io_scene_section sections[] = {
     {"constraints", SKEIN_CONSTRAINT, "a list; each has \"particles\", too: [[0, 1], [1, 2]]"},
     {"forces", SKEIN_FORCE, "a list"},
     {"colliders", SKEIN_COLLIDER, "a list"},
-    {"output", SKEIN_EXPORTER, "a list of exporters: [\"obj\", { \"type\": \"pc2\", \"every\": 2 }]; all there are if it is missing"},
+    {"output", SKEIN_EXPORTER,
+     "a list of exporters: [\"obj\", { \"type\": \"pc2\", \"every\": 2 }]; all there are if it is missing"},
 };
 enum { SECTION_COUNT = sizeof sections / sizeof *sections };
 
 const skein_kind *io_scene_kind(void) {
-    static const skein_kind kind = {"scene", "a file of bodies, rules and a method, in JSON and SI units", SKEIN_SCENE, scene_fields,
-                                    sizeof scene_fields / sizeof *scene_fields, sizeof(io_scene_settings)};
+    static const skein_kind kind = {"scene",
+                                    "a file of bodies, rules and a method, in JSON and SI units",
+                                    SKEIN_SCENE,
+                                    scene_fields,
+                                    sizeof scene_fields / sizeof *scene_fields,
+                                    sizeof(io_scene_settings)};
     return &kind;
 }
 
@@ -119,8 +124,8 @@ static const skein_kind *find_exporter(io_place place, const json_t *object, con
         io_fault(place, member, SKEIN_ERROR_NAME, "there is no exporter '%s'%s", json_string_value(name),
                  io_hint(json_string_value(name), names, count, hint));
     else
-        io_fault(place, member, SKEIN_ERROR_VALUE, "expected the name of an exporter, such as \"obj\"%s%s", name ? ", not " : ": it is missing",
-                 name ? io_json_words(name, words) : "");
+        io_fault(place, member, SKEIN_ERROR_VALUE, "expected the name of an exporter, such as \"obj\"%s%s",
+                 name ? ", not " : ": it is missing", name ? io_json_words(name, words) : "");
     return NULL;
 }
 
@@ -149,7 +154,8 @@ static void read_outputs(io_scene *scene, io_place place, const skein_kind *cons
     if (!outputs) outputs = standard = json_array();
     for (size_t i = 0; standard && exporters[i]; i++) json_array_append_new(standard, json_string(exporters[i]->name));
     if (!json_is_array(outputs))
-        io_fault(place, "output", SKEIN_ERROR_VALUE, "expected a list of exporters, such as [\"obj\", \"pc2\"], not %s", io_json_words(outputs, words));
+        io_fault(place, "output", SKEIN_ERROR_VALUE, "expected a list of exporters, such as [\"obj\", \"pc2\"], not %s",
+                 io_json_words(outputs, words));
     size_t index;
     json_array_foreach(outputs, index, item) {
         char path[64];
@@ -184,11 +190,13 @@ static void read_top(io_scene *scene, io_place place) {
     for (size_t i = 0; i < SECTION_COUNT; i++) others[i] = sections[i].name;
     io_settings settings;
     io_settings_read(&settings, place, scene->root, io_scene_kind(), others);
-    if (!fill_params(io_scene_kind(), &scene->settings, &settings)) io_fault(place, "", SKEIN_ERROR_MEMORY, "out of memory");
+    if (!fill_params(io_scene_kind(), &scene->settings, &settings))
+        io_fault(place, "", SKEIN_ERROR_MEMORY, "out of memory");
     io_settings_free(&settings);
     const io_scene_settings *s = &scene->settings;
     if (steps_per_frame(s) > MOST_STEPS_PER_FRAME)
-        io_fault(place, "step", SKEIN_ERROR_LIMIT, "a frame of %g s is more than %d steps of %g s", 1 / s->fps, MOST_STEPS_PER_FRAME, s->step);
+        io_fault(place, "step", SKEIN_ERROR_LIMIT, "a frame of %g s is more than %d steps of %g s", 1 / s->fps,
+                 MOST_STEPS_PER_FRAME, s->step);
 }
 
 /* Whether the document is a scene of a version that this reader knows: with any other, each further fault
@@ -197,7 +205,8 @@ static bool is_a_scene(const json_t *root, io_place place) {
     char words[IO_JSON_WORDS_SIZE];
     const json_t *version = json_object_get(root, "skein");
     if (!json_is_object(root)) {
-        io_fault(place, "", SKEIN_ERROR_SYNTAX, "expected an object: { \"bodies\": [...], ... }, not %s", io_json_words(root, words));
+        io_fault(place, "", SKEIN_ERROR_SYNTAX, "expected an object: { \"bodies\": [...], ... }, not %s",
+                 io_json_words(root, words));
         return false;
     }
     if (!json_is_integer(version) || json_integer_value(version) <= SCENE_VERSION) return true;
@@ -214,7 +223,8 @@ static json_t *parse(const char *text, size_t size, const char *path, io_faults 
     bool utf16 = size >= 2 && (!memcmp(text, "\xff\xfe", 2) || !memcmp(text, "\xfe\xff", 2));
     if (blank == size || utf16) {
         io_fault((io_place){path, "", faults}, "", SKEIN_ERROR_SYNTAX,
-                 utf16 ? "the file is UTF-16: expected UTF-8" : "the file is empty: expected a scene, { \"bodies\": [...], ... }");
+                 utf16 ? "the file is UTF-16: expected UTF-8"
+                       : "the file is empty: expected a scene, { \"bodies\": [...], ... }");
         return NULL;
     }
     json_error_t syntax;
@@ -222,9 +232,11 @@ static json_t *parse(const char *text, size_t size, const char *path, io_faults 
     if (root) return root;
     char where[256];
     size_t length = strlen(path), room = sizeof where - 40;
-    snprintf(where, sizeof where, "%s%s:%d:%d", length > room ? "..." : "", length > room ? path + length - room : path, syntax.line, syntax.column);
+    snprintf(where, sizeof where, "%s%s:%d:%d", length > room ? "..." : "", length > room ? path + length - room : path,
+             syntax.line, syntax.column);
     bool nul = json_error_code(&syntax) == json_error_null_character;
-    io_fault((io_place){where, "", faults}, "", SKEIN_ERROR_SYNTAX, "%s", nul ? "\\u0000 is not allowed in a text" : syntax.text);
+    io_fault((io_place){where, "", faults}, "", SKEIN_ERROR_SYNTAX, "%s",
+             nul ? "\\u0000 is not allowed in a text" : syntax.text);
     return NULL;
 }
 
@@ -251,7 +263,8 @@ io_scene *io_scene_read_text(const char *text, size_t size, const char *path, co
     return NULL;
 }
 
-io_scene *io_scene_read(const char *path, const char *const *sets, const skein_kind *const *exporters, io_faults *faults) {
+io_scene *io_scene_read(const char *path, const char *const *sets, const skein_kind *const *exporters,
+                        io_faults *faults) {
     skein_error error = {SKEIN_OK, "", ""};
     io_bytes bytes;
     if (io_file_read(path, MOST_SCENE_BYTES, &bytes, &error)) {

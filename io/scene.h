@@ -41,7 +41,8 @@ typedef struct io_faults {
 /* Reads a scene and applies `sets`, each "path=value" (NULL-terminated list, or NULL). `exporters` are the
  * kinds that its "output" may name, NULL-terminated. NULL where there is no document to go on with; after
  * any other fault the scene can still be built, to name the faults that only building finds. */
-io_scene *io_scene_read(const char *path, const char *const *sets, const skein_kind *const *exporters, io_faults *faults);
+io_scene *io_scene_read(const char *path, const char *const *sets, const skein_kind *const *exporters,
+                        io_faults *faults);
 /* The same from memory; `path` serves messages and finds meshes. */
 io_scene *io_scene_read_text(const char *text, size_t size, const char *path, const char *const *sets,
                              const skein_kind *const *exporters, io_faults *faults);

@@ -70,7 +70,8 @@ static bool add_index(index_list *list, io_place place, size_t index, const json
     long long value = json_integer_value(json);
     snprintf(member, sizeof member, "particles.%zu", index);
     if (!json_is_integer(json) || value < 0 || value >= UINT32_MAX) {
-        io_fault(place, member, SKEIN_ERROR_VALUE, "expected the number of a particle, not %s", io_json_words(json, words));
+        io_fault(place, member, SKEIN_ERROR_VALUE, "expected the number of a particle, not %s",
+                 io_json_words(json, words));
         return false;
     }
     if (!io_grow(&list->data, &list->capacity, list->count + 1, sizeof *list->data)) {
@@ -90,19 +91,22 @@ static bool read_indices(index_list *list, io_place place, const json_t *json, s
         if (!json_is_array(item)) {
             if (!add_index(list, place, i, item)) return false;
         } else if (json_array_size(item) != arity) {
-            io_fault(place, member, SKEIN_ERROR_VALUE, "expected the numbers of %zu particles, not %s", arity, io_json_words(item, words));
+            io_fault(place, member, SKEIN_ERROR_VALUE, "expected the numbers of %zu particles, not %s", arity,
+                     io_json_words(item, words));
             return false;
         }
         for (size_t k = 0; k < json_array_size(item); k++)
             if (!add_index(list, place, i, json_array_get(item, k))) return false;
     }
     if (list->count && list->count % arity == 0) return true;
-    io_fault(place, "particles", SKEIN_ERROR_VALUE, "expected the numbers of %zu particles for each constraint, [[0, 1], [1, 2]], say; %s%s", arity,
+    io_fault(place, "particles", SKEIN_ERROR_VALUE,
+             "expected the numbers of %zu particles for each constraint, [[0, 1], [1, 2]], say; %s%s", arity,
              json ? "not " : "it is missing", json ? io_json_words(json, words) : "");
     return false;
 }
 
-static void add_constraint(const builder *b, io_place place, const skein_kind *kind, const json_t *object, const io_settings *settings) {
+static void add_constraint(const builder *b, io_place place, const skein_kind *kind, const json_t *object,
+                           const io_settings *settings) {
     enum { ARITY = 2 }; // of every kind that there is
     index_list list = {0};
     if (read_indices(&list, place, json_object_get(object, "particles"), ARITY) && !b->body_missing &&
@@ -117,13 +121,15 @@ static void add_constraint(const builder *b, io_place place, const skein_kind *k
 static const skein_kind *kind_of(io_place place, const json_t *object, skein_category category) {
     char words[IO_JSON_WORDS_SIZE];
     if (!json_is_object(object)) {
-        io_fault(place, "", SKEIN_ERROR_VALUE, "expected an object, { \"type\": ... }, not %s", io_json_words(object, words));
+        io_fault(place, "", SKEIN_ERROR_VALUE, "expected an object, { \"type\": ... }, not %s",
+                 io_json_words(object, words));
         return NULL;
     }
     const json_t *type = json_object_get(object, "type");
     if (!json_is_string(type)) {
-        io_fault(place, "type", SKEIN_ERROR_VALUE, "expected the name of a %s%s%s; `skein list` shows them", skein_category_text(category),
-                 type ? ", not " : ": it is missing", type ? io_json_words(type, words) : "");
+        io_fault(place, "type", SKEIN_ERROR_VALUE, "expected the name of a %s%s%s; `skein list` shows them",
+                 skein_category_text(category), type ? ", not " : ": it is missing",
+                 type ? io_json_words(type, words) : "");
         return NULL;
     }
     skein_error error = {SKEIN_OK, "", ""};
@@ -132,7 +138,8 @@ static const skein_kind *kind_of(io_place place, const json_t *object, skein_cat
     return kind;
 }
 
-static bool add_of_kind(const builder *b, io_place place, const json_t *object, const skein_kind *kind, const io_settings *settings) {
+static bool add_of_kind(const builder *b, io_place place, const json_t *object, const skein_kind *kind,
+                        const io_settings *settings) {
     skein_status status = SKEIN_OK;
     switch (kind->category) {
     case SKEIN_BODY: return add_body(b, place, kind, settings);
@@ -150,8 +157,10 @@ static void add_object(builder *b, const char *path, const json_t *object, skein
     io_place place = {b->file, path, b->faults};
     const skein_kind *kind = kind_of(place, object, category);
     io_settings settings = {0};
-    bool good = kind && io_settings_read(&settings, place, object, kind, category == SKEIN_CONSTRAINT ? skip_particles : skip) &&
-                add_of_kind(b, place, object, kind, &settings);
+    bool good =
+        kind &&
+        io_settings_read(&settings, place, object, kind, category == SKEIN_CONSTRAINT ? skip_particles : skip) &&
+        add_of_kind(b, place, object, kind, &settings);
     if (!good && category == SKEIN_BODY) b->body_missing = true;
     io_settings_free(&settings);
 }
@@ -165,8 +174,8 @@ static void add_section(builder *b, const json_t *root, const io_scene_section *
         return;
     }
     if (!json_is_array(value)) {
-        io_fault((io_place){b->file, section->name, b->faults}, "", SKEIN_ERROR_VALUE, "expected a list, [ { \"type\": ... }, ... ], not %s",
-                 io_json_words(value, words));
+        io_fault((io_place){b->file, section->name, b->faults}, "", SKEIN_ERROR_VALUE,
+                 "expected a list, [ { \"type\": ... }, ... ], not %s", io_json_words(value, words));
         b->body_missing |= section->category == SKEIN_BODY;
         return;
     }
@@ -177,7 +186,8 @@ static void add_section(builder *b, const json_t *root, const io_scene_section *
     }
 }
 
-skein_world *io_world_from_document(const json_t *root, const char *file, double dt, const skein_world_desc *desc, io_faults *faults) {
+skein_world *io_world_from_document(const json_t *root, const char *file, double dt, const skein_world_desc *desc,
+                                    io_faults *faults) {
     skein_error error = {SKEIN_OK, "", ""};
     builder b = {skein_world_create(desc, &error), file, desc, faults, false};
     io_place top = {file, "", faults};

@@ -52,9 +52,11 @@ static void report_dead_end(io_place place, const char *path, const json_t *at, 
     char words[IO_JSON_WORDS_SIZE];
     size_t size = json_array_size(at);
     if (!key[0]) io_fault(place, "", SKEIN_ERROR_SYNTAX, "a name is missing in the path");
-    else if (json_is_array(at) && size == 0) io_fault(place, "", SKEIN_ERROR_NAME, "there is no '%.100s' in %.100s, which is empty", key, path);
+    else if (json_is_array(at) && size == 0)
+        io_fault(place, "", SKEIN_ERROR_NAME, "there is no '%.100s' in %.100s, which is empty", key, path);
     else if (json_is_array(at))
-        io_fault(place, "", SKEIN_ERROR_NAME, "there is no '%.100s' in %.100s: it has %zu, counted from 0", key, path, size);
+        io_fault(place, "", SKEIN_ERROR_NAME, "there is no '%.100s' in %.100s: it has %zu, counted from 0", key, path,
+                 size);
     else if (json_is_object(at)) io_fault(place, "", SKEIN_ERROR_SYNTAX, "'%.100s' cannot be a name in a scene", key);
     else io_fault(place, "", SKEIN_ERROR_NAME, "%.100s is %s: it has no '%.100s'", path, io_json_words(at, words), key);
 }

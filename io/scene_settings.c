@@ -67,7 +67,8 @@ static bool may_be_infinite(const skein_field *field) {
 }
 
 /* Turns a JSON value into a field's; false where it is of another type. Ranges are not looked at. */
-static bool convert(io_settings *settings, const skein_kind *kind, const skein_field *field, const json_t *json, skein_value *value) {
+static bool convert(io_settings *settings, const skein_kind *kind, const skein_field *field, const json_t *json,
+                    skein_value *value) {
     int count = io_field_numbers(field);
     *value = (skein_value){count, {0, 0, 0}, NULL};
     if (count == 0) {
@@ -107,13 +108,14 @@ static bool is_bad_item(const skein_kind *kind, const skein_field *field, const 
 }
 
 /* Says what the field wants and what it got instead. */
-static void report_type(io_place place, const char *name, const skein_kind *kind, const skein_field *field, const json_t *json) {
+static void report_type(io_place place, const char *name, const skein_kind *kind, const skein_field *field,
+                        const json_t *json) {
     char words[IO_JSON_WORDS_SIZE], item[160];
     for (size_t i = 0; i < json_array_size(json); i++) {
         if (!is_bad_item(kind, field, json, json_array_get(json, i))) continue;
         snprintf(item, sizeof item, "%s.%zu", name, i);
-        io_fault(place, item, SKEIN_ERROR_VALUE, "expected a number%s, not %s", takes_lists(kind, field) ? " or a text" : "",
-                 io_json_words(json_array_get(json, i), words));
+        io_fault(place, item, SKEIN_ERROR_VALUE, "expected a number%s, not %s",
+                 takes_lists(kind, field) ? " or a text" : "", io_json_words(json_array_get(json, i), words));
         return;
     }
     // the field itself knows what it wants: show it a value that fits none
@@ -121,7 +123,7 @@ static void report_type(io_place place, const char *name, const skein_kind *kind
     skein_value nothing = {4, {0, 0, 0}, NULL};
     skein_field_check(field, &nothing, &error);
     io_fault(place, name, SKEIN_ERROR_VALUE, "%s%s, not %s", error.message,
-             takes_lists(kind, field)  ? ", a list of numbers and words, {\"box\": [...]} or {\"sphere\": [...]}"
+             takes_lists(kind, field) ? ", a list of numbers and words, {\"box\": [...]} or {\"sphere\": [...]}"
              : may_be_infinite(field) ? " or \"infinite\""
                                       : "",
              io_json_words(json, words));
@@ -152,7 +154,8 @@ static void add_group(name_list *list, const char *field) {
 }
 
 /* What could have been meant: a group where an object was given, else a field; or one of `others`. */
-static const char *hint_for(const skein_kind *kind, const char *name, bool object, const char *const *others, char hint[IO_HINT_SIZE]) {
+static const char *hint_for(const skein_kind *kind, const char *name, bool object, const char *const *others,
+                            char hint[IO_HINT_SIZE]) {
     name_list list = {{0}, {{0}}, 0, 0};
     size_t common_count;
     const skein_field *common = skein_common_fields(kind->category, &common_count);
@@ -176,12 +179,13 @@ static const skein_field *field_of_group(const skein_kind *kind, const char *nam
     return NULL;
 }
 
-static void report_unknown(io_place place, const char *name, const json_t *json, const skein_kind *kind, const char *const *others) {
+static void report_unknown(io_place place, const char *name, const json_t *json, const skein_kind *kind,
+                           const char *const *others) {
     char hint[IO_HINT_SIZE], words[IO_JSON_WORDS_SIZE];
     const skein_field *member = field_of_group(kind, name);
     if (member)
-        io_fault(place, name, SKEIN_ERROR_VALUE, "expected an object with fields such as '%s', not %s", member->name + strlen(name) + 1,
-                 io_json_words(json, words));
+        io_fault(place, name, SKEIN_ERROR_VALUE, "expected an object with fields such as '%s', not %s",
+                 member->name + strlen(name) + 1, io_json_words(json, words));
     else
         io_fault(place, name, SKEIN_ERROR_NAME, "%s has no field '%.100s'%s", kind->name, name,
                  hint_for(kind, name, json_is_object(json), others, hint));
@@ -190,13 +194,14 @@ static void report_unknown(io_place place, const char *name, const json_t *json,
 /* ---- objects ---- */
 
 /* One member, whose full name is `name`. */
-static bool read_member(io_settings *settings, io_place place, const char *name, const json_t *json, const skein_kind *kind,
-                        const char *const *others) {
+static bool read_member(io_settings *settings, io_place place, const char *name, const json_t *json,
+                        const skein_kind *kind, const char *const *others) {
     const skein_field *field = skein_field_find(kind, name, NULL);
     skein_error error = {SKEIN_OK, "", ""};
     skein_value value;
     if (!field) report_unknown(place, name, json, kind, others);
-    else if (find_setting(settings, name)) io_fault(place, name, SKEIN_ERROR_VALUE, "is there twice, once in a group and once with a dot");
+    else if (find_setting(settings, name))
+        io_fault(place, name, SKEIN_ERROR_VALUE, "is there twice, once in a group and once with a dot");
     else if (!convert(settings, kind, field, json, &value)) report_type(place, name, kind, field, json);
     else if (skein_field_check(field, &value, &error)) io_fault(place, name, error.status, "%s", error.message);
     else if (!append(settings, field->name, value)) io_fault(place, name, SKEIN_ERROR_MEMORY, "out of memory");
@@ -204,8 +209,8 @@ static bool read_member(io_settings *settings, io_place place, const char *name,
     return false;
 }
 
-static bool read_members(io_settings *settings, io_place place, const char *prefix, const json_t *object, const skein_kind *kind,
-                         const char *const *skip) {
+static bool read_members(io_settings *settings, io_place place, const char *prefix, const json_t *object,
+                         const skein_kind *kind, const char *const *skip) {
     bool good = true;
     const char *key;
     json_t *json;
@@ -225,7 +230,8 @@ static bool read_members(io_settings *settings, io_place place, const char *pref
     return good;
 }
 
-bool io_settings_read(io_settings *settings, io_place place, const json_t *object, const skein_kind *kind, const char *const *skip) {
+bool io_settings_read(io_settings *settings, io_place place, const json_t *object, const skein_kind *kind,
+                      const char *const *skip) {
     memset(settings, 0, sizeof *settings);
     return read_members(settings, place, "", object, kind, skip);
 }

@@ -29,7 +29,8 @@ const char *io_json_words(const json_t *json, char out[IO_JSON_WORDS_SIZE]);
 
 /* Reads the members of `object`, but for those named in `skip` (NULL-terminated). Faults are reported;
  * false when there was one. */
-bool io_settings_read(io_settings *settings, io_place place, const json_t *object, const skein_kind *kind, const char *const *skip);
+bool io_settings_read(io_settings *settings, io_place place, const json_t *object, const skein_kind *kind,
+                      const char *const *skip);
 /* The text of a setting, or NULL. */
 const char *io_settings_text(const io_settings *settings, const char *name);
 void io_settings_free(io_settings *settings);
@@ -45,6 +46,7 @@ int io_field_numbers(const skein_field *field);
 bool io_scene_override(json_t *root, const char *set, io_faults *faults);
 
 /* Builds a world from a whole document; NULL if there was any fault. */
-skein_world *io_world_from_document(const json_t *root, const char *file, double dt, const skein_world_desc *desc, io_faults *faults);
+skein_world *io_world_from_document(const json_t *root, const char *file, double dt, const skein_world_desc *desc,
+                                    io_faults *faults);
 
 #endif

@@ -106,8 +106,7 @@ static bool add_shape(joiner *j, json_t *object) {
     size_t index;
     if (!json_is_array(list) || !add_text(j, j->length ? ", " : "", key)) return false;
     j->after_number = true;
-    json_array_foreach(list, index, number)
-        if (!json_is_number(number) || !add_number(j, number)) return false;
+    json_array_foreach(list, index, number) if (!json_is_number(number) || !add_number(j, number)) return false;
     j->after_number = false;
     return true;
 }
@@ -125,8 +124,7 @@ char *io_json_join(const json_t *json) {
     size_t index;
     json_t *item, *one = (json_t *)(uintptr_t)json; // jansson's getters take no const
     if (!json_is_array(json)) good = good && add_item(&j, one);
-    else
-        json_array_foreach(one, index, item) good = good && add_item(&j, item);
+    else json_array_foreach(one, index, item) good = good && add_item(&j, item);
     if (good) return j.text;
     free(j.text);
     return NULL;

@@ -20,16 +20,14 @@ enum { MOST_MEMORY = 4 << 20, MOST_SETS = 16, MOST_WORK = 200000 };
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static void require(bool fine) {
-    if (!fine)
-        abort();
+    if (!fine) abort();
 }
 
 /* ---- Little memory -------------------------------------------------------------------------- */
 
 static void *allocate(void *user, size_t size, size_t alignment) {
     size_t *used = user;
-    if (size > MOST_MEMORY - *used)
-        return NULL;
+    if (size > MOST_MEMORY - *used) return NULL;
     void *memory = aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
     *used += memory ? size : 0;
     return memory;
@@ -44,8 +42,7 @@ static void release(void *user, void *memory, size_t size) {
 
 static void judge_line(const char *text) {
     require(text[0] != '\0');
-    for (; *text; text++)
-        require(!iscntrl((unsigned char)*text));
+    for (; *text; text++) require(!iscntrl((unsigned char)*text));
 }
 
 static void judge_fault(void *user, const skein_error *error) {
@@ -69,8 +66,7 @@ static void judge_scene(const io_scene *scene) {
     for (size_t i = 0; i < count; i++)
         if (exports[i].kind == io_exporter_at(0))
             require((uint32_t)((const io_obj_params *)exports[i].params)->normals <= 2);
-        else
-            require(((const io_pc2_params *)exports[i].params)->every >= 1);
+        else require(((const io_pc2_params *)exports[i].params)->every >= 1);
 }
 
 static double number_or_one(const skein_world *world, const char *path) {
@@ -92,8 +88,7 @@ static void judge_world(skein_world *world, double dt) {
     // A step of a hundred thousand substeps is legal, too; neighbours may be everyone.
     double substeps = number_or_one(world, "method.substeps") * number_or_one(world, "method.iterations");
     double work = (double)s.particles * (double)s.particles + (double)s.constraints;
-    if (substeps * work < MOST_WORK)
-        (void)skein_world_step(world, dt);
+    if (substeps * work < MOST_WORK) (void)skein_world_step(world, dt);
 }
 
 static void ignore(void *user, skein_log_level level, const char *line) {
@@ -110,8 +105,7 @@ static void feed(const char *text, size_t size, const char *const *sets) {
     io_faults faults = {judge_fault, &reported, 0};
     io_scene *scene = io_scene_read_text(text, size, "tests/corpus/scene/fuzz.json", sets, exporters, &faults);
     require(faults.count == reported && (scene || reported > 0));
-    if (!scene)
-        return;
+    if (!scene) return;
     judge_scene(scene);
     skein_world_desc desc = skein_default_world_desc();
     desc.allocate = allocate;
@@ -122,8 +116,7 @@ static void feed(const char *text, size_t size, const char *const *sets) {
     require(faults.count == reported && (world != NULL) == (reported == 0));
     double dt;
     io_scene_steps_per_frame(io_scene_get(scene), &dt);
-    if (world)
-        judge_world(world, dt);
+    if (world) judge_world(world, dt);
     skein_world_destroy(world);
     require(used == 0);
     io_scene_free(scene);
@@ -145,8 +138,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     }
     sets[count] = NULL;
     feed(document, length, (const char *const *)sets);
-    while (count > 0)
-        free(sets[--count]);
+    while (count > 0) free(sets[--count]);
     free(document);
     return 0;
 }
@@ -182,8 +174,7 @@ int main(int argument_count, char **arguments) {
         }
         for (struct dirent *entry; (entry = readdir(folder)) != NULL;) {
             char path[4096];
-            if (entry->d_name[0] == '.')
-                continue;
+            if (entry->d_name[0] == '.') continue;
             snprintf(path, sizeof path, "%s/%s", arguments[i], entry->d_name);
             failures += replay_file(path);
             count++;

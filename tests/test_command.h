@@ -27,6 +27,8 @@
 #include <jansson.h>
 
 #include "io/file.h"
+#include "io/mesh.h"
+#include "io/pc2.h"
 
 #define COUNT(array_) (sizeof(array_) / sizeof *(array_))
 
@@ -80,6 +82,14 @@ static inline void write_text(const char *path, const char *text) {
     assert_non_null(file);
     assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
     assert_int_equal(fclose(file), 0);
+}
+
+/* Writes JSON that has ' in the place of ". */
+static inline void write_scene(const char *path, const char *text) {
+    char *copy = strdup(text);
+    for (char *at = copy; (at = strchr(at, '\'')) != NULL;) *at = '"';
+    write_text(path, copy);
+    free(copy);
 }
 
 /* A file's text, to be freed. */
@@ -168,14 +178,123 @@ static inline void check_contains(const char *text, const char *part, const char
 }
 #define assert_contains(text_, part_) check_contains((text_), (part_), __FILE__, __LINE__)
 
+static inline int longest_line(const char *text) {
+    int longest = 0;
+    for (; *text; text += strcspn(text, "\n"), text += *text == '\n')
+        if ((int)strcspn(text, "\n") > longest) longest = (int)strcspn(text, "\n");
+    return longest;
+}
+
 /* Runs the arguments and compares all that is said. */
-#define assert_says(status_, out_, err_, ...)                                                                                  \
-    do {                                                                                                                       \
-        outcome said_ = SKEIN(__VA_ARGS__);                                                                                    \
-        assert_string_equal(said_.err, (err_));                                                                                \
-        assert_string_equal(said_.out, (out_));                                                                                \
-        assert_status(said_, (status_));                                                                                       \
-        outcome_free(&said_);                                                                                                  \
+#define assert_says(status_, out_, err_, ...)   \
+    do {                                        \
+        outcome said_ = SKEIN(__VA_ARGS__);     \
+        assert_string_equal(said_.err, (err_)); \
+        assert_string_equal(said_.out, (out_)); \
+        assert_status(said_, (status_));        \
+        outcome_free(&said_);                   \
     } while (0)
+
+/* ---- Files that a run leaves -------------------------------------------------------------------------- */
+
+static inline json_t *read_report(const char *path) {
+    json_error_t error;
+    json_t *report = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
+    if (!report) fail_msg("%s:%d: %s", path, error.line, error.text);
+    return report;
+}
+
+static inline double number_of(const json_t *report, const char *key) {
+    const json_t *value = json_object_get(report, key);
+    if (!json_is_number(value)) fail_msg("the report has no number '%s'", key);
+    return json_number_value(value);
+}
+
+static inline const char *text_of(const json_t *report, const char *key) {
+    const char *text = json_string_value(json_object_get(report, key));
+    if (!text) fail_msg("the report has no text '%s'", key);
+    return text;
+}
+
+/* What a body of a scene must look like in files. */
+typedef struct shape {
+    size_t vertex_count, face_count;
+    uint32_t *corners; /* of all faces, in order */
+    size_t corner_count;
+} shape;
+
+static inline shape shape_of_grid(uint32_t rows, uint32_t columns) {
+    shape s = {rows * columns, (rows - 1) * (columns - 1), malloc(4 * rows * columns * sizeof *s.corners), 0};
+    for (uint32_t r = 0; r + 1 < rows; r++)
+        for (uint32_t c = 0; c + 1 < columns; c++) {
+            uint32_t a = r * columns + c, quad[] = {a, a + columns, a + columns + 1, a + 1};
+            for (int k = 0; k < 4; k++) s.corners[s.corner_count++] = quad[k];
+        }
+    return s;
+}
+
+static inline shape shape_of_mesh(const char *path) {
+    io_mesh mesh;
+    assert_int_equal(io_mesh_read(path, &mesh, (io_warnings){NULL, NULL}, NULL), SKEIN_OK);
+    shape s = {mesh.vertex_count, mesh.face_count, malloc(mesh.face_vertex_count * sizeof *s.corners),
+               mesh.face_vertex_count};
+    memcpy(s.corners, mesh.face_vertices, mesh.face_vertex_count * sizeof *s.corners);
+    io_mesh_free(&mesh);
+    return s;
+}
+
+/* The OBJ has the input's vertices and faces in their order, the PC2 a sample of each frame, and its last one
+ * is the OBJ. */
+static inline void judge_files(const char *path_without_ending, const shape *s, uint32_t samples) {
+    char path[700];
+    skein_error error;
+    io_mesh mesh;
+    io_pc2_header header;
+    snprintf(path, sizeof path, "%s.obj", path_without_ending);
+    assert_int_equal(io_mesh_read(path, &mesh, (io_warnings){NULL, NULL}, &error), SKEIN_OK);
+    assert_int_equal(mesh.vertex_count, s->vertex_count);
+    assert_int_equal(mesh.face_count, s->face_count);
+    assert_int_equal(mesh.face_vertex_count, s->corner_count);
+    assert_memory_equal(mesh.face_vertices, s->corners, s->corner_count * sizeof *s->corners);
+
+    snprintf(path, sizeof path, "%s.pc2", path_without_ending);
+    io_pc2_reader *reader = io_pc2_open(path, &header, &error);
+    assert_non_null(reader);
+    assert_int_equal(header.points, s->vertex_count);
+    assert_int_equal(header.samples, samples);
+    assert_true(header.start == 0);
+    double *positions = malloc(3 * s->vertex_count * sizeof *positions);
+    assert_int_equal(io_pc2_read(reader, samples - 1, positions, &error), SKEIN_OK);
+    for (size_t i = 0; i < 3 * s->vertex_count; i++) assert_true((float)positions[i] == (float)mesh.positions[i]);
+    free(positions);
+    io_pc2_close(reader);
+    io_mesh_free(&mesh);
+}
+
+/* ---- A small scene ------------------------------------------------------------------------------------- */
+
+static const char tiny[] = "{ 'name': 'my scene/1', 'frames': 4, 'output': ['obj', 'pc2'],\n"
+                           "  'bodies': [ { 'type': 'cloth', 'name': 'sheet', 'grid': [5, 5], 'pins': 'corners' },\n"
+                           "    { 'type': 'cloth', 'grid': [3, 3], 'position': [0, 1, 0] } ],\n"
+                           "  'forces': [ { 'type': 'gravity', 'name': 'weight' } ],\n"
+                           "  'colliders': [ { 'type': 'sphere', 'name': 'ball', 'centre': [0, -0.6, 0] } ] }\n";
+
+static inline const char *tiny_scene(void) {
+    static char path[512];
+    snprintf(path, sizeof path, "%s/tiny.json", folder);
+    write_scene(path, tiny);
+    return path;
+}
+
+/* The hash of a run's end; the outcome is expected to be good. */
+static inline uint64_t hash_of(outcome o) {
+    const char *words = strstr(o.out, "state hash ");
+    assert_status(o, 0);
+    assert_non_null(words);
+    uint64_t hash = strtoull(words + strlen("state hash "), NULL, 16);
+    assert_true(hash != 0);
+    outcome_free(&o);
+    return hash;
+}
 
 #endif

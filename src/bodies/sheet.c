@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/elementary.h"
 #include "base/hash.h"
 #include "base/status.h"
 
@@ -105,8 +106,7 @@ static void sine_cosine(double degrees, double *s, double *c) {
             *c = quarter_sine[(q + 1) % 4];
             return;
         }
-    *s = sin(turn * 0.017453292519943295);
-    *c = cos(turn * 0.017453292519943295);
+    sk_sincos(turn * 0.017453292519943295, s, c);
 }
 
 void sk_sheet_transform(sk_sheet *sheet, double scale, const double degrees[3], const double offset[3]) {

@@ -11,6 +11,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/elementary.h"
+
 enum { BLOCK = 64 };
 
 const skein_field sk_collider_fields[] = {
@@ -29,7 +31,9 @@ const size_t sk_collider_field_count = sizeof sk_collider_fields / sizeof *sk_co
 
 /* Rows of the matrix of a turn by `angle` about a unit axis (Rodrigues). */
 static void rotation_about(const double u[3], double angle, real rotation[9]) {
-    double c = cos(angle), s = sin(angle), d = 1 - c;
+    double s, c;
+    sk_sincos(angle, &s, &c);
+    double d = 1 - c;
     double m[9] = {c + u[0] * u[0] * d,        u[0] * u[1] * d - u[2] * s, u[0] * u[2] * d + u[1] * s,
                    u[1] * u[0] * d + u[2] * s, c + u[1] * u[1] * d,        u[1] * u[2] * d - u[0] * s,
                    u[2] * u[0] * d - u[1] * s, u[2] * u[1] * d + u[0] * s, c + u[2] * u[2] * d};

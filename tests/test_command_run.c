@@ -1,0 +1,268 @@
+/* Tests of `skein run`: every scene that we ship makes the files and the report that it should, and what a
+ * run is told by its options arrives. */
+#include "test_command.h"
+
+#include <math.h>
+
+/* ---- Running the scenes that we ship ---------------------------------------------------------------- */
+
+/* Every key, and values that can be. */
+static void judge_report(const json_t *report, int frames) {
+    const struct {
+        const char *key;
+        double least, most;
+    } numbers[] = {
+        {"fps", 1, 1000},
+        {"step", 1e-4, 0.1},
+        {"time", 0, 1e3},
+        {"particles", 4, 1e6},
+        {"held_particles", 0, 1e3},
+        {"constraints", 1, 1e6},
+        {"contacts", 0, 1e6},
+        {"load_seconds", 0, 100},
+        {"run_seconds", 0, 200},
+        {"ms_per_step", 0, 1e5},
+        {"realtime_factor", 0, 1e6},
+        {"kinetic_energy", 0, 1e3},
+        {"max_stretch", 0, 1},
+        {"p99_stretch", 0, 1},
+        {"worst_stretch_of_run", 0, 1},
+        {"max_penetration", 0, 0.1},
+        {"warnings", 0, 10},
+        {"memory_bytes", 1e3, 1e9},
+        {"threads", 1, 64},
+        {"steps", 0, 1e5},
+        {"substeps", 0, 1e7},
+        {"nonfinite_particles", 0, 0},
+        {"frames", frames, frames},
+    };
+    for (size_t i = 0; i < COUNT(numbers); i++) {
+        double x = number_of(report, numbers[i].key);
+        if (!(x >= numbers[i].least && x <= numbers[i].most)) fail_msg("'%s' is %g", numbers[i].key, x);
+    }
+    assert_int_equal(json_object_size(report), COUNT(numbers) + 8);
+    assert_string_equal(text_of(report, "skein"), SKEIN_VERSION);
+    assert_string_equal(text_of(report, "precision"), sizeof(skein_real) == 8 ? "double" : "float");
+    assert_true(strlen(text_of(report, "scene")) > 0 && strlen(text_of(report, "method")) > 0);
+    assert_non_null(text_of(report, "name"));
+    assert_int_equal(strspn(text_of(report, "state_hash"), "0123456789abcdef"), 16);
+    assert_true(json_is_false(json_object_get(report, "interrupted")));
+    assert_true(fabs(number_of(report, "time") - frames / number_of(report, "fps")) < 1e-6);
+    assert_true(fabs(number_of(report, "steps") * number_of(report, "step") - number_of(report, "time")) < 1e-6);
+    assert_true(number_of(report, "p99_stretch") <= number_of(report, "max_stretch"));
+    assert_true(number_of(report, "worst_stretch_of_run") >= number_of(report, "max_stretch"));
+    assert_true((number_of(report, "steps") > 0) == (number_of(report, "ms_per_step") > 0));
+    size_t index;
+    json_t *file;
+    json_array_foreach(json_object_get(report, "files"), index, file) assert_true(exists(json_string_value(file)));
+}
+
+static void judge_picture(const char *path) {
+    char *bytes = read_text(path);
+    assert_memory_equal(bytes, "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x40\0\0\0\x30", 24);
+    free(bytes);
+}
+
+static bool can_draw(void) {
+    outcome o = SKEIN("list", "exporters");
+    bool found = strstr(o.out, "\n  png: ") != NULL;
+    outcome_free(&o);
+    return found;
+}
+
+/* Runs three frames of a scene, its grid made small, into the folder "out". */
+static void run_scene(const char *path, bool draws) {
+    json_t *scene = json_load_file(path, 0, NULL), *body = json_array_get(json_object_get(scene, "bodies"), 0);
+    assert_non_null(body);
+    const char *mesh = json_string_value(json_object_get(body, "mesh"));
+    char file[600], mesh_path[600];
+    snprintf(mesh_path, sizeof mesh_path, "scenes/%s", mesh ? mesh : "");
+    const char *name = text_of(body, "name"), *title = text_of(scene, "name");
+    if (mesh && !exists(mesh_path)) { // it is fetched from elsewhere
+        outcome o = SKEIN("run", path, "--out", in_folder("out"));
+        assert_status(o, 2);
+        assert_contains(o.err, "bodies.0.mesh: scenes/");
+        outcome_free(&o);
+        json_decref(scene);
+        return;
+    }
+    // a mesh has nothing to be made small: what is set in its place has no effect
+    const char *output = draws ? "output=[\"obj\", \"pc2\", { \"type\": \"png\", \"size\": [64, 48], \"samples\": 1 }]"
+                               : "output=[\"pc2\", \"obj\"]";
+    outcome o = SKEIN("run", path, "--out", in_folder("out"), "--frames", "3", "--quiet", "--set", output, "--set",
+                      mesh ? "skein=1" : "bodies.0.grid=[7,9]");
+    assert_string_equal(o.err, "");
+    assert_status(o, 0);
+
+    shape s = mesh ? shape_of_mesh(mesh_path) : shape_of_grid(7, 9);
+    snprintf(file, sizeof file, "%s/out/%s", folder, name);
+    judge_files(file, &s, 4);
+    free(s.corners);
+    snprintf(file, sizeof file, "%s/out/%s.png", folder, title);
+    if (draws) judge_picture(file);
+    json_t *report = read_report(in_folder("out/report.json"));
+    judge_report(report, 3);
+    assert_string_equal(text_of(report, "scene"), path);
+    assert_string_equal(text_of(report, "name"), title);
+    assert_int_equal(json_array_size(json_object_get(report, "files")), draws ? 3 : 2);
+    assert_int_equal(count_entries(in_folder("out")), draws ? 4 : 3);
+
+    // the same in words
+    snprintf(file, sizeof file, "\nstate hash %s\n", text_of(report, "state_hash"));
+    assert_contains(o.out, file);
+    assert_contains(o.out, " 3 frames, 3 steps of 16.67 ms\n");
+    snprintf(file, sizeof file, "\nwrote %s/out/%s.obj\n", folder, name);
+    assert_contains(o.out, file);
+    snprintf(file, sizeof file, "\nwrote %s/out/report.json\n", folder);
+    assert_contains(o.out, file);
+    json_decref(report);
+    json_decref(scene);
+    outcome_free(&o);
+}
+
+static void every_scene_runs(void **state) {
+    bool draws = can_draw();
+    DIR *scenes = opendir("scenes");
+    assert_non_null(scenes);
+    int count = 0;
+    for (struct dirent *entry; (entry = readdir(scenes)) != NULL;) {
+        char path[512];
+        if (!strstr(entry->d_name, ".json")) continue;
+        snprintf(path, sizeof path, "scenes/%s", entry->d_name);
+        run_scene(path, draws);
+        assert_int_equal(remove_folder(state) || make_folder(state), 0);
+        count++;
+    }
+    closedir(scenes);
+    assert_true(count >= 5);
+}
+
+/* ---- What a run can be told -------------------------------------------------------------------------- */
+
+static void runs_and_threads_give_the_same_bits(void **state) {
+    (void)state;
+    static const char *const scenes[] = {"scenes/drape.json", "scenes/flag.json"};
+    for (size_t i = 0; i < COUNT(scenes); i++) {
+        const char *s = scenes[i];
+        uint64_t hash = hash_of(SKEIN("run", s, "--frames", "5"));
+        assert_true(hash == hash_of(SKEIN("run", s, "--frames", "5")));
+        assert_true(hash == hash_of(SKEIN("run", s, "--frames", "5", "--threads", "2")));
+        assert_true(hash == hash_of(SKEIN("run", s, "--frames=5", "--threads=1", "--out", in_folder("out"), "--set",
+                                          "output=[\"pc2\"]")));
+        assert_true(hash != hash_of(SKEIN("run", s, "--frames", "6")));
+    }
+}
+
+static void sets_reach_what_they_name(void **state) {
+    (void)state;
+    const char *s = tiny_scene();
+    uint64_t plain = hash_of(SKEIN("run", s));
+    uint64_t soft = hash_of(SKEIN("run", s, "--set", "bodies.0.stretch.stiffness=5"));
+    assert_true(soft != plain);
+    assert_true(soft == hash_of(SKEIN("run", s, "--set", "bodies.sheet.stretch.stiffness=5")));
+    assert_true(soft == hash_of(SKEIN("run", s, "--set=bodies.0.stretch.stiffness=9",
+                                      "--set=bodies.sheet.stretch.stiffness=5")));
+    assert_true(plain != hash_of(SKEIN("run", s, "--set", "forces.weight.acceleration=[0,-1,0]")));
+    assert_true(plain != hash_of(SKEIN("run", s, "--set", "colliders.ball.centre=[0,-0.4,0]")));
+    assert_true(plain != hash_of(SKEIN("run", s, "--set", "method={\"type\": \"symplectic_euler\"}")));
+    assert_true(plain == hash_of(SKEIN("run", s, "--set", "bodies.0.visible=false", "--set", "name=other")));
+}
+
+static void frames_and_their_rate_can_be_told(void **state) {
+    (void)state;
+    const char *s = tiny_scene();
+    outcome o = SKEIN("run", s, "--out", in_folder("out/of/the/way/"), "--frames", "0");
+    assert_status(o, 0);
+    assert_string_equal(o.err, "");
+    assert_contains(o.out, "; 0 frames, 0 steps of ");
+    outcome_free(&o);
+    json_t *report = read_report(in_folder("out/of/the/way/report.json"));
+    judge_report(report, 0);
+    assert_true(number_of(report, "kinetic_energy") == 0);
+    json_decref(report);
+    // names: the second body has none of its own, so it goes by its kind
+    shape grid = shape_of_grid(5, 5), other = shape_of_grid(3, 3);
+    judge_files(in_folder("out/of/the/way/sheet"), &grid, 1);
+    judge_files(in_folder("out/of/the/way/cloth"), &other, 1);
+
+    // two steps of 1/60 s make a frame of 1/30 s; --frames wins over --set
+    o = SKEIN("run", s, "--out", in_folder("out"), "--fps", "30", "--set", "frames=9", "--frames", "5", "--set",
+              "output.1={\"type\":\"pc2\",\"every\":2}");
+    assert_status(o, 0);
+    assert_contains(o.out, "; 5 frames, 10 steps of 16.67 ms\n");
+    outcome_free(&o);
+    report = read_report(in_folder("out/report.json"));
+    judge_report(report, 5);
+    assert_true(number_of(report, "fps") == 30 && number_of(report, "steps") == 10);
+    json_decref(report);
+    io_pc2_header header;
+    io_pc2_reader *reader = io_pc2_open(in_folder("out/sheet.pc2"), &header, NULL);
+    assert_non_null(reader);
+    assert_int_equal(header.samples, 3); // frames 0, 2 and 4
+    assert_true(header.rate == 2);
+    io_pc2_close(reader);
+    free(grid.corners);
+    free(other.corners);
+
+    assert_says(2, "", "skein: scenes/flag.json: step: a frame of 1000 s is more than 1000000 steps of 0.0001 s\n",
+                "run", "scenes/flag.json", "--fps", "1e-3", "--set", "step=1e-4");
+}
+
+static void bodies_never_share_a_file(void **state) {
+    (void)state;
+    char *s = in_folder("names.json");
+#define BODY(name_) "{ 'type': 'cloth', 'grid': [2, 2], 'name': '" name_ "' }"
+#define BODIES BODY("a b") "," BODY("a_b") "," BODY("a/b") "," BODY("a_b-1") "," BODY("") "," BODY("cloth")
+    write_scene(s, "{ 'frames': 1, 'name': '..', 'output': ['obj'],\n"
+                   "  'bodies': [ " BODIES "," BODY("../up") "," BODY("h\u00fclle") " ] }");
+    outcome o = SKEIN("run", s, "--out", in_folder("out"));
+    assert_status(o, 0);
+    assert_int_equal(count_entries(in_folder("out")), 9);
+    assert_int_equal(count_entries(folder), 4); // with the scene and the two captured streams
+    assert_true(exists(in_folder("out/cloth.obj")) && exists(in_folder("out/a_b.obj")) &&
+                exists(in_folder("out/h\u00fclle.obj")));
+    outcome_free(&o);
+}
+
+/* The second of two border vertices in one place goes where the first goes, and both are written. */
+static void seams_are_welded_and_exported_as_they_came(void **state) {
+    (void)state;
+    char *s = in_folder("seam.json");
+    write_text(in_folder("seam.obj"),
+               "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nv 1 0 0\nv 1 0 1\nv 2 0 1\nv 2 0 0\nf 1 2 3 4\nf 5 6 7 8\n");
+    write_scene(s, "{ 'frames': 3, 'output': ['obj', 'pc2'], 'forces': [ { 'type': 'gravity' } ],\n"
+                   "  'bodies': [ { 'type': 'cloth', 'mesh': 'seam.obj', 'weld': 1e-6, 'pins': [0] } ] }");
+    outcome o = SKEIN("run", s, "--out", in_folder("out"), "--quiet");
+    assert_status(o, 0);
+    assert_string_equal(o.err, "");
+    assert_int_equal(strncmp(o.out, "6 particles", 11), 0);
+    outcome_free(&o);
+    shape as_it_came = shape_of_mesh(in_folder("seam.obj"));
+    judge_files(in_folder("out/cloth"), &as_it_came, 4);
+    io_mesh mesh;
+    assert_int_equal(io_mesh_read(in_folder("out/cloth.obj"), &mesh, (io_warnings){NULL, NULL}, NULL), SKEIN_OK);
+    assert_memory_equal(mesh.positions + 9, mesh.positions + 12, 3 * sizeof(double));
+    assert_memory_equal(mesh.positions + 6, mesh.positions + 15, 3 * sizeof(double));
+    assert_true(mesh.positions[10] < -1e-3);
+    io_mesh_free(&mesh);
+    free(as_it_came.corners);
+
+    // unwelded it is two pieces, which is worth a warning and no more
+    o = SKEIN("check", s, "--set", "bodies.0.weld=0");
+    assert_status(o, 0);
+    assert_contains(o.err, "skein: warning: cloth: ");
+    assert_contains(o.err, "border vertices lie on another one");
+    assert_contains(o.out, "seam.json: good; 8 particles (1 held), ");
+    assert_contains(o.out, ", 1 force, 0 colliders, xpbd; 2 warnings\n");
+    outcome_free(&o);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+#define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
+        TEST(every_scene_runs),          TEST(runs_and_threads_give_the_same_bits),
+        TEST(sets_reach_what_they_name), TEST(frames_and_their_rate_can_be_told),
+        TEST(bodies_never_share_a_file), TEST(seams_are_welded_and_exported_as_they_came),
+    };
+    return cmocka_run_group_tests_name("command run", tests, NULL, NULL);
+}

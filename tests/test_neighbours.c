@@ -1,0 +1,235 @@
+/* Who is near whom: the grid puts every particle into its cell, in order, and separation finds the same neighbours
+ * as a loop over all pairs does. */
+#include "helpers.h"
+#include "space/grid.h"
+
+/* ---- The grid ----------------------------------------------------------------------------------- */
+
+typedef struct crowd {
+    sk_vec4 *at;       /* by slot */
+    uint32_t *slot_of; /* a permutation, so that slots and the user's order differ */
+    size_t count;
+} crowd;
+
+static crowd make_crowd(size_t count, uint64_t *seed) {
+    crowd c = {calloc(count + 1, sizeof(sk_vec4)), calloc(count + 1, sizeof(uint32_t)), count};
+    for (size_t i = 0; i < count; i++) c.slot_of[i] = (uint32_t)i;
+    for (size_t i = count; i-- > 1;) {
+        size_t j = (size_t)random_between(seed, 0, (double)(i + 1));
+        uint32_t swapped = c.slot_of[i];
+        c.slot_of[i] = c.slot_of[j], c.slot_of[j] = swapped;
+    }
+    return c;
+}
+
+static void release_crowd(crowd *c) {
+    free(c->at);
+    free(c->slot_of);
+}
+
+static void put(crowd *c, size_t particle, double x, double y, double z) {
+    c->at[c->slot_of[particle]] = (sk_vec4){(real)x, (real)y, (real)z, 1};
+}
+
+static bool is_number(sk_vec4 p) {
+    double most = (double)SK_REAL_MAX / 4;
+    return fabs((double)p.x) <= most && fabs((double)p.y) <= most && fabs((double)p.z) <= most;
+}
+
+/* Each finite particle is once in the grid, in the cell of its place, cells in the user's order inside. */
+static void assert_grid_is_sound(const sk_grid *grid, const crowd *c, double radius) {
+    assert_true((double)grid->cell_size >= (double)(real)radius);
+    size_t cells = (size_t)grid->cells_x * (size_t)grid->cells_y * (size_t)grid->cells_z, finite = 0;
+    assert_true(cells >= 1 && (double)cells <= 4.0 * (double)c->count + 64);
+    assert_int_equal(grid->cell_start[0], 0);
+    uint32_t *user_of = calloc(c->count + 1, sizeof *user_of);
+    for (size_t i = 0; i < c->count; i++) user_of[c->slot_of[i]] = (uint32_t)i;
+    for (size_t cell = 0; cell < cells; cell++) {
+        assert_true(grid->cell_start[cell] <= grid->cell_start[cell + 1]);
+        for (uint32_t k = grid->cell_start[cell]; k < grid->cell_start[cell + 1]; k++) {
+            uint32_t slot = grid->slot[k];
+            assert_true(slot < c->count);
+            assert_int_equal(grid->cell_of[user_of[slot]], cell);
+            assert_memory_equal(&grid->position[k], &c->at[slot], sizeof(sk_vec4));
+            if (k > grid->cell_start[cell]) assert_true(user_of[slot] > user_of[grid->slot[k - 1]]);
+            // the cell is where the particle is, but for a rounding at its walls
+            double place[3] = {(double)c->at[slot].x - (double)grid->origin.x, (double)c->at[slot].y - (double)grid->origin.y,
+                               (double)c->at[slot].z - (double)grid->origin.z};
+            size_t index[3] = {cell % (size_t)grid->cells_x, cell / (size_t)grid->cells_x % (size_t)grid->cells_y,
+                               cell / ((size_t)grid->cells_x * (size_t)grid->cells_y)};
+            for (int d = 0; d < 3; d++) {
+                double in_cell = place[d] / (double)grid->cell_size - (double)index[d], rounding = 8 * EPSILON * (double)(index[d] + 1);
+                assert_true(in_cell >= -rounding && in_cell <= 1 + rounding);
+            }
+        }
+    }
+    for (size_t i = 0; i < c->count; i++) {
+        bool inside = is_number(c->at[c->slot_of[i]]);
+        assert_true(inside == (grid->cell_of[i] != SK_NO_CELL));
+        finite += inside;
+    }
+    assert_int_equal(grid->count, finite);
+    assert_int_equal(grid->cell_start[cells], finite);
+    free(user_of);
+}
+
+static void every_particle_is_in_its_cell(void **state) {
+    (void)state;
+    uint64_t seed = 41;
+    sk_allocator allocator = sk_default_allocator();
+    sk_grid grid = {0};
+    // one grid for all, as in a world: it grows, shrinks and forgets
+    static const size_t counts[] = {1, 2, 500, 3, 1000, 0, 64};
+    static const double sizes[] = {1, 1e-3, 30, 1e6};
+    for (size_t n = 0; n < COUNT(counts); n++)
+        for (size_t s = 0; s < COUNT(sizes); s++) {
+            crowd c = make_crowd(counts[n], &seed);
+            for (size_t i = 0; i < c.count; i++)
+                put(&c, i, random_between(&seed, -sizes[s], sizes[s]), random_between(&seed, -1, 0) * sizes[s], random_between(&seed, 5, 5.5) * sizes[s]);
+            assert_true(sk_grid_build(&grid, &allocator, c.at, c.slot_of, c.count, (real)0.1));
+            assert_grid_is_sound(&grid, &c, 0.1);
+            release_crowd(&c);
+        }
+    sk_grid_release(&grid, &allocator);
+    assert_int_equal(allocator.bytes, 0);
+}
+
+static void odd_crowds_are_sorted_too(void **state) {
+    (void)state;
+    uint64_t seed = 43;
+    sk_allocator allocator = sk_default_allocator();
+    sk_grid grid = {0};
+    crowd c = make_crowd(300, &seed);
+    // all in one place
+    for (size_t i = 0; i < c.count; i++) put(&c, i, 1, 2, 3);
+    assert_true(sk_grid_build(&grid, &allocator, c.at, c.slot_of, c.count, (real)0.1));
+    assert_grid_is_sound(&grid, &c, 0.1);
+    // on a lattice whose pitch is the cells' own: every particle on a wall
+    for (size_t i = 0; i < c.count; i++) put(&c, i, 0.25 * (double)(i % 7), 0.25 * (double)(i / 7 % 7), 0.25 * (double)(i / 49));
+    assert_true(sk_grid_build(&grid, &allocator, c.at, c.slot_of, c.count, (real)0.25));
+    assert_grid_is_sound(&grid, &c, 0.25);
+    // on a long line, on a plane
+    for (size_t i = 0; i < c.count; i++) put(&c, i, 0, random_between(&seed, -900, 900), 0);
+    assert_true(sk_grid_build(&grid, &allocator, c.at, c.slot_of, c.count, (real)0.1));
+    assert_grid_is_sound(&grid, &c, 0.1);
+    // far outliers, and particles that are nowhere: those are in no cell
+    for (size_t i = 0; i < c.count; i++) put(&c, i, random_between(&seed, -1, 1), random_between(&seed, -1, 1), random_between(&seed, -1, 1));
+    put(&c, 7, 1e9, -1e9, 1e9);
+    put(&c, 8, -1e15, 0, 0);
+    put(&c, 9, NAN, 0, 0);
+    put(&c, 10, 0, INFINITY, 0);
+    put(&c, 11, 0, 0, -INFINITY);
+    put(&c, 12, 0, (double)SK_REAL_MAX, 0);
+    assert_true(sk_grid_build(&grid, &allocator, c.at, c.slot_of, c.count, (real)0.1));
+    assert_grid_is_sound(&grid, &c, 0.1);
+    assert_int_equal(grid.count, 296);
+    // nobody is anywhere
+    for (size_t i = 0; i < c.count; i++) put(&c, i, NAN, NAN, NAN);
+    assert_true(sk_grid_build(&grid, &allocator, c.at, c.slot_of, c.count, (real)0.1));
+    assert_grid_is_sound(&grid, &c, 0.1);
+    release_crowd(&c);
+    sk_grid_release(&grid, &allocator);
+    assert_int_equal(allocator.bytes, 0);
+}
+
+/* ---- Separation --------------------------------------------------------------------------------- */
+
+enum { MOST = 1200 };
+
+/* Particles of different masses at the given places feel separation for one step; compares each one's momentum with
+ * a loop over all pairs. */
+static void assert_pushes_are_those_of_all_pairs(double (*place)[3], size_t count, double radius, const char *method) {
+    double dt = 1.0 / 64, strength = 0.7;
+    skein_world *world = new_world(method, 1);
+    uint64_t seed = 47;
+    for (size_t i = 0; i < count; i++) {
+        double mass = random_between(&seed, 0.5, 2);
+        OK(world, skein_particles_add(world, 1, place[i], NULL, &mass, NULL));
+    }
+    OK(world, skein_force_add(world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", radius), SKEIN_REAL("strength", strength)), NULL));
+    vec3 *x = calloc(count, sizeof *x);
+    OK(world, skein_positions_copy(world, 0, count, &x[0].x)); // as the library has rounded them
+    steps(world, 1, dt);
+    skein_view view = skein_velocity_view(world);
+    for (size_t i = 0; i < count; i++) {
+        vec3 force = {0, 0, 0};
+        double scale = 0;
+        for (size_t j = 0; j < count; j++) {
+            vec3 d = minus(x[i], x[j]);
+            double distance = length3(d);
+            if (!(distance > 0) || distance >= radius) continue;
+            double push = strength * (1 - distance / radius);
+            force.x += push * d.x / distance, force.y += push * d.y / distance, force.z += push * d.z / distance;
+            scale += strength;
+        }
+        double mass = (double)view.xyzw[4 * view.slot_of[i] + 3];
+        vec3 v = velocity_of(world, i), is = {mass * v.x / dt, mass * v.y / dt, mass * v.z / dt};
+        assert_under(length3(minus(is, force)), 20 * EPSILON * (scale + strength));
+    }
+    free(x);
+    skein_world_destroy(world);
+}
+
+static void separation_is_that_of_all_pairs(void **state) {
+    (void)state;
+    static double place[MOST][3];
+    uint64_t seed = 53;
+    for (size_t m = 0; m < COUNT(method_names); m++) {
+        const char *method = method_names[m];
+        // scattered: few, many, and all in reach of each other
+        for (int i = 0; i < MOST; i++)
+            for (int k = 0; k < 3; k++) place[i][k] = random_between(&seed, -1, 1);
+        assert_pushes_are_those_of_all_pairs(place, 3, 0.8, method);
+        assert_pushes_are_those_of_all_pairs(place, MOST, 0.15, method);
+        assert_pushes_are_those_of_all_pairs(place, MOST, 0.4, method);
+        assert_pushes_are_those_of_all_pairs(place, 200, 50, method);
+        // some in the very same place: they do not push each other, but all others do
+        for (int i = 0; i < 60; i++) memcpy(place[i + 60], place[i], sizeof place[i]);
+        for (int i = 0; i < 30; i++) memcpy(place[i + 120], place[i], sizeof place[i]);
+        assert_pushes_are_those_of_all_pairs(place, 300, 0.3, method);
+        // outliers so far away that the cells must grow to cover them
+        place[5][0] = 1e9, place[6][1] = -1e9, place[7][2] = 1e9, place[8][2] = 1e9;
+        assert_pushes_are_those_of_all_pairs(place, 400, 0.25, method);
+        // on a lattice of the radius' own pitch, where every distance is at the edge of the reach
+        for (int i = 0; i < 512; i++) place[i][0] = 0.25 * (i % 8), place[i][1] = 0.25 * (i / 8 % 8), place[i][2] = 0.25 * (i / 64);
+        assert_pushes_are_those_of_all_pairs(place, 512, 0.25, method);
+        assert_pushes_are_those_of_all_pairs(place, 512, 0.375, method);
+    }
+}
+
+/* Two rules of different reach share the grid of the wider one, and each keeps its own reach. */
+static void rules_of_different_reach_share_a_grid(void **state) {
+    (void)state;
+    skein_world *world = new_world("symplectic_euler", 1);
+    add_particle(world, 1, 0, 0, 0), add_particle(world, 1, 0.5, 0, 0), add_particle(world, 1, -0.15, 0, 0);
+    OK(world, skein_force_add(world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.2), SKEIN_REAL("strength", 1)), NULL));
+    OK(world, skein_force_add(world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 1), SKEIN_REAL("strength", 0.1)), NULL));
+    steps(world, 1, 1);
+    assert_near(velocity_of(world, 0).x, 0.25 - 0.1 * 0.5 + 0.1 * 0.85, 1e-6);
+    assert_near(velocity_of(world, 1).x, 0.1 * 0.5 + 0.1 * 0.35, 1e-6);
+    skein_world_destroy(world);
+}
+
+static void a_held_particle_pushes_but_stays(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(method_names); m++) {
+        skein_world *world = new_world(method_names[m], 1);
+        add_particle(world, 0, 0, 0, 0), add_particle(world, 2, 0.5, 0, 0);
+        OK(world, skein_force_add(world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 1), SKEIN_REAL("strength", 3)), NULL));
+        steps(world, 1, 1.0 / 64);
+        assert_under(length3(position_of(world, 0)), 0);
+        assert_share(velocity_of(world, 1).x, 3 * 0.5 / 2 / 64, 10 * EPSILON);
+        skein_world_destroy(world);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_particle_is_in_its_cell),
+        cmocka_unit_test(odd_crowds_are_sorted_too),
+        cmocka_unit_test(separation_is_that_of_all_pairs),
+        cmocka_unit_test(rules_of_different_reach_share_a_grid),
+        cmocka_unit_test(a_held_particle_pushes_but_stays),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
