@@ -19,7 +19,10 @@ typedef struct sk_writer {
     sk_plan *plan;
     sk_allocator *allocator;
     const sk_rules *rules;
+    sk_isa isa;
     size_t slot_count, particle_count, triangle_count;
+    size_t strip_slots; /* the first slots, which are in strips */
+    size_t packed;      /* the first slots that are in packed blocks now */
     double h;       /* of the present substep, s */
     bool no_memory; /* the plan is incomplete */
 } sk_writer;
@@ -27,6 +30,10 @@ typedef struct sk_writer {
 /* Opens a repeat of `times` substeps of `h` seconds; sk_write_end closes it. Returns its place. */
 size_t sk_write_repeat(sk_writer *writer, size_t times, double h);
 void sk_write_end(sk_writer *writer, size_t repeat);
+
+/* X and V of the strips from quads to packed blocks, and back: around all other rows of a step. */
+void sk_write_pack(sk_writer *writer);
+void sk_write_unpack(sk_writer *writer);
 
 /* dst = a p + b q (q may be SK_NONE); dst = 0; dst = a (p - q); dst = p + a w q. */
 void sk_write_sum(sk_writer *writer, sk_vector dst, double a, sk_vector p, double b, sk_vector q);

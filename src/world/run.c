@@ -15,7 +15,7 @@ static void run_range(void *data, size_t begin, size_t end) {
 }
 
 static void run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count, double start) {
-    for (size_t r = 0; r < count && !run->no_memory; r++) {
+    for (size_t r = 0; r < count; r++) {
         const sk_row *row = &rows[r];
         if (row->kind == SK_ROW_REPEAT) {
             for (size_t turn = 0; turn < row->end; turn++) {
