@@ -3,6 +3,11 @@
 #ifndef SK_BASE_WIDE_TYPES_H
 #define SK_BASE_WIDE_TYPES_H
 
+#include <string.h>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
 #include "base/vector.h"
 
 enum { SK_LANES = 16 };

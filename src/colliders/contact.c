@@ -35,7 +35,7 @@ SK_INLINE sk_wide SK_ISA(split)(sk_wide3 u, sk_wide3 normal, sk_wide3 *tangentia
 
 /* The part of a vector of length `length` that friction takes, at most `most`: 1 where it takes all. */
 SK_INLINE sk_wide SK_ISA(share_of)(sk_wide length, sk_wide most) {
-    return SK_ISA(sk_select)(length > most, most / length, SK_ISA(sk_splat)(1));
+    return SK_ISA(sk_select)(SK_ISA(sk_more)(length, most), most / length, SK_ISA(sk_splat)(1));
 }
 
 /* Probes a block; false where nobody touches. */
@@ -46,11 +46,11 @@ SK_INLINE bool SK_ISA(meet)(sk_run *run, const sk_row *row, const sk_pose *pose,
     collider->type->probe[SK_ISA(sk_version)](collider->params, pose, &p, &e->contact);
     // rounding must not break a resting contact: forces and velocities look a little beyond the thickness
     sk_wide size = SK_ISA(sk_wide_abs)(p.x), ay = SK_ISA(sk_wide_abs)(p.y), az = SK_ISA(sk_wide_abs)(p.z);
-    size = SK_ISA(sk_select)(ay > size, ay, size);
-    size = SK_ISA(sk_select)(az > size, az, size);
+    size = SK_ISA(sk_select)(SK_ISA(sk_more)(ay, size), ay, size);
+    size = SK_ISA(sk_select)(SK_ISA(sk_more)(az, size), az, size);
     real thickness = (real)collider->common->thickness;
     sk_wide reach = thickness + (real)1e-3 * thickness + (real)4e-6 * (size + (real)0.1);
-    e->touching = (e->contact.distance <= reach) & (e->x.w > 0);
+    e->touching = SK_ISA(sk_at_most)(e->contact.distance, reach) & SK_ISA(sk_positive)(e->x.w);
     if (!SK_ISA(sk_any)(e->touching)) return false;
     sk_wide3 arm = {p.x - pose->position.x, p.y - pose->position.y, p.z - pose->position.z};
     sk_vec3 v = pose->velocity, s = pose->spin;
@@ -83,7 +83,7 @@ static void SK_ISA(contact_force)(sk_run *run, const sk_row *row, size_t begin, 
         sk_wide needed = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(stop, stop)), most = (real)collider->common->friction * -pressing;
         sk_wide share = SK_ISA(share_of)(needed, most);
         sk_wide3 push = SK_ISA(times)(-pressing, e.contact.normal), rub = SK_ISA(times)(share, stop);
-        SK_ISA(apply)(run, row, slot, f, e.touching & (pressing < 0), (sk_wide3){push.x + rub.x, push.y + rub.y, push.z + rub.z});
+        SK_ISA(apply)(run, row, slot, f, e.touching & SK_ISA(sk_negative)(pressing), (sk_wide3){push.x + rub.x, push.y + rub.y, push.z + rub.z});
     }
 }
 
@@ -100,7 +100,7 @@ static void SK_ISA(contact_impulse)(sk_run *run, const sk_row *row, size_t begin
         sk_wide speed = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(slide, slide));
         sk_wide share = SK_ISA(share_of)(speed, (real)collider->common->friction * bounce);
         sk_wide3 change = SK_ISA(minus)(SK_ISA(times)(bounce, e.contact.normal), SK_ISA(times)(share, slide));
-        SK_ISA(apply)(run, row, slot, v, e.touching & (approach < 0), change);
+        SK_ISA(apply)(run, row, slot, v, e.touching & SK_ISA(sk_negative)(approach), change);
     }
 }
 
@@ -123,7 +123,7 @@ static void SK_ISA(contact_push)(sk_run *run, const sk_row *row, size_t begin, s
             sk_wide share = SK_ISA(share_of)(length, (real)collider->common->friction * push);
             move = SK_ISA(minus)(move, SK_ISA(times)(share, slide));
         }
-        SK_ISA(apply)(run, row, slot, e.x, e.touching & (push > 0), move);
+        SK_ISA(apply)(run, row, slot, e.x, e.touching & SK_ISA(sk_positive)(push), move);
     }
 }
 
@@ -141,8 +141,8 @@ static void SK_ISA(contact_restitution)(sk_run *run, const sk_row *row, size_t b
         sk_wide leaving = SK_ISA(sk_dot_wide)(SK_ISA(minus)(SK_ISA(three)(v), e.surface), e.contact.normal);
         // what a substep's force alone brings is no impact; bouncing it would make resting things jitter
         sk_wide resting = (2 * (real)row->dt) * e.x.w * SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(f, f));
-        sk_wide bounce = SK_ISA(sk_keep)(-approach > resting, (real)collider->common->restitution * -approach);
-        SK_ISA(apply)(run, row, slot, v, e.touching & (approach < 0), SK_ISA(times)(bounce - leaving, e.contact.normal));
+        sk_wide bounce = SK_ISA(sk_keep)(SK_ISA(sk_more)(-approach, resting), (real)collider->common->restitution * -approach);
+        SK_ISA(apply)(run, row, slot, v, e.touching & SK_ISA(sk_negative)(approach), SK_ISA(times)(bounce - leaving, e.contact.normal));
     }
 }
 

@@ -11,7 +11,7 @@ SK_INLINE void SK_ISA(pair)(sk_pair *p, const sk_pair_constants *c, sk_pair_mode
     sk_wide square = SK_ISA(sk_dot_wide)(d, d);
     sk_wide length = SK_ISA(sk_wide_sqrt)(square);
     if (mode == SK_PAIR_FORCE) {
-        sk_wide inverse = SK_ISA(sk_keep)(length > 0, 1 / length);
+        sk_wide inverse = SK_ISA(sk_keep)(SK_ISA(sk_positive)(length), 1 / length);
         sk_wide3 u = {p->other_a.x - p->other_b.x, p->other_a.y - p->other_b.y, p->other_a.z - p->other_b.z};
         sk_wide rate = SK_ISA(sk_dot_wide)(d, u) * inverse;
         sk_wide pull = (p->stiffness * ((length - p->rest) + c->damping_time * rate)) * inverse;
@@ -22,27 +22,27 @@ SK_INLINE void SK_ISA(pair)(sk_pair *p, const sk_pair_constants *c, sk_pair_mode
     sk_wide weight = p->wa + p->wb, s;
     if (mode == SK_PAIR_PROJECT) {
         sk_wide below = length * (weight + p->compliance * c->per_step);
-        s = SK_ISA(sk_keep)(below > 0, (p->rest - length) / below);
+        s = SK_ISA(sk_keep)(SK_ISA(sk_positive)(below), (p->rest - length) / below);
     } else if (mode == SK_PAIR_PROJECT_DAMPED) {
         sk_wide3 moved = {d.x - (p->other_a.x - p->other_b.x), d.y - (p->other_a.y - p->other_b.y), d.z - (p->other_a.z - p->other_b.z)};
-        sk_wide inverse = SK_ISA(sk_keep)(length > 0, 1 / length);
+        sk_wide inverse = SK_ISA(sk_keep)(SK_ISA(sk_positive)(length), 1 / length);
         sk_wide soft = p->compliance * c->per_step;
         sk_wide below = (1 + c->gamma) * weight + soft;
         // a multiplier of 0 against an infinite compliance is nothing
-        sk_wide held = SK_ISA(sk_keep)(p->multiplier != 0, soft * p->multiplier);
+        sk_wide held = SK_ISA(sk_keep)(SK_ISA(sk_differ)(p->multiplier, (sk_wide){0}), soft * p->multiplier);
         sk_wide above = (p->rest - length) - held - c->gamma * (SK_ISA(sk_dot_wide)(d, moved) * inverse);
-        sk_wide change = SK_ISA(sk_keep)(below > 0, above / below);
+        sk_wide change = SK_ISA(sk_keep)(SK_ISA(sk_positive)(below), above / below);
         p->multiplier += change;
         s = change * inverse;
     } else {
         // lanes without an element have a rest length of 0: for them any length is right
         sk_wide most = c->most * p->rest, below = length * weight;
-        sk_mask over = (length > most) & (below > 0) & (p->rest > 0);
+        sk_mask over = SK_ISA(sk_more)(length, most) & SK_ISA(sk_positive)(below) & SK_ISA(sk_positive)(p->rest);
         s = SK_ISA(sk_keep)(over, (most - length) / below);
         if (mode == SK_PAIR_LIMIT_MOVING) {
             sk_wide3 u = {p->other_a.x - p->other_b.x, p->other_a.y - p->other_b.y, p->other_a.z - p->other_b.z};
             sk_wide parting = SK_ISA(sk_dot_wide)(d, u);
-            sk_wide stop = SK_ISA(sk_keep)(over & (parting > 0), parting / (square * weight));
+            sk_wide stop = SK_ISA(sk_keep)(over & SK_ISA(sk_positive)(parting), parting / (square * weight));
             p->dv_a = SK_ISA(along)(-stop * p->wa, d);
             p->dv_b = SK_ISA(along)(stop * p->wb, d);
         }

@@ -4,7 +4,7 @@
 SK_INLINE void SK_ISA(pull_in)(sk_wide3 *p, sk_wide3 anchor, sk_wide most) {
     sk_wide3 d = {p->x - anchor.x, p->y - anchor.y, p->z - anchor.z};
     sk_wide square = SK_ISA(sk_dot_wide)(d, d);
-    sk_mask out = square > most * most;
+    sk_mask out = SK_ISA(sk_more)(square, most * most);
     if (!SK_ISA(sk_any)(out)) return;
     sk_wide s = most / SK_ISA(sk_wide_sqrt)(square);
     p->x = SK_ISA(sk_select)(out, anchor.x + s * d.x, p->x);
@@ -47,7 +47,7 @@ static void SK_ISA(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, s
             sk_wide3 anchor = SK_ISA(anchor_of)(run, row, limit, block, k, &most);
             SK_ISA(pull_in)(&forth, anchor, most);
         }
-        sk_mask moved = ((forth.x != x.x) | (forth.y != x.y) | (forth.z != x.z)) & (x.w > 0);
+        sk_mask moved = (SK_ISA(sk_differ)(forth.x, x.x) | SK_ISA(sk_differ)(forth.y, x.y) | SK_ISA(sk_differ)(forth.z, x.z)) & SK_ISA(sk_positive)(x.w);
         if (!SK_ISA(sk_any)(moved)) continue;
         if (anchors > 1) {
             for (size_t k = anchors; k-- > 0;) {
@@ -68,7 +68,7 @@ static void SK_ISA(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, s
         sk_vec4 *velocity = run->vector[row->source[1]];
         sk_wide4 v = SK_ISA(sk_load_block)(velocity, slot, slot < row->packed);
         sk_wide square = SK_ISA(sk_dot_wide)(move, move), against = move.x * v.x + move.y * v.y + move.z * v.z;
-        sk_wide s = SK_ISA(sk_keep)(moved & (square > 0) & (against < 0), -against / square);
+        sk_wide s = SK_ISA(sk_keep)(moved & SK_ISA(sk_positive)(square) & SK_ISA(sk_negative)(against), -against / square);
         v.x += s * move.x, v.y += s * move.y, v.z += s * move.z;
         SK_ISA(sk_store_block)(velocity, slot, slot < row->packed, v);
     }
