@@ -38,8 +38,9 @@ double sk_batch_damping_time(const sk_batch *batch) {
     return material->stiffness > 0 ? material->damping / material->stiffness : 0;
 }
 
-void sk_batch_clear_multipliers(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void sk_sweep_clear_multipliers(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     (void)run;
-    const sk_batch *batch = row->rule;
-    memset(batch->lane_multiplier + begin, 0, (end - begin) * sizeof *batch->lane_multiplier);
+    const sk_sweep *sweep = row->rule;
+    size_t lanes = (sweep->strips ? sweep->walk.width : 1) * SK_LANES; // an element of the row: a strip row or a group
+    memset(sweep->batch->lane_multiplier + sweep->first_lane + begin * lanes, 0, (end - begin) * lanes * sizeof(real));
 }

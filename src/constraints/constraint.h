@@ -80,8 +80,8 @@ void sk_batch_release(sk_batch *batch, sk_allocator *allocator);
 bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles);
 /* Brings the lanes' rest lengths and stiffness up to date with the parameters. */
 void sk_batch_refresh(sk_batch *batch);
-/* Sets the multipliers to zero: the kernel of multiplier rows, over lanes. */
-sk_row_kernel sk_batch_clear_multipliers;
+/* Sets the multipliers of a sweep to zero: the kernel of multiplier rows. */
+sk_row_kernel sk_sweep_clear_multipliers;
 
 /* The batch's damping over stiffness, in seconds; 0 for a rigid batch. */
 double sk_batch_damping_time(const sk_batch *batch);

@@ -97,6 +97,7 @@ void sk_write_fields(sk_writer *writer) {
             row.end = writer->triangle_count;
         } else if (force->type->domain == SK_OVER_NEIGHBOURS) {
             row.kind = SK_ROW_NEIGHBOUR;
+            row.by_particle = true;
             row.end = writer->particle_count;
         }
         add(writer, row);
@@ -135,8 +136,13 @@ void sk_write_projections(sk_writer *writer, int passes) {
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
         if (!is_on(batch) || !keeps_multiplier(batch, passes)) continue;
-        add(writer, (sk_row){.kind = SK_ROW_MULTIPLIER, .order = SK_ORDERED, .kernel = sk_batch_clear_multipliers,
-                             .rule = batch, .label = batch->label, .end = batch->lane_count});
+        for (size_t w = 0; w < batch->sweep_count; w++) {
+            const sk_sweep *sweep = &batch->sweeps[w];
+            sk_walk walk = sweep->walk;
+            walk.reach = 0;
+            add(writer, (sk_row){.kind = SK_ROW_MULTIPLIER, .order = SK_ORDERED, .kernel = sk_sweep_clear_multipliers, .rule = sweep,
+                                 .label = sweep->label, .walk = walk, .end = sweep->strips ? walk.rows : sweep->group_count});
+        }
     }
     for (int pass = 0; pass < passes; pass++)
         for (size_t i = 0; i < rules->batches.count; i++) {

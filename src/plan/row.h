@@ -96,6 +96,7 @@ struct sk_row {
     const void *rule;   /* a force, a collider, a batch */
     const char *label;  /* its name in `skein explain` */
     size_t begin, end;  /* elements; a repeat: the number of turns is `end` */
+    bool by_particle;   /* its elements are the user's particles, not slots: not to be run in chunks with others */
     size_t packed;      /* slots [0, packed) are in packed blocks when it runs */
     sk_walk walk;       /* of rows whose elements are strip rows */
     size_t length;      /* a repeat: how many rows after it are repeated */

@@ -73,7 +73,7 @@ skein_status skein_world_step(skein_world *world, double dt) {
     skein_status status = sk_world_compile(world, dt, error);
     if (status) return status;
     sk_run run = sk_world_run_context(world);
-    sk_run_plan(&run, world->tasks, &world->plan);
+    sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
     if (run.no_memory) return sk_fail_memory(error, "the neighbour grid; the step was not finished");
     world->time += dt;
     world->steps++;

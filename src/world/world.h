@@ -139,7 +139,7 @@ skein_status sk_world_arrange(skein_world *world, skein_error *error);
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error);
 /* The run context of the world's present state. */
 sk_run sk_world_run_context(skein_world *world);
-/* Runs all rows once: a whole step. */
-void sk_run_plan(sk_run *run, sk_tasks *tasks, const sk_plan *plan);
+/* Runs rows in their order; the plan's are a whole step. Repeats do not lie within repeats. */
+void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count);
 
 #endif
