@@ -7,7 +7,8 @@ static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t 
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
         sk_wide mass = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed).w;
-        sk_wide4 f = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed);
+        sk_wide4 f = {0};
+        if (!row->sets) f = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed);
         f.x += mass * g.x;
         f.y += mass * g.y;
         f.z += mass * g.z;
@@ -33,6 +34,7 @@ const sk_force_type sk_gravity = {
     .kind = {"gravity", "weight: the same acceleration for every particle", SKEIN_FORCE, fields,
              sizeof fields / sizeof *fields, sizeof(gravity_params)},
     .domain = SK_OVER_PARTICLES,
+    .sets = true,
     .kernel = {SK_EACH_ISA(kernel)},
 };
 #endif

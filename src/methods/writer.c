@@ -60,6 +60,11 @@ void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_v
     add_combine(writer, &sk_combine_kick, dst, a, p, 0, q);
 }
 
+void sk_write_predict(sk_writer *writer) {
+    add(writer, (sk_row){.kind = SK_ROW_COMBINE, .order = SK_FREE, .kernel = sk_combine_predict.version[writer->isa], .dst = SK_X,
+                         .source = {SK_V, SK_F, writer->rules->colliders.count ? SK_V0 : SK_NONE}, .end = writer->slot_count});
+}
+
 /* The grid's row: sorts all particles into cells of at least coefficient[0]. */
 static void build_grid(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     (void)begin;
@@ -82,7 +87,7 @@ static double widest_radius(const sk_rules *rules) {
 
 void sk_write_fields(sk_writer *writer) {
     const sk_rules *rules = writer->rules;
-    sk_write_clear(writer, SK_F);
+    bool first = true; // gravity and the like set F when they come first; others add to a cleared one
     double radius = widest_radius(rules);
     if (radius > 0)
         add(writer, (sk_row){.kind = SK_ROW_GRID, .order = SK_ORDERED, .kernel = build_grid, .source = {SK_X},
@@ -90,6 +95,9 @@ void sk_write_fields(sk_writer *writer) {
     for (size_t i = 0; i < rules->forces.count; i++) {
         const sk_force *force = rules->forces.data[i];
         if (!*force->enabled) continue;
+        bool sets = first && force->type->sets;
+        if (first && !sets) sk_write_clear(writer, SK_F);
+        first = false;
         sk_row row = {.kind = SK_ROW_FIELD, .order = SK_FREE, .kernel = force->type->kernel.version[writer->isa], .dst = SK_F,
                       .source = {SK_X, SK_V}, .rule = force, .label = force->label, .end = writer->slot_count};
         if (force->type->domain == SK_OVER_TRIANGLES) {

@@ -35,6 +35,10 @@ static bool is_version(const sk_row *row, const sk_kernels *kernels) {
 /* A combine row as the formula that it computes. */
 static void describe_combine(const sk_row *row, char *text, size_t size) {
     const char *p = vector_text(row->source[0]), *q = vector_text(row->source[1]);
+    if (is_version(row, &sk_combine_predict)) {
+        snprintf(text, size, "X + h V, V + h w F; X0 = X%s", row->source[2] == SK_V0 ? "; V0 = V" : "");
+        return;
+    }
     if (is_version(row, &sk_combine_difference)) {
         snprintf(text, size, "%g (%s - %s)", row->coefficient[0], p, q);
         return;

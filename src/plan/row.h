@@ -96,6 +96,7 @@ struct sk_row {
     const void *rule;   /* a force, a collider, a batch */
     const char *label;  /* its name in `skein explain` */
     size_t begin, end;  /* elements; a repeat: the number of turns is `end` */
+    bool sets;          /* a field row: F is written, not added to */
     bool by_particle;   /* its elements are the user's particles, not slots: not to be run in chunks with others */
     size_t packed;      /* slots [0, packed) are in packed blocks when it runs */
     sk_walk walk;       /* of rows whose elements are strip rows */
@@ -116,8 +117,10 @@ const char *sk_row_kind_text(sk_row_kind kind);
 /* The arithmetic of vectors: the kernels of combine rows. The w components stay as they are.
  *   dst = a p + b q + c r        (a source of SK_NONE is left out)
  *   dst = a (p - q)              velocity from positions, without cancelling after scaling
- *   dst = p + a w q              a kick: w is the inverse mass */
-extern const sk_kernels sk_combine_sum, sk_combine_difference, sk_combine_kick;
+ *   dst = p + a w q              a kick: w is the inverse mass
+ *   predict                      V += h w F; V0 = V where the third source is V0; X0 = X; X += h V: one row
+ *                                for what would be four, since each block is read and written once */
+extern const sk_kernels sk_combine_sum, sk_combine_difference, sk_combine_kick, sk_combine_predict;
 /* Turns blocks of dst from quads to packed, and back, in place. */
 extern const sk_kernels sk_pack, sk_unpack;
 
