@@ -4,11 +4,11 @@
 .PHONY: all demo test setup debug format clean help
 
 all: ## (or plain make) build the command: build/skein
-	@tools/build release
+	@tools/build release skein
 
 demo: ## set up, build, and drop a real mesh as cloth: files, a picture and a report in out/demo
 	@tools/setup build
-	@tools/build release
+	@tools/build release skein
 	@tools/demo
 
 test: ## set up, build and pass every test, in every build: 20 minutes at the most
@@ -19,7 +19,7 @@ setup: ## install the Debian packages that building and testing need
 	@tools/setup test
 
 debug: ## build with assertions: build-debug/skein
-	@tools/build debug
+	@tools/build debug skein
 
 format: ## put the C files into the house's style (needs clang-format)
 	@tools/format

@@ -3,33 +3,27 @@
 
 #include "app/command.h"
 
+static int print_summary(const app_scene *loaded) {
+    skein_statistics s;
+    if (skein_world_statistics(loaded->world, &s)) {
+        app_print_error(skein_world_error(loaded->world));
+        return EXIT_FAILURE_RUN;
+    }
+    size_t forces = skein_object_count(loaded->world, SKEIN_FORCE), colliders = skein_object_count(loaded->world, SKEIN_COLLIDER);
+    printf("%s: good; %zu particles (%zu held), %zu constraints, %zu force%s, %zu collider%s, %s; %zu warning%s\n", loaded->path, s.particles,
+           s.held_particles, s.constraints, forces, forces == 1 ? "" : "s", colliders, colliders == 1 ? "" : "s", app_method(loaded),
+           loaded->warnings, loaded->warnings == 1 ? "" : "s");
+    return EXIT_OK;
+}
+
 static int check(int argc, char **argv) {
     app_option options[] = {{"--set", "PATH=VALUE", "change a value first, as for `skein run`; may be repeated", true, NULL, 0}};
-    const char *words[1];
-    size_t word_count;
-    int status = app_parse(&app_check_command, argc, argv, options, 1, words, 1, &word_count);
-    if (status < 0 && !word_count) {
-        fprintf(stderr, "skein check: which scene? usage: skein check %s\n", app_check_command.usage);
-        status = EXIT_FAULT;
-    }
+    const char *path;
+    int status = app_parse(&app_check_command, argc, argv, options, 1, "scene", &path);
     if (status < 0) {
         app_scene loaded;
-        status = app_load(words[0], options[0].values, 1, &loaded);
-        skein_statistics s;
-        if (!status && skein_world_statistics(loaded.world, &s) == SKEIN_OK) {
-            printf("%s: good; %zu particles (%zu held), %zu constraints, %zu forces, %zu colliders, %s; %zu warning%s\n", words[0],
-                   s.particles, s.held_particles, s.constraints, skein_object_count(loaded.world, SKEIN_FORCE),
-                   skein_object_count(loaded.world, SKEIN_COLLIDER),
-                   skein_object_kind(loaded.world, skein_object_at(loaded.world, SKEIN_METHOD, 0))->name, loaded.warnings,
-                   loaded.warnings == 1 ? "" : "s");
-            double dt;
-            io_scene_steps_per_frame(&loaded.settings, &dt);
-            // a method may not take these rules: the plan knows
-            if (skein_world_explain(loaded.world, dt, NULL, NULL)) {
-                app_print_error(skein_world_error(loaded.world));
-                status = EXIT_FAULT;
-            }
-        }
+        status = app_load(path, options[0].values, &loaded);
+        if (!status) status = print_summary(&loaded);
         app_unload(&loaded);
     }
     app_options_free(options, 1);

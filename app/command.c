@@ -1,7 +1,5 @@
 #include "app/command.h"
 
-#include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,16 +19,16 @@ double app_seconds(void) {
 /* ---- options ---- */
 
 static void print_help(const app_command *command, const app_option *options, size_t option_count) {
-    printf("usage: skein %s %s\n\n%s\n", command->name, command->usage, command->help);
-    if (option_count) printf("\nOptions\n");
+    printf("usage: skein %s %s\n\n%s\n\nOptions\n", command->name, command->usage, command->help);
     for (size_t i = 0; i < option_count; i++) {
         char left[64];
         snprintf(left, sizeof left, "%s %s", options[i].name, options[i].argument ? options[i].argument : "");
-        printf("  %-22s %s\n", left, options[i].help);
+        printf("  %-20s %s\n", left, options[i].help);
     }
+    printf("  %-20s %s\n", "--help", "print this");
 }
 
-static bool keep_value(app_option *option, const char *value) {
+bool app_option_add(app_option *option, const char *value) {
     if (!option->repeats) option->count = 0;
     const char **grown = realloc(option->values, (option->count + 2) * sizeof *grown);
     if (!grown) return false;
@@ -40,41 +38,60 @@ static bool keep_value(app_option *option, const char *value) {
     return true;
 }
 
-int app_parse(const app_command *command, int argc, char **argv, app_option *options, size_t option_count,
-              const char **words, size_t most_words, size_t *word_count) {
-    *word_count = 0;
-    for (int a = 0; a < argc; a++) {
-        const char *argument = argv[a];
-        if (!strcmp(argument, "--help") || !strcmp(argument, "-h")) {
-            print_help(command, options, option_count);
-            return EXIT_OK;
-        }
-        if (argument[0] != '-' || !argument[1]) {
-            if (*word_count == most_words) {
-                fprintf(stderr, "skein %s: '%s' is one argument too many; usage: skein %s %s\n", command->name, argument, command->name, command->usage);
-                return EXIT_FAULT;
-            }
-            words[(*word_count)++] = argument;
-            continue;
-        }
-        // --name value or --name=value
-        const char *equals = strchr(argument, '=');
-        size_t length = equals ? (size_t)(equals - argument) : strlen(argument);
-        app_option *option = NULL;
-        for (size_t i = 0; i < option_count; i++)
-            if (strlen(options[i].name) == length && !strncmp(options[i].name, argument, length)) option = &options[i];
-        if (!option) {
-            fprintf(stderr, "skein %s: there is no option %s; `skein %s --help` shows all\n", command->name, argument, command->name);
-            return EXIT_FAULT;
-        }
-        const char *value = option->argument ? (equals ? equals + 1 : a + 1 < argc ? argv[++a] : NULL) : option->name;
-        if (!value || (equals && !option->argument)) {
-            fprintf(stderr, "skein %s: %s takes %s\n", command->name, option->name, option->argument ? option->argument : "no value");
-            return EXIT_FAULT;
-        }
-        if (!keep_value(option, value)) return EXIT_FAILURE_RUN;
+static int unknown_option(const app_command *command, const app_option *options, size_t option_count, const char *name) {
+    const char *names[16];
+    char hint[IO_HINT_SIZE];
+    size_t count = 0;
+    // without the dashes, which all have in common
+    for (; count < option_count && count < 16; count++) names[count] = options[count].name + 2;
+    io_hint(name + strspn(name, "-"), names, count, hint);
+    fprintf(stderr, "skein %s: there is no option %s%s `skein %s --help` shows all\n", command->name, name, hint[0] ? hint : ";", command->name);
+    return EXIT_FAULT;
+}
+
+/* One option and its value: --name value or --name=value. Moves *a on. Returns as app_parse does. */
+static int parse_option(const app_command *command, int argc, char **argv, int *a, app_option *options, size_t option_count) {
+    char name[64];
+    const char *argument = argv[*a], *equals = strchr(argument, '=');
+    snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - argument) : 63, argument);
+    app_option *option = NULL;
+    for (size_t i = 0; i < option_count; i++)
+        if (!strcmp(options[i].name, name)) option = &options[i];
+    if (!option) return unknown_option(command, options, option_count, name);
+    const char *value = equals ? equals + 1 : NULL;
+    if (option->argument && !value && *a + 1 < argc) value = argv[++*a];
+    if (!option->argument != !value) {
+        fprintf(stderr, "skein %s: %s takes %s\n", command->name, name, option->argument ? option->argument : "no value");
+        return EXIT_FAULT;
     }
-    return -1;
+    return app_option_add(option, value ? value : option->name) ? -1 : EXIT_FAILURE_RUN;
+}
+
+int app_parse(const app_command *command, int argc, char **argv, app_option *options, size_t option_count, const char *needed,
+              const char **word) {
+    int status = -1;
+    bool only_words = false; // behind "--"
+    *word = NULL;
+    for (int a = 0; a < argc && status < 0; a++) {
+        const char *argument = argv[a];
+        bool is_word = only_words || argument[0] != '-' || !argument[1];
+        if (!is_word && !strcmp(argument, "--")) {
+            only_words = true;
+        } else if (!is_word && (!strcmp(argument, "--help") || !strcmp(argument, "-h"))) {
+            print_help(command, options, option_count);
+            status = EXIT_OK;
+        } else if (!is_word) {
+            status = parse_option(command, argc, argv, &a, options, option_count);
+        } else if (*word) {
+            fprintf(stderr, "skein %s: '%s' is one argument too many; usage: skein %s %s\n", command->name, argument, command->name, command->usage);
+            status = EXIT_FAULT;
+        } else {
+            *word = argument;
+        }
+    }
+    if (status >= 0 || *word || !needed) return status;
+    fprintf(stderr, "skein %s: which %s? usage: skein %s %s\n", command->name, needed, command->name, command->usage);
+    return EXIT_FAULT;
 }
 
 void app_options_free(app_option *options, size_t option_count) {
@@ -85,15 +102,6 @@ const char *app_value(const app_option *options, size_t option_count, const char
     for (size_t i = 0; i < option_count; i++)
         if (!strcmp(options[i].name, name)) return options[i].count ? options[i].values[options[i].count - 1] : NULL;
     return NULL;
-}
-
-bool app_number(const char *name, const char *text, double least, double most, double *number) {
-    char *end;
-    errno = 0;
-    *number = strtod(text, &end);
-    if (end != text && !*end && *number >= least && *number <= most) return true;
-    fprintf(stderr, "skein: %s %s: expected a number from %g to %g\n", name, text, least, most);
-    return false;
 }
 
 /* ---- scenes ---- */
@@ -124,8 +132,9 @@ const skein_kind *const *app_exporters(void) {
     return all;
 }
 
-int app_load(const char *path, const char *const *sets, int threads, app_scene *loaded) {
+int app_load(const char *path, const char *const *sets, app_scene *loaded) {
     memset(loaded, 0, sizeof *loaded);
+    loaded->path = path;
     double start = app_seconds();
     io_faults faults = {report_fault, NULL, 0};
     loaded->scene = io_scene_read(path, sets, app_exporters(), &faults);
@@ -134,13 +143,13 @@ int app_load(const char *path, const char *const *sets, int threads, app_scene *
         skein_world_desc desc = skein_default_world_desc();
         desc.log = print_log;
         desc.log_user = loaded;
-        desc.thread_count = threads ? threads : loaded->settings.threads;
+        desc.thread_count = loaded->settings.threads;
         loaded->world = io_scene_build(loaded->scene, &desc, &faults);
     }
     loaded->load_seconds = app_seconds() - start;
-    if (loaded->world && !faults.count) return EXIT_OK;
+    if (loaded->world) return EXIT_OK;
     app_unload(loaded);
-    if (faults.count > 1) fprintf(stderr, "skein: %zu faults\n", faults.count);
+    if (faults.count > 1) fprintf(stderr, "skein: %s: %zu faults\n", path, faults.count);
     return EXIT_FAULT;
 }
 
@@ -149,4 +158,8 @@ void app_unload(app_scene *loaded) {
     io_scene_free(loaded->scene);
     loaded->world = NULL;
     loaded->scene = NULL;
+}
+
+const char *app_method(const app_scene *loaded) {
+    return skein_object_kind(loaded->world, skein_object_at(loaded->world, SKEIN_METHOD, 0))->name;
 }

@@ -4,7 +4,8 @@
 
 #include "io/scene.h"
 
-enum { EXIT_OK = 0, EXIT_FAILURE_RUN = 1, EXIT_FAULT = 2 };
+/* Exit statuses. A run that a signal ended early has 128 and the signal's number, as a shell would say. */
+enum { EXIT_OK = 0, EXIT_FAILURE_RUN = 1, EXIT_FAULT = 2, EXIT_SIGNAL = 128 };
 
 /* One option of a subcommand. A value is kept as text; `repeats` ones collect into a list. */
 typedef struct app_option {
@@ -12,7 +13,7 @@ typedef struct app_option {
     const char *argument; /* "N"; NULL for a switch */
     const char *help;
     bool repeats;
-    const char **values;  /* filled in: NULL-terminated; [0] is the value, or the name of a switch */
+    const char **values; /* filled in: NULL-terminated; [0] is the value, or the name of a switch */
     size_t count;
 } app_option;
 
@@ -24,20 +25,22 @@ typedef struct app_command {
 
 extern const app_command app_run_command, app_check_command, app_explain_command, app_list_command;
 
-/* Sorts arguments into options and words; prints help for --help. Returns -1 to go on, else an exit status. */
-int app_parse(const app_command *command, int argc, char **argv, app_option *options, size_t option_count,
-              const char **words, size_t most_words, size_t *word_count);
+/* Sorts arguments into options and at most one word (NULL if there is none, which is a fault where it is
+ * `needed`, as in "scene"); prints help for --help. Returns -1 to go on, else an exit status. */
+int app_parse(const app_command *command, int argc, char **argv, app_option *options, size_t option_count, const char *needed,
+              const char **word);
 void app_options_free(app_option *options, size_t option_count);
 /* The option's last value, or NULL. */
 const char *app_value(const app_option *options, size_t option_count, const char *name);
-/* Reads a number from an option; false (and a message) if it is none or out of range. */
-bool app_number(const char *name, const char *text, double least, double most, double *number);
+/* Adds a value as if it had been given; false when there is no memory. */
+bool app_option_add(app_option *option, const char *value);
 
 /* Prints "skein: where: message" to standard error. */
 void app_print_error(const skein_error *error);
 
 /* A scene read, with its world built. */
 typedef struct app_scene {
+    const char *path;
     io_scene *scene;
     io_scene_settings settings;
     skein_world *world;
@@ -45,9 +48,11 @@ typedef struct app_scene {
     size_t warnings;
 } app_scene;
 
-/* Reads, checks and builds; every fault is printed. `threads` 0: the scene's own. Returns an exit status. */
-int app_load(const char *path, const char *const *sets, int threads, app_scene *loaded);
+/* Reads, checks and builds; every fault is printed. Returns an exit status. */
+int app_load(const char *path, const char *const *sets, app_scene *loaded);
 void app_unload(app_scene *loaded);
+/* The name of the method's kind. */
+const char *app_method(const app_scene *loaded);
 
 /* Every exporter there is, NULL-terminated. */
 const skein_kind *const *app_exporters(void);

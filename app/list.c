@@ -1,81 +1,191 @@
-/* skein list: every kind with its fields, straight from the tables. */
+/* skein list: every kind with its fields, straight from the tables, in 120 columns. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "app/command.h"
 
-/* A number of a range in a few characters. */
-static void bound_text(double x, char *text, size_t size) {
-    if (isinf(x)) snprintf(text, size, "infinite");
-    else snprintf(text, size, "%g", x);
+/* "    name               default and unit range              help"; what is too long pushes the rest on. */
+enum { WIDTH = 120, NAME_AT = 4, DEFAULT_AT = 23, RANGE_AT = 40, HELP_AT = 59 };
+
+static const struct {
+    const char *word;
+    skein_category category;
+} lists[] = {
+    {"scene", SKEIN_SCENE},         {"bodies", SKEIN_BODY},    {"constraints", SKEIN_CONSTRAINT}, {"forces", SKEIN_FORCE},
+    {"colliders", SKEIN_COLLIDER}, {"methods", SKEIN_METHOD}, {"exporters", SKEIN_EXPORTER},
+};
+enum { LIST_COUNT = sizeof lists / sizeof *lists };
+
+/* The kinds of a category, `index` from 0; NULL past the end. */
+static const skein_kind *kind_at(skein_category category, size_t index) {
+    if (category == SKEIN_SCENE) return index ? NULL : io_scene_kind();
+    if (category != SKEIN_EXPORTER) return skein_kind_at(category, index);
+    const skein_kind *const *kind = app_exporters();
+    for (; *kind && index; index--) kind++;
+    return *kind;
+}
+
+/* ---- lines ---- */
+
+/* Prints a cell at a column, one blank after the last at least; returns the column after it. */
+static int print_cell(int column, int at, const char *text) {
+    int gap = at > column ? at - column : text[0] ? 1 : 0;
+    printf("%*s%s", gap, "", text);
+    return column + gap + (int)strlen(text);
+}
+
+/* Prints words from a column on, broken into lines that begin at `at`. */
+static void print_words(int column, int at, const char *text) {
+    for (;;) {
+        text += strspn(text, " ");
+        int length = (int)strcspn(text, " ");
+        if (!length) break;
+        if (column > at && column + 1 + length > WIDTH) {
+            printf("\n");
+            column = 0;
+        }
+        int gap = column < at ? at - column : 1;
+        printf("%*s%.*s", gap, "", length, text);
+        column += gap + length;
+        text += length;
+    }
+    printf("\n");
+}
+
+/* A number in as few characters as "%g" with 1e6 for 1e+06. */
+static void number_text(double x, char *text, size_t size) {
+    if (isinf(x)) {
+        snprintf(text, size, "infinite");
+        return;
+    }
+    snprintf(text, size, "%g", x);
+    char *digits = strchr(text, 'e');
+    if (!digits) return;
+    digits += digits[1] == '-' ? 2 : 1;
+    size_t skip = strspn(digits, "+0");
+    memmove(digits, digits + skip, strlen(digits + skip) + 1);
+}
+
+static void range_text(const skein_field *field, char *text, size_t size) {
+    const double far = 1e15; // what the library takes for no bound
+    char low[32], high[32];
+    number_text(field->least, low, sizeof low);
+    number_text(field->most, high, sizeof high);
+    bool bounded_below = field->least > -far, bounded_above = field->most < far || isinf(field->most);
+    text[0] = 0;
+    if (field->type == SKEIN_FIELD_CHOICE) snprintf(text, size, "%s", field->choices);
+    if (field->type == SKEIN_FIELD_BOOL || field->type == SKEIN_FIELD_TEXT || field->type == SKEIN_FIELD_CHOICE) return;
+    if (bounded_below && bounded_above) snprintf(text, size, "%s to %s", low, high);
+    else if (bounded_below) snprintf(text, size, "%s or more", low);
+    else if (bounded_above) snprintf(text, size, "%s or less", high);
+}
+
+static void default_text(const skein_field *field, char *text, size_t size) {
+    static const int counts[] = {[SKEIN_FIELD_INT2] = 2, [SKEIN_FIELD_REAL2] = 2, [SKEIN_FIELD_VEC3] = 3, [SKEIN_FIELD_TEXT] = 0};
+    int count = counts[field->type];
+    skein_value initial = {count ? count : 1, {field->initial[0], field->initial[1], field->initial[2]}, NULL};
+    char value[128];
+    if (field->type == SKEIN_FIELD_TEXT) snprintf(value, sizeof value, "\"%s\"", field->text ? field->text : "");
+    else skein_value_text(field, &initial, value, sizeof value);
+    snprintf(text, size, "%s%s%s", value, field->unit[0] ? " " : "", field->unit);
 }
 
 static void print_field(const skein_field *field) {
-    skein_value initial = {1, {field->initial[0], field->initial[1], field->initial[2]}, NULL};
-    if (field->type == SKEIN_FIELD_TEXT) initial = skein_text(field->text ? field->text : "");
-    else if (field->type == SKEIN_FIELD_VEC3) initial.count = 3;
-    else if (field->type == SKEIN_FIELD_INT2 || field->type == SKEIN_FIELD_REAL2) initial.count = 2;
-    char value[128], range[96] = "", low[32], high[32];
-    skein_value_text(field, &initial, value, sizeof value);
-    bool numeric = field->type != SKEIN_FIELD_TEXT && field->type != SKEIN_FIELD_BOOL && field->type != SKEIN_FIELD_CHOICE;
-    if (numeric && (fabs(field->least) < 1e15 || fabs(field->most) < 1e15)) {
-        bound_text(field->least, low, sizeof low);
-        bound_text(field->most, high, sizeof high);
-        if (field->least <= -1e15) snprintf(range, sizeof range, "up to %s", high);
-        else if (field->most >= 1e15) snprintf(range, sizeof range, "from %s%s", low, isinf(field->most) ? " to infinite" : "");
-        else snprintf(range, sizeof range, "%s to %s", low, high);
-    }
-    if (field->type == SKEIN_FIELD_CHOICE) snprintf(range, sizeof range, "%s", field->choices);
-    if (field->type == SKEIN_FIELD_TEXT) snprintf(value, sizeof value, "\"%s\"", field->text ? field->text : "");
-    printf("    %-20s %-12s %-10s %-20s %s\n", field->name, value, field->unit, range, field->help);
+    char initial[192], range[96];
+    default_text(field, initial, sizeof initial);
+    range_text(field, range, sizeof range);
+    int column = print_cell(0, NAME_AT, field->name);
+    column = print_cell(column, DEFAULT_AT, initial);
+    column = print_cell(column, RANGE_AT, range);
+    print_words(column, HELP_AT, field->help);
 }
 
+static void print_heads(void) {
+    int column = print_cell(0, NAME_AT, "field");
+    column = print_cell(column, DEFAULT_AT, "default");
+    column = print_cell(column, RANGE_AT, "range");
+    print_words(column, HELP_AT, "what it is");
+}
+
+/* ---- kinds ---- */
+
 static void print_kind(const skein_kind *kind) {
-    printf("  %s: %s\n", kind->name, kind->help);
+    char words[512];
+    snprintf(words, sizeof words, "%s: %s", kind->name, kind->help);
+    print_words(0, 2, words);
     for (size_t i = 0; i < kind->field_count; i++) print_field(&kind->fields[i]);
     printf("\n");
 }
 
-static void print_category(const char *word, skein_category category) {
-    printf("%s\n\n", word);
-    if (category == SKEIN_SCENE) print_kind(io_scene_kind());
-    else if (category == SKEIN_EXPORTER)
-        for (const skein_kind *const *kind = app_exporters(); *kind; kind++) print_kind(*kind);
-    else
-        for (size_t i = 0; skein_kind_at(category, i); i++) print_kind(skein_kind_at(category, i));
+/* What besides its fields is in a scene, or in every kind of a category. */
+static void print_common(skein_category category, const char *all) {
+    for (size_t i = 0; category == SKEIN_SCENE && io_scene_section_at(i); i++) {
+        int column = print_cell(0, NAME_AT, io_scene_section_at(i)->name);
+        print_words(column, DEFAULT_AT, io_scene_section_at(i)->help);
+    }
     size_t count;
     const skein_field *common = skein_common_fields(category, &count);
-    if (!count) return;
-    printf("  every one of the %s has these, too\n", word);
+    if (count) printf("  %s these, too\n", all);
     for (size_t i = 0; i < count; i++) print_field(&common[i]);
-    printf("\n");
+    if (count || category == SKEIN_SCENE) printf("\n");
 }
 
-static int list(int argc, char **argv) {
-    static const struct {
-        const char *word;
-        skein_category category;
-    } lists[] = {{"scene", SKEIN_SCENE},       {"bodies", SKEIN_BODY},       {"constraints", SKEIN_CONSTRAINT}, {"forces", SKEIN_FORCE},
-                 {"colliders", SKEIN_COLLIDER}, {"methods", SKEIN_METHOD}, {"exporters", SKEIN_EXPORTER}};
-    const char *words[1];
-    size_t word_count;
-    int status = app_parse(&app_list_command, argc, argv, NULL, 0, words, 1, &word_count);
-    if (status >= 0) return status;
+static void print_list(size_t list) {
+    char all[64];
+    snprintf(all, sizeof all, "all %s have", lists[list].word);
+    printf("%s\n\n", lists[list].word);
+    print_heads();
+    for (size_t i = 0; kind_at(lists[list].category, i); i++) print_kind(kind_at(lists[list].category, i));
+    print_common(lists[list].category, all);
+}
+
+/* Prints the list or the kinds of that name; false if there is none. */
+static bool print_named(const char *name) {
     bool found = false;
-    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
-        if (word_count && strcmp(words[0], lists[i].word)) continue;
-        print_category(lists[i].word, lists[i].category);
-        found = true;
+    for (size_t l = 0; l < LIST_COUNT; l++) {
+        if (!strcmp(name, lists[l].word)) {
+            print_list(l);
+            return true;
+        }
+        for (size_t i = 0; kind_at(lists[l].category, i); i++) {
+            const skein_kind *kind = kind_at(lists[l].category, i);
+            if (strcmp(name, kind->name)) continue;
+            print_heads();
+            print_kind(kind);
+            print_common(kind->category, "it has");
+            found = true;
+        }
     }
-    if (found) return EXIT_OK;
-    fprintf(stderr, "skein list: there is no list '%s'; usage: skein list %s\n", words[0], app_list_command.usage);
+    return found;
+}
+
+static int report_unknown(const char *name) {
+    const char *names[64];
+    char hint[IO_HINT_SIZE];
+    size_t count = 0;
+    for (size_t l = 0; l < LIST_COUNT; l++) {
+        names[count++] = lists[l].word;
+        for (size_t i = 0; kind_at(lists[l].category, i) && count < 60; i++) names[count++] = kind_at(lists[l].category, i)->name;
+    }
+    io_hint(name, names, count, hint);
+    fprintf(stderr, "skein list: there is no list or kind '%s'%s usage: skein list %s\n", name, hint[0] ? hint : ";", app_list_command.usage);
     return EXIT_FAULT;
 }
 
+static int list(int argc, char **argv) {
+    const char *name;
+    int status = app_parse(&app_list_command, argc, argv, NULL, 0, NULL, &name);
+    if (status >= 0) return status;
+    if (name) return print_named(name) ? EXIT_OK : report_unknown(name);
+    for (size_t l = 0; l < LIST_COUNT; l++) print_list(l);
+    return EXIT_OK;
+}
+
 const app_command app_list_command = {
-    "list", "[scene|bodies|constraints|forces|colliders|methods|exporters]",
+    "list", "[scene|bodies|constraints|forces|colliders|methods|exporters|KIND]",
     "every kind with its fields: name, default, unit, range and help\n\n"
-    "In a scene, dots are groups: stretch.stiffness is { \"stretch\": { \"stiffness\": ... } }.",
+    "In a scene, dots are groups: stretch.stiffness is { \"stretch\": { \"stiffness\": ... } }. A range to\n"
+    "infinite takes the word \"infinite\", too. A kind by its name: skein list cloth",
     list,
 };

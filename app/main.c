@@ -1,7 +1,10 @@
 /* The command `skein`: one file a subcommand. */
+#include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "app/command.h"
 
@@ -15,24 +18,53 @@ static void print_help(FILE *to) {
         const char *line = commands[c]->help;
         fprintf(to, "  %-8s %.*s\n", commands[c]->name, (int)strcspn(line, "\n"), line);
     }
-    fprintf(to, "\n`skein COMMAND --help` teaches a command. First steps:\n\n"
+    fprintf(to, "\n`skein COMMAND --help` teaches a command, `skein --version` names the version. First steps:\n\n"
                 "  skein run scenes/drape.json --out out/\n"
                 "  skein list colliders\n");
 }
 
+static const app_command *find_command(const char *name) {
+    for (int c = 0; c < COMMAND_COUNT; c++)
+        if (!strcmp(name, commands[c]->name)) return commands[c];
+    return NULL;
+}
+
+static int no_command(const char *name) {
+    const char *names[COMMAND_COUNT];
+    char hint[IO_HINT_SIZE];
+    for (int c = 0; c < COMMAND_COUNT; c++) names[c] = commands[c]->name;
+    io_hint(name, names, COMMAND_COUNT, hint);
+    fprintf(stderr, "skein: there is no command '%s'%s `skein --help` shows all\n", name, hint[0] ? hint : ";");
+    return EXIT_FAULT;
+}
+
+static int dispatch(int argc, char **argv) {
+    const char *name = argc > 1 ? argv[1] : NULL;
+    const app_command *command = name ? find_command(name) : NULL;
+    if (command) return command->run(argc - 2, argv + 2);
+    bool asked = name && (!strcmp(name, "--help") || !strcmp(name, "-h") || !strcmp(name, "help"));
+    if (asked && argc > 2) { // help COMMAND
+        command = find_command(argv[2]);
+        return command ? command->run(1, (char *[]){"--help", NULL}) : no_command(argv[2]);
+    }
+    if (!name || asked) {
+        print_help(asked ? stdout : stderr);
+        return asked ? EXIT_OK : EXIT_FAULT;
+    }
+    if (strcmp(name, "--version")) return no_command(name);
+    printf("skein " SKEIN_VERSION "%s\n", sizeof(skein_real) == 8 ? " (double)" : "");
+    return EXIT_OK;
+}
+
 int main(int argc, char **argv) {
+    // a standard stream that is closed must not become the first file that is opened
+    for (int fd = 0; fd < 3; fd++)
+        if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", O_RDWR) != fd) return EXIT_FAILURE_RUN;
     // a full disk or a closed pipe is an error to report, not the end of the process
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
-    const char *name = argc > 1 ? argv[1] : "";
-    for (int c = 0; c < COMMAND_COUNT; c++)
-        if (!strcmp(name, commands[c]->name)) return commands[c]->run(argc - 2, argv + 2);
-    if (!strcmp(name, "--version")) {
-        printf("skein " SKEIN_VERSION "%s\n", sizeof(skein_real) == 8 ? " (double)" : "");
-        return EXIT_OK;
-    }
-    bool asked = !strcmp(name, "--help") || !strcmp(name, "-h") || !strcmp(name, "help");
-    if (!asked && name[0]) fprintf(stderr, "skein: there is no command '%s'\n\n", name);
-    print_help(asked ? stdout : stderr);
-    return asked ? EXIT_OK : EXIT_FAULT;
+    int status = dispatch(argc, argv);
+    if (!fflush(stdout) && !ferror(stdout)) return status;
+    fprintf(stderr, "skein: cannot write to standard output: %s\n", strerror(errno));
+    return status ? status : EXIT_FAILURE_RUN;
 }

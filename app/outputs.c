@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "io/exporters.h"
 #include "io/mesh.h"
@@ -14,7 +15,7 @@
 #include "render/picture.h"
 #endif
 
-enum { MOST_EXPORTS = 16, FOLDER_SIZE = 1024, PATH_SIZE = FOLDER_SIZE + 160 };
+enum { MOST_EXPORTS = 16, NAME_SIZE = 128, FOLDER_SIZE = 1024, PATH_SIZE = FOLDER_SIZE + NAME_SIZE + 8 };
 
 /* One body's growing file. */
 typedef struct cache {
@@ -27,107 +28,157 @@ typedef struct cache {
 struct app_outputs {
     const app_scene *loaded;
     char folder[FOLDER_SIZE];
-    char stem[128]; /* the scene's name, for pictures */
+    bool made[FOLDER_SIZE];      /* by length: this part of the folder's path was made here */
+    char stem[NAME_SIZE];        /* the scene's name, for pictures */
+    char (*names)[NAME_SIZE];    /* the bodies' names, all different */
     io_export exports[MOST_EXPORTS];
-    size_t export_count;
+    size_t export_count, body_count, cache_count;
     cache *caches;
-    size_t cache_count;
     double *positions; /* room for the largest body */
 };
 
-/* A name that is safe as a file's: letters, digits, '-', '_' and '.'. */
-static void file_name(const char *name, char *out, size_t size) {
+/* ---- names ---- */
+
+/* A name that is safe as a file's: letters, digits, '-', '_', '.' and whatever is not ASCII. */
+static void file_name(const char *name, const char *nameless, char out[NAME_SIZE]) {
+    const size_t most = NAME_SIZE - 24; // room to tell namesakes apart
     size_t length = 0;
-    for (; *name && length + 1 < size; name++)
-        out[length++] = isalnum((unsigned char)*name) || strchr("-_.", *name) ? *name : '_';
+    for (; *name && length < most; name++) out[length++] = isalnum((unsigned char)*name) || (unsigned char)*name >= 0x80 || strchr("-_.", *name) ? *name : '_';
+    while (*name && length && ((unsigned char)*name & 0xc0) == 0x80) name--, length--; // half a letter
     out[length] = 0;
-    if (!length || out[0] == '.') snprintf(out, size, "scene");
+    if (!length || out[0] == '.') snprintf(out, NAME_SIZE, "%s", nameless);
 }
 
-/* Makes every folder of a path. */
-static bool make_folders(const char *path) {
-    char part[FOLDER_SIZE];
-    if (strlen(path) >= sizeof part) {
-        errno = ENAMETOOLONG;
-        return false;
-    }
-    snprintf(part, sizeof part, "%s", path);
-    for (char *at = part + 1; *at; at++) {
-        if (*at != '/') continue;
-        *at = 0;
-        if (mkdir(part, 0777) && errno != EEXIST) return false;
-        *at = '/';
-    }
-    if (mkdir(part, 0777) && errno != EEXIST) return false;
-    struct stat info;
-    errno = ENOTDIR;
-    return !stat(part, &info) && S_ISDIR(info.st_mode);
-}
-
-/* A body's name; the second of a name (and a nameless second) is told by its place. */
-static void body_name(const skein_world *world, size_t body, char *out, size_t size) {
+static const char *body_text(const skein_world *world, size_t body) {
     skein_handle handle = skein_object_at(world, SKEIN_BODY, body);
-    skein_value name = {0, {0, 0, 0}, ""}, other;
+    skein_value name = {0, {0, 0, 0}, ""};
     skein_get(world, handle, "name", &name);
-    const char *text = name.text[0] ? name.text : skein_object_kind(world, handle)->name;
-    file_name(text, out, size);
-    for (size_t i = 0; i < skein_object_count(world, SKEIN_BODY); i++) {
-        skein_handle rival = skein_object_at(world, SKEIN_BODY, i);
-        if (i == body || skein_get(world, rival, "name", &other)) continue;
-        if (strcmp(other.text[0] ? other.text : skein_object_kind(world, rival)->name, text)) continue;
-        size_t length = strlen(out);
-        snprintf(out + length, size - length, "-%zu", body);
-        return;
+    return name.text[0] ? name.text : skein_object_kind(world, handle)->name;
+}
+
+static bool is_taken(const app_outputs *outputs, size_t body) {
+    for (size_t i = 0; i < outputs->body_count; i++)
+        if (i != body && !strcmp(outputs->names[i], outputs->names[body])) return true;
+    return false;
+}
+
+/* Names all bodies; namesakes get their place behind the name, the first of them keeps its name. */
+static void name_bodies(app_outputs *outputs) {
+    for (size_t i = 0; i < outputs->body_count; i++) file_name(body_text(outputs->loaded->world, i), "body", outputs->names[i]);
+    for (size_t i = outputs->body_count; i-- > 0;) {
+        size_t length = strlen(outputs->names[i]);
+        for (int turn = 0; is_taken(outputs, i) && turn < 100; turn++)
+            snprintf(outputs->names[i] + length, NAME_SIZE - length, turn ? "-%zu-%d" : "-%zu", i, turn);
     }
 }
 
-static bool begin_cache(app_outputs *outputs, size_t body, int every) {
+/* ---- folders ---- */
+
+/* Makes every folder of the path that is missing; false with errno where it cannot. */
+static bool make_folders(app_outputs *outputs) {
+    char part[FOLDER_SIZE];
+    size_t length = 0;
+    while (outputs->folder[length]) {
+        length += strspn(outputs->folder + length, "/");
+        length += strcspn(outputs->folder + length, "/");
+        snprintf(part, sizeof part, "%.*s", (int)length, outputs->folder);
+        outputs->made[length] = !mkdir(part, 0777);
+        if (!outputs->made[length] && errno != EEXIST) return false;
+    }
+    struct stat info;
+    if (stat(outputs->folder, &info)) return false;
+    errno = ENOTDIR;
+    return S_ISDIR(info.st_mode) && !access(outputs->folder, W_OK | X_OK);
+}
+
+/* Removes those that were made and are empty, the innermost first. */
+static void remove_folders(app_outputs *outputs) {
+    for (size_t length = strlen(outputs->folder); length; length--) {
+        outputs->folder[length] = 0;
+        if (outputs->made[length]) rmdir(outputs->folder);
+    }
+}
+
+static int prepare_folder(app_outputs *outputs, const char *folder) {
+    size_t length = strlen(folder);
+    while (length > 1 && folder[length - 1] == '/') length--;
+    if (!length || length >= FOLDER_SIZE) {
+        fprintf(stderr, "skein run: --out %s: expected the name of a folder, up to %d bytes\n", length ? "..." : "''", FOLDER_SIZE - 1);
+        return EXIT_FAULT;
+    }
+    snprintf(outputs->folder, sizeof outputs->folder, "%.*s", (int)length, folder);
+    if (make_folders(outputs)) return EXIT_OK;
+    fprintf(stderr, "skein run: --out %s: cannot write there: %s\n", folder,
+            errno == ENOTDIR ? "there is a file where a folder should be" : strerror(errno));
+    return EXIT_FAULT;
+}
+
+/* ---- beginning ---- */
+
+static skein_status surface_of(const app_outputs *outputs, size_t body, skein_surface *surface) {
+    return skein_body_surface(outputs->loaded->world, skein_object_at(outputs->loaded->world, SKEIN_BODY, body), surface);
+}
+
+/* Begins the point caches of all bodies that have a surface. */
+static bool begin_caches(app_outputs *outputs, const io_pc2_params *params) {
     skein_surface surface;
-    const skein_world *world = outputs->loaded->world;
-    if (skein_body_surface(world, skein_object_at(world, SKEIN_BODY, body), &surface)) return true;
-    cache *c = &outputs->caches[outputs->cache_count];
-    char name[128];
-    body_name(world, body, name, sizeof name);
-    snprintf(c->path, sizeof c->path, "%s/%s.pc2", outputs->folder, name);
-    c->body = body;
-    c->every = every;
-    skein_error error = {SKEIN_OK, "", ""};
-    io_pc2_header header = {(uint32_t)surface.vertex_count, 0, (float)every, IO_PC2_UNKNOWN};
-    c->writer = io_pc2_create(c->path, header, &error);
-    if (c->writer) outputs->cache_count++;
-    else app_print_error(&error);
-    return c->writer != NULL;
+    for (size_t b = 0; b < outputs->body_count; b++) {
+        if (surface_of(outputs, b, &surface)) continue;
+        cache *c = &outputs->caches[outputs->cache_count];
+        snprintf(c->path, sizeof c->path, "%s/%s.pc2", outputs->folder, outputs->names[b]);
+        c->body = b;
+        c->every = params->every;
+        skein_error error = {SKEIN_OK, "", ""};
+        io_pc2_header header = {(uint32_t)surface.vertex_count, 0, (float)params->every, IO_PC2_UNKNOWN};
+        c->writer = io_pc2_create(c->path, header, &error);
+        if (!c->writer) {
+            app_print_error(&error);
+            return false;
+        }
+        outputs->cache_count++;
+    }
+    return true;
 }
 
-app_outputs *app_outputs_begin(const app_scene *loaded, const char *folder) {
-    app_outputs *outputs = calloc(1, sizeof *outputs);
-    size_t bodies = skein_object_count(loaded->world, SKEIN_BODY), most = 1;
-    if (!outputs) return NULL;
-    outputs->loaded = loaded;
-    snprintf(outputs->folder, sizeof outputs->folder, "%s", folder);
-    for (size_t length = strlen(outputs->folder); length > 1 && outputs->folder[length - 1] == '/';) outputs->folder[--length] = 0;
-    file_name(loaded->settings.name && loaded->settings.name[0] ? loaded->settings.name : "scene", outputs->stem, sizeof outputs->stem);
-    outputs->export_count = io_scene_exports(loaded->scene, outputs->exports, MOST_EXPORTS);
-    if (!make_folders(outputs->folder)) {
-        fprintf(stderr, "skein: %s: cannot make the folder: %s\n", outputs->folder, strerror(errno));
-        app_outputs_abandon(outputs);
-        return NULL;
-    }
-    for (size_t b = 0; b < bodies; b++) {
-        skein_surface surface;
-        if (!skein_body_surface(loaded->world, skein_object_at(loaded->world, SKEIN_BODY, b), &surface) && surface.vertex_count > most)
-            most = surface.vertex_count;
-    }
+static bool reserve(app_outputs *outputs) {
+    size_t most = 1;
+    skein_surface surface;
+    for (size_t b = 0; b < outputs->body_count; b++)
+        if (!surface_of(outputs, b, &surface) && surface.vertex_count > most) most = surface.vertex_count;
     outputs->positions = malloc(3 * most * sizeof *outputs->positions);
-    outputs->caches = calloc(bodies * MOST_EXPORTS + 1, sizeof *outputs->caches);
-    bool good = outputs->positions && outputs->caches;
-    for (size_t e = 0; e < outputs->export_count && good; e++)
-        if (!strcmp(outputs->exports[e].kind->name, "pc2"))
-            for (size_t b = 0; b < bodies && good; b++) good = begin_cache(outputs, b, ((const io_pc2_params *)outputs->exports[e].params)->every);
-    if (good) return outputs;
-    app_outputs_abandon(outputs);
-    return NULL;
+    outputs->caches = calloc(outputs->body_count + 1, sizeof *outputs->caches);
+    outputs->names = calloc(outputs->body_count + 1, sizeof *outputs->names);
+    return outputs->positions && outputs->caches && outputs->names;
 }
+
+static int begin(app_outputs *outputs, const char *folder) {
+    const app_scene *loaded = outputs->loaded;
+    outputs->body_count = skein_object_count(loaded->world, SKEIN_BODY);
+    outputs->export_count = io_scene_exports(loaded->scene, outputs->exports, MOST_EXPORTS);
+    if (!reserve(outputs)) {
+        fprintf(stderr, "skein: out of memory\n");
+        return EXIT_FAILURE_RUN;
+    }
+    file_name(loaded->settings.name, "scene", outputs->stem);
+    name_bodies(outputs);
+    int status = prepare_folder(outputs, folder);
+    for (size_t e = 0; e < outputs->export_count && !status; e++)
+        if (!strcmp(outputs->exports[e].kind->name, "pc2") && !begin_caches(outputs, outputs->exports[e].params)) status = EXIT_FAILURE_RUN;
+    return status;
+}
+
+int app_outputs_begin(const app_scene *loaded, const char *folder, app_outputs **begun) {
+    app_outputs *outputs = calloc(1, sizeof *outputs);
+    *begun = NULL;
+    if (!outputs) return EXIT_FAILURE_RUN;
+    outputs->loaded = loaded;
+    int status = begin(outputs, folder);
+    if (!status) *begun = outputs;
+    else app_outputs_abandon(outputs);
+    return status;
+}
+
+/* ---- writing ---- */
 
 /* A body's vertices, where welding has joined them too. */
 static void gather_vertices(const app_outputs *outputs, const skein_surface *surface) {
@@ -141,79 +192,79 @@ static void gather_vertices(const app_outputs *outputs, const skein_surface *sur
 bool app_outputs_frame(app_outputs *outputs, int frame) {
     for (size_t i = 0; i < outputs->cache_count; i++) {
         cache *c = &outputs->caches[i];
-        if (frame % c->every) continue;
         skein_surface surface;
-        skein_body_surface(outputs->loaded->world, skein_object_at(outputs->loaded->world, SKEIN_BODY, c->body), &surface);
-        gather_vertices(outputs, &surface);
         skein_error error = {SKEIN_OK, "", ""};
-        if (io_pc2_add(c->writer, outputs->positions, &error)) {
-            app_print_error(&error);
-            return false;
-        }
+        if (frame % c->every || surface_of(outputs, c->body, &surface)) continue;
+        gather_vertices(outputs, &surface);
+        if (!io_pc2_add(c->writer, outputs->positions, &error)) continue;
+        app_print_error(&error);
+        return false;
     }
     return true;
 }
 
-static bool write_obj(const app_outputs *outputs, size_t body, const io_obj_params *params, char *path) {
-    skein_surface surface;
-    char name[128];
-    body_name(outputs->loaded->world, body, name, sizeof name);
-    snprintf(path, PATH_SIZE, "%s/%s.obj", outputs->folder, name);
-    skein_body_surface(outputs->loaded->world, skein_object_at(outputs->loaded->world, SKEIN_BODY, body), &surface);
-    gather_vertices(outputs, &surface);
-    skein_mesh mesh = {outputs->positions, surface.vertex_count, surface.face_sizes, surface.face_count, surface.face_vertices,
-                       surface.face_vertex_count};
-    skein_error error = {SKEIN_OK, "", ""};
-    if (!io_obj_write(path, &mesh, (io_normals)params->normals, &error)) return true;
-    app_print_error(&error);
-    return false;
+typedef struct notebook {
+    void (*wrote)(void *user, const char *path);
+    void *user;
+    bool good;
+} notebook;
+
+/* Notes a file that was written, or prints why it was not. */
+static void note(notebook *book, const char *path, skein_status status, const skein_error *error) {
+    if (!status) book->wrote(book->user, path);
+    else app_print_error(error);
+    book->good &= !status;
+}
+
+static void write_objs(const app_outputs *outputs, const io_obj_params *params, notebook *book) {
+    char path[PATH_SIZE];
+    for (size_t b = 0; b < outputs->body_count; b++) {
+        skein_surface s;
+        skein_error error = {SKEIN_OK, "", ""};
+        if (surface_of(outputs, b, &s)) continue;
+        gather_vertices(outputs, &s);
+        skein_mesh mesh = {outputs->positions, s.vertex_count, s.face_sizes, s.face_count, s.face_vertices, s.face_vertex_count};
+        snprintf(path, sizeof path, "%s/%s.obj", outputs->folder, outputs->names[b]);
+        note(book, path, io_obj_write(path, &mesh, (io_normals)params->normals, &error), &error);
+    }
 }
 
 #ifdef SKEIN_RENDER
-static bool write_picture(const app_outputs *outputs, const render_picture_options *options, char *path) {
-    snprintf(path, PATH_SIZE, "%s/%s.png", outputs->folder, outputs->stem);
+static void write_picture(const app_outputs *outputs, const render_picture_options *options, notebook *book) {
+    char path[PATH_SIZE];
     skein_error error = {SKEIN_OK, "", ""};
-    if (!render_picture(outputs->loaded->world, path, options, &error)) return true;
-    app_print_error(&error);
-    return false;
+    snprintf(path, sizeof path, "%s/%s.png", outputs->folder, outputs->stem);
+    note(book, path, render_picture(outputs->loaded->world, path, options, &error), &error);
 }
 #endif
 
 bool app_outputs_finish(app_outputs *outputs, void (*wrote)(void *user, const char *path), void *user) {
-    bool good = true;
-    char path[PATH_SIZE];
-    skein_error error = {SKEIN_OK, "", ""};
+    notebook book = {wrote, user, true};
     for (size_t i = 0; i < outputs->cache_count; i++) {
         cache *c = &outputs->caches[i];
-        bool committed = !io_pc2_commit(c->writer, &error);
+        skein_error error = {SKEIN_OK, "", ""};
+        skein_status status = io_pc2_commit(c->writer, &error);
         c->writer = NULL;
-        if (committed) wrote(user, c->path);
-        else app_print_error(&error);
-        good &= committed;
+        note(&book, c->path, status, &error);
     }
     for (size_t e = 0; e < outputs->export_count; e++) {
         const char *kind = outputs->exports[e].kind->name;
-        for (size_t b = 0; !strcmp(kind, "obj") && b < skein_object_count(outputs->loaded->world, SKEIN_BODY); b++) {
-            bool written = write_obj(outputs, b, outputs->exports[e].params, path);
-            if (written) wrote(user, path);
-            good &= written;
-        }
+        if (!strcmp(kind, "obj")) write_objs(outputs, outputs->exports[e].params, &book);
 #ifdef SKEIN_RENDER
-        if (!strcmp(kind, "png")) {
-            bool written = write_picture(outputs, outputs->exports[e].params, path);
-            if (written) wrote(user, path);
-            good &= written;
-        }
+        if (!strcmp(kind, "png")) write_picture(outputs, outputs->exports[e].params, &book);
 #endif
     }
+    memset(outputs->made, 0, sizeof outputs->made); // the folders stay
     app_outputs_abandon(outputs);
-    return good;
+    return book.good;
 }
 
 void app_outputs_abandon(app_outputs *outputs) {
     if (!outputs) return;
-    for (size_t i = 0; outputs->caches && i < outputs->cache_count; i++) io_pc2_abandon(outputs->caches[i].writer);
+    for (size_t i = 0; i < outputs->cache_count; i++) io_pc2_abandon(outputs->caches[i].writer);
+    remove_folders(outputs);
     free(outputs->caches);
+    free(outputs->names);
     free(outputs->positions);
     free(outputs);
 }

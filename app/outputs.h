@@ -6,13 +6,15 @@
 
 typedef struct app_outputs app_outputs;
 
-/* Makes the folder and begins what grows with the run. NULL after a printed fault. */
-app_outputs *app_outputs_begin(const app_scene *loaded, const char *folder);
+/* Makes the folder and begins what grows with the run. Returns an exit status, after a printed fault:
+ * EXIT_FAULT where the folder cannot be. */
+int app_outputs_begin(const app_scene *loaded, const char *folder, app_outputs **begun);
 /* Adds the world's present state as a frame, 0 being the start. False after a printed fault. */
 bool app_outputs_frame(app_outputs *outputs, int frame);
-/* Writes what comes last, gives all files their names and lists them in `report` (one a line, printed
- * by the caller). False after a printed fault. Frees `outputs` in any case. */
+/* Writes what comes last, gives all files their names and names each to `wrote`. False after a printed
+ * fault. Frees `outputs` in any case. */
 bool app_outputs_finish(app_outputs *outputs, void (*wrote)(void *user, const char *path), void *user);
-void app_outputs_abandon(app_outputs *outputs); /* NULL is allowed */
+/* Leaves all as it was: no files, and no folders that were made for them. NULL is allowed. */
+void app_outputs_abandon(app_outputs *outputs);
 
 #endif

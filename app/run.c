@@ -1,6 +1,5 @@
 /* skein run SCENE: simulate, with progress, files and a report. */
-#include <inttypes.h>
-#include <jansson.h>
+#include <errno.h>
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -8,214 +7,174 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/command.h"
 #include "app/outputs.h"
+#include "app/report.h"
 
-/* Set by the first interrupt: the run ends after its frame, and what it has is written. */
+/* The signal that asked for an early end: the run stops after its frame, and what it has is written. */
 static volatile sig_atomic_t interrupted;
 
 static void on_interrupt(int number) {
-    (void)number;
-    interrupted = 1;
-    signal(SIGINT, SIG_DFL); // a second one ends the process at once
+    interrupted = number;
 }
 
-typedef struct run_report {
-    const char *scene_path;
-    const app_scene *loaded;
-    int frames, steps_per_frame;
-    double dt, seconds; /* seconds: spent in steps */
-    skein_statistics statistics;
-    double worst_stretch; /* over the whole run, sampled each frame; the end's is in the statistics */
-    json_t *files;
-} run_report;
+static void catch_interrupts(void) {
+    // a second one ends the process at once
+    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND | SA_RESTART};
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
 
 /* ---- progress ---- */
 
-/* On a terminal a bar that is drawn again in place; else a line every tenth of the run. */
-static void show_progress(int frame, int frames, double start, bool quiet) {
-    if (quiet || !frames) return;
-    bool terminal = isatty(STDERR_FILENO);
-    if (!terminal && frame % ((frames + 9) / 10) && frame != frames) return;
-    double elapsed = app_seconds() - start, left = frame ? elapsed / frame * (frames - frame) : 0;
+typedef struct progress {
+    bool quiet, terminal;
+    bool line_open; /* the cursor stands behind the bar */
+    int frames;
+    double start, last;
+} progress;
+
+static progress start_progress(int frames, bool quiet) {
+    return (progress){.quiet = quiet || !frames, .terminal = isatty(STDERR_FILENO) != 0, .frames = frames, .start = app_seconds()};
+}
+
+/* On a terminal a bar that is drawn again in place, 20 times a second at most; else ten lines a run. */
+static void show_progress(progress *p, int frame) {
+    double now = app_seconds(), elapsed = now - p->start;
+    bool due = p->terminal ? now - p->last >= 0.05 : frame % ((p->frames + 9) / 10) == 0;
+    if (p->quiet || (!due && frame != p->frames)) return;
+    p->last = now;
     char bar[31];
-    int filled = (int)(30.0 * frame / frames);
-    for (int i = 0; i < 30; i++) bar[i] = i < filled ? '#' : '.';
+    for (int i = 0; i < 30; i++) bar[i] = i < (int)(30.0 * frame / p->frames) ? '#' : '.';
     bar[30] = 0;
-    fprintf(stderr, "%s[%s] frame %d of %d, %.1f s, %.0f s left%s", terminal ? "\r" : "", bar, frame, frames, elapsed, left,
-            terminal ? frame == frames ? "   \n" : "   " : "\n");
-    fflush(stderr);
+    fprintf(stderr, "%s[%s] frame %d of %d, %.1f s, %.0f s left%s", p->terminal ? "\r" : "", bar, frame, p->frames, elapsed,
+            elapsed / frame * (p->frames - frame), p->terminal ? "   " : "\n");
+    p->line_open = p->terminal;
 }
 
-/* ---- the report ---- */
-
-static void note_file(void *user, const char *path) {
-    run_report *report = user;
-    json_array_append_new(report->files, json_string(path));
-}
-
-/* A number for JSON, which has no NaN and no infinity. */
-static json_t *finite_or_null(double x) {
-    return isfinite(x) ? json_real(x) : json_null();
-}
-
-static double ms_per_step(const run_report *r) {
-    return r->statistics.steps ? 1e3 * r->seconds / (double)r->statistics.steps : 0;
-}
-
-static double realtime_factor(const run_report *r) {
-    return r->seconds > 0 ? r->statistics.time / r->seconds : 0;
-}
-
-static bool write_report(const run_report *r, const char *folder) {
-    const skein_statistics *s = &r->statistics;
-    const skein_world *world = r->loaded->world;
-    char path[1024], hash[24];
-    snprintf(path, sizeof path, "%s/report.json", folder);
-    snprintf(hash, sizeof hash, "%016" PRIx64, s->state_hash);
-    json_t *root = json_object();
-    json_object_set_new(root, "skein", json_string(SKEIN_VERSION));
-    json_object_set_new(root, "scene", json_string(r->scene_path));
-    json_object_set_new(root, "method", json_string(skein_object_kind(world, skein_object_at(world, SKEIN_METHOD, 0))->name));
-    json_object_set_new(root, "precision", json_string(sizeof(skein_real) == 8 ? "double" : "float"));
-    json_object_set_new(root, "frames", json_integer(r->frames));
-    json_object_set_new(root, "fps", json_real(r->loaded->settings.fps));
-    json_object_set_new(root, "step", json_real(r->dt));
-    json_object_set_new(root, "steps", json_integer((json_int_t)s->steps));
-    json_object_set_new(root, "substeps", json_integer((json_int_t)s->substeps));
-    json_object_set_new(root, "time", finite_or_null(s->time));
-    json_object_set_new(root, "particles", json_integer((json_int_t)s->particles));
-    json_object_set_new(root, "held_particles", json_integer((json_int_t)s->held_particles));
-    json_object_set_new(root, "constraints", json_integer((json_int_t)s->constraints));
-    json_object_set_new(root, "contacts", json_integer((json_int_t)s->contacts));
-    json_object_set_new(root, "load_seconds", json_real(r->loaded->load_seconds));
-    json_object_set_new(root, "run_seconds", json_real(r->seconds));
-    json_object_set_new(root, "ms_per_step", json_real(ms_per_step(r)));
-    json_object_set_new(root, "realtime_factor", json_real(realtime_factor(r)));
-    json_object_set_new(root, "kinetic_energy", finite_or_null(s->kinetic_energy));
-    json_object_set_new(root, "max_stretch", finite_or_null(s->max_stretch));
-    json_object_set_new(root, "p99_stretch", finite_or_null(s->p99_stretch));
-    json_object_set_new(root, "worst_stretch_of_run", finite_or_null(r->worst_stretch));
-    json_object_set_new(root, "max_penetration", finite_or_null(s->max_penetration));
-    json_object_set_new(root, "nonfinite_particles", json_integer((json_int_t)s->nonfinite));
-    json_object_set_new(root, "memory_bytes", json_integer((json_int_t)s->memory_bytes));
-    json_object_set_new(root, "warnings", json_integer((json_int_t)r->loaded->warnings));
-    json_object_set_new(root, "interrupted", json_boolean(interrupted));
-    json_object_set_new(root, "state_hash", json_string(hash));
-    json_object_set(root, "files", r->files);
-    char *text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    json_decref(root);
-    skein_error error = {SKEIN_ERROR_MEMORY, "", "no memory for the report"};
-    io_output *output = text ? io_output_open(path, &error) : NULL;
-    skein_status status = SKEIN_ERROR_FILE;
-    if (output) {
-        io_output_write(output, text, strlen(text));
-        io_output_write(output, "\n", 1);
-        status = io_output_commit(output, &error);
-    }
-    free(text);
-    if (status) app_print_error(&error);
-    return !status;
-}
-
-static void print_report(const run_report *r, const char *folder) {
-    const skein_statistics *s = &r->statistics;
-    printf("%zu particles, %zu constraints; %d frames, %" PRIu64 " steps of %.4g ms%s\n", s->particles, s->constraints, r->frames,
-           s->steps, 1e3 * r->dt, interrupted ? " (interrupted)" : "");
-    printf("%.3f ms a step, %.2f times real time\n", ms_per_step(r), realtime_factor(r));
-    printf("kinetic energy %.3g J, stretch at most %.2f %% (99 %% of edges under %.2f %%), penetration at most %.2g mm\n",
-           s->kinetic_energy, 100 * s->max_stretch, 100 * s->p99_stretch, 1e3 * s->max_penetration);
-    printf("state hash %016" PRIx64 "\n", s->state_hash);
-    size_t index;
-    json_t *file;
-    json_array_foreach(r->files, index, file) printf("wrote %s\n", json_string_value(file));
-    if (folder) printf("wrote %s/report.json\n", folder);
+static void end_progress(progress *p) {
+    if (p->line_open) fprintf(stderr, "\n");
+    p->line_open = false;
 }
 
 /* ---- the run ---- */
 
-/* Steps one frame; false after a printed fault. */
-static bool run_frame(run_report *r) {
-    skein_world *world = r->loaded->world;
-    double start = app_seconds();
-    for (int s = 0; s < r->steps_per_frame; s++)
-        if (skein_world_step(world, r->dt)) {
-            app_print_error(skein_world_error(world));
-            return false;
-        }
-    r->seconds += app_seconds() - start;
+static bool all_finite(const skein_real *xyzw, const skein_view *view) {
+    for (size_t i = 0; i < view->count; i++) {
+        const skein_real *p = xyzw + 4 * (size_t)view->slot_of[i];
+        if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2])) return false;
+    }
     return true;
 }
 
-static int simulate(run_report *r, const char *folder, bool quiet) {
+static bool is_finite(const skein_world *world) {
+    skein_view x = skein_position_view(world), v = skein_velocity_view(world);
+    return all_finite(x.xyzw, &x) && all_finite(v.xyzw, &v);
+}
+
+/* Measures the world as it stands; false after a printed fault. */
+static bool measure(app_report *r) {
     skein_world *world = r->loaded->world;
-    app_outputs *outputs = folder ? app_outputs_begin(r->loaded, folder) : NULL;
-    if (folder && !outputs) return EXIT_FAULT;
-    int frames = r->loaded->settings.frames;
-    double start = app_seconds();
-    bool good = !outputs || app_outputs_frame(outputs, 0);
-    if (good && skein_world_explain(world, r->dt, NULL, NULL)) {
+    if (skein_world_statistics(world, &r->statistics)) {
         app_print_error(skein_world_error(world));
-        app_outputs_abandon(outputs);
-        return EXIT_FAULT;
+        return false;
     }
-    signal(SIGINT, on_interrupt);
-    for (int frame = 1; good && frame <= frames && !interrupted; frame++) {
-        good = run_frame(r) && (!outputs || app_outputs_frame(outputs, frame));
-        r->frames = frame;
-        show_progress(frame, frames, start, quiet);
-        // a run that blew up is said at once, with the frame, instead of being written to the end
-        if (good && frame % 16 && frame != frames) continue;
-        if (!good || skein_world_statistics(world, &r->statistics)) {
-            good = false;
-            break;
-        }
-        if (r->statistics.max_stretch > r->worst_stretch) r->worst_stretch = r->statistics.max_stretch;
-        if (r->statistics.nonfinite) {
-            fprintf(stderr, "\nskein: %s: blew up by frame %d: %zu particles are no longer finite; more substeps or a softer material help\n",
-                    r->scene_path, frame, r->statistics.nonfinite);
-            good = false;
-        }
+    if (r->statistics.max_stretch > r->worst_stretch) r->worst_stretch = r->statistics.max_stretch;
+    return true;
+}
+
+/* Steps one frame; false after a printed fault. */
+static bool run_frame(app_report *r, progress *p) {
+    skein_world *world = r->loaded->world;
+    double start = app_seconds();
+    for (int s = 0; s < r->steps_per_frame; s++) {
+        if (!skein_world_step(world, r->dt)) continue;
+        end_progress(p);
+        app_print_error(skein_world_error(world));
+        return false;
     }
-    if (good) good = !skein_world_statistics(world, &r->statistics);
-    if (!good) {
+    r->seconds += app_seconds() - start;
+    r->frames++;
+    if (is_finite(world)) return r->frames % 16 || measure(r);
+    // said at once, instead of writing such files to the end
+    end_progress(p);
+    if (measure(r))
+        fprintf(stderr, "skein: %s: blew up in frame %d: %zu of %zu particles are no longer finite; more substeps or less stiffness help\n",
+                r->loaded->path, r->frames, r->statistics.nonfinite, r->statistics.particles);
+    return false;
+}
+
+static bool run_frames(app_report *r, app_outputs *outputs, progress *p) {
+    bool good = !outputs || app_outputs_frame(outputs, 0);
+    while (good && r->frames < p->frames && !interrupted) {
+        good = run_frame(r, p) && (!outputs || app_outputs_frame(outputs, r->frames));
+        if (good) show_progress(p, r->frames);
+    }
+    end_progress(p);
+    return good && measure(r);
+}
+
+static void note_file(void *user, const char *path) {
+    app_report *report = user;
+    json_array_append_new(report->files, json_string(path));
+}
+
+static int simulate(app_report *r, const char *folder, bool quiet) {
+    app_outputs *outputs = NULL;
+    catch_interrupts();
+    int status = folder ? app_outputs_begin(r->loaded, folder, &outputs) : EXIT_OK;
+    if (status) return status;
+    progress p = start_progress(r->loaded->settings.frames, quiet);
+    if (!run_frames(r, outputs, &p)) {
         app_outputs_abandon(outputs);
         return EXIT_FAILURE_RUN;
     }
-    if (outputs) good = app_outputs_finish(outputs, note_file, r) && write_report(r, folder);
-    print_report(r, folder);
-    return good ? EXIT_OK : EXIT_FAILURE_RUN;
+    int signal_number = interrupted; // a later one interrupts nothing that matters
+    r->interrupted = signal_number != 0;
+    bool good = !outputs || app_outputs_finish(outputs, note_file, r);
+    if (folder) good = app_report_write(r, folder) && good;
+    app_report_print(r);
+    return !good ? EXIT_FAILURE_RUN : signal_number ? EXIT_SIGNAL + signal_number : EXIT_OK;
+}
+
+/* ---- the arguments ---- */
+
+/* An option that stands for a field of the scene becomes one more --set; `text` holds that. False after a
+ * printed fault. */
+static bool override_field(app_option *options, size_t option_count, const char *name, app_option *sets, char text[64]) {
+    const char *given = app_value(options, option_count, name);
+    if (!given) return true;
+    const skein_field *field = skein_field_find(io_scene_kind(), name + 2, NULL);
+    char *end;
+    skein_value value = skein_number(strtod(given, &end));
+    skein_error error = {SKEIN_ERROR_VALUE, "", ""};
+    if (end == given || *end) value.count = 4; // what no field takes, so that the field says what it does take
+    bool good = field && !skein_field_check(field, &value, &error);
+    snprintf(text, 64, "%s=%.17g", name + 2, value.number[0]);
+    if (!good) fprintf(stderr, "skein run: %s %s: %s\n", name, given, error.message);
+    return good && app_option_add(sets, text);
 }
 
 static int run(int argc, char **argv) {
     app_option options[] = {
+        {"--set", "PATH=VALUE", "change a value of the scene: bodies.0.stretch.stiffness=2e4; may be repeated", true, NULL, 0},
         {"--out", "FOLDER", "write the scene's outputs and report.json there (made if missing)", false, NULL, 0},
         {"--frames", "N", "frames to run, instead of the scene's", false, NULL, 0},
-        {"--fps", "N", "frames a second of simulated time", false, NULL, 0},
+        {"--fps", "N", "frames a second of simulated time, instead of the scene's", false, NULL, 0},
         {"--threads", "N", "threads to run on, 1 to 64; the result is the same", false, NULL, 0},
-        {"--set", "PATH=VALUE", "change a value of the scene: bodies.0.stretch.stiffness=2e4; may be repeated", true, NULL, 0},
         {"--quiet", NULL, "no progress", false, NULL, 0},
     };
     enum { COUNT = sizeof options / sizeof *options };
-    const char *words[1];
-    size_t word_count;
-    int status = app_parse(&app_run_command, argc, argv, options, COUNT, words, 1, &word_count);
-    if (status < 0 && !word_count) {
-        fprintf(stderr, "skein run: which scene? usage: skein run %s\n", app_run_command.usage);
-        status = EXIT_FAULT;
-    }
-    double frames = -1, fps = 0, threads = 0;
-    const char *text;
-    if (status < 0 && (text = app_value(options, COUNT, "--frames")) && !app_number("--frames", text, 0, 1e8, &frames)) status = EXIT_FAULT;
-    if (status < 0 && (text = app_value(options, COUNT, "--fps")) && !app_number("--fps", text, 1e-3, 1e6, &fps)) status = EXIT_FAULT;
-    if (status < 0 && (text = app_value(options, COUNT, "--threads")) && !app_number("--threads", text, 1, 64, &threads)) status = EXIT_FAULT;
+    static const char *const fields[] = {"--frames", "--fps", "--threads"};
+    char texts[3][64];
+    const char *path;
+    int status = app_parse(&app_run_command, argc, argv, options, COUNT, "scene", &path);
+    for (int i = 0; i < 3 && status < 0; i++)
+        if (!override_field(options, COUNT, fields[i], &options[0], texts[i])) status = EXIT_FAULT;
     if (status < 0) {
         app_scene loaded;
-        status = app_load(words[0], options[4].values, (int)threads, &loaded);
+        status = app_load(path, options[0].values, &loaded);
         if (!status) {
-            if (frames >= 0) loaded.settings.frames = (int)frames;
-            if (fps > 0) loaded.settings.fps = fps;
-            run_report report = {.scene_path = words[0], .loaded = &loaded, .files = json_array()};
+            app_report report = {.loaded = &loaded, .files = json_array()};
             report.steps_per_frame = io_scene_steps_per_frame(&loaded.settings, &report.dt);
             status = simulate(&report, app_value(options, COUNT, "--out"), app_value(options, COUNT, "--quiet") != NULL);
             json_decref(report.files);
@@ -233,6 +192,8 @@ const app_command app_run_command = {
     "  skein run scenes/flag.json --frames 240 --fps 60 --threads 2 --set bodies.0.stretch.stiffness=2e4\n\n"
     "The outputs are the scene's: by default an OBJ of each body at the end, a PC2 point cache of the whole\n"
     "run (for Blender's Mesh Cache modifier), and a PNG of the last frame. Files appear under their names\n"
-    "only when they are complete. Exit status 2: a fault in the scene or the arguments; 1: the run failed.",
+    "only when they are complete. Interrupted (Ctrl-C), a run writes what it has.\n\n"
+    "Exit status 0: done; 1: the run failed, or a file could not be written; 2: a fault in the scene or the\n"
+    "arguments; 130: interrupted.",
     run,
 };

@@ -7,22 +7,24 @@
 
 #include "io/scene_settings.h"
 
-enum { SCENE_VERSION = 1, MOST_EXPORTS = 16, MOST_SCENE_BYTES = 64 << 20 };
+enum { SCENE_VERSION = 1, MOST_EXPORTS = 16, MOST_SCENE_BYTES = 64 << 20, MOST_STEPS_PER_FRAME = 1000000 };
 
 struct io_scene {
-    json_t *root;
+    json_t *root; /* an object */
     char *path;
     io_scene_settings settings;
     io_export exports[MOST_EXPORTS];
     size_t export_count;
 };
 
+/* ---- what stands at the top of a scene ---- */
+
 #define FIELD(member, name, type, unit, initial, least, most, text, help)                                             \
     {name, type, offsetof(io_scene_settings, member), unit, {initial, 0, 0}, least, most, NULL, text, help}
 
 static const skein_field scene_fields[] = {
     FIELD(version, "skein", SKEIN_FIELD_INT, "", SCENE_VERSION, 1, SCENE_VERSION, NULL, "version of the scene format"),
-    FIELD(name, "name", SKEIN_FIELD_TEXT, "", 0, 0, 0, "", "a title"),
+    FIELD(name, "name", SKEIN_FIELD_TEXT, "", 0, 0, 0, "", "a title; the picture's file is called so"),
     FIELD(description, "description", SKEIN_FIELD_TEXT, "", 0, 0, 0, "", "what it shows"),
     FIELD(frames, "frames", SKEIN_FIELD_INT, "", 240, 0, 100000000, NULL, "how many frames a run makes"),
     FIELD(fps, "fps", SKEIN_FIELD_REAL, "1/s", 60, 1e-3, 1e6, NULL, "frames a second of simulated time"),
@@ -31,21 +33,35 @@ static const skein_field scene_fields[] = {
     FIELD(threads, "threads", SKEIN_FIELD_INT, "", 1, 1, 64, NULL, "threads to run on; the result is the same"),
 };
 
+static const io_scene_section sections[] = {
+    {"method", SKEIN_METHOD, "what turns rules into motion: { \"type\": \"xpbd\", \"substeps\": 10 }, say"},
+    {"bodies", SKEIN_BODY, "a list: [ { \"type\": \"cloth\", ... }, ... ]"},
+    {"constraints", SKEIN_CONSTRAINT, "a list; each has \"particles\", too: [[0, 1], [1, 2]]"},
+    {"forces", SKEIN_FORCE, "a list"},
+    {"colliders", SKEIN_COLLIDER, "a list"},
+    {"output", SKEIN_EXPORTER, "a list of exporters: [\"obj\", { \"type\": \"pc2\", \"every\": 2 }]; all there are if it is missing"},
+};
+enum { SECTION_COUNT = sizeof sections / sizeof *sections };
+
 const skein_kind *io_scene_kind(void) {
     static const skein_kind kind = {"scene", "a file of bodies, rules and a method, in JSON and SI units", SKEIN_SCENE, scene_fields,
                                     sizeof scene_fields / sizeof *scene_fields, sizeof(io_scene_settings)};
     return &kind;
 }
 
-int io_scene_steps_per_frame(const io_scene_settings *settings, double *dt) {
-    double steps = ceil(1 / (settings->fps * settings->step) - 1e-6);
-    if (steps < 1) steps = 1;
-    if (steps > 1e6) steps = 1e6;
-    *dt = 1 / (settings->fps * steps);
-    return (int)steps;
+const io_scene_section *io_scene_section_at(size_t index) {
+    return index < SECTION_COUNT ? &sections[index] : NULL;
 }
 
-/* ---- settings into plain structs (the scene's own and the exporters') ---- */
+/* ---- settings into plain structs: the scene's own and the exporters' ---- */
+
+static int32_t choice_place(const char *choices, const char *word) {
+    int32_t place = 0;
+    // it is there: the value was checked
+    for (size_t length = strlen(word); strcspn(choices, "|") != length || strncmp(choices, word, length); place++)
+        choices = strchr(choices, '|') + 1;
+    return place;
+}
 
 /* Stores a checked value at a field's offset, as the library does; texts are copied. */
 static bool store(const skein_field *field, void *params, const skein_value *value) {
@@ -54,69 +70,93 @@ static bool store(const skein_field *field, void *params, const skein_value *val
     case SKEIN_FIELD_BOOL: *(bool *)at = value->number[0] != 0; break;
     case SKEIN_FIELD_INT:
     case SKEIN_FIELD_INT2:
-        for (int i = 0; i < value->count; i++) ((int32_t *)(void *)at)[i] = (int32_t)value->number[i];
+        for (int i = 0; i < io_field_numbers(field); i++) ((int32_t *)(void *)at)[i] = (int32_t)value->number[i];
         break;
     case SKEIN_FIELD_REAL:
     case SKEIN_FIELD_REAL2:
-    case SKEIN_FIELD_VEC3: memcpy(at, value->number, (size_t)value->count * sizeof(double)); break;
-    case SKEIN_FIELD_CHOICE: {
-        int32_t place = (int32_t)value->number[0];
-        if (value->text) {
-            place = 0;
-            for (const char *word = field->choices; strcspn(word, "|") != strlen(value->text) || strncmp(word, value->text, strlen(value->text)); place++)
-                word = strchr(word, '|') + 1; // it is there: the value was checked
-        }
-        *(int32_t *)(void *)at = place;
+    case SKEIN_FIELD_VEC3: memcpy(at, value->number, (size_t)io_field_numbers(field) * sizeof(double)); break;
+    case SKEIN_FIELD_CHOICE:
+        *(int32_t *)(void *)at = value->text ? choice_place(field->choices, value->text) : (int32_t)value->number[0];
         break;
-    }
     case SKEIN_FIELD_TEXT:
         free(*(char **)(void *)at);
-        *(char **)(void *)at = strdup(value->text);
+        *(char **)(void *)at = strdup(value->text ? value->text : "");
         return *(char **)(void *)at != NULL;
     }
     return true;
 }
 
+/* The defaults, then the settings. False when there is no memory. */
 static bool fill_params(const skein_kind *kind, void *params, const io_settings *settings) {
     bool good = true;
     for (size_t i = 0; i < kind->field_count; i++) {
         const skein_field *field = &kind->fields[i];
-        int count = field->type == SKEIN_FIELD_VEC3 ? 3 : field->type == SKEIN_FIELD_INT2 || field->type == SKEIN_FIELD_REAL2 ? 2 : 1;
-        skein_value value = {count, {field->initial[0], field->initial[1], field->initial[2]}, field->type == SKEIN_FIELD_TEXT ? field->text : NULL};
+        skein_value value = {0, {field->initial[0], field->initial[1], field->initial[2]}, field->text};
         good &= store(field, params, &value);
-        for (size_t s = 0; settings && s < settings->count; s++)
+        for (size_t s = 0; s < settings->count; s++)
             if (!strcmp(settings->data[s].name, field->name)) good &= store(field, params, &settings->data[s].value);
     }
     return good;
 }
 
+static void clear_params(const skein_kind *kind, void *params) {
+    for (size_t i = 0; i < kind->field_count; i++)
+        if (kind->fields[i].type == SKEIN_FIELD_TEXT) free(*(char **)(void *)((char *)params + kind->fields[i].offset));
+}
+
 /* ---- exporters ---- */
 
-static const skein_kind *find_exporter(const char *name, const skein_kind *const *exporters) {
-    for (; *exporters; exporters++)
-        if (!strcmp((*exporters)->name, name)) return *exporters;
+static const skein_kind *find_exporter(io_place place, const json_t *object, const skein_kind *const *exporters) {
+    char hint[IO_HINT_SIZE], words[IO_JSON_WORDS_SIZE];
+    const char *names[MOST_EXPORTS], *member = json_is_object(object) ? "type" : "";
+    size_t count = 0;
+    const json_t *name = json_is_object(object) ? json_object_get(object, "type") : object;
+    for (; count < MOST_EXPORTS && exporters[count]; count++) {
+        names[count] = exporters[count]->name;
+        if (json_is_string(name) && !strcmp(names[count], json_string_value(name))) return exporters[count];
+    }
+    if (json_is_string(name))
+        io_fault(place, member, SKEIN_ERROR_NAME, "there is no exporter '%s'%s", json_string_value(name),
+                 io_hint(json_string_value(name), names, count, hint));
+    else
+        io_fault(place, member, SKEIN_ERROR_VALUE, "expected the name of an exporter, such as \"obj\"%s%s", name ? ", not " : ": it is missing",
+                 name ? io_json_words(name, words) : "");
     return NULL;
 }
 
 static void add_export(io_scene *scene, io_place place, const json_t *object, const skein_kind *const *exporters) {
-    const char *type = json_is_string(object) ? json_string_value(object) : json_string_value(json_object_get(object, "type"));
-    const skein_kind *kind = type ? find_exporter(type, exporters) : NULL;
-    if (!kind) {
-        io_fault(place, "type", SKEIN_ERROR_NAME, "%s%s%s: expected an exporter; `skein list exporters` shows them", type ? "'" : "", type ? type : "missing",
-                 type ? "'" : "");
+    const skein_kind *kind = find_exporter(place, object, exporters);
+    if (!kind) return;
+    for (size_t i = 0; i < scene->export_count; i++) {
+        if (scene->exports[i].kind != kind) continue;
+        io_fault(place, "", SKEIN_ERROR_VALUE, "a second %s would write the same files", kind->name);
         return;
     }
-    if (scene->export_count == MOST_EXPORTS) {
-        io_fault(place, "", SKEIN_ERROR_LIMIT, "more than %d outputs", MOST_EXPORTS);
-        return;
-    }
-    io_settings settings = {0};
     static const char *const skip[] = {"type", NULL};
-    bool good = !json_is_object(object) || io_settings_read(&settings, place, object, kind, skip);
-    void *params = good ? calloc(1, kind->params_size) : NULL;
-    if (params && fill_params(kind, params, &settings)) scene->exports[scene->export_count++] = (io_export){kind, params};
-    else free(params);
+    io_settings settings = {0};
+    if (!json_is_object(object) || io_settings_read(&settings, place, object, kind, skip)) {
+        void *params = calloc(1, kind->params_size);
+        // there is room: no more kinds are looked at, and each is there once
+        if (params) scene->exports[scene->export_count++] = (io_export){kind, params};
+        if (!params || !fill_params(kind, params, &settings)) io_fault(place, "", SKEIN_ERROR_MEMORY, "out of memory");
+    }
     io_settings_free(&settings);
+}
+
+static void read_outputs(io_scene *scene, io_place place, const skein_kind *const *exporters) {
+    json_t *outputs = json_object_get(scene->root, "output"), *standard = NULL, *item;
+    char words[IO_JSON_WORDS_SIZE];
+    if (!outputs) outputs = standard = json_array();
+    for (size_t i = 0; standard && exporters[i]; i++) json_array_append_new(standard, json_string(exporters[i]->name));
+    if (!json_is_array(outputs))
+        io_fault(place, "output", SKEIN_ERROR_VALUE, "expected a list of exporters, such as [\"obj\", \"pc2\"], not %s", io_json_words(outputs, words));
+    size_t index;
+    json_array_foreach(outputs, index, item) {
+        char path[64];
+        snprintf(path, sizeof path, "output.%zu", index);
+        add_export(scene, (io_place){place.file, path, place.faults}, item, exporters);
+    }
+    json_decref(standard);
 }
 
 size_t io_scene_exports(const io_scene *scene, io_export *exports, size_t most) {
@@ -127,70 +167,110 @@ size_t io_scene_exports(const io_scene *scene, io_export *exports, size_t most) 
 
 /* ---- reading ---- */
 
-static const char *const sections[] = {"method", "bodies", "constraints", "forces", "colliders", "output", NULL};
-
-static void read_outputs(io_scene *scene, io_place place, const skein_kind *const *exporters) {
-    const json_t *outputs = json_object_get(scene->root, "output");
-    json_t *standard = json_array();
-    for (size_t i = 0; exporters[i]; i++) json_array_append_new(standard, json_string(exporters[i]->name));
-    if (!outputs) outputs = standard;
-    if (!json_is_array(outputs)) io_fault(place, "output", SKEIN_ERROR_VALUE, "expected a list of exporters, such as [\"obj\", \"pc2\"]");
-    size_t index;
-    json_t *item;
-    json_array_foreach(outputs, index, item) {
-        char path[64];
-        snprintf(path, sizeof path, "output.%zu", index);
-        add_export(scene, (io_place){place.file, path, place.faults}, item, exporters);
-    }
-    json_decref(standard);
+/* Steps that make a frame, as a number of any size. */
+static double steps_per_frame(const io_scene_settings *settings) {
+    return fmax(ceil(1 / (settings->fps * settings->step) - 1e-6), 1);
 }
 
-io_scene *io_scene_read(const char *path, const char *const *sets, const skein_kind *const *exporters, io_faults *faults) {
-    io_place place = {path, "", faults};
-    skein_error error = {SKEIN_OK, "", ""};
-    io_bytes bytes;
-    if (io_file_read(path, MOST_SCENE_BYTES, &bytes, &error)) {
-        faults->count++;
-        if (faults->report) faults->report(faults->user, &error);
+int io_scene_steps_per_frame(const io_scene_settings *settings, double *dt) {
+    double steps = fmin(steps_per_frame(settings), MOST_STEPS_PER_FRAME); // more was a fault
+    *dt = 1 / (settings->fps * steps);
+    return (int)steps;
+}
+
+/* The scene's own fields. What has a fault keeps its default. */
+static void read_top(io_scene *scene, io_place place) {
+    const char *others[SECTION_COUNT + 1] = {NULL};
+    for (size_t i = 0; i < SECTION_COUNT; i++) others[i] = sections[i].name;
+    io_settings settings;
+    io_settings_read(&settings, place, scene->root, io_scene_kind(), others);
+    if (!fill_params(io_scene_kind(), &scene->settings, &settings)) io_fault(place, "", SKEIN_ERROR_MEMORY, "out of memory");
+    io_settings_free(&settings);
+    const io_scene_settings *s = &scene->settings;
+    if (steps_per_frame(s) > MOST_STEPS_PER_FRAME)
+        io_fault(place, "step", SKEIN_ERROR_LIMIT, "a frame of %g s is more than %d steps of %g s", 1 / s->fps, MOST_STEPS_PER_FRAME, s->step);
+}
+
+/* Whether the document is a scene of a version that this reader knows: with any other, each further fault
+ * would be noise. */
+static bool is_a_scene(const json_t *root, io_place place) {
+    char words[IO_JSON_WORDS_SIZE];
+    const json_t *version = json_object_get(root, "skein");
+    if (!json_is_object(root)) {
+        io_fault(place, "", SKEIN_ERROR_SYNTAX, "expected an object: { \"bodies\": [...], ... }, not %s", io_json_words(root, words));
+        return false;
+    }
+    if (!json_is_integer(version) || json_integer_value(version) <= SCENE_VERSION) return true;
+    io_fault(place, "skein", SKEIN_ERROR_VALUE, "the scene is of version %lld; this skein reads version %d",
+             (long long)json_integer_value(version), SCENE_VERSION);
+    return false;
+}
+
+static json_t *parse(const char *text, size_t size, const char *path, io_faults *faults) {
+    // some editors begin UTF-8 with a mark
+    if (size >= 3 && !memcmp(text, "\xef\xbb\xbf", 3)) text += 3, size -= 3;
+    size_t blank = 0;
+    while (blank < size && memchr(" \t\r\n", text[blank], 4)) blank++;
+    bool utf16 = size >= 2 && (!memcmp(text, "\xff\xfe", 2) || !memcmp(text, "\xfe\xff", 2));
+    if (blank == size || utf16) {
+        io_fault((io_place){path, "", faults}, "", SKEIN_ERROR_SYNTAX,
+                 utf16 ? "the file is UTF-16: expected UTF-8" : "the file is empty: expected a scene, { \"bodies\": [...], ... }");
         return NULL;
     }
     json_error_t syntax;
-    json_t *root = json_loadb(bytes.data, bytes.size, JSON_REJECT_DUPLICATES, &syntax);
-    io_bytes_free(&bytes);
-    if (!root) {
-        char where[256];
-        snprintf(where, sizeof where, "%s:%d:%d", path, syntax.line, syntax.column);
-        io_fault((io_place){where, "", faults}, "", SKEIN_ERROR_SYNTAX, "%s", syntax.text);
+    json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES | JSON_DECODE_ANY, &syntax);
+    if (root) return root;
+    char where[256];
+    size_t length = strlen(path), room = sizeof where - 40;
+    snprintf(where, sizeof where, "%s%s:%d:%d", length > room ? "..." : "", length > room ? path + length - room : path, syntax.line, syntax.column);
+    bool nul = json_error_code(&syntax) == json_error_null_character;
+    io_fault((io_place){where, "", faults}, "", SKEIN_ERROR_SYNTAX, "%s", nul ? "\\u0000 is not allowed in a text" : syntax.text);
+    return NULL;
+}
+
+io_scene *io_scene_read_text(const char *text, size_t size, const char *path, const char *const *sets,
+                             const skein_kind *const *exporters, io_faults *faults) {
+    io_place place = {path, "", faults};
+    json_t *root = parse(text, size, path, faults);
+    if (!root) return NULL;
+    io_scene *scene = calloc(1, sizeof *scene);
+    if (!scene || !(scene->path = strdup(path))) {
+        json_decref(root);
+        free(scene);
+        io_fault(place, "", SKEIN_ERROR_MEMORY, "out of memory");
         return NULL;
     }
-    io_scene *scene = calloc(1, sizeof *scene);
-    io_settings settings = {0};
-    bool good = scene != NULL && (scene->path = strdup(path)) != NULL;
-    if (good) scene->root = root;
-    else json_decref(root);
-    if (good && !json_is_object(root)) {
-        io_fault(place, "", SKEIN_ERROR_SYNTAX, "expected an object: { \"bodies\": [...], ... }");
-        good = false;
-    }
-    for (; good && sets && *sets; sets++) good = io_scene_override(root, *sets, place);
-    if (good) good = io_settings_read(&settings, place, root, io_scene_kind(), sections);
-    // the world is built all the same, to name the faults that are in there
-    if (scene && scene->root && json_is_object(root)) {
-        fill_params(io_scene_kind(), &scene->settings, good ? &settings : NULL);
+    scene->root = root;
+    for (; json_is_object(root) && sets && *sets; sets++) io_scene_override(root, *sets, faults);
+    if (is_a_scene(root, place)) {
+        read_top(scene, place);
         read_outputs(scene, place, exporters);
+        return scene;
     }
-    io_settings_free(&settings);
-    if (scene && json_is_object(scene->root)) return scene;
     io_scene_free(scene);
     return NULL;
 }
 
+io_scene *io_scene_read(const char *path, const char *const *sets, const skein_kind *const *exporters, io_faults *faults) {
+    skein_error error = {SKEIN_OK, "", ""};
+    io_bytes bytes;
+    if (io_file_read(path, MOST_SCENE_BYTES, &bytes, &error)) {
+        io_fault((io_place){path, "", faults}, "", error.status, "%s", error.message);
+        return NULL;
+    }
+    io_scene *scene = io_scene_read_text(bytes.data, bytes.size, path, sets, exporters, faults);
+    io_bytes_free(&bytes);
+    return scene;
+}
+
 void io_scene_free(io_scene *scene) {
     if (!scene) return;
-    for (size_t i = 0; i < scene->export_count; i++) free((void *)(uintptr_t)scene->exports[i].params);
+    for (size_t i = 0; i < scene->export_count; i++) {
+        clear_params(scene->exports[i].kind, (void *)(uintptr_t)scene->exports[i].params);
+        free((void *)(uintptr_t)scene->exports[i].params);
+    }
+    clear_params(io_scene_kind(), &scene->settings);
     json_decref(scene->root);
-    free(scene->settings.name);
-    free(scene->settings.description);
     free(scene->path);
     free(scene);
 }
@@ -199,6 +279,8 @@ const io_scene_settings *io_scene_get(const io_scene *scene) {
     return &scene->settings;
 }
 
-skein_world *io_scene_build(io_scene *scene, const skein_world_desc *desc, io_faults *faults) {
-    return io_world_from_document(scene->root, scene->path, desc, faults);
+skein_world *io_scene_build(const io_scene *scene, const skein_world_desc *desc, io_faults *faults) {
+    double dt;
+    io_scene_steps_per_frame(&scene->settings, &dt);
+    return io_world_from_document(scene->root, scene->path, dt, desc, faults);
 }

@@ -3,8 +3,8 @@
  *   file --io_scene_read--> description (JSON, with --set applied) --io_scene_build--> world
  *
  * Owns: the scene's document and the meshes that it names. Called by the command. Every fault is named
- * with its place, the path in the scene ("bodies.0.stretch.stiffness") or the line and column, and what
- * was expected; reading goes on after a fault, so that one look shows them all. */
+ * with its place, the path in the scene ("bodies.0.stretch.stiffness") or the line and column, what was
+ * found and what was expected; reading goes on after a fault, so that one look shows them all. */
 #ifndef SKEIN_IO_SCENE_H
 #define SKEIN_IO_SCENE_H
 
@@ -23,25 +23,38 @@ typedef struct io_scene_settings {
 /* The kind "scene": its fields and their defaults. */
 const skein_kind *io_scene_kind(void);
 
-/* Where faults go, one a call; `error` holds place and words. */
+/* What else stands at the top of a scene: "method" and the lists of objects; `index` from 0, NULL past the end. */
+typedef struct io_scene_section {
+    const char *name;
+    skein_category category;
+    const char *help;
+} io_scene_section;
+const io_scene_section *io_scene_section_at(size_t index);
+
+/* Where faults go, one a call; `error` holds place and words, each on one line. */
 typedef struct io_faults {
     void (*report)(void *user, const skein_error *error);
     void *user;
     size_t count; /* so far */
 } io_faults;
 
-/* Reads a scene file and applies `sets`, each "path=value" (NULL-terminated list, or NULL). `exporters` are
- * the kinds that its "output" may name, NULL-terminated. NULL on failure; the faults say why. */
+/* Reads a scene and applies `sets`, each "path=value" (NULL-terminated list, or NULL). `exporters` are the
+ * kinds that its "output" may name, NULL-terminated. NULL where there is no document to go on with; after
+ * any other fault the scene can still be built, to name the faults that only building finds. */
 io_scene *io_scene_read(const char *path, const char *const *sets, const skein_kind *const *exporters, io_faults *faults);
+/* The same from memory; `path` serves messages and finds meshes. */
+io_scene *io_scene_read_text(const char *text, size_t size, const char *path, const char *const *sets,
+                             const skein_kind *const *exporters, io_faults *faults);
 void io_scene_free(io_scene *scene); /* NULL is allowed */
 
 const io_scene_settings *io_scene_get(const io_scene *scene);
 
-/* Checks everything and builds the world. NULL if there was any fault. `desc` as for skein_world_create. */
-skein_world *io_scene_build(io_scene *scene, const skein_world_desc *desc, io_faults *faults);
+/* Checks everything, the method's demands too, and builds the world. NULL if there was any fault, here or
+ * in reading. `desc` as for skein_world_create. */
+skein_world *io_scene_build(const io_scene *scene, const skein_world_desc *desc, io_faults *faults);
 
-/* The exporters that the scene asks for, in its order (one of each there is if it asks for none). Fills up
- * to `most`; the parameter structs are freed with the scene. */
+/* The exporters that the scene asks for, in its order, at most one of each kind (one of each there is if it
+ * asks for none). Fills up to `most`; the parameter structs are freed with the scene. */
 typedef struct io_export {
     const skein_kind *kind;
     const void *params;
@@ -50,5 +63,9 @@ size_t io_scene_exports(const io_scene *scene, io_export *exports, size_t most);
 
 /* How many whole steps of which length make one frame: the scene's step, made to fit. */
 int io_scene_steps_per_frame(const io_scene_settings *settings, double *dt);
+
+/* "; did you mean 'x'?" for the nearest of `count` names, or "". Returns `hint`. */
+#define IO_HINT_SIZE 96
+const char *io_hint(const char *name, const char *const *names, size_t count, char hint[IO_HINT_SIZE]);
 
 #endif

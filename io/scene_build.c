@@ -9,149 +9,188 @@
 typedef struct builder {
     skein_world *world;
     const char *file;
+    const skein_world_desc *desc;
     io_faults *faults;
+    bool body_missing; /* a body had a fault, so that particles have other numbers than the scene means */
 } builder;
 
-/* A fault that the library found: its place is a field's name. */
-static void report_library_fault(io_place place, const skein_error *error) {
-    io_fault(place, error->where, error->status, "%s", error->message);
+/* A fault that the library found: its place is a field's name, or nothing. */
+static void report_library_fault(const builder *b, io_place place, const char *nothing) {
+    const skein_error *error = skein_world_error(b->world);
+    io_fault(place, error->where[0] ? error->where : nothing, error->status, "%s", error->message);
 }
 
-/* ---- meshes and constraints: what settings cannot hold ---- */
-
-/* The mesh's path, relative to the scene's folder. */
-static void mesh_path(const char *scene, const char *mesh, char *path, size_t size) {
-    const char *slash = strrchr(scene, '/');
-    if (mesh[0] == '/' || !slash) snprintf(path, size, "%s", mesh);
-    else snprintf(path, size, "%.*s/%s", (int)(slash - scene), scene, mesh);
-}
-
-typedef struct warning_sink {
-    io_place place;
-    const skein_world_desc *desc;
-} warning_sink;
+/* ---- bodies: the mesh is read here ---- */
 
 static void pass_warning(void *user, const char *line) {
-    const warning_sink *sink = user;
-    if (sink->desc && sink->desc->log) sink->desc->log(sink->desc->log_user, SKEIN_LOG_WARNING, line);
+    const skein_world_desc *desc = user;
+    if (desc->log) desc->log(desc->log_user, SKEIN_LOG_WARNING, line);
 }
 
-static bool add_body(builder *b, io_place place, const char *type, const io_settings *settings, const skein_world_desc *desc) {
-    const char *file = io_settings_text(settings, "mesh");
-    io_mesh mesh = {0};
-    skein_mesh view = {0};
-    if (file && file[0]) {
-        char path[1024];
-        skein_error error = {SKEIN_OK, "", ""};
-        warning_sink sink = {place, desc};
-        mesh_path(b->file, file, path, sizeof path);
-        if (io_mesh_read(path, &mesh, (io_warnings){pass_warning, &sink}, &error)) {
-            io_fault(place, "mesh", error.status, "%s: %s", error.where, error.message);
-            return false;
-        }
-        view = io_mesh_view(&mesh);
+/* Reads a mesh whose path is relative to the scene's folder. */
+static bool read_mesh(const builder *b, io_place place, const char *file, io_mesh *mesh) {
+    const char *slash = file[0] == '/' ? NULL : strrchr(b->file, '/');
+    size_t folder = slash ? (size_t)(slash + 1 - b->file) : 0, size = folder + strlen(file) + 1;
+    char *path = malloc(size);
+    skein_status status = SKEIN_ERROR_MEMORY;
+    skein_error error = {SKEIN_ERROR_MEMORY, "", "out of memory"};
+    // the library only reads a world's description, and so does pass_warning
+    io_warnings warnings = {b->desc ? pass_warning : NULL, (void *)(uintptr_t)b->desc};
+    if (path) {
+        snprintf(path, size, "%.*s%s", (int)folder, b->file, file);
+        status = io_mesh_read(path, mesh, warnings, &error);
+        free(path);
     }
-    bool good = !skein_body_add(b->world, type, mesh.vertex_count ? &view : NULL, settings->data, NULL);
-    if (!good) report_library_fault(place, skein_world_error(b->world));
+    if (status) io_fault(place, "mesh", status, "%s%s%s", error.where, error.where[0] ? ": " : "", error.message);
+    return !status;
+}
+
+static bool add_body(const builder *b, io_place place, const skein_kind *kind, const io_settings *settings) {
+    const char *file = io_settings_text(settings, "mesh");
+    bool has_mesh = file && file[0];
+    io_mesh mesh = {0};
+    if (has_mesh && !read_mesh(b, place, file, &mesh)) return false;
+    skein_mesh view = io_mesh_view(&mesh);
+    bool good = !skein_body_add(b->world, kind->name, has_mesh ? &view : NULL, settings->data, NULL);
+    if (!good) report_library_fault(b, place, "");
     io_mesh_free(&mesh);
     return good;
 }
 
-/* "particles": a flat list of indices, or a list of lists, one a constraint. */
-static bool add_constraint(builder *b, io_place place, const char *type, const json_t *object, const io_settings *settings, size_t arity) {
-    const json_t *list = json_object_get(object, "particles"), *item;
-    size_t capacity = 0, count = 0, index;
-    uint32_t *particles = NULL;
-    bool good = json_is_array(list);
-    json_array_foreach(list, index, item) {
-        size_t inner_count = json_is_array(item) ? json_array_size(item) : 1;
-        for (size_t i = 0; i < inner_count && good; i++) {
-            const json_t *number = json_is_array(item) ? json_array_get(item, i) : item;
-            long long value = json_integer_value(number);
-            good = json_is_integer(number) && value >= 0 && value < UINT32_MAX && io_grow(&particles, &capacity, count + 1, sizeof *particles);
-            if (good) particles[count++] = (uint32_t)value;
+/* ---- constraints: the particles are read here ---- */
+
+typedef struct index_list {
+    uint32_t *data;
+    size_t count, capacity;
+} index_list;
+
+/* `index` is the number's place in the list, for the message. */
+static bool add_index(index_list *list, io_place place, size_t index, const json_t *json) {
+    char words[IO_JSON_WORDS_SIZE], member[40];
+    long long value = json_integer_value(json);
+    snprintf(member, sizeof member, "particles.%zu", index);
+    if (!json_is_integer(json) || value < 0 || value >= UINT32_MAX) {
+        io_fault(place, member, SKEIN_ERROR_VALUE, "expected the number of a particle, not %s", io_json_words(json, words));
+        return false;
+    }
+    if (!io_grow(&list->data, &list->capacity, list->count + 1, sizeof *list->data)) {
+        io_fault(place, member, SKEIN_ERROR_MEMORY, "out of memory");
+        return false;
+    }
+    list->data[list->count++] = (uint32_t)value;
+    return true;
+}
+
+/* [[0, 1], [1, 2]]: a list for each constraint; or all of them in one flat list. */
+static bool read_indices(index_list *list, io_place place, const json_t *json, size_t arity) {
+    char words[IO_JSON_WORDS_SIZE], member[40];
+    for (size_t i = 0; i < json_array_size(json); i++) {
+        const json_t *item = json_array_get(json, i);
+        snprintf(member, sizeof member, "particles.%zu", i);
+        if (!json_is_array(item)) {
+            if (!add_index(list, place, i, item)) return false;
+        } else if (json_array_size(item) != arity) {
+            io_fault(place, member, SKEIN_ERROR_VALUE, "expected the numbers of %zu particles, not %s", arity, io_json_words(item, words));
+            return false;
         }
+        for (size_t k = 0; k < json_array_size(item); k++)
+            if (!add_index(list, place, i, json_array_get(item, k))) return false;
     }
-    if (!good || !count || count % arity) {
-        io_fault(place, "particles", SKEIN_ERROR_VALUE, "expected a list of particle numbers, %zu for each %s, such as [[0, 1], [1, 2]]", arity, type);
-        good = false;
-    } else if (skein_constraint_add(b->world, type, particles, count / arity, settings->data, NULL)) {
-        report_library_fault(place, skein_world_error(b->world));
-        good = false;
-    }
-    free(particles);
-    return good;
+    if (list->count && list->count % arity == 0) return true;
+    io_fault(place, "particles", SKEIN_ERROR_VALUE, "expected the numbers of %zu particles for each constraint, [[0, 1], [1, 2]], say; %s%s", arity,
+             json ? "not " : "it is missing", json ? io_json_words(json, words) : "");
+    return false;
+}
+
+static void add_constraint(const builder *b, io_place place, const skein_kind *kind, const json_t *object, const io_settings *settings) {
+    enum { ARITY = 2 }; // of every kind that there is
+    index_list list = {0};
+    if (read_indices(&list, place, json_object_get(object, "particles"), ARITY) && !b->body_missing &&
+        skein_constraint_add(b->world, kind->name, list.data, list.count / ARITY, settings->data, NULL))
+        report_library_fault(b, place, "particles");
+    free(list.data);
 }
 
 /* ---- objects ---- */
 
 /* The kind that an object names by its "type"; NULL after a fault. */
 static const skein_kind *kind_of(io_place place, const json_t *object, skein_category category) {
+    char words[IO_JSON_WORDS_SIZE];
     if (!json_is_object(object)) {
-        io_fault(place, "", SKEIN_ERROR_VALUE, "expected an object: { \"type\": ..., ... }");
+        io_fault(place, "", SKEIN_ERROR_VALUE, "expected an object, { \"type\": ... }, not %s", io_json_words(object, words));
         return NULL;
     }
-    const char *type = json_string_value(json_object_get(object, "type"));
-    if (!type) {
-        io_fault(place, "type", SKEIN_ERROR_VALUE, "expected the name of a %s; `skein list` shows them", skein_category_text(category));
+    const json_t *type = json_object_get(object, "type");
+    if (!json_is_string(type)) {
+        io_fault(place, "type", SKEIN_ERROR_VALUE, "expected the name of a %s%s%s; `skein list` shows them", skein_category_text(category),
+                 type ? ", not " : ": it is missing", type ? io_json_words(type, words) : "");
         return NULL;
     }
     skein_error error = {SKEIN_OK, "", ""};
-    const skein_kind *kind = skein_kind_find(category, type, &error);
+    const skein_kind *kind = skein_kind_find(category, json_string_value(type), &error);
     if (!kind) io_fault(place, "type", error.status, "%s", error.message);
     return kind;
 }
 
-static void add_object(builder *b, io_place place, const json_t *object, skein_category category, const skein_world_desc *desc) {
-    const skein_kind *kind = kind_of(place, object, category);
-    if (!kind) return;
-    static const char *const skip[] = {"type", NULL}, *const skip_particles[] = {"type", "particles", NULL};
-    io_settings settings;
-    if (io_settings_read(&settings, place, object, kind, category == SKEIN_CONSTRAINT ? skip_particles : skip)) {
-        skein_status status = SKEIN_OK;
-        switch (category) {
-        case SKEIN_BODY: add_body(b, place, kind->name, &settings, desc); break;
-        case SKEIN_CONSTRAINT: add_constraint(b, place, kind->name, object, &settings, 2); break;
-        case SKEIN_FORCE: status = skein_force_add(b->world, kind->name, settings.data, NULL); break;
-        case SKEIN_COLLIDER: status = skein_collider_add(b->world, kind->name, settings.data, NULL); break;
-        default: status = skein_method_set(b->world, kind->name, settings.data); break;
-        }
-        if (status) report_library_fault(place, skein_world_error(b->world));
+static bool add_of_kind(const builder *b, io_place place, const json_t *object, const skein_kind *kind, const io_settings *settings) {
+    skein_status status = SKEIN_OK;
+    switch (kind->category) {
+    case SKEIN_BODY: return add_body(b, place, kind, settings);
+    case SKEIN_CONSTRAINT: add_constraint(b, place, kind, object, settings); break;
+    case SKEIN_FORCE: status = skein_force_add(b->world, kind->name, settings->data, NULL); break;
+    case SKEIN_COLLIDER: status = skein_collider_add(b->world, kind->name, settings->data, NULL); break;
+    default: status = skein_method_set(b->world, kind->name, settings->data); break;
     }
+    if (status) report_library_fault(b, place, "");
+    return !status;
+}
+
+static void add_object(builder *b, const char *path, const json_t *object, skein_category category) {
+    static const char *const skip[] = {"type", NULL}, *const skip_particles[] = {"type", "particles", NULL};
+    io_place place = {b->file, path, b->faults};
+    const skein_kind *kind = kind_of(place, object, category);
+    io_settings settings = {0};
+    bool good = kind && io_settings_read(&settings, place, object, kind, category == SKEIN_CONSTRAINT ? skip_particles : skip) &&
+                add_of_kind(b, place, object, kind, &settings);
+    if (!good && category == SKEIN_BODY) b->body_missing = true;
     io_settings_free(&settings);
 }
 
-static void add_list(builder *b, const json_t *root, const char *section, skein_category category, const skein_world_desc *desc) {
-    const json_t *list = json_object_get(root, section), *item;
-    if (!list) return;
-    if (!json_is_array(list)) {
-        io_fault((io_place){b->file, section, b->faults}, "", SKEIN_ERROR_VALUE, "expected a list: [ { \"type\": ... }, ... ]");
+static void add_section(builder *b, const json_t *root, const io_scene_section *section) {
+    const json_t *value = json_object_get(root, section->name);
+    char words[IO_JSON_WORDS_SIZE];
+    if (!value) return;
+    if (section->category == SKEIN_METHOD) {
+        add_object(b, section->name, value, SKEIN_METHOD);
         return;
     }
-    size_t index;
-    json_array_foreach(list, index, item) {
+    if (!json_is_array(value)) {
+        io_fault((io_place){b->file, section->name, b->faults}, "", SKEIN_ERROR_VALUE, "expected a list, [ { \"type\": ... }, ... ], not %s",
+                 io_json_words(value, words));
+        b->body_missing |= section->category == SKEIN_BODY;
+        return;
+    }
+    for (size_t i = 0; i < json_array_size(value); i++) {
         char path[64];
-        snprintf(path, sizeof path, "%s.%zu", section, index);
-        add_object(b, (io_place){b->file, path, b->faults}, item, category, desc);
+        snprintf(path, sizeof path, "%s.%zu", section->name, i);
+        add_object(b, path, json_array_get(value, i), section->category);
     }
 }
 
-skein_world *io_world_from_document(const json_t *root, const char *file, const skein_world_desc *desc, io_faults *faults) {
+skein_world *io_world_from_document(const json_t *root, const char *file, double dt, const skein_world_desc *desc, io_faults *faults) {
     skein_error error = {SKEIN_OK, "", ""};
-    builder b = {skein_world_create(desc, &error), file, faults};
+    builder b = {skein_world_create(desc, &error), file, desc, faults, false};
     io_place top = {file, "", faults};
     if (!b.world) {
         io_fault(top, error.where, error.status, "%s", error.message);
         return NULL;
     }
-    if (json_object_get(root, "method"))
-        add_object(&b, (io_place){file, "method", faults}, json_object_get(root, "method"), SKEIN_METHOD, desc);
-    add_list(&b, root, "bodies", SKEIN_BODY, desc);
-    add_list(&b, root, "constraints", SKEIN_CONSTRAINT, desc);
-    add_list(&b, root, "forces", SKEIN_FORCE, desc);
-    add_list(&b, root, "colliders", SKEIN_COLLIDER, desc);
-    if (!faults->count && !skein_particle_count(b.world))
+    for (size_t i = 0; io_scene_section_at(i); i++)
+        if (io_scene_section_at(i)->category != SKEIN_EXPORTER) add_section(&b, root, io_scene_section_at(i));
+    if (!b.body_missing && !skein_particle_count(b.world))
         io_fault(top, "bodies", SKEIN_ERROR_VALUE, "the scene has no particles: add a body");
+    // a method may not take these rules: the plan knows
+    if (!faults->count && skein_world_explain(b.world, dt, NULL, NULL)) report_library_fault(&b, top, "");
     if (!faults->count) return b.world;
     skein_world_destroy(b.world);
     return NULL;

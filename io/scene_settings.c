@@ -1,23 +1,11 @@
 #include "io/scene_settings.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-void io_fault(io_place place, const char *member, skein_status status, const char *format, ...) {
-    skein_error error = {status, "", ""};
-    const char *dot = place.path[0] && member[0] ? "." : "";
-    const char *colon = place.path[0] || member[0] ? ": " : "";
-    snprintf(error.where, sizeof error.where, "%s%s%s%s%s", place.file, colon, place.path, dot, member);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(error.message, sizeof error.message, format, arguments);
-    va_end(arguments);
-    place.faults->count++;
-    if (place.faults->report) place.faults->report(place.faults->user, &error);
-}
+/* ---- the list ---- */
 
 void io_settings_free(io_settings *settings) {
     for (size_t i = 0; i < settings->text_count; i++) free(settings->texts[i]);
@@ -26,12 +14,12 @@ void io_settings_free(io_settings *settings) {
     memset(settings, 0, sizeof *settings);
 }
 
-/* Keeps a text for as long as the settings live; NULL when there is no memory. */
-static const char *keep_text(io_settings *settings, const char *text) {
-    if (!io_grow(&settings->texts, &settings->text_capacity, settings->text_count + 1, sizeof *settings->texts)) return NULL;
-    char *copy = strdup(text);
-    if (copy) settings->texts[settings->text_count++] = copy;
-    return copy;
+/* Keeps a text, which may be NULL, for as long as the settings live; NULL when there is no memory. */
+static const char *keep_text(io_settings *settings, char *text) {
+    if (text && io_grow(&settings->texts, &settings->text_capacity, settings->text_count + 1, sizeof *settings->texts))
+        return settings->texts[settings->text_count++] = text;
+    free(text);
+    return NULL;
 }
 
 static bool append(io_settings *settings, const char *name, skein_value value) {
@@ -41,72 +29,66 @@ static bool append(io_settings *settings, const char *name, skein_value value) {
     return true;
 }
 
-/* A list as one text: numbers parted by blanks, words by commas: [0, 16, "top edge"] is "0 16, top edge". */
-static bool join_list(const json_t *list, char **joined, size_t *length, size_t *capacity) {
-    size_t index;
-    const json_t *item;
-    bool after_number = false;
-    json_array_foreach(list, index, item) {
-        char number[32];
-        const char *part = number;
-        if (json_is_integer(item)) snprintf(number, sizeof number, "%lld", (long long)json_integer_value(item));
-        else if (json_is_real(item)) snprintf(number, sizeof number, "%.17g", json_real_value(item));
-        else if (json_is_string(item)) part = json_string_value(item);
-        else return false;
-        const char *between = !index ? "" : json_is_number(item) && after_number ? " " : ", ";
-        size_t need = strlen(between) + strlen(part);
-        if (!io_grow(joined, capacity, *length + need + 1, 1)) return false;
-        *length += (size_t)sprintf(*joined + *length, "%s%s", between, part);
-        after_number = json_is_number(item);
+static const skein_setting *find_setting(const io_settings *settings, const char *name) {
+    for (size_t i = 0; i < settings->count; i++)
+        if (!strcmp(settings->data[i].name, name)) return &settings->data[i];
+    return NULL;
+}
+
+const char *io_settings_text(const io_settings *settings, const char *name) {
+    const skein_setting *setting = find_setting(settings, name);
+    return setting ? setting->value.text : NULL;
+}
+
+/* ---- values ---- */
+
+int io_field_numbers(const skein_field *field) {
+    switch (field->type) {
+    case SKEIN_FIELD_BOOL:
+    case SKEIN_FIELD_INT:
+    case SKEIN_FIELD_REAL: return 1;
+    case SKEIN_FIELD_INT2:
+    case SKEIN_FIELD_REAL2: return 2;
+    case SKEIN_FIELD_VEC3: return 3;
+    case SKEIN_FIELD_CHOICE:
+    case SKEIN_FIELD_TEXT: break;
     }
-    return true;
+    return 0;
 }
 
-/* {"box": [6 numbers]} or {"sphere": [4 numbers]} as "box ..." and "sphere ...". */
-static bool join_shape(const json_t *object, char **joined, size_t *length, size_t *capacity) {
-    const char *key = json_object_iter_key(json_object_iter((json_t *)(uintptr_t)object));
-    if (json_object_size(object) != 1 || (strcmp(key, "box") && strcmp(key, "sphere"))) return false;
-    const json_t *list = json_object_get(object, key);
-    if (!json_is_array(list) || !io_grow(joined, capacity, *length + strlen(key) + 2, 1)) return false;
-    *length += (size_t)sprintf(*joined + *length, "%s ", key);
-    return join_list(list, joined, length, capacity);
+/* Only the texts of a body's own fields select parts of it, and so have short forms. */
+static bool takes_lists(const skein_kind *kind, const skein_field *field) {
+    return field->type == SKEIN_FIELD_TEXT && kind->category == SKEIN_BODY && field >= kind->fields &&
+           field < kind->fields + kind->field_count;
 }
 
-/* Turns a JSON value into a field's; false if it is of no use. */
-static bool convert(io_settings *settings, const skein_field *field, const json_t *json, skein_value *value) {
-    *value = (skein_value){1, {0, 0, 0}, NULL};
-    if (json_is_boolean(json) && field->type == SKEIN_FIELD_BOOL) {
+static bool may_be_infinite(const skein_field *field) {
+    return field->type == SKEIN_FIELD_REAL && isinf(field->most);
+}
+
+/* Turns a JSON value into a field's; false where it is of another type. Ranges are not looked at. */
+static bool convert(io_settings *settings, const skein_kind *kind, const skein_field *field, const json_t *json, skein_value *value) {
+    int count = io_field_numbers(field);
+    *value = (skein_value){count, {0, 0, 0}, NULL};
+    if (count == 0) {
+        if (json_is_string(json)) value->text = keep_text(settings, strdup(json_string_value(json)));
+        else if (takes_lists(kind, field)) value->text = keep_text(settings, io_json_join(json));
+        return value->text != NULL;
+    }
+    if (field->type == SKEIN_FIELD_BOOL) {
         value->number[0] = json_is_true(json);
-        return true;
+        return json_is_boolean(json);
     }
-    if (json_is_number(json) && field->type != SKEIN_FIELD_BOOL && field->type != SKEIN_FIELD_TEXT && field->type != SKEIN_FIELD_CHOICE) {
-        value->number[0] = json_number_value(json);
-        return true;
-    }
-    if (json_is_string(json) && field->type == SKEIN_FIELD_REAL && isinf(field->most) && !strcmp(json_string_value(json), "infinite")) {
+    if (may_be_infinite(field) && json_is_string(json) && !strcmp(json_string_value(json), "infinite")) {
         value->number[0] = INFINITY;
         return true;
     }
-    if (field->type == SKEIN_FIELD_TEXT || field->type == SKEIN_FIELD_CHOICE) {
-        value->count = 0;
-        if (json_is_string(json)) value->text = keep_text(settings, json_string_value(json));
-        if (field->type == SKEIN_FIELD_TEXT && (json_is_array(json) || json_is_object(json) || json_is_integer(json))) {
-            char *joined = NULL;
-            size_t length = 0, capacity = 0;
-            json_t *one = json_is_integer(json) ? json_pack("[O]", (json_t *)(uintptr_t)json) : NULL;
-            bool good = io_grow(&joined, &capacity, 1, 1);
-            if (good) joined[0] = 0;
-            good = good && (json_is_object(json) ? join_shape(json, &joined, &length, &capacity)
-                                                 : join_list(one ? one : json, &joined, &length, &capacity));
-            if (good) value->text = keep_text(settings, joined);
-            json_decref(one);
-            free(joined);
-        }
-        return value->text != NULL;
+    if (count == 1) {
+        value->number[0] = json_number_value(json);
+        return json_is_number(json);
     }
-    if (!json_is_array(json) || json_array_size(json) > 3) return false;
-    value->count = (int)json_array_size(json);
-    for (int i = 0; i < value->count; i++) {
+    if (!json_is_array(json) || json_array_size(json) != (size_t)count) return false;
+    for (int i = 0; i < count; i++) {
         const json_t *item = json_array_get(json, (size_t)i);
         if (!json_is_number(item)) return false;
         value->number[i] = json_number_value(item);
@@ -114,52 +96,111 @@ static bool convert(io_settings *settings, const skein_field *field, const json_
     return true;
 }
 
-static bool is_group(const skein_kind *kind, const char *name) {
+/* Whether the item of a list is no use in this field, while the list is. */
+static bool is_bad_item(const skein_kind *kind, const skein_field *field, const json_t *list, const json_t *item) {
+    size_t count = (size_t)io_field_numbers(field);
+    if (count > 1 && json_array_size(list) == count) return !json_is_number(item);
+    if (!takes_lists(kind, field)) return false;
+    char *joined = json_is_array(item) ? NULL : io_json_join(item);
+    free(joined);
+    return !joined;
+}
+
+/* Says what the field wants and what it got instead. */
+static void report_type(io_place place, const char *name, const skein_kind *kind, const skein_field *field, const json_t *json) {
+    char words[IO_JSON_WORDS_SIZE], item[160];
+    for (size_t i = 0; i < json_array_size(json); i++) {
+        if (!is_bad_item(kind, field, json, json_array_get(json, i))) continue;
+        snprintf(item, sizeof item, "%s.%zu", name, i);
+        io_fault(place, item, SKEIN_ERROR_VALUE, "expected a number%s, not %s", takes_lists(kind, field) ? " or a text" : "",
+                 io_json_words(json_array_get(json, i), words));
+        return;
+    }
+    // the field itself knows what it wants: show it a value that fits none
+    skein_error error = {SKEIN_OK, "", ""};
+    skein_value nothing = {4, {0, 0, 0}, NULL};
+    skein_field_check(field, &nothing, &error);
+    io_fault(place, name, SKEIN_ERROR_VALUE, "%s%s, not %s", error.message,
+             takes_lists(kind, field)  ? ", a list of numbers and words, {\"box\": [...]} or {\"sphere\": [...]}"
+             : may_be_infinite(field) ? " or \"infinite\""
+                                      : "",
+             io_json_words(json, words));
+}
+
+/* ---- names ---- */
+
+typedef struct name_list {
+    const char *names[64];
+    char groups[16][32];
+    size_t count, group_count;
+} name_list;
+
+static void add_name(name_list *list, const char *name) {
+    if (list->count < sizeof list->names / sizeof *list->names) list->names[list->count++] = name;
+}
+
+/* A field's group, "stretch" of "stretch.stiffness", if it is in one that is not yet in the list. */
+static void add_group(name_list *list, const char *field) {
+    size_t length = strcspn(field, "."), most = sizeof list->groups / sizeof *list->groups;
+    if (!field[length] || length >= sizeof list->groups[0] || list->group_count == most) return;
+    char *group = list->groups[list->group_count];
+    snprintf(group, sizeof list->groups[0], "%.*s", (int)length, field);
+    for (size_t i = 0; i < list->group_count; i++)
+        if (!strcmp(list->groups[i], group)) return;
+    list->group_count++;
+    add_name(list, group);
+}
+
+/* What could have been meant: a group where an object was given, else a field; or one of `others`. */
+static const char *hint_for(const skein_kind *kind, const char *name, bool object, const char *const *others, char hint[IO_HINT_SIZE]) {
+    name_list list = {{0}, {{0}}, 0, 0};
+    size_t common_count;
+    const skein_field *common = skein_common_fields(kind->category, &common_count);
+    for (size_t i = 0; i < kind->field_count + common_count; i++) {
+        const char *field = i < kind->field_count ? kind->fields[i].name : common[i - kind->field_count].name;
+        if (object) add_group(&list, field);
+        else add_name(&list, field);
+    }
+    for (; others && *others; others++) add_name(&list, *others);
+    return io_hint(name, list.names, list.count, hint);
+}
+
+/* A field of the group `name`; NULL if there is no such group. */
+static const skein_field *field_of_group(const skein_kind *kind, const char *name) {
     size_t length = strlen(name), common_count;
     const skein_field *common = skein_common_fields(kind->category, &common_count);
-    for (size_t i = 0; i < kind->field_count; i++)
-        if (!strncmp(kind->fields[i].name, name, length) && kind->fields[i].name[length] == '.') return true;
-    for (size_t i = 0; i < common_count; i++)
-        if (!strncmp(common[i].name, name, length) && common[i].name[length] == '.') return true;
-    return false;
+    for (size_t i = 0; i < kind->field_count + common_count; i++) {
+        const skein_field *field = i < kind->field_count ? &kind->fields[i] : &common[i - kind->field_count];
+        if (!strncmp(field->name, name, length) && field->name[length] == '.') return field;
+    }
+    return NULL;
 }
 
-static const char *json_type_text(const json_t *json) {
-    switch (json_typeof(json)) {
-    case JSON_OBJECT: return "an object";
-    case JSON_ARRAY: return "a list";
-    case JSON_STRING: return "a text";
-    case JSON_INTEGER:
-    case JSON_REAL: return "a number";
-    case JSON_TRUE:
-    case JSON_FALSE: return "true or false";
-    case JSON_NULL: return "null";
-    }
-    return "a value";
+static void report_unknown(io_place place, const char *name, const json_t *json, const skein_kind *kind, const char *const *others) {
+    char hint[IO_HINT_SIZE], words[IO_JSON_WORDS_SIZE];
+    const skein_field *member = field_of_group(kind, name);
+    if (member)
+        io_fault(place, name, SKEIN_ERROR_VALUE, "expected an object with fields such as '%s', not %s", member->name + strlen(name) + 1,
+                 io_json_words(json, words));
+    else
+        io_fault(place, name, SKEIN_ERROR_NAME, "%s has no field '%.100s'%s", kind->name, name,
+                 hint_for(kind, name, json_is_object(json), others, hint));
 }
+
+/* ---- objects ---- */
 
 /* One member, whose full name is `name`. */
-static bool read_member(io_settings *settings, io_place place, const char *name, const json_t *json, const skein_kind *kind) {
+static bool read_member(io_settings *settings, io_place place, const char *name, const json_t *json, const skein_kind *kind,
+                        const char *const *others) {
+    const skein_field *field = skein_field_find(kind, name, NULL);
     skein_error error = {SKEIN_OK, "", ""};
-    const skein_field *field = skein_field_find(kind, name, &error);
-    if (!field) {
-        io_fault(place, name, error.status, "%s", error.message);
-        return false;
-    }
     skein_value value;
-    if (!convert(settings, field, json, &value)) {
-        // ask the field itself what it wants, with a value that fits no field
-        skein_value nothing = {4, {0, 0, 0}, NULL};
-        skein_field_check(field, &nothing, &error);
-        io_fault(place, name, SKEIN_ERROR_VALUE, "%s, not %s", error.message, json_type_text(json));
-        return false;
-    }
-    if (skein_field_check(field, &value, &error)) {
-        io_fault(place, name, error.status, "%s", error.message);
-        return false;
-    }
-    if (append(settings, field->name, value)) return true;
-    io_fault(place, name, SKEIN_ERROR_MEMORY, "out of memory");
+    if (!field) report_unknown(place, name, json, kind, others);
+    else if (find_setting(settings, name)) io_fault(place, name, SKEIN_ERROR_VALUE, "is there twice, once in a group and once with a dot");
+    else if (!convert(settings, kind, field, json, &value)) report_type(place, name, kind, field, json);
+    else if (skein_field_check(field, &value, &error)) io_fault(place, name, error.status, "%s", error.message);
+    else if (!append(settings, field->name, value)) io_fault(place, name, SKEIN_ERROR_MEMORY, "out of memory");
+    else return true;
     return false;
 }
 
@@ -174,11 +215,11 @@ static bool read_members(io_settings *settings, io_place place, const char *pref
         if (skipped) continue;
         char name[128];
         snprintf(name, sizeof name, "%s%s", prefix, key);
-        if (json_is_object(json) && is_group(kind, name)) {
+        if (json_is_object(json) && field_of_group(kind, name)) {
             strncat(name, ".", sizeof name - strlen(name) - 1);
             good &= read_members(settings, place, name, json, kind, NULL);
         } else {
-            good &= read_member(settings, place, name, json, kind);
+            good &= read_member(settings, place, name, json, kind, skip);
         }
     }
     return good;
@@ -187,59 +228,4 @@ static bool read_members(io_settings *settings, io_place place, const char *pref
 bool io_settings_read(io_settings *settings, io_place place, const json_t *object, const skein_kind *kind, const char *const *skip) {
     memset(settings, 0, sizeof *settings);
     return read_members(settings, place, "", object, kind, skip);
-}
-
-const char *io_settings_text(const io_settings *settings, const char *name) {
-    const char *text = NULL;
-    for (size_t i = 0; i < settings->count; i++)
-        if (!strcmp(settings->data[i].name, name)) text = settings->data[i].value.text;
-    return text;
-}
-
-/* ---- path=value ---- */
-
-/* The member of a list by place or by the name of an object in it. */
-static json_t *list_member(json_t *list, const char *key) {
-    char *end;
-    unsigned long index = strtoul(key, &end, 10);
-    if (end != key && !*end) return json_array_get(list, index);
-    size_t i;
-    json_t *item;
-    json_array_foreach(list, i, item) {
-        const char *name = json_string_value(json_object_get(item, "name"));
-        if (name && !strcmp(name, key)) return item;
-    }
-    return NULL;
-}
-
-bool io_scene_override(json_t *root, const char *set, io_place place) {
-    const char *equals = strchr(set, '=');
-    char path[256];
-    if (!equals || equals == set || (size_t)(equals - set) >= sizeof path) {
-        io_fault(place, "", SKEIN_ERROR_SYNTAX, "--set %s: expected path=value, such as bodies.0.stretch.stiffness=2e4", set);
-        return false;
-    }
-    snprintf(path, sizeof path, "%.*s", (int)(equals - set), set);
-    json_t *value = json_loads(equals + 1, JSON_DECODE_ANY | JSON_REJECT_DUPLICATES, NULL);
-    if (!value) value = json_string(equals + 1); // a word needs no quotes
-    json_t *at = root;
-    char *key = path;
-    for (char *dot; value && (dot = strchr(key, '.')); key = dot + 1) {
-        *dot = 0;
-        json_t *next = json_is_array(at) ? list_member(at, key) : json_object_get(at, key);
-        if (!next && json_is_object(at)) {
-            json_object_set_new(at, key, json_object());
-            next = json_object_get(at, key);
-        }
-        if (!json_is_object(next) && !json_is_array(next)) {
-            io_fault(place, "", SKEIN_ERROR_NAME, "--set %s: there is no '%s'", set, key);
-            json_decref(value);
-            return false;
-        }
-        at = next;
-    }
-    bool good = value && json_is_object(at) && *key && !json_object_set(at, key, value);
-    if (!good) io_fault(place, "", SKEIN_ERROR_NAME, "--set %s: '%s' cannot be set there", set, key);
-    json_decref(value);
-    return good;
 }

@@ -10,7 +10,7 @@
 typedef struct io_settings {
     skein_setting *data; /* ends with a NULL name */
     size_t count, capacity;
-    char **texts; /* names and joined texts that the settings point to */
+    char **texts; /* that the settings point to */
     size_t text_count, text_capacity;
 } io_settings;
 
@@ -20,7 +20,13 @@ typedef struct io_place {
     io_faults *faults;
 } io_place;
 
+/* Names a fault of the member `member` of the place ("" is the place itself). */
 void io_fault(io_place place, const char *member, skein_status status, const char *format, ...) IO_PRINTF(4, 5);
+
+/* A value in words: "the number 5", "a list of 4". Returns `out`. */
+#define IO_JSON_WORDS_SIZE 64
+const char *io_json_words(const json_t *json, char out[IO_JSON_WORDS_SIZE]);
+
 /* Reads the members of `object`, but for those named in `skip` (NULL-terminated). Faults are reported;
  * false when there was one. */
 bool io_settings_read(io_settings *settings, io_place place, const json_t *object, const skein_kind *kind, const char *const *skip);
@@ -28,10 +34,17 @@ bool io_settings_read(io_settings *settings, io_place place, const json_t *objec
 const char *io_settings_text(const io_settings *settings, const char *name);
 void io_settings_free(io_settings *settings);
 
+/* A setting's value from JSON, for any field that takes texts: a list or a shape as one text. NULL if it is
+ * neither; free it. */
+char *io_json_join(const json_t *json);
+
+/* How many numbers a field takes; 0 for texts and words. */
+int io_field_numbers(const skein_field *field);
+
 /* Sets "path=value" in a document; names stand for places in lists. */
-bool io_scene_override(json_t *root, const char *set, io_place place);
+bool io_scene_override(json_t *root, const char *set, io_faults *faults);
 
 /* Builds a world from a whole document; NULL if there was any fault. */
-skein_world *io_world_from_document(const json_t *root, const char *file, const skein_world_desc *desc, io_faults *faults);
+skein_world *io_world_from_document(const json_t *root, const char *file, double dt, const skein_world_desc *desc, io_faults *faults);
 
 #endif

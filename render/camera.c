@@ -9,9 +9,10 @@
 static const double degree = 0.017453292519943295;
 
 /* The house's view: three quarters from the front, low enough for the horizon to be in the picture. */
-static const double house_azimuth = 27, house_elevation = 13, house_fov = 34;
-/* The part of the picture's width and height that the box fills at most. */
-static const double house_fill = 0.78;
+static const double house_azimuth = 27, house_elevation = 15, house_fov = 34;
+/* The part of the picture's width and height that the box fills at most; and how far its middle stands below
+ * the picture's, in half heights: enough that a level sheet on top is not seen edge on. */
+static const double house_fill = 0.77, house_drop = 0.05;
 
 /* Along one axis of the picture: the least distance at which the corners fit between two lines of
  * slope `tangent`, and, for a given distance, where the eye stands. Corners are (x, z) pairs. */
@@ -34,7 +35,8 @@ render_camera render_camera_framing(const render_bounds *bounds, double aspect) 
     radius = render_bounds_radius(&box);
 
     double azimuth = house_azimuth * degree, elevation = house_elevation * degree;
-    back[0] = sin(azimuth) * cos(elevation), back[1] = sin(elevation), back[2] = cos(azimuth) * cos(elevation);
+    back[0] = sin(azimuth) * cos(elevation), back[1] = sin(elevation),
+    back[2] = cos(azimuth) * cos(elevation);
     render_basis(back, right, up);
 
     // the corners of the box along the picture's axes
@@ -52,7 +54,7 @@ render_camera render_camera_framing(const render_bounds *bounds, double aspect) 
     fit(y, z, ty, &y_high, &y_low);
     double distance = fmax((x_high - x_low) / (2 * tx), (y_high - y_low) / (2 * ty));
     distance = fmax(distance, nearest + 0.5 * radius);
-    double shift_x = 0.5 * (x_high + x_low), shift_y = 0.5 * (y_high + y_low);
+    double shift_x = 0.5 * (x_high + x_low), shift_y = 0.5 * (y_high + y_low) + distance * ty * house_drop;
     for (int k = 0; k < 3; k++) {
         camera.target[k] = centre[k] + shift_x * right[k] + shift_y * up[k];
         camera.eye[k] = camera.target[k] + distance * back[k];

@@ -20,14 +20,14 @@ struct render_context {
 
 static const char *egl_text(EGLint code) {
     switch (code) {
-        case EGL_SUCCESS: return "no reason given";
-        case EGL_NOT_INITIALIZED: return "no driver";
-        case EGL_BAD_ACCESS: return "no access";
-        case EGL_BAD_ALLOC: return "out of memory";
-        case EGL_BAD_MATCH: return "OpenGL 4.5 is not supported";
-        case EGL_BAD_CONFIG: return "no configuration";
-        case EGL_BAD_DISPLAY: return "no display";
-        default: return "it failed";
+    case EGL_SUCCESS: return "no reason given";
+    case EGL_NOT_INITIALIZED: return "no driver";
+    case EGL_BAD_ACCESS: return "no access";
+    case EGL_BAD_ALLOC: return "out of memory";
+    case EGL_BAD_MATCH: return "OpenGL 4.5 is not supported";
+    case EGL_BAD_CONFIG: return "no configuration";
+    case EGL_BAD_DISPLAY: return "no display";
+    default: return "it failed";
     }
 }
 
@@ -40,9 +40,15 @@ static bool give_up(char *tried, size_t room, const char *platform, const char *
 
 /* Makes a 4.5 core context of the display current, without any surface. */
 static bool make_context(render_context *context, const char **reason) {
-    static const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
-                                        EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                        EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE, EGL_NONE};
+    // clang-format off
+    static const EGLint attributes[] = {
+        EGL_CONTEXT_MAJOR_VERSION, 4,
+        EGL_CONTEXT_MINOR_VERSION, 5,
+        EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+        EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE,
+        EGL_NONE,
+    };
+    // clang-format on
     static const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
     EGLConfig config = EGL_NO_CONFIG_KHR;
     EGLint config_count = 0;
@@ -71,12 +77,14 @@ static bool make_context(render_context *context, const char **reason) {
     return true;
 }
 
-/* Tries one display: all of it, or nothing is left behind. */
-static bool try_display(render_context *context, EGLDisplay display, const char *platform, char *tried, size_t room) {
+/* Tries one display. */
+static bool try_display(render_context *context, EGLDisplay display, const char *platform, char *tried,
+                        size_t room) {
     EGLint major = 0, minor = 0;
     const char *reason = "";
     if (display == EGL_NO_DISPLAY) return give_up(tried, room, platform, egl_text(eglGetError()));
-    if (!eglInitialize(display, &major, &minor)) return give_up(tried, room, platform, egl_text(eglGetError()));
+    if (!eglInitialize(display, &major, &minor))
+        return give_up(tried, room, platform, egl_text(eglGetError()));
 
     context->display = display;
     if (10 * major + minor < 15) {
@@ -86,25 +94,14 @@ static bool try_display(render_context *context, EGLDisplay display, const char 
                  (const char *)glGetString(GL_RENDERER), (const char *)glGetString(GL_VERSION));
         return true;
     }
-    eglTerminate(display);
     return give_up(tried, room, platform, reason);
-}
-
-/* A display that counts its users where EGL can, so that ending one context does not end another. */
-static EGLDisplay platform_display(EGLenum platform, void *native) {
-    static const EGLint counted[] = {EGL_TRACK_REFERENCES_KHR, EGL_TRUE, EGL_NONE};
-    EGLDisplay display = EGL_NO_DISPLAY;
-    if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_KHR_display_reference")) {
-        display = eglGetPlatformDisplayEXT(platform, native, counted);
-    }
-    return display != EGL_NO_DISPLAY ? display : eglGetPlatformDisplayEXT(platform, native, NULL);
 }
 
 static bool try_surfaceless(render_context *context, char *tried, size_t room) {
     if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless")) {
         return give_up(tried, room, "surfaceless", "not offered");
     }
-    EGLDisplay display = platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY);
+    EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
     return try_display(context, display, "surfaceless", tried, room);
 }
 
@@ -116,7 +113,7 @@ static bool try_devices(render_context *context, char *tried, size_t room) {
                    epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_base"));
     if (!listed || !eglQueryDevicesEXT(most_devices, devices, &count)) count = 0;
     for (EGLint i = 0; i < count; i++) {
-        EGLDisplay display = platform_display(EGL_PLATFORM_DEVICE_EXT, devices[i]);
+        EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], NULL);
         if (try_display(context, display, "device", tried, room)) return true;
     }
     return count > 0 ? false : give_up(tried, room, "devices", "none");
@@ -148,11 +145,12 @@ render_context *render_context_create(skein_error *error) {
     return NULL;
 }
 
+/* The display stays as it is: EGL has one for the whole process, so ending it would end other contexts too
+ * (and Mesa's driver, unloaded and loaded again, forgets a few tables each time). */
 void render_context_destroy(render_context *context) {
     if (!context) return;
     eglMakeCurrent(context->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(context->display, context->context);
-    eglTerminate(context->display);
     eglReleaseThread();
     free(context);
 }

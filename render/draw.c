@@ -6,6 +6,7 @@
 #include "render/light.h"
 #include "render/linear.h"
 #include "render/meshes.h"
+#include "render/planes.h"
 #include "render/shader.h"
 
 #include <epoxy/gl.h>
@@ -35,14 +36,12 @@ typedef struct drawing {
     int width, height;
     double radius, middle[3]; /* of everything finite */
     bool has_ground;
-    double ground;            /* height of the ground */
+    double ground; /* height of the ground */
     render_scene_block block;
 } drawing;
 
 static const double degree = 0.017453292519943295;
 
-/* A square slab stands for a tilted plane: so many radii of the scene from its middle to its side. */
-static const double slab_size = 1.25;
 /* The ground ends so many radii away, where the haze has long swallowed it. */
 static const double ground_size = 60;
 /* Cloth that lies on something wins against it: it is drawn nearer by this part of its distance. */
@@ -140,55 +139,6 @@ static skein_status bring(render_draw *draw, const render_frame *frame, skein_er
     return status;
 }
 
-/* A side of the grid's cells that reads well: 1, 2 or 5 times a power of ten. */
-static double nice_cell(double about) {
-    double power = pow(10, floor(log10(about))), times = about / power;
-    return power * (times < 2 ? 1 : times < 5 ? 2 : 5);
-}
-
-/* The slab of a tilted plane: its middle (the scene's, brought on to the plane), two half sides, of which
- * the first is level, and its normal. */
-static void place_slab(const drawing *d, const render_plane *plane, double vectors[4][3]) {
-    double off[3], side = slab_size * d->radius, *normal = vectors[3];
-    for (int k = 0; k < 3; k++) normal[k] = plane->normal[k], off[k] = plane->point[k] - d->middle[k];
-    render_normalise(normal);
-    render_basis(normal, vectors[1], vectors[2]);
-    double distance = render_dot(off, normal);
-    for (int k = 0; k < 3; k++) {
-        vectors[0][k] = d->middle[k] + distance * normal[k];
-        vectors[1][k] *= side, vectors[2][k] *= side;
-    }
-}
-
-/* Everything that casts a shadow: what is finite, and the slabs. */
-static render_bounds casters(const drawing *d, const render_bounds *finite) {
-    render_bounds bounds = *finite;
-    for (size_t i = 0; i < d->frame->plane_count; i++) {
-        if (render_plane_level(&d->frame->planes[i])) continue;
-        double v[4][3];
-        place_slab(d, &d->frame->planes[i], v);
-        for (int c = 0; c < 4; c++) {
-            double corner[3];
-            for (int k = 0; k < 3; k++) corner[k] = v[0][k] + (c & 1 ? 1 : -1) * v[1][k] + (c & 2 ? 1 : -1) * v[2][k];
-            render_bounds_add(&bounds, corner, 0);
-        }
-    }
-    return bounds;
-}
-
-/* The highest ground that there is. */
-static void find_ground(drawing *d) {
-    const render_frame *frame = d->frame;
-    d->has_ground = frame->look.floor;
-    d->ground = frame->look.floor_height;
-    for (size_t i = 0; i < frame->plane_count; i++) {
-        if (!render_plane_level(&frame->planes[i])) continue;
-        double height = frame->planes[i].point[1];
-        if (!d->has_ground || height > d->ground) d->ground = height;
-        d->has_ground = true;
-    }
-}
-
 static void store(const double v[3], double w, float out[4]) {
     for (int i = 0; i < 3; i++) out[i] = (float)v[i];
     out[3] = (float)w;
@@ -199,7 +149,8 @@ static void fill_block(drawing *d, const double sun[3], double tangent) {
     static const float white[3] = {1.0f, 0.975f, 0.935f};
     const render_look *look = &d->frame->look;
     render_scene_block *block = &d->block;
-    double right[3], up[3], back[3], tall = tan(0.5 * d->camera->fov * degree), wide = tall * d->width / d->height;
+    double tall = tan(0.5 * d->camera->fov * degree), wide = tall * d->width / d->height;
+    double right[3], up[3], back[3];
 
     render_camera_axes(d->camera, right, up, back);
     store(d->camera->eye, 1, block->eye);
@@ -212,7 +163,7 @@ static void fill_block(drawing *d, const double sun[3], double tangent) {
     block->view_up[3] = 2.0f / (float)d->height;
     store(sun, tangent, block->sun);
     store(d->middle, d->radius, block->middle);
-    render_to_light(white, 1.15f, block->sun_light);
+    render_to_light(white, 1.27f, block->sun_light);
     block->sun_light[3] = (float)look->exposure;
     render_to_light(look->zenith, 1, block->zenith);
     render_to_light(look->horizon, 1, block->horizon);
@@ -241,14 +192,15 @@ static void aim(render_draw *draw, drawing *d) {
     d->radius = render_bounds_radius(&finite);
     if (d->radius < 1e-9) d->radius = 1;
     render_bounds_centre(&finite, d->middle);
-    find_ground(d);
+    d->has_ground = render_find_ground(d->frame, &d->ground);
     for (int k = 0; k < 3; k++) sun[k] = d->frame->look.sun[k];
     render_normalise(sun);
     fill_block(d, sun, tangent);
 
-    render_bounds shading = casters(d, &finite);
-    render_light_aim(&draw->light, sun, tangent, &shading, d->has_ground ? &d->ground : NULL, &d->block, to_sun,
-                     to_below);
+    render_bounds shading = finite;
+    render_bounds_add_slabs(&shading, d->frame, d->middle, d->radius);
+    render_light_aim(&draw->light, sun, tangent, &shading, d->has_ground ? &d->ground : NULL, &d->block,
+                     to_sun, to_below);
     render_camera_view(d->camera, view);
     render_camera_projection(d->camera, (double)d->width / d->height, projection);
     render_multiply(projection, view, camera);
@@ -262,11 +214,12 @@ static void aim(render_draw *draw, drawing *d) {
 
 static void draw_shape(const render_shape *shape, GLuint arrays, size_t instance_count) {
     glBindVertexArray(arrays);
-    glDrawElementsInstanced(GL_TRIANGLES, shape->index_count, GL_UNSIGNED_SHORT, NULL, (GLsizei)instance_count);
+    glDrawElementsInstanced(GL_TRIANGLES, shape->index_count, GL_UNSIGNED_SHORT, NULL,
+                            (GLsizei)instance_count);
 }
 
-static void draw_plane(const render_draw *draw, int twin, const render_shape *shape, const double vectors[4][3],
-                       double cell, bool ground) {
+static void draw_plane(const render_draw *draw, int twin, const render_shape *shape,
+                       const double vectors[4][3], double cell, bool ground) {
     GLuint program = draw->programs[PLANE + twin];
     glUseProgram(program);
     for (GLint i = 0; i < (twin ? 3 : 4); i++) {
@@ -283,8 +236,9 @@ static void draw_slabs(const render_draw *draw, const drawing *d, int twin) {
     for (size_t i = 0; i < d->frame->plane_count; i++) {
         double vectors[4][3];
         if (render_plane_level(&d->frame->planes[i])) continue;
-        place_slab(d, &d->frame->planes[i], vectors);
-        draw_plane(draw, twin, &draw->square, (const double(*)[3])vectors, nice_cell(0.25 * d->radius), false);
+        render_place_slab(&d->frame->planes[i], d->middle, d->radius, vectors);
+        draw_plane(draw, twin, &draw->square, (const double(*)[3])vectors, render_grid_cell(d->radius),
+                   false);
     }
 }
 
@@ -292,8 +246,9 @@ static void draw_ground(const render_draw *draw, const drawing *d) {
     // from beneath there is no ground to see
     if (!d->has_ground || d->camera->eye[1] <= d->ground) return;
     double size = ground_size * d->radius;
-    const double vectors[4][3] = {{d->middle[0], d->ground, d->middle[2]}, {size, 0, 0}, {0, 0, -size}, {0, 1, 0}};
-    draw_plane(draw, 0, &draw->disc, vectors, nice_cell(0.25 * d->radius), true);
+    const double vectors[4][3] = {
+        {d->middle[0], d->ground, d->middle[2]}, {size, 0, 0}, {0, 0, -size}, {0, 1, 0}};
+    draw_plane(draw, 0, &draw->disc, vectors, render_grid_cell(d->radius), true);
 }
 
 static void set_material(GLuint program, const render_material *material, bool has_uv) {
@@ -413,6 +368,7 @@ skein_status render_draw_frame(render_draw *draw, const render_frame *frame, con
 
     draw_light(draw, &d);
     draw_picture(draw, &d, framebuffer);
+    glBindSampler(0, 0);
     glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
     return SKEIN_OK;
 }

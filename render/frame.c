@@ -1,8 +1,6 @@
 /* Frames: the defaults, which decide how everything looks, and the box around a frame. See frame.h. */
 #include "render/frame.h"
 
-#include "render/linear.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -53,6 +51,16 @@ render_material render_default_material(size_t index) {
     return material;
 }
 
+render_material render_plain_material(size_t index) {
+    render_material material = render_default_material(index);
+    material.pattern = RENDER_PLAIN;
+    for (int i = 0; i < 3; i++) {
+        material.colour[i] += 0.28f * (material.accent[i] - material.colour[i]);
+        material.lining[i] = material.colour[i] * 0.92f;
+    }
+    return material;
+}
+
 render_sphere render_default_sphere(void) {
     return (render_sphere){
         .centre = {0, 0, 0},
@@ -61,11 +69,6 @@ render_sphere render_default_sphere(void) {
         .colour = {0.150f, 0.330f, 0.400f},
         .marking = {0.930f, 0.890f, 0.800f},
     };
-}
-
-bool render_plane_level(const render_plane *plane) {
-    double length = sqrt(render_dot(plane->normal, plane->normal));
-    return plane->normal[1] > 0.9999 * length;
 }
 
 /* ---- Bounds --------------------------------------------------------------------------------- */

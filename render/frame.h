@@ -19,12 +19,12 @@ typedef enum render_pattern {
 } render_pattern;
 
 typedef struct render_material {
-    float colour[3];      /* the front */
-    float accent[3];      /* the pattern's other colour */
-    float lining[3];      /* the back */
+    float colour[3]; /* the front */
+    float accent[3]; /* the pattern's other colour */
+    float lining[3]; /* the back */
     render_pattern pattern;
-    float repeats[2];     /* how often the pattern repeats along u and v */
-    float translucency;   /* light that passes through from behind, 0 to 1 */
+    float repeats[2];   /* how often the pattern repeats along u and v */
+    float translucency; /* light that passes through from behind, 0 to 1 */
 } render_material;
 
 /* A triangle mesh, drawn with smooth normals that the renderer computes. */
@@ -33,7 +33,7 @@ typedef struct render_surface {
     size_t vertex_count;
     const uint32_t *triangles; /* triangle_count x 3, each below vertex_count */
     size_t triangle_count;
-    const uint32_t *weld; /* the vertex whose normal each one takes: itself, or one at the same place; or NULL */
+    const uint32_t *weld; /* whose normal each vertex takes: its own, or that of one at its place; or NULL */
     const float *uv;      /* vertex_count x 2; or NULL: the pattern is not drawn */
     uint64_t shape;       /* changes whenever triangles, weld or uv do; 0: they may be new every frame */
     render_material material;
@@ -71,13 +71,13 @@ typedef struct render_lines {
 
 /* Light and surroundings. Start from render_default_look(). */
 typedef struct render_look {
-    double sun[3];      /* direction to the sun, of any length */
-    double sun_spread;  /* degrees from the sun's middle to its rim: how soft shadows are */
-    float zenith[3];    /* the sky straight above */
-    float horizon[3];   /* the sky at the horizon; the ground fades into it */
-    float ground[3];    /* the ground's own colour */
-    double exposure;    /* 1 is as it is */
-    bool floor;         /* a ground of no effect, where no plane gives one */
+    double sun[3];     /* direction to the sun, of any length */
+    double sun_spread; /* degrees from the sun's middle to its rim: how soft shadows are */
+    float zenith[3];   /* the sky straight above */
+    float horizon[3];  /* the sky at the horizon; the ground fades into it */
+    float ground[3];   /* the ground's own colour */
+    double exposure;   /* 1 is as it is */
+    bool floor;        /* a ground of no effect, where no plane gives one */
     double floor_height;
 } render_look;
 
@@ -103,8 +103,9 @@ typedef struct render_bounds {
 /* A frame with nothing in it, under the default light. */
 render_frame render_default_frame(void);
 render_look render_default_look(void);
-/* Gingham in a warm colour, another one for each `index`; plain where a surface has no uv. */
+/* Gingham in a warm colour, another one for each `index`; and the same in one softer colour. */
 render_material render_default_material(size_t index);
+render_material render_plain_material(size_t index);
 /* A painted ball at the origin: radius 1, not turned. */
 render_sphere render_default_sphere(void);
 
@@ -117,8 +118,5 @@ void render_bounds_add(render_bounds *bounds, const double point[3], double radi
 /* Half the box's diagonal; 0 for an empty one. */
 double render_bounds_radius(const render_bounds *bounds);
 void render_bounds_centre(const render_bounds *bounds, double centre[3]);
-
-/* True where the plane lies level, facing up, so that it is drawn as ground. */
-bool render_plane_level(const render_plane *plane);
 
 #endif

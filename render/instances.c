@@ -68,7 +68,8 @@ static skein_status reserve(render_instances *instances, size_t count, size_t fl
         glDeleteBuffers(1, &instances->buffer);
         glCreateBuffers(1, &instances->buffer);
         glNamedBufferStorage(instances->buffer, (GLsizeiptr)instances->room, NULL, GL_DYNAMIC_STORAGE_BIT);
-        glVertexArrayVertexBuffer(instances->arrays, 1, instances->buffer, 0, (GLsizei)(floats * sizeof(float)));
+        glVertexArrayVertexBuffer(instances->arrays, 1, instances->buffer, 0,
+                                  (GLsizei)(floats * sizeof(float)));
     }
     instances->count = count;
     return SKEIN_OK;
@@ -90,7 +91,8 @@ static void stage_ball(float *out, const double centre[3], double radius, const 
     render_to_light(marking, 1.0f, out + 16);
 }
 
-skein_status render_instances_bring_spheres(render_instances *instances, const render_frame *frame, skein_error *error) {
+skein_status render_instances_bring_spheres(render_instances *instances, const render_frame *frame,
+                                            skein_error *error) {
     skein_status status = reserve(instances, frame->sphere_count, ball_floats, error);
     if (status != SKEIN_OK) return status;
     for (size_t i = 0; i < frame->sphere_count; i++) {
@@ -102,7 +104,8 @@ skein_status render_instances_bring_spheres(render_instances *instances, const r
     return SKEIN_OK;
 }
 
-skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame, skein_error *error) {
+skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame,
+                                           skein_error *error) {
     static const double unturned[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     size_t count = 0, next = 0;
     for (size_t g = 0; g < frame->points_count; g++) count += frame->points[g].count;
@@ -111,22 +114,24 @@ skein_status render_instances_bring_points(render_instances *instances, const re
     for (size_t g = 0; g < frame->points_count; g++) {
         const render_points *points = &frame->points[g];
         for (size_t i = 0; i < points->count; i++) {
-            stage_ball(&instances->staged[next++ * ball_floats], &points->positions[3 * i], points->radius, unturned,
-                       points->colour, points->colour);
+            stage_ball(&instances->staged[next++ * ball_floats], &points->positions[3 * i], points->radius,
+                       unturned, points->colour, points->colour);
         }
     }
     send(instances, ball_floats);
     return SKEIN_OK;
 }
 
-skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame, skein_error *error) {
+skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame,
+                                          skein_error *error) {
     size_t count = 0, next = 0;
     for (size_t g = 0; g < frame->lines_count; g++) count += frame->lines[g].count;
     skein_status status = reserve(instances, count, line_floats, error);
     if (status != SKEIN_OK) return status;
     for (size_t g = 0; g < frame->lines_count; g++) {
         const render_lines *lines = &frame->lines[g];
-        for (size_t i = 0; i < lines->count * line_floats; i++) instances->staged[next++] = (float)lines->positions[i];
+        for (size_t i = 0; i < lines->count * line_floats; i++)
+            instances->staged[next++] = (float)lines->positions[i];
     }
     send(instances, line_floats);
     return SKEIN_OK;

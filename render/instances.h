@@ -23,9 +23,12 @@ void render_instances_make_lines(render_instances *instances);
 void render_instances_destroy(render_instances *instances);
 
 /* Bring a frame's things to the card, one group after the other. */
-skein_status render_instances_bring_spheres(render_instances *instances, const render_frame *frame, skein_error *error);
-skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame, skein_error *error);
-skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame, skein_error *error);
+skein_status render_instances_bring_spheres(render_instances *instances, const render_frame *frame,
+                                            skein_error *error);
+skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame,
+                                           skein_error *error);
+skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame,
+                                          skein_error *error);
 
 /* A colour as a screen shows it, turned into light as sRGB defines it, times `strength`. */
 void render_to_light(const float colour[3], float strength, float out[3]);

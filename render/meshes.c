@@ -90,8 +90,8 @@ static skein_status rebuild(render_mesh *mesh, const render_surface *surface, sk
 
 skein_status render_mesh_update(render_mesh *mesh, const render_surface *surface, skein_error *error) {
     bool same = mesh->arrays && surface->shape != 0 && mesh->shape == surface->shape &&
-                mesh->vertex_count == surface->vertex_count && mesh->triangle_count == surface->triangle_count &&
-                (mesh->uv != 0) == (surface->uv != NULL);
+                mesh->vertex_count == surface->vertex_count &&
+                mesh->triangle_count == surface->triangle_count && (mesh->uv != 0) == (surface->uv != NULL);
     if (!same) {
         skein_status status = rebuild(mesh, surface, error);
         if (status != SKEIN_OK) return status;

@@ -53,8 +53,8 @@ render_picture_options render_default_picture_options(void) {
 /* ---- The picture ---------------------------------------------------------------------------- */
 
 /* Draws into an image, with a context that is current. */
-static skein_status draw_image(const skein_world *world, const render_picture_options *options, render_image *image,
-                               skein_error *error) {
+static skein_status draw_image(const skein_world *world, const render_picture_options *options,
+                               render_image *image, skein_error *error) {
     int width = options->size[0], height = options->size[1];
     render_target target = {0};
     skein_status status = render_target_create(&target, width, height, options->samples, error);
@@ -66,7 +66,8 @@ static skein_status draw_image(const skein_world *world, const render_picture_op
     if (status == SKEIN_OK) {
         render_world_frame_settle(frame);
         render_camera camera = render_world_frame_camera(frame, (double)width / height);
-        status = render_draw_frame(draw, render_world_frame_get(frame), &camera, target.framebuffer, width, height, error);
+        status = render_draw_frame(draw, render_world_frame_get(frame), &camera, target.framebuffer, width,
+                                   height, error);
     }
     if (status == SKEIN_OK) status = render_target_read(&target, image, error);
     render_world_frame_destroy(frame);
@@ -85,8 +86,8 @@ skein_status render_picture(const skein_world *world, const char *path, const re
     skein_status status = draw_image(world, options ? options : &standard, &image, error);
     const render_messages *messages = render_context_messages(context);
     if (status == SKEIN_OK && messages->errors > 0) {
-        status = render_fail(error, SKEIN_ERROR_VALUE, render_context_name(context), "the OpenGL driver says: %s",
-                             messages->last);
+        status = render_fail(error, SKEIN_ERROR_VALUE, render_context_name(context),
+                             "the OpenGL driver says: %s", messages->last);
     }
     render_context_destroy(context);
     if (status == SKEIN_OK) status = render_image_write_png(&image, path, error);

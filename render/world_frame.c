@@ -2,6 +2,7 @@
 #include "render/world_frame.h"
 
 #include "render/fail.h"
+#include "render/planes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,6 +24,9 @@ typedef struct particles {
     size_t count;
 } particles;
 
+/* How a particle is shown: by itself, as part of a surface, or not at all. */
+enum { LOOSE, IN_SURFACE, HIDDEN };
+
 struct render_world_frame {
     render_frame frame;
     body *bodies;
@@ -32,8 +36,8 @@ struct render_world_frame {
     render_sphere *spheres;
     render_points points[2]; /* loose particles, pins */
     particles loose, pins;
-    bool *in_surface;        /* by particle */
-    double *all;             /* every particle's position, in the user's order */
+    unsigned char *shown; /* by particle: how */
+    double *all;          /* every particle's position, in the user's order */
     size_t particle_count;
     bool has_floor;
     double floor_height;
@@ -73,7 +77,7 @@ void render_world_frame_destroy(render_world_frame *made) {
     free(made->spheres);
     free(made->loose.positions);
     free(made->pins.positions);
-    free(made->in_surface);
+    free(made->shown);
     free(made->all);
     free(made);
 }
@@ -132,7 +136,8 @@ static double line_length(const body *b, size_t count, size_t step) {
     double sum = 0;
     for (size_t i = 1; i < count; i++) {
         const double *p = &b->positions[3 * (i - 1) * step], *q = &b->positions[3 * i * step];
-        sum += sqrt((q[0] - p[0]) * (q[0] - p[0]) + (q[1] - p[1]) * (q[1] - p[1]) + (q[2] - p[2]) * (q[2] - p[2]));
+        sum += sqrt((q[0] - p[0]) * (q[0] - p[0]) + (q[1] - p[1]) * (q[1] - p[1]) +
+                    (q[2] - p[2]) * (q[2] - p[2]));
     }
     return isfinite(sum) && sum > 0 ? sum : 1;
 }
@@ -166,7 +171,8 @@ static uint64_t hash(uint64_t so_far, const void *data, size_t words) {
 }
 
 /* All that stays of a body. */
-static bool make_body(body *b, const skein_surface *surface, skein_handle handle, const render_world_frame *made) {
+static bool make_body(body *b, const skein_surface *surface, skein_handle handle,
+                      const render_world_frame *made) {
     release_body(b);
     size_t rows = surface->grid_rows, columns = surface->grid_columns;
     b->handle = handle;
@@ -178,7 +184,8 @@ static bool make_body(body *b, const skein_surface *surface, skein_handle handle
 
     make_triangles(b, surface);
     gather(b, surface, made->all);
-    if (b->vertex_count > surface->particle_count && !make_weld(b, surface, made->particle_count)) return false;
+    if (b->vertex_count > surface->particle_count && !make_weld(b, surface, made->particle_count))
+        return false;
     bool grid = rows >= 2 && columns >= 2 && rows * columns == b->vertex_count;
     if (grid && !make_uv(b, rows, columns)) return false;
 
@@ -199,7 +206,7 @@ static void add_surface(render_world_frame *made, const body *b, size_t index) {
         .weld = b->weld,
         .uv = b->uv,
         .shape = b->shape,
-        .material = render_default_material(index),
+        .material = b->uv ? render_default_material(index) : render_plain_material(index),
     };
     if (b->uv) memcpy(surface->material.repeats, b->repeats, sizeof b->repeats);
 }
@@ -220,17 +227,17 @@ static skein_status take_bodies(render_world_frame *made, const skein_world *wor
         skein_status status = skein_body_surface(world, handle, &surface);
         if (status != SKEIN_OK) return render_fail(error, status, "", "a body's surface cannot be read");
         body *b = &made->bodies[i];
-        bool same = b->positions && b->handle.index == handle.index && b->handle.generation == handle.generation &&
-                    b->vertex_count == surface.vertex_count;
-        if (!same && !make_body(b, &surface, handle, made)) return render_fail_memory(error, "a body's surface");
+        bool same = b->positions && b->handle.index == handle.index &&
+                    b->handle.generation == handle.generation && b->vertex_count == surface.vertex_count;
+        if (!same && !make_body(b, &surface, handle, made))
+            return render_fail_memory(error, "a body's surface");
         gather(b, &surface, made->all);
 
         // a body without faces shows its particles; a hidden one shows nothing
         bool visible = is_visible(world, handle);
         if (visible && b->triangle_count > 0) add_surface(made, b, i);
-        for (size_t p = 0; p < surface.particle_count && (!visible || b->triangle_count > 0); p++) {
-            made->in_surface[surface.first_particle + p] = true;
-        }
+        int shown = !visible ? HIDDEN : b->triangle_count > 0 ? IN_SURFACE : LOOSE;
+        memset(made->shown + surface.first_particle, shown, surface.particle_count);
     }
     return SKEIN_OK;
 }
@@ -242,19 +249,19 @@ static skein_status take_particles(render_world_frame *made, const skein_world *
     static const float loose_colour[3] = {0.925f, 0.640f, 0.200f}, pin_colour[3] = {0.27f, 0.26f, 0.27f};
     size_t count = made->particle_count;
     skein_view view = skein_position_view(world);
-    if (!grow(&made->loose.positions, 3 * count, sizeof(double)) || !grow(&made->pins.positions, 3 * count, sizeof(double))) {
+    if (!grow(&made->loose.positions, 3 * count, sizeof(double)) ||
+        !grow(&made->pins.positions, 3 * count, sizeof(double))) {
         return render_fail_memory(error, "the particles");
     }
     made->loose.count = made->pins.count = 0;
     for (size_t p = 0; p < count && p < view.count; p++) {
         bool held = view.xyzw[4 * (size_t)view.slot_of[p] + 3] == 0;
-        particles *to = made->in_surface[p] ? &made->pins : &made->loose;
-        if (to == &made->pins && !held) continue;
+        if (made->shown[p] == HIDDEN || (made->shown[p] == IN_SURFACE && !held)) continue;
+        particles *to = made->shown[p] == LOOSE ? &made->loose : &made->pins;
         memcpy(&to->positions[3 * to->count++], &made->all[3 * p], 3 * sizeof(double));
     }
-    if (4 * made->pins.count > count || made->frame.surface_count == 0) made->pins.count = 0;
+    if (4 * made->pins.count > count) made->pins.count = 0;
 
-    double radius;
     made->points[0] = (render_points){.positions = made->loose.positions, .count = made->loose.count};
     made->points[1] = (render_points){.positions = made->pins.positions, .count = made->pins.count};
     memcpy(made->points[0].colour, loose_colour, sizeof loose_colour);
@@ -262,7 +269,7 @@ static skein_status take_particles(render_world_frame *made, const skein_world *
     made->frame.points = made->points;
     made->frame.points_count = 2;
     render_bounds bounds = render_frame_bounds(&made->frame);
-    radius = render_bounds_radius(&bounds);
+    double radius = render_bounds_radius(&bounds);
     made->points[0].radius = loose_size * (radius > 0 ? radius : 1);
     made->points[1].radius = pin_size * radius * (made->pins.count > 12 ? 0.6 : 1.0);
     return SKEIN_OK;
@@ -270,7 +277,8 @@ static skein_status take_particles(render_world_frame *made, const skein_world *
 
 /* ---- Colliders ------------------------------------------------------------------------------ */
 
-static void add_plane(render_world_frame *made, const skein_world *world, skein_handle handle, const skein_pose *pose) {
+static void add_plane(render_world_frame *made, const skein_world *world, skein_handle handle,
+                      const skein_pose *pose) {
     skein_value normal;
     if (skein_get(world, handle, "normal", &normal) != SKEIN_OK) return;
     render_plane *plane = &made->planes[made->frame.plane_count++];
@@ -281,7 +289,8 @@ static void add_plane(render_world_frame *made, const skein_world *world, skein_
     }
 }
 
-static void add_sphere(render_world_frame *made, const skein_world *world, skein_handle handle, const skein_pose *pose) {
+static void add_sphere(render_world_frame *made, const skein_world *world, skein_handle handle,
+                       const skein_pose *pose) {
     skein_value radius;
     if (skein_get(world, handle, "radius", &radius) != SKEIN_OK) return;
     render_sphere *sphere = &made->spheres[made->frame.sphere_count++];
@@ -293,7 +302,8 @@ static void add_sphere(render_world_frame *made, const skein_world *world, skein
 
 static skein_status take_colliders(render_world_frame *made, const skein_world *world, skein_error *error) {
     size_t count = skein_object_count(world, SKEIN_COLLIDER);
-    if (!grow(&made->planes, count, sizeof *made->planes) || !grow(&made->spheres, count, sizeof *made->spheres)) {
+    if (!grow(&made->planes, count, sizeof *made->planes) ||
+        !grow(&made->spheres, count, sizeof *made->spheres)) {
         return render_fail_memory(error, "the colliders");
     }
     made->frame.planes = made->planes, made->frame.plane_count = 0;
@@ -302,7 +312,8 @@ static skein_status take_colliders(render_world_frame *made, const skein_world *
         skein_handle handle = skein_object_at(world, SKEIN_COLLIDER, i);
         const skein_kind *kind = skein_object_kind(world, handle);
         skein_pose pose;
-        if (!kind || !is_visible(world, handle) || skein_collider_pose(world, handle, &pose) != SKEIN_OK) continue;
+        if (!kind || !is_visible(world, handle) || skein_collider_pose(world, handle, &pose) != SKEIN_OK)
+            continue;
         if (strcmp(kind->name, "plane") == 0) add_plane(made, world, handle, &pose);
         if (strcmp(kind->name, "sphere") == 0) add_sphere(made, world, handle, &pose);
     }
@@ -327,13 +338,15 @@ static void place_floor(render_world_frame *made) {
     made->frame.look.floor_height = made->floor_height;
 }
 
-skein_status render_world_frame_update(render_world_frame *made, const skein_world *world, skein_error *error) {
+skein_status render_world_frame_update(render_world_frame *made, const skein_world *world,
+                                       skein_error *error) {
     size_t count = skein_particle_count(world);
-    if (!grow(&made->all, 3 * count, sizeof *made->all) || !grow(&made->in_surface, count, sizeof *made->in_surface)) {
+    if (!grow(&made->all, 3 * count, sizeof *made->all) ||
+        !grow(&made->shown, count, sizeof *made->shown)) {
         return render_fail_memory(error, "the particles");
     }
     made->particle_count = count;
-    memset(made->in_surface, 0, count * sizeof *made->in_surface);
+    memset(made->shown, 0, count * sizeof *made->shown);
     skein_status status = count > 0 ? skein_positions_copy(world, 0, count, made->all) : SKEIN_OK;
     if (status != SKEIN_OK) return render_fail(error, status, "", "the positions cannot be read");
 
@@ -355,7 +368,8 @@ void render_world_frame_settle(render_world_frame *made) {
 render_camera render_world_frame_camera(const render_world_frame *made, double aspect) {
     const render_look *look = &made->frame.look;
     render_bounds bounds = render_frame_bounds(&made->frame);
-    double gap = bounds.least[1] - look->floor_height, most_gap = floor_gap * (bounds.most[1] - bounds.least[1]);
+    double gap = bounds.least[1] - look->floor_height,
+           most_gap = floor_gap * (bounds.most[1] - bounds.least[1]);
     if (look->floor && gap > 0 && gap < 1.01 * most_gap) bounds.least[1] = look->floor_height;
     return render_camera_framing(&bounds, aspect);
 }

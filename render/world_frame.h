@@ -20,7 +20,8 @@ void render_world_frame_destroy(render_world_frame *frame); /* NULL is allowed *
 
 /* Takes the world's present state. Where it has no level plane, a ground is put under the first
  * state seen, and stays there. */
-skein_status render_world_frame_update(render_world_frame *frame, const skein_world *world, skein_error *error);
+skein_status render_world_frame_update(render_world_frame *frame, const skein_world *world,
+                                       skein_error *error);
 const render_frame *render_world_frame_get(const render_world_frame *frame);
 
 /* For a picture that stands alone: brings such a ground close under the present state. (In a film it

@@ -1,6 +1,6 @@
 /* Tests of render/: frames made by hand, drawn small, and looked at pixel by pixel.
  *
- * One context and one renderer serve all tests, as in a film; the last tests look at whether the driver
+ * One context and one renderer serve all tests, as in a film; the last test looks at whether the driver
  * had anything to say. Pictures are 640 x 360 with a plain camera, so that what must be seen can be
  * computed. */
 #include <setjmp.h>
@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "render/camera.h"
@@ -26,6 +26,7 @@
 #include "render/image.h"
 #include "render/meshes.h"
 #include "render/picture.h"
+#include "render/planes.h"
 #include "render/target.h"
 #include "render/world_frame.h"
 
@@ -49,7 +50,7 @@ static int set_up(void **state) {
     assert_non_null(draw);
     assert_int_equal(render_target_create(&target, width, height, 4, &error), SKEIN_OK);
     assert_true(target.samples >= 1 && target.samples <= 4);
-    return mkdtemp(directory) ? 0 : -1;
+    return 0;
 }
 
 static int tear_down(void **state) {
@@ -57,7 +58,7 @@ static int tear_down(void **state) {
     render_target_destroy(&target);
     render_draw_destroy(draw);
     render_context_destroy(context);
-    return rmdir(directory);
+    return 0;
 }
 
 /* ---- Helpers -------------------------------------------------------------------------------- */
@@ -66,7 +67,8 @@ static int tear_down(void **state) {
 static render_image shoot_with(render_draw *with, const render_frame *frame, const render_camera *camera) {
     render_image image = {0};
     skein_error error = {0};
-    assert_int_equal(render_draw_frame(with, frame, camera, target.framebuffer, width, height, &error), SKEIN_OK);
+    assert_int_equal(render_draw_frame(with, frame, camera, target.framebuffer, width, height, &error),
+                     SKEIN_OK);
     assert_int_equal(render_target_read(&target, &image, &error), SKEIN_OK);
     return image;
 }
@@ -85,8 +87,12 @@ static const double square_positions[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1,
 static const uint32_t square_triangles[6] = {0, 1, 2, 0, 2, 3};
 
 static render_surface square(void) {
-    render_surface surface = {.positions = square_positions, .vertex_count = 4, .triangles = square_triangles,
-                              .triangle_count = 2, .shape = 1, .material = render_default_material(0)};
+    render_surface surface = {.positions = square_positions,
+                              .vertex_count = 4,
+                              .triangles = square_triangles,
+                              .triangle_count = 2,
+                              .shape = 1,
+                              .material = render_default_material(0)};
     surface.material.pattern = RENDER_PLAIN;
     return surface;
 }
@@ -102,7 +108,8 @@ static double difference(const render_image *a, const render_image *b, int least
     size_t count = 0, total = (size_t)a->width * (size_t)a->height;
     for (size_t i = 0; i < total; i++) {
         bool differs = false;
-        for (size_t k = 0; k < 3; k++) differs |= abs((int)a->pixels[3 * i + k] - (int)b->pixels[3 * i + k]) > least;
+        for (size_t k = 0; k < 3; k++)
+            differs |= abs((int)a->pixels[3 * i + k] - (int)b->pixels[3 * i + k]) > least;
         count += differs;
     }
     return (double)count / (double)total;
@@ -119,6 +126,11 @@ static double coverage(const render_frame *frame, const render_camera *camera) {
     return part;
 }
 
+static void assert_near(double is, double ought, double off) {
+    if (fabs(is - ought) > off) fprintf(stderr, "%g is not %g +- %g\n", is, ought, off);
+    assert_true(fabs(is - ought) <= off);
+}
+
 static void path_in(char path[256], const char *name) {
     snprintf(path, 256, "%s/%s", directory, name);
 }
@@ -133,13 +145,14 @@ static void a_square_covers_what_it_must(void **state) {
     frame.surfaces = &surface, frame.surface_count = 1;
 
     double side = 1 / (6 * tan(20 * pi / 180)); // of half the picture's height
-    assert_float_equal(coverage(&frame, &camera), side * side * height / width, 0.004);
+    assert_near(coverage(&frame, &camera), side * side * height / width, 0.004);
 
     // its own colour in the middle, the sky at the rim
     render_image image = shoot(&frame, &camera);
-    const uint8_t *middle = render_image_pixel(&image, width / 2, height / 2), *rim = render_image_pixel(&image, 5, 5);
+    const uint8_t *middle = render_image_pixel(&image, width / 2, height / 2),
+                  *rim = render_image_pixel(&image, 5, 5);
     assert_true(middle[0] > middle[1] + 60 && middle[0] > middle[2] + 60);
-    assert_true(rim[2] >= rim[0] && rim[0] > 120);
+    assert_true(rim[2] > rim[0] && rim[2] > 120);
     render_image_release(&image);
 }
 
@@ -197,7 +210,7 @@ static void a_sphere_covers_what_its_radius_says(void **state) {
         sphere.radius = radius;
         double disc = tan(asin(radius / 6)) / tan(20 * pi / 180); // of half the picture's height
         double part = pi * disc * disc * height / (4.0 * width);
-        assert_float_equal(coverage(&frame, &camera), part, 0.02 * part + 0.001);
+        assert_near(coverage(&frame, &camera), part, 0.02 * part + 0.001);
     }
 }
 
@@ -261,9 +274,11 @@ static void there_is_ground_and_a_horizon(void **state) {
     assert_int_equal(above, 0);
     assert_true(below > 150);
     // the sky is bluer than the ground, and they meet without an edge
-    const uint8_t *sky = render_image_pixel(&with, 20, 2), *floor = render_image_pixel(&with, 20, height - 10);
+    const uint8_t *sky = render_image_pixel(&with, 20, 2),
+                  *floor = render_image_pixel(&with, 20, height - 10);
     assert_true(sky[2] - sky[0] > floor[2] - floor[0] + 10);
-    for (int y = 1; y < height / 2; y++) assert_true(abs(brightness(&with, 20, y) - brightness(&with, 20, y - 1)) < 24);
+    for (int y = 1; y < height / 2; y++)
+        assert_true(abs(brightness(&with, 20, y) - brightness(&with, 20, y - 1)) < 24);
     render_image_release(&with);
     render_image_release(&without);
 }
@@ -306,7 +321,8 @@ static void a_shadow_has_a_soft_edge(void **state) {
     for (int i = 0; i < 2; i++) {
         frame.look.sun_spread = i ? 4 : 1.5;
         render_image image = shoot(&frame, &camera);
-        int dark = brightness(&image, width / 2 + 93, height / 2 + 3), light = brightness(&image, width - 60, height / 2 + 3);
+        int dark = brightness(&image, width / 2 + 93, height / 2 + 3),
+            light = brightness(&image, width - 60, height / 2 + 3);
         for (int x = width / 2 + 93; x < width - 60; x++) {
             int here = brightness(&image, x, height / 2 + 3);
             widths[i] += here > dark + (light - dark) / 8 && here < light - (light - dark) / 8;
@@ -348,8 +364,6 @@ static void a_symmetric_scene_gives_a_symmetric_picture(void **state) {
     frame.spheres = &sphere, frame.sphere_count = 1;
     frame.planes = &ground, frame.plane_count = 1;
     frame.look.sun[0] = 0;
-    const double sides[9] = {0.7071068, 0, 0.7071068, 0, 1, 0, -0.7071068, 0, 0.7071068};
-    (void)sides;
     sphere.radius = 0.6, sphere.centre[1] = 0.6, sphere.centre[2] = 1.5;
     memcpy(sphere.marking, sphere.colour, sizeof sphere.colour);
 
@@ -391,7 +405,8 @@ static void the_same_frame_gives_the_same_picture(void **state) {
     frame.planes = &ground, frame.plane_count = 1;
 
     // with another frame between, and by a new renderer
-    render_image first = shoot(&frame, &camera), between = shoot(&other, &camera), again = shoot(&frame, &camera);
+    render_image first = shoot(&frame, &camera), between = shoot(&other, &camera),
+                 again = shoot(&frame, &camera);
     render_draw *fresh = render_draw_create(NULL);
     assert_non_null(fresh);
     render_image anew = shoot_with(fresh, &frame, &camera);
@@ -461,7 +476,8 @@ static void flat_normals_are_exact(void **state) {
     static const uint32_t triangles[6] = {0, 2, 1, 1, 2, 3};
     (void)state;
     float normals[12];
-    render_surface surface = {.positions = positions, .vertex_count = 4, .triangles = triangles, .triangle_count = 2};
+    render_surface surface = {
+        .positions = positions, .vertex_count = 4, .triangles = triangles, .triangle_count = 2};
     render_surface_normals(&surface, normals);
     for (int v = 0; v < 4; v++) {
         assert_true(normals[3 * v] == 0 && normals[3 * v + 1] == 1 && normals[3 * v + 2] == 0);
@@ -474,7 +490,8 @@ static void welded_vertices_share_a_normal(void **state) {
     static const uint32_t triangles[6] = {0, 2, 1, 3, 5, 4}, weld[6] = {0, 1, 2, 1, 4, 2};
     (void)state;
     float apart[18], joined[18];
-    render_surface surface = {.positions = positions, .vertex_count = 6, .triangles = triangles, .triangle_count = 2};
+    render_surface surface = {
+        .positions = positions, .vertex_count = 6, .triangles = triangles, .triangle_count = 2};
     render_surface_normals(&surface, apart);
     surface.weld = weld;
     render_surface_normals(&surface, joined);
@@ -484,8 +501,10 @@ static void welded_vertices_share_a_normal(void **state) {
 }
 
 static void the_camera_holds_the_whole_box(void **state) {
-    static const render_bounds boxes[4] = {
-        {{-1, 0, -1}, {1, 2, 1}}, {{-50, 0, -1}, {50, 0.1, 1}}, {{0, 0, 0}, {0.001, 30, 0.001}}, {{7, 7, 7}, {7, 7, 7}}};
+    static const render_bounds boxes[4] = {{{-1, 0, -1}, {1, 2, 1}},
+                                           {{-50, 0, -1}, {50, 0.1, 1}},
+                                           {{0, 0, 0}, {0.001, 30, 0.001}},
+                                           {{7, 7, 7}, {7, 7, 7}}};
     static const double aspects[3] = {16.0 / 9, 1, 0.5};
     (void)state;
     for (int b = 0; b < 4; b++) {
@@ -498,9 +517,11 @@ static void the_camera_holds_the_whole_box(void **state) {
             for (int c = 0; c < 8; c++) {
                 double p[4] = {0, 0, 0, 1}, v[4], w[4];
                 for (int k = 0; k < 3; k++) p[k] = c >> k & 1 ? boxes[b].most[k] : boxes[b].least[k];
-                for (int r = 0; r < 4; r++) v[r] = view[r] * p[0] + view[4 + r] * p[1] + view[8 + r] * p[2] + view[12 + r];
+                for (int r = 0; r < 4; r++)
+                    v[r] = view[r] * p[0] + view[4 + r] * p[1] + view[8 + r] * p[2] + view[12 + r];
                 for (int r = 0; r < 4; r++) {
-                    w[r] = projection[r] * v[0] + projection[4 + r] * v[1] + projection[8 + r] * v[2] + projection[12 + r] * v[3];
+                    w[r] = projection[r] * v[0] + projection[4 + r] * v[1] + projection[8 + r] * v[2] +
+                           projection[12 + r] * v[3];
                 }
                 assert_true(fabs(w[0]) < 0.9 * w[3] && fabs(w[1]) < 0.9 * w[3]);
                 assert_true(w[2] > 0 && w[2] < w[3]);
@@ -511,19 +532,23 @@ static void the_camera_holds_the_whole_box(void **state) {
 
 /* ---- Files ---------------------------------------------------------------------------------- */
 
-static render_image stripes(void) {
+static render_image noise(void) {
     render_image image = {0};
     assert_int_equal(render_image_resize(&image, 200, 100, NULL), SKEIN_OK);
-    for (size_t i = 0; i < 200 * 100 * 3; i++) image.pixels[i] = (uint8_t)(i * 2654435761u >> 13);
+    uint32_t random = 1;
+    for (size_t i = 0; i < 200 * 100 * 3; i++) {
+        random = random * 1664525u + 1013904223u;
+        image.pixels[i] = (uint8_t)(random >> 24);
+    }
     return image;
 }
 
 static void a_png_comes_back_as_it_was(void **state) {
     (void)state;
     char path[256];
-    render_image image = stripes(), back = {0};
+    render_image image = noise(), back = {0};
     skein_error error = {0};
-    path_in(path, "stripes.png");
+    path_in(path, "noise.png");
     assert_int_equal(render_image_write_png(&image, path, &error), SKEIN_OK);
     assert_int_equal(render_image_write_png(&image, path, &error), SKEIN_OK); // over what is there
     assert_int_equal(render_image_read_png(&back, path, &error), SKEIN_OK);
@@ -538,7 +563,7 @@ static void a_png_comes_back_as_it_was(void **state) {
 static void file_errors_say_what_and_where(void **state) {
     (void)state;
     char path[256];
-    render_image image = stripes();
+    render_image image = noise();
     skein_error error = {0};
     path_in(path, "no/such/directory.png");
     assert_int_equal(render_image_write_png(&image, path, &error), SKEIN_ERROR_FILE);
@@ -559,7 +584,7 @@ static void file_errors_say_what_and_where(void **state) {
 static void a_full_disk_leaves_nothing(void **state) {
     (void)state;
     char path[256];
-    render_image image = stripes();
+    render_image image = noise();
     skein_error error = {0};
     struct rlimit before, small;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -572,7 +597,7 @@ static void a_full_disk_leaves_nothing(void **state) {
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
     assert_int_equal(status, SKEIN_ERROR_FILE);
     assert_string_equal(error.where, path);
-    assert_int_equal(access(path, F_OK), -1); // and tear_down finds the directory empty
+    assert_int_equal(access(path, F_OK), -1); // and main() finds the directory empty
     render_image_release(&image);
 }
 
@@ -592,12 +617,17 @@ static skein_world *cloth_on_a_ball(void) {
     skein_error error = {0};
     skein_world *world = skein_world_create(NULL, &error);
     assert_non_null(world);
-    assert_int_equal(skein_body_add(world, "cloth", NULL,
-                                    SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 17), SKEIN_PAIR("size", 2, 1),
-                                                   SKEIN_VEC3("position", 0, 1.6, 0), SKEIN_TEXT("pins", "corners")),
-                                    NULL),
-                     SKEIN_OK);
-    assert_int_equal(skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.5, 0), SKEIN_REAL("radius", 0.5)), NULL), SKEIN_OK);
+    assert_int_equal(
+        skein_body_add(world, "cloth", NULL,
+                       SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 17), SKEIN_PAIR("size", 2, 1),
+                                      SKEIN_VEC3("position", 0, 1.6, 0), SKEIN_VEC3("rotation", 50, 0, 0),
+                                      SKEIN_TEXT("pins", "corners")),
+                       NULL),
+        SKEIN_OK);
+    assert_int_equal(
+        skein_collider_add(world, "sphere",
+                           SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.5, 0), SKEIN_REAL("radius", 0.5)), NULL),
+        SKEIN_OK);
     assert_int_equal(skein_collider_add(world, "plane", NULL, NULL), SKEIN_OK);
     return world;
 }
@@ -613,7 +643,8 @@ static void a_world_becomes_a_frame(void **state) {
     assert_int_equal(frame->surfaces[0].vertex_count, 9 * 17);
     assert_int_equal(frame->surfaces[0].triangle_count, 2 * 8 * 16);
     assert_non_null(frame->surfaces[0].uv);
-    assert_true(frame->surfaces[0].uv[2 * (9 * 17 - 1)] == 1 && frame->surfaces[0].uv[2 * (9 * 17 - 1) + 1] == 1);
+    assert_true(frame->surfaces[0].uv[2 * (9 * 17 - 1)] == 1 &&
+                frame->surfaces[0].uv[2 * (9 * 17 - 1) + 1] == 1);
     assert_int_equal(frame->sphere_count, 1);
     assert_true(frame->spheres[0].centre[1] == 0.5 && frame->spheres[0].radius == 0.5);
     assert_int_equal(frame->plane_count, 1);
@@ -621,8 +652,10 @@ static void a_world_becomes_a_frame(void **state) {
     assert_int_equal(frame->points[1].count, 4); // pins
 
     // what is hidden is not there; without a plane there is a floor of no effect
-    assert_int_equal(skein_set(world, skein_object_at(world, SKEIN_BODY, 0), "visible", skein_number(0)), SKEIN_OK);
-    assert_int_equal(skein_set(world, skein_object_at(world, SKEIN_COLLIDER, 1), "visible", skein_number(0)), SKEIN_OK);
+    assert_int_equal(skein_set(world, skein_object_at(world, SKEIN_BODY, 0), "visible", skein_number(0)),
+                     SKEIN_OK);
+    assert_int_equal(skein_set(world, skein_object_at(world, SKEIN_COLLIDER, 1), "visible", skein_number(0)),
+                     SKEIN_OK);
     assert_int_equal(render_world_frame_update(made, world, &error), SKEIN_OK);
     assert_int_equal(frame->surface_count, 0);
     assert_int_equal(frame->points[0].count + frame->points[1].count, 0);
@@ -687,18 +720,24 @@ static void the_driver_had_nothing_to_say(void **state) {
     assert_true(strlen(render_context_name(context)) > 10);
 }
 
+/* In a process of its own, because a display remembers what it can; 3 stands for a driver that is not
+ * Mesa's and cannot be made to lack anything. */
 static void without_opengl_4_5_it_says_what_to_do(void **state) {
     (void)state;
-    skein_error error = {0};
-    setenv("MESA_GL_VERSION_OVERRIDE", "3.3", 1);
-    render_context *none = render_context_create(&error);
-    unsetenv("MESA_GL_VERSION_OVERRIDE");
-    if (none) { // a driver that is not Mesa's cannot be made to lack it
-        render_context_destroy(none);
-        skip();
+    int result = 0;
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        skein_error error = {0};
+        setenv("MESA_GL_VERSION_OVERRIDE", "3.3", 1);
+        if (render_context_create(&error)) _exit(3);
+        fprintf(stderr, "%s: %s\n", error.where, error.message);
+        _exit(strstr(error.message, "OpenGL 4.5") && strstr(error.message, "install") ? 0 : 1);
     }
-    assert_non_null(strstr(error.message, "OpenGL 4.5"));
-    assert_non_null(strstr(error.message, "install"));
+    assert_int_equal(waitpid(child, &result, 0), child);
+    assert_true(WIFEXITED(result));
+    if (WEXITSTATUS(result) == 3) skip();
+    assert_int_equal(WEXITSTATUS(result), 0);
 }
 
 int main(void) {
@@ -730,14 +769,13 @@ int main(void) {
         cmocka_unit_test(the_exporter_is_described),
         cmocka_unit_test(the_driver_had_nothing_to_say),
     };
-    // these make contexts of their own
+    // these make contexts of their own; the first must come before any other
     const struct CMUnitTest alone[] = {
-        cmocka_unit_test(a_world_becomes_a_picture),
         cmocka_unit_test(without_opengl_4_5_it_says_what_to_do),
+        cmocka_unit_test(a_world_becomes_a_picture),
     };
-    int failed = cmocka_run_group_tests_name("render", tests, set_up, tear_down);
-    strcpy(directory, "/tmp/test_render_XXXXXX");
     if (!mkdtemp(directory)) return 1;
-    failed += cmocka_run_group_tests_name("render, alone", alone, NULL, NULL);
+    int failed = cmocka_run_group_tests_name("render, alone", alone, NULL, NULL);
+    failed += cmocka_run_group_tests_name("render", tests, set_up, tear_down);
     return failed + (rmdir(directory) != 0);
 }

@@ -267,7 +267,7 @@ typedef struct skein_pacer {
 } skein_pacer;
 
 skein_pacer skein_default_pacer(void); /* SKEIN_DEFAULT_STEP, at most 8 steps a feed */
-/* Adds `seconds` (NaN and negative count as 0) and returns the number of steps to take now. */
+/* Adds `seconds` (NaN, negative and infinite count as 0) and returns the number of steps to take now. */
 int skein_pacer_feed(skein_pacer *pacer, double seconds);
 /* How far the present lies between the last two states, 0 to 1. */
 double skein_pacer_blend(const skein_pacer *pacer);

@@ -22,8 +22,9 @@ void main() {
     vec3 view = normalize(scene.eye.xyz - world);
 
     // four meridians and the equator, so that a turn about any axis shows
-    float marked = max(band(vec3(0.924, 0.0, 0.383), 0.028, where), band(vec3(-0.383, 0.0, 0.924), 0.028, where));
-    marked = max(marked, band(vec3(0.0, 1.0, 0.0), 0.075, where));
+    float marked = band(vec3(0.0, 1.0, 0.0), 0.075, where);
+    marked = max(marked, band(vec3(0.924, 0.0, 0.383), 0.028, where));
+    marked = max(marked, band(vec3(-0.383, 0.0, 0.924), 0.028, where));
     vec3 albedo = mix(ball_paint, ball_marking, marked);
 
     float seen = sun_seen(world, n);
@@ -37,5 +38,6 @@ void main() {
     float glance = 0.035 + 0.5 * pow(1.0 - clamp(dot(n, view), 0.0, 1.0), 5.0);
     vec3 half_way = normalize(scene.sun.xyz + view);
     vec3 spot = scene.sun_light.rgb * seen * 0.5 * pow(max(dot(n, half_way), 0.0), 160.0);
-    colour = vec4(display(albedo * (sun + ambient) + around * glance * open * ground_seen(world) + spot), 1.0);
+    vec3 glaze = around * glance * open * ground_seen(world) + spot;
+    colour = vec4(display(albedo * (sun + ambient) + glaze), 1.0);
 }

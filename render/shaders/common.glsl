@@ -13,7 +13,7 @@ layout(std140, binding = 0) uniform scene_block {
     vec4 zenith;
     vec4 horizon;
     vec4 ground;      // w: the ground's height
-    vec4 sun_map;     // x: uv a metre; y: metres from depth 0 to 1; z: a texel in uv; w: 1 where there is a map
+    vec4 sun_map;     // x: uv a metre; y: metres from depth 0 to 1; z: a texel in uv; w: 1 where there is one
     vec4 under_map;   // the ground's occlusion: xy: least x and z; z: uv a metre; w: 1 where there is a map
     vec4 middle;      // the scene's middle; w: its radius
     vec4 balls[8];    // spheres that keep sky light away: centre, radius
@@ -27,14 +27,14 @@ layout(std140, binding = 1) uniform pass_block {
 // The sky along a direction of length 1; below the horizon it is the horizon's haze.
 vec3 sky_colour(vec3 direction) {
     float height = max(direction.y, 0.0);
-    return mix(scene.horizon.rgb, scene.zenith.rgb, 1.0 - exp(-5.0 * height));
+    return mix(scene.horizon.rgb, scene.zenith.rgb, 1.0 - exp(-8.0 * height));
 }
 
 // Light from all sides on a surface: the sky above, brighter on the sun's side so that folds show in the
 // shade too, and the sunlit ground below. `below` is how much of the ground's light arrives.
 vec3 ambient_light(vec3 normal, float below) {
     vec2 side = scene.sun.xz * inversesqrt(dot(scene.sun.xz, scene.sun.xz) + 1e-6);
-    vec3 sky = mix(scene.horizon.rgb, scene.zenith.rgb, 0.35) * 0.66 * (1.0 + 0.38 * dot(normal.xz, side));
-    vec3 bounce = scene.ground.rgb * mix(scene.sun_light.rgb, vec3(1.0), 0.5) * 0.55 * below;
+    vec3 sky = mix(scene.horizon.rgb, scene.zenith.rgb, 0.35) * 0.57 * (1.0 + 0.38 * dot(normal.xz, side));
+    vec3 bounce = scene.ground.rgb * mix(scene.sun_light.rgb, vec3(1.0), 0.5) * 0.46 * below;
     return mix(bounce, sky, 0.5 + 0.5 * normal.y);
 }

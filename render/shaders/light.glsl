@@ -21,7 +21,8 @@ float compare(vec3 at, vec2 offset, vec2 slope, float bias) {
 // itself.
 float sun_seen(vec3 point, vec3 normal) {
     vec3 at = (scene.to_sun * vec4(point, 1.0)).xyz;
-    if (scene.sun_map.w == 0.0 || any(lessThan(at, vec3(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
+    bool outside = any(lessThan(at, vec3(0.0))) || any(greaterThan(at.xy, vec2(1.0)));
+    if (scene.sun_map.w == 0.0 || outside) return 1.0;
 
     // how depth changes along uv on the receiver's own plane; nearly edge on it would grow without end
     float metres = scene.sun_map.y, texel = scene.sun_map.z, per_metre = scene.sun_map.x;

@@ -2,7 +2,7 @@
 layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;
 
-layout(location = 0) uniform vec3 half_pixel; // a pixel's half in clip units along x and y; z: the width in pixels
+layout(location = 0) uniform vec3 half_pixel; // half a pixel in clip units along x and y; z: width, pixels
 
 void main() {
     vec4 a = pass.to_clip * vec4(from, 1.0), b = pass.to_clip * vec4(to, 1.0);

@@ -52,8 +52,8 @@ void sk_write_clear(sk_writer *writer, sk_vector dst) {
     add_combine(writer, &sk_combine_sum, dst, 0, SK_NONE, 0, SK_NONE);
 }
 
-void sk_write_difference(sk_writer *writer, sk_vector dst, double a, sk_vector p, sk_vector q) {
-    add_combine(writer, &sk_combine_difference, dst, a, p, 0, q);
+void sk_write_correction(sk_writer *writer, sk_vector dst, double a, sk_vector p, sk_vector q, double b) {
+    add_combine(writer, &sk_combine_correction, dst, a, p, b, q);
 }
 
 void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_vector q) {

@@ -35,10 +35,10 @@ void sk_write_end(sk_writer *writer, size_t repeat);
 void sk_write_pack(sk_writer *writer);
 void sk_write_unpack(sk_writer *writer);
 
-/* dst = a p + b q (q may be SK_NONE); dst = 0; dst = a (p - q); dst = p + a w q. */
+/* dst = a p + b q (q may be SK_NONE); dst = 0; dst += a (p - (q + b dst)); dst = p + a w q. */
 void sk_write_sum(sk_writer *writer, sk_vector dst, double a, sk_vector p, double b, sk_vector q);
 void sk_write_clear(sk_writer *writer, sk_vector dst);
-void sk_write_difference(sk_writer *writer, sk_vector dst, double a, sk_vector p, sk_vector q);
+void sk_write_correction(sk_writer *writer, sk_vector dst, double a, sk_vector p, sk_vector q, double b);
 void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_vector q);
 
 /* Of position methods: V += h w F, X0 = X, X += h V (and V0 = V where contact asks for it). */

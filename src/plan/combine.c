@@ -27,12 +27,13 @@ static void SK_ISA(sum)(sk_run *run, const sk_row *row, size_t begin, size_t end
     else FOR_PARTS(a * p[at] + b * q[at] + c * r[at])
 }
 
-static void SK_ISA(difference)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+static void SK_ISA(correction)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     sk_wide *dst = (sk_wide *)(void *)run->vector[row->dst];
     const sk_wide *p = (const sk_wide *)(const void *)run->vector[row->source[0]];
     const sk_wide *q = (const sk_wide *)(const void *)run->vector[row->source[1]];
-    sk_wide a = SK_ISA(sk_splat)((real)row->coefficient[0]);
-    FOR_PARTS(a * (p[at] - q[at]))
+    real a = (real)row->coefficient[0], b = (real)row->coefficient[1];
+    // the same operations as predicted p, so that an untouched p corrects nothing
+    FOR_PARTS(dst[at] + a * (p[at] - (q[at] + b * dst[at])))
 }
 
 static void SK_ISA(kick)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
@@ -82,7 +83,7 @@ static void SK_ISA(unpack)(sk_run *run, const sk_row *row, size_t begin, size_t 
 #include "base/for_each_isa.h"
 
 const sk_kernels sk_combine_sum = {SK_EACH_ISA(sum)};
-const sk_kernels sk_combine_difference = {SK_EACH_ISA(difference)};
+const sk_kernels sk_combine_correction = {SK_EACH_ISA(correction)};
 const sk_kernels sk_combine_kick = {SK_EACH_ISA(kick)};
 const sk_kernels sk_combine_predict = {SK_EACH_ISA(predict)};
 const sk_kernels sk_pack = {SK_EACH_ISA(pack)};

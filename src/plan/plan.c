@@ -39,8 +39,9 @@ static void describe_combine(const sk_row *row, char *text, size_t size) {
         snprintf(text, size, "X + h V, V + h w F; X0 = X%s", row->source[2] == SK_V0 ? "; V0 = V" : "");
         return;
     }
-    if (is_version(row, &sk_combine_difference)) {
-        snprintf(text, size, "%g (%s - %s)", row->coefficient[0], p, q);
+    if (is_version(row, &sk_combine_correction)) {
+        const char *dst = vector_text(row->dst);
+        snprintf(text, size, "%s + %g (%s - %s - %g %s)", dst, row->coefficient[0], p, q, row->coefficient[1], dst);
         return;
     }
     if (is_version(row, &sk_combine_kick)) {

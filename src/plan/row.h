@@ -116,11 +116,11 @@ const char *sk_row_kind_text(sk_row_kind kind);
 
 /* The arithmetic of vectors: the kernels of combine rows. The w components stay as they are.
  *   dst = a p + b q + c r        (a source of SK_NONE is left out)
- *   dst = a (p - q)              velocity from positions, without cancelling after scaling
+ *   dst += a (p - (q + b dst))   velocity: what moved p away from where dst alone would have taken q
  *   dst = p + a w q              a kick: w is the inverse mass
  *   predict                      V += h w F; V0 = V where the third source is V0; X0 = X; X += h V: one row
  *                                for what would be four, since each block is read and written once */
-extern const sk_kernels sk_combine_sum, sk_combine_difference, sk_combine_kick, sk_combine_predict;
+extern const sk_kernels sk_combine_sum, sk_combine_correction, sk_combine_kick, sk_combine_predict;
 /* Turns blocks of dst from quads to packed, and back, in place. */
 extern const sk_kernels sk_pack, sk_unpack;
 

@@ -115,7 +115,7 @@ skein_pacer skein_default_pacer(void) {
 }
 
 int skein_pacer_feed(skein_pacer *pacer, double seconds) {
-    if (!(seconds > 0)) seconds = 0;
+    if (!(seconds > 0) || isinf(seconds)) seconds = 0;
     pacer->remainder += seconds;
     // a hair of tolerance, so that 1/60 s fed twice is the same as 1/30 s fed once
     double whole = floor(pacer->remainder / pacer->step + 1e-9);

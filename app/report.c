@@ -1,0 +1,115 @@
+#include "app/report.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double ms_per_step(const app_report *r) {
+    return r->statistics.steps ? 1e3 * r->seconds / (double)r->statistics.steps : 0;
+}
+
+static double realtime_factor(const app_report *r) {
+    return r->seconds > 0 ? r->statistics.time / r->seconds : 0;
+}
+
+/* A number for JSON, which has no NaN and no infinity. */
+static json_t *number(double x) {
+    return isfinite(x) ? json_real(x) : json_null();
+}
+
+static json_t *count(uint64_t x) {
+    return json_integer((json_int_t)x);
+}
+
+static json_t *make_document(const app_report *r) {
+    const skein_statistics *s = &r->statistics;
+    const io_scene_settings *scene = &r->loaded->settings;
+    char hash[24];
+    snprintf(hash, sizeof hash, "%016" PRIx64, s->state_hash);
+    const struct {
+        const char *key;
+        json_t *value;
+    } members[] = {
+        {"skein", json_string(SKEIN_VERSION)},
+        {"precision", json_string(sizeof(skein_real) == 8 ? "double" : "float")},
+        {"scene", json_string(r->loaded->path)},
+        {"name", json_string(scene->name)},
+        {"method", json_string(app_method(r->loaded))},
+        {"threads", count((uint64_t)scene->threads)},
+        {"interrupted", json_boolean(r->interrupted)},
+        {"warnings", count(r->loaded->warnings)},
+        // what was done
+        {"frames", count((uint64_t)r->frames)},
+        {"fps", number(scene->fps)},
+        {"step", number(r->dt)},
+        {"steps", count(s->steps)},
+        {"substeps", count(s->substeps)},
+        {"time", number(s->time)},
+        {"load_seconds", number(r->loaded->load_seconds)},
+        {"run_seconds", number(r->seconds)},
+        {"ms_per_step", number(ms_per_step(r))},
+        {"realtime_factor", number(realtime_factor(r))},
+        {"memory_bytes", count(s->memory_bytes)},
+        // the state at the end
+        {"particles", count(s->particles)},
+        {"held_particles", count(s->held_particles)},
+        {"constraints", count(s->constraints)},
+        {"contacts", count(s->contacts)},
+        {"kinetic_energy", number(s->kinetic_energy)},
+        {"max_stretch", number(s->max_stretch)},
+        {"p99_stretch", number(s->p99_stretch)},
+        {"worst_stretch_of_run", number(r->worst_stretch)},
+        {"max_penetration", number(s->max_penetration)},
+        {"nonfinite_particles", count(s->nonfinite)},
+        {"state_hash", json_string(hash)},
+        {"files", json_incref(r->files)},
+    };
+    json_t *root = json_object();
+    bool good = true;
+    for (size_t i = 0; i < sizeof members / sizeof *members; i++) good &= !json_object_set_new(root, members[i].key, members[i].value);
+    if (good) return root;
+    json_decref(root);
+    return NULL;
+}
+
+bool app_report_write(app_report *report, const char *folder) {
+    size_t size = strlen(folder) + sizeof "/report.json";
+    char *path = malloc(size);
+    json_t *root = make_document(report);
+    char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
+    json_decref(root);
+    skein_error error = {SKEIN_ERROR_MEMORY, "report.json", "out of memory"};
+    if (path && text) {
+        snprintf(path, size, "%s/report.json", folder);
+        io_output *output = io_output_open(path, &error);
+        if (output) {
+            io_output_write(output, text, strlen(text));
+            io_output_write(output, "\n", 1);
+            if (!io_output_commit(output, &error)) error.status = SKEIN_OK;
+        }
+    }
+    if (error.status) app_print_error(&error);
+    else json_array_append_new(report->files, json_string(path));
+    free(text);
+    free(path);
+    return !error.status;
+}
+
+static const char *plural(uint64_t n) {
+    return n == 1 ? "" : "s";
+}
+
+void app_report_print(const app_report *r) {
+    const skein_statistics *s = &r->statistics;
+    printf("%zu particles, %zu constraints; %d frame%s, %" PRIu64 " step%s of %.4g ms%s\n", s->particles, s->constraints, r->frames,
+           plural((uint64_t)r->frames), s->steps, plural(s->steps), 1e3 * r->dt, r->interrupted ? " (interrupted)" : "");
+    printf("%.3f ms a step, %.2f times real time\n", ms_per_step(r), realtime_factor(r));
+    printf("kinetic energy %.3g J, stretch at most %.2f %% (99 %% of edges under %.2f %%), penetration at most %.2g mm\n",
+           s->kinetic_energy, 100 * s->max_stretch, 100 * s->p99_stretch, 1e3 * s->max_penetration);
+    printf("state hash %016" PRIx64 "\n", s->state_hash);
+    size_t index;
+    json_t *file;
+    json_array_foreach(r->files, index, file) printf("wrote %s\n", json_string_value(file));
+}

@@ -1,0 +1,23 @@
+/* What a run says at its end: report.json, and the same in a few lines on the terminal. */
+#ifndef SKEIN_APP_REPORT_H
+#define SKEIN_APP_REPORT_H
+
+#include <jansson.h>
+
+#include "app/command.h"
+
+typedef struct app_report {
+    const app_scene *loaded;
+    int frames, steps_per_frame;
+    double dt, seconds; /* seconds: spent in steps */
+    bool interrupted;
+    skein_statistics statistics; /* of the end */
+    double worst_stretch;        /* over the whole run, sampled now and then */
+    json_t *files;               /* their paths */
+} app_report;
+
+/* Writes FOLDER/report.json and adds it to the files. False after a printed fault. */
+bool app_report_write(app_report *report, const char *folder);
+void app_report_print(const app_report *report);
+
+#endif

@@ -1,0 +1,255 @@
+/* Springs against closed forms: period and damping of an oscillator, a pendulum, hanging weights; and that
+ * stiffness is a property of the material: not of the substeps, the iterations or the resolution. */
+#include "helpers.h"
+
+static const double g = 9.81;
+
+/* A mass on a spring along x: held at 0, rest length 1, pulled out to 1 + `stretch`. */
+static skein_world *oscillator(const char *method, int substeps, int iterations, double mass, double stiffness, double damping,
+                               double stretch) {
+    skein_world *world = new_world(method, substeps);
+    if (iterations) OK(world, skein_set_path(world, "method.iterations", skein_number(iterations)));
+    uint32_t anchor = add_particle(world, 0, 0, 0, 0), bob = add_particle(world, mass, 1, 0, 0);
+    add_spring(world, anchor, bob, stiffness, damping);
+    place_particle(world, bob, 1 + stretch, 0, 0);
+    return world;
+}
+
+/* Times at which the mass passes its rest length outwards, and the greatest stretch between them. */
+typedef struct swing {
+    double period; /* s, the mean of those seen */
+    double decay;  /* 1/s, of the amplitude */
+    int turns;
+} swing;
+
+static swing watch(skein_world *world, double dt, int turns) {
+    double before = position_of(world, 1).x - 1, top = before, first = 0, last = 0, first_top = 0, last_top = 0;
+    swing seen = {0, 0, -1};
+    for (int n = 1; n < 5000 && seen.turns < turns; n++) {
+        steps(world, 1, dt);
+        double now = position_of(world, 1).x - 1;
+        if (now > top) top = now;
+        if (before < 0 && now >= 0) {
+            double crossing = dt * (n - 1 + before / (before - now));
+            if (++seen.turns == 0) first = crossing;
+            // the top that belongs to the swing before this crossing
+            if (seen.turns == 1) first_top = top;
+            last = crossing, last_top = top, top = 0;
+        }
+        before = now;
+    }
+    if (seen.turns > 0) seen.period = (last - first) / seen.turns;
+    if (seen.turns > 1) seen.decay = log(first_top / last_top) / (seen.period * (seen.turns - 1));
+    return seen;
+}
+
+/* The period of a damped oscillator, 2 pi / sqrt(k/m - (c/2m)^2), and its decay, exp(-c t / 2m). */
+static void an_oscillator_has_its_period_and_decay(void **state) {
+    (void)state;
+    static const double masses[] = {0.5, 3}, dampings[] = {0, 0.2, 0.6};
+    double stiffness = 25;
+    for (size_t m = 0; m < COUNT(method_names); m++)
+        for (size_t i = 0; i < COUNT(masses); i++)
+            for (size_t c = 0; c < COUNT(dampings); c++) {
+                double decay = dampings[c] / (2 * masses[i]), omega = sqrt(stiffness / masses[i] - decay * decay);
+                // XPBD moves positions by whole roundings of theirs: in float more substeps make that worse
+                bool exact = m == 0 || EPSILON < 1e-10;
+                double rate = EPSILON < 1e-10 ? 18000 : 1800;
+                skein_world *world = oscillator(method_names[m], (int)(rate / 180), 0, masses[i], stiffness, dampings[c], 0.25);
+                swing seen = watch(world, 1.0 / 180, 5);
+                assert_int_equal(seen.turns, 5);
+                assert_share(seen.period, 2 * PI / omega, exact ? 5e-4 : 6e-3);
+                // XPBD is implicit Euler here (see below): its own decay is omega^2 h / 2
+                double own = m ? omega * omega / rate / 2 : 0;
+                assert_near(seen.decay, decay + own, exact ? 1e-4 + 1e-3 * decay : 1e-3 + 0.025 * decay);
+                skein_world_destroy(world);
+            }
+}
+
+/* One constraint is solved exactly by one pass, so XPBD is implicit Euler: (1 + h c/m + h^2 k/m) v' = v - h k/m C.
+ * More passes find nothing left to do, with damping and without. */
+static void an_xpbd_oscillator_is_implicit_euler(void **state) {
+    (void)state;
+    static const double dampings[] = {0, 1.5, 40};
+    static const int iterations[] = {1, 2, 7};
+    double mass = 0.7, stiffness = 300;
+    for (size_t c = 0; c < COUNT(dampings); c++)
+        for (size_t i = 0; i < COUNT(iterations); i++) {
+            enum { SUBSTEPS = 3 };
+            skein_world *world = oscillator("xpbd", SUBSTEPS, iterations[i], mass, stiffness, dampings[c], 0.1);
+            double h = 1.0 / 90 / SUBSTEPS, x = 0.1, v = 0;
+            for (int n = 0; n < 60; n++) {
+                steps(world, 1, 1.0 / 90);
+                for (int k = 0; k < SUBSTEPS; k++) {
+                    v = (v - h * stiffness / mass * x) / (1 + h * dampings[c] / mass + h * h * stiffness / mass);
+                    x += h * v;
+                }
+                // positions near 1 m: their rounding over a substep is a velocity
+                assert_near(position_of(world, 1).x - 1, x, 50 * EPSILON);
+                assert_near(velocity_of(world, 1).x, v, 50 * EPSILON / h);
+            }
+            skein_world_destroy(world);
+        }
+}
+
+/* Symplectic Euler: v' = v - h (k C + c v)/m, x' = x + h v'. */
+static void a_symplectic_oscillator_is_its_recurrence(void **state) {
+    (void)state;
+    double mass = 0.7, stiffness = 300, damping = 1.5, h = 1.0 / 270, x = 0.1, v = 0;
+    skein_world *world = oscillator("symplectic_euler", 3, 0, mass, stiffness, damping, 0.1);
+    for (int n = 0; n < 60; n++) {
+        steps(world, 1, 1.0 / 90);
+        for (int k = 0; k < 3; k++) {
+            v -= h * (stiffness * x + damping * v) / mass;
+            x += h * v;
+        }
+        assert_near(position_of(world, 1).x - 1, x, 50 * EPSILON);
+        assert_near(velocity_of(world, 1).x, v, 50 * EPSILON / h);
+    }
+    skein_world_destroy(world);
+}
+
+/* Damping acts along the spring only: two masses that circle each other at rest length keep their speed. */
+static void damping_leaves_other_motion_alone(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(method_names); m++) {
+        skein_world *world = new_world(method_names[m], 20);
+        add_moving(world, 1, -0.5, 0, 0, 0.3, -1, 0.2);
+        add_moving(world, 1, 0.5, 0, 0, 0.3, 1, 0.2);
+        add_spring(world, 0, 1, 2000, 5);
+        steps(world, 120, 1.0 / 60);
+        // the turning pulls the spring out to r with k (2r - 1) = v^2/r: angular momentum r v stays
+        vec3 across = minus(position_of(world, 1), position_of(world, 0)), apart = minus(velocity_of(world, 1), velocity_of(world, 0));
+        double turning = fabs(across.x * apart.y - across.y * apart.x);
+        assert_share(turning, 2, m ? 0.02 : 1e-3);
+        assert_share(velocity_of(world, 0).z, 0.2, 0.01);
+        assert_share(velocity_of(world, 0).x + velocity_of(world, 1).x, 0.6, 0.01);
+        skein_world_destroy(world);
+    }
+}
+
+/* A rigid rod swings as a pendulum: T = 2 pi sqrt(L/g) (1 + a^2/16) for an amplitude of a. */
+static void a_rigid_pendulum_keeps_time(void **state) {
+    (void)state;
+    double length = 0.7, angle = 0.2;
+    skein_world *world = new_world("xpbd", 20);
+    add_gravity(world);
+    uint32_t pivot = add_particle(world, 0, 0, 2, 0), bob = add_particle(world, 0.3, length * sin(angle), 2 - length * cos(angle), 0);
+    add_spring(world, pivot, bob, INFINITY, 0);
+    double first = 0, last = 0, before = 1, widest = 0;
+    int turns = -1;
+    for (int n = 1; n <= 90 * 10; n++) {
+        steps(world, 1, 1.0 / 90);
+        vec3 d = minus(position_of(world, bob), (vec3){0, 2, 0});
+        assert_share(length3(d), length, 1e-5);
+        if (n > 90 * 8 && fabs(d.x) > widest) widest = fabs(d.x);
+        if (before < 0 && d.x >= 0) {
+            last = (n - 1 + before / (before - d.x)) / 90;
+            if (++turns == 0) first = last;
+        }
+        before = d.x;
+    }
+    assert_share((last - first) / turns, 2 * PI * sqrt(length / g) * (1 + angle * angle / 16), 2e-3);
+    assert_share(widest, length * sin(angle), 0.05); // and hardly tires
+    skein_world_destroy(world);
+}
+
+/* ---- Stiffness has units ------------------------------------------------------------------------ */
+
+/* Weights on a row of springs: each spring bears the weight below it, so the lowest hangs
+ * m g / k (n + (n - 1) + ... + 1) lower. Whatever the substeps and the iterations. */
+static void hanging_weights_sag_as_much_however_they_are_stepped(void **state) {
+    (void)state;
+    enum { WEIGHTS = 6 };
+    static const struct {
+        const char *method;
+        int substeps, iterations;
+    } ways[] = {{"symplectic_euler", 10, 0}, {"symplectic_euler", 35, 0}, {"xpbd", 10, 1}, {"xpbd", 40, 1},
+                {"xpbd", 10, 4},             {"xpbd", 3, 40},             {"xpbd", 1, 100}};
+    double mass = 0.1, stiffness = 60, sag = mass * g / stiffness * (WEIGHTS * (WEIGHTS + 1) / 2);
+    for (size_t w = 0; w < COUNT(ways); w++) {
+        skein_world *world = new_world(ways[w].method, ways[w].substeps);
+        if (ways[w].iterations) OK(world, skein_set_path(world, "method.iterations", skein_number(ways[w].iterations)));
+        add_gravity(world);
+        OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 2)), NULL));
+        for (int i = 0; i <= WEIGHTS; i++) add_particle(world, i ? mass : 0, 0, -0.2 * i, 0);
+        for (uint32_t i = 0; i < WEIGHTS; i++) add_spring(world, i, i + 1, stiffness, 0.5);
+        steps(world, 90 * 12, 1.0 / 90);
+        assert_share(-0.2 * WEIGHTS - position_of(world, WEIGHTS).y, sag, 0.02);
+        assert_share(-0.2 - position_of(world, 1).y, mass * g / stiffness * WEIGHTS, 0.02);
+        skein_world_destroy(world);
+    }
+}
+
+/* How far the lower edge of a strip of cloth, held at its upper edge, hangs below where it was built. */
+static double sag_of_strip(const char *method, int substeps, int rows, int columns, double shear, bool triangles) {
+    skein_world *world = new_world(method, substeps);
+    add_gravity(world);
+    OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 4)), NULL));
+    // the strip hangs straight down from the start
+    double positions[3 * 33 * 33];
+    uint32_t sizes[32 * 32 * 2], corners[32 * 32 * 6];
+    size_t faces = 0, filled = 0;
+    for (int r = 0; r < rows; r++)
+        for (int c = 0; c < columns; c++) {
+            double *p = positions + 3 * (r * columns + c);
+            p[0] = 0.5 * c / (columns - 1), p[1] = 1.0 - 1.0 * r / (rows - 1), p[2] = 0;
+        }
+    for (uint32_t r = 0; r + 1 < (uint32_t)rows; r++)
+        for (uint32_t c = 0; c + 1 < (uint32_t)columns; c++) {
+            uint32_t a = r * (uint32_t)columns + c, b = a + (uint32_t)columns, quad[4] = {a, b, b + 1, a + 1};
+            if (triangles) {
+                sizes[faces++] = 3, sizes[faces++] = 3;
+                // cut the other way in turn, as a chessboard: no direction is preferred
+                int turn = (r + c) % 2 ? 1 : 0;
+                static const int cut[6] = {0, 1, 2, 0, 2, 3};
+                for (int k = 0; k < 6; k++) corners[filled++] = quad[(cut[k] + turn) % 4];
+            } else {
+                sizes[faces++] = 4;
+                for (int k = 0; k < 4; k++) corners[filled++] = quad[k];
+            }
+        }
+    skein_mesh mesh = {positions, (size_t)(rows * columns), sizes, faces, corners, filled};
+    OK(world, skein_body_add(world, "cloth", &mesh,
+                             SKEIN_SETTINGS(SKEIN_REAL("density", 0.5), SKEIN_TEXT("pins", "top edge"),
+                                            SKEIN_REAL("stretch.stiffness", 20), SKEIN_REAL("stretch.damping", 0.02),
+                                            SKEIN_REAL("shear.stiffness", shear), SKEIN_REAL("bend.stiffness", 0),
+                                            SKEIN_REAL("stretch.limit", INFINITY), SKEIN_REAL("stretch.tether", INFINITY)),
+                             NULL));
+    steps(world, 60 * 4, 1.0 / 60);
+    double sag = 0;
+    for (int c = 0; c < columns; c++) sag -= position_of(world, (size_t)((rows - 1) * columns + c)).y / columns;
+    skein_world_destroy(world);
+    return sag;
+}
+
+/* A sheet of stiffness K that hangs from its edge is longer by density g L^2 / 2K, at any resolution. A grid of n
+ * rows puts its masses at the ends of cells: the same, for half a cell's mass is at either edge. */
+static void cloth_sags_as_much_at_any_resolution(void **state) {
+    (void)state;
+    double ought = 0.5 * g * 1 / (2 * 20);
+    for (size_t m = 0; m < COUNT(method_names); m++)
+        for (int n = 5; n <= 17; n = 2 * n - 1) {
+            double is = sag_of_strip(method_names[m], n > 9 ? 24 : 16, n, (n + 1) / 2, 0, false);
+            assert_share(is, ought, 0.02);
+        }
+    // shear makes it a little stiffer, but alike at both resolutions; so do triangles
+    for (int triangles = 0; triangles < 2; triangles++) {
+        double coarse = sag_of_strip("xpbd", 16, 9, 5, 4, triangles), fine = sag_of_strip("xpbd", 24, 17, 9, 4, triangles);
+        assert_share(fine, coarse, 0.04);
+        assert_share(coarse, ought, 0.25);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_oscillator_has_its_period_and_decay),
+        cmocka_unit_test(an_xpbd_oscillator_is_implicit_euler),
+        cmocka_unit_test(a_symplectic_oscillator_is_its_recurrence),
+        cmocka_unit_test(damping_leaves_other_motion_alone),
+        cmocka_unit_test(a_rigid_pendulum_keeps_time),
+        cmocka_unit_test(hanging_weights_sag_as_much_however_they_are_stepped),
+        cmocka_unit_test(cloth_sags_as_much_at_any_resolution),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
