@@ -108,8 +108,10 @@ void sk_write_fields(sk_writer *writer) {
             row.by_particle = true;
             row.end = writer->particle_count;
         }
+        row.sets = sets;
         add(writer, row);
     }
+    if (first) sk_write_clear(writer, SK_F);
 }
 
 /* A row for each sweep of a batch. */
