@@ -34,6 +34,7 @@ static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_vec4 *x = run->vector[SK_X];
     sk_vec4 *f = run->vector[row->dst];
     real reach = (real)params->radius, strength = (real)params->strength;
+    if (!grid->count) return; // nobody is near, or the grid could not be built
     for (size_t i = begin; i < end; i++) {
         uint32_t cell = grid->cell_of[i];
         if (cell == SK_NO_CELL) continue;
