@@ -122,7 +122,7 @@ static void explain_prints_a_line_a_row(void **state) {
         }
         // the repeat says how often and how much, and what it repeats is indented
         assert_int_equal(lines_with(&p, "3 times"), 1);
-        assert_true(lines_with(&p, "gravity") == 1 && lines_with(&p, "separation") == 1 && lines_with(&p, "strain") == 1);
+        assert_true(lines_with(&p, "gravity") == 1 && lines_with(&p, "separation") == 1 && lines_with(&p, "limit") >= 1);
         assert_true(lines_with(&p, "ball") == lines_with(&p, "ground") && lines_with(&p, "ball") >= 2);
         assert_int_equal(lines_with(&p, "    "), p.count);
         size_t repeat = 0;
@@ -155,16 +155,16 @@ static void needless_rows_are_left_out(void **state) {
     page p = {.count = 0};
     OK(world, skein_world_explain(world, dt, write_line, &p));
     assert_true(lines_with(&p, "multiplier") == 0 && lines_with(&p, "grid") == 0 && lines_with(&p, "V0") == 0);
-    assert_true(lines_with(&p, "project") == 3 && lines_with(&p, "limit") == 2);
+    assert_true(lines_with(&p, "project") >= 3 && lines_with(&p, "limit") >= 2);
     OK(world, skein_set(world, body, "bend.damping", skein_number(0.1)));
     OK(world, skein_set(world, body, "stretch.limit", skein_number(INFINITY)));
     p.count = 0;
     OK(world, skein_world_explain(world, dt, write_line, &p));
-    assert_true(lines_with(&p, "multiplier") == 1 && lines_with(&p, "limit") == 1);
+    assert_true(lines_with(&p, "multiplier") >= 1 && lines_with(&p, "limit") == 1 && lines_with(&p, "strain") == 0);
     OK(world, skein_set_path(world, "method.iterations", skein_number(3)));
     p.count = 0;
     OK(world, skein_world_explain(world, dt, write_line, &p));
-    assert_true(lines_with(&p, "multiplier") == 3 && lines_with(&p, "project") == 9);
+    assert_true(lines_with(&p, "multiplier") >= 3 && lines_with(&p, "project") == 3 * lines_with(&p, "multiplier"));
     skein_world_destroy(world);
 }
 

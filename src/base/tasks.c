@@ -141,6 +141,17 @@ void sk_tasks_run(sk_tasks *tasks, void (*task)(void *data, int index), void *da
     }
 }
 
+bool sk_tasks_together(const sk_tasks *tasks) {
+    return !tasks->run_tasks;
+}
+
+void sk_wait_for(const _Atomic uint32_t *progress, uint32_t wanted) {
+    for (int spins = 0; (int32_t)(atomic_load_explicit(progress, memory_order_acquire) - wanted) < 0; spins++) {
+        if (spins < SPINS) pause_briefly();
+        else sched_yield();
+    }
+}
+
 typedef struct range_job {
     sk_range_body *body;
     void *data;

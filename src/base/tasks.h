@@ -14,6 +14,11 @@ int sk_tasks_count(const sk_tasks *tasks);
 /* Runs task(data, 0) ... task(data, sk_tasks_count - 1) at once and returns when all are done. */
 void sk_tasks_run(sk_tasks *tasks, void (*task)(void *data, int index), void *data);
 
+/* Whether all tasks of sk_tasks_run run at the same time, so that one may wait for another. */
+bool sk_tasks_together(const sk_tasks *tasks);
+/* Waits until *progress is at least `wanted`: spins a while, then gives the processor away. */
+void sk_wait_for(const _Atomic uint32_t *progress, uint32_t wanted);
+
 /* Runs body over [begin, end) cut into one piece a thread; short ranges run on the caller, for handing
  * them over costs more than they do. Cuts are multiples of 16 elements from `begin`. */
 typedef void sk_range_body(void *data, size_t begin, size_t end);

@@ -95,6 +95,8 @@ static skein_status add_particles(tailor *t) {
         status = sk_world_add_particles(t->world, count, (const double *)t->sheet.position, (const double *)velocity, t->mass, t->error);
     for (size_t i = 0; i < count && !status; i++)
         if (t->pinned[i]) sk_particle_hold(&t->world->particles, t->body->first_particle + i, true);
+    if (!status && t->sheet.grid_rows && t->sheet.particle_count == t->sheet.vertex_count)
+        status = sk_world_add_strips(t->world, t->body, t->sheet.grid_rows, t->sheet.grid_columns, t->error);
     sk_release(allocator, velocity);
     return status;
 }
@@ -111,7 +113,8 @@ static skein_status add_springs(tailor *t) {
                                                       sort == SK_STRETCH, list->count, list->pairs, list->rest, list->scale, t->error);
         if (status) return status;
     }
-    return sk_world_add_strain_limit(t->world, t->body, t->error);
+    sk_world_add_strain_limit(t->body);
+    return SKEIN_OK;
 }
 
 /* Triangles of the faces, as fans, for forces on areas. */

@@ -1,12 +1,13 @@
 /* Colliders: solid shapes that particles may not enter, and how contact answers.
  *
  * A *type* is one file: its fields, where it stands, and `probe`, the signed distance and unit normal
- * of a block of particles. What contact does is the same for all types (contact.c), in the four kernels
+ * of sixteen particles. What contact does is the same for all types (contact.c), in the four kernels
  * that methods put into their plans. Particles touch when their distance is under the thickness. */
 #ifndef SK_COLLIDERS_COLLIDER_H
 #define SK_COLLIDERS_COLLIDER_H
 
 #include "base/fields.h"
+#include "base/wide_types.h"
 #include "plan/row.h"
 
 /* Where a collider stands at a time, and how it moves there. */
@@ -17,10 +18,13 @@ typedef struct sk_pose {
     sk_vec3 spin;       /* angular velocity, rad/s */
 } sk_pose;
 
+/* Of sixteen particles. */
 typedef struct sk_contact {
-    sk_vec3 normal; /* unit, out of the solid */
-    real distance;  /* to the surface, negative inside */
+    sk_wide3 normal;  /* unit, out of the solid */
+    sk_wide distance; /* to the surface, negative inside */
 } sk_contact;
+
+typedef void sk_probe(const void *params, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact);
 
 /* What every collider has besides its shape. */
 typedef struct sk_collider_common {
@@ -36,7 +40,8 @@ typedef struct sk_collider_type {
     skein_status (*check)(const void *params, skein_error *error);
     /* The shape's own point: a sphere's centre, a point of a plane. */
     void (*place)(const void *params, double position[3]);
-    void (*probe)(const void *params, const sk_pose *pose, const sk_vec4 *x, size_t count, sk_contact *contact);
+    /* Distance and normal of sixteen particles; a version for each instruction set. */
+    sk_probe *probe[SK_ISA_COUNT];
 } sk_collider_type;
 
 typedef struct sk_collider {
@@ -53,17 +58,17 @@ extern const size_t sk_collider_field_count;
 sk_pose sk_collider_pose_at(const sk_collider *collider, double time);
 
 /* Force methods: cancels the inward part of F and adds Coulomb friction that never reverses a slide. */
-sk_row_kernel sk_contact_force;
+extern const sk_kernels sk_contact_force;
 /* Force methods: reflects and rubs the inward part of V. */
-sk_row_kernel sk_contact_impulse;
+extern const sk_kernels sk_contact_impulse;
 /* All methods: moves X out to the thickness. With a second source (X0), friction against it. */
-sk_row_kernel sk_contact_push;
+extern const sk_kernels sk_contact_push;
 /* Position methods: gives V the bounce that V0, its second source, had coming. */
-sk_row_kernel sk_contact_restitution;
+extern const sk_kernels sk_contact_restitution;
 
 /* Deepest penetration below the thickness (m) and the number of particles in touch. */
-void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4 *x,
-                         const uint32_t *slot_of, size_t particle_count, double *penetration, size_t *contacts);
+void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
+                         size_t particle_count, double *penetration, size_t *contacts);
 
 extern const sk_collider_type sk_plane, sk_sphere;
 

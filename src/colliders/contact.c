@@ -5,7 +5,148 @@
  *     ---o---|------- d        part, both relative to the surface's own velocity at p, so that a
  *   =========|=========        turning sphere carries what lies on it (Coulomb friction).
  *
- * Particles are probed in blocks, so that a shape's function is called once a block. */
+ * Sixteen particles at a time; lanes that do not touch are masked out. */
+#ifdef SK_ISA
+
+/* Sixteen particles near a collider. */
+typedef struct SK_ISA(encounter) {
+    sk_wide4 x;
+    sk_contact contact;
+    sk_wide3 surface; /* the surface's velocity there */
+    sk_mask touching; /* free particles within the thickness, and a hair beyond it */
+} SK_ISA(encounter);
+
+SK_INLINE sk_wide3 SK_ISA(minus)(sk_wide3 a, sk_wide3 b) {
+    return (sk_wide3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+SK_INLINE sk_wide3 SK_ISA(times)(sk_wide s, sk_wide3 a) {
+    return (sk_wide3){s * a.x, s * a.y, s * a.z};
+}
+SK_INLINE sk_wide3 SK_ISA(three)(sk_wide4 a) {
+    return (sk_wide3){a.x, a.y, a.z};
+}
+
+/* Splits u into its part along the unit normal (returned) and the rest. */
+SK_INLINE sk_wide SK_ISA(split)(sk_wide3 u, sk_wide3 normal, sk_wide3 *tangential) {
+    sk_wide along = SK_ISA(sk_dot_wide)(u, normal);
+    *tangential = SK_ISA(minus)(u, SK_ISA(times)(along, normal));
+    return along;
+}
+
+/* The part of a vector of length `length` that friction takes, at most `most`: 1 where it takes all. */
+SK_INLINE sk_wide SK_ISA(share_of)(sk_wide length, sk_wide most) {
+    return SK_ISA(sk_select)(SK_ISA(sk_more)(length, most), most / length, SK_ISA(sk_splat)(1));
+}
+
+/* Probes a block; false where nobody touches. */
+SK_INLINE bool SK_ISA(meet)(sk_run *run, const sk_row *row, const sk_pose *pose, size_t slot, SK_ISA(encounter) *e) {
+    const sk_collider *collider = row->rule;
+    e->x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, slot < row->packed);
+    sk_wide3 p = SK_ISA(three)(e->x);
+    collider->type->probe[SK_ISA(sk_version)](collider->params, pose, &p, &e->contact);
+    // rounding must not break a resting contact: forces and velocities look a little beyond the thickness
+    sk_wide size = SK_ISA(sk_wide_abs)(p.x), ay = SK_ISA(sk_wide_abs)(p.y), az = SK_ISA(sk_wide_abs)(p.z);
+    size = SK_ISA(sk_select)(SK_ISA(sk_more)(ay, size), ay, size);
+    size = SK_ISA(sk_select)(SK_ISA(sk_more)(az, size), az, size);
+    real thickness = (real)collider->common->thickness;
+    sk_wide reach = thickness + (real)1e-3 * thickness + (real)4e-6 * (size + (real)0.1);
+    e->touching = SK_ISA(sk_at_most)(e->contact.distance, reach) & SK_ISA(sk_positive)(e->x.w);
+    if (!SK_ISA(sk_any)(e->touching)) return false;
+    sk_wide3 arm = {p.x - pose->position.x, p.y - pose->position.y, p.z - pose->position.z};
+    sk_vec3 v = pose->velocity, s = pose->spin;
+    e->surface = (sk_wide3){v.x + (s.y * arm.z - s.z * arm.y), v.y + (s.z * arm.x - s.x * arm.z), v.z + (s.x * arm.y - s.y * arm.x)};
+    return true;
+}
+
+/* Adds `change` to a block of dst in the lanes of the mask. */
+SK_INLINE void SK_ISA(apply)(sk_run *run, const sk_row *row, size_t slot, sk_wide4 old, sk_mask mask, sk_wide3 change) {
+    old.x = SK_ISA(sk_select)(mask, old.x + change.x, old.x);
+    old.y = SK_ISA(sk_select)(mask, old.y + change.y, old.y);
+    old.z = SK_ISA(sk_select)(mask, old.z + change.z, old.z);
+    SK_ISA(sk_store_block)(run->vector[row->dst], slot, slot < row->packed, old);
+}
+
+static void SK_ISA(contact_force)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_collider *collider = row->rule;
+    sk_pose pose = sk_collider_pose_at(collider, run->time);
+    SK_ISA(encounter) e;
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        if (!SK_ISA(meet)(run, row, &pose, slot, &e)) continue;
+        sk_wide4 f = SK_ISA(sk_load_block)(run->vector[row->dst], slot, slot < row->packed);
+        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, slot < row->packed);
+        sk_wide3 force_t, slide;
+        sk_wide pressing = SK_ISA(split)(SK_ISA(three)(f), e.contact.normal, &force_t);
+        SK_ISA(split)(SK_ISA(minus)(SK_ISA(three)(v), e.surface), e.contact.normal, &slide);
+        // the friction that would stop the slide within this substep, cut to Coulomb's cone
+        sk_wide mass_per_step = -1 / (e.x.w * (real)row->dt);
+        sk_wide3 stop = SK_ISA(minus)(SK_ISA(times)(mass_per_step, slide), force_t);
+        sk_wide needed = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(stop, stop)), most = (real)collider->common->friction * -pressing;
+        sk_wide share = SK_ISA(share_of)(needed, most);
+        sk_wide3 push = SK_ISA(times)(-pressing, e.contact.normal), rub = SK_ISA(times)(share, stop);
+        SK_ISA(apply)(run, row, slot, f, e.touching & SK_ISA(sk_negative)(pressing), (sk_wide3){push.x + rub.x, push.y + rub.y, push.z + rub.z});
+    }
+}
+
+static void SK_ISA(contact_impulse)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_collider *collider = row->rule;
+    sk_pose pose = sk_collider_pose_at(collider, run->time);
+    SK_ISA(encounter) e;
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        if (!SK_ISA(meet)(run, row, &pose, slot, &e)) continue;
+        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[row->dst], slot, slot < row->packed);
+        sk_wide3 slide;
+        sk_wide approach = SK_ISA(split)(SK_ISA(minus)(SK_ISA(three)(v), e.surface), e.contact.normal, &slide);
+        sk_wide bounce = (1 + (real)collider->common->restitution) * -approach;
+        sk_wide speed = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(slide, slide));
+        sk_wide share = SK_ISA(share_of)(speed, (real)collider->common->friction * bounce);
+        sk_wide3 change = SK_ISA(minus)(SK_ISA(times)(bounce, e.contact.normal), SK_ISA(times)(share, slide));
+        SK_ISA(apply)(run, row, slot, v, e.touching & SK_ISA(sk_negative)(approach), change);
+    }
+}
+
+static void SK_ISA(contact_push)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_collider *collider = row->rule;
+    sk_pose pose = sk_collider_pose_at(collider, run->time);
+    SK_ISA(encounter) e;
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        if (!SK_ISA(meet)(run, row, &pose, slot, &e)) continue;
+        sk_wide push = (real)collider->common->thickness - e.contact.distance;
+        sk_wide3 move = SK_ISA(times)(push, e.contact.normal);
+        if (row->source[1] != SK_NONE) {
+            // friction takes back the slide since the start of the substep, up to mu times the push
+            sk_wide4 start = SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, slot < row->packed);
+            sk_wide3 moved = SK_ISA(minus)(SK_ISA(minus)(SK_ISA(three)(e.x), SK_ISA(three)(start)),
+                                           SK_ISA(times)(SK_ISA(sk_splat)((real)row->dt), e.surface));
+            sk_wide3 slide;
+            SK_ISA(split)(moved, e.contact.normal, &slide);
+            sk_wide length = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(slide, slide));
+            sk_wide share = SK_ISA(share_of)(length, (real)collider->common->friction * push);
+            move = SK_ISA(minus)(move, SK_ISA(times)(share, slide));
+        }
+        SK_ISA(apply)(run, row, slot, e.x, e.touching & SK_ISA(sk_positive)(push), move);
+    }
+}
+
+static void SK_ISA(contact_restitution)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_collider *collider = row->rule;
+    sk_pose pose = sk_collider_pose_at(collider, run->time);
+    SK_ISA(encounter) e;
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        if (!SK_ISA(meet)(run, row, &pose, slot, &e)) continue;
+        bool packed = slot < row->packed;
+        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed);
+        sk_wide3 before = SK_ISA(three)(SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, packed));
+        sk_wide3 f = SK_ISA(three)(SK_ISA(sk_load_block)(run->vector[SK_F], slot, packed));
+        sk_wide approach = SK_ISA(sk_dot_wide)(SK_ISA(minus)(before, e.surface), e.contact.normal);
+        sk_wide leaving = SK_ISA(sk_dot_wide)(SK_ISA(minus)(SK_ISA(three)(v), e.surface), e.contact.normal);
+        // what a substep's force alone brings is no impact; bouncing it would make resting things jitter
+        sk_wide resting = (2 * (real)row->dt) * e.x.w * SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(f, f));
+        sk_wide bounce = SK_ISA(sk_keep)(SK_ISA(sk_more)(-approach, resting), (real)collider->common->restitution * -approach);
+        SK_ISA(apply)(run, row, slot, v, e.touching & SK_ISA(sk_negative)(approach), SK_ISA(times)(bounce - leaving, e.contact.normal));
+    }
+}
+
+#else
 #include "colliders/collider.h"
 
 #include <math.h>
@@ -13,7 +154,13 @@
 
 #include "base/elementary.h"
 
-enum { BLOCK = 64 };
+#define SK_KERNELS "colliders/contact.c"
+#include "base/for_each_isa.h"
+
+const sk_kernels sk_contact_force = {SK_EACH_ISA(contact_force)};
+const sk_kernels sk_contact_impulse = {SK_EACH_ISA(contact_impulse)};
+const sk_kernels sk_contact_push = {SK_EACH_ISA(contact_push)};
+const sk_kernels sk_contact_restitution = {SK_EACH_ISA(contact_restitution)};
 
 const skein_field sk_collider_fields[] = {
     SK_TEXT(sk_collider_common, name, "name", "", "for paths and messages"),
@@ -59,135 +206,26 @@ sk_pose sk_collider_pose_at(const sk_collider *collider, double time) {
     return pose;
 }
 
-static inline sk_vec3 surface_velocity(const sk_pose *pose, sk_vec3 p) {
-    return sk_add(pose->velocity, sk_cross(pose->spin, sk_sub(p, pose->position)));
-}
-
-/* Rounding must not break a resting contact: forces and velocities look a little beyond the thickness. */
-static inline real touching_distance(real thickness, sk_vec3 p) {
-    real size = sk_max(sk_abs(p.x), sk_max(sk_abs(p.y), sk_abs(p.z)));
-    return thickness + (real)1e-3 * thickness + (real)4e-6 * (size + (real)0.1);
-}
-
-/* Splits u into its part along the unit normal (returned) and the rest. */
-static inline real split(sk_vec3 u, sk_vec3 normal, sk_vec3 *tangential) {
-    real along = sk_dot(u, normal);
-    *tangential = sk_sub(u, sk_scale(along, normal));
-    return along;
-}
-
-/* Calls ANSWER for each free particle of [begin, end) with its contact, block by block. */
-typedef struct answer {
-    sk_run *run;
-    const sk_row *row;
-    const sk_collider *collider;
-    sk_pose pose;
-} answer;
-
-static void for_contacts(sk_run *run, const sk_row *row, size_t begin, size_t end,
-                         void (*respond)(const answer *a, size_t slot, sk_contact contact)) {
-    answer a = {run, row, row->rule, {{0, 0, 0}, {0}, {0, 0, 0}, {0, 0, 0}}};
-    a.pose = sk_collider_pose_at(a.collider, run->time);
-    const sk_vec4 *x = run->vector[SK_X];
-    sk_contact contact[BLOCK];
-    for (size_t first = begin; first < end; first += BLOCK) {
-        size_t count = end - first < BLOCK ? end - first : BLOCK;
-        a.collider->type->probe(a.collider->params, &a.pose, x + first, count, contact);
-        for (size_t i = 0; i < count; i++)
-            if (x[first + i].w > 0) respond(&a, first + i, contact[i]);
-    }
-}
-
-static void respond_force(const answer *a, size_t slot, sk_contact contact) {
-    const sk_vec4 *x = &a->run->vector[SK_X][slot], *v = &a->run->vector[SK_V][slot];
-    sk_vec4 *f = &a->run->vector[a->row->dst][slot];
-    if (contact.distance > touching_distance((real)a->collider->common->thickness, sk_xyz(*x))) return;
-    sk_vec3 force_t, slide;
-    real normal_force = split(sk_xyz(*f), contact.normal, &force_t);
-    if (!(normal_force < 0)) return;
-    split(sk_sub(sk_xyz(*v), surface_velocity(&a->pose, sk_xyz(*x))), contact.normal, &slide);
-    // the friction that would stop the slide within this substep, cut to Coulomb's cone
-    sk_vec3 stop = sk_sub(sk_scale(-1 / (x->w * (real)a->row->dt), slide), force_t);
-    real needed = sk_length(stop), most = (real)a->collider->common->friction * -normal_force;
-    real share = needed > most ? most / needed : (real)1;
-    sk_accumulate(f, sk_scale(-normal_force, contact.normal));
-    sk_accumulate(f, sk_scale(share, stop));
-}
-
-void sk_contact_force(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for_contacts(run, row, begin, end, respond_force);
-}
-
-static void respond_impulse(const answer *a, size_t slot, sk_contact contact) {
-    const sk_vec4 *x = &a->run->vector[SK_X][slot];
-    sk_vec4 *v = &a->run->vector[a->row->dst][slot];
-    const sk_collider_common *common = a->collider->common;
-    if (contact.distance > touching_distance((real)common->thickness, sk_xyz(*x))) return;
-    sk_vec3 slide;
-    real approach = split(sk_sub(sk_xyz(*v), surface_velocity(&a->pose, sk_xyz(*x))), contact.normal, &slide);
-    if (!(approach < 0)) return;
-    real bounce = (1 + (real)common->restitution) * -approach;
-    real speed = sk_length(slide), most = (real)common->friction * bounce;
-    real share = speed > most ? most / speed : (real)1;
-    sk_accumulate(v, sk_sub(sk_scale(bounce, contact.normal), sk_scale(share, slide)));
-}
-
-void sk_contact_impulse(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for_contacts(run, row, begin, end, respond_impulse);
-}
-
-static void respond_push(const answer *a, size_t slot, sk_contact contact) {
-    sk_vec4 *x = &a->run->vector[SK_X][slot];
-    const sk_collider_common *common = a->collider->common;
-    real push = (real)common->thickness - contact.distance;
-    if (!(push > 0)) return;
-    sk_vec3 move = sk_scale(push, contact.normal);
-    if (a->row->source[1] != SK_NONE) {
-        // friction takes back the slide since the start of the substep, up to mu times the push
-        sk_vec3 start = sk_xyz(a->run->vector[a->row->source[1]][slot]), slide;
-        sk_vec3 carried = sk_scale((real)a->row->dt, surface_velocity(&a->pose, sk_xyz(*x)));
-        split(sk_sub(sk_sub(sk_xyz(*x), start), carried), contact.normal, &slide);
-        real length = sk_length(slide), most = (real)common->friction * push;
-        real share = length > most ? most / length : (real)1;
-        move = sk_sub(move, sk_scale(share, slide));
-    }
-    sk_accumulate(x, move);
-}
-
-void sk_contact_push(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for_contacts(run, row, begin, end, respond_push);
-}
-
-static void respond_restitution(const answer *a, size_t slot, sk_contact contact) {
-    const sk_vec4 *x = &a->run->vector[SK_X][slot], *f = &a->run->vector[SK_F][slot];
-    sk_vec4 *v = &a->run->vector[a->row->dst][slot];
-    const sk_vec4 *before = &a->run->vector[a->row->source[1]][slot];
-    const sk_collider_common *common = a->collider->common;
-    if (contact.distance > touching_distance((real)common->thickness, sk_xyz(*x))) return;
-    sk_vec3 surface = surface_velocity(&a->pose, sk_xyz(*x));
-    real approach = sk_dot(sk_sub(sk_xyz(*before), surface), contact.normal);
-    if (!(approach < 0)) return;
-    // what a substep's force alone brings is no impact; bouncing it would make resting things jitter
-    real resting = 2 * (real)a->row->dt * x->w * sk_length(sk_xyz(*f));
-    real bounce = -approach > resting ? (real)common->restitution * -approach : (real)0;
-    real leaving = sk_dot(sk_sub(sk_xyz(*v), surface), contact.normal);
-    sk_accumulate(v, sk_scale(bounce - leaving, contact.normal));
-}
-
-void sk_contact_restitution(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for_contacts(run, row, begin, end, respond_restitution);
-}
-
-void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4 *x,
-                         const uint32_t *slot_of, size_t particle_count, double *penetration, size_t *contacts) {
+void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
+                         size_t particle_count, double *penetration, size_t *contacts) {
     sk_pose pose = sk_collider_pose_at(collider, time);
-    real thickness = (real)collider->common->thickness;
-    for (size_t i = 0; i < particle_count; i++) {
-        sk_vec4 p = x[slot_of[i]];
+    double thickness = collider->common->thickness;
+    for (size_t first = 0; first < particle_count; first += SK_LANES) {
+        size_t count = particle_count - first < SK_LANES ? particle_count - first : SK_LANES;
+        sk_wide3 p = {{0}, {0}, {0}};
         sk_contact contact;
-        collider->type->probe(collider->params, &pose, &p, 1, &contact);
-        if (contact.distance <= touching_distance(thickness, sk_xyz(p))) ++*contacts;
-        double depth = (double)(thickness - contact.distance);
-        if (p.w > 0 && depth > *penetration) *penetration = depth;
+        for (size_t i = 0; i < count; i++) {
+            sk_vec4 q = x[slot_of[first + i]];
+            p.x[i] = q.x, p.y[i] = q.y, p.z[i] = q.z;
+        }
+        collider->type->probe[0](collider->params, &pose, &p, &contact);
+        for (size_t i = 0; i < count; i++) {
+            sk_vec4 q = x[slot_of[first + i]];
+            double size = fmax(fabs((double)q.x), fmax(fabs((double)q.y), fabs((double)q.z)));
+            double distance = (double)contact.distance[i];
+            if (distance <= thickness * 1.001 + 4e-6 * (size + 0.1)) ++*contacts;
+            if (q.w > 0 && thickness - distance > *penetration) *penetration = thickness - distance;
+        }
     }
 }
+#endif

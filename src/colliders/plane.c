@@ -1,4 +1,13 @@
 /* A half space: solid below the plane normal . p = offset. */
+#ifdef SK_ISA
+
+static void SK_ISA(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
+    sk_vec3 n = normal_now(data, pose), o = pose->position;
+    contact->normal = (sk_wide3){SK_ISA(sk_splat)(n.x), SK_ISA(sk_splat)(n.y), SK_ISA(sk_splat)(n.z)};
+    contact->distance = n.x * (p->x - o.x) + n.y * (p->y - o.y) + n.z * (p->z - o.z);
+}
+
+#else
 #include "base/status.h"
 #include "colliders/collider.h"
 
@@ -27,22 +36,21 @@ static void place(const void *data, double position[3]) {
     for (int k = 0; k < 3; k++) position[k] = params->normal[k] / length * params->offset;
 }
 
-static void probe(const void *data, const sk_pose *pose, const sk_vec4 *x, size_t count, sk_contact *contact) {
-    const plane_params *params = data;
+static sk_vec3 normal_now(const plane_params *params, const sk_pose *pose) {
     double length = normal_length(params);
-    sk_vec3 built = {(real)(params->normal[0] / length), (real)(params->normal[1] / length),
-                     (real)(params->normal[2] / length)};
+    sk_vec3 n = {(real)(params->normal[0] / length), (real)(params->normal[1] / length), (real)(params->normal[2] / length)};
     const real *r = pose->rotation;
-    sk_vec3 normal = {r[0] * built.x + r[1] * built.y + r[2] * built.z, r[3] * built.x + r[4] * built.y + r[5] * built.z,
-                      r[6] * built.x + r[7] * built.y + r[8] * built.z};
-    for (size_t i = 0; i < count; i++)
-        contact[i] = (sk_contact){normal, sk_dot(normal, sk_sub(sk_xyz(x[i]), pose->position))};
+    return sk_v3(r[0] * n.x + r[1] * n.y + r[2] * n.z, r[3] * n.x + r[4] * n.y + r[5] * n.z, r[6] * n.x + r[7] * n.y + r[8] * n.z);
 }
+
+#define SK_KERNELS "colliders/plane.c"
+#include "base/for_each_isa.h"
 
 const sk_collider_type sk_plane = {
     .kind = {"plane", "everything below a plane of any normal and offset", SKEIN_COLLIDER, fields,
              sizeof fields / sizeof *fields, sizeof(plane_params)},
     .check = check,
     .place = place,
-    .probe = probe,
+    .probe = SK_EACH_ISA(probe),
 };
+#endif

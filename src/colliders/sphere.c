@@ -1,4 +1,18 @@
 /* A solid ball. */
+#ifdef SK_ISA
+
+static void SK_ISA(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
+    real radius = (real)((const sphere_params *)data)->radius;
+    sk_wide3 d = {p->x - pose->position.x, p->y - pose->position.y, p->z - pose->position.z};
+    sk_wide length = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(d, d));
+    // at the very centre every way out is as good: take up
+    sk_mask apart = SK_ISA(sk_positive)(length);
+    sk_wide below = SK_ISA(sk_select)(apart, length, SK_ISA(sk_splat)(1));
+    contact->normal = (sk_wide3){d.x / below, SK_ISA(sk_select)(apart, d.y / below, SK_ISA(sk_splat)(1)), d.z / below};
+    contact->distance = length - radius;
+}
+
+#else
 #include "colliders/collider.h"
 
 typedef struct sphere_params {
@@ -15,20 +29,13 @@ static void place(const void *data, double position[3]) {
     for (int k = 0; k < 3; k++) position[k] = params->centre[k];
 }
 
-static void probe(const void *data, const sk_pose *pose, const sk_vec4 *x, size_t count, sk_contact *contact) {
-    real radius = (real)((const sphere_params *)data)->radius;
-    for (size_t i = 0; i < count; i++) {
-        sk_vec3 d = sk_sub(sk_xyz(x[i]), pose->position);
-        real length = sk_length(d);
-        // at the very centre every way out is as good: take up
-        sk_vec3 normal = length > 0 ? sk_v3(d.x / length, d.y / length, d.z / length) : sk_v3(0, 1, 0);
-        contact[i] = (sk_contact){normal, length - radius};
-    }
-}
+#define SK_KERNELS "colliders/sphere.c"
+#include "base/for_each_isa.h"
 
 const sk_collider_type sk_sphere = {
     .kind = {"sphere", "a ball, solid inside", SKEIN_COLLIDER, fields, sizeof fields / sizeof *fields,
              sizeof(sphere_params)},
     .place = place,
-    .probe = probe,
+    .probe = SK_EACH_ISA(probe),
 };
+#endif

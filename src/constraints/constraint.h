@@ -1,30 +1,41 @@
 /* Constraints: functions C(x) of a few particles that want to be zero.
  *
  * A *type* is one file: its fields, its rest value and its kernels. A *batch* is a range of elements of
- * one type that share their settings; the world owns batches, bodies and users add them, methods write
- * a row for each. From the energy E = k C^2 / 2 (k stiffness, c damping, h the substep) follow
+ * one type that share their settings; the world owns batches, bodies and users add them. A batch is cut
+ * into *sweeps* (sweep.h), and methods write a row for each. From the energy E = k C^2 / 2 (k stiffness,
+ * c damping, h the substep) follow
  *
  *   force     f  = -(k C + c dC/dt) grad C
  *   project   dl = (-C - l/(k h^2) - g dC) / ((1 + g) sum w |grad C|^2 + 1/(k h^2)),   dx = w grad C dl
  *             with g = c/(k h) and dC = grad C . (x - x0)           (XPBD; Macklin, Mueller 2016)
+ *   limit     C pushed back to a bound that it has passed, as if rigid there
  *
  * An element's stiffness is the batch's times its scale: the share of the material that it stands for. */
 #ifndef SK_CONSTRAINTS_CONSTRAINT_H
 #define SK_CONSTRAINTS_CONSTRAINT_H
 
 #include "base/fields.h"
+#include "particles/particles.h"
 #include "plan/row.h"
 
 typedef struct sk_batch sk_batch;
+typedef struct sk_sweep sk_sweep;
+
+/* A kernel for each way that a sweep can walk. */
+typedef struct sk_sweep_kernels {
+    sk_kernels strips, groups;
+} sk_sweep_kernels;
 
 typedef struct sk_constraint_type {
     skein_kind kind; /* the parameters begin with an sk_material */
-    int arity;       /* particles an element */
+    int arity;       /* particles an element; 2 is the only one that sweeps know so far */
     /* The rest value of an element whose particles stand at x[0 .. arity). */
     double (*rest)(const double (*x)[3]);
-    sk_row_kernel *force;
-    sk_row_kernel *project;        /* without damping, one pass a substep: no multiplier is kept */
-    sk_row_kernel *project_damped; /* with damping or several passes */
+    sk_sweep_kernels force;
+    sk_sweep_kernels project;        /* without damping, one pass a substep: no multiplier is kept */
+    sk_sweep_kernels project_damped; /* with damping or several passes */
+    sk_sweep_kernels limit;          /* keeps C under the batch's bound; positions */
+    sk_sweep_kernels limit_moving;   /* the same, and velocities: where they are not taken from positions */
     /* Relative violation of elements [begin, end): (length - rest)/rest for a distance. */
     void (*strain)(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, real *strain);
 } sk_constraint_type;
@@ -40,27 +51,39 @@ struct sk_batch {
     void *params;     /* the type's, an sk_material first; owned by whoever owns the batch */
     const char *label;
     const bool *enabled;
+    const double *bound; /* of the relative violation, kept by limit rows; NULL: none */
     bool measured;    /* an edge of a body: it counts in the stretch of the statistics */
     size_t count;
     uint32_t *particle;  /* count x arity, user's indices */
     uint32_t *slot;      /* the same as slots */
     real *rest;
     real *scale;         /* NULL: all 1 */
-    real *stiffness;     /* params' times scale, refreshed when either changes */
-    real *compliance;    /* 1 over it */
-    real *multiplier;    /* lambda of XPBD, only read where a substep has several passes */
+
+    /* Made from the above when slots change: elements in the order of sweeps, a lane each. */
+    sk_sweep *sweeps;
+    size_t sweep_count, sweep_capacity;
+    uint32_t *lane;      /* of each element */
+    size_t lane_count;
+    real *lane_rest;     /* lanes without an element: 0, */
+    real *lane_stiffness; /* 0, */
+    real *lane_compliance; /* and infinity, so that nothing comes of them */
+    real *lane_multiplier; /* lambda of XPBD, only read where a substep keeps it */
+    uint8_t *special;    /* a block of 16 lanes each: not all as the sweep's common values say */
+    uint32_t *group_slots; /* of group sweeps: 16 first and 16 second particles a group */
 };
 
 /* Makes a batch of copies; NULL when there is no memory. `rest` and `scale` (or NULL) have `count` reals. */
 sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *type, size_t count,
                           const uint32_t *particles, const real *rest, const real *scale);
 void sk_batch_release(sk_batch *batch, sk_allocator *allocator);
-/* Brings slots and element stiffness up to date with the particles' slots and the parameters. */
-void sk_batch_refresh(sk_batch *batch, const uint32_t *slot_of);
-/* Sets the multipliers to zero: the kernel of multiplier rows. */
-sk_row_kernel sk_batch_clear_multipliers;
+/* Cuts the batch into sweeps for the particles' present slots. False when there is no memory. */
+bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles);
+/* Brings the lanes' rest lengths and stiffness up to date with the parameters. */
+void sk_batch_refresh(sk_batch *batch);
+/* Sets the multipliers of a sweep to zero: the kernel of multiplier rows. */
+sk_row_kernel sk_sweep_clear_multipliers;
 
-/* Of a row: the batch's damping over stiffness, in seconds; 0 for a rigid batch. */
+/* The batch's damping over stiffness, in seconds; 0 for a rigid batch. */
 double sk_batch_damping_time(const sk_batch *batch);
 
 extern const sk_constraint_type sk_distance;

@@ -1,5 +1,63 @@
 /* Distance: C = |xa - xb| - rest. As a force it is the classical spring and damper pair. */
-#include "constraints/constraint.h"
+#ifdef SK_ISA
+
+SK_INLINE sk_wide3 SK_ISA(along)(sk_wide s, sk_wide3 d) {
+    return (sk_wide3){s * d.x, s * d.y, s * d.z};
+}
+
+/* Particles in one place have no direction: they get no force, and no NaN. */
+SK_INLINE void SK_ISA(pair)(sk_pair *p, const sk_pair_constants *c, sk_pair_mode mode) {
+    sk_wide3 d = {p->a.x - p->b.x, p->a.y - p->b.y, p->a.z - p->b.z};
+    sk_wide square = SK_ISA(sk_dot_wide)(d, d);
+    sk_wide length = SK_ISA(sk_wide_sqrt)(square);
+    if (mode == SK_PAIR_FORCE) {
+        sk_wide inverse = SK_ISA(sk_keep)(SK_ISA(sk_positive)(length), 1 / length);
+        sk_wide3 u = {p->other_a.x - p->other_b.x, p->other_a.y - p->other_b.y, p->other_a.z - p->other_b.z};
+        sk_wide rate = SK_ISA(sk_dot_wide)(d, u) * inverse;
+        sk_wide pull = (p->stiffness * ((length - p->rest) + c->damping_time * rate)) * inverse;
+        p->db = SK_ISA(along)(pull, d);
+        p->da = SK_ISA(along)(-pull, d);
+        return;
+    }
+    sk_wide weight = p->wa + p->wb, s;
+    if (mode == SK_PAIR_PROJECT) {
+        sk_wide below = length * (weight + p->compliance * c->per_step);
+        s = SK_ISA(sk_keep)(SK_ISA(sk_positive)(below), (p->rest - length) / below);
+    } else if (mode == SK_PAIR_PROJECT_DAMPED) {
+        sk_wide3 moved = {d.x - (p->other_a.x - p->other_b.x), d.y - (p->other_a.y - p->other_b.y), d.z - (p->other_a.z - p->other_b.z)};
+        sk_wide inverse = SK_ISA(sk_keep)(SK_ISA(sk_positive)(length), 1 / length);
+        sk_wide soft = p->compliance * c->per_step;
+        sk_wide below = (1 + c->gamma) * weight + soft;
+        // a multiplier of 0 against an infinite compliance is nothing
+        sk_wide held = SK_ISA(sk_keep)(SK_ISA(sk_differ)(p->multiplier, (sk_wide){0}), soft * p->multiplier);
+        sk_wide above = (p->rest - length) - held - c->gamma * (SK_ISA(sk_dot_wide)(d, moved) * inverse);
+        sk_wide change = SK_ISA(sk_keep)(SK_ISA(sk_positive)(below), above / below);
+        p->multiplier += change;
+        s = change * inverse;
+    } else {
+        // lanes without an element have a rest length of 0: for them any length is right
+        sk_wide most = c->most * p->rest, below = length * weight;
+        sk_mask over = SK_ISA(sk_more)(length, most) & SK_ISA(sk_positive)(below) & SK_ISA(sk_positive)(p->rest);
+        s = SK_ISA(sk_keep)(over, (most - length) / below);
+        if (mode == SK_PAIR_LIMIT_MOVING) {
+            sk_wide3 u = {p->other_a.x - p->other_b.x, p->other_a.y - p->other_b.y, p->other_a.z - p->other_b.z};
+            sk_wide parting = SK_ISA(sk_dot_wide)(d, u);
+            sk_wide stop = SK_ISA(sk_keep)(over & SK_ISA(sk_positive)(parting), parting / (square * weight));
+            p->dv_a = SK_ISA(along)(-stop * p->wa, d);
+            p->dv_b = SK_ISA(along)(stop * p->wb, d);
+        }
+    }
+    p->da = SK_ISA(along)(s * p->wa, d);
+    p->db = SK_ISA(along)(-s * p->wb, d);
+}
+
+#include "constraints/pair_sweeps.h"
+
+#else
+#include "constraints/pair.h"
+
+#define SK_KERNELS "constraints/distance.c"
+#include "base/for_each_isa.h"
 
 typedef struct distance_params {
     sk_material material;
@@ -17,64 +75,6 @@ static double rest_length(const double (*x)[3]) {
     return __builtin_sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
-/* Particles in one place have no direction: they get no force, and no NaN. */
-static inline real safe_inverse(real length) { return length > 0 ? 1 / length : 0; }
-
-static void force(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_batch *batch = row->rule;
-    const sk_vec4 *x = run->vector[row->source[0]], *v = run->vector[row->source[1]];
-    sk_vec4 *f = run->vector[row->dst];
-    real damping_time = (real)sk_batch_damping_time(batch);
-    for (size_t e = begin; e < end; e++) {
-        uint32_t a = batch->slot[2 * e], b = batch->slot[2 * e + 1];
-        sk_vec3 d = sk_sub(sk_xyz(x[a]), sk_xyz(x[b]));
-        real length = sk_length(d);
-        sk_vec3 n = sk_scale(safe_inverse(length), d);
-        real rate = sk_dot(n, sk_sub(sk_xyz(v[a]), sk_xyz(v[b])));
-        real pull = batch->stiffness[e] * ((length - batch->rest[e]) + damping_time * rate);
-        sk_accumulate(&f[a], sk_scale(-pull, n));
-        sk_accumulate(&f[b], sk_scale(pull, n));
-    }
-}
-
-static void project(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_batch *batch = row->rule;
-    sk_vec4 *x = run->vector[row->dst];
-    real per_step = (real)(1 / (row->dt * row->dt));
-    for (size_t e = begin; e < end; e++) {
-        uint32_t a = batch->slot[2 * e], b = batch->slot[2 * e + 1];
-        sk_vec3 d = sk_sub(sk_xyz(x[a]), sk_xyz(x[b]));
-        real length = sk_length(d);
-        real weight = (x[a].w + x[b].w) + batch->compliance[e] * per_step;
-        real below = length * weight;
-        real s = below > 0 ? (batch->rest[e] - length) / below : 0;
-        sk_accumulate(&x[a], sk_scale(s * x[a].w, d));
-        sk_accumulate(&x[b], sk_scale(-s * x[b].w, d));
-    }
-}
-
-static void project_damped(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_batch *batch = row->rule;
-    sk_vec4 *x = run->vector[row->dst];
-    const sk_vec4 *x0 = run->vector[row->source[1]];
-    real per_step = (real)(1 / (row->dt * row->dt));
-    real gamma = (real)(sk_batch_damping_time(batch) / row->dt);
-    for (size_t e = begin; e < end; e++) {
-        uint32_t a = batch->slot[2 * e], b = batch->slot[2 * e + 1];
-        sk_vec3 d = sk_sub(sk_xyz(x[a]), sk_xyz(x[b])), d0 = sk_sub(sk_xyz(x0[a]), sk_xyz(x0[b]));
-        real length = sk_length(d);
-        sk_vec3 n = sk_scale(safe_inverse(length), d);
-        real moved = sk_dot(n, sk_sub(d, d0));
-        real soft = batch->compliance[e] * per_step;
-        real below = (1 + gamma) * (x[a].w + x[b].w) + soft;
-        real above = (batch->rest[e] - length) - soft * batch->multiplier[e] - gamma * moved;
-        real s = below > 0 ? above / below : 0;
-        batch->multiplier[e] += s;
-        sk_accumulate(&x[a], sk_scale(s * x[a].w, n));
-        sk_accumulate(&x[b], sk_scale(-s * x[b].w, n));
-    }
-}
-
 static void strain(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, real *out) {
     for (size_t e = begin; e < end; e++) {
         sk_vec3 d = sk_sub(sk_xyz(x[batch->slot[2 * e]]), sk_xyz(x[batch->slot[2 * e + 1]]));
@@ -84,12 +84,15 @@ static void strain(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t
 }
 
 const sk_constraint_type sk_distance = {
-    .kind = {"distance", "keeps two particles at their rest distance (a spring and damper)", SKEIN_CONSTRAINT,
-             fields, sizeof fields / sizeof *fields, sizeof(distance_params)},
+    .kind = {"distance", "keeps two particles at their rest distance (a spring and damper)", SKEIN_CONSTRAINT, fields,
+             sizeof fields / sizeof *fields, sizeof(distance_params)},
     .arity = 2,
     .rest = rest_length,
-    .force = force,
-    .project = project,
-    .project_damped = project_damped,
+    .force = {{SK_EACH_ISA(force_strips)}, {SK_EACH_ISA(force_groups)}},
+    .project = {{SK_EACH_ISA(project_strips)}, {SK_EACH_ISA(project_groups)}},
+    .project_damped = {{SK_EACH_ISA(project_damped_strips)}, {SK_EACH_ISA(project_damped_groups)}},
+    .limit = {{SK_EACH_ISA(limit_strips)}, {SK_EACH_ISA(limit_groups)}},
+    .limit_moving = {{SK_EACH_ISA(limit_moving_strips)}, {SK_EACH_ISA(limit_moving_groups)}},
     .strain = strain,
 };
+#endif

@@ -1,4 +1,24 @@
 /* Air drag on particles: F = -(linear + rate m + quadratic |v|) v. */
+#ifdef SK_ISA
+
+static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const drag_params *params = ((const sk_force *)row->rule)->params;
+    sk_wide linear = SK_ISA(sk_splat)((real)params->linear);
+    real rate = (real)params->rate, quadratic = (real)params->quadratic;
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        bool packed = slot < row->packed;
+        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed);
+        sk_wide4 f = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed);
+        sk_wide drag = linear + rate * v.w;
+        if (quadratic != 0) drag += quadratic * SK_ISA(sk_wide_sqrt)(v.x * v.x + v.y * v.y + v.z * v.z);
+        f.x -= drag * v.x;
+        f.y -= drag * v.y;
+        f.z -= drag * v.z;
+        SK_ISA(sk_store_block)(run->vector[row->dst], slot, packed, f);
+    }
+}
+
+#else
 #include "forces/force.h"
 
 typedef struct drag_params {
@@ -12,21 +32,13 @@ static const skein_field fields[] = {
     SK_REAL(drag_params, quadratic, "quadratic", "N s2/m2", 0, 0, SK_FAR, "grows with the square of the speed"),
 };
 
-static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const drag_params *params = ((const sk_force *)row->rule)->params;
-    const sk_vec4 *v = run->vector[SK_V];
-    sk_vec4 *f = run->vector[row->dst];
-    real linear = (real)params->linear, rate = (real)params->rate, quadratic = (real)params->quadratic;
-    for (size_t i = begin; i < end; i++) {
-        sk_vec3 u = sk_xyz(v[i]);
-        real drag = linear + rate * v[i].w + quadratic * sk_length(u);
-        sk_accumulate(&f[i], sk_scale(-drag, u));
-    }
-}
+#define SK_KERNELS "forces/drag.c"
+#include "base/for_each_isa.h"
 
 const sk_force_type sk_drag = {
     .kind = {"drag", "air damping, linear and quadratic in the speed", SKEIN_FORCE, fields,
              sizeof fields / sizeof *fields, sizeof(drag_params)},
     .domain = SK_OVER_PARTICLES,
-    .kernel = kernel,
+    .kernel = {SK_EACH_ISA(kernel)},
 };
+#endif

@@ -1,4 +1,22 @@
 /* Gravity: F = m g on every particle. */
+#ifdef SK_ISA
+
+static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const gravity_params *params = ((const sk_force *)row->rule)->params;
+    sk_vec3 g = sk_v3_of(params->acceleration);
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        bool packed = slot < row->packed;
+        sk_wide mass = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed).w;
+        sk_wide4 f = {0};
+        if (!row->sets) f = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed);
+        f.x += mass * g.x;
+        f.y += mass * g.y;
+        f.z += mass * g.z;
+        SK_ISA(sk_store_block)(run->vector[row->dst], slot, packed, f);
+    }
+}
+
+#else
 #include "forces/force.h"
 
 typedef struct gravity_params {
@@ -9,17 +27,14 @@ static const skein_field fields[] = {
     SK_VEC3(gravity_params, acceleration, "acceleration", "m/s2", 0, -9.81, 0, "the free fall's acceleration"),
 };
 
-static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const gravity_params *params = ((const sk_force *)row->rule)->params;
-    const sk_vec4 *v = run->vector[SK_V];
-    sk_vec4 *f = run->vector[row->dst];
-    sk_vec3 g = sk_v3_of(params->acceleration);
-    for (size_t i = begin; i < end; i++) sk_accumulate(&f[i], sk_scale(v[i].w, g));
-}
+#define SK_KERNELS "forces/gravity.c"
+#include "base/for_each_isa.h"
 
 const sk_force_type sk_gravity = {
     .kind = {"gravity", "weight: the same acceleration for every particle", SKEIN_FORCE, fields,
              sizeof fields / sizeof *fields, sizeof(gravity_params)},
     .domain = SK_OVER_PARTICLES,
-    .kernel = kernel,
+    .sets = true,
+    .kernel = {SK_EACH_ISA(kernel)},
 };
+#endif

@@ -34,6 +34,7 @@ static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_vec4 *x = run->vector[SK_X];
     sk_vec4 *f = run->vector[row->dst];
     real reach = (real)params->radius, strength = (real)params->strength;
+    if (!grid->count) return; // nobody is near, or the grid could not be built
     for (size_t i = begin; i < end; i++) {
         uint32_t cell = grid->cell_of[i];
         if (cell == SK_NO_CELL) continue;
@@ -41,15 +42,15 @@ static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
         int32_t cx = (int32_t)(cell % (uint32_t)grid->cells_x), rest = (int32_t)(cell / (uint32_t)grid->cells_x);
         int32_t cy = rest % grid->cells_y, cz = rest / grid->cells_y;
         int32_t x0 = cx > 0 ? cx - 1 : 0, x1 = cx + 1 < grid->cells_x ? cx + 1 : cx;
-        sk_vec3 push = {0, 0, 0};
+        sk_vec3 push = {0, 0, 0}, here = sk_xyz(sk_load(x, row->packed, slot));
         for (int32_t z = cz - 1; z <= cz + 1; z++)
             for (int32_t y = cy - 1; y <= cy + 1; y++) {
                 if (y < 0 || z < 0 || y >= grid->cells_y || z >= grid->cells_z) continue;
                 int32_t line = grid->cells_x * (y + grid->cells_y * z);
-                push = sk_add(push, push_of_range(grid, (uint32_t)(line + x0), (uint32_t)(line + x1), sk_xyz(x[slot]),
+                push = sk_add(push, push_of_range(grid, (uint32_t)(line + x0), (uint32_t)(line + x1), here,
                                                   reach, strength));
             }
-        sk_accumulate(&f[slot], push);
+        sk_add_at(f, row->packed, slot, push);
     }
 }
 
@@ -57,6 +58,6 @@ const sk_force_type sk_separation = {
     .kind = {"separation", "neighbours closer than a radius push each other apart", SKEIN_FORCE, fields,
              sizeof fields / sizeof *fields, sizeof(separation_params)},
     .domain = SK_OVER_NEIGHBOURS,
-    .kernel = kernel,
+    .kernel = {SK_ANY_ISA(kernel)},
     .radius = radius,
 };

@@ -26,10 +26,14 @@ static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     real half_density = (real)(0.5 * params->density);
     for (size_t t = begin; t < end; t++) {
         const uint32_t *c = run->triangles->corner[t];
-        sk_vec3 a = sk_xyz(x[c[0]]), b = sk_xyz(x[c[1]]), d = sk_xyz(x[c[2]]);
-        sk_vec3 flow = sk_sub(wind, sk_scale(third, sk_add(sk_add(sk_xyz(v[c[0]]), sk_xyz(v[c[1]])), sk_xyz(v[c[2]]))));
+        sk_vec3 p[3], moving = {0, 0, 0};
+        for (int k = 0; k < 3; k++) {
+            p[k] = sk_xyz(sk_load(x, row->packed, c[k]));
+            moving = sk_add(moving, sk_xyz(sk_load(v, row->packed, c[k])));
+        }
+        sk_vec3 flow = sk_sub(wind, sk_scale(third, moving));
         // twice the area along the normal; |across| = |u| 2 A cos(angle)
-        sk_vec3 normal = sk_cross(sk_sub(b, a), sk_sub(d, a));
+        sk_vec3 normal = sk_cross(sk_sub(p[1], p[0]), sk_sub(p[2], p[0]));
         real twice_area = sk_length(normal), speed = sk_length(flow);
         if (!(twice_area > 0) || !(speed > 0)) continue;
         real across = sk_dot(normal, flow);
@@ -37,7 +41,7 @@ static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
         real along = half_density * (drag - lift) * (sign * across) * (real)0.5;
         real lifting = half_density * lift * speed * across * (real)0.5 / twice_area;
         sk_vec3 share = sk_scale(third, sk_add(sk_scale(along, flow), sk_scale(lifting, normal)));
-        for (int k = 0; k < 3; k++) sk_accumulate(&f[c[k]], share);
+        for (int k = 0; k < 3; k++) sk_add_at(f, row->packed, c[k], share);
     }
 }
 
@@ -45,5 +49,5 @@ const sk_force_type sk_surface_wind = {
     .kind = {"surface_wind", "wind by triangle: lift and drag from its normal and its velocity through the air",
              SKEIN_FORCE, fields, sizeof fields / sizeof *fields, sizeof(surface_wind_params)},
     .domain = SK_OVER_TRIANGLES,
-    .kernel = kernel,
+    .kernel = {SK_ANY_ISA(kernel)},
 };

@@ -1,10 +1,12 @@
 #include "methods/writer.h"
 
 #include "base/status.h"
+#include "constraints/sweep.h"
 #include "methods/method.h"
 
 static void add(sk_writer *writer, sk_row row) {
     row.dt = writer->h;
+    row.packed = writer->packed;
     if (!sk_plan_add(writer->plan, writer->allocator, row)) writer->no_memory = true;
 }
 
@@ -18,31 +20,55 @@ void sk_write_end(sk_writer *writer, size_t repeat) {
     if (!writer->no_memory) writer->plan->data[repeat].length = writer->plan->count - repeat - 1;
 }
 
-static void add_combine(sk_writer *writer, sk_row_kernel *kernel, sk_vector dst, double a, sk_vector p, double b, sk_vector q) {
-    add(writer, (sk_row){.kind = SK_ROW_COMBINE, .order = SK_FREE, .kernel = kernel, .dst = dst, .source = {p, q, SK_NONE},
+static void add_combine(sk_writer *writer, const sk_kernels *kernels, sk_vector dst, double a, sk_vector p, double b, sk_vector q) {
+    add(writer, (sk_row){.kind = SK_ROW_COMBINE, .order = SK_FREE, .kernel = kernels->version[writer->isa], .dst = dst, .source = {p, q, SK_NONE},
                          .coefficient = {a, b, 0}, .end = writer->slot_count});
 }
 
+static void add_layout_rows(sk_writer *writer, sk_row_kind kind, const sk_kernels *kernels) {
+    static const sk_vector vectors[] = {SK_X, SK_V};
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
+        add(writer, (sk_row){.kind = kind, .order = SK_FREE, .kernel = kernels->version[writer->isa], .dst = vectors[i],
+                             .source = {vectors[i]}, .label = "strips", .end = writer->strip_slots});
+}
+
+void sk_write_pack(sk_writer *writer) {
+    if (!writer->strip_slots) return;
+    add_layout_rows(writer, SK_ROW_PACK, &sk_pack);
+    writer->packed = writer->strip_slots;
+}
+
+void sk_write_unpack(sk_writer *writer) {
+    if (!writer->strip_slots) return;
+    add_layout_rows(writer, SK_ROW_UNPACK, &sk_unpack);
+    writer->packed = 0;
+}
+
 void sk_write_sum(sk_writer *writer, sk_vector dst, double a, sk_vector p, double b, sk_vector q) {
-    add_combine(writer, sk_combine_sum, dst, a, p, b, q);
+    add_combine(writer, &sk_combine_sum, dst, a, p, b, q);
 }
 
 void sk_write_clear(sk_writer *writer, sk_vector dst) {
-    add_combine(writer, sk_combine_sum, dst, 0, SK_NONE, 0, SK_NONE);
+    add_combine(writer, &sk_combine_sum, dst, 0, SK_NONE, 0, SK_NONE);
 }
 
 void sk_write_correction(sk_writer *writer, sk_vector dst, double a, sk_vector p, sk_vector q, double b) {
-    add_combine(writer, sk_combine_correction, dst, a, p, b, q);
+    add_combine(writer, &sk_combine_correction, dst, a, p, b, q);
 }
 
 void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_vector q) {
-    add_combine(writer, sk_combine_kick, dst, a, p, 0, q);
+    add_combine(writer, &sk_combine_kick, dst, a, p, 0, q);
+}
+
+void sk_write_predict(sk_writer *writer) {
+    add(writer, (sk_row){.kind = SK_ROW_COMBINE, .order = SK_FREE, .kernel = sk_combine_predict.version[writer->isa], .dst = SK_X,
+                         .source = {SK_V, SK_F, writer->rules->colliders.count ? SK_V0 : SK_NONE}, .end = writer->slot_count});
 }
 
 /* The grid's row: sorts all particles into cells of at least coefficient[0]. */
 static void build_grid(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     (void)begin;
-    if (!sk_grid_build(run->grid, run->allocator, run->vector[row->source[0]], run->slot_of, end,
+    if (!sk_grid_build(run->grid, run->allocator, run->vector[row->source[0]], row->packed, run->slot_of, end,
                        (real)row->coefficient[0]))
         run->no_memory = true;
 }
@@ -61,7 +87,7 @@ static double widest_radius(const sk_rules *rules) {
 
 void sk_write_fields(sk_writer *writer) {
     const sk_rules *rules = writer->rules;
-    sk_write_clear(writer, SK_F);
+    bool first = true; // gravity and the like set F when they come first; others add to a cleared one
     double radius = widest_radius(rules);
     if (radius > 0)
         add(writer, (sk_row){.kind = SK_ROW_GRID, .order = SK_ORDERED, .kernel = build_grid, .source = {SK_X},
@@ -69,25 +95,44 @@ void sk_write_fields(sk_writer *writer) {
     for (size_t i = 0; i < rules->forces.count; i++) {
         const sk_force *force = rules->forces.data[i];
         if (!*force->enabled) continue;
-        sk_row row = {.kind = SK_ROW_FIELD, .order = SK_FREE, .kernel = force->type->kernel, .dst = SK_F,
+        bool sets = first && force->type->sets;
+        if (first && !sets) sk_write_clear(writer, SK_F);
+        first = false;
+        sk_row row = {.kind = SK_ROW_FIELD, .order = SK_FREE, .kernel = force->type->kernel.version[writer->isa], .dst = SK_F,
                       .source = {SK_X, SK_V}, .rule = force, .label = force->label, .end = writer->slot_count};
         if (force->type->domain == SK_OVER_TRIANGLES) {
             row.order = SK_ORDERED; // neighbouring triangles write the same corners
             row.end = writer->triangle_count;
         } else if (force->type->domain == SK_OVER_NEIGHBOURS) {
             row.kind = SK_ROW_NEIGHBOUR;
+            row.by_particle = true;
             row.end = writer->particle_count;
         }
+        row.sets = sets;
         add(writer, row);
     }
+    if (first) sk_write_clear(writer, SK_F);
+}
+
+/* A row for each sweep of a batch. */
+static void add_sweeps(sk_writer *writer, const sk_batch *batch, sk_row_kind kind, const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second) {
+    for (size_t i = 0; i < batch->sweep_count; i++) {
+        const sk_sweep *sweep = &batch->sweeps[i];
+        const sk_kernels *walk = sweep->strips ? &kernels->strips : &kernels->groups;
+        add(writer, (sk_row){.kind = kind, .order = SK_ORDERED, .kernel = walk->version[writer->isa], .dst = dst, .source = {SK_X, second},
+                             .rule = sweep, .label = sweep->label, .walk = sweep->walk,
+                             .end = sweep->strips ? sweep->walk.rows - sweep->walk.reach : sweep->group_count});
+    }
+}
+
+static bool is_on(const sk_batch *batch) {
+    return *batch->enabled && batch->count;
 }
 
 void sk_write_forces(sk_writer *writer) {
     for (size_t i = 0; i < writer->rules->batches.count; i++) {
         const sk_batch *batch = writer->rules->batches.data[i];
-        if (!*batch->enabled || !batch->count) continue;
-        add(writer, (sk_row){.kind = SK_ROW_FORCE, .order = SK_ORDERED, .kernel = batch->type->force, .dst = SK_F,
-                             .source = {SK_X, SK_V}, .rule = batch, .label = batch->label, .end = batch->count});
+        if (is_on(batch)) add_sweeps(writer, batch, SK_ROW_FORCE, &batch->type->force, SK_F, SK_V);
     }
 }
 
@@ -100,48 +145,58 @@ void sk_write_projections(sk_writer *writer, int passes) {
     const sk_rules *rules = writer->rules;
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
-        if (!*batch->enabled || !batch->count || !keeps_multiplier(batch, passes)) continue;
-        add(writer, (sk_row){.kind = SK_ROW_MULTIPLIER, .order = SK_FREE, .kernel = sk_batch_clear_multipliers,
-                             .rule = batch, .label = batch->label, .end = batch->count});
+        if (!is_on(batch) || !keeps_multiplier(batch, passes)) continue;
+        for (size_t w = 0; w < batch->sweep_count; w++) {
+            const sk_sweep *sweep = &batch->sweeps[w];
+            sk_walk walk = sweep->walk;
+            walk.reach = 0;
+            add(writer, (sk_row){.kind = SK_ROW_MULTIPLIER, .order = SK_ORDERED, .kernel = sk_sweep_clear_multipliers, .rule = sweep,
+                                 .label = sweep->label, .walk = walk, .end = sweep->strips ? walk.rows : sweep->group_count});
+        }
     }
     for (int pass = 0; pass < passes; pass++)
         for (size_t i = 0; i < rules->batches.count; i++) {
             const sk_batch *batch = rules->batches.data[i];
-            if (!*batch->enabled || !batch->count) continue;
+            if (!is_on(batch)) continue;
             bool keeps = keeps_multiplier(batch, passes);
-            add(writer, (sk_row){.kind = SK_ROW_PROJECT, .order = SK_ORDERED,
-                                 .kernel = keeps ? batch->type->project_damped : batch->type->project, .dst = SK_X,
-                                 .source = {SK_X, keeps ? SK_X0 : SK_NONE}, .rule = batch, .label = batch->label,
-                                 .end = batch->count});
+            add_sweeps(writer, batch, SK_ROW_PROJECT, keeps ? &batch->type->project_damped : &batch->type->project, SK_X,
+                       keeps ? SK_X0 : SK_NONE);
         }
 }
 
 void sk_write_contacts(sk_writer *writer, sk_contact_sort sort, sk_vector before) {
     static const struct {
         sk_row_kind kind;
-        sk_row_kernel *kernel;
+        const sk_kernels *kernels;
         sk_vector dst;
     } sorts[] = {
-        [SK_CONTACT_FORCE] = {SK_ROW_CONTACT_FORCE, sk_contact_force, SK_F},
-        [SK_CONTACT_IMPULSE] = {SK_ROW_CONTACT_VELOCITY, sk_contact_impulse, SK_V},
-        [SK_CONTACT_PUSH] = {SK_ROW_CONTACT_POSITION, sk_contact_push, SK_X},
-        [SK_CONTACT_RESTITUTION] = {SK_ROW_CONTACT_VELOCITY, sk_contact_restitution, SK_V},
+        [SK_CONTACT_FORCE] = {SK_ROW_CONTACT_FORCE, &sk_contact_force, SK_F},
+        [SK_CONTACT_IMPULSE] = {SK_ROW_CONTACT_VELOCITY, &sk_contact_impulse, SK_V},
+        [SK_CONTACT_PUSH] = {SK_ROW_CONTACT_POSITION, &sk_contact_push, SK_X},
+        [SK_CONTACT_RESTITUTION] = {SK_ROW_CONTACT_VELOCITY, &sk_contact_restitution, SK_V},
     };
     for (size_t i = 0; i < writer->rules->colliders.count; i++) {
         const sk_collider *collider = writer->rules->colliders.data[i];
         if (!collider->common->enabled) continue;
-        add(writer, (sk_row){.kind = sorts[sort].kind, .order = SK_FREE, .kernel = sorts[sort].kernel,
+        add(writer, (sk_row){.kind = sorts[sort].kind, .order = SK_FREE, .kernel = sorts[sort].kernels->version[writer->isa],
                              .dst = sorts[sort].dst, .source = {SK_X, before}, .rule = collider,
                              .label = collider->label, .end = writer->slot_count});
     }
 }
 
 void sk_write_limits(sk_writer *writer, sk_vector velocity) {
-    for (size_t i = 0; i < writer->rules->limits.count; i++) {
-        const sk_limit *limit = writer->rules->limits.data[i];
+    const sk_rules *rules = writer->rules;
+    for (size_t i = 0; i < rules->batches.count; i++) {
+        const sk_batch *batch = rules->batches.data[i];
+        if (!is_on(batch) || !batch->bound || *batch->bound >= SK_UNBOUNDED) continue;
+        add_sweeps(writer, batch, SK_ROW_LIMIT, velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving, SK_X, velocity);
+    }
+    for (size_t i = 0; i < rules->limits.count; i++) {
+        const sk_limit *limit = rules->limits.data[i];
         if (!*limit->enabled || !limit->count || *limit->bound >= SK_UNBOUNDED) continue;
-        add(writer, (sk_row){.kind = SK_ROW_LIMIT, .order = limit->order, .kernel = limit->kernel, .dst = SK_X,
-                             .source = {SK_X, velocity}, .rule = limit, .label = limit->label, .end = limit->count});
+        add(writer, (sk_row){.kind = SK_ROW_LIMIT, .order = SK_FREE, .kernel = limit->kernel.version[writer->isa], .dst = SK_X,
+                             .source = {SK_X, velocity}, .rule = limit, .label = limit->label, .begin = limit->first_slot,
+                             .end = limit->first_slot + limit->slot_count});
     }
 }
 

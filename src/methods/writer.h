@@ -19,7 +19,10 @@ typedef struct sk_writer {
     sk_plan *plan;
     sk_allocator *allocator;
     const sk_rules *rules;
+    sk_isa isa;
     size_t slot_count, particle_count, triangle_count;
+    size_t strip_slots; /* the first slots, which are in strips */
+    size_t packed;      /* the first slots that are in packed blocks now */
     double h;       /* of the present substep, s */
     bool no_memory; /* the plan is incomplete */
 } sk_writer;
@@ -28,11 +31,18 @@ typedef struct sk_writer {
 size_t sk_write_repeat(sk_writer *writer, size_t times, double h);
 void sk_write_end(sk_writer *writer, size_t repeat);
 
+/* X and V of the strips from quads to packed blocks, and back: around all other rows of a step. */
+void sk_write_pack(sk_writer *writer);
+void sk_write_unpack(sk_writer *writer);
+
 /* dst = a p + b q (q may be SK_NONE); dst = 0; dst += a (p - (q + b dst)); dst = p + a w q. */
 void sk_write_sum(sk_writer *writer, sk_vector dst, double a, sk_vector p, double b, sk_vector q);
 void sk_write_clear(sk_writer *writer, sk_vector dst);
 void sk_write_correction(sk_writer *writer, sk_vector dst, double a, sk_vector p, sk_vector q, double b);
 void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_vector q);
+
+/* Of position methods: V += h w F, X0 = X, X += h V (and V0 = V where contact asks for it). */
+void sk_write_predict(sk_writer *writer);
 
 /* F = all forces on X moving with V: the grid if a rule wants neighbours, then fields and neighbours. */
 void sk_write_fields(sk_writer *writer);

@@ -25,10 +25,7 @@ static void write(sk_writer *writer, const void *data, double dt) {
     size_t repeat = sk_write_repeat(writer, (size_t)params->substeps, h);
     // predict
     sk_write_fields(writer);
-    sk_write_kick(writer, SK_V, SK_V, h, SK_F);
-    if (writer->rules->colliders.count) sk_write_sum(writer, SK_V0, 1, SK_V, 0, SK_NONE);
-    sk_write_sum(writer, SK_X0, 1, SK_X, 0, SK_NONE);
-    sk_write_sum(writer, SK_X, 1, SK_X, h, SK_V);
+    sk_write_predict(writer);
     // correct
     sk_write_projections(writer, params->iterations);
     sk_write_limits(writer, SK_NONE);

@@ -2,6 +2,9 @@
 
 #include <string.h>
 
+/* Below this width an element of two columns' step would meet its own block (constraints/sweep.h). */
+enum { LEAST_WIDTH = 3 };
+
 /* Moves one array into a larger block; the new part is zero. */
 static bool grow(sk_allocator *allocator, void **array, size_t old_count, size_t new_count, size_t size) {
     void *grown = sk_allocate(allocator, new_count * size);
@@ -12,48 +15,120 @@ static bool grow(sk_allocator *allocator, void **array, size_t old_count, size_t
     return true;
 }
 
-static bool reserve(sk_particles *particles, sk_allocator *allocator, size_t need) {
-    if (need <= particles->capacity) return true;
-    size_t room = particles->capacity * 2 > need ? particles->capacity * 2 : need;
-    room = (room + 15) / 16 * 16;
-    size_t old = particles->capacity;
+static size_t room_for(size_t capacity, size_t need) {
+    size_t room = capacity + capacity / 2 > need ? capacity + capacity / 2 : need;
+    return (room + 15) / 16 * 16;
+}
+
+static bool reserve(sk_particles *particles, sk_allocator *allocator, size_t particle_need, size_t slot_need) {
     // each array grows on its own: if one fails, the others are merely larger than they need be
-    for (int v = SK_X; v < SK_VECTOR_COUNT; v++)
-        if (!grow(allocator, (void **)&particles->vector[v], old, room, sizeof(sk_vec4))) return false;
-    if (!grow(allocator, (void **)&particles->slot_of, old, room, sizeof(uint32_t)) ||
-        !grow(allocator, (void **)&particles->built, old, room, sizeof(sk_vec3)) ||
-        !grow(allocator, (void **)&particles->mass, old, room, sizeof(real)) ||
-        !grow(allocator, (void **)&particles->held, old, room, sizeof(bool)))
-        return false;
-    particles->capacity = room;
+    if (slot_need > particles->slot_capacity) {
+        size_t old = particles->slot_capacity, room = room_for(old, slot_need);
+        for (int v = SK_X; v < SK_VECTOR_COUNT; v++)
+            if (!grow(allocator, (void **)&particles->vector[v], old, room, sizeof(sk_vec4))) return false;
+        particles->slot_capacity = room;
+    }
+    if (particle_need > particles->capacity) {
+        size_t old = particles->capacity, room = room_for(old, particle_need);
+        if (!grow(allocator, (void **)&particles->slot_of, old, room, sizeof(uint32_t)) ||
+            !grow(allocator, (void **)&particles->built, old, room, sizeof(sk_vec3)) ||
+            !grow(allocator, (void **)&particles->mass, old, room, sizeof(real)) ||
+            !grow(allocator, (void **)&particles->held, old, room, sizeof(bool)))
+            return false;
+        particles->capacity = room;
+    }
     return true;
 }
 
 bool sk_particles_add(sk_particles *particles, sk_allocator *allocator, size_t count, const double *positions,
                       const double *velocities, const double *masses) {
-    if (!reserve(particles, allocator, particles->count + count)) return false;
+    size_t first_slot = particles->slot_count, slots = (count + 15) / 16 * 16;
+    if (!reserve(particles, allocator, particles->count + count, first_slot + slots + 16)) return false;
     for (size_t k = 0; k < count; k++) {
-        size_t i = particles->count + k;
+        size_t i = particles->count + k, s = first_slot + k;
         const double *p = positions + 3 * k, *v = velocities ? velocities + 3 * k : (const double[3]){0, 0, 0};
         real mass = (real)masses[k];
-        particles->slot_of[i] = (uint32_t)i;
+        particles->slot_of[i] = (uint32_t)s;
         particles->built[i] = sk_v3_of(p);
         particles->mass[i] = mass;
         particles->held[i] = !(mass > 0);
-        particles->vector[SK_X][i] = (sk_vec4){(real)p[0], (real)p[1], (real)p[2], mass > 0 ? 1 / mass : 0};
-        particles->vector[SK_V][i] = (sk_vec4){(real)v[0], (real)v[1], (real)v[2], mass};
-        particles->vector[SK_PREVIOUS][i] = particles->vector[SK_X][i];
+        particles->vector[SK_X][s] = (sk_vec4){(real)p[0], (real)p[1], (real)p[2], mass > 0 ? 1 / mass : 0};
+        particles->vector[SK_V][s] = (sk_vec4){(real)v[0], (real)v[1], (real)v[2], mass};
+        particles->vector[SK_PREVIOUS][s] = particles->vector[SK_X][s];
     }
     particles->count += count;
-    particles->slot_count = (particles->count + 15) / 16 * 16;
+    particles->slot_count += slots;
+    particles->arranged = false;
+    return true;
+}
+
+bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, uint32_t first, uint32_t rows, uint32_t columns) {
+    if (!SK_RESERVE(allocator, &particles->strips, particles->strips.count + 1)) return false;
+    uint32_t width = (columns + 15) / 16;
+    particles->strips.data[particles->strips.count++] = (sk_strips){first, rows, columns, width < LEAST_WIDTH ? LEAST_WIDTH : width, 0};
+    particles->arranged = false;
     return true;
 }
 
 void sk_particles_truncate(sk_particles *particles, size_t count) {
     for (size_t i = count; i < particles->count; i++)
         for (int v = SK_X; v < SK_VECTOR_COUNT; v++) particles->vector[v][particles->slot_of[i]] = (sk_vec4){0, 0, 0, 0};
+    while (particles->strips.count && particles->strips.data[particles->strips.count - 1].first_particle >= count) particles->strips.count--;
     particles->count = count;
-    particles->slot_count = (count + 15) / 16 * 16;
+}
+
+/* Writes every particle's slot into `slot_of`: strips first. */
+static void number_slots(sk_particles *particles, uint32_t *slot_of) {
+    size_t next = 0;
+    memset(slot_of, 0xff, particles->count * sizeof *slot_of);
+    for (size_t s = 0; s < particles->strips.count; s++) {
+        sk_strips *strips = &particles->strips.data[s];
+        strips->first_slot = next;
+        for (uint32_t r = 0; r < strips->rows; r++)
+            for (uint32_t c = 0; c < strips->columns; c++)
+                slot_of[strips->first_particle + r * strips->columns + c] =
+                    (uint32_t)(next + ((size_t)r * strips->width + c % strips->width) * 16 + c / strips->width);
+        next += (size_t)strips->rows * strips->width * 16;
+    }
+    for (size_t i = 0; i < particles->count; i++)
+        if (slot_of[i] == UINT32_MAX) slot_of[i] = (uint32_t)next++;
+}
+
+bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
+    if (particles->arranged) return true;
+    size_t strip_slots = 0, loose = particles->count;
+    for (size_t s = 0; s < particles->strips.count; s++) {
+        const sk_strips *strips = &particles->strips.data[s];
+        strip_slots += (size_t)strips->rows * strips->width * 16;
+        loose -= (size_t)strips->rows * strips->columns;
+    }
+    size_t empty_slot = strip_slots + (loose + 15) / 16 * 16, slot_count = empty_slot + 16;
+    if (slot_count > UINT32_MAX) return false;
+    // everything anew first, so that a failure changes nothing
+    uint32_t *slot_of = sk_allocate(allocator, particles->capacity * sizeof *slot_of);
+    sk_vec4 *vector[SK_VECTOR_COUNT] = {NULL};
+    bool good = slot_of != NULL;
+    for (int v = SK_X; v < SK_VECTOR_COUNT && good; v++) good = (vector[v] = sk_allocate(allocator, slot_count * sizeof(sk_vec4))) != NULL;
+    if (good) {
+        number_slots(particles, slot_of);
+        for (int v = SK_X; v < SK_VECTOR_COUNT; v++)
+            for (size_t i = 0; i < particles->count; i++) vector[v][slot_of[i]] = particles->vector[v][particles->slot_of[i]];
+        for (int v = SK_X; v < SK_VECTOR_COUNT; v++) {
+            sk_vec4 *old = particles->vector[v];
+            particles->vector[v] = vector[v];
+            vector[v] = old;
+        }
+        uint32_t *old = particles->slot_of;
+        particles->slot_of = slot_of;
+        slot_of = old;
+        particles->slot_count = particles->slot_capacity = slot_count;
+        particles->strip_slots = strip_slots;
+        particles->empty_slot = empty_slot;
+        particles->arranged = true;
+    }
+    for (int v = SK_X; v < SK_VECTOR_COUNT; v++) sk_release(allocator, vector[v]);
+    sk_release(allocator, slot_of);
+    return good;
 }
 
 void sk_particles_reset(sk_particles *particles) {
@@ -62,9 +137,10 @@ void sk_particles_reset(sk_particles *particles) {
         sk_vec3 p = particles->built[i];
         particles->vector[SK_X][s] = (sk_vec4){p.x, p.y, p.z, particles->vector[SK_X][s].w};
         particles->vector[SK_V][s] = (sk_vec4){0, 0, 0, particles->vector[SK_V][s].w};
-        particles->vector[SK_F][s] = (sk_vec4){0, 0, 0, 0};
         particles->vector[SK_PREVIOUS][s] = particles->vector[SK_X][s];
     }
+    // forces are in the layout of a running plan: wipe them whole
+    if (particles->vector[SK_F]) memset(particles->vector[SK_F], 0, particles->slot_count * sizeof(sk_vec4));
 }
 
 void sk_particle_hold(sk_particles *particles, size_t particle, bool held) {
@@ -81,5 +157,6 @@ void sk_particles_release(sk_particles *particles, sk_allocator *allocator) {
     sk_release(allocator, particles->built);
     sk_release(allocator, particles->mass);
     sk_release(allocator, particles->held);
+    sk_release(allocator, particles->strips.data);
     memset(particles, 0, sizeof *particles);
 }

@@ -10,6 +10,7 @@ bool sk_plan_add(sk_plan *plan, sk_allocator *allocator, sk_row row) {
 
 const char *sk_row_kind_text(sk_row_kind kind) {
     static const char *const names[SK_ROW_KIND_COUNT] = {
+        [SK_ROW_PACK] = "pack",                [SK_ROW_UNPACK] = "unpack",
         [SK_ROW_COMBINE] = "combine",          [SK_ROW_GRID] = "grid",
         [SK_ROW_FIELD] = "field",              [SK_ROW_NEIGHBOUR] = "neighbour",
         [SK_ROW_FORCE] = "force",              [SK_ROW_PROJECT] = "project",
@@ -25,15 +26,25 @@ static const char *vector_text(sk_vector vector) {
     return names[vector];
 }
 
+static bool is_version(const sk_row *row, const sk_kernels *kernels) {
+    for (int isa = 0; isa < SK_ISA_COUNT; isa++)
+        if (row->kernel == kernels->version[isa]) return true;
+    return false;
+}
+
 /* A combine row as the formula that it computes. */
 static void describe_combine(const sk_row *row, char *text, size_t size) {
     const char *p = vector_text(row->source[0]), *q = vector_text(row->source[1]);
-    if (row->kernel == sk_combine_correction) {
+    if (is_version(row, &sk_combine_predict)) {
+        snprintf(text, size, "X + h V, V + h w F; X0 = X%s", row->source[2] == SK_V0 ? "; V0 = V" : "");
+        return;
+    }
+    if (is_version(row, &sk_combine_correction)) {
         const char *dst = vector_text(row->dst);
         snprintf(text, size, "%s + %g (%s - %s - %g %s)", dst, row->coefficient[0], p, q, row->coefficient[1], dst);
         return;
     }
-    if (row->kernel == sk_combine_kick) {
+    if (is_version(row, &sk_combine_kick)) {
         snprintf(text, size, "%s + %g w %s", p, row->coefficient[0], q);
         return;
     }
@@ -67,51 +78,4 @@ void sk_row_describe(const sk_row *row, char *text, size_t size) {
     }
     snprintf(text, size, "%-10s %-3s = %-44s %zu elements, %s", sk_row_kind_text(row->kind), vector_text(row->dst),
              what, row->end - row->begin, row->order == SK_FREE ? "free" : "ordered");
-}
-
-void sk_combine_sum(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    sk_vec4 *dst = run->vector[row->dst];
-    // rare: clearing, and sums of three
-    if (row->source[0] == SK_NONE) {
-        for (size_t i = begin; i < end; i++) dst[i] = (sk_vec4){0, 0, 0, dst[i].w};
-        return;
-    }
-    const sk_vec4 *p = run->vector[row->source[0]];
-    real a = (real)row->coefficient[0], b = (real)row->coefficient[1], c = (real)row->coefficient[2];
-    if (row->source[1] == SK_NONE) {
-        for (size_t i = begin; i < end; i++) dst[i] = (sk_vec4){a * p[i].x, a * p[i].y, a * p[i].z, dst[i].w};
-        return;
-    }
-    const sk_vec4 *q = run->vector[row->source[1]];
-    if (row->source[2] == SK_NONE) {
-        for (size_t i = begin; i < end; i++)
-            dst[i] = (sk_vec4){a * p[i].x + b * q[i].x, a * p[i].y + b * q[i].y, a * p[i].z + b * q[i].z, dst[i].w};
-        return;
-    }
-    const sk_vec4 *r = run->vector[row->source[2]];
-    for (size_t i = begin; i < end; i++)
-        dst[i] = (sk_vec4){a * p[i].x + b * q[i].x + c * r[i].x, a * p[i].y + b * q[i].y + c * r[i].y,
-                           a * p[i].z + b * q[i].z + c * r[i].z, dst[i].w};
-}
-
-void sk_combine_correction(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    sk_vec4 *dst = run->vector[row->dst];
-    const sk_vec4 *p = run->vector[row->source[0]], *q = run->vector[row->source[1]];
-    real a = (real)row->coefficient[0], b = (real)row->coefficient[1];
-    for (size_t i = begin; i < end; i++) {
-        // the same operations as the sum that predicted p, so that an untouched p corrects nothing
-        sk_vec4 u = dst[i];
-        sk_vec3 alone = {q[i].x + b * u.x, q[i].y + b * u.y, q[i].z + b * u.z};
-        dst[i] = (sk_vec4){u.x + a * (p[i].x - alone.x), u.y + a * (p[i].y - alone.y), u.z + a * (p[i].z - alone.z), u.w};
-    }
-}
-
-void sk_combine_kick(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    sk_vec4 *dst = run->vector[row->dst];
-    const sk_vec4 *p = run->vector[row->source[0]], *q = run->vector[row->source[1]], *x = run->vector[SK_X];
-    real a = (real)row->coefficient[0];
-    for (size_t i = begin; i < end; i++) {
-        real k = a * x[i].w;
-        dst[i] = (sk_vec4){p[i].x + k * q[i].x, p[i].y + k * q[i].y, p[i].z + k * q[i].z, dst[i].w};
-    }
 }

@@ -11,8 +11,10 @@
 #ifndef SK_PLAN_ROW_H
 #define SK_PLAN_ROW_H
 
+#include "base/isa.h"
 #include "base/memory.h"
 #include "base/vector.h"
+#include "base/layout.h"
 #include "space/grid.h"
 
 /* The state vectors, one sk_vec4 a slot. */
@@ -23,11 +25,13 @@ typedef enum sk_vector {
     SK_F,        /* force */
     SK_X0,       /* position saved at the start of a substep */
     SK_V0,       /* velocity saved likewise */
-    SK_PREVIOUS, /* position at the start of the step, for blending between frames */
+    SK_PREVIOUS, /* position at the start of the step, for blending between frames; always quads */
     SK_VECTOR_COUNT
 } sk_vector;
 
 typedef enum sk_row_kind {
+    SK_ROW_PACK,
+    SK_ROW_UNPACK,
     SK_ROW_COMBINE,
     SK_ROW_GRID,
     SK_ROW_FIELD,
@@ -56,7 +60,7 @@ typedef struct sk_triangles {
 /* What a kernel may touch while a plan runs. */
 typedef struct sk_run {
     sk_vec4 *vector[SK_VECTOR_COUNT];
-    size_t slot_count;         /* a multiple of 16; the slots past the particles are zero */
+    size_t slot_count;         /* a multiple of 16; slots without a particle are zero and weigh nothing */
     const uint32_t *slot_of;   /* of the user's particles */
     size_t particle_count;
     const sk_triangles *triangles;
@@ -69,6 +73,19 @@ typedef struct sk_run {
 typedef struct sk_row sk_row;
 typedef void sk_row_kernel(sk_run *run, const sk_row *row, size_t begin, size_t end);
 
+/* A kernel in a version for each instruction set. */
+typedef struct sk_kernels {
+    sk_row_kernel *version[SK_ISA_COUNT];
+} sk_kernels;
+
+/* Which strips of particles an ordered row walks along, so that threads can follow each other down the
+ * rows of a grid; all zero where it does not. An element of strip row j also writes row j + reach. */
+typedef struct sk_walk {
+    size_t first_slot; /* of the strips */
+    size_t rows, width; /* strip rows; blocks a row */
+    size_t reach;
+} sk_walk;
+
 struct sk_row {
     sk_row_kind kind;
     sk_order order;
@@ -79,6 +96,10 @@ struct sk_row {
     const void *rule;   /* a force, a collider, a batch */
     const char *label;  /* its name in `skein explain` */
     size_t begin, end;  /* elements; a repeat: the number of turns is `end` */
+    bool sets;          /* a field row: F is written, not added to */
+    bool by_particle;   /* its elements are the user's particles, not slots: not to be run in chunks with others */
+    size_t packed;      /* slots [0, packed) are in packed blocks when it runs */
+    sk_walk walk;       /* of rows whose elements are strip rows */
     size_t length;      /* a repeat: how many rows after it are repeated */
 };
 
@@ -96,7 +117,11 @@ const char *sk_row_kind_text(sk_row_kind kind);
 /* The arithmetic of vectors: the kernels of combine rows. The w components stay as they are.
  *   dst = a p + b q + c r        (a source of SK_NONE is left out)
  *   dst += a (p - (q + b dst))   velocity: what moved p away from where dst alone would have taken q
- *   dst = p + a w q              a kick: w is the inverse mass */
-sk_row_kernel sk_combine_sum, sk_combine_correction, sk_combine_kick;
+ *   dst = p + a w q              a kick: w is the inverse mass
+ *   predict                      V += h w F; V0 = V where the third source is V0; X0 = X; X += h V: one row
+ *                                for what would be four, since each block is read and written once */
+extern const sk_kernels sk_combine_sum, sk_combine_correction, sk_combine_kick, sk_combine_predict;
+/* Turns blocks of dst from quads to packed, and back, in place. */
+extern const sk_kernels sk_pack, sk_unpack;
 
 #endif

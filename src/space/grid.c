@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "base/layout.h"
+
 /* Finite, and so far from overflow that the size of a box of such points is finite too. */
 static bool is_finite(sk_vec4 p) {
     real most = SK_REAL_MAX / 4;
@@ -9,10 +11,10 @@ static bool is_finite(sk_vec4 p) {
 }
 
 /* The box around the finite particles; false when there is none. */
-static bool find_bounds(const sk_vec4 *positions, const uint32_t *slot_of, size_t count, sk_vec3 *low, sk_vec3 *high) {
+static bool find_bounds(const sk_vec4 *positions, size_t packed, const uint32_t *slot_of, size_t count, sk_vec3 *low, sk_vec3 *high) {
     bool any = false;
     for (size_t i = 0; i < count; i++) {
-        sk_vec4 p = positions[slot_of[i]];
+        sk_vec4 p = sk_load(positions, packed, slot_of[i]);
         if (!is_finite(p)) continue;
         if (!any) *low = *high = sk_xyz(p);
         any = true;
@@ -27,11 +29,11 @@ static double cells_needed(sk_vec3 extent, double size) {
     return ((double)extent.x / size + 1) * ((double)extent.y / size + 1) * ((double)extent.z / size + 1);
 }
 
-bool sk_grid_build(sk_grid *grid, sk_allocator *allocator, const sk_vec4 *positions, const uint32_t *slot_of,
+bool sk_grid_build(sk_grid *grid, sk_allocator *allocator, const sk_vec4 *positions, size_t packed, const uint32_t *slot_of,
                    size_t count, real radius) {
     // the grid's frame: cells grow until there are not too many of them
     sk_vec3 low = {0, 0, 0}, high = {0, 0, 0};
-    find_bounds(positions, slot_of, count, &low, &high);
+    find_bounds(positions, packed, slot_of, count, &low, &high);
     double size = radius, most = 4.0 * (double)count + 64;
     sk_vec3 extent = sk_sub(high, low);
     while (cells_needed(extent, size) > most) size *= 1.25;
@@ -46,13 +48,13 @@ bool sk_grid_build(sk_grid *grid, sk_allocator *allocator, const sk_vec4 *positi
         !sk_reserve(allocator, (void **)&grid->slot, &grid->slot_capacity, count, sizeof(uint32_t)) ||
         !sk_reserve(allocator, (void **)&grid->position, &grid->position_capacity, count, sizeof(sk_vec4)) ||
         !sk_reserve(allocator, (void **)&grid->cell_of, &grid->cell_of_capacity, count, sizeof(uint32_t)))
-        return false;
+        return grid->count = 0, false;
 
     // counting sort, stable in the user's order: count, sum up, scatter
     uint32_t *start = grid->cell_start;
     memset(start, 0, (cells + 2) * sizeof *start);
     for (size_t i = 0; i < count; i++) {
-        sk_vec4 p = positions[slot_of[i]];
+        sk_vec4 p = sk_load(positions, packed, slot_of[i]);
         grid->cell_of[i] = SK_NO_CELL;
         if (!is_finite(p)) continue;
         int32_t x = sk_grid_place(p.x, low.x, grid->cell_size, grid->cells_x);
@@ -66,7 +68,7 @@ bool sk_grid_build(sk_grid *grid, sk_allocator *allocator, const sk_vec4 *positi
         if (grid->cell_of[i] == SK_NO_CELL) continue;
         uint32_t place = start[grid->cell_of[i] + 1]++;
         grid->slot[place] = slot_of[i];
-        grid->position[place] = positions[slot_of[i]];
+        grid->position[place] = sk_load(positions, packed, slot_of[i]);
     }
     grid->count = start[cells];
     return true;

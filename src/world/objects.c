@@ -66,6 +66,7 @@ static void unmake_object(skein_world *world, sk_object *object) {
 static skein_status finish_object(skein_world *world, sk_object *object, skein_handle *handle) {
     object->generation = 1;
     world->plan_stale = true;
+    if (object->category == SKEIN_CONSTRAINT || object->category == SKEIN_BODY) world->slots_stale = true;
     if (handle) *handle = handle_of(world, object);
     return SKEIN_OK;
 }

@@ -89,10 +89,8 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     statistics->substeps = world->substeps;
     statistics->time = world->time;
     statistics->particles = all->count;
-    if (world->plan_stale) { // slots of new rules may not be known yet
-        for (size_t i = 0; i < world->rules.batches.count; i++)
-            sk_batch_refresh(world->rules.batches.data[i], all->slot_of);
-    }
+    skein_status status = sk_world_arrange(world, error); // the slots of new rules may not be known yet
+    if (status) return status;
     measure_motion(world, statistics);
     for (size_t i = 0; i < world->rules.colliders.count; i++) {
         const sk_collider *collider = world->rules.colliders.data[i];
@@ -100,7 +98,7 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
         sk_collider_measure(collider, world->time, all->vector[SK_X], all->slot_of, all->count,
                             &statistics->max_penetration, &statistics->contacts);
     }
-    skein_status status = measure_stretch(world, statistics, error);
+    status = measure_stretch(world, statistics, error);
     statistics->state_hash = skein_world_hash(world);
     return status;
 }

@@ -4,37 +4,50 @@
 
 #include "world/world.h"
 
-/* Everything that is stored by slot follows the slots and the parameters. */
-static void refresh(skein_world *world) {
-    const uint32_t *slot_of = world->particles.slot_of;
-    for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i], slot_of);
-    for (size_t i = 0; i < world->rules.limits.count; i++) sk_limit_refresh(world->rules.limits.data[i], slot_of);
+skein_status sk_world_arrange(skein_world *world, skein_error *error) {
+    if (!world->slots_stale) return SKEIN_OK;
+    sk_allocator *allocator = &world->allocator;
+    bool good = sk_particles_arrange(&world->particles, allocator);
+    for (size_t i = 0; i < world->rules.batches.count && good; i++)
+        good = sk_batch_arrange(world->rules.batches.data[i], allocator, &world->particles);
+    for (size_t i = 0; i < world->rules.limits.count && good; i++)
+        good = sk_limit_arrange(world->rules.limits.data[i], allocator, &world->particles);
+    if (!good) return sk_fail_memory(error, "the order of sweeps");
     for (size_t t = 0; t < world->triangles.count; t++)
         for (int k = 0; k < 3; k++)
-            world->slots_of_triangles.corner[t][k] = slot_of[world->triangles.corner[t][k]];
+            world->slots_of_triangles.corner[t][k] = world->particles.slot_of[world->triangles.corner[t][k]];
+    world->slots_stale = false;
+    world->plan_stale = true;
+    return SKEIN_OK;
 }
 
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error) {
     if (!(dt > 0) || !(dt <= 1e6)) return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0", dt);
+    skein_status status = sk_world_arrange(world, error);
+    if (status) return status;
     if (!world->plan_stale && world->plan_dt == dt) return SKEIN_OK;
     const sk_method_type *method = world->method;
     if (method->check) {
-        skein_status status = method->check(world->method_params, &world->rules, error);
+        status = method->check(world->method_params, &world->rules, error);
         if (status) return status;
     }
-    refresh(world);
+    for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);
     world->plan.count = 0;
     sk_writer writer = {
         .plan = &world->plan,
         .allocator = &world->allocator,
         .rules = &world->rules,
+        .isa = world->isa,
         .slot_count = world->particles.slot_count,
+        .strip_slots = world->particles.strip_slots,
         .particle_count = world->particles.count,
         .triangle_count = world->triangles.count,
         .h = dt,
     };
     sk_write_sum(&writer, SK_PREVIOUS, 1, SK_X, 0, SK_NONE);
+    sk_write_pack(&writer);
     method->write(&writer, world->method_params, dt);
+    sk_write_unpack(&writer);
     if (writer.no_memory) return sk_fail_memory(error, "the plan");
     world->plan_dt = dt;
     world->plan_stale = false;
@@ -60,7 +73,7 @@ skein_status skein_world_step(skein_world *world, double dt) {
     skein_status status = sk_world_compile(world, dt, error);
     if (status) return status;
     sk_run run = sk_world_run_context(world);
-    sk_run_plan(&run, world->tasks, &world->plan);
+    sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
     if (run.no_memory) return sk_fail_memory(error, "the neighbour grid; the step was not finished");
     world->time += dt;
     world->steps++;

@@ -29,7 +29,8 @@ skein_world *skein_world_create(const skein_world_desc *desc, skein_error *error
     world->allocator = allocator;
     world->error = &world->words;
     world->desc = taken;
-    world->plan_stale = true;
+    world->plan_stale = world->slots_stale = true;
+    world->isa = sk_isa_choose();
     world->tasks = sk_tasks_create(&world->allocator, &world->desc);
     if (!world->tasks || sk_world_set_method(world, &sk_xpbd, NULL)) {
         sk_fail(error, SKEIN_ERROR_MEMORY, "", "no memory or no threads for a world of %d threads", taken.thread_count);
@@ -126,7 +127,7 @@ skein_status sk_world_add_particles(skein_world *world, size_t count, const doub
     }
     if (!sk_particles_add(&world->particles, &world->allocator, count, positions, velocities, masses))
         return sk_fail_memory(error, "particles");
-    world->plan_stale = true;
+    world->plan_stale = world->slots_stale = true;
     return SKEIN_OK;
 }
 
@@ -151,15 +152,7 @@ skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk
     body->batch[body->batch_count] = batch;
     body->material[body->batch_count++] = own;
     world->rules.batches.data[world->rules.batches.count++] = batch;
-    world->plan_stale = true;
-    return SKEIN_OK;
-}
-
-/* The list has room. */
-static skein_status add_limit(skein_world *world, sk_body *body, sk_limit *limit) {
-    limit->enabled = &body->enabled;
-    world->rules.limits.data[world->rules.limits.count++] = limit;
-    world->plan_stale = true;
+    world->plan_stale = world->slots_stale = true;
     return SKEIN_OK;
 }
 
@@ -171,18 +164,20 @@ skein_status sk_world_add_tethers(skein_world *world, sk_body *body, size_t coun
     if (!limit) return sk_fail_memory(error, "tethers");
     limit->label = "tethers";
     limit->bound = &body->tether_bound;
-    return add_limit(world, body, limit);
+    limit->enabled = &body->enabled;
+    world->rules.limits.data[world->rules.limits.count++] = limit;
+    world->plan_stale = world->slots_stale = true;
+    return SKEIN_OK;
 }
 
-skein_status sk_world_add_strain_limit(skein_world *world, sk_body *body, skein_error *error) {
-    const sk_batch *edges = body->batch[body->batch_count - 1];
-    if (!SK_RESERVE(&world->allocator, &world->rules.limits, world->rules.limits.count + 1))
-        return sk_fail_memory(error, "strain limit");
-    sk_limit *limit = sk_strain_limit_create(&world->allocator, edges->count, (sk_limited_edges){edges->slot, edges->rest});
-    if (!limit) return sk_fail_memory(error, "strain limit");
-    limit->label = "strain";
-    limit->bound = &body->strain_bound;
-    return add_limit(world, body, limit);
+void sk_world_add_strain_limit(sk_body *body) {
+    body->batch[body->batch_count - 1]->bound = &body->strain_bound;
+}
+
+skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32_t rows, uint32_t columns, skein_error *error) {
+    if (!sk_particles_add_strips(&world->particles, &world->allocator, body->first_particle, rows, columns)) return sk_fail_memory(error, "strips");
+    world->plan_stale = world->slots_stale = true;
+    return SKEIN_OK;
 }
 
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error) {
@@ -193,7 +188,7 @@ skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint
         return sk_fail_memory(error, "triangles");
     if (count) memcpy(all->corner + all->count, corners, count * sizeof *corners);
     all->count = slots->count = need;
-    world->plan_stale = true;
+    world->plan_stale = world->slots_stale = true;
     return SKEIN_OK;
 }
 

@@ -84,6 +84,8 @@ struct skein_world {
     sk_plan plan;
     double plan_dt;    /* the step that the plan was written for */
     bool plan_stale;   /* rules, settings or the method have changed */
+    bool slots_stale;  /* particles, batches or limits were added: slots and sweeps are to be found anew */
+    sk_isa isa;
     sk_grid grid;
     double time;
     uint64_t steps, substeps;
@@ -113,8 +115,10 @@ skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk
                                      const uint32_t *particles, const real *rest, const real *scale, skein_error *error);
 skein_status sk_world_add_tethers(skein_world *world, sk_body *body, size_t count, size_t anchors,
                                   const uint32_t *particles, const real *lengths, skein_error *error);
+/* Says that the body's particles are a grid of rows x columns, in row order. */
+skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32_t rows, uint32_t columns, skein_error *error);
 /* Keeps the edges of the body's newest batch under its strain bound. */
-skein_status sk_world_add_strain_limit(skein_world *world, sk_body *body, skein_error *error);
+void sk_world_add_strain_limit(sk_body *body);
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error);
 void sk_world_log(skein_world *world, skein_log_level level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
@@ -129,11 +133,13 @@ void *sk_common_of(sk_object *object);
 skein_status sk_settings_apply(sk_allocator *allocator, const skein_kind *kind, void *params, const skein_field *common,
                                size_t common_count, void *common_params, const skein_setting *settings, skein_error *error);
 const skein_field *sk_kind_field(const skein_kind *kind, const char *name, skein_error *error);
+/* Finds the particles' slots and cuts batches into sweeps, if anything was added. */
+skein_status sk_world_arrange(skein_world *world, skein_error *error);
 /* Brings the plan up to date for a step of dt. */
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error);
 /* The run context of the world's present state. */
 sk_run sk_world_run_context(skein_world *world);
-/* Runs all rows once: a whole step. */
-void sk_run_plan(sk_run *run, sk_tasks *tasks, const sk_plan *plan);
+/* Runs rows in their order; the plan's are a whole step. Repeats do not lie within repeats. */
+void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count);
 
 #endif

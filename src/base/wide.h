@@ -1,0 +1,222 @@
+/* Wide arithmetic, once for each instruction set (no include guard: see for_each_isa.h).
+ *
+ * A *block* is sixteen slots of a state vector, 64 reals. Its layout is one of two:
+ *   quads   x y z w | x y z w | ...        the canonical one: good for reaching single particles
+ *   packed  x16 | y16 | z16 | w16          while a plan runs: good for sixteen at once
+ */
+#define SK_INLINE static inline __attribute__((always_inline, unused))
+
+/* This set's place in tables of versions. */
+enum { SK_ISA(sk_version) = SK_ISA_VERSION };
+
+SK_INLINE sk_wide SK_ISA(sk_splat)(real a) {
+    return (sk_wide){a, a, a, a, a, a, a, a, a, a, a, a, a, a, a, a};
+}
+
+SK_INLINE sk_wide SK_ISA(sk_select)(sk_mask mask, sk_wide yes, sk_wide no) {
+    return (sk_wide)((mask & (sk_mask)yes) | (~mask & (sk_mask)no));
+}
+
+/* yes where the mask is set, else 0. */
+SK_INLINE sk_wide SK_ISA(sk_keep)(sk_mask mask, sk_wide yes) {
+    return (sk_wide)(mask & (sk_mask)yes);
+}
+
+/* What the processor works on at once. Where it is narrower than a wide, compilers turn comparisons and
+ * shuffles of a wide into single lanes, so these are written in parts. */
+#if defined(SK_HAS_AVX512)
+enum { SK_ISA(native_bytes) = 64 };
+#elif defined(SK_HAS_AVX2)
+enum { SK_ISA(native_bytes) = 32 };
+#else
+enum { SK_ISA(native_bytes) = 16 };
+#endif
+typedef real SK_ISA(native) __attribute__((vector_size(SK_ISA(native_bytes))));
+typedef sk_lane_int SK_ISA(native_mask) __attribute__((vector_size(SK_ISA(native_bytes))));
+typedef real SK_ISA(sk_quad) __attribute__((vector_size(4 * sizeof(real))));
+typedef real SK_ISA(sk_eight) __attribute__((vector_size(8 * sizeof(real))));
+enum { SK_ISA(native_parts) = (int)(sizeof(sk_wide) / SK_ISA(native_bytes)) };
+typedef union SK_ISA(parts) {
+    sk_wide wide;
+    sk_mask mask;
+    SK_ISA(native) native[SK_ISA(native_parts)];
+    SK_ISA(native_mask) native_mask[SK_ISA(native_parts)];
+    SK_ISA(sk_quad) quad[4];
+} SK_ISA(parts);
+
+#define SK_COMPARISON(name, operation)                                                                                 \
+    SK_INLINE sk_mask SK_ISA(name)(sk_wide a, sk_wide b) {                                                             \
+        SK_ISA(parts) pa = {.wide = a}, pb = {.wide = b}, out;                                                         \
+        for (int i = 0; i < SK_ISA(native_parts); i++) out.native_mask[i] = pa.native[i] operation pb.native[i];       \
+        return out.mask;                                                                                               \
+    }
+SK_COMPARISON(sk_more, >)
+SK_COMPARISON(sk_at_most, <=)
+SK_COMPARISON(sk_differ, !=)
+#undef SK_COMPARISON
+
+SK_INLINE sk_mask SK_ISA(sk_positive)(sk_wide a) {
+    return SK_ISA(sk_more)(a, (sk_wide){0});
+}
+SK_INLINE sk_mask SK_ISA(sk_negative)(sk_wide a) {
+    return SK_ISA(sk_more)((sk_wide){0}, a);
+}
+
+/* Exact: the nearest real to the root, on every machine. */
+SK_INLINE sk_wide SK_ISA(sk_wide_sqrt)(sk_wide a) {
+    SK_ISA(parts) p = {.wide = a};
+    for (int i = 0; i < SK_ISA(native_parts); i++) {
+#if defined(SK_HAS_AVX512) && defined(SKEIN_DOUBLE)
+        p.native[i] = (SK_ISA(native))_mm512_sqrt_pd((__m512d)p.native[i]);
+#elif defined(SK_HAS_AVX512)
+        p.native[i] = (SK_ISA(native))_mm512_sqrt_ps((__m512)p.native[i]);
+#elif defined(SK_HAS_AVX2) && defined(SKEIN_DOUBLE)
+        p.native[i] = (SK_ISA(native))_mm256_sqrt_pd((__m256d)p.native[i]);
+#elif defined(SK_HAS_AVX2)
+        p.native[i] = (SK_ISA(native))_mm256_sqrt_ps((__m256)p.native[i]);
+#elif defined(__x86_64__) && defined(SKEIN_DOUBLE)
+        p.native[i] = (SK_ISA(native))_mm_sqrt_pd((__m128d)p.native[i]);
+#elif defined(__x86_64__)
+        p.native[i] = (SK_ISA(native))_mm_sqrt_ps((__m128)p.native[i]);
+#else
+        for (size_t l = 0; l < sizeof(SK_ISA(native)) / sizeof(real); l++) p.native[i][l] = sk_sqrt(p.native[i][l]);
+#endif
+    }
+    return p.wide;
+}
+
+SK_INLINE sk_wide SK_ISA(sk_wide_abs)(sk_wide a) {
+    return SK_ISA(sk_select)(SK_ISA(sk_negative)(a), -a, a);
+}
+
+SK_INLINE bool SK_ISA(sk_any)(sk_mask mask) {
+    SK_ISA(parts) p = {.mask = mask};
+    SK_ISA(native_mask) all = p.native_mask[0];
+    for (int i = 1; i < SK_ISA(native_parts); i++) all |= p.native_mask[i];
+    uint64_t words[SK_ISA(native_bytes) / 8], any = 0;
+    memcpy(words, &all, sizeof words);
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) any |= words[i];
+    return any != 0;
+}
+
+SK_INLINE sk_wide SK_ISA(sk_dot_wide)(sk_wide3 a, sk_wide3 b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/* Lane l takes lane l + 1 (the last takes the first), and the other way. */
+SK_INLINE sk_wide SK_ISA(sk_rotate_up)(sk_wide a) {
+#ifdef SK_HAS_AVX512
+    return __builtin_shufflevector(a, a, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 0);
+#else
+    real lanes[SK_LANES + 1];
+    memcpy(lanes, &a, sizeof a);
+    lanes[SK_LANES] = lanes[0];
+    memcpy(&a, lanes + 1, sizeof a);
+    return a;
+#endif
+}
+SK_INLINE sk_wide SK_ISA(sk_rotate_down)(sk_wide a) {
+#ifdef SK_HAS_AVX512
+    return __builtin_shufflevector(a, a, 15, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14);
+#else
+    real lanes[SK_LANES + 1];
+    memcpy(lanes + 1, &a, sizeof a);
+    lanes[0] = lanes[SK_LANES];
+    memcpy(&a, lanes, sizeof a);
+    return a;
+#endif
+}
+
+/* ---- quads and packed ---- */
+
+/* In each group of four lanes, rows become columns: q[k] holds the quads of particles k, 4 + k, 8 + k, 12 + k. */
+SK_INLINE sk_wide4 SK_ISA(sk_transpose)(sk_wide q0, sk_wide q1, sk_wide q2, sk_wide q3) {
+    sk_wide4 out;
+#ifdef SK_HAS_AVX512
+    sk_wide xy01 = __builtin_shufflevector(q0, q1, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
+    sk_wide zw01 = __builtin_shufflevector(q0, q1, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31);
+    sk_wide xy23 = __builtin_shufflevector(q2, q3, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
+    sk_wide zw23 = __builtin_shufflevector(q2, q3, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31);
+    out.x = __builtin_shufflevector(xy01, xy23, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
+    out.y = __builtin_shufflevector(xy01, xy23, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+    out.z = __builtin_shufflevector(zw01, zw23, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
+    out.w = __builtin_shufflevector(zw01, zw23, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+#else
+    SK_ISA(parts) p0 = {.wide = q0}, p1 = {.wide = q1}, p2 = {.wide = q2}, p3 = {.wide = q3}, x, y, z, w;
+    for (int g = 0; g < 4; g++) {
+        SK_ISA(sk_quad) xy01 = __builtin_shufflevector(p0.quad[g], p1.quad[g], 0, 4, 1, 5), zw01 = __builtin_shufflevector(p0.quad[g], p1.quad[g], 2, 6, 3, 7);
+        SK_ISA(sk_quad) xy23 = __builtin_shufflevector(p2.quad[g], p3.quad[g], 0, 4, 1, 5), zw23 = __builtin_shufflevector(p2.quad[g], p3.quad[g], 2, 6, 3, 7);
+        x.quad[g] = __builtin_shufflevector(xy01, xy23, 0, 1, 4, 5);
+        y.quad[g] = __builtin_shufflevector(xy01, xy23, 2, 3, 6, 7);
+        z.quad[g] = __builtin_shufflevector(zw01, zw23, 0, 1, 4, 5);
+        w.quad[g] = __builtin_shufflevector(zw01, zw23, 2, 3, 6, 7);
+    }
+    out = (sk_wide4){x.wide, y.wide, z.wide, w.wide};
+#endif
+    return out;
+}
+
+SK_INLINE sk_wide SK_ISA(sk_join)(const sk_vec4 *a, const sk_vec4 *b, const sk_vec4 *c, const sk_vec4 *d) {
+    typedef SK_ISA(sk_quad) quad;
+#ifdef SK_HAS_AVX512
+    SK_ISA(sk_eight) low = __builtin_shufflevector(*(const quad *)(const void *)a, *(const quad *)(const void *)b, 0, 1, 2, 3, 4, 5, 6, 7);
+    SK_ISA(sk_eight) high = __builtin_shufflevector(*(const quad *)(const void *)c, *(const quad *)(const void *)d, 0, 1, 2, 3, 4, 5, 6, 7);
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#else
+    SK_ISA(parts) p;
+    p.quad[0] = *(const quad *)(const void *)a, p.quad[1] = *(const quad *)(const void *)b;
+    p.quad[2] = *(const quad *)(const void *)c, p.quad[3] = *(const quad *)(const void *)d;
+    return p.wide;
+#endif
+}
+
+SK_INLINE void SK_ISA(sk_part)(sk_wide q, sk_vec4 *a, sk_vec4 *b, sk_vec4 *c, sk_vec4 *d) {
+    typedef SK_ISA(sk_quad) quad;
+#ifdef SK_HAS_AVX512
+    *(quad *)(void *)a = __builtin_shufflevector(q, q, 0, 1, 2, 3);
+    *(quad *)(void *)b = __builtin_shufflevector(q, q, 4, 5, 6, 7);
+    *(quad *)(void *)c = __builtin_shufflevector(q, q, 8, 9, 10, 11);
+    *(quad *)(void *)d = __builtin_shufflevector(q, q, 12, 13, 14, 15);
+#else
+    SK_ISA(parts) p = {.wide = q};
+    *(quad *)(void *)a = p.quad[0], *(quad *)(void *)b = p.quad[1], *(quad *)(void *)c = p.quad[2], *(quad *)(void *)d = p.quad[3];
+#endif
+}
+
+/* Sixteen particles anywhere in a vector of quads, and back. */
+SK_INLINE sk_wide4 SK_ISA(sk_gather)(const sk_vec4 *vector, const uint32_t *slot) {
+    sk_wide q[4];
+    for (int k = 0; k < 4; k++)
+        q[k] = SK_ISA(sk_join)(vector + slot[k], vector + slot[4 + k], vector + slot[8 + k], vector + slot[12 + k]);
+    return SK_ISA(sk_transpose)(q[0], q[1], q[2], q[3]);
+}
+
+SK_INLINE void SK_ISA(sk_scatter)(sk_vec4 *vector, const uint32_t *slot, sk_wide4 a) {
+    // transposing is its own inverse
+    sk_wide4 q = SK_ISA(sk_transpose)(a.x, a.y, a.z, a.w);
+    SK_ISA(sk_part)(q.x, vector + slot[0], vector + slot[4], vector + slot[8], vector + slot[12]);
+    SK_ISA(sk_part)(q.y, vector + slot[1], vector + slot[5], vector + slot[9], vector + slot[13]);
+    SK_ISA(sk_part)(q.z, vector + slot[2], vector + slot[6], vector + slot[10], vector + slot[14]);
+    SK_ISA(sk_part)(q.w, vector + slot[3], vector + slot[7], vector + slot[11], vector + slot[15]);
+}
+
+/* The block that begins at `slot`, whatever its layout. */
+SK_INLINE sk_wide4 SK_ISA(sk_load_block)(const sk_vec4 *vector, size_t slot, bool packed) {
+    const sk_wide *w = (const sk_wide *)(const void *)(vector + slot);
+    if (packed) return (sk_wide4){w[0], w[1], w[2], w[3]};
+    static const uint32_t in_order[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    return SK_ISA(sk_gather)(vector + slot, in_order);
+}
+
+SK_INLINE void SK_ISA(sk_store_block)(sk_vec4 *vector, size_t slot, bool packed, sk_wide4 a) {
+    sk_wide *w = (sk_wide *)(void *)(vector + slot);
+    if (packed) {
+        w[0] = a.x, w[1] = a.y, w[2] = a.z, w[3] = a.w;
+        return;
+    }
+    static const uint32_t in_order[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    SK_ISA(sk_scatter)(vector + slot, in_order, a);
+}
+
+#undef SK_INLINE
+#define SK_INLINE static inline __attribute__((always_inline, unused))

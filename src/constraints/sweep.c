@@ -1,0 +1,270 @@
+/* Cutting a batch into sweeps. */
+#include "constraints/sweep.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    GROUP_DISTANCE = 4,  /* dependent groups stand so far apart where they can, to hide each other's latency */
+    MOST_DIRECTIONS = 64,
+    LEAST_SHARE = 5      /* a direction becomes a strip sweep if a fifth of its places have an element */
+};
+
+/* Where an element lies: in which strips and direction, and at which place of the first particle. */
+typedef struct element_place {
+    const sk_strips *strips; /* NULL: in none */
+    int32_t row_step, column_step;
+    uint32_t row, column;
+} element_place;
+
+typedef struct direction {
+    const sk_strips *strips;
+    int32_t row_step, column_step;
+    size_t count;
+    size_t sweep; /* its place among the batch's sweeps, SIZE_MAX: goes in groups */
+} direction;
+
+typedef struct cutter {
+    sk_batch *batch;
+    sk_allocator *allocator;
+    const sk_particles *particles;
+    direction directions[MOST_DIRECTIONS];
+    size_t direction_count;
+} cutter;
+
+static const sk_strips *strips_of(const sk_particles *particles, uint32_t particle) {
+    for (size_t i = 0; i < particles->strips.count; i++) {
+        const sk_strips *strips = &particles->strips.data[i];
+        if (particle >= strips->first_particle && particle - strips->first_particle < strips->rows * strips->columns) return strips;
+    }
+    return NULL;
+}
+
+/* Elements are told apart by the step from the lower to the higher particle. */
+static element_place place_of(const sk_particles *particles, uint32_t p, uint32_t q) {
+    element_place none = {NULL, 0, 0, 0, 0};
+    const sk_strips *strips = strips_of(particles, p < q ? p : q);
+    if (!strips || strips != strips_of(particles, p < q ? q : p) || p == q) return none;
+    uint32_t a = (p < q ? p : q) - strips->first_particle, b = (p < q ? q : p) - strips->first_particle;
+    element_place place = {strips, (int32_t)(b / strips->columns) - (int32_t)(a / strips->columns),
+                           (int32_t)(b % strips->columns) - (int32_t)(a % strips->columns), a / strips->columns, a % strips->columns};
+    // a longer step would meet itself, or skip a strip
+    return abs(place.column_step) < (int32_t)strips->width ? place : none;
+}
+
+static direction *find_direction(cutter *c, element_place place) {
+    if (!place.strips) return NULL;
+    for (size_t d = 0; d < c->direction_count; d++) {
+        direction *known = &c->directions[d];
+        if (known->strips == place.strips && known->row_step == place.row_step && known->column_step == place.column_step) return known;
+    }
+    if (c->direction_count == MOST_DIRECTIONS) return NULL;
+    c->directions[c->direction_count] = (direction){place.strips, place.row_step, place.column_step, 0, SIZE_MAX};
+    return &c->directions[c->direction_count++];
+}
+
+static element_place place_of_element(const cutter *c, size_t e) {
+    return place_of(c->particles, c->batch->particle[2 * e], c->batch->particle[2 * e + 1]);
+}
+
+static int compare_directions(const void *p, const void *q) {
+    const direction *a = p, *b = q;
+    if (a->strips != b->strips) return a->strips < b->strips ? -1 : 1;
+    if (a->row_step != b->row_step) return a->row_step < b->row_step ? -1 : 1;
+    return (a->column_step > b->column_step) - (a->column_step < b->column_step);
+}
+
+/* Counts the directions, and makes a strip sweep of each that fills enough of its places. */
+static bool add_strip_sweeps(cutter *c) {
+    sk_batch *batch = c->batch;
+    for (size_t e = 0; e < batch->count; e++) {
+        direction *d = find_direction(c, place_of_element(c, e));
+        if (d) d->count++;
+    }
+    qsort(c->directions, c->direction_count, sizeof *c->directions, compare_directions);
+    for (size_t i = 0; i < c->direction_count; i++) {
+        direction *d = &c->directions[i];
+        size_t places = (size_t)d->strips->rows * d->strips->columns;
+        if (d->count * LEAST_SHARE < places) continue;
+        if (!sk_reserve(c->allocator, (void **)&batch->sweeps, &batch->sweep_capacity, batch->sweep_count + 1, sizeof(sk_sweep))) return false;
+        d->sweep = batch->sweep_count;
+        sk_sweep *sweep = &batch->sweeps[batch->sweep_count++];
+        *sweep = (sk_sweep){.batch = batch, .strips = true, .element_count = d->count, .first_lane = batch->lane_count,
+                            .row_step = d->row_step, .column_step = d->column_step,
+                            .walk = {d->strips->first_slot, d->strips->rows, d->strips->width, (size_t)d->row_step}};
+        snprintf(sweep->label, sizeof sweep->label, "%.30s %+d %+d", batch->label, d->row_step, d->column_step);
+        batch->lane_count += (size_t)d->strips->rows * d->strips->width * SK_LANES;
+    }
+    return true;
+}
+
+/* The lane of an element in a strip sweep; SIZE_MAX if it is in none or the lane is taken. */
+static size_t strip_lane(cutter *c, size_t e, const bool *taken) {
+    element_place place = place_of_element(c, e);
+    direction *d = find_direction(c, place);
+    if (!d || d->sweep == SIZE_MAX) return SIZE_MAX;
+    size_t width = place.strips->width;
+    size_t lane = c->batch->sweeps[d->sweep].first_lane + (place.row * width + place.column % width) * SK_LANES + place.column / width;
+    return taken[lane] ? SIZE_MAX : lane;
+}
+
+/* ---- groups ---- */
+
+/* The first group from `group` on that has room; paths are shortened as they are walked. */
+static uint32_t first_open(uint32_t *next, uint32_t group) {
+    uint32_t open = group;
+    while (next[open] != open) open = next[open];
+    while (next[group] != open) {
+        uint32_t step = next[group];
+        next[group] = open;
+        group = step;
+    }
+    return open;
+}
+
+typedef struct grouping {
+    uint32_t *last;   /* a slot's newest group, counted from 1; 0: none */
+    uint32_t *next;   /* the group itself while it has room, else a later one */
+    uint8_t *filled;  /* elements of a group */
+    uint32_t *group;  /* of each element */
+    size_t group_count;
+} grouping;
+
+/* Deals the elements that are left into groups, in their order. */
+static void deal(cutter *c, grouping *g, const size_t *lane_of) {
+    for (size_t e = 0; e < c->batch->count; e++) {
+        if (lane_of[e] != SIZE_MAX) continue;
+        uint32_t a = c->batch->slot[2 * e], b = c->batch->slot[2 * e + 1];
+        uint32_t after = g->last[a] > g->last[b] ? g->last[a] : g->last[b];
+        uint32_t group = first_open(g->next, after ? after - 1 + GROUP_DISTANCE : 0);
+        g->group[e] = group;
+        g->last[a] = g->last[b] = group + 1;
+        if (++g->filled[group] == SK_LANES) g->next[group] = group + 1;
+        if (group + 1 > g->group_count) g->group_count = group + 1;
+    }
+}
+
+/* Gives the dealt elements their lanes, in their order within a group, and the groups their slots. Free
+ * lanes point at the empty slot, which weighs nothing. */
+static bool fill_groups(cutter *c, const grouping *g, size_t *lane_of, size_t left) {
+    sk_batch *batch = c->batch;
+    batch->group_slots = sk_allocate(c->allocator, g->group_count * 2 * SK_LANES * sizeof *batch->group_slots);
+    if (!batch->group_slots || !sk_reserve(c->allocator, (void **)&batch->sweeps, &batch->sweep_capacity, batch->sweep_count + 1, sizeof(sk_sweep)))
+        return false;
+    sk_sweep *sweep = &batch->sweeps[batch->sweep_count++];
+    *sweep = (sk_sweep){.batch = batch, .element_count = left, .first_lane = batch->lane_count, .slots = batch->group_slots, .group_count = g->group_count};
+    snprintf(sweep->label, sizeof sweep->label, "%.40s groups", batch->label);
+    for (size_t i = 0; i < g->group_count * 2 * SK_LANES; i++) batch->group_slots[i] = (uint32_t)c->particles->empty_slot;
+    memset(g->filled, 0, g->group_count);
+    for (size_t e = 0; e < batch->count; e++) {
+        if (lane_of[e] != SIZE_MAX) continue;
+        size_t group = g->group[e], lane = g->filled[group]++;
+        batch->group_slots[group * 2 * SK_LANES + lane] = batch->slot[2 * e];
+        batch->group_slots[group * 2 * SK_LANES + SK_LANES + lane] = batch->slot[2 * e + 1];
+        lane_of[e] = batch->lane_count + group * SK_LANES + lane;
+    }
+    batch->lane_count += g->group_count * SK_LANES;
+    return true;
+}
+
+static bool add_group_sweep(cutter *c, size_t *lane_of) {
+    size_t left = 0;
+    for (size_t e = 0; e < c->batch->count; e++) left += lane_of[e] == SIZE_MAX;
+    if (!left) return true;
+    // in the worst case all elements share a particle: each has a group of its own, GROUP_DISTANCE apart
+    size_t most = left * GROUP_DISTANCE + GROUP_DISTANCE + 1;
+    grouping g = {0};
+    g.last = sk_allocate(c->allocator, (c->particles->slot_count + SK_LANES) * sizeof *g.last);
+    g.next = sk_allocate(c->allocator, most * sizeof *g.next);
+    g.filled = sk_allocate(c->allocator, most);
+    g.group = sk_allocate(c->allocator, c->batch->count * sizeof *g.group);
+    bool good = g.last && g.next && g.filled && g.group;
+    for (size_t i = 0; i < most && good; i++) g.next[i] = (uint32_t)i;
+    if (good) deal(c, &g, lane_of);
+    if (good) good = fill_groups(c, &g, lane_of, left);
+    sk_release(c->allocator, g.last);
+    sk_release(c->allocator, g.next);
+    sk_release(c->allocator, g.filled);
+    sk_release(c->allocator, g.group);
+    return good;
+}
+
+/* ---- the whole cut ---- */
+
+static void forget_sweeps(sk_batch *batch, sk_allocator *allocator) {
+    void **arrays[] = {(void **)&batch->lane, (void **)&batch->lane_rest, (void **)&batch->lane_stiffness, (void **)&batch->lane_compliance,
+                       (void **)&batch->lane_multiplier, (void **)&batch->special, (void **)&batch->group_slots};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        sk_release(allocator, *arrays[i]);
+        *arrays[i] = NULL;
+    }
+    batch->sweep_count = batch->lane_count = 0;
+}
+
+static bool allocate_lanes(sk_batch *batch, sk_allocator *allocator) {
+    size_t size = batch->lane_count * sizeof(real);
+    batch->lane = sk_allocate(allocator, batch->count * sizeof *batch->lane);
+    batch->lane_rest = sk_allocate(allocator, size);
+    batch->lane_stiffness = sk_allocate(allocator, size);
+    batch->lane_compliance = sk_allocate(allocator, size);
+    batch->lane_multiplier = sk_allocate(allocator, size);
+    batch->special = sk_allocate(allocator, batch->lane_count / SK_LANES);
+    return batch->lane && batch->lane_rest && batch->lane_stiffness && batch->lane_compliance && batch->lane_multiplier && batch->special;
+}
+
+bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles) {
+    cutter *c = sk_allocate(allocator, sizeof *c);
+    size_t *lane_of = sk_allocate(allocator, batch->count * sizeof *lane_of);
+    bool *taken = NULL, good = c && lane_of;
+    forget_sweeps(batch, allocator);
+    for (size_t i = 0; i < 2 * batch->count; i++) batch->slot[i] = particles->slot_of[batch->particle[i]];
+    if (good) {
+        *c = (cutter){.batch = batch, .allocator = allocator, .particles = particles};
+        good = add_strip_sweeps(c);
+    }
+    if (good) good = (taken = sk_allocate(allocator, batch->lane_count)) != NULL;
+    for (size_t e = 0; e < batch->count && good; e++) {
+        lane_of[e] = strip_lane(c, e, taken);
+        if (lane_of[e] != SIZE_MAX) taken[lane_of[e]] = true;
+    }
+    good = good && add_group_sweep(c, lane_of) && allocate_lanes(batch, allocator);
+    for (size_t e = 0; e < batch->count && good; e++) batch->lane[e] = (uint32_t)lane_of[e];
+    sk_release(allocator, taken);
+    sk_release(allocator, lane_of);
+    sk_release(allocator, c);
+    return good;
+}
+
+/* The values of a strip sweep's middle element stand for all; blocks that differ are marked. */
+static void mark_special(sk_batch *batch, sk_sweep *sweep) {
+    size_t blocks = sweep->walk.rows * sweep->walk.width;
+    size_t middle = sweep->first_lane + (blocks / 2) * SK_LANES + SK_LANES / 2;
+    sweep->rest = batch->lane_rest[middle];
+    sweep->stiffness = batch->lane_stiffness[middle];
+    sweep->compliance = batch->lane_compliance[middle];
+    for (size_t b = 0; b < blocks; b++) {
+        size_t lane = sweep->first_lane + b * SK_LANES;
+        bool special = false;
+        for (size_t l = lane; l < lane + SK_LANES; l++)
+            special |= batch->lane_rest[l] != sweep->rest || batch->lane_stiffness[l] != sweep->stiffness || batch->lane_compliance[l] != sweep->compliance;
+        batch->special[lane / SK_LANES] = special;
+    }
+}
+
+void sk_batch_refresh(sk_batch *batch) {
+    const sk_material *material = batch->params;
+    for (size_t l = 0; l < batch->lane_count; l++) {
+        batch->lane_rest[l] = batch->lane_stiffness[l] = 0;
+        batch->lane_compliance[l] = (real)SK_UNBOUNDED;
+    }
+    for (size_t e = 0; e < batch->count; e++) {
+        double k = material->stiffness * (batch->scale ? (double)batch->scale[e] : 1.0);
+        size_t lane = batch->lane[e];
+        batch->lane_rest[lane] = batch->rest[e];
+        batch->lane_stiffness[lane] = (real)k;
+        batch->lane_compliance[lane] = (real)(k > 0 ? 1 / k : SK_UNBOUNDED);
+    }
+    for (size_t s = 0; s < batch->sweep_count; s++)
+        if (batch->sweeps[s].strips) mark_special(batch, &batch->sweeps[s]);
+}

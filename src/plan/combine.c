@@ -1,0 +1,91 @@
+/* The arithmetic of whole vectors, and turning their blocks from quads to packed and back. */
+#ifdef SK_ISA
+
+/* Runs VALUE, an expression of the wides at place `at` of the vectors, over the blocks of [begin, end). In
+ * packed blocks x, y and z are wides of their own; in quads every fourth lane is a w, which stays. */
+#define FOR_PARTS(VALUE)                                                                                               \
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {                                                          \
+        size_t at = slot / 4;                                                                                          \
+        if (slot < row->packed) {                                                                                      \
+            for (int part = 0; part < 3; part++, at++) dst[at] = (VALUE);                                              \
+        } else {                                                                                                       \
+            const sk_mask xyz = {-1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0};                          \
+            for (int part = 0; part < 4; part++, at++) dst[at] = SK_ISA(sk_select)(xyz, (VALUE), dst[at]);             \
+        }                                                                                                              \
+    }
+
+static void SK_ISA(sum)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    sk_wide *dst = (sk_wide *)(void *)run->vector[row->dst];
+    const sk_wide *p = (const sk_wide *)(const void *)run->vector[row->source[0]];
+    const sk_wide *q = (const sk_wide *)(const void *)run->vector[row->source[1]];
+    const sk_wide *r = (const sk_wide *)(const void *)run->vector[row->source[2]];
+    sk_wide a = SK_ISA(sk_splat)((real)row->coefficient[0]), b = SK_ISA(sk_splat)((real)row->coefficient[1]);
+    sk_wide c = SK_ISA(sk_splat)((real)row->coefficient[2]);
+    if (row->source[0] == SK_NONE) FOR_PARTS((sk_wide){0})
+    else if (row->source[1] == SK_NONE) FOR_PARTS(a * p[at])
+    else if (row->source[2] == SK_NONE) FOR_PARTS(a * p[at] + b * q[at])
+    else FOR_PARTS(a * p[at] + b * q[at] + c * r[at])
+}
+
+static void SK_ISA(correction)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    sk_wide *dst = (sk_wide *)(void *)run->vector[row->dst];
+    const sk_wide *p = (const sk_wide *)(const void *)run->vector[row->source[0]];
+    const sk_wide *q = (const sk_wide *)(const void *)run->vector[row->source[1]];
+    real a = (real)row->coefficient[0], b = (real)row->coefficient[1];
+    // the same operations as predicted p, so that an untouched p corrects nothing
+    FOR_PARTS(dst[at] + a * (p[at] - (q[at] + b * dst[at])))
+}
+
+static void SK_ISA(kick)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    real a = (real)row->coefficient[0];
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        bool packed = slot < row->packed;
+        sk_wide4 p = SK_ISA(sk_load_block)(run->vector[row->source[0]], slot, packed), q = SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, packed);
+        sk_wide k = a * SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed).w;
+        p.x += k * q.x, p.y += k * q.y, p.z += k * q.z;
+        SK_ISA(sk_store_block)(run->vector[row->dst], slot, packed, p);
+    }
+}
+
+/* The start of a position method's substep in one go: V += h w F, V0 = V, X0 = X, X += h V. */
+static void SK_ISA(predict)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    real h = (real)row->dt;
+    bool keep_velocity = row->source[2] == SK_V0;
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        bool packed = slot < row->packed;
+        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed), v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed);
+        sk_wide4 f = SK_ISA(sk_load_block)(run->vector[SK_F], slot, packed);
+        sk_wide k = h * x.w;
+        v.x += k * f.x, v.y += k * f.y, v.z += k * f.z;
+        SK_ISA(sk_store_block)(run->vector[SK_V], slot, packed, v);
+        if (keep_velocity) SK_ISA(sk_store_block)(run->vector[SK_V0], slot, packed, v);
+        SK_ISA(sk_store_block)(run->vector[SK_X0], slot, packed, x);
+        x.x += h * v.x, x.y += h * v.y, x.z += h * v.z;
+        SK_ISA(sk_store_block)(run->vector[SK_X], slot, packed, x);
+    }
+}
+#undef FOR_PARTS
+
+static void SK_ISA(pack)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    for (size_t slot = begin; slot < end; slot += SK_LANES)
+        SK_ISA(sk_store_block)(run->vector[row->dst], slot, true, SK_ISA(sk_load_block)(run->vector[row->dst], slot, false));
+}
+
+static void SK_ISA(unpack)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    for (size_t slot = begin; slot < end; slot += SK_LANES)
+        SK_ISA(sk_store_block)(run->vector[row->dst], slot, false, SK_ISA(sk_load_block)(run->vector[row->dst], slot, true));
+}
+
+#else
+#include "plan/row.h"
+
+#define SK_KERNELS "plan/combine.c"
+#include "base/for_each_isa.h"
+
+const sk_kernels sk_combine_sum = {SK_EACH_ISA(sum)};
+const sk_kernels sk_combine_correction = {SK_EACH_ISA(correction)};
+const sk_kernels sk_combine_kick = {SK_EACH_ISA(kick)};
+const sk_kernels sk_combine_predict = {SK_EACH_ISA(predict)};
+const sk_kernels sk_pack = {SK_EACH_ISA(pack)};
+const sk_kernels sk_unpack = {SK_EACH_ISA(unpack)};
+#endif
