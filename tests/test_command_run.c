@@ -218,7 +218,8 @@ static void bodies_never_share_a_file(void **state) {
     outcome o = SKEIN("run", s, "--out", in_folder("out"));
     assert_status(o, 0);
     assert_int_equal(count_entries(in_folder("out")), 9);
-    assert_int_equal(count_entries(folder), 4); // with the scene and the two captured streams
+    assert_int_equal(count_entries(folder), 4);     // with the scene and the two captured streams
+    assert_true(exists(in_folder("out/body.obj"))); // not a hidden file, and not above
     assert_true(exists(in_folder("out/cloth.obj")) && exists(in_folder("out/a_b.obj")) &&
                 exists(in_folder("out/h\u00fclle.obj")));
     outcome_free(&o);

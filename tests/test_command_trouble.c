@@ -30,6 +30,14 @@ static void a_file_in_the_way_is_told(void **state) {
     json_t *report = read_report(in_folder("out/report.json"));
     assert_int_equal(json_array_size(json_object_get(report, "files")), 3);
     json_decref(report);
+    // nor can the report be written
+    outcome_free(&o);
+    assert_int_equal(rmdir(in_folder("out/sheet.obj")) || unlink(in_folder("out/report.json")), 0);
+    assert_int_equal(mkdir(in_folder("out/report.json"), 0777), 0);
+    o = SKEIN("run", s, "--out", in_folder("out"), "--quiet");
+    assert_status(o, 1);
+    snprintf(words, sizeof words, "skein: %s: cannot write: it is a directory\n", in_folder("out/report.json"));
+    assert_string_equal(o.err, words);
     outcome_free(&o);
     if (geteuid() == 0) return; // the superuser may write everywhere
     assert_int_equal(chmod(folder, 0555), 0);
@@ -144,34 +152,38 @@ static void an_interrupted_run_writes_what_it_has(void **state) {
     }
 }
 
+/* A scene that blows up after some frames, with other folders to write to. */
+#define BLOW_UP(...)                                                                                      \
+    SKEIN("run", s, "--quiet", "--set", "method={\"type\":\"symplectic_euler\",\"substeps\":1}", "--set", \
+          "bodies.0.stretch={\"stiffness\":1e7,\"limit\":\"infinite\",\"tether\":\"infinite\"}", __VA_ARGS__)
+
 static void a_run_that_blows_up_names_the_frame(void **state) {
     (void)state;
     const char *s = tiny_scene();
     char words[600];
     int frame = 0, bad = 0, all = 0;
-    for (int existing = 0; existing < 2; existing++) {
-        if (existing) {
-            assert_int_equal(mkdir(in_folder("out"), 0777), 0);
-            write_text(in_folder("out/sheet.obj"), "old");
-        }
-        outcome o = SKEIN("run", s, "--out", in_folder(existing ? "out" : "out/deeper"), "--quiet", "--frames", "400",
-                          "--set", "method={\"type\":\"symplectic_euler\",\"substeps\":1}", "--set",
-                          "bodies.0.stretch={\"stiffness\":1e7,\"limit\":\"infinite\",\"tether\":\"infinite\"}");
-        assert_status(o, 1);
-        assert_string_equal(o.out, "");
-        snprintf(words, sizeof words, "skein: %s: blew up in frame %%d: %%d of %%d particles are no longer finite", s);
-        assert_int_equal(sscanf(o.err, words, &frame, &bad, &all), 3);
-        assert_true(frame > 1 && frame < 400 && bad > 0 && bad <= all && all == 34);
-        assert_true(strchr(o.err, '\n') == o.err + strlen(o.err) - 1);
-        outcome_free(&o);
-        if (!existing) assert_false(exists(in_folder("out")));
-    }
-    assert_int_equal(count_entries(in_folder("out")), 1);
+    outcome o = BLOW_UP("--frames", "400", "--out", in_folder("out/deeper"));
+    assert_status(o, 1);
+    assert_string_equal(o.out, "");
+    snprintf(words, sizeof words, "skein: %s: blew up in frame %%d: %%d of %%d particles are no longer finite", s);
+    assert_int_equal(sscanf(o.err, words, &frame, &bad, &all), 3);
+    assert_true(frame > 1 && frame < 400 && bad > 0 && bad <= all && all == 34);
+    assert_true(strchr(o.err, '\n') == o.err + strlen(o.err) - 1); // one line
+    outcome_free(&o);
     // a frame earlier all was well
-    char frames[16];
-    snprintf(frames, sizeof frames, "%d", frame - 1);
-    hash_of(SKEIN("run", s, "--frames", frames, "--set", "method={\"type\":\"symplectic_euler\",\"substeps\":1}",
-                  "--set", "bodies.0.stretch={\"stiffness\":1e7,\"limit\":\"infinite\",\"tether\":\"infinite\"}"));
+    snprintf(words, sizeof words, "%d", frame - 1);
+    hash_of(BLOW_UP("--frames", words));
+
+    // no folder was made, one that was there stays, and so do its files
+    assert_false(exists(in_folder("out")));
+    assert_int_equal(mkdir(in_folder("out"), 0777), 0);
+    for (int files = 0; files < 2; files++) {
+        if (files) write_text(in_folder("out/sheet.obj"), "old");
+        o = BLOW_UP("--frames", "400", "--out", in_folder("out"));
+        assert_status(o, 1);
+        outcome_free(&o);
+        assert_int_equal(count_entries(in_folder("out")), files);
+    }
 }
 
 int main(void) {

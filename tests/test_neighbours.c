@@ -86,7 +86,7 @@ static void every_particle_is_in_its_cell(void **state) {
             crowd c = make_crowd(counts[n], &seed);
             for (size_t i = 0; i < c.count; i++)
                 put(&c, i, random_between(&seed, -sizes[s], sizes[s]), random_between(&seed, -1, 0) * sizes[s], random_between(&seed, 5, 5.5) * sizes[s]);
-            assert_true(sk_grid_build(&grid, &allocator, c.at, c.slot_of, c.count, (real)0.1));
+            assert_true(sk_grid_build(&grid, &allocator, c.at, 0, c.slot_of, c.count, (real)0.1));
             assert_grid_is_sound(&grid, &c, 0.1);
             release_crowd(&c);
         }
@@ -102,15 +102,15 @@ static void odd_crowds_are_sorted_too(void **state) {
     crowd c = make_crowd(300, &seed);
     // all in one place
     for (size_t i = 0; i < c.count; i++) put(&c, i, 1, 2, 3);
-    assert_true(sk_grid_build(&grid, &allocator, c.at, c.slot_of, c.count, (real)0.1));
+    assert_true(sk_grid_build(&grid, &allocator, c.at, 0, c.slot_of, c.count, (real)0.1));
     assert_grid_is_sound(&grid, &c, 0.1);
     // on a lattice whose pitch is the cells' own: every particle on a wall
     for (size_t i = 0; i < c.count; i++) put(&c, i, 0.25 * (double)(i % 7), 0.25 * (double)(i / 7 % 7), 0.25 * (double)(i / 49));
-    assert_true(sk_grid_build(&grid, &allocator, c.at, c.slot_of, c.count, (real)0.25));
+    assert_true(sk_grid_build(&grid, &allocator, c.at, 0, c.slot_of, c.count, (real)0.25));
     assert_grid_is_sound(&grid, &c, 0.25);
     // on a long line, on a plane
     for (size_t i = 0; i < c.count; i++) put(&c, i, 0, random_between(&seed, -900, 900), 0);
-    assert_true(sk_grid_build(&grid, &allocator, c.at, c.slot_of, c.count, (real)0.1));
+    assert_true(sk_grid_build(&grid, &allocator, c.at, 0, c.slot_of, c.count, (real)0.1));
     assert_grid_is_sound(&grid, &c, 0.1);
     // far outliers, and particles that are nowhere: those are in no cell
     for (size_t i = 0; i < c.count; i++) put(&c, i, random_between(&seed, -1, 1), random_between(&seed, -1, 1), random_between(&seed, -1, 1));
@@ -120,12 +120,12 @@ static void odd_crowds_are_sorted_too(void **state) {
     put(&c, 10, 0, INFINITY, 0);
     put(&c, 11, 0, 0, -INFINITY);
     put(&c, 12, 0, (double)SK_REAL_MAX, 0);
-    assert_true(sk_grid_build(&grid, &allocator, c.at, c.slot_of, c.count, (real)0.1));
+    assert_true(sk_grid_build(&grid, &allocator, c.at, 0, c.slot_of, c.count, (real)0.1));
     assert_grid_is_sound(&grid, &c, 0.1);
     assert_int_equal(grid.count, 296);
     // nobody is anywhere
     for (size_t i = 0; i < c.count; i++) put(&c, i, NAN, NAN, NAN);
-    assert_true(sk_grid_build(&grid, &allocator, c.at, c.slot_of, c.count, (real)0.1));
+    assert_true(sk_grid_build(&grid, &allocator, c.at, 0, c.slot_of, c.count, (real)0.1));
     assert_grid_is_sound(&grid, &c, 0.1);
     release_crowd(&c);
     sk_grid_release(&grid, &allocator);
