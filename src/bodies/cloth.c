@@ -103,7 +103,8 @@ static skein_status add_particles(tailor *t) {
 /* Puts springs and particles in order: strips for what is numbered as a grid, outward for all else. */
 static skein_status put_in_order(tailor *t) {
     uint32_t rows, columns;
-    if (sk_order_find_grid(&t->sheet, &t->springs, &rows, &columns)) {
+    if (!sk_order_find_grid(&t->sheet, &t->springs, &rows, &columns)) return sk_fail_memory(t->error, "the order of springs");
+    if (rows) {
         if (!sk_order_by_direction(&t->springs)) return sk_fail_memory(t->error, "the order of springs");
         return sk_world_add_strips(t->world, t->body, rows, columns, (uint32_t)t->sheet.particle_count, t->error);
     }

@@ -8,20 +8,24 @@
 
 enum { MOST_STEP = 2 }; /* rows and columns that a grid's spring may lead over */
 
-/* The commonest difference of edges' numbers besides 1: the length of a row. */
-static uint32_t commonest_step(const sk_springs *springs, const sk_sheet *sheet) {
+/* The commonest difference of edges' numbers besides 1: the length of a row. False when there is no memory. */
+static bool find_commonest_step(const sk_springs *springs, const sk_sheet *sheet, uint32_t *step) {
     uint32_t *count = sk_allocate(sheet->allocator, sheet->particle_count * sizeof *count), best = 0;
-    if (!count) return 0; // not a grid, then: slower, and as right
+    if (!count) return false;
     for (size_t e = 0; e < springs->edge_count; e++) count[springs->edges[e].b - springs->edges[e].a]++;
     for (size_t d = 2; d < sheet->particle_count; d++)
         if (count[d] && (!best || count[d] > count[best])) best = (uint32_t)d;
     sk_release(sheet->allocator, count);
-    return best;
+    *step = best;
+    return true;
 }
 
 bool sk_order_find_grid(const sk_sheet *sheet, const sk_springs *springs, uint32_t *rows, uint32_t *columns) {
-    uint32_t step = sheet->grid_columns && sheet->particle_count == sheet->vertex_count ? sheet->grid_columns : commonest_step(springs, sheet);
-    if (step < 3 || sheet->particle_count / step < 3) return false;
+    uint32_t step = sheet->grid_columns;
+    *rows = *columns = 0;
+    bool known = sheet->grid_columns && sheet->particle_count == sheet->vertex_count;
+    if (!known && !find_commonest_step(springs, sheet, &step)) return false;
+    if (step < 3 || sheet->particle_count / step < 3) return true;
     // nearly all springs must lead to a near row and column
     size_t total = 0, fitting = 0;
     for (int sort = 0; sort < SK_SPRING_SORTS; sort++) {
@@ -33,7 +37,7 @@ bool sk_order_find_grid(const sk_sheet *sheet, const sk_springs *springs, uint32
             fitting += down <= MOST_STEP && across <= MOST_STEP;
         }
     }
-    if (fitting < total - total / 10) return false;
+    if (fitting < total - total / 10) return true;
     *columns = step;
     *rows = (uint32_t)((sheet->particle_count + step - 1) / step);
     return true;

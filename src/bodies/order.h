@@ -10,7 +10,8 @@
 #include "bodies/sheet.h"
 #include "bodies/springs.h"
 
-/* Rows and columns of a mesh that is numbered as a grid (a last row may be short); false if it is not. */
+/* Rows and columns of a mesh that is numbered as a grid (a last row may be short); 0 and 0 if it is not. False
+ * when there is no memory. */
 bool sk_order_find_grid(const sk_sheet *sheet, const sk_springs *springs, uint32_t *rows, uint32_t *columns);
 /* Sorts the springs of a grid by direction. False when there is no memory. */
 bool sk_order_by_direction(sk_springs *springs);
