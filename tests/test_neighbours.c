@@ -1,7 +1,7 @@
 /* Who is near whom: the grid puts every particle into its cell, in order, and separation finds the same neighbours
  * as a loop over all pairs does. */
 #include "helpers.h"
-#include "space/grid.h"
+#include "world/world.h"
 
 /* ---- The grid ----------------------------------------------------------------------------------- */
 
@@ -223,6 +223,20 @@ static void a_held_particle_pushes_but_stays(void **state) {
     }
 }
 
+/* A particle that has got lost is counted, and no one's neighbour; the others go on. */
+static void a_particle_that_is_nowhere_harms_no_one(void **state) {
+    (void)state;
+    skein_world *world = new_world("symplectic_euler", 1);
+    add_particle(world, 1, 0, 0, 0), add_particle(world, 1, 0.5, 0, 0), add_particle(world, 1, 0.25, 0, 0);
+    OK(world, skein_force_add(world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 1), SKEIN_REAL("strength", 1)), NULL));
+    world->particles.vector[SK_X][world->particles.slot_of[2]].y = (real)NAN;
+    steps(world, 1, 1.0 / 64);
+    assert_share(velocity_of(world, 0).x, -0.5 / 64, 10 * EPSILON);
+    assert_share(velocity_of(world, 1).x, 0.5 / 64, 10 * EPSILON);
+    assert_int_equal(statistics_of(world).nonfinite, 1);
+    skein_world_destroy(world);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_particle_is_in_its_cell),
@@ -230,6 +244,7 @@ int main(void) {
         cmocka_unit_test(separation_is_that_of_all_pairs),
         cmocka_unit_test(rules_of_different_reach_share_a_grid),
         cmocka_unit_test(a_held_particle_pushes_but_stays),
+        cmocka_unit_test(a_particle_that_is_nowhere_harms_no_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

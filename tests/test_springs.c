@@ -54,7 +54,7 @@ static void an_oscillator_has_its_period_and_decay(void **state) {
                 double decay = dampings[c] / (2 * masses[i]), omega = sqrt(stiffness / masses[i] - decay * decay);
                 // XPBD moves positions by whole roundings of theirs: in float more substeps make that worse
                 bool exact = m == 0 || EPSILON < 1e-10;
-                double rate = EPSILON < 1e-10 ? 18000 : 1800;
+                double rate = EPSILON < 1e-10 ? 9000 : 1800;
                 skein_world *world = oscillator(method_names[m], (int)(rate / 180), 0, masses[i], stiffness, dampings[c], 0.25);
                 swing seen = watch(world, 1.0 / 180, 5);
                 assert_int_equal(seen.turns, 5);
@@ -154,6 +154,30 @@ static void a_rigid_pendulum_keeps_time(void **state) {
     skein_world_destroy(world);
 }
 
+/* Ends in one place have no direction to part in, and a spring without stiffness has nothing to say: neither makes
+ * numbers that are none. */
+static void springs_without_a_direction_or_stiffness_are_harmless(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(method_names); m++)
+        for (int iterations = 1; iterations <= (m ? 3 : 1); iterations++)
+            for (int damped = 0; damped < 2; damped++) {
+                skein_world *world = new_world(method_names[m], 4);
+                if (m) OK(world, skein_set_path(world, "method.iterations", skein_number(iterations)));
+                for (int i = 0; i < 4; i++) add_particle(world, 1, i, 0, 0);
+                add_spring(world, 0, 1, 100, damped ? 0.5 : 0);
+                add_spring(world, 2, 3, 0, damped ? 0.5 : 0);
+                place_particle(world, 1, 0, 0, 0); // onto its other end
+                place_particle(world, 3, 9, 0, 0);
+                throw_particle(world, 3, 1, 2, 3);
+                steps(world, 9, 1.0 / 90);
+                assert_int_equal(statistics_of(world).nonfinite, 0);
+                assert_under(length3(minus(position_of(world, 1), position_of(world, 0))), 0);
+                assert_near(velocity_of(world, 3).x, 1, m ? 1e-3 : 1e-5);
+                assert_under(length3(velocity_of(world, 2)), 1e-6);
+                skein_world_destroy(world);
+            }
+}
+
 /* ---- Stiffness has units ------------------------------------------------------------------------ */
 
 /* Weights on a row of springs: each spring bears the weight below it, so the lowest hangs
@@ -165,16 +189,16 @@ static void hanging_weights_sag_as_much_however_they_are_stepped(void **state) {
         const char *method;
         int substeps, iterations;
     } ways[] = {{"symplectic_euler", 10, 0}, {"symplectic_euler", 35, 0}, {"xpbd", 10, 1}, {"xpbd", 40, 1},
-                {"xpbd", 10, 4},             {"xpbd", 3, 40},             {"xpbd", 1, 100}};
+                {"xpbd", 10, 4},             {"xpbd", 3, 20},             {"xpbd", 1, 60}};
     double mass = 0.1, stiffness = 60, sag = mass * g / stiffness * (WEIGHTS * (WEIGHTS + 1) / 2);
     for (size_t w = 0; w < COUNT(ways); w++) {
         skein_world *world = new_world(ways[w].method, ways[w].substeps);
         if (ways[w].iterations) OK(world, skein_set_path(world, "method.iterations", skein_number(ways[w].iterations)));
         add_gravity(world);
-        OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 2)), NULL));
+        OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 5)), NULL));
         for (int i = 0; i <= WEIGHTS; i++) add_particle(world, i ? mass : 0, 0, -0.2 * i, 0);
         for (uint32_t i = 0; i < WEIGHTS; i++) add_spring(world, i, i + 1, stiffness, 0.5);
-        steps(world, 90 * 12, 1.0 / 90);
+        steps(world, 90 * 5, 1.0 / 90);
         assert_share(-0.2 * WEIGHTS - position_of(world, WEIGHTS).y, sag, 0.02);
         assert_share(-0.2 - position_of(world, 1).y, mass * g / stiffness * WEIGHTS, 0.02);
         skein_world_destroy(world);
@@ -248,6 +272,7 @@ int main(void) {
         cmocka_unit_test(a_symplectic_oscillator_is_its_recurrence),
         cmocka_unit_test(damping_leaves_other_motion_alone),
         cmocka_unit_test(a_rigid_pendulum_keeps_time),
+        cmocka_unit_test(springs_without_a_direction_or_stiffness_are_harmless),
         cmocka_unit_test(hanging_weights_sag_as_much_however_they_are_stepped),
         cmocka_unit_test(cloth_sags_as_much_at_any_resolution),
     };

@@ -1,0 +1,148 @@
+/* Strain limits and tethers, one step at a time: what they move, what they leave alone, what becomes of velocities. */
+#include "helpers.h"
+
+static const double dt = 1.0 / 64;
+
+/* A square sheet of 1 m without any stiffness, so that nothing but its limits acts. */
+static skein_world *limp_sheet(const char *method, int side, const char *pins, double limit, double tether, skein_handle *body) {
+    skein_world *world = new_world(method, 1);
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_TEXT("pins", pins), SKEIN_REAL("stretch.stiffness", 0),
+                                            SKEIN_REAL("shear.stiffness", 0), SKEIN_REAL("bend.stiffness", 0),
+                                            SKEIN_REAL("stretch.limit", limit), SKEIN_REAL("stretch.tether", tether)),
+                             body));
+    return world;
+}
+
+/*   0---1      x from -0.5 to 0.5; 1 and 3 are pulled out, so that the edges 0-1 and 2-3 are too long
+ *   |   |
+ *   2---3  */
+static void a_strain_limit_shortens_edges(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(method_names); m++)
+        for (int way = 0; way < 3; way++) { // at rest, moving in, moving out
+            skein_world *world = limp_sheet(method_names[m], 2, "", 0.1, INFINITY, NULL);
+            double speed = way == 0 ? 0 : way == 1 ? -1 : 2;
+            for (size_t i = 1; i < 4; i += 2) {
+                vec3 p = position_of(world, i);
+                place_particle(world, i, 1.0 - speed * dt, p.y, p.z); // at x = 1 once it has moved
+                throw_particle(world, i, speed, 0, 0.5);
+            }
+            for (size_t i = 0; i < 4; i += 2) throw_particle(world, i, 0, 0, 0.5);
+            steps(world, 1, dt);
+            // from 1.5 m to 1.1 m, both ends alike
+            for (size_t i = 0; i < 4; i += 2) {
+                assert_near(position_of(world, i).x, -0.3, 10 * EPSILON);
+                assert_near(position_of(world, i + 1).x, 0.8, 10 * EPSILON);
+                vec3 v = velocity_of(world, i), u = velocity_of(world, i + 1);
+                assert_near(v.x + u.x, speed, 1e3 * EPSILON); // no momentum is made
+                assert_near(v.z, 0.5, 1e3 * EPSILON);
+                // force methods: ends that part stop parting, ends that meet go on; XPBD: as the positions moved
+                double apart = m ? speed - 0.4 / dt : fmin(speed, 0);
+                assert_near(u.x - v.x, apart, 1e3 * EPSILON);
+            }
+            skein_world_destroy(world);
+        }
+}
+
+/* Within its bound a limit does nothing at all, to the bit. */
+static void limits_leave_alone_what_is_within(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(method_names); m++) {
+        uint64_t hash[2];
+        for (int bounded = 0; bounded < 2; bounded++) {
+            skein_world *world = limp_sheet(method_names[m], 3, "0 2", bounded ? 0.3 : INFINITY, bounded ? 0.3 : INFINITY, NULL);
+            throw_particle(world, 8, 1, 2, 1);
+            throw_particle(world, 4, -1, 2, 0);
+            steps(world, 6, dt);
+            hash[bounded] = skein_world_hash(world);
+            skein_world_destroy(world);
+        }
+        assert_true(hash[0] == hash[1]);
+    }
+}
+
+/* Held by 0, which is 1 m from 2 along the sheet: 2 is at (0.5, 0, -0.5). */
+static void a_tether_pulls_back_to_its_length(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(method_names); m++)
+        for (int way = 0; way < 2; way++) { // still going out; already coming in
+            skein_world *world = limp_sheet(method_names[m], 3, "0", INFINITY, 0.05, NULL);
+            double out = way ? -3 : 2;
+            place_particle(world, 2, 1 - out * dt, 0, -0.5 - 0.25 * dt);
+            throw_particle(world, 2, out, 0, 0.25);
+            steps(world, 1, dt);
+            vec3 p = position_of(world, 2), v = velocity_of(world, 2);
+            assert_under(length3(minus(p, (vec3){0.55, 0, -0.5})), 20 * EPSILON);
+            if (m) assert_near(v.x, out - 0.45 / dt, 1e3 * EPSILON);
+            else assert_near(v.x, way ? -3 : 0, 100 * EPSILON);
+            assert_near(v.z, 0.25, 1e3 * EPSILON);
+            // the pin does not give
+            assert_under(length3(minus(position_of(world, 0), (vec3){-0.5, 0, -0.5})), 0);
+            skein_world_destroy(world);
+        }
+}
+
+/* Between two pins no side wins. */
+static void tethers_to_two_pins_pull_evenly(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(method_names); m++) {
+        skein_world *world = limp_sheet(method_names[m], 3, "top corners", INFINITY, 0, NULL);
+        place_particle(world, 7, 0, -4, -0.5);
+        steps(world, 1, dt);
+        vec3 p = position_of(world, 7);
+        assert_under(p.x, 4 * EPSILON);
+        // about as far as both lengths allow: sqrt(1 + 1/4) from pins half a metre to either side
+        assert_near(p.y, -1, 0.15);
+        skein_world_destroy(world);
+    }
+}
+
+/* Held particles are not pulled, and pins that were let go do not pull. */
+static void tethers_follow_what_is_held(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(method_names); m++) {
+        skein_world *world = limp_sheet(method_names[m], 3, "0", INFINITY, 0, NULL);
+        place_particle(world, 8, 7, 0, 0);
+        OK(world, skein_particle_hold(world, 8, true));
+        steps(world, 1, dt);
+        assert_under(length3(minus(position_of(world, 8), (vec3){7, 0, 0})), 0);
+        OK(world, skein_particle_hold(world, 8, false));
+        OK(world, skein_particle_hold(world, 0, false));
+        steps(world, 1, dt);
+        assert_under(length3(minus(position_of(world, 8), (vec3){7, 0, 0})), 10 * EPSILON);
+        OK(world, skein_particle_hold(world, 0, true));
+        steps(world, 1, dt);
+        assert_near(length3(minus(position_of(world, 8), position_of(world, 0))), sqrt(2), 10 * EPSILON);
+        skein_world_destroy(world);
+    }
+}
+
+/* A bound can be set while the body lives; infinite is none. */
+static void bounds_are_live(void **state) {
+    (void)state;
+    skein_handle body;
+    skein_world *world = limp_sheet("xpbd", 2, "0", INFINITY, INFINITY, &body);
+    place_particle(world, 1, 3, 0, -0.5);
+    steps(world, 1, dt);
+    assert_true(position_of(world, 1).x == 3);
+    OK(world, skein_set(world, body, "stretch.tether", skein_number(1)));
+    steps(world, 1, dt);
+    assert_near(position_of(world, 1).x, 1.5, 10 * EPSILON);
+    OK(world, skein_set(world, body, "stretch.limit", skein_number(0.25)));
+    for (int n = 0; n < 100; n++) steps(world, 1, dt), throw_particle(world, 1, 0, 0, 0);
+    assert_true(position_of(world, 1).x < 0.76);
+    skein_world_destroy(world);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_strain_limit_shortens_edges),
+        cmocka_unit_test(limits_leave_alone_what_is_within),
+        cmocka_unit_test(a_tether_pulls_back_to_its_length),
+        cmocka_unit_test(tethers_to_two_pins_pull_evenly),
+        cmocka_unit_test(tethers_follow_what_is_held),
+        cmocka_unit_test(bounds_are_live),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
