@@ -41,9 +41,9 @@ static uint64_t hash_of_run(const char *method, const char *isa, int threads) {
 
 /* Any compiler and machine must come to these; they change only when the arithmetic or its order does. */
 #ifdef SKEIN_DOUBLE
-static const uint64_t golden[] = {0, 0};
+static const uint64_t golden[] = {0x5f2798cfc873b035, 0x1ce74f269b1f9eeb};
 #else
-static const uint64_t golden[] = {0, 0};
+static const uint64_t golden[] = {0x73c8917842164c7c, 0xbaf261c092f09567};
 #endif
 
 static void every_instruction_set_gives_the_same_bits(void **state) {
@@ -53,7 +53,7 @@ static void every_instruction_set_gives_the_same_bits(void **state) {
         for (size_t i = 0; i < COUNT(isas); i++) {
             uint64_t hash = hash_of_run(method_names[m], isas[i], 1 + (int)i % 3);
             if (hash != golden[m]) print_message("%s, %s: %016llx\n", method_names[m], isas[i], (unsigned long long)hash);
-            //GOLD
+            assert_true(hash == golden[m]);
         }
 }
 
