@@ -172,10 +172,6 @@ static void bench_frames(void) {
         skein_statistics s;
         skein_world_statistics(world, &s);
         bench_result result = {drape ? "W2" : "W1", "128 x 128", total / frames * 1e3, 0, "ms/frame", NULL, s.p99_stretch, -1};
-#ifdef SKEIN_BULLET
-        result.other = "Bullet soft body";
-        result.other_ns = bench_bullet(128, drape, frames, &result.other_stretch);
-#endif
         bench_report(&result);
         skein_world_destroy(world);
     }

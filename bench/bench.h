@@ -30,9 +30,4 @@ size_t plain_cloth_springs(const plain_cloth *cloth);
 void plain_cloth_project(void *cloth); /* one XPBD sweep in type order */
 void plain_cloth_force(void *cloth);   /* damped spring forces, scattered */
 
-#ifdef SKEIN_BULLET
-/* Milliseconds a frame of W1 (n x n) or W2 in Bullet's soft body, and its largest stretch. */
-double bench_bullet(int n, bool drape, int frames, double *stretch);
-#endif
-
 #endif

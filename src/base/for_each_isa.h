@@ -16,7 +16,7 @@
 #define SK_ISA_JOIN(name, set) SK_ISA_JOIN2(name, set)
 #define SK_ISA(name) SK_ISA_JOIN(name, SK_ISA_SET)
 
-#if defined(__x86_64__)
+#ifdef SK_X86_ISAS
 
 #define SK_ISA_SET sse
 #define SK_ISA_VERSION SK_ISA_SSE

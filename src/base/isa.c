@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#if defined(__x86_64__)
+#ifdef SK_X86_ISAS
 static const char *const names[SK_ISA_COUNT] = {"sse", "avx2", "avx512"};
 
 static int processor_has(sk_isa isa) {

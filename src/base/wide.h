@@ -4,7 +4,12 @@
  *   quads   x y z w | x y z w | ...        the canonical one: good for reaching single particles
  *   packed  x16 | y16 | z16 | w16          while a plan runs: good for sixteen at once
  */
+#undef SK_INLINE
+#ifdef SK_ONE_ISA
+#define SK_INLINE static __attribute__((unused)) // for sanitizers, which would check every copy
+#else
 #define SK_INLINE static inline __attribute__((always_inline, unused))
+#endif
 
 /* This set's place in tables of versions. */
 enum { SK_ISA(sk_version) = SK_ISA_VERSION };
@@ -217,6 +222,3 @@ SK_INLINE void SK_ISA(sk_store_block)(sk_vec4 *vector, size_t slot, bool packed,
     static const uint32_t in_order[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     SK_ISA(sk_scatter)(vector + slot, in_order, a);
 }
-
-#undef SK_INLINE
-#define SK_INLINE static inline __attribute__((always_inline, unused))

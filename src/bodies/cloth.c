@@ -10,6 +10,7 @@
 #include "bodies/body.h"
 #include "bodies/faults.h"
 #include "bodies/geodesic.h"
+#include "bodies/order.h"
 #include "bodies/selection.h"
 #include "bodies/sheet.h"
 #include "bodies/springs.h"
@@ -95,10 +96,28 @@ static skein_status add_particles(tailor *t) {
         status = sk_world_add_particles(t->world, count, (const double *)t->sheet.position, (const double *)velocity, t->mass, t->error);
     for (size_t i = 0; i < count && !status; i++)
         if (t->pinned[i]) sk_particle_hold(&t->world->particles, t->body->first_particle + i, true);
-    if (!status && t->sheet.grid_rows && t->sheet.particle_count == t->sheet.vertex_count)
-        status = sk_world_add_strips(t->world, t->body, t->sheet.grid_rows, t->sheet.grid_columns, t->error);
     sk_release(allocator, velocity);
     return status;
+}
+
+/* Puts springs and particles in order: strips for what is numbered as a grid, outward for all else. */
+static skein_status put_in_order(tailor *t) {
+    uint32_t rows, columns;
+    if (!sk_order_find_grid(&t->sheet, &t->springs, &rows, &columns)) return sk_fail_memory(t->error, "the order of springs");
+    if (rows) {
+        if (!sk_order_by_direction(&t->springs)) return sk_fail_memory(t->error, "the order of springs");
+        return sk_world_add_strips(t->world, t->body, rows, columns, (uint32_t)t->sheet.particle_count, t->error);
+    }
+    // without pins there is no outward, and the file's own order leaves more springs independent of each other:
+    // measured on an elephant of 2,775 vertices, sorted along its axis sweeps were 1.7 times slower
+    bool pinned = false;
+    for (size_t i = 0; i < t->sheet.particle_count; i++) pinned |= t->pinned[i];
+    if (!pinned) return SKEIN_OK;
+    uint32_t *rank = sk_allocate(&t->world->allocator, t->sheet.particle_count * sizeof *rank);
+    bool good = rank && sk_order_outward(&t->springs, &t->sheet, t->pinned, rank);
+    if (good) sk_world_rank_particles(t->world, t->body, rank, t->sheet.particle_count);
+    sk_release(&t->world->allocator, rank);
+    return good ? SKEIN_OK : sk_fail_memory(t->error, "the order of springs");
 }
 
 /* Sweeps take batches in the order of their making, and what is swept last is kept best: edges. Measured on
@@ -222,6 +241,7 @@ static skein_status build(skein_world *world, sk_body *body, const void *params,
     skein_status status = make_sheet(&t, mesh);
     if (!status) status = sk_report_faults(world, body->label, &t.sheet, &t.springs, error);
     if (!status) status = add_particles(&t);
+    if (!status) status = put_in_order(&t);
     if (!status) status = add_springs(&t);
     if (!status) status = add_triangles(&t);
     if (!status) status = add_tethers(&t);

@@ -1,7 +1,6 @@
 #include "bodies/springs.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/hash.h"
@@ -125,14 +124,6 @@ static bool collect_bend(const sk_springs *springs, pair_table *table, const sk_
     return true;
 }
 
-/* Grids sweep direction by direction: by the step from a to b, then along the grid. */
-static int compare_direction(const void *p, const void *q) {
-    const spring *s = p, *t = q;
-    uint32_t u = s->b - s->a, v = t->b - t->a;
-    if (u != v) return u < v ? -1 : 1;
-    return s->a < t->a ? -1 : s->a > t->a;
-}
-
 /* Lengths and scales of one sort, in the order in which the springs were found. */
 static bool fill_list(sk_springs *springs, const pair_table *table, const sk_sheet *sheet, sk_spring_sort sort) {
     struct sk_spring_list *list = &springs->list[sort];
@@ -162,7 +153,6 @@ skein_status sk_springs_find(sk_springs *springs, const sk_sheet *sheet, skein_e
     springs->allocator = sheet->allocator;
     pair_table table = {.allocator = sheet->allocator};
     bool good = collect_edges(springs, &table, sheet) && collect_shear(&table, sheet) && collect_bend(springs, &table, sheet);
-    if (good && sheet->grid_rows) qsort(table.springs.data, table.springs.count, sizeof(spring), compare_direction);
     for (int sort = 0; sort < SK_SPRING_SORTS && good; sort++) good = fill_list(springs, &table, sheet, (sk_spring_sort)sort);
     sk_release(sheet->allocator, table.springs.data);
     sk_release(sheet->allocator, table.bucket);

@@ -33,7 +33,7 @@ SK_INLINE sk_wide3 SK_ISA(shift3)(sk_wide3 a, int shift) {
     return (sk_wide3){SK_ISA(shift1)(a.x, shift), SK_ISA(shift1)(a.y, shift), SK_ISA(shift1)(a.z, shift)};
 }
 
-/* Block a meets block b. `shift` and `mode` are constants where this is inlined. */
+/* Block a meets block b. `mode` is a constant where this is inlined. */
 SK_INLINE void SK_ISA(meet_blocks)(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_pair_constants *constants, size_t lane,
                                    size_t slot_a, size_t slot_b, int shift, sk_pair_mode mode) {
     bool special = shift || sweep->batch->special[lane / SK_LANES];
@@ -67,38 +67,31 @@ SK_INLINE void SK_ISA(meet_blocks)(sk_run *run, const sk_row *row, const sk_swee
     }
 }
 
-/* One block of a strip row, wherever its partner lies. */
-SK_INLINE void SK_ISA(meet_partner)(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_pair_constants *constants, size_t r,
-                                    int32_t k, sk_pair_mode mode) {
-    int32_t width = (int32_t)sweep->walk.width, partner = k + sweep->column_step;
-    size_t block = r * sweep->walk.width + (size_t)k, lane = sweep->first_lane + block * SK_LANES;
-    size_t slot_a = sweep->walk.first_slot + block * SK_LANES;
-    size_t line_b = sweep->walk.first_slot + (r + (size_t)sweep->row_step) * sweep->walk.width * SK_LANES;
-    if (__builtin_expect((uint32_t)partner < (uint32_t)width, 1))
-        SK_ISA(meet_blocks)(run, row, sweep, constants, lane, slot_a, line_b + (size_t)partner * SK_LANES, 0, mode);
-    else if (partner >= width)
-        SK_ISA(meet_blocks)(run, row, sweep, constants, lane, slot_a, line_b + (size_t)(partner - width) * SK_LANES, 1, mode);
-    else
-        SK_ISA(meet_blocks)(run, row, sweep, constants, lane, slot_a, line_b + (size_t)(partner + width) * SK_LANES, -1, mode);
-}
+/* Over the end of a strip; a function of its own for each mode, since it is rare and would be inlined often. */
+typedef void SK_ISA(meet_end)(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_pair_constants *constants, size_t lane,
+                              size_t slot_a, size_t slot_b, int shift);
 
 /* Strip rows [begin, end). Along a row each block waits for the one before it, so four rows go side by
  * side where they share no particle; the answer is the same. */
-SK_INLINE void SK_ISA(sweep_strips)(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_pair_mode mode) {
+SK_INLINE void SK_ISA(sweep_strips)(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_pair_mode mode, SK_ISA(meet_end) *meet_end) {
     const sk_sweep *sweep = row->rule;
     sk_pair_constants constants = sk_pair_prepare(sweep->batch, row);
-    int32_t width = (int32_t)sweep->walk.width;
-    if (sweep->row_step == 0) {
-        size_t r = begin;
-        for (; r + 4 <= end; r += 4)
-            for (int32_t k = 0; k < width; k++)
-                for (size_t i = 0; i < 4; i++) SK_ISA(meet_partner)(run, row, sweep, &constants, r + i, k, mode);
-        for (; r < end; r++)
-            for (int32_t k = 0; k < width; k++) SK_ISA(meet_partner)(run, row, sweep, &constants, r, k, mode);
-        return;
+    size_t width = sweep->walk.width, side_by_side = sweep->row_step == 0 ? 4 : 1;
+    for (size_t r = begin; r < end; r += side_by_side) {
+        size_t stop = r + side_by_side < end ? r + side_by_side : end;
+        for (size_t k = 0; k < width; k++) {
+            int32_t partner = (int32_t)k + sweep->column_step;
+            int shift = partner < 0 ? -1 : partner >= (int32_t)width ? 1 : 0;
+            size_t place = (size_t)(partner - shift * (int32_t)width);
+            for (size_t i = r; i < stop; i++) {
+                size_t block = i * width + k, lane = sweep->first_lane + block * SK_LANES;
+                size_t slot_a = sweep->walk.first_slot + block * SK_LANES;
+                size_t slot_b = sweep->walk.first_slot + ((i + (size_t)sweep->row_step) * width + place) * SK_LANES;
+                if (__builtin_expect(shift == 0, 1)) SK_ISA(meet_blocks)(run, row, sweep, &constants, lane, slot_a, slot_b, 0, mode);
+                else meet_end(run, row, sweep, &constants, lane, slot_a, slot_b, shift);
+            }
+        }
     }
-    for (size_t r = begin; r < end; r++)
-        for (int32_t k = 0; k < width; k++) SK_ISA(meet_partner)(run, row, sweep, &constants, r, k, mode);
 }
 
 /* Sixteen particles of a vector, some of which are in packed blocks. */
@@ -161,14 +154,18 @@ SK_INLINE void SK_ISA(sweep_groups)(sk_run *run, const sk_row *row, size_t begin
         const uint32_t *slots = sweep->slots + g * 2 * SK_LANES;
         bool strips = false;
         for (int i = 0; i < 2 * SK_LANES && row->packed; i++) strips |= slots[i] < row->packed;
-        if (strips) SK_ISA(meet_group)(run, row, sweep, &constants, g, row->packed, mode);
-        else SK_ISA(meet_group)(run, row, sweep, &constants, g, 0, mode);
+        SK_ISA(meet_group)(run, row, sweep, &constants, g, strips ? row->packed : 0, mode);
     }
 }
 
 #define SK_PAIR_WALKS(name, mode)                                                                                      \
+    static __attribute__((noinline)) void SK_ISA(name##_end)(sk_run * run, const sk_row *row, const sk_sweep *sweep,   \
+                                                             const sk_pair_constants *constants, size_t lane,          \
+                                                             size_t slot_a, size_t slot_b, int shift) {                \
+        SK_ISA(meet_blocks)(run, row, sweep, constants, lane, slot_a, slot_b, shift, mode);                            \
+    }                                                                                                                  \
     static void SK_ISA(name##_strips)(sk_run * run, const sk_row *row, size_t begin, size_t end) {                     \
-        SK_ISA(sweep_strips)(run, row, begin, end, mode);                                                              \
+        SK_ISA(sweep_strips)(run, row, begin, end, mode, SK_ISA(name##_end));                                          \
     }                                                                                                                  \
     static void SK_ISA(name##_groups)(sk_run * run, const sk_row *row, size_t begin, size_t end) {                     \
         SK_ISA(sweep_groups)(run, row, begin, end, mode);                                                              \

@@ -36,7 +36,7 @@ typedef struct cutter {
 static const sk_strips *strips_of(const sk_particles *particles, uint32_t particle) {
     for (size_t i = 0; i < particles->strips.count; i++) {
         const sk_strips *strips = &particles->strips.data[i];
-        if (particle >= strips->first_particle && particle - strips->first_particle < strips->rows * strips->columns) return strips;
+        if (particle >= strips->first_particle && particle - strips->first_particle < strips->count) return strips;
     }
     return NULL;
 }

@@ -31,6 +31,7 @@ static bool reserve(sk_particles *particles, sk_allocator *allocator, size_t par
     if (particle_need > particles->capacity) {
         size_t old = particles->capacity, room = room_for(old, particle_need);
         if (!grow(allocator, (void **)&particles->slot_of, old, room, sizeof(uint32_t)) ||
+            !grow(allocator, (void **)&particles->rank, old, room, sizeof(uint32_t)) ||
             !grow(allocator, (void **)&particles->built, old, room, sizeof(sk_vec3)) ||
             !grow(allocator, (void **)&particles->mass, old, room, sizeof(real)) ||
             !grow(allocator, (void **)&particles->held, old, room, sizeof(bool)))
@@ -49,6 +50,7 @@ bool sk_particles_add(sk_particles *particles, sk_allocator *allocator, size_t c
         const double *p = positions + 3 * k, *v = velocities ? velocities + 3 * k : (const double[3]){0, 0, 0};
         real mass = (real)masses[k];
         particles->slot_of[i] = (uint32_t)s;
+        particles->rank[i] = (uint32_t)i;
         particles->built[i] = sk_v3_of(p);
         particles->mass[i] = mass;
         particles->held[i] = !(mass > 0);
@@ -62,10 +64,11 @@ bool sk_particles_add(sk_particles *particles, sk_allocator *allocator, size_t c
     return true;
 }
 
-bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, uint32_t first, uint32_t rows, uint32_t columns) {
+bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, sk_strips strips) {
     if (!SK_RESERVE(allocator, &particles->strips, particles->strips.count + 1)) return false;
-    uint32_t width = (columns + 15) / 16;
-    particles->strips.data[particles->strips.count++] = (sk_strips){first, rows, columns, width < LEAST_WIDTH ? LEAST_WIDTH : width, 0};
+    strips.width = (strips.columns + 15) / 16;
+    if (strips.width < LEAST_WIDTH) strips.width = LEAST_WIDTH;
+    particles->strips.data[particles->strips.count++] = strips;
     particles->arranged = false;
     return true;
 }
@@ -78,20 +81,22 @@ void sk_particles_truncate(sk_particles *particles, size_t count) {
 }
 
 /* Writes every particle's slot into `slot_of`: strips first. */
-static void number_slots(sk_particles *particles, uint32_t *slot_of) {
+static void number_slots(sk_particles *particles, const uint32_t *by_rank, uint32_t *slot_of) {
     size_t next = 0;
     memset(slot_of, 0xff, particles->count * sizeof *slot_of);
     for (size_t s = 0; s < particles->strips.count; s++) {
         sk_strips *strips = &particles->strips.data[s];
         strips->first_slot = next;
-        for (uint32_t r = 0; r < strips->rows; r++)
-            for (uint32_t c = 0; c < strips->columns; c++)
-                slot_of[strips->first_particle + r * strips->columns + c] =
-                    (uint32_t)(next + ((size_t)r * strips->width + c % strips->width) * 16 + c / strips->width);
+        for (uint32_t i = 0; i < strips->count; i++) {
+            size_t r = i / strips->columns, c = i % strips->columns;
+            slot_of[strips->first_particle + i] = (uint32_t)(next + (r * strips->width + c % strips->width) * 16 + c / strips->width);
+        }
         next += (size_t)strips->rows * strips->width * 16;
     }
-    for (size_t i = 0; i < particles->count; i++)
+    for (size_t k = 0; k < particles->count; k++) {
+        uint32_t i = by_rank[k];
         if (slot_of[i] == UINT32_MAX) slot_of[i] = (uint32_t)next++;
+    }
 }
 
 bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
@@ -100,17 +105,19 @@ bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
     for (size_t s = 0; s < particles->strips.count; s++) {
         const sk_strips *strips = &particles->strips.data[s];
         strip_slots += (size_t)strips->rows * strips->width * 16;
-        loose -= (size_t)strips->rows * strips->columns;
+        loose -= strips->count;
     }
     size_t empty_slot = strip_slots + (loose + 15) / 16 * 16, slot_count = empty_slot + 16;
     if (slot_count > UINT32_MAX) return false;
     // everything anew first, so that a failure changes nothing
     uint32_t *slot_of = sk_allocate(allocator, particles->capacity * sizeof *slot_of);
     sk_vec4 *vector[SK_VECTOR_COUNT] = {NULL};
-    bool good = slot_of != NULL;
+    uint32_t *by_rank = sk_allocate(allocator, particles->count * sizeof *by_rank);
+    bool good = slot_of && by_rank;
+    for (size_t i = 0; i < particles->count && good; i++) by_rank[particles->rank[i]] = (uint32_t)i;
     for (int v = SK_X; v < SK_VECTOR_COUNT && good; v++) good = (vector[v] = sk_allocate(allocator, slot_count * sizeof(sk_vec4))) != NULL;
     if (good) {
-        number_slots(particles, slot_of);
+        number_slots(particles, by_rank, slot_of);
         for (int v = SK_X; v < SK_VECTOR_COUNT; v++)
             for (size_t i = 0; i < particles->count; i++) vector[v][slot_of[i]] = particles->vector[v][particles->slot_of[i]];
         for (int v = SK_X; v < SK_VECTOR_COUNT; v++) {
@@ -128,6 +135,7 @@ bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
     }
     for (int v = SK_X; v < SK_VECTOR_COUNT; v++) sk_release(allocator, vector[v]);
     sk_release(allocator, slot_of);
+    sk_release(allocator, by_rank);
     return good;
 }
 
@@ -154,6 +162,7 @@ void sk_particle_hold(sk_particles *particles, size_t particle, bool held) {
 void sk_particles_release(sk_particles *particles, sk_allocator *allocator) {
     for (int v = SK_X; v < SK_VECTOR_COUNT; v++) sk_release(allocator, particles->vector[v]);
     sk_release(allocator, particles->slot_of);
+    sk_release(allocator, particles->rank);
     sk_release(allocator, particles->built);
     sk_release(allocator, particles->mass);
     sk_release(allocator, particles->held);

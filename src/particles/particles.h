@@ -3,7 +3,7 @@
  * A slot is a place that is good for speed; the user's index is what every file and call uses, and
  * slot_of[user] leads from one to the other. Strips come first:
  *
- *   slots  | strips of a grid | strips of another | all other particles, in the user's order | empty |
+ *   slots  | strips of a grid | strips of another | all other particles, by rank | empty |
  *
  * Strips: a grid of rows x columns is cut into sixteen strips of `width` columns, one a lane, so that the
  * particle at (r, c) has slot first + (r width + c mod width) 16 + c / width. A neighbour of a block of
@@ -15,7 +15,8 @@
 #include "plan/row.h"
 
 typedef struct sk_strips {
-    uint32_t first_particle, rows, columns; /* particles in row order */
+    uint32_t first_particle, count;         /* in row order; the last row may be short */
+    uint32_t rows, columns;
     uint32_t width;                         /* columns a strip: blocks a row */
     size_t first_slot;
 } sk_strips;
@@ -28,6 +29,7 @@ typedef struct sk_particles {
     bool arranged;                      /* slots are as the picture shows */
     sk_vec4 *vector[SK_VECTOR_COUNT];   /* slots; SK_NONE is unused */
     uint32_t *slot_of;
+    uint32_t *rank;                     /* where a particle would like to lie: its own index, unless said otherwise */
     sk_vec3 *built;                     /* positions as they were built, user's order */
     real *mass;                         /* kg, user's order; 0 for one that was built as held */
     bool *held;
@@ -37,8 +39,8 @@ typedef struct sk_particles {
 /* Adds particles at the end. False when there is no memory: the particles are then as they were. */
 bool sk_particles_add(sk_particles *particles, sk_allocator *allocator, size_t count, const double *positions,
                       const double *velocities, const double *masses);
-/* Says that `rows` x `columns` particles from `first` on are a grid, in row order. */
-bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, uint32_t first, uint32_t rows, uint32_t columns);
+/* Says that particles are a grid; width and first slot are found here. */
+bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, sk_strips strips);
 /* Takes back all particles and strips from `count` on: the last ones added, not yet arranged. */
 void sk_particles_truncate(sk_particles *particles, size_t count);
 /* Gives every particle its slot; the state goes along. False when there is no memory: all as before. */

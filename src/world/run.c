@@ -15,6 +15,7 @@
  * Other free rows are cut over the threads; other ordered rows run on the caller, whole. */
 #include <stdatomic.h>
 
+#include "base/float_mode.h"
 #include "world/world.h"
 
 enum {
@@ -114,10 +115,12 @@ static void cut_chunks(segment_job *job, int threads) {
     job->threads = (size_t)threads < job->chunk_count ? (size_t)threads : job->chunk_count;
 }
 
-/* One thread too few for a thread's index: it has nothing to do. */
+/* A task; there may be fewer threads in the walk than tasks. */
 static void run_chunks_of_thread(void *data, int thread) {
     const segment_job *job = data;
+    uint64_t mode = sk_float_mode_enter();
     if ((size_t)thread < job->threads) run_chunks(data, thread);
+    sk_float_mode_leave(mode);
 }
 
 static void run_walk(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count, const sk_walk *walk, size_t turns, double start, double dt) {
@@ -145,6 +148,7 @@ typedef struct free_job {
 static void run_tiles(void *data, size_t begin, size_t end) {
     const free_job *job = data;
     enum { TILE = 1024 };
+    uint64_t mode = sk_float_mode_enter();
     for (size_t tile = begin; tile < end; tile += TILE) {
         size_t tile_end = tile + TILE < end ? tile + TILE : end;
         for (size_t g = 0; g < job->count; g++) {
@@ -153,6 +157,7 @@ static void run_tiles(void *data, size_t begin, size_t end) {
             if (first < last) row->kernel(job->run, row, first, last);
         }
     }
+    sk_float_mode_leave(mode);
 }
 
 static void run_free(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count) {

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/float_mode.h"
 #include "world/world.h"
 
 skein_status sk_world_arrange(skein_world *world, skein_error *error) {
@@ -73,7 +74,9 @@ skein_status skein_world_step(skein_world *world, double dt) {
     skein_status status = sk_world_compile(world, dt, error);
     if (status) return status;
     sk_run run = sk_world_run_context(world);
+    uint64_t mode = sk_float_mode_enter();
     sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
+    sk_float_mode_leave(mode);
     if (run.no_memory) return sk_fail_memory(error, "the neighbour grid; the step was not finished");
     world->time += dt;
     world->steps++;

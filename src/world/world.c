@@ -174,10 +174,17 @@ void sk_world_add_strain_limit(sk_body *body) {
     body->batch[body->batch_count - 1]->bound = &body->strain_bound;
 }
 
-skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32_t rows, uint32_t columns, skein_error *error) {
-    if (!sk_particles_add_strips(&world->particles, &world->allocator, body->first_particle, rows, columns)) return sk_fail_memory(error, "strips");
+skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32_t rows, uint32_t columns, uint32_t count,
+                                 skein_error *error) {
+    if (!sk_particles_add_strips(&world->particles, &world->allocator, (sk_strips){body->first_particle, count, rows, columns, 0, 0}))
+        return sk_fail_memory(error, "strips");
     world->plan_stale = world->slots_stale = true;
     return SKEIN_OK;
+}
+
+void sk_world_rank_particles(skein_world *world, const sk_body *body, const uint32_t *rank, size_t count) {
+    for (size_t i = 0; i < count; i++) world->particles.rank[body->first_particle + i] = body->first_particle + rank[i];
+    world->plan_stale = world->slots_stale = true;
 }
 
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error) {

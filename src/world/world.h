@@ -115,8 +115,11 @@ skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk
                                      const uint32_t *particles, const real *rest, const real *scale, skein_error *error);
 skein_status sk_world_add_tethers(skein_world *world, sk_body *body, size_t count, size_t anchors,
                                   const uint32_t *particles, const real *lengths, skein_error *error);
-/* Says that the body's particles are a grid of rows x columns, in row order. */
-skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32_t rows, uint32_t columns, skein_error *error);
+/* Says that the body's `count` particles are a grid of rows x columns, in row order; the last row may be short. */
+skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32_t rows, uint32_t columns, uint32_t count,
+                                 skein_error *error);
+/* Says in which order the body's particles should lie in memory: rank[i] is the place of its i-th one. */
+void sk_world_rank_particles(skein_world *world, const sk_body *body, const uint32_t *rank, size_t count);
 /* Keeps the edges of the body's newest batch under its strain bound. */
 void sk_world_add_strain_limit(sk_body *body);
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error);
