@@ -125,11 +125,11 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
 }
 
 skein_status skein_get(const skein_world *world, skein_handle handle, const char *name, skein_value *value) {
-    skein_error error = {SKEIN_OK, "", ""};
+    skein_error *error = sk_world_error(world);
     sk_object *object;
     void *params;
-    const skein_field *field = locate(world, handle, name, &params, &object, &error);
-    if (!field) return error.status;
+    const skein_field *field = locate(world, handle, name, &params, &object, error);
+    if (!field) return error->status;
     *value = sk_field_load(field, params);
     return SKEIN_OK;
 }
@@ -185,6 +185,6 @@ skein_status skein_set_path(skein_world *world, const char *path, skein_value va
 skein_status skein_get_path(const skein_world *world, const char *path, skein_value *value) {
     skein_handle handle;
     const char *field;
-    skein_status status = resolve(world, path, &handle, &field, NULL);
+    skein_status status = resolve(world, path, &handle, &field, sk_world_error(world));
     return status ? status : skein_get(world, handle, field, value);
 }

@@ -88,7 +88,8 @@ skein_status skein_particle_hold(skein_world *world, size_t particle, bool held)
 
 skein_status skein_body_surface(const skein_world *world, skein_handle handle, skein_surface *surface) {
     const sk_object *object = sk_object_of(world, handle);
-    if (!object || object->category != SKEIN_BODY) return SKEIN_ERROR_HANDLE;
+    if (!object || object->category != SKEIN_BODY)
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_HANDLE, "", "there is no such body: its handle is stale, or of another category");
     const sk_body *body = object->as.body;
     *surface = (skein_surface){body->first_particle, body->particle_count, body->particle_of_vertex, body->vertex_count,
                                body->face_sizes, body->face_count, body->face_vertices, body->face_vertex_count,
@@ -98,7 +99,8 @@ skein_status skein_body_surface(const skein_world *world, skein_handle handle, s
 
 skein_status skein_collider_pose(const skein_world *world, skein_handle handle, skein_pose *out) {
     const sk_object *object = sk_object_of(world, handle);
-    if (!object || object->category != SKEIN_COLLIDER) return SKEIN_ERROR_HANDLE;
+    if (!object || object->category != SKEIN_COLLIDER)
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_HANDLE, "", "there is no such collider: its handle is stale, or of another category");
     sk_pose pose = sk_collider_pose_at(object->as.collider, world->time);
     const double position[3] = {(double)pose.position.x, (double)pose.position.y, (double)pose.position.z};
     memcpy(out->position, position, sizeof position);
