@@ -43,7 +43,8 @@ double bench_median(void (*body)(void *data), void *data, double seconds) {
 
 void bench_report(const bench_result *r) {
     if (csv) {
-        printf("%s,%s,%g,%s,%g,%s,%g,%g\n", r->name, r->size, r->ns, r->unit, r->other_ns, r->other ? r->other : "", r->stretch, r->other_stretch);
+        printf("%s,%s,%g,%s,%g,%s,%g,%g\n", r->name, r->size, r->ns, r->unit, r->other_ns, r->other ? r->other : "",
+               r->stretch, r->other_stretch);
         return;
     }
     printf("%-16s %-14s %9.3f %-14s", r->name, r->size, r->ns, r->unit);
@@ -62,8 +63,9 @@ skein_world *bench_cloth(int n, const char *method, int substeps, int threads, b
     skein_world *world = skein_world_create(&desc, NULL);
     double far = INFINITY;
     skein_body_add(world, "cloth", NULL,
-                   SKEIN_SETTINGS(SKEIN_PAIR("grid", n, n), SKEIN_TEXT("pins", "top corners"), SKEIN_REAL("density", 0.2),
-                                  SKEIN_REAL("stretch.stiffness", 1e4), SKEIN_REAL("shear.stiffness", 1e4), SKEIN_REAL("bend.stiffness", 1e4),
+                   SKEIN_SETTINGS(SKEIN_PAIR("grid", n, n), SKEIN_TEXT("pins", "top corners"),
+                                  SKEIN_REAL("density", 0.2), SKEIN_REAL("stretch.stiffness", 1e4),
+                                  SKEIN_REAL("shear.stiffness", 1e4), SKEIN_REAL("bend.stiffness", 1e4),
                                   SKEIN_REAL("stretch.limit", far), SKEIN_REAL("stretch.tether", far)),
                    NULL);
     skein_force_add(world, "gravity", NULL, NULL);
@@ -155,7 +157,8 @@ static skein_world *frame_world(int n, bool drape) {
     if (!drape) return world;
     for (size_t i = 0; i < (size_t)n * (size_t)n; i++) skein_particle_hold(world, i, false);
     skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.8)), NULL);
-    skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, -0.45, 0), SKEIN_REAL("radius", 0.35)), NULL);
+    skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, -0.45, 0), SKEIN_REAL("radius", 0.35)),
+                       NULL);
     return world;
 }
 
@@ -171,7 +174,8 @@ static void bench_frames(void) {
         }
         skein_statistics s;
         skein_world_statistics(world, &s);
-        bench_result result = {drape ? "W2" : "W1", "128 x 128", total / frames * 1e3, 0, "ms/frame", NULL, s.p99_stretch, -1};
+        bench_result result = {drape ? "W2" : "W1", "128 x 128", total / frames * 1e3, 0,
+                               "ms/frame",          NULL,        s.p99_stretch,        -1};
         bench_report(&result);
         skein_world_destroy(world);
     }

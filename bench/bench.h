@@ -8,8 +8,8 @@
 typedef struct bench_result {
     const char *name;
     char size[32];
-    double ns;        /* an element (or ms a frame, see unit) */
-    double other_ns;  /* of what it is compared with; 0: nothing */
+    double ns;       /* an element (or ms a frame, see unit) */
+    double other_ns; /* of what it is compared with; 0: nothing */
     const char *unit, *other;
     double stretch, other_stretch; /* at the end; negative: not measured */
 } bench_result;

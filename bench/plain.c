@@ -26,8 +26,12 @@ static void add_direction(plain_cloth *cloth, int n, int dr, int dc, double stif
     for (int r = 0; r + dr < n; r++)
         for (int c = dc < 0 ? -dc : 0; c + (dc > 0 ? dc : 0) < n; c++) {
             float h = 1.0f / (float)(n - 1);
-            cloth->springs[cloth->spring_count++] = (plain_spring){r * n + c, (r + dr) * n + c + dc, h * sqrtf((float)(dr * dr + dc * dc)),
-                                                                   (float)(1 / stiffness), (float)stiffness, (float)(stiffness * 1e-4)};
+            cloth->springs[cloth->spring_count++] = (plain_spring){r * n + c,
+                                                                   (r + dr) * n + c + dc,
+                                                                   h * sqrtf((float)(dr * dr + dc * dc)),
+                                                                   (float)(1 / stiffness),
+                                                                   (float)stiffness,
+                                                                   (float)(stiffness * 1e-4)};
         }
 }
 

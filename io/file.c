@@ -27,10 +27,8 @@ static void where_set(skein_error *error, const char *where) {
     memcpy(error->where + 3, where + length - (room - 3), room - 3 + 1);
 }
 
-skein_status io_error_set(skein_error *error, skein_status status, const char *where, const char *format,
-                          ...) {
-    if (!error)
-        return status;
+skein_status io_error_set(skein_error *error, skein_status status, const char *where, const char *format, ...) {
+    if (!error) return status;
     error->status = status;
     where_set(error, where);
     va_list arguments;
@@ -40,10 +38,9 @@ skein_status io_error_set(skein_error *error, skein_status status, const char *w
     return status;
 }
 
-skein_status io_error_at(skein_error *error, skein_status status, const char *path, size_t line,
-                         const char *format, ...) {
-    if (!error)
-        return status;
+skein_status io_error_at(skein_error *error, skein_status status, const char *path, size_t line, const char *format,
+                         ...) {
+    if (!error) return status;
     error->status = status;
     // The line stays whole, the path gives way.
     char place[sizeof error->where];
@@ -61,15 +58,13 @@ skein_status io_error_at(skein_error *error, skein_status status, const char *pa
 const char *io_quote(const char *begin, const char *end, char out[IO_QUOTE_SIZE]) {
     size_t length = (size_t)(end - begin), room = IO_QUOTE_SIZE - 6, at = 0;
     out[at++] = '\'';
-    for (size_t i = 0; i < length && i < room; i++)
-        out[at++] = begin[i] >= ' ' && begin[i] <= '~' ? begin[i] : '?';
+    for (size_t i = 0; i < length && i < room; i++) out[at++] = begin[i] >= ' ' && begin[i] <= '~' ? begin[i] : '?';
     memcpy(out + at, length > room ? "...'" : "'", length > room ? 5 : 2);
     return out;
 }
 
 void io_warn(io_warnings warnings, const char *format, ...) {
-    if (!warnings.write)
-        return;
+    if (!warnings.write) return;
     char line[1024];
     va_list arguments;
     va_start(arguments, format);
@@ -97,19 +92,15 @@ static const char *fault_text(int fault) {
 /* ---- Memory -------------------------------------------------------------------------------- */
 
 bool io_grow(void *array_pointer, size_t *capacity, size_t need, size_t item_size) {
-    if (need <= *capacity)
-        return true;
+    if (need <= *capacity) return true;
     size_t more = *capacity < 32 ? 64 : *capacity + *capacity / 2;
-    if (more < need)
-        more = need;
-    if (more > PTRDIFF_MAX / item_size)
-        return false;
+    if (more < need) more = need;
+    if (more > PTRDIFF_MAX / item_size) return false;
     // The pointer's own type is the caller's; its bytes are copied, not reinterpreted.
     void *array;
     memcpy(&array, array_pointer, sizeof array);
     array = realloc(array, more * item_size);
-    if (!array)
-        return false;
+    if (!array) return false;
     memcpy(array_pointer, &array, sizeof array);
     *capacity = more;
     return true;
@@ -122,13 +113,11 @@ static int open_to_read(const char *path, struct stat *info, skein_error *error)
     int fd = open(path, O_RDONLY | O_CLOEXEC);
     if (fd < 0 || fstat(fd, info) != 0) {
         int fault = errno;
-        if (fd >= 0)
-            close(fd);
+        if (fd >= 0) close(fd);
         io_error_set(error, SKEIN_ERROR_FILE, path, "cannot read: %s", fault_text(fault));
         return -1;
     }
-    if (S_ISREG(info->st_mode) || S_ISFIFO(info->st_mode))
-        return fd;
+    if (S_ISREG(info->st_mode) || S_ISFIFO(info->st_mode)) return fd;
     close(fd);
     io_error_set(error, SKEIN_ERROR_FILE, path, "cannot read: it is a %s, expected a file",
                  S_ISDIR(info->st_mode) ? "directory" : "device");
@@ -139,8 +128,7 @@ skein_status io_file_read(const char *path, size_t most, io_bytes *out, skein_er
     *out = (io_bytes){NULL, 0};
     struct stat info;
     int fd = open_to_read(path, &info, error);
-    if (fd < 0)
-        return SKEIN_ERROR_FILE;
+    if (fd < 0) return SKEIN_ERROR_FILE;
 
     // The size is a guess only: a pipe has none, and a file may grow while it is read.
     size_t capacity = 0;
@@ -151,10 +139,8 @@ skein_status io_file_read(const char *path, size_t most, io_bytes *out, skein_er
     while (memory && !too_large) {
         size_t room = capacity - 1 - out->size;
         got = read(fd, out->data + out->size, room < 1u << 30 ? room : 1u << 30);
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got <= 0)
-            break;
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) break;
         out->size += (size_t)got;
         too_large = out->size > most;
         memory = io_grow(&out->data, &capacity, out->size + 2, 1);
@@ -166,11 +152,9 @@ skein_status io_file_read(const char *path, size_t most, io_bytes *out, skein_er
         return SKEIN_OK;
     }
     io_bytes_free(out);
-    if (!memory)
-        return io_error_set(error, SKEIN_ERROR_MEMORY, path, "out of memory while reading the file");
+    if (!memory) return io_error_set(error, SKEIN_ERROR_MEMORY, path, "out of memory while reading the file");
     if (too_large)
-        return io_error_set(error, SKEIN_ERROR_LIMIT, path,
-                            "the file is larger than the %zu bytes allowed here", most);
+        return io_error_set(error, SKEIN_ERROR_LIMIT, path, "the file is larger than the %zu bytes allowed here", most);
     return io_error_set(error, SKEIN_ERROR_FILE, path, "cannot read: %s", fault_text(fault));
 }
 
@@ -192,10 +176,8 @@ struct io_output {
 };
 
 static void output_free(io_output *output) {
-    if (output->fd >= 0)
-        close(output->fd);
-    if (output->part_path)
-        unlink(output->part_path);
+    if (output->fd >= 0) close(output->fd);
+    if (output->part_path) unlink(output->part_path);
     free(output->part_path);
     free(output->final_path);
     free(output->path);
@@ -207,8 +189,7 @@ static int part_open(io_output *output) {
     const char *slash = strrchr(output->final_path, '/');
     size_t folder = slash ? (size_t)(slash + 1 - output->final_path) : 0, size = folder + 64;
     char *part = malloc(size);
-    if (!part)
-        return ENOMEM;
+    if (!part) return ENOMEM;
     memcpy(part, output->final_path, folder);
     // O_EXCL picks a name nobody has, O_CREAT with 0666 leaves the mode to the user's umask.
     for (int n = 0; n < 1000; n++) {
@@ -218,8 +199,7 @@ static int part_open(io_output *output) {
             output->part_path = part;
             return 0;
         }
-        if (errno != EEXIST)
-            break;
+        if (errno != EEXIST) break;
     }
     int fault = errno;
     free(part);
@@ -230,25 +210,20 @@ static int part_open(io_output *output) {
 static int output_start(io_output *output) {
     struct stat info;
     bool exists = stat(output->path, &info) == 0;
-    if (!exists && errno != ENOENT)
-        return errno;
+    if (!exists && errno != ENOENT) return errno;
     // A device or pipe must never be replaced by a file.
     if (exists && !S_ISREG(info.st_mode)) {
         output->fd = open(output->path, O_WRONLY | O_CLOEXEC);
         return output->fd < 0 ? errno : 0;
     }
-    if (exists && access(output->path, W_OK) != 0)
-        return errno;
+    if (exists && access(output->path, W_OK) != 0) return errno;
     output->final_path = exists ? realpath(output->path, NULL) : strdup(output->path);
-    if (!output->final_path)
-        return errno;
+    if (!output->final_path) return errno;
     size_t length = strlen(output->path);
-    if (length == 0 || output->path[length - 1] == '/')
-        return length == 0 ? ENOENT : EISDIR;
+    if (length == 0 || output->path[length - 1] == '/') return length == 0 ? ENOENT : EISDIR;
     int fault = part_open(output);
     // Some file systems have no modes: then the file is as they make it.
-    if (fault == 0 && exists)
-        (void)fchmod(output->fd, info.st_mode & 0777);
+    if (fault == 0 && exists) (void)fchmod(output->fd, info.st_mode & 0777);
     return fault;
 }
 
@@ -262,10 +237,8 @@ io_output *io_output_open(const char *path, skein_error *error) {
         output->final_path = output->part_path = NULL;
     }
     int fault = output && output->path ? output_start(output) : ENOMEM;
-    if (fault == 0)
-        return output;
-    if (output)
-        output_free(output);
+    if (fault == 0) return output;
+    if (output) output_free(output);
     io_error_set(error, fault == ENOMEM ? SKEIN_ERROR_MEMORY : SKEIN_ERROR_FILE, path, "cannot write: %s",
                  fault == ENOENT ? "its directory does not exist, create it first" : fault_text(fault));
     return NULL;
@@ -276,8 +249,7 @@ static void write_through(io_output *output, const char *bytes, size_t size, off
     while (size > 0 && output->fault == 0) {
         ssize_t done = offset < 0 ? write(output->fd, bytes, size) : pwrite(output->fd, bytes, size, offset);
         if (done < 0) {
-            if (errno != EINTR)
-                output->fault = errno;
+            if (errno != EINTR) output->fault = errno;
             continue;
         }
         bytes += done;
@@ -292,8 +264,7 @@ static void output_flush(io_output *output) {
 }
 
 void io_output_write(io_output *output, const void *bytes, size_t size) {
-    if (size > sizeof output->buffer - output->used)
-        output_flush(output);
+    if (size > sizeof output->buffer - output->used) output_flush(output);
     if (size > sizeof output->buffer) {
         write_through(output, bytes, size, -1);
         return;
@@ -313,18 +284,14 @@ void io_output_printf(io_output *output, const char *format, ...) {
         vsnprintf(text, (size_t)length + 1, format, arguments);
         va_end(arguments);
     }
-    if (length >= 0 && text)
-        io_output_write(output, text, (size_t)length);
-    else if (output->fault == 0)
-        output->fault = length < 0 ? EINVAL : ENOMEM;
-    if (text != line)
-        free(text);
+    if (length >= 0 && text) io_output_write(output, text, (size_t)length);
+    else if (output->fault == 0) output->fault = length < 0 ? EINVAL : ENOMEM;
+    if (text != line) free(text);
 }
 
 void io_output_count(io_output *output, uint64_t value) {
     char text[20], *at = text + sizeof text;
-    do
-        *--at = (char)('0' + value % 10);
+    do *--at = (char)('0' + value % 10);
     while ((value /= 10) != 0);
     io_output_write(output, at, (size_t)(text + sizeof text - at));
 }
@@ -335,8 +302,7 @@ void io_output_patch(io_output *output, uint64_t offset, const void *bytes, size
 }
 
 skein_status io_output_status(const io_output *output, skein_error *error) {
-    if (output->fault == 0)
-        return SKEIN_OK;
+    if (output->fault == 0) return SKEIN_OK;
     return io_error_set(error, SKEIN_ERROR_FILE, output->path, "cannot write: %s", fault_text(output->fault));
 }
 
@@ -345,8 +311,7 @@ skein_status io_output_commit(io_output *output, skein_error *error) {
     // Some file systems report a full disk only here.
     int closed = close(output->fd), fault = errno;
     output->fd = -1;
-    if (output->fault == 0 && closed != 0)
-        output->fault = fault;
+    if (output->fault == 0 && closed != 0) output->fault = fault;
     if (output->fault == 0 && output->part_path && rename(output->part_path, output->final_path) != 0)
         output->fault = errno;
     skein_status status = io_output_status(output, error);
@@ -360,6 +325,5 @@ skein_status io_output_commit(io_output *output, skein_error *error) {
 }
 
 void io_output_abandon(io_output *output) {
-    if (output)
-        output_free(output);
+    if (output) output_free(output);
 }

@@ -24,8 +24,8 @@
 skein_status io_error_set(skein_error *error, skein_status status, const char *where, const char *format, ...)
     IO_PRINTF(4, 5);
 /* The same with the place "path:line". */
-skein_status io_error_at(skein_error *error, skein_status status, const char *path, size_t line,
-                         const char *format, ...) IO_PRINTF(5, 6);
+skein_status io_error_at(skein_error *error, skein_status status, const char *path, size_t line, const char *format,
+                         ...) IO_PRINTF(5, 6);
 
 /* Text of a file for a message: in single quotes, printable, cut short. Returns `out`. */
 #define IO_QUOTE_SIZE 40

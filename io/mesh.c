@@ -33,15 +33,13 @@ skein_mesh io_mesh_view(const io_mesh *mesh) {
 }
 
 bool io_mesh_add_vertex(io_mesh *mesh, const double position[3]) {
-    if (!io_grow(&mesh->positions, &mesh->vertex_capacity, mesh->vertex_count + 1, 3 * sizeof(double)))
-        return false;
+    if (!io_grow(&mesh->positions, &mesh->vertex_capacity, mesh->vertex_count + 1, 3 * sizeof(double))) return false;
     memcpy(mesh->positions + 3 * mesh->vertex_count++, position, 3 * sizeof(double));
     return true;
 }
 
 bool io_mesh_add_uv(io_mesh *mesh, const double uv[2]) {
-    if (!io_grow(&mesh->uvs, &mesh->uv_capacity, mesh->uv_count + 1, 2 * sizeof(double)))
-        return false;
+    if (!io_grow(&mesh->uvs, &mesh->uv_capacity, mesh->uv_count + 1, 2 * sizeof(double))) return false;
     memcpy(mesh->uvs + 2 * mesh->uv_count++, uv, 2 * sizeof(double));
     return true;
 }
@@ -57,24 +55,21 @@ bool io_mesh_add_corner(io_mesh *mesh, uint32_t vertex, uint32_t uv) {
 }
 
 bool io_mesh_add_face(io_mesh *mesh, uint32_t size) {
-    if (!io_grow(&mesh->face_sizes, &mesh->face_capacity, mesh->face_count + 1, sizeof(uint32_t)))
-        return false;
+    if (!io_grow(&mesh->face_sizes, &mesh->face_capacity, mesh->face_count + 1, sizeof(uint32_t))) return false;
     mesh->face_sizes[mesh->face_count++] = size;
     return true;
 }
 
 /* ---- Reading ------------------------------------------------------------------------------- */
 
-typedef skein_status mesh_reader(const char *text, size_t size, const char *path, io_mesh *out,
-                                 io_warnings warnings, skein_error *error);
+typedef skein_status mesh_reader(const char *text, size_t size, const char *path, io_mesh *out, io_warnings warnings,
+                                 skein_error *error);
 
 static bool ends_with(const char *path, const char *ending) {
     size_t length = strlen(path), ending_length = strlen(ending);
-    if (length <= ending_length)
-        return false;
+    if (length <= ending_length) return false;
     for (const char *p = path + length - ending_length; *ending; p++, ending++)
-        if ((*p >= 'A' && *p <= 'Z' ? *p + 32 : *p) != *ending)
-            return false;
+        if ((*p >= 'A' && *p <= 'Z' ? *p + 32 : *p) != *ending) return false;
     return true;
 }
 
@@ -89,17 +84,14 @@ skein_status io_mesh_read(const char *path, io_mesh *out, io_warnings warnings, 
 
     *out = (io_mesh){0};
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
-        if (!ends_with(path, formats[i].ending))
-            continue;
+        if (!ends_with(path, formats[i].ending)) continue;
         io_bytes text;
         skein_status status = io_file_read(path, limit, &text, error);
-        if (status == SKEIN_OK)
-            status = formats[i].read(text.data, text.size, path, out, warnings, error);
+        if (status == SKEIN_OK) status = formats[i].read(text.data, text.size, path, out, warnings, error);
         io_bytes_free(&text);
         return status;
     }
-    return io_error_set(error, SKEIN_ERROR_FILE, path,
-                        "not a mesh file by its ending: expected .obj or .off");
+    return io_error_set(error, SKEIN_ERROR_FILE, path, "not a mesh file by its ending: expected .obj or .off");
 }
 
 /* ---- Lines and words ----------------------------------------------------------------------- */
@@ -114,30 +106,24 @@ skein_status io_scan_start(io_scan *scan, const char *text, size_t size) {
     scan->end = text + size;
     scan->line = 1;
     if (size == 0)
-        return io_error_set(scan->error, SKEIN_ERROR_SYNTAX, scan->path,
-                            "the file is empty: expected a mesh");
-    if (size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0)
-        scan->at += 3;
+        return io_error_set(scan->error, SKEIN_ERROR_SYNTAX, scan->path, "the file is empty: expected a mesh");
+    if (size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) scan->at += 3;
     // With its mark, or without: then every other byte of plain letters is zero.
-    if (size >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0))
-        return utf16_error(scan);
-    if (size >= 4 &&
-        ((text[0] && !text[1] && text[2] && !text[3]) || (!text[0] && text[1] && !text[2] && text[3])))
+    if (size >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0)) return utf16_error(scan);
+    if (size >= 4 && ((text[0] && !text[1] && text[2] && !text[3]) || (!text[0] && text[1] && !text[2] && text[3])))
         return utf16_error(scan);
     return SKEIN_OK;
 }
 
 /* The length of the line's end at `p`: 0 where there is none. */
 static size_t newline_length(const char *p, const char *end) {
-    if (p >= end || (*p != '\n' && *p != '\r'))
-        return 0;
+    if (p >= end || (*p != '\n' && *p != '\r')) return 0;
     return *p == '\r' && p + 1 < end && p[1] == '\n' ? 2 : 1;
 }
 
 skein_status io_scan_check_text(const io_scan *scan) {
     const char *zero = scan->at < scan->end ? memchr(scan->at, '\0', (size_t)(scan->end - scan->at)) : NULL;
-    if (!zero)
-        return SKEIN_OK;
+    if (!zero) return SKEIN_OK;
     // Only now are lines worth counting.
     size_t line = scan->line;
     for (const char *p = scan->at; p < zero; p++) {
@@ -152,11 +138,9 @@ skein_status io_scan_check_text(const io_scan *scan) {
 bool io_scan_word(io_scan *scan, io_word *word) {
     const char *p = scan->at, *end = scan->end;
     for (;;) {
-        while (p < end && (*p == ' ' || *p == '\t' || *p == '\v' || *p == '\f'))
-            p++;
+        while (p < end && (*p == ' ' || *p == '\t' || *p == '\v' || *p == '\f')) p++;
         size_t newline = scan->continues && p < end && *p == '\\' ? newline_length(p + 1, end) : 0;
-        if (newline == 0)
-            break;
+        if (newline == 0) break;
         p += 1 + newline;
         scan->line++;
     }
@@ -164,15 +148,11 @@ bool io_scan_word(io_scan *scan, io_word *word) {
     word->line = scan->line;
     for (; p < end; p++) {
         char c = *p;
-        if (c > '#' && c != '\\')
-            continue; // almost all
-        if (c == ' ' || (c >= '\t' && c <= '\r'))
-            break;
+        if (c > '#' && c != '\\') continue; // almost all
+        if (c == ' ' || (c >= '\t' && c <= '\r')) break;
         // A comment; but 1.#INF, as one C library prints it, is a (bad) number.
-        if (c == '#' && (p == word->begin || p[-1] != '.'))
-            break;
-        if (c == '\\' && scan->continues && newline_length(p + 1, end) > 0)
-            break;
+        if (c == '#' && (p == word->begin || p[-1] != '.')) break;
+        if (c == '\\' && scan->continues && newline_length(p + 1, end) > 0) break;
     }
     scan->at = word->end = p;
     return word->end > word->begin;
@@ -184,8 +164,7 @@ bool io_scan_line(io_scan *scan) {
     while (scan->continues && io_scan_word(scan, &word))
         ;
     const char *p = scan->at;
-    while (p < scan->end && *p != '\n' && *p != '\r')
-        p++;
+    while (p < scan->end && *p != '\n' && *p != '\r') p++;
     scan->at = p + newline_length(p, scan->end);
     scan->line += scan->at > p;
     return scan->at < scan->end;
@@ -202,13 +181,12 @@ bool io_word_is(io_word word, const char *text) {
 
 skein_status io_scan_number(const io_scan *scan, io_word word, const char *expected, double *value) {
     io_number kind = io_number_parse(word.begin, word.end, value);
-    if (kind == IO_NUMBER_FINE)
-        return SKEIN_OK;
+    if (kind == IO_NUMBER_FINE) return SKEIN_OK;
     char quote[IO_QUOTE_SIZE];
     io_quote(word.begin, word.end, quote);
     if (kind == IO_NUMBER_NOT_FINITE)
-        return io_error_at(scan->error, SKEIN_ERROR_SYNTAX, scan->path, word.line,
-                           "%s is %s: expected a finite number", expected, quote);
+        return io_error_at(scan->error, SKEIN_ERROR_SYNTAX, scan->path, word.line, "%s is %s: expected a finite number",
+                           expected, quote);
     bool comma = memchr(word.begin, ',', (size_t)(word.end - word.begin)) != NULL;
     return io_error_at(scan->error, SKEIN_ERROR_SYNTAX, scan->path, word.line,
                        "%s is %s: expected a number such as 0.5, -2 or 1e-3%s", expected, quote,
@@ -227,38 +205,32 @@ static bool find_repeat(const uint32_t *corners, size_t size, uint32_t *repeat) 
     if (size <= 16) {
         for (size_t i = 1; i < size; i++)
             for (size_t j = 0; j < i; j++)
-                if (corners[i] == corners[j])
-                    *repeat = corners[i];
+                if (corners[i] == corners[j]) *repeat = corners[i];
         return true;
     }
     uint32_t *sorted = malloc(size * sizeof *sorted);
-    if (!sorted)
-        return false;
+    if (!sorted) return false;
     memcpy(sorted, corners, size * sizeof *sorted);
     qsort(sorted, size, sizeof *sorted, compare_u32);
     for (size_t i = 1; i < size; i++)
-        if (sorted[i] == sorted[i - 1])
-            *repeat = sorted[i];
+        if (sorted[i] == sorted[i - 1]) *repeat = sorted[i];
     free(sorted);
     return true;
 }
 
 skein_status io_scan_close_face(const io_scan *scan, io_mesh *mesh, size_t line, size_t size, uint32_t base) {
     if (size < 3)
-        return io_error_at(scan->error, SKEIN_ERROR_SYNTAX, scan->path, line,
-                           "a face of %zu %s: expected 3 or more%s", size, size == 1 ? "corner" : "corners",
-                           io_scan_cut_hint(scan));
+        return io_error_at(scan->error, SKEIN_ERROR_SYNTAX, scan->path, line, "a face of %zu %s: expected 3 or more%s",
+                           size, size == 1 ? "corner" : "corners", io_scan_cut_hint(scan));
     uint32_t repeat;
-    if (size > UINT32_MAX ||
-        !find_repeat(mesh->face_vertices + mesh->face_vertex_count - size, size, &repeat) ||
+    if (size > UINT32_MAX || !find_repeat(mesh->face_vertices + mesh->face_vertex_count - size, size, &repeat) ||
         !io_mesh_add_face(mesh, (uint32_t)size))
         return io_error_at(scan->error, SKEIN_ERROR_MEMORY, scan->path, line, "out of memory after %zu faces",
                            mesh->face_count);
     if (repeat != UINT32_MAX)
-        return io_error_at(
-            scan->error, SKEIN_ERROR_SYNTAX, scan->path, line,
-            "vertex %lu twice in one face: expected different corners (a hole must be cut open)",
-            (unsigned long)repeat + base);
+        return io_error_at(scan->error, SKEIN_ERROR_SYNTAX, scan->path, line,
+                           "vertex %lu twice in one face: expected different corners (a hole must be cut open)",
+                           (unsigned long)repeat + base);
     return SKEIN_OK;
 }
 
@@ -279,16 +251,14 @@ static double parse_long(const char *begin, const char *end, int64_t exponent) {
         if (*p == '.') {
             after_point = true;
         } else if (count < MOST_DIGITS) {
-            if (count > 0 || *p != '0')
-                text[count++] = *p;
+            if (count > 0 || *p != '0') text[count++] = *p;
             exponent -= after_point;
         } else {
             rest = rest || *p != '0';
             exponent += !after_point;
         }
     }
-    if (count == 0)
-        return 0;
+    if (count == 0) return 0;
     if (rest) {
         text[count++] = '1';
         exponent--;
@@ -325,14 +295,12 @@ io_number io_number_parse(const char *begin, const char *end, double *value) {
             after_point = true;
             continue;
         }
-        if (!is_digit(*p))
-            break;
+        if (!is_digit(*p)) break;
         digit_count++;
         if (whole < 1000000000000000000u) {
             whole = whole * 10 + (uint64_t)(*p - '0');
             shift -= after_point;
-        } else
-            exact = false;
+        } else exact = false;
     }
     const char *digits_end = p;
     if (digit_count == 0 || (p < end && (*p | 32) != 'e'))
@@ -342,12 +310,9 @@ io_number io_number_parse(const char *begin, const char *end, double *value) {
     if (p < end) {
         bool down = ++p < end && *p == '-';
         p += p < end && (*p == '-' || *p == '+');
-        if (p == end)
-            return IO_NUMBER_NONE;
-        for (; p < end && is_digit(*p); p++)
-            exponent = exponent < 1000000000 ? exponent * 10 + (*p - '0') : exponent;
-        if (p < end)
-            return IO_NUMBER_NONE;
+        if (p == end) return IO_NUMBER_NONE;
+        for (; p < end && is_digit(*p); p++) exponent = exponent < 1000000000 ? exponent * 10 + (*p - '0') : exponent;
+        if (p < end) return IO_NUMBER_NONE;
         exponent = down ? -exponent : exponent;
     }
 
@@ -355,8 +320,7 @@ io_number io_number_parse(const char *begin, const char *end, double *value) {
     double size;
     if (exact && whole <= (uint64_t)1 << 53 && power >= -22 && power <= 22)
         size = power < 0 ? (double)whole / ten_to[-power] : (double)whole * ten_to[power];
-    else
-        size = parse_long(digits, digits_end, exponent);
+    else size = parse_long(digits, digits_end, exponent);
     *value = negative ? -size : size;
     return isfinite(size) ? IO_NUMBER_FINE : IO_NUMBER_NOT_FINITE;
 }

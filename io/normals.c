@@ -20,8 +20,7 @@ static const double *corner_position(const skein_mesh *mesh, const uint32_t *fac
 }
 
 static void subtract(double out[3], const double a[3], const double b[3]) {
-    for (int k = 0; k < 3; k++)
-        out[k] = a[k] - b[k];
+    for (int k = 0; k < 3; k++) out[k] = a[k] - b[k];
 }
 
 static void cross(double out[3], const double a[3], const double b[3]) {
@@ -37,13 +36,10 @@ static double dot(const double a[3], const double b[3]) {
 /* Divides by the largest component first: no overflow, and a vector along an axis comes out exact. */
 static bool normalise(double v[3]) {
     double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
-    if (!(largest > 0) || !isfinite(largest))
-        return false;
-    for (int k = 0; k < 3; k++)
-        v[k] /= largest;
+    if (!(largest > 0) || !isfinite(largest)) return false;
+    for (int k = 0; k < 3; k++) v[k] /= largest;
     double length = sqrt(dot(v, v));
-    for (int k = 0; k < 3; k++)
-        v[k] = v[k] / length + 0.0; // and no -0
+    for (int k = 0; k < 3; k++) v[k] = v[k] / length + 0.0; // and no -0
     return true;
 }
 
@@ -56,8 +52,7 @@ static bool face_normal(const skein_mesh *mesh, const uint32_t *face, uint32_t s
     for (uint32_t corner = 2; corner < size; corner++) {
         subtract(b, corner_position(mesh, face, corner), origin);
         cross(product, a, b);
-        for (int k = 0; k < 3; k++)
-            out[k] += product[k];
+        for (int k = 0; k < 3; k++) out[k] += product[k];
         squares += dot(a, a) + dot(b, b);
         memcpy(a, b, sizeof a);
     }
@@ -83,12 +78,10 @@ void io_normals_compute(const skein_mesh *mesh, io_normals mode, double *out) {
         uint32_t size = mesh->face_sizes[f];
         double normal[3];
         assert(size >= 3);
-        if (!face_normal(mesh, face, size, normal) || (mode != IO_NORMALS_AREA && !normalise(normal)))
-            continue;
+        if (!face_normal(mesh, face, size, normal) || (mode != IO_NORMALS_AREA && !normalise(normal))) continue;
         for (uint32_t corner = 0; corner < size; corner++) {
             double weight = mode == IO_NORMALS_ANGLE ? corner_angle(mesh, face, size, corner, normal) : 1;
-            for (int k = 0; k < 3; k++)
-                out[3 * (size_t)face[corner] + (size_t)k] += weight * normal[k];
+            for (int k = 0; k < 3; k++) out[3 * (size_t)face[corner] + (size_t)k] += weight * normal[k];
         }
     }
     for (size_t v = 0; v < mesh->vertex_count; v++) {

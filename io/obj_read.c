@@ -42,16 +42,13 @@ typedef struct obj_reader {
 } obj_reader;
 
 static const char *const passed_over[] = {
-    "vn",     "vp",         "g",         "o",     "s",    "mg",    "usemtl",   "mtllib",
-    "usemap", "maplib",     "cstype",    "deg",   "bmat", "step",  "parm",     "trim",
-    "hole",   "scrv",       "sp",        "end",   "con",  "bevel", "c_interp", "d_interp",
-    "lod",    "shadow_obj", "trace_obj", "ctech", "stech"};
-static const char *const undrawn[] = {"l",   "p",   "curv", "curv2", "surf", "call",
-                                      "bsp", "bzp", "cdc",  "cdp",   "res"};
+    "vn",     "vp",    "g",        "o",        "s",    "mg",         "usemtl",    "mtllib", "usemap", "maplib",
+    "cstype", "deg",   "bmat",     "step",     "parm", "trim",       "hole",      "scrv",   "sp",     "end",
+    "con",    "bevel", "c_interp", "d_interp", "lod",  "shadow_obj", "trace_obj", "ctech",  "stech"};
+static const char *const undrawn[] = {"l", "p", "curv", "curv2", "surf", "call", "bsp", "bzp", "cdc", "cdp", "res"};
 
 static void count_in(tally *t, size_t line) {
-    if (t->count++ == 0)
-        t->line = line;
+    if (t->count++ == 0) t->line = line;
 }
 
 static skein_status fail_memory(const obj_reader *reader) {
@@ -63,25 +60,21 @@ static skein_status fail_memory(const obj_reader *reader) {
 /* ---- Vertices ------------------------------------------------------------------------------ */
 
 static skein_status read_vertex(obj_reader *reader, size_t line) {
-    static const char *const names[8] = {"x",        "y",        "z",        "the value after z",
-                                         "a colour", "a colour", "a colour", ""};
+    static const char *const names[8] = {"x", "y", "z", "the value after z", "a colour", "a colour", "a colour", ""};
     double values[8];
     int count = 0;
     for (io_word word; count < 8 && io_scan_word(&reader->scan, &word); count++) {
         skein_status status = io_scan_number(&reader->scan, word, names[count], &values[count]);
-        if (status != SKEIN_OK)
-            return status;
+        if (status != SKEIN_OK) return status;
     }
     if (count < 3 || count == 5 || count == 8)
         return io_error_at(reader->scan.error, SKEIN_ERROR_SYNTAX, reader->scan.path, line,
-                           "a vertex of %d%s numbers: expected x y z, perhaps with a weight or a colour%s",
-                           count, count == 8 ? " or more" : "",
-                           count < 3 ? io_scan_cut_hint(&reader->scan) : "");
-    if ((count == 4 || count == 7) && values[3] != 1)
-        count_in(&reader->weights, line);
+                           "a vertex of %d%s numbers: expected x y z, perhaps with a weight or a colour%s", count,
+                           count == 8 ? " or more" : "", count < 3 ? io_scan_cut_hint(&reader->scan) : "");
+    if ((count == 4 || count == 7) && values[3] != 1) count_in(&reader->weights, line);
     if (reader->mesh->vertex_count == IO_MESH_MOST_VERTICES)
-        return io_error_at(reader->scan.error, SKEIN_ERROR_LIMIT, reader->scan.path, line,
-                           "more than %lu vertices", (unsigned long)IO_MESH_MOST_VERTICES);
+        return io_error_at(reader->scan.error, SKEIN_ERROR_LIMIT, reader->scan.path, line, "more than %lu vertices",
+                           (unsigned long)IO_MESH_MOST_VERTICES);
     return io_mesh_add_vertex(reader->mesh, values) ? SKEIN_OK : fail_memory(reader);
 }
 
@@ -96,8 +89,7 @@ static skein_status read_uv(obj_reader *reader, size_t line) {
             count_in(&reader->uvs, line);
         } else if (count < 3) {
             skein_status status = io_scan_number(&reader->scan, word, "a texture coordinate", &values[count]);
-            if (status != SKEIN_OK)
-                return status;
+            if (status != SKEIN_OK) return status;
         }
     }
     if (count < 1 || count > 3)
@@ -117,8 +109,7 @@ static const char *read_index(const char *p, const char *end, int64_t *index) {
     const char *digits = p;
     int64_t value = 0;
     for (; p < end && *p >= '0' && *p <= '9'; p++)
-        if (value < 100000000000000)
-            value = value * 10 + (*p - '0');
+        if (value < 100000000000000) value = value * 10 + (*p - '0');
     *index = negative ? -value : value;
     return p > digits ? p : begin;
 }
@@ -132,14 +123,12 @@ static skein_status read_corner(const obj_reader *reader, io_word word, corner *
         const char *after = read_index(p, word.end, &indices[part]);
         given[part] = after > p;
         p = after;
-        if (part == 2 || p == word.end || *p != '/')
-            break;
+        if (part == 2 || p == word.end || *p != '/') break;
         p++;
     }
     *out = (corner){indices[0], indices[1], given[1]};
     int64_t most = (int64_t)IO_MESH_MOST_VERTICES;
-    if (given[0] && p == word.end && indices[0] <= most && indices[0] >= -most)
-        return SKEIN_OK;
+    if (given[0] && p == word.end && indices[0] <= most && indices[0] >= -most) return SKEIN_OK;
     char quote[IO_QUOTE_SIZE];
     if (given[0] && p == word.end)
         return io_error_at(reader->scan.error, SKEIN_ERROR_SYNTAX, reader->scan.path, word.line,
@@ -171,11 +160,9 @@ static skein_status resolve_vertex(obj_reader *reader, size_t line, int64_t inde
         *vertex = (uint32_t)(count - (uint64_t)-index);
         return SKEIN_OK;
     }
-    if (index <= 0)
-        return fail_range(reader, line, index);
+    if (index <= 0) return fail_range(reader, line, index);
     *vertex = (uint32_t)(index - 1);
-    if ((uint64_t)index <= count)
-        return SKEIN_OK;
+    if ((uint64_t)index <= count) return SKEIN_OK;
     // It points ahead: judged when all vertices are known.
     if (!io_grow(&reader->forwards, &reader->forward_capacity, reader->forward_count + 1, sizeof(forward)))
         return fail_memory(reader);
@@ -195,10 +182,8 @@ static skein_status read_face(obj_reader *reader, size_t line) {
         corner c;
         uint32_t vertex = 0;
         skein_status status = read_corner(reader, word, &c);
-        if (status == SKEIN_OK)
-            status = resolve_vertex(reader, word.line, c.vertex, &vertex);
-        if (status != SKEIN_OK)
-            return status;
+        if (status == SKEIN_OK) status = resolve_vertex(reader, word.line, c.vertex, &vertex);
+        if (status != SKEIN_OK) return status;
         if (!io_mesh_add_corner(reader->mesh, vertex, c.has_uv ? resolve_uv(reader, c.uv) : IO_NO_UV))
             return fail_memory(reader);
     }
@@ -209,15 +194,13 @@ static skein_status read_face(obj_reader *reader, size_t line) {
 
 static bool is_one_of(io_word word, const char *const *list, size_t count) {
     for (size_t i = 0; i < count; i++)
-        if (io_word_is(word, list[i]))
-            return true;
+        if (io_word_is(word, list[i])) return true;
     return false;
 }
 
 /* A word that is neither vertex nor face. */
 static skein_status pass_over(obj_reader *reader, io_word word) {
-    if (is_one_of(word, passed_over, sizeof passed_over / sizeof *passed_over))
-        return SKEIN_OK;
+    if (is_one_of(word, passed_over, sizeof passed_over / sizeof *passed_over)) return SKEIN_OK;
     if (is_one_of(word, undrawn, sizeof undrawn / sizeof *undrawn)) {
         count_in(&reader->undrawn, word.line);
         return SKEIN_OK;
@@ -235,14 +218,10 @@ static skein_status pass_over(obj_reader *reader, io_word word) {
 
 static skein_status read_line(obj_reader *reader) {
     io_word word;
-    if (!io_scan_word(&reader->scan, &word))
-        return SKEIN_OK;
-    if (io_word_is(word, "v"))
-        return read_vertex(reader, word.line);
-    if (io_word_is(word, "f") || io_word_is(word, "fo"))
-        return read_face(reader, word.line);
-    if (io_word_is(word, "vt"))
-        return read_uv(reader, word.line);
+    if (!io_scan_word(&reader->scan, &word)) return SKEIN_OK;
+    if (io_word_is(word, "v")) return read_vertex(reader, word.line);
+    if (io_word_is(word, "f") || io_word_is(word, "fo")) return read_face(reader, word.line);
+    if (io_word_is(word, "vt")) return read_uv(reader, word.line);
     return pass_over(reader, word);
 }
 
@@ -268,11 +247,9 @@ static skein_status finish(obj_reader *reader) {
 }
 
 static void warn_tally(io_warnings warnings, const char *path, tally t, const char *what) {
-    if (t.count == 0)
-        return;
+    if (t.count == 0) return;
     char place[32] = "";
-    if (t.line > 0)
-        snprintf(place, sizeof place, ":%zu", t.line);
+    if (t.line > 0) snprintf(place, sizeof place, ":%zu", t.line);
     io_warn(warnings, "%s%s: %s (%zu in the file)", path, place, what, t.count);
 }
 
@@ -281,21 +258,17 @@ skein_status io_obj_read(const char *text, size_t size, const char *path, io_mes
     *out = (io_mesh){0};
     obj_reader reader = {.scan = {.continues = true, .path = path, .error = error}, .mesh = out};
     skein_status status = io_scan_start(&reader.scan, text, size);
-    if (status == SKEIN_OK)
-        status = io_scan_check_text(&reader.scan);
-    if (status == SKEIN_OK)
-        do
+    if (status == SKEIN_OK) status = io_scan_check_text(&reader.scan);
+    if (status == SKEIN_OK) do
             status = read_line(&reader);
         while (status == SKEIN_OK && io_scan_line(&reader.scan));
-    if (status == SKEIN_OK)
-        status = finish(&reader);
+    if (status == SKEIN_OK) status = finish(&reader);
     if (status == SKEIN_OK) {
         warn_tally(warnings, path, reader.unknown, "a line that OBJ does not know was passed over");
         warn_tally(warnings, path, reader.undrawn, "points, lines and curves are not read, only faces");
         warn_tally(warnings, path, reader.weights, "a vertex's weight other than 1 was left out");
         warn_tally(warnings, path, reader.uvs, "a texture coordinate that does not exist was left out");
-    } else
-        io_mesh_free(out);
+    } else io_mesh_free(out);
     free(reader.forwards);
     return status;
 }

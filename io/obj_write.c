@@ -26,26 +26,21 @@ size_t io_float_print(float value, char out[IO_FLOAT_SIZE]) {
     int count = 0;
     const char *p = text;
     for (; *p != 'e'; p++)
-        if (is_digit(*p) && count < 9)
-            digits[count++] = *p;
+        if (is_digit(*p) && count < 9) digits[count++] = *p;
     int exponent = atoi(p + 1);
-    while (count > 1 && digits[count - 1] == '0')
-        count--;
+    while (count > 1 && digits[count - 1] == '0') count--;
 
     // Laid out as %g does: with an exponent only where the number would be long.
-    if (value < 0)
-        out[at++] = '-';
+    if (value < 0) out[at++] = '-';
     bool scientific = exponent < -4 || exponent > 8;
     int first = scientific || exponent > 0 ? 0 : exponent, units = scientific ? 0 : exponent;
     for (int digit = first; digit < count || digit <= units; digit++) {
-        if (digit == units + 1)
-            out[at++] = '.';
+        if (digit == units + 1) out[at++] = '.';
         out[at++] = digit >= 0 && digit < count ? digits[digit] : '0';
     }
     out[at] = '\0';
     if (scientific)
-        at += (size_t)snprintf(out + at, IO_FLOAT_SIZE - at, "e%c%02d", exponent < 0 ? '-' : '+',
-                               abs(exponent));
+        at += (size_t)snprintf(out + at, IO_FLOAT_SIZE - at, "e%c%02d", exponent < 0 ? '-' : '+', abs(exponent));
     return at;
 }
 
@@ -78,8 +73,7 @@ static void write_face(io_output *output, const uint32_t *corners, uint32_t size
 /* No reader knows what to do with nan, so no such file is made. */
 static skein_status check_positions(const char *path, const skein_mesh *mesh, skein_error *error) {
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
-        if (isfinite((float)mesh->positions[i]))
-            continue;
+        if (isfinite((float)mesh->positions[i])) continue;
         size_t vertex = i / 3;
         return io_error_set(error, SKEIN_ERROR_VALUE, path,
                             "not written: vertex %zu is at (%g, %g, %g), which is not finite as a float "
@@ -94,28 +88,23 @@ skein_status io_obj_write(const char *path, const skein_mesh *mesh, io_normals n
     skein_error unseen;
     error = error ? error : &unseen;
     skein_status status = check_positions(path, mesh, error);
-    if (status != SKEIN_OK)
-        return status;
+    if (status != SKEIN_OK) return status;
     double *vectors = malloc((mesh->vertex_count + 1) * 3 * sizeof *vectors);
     if (!vectors)
-        return io_error_set(error, SKEIN_ERROR_MEMORY, path, "out of memory for %zu normals",
-                            mesh->vertex_count);
+        return io_error_set(error, SKEIN_ERROR_MEMORY, path, "out of memory for %zu normals", mesh->vertex_count);
     io_normals_compute(mesh, normals, vectors);
 
     io_output *output = io_output_open(path, error);
     if (output) {
         io_output_printf(output, "# Skein %s: metres, y up; %zu vertices, %zu faces\n", SKEIN_VERSION,
                          mesh->vertex_count, mesh->face_count);
-        for (size_t v = 0; v < mesh->vertex_count; v++)
-            write_vector(output, "v", mesh->positions + 3 * v);
-        for (size_t v = 0; v < mesh->vertex_count; v++)
-            write_vector(output, "vn", vectors + 3 * v);
+        for (size_t v = 0; v < mesh->vertex_count; v++) write_vector(output, "v", mesh->positions + 3 * v);
+        for (size_t v = 0; v < mesh->vertex_count; v++) write_vector(output, "vn", vectors + 3 * v);
         const uint32_t *corners = mesh->face_vertices;
         for (size_t f = 0; f < mesh->face_count; corners += mesh->face_sizes[f++])
             write_face(output, corners, mesh->face_sizes[f]);
         status = io_output_commit(output, error);
-    } else
-        status = error->status;
+    } else status = error->status;
     free(vectors);
     return status;
 }

@@ -18,14 +18,12 @@ enum { HEADER_BYTES = 32, POINT_BYTES = 12, SAMPLES_OFFSET = 28, BLOCK_POINTS = 
 static const char magic[12] = "POINTCACHE2";
 
 static void put_u32(unsigned char *bytes, uint32_t value) {
-    for (int k = 0; k < 4; k++)
-        bytes[k] = (unsigned char)(value >> (8 * k));
+    for (int k = 0; k < 4; k++) bytes[k] = (unsigned char)(value >> (8 * k));
 }
 
 static uint32_t get_u32(const unsigned char *bytes) {
     uint32_t value = 0;
-    for (int k = 0; k < 4; k++)
-        value |= (uint32_t)bytes[k] << (8 * k);
+    for (int k = 0; k < 4; k++) value |= (uint32_t)bytes[k] << (8 * k);
     return value;
 }
 
@@ -61,8 +59,7 @@ io_pc2_writer *io_pc2_create(const char *path, io_pc2_header header, skein_error
         return NULL;
     }
     if (!isfinite(header.start) || !(header.rate > 0) || !isfinite(header.rate)) {
-        io_error_set(error, SKEIN_ERROR_VALUE, path,
-                     "a PC2 file needs a finite first frame and a rate above 0");
+        io_error_set(error, SKEIN_ERROR_VALUE, path, "a PC2 file needs a finite first frame and a rate above 0");
         return NULL;
     }
     io_pc2_writer *writer = malloc(sizeof *writer);
@@ -94,13 +91,11 @@ io_pc2_writer *io_pc2_create(const char *path, io_pc2_header header, skein_error
 
 skein_status io_pc2_add(io_pc2_writer *writer, const double *positions, skein_error *error) {
     if (writer->added == INT32_MAX)
-        return io_error_set(error, SKEIN_ERROR_LIMIT, writer->path,
-                            "a PC2 file holds at most 2147483647 samples");
+        return io_error_set(error, SKEIN_ERROR_LIMIT, writer->path, "a PC2 file holds at most 2147483647 samples");
     size_t left = writer->header.points;
     while (left > 0) {
         size_t count = left < BLOCK_POINTS ? left : BLOCK_POINTS;
-        for (size_t i = 0; i < 3 * count; i++)
-            put_float(writer->block + 4 * i, (float)positions[i]);
+        for (size_t i = 0; i < 3 * count; i++) put_float(writer->block + 4 * i, (float)positions[i]);
         io_output_write(writer->output, writer->block, count * POINT_BYTES);
         positions += 3 * count;
         left -= count;
@@ -117,9 +112,8 @@ skein_status io_pc2_commit(io_pc2_writer *writer, skein_error *error) {
         io_output_patch(writer->output, SAMPLES_OFFSET, bytes, sizeof bytes);
     }
     if (writer->header.samples != IO_PC2_UNKNOWN && writer->header.samples != writer->added)
-        status =
-            io_error_set(error, SKEIN_ERROR_VALUE, writer->path, "%lu samples were promised, %lu were added",
-                         (unsigned long)writer->header.samples, (unsigned long)writer->added);
+        status = io_error_set(error, SKEIN_ERROR_VALUE, writer->path, "%lu samples were promised, %lu were added",
+                              (unsigned long)writer->header.samples, (unsigned long)writer->added);
     else {
         status = io_output_commit(writer->output, error);
         writer->output = NULL;
@@ -129,8 +123,7 @@ skein_status io_pc2_commit(io_pc2_writer *writer, skein_error *error) {
 }
 
 void io_pc2_abandon(io_pc2_writer *writer) {
-    if (!writer)
-        return;
+    if (!writer) return;
     io_output_abandon(writer->output);
     free(writer->path);
     free(writer);
@@ -148,8 +141,7 @@ struct io_pc2_reader {
 /* Checks the first bytes and the size against each other. */
 static skein_status read_header(io_pc2_reader *reader, skein_error *error) {
     unsigned char bytes[HEADER_BYTES];
-    if (fread(bytes, 1, sizeof bytes, reader->file) != sizeof bytes ||
-        memcmp(bytes, magic, sizeof magic) != 0)
+    if (fread(bytes, 1, sizeof bytes, reader->file) != sizeof bytes || memcmp(bytes, magic, sizeof magic) != 0)
         return io_error_set(error, SKEIN_ERROR_SYNTAX, reader->path, "not a PC2 file: expected POINTCACHE2");
     if (get_u32(bytes + 12) != 1)
         return io_error_set(error, SKEIN_ERROR_SYNTAX, reader->path, "PC2 version %lu: expected 1",
@@ -161,17 +153,16 @@ static skein_status read_header(io_pc2_reader *reader, skein_error *error) {
     uint64_t points = reader->header.points, samples = reader->header.samples;
     if (points == 0 || points > INT32_MAX || samples > INT32_MAX)
         return io_error_set(error, SKEIN_ERROR_SYNTAX, reader->path,
-                            "%llu points and %llu samples: expected 1 to 2147483647",
-                            (unsigned long long)points, (unsigned long long)samples);
+                            "%llu points and %llu samples: expected 1 to 2147483647", (unsigned long long)points,
+                            (unsigned long long)samples);
     // 2^31 x 2^31 x 12 passes 64 bits, so the file's size is divided instead.
     off_t size = fseeko(reader->file, 0, SEEK_END) == 0 ? ftello(reader->file) : -1;
-    if (size < 0)
-        return io_error_set(error, SKEIN_ERROR_FILE, reader->path, "cannot read: %s", strerror(errno));
+    if (size < 0) return io_error_set(error, SKEIN_ERROR_FILE, reader->path, "cannot read: %s", strerror(errno));
     uint64_t sample_bytes = points * POINT_BYTES, body = (uint64_t)size - HEADER_BYTES;
     if (body / sample_bytes != samples || body % sample_bytes != 0)
         return io_error_set(error, SKEIN_ERROR_SYNTAX, reader->path,
-                            "the header counts %llu samples, the file holds %llu%s",
-                            (unsigned long long)samples, (unsigned long long)(body / sample_bytes),
+                            "the header counts %llu samples, the file holds %llu%s", (unsigned long long)samples,
+                            (unsigned long long)(body / sample_bytes),
                             body % sample_bytes != 0 ? " and a part of one: it is cut off" : "");
     return SKEIN_OK;
 }
@@ -188,10 +179,8 @@ io_pc2_reader *io_pc2_open(const char *path, io_pc2_header *header, skein_error 
     reader->path = name;
     reader->file = fopen(path, "rb");
     skein_status status = SKEIN_OK;
-    if (!reader->file)
-        status = io_error_set(error, SKEIN_ERROR_FILE, path, "cannot read: %s", strerror(errno));
-    if (status == SKEIN_OK)
-        status = read_header(reader, error);
+    if (!reader->file) status = io_error_set(error, SKEIN_ERROR_FILE, path, "cannot read: %s", strerror(errno));
+    if (status == SKEIN_OK) status = read_header(reader, error);
     if (status != SKEIN_OK) {
         io_pc2_close(reader);
         return NULL;
@@ -210,22 +199,17 @@ skein_status io_pc2_read(io_pc2_reader *reader, uint32_t sample, double *out, sk
     while (fine && left > 0) {
         size_t count = left < BLOCK_POINTS ? left : BLOCK_POINTS;
         fine = fread(reader->block, POINT_BYTES, count, reader->file) == count;
-        for (size_t i = 0; fine && i < 3 * count; i++)
-            out[i] = (double)get_float(reader->block + 4 * i);
+        for (size_t i = 0; fine && i < 3 * count; i++) out[i] = (double)get_float(reader->block + 4 * i);
         out += 3 * count;
         left -= count;
     }
-    if (fine)
-        return SKEIN_OK;
-    return io_error_set(error, SKEIN_ERROR_FILE, reader->path, "cannot read sample %lu",
-                        (unsigned long)sample);
+    if (fine) return SKEIN_OK;
+    return io_error_set(error, SKEIN_ERROR_FILE, reader->path, "cannot read sample %lu", (unsigned long)sample);
 }
 
 void io_pc2_close(io_pc2_reader *reader) {
-    if (!reader)
-        return;
-    if (reader->file)
-        fclose(reader->file);
+    if (!reader) return;
+    if (reader->file) fclose(reader->file);
     free(reader->path);
     free(reader);
 }

@@ -42,7 +42,8 @@ static const void *type_of(const skein_world *world, skein_category category, co
     return skein_kind_find(category, name, sk_world_error(world));
 }
 
-skein_status skein_body_add(skein_world *world, const char *kind, const skein_mesh *mesh, const skein_setting *settings, skein_handle *handle) {
+skein_status skein_body_add(skein_world *world, const char *kind, const skein_mesh *mesh, const skein_setting *settings,
+                            skein_handle *handle) {
     const sk_body_type *type = type_of(world, SKEIN_BODY, kind);
     return type ? sk_world_add_body(world, type, mesh, settings, handle) : SKEIN_ERROR_NAME;
 }
@@ -53,12 +54,14 @@ skein_status skein_constraint_add(skein_world *world, const char *kind, const ui
     return type ? sk_world_add_constraint(world, type, particles, count, settings, handle) : SKEIN_ERROR_NAME;
 }
 
-skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings, skein_handle *handle) {
+skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings,
+                             skein_handle *handle) {
     const sk_force_type *type = type_of(world, SKEIN_FORCE, kind);
     return type ? sk_world_add_force(world, type, settings, handle) : SKEIN_ERROR_NAME;
 }
 
-skein_status skein_collider_add(skein_world *world, const char *kind, const skein_setting *settings, skein_handle *handle) {
+skein_status skein_collider_add(skein_world *world, const char *kind, const skein_setting *settings,
+                                skein_handle *handle) {
     const sk_collider_type *type = type_of(world, SKEIN_COLLIDER, kind);
     return type ? sk_world_add_collider(world, type, settings, handle) : SKEIN_ERROR_NAME;
 }

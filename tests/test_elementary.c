@@ -132,13 +132,13 @@ typedef struct one {
 } one;
 
 static const one ones[] = {
-    {"sin", sk_sin, sk_sinf, sinl, sin, 0.79, 0.79, -20, 30, -12, 25, 0xc4595789929ebcc0, 0x8dc8c3d437d677e1},
-    {"cos", sk_cos, sk_cosf, cosl, cos, 0.79, 0.79, -20, 30, -12, 25, 0xff6ea696cfb698c7, 0x1c5cd73fc811d6c6},
-    {"tan", sk_tan, sk_tanf, tanl, tan, 1.0, 1.0, -20, 30, -12, 25, 0x2612644c6d29b428, 0xb7dfe159454b1bad},
-    {"exp", sk_exp, sk_expf, expl, exp, 0.79, 0.79, -20, 9, -12, 6, 0x96e609605e824e5c, 0x463be7e37810cd05},
-    {"log", sk_log, sk_logf, logl, log, 0.79, 0.79, -40, 40, -20, 20, 0xacc1724b2912be17, 0x69bc280281b3828a},
-    {"asin", sk_asin, sk_asinf, asinl, asin, 0.79, 0.79, -20, -1, -10, -1, 0xa88049d9475dd797, 0x412cc63083a47876},
-    {"acos", sk_acos, sk_acosf, acosl, acos, 0.79, 0.79, -20, -1, -10, -1, 0x8d51029a5dfb63b8, 0x67d8da4c77ea7063},
+    {"sin", sk_sin, sk_sinf, sinl, sin, 0.87, 0.83, -20, 30, -12, 25, 0xc4595789929ebcc0, 0x8dc8c3d437d677e1},
+    {"cos", sk_cos, sk_cosf, cosl, cos, 0.87, 0.83, -20, 30, -12, 25, 0xff6ea696cfb698c7, 0x1c5cd73fc811d6c6},
+    {"tan", sk_tan, sk_tanf, tanl, tan, 1.05, 1.02, -20, 30, -12, 25, 0x2612644c6d29b428, 0xb7dfe159454b1bad},
+    {"exp", sk_exp, sk_expf, expl, exp, 0.79, 0.80, -20, 9, -12, 6, 0x96e609605e824e5c, 0x463be7e37810cd05},
+    {"log", sk_log, sk_logf, logl, log, 0.68, 0.67, -40, 40, -20, 20, 0xacc1724b2912be17, 0x69bc280281b3828a},
+    {"asin", sk_asin, sk_asinf, asinl, asin, 0.73, 0.74, -20, -1, -10, -1, 0xa88049d9475dd797, 0x412cc63083a47876},
+    {"acos", sk_acos, sk_acosf, acosl, acos, 0.70, 0.72, -20, -1, -10, -1, 0x8d51029a5dfb63b8, 0x67d8da4c77ea7063},
 };
 
 /* All exponents, the likely ones, near 1, and multiples of pi/2. */
@@ -216,8 +216,8 @@ typedef struct two {
 } two;
 
 static const two twos[] = {
-    {"atan2", sk_atan2, sk_atan2f, atan2l, atan2, 0.79, 0.79, 0x63cda9fc2333c6cf, 0x865bd04179f2092b},
-    {"pow", sk_pow, sk_powf, powl, pow, 0.79, 0.79, 0x9a42278aa9aafd88, 0x6fe096f2fd981af6},
+    {"atan2", sk_atan2, sk_atan2f, atan2l, atan2, 0.74, 0.75, 0x63cda9fc2333c6cf, 0x865bd04179f2092b},
+    {"pow", sk_pow, sk_powf, powl, pow, 0.79, 0.51, 0x9a42278aa9aafd88, 0x6fe096f2fd981af6},
 };
 
 /* Any bits; of like size; and for powers, whole numbers and results all over the range. */

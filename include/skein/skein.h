@@ -74,13 +74,13 @@ typedef enum skein_field_type {
 typedef struct skein_field {
     const char *name; /* dots make groups: "stretch.stiffness" */
     skein_field_type type;
-    size_t offset;         /* of the value in the kind's parameters; internal */
-    const char *unit;      /* "N/m"; "" where there is none */
-    double initial[3];     /* the default's numbers (a choice: its place in the list) */
-    double least, most;    /* the range of every component, inclusive */
-    const char *choices;   /* "area|uniform|angle", or NULL */
-    const char *text;      /* the default of a text field, or NULL */
-    const char *help;      /* one line */
+    size_t offset;       /* of the value in the kind's parameters; internal */
+    const char *unit;    /* "N/m"; "" where there is none */
+    double initial[3];   /* the default's numbers (a choice: its place in the list) */
+    double least, most;  /* the range of every component, inclusive */
+    const char *choices; /* "area|uniform|angle", or NULL */
+    const char *text;    /* the default of a text field, or NULL */
+    const char *help;    /* one line */
 } skein_field;
 
 typedef enum skein_category {
@@ -120,11 +120,13 @@ typedef struct skein_setting {
     skein_value value;
 } skein_setting;
 
+// clang-format off
 #define SKEIN_REAL(name_, x_) {(name_), {1, {(double)(x_), 0, 0}, NULL}}
 #define SKEIN_PAIR(name_, x_, y_) {(name_), {2, {(double)(x_), (double)(y_), 0}, NULL}}
 #define SKEIN_VEC3(name_, x_, y_, z_) {(name_), {3, {(double)(x_), (double)(y_), (double)(z_)}, NULL}}
 #define SKEIN_TEXT(name_, text_) {(name_), {0, {0, 0, 0}, (text_)}}
 #define SKEIN_SETTINGS(...) ((const skein_setting[]){__VA_ARGS__, {NULL, {0, {0, 0, 0}, NULL}}})
+// clang-format on
 
 /* The library's kinds of a category, `index` from 0; NULL past the end. */
 const skein_kind *skein_kind_at(skein_category category, size_t index);
@@ -196,19 +198,18 @@ typedef struct skein_mesh {
 /* Adds loose particles, in order. `positions` and `velocities` are count x 3 (velocities may be
  * NULL: at rest); `masses` are in kg, 0 holds the particle where it is. `first` receives the index
  * of the first one and may be NULL. Indices never change. */
-skein_status skein_particles_add(skein_world *world, size_t count, const double *positions,
-                                 const double *velocities, const double *masses, uint32_t *first);
+skein_status skein_particles_add(skein_world *world, size_t count, const double *positions, const double *velocities,
+                                 const double *masses, uint32_t *first);
 
 /* Adds a body of a kind of SKEIN_BODY ("cloth", ...). `mesh` may be NULL where the kind can do
  * without. `settings` may be NULL; so may `handle`. */
-skein_status skein_body_add(skein_world *world, const char *kind, const skein_mesh *mesh,
-                            const skein_setting *settings, skein_handle *handle);
+skein_status skein_body_add(skein_world *world, const char *kind, const skein_mesh *mesh, const skein_setting *settings,
+                            skein_handle *handle);
 /* Adds `count` constraints of one kind, each on the kind's number of particles, with the rest
  * values of the present positions (`distance`: 2 particles each). They share their settings. */
-skein_status skein_constraint_add(skein_world *world, const char *kind, const uint32_t *particles,
-                                  size_t count, const skein_setting *settings, skein_handle *handle);
-skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings,
-                             skein_handle *handle);
+skein_status skein_constraint_add(skein_world *world, const char *kind, const uint32_t *particles, size_t count,
+                                  const skein_setting *settings, skein_handle *handle);
+skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings, skein_handle *handle);
 skein_status skein_collider_add(skein_world *world, const char *kind, const skein_setting *settings,
                                 skein_handle *handle);
 /* Sets the method; its former settings are gone. The world's own fields are kept. */
@@ -289,8 +290,7 @@ skein_view skein_velocity_view(const skein_world *world); /* w is the mass, kg (
 skein_status skein_positions_copy(const skein_world *world, size_t first, size_t count, double *out);
 skein_status skein_velocities_copy(const skein_world *world, size_t first, size_t count, double *out);
 /* Positions between the last two steps: 0 gives the state before the last step, 1 the present. */
-skein_status skein_positions_blend(const skein_world *world, double blend, size_t first, size_t count,
-                                   double *out);
+skein_status skein_positions_blend(const skein_world *world, double blend, size_t first, size_t count, double *out);
 /* Writes positions or velocities, count x 3. Finite numbers only. */
 skein_status skein_positions_set(skein_world *world, size_t first, size_t count, const double *xyz);
 skein_status skein_velocities_set(skein_world *world, size_t first, size_t count, const double *xyz);
@@ -312,8 +312,8 @@ skein_status skein_body_surface(const skein_world *world, skein_handle body, ske
 
 /* Where a collider stands now, for drawing. `shape` is the kind's name. */
 typedef struct skein_pose {
-    double position[3];    /* a sphere's centre, a point of a plane */
-    double rotation[9];    /* rows of a rotation matrix */
+    double position[3]; /* a sphere's centre, a point of a plane */
+    double rotation[9]; /* rows of a rotation matrix */
 } skein_pose;
 skein_status skein_collider_pose(const skein_world *world, skein_handle collider, skein_pose *pose);
 
@@ -321,17 +321,17 @@ skein_status skein_collider_pose(const skein_world *world, skein_handle collider
 
 typedef struct skein_statistics {
     uint64_t steps, substeps;
-    double time;               /* s, simulated */
-    double kinetic_energy;     /* J */
-    double momentum[3];        /* kg m/s */
-    double max_stretch;        /* largest (length - rest)/rest of the edges; 0.01 is one per cent */
-    double p99_stretch;        /* 99 % of the edges stretch at most so much */
-    double max_penetration;    /* m, below a collider's thickness */
-    size_t contacts;           /* pairs of a particle and a collider that touch */
+    double time;            /* s, simulated */
+    double kinetic_energy;  /* J */
+    double momentum[3];     /* kg m/s */
+    double max_stretch;     /* largest (length - rest)/rest of the edges; 0.01 is one per cent */
+    double p99_stretch;     /* 99 % of the edges stretch at most so much */
+    double max_penetration; /* m, below a collider's thickness */
+    size_t contacts;        /* pairs of a particle and a collider that touch */
     size_t particles, held_particles, constraints;
-    size_t nonfinite;          /* particles with a position or velocity that is not finite */
-    size_t memory_bytes;       /* held by the world now */
-    uint64_t state_hash;       /* of positions and velocities in the user's order */
+    size_t nonfinite;    /* particles with a position or velocity that is not finite */
+    size_t memory_bytes; /* held by the world now */
+    uint64_t state_hash; /* of positions and velocities in the user's order */
 } skein_statistics;
 
 /* Measures the present state; costs about one step, and scratch memory for the edges. */
@@ -343,8 +343,8 @@ uint64_t skein_world_hash(const skein_world *world);
 
 /* Writes the plan's rows as text, a line each, for a step of `dt`. Lines go to `write` in order; NULL only
  * makes the plan, which says whether the method can run the rules. */
-skein_status skein_world_explain(skein_world *world, double dt,
-                                 void (*write)(void *user, const char *line), void *user);
+skein_status skein_world_explain(skein_world *world, double dt, void (*write)(void *user, const char *line),
+                                 void *user);
 
 #ifdef __cplusplus
 }

@@ -79,8 +79,7 @@ skein_status skein_field_check(const skein_field *field, const skein_value *valu
             return sk_fail(error, SKEIN_ERROR_VALUE, field->name, "expected %s%s%s", type_text(field->type),
                            field->choices ? " of " : "", field->choices ? field->choices : "");
         if (field->type == SKEIN_FIELD_CHOICE && choice_place(field->choices, value->text) < 0)
-            return sk_fail(error, SKEIN_ERROR_VALUE, field->name, "'%s' is none of %s", value->text,
-                           field->choices);
+            return sk_fail(error, SKEIN_ERROR_VALUE, field->name, "'%s' is none of %s", value->text, field->choices);
         return SKEIN_OK;
     }
     // numbers: as many as asked, finite or allowed to be infinite, in range
@@ -93,15 +92,15 @@ skein_status skein_field_check(const skein_field *field, const skein_value *valu
             return sk_fail(error, SKEIN_ERROR_VALUE, field->name, "expected %s, not %g", type_text(field->type), x);
         if (!(x >= field->least && x <= field->most)) {
             range_text(field, range, sizeof range);
-            return sk_fail(error, SKEIN_ERROR_VALUE, field->name, "%g is out of range: expected %s%s%s", x,
-                           range, field->unit[0] ? " " : "", field->unit);
+            return sk_fail(error, SKEIN_ERROR_VALUE, field->name, "%g is out of range: expected %s%s%s", x, range,
+                           field->unit[0] ? " " : "", field->unit);
         }
     }
     return SKEIN_OK;
 }
 
-skein_status sk_field_store(sk_allocator *allocator, const skein_field *field, void *params,
-                            const skein_value *value, skein_error *error) {
+skein_status sk_field_store(sk_allocator *allocator, const skein_field *field, void *params, const skein_value *value,
+                            skein_error *error) {
     skein_status status = skein_field_check(field, value, error);
     if (status) return status;
     char *at = (char *)params + field->offset;
@@ -113,9 +112,7 @@ skein_status sk_field_store(sk_allocator *allocator, const skein_field *field, v
         break;
     case SKEIN_FIELD_REAL:
     case SKEIN_FIELD_REAL2:
-    case SKEIN_FIELD_VEC3:
-        memcpy(at, value->number, (size_t)number_count(field->type) * sizeof(double));
-        break;
+    case SKEIN_FIELD_VEC3: memcpy(at, value->number, (size_t)number_count(field->type) * sizeof(double)); break;
     case SKEIN_FIELD_CHOICE:
         *(int32_t *)(void *)at = value->count ? (int32_t)value->number[0] : choice_place(field->choices, value->text);
         break;
@@ -163,8 +160,8 @@ size_t skein_value_text(const skein_field *field, const skein_value *value, char
     }
     size_t length = 0;
     for (int i = 0; i < value->count; i++)
-        length += (size_t)snprintf(text + (length < size ? length : size), length < size ? size - length : 0,
-                                   "%s%.9g", i ? " " : "", value->number[i]);
+        length += (size_t)snprintf(text + (length < size ? length : size), length < size ? size - length : 0, "%s%.9g",
+                                   i ? " " : "", value->number[i]);
     return length;
 }
 

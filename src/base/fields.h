@@ -9,6 +9,7 @@
 #include "base/memory.h"
 
 /* Table rows, so that a kind's table reads like a page of the manual. `s` is the parameter struct. */
+// clang-format off
 #define SK_BOOL(s, member, name_, initial_, help_)                                                            \
     {name_, SKEIN_FIELD_BOOL, offsetof(s, member), "", {initial_, 0, 0}, 0, 1, NULL, NULL, help_}
 #define SK_INT(s, member, name_, unit_, initial_, least_, most_, help_)                                       \
@@ -23,6 +24,7 @@
     {name_, SKEIN_FIELD_VEC3, offsetof(s, member), unit_, {x_, y_, z_}, -SK_FAR, SK_FAR, NULL, NULL, help_}
 #define SK_TEXT(s, member, name_, initial_, help_)                                                            \
     {name_, SKEIN_FIELD_TEXT, offsetof(s, member), "", {0, 0, 0}, 0, 0, NULL, initial_, help_}
+// clang-format on
 
 /* The largest finite length, speed or force that a field takes: squares of it stay finite in float. */
 #define SK_FAR 1e15
@@ -34,8 +36,8 @@ bool sk_fields_default(sk_allocator *allocator, const skein_field *fields, size_
 /* Releases the text fields. */
 void sk_fields_clear(sk_allocator *allocator, const skein_field *fields, size_t count, void *params);
 /* Checks and stores one value. */
-skein_status sk_field_store(sk_allocator *allocator, const skein_field *field, void *params,
-                            const skein_value *value, skein_error *error);
+skein_status sk_field_store(sk_allocator *allocator, const skein_field *field, void *params, const skein_value *value,
+                            skein_error *error);
 skein_value sk_field_load(const skein_field *field, const void *params);
 /* The field of that name, or NULL. */
 const skein_field *sk_field_named(const skein_field *fields, size_t count, const char *name);

@@ -10,8 +10,8 @@ static int processor_has(sk_isa isa) {
     __builtin_cpu_init();
     switch (isa) {
     case SK_ISA_AVX512:
-        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
-               __builtin_cpu_supports("avx512vl");
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+               __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
     case SK_ISA_AVX2: return __builtin_cpu_supports("avx2");
     default: return 1;
     }

@@ -11,12 +11,16 @@
 #define SK_X86_ISAS
 typedef enum sk_isa { SK_ISA_SSE, SK_ISA_AVX2, SK_ISA_AVX512, SK_ISA_COUNT } sk_isa;
 /* A table of a kernel's versions, and one of a kernel that has only one. */
-#define SK_EACH_ISA(kernel) {kernel##_sse, kernel##_avx2, kernel##_avx512}
-#define SK_ANY_ISA(kernel) {kernel, kernel, kernel}
+#define SK_EACH_ISA(kernel) \
+    { kernel##_sse, kernel##_avx2, kernel##_avx512 }
+#define SK_ANY_ISA(kernel) \
+    { kernel, kernel, kernel }
 #else
 typedef enum sk_isa { SK_ISA_PLAIN, SK_ISA_COUNT } sk_isa;
-#define SK_EACH_ISA(kernel) {kernel##_plain}
-#define SK_ANY_ISA(kernel) {kernel}
+#define SK_EACH_ISA(kernel) \
+    { kernel##_plain }
+#define SK_ANY_ISA(kernel) \
+    { kernel }
 #endif
 
 /* The set to use: SKEIN_SIMD's if the processor has it, else the widest that it has. */

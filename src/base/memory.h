@@ -23,7 +23,7 @@ char *sk_copy_text(sk_allocator *allocator, const char *text);
 /* Makes room for `need` elements in a growing array; its capacity at least doubles. The new room is
  * zero. False when there is no memory: the array is then as it was. */
 bool sk_reserve(sk_allocator *allocator, void **data, size_t *capacity, size_t need, size_t element_size);
-#define SK_RESERVE(allocator, array, need)                                                                    \
+#define SK_RESERVE(allocator, array, need) \
     sk_reserve((allocator), (void **)&(array)->data, &(array)->capacity, (need), sizeof *(array)->data)
 
 #endif

@@ -20,18 +20,31 @@ typedef struct sk_vec3 {
 
 #ifdef SKEIN_DOUBLE
 #define SK_REAL_MAX 1.7976931348623157e308
-static inline real sk_sqrt(real a) { return __builtin_sqrt(a); }
-static inline real sk_abs(real a) { return __builtin_fabs(a); }
+static inline real sk_sqrt(real a) {
+    return __builtin_sqrt(a);
+}
+static inline real sk_abs(real a) {
+    return __builtin_fabs(a);
+}
 #else
 #define SK_REAL_MAX 3.402823466e38f
-static inline real sk_sqrt(real a) { return __builtin_sqrtf(a); }
-static inline real sk_abs(real a) { return __builtin_fabsf(a); }
+static inline real sk_sqrt(real a) {
+    return __builtin_sqrtf(a);
+}
+static inline real sk_abs(real a) {
+    return __builtin_fabsf(a);
+}
 #endif
 
 /* By compare and select: fmin and fmax differ between machines for signed zeros. */
-static inline real sk_min(real a, real b) { return a < b ? a : b; }
-static inline real sk_max(real a, real b) { return a > b ? a : b; }
+static inline real sk_min(real a, real b) {
+    return a < b ? a : b;
+}
+static inline real sk_max(real a, real b) {
+    return a > b ? a : b;
+}
 
+// clang-format off
 static inline sk_vec3 sk_v3(real x, real y, real z) { return (sk_vec3){x, y, z}; }
 static inline sk_vec3 sk_v3_of(const double v[3]) {
     return (sk_vec3){(real)v[0], (real)v[1], (real)v[2]};
@@ -45,6 +58,7 @@ static inline sk_vec3 sk_cross(sk_vec3 a, sk_vec3 b) {
     return (sk_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 static inline real sk_length(sk_vec3 a) { return sk_sqrt(sk_dot(a, a)); }
+// clang-format on
 
 /* Adds v to the first three components only: the fourth is a mass. */
 static inline void sk_accumulate(sk_vec4 *a, sk_vec3 v) {

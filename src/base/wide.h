@@ -49,11 +49,11 @@ typedef union SK_ISA(parts) {
     SK_ISA(sk_quad) quad[4];
 } SK_ISA(parts);
 
-#define SK_COMPARISON(name, operation)                                                                                 \
-    SK_INLINE sk_mask SK_ISA(name)(sk_wide a, sk_wide b) {                                                             \
-        SK_ISA(parts) pa = {.wide = a}, pb = {.wide = b}, out;                                                         \
-        for (int i = 0; i < SK_ISA(native_parts); i++) out.native_mask[i] = pa.native[i] operation pb.native[i];       \
-        return out.mask;                                                                                               \
+#define SK_COMPARISON(name, operation)                                                                           \
+    SK_INLINE sk_mask SK_ISA(name)(sk_wide a, sk_wide b) {                                                       \
+        SK_ISA(parts) pa = {.wide = a}, pb = {.wide = b}, out;                                                   \
+        for (int i = 0; i < SK_ISA(native_parts); i++) out.native_mask[i] = pa.native[i] operation pb.native[i]; \
+        return out.mask;                                                                                         \
     }
 SK_COMPARISON(sk_more, >)
 SK_COMPARISON(sk_at_most, <=)
@@ -148,9 +148,12 @@ SK_INLINE sk_wide4 SK_ISA(sk_transpose)(sk_wide q0, sk_wide q1, sk_wide q2, sk_w
     out.w = __builtin_shufflevector(zw01, zw23, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
 #else
     SK_ISA(parts) p0 = {.wide = q0}, p1 = {.wide = q1}, p2 = {.wide = q2}, p3 = {.wide = q3}, x, y, z, w;
+    typedef SK_ISA(sk_quad) quad;
     for (int g = 0; g < 4; g++) {
-        SK_ISA(sk_quad) xy01 = __builtin_shufflevector(p0.quad[g], p1.quad[g], 0, 4, 1, 5), zw01 = __builtin_shufflevector(p0.quad[g], p1.quad[g], 2, 6, 3, 7);
-        SK_ISA(sk_quad) xy23 = __builtin_shufflevector(p2.quad[g], p3.quad[g], 0, 4, 1, 5), zw23 = __builtin_shufflevector(p2.quad[g], p3.quad[g], 2, 6, 3, 7);
+        quad xy01 = __builtin_shufflevector(p0.quad[g], p1.quad[g], 0, 4, 1, 5);
+        quad zw01 = __builtin_shufflevector(p0.quad[g], p1.quad[g], 2, 6, 3, 7);
+        quad xy23 = __builtin_shufflevector(p2.quad[g], p3.quad[g], 0, 4, 1, 5);
+        quad zw23 = __builtin_shufflevector(p2.quad[g], p3.quad[g], 2, 6, 3, 7);
         x.quad[g] = __builtin_shufflevector(xy01, xy23, 0, 1, 4, 5);
         y.quad[g] = __builtin_shufflevector(xy01, xy23, 2, 3, 6, 7);
         z.quad[g] = __builtin_shufflevector(zw01, zw23, 0, 1, 4, 5);
@@ -164,8 +167,11 @@ SK_INLINE sk_wide4 SK_ISA(sk_transpose)(sk_wide q0, sk_wide q1, sk_wide q2, sk_w
 SK_INLINE sk_wide SK_ISA(sk_join)(const sk_vec4 *a, const sk_vec4 *b, const sk_vec4 *c, const sk_vec4 *d) {
     typedef SK_ISA(sk_quad) quad;
 #ifdef SK_HAS_AVX512
-    SK_ISA(sk_eight) low = __builtin_shufflevector(*(const quad *)(const void *)a, *(const quad *)(const void *)b, 0, 1, 2, 3, 4, 5, 6, 7);
-    SK_ISA(sk_eight) high = __builtin_shufflevector(*(const quad *)(const void *)c, *(const quad *)(const void *)d, 0, 1, 2, 3, 4, 5, 6, 7);
+    typedef SK_ISA(sk_eight) eight;
+    eight low =
+        __builtin_shufflevector(*(const quad *)(const void *)a, *(const quad *)(const void *)b, 0, 1, 2, 3, 4, 5, 6, 7);
+    eight high =
+        __builtin_shufflevector(*(const quad *)(const void *)c, *(const quad *)(const void *)d, 0, 1, 2, 3, 4, 5, 6, 7);
     return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 #else
     SK_ISA(parts) p;
@@ -184,7 +190,8 @@ SK_INLINE void SK_ISA(sk_part)(sk_wide q, sk_vec4 *a, sk_vec4 *b, sk_vec4 *c, sk
     *(quad *)(void *)d = __builtin_shufflevector(q, q, 12, 13, 14, 15);
 #else
     SK_ISA(parts) p = {.wide = q};
-    *(quad *)(void *)a = p.quad[0], *(quad *)(void *)b = p.quad[1], *(quad *)(void *)c = p.quad[2], *(quad *)(void *)d = p.quad[3];
+    *(quad *)(void *)a = p.quad[0], *(quad *)(void *)b = p.quad[1], *(quad *)(void *)c = p.quad[2],
+                   *(quad *)(void *)d = p.quad[3];
 #endif
 }
 

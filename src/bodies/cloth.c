@@ -30,16 +30,21 @@ static const skein_field fields[] = {
     SK_INT2(cloth_params, grid, "grid", "", 0, 0, 0, 65536, "instead of a mesh: rows and columns of particles"),
     SK_REAL2(cloth_params, size, "size", "m", 1, 1, 1e-6, 1e9, "of a grid, along x and z before it is turned"),
     SK_VEC3(cloth_params, position, "position", "m", 0, 0, 0, "where the mesh's origin (a grid's middle) is put"),
-    SK_VEC3(cloth_params, rotation, "rotation", "deg", 0, 0, 0, "turned about x, then y, then z, before it is put there"),
+    SK_VEC3(cloth_params, rotation, "rotation", "deg", 0, 0, 0,
+            "turned about x, then y, then z, before it is put there"),
     SK_REAL(cloth_params, scale, "scale", "", 1, 1e-9, 1e9, "factor on the mesh's coordinates"),
     SK_VEC3(cloth_params, velocity, "velocity", "m/s", 0, 0, 0, "at the start"),
-    SK_REAL(cloth_params, density, "density", "kg/m2", 0.2, 1e-9, 1e9, "mass of a square metre, shared out to the corners"),
-    SK_REAL(cloth_params, weld, "weld", "m", 0, 0, SK_FAR, "vertices nearer than this become one particle; 0 joins none"),
-    SK_TEXT(cloth_params, pins, "pins", "",
-            "held particles: \"corners\", \"top corners\", \"top edge\", numbers, \"box x y z x y z\", \"sphere x y z r\""),
+    SK_REAL(cloth_params, density, "density", "kg/m2", 0.2, 1e-9, 1e9,
+            "mass of a square metre, shared out to the corners"),
+    SK_REAL(cloth_params, weld, "weld", "m", 0, 0, SK_FAR,
+            "vertices nearer than this become one particle; 0 joins none"),
+    SK_TEXT(
+        cloth_params, pins, "pins", "",
+        "held particles: \"corners\", \"top corners\", \"top edge\", numbers, \"box x y z x y z\", \"sphere x y z r\""),
     SK_REAL(cloth_params, stretch.stiffness, "stretch.stiffness", "N/m", 2e4, 0, SK_UNBOUNDED,
             "of the sheet along its threads (1e4 is a firm cotton)"),
-    SK_REAL(cloth_params, stretch.damping, "stretch.damping", "N s/m", 0, 0, SK_FAR, "of stretching; other motion is free"),
+    SK_REAL(cloth_params, stretch.damping, "stretch.damping", "N s/m", 0, 0, SK_FAR,
+            "of stretching; other motion is free"),
     SK_REAL(cloth_params, shear.stiffness, "shear.stiffness", "N/m", 2e3, 0, SK_UNBOUNDED, "across the threads"),
     SK_REAL(cloth_params, shear.damping, "shear.damping", "N s/m", 0, 0, SK_FAR, "of shearing"),
     SK_REAL(cloth_params, bend.stiffness, "bend.stiffness", "N/m", 20, 0, SK_UNBOUNDED, "of the springs over folds"),
@@ -93,7 +98,8 @@ static skein_status add_particles(tailor *t) {
         if (t->mass[i] > 0 && !t->pinned[i]) memcpy(velocity[i], t->params->velocity, sizeof velocity[i]);
     }
     if (!status)
-        status = sk_world_add_particles(t->world, count, (const double *)t->sheet.position, (const double *)velocity, t->mass, t->error);
+        status = sk_world_add_particles(t->world, count, (const double *)t->sheet.position, (const double *)velocity,
+                                        t->mass, t->error);
     for (size_t i = 0; i < count && !status; i++)
         if (t->pinned[i]) sk_particle_hold(&t->world->particles, t->body->first_particle + i, true);
     sk_release(allocator, velocity);
@@ -103,7 +109,8 @@ static skein_status add_particles(tailor *t) {
 /* Puts springs and particles in order: strips for what is numbered as a grid, outward for all else. */
 static skein_status put_in_order(tailor *t) {
     uint32_t rows, columns;
-    if (!sk_order_find_grid(&t->sheet, &t->springs, &rows, &columns)) return sk_fail_memory(t->error, "the order of springs");
+    if (!sk_order_find_grid(&t->sheet, &t->springs, &rows, &columns))
+        return sk_fail_memory(t->error, "the order of springs");
     if (rows) {
         if (!sk_order_by_direction(&t->springs)) return sk_fail_memory(t->error, "the order of springs");
         return sk_world_add_strips(t->world, t->body, rows, columns, (uint32_t)t->sheet.particle_count, t->error);
@@ -128,8 +135,9 @@ static skein_status add_springs(tailor *t) {
     for (int sort = 0; sort < SK_SPRING_SORTS; sort++) {
         struct sk_spring_list *list = &t->springs.list[sort];
         for (size_t i = 0; i < 2 * list->count; i++) list->pairs[i] += t->body->first_particle;
-        skein_status status = sk_world_add_body_batch(t->world, t->body, &sk_distance, labels[sort], *materials[sort],
-                                                      sort == SK_STRETCH, list->count, list->pairs, list->rest, list->scale, t->error);
+        skein_status status =
+            sk_world_add_body_batch(t->world, t->body, &sk_distance, labels[sort], *materials[sort], sort == SK_STRETCH,
+                                    list->count, list->pairs, list->rest, list->scale, t->error);
         if (status) return status;
     }
     sk_world_add_strain_limit(t->body);
@@ -192,8 +200,9 @@ static skein_status add_tethers(tailor *t) {
         source[i] = true;
         good = measure_tethers(t, geodesic, source, k++, anchors, particles, lengths, distance, nearest);
     }
-    skein_status status = good ? sk_world_add_tethers(t->world, t->body, tethered, anchors, particles, lengths, t->error)
-                               : sk_fail_memory(t->error, "tethers");
+    skein_status status = good
+                              ? sk_world_add_tethers(t->world, t->body, tethered, anchors, particles, lengths, t->error)
+                              : sk_fail_memory(t->error, "tethers");
     sk_geodesic_release(geodesic);
     sk_release(allocator, distance);
     sk_release(allocator, nearest);
@@ -220,8 +229,8 @@ static void hand_over_surface(tailor *t) {
 }
 
 static bool live(const char *field) {
-    static const char *const names[] = {"stretch.stiffness", "stretch.damping", "shear.stiffness", "shear.damping", "bend.stiffness",
-                                        "bend.damping",      "stretch.limit",   "stretch.tether"};
+    static const char *const names[] = {"stretch.stiffness", "stretch.damping", "shear.stiffness", "shear.damping",
+                                        "bend.stiffness",    "bend.damping",    "stretch.limit",   "stretch.tether"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (!strcmp(field, names[i])) return true;
     return false;
@@ -236,7 +245,8 @@ static void change(sk_body *body, const void *data) {
     body->strain_bound = params->limit;
 }
 
-static skein_status build(skein_world *world, sk_body *body, const void *params, const skein_mesh *mesh, skein_error *error) {
+static skein_status build(skein_world *world, sk_body *body, const void *params, const skein_mesh *mesh,
+                          skein_error *error) {
     tailor t = {.world = world, .body = body, .params = params, .error = error};
     skein_status status = make_sheet(&t, mesh);
     if (!status) status = sk_report_faults(world, body->label, &t.sheet, &t.springs, error);
@@ -257,7 +267,8 @@ static skein_status build(skein_world *world, sk_body *body, const void *params,
 }
 
 const sk_body_type sk_cloth = {
-    .kind = {"cloth", "a sheet from a triangle or quad mesh, or a grid: edges, shear and bending as springs, tethers to pins",
+    .kind = {"cloth",
+             "a sheet from a triangle or quad mesh, or a grid: edges, shear and bending as springs, tethers to pins",
              SKEIN_BODY, fields, sizeof fields / sizeof *fields, sizeof(cloth_params)},
     .build = build,
     .live = live,

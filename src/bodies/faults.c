@@ -12,17 +12,19 @@ static void warn_about_faces(skein_world *world, const char *label, const sk_she
         if (!crowded++) example = &springs->edges[e];
     }
     if (crowded)
-        sk_world_log(world, SKEIN_LOG_WARNING, "%s: %zu edge%s with three faces or more, such as %u-%u; they get no bending", label,
-                     crowded, crowded == 1 ? "" : "s", example->a, example->b);
+        sk_world_log(world, SKEIN_LOG_WARNING,
+                     "%s: %zu edge%s with three faces or more, such as %u-%u; they get no bending", label, crowded,
+                     crowded == 1 ? "" : "s", example->a, example->b);
     if (sheet->flat_faces)
-        sk_world_log(world, SKEIN_LOG_WARNING, "%s: %zu face%s without an area, such as face %u; they add no mass", label,
-                     sheet->flat_faces, sheet->flat_faces == 1 ? "" : "s", sheet->first_flat_face);
+        sk_world_log(world, SKEIN_LOG_WARNING, "%s: %zu face%s without an area, such as face %u; they add no mass",
+                     label, sheet->flat_faces, sheet->flat_faces == 1 ? "" : "s", sheet->first_flat_face);
     size_t unused = 0, first = 0;
     for (size_t i = 0; i < sheet->particle_count; i++)
         if (!(sheet->particle_area[i] > 0) && !unused++) first = i;
     if (unused)
-        sk_world_log(world, SKEIN_LOG_WARNING, "%s: %zu vert%s of no face, such as %zu; without a mass they stay where they are",
-                     label, unused, unused == 1 ? "ex is" : "ices are", first);
+        sk_world_log(world, SKEIN_LOG_WARNING,
+                     "%s: %zu vert%s of no face, such as %zu; without a mass they stay where they are", label, unused,
+                     unused == 1 ? "ex is" : "ices are", first);
 }
 
 static uint32_t root_of(uint32_t *parent, uint32_t i) {
@@ -41,7 +43,8 @@ static bool warn_about_parts(skein_world *world, const char *label, const sk_she
     for (size_t i = 0; i < sheet->particle_count; i++)
         if (parent[i] == i && sheet->particle_area[i] > 0 && ++parts == 2) second = i;
     if (parts > 1)
-        sk_world_log(world, SKEIN_LOG_WARNING, "%s: %zu parts that do not touch; a second one has vertex %zu", label, parts, second);
+        sk_world_log(world, SKEIN_LOG_WARNING, "%s: %zu parts that do not touch; a second one has vertex %zu", label,
+                     parts, second);
     sk_release(&world->allocator, parent);
     return true;
 }
@@ -78,14 +81,17 @@ static bool warn_about_seams(skein_world *world, const char *label, const sk_she
     for (size_t i = 1; i < count; i++)
         if (!compare_places(&border[i - 1], &border[i]) && !same++) first = i;
     if (same)
-        sk_world_log(world, SKEIN_LOG_WARNING, "%s: %zu border vertices lie on another one, such as %u on %u; weld (a distance, such as 1e-6) joins them",
-                     label, same, border[first].index, border[first - 1].index);
+        sk_world_log(
+            world, SKEIN_LOG_WARNING,
+            "%s: %zu border vertices lie on another one, such as %u on %u; weld (a distance, such as 1e-6) joins them",
+            label, same, border[first].index, border[first - 1].index);
     sk_release(&world->allocator, border);
     sk_release(&world->allocator, taken);
     return good;
 }
 
-skein_status sk_report_faults(skein_world *world, const char *label, const sk_sheet *sheet, const sk_springs *springs, skein_error *error) {
+skein_status sk_report_faults(skein_world *world, const char *label, const sk_sheet *sheet, const sk_springs *springs,
+                              skein_error *error) {
     if (!world->desc.log || sheet->grid_rows) return SKEIN_OK;
     warn_about_faces(world, label, sheet, springs);
     if (!warn_about_parts(world, label, sheet, springs) || !warn_about_seams(world, label, sheet, springs))

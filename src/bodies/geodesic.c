@@ -22,10 +22,13 @@ struct sk_geodesic {
     const sk_sheet *sheet;
     uint32_t (*triangle)[3];
     size_t triangle_count;
-    size_t *start;   /* of a particle's triangles in `around`; particles + 1 */
+    size_t *start; /* of a particle's triangles in `around`; particles + 1 */
     uint32_t *around;
     bool *settled;
-    struct { heap_entry *data; size_t count, capacity; } heap;
+    struct {
+        heap_entry *data;
+        size_t count, capacity;
+    } heap;
 };
 
 void sk_geodesic_release(sk_geodesic *g) {
@@ -68,7 +71,8 @@ sk_geodesic *sk_geodesic_create(const sk_sheet *sheet) {
     }
     size_t filled = 0;
     for (size_t f = 0; f < sheet->face_count; f++)
-        filled += cut_face(sheet->corners + sheet->face_start[f], sheet->face_start[f + 1] - sheet->face_start[f], g->triangle + filled);
+        filled += cut_face(sheet->corners + sheet->face_start[f], sheet->face_start[f + 1] - sheet->face_start[f],
+                           g->triangle + filled);
     // the triangles around each particle: count, sum up, scatter
     for (size_t t = 0; t < g->triangle_count; t++)
         for (int k = 0; k < 3; k++) g->start[g->triangle[t][k] + 2]++;

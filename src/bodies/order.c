@@ -129,7 +129,8 @@ bool sk_order_outward(sk_springs *springs, const sk_sheet *sheet, const bool *pi
     double *distance = sk_allocate(allocator, count * sizeof *distance);
     ranked *order = sk_allocate(allocator, count * sizeof *order);
     bool good = distance && order && find_distances(sheet, pinned, distance);
-    for (int sort = 0; sort < SK_SPRING_SORTS && good; sort++) good = sort_list(allocator, &springs->list[sort], distance);
+    for (int sort = 0; sort < SK_SPRING_SORTS && good; sort++)
+        good = sort_list(allocator, &springs->list[sort], distance);
     // neighbours in the order of sweeps are neighbours in memory
     for (size_t i = 0; i < count && good; i++) order[i] = (ranked){distance[i], (uint32_t)i};
     if (good) qsort(order, count, sizeof *order, compare_ranked);

@@ -65,7 +65,8 @@ static skein_status keep_corners(selector *s) {
     }
     for (size_t i = 0; i < count; i++) {
         if (!s->mark[i] || beside[2 * i + 1] == UINT32_MAX) continue;
-        const double *o = s->sheet->position[i], *a = s->sheet->position[beside[2 * i]], *b = s->sheet->position[beside[2 * i + 1]];
+        const double *o = s->sheet->position[i], *a = s->sheet->position[beside[2 * i]],
+                     *b = s->sheet->position[beside[2 * i + 1]];
         double u[3] = {a[0] - o[0], a[1] - o[1], a[2] - o[2]}, w[3] = {b[0] - o[0], b[1] - o[1], b[2] - o[2]};
         double cosine = (u[0] * w[0] + u[1] * w[1] + u[2] * w[2]) /
                         sqrt((u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
@@ -87,7 +88,8 @@ static skein_status choose_marked(selector *s, int side, const char *words) {
         if (x < least) least = x;
     }
     if (side != SIDE_NONE && !(most - least > 0))
-        return sk_fail(s->error, SKEIN_ERROR_MESH, s->where, "'%s': the mesh lies flat, its border has no %s; turn it first or name particles by number",
+        return sk_fail(s->error, SKEIN_ERROR_MESH, s->where,
+                       "'%s': the mesh lies flat, its border has no %s; turn it first or name particles by number",
                        words, side_words[side]);
     for (size_t i = 0; i < s->sheet->particle_count; i++)
         if (s->mark[i] && (side == SIDE_NONE || sign * s->sheet->position[i][axis] >= most - 0.01 * (most - least)))
@@ -112,9 +114,11 @@ static skein_status choose_of_mesh(selector *s, int side, bool corners, const ch
 }
 
 static skein_status choose_words(selector *s, const char *words) {
-    static const char *const forms[] = {"all", "border", "corners", "top corners", "bottom corners", "left corners", "right corners",
-                                        "top edge", "bottom edge", "left edge", "right edge"};
-    static const int sides[] = {0, 0, 0, SIDE_TOP, SIDE_BOTTOM, SIDE_LEFT, SIDE_RIGHT, SIDE_TOP, SIDE_BOTTOM, SIDE_LEFT, SIDE_RIGHT};
+    static const char *const forms[] = {"all",          "border",        "corners",  "top corners", "bottom corners",
+                                        "left corners", "right corners", "top edge", "bottom edge", "left edge",
+                                        "right edge"};
+    static const int sides[] = {0,          0,        0,           SIDE_TOP,  SIDE_BOTTOM, SIDE_LEFT,
+                                SIDE_RIGHT, SIDE_TOP, SIDE_BOTTOM, SIDE_LEFT, SIDE_RIGHT};
     enum { FORMS = sizeof forms / sizeof *forms };
     for (int f = 0; f < FORMS; f++) {
         if (strcmp(words, forms[f])) continue;
@@ -128,10 +132,11 @@ static skein_status choose_words(selector *s, const char *words) {
         return SKEIN_OK;
     }
     const char *nearest = sk_nearest_name(words, forms, FORMS);
-    return sk_fail(s->error, SKEIN_ERROR_NAME, s->where,
-                   "'%s' names no part of a cloth%s%s%s; expected numbers, \"corners\", \"top corners\", \"top edge\" (bottom, left, "
-                   "right), \"border\", \"all\", \"box x y z x y z\" or \"sphere x y z radius\"",
-                   words, nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
+    return sk_fail(
+        s->error, SKEIN_ERROR_NAME, s->where,
+        "'%s' names no part of a cloth%s%s%s; expected numbers, \"corners\", \"top corners\", \"top edge\" (bottom, left, "
+        "right), \"border\", \"all\", \"box x y z x y z\" or \"sphere x y z radius\"",
+        words, nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
 }
 
 /* ---- numbers ---- */
@@ -187,7 +192,8 @@ static skein_status choose_by_number(selector *s, const char *part) {
             return sk_fail(s->error, SKEIN_ERROR_VALUE, s->where, "'%.40s': expected whole numbers", at);
         long long from_start = index < 0 ? index + most : index;
         if (from_start < 0 || from_start >= most)
-            return sk_fail(s->error, SKEIN_ERROR_VALUE, s->where, "vertex %lld is out of range: the mesh has %lld, 0 to %lld", index, most, most - 1);
+            return sk_fail(s->error, SKEIN_ERROR_VALUE, s->where,
+                           "vertex %lld is out of range: the mesh has %lld, 0 to %lld", index, most, most - 1);
         s->chosen[s->sheet->particle_of_vertex[from_start]] = true;
         at = end;
     }

@@ -22,14 +22,16 @@ void sk_sheet_release(sk_sheet *sheet) {
 }
 
 /* Room for the arrays whose sizes are known once vertices, faces and corners are counted. */
-static skein_status reserve(sk_sheet *sheet, sk_allocator *allocator, size_t vertices, size_t faces, size_t corners, skein_error *error) {
+static skein_status reserve(sk_sheet *sheet, sk_allocator *allocator, size_t vertices, size_t faces, size_t corners,
+                            skein_error *error) {
     memset(sheet, 0, sizeof *sheet);
     sheet->allocator = allocator;
     sheet->vertex_count = sheet->particle_count = vertices;
     sheet->face_count = faces;
     sheet->corner_count = corners;
     if (vertices > UINT32_MAX - 64 || corners > UINT32_MAX / 4)
-        return sk_fail(error, SKEIN_ERROR_LIMIT, "mesh", "%zu vertices and %zu face corners are too many for 32-bit indices", vertices, corners);
+        return sk_fail(error, SKEIN_ERROR_LIMIT, "mesh",
+                       "%zu vertices and %zu face corners are too many for 32-bit indices", vertices, corners);
     sheet->position = sk_allocate(allocator, vertices * sizeof *sheet->position);
     sheet->particle_of_vertex = sk_allocate(allocator, vertices * sizeof *sheet->particle_of_vertex);
     sheet->particle_area = sk_allocate(allocator, vertices * sizeof *sheet->particle_area);
@@ -45,35 +47,42 @@ static skein_status reserve(sk_sheet *sheet, sk_allocator *allocator, size_t ver
 }
 
 skein_status sk_sheet_from_mesh(sk_sheet *sheet, sk_allocator *allocator, const skein_mesh *mesh, skein_error *error) {
-    skein_status status = reserve(sheet, allocator, mesh->vertex_count, mesh->face_count, mesh->face_vertex_count, error);
+    skein_status status =
+        reserve(sheet, allocator, mesh->vertex_count, mesh->face_count, mesh->face_vertex_count, error);
     if (status) return status;
     if (!mesh->vertex_count || !mesh->face_count)
-        return sk_fail(error, SKEIN_ERROR_MESH, "mesh", "a cloth needs vertices and faces; the mesh has %zu and %zu", mesh->vertex_count, mesh->face_count);
+        return sk_fail(error, SKEIN_ERROR_MESH, "mesh", "a cloth needs vertices and faces; the mesh has %zu and %zu",
+                       mesh->vertex_count, mesh->face_count);
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
         if (!(fabs(mesh->positions[i]) <= 1e12))
-            return sk_fail(error, SKEIN_ERROR_MESH, "mesh", "vertex %zu: coordinates must be finite, under 1e12", i / 3);
+            return sk_fail(error, SKEIN_ERROR_MESH, "mesh", "vertex %zu: coordinates must be finite, under 1e12",
+                           i / 3);
     size_t corner = 0;
     for (size_t f = 0; f < mesh->face_count; f++) {
         uint32_t size = mesh->face_sizes[f];
         if (size < 3 || size > mesh->face_vertex_count - corner)
-            return sk_fail(error, SKEIN_ERROR_MESH, "mesh", "face %zu has %u corners, and %zu are left: expected 3 or more", f,
-                           size, mesh->face_vertex_count - corner);
+            return sk_fail(error, SKEIN_ERROR_MESH, "mesh",
+                           "face %zu has %u corners, and %zu are left: expected 3 or more", f, size,
+                           mesh->face_vertex_count - corner);
         for (uint32_t k = 0; k < size; k++, corner++)
             if (mesh->face_vertices[corner] >= mesh->vertex_count)
                 return sk_fail(error, SKEIN_ERROR_MESH, "mesh", "face %zu names vertex %u, but there are only %zu", f,
                                mesh->face_vertices[corner], mesh->vertex_count);
     }
     if (corner != mesh->face_vertex_count)
-        return sk_fail(error, SKEIN_ERROR_MESH, "mesh", "%zu corners belong to no face", mesh->face_vertex_count - corner);
+        return sk_fail(error, SKEIN_ERROR_MESH, "mesh", "%zu corners belong to no face",
+                       mesh->face_vertex_count - corner);
     memcpy(sheet->position, mesh->positions, mesh->vertex_count * sizeof *sheet->position);
     memcpy(sheet->face_sizes, mesh->face_sizes, mesh->face_count * sizeof *sheet->face_sizes);
     memcpy(sheet->face_vertices, mesh->face_vertices, corner * sizeof *sheet->face_vertices);
     return SKEIN_OK;
 }
 
-skein_status sk_sheet_from_grid(sk_sheet *sheet, sk_allocator *allocator, const int32_t grid[2], const double size[2], skein_error *error) {
+skein_status sk_sheet_from_grid(sk_sheet *sheet, sk_allocator *allocator, const int32_t grid[2], const double size[2],
+                                skein_error *error) {
     if (grid[0] < 2 || grid[1] < 2)
-        return sk_fail(error, SKEIN_ERROR_VALUE, "grid", "a grid of %d x %d particles: expected 2 or more each way", grid[0], grid[1]);
+        return sk_fail(error, SKEIN_ERROR_VALUE, "grid", "a grid of %d x %d particles: expected 2 or more each way",
+                       grid[0], grid[1]);
     size_t rows = (size_t)grid[0], columns = (size_t)grid[1], faces = (rows - 1) * (columns - 1);
     skein_status status = reserve(sheet, allocator, rows * columns, faces, 4 * faces, error);
     if (status) return status;
@@ -129,7 +138,8 @@ static uint64_t cell_key(const int64_t cell[3]) {
 }
 
 /* The first particle within `distance` of p among those already placed in the chains, or UINT32_MAX. */
-static uint32_t find_near(const sk_sheet *sheet, const uint32_t *head, const uint32_t *next, size_t mask, const double p[3], double distance) {
+static uint32_t find_near(const sk_sheet *sheet, const uint32_t *head, const uint32_t *next, size_t mask,
+                          const double p[3], double distance) {
     uint32_t best = UINT32_MAX;
     int64_t centre[3], cell[3];
     for (int k = 0; k < 3; k++) centre[k] = (int64_t)floor(p[k] / distance);
@@ -179,7 +189,8 @@ static skein_status join(sk_sheet *sheet, double distance, skein_error *error) {
 static double area_of(const sk_sheet *sheet, const uint32_t *corners, size_t size) {
     double n[3] = {0, 0, 0};
     for (size_t k = 0; k < size; k++) {
-        const double *o = sheet->position[corners[0]], *a = sheet->position[corners[k]], *b = sheet->position[corners[(k + 1) % size]];
+        const double *o = sheet->position[corners[0]], *a = sheet->position[corners[k]],
+                     *b = sheet->position[corners[(k + 1) % size]];
         double u[3] = {a[0] - o[0], a[1] - o[1], a[2] - o[2]}, w[3] = {b[0] - o[0], b[1] - o[1], b[2] - o[2]};
         n[0] += u[1] * w[2] - u[2] * w[1];
         n[1] += u[2] * w[0] - u[0] * w[2];
@@ -213,7 +224,8 @@ skein_status sk_sheet_weld(sk_sheet *sheet, double distance, skein_error *error)
         double area = size ? area_of(sheet, face, size) : 0, longest = 0;
         for (size_t k = 0; k < size; k++) {
             const double *a = sheet->position[face[k]], *b = sheet->position[face[(k + 1) % size]];
-            double square = (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+            double square =
+                (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
             if (square > longest) longest = square;
         }
         if (!(area > 1e-9 * longest)) {

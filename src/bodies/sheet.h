@@ -23,7 +23,7 @@ typedef struct sk_sheet {
     double *face_area;
     double *particle_area; /* each face's area, shared out to its corners */
     uint32_t grid_rows, grid_columns;
-    size_t flat_faces;     /* faces without an area */
+    size_t flat_faces; /* faces without an area */
     uint32_t first_flat_face;
 } sk_sheet;
 

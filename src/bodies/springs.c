@@ -10,13 +10,16 @@
 typedef struct spring {
     uint32_t a, b; /* a < b */
     uint32_t sort;
-    double area;   /* of the material it stands for; scale = area / length^2 */
+    double area; /* of the material it stands for; scale = area / length^2 */
 } spring;
 
 /* A hash table from pairs to springs; grows to hold every pair of the sheet. */
 typedef struct pair_table {
     sk_allocator *allocator;
-    struct { spring *data; size_t count, capacity; } springs;
+    struct {
+        spring *data;
+        size_t count, capacity;
+    } springs;
     uint32_t *bucket; /* place in springs + 1; 0 is free */
     size_t bucket_count;
 } pair_table;
@@ -75,7 +78,9 @@ static bool collect_edges(sk_springs *springs, pair_table *table, const sk_sheet
             s->area += share;
             size_t e = (size_t)(s - table->springs.data);
             if (e == springs->edge_count) {
-                if (!sk_reserve(springs->allocator, (void **)&springs->edges, &springs->edge_capacity, e + 1, sizeof(sk_edge))) return false;
+                if (!sk_reserve(springs->allocator, (void **)&springs->edges, &springs->edge_capacity, e + 1,
+                                sizeof(sk_edge)))
+                    return false;
                 springs->edges[springs->edge_count++] = (sk_edge){s->a, s->b, {UINT32_MAX, UINT32_MAX}, {0, 0}, 0};
             }
             sk_edge *edge = &springs->edges[e];
@@ -152,8 +157,10 @@ skein_status sk_springs_find(sk_springs *springs, const sk_sheet *sheet, skein_e
     memset(springs, 0, sizeof *springs);
     springs->allocator = sheet->allocator;
     pair_table table = {.allocator = sheet->allocator};
-    bool good = collect_edges(springs, &table, sheet) && collect_shear(&table, sheet) && collect_bend(springs, &table, sheet);
-    for (int sort = 0; sort < SK_SPRING_SORTS && good; sort++) good = fill_list(springs, &table, sheet, (sk_spring_sort)sort);
+    bool good =
+        collect_edges(springs, &table, sheet) && collect_shear(&table, sheet) && collect_bend(springs, &table, sheet);
+    for (int sort = 0; sort < SK_SPRING_SORTS && good; sort++)
+        good = fill_list(springs, &table, sheet, (sk_spring_sort)sort);
     sk_release(sheet->allocator, table.springs.data);
     sk_release(sheet->allocator, table.bucket);
     return good ? SKEIN_OK : sk_fail_memory(error, "springs");

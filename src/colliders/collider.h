@@ -13,9 +13,9 @@
 /* Where a collider stands at a time, and how it moves there. */
 typedef struct sk_pose {
     sk_vec3 position;
-    real rotation[9];   /* rows of the matrix that turns the shape as built into the shape now */
-    sk_vec3 velocity;   /* of `position`, m/s */
-    sk_vec3 spin;       /* angular velocity, rad/s */
+    real rotation[9]; /* rows of the matrix that turns the shape as built into the shape now */
+    sk_vec3 velocity; /* of `position`, m/s */
+    sk_vec3 spin;     /* angular velocity, rad/s */
 } sk_pose;
 
 /* Of sixteen particles. */

@@ -39,7 +39,7 @@ SK_INLINE sk_wide SK_ISA(share_of)(sk_wide length, sk_wide most) {
 }
 
 /* Probes a block; false where nobody touches. */
-SK_INLINE bool SK_ISA(meet)(sk_run *run, const sk_row *row, const sk_pose *pose, size_t slot, SK_ISA(encounter) *e) {
+SK_INLINE bool SK_ISA(meet)(sk_run *run, const sk_row *row, const sk_pose *pose, size_t slot, SK_ISA(encounter) * e) {
     const sk_collider *collider = row->rule;
     e->x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, slot < row->packed);
     sk_wide3 p = SK_ISA(three)(e->x);
@@ -54,7 +54,8 @@ SK_INLINE bool SK_ISA(meet)(sk_run *run, const sk_row *row, const sk_pose *pose,
     if (!SK_ISA(sk_any)(e->touching)) return false;
     sk_wide3 arm = {p.x - pose->position.x, p.y - pose->position.y, p.z - pose->position.z};
     sk_vec3 v = pose->velocity, s = pose->spin;
-    e->surface = (sk_wide3){v.x + (s.y * arm.z - s.z * arm.y), v.y + (s.z * arm.x - s.x * arm.z), v.z + (s.x * arm.y - s.y * arm.x)};
+    e->surface = (sk_wide3){v.x + (s.y * arm.z - s.z * arm.y), v.y + (s.z * arm.x - s.x * arm.z),
+                            v.z + (s.x * arm.y - s.y * arm.x)};
     return true;
 }
 
@@ -80,10 +81,13 @@ static void SK_ISA(contact_force)(sk_run *run, const sk_row *row, size_t begin, 
         // the friction that would stop the slide within this substep, cut to Coulomb's cone
         sk_wide mass_per_step = -1 / (e.x.w * (real)row->dt);
         sk_wide3 stop = SK_ISA(minus)(SK_ISA(times)(mass_per_step, slide), force_t);
-        sk_wide needed = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(stop, stop)), most = (real)collider->common->friction * -pressing;
+        sk_wide needed = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(stop, stop)),
+                most = (real)collider->common->friction * -pressing;
         sk_wide share = SK_ISA(share_of)(needed, most);
         sk_wide3 push = SK_ISA(times)(-pressing, e.contact.normal), rub = SK_ISA(times)(share, stop);
-        SK_ISA(apply)(run, row, slot, f, e.touching & SK_ISA(sk_negative)(pressing), (sk_wide3){push.x + rub.x, push.y + rub.y, push.z + rub.z});
+        SK_ISA(apply)
+        (run, row, slot, f, e.touching & SK_ISA(sk_negative)(pressing),
+         (sk_wide3){push.x + rub.x, push.y + rub.y, push.z + rub.z});
     }
 }
 
@@ -141,8 +145,11 @@ static void SK_ISA(contact_restitution)(sk_run *run, const sk_row *row, size_t b
         sk_wide leaving = SK_ISA(sk_dot_wide)(SK_ISA(minus)(SK_ISA(three)(v), e.surface), e.contact.normal);
         // what a substep's force alone brings is no impact; bouncing it would make resting things jitter
         sk_wide resting = (2 * (real)row->dt) * e.x.w * SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(f, f));
-        sk_wide bounce = SK_ISA(sk_keep)(SK_ISA(sk_more)(-approach, resting), (real)collider->common->restitution * -approach);
-        SK_ISA(apply)(run, row, slot, v, e.touching & SK_ISA(sk_negative)(approach), SK_ISA(times)(bounce - leaving, e.contact.normal));
+        sk_wide bounce =
+            SK_ISA(sk_keep)(SK_ISA(sk_more)(-approach, resting), (real)collider->common->restitution * -approach);
+        SK_ISA(apply)
+        (run, row, slot, v, e.touching & SK_ISA(sk_negative)(approach),
+         SK_ISA(times)(bounce - leaving, e.contact.normal));
     }
 }
 

@@ -38,9 +38,11 @@ static void place(const void *data, double position[3]) {
 
 static sk_vec3 normal_now(const plane_params *params, const sk_pose *pose) {
     double length = normal_length(params);
-    sk_vec3 n = {(real)(params->normal[0] / length), (real)(params->normal[1] / length), (real)(params->normal[2] / length)};
+    sk_vec3 n = {(real)(params->normal[0] / length), (real)(params->normal[1] / length),
+                 (real)(params->normal[2] / length)};
     const real *r = pose->rotation;
-    return sk_v3(r[0] * n.x + r[1] * n.y + r[2] * n.z, r[3] * n.x + r[4] * n.y + r[5] * n.z, r[6] * n.x + r[7] * n.y + r[8] * n.z);
+    return sk_v3(r[0] * n.x + r[1] * n.y + r[2] * n.z, r[3] * n.x + r[4] * n.y + r[5] * n.z,
+                 r[6] * n.x + r[7] * n.y + r[8] * n.z);
 }
 
 #define SK_KERNELS "colliders/plane.c"

@@ -27,8 +27,10 @@ sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *typ
 
 void sk_batch_release(sk_batch *batch, sk_allocator *allocator) {
     if (!batch) return;
-    void *arrays[] = {batch->particle, batch->slot, batch->rest, batch->scale, batch->sweeps, batch->lane, batch->lane_rest,
-                      batch->lane_stiffness, batch->lane_compliance, batch->lane_multiplier, batch->special, batch->group_slots};
+    void *arrays[] = {batch->particle,        batch->slot,           batch->rest,
+                      batch->scale,           batch->sweeps,         batch->lane,
+                      batch->lane_rest,       batch->lane_stiffness, batch->lane_compliance,
+                      batch->lane_multiplier, batch->special,        batch->group_slots};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     sk_release(allocator, batch);
 }

@@ -48,27 +48,27 @@ typedef struct sk_material {
 
 struct sk_batch {
     const sk_constraint_type *type;
-    void *params;     /* the type's, an sk_material first; owned by whoever owns the batch */
+    void *params; /* the type's, an sk_material first; owned by whoever owns the batch */
     const char *label;
     const bool *enabled;
     const double *bound; /* of the relative violation, kept by limit rows; NULL: none */
-    bool measured;    /* an edge of a body: it counts in the stretch of the statistics */
+    bool measured;       /* an edge of a body: it counts in the stretch of the statistics */
     size_t count;
-    uint32_t *particle;  /* count x arity, user's indices */
-    uint32_t *slot;      /* the same as slots */
+    uint32_t *particle; /* count x arity, user's indices */
+    uint32_t *slot;     /* the same as slots */
     real *rest;
-    real *scale;         /* NULL: all 1 */
+    real *scale; /* NULL: all 1 */
 
     /* Made from the above when slots change: elements in the order of sweeps, a lane each. */
     sk_sweep *sweeps;
     size_t sweep_count, sweep_capacity;
-    uint32_t *lane;      /* of each element */
+    uint32_t *lane; /* of each element */
     size_t lane_count;
-    real *lane_rest;     /* lanes without an element: 0, */
-    real *lane_stiffness; /* 0, */
+    real *lane_rest;       /* lanes without an element: 0, */
+    real *lane_stiffness;  /* 0, */
     real *lane_compliance; /* and infinity, so that nothing comes of them */
     real *lane_multiplier; /* lambda of XPBD, only read where a substep keeps it */
-    uint8_t *special;    /* a block of 16 lanes each: not all as the sweep's common values say */
+    uint8_t *special;      /* a block of 16 lanes each: not all as the sweep's common values say */
     uint32_t *group_slots; /* of group sweeps: 16 first and 16 second particles a group */
 };
 

@@ -24,7 +24,8 @@ SK_INLINE void SK_ISA(pair)(sk_pair *p, const sk_pair_constants *c, sk_pair_mode
         sk_wide below = length * (weight + p->compliance * c->per_step);
         s = SK_ISA(sk_keep)(SK_ISA(sk_positive)(below), (p->rest - length) / below);
     } else if (mode == SK_PAIR_PROJECT_DAMPED) {
-        sk_wide3 moved = {d.x - (p->other_a.x - p->other_b.x), d.y - (p->other_a.y - p->other_b.y), d.z - (p->other_a.z - p->other_b.z)};
+        sk_wide3 moved = {d.x - (p->other_a.x - p->other_b.x), d.y - (p->other_a.y - p->other_b.y),
+                          d.z - (p->other_a.z - p->other_b.z)};
         sk_wide inverse = SK_ISA(sk_keep)(SK_ISA(sk_positive)(length), 1 / length);
         sk_wide soft = p->compliance * c->per_step;
         sk_wide below = (1 + c->gamma) * weight + soft;

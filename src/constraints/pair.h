@@ -5,23 +5,29 @@
 #include "base/wide_types.h"
 #include "constraints/sweep.h"
 
-typedef enum sk_pair_mode { SK_PAIR_FORCE, SK_PAIR_PROJECT, SK_PAIR_PROJECT_DAMPED, SK_PAIR_LIMIT, SK_PAIR_LIMIT_MOVING } sk_pair_mode;
+typedef enum sk_pair_mode {
+    SK_PAIR_FORCE,
+    SK_PAIR_PROJECT,
+    SK_PAIR_PROJECT_DAMPED,
+    SK_PAIR_LIMIT,
+    SK_PAIR_LIMIT_MOVING
+} sk_pair_mode;
 
 typedef struct sk_pair {
     sk_wide3 a, b;             /* positions */
     sk_wide wa, wb;            /* inverse masses */
     sk_wide3 other_a, other_b; /* velocities; of damped projection the positions at the substep's start */
     sk_wide rest, stiffness, compliance, multiplier;
-    sk_wide3 da, db;           /* what comes out: forces or moves */
-    sk_wide3 dv_a, dv_b;       /* changes of velocity, of a limit that moves */
+    sk_wide3 da, db;     /* what comes out: forces or moves */
+    sk_wide3 dv_a, dv_b; /* changes of velocity, of a limit that moves */
 } sk_pair;
 
 /* What is the same for all elements of a row. */
 typedef struct sk_pair_constants {
-    real damping_time;   /* c/k, s */
-    real per_step;       /* 1/h^2 */
-    real gamma;          /* c/(k h) */
-    real most;           /* 1 + bound */
+    real damping_time; /* c/k, s */
+    real per_step;     /* 1/h^2 */
+    real gamma;        /* c/(k h) */
+    real most;         /* 1 + bound */
 } sk_pair_constants;
 
 static inline sk_pair_constants sk_pair_prepare(const sk_batch *batch, const sk_row *row) {

@@ -34,11 +34,16 @@ SK_INLINE sk_wide3 SK_ISA(shift3)(sk_wide3 a, int shift) {
 }
 
 /* Block a meets block b. `mode` is a constant where this is inlined. */
-SK_INLINE void SK_ISA(meet_blocks)(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_pair_constants *constants, size_t lane,
-                                   size_t slot_a, size_t slot_b, int shift, sk_pair_mode mode) {
+SK_INLINE void SK_ISA(meet_blocks)(sk_run *run, const sk_row *row, const sk_sweep *sweep,
+                                   const sk_pair_constants *constants, size_t lane, size_t slot_a, size_t slot_b,
+                                   int shift, sk_pair_mode mode) {
     bool special = shift || sweep->batch->special[lane / SK_LANES];
-    sk_wide *xa = (sk_wide *)(void *)(run->vector[SK_X] + slot_a), *xb = (sk_wide *)(void *)(run->vector[SK_X] + slot_b);
-    sk_pair p = {.a = SK_ISA(load3)(xa), .b = SK_ISA(shift3)(SK_ISA(load3)(xb), shift), .wa = xa[3], .wb = SK_ISA(shift1)(xb[3], shift)};
+    sk_wide *xa = (sk_wide *)(void *)(run->vector[SK_X] + slot_a),
+            *xb = (sk_wide *)(void *)(run->vector[SK_X] + slot_b);
+    sk_pair p = {.a = SK_ISA(load3)(xa),
+                 .b = SK_ISA(shift3)(SK_ISA(load3)(xb), shift),
+                 .wa = xa[3],
+                 .wb = SK_ISA(shift1)(xb[3], shift)};
     sk_wide *other_a = NULL, *other_b = NULL;
     if (mode != SK_PAIR_PROJECT && mode != SK_PAIR_LIMIT) {
         sk_vec4 *other = run->vector[mode == SK_PAIR_PROJECT_DAMPED ? SK_X0 : SK_V];
@@ -68,12 +73,13 @@ SK_INLINE void SK_ISA(meet_blocks)(sk_run *run, const sk_row *row, const sk_swee
 }
 
 /* Over the end of a strip; a function of its own for each mode, since it is rare and would be inlined often. */
-typedef void SK_ISA(meet_end)(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_pair_constants *constants, size_t lane,
-                              size_t slot_a, size_t slot_b, int shift);
+typedef void SK_ISA(meet_end)(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_pair_constants *constants,
+                              size_t lane, size_t slot_a, size_t slot_b, int shift);
 
 /* Strip rows [begin, end). Along a row each block waits for the one before it, so four rows go side by
  * side where they share no particle; the answer is the same. */
-SK_INLINE void SK_ISA(sweep_strips)(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_pair_mode mode, SK_ISA(meet_end) *meet_end) {
+SK_INLINE void SK_ISA(sweep_strips)(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_pair_mode mode,
+                                    SK_ISA(meet_end) * meet_end) {
     const sk_sweep *sweep = row->rule;
     sk_pair_constants constants = sk_pair_prepare(sweep->batch, row);
     size_t width = sweep->walk.width, side_by_side = sweep->row_step == 0 ? 4 : 1;
@@ -87,7 +93,8 @@ SK_INLINE void SK_ISA(sweep_strips)(sk_run *run, const sk_row *row, size_t begin
                 size_t block = i * width + k, lane = sweep->first_lane + block * SK_LANES;
                 size_t slot_a = sweep->walk.first_slot + block * SK_LANES;
                 size_t slot_b = sweep->walk.first_slot + ((i + (size_t)sweep->row_step) * width + place) * SK_LANES;
-                if (__builtin_expect(shift == 0, 1)) SK_ISA(meet_blocks)(run, row, sweep, &constants, lane, slot_a, slot_b, 0, mode);
+                if (__builtin_expect(shift == 0, 1))
+                    SK_ISA(meet_blocks)(run, row, sweep, &constants, lane, slot_a, slot_b, 0, mode);
                 else meet_end(run, row, sweep, &constants, lane, slot_a, slot_b, shift);
             }
         }
@@ -118,8 +125,8 @@ SK_INLINE void SK_ISA(scatter_sum)(sk_vec4 *vector, size_t packed, const uint32_
     for (int l = 0; l < SK_LANES; l++) sk_store_at(vector, packed, slot[l], sk_v3(old.x[l], old.y[l], old.z[l]));
 }
 
-SK_INLINE void SK_ISA(meet_group)(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_pair_constants *constants, size_t group,
-                                  size_t packed, sk_pair_mode mode) {
+SK_INLINE void SK_ISA(meet_group)(sk_run *run, const sk_row *row, const sk_sweep *sweep,
+                                  const sk_pair_constants *constants, size_t group, size_t packed, sk_pair_mode mode) {
     const uint32_t *sa = sweep->slots + group * 2 * SK_LANES, *sb = sa + SK_LANES;
     sk_vec4 *x = run->vector[SK_X], *other = run->vector[mode == SK_PAIR_PROJECT_DAMPED ? SK_X0 : SK_V];
     sk_wide4 a = SK_ISA(gather)(x, packed, sa), b = SK_ISA(gather)(x, packed, sb), oa = {0}, ob = {0};
@@ -158,17 +165,17 @@ SK_INLINE void SK_ISA(sweep_groups)(sk_run *run, const sk_row *row, size_t begin
     }
 }
 
-#define SK_PAIR_WALKS(name, mode)                                                                                      \
-    static __attribute__((noinline)) void SK_ISA(name##_end)(sk_run * run, const sk_row *row, const sk_sweep *sweep,   \
-                                                             const sk_pair_constants *constants, size_t lane,          \
-                                                             size_t slot_a, size_t slot_b, int shift) {                \
-        SK_ISA(meet_blocks)(run, row, sweep, constants, lane, slot_a, slot_b, shift, mode);                            \
-    }                                                                                                                  \
-    static void SK_ISA(name##_strips)(sk_run * run, const sk_row *row, size_t begin, size_t end) {                     \
-        SK_ISA(sweep_strips)(run, row, begin, end, mode, SK_ISA(name##_end));                                          \
-    }                                                                                                                  \
-    static void SK_ISA(name##_groups)(sk_run * run, const sk_row *row, size_t begin, size_t end) {                     \
-        SK_ISA(sweep_groups)(run, row, begin, end, mode);                                                              \
+#define SK_PAIR_WALKS(name, mode)                                                                                    \
+    static __attribute__((noinline)) void SK_ISA(name##_end)(sk_run * run, const sk_row *row, const sk_sweep *sweep, \
+                                                             const sk_pair_constants *constants, size_t lane,        \
+                                                             size_t slot_a, size_t slot_b, int shift) {              \
+        SK_ISA(meet_blocks)(run, row, sweep, constants, lane, slot_a, slot_b, shift, mode);                          \
+    }                                                                                                                \
+    static void SK_ISA(name##_strips)(sk_run * run, const sk_row *row, size_t begin, size_t end) {                   \
+        SK_ISA(sweep_strips)(run, row, begin, end, mode, SK_ISA(name##_end));                                        \
+    }                                                                                                                \
+    static void SK_ISA(name##_groups)(sk_run * run, const sk_row *row, size_t begin, size_t end) {                   \
+        SK_ISA(sweep_groups)(run, row, begin, end, mode);                                                            \
     }
 SK_PAIR_WALKS(force, SK_PAIR_FORCE)
 SK_PAIR_WALKS(project, SK_PAIR_PROJECT)

@@ -6,9 +6,9 @@
 #include <string.h>
 
 enum {
-    GROUP_DISTANCE = 4,  /* dependent groups stand so far apart where they can, to hide each other's latency */
+    GROUP_DISTANCE = 4, /* dependent groups stand so far apart where they can, to hide each other's latency */
     MOST_DIRECTIONS = 64,
-    LEAST_SHARE = 5      /* a direction becomes a strip sweep if a fifth of its places have an element */
+    LEAST_SHARE = 5 /* a direction becomes a strip sweep if a fifth of its places have an element */
 };
 
 /* Where an element lies: in which strips and direction, and at which place of the first particle. */
@@ -48,7 +48,8 @@ static element_place place_of(const sk_particles *particles, uint32_t p, uint32_
     if (!strips || strips != strips_of(particles, p < q ? q : p) || p == q) return none;
     uint32_t a = (p < q ? p : q) - strips->first_particle, b = (p < q ? q : p) - strips->first_particle;
     element_place place = {strips, (int32_t)(b / strips->columns) - (int32_t)(a / strips->columns),
-                           (int32_t)(b % strips->columns) - (int32_t)(a % strips->columns), a / strips->columns, a % strips->columns};
+                           (int32_t)(b % strips->columns) - (int32_t)(a % strips->columns), a / strips->columns,
+                           a % strips->columns};
     // a longer step would meet itself, or skip a strip
     return abs(place.column_step) < (int32_t)strips->width ? place : none;
 }
@@ -57,7 +58,9 @@ static direction *find_direction(cutter *c, element_place place) {
     if (!place.strips) return NULL;
     for (size_t d = 0; d < c->direction_count; d++) {
         direction *known = &c->directions[d];
-        if (known->strips == place.strips && known->row_step == place.row_step && known->column_step == place.column_step) return known;
+        if (known->strips == place.strips && known->row_step == place.row_step &&
+            known->column_step == place.column_step)
+            return known;
     }
     if (c->direction_count == MOST_DIRECTIONS) return NULL;
     c->directions[c->direction_count] = (direction){place.strips, place.row_step, place.column_step, 0, SIZE_MAX};
@@ -87,11 +90,17 @@ static bool add_strip_sweeps(cutter *c) {
         direction *d = &c->directions[i];
         size_t places = (size_t)d->strips->rows * d->strips->columns;
         if (d->count * LEAST_SHARE < places) continue;
-        if (!sk_reserve(c->allocator, (void **)&batch->sweeps, &batch->sweep_capacity, batch->sweep_count + 1, sizeof(sk_sweep))) return false;
+        if (!sk_reserve(c->allocator, (void **)&batch->sweeps, &batch->sweep_capacity, batch->sweep_count + 1,
+                        sizeof(sk_sweep)))
+            return false;
         d->sweep = batch->sweep_count;
         sk_sweep *sweep = &batch->sweeps[batch->sweep_count++];
-        *sweep = (sk_sweep){.batch = batch, .strips = true, .element_count = d->count, .first_lane = batch->lane_count,
-                            .row_step = d->row_step, .column_step = d->column_step,
+        *sweep = (sk_sweep){.batch = batch,
+                            .strips = true,
+                            .element_count = d->count,
+                            .first_lane = batch->lane_count,
+                            .row_step = d->row_step,
+                            .column_step = d->column_step,
                             .walk = {d->strips->first_slot, d->strips->rows, d->strips->width, (size_t)d->row_step}};
         snprintf(sweep->label, sizeof sweep->label, "%.30s %+d %+d", batch->label, d->row_step, d->column_step);
         batch->lane_count += (size_t)d->strips->rows * d->strips->width * SK_LANES;
@@ -105,7 +114,8 @@ static size_t strip_lane(cutter *c, size_t e, const bool *taken) {
     direction *d = find_direction(c, place);
     if (!d || d->sweep == SIZE_MAX) return SIZE_MAX;
     size_t width = place.strips->width;
-    size_t lane = c->batch->sweeps[d->sweep].first_lane + (place.row * width + place.column % width) * SK_LANES + place.column / width;
+    size_t lane = c->batch->sweeps[d->sweep].first_lane + (place.row * width + place.column % width) * SK_LANES +
+                  place.column / width;
     return taken[lane] ? SIZE_MAX : lane;
 }
 
@@ -124,10 +134,10 @@ static uint32_t first_open(uint32_t *next, uint32_t group) {
 }
 
 typedef struct grouping {
-    uint32_t *last;   /* a slot's newest group, counted from 1; 0: none */
-    uint32_t *next;   /* the group itself while it has room, else a later one */
-    uint8_t *filled;  /* elements of a group */
-    uint32_t *group;  /* of each element */
+    uint32_t *last;  /* a slot's newest group, counted from 1; 0: none */
+    uint32_t *next;  /* the group itself while it has room, else a later one */
+    uint8_t *filled; /* elements of a group */
+    uint32_t *group; /* of each element */
     size_t group_count;
 } grouping;
 
@@ -150,12 +160,18 @@ static void deal(cutter *c, grouping *g, const size_t *lane_of) {
 static bool fill_groups(cutter *c, const grouping *g, size_t *lane_of, size_t left) {
     sk_batch *batch = c->batch;
     batch->group_slots = sk_allocate(c->allocator, g->group_count * 2 * SK_LANES * sizeof *batch->group_slots);
-    if (!batch->group_slots || !sk_reserve(c->allocator, (void **)&batch->sweeps, &batch->sweep_capacity, batch->sweep_count + 1, sizeof(sk_sweep)))
+    if (!batch->group_slots || !sk_reserve(c->allocator, (void **)&batch->sweeps, &batch->sweep_capacity,
+                                           batch->sweep_count + 1, sizeof(sk_sweep)))
         return false;
     sk_sweep *sweep = &batch->sweeps[batch->sweep_count++];
-    *sweep = (sk_sweep){.batch = batch, .element_count = left, .first_lane = batch->lane_count, .slots = batch->group_slots, .group_count = g->group_count};
+    *sweep = (sk_sweep){.batch = batch,
+                        .element_count = left,
+                        .first_lane = batch->lane_count,
+                        .slots = batch->group_slots,
+                        .group_count = g->group_count};
     snprintf(sweep->label, sizeof sweep->label, "%.40s groups", batch->label);
-    for (size_t i = 0; i < g->group_count * 2 * SK_LANES; i++) batch->group_slots[i] = (uint32_t)c->particles->empty_slot;
+    for (size_t i = 0; i < g->group_count * 2 * SK_LANES; i++)
+        batch->group_slots[i] = (uint32_t)c->particles->empty_slot;
     memset(g->filled, 0, g->group_count);
     for (size_t e = 0; e < batch->count; e++) {
         if (lane_of[e] != SIZE_MAX) continue;
@@ -193,8 +209,13 @@ static bool add_group_sweep(cutter *c, size_t *lane_of) {
 /* ---- the whole cut ---- */
 
 static void forget_sweeps(sk_batch *batch, sk_allocator *allocator) {
-    void **arrays[] = {(void **)&batch->lane, (void **)&batch->lane_rest, (void **)&batch->lane_stiffness, (void **)&batch->lane_compliance,
-                       (void **)&batch->lane_multiplier, (void **)&batch->special, (void **)&batch->group_slots};
+    void **arrays[] = {(void **)&batch->lane,
+                       (void **)&batch->lane_rest,
+                       (void **)&batch->lane_stiffness,
+                       (void **)&batch->lane_compliance,
+                       (void **)&batch->lane_multiplier,
+                       (void **)&batch->special,
+                       (void **)&batch->group_slots};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         sk_release(allocator, *arrays[i]);
         *arrays[i] = NULL;
@@ -210,7 +231,8 @@ static bool allocate_lanes(sk_batch *batch, sk_allocator *allocator) {
     batch->lane_compliance = sk_allocate(allocator, size);
     batch->lane_multiplier = sk_allocate(allocator, size);
     batch->special = sk_allocate(allocator, batch->lane_count / SK_LANES);
-    return batch->lane && batch->lane_rest && batch->lane_stiffness && batch->lane_compliance && batch->lane_multiplier && batch->special;
+    return batch->lane && batch->lane_rest && batch->lane_stiffness && batch->lane_compliance &&
+           batch->lane_multiplier && batch->special;
 }
 
 bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles) {
@@ -247,7 +269,8 @@ static void mark_special(sk_batch *batch, sk_sweep *sweep) {
         size_t lane = sweep->first_lane + b * SK_LANES;
         bool special = false;
         for (size_t l = lane; l < lane + SK_LANES; l++)
-            special |= batch->lane_rest[l] != sweep->rest || batch->lane_stiffness[l] != sweep->stiffness || batch->lane_compliance[l] != sweep->compliance;
+            special |= batch->lane_rest[l] != sweep->rest || batch->lane_stiffness[l] != sweep->stiffness ||
+                       batch->lane_compliance[l] != sweep->compliance;
         batch->special[lane / SK_LANES] = special;
     }
 }

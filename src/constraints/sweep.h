@@ -18,8 +18,8 @@
 
 struct sk_sweep {
     const sk_batch *batch;
-    bool strips;           /* else groups */
-    size_t element_count;  /* real ones */
+    bool strips;          /* else groups */
+    size_t element_count; /* real ones */
     size_t first_lane;
     /* strips */
     sk_walk walk;
@@ -28,7 +28,7 @@ struct sk_sweep {
     /* groups */
     const uint32_t *slots; /* 32 a group */
     size_t group_count;
-    char label[48];        /* the batch's, and the direction */
+    char label[48]; /* the batch's, and the direction */
 };
 
 #endif

@@ -47,8 +47,8 @@ static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
             for (int32_t y = cy - 1; y <= cy + 1; y++) {
                 if (y < 0 || z < 0 || y >= grid->cells_y || z >= grid->cells_z) continue;
                 int32_t line = grid->cells_x * (y + grid->cells_y * z);
-                push = sk_add(push, push_of_range(grid, (uint32_t)(line + x0), (uint32_t)(line + x1), here,
-                                                  reach, strength));
+                push = sk_add(push,
+                              push_of_range(grid, (uint32_t)(line + x0), (uint32_t)(line + x1), here, reach, strength));
             }
         sk_add_at(f, row->packed, slot, push);
     }

@@ -19,18 +19,19 @@ typedef struct sk_limit {
     const bool *enabled;
     const double *bound; /* of the stretch: 0.05 lets it grow by 5 % */
     size_t count;
-    size_t anchors;      /* of each element */
-    bool shared;         /* all elements have the same anchors */
-    uint32_t *particle;  /* the tethered one, then its anchors: count x (1 + anchors), user's indices */
-    real *length;        /* count x anchors: along the cloth at rest, m; infinite where there is no way */
+    size_t anchors;     /* of each element */
+    bool shared;        /* all elements have the same anchors */
+    uint32_t *particle; /* the tethered one, then its anchors: count x (1 + anchors), user's indices */
+    real *length;       /* count x anchors: along the cloth at rest, m; infinite where there is no way */
     /* by slot, from first_slot on (a multiple of 16) */
     size_t first_slot, slot_count;
-    real *slot_length;    /* slot_count x anchors, in blocks */
-    uint32_t *anchor;     /* slots: anchors of them where they are shared, else slot_count x anchors, in blocks */
+    real *slot_length; /* slot_count x anchors, in blocks */
+    uint32_t *anchor;  /* slots: anchors of them where they are shared, else slot_count x anchors, in blocks */
 } sk_limit;
 
 /* Copies; no particle is tethered twice. NULL when there is no memory. */
-sk_limit *sk_tethers_create(sk_allocator *allocator, size_t count, size_t anchors, const uint32_t *particles, const real *lengths);
+sk_limit *sk_tethers_create(sk_allocator *allocator, size_t count, size_t anchors, const uint32_t *particles,
+                            const real *lengths);
 void sk_limit_release(sk_limit *limit, sk_allocator *allocator);
 /* Follows the particles' slots. False when there is no memory. */
 bool sk_limit_arrange(sk_limit *limit, sk_allocator *allocator, const sk_particles *particles);

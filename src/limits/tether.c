@@ -13,7 +13,8 @@ SK_INLINE void SK_ISA(pull_in)(sk_wide3 *p, sk_wide3 anchor, sk_wide most) {
 }
 
 /* Anchor k of a block; one that is not held any more lets go. */
-SK_INLINE sk_wide3 SK_ISA(anchor_of)(sk_run *run, const sk_row *row, const sk_limit *limit, size_t block, size_t k, sk_wide *most) {
+SK_INLINE sk_wide3 SK_ISA(anchor_of)(sk_run *run, const sk_row *row, const sk_limit *limit, size_t block, size_t k,
+                                     sk_wide *most) {
     const uint32_t *anchor = limit->anchor + (limit->shared ? k : (block * limit->anchors + k) * SK_LANES);
     sk_wide3 at;
     for (int l = 0; l < SK_LANES; l++) {
@@ -47,7 +48,9 @@ static void SK_ISA(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, s
             sk_wide3 anchor = SK_ISA(anchor_of)(run, row, limit, block, k, &most);
             SK_ISA(pull_in)(&forth, anchor, most);
         }
-        sk_mask moved = (SK_ISA(sk_differ)(forth.x, x.x) | SK_ISA(sk_differ)(forth.y, x.y) | SK_ISA(sk_differ)(forth.z, x.z)) & SK_ISA(sk_positive)(x.w);
+        sk_mask moved =
+            (SK_ISA(sk_differ)(forth.x, x.x) | SK_ISA(sk_differ)(forth.y, x.y) | SK_ISA(sk_differ)(forth.z, x.z)) &
+            SK_ISA(sk_positive)(x.w);
         if (!SK_ISA(sk_any)(moved)) continue;
         if (anchors > 1) {
             for (size_t k = anchors; k-- > 0;) {
@@ -68,7 +71,8 @@ static void SK_ISA(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, s
         sk_vec4 *velocity = run->vector[row->source[1]];
         sk_wide4 v = SK_ISA(sk_load_block)(velocity, slot, slot < row->packed);
         sk_wide square = SK_ISA(sk_dot_wide)(move, move), against = move.x * v.x + move.y * v.y + move.z * v.z;
-        sk_wide s = SK_ISA(sk_keep)(moved & SK_ISA(sk_positive)(square) & SK_ISA(sk_negative)(against), -against / square);
+        sk_wide s =
+            SK_ISA(sk_keep)(moved & SK_ISA(sk_positive)(square) & SK_ISA(sk_negative)(against), -against / square);
         v.x += s * move.x, v.y += s * move.y, v.z += s * move.z;
         SK_ISA(sk_store_block)(velocity, slot, slot < row->packed, v);
     }
@@ -89,7 +93,8 @@ static bool anchors_shared(size_t count, size_t anchors, const uint32_t *particl
     return true;
 }
 
-sk_limit *sk_tethers_create(sk_allocator *allocator, size_t count, size_t anchors, const uint32_t *particles, const real *lengths) {
+sk_limit *sk_tethers_create(sk_allocator *allocator, size_t count, size_t anchors, const uint32_t *particles,
+                            const real *lengths) {
     sk_limit *limit = sk_allocate(allocator, sizeof *limit);
     if (!limit) return NULL;
     size_t indices = count * (1 + anchors);
@@ -133,7 +138,8 @@ bool sk_limit_arrange(sk_limit *limit, sk_allocator *allocator, const sk_particl
     limit->first_slot = limit->count ? low / SK_LANES * SK_LANES : 0;
     limit->slot_count = limit->count ? (high + SK_LANES - 1) / SK_LANES * SK_LANES - limit->first_slot : 0;
     limit->slot_length = sk_allocate(allocator, limit->slot_count * anchors * sizeof *limit->slot_length);
-    limit->anchor = sk_allocate(allocator, (limit->shared ? anchors : limit->slot_count * anchors) * sizeof *limit->anchor);
+    limit->anchor =
+        sk_allocate(allocator, (limit->shared ? anchors : limit->slot_count * anchors) * sizeof *limit->anchor);
     if (!limit->slot_length || !limit->anchor) return false;
     for (size_t i = 0; i < limit->slot_count * anchors; i++) {
         limit->slot_length[i] = (real)SK_FAR;

@@ -20,16 +20,27 @@ void sk_write_end(sk_writer *writer, size_t repeat) {
     if (!writer->no_memory) writer->plan->data[repeat].length = writer->plan->count - repeat - 1;
 }
 
-static void add_combine(sk_writer *writer, const sk_kernels *kernels, sk_vector dst, double a, sk_vector p, double b, sk_vector q) {
-    add(writer, (sk_row){.kind = SK_ROW_COMBINE, .order = SK_FREE, .kernel = kernels->version[writer->isa], .dst = dst, .source = {p, q, SK_NONE},
-                         .coefficient = {a, b, 0}, .end = writer->slot_count});
+static void add_combine(sk_writer *writer, const sk_kernels *kernels, sk_vector dst, double a, sk_vector p, double b,
+                        sk_vector q) {
+    add(writer, (sk_row){.kind = SK_ROW_COMBINE,
+                         .order = SK_FREE,
+                         .kernel = kernels->version[writer->isa],
+                         .dst = dst,
+                         .source = {p, q, SK_NONE},
+                         .coefficient = {a, b, 0},
+                         .end = writer->slot_count});
 }
 
 static void add_layout_rows(sk_writer *writer, sk_row_kind kind, const sk_kernels *kernels) {
     static const sk_vector vectors[] = {SK_X, SK_V};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
-        add(writer, (sk_row){.kind = kind, .order = SK_FREE, .kernel = kernels->version[writer->isa], .dst = vectors[i],
-                             .source = {vectors[i]}, .label = "strips", .end = writer->strip_slots});
+        add(writer, (sk_row){.kind = kind,
+                             .order = SK_FREE,
+                             .kernel = kernels->version[writer->isa],
+                             .dst = vectors[i],
+                             .source = {vectors[i]},
+                             .label = "strips",
+                             .end = writer->strip_slots});
 }
 
 void sk_write_pack(sk_writer *writer) {
@@ -61,8 +72,12 @@ void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_v
 }
 
 void sk_write_predict(sk_writer *writer) {
-    add(writer, (sk_row){.kind = SK_ROW_COMBINE, .order = SK_FREE, .kernel = sk_combine_predict.version[writer->isa], .dst = SK_X,
-                         .source = {SK_V, SK_F, writer->rules->colliders.count ? SK_V0 : SK_NONE}, .end = writer->slot_count});
+    add(writer, (sk_row){.kind = SK_ROW_COMBINE,
+                         .order = SK_FREE,
+                         .kernel = sk_combine_predict.version[writer->isa],
+                         .dst = SK_X,
+                         .source = {SK_V, SK_F, writer->rules->colliders.count ? SK_V0 : SK_NONE},
+                         .end = writer->slot_count});
 }
 
 /* The grid's row: sorts all particles into cells of at least coefficient[0]. */
@@ -90,16 +105,27 @@ void sk_write_fields(sk_writer *writer) {
     bool first = true; // gravity and the like set F when they come first; others add to a cleared one
     double radius = widest_radius(rules);
     if (radius > 0)
-        add(writer, (sk_row){.kind = SK_ROW_GRID, .order = SK_ORDERED, .kernel = build_grid, .source = {SK_X},
-                             .coefficient = {radius}, .label = "cells", .end = writer->particle_count});
+        add(writer, (sk_row){.kind = SK_ROW_GRID,
+                             .order = SK_ORDERED,
+                             .kernel = build_grid,
+                             .source = {SK_X},
+                             .coefficient = {radius},
+                             .label = "cells",
+                             .end = writer->particle_count});
     for (size_t i = 0; i < rules->forces.count; i++) {
         const sk_force *force = rules->forces.data[i];
         if (!*force->enabled) continue;
         bool sets = first && force->type->sets;
         if (first && !sets) sk_write_clear(writer, SK_F);
         first = false;
-        sk_row row = {.kind = SK_ROW_FIELD, .order = SK_FREE, .kernel = force->type->kernel.version[writer->isa], .dst = SK_F,
-                      .source = {SK_X, SK_V}, .rule = force, .label = force->label, .end = writer->slot_count};
+        sk_row row = {.kind = SK_ROW_FIELD,
+                      .order = SK_FREE,
+                      .kernel = force->type->kernel.version[writer->isa],
+                      .dst = SK_F,
+                      .source = {SK_X, SK_V},
+                      .rule = force,
+                      .label = force->label,
+                      .end = writer->slot_count};
         if (force->type->domain == SK_OVER_TRIANGLES) {
             row.order = SK_ORDERED; // neighbouring triangles write the same corners
             row.end = writer->triangle_count;
@@ -115,12 +141,19 @@ void sk_write_fields(sk_writer *writer) {
 }
 
 /* A row for each sweep of a batch. */
-static void add_sweeps(sk_writer *writer, const sk_batch *batch, sk_row_kind kind, const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second) {
+static void add_sweeps(sk_writer *writer, const sk_batch *batch, sk_row_kind kind, const sk_sweep_kernels *kernels,
+                       sk_vector dst, sk_vector second) {
     for (size_t i = 0; i < batch->sweep_count; i++) {
         const sk_sweep *sweep = &batch->sweeps[i];
         const sk_kernels *walk = sweep->strips ? &kernels->strips : &kernels->groups;
-        add(writer, (sk_row){.kind = kind, .order = SK_ORDERED, .kernel = walk->version[writer->isa], .dst = dst, .source = {SK_X, second},
-                             .rule = sweep, .label = sweep->label, .walk = sweep->walk,
+        add(writer, (sk_row){.kind = kind,
+                             .order = SK_ORDERED,
+                             .kernel = walk->version[writer->isa],
+                             .dst = dst,
+                             .source = {SK_X, second},
+                             .rule = sweep,
+                             .label = sweep->label,
+                             .walk = sweep->walk,
                              .end = sweep->strips ? sweep->walk.rows - sweep->walk.reach : sweep->group_count});
     }
 }
@@ -150,8 +183,13 @@ void sk_write_projections(sk_writer *writer, int passes) {
             const sk_sweep *sweep = &batch->sweeps[w];
             sk_walk walk = sweep->walk;
             walk.reach = 0;
-            add(writer, (sk_row){.kind = SK_ROW_MULTIPLIER, .order = SK_ORDERED, .kernel = sk_sweep_clear_multipliers, .rule = sweep,
-                                 .label = sweep->label, .walk = walk, .end = sweep->strips ? walk.rows : sweep->group_count});
+            add(writer, (sk_row){.kind = SK_ROW_MULTIPLIER,
+                                 .order = SK_ORDERED,
+                                 .kernel = sk_sweep_clear_multipliers,
+                                 .rule = sweep,
+                                 .label = sweep->label,
+                                 .walk = walk,
+                                 .end = sweep->strips ? walk.rows : sweep->group_count});
         }
     }
     for (int pass = 0; pass < passes; pass++)
@@ -159,8 +197,8 @@ void sk_write_projections(sk_writer *writer, int passes) {
             const sk_batch *batch = rules->batches.data[i];
             if (!is_on(batch)) continue;
             bool keeps = keeps_multiplier(batch, passes);
-            add_sweeps(writer, batch, SK_ROW_PROJECT, keeps ? &batch->type->project_damped : &batch->type->project, SK_X,
-                       keeps ? SK_X0 : SK_NONE);
+            add_sweeps(writer, batch, SK_ROW_PROJECT, keeps ? &batch->type->project_damped : &batch->type->project,
+                       SK_X, keeps ? SK_X0 : SK_NONE);
         }
 }
 
@@ -178,9 +216,14 @@ void sk_write_contacts(sk_writer *writer, sk_contact_sort sort, sk_vector before
     for (size_t i = 0; i < writer->rules->colliders.count; i++) {
         const sk_collider *collider = writer->rules->colliders.data[i];
         if (!collider->common->enabled) continue;
-        add(writer, (sk_row){.kind = sorts[sort].kind, .order = SK_FREE, .kernel = sorts[sort].kernels->version[writer->isa],
-                             .dst = sorts[sort].dst, .source = {SK_X, before}, .rule = collider,
-                             .label = collider->label, .end = writer->slot_count});
+        add(writer, (sk_row){.kind = sorts[sort].kind,
+                             .order = SK_FREE,
+                             .kernel = sorts[sort].kernels->version[writer->isa],
+                             .dst = sorts[sort].dst,
+                             .source = {SK_X, before},
+                             .rule = collider,
+                             .label = collider->label,
+                             .end = writer->slot_count});
     }
 }
 
@@ -189,13 +232,20 @@ void sk_write_limits(sk_writer *writer, sk_vector velocity) {
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
         if (!is_on(batch) || !batch->bound || *batch->bound >= SK_UNBOUNDED) continue;
-        add_sweeps(writer, batch, SK_ROW_LIMIT, velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving, SK_X, velocity);
+        add_sweeps(writer, batch, SK_ROW_LIMIT, velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving,
+                   SK_X, velocity);
     }
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
         if (!*limit->enabled || !limit->count || *limit->bound >= SK_UNBOUNDED) continue;
-        add(writer, (sk_row){.kind = SK_ROW_LIMIT, .order = SK_FREE, .kernel = limit->kernel.version[writer->isa], .dst = SK_X,
-                             .source = {SK_X, velocity}, .rule = limit, .label = limit->label, .begin = limit->first_slot,
+        add(writer, (sk_row){.kind = SK_ROW_LIMIT,
+                             .order = SK_FREE,
+                             .kernel = limit->kernel.version[writer->isa],
+                             .dst = SK_X,
+                             .source = {SK_X, velocity},
+                             .rule = limit,
+                             .label = limit->label,
+                             .begin = limit->first_slot,
                              .end = limit->first_slot + limit->slot_count});
     }
 }

@@ -9,10 +9,22 @@
 
 /* Everything that acts, in the order of its making. Owned by the world. */
 typedef struct sk_rules {
-    struct { sk_batch **data; size_t count, capacity; } batches;
-    struct { sk_force **data; size_t count, capacity; } forces;
-    struct { sk_collider **data; size_t count, capacity; } colliders;
-    struct { sk_limit **data; size_t count, capacity; } limits;
+    struct {
+        sk_batch **data;
+        size_t count, capacity;
+    } batches;
+    struct {
+        sk_force **data;
+        size_t count, capacity;
+    } forces;
+    struct {
+        sk_collider **data;
+        size_t count, capacity;
+    } colliders;
+    struct {
+        sk_limit **data;
+        size_t count, capacity;
+    } limits;
 } sk_rules;
 
 typedef struct sk_writer {
@@ -23,8 +35,8 @@ typedef struct sk_writer {
     size_t slot_count, particle_count, triangle_count;
     size_t strip_slots; /* the first slots, which are in strips */
     size_t packed;      /* the first slots that are in packed blocks now */
-    double h;       /* of the present substep, s */
-    bool no_memory; /* the plan is incomplete */
+    double h;           /* of the present substep, s */
+    bool no_memory;     /* the plan is incomplete */
 } sk_writer;
 
 /* Opens a repeat of `times` substeps of `h` seconds; sk_write_end closes it. Returns its place. */
@@ -51,7 +63,12 @@ void sk_write_forces(sk_writer *writer);
 /* X: `passes` sweeps over every batch; X0 is the state at the start of the substep. */
 void sk_write_projections(sk_writer *writer, int passes);
 
-typedef enum sk_contact_sort { SK_CONTACT_FORCE, SK_CONTACT_IMPULSE, SK_CONTACT_PUSH, SK_CONTACT_RESTITUTION } sk_contact_sort;
+typedef enum sk_contact_sort {
+    SK_CONTACT_FORCE,
+    SK_CONTACT_IMPULSE,
+    SK_CONTACT_PUSH,
+    SK_CONTACT_RESTITUTION
+} sk_contact_sort;
 /* A row for each collider; `before` is X0 for a push with friction, V0 for restitution, else SK_NONE. */
 void sk_write_contacts(sk_writer *writer, sk_contact_sort sort, sk_vector before);
 /* Limits move X; `velocity` is SK_V where the method does not take velocities from positions, else SK_NONE. */

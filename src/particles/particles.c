@@ -75,8 +75,10 @@ bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, s
 
 void sk_particles_truncate(sk_particles *particles, size_t count) {
     for (size_t i = count; i < particles->count; i++)
-        for (int v = SK_X; v < SK_VECTOR_COUNT; v++) particles->vector[v][particles->slot_of[i]] = (sk_vec4){0, 0, 0, 0};
-    while (particles->strips.count && particles->strips.data[particles->strips.count - 1].first_particle >= count) particles->strips.count--;
+        for (int v = SK_X; v < SK_VECTOR_COUNT; v++)
+            particles->vector[v][particles->slot_of[i]] = (sk_vec4){0, 0, 0, 0};
+    while (particles->strips.count && particles->strips.data[particles->strips.count - 1].first_particle >= count)
+        particles->strips.count--;
     particles->count = count;
 }
 
@@ -89,7 +91,8 @@ static void number_slots(sk_particles *particles, const uint32_t *by_rank, uint3
         strips->first_slot = next;
         for (uint32_t i = 0; i < strips->count; i++) {
             size_t r = i / strips->columns, c = i % strips->columns;
-            slot_of[strips->first_particle + i] = (uint32_t)(next + (r * strips->width + c % strips->width) * 16 + c / strips->width);
+            slot_of[strips->first_particle + i] =
+                (uint32_t)(next + (r * strips->width + c % strips->width) * 16 + c / strips->width);
         }
         next += (size_t)strips->rows * strips->width * 16;
     }
@@ -115,11 +118,13 @@ bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
     uint32_t *by_rank = sk_allocate(allocator, particles->count * sizeof *by_rank);
     bool good = slot_of && by_rank;
     for (size_t i = 0; i < particles->count && good; i++) by_rank[particles->rank[i]] = (uint32_t)i;
-    for (int v = SK_X; v < SK_VECTOR_COUNT && good; v++) good = (vector[v] = sk_allocate(allocator, slot_count * sizeof(sk_vec4))) != NULL;
+    for (int v = SK_X; v < SK_VECTOR_COUNT && good; v++)
+        good = (vector[v] = sk_allocate(allocator, slot_count * sizeof(sk_vec4))) != NULL;
     if (good) {
         number_slots(particles, by_rank, slot_of);
         for (int v = SK_X; v < SK_VECTOR_COUNT; v++)
-            for (size_t i = 0; i < particles->count; i++) vector[v][slot_of[i]] = particles->vector[v][particles->slot_of[i]];
+            for (size_t i = 0; i < particles->count; i++)
+                vector[v][slot_of[i]] = particles->vector[v][particles->slot_of[i]];
         for (int v = SK_X; v < SK_VECTOR_COUNT; v++) {
             sk_vec4 *old = particles->vector[v];
             particles->vector[v] = vector[v];

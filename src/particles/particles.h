@@ -15,25 +15,28 @@
 #include "plan/row.h"
 
 typedef struct sk_strips {
-    uint32_t first_particle, count;         /* in row order; the last row may be short */
+    uint32_t first_particle, count; /* in row order; the last row may be short */
     uint32_t rows, columns;
-    uint32_t width;                         /* columns a strip: blocks a row */
+    uint32_t width; /* columns a strip: blocks a row */
     size_t first_slot;
 } sk_strips;
 
 typedef struct sk_particles {
-    size_t count, capacity;             /* user's particles */
-    size_t slot_count, slot_capacity;   /* multiples of 16 */
-    size_t strip_slots;                 /* the first ones, in strips */
-    size_t empty_slot;                  /* the first of the last sixteen */
-    bool arranged;                      /* slots are as the picture shows */
-    sk_vec4 *vector[SK_VECTOR_COUNT];   /* slots; SK_NONE is unused */
+    size_t count, capacity;           /* user's particles */
+    size_t slot_count, slot_capacity; /* multiples of 16 */
+    size_t strip_slots;               /* the first ones, in strips */
+    size_t empty_slot;                /* the first of the last sixteen */
+    bool arranged;                    /* slots are as the picture shows */
+    sk_vec4 *vector[SK_VECTOR_COUNT]; /* slots; SK_NONE is unused */
     uint32_t *slot_of;
-    uint32_t *rank;                     /* where a particle would like to lie: its own index, unless said otherwise */
-    sk_vec3 *built;                     /* positions as they were built, user's order */
-    real *mass;                         /* kg, user's order; 0 for one that was built as held */
+    uint32_t *rank; /* where a particle would like to lie: its own index, unless said otherwise */
+    sk_vec3 *built; /* positions as they were built, user's order */
+    real *mass;     /* kg, user's order; 0 for one that was built as held */
     bool *held;
-    struct { sk_strips *data; size_t count, capacity; } strips;
+    struct {
+        sk_strips *data;
+        size_t count, capacity;
+    } strips;
 } sk_particles;
 
 /* Adds particles at the end. False when there is no memory: the particles are then as they were. */

@@ -3,15 +3,15 @@
 
 /* Runs VALUE, an expression of the wides at place `at` of the vectors, over the blocks of [begin, end). In
  * packed blocks x, y and z are wides of their own; in quads every fourth lane is a w, which stays. */
-#define FOR_PARTS(VALUE)                                                                                               \
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {                                                          \
-        size_t at = slot / 4;                                                                                          \
-        if (slot < row->packed) {                                                                                      \
-            for (int part = 0; part < 3; part++, at++) dst[at] = (VALUE);                                              \
-        } else {                                                                                                       \
-            const sk_mask xyz = {-1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0};                          \
-            for (int part = 0; part < 4; part++, at++) dst[at] = SK_ISA(sk_select)(xyz, (VALUE), dst[at]);             \
-        }                                                                                                              \
+#define FOR_PARTS(VALUE)                                                                                   \
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {                                              \
+        size_t at = slot / 4;                                                                              \
+        if (slot < row->packed) {                                                                          \
+            for (int part = 0; part < 3; part++, at++) dst[at] = (VALUE);                                  \
+        } else {                                                                                           \
+            const sk_mask xyz = {-1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0};              \
+            for (int part = 0; part < 4; part++, at++) dst[at] = SK_ISA(sk_select)(xyz, (VALUE), dst[at]); \
+        }                                                                                                  \
     }
 
 static void SK_ISA(sum)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
@@ -40,7 +40,8 @@ static void SK_ISA(kick)(sk_run *run, const sk_row *row, size_t begin, size_t en
     real a = (real)row->coefficient[0];
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
-        sk_wide4 p = SK_ISA(sk_load_block)(run->vector[row->source[0]], slot, packed), q = SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, packed);
+        sk_wide4 p = SK_ISA(sk_load_block)(run->vector[row->source[0]], slot, packed),
+                 q = SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, packed);
         sk_wide k = a * SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed).w;
         p.x += k * q.x, p.y += k * q.y, p.z += k * q.z;
         SK_ISA(sk_store_block)(run->vector[row->dst], slot, packed, p);
@@ -53,7 +54,8 @@ static void SK_ISA(predict)(sk_run *run, const sk_row *row, size_t begin, size_t
     bool keep_velocity = row->source[2] == SK_V0;
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
-        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed), v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed);
+        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed),
+                 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed);
         sk_wide4 f = SK_ISA(sk_load_block)(run->vector[SK_F], slot, packed);
         sk_wide k = h * x.w;
         v.x += k * f.x, v.y += k * f.y, v.z += k * f.z;
@@ -68,12 +70,14 @@ static void SK_ISA(predict)(sk_run *run, const sk_row *row, size_t begin, size_t
 
 static void SK_ISA(pack)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     for (size_t slot = begin; slot < end; slot += SK_LANES)
-        SK_ISA(sk_store_block)(run->vector[row->dst], slot, true, SK_ISA(sk_load_block)(run->vector[row->dst], slot, false));
+        SK_ISA(sk_store_block)
+        (run->vector[row->dst], slot, true, SK_ISA(sk_load_block)(run->vector[row->dst], slot, false));
 }
 
 static void SK_ISA(unpack)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     for (size_t slot = begin; slot < end; slot += SK_LANES)
-        SK_ISA(sk_store_block)(run->vector[row->dst], slot, false, SK_ISA(sk_load_block)(run->vector[row->dst], slot, true));
+        SK_ISA(sk_store_block)
+        (run->vector[row->dst], slot, false, SK_ISA(sk_load_block)(run->vector[row->dst], slot, true));
 }
 
 #else

@@ -10,13 +10,20 @@ bool sk_plan_add(sk_plan *plan, sk_allocator *allocator, sk_row row) {
 
 const char *sk_row_kind_text(sk_row_kind kind) {
     static const char *const names[SK_ROW_KIND_COUNT] = {
-        [SK_ROW_PACK] = "pack",                [SK_ROW_UNPACK] = "unpack",
-        [SK_ROW_COMBINE] = "combine",          [SK_ROW_GRID] = "grid",
-        [SK_ROW_FIELD] = "field",              [SK_ROW_NEIGHBOUR] = "neighbour",
-        [SK_ROW_FORCE] = "force",              [SK_ROW_PROJECT] = "project",
-        [SK_ROW_MULTIPLIER] = "multiplier",    [SK_ROW_CONTACT_FORCE] = "contact F",
-        [SK_ROW_CONTACT_VELOCITY] = "contact V", [SK_ROW_CONTACT_POSITION] = "contact X",
-        [SK_ROW_LIMIT] = "limit",              [SK_ROW_REPEAT] = "repeat",
+        [SK_ROW_PACK] = "pack",
+        [SK_ROW_UNPACK] = "unpack",
+        [SK_ROW_COMBINE] = "combine",
+        [SK_ROW_GRID] = "grid",
+        [SK_ROW_FIELD] = "field",
+        [SK_ROW_NEIGHBOUR] = "neighbour",
+        [SK_ROW_FORCE] = "force",
+        [SK_ROW_PROJECT] = "project",
+        [SK_ROW_MULTIPLIER] = "multiplier",
+        [SK_ROW_CONTACT_FORCE] = "contact F",
+        [SK_ROW_CONTACT_VELOCITY] = "contact V",
+        [SK_ROW_CONTACT_POSITION] = "contact X",
+        [SK_ROW_LIMIT] = "limit",
+        [SK_ROW_REPEAT] = "repeat",
     };
     return names[kind];
 }
@@ -73,7 +80,8 @@ void sk_row_describe(const sk_row *row, char *text, size_t size) {
         size_t length = 0;
         for (int i = 0; i < 3; i++)
             if (row->source[i] != SK_NONE)
-                length += (size_t)snprintf(sources + length, sizeof sources - length, " %s", vector_text(row->source[i]));
+                length +=
+                    (size_t)snprintf(sources + length, sizeof sources - length, " %s", vector_text(row->source[i]));
         snprintf(what, sizeof what, "%s,%s", row->label ? row->label : "", sources);
     }
     snprintf(text, size, "%-10s %-3s = %-44s %zu elements, %s", sk_row_kind_text(row->kind), vector_text(row->dst),

@@ -12,9 +12,9 @@
 #define SK_PLAN_ROW_H
 
 #include "base/isa.h"
+#include "base/layout.h"
 #include "base/memory.h"
 #include "base/vector.h"
-#include "base/layout.h"
 #include "space/grid.h"
 
 /* The state vectors, one sk_vec4 a slot. */
@@ -60,8 +60,8 @@ typedef struct sk_triangles {
 /* What a kernel may touch while a plan runs. */
 typedef struct sk_run {
     sk_vec4 *vector[SK_VECTOR_COUNT];
-    size_t slot_count;         /* a multiple of 16; slots without a particle are zero and weigh nothing */
-    const uint32_t *slot_of;   /* of the user's particles */
+    size_t slot_count;       /* a multiple of 16; slots without a particle are zero and weigh nothing */
+    const uint32_t *slot_of; /* of the user's particles */
     size_t particle_count;
     const sk_triangles *triangles;
     sk_grid *grid;
@@ -81,7 +81,7 @@ typedef struct sk_kernels {
 /* Which strips of particles an ordered row walks along, so that threads can follow each other down the
  * rows of a grid; all zero where it does not. An element of strip row j also writes row j + reach. */
 typedef struct sk_walk {
-    size_t first_slot; /* of the strips */
+    size_t first_slot;  /* of the strips */
     size_t rows, width; /* strip rows; blocks a row */
     size_t reach;
 } sk_walk;
@@ -92,15 +92,15 @@ struct sk_row {
     sk_row_kernel *kernel; /* NULL for a repeat */
     sk_vector dst, source[3];
     double coefficient[3];
-    double dt;          /* of the substep, s */
-    const void *rule;   /* a force, a collider, a batch */
-    const char *label;  /* its name in `skein explain` */
-    size_t begin, end;  /* elements; a repeat: the number of turns is `end` */
-    bool sets;          /* a field row: F is written, not added to */
-    bool by_particle;   /* its elements are the user's particles, not slots: not to be run in chunks with others */
-    size_t packed;      /* slots [0, packed) are in packed blocks when it runs */
-    sk_walk walk;       /* of rows whose elements are strip rows */
-    size_t length;      /* a repeat: how many rows after it are repeated */
+    double dt;         /* of the substep, s */
+    const void *rule;  /* a force, a collider, a batch */
+    const char *label; /* its name in `skein explain` */
+    size_t begin, end; /* elements; a repeat: the number of turns is `end` */
+    bool sets;         /* a field row: F is written, not added to */
+    bool by_particle;  /* its elements are the user's particles, not slots: not to be run in chunks with others */
+    size_t packed;     /* slots [0, packed) are in packed blocks when it runs */
+    sk_walk walk;      /* of rows whose elements are strip rows */
+    size_t length;     /* a repeat: how many rows after it are repeated */
 };
 
 typedef struct sk_plan {

@@ -11,7 +11,8 @@ static bool is_finite(sk_vec4 p) {
 }
 
 /* The box around the finite particles; false when there is none. */
-static bool find_bounds(const sk_vec4 *positions, size_t packed, const uint32_t *slot_of, size_t count, sk_vec3 *low, sk_vec3 *high) {
+static bool find_bounds(const sk_vec4 *positions, size_t packed, const uint32_t *slot_of, size_t count, sk_vec3 *low,
+                        sk_vec3 *high) {
     bool any = false;
     for (size_t i = 0; i < count; i++) {
         sk_vec4 p = sk_load(positions, packed, slot_of[i]);
@@ -29,8 +30,8 @@ static double cells_needed(sk_vec3 extent, double size) {
     return ((double)extent.x / size + 1) * ((double)extent.y / size + 1) * ((double)extent.z / size + 1);
 }
 
-bool sk_grid_build(sk_grid *grid, sk_allocator *allocator, const sk_vec4 *positions, size_t packed, const uint32_t *slot_of,
-                   size_t count, real radius) {
+bool sk_grid_build(sk_grid *grid, sk_allocator *allocator, const sk_vec4 *positions, size_t packed,
+                   const uint32_t *slot_of, size_t count, real radius) {
     // the grid's frame: cells grow until there are not too many of them
     sk_vec3 low = {0, 0, 0}, high = {0, 0, 0};
     find_bounds(positions, packed, slot_of, count, &low, &high);

@@ -31,8 +31,8 @@ typedef struct sk_grid {
 /* Sorts `count` particles into cells of at least `radius`. Where the particles are spread so far that
  * the cells would outnumber them fourfold, the cells are made larger. False when there is no memory: the
  * grid is then empty. Slots [0, packed) are in packed blocks. */
-bool sk_grid_build(sk_grid *grid, sk_allocator *allocator, const sk_vec4 *positions, size_t packed, const uint32_t *slot_of,
-                   size_t count, real radius);
+bool sk_grid_build(sk_grid *grid, sk_allocator *allocator, const sk_vec4 *positions, size_t packed,
+                   const uint32_t *slot_of, size_t count, real radius);
 void sk_grid_release(sk_grid *grid, sk_allocator *allocator);
 
 /* The cell's place along an axis, clamped into the grid. */

@@ -37,7 +37,8 @@ static skein_status make_object(skein_world *world, const skein_kind *kind, cons
     object->params = params;
     size_t common_count;
     const skein_field *common = sk_common_fields(kind->category, &common_count);
-    skein_status status = sk_settings_apply(allocator, kind, params, common, common_count, sk_common_of(object), settings, error);
+    skein_status status =
+        sk_settings_apply(allocator, kind, params, common, common_count, sk_common_of(object), settings, error);
     if (status) {
         sk_release(allocator, params);
         sk_release(allocator, object);
@@ -73,13 +74,15 @@ static skein_status finish_object(skein_world *world, sk_object *object, skein_h
 
 /* ---- adding ---- */
 
-skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, const skein_setting *settings, skein_handle *handle) {
+skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, const skein_setting *settings,
+                                skein_handle *handle) {
     skein_error *error = sk_world_error(world);
     sk_object *object;
     skein_status status = make_object(world, &type->kind, settings, &object, error);
     if (status) return status;
     sk_force *force = SK_RESERVE(&world->allocator, &world->rules.forces, world->rules.forces.count + 1)
-                          ? sk_allocate(&world->allocator, sizeof *force) : NULL;
+                          ? sk_allocate(&world->allocator, sizeof *force)
+                          : NULL;
     if (!force) {
         unmake_object(world, object);
         return sk_fail_memory(error, type->kind.name);
@@ -90,7 +93,8 @@ skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, c
     return finish_object(world, object, handle);
 }
 
-skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *type, const skein_setting *settings, skein_handle *handle) {
+skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *type, const skein_setting *settings,
+                                   skein_handle *handle) {
     skein_error *error = sk_world_error(world);
     sk_object *object;
     skein_status status = make_object(world, &type->kind, settings, &object, error);
@@ -100,7 +104,8 @@ skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *t
         return status;
     }
     sk_collider *collider = SK_RESERVE(&world->allocator, &world->rules.colliders, world->rules.colliders.count + 1)
-                                ? sk_allocate(&world->allocator, sizeof *collider) : NULL;
+                                ? sk_allocate(&world->allocator, sizeof *collider)
+                                : NULL;
     if (!collider) {
         unmake_object(world, object);
         return sk_fail_memory(error, type->kind.name);
@@ -139,7 +144,8 @@ skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_typ
         return status;
     }
     sk_batch *batch = SK_RESERVE(allocator, &world->rules.batches, world->rules.batches.count + 1)
-                          ? sk_batch_create(allocator, type, count, particles, rest, NULL) : NULL;
+                          ? sk_batch_create(allocator, type, count, particles, rest, NULL)
+                          : NULL;
     sk_release(allocator, rest);
     if (!batch) {
         unmake_object(world, object);
@@ -155,7 +161,8 @@ skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_typ
 }
 
 /* Takes back what a builder that failed has added since the marks. */
-static void undo_body(skein_world *world, sk_object *object, size_t particles, size_t triangles, size_t batches, size_t limits) {
+static void undo_body(skein_world *world, sk_object *object, size_t particles, size_t triangles, size_t batches,
+                      size_t limits) {
     sk_allocator *allocator = &world->allocator;
     sk_body *body = object->as.body;
     sk_rules *rules = &world->rules;
@@ -208,7 +215,8 @@ skein_status sk_world_set_method(skein_world *world, const sk_method_type *type,
         return status;
     }
     if (world->method)
-        sk_fields_clear(&world->allocator, world->method->kind.fields, world->method->kind.field_count, world->method_params);
+        sk_fields_clear(&world->allocator, world->method->kind.fields, world->method->kind.field_count,
+                        world->method_params);
     sk_release(&world->allocator, world->method_params);
     world->method = type;
     world->method_params = params;
@@ -245,7 +253,8 @@ skein_status skein_remove(skein_world *world, skein_handle handle) {
         drop_pointer((void **)rules->colliders.data, &rules->colliders.count, object->as.collider);
         sk_release(&world->allocator, object->as.collider);
         break;
-    default: return sk_fail(error, SKEIN_ERROR_HANDLE, "", "a %s cannot be removed", skein_category_text(object->category));
+    default:
+        return sk_fail(error, SKEIN_ERROR_HANDLE, "", "a %s cannot be removed", skein_category_text(object->category));
     }
     object->generation++;
     world->plan_stale = true;
@@ -284,4 +293,3 @@ const skein_kind *skein_object_kind(const skein_world *world, skein_handle handl
     const sk_object *object = sk_object_of(world, handle);
     return object ? object->kind : NULL;
 }
-

@@ -19,10 +19,11 @@
 #include "world/world.h"
 
 enum {
-    MOST_SEGMENT = 96,      /* rows of a segment */
+    MOST_SEGMENT = 96, /* rows of a segment */
     MOST_CHUNKS = 4096,
-    CHUNK_BYTES = 24 << 10, /* of one vector in a chunk, where one thread runs: in the first cache with its neighbours */
-    ROWS_A_THREAD = 4,      /* chunks that each thread gets at least, where there are enough rows */
+    CHUNK_BYTES =
+        24 << 10,      /* of one vector in a chunk, where one thread runs: in the first cache with its neighbours */
+    ROWS_A_THREAD = 4, /* chunks that each thread gets at least, where there are enough rows */
 };
 
 /* ---- segments ---- */
@@ -54,11 +55,11 @@ typedef struct segment_job {
     const sk_run *run;
     const sk_row *rows;
     size_t count, turns;
-    double start, dt;      /* of the first turn; 0 turns' worth of time where the segment is not a whole repeat */
+    double start, dt; /* of the first turn; 0 turns' worth of time where the segment is not a whole repeat */
     sk_walk walk;
     size_t lag[MOST_SEGMENT];
     size_t chunk_rows, chunk_count, threads;
-    size_t ahead;          /* chunks whose last turn must be over before a chunk begins the next */
+    size_t ahead;               /* chunks whose last turn must be over before a chunk begins the next */
     _Atomic uint32_t *progress; /* rows done, of each chunk; NULL for one thread */
 } segment_job;
 
@@ -74,7 +75,8 @@ static void run_part(sk_run *run, const segment_job *job, size_t g, size_t chunk
         return;
     }
     // slots before and after the strips go with the first and last chunk
-    size_t line = job->walk.width * 16, begin = job->walk.first_slot + first * line, end = job->walk.first_slot + last * line;
+    size_t line = job->walk.width * 16, begin = job->walk.first_slot + first * line,
+           end = job->walk.first_slot + last * line;
     if (chunk == 0 || begin < row->begin) begin = row->begin;
     if (chunk + 1 == job->chunk_count || end > row->end) end = row->end;
     if (begin < end) row->kernel(run, row, begin, end);
@@ -92,7 +94,8 @@ static void run_chunks(void *data, int thread) {
             for (size_t g = 0; g < job->count; g++) {
                 if (job->progress && k) sk_wait_for(&job->progress[k - 1], before + (uint32_t)g + 1);
                 run_part(&run, job, g, k);
-                if (job->progress) atomic_store_explicit(&job->progress[k], before + (uint32_t)g + 1, memory_order_release);
+                if (job->progress)
+                    atomic_store_explicit(&job->progress[k], before + (uint32_t)g + 1, memory_order_release);
             }
         }
     }
@@ -123,8 +126,10 @@ static void run_chunks_of_thread(void *data, int thread) {
     sk_float_mode_leave(mode);
 }
 
-static void run_walk(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count, const sk_walk *walk, size_t turns, double start, double dt) {
-    segment_job job = {.run = run, .rows = rows, .count = count, .turns = turns, .start = start, .dt = dt, .walk = *walk};
+static void run_walk(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count, const sk_walk *walk, size_t turns,
+                     double start, double dt) {
+    segment_job job = {
+        .run = run, .rows = rows, .count = count, .turns = turns, .start = start, .dt = dt, .walk = *walk};
     int threads = sk_tasks_together(tasks) && walk->rows * walk->width * 16 >= 4096 ? sk_tasks_count(tasks) : 1;
     cut_chunks(&job, threads);
     if (job.threads == 1) {

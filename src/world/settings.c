@@ -57,7 +57,8 @@ const skein_field *skein_field_find(const skein_kind *kind, const char *name, sk
 }
 
 skein_status sk_settings_apply(sk_allocator *allocator, const skein_kind *kind, void *params, const skein_field *common,
-                               size_t common_count, void *common_params, const skein_setting *settings, skein_error *error) {
+                               size_t common_count, void *common_params, const skein_setting *settings,
+                               skein_error *error) {
     skein_status status = SKEIN_OK;
     if (!sk_fields_default(allocator, kind->fields, kind->field_count, params) ||
         !sk_fields_default(allocator, common, common_count, common_params))
@@ -106,7 +107,8 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
     // what shaped a body that stands cannot change any more
     const sk_body_type *body = object && object->category == SKEIN_BODY ? object->body_type : NULL;
     if (body && params == object->params && !body->live(name))
-        return sk_fail(error, SKEIN_ERROR_VALUE, name, "%s shapes what is already built: set it when the body is added", name);
+        return sk_fail(error, SKEIN_ERROR_VALUE, name, "%s shapes what is already built: set it when the body is added",
+                       name);
     skein_status status = sk_field_store(&world->allocator, field, params, &value, error);
     if (status) return status;
     if (object && object->category == SKEIN_COLLIDER && object->as.collider->type->check &&
@@ -140,11 +142,15 @@ static const struct {
     const char *word;
     skein_category category;
 } lists[] = {
-    {"bodies", SKEIN_BODY}, {"constraints", SKEIN_CONSTRAINT}, {"forces", SKEIN_FORCE}, {"colliders", SKEIN_COLLIDER},
+    {"bodies", SKEIN_BODY},
+    {"constraints", SKEIN_CONSTRAINT},
+    {"forces", SKEIN_FORCE},
+    {"colliders", SKEIN_COLLIDER},
 };
 
 /* Splits "colliders.ball.radius" into an object and "radius". */
-static skein_status resolve(const skein_world *world, const char *path, skein_handle *handle, const char **field, skein_error *error) {
+static skein_status resolve(const skein_world *world, const char *path, skein_handle *handle, const char **field,
+                            skein_error *error) {
     if (!strncmp(path, "method.", 7)) {
         *handle = skein_object_at(world, SKEIN_METHOD, 0);
         *field = path + 7;
@@ -161,7 +167,8 @@ static skein_status resolve(const skein_world *world, const char *path, skein_ha
         for (size_t i = 0; i < count; i++) {
             *handle = skein_object_at(world, lists[l].category, i);
             sk_object *object = sk_object_of(world, *handle);
-            const char *name = lists[l].category == SKEIN_COLLIDER ? object->common.collider.name : object->common.plain.name;
+            const char *name =
+                lists[l].category == SKEIN_COLLIDER ? object->common.collider.name : object->common.plain.name;
             bool by_number = end == dot && end != which && i == index;
             bool by_name = strlen(name) == (size_t)(dot - which) && !strncmp(name, which, (size_t)(dot - which));
             if (!by_number && !by_name) continue;
@@ -171,8 +178,9 @@ static skein_status resolve(const skein_world *world, const char *path, skein_ha
         return sk_fail(error, SKEIN_ERROR_NAME, path, "there is no %.*s among the %zu %s", (int)(dot - which), which,
                        count, lists[l].word);
     }
-    return sk_fail(error, SKEIN_ERROR_NAME, path,
-                   "expected bodies, constraints, forces or colliders, then a number or name and a field, or method and a field");
+    return sk_fail(
+        error, SKEIN_ERROR_NAME, path,
+        "expected bodies, constraints, forces or colliders, then a number or name and a field, or method and a field");
 }
 
 skein_status skein_set_path(skein_world *world, const char *path, skein_value value) {

@@ -24,8 +24,8 @@ skein_view skein_velocity_view(const skein_world *world) {
 static skein_status check_range(const skein_world *world, size_t first, size_t count) {
     size_t have = world->particles.count;
     if (first <= have && count <= have - first) return SKEIN_OK;
-    return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "",
-                   "particles %zu to %zu: the world has %zu", first, first + count, have);
+    return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "", "particles %zu to %zu: the world has %zu", first,
+                   first + count, have);
 }
 
 static skein_status copy_out(const skein_world *world, sk_vector vector, size_t first, size_t count, double *out) {
@@ -61,8 +61,8 @@ static skein_status copy_in(skein_world *world, sk_vector vector, size_t first, 
     if (status) return status;
     for (size_t i = 0; i < 3 * count; i++)
         if (!(xyz[i] >= -SK_FAR && xyz[i] <= SK_FAR))
-            return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "", "particle %zu: numbers must be finite, under 1e15",
-                           first + i / 3);
+            return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "",
+                           "particle %zu: numbers must be finite, under 1e15", first + i / 3);
     for (size_t i = 0; i < count; i++) {
         sk_vec4 *p = &world->particles.vector[vector][world->particles.slot_of[first + i]];
         *p = (sk_vec4){(real)xyz[3 * i], (real)xyz[3 * i + 1], (real)xyz[3 * i + 2], p->w};
@@ -89,18 +89,20 @@ skein_status skein_particle_hold(skein_world *world, size_t particle, bool held)
 skein_status skein_body_surface(const skein_world *world, skein_handle handle, skein_surface *surface) {
     const sk_object *object = sk_object_of(world, handle);
     if (!object || object->category != SKEIN_BODY)
-        return sk_fail(sk_world_error(world), SKEIN_ERROR_HANDLE, "", "there is no such body: its handle is stale, or of another category");
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_HANDLE, "",
+                       "there is no such body: its handle is stale, or of another category");
     const sk_body *body = object->as.body;
-    *surface = (skein_surface){body->first_particle, body->particle_count, body->particle_of_vertex, body->vertex_count,
-                               body->face_sizes, body->face_count, body->face_vertices, body->face_vertex_count,
-                               body->grid_rows, body->grid_columns};
+    *surface = (skein_surface){
+        body->first_particle, body->particle_count, body->particle_of_vertex, body->vertex_count, body->face_sizes,
+        body->face_count,     body->face_vertices,  body->face_vertex_count,  body->grid_rows,    body->grid_columns};
     return SKEIN_OK;
 }
 
 skein_status skein_collider_pose(const skein_world *world, skein_handle handle, skein_pose *out) {
     const sk_object *object = sk_object_of(world, handle);
     if (!object || object->category != SKEIN_COLLIDER)
-        return sk_fail(sk_world_error(world), SKEIN_ERROR_HANDLE, "", "there is no such collider: its handle is stale, or of another category");
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_HANDLE, "",
+                       "there is no such collider: its handle is stale, or of another category");
     sk_pose pose = sk_collider_pose_at(object->as.collider, world->time);
     const double position[3] = {(double)pose.position.x, (double)pose.position.y, (double)pose.position.z};
     memcpy(out->position, position, sizeof position);

@@ -23,7 +23,8 @@ skein_status sk_world_arrange(skein_world *world, skein_error *error) {
 }
 
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error) {
-    if (!(dt > 0) || !(dt <= 1e6)) return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0", dt);
+    if (!(dt > 0) || !(dt <= 1e6))
+        return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0", dt);
     skein_status status = sk_world_arrange(world, error);
     if (status) return status;
     if (!world->plan_stale && world->plan_dt == dt) return SKEIN_OK;
@@ -95,7 +96,8 @@ double skein_world_time(const skein_world *world) {
     return world->time;
 }
 
-skein_status skein_world_explain(skein_world *world, double dt, void (*write)(void *user, const char *line), void *user) {
+skein_status skein_world_explain(skein_world *world, double dt, void (*write)(void *user, const char *line),
+                                 void *user) {
     skein_status status = sk_world_compile(world, dt, sk_world_error(world));
     if (status) return status;
     if (!write) return SKEIN_OK;

@@ -78,7 +78,8 @@ void skein_world_destroy(skein_world *world) {
     sk_release(allocator, rules->limits.data);
     for (size_t i = 0; i < world->objects.count; i++) release_object(world, world->objects.data[i]);
     sk_release(allocator, world->objects.data);
-    if (world->method) sk_fields_clear(allocator, world->method->kind.fields, world->method->kind.field_count, world->method_params);
+    if (world->method)
+        sk_fields_clear(allocator, world->method->kind.fields, world->method->kind.field_count, world->method_params);
     sk_release(allocator, world->method_params);
     sk_release(allocator, world->triangles.corner);
     sk_release(allocator, world->slots_of_triangles.corner);
@@ -114,16 +115,18 @@ static bool is_sane(double x) {
     return x >= -SK_FAR && x <= SK_FAR;
 }
 
-skein_status sk_world_add_particles(skein_world *world, size_t count, const double *positions,
-                                    const double *velocities, const double *masses, skein_error *error) {
+skein_status sk_world_add_particles(skein_world *world, size_t count, const double *positions, const double *velocities,
+                                    const double *masses, skein_error *error) {
     if (count > (size_t)UINT32_MAX - 64 - world->particles.count)
-        return sk_fail(error, SKEIN_ERROR_LIMIT, "", "%zu more particles: a world holds at most %u", count, UINT32_MAX - 64);
+        return sk_fail(error, SKEIN_ERROR_LIMIT, "", "%zu more particles: a world holds at most %u", count,
+                       UINT32_MAX - 64);
     for (size_t i = 0; i < 3 * count; i++) {
         if (!is_sane(positions[i]) || (velocities && !is_sane(velocities[i])))
-            return sk_fail(error, SKEIN_ERROR_VALUE, "", "particle %zu: positions and velocities must be finite, under 1e15", i / 3);
+            return sk_fail(error, SKEIN_ERROR_VALUE, "",
+                           "particle %zu: positions and velocities must be finite, under 1e15", i / 3);
         if (!(masses[i / 3] >= 0) || masses[i / 3] > SK_FAR || (masses[i / 3] > 0 && masses[i / 3] < 1e-15))
-            return sk_fail(error, SKEIN_ERROR_VALUE, "", "particle %zu: a mass of %g kg; expected 0 (held) or 1e-15 to 1e15",
-                           i / 3, masses[i / 3]);
+            return sk_fail(error, SKEIN_ERROR_VALUE, "",
+                           "particle %zu: a mass of %g kg; expected 0 (held) or 1e-15 to 1e15", i / 3, masses[i / 3]);
     }
     if (!sk_particles_add(&world->particles, &world->allocator, count, positions, velocities, masses))
         return sk_fail_memory(error, "particles");
@@ -133,11 +136,13 @@ skein_status sk_world_add_particles(skein_world *world, size_t count, const doub
 
 skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk_constraint_type *type,
                                      const char *label, sk_material material, bool measured, size_t count,
-                                     const uint32_t *particles, const real *rest, const real *scale, skein_error *error) {
+                                     const uint32_t *particles, const real *rest, const real *scale,
+                                     skein_error *error) {
     sk_allocator *allocator = &world->allocator;
     if (body->batch_count == SK_MOST_BODY_BATCHES)
         return sk_fail(error, SKEIN_ERROR_LIMIT, "", "a body has at most %d batches", SK_MOST_BODY_BATCHES);
-    if (!SK_RESERVE(allocator, &world->rules.batches, world->rules.batches.count + 1)) return sk_fail_memory(error, label);
+    if (!SK_RESERVE(allocator, &world->rules.batches, world->rules.batches.count + 1))
+        return sk_fail_memory(error, label);
     sk_material *own = sk_allocate(allocator, sizeof *own);
     sk_batch *batch = own ? sk_batch_create(allocator, type, count, particles, rest, scale) : NULL;
     if (!batch) {
@@ -174,9 +179,10 @@ void sk_world_add_strain_limit(sk_body *body) {
     body->batch[body->batch_count - 1]->bound = &body->strain_bound;
 }
 
-skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32_t rows, uint32_t columns, uint32_t count,
-                                 skein_error *error) {
-    if (!sk_particles_add_strips(&world->particles, &world->allocator, (sk_strips){body->first_particle, count, rows, columns, 0, 0}))
+skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32_t rows, uint32_t columns,
+                                 uint32_t count, skein_error *error) {
+    if (!sk_particles_add_strips(&world->particles, &world->allocator,
+                                 (sk_strips){body->first_particle, count, rows, columns, 0, 0}))
         return sk_fail_memory(error, "strips");
     world->plan_stale = world->slots_stale = true;
     return SKEIN_OK;
@@ -187,7 +193,8 @@ void sk_world_rank_particles(skein_world *world, const sk_body *body, const uint
     world->plan_stale = world->slots_stale = true;
 }
 
-skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error) {
+skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3],
+                                    skein_error *error) {
     sk_triangles *all = &world->triangles, *slots = &world->slots_of_triangles;
     size_t need = all->count + count;
     if (!sk_reserve(&world->allocator, (void **)&all->corner, &all->capacity, need, sizeof *all->corner) ||

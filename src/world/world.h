@@ -78,13 +78,16 @@ struct skein_world {
     sk_triangles triangles; /* as user's indices */
     sk_triangles slots_of_triangles;
     sk_rules rules;
-    struct { sk_object **data; size_t count, capacity; } objects; /* a handle's index leads here */
+    struct {
+        sk_object **data;
+        size_t count, capacity;
+    } objects; /* a handle's index leads here */
     const sk_method_type *method;
     void *method_params;
     sk_plan plan;
-    double plan_dt;    /* the step that the plan was written for */
-    bool plan_stale;   /* rules, settings or the method have changed */
-    bool slots_stale;  /* particles, batches or limits were added: slots and sweeps are to be found anew */
+    double plan_dt;   /* the step that the plan was written for */
+    bool plan_stale;  /* rules, settings or the method have changed */
+    bool slots_stale; /* particles, batches or limits were added: slots and sweeps are to be found anew */
     sk_isa isa;
     sk_grid grid;
     double time;
@@ -107,17 +110,18 @@ skein_error *sk_world_error(const skein_world *world);
 
 /* ---- for builders ---- */
 
-skein_status sk_world_add_particles(skein_world *world, size_t count, const double *positions,
-                                    const double *velocities, const double *masses, skein_error *error);
+skein_status sk_world_add_particles(skein_world *world, size_t count, const double *positions, const double *velocities,
+                                    const double *masses, skein_error *error);
 /* A batch of a body. `measured` ones count in the stretch statistics. Empty batches are allowed. */
 skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk_constraint_type *type,
                                      const char *label, sk_material material, bool measured, size_t count,
-                                     const uint32_t *particles, const real *rest, const real *scale, skein_error *error);
+                                     const uint32_t *particles, const real *rest, const real *scale,
+                                     skein_error *error);
 skein_status sk_world_add_tethers(skein_world *world, sk_body *body, size_t count, size_t anchors,
                                   const uint32_t *particles, const real *lengths, skein_error *error);
 /* Says that the body's `count` particles are a grid of rows x columns, in row order; the last row may be short. */
-skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32_t rows, uint32_t columns, uint32_t count,
-                                 skein_error *error);
+skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32_t rows, uint32_t columns,
+                                 uint32_t count, skein_error *error);
 /* Says in which order the body's particles should lie in memory: rank[i] is the place of its i-th one. */
 void sk_world_rank_particles(skein_world *world, const sk_body *body, const uint32_t *rank, size_t count);
 /* Keeps the edges of the body's newest batch under its strain bound. */
@@ -134,7 +138,8 @@ const skein_field *sk_common_fields(skein_category category, size_t *count);
 void *sk_common_of(sk_object *object);
 /* Defaults, then settings, each checked. On failure nothing is left in `params`. */
 skein_status sk_settings_apply(sk_allocator *allocator, const skein_kind *kind, void *params, const skein_field *common,
-                               size_t common_count, void *common_params, const skein_setting *settings, skein_error *error);
+                               size_t common_count, void *common_params, const skein_setting *settings,
+                               skein_error *error);
 const skein_field *sk_kind_field(const skein_kind *kind, const char *name, skein_error *error);
 /* Finds the particles' slots and cuts batches into sweeps, if anything was added. */
 skein_status sk_world_arrange(skein_world *world, skein_error *error);
