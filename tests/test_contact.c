@@ -269,6 +269,20 @@ static void a_moving_plane_carries_by_friction(void **state) {
         }
 }
 
+/* A plane that starts to rise hits what lies on it in that very substep. */
+static void a_starting_plane_kicks(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(method_names); m++) {
+        skein_world *world = new_world(method_names[m], 1);
+        skein_handle bat = add_slope(world, 0, 0, 0.5, 0.01);
+        OK(world, skein_set(world, bat, "motion.velocity", skein_vector(0, 2, 0)));
+        add_particle(world, 1, 0, 0.01, 0);
+        steps(world, 1, 1.0 / 64);
+        assert_near(velocity_of(world, 0).y, 3, 1e-4); // (1 + e) v
+        skein_world_destroy(world);
+    }
+}
+
 static void a_rising_plane_lifts(void **state) {
     (void)state;
     for (size_t m = 0; m < COUNT(method_names); m++) {
@@ -397,6 +411,7 @@ int main(void) {
         cmocka_unit_test(nothing_sticks),
         cmocka_unit_test(a_springy_thing_comes_to_lie),
         cmocka_unit_test(a_moving_plane_carries_by_friction),
+        cmocka_unit_test(a_starting_plane_kicks),
         cmocka_unit_test(a_rising_plane_lifts),
         cmocka_unit_test(a_turning_plane_takes_along),
         cmocka_unit_test(a_spinning_ball_drags_its_skin),

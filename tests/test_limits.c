@@ -118,6 +118,25 @@ static void tethers_follow_what_is_held(void **state) {
     }
 }
 
+/* The same where each particle has a pin of its own: the nearest of many. */
+static void tethers_to_an_edge_follow_what_is_held(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(method_names); m++) {
+        skein_world *world = limp_sheet(method_names[m], 6, "top edge", INFINITY, 0, NULL);
+        for (size_t i = 30; i < 36; i++) {
+            vec3 p = position_of(world, i);
+            place_particle(world, i, p.x, -3, p.z);
+        }
+        OK(world, skein_particle_hold(world, 2, false));
+        steps(world, 1, dt);
+        for (size_t i = 30; i < 36; i++) {
+            double length = length3(minus(position_of(world, i), position_of(world, i - 30)));
+            assert_near(length, i == 32 ? sqrt(10) : 1, 20 * EPSILON);
+        }
+        skein_world_destroy(world);
+    }
+}
+
 /* A bound can be set while the body lives; infinite is none. */
 static void bounds_are_live(void **state) {
     (void)state;
@@ -142,6 +161,7 @@ int main(void) {
         cmocka_unit_test(a_tether_pulls_back_to_its_length),
         cmocka_unit_test(tethers_to_two_pins_pull_evenly),
         cmocka_unit_test(tethers_follow_what_is_held),
+        cmocka_unit_test(tethers_to_an_edge_follow_what_is_held),
         cmocka_unit_test(bounds_are_live),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -188,6 +188,21 @@ static void wind_on_a_sheet_follows_its_formula(void **state) {
     }
 }
 
+/* Triangles that have lost their area, and air that stands still to them, make no numbers that are none. */
+static void wind_on_nothing_is_nothing(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(method_names); m++) {
+        skein_world *world = sheet_in_wind(method_names[m], (vec3){0, 0, 0}, (vec3){1, 4, 0}, (vec3){1, 4, 0}, 0.9, 0.4);
+        steps(world, 1, 1.0 / 64);
+        for (size_t i = 0; i < SHEET * SHEET; i++) place_particle(world, i, i < 5 ? 1 : 2, 0, 0);
+        throw_particle(world, 8, 0, 1, 0);
+        steps(world, 2, 1.0 / 64);
+        assert_int_equal(statistics_of(world).nonfinite, 0);
+        assert_under(length3(minus(velocity_of(world, 8), (vec3){0, 1, 0})), 0);
+        skein_world_destroy(world);
+    }
+}
+
 /* A triangle gives each corner a third: of quads cut from their first corner, the two corners of the cut get two
  * triangles' shares. */
 static void wind_is_shared_by_the_corners(void **state) {
@@ -286,6 +301,7 @@ int main(void) {
         cmocka_unit_test(quadratic_drag_ends_at_terminal_speed),
         cmocka_unit_test(wind_is_divided_by_mass),
         cmocka_unit_test(wind_on_a_sheet_follows_its_formula),
+        cmocka_unit_test(wind_on_nothing_is_nothing),
         cmocka_unit_test(wind_is_shared_by_the_corners),
         cmocka_unit_test(momentum_is_conserved),
         cmocka_unit_test(angular_momentum_is_conserved),

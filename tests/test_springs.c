@@ -178,6 +178,40 @@ static void springs_without_a_direction_or_stiffness_are_harmless(void **state) 
             }
 }
 
+/* Springs between a body and loose particles: one step's impulse is h k C for symplectic Euler, and for XPBD, implicit,
+ * h k C / (1 + h^2 k (w + w')); equal and opposite, and nobody else feels it. */
+static void springs_join_bodies_and_loose_particles(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(method_names); m++)
+        for (int damped = 0; damped < 2; damped++) {
+            skein_world *world = new_world(method_names[m], 1);
+            OK(world, skein_body_add(world, "cloth", NULL,
+                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 7), SKEIN_REAL("density", 50), SKEIN_REAL("stretch.stiffness", 0),
+                                                    SKEIN_REAL("shear.stiffness", 0), SKEIN_REAL("bend.stiffness", 0)),
+                                     NULL));
+            vec3 knot = position_of(world, 16);
+            uint32_t weight = add_particle(world, 0.5, knot.x, knot.y - 0.5, knot.z), other = add_particle(world, 2, 3, 3, 3);
+            uint32_t pairs[] = {16, weight, other, weight};
+            OK(world, skein_constraint_add(world, "distance", pairs, 2,
+                                           SKEIN_SETTINGS(SKEIN_REAL("stiffness", 30), SKEIN_REAL("damping", damped ? 1e-9 : 0)), NULL));
+            place_particle(world, weight, knot.x, knot.y - 0.75, knot.z); // the first is 0.25 m too long
+            vec3 apart = minus(position_of(world, weight), (vec3){3, 3, 3});
+            place_particle(world, other, 3, 3, 3);
+            double h = 1.0 / 32, knot_mass = 50.0 / 5 / 6;
+            double first = h * 30 * 0.25, soft = h * h * 30;
+            if (m) first /= 1 + soft * (1 / 0.5 + 1 / knot_mass);
+            steps(world, 1, h);
+            assert_near(knot_mass * velocity_of(world, 16).y, -first, 1e-5);
+            vec3 v = velocity_of(world, other), u = velocity_of(world, weight);
+            assert_near(0.5 * u.y + knot_mass * velocity_of(world, 16).y + 2 * v.y, 0, 1e-5);
+            assert_near(0.5 * u.x + 2 * v.x, 0, 1e-5);
+            assert_near(v.x * apart.y, v.y * apart.x, 0.05 * fabs(v.y * apart.x) + 1e-6); // along its own line
+            for (size_t i = 0; i < 42; i++)
+                if (i != 16) assert_under(length3(velocity_of(world, i)), 0);
+            skein_world_destroy(world);
+        }
+}
+
 /* ---- Stiffness has units ------------------------------------------------------------------------ */
 
 /* Weights on a row of springs: each spring bears the weight below it, so the lowest hangs
@@ -267,6 +301,7 @@ int main(void) {
         cmocka_unit_test(damping_leaves_other_motion_alone),
         cmocka_unit_test(a_rigid_pendulum_keeps_time),
         cmocka_unit_test(springs_without_a_direction_or_stiffness_are_harmless),
+        cmocka_unit_test(springs_join_bodies_and_loose_particles),
         cmocka_unit_test(hanging_weights_sag_as_much_however_they_are_stepped),
         cmocka_unit_test(cloth_sags_as_much_at_any_resolution),
     };
