@@ -22,8 +22,8 @@ enum {
     MOST_SEGMENT = 96, /* rows of a segment */
     MOST_CHUNKS = 4096,
     CHUNK_BYTES =
-        24 << 10,      /* of one vector in a chunk, where one thread runs: in the first cache with its neighbours */
-    ROWS_A_THREAD = 4, /* chunks that each thread gets at least, where there are enough rows */
+        24 << 10,        /* of one vector in a chunk, where one thread runs: in the first cache with its neighbours */
+    CHUNKS_A_THREAD = 1, /* more would shorten the start, and wait more often: worse wherever a core is shared */
 };
 
 /* ---- segments ---- */
@@ -108,7 +108,7 @@ static void cut_chunks(segment_job *job, int threads) {
     size_t chunk = CHUNK_BYTES / line_bytes / 4 * 4;
     if (chunk < 4) chunk = 4;
     if (threads > 1) {
-        chunk = (rows / ((size_t)threads * ROWS_A_THREAD) + 3) / 4 * 4;
+        chunk = (rows / ((size_t)threads * CHUNKS_A_THREAD) + 3) / 4 * 4;
         if (chunk < lag + 4) chunk = (lag + 7) / 4 * 4;
     }
     if (rows / chunk > MOST_CHUNKS) chunk = rows / MOST_CHUNKS + 1;
