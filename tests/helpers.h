@@ -29,7 +29,8 @@ static const char *const method_names[] = {"symplectic_euler", "xpbd"};
 
 /* ---- Saying what went wrong ------------------------------------------------------------------- */
 
-static inline void check_ok(const skein_world *world, skein_status status, const char *call, const char *file, int line) {
+static inline void check_ok(const skein_world *world, skein_status status, const char *call, const char *file,
+                            int line) {
     if (status == SKEIN_OK) return;
     fprintf(stderr, "%s: %s: %s: %s\n", call, skein_status_text(status), skein_world_error(world)->where,
             skein_world_error(world)->message);
@@ -41,12 +42,13 @@ static inline void check_ok(const skein_world *world, skein_status status, const
 static inline void check_fails(const skein_world *world, skein_status status, skein_status ought, const char *part,
                                const char *call, const char *file, int line) {
     const skein_error *error = skein_world_error(world);
-    if (status == ought && error->status == ought && (strstr(error->message, part) || strstr(error->where, part))) return;
+    if (status == ought && error->status == ought && (strstr(error->message, part) || strstr(error->where, part)))
+        return;
     fprintf(stderr, "%s: %s instead of %s; '%s': '%s', expected '%s'\n", call, skein_status_text(status),
             skein_status_text(ought), error->where, error->message, part);
     _assert_true(0, call, file, line);
 }
-#define FAILS(world_, ought_, part_, call_)                                                                   \
+#define FAILS(world_, ought_, part_, call_) \
     check_fails((world_), (call_), (ought_), (part_), #call_, __FILE__, __LINE__)
 
 static inline void check_near(double is, double ought, double off, const char *what, const char *file, int line) {
@@ -56,8 +58,8 @@ static inline void check_near(double is, double ought, double off, const char *w
 }
 #define assert_near(is_, ought_, off_) check_near((is_), (ought_), (off_), #is_, __FILE__, __LINE__)
 /* Within a share of what it ought to be. */
-#define assert_share(is_, ought_, share_)                                                                     \
-    check_near((is_), (ought_), (share_) * fabs((double)(ought_)), #is_, __FILE__, __LINE__)
+#define assert_share(is_, ought_, share_) \
+    check_near((is_), (ought_), (share_)*fabs((double)(ought_)), #is_, __FILE__, __LINE__)
 #define assert_under(is_, most_) check_near((is_), 0, (most_), #is_, __FILE__, __LINE__)
 
 /* ---- Worlds ------------------------------------------------------------------------------------- */
@@ -86,8 +88,9 @@ static inline uint32_t add_particle(skein_world *world, double mass, double x, d
 }
 
 static inline void add_spring(skein_world *world, uint32_t a, uint32_t b, double stiffness, double damping) {
-    OK(world, skein_constraint_add(world, "distance", (const uint32_t[]){a, b}, 1,
-                                   SKEIN_SETTINGS(SKEIN_REAL("stiffness", stiffness), SKEIN_REAL("damping", damping)), NULL));
+    OK(world,
+       skein_constraint_add(world, "distance", (const uint32_t[]){a, b}, 1,
+                            SKEIN_SETTINGS(SKEIN_REAL("stiffness", stiffness), SKEIN_REAL("damping", damping)), NULL));
 }
 
 static inline void steps(skein_world *world, int count, double dt) {

@@ -4,11 +4,13 @@
 
 static skein_world *hanging(const char *method, int substeps, int side, double stiffness) {
     skein_world *world = new_world(method, substeps);
-    OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 1.2, 0), SKEIN_REAL("density", 0.2),
-                                            SKEIN_TEXT("pins", "top corners"), SKEIN_REAL("stretch.stiffness", stiffness),
-                                            SKEIN_REAL("shear.stiffness", stiffness / 10), SKEIN_REAL("bend.stiffness", 100)),
-                             NULL));
+    OK(world,
+       skein_body_add(world, "cloth", NULL,
+                      SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 1.2, 0),
+                                     SKEIN_REAL("density", 0.2), SKEIN_TEXT("pins", "top corners"),
+                                     SKEIN_REAL("stretch.stiffness", stiffness),
+                                     SKEIN_REAL("shear.stiffness", stiffness / 10), SKEIN_REAL("bend.stiffness", 100)),
+                      NULL));
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 1.5)), NULL));
     return world;
@@ -33,9 +35,9 @@ static void a_hanging_cloth_comes_to_rest_symmetric(void **state) {
         size_t side;
         double stiffness, symmetry;
     } ways[] = {
-        {"xpbd", 10, 33, 2e4, 2e-3},               // the scene
-        {"xpbd", 20, 17, 2e4, 2e-3},               // coarser, finer steps
-        {"symplectic_euler", 60, 17, 1000, 5e-3},  // in float; in double it is 1e-4, see test_symmetry.c
+        {"xpbd", 10, 33, 2e4, 2e-3},              // the scene
+        {"xpbd", 20, 17, 2e4, 2e-3},              // coarser, finer steps
+        {"symplectic_euler", 60, 17, 1000, 5e-3}, // in float; in double it is 1e-4, see test_symmetry.c
     };
     for (size_t w = 0; w < COUNT(ways); w++) {
         skein_world *world = hanging(ways[w].method, ways[w].substeps, (int)ways[w].side, ways[w].stiffness);

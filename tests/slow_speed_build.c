@@ -31,7 +31,8 @@ static void a_large_cloth_is_built_in_no_time(void **state) {
     static double positions[3 * SIDE * SIDE];
     static uint32_t sizes[(SIDE - 1) * (SIDE - 1)], corners[4 * (SIDE - 1) * (SIDE - 1)];
     for (uint32_t r = 0; r < SIDE; r++)
-        for (uint32_t c = 0; c < SIDE; c++) positions[3 * (r * SIDE + c)] = 0.01 * c, positions[3 * (r * SIDE + c) + 2] = 0.01 * r;
+        for (uint32_t c = 0; c < SIDE; c++)
+            positions[3 * (r * SIDE + c)] = 0.01 * c, positions[3 * (r * SIDE + c) + 2] = 0.01 * r;
     uint32_t *corner = corners;
     for (uint32_t r = 0; r + 1 < SIDE; r++)
         for (uint32_t c = 0; c + 1 < SIDE; c++) {
@@ -48,10 +49,15 @@ static void a_large_cloth_is_built_in_no_time(void **state) {
         skein_world *world = skein_world_create(&desc, NULL);
         assert_non_null(world);
         double start = seconds_now();
-        if (!way) OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", "corners")), NULL));
+        if (!way)
+            OK(world,
+               skein_body_add(world, "cloth", NULL,
+                              SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", "corners")), NULL));
         else
             OK(world, skein_body_add(world, "cloth", &mesh,
-                                     SKEIN_SETTINGS(SKEIN_REAL("weld", way == 2 ? 1e-4 : 0), SKEIN_TEXT("pins", "0 255 65280 65535")), NULL));
+                                     SKEIN_SETTINGS(SKEIN_REAL("weld", way == 2 ? 1e-4 : 0),
+                                                    SKEIN_TEXT("pins", "0 255 65280 65535")),
+                                     NULL));
         add_gravity(world);
         steps(world, 1, 1.0 / 90);
         double taken = seconds_now() - start;

@@ -1,20 +1,23 @@
 /* The turntable scene: a cloth settles on a ball, the ball begins to spin. Friction alone takes the cloth along. */
 #include "helpers.h"
 
-static skein_world *turntable(const char *method, int substeps, int side, double stiffness, double friction, double start) {
+static skein_world *turntable(const char *method, int substeps, int side, double stiffness, double friction,
+                              double start) {
     skein_world *world = new_world(method, substeps);
-    OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 1.12, 0), SKEIN_REAL("density", 0.25),
-                                            SKEIN_REAL("stretch.stiffness", stiffness), SKEIN_REAL("shear.stiffness", stiffness / 10),
-                                            SKEIN_REAL("bend.stiffness", 20)),
-                             NULL));
+    OK(world,
+       skein_body_add(world, "cloth", NULL,
+                      SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 1.12, 0),
+                                     SKEIN_REAL("density", 0.25), SKEIN_REAL("stretch.stiffness", stiffness),
+                                     SKEIN_REAL("shear.stiffness", stiffness / 10), SKEIN_REAL("bend.stiffness", 20)),
+                      NULL));
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.3)), NULL));
     OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.6)), NULL));
     OK(world, skein_collider_add(world, "sphere",
-                                 SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.6, 0), SKEIN_REAL("radius", 0.5), SKEIN_REAL("thickness", 0.006),
-                                                SKEIN_REAL("friction", friction), SKEIN_VEC3("motion.axis", 0, 1, 0),
-                                                SKEIN_REAL("motion.spin", 2), SKEIN_REAL("motion.start", start)),
+                                 SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.6, 0), SKEIN_REAL("radius", 0.5),
+                                                SKEIN_REAL("thickness", 0.006), SKEIN_REAL("friction", friction),
+                                                SKEIN_VEC3("motion.axis", 0, 1, 0), SKEIN_REAL("motion.spin", 2),
+                                                SKEIN_REAL("motion.start", start)),
                                  NULL));
     return world;
 }

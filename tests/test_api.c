@@ -65,6 +65,34 @@ static void handles_go_stale(void **state) {
     skein_world_destroy(s.world);
 }
 
+/* What is added or removed between two steps counts from the next one on. */
+static void rules_come_and_go_between_steps(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(method_names); m++) {
+        skein_world *world = new_world(method_names[m], 1);
+        add_particle(world, 1, 0, 1, 0);
+        steps(world, 1, 0.1);
+        skein_handle gravity, ground;
+        OK(world, skein_force_add(world, "gravity", SKEIN_SETTINGS(SKEIN_VEC3("acceleration", 0, -10, 0)), &gravity));
+        steps(world, 1, 0.1);
+        assert_near(velocity_of(world, 0).y, -1, 1e-6);
+        steps(world, 1, 0.2); // and the plan follows the step's length
+        assert_near(velocity_of(world, 0).y, -3, 1e-6);
+        assert_near(position_of(world, 0).y, 1 - 0.1 - 0.6, 1e-6);
+        OK(world, skein_remove(world, gravity));
+        steps(world, 1, 0.1);
+        assert_near(velocity_of(world, 0).y, -3, 1e-6);
+        OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0)), &ground));
+        steps(world, 3, 0.1);
+        assert_near(position_of(world, 0).y, 0, 1e-6);
+        OK(world, skein_remove(world, ground));
+        throw_particle(world, 0, 0, -1, 0);
+        steps(world, 1, 0.1);
+        assert_near(position_of(world, 0).y, -0.1, 1e-6);
+        skein_world_destroy(world);
+    }
+}
+
 static void handles_have_a_category(void **state) {
     (void)state;
     scene s = make_scene(NULL);
@@ -385,6 +413,11 @@ static void views_and_copies_agree(void **state) {
     assert_share(st.kinetic_energy, energy, 1e-9);
     assert_share(st.momentum[1], momentum, 1e-9);
     assert_true(st.particles == 51 && st.held_particles == 2 && st.nonfinite == 0);
+    // held particles have no share in energy and momentum, whatever velocity they were given; the hash sees all
+    throw_particle(s.world, 0, 100, 100, 100);
+    skein_statistics thrown = statistics_of(s.world);
+    assert_true(thrown.kinetic_energy == st.kinetic_energy && thrown.momentum[1] == st.momentum[1]);
+    assert_true(thrown.state_hash != st.state_hash);
     OK(s.world, skein_positions_copy(s.world, 49, 2, part));
     assert_memory_equal(part, x + 3 * 49, sizeof part);
     OK(s.world, skein_positions_copy(s.world, 51, 0, part)); // nothing, from the very end
@@ -482,8 +515,11 @@ static void steps_have_a_length(void **state) {
 static void blending_lies_between_the_last_two_steps(void **state) {
     (void)state;
     scene s = make_scene(NULL);
-    steps(s.world, 5, dt);
     vec3 from = position_of(s.world, 49), to, at;
+    OK(s.world, skein_positions_blend(s.world, 0.5, 49, 1, &at.x)); // before any step
+    assert_under(length3(minus(at, from)), 0);
+    steps(s.world, 5, dt);
+    from = position_of(s.world, 49);
     steps(s.world, 1, dt);
     to = position_of(s.world, 49);
     assert_true(length3(minus(from, to)) > 1e-3);
@@ -522,6 +558,12 @@ static void the_pacer_makes_whole_steps(void **state) {
     }
     assert_in_range(made, 899, 901);
     assert_true(pacer.dropped == 0);
+
+    // frames of whole steps: so many each, though 1/30 is not three times 1/90 in binary
+    pacer = skein_default_pacer();
+    for (int frame = 0; frame < 3000; frame++) assert_int_equal(skein_pacer_feed(&pacer, 1.0 / 30), 3);
+    pacer.step = 0.1, pacer.remainder = 0;
+    for (int frame = 0; frame < 3000; frame++) assert_int_equal(skein_pacer_feed(&pacer, 0.3), 3);
 
     // uneven frames: no time is lost or made up
     double fed = 0;
@@ -653,6 +695,7 @@ static void two_bodies_in_one_world(void **state) {
         for (int world_kind = 0; world_kind < 3; world_kind++) { // the first alone, the second alone, both
             skein_world *world = new_world(method_names[m], 20);
             add_gravity(world);
+            OK(world, skein_force_add(world, "surface_wind", SKEIN_SETTINGS(SKEIN_VEC3("velocity", 2, 1, 3)), NULL));
             skein_handle first, second;
             if (world_kind != 1)
                 OK(world, skein_body_add(world, "cloth", NULL,
@@ -709,6 +752,7 @@ static void values_are_printed_as_scenes_show_them(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(handles_go_stale),
+        cmocka_unit_test(rules_come_and_go_between_steps),
         cmocka_unit_test(handles_have_a_category),
         cmocka_unit_test(fields_by_handle_and_path),
         cmocka_unit_test(wrong_names_suggest_the_nearest),

@@ -259,6 +259,70 @@ static void no_pair_gets_two_springs(void **state) {
     free(d);
 }
 
+/* The spring's share of the material: its stiffness over the sheet's. */
+static double share_of(const skein_world *world, const char *label, uint32_t a, uint32_t b) {
+    const sk_batch *batch = batch_named(world, label);
+    for (size_t e = 0; e < batch->count; e++) {
+        uint32_t p = batch->particle[2 * e], q = batch->particle[2 * e + 1];
+        if ((p == a && q == b) || (p == b && q == a)) return (double)batch->scale[e];
+    }
+    fail();
+    return 0;
+}
+
+/* Shares are areas over squared lengths: an edge of square cells stands for a cell (on the border half of one), a
+ * diagonal for its own; triangles stand whole behind each of their edges, and twice behind a fold. */
+static void springs_share_the_material_by_area(void **state) {
+    (void)state;
+    double off = 8 * EPSILON;
+    skein_world *world = new_world("xpbd", 1);
+    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_PAIR("size", 4, 4)), NULL));
+    assert_near(share_of(world, "stretch", 6, 7), 1, off);
+    assert_near(share_of(world, "stretch", 7, 12), 1, off);
+    assert_near(share_of(world, "stretch", 1, 2), 0.5, off);
+    assert_near(share_of(world, "stretch", 5, 10), 0.5, off);
+    assert_near(share_of(world, "shear", 6, 12), 1, off);
+    assert_near(share_of(world, "shear", 1, 5), 1, off);
+    assert_near(share_of(world, "bend", 6, 8), 1, off);
+    assert_near(share_of(world, "bend", 6, 16), 1, off);
+    assert_near(share_of(world, "bend", 1, 3), 0.5, off);
+    skein_world_destroy(world);
+
+    draft *d = upright(5, 5, true); // cut from upper left to lower right
+    world = new_world("xpbd", 1);
+    build(world, d, NULL);
+    assert_near(share_of(world, "stretch", 6, 7), 1, off);
+    assert_near(share_of(world, "stretch", 1, 2), 0.5, off);
+    assert_near(share_of(world, "stretch", 6, 12), 0.5, off);
+    assert_near(share_of(world, "bend", 7, 11), 1, off);    // over the diagonal 6-12
+    assert_near(share_of(world, "bend", 6, 17), 0.4, off);  // over the edge 11-12, two down and one across
+    skein_world_destroy(world);
+
+    // where the pair over a fold is an edge already, the edge keeps its own share
+    memset(d, 0, sizeof *d);
+    for (int k = 0; k < 4; k++) vertex(d, k == 1, k == 2, k == 3);
+    FACE(d, 0, 2, 1);
+    FACE(d, 0, 1, 3);
+    FACE(d, 0, 3, 2);
+    FACE(d, 1, 2, 3);
+    world = new_world("xpbd", 1);
+    build(world, d, NULL);
+    assert_near(share_of(world, "stretch", 0, 3), 1, off);
+    assert_near(share_of(world, "stretch", 1, 2), (0.5 + sqrt(0.75)) / 2, off);
+    skein_world_destroy(world);
+
+    // a needle would be stiffer than any step can bear: 500 times the sheet
+    memset(d, 0, sizeof *d);
+    vertex(d, 0, 0, 0), vertex(d, 1e-3, 0, 0), vertex(d, 0, 1, 0);
+    FACE(d, 0, 1, 2);
+    world = new_world("xpbd", 1);
+    build(world, d, NULL);
+    assert_near(share_of(world, "stretch", 0, 1), 100, 1e-3);
+    assert_near(share_of(world, "stretch", 0, 2), 5e-4, 1e-9);
+    skein_world_destroy(world);
+    free(d);
+}
+
 /* ---- Masses, places ----------------------------------------------------------------------------- */
 
 static void mass_is_density_times_area(void **state) {
@@ -291,7 +355,7 @@ static void mass_is_density_times_area(void **state) {
 static void a_sheet_is_placed_as_asked(void **state) {
     (void)state;
     draft *d = calloc(1, sizeof *d);
-    vertex(d, 1, 0, 0), vertex(d, 0, 1, 0), vertex(d, 0, 0, 1);
+    vertex(d, 1, 0, 0), vertex(d, 0, 1, 0), vertex(d, 0, 0, 1), vertex(d, 1, 1, 1);
     FACE(d, 0, 1, 2);
     skein_world *world = new_world("xpbd", 1);
     build(world, d, SKEIN_SETTINGS(SKEIN_REAL("scale", 2), SKEIN_VEC3("rotation", 90, 0, 90), SKEIN_VEC3("position", 10, 20, 30),
@@ -301,7 +365,8 @@ static void a_sheet_is_placed_as_asked(void **state) {
     assert_under(length3(minus(position_of(world, 1), (vec3){10, 20, 32})), 1e-5);
     assert_under(length3(minus(position_of(world, 2), (vec3){12, 20, 30})), 1e-5);
     assert_under(length3(minus(velocity_of(world, 0), (vec3){1, 2, 3})), 0);
-    assert_under(length3(velocity_of(world, 2)), 0); // a pin does not move
+    assert_under(length3(velocity_of(world, 2)), 0); // a pin does not move, nor does a vertex of no face
+    assert_under(length3(velocity_of(world, 3)), 0);
     skein_world_destroy(world);
 
     world = new_world("xpbd", 1);
@@ -369,8 +434,49 @@ static void welding_joins_particles_and_keeps_vertices(void **state) {
     build(world, d, SKEIN_SETTINGS(SKEIN_REAL("weld", 1e-6)));
     assert_int_equal(skein_particle_count(world), 4);
     assert_int_equal(springs(world, "stretch"), 4);
-    assert_non_null(strstr(n.text, "1 face without an area, such as face 1"));
+    assert_string_equal(n.text, "cloth: 1 face without an area, such as face 1; they add no mass\n");
     assert_springs_are_sound(world);
+    skein_world_destroy(world);
+    free(d);
+
+    // a quad of which two corners join, in the middle of its list or over its end, is a triangle
+    for (uint32_t moved = 1; moved < 4; moved += 2) {
+        d = upright(2, 2, false); // corners 0, 2, 3, 1
+        memcpy(d->positions + 3 * moved, d->positions + 3 * (moved - 1), 3 * sizeof *d->positions);
+        world = world_with_notes(&n);
+        build(world, d, SKEIN_SETTINGS(SKEIN_REAL("weld", 1e-6), SKEIN_REAL("density", 6)));
+        assert_string_equal(n.text, "");
+        assert_int_equal(skein_particle_count(world), 3);
+        assert_true(springs(world, "stretch") == 3 && springs(world, "shear") == 0);
+        for (size_t i = 0; i < 3; i++) assert_share(mass_of(world, i), 1, 4 * EPSILON);
+        skein_world_destroy(world);
+        free(d);
+    }
+
+    // near two others, a vertex joins the first; those two stay apart
+    d = upright(2, 3, false);
+    static const double places[3] = {0, 1.5, 0.75};
+    for (size_t v = 0; v < 6; v++) d->positions[3 * v] = places[v % 3];
+    world = new_world("xpbd", 1);
+    build(world, d, SKEIN_SETTINGS(SKEIN_REAL("weld", 0.9)));
+    OK(world, skein_body_surface(world, skein_object_at(world, SKEIN_BODY, 0), &surface));
+    assert_int_equal(skein_particle_count(world), 4);
+    assert_true(surface.particle_of_vertex[2] == 0 && surface.particle_of_vertex[1] == 1 && surface.particle_of_vertex[5] == 2);
+    skein_world_destroy(world);
+    free(d);
+}
+
+/* What has no area is a matter of shape, not of size: a sheet of a thousandth of a millimetre is a sheet. */
+static void small_sheets_are_sheets(void **state) {
+    (void)state;
+    notes n;
+    draft *d = upright(3, 3, true);
+    skein_world *world = world_with_notes(&n);
+    build(world, d, SKEIN_SETTINGS(SKEIN_REAL("scale", 1e-6), SKEIN_REAL("density", 1)));
+    assert_string_equal(n.text, "");
+    double mass = 0;
+    for (size_t i = 0; i < 9; i++) mass += mass_of(world, i);
+    assert_share(mass, 1e-12, 1e-5);
     skein_world_destroy(world);
     free(d);
 }
@@ -437,6 +543,25 @@ static void faults_of_meshes_are_warnings(void **state) {
     world = new_world("xpbd", 1);
     build(world, d, NULL);
     skein_world_destroy(world);
+
+    // sheets that cross each other inside touch nowhere that matters
+    memset(d, 0, sizeof *d);
+    draft *square = upright(3, 3, false);
+    for (int k = 0; k < 2; k++)
+        for (size_t v = 0; v < 9; v++) {
+            double x = square->positions[3 * v] - 0.5, y = square->positions[3 * v + 1] - 0.5, turn = k ? sqrt(0.5) : 0;
+            vertex(d, k ? turn * (x - y) : x, k ? turn * (x + y) : y, 0);
+        }
+    for (uint32_t f = 0; f < 8; f++) {
+        uint32_t a = f / 4 * 9 + f % 4 / 2 * 3 + f % 2;
+        FACE(d, a, a + 3, a + 4, a + 1);
+    }
+    world = world_with_notes(&n);
+    build(world, d, NULL);
+    assert_non_null(strstr(n.text, "cloth: 2 parts that do not touch"));
+    assert_int_equal(n.warnings, 1);
+    skein_world_destroy(world);
+    free(square);
 
     // a sound mesh is met with silence
     draft *sound = upright(5, 5, true);
@@ -552,6 +677,7 @@ static void pins_of_a_grid(void **state) {
     assert_pins(NULL, "box -0.5 0 -1  0.5 0 0", "1 2 5 6 "); // its own border is inside
     assert_pins(NULL, "sphere 0.5 0 0  1.01", "2 5 6 7 10 ");
     assert_pins(NULL, "sphere 0 0 0 0.5", "5 6 ");
+    assert_pins(NULL, "sphere 0 0 0 1.15", "1 2 5 6 9 10 "); // the corners of 1 x 2 are 1.118 away
     assert_pins(NULL, "top corners, 9, sphere -0.5 0 0 0.1,", "0 3 5 9 ");
     assert_no_pins(NULL, "top cornres", SKEIN_ERROR_NAME, "did you mean 'top corners'?");
     assert_no_pins(NULL, "upper left", SKEIN_ERROR_NAME, "names no part of a cloth");
@@ -714,6 +840,67 @@ static void tethers_follow_folds(void **state) {
     free(flat);
 }
 
+/* Around the inner corner of an L the way bends there; there is no short cut through the missing quarter. */
+static void tethers_go_around_corners(void **state) {
+    (void)state;
+    for (int triangles = 0; triangles < 2; triangles++) {
+        enum { SIDE = 13 };
+        draft *whole = upright(SIDE, SIDE, triangles), *d = calloc(1, sizeof *d);
+        memcpy(d->positions, whole->positions, sizeof d->positions);
+        d->vertices = whole->vertices;
+        for (size_t f = 0, from = 0; f < whole->faces; from += whole->sizes[f++]) {
+            const uint32_t *c = whole->corners + from;
+            double x = 0, y = 0;
+            for (uint32_t k = 0; k < whole->sizes[f]; k++) {
+                x += d->positions[3 * c[k]] / whole->sizes[f];
+                y += d->positions[3 * c[k] + 1] / whole->sizes[f];
+            }
+            if (x < 0.5 || y < 0.5) face(d, whole->sizes[f], c); // the upper right quarter is missing
+        }
+        skein_world *world = new_world("xpbd", 1);
+        build(world, d, SKEIN_SETTINGS(SKEIN_TEXT("pins", "6"))); // (0.5, 1), where the cut begins
+        const sk_limit *limit = tethers_of(world);
+        const double *pin = d->positions + 3 * 6;
+        size_t behind = 0;
+        for (size_t e = 0; e < limit->count; e++) {
+            const double *p = d->positions + 3 * limit->particle[2 * e];
+            bool hidden = p[0] > 0.5 && (1 - p[1]) > 0; // right of the corner at (0.5, 0.5)
+            double straight = hypot(p[0] - pin[0], p[1] - pin[1]), around = 0.5 + hypot(p[0] - 0.5, p[1] - 0.5);
+            double ought = hidden ? around : straight;
+            assert_near((double)limit->length[e], ought, 0.02 * ought);
+            assert_true((double)limit->length[e] > ought - 1e-6);
+            behind += hidden;
+        }
+        assert_int_equal(behind, 6 * 7);
+        skein_world_destroy(world);
+        free(whole);
+        free(d);
+    }
+}
+
+/* On a sheet that bulges no way is exact; but left and right are alike: quads are cut both ways. */
+static void tethers_do_not_prefer_a_diagonal(void **state) {
+    (void)state;
+    enum { SIDE = 12 };
+    draft *d = upright(SIDE, SIDE, false);
+    for (size_t v = 0; v < d->vertices; v++) {
+        double *p = d->positions + 3 * v;
+        p[2] = p[0] * (1 - p[0]) * (1 + p[1]);
+    }
+    skein_world *world = new_world("xpbd", 1);
+    build(world, d, SKEIN_SETTINGS(SKEIN_TEXT("pins", "top corners")));
+    const sk_limit *limit = tethers_of(world);
+    double length[2][SIDE * SIDE] = {{0}, {0}};
+    for (size_t e = 0; e < limit->count; e++)
+        for (size_t k = 0; k < 2; k++) length[limit->particle[3 * e + 1 + k] ? 1 : 0][limit->particle[3 * e]] = (double)limit->length[2 * e + k];
+    for (size_t i = 0; i < SIDE * SIDE; i++) {
+        size_t mirrored = i / SIDE * SIDE + SIDE - 1 - i % SIDE;
+        assert_near(length[0][i], length[1][mirrored], 1e-6);
+    }
+    skein_world_destroy(world);
+    free(d);
+}
+
 /* Parts without a pin hang on nothing; without pins there are no tethers at all. */
 static void tethers_need_a_way(void **state) {
     (void)state;
@@ -765,9 +952,11 @@ int main(void) {
         cmocka_unit_test(triangles_have_edges_and_bending_pairs),
         cmocka_unit_test(a_grid_has_edges_diagonals_and_straight_bending),
         cmocka_unit_test(no_pair_gets_two_springs),
+        cmocka_unit_test(springs_share_the_material_by_area),
         cmocka_unit_test(mass_is_density_times_area),
         cmocka_unit_test(a_sheet_is_placed_as_asked),
         cmocka_unit_test(welding_joins_particles_and_keeps_vertices),
+        cmocka_unit_test(small_sheets_are_sheets),
         cmocka_unit_test(faults_of_meshes_are_warnings),
         cmocka_unit_test(impossible_meshes_are_refused),
         cmocka_unit_test(pins_of_a_grid),
@@ -775,6 +964,8 @@ int main(void) {
         cmocka_unit_test(tethers_of_a_flat_sheet_are_straight),
         cmocka_unit_test(tethers_to_an_edge_go_to_the_nearest_pin),
         cmocka_unit_test(tethers_follow_folds),
+        cmocka_unit_test(tethers_go_around_corners),
+        cmocka_unit_test(tethers_do_not_prefer_a_diagonal),
         cmocka_unit_test(tethers_need_a_way),
         cmocka_unit_test(stretch_bounds_are_kept),
     };

@@ -137,6 +137,21 @@ static void tethers_to_an_edge_follow_what_is_held(void **state) {
     }
 }
 
+/* The statistics speak of edges: neither of diagonals nor of the springs over folds. */
+static void stretch_is_that_of_the_edges(void **state) {
+    (void)state;
+    skein_world *world = limp_sheet("xpbd", 3, "", INFINITY, INFINITY, NULL);
+    assert_under(statistics_of(world).max_stretch, 4 * EPSILON);
+    vec3 p = position_of(world, 2);
+    place_particle(world, 2, p.x + 0.25, p.y, p.z); // 1-2 from 0.5 to 0.75, 0-2 from 1 to 1.25, 5-2 to 0.559
+    skein_statistics s = statistics_of(world);
+    assert_near(s.max_stretch, 0.5, 4 * EPSILON);
+    assert_near(s.p99_stretch, sqrt(0.25 + 0.0625) / 0.5 - 1, 4 * EPSILON); // the next one: there are 12 edges
+    place_particle(world, 2, p.x - 0.1, p.y, p.z); // edges that are too short do not count
+    assert_near(statistics_of(world).p99_stretch, 0, 4 * EPSILON);
+    skein_world_destroy(world);
+}
+
 /* A bound can be set while the body lives; infinite is none. */
 static void bounds_are_live(void **state) {
     (void)state;
@@ -162,6 +177,7 @@ int main(void) {
         cmocka_unit_test(tethers_to_two_pins_pull_evenly),
         cmocka_unit_test(tethers_follow_what_is_held),
         cmocka_unit_test(tethers_to_an_edge_follow_what_is_held),
+        cmocka_unit_test(stretch_is_that_of_the_edges),
         cmocka_unit_test(bounds_are_live),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

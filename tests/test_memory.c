@@ -39,7 +39,8 @@ typedef struct scenario {
     int call;
 } scenario;
 
-static const double cube[8][3] = {{2, 1, 0}, {3, 1, 0}, {3, 2, 0}, {2, 2, 0}, {2, 1, 1}, {3, 1, 1}, {3, 2, 1}, {2, 2, 1}};
+static const double cube[8][3] = {{2, 1, 0}, {3, 1, 0}, {3, 2, 0}, {2, 2, 0},
+                                  {2, 1, 1}, {3, 1, 1}, {3, 2, 1}, {2, 2, 1}};
 static const uint32_t cube_sizes[6] = {4, 4, 4, 4, 4, 3};
 static const uint32_t cube_corners[23] = {0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 2, 3, 7, 6, 0, 4, 7, 3, 1, 2, 6};
 
@@ -49,18 +50,24 @@ static skein_status make_call(scenario *s) {
     case 0: return skein_method_set(s->world, "symplectic_euler", SKEIN_SETTINGS(SKEIN_REAL("substeps", 5)));
     case 1:
         return skein_body_add(s->world, "cloth", NULL,
-                              SKEIN_SETTINGS(SKEIN_TEXT("name", "sheet"), SKEIN_PAIR("grid", 6, 5), SKEIN_VEC3("position", 0, 1, 0),
+                              SKEIN_SETTINGS(SKEIN_TEXT("name", "sheet"), SKEIN_PAIR("grid", 6, 5),
+                                             SKEIN_VEC3("position", 0, 1, 0),
                                              SKEIN_TEXT("pins", "top corners, 7, box -1 0 -1 -0.45 2 -0.4"),
                                              SKEIN_REAL("stretch.stiffness", 100)),
                               NULL);
     case 2:
         return skein_body_add(s->world, "cloth", &mesh,
-                              SKEIN_SETTINGS(SKEIN_REAL("weld", 1e-6), SKEIN_TEXT("pins", "corners"), SKEIN_REAL("stretch.stiffness", 100)),
+                              SKEIN_SETTINGS(SKEIN_REAL("weld", 1e-6), SKEIN_TEXT("pins", "corners"),
+                                             SKEIN_REAL("stretch.stiffness", 100)),
                               NULL);
     case 3: return skein_force_add(s->world, "gravity", SKEIN_SETTINGS(SKEIN_TEXT("name", "down")), &s->gravity);
-    case 4: return skein_force_add(s->world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.2), SKEIN_REAL("strength", 0.001)), NULL);
+    case 4:
+        return skein_force_add(s->world, "separation",
+                               SKEIN_SETTINGS(SKEIN_REAL("radius", 0.2), SKEIN_REAL("strength", 0.001)), NULL);
     case 5: return skein_force_add(s->world, "surface_wind", SKEIN_SETTINGS(SKEIN_VEC3("velocity", 1, 0, 1)), NULL);
-    case 6: return skein_collider_add(s->world, "sphere", SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.8, 0), SKEIN_REAL("radius", 0.15)), NULL);
+    case 6:
+        return skein_collider_add(s->world, "sphere",
+                                  SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.8, 0), SKEIN_REAL("radius", 0.15)), NULL);
     case 7: return skein_collider_add(s->world, "plane", NULL, &s->ground);
     case 8: {
         static const double positions[3 * 90] = {0, 3, 0, 1, 3, 0};
@@ -68,14 +75,17 @@ static skein_status make_call(scenario *s) {
         for (int i = 0; i < 90; i++) masses[i] = 0.1;
         return skein_particles_add(s->world, 90, positions, NULL, masses, NULL);
     }
-    case 9: return skein_constraint_add(s->world, "distance", (const uint32_t[]){0, 20, 3, 31}, 2, SKEIN_SETTINGS(SKEIN_TEXT("name", "string")), NULL);
+    case 9:
+        return skein_constraint_add(s->world, "distance", (const uint32_t[]){0, 20, 3, 31}, 2,
+                                    SKEIN_SETTINGS(SKEIN_TEXT("name", "string")), NULL);
     case 10: return skein_set_path(s->world, "colliders.1.name", skein_text("ground"));
     case 11: return skein_world_explain(s->world, dt, NULL, NULL);
     case 12: return skein_world_step(s->world, dt);
     case 13: return skein_world_step(s->world, dt);
     case 14: return skein_world_statistics(s->world, &s->statistics);
     case 15: return skein_method_set(s->world, "xpbd", NULL);
-    case 16: return skein_set(s->world, s->gravity, "name", skein_text("a name that is long enough for a block of its own"));
+    case 16:
+        return skein_set(s->world, s->gravity, "name", skein_text("a name that is long enough for a block of its own"));
     case 17: return skein_world_reset(s->world);
     case 18: return skein_world_step(s->world, dt);
     case 19: return skein_world_step(s->world, dt / 2);

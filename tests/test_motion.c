@@ -192,7 +192,8 @@ static void wind_on_a_sheet_follows_its_formula(void **state) {
 static void wind_on_nothing_is_nothing(void **state) {
     (void)state;
     for (size_t m = 0; m < COUNT(method_names); m++) {
-        skein_world *world = sheet_in_wind(method_names[m], (vec3){0, 0, 0}, (vec3){1, 4, 0}, (vec3){1, 4, 0}, 0.9, 0.4);
+        skein_world *world =
+            sheet_in_wind(method_names[m], (vec3){0, 0, 0}, (vec3){1, 4, 0}, (vec3){1, 4, 0}, 0.9, 0.4);
         steps(world, 1, 1.0 / 64);
         for (size_t i = 0; i < SHEET * SHEET; i++) place_particle(world, i, i < 5 ? 1 : 1.125, 0, 0);
         throw_particle(world, 8, 0, 1, 0);
@@ -235,29 +236,36 @@ static void momentum_is_conserved(void **state) {
         skein_world *world = new_world(method_names[m], 10);
         uint64_t seed = 3;
         for (int i = 0; i < LOOSE; i++)
-            add_moving(world, random_between(&seed, 0.05, 0.3), random_between(&seed, -0.5, 0.5), random_between(&seed, -0.5, 0.5),
-                       random_between(&seed, -0.5, 0.5), random_between(&seed, -1, 2), random_between(&seed, -1, 2), random_between(&seed, -1, 1));
+            add_moving(world, random_between(&seed, 0.05, 0.3), random_between(&seed, -0.5, 0.5),
+                       random_between(&seed, -0.5, 0.5), random_between(&seed, -0.5, 0.5), random_between(&seed, -1, 2),
+                       random_between(&seed, -1, 2), random_between(&seed, -1, 1));
         uint32_t pairs[2 * LOOSE];
         for (uint32_t i = 0; i < LOOSE; i++) pairs[2 * i] = i, pairs[2 * i + 1] = (i * 7 + 11) % LOOSE;
-        OK(world, skein_constraint_add(world, "distance", pairs, LOOSE, SKEIN_SETTINGS(SKEIN_REAL("stiffness", 50), SKEIN_REAL("damping", 0.5)), NULL));
-        OK(world, skein_force_add(world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.3), SKEIN_REAL("strength", 2)), NULL));
+        OK(world, skein_constraint_add(world, "distance", pairs, LOOSE,
+                                       SKEIN_SETTINGS(SKEIN_REAL("stiffness", 50), SKEIN_REAL("damping", 0.5)), NULL));
+        OK(world, skein_force_add(world, "separation",
+                                  SKEIN_SETTINGS(SKEIN_REAL("radius", 0.3), SKEIN_REAL("strength", 2)), NULL));
         OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 7), SKEIN_REAL("density", 3), SKEIN_REAL("stretch.limit", 0.02),
-                                                SKEIN_REAL("stretch.stiffness", 100), SKEIN_REAL("stretch.damping", 0.2)),
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 7), SKEIN_REAL("density", 3),
+                                                SKEIN_REAL("stretch.limit", 0.02), SKEIN_REAL("stretch.stiffness", 100),
+                                                SKEIN_REAL("stretch.damping", 0.2)),
                                  NULL));
         for (uint32_t i = LOOSE; i < LOOSE + 42; i++)
-            throw_particle(world, i, random_between(&seed, -2, 3), random_between(&seed, -2, 2), random_between(&seed, -2, 2));
+            throw_particle(world, i, random_between(&seed, -2, 3), random_between(&seed, -2, 2),
+                           random_between(&seed, -2, 2));
         skein_statistics before = statistics_of(world);
         double scale = 0; // sum of |m v|
         skein_view view = skein_velocity_view(world);
-        for (size_t i = 0; i < view.count; i++) scale += (double)view.xyzw[4 * view.slot_of[i] + 3] * length3(velocity_of(world, i));
+        for (size_t i = 0; i < view.count; i++)
+            scale += (double)view.xyzw[4 * view.slot_of[i] + 3] * length3(velocity_of(world, i));
         steps(world, 60, 1.0 / 60);
         skein_statistics after = statistics_of(world);
         // XPBD corrects velocities by what positions moved: a rounding of those is divided by the substep
         double rounding = (m ? 1500 : 20) * EPSILON * scale;
         for (int k = 0; k < 3; k++) assert_near(after.momentum[k], before.momentum[k], rounding);
         // something did happen
-        assert_true(after.kinetic_energy < 0.9 * before.kinetic_energy || after.kinetic_energy > 1.1 * before.kinetic_energy);
+        assert_true(after.kinetic_energy < 0.9 * before.kinetic_energy ||
+                    after.kinetic_energy > 1.1 * before.kinetic_energy);
         skein_world_destroy(world);
     }
 }
@@ -271,10 +279,12 @@ static void angular_momentum_is_conserved(void **state) {
     uint32_t pairs[2 * PARTICLES];
     for (uint32_t i = 0; i < PARTICLES; i++) {
         add_moving(world, random_between(&seed, 0.5, 2), random_between(&seed, -1, 1), random_between(&seed, -1, 1),
-                   random_between(&seed, -1, 1), random_between(&seed, -1, 1), random_between(&seed, -1, 1), random_between(&seed, -1, 1));
+                   random_between(&seed, -1, 1), random_between(&seed, -1, 1), random_between(&seed, -1, 1),
+                   random_between(&seed, -1, 1));
         pairs[2 * i] = i, pairs[2 * i + 1] = (i * 5 + 3) % PARTICLES;
     }
-    OK(world, skein_constraint_add(world, "distance", pairs, PARTICLES, SKEIN_SETTINGS(SKEIN_REAL("stiffness", 30), SKEIN_REAL("damping", 0.4)), NULL));
+    OK(world, skein_constraint_add(world, "distance", pairs, PARTICLES,
+                                   SKEIN_SETTINGS(SKEIN_REAL("stiffness", 30), SKEIN_REAL("damping", 0.4)), NULL));
     vec3 sums[2] = {{0, 0, 0}, {0, 0, 0}};
     double scale = 0;
     for (int when = 0; when < 2; when++) {

@@ -200,14 +200,37 @@ static void separation_is_that_of_all_pairs(void **state) {
 /* Two rules of different reach share the grid of the wider one, and each keeps its own reach. */
 static void rules_of_different_reach_share_a_grid(void **state) {
     (void)state;
-    skein_world *world = new_world("symplectic_euler", 1);
-    add_particle(world, 1, 0, 0, 0), add_particle(world, 1, 0.5, 0, 0), add_particle(world, 1, -0.15, 0, 0);
-    OK(world, skein_force_add(world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.2), SKEIN_REAL("strength", 1)), NULL));
-    OK(world, skein_force_add(world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 1), SKEIN_REAL("strength", 0.1)), NULL));
-    steps(world, 1, 1);
-    assert_near(velocity_of(world, 0).x, 0.25 - 0.1 * 0.5 + 0.1 * 0.85, 1e-6);
-    assert_near(velocity_of(world, 1).x, 0.1 * 0.5 + 0.1 * 0.35, 1e-6);
-    skein_world_destroy(world);
+    for (int wide_last = 0; wide_last < 2; wide_last++) {
+        skein_world *world = new_world("symplectic_euler", 1);
+        add_particle(world, 1, 0, 0, 0), add_particle(world, 1, 0.5, 0, 0), add_particle(world, 1, -0.15, 0, 0);
+        for (int k = 0; k < 2; k++) {
+            bool wide = k == wide_last;
+            OK(world, skein_force_add(world, "separation",
+                                      SKEIN_SETTINGS(SKEIN_REAL("radius", wide ? 1 : 0.2), SKEIN_REAL("strength", wide ? 0.1 : 1)), NULL));
+        }
+        steps(world, 1, 1);
+        assert_near(velocity_of(world, 0).x, 0.25 - 0.1 * 0.5 + 0.1 * 0.85, 1e-6);
+        assert_near(velocity_of(world, 1).x, 0.1 * 0.5 + 0.1 * 0.35, 1e-6);
+        skein_world_destroy(world);
+    }
+}
+
+/* A wider rule that is switched off must not widen the grid of the other: not even roundings may tell. */
+static void a_disabled_rule_leaves_the_grid_alone(void **state) {
+    (void)state;
+    uint64_t hash[2];
+    for (int with = 0; with < 2; with++) {
+        skein_world *world = new_world("symplectic_euler", 1);
+        uint64_t seed = 59;
+        for (int i = 0; i < 400; i++)
+            add_particle(world, 1, random_between(&seed, -1, 1), random_between(&seed, -1, 1), random_between(&seed, -1, 1));
+        OK(world, skein_force_add(world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.3)), NULL));
+        if (with) OK(world, skein_force_add(world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.9), SKEIN_REAL("enabled", 0)), NULL));
+        steps(world, 1, 0.01);
+        hash[with] = skein_world_hash(world);
+        skein_world_destroy(world);
+    }
+    assert_true(hash[0] == hash[1]);
 }
 
 static void a_held_particle_pushes_but_stays(void **state) {
@@ -243,6 +266,7 @@ int main(void) {
         cmocka_unit_test(odd_crowds_are_sorted_too),
         cmocka_unit_test(separation_is_that_of_all_pairs),
         cmocka_unit_test(rules_of_different_reach_share_a_grid),
+        cmocka_unit_test(a_disabled_rule_leaves_the_grid_alone),
         cmocka_unit_test(a_held_particle_pushes_but_stays),
         cmocka_unit_test(a_particle_that_is_nowhere_harms_no_one),
     };

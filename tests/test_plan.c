@@ -129,13 +129,19 @@ static void explain_prints_a_line_a_row(void **state) {
         while (world->plan.data[repeat].kind != SK_ROW_REPEAT) repeat++;
         for (size_t i = repeat + 1; i <= repeat + world->plan.data[repeat].length; i++) assert_memory_equal(p.lines[i], "    ", 4);
 
+        // rows bear the names that rules have now
+        OK(world, skein_set_path(world, "forces.0.name", skein_text("weight")));
+        p.count = 0;
+        OK(world, skein_world_explain(world, dt, write_line, &p));
+        assert_true(lines_with(&p, "gravity") == 0 && lines_with(&p, "weight") == 1);
+
         // a rule that is switched off has no rows
         OK(world, skein_set_path(world, "colliders.ball.enabled", skein_number(0)));
         OK(world, skein_set_path(world, "forces.0.enabled", skein_number(0)));
         p.count = 0;
         OK(world, skein_world_explain(world, dt, write_line, &p));
         assert_int_equal(lines_with(&p, "ball"), 0);
-        assert_int_equal(lines_with(&p, "gravity"), 0);
+        assert_int_equal(lines_with(&p, "weight"), 0);
         assert_true(lines_with(&p, "ground") >= 2);
 
         // without a reader it only makes sure that there is a plan

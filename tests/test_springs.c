@@ -212,6 +212,32 @@ static void springs_join_bodies_and_loose_particles(void **state) {
         }
 }
 
+/* Nothing is lost where pairs come twice: springs side by side are one of twice the stiffness. */
+static void the_same_pair_twice_is_twice_as_stiff(void **state) {
+    (void)state;
+    enum { SIDE = 7 };
+    vec3 place[2][SIDE * SIDE];
+    for (int twice = 0; twice < 2; twice++) {
+        skein_world *world = new_world("symplectic_euler", 10);
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_REAL("density", 5), SKEIN_REAL("stretch.stiffness", 0),
+                                                SKEIN_REAL("shear.stiffness", 0), SKEIN_REAL("bend.stiffness", 0),
+                                                SKEIN_REAL("stretch.limit", INFINITY)),
+                                 NULL));
+        uint32_t pairs[2 * 2 * SIDE * SIDE];
+        size_t count = 0;
+        for (int turn = 0; turn <= twice; turn++)
+            for (uint32_t i = 0; i < SIDE * SIDE; i++)
+                if (i % SIDE) pairs[2 * count] = turn ? i : i - 1, pairs[2 * count++ + 1] = turn ? i - 1 : i;
+        OK(world, skein_constraint_add(world, "distance", pairs, count, SKEIN_SETTINGS(SKEIN_REAL("stiffness", twice ? 10 : 20)), NULL));
+        for (uint32_t i = 0; i < SIDE * SIDE; i++) throw_particle(world, i, 0.1 * (double)(i % 5), 0.2 * (double)(i % 3), -0.3 * (double)(i % 4));
+        steps(world, 20, 1.0 / 90);
+        for (size_t i = 0; i < SIDE * SIDE; i++) place[twice][i] = position_of(world, i);
+        skein_world_destroy(world);
+    }
+    for (size_t i = 0; i < SIDE * SIDE; i++) assert_under(length3(minus(place[0][i], place[1][i])), 1e-5);
+}
+
 /* ---- Stiffness has units ------------------------------------------------------------------------ */
 
 /* Weights on a row of springs: each spring bears the weight below it, so the lowest hangs
@@ -302,6 +328,7 @@ int main(void) {
         cmocka_unit_test(a_rigid_pendulum_keeps_time),
         cmocka_unit_test(springs_without_a_direction_or_stiffness_are_harmless),
         cmocka_unit_test(springs_join_bodies_and_loose_particles),
+        cmocka_unit_test(the_same_pair_twice_is_twice_as_stiff),
         cmocka_unit_test(hanging_weights_sag_as_much_however_they_are_stepped),
         cmocka_unit_test(cloth_sags_as_much_at_any_resolution),
     };

@@ -8,10 +8,10 @@
 static skein_world *hanging(int side, double tether) {
     skein_world *world = new_world("symplectic_euler", 60);
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 1.2, 0), SKEIN_REAL("density", 0.2),
-                                            SKEIN_TEXT("pins", "top corners"), SKEIN_REAL("stretch.stiffness", 1000),
-                                            SKEIN_REAL("shear.stiffness", 100), SKEIN_REAL("bend.stiffness", 100),
-                                            SKEIN_REAL("stretch.tether", tether)),
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 1.2, 0),
+                                            SKEIN_REAL("density", 0.2), SKEIN_TEXT("pins", "top corners"),
+                                            SKEIN_REAL("stretch.stiffness", 1000), SKEIN_REAL("shear.stiffness", 100),
+                                            SKEIN_REAL("bend.stiffness", 100), SKEIN_REAL("stretch.tether", tether)),
                              NULL));
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 1.5)), NULL));

@@ -40,11 +40,14 @@ static uint64_t hash_of_run(const char *method, int threads, tally *t) {
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("quadratic", 1e-5)), NULL));
     OK(world, skein_force_add(world, "surface_wind", SKEIN_SETTINGS(SKEIN_VEC3("velocity", 2, 0, 1)), NULL));
-    OK(world, skein_force_add(world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.008), SKEIN_REAL("strength", 1e-4)), NULL));
+    OK(world, skein_force_add(world, "separation",
+                              SKEIN_SETTINGS(SKEIN_REAL("radius", 0.008), SKEIN_REAL("strength", 1e-4)), NULL));
     OK(world, skein_collider_add(world, "sphere",
-                                 SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.1, 0), SKEIN_REAL("radius", 0.39), SKEIN_REAL("motion.spin", 5)),
+                                 SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.1, 0), SKEIN_REAL("radius", 0.39),
+                                                SKEIN_REAL("motion.spin", 5)),
                                  NULL));
-    OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", 0.48), SKEIN_REAL("restitution", 0.5)), NULL));
+    OK(world, skein_collider_add(world, "plane",
+                                 SKEIN_SETTINGS(SKEIN_REAL("offset", 0.48), SKEIN_REAL("restitution", 0.5)), NULL));
     assert_true(skein_particle_count(world) > 20000);
     steps(world, STEPS, 1.0 / 90);
     skein_statistics s = statistics_of(world);
