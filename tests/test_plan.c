@@ -167,6 +167,10 @@ static void needless_rows_are_left_out(void **state) {
     p.count = 0;
     OK(world, skein_world_explain(world, dt, write_line, &p));
     assert_true(lines_with(&p, "multiplier") >= 1 && lines_with(&p, "limit") == 1 && lines_with(&p, "strain") == 0);
+    OK(world, skein_set(world, body, "stretch.tether", skein_number(INFINITY)));
+    p.count = 0;
+    OK(world, skein_world_explain(world, dt, write_line, &p));
+    assert_int_equal(lines_with(&p, "limit"), 0);
     OK(world, skein_set_path(world, "method.iterations", skein_number(3)));
     p.count = 0;
     OK(world, skein_world_explain(world, dt, write_line, &p));
