@@ -3,8 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A block's header keeps its size and the 64-byte alignment of what follows. */
+/* A block's header, before what its user sees, keeps the 64-byte alignment of what follows. */
 enum { HEADER = 64 };
+typedef struct block_header {
+    size_t whole, shift; /* bytes: the block's, and those before the header */
+} block_header;
 
 static void *default_allocate(void *user, size_t size, size_t alignment) {
     (void)user;
@@ -21,24 +24,27 @@ sk_allocator sk_default_allocator(void) {
     return (sk_allocator){default_allocate, default_release, NULL, 0};
 }
 
-void *sk_allocate(sk_allocator *allocator, size_t size) {
-    if (size > SIZE_MAX - 2 * HEADER) return NULL;
-    size_t whole = (size + HEADER + HEADER - 1) / HEADER * HEADER;
+void *sk_allocate_shifted(sk_allocator *allocator, size_t size, size_t shift) {
+    if (size > SIZE_MAX - 2 * HEADER - shift) return NULL;
+    size_t whole = (size + shift + HEADER + HEADER - 1) / HEADER * HEADER;
     char *block = allocator->allocate(allocator->user, whole, HEADER);
     if (!block) return NULL;
     memset(block, 0, whole);
-    memcpy(block, &whole, sizeof whole);
+    memcpy(block + shift, &(block_header){whole, shift}, sizeof(block_header));
     allocator->bytes += whole;
-    return block + HEADER;
+    return block + shift + HEADER;
+}
+
+void *sk_allocate(sk_allocator *allocator, size_t size) {
+    return sk_allocate_shifted(allocator, size, 0);
 }
 
 void sk_release(sk_allocator *allocator, void *memory) {
     if (!memory) return;
-    char *block = (char *)memory - HEADER;
-    size_t whole;
-    memcpy(&whole, block, sizeof whole);
-    allocator->bytes -= whole;
-    allocator->release(allocator->user, block, whole);
+    block_header header;
+    memcpy(&header, (char *)memory - HEADER, sizeof header);
+    allocator->bytes -= header.whole;
+    allocator->release(allocator->user, (char *)memory - HEADER - header.shift, header.whole);
 }
 
 char *sk_copy_text(sk_allocator *allocator, const char *text) {

@@ -16,6 +16,9 @@ typedef struct sk_allocator {
 sk_allocator sk_default_allocator(void);
 
 void *sk_allocate(sk_allocator *allocator, size_t size);
+/* The same, `shift` bytes (a multiple of 64) further in: large blocks begin at pages, and where a kernel walks
+ * several of them in step, a load would wait for a store at the same place of another page. */
+void *sk_allocate_shifted(sk_allocator *allocator, size_t size, size_t shift);
 void sk_release(sk_allocator *allocator, void *memory); /* NULL is allowed */
 /* A copy of a text; NULL copies as "". */
 char *sk_copy_text(sk_allocator *allocator, const char *text);

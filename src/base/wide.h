@@ -108,26 +108,16 @@ SK_INLINE sk_wide SK_ISA(sk_dot_wide)(sk_wide3 a, sk_wide3 b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/* Lane l takes lane l + 1 (the last takes the first), and the other way. */
-SK_INLINE sk_wide SK_ISA(sk_rotate_up)(sk_wide a) {
-#ifdef SK_HAS_AVX512
-    return __builtin_shufflevector(a, a, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 0);
+/* Lane l takes lane (l + shift) mod 16. */
+SK_INLINE sk_wide SK_ISA(sk_rotate)(sk_wide a, int shift) {
+#if defined(SK_HAS_AVX512) && !defined(SKEIN_DOUBLE)
+    const sk_mask lanes = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    return (sk_wide)_mm512_permutexvar_ps((__m512i)(lanes + shift), (__m512)a); // takes indices mod 16
 #else
-    real lanes[SK_LANES + 1];
-    memcpy(lanes, &a, sizeof a);
-    lanes[SK_LANES] = lanes[0];
-    memcpy(&a, lanes + 1, sizeof a);
-    return a;
-#endif
-}
-SK_INLINE sk_wide SK_ISA(sk_rotate_down)(sk_wide a) {
-#ifdef SK_HAS_AVX512
-    return __builtin_shufflevector(a, a, 15, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14);
-#else
-    real lanes[SK_LANES + 1];
-    memcpy(lanes + 1, &a, sizeof a);
-    lanes[0] = lanes[SK_LANES];
-    memcpy(&a, lanes, sizeof a);
+    real twice[2 * SK_LANES];
+    memcpy(twice, &a, sizeof a);
+    memcpy(twice + SK_LANES, &a, sizeof a);
+    memcpy(&a, twice + (shift & (SK_LANES - 1)), sizeof a);
     return a;
 #endif
 }
@@ -228,4 +218,14 @@ SK_INLINE void SK_ISA(sk_store_block)(sk_vec4 *vector, size_t slot, bool packed,
     }
     static const uint32_t in_order[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     SK_ISA(sk_scatter)(vector + slot, in_order, a);
+}
+
+/* The same where w is a mass that stays, or that nobody reads. */
+SK_INLINE void SK_ISA(sk_store_moved)(sk_vec4 *vector, size_t slot, bool packed, sk_wide4 a) {
+    if (!packed) {
+        SK_ISA(sk_store_block)(vector, slot, packed, a);
+        return;
+    }
+    sk_wide *w = (sk_wide *)(void *)(vector + slot);
+    w[0] = a.x, w[1] = a.y, w[2] = a.z;
 }

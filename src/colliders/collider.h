@@ -66,6 +66,9 @@ extern const sk_kernels sk_contact_push;
 /* Position methods: gives V the bounce that V0, its second source, had coming. */
 extern const sk_kernels sk_contact_restitution;
 
+/* Whether contact with this collider looks at F after the velocity update: what bounces must know what weighs. */
+bool sk_contact_reads_force(const sk_collider *collider);
+
 /* Deepest penetration below the thickness (m) and the number of particles in touch. */
 void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
                          size_t particle_count, double *penetration, size_t *contacts);

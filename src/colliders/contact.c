@@ -133,6 +133,7 @@ static void SK_ISA(contact_push)(sk_run *run, const sk_row *row, size_t begin, s
 
 static void SK_ISA(contact_restitution)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_collider *collider = row->rule;
+    bool bounces = sk_contact_reads_force(collider);
     sk_pose pose = sk_collider_pose_at(collider, run->time);
     SK_ISA(encounter) e;
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
@@ -140,13 +141,16 @@ static void SK_ISA(contact_restitution)(sk_run *run, const sk_row *row, size_t b
         bool packed = slot < row->packed;
         sk_wide4 v = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed);
         sk_wide3 before = SK_ISA(three)(SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, packed));
-        sk_wide3 f = SK_ISA(three)(SK_ISA(sk_load_block)(run->vector[SK_F], slot, packed));
         sk_wide approach = SK_ISA(sk_dot_wide)(SK_ISA(minus)(before, e.surface), e.contact.normal);
         sk_wide leaving = SK_ISA(sk_dot_wide)(SK_ISA(minus)(SK_ISA(three)(v), e.surface), e.contact.normal);
-        // what a substep's force alone brings is no impact; bouncing it would make resting things jitter
-        sk_wide resting = (2 * (real)row->dt) * e.x.w * SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(f, f));
-        sk_wide bounce =
-            SK_ISA(sk_keep)(SK_ISA(sk_more)(-approach, resting), (real)collider->common->restitution * -approach);
+        sk_wide bounce = {0};
+        if (bounces) {
+            // what a substep's force alone brings is no impact; bouncing it would make resting things jitter
+            sk_wide3 f = SK_ISA(three)(SK_ISA(sk_load_block)(run->vector[SK_F], slot, packed));
+            sk_wide resting = (2 * (real)row->dt) * e.x.w * SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(f, f));
+            bounce =
+                SK_ISA(sk_keep)(SK_ISA(sk_more)(-approach, resting), (real)collider->common->restitution * -approach);
+        }
         SK_ISA(apply)
         (run, row, slot, v, e.touching & SK_ISA(sk_negative)(approach),
          SK_ISA(times)(bounce - leaving, e.contact.normal));
@@ -211,6 +215,10 @@ sk_pose sk_collider_pose_at(const sk_collider *collider, double time) {
     pose.spin = sk_v3((real)(axis[0] * spin), (real)(axis[1] * spin), (real)(axis[2] * spin));
     rotation_about(axis, spin * since, pose.rotation);
     return pose;
+}
+
+bool sk_contact_reads_force(const sk_collider *collider) {
+    return collider->common->restitution > 0;
 }
 
 void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,

@@ -14,23 +14,21 @@ SK_INLINE void SK_ISA(pair)(sk_pair *p, const sk_pair_constants *c, sk_pair_mode
         sk_wide inverse = SK_ISA(sk_keep)(SK_ISA(sk_positive)(length), 1 / length);
         sk_wide3 u = {p->other_a.x - p->other_b.x, p->other_a.y - p->other_b.y, p->other_a.z - p->other_b.z};
         sk_wide rate = SK_ISA(sk_dot_wide)(d, u) * inverse;
-        sk_wide pull = (p->stiffness * ((length - p->rest) + c->damping_time * rate)) * inverse;
-        p->db = SK_ISA(along)(pull, d);
-        p->da = SK_ISA(along)(-pull, d);
+        sk_wide push = (p->stiffness * ((p->rest - length) - c->damping_time * rate)) * inverse;
+        p->da = p->db = SK_ISA(along)(push, d);
         return;
     }
     sk_wide weight = p->wa + p->wb, s;
     if (mode == SK_PAIR_PROJECT) {
-        sk_wide below = length * (weight + p->compliance * c->per_step);
+        sk_wide below = length * (weight + p->soft);
         s = SK_ISA(sk_keep)(SK_ISA(sk_positive)(below), (p->rest - length) / below);
     } else if (mode == SK_PAIR_PROJECT_DAMPED) {
         sk_wide3 moved = {d.x - (p->other_a.x - p->other_b.x), d.y - (p->other_a.y - p->other_b.y),
                           d.z - (p->other_a.z - p->other_b.z)};
         sk_wide inverse = SK_ISA(sk_keep)(SK_ISA(sk_positive)(length), 1 / length);
-        sk_wide soft = p->compliance * c->per_step;
-        sk_wide below = (1 + c->gamma) * weight + soft;
+        sk_wide below = (1 + c->gamma) * weight + p->soft;
         // a multiplier of 0 against an infinite compliance is nothing
-        sk_wide held = SK_ISA(sk_keep)(SK_ISA(sk_differ)(p->multiplier, (sk_wide){0}), soft * p->multiplier);
+        sk_wide held = SK_ISA(sk_keep)(SK_ISA(sk_differ)(p->multiplier, (sk_wide){0}), p->soft * p->multiplier);
         sk_wide above = (p->rest - length) - held - c->gamma * (SK_ISA(sk_dot_wide)(d, moved) * inverse);
         sk_wide change = SK_ISA(sk_keep)(SK_ISA(sk_positive)(below), above / below);
         p->multiplier += change;
@@ -43,13 +41,13 @@ SK_INLINE void SK_ISA(pair)(sk_pair *p, const sk_pair_constants *c, sk_pair_mode
         if (mode == SK_PAIR_LIMIT_MOVING) {
             sk_wide3 u = {p->other_a.x - p->other_b.x, p->other_a.y - p->other_b.y, p->other_a.z - p->other_b.z};
             sk_wide parting = SK_ISA(sk_dot_wide)(d, u);
-            sk_wide stop = SK_ISA(sk_keep)(over & SK_ISA(sk_positive)(parting), parting / (square * weight));
-            p->dv_a = SK_ISA(along)(-stop * p->wa, d);
+            sk_wide stop = SK_ISA(sk_keep)(over & SK_ISA(sk_positive)(parting), -parting / (square * weight));
+            p->dv_a = SK_ISA(along)(stop * p->wa, d);
             p->dv_b = SK_ISA(along)(stop * p->wb, d);
         }
     }
     p->da = SK_ISA(along)(s * p->wa, d);
-    p->db = SK_ISA(along)(-s * p->wb, d);
+    p->db = SK_ISA(along)(s * p->wb, d);
 }
 
 #include "constraints/pair_sweeps.h"

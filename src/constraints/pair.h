@@ -5,6 +5,8 @@
 #include "base/wide_types.h"
 #include "constraints/sweep.h"
 
+enum { SK_ROWS_SIDE_BY_SIDE = 8 }; /* strip rows whose chains of elements hide each other's latency */
+
 typedef enum sk_pair_mode {
     SK_PAIR_FORCE,
     SK_PAIR_PROJECT,
@@ -17,9 +19,10 @@ typedef struct sk_pair {
     sk_wide3 a, b;             /* positions */
     sk_wide wa, wb;            /* inverse masses */
     sk_wide3 other_a, other_b; /* velocities; of damped projection the positions at the substep's start */
-    sk_wide rest, stiffness, compliance, multiplier;
-    sk_wide3 da, db;     /* what comes out: forces or moves */
-    sk_wide3 dv_a, dv_b; /* changes of velocity, of a limit that moves */
+    sk_wide rest, stiffness, multiplier;
+    sk_wide soft;        /* 1/(k h^2) */
+    sk_wide3 da, db;     /* what comes out, forces or moves: a gets da, b loses db */
+    sk_wide3 dv_a, dv_b; /* likewise of velocity, from a limit that moves */
 } sk_pair;
 
 /* What is the same for all elements of a row. */
@@ -34,6 +37,25 @@ static inline sk_pair_constants sk_pair_prepare(const sk_batch *batch, const sk_
     double damping_time = sk_batch_damping_time(batch);
     return (sk_pair_constants){(real)damping_time, (real)(1 / (row->dt * row->dt)), (real)(damping_time / row->dt),
                                (real)(1 + (batch->bound ? *batch->bound : 0))};
+}
+
+/* Blocks [first, last) of a strip row that meet blocks `shift` strips on. */
+typedef struct sk_span {
+    size_t first, last;
+    int shift;
+} sk_span;
+
+static inline sk_span sk_span_from(const sk_sweep *sweep, size_t first) {
+    int64_t width = (int64_t)sweep->walk.width, partner = (int64_t)first + sweep->column_step;
+    int64_t shift = partner >= 0 ? partner / width : -((width - 1 - partner) / width);
+    int64_t last = (shift + 1) * width - sweep->column_step;
+    return (sk_span){first, last < width ? (size_t)last : (size_t)width, (int)shift};
+}
+static inline sk_span sk_first_span(const sk_sweep *sweep) {
+    return sk_span_from(sweep, 0);
+}
+static inline sk_span sk_next_span(const sk_sweep *sweep, sk_span span) {
+    return sk_span_from(sweep, span.last);
 }
 
 #endif

@@ -1,20 +1,21 @@
 /* The walks of constraints between two particles, once for each instruction set (no include guard).
  *
  * The kind that includes this has defined SK_ISA(pair), its arithmetic on sixteen elements at once: it
- * reads a and b and writes da and db (and, when moving, dv_a and dv_b). How particles come in and go out
- * is here alone, so that the arithmetic does not know the layout. */
+ * reads a and b and writes da and db (and, when moving, dv_a and dv_b): a gets da, b loses db. How particles
+ * come in and go out is here alone, so that the arithmetic does not know the layout. */
 
 /* Reads what a mode needs of sixteen elements besides positions. */
-SK_INLINE void SK_ISA(set_values)(sk_pair *p, const sk_sweep *sweep, size_t lane, bool special, bool multiplier) {
+SK_INLINE void SK_ISA(set_values)(sk_pair *p, const sk_sweep *sweep, const sk_pair_constants *constants, size_t lane,
+                                  bool special, bool multiplier) {
     const sk_batch *batch = sweep->batch;
     if (special) {
         p->rest = *(const sk_wide *)(const void *)(batch->lane_rest + lane);
         p->stiffness = *(const sk_wide *)(const void *)(batch->lane_stiffness + lane);
-        p->compliance = *(const sk_wide *)(const void *)(batch->lane_compliance + lane);
+        p->soft = *(const sk_wide *)(const void *)(batch->lane_compliance + lane) * constants->per_step;
     } else {
         p->rest = SK_ISA(sk_splat)(sweep->rest);
         p->stiffness = SK_ISA(sk_splat)(sweep->stiffness);
-        p->compliance = SK_ISA(sk_splat)(sweep->compliance);
+        p->soft = SK_ISA(sk_splat)(sweep->compliance * constants->per_step);
     }
     if (multiplier) p->multiplier = *(const sk_wide *)(const void *)(batch->lane_multiplier + lane);
 }
@@ -25,81 +26,157 @@ SK_INLINE sk_wide3 SK_ISA(load3)(const sk_wide *block) {
 SK_INLINE void SK_ISA(add3)(sk_wide *block, sk_wide3 d) {
     block[0] += d.x, block[1] += d.y, block[2] += d.z;
 }
-/* Turns the lanes of a block at a strip's end: shift 1 takes each lane's next one, -1 the one before. */
-SK_INLINE sk_wide SK_ISA(shift1)(sk_wide a, int shift) {
-    return shift > 0 ? SK_ISA(sk_rotate_up)(a) : shift < 0 ? SK_ISA(sk_rotate_down)(a) : a;
+SK_INLINE void SK_ISA(take3)(sk_wide *block, sk_wide3 d) {
+    block[0] -= d.x, block[1] -= d.y, block[2] -= d.z;
 }
-SK_INLINE sk_wide3 SK_ISA(shift3)(sk_wide3 a, int shift) {
-    return (sk_wide3){SK_ISA(shift1)(a.x, shift), SK_ISA(shift1)(a.y, shift), SK_ISA(shift1)(a.z, shift)};
+/* Lanes turned by `shift`, as blocks do that meet over the end of a strip. */
+SK_INLINE sk_wide SK_ISA(turn)(sk_wide a, int shift) {
+    return shift ? SK_ISA(sk_rotate)(a, shift) : a;
+}
+SK_INLINE sk_wide3 SK_ISA(turn3)(sk_wide3 a, int shift) {
+    return (sk_wide3){SK_ISA(turn)(a.x, shift), SK_ISA(turn)(a.y, shift), SK_ISA(turn)(a.z, shift)};
 }
 
-/* Block a meets block b. `mode` is a constant where this is inlined. */
-SK_INLINE void SK_ISA(meet_blocks)(sk_run *run, const sk_row *row, const sk_sweep *sweep,
-                                   const sk_pair_constants *constants, size_t lane, size_t slot_a, size_t slot_b,
-                                   int shift, sk_pair_mode mode) {
+/* ---- strips: projections and limits ---- */
+
+/* Block a meets block b. `mode` is a constant where this is inlined, and `shift` is or is not 0. */
+SK_INLINE void SK_ISA(meet_blocks)(sk_run *run, const sk_sweep *sweep, const sk_pair_constants *constants, size_t lane,
+                                   size_t slot_a, size_t slot_b, int shift, sk_pair_mode mode) {
     bool special = shift || sweep->batch->special[lane / SK_LANES];
     sk_wide *xa = (sk_wide *)(void *)(run->vector[SK_X] + slot_a),
             *xb = (sk_wide *)(void *)(run->vector[SK_X] + slot_b);
     sk_pair p = {.a = SK_ISA(load3)(xa),
-                 .b = SK_ISA(shift3)(SK_ISA(load3)(xb), shift),
+                 .b = SK_ISA(turn3)(SK_ISA(load3)(xb), shift),
                  .wa = xa[3],
-                 .wb = SK_ISA(shift1)(xb[3], shift)};
+                 .wb = SK_ISA(turn)(xb[3], shift)};
     sk_wide *other_a = NULL, *other_b = NULL;
     if (mode != SK_PAIR_PROJECT && mode != SK_PAIR_LIMIT) {
         sk_vec4 *other = run->vector[mode == SK_PAIR_PROJECT_DAMPED ? SK_X0 : SK_V];
         other_a = (sk_wide *)(void *)(other + slot_a), other_b = (sk_wide *)(void *)(other + slot_b);
         p.other_a = SK_ISA(load3)(other_a);
-        p.other_b = SK_ISA(shift3)(SK_ISA(load3)(other_b), shift);
+        p.other_b = SK_ISA(turn3)(SK_ISA(load3)(other_b), shift);
     }
-    SK_ISA(set_values)(&p, sweep, lane, special, mode == SK_PAIR_PROJECT_DAMPED);
+    SK_ISA(set_values)(&p, sweep, constants, lane, special, mode == SK_PAIR_PROJECT_DAMPED);
     SK_ISA(pair)(&p, constants, mode);
-    if (mode == SK_PAIR_FORCE) {
-        sk_vec4 *f = run->vector[row->dst];
-        SK_ISA(add3)((sk_wide *)(void *)(f + slot_a), p.da);
-        SK_ISA(add3)((sk_wide *)(void *)(f + slot_b), SK_ISA(shift3)(p.db, -shift));
-    } else if (shift) {
+    if (shift) {
+        // a and b may be one block
         SK_ISA(add3)(xa, p.da);
-        SK_ISA(add3)(xb, SK_ISA(shift3)(p.db, -shift));
+        SK_ISA(take3)(xb, SK_ISA(turn3)(p.db, -shift));
     } else {
         // from what was loaded: reading again would wait for the stores
         xa[0] = p.a.x + p.da.x, xa[1] = p.a.y + p.da.y, xa[2] = p.a.z + p.da.z;
-        xb[0] = p.b.x + p.db.x, xb[1] = p.b.y + p.db.y, xb[2] = p.b.z + p.db.z;
+        xb[0] = p.b.x - p.db.x, xb[1] = p.b.y - p.db.y, xb[2] = p.b.z - p.db.z;
     }
     if (mode == SK_PAIR_PROJECT_DAMPED) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + lane) = p.multiplier;
     if (mode == SK_PAIR_LIMIT_MOVING) {
         SK_ISA(add3)(other_a, p.dv_a);
-        SK_ISA(add3)(other_b, SK_ISA(shift3)(p.dv_b, -shift));
+        SK_ISA(take3)(other_b, SK_ISA(turn3)(p.dv_b, -shift));
     }
 }
 
-/* Over the end of a strip; a function of its own for each mode, since it is rare and would be inlined often. */
-typedef void SK_ISA(meet_end)(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_pair_constants *constants,
-                              size_t lane, size_t slot_a, size_t slot_b, int shift);
+/* Blocks [first, last) of strip rows [begin, end): along a row each block waits for the one before it, so
+ * rows that share no particle go side by side. */
+SK_INLINE void SK_ISA(meet_span)(sk_run *run, const sk_sweep *sweep, const sk_pair_constants *constants, size_t begin,
+                                 size_t end, size_t first, size_t last, int shift, sk_pair_mode mode) {
+    size_t line = sweep->walk.width * SK_LANES, first_slot = sweep->walk.first_slot;
+    size_t to_b = (size_t)((int64_t)sweep->row_step * (int64_t)line +
+                           (sweep->column_step - (int64_t)shift * (int64_t)sweep->walk.width) * SK_LANES);
+    if (sweep->row_step) {
+        for (size_t at = begin * line + first * SK_LANES; at < begin * line + last * SK_LANES; at += SK_LANES)
+            SK_ISA(meet_blocks)
+        (run, sweep, constants, sweep->first_lane + at, first_slot + at, first_slot + at + to_b, shift, mode);
+        return;
+    }
+    for (size_t k = first; k < last; k++)
+        for (size_t at = begin * line + k * SK_LANES; at < end * line; at += line) SK_ISA(meet_blocks)
+    (run, sweep, constants, sweep->first_lane + at, first_slot + at, first_slot + at + to_b, shift, mode);
+}
 
-/* Strip rows [begin, end). Along a row each block waits for the one before it, so four rows go side by
- * side where they share no particle; the answer is the same. */
+typedef void SK_ISA(span_walk)(sk_run *run, const sk_sweep *sweep, const sk_pair_constants *constants, size_t begin,
+                               size_t end, size_t first, size_t last, int shift);
+
+/* Strip rows [begin, end), one by one unless they go side by side. `turned` walks the spans that lead over a strip's
+ * end: a function of its own, since few do and inlining it everywhere would be slow to compile. */
 SK_INLINE void SK_ISA(sweep_strips)(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_pair_mode mode,
-                                    SK_ISA(meet_end) * meet_end) {
+                                    SK_ISA(span_walk) * turned) {
     const sk_sweep *sweep = row->rule;
     sk_pair_constants constants = sk_pair_prepare(sweep->batch, row);
-    size_t width = sweep->walk.width, side_by_side = sweep->row_step == 0 ? 4 : 1;
+    size_t side_by_side = sweep->row_step == 0 ? SK_ROWS_SIDE_BY_SIDE : 1;
     for (size_t r = begin; r < end; r += side_by_side) {
         size_t stop = r + side_by_side < end ? r + side_by_side : end;
-        for (size_t k = 0; k < width; k++) {
-            int32_t partner = (int32_t)k + sweep->column_step;
-            int shift = partner < 0 ? -1 : partner >= (int32_t)width ? 1 : 0;
-            size_t place = (size_t)(partner - shift * (int32_t)width);
-            for (size_t i = r; i < stop; i++) {
-                size_t block = i * width + k, lane = sweep->first_lane + block * SK_LANES;
-                size_t slot_a = sweep->walk.first_slot + block * SK_LANES;
-                size_t slot_b = sweep->walk.first_slot + ((i + (size_t)sweep->row_step) * width + place) * SK_LANES;
-                if (__builtin_expect(shift == 0, 1))
-                    SK_ISA(meet_blocks)(run, row, sweep, &constants, lane, slot_a, slot_b, 0, mode);
-                else meet_end(run, row, sweep, &constants, lane, slot_a, slot_b, shift);
-            }
+        for (sk_span span = sk_first_span(sweep); span.first < sweep->walk.width; span = sk_next_span(sweep, span)) {
+            if (!span.shift) SK_ISA(meet_span)(run, sweep, &constants, r, stop, span.first, span.last, 0, mode);
+            else turned(run, sweep, &constants, r, stop, span.first, span.last, span.shift);
         }
     }
 }
+
+/* ---- strips: forces ---- */
+
+/* What block a gets from block b, and the other way. */
+SK_INLINE sk_pair SK_ISA(pull_blocks)(const sk_run *run, const sk_sweep *sweep, const sk_pair_constants *constants,
+                                      sk_wide4 a, sk_wide3 v, size_t lane, size_t slot_b, int shift) {
+    const sk_wide *xb = (const sk_wide *)(const void *)(run->vector[SK_X] + slot_b),
+                  *vb = (const sk_wide *)(const void *)(run->vector[SK_V] + slot_b);
+    sk_pair p = {.a = {a.x, a.y, a.z},
+                 .b = SK_ISA(turn3)(SK_ISA(load3)(xb), shift),
+                 .other_a = v,
+                 .other_b = SK_ISA(turn3)(SK_ISA(load3)(vb), shift)};
+    SK_ISA(set_values)(&p, sweep, constants, lane, shift || sweep->batch->special[lane / SK_LANES], false);
+    SK_ISA(pair)(&p, constants, SK_PAIR_FORCE);
+    return p;
+}
+
+/* The same over the end of a strip, as a function of its own: adds to b, and to the force on a. */
+static __attribute__((noinline)) void SK_ISA(pull_turned)(sk_run *run, const sk_sweep *sweep,
+                                                          const sk_pair_constants *constants, size_t slot_a,
+                                                          size_t lane, size_t slot_b, int shift, sk_wide *fb,
+                                                          sk_wide3 *force) {
+    sk_wide *xa = (sk_wide *)(void *)(run->vector[SK_X] + slot_a),
+            *va = (sk_wide *)(void *)(run->vector[SK_V] + slot_a);
+    sk_pair p = SK_ISA(pull_blocks)(run, sweep, constants, (sk_wide4){xa[0], xa[1], xa[2], xa[3]}, SK_ISA(load3)(va),
+                                    lane, slot_b, shift);
+    force->x += p.da.x, force->y += p.da.y, force->z += p.da.z;
+    if (fb) SK_ISA(take3)(fb, SK_ISA(turn3)(p.db, -shift));
+}
+
+/* All directions of a batch at once, for the forces on strip rows [begin, end): what they get from rows before
+ * is worked out again rather than waited for, so that every cut of the rows gives the same sums. */
+static void SK_ISA(force_strips)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_sweep *sweeps = row->rule;
+    sk_pair_constants constants = sk_pair_prepare(sweeps->batch, row);
+    size_t width = sweeps->walk.width, count = sweeps->together, reach = row->walk.reach;
+    sk_vec4 *f = run->vector[row->dst] + sweeps->walk.first_slot;
+    for (size_t r = begin > reach ? begin - reach : 0; r < end; r++)
+        for (size_t k = 0; k < width; k++) {
+            size_t block = (r * width + k) * SK_LANES, slot_a = sweeps->walk.first_slot + block;
+            const sk_wide *xa = (const sk_wide *)(const void *)(run->vector[SK_X] + slot_a);
+            sk_wide4 a = {xa[0], xa[1], xa[2], xa[3]};
+            sk_wide3 v = SK_ISA(load3)((const sk_wide *)(const void *)(run->vector[SK_V] + slot_a)), force = {0};
+            for (size_t d = 0; d < count; d++) {
+                const sk_sweep *sweep = &sweeps[d];
+                size_t partner_row = r + (size_t)sweep->row_step;
+                if (partner_row >= sweep->walk.rows || (r < begin && partner_row < begin)) continue;
+                int64_t partner = (int64_t)k + sweep->column_step;
+                int shift = 0;
+                for (; partner >= (int64_t)width; shift++) partner -= (int64_t)width;
+                for (; partner < 0; shift--) partner += (int64_t)width;
+                size_t block_b = (partner_row * width + (size_t)partner) * SK_LANES,
+                       slot_b = sweeps->walk.first_slot + block_b, lane = sweep->first_lane + block;
+                sk_wide *fb = partner_row < end ? (sk_wide *)(void *)(f + block_b) : NULL;
+                if (__builtin_expect(shift == 0, 1)) {
+                    sk_pair p = SK_ISA(pull_blocks)(run, sweep, &constants, a, v, lane, slot_b, 0);
+                    force.x += p.da.x, force.y += p.da.y, force.z += p.da.z;
+                    if (fb) SK_ISA(take3)(fb, p.db);
+                } else {
+                    SK_ISA(pull_turned)(run, sweep, &constants, slot_a, lane, slot_b, shift, fb, &force);
+                }
+            }
+            if (r >= begin) SK_ISA(add3)((sk_wide *)(void *)(f + block), force);
+        }
+}
+
+/* ---- groups ---- */
 
 /* Sixteen particles of a vector, some of which are in packed blocks. */
 SK_INLINE sk_wide4 SK_ISA(gather_any)(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
@@ -115,9 +192,11 @@ SK_INLINE sk_wide4 SK_ISA(gather)(const sk_vec4 *vector, size_t packed, const ui
     return packed ? SK_ISA(gather_any)(vector, packed, slot) : SK_ISA(sk_gather)(vector, slot);
 }
 
-/* Adds to sixteen different particles; `old` is what was gathered. */
-SK_INLINE void SK_ISA(scatter_sum)(sk_vec4 *vector, size_t packed, const uint32_t *slot, sk_wide4 old, sk_wide3 d) {
-    old.x += d.x, old.y += d.y, old.z += d.z;
+/* Adds to sixteen different particles (sign 1) or takes from them (-1); `old` is what was gathered. */
+SK_INLINE void SK_ISA(scatter_sum)(sk_vec4 *vector, size_t packed, const uint32_t *slot, sk_wide4 old, int sign,
+                                   sk_wide3 d) {
+    if (sign > 0) old.x += d.x, old.y += d.y, old.z += d.z;
+    else old.x -= d.x, old.y -= d.y, old.z -= d.z;
     if (!packed) {
         SK_ISA(sk_scatter)(vector, slot, old);
         return;
@@ -136,20 +215,20 @@ SK_INLINE void SK_ISA(meet_group)(sk_run *run, const sk_row *row, const sk_sweep
         p.other_a = (sk_wide3){oa.x, oa.y, oa.z}, p.other_b = (sk_wide3){ob.x, ob.y, ob.z};
     }
     size_t lane = sweep->first_lane + group * SK_LANES;
-    SK_ISA(set_values)(&p, sweep, lane, true, mode == SK_PAIR_PROJECT_DAMPED);
+    SK_ISA(set_values)(&p, sweep, constants, lane, true, mode == SK_PAIR_PROJECT_DAMPED);
     SK_ISA(pair)(&p, constants, mode);
     if (mode == SK_PAIR_FORCE) {
         sk_vec4 *f = run->vector[row->dst];
-        SK_ISA(scatter_sum)(f, packed, sa, SK_ISA(gather)(f, packed, sa), p.da);
-        SK_ISA(scatter_sum)(f, packed, sb, SK_ISA(gather)(f, packed, sb), p.db);
+        SK_ISA(scatter_sum)(f, packed, sa, SK_ISA(gather)(f, packed, sa), 1, p.da);
+        SK_ISA(scatter_sum)(f, packed, sb, SK_ISA(gather)(f, packed, sb), -1, p.db);
         return;
     }
-    SK_ISA(scatter_sum)(x, packed, sa, a, p.da);
-    SK_ISA(scatter_sum)(x, packed, sb, b, p.db);
+    SK_ISA(scatter_sum)(x, packed, sa, a, 1, p.da);
+    SK_ISA(scatter_sum)(x, packed, sb, b, -1, p.db);
     if (mode == SK_PAIR_PROJECT_DAMPED) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + lane) = p.multiplier;
     if (mode == SK_PAIR_LIMIT_MOVING) {
-        SK_ISA(scatter_sum)(other, packed, sa, oa, p.dv_a);
-        SK_ISA(scatter_sum)(other, packed, sb, ob, p.dv_b);
+        SK_ISA(scatter_sum)(other, packed, sa, oa, 1, p.dv_a);
+        SK_ISA(scatter_sum)(other, packed, sb, ob, -1, p.dv_b);
     }
 }
 
@@ -165,21 +244,24 @@ SK_INLINE void SK_ISA(sweep_groups)(sk_run *run, const sk_row *row, size_t begin
     }
 }
 
-#define SK_PAIR_WALKS(name, mode)                                                                                    \
-    static __attribute__((noinline)) void SK_ISA(name##_end)(sk_run * run, const sk_row *row, const sk_sweep *sweep, \
-                                                             const sk_pair_constants *constants, size_t lane,        \
-                                                             size_t slot_a, size_t slot_b, int shift) {              \
-        SK_ISA(meet_blocks)(run, row, sweep, constants, lane, slot_a, slot_b, shift, mode);                          \
-    }                                                                                                                \
-    static void SK_ISA(name##_strips)(sk_run * run, const sk_row *row, size_t begin, size_t end) {                   \
-        SK_ISA(sweep_strips)(run, row, begin, end, mode, SK_ISA(name##_end));                                        \
-    }                                                                                                                \
-    static void SK_ISA(name##_groups)(sk_run * run, const sk_row *row, size_t begin, size_t end) {                   \
-        SK_ISA(sweep_groups)(run, row, begin, end, mode);                                                            \
+#define SK_GROUP_WALK(name, mode)                                                                  \
+    static void SK_ISA(name##_groups)(sk_run * run, const sk_row *row, size_t begin, size_t end) { \
+        SK_ISA(sweep_groups)(run, row, begin, end, mode);                                          \
     }
-SK_PAIR_WALKS(force, SK_PAIR_FORCE)
+#define SK_PAIR_WALKS(name, mode)                                                                                   \
+    static __attribute__((noinline)) void SK_ISA(name##_turned)(sk_run * run, const sk_sweep *sweep,                \
+                                                                const sk_pair_constants *constants, size_t begin,   \
+                                                                size_t end, size_t first, size_t last, int shift) { \
+        SK_ISA(meet_span)(run, sweep, constants, begin, end, first, last, shift, mode);                             \
+    }                                                                                                               \
+    static void SK_ISA(name##_strips)(sk_run * run, const sk_row *row, size_t begin, size_t end) {                  \
+        SK_ISA(sweep_strips)(run, row, begin, end, mode, SK_ISA(name##_turned));                                    \
+    }                                                                                                               \
+    SK_GROUP_WALK(name, mode)
+SK_GROUP_WALK(force, SK_PAIR_FORCE)
 SK_PAIR_WALKS(project, SK_PAIR_PROJECT)
 SK_PAIR_WALKS(project_damped, SK_PAIR_PROJECT_DAMPED)
 SK_PAIR_WALKS(limit, SK_PAIR_LIMIT)
 SK_PAIR_WALKS(limit_moving, SK_PAIR_LIMIT_MOVING)
 #undef SK_PAIR_WALKS
+#undef SK_GROUP_WALK

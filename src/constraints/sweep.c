@@ -50,8 +50,8 @@ static element_place place_of(const sk_particles *particles, uint32_t p, uint32_
     element_place place = {strips, (int32_t)(b / strips->columns) - (int32_t)(a / strips->columns),
                            (int32_t)(b % strips->columns) - (int32_t)(a % strips->columns), a / strips->columns,
                            a % strips->columns};
-    // a longer step would meet itself, or skip a strip
-    return abs(place.column_step) < (int32_t)strips->width ? place : none;
+    // a block that met itself would move a particle twice at once
+    return place.row_step || place.column_step % (int32_t)strips->width ? place : none;
 }
 
 static direction *find_direction(cutter *c, element_place place) {
@@ -104,6 +104,11 @@ static bool add_strip_sweeps(cutter *c) {
                             .walk = {d->strips->first_slot, d->strips->rows, d->strips->width, (size_t)d->row_step}};
         snprintf(sweep->label, sizeof sweep->label, "%.30s %+d %+d", batch->label, d->row_step, d->column_step);
         batch->lane_count += (size_t)d->strips->rows * d->strips->width * SK_LANES;
+    }
+    for (size_t i = batch->sweep_count; i-- > 0;) {
+        bool goes_on =
+            i + 1 < batch->sweep_count && batch->sweeps[i].walk.first_slot == batch->sweeps[i + 1].walk.first_slot;
+        batch->sweeps[i].together = 1 + (goes_on ? batch->sweeps[i + 1].together : 0);
     }
     return true;
 }

@@ -3,7 +3,7 @@
  * Strips. Where particles lie in strips (particles/particles.h), the elements that lead from grid place
  * (r, c) to (r + row_step, c + column_step) make one sweep: block (r, k) of sixteen slots meets block
  * (r + row_step, k + column_step), lane by lane, and no index is read. Over the end of a strip it meets
- * the next strip's first blocks, one lane on:
+ * the next strip's first blocks, one lane on (a long step may lead over several strips):
  *
  *       strip 0   strip 1 ...  strip 15         lane l owns columns [l w, (l + 1) w)
  *     . a b . . | a b . . . |  ...              a block is one column of every strip
@@ -24,6 +24,7 @@ struct sk_sweep {
     /* strips */
     sk_walk walk;
     int32_t row_step, column_step;
+    size_t together;                  /* sweeps from this one on along the same strips */
     real rest, stiffness, compliance; /* what most blocks have in every lane */
     /* groups */
     const uint32_t *slots; /* 32 a group */

@@ -32,6 +32,13 @@ static const skein_field fields[] = {
     SK_REAL(drag_params, quadratic, "quadratic", "N s2/m2", 0, 0, SK_FAR, "grows with the square of the speed"),
 };
 
+static bool plain(const void *data, sk_plain_force *sum) {
+    const drag_params *params = data;
+    sum->linear += params->linear;
+    sum->rate += params->rate;
+    return params->quadratic == 0;
+}
+
 #define SK_KERNELS "forces/drag.c"
 #include "base/for_each_isa.h"
 
@@ -40,5 +47,6 @@ const sk_force_type sk_drag = {
              sizeof fields / sizeof *fields, sizeof(drag_params)},
     .domain = SK_OVER_PARTICLES,
     .kernel = {SK_EACH_ISA(kernel)},
+    .plain = plain,
 };
 #endif

@@ -15,6 +15,8 @@ typedef struct sk_force_type {
     sk_domain domain;
     bool sets; /* its kernel minds the row's `sets`: it can be the first to write F */
     sk_kernels kernel;
+    /* Adds the force to the sum if it is plain with these parameters, else returns false; NULL: it never is. */
+    bool (*plain)(const void *params, sk_plain_force *sum);
     /* Neighbour rules: how far they reach, m; NULL else. */
     double (*radius)(const void *params);
 } sk_force_type;

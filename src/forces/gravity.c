@@ -27,6 +27,11 @@ static const skein_field fields[] = {
     SK_VEC3(gravity_params, acceleration, "acceleration", "m/s2", 0, -9.81, 0, "the free fall's acceleration"),
 };
 
+static bool plain(const void *params, sk_plain_force *sum) {
+    for (int k = 0; k < 3; k++) sum->acceleration[k] += ((const gravity_params *)params)->acceleration[k];
+    return true;
+}
+
 #define SK_KERNELS "forces/gravity.c"
 #include "base/for_each_isa.h"
 
@@ -36,5 +41,6 @@ const sk_force_type sk_gravity = {
     .domain = SK_OVER_PARTICLES,
     .sets = true,
     .kernel = {SK_EACH_ISA(kernel)},
+    .plain = plain,
 };
 #endif

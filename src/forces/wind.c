@@ -25,6 +25,11 @@ static const skein_field fields[] = {
     SK_VEC3(wind_params, force, "force", "N", 0, 0, 0, "the force on each particle"),
 };
 
+static bool plain(const void *params, sk_plain_force *sum) {
+    for (int k = 0; k < 3; k++) sum->force[k] += ((const wind_params *)params)->force[k];
+    return true;
+}
+
 #define SK_KERNELS "forces/wind.c"
 #include "base/for_each_isa.h"
 
@@ -33,5 +38,6 @@ const sk_force_type sk_wind = {
              sizeof fields / sizeof *fields, sizeof(wind_params)},
     .domain = SK_OVER_PARTICLES,
     .kernel = {SK_EACH_ISA(kernel)},
+    .plain = plain,
 };
 #endif

@@ -1,5 +1,7 @@
 #include "methods/writer.h"
 
+#include <stdio.h>
+
 #include "base/status.h"
 #include "constraints/sweep.h"
 #include "methods/method.h"
@@ -71,15 +73,6 @@ void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_v
     add_combine(writer, &sk_combine_kick, dst, a, p, 0, q);
 }
 
-void sk_write_predict(sk_writer *writer) {
-    add(writer, (sk_row){.kind = SK_ROW_COMBINE,
-                         .order = SK_FREE,
-                         .kernel = sk_combine_predict.version[writer->isa],
-                         .dst = SK_X,
-                         .source = {SK_V, SK_F, writer->rules->colliders.count ? SK_V0 : SK_NONE},
-                         .end = writer->slot_count});
-}
-
 /* The grid's row: sorts all particles into cells of at least coefficient[0]. */
 static void build_grid(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     (void)begin;
@@ -140,10 +133,38 @@ void sk_write_fields(sk_writer *writer) {
     if (first) sk_write_clear(writer, SK_F);
 }
 
-/* A row for each sweep of a batch. */
-static void add_sweeps(sk_writer *writer, const sk_batch *batch, sk_row_kind kind, const sk_sweep_kernels *kernels,
-                       sk_vector dst, sk_vector second) {
-    for (size_t i = 0; i < batch->sweep_count; i++) {
+/* Adds up the forces if all are plain and F is not wanted later on. */
+static bool add_up_plain_forces(const sk_rules *rules, sk_plain_force *sum) {
+    *sum = (sk_plain_force){.label = ""};
+    size_t length = 0;
+    for (size_t i = 0; i < rules->forces.count; i++) {
+        const sk_force *force = rules->forces.data[i];
+        if (!*force->enabled) continue;
+        if (!force->type->plain || !force->type->plain(force->params, sum)) return false;
+        int added = snprintf(sum->label + length, sizeof sum->label - length, "%s%s", length ? ", " : "", force->label);
+        if (added > 0 && length + (size_t)added < sizeof sum->label) length += (size_t)added;
+    }
+    for (size_t i = 0; i < rules->colliders.count; i++)
+        if (rules->colliders.data[i]->common->enabled && sk_contact_reads_force(rules->colliders.data[i])) return false;
+    return true;
+}
+
+void sk_write_prediction(sk_writer *writer) {
+    bool plain = add_up_plain_forces(writer->rules, &writer->plan->plain);
+    if (!plain) sk_write_fields(writer);
+    add(writer, (sk_row){.kind = SK_ROW_COMBINE,
+                         .order = SK_FREE,
+                         .kernel = (plain ? &sk_combine_fall : &sk_combine_predict)->version[writer->isa],
+                         .dst = SK_X,
+                         .source = {SK_V, plain ? SK_NONE : SK_F, writer->rules->colliders.count ? SK_V0 : SK_NONE},
+                         .rule = &writer->plan->plain,
+                         .end = writer->slot_count});
+}
+
+/* A row for each sweep of a batch from the `first` on. */
+static void add_sweeps(sk_writer *writer, const sk_batch *batch, size_t first, sk_row_kind kind,
+                       const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second) {
+    for (size_t i = first; i < batch->sweep_count; i++) {
         const sk_sweep *sweep = &batch->sweeps[i];
         const sk_kernels *walk = sweep->strips ? &kernels->strips : &kernels->groups;
         add(writer, (sk_row){.kind = kind,
@@ -162,10 +183,33 @@ static bool is_on(const sk_batch *batch) {
     return *batch->enabled && batch->count;
 }
 
+/* A row for all sweeps of a batch along the same strips: each strip row's force is worked out whole, so the
+ * row is free. `first` is left at the first sweep that is not in strips. */
+static void add_strip_forces(sk_writer *writer, const sk_batch *batch, size_t *first) {
+    for (; *first < batch->sweep_count && batch->sweeps[*first].strips; *first += batch->sweeps[*first].together) {
+        const sk_sweep *sweep = &batch->sweeps[*first];
+        sk_row row = {.kind = SK_ROW_FORCE,
+                      .order = SK_FREE,
+                      .kernel = batch->type->force.strips.version[writer->isa],
+                      .dst = SK_F,
+                      .source = {SK_X, SK_V},
+                      .rule = sweep,
+                      .label = batch->label,
+                      .walk = sweep->walk,
+                      .end = sweep->walk.rows};
+        for (size_t i = 1; i < sweep->together; i++)
+            if (sweep[i].walk.reach > row.walk.reach) row.walk.reach = sweep[i].walk.reach;
+        add(writer, row);
+    }
+}
+
 void sk_write_forces(sk_writer *writer) {
     for (size_t i = 0; i < writer->rules->batches.count; i++) {
         const sk_batch *batch = writer->rules->batches.data[i];
-        if (is_on(batch)) add_sweeps(writer, batch, SK_ROW_FORCE, &batch->type->force, SK_F, SK_V);
+        size_t first = 0;
+        if (!is_on(batch)) continue;
+        add_strip_forces(writer, batch, &first);
+        add_sweeps(writer, batch, first, SK_ROW_FORCE, &batch->type->force, SK_F, SK_V);
     }
 }
 
@@ -197,7 +241,7 @@ void sk_write_projections(sk_writer *writer, int passes) {
             const sk_batch *batch = rules->batches.data[i];
             if (!is_on(batch)) continue;
             bool keeps = keeps_multiplier(batch, passes);
-            add_sweeps(writer, batch, SK_ROW_PROJECT, keeps ? &batch->type->project_damped : &batch->type->project,
+            add_sweeps(writer, batch, 0, SK_ROW_PROJECT, keeps ? &batch->type->project_damped : &batch->type->project,
                        SK_X, keeps ? SK_X0 : SK_NONE);
         }
 }
@@ -232,8 +276,8 @@ void sk_write_limits(sk_writer *writer, sk_vector velocity) {
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
         if (!is_on(batch) || !batch->bound || *batch->bound >= SK_UNBOUNDED) continue;
-        add_sweeps(writer, batch, SK_ROW_LIMIT, velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving,
-                   SK_X, velocity);
+        add_sweeps(writer, batch, 0, SK_ROW_LIMIT,
+                   velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving, SK_X, velocity);
     }
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];

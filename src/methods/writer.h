@@ -53,8 +53,9 @@ void sk_write_clear(sk_writer *writer, sk_vector dst);
 void sk_write_correction(sk_writer *writer, sk_vector dst, double a, sk_vector p, sk_vector q, double b);
 void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_vector q);
 
-/* Of position methods: V += h w F, X0 = X, X += h V (and V0 = V where contact asks for it). */
-void sk_write_predict(sk_writer *writer);
+/* The fields, then V += h w F, V0 = V (where there are colliders), X0 = X, X += h V; in one row where all forces
+ * are plain. */
+void sk_write_prediction(sk_writer *writer);
 
 /* F = all forces on X moving with V: the grid if a rule wants neighbours, then fields and neighbours. */
 void sk_write_fields(sk_writer *writer);

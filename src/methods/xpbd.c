@@ -24,8 +24,7 @@ static void write(sk_writer *writer, const void *data, double dt) {
     double h = dt / params->substeps;
     size_t repeat = sk_write_repeat(writer, (size_t)params->substeps, h);
     // predict
-    sk_write_fields(writer);
-    sk_write_predict(writer);
+    sk_write_prediction(writer);
     // correct
     sk_write_projections(writer, params->iterations);
     sk_write_limits(writer, SK_NONE);

@@ -4,6 +4,7 @@
 
 /* Below this width an element of two columns' step would meet its own block (constraints/sweep.h). */
 enum { LEAST_WIDTH = 3 };
+enum { APART = 11 * 64 }; /* bytes between the vectors' places in a page */
 
 /* Moves one array into a larger block; the new part is zero. */
 static bool grow(sk_allocator *allocator, void **array, size_t old_count, size_t new_count, size_t size) {
@@ -119,7 +120,7 @@ bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
     bool good = slot_of && by_rank;
     for (size_t i = 0; i < particles->count && good; i++) by_rank[particles->rank[i]] = (uint32_t)i;
     for (int v = SK_X; v < SK_VECTOR_COUNT && good; v++)
-        good = (vector[v] = sk_allocate(allocator, slot_count * sizeof(sk_vec4))) != NULL;
+        good = (vector[v] = sk_allocate_shifted(allocator, slot_count * sizeof(sk_vec4), (size_t)v * APART)) != NULL;
     if (good) {
         number_slots(particles, by_rank, slot_of);
         for (int v = SK_X; v < SK_VECTOR_COUNT; v++)

@@ -48,36 +48,60 @@ static void SK_ISA(kick)(sk_run *run, const sk_row *row, size_t begin, size_t en
     }
 }
 
-/* The start of a position method's substep in one go: V += h w F, V0 = V, X0 = X, X += h V. */
-static void SK_ISA(predict)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+/* The start of a position method's substep in one go, once the block's v has its new value: V = v, V0 = V,
+ * X0 = X, X += h V. */
+SK_INLINE void SK_ISA(set_out)(sk_run *run, const sk_row *row, size_t slot, bool packed, sk_wide4 x, sk_wide4 v) {
     real h = (real)row->dt;
-    bool keep_velocity = row->source[2] == SK_V0;
+    SK_ISA(sk_store_moved)(run->vector[SK_V], slot, packed, v);
+    if (row->source[2] == SK_V0) SK_ISA(sk_store_moved)(run->vector[SK_V0], slot, packed, v);
+    SK_ISA(sk_store_moved)(run->vector[SK_X0], slot, packed, x);
+    x.x += h * v.x, x.y += h * v.y, x.z += h * v.z;
+    SK_ISA(sk_store_moved)(run->vector[SK_X], slot, packed, x);
+}
+
+static void SK_ISA(predict)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        bool packed = slot < row->packed;
+        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed),
+                 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed),
+                 f = SK_ISA(sk_load_block)(run->vector[SK_F], slot, packed);
+        sk_wide k = (real)row->dt * x.w;
+        v.x += k * f.x, v.y += k * f.y, v.z += k * f.z;
+        SK_ISA(set_out)(run, row, slot, packed, x, v);
+    }
+}
+
+static void SK_ISA(fall)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_plain_force *plain = row->rule;
+    sk_vec3 a = sk_v3_of(plain->acceleration), f = sk_v3_of(plain->force);
+    real linear = (real)plain->linear, rate = (real)plain->rate, h = (real)row->dt;
+    bool by_mass = linear == 0 && f.x == 0 && f.y == 0 && f.z == 0;
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
         sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed),
                  v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed);
-        sk_wide4 f = SK_ISA(sk_load_block)(run->vector[SK_F], slot, packed);
-        sk_wide k = h * x.w;
-        v.x += k * f.x, v.y += k * f.y, v.z += k * f.z;
-        SK_ISA(sk_store_block)(run->vector[SK_V], slot, packed, v);
-        if (keep_velocity) SK_ISA(sk_store_block)(run->vector[SK_V0], slot, packed, v);
-        SK_ISA(sk_store_block)(run->vector[SK_X0], slot, packed, x);
-        x.x += h * v.x, x.y += h * v.y, x.z += h * v.z;
-        SK_ISA(sk_store_block)(run->vector[SK_X], slot, packed, x);
+        sk_wide k = SK_ISA(sk_keep)(SK_ISA(sk_positive)(x.w), SK_ISA(sk_splat)(h));
+        if (by_mass) {
+            v.x += k * (a.x - rate * v.x), v.y += k * (a.y - rate * v.y), v.z += k * (a.z - rate * v.z);
+        } else {
+            sk_wide drag = rate + linear * x.w;
+            v.x += k * ((a.x + f.x * x.w) - drag * v.x);
+            v.y += k * ((a.y + f.y * x.w) - drag * v.y);
+            v.z += k * ((a.z + f.z * x.w) - drag * v.z);
+        }
+        SK_ISA(set_out)(run, row, slot, packed, x, v);
     }
 }
 #undef FOR_PARTS
 
 static void SK_ISA(pack)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for (size_t slot = begin; slot < end; slot += SK_LANES)
-        SK_ISA(sk_store_block)
-        (run->vector[row->dst], slot, true, SK_ISA(sk_load_block)(run->vector[row->dst], slot, false));
+    for (size_t slot = begin; slot < end; slot += SK_LANES) SK_ISA(sk_store_block)
+    (run->vector[row->dst], slot, true, SK_ISA(sk_load_block)(run->vector[row->dst], slot, false));
 }
 
 static void SK_ISA(unpack)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for (size_t slot = begin; slot < end; slot += SK_LANES)
-        SK_ISA(sk_store_block)
-        (run->vector[row->dst], slot, false, SK_ISA(sk_load_block)(run->vector[row->dst], slot, true));
+    for (size_t slot = begin; slot < end; slot += SK_LANES) SK_ISA(sk_store_block)
+    (run->vector[row->dst], slot, false, SK_ISA(sk_load_block)(run->vector[row->dst], slot, true));
 }
 
 #else
@@ -90,6 +114,7 @@ const sk_kernels sk_combine_sum = {SK_EACH_ISA(sum)};
 const sk_kernels sk_combine_correction = {SK_EACH_ISA(correction)};
 const sk_kernels sk_combine_kick = {SK_EACH_ISA(kick)};
 const sk_kernels sk_combine_predict = {SK_EACH_ISA(predict)};
+const sk_kernels sk_combine_fall = {SK_EACH_ISA(fall)};
 const sk_kernels sk_pack = {SK_EACH_ISA(pack)};
 const sk_kernels sk_unpack = {SK_EACH_ISA(unpack)};
 #endif

@@ -46,6 +46,12 @@ static void describe_combine(const sk_row *row, char *text, size_t size) {
         snprintf(text, size, "X + h V, V + h w F; X0 = X%s", row->source[2] == SK_V0 ? "; V0 = V" : "");
         return;
     }
+    if (is_version(row, &sk_combine_fall)) {
+        const char *label = ((const sk_plain_force *)row->rule)->label;
+        snprintf(text, size, "X + h V, V + h (%s); X0 = X%s", label[0] ? label : "0",
+                 row->source[2] == SK_V0 ? "; V0 = V" : "");
+        return;
+    }
     if (is_version(row, &sk_combine_correction)) {
         const char *dst = vector_text(row->dst);
         snprintf(text, size, "%s + %g (%s - %s - %g %s)", dst, row->coefficient[0], p, q, row->coefficient[1], dst);

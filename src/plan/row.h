@@ -78,8 +78,9 @@ typedef struct sk_kernels {
     sk_row_kernel *version[SK_ISA_COUNT];
 } sk_kernels;
 
-/* Which strips of particles an ordered row walks along, so that threads can follow each other down the
- * rows of a grid; all zero where it does not. An element of strip row j also writes row j + reach. */
+/* Which strips of particles a row walks along, so that threads can follow each other down the rows of a
+ * grid; all zero where it does not. An element of an ordered row's strip row j also writes row j + reach;
+ * one of a free row writes row j alone, and reads rows j - reach to j + reach. */
 typedef struct sk_walk {
     size_t first_slot;  /* of the strips */
     size_t rows, width; /* strip rows; blocks a row */
@@ -103,9 +104,17 @@ struct sk_row {
     size_t length;     /* a repeat: how many rows after it are repeated */
 };
 
+/* m g + f - (linear + rate m) v on every particle: gravity, plain wind and air drag together. Methods that
+ * predict take it in at once, so that F need not be written and read. */
+typedef struct sk_plain_force {
+    double acceleration[3], force[3], linear, rate;
+    char label[64]; /* of the forces that it stands for */
+} sk_plain_force;
+
 typedef struct sk_plan {
     sk_row *data;
     size_t count, capacity;
+    sk_plain_force plain; /* the rule of its prediction rows that need no F */
 } sk_plan;
 
 /* Appends a row; false when there is no memory. */
@@ -119,8 +128,9 @@ const char *sk_row_kind_text(sk_row_kind kind);
  *   dst += a (p - (q + b dst))   velocity: what moved p away from where dst alone would have taken q
  *   dst = p + a w q              a kick: w is the inverse mass
  *   predict                      V += h w F; V0 = V where the third source is V0; X0 = X; X += h V: one row
- *                                for what would be four, since each block is read and written once */
-extern const sk_kernels sk_combine_sum, sk_combine_correction, sk_combine_kick, sk_combine_predict;
+ *                                for what would be four, since each block is read and written once
+ *   fall                         the same, with the plan's plain force in place of F */
+extern const sk_kernels sk_combine_sum, sk_combine_correction, sk_combine_kick, sk_combine_predict, sk_combine_fall;
 /* Turns blocks of dst from quads to packed, and back, in place. */
 extern const sk_kernels sk_pack, sk_unpack;
 

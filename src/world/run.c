@@ -7,11 +7,14 @@
  *
  *   strip rows    0 . . . . . . . . . . . .          row g of the segment does, in chunk k, the strip rows
  *   row 0         [ chunk 0 )[ chunk 1 )[ ..         [k B - lag(g), (k + 1) B - lag(g)),
- *   row 1         [ chunk 0)[ chunk 1 )[ ...         with lag(g) = lag(g - 1) + reach(g)
- *   row 2         [chunk )[ chunk 1 )[ .....
+ *   row 1         [ chunk 0)[ chunk 1 )[ ...         with lag(g) = lag(g - 1) + reach(g), and where row g - 1
+ *   row 2         [chunk )[ chunk 1 )[ .....         is free and reads around itself, + reach(g - 1)
  *
- * Threads take chunks in turn and follow each other: chunk k does row g when chunk k - 1 has done it.
+ * Threads own chunks that follow each other: chunk k does an ordered row when chunk k - 1 has done it, and a
+ * free one when chunk k - 1 has done those before it. Where a repeat has turns enough, a thread is a turn
+ * behind the one above it, and both walk small chunks; else each has one large chunk, and is a row behind.
  * (Barriers after each row, tiles with seams and cuts by columns were measured slower or less firm.)
+ * Free rows that follow each other go over a chunk in small tiles, which stay in the nearest cache.
  * Other free rows are cut over the threads; other ordered rows run on the caller, whole. */
 #include <stdatomic.h>
 
@@ -21,9 +24,12 @@
 enum {
     MOST_SEGMENT = 96, /* rows of a segment */
     MOST_CHUNKS = 4096,
-    CHUNK_BYTES =
-        24 << 10,        /* of one vector in a chunk, where one thread runs: in the first cache with its neighbours */
-    CHUNKS_A_THREAD = 1, /* more would shorten the start, and wait more often: worse wherever a core is shared */
+    TILE = 128,             /* slots: the vectors of a few rows stay in the nearest cache; 512 cost a substep 15 % */
+    CHUNK_BYTES = 16 << 10, /* of one vector in a chunk: in the first cache with its neighbours */
+    SECOND_CACHE_BYTES = 512 << 10, /* of one vector in the turns that one thread has under way */
+    LEAST_TURNS = 4,                /* a thread: with fewer, threads start together on large chunks */
+    LINE = 16,                      /* counts in a cache line */
+    MOST_THREADS = 256,             /* in one walk */
 };
 
 /* ---- segments ---- */
@@ -60,11 +66,31 @@ typedef struct segment_job {
     size_t lag[MOST_SEGMENT];
     size_t chunk_rows, chunk_count, threads;
     size_t ahead;               /* chunks whose last turn must be over before a chunk begins the next */
-    _Atomic uint32_t *progress; /* rows done, of each chunk; NULL for one thread */
+    size_t turns_abreast;       /* how many turns one thread alone has under way */
+    _Atomic uint32_t *progress; /* rows done, of each chunk, where there are several threads */
 } segment_job;
 
-/* The part of a row that belongs to a chunk: strip rows, or the slots of them. */
-static void run_part(sk_run *run, const segment_job *job, size_t g, size_t chunk) {
+/* Free rows of slots, one after the other over each tile of [begin, end). */
+static void run_tiled(sk_run *run, const sk_row *rows, size_t count, size_t begin, size_t end) {
+    for (size_t tile = begin; tile < end; tile += TILE) {
+        size_t tile_end = tile + TILE < end ? tile + TILE : end;
+        for (size_t g = 0; g < count; g++) {
+            size_t first = tile > rows[g].begin ? tile : rows[g].begin,
+                   last = tile_end < rows[g].end ? tile_end : rows[g].end;
+            if (first < last) rows[g].kernel(run, &rows[g], first, last);
+        }
+    }
+}
+
+/* How many rows from g on are run together: free rows of slots. */
+static size_t together(const segment_job *job, size_t g) {
+    size_t count = 0;
+    while (g + count < job->count && !job->rows[g + count].walk.rows) count++;
+    return count ? count : 1;
+}
+
+/* The part of rows [g, g + count) that belongs to a chunk: strip rows, or the slots of them. */
+static void run_part(sk_run *run, const segment_job *job, size_t g, size_t count, size_t chunk) {
     const sk_row *row = &job->rows[g];
     size_t first = chunk * job->chunk_rows, last = first + job->chunk_rows, lag = job->lag[g];
     first = first > lag ? first - lag : 0;
@@ -77,52 +103,93 @@ static void run_part(sk_run *run, const segment_job *job, size_t g, size_t chunk
     // slots before and after the strips go with the first and last chunk
     size_t line = job->walk.width * 16, begin = job->walk.first_slot + first * line,
            end = job->walk.first_slot + last * line;
-    if (chunk == 0 || begin < row->begin) begin = row->begin;
-    if (chunk + 1 == job->chunk_count || end > row->end) end = row->end;
-    if (begin < end) row->kernel(run, row, begin, end);
+    if (chunk == 0) begin = 0;
+    if (chunk + 1 == job->chunk_count) end = run->slot_count;
+    run_tiled(run, row, count, begin, end);
 }
 
-static void run_chunks(void *data, int thread) {
-    const segment_job *job = data;
+/* The time of a turn's end, where turns have one. */
+static void set_time(sk_run *run, const segment_job *job, size_t turn) {
+    if (job->dt > 0) run->time = job->start + (double)(turn + 1) * job->dt;
+}
+
+/* How many rows of a chunk are done, counted over all turns. Threads' counts lie in different cache lines. */
+static _Atomic uint32_t *progress_of(const segment_job *job, size_t chunk) {
+    return &job->progress[chunk + LINE * (chunk * job->threads / job->chunk_count)];
+}
+
+/* The first chunk of a thread; the last thread's last one is before that of the thread after it. */
+static size_t first_chunk(const segment_job *job, size_t thread) {
+    return (thread * job->chunk_count + job->threads - 1) / job->threads;
+}
+
+/* One thread of several: its chunks, turn by turn. */
+static void run_chunks(const segment_job *job, size_t thread) {
     sk_run run = *job->run; // a copy each: threads may be at different times
+    size_t first = first_chunk(job, thread), end = first_chunk(job, thread + 1);
     for (size_t turn = 0; turn < job->turns; turn++) {
-        if (job->dt > 0) run.time = job->start + (double)(turn + 1) * job->dt;
+        set_time(&run, job, turn);
         uint32_t before = (uint32_t)(turn * job->count);
-        for (size_t k = (size_t)thread; k < job->chunk_count; k += job->threads) {
-            for (size_t next = k + 1; job->progress && next <= k + job->ahead && next < job->chunk_count; next++)
-                sk_wait_for(&job->progress[next], before);
-            for (size_t g = 0; g < job->count; g++) {
-                if (job->progress && k) sk_wait_for(&job->progress[k - 1], before + (uint32_t)g + 1);
-                run_part(&run, job, g, k);
-                if (job->progress)
-                    atomic_store_explicit(&job->progress[k], before + (uint32_t)g + 1, memory_order_release);
+        for (size_t k = first; k < end; k++) {
+            for (size_t next = end; next <= k + job->ahead && next < job->chunk_count; next++)
+                sk_wait_for(progress_of(job, next), before);
+            for (size_t g = 0, count; g < job->count; g += count) {
+                count = together(job, g);
+                uint32_t done = before + (uint32_t)g;
+                if (k && k == first) sk_wait_for(progress_of(job, k - 1), done + (job->rows[g].order == SK_ORDERED));
+                run_part(&run, job, g, count, k);
+                atomic_store_explicit(progress_of(job, k), done + (uint32_t)count, memory_order_release);
             }
         }
+    }
+}
+
+/* One thread alone: several turns follow each other down the chunks, so that the second cache serves them all. */
+static void run_chunks_alone(const segment_job *job) {
+    sk_run run = *job->run;
+    for (size_t first = 0; first < job->turns; first += job->turns_abreast) {
+        size_t abreast = first + job->turns_abreast < job->turns ? job->turns_abreast : job->turns - first;
+        for (size_t front = 0; front < job->chunk_count + (abreast - 1) * job->ahead; front++)
+            for (size_t t = 0; t < abreast && t * job->ahead <= front; t++) {
+                size_t k = front - t * job->ahead;
+                if (k >= job->chunk_count) continue;
+                set_time(&run, job, first + t);
+                for (size_t g = 0, count; g < job->count; g += count) {
+                    count = together(job, g);
+                    run_part(&run, job, g, count, k);
+                }
+            }
     }
 }
 
 /* Chooses the size of chunks: small enough for the cache, and large enough for threads to keep pace. */
 static void cut_chunks(segment_job *job, int threads) {
     size_t lag = 0, line_bytes = job->walk.width * 16 * sizeof(sk_vec4), rows = job->walk.rows;
-    for (size_t g = 0; g < job->count; g++) job->lag[g] = lag += job->rows[g].walk.rows ? job->rows[g].walk.reach : 0;
+    for (size_t g = 0; g < job->count; g++) {
+        job->lag[g] = lag += job->rows[g].walk.reach;
+        if (job->rows[g].order == SK_FREE) lag += job->rows[g].walk.reach;
+    }
     size_t chunk = CHUNK_BYTES / line_bytes / 4 * 4;
     if (chunk < 4) chunk = 4;
-    if (threads > 1) {
-        chunk = (rows / ((size_t)threads * CHUNKS_A_THREAD) + 3) / 4 * 4;
+    if (threads > 1 && job->turns < (size_t)threads * LEAST_TURNS) {
+        chunk = (rows / (size_t)threads + 3) / 4 * 4;
         if (chunk < lag + 4) chunk = (lag + 7) / 4 * 4;
     }
     if (rows / chunk > MOST_CHUNKS) chunk = rows / MOST_CHUNKS + 1;
     job->chunk_rows = chunk;
     job->chunk_count = rows / chunk ? rows / chunk : 1;
     job->ahead = lag / chunk + 1;
+    size_t abreast = SECOND_CACHE_BYTES / (job->ahead * chunk * line_bytes);
+    job->turns_abreast = abreast < 1 ? 1 : abreast;
     job->threads = (size_t)threads < job->chunk_count ? (size_t)threads : job->chunk_count;
+    if (job->threads > MOST_THREADS) job->threads = MOST_THREADS;
 }
 
 /* A task; there may be fewer threads in the walk than tasks. */
 static void run_chunks_of_thread(void *data, int thread) {
     const segment_job *job = data;
     uint64_t mode = sk_float_mode_enter();
-    if ((size_t)thread < job->threads) run_chunks(data, thread);
+    if ((size_t)thread < job->threads) run_chunks(job, (size_t)thread);
     sk_float_mode_leave(mode);
 }
 
@@ -133,12 +200,12 @@ static void run_walk(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t co
     int threads = sk_tasks_together(tasks) && walk->rows * walk->width * 16 >= 4096 ? sk_tasks_count(tasks) : 1;
     cut_chunks(&job, threads);
     if (job.threads == 1) {
-        run_chunks(&job, 0);
+        run_chunks_alone(&job);
         return;
     }
-    _Atomic uint32_t progress[MOST_CHUNKS];
-    for (size_t k = 0; k < job.chunk_count; k++) atomic_init(&progress[k], 0);
+    _Atomic uint32_t progress[MOST_CHUNKS + LINE * MOST_THREADS];
     job.progress = progress;
+    for (size_t k = 0; k < job.chunk_count; k++) atomic_init(progress_of(&job, k), 0);
     sk_tasks_run(tasks, run_chunks_of_thread, &job);
 }
 
@@ -152,16 +219,8 @@ typedef struct free_job {
 
 static void run_tiles(void *data, size_t begin, size_t end) {
     const free_job *job = data;
-    enum { TILE = 1024 };
     uint64_t mode = sk_float_mode_enter();
-    for (size_t tile = begin; tile < end; tile += TILE) {
-        size_t tile_end = tile + TILE < end ? tile + TILE : end;
-        for (size_t g = 0; g < job->count; g++) {
-            const sk_row *row = &job->rows[g];
-            size_t first = tile > row->begin ? tile : row->begin, last = tile_end < row->end ? tile_end : row->end;
-            if (first < last) row->kernel(job->run, row, first, last);
-        }
-    }
+    run_tiled(job->run, job->rows, job->count, begin, end);
     sk_float_mode_leave(mode);
 }
 

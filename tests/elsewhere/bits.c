@@ -4,9 +4,10 @@
 
 int main(void) {
     int wrong = 0;
-    for (int m = 0; m < 2; m++) {
-        uint64_t hash = hash_of_run(bits_methods[m], "", 1 + m);
-        printf("%s: %016llx, expected %016llx\n", bits_methods[m], (unsigned long long)hash, (unsigned long long)golden[m]);
+    for (int m = 0; m < BITS_CASES; m++) {
+        uint64_t hash = hash_of_run(bits_methods[m], bits_plain[m], "", 1 + m);
+        printf("%s: %016llx, expected %016llx\n", bits_methods[m], (unsigned long long)hash,
+               (unsigned long long)golden[m]);
         wrong |= hash != golden[m];
     }
     return wrong;
