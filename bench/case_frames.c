@@ -1,6 +1,7 @@
 /* Whole frames: against their sweeps, by two threads, and beside Bullet's soft body. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include "bench/worlds.h"
 #ifdef BENCH_BULLET
@@ -84,6 +85,7 @@ static void threads_of(bench_scene scene, const char *size, double bar) {
 }
 
 static void run_threads(void) {
+    if (sysconf(_SC_NPROCESSORS_ONLN) < 2) bench_say("one processor: two threads cannot be faster");
     char size[40];
     for (int n = bench_quick ? 64 : 128; n <= (bench_quick ? 64 : 256); n *= 2) {
         snprintf(size, sizeof size, "grid %d x %d", n, n);
@@ -140,7 +142,7 @@ static bullet_world *make_bullet(const contest *c) {
                                                          .masses = masses,
                                                          .particle_count = count,
                                                          .pairs = pairs,
-                                                         .pair_count = bench_constraint_count(c->world),
+                                                         .pair_count = bench_spring_count(c->world),
                                                          .iterations = sweeps,
                                                          .drag = drag,
                                                          .floor = c->floor,

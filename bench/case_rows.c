@@ -207,7 +207,7 @@ static void run_shapes(void) {
     }
     bench_measure(jobs, SHAPES, 0.05, seconds);
     for (int i = 0; i < SHAPES; i++)
-        seconds[i] /= (double)bench_constraint_count(worlds[i]) * (double)bench_rows_turns(jobs[i].data);
+        seconds[i] /= (double)bench_spring_count(worlds[i]) * (double)bench_rows_turns(jobs[i].data);
     char other[40];
     snprintf(other, sizeof other, "grid %d x %d", n, n);
     for (int i = 1; i < SHAPES; i++)

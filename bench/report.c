@@ -62,7 +62,7 @@ static void print_machine(FILE *out, const char *processor, const char *isa) {
     if (bench_quick) fprintf(out, "# quick: these numbers mean nothing\n");
 }
 
-static const char csv_head[] = "case,size,ours,unit,theirs,other,ratio,bar,reached,stretch mean %,stretch p99 %,"
+static const char csv_head[] = "case,size,ours,unit,theirs,other,ratio,of,bar,reached,stretch mean %,stretch p99 %,"
                                "stretch max %,their mean %,their p99 %,their max %,note\n";
 
 void bench_report_open(bool csv, const char *folder, const char *isa) {
@@ -81,7 +81,7 @@ void bench_report_open(bool csv, const char *folder, const char *isa) {
 }
 
 void bench_report_close(void) {
-    if (!as_csv && bars && !bench_quick) printf("%d of %d bars reached\n", reached, bars);
+    if (!as_csv && bars) printf("%d of %d bars reached\n", reached, bars);
     if (kept && fclose(kept)) bench_stop("the results could not be kept: the disk is full?");
     kept = NULL;
 }
@@ -98,32 +98,41 @@ void bench_say(const char *format, ...) {
 
 /* ---- results ---- */
 
-/* The ratio in words, and the bars; `good` is whether all of them were reached. */
-static void describe(const bench_result *r, char *ratio, size_t ratio_size, char *bar, size_t bar_size, bool *good) {
-    size_t length = 0;
-    ratio[0] = bar[0] = 0;
-    *good = true;
-    if (r->other && r->as_long > 0) snprintf(ratio, ratio_size, "%.2fx as long", r->ours / r->theirs);
-    else if (r->other) snprintf(ratio, ratio_size, "%.2fx faster", r->theirs / r->ours);
-    if (r->faster > 0) {
-        length += (size_t)snprintf(bar + length, bar_size - length, "at least %gx", r->faster);
-        *good &= !r->other || r->theirs / r->ours >= r->faster;
-    }
-    if (r->as_long > 0) {
-        length += (size_t)snprintf(bar + length, bar_size - length, "at most %gx", r->as_long);
-        *good &= r->ours / r->theirs <= r->as_long;
-    }
-    if (r->under > 0) {
-        snprintf(bar + length, bar_size - length, "%sunder %g", length ? " and " : "", r->under);
-        *good &= r->ours < r->under;
-    }
+/* How many times as fast Skein is, or how many times as long it takes, where the bar says so. */
+static double find_ratio(const bench_result *r) {
+    return r->as_long > 0 ? r->ours / r->theirs : r->theirs / r->ours;
 }
 
-static void print_csv(FILE *out, const bench_result *r, const char *ratio, const char *bar, bool good) {
+static const char *ratio_text(const bench_result *r) {
+    return r->as_long > 0 ? "as long" : "faster";
+}
+
+/* The bars in words, and whether all of them were reached. */
+static bool describe_bar(const bench_result *r, char *bar, size_t size) {
+    size_t length = 0;
+    bool good = true;
+    bar[0] = 0;
+    if (bench_quick) return true;
+    if (r->other && r->faster > 0) {
+        length += (size_t)snprintf(bar + length, size - length, "at least %gx", r->faster);
+        good &= r->theirs / r->ours >= r->faster;
+    }
+    if (r->other && r->as_long > 0) {
+        length += (size_t)snprintf(bar + length, size - length, "at most %gx", r->as_long);
+        good &= r->ours / r->theirs <= r->as_long;
+    }
+    if (r->under > 0) {
+        snprintf(bar + length, size - length, "%sunder %g", length ? " and " : "", r->under);
+        good &= r->ours < r->under;
+    }
+    return good;
+}
+
+static void print_csv(FILE *out, const bench_result *r, const char *bar, bool good) {
     const char *verdict = !bar[0] ? "" : good ? "yes" : "no";
     fprintf(out, "\"%s\",\"%s\",%.4g,%s,", r->name, r->size, r->ours, r->unit);
-    if (r->other) fprintf(out, "%.4g,\"%s\",%s,", r->theirs, r->other, ratio);
-    else fputs(",,,", out);
+    if (r->other) fprintf(out, "%.4g,\"%s\",%.2f,%s,", r->theirs, r->other, find_ratio(r), ratio_text(r));
+    else fputs(",,,,", out);
     fprintf(out, "%s,%s,", bar, verdict);
     for (int i = 0; i < 2; i++) {
         const bench_stretch *s = i ? r->other_stretch : r->stretch;
@@ -137,10 +146,10 @@ static void print_stretch(const bench_stretch *s, const char *between) {
     if (s) printf("%s%.2f/%.2f/%.2f %%", between, 100 * s->mean, 100 * s->p99, 100 * s->most);
 }
 
-static void print_row(const bench_result *r, const char *ratio, const char *bar, bool good) {
+static void print_row(const bench_result *r, const char *bar, bool good) {
     printf("%-15s %-28s %9.4g %-13s", r->name, r->size, r->ours, r->unit);
-    if (r->other) printf(" %9.4g %-24s %15s", r->theirs, r->other, ratio);
-    else printf(" %50s", "");
+    if (r->other) printf(" %9.4g %-24s %6.2fx %-7s", r->theirs, r->other, find_ratio(r), ratio_text(r));
+    else if (bar[0]) printf(" %50s", "");
     if (bar[0]) printf("  %s: %s", bar, good ? "reached" : "MISSED");
     print_stretch(r->stretch, "; stretch mean/p99/max ");
     print_stretch(r->other_stretch, " against ");
@@ -148,13 +157,12 @@ static void print_row(const bench_result *r, const char *ratio, const char *bar,
 }
 
 void bench_report(const bench_result *r) {
-    char ratio[40], bar[80];
-    bool good;
-    describe(r, ratio, sizeof ratio, bar, sizeof bar, &good);
+    char bar[80];
+    bool good = describe_bar(r, bar, sizeof bar);
     bars += bar[0] != 0;
     reached += bar[0] && good;
-    if (as_csv) print_csv(stdout, r, ratio, bar, good);
-    else print_row(r, ratio, bar, good);
-    if (kept) print_csv(kept, r, ratio, bar, good);
+    if (as_csv) print_csv(stdout, r, bar, good);
+    else print_row(r, bar, good);
+    if (kept) print_csv(kept, r, bar, good);
     fflush(stdout);
 }

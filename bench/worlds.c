@@ -83,9 +83,14 @@ void bench_steps(skein_world *world, int count) {
     for (int i = 0; i < count; i++) bench_step(world);
 }
 
-size_t bench_constraint_count(const skein_world *world) {
+/* Springs, which others have too; not what a body may have besides. */
+static size_t spring_count(const sk_batch *batch) {
+    return batch->type->arity == 2 ? batch->count : 0;
+}
+
+size_t bench_spring_count(const skein_world *world) {
     size_t count = 0;
-    for (size_t b = 0; b < world->rules.batches.count; b++) count += world->rules.batches.data[b]->count;
+    for (size_t b = 0; b < world->rules.batches.count; b++) count += spring_count(world->rules.batches.data[b]);
     return count;
 }
 
@@ -112,11 +117,11 @@ static int compare_doubles(const void *a, const void *b) {
 }
 
 bench_stretch bench_stretch_at(const skein_world *world, const double *x) {
-    double *stretch = allocate(bench_constraint_count(world), sizeof *stretch), sum = 0;
+    double *stretch = allocate(bench_spring_count(world), sizeof *stretch), sum = 0;
     size_t count = 0;
     for (size_t i = 0; i < world->rules.batches.count; i++) {
         const sk_batch *batch = world->rules.batches.data[i];
-        for (size_t e = 0; e < batch->count && batch->measured; e++) {
+        for (size_t e = 0; e < spring_count(batch) && batch->measured; e++) {
             const double *a = x + 3 * batch->particle[2 * e], *b = x + 3 * batch->particle[2 * e + 1];
             double rest = (double)batch->rest[e], length = hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
             stretch[count] = length > rest && rest > 0 ? length / rest - 1 : 0;
@@ -142,11 +147,12 @@ bench_stretch bench_stretch_now(const skein_world *world) {
 /* ---- the same springs for others ---- */
 
 uint32_t *bench_pairs(const skein_world *world) {
-    uint32_t *pairs = allocate(2 * bench_constraint_count(world), sizeof *pairs), *next = pairs;
+    uint32_t *pairs = allocate(2 * bench_spring_count(world), sizeof *pairs), *next = pairs;
     for (size_t b = 0; b < world->rules.batches.count; b++) {
         const sk_batch *batch = world->rules.batches.data[b];
-        if (batch->count) memcpy(next, batch->particle, 2 * batch->count * sizeof *next);
-        next += 2 * batch->count;
+        size_t springs = spring_count(batch);
+        if (springs) memcpy(next, batch->particle, 2 * springs * sizeof *next);
+        next += 2 * springs;
     }
     return pairs;
 }
@@ -182,7 +188,7 @@ static void copy_particles(plain_system *system, const skein_world *world, const
 /* Springs as `listing` has them; each particle of `world` at the place that `place_of` says. */
 static plain_system *make_plain(const skein_world *world, const skein_world *listing, bench_order order,
                                 const uint32_t *place_of, size_t places, double h) {
-    plain_system *system = plain_create(places, bench_constraint_count(listing));
+    plain_system *system = plain_create(places, bench_spring_count(listing));
     if (!system) bench_stop("no memory for the plain loop");
     copy_particles(system, world, place_of);
     system->per_step = (float)(1 / (h * h));
@@ -191,7 +197,7 @@ static plain_system *make_plain(const skein_world *world, const skein_world *lis
         const sk_batch *batch = listing->rules.batches.data[b];
         const sk_material *material = batch->params;
         walked *elements = order_elements(batch, order);
-        for (size_t i = 0; i < batch->count; i++, spring++) {
+        for (size_t i = 0; i < spring_count(batch); i++, spring++) {
             size_t e = elements[i].element;
             uint32_t p = batch->particle[2 * e], q = batch->particle[2 * e + 1];
             double scale = batch->scale ? (double)batch->scale[e] : 1;

@@ -34,7 +34,7 @@ void bench_need(skein_world *world, skein_status status);
 void bench_step(void *world);
 void bench_steps(skein_world *world, int count);
 
-size_t bench_constraint_count(const skein_world *world);
+size_t bench_spring_count(const skein_world *world);
 /* Shakes a resting world a little, so that nothing is at its rest length or still. */
 void bench_shake(skein_world *world, double distance, double speed);
 /* Of the measured edges, at these positions in the user's order; shorter edges count as not stretched. */
