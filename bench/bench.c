@@ -42,6 +42,12 @@ void bench_fault(const char *format, ...) {
     faults++;
 }
 
+void *bench_allocate(size_t count, size_t size) {
+    void *memory = calloc(count ? count : 1, size);
+    if (!memory) bench_stop("no memory");
+    return memory;
+}
+
 /* ---- timing ---- */
 
 static double seconds_now(void) {

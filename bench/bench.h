@@ -31,6 +31,9 @@ enum { BENCH_MOST_JOBS = 8 };
  * i's blocks, in seconds a call. */
 void bench_measure(const bench_job *jobs, size_t count, double seconds, double *median);
 
+/* Zeroed memory, or the end of the program. */
+void *bench_allocate(size_t count, size_t size);
+
 /* Whether to run small and short: only to see that every case works. */
 extern bool bench_quick;
 

@@ -8,12 +8,6 @@
 #include "bench/bullet.h"
 #endif
 
-static double *allocate(size_t count) {
-    double *values = calloc(count, sizeof *values);
-    if (!values) bench_stop("no memory");
-    return values;
-}
-
 /* ---- a frame and its sweeps ---- */
 
 static void substep_of(const bench_scene *scene, const char *size, double bar) {
@@ -130,7 +124,7 @@ static void add_colliders(const contest *c) {
 #ifdef BENCH_BULLET
 static bullet_world *make_bullet(const contest *c) {
     size_t count = skein_particle_count(c->world);
-    double *x = allocate(3 * count), *masses = allocate(count);
+    double *x = bench_allocate(3 * count, sizeof(double)), *masses = bench_allocate(count, sizeof(double));
     skein_view view = skein_position_view(c->world);
     skein_positions_copy(c->world, 0, count, x);
     for (size_t i = 0; i < count; i++) {
@@ -159,7 +153,7 @@ static bullet_world *make_bullet(const contest *c) {
 }
 
 static bench_stretch bullet_stretch(const contest *c, const bullet_world *bullet) {
-    double *x = allocate(3 * skein_particle_count(c->world));
+    double *x = bench_allocate(3 * skein_particle_count(c->world), sizeof(double));
     bullet_positions(bullet, x);
     bench_stretch stretch = bench_stretch_at(c->world, x);
     free(x);

@@ -8,12 +8,6 @@
 #define SUBSTEP (1.0 / 600) // of bench_cloth's worlds, s
 enum { MESH = 50000, QUICK_MESH = 1000 };
 
-static double *allocate(size_t count) {
-    double *values = calloc(count, sizeof *values);
-    if (!values) bench_stop("no memory");
-    return values;
-}
-
 /* ---- that both do the same ---- */
 
 static double norm(const double *x, size_t count) {
@@ -25,7 +19,7 @@ static double norm(const double *x, size_t count) {
 /* Both add up the same forces, but for rounding. */
 static void check_forces(bench_rows *rows, plain_system *plain, const char *size) {
     size_t count = 3 * plain->particle_count;
-    double *ours = allocate(count), *gap = allocate(count);
+    double *ours = bench_allocate(count, sizeof(double)), *gap = bench_allocate(count, sizeof(double));
     bench_rows_forces(rows, ours);
     plain_force(plain);
     for (size_t i = 0; i < count; i++) gap[i] = ours[i] - (double)plain->particles[i / 3].f[i % 3];
@@ -38,7 +32,8 @@ static void check_forces(bench_rows *rows, plain_system *plain, const char *size
 /* One sweep of each in the same order moves particles alike, but for rounding. */
 static void check_sweep(skein_world *world, const char *size) {
     size_t count = 3 * skein_particle_count(world);
-    double *before = allocate(count), *gap = allocate(count), *after = allocate(count);
+    double *before = bench_allocate(count, sizeof(double)), *gap = bench_allocate(count, sizeof(double)),
+           *after = bench_allocate(count, sizeof(double));
     skein_positions_copy(world, 0, count / 3, before);
     plain_system *plain = bench_plain(world, BENCH_AS_WALKED, false, SUBSTEP);
     bench_rows *rows = bench_rows_create(world, SK_ROW_PROJECT);

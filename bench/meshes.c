@@ -14,11 +14,9 @@ double bench_random(uint64_t *state) {
 }
 
 static bench_mesh allocate_mesh(size_t vertices, size_t faces, size_t corners) {
-    bench_mesh m = {.positions = malloc(vertices * 3 * sizeof *m.positions),
-                    .sizes = malloc(faces * sizeof *m.sizes),
-                    .vertices = malloc(corners * sizeof *m.vertices)};
-    if (!m.positions || !m.sizes || !m.vertices) bench_stop("no memory for a mesh");
-    return m;
+    return (bench_mesh){.positions = bench_allocate(vertices * 3, sizeof(double)),
+                        .sizes = bench_allocate(faces, sizeof(uint32_t)),
+                        .vertices = bench_allocate(corners, sizeof(uint32_t))};
 }
 
 static void finish(bench_mesh *m, size_t vertices, size_t pin, size_t other_pin) {
@@ -47,8 +45,7 @@ static void add_face(bench_mesh *m, const uint32_t *corners, uint32_t size) {
 /* The first vertex of each row, and one past the last. Lengths differ by up to a tenth from row to row, so that no
  * difference of numbers is common, as in a mesh that a triangulator made. */
 static size_t *deal_rows(size_t vertices, size_t rows, uint64_t *seed) {
-    size_t *first = calloc(rows + 1, sizeof *first), even = vertices / rows;
-    if (!first) bench_stop("no memory for a mesh");
+    size_t *first = bench_allocate(rows + 1, sizeof *first), even = vertices / rows;
     for (size_t r = 0; r < rows; r++) {
         size_t shift = (size_t)(0.1 * (double)even * bench_random(seed));
         size_t length = r % 2 ? even + shift : even - shift;
@@ -78,8 +75,7 @@ static void sew(bench_mesh *m, uint32_t a, uint32_t a_end, uint32_t b, uint32_t 
 
 /* Gives every vertex a random number; `order` receives the new numbers. */
 static void shuffle(bench_mesh *m, size_t count, uint32_t *order, uint64_t *seed) {
-    double *placed = malloc(count * 3 * sizeof *placed);
-    if (!placed) bench_stop("no memory for a mesh");
+    double *placed = bench_allocate(count * 3, sizeof *placed);
     for (size_t i = count; i-- > 1;) {
         size_t j = (size_t)(bench_random(seed) * (double)(i + 1));
         uint32_t kept = order[i];
@@ -108,8 +104,7 @@ bench_mesh bench_mesh_irregular(size_t vertices, bool shuffled) {
     }
     for (size_t r = 0; r + 1 < rows; r++)
         sew(&m, (uint32_t)first[r], (uint32_t)first[r + 1], (uint32_t)first[r + 1], (uint32_t)first[r + 2]);
-    uint32_t *number = malloc(vertices * sizeof *number);
-    if (!number) bench_stop("no memory for a mesh");
+    uint32_t *number = bench_allocate(vertices, sizeof *number);
     for (size_t i = 0; i < vertices; i++) number[i] = (uint32_t)i;
     if (shuffled) shuffle(&m, vertices, number, &seed);
     finish(&m, vertices, number[0], number[first[1] - 1]);
@@ -137,8 +132,7 @@ bench_mesh bench_mesh_quads(size_t n) {
 
 bench_mesh bench_mesh_hole(size_t n, bool renumbered) {
     bench_mesh whole = bench_mesh_quads(n), m = allocate_mesh(n * n, n * n, 4 * n * n);
-    uint32_t *number = calloc(n * n, sizeof *number), count = 0; // the new number, from 1; 0: in no face
-    if (!number) bench_stop("no memory for a mesh");
+    uint32_t *number = bench_allocate(n * n, sizeof *number), count = 0; // the new number, from 1; 0: in no face
     for (size_t f = 0; f < whole.mesh.face_count; f++) {
         const uint32_t *corners = whole.vertices + 4 * f;
         const double *p = whole.positions + 3 * corners[0];

@@ -23,9 +23,8 @@ static void run_layout_rows(skein_world *world, sk_row_kind kind) {
 bench_rows *bench_rows_create(skein_world *world, sk_row_kind kind) {
     bench_need(world, skein_world_explain(world, 1.0 / 60, NULL, NULL)); // makes the plan
     const sk_plan *plan = &world->plan;
-    bench_rows *rows = calloc(1, sizeof *rows);
-    if (rows) rows->rows = calloc(plan->count + 1, sizeof *rows->rows);
-    if (!rows || !rows->rows) bench_stop("no memory for rows");
+    bench_rows *rows = bench_allocate(1, sizeof *rows);
+    rows->rows = bench_allocate(plan->count + 1, sizeof *rows->rows);
     rows->world = world;
     rows->rows[0] = (sk_row){.kind = SK_ROW_REPEAT, .order = SK_ORDERED, .label = "repeat", .end = 1};
     rows->count = 1;

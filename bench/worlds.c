@@ -14,12 +14,6 @@ void bench_need(skein_world *world, skein_status status) {
     bench_stop("%s%s%s", error->where, error->where[0] ? ": " : "", error->message);
 }
 
-static void *allocate(size_t count, size_t size) {
-    void *memory = calloc(count ? count : 1, size);
-    if (!memory) bench_stop("no memory");
-    return memory;
-}
-
 skein_world *bench_world(int threads) {
     skein_world_desc desc = skein_default_world_desc();
     desc.thread_count = threads ? threads : 1;
@@ -66,11 +60,15 @@ skein_world *bench_lattice(int n, const bench_scene *scene) {
         return NULL;
     }
     skein_world *world = bench_world(scene->threads);
-    if (skein_body_add(world, "lattice", NULL, SKEIN_SETTINGS(SKEIN_VEC3("grid", n, n, n)), NULL)) {
-        bench_say("bench_lattice does not know this build's lattice: %s", skein_world_error(world)->message);
-        skein_world_destroy(world);
-        return NULL;
-    }
+    double stiffness = scene->stiffness > 0 ? scene->stiffness : 1e4, damping = scene->damping;
+    bench_need(world, skein_body_add(
+                          world, "lattice", NULL,
+                          SKEIN_SETTINGS(
+                              SKEIN_VEC3("grid", n, n, n), SKEIN_REAL("mass", 1),
+                              SKEIN_TEXT("shear.diagonals", "faces"), SKEIN_REAL("bending.springs", 0),
+                              SKEIN_REAL("structural.stiffness", stiffness), SKEIN_REAL("structural.damping", damping),
+                              SKEIN_REAL("shear.stiffness", stiffness), SKEIN_REAL("shear.damping", damping)),
+                          NULL));
     add_surroundings(world, scene);
     return world;
 }
@@ -96,7 +94,7 @@ size_t bench_spring_count(const skein_world *world) {
 
 void bench_shake(skein_world *world, double distance, double speed) {
     size_t count = skein_particle_count(world);
-    double *x = allocate(3 * count, sizeof *x), *v = allocate(3 * count, sizeof *v);
+    double *x = bench_allocate(3 * count, sizeof *x), *v = bench_allocate(3 * count, sizeof *v);
     uint64_t seed = 1;
     bench_need(world, skein_positions_copy(world, 0, count, x));
     for (size_t i = 0; i < 3 * count; i++) {
@@ -117,7 +115,7 @@ static int compare_doubles(const void *a, const void *b) {
 }
 
 bench_stretch bench_stretch_at(const skein_world *world, const double *x) {
-    double *stretch = allocate(bench_spring_count(world), sizeof *stretch), sum = 0;
+    double *stretch = bench_allocate(bench_spring_count(world), sizeof *stretch), sum = 0;
     size_t count = 0;
     for (size_t i = 0; i < world->rules.batches.count; i++) {
         const sk_batch *batch = world->rules.batches.data[i];
@@ -137,7 +135,7 @@ bench_stretch bench_stretch_at(const skein_world *world, const double *x) {
 
 bench_stretch bench_stretch_now(const skein_world *world) {
     size_t count = skein_particle_count(world);
-    double *x = allocate(3 * count, sizeof *x);
+    double *x = bench_allocate(3 * count, sizeof *x);
     skein_positions_copy(world, 0, count, x);
     bench_stretch result = bench_stretch_at(world, x);
     free(x);
@@ -147,7 +145,7 @@ bench_stretch bench_stretch_now(const skein_world *world) {
 /* ---- the same springs for others ---- */
 
 uint32_t *bench_pairs(const skein_world *world) {
-    uint32_t *pairs = allocate(2 * bench_spring_count(world), sizeof *pairs), *next = pairs;
+    uint32_t *pairs = bench_allocate(2 * bench_spring_count(world), sizeof *pairs), *next = pairs;
     for (size_t b = 0; b < world->rules.batches.count; b++) {
         const sk_batch *batch = world->rules.batches.data[b];
         size_t springs = spring_count(batch);
@@ -168,7 +166,7 @@ static int compare_walked(const void *a, const void *b) {
 }
 
 static walked *order_elements(const sk_batch *batch, bench_order order) {
-    walked *elements = allocate(batch->count, sizeof *elements);
+    walked *elements = bench_allocate(batch->count, sizeof *elements);
     for (uint32_t e = 0; e < batch->count; e++)
         elements[e] = (walked){order == BENCH_AS_WALKED ? batch->lane[e] : e, e};
     qsort(elements, batch->count, sizeof *elements, compare_walked);
