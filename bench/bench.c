@@ -1,20 +1,54 @@
-/* skein_bench: speed as ratios within one run. Each case is a row; medians of five.
- *
- *   skein_bench                 all cases
- *   skein_bench force sweep     those whose names begin so
- *   skein_bench --csv           as comma separated values
- */
+/* skein_bench: speed as ratios within one run; see bench/README.md. This file reads the options and takes the time. */
 #include "bench/bench.h"
 
-#include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include "world/world.h"
+#include "base/isa.h"
 
-static bool csv;
+enum { BLOCKS = 5 };
+
+bool bench_quick;
+static int faults;
+
+static const bench_case *const cases[] = {
+    &bench_force, &bench_sweep, &bench_shapes, &bench_substep, &bench_threads, &bench_w1,
+    &bench_w2,    &bench_w3,    &bench_scale,  &bench_rope,    &bench_settled, &bench_memory,
+};
+enum { CASES = sizeof cases / sizeof *cases };
+
+/* ---- what goes wrong ---- */
+
+void bench_stop(const char *format, ...) {
+    va_list words;
+    va_start(words, format);
+    fputs("skein_bench: ", stderr);
+    vfprintf(stderr, format, words);
+    fputc('\n', stderr);
+    va_end(words);
+    exit(2);
+}
+
+void bench_fault(const char *format, ...) {
+    va_list words;
+    va_start(words, format);
+    fputs("skein_bench: ", stderr);
+    vfprintf(stderr, format, words);
+    fputc('\n', stderr);
+    va_end(words);
+    faults++;
+}
+
+void *bench_allocate(size_t count, size_t size) {
+    void *memory = calloc(count ? count : 1, size);
+    if (!memory) bench_stop("no memory");
+    return memory;
+}
+
+/* ---- timing ---- */
 
 static double seconds_now(void) {
     struct timespec now;
@@ -27,174 +61,85 @@ static int compare_doubles(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-double bench_median(void (*body)(void *data), void *data, double seconds) {
+static double time_block(const bench_job *job, size_t calls) {
+    if (job->prepare) job->prepare(job->data);
     double start = seconds_now();
-    body(data);
-    double once = seconds_now() - start, blocks[5];
-    int calls = once > seconds ? 1 : (int)(seconds / (once > 1e-9 ? once : 1e-9)) + 1;
-    for (int b = 0; b < 5; b++) {
-        start = seconds_now();
-        for (int i = 0; i < calls; i++) body(data);
-        blocks[b] = (seconds_now() - start) / calls;
-    }
-    qsort(blocks, 5, sizeof *blocks, compare_doubles);
-    return blocks[2];
+    for (size_t i = 0; i < calls; i++) job->run(job->data);
+    return (seconds_now() - start) / (double)calls;
 }
 
-void bench_report(const bench_result *r) {
-    if (csv) {
-        printf("%s,%s,%g,%s,%g,%s,%g,%g\n", r->name, r->size, r->ns, r->unit, r->other_ns, r->other ? r->other : "",
-               r->stretch, r->other_stretch);
-        return;
-    }
-    printf("%-16s %-14s %9.3f %-14s", r->name, r->size, r->ns, r->unit);
-    if (r->other_ns > 0) printf(" %9.3f %-26s %7.2fx", r->other_ns, r->other, r->other_ns / r->ns);
-    if (r->stretch >= 0) printf("   stretch %.2f %%", 100 * r->stretch);
-    if (r->other_stretch >= 0) printf(" against %.2f %%", 100 * r->other_stretch);
-    printf("\n");
-    fflush(stdout);
+/* The second call tells how many fit: the first one may have something to set up. */
+static size_t count_calls(const bench_job *job, double seconds) {
+    if (job->calls) return job->calls;
+    time_block(job, 1);
+    double once = time_block(job, 1);
+    return once > seconds ? 1 : (size_t)(seconds / (once > 1e-9 ? once : 1e-9)) + 1;
 }
 
-/* ---- worlds ---- */
-
-skein_world *bench_cloth(int n, const char *method, int substeps, int threads, bool drag) {
-    skein_world_desc desc = skein_default_world_desc();
-    desc.thread_count = threads;
-    skein_world *world = skein_world_create(&desc, NULL);
-    double far = INFINITY;
-    skein_body_add(world, "cloth", NULL,
-                   SKEIN_SETTINGS(SKEIN_PAIR("grid", n, n), SKEIN_TEXT("pins", "top corners"),
-                                  SKEIN_REAL("density", 0.2), SKEIN_REAL("stretch.stiffness", 1e4),
-                                  SKEIN_REAL("shear.stiffness", 1e4), SKEIN_REAL("bend.stiffness", 1e4),
-                                  SKEIN_REAL("stretch.limit", far), SKEIN_REAL("stretch.tether", far)),
-                   NULL);
-    skein_force_add(world, "gravity", NULL, NULL);
-    if (drag) skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 1)), NULL);
-    skein_method_set(world, method, SKEIN_SETTINGS(SKEIN_REAL("substeps", substeps)));
-    return world;
-}
-
-static void step_frame(void *world) {
-    skein_world_step(world, 1.0 / 60);
-}
-
-/* Runs only the plan's rows of one kind, by threads as a step would. */
-typedef struct row_runner {
-    skein_world *world;
-    sk_row_kind kind;
-} row_runner;
-
-static void run_rows_of_kind(void *data) {
-    row_runner *r = data;
-    sk_run run = sk_world_run_context(r->world);
-    size_t first = 0, last;
-    while (first < r->world->plan.count && r->world->plan.data[first].kind != r->kind) first++;
-    for (last = first; last < r->world->plan.count && r->world->plan.data[last].kind == r->kind;) last++;
-    sk_run_rows(&run, r->world->tasks, r->world->plan.data + first, last - first);
-}
-
-/* Brings X and V into the layout that rows expect, or back. */
-static void run_layout_rows(skein_world *world, sk_row_kind kind) {
-    row_runner r = {world, kind};
-    run_rows_of_kind(&r);
-}
-
-static size_t constraint_count(skein_world *world) {
-    skein_statistics s;
-    skein_world_statistics(world, &s);
-    return s.constraints;
-}
-
-/* ---- cases ---- */
-
-static void bench_rows(const char *name, const char *method, sk_row_kind kind, void (*plain)(void *), int n) {
-    skein_world *world = bench_cloth(n, method, 10, 1, false);
-    for (int i = 0; i < 20 && kind == SK_ROW_PROJECT; i++) step_frame(world);
-    skein_world_explain(world, 1.0 / 60, NULL, NULL);
-    run_layout_rows(world, SK_ROW_PACK);
-    row_runner r = {world, kind};
-    double ours = bench_median(run_rows_of_kind, &r, 0.05) / (double)constraint_count(world) * 1e9;
-    plain_cloth *cloth = plain_cloth_create(n, 1e4, 1.0 / 600);
-    double theirs = bench_median(plain, cloth, 0.05) / (double)plain_cloth_springs(cloth) * 1e9;
-    bench_result result = {name, "", ours, theirs, "ns/constraint", "plain loop", -1, -1};
-    snprintf(result.size, sizeof result.size, "%d x %d", n, n);
-    bench_report(&result);
-    plain_cloth_destroy(cloth);
-    skein_world_destroy(world);
-}
-
-static void bench_force(void) {
-    for (int n = 64; n <= 256; n *= 2) bench_rows("force", "symplectic_euler", SK_ROW_FORCE, plain_cloth_force, n);
-}
-
-static void bench_sweep(void) {
-    for (int n = 64; n <= 256; n *= 2) bench_rows("sweep", "xpbd", SK_ROW_PROJECT, plain_cloth_project, n);
-}
-
-/* A whole substep against its sweeps, and two threads against one. */
-static void bench_substep(void) {
-    for (int n = 128; n <= 256; n *= 2) {
-        skein_world *world = bench_cloth(n, "xpbd", 10, 1, true), *two = bench_cloth(n, "xpbd", 10, 2, true);
-        for (int i = 0; i < 20; i++) step_frame(world), step_frame(two);
-        double frame = bench_median(step_frame, world, 0.1), frame_of_two = bench_median(step_frame, two, 0.1);
-        run_layout_rows(world, SK_ROW_PACK);
-        row_runner r = {world, SK_ROW_PROJECT};
-        double sweeps = 10 * bench_median(run_rows_of_kind, &r, 0.05);
-        bench_result whole = {"substep", "", frame * 1e3, sweeps * 1e3, "ms/frame", "its sweeps alone", -1, -1};
-        bench_result threads = {"two threads", "", frame_of_two * 1e3, frame * 1e3, "ms/frame", "one thread", -1, -1};
-        snprintf(whole.size, sizeof whole.size, "%d x %d", n, n);
-        snprintf(threads.size, sizeof threads.size, "%d x %d", n, n);
-        bench_report(&whole);
-        bench_report(&threads);
-        skein_world_destroy(world);
-        skein_world_destroy(two);
+void bench_measure(const bench_job *jobs, size_t count, double seconds, double *median) {
+    double block[BENCH_MOST_JOBS][BLOCKS];
+    size_t calls[BENCH_MOST_JOBS];
+    int blocks = bench_quick ? 1 : BLOCKS;
+    if (bench_quick) seconds = 0;
+    for (size_t i = 0; i < count; i++) calls[i] = count_calls(&jobs[i], seconds);
+    for (int b = 0; b < blocks; b++)
+        for (size_t i = 0; i < count; i++) block[i][b] = time_block(&jobs[i], calls[i]);
+    for (size_t i = 0; i < count; i++) {
+        qsort(block[i], (size_t)blocks, sizeof **block, compare_doubles);
+        median[i] = block[i][blocks / 2];
     }
 }
 
-/* W1: falls from level, held by two corners. W2: the same cloth, not held, on a ball and a plane. */
-static skein_world *frame_world(int n, bool drape) {
-    skein_world *world = bench_cloth(n, "xpbd", 10, 1, true);
-    if (!drape) return world;
-    for (size_t i = 0; i < (size_t)n * (size_t)n; i++) skein_particle_hold(world, i, false);
-    skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.8)), NULL);
-    skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, -0.45, 0), SKEIN_REAL("radius", 0.35)),
-                       NULL);
-    return world;
+/* ---- the program ---- */
+
+static void print_help(void) {
+    puts("usage: skein_bench [--csv] [--save FOLDER] [--quick] [CASE...]\n"
+         "Times Skein beside others in one process: medians of five blocks, in turns.\n"
+         "A CASE is a case's name, or how one or several of them begin; without any, all cases run.\n\n"
+         "  --csv          comma separated values instead of a table\n"
+         "  --save FOLDER  the same values also as FOLDER/PROCESSOR.csv\n"
+         "  --quick        small and short, only to see that every case works: the numbers mean nothing\n"
+         "  --help         this\n\n"
+         "Cases");
+    for (size_t c = 0; c < CASES; c++) printf("  %-10s %s\n", cases[c]->name, cases[c]->help);
+    puts("\nSKEIN_SIMD=sse, avx2 or avx512 chooses the instruction set of Skein's side.");
 }
 
-static void bench_frames(void) {
-    for (int drape = 0; drape < 2; drape++) {
-        skein_world *world = frame_world(128, drape);
-        double total = 0;
-        int frames = 120;
-        for (int f = 0; f < frames; f++) {
-            double start = seconds_now();
-            step_frame(world);
-            total += seconds_now() - start;
-        }
-        skein_statistics s;
-        skein_world_statistics(world, &s);
-        bench_result result = {drape ? "W2" : "W1", "128 x 128", total / frames * 1e3, 0,
-                               "ms/frame",          NULL,        s.p99_stretch,        -1};
-        bench_report(&result);
-        skein_world_destroy(world);
-    }
+static bool is_wanted(const bench_case *c, char **names, int count) {
+    for (int i = 0; i < count; i++)
+        if (!strncmp(c->name, names[i], strlen(names[i]))) return true;
+    return !count;
 }
 
 int main(int argc, char **argv) {
-    static const struct {
-        const char *name;
-        void (*run)(void);
-    } cases[] = {{"force", bench_force}, {"sweep", bench_sweep}, {"substep", bench_substep}, {"frames", bench_frames}};
-    bool any = false;
+    bool csv = false;
+    const char *folder = NULL;
+    char **names = argv + 1; // the cases' names move to the front
+    int count = 0;
     for (int a = 1; a < argc; a++) {
-        if (!strcmp(argv[a], "--csv")) csv = true;
-        else any = true;
+        if (!strcmp(argv[a], "--csv")) {
+            csv = true;
+        } else if (!strcmp(argv[a], "--quick")) {
+            bench_quick = true;
+        } else if (!strcmp(argv[a], "--help")) {
+            print_help();
+            return 0;
+        } else if (!strcmp(argv[a], "--save") && a + 1 < argc) {
+            folder = argv[++a];
+        } else if (argv[a][0] == '-') {
+            bench_stop("'%s' is no option, or lacks its value; --help lists them", argv[a]);
+        } else {
+            names[count++] = argv[a];
+        }
     }
-    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-        bool wanted = !any;
-        for (int a = 1; a < argc; a++) wanted |= !strncmp(cases[c].name, argv[a], strlen(argv[a]));
-        if (wanted) cases[c].run();
+    for (int i = 0; i < count; i++) {
+        bool any = false;
+        for (size_t c = 0; c < CASES; c++) any |= is_wanted(cases[c], names + i, 1);
+        if (!any) bench_stop("'%s' is no case; --help lists them", names[i]);
     }
-    return 0;
+    bench_report_open(csv, folder, sk_isa_text(sk_isa_choose()));
+    for (size_t c = 0; c < CASES; c++)
+        if (is_wanted(cases[c], names, count)) cases[c]->run();
+    bench_report_close();
+    return faults ? 1 : 0;
 }

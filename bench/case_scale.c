@@ -1,0 +1,160 @@
+/* What a particle, a spring and a step cost: large cloths, a short rope, rest, memory. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "bench/worlds.h"
+
+/* ---- size ---- */
+
+static void report_cost(const char *size, double nanoseconds, double first, double bytes) {
+    bench_report(&(bench_result){.name = "scale",
+                                 .size = size,
+                                 .ours = nanoseconds,
+                                 .unit = "ns/particle",
+                                 .other = first > 0 ? "the smallest" : NULL,
+                                 .theirs = first,
+                                 .as_long = first > 0 ? 1.3 : 0,
+                                 .note = "a step of 10 substeps, gravity, drag"});
+    bench_report(
+        &(bench_result){.name = "scale, memory", .size = size, .ours = bytes, .unit = "bytes/spring", .under = 200});
+}
+
+/* Sizes are timed in turns; a million particles take seconds for each of their blocks. */
+static void run_scale(void) {
+    static const int sides[] = {100, 316, 1000};
+    int count = bench_quick ? 1 : 3;
+    skein_world *worlds[3];
+    bench_job jobs[3];
+    double seconds[3];
+    for (int i = 0; i < count; i++) {
+        worlds[i] = bench_cloth(&(bench_scene){.rows = sides[i], .columns = sides[i], .drag = 1});
+        bench_steps(worlds[i], 2);
+        jobs[i] = (bench_job){.run = bench_step, .data = worlds[i]};
+    }
+    bench_measure(jobs, (size_t)count, 0.1, seconds);
+    for (int i = 0; i < count; i++) {
+        skein_statistics s;
+        bench_need(worlds[i], skein_world_statistics(worlds[i], &s));
+        seconds[i] /= (double)s.particles;
+        char size[40];
+        snprintf(size, sizeof size, "grid %d x %d", sides[i], sides[i]);
+        report_cost(size, 1e9 * seconds[i], i ? 1e9 * seconds[0] : 0, (double)s.memory_bytes / (double)s.constraints);
+        skein_world_destroy(worlds[i]);
+    }
+}
+
+const bench_case bench_scale = {"scale", "10,000 to 1,000,000 particles: time a step, memory", run_scale};
+
+/* ---- a short rope ---- */
+
+static void run_rope(void) {
+    enum { BEADS = 100 };
+    double positions[3 * BEADS] = {0}, masses[BEADS];
+    uint32_t pairs[2 * (BEADS - 1)];
+    for (uint32_t i = 0; i < BEADS; i++) {
+        positions[3 * i] = 0.01 * i;
+        masses[i] = i ? 0.001 : 0;
+        if (i) pairs[2 * i - 2] = i - 1, pairs[2 * i - 1] = i;
+    }
+    skein_world *world = bench_world(1);
+    bench_need(world, skein_particles_add(world, BEADS, positions, NULL, masses, NULL));
+    bench_need(world, skein_constraint_add(world, "distance", pairs, BEADS - 1, NULL, NULL));
+    bench_need(world, skein_force_add(world, "gravity", NULL, NULL));
+    bench_steps(world, 20);
+    bench_job job = {.run = bench_step, .data = world};
+    double seconds;
+    bench_measure(&job, 1, 0.05, &seconds);
+    bench_report(&(bench_result){.name = "rope",
+                                 .size = "100 particles",
+                                 .ours = 1e6 * seconds,
+                                 .unit = "us/step",
+                                 .under = 20,
+                                 .note = "99 distances one after the other, 10 substeps, gravity"});
+    skein_world_destroy(world);
+}
+
+const bench_case bench_rope = {"rope", "a step of 100 particles in a row", run_rope};
+
+/* ---- rest ---- */
+
+static void start_again(void *data) {
+    bench_need(data, skein_world_reset(data));
+    bench_steps(data, 10);
+}
+
+/* Without gravity, a strong drag takes speeds through the smallest numbers there are, and to zero. */
+static void start_moving(void *data) {
+    start_again(data);
+    bench_shake(data, 1e-3, 1);
+}
+
+static void settled_of(bench_scene scene, const char *size, int settling, void (*start)(void *world)) {
+    scene.rows = scene.columns = 64;
+    skein_world *moving = bench_cloth(&scene), *settled = bench_cloth(&scene);
+    start(settled);
+    bench_steps(settled, settling);
+    size_t calls = bench_quick ? 2 : 60;
+    bench_job jobs[] = {{.run = bench_step, .data = moving, .prepare = start, .calls = calls},
+                        {.run = bench_step, .data = settled, .calls = calls}};
+    double seconds[2];
+    bench_measure(jobs, 2, 0, seconds);
+    bench_report(&(bench_result){.name = "settled",
+                                 .size = size,
+                                 .ours = 1e3 * seconds[1],
+                                 .unit = "ms/frame",
+                                 .other = "while it moves",
+                                 .theirs = 1e3 * seconds[0],
+                                 .as_long = 1.2});
+    skein_world_destroy(moving);
+    skein_world_destroy(settled);
+}
+
+static void run_settled(void) {
+    settled_of((bench_scene){.drag = 4}, "hanging, 64 x 64", bench_quick ? 2 : 1800, start_again);
+    // speeds pass 1e-38 after about 88/drag seconds: in the middle of what is timed, and long before it
+    settled_of((bench_scene){.drag = 60, .weightless = true}, "slowing down, 64 x 64", bench_quick ? 2 : 60,
+               start_moving);
+    settled_of((bench_scene){.drag = 60, .weightless = true}, "at rest, 64 x 64", bench_quick ? 2 : 600, start_moving);
+}
+
+const bench_case bench_settled = {"settled", "a step of a cloth at rest against one that moves", run_settled};
+
+/* ---- allocations ---- */
+
+static void *count_allocation(void *user, size_t size, size_t alignment) {
+    ++*(size_t *)user;
+    return aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+}
+
+static void release(void *user, void *memory, size_t size) {
+    (void)user, (void)size;
+    free(memory);
+}
+
+/* A ball, a floor, and a rule that looks for neighbours: everything that could grow while it runs. */
+static void run_memory(void) {
+    size_t calls = 0;
+    skein_world_desc desc = skein_default_world_desc();
+    desc.allocate = count_allocation, desc.release = release, desc.memory_user = &calls;
+    skein_world *world = skein_world_create(&desc, NULL);
+    if (!world) bench_stop("no memory for a world");
+    bench_need(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 40, 40)), NULL));
+    bench_need(world, skein_force_add(world, "gravity", NULL, NULL));
+    bench_need(world, skein_force_add(world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.02)), NULL));
+    bench_need(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.8)), NULL));
+    bench_need(world,
+               skein_collider_add(world, "sphere",
+                                  SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, -0.45, 0), SKEIN_REAL("radius", 0.35)), NULL));
+    bench_steps(world, 2);
+    size_t before = calls;
+    bench_steps(world, bench_quick ? 5 : 120);
+    bench_report(&(bench_result){.name = "memory",
+                                 .size = "grid 40 x 40",
+                                 .ours = (double)(calls - before),
+                                 .unit = "allocations",
+                                 .under = 1,
+                                 .note = "from the third step to the end of a fall on a ball and the floor"});
+    skein_world_destroy(world);
+}
+
+const bench_case bench_memory = {"memory", "allocations after the second step", run_memory};
