@@ -32,6 +32,7 @@ static void add_surroundings(skein_world *world, const bench_scene *scene) {
                                        SKEIN_SETTINGS(SKEIN_REAL("substeps", scene->substeps ? scene->substeps : 10))));
     if (scene->iterations > 1)
         bench_need(world, skein_set_path(world, "method.iterations", skein_number(scene->iterations)));
+    bench_need(world, skein_world_explain(world, 1.0 / 60, NULL, NULL)); // makes the plan: slots and sweeps are found
 }
 
 skein_world *bench_cloth(const bench_scene *scene) {
