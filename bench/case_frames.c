@@ -106,6 +106,7 @@ typedef struct contest {
     skein_world *world;
     bool floor, ball;
     double under, faster; /* the bars: ms a frame, and against Bullet */
+    const char *settings;
 } contest;
 
 static void add_colliders(const contest *c) {
@@ -167,7 +168,8 @@ static void hold_contest(const contest *c) {
     size_t frames = bench_quick ? 2 : 60;
     bench_job jobs[2] = {{.run = bench_step, .data = c->world, .calls = frames}};
     double seconds[2] = {0, 0};
-    bench_result result = {.name = c->name, .size = c->size, .unit = "ms/frame", .under = c->under};
+    bench_result result = {
+        .name = c->name, .size = c->size, .unit = "ms/frame", .under = c->under, .note = c->settings};
 #ifdef BENCH_BULLET
     bullet_world *bullet = make_bullet(c);
     jobs[1] = (bench_job){.run = bullet_step, .data = bullet, .calls = frames};
@@ -175,12 +177,9 @@ static void hold_contest(const contest *c) {
     bench_stretch theirs = bullet_stretch(c, bullet);
     result.other = "Bullet", result.theirs = 1e3 * seconds[1], result.faster = c->faster;
     result.other_stretch = &theirs;
-    result.note = "rigid, drag 1/s, friction 0.3; 10 substeps of 1 sweep; Bullet: 1 step, piterations 10, kLST 1, kDP "
-                  "0.0165, kCHR 1, kDF 1";
     bullet_destroy(bullet);
 #else
     bench_measure(jobs, 1, 0, seconds);
-    result.note = "rigid, drag 1/s, friction 0.3; 10 substeps of 1 sweep; without Bullet";
 #endif
     result.ours = 1e3 * seconds[0];
     bench_stretch ours = bench_stretch_now(c->world);
@@ -199,20 +198,40 @@ static void cloth_contest(contest c, const char *pins) {
     hold_contest(&c);
 }
 
+#define BULLET_SETTINGS "; Bullet: rigid, 1 step, piterations 10, kLST 1, kDP 0.0165, kCHR 1, kDF 1, the same friction"
+
 static void run_w1(void) {
-    cloth_contest((contest){.name = "W1", .under = 0.9, .faster = 15}, NULL);
+    cloth_contest((contest){.name = "W1",
+                            .under = 0.9,
+                            .faster = 15,
+                            .settings = "rigid, drag 1/s, 10 substeps of 1 sweep" BULLET_SETTINGS},
+                  NULL);
 }
 
 static void run_w2(void) {
-    cloth_contest((contest){.name = "W2", .floor = true, .ball = true, .under = 1.6, .faster = 10}, "");
+    cloth_contest((contest){.name = "W2",
+                            .floor = true,
+                            .ball = true,
+                            .under = 1.6,
+                            .faster = 10,
+                            .settings = "rigid, drag 1/s, friction 0.3, 10 substeps of 1 sweep" BULLET_SETTINGS},
+                  "");
 }
 
+/* A rigid block shivers for ever with one sweep a substep: type order brings in more energy than it takes out, in a
+ * plain loop in double as well. With two it comes to rest. */
 static void run_w3(void) {
     int n = bench_quick ? 4 : 20;
     char size[40];
     snprintf(size, sizeof size, "lattice %d^3", n);
-    contest c = {.name = "W3", .size = size, .floor = true, .under = 0.7, .faster = 9};
-    c.world = bench_lattice(n, &(bench_scene){.substeps = sweeps, .stiffness = BENCH_RIGID, .drag = drag});
+    contest c = {.name = "W3",
+                 .size = size,
+                 .floor = true,
+                 .under = 0.7,
+                 .faster = 9,
+                 .settings = "rigid, drag 1/s, friction 0.3, 5 substeps of 2 sweeps" BULLET_SETTINGS};
+    c.world = bench_lattice(
+        n, &(bench_scene){.substeps = sweeps / 2, .iterations = 2, .stiffness = BENCH_RIGID, .drag = drag});
     if (c.world) hold_contest(&c);
 }
 

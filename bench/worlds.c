@@ -27,8 +27,12 @@ static void add_surroundings(skein_world *world, const bench_scene *scene) {
     if (!scene->weightless) bench_need(world, skein_force_add(world, "gravity", NULL, NULL));
     if (scene->drag > 0)
         bench_need(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", scene->drag)), NULL));
-    bench_need(world, skein_method_set(world, scene->method ? scene->method : "xpbd",
+    const char *method = scene->method ? scene->method : "xpbd";
+    bench_need(world, skein_method_set(world, method,
                                        SKEIN_SETTINGS(SKEIN_REAL("substeps", scene->substeps ? scene->substeps : 10))));
+    if (scene->iterations > 1)
+        bench_need(world, skein_set_path(world, "method.iterations", skein_number(scene->iterations)));
+    bench_need(world, skein_world_explain(world, 1.0 / 60, NULL, NULL)); // makes the plan: slots and sweeps are found
 }
 
 skein_world *bench_cloth(const bench_scene *scene) {

@@ -16,6 +16,7 @@ typedef struct bench_scene {
     const char *pins;       /* NULL: "top corners" of a grid, the two far corners of a mesh */
     const char *method;     /* NULL: xpbd */
     int substeps, threads;  /* 0: 10, and 1 */
+    int iterations;         /* sweeps a substep; 0: 1 */
     double stiffness;       /* of all springs, N/m; 0: 1e4 */
     double damping;         /* N s/m */
     double drag;            /* 1/s */
