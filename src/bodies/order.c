@@ -59,13 +59,16 @@ static int compare_springs(const void *p, const void *q) {
     return s->b < t->b ? -1 : s->b > t->b;
 }
 
-/* Sorts one list; `distance` NULL sorts by direction. */
-static bool sort_list(sk_allocator *allocator, struct sk_spring_list *list, const double *distance) {
+/* Sorts one list; `distance` NULL sorts by direction, from lower places to higher ones. */
+static bool sort_list(sk_allocator *allocator, struct sk_spring_list *list, const double *distance,
+                      const uint32_t *place) {
     sorted_spring *sorted = sk_allocate(allocator, list->count * sizeof *sorted);
     if (!sorted) return false;
     for (size_t i = 0; i < list->count; i++) {
         uint32_t a = list->pairs[2 * i], b = list->pairs[2 * i + 1];
-        sorted[i] = (sorted_spring){0, b - a, a, b, list->rest[i], list->scale[i]};
+        if (place && place[a] > place[b]) a = list->pairs[2 * i + 1], b = list->pairs[2 * i];
+        uint32_t step = place ? place[b] - place[a] : b - a;
+        sorted[i] = (sorted_spring){place ? place[a] : 0, step, a, b, list->rest[i], list->scale[i]};
         if (!distance) continue;
         // radial: the ends' distances differ by more than half the length
         sorted[i].later = !(fabs(distance[a] - distance[b]) > 0.5 * (double)list->rest[i]);
@@ -80,9 +83,9 @@ static bool sort_list(sk_allocator *allocator, struct sk_spring_list *list, cons
     return true;
 }
 
-bool sk_order_by_direction(sk_springs *springs) {
+bool sk_order_by_direction(sk_springs *springs, const uint32_t *place) {
     for (int sort = 0; sort < SK_SPRING_SORTS; sort++)
-        if (!sort_list(springs->allocator, &springs->list[sort], NULL)) return false;
+        if (!sort_list(springs->allocator, &springs->list[sort], NULL, place)) return false;
     return true;
 }
 
@@ -130,7 +133,7 @@ bool sk_order_outward(sk_springs *springs, const sk_sheet *sheet, const bool *pi
     ranked *order = sk_allocate(allocator, count * sizeof *order);
     bool good = distance && order && find_distances(sheet, pinned, distance);
     for (int sort = 0; sort < SK_SPRING_SORTS && good; sort++)
-        good = sort_list(allocator, &springs->list[sort], distance);
+        good = sort_list(allocator, &springs->list[sort], distance, NULL);
     // neighbours in the order of sweeps are neighbours in memory
     for (size_t i = 0; i < count && good; i++) order[i] = (ranked){distance[i], (uint32_t)i};
     if (good) qsort(order, count, sizeof *order, compare_ranked);

@@ -1,9 +1,9 @@
 /* The order in which a cloth's springs are swept, and its particles lie in memory.
  *
  * Part of the answer, and of the speed. A mesh whose vertices are numbered row by row is a grid, whatever
- * file it came from: its springs go direction by direction and its particles lie in strips. Any other
- * mesh goes outward from its pins (along its longest axis without pins): first the springs that lead
- * outward, then those that go round, each by distance; what was pulled last holds best. */
+ * file it came from, and so is one of quads that lie like a grid's (quads.h): its springs go direction by direction and
+ * its particles lie in strips. Any other mesh goes outward from its pins (along its longest axis without pins): first
+ * the springs that lead outward, then those that go round, each by distance; what was pulled last holds best. */
 #ifndef SK_BODIES_ORDER_H
 #define SK_BODIES_ORDER_H
 
@@ -13,8 +13,9 @@
 /* Rows and columns of a mesh that is numbered as a grid (a last row may be short); 0 and 0 if it is not. False
  * when there is no memory. */
 bool sk_order_find_grid(const sk_sheet *sheet, const sk_springs *springs, uint32_t *rows, uint32_t *columns);
-/* Sorts the springs of a grid by direction. False when there is no memory. */
-bool sk_order_by_direction(sk_springs *springs);
+/* Sorts the springs of a grid by direction; place[particle] is its place in the grid, NULL: its own number. False
+ * when there is no memory. */
+bool sk_order_by_direction(sk_springs *springs, const uint32_t *place);
 /* Sorts the springs outward from the pinned particles, and fills rank[particle] with its place. False when
  * there is no memory. */
 bool sk_order_outward(sk_springs *springs, const sk_sheet *sheet, const bool *pinned, uint32_t *rank);

@@ -45,17 +45,15 @@ typedef struct sk_span {
     int shift;
 } sk_span;
 
-static inline sk_span sk_span_from(const sk_sweep *sweep, size_t first) {
-    int64_t width = (int64_t)sweep->walk.width, partner = (int64_t)first + sweep->column_step;
-    int64_t shift = partner >= 0 ? partner / width : -((width - 1 - partner) / width);
-    int64_t last = (shift + 1) * width - sweep->column_step;
-    return (sk_span){first, last < width ? (size_t)last : (size_t)width, (int)shift};
-}
-static inline sk_span sk_first_span(const sk_sweep *sweep) {
-    return sk_span_from(sweep, 0);
-}
-static inline sk_span sk_next_span(const sk_sweep *sweep, sk_span span) {
-    return sk_span_from(sweep, span.last);
+/* The spans of a strip row, one or two. */
+static inline size_t sk_spans(const sk_sweep *sweep, sk_span span[2]) {
+    int64_t width = (int64_t)sweep->walk.width, step = sweep->column_step;
+    int64_t shift = step >= 0 ? step / width : -((width - 1 - step) / width);
+    int64_t cut = (shift + 1) * width - step; // from here on one strip farther
+    if (cut > width) cut = width;
+    span[0] = (sk_span){0, (size_t)cut, (int)shift};
+    span[1] = (sk_span){(size_t)cut, (size_t)width, (int)shift + 1};
+    return cut < width ? 2 : 1;
 }
 
 #endif

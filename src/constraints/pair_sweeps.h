@@ -45,10 +45,8 @@ SK_INLINE void SK_ISA(meet_blocks)(sk_run *run, const sk_sweep *sweep, const sk_
     bool special = shift || sweep->batch->special[lane / SK_LANES];
     sk_wide *xa = (sk_wide *)(void *)(run->vector[SK_X] + slot_a),
             *xb = (sk_wide *)(void *)(run->vector[SK_X] + slot_b);
-    sk_pair p = {.a = SK_ISA(load3)(xa),
-                 .b = SK_ISA(turn3)(SK_ISA(load3)(xb), shift),
-                 .wa = xa[3],
-                 .wb = SK_ISA(turn)(xb[3], shift)};
+    sk_wide3 b = SK_ISA(load3)(xb);
+    sk_pair p = {.a = SK_ISA(load3)(xa), .b = SK_ISA(turn3)(b, shift), .wa = xa[3], .wb = SK_ISA(turn)(xb[3], shift)};
     sk_wide *other_a = NULL, *other_b = NULL;
     if (mode != SK_PAIR_PROJECT && mode != SK_PAIR_LIMIT) {
         sk_vec4 *other = run->vector[mode == SK_PAIR_PROJECT_DAMPED ? SK_X0 : SK_V];
@@ -58,15 +56,10 @@ SK_INLINE void SK_ISA(meet_blocks)(sk_run *run, const sk_sweep *sweep, const sk_
     }
     SK_ISA(set_values)(&p, sweep, constants, lane, special, mode == SK_PAIR_PROJECT_DAMPED);
     SK_ISA(pair)(&p, constants, mode);
-    if (shift) {
-        // a and b may be one block
-        SK_ISA(add3)(xa, p.da);
-        SK_ISA(take3)(xb, SK_ISA(turn3)(p.db, -shift));
-    } else {
-        // from what was loaded: reading again would wait for the stores
-        xa[0] = p.a.x + p.da.x, xa[1] = p.a.y + p.da.y, xa[2] = p.a.z + p.da.z;
-        xb[0] = p.b.x - p.db.x, xb[1] = p.b.y - p.db.y, xb[2] = p.b.z - p.db.z;
-    }
+    // from what was loaded: reading again would wait for the stores
+    sk_wide3 db = SK_ISA(turn3)(p.db, -shift);
+    xa[0] = p.a.x + p.da.x, xa[1] = p.a.y + p.da.y, xa[2] = p.a.z + p.da.z;
+    xb[0] = b.x - db.x, xb[1] = b.y - db.y, xb[2] = b.z - db.z;
     if (mode == SK_PAIR_PROJECT_DAMPED) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + lane) = p.multiplier;
     if (mode == SK_PAIR_LIMIT_MOVING) {
         SK_ISA(add3)(other_a, p.dv_a);
@@ -102,11 +95,16 @@ SK_INLINE void SK_ISA(sweep_strips)(sk_run *run, const sk_row *row, size_t begin
     const sk_sweep *sweep = row->rule;
     sk_pair_constants constants = sk_pair_prepare(sweep->batch, row);
     size_t side_by_side = sweep->row_step == 0 ? SK_ROWS_SIDE_BY_SIDE : 1;
+    sk_span span[2];
+    size_t span_count = sk_spans(sweep, span);
     for (size_t r = begin; r < end; r += side_by_side) {
         size_t stop = r + side_by_side < end ? r + side_by_side : end;
-        for (sk_span span = sk_first_span(sweep); span.first < sweep->walk.width; span = sk_next_span(sweep, span)) {
-            if (!span.shift) SK_ISA(meet_span)(run, sweep, &constants, r, stop, span.first, span.last, 0, mode);
-            else turned(run, sweep, &constants, r, stop, span.first, span.last, span.shift);
+        for (size_t i = 0; i < span_count; i++) {
+            sk_span at = span[i];
+            if (!at.shift) SK_ISA(meet_span)(run, sweep, &constants, r, stop, at.first, at.last, 0, mode);
+            else if (mode == SK_PAIR_PROJECT)
+                SK_ISA(meet_span)(run, sweep, &constants, r, stop, at.first, at.last, at.shift, mode);
+            else turned(run, sweep, &constants, r, stop, at.first, at.last, at.shift);
         }
     }
 }

@@ -41,12 +41,13 @@ static const sk_strips *strips_of(const sk_particles *particles, uint32_t partic
     return NULL;
 }
 
-/* Elements are told apart by the step from the lower to the higher particle. */
+/* Elements are told apart by the step from the lower to the higher place. */
 static element_place place_of(const sk_particles *particles, uint32_t p, uint32_t q) {
     element_place none = {NULL, 0, 0, 0, 0};
-    const sk_strips *strips = strips_of(particles, p < q ? p : q);
-    if (!strips || strips != strips_of(particles, p < q ? q : p) || p == q) return none;
-    uint32_t a = (p < q ? p : q) - strips->first_particle, b = (p < q ? q : p) - strips->first_particle;
+    const sk_strips *strips = strips_of(particles, p);
+    if (!strips || strips != strips_of(particles, q) || p == q) return none;
+    uint32_t a = particles->place[p], b = particles->place[q];
+    if (a > b) a = particles->place[q], b = particles->place[p];
     element_place place = {strips, (int32_t)(b / strips->columns) - (int32_t)(a / strips->columns),
                            (int32_t)(b % strips->columns) - (int32_t)(a % strips->columns), a / strips->columns,
                            a % strips->columns};
@@ -160,6 +161,18 @@ static void deal(cutter *c, grouping *g, const size_t *lane_of) {
     }
 }
 
+/* Leaves out groups that stayed empty: a chain has one element a group, and none between. */
+static void close_up(grouping *g, size_t element_count, const size_t *lane_of) {
+    size_t count = 0;
+    for (size_t i = 0; i < g->group_count; i++) {
+        g->next[i] = (uint32_t)count; // what it will be called
+        if (g->filled[i]) g->filled[count++] = g->filled[i];
+    }
+    for (size_t e = 0; e < element_count; e++)
+        if (lane_of[e] == SIZE_MAX) g->group[e] = g->next[g->group[e]];
+    g->group_count = count;
+}
+
 /* Gives the dealt elements their lanes, in their order within a group, and the groups their slots. Free
  * lanes point at the empty slot, which weighs nothing. */
 static bool fill_groups(cutter *c, const grouping *g, size_t *lane_of, size_t left) {
@@ -202,7 +215,10 @@ static bool add_group_sweep(cutter *c, size_t *lane_of) {
     g.group = sk_allocate(c->allocator, c->batch->count * sizeof *g.group);
     bool good = g.last && g.next && g.filled && g.group;
     for (size_t i = 0; i < most && good; i++) g.next[i] = (uint32_t)i;
-    if (good) deal(c, &g, lane_of);
+    if (good) {
+        deal(c, &g, lane_of);
+        close_up(&g, c->batch->count, lane_of);
+    }
     if (good) good = fill_groups(c, &g, lane_of, left);
     sk_release(c->allocator, g.last);
     sk_release(c->allocator, g.next);

@@ -32,6 +32,7 @@ static bool reserve(sk_particles *particles, sk_allocator *allocator, size_t par
     if (particle_need > particles->capacity) {
         size_t old = particles->capacity, room = room_for(old, particle_need);
         if (!grow(allocator, (void **)&particles->slot_of, old, room, sizeof(uint32_t)) ||
+            !grow(allocator, (void **)&particles->place, old, room, sizeof(uint32_t)) ||
             !grow(allocator, (void **)&particles->rank, old, room, sizeof(uint32_t)) ||
             !grow(allocator, (void **)&particles->built, old, room, sizeof(sk_vec3)) ||
             !grow(allocator, (void **)&particles->mass, old, room, sizeof(real)) ||
@@ -65,10 +66,12 @@ bool sk_particles_add(sk_particles *particles, sk_allocator *allocator, size_t c
     return true;
 }
 
-bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, sk_strips strips) {
+bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, sk_strips strips,
+                             const uint32_t *place) {
     if (!SK_RESERVE(allocator, &particles->strips, particles->strips.count + 1)) return false;
     strips.width = (strips.columns + 15) / 16;
     if (strips.width < LEAST_WIDTH) strips.width = LEAST_WIDTH;
+    for (uint32_t i = 0; i < strips.count; i++) particles->place[strips.first_particle + i] = place ? place[i] : i;
     particles->strips.data[particles->strips.count++] = strips;
     particles->arranged = false;
     return true;
@@ -91,9 +94,9 @@ static void number_slots(sk_particles *particles, const uint32_t *by_rank, uint3
         sk_strips *strips = &particles->strips.data[s];
         strips->first_slot = next;
         for (uint32_t i = 0; i < strips->count; i++) {
-            size_t r = i / strips->columns, c = i % strips->columns;
-            slot_of[strips->first_particle + i] =
-                (uint32_t)(next + (r * strips->width + c % strips->width) * 16 + c / strips->width);
+            uint32_t particle = strips->first_particle + i, place = particles->place[particle];
+            size_t r = place / strips->columns, c = place % strips->columns;
+            slot_of[particle] = (uint32_t)(next + (r * strips->width + c % strips->width) * 16 + c / strips->width);
         }
         next += (size_t)strips->rows * strips->width * 16;
     }
@@ -168,6 +171,7 @@ void sk_particle_hold(sk_particles *particles, size_t particle, bool held) {
 void sk_particles_release(sk_particles *particles, sk_allocator *allocator) {
     for (int v = SK_X; v < SK_VECTOR_COUNT; v++) sk_release(allocator, particles->vector[v]);
     sk_release(allocator, particles->slot_of);
+    sk_release(allocator, particles->place);
     sk_release(allocator, particles->rank);
     sk_release(allocator, particles->built);
     sk_release(allocator, particles->mass);

@@ -15,7 +15,7 @@
 #include "plan/row.h"
 
 typedef struct sk_strips {
-    uint32_t first_particle, count; /* in row order; the last row may be short */
+    uint32_t first_particle, count; /* some places may stay empty */
     uint32_t rows, columns;
     uint32_t width; /* columns a strip: blocks a row */
     size_t first_slot;
@@ -29,9 +29,10 @@ typedef struct sk_particles {
     bool arranged;                    /* slots are as the picture shows */
     sk_vec4 *vector[SK_VECTOR_COUNT]; /* slots; SK_NONE is unused */
     uint32_t *slot_of;
-    uint32_t *rank; /* where a particle would like to lie: its own index, unless said otherwise */
-    sk_vec3 *built; /* positions as they were built, user's order */
-    real *mass;     /* kg, user's order; 0 for one that was built as held */
+    uint32_t *place; /* of particles in strips: row x columns + column in their grid */
+    uint32_t *rank;  /* where a particle would like to lie: its own index, unless said otherwise */
+    sk_vec3 *built;  /* positions as they were built, user's order */
+    real *mass;      /* kg, user's order; 0 for one that was built as held */
     bool *held;
     struct {
         sk_strips *data;
@@ -42,8 +43,8 @@ typedef struct sk_particles {
 /* Adds particles at the end. False when there is no memory: the particles are then as they were. */
 bool sk_particles_add(sk_particles *particles, sk_allocator *allocator, size_t count, const double *positions,
                       const double *velocities, const double *masses);
-/* Says that particles are a grid; width and first slot are found here. */
-bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, sk_strips strips);
+/* Says that particles are a grid, at these places of it (NULL: in row order); width and first slot are found here. */
+bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, sk_strips strips, const uint32_t *place);
 /* Takes back all particles and strips from `count` on: the last ones added, not yet arranged. */
 void sk_particles_truncate(sk_particles *particles, size_t count);
 /* Gives every particle its slot; the state goes along. False when there is no memory: all as before. */

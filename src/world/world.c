@@ -180,9 +180,9 @@ void sk_world_add_strain_limit(sk_body *body) {
 }
 
 skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32_t rows, uint32_t columns,
-                                 uint32_t count, skein_error *error) {
+                                 uint32_t count, const uint32_t *place, skein_error *error) {
     if (!sk_particles_add_strips(&world->particles, &world->allocator,
-                                 (sk_strips){body->first_particle, count, rows, columns, 0, 0}))
+                                 (sk_strips){body->first_particle, count, rows, columns, 0, 0}, place))
         return sk_fail_memory(error, "strips");
     world->plan_stale = world->slots_stale = true;
     return SKEIN_OK;

@@ -119,9 +119,10 @@ skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk
                                      skein_error *error);
 skein_status sk_world_add_tethers(skein_world *world, sk_body *body, size_t count, size_t anchors,
                                   const uint32_t *particles, const real *lengths, skein_error *error);
-/* Says that the body's `count` particles are a grid of rows x columns, in row order; the last row may be short. */
+/* Says that the body's `count` particles are a grid of rows x columns: particle i has place place[i] (row x columns
+ * + column; each its own), or i itself where `place` is NULL. Places may stay empty. */
 skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32_t rows, uint32_t columns,
-                                 uint32_t count, skein_error *error);
+                                 uint32_t count, const uint32_t *place, skein_error *error);
 /* Says in which order the body's particles should lie in memory: rank[i] is the place of its i-th one. */
 void sk_world_rank_particles(skein_world *world, const sk_body *body, const uint32_t *rank, size_t count);
 /* Keeps the edges of the body's newest batch under its strain bound. */
