@@ -118,16 +118,21 @@ static void sine_cosine(double degrees, double *s, double *c) {
     sk_sincos(turn * 0.017453292519943295, s, c);
 }
 
-void sk_sheet_transform(sk_sheet *sheet, double scale, const double degrees[3], const double offset[3]) {
+void sk_points_transform(double (*points)[3], size_t count, double scale, const double degrees[3],
+                         const double offset[3]) {
     double s[3], c[3];
     for (int k = 0; k < 3; k++) sine_cosine(degrees[k], &s[k], &c[k]);
-    for (size_t i = 0; i < sheet->vertex_count; i++) {
-        double *p = sheet->position[i], x = p[0] * scale, y = p[1] * scale, z = p[2] * scale, t;
+    for (size_t i = 0; i < count; i++) {
+        double *p = points[i], x = p[0] * scale, y = p[1] * scale, z = p[2] * scale, t;
         t = c[0] * y - s[0] * z, z = s[0] * y + c[0] * z, y = t;
         t = c[1] * x + s[1] * z, z = c[1] * z - s[1] * x, x = t;
         t = c[2] * x - s[2] * y, y = s[2] * x + c[2] * y, x = t;
         p[0] = x + offset[0], p[1] = y + offset[1], p[2] = z + offset[2];
     }
+}
+
+void sk_sheet_transform(sk_sheet *sheet, double scale, const double degrees[3], const double offset[3]) {
+    sk_points_transform(sheet->position, sheet->vertex_count, scale, degrees, offset);
 }
 
 /* ---- welding ---- */
