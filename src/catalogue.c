@@ -5,7 +5,7 @@
 
 #include "bodies/body.h"
 
-static const sk_body_type *const bodies[] = {&sk_cloth, &sk_lattice};
+static const sk_body_type *const bodies[] = {&sk_cloth, &sk_lattice, &sk_rope};
 static const sk_constraint_type *const constraints[] = {&sk_distance};
 static const sk_force_type *const forces[] = {&sk_gravity, &sk_wind, &sk_surface_wind, &sk_drag, &sk_separation};
 static const sk_collider_type *const colliders[] = {&sk_plane, &sk_sphere};
