@@ -99,6 +99,24 @@ static void it_hangs_the_same_at_any_resolution(void **state) {
         }
 }
 
+/* Three particles, bent to a right angle: the ends are sqrt 2 apart where 2 is rest. */
+static void bending_pushes_the_ends_apart(void **state) {
+    (void)state;
+    skein_world *world = new_world("symplectic_euler", 1);
+    OK(world,
+       skein_body_add(world, "rope", NULL,
+                      SKEIN_SETTINGS(SKEIN_REAL("count", 3), SKEIN_VEC3("to", 2, 0, 0), SKEIN_REAL("density", 1.5),
+                                     SKEIN_REAL("stretch.stiffness", 0), SKEIN_REAL("bend.stiffness", 12)),
+                      NULL));
+    place_particle(world, 2, 1, 1, 0);
+    double h = 1.0 / 1024, force = 12 * (2 - sqrt(2)) / 2;
+    steps(world, 1, h);
+    assert_share(velocity_of(world, 2).x, force / sqrt(2) * h, 1e-5);
+    assert_share(velocity_of(world, 0).y, -force / sqrt(2) * h, 1e-5);
+    assert_true(length3(velocity_of(world, 1)) == 0);
+    skein_world_destroy(world);
+}
+
 /* A soft rope with a firm tether is no longer than its bound, whatever holds it. */
 static void tethers_keep_it_short(void **state) {
     (void)state;
@@ -137,6 +155,7 @@ int main(void) {
         cmocka_unit_test(a_rope_lies_between_its_ends),
         cmocka_unit_test(a_long_rope_hangs),
         cmocka_unit_test(it_hangs_the_same_at_any_resolution),
+        cmocka_unit_test(bending_pushes_the_ends_apart),
         cmocka_unit_test(tethers_keep_it_short),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

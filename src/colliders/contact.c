@@ -5,6 +5,15 @@
  *     ---o---|------- d        part, both relative to the surface's own velocity at p, so that a
  *   =========|=========        turning sphere carries what lies on it (Coulomb friction).
  *
+ * What the surface answers, with F the force and v the velocity relative to it:
+ *
+ *   v.n < 0   the normal part becomes -e v.n (e: the restitution, or what a mass makes of it), and friction takes
+ *             up to mu (1 + e) |v.n| of the tangential part: the same law, for the impulse
+ *   F.n < 0   it is cancelled, and friction of up to mu |F.n| goes against the tangential velocity that F would
+ *             leave at the end of the substep: against the slide while there is one, never so much that it turns
+ *             it round, and against whatever pulls where there is none
+ *
+ * Position methods say the same with moves: friction takes up to mu times the push out.
  * Sixteen particles at a time; lanes that do not touch are masked out. */
 #ifdef SK_ISA
 
