@@ -349,12 +349,12 @@ static uint64_t hash_after(const char *method, const char *isa, int threads, int
     OK(world, skein_method_set(world, method, SKEIN_SETTINGS(SKEIN_REAL("substeps", 10))));
     add_lattice(world, n, n + 10, n,
                 SKEIN_SETTINGS(SKEIN_VEC3("size", 1, 2, 1), SKEIN_VEC3("rotation", 10, 20, 30),
-                               SKEIN_VEC3("position", 0, 1.4, 0), SKEIN_VEC3("velocity", 0, -4, 0),
+                               SKEIN_VEC3("position", 0, 1.4, 0), SKEIN_VEC3("velocity", 0, -15, 0),
                                SKEIN_REAL("struts", 1), SKEIN_REAL("mass", 1000), SKEIN_REAL("structural.damping", 0.1),
                                SKEIN_REAL("structural.limit", 0.02)));
     add_gravity(world);
     OK(world, skein_collider_add(world, "plane", NULL, NULL));
-    steps(world, 6, 1.0 / 60);
+    steps(world, 2, 1.0 / 60);
     skein_statistics s = statistics_of(world);
     assert_int_equal(s.nonfinite, 0);
     assert_true(s.contacts > 0);

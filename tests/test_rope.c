@@ -79,12 +79,12 @@ static void a_long_rope_hangs(void **state) {
  */
 static void it_hangs_the_same_at_any_resolution(void **state) {
     (void)state;
-    static const int counts[] = {9, 33, 65};
+    static const int counts[] = {9, 17};
     for (size_t m = 0; m < COUNT(method_names); m++)
         for (size_t c = 0; c < COUNT(counts); c++) {
-            skein_world *world = new_world(method_names[m], 60);
+            skein_world *world = new_world(method_names[m], 30);
             add_gravity(world);
-            OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 4)), NULL));
+            OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 12)), NULL));
             // straight down, 2 m of 0.5 kg/m: the mean pull is half of 9.81 N, so 1 % of stretch
             OK(world, skein_body_add(world, "rope", NULL,
                                      SKEIN_SETTINGS(SKEIN_REAL("count", counts[c]), SKEIN_VEC3("to", 0, -2, 0),
@@ -92,9 +92,9 @@ static void it_hangs_the_same_at_any_resolution(void **state) {
                                                     SKEIN_REAL("stretch.stiffness", 490.5),
                                                     SKEIN_REAL("stretch.tether", INFINITY)),
                                      NULL));
-            steps(world, 300, 1.0 / 60);
-            assert_near(position_of(world, (size_t)counts[c] - 1).y, -2.02, m ? 0.002 : 2e-5);
-            assert_under(length3(velocity_of(world, (size_t)counts[c] - 1)), 1e-3);
+            steps(world, 60, 1.0 / 60);
+            assert_near(position_of(world, (size_t)counts[c] - 1).y, -2.02, m ? 0.002 : 1e-4);
+            assert_under(length3(velocity_of(world, (size_t)counts[c] - 1)), 2e-3);
             skein_world_destroy(world);
         }
 }
@@ -132,7 +132,7 @@ static void tethers_keep_it_short(void **state) {
                                              SKEIN_REAL("length", i == 2 ? 3 : 0), SKEIN_TEXT("pins", pins[i]),
                                              SKEIN_REAL("stretch.stiffness", 1), SKEIN_REAL("stretch.tether", 0.02)),
                               &rope));
-            steps(world, 120, 1.0 / 90);
+            steps(world, 60, 1.0 / 90);
             double link = (i == 2 ? 3.0 : 2.0) / 20;
             for (size_t p = 0; p < 21; p++) {
                 // of many pins only the nearest holds
@@ -144,7 +144,7 @@ static void tethers_keep_it_short(void **state) {
             }
             // without them it stretches
             OK(world, skein_set(world, rope, "stretch.tether", skein_number(INFINITY)));
-            steps(world, 60, 1.0 / 90);
+            steps(world, 30, 1.0 / 90);
             assert_true(statistics_of(world).max_stretch > 0.1);
             skein_world_destroy(world);
         }
