@@ -83,8 +83,11 @@ static void range_text(const skein_field *field, char *text, size_t size) {
 }
 
 static void default_text(const skein_field *field, char *text, size_t size) {
-    static const int counts[] = {
-        [SKEIN_FIELD_INT2] = 2, [SKEIN_FIELD_REAL2] = 2, [SKEIN_FIELD_VEC3] = 3, [SKEIN_FIELD_TEXT] = 0};
+    static const int counts[] = {[SKEIN_FIELD_INT2] = 2,
+                                 [SKEIN_FIELD_INT3] = 3,
+                                 [SKEIN_FIELD_REAL2] = 2,
+                                 [SKEIN_FIELD_VEC3] = 3,
+                                 [SKEIN_FIELD_TEXT] = 0};
     int count = counts[field->type];
     skein_value initial = {count ? count : 1, {field->initial[0], field->initial[1], field->initial[2]}, NULL};
     char value[128];

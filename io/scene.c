@@ -75,6 +75,7 @@ static bool store(const skein_field *field, void *params, const skein_value *val
     case SKEIN_FIELD_BOOL: *(bool *)at = value->number[0] != 0; break;
     case SKEIN_FIELD_INT:
     case SKEIN_FIELD_INT2:
+    case SKEIN_FIELD_INT3:
         for (int i = 0; i < io_field_numbers(field); i++) ((int32_t *)(void *)at)[i] = (int32_t)value->number[i];
         break;
     case SKEIN_FIELD_REAL:

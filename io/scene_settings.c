@@ -49,6 +49,7 @@ int io_field_numbers(const skein_field *field) {
     case SKEIN_FIELD_REAL: return 1;
     case SKEIN_FIELD_INT2:
     case SKEIN_FIELD_REAL2: return 2;
+    case SKEIN_FIELD_INT3:
     case SKEIN_FIELD_VEC3: return 3;
     case SKEIN_FIELD_CHOICE:
     case SKEIN_FIELD_TEXT: break;

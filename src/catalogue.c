@@ -5,10 +5,10 @@
 
 #include "bodies/body.h"
 
-static const sk_body_type *const bodies[] = {&sk_cloth};
+static const sk_body_type *const bodies[] = {&sk_cloth, &sk_lattice, &sk_rope};
 static const sk_constraint_type *const constraints[] = {&sk_distance};
 static const sk_force_type *const forces[] = {&sk_gravity, &sk_wind, &sk_surface_wind, &sk_drag, &sk_separation};
-static const sk_collider_type *const colliders[] = {&sk_plane, &sk_sphere};
+static const sk_collider_type *const colliders[] = {&sk_plane, &sk_sphere, &sk_bowl, &sk_capsule, &sk_box};
 static const sk_method_type *const methods[] = {&sk_symplectic_euler, &sk_xpbd};
 
 #define COUNT(list) (sizeof(list) / sizeof *(list))

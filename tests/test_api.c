@@ -224,7 +224,7 @@ static void values_out_of_range_are_refused(void **state) {
             assert_true(kind->category == c && kind->help[0]);
             for (size_t f = 0; f < kind->field_count; f++) {
                 const skein_field *field = &kind->fields[f];
-                static const int numbers[] = {1, 1, 2, 1, 2, 3, 1, 0};
+                static const int numbers[] = {1, 1, 2, 3, 1, 2, 3, 1, 0};
                 skein_value value = {numbers[field->type], {field->initial[0], field->initial[1], field->initial[2]},
                                      field->text ? field->text : ""};
                 assert_int_equal(skein_field_check(field, &value, &error), SKEIN_OK);

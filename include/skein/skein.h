@@ -62,6 +62,7 @@ typedef enum skein_field_type {
     SKEIN_FIELD_BOOL,
     SKEIN_FIELD_INT,
     SKEIN_FIELD_INT2, /* two whole numbers, as in a grid's rows and columns */
+    SKEIN_FIELD_INT3,
     SKEIN_FIELD_REAL,
     SKEIN_FIELD_REAL2,
     SKEIN_FIELD_VEC3,

@@ -14,6 +14,7 @@ static int number_count(skein_field_type type) {
     case SKEIN_FIELD_REAL: return 1;
     case SKEIN_FIELD_INT2:
     case SKEIN_FIELD_REAL2: return 2;
+    case SKEIN_FIELD_INT3:
     case SKEIN_FIELD_VEC3: return 3;
     case SKEIN_FIELD_CHOICE:
     case SKEIN_FIELD_TEXT: return 0;
@@ -26,6 +27,7 @@ static const char *type_text(skein_field_type type) {
     case SKEIN_FIELD_BOOL: return "true or false";
     case SKEIN_FIELD_INT: return "a whole number";
     case SKEIN_FIELD_INT2: return "two whole numbers";
+    case SKEIN_FIELD_INT3: return "three whole numbers";
     case SKEIN_FIELD_REAL: return "a number";
     case SKEIN_FIELD_REAL2: return "two numbers";
     case SKEIN_FIELD_VEC3: return "three numbers";
@@ -64,7 +66,8 @@ static void range_text(const skein_field *field, char *text, size_t size) {
 }
 
 static bool is_whole(skein_field_type type) {
-    return type == SKEIN_FIELD_BOOL || type == SKEIN_FIELD_INT || type == SKEIN_FIELD_INT2;
+    return type == SKEIN_FIELD_BOOL || type == SKEIN_FIELD_INT || type == SKEIN_FIELD_INT2 ||
+           type == SKEIN_FIELD_INT3;
 }
 
 skein_status skein_field_check(const skein_field *field, const skein_value *value, skein_error *error) {
@@ -108,6 +111,7 @@ skein_status sk_field_store(sk_allocator *allocator, const skein_field *field, v
     case SKEIN_FIELD_BOOL: *(bool *)at = value->number[0] != 0; break;
     case SKEIN_FIELD_INT:
     case SKEIN_FIELD_INT2:
+    case SKEIN_FIELD_INT3:
         for (int i = 0; i < number_count(field->type); i++) ((int32_t *)(void *)at)[i] = (int32_t)value->number[i];
         break;
     case SKEIN_FIELD_REAL:
@@ -134,6 +138,7 @@ skein_value sk_field_load(const skein_field *field, const void *params) {
     case SKEIN_FIELD_BOOL: value.number[0] = *(const bool *)at; break;
     case SKEIN_FIELD_INT:
     case SKEIN_FIELD_INT2:
+    case SKEIN_FIELD_INT3:
         for (int i = 0; i < value.count; i++) value.number[i] = ((const int32_t *)(const void *)at)[i];
         break;
     case SKEIN_FIELD_REAL:

@@ -1,7 +1,7 @@
 /* Fields: parameters described once, as rows of a table. From a table this file fills in defaults,
  * checks values and reads and writes them in a parameter struct.
  *
- * How a type is stored at its offset: BOOL bool, INT int32_t, INT2 int32_t[2], REAL double,
+ * How a type is stored at its offset: BOOL bool, INT int32_t, INT2 int32_t[2], INT3 int32_t[3], REAL double,
  * REAL2 double[2], VEC3 double[3], CHOICE int32_t (the word's place), TEXT char * (owned). */
 #ifndef SK_BASE_FIELDS_H
 #define SK_BASE_FIELDS_H
@@ -16,12 +16,16 @@
     {name_, SKEIN_FIELD_INT, offsetof(s, member), unit_, {initial_, 0, 0}, least_, most_, NULL, NULL, help_}
 #define SK_INT2(s, member, name_, unit_, a_, b_, least_, most_, help_)                                        \
     {name_, SKEIN_FIELD_INT2, offsetof(s, member), unit_, {a_, b_, 0}, least_, most_, NULL, NULL, help_}
+#define SK_INT3(s, member, name_, unit_, a_, b_, c_, least_, most_, help_)                                    \
+    {name_, SKEIN_FIELD_INT3, offsetof(s, member), unit_, {a_, b_, c_}, least_, most_, NULL, NULL, help_}
 #define SK_REAL(s, member, name_, unit_, initial_, least_, most_, help_)                                      \
     {name_, SKEIN_FIELD_REAL, offsetof(s, member), unit_, {initial_, 0, 0}, least_, most_, NULL, NULL, help_}
 #define SK_REAL2(s, member, name_, unit_, a_, b_, least_, most_, help_)                                       \
     {name_, SKEIN_FIELD_REAL2, offsetof(s, member), unit_, {a_, b_, 0}, least_, most_, NULL, NULL, help_}
 #define SK_VEC3(s, member, name_, unit_, x_, y_, z_, help_)                                                   \
     {name_, SKEIN_FIELD_VEC3, offsetof(s, member), unit_, {x_, y_, z_}, -SK_FAR, SK_FAR, NULL, NULL, help_}
+#define SK_SIZE3(s, member, name_, unit_, x_, y_, z_, help_)                                                  \
+    {name_, SKEIN_FIELD_VEC3, offsetof(s, member), unit_, {x_, y_, z_}, 1e-6, 1e9, NULL, NULL, help_}
 #define SK_TEXT(s, member, name_, initial_, help_)                                                            \
     {name_, SKEIN_FIELD_TEXT, offsetof(s, member), "", {0, 0, 0}, 0, 0, NULL, initial_, help_}
 // clang-format on

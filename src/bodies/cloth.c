@@ -12,8 +12,8 @@
 #include "bodies/geodesic.h"
 #include "bodies/order.h"
 #include "bodies/quads.h"
-#include "bodies/selection.h"
 #include "bodies/sheet.h"
+#include "bodies/sheet_selection.h"
 #include "bodies/springs.h"
 
 typedef struct cloth_params {
@@ -92,7 +92,7 @@ static skein_status add_particles(tailor *t) {
     t->mass = sk_allocate(allocator, count * sizeof *t->mass);
     double(*velocity)[3] = sk_allocate(allocator, count * sizeof *velocity);
     skein_status status = t->pinned && t->mass && velocity ? SKEIN_OK : sk_fail_memory(t->error, "particles");
-    if (!status) status = sk_selection_apply(t->params->pins, &t->sheet, &t->springs, "pins", t->pinned, t->error);
+    if (!status) status = sk_sheet_select(t->params->pins, &t->sheet, &t->springs, "pins", t->pinned, t->error);
     for (size_t i = 0; i < count && !status; i++) {
         t->mass[i] = t->params->density * t->sheet.particle_area[i];
         if (t->mass[i] < 1e-15) t->mass[i] = 0;

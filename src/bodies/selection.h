@@ -1,22 +1,30 @@
-/* Selections: naming particles of a sheet in one line of text.
+/* Selections: naming particles of a body in one line of text.
  *
- *   "top corners"             words: [top | bottom | left | right] corners | edge;  corners;  border;  all
- *   "0 16 288"                vertices by number (negative: from the end)
+ *   "0 16 288"                by number (negative: from the end)
  *   "box -1 0 -1  1 2 1"      all in a box, two corners
  *   "sphere 0 1 0  0.3"       all within a radius of a centre
- *   "top corners, 144"        several, separated by commas
- *
- * On a grid, "top" is the first row and "left" the first column. On a mesh the border is what has one
- * face only, corners are where the border turns by more than 45 degrees, top is the greatest y and left
- * the least x as placed; a mesh without such a thing is an error that says so. */
+ *   "top corners"             words: what they mean is the body's matter (sheet_selection.h, lattice.c)
+ *   "top corners, 144"        several, separated by commas */
 #ifndef SK_BODIES_SELECTION_H
 #define SK_BODIES_SELECTION_H
 
-#include "bodies/sheet.h"
-#include "bodies/springs.h"
+#include "base/memory.h"
+
+/* What can be selected from. */
+typedef struct sk_selectable {
+    sk_allocator *allocator;
+    double (*position)[3]; /* of particles */
+    size_t particle_count;
+    const uint32_t *particle_of_number; /* what a number means; NULL: the particle itself */
+    size_t number_count;
+    const char *number_means, *whole; /* "vertex" of "the mesh", for messages */
+    /* Chooses all that the words name. */
+    skein_status (*choose_words)(void *data, const char *words);
+    void *data;
+} sk_selectable;
 
 /* Sets chosen[particle] for each particle that the text names. `where` is the field's name for errors. */
-skein_status sk_selection_apply(const char *text, const sk_sheet *sheet, const sk_springs *springs, const char *where,
-                                bool *chosen, skein_error *error);
+skein_status sk_selection_apply(const char *text, const sk_selectable *of, const char *where, bool *chosen,
+                                skein_error *error);
 
 #endif

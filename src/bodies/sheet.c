@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/elementary.h"
 #include "base/hash.h"
+#include "base/rotation.h"
 #include "base/status.h"
 
 void sk_sheet_release(sk_sheet *sheet) {
@@ -104,30 +104,21 @@ skein_status sk_sheet_from_grid(sk_sheet *sheet, sk_allocator *allocator, const 
     return SKEIN_OK;
 }
 
-/* Sine and cosine of an angle in degrees, exact at the quarter turns that scenes ask for most. */
-static void sine_cosine(double degrees, double *s, double *c) {
-    double turn = fmod(degrees, 360);
-    if (turn < 0) turn += 360;
-    static const double quarter_sine[] = {0, 1, 0, -1};
-    for (int q = 0; q < 4; q++)
-        if (turn == 90.0 * q) {
-            *s = quarter_sine[q];
-            *c = quarter_sine[(q + 1) % 4];
-            return;
-        }
-    sk_sincos(turn * 0.017453292519943295, s, c);
-}
-
-void sk_sheet_transform(sk_sheet *sheet, double scale, const double degrees[3], const double offset[3]) {
+void sk_points_transform(double (*points)[3], size_t count, double scale, const double degrees[3],
+                         const double offset[3]) {
     double s[3], c[3];
-    for (int k = 0; k < 3; k++) sine_cosine(degrees[k], &s[k], &c[k]);
-    for (size_t i = 0; i < sheet->vertex_count; i++) {
-        double *p = sheet->position[i], x = p[0] * scale, y = p[1] * scale, z = p[2] * scale, t;
+    for (int k = 0; k < 3; k++) sk_sincos_degrees(degrees[k], &s[k], &c[k]);
+    for (size_t i = 0; i < count; i++) {
+        double *p = points[i], x = p[0] * scale, y = p[1] * scale, z = p[2] * scale, t;
         t = c[0] * y - s[0] * z, z = s[0] * y + c[0] * z, y = t;
         t = c[1] * x + s[1] * z, z = c[1] * z - s[1] * x, x = t;
         t = c[2] * x - s[2] * y, y = s[2] * x + c[2] * y, x = t;
         p[0] = x + offset[0], p[1] = y + offset[1], p[2] = z + offset[2];
     }
+}
+
+void sk_sheet_transform(sk_sheet *sheet, double scale, const double degrees[3], const double offset[3]) {
+    sk_points_transform(sheet->position, sheet->vertex_count, scale, degrees, offset);
 }
 
 /* ---- welding ---- */

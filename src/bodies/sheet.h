@@ -34,6 +34,9 @@ skein_status sk_sheet_from_grid(sk_sheet *sheet, sk_allocator *allocator, const 
                                 skein_error *error);
 /* Scales, turns (degrees about x, then y, then z) and moves the vertices. */
 void sk_sheet_transform(sk_sheet *sheet, double scale, const double degrees[3], const double offset[3]);
+/* The same for any points. */
+void sk_points_transform(double (*points)[3], size_t count, double scale, const double degrees[3],
+                         const double offset[3]);
 /* Makes particles: vertices nearer than `distance` (0: none) become one. Then faces and areas. */
 skein_status sk_sheet_weld(sk_sheet *sheet, double distance, skein_error *error);
 void sk_sheet_release(sk_sheet *sheet);

@@ -40,6 +40,10 @@ typedef struct sk_collider_type {
     skein_status (*check)(const void *params, skein_error *error);
     /* The shape's own point: a sphere's centre, a point of a plane. */
     void (*place)(const void *params, double position[3]);
+    /* Rows of the matrix that turns the shape before any motion; NULL: it is not turned. */
+    void (*turn)(const void *params, double rotation[9]);
+    /* The collider's mass, which then says how particles bounce, or 0; NULL: it has none. */
+    double (*mass)(const void *params);
     /* Distance and normal of sixteen particles; a version for each instruction set. */
     sk_probe *probe[SK_ISA_COUNT];
 } sk_collider_type;
@@ -49,6 +53,7 @@ typedef struct sk_collider {
     const void *params;
     const sk_collider_common *common;
     const char *label;
+    double warned_mass; /* that it was too light was said when its mass was this */
 } sk_collider;
 
 /* Fields of sk_collider_common. */
@@ -56,6 +61,8 @@ extern const skein_field sk_collider_fields[];
 extern const size_t sk_collider_field_count;
 
 sk_pose sk_collider_pose_at(const sk_collider *collider, double time);
+/* The collider's mass, 0 where it has none: particles then bounce by its restitution. */
+double sk_collider_mass(const sk_collider *collider);
 
 /* Force methods: cancels the inward part of F and adds Coulomb friction that never reverses a slide. */
 extern const sk_kernels sk_contact_force;
@@ -73,6 +80,6 @@ bool sk_contact_reads_force(const sk_collider *collider);
 void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
                          size_t particle_count, double *penetration, size_t *contacts);
 
-extern const sk_collider_type sk_plane, sk_sphere;
+extern const sk_collider_type sk_plane, sk_sphere, sk_bowl, sk_capsule, sk_box;
 
 #endif

@@ -5,6 +5,15 @@
  *     ---o---|------- d        part, both relative to the surface's own velocity at p, so that a
  *   =========|=========        turning sphere carries what lies on it (Coulomb friction).
  *
+ * What the surface answers, with F the force and v the velocity relative to it:
+ *
+ *   v.n < 0   the normal part becomes -e v.n (e: the restitution, or what a mass makes of it), and friction takes
+ *             up to mu (1 + e) |v.n| of the tangential part: the same law, for the impulse
+ *   F.n < 0   it is cancelled, and friction of up to mu |F.n| goes against the tangential velocity that F would
+ *             leave at the end of the substep: against the slide while there is one, never so much that it turns
+ *             it round, and against whatever pulls where there is none
+ *
+ * Position methods say the same with moves: friction takes up to mu times the push out.
  * Sixteen particles at a time; lanes that do not touch are masked out. */
 #ifdef SK_ISA
 
@@ -67,6 +76,14 @@ SK_INLINE void SK_ISA(apply)(sk_run *run, const sk_row *row, size_t slot, sk_wid
     SK_ISA(sk_store_block)(run->vector[row->dst], slot, slot < row->packed, old);
 }
 
+/* Speed after a bounce over speed before: of a collider with a mass (m - M)/(m + M), but never inwards. */
+SK_INLINE sk_wide SK_ISA(restitution_of)(const sk_collider *collider, sk_wide mass) {
+    real own = (real)sk_collider_mass(collider);
+    if (!(own > 0)) return SK_ISA(sk_splat)((real)collider->common->restitution);
+    sk_wide share = (own - mass) / (own + mass);
+    return SK_ISA(sk_keep)(SK_ISA(sk_positive)(share), share);
+}
+
 static void SK_ISA(contact_force)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_collider *collider = row->rule;
     sk_pose pose = sk_collider_pose_at(collider, run->time);
@@ -100,7 +117,7 @@ static void SK_ISA(contact_impulse)(sk_run *run, const sk_row *row, size_t begin
         sk_wide4 v = SK_ISA(sk_load_block)(run->vector[row->dst], slot, slot < row->packed);
         sk_wide3 slide;
         sk_wide approach = SK_ISA(split)(SK_ISA(minus)(SK_ISA(three)(v), e.surface), e.contact.normal, &slide);
-        sk_wide bounce = (1 + (real)collider->common->restitution) * -approach;
+        sk_wide bounce = (1 + SK_ISA(restitution_of)(collider, v.w)) * -approach;
         sk_wide speed = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(slide, slide));
         sk_wide share = SK_ISA(share_of)(speed, (real)collider->common->friction * bounce);
         sk_wide3 change = SK_ISA(minus)(SK_ISA(times)(bounce, e.contact.normal), SK_ISA(times)(share, slide));
@@ -148,8 +165,8 @@ static void SK_ISA(contact_restitution)(sk_run *run, const sk_row *row, size_t b
             // what a substep's force alone brings is no impact; bouncing it would make resting things jitter
             sk_wide3 f = SK_ISA(three)(SK_ISA(sk_load_block)(run->vector[SK_F], slot, packed));
             sk_wide resting = (2 * (real)row->dt) * e.x.w * SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(f, f));
-            bounce =
-                SK_ISA(sk_keep)(SK_ISA(sk_more)(-approach, resting), (real)collider->common->restitution * -approach);
+            bounce = SK_ISA(sk_keep)(SK_ISA(sk_more)(-approach, resting),
+                                     SK_ISA(restitution_of)(collider, v.w) * -approach);
         }
         SK_ISA(apply)
         (run, row, slot, v, e.touching & SK_ISA(sk_negative)(approach),
@@ -198,6 +215,18 @@ static void rotation_about(const double u[3], double angle, real rotation[9]) {
     for (int i = 0; i < 9; i++) rotation[i] = (real)m[i];
 }
 
+/* rotation = rotation times the shape's own. */
+static void turn_first(const sk_collider *collider, real rotation[9]) {
+    double own[9];
+    real moved[9];
+    collider->type->turn(collider->params, own);
+    memcpy(moved, rotation, sizeof moved);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            rotation[3 * r + c] =
+                moved[3 * r] * (real)own[c] + moved[3 * r + 1] * (real)own[3 + c] + moved[3 * r + 2] * (real)own[6 + c];
+}
+
 sk_pose sk_collider_pose_at(const sk_collider *collider, double time) {
     const sk_collider_common *common = collider->common;
     double since = time - common->start, position[3], axis[3] = {0, 1, 0};
@@ -214,11 +243,16 @@ sk_pose sk_collider_pose_at(const sk_collider *collider, double time) {
     pose.velocity = moving ? sk_v3_of(common->velocity) : sk_v3(0, 0, 0);
     pose.spin = sk_v3((real)(axis[0] * spin), (real)(axis[1] * spin), (real)(axis[2] * spin));
     rotation_about(axis, spin * since, pose.rotation);
+    if (collider->type->turn) turn_first(collider, pose.rotation);
     return pose;
 }
 
+double sk_collider_mass(const sk_collider *collider) {
+    return collider->type->mass ? collider->type->mass(collider->params) : 0;
+}
+
 bool sk_contact_reads_force(const sk_collider *collider) {
-    return collider->common->restitution > 0;
+    return collider->common->restitution > 0 || sk_collider_mass(collider) > 0;
 }
 
 void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,

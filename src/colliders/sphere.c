@@ -16,17 +16,23 @@ static void SK_ISA(probe)(const void *data, const sk_pose *pose, const sk_wide3 
 #include "colliders/collider.h"
 
 typedef struct sphere_params {
-    double centre[3], radius;
+    double centre[3], radius, mass;
 } sphere_params;
 
 static const skein_field fields[] = {
     SK_VEC3(sphere_params, centre, "centre", "m", 0, 0, 0, "the centre, before any motion"),
     SK_REAL(sphere_params, radius, "radius", "m", 0.5, 1e-9, SK_FAR, "the radius"),
+    SK_REAL(sphere_params, mass, "mass", "kg", 0, 0, SK_FAR,
+            "instead of the restitution: particles bounce as off a ball of that mass, which stays; 0 is none"),
 };
 
 static void place(const void *data, double position[3]) {
     const sphere_params *params = data;
     for (int k = 0; k < 3; k++) position[k] = params->centre[k];
+}
+
+static double mass_of(const void *params) {
+    return ((const sphere_params *)params)->mass;
 }
 
 #define SK_KERNELS "colliders/sphere.c"
@@ -36,6 +42,7 @@ const sk_collider_type sk_sphere = {
     .kind = {"sphere", "a ball, solid inside", SKEIN_COLLIDER, fields, sizeof fields / sizeof *fields,
              sizeof(sphere_params)},
     .place = place,
+    .mass = mass_of,
     .probe = SK_EACH_ISA(probe),
 };
 #endif

@@ -110,7 +110,7 @@ skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *t
         unmake_object(world, object);
         return sk_fail_memory(error, type->kind.name);
     }
-    *collider = (sk_collider){type, object->params, &object->common.collider, object->label};
+    *collider = (sk_collider){type, object->params, &object->common.collider, object->label, 0};
     world->rules.colliders.data[world->rules.colliders.count++] = collider;
     object->as.collider = collider;
     return finish_object(world, object, handle);

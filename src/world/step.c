@@ -22,6 +22,23 @@ skein_status sk_world_arrange(skein_world *world, skein_error *error) {
     return SKEIN_OK;
 }
 
+/* A collider lighter than a particle would go on inwards with it: it stops it instead, and that is said once. */
+static void warn_of_light_colliders(skein_world *world) {
+    const sk_particles *all = &world->particles;
+    for (size_t i = 0; i < world->rules.colliders.count; i++) {
+        sk_collider *collider = world->rules.colliders.data[i];
+        double mass = sk_collider_mass(collider), heaviest = 0;
+        if (!(mass > 0) || mass == collider->warned_mass) continue;
+        for (size_t p = 0; p < all->count; p++)
+            if (!all->held[p] && (double)all->mass[p] > heaviest) heaviest = (double)all->mass[p];
+        if (!(mass < heaviest)) continue;
+        sk_world_log(world, SKEIN_LOG_WARNING,
+                     "%s: its mass of %g kg is less than that of a particle, %g kg: such particles stop at it",
+                     collider->label, mass, heaviest);
+        collider->warned_mass = mass;
+    }
+}
+
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error) {
     if (!(dt > 0) || !(dt <= 1e6))
         return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0", dt);
@@ -34,6 +51,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         if (status) return status;
     }
     for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);
+    warn_of_light_colliders(world);
     world->plan.count = 0;
     sk_writer writer = {
         .plan = &world->plan,

@@ -1,0 +1,48 @@
+/* A ball from inside: everything outside of it is solid. */
+#ifdef SK_ISA
+
+static void SK_ISA(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
+    real radius = (real)((const bowl_params *)data)->radius;
+    sk_wide3 d = {pose->position.x - p->x, pose->position.y - p->y, pose->position.z - p->z};
+    sk_wide length = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(d, d));
+    // in the very middle no way leads to the wall: there is no contact
+    sk_mask apart = SK_ISA(sk_positive)(length);
+    sk_wide below = SK_ISA(sk_select)(apart, length, SK_ISA(sk_splat)(1));
+    contact->normal = (sk_wide3){d.x / below, SK_ISA(sk_select)(apart, d.y / below, SK_ISA(sk_splat)(1)), d.z / below};
+    contact->distance = SK_ISA(sk_select)(apart, radius - length, SK_ISA(sk_splat)((real)SK_FAR));
+}
+
+#else
+#include "colliders/collider.h"
+
+typedef struct bowl_params {
+    double centre[3], radius, mass;
+} bowl_params;
+
+static const skein_field fields[] = {
+    SK_VEC3(bowl_params, centre, "centre", "m", 0, 0, 0, "the middle, before any motion"),
+    SK_REAL(bowl_params, radius, "radius", "m", 1, 1e-9, SK_FAR, "the radius"),
+    SK_REAL(bowl_params, mass, "mass", "kg", 0, 0, SK_FAR,
+            "instead of the restitution: particles bounce as off a wall of that mass, which stays; 0 is none"),
+};
+
+static void place(const void *data, double position[3]) {
+    const bowl_params *params = data;
+    for (int k = 0; k < 3; k++) position[k] = params->centre[k];
+}
+
+static double mass_of(const void *params) {
+    return ((const bowl_params *)params)->mass;
+}
+
+#define SK_KERNELS "colliders/bowl.c"
+#include "base/for_each_isa.h"
+
+const sk_collider_type sk_bowl = {
+    .kind = {"bowl", "the inside of a ball: what is in it stays in it", SKEIN_COLLIDER, fields,
+             sizeof fields / sizeof *fields, sizeof(bowl_params)},
+    .place = place,
+    .mass = mass_of,
+    .probe = SK_EACH_ISA(probe),
+};
+#endif
