@@ -91,17 +91,25 @@ SK_INLINE sk_wide SK_ISA(sk_wide_sqrt)(sk_wide a) {
 }
 
 SK_INLINE sk_wide SK_ISA(sk_wide_abs)(sk_wide a) {
-    return SK_ISA(sk_select)(SK_ISA(sk_negative)(a), -a, a);
+    const sk_lane_int all_but_sign = sizeof(real) == 8 ? (sk_lane_int)INT64_MAX : (sk_lane_int)INT32_MAX;
+    return (sk_wide)((sk_mask)a & all_but_sign);
 }
 
 SK_INLINE bool SK_ISA(sk_any)(sk_mask mask) {
     SK_ISA(parts) p = {.mask = mask};
+#ifdef SK_HAS_AVX512
+    bool any = false;
+    for (int i = 0; i < SK_ISA(native_parts); i++)
+        any |= _mm512_test_epi32_mask((__m512i)p.native_mask[i], (__m512i)p.native_mask[i]) != 0;
+    return any;
+#else
     SK_ISA(native_mask) all = p.native_mask[0];
     for (int i = 1; i < SK_ISA(native_parts); i++) all |= p.native_mask[i];
     uint64_t words[SK_ISA(native_bytes) / 8], any = 0;
     memcpy(words, &all, sizeof words);
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) any |= words[i];
     return any != 0;
+#endif
 }
 
 SK_INLINE sk_wide SK_ISA(sk_dot_wide)(sk_wide3 a, sk_wide3 b) {

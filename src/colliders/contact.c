@@ -242,7 +242,8 @@ sk_pose sk_collider_pose_at(const sk_collider *collider, double time) {
     sk_pose pose = {.position = sk_v3_of(position)};
     pose.velocity = moving ? sk_v3_of(common->velocity) : sk_v3(0, 0, 0);
     pose.spin = sk_v3((real)(axis[0] * spin), (real)(axis[1] * spin), (real)(axis[2] * spin));
-    rotation_about(axis, spin * since, pose.rotation);
+    pose.rotation[0] = pose.rotation[4] = pose.rotation[8] = 1;
+    if (spin != 0) rotation_about(axis, spin * since, pose.rotation);
     if (collider->type->turn) turn_first(collider, pose.rotation);
     return pose;
 }

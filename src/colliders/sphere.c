@@ -7,8 +7,9 @@ static void SK_ISA(probe)(const void *data, const sk_pose *pose, const sk_wide3 
     sk_wide length = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(d, d));
     // at the very centre every way out is as good: take up
     sk_mask apart = SK_ISA(sk_positive)(length);
-    sk_wide below = SK_ISA(sk_select)(apart, length, SK_ISA(sk_splat)(1));
-    contact->normal = (sk_wide3){d.x / below, SK_ISA(sk_select)(apart, d.y / below, SK_ISA(sk_splat)(1)), d.z / below};
+    sk_wide inverse = 1 / SK_ISA(sk_select)(apart, length, SK_ISA(sk_splat)(1));
+    contact->normal =
+        (sk_wide3){d.x * inverse, SK_ISA(sk_select)(apart, d.y * inverse, SK_ISA(sk_splat)(1)), d.z * inverse};
     contact->distance = length - radius;
 }
 

@@ -213,9 +213,11 @@ void sk_write_forces(sk_writer *writer) {
     }
 }
 
-/* Without damping and with one pass a substep, the multiplier is zero whenever it is read. */
+/* Without damping the multiplier is zero whenever it is read in the only pass of a substep, and counts for nothing
+ * in a rigid batch. */
 static bool keeps_multiplier(const sk_batch *batch, int passes) {
-    return passes > 1 || sk_batch_damping_time(batch) > 0;
+    bool rigid = ((const sk_material *)batch->params)->stiffness >= SK_UNBOUNDED;
+    return (passes > 1 && !rigid) || sk_batch_damping_time(batch) > 0;
 }
 
 void sk_write_projections(sk_writer *writer, int passes) {
