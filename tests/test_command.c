@@ -116,7 +116,7 @@ static void check_counts_what_is_there(void **state) {
 static void explain_shows_every_kind_of_row(void **state) {
     (void)state;
     static const char *const kinds[] = {"combine",    "grid",      "field",     "neighbour", "force", "project",
-                                        "multiplier", "contact F", "contact V", "contact X", "limit", "repeat"};
+                                        "multiplier", "contact F", "contact V", "contact X", "contact XV", "limit", "repeat"};
     bool seen[COUNT(kinds)] = {false};
     static const char *const methods[] = {"method={\"type\":\"symplectic_euler\"}",
                                           "method={\"type\":\"xpbd\",\"iterations\":2}"};

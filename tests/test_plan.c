@@ -123,7 +123,7 @@ static void explain_prints_a_line_a_row(void **state) {
         // the repeat says how often and how much, and what it repeats is indented
         assert_int_equal(lines_with(&p, "3 times"), 1);
         assert_true(lines_with(&p, "gravity") == 1 && lines_with(&p, "separation") == 1 && lines_with(&p, "limit") >= 1);
-        assert_true(lines_with(&p, "ball") == lines_with(&p, "ground") && lines_with(&p, "ball") >= 2);
+        assert_true(lines_with(&p, "ball") == lines_with(&p, "ground") && lines_with(&p, "ball") >= 1);
         assert_int_equal(lines_with(&p, "    "), p.count);
         size_t repeat = 0;
         while (world->plan.data[repeat].kind != SK_ROW_REPEAT) repeat++;
@@ -142,7 +142,7 @@ static void explain_prints_a_line_a_row(void **state) {
         OK(world, skein_world_explain(world, dt, write_line, &p));
         assert_int_equal(lines_with(&p, "ball"), 0);
         assert_int_equal(lines_with(&p, "weight"), 0);
-        assert_true(lines_with(&p, "ground") >= 2);
+        assert_true(lines_with(&p, "ground") >= 1);
 
         // without a reader it only makes sure that there is a plan
         OK(world, skein_world_explain(world, dt, NULL, NULL));

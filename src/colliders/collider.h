@@ -14,6 +14,7 @@
 typedef struct sk_pose {
     sk_vec3 position;
     real rotation[9]; /* rows of the matrix that turns the shape as built into the shape now */
+    sk_vec3 axis;     /* the shape's own direction, where it has one */
     sk_vec3 velocity; /* of `position`, m/s */
     sk_vec3 spin;     /* angular velocity, rad/s */
 } sk_pose;
@@ -40,6 +41,8 @@ typedef struct sk_collider_type {
     skein_status (*check)(const void *params, skein_error *error);
     /* The shape's own point: a sphere's centre, a point of a plane. */
     void (*place)(const void *params, double position[3]);
+    /* Its own unit direction before any motion: a plane's normal; NULL: it has none. */
+    void (*axis)(const void *params, double unit[3]);
     /* Rows of the matrix that turns the shape before any motion; NULL: it is not turned. */
     void (*turn)(const void *params, double rotation[9]);
     /* The collider's mass, which then says how particles bounce, or 0; NULL: it has none. */
@@ -70,8 +73,9 @@ extern const sk_kernels sk_contact_force;
 extern const sk_kernels sk_contact_impulse;
 /* All methods: moves X out to the thickness. With a second source (X0), friction against it. */
 extern const sk_kernels sk_contact_push;
-/* Position methods: gives V the bounce that V0, its second source, had coming. */
-extern const sk_kernels sk_contact_restitution;
+/* Position methods, once V has followed X: pushes X out with friction against X0, the second source, and gives V
+ * the same move, and the bounce that V0, the third source, had coming. */
+extern const sk_kernels sk_contact_settle;
 
 /* Whether contact with this collider looks at F after the velocity update: what bounces must know what weighs. */
 bool sk_contact_reads_force(const sk_collider *collider);

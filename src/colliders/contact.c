@@ -125,6 +125,23 @@ static void SK_ISA(contact_impulse)(sk_run *run, const sk_row *row, size_t begin
     }
 }
 
+/* The way out of the solid, up to the thickness; where a vector of old positions is given, less the slide since
+ * then that friction takes back, up to mu times the push. */
+SK_INLINE sk_wide3 SK_ISA(way_out)(const sk_run *run, const sk_row *row, size_t slot, const SK_ISA(encounter) * e,
+                                   sk_wide push) {
+    sk_wide3 move = SK_ISA(times)(push, e->contact.normal);
+    if (row->source[1] == SK_NONE) return move;
+    sk_wide4 start = SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, slot < row->packed);
+    sk_wide3 moved = SK_ISA(minus)(SK_ISA(minus)(SK_ISA(three)(e->x), SK_ISA(three)(start)),
+                                   SK_ISA(times)(SK_ISA(sk_splat)((real)row->dt), e->surface));
+    sk_wide3 slide;
+    SK_ISA(split)(moved, e->contact.normal, &slide);
+    sk_wide length = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(slide, slide));
+    const sk_collider *collider = row->rule;
+    sk_wide share = SK_ISA(share_of)(length, (real)collider->common->friction * push);
+    return SK_ISA(minus)(move, SK_ISA(times)(share, slide));
+}
+
 static void SK_ISA(contact_push)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_collider *collider = row->rule;
     sk_pose pose = sk_collider_pose_at(collider, run->time);
@@ -132,45 +149,49 @@ static void SK_ISA(contact_push)(sk_run *run, const sk_row *row, size_t begin, s
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         if (!SK_ISA(meet)(run, row, &pose, slot, &e)) continue;
         sk_wide push = (real)collider->common->thickness - e.contact.distance;
-        sk_wide3 move = SK_ISA(times)(push, e.contact.normal);
-        if (row->source[1] != SK_NONE) {
-            // friction takes back the slide since the start of the substep, up to mu times the push
-            sk_wide4 start = SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, slot < row->packed);
-            sk_wide3 moved = SK_ISA(minus)(SK_ISA(minus)(SK_ISA(three)(e.x), SK_ISA(three)(start)),
-                                           SK_ISA(times)(SK_ISA(sk_splat)((real)row->dt), e.surface));
-            sk_wide3 slide;
-            SK_ISA(split)(moved, e.contact.normal, &slide);
-            sk_wide length = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(slide, slide));
-            sk_wide share = SK_ISA(share_of)(length, (real)collider->common->friction * push);
-            move = SK_ISA(minus)(move, SK_ISA(times)(share, slide));
-        }
-        SK_ISA(apply)(run, row, slot, e.x, e.touching & SK_ISA(sk_positive)(push), move);
+        SK_ISA(apply)
+        (run, row, slot, e.x, e.touching & SK_ISA(sk_positive)(push), SK_ISA(way_out)(run, row, slot, &e, push));
     }
 }
 
-static void SK_ISA(contact_restitution)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+/* The speed at which particles leave that came at `approach` < 0. */
+SK_INLINE sk_wide SK_ISA(bounce_of)(const sk_run *run, const sk_row *row, size_t slot, const SK_ISA(encounter) * e,
+                                    sk_wide mass, sk_wide approach) {
+    const sk_collider *collider = row->rule;
+    // what a substep's force alone brings is no impact; bouncing it would make resting things jitter
+    sk_wide3 f = SK_ISA(three)(SK_ISA(sk_load_block)(run->vector[SK_F], slot, slot < row->packed));
+    sk_wide resting = (2 * (real)row->dt) * e->x.w * SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(f, f));
+    return SK_ISA(sk_keep)(SK_ISA(sk_more)(-approach, resting), SK_ISA(restitution_of)(collider, mass) * -approach);
+}
+
+static void SK_ISA(contact_settle)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_collider *collider = row->rule;
     bool bounces = sk_contact_reads_force(collider);
     sk_pose pose = sk_collider_pose_at(collider, run->time);
+    sk_wide per_step = SK_ISA(sk_splat)((real)(1 / row->dt));
     SK_ISA(encounter) e;
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         if (!SK_ISA(meet)(run, row, &pose, slot, &e)) continue;
         bool packed = slot < row->packed;
-        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed);
-        sk_wide3 before = SK_ISA(three)(SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, packed));
+        sk_wide push = (real)collider->common->thickness - e.contact.distance;
+        sk_mask pushed = e.touching & SK_ISA(sk_positive)(push);
+        sk_wide3 move = SK_ISA(way_out)(run, row, slot, &e, push);
+        SK_ISA(apply)(run, row, slot, e.x, pushed, move);
+
+        // the move is velocity, too; but along the normal what counts is how the particle came
+        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed);
+        v.x += SK_ISA(sk_keep)(pushed, per_step * move.x);
+        v.y += SK_ISA(sk_keep)(pushed, per_step * move.y);
+        v.z += SK_ISA(sk_keep)(pushed, per_step * move.z);
+        sk_wide3 before = SK_ISA(three)(SK_ISA(sk_load_block)(run->vector[row->source[2]], slot, packed));
         sk_wide approach = SK_ISA(sk_dot_wide)(SK_ISA(minus)(before, e.surface), e.contact.normal);
-        sk_wide leaving = SK_ISA(sk_dot_wide)(SK_ISA(minus)(SK_ISA(three)(v), e.surface), e.contact.normal);
-        sk_wide bounce = {0};
-        if (bounces) {
-            // what a substep's force alone brings is no impact; bouncing it would make resting things jitter
-            sk_wide3 f = SK_ISA(three)(SK_ISA(sk_load_block)(run->vector[SK_F], slot, packed));
-            sk_wide resting = (2 * (real)row->dt) * e.x.w * SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(f, f));
-            bounce = SK_ISA(sk_keep)(SK_ISA(sk_more)(-approach, resting),
-                                     SK_ISA(restitution_of)(collider, v.w) * -approach);
-        }
-        SK_ISA(apply)
-        (run, row, slot, v, e.touching & SK_ISA(sk_negative)(approach),
-         SK_ISA(times)(bounce - leaving, e.contact.normal));
+        sk_wide change = -SK_ISA(sk_dot_wide)(SK_ISA(minus)(SK_ISA(three)(v), e.surface), e.contact.normal);
+        if (bounces) change += SK_ISA(bounce_of)(run, row, slot, &e, v.w, approach);
+        change = SK_ISA(sk_keep)(e.touching & SK_ISA(sk_negative)(approach), change);
+        v.x += change * e.contact.normal.x;
+        v.y += change * e.contact.normal.y;
+        v.z += change * e.contact.normal.z;
+        SK_ISA(sk_store_moved)(run->vector[SK_V], slot, packed, v);
     }
 }
 
@@ -188,7 +209,7 @@ static void SK_ISA(contact_restitution)(sk_run *run, const sk_row *row, size_t b
 const sk_kernels sk_contact_force = {SK_EACH_ISA(contact_force)};
 const sk_kernels sk_contact_impulse = {SK_EACH_ISA(contact_impulse)};
 const sk_kernels sk_contact_push = {SK_EACH_ISA(contact_push)};
-const sk_kernels sk_contact_restitution = {SK_EACH_ISA(contact_restitution)};
+const sk_kernels sk_contact_settle = {SK_EACH_ISA(contact_settle)};
 
 const skein_field sk_collider_fields[] = {
     SK_TEXT(sk_collider_common, name, "name", "", "for paths and messages"),
@@ -245,6 +266,14 @@ sk_pose sk_collider_pose_at(const sk_collider *collider, double time) {
     pose.rotation[0] = pose.rotation[4] = pose.rotation[8] = 1;
     if (spin != 0) rotation_about(axis, spin * since, pose.rotation);
     if (collider->type->turn) turn_first(collider, pose.rotation);
+    if (collider->type->axis) {
+        double unit[3];
+        collider->type->axis(collider->params, unit);
+        const real *r = pose.rotation;
+        sk_vec3 n = sk_v3_of(unit);
+        pose.axis = sk_v3(r[0] * n.x + r[1] * n.y + r[2] * n.z, r[3] * n.x + r[4] * n.y + r[5] * n.z,
+                          r[6] * n.x + r[7] * n.y + r[8] * n.z);
+    }
     return pose;
 }
 

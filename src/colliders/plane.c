@@ -2,7 +2,8 @@
 #ifdef SK_ISA
 
 static void SK_ISA(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
-    sk_vec3 n = normal_now(data, pose), o = pose->position;
+    (void)data;
+    sk_vec3 n = pose->axis, o = pose->position;
     contact->normal = (sk_wide3){SK_ISA(sk_splat)(n.x), SK_ISA(sk_splat)(n.y), SK_ISA(sk_splat)(n.z)};
     contact->distance = n.x * (p->x - o.x) + n.y * (p->y - o.y) + n.z * (p->z - o.z);
 }
@@ -36,13 +37,10 @@ static void place(const void *data, double position[3]) {
     for (int k = 0; k < 3; k++) position[k] = params->normal[k] / length * params->offset;
 }
 
-static sk_vec3 normal_now(const plane_params *params, const sk_pose *pose) {
+static void axis(const void *data, double unit[3]) {
+    const plane_params *params = data;
     double length = normal_length(params);
-    sk_vec3 n = {(real)(params->normal[0] / length), (real)(params->normal[1] / length),
-                 (real)(params->normal[2] / length)};
-    const real *r = pose->rotation;
-    return sk_v3(r[0] * n.x + r[1] * n.y + r[2] * n.z, r[3] * n.x + r[4] * n.y + r[5] * n.z,
-                 r[6] * n.x + r[7] * n.y + r[8] * n.z);
+    for (int k = 0; k < 3; k++) unit[k] = params->normal[k] / length;
 }
 
 #define SK_KERNELS "colliders/plane.c"
@@ -53,6 +51,7 @@ const sk_collider_type sk_plane = {
              sizeof fields / sizeof *fields, sizeof(plane_params)},
     .check = check,
     .place = place,
+    .axis = axis,
     .probe = SK_EACH_ISA(probe),
 };
 #endif

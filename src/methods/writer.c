@@ -248,7 +248,7 @@ void sk_write_projections(sk_writer *writer, int passes) {
         }
 }
 
-void sk_write_contacts(sk_writer *writer, sk_contact_sort sort, sk_vector before) {
+void sk_write_contacts(sk_writer *writer, sk_contact_sort sort) {
     static const struct {
         sk_row_kind kind;
         const sk_kernels *kernels;
@@ -257,8 +257,9 @@ void sk_write_contacts(sk_writer *writer, sk_contact_sort sort, sk_vector before
         [SK_CONTACT_FORCE] = {SK_ROW_CONTACT_FORCE, &sk_contact_force, SK_F},
         [SK_CONTACT_IMPULSE] = {SK_ROW_CONTACT_VELOCITY, &sk_contact_impulse, SK_V},
         [SK_CONTACT_PUSH] = {SK_ROW_CONTACT_POSITION, &sk_contact_push, SK_X},
-        [SK_CONTACT_RESTITUTION] = {SK_ROW_CONTACT_VELOCITY, &sk_contact_restitution, SK_V},
+        [SK_CONTACT_SETTLE] = {SK_ROW_CONTACT_SETTLE, &sk_contact_settle, SK_X},
     };
+    bool settles = sort == SK_CONTACT_SETTLE;
     for (size_t i = 0; i < writer->rules->colliders.count; i++) {
         const sk_collider *collider = writer->rules->colliders.data[i];
         if (!collider->common->enabled) continue;
@@ -266,7 +267,7 @@ void sk_write_contacts(sk_writer *writer, sk_contact_sort sort, sk_vector before
                              .order = SK_FREE,
                              .kernel = sorts[sort].kernels->version[writer->isa],
                              .dst = sorts[sort].dst,
-                             .source = {SK_X, before},
+                             .source = {SK_X, settles ? SK_X0 : SK_NONE, settles ? SK_V0 : SK_NONE},
                              .rule = collider,
                              .label = collider->label,
                              .end = writer->slot_count});

@@ -68,10 +68,10 @@ typedef enum sk_contact_sort {
     SK_CONTACT_FORCE,
     SK_CONTACT_IMPULSE,
     SK_CONTACT_PUSH,
-    SK_CONTACT_RESTITUTION
+    SK_CONTACT_SETTLE
 } sk_contact_sort;
-/* A row for each collider; `before` is X0 for a push with friction, V0 for restitution, else SK_NONE. */
-void sk_write_contacts(sk_writer *writer, sk_contact_sort sort, sk_vector before);
+/* A row for each collider. Settling looks at X0 and V0, the state before the substep's corrections. */
+void sk_write_contacts(sk_writer *writer, sk_contact_sort sort);
 /* Limits move X; `velocity` is SK_V where the method does not take velocities from positions, else SK_NONE. */
 void sk_write_limits(sk_writer *writer, sk_vector velocity);
 

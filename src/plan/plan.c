@@ -22,6 +22,7 @@ const char *sk_row_kind_text(sk_row_kind kind) {
         [SK_ROW_CONTACT_FORCE] = "contact F",
         [SK_ROW_CONTACT_VELOCITY] = "contact V",
         [SK_ROW_CONTACT_POSITION] = "contact X",
+        [SK_ROW_CONTACT_SETTLE] = "contact XV",
         [SK_ROW_LIMIT] = "limit",
         [SK_ROW_REPEAT] = "repeat",
     };
