@@ -60,40 +60,51 @@ static skein_status make_call(scenario *s) {
                               SKEIN_SETTINGS(SKEIN_REAL("weld", 1e-6), SKEIN_TEXT("pins", "corners"),
                                              SKEIN_REAL("stretch.stiffness", 100)),
                               NULL);
-    case 3: return skein_force_add(s->world, "gravity", SKEIN_SETTINGS(SKEIN_TEXT("name", "down")), &s->gravity);
+    case 3:
+        return skein_body_add(s->world, "lattice", NULL,
+                              SKEIN_SETTINGS(SKEIN_VEC3("grid", 3, 3, 2), SKEIN_TEXT("pins", "left face, 17"),
+                                             SKEIN_VEC3("position", 4, 2, 0)),
+                              NULL);
     case 4:
+        return skein_body_add(s->world, "rope", NULL,
+                              SKEIN_SETTINGS(SKEIN_REAL("count", 5), SKEIN_VEC3("from", -2, 2, 0),
+                                             SKEIN_VEC3("to", -3, 2, 0), SKEIN_REAL("length", 1.5),
+                                             SKEIN_TEXT("pins", "first, last"), SKEIN_REAL("stretch.stiffness", 10)),
+                              NULL);
+    case 5: return skein_force_add(s->world, "gravity", SKEIN_SETTINGS(SKEIN_TEXT("name", "down")), &s->gravity);
+    case 6:
         return skein_force_add(s->world, "separation",
                                SKEIN_SETTINGS(SKEIN_REAL("radius", 0.2), SKEIN_REAL("strength", 0.001)), NULL);
-    case 5: return skein_force_add(s->world, "surface_wind", SKEIN_SETTINGS(SKEIN_VEC3("velocity", 1, 0, 1)), NULL);
-    case 6:
+    case 7: return skein_force_add(s->world, "surface_wind", SKEIN_SETTINGS(SKEIN_VEC3("velocity", 1, 0, 1)), NULL);
+    case 8:
         return skein_collider_add(s->world, "sphere",
                                   SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.8, 0), SKEIN_REAL("radius", 0.15)), NULL);
-    case 7: return skein_collider_add(s->world, "plane", NULL, &s->ground);
-    case 8: {
+    case 9: return skein_collider_add(s->world, "plane", NULL, &s->ground);
+    case 10: {
         static const double positions[3 * 90] = {0, 3, 0, 1, 3, 0};
         double masses[90];
         for (int i = 0; i < 90; i++) masses[i] = 0.1;
         return skein_particles_add(s->world, 90, positions, NULL, masses, NULL);
     }
-    case 9:
+    case 11:
         return skein_constraint_add(s->world, "distance", (const uint32_t[]){0, 20, 3, 31}, 2,
                                     SKEIN_SETTINGS(SKEIN_TEXT("name", "string")), NULL);
-    case 10: return skein_set_path(s->world, "colliders.1.name", skein_text("ground"));
-    case 11: return skein_world_explain(s->world, dt, NULL, NULL);
-    case 12: return skein_world_step(s->world, dt);
-    case 13: return skein_world_step(s->world, dt);
-    case 14: return skein_world_statistics(s->world, &s->statistics);
-    case 15: return skein_method_set(s->world, "xpbd", NULL);
-    case 16:
+    case 12: return skein_set_path(s->world, "colliders.1.name", skein_text("ground"));
+    case 13: return skein_world_explain(s->world, dt, NULL, NULL);
+    case 14: return skein_world_step(s->world, dt);
+    case 15: return skein_world_step(s->world, dt);
+    case 16: return skein_world_statistics(s->world, &s->statistics);
+    case 17: return skein_method_set(s->world, "xpbd", NULL);
+    case 18:
         return skein_set(s->world, s->gravity, "name", skein_text("a name that is long enough for a block of its own"));
-    case 17: return skein_world_reset(s->world);
-    case 18: return skein_world_step(s->world, dt);
-    case 19: return skein_world_step(s->world, dt / 2);
-    case 20: return skein_world_statistics(s->world, &s->statistics);
+    case 19: return skein_world_reset(s->world);
+    case 20: return skein_world_step(s->world, dt);
+    case 21: return skein_world_step(s->world, dt / 2);
+    case 22: return skein_world_statistics(s->world, &s->statistics);
     default: return SKEIN_ERROR_LIMIT;
     }
 }
-enum { CALLS = 21 };
+enum { CALLS = 23 };
 
 /* What a failed call must leave as it was. */
 typedef struct census {

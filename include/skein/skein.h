@@ -313,8 +313,8 @@ skein_status skein_body_surface(const skein_world *world, skein_handle body, ske
 
 /* Where a collider stands now, for drawing. `shape` is the kind's name. */
 typedef struct skein_pose {
-    double position[3]; /* a sphere's centre, a point of a plane */
-    double rotation[9]; /* rows of a rotation matrix */
+    double position[3]; /* a sphere's centre, the middle of a capsule's line, a point of a plane */
+    double rotation[9]; /* rows of a rotation matrix: the motion's, after a box's own */
 } skein_pose;
 skein_status skein_collider_pose(const skein_world *world, skein_handle collider, skein_pose *pose);
 
