@@ -45,7 +45,7 @@ static void note_file(void *user, const char *path) {
 static int simulate(app_report *r, const char *folder, bool quiet) {
     app_outputs *outputs = NULL;
     app_catch_interrupts();
-    int status = folder ? app_outputs_begin(r->loaded, folder, &outputs) : EXIT_OK;
+    int status = folder ? app_outputs_begin(r->loaded, folder, quiet, &outputs) : EXIT_OK;
     if (status) return status;
     app_progress p = app_progress_start("frame", r->loaded->settings.frames, quiet);
     if (!run_frames(r, outputs, &p)) {
@@ -100,8 +100,9 @@ const app_command app_run_command = {
     "  skein run scenes/drape.json --out out/\n"
     "  skein run scenes/flag.json --frames 240 --fps 60 --threads 2 --set bodies.0.stretch.stiffness=2e4\n\n"
     "The outputs are the scene's: by default an OBJ of each body at the end, a PC2 point cache of the whole\n"
-    "run (for Blender's Mesh Cache modifier), and a PNG of the last frame. Files appear under their names\n"
-    "only when they are complete. Interrupted (Ctrl-C), a run writes what it has.\n\n"
+    "run (for Blender's Mesh Cache modifier), and a PNG of the last frame; with \"film\" among them a film, too\n"
+    "(or see skein render). All but films appear under their names only when they are complete. Interrupted\n"
+    "(Ctrl-C), a run writes what it has.\n\n"
     "Exit status 0: done; 1: the run failed, or a file could not be written; 2: a fault in the scene or the\n"
     "arguments; 130: interrupted.",
     run,

@@ -179,9 +179,9 @@ static void prepare(const film_job *job, AVCodecContext *codec, AVDictionary **o
 
 static skein_status end(void *state, bool complete, skein_error *error) {
     gif *g = state;
-    complete = complete && !g->failed;
+    complete = complete && !g->failed && g->pictures; // a GIF of no pictures is none
     skein_status status = SKEIN_OK;
-    if (complete && g->pictures) {
+    if (complete) {
         AVFrame *palette = make_palette(g);
         status = palette ? write_all(g, palette, error)
                          : film_fail_av(error, g->path, "the GIF's palette cannot be made", AVERROR_EXTERNAL);

@@ -12,14 +12,14 @@ typedef struct series {
     int digits, next;
 } series;
 
-/* Finds the number's place: a run of '#', or '%', digits and 'd'. The user's text is never a format of
+/* Finds the number's place: two '#' or more, or '%', digits and 'd'. The user's text is never a format of
  * printf's. How many there are; the last one counts. */
 static int find_number(const char *path, series *s) {
     int found = 0;
     for (size_t i = 0; path[i]; i++) {
         size_t hashes = strspn(path + i, "#"), digits = path[i] == '%' ? strspn(path + i + 1, "0123456789") : 0;
         bool percent = path[i] == '%' && path[i + 1 + digits] == 'd' && digits <= 2;
-        if (!hashes && !percent) continue;
+        if (hashes < 2 && !percent) continue;
         s->begin = i;
         s->end = i + (percent ? digits + 2 : hashes);
         s->digits = percent ? atoi(path + i + 1) : (int)hashes;

@@ -26,8 +26,9 @@ static const struct {
     {"libaom-av1", 60, 12, "cpu-used=6:row-mt=1"},
 };
 
-/* Fragments from key picture to key picture, once a second: a film that is cut off anywhere can be played. */
-static const char mp4_options[] = "movflags=frag_keyframe+empty_moov+default_base_moof";
+/* Fragments from key picture to key picture, once a second: a film that is cut off anywhere can be played.
+ * (The head waits for the first of them, and can so say when the first picture is due.) */
+static const char mp4_options[] = "movflags=frag_keyframe+empty_moov+default_base_moof+delay_moov";
 static const char webm_options[] = "cluster_time_limit=1000";
 
 static void prepare(const film_job *job, AVCodecContext *codec, AVDictionary **options) {
