@@ -18,6 +18,7 @@ struct app_footage {
     film *film;
     render_image image;
     bool drawing; /* a picture is begun, and not yet in the film */
+    bool told;    /* a fault was printed: one is enough */
     int frame, every;
     app_footage_facts facts;
 };
@@ -127,6 +128,7 @@ bool app_footage_frame(app_footage *f) {
     skein_status status = develop(f, &error);
     if (!status) status = render_studio_shoot(f->studio, f->loaded->world, &error);
     f->drawing = !status;
+    f->told = status != SKEIN_OK;
     if (status) app_print_error(&error);
     return !status;
 }
@@ -140,7 +142,7 @@ static void release(app_footage *f) {
 bool app_footage_end(app_footage *f, app_footage_facts *facts) {
     skein_error error = {SKEIN_OK, "", ""}, later = {SKEIN_OK, "", ""};
     skein_status status = develop(f, &error), ended = film_finish(f->film, &later);
-    if (status || ended) app_print_error(status ? &error : &later);
+    if ((status || ended) && !f->told) app_print_error(status ? &error : &later);
     if (facts) *facts = f->facts;
     release(f);
     return !status && !ended;

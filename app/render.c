@@ -103,7 +103,7 @@ static int make_film(const app_scene *loaded, const request *r) {
 
 /* ---- the arguments ---- */
 
-enum { SET, OUT, FRAMES, FRAME, FPS, SIZE, SAMPLES, QUALITY, THREADS, QUIET, OPTION_COUNT };
+enum { SET, OUT, LONG_OUT, FRAMES, FRAME, FPS, SIZE, SAMPLES, QUALITY, THREADS, QUIET, OPTION_COUNT };
 
 /* Numbers of an option, "1920x1080", checked by the field that describes them; false after a printed fault. */
 static bool read_numbers(const app_option *option, const skein_field *field, int count, int32_t *out) {
@@ -115,7 +115,7 @@ static bool read_numbers(const app_option *option, const skein_field *field, int
     bool good = true;
     for (int i = 0; i < count && good; i++) {
         char *end;
-        value.number[i] = strtod(at, &end);
+        value.number[i] = (double)strtol(at, &end, 10);
         good = end != at && (i + 1 < count ? *end == 'x' || *end == ',' : !*end);
         at = end + 1;
     }
@@ -140,15 +140,15 @@ static bool read_request(const app_option *options, request *r) {
     const skein_kind *kind = film_exporter();
     skein_error error = {SKEIN_OK, "", ""};
     *r = (request){.options = film_default_options(), .frame = -1, .quiet = options[QUIET].count > 0};
-    if (!options[OUT].count) {
+    const app_option *out = options[OUT].count ? &options[OUT] : &options[LONG_OUT];
+    if (!out->count) {
         fprintf(stderr, "skein render: where to? -o film.mp4, .webm or .gif; -o picture.png; -o many-%%04d.png\n");
         return false;
     }
-    r->path = options[OUT].values[0];
+    r->path = out->values[0];
     const film_format *format = film_format_of(r->path, &error);
     if (!format) {
-        fprintf(stderr, "skein render: -o ");
-        fprintf(stderr, "%s: %s\n", error.where, error.message);
+        fprintf(stderr, "skein render: %s %s: %s\n", out->name, error.where, error.message);
         return false;
     }
     r->single = !format->encoders && !film_path_is_numbered(r->path);
@@ -164,6 +164,7 @@ static int render(int argc, char **argv) {
     app_option options[OPTION_COUNT] = {
         [SET] = {"--set", "PATH=VALUE", "change a value of the scene first; may be repeated", true, NULL, 0},
         [OUT] = {"-o", "FILE", "what to write; its ending says what it becomes", false, NULL, 0},
+        [LONG_OUT] = {"--out", "FILE", "the same", false, NULL, 0},
         [FRAMES] = {"--frames", "N", "frames to show, instead of the scene's", false, NULL, 0},
         [FRAME] = {"--frame", "N", "the frame of a single picture, instead of the last; 0 is the start", false, NULL,
                    0},

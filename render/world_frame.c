@@ -377,6 +377,8 @@ void render_world_frame_settle(render_world_frame *made) {
 
 void render_world_frame_hold(render_world_frame *made, const render_bounds *bounds) {
     made->held = *bounds;
+    made->frame.radius = render_bounds_radius(bounds);
+    render_bounds_centre(bounds, made->frame.middle);
 }
 
 render_camera render_world_frame_camera(const render_world_frame *made, double aspect) {
