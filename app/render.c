@@ -198,10 +198,11 @@ static int render(int argc, char **argv) {
 #else
 
 static int render(int argc, char **argv) {
-    const char *path;
-    int status = app_parse(&app_render_command, argc, argv, NULL, 0, NULL, &path);
-    if (status >= 0) return status;
-    fprintf(stderr, "skein render: this skein was built without pictures (SKEIN_RENDER=OFF)\n");
+    const char *word;
+    for (int a = 0; a < argc; a++)
+        if (!strcmp(argv[a], "--help") || !strcmp(argv[a], "-h"))
+            return app_parse(&app_render_command, 1, &argv[a], NULL, 0, NULL, &word);
+    fprintf(stderr, "skein render: this skein was built without pictures: build it with SKEIN_RENDER=ON\n");
     return EXIT_FAILURE_RUN;
 }
 #endif

@@ -80,7 +80,7 @@ static int start_thread(film *f) {
 
 film *film_create(const char *path, const film_options *options, double rate, skein_error *error) {
     const film_format *format = film_format_of(path, error);
-    if (!format || (format->encoders && !film_choose_encoder(format, film_encoder_is_here, error))) return NULL;
+    if (!format || (format->encoders && !film_choose_encoder(format, path, film_encoder_is_here, error))) return NULL;
     film *f = calloc(1, sizeof *f);
     if (!f) {
         render_fail_memory(error, "the film");

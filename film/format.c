@@ -59,7 +59,8 @@ bool film_format_is_here(const film_format *format) {
     return !format->encoders || find_encoder(format, film_encoder_is_here);
 }
 
-const char *film_choose_encoder(const film_format *format, bool (*is_here)(const char *encoder), skein_error *error) {
+const char *film_choose_encoder(const film_format *format, const char *path, bool (*is_here)(const char *encoder),
+                                skein_error *error) {
     const char *name = find_encoder(format, is_here);
     if (name) return name;
     char missing[128] = "", here[128];
@@ -69,12 +70,12 @@ const char *film_choose_encoder(const film_format *format, bool (*is_here)(const
     }
     film_list_formats(is_here, here, sizeof here);
 #ifdef SKEIN_FILM
-    render_fail(error, SKEIN_ERROR_NAME, format->ending,
+    render_fail(error, SKEIN_ERROR_NAME, path,
                 "%s needs an encoder that this libavcodec has not: %s; can be written here: %s (numbered: "
                 "name-%%04d.png)",
                 format->help, missing, here);
 #else
-    render_fail(error, SKEIN_ERROR_NAME, format->ending,
+    render_fail(error, SKEIN_ERROR_NAME, path,
                 "%s needs %s, but this skein was built without libavcodec ('tools/setup build' installs it; then "
                 "build again); can be written: %s (numbered: name-%%04d.png)",
                 format->help, missing, here);

@@ -25,8 +25,9 @@ typedef struct film_maker {
 extern const film_maker film_series, film_video, film_gif;
 
 /* The first encoder of the format that `is_here`; NULL after an error that names what is missing and what
- * can be written all the same. */
-const char *film_choose_encoder(const film_format *format, bool (*is_here)(const char *encoder), skein_error *error);
+ * can be written all the same, for the film at `path`. */
+const char *film_choose_encoder(const film_format *format, const char *path, bool (*is_here)(const char *encoder),
+                                skein_error *error);
 /* "out.mp4, .webm and numbered .png", say: what can be written where `is_here` holds. */
 void film_list_formats(bool (*is_here)(const char *encoder), char *text, size_t size);
 /* Whether libavcodec has the encoder. */

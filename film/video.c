@@ -76,7 +76,7 @@ static bool make_frame(video *v, int width, int height) {
 }
 
 static void *begin(const film_job *job, skein_error *error) {
-    const char *encoder = film_choose_encoder(job->format, film_encoder_is_here, error);
+    const char *encoder = film_choose_encoder(job->format, job->path, film_encoder_is_here, error);
     video *v = calloc(1, sizeof *v);
     if (!encoder || !v || !make_frame(v, job->options.size[0], job->options.size[1])) {
         if (encoder) render_fail_memory(error, "the film");

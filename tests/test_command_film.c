@@ -137,8 +137,9 @@ static void the_exporter_makes_a_film_where_it_is_asked_for(void **state) {
 /* Starts a film without end, and waits until what is on the disk has `least` pictures, a minute at most. */
 static pid_t start_film(const char *path, int least) {
     const struct timespec pause = {0, 20000000};
-    pid_t child = start_skein((surroundings){0}, (const char *const[]){"render", tiny_scene(), "-o", path, "--frames",
-                                                                       "100000000", "--fps", "10", SMALL, NULL});
+    pid_t child = start_skein((surroundings){0},
+                              (const char *const[]){"render", tiny_scene(), "-o", path, "--frames", "100000000",
+                                                    "--fps", "10", "--set", "step=0.1", SMALL, NULL});
     for (int i = 0; least && i < 3000; i++) {
         film_seen seen = film_see(path);
         int pictures = seen.pictures;
@@ -202,7 +203,7 @@ static void a_full_disk_ends_a_film(void **state) {
     const char *s = tiny_scene();
     char words[600];
     outcome o = SKEIN_IN((surroundings){.file_limit = 6000}, "render", s, "-o", in_folder("a.mp4"), "--frames",
-                         "100000", "--fps", "10", SMALL);
+                         "100000", "--fps", "10", "--set", "step=0.1", SMALL);
     assert_status(o, 1);
     snprintf(words, sizeof words, "skein: %s: cannot write: it grew over the limit for a file's size\n",
              in_folder("a.mp4"));

@@ -325,16 +325,17 @@ static void a_missing_encoder_is_named(void **state) {
     (void)state;
     skein_error error = {SKEIN_OK, "", ""};
     char text[128];
-    assert_null(film_choose_encoder(film_format_at(0), is_gif, &error));
+    assert_null(film_choose_encoder(film_format_at(0), "a.film", is_gif, &error));
+    assert_string_equal(error.where, "a.film");
     assert_string_equal(error.message,
                         "H.264 in MP4 needs an encoder that this libavcodec has not: libx264 or libopenh264; can be "
                         "written here: .gif, .png (numbered: name-%04d.png)");
-    assert_null(film_choose_encoder(film_format_at(1), is_gif, &error));
+    assert_null(film_choose_encoder(film_format_at(1), "a.film", is_gif, &error));
     assert_non_null(strstr(error.message, "libvpx-vp9 or libsvtav1 or libaom-av1; can be written here: .gif, .png"));
-    assert_string_equal(film_choose_encoder(film_format_at(2), is_gif, &error), "gif");
+    assert_string_equal(film_choose_encoder(film_format_at(2), "a.film", is_gif, &error), "gif");
     // the second best is taken where the best is not there
-    assert_string_equal(film_choose_encoder(film_format_at(0), is_second, &error), "libopenh264");
-    assert_string_equal(film_choose_encoder(film_format_at(1), is_second, &error), "libsvtav1");
+    assert_string_equal(film_choose_encoder(film_format_at(0), "a.film", is_second, &error), "libopenh264");
+    assert_string_equal(film_choose_encoder(film_format_at(1), "a.film", is_second, &error), "libsvtav1");
     film_list_formats(is_second, text, sizeof text);
     assert_string_equal(text, ".mp4, .webm, .png");
 }
