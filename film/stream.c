@@ -161,7 +161,6 @@ film_stream *film_stream_open(const film_job *job, const char *encoder, enum AVP
 static skein_status mux_packets(film_stream *s, skein_error *error) {
     int code;
     while ((code = avcodec_receive_packet(s->codec, s->packet)) >= 0) {
-        if (s->packet->duration <= 0) s->packet->duration = 1; // or the last picture would not be shown
         av_packet_rescale_ts(s->packet, s->codec->time_base, s->stream->time_base);
         s->packet->stream_index = s->stream->index;
         code = av_write_frame(s->muxer, s->packet);
