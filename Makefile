@@ -1,12 +1,12 @@
 # The short way in: each line below runs one script of tools/, and the scripts run CMake.
 # CMake alone does as well: cmake --preset release && cmake --build --preset release
 
-.PHONY: all demo test setup debug format clean help
+.PHONY: all demo test setup gallery debug format clean help
 
 all: ## (or plain make) build the command: build/skein
 	@tools/build release skein
 
-demo: ## set up, build, and drop a real mesh as cloth: files, a picture and a report in out/demo
+demo: ## set up, build, and drop a real mesh as cloth: files, a picture and a film in out/demo
 	@tools/setup build
 	@tools/build release skein
 	@tools/demo
@@ -17,6 +17,11 @@ test: ## set up, build and pass every test, in every build: 20 minutes at the mo
 
 setup: ## install the Debian packages that building and testing need
 	@tools/setup test
+
+gallery: ## build, and draw the documents' pictures and film anew
+	@tools/setup build
+	@tools/build release skein
+	@tools/gallery
 
 debug: ## build with assertions: build-debug/skein
 	@tools/build debug skein

@@ -7,6 +7,7 @@
 
 #include "io/exporters.h"
 #ifdef SKEIN_RENDER
+#include "film/film.h"
 #include "render/picture.h"
 #endif
 
@@ -109,6 +110,29 @@ const char *app_value(const app_option *options, size_t option_count, const char
     return NULL;
 }
 
+static bool override_field(const app_command *command, const char *name, const char *given, app_option *sets,
+                           char text[64]) {
+    const skein_field *field = skein_field_find(io_scene_kind(), name + 2, NULL);
+    char *end;
+    skein_value value = skein_number(strtod(given, &end));
+    skein_error error = {SKEIN_ERROR_VALUE, "", ""};
+    if (end == given || *end) value.count = 4; // what no field takes, so that the field says what it does take
+    bool good = field && !skein_field_check(field, &value, &error);
+    snprintf(text, 64, "%s=%.17g", name + 2, value.number[0]);
+    if (!good) fprintf(stderr, "skein %s: %s %s: %s\n", command->name, name, given, error.message);
+    return good && app_option_add(sets, text);
+}
+
+bool app_override(const app_command *command, app_option *options, size_t option_count, app_override_texts texts) {
+    static const char *const names[] = {"--frames", "--fps", "--threads"};
+    bool good = true;
+    for (int i = 0; i < 3 && good; i++) {
+        const char *given = app_value(options, option_count, names[i]);
+        good = !given || override_field(command, names[i], given, &options[0], texts[i]);
+    }
+    return good;
+}
+
 /* ---- scenes ---- */
 
 void app_print_error(const skein_error *error) {
@@ -132,6 +156,7 @@ const skein_kind *const *app_exporters(void) {
     for (size_t i = 0; io_exporter_at(i); i++) all[count++] = io_exporter_at(i);
 #ifdef SKEIN_RENDER
     for (size_t i = 0; render_exporter_at(i); i++) all[count++] = render_exporter_at(i);
+    all[count++] = film_exporter();
 #endif
     all[count] = NULL;
     return all;

@@ -23,7 +23,7 @@ typedef struct app_command {
     int (*run)(int argc, char **argv);
 } app_command;
 
-extern const app_command app_run_command, app_check_command, app_explain_command, app_list_command;
+extern const app_command app_run_command, app_render_command, app_check_command, app_explain_command, app_list_command;
 
 /* Sorts arguments into options and at most one word (NULL if there is none, which is a fault where it is
  * `needed`, as in "scene"); prints help for --help. Returns -1 to go on, else an exit status. */
@@ -34,6 +34,11 @@ void app_options_free(app_option *options, size_t option_count);
 const char *app_value(const app_option *options, size_t option_count, const char *name);
 /* Adds a value as if it had been given; false when there is no memory. */
 bool app_option_add(app_option *option, const char *value);
+
+/* The options --frames, --fps and --threads stand for fields of the scene: those that were given become one
+ * more value each of the first option, --set, and `texts` holds it. False after a printed fault. */
+typedef char app_override_texts[3][64];
+bool app_override(const app_command *command, app_option *options, size_t option_count, app_override_texts texts);
 
 /* Prints "skein: where: message" to standard error. */
 void app_print_error(const skein_error *error);

@@ -12,6 +12,7 @@
 #include "io/mesh.h"
 #include "io/pc2.h"
 #ifdef SKEIN_RENDER
+#include "app/footage.h"
 #include "render/picture.h"
 #endif
 
@@ -35,6 +36,10 @@ struct app_outputs {
     size_t export_count, body_count, cache_count;
     cache *caches;
     double *positions; /* room for the largest body */
+#ifdef SKEIN_RENDER
+    app_footage *footage; /* of the film, if one is made */
+    char film_path[PATH_SIZE];
+#endif
 };
 
 /* ---- names ---- */
@@ -145,6 +150,19 @@ static bool begin_caches(app_outputs *outputs, const io_pc2_params *params) {
     return true;
 }
 
+#ifdef SKEIN_RENDER
+/* Begins the film, if the scene asks for one by name. */
+static bool begin_film(app_outputs *outputs, const io_export *wanted, bool quiet) {
+    const film_options *options = wanted->params;
+    if (!wanted->asked) return true;
+    snprintf(outputs->film_path, PATH_SIZE, "%s/%s%s", outputs->folder, outputs->stem,
+             film_format_at((size_t)options->format)->ending);
+    outputs->footage =
+        app_footage_begin(outputs->loaded, outputs->film_path, options, outputs->loaded->settings.frames, quiet);
+    return outputs->footage != NULL;
+}
+#endif
+
 static bool reserve(app_outputs *outputs) {
     size_t most = 1;
     skein_surface surface;
@@ -156,7 +174,18 @@ static bool reserve(app_outputs *outputs) {
     return outputs->positions && outputs->caches && outputs->names;
 }
 
-static int begin(app_outputs *outputs, const char *folder) {
+/* Begins what grows with the run. */
+static bool begin_export(app_outputs *outputs, const io_export *wanted, bool quiet) {
+    const char *kind = wanted->kind->name;
+    (void)quiet;
+    if (!strcmp(kind, "pc2")) return begin_caches(outputs, wanted->params);
+#ifdef SKEIN_RENDER
+    if (!strcmp(kind, "film")) return begin_film(outputs, wanted, quiet);
+#endif
+    return true;
+}
+
+static int begin(app_outputs *outputs, const char *folder, bool quiet) {
     const app_scene *loaded = outputs->loaded;
     outputs->body_count = skein_object_count(loaded->world, SKEIN_BODY);
     outputs->export_count = io_scene_exports(loaded->scene, outputs->exports, MOST_EXPORTS);
@@ -168,17 +197,16 @@ static int begin(app_outputs *outputs, const char *folder) {
     name_bodies(outputs);
     int status = prepare_folder(outputs, folder);
     for (size_t e = 0; e < outputs->export_count && !status; e++)
-        if (!strcmp(outputs->exports[e].kind->name, "pc2") && !begin_caches(outputs, outputs->exports[e].params))
-            status = EXIT_FAILURE_RUN;
+        if (!begin_export(outputs, &outputs->exports[e], quiet)) status = EXIT_FAILURE_RUN;
     return status;
 }
 
-int app_outputs_begin(const app_scene *loaded, const char *folder, app_outputs **begun) {
+int app_outputs_begin(const app_scene *loaded, const char *folder, bool quiet, app_outputs **begun) {
     app_outputs *outputs = calloc(1, sizeof *outputs);
     *begun = NULL;
     if (!outputs) return EXIT_FAILURE_RUN;
     outputs->loaded = loaded;
-    int status = begin(outputs, folder);
+    int status = begin(outputs, folder, quiet);
     if (!status) *begun = outputs;
     else app_outputs_abandon(outputs);
     return status;
@@ -206,6 +234,11 @@ bool app_outputs_frame(app_outputs *outputs, int frame) {
         app_print_error(&error);
         return false;
     }
+#ifdef SKEIN_RENDER
+    // picture k shows the world after k frames, so that the film is as long as the run
+    bool in_film = outputs->footage && (!frame || frame < outputs->loaded->settings.frames);
+    if (in_film && !app_footage_frame(outputs->footage)) return false;
+#endif
     return true;
 }
 
@@ -261,6 +294,14 @@ bool app_outputs_finish(app_outputs *outputs, void (*wrote)(void *user, const ch
         if (!strcmp(kind, "png")) write_picture(outputs, outputs->exports[e].params, &book);
 #endif
     }
+#ifdef SKEIN_RENDER
+    if (outputs->footage) {
+        bool complete = app_footage_end(outputs->footage, NULL);
+        outputs->footage = NULL;
+        if (complete) wrote(user, outputs->film_path);
+        book.good &= complete;
+    }
+#endif
     memset(outputs->made, 0, sizeof outputs->made); // the folders stay
     app_outputs_abandon(outputs);
     return book.good;
@@ -269,6 +310,9 @@ bool app_outputs_finish(app_outputs *outputs, void (*wrote)(void *user, const ch
 void app_outputs_abandon(app_outputs *outputs) {
     if (!outputs) return;
     for (size_t i = 0; i < outputs->cache_count; i++) io_pc2_abandon(outputs->caches[i].writer);
+#ifdef SKEIN_RENDER
+    app_footage_abandon(outputs->footage);
+#endif
     remove_folders(outputs);
     free(outputs->caches);
     free(outputs->names);

@@ -1,4 +1,4 @@
-/* What a run leaves behind: point caches that grow frame by frame, meshes and pictures at the end. */
+/* What a run leaves behind: point caches and films that grow frame by frame, meshes and pictures at the end. */
 #ifndef SKEIN_APP_OUTPUTS_H
 #define SKEIN_APP_OUTPUTS_H
 
@@ -8,7 +8,7 @@ typedef struct app_outputs app_outputs;
 
 /* Makes the folder and begins what grows with the run. Returns an exit status, after a printed fault:
  * EXIT_FAULT where the folder cannot be. */
-int app_outputs_begin(const app_scene *loaded, const char *folder, app_outputs **begun);
+int app_outputs_begin(const app_scene *loaded, const char *folder, bool quiet, app_outputs **begun);
 /* Adds the world's present state as a frame, 0 being the start. False after a printed fault. */
 bool app_outputs_frame(app_outputs *outputs, int frame);
 /* Writes what comes last, gives all files their names and names each to `wrote`. False after a printed

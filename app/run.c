@@ -1,76 +1,11 @@
 /* skein run SCENE: simulate, with progress, files and a report. */
-#include <errno.h>
-#include <math.h>
-#include <signal.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 #include "app/outputs.h"
+#include "app/progress.h"
 #include "app/report.h"
 
-/* The signal that asked for an early end: the run stops after its frame, and what it has is written. */
-static volatile sig_atomic_t interrupted;
-
-static void on_interrupt(int number) {
-    interrupted = number;
-}
-
-static void catch_interrupts(void) {
-    // a second one ends the process at once
-    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND | SA_RESTART};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-}
-
-/* ---- progress ---- */
-
-typedef struct progress {
-    bool quiet, terminal;
-    bool line_open; /* the cursor stands behind the bar */
-    int frames;
-    double start, last;
-} progress;
-
-static progress start_progress(int frames, bool quiet) {
-    return (progress){
-        .quiet = quiet || !frames, .terminal = isatty(STDERR_FILENO) != 0, .frames = frames, .start = app_seconds()};
-}
-
-/* On a terminal a bar that is drawn again in place, 20 times a second at most; else ten lines a run. */
-static void show_progress(progress *p, int frame) {
-    double now = app_seconds(), elapsed = now - p->start;
-    bool due = p->terminal ? now - p->last >= 0.05 : frame % ((p->frames + 9) / 10) == 0;
-    if (p->quiet || (!due && frame != p->frames)) return;
-    p->last = now;
-    char bar[31];
-    for (int i = 0; i < 30; i++) bar[i] = i < (int)(30.0 * frame / p->frames) ? '#' : '.';
-    bar[30] = 0;
-    fprintf(stderr, "%s[%s] frame %d of %d, %.1f s, %.0f s left%s", p->terminal ? "\r" : "", bar, frame, p->frames,
-            elapsed, elapsed / frame * (p->frames - frame), p->terminal ? "   " : "\n");
-    p->line_open = p->terminal;
-}
-
-static void end_progress(progress *p) {
-    if (p->line_open) fprintf(stderr, "\n");
-    p->line_open = false;
-}
-
 /* ---- the run ---- */
-
-static bool all_finite(const skein_real *xyzw, const skein_view *view) {
-    for (size_t i = 0; i < view->count; i++) {
-        const skein_real *p = xyzw + 4 * (size_t)view->slot_of[i];
-        if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2])) return false;
-    }
-    return true;
-}
-
-static bool is_finite(const skein_world *world) {
-    skein_view x = skein_position_view(world), v = skein_velocity_view(world);
-    return all_finite(x.xyzw, &x) && all_finite(v.xyzw, &v);
-}
 
 /* Measures the world as it stands; false after a printed fault. */
 static bool measure(app_report *r) {
@@ -84,35 +19,21 @@ static bool measure(app_report *r) {
 }
 
 /* Steps one frame; false after a printed fault. */
-static bool run_frame(app_report *r, progress *p) {
-    skein_world *world = r->loaded->world;
+static bool run_frame(app_report *r, app_progress *p) {
     double start = app_seconds();
-    for (int s = 0; s < r->steps_per_frame; s++) {
-        if (!skein_world_step(world, r->dt)) continue;
-        end_progress(p);
-        app_print_error(skein_world_error(world));
-        return false;
-    }
+    if (!app_step_frame(r->loaded, r->frames + 1, r->steps_per_frame, r->dt, p)) return false;
     r->seconds += app_seconds() - start;
     r->frames++;
-    if (is_finite(world)) return r->frames % 16 || measure(r);
-    // said at once, instead of writing such files to the end
-    end_progress(p);
-    if (measure(r))
-        fprintf(stderr,
-                "skein: %s: blew up in frame %d: %zu of %zu particles are no longer finite; "
-                "more substeps or less stiffness help\n",
-                r->loaded->path, r->frames, r->statistics.nonfinite, r->statistics.particles);
-    return false;
+    return r->frames % 16 || measure(r);
 }
 
-static bool run_frames(app_report *r, app_outputs *outputs, progress *p) {
+static bool run_frames(app_report *r, app_outputs *outputs, app_progress *p) {
     bool good = !outputs || app_outputs_frame(outputs, 0);
-    while (good && r->frames < p->frames && !interrupted) {
+    while (good && r->frames < p->frames && !app_interrupted()) {
         good = run_frame(r, p) && (!outputs || app_outputs_frame(outputs, r->frames));
-        if (good) show_progress(p, r->frames);
+        if (good) app_progress_show(p, r->frames);
     }
-    end_progress(p);
+    app_progress_end(p);
     return good && measure(r);
 }
 
@@ -123,15 +44,15 @@ static void note_file(void *user, const char *path) {
 
 static int simulate(app_report *r, const char *folder, bool quiet) {
     app_outputs *outputs = NULL;
-    catch_interrupts();
-    int status = folder ? app_outputs_begin(r->loaded, folder, &outputs) : EXIT_OK;
+    app_catch_interrupts();
+    int status = folder ? app_outputs_begin(r->loaded, folder, quiet, &outputs) : EXIT_OK;
     if (status) return status;
-    progress p = start_progress(r->loaded->settings.frames, quiet);
+    app_progress p = app_progress_start("frame", r->loaded->settings.frames, quiet);
     if (!run_frames(r, outputs, &p)) {
         app_outputs_abandon(outputs);
         return EXIT_FAILURE_RUN;
     }
-    int signal_number = interrupted; // a later one interrupts nothing that matters
+    int signal_number = app_interrupted(); // a later one interrupts nothing that matters
     r->interrupted = signal_number != 0;
     bool good = !outputs || app_outputs_finish(outputs, note_file, r);
     if (folder) good = app_report_write(r, folder) && good;
@@ -140,23 +61,6 @@ static int simulate(app_report *r, const char *folder, bool quiet) {
 }
 
 /* ---- the arguments ---- */
-
-/* An option that stands for a field of the scene becomes one more --set; `text` holds that. False after a
- * printed fault. */
-static bool override_field(app_option *options, size_t option_count, const char *name, app_option *sets,
-                           char text[64]) {
-    const char *given = app_value(options, option_count, name);
-    if (!given) return true;
-    const skein_field *field = skein_field_find(io_scene_kind(), name + 2, NULL);
-    char *end;
-    skein_value value = skein_number(strtod(given, &end));
-    skein_error error = {SKEIN_ERROR_VALUE, "", ""};
-    if (end == given || *end) value.count = 4; // what no field takes, so that the field says what it does take
-    bool good = field && !skein_field_check(field, &value, &error);
-    snprintf(text, 64, "%s=%.17g", name + 2, value.number[0]);
-    if (!good) fprintf(stderr, "skein run: %s %s: %s\n", name, given, error.message);
-    return good && app_option_add(sets, text);
-}
 
 static int run(int argc, char **argv) {
     app_option options[] = {
@@ -169,12 +73,10 @@ static int run(int argc, char **argv) {
         {"--quiet", NULL, "no progress", false, NULL, 0},
     };
     enum { COUNT = sizeof options / sizeof *options };
-    static const char *const fields[] = {"--frames", "--fps", "--threads"};
-    char texts[3][64];
+    app_override_texts texts;
     const char *path;
     int status = app_parse(&app_run_command, argc, argv, options, COUNT, "scene", &path);
-    for (int i = 0; i < 3 && status < 0; i++)
-        if (!override_field(options, COUNT, fields[i], &options[0], texts[i])) status = EXIT_FAULT;
+    if (status < 0 && !app_override(&app_run_command, options, COUNT, texts)) status = EXIT_FAULT;
     if (status < 0) {
         app_scene loaded;
         status = app_load(path, options[0].values, &loaded);
@@ -198,8 +100,9 @@ const app_command app_run_command = {
     "  skein run scenes/drape.json --out out/\n"
     "  skein run scenes/flag.json --frames 240 --fps 60 --threads 2 --set bodies.0.stretch.stiffness=2e4\n\n"
     "The outputs are the scene's: by default an OBJ of each body at the end, a PC2 point cache of the whole\n"
-    "run (for Blender's Mesh Cache modifier), and a PNG of the last frame. Files appear under their names\n"
-    "only when they are complete. Interrupted (Ctrl-C), a run writes what it has.\n\n"
+    "run (for Blender's Mesh Cache modifier), and a PNG of the last frame; with \"film\" among them a film, too\n"
+    "(or see skein render). All but films appear under their names only when they are complete. Interrupted\n"
+    "(Ctrl-C), a run writes what it has.\n\n"
     "Exit status 0: done; 1: the run failed, or a file could not be written; 2: a fault in the scene or the\n"
     "arguments; 130: interrupted.",
     run,

@@ -40,7 +40,7 @@ static const io_scene_section sections[] = {
     {"forces", SKEIN_FORCE, "a list"},
     {"colliders", SKEIN_COLLIDER, "a list"},
     {"output", SKEIN_EXPORTER,
-     "a list of exporters: [\"obj\", { \"type\": \"pc2\", \"every\": 2 }]; all there are if it is missing"},
+     "a list of exporters: [\"obj\", { \"type\": \"pc2\", \"every\": 2 }]; all but \"film\" if it is missing"},
 };
 enum { SECTION_COUNT = sizeof sections / sizeof *sections };
 
@@ -130,7 +130,8 @@ static const skein_kind *find_exporter(io_place place, const json_t *object, con
     return NULL;
 }
 
-static void add_export(io_scene *scene, io_place place, const json_t *object, const skein_kind *const *exporters) {
+static void add_export(io_scene *scene, io_place place, const json_t *object, bool asked,
+                       const skein_kind *const *exporters) {
     const skein_kind *kind = find_exporter(place, object, exporters);
     if (!kind) return;
     for (size_t i = 0; i < scene->export_count; i++) {
@@ -143,7 +144,7 @@ static void add_export(io_scene *scene, io_place place, const json_t *object, co
     if (!json_is_object(object) || io_settings_read(&settings, place, object, kind, skip)) {
         void *params = calloc(1, kind->params_size);
         // there is room: no more kinds are looked at, and each is there once
-        if (params) scene->exports[scene->export_count++] = (io_export){kind, params};
+        if (params) scene->exports[scene->export_count++] = (io_export){kind, params, asked};
         if (!params || !fill_params(kind, params, &settings)) io_fault(place, "", SKEIN_ERROR_MEMORY, "out of memory");
     }
     io_settings_free(&settings);
@@ -161,7 +162,7 @@ static void read_outputs(io_scene *scene, io_place place, const skein_kind *cons
     json_array_foreach(outputs, index, item) {
         char path[64];
         snprintf(path, sizeof path, "output.%zu", index);
-        add_export(scene, (io_place){place.file, path, place.faults}, item, exporters);
+        add_export(scene, (io_place){place.file, path, place.faults}, item, !standard, exporters);
     }
     json_decref(standard);
 }

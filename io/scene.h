@@ -59,6 +59,7 @@ skein_world *io_scene_build(const io_scene *scene, const skein_world_desc *desc,
 typedef struct io_export {
     const skein_kind *kind;
     const void *params;
+    bool asked; /* for by the scene; else it has no "output" */
 } io_export;
 size_t io_scene_exports(const io_scene *scene, io_export *exports, size_t most);
 

@@ -192,6 +192,10 @@ static void aim(render_draw *draw, drawing *d) {
     d->radius = render_bounds_radius(&finite);
     if (d->radius < 1e-9) d->radius = 1;
     render_bounds_centre(&finite, d->middle);
+    if (d->frame->radius > 0) {
+        d->radius = d->frame->radius;
+        memcpy(d->middle, d->frame->middle, sizeof d->middle);
+    }
     d->has_ground = render_find_ground(d->frame, &d->ground);
     for (int k = 0; k < 3; k++) sun[k] = d->frame->look.sun[k];
     render_normalise(sun);

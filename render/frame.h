@@ -93,6 +93,7 @@ typedef struct render_frame {
     const render_lines *lines;
     size_t lines_count;
     render_look look;
+    double middle[3], radius; /* what haze and grid are measured by; radius 0: by what is in the frame */
 } render_frame;
 
 /* A box along the axes; empty while least > most. */

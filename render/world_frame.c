@@ -41,6 +41,7 @@ struct render_world_frame {
     size_t particle_count;
     bool has_floor;
     double floor_height;
+    render_bounds held; /* in the picture, whatever the frame has */
 };
 
 /* The pattern repeats so often along a grid's longer side. */
@@ -57,6 +58,7 @@ render_world_frame *render_world_frame_create(skein_error *error) {
         return NULL;
     }
     made->frame = render_default_frame();
+    made->held = render_bounds_nothing();
     return made;
 }
 
@@ -322,13 +324,21 @@ static skein_status take_colliders(render_world_frame *made, const skein_world *
 
 /* ---- All of it ------------------------------------------------------------------------------ */
 
+static render_bounds bounds_to_hold(const render_world_frame *made) {
+    render_bounds bounds = render_frame_bounds(&made->frame);
+    if (render_bounds_empty(&made->held)) return bounds;
+    render_bounds_add(&bounds, made->held.least, 0);
+    render_bounds_add(&bounds, made->held.most, 0);
+    return bounds;
+}
+
 /* Where no plane is ground, one is put at height 0 if the things stand not far above it, else a little
  * below them. */
 static void place_floor(render_world_frame *made) {
     bool level = false;
     for (size_t i = 0; i < made->frame.plane_count; i++) level |= render_plane_level(&made->planes[i]);
     if (!made->has_floor && !level) {
-        render_bounds bounds = render_frame_bounds(&made->frame);
+        render_bounds bounds = bounds_to_hold(made);
         double size = 2 * render_bounds_radius(&bounds), lowest = bounds.least[1];
         if (render_bounds_empty(&bounds)) lowest = size = 0;
         made->floor_height = lowest >= 0 && lowest <= size ? 0 : lowest - 0.1 * size;
@@ -365,9 +375,15 @@ void render_world_frame_settle(render_world_frame *made) {
     made->frame.look.floor_height = made->floor_height;
 }
 
+void render_world_frame_hold(render_world_frame *made, const render_bounds *bounds) {
+    made->held = *bounds;
+    made->frame.radius = render_bounds_radius(bounds);
+    render_bounds_centre(bounds, made->frame.middle);
+}
+
 render_camera render_world_frame_camera(const render_world_frame *made, double aspect) {
     const render_look *look = &made->frame.look;
-    render_bounds bounds = render_frame_bounds(&made->frame);
+    render_bounds bounds = bounds_to_hold(made);
     double gap = bounds.least[1] - look->floor_height,
            most_gap = floor_gap * (bounds.most[1] - bounds.least[1]);
     if (look->floor && gap > 0 && gap < 1.01 * most_gap) bounds.least[1] = look->floor_height;

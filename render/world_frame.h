@@ -28,6 +28,10 @@ const render_frame *render_world_frame_get(const render_world_frame *frame);
  * must stay where things have room to move.) */
 void render_world_frame_settle(render_world_frame *frame);
 
+/* The camera and such a ground shall have room for this box, too, and the surroundings are measured by it; before
+ * the first update. So a film's background stands still. */
+void render_world_frame_hold(render_world_frame *frame, const render_bounds *bounds);
+
 /* A camera for the present state; the ground shows if it is near. */
 render_camera render_world_frame_camera(const render_world_frame *frame, double aspect);
 

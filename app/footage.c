@@ -1,0 +1,156 @@
+#include "app/footage.h"
+
+#ifdef SKEIN_RENDER
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "app/progress.h"
+#include "render/studio.h"
+#include "render/world_frame.h"
+
+/* The camera takes in so many frames at most, and nothing that makes the picture so many times wider than the
+ * start: what falls out of the world or blows up is let go. */
+enum { MOST_AHEAD = 900, MOST_GROWTH = 4 };
+
+struct app_footage {
+    const app_scene *loaded;
+    render_studio *studio;
+    film *film;
+    render_image image;
+    bool drawing; /* a picture is begun, and not yet in the film */
+    bool told;    /* a fault was printed: one is enough */
+    int frame, every;
+    app_footage_facts facts;
+};
+
+/* ---- looking ahead ---- */
+
+static void ignore_fault(void *user, const skein_error *error) {
+    (void)user, (void)error; // the same was built before without one
+}
+
+/* Adds what the world holds now, unless that makes the box larger than `most` (0: not known yet). */
+static void take_in(render_world_frame *frame, const skein_world *world, render_bounds *held, double *most) {
+    if (render_world_frame_update(frame, world, NULL)) return;
+    render_bounds now = render_frame_bounds(render_world_frame_get(frame)), both = *held;
+    if (render_bounds_empty(&now)) return;
+    render_bounds_add(&both, now.least, 0);
+    render_bounds_add(&both, now.most, 0);
+    if (*most == 0) *most = MOST_GROWTH * render_bounds_radius(&both);
+    if (render_bounds_radius(&both) <= *most) *held = both;
+}
+
+/* All that the first frames hold, from a run of its own. */
+static render_bounds look_ahead(const app_scene *loaded, int frames, bool quiet) {
+    render_bounds held = render_bounds_nothing();
+    double most = 0;
+    io_faults faults = {ignore_fault, NULL, 0};
+    skein_world_desc desc = skein_default_world_desc();
+    desc.thread_count = loaded->settings.threads;
+    skein_world *world = io_scene_build(loaded->scene, &desc, &faults);
+    render_world_frame *frame = render_world_frame_create(NULL);
+    double dt;
+    int steps = io_scene_steps_per_frame(&loaded->settings, &dt);
+    if (frames > MOST_AHEAD) frames = MOST_AHEAD;
+    app_progress p = app_progress_start("looking ahead: frame", frames, quiet);
+    p.quiet |= !p.terminal;
+    for (int i = 0; world && frame && i < frames && !app_interrupted(); i++) {
+        take_in(frame, world, &held, &most);
+        bool good = true;
+        for (int s = 0; s < steps && good; s++) good = !skein_world_step(world, dt);
+        if (!good) break; // the run itself will tell
+        app_progress_show(&p, i + 1);
+    }
+    if (p.line_open) fprintf(stderr, "\r%*s\r", 100, ""); // the run's own bar takes its place
+    render_world_frame_destroy(frame);
+    skein_world_destroy(world);
+    return held;
+}
+
+/* ---- beginning ---- */
+
+static void note_changes(const app_footage *f, const char *path, const film_format *format, const film_options *asked,
+                         const int32_t size[2]) {
+    if (size[0] != asked->size[0] || size[1] != asked->size[1])
+        fprintf(stderr, "skein: %s: %s has even sizes only: %d x %d instead of %d x %d\n", path, format->help, size[0],
+                size[1], asked->size[0], asked->size[1]);
+    if (f->every > 1)
+        fprintf(stderr, "skein: %s: %s plays %g pictures a second at most: one frame in %d is taken\n", path,
+                format->help, format->most_rate, f->every);
+    if (render_studio_samples(f->studio) < asked->samples)
+        fprintf(stderr, "skein: %s: the driver has no more than %d samples a pixel\n", path,
+                render_studio_samples(f->studio));
+}
+
+static bool open_all(app_footage *f, const char *path, const film_options *asked, bool quiet, skein_error *error) {
+    const film_format *format = film_format_of(path, error);
+    if (!format) return false;
+    film_options options = *asked;
+    film_fit_size(format, options.size);
+    f->every = film_every(format, f->loaded->settings.fps);
+    f->facts = (app_footage_facts){0, {options.size[0], options.size[1]}, f->loaded->settings.fps / f->every};
+    f->studio = render_studio_create(options.size, options.samples, error);
+    if (f->studio && !quiet) note_changes(f, path, format, asked, options.size);
+    f->film = f->studio ? film_create(path, &options, f->loaded->settings.fps, error) : NULL;
+    return f->film != NULL;
+}
+
+app_footage *app_footage_begin(const app_scene *loaded, const char *path, const film_options *options, int frames,
+                               bool quiet) {
+    skein_error error = {SKEIN_ERROR_MEMORY, "", "out of memory"};
+    app_footage *f = calloc(1, sizeof *f);
+    if (f) f->loaded = loaded;
+    if (!f || !open_all(f, path, options, quiet, &error)) {
+        app_print_error(&error);
+        app_footage_abandon(f);
+        return NULL;
+    }
+    render_bounds held = look_ahead(loaded, frames, quiet);
+    if (!render_bounds_empty(&held)) render_studio_hold(f->studio, &held);
+    return f;
+}
+
+/* ---- frames ---- */
+
+/* Brings the picture that is being drawn into the film. */
+static skein_status develop(app_footage *f, skein_error *error) {
+    if (!f->drawing) return SKEIN_OK;
+    f->drawing = false;
+    skein_status status = render_studio_develop(f->studio, &f->image, error);
+    if (!status) status = film_add(f->film, &f->image, error);
+    if (!status) f->facts.pictures++;
+    return status;
+}
+
+bool app_footage_frame(app_footage *f) {
+    skein_error error = {SKEIN_OK, "", ""};
+    if (f->frame++ % f->every) return true;
+    skein_status status = develop(f, &error);
+    if (!status) status = render_studio_shoot(f->studio, f->loaded->world, &error);
+    f->drawing = !status;
+    f->told = status != SKEIN_OK;
+    if (status) app_print_error(&error);
+    return !status;
+}
+
+static void release(app_footage *f) {
+    render_studio_destroy(f->studio);
+    render_image_release(&f->image);
+    free(f);
+}
+
+bool app_footage_end(app_footage *f, app_footage_facts *facts) {
+    skein_error error = {SKEIN_OK, "", ""}, later = {SKEIN_OK, "", ""};
+    skein_status status = develop(f, &error), ended = film_finish(f->film, &later);
+    if ((status || ended) && !f->told) app_print_error(status ? &error : &later);
+    if (facts) *facts = f->facts;
+    release(f);
+    return !status && !ended;
+}
+
+void app_footage_abandon(app_footage *f) {
+    if (!f) return;
+    film_abandon(f->film);
+    release(f);
+}
+#endif

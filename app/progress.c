@@ -1,0 +1,84 @@
+#include "app/progress.h"
+
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <unistd.h>
+
+/* ---- interrupts ---- */
+
+static volatile sig_atomic_t interrupted;
+
+static void on_interrupt(int number) {
+    interrupted = number;
+}
+
+void app_catch_interrupts(void) {
+    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND | SA_RESTART};
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
+int app_interrupted(void) {
+    return interrupted;
+}
+
+/* ---- progress ---- */
+
+app_progress app_progress_start(const char *what, int frames, bool quiet) {
+    return (app_progress){.what = what,
+                          .quiet = quiet || !frames,
+                          .terminal = isatty(STDERR_FILENO) != 0,
+                          .frames = frames,
+                          .start = app_seconds()};
+}
+
+void app_progress_show(app_progress *p, int frame) {
+    double now = app_seconds(), elapsed = now - p->start;
+    bool due = p->terminal ? now - p->last >= 0.05 : frame % ((p->frames + 9) / 10) == 0;
+    if (p->quiet || (!due && frame != p->frames)) return;
+    p->last = now;
+    char bar[31];
+    for (int i = 0; i < 30; i++) bar[i] = i < (int)(30.0 * frame / p->frames) ? '#' : '.';
+    bar[30] = 0;
+    fprintf(stderr, "%s[%s] %s %d of %d, %.1f s, %.0f s left%s", p->terminal ? "\r" : "", bar, p->what, frame,
+            p->frames, elapsed, elapsed / frame * (p->frames - frame), p->terminal ? "   " : "\n");
+    p->line_open = p->terminal;
+}
+
+void app_progress_end(app_progress *p) {
+    if (p->line_open) fprintf(stderr, "\n");
+    p->line_open = false;
+}
+
+/* ---- a frame ---- */
+
+static bool all_finite(const skein_real *xyzw, const skein_view *view) {
+    for (size_t i = 0; i < view->count; i++) {
+        const skein_real *p = xyzw + 4 * (size_t)view->slot_of[i];
+        if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2])) return false;
+    }
+    return true;
+}
+
+static bool is_finite(const skein_world *world) {
+    skein_view x = skein_position_view(world), v = skein_velocity_view(world);
+    return all_finite(x.xyzw, &x) && all_finite(v.xyzw, &v);
+}
+
+bool app_step_frame(const app_scene *loaded, int frame, int steps, double dt, app_progress *p) {
+    skein_world *world = loaded->world;
+    bool good = true;
+    for (int s = 0; s < steps && good; s++) good = !skein_world_step(world, dt);
+    if (good && is_finite(world)) return true;
+    // said at once, instead of writing such files to the end
+    app_progress_end(p);
+    skein_statistics now;
+    if (!good || skein_world_statistics(world, &now)) app_print_error(skein_world_error(world));
+    else
+        fprintf(stderr,
+                "skein: %s: blew up in frame %d: %zu of %zu particles are no longer finite; "
+                "more substeps or less stiffness help\n",
+                loaded->path, frame, now.nonfinite, now.particles);
+    return false;
+}
