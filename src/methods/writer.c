@@ -65,10 +65,6 @@ void sk_write_clear(sk_writer *writer, sk_vector dst) {
     add_combine(writer, &sk_combine_sum, dst, 0, SK_NONE, 0, SK_NONE);
 }
 
-void sk_write_correction(sk_writer *writer, sk_vector dst, double a, sk_vector p, sk_vector q, double b) {
-    add_combine(writer, &sk_combine_correction, dst, a, p, b, q);
-}
-
 void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_vector q) {
     add_combine(writer, &sk_combine_kick, dst, a, p, 0, q);
 }
@@ -133,6 +129,27 @@ void sk_write_fields(sk_writer *writer) {
     if (first) sk_write_clear(writer, SK_F);
 }
 
+static bool is_on(const sk_batch *batch) {
+    return *batch->enabled && batch->count;
+}
+
+/* Without damping the multiplier is zero whenever it is read in the only pass of a substep, and counts for nothing
+ * in a rigid batch. */
+static bool keeps_multiplier(const sk_batch *batch, int passes) {
+    bool rigid = ((const sk_material *)batch->params)->stiffness >= SK_UNBOUNDED;
+    return (passes > 1 && !rigid) || sk_batch_damping_time(batch) > 0;
+}
+
+/* Whether nobody but the correction looks back at the start of the substep. */
+static bool only_follows(const sk_rules *rules, int passes) {
+    bool only = rules->colliders.count == 0;
+    for (size_t i = 0; i < rules->batches.count; i++) {
+        const sk_batch *batch = rules->batches.data[i];
+        only &= !is_on(batch) || !keeps_multiplier(batch, passes);
+    }
+    return only;
+}
+
 /* Adds up the forces if all are plain and F is not wanted later on. */
 static bool add_up_plain_forces(const sk_rules *rules, sk_plain_force *sum) {
     *sum = (sk_plain_force){.label = ""};
@@ -149,16 +166,23 @@ static bool add_up_plain_forces(const sk_rules *rules, sk_plain_force *sum) {
     return true;
 }
 
-void sk_write_prediction(sk_writer *writer) {
-    bool plain = add_up_plain_forces(writer->rules, &writer->plan->plain);
+void sk_write_prediction(sk_writer *writer, int passes) {
+    const sk_rules *rules = writer->rules;
+    bool plain = add_up_plain_forces(rules, &writer->plan->plain);
     if (!plain) sk_write_fields(writer);
+    sk_vector kept = only_follows(rules, passes) ? SK_X : rules->colliders.count ? SK_V0 : SK_NONE;
     add(writer, (sk_row){.kind = SK_ROW_COMBINE,
                          .order = SK_FREE,
                          .kernel = (plain ? &sk_combine_fall : &sk_combine_predict)->version[writer->isa],
                          .dst = SK_X,
-                         .source = {SK_V, plain ? SK_NONE : SK_F, writer->rules->colliders.count ? SK_V0 : SK_NONE},
+                         .source = {SK_V, plain ? SK_NONE : SK_F, kept},
                          .rule = &writer->plan->plain,
                          .end = writer->slot_count});
+}
+
+void sk_write_following(sk_writer *writer, int passes) {
+    double h = only_follows(writer->rules, passes) ? 0 : writer->h; // X0 is where X was going, or where it was
+    add_combine(writer, &sk_combine_correction, SK_V, 1 / writer->h, SK_X, h, SK_X0);
 }
 
 /* A row for each sweep of a batch from the `first` on. */
@@ -177,10 +201,6 @@ static void add_sweeps(sk_writer *writer, const sk_batch *batch, size_t first, s
                              .walk = sweep->walk,
                              .end = sweep->strips ? sweep->walk.rows - sweep->walk.reach : sweep->group_count});
     }
-}
-
-static bool is_on(const sk_batch *batch) {
-    return *batch->enabled && batch->count;
 }
 
 /* A row for all sweeps of a batch along the same strips: each strip row's force is worked out whole, so the
@@ -211,13 +231,6 @@ void sk_write_forces(sk_writer *writer) {
         add_strip_forces(writer, batch, &first);
         add_sweeps(writer, batch, first, SK_ROW_FORCE, &batch->type->force, SK_F, SK_V);
     }
-}
-
-/* Without damping the multiplier is zero whenever it is read in the only pass of a substep, and counts for nothing
- * in a rigid batch. */
-static bool keeps_multiplier(const sk_batch *batch, int passes) {
-    bool rigid = ((const sk_material *)batch->params)->stiffness >= SK_UNBOUNDED;
-    return (passes > 1 && !rigid) || sk_batch_damping_time(batch) > 0;
 }
 
 void sk_write_projections(sk_writer *writer, int passes) {

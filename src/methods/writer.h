@@ -47,15 +47,16 @@ void sk_write_end(sk_writer *writer, size_t repeat);
 void sk_write_pack(sk_writer *writer);
 void sk_write_unpack(sk_writer *writer);
 
-/* dst = a p + b q (q may be SK_NONE); dst = 0; dst += a (p - (q + b dst)); dst = p + a w q. */
+/* dst = a p + b q (q may be SK_NONE); dst = 0; dst = p + a w q. */
 void sk_write_sum(sk_writer *writer, sk_vector dst, double a, sk_vector p, double b, sk_vector q);
 void sk_write_clear(sk_writer *writer, sk_vector dst);
-void sk_write_correction(sk_writer *writer, sk_vector dst, double a, sk_vector p, sk_vector q, double b);
 void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_vector q);
 
 /* The fields, then V += h w F, V0 = V (where there are colliders), X0 = X, X += h V; in one row where all forces
- * are plain. */
-void sk_write_prediction(sk_writer *writer);
+ * are plain. `passes` is what the projections will be told. */
+void sk_write_prediction(sk_writer *writer, int passes);
+/* V += (X - where X was going)/h: V learns what the projections did. */
+void sk_write_following(sk_writer *writer, int passes);
 
 /* F = all forces on X moving with V: the grid if a rule wants neighbours, then fields and neighbours. */
 void sk_write_fields(sk_writer *writer);

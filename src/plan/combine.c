@@ -33,7 +33,8 @@ static void SK_ISA(correction)(sk_run *run, const sk_row *row, size_t begin, siz
     const sk_wide *q = (const sk_wide *)(const void *)run->vector[row->source[1]];
     real a = (real)row->coefficient[0], b = (real)row->coefficient[1];
     // the same operations as predicted p, so that an untouched p corrects nothing
-    FOR_PARTS(dst[at] + a * (p[at] - (q[at] + b * dst[at])))
+    if (b == 0) FOR_PARTS(dst[at] + a * (p[at] - q[at]))
+    else FOR_PARTS(dst[at] + a * (p[at] - (q[at] + b * dst[at])))
 }
 
 static void SK_ISA(kick)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
@@ -49,14 +50,15 @@ static void SK_ISA(kick)(sk_run *run, const sk_row *row, size_t begin, size_t en
 }
 
 /* The start of a position method's substep in one go, once the block's v has its new value: V = v, V0 = V,
- * X0 = X, X += h V. */
+ * X0 = X, X += h V; or, where only the correction will ask, X0 = X + h V. */
 SK_INLINE void SK_ISA(set_out)(sk_run *run, const sk_row *row, size_t slot, bool packed, sk_wide4 x, sk_wide4 v) {
     real h = (real)row->dt;
     SK_ISA(sk_store_moved)(run->vector[SK_V], slot, packed, v);
     if (row->source[2] == SK_V0) SK_ISA(sk_store_moved)(run->vector[SK_V0], slot, packed, v);
-    SK_ISA(sk_store_moved)(run->vector[SK_X0], slot, packed, x);
+    if (row->source[2] != SK_X) SK_ISA(sk_store_moved)(run->vector[SK_X0], slot, packed, x);
     x.x += h * v.x, x.y += h * v.y, x.z += h * v.z;
     SK_ISA(sk_store_moved)(run->vector[SK_X], slot, packed, x);
+    if (row->source[2] == SK_X) SK_ISA(sk_store_moved)(run->vector[SK_X0], slot, packed, x);
 }
 
 static void SK_ISA(predict)(sk_run *run, const sk_row *row, size_t begin, size_t end) {

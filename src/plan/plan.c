@@ -43,19 +43,23 @@ static bool is_version(const sk_row *row, const sk_kernels *kernels) {
 /* A combine row as the formula that it computes. */
 static void describe_combine(const sk_row *row, char *text, size_t size) {
     const char *p = vector_text(row->source[0]), *q = vector_text(row->source[1]);
+    const char *kept = row->source[2] == SK_X    ? "X0 = X"
+                       : row->source[2] == SK_V0 ? "X0 = old X; V0 = V"
+                                                 : "X0 = old X";
     if (is_version(row, &sk_combine_predict)) {
-        snprintf(text, size, "X + h V, V + h w F; X0 = X%s", row->source[2] == SK_V0 ? "; V0 = V" : "");
+        snprintf(text, size, "X + h V, V + h w F; %s", kept);
         return;
     }
     if (is_version(row, &sk_combine_fall)) {
         const char *label = ((const sk_plain_force *)row->rule)->label;
-        snprintf(text, size, "X + h V, V + h (%s); X0 = X%s", label[0] ? label : "0",
-                 row->source[2] == SK_V0 ? "; V0 = V" : "");
+        snprintf(text, size, "X + h V, V + h (%s); %s", label[0] ? label : "0", kept);
         return;
     }
     if (is_version(row, &sk_combine_correction)) {
         const char *dst = vector_text(row->dst);
-        snprintf(text, size, "%s + %g (%s - %s - %g %s)", dst, row->coefficient[0], p, q, row->coefficient[1], dst);
+        if (row->coefficient[1] == 0) snprintf(text, size, "%s + %g (%s - %s)", dst, row->coefficient[0], p, q);
+        else
+            snprintf(text, size, "%s + %g (%s - %s - %g %s)", dst, row->coefficient[0], p, q, row->coefficient[1], dst);
         return;
     }
     if (is_version(row, &sk_combine_kick)) {

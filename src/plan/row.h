@@ -128,7 +128,8 @@ const char *sk_row_kind_text(sk_row_kind kind);
  *   dst = a p + b q + c r        (a source of SK_NONE is left out)
  *   dst += a (p - (q + b dst))   velocity: what moved p away from where dst alone would have taken q
  *   dst = p + a w q              a kick: w is the inverse mass
- *   predict                      V += h w F; V0 = V where the third source is V0; X0 = X; X += h V: one row
+ *   predict                      V += h w F; V0 = V where the third source is V0; X0 = X, or what X is going to
+ *                                be where the third source is X; X += h V: one row
  *                                for what would be four, since each block is read and written once
  *   fall                         the same, with the plan's plain force in place of F */
 extern const sk_kernels sk_combine_sum, sk_combine_correction, sk_combine_kick, sk_combine_predict, sk_combine_fall;
