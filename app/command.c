@@ -8,6 +8,7 @@
 #include "io/exporters.h"
 #ifdef SKEIN_RENDER
 #include "render/picture.h"
+#include "render/view.h"
 #endif
 
 double app_seconds(void) {
@@ -132,6 +133,7 @@ const skein_kind *const *app_exporters(void) {
     for (size_t i = 0; io_exporter_at(i); i++) all[count++] = io_exporter_at(i);
 #ifdef SKEIN_RENDER
     for (size_t i = 0; render_exporter_at(i); i++) all[count++] = render_exporter_at(i);
+    all[count++] = render_view_kind();
 #endif
     all[count] = NULL;
     return all;

@@ -29,15 +29,12 @@ static void pass_warning(void *user, const char *line) {
 
 /* Reads a mesh whose path is relative to the scene's folder. */
 static bool read_mesh(const builder *b, io_place place, const char *file, io_mesh *mesh) {
-    const char *slash = file[0] == '/' ? NULL : strrchr(b->file, '/');
-    size_t folder = slash ? (size_t)(slash + 1 - b->file) : 0, size = folder + strlen(file) + 1;
-    char *path = malloc(size);
+    char *path = io_path_beside(b->file, file);
     skein_status status = SKEIN_ERROR_MEMORY;
     skein_error error = {SKEIN_ERROR_MEMORY, "", "out of memory"};
     // the library only reads a world's description, and so does pass_warning
     io_warnings warnings = {b->desc ? pass_warning : NULL, (void *)(uintptr_t)b->desc};
     if (path) {
-        snprintf(path, size, "%.*s%s", (int)folder, b->file, file);
         status = io_mesh_read(path, mesh, warnings, &error);
         free(path);
     }
@@ -195,8 +192,10 @@ skein_world *io_world_from_document(const json_t *root, const char *file, double
         io_fault(top, error.where, error.status, "%s", error.message);
         return NULL;
     }
-    for (size_t i = 0; io_scene_section_at(i); i++)
-        if (io_scene_section_at(i)->category != SKEIN_EXPORTER) add_section(&b, root, io_scene_section_at(i));
+    for (size_t i = 0; io_scene_section_at(i); i++) {
+        skein_category category = io_scene_section_at(i)->category;
+        if (category != SKEIN_EXPORTER && category != SKEIN_VIEW) add_section(&b, root, io_scene_section_at(i));
+    }
     if (!b.body_missing && !skein_particle_count(b.world))
         io_fault(top, "bodies", SKEIN_ERROR_VALUE, "the scene has no particles: add a body");
     // a method may not take these rules: the plan knows

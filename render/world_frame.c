@@ -29,6 +29,7 @@ enum { LOOSE, IN_SURFACE, HIDDEN };
 
 struct render_world_frame {
     render_frame frame;
+    render_view view; /* of the last update; its texts are not ours */
     body *bodies;
     size_t body_count;
     render_surface *surfaces;
@@ -136,8 +137,7 @@ static double line_length(const body *b, size_t count, size_t step) {
     double sum = 0;
     for (size_t i = 1; i < count; i++) {
         const double *p = &b->positions[3 * (i - 1) * step], *q = &b->positions[3 * i * step];
-        sum += sqrt((q[0] - p[0]) * (q[0] - p[0]) + (q[1] - p[1]) * (q[1] - p[1]) +
-                    (q[2] - p[2]) * (q[2] - p[2]));
+        sum += sqrt((q[0] - p[0]) * (q[0] - p[0]) + (q[1] - p[1]) * (q[1] - p[1]) + (q[2] - p[2]) * (q[2] - p[2]));
     }
     return isfinite(sum) && sum > 0 ? sum : 1;
 }
@@ -171,8 +171,7 @@ static uint64_t hash(uint64_t so_far, const void *data, size_t words) {
 }
 
 /* All that stays of a body. */
-static bool make_body(body *b, const skein_surface *surface, skein_handle handle,
-                      const render_world_frame *made) {
+static bool make_body(body *b, const skein_surface *surface, skein_handle handle, const render_world_frame *made) {
     release_body(b);
     size_t rows = surface->grid_rows, columns = surface->grid_columns;
     b->handle = handle;
@@ -184,8 +183,7 @@ static bool make_body(body *b, const skein_surface *surface, skein_handle handle
 
     make_triangles(b, surface);
     gather(b, surface, made->all);
-    if (b->vertex_count > surface->particle_count && !make_weld(b, surface, made->particle_count))
-        return false;
+    if (b->vertex_count > surface->particle_count && !make_weld(b, surface, made->particle_count)) return false;
     bool grid = rows >= 2 && columns >= 2 && rows * columns == b->vertex_count;
     if (grid && !make_uv(b, rows, columns)) return false;
 
@@ -227,10 +225,9 @@ static skein_status take_bodies(render_world_frame *made, const skein_world *wor
         skein_status status = skein_body_surface(world, handle, &surface);
         if (status != SKEIN_OK) return render_fail(error, status, "", "a body's surface cannot be read");
         body *b = &made->bodies[i];
-        bool same = b->positions && b->handle.index == handle.index &&
-                    b->handle.generation == handle.generation && b->vertex_count == surface.vertex_count;
-        if (!same && !make_body(b, &surface, handle, made))
-            return render_fail_memory(error, "a body's surface");
+        bool same = b->positions && b->handle.index == handle.index && b->handle.generation == handle.generation &&
+                    b->vertex_count == surface.vertex_count;
+        if (!same && !make_body(b, &surface, handle, made)) return render_fail_memory(error, "a body's surface");
         gather(b, &surface, made->all);
 
         // a body without faces shows its particles; a hidden one shows nothing
@@ -277,8 +274,7 @@ static skein_status take_particles(render_world_frame *made, const skein_world *
 
 /* ---- Colliders ------------------------------------------------------------------------------ */
 
-static void add_plane(render_world_frame *made, const skein_world *world, skein_handle handle,
-                      const skein_pose *pose) {
+static void add_plane(render_world_frame *made, const skein_world *world, skein_handle handle, const skein_pose *pose) {
     skein_value normal;
     if (skein_get(world, handle, "normal", &normal) != SKEIN_OK) return;
     render_plane *plane = &made->planes[made->frame.plane_count++];
@@ -302,8 +298,7 @@ static void add_sphere(render_world_frame *made, const skein_world *world, skein
 
 static skein_status take_colliders(render_world_frame *made, const skein_world *world, skein_error *error) {
     size_t count = skein_object_count(world, SKEIN_COLLIDER);
-    if (!grow(&made->planes, count, sizeof *made->planes) ||
-        !grow(&made->spheres, count, sizeof *made->spheres)) {
+    if (!grow(&made->planes, count, sizeof *made->planes) || !grow(&made->spheres, count, sizeof *made->spheres)) {
         return render_fail_memory(error, "the colliders");
     }
     made->frame.planes = made->planes, made->frame.plane_count = 0;
@@ -312,8 +307,7 @@ static skein_status take_colliders(render_world_frame *made, const skein_world *
         skein_handle handle = skein_object_at(world, SKEIN_COLLIDER, i);
         const skein_kind *kind = skein_object_kind(world, handle);
         skein_pose pose;
-        if (!kind || !is_visible(world, handle) || skein_collider_pose(world, handle, &pose) != SKEIN_OK)
-            continue;
+        if (!kind || !is_visible(world, handle) || skein_collider_pose(world, handle, &pose) != SKEIN_OK) continue;
         if (strcmp(kind->name, "plane") == 0) add_plane(made, world, handle, &pose);
         if (strcmp(kind->name, "sphere") == 0) add_sphere(made, world, handle, &pose);
     }
@@ -338,11 +332,11 @@ static void place_floor(render_world_frame *made) {
     made->frame.look.floor_height = made->floor_height;
 }
 
-skein_status render_world_frame_update(render_world_frame *made, const skein_world *world,
+skein_status render_world_frame_update(render_world_frame *made, skein_world *world, const render_view *view,
                                        skein_error *error) {
+    made->view = view ? *view : render_view_default();
     size_t count = skein_particle_count(world);
-    if (!grow(&made->all, 3 * count, sizeof *made->all) ||
-        !grow(&made->shown, count, sizeof *made->shown)) {
+    if (!grow(&made->all, 3 * count, sizeof *made->all) || !grow(&made->shown, count, sizeof *made->shown)) {
         return render_fail_memory(error, "the particles");
     }
     made->particle_count = count;
@@ -368,8 +362,7 @@ void render_world_frame_settle(render_world_frame *made) {
 render_camera render_world_frame_camera(const render_world_frame *made, double aspect) {
     const render_look *look = &made->frame.look;
     render_bounds bounds = render_frame_bounds(&made->frame);
-    double gap = bounds.least[1] - look->floor_height,
-           most_gap = floor_gap * (bounds.most[1] - bounds.least[1]);
+    double gap = bounds.least[1] - look->floor_height, most_gap = floor_gap * (bounds.most[1] - bounds.least[1]);
     if (look->floor && gap > 0 && gap < 1.01 * most_gap) bounds.least[1] = look->floor_height;
     return render_camera_framing(&bounds, aspect);
 }

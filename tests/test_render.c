@@ -637,7 +637,7 @@ static void a_world_becomes_a_frame(void **state) {
     skein_error error = {0};
     skein_world *world = cloth_on_a_ball();
     render_world_frame *made = render_world_frame_create(&error);
-    assert_int_equal(render_world_frame_update(made, world, &error), SKEIN_OK);
+    assert_int_equal(render_world_frame_update(made, world, NULL, &error), SKEIN_OK);
     const render_frame *frame = render_world_frame_get(made);
     assert_int_equal(frame->surface_count, 1);
     assert_int_equal(frame->surfaces[0].vertex_count, 9 * 17);
@@ -656,7 +656,7 @@ static void a_world_becomes_a_frame(void **state) {
                      SKEIN_OK);
     assert_int_equal(skein_set(world, skein_object_at(world, SKEIN_COLLIDER, 1), "visible", skein_number(0)),
                      SKEIN_OK);
-    assert_int_equal(render_world_frame_update(made, world, &error), SKEIN_OK);
+    assert_int_equal(render_world_frame_update(made, world, NULL, &error), SKEIN_OK);
     assert_int_equal(frame->surface_count, 0);
     assert_int_equal(frame->points[0].count + frame->points[1].count, 0);
     assert_int_equal(frame->plane_count, 0);
@@ -673,7 +673,7 @@ static void a_world_becomes_a_picture(void **state) {
     render_picture_options options = {{320, 180}, 4};
     render_image image = {0};
     path_in(path, "world.png");
-    assert_int_equal(render_picture(world, path, &options, &error), SKEIN_OK);
+    assert_int_equal(render_picture(world, path, &options, NULL, &error), SKEIN_OK);
     assert_int_equal(render_image_read_png(&image, path, &error), SKEIN_OK);
     assert_int_equal(image.width, 320);
     assert_int_equal(image.height, 180);
@@ -690,9 +690,9 @@ static void a_world_becomes_a_picture(void **state) {
     assert_int_equal(unlink(path), 0);
 
     path_in(path, "no/such/world.png");
-    assert_int_equal(render_picture(world, path, &options, &error), SKEIN_ERROR_FILE);
+    assert_int_equal(render_picture(world, path, &options, NULL, &error), SKEIN_ERROR_FILE);
     options.size[0] = 0;
-    assert_int_equal(render_picture(world, path, &options, &error), SKEIN_ERROR_VALUE);
+    assert_int_equal(render_picture(world, path, &options, NULL, &error), SKEIN_ERROR_VALUE);
     skein_world_destroy(world);
 }
 

@@ -91,10 +91,12 @@ typedef enum skein_category {
     SKEIN_METHOD,
     SKEIN_SCENE,
     SKEIN_EXPORTER,
+    SKEIN_VIEW,
     SKEIN_CATEGORY_COUNT
 } skein_category;
 
-/* A kind of body, constraint, force, collider, method or exporter, with its own fields. */
+/* A kind of body, constraint, force, collider, method or exporter, with its own fields (a scene's and a
+ * view's, too). */
 typedef struct skein_kind {
     const char *name;
     const char *help; /* one or two lines */
