@@ -46,6 +46,9 @@ static const double degree = 0.017453292519943295;
 static const double ground_size = 60;
 /* Cloth that lies on something wins against it: it is drawn nearer by this part of its distance. */
 static const float lift = 5e-4f;
+/* Where edges are under so many pixels, shadows on surfaces are found by vertex: a pixel each would cost more and
+ * show no more. */
+static const double fine_edge = 4.5;
 
 /* ---- Making --------------------------------------------------------------------------------- */
 
@@ -53,10 +56,10 @@ static skein_status make_all(render_draw *draw, skein_error *error) {
     static const char *const stages[PROGRAM_COUNT][2] = {
         [SKY] = {"sky.vert", "display,sky.frag"},
         [PLANE] = {"plane.vert", "display,light,plane.frag"},
-        [SURFACE] = {"surface.vert", "display,light,surface.frag"},
+        [SURFACE] = {"by_vertex,light,surface.vert", "display,light,surface.frag"},
         [BALL] = {"ball.vert", "display,light,ball.frag"},
         [PLANE + DEPTH_ONLY] = {"plane.vert", NULL},
-        [SURFACE + DEPTH_ONLY] = {"surface.vert", NULL},
+        [SURFACE + DEPTH_ONLY] = {"depth.vert", NULL},
         [BALL + DEPTH_ONLY] = {"ball.vert", NULL},
         [LINE] = {"line.vert", "display,line.frag"},
     };
@@ -67,7 +70,7 @@ static skein_status make_all(render_draw *draw, skein_error *error) {
     skein_status status = render_light_create(&draw->light, error);
     if (status == SKEIN_OK) status = render_shape_disc(&draw->disc, error);
     if (status == SKEIN_OK) status = render_shape_square(&draw->square, error);
-    if (status == SKEIN_OK) status = render_shape_sphere(&draw->sphere, 40, error);
+    if (status == SKEIN_OK) status = render_shape_sphere(&draw->sphere, 24, error);
     if (status == SKEIN_OK) status = render_shape_sphere(&draw->pearl, 10, error);
     if (status != SKEIN_OK) return status;
 
@@ -175,6 +178,7 @@ static void fill_block(drawing *d, const double sun[3], double tangent) {
         store(d->frame->spheres[i].centre, d->frame->spheres[i].radius, block->balls[i]);
     }
     block->counts[0] = (int32_t)balls;
+    block->counts[1] = 10, block->counts[2] = 18, block->counts[3] = 5;
 }
 
 static void send_matrix(const render_draw *draw, render_pass pass, const double matrix[16]) {
@@ -263,13 +267,24 @@ static void set_material(GLuint program, const render_material *material, bool h
     glProgramUniform1f(program, 6, material->translucency);
 }
 
+/* How long a triangle's edge is in the picture, about. */
+static double edge_pixels(const drawing *d, const render_mesh *mesh) {
+    double away[3];
+    for (int k = 0; k < 3; k++) away[k] = mesh->middle[k] - d->camera->eye[k];
+    double distance = fmax(sqrt(render_dot(away, away)), d->camera->near);
+    return mesh->edge * d->height / (2 * tan(0.5 * d->camera->fov * degree) * distance);
+}
+
 static void draw_surfaces(const render_draw *draw, const drawing *d, int twin) {
     GLuint program = draw->programs[SURFACE + twin];
     glUseProgram(program);
-    glProgramUniform1f(program, 0, twin ? 0 : lift);
+    if (!twin) glProgramUniform1f(program, 0, lift);
     for (size_t i = 0; i < d->frame->surface_count; i++) {
         const render_mesh *mesh = &draw->meshes[i];
-        if (!twin) set_material(program, &d->frame->surfaces[i].material, mesh->uv != 0);
+        if (!twin) {
+            set_material(program, &d->frame->surfaces[i].material, mesh->uv != 0);
+            glProgramUniform1i(program, 7, edge_pixels(d, mesh) < fine_edge);
+        }
         glBindVertexArray(mesh->arrays);
         glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
     }
@@ -330,15 +345,9 @@ static void draw_picture(const render_draw *draw, const drawing *d, unsigned fra
     glDepthMask(GL_TRUE);
     glClearBufferfv(GL_DEPTH, 0, &nearest_nothing);
 
-    // the sky fills every pixel, so colours need no clearing
+    // what hides most comes first (depth alone in a pass before saved nothing, on llvmpipe)
     use_pass(draw, RENDER_PASS_CAMERA);
     render_light_bind(&draw->light);
-    glDisable(GL_DEPTH_TEST);
-    glUseProgram(draw->programs[SKY]);
-    glBindVertexArray(draw->no_arrays);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-
-    // what hides most comes first (depth alone in a pass before saved nothing, on llvmpipe)
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GREATER);
     draw_surfaces(draw, d, 0);
@@ -346,6 +355,12 @@ static void draw_picture(const render_draw *draw, const drawing *d, unsigned fra
     draw_slabs(draw, d, 0);
     draw_ground(draw, d);
     draw_lines(draw, d);
+
+    // the sky fills what is left, so that colours need no clearing
+    glDepthFunc(GL_GEQUAL);
+    glUseProgram(draw->programs[SKY]);
+    glBindVertexArray(draw->no_arrays);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 skein_status render_draw_frame(render_draw *draw, const render_frame *frame, const render_camera *camera,

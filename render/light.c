@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* Texels along a side. On llvmpipe the sun's map takes 20 ms of one core, the lower one 8. */
-enum { sun_size = 2048, under_size = 160 };
+enum { sun_size = 1024, under_size = 160 };
 
 /* The share of the lower map's side that is left free around the things, as far as taps reach. */
 static const double under_margin = 0.22;

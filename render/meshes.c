@@ -10,7 +10,8 @@
 
 /* ---- Surfaces that move --------------------------------------------------------------------- */
 
-void render_surface_normals(const render_surface *surface, float *normals) {
+double render_surface_normals(const render_surface *surface, float *normals) {
+    double area = 0;
     const double *x = surface->positions;
     const uint32_t *weld = surface->weld;
     memset(normals, 0, 3 * surface->vertex_count * sizeof *normals);
@@ -22,6 +23,7 @@ void render_surface_normals(const render_surface *surface, float *normals) {
         double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
         float n[3] = {(float)(u[1] * v[2] - u[2] * v[1]), (float)(u[2] * v[0] - u[0] * v[2]),
                       (float)(u[0] * v[1] - u[1] * v[0])};
+        area += 0.5 * sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
         for (int k = 0; k < 3; k++) {
             float *sum = &normals[3 * (weld ? weld[corner[k]] : corner[k])];
             sum[0] += n[0], sum[1] += n[1], sum[2] += n[2];
@@ -39,6 +41,7 @@ void render_surface_normals(const render_surface *surface, float *normals) {
     for (size_t i = 0; weld && i < surface->vertex_count; i++) {
         if (weld[i] != i) memcpy(&normals[3 * i], &normals[3 * weld[i]], 3 * sizeof *normals);
     }
+    return area;
 }
 
 static GLuint make_buffer(size_t size, const void *data, GLbitfield flags) {
@@ -100,8 +103,15 @@ skein_status render_mesh_update(render_mesh *mesh, const render_surface *surface
 
     size_t numbers = 3 * mesh->vertex_count;
     float *positions = mesh->staged, *normals = mesh->staged + numbers;
-    for (size_t i = 0; i < numbers; i++) positions[i] = (float)surface->positions[i];
-    render_surface_normals(surface, normals);
+    double sum[3] = {0, 0, 0};
+    for (size_t i = 0; i < numbers; i++) {
+        positions[i] = (float)surface->positions[i];
+        sum[i % 3] += surface->positions[i];
+    }
+    for (int k = 0; k < 3; k++) mesh->middle[k] = sum[k] / (double)mesh->vertex_count;
+    // a triangle of two equal short sides at a right angle, as in a grid
+    double area = render_surface_normals(surface, normals);
+    mesh->edge = sqrt(2 * area / (double)(mesh->triangle_count ? mesh->triangle_count : 1));
     glNamedBufferSubData(mesh->positions, 0, (GLsizeiptr)(numbers * sizeof(float)), positions);
     glNamedBufferSubData(mesh->normals, 0, (GLsizeiptr)(numbers * sizeof(float)), normals);
     return SKEIN_OK;
@@ -150,9 +160,8 @@ static void place_sphere(double along, double around, float *out) {
 }
 
 static void place_disc(double along, double around, float *out) {
-    // rings grow by a power, so that what is near has triangles of its own
-    out[0] = (float)(along * along * along * cos(2 * pi * around));
-    out[1] = (float)(-along * along * along * sin(2 * pi * around));
+    out[0] = (float)(along * cos(2 * pi * around));
+    out[1] = (float)(-along * sin(2 * pi * around));
 }
 
 static void place_square(double along, double around, float *out) {
@@ -165,7 +174,7 @@ skein_status render_shape_sphere(render_shape *shape, int rings, skein_error *er
 }
 
 skein_status render_shape_disc(render_shape *shape, skein_error *error) {
-    return make_shape(shape, 12, 48, 2, place_disc, error);
+    return make_shape(shape, 1, 8, 2, place_disc, error);
 }
 
 skein_status render_shape_square(render_shape *shape, skein_error *error) {

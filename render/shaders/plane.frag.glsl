@@ -1,4 +1,4 @@
-in vec3 world;
+in vec3 interpolated;
 in vec2 place;
 out vec4 colour;
 
@@ -20,7 +20,15 @@ float lines(vec2 x, float half_width) {
     return max(cover.x, cover.y);
 }
 
+// The ground's triangles are so large that its points are exact only where the pixel's ray meets it.
+vec3 point_on_ground() {
+    vec2 x = gl_FragCoord.xy * vec2(scene.view_right.w, scene.view_up.w) - 1.0;
+    vec3 ray = scene.view_forward.xyz + x.x * scene.view_right.xyz + x.y * scene.view_up.xyz;
+    return scene.eye.xyz + ray * ((scene.eye.y - origin.y) / max(-ray.y, 1e-6));
+}
+
 void main() {
+    vec3 world = ground == 1 ? point_on_ground() : interpolated;
     vec3 ray = world - scene.eye.xyz;
     float distance = length(ray);
     vec2 on_plane = ground == 1 ? world.xz : place * vec2(length(along), length(across));

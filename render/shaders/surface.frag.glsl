@@ -2,6 +2,7 @@ centroid in vec3 world;
 in vec3 unmoved;
 centroid in vec3 facing;
 in vec2 place;
+centroid in float seen_here;
 out vec4 colour;
 
 layout(location = 1) uniform vec3 front;
@@ -10,6 +11,7 @@ layout(location = 3) uniform vec3 lining;
 layout(location = 4) uniform int pattern;
 layout(location = 5) uniform vec2 repeats;
 layout(location = 6) uniform float translucency;
+layout(location = 7) uniform int fine; // 1: shadows were found by vertex
 
 // A wave of -1 and 1 with period 2, averaged over `width`: never aliases.
 vec2 square_wave(vec2 x, vec2 width) {
@@ -48,7 +50,7 @@ void main() {
     vec3 albedo = pattern_colour(gl_FrontFacing ? front : lining);
 
     float cosine = dot(n, scene.sun.xyz);
-    float seen = sun_seen(world, plane_normal(n));
+    float seen = fine == 1 ? seen_here : sun_seen(world, plane_normal(n));
     vec3 sun = scene.sun_light.rgb * seen * max(cosine, 0.0);
     vec3 through = scene.sun_light.rgb * seen * max(-cosine, 0.0) * translucency;
 
