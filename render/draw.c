@@ -15,7 +15,7 @@
 #include <string.h>
 
 /* Those that have a depth-only twin for the light maps, DEPTH_ONLY further on, come first. */
-enum { PLANE, SURFACE, BALL, DEPTH_ONLY, SKY = 2 * DEPTH_ONLY, LINE, PROGRAM_COUNT };
+enum { PLANE, SURFACE, BALL, DEPTH_ONLY, SKY = 2 * DEPTH_ONLY, FINE_SURFACE, LINE, PROGRAM_COUNT };
 
 struct render_draw {
     GLuint programs[PROGRAM_COUNT];
@@ -56,7 +56,8 @@ static skein_status make_all(render_draw *draw, skein_error *error) {
     static const char *const stages[PROGRAM_COUNT][2] = {
         [SKY] = {"sky.vert", "display,sky.frag"},
         [PLANE] = {"plane.vert", "display,light,plane.frag"},
-        [SURFACE] = {"by_vertex,light,surface.vert", "display,light,surface.frag"},
+        [SURFACE] = {"surface.vert", "display,light,surface.frag"},
+        [FINE_SURFACE] = {"fine,light,surface.vert", "fine,display,surface.frag"},
         [BALL] = {"ball.vert", "display,light,ball.frag"},
         [PLANE + DEPTH_ONLY] = {"plane.vert", NULL},
         [SURFACE + DEPTH_ONLY] = {"depth.vert", NULL},
@@ -276,14 +277,14 @@ static double edge_pixels(const drawing *d, const render_mesh *mesh) {
 }
 
 static void draw_surfaces(const render_draw *draw, const drawing *d, int twin) {
-    GLuint program = draw->programs[SURFACE + twin];
-    glUseProgram(program);
-    if (!twin) glProgramUniform1f(program, 0, lift);
     for (size_t i = 0; i < d->frame->surface_count; i++) {
         const render_mesh *mesh = &draw->meshes[i];
+        bool fine = !twin && edge_pixels(d, mesh) < fine_edge;
+        GLuint program = draw->programs[fine ? FINE_SURFACE : SURFACE + twin];
+        glUseProgram(program);
         if (!twin) {
+            glProgramUniform1f(program, 0, lift);
             set_material(program, &d->frame->surfaces[i].material, mesh->uv != 0);
-            glProgramUniform1i(program, 7, edge_pixels(d, mesh) < fine_edge);
         }
         glBindVertexArray(mesh->arrays);
         glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);

@@ -1,11 +1,11 @@
 // Shadows and occlusion: for stages that receive light. A fragment stage turns its taps from pixel to pixel, which
-// hides that they are few; a vertex stage defines BY_VERTEX and takes more.
+// hides that they are few; a vertex stage, which is FINE, does not.
 
 layout(binding = 0) uniform sampler2DShadow sun_compare;
 layout(binding = 1) uniform sampler2D sun_depth;
 layout(binding = 2) uniform sampler2D under_light;
 
-#ifdef BY_VERTEX
+#ifdef FINE // a vertex stage
 float first_turn() {
     return 0.0;
 }

@@ -2,7 +2,9 @@ centroid in vec3 world;
 in vec3 unmoved;
 centroid in vec3 facing;
 in vec2 place;
-centroid in float seen_here;
+#ifdef FINE
+centroid in vec3 light_here;
+#endif
 out vec4 colour;
 
 layout(location = 1) uniform vec3 front;
@@ -11,7 +13,6 @@ layout(location = 3) uniform vec3 lining;
 layout(location = 4) uniform int pattern;
 layout(location = 5) uniform vec2 repeats;
 layout(location = 6) uniform float translucency;
-layout(location = 7) uniform int fine; // 1: shadows were found by vertex
 
 // A wave of -1 and 1 with period 2, averaged over `width`: never aliases.
 vec2 square_wave(vec2 x, vec2 width) {
@@ -50,12 +51,15 @@ void main() {
     vec3 albedo = pattern_colour(gl_FrontFacing ? front : lining);
 
     float cosine = dot(n, scene.sun.xyz);
-    float seen = fine == 1 ? seen_here : sun_seen(world, plane_normal(n));
+#ifdef FINE
+    float seen = light_here.x, open = light_here.y, below = light_here.z;
+#else
+    float seen = sun_seen(world, plane_normal(n)), open = balls_seen(world, n, -1), below = ground_seen(world);
+#endif
     vec3 sun = scene.sun_light.rgb * seen * max(cosine, 0.0);
     vec3 through = scene.sun_light.rgb * seen * max(-cosine, 0.0) * translucency;
 
-    float open = balls_seen(world, n, -1);
-    vec3 ambient = ambient_light(n, ground_seen(world)) * open;
+    vec3 ambient = ambient_light(n, below) * open;
 
     // fibres that stand up catch light at grazing angles
     float rim = pow(1.0 - clamp(dot(n, view), 0.0, 1.0), 4.0);

@@ -7,16 +7,20 @@ centroid out vec3 world;
 out vec3 unmoved; // the same, for differences between pixels, which centroids would spoil
 centroid out vec3 facing;
 out vec2 place;
-centroid out float seen_here; // the sun, where it is found by vertex
+#ifdef FINE
+centroid out vec3 light_here; // what is seen of the sun, of the whole sky, of the lit ground
+#endif
 
 layout(location = 0) uniform float lift; // drawn nearer by this part of the distance
-layout(location = 7) uniform int fine;   // 1: triangles are no larger than a few pixels
 
 void main() {
     world = unmoved = position;
     facing = normal;
     place = uv;
-    seen_here = fine == 1 ? sun_seen(position, normal) : 1.0;
+#ifdef FINE
+    vec3 side = dot(normal, scene.eye.xyz - position) < 0.0 ? -normal : normal;
+    light_here = vec3(sun_seen(position, normal), balls_seen(position, side, -1), ground_seen(position));
+#endif
     gl_Position = pass.to_clip * vec4(position, 1.0);
     gl_Position.z *= 1.0 + lift;
 }

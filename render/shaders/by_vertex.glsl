@@ -1,2 +1,0 @@
-// For light.glsl, ahead of it: this stage works by vertex.
-#define BY_VERTEX
