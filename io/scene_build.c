@@ -42,14 +42,36 @@ static bool read_mesh(const builder *b, io_place place, const char *file, io_mes
     return !status;
 }
 
+/* Hands a mesh's texture coordinates on, corner by corner. A corner without any, or with what no picture has, gets 0. */
+static bool add_uv(const builder *b, io_place place, skein_handle body, const io_mesh *mesh) {
+    const double most = 1e9;
+    if (!mesh->uv_count) return true;
+    float *corner_uv = calloc(mesh->face_vertex_count, 2 * sizeof *corner_uv);
+    if (!corner_uv) {
+        io_fault(place, "mesh", SKEIN_ERROR_MEMORY, "out of memory");
+        return false;
+    }
+    for (size_t c = 0; c < mesh->face_vertex_count; c++) {
+        if (mesh->face_uvs[c] == IO_NO_UV) continue;
+        const double *uv = &mesh->uvs[2 * (size_t)mesh->face_uvs[c]];
+        for (size_t k = 0; k < 2; k++) corner_uv[2 * c + k] = uv[k] >= -most && uv[k] <= most ? (float)uv[k] : 0;
+    }
+    bool good = !skein_body_uv_set(b->world, body, corner_uv, mesh->face_vertex_count);
+    if (!good) report_library_fault(b, place, "mesh");
+    free(corner_uv);
+    return good;
+}
+
 static bool add_body(const builder *b, io_place place, const skein_kind *kind, const io_settings *settings) {
     const char *file = io_settings_text(settings, "mesh");
     bool has_mesh = file && file[0];
     io_mesh mesh = {0};
     if (has_mesh && !read_mesh(b, place, file, &mesh)) return false;
     skein_mesh view = io_mesh_view(&mesh);
-    bool good = !skein_body_add(b->world, kind->name, has_mesh ? &view : NULL, settings->data, NULL);
+    skein_handle body;
+    bool good = !skein_body_add(b->world, kind->name, has_mesh ? &view : NULL, settings->data, &body);
     if (!good) report_library_fault(b, place, "");
+    good = good && add_uv(b, place, body, &mesh);
     io_mesh_free(&mesh);
     return good;
 }
