@@ -6,6 +6,7 @@
 #include "render/light.h"
 #include "render/linear.h"
 #include "render/meshes.h"
+#include "render/paints.h"
 #include "render/planes.h"
 #include "render/shader.h"
 
@@ -22,8 +23,9 @@ struct render_draw {
     GLuint uniforms; /* the pass blocks, then the scene block */
     GLuint no_arrays;
     render_light light;
+    render_paints paints;
     render_shape disc, square;
-    render_shape sphere, pearl; /* fine for colliders, coarse for particles */
+    render_shape sphere, pearl, grain; /* fine for colliders, coarse for particles, and for many of them */
     render_instances balls, particles, lines;
     render_mesh *meshes; /* by the surface's place in the frame */
     size_t mesh_count;
@@ -49,6 +51,11 @@ static const float lift = 5e-4f;
 /* Where edges are under so many pixels, shadows on surfaces are found by vertex: a pixel each would cost more and
  * show no more. */
 static const double fine_edge = 4.5;
+/* More particles than these have the coarser shape: they are small then. */
+enum { many_particles = 600 };
+/* Taps of a shadow's map. (Loops that the compiler cannot unroll end early where all of a pixel's neighbours have
+ * ended: unrolled ones took 1.4 times as long, on llvmpipe.) */
+enum { search_taps = 10, edge_taps = 18, rim_taps = 5 };
 
 /* ---- Making --------------------------------------------------------------------------------- */
 
@@ -73,11 +80,13 @@ static skein_status make_all(render_draw *draw, skein_error *error) {
     if (status == SKEIN_OK) status = render_shape_square(&draw->square, error);
     if (status == SKEIN_OK) status = render_shape_sphere(&draw->sphere, 24, error);
     if (status == SKEIN_OK) status = render_shape_sphere(&draw->pearl, 10, error);
+    if (status == SKEIN_OK) status = render_shape_sphere(&draw->grain, 4, error);
     if (status != SKEIN_OK) return status;
 
     render_instances_make_balls(&draw->balls, &draw->sphere);
     render_instances_make_balls(&draw->particles, &draw->pearl);
     render_instances_make_lines(&draw->lines);
+    render_paints_create(&draw->paints);
     glCreateVertexArrays(1, &draw->no_arrays);
     glCreateBuffers(1, &draw->uniforms);
     glNamedBufferStorage(draw->uniforms, RENDER_SCENE_OFFSET + sizeof(render_scene_block), NULL,
@@ -112,6 +121,8 @@ void render_draw_destroy(render_draw *draw) {
     render_shape_destroy(&draw->square);
     render_shape_destroy(&draw->sphere);
     render_shape_destroy(&draw->pearl);
+    render_shape_destroy(&draw->grain);
+    render_paints_destroy(&draw->paints);
     render_light_destroy(&draw->light);
     glDeleteVertexArrays(1, &draw->no_arrays);
     glDeleteBuffers(1, &draw->uniforms);
@@ -140,6 +151,7 @@ static skein_status bring(render_draw *draw, const render_frame *frame, skein_er
     if (status == SKEIN_OK) status = render_instances_bring_spheres(&draw->balls, frame, error);
     if (status == SKEIN_OK) status = render_instances_bring_points(&draw->particles, frame, error);
     if (status == SKEIN_OK) status = render_instances_bring_lines(&draw->lines, frame, error);
+    if (status == SKEIN_OK) status = render_paints_bring(&draw->paints, frame, error);
     return status;
 }
 
@@ -178,8 +190,9 @@ static void fill_block(drawing *d, const double sun[3], double tangent) {
     for (size_t i = 0; i < balls; i++) {
         store(d->frame->spheres[i].centre, d->frame->spheres[i].radius, block->balls[i]);
     }
-    block->counts[0] = (int32_t)balls;
-    block->counts[1] = 10, block->counts[2] = 18, block->counts[3] = 5;
+    block->counts[0] = look->plain ? 0 : (int32_t)balls;
+    block->counts[1] = search_taps, block->counts[2] = edge_taps, block->counts[3] = rim_taps;
+    block->modes[0] = look->plain, block->modes[1] = look->grid;
 }
 
 static void send_matrix(const render_draw *draw, render_pass pass, const double matrix[16]) {
@@ -204,6 +217,7 @@ static void aim(render_draw *draw, drawing *d) {
 
     render_bounds shading = finite;
     render_bounds_add_slabs(&shading, d->frame, d->middle, d->radius);
+    if (d->frame->look.plain) shading = render_bounds_nothing(); // nothing casts a shadow
     render_light_aim(&draw->light, sun, tangent, &shading, d->has_ground ? &d->ground : NULL, &d->block,
                      to_sun, to_below);
     render_camera_view(d->camera, view);
@@ -256,16 +270,20 @@ static void draw_ground(const render_draw *draw, const drawing *d) {
     draw_plane(draw, 0, &draw->disc, vectors, render_grid_cell(d->radius), true);
 }
 
-static void set_material(GLuint program, const render_material *material, bool has_uv) {
+static void set_material(GLuint program, const render_surface *surface) {
+    const render_material *material = &surface->material;
+    bool drawn = material->pattern == RENDER_VALUES ? surface->values != NULL : surface->uv != NULL;
     const float *const colours[3] = {material->colour, material->accent, material->lining};
     for (GLint i = 0; i < 3; i++) {
         float light[3];
         render_to_light(colours[i], 1, light);
         glProgramUniform3fv(program, 1 + i, 1, light);
     }
-    glProgramUniform1i(program, 4, has_uv ? (GLint)material->pattern : RENDER_PLAIN);
+    glProgramUniform1i(program, 4, drawn ? (GLint)material->pattern : RENDER_PLAIN);
     glProgramUniform2fv(program, 5, 1, material->repeats);
     glProgramUniform1f(program, 6, material->translucency);
+    glProgramUniform1i(program, 7, surface->rows_first);
+    glProgramUniform1f(program, 8, (float)surface->map);
 }
 
 /* How long a triangle's edge is in the picture, about. */
@@ -284,7 +302,7 @@ static void draw_surfaces(const render_draw *draw, const drawing *d, int twin) {
         glUseProgram(program);
         if (!twin) {
             glProgramUniform1f(program, 0, lift);
-            set_material(program, &d->frame->surfaces[i].material, mesh->uv != 0);
+            set_material(program, &d->frame->surfaces[i]);
         }
         glBindVertexArray(mesh->arrays);
         glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
@@ -298,7 +316,9 @@ static void draw_balls(const render_draw *draw, int twin) {
     if (!twin) glProgramUniform1i(program, 1, 1);
     if (draw->balls.count > 0) draw_shape(&draw->sphere, draw->balls.arrays, draw->balls.count);
     if (!twin) glProgramUniform1i(program, 1, 0);
-    if (draw->particles.count > 0) draw_shape(&draw->pearl, draw->particles.arrays, draw->particles.count);
+    const render_shape *shape = draw->particles.count > many_particles ? &draw->grain : &draw->pearl;
+    render_instances_take_shape(&draw->particles, shape);
+    if (draw->particles.count > 0) draw_shape(shape, draw->particles.arrays, draw->particles.count);
     glDisable(GL_CULL_FACE);
 }
 
@@ -308,9 +328,6 @@ static void draw_lines(const render_draw *draw, const drawing *d) {
     glBindVertexArray(draw->lines.arrays);
     for (size_t i = 0; i < d->frame->lines_count; i++) {
         const render_lines *lines = &d->frame->lines[i];
-        float light[3];
-        render_to_light(lines->colour, 1, light);
-        glProgramUniform3fv(program, 1, 1, light);
         glProgramUniform3f(program, 0, 1.0f / (float)d->width, 1.0f / (float)d->height, (float)lines->width);
         glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)lines->count, first);
         first += (GLuint)lines->count;
@@ -349,6 +366,7 @@ static void draw_picture(const render_draw *draw, const drawing *d, unsigned fra
     // what hides most comes first (depth alone in a pass before saved nothing, on llvmpipe)
     use_pass(draw, RENDER_PASS_CAMERA);
     render_light_bind(&draw->light);
+    render_paints_bind(&draw->paints);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GREATER);
     draw_surfaces(draw, d, 0);

@@ -15,6 +15,7 @@ render_look render_default_look(void) {
         .horizon = {0.945f, 0.94f, 0.925f},
         .ground = {0.81f, 0.795f, 0.77f},
         .exposure = 1.0,
+        .grid = true,
         .floor = false,
         .floor_height = 0.0,
     };
@@ -123,6 +124,7 @@ render_bounds render_frame_bounds(const render_frame *frame) {
     }
     for (size_t s = 0; s < frame->lines_count; s++) {
         const render_lines *lines = &frame->lines[s];
+        if (lines->aside) continue;
         for (size_t p = 0; p < 2 * lines->count; p++) {
             render_bounds_add(&bounds, &lines->positions[3 * p], 0);
         }

@@ -19,6 +19,8 @@ typedef struct render_instances {
 
 /* A vertex array for balls of a shape (ball.vert.glsl), or for lines (line.vert.glsl). */
 void render_instances_make_balls(render_instances *instances, const render_shape *shape);
+/* Makes balls take another shape from now on. */
+void render_instances_take_shape(const render_instances *instances, const render_shape *shape);
 void render_instances_make_lines(render_instances *instances);
 void render_instances_destroy(render_instances *instances);
 
@@ -29,8 +31,5 @@ skein_status render_instances_bring_points(render_instances *instances, const re
                                            skein_error *error);
 skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame,
                                           skein_error *error);
-
-/* A colour as a screen shows it, turned into light as sRGB defines it, times `strength`. */
-void render_to_light(const float colour[3], float strength, float out[3]);
 
 #endif

@@ -60,8 +60,8 @@ static void attach(GLuint arrays, GLuint location, GLuint buffer, GLint parts) {
 }
 
 void render_mesh_destroy(render_mesh *mesh) {
-    const GLuint buffers[4] = {mesh->positions, mesh->normals, mesh->uv, mesh->triangles};
-    glDeleteBuffers(4, buffers);
+    const GLuint buffers[5] = {mesh->positions, mesh->normals, mesh->uv, mesh->values, mesh->triangles};
+    glDeleteBuffers(5, buffers);
     glDeleteVertexArrays(1, &mesh->arrays);
     free(mesh->staged);
     memset(mesh, 0, sizeof *mesh);
@@ -87,6 +87,10 @@ static skein_status rebuild(render_mesh *mesh, const render_surface *surface, sk
         mesh->uv = make_buffer(surface->vertex_count * 2 * sizeof(float), surface->uv, 0);
         attach(mesh->arrays, 2, mesh->uv, 2);
     }
+    if (surface->values) {
+        mesh->values = make_buffer(surface->vertex_count * sizeof(float), NULL, GL_DYNAMIC_STORAGE_BIT);
+        attach(mesh->arrays, 3, mesh->values, 1);
+    }
     glVertexArrayElementBuffer(mesh->arrays, mesh->triangles);
     return SKEIN_OK;
 }
@@ -94,7 +98,8 @@ static skein_status rebuild(render_mesh *mesh, const render_surface *surface, sk
 skein_status render_mesh_update(render_mesh *mesh, const render_surface *surface, skein_error *error) {
     bool same = mesh->arrays && surface->shape != 0 && mesh->shape == surface->shape &&
                 mesh->vertex_count == surface->vertex_count &&
-                mesh->triangle_count == surface->triangle_count && (mesh->uv != 0) == (surface->uv != NULL);
+                mesh->triangle_count == surface->triangle_count && (mesh->uv != 0) == (surface->uv != NULL) &&
+                (mesh->values != 0) == (surface->values != NULL);
     if (!same) {
         skein_status status = rebuild(mesh, surface, error);
         if (status != SKEIN_OK) return status;
@@ -114,6 +119,9 @@ skein_status render_mesh_update(render_mesh *mesh, const render_surface *surface
     mesh->edge = sqrt(2 * area / (double)(mesh->triangle_count ? mesh->triangle_count : 1));
     glNamedBufferSubData(mesh->positions, 0, (GLsizeiptr)(numbers * sizeof(float)), positions);
     glNamedBufferSubData(mesh->normals, 0, (GLsizeiptr)(numbers * sizeof(float)), normals);
+    if (surface->values) {
+        glNamedBufferSubData(mesh->values, 0, (GLsizeiptr)(mesh->vertex_count * sizeof(float)), surface->values);
+    }
     return SKEIN_OK;
 }
 

@@ -10,7 +10,7 @@
 
 /* One surface on the card. Start from {0}. */
 typedef struct render_mesh {
-    unsigned arrays, positions, normals, uv, triangles;
+    unsigned arrays, positions, normals, uv, values, triangles;
     size_t vertex_count, triangle_count;
     double middle[3], edge; /* of the surface now: its vertices' mean, and the mean length of an edge */
     uint64_t shape; /* of the surface whose triangles are there */

@@ -21,6 +21,7 @@ typedef struct render_scene_block {
     float middle[4];
     float balls[RENDER_BALL_COUNT][4];
     int32_t counts[4];
+    int32_t modes[4];
 } render_scene_block;
 
 /* One matrix for each way a frame is gone through. */

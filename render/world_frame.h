@@ -1,6 +1,6 @@
-/* A frame from a world, through the public API alone.
+/* A frame from a world and a view, through the public API alone.
  *
- *     world --update--> frame (its positions lie here) --draw.c--> picture
+ *     world, view --update--> frame (its positions lie here) --draw.c--> picture
  *
  * Made once for a world and updated for every picture; called by picture.c, films and the window. What
  * stays (triangles, uv) is worked out once for a body. Invariant: the frame is valid until the next
@@ -28,6 +28,9 @@ const render_frame *render_world_frame_get(const render_world_frame *frame);
 /* For a picture that stands alone: brings such a ground close under the present state. (In a film it
  * must stay where things have room to move.) */
 void render_world_frame_settle(render_world_frame *frame);
+
+/* The speed (m/s) or strain that the end of the colours stands for now; 0 where colours tell neither. */
+double render_world_frame_range(const render_world_frame *frame);
 
 /* The view's camera. One that frames by itself holds all of the present state; the ground shows if it is
  * near. */

@@ -15,7 +15,7 @@ static void springs_tell_their_strain(void **state) {
     (void)state;
     skein_handle rule;
     skein_world *world = two_springs(&rule);
-    skein_spring springs[3] = {{{7, 7}, 7}, {{7, 7}, 7}, {{7, 7}, 7}};
+    skein_spring springs[3] = {{{7, 7}, 7, true}, {{7, 7}, 7, true}, {{7, 7}, 7, true}};
     size_t count = 0;
     OK(world, skein_springs_copy(world, springs, 3, &count));
     assert_int_equal(count, 2);
@@ -23,7 +23,7 @@ static void springs_tell_their_strain(void **state) {
     assert_int_equal(springs[0].particle[1], 1);
     assert_int_equal(springs[1].particle[0], 2);
     assert_int_equal(springs[1].particle[1], 0);
-    assert_true(springs[0].strain == 0 && springs[1].strain == 0);
+    assert_true(springs[0].strain == 0 && springs[1].strain == 0 && !springs[0].edge);
 
     // the first grows by a quarter, the other shrinks by three eighths
     const double moved[9] = {0, 0, 0, 0, 1.25, 0, 0, 0, -1.25};
@@ -62,8 +62,10 @@ static void springs_agree_with_the_statistics(void **state) {
     assert_int_equal(count, now.constraints);
     skein_spring *springs = calloc(count, sizeof *springs);
     OK(world, skein_springs_copy(world, springs, count, &count));
-    size_t found = 0;
-    for (size_t i = 0; i < count; i++) found += (double)springs[i].strain == (double)(float)now.max_stretch;
+    size_t found = 0, edges = 0;
+    for (size_t i = 0; i < count; i++) edges += springs[i].edge;
+    assert_int_equal(edges, 19 * 30 + 20 * 29);
+    for (size_t i = 0; i < count; i++) found += springs[i].edge && (double)springs[i].strain == (double)(float)now.max_stretch;
     assert_true(found >= 1);
     free(springs);
     skein_world_destroy(world);

@@ -236,8 +236,8 @@ static void a_spin_shows(void **state) {
 static void particles_and_lines_are_drawn(void **state) {
     static const double places[6] = {-1, 0, 0, 1, 0, 0};
     (void)state;
-    render_points points = {places, 2, 0.05, {0.2f, 0.4f, 0.8f}};
-    render_lines lines = {places, 1, 2.0, {0.1f, 0.1f, 0.1f}};
+    render_points points = {.positions = places, .count = 2, .radius = 0.05, .colour = {0.2f, 0.4f, 0.8f}};
+    render_lines lines = {.positions = places, .count = 1, .width = 2, .colour = {0.1f, 0.1f, 0.1f}};
     render_frame frame = render_default_frame();
     render_camera camera = camera_in_front(6, 0);
     frame.points = &points, frame.points_count = 1;
@@ -551,7 +551,7 @@ static void a_png_comes_back_as_it_was(void **state) {
     path_in(path, "noise.png");
     assert_int_equal(render_image_write_png(&image, path, &error), SKEIN_OK);
     assert_int_equal(render_image_write_png(&image, path, &error), SKEIN_OK); // over what is there
-    assert_int_equal(render_image_read_png(&back, path, &error), SKEIN_OK);
+    assert_int_equal(render_image_read(&back, path, &error), SKEIN_OK);
     assert_int_equal(back.width, 200);
     assert_int_equal(back.height, 100);
     assert_memory_equal(back.pixels, image.pixels, 200 * 100 * 3);
@@ -576,8 +576,8 @@ static void file_errors_say_what_and_where(void **state) {
     assert_non_null(strstr(error.message, strerror(ENOSPC)));
 
     path_in(path, "none.png");
-    assert_int_equal(render_image_read_png(&image, path, &error), SKEIN_ERROR_FILE);
-    assert_int_equal(render_image_read_png(&image, "/dev/null", &error), SKEIN_ERROR_SYNTAX);
+    assert_int_equal(render_image_read(&image, path, &error), SKEIN_ERROR_FILE);
+    assert_int_equal(render_image_read(&image, "/dev/null", &error), SKEIN_ERROR_SYNTAX);
     render_image_release(&image);
 }
 
@@ -674,7 +674,7 @@ static void a_world_becomes_a_picture(void **state) {
     render_image image = {0};
     path_in(path, "world.png");
     assert_int_equal(render_picture(world, path, &options, NULL, &error), SKEIN_OK);
-    assert_int_equal(render_image_read_png(&image, path, &error), SKEIN_OK);
+    assert_int_equal(render_image_read(&image, path, &error), SKEIN_OK);
     assert_int_equal(image.width, 320);
     assert_int_equal(image.height, 180);
 

@@ -327,6 +327,7 @@ skein_status skein_collider_pose(const skein_world *world, skein_handle collider
 typedef struct skein_spring {
     uint32_t particle[2];
     float strain; /* (length - rest)/rest now; 0 where the rest length is 0 */
+    bool edge;    /* of a body's mesh: it counts in the statistics' stretch */
 } skein_spring;
 /* Copies up to `most` of the springs of enabled rules, in the order of their making; `count` receives how many
  * there are. */

@@ -39,5 +39,6 @@ void main() {
     vec3 half_way = normalize(scene.sun.xyz + view);
     vec3 spot = scene.sun_light.rgb * seen * 0.5 * pow(max(dot(n, half_way), 0.0), 160.0);
     vec3 glaze = around * glance * open * ground_seen(world) + spot;
-    colour = vec4(display(albedo * (sun + ambient) + glaze), 1.0);
+    vec3 light = albedo * (sun + ambient) + glaze;
+    colour = vec4(display(scene.modes.x == 1 ? blinn_phong(albedo, n, view) : light), 1.0);
 }

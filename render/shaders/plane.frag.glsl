@@ -35,12 +35,13 @@ void main() {
 
     float fine = lines(on_plane / cell, 0.006), coarse = lines(on_plane / (5.0 * cell), 0.0022);
     float out_there = length(world - scene.middle.xyz) / scene.middle.w;
-    float line = max(0.10 * fine, 0.20 * coarse) * exp(-0.02 * out_there * out_there);
+    float line = float(scene.modes.y) * max(0.10 * fine, 0.20 * coarse) * exp(-0.02 * out_there * out_there);
 
     float seen = sun_seen(world, normal);
     float open = ground == 1 ? mix(0.16, 1.0, under_seen(world)) : balls_seen(world, normal, -1);
     vec3 light = scene.sun_light.rgb * seen * max(dot(normal, scene.sun.xyz), 0.0);
     light += ambient_light(normal, 1.0) * open;
+    if (scene.modes.x == 1) light = blinn_phong(vec3(1.0), normal, vec3(0.0, -1.0, 0.0));
     vec3 lit = scene.ground.rgb * (1.0 - line) * light;
 
     // a slab has a darker rim; the ground goes over into the sky's haze

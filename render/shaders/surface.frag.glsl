@@ -1,7 +1,7 @@
 centroid in vec3 world;
 in vec3 unmoved;
 centroid in vec3 facing;
-in vec2 place;
+in vec3 place;
 #ifdef FINE
 centroid in vec3 light_here;
 #endif
@@ -13,6 +13,11 @@ layout(location = 3) uniform vec3 lining;
 layout(location = 4) uniform int pattern;
 layout(location = 5) uniform vec2 repeats;
 layout(location = 6) uniform float translucency;
+layout(location = 7) uniform int rows_first; // an image's top is at u = 0, else at v = 1
+layout(location = 8) uniform float map;      // which colour map
+
+layout(binding = 3) uniform sampler1DArray colour_maps;
+layout(binding = 4) uniform sampler2D image;
 
 // A wave of -1 and 1 with period 2, averaged over `width`: never aliases.
 vec2 square_wave(vec2 x, vec2 width) {
@@ -21,7 +26,12 @@ vec2 square_wave(vec2 x, vec2 width) {
 }
 
 vec3 pattern_colour(vec3 base) {
-    vec2 x = place * repeats * 2.0;
+    if (pattern == 4) return texture(colour_maps, vec2(place.z, map)).rgb;
+    if (pattern == 3) {
+        vec2 at = rows_first == 1 ? (place.xy * repeats).yx : vec2(0.0, 1.0) + vec2(1.0, -1.0) * place.xy * repeats;
+        return texture(image, at).rgb;
+    }
+    vec2 x = place.xy * repeats * 2.0;
     vec2 width = max(fwidth(x), vec2(1e-4));
     vec2 wave = square_wave(x, width);
     if (pattern == 1) return mix(base, accent, 0.5 + 0.5 * wave.x * wave.y);
@@ -67,5 +77,6 @@ void main() {
     vec3 half_way = normalize(scene.sun.xyz + view);
     vec3 gloss = sun * 0.05 * pow(max(dot(n, half_way), 0.0), 18.0);
 
-    colour = vec4(display(albedo * (sun + ambient) + albedo * albedo * through + sheen + gloss), 1.0);
+    vec3 light = albedo * (sun + ambient) + albedo * albedo * through + sheen + gloss;
+    colour = vec4(display(scene.modes.x == 1 ? blinn_phong(albedo, n, view) : light), 1.0);
 }
