@@ -1,5 +1,4 @@
 centroid in vec3 world;
-in vec3 unmoved;
 centroid in vec3 facing;
 in vec3 place;
 #ifdef FINE
@@ -46,25 +45,18 @@ vec3 pattern_colour(vec3 base) {
     return cloth * (1.0 + 0.07 * ridge.x * (1.0 - 0.5 * ridge.y) + 0.05 * ridge.y);
 }
 
-// The triangle's own normal, for its shadow; the smooth one where the triangle is too small or too steep to
-// the view to tell.
-vec3 plane_normal(vec3 smooth_normal) {
-    vec3 normal = cross(dFdx(unmoved), dFdy(unmoved));
-    float size = dot(normal, normal), turned = dot(normal, smooth_normal);
-    return turned * turned > 0.6 * size ? normal * inversesqrt(size) : smooth_normal;
-}
-
 void main() {
     // the side that we look at: the normal is made to point to it
     vec3 view = normalize(scene.eye.xyz - world);
     vec3 n = dot(facing, facing) > 0.0 ? normalize(gl_FrontFacing ? facing : -facing) : view;
+    n = normalize(n - min(dot(n, view), 0.0) * 1.01 * view); // a smooth normal may look away where its triangle does not
     vec3 albedo = pattern_colour(gl_FrontFacing ? front : lining);
 
     float cosine = dot(n, scene.sun.xyz);
 #ifdef FINE
     float seen = light_here.x, open = light_here.y, below = light_here.z;
 #else
-    float seen = sun_seen(world, plane_normal(n)), open = balls_seen(world, n, -1), below = ground_seen(world);
+    float seen = sun_seen(world, n), open = balls_seen(world, n, -1), below = ground_seen(world);
 #endif
     vec3 sun = scene.sun_light.rgb * seen * max(cosine, 0.0);
     vec3 through = scene.sun_light.rgb * seen * max(-cosine, 0.0) * translucency;

@@ -5,7 +5,6 @@ layout(location = 2) in vec2 uv;
 layout(location = 3) in float value;
 
 centroid out vec3 world;
-out vec3 unmoved; // the same, for differences between pixels, which centroids would spoil
 centroid out vec3 facing;
 out vec3 place; // uv and the value
 #ifdef FINE
@@ -15,7 +14,7 @@ centroid out vec3 light_here; // what is seen of the sun, of the whole sky, of t
 layout(location = 0) uniform float lift; // drawn nearer by this part of the distance
 
 void main() {
-    world = unmoved = position;
+    world = position;
     facing = normal;
     place = vec3(uv, value);
 #ifdef FINE
