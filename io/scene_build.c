@@ -42,7 +42,8 @@ static bool read_mesh(const builder *b, io_place place, const char *file, io_mes
     return !status;
 }
 
-/* Hands a mesh's texture coordinates on, corner by corner. A corner without any, or with what no picture has, gets 0. */
+/* Hands a mesh's texture coordinates on, corner by corner. A corner without any, or with what no picture has, gets 0.
+ */
 static bool add_uv(const builder *b, io_place place, skein_handle body, const io_mesh *mesh) {
     const double most = 1e9;
     if (!mesh->uv_count) return true;

@@ -83,7 +83,6 @@ static void uv_of_box(maker *m) {
             m->corner_uv[2 * c + 1] = (float)(side == 1 ? 1 - v : v);
         }
     }
-    m->mesh->projected = true;
     m->mesh->sides[0] = m->mesh->sides[1] = size;
 }
 

@@ -18,7 +18,6 @@ typedef struct render_body_mesh {
     float *uv;           /* vertex_count x 2 */
     double sides[2];     /* metres along u and v from 0 to 1, about */
     bool grid;           /* u goes along the rows */
-    bool projected;
     uint64_t shape; /* a hash of all this; never 0 */
 } render_body_mesh;
 

@@ -5,7 +5,11 @@
 #ifndef SKEIN_RENDER_COLOURS_H
 #define SKEIN_RENDER_COLOURS_H
 
-typedef enum render_colour_map { RENDER_LITTLE_TO_MUCH, RENDER_LESS_TO_MORE, RENDER_COLOUR_MAP_COUNT } render_colour_map;
+typedef enum render_colour_map {
+    RENDER_LITTLE_TO_MUCH,
+    RENDER_LESS_TO_MORE,
+    RENDER_COLOUR_MAP_COUNT
+} render_colour_map;
 
 /* The colour (sRGB) at `place` of a map, 0 to 1; what is beyond or not a number counts as the nearest end or 0. */
 void render_map_colour(render_colour_map map, double place, float colour[3]);

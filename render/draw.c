@@ -55,7 +55,7 @@ static const double fine_edge = 4.5;
 enum { many_particles = 600 };
 /* Taps of a shadow's map. (Loops that the compiler cannot unroll end early where all of a pixel's neighbours have
  * ended: unrolled ones took 1.4 times as long, on llvmpipe.) */
-enum { search_taps = 10, edge_taps = 18, rim_taps = 5 };
+enum { search_taps = 12, edge_taps = 20, rim_taps = 7 };
 
 /* ---- Making --------------------------------------------------------------------------------- */
 
@@ -218,8 +218,8 @@ static void aim(render_draw *draw, drawing *d) {
     render_bounds shading = finite;
     render_bounds_add_slabs(&shading, d->frame, d->middle, d->radius);
     if (d->frame->look.plain) shading = render_bounds_nothing(); // nothing casts a shadow
-    render_light_aim(&draw->light, sun, tangent, &shading, d->has_ground ? &d->ground : NULL, &d->block,
-                     to_sun, to_below);
+    render_light_aim(&draw->light, sun, tangent, &shading, d->has_ground ? &d->ground : NULL, &d->block, to_sun,
+                     to_below);
     render_camera_view(d->camera, view);
     render_camera_projection(d->camera, (double)d->width / d->height, projection);
     render_multiply(projection, view, camera);
@@ -233,12 +233,11 @@ static void aim(render_draw *draw, drawing *d) {
 
 static void draw_shape(const render_shape *shape, GLuint arrays, size_t instance_count) {
     glBindVertexArray(arrays);
-    glDrawElementsInstanced(GL_TRIANGLES, shape->index_count, GL_UNSIGNED_SHORT, NULL,
-                            (GLsizei)instance_count);
+    glDrawElementsInstanced(GL_TRIANGLES, shape->index_count, GL_UNSIGNED_SHORT, NULL, (GLsizei)instance_count);
 }
 
-static void draw_plane(const render_draw *draw, int twin, const render_shape *shape,
-                       const double vectors[4][3], double cell, bool ground) {
+static void draw_plane(const render_draw *draw, int twin, const render_shape *shape, const double vectors[4][3],
+                       double cell, bool ground) {
     GLuint program = draw->programs[PLANE + twin];
     glUseProgram(program);
     for (GLint i = 0; i < (twin ? 3 : 4); i++) {
@@ -256,8 +255,7 @@ static void draw_slabs(const render_draw *draw, const drawing *d, int twin) {
         double vectors[4][3];
         if (render_plane_level(&d->frame->planes[i])) continue;
         render_place_slab(&d->frame->planes[i], d->middle, d->radius, vectors);
-        draw_plane(draw, twin, &draw->square, (const double(*)[3])vectors, render_grid_cell(d->radius),
-                   false);
+        draw_plane(draw, twin, &draw->square, (const double(*)[3])vectors, render_grid_cell(d->radius), false);
     }
 }
 
@@ -265,8 +263,7 @@ static void draw_ground(const render_draw *draw, const drawing *d) {
     // from beneath there is no ground to see
     if (!d->has_ground || d->camera->eye[1] <= d->ground) return;
     double size = ground_size * d->radius;
-    const double vectors[4][3] = {
-        {d->middle[0], d->ground, d->middle[2]}, {size, 0, 0}, {0, 0, -size}, {0, 1, 0}};
+    const double vectors[4][3] = {{d->middle[0], d->ground, d->middle[2]}, {size, 0, 0}, {0, 0, -size}, {0, 1, 0}};
     draw_plane(draw, 0, &draw->disc, vectors, render_grid_cell(d->radius), true);
 }
 
@@ -286,18 +283,10 @@ static void set_material(GLuint program, const render_surface *surface) {
     glProgramUniform1f(program, 8, (float)surface->map);
 }
 
-/* How long a triangle's edge is in the picture, about. */
-static double edge_pixels(const drawing *d, const render_mesh *mesh) {
-    double away[3];
-    for (int k = 0; k < 3; k++) away[k] = mesh->middle[k] - d->camera->eye[k];
-    double distance = fmax(sqrt(render_dot(away, away)), d->camera->near);
-    return mesh->edge * d->height / (2 * tan(0.5 * d->camera->fov * degree) * distance);
-}
-
 static void draw_surfaces(const render_draw *draw, const drawing *d, int twin) {
     for (size_t i = 0; i < d->frame->surface_count; i++) {
         const render_mesh *mesh = &draw->meshes[i];
-        bool fine = !twin && edge_pixels(d, mesh) < fine_edge;
+        bool fine = !twin && render_mesh_edge_pixels(mesh, d->camera, d->height) < fine_edge;
         GLuint program = draw->programs[fine ? FINE_SURFACE : SURFACE + twin];
         glUseProgram(program);
         if (!twin) {

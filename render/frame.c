@@ -11,9 +11,9 @@ render_look render_default_look(void) {
     return (render_look){
         .sun = {-0.62, 0.86, 0.42},
         .sun_spread = 2.2,
-        .zenith = {0.36f, 0.63f, 0.84f},
-        .horizon = {0.945f, 0.94f, 0.925f},
-        .ground = {0.81f, 0.795f, 0.77f},
+        .zenith = {0.30f, 0.56f, 0.82f},
+        .horizon = {0.93f, 0.93f, 0.915f},
+        .ground = {0.755f, 0.727f, 0.69f},
         .exposure = 1.0,
         .grid = true,
         .floor = false,

@@ -65,8 +65,7 @@ static skein_status reserve(render_instances *instances, size_t count, size_t fl
         glDeleteBuffers(1, &instances->buffer);
         glCreateBuffers(1, &instances->buffer);
         glNamedBufferStorage(instances->buffer, (GLsizeiptr)instances->room, NULL, GL_DYNAMIC_STORAGE_BIT);
-        glVertexArrayVertexBuffer(instances->arrays, 1, instances->buffer, 0,
-                                  (GLsizei)(floats * sizeof(float)));
+        glVertexArrayVertexBuffer(instances->arrays, 1, instances->buffer, 0, (GLsizei)(floats * sizeof(float)));
     }
     instances->count = count;
     return SKEIN_OK;
@@ -101,8 +100,7 @@ skein_status render_instances_bring_spheres(render_instances *instances, const r
     return SKEIN_OK;
 }
 
-skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame,
-                                           skein_error *error) {
+skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame, skein_error *error) {
     static const double unturned[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     size_t count = 0, next = 0;
     for (size_t g = 0; g < frame->points_count; g++) count += frame->points[g].count;
@@ -112,16 +110,15 @@ skein_status render_instances_bring_points(render_instances *instances, const re
         const render_points *points = &frame->points[g];
         for (size_t i = 0; i < points->count; i++) {
             const float *paint = points->colours ? &points->colours[3 * i] : points->colour;
-            stage_ball(&instances->staged[next++ * ball_floats], &points->positions[3 * i], points->radius,
-                       unturned, paint, paint);
+            stage_ball(&instances->staged[next++ * ball_floats], &points->positions[3 * i], points->radius, unturned,
+                       paint, paint);
         }
     }
     send(instances, ball_floats);
     return SKEIN_OK;
 }
 
-skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame,
-                                          skein_error *error) {
+skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame, skein_error *error) {
     size_t count = 0, next = 0;
     for (size_t g = 0; g < frame->lines_count; g++) count += frame->lines[g].count;
     skein_status status = reserve(instances, count, line_floats, error);

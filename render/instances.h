@@ -25,11 +25,8 @@ void render_instances_make_lines(render_instances *instances);
 void render_instances_destroy(render_instances *instances);
 
 /* Bring a frame's things to the card, one group after the other. */
-skein_status render_instances_bring_spheres(render_instances *instances, const render_frame *frame,
-                                            skein_error *error);
-skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame,
-                                           skein_error *error);
-skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame,
-                                          skein_error *error);
+skein_status render_instances_bring_spheres(render_instances *instances, const render_frame *frame, skein_error *error);
+skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame, skein_error *error);
+skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame, skein_error *error);
 
 #endif

@@ -2,11 +2,14 @@
 #include "render/meshes.h"
 
 #include "render/fail.h"
+#include "render/linear.h"
 
 #include <epoxy/gl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+static const double pi = 3.141592653589793;
 
 /* ---- Surfaces that move --------------------------------------------------------------------- */
 
@@ -97,9 +100,8 @@ static skein_status rebuild(render_mesh *mesh, const render_surface *surface, sk
 
 skein_status render_mesh_update(render_mesh *mesh, const render_surface *surface, skein_error *error) {
     bool same = mesh->arrays && surface->shape != 0 && mesh->shape == surface->shape &&
-                mesh->vertex_count == surface->vertex_count &&
-                mesh->triangle_count == surface->triangle_count && (mesh->uv != 0) == (surface->uv != NULL) &&
-                (mesh->values != 0) == (surface->values != NULL);
+                mesh->vertex_count == surface->vertex_count && mesh->triangle_count == surface->triangle_count &&
+                (mesh->uv != 0) == (surface->uv != NULL) && (mesh->values != 0) == (surface->values != NULL);
     if (!same) {
         skein_status status = rebuild(mesh, surface, error);
         if (status != SKEIN_OK) return status;
@@ -123,6 +125,13 @@ skein_status render_mesh_update(render_mesh *mesh, const render_surface *surface
         glNamedBufferSubData(mesh->values, 0, (GLsizeiptr)(mesh->vertex_count * sizeof(float)), surface->values);
     }
     return SKEIN_OK;
+}
+
+double render_mesh_edge_pixels(const render_mesh *mesh, const render_camera *camera, int height) {
+    double away[3];
+    for (int k = 0; k < 3; k++) away[k] = mesh->middle[k] - camera->eye[k];
+    double distance = fmax(sqrt(render_dot(away, away)), camera->near);
+    return mesh->edge * height / (2 * tan(0.5 * camera->fov * pi / 180) * distance);
 }
 
 /* ---- Fixed shapes --------------------------------------------------------------------------- */
@@ -158,8 +167,6 @@ static skein_status make_shape(render_shape *shape, int rings, int sectors, int 
     free(indices);
     return SKEIN_OK;
 }
-
-static const double pi = 3.141592653589793;
 
 static void place_sphere(double along, double around, float *out) {
     out[0] = (float)(sin(pi * along) * cos(2 * pi * around));

@@ -5,6 +5,7 @@
 #ifndef SKEIN_RENDER_MESHES_H
 #define SKEIN_RENDER_MESHES_H
 
+#include "render/camera.h"
 #include "render/frame.h"
 #include "skein/skein.h"
 
@@ -13,13 +14,15 @@ typedef struct render_mesh {
     unsigned arrays, positions, normals, uv, values, triangles;
     size_t vertex_count, triangle_count;
     double middle[3], edge; /* of the surface now: its vertices' mean, and the mean length of an edge */
-    uint64_t shape; /* of the surface whose triangles are there */
-    float *staged;  /* vertex_count x 3, twice: what goes to the card next */
+    uint64_t shape;         /* of the surface whose triangles are there */
+    float *staged;          /* vertex_count x 3, twice: what goes to the card next */
 } render_mesh;
 
 /* Brings a surface to the card: all of it when its shape is new, else only what moved. */
 skein_status render_mesh_update(render_mesh *mesh, const render_surface *surface, skein_error *error);
 void render_mesh_destroy(render_mesh *mesh);
+/* How long an edge of the surface's triangles is in a picture so many pixels high, about. */
+double render_mesh_edge_pixels(const render_mesh *mesh, const render_camera *camera, int height);
 
 /* Smooth unit normals of a surface, vertex_count x 3: its triangles' normals, weighted by area, 0 where
  * no triangle of any area meets. Returns the surface's area. */

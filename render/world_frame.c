@@ -5,6 +5,7 @@
 #include "render/fail.h"
 #include "render/planes.h"
 #include "render/world_lines.h"
+#include "render/world_points.h"
 #include "render/world_state.h"
 
 #include <math.h>
@@ -21,26 +22,18 @@ typedef struct body {
     float *values;     /* by vertex, where colours tell numbers */
 } body;
 
-/* Particles that are drawn as such. */
-typedef struct particles {
-    double *positions;
-    float *colours;
-    size_t count;
-} particles;
-
 struct render_world_frame {
     render_frame frame;
     render_view view; /* of the last update; its texts are not ours */
     double time;      /* of the last update */
     render_world_state state;
     render_world_lines lines;
+    render_world_points points;
     body *bodies;
     size_t body_count;
     render_surface *surfaces;
     render_plane *planes;
     render_sphere *spheres;
-    render_points points[2]; /* particles, pins */
-    particles loose, pins;
     render_image image;
     char *image_path; /* of the image that is loaded */
     bool has_floor;
@@ -50,8 +43,6 @@ struct render_world_frame {
 /* The patterns and images repeat so often along a body's longer side. */
 static const double usual_repeats[] = {
     [RENDER_PLAIN] = 1, [RENDER_CHECKER] = 8, [RENDER_WEAVE] = 20, [RENDER_IMAGE] = 1, [RENDER_VALUES] = 1};
-/* Radii of particles and pins, in radii of the scene; particles of a mesh in lengths of its edges, at most. */
-static const double loose_size = 0.014, pin_size = 0.010, crowded_size = 0.36;
 /* Lengths of normals and contacts, in radii of the scene. */
 static const double normal_length = 0.03, contact_length = 0.06;
 /* The ground is near when it is no farther below things than this part of their height. */
@@ -79,15 +70,13 @@ void render_world_frame_destroy(render_world_frame *made) {
     for (size_t i = 0; i < made->body_count; i++) release_body(&made->bodies[i]);
     render_world_state_release(&made->state);
     render_world_lines_release(&made->lines);
+    render_world_points_release(&made->points);
     render_image_release(&made->image);
     free(made->image_path);
     free(made->bodies);
     free(made->surfaces);
     free(made->planes);
     free(made->spheres);
-    free(made->loose.positions);
-    free(made->loose.colours);
-    free(made->pins.positions);
     free(made);
 }
 
@@ -189,8 +178,7 @@ static void mark(render_world_state *state, const skein_surface *surface, int sh
     for (size_t p = 0; p < surface->particle_count; p++) state->body[surface->first_particle + p] = (uint32_t)index;
 }
 
-static skein_status take_body(render_world_frame *made, const skein_world *world, size_t index,
-                              skein_error *error) {
+static skein_status take_body(render_world_frame *made, const skein_world *world, size_t index, skein_error *error) {
     skein_handle handle = skein_object_at(world, SKEIN_BODY, index);
     skein_surface surface;
     skein_status status = skein_body_surface(world, handle, &surface);
@@ -228,18 +216,6 @@ static skein_status take_bodies(render_world_frame *made, const skein_world *wor
 
 /* ---- Particles ------------------------------------------------------------------------------ */
 
-static const float loose_colour[3] = {0.925f, 0.640f, 0.200f}, pin_colour[3] = {0.27f, 0.26f, 0.27f};
-
-static void colour_particle(const render_world_frame *made, size_t p, float colour[3]) {
-    memcpy(colour, loose_colour, sizeof loose_colour);
-    if (made->state.range > 0) {
-        render_particle_colour(&made->state, p, colour);
-    } else if (made->view.colour == RENDER_BY_BODY && made->state.body[p] != UINT32_MAX) {
-        render_material material = render_plain_material(made->state.body[p]);
-        memcpy(colour, material.colour, sizeof material.colour);
-    }
-}
-
 /* The mean length of some edges, as a measure of how close particles are; infinite where there are none. */
 static double mean_edge(const render_world_frame *made) {
     double sum = 0;
@@ -250,65 +226,28 @@ static double mean_edge(const render_world_frame *made) {
         for (size_t e = 0; e < mesh->edge_count; e += stride, count++) {
             const double *p = &made->state.positions[3 * (size_t)mesh->edges[2 * e]],
                          *q = &made->state.positions[3 * (size_t)mesh->edges[2 * e + 1]];
-            sum += sqrt((q[0] - p[0]) * (q[0] - p[0]) + (q[1] - p[1]) * (q[1] - p[1]) +
-                        (q[2] - p[2]) * (q[2] - p[2]));
+            sum += sqrt((q[0] - p[0]) * (q[0] - p[0]) + (q[1] - p[1]) * (q[1] - p[1]) + (q[2] - p[2]) * (q[2] - p[2]));
         }
     }
     return count && isfinite(sum) ? sum / (double)count : INFINITY;
 }
 
-static void add_particle(particles *to, const double position[3]) {
-    memcpy(&to->positions[3 * to->count++], position, 3 * sizeof *position);
-}
-
-/* Pins are held particles of a surface, unless most of it is held. */
-static void sort_particles(render_world_frame *made, const skein_view *where) {
-    const render_world_state *state = &made->state;
-    bool all = made->view.particles == RENDER_ALL_PARTICLES, none = made->view.particles == RENDER_NO_PARTICLES;
-    made->loose.count = made->pins.count = 0;
-    for (size_t p = 0; p < state->particle_count && p < where->count; p++) {
-        bool held = where->xyzw[4 * (size_t)where->slot_of[p] + 3] == 0;
-        if (state->shown[p] == RENDER_HIDDEN) continue;
-        if (!none && (all || state->shown[p] == RENDER_LOOSE)) {
-            colour_particle(made, p, &made->loose.colours[3 * made->loose.count]);
-            add_particle(&made->loose, &state->positions[3 * p]);
-        } else if (held && made->view.pins && state->shown[p] == RENDER_IN_SURFACE) {
-            add_particle(&made->pins, &state->positions[3 * p]);
-        }
-    }
-    if (4 * made->pins.count > state->particle_count) made->pins.count = 0;
-}
-
 static skein_status take_particles(render_world_frame *made, const skein_world *world, skein_error *error) {
-    size_t count = made->state.particle_count;
     skein_view where = skein_position_view(world);
-    if (!grow(&made->loose.positions, 3 * count, sizeof(double)) ||
-        !grow(&made->loose.colours, 3 * count, sizeof(float)) ||
-        !grow(&made->pins.positions, 3 * count, sizeof(double))) {
+    if (!render_world_points_take(&made->points, &made->state, &where, &made->view))
         return render_fail_memory(error, "the particles");
-    }
-    sort_particles(made, &where);
-    made->points[0] = (render_points){
-        .positions = made->loose.positions, .count = made->loose.count, .colours = made->loose.colours};
-    made->points[1] = (render_points){.positions = made->pins.positions, .count = made->pins.count};
-    memcpy(made->points[1].colour, pin_colour, sizeof pin_colour);
-    made->frame.points = made->points;
-    made->frame.points_count = 2;
+    made->frame.points = made->points.points;
+    made->frame.points_count = RENDER_POINT_KIND_COUNT;
 
     render_bounds bounds = render_frame_bounds(&made->frame);
-    double radius = render_bounds_radius(&bounds), asked = made->view.particle_radius;
-    double fitting = loose_size * (radius > 0 ? radius : 1);
-    if (made->view.particles == RENDER_ALL_PARTICLES) fitting = fmin(fitting, crowded_size * mean_edge(made));
-    made->points[0].radius = asked > 0 ? asked : fitting;
-    made->points[1].radius = pin_size * radius * (made->pins.count > 12 ? 0.6 : 1.0);
+    render_world_points_size(&made->points, &made->view, render_bounds_radius(&bounds), mean_edge(made));
     return SKEIN_OK;
 }
 
 /* ---- Colliders ------------------------------------------------------------------------------ */
 
 /* A level plane is ground, and shown with it; others are colliders like spheres. */
-static void add_plane(render_world_frame *made, const skein_world *world, skein_handle handle,
-                      const skein_pose *pose) {
+static void add_plane(render_world_frame *made, const skein_world *world, skein_handle handle, const skein_pose *pose) {
     skein_value normal;
     if (skein_get(world, handle, "normal", &normal) != SKEIN_OK) return;
     render_plane *plane = &made->planes[made->frame.plane_count];
@@ -333,8 +272,7 @@ static void add_sphere(render_world_frame *made, const skein_world *world, skein
 
 static skein_status take_colliders(render_world_frame *made, const skein_world *world, skein_error *error) {
     size_t count = skein_object_count(world, SKEIN_COLLIDER);
-    if (!grow(&made->planes, count, sizeof *made->planes) ||
-        !grow(&made->spheres, count, sizeof *made->spheres)) {
+    if (!grow(&made->planes, count, sizeof *made->planes) || !grow(&made->spheres, count, sizeof *made->spheres)) {
         return render_fail_memory(error, "the colliders");
     }
     made->frame.planes = made->planes, made->frame.plane_count = 0;
@@ -343,8 +281,7 @@ static skein_status take_colliders(render_world_frame *made, const skein_world *
         skein_handle handle = skein_object_at(world, SKEIN_COLLIDER, i);
         const skein_kind *kind = skein_object_kind(world, handle);
         skein_pose pose;
-        if (!kind || !is_visible(world, handle) || skein_collider_pose(world, handle, &pose) != SKEIN_OK)
-            continue;
+        if (!kind || !is_visible(world, handle) || skein_collider_pose(world, handle, &pose) != SKEIN_OK) continue;
         if (strcmp(kind->name, "plane") == 0) add_plane(made, world, handle, &pose);
         if (strcmp(kind->name, "sphere") == 0) add_sphere(made, world, handle, &pose);
     }
@@ -423,8 +360,7 @@ void render_world_frame_settle(render_world_frame *made) {
 render_camera render_world_frame_camera(const render_world_frame *made, double aspect) {
     const render_look *look = &made->frame.look;
     render_bounds bounds = render_frame_bounds(&made->frame);
-    double gap = bounds.least[1] - look->floor_height,
-           most_gap = floor_gap * (bounds.most[1] - bounds.least[1]);
+    double gap = bounds.least[1] - look->floor_height, most_gap = floor_gap * (bounds.most[1] - bounds.least[1]);
     if (look->floor && gap > 0 && gap < 1.01 * most_gap) bounds.least[1] = look->floor_height;
     return render_camera_of_view(&made->view.camera, &bounds, made->time, aspect);
 }

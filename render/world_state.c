@@ -41,8 +41,7 @@ static skein_status read_contacts(render_world_state *s, const skein_world *worl
     skein_status status = skein_contacts_copy(world, s->contacts, s->contact_room, &s->contact_count);
     if (status == SKEIN_OK && s->contact_count > s->contact_room) {
         s->contact_room = 2 * s->contact_count;
-        if (!grow(&s->contacts, s->contact_room, sizeof *s->contacts))
-            return render_fail_memory(error, "the contacts");
+        if (!grow(&s->contacts, s->contact_room, sizeof *s->contacts)) return render_fail_memory(error, "the contacts");
         status = skein_contacts_copy(world, s->contacts, s->contact_room, &s->contact_count);
     }
     return status ? render_fail(error, status, "", "the contacts cannot be read") : SKEIN_OK;

@@ -18,11 +18,11 @@ typedef struct render_world_state {
     skein_contact *contacts; /* only where they are drawn */
     float *values;           /* by particle, 0 to 1: its place in the map; where colours tell speed or strain */
     render_colour_map map;
-    double range;              /* the speed or strain that the end of the map stands for; 0: none */
-    double spring_range;       /* and for springs */
-    unsigned char *shown;      /* by particle: how; for the one who reads to fill in */
-    uint32_t *body;            /* by particle: the place of its body, UINT32_MAX for none; likewise */
-    float *weights;            /* by particle: springs that count in its strain */
+    double range;         /* the speed or strain that the end of the map stands for; 0: none */
+    double spring_range;  /* and for springs */
+    unsigned char *shown; /* by particle: how; for the one who reads to fill in */
+    uint32_t *body;       /* by particle: the place of its body, UINT32_MAX for none; likewise */
+    float *weights;       /* by particle: springs that count in its strain */
     size_t particle_room, spring_room, contact_room;
 } render_world_state;
 

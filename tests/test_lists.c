@@ -65,7 +65,8 @@ static void springs_agree_with_the_statistics(void **state) {
     size_t found = 0, edges = 0;
     for (size_t i = 0; i < count; i++) edges += springs[i].edge;
     assert_int_equal(edges, 19 * 30 + 20 * 29);
-    for (size_t i = 0; i < count; i++) found += springs[i].edge && (double)springs[i].strain == (double)(float)now.max_stretch;
+    for (size_t i = 0; i < count; i++)
+        found += springs[i].edge && (double)springs[i].strain == (double)(float)now.max_stretch;
     assert_true(found >= 1);
     free(springs);
     skein_world_destroy(world);

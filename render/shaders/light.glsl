@@ -16,7 +16,7 @@ float first_turn() {
 #endif
 
 const mat2 golden_turn = mat2(-0.737369, 0.675490, -0.675490, -0.737369);
-const mat2 fifth_turn = mat2(0.309017, 0.951057, -0.951057, 0.309017);
+const mat2 seventh_turn = mat2(0.623490, 0.781831, -0.781831, 0.623490);
 
 // The sun's light at an offset from a place in the map, if the receiver went on as a plane; 0 to 1.
 float compare(vec3 at, vec2 offset, vec2 slope, float bias) {
@@ -62,11 +62,11 @@ float sun_seen(vec3 point, vec3 normal) {
     if (blockers == 0.0) return 1.0;
     float width = clamp((at.z - depth_sum / blockers) * cone, 1.5 * texel, reach);
 
-    // a ring near the rim tells whether this is penumbra at all
+    // two rings, near the rim and within, tell whether this is penumbra at all
     float light = 0.0;
     for (int i = 0; i < scene.counts.w; i++) {
-        light += compare(at, spoke * width * 0.9, slope, bias);
-        spoke = fifth_turn * spoke;
+        light += compare(at, spoke * width * ((i & 1) == 0 ? 0.9 : 0.4), slope, bias);
+        spoke = seventh_turn * spoke;
     }
     // (few blockers count in part: that hides which pixels happened to find them)
     float sure = min(0.4 * blockers, 1.0);

@@ -50,6 +50,6 @@ void main() {
         float rim = 0.02 * scene.middle.w;
         lit *= mix(0.72, 1.0, smoothstep(rim - fwidth(inside.x + inside.y), rim, min(inside.x, inside.y)));
     }
-    float haze = ground == 1 ? 1.0 - exp(-pow(out_there / 9.0, 2.0)) : 0.0;
+    float haze = ground == 1 ? 1.0 - exp(-pow(out_there / 16.0, 2.0)) : 0.0;
     colour = vec4(display(mix(lit, sky_colour(ray / distance), haze)), 1.0);
 }

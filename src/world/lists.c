@@ -11,8 +11,8 @@ static void copy_batch(const sk_batch *batch, const sk_vec4 *x, skein_spring *ou
         size_t last = first + STRAIN_BLOCK < count ? first + STRAIN_BLOCK : count;
         batch->type->strain(batch, x, first, last, strain);
         for (size_t e = first; e < last; e++)
-            out[e] = (skein_spring){{batch->particle[2 * e], batch->particle[2 * e + 1]}, (float)strain[e - first],
-                                    batch->measured};
+            out[e] = (skein_spring){
+                {batch->particle[2 * e], batch->particle[2 * e + 1]}, (float)strain[e - first], batch->measured};
     }
 }
 
