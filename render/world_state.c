@@ -64,13 +64,13 @@ static void find_speeds(render_world_state *s, double asked) {
 
 /* Edges count if there are any: bending springs shorten at every fold, which tells nothing of the cloth. */
 static bool counts(const render_world_state *s, const skein_spring *spring, bool edges) {
-    return (spring->edge || !edges) && isfinite(spring->strain) && spring->particle[0] < s->particle_count &&
+    return (spring->measured || !edges) && isfinite(spring->strain) && spring->particle[0] < s->particle_count &&
            spring->particle[1] < s->particle_count;
 }
 
 static bool has_edges(const render_world_state *s) {
     for (size_t i = 0; i < s->spring_count; i++)
-        if (s->springs[i].edge) return true;
+        if (s->springs[i].measured) return true;
     return false;
 }
 

@@ -23,7 +23,7 @@ static void springs_tell_their_strain(void **state) {
     assert_int_equal(springs[0].particle[1], 1);
     assert_int_equal(springs[1].particle[0], 2);
     assert_int_equal(springs[1].particle[1], 0);
-    assert_true(springs[0].strain == 0 && springs[1].strain == 0 && !springs[0].edge);
+    assert_true(springs[0].strain == 0 && springs[1].strain == 0 && springs[0].measured);
 
     // the first grows by a quarter, the other shrinks by three eighths
     const double moved[9] = {0, 0, 0, 0, 1.25, 0, 0, 0, -1.25};
@@ -63,10 +63,10 @@ static void springs_agree_with_the_statistics(void **state) {
     skein_spring *springs = calloc(count, sizeof *springs);
     OK(world, skein_springs_copy(world, springs, count, &count));
     size_t found = 0, edges = 0;
-    for (size_t i = 0; i < count; i++) edges += springs[i].edge;
+    for (size_t i = 0; i < count; i++) edges += springs[i].measured;
     assert_int_equal(edges, 19 * 30 + 20 * 29);
     for (size_t i = 0; i < count; i++)
-        found += springs[i].edge && (double)springs[i].strain == (double)(float)now.max_stretch;
+        found += springs[i].measured && (double)springs[i].strain == (double)(float)now.max_stretch;
     assert_true(found >= 1);
     free(springs);
     skein_world_destroy(world);
@@ -88,14 +88,14 @@ static void contacts_are_listed(void **state) {
     OK(world, skein_contacts_copy(world, contacts, 4, &count));
     assert_int_equal(count, 3);
     assert_true(contacts[0].particle == 1 && contacts[0].collider.index == floor.index);
-    assert_near(contacts[0].distance, 0.005, 1e-6);
+    assert_near(contacts[0].gap, 0.005, 1e-6);
     assert_near(contacts[0].normal[1], 1, 1e-6);
     // half a metre deep in the ball, and a little deep
     assert_true(contacts[1].particle == 0 && contacts[1].collider.index == ball.index);
-    assert_near(contacts[1].distance, -0.5, 1e-6);
+    assert_near(contacts[1].gap, -0.5, 1e-6);
     assert_near(contacts[1].normal[1], 1, 1e-6);
     assert_true(contacts[2].particle == 3);
-    assert_near(contacts[2].distance, -0.005, 1e-6);
+    assert_near(contacts[2].gap, -0.005, 1e-6);
     assert_near(contacts[2].normal[0], 1, 1e-6);
 
     skein_statistics now;

@@ -326,8 +326,8 @@ skein_status skein_collider_pose(const skein_world *world, skein_handle collider
 /* Two particles that a rule keeps at a distance: an edge or diagonal of a cloth, a `distance`. */
 typedef struct skein_spring {
     uint32_t particle[2];
-    float strain; /* (length - rest)/rest now; 0 where the rest length is 0 */
-    bool edge;    /* of a body's mesh: it counts in the statistics' stretch */
+    float strain;  /* (length - rest)/rest now; 0 where the rest length is 0 */
+    bool measured; /* it counts in the statistics' stretch: an edge of a mesh, or added by itself */
 } skein_spring;
 /* Copies up to `most` of the springs of enabled rules, in the order of their making; `count` receives how many
  * there are. */
@@ -338,7 +338,7 @@ typedef struct skein_contact {
     uint32_t particle;
     skein_handle collider;
     double normal[3]; /* unit, out of the solid */
-    double distance;  /* m, to the collider's surface; negative inside */
+    double gap;       /* m, from the collider's surface; negative inside */
 } skein_contact;
 /* Copies up to `most` of the contacts of enabled colliders; `count` receives how many there are. */
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count);

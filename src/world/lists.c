@@ -35,11 +35,11 @@ typedef struct contact_list {
     skein_handle collider;
 } contact_list;
 
-static void add_contact(void *user, size_t particle, sk_vec3 normal, double distance) {
+static void add_contact(void *user, size_t particle, sk_vec3 normal, double gap) {
     contact_list *list = user;
     if (list->count++ >= list->most) return;
     list->out[list->count - 1] = (skein_contact){
-        (uint32_t)particle, list->collider, {(double)normal.x, (double)normal.y, (double)normal.z}, distance};
+        (uint32_t)particle, list->collider, {(double)normal.x, (double)normal.y, (double)normal.z}, gap};
 }
 
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count) {
