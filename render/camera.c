@@ -10,7 +10,7 @@ static const double degree = 0.017453292519943295;
 
 /* The part of the picture's width and height that the box fills at most; and how far its middle stands below
  * the picture's, in half heights: enough that a level sheet on top is not seen edge on. */
-static const double house_fill = 0.80, house_drop = 0.05;
+static const double house_fill = 0.77, house_drop = 0.11;
 
 /* Along one axis of the picture: the least distance at which the corners fit between two lines of
  * slope `tangent`, and, for a given distance, where the eye stands. Corners are (x, z) pairs. */

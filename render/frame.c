@@ -12,7 +12,7 @@ render_look render_default_look(void) {
         .sun = {-0.62, 0.86, 0.42},
         .sun_spread = 2.2,
         .zenith = {0.30f, 0.56f, 0.82f},
-        .horizon = {0.93f, 0.93f, 0.915f},
+        .horizon = {0.915f, 0.925f, 0.925f},
         .ground = {0.755f, 0.727f, 0.69f},
         .exposure = 1.0,
         .grid = true,

@@ -28,7 +28,7 @@ layout(std140, binding = 1) uniform pass_block {
 // The sky along a direction of length 1; below the horizon it is the horizon's haze.
 vec3 sky_colour(vec3 direction) {
     float height = max(direction.y, 0.0);
-    return mix(scene.horizon.rgb, scene.zenith.rgb, 1.0 - exp(-6.0 * height));
+    return mix(scene.horizon.rgb, scene.zenith.rgb, 1.0 - exp(-14.0 * height));
 }
 
 // Light from all sides on a surface: the sky above, brighter on the sun's side so that folds show in the
