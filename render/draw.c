@@ -27,7 +27,8 @@ struct render_draw {
     render_shape disc, square;
     render_shape sphere, pearl, grain; /* fine for colliders, coarse for particles, and for many of them */
     render_instances balls, particles, lines;
-    render_mesh *meshes; /* by the surface's place in the frame */
+    const render_shape *particle_shape; /* in this frame */
+    render_mesh *meshes;                /* by the surface's place in the frame */
     size_t mesh_count;
 };
 
@@ -51,7 +52,7 @@ static const float lift = 5e-4f;
 /* Where edges are under so many pixels, shadows on surfaces are found by vertex: a pixel each would cost more and
  * show no more. */
 static const double fine_edge = 4.5;
-/* More particles than these have the coarser shape: they are small then. */
+/* More particles than these have the coarser shape: they are small then, and a sphere each is a lot to draw. */
 enum { many_particles = 600 };
 /* Taps of a shadow's map. (Loops that the compiler cannot unroll end early where all of a pixel's neighbours have
  * ended: unrolled ones took 1.4 times as long, on llvmpipe.) */
@@ -80,7 +81,7 @@ static skein_status make_all(render_draw *draw, skein_error *error) {
     if (status == SKEIN_OK) status = render_shape_square(&draw->square, error);
     if (status == SKEIN_OK) status = render_shape_sphere(&draw->sphere, 24, error);
     if (status == SKEIN_OK) status = render_shape_sphere(&draw->pearl, 10, error);
-    if (status == SKEIN_OK) status = render_shape_sphere(&draw->grain, 4, error);
+    if (status == SKEIN_OK) status = render_shape_dome(&draw->grain, error);
     if (status != SKEIN_OK) return status;
 
     render_instances_make_balls(&draw->balls, &draw->sphere);
@@ -146,18 +147,25 @@ static skein_status bring_surfaces(render_draw *draw, const render_frame *frame,
     return SKEIN_OK;
 }
 
-static skein_status bring(render_draw *draw, const render_frame *frame, skein_error *error) {
-    skein_status status = bring_surfaces(draw, frame, error);
-    if (status == SKEIN_OK) status = render_instances_bring_spheres(&draw->balls, frame, error);
-    if (status == SKEIN_OK) status = render_instances_bring_points(&draw->particles, frame, error);
-    if (status == SKEIN_OK) status = render_instances_bring_lines(&draw->lines, frame, error);
-    if (status == SKEIN_OK) status = render_paints_bring(&draw->paints, frame, error);
-    return status;
+/* Few particles are spheres; many are the domes of spheres, turned to the viewer. */
+static skein_status bring_particles(render_draw *draw, const drawing *d, skein_error *error) {
+    double right[3], up[3], back[3], rotation[9];
+    size_t count = 0;
+    for (size_t i = 0; i < d->frame->points_count; i++) count += d->frame->points[i].count;
+    render_camera_axes(d->camera, right, up, back);
+    for (int k = 0; k < 3; k++) rotation[3 * k] = right[k], rotation[3 * k + 1] = up[k], rotation[3 * k + 2] = back[k];
+    draw->particle_shape = count > many_particles ? &draw->grain : &draw->pearl;
+    render_instances_take_shape(&draw->particles, draw->particle_shape);
+    return render_instances_bring_points(&draw->particles, d->frame, rotation, error);
 }
 
-static void store(const double v[3], double w, float out[4]) {
-    for (int i = 0; i < 3; i++) out[i] = (float)v[i];
-    out[3] = (float)w;
+static skein_status bring(render_draw *draw, const drawing *d, skein_error *error) {
+    skein_status status = bring_surfaces(draw, d->frame, error);
+    if (status == SKEIN_OK) status = render_instances_bring_spheres(&draw->balls, d->frame, error);
+    if (status == SKEIN_OK) status = bring_particles(draw, d, error);
+    if (status == SKEIN_OK) status = render_instances_bring_lines(&draw->lines, d->frame, error);
+    if (status == SKEIN_OK) status = render_paints_bring(&draw->paints, d->frame, error);
+    return status;
 }
 
 /* The scene block, but for what belongs to the light maps. */
@@ -169,7 +177,7 @@ static void fill_block(drawing *d, const double sun[3], double tangent) {
     double right[3], up[3], back[3];
 
     render_camera_axes(d->camera, right, up, back);
-    store(d->camera->eye, 1, block->eye);
+    render_store(d->camera->eye, 1, block->eye);
     for (int k = 0; k < 3; k++) {
         block->view_right[k] = (float)(right[k] * wide);
         block->view_up[k] = (float)(up[k] * tall);
@@ -177,8 +185,8 @@ static void fill_block(drawing *d, const double sun[3], double tangent) {
     }
     block->view_right[3] = 2.0f / (float)d->width;
     block->view_up[3] = 2.0f / (float)d->height;
-    store(sun, tangent, block->sun);
-    store(d->middle, d->radius, block->middle);
+    render_store(sun, tangent, block->sun);
+    render_store(d->middle, d->radius, block->middle);
     render_to_light(white, 1.27f, block->sun_light);
     block->sun_light[3] = (float)look->exposure;
     render_to_light(look->zenith, 1, block->zenith);
@@ -188,7 +196,7 @@ static void fill_block(drawing *d, const double sun[3], double tangent) {
 
     size_t balls = d->frame->sphere_count < RENDER_BALL_COUNT ? d->frame->sphere_count : RENDER_BALL_COUNT;
     for (size_t i = 0; i < balls; i++) {
-        store(d->frame->spheres[i].centre, d->frame->spheres[i].radius, block->balls[i]);
+        render_store(d->frame->spheres[i].centre, d->frame->spheres[i].radius, block->balls[i]);
     }
     block->counts[0] = look->plain ? 0 : (int32_t)balls;
     block->counts[1] = search_taps, block->counts[2] = edge_taps, block->counts[3] = rim_taps;
@@ -305,9 +313,7 @@ static void draw_balls(const render_draw *draw, int twin) {
     if (!twin) glProgramUniform1i(program, 1, 1);
     if (draw->balls.count > 0) draw_shape(&draw->sphere, draw->balls.arrays, draw->balls.count);
     if (!twin) glProgramUniform1i(program, 1, 0);
-    const render_shape *shape = draw->particles.count > many_particles ? &draw->grain : &draw->pearl;
-    render_instances_take_shape(&draw->particles, shape);
-    if (draw->particles.count > 0) draw_shape(shape, draw->particles.arrays, draw->particles.count);
+    if (draw->particles.count > 0) draw_shape(draw->particle_shape, draw->particles.arrays, draw->particles.count);
     glDisable(GL_CULL_FACE);
 }
 
@@ -374,7 +380,7 @@ static void draw_picture(const render_draw *draw, const drawing *d, unsigned fra
 skein_status render_draw_frame(render_draw *draw, const render_frame *frame, const render_camera *camera,
                                unsigned framebuffer, int width, int height, skein_error *error) {
     drawing d = {.frame = frame, .camera = camera, .width = width, .height = height};
-    skein_status status = bring(draw, frame, error);
+    skein_status status = bring(draw, &d, error);
     if (status != SKEIN_OK) return status;
     aim(draw, &d);
 

@@ -100,8 +100,8 @@ skein_status render_instances_bring_spheres(render_instances *instances, const r
     return SKEIN_OK;
 }
 
-skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame, skein_error *error) {
-    static const double unturned[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame,
+                                           const double rotation[9], skein_error *error) {
     size_t count = 0, next = 0;
     for (size_t g = 0; g < frame->points_count; g++) count += frame->points[g].count;
     skein_status status = reserve(instances, count, ball_floats, error);
@@ -110,7 +110,7 @@ skein_status render_instances_bring_points(render_instances *instances, const re
         const render_points *points = &frame->points[g];
         for (size_t i = 0; i < points->count; i++) {
             const float *paint = points->colours ? &points->colours[3 * i] : points->colour;
-            stage_ball(&instances->staged[next++ * ball_floats], &points->positions[3 * i], points->radius, unturned,
+            stage_ball(&instances->staged[next++ * ball_floats], &points->positions[3 * i], points->radius, rotation,
                        paint, paint);
         }
     }

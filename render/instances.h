@@ -26,7 +26,9 @@ void render_instances_destroy(render_instances *instances);
 
 /* Bring a frame's things to the card, one group after the other. */
 skein_status render_instances_bring_spheres(render_instances *instances, const render_frame *frame, skein_error *error);
-skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame, skein_error *error);
+/* `rotation` (rows) turns all of them. */
+skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame,
+                                           const double rotation[9], skein_error *error);
 skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame, skein_error *error);
 
 #endif

@@ -174,6 +174,12 @@ static void place_sphere(double along, double around, float *out) {
     out[2] = (float)(-sin(pi * along) * sin(2 * pi * around));
 }
 
+static void place_dome(double along, double around, float *out) {
+    out[0] = (float)(sin(0.5 * pi * along) * cos(2 * pi * around));
+    out[1] = (float)(sin(0.5 * pi * along) * sin(2 * pi * around));
+    out[2] = (float)cos(0.5 * pi * along);
+}
+
 static void place_disc(double along, double around, float *out) {
     out[0] = (float)(along * cos(2 * pi * around));
     out[1] = (float)(-along * sin(2 * pi * around));
@@ -186,6 +192,10 @@ static void place_square(double along, double around, float *out) {
 
 skein_status render_shape_sphere(render_shape *shape, int rings, skein_error *error) {
     return make_shape(shape, rings, 2 * rings, 3, place_sphere, error);
+}
+
+skein_status render_shape_dome(render_shape *shape, skein_error *error) {
+    return make_shape(shape, 1, 8, 3, place_dome, error);
 }
 
 skein_status render_shape_disc(render_shape *shape, skein_error *error) {

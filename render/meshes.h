@@ -36,6 +36,8 @@ typedef struct render_shape {
 
 /* The unit sphere with `rings` from pole to pole; attribute: direction (3 floats). */
 skein_status render_shape_sphere(render_shape *shape, int rings, skein_error *error);
+/* The half of a unit sphere around +z, of eight triangles: for many small ones that are turned to the viewer. */
+skein_status render_shape_dome(render_shape *shape, skein_error *error);
 /* The unit disc (an octagon: its rim is lost in the haze) and the square from -1 to 1; attribute: place (2 floats). */
 skein_status render_shape_disc(render_shape *shape, skein_error *error);
 skein_status render_shape_square(render_shape *shape, skein_error *error);
