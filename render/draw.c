@@ -16,7 +16,7 @@
 #include <string.h>
 
 /* Those that have a depth-only twin for the light maps, DEPTH_ONLY further on, come first. */
-enum { PLANE, SURFACE, BALL, DEPTH_ONLY, SKY = 2 * DEPTH_ONLY, FINE_SURFACE, LINE, PROGRAM_COUNT };
+enum { PLANE, SURFACE, BALL, DEPTH_ONLY, SKY = 2 * DEPTH_ONLY, FINE_SURFACE, FINE_BALL, LINE, PROGRAM_COUNT };
 
 struct render_draw {
     GLuint programs[PROGRAM_COUNT];
@@ -67,6 +67,7 @@ static skein_status make_all(render_draw *draw, skein_error *error) {
         [SURFACE] = {"surface.vert", "display,light,surface.frag"},
         [FINE_SURFACE] = {"fine,light,surface.vert", "fine,display,surface.frag"},
         [BALL] = {"ball.vert", "display,light,ball.frag"},
+        [FINE_BALL] = {"fine,light,ball.vert", "fine,display,ball.frag"},
         [PLANE + DEPTH_ONLY] = {"plane.vert", NULL},
         [SURFACE + DEPTH_ONLY] = {"depth.vert", NULL},
         [BALL + DEPTH_ONLY] = {"ball.vert", NULL},
@@ -275,22 +276,6 @@ static void draw_ground(const render_draw *draw, const drawing *d) {
     draw_plane(draw, 0, &draw->disc, vectors, render_grid_cell(d->radius), true);
 }
 
-static void set_material(GLuint program, const render_surface *surface) {
-    const render_material *material = &surface->material;
-    bool drawn = material->pattern == RENDER_VALUES ? surface->values != NULL : surface->uv != NULL;
-    const float *const colours[3] = {material->colour, material->accent, material->lining};
-    for (GLint i = 0; i < 3; i++) {
-        float light[3];
-        render_to_light(colours[i], 1, light);
-        glProgramUniform3fv(program, 1 + i, 1, light);
-    }
-    glProgramUniform1i(program, 4, drawn ? (GLint)material->pattern : RENDER_PLAIN);
-    glProgramUniform2fv(program, 5, 1, material->repeats);
-    glProgramUniform1f(program, 6, material->translucency);
-    glProgramUniform1i(program, 7, surface->rows_first);
-    glProgramUniform1f(program, 8, (float)surface->map);
-}
-
 static void draw_surfaces(const render_draw *draw, const drawing *d, int twin) {
     for (size_t i = 0; i < d->frame->surface_count; i++) {
         const render_mesh *mesh = &draw->meshes[i];
@@ -299,7 +284,7 @@ static void draw_surfaces(const render_draw *draw, const drawing *d, int twin) {
         glUseProgram(program);
         if (!twin) {
             glProgramUniform1f(program, 0, lift);
-            set_material(program, &d->frame->surfaces[i]);
+            render_set_material(program, &d->frame->surfaces[i]);
         }
         glBindVertexArray(mesh->arrays);
         glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
@@ -308,11 +293,13 @@ static void draw_surfaces(const render_draw *draw, const drawing *d, int twin) {
 
 static void draw_balls(const render_draw *draw, int twin) {
     GLuint program = draw->programs[BALL + twin];
+    bool fine = !twin && draw->particle_shape == &draw->grain;
     glUseProgram(program);
     glEnable(GL_CULL_FACE);
     if (!twin) glProgramUniform1i(program, 1, 1);
     if (draw->balls.count > 0) draw_shape(&draw->sphere, draw->balls.arrays, draw->balls.count);
     if (!twin) glProgramUniform1i(program, 1, 0);
+    if (fine) glUseProgram(draw->programs[FINE_BALL]);
     if (draw->particles.count > 0) draw_shape(draw->particle_shape, draw->particles.arrays, draw->particles.count);
     glDisable(GL_CULL_FACE);
 }

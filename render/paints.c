@@ -68,3 +68,19 @@ void render_paints_bind(const render_paints *paints) {
     glBindTextureUnit(4, paints->image);
     glBindSampler(4, 0);
 }
+
+void render_set_material(unsigned program, const render_surface *surface) {
+    const render_material *material = &surface->material;
+    bool drawn = material->pattern == RENDER_VALUES ? surface->values != NULL : surface->uv != NULL;
+    const float *const colours[3] = {material->colour, material->accent, material->lining};
+    for (GLint i = 0; i < 3; i++) {
+        float light[3];
+        render_to_light(colours[i], 1, light);
+        glProgramUniform3fv(program, 1 + i, 1, light);
+    }
+    glProgramUniform1i(program, 4, drawn ? (GLint)material->pattern : RENDER_PLAIN);
+    glProgramUniform2fv(program, 5, 1, material->repeats);
+    glProgramUniform1f(program, 6, material->translucency);
+    glProgramUniform1i(program, 7, surface->rows_first);
+    glProgramUniform1f(program, 8, (float)surface->map);
+}

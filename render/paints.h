@@ -1,4 +1,4 @@
-/* The textures that surfaces are painted with: the colour maps, and a frame's image.
+/* What surfaces are painted with: the textures (colour maps, a frame's image) and the materials' uniforms.
  *
  * Called by draw.c. An image goes to the card once, until the frame has another. */
 #ifndef SKEIN_RENDER_PAINTS_H
@@ -19,5 +19,7 @@ void render_paints_destroy(render_paints *paints);
 skein_status render_paints_bring(render_paints *paints, const render_frame *frame, skein_error *error);
 /* Binds unit 3 to the colour maps, unit 4 to the image. */
 void render_paints_bind(const render_paints *paints);
+/* Sets the uniforms of surface.frag.glsl that say how a surface is painted. */
+void render_set_material(unsigned program, const render_surface *surface);
 
 #endif

@@ -222,6 +222,34 @@ static void particles_are_coloured_by_speed(void **state) {
     skein_world_destroy(world);
 }
 
+/* Many particles are drawn in another way than few: they must look alike. */
+static void many_particles_look_like_few(void **state) {
+    (void)state;
+    look_from_the_front();
+    view.surface = false, view.particles = RENDER_ALL_PARTICLES, view.particle_radius = 0.02;
+    render_image images[2];
+    for (int i = 0; i < 2; i++) {
+        skein_world *world = skein_world_create(NULL, NULL);
+        int side = i ? 31 : 7; // 961 or 49, those in the same places among them
+        OK(skein_body_add(world, "cloth", NULL,
+                          SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 1.2, 0),
+                                         SKEIN_VEC3("rotation", 90, 0, 0)),
+                          NULL));
+        images[i] = picture_of(world);
+        skein_world_destroy(world);
+    }
+    for (int i = -2; i <= 2; i++) {
+        const uint8_t *few = pixel_at(&images[0], i / 6.0, 1.2), *many = pixel_at(&images[1], i / 6.0, 1.2);
+        for (int k = 0; k < 3; k++) assert_near(many[k], few[k], 40);
+        assert_true(many[0] > many[2] + 50);
+    }
+    const uint8_t *between = pixel_at(&images[1], 1 / 60.0, 1.2 + 1 / 60.0);
+    assert_false(between[0] > between[2] + 50);
+    assert_near(part_that(&images[1], is_red) / part_that(&images[0], is_red), 961.0 / 49, 5);
+    render_image_release(&images[0]);
+    render_image_release(&images[1]);
+}
+
 static void a_surface_is_coloured_by_strain_and_speed(void **state) {
     (void)state;
     skein_world *world = upright_cloth();
@@ -589,6 +617,7 @@ int main(void) {
         VIEW_TEST(a_wireframe_has_every_edge_once),
         VIEW_TEST(springs_are_coloured_by_strain),
         VIEW_TEST(particles_are_coloured_by_speed),
+        VIEW_TEST(many_particles_look_like_few),
         VIEW_TEST(a_surface_is_coloured_by_strain_and_speed),
         VIEW_TEST(bodies_differ_by_colour),
         VIEW_TEST(normals_and_velocities_are_lines),

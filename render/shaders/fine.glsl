@@ -1,2 +1,2 @@
-// Ahead of a surface's stages: its triangles are no larger than a few pixels, so that light is found by vertex.
+// Ahead of the stages of what has triangles of a few pixels: light is found by vertex.
 #define FINE
