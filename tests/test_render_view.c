@@ -481,6 +481,7 @@ static void an_image_lies_the_right_way_up(void **state) {
     assert_quarters(world);
     skein_world_destroy(world);
     world = square_mesh(NULL);
+    assert_int_equal(update(world)->surfaces[0].rows_first, 0);
     assert_quarters(world);
     skein_world_destroy(world);
     assert_int_equal(unlink(path), 0);
@@ -563,6 +564,14 @@ static void the_camera_stands_where_it_is_told(void **state) {
     camera = render_world_frame_camera(made, 1.5);
     const double side[3] = {4, 1.2, 0};
     assert_true(distance_between(camera.eye, side) < 1e-6);
+
+    // one that frames by itself turns as well: from its azimuth on
+    memcpy(view.camera.from, view.camera.at, sizeof view.camera.at);
+    view.camera.azimuth = 0;
+    update(world);
+    camera = render_world_frame_camera(made, 1.5);
+    assert_near(camera.eye[2] - camera.target[2], 0, 1e-6);
+    assert_true(camera.eye[0] > camera.target[0] + 1);
 
     // straight from above
     const double above[3] = {0, 9, 0}, below[3] = {0, 0, 0};
