@@ -15,7 +15,7 @@
 /* What is kept for a body, by its place among the world's bodies. */
 typedef struct body {
     skein_handle handle;
-    size_t source_vertices; /* of the surface that it was made from */
+    skein_surface source; /* that it was made from */
     bool made;
     render_body_mesh mesh;
     double *positions; /* by vertex: now */
@@ -123,7 +123,7 @@ static bool make_body(body *b, const skein_surface *surface, skein_handle handle
     release_body(b);
     if (!render_body_mesh_make(&b->mesh, surface, positions)) return false;
     b->handle = handle;
-    b->source_vertices = surface->vertex_count;
+    b->source = *surface;
     b->made = grow(&b->positions, 3 * b->mesh.vertex_count, sizeof *b->positions) &&
               grow(&b->values, b->mesh.vertex_count, sizeof *b->values);
     return b->made;
@@ -185,7 +185,8 @@ static skein_status take_body(render_world_frame *made, const skein_world *world
     if (status != SKEIN_OK) return render_fail(error, status, "", "a body's surface cannot be read");
     body *b = &made->bodies[index];
     bool same = b->made && b->handle.index == handle.index && b->handle.generation == handle.generation &&
-                b->source_vertices == surface.vertex_count;
+                b->source.face_vertices == surface.face_vertices && b->source.corner_uv == surface.corner_uv &&
+                b->source.vertex_count == surface.vertex_count;
     if (!same && !make_body(b, &surface, handle, made->state.positions))
         return render_fail_memory(error, "a body's surface");
     gather(b, &made->state);

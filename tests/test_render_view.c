@@ -434,6 +434,8 @@ static void write_quarters(char path[256]) {
 }
 
 static void assert_quarters(skein_world *world) {
+    render_world_frame_destroy(made); // a frame is for one world
+    made = render_world_frame_create(NULL);
     look_from_the_front();
     render_image image = picture_of(world);
     assert_true(is_red(pixel_at(&image, -0.25, 1.45)));
@@ -481,8 +483,14 @@ static void an_image_lies_the_right_way_up(void **state) {
     assert_quarters(world);
     skein_world_destroy(world);
     world = square_mesh(NULL);
-    assert_int_equal(update(world)->surfaces[0].rows_first, 0);
     assert_quarters(world);
+    assert_int_equal(update(world)->surfaces[0].rows_first, 0);
+    // coordinates that come later count from then on: all of it is the red quarter
+    const float corner[12] = {0, 0.9f, 0.1f, 0.9f, 0.1f, 1, 0, 0.9f, 0.1f, 1, 0, 1};
+    OK(skein_body_uv_set(world, skein_object_at(world, SKEIN_BODY, 0), corner, 6));
+    render_image image = picture_of(world);
+    assert_true(is_red(pixel_at(&image, 0.25, 0.95)));
+    render_image_release(&image);
     skein_world_destroy(world);
     assert_int_equal(unlink(path), 0);
 }
