@@ -82,8 +82,8 @@ static double strain_range(const render_world_state *s, bool edges, double asked
     return range;
 }
 
-/* A particle's strain is the mean of its springs'. */
-static void find_strains(render_world_state *s, bool edges) {
+/* A particle's strain is the mean of its springs', so that the largest is less than theirs. */
+static void find_strains(render_world_state *s, bool edges, double asked) {
     memset(s->values, 0, s->particle_count * sizeof *s->values);
     memset(s->weights, 0, s->particle_count * sizeof *s->weights);
     for (size_t i = 0; i < s->spring_count; i++) {
@@ -93,10 +93,13 @@ static void find_strains(render_world_state *s, bool edges) {
             s->weights[s->springs[i].particle[k]] += 1;
         }
     }
+    s->range = asked > 0 ? asked : least_range;
     for (size_t p = 0; p < s->particle_count; p++) {
-        double strain = s->weights[p] > 0 ? (double)(s->values[p] / s->weights[p]) : 0;
-        s->values[p] = (float)fmin(fmax(0.5 + 0.5 * strain / s->range, 0), 1);
+        if (s->weights[p] > 0) s->values[p] /= s->weights[p];
+        if (!(asked > 0)) s->range = fmax(s->range, fabs((double)s->values[p]));
     }
+    for (size_t p = 0; p < s->particle_count; p++)
+        s->values[p] = (float)fmin(fmax(0.5 + 0.5 * (double)s->values[p] / s->range, 0), 1);
     s->map = RENDER_LESS_TO_MORE;
 }
 
@@ -122,8 +125,7 @@ skein_status render_world_state_read(render_world_state *s, skein_world *world, 
     if (view->springs || strain) {
         bool edges = has_edges(s);
         s->spring_range = strain_range(s, edges, speed ? 0 : view->range);
-        if (strain) s->range = s->spring_range;
-        if (strain) find_strains(s, edges);
+        if (strain) find_strains(s, edges, view->range);
     }
     return SKEIN_OK;
 }

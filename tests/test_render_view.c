@@ -264,8 +264,8 @@ static void a_surface_is_coloured_by_strain_and_speed(void **state) {
     render_image image = picture_of(world);
     assert_true(is_pale(pixel_at(&image, -0.5, 1.2)));
     const uint8_t *wide = pixel_at(&image, 0.6, 1.2);
-    assert_true(wide[0] > wide[2] + 25);
-    assert_near(render_world_frame_range(made), 0.2, 1e-5);
+    assert_true(wide[0] > wide[2] + 50);
+    assert_near(render_world_frame_range(made), 0.4 / 3, 1e-5); // two of three edges on the border are a fifth longer
     render_image_release(&image);
 
     view.colour = RENDER_BY_SPEED; // all at rest: the dark end
