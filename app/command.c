@@ -9,6 +9,7 @@
 #ifdef SKEIN_RENDER
 #include "film/film.h"
 #include "render/picture.h"
+#include "render/view.h"
 #endif
 
 double app_seconds(void) {
@@ -157,6 +158,7 @@ const skein_kind *const *app_exporters(void) {
 #ifdef SKEIN_RENDER
     for (size_t i = 0; render_exporter_at(i); i++) all[count++] = render_exporter_at(i);
     all[count++] = film_exporter();
+    all[count++] = render_view_kind();
 #endif
     all[count] = NULL;
     return all;

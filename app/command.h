@@ -59,7 +59,7 @@ void app_unload(app_scene *loaded);
 /* The name of the method's kind. */
 const char *app_method(const app_scene *loaded);
 
-/* Every exporter there is, NULL-terminated. */
+/* Every exporter there is, and the view's kind where pictures are; NULL-terminated. */
 const skein_kind *const *app_exporters(void);
 
 double app_seconds(void); /* of a clock that only goes forward */

@@ -30,8 +30,8 @@ static void ignore_fault(void *user, const skein_error *error) {
 }
 
 /* Adds what the world holds now, unless that makes the box larger than `most` (0: not known yet). */
-static void take_in(render_world_frame *frame, const skein_world *world, render_bounds *held, double *most) {
-    if (render_world_frame_update(frame, world, NULL)) return;
+static void take_in(render_world_frame *frame, skein_world *world, render_bounds *held, double *most) {
+    if (render_world_frame_update(frame, world, NULL, NULL)) return;
     render_bounds now = render_frame_bounds(render_world_frame_get(frame)), both = *held;
     if (render_bounds_empty(&now)) return;
     render_bounds_add(&both, now.least, 0);
@@ -89,7 +89,7 @@ static bool open_all(app_footage *f, const char *path, const film_options *asked
     film_fit_size(format, options.size);
     f->every = film_every(format, f->loaded->settings.fps);
     f->facts = (app_footage_facts){0, {options.size[0], options.size[1]}, f->loaded->settings.fps / f->every};
-    f->studio = render_studio_create(options.size, options.samples, error);
+    f->studio = render_studio_create(options.size, options.samples, io_scene_view(f->loaded->scene), error);
     if (f->studio && !quiet) note_changes(f, path, format, asked, options.size);
     f->film = f->studio ? film_create(path, &options, f->loaded->settings.fps, error) : NULL;
     return f->film != NULL;

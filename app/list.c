@@ -14,17 +14,18 @@ static const struct {
 } lists[] = {
     {"scene", SKEIN_SCENE},        {"bodies", SKEIN_BODY},        {"constraints", SKEIN_CONSTRAINT},
     {"forces", SKEIN_FORCE},       {"colliders", SKEIN_COLLIDER}, {"methods", SKEIN_METHOD},
-    {"exporters", SKEIN_EXPORTER},
+    {"exporters", SKEIN_EXPORTER}, {"view", SKEIN_VIEW},
 };
 enum { LIST_COUNT = sizeof lists / sizeof *lists };
 
 /* The kinds of a category, `index` from 0; NULL past the end. */
 static const skein_kind *kind_at(skein_category category, size_t index) {
     if (category == SKEIN_SCENE) return index ? NULL : io_scene_kind();
-    if (category != SKEIN_EXPORTER) return skein_kind_at(category, index);
+    if (category != SKEIN_EXPORTER && category != SKEIN_VIEW) return skein_kind_at(category, index);
     const skein_kind *const *kind = app_exporters();
-    for (; *kind && index; index--) kind++;
-    return *kind;
+    for (; *kind; kind++)
+        if ((*kind)->category == category && !index--) return *kind;
+    return NULL;
 }
 
 /* ---- lines ---- */
@@ -191,7 +192,7 @@ static int list(int argc, char **argv) {
 
 const app_command app_list_command = {
     "list",
-    "[scene|bodies|constraints|forces|colliders|methods|exporters|KIND]",
+    "[scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND]",
     "every kind with its fields: name, default, unit, range and help\n\n"
     "In a scene, dots are groups: stretch.stiffness is { \"stretch\": { \"stiffness\": ... } }. A range to\n"
     "infinite takes the word \"infinite\", too. A kind by its name: skein list cloth",

@@ -274,7 +274,8 @@ static void write_picture(const app_outputs *outputs, const render_picture_optio
     char path[PATH_SIZE];
     skein_error error = {SKEIN_OK, "", ""};
     snprintf(path, sizeof path, "%s/%s.png", outputs->folder, outputs->stem);
-    note(book, path, render_picture(outputs->loaded->world, path, options, &error), &error);
+    note(book, path,
+         render_picture(outputs->loaded->world, path, options, io_scene_view(outputs->loaded->scene), &error), &error);
 }
 #endif
 

@@ -56,7 +56,7 @@ static int make_picture(const app_scene *loaded, const request *r) {
     app_progress_end(&p);
     skein_error error = {SKEIN_OK, "", ""};
     render_picture_options options = {{r->options.size[0], r->options.size[1]}, r->options.samples};
-    if (render_picture(loaded->world, r->path, &options, &error)) {
+    if (render_picture(loaded->world, r->path, &options, io_scene_view(loaded->scene), &error)) {
         app_print_error(&error);
         return EXIT_FAILURE_RUN;
     }

@@ -15,6 +15,8 @@ struct io_scene {
     io_scene_settings settings;
     io_export exports[MOST_EXPORTS];
     size_t export_count;
+    const skein_kind *view_kind; /* NULL: this program draws nothing */
+    void *view;
 };
 
 /* ---- what stands at the top of a scene ---- */
@@ -41,6 +43,7 @@ static const io_scene_section sections[] = {
     {"colliders", SKEIN_COLLIDER, "a list"},
     {"output", SKEIN_EXPORTER,
      "a list of exporters: [\"obj\", { \"type\": \"pc2\", \"every\": 2 }]; all but \"film\" if it is missing"},
+    {"view", SKEIN_VIEW, "how pictures are drawn: { \"wireframe\": true, \"colour\": \"speed\" }, say"},
 };
 enum { SECTION_COUNT = sizeof sections / sizeof *sections };
 
@@ -110,6 +113,54 @@ static void clear_params(const skein_kind *kind, void *params) {
         if (kind->fields[i].type == SKEIN_FIELD_TEXT) free(*(char **)(void *)((char *)params + kind->fields[i].offset));
 }
 
+/* ---- the view ---- */
+
+/* The path of a file that the scene names: relative to the scene's folder. NULL when there is no memory. */
+char *io_path_beside(const char *scene, const char *file) {
+    const char *slash = file[0] == '/' || !file[0] ? NULL : strrchr(scene, '/');
+    size_t folder = slash ? (size_t)(slash + 1 - scene) : 0, size = folder + strlen(file) + 1;
+    char *path = malloc(size);
+    if (path) snprintf(path, size, "%.*s%s", (int)folder, scene, file);
+    return path;
+}
+
+/* Makes the paths in the view's parameters paths from here. False when there is no memory. */
+static bool place_paths(io_scene *scene) {
+    for (size_t i = 0; i < scene->view_kind->field_count; i++) {
+        const skein_field *field = &scene->view_kind->fields[i];
+        if (field->type != SKEIN_FIELD_TEXT || strcmp(field->unit, "path")) continue;
+        char **text = (char **)(void *)((char *)scene->view + field->offset),
+             *path = io_path_beside(scene->path, *text);
+        if (!path) return false;
+        free(*text);
+        *text = path;
+    }
+    return true;
+}
+
+/* A program that draws nothing passes the view over. */
+static void read_view(io_scene *scene, io_place place, const skein_kind *const *kinds) {
+    const json_t *object = json_object_get(scene->root, "view");
+    char words[IO_JSON_WORDS_SIZE];
+    io_place inside = {place.file, "view", place.faults};
+    if (object && !json_is_object(object))
+        io_fault(place, "view", SKEIN_ERROR_VALUE, "expected an object, { \"wireframe\": true }, say, not %s",
+                 io_json_words(object, words));
+    while (*kinds && (*kinds)->category != SKEIN_VIEW) kinds++;
+    if (!*kinds) return;
+    io_settings settings = {0};
+    if (json_is_object(object)) io_settings_read(&settings, inside, object, *kinds, NULL);
+    scene->view_kind = *kinds;
+    scene->view = calloc(1, (*kinds)->params_size);
+    if (!scene->view || !fill_params(*kinds, scene->view, &settings) || !place_paths(scene))
+        io_fault(inside, "", SKEIN_ERROR_MEMORY, "out of memory");
+    io_settings_free(&settings);
+}
+
+const void *io_scene_view(const io_scene *scene) {
+    return scene->view;
+}
+
 /* ---- exporters ---- */
 
 static const skein_kind *find_exporter(io_place place, const json_t *object, const skein_kind *const *exporters) {
@@ -117,9 +168,10 @@ static const skein_kind *find_exporter(io_place place, const json_t *object, con
     const char *names[MOST_EXPORTS], *member = json_is_object(object) ? "type" : "";
     size_t count = 0;
     const json_t *name = json_is_object(object) ? json_object_get(object, "type") : object;
-    for (; count < MOST_EXPORTS && exporters[count]; count++) {
-        names[count] = exporters[count]->name;
-        if (json_is_string(name) && !strcmp(names[count], json_string_value(name))) return exporters[count];
+    for (; count < MOST_EXPORTS && *exporters; exporters++) {
+        if ((*exporters)->category != SKEIN_EXPORTER) continue;
+        names[count++] = (*exporters)->name;
+        if (json_is_string(name) && !strcmp((*exporters)->name, json_string_value(name))) return *exporters;
     }
     if (json_is_string(name))
         io_fault(place, member, SKEIN_ERROR_NAME, "there is no exporter '%s'%s", json_string_value(name),
@@ -154,7 +206,8 @@ static void read_outputs(io_scene *scene, io_place place, const skein_kind *cons
     json_t *outputs = json_object_get(scene->root, "output"), *standard = NULL, *item;
     char words[IO_JSON_WORDS_SIZE];
     if (!outputs) outputs = standard = json_array();
-    for (size_t i = 0; standard && exporters[i]; i++) json_array_append_new(standard, json_string(exporters[i]->name));
+    for (size_t i = 0; standard && exporters[i]; i++)
+        if (exporters[i]->category == SKEIN_EXPORTER) json_array_append_new(standard, json_string(exporters[i]->name));
     if (!json_is_array(outputs))
         io_fault(place, "output", SKEIN_ERROR_VALUE, "expected a list of exporters, such as [\"obj\", \"pc2\"], not %s",
                  io_json_words(outputs, words));
@@ -259,6 +312,7 @@ io_scene *io_scene_read_text(const char *text, size_t size, const char *path, co
     if (is_a_scene(root, place)) {
         read_top(scene, place);
         read_outputs(scene, place, exporters);
+        read_view(scene, place, exporters);
         return scene;
     }
     io_scene_free(scene);
@@ -285,6 +339,8 @@ void io_scene_free(io_scene *scene) {
         free((void *)(uintptr_t)scene->exports[i].params);
     }
     clear_params(io_scene_kind(), &scene->settings);
+    if (scene->view) clear_params(scene->view_kind, scene->view);
+    free(scene->view);
     json_decref(scene->root);
     free(scene->path);
     free(scene);

@@ -39,8 +39,9 @@ typedef struct io_faults {
 } io_faults;
 
 /* Reads a scene and applies `sets`, each "path=value" (NULL-terminated list, or NULL). `exporters` are the
- * kinds that its "output" may name, NULL-terminated. NULL where there is no document to go on with; after
- * any other fault the scene can still be built, to name the faults that only building finds. */
+ * kinds that its "output" may name and, if there is one, the kind of its "view", NULL-terminated. NULL where there is
+ * no document to go on with; after any other fault the scene can still be built, to name the faults that only building
+ * finds. */
 io_scene *io_scene_read(const char *path, const char *const *sets, const skein_kind *const *exporters,
                         io_faults *faults);
 /* The same from memory; `path` serves messages and finds meshes. */
@@ -62,6 +63,10 @@ typedef struct io_export {
     bool asked; /* for by the scene; else it has no "output" */
 } io_export;
 size_t io_scene_exports(const io_scene *scene, io_export *exports, size_t most);
+
+/* The parameters of the view's kind, freed with the scene; NULL if that kind was not given in reading. A text
+ * whose unit is "path" is relative to the scene's folder in the file, and made to fit in here. */
+const void *io_scene_view(const io_scene *scene);
 
 /* How many whole steps of which length make one frame: the scene's step, made to fit. */
 int io_scene_steps_per_frame(const io_scene_settings *settings, double *dt);

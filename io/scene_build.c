@@ -29,20 +29,38 @@ static void pass_warning(void *user, const char *line) {
 
 /* Reads a mesh whose path is relative to the scene's folder. */
 static bool read_mesh(const builder *b, io_place place, const char *file, io_mesh *mesh) {
-    const char *slash = file[0] == '/' ? NULL : strrchr(b->file, '/');
-    size_t folder = slash ? (size_t)(slash + 1 - b->file) : 0, size = folder + strlen(file) + 1;
-    char *path = malloc(size);
+    char *path = io_path_beside(b->file, file);
     skein_status status = SKEIN_ERROR_MEMORY;
     skein_error error = {SKEIN_ERROR_MEMORY, "", "out of memory"};
     // the library only reads a world's description, and so does pass_warning
     io_warnings warnings = {b->desc ? pass_warning : NULL, (void *)(uintptr_t)b->desc};
     if (path) {
-        snprintf(path, size, "%.*s%s", (int)folder, b->file, file);
         status = io_mesh_read(path, mesh, warnings, &error);
         free(path);
     }
     if (status) io_fault(place, "mesh", status, "%s%s%s", error.where, error.where[0] ? ": " : "", error.message);
     return !status;
+}
+
+/* Hands a mesh's texture coordinates on, corner by corner. A corner without any, or with what no picture has, gets 0.
+ */
+static bool add_uv(const builder *b, io_place place, skein_handle body, const io_mesh *mesh) {
+    const double most = 1e9;
+    if (!mesh->uv_count) return true;
+    float *corner_uv = calloc(mesh->face_vertex_count, 2 * sizeof *corner_uv);
+    if (!corner_uv) {
+        io_fault(place, "mesh", SKEIN_ERROR_MEMORY, "out of memory");
+        return false;
+    }
+    for (size_t c = 0; c < mesh->face_vertex_count; c++) {
+        if (mesh->face_uvs[c] == IO_NO_UV) continue;
+        const double *uv = &mesh->uvs[2 * (size_t)mesh->face_uvs[c]];
+        for (size_t k = 0; k < 2; k++) corner_uv[2 * c + k] = uv[k] >= -most && uv[k] <= most ? (float)uv[k] : 0;
+    }
+    bool good = !skein_body_uv_set(b->world, body, corner_uv, mesh->face_vertex_count);
+    if (!good) report_library_fault(b, place, "mesh");
+    free(corner_uv);
+    return good;
 }
 
 static bool add_body(const builder *b, io_place place, const skein_kind *kind, const io_settings *settings) {
@@ -51,8 +69,10 @@ static bool add_body(const builder *b, io_place place, const skein_kind *kind, c
     io_mesh mesh = {0};
     if (has_mesh && !read_mesh(b, place, file, &mesh)) return false;
     skein_mesh view = io_mesh_view(&mesh);
-    bool good = !skein_body_add(b->world, kind->name, has_mesh ? &view : NULL, settings->data, NULL);
+    skein_handle body;
+    bool good = !skein_body_add(b->world, kind->name, has_mesh ? &view : NULL, settings->data, &body);
     if (!good) report_library_fault(b, place, "");
+    good = good && add_uv(b, place, body, &mesh);
     io_mesh_free(&mesh);
     return good;
 }
@@ -195,8 +215,10 @@ skein_world *io_world_from_document(const json_t *root, const char *file, double
         io_fault(top, error.where, error.status, "%s", error.message);
         return NULL;
     }
-    for (size_t i = 0; io_scene_section_at(i); i++)
-        if (io_scene_section_at(i)->category != SKEIN_EXPORTER) add_section(&b, root, io_scene_section_at(i));
+    for (size_t i = 0; io_scene_section_at(i); i++) {
+        skein_category category = io_scene_section_at(i)->category;
+        if (category != SKEIN_EXPORTER && category != SKEIN_VIEW) add_section(&b, root, io_scene_section_at(i));
+    }
     if (!b.body_missing && !skein_particle_count(b.world))
         io_fault(top, "bodies", SKEIN_ERROR_VALUE, "the scene has no particles: add a body");
     // a method may not take these rules: the plan knows

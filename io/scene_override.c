@@ -29,7 +29,10 @@ static size_t place_in_list(const json_t *list, const char *key) {
 
 static bool is_list_section(const char *name) {
     for (size_t i = 0; io_scene_section_at(i); i++)
-        if (!strcmp(io_scene_section_at(i)->name, name)) return io_scene_section_at(i)->category != SKEIN_METHOD;
+        if (!strcmp(io_scene_section_at(i)->name, name)) {
+            skein_category category = io_scene_section_at(i)->category;
+            return category != SKEIN_METHOD && category != SKEIN_VIEW;
+        }
     return false;
 }
 

@@ -45,6 +45,9 @@ int io_field_numbers(const skein_field *field);
 /* Sets "path=value" in a document; names stand for places in lists. */
 bool io_scene_override(json_t *root, const char *set, io_faults *faults);
 
+/* The path of a file that the scene names: relative to the scene's folder. NULL when there is no memory; free it. */
+char *io_path_beside(const char *scene, const char *file);
+
 /* Builds a world from a whole document; NULL if there was any fault. */
 skein_world *io_world_from_document(const json_t *root, const char *file, double dt, const skein_world_desc *desc,
                                     io_faults *faults);

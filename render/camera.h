@@ -7,6 +7,7 @@
 #define SKEIN_RENDER_CAMERA_H
 
 #include "render/frame.h"
+#include "render/view.h"
 
 typedef struct render_camera {
     double eye[3], target[3]; /* metres; the two differ */
@@ -18,6 +19,9 @@ typedef struct render_camera {
 /* A camera that holds the whole box in the picture: from the front right, slightly above, so that
  * the horizon shows. `aspect` is width / height. An empty box counts as a unit box at the origin. */
 render_camera render_camera_framing(const render_bounds *bounds, double aspect);
+/* The camera that a view asks for, `seconds` into the scene: at its own place, or one that holds the box. */
+render_camera render_camera_of_view(const render_view_camera *view, const render_bounds *bounds, double seconds,
+                                    double aspect);
 
 /* Three unit axes of the picture: to the right, up, and back towards the viewer. */
 void render_camera_axes(const render_camera *camera, double right[3], double up[3], double back[3]);

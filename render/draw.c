@@ -6,6 +6,7 @@
 #include "render/light.h"
 #include "render/linear.h"
 #include "render/meshes.h"
+#include "render/paints.h"
 #include "render/planes.h"
 #include "render/shader.h"
 
@@ -15,17 +16,19 @@
 #include <string.h>
 
 /* Those that have a depth-only twin for the light maps, DEPTH_ONLY further on, come first. */
-enum { PLANE, SURFACE, BALL, DEPTH_ONLY, SKY = 2 * DEPTH_ONLY, LINE, PROGRAM_COUNT };
+enum { PLANE, SURFACE, BALL, DEPTH_ONLY, SKY = 2 * DEPTH_ONLY, FINE_SURFACE, FINE_BALL, LINE, PROGRAM_COUNT };
 
 struct render_draw {
     GLuint programs[PROGRAM_COUNT];
     GLuint uniforms; /* the pass blocks, then the scene block */
     GLuint no_arrays;
     render_light light;
+    render_paints paints;
     render_shape disc, square;
-    render_shape sphere, pearl; /* fine for colliders, coarse for particles */
+    render_shape sphere, pearl, grain; /* fine for colliders, coarse for particles, and for many of them */
     render_instances balls, particles, lines;
-    render_mesh *meshes; /* by the surface's place in the frame */
+    const render_shape *particle_shape; /* in this frame */
+    render_mesh *meshes;                /* by the surface's place in the frame */
     size_t mesh_count;
 };
 
@@ -46,6 +49,14 @@ static const double degree = 0.017453292519943295;
 static const double ground_size = 60;
 /* Cloth that lies on something wins against it: it is drawn nearer by this part of its distance. */
 static const float lift = 5e-4f;
+/* Where edges are under so many pixels, shadows on surfaces are found by vertex: a pixel each would cost more and
+ * show no more. */
+static const double fine_edge = 4.5;
+/* More particles than these have the coarser shape: they are small then, and a sphere each is a lot to draw. */
+enum { many_particles = 600 };
+/* Taps of a shadow's map. (Loops that the compiler cannot unroll end early where all of a pixel's neighbours have
+ * ended: unrolled ones took 1.4 times as long, on llvmpipe.) */
+enum { search_taps = 12, edge_taps = 20, rim_taps = 7 };
 
 /* ---- Making --------------------------------------------------------------------------------- */
 
@@ -54,9 +65,11 @@ static skein_status make_all(render_draw *draw, skein_error *error) {
         [SKY] = {"sky.vert", "display,sky.frag"},
         [PLANE] = {"plane.vert", "display,light,plane.frag"},
         [SURFACE] = {"surface.vert", "display,light,surface.frag"},
+        [FINE_SURFACE] = {"fine,light,surface.vert", "fine,display,surface.frag"},
         [BALL] = {"ball.vert", "display,light,ball.frag"},
+        [FINE_BALL] = {"fine,light,ball.vert", "fine,display,ball.frag"},
         [PLANE + DEPTH_ONLY] = {"plane.vert", NULL},
-        [SURFACE + DEPTH_ONLY] = {"surface.vert", NULL},
+        [SURFACE + DEPTH_ONLY] = {"depth.vert", NULL},
         [BALL + DEPTH_ONLY] = {"ball.vert", NULL},
         [LINE] = {"line.vert", "display,line.frag"},
     };
@@ -67,13 +80,15 @@ static skein_status make_all(render_draw *draw, skein_error *error) {
     skein_status status = render_light_create(&draw->light, error);
     if (status == SKEIN_OK) status = render_shape_disc(&draw->disc, error);
     if (status == SKEIN_OK) status = render_shape_square(&draw->square, error);
-    if (status == SKEIN_OK) status = render_shape_sphere(&draw->sphere, 40, error);
+    if (status == SKEIN_OK) status = render_shape_sphere(&draw->sphere, 24, error);
     if (status == SKEIN_OK) status = render_shape_sphere(&draw->pearl, 10, error);
+    if (status == SKEIN_OK) status = render_shape_dome(&draw->grain, error);
     if (status != SKEIN_OK) return status;
 
     render_instances_make_balls(&draw->balls, &draw->sphere);
     render_instances_make_balls(&draw->particles, &draw->pearl);
     render_instances_make_lines(&draw->lines);
+    render_paints_create(&draw->paints);
     glCreateVertexArrays(1, &draw->no_arrays);
     glCreateBuffers(1, &draw->uniforms);
     glNamedBufferStorage(draw->uniforms, RENDER_SCENE_OFFSET + sizeof(render_scene_block), NULL,
@@ -108,6 +123,8 @@ void render_draw_destroy(render_draw *draw) {
     render_shape_destroy(&draw->square);
     render_shape_destroy(&draw->sphere);
     render_shape_destroy(&draw->pearl);
+    render_shape_destroy(&draw->grain);
+    render_paints_destroy(&draw->paints);
     render_light_destroy(&draw->light);
     glDeleteVertexArrays(1, &draw->no_arrays);
     glDeleteBuffers(1, &draw->uniforms);
@@ -131,17 +148,25 @@ static skein_status bring_surfaces(render_draw *draw, const render_frame *frame,
     return SKEIN_OK;
 }
 
-static skein_status bring(render_draw *draw, const render_frame *frame, skein_error *error) {
-    skein_status status = bring_surfaces(draw, frame, error);
-    if (status == SKEIN_OK) status = render_instances_bring_spheres(&draw->balls, frame, error);
-    if (status == SKEIN_OK) status = render_instances_bring_points(&draw->particles, frame, error);
-    if (status == SKEIN_OK) status = render_instances_bring_lines(&draw->lines, frame, error);
-    return status;
+/* Few particles are spheres; many are the domes of spheres, turned to the viewer. */
+static skein_status bring_particles(render_draw *draw, const drawing *d, skein_error *error) {
+    double right[3], up[3], back[3], rotation[9];
+    size_t count = 0;
+    for (size_t i = 0; i < d->frame->points_count; i++) count += d->frame->points[i].count;
+    render_camera_axes(d->camera, right, up, back);
+    for (int k = 0; k < 3; k++) rotation[3 * k] = right[k], rotation[3 * k + 1] = up[k], rotation[3 * k + 2] = back[k];
+    draw->particle_shape = count > many_particles ? &draw->grain : &draw->pearl;
+    render_instances_take_shape(&draw->particles, draw->particle_shape);
+    return render_instances_bring_points(&draw->particles, d->frame, rotation, error);
 }
 
-static void store(const double v[3], double w, float out[4]) {
-    for (int i = 0; i < 3; i++) out[i] = (float)v[i];
-    out[3] = (float)w;
+static skein_status bring(render_draw *draw, const drawing *d, skein_error *error) {
+    skein_status status = bring_surfaces(draw, d->frame, error);
+    if (status == SKEIN_OK) status = render_instances_bring_spheres(&draw->balls, d->frame, error);
+    if (status == SKEIN_OK) status = bring_particles(draw, d, error);
+    if (status == SKEIN_OK) status = render_instances_bring_lines(&draw->lines, d->frame, error);
+    if (status == SKEIN_OK) status = render_paints_bring(&draw->paints, d->frame, error);
+    return status;
 }
 
 /* The scene block, but for what belongs to the light maps. */
@@ -153,7 +178,7 @@ static void fill_block(drawing *d, const double sun[3], double tangent) {
     double right[3], up[3], back[3];
 
     render_camera_axes(d->camera, right, up, back);
-    store(d->camera->eye, 1, block->eye);
+    render_store(d->camera->eye, 1, block->eye);
     for (int k = 0; k < 3; k++) {
         block->view_right[k] = (float)(right[k] * wide);
         block->view_up[k] = (float)(up[k] * tall);
@@ -161,8 +186,8 @@ static void fill_block(drawing *d, const double sun[3], double tangent) {
     }
     block->view_right[3] = 2.0f / (float)d->width;
     block->view_up[3] = 2.0f / (float)d->height;
-    store(sun, tangent, block->sun);
-    store(d->middle, d->radius, block->middle);
+    render_store(sun, tangent, block->sun);
+    render_store(d->middle, d->radius, block->middle);
     render_to_light(white, 1.27f, block->sun_light);
     block->sun_light[3] = (float)look->exposure;
     render_to_light(look->zenith, 1, block->zenith);
@@ -172,9 +197,11 @@ static void fill_block(drawing *d, const double sun[3], double tangent) {
 
     size_t balls = d->frame->sphere_count < RENDER_BALL_COUNT ? d->frame->sphere_count : RENDER_BALL_COUNT;
     for (size_t i = 0; i < balls; i++) {
-        store(d->frame->spheres[i].centre, d->frame->spheres[i].radius, block->balls[i]);
+        render_store(d->frame->spheres[i].centre, d->frame->spheres[i].radius, block->balls[i]);
     }
-    block->counts[0] = (int32_t)balls;
+    block->counts[0] = look->plain ? 0 : (int32_t)balls;
+    block->counts[1] = search_taps, block->counts[2] = edge_taps, block->counts[3] = rim_taps;
+    block->modes[0] = look->plain, block->modes[1] = look->grid;
 }
 
 static void send_matrix(const render_draw *draw, render_pass pass, const double matrix[16]) {
@@ -203,8 +230,9 @@ static void aim(render_draw *draw, drawing *d) {
 
     render_bounds shading = finite;
     render_bounds_add_slabs(&shading, d->frame, d->middle, d->radius);
-    render_light_aim(&draw->light, sun, tangent, &shading, d->has_ground ? &d->ground : NULL, &d->block,
-                     to_sun, to_below);
+    if (d->frame->look.plain) shading = render_bounds_nothing(); // nothing casts a shadow
+    render_light_aim(&draw->light, sun, tangent, &shading, d->has_ground ? &d->ground : NULL, &d->block, to_sun,
+                     to_below);
     render_camera_view(d->camera, view);
     render_camera_projection(d->camera, (double)d->width / d->height, projection);
     render_multiply(projection, view, camera);
@@ -218,12 +246,11 @@ static void aim(render_draw *draw, drawing *d) {
 
 static void draw_shape(const render_shape *shape, GLuint arrays, size_t instance_count) {
     glBindVertexArray(arrays);
-    glDrawElementsInstanced(GL_TRIANGLES, shape->index_count, GL_UNSIGNED_SHORT, NULL,
-                            (GLsizei)instance_count);
+    glDrawElementsInstanced(GL_TRIANGLES, shape->index_count, GL_UNSIGNED_SHORT, NULL, (GLsizei)instance_count);
 }
 
-static void draw_plane(const render_draw *draw, int twin, const render_shape *shape,
-                       const double vectors[4][3], double cell, bool ground) {
+static void draw_plane(const render_draw *draw, int twin, const render_shape *shape, const double vectors[4][3],
+                       double cell, bool ground) {
     GLuint program = draw->programs[PLANE + twin];
     glUseProgram(program);
     for (GLint i = 0; i < (twin ? 3 : 4); i++) {
@@ -241,8 +268,7 @@ static void draw_slabs(const render_draw *draw, const drawing *d, int twin) {
         double vectors[4][3];
         if (render_plane_level(&d->frame->planes[i])) continue;
         render_place_slab(&d->frame->planes[i], d->middle, d->radius, vectors);
-        draw_plane(draw, twin, &draw->square, (const double(*)[3])vectors, render_grid_cell(d->radius),
-                   false);
+        draw_plane(draw, twin, &draw->square, (const double(*)[3])vectors, render_grid_cell(d->radius), false);
     }
 }
 
@@ -250,30 +276,20 @@ static void draw_ground(const render_draw *draw, const drawing *d) {
     // from beneath there is no ground to see
     if (!d->has_ground || d->camera->eye[1] <= d->ground) return;
     double size = ground_size * d->radius;
-    const double vectors[4][3] = {
-        {d->middle[0], d->ground, d->middle[2]}, {size, 0, 0}, {0, 0, -size}, {0, 1, 0}};
+    const double vectors[4][3] = {{d->middle[0], d->ground, d->middle[2]}, {size, 0, 0}, {0, 0, -size}, {0, 1, 0}};
     draw_plane(draw, 0, &draw->disc, vectors, render_grid_cell(d->radius), true);
 }
 
-static void set_material(GLuint program, const render_material *material, bool has_uv) {
-    const float *const colours[3] = {material->colour, material->accent, material->lining};
-    for (GLint i = 0; i < 3; i++) {
-        float light[3];
-        render_to_light(colours[i], 1, light);
-        glProgramUniform3fv(program, 1 + i, 1, light);
-    }
-    glProgramUniform1i(program, 4, has_uv ? (GLint)material->pattern : RENDER_PLAIN);
-    glProgramUniform2fv(program, 5, 1, material->repeats);
-    glProgramUniform1f(program, 6, material->translucency);
-}
-
 static void draw_surfaces(const render_draw *draw, const drawing *d, int twin) {
-    GLuint program = draw->programs[SURFACE + twin];
-    glUseProgram(program);
-    glProgramUniform1f(program, 0, twin ? 0 : lift);
     for (size_t i = 0; i < d->frame->surface_count; i++) {
         const render_mesh *mesh = &draw->meshes[i];
-        if (!twin) set_material(program, &d->frame->surfaces[i].material, mesh->uv != 0);
+        bool fine = !twin && render_mesh_edge_pixels(mesh, d->camera, d->height) < fine_edge;
+        GLuint program = draw->programs[fine ? FINE_SURFACE : SURFACE + twin];
+        glUseProgram(program);
+        if (!twin) {
+            glProgramUniform1f(program, 0, lift);
+            render_set_material(program, &d->frame->surfaces[i]);
+        }
         glBindVertexArray(mesh->arrays);
         glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
     }
@@ -281,12 +297,14 @@ static void draw_surfaces(const render_draw *draw, const drawing *d, int twin) {
 
 static void draw_balls(const render_draw *draw, int twin) {
     GLuint program = draw->programs[BALL + twin];
+    bool fine = !twin && draw->particle_shape == &draw->grain;
     glUseProgram(program);
     glEnable(GL_CULL_FACE);
     if (!twin) glProgramUniform1i(program, 1, 1);
     if (draw->balls.count > 0) draw_shape(&draw->sphere, draw->balls.arrays, draw->balls.count);
     if (!twin) glProgramUniform1i(program, 1, 0);
-    if (draw->particles.count > 0) draw_shape(&draw->pearl, draw->particles.arrays, draw->particles.count);
+    if (fine) glUseProgram(draw->programs[FINE_BALL]);
+    if (draw->particles.count > 0) draw_shape(draw->particle_shape, draw->particles.arrays, draw->particles.count);
     glDisable(GL_CULL_FACE);
 }
 
@@ -296,9 +314,6 @@ static void draw_lines(const render_draw *draw, const drawing *d) {
     glBindVertexArray(draw->lines.arrays);
     for (size_t i = 0; i < d->frame->lines_count; i++) {
         const render_lines *lines = &d->frame->lines[i];
-        float light[3];
-        render_to_light(lines->colour, 1, light);
-        glProgramUniform3fv(program, 1, 1, light);
         glProgramUniform3f(program, 0, 1.0f / (float)d->width, 1.0f / (float)d->height, (float)lines->width);
         glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)lines->count, first);
         first += (GLuint)lines->count;
@@ -334,15 +349,10 @@ static void draw_picture(const render_draw *draw, const drawing *d, unsigned fra
     glDepthMask(GL_TRUE);
     glClearBufferfv(GL_DEPTH, 0, &nearest_nothing);
 
-    // the sky fills every pixel, so colours need no clearing
+    // what hides most comes first (depth alone in a pass before saved nothing, on llvmpipe)
     use_pass(draw, RENDER_PASS_CAMERA);
     render_light_bind(&draw->light);
-    glDisable(GL_DEPTH_TEST);
-    glUseProgram(draw->programs[SKY]);
-    glBindVertexArray(draw->no_arrays);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-
-    // what hides most comes first (depth alone in a pass before saved nothing, on llvmpipe)
+    render_paints_bind(&draw->paints);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GREATER);
     draw_surfaces(draw, d, 0);
@@ -350,12 +360,18 @@ static void draw_picture(const render_draw *draw, const drawing *d, unsigned fra
     draw_slabs(draw, d, 0);
     draw_ground(draw, d);
     draw_lines(draw, d);
+
+    // the sky fills what is left, so that colours need no clearing
+    glDepthFunc(GL_GEQUAL);
+    glUseProgram(draw->programs[SKY]);
+    glBindVertexArray(draw->no_arrays);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 skein_status render_draw_frame(render_draw *draw, const render_frame *frame, const render_camera *camera,
                                unsigned framebuffer, int width, int height, skein_error *error) {
     drawing d = {.frame = frame, .camera = camera, .width = width, .height = height};
-    skein_status status = bring(draw, frame, error);
+    skein_status status = bring(draw, &d, error);
     if (status != SKEIN_OK) return status;
     aim(draw, &d);
 

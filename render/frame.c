@@ -11,10 +11,11 @@ render_look render_default_look(void) {
     return (render_look){
         .sun = {-0.62, 0.86, 0.42},
         .sun_spread = 2.2,
-        .zenith = {0.36f, 0.63f, 0.84f},
-        .horizon = {0.945f, 0.94f, 0.925f},
-        .ground = {0.81f, 0.795f, 0.77f},
+        .zenith = {0.30f, 0.56f, 0.82f},
+        .horizon = {0.915f, 0.925f, 0.925f},
+        .ground = {0.755f, 0.727f, 0.69f},
         .exposure = 1.0,
+        .grid = true,
         .floor = false,
         .floor_height = 0.0,
     };
@@ -123,6 +124,7 @@ render_bounds render_frame_bounds(const render_frame *frame) {
     }
     for (size_t s = 0; s < frame->lines_count; s++) {
         const render_lines *lines = &frame->lines[s];
+        if (lines->aside) continue;
         for (size_t p = 0; p < 2 * lines->count; p++) {
             render_bounds_add(&bounds, &lines->positions[3 * p], 0);
         }

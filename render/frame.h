@@ -12,10 +12,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "render/colours.h"
+#include "render/image.h"
+
 typedef enum render_pattern {
     RENDER_PLAIN,
     RENDER_CHECKER, /* squares of colour and accent, by UV */
-    RENDER_WEAVE    /* gingham: woven bands of colour and accent with fine threads, by UV */
+    RENDER_WEAVE,   /* gingham: woven bands of colour and accent with fine threads, by UV */
+    RENDER_IMAGE,   /* the frame's image, by UV */
+    RENDER_VALUES   /* the surface's values as colours of its map */
 } render_pattern;
 
 typedef struct render_material {
@@ -34,8 +39,11 @@ typedef struct render_surface {
     const uint32_t *triangles; /* triangle_count x 3, each below vertex_count */
     size_t triangle_count;
     const uint32_t *weld; /* whose normal each vertex takes: its own, or that of one at its place; or NULL */
-    const float *uv;      /* vertex_count x 2; or NULL: the pattern is not drawn */
-    uint64_t shape;       /* changes whenever triangles, weld or uv do; 0: they may be new every frame */
+    const float *uv;      /* vertex_count x 2; or NULL: neither pattern nor image is drawn */
+    bool rows_first;      /* u goes down an image and v across, as in a grid; else u goes across and v up */
+    const float *values;  /* vertex_count, 0 to 1, for RENDER_VALUES; or NULL */
+    render_colour_map map;
+    uint64_t shape; /* changes whenever triangles, weld or uv do; 0: they may be new every frame */
     render_material material;
 } render_surface;
 
@@ -59,6 +67,7 @@ typedef struct render_points {
     size_t count;
     double radius;
     float colour[3];
+    const float *colours; /* count x 3; or NULL: all have the one colour */
 } render_points;
 
 /* Straight lines, `width` pixels wide wherever they are. */
@@ -67,6 +76,8 @@ typedef struct render_lines {
     size_t count;
     double width;
     float colour[3];
+    const float *colours; /* count x 3; or NULL: all have the one colour */
+    bool aside;           /* a note beside the picture: neither camera nor light make room for it */
 } render_lines;
 
 /* Light and surroundings. Start from render_default_look(). */
@@ -77,6 +88,8 @@ typedef struct render_look {
     float horizon[3];  /* the sky at the horizon; the ground fades into it */
     float ground[3];   /* the ground's own colour */
     double exposure;   /* 1 is as it is */
+    bool plain;        /* Blinn-Phong: no shadows, the same light from all sides */
+    bool grid;         /* lines on the ground */
     bool floor;        /* a ground of no effect, where no plane gives one */
     double floor_height;
 } render_look;
@@ -92,6 +105,8 @@ typedef struct render_frame {
     size_t points_count;
     const render_lines *lines;
     size_t lines_count;
+    const render_image *image; /* for RENDER_IMAGE; NULL: there is none */
+    uint64_t image_number;     /* changes whenever the image does; not 0 */
     render_look look;
     double middle[3], radius; /* what haze and grid are measured by; radius 0: by what is in the frame */
 } render_frame;

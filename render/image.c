@@ -102,7 +102,7 @@ skein_status render_image_write_png(const render_image *image, const char *path,
 
 /* ---- Reading -------------------------------------------------------------------------------- */
 
-skein_status render_image_read_png(render_image *image, const char *path, skein_error *error) {
+skein_status render_image_read(render_image *image, const char *path, skein_error *error) {
     FILE *file = fopen(path, "rb");
     if (!file) return fail_file(error, path, "open the file", errno);
 
@@ -111,7 +111,7 @@ skein_status render_image_read_png(render_image *image, const char *path, skein_
     uint8_t *pixels = render_stb_decode(file, &width, &height, &problem);
     fclose(file);
     if (!pixels)
-        return render_fail(error, SKEIN_ERROR_SYNTAX, path, "not a PNG that can be read (%s)", problem);
+        return render_fail(error, SKEIN_ERROR_SYNTAX, path, "not a PNG or JPEG that can be read (%s)", problem);
     render_image_release(image);
     *image = (render_image){width, height, pixels};
     return SKEIN_OK;

@@ -22,7 +22,7 @@ const uint8_t *render_image_pixel(const render_image *image, int x, int y);
 /* Writes a PNG: into a new file beside `path`, renamed when all is on the disk. A path that names a
  * device or a pipe is written straight. */
 skein_status render_image_write_png(const render_image *image, const char *path, skein_error *error);
-/* Reads a PNG (as colours, without its alpha) into an image. */
-skein_status render_image_read_png(render_image *image, const char *path, skein_error *error);
+/* Reads a PNG or JPEG (as colours, without its alpha) into an image. */
+skein_status render_image_read(render_image *image, const char *path, skein_error *error);
 
 #endif

@@ -8,15 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Floats of a ball: centre and radius, three rows of its rotation, paint, marking; of a line: both ends. */
-enum { ball_floats = 4 + 9 + 3 + 3, line_floats = 6 };
-
-void render_to_light(const float colour[3], float strength, float out[3]) {
-    for (int i = 0; i < 3; i++) {
-        float c = colour[i];
-        out[i] = strength * (c <= 0.04045f ? c / 12.92f : powf((c + 0.055f) / 1.055f, 2.4f));
-    }
-}
+/* Floats of a ball: centre and radius, three rows of its rotation, paint, marking; of a line: both ends, paint. */
+enum { ball_floats = 4 + 9 + 3 + 3, line_floats = 6 + 3 };
 
 /* ---- Making --------------------------------------------------------------------------------- */
 
@@ -35,18 +28,22 @@ static void make_attributes(GLuint arrays, GLuint first, const GLint *parts, GLu
 void render_instances_make_balls(render_instances *instances, const render_shape *shape) {
     static const GLint parts[6] = {4, 3, 3, 3, 3, 3};
     glCreateVertexArrays(1, &instances->arrays);
-    glVertexArrayVertexBuffer(instances->arrays, 0, shape->vertices, 0, 3 * sizeof(float));
     glVertexArrayAttribFormat(instances->arrays, 0, 3, GL_FLOAT, GL_FALSE, 0);
     glVertexArrayAttribBinding(instances->arrays, 0, 0);
     glEnableVertexArrayAttrib(instances->arrays, 0);
-    glVertexArrayElementBuffer(instances->arrays, shape->indices);
+    render_instances_take_shape(instances, shape);
     make_attributes(instances->arrays, 1, parts, 6);
 }
 
+void render_instances_take_shape(const render_instances *instances, const render_shape *shape) {
+    glVertexArrayVertexBuffer(instances->arrays, 0, shape->vertices, 0, 3 * sizeof(float));
+    glVertexArrayElementBuffer(instances->arrays, shape->indices);
+}
+
 void render_instances_make_lines(render_instances *instances) {
-    static const GLint parts[2] = {3, 3};
+    static const GLint parts[3] = {3, 3, 3};
     glCreateVertexArrays(1, &instances->arrays);
-    make_attributes(instances->arrays, 0, parts, 2);
+    make_attributes(instances->arrays, 0, parts, 3);
 }
 
 void render_instances_destroy(render_instances *instances) {
@@ -68,8 +65,7 @@ static skein_status reserve(render_instances *instances, size_t count, size_t fl
         glDeleteBuffers(1, &instances->buffer);
         glCreateBuffers(1, &instances->buffer);
         glNamedBufferStorage(instances->buffer, (GLsizeiptr)instances->room, NULL, GL_DYNAMIC_STORAGE_BIT);
-        glVertexArrayVertexBuffer(instances->arrays, 1, instances->buffer, 0,
-                                  (GLsizei)(floats * sizeof(float)));
+        glVertexArrayVertexBuffer(instances->arrays, 1, instances->buffer, 0, (GLsizei)(floats * sizeof(float)));
     }
     instances->count = count;
     return SKEIN_OK;
@@ -105,8 +101,7 @@ skein_status render_instances_bring_spheres(render_instances *instances, const r
 }
 
 skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame,
-                                           skein_error *error) {
-    static const double unturned[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+                                           const double rotation[9], skein_error *error) {
     size_t count = 0, next = 0;
     for (size_t g = 0; g < frame->points_count; g++) count += frame->points[g].count;
     skein_status status = reserve(instances, count, ball_floats, error);
@@ -114,24 +109,30 @@ skein_status render_instances_bring_points(render_instances *instances, const re
     for (size_t g = 0; g < frame->points_count; g++) {
         const render_points *points = &frame->points[g];
         for (size_t i = 0; i < points->count; i++) {
-            stage_ball(&instances->staged[next++ * ball_floats], &points->positions[3 * i], points->radius,
-                       unturned, points->colour, points->colour);
+            const float *paint = points->colours ? &points->colours[3 * i] : points->colour;
+            stage_ball(&instances->staged[next++ * ball_floats], &points->positions[3 * i], points->radius, rotation,
+                       paint, paint);
         }
     }
     send(instances, ball_floats);
     return SKEIN_OK;
 }
 
-skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame,
-                                          skein_error *error) {
+skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame, skein_error *error) {
     size_t count = 0, next = 0;
     for (size_t g = 0; g < frame->lines_count; g++) count += frame->lines[g].count;
     skein_status status = reserve(instances, count, line_floats, error);
     if (status != SKEIN_OK) return status;
     for (size_t g = 0; g < frame->lines_count; g++) {
         const render_lines *lines = &frame->lines[g];
-        for (size_t i = 0; i < lines->count * line_floats; i++)
-            instances->staged[next++] = (float)lines->positions[i];
+        float light[3];
+        render_to_light(lines->colour, 1, light);
+        for (size_t i = 0; i < lines->count; i++) {
+            float *out = &instances->staged[next++ * line_floats];
+            for (size_t k = 0; k < 6; k++) out[k] = (float)lines->positions[6 * i + k];
+            if (lines->colours) render_to_light(&lines->colours[3 * i], 1, light);
+            memcpy(out + 6, light, sizeof light);
+        }
     }
     send(instances, line_floats);
     return SKEIN_OK;

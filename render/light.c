@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* Texels along a side. On llvmpipe the sun's map takes 20 ms of one core, the lower one 8. */
-enum { sun_size = 2048, under_size = 160 };
+enum { sun_size = 1024, under_size = 160 };
 
 /* The share of the lower map's side that is left free around the things, as far as taps reach. */
 static const double under_margin = 0.22;
@@ -79,8 +79,7 @@ skein_status render_light_create(render_light *light, skein_error *error) {
 }
 
 void render_light_destroy(render_light *light) {
-    const GLuint framebuffers[3] = {light->sun_framebuffer, light->below_framebuffer,
-                                    light->under_framebuffer};
+    const GLuint framebuffers[3] = {light->sun_framebuffer, light->below_framebuffer, light->under_framebuffer};
     const GLuint textures[3] = {light->sun_depth, light->below_depth, light->under_light};
     glDeleteFramebuffers(3, framebuffers);
     glDeleteTextures(3, textures);
@@ -116,8 +115,7 @@ static void aim_sun(const double sun[3], double tangent, const render_bounds *ca
     double reach = fmin(tangent * (high - low), 0.5 * half);
     half = round_up(1.02 * (half + reach) + 1e-9);
     double texel = 2 * half / sun_size, range = (high - low) * 1.02 + 0.02 * half;
-    double x = texel * round(render_dot(centre, right) / texel),
-           y = texel * round(render_dot(centre, up) / texel);
+    double x = texel * round(render_dot(centre, right) / texel), y = texel * round(render_dot(centre, up) / texel);
     double top = render_dot(centre, sun) + high + 0.01 * half;
     const double origin[3] = {0, 0, 0};
     render_look_along(right, up, sun, origin, view);
@@ -136,8 +134,8 @@ static void aim_sun(const double sun[3], double tangent, const render_bounds *ca
     block->sun_map[3] = 1.0f;
 }
 
-static void aim_below(render_light *light, const render_bounds *casters, double ground,
-                      render_scene_block *block, double clip[16]) {
+static void aim_below(render_light *light, const render_bounds *casters, double ground, render_scene_block *block,
+                      double clip[16]) {
     double wide = fmax(casters->most[0] - casters->least[0], casters->most[2] - casters->least[2]);
     double high = fmax(casters->most[1] - ground, 1e-6);
     wide = round_up(fmax(wide, 0.1 * high));
@@ -158,8 +156,7 @@ static void aim_below(render_light *light, const render_bounds *casters, double 
 }
 
 void render_light_aim(render_light *light, const double sun[3], double spread, const render_bounds *casters,
-                      const double *ground, render_scene_block *block, double sun_clip[16],
-                      double below_clip[16]) {
+                      const double *ground, render_scene_block *block, double sun_clip[16], double below_clip[16]) {
     light->has_sun = !render_bounds_empty(casters);
     light->has_under = light->has_sun && ground && casters->most[1] > *ground;
     memset(sun_clip, 0, 16 * sizeof *sun_clip);

@@ -34,6 +34,12 @@ static inline void render_basis(const double axis[3], double right[3], double up
     render_cross(axis, right, up);
 }
 
+/* A vector and one number more, as uniforms take them. */
+static inline void render_store(const double v[3], double w, float out[4]) {
+    for (int i = 0; i < 3; i++) out[i] = (float)v[i];
+    out[3] = (float)w;
+}
+
 /* out = a b; out may be neither of them. */
 static inline void render_multiply(const double a[16], const double b[16], double out[16]) {
     for (int c = 0; c < 4; c++) {

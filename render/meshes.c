@@ -2,15 +2,19 @@
 #include "render/meshes.h"
 
 #include "render/fail.h"
+#include "render/linear.h"
 
 #include <epoxy/gl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+static const double pi = 3.141592653589793;
+
 /* ---- Surfaces that move --------------------------------------------------------------------- */
 
-void render_surface_normals(const render_surface *surface, float *normals) {
+double render_surface_normals(const render_surface *surface, float *normals) {
+    double area = 0;
     const double *x = surface->positions;
     const uint32_t *weld = surface->weld;
     memset(normals, 0, 3 * surface->vertex_count * sizeof *normals);
@@ -22,6 +26,7 @@ void render_surface_normals(const render_surface *surface, float *normals) {
         double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
         float n[3] = {(float)(u[1] * v[2] - u[2] * v[1]), (float)(u[2] * v[0] - u[0] * v[2]),
                       (float)(u[0] * v[1] - u[1] * v[0])};
+        area += 0.5 * sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
         for (int k = 0; k < 3; k++) {
             float *sum = &normals[3 * (weld ? weld[corner[k]] : corner[k])];
             sum[0] += n[0], sum[1] += n[1], sum[2] += n[2];
@@ -39,6 +44,7 @@ void render_surface_normals(const render_surface *surface, float *normals) {
     for (size_t i = 0; weld && i < surface->vertex_count; i++) {
         if (weld[i] != i) memcpy(&normals[3 * i], &normals[3 * weld[i]], 3 * sizeof *normals);
     }
+    return area;
 }
 
 static GLuint make_buffer(size_t size, const void *data, GLbitfield flags) {
@@ -57,8 +63,8 @@ static void attach(GLuint arrays, GLuint location, GLuint buffer, GLint parts) {
 }
 
 void render_mesh_destroy(render_mesh *mesh) {
-    const GLuint buffers[4] = {mesh->positions, mesh->normals, mesh->uv, mesh->triangles};
-    glDeleteBuffers(4, buffers);
+    const GLuint buffers[5] = {mesh->positions, mesh->normals, mesh->uv, mesh->values, mesh->triangles};
+    glDeleteBuffers(5, buffers);
     glDeleteVertexArrays(1, &mesh->arrays);
     free(mesh->staged);
     memset(mesh, 0, sizeof *mesh);
@@ -84,14 +90,18 @@ static skein_status rebuild(render_mesh *mesh, const render_surface *surface, sk
         mesh->uv = make_buffer(surface->vertex_count * 2 * sizeof(float), surface->uv, 0);
         attach(mesh->arrays, 2, mesh->uv, 2);
     }
+    if (surface->values) {
+        mesh->values = make_buffer(surface->vertex_count * sizeof(float), NULL, GL_DYNAMIC_STORAGE_BIT);
+        attach(mesh->arrays, 3, mesh->values, 1);
+    }
     glVertexArrayElementBuffer(mesh->arrays, mesh->triangles);
     return SKEIN_OK;
 }
 
 skein_status render_mesh_update(render_mesh *mesh, const render_surface *surface, skein_error *error) {
     bool same = mesh->arrays && surface->shape != 0 && mesh->shape == surface->shape &&
-                mesh->vertex_count == surface->vertex_count &&
-                mesh->triangle_count == surface->triangle_count && (mesh->uv != 0) == (surface->uv != NULL);
+                mesh->vertex_count == surface->vertex_count && mesh->triangle_count == surface->triangle_count &&
+                (mesh->uv != 0) == (surface->uv != NULL) && (mesh->values != 0) == (surface->values != NULL);
     if (!same) {
         skein_status status = rebuild(mesh, surface, error);
         if (status != SKEIN_OK) return status;
@@ -100,11 +110,28 @@ skein_status render_mesh_update(render_mesh *mesh, const render_surface *surface
 
     size_t numbers = 3 * mesh->vertex_count;
     float *positions = mesh->staged, *normals = mesh->staged + numbers;
-    for (size_t i = 0; i < numbers; i++) positions[i] = (float)surface->positions[i];
-    render_surface_normals(surface, normals);
+    double sum[3] = {0, 0, 0};
+    for (size_t i = 0; i < numbers; i++) {
+        positions[i] = (float)surface->positions[i];
+        sum[i % 3] += surface->positions[i];
+    }
+    for (int k = 0; k < 3; k++) mesh->middle[k] = sum[k] / (double)mesh->vertex_count;
+    // a triangle of two equal short sides at a right angle, as in a grid
+    double area = render_surface_normals(surface, normals);
+    mesh->edge = sqrt(2 * area / (double)(mesh->triangle_count ? mesh->triangle_count : 1));
     glNamedBufferSubData(mesh->positions, 0, (GLsizeiptr)(numbers * sizeof(float)), positions);
     glNamedBufferSubData(mesh->normals, 0, (GLsizeiptr)(numbers * sizeof(float)), normals);
+    if (surface->values) {
+        glNamedBufferSubData(mesh->values, 0, (GLsizeiptr)(mesh->vertex_count * sizeof(float)), surface->values);
+    }
     return SKEIN_OK;
+}
+
+double render_mesh_edge_pixels(const render_mesh *mesh, const render_camera *camera, int height) {
+    double away[3];
+    for (int k = 0; k < 3; k++) away[k] = mesh->middle[k] - camera->eye[k];
+    double distance = fmax(sqrt(render_dot(away, away)), camera->near);
+    return mesh->edge * height / (2 * tan(0.5 * camera->fov * pi / 180) * distance);
 }
 
 /* ---- Fixed shapes --------------------------------------------------------------------------- */
@@ -141,18 +168,21 @@ static skein_status make_shape(render_shape *shape, int rings, int sectors, int 
     return SKEIN_OK;
 }
 
-static const double pi = 3.141592653589793;
-
 static void place_sphere(double along, double around, float *out) {
     out[0] = (float)(sin(pi * along) * cos(2 * pi * around));
     out[1] = (float)cos(pi * along);
     out[2] = (float)(-sin(pi * along) * sin(2 * pi * around));
 }
 
+static void place_dome(double along, double around, float *out) {
+    out[0] = (float)(sin(0.5 * pi * along) * cos(2 * pi * around));
+    out[1] = (float)(sin(0.5 * pi * along) * sin(2 * pi * around));
+    out[2] = (float)cos(0.5 * pi * along);
+}
+
 static void place_disc(double along, double around, float *out) {
-    // rings grow by a power, so that what is near has triangles of its own
-    out[0] = (float)(along * along * along * cos(2 * pi * around));
-    out[1] = (float)(-along * along * along * sin(2 * pi * around));
+    out[0] = (float)(along * cos(2 * pi * around));
+    out[1] = (float)(-along * sin(2 * pi * around));
 }
 
 static void place_square(double along, double around, float *out) {
@@ -164,8 +194,12 @@ skein_status render_shape_sphere(render_shape *shape, int rings, skein_error *er
     return make_shape(shape, rings, 2 * rings, 3, place_sphere, error);
 }
 
+skein_status render_shape_dome(render_shape *shape, skein_error *error) {
+    return make_shape(shape, 1, 8, 3, place_dome, error);
+}
+
 skein_status render_shape_disc(render_shape *shape, skein_error *error) {
-    return make_shape(shape, 12, 48, 2, place_disc, error);
+    return make_shape(shape, 1, 8, 2, place_disc, error);
 }
 
 skein_status render_shape_square(render_shape *shape, skein_error *error) {

@@ -53,7 +53,7 @@ render_picture_options render_default_picture_options(void) {
 /* ---- The picture ---------------------------------------------------------------------------- */
 
 /* Draws into an image, with a context that is current. */
-static skein_status draw_image(const skein_world *world, const render_picture_options *options,
+static skein_status draw_image(skein_world *world, const render_picture_options *options, const render_view *view,
                                render_image *image, skein_error *error) {
     int width = options->size[0], height = options->size[1];
     render_target target = {0};
@@ -62,12 +62,12 @@ static skein_status draw_image(const skein_world *world, const render_picture_op
 
     render_draw *draw = render_draw_create(error);
     render_world_frame *frame = draw ? render_world_frame_create(error) : NULL;
-    status = frame ? render_world_frame_update(frame, world, error) : SKEIN_ERROR_VALUE;
+    status = frame ? render_world_frame_update(frame, world, view, error) : SKEIN_ERROR_VALUE;
     if (status == SKEIN_OK) {
         render_world_frame_settle(frame);
         render_camera camera = render_world_frame_camera(frame, (double)width / height);
-        status = render_draw_frame(draw, render_world_frame_get(frame), &camera, target.framebuffer, width,
-                                   height, error);
+        status =
+            render_draw_frame(draw, render_world_frame_get(frame), &camera, target.framebuffer, width, height, error);
     }
     if (status == SKEIN_OK) status = render_target_read(&target, image, error);
     render_world_frame_destroy(frame);
@@ -76,18 +76,18 @@ static skein_status draw_image(const skein_world *world, const render_picture_op
     return status;
 }
 
-skein_status render_picture(const skein_world *world, const char *path, const render_picture_options *options,
-                            skein_error *error) {
+skein_status render_picture(skein_world *world, const char *path, const render_picture_options *options,
+                            const render_view *view, skein_error *error) {
     render_picture_options standard = render_default_picture_options();
     render_image image = {0};
     render_context *context = render_context_create(error);
     if (!context) return SKEIN_ERROR_VALUE;
 
-    skein_status status = draw_image(world, options ? options : &standard, &image, error);
+    skein_status status = draw_image(world, options ? options : &standard, view, &image, error);
     const render_messages *messages = render_context_messages(context);
     if (status == SKEIN_OK && messages->errors > 0) {
-        status = render_fail(error, SKEIN_ERROR_VALUE, render_context_name(context),
-                             "the OpenGL driver says: %s", messages->last);
+        status = render_fail(error, SKEIN_ERROR_VALUE, render_context_name(context), "the OpenGL driver says: %s",
+                             messages->last);
     }
     render_context_destroy(context);
     if (status == SKEIN_OK) status = render_image_write_png(&image, path, error);

@@ -4,6 +4,7 @@
 #ifndef SKEIN_RENDER_PICTURE_H
 #define SKEIN_RENDER_PICTURE_H
 
+#include "render/view.h"
 #include "skein/skein.h"
 
 /* The fields of the exporter "png", and the options of a picture. */
@@ -15,10 +16,10 @@ typedef struct render_picture_options {
 /* 1280 x 720, 4 samples. */
 render_picture_options render_default_picture_options(void);
 
-/* Draws the world as it stands into a PNG at `path`. `options` NULL means the defaults. On failure
- * there is no file, or the one that was there before. */
-skein_status render_picture(const skein_world *world, const char *path, const render_picture_options *options,
-                            skein_error *error);
+/* Draws the world as it stands into a PNG at `path`. `options` and `view` NULL mean the
+ * defaults. On failure there is no file, or the one that was there before. */
+skein_status render_picture(skein_world *world, const char *path, const render_picture_options *options,
+                            const render_view *view, skein_error *error);
 
 /* The exporters that draw, `index` from 0; NULL past the end. Their parameters are laid out as
  * render_picture_options. */

@@ -21,15 +21,11 @@ typedef struct render_scene_block {
     float middle[4];
     float balls[RENDER_BALL_COUNT][4];
     int32_t counts[4];
+    int32_t modes[4];
 } render_scene_block;
 
 /* One matrix for each way a frame is gone through. */
-typedef enum render_pass {
-    RENDER_PASS_CAMERA,
-    RENDER_PASS_SUN,
-    RENDER_PASS_BELOW,
-    RENDER_PASS_COUNT
-} render_pass;
+typedef enum render_pass { RENDER_PASS_CAMERA, RENDER_PASS_SUN, RENDER_PASS_BELOW, RENDER_PASS_COUNT } render_pass;
 
 /* Uniform buffer ranges start at multiples of 256 bytes, which every driver allows. */
 enum { RENDER_PASS_STRIDE = 256, RENDER_SCENE_OFFSET = RENDER_PASS_COUNT * RENDER_PASS_STRIDE };

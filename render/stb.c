@@ -23,6 +23,7 @@ static unsigned char *compress_with_zlib(unsigned char *data, int length, int *o
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
 #include <stb/stb_image.h>
 
 uint8_t *render_stb_encode_png(const uint8_t *pixels, int width, int height, int *length) {

@@ -15,16 +15,18 @@ struct render_studio {
     render_draw *draw;
     render_target target;
     render_world_frame *frame;
+    const render_view *view;
     render_camera camera;
     bool aimed;
 };
 
-render_studio *render_studio_create(const int32_t size[2], int samples, skein_error *error) {
+render_studio *render_studio_create(const int32_t size[2], int samples, const render_view *view, skein_error *error) {
     render_studio *studio = calloc(1, sizeof *studio);
     if (!studio) {
         render_fail_memory(error, "the pictures");
         return NULL;
     }
+    studio->view = view;
     studio->context = render_context_create(error);
     bool good = studio->context &&
                 render_target_create(&studio->target, size[0], size[1], samples, error) == SKEIN_OK &&
@@ -50,11 +52,12 @@ void render_studio_hold(render_studio *studio, const render_bounds *bounds) {
     render_world_frame_hold(studio->frame, bounds);
 }
 
-skein_status render_studio_shoot(render_studio *studio, const skein_world *world, skein_error *error) {
+skein_status render_studio_shoot(render_studio *studio, skein_world *world, skein_error *error) {
     int width = studio->target.width, height = studio->target.height;
-    skein_status status = render_world_frame_update(studio->frame, world, error);
+    skein_status status = render_world_frame_update(studio->frame, world, studio->view, error);
     if (status != SKEIN_OK) return status;
-    if (!studio->aimed) studio->camera = render_world_frame_camera(studio->frame, (double)width / height);
+    bool moves = studio->view && studio->view->camera.orbit != 0;
+    if (!studio->aimed || moves) studio->camera = render_world_frame_camera(studio->frame, (double)width / height);
     studio->aimed = true;
     status = render_draw_frame(studio->draw, render_world_frame_get(studio->frame), &studio->camera,
                                studio->target.framebuffer, width, height, error);

@@ -4,23 +4,25 @@
  *
  * Called by the command, for films. Between the two the caller can step the world: the card, or Mesa's own
  * threads, draw meanwhile. Invariant: a studio's context is current on the thread that made it; the camera
- * stands still from the first picture on. */
+ * stands still from the first picture on, unless the view has it orbit. */
 #ifndef SKEIN_RENDER_STUDIO_H
 #define SKEIN_RENDER_STUDIO_H
 
 #include "render/frame.h"
 #include "render/image.h"
+#include "render/view.h"
 
 typedef struct render_studio render_studio;
 
-/* Pictures of `size` with so many samples a pixel, or the most that the driver has. NULL on failure. */
-render_studio *render_studio_create(const int32_t size[2], int samples, skein_error *error);
+/* Pictures of `size` with so many samples a pixel, or the most that the driver has. The view (NULL: the usual one)
+ * must outlive the studio. NULL on failure. */
+render_studio *render_studio_create(const int32_t size[2], int samples, const render_view *view, skein_error *error);
 void render_studio_destroy(render_studio *studio); /* NULL is allowed */
 
 /* The camera shall hold this box, too. Before the first picture. */
 void render_studio_hold(render_studio *studio, const render_bounds *bounds);
 /* Begins to draw the world as it stands. */
-skein_status render_studio_shoot(render_studio *studio, const skein_world *world, skein_error *error);
+skein_status render_studio_shoot(render_studio *studio, skein_world *world, skein_error *error);
 /* Waits for the picture that was begun last. */
 skein_status render_studio_develop(render_studio *studio, render_image *image, skein_error *error);
 

@@ -1,8 +1,12 @@
 /* A frame from a world; see world_frame.h. */
 #include "render/world_frame.h"
 
+#include "render/body_mesh.h"
 #include "render/fail.h"
 #include "render/planes.h"
+#include "render/world_lines.h"
+#include "render/world_points.h"
+#include "render/world_state.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,43 +15,37 @@
 /* What is kept for a body, by its place among the world's bodies. */
 typedef struct body {
     skein_handle handle;
-    uint64_t shape; /* a hash of all that stays */
-    size_t vertex_count, triangle_count;
-    uint32_t *triangles, *weld;
-    float *uv, repeats[2];
-    double *positions;
+    skein_surface source; /* that it was made from */
+    bool made;
+    render_body_mesh mesh;
+    double *positions; /* by vertex: now */
+    float *values;     /* by vertex, where colours tell numbers */
 } body;
-
-/* Positions of particles that are drawn as such. */
-typedef struct particles {
-    double *positions;
-    size_t count;
-} particles;
-
-/* How a particle is shown: by itself, as part of a surface, or not at all. */
-enum { LOOSE, IN_SURFACE, HIDDEN };
 
 struct render_world_frame {
     render_frame frame;
+    render_view view; /* of the last update; its texts are not ours */
+    double time;      /* of the last update */
+    render_world_state state;
+    render_world_lines lines;
+    render_world_points points;
     body *bodies;
     size_t body_count;
     render_surface *surfaces;
     render_plane *planes;
     render_sphere *spheres;
-    render_points points[2]; /* loose particles, pins */
-    particles loose, pins;
-    unsigned char *shown; /* by particle: how */
-    double *all;          /* every particle's position, in the user's order */
-    size_t particle_count;
+    render_image image;
+    char *image_path; /* of the image that is loaded */
     bool has_floor;
     double floor_height;
     render_bounds held; /* in the picture, whatever the frame has */
 };
 
-/* The pattern repeats so often along a grid's longer side. */
-static const double weave_repeats = 20;
-/* Radii of particles and pins, in radii of the scene. */
-static const double loose_size = 0.014, pin_size = 0.010;
+/* The patterns and images repeat so often along a body's longer side. */
+static const double usual_repeats[] = {
+    [RENDER_PLAIN] = 1, [RENDER_CHECKER] = 8, [RENDER_WEAVE] = 20, [RENDER_IMAGE] = 1, [RENDER_VALUES] = 1};
+/* Lengths of normals and contacts, in radii of the scene. */
+static const double normal_length = 0.03, contact_length = 0.06;
 /* The ground is near when it is no farther below things than this part of their height. */
 static const double floor_gap = 0.25;
 
@@ -63,24 +61,24 @@ render_world_frame *render_world_frame_create(skein_error *error) {
 }
 
 static void release_body(body *b) {
-    free(b->triangles);
-    free(b->weld);
-    free(b->uv);
+    render_body_mesh_release(&b->mesh);
     free(b->positions);
+    free(b->values);
     memset(b, 0, sizeof *b);
 }
 
 void render_world_frame_destroy(render_world_frame *made) {
     if (!made) return;
     for (size_t i = 0; i < made->body_count; i++) release_body(&made->bodies[i]);
+    render_world_state_release(&made->state);
+    render_world_lines_release(&made->lines);
+    render_world_points_release(&made->points);
+    render_image_release(&made->image);
+    free(made->image_path);
     free(made->bodies);
     free(made->surfaces);
     free(made->planes);
     free(made->spheres);
-    free(made->loose.positions);
-    free(made->pins.positions);
-    free(made->shown);
-    free(made->all);
     free(made);
 }
 
@@ -101,116 +99,107 @@ static bool is_visible(const skein_world *world, skein_handle handle) {
     return skein_get(world, handle, "visible", &value) != SKEIN_OK || value.number[0] != 0;
 }
 
+/* ---- The image ------------------------------------------------------------------------------ */
+
+/* Reads the view's image, unless it is there already. */
+static skein_status take_image(render_world_frame *made, skein_error *error) {
+    const char *path = made->view.image ? made->view.image : "";
+    made->frame.image = NULL;
+    if (!path[0]) return SKEIN_OK;
+    if (!made->image_path || strcmp(made->image_path, path) != 0) {
+        skein_status status = render_image_read(&made->image, path, error);
+        char *kept = status == SKEIN_OK ? strdup(path) : NULL;
+        free(made->image_path);
+        made->image_path = kept;
+        if (status != SKEIN_OK) return status;
+        if (!kept) return render_fail_memory(error, "an image");
+        made->frame.image_number++;
+    }
+    made->frame.image = &made->image;
+    return SKEIN_OK;
+}
+
 /* ---- Bodies --------------------------------------------------------------------------------- */
 
-/* Every polygon as a fan about its first corner. */
-static void make_triangles(body *b, const skein_surface *surface) {
-    const uint32_t *corner = surface->face_vertices;
-    uint32_t *out = b->triangles;
-    for (size_t f = 0; f < surface->face_count; f++) {
-        for (uint32_t k = 2; k < surface->face_sizes[f]; k++) {
-            *out++ = corner[0], *out++ = corner[k - 1], *out++ = corner[k];
-        }
-        corner += surface->face_sizes[f];
-    }
-}
-
-/* Vertices of one particle share a normal: each points to the first of them. */
-static bool make_weld(body *b, const skein_surface *surface, size_t particle_count) {
-    uint32_t *first = malloc(particle_count * sizeof *first + 1);
-    b->weld = malloc(b->vertex_count * sizeof *b->weld + 1);
-    if (!first || !b->weld) {
-        free(first);
-        return false;
-    }
-    memset(first, 0xff, particle_count * sizeof *first);
-    for (size_t v = 0; v < b->vertex_count; v++) {
-        uint32_t *place = &first[surface->particle_of_vertex[v]];
-        if (*place == UINT32_MAX) *place = (uint32_t)v;
-        b->weld[v] = *place;
-    }
-    free(first);
-    return true;
-}
-
-/* How long a line of a grid is, over `count` vertices that are `step` apart. */
-static double line_length(const body *b, size_t count, size_t step) {
-    double sum = 0;
-    for (size_t i = 1; i < count; i++) {
-        const double *p = &b->positions[3 * (i - 1) * step], *q = &b->positions[3 * i * step];
-        sum += sqrt((q[0] - p[0]) * (q[0] - p[0]) + (q[1] - p[1]) * (q[1] - p[1]) +
-                    (q[2] - p[2]) * (q[2] - p[2]));
-    }
-    return isfinite(sum) && sum > 0 ? sum : 1;
-}
-
-/* u along the rows, v along the columns; patches as square as the cloth's own sides tell. */
-static bool make_uv(body *b, size_t rows, size_t columns) {
-    b->uv = malloc(b->vertex_count * 2 * sizeof *b->uv);
-    if (!b->uv) return false;
-    for (size_t v = 0; v < b->vertex_count; v++) {
-        b->uv[2 * v] = (float)(v / columns) / (float)(rows - 1);
-        b->uv[2 * v + 1] = (float)(v % columns) / (float)(columns - 1);
-    }
-    double along_u = line_length(b, rows, columns), along_v = line_length(b, columns, 1);
-    double unit = fmax(along_u, along_v) / weave_repeats;
-    b->repeats[0] = (float)fmax(1, round(along_u / unit));
-    b->repeats[1] = (float)fmax(1, round(along_v / unit));
-    return true;
-}
-
-static void gather(body *b, const skein_surface *surface, const double *all) {
-    for (size_t v = 0; v < b->vertex_count; v++) {
-        memcpy(&b->positions[3 * v], &all[3 * surface->particle_of_vertex[v]], 3 * sizeof *all);
-    }
-}
-
-/* FNV-1a, by words. */
-static uint64_t hash(uint64_t so_far, const void *data, size_t words) {
-    const uint32_t *word = data;
-    for (size_t i = 0; i < words; i++) so_far = (so_far ^ word[i]) * 0x100000001b3u;
-    return so_far;
-}
-
-/* All that stays of a body. */
-static bool make_body(body *b, const skein_surface *surface, skein_handle handle,
-                      const render_world_frame *made) {
+static bool make_body(body *b, const skein_surface *surface, skein_handle handle, const double *positions) {
     release_body(b);
-    size_t rows = surface->grid_rows, columns = surface->grid_columns;
+    if (!render_body_mesh_make(&b->mesh, surface, positions)) return false;
     b->handle = handle;
-    b->vertex_count = surface->vertex_count;
-    b->triangle_count = surface->face_vertex_count - 2 * surface->face_count;
-    b->triangles = malloc(b->triangle_count * 3 * sizeof *b->triangles + 1);
-    b->positions = malloc(b->vertex_count * 3 * sizeof *b->positions + 1);
-    if (!b->triangles || !b->positions) return false;
+    b->source = *surface;
+    b->made = grow(&b->positions, 3 * b->mesh.vertex_count, sizeof *b->positions) &&
+              grow(&b->values, b->mesh.vertex_count, sizeof *b->values);
+    return b->made;
+}
 
-    make_triangles(b, surface);
-    gather(b, surface, made->all);
-    if (b->vertex_count > surface->particle_count && !make_weld(b, surface, made->particle_count))
-        return false;
-    bool grid = rows >= 2 && columns >= 2 && rows * columns == b->vertex_count;
-    if (grid && !make_uv(b, rows, columns)) return false;
+static void gather(body *b, const render_world_state *state) {
+    for (size_t v = 0; v < b->mesh.vertex_count; v++) {
+        size_t particle = b->mesh.particles[v];
+        memcpy(&b->positions[3 * v], &state->positions[3 * particle], 3 * sizeof *b->positions);
+        if (state->range > 0) b->values[v] = state->values[particle];
+    }
+}
 
-    b->shape = hash(0xcbf29ce484222325u, b->triangles, 3 * b->triangle_count);
-    if (b->weld) b->shape = hash(b->shape, b->weld, b->vertex_count);
-    if (b->uv) b->shape = hash(b->shape, b->uv, 2 * b->vertex_count);
-    b->shape |= 1;
-    return true;
+/* Which pattern a body's surface has under a view. */
+static render_pattern pattern_of(const render_world_frame *made) {
+    static const render_pattern patterns[] = {RENDER_WEAVE, RENDER_CHECKER, RENDER_PLAIN};
+    const render_view *view = &made->view;
+    if (view->colour == RENDER_BY_SPEED || view->colour == RENDER_BY_STRAIN) return RENDER_VALUES;
+    if (view->colour == RENDER_BY_BODY) return RENDER_PLAIN;
+    return made->frame.image ? RENDER_IMAGE : patterns[view->pattern];
+}
+
+static void dress(const render_world_frame *made, const body *b, size_t index, render_material *material) {
+    render_pattern pattern = pattern_of(made);
+    *material = pattern == RENDER_PLAIN ? render_plain_material(index) : render_default_material(index);
+    material->pattern = pattern;
+    double repeats = made->view.repeats > 0 ? made->view.repeats : usual_repeats[pattern];
+    double unit = fmax(b->mesh.sides[0], b->mesh.sides[1]) / repeats;
+    for (int k = 0; k < 2; k++) material->repeats[k] = (float)fmax(1, round(b->mesh.sides[k] / unit));
 }
 
 static void add_surface(render_world_frame *made, const body *b, size_t index) {
     render_surface *surface = &made->surfaces[made->frame.surface_count++];
     *surface = (render_surface){
         .positions = b->positions,
-        .vertex_count = b->vertex_count,
-        .triangles = b->triangles,
-        .triangle_count = b->triangle_count,
-        .weld = b->weld,
-        .uv = b->uv,
-        .shape = b->shape,
-        .material = b->uv ? render_default_material(index) : render_plain_material(index),
+        .vertex_count = b->mesh.vertex_count,
+        .triangles = b->mesh.triangles,
+        .triangle_count = b->mesh.triangle_count,
+        .weld = b->mesh.weld,
+        .uv = b->mesh.uv,
+        .rows_first = b->mesh.grid,
+        .values = made->state.range > 0 ? b->values : NULL,
+        .map = made->state.map,
+        .shape = b->mesh.shape,
     };
-    if (b->uv) memcpy(surface->material.repeats, b->repeats, sizeof b->repeats);
+    dress(made, b, index, &surface->material);
+}
+
+/* Notes how a body's particles are shown. */
+static void mark(render_world_state *state, const skein_surface *surface, int shown, size_t index) {
+    memset(state->shown + surface->first_particle, shown, surface->particle_count);
+    for (size_t p = 0; p < surface->particle_count; p++) state->body[surface->first_particle + p] = (uint32_t)index;
+}
+
+static skein_status take_body(render_world_frame *made, const skein_world *world, size_t index, skein_error *error) {
+    skein_handle handle = skein_object_at(world, SKEIN_BODY, index);
+    skein_surface surface;
+    skein_status status = skein_body_surface(world, handle, &surface);
+    if (status != SKEIN_OK) return render_fail(error, status, "", "a body's surface cannot be read");
+    body *b = &made->bodies[index];
+    bool same = b->made && b->handle.index == handle.index && b->handle.generation == handle.generation &&
+                b->source.face_vertices == surface.face_vertices && b->source.corner_uv == surface.corner_uv &&
+                b->source.vertex_count == surface.vertex_count;
+    if (!same && !make_body(b, &surface, handle, made->state.positions))
+        return render_fail_memory(error, "a body's surface");
+    gather(b, &made->state);
+
+    // a body without faces shows its particles; a hidden one shows nothing
+    bool visible = is_visible(world, handle), faces = b->mesh.triangle_count > 0;
+    mark(&made->state, &surface, !visible ? RENDER_HIDDEN : faces ? RENDER_IN_SURFACE : RENDER_LOOSE, index);
+    if (!visible) return SKEIN_OK;
+    if (faces && made->view.surface) add_surface(made, b, index);
+    if (made->view.wireframe) render_add_wireframe(&made->lines, &b->mesh, &made->state);
+    return SKEIN_OK;
 }
 
 static skein_status take_bodies(render_world_frame *made, const skein_world *world, skein_error *error) {
@@ -223,78 +212,60 @@ static skein_status take_bodies(render_world_frame *made, const skein_world *wor
     }
     made->frame.surfaces = made->surfaces;
     made->frame.surface_count = 0;
-    for (size_t i = 0; i < count; i++) {
-        skein_handle handle = skein_object_at(world, SKEIN_BODY, i);
-        skein_surface surface;
-        skein_status status = skein_body_surface(world, handle, &surface);
-        if (status != SKEIN_OK) return render_fail(error, status, "", "a body's surface cannot be read");
-        body *b = &made->bodies[i];
-        bool same = b->positions && b->handle.index == handle.index &&
-                    b->handle.generation == handle.generation && b->vertex_count == surface.vertex_count;
-        if (!same && !make_body(b, &surface, handle, made))
-            return render_fail_memory(error, "a body's surface");
-        gather(b, &surface, made->all);
-
-        // a body without faces shows its particles; a hidden one shows nothing
-        bool visible = is_visible(world, handle);
-        if (visible && b->triangle_count > 0) add_surface(made, b, i);
-        int shown = !visible ? HIDDEN : b->triangle_count > 0 ? IN_SURFACE : LOOSE;
-        memset(made->shown + surface.first_particle, shown, surface.particle_count);
-    }
-    return SKEIN_OK;
+    skein_status status = SKEIN_OK;
+    for (size_t i = 0; i < count && status == SKEIN_OK; i++) status = take_body(made, world, i, error);
+    return status;
 }
 
 /* ---- Particles ------------------------------------------------------------------------------ */
 
-/* Loose particles, and pins: held particles of a surface, unless most of it is held. */
-static skein_status take_particles(render_world_frame *made, const skein_world *world, skein_error *error) {
-    static const float loose_colour[3] = {0.925f, 0.640f, 0.200f}, pin_colour[3] = {0.27f, 0.26f, 0.27f};
-    size_t count = made->particle_count;
-    skein_view view = skein_position_view(world);
-    if (!grow(&made->loose.positions, 3 * count, sizeof(double)) ||
-        !grow(&made->pins.positions, 3 * count, sizeof(double))) {
-        return render_fail_memory(error, "the particles");
+/* The mean length of some edges, as a measure of how close particles are; infinite where there are none. */
+static double mean_edge(const render_world_frame *made) {
+    double sum = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < made->body_count; i++) {
+        const render_body_mesh *mesh = &made->bodies[i].mesh;
+        size_t stride = 1 + mesh->edge_count / 512;
+        for (size_t e = 0; e < mesh->edge_count; e += stride, count++) {
+            const double *p = &made->state.positions[3 * (size_t)mesh->edges[2 * e]],
+                         *q = &made->state.positions[3 * (size_t)mesh->edges[2 * e + 1]];
+            sum += sqrt((q[0] - p[0]) * (q[0] - p[0]) + (q[1] - p[1]) * (q[1] - p[1]) + (q[2] - p[2]) * (q[2] - p[2]));
+        }
     }
-    made->loose.count = made->pins.count = 0;
-    for (size_t p = 0; p < count && p < view.count; p++) {
-        bool held = view.xyzw[4 * (size_t)view.slot_of[p] + 3] == 0;
-        if (made->shown[p] == HIDDEN || (made->shown[p] == IN_SURFACE && !held)) continue;
-        particles *to = made->shown[p] == LOOSE ? &made->loose : &made->pins;
-        memcpy(&to->positions[3 * to->count++], &made->all[3 * p], 3 * sizeof(double));
-    }
-    if (4 * made->pins.count > count) made->pins.count = 0;
+    return count && isfinite(sum) ? sum / (double)count : INFINITY;
+}
 
-    made->points[0] = (render_points){.positions = made->loose.positions, .count = made->loose.count};
-    made->points[1] = (render_points){.positions = made->pins.positions, .count = made->pins.count};
-    memcpy(made->points[0].colour, loose_colour, sizeof loose_colour);
-    memcpy(made->points[1].colour, pin_colour, sizeof pin_colour);
-    made->frame.points = made->points;
-    made->frame.points_count = 2;
+static skein_status take_particles(render_world_frame *made, const skein_world *world, skein_error *error) {
+    skein_view where = skein_position_view(world);
+    if (!render_world_points_take(&made->points, &made->state, &where, &made->view))
+        return render_fail_memory(error, "the particles");
+    made->frame.points = made->points.points;
+    made->frame.points_count = RENDER_POINT_KIND_COUNT;
+
     render_bounds bounds = render_frame_bounds(&made->frame);
-    double radius = render_bounds_radius(&bounds);
-    made->points[0].radius = loose_size * (radius > 0 ? radius : 1);
-    made->points[1].radius = pin_size * radius * (made->pins.count > 12 ? 0.6 : 1.0);
+    render_world_points_size(&made->points, &made->view, render_bounds_radius(&bounds), mean_edge(made));
     return SKEIN_OK;
 }
 
 /* ---- Colliders ------------------------------------------------------------------------------ */
 
-static void add_plane(render_world_frame *made, const skein_world *world, skein_handle handle,
-                      const skein_pose *pose) {
+/* A level plane is ground, and shown with it; others are colliders like spheres. */
+static void add_plane(render_world_frame *made, const skein_world *world, skein_handle handle, const skein_pose *pose) {
     skein_value normal;
     if (skein_get(world, handle, "normal", &normal) != SKEIN_OK) return;
-    render_plane *plane = &made->planes[made->frame.plane_count++];
+    render_plane *plane = &made->planes[made->frame.plane_count];
     memcpy(plane->point, pose->position, sizeof plane->point);
     for (int r = 0; r < 3; r++) {
         plane->normal[r] = 0;
         for (int c = 0; c < 3; c++) plane->normal[r] += pose->rotation[3 * r + c] * normal.number[c];
     }
+    if (render_plane_level(plane) ? made->view.ground : made->view.colliders) made->frame.plane_count++;
 }
 
 static void add_sphere(render_world_frame *made, const skein_world *world, skein_handle handle,
                        const skein_pose *pose) {
     skein_value radius;
-    if (skein_get(world, handle, "radius", &radius) != SKEIN_OK) return;
+    if (!made->view.colliders || skein_get(world, handle, "radius", &radius) != SKEIN_OK) return;
     render_sphere *sphere = &made->spheres[made->frame.sphere_count++];
     *sphere = render_default_sphere();
     sphere->radius = radius.number[0];
@@ -304,8 +275,7 @@ static void add_sphere(render_world_frame *made, const skein_world *world, skein
 
 static skein_status take_colliders(render_world_frame *made, const skein_world *world, skein_error *error) {
     size_t count = skein_object_count(world, SKEIN_COLLIDER);
-    if (!grow(&made->planes, count, sizeof *made->planes) ||
-        !grow(&made->spheres, count, sizeof *made->spheres)) {
+    if (!grow(&made->planes, count, sizeof *made->planes) || !grow(&made->spheres, count, sizeof *made->spheres)) {
         return render_fail_memory(error, "the colliders");
     }
     made->frame.planes = made->planes, made->frame.plane_count = 0;
@@ -314,8 +284,7 @@ static skein_status take_colliders(render_world_frame *made, const skein_world *
         skein_handle handle = skein_object_at(world, SKEIN_COLLIDER, i);
         const skein_kind *kind = skein_object_kind(world, handle);
         skein_pose pose;
-        if (!kind || !is_visible(world, handle) || skein_collider_pose(world, handle, &pose) != SKEIN_OK)
-            continue;
+        if (!kind || !is_visible(world, handle) || skein_collider_pose(world, handle, &pose) != SKEIN_OK) continue;
         if (strcmp(kind->name, "plane") == 0) add_plane(made, world, handle, &pose);
         if (strcmp(kind->name, "sphere") == 0) add_sphere(made, world, handle, &pose);
     }
@@ -332,39 +301,63 @@ static render_bounds bounds_to_hold(const render_world_frame *made) {
     return bounds;
 }
 
+static skein_status take_lines(render_world_frame *made, skein_error *error) {
+    const render_view *view = &made->view;
+    if (view->springs) render_add_springs(&made->lines, &made->state);
+    render_world_lines_show(&made->lines, view->line_width, &made->frame);
+    render_bounds bounds = render_frame_bounds(&made->frame);
+    double radius = render_bounds_radius(&bounds);
+    for (size_t i = 0; i < made->frame.surface_count && view->normals; i++)
+        render_add_normals(&made->lines, &made->surfaces[i], normal_length * radius);
+    if (view->velocities) render_add_velocities(&made->lines, &made->state, view->velocity_scale);
+    if (view->contacts) render_add_contacts(&made->lines, &made->state, contact_length * radius);
+    if (view->axes) render_add_axes(&made->lines, render_grid_cell(radius > 0 ? radius : 1));
+    render_world_lines_show(&made->lines, view->line_width, &made->frame);
+    return made->lines.no_memory ? render_fail_memory(error, "the lines") : SKEIN_OK;
+}
+
 /* Where no plane is ground, one is put at height 0 if the things stand not far above it, else a little
  * below them. */
 static void place_floor(render_world_frame *made) {
     bool level = false;
     for (size_t i = 0; i < made->frame.plane_count; i++) level |= render_plane_level(&made->planes[i]);
-    if (!made->has_floor && !level) {
+    if (!made->has_floor && !level && made->view.ground) {
         render_bounds bounds = bounds_to_hold(made);
         double size = 2 * render_bounds_radius(&bounds), lowest = bounds.least[1];
         if (render_bounds_empty(&bounds)) lowest = size = 0;
         made->floor_height = lowest >= 0 && lowest <= size ? 0 : lowest - 0.1 * size;
         made->has_floor = true;
     }
-    made->frame.look.floor = made->has_floor && !level;
+    made->frame.look.floor = made->has_floor && !level && made->view.ground;
     made->frame.look.floor_height = made->floor_height;
 }
 
-skein_status render_world_frame_update(render_world_frame *made, const skein_world *world,
-                                       skein_error *error) {
-    size_t count = skein_particle_count(world);
-    if (!grow(&made->all, 3 * count, sizeof *made->all) ||
-        !grow(&made->shown, count, sizeof *made->shown)) {
-        return render_fail_memory(error, "the particles");
-    }
-    made->particle_count = count;
-    memset(made->shown, 0, count * sizeof *made->shown);
-    skein_status status = count > 0 ? skein_positions_copy(world, 0, count, made->all) : SKEIN_OK;
-    if (status != SKEIN_OK) return render_fail(error, status, "", "the positions cannot be read");
+static void take_look(render_world_frame *made) {
+    render_look *look = &made->frame.look;
+    memcpy(look->sun, made->view.sun, sizeof look->sun);
+    look->exposure = made->view.exposure;
+    look->plain = made->view.shading == RENDER_BLINN_PHONG;
+    look->grid = made->view.grid;
+}
 
-    status = take_bodies(made, world, error);
+skein_status render_world_frame_update(render_world_frame *made, skein_world *world, const render_view *view,
+                                       skein_error *error) {
+    made->view = view ? *view : render_view_default();
+    made->time = skein_world_time(world);
+    render_world_lines_clear(&made->lines);
+    take_look(made);
+    skein_status status = take_image(made, error);
+    if (status == SKEIN_OK) status = render_world_state_read(&made->state, world, &made->view, error);
+    if (status == SKEIN_OK) status = take_bodies(made, world, error);
     if (status == SKEIN_OK) status = take_colliders(made, world, error);
     if (status == SKEIN_OK) status = take_particles(made, world, error);
+    if (status == SKEIN_OK) status = take_lines(made, error);
     if (status == SKEIN_OK) place_floor(made);
     return status;
+}
+
+double render_world_frame_range(const render_world_frame *made) {
+    return made->state.range > 0 ? made->state.range : made->state.spring_range;
 }
 
 void render_world_frame_settle(render_world_frame *made) {
@@ -387,5 +380,5 @@ render_camera render_world_frame_camera(const render_world_frame *made, double a
     double gap = bounds.least[1] - look->floor_height,
            most_gap = floor_gap * (bounds.most[1] - bounds.least[1]);
     if (look->floor && gap > 0 && gap < 1.01 * most_gap) bounds.least[1] = look->floor_height;
-    return render_camera_framing(&bounds, aspect);
+    return render_camera_of_view(&made->view.camera, &bounds, made->time, aspect);
 }

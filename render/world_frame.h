@@ -1,6 +1,6 @@
-/* A frame from a world, through the public API alone.
+/* A frame from a world and a view, through the public API alone.
  *
- *     world --update--> frame (its positions lie here) --draw.c--> picture
+ *     world, view --update--> frame (its positions lie here) --draw.c--> picture
  *
  * Made once for a world and updated for every picture; called by picture.c, films and the window. What
  * stays (triangles, uv) is worked out once for a body. Invariant: the frame is valid until the next
@@ -10,6 +10,7 @@
 
 #include "render/camera.h"
 #include "render/frame.h"
+#include "render/view.h"
 #include "skein/skein.h"
 
 typedef struct render_world_frame render_world_frame;
@@ -18,9 +19,9 @@ typedef struct render_world_frame render_world_frame;
 render_world_frame *render_world_frame_create(skein_error *error);
 void render_world_frame_destroy(render_world_frame *frame); /* NULL is allowed */
 
-/* Takes the world's present state. Where it has no level plane, a ground is put under the first
- * state seen, and stays there. */
-skein_status render_world_frame_update(render_world_frame *frame, const skein_world *world,
+/* Takes the world's present state, and of it what the view shows (NULL: the defaults). Where it has no level plane, a
+ * ground is put under the first state seen, and stays there. */
+skein_status render_world_frame_update(render_world_frame *frame, skein_world *world, const render_view *view,
                                        skein_error *error);
 const render_frame *render_world_frame_get(const render_world_frame *frame);
 
@@ -32,7 +33,11 @@ void render_world_frame_settle(render_world_frame *frame);
  * the first update. So a film's background stands still. */
 void render_world_frame_hold(render_world_frame *frame, const render_bounds *bounds);
 
-/* A camera for the present state; the ground shows if it is near. */
+/* The speed (m/s) or strain that the end of the colours stands for now; 0 where colours tell neither. */
+double render_world_frame_range(const render_world_frame *frame);
+
+/* The view's camera. One that frames by itself holds all of the present state; the ground shows if it is
+ * near. */
 render_camera render_world_frame_camera(const render_world_frame *frame, double aspect);
 
 #endif

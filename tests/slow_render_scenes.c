@@ -71,7 +71,7 @@ static parts draw(const char *scene, const char *frame, const char *set) {
     assert_string_equal(o.err, "");
     outcome_free(&o);
     render_image image = {0};
-    assert_int_equal(render_image_read_png(&image, path, NULL), SKEIN_OK);
+    assert_int_equal(render_image_read(&image, path, NULL), SKEIN_OK);
     assert_true(image.width == width && image.height == height);
     parts seen = look_at(&image);
     render_image_release(&image);

@@ -46,13 +46,13 @@ static void wrong_arguments_are_told(void **state) {
         {{"run", "no/such.json"}, "skein: no/such.json: cannot read: no such file or directory\n"},
         {{"list", "cats", "dogs"},
          "skein list: 'dogs' is one argument too many; "
-         "usage: skein list [scene|bodies|constraints|forces|colliders|methods|exporters|KIND]\n"},
+         "usage: skein list [scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND]\n"},
         {{"list", "bodys"},
          "skein list: there is no list or kind 'bodys'; did you mean 'bodies'? "
-         "usage: skein list [scene|bodies|constraints|forces|colliders|methods|exporters|KIND]\n"},
+         "usage: skein list [scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND]\n"},
         {{"list", "spere"},
          "skein list: there is no list or kind 'spere'; did you mean 'sphere'? "
-         "usage: skein list [scene|bodies|constraints|forces|colliders|methods|exporters|KIND]\n"},
+         "usage: skein list [scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND]\n"},
     };
     for (size_t i = 0; i < COUNT(wrong); i++) {
         const char *const *a = wrong[i].arguments;
@@ -182,8 +182,8 @@ static void expect_kind(const char *text, const skein_kind *kind) {
 
 static void list_shows_every_kind_and_field(void **state) {
     (void)state;
-    static const char *const words[] = {"bodies",  "constraints", "forces",   "colliders",
-                                        "methods", "scene",       "exporters"};
+    static const char *const words[] = {"bodies",  "constraints", "forces",    "colliders",
+                                        "methods", "scene",       "exporters", "view"};
     outcome all = SKEIN("list");
     assert_status(all, 0);
     assert_string_equal(all.err, "");

@@ -6,7 +6,7 @@
 static render_image read_png(const char *path) {
     render_image image = {0};
     skein_error error = {SKEIN_OK, "", ""};
-    if (render_image_read_png(&image, path, &error)) fail_msg("%s: %s", error.where, error.message);
+    if (render_image_read(&image, path, &error)) fail_msg("%s: %s", error.where, error.message);
     return image;
 }
 

@@ -92,10 +92,12 @@ typedef enum skein_category {
     SKEIN_METHOD,
     SKEIN_SCENE,
     SKEIN_EXPORTER,
+    SKEIN_VIEW,
     SKEIN_CATEGORY_COUNT
 } skein_category;
 
-/* A kind of body, constraint, force, collider, method or exporter, with its own fields. */
+/* A kind of body, constraint, force, collider, method or exporter, with its own fields (a scene's and a
+ * view's, too). */
 typedef struct skein_kind {
     const char *name;
     const char *help; /* one or two lines */
@@ -308,8 +310,12 @@ typedef struct skein_surface {
     const uint32_t *face_vertices; /* vertices, not particles */
     size_t face_vertex_count;
     uint32_t grid_rows, grid_columns; /* 0 where the body is not a grid */
+    const float *corner_uv;           /* face_vertex_count x 2, or NULL: see skein_body_uv_set() */
 } skein_surface;
 skein_status skein_body_surface(const skein_world *world, skein_handle body, skein_surface *surface);
+/* Keeps texture coordinates for a body's surface, one pair for each corner of each face (so that a seam may have
+ * two); they are for drawing only. `corner_count` is the surface's face_vertex_count. */
+skein_status skein_body_uv_set(skein_world *world, skein_handle body, const float *corner_uv, size_t corner_count);
 
 /* Where a collider stands now, for drawing. `shape` is the kind's name. */
 typedef struct skein_pose {
@@ -317,6 +323,26 @@ typedef struct skein_pose {
     double rotation[9]; /* rows of a rotation matrix: the motion's, after a box's own */
 } skein_pose;
 skein_status skein_collider_pose(const skein_world *world, skein_handle collider, skein_pose *pose);
+
+/* Two particles that a rule keeps at a distance: an edge or diagonal of a cloth, a `distance`. */
+typedef struct skein_spring {
+    uint32_t particle[2];
+    float strain;  /* (length - rest)/rest now; 0 where the rest length is 0 */
+    bool measured; /* it counts in the statistics' stretch: an edge of a mesh, or added by itself */
+} skein_spring;
+/* Copies up to `most` of the springs of enabled rules, in the order of their making; `count` receives how many
+ * there are. */
+skein_status skein_springs_copy(skein_world *world, skein_spring *out, size_t most, size_t *count);
+
+/* A particle within a collider's thickness, as the statistics count them. */
+typedef struct skein_contact {
+    uint32_t particle;
+    skein_handle collider;
+    double normal[3]; /* unit, out of the solid */
+    double gap;       /* m, from the collider's surface; negative inside */
+} skein_contact;
+/* Copies up to `most` of the contacts of enabled colliders; `count` receives how many there are. */
+skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count);
 
 /* ---- Measures ---------------------------------------------------------------------------------- */
 

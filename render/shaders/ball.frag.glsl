@@ -4,6 +4,9 @@ flat in vec4 ball;
 flat in vec3 ball_paint;
 flat in vec3 ball_marking;
 flat in int number;
+#ifdef FINE
+flat in vec3 light_here;
+#endif
 out vec4 colour;
 
 // 1 for colliders, whose numbers are those of scene.balls; 0 for particles
@@ -21,16 +24,21 @@ void main() {
     vec3 world = ball.xyz + ball.w * n;
     vec3 view = normalize(scene.eye.xyz - world);
 
+#ifdef FINE
+    vec3 albedo = ball_paint;
+    float seen = light_here.x, open = light_here.y, below = light_here.z;
+#else
     // four meridians and the equator, so that a turn about any axis shows
     float marked = band(vec3(0.0, 1.0, 0.0), 0.075, where);
     marked = max(marked, band(vec3(0.924, 0.0, 0.383), 0.028, where));
     marked = max(marked, band(vec3(-0.383, 0.0, 0.924), 0.028, where));
     vec3 albedo = mix(ball_paint, ball_marking, marked);
 
-    float seen = sun_seen(world, n);
-    vec3 sun = scene.sun_light.rgb * seen * max(dot(n, scene.sun.xyz), 0.0);
+    float seen = sun_seen(world, n), below = ground_seen(world);
     float open = balls_seen(world, n, collider == 1 ? number : -1);
-    vec3 ambient = ambient_light(n, ground_seen(world)) * open;
+#endif
+    vec3 sun = scene.sun_light.rgb * seen * max(dot(n, scene.sun.xyz), 0.0);
+    vec3 ambient = ambient_light(n, below) * open;
 
     // glaze: the sky and the ground mirrored, more so at grazing angles, and the sun's soft spot
     vec3 mirror = reflect(-view, n);
@@ -38,6 +46,7 @@ void main() {
     float glance = 0.035 + 0.5 * pow(1.0 - clamp(dot(n, view), 0.0, 1.0), 5.0);
     vec3 half_way = normalize(scene.sun.xyz + view);
     vec3 spot = scene.sun_light.rgb * seen * 0.5 * pow(max(dot(n, half_way), 0.0), 160.0);
-    vec3 glaze = around * glance * open * ground_seen(world) + spot;
-    colour = vec4(display(albedo * (sun + ambient) + glaze), 1.0);
+    vec3 glaze = around * glance * open * below + spot;
+    vec3 light = albedo * (sun + ambient) + glaze;
+    colour = vec4(display(scene.modes.x == 1 ? blinn_phong(albedo, n, view) : light), 1.0);
 }

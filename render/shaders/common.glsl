@@ -17,7 +17,8 @@ layout(std140, binding = 0) uniform scene_block {
     vec4 under_map;   // the ground's occlusion: xy: least x and z; z: uv a metre; w: 1 where there is a map
     vec4 middle;      // the scene's middle; w: its radius
     vec4 balls[8];    // spheres that keep sky light away: centre, radius
-    ivec4 counts;     // x: balls
+    ivec4 counts;     // x: balls; taps of a shadow: y to find what casts it, z through its soft edge, w along its rim
+    ivec4 modes;      // x: 1 for plain light; y: 1 for lines on the ground
 } scene;
 
 layout(std140, binding = 1) uniform pass_block {
@@ -27,7 +28,7 @@ layout(std140, binding = 1) uniform pass_block {
 // The sky along a direction of length 1; below the horizon it is the horizon's haze.
 vec3 sky_colour(vec3 direction) {
     float height = max(direction.y, 0.0);
-    return mix(scene.horizon.rgb, scene.zenith.rgb, 1.0 - exp(-8.0 * height));
+    return mix(scene.horizon.rgb, scene.zenith.rgb, 1.0 - exp(-14.0 * height));
 }
 
 // Light from all sides on a surface: the sky above, brighter on the sun's side so that folds show in the
@@ -37,4 +38,11 @@ vec3 ambient_light(vec3 normal, float below) {
     vec3 sky = mix(scene.horizon.rgb, scene.zenith.rgb, 0.35) * 0.57 * (1.0 + 0.38 * dot(normal.xz, side));
     vec3 bounce = scene.ground.rgb * mix(scene.sun_light.rgb, vec3(1.0), 0.5) * 0.46 * below;
     return mix(bounce, sky, 0.5 + 0.5 * normal.y);
+}
+
+// The plain choice: Blinn-Phong under the sun, with a light of its own from all sides and no shadows.
+vec3 blinn_phong(vec3 albedo, vec3 normal, vec3 view) {
+    vec3 half_way = normalize(scene.sun.xyz + view);
+    float shine = pow(max(dot(normal, half_way), 0.0), 40.0);
+    return albedo * (0.38 + 0.72 * max(dot(normal, scene.sun.xyz), 0.0)) + 0.12 * shine;
 }

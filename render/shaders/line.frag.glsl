@@ -1,4 +1,4 @@
-layout(location = 1) uniform vec3 paint;
+flat in vec3 paint;
 out vec4 colour;
 
 void main() {

@@ -1,10 +1,14 @@
 // Straight lines as ribbons that face the viewer, some pixels wide.
 layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;
+layout(location = 2) in vec3 light;
+
+flat out vec3 paint;
 
 layout(location = 0) uniform vec3 half_pixel; // half a pixel in clip units along x and y; z: width, pixels
 
 void main() {
+    paint = light;
     vec4 a = pass.to_clip * vec4(from, 1.0), b = pass.to_clip * vec4(to, 1.0);
     vec2 along = (b.xy / b.w - a.xy / a.w) / half_pixel.xy;
     float length_now = length(along);

@@ -5,11 +5,11 @@ layout(location = 0) uniform vec3 origin;
 layout(location = 1) uniform vec3 along;   // with its length: half of a square's side, or a disc's radius
 layout(location = 2) uniform vec3 across;
 
-out vec3 world;
+out vec3 interpolated;
 out vec2 place;
 
 void main() {
     place = corner;
-    world = origin + corner.x * along + corner.y * across;
-    gl_Position = pass.to_clip * vec4(world, 1.0);
+    interpolated = origin + corner.x * along + corner.y * across;
+    gl_Position = pass.to_clip * vec4(interpolated, 1.0);
 }

@@ -84,6 +84,11 @@ bool sk_contact_reads_force(const sk_collider *collider);
 void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
                          size_t particle_count, double *penetration, size_t *contacts);
 
+/* Calls `visit` for every particle in touch: what sk_collider_measure() counts. */
+void sk_collider_visit(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
+                       size_t particle_count,
+                       void (*visit)(void *user, size_t particle, sk_vec3 normal, double distance), void *user);
+
 extern const sk_collider_type sk_plane, sk_sphere, sk_bowl, sk_capsule, sk_box;
 
 #endif

@@ -285,25 +285,53 @@ bool sk_contact_reads_force(const sk_collider *collider) {
     return collider->common->restitution > 0 || sk_collider_mass(collider) > 0;
 }
 
+/* Probes sixteen particles from `first` on, or as many as there are; returns how many. */
+static size_t probe_block(const sk_collider *collider, const sk_pose *pose, const sk_vec4 *x, const uint32_t *slot_of,
+                          size_t first, size_t particle_count, sk_contact *contact) {
+    size_t count = particle_count - first < SK_LANES ? particle_count - first : SK_LANES;
+    sk_wide3 p = {{0}, {0}, {0}};
+    for (size_t i = 0; i < count; i++) {
+        sk_vec4 q = x[slot_of[first + i]];
+        p.x[i] = q.x, p.y[i] = q.y, p.z[i] = q.z;
+    }
+    collider->type->probe[0](collider->params, pose, &p, contact);
+    return count;
+}
+
+/* Whether a particle at q, so far from the surface, counts as in touch: rounding must not break a resting contact. */
+static bool in_touch(sk_vec4 q, double distance, double thickness) {
+    double size = fmax(fabs((double)q.x), fmax(fabs((double)q.y), fabs((double)q.z)));
+    return distance <= thickness * 1.001 + 4e-6 * (size + 0.1);
+}
+
 void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
                          size_t particle_count, double *penetration, size_t *contacts) {
     sk_pose pose = sk_collider_pose_at(collider, time);
     double thickness = collider->common->thickness;
     for (size_t first = 0; first < particle_count; first += SK_LANES) {
-        size_t count = particle_count - first < SK_LANES ? particle_count - first : SK_LANES;
-        sk_wide3 p = {{0}, {0}, {0}};
         sk_contact contact;
+        size_t count = probe_block(collider, &pose, x, slot_of, first, particle_count, &contact);
         for (size_t i = 0; i < count; i++) {
             sk_vec4 q = x[slot_of[first + i]];
-            p.x[i] = q.x, p.y[i] = q.y, p.z[i] = q.z;
-        }
-        collider->type->probe[0](collider->params, &pose, &p, &contact);
-        for (size_t i = 0; i < count; i++) {
-            sk_vec4 q = x[slot_of[first + i]];
-            double size = fmax(fabs((double)q.x), fmax(fabs((double)q.y), fabs((double)q.z)));
             double distance = (double)contact.distance[i];
-            if (distance <= thickness * 1.001 + 4e-6 * (size + 0.1)) ++*contacts;
+            if (in_touch(q, distance, thickness)) ++*contacts;
             if (q.w > 0 && thickness - distance > *penetration) *penetration = thickness - distance;
+        }
+    }
+}
+
+void sk_collider_visit(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
+                       size_t particle_count,
+                       void (*visit)(void *user, size_t particle, sk_vec3 normal, double distance), void *user) {
+    sk_pose pose = sk_collider_pose_at(collider, time);
+    for (size_t first = 0; first < particle_count; first += SK_LANES) {
+        sk_contact contact;
+        size_t count = probe_block(collider, &pose, x, slot_of, first, particle_count, &contact);
+        for (size_t i = 0; i < count; i++) {
+            double distance = (double)contact.distance[i];
+            if (!in_touch(x[slot_of[first + i]], distance, collider->common->thickness)) continue;
+            sk_vec3 normal = {contact.normal.x[i], contact.normal.y[i], contact.normal.z[i]};
+            visit(user, first + i, normal, distance);
         }
     }
 }

@@ -174,6 +174,7 @@ static void undo_body(skein_world *world, sk_object *object, size_t particles, s
     sk_release(allocator, body->particle_of_vertex);
     sk_release(allocator, body->face_sizes);
     sk_release(allocator, body->face_vertices);
+    sk_release(allocator, body->corner_uv);
     sk_release(allocator, body);
     unmake_object(world, object);
 }

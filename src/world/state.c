@@ -92,9 +92,32 @@ skein_status skein_body_surface(const skein_world *world, skein_handle handle, s
         return sk_fail(sk_world_error(world), SKEIN_ERROR_HANDLE, "",
                        "there is no such body: its handle is stale, or of another category");
     const sk_body *body = object->as.body;
-    *surface = (skein_surface){
-        body->first_particle, body->particle_count, body->particle_of_vertex, body->vertex_count, body->face_sizes,
-        body->face_count,     body->face_vertices,  body->face_vertex_count,  body->grid_rows,    body->grid_columns};
+    *surface =
+        (skein_surface){body->first_particle, body->particle_count, body->particle_of_vertex, body->vertex_count,
+                        body->face_sizes,     body->face_count,     body->face_vertices,      body->face_vertex_count,
+                        body->grid_rows,      body->grid_columns,   body->corner_uv};
+    return SKEIN_OK;
+}
+
+skein_status skein_body_uv_set(skein_world *world, skein_handle handle, const float *corner_uv, size_t corner_count) {
+    const sk_object *object = sk_object_of(world, handle);
+    skein_error *error = sk_world_error(world);
+    if (!object || object->category != SKEIN_BODY)
+        return sk_fail(error, SKEIN_ERROR_HANDLE, "",
+                       "there is no such body: its handle is stale, or of another category");
+    sk_body *body = object->as.body;
+    if (corner_count != body->face_vertex_count)
+        return sk_fail(error, SKEIN_ERROR_VALUE, "", "texture coordinates for %zu corners: the body's faces have %zu",
+                       corner_count, body->face_vertex_count);
+    for (size_t i = 0; i < 2 * corner_count; i++)
+        if (!(corner_uv[i] >= -(float)SK_FAR && corner_uv[i] <= (float)SK_FAR))
+            return sk_fail(error, SKEIN_ERROR_VALUE, "", "corner %zu: texture coordinates must be finite, under 1e15",
+                           i / 2);
+    float *kept = sk_allocate(&world->allocator, 2 * corner_count * sizeof *kept);
+    if (!kept) return sk_fail_memory(error, "texture coordinates");
+    memcpy(kept, corner_uv, 2 * corner_count * sizeof *kept);
+    sk_release(&world->allocator, body->corner_uv);
+    body->corner_uv = kept;
     return SKEIN_OK;
 }
 

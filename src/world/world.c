@@ -46,6 +46,7 @@ static void release_body(skein_world *world, sk_body *body) {
     sk_release(allocator, body->particle_of_vertex);
     sk_release(allocator, body->face_sizes);
     sk_release(allocator, body->face_vertices);
+    sk_release(allocator, body->corner_uv);
     sk_release(allocator, body);
 }
 

@@ -35,6 +35,7 @@ struct sk_body {
     uint32_t *particle_of_vertex, *face_sizes, *face_vertices; /* the surface as it came */
     size_t vertex_count, face_count, face_vertex_count;
     uint32_t grid_rows, grid_columns; /* 0: not a grid */
+    float *corner_uv;                 /* face_vertex_count x 2, or NULL: kept for whoever draws */
     sk_batch *batch[SK_MOST_BODY_BATCHES];
     sk_material *material[SK_MOST_BODY_BATCHES]; /* of the batch beside it */
     size_t batch_count;

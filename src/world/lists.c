@@ -1,0 +1,58 @@
+/* Lists for those who look in from outside: springs with their strain, contacts. */
+#include "world/world.h"
+
+enum { STRAIN_BLOCK = 256 };
+
+/* The springs of one batch, as far as there is room. */
+static void copy_batch(const sk_batch *batch, const sk_vec4 *x, skein_spring *out, size_t room) {
+    size_t count = batch->count < room ? batch->count : room;
+    real strain[STRAIN_BLOCK];
+    for (size_t first = 0; first < count; first += STRAIN_BLOCK) {
+        size_t last = first + STRAIN_BLOCK < count ? first + STRAIN_BLOCK : count;
+        batch->type->strain(batch, x, first, last, strain);
+        for (size_t e = first; e < last; e++)
+            out[e] = (skein_spring){
+                {batch->particle[2 * e], batch->particle[2 * e + 1]}, (float)strain[e - first], batch->measured};
+    }
+}
+
+skein_status skein_springs_copy(skein_world *world, skein_spring *out, size_t most, size_t *count) {
+    skein_status status = sk_world_arrange(world, sk_world_error(world)); // the slots of new rules may not be known yet
+    *count = 0;
+    for (size_t i = 0; i < world->rules.batches.count && !status; i++) {
+        const sk_batch *batch = world->rules.batches.data[i];
+        if (batch->type->arity != 2 || (batch->enabled && !*batch->enabled)) continue;
+        if (*count < most) copy_batch(batch, world->particles.vector[SK_X], out + *count, most - *count);
+        *count += batch->count;
+    }
+    return status;
+}
+
+/* Where the contacts go. */
+typedef struct contact_list {
+    skein_contact *out;
+    size_t most, count;
+    skein_handle collider;
+} contact_list;
+
+static void add_contact(void *user, size_t particle, sk_vec3 normal, double gap) {
+    contact_list *list = user;
+    if (list->count++ >= list->most) return;
+    list->out[list->count - 1] = (skein_contact){
+        (uint32_t)particle, list->collider, {(double)normal.x, (double)normal.y, (double)normal.z}, gap};
+}
+
+skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count) {
+    const sk_particles *all = &world->particles;
+    contact_list list = {out, most, 0, {0, 0}};
+    for (size_t i = 0; i < world->objects.count; i++) {
+        const sk_object *object = world->objects.data[i];
+        if (!(object->generation % 2) || object->category != SKEIN_COLLIDER || !object->as.collider->common->enabled)
+            continue;
+        list.collider = (skein_handle){(uint32_t)i, object->generation};
+        sk_collider_visit(object->as.collider, world->time, all->vector[SK_X], all->slot_of, all->count, add_contact,
+                          &list);
+    }
+    *count = list.count;
+    return SKEIN_OK;
+}
