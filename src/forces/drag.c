@@ -39,6 +39,7 @@ const sk_force_type sk_drag = {
     .kind = {"drag", "air damping, linear and quadratic in the speed", SKEIN_FORCE, fields,
              sizeof fields / sizeof *fields, sizeof(drag_params)},
     .domain = SK_OVER_PARTICLES,
+    .on_velocity = true,
     .kernel = {SK_EACH_ISA(kernel)},
 };
 #endif

@@ -13,7 +13,8 @@ typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOUR
 typedef struct sk_force_type {
     skein_kind kind;
     sk_domain domain;
-    bool sets; /* its kernel minds the row's `sets`: it can be the first to write F */
+    bool sets;        /* its kernel minds the row's `sets`: it can be the first to write F */
+    bool on_velocity; /* it depends on velocities */
     sk_kernels kernel;
     /* Neighbour rules: how far they reach, m; NULL else. */
     double (*radius)(const void *params);

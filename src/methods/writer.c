@@ -162,6 +162,14 @@ static bool is_on(const sk_batch *batch) {
     return *batch->enabled && batch->count;
 }
 
+static bool has_bound(const sk_batch *batch) {
+    return is_on(batch) && batch->bound && *batch->bound < SK_UNBOUNDED;
+}
+
+static bool is_kept(const sk_limit *limit) {
+    return *limit->enabled && limit->count && *limit->bound < SK_UNBOUNDED;
+}
+
 void sk_write_forces(sk_writer *writer) {
     for (size_t i = 0; i < writer->rules->batches.count; i++) {
         const sk_batch *batch = writer->rules->batches.data[i];
@@ -202,6 +210,39 @@ void sk_write_projections(sk_writer *writer, int passes) {
         }
 }
 
+void sk_write_rigid_projections(sk_writer *writer, int passes) {
+    // compliances stand against the square of the substep: over an endless one they are nothing
+    const double endless = 1e10;
+    double h = writer->h;
+    writer->h = endless;
+    for (int pass = 0; pass < passes; pass++)
+        for (size_t i = 0; i < writer->rules->batches.count; i++) {
+            const sk_batch *batch = writer->rules->batches.data[i];
+            if (is_on(batch)) add_sweeps(writer, batch, SK_ROW_PROJECT, &batch->type->project, SK_X, SK_NONE);
+        }
+    writer->h = h;
+}
+
+bool sk_writes_velocity_forces(const sk_writer *writer) {
+    const sk_rules *rules = writer->rules;
+    for (size_t i = 0; i < rules->batches.count; i++)
+        if (is_on(rules->batches.data[i]) && sk_batch_damping_time(rules->batches.data[i]) > 0) return true;
+    for (size_t i = 0; i < rules->forces.count; i++)
+        if (*rules->forces.data[i]->enabled && rules->forces.data[i]->type->on_velocity) return true;
+    return false;
+}
+
+bool sk_writes_corrections(const sk_writer *writer) {
+    const sk_rules *rules = writer->rules;
+    for (size_t i = 0; i < rules->colliders.count; i++)
+        if (rules->colliders.data[i]->common->enabled) return true;
+    for (size_t i = 0; i < rules->batches.count; i++)
+        if (has_bound(rules->batches.data[i])) return true;
+    for (size_t i = 0; i < rules->limits.count; i++)
+        if (is_kept(rules->limits.data[i])) return true;
+    return false;
+}
+
 void sk_write_contacts(sk_writer *writer, sk_contact_sort sort, sk_vector before) {
     static const struct {
         sk_row_kind kind;
@@ -231,13 +272,13 @@ void sk_write_limits(sk_writer *writer, sk_vector velocity) {
     const sk_rules *rules = writer->rules;
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
-        if (!is_on(batch) || !batch->bound || *batch->bound >= SK_UNBOUNDED) continue;
+        if (!has_bound(batch)) continue;
         add_sweeps(writer, batch, SK_ROW_LIMIT, velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving,
                    SK_X, velocity);
     }
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
-        if (!*limit->enabled || !limit->count || *limit->bound >= SK_UNBOUNDED) continue;
+        if (!is_kept(limit)) continue;
         add(writer, (sk_row){.kind = SK_ROW_LIMIT,
                              .order = SK_FREE,
                              .kernel = limit->kernel.version[writer->isa],

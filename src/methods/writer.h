@@ -63,6 +63,14 @@ void sk_write_forces(sk_writer *writer);
 /* X: `passes` sweeps over every batch; X0 is the state at the start of the substep. */
 void sk_write_projections(sk_writer *writer, int passes);
 
+/* The same as if every constraint with a stiffness were rigid and undamped. */
+void sk_write_rigid_projections(sk_writer *writer, int passes);
+
+/* Whether any force or damped constraint depends on velocities. */
+bool sk_writes_velocity_forces(const sk_writer *writer);
+/* Whether contact or limits may change the state behind a substep's back. */
+bool sk_writes_corrections(const sk_writer *writer);
+
 typedef enum sk_contact_sort {
     SK_CONTACT_FORCE,
     SK_CONTACT_IMPULSE,

@@ -26,6 +26,18 @@ typedef enum sk_vector {
     SK_X0,       /* position saved at the start of a substep */
     SK_V0,       /* velocity saved likewise */
     SK_PREVIOUS, /* position at the start of the step, for blending between frames; always quads */
+    SK_T0,       /* temporaries: there only while the plan names them, and empty outside a step */
+    SK_T1,
+    SK_T2,
+    SK_T3,
+    SK_T4,
+    SK_T5,
+    SK_T6,
+    SK_T7,
+    SK_T8,
+    SK_T9,
+    SK_T10,
+    SK_T11,
     SK_VECTOR_COUNT
 } sk_vector;
 

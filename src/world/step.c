@@ -22,6 +22,17 @@ skein_status sk_world_arrange(skein_world *world, skein_error *error) {
     return SKEIN_OK;
 }
 
+/* Makes the temporaries that the plan names, and no others. */
+static bool make_temporaries(skein_world *world) {
+    uint32_t wanted = 0;
+    for (size_t r = 0; r < world->plan.count; r++) {
+        const sk_row *row = &world->plan.data[r];
+        wanted |= 1u << row->dst;
+        for (int i = 0; i < 3; i++) wanted |= 1u << row->source[i];
+    }
+    return sk_particles_want(&world->particles, &world->allocator, wanted);
+}
+
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error) {
     if (!(dt > 0) || !(dt <= 1e6))
         return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0", dt);
@@ -50,7 +61,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     sk_write_pack(&writer);
     method->write(&writer, world->method_params, dt);
     sk_write_unpack(&writer);
-    if (writer.no_memory) return sk_fail_memory(error, "the plan");
+    if (writer.no_memory || !make_temporaries(world)) return sk_fail_memory(error, "the plan");
     world->plan_dt = dt;
     world->plan_stale = false;
     return SKEIN_OK;
