@@ -83,17 +83,26 @@ static bool measure(app_report *r) {
     return true;
 }
 
+/* Notes the state in the log, if there is one; false after a printed fault. */
+static bool note_step(app_report *r) {
+    if (!r->log) return true;
+    if (!measure(r)) return false;
+    app_log_line(r->log, &r->statistics);
+    return true;
+}
+
 /* Steps one frame; false after a printed fault. */
 static bool run_frame(app_report *r, progress *p) {
     skein_world *world = r->loaded->world;
-    double start = app_seconds();
     for (int s = 0; s < r->steps_per_frame; s++) {
-        if (!skein_world_step(world, r->dt)) continue;
+        double start = app_seconds();
+        skein_status status = skein_world_step(world, r->dt);
+        r->seconds += app_seconds() - start;
+        if (!status && note_step(r)) continue;
         end_progress(p);
-        app_print_error(skein_world_error(world));
+        if (status) app_print_error(skein_world_error(world));
         return false;
     }
-    r->seconds += app_seconds() - start;
     r->frames++;
     if (is_finite(world)) return r->frames % 16 || measure(r);
     // said at once, instead of writing such files to the end
@@ -107,7 +116,7 @@ static bool run_frame(app_report *r, progress *p) {
 }
 
 static bool run_frames(app_report *r, app_outputs *outputs, progress *p) {
-    bool good = !outputs || app_outputs_frame(outputs, 0);
+    bool good = note_step(r) && (!outputs || app_outputs_frame(outputs, 0));
     while (good && r->frames < p->frames && !interrupted) {
         good = run_frame(r, p) && (!outputs || app_outputs_frame(outputs, r->frames));
         if (good) show_progress(p, r->frames);
@@ -126,14 +135,21 @@ static int simulate(app_report *r, const char *folder, bool quiet) {
     catch_interrupts();
     int status = folder ? app_outputs_begin(r->loaded, folder, &outputs) : EXIT_OK;
     if (status) return status;
+    if (r->log_path && !(r->log = app_log_begin(r->log_path))) {
+        app_outputs_abandon(outputs);
+        return EXIT_FAULT;
+    }
     progress p = start_progress(r->loaded->settings.frames, quiet);
-    if (!run_frames(r, outputs, &p)) {
+    bool ran = run_frames(r, outputs, &p);
+    bool logged = app_log_finish(r->log); // of a run that failed, too: it may say why
+    if (!ran) {
         app_outputs_abandon(outputs);
         return EXIT_FAILURE_RUN;
     }
     int signal_number = interrupted; // a later one interrupts nothing that matters
     r->interrupted = signal_number != 0;
-    bool good = !outputs || app_outputs_finish(outputs, note_file, r);
+    if (r->log && logged) note_file(r, r->log_path);
+    bool good = (!outputs || app_outputs_finish(outputs, note_file, r)) && logged;
     if (folder) good = app_report_write(r, folder) && good;
     app_report_print(r);
     return !good ? EXIT_FAILURE_RUN : signal_number ? EXIT_SIGNAL + signal_number : EXIT_OK;
@@ -166,6 +182,7 @@ static int run(int argc, char **argv) {
         {"--frames", "N", "frames to run, instead of the scene's", false, NULL, 0},
         {"--fps", "N", "frames a second of simulated time, instead of the scene's", false, NULL, 0},
         {"--threads", "N", "threads to run on, 1 to 64; the result is the same", false, NULL, 0},
+        {"--log", "FILE", "write a line a step there, as CSV: energies, momenta, stretch, contacts", false, NULL, 0},
         {"--quiet", NULL, "no progress", false, NULL, 0},
     };
     enum { COUNT = sizeof options / sizeof *options };
@@ -179,7 +196,8 @@ static int run(int argc, char **argv) {
         app_scene loaded;
         status = app_load(path, options[0].values, &loaded);
         if (!status) {
-            app_report report = {.loaded = &loaded, .files = json_array()};
+            app_report report = {
+                .loaded = &loaded, .files = json_array(), .log_path = app_value(options, COUNT, "--log")};
             report.steps_per_frame = io_scene_steps_per_frame(&loaded.settings, &report.dt);
             status =
                 simulate(&report, app_value(options, COUNT, "--out"), app_value(options, COUNT, "--quiet") != NULL);

@@ -38,6 +38,8 @@ typedef struct sk_constraint_type {
     sk_sweep_kernels limit_moving;   /* the same, and velocities: where they are not taken from positions */
     /* Relative violation of elements [begin, end): (length - rest)/rest for a distance. */
     void (*strain)(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, real *strain);
+    /* C of elements [begin, end): half of its square times the stiffness is their energy. */
+    void (*value)(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, double *value);
 } sk_constraint_type;
 
 /* What every constraint kind is made of. */

@@ -84,6 +84,15 @@ static void strain(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t
     }
 }
 
+static void value(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, double *out) {
+    for (size_t e = begin; e < end; e++) {
+        const sk_vec4 *a = &x[batch->slot[2 * e]], *b = &x[batch->slot[2 * e + 1]];
+        const double at[2][3] = {{(double)a->x, (double)a->y, (double)a->z},
+                                 {(double)b->x, (double)b->y, (double)b->z}};
+        out[e - begin] = rest_length(at) - (double)batch->rest[e];
+    }
+}
+
 const sk_constraint_type sk_distance = {
     .kind = {"distance", "keeps two particles at their rest distance (a spring and damper)", SKEIN_CONSTRAINT, fields,
              sizeof fields / sizeof *fields, sizeof(distance_params)},
@@ -95,5 +104,6 @@ const sk_constraint_type sk_distance = {
     .limit = {{SK_EACH_ISA(limit_strips)}, {SK_EACH_ISA(limit_groups)}},
     .limit_moving = {{SK_EACH_ISA(limit_moving_strips)}, {SK_EACH_ISA(limit_moving_groups)}},
     .strain = strain,
+    .value = value,
 };
 #endif

@@ -18,6 +18,8 @@ typedef struct sk_force_type {
     sk_kernels kernel;
     /* Neighbour rules: how far they reach, m; NULL else. */
     double (*radius)(const void *params);
+    /* The potential energy of a particle at x; NULL: it has none. */
+    double (*potential)(const void *params, const double x[3], double mass);
 } sk_force_type;
 
 /* A force as methods see it: a type with its parameters. A row's rule is one of these. */

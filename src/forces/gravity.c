@@ -27,6 +27,11 @@ static const skein_field fields[] = {
     SK_VEC3(gravity_params, acceleration, "acceleration", "m/s2", 0, -9.81, 0, "the free fall's acceleration"),
 };
 
+static double potential(const void *data, const double x[3], double mass) {
+    const double *g = ((const gravity_params *)data)->acceleration;
+    return -mass * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
+}
+
 #define SK_KERNELS "forces/gravity.c"
 #include "base/for_each_isa.h"
 
@@ -36,5 +41,6 @@ const sk_force_type sk_gravity = {
     .domain = SK_OVER_PARTICLES,
     .sets = true,
     .kernel = {SK_EACH_ISA(kernel)},
+    .potential = potential,
 };
 #endif

@@ -85,6 +85,11 @@ skein_status skein_world_step(skein_world *world, double dt) {
     skein_error *error = sk_world_error(world);
     skein_status status = sk_world_compile(world, dt, error);
     if (status) return status;
+    if (!world->steps) {
+        skein_statistics start = {0};
+        sk_world_measure_energy(world, &start);
+        world->first_energy = start.kinetic_energy + start.potential_energy + start.elastic_energy;
+    }
     sk_run run = sk_world_run_context(world);
     uint64_t mode = sk_float_mode_enter();
     sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
