@@ -30,6 +30,7 @@ static const struct {
     COLUMN("angular momentum z (kg m2/s)", angular_momentum[2]),
     COLUMN("largest stretch", max_stretch),
     COLUMN("penetration (m)", max_penetration),
+    COLUMN("residual", residual),
 };
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
 
@@ -44,7 +45,7 @@ app_log *app_log_begin(const char *path) {
     }
     io_output_printf(log->output, "step");
     for (size_t i = 0; i < COLUMN_COUNT; i++) io_output_printf(log->output, ",%s", columns[i].name);
-    io_output_printf(log->output, ",contacts\n");
+    io_output_printf(log->output, ",contacts,solver turns,solver iterations,unsolved\n");
     return log;
 }
 
@@ -53,7 +54,8 @@ void app_log_line(app_log *log, const skein_statistics *statistics) {
     for (size_t i = 0; i < COLUMN_COUNT; i++)
         io_output_printf(log->output, ",%.9g",
                          *(const double *)(const void *)((const char *)statistics + columns[i].offset));
-    io_output_printf(log->output, ",%zu\n", statistics->contacts);
+    io_output_printf(log->output, ",%zu,%zu,%zu,%zu\n", statistics->contacts, statistics->solver_turns,
+                     statistics->solver_iterations, statistics->unsolved);
 }
 
 bool app_log_finish(app_log *log) {

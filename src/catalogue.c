@@ -11,7 +11,7 @@ static const sk_force_type *const forces[] = {&sk_gravity, &sk_wind, &sk_surface
 static const sk_collider_type *const colliders[] = {&sk_plane, &sk_sphere};
 static const sk_method_type *const methods[] = {&sk_explicit_euler, &sk_symplectic_euler, &sk_lookahead_euler,
                                                 &sk_midpoint,       &sk_leapfrog,         &sk_rk4,
-                                                &sk_xpbd,           &sk_pbd};
+                                                &sk_backward_euler, &sk_xpbd,             &sk_pbd};
 
 #define COUNT(list) (sizeof(list) / sizeof *(list))
 

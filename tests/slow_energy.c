@@ -44,6 +44,7 @@ static void energy_grows_and_decays_as_theory_says(void **state) {
         double rate;
     } rows[] = {
         {"explicit_euler", log(1 + z * z)},
+        {"backward_euler", -log(1 + z * z)},
         {"lookahead_euler", log(1 - z * z + z * z * z * z)},
     };
     enum { SUBSTEPS = 20000 };

@@ -65,6 +65,11 @@ extern const sk_kernels sk_contact_impulse;
 extern const sk_kernels sk_contact_push;
 /* Position methods: gives V the bounce that V0, its second source, had coming. */
 extern const sk_kernels sk_contact_restitution;
+/* Implicit methods: what a collider holds through the substep, as a filter in dst and the second source (xx yy zz and
+ * xy xz yz), friction added to the third, and V as it is held. */
+extern const sk_kernels sk_contact_filter;
+/* The same for what has come inside since, X being where V leads from X0. */
+extern const sk_kernels sk_contact_filter_more;
 
 /* Deepest penetration below the thickness (m) and the number of particles in touch. */
 void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,

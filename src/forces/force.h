@@ -16,6 +16,9 @@ typedef struct sk_force_type {
     bool sets;        /* its kernel minds the row's `sets`: it can be the first to write F */
     bool on_velocity; /* it depends on velocities */
     sk_kernels kernel;
+    /* For implicit methods, with the row's coefficient a: dst += a d, where -d is how the force grows with the
+     * particle's own velocity; the same in x, y and z. NULL: it does not, or too little to matter. */
+    sk_kernels resistance;
     /* Neighbour rules: how far they reach, m; NULL else. */
     double (*radius)(const void *params);
     /* The potential energy of a particle at x; NULL: it has none. */

@@ -35,6 +35,6 @@ skein_status sk_refuse_rigid(const sk_rules *rules, const char *method, skein_er
 void sk_amplify_polynomial(double z, double zeta, const double c[4], double matrix[4]);
 
 extern const sk_method_type sk_explicit_euler, sk_symplectic_euler, sk_lookahead_euler, sk_midpoint, sk_leapfrog,
-    sk_rk4, sk_pbd, sk_xpbd;
+    sk_rk4, sk_backward_euler, sk_pbd, sk_xpbd;
 
 #endif

@@ -4,7 +4,7 @@
 #include "constraints/sweep.h"
 #include "methods/method.h"
 
-static void add(sk_writer *writer, sk_row row) {
+void sk_add_row(sk_writer *writer, sk_row row) {
     row.dt = writer->h;
     row.packed = writer->packed;
     if (!sk_plan_add(writer->plan, writer->allocator, row)) writer->no_memory = true;
@@ -12,7 +12,7 @@ static void add(sk_writer *writer, sk_row row) {
 
 size_t sk_write_repeat(sk_writer *writer, size_t times, double h) {
     writer->h = h;
-    add(writer, (sk_row){.kind = SK_ROW_REPEAT, .end = times, .order = SK_ORDERED, .label = "repeat"});
+    sk_add_row(writer, (sk_row){.kind = SK_ROW_REPEAT, .end = times, .order = SK_ORDERED, .label = "repeat"});
     return writer->plan->count - 1;
 }
 
@@ -22,25 +22,25 @@ void sk_write_end(sk_writer *writer, size_t repeat) {
 
 static void add_combine(sk_writer *writer, const sk_kernels *kernels, sk_vector dst, double a, sk_vector p, double b,
                         sk_vector q) {
-    add(writer, (sk_row){.kind = SK_ROW_COMBINE,
-                         .order = SK_FREE,
-                         .kernel = kernels->version[writer->isa],
-                         .dst = dst,
-                         .source = {p, q, SK_NONE},
-                         .coefficient = {a, b, 0},
-                         .end = writer->slot_count});
+    sk_add_row(writer, (sk_row){.kind = SK_ROW_COMBINE,
+                                .order = SK_FREE,
+                                .kernel = kernels->version[writer->isa],
+                                .dst = dst,
+                                .source = {p, q, SK_NONE},
+                                .coefficient = {a, b, 0},
+                                .end = writer->slot_count});
 }
 
 static void add_layout_rows(sk_writer *writer, sk_row_kind kind, const sk_kernels *kernels) {
     static const sk_vector vectors[] = {SK_X, SK_V};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
-        add(writer, (sk_row){.kind = kind,
-                             .order = SK_FREE,
-                             .kernel = kernels->version[writer->isa],
-                             .dst = vectors[i],
-                             .source = {vectors[i]},
-                             .label = "strips",
-                             .end = writer->strip_slots});
+        sk_add_row(writer, (sk_row){.kind = kind,
+                                    .order = SK_FREE,
+                                    .kernel = kernels->version[writer->isa],
+                                    .dst = vectors[i],
+                                    .source = {vectors[i]},
+                                    .label = "strips",
+                                    .end = writer->strip_slots});
 }
 
 void sk_write_pack(sk_writer *writer) {
@@ -72,12 +72,12 @@ void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_v
 }
 
 void sk_write_predict(sk_writer *writer) {
-    add(writer, (sk_row){.kind = SK_ROW_COMBINE,
-                         .order = SK_FREE,
-                         .kernel = sk_combine_predict.version[writer->isa],
-                         .dst = SK_X,
-                         .source = {SK_V, SK_F, writer->rules->colliders.count ? SK_V0 : SK_NONE},
-                         .end = writer->slot_count});
+    sk_add_row(writer, (sk_row){.kind = SK_ROW_COMBINE,
+                                .order = SK_FREE,
+                                .kernel = sk_combine_predict.version[writer->isa],
+                                .dst = SK_X,
+                                .source = {SK_V, SK_F, writer->rules->colliders.count ? SK_V0 : SK_NONE},
+                                .end = writer->slot_count});
 }
 
 /* The grid's row: sorts all particles into cells of at least coefficient[0]. */
@@ -105,13 +105,13 @@ void sk_write_fields(sk_writer *writer) {
     bool first = true; // gravity and the like set F when they come first; others add to a cleared one
     double radius = widest_radius(rules);
     if (radius > 0)
-        add(writer, (sk_row){.kind = SK_ROW_GRID,
-                             .order = SK_ORDERED,
-                             .kernel = build_grid,
-                             .source = {SK_X},
-                             .coefficient = {radius},
-                             .label = "cells",
-                             .end = writer->particle_count});
+        sk_add_row(writer, (sk_row){.kind = SK_ROW_GRID,
+                                    .order = SK_ORDERED,
+                                    .kernel = build_grid,
+                                    .source = {SK_X},
+                                    .coefficient = {radius},
+                                    .label = "cells",
+                                    .end = writer->particle_count});
     for (size_t i = 0; i < rules->forces.count; i++) {
         const sk_force *force = rules->forces.data[i];
         if (!*force->enabled) continue;
@@ -135,7 +135,7 @@ void sk_write_fields(sk_writer *writer) {
             row.end = writer->particle_count;
         }
         row.sets = sets;
-        add(writer, row);
+        sk_add_row(writer, row);
     }
     if (first) sk_write_clear(writer, SK_F);
 }
@@ -146,15 +146,15 @@ static void add_sweeps(sk_writer *writer, const sk_batch *batch, sk_row_kind kin
     for (size_t i = 0; i < batch->sweep_count; i++) {
         const sk_sweep *sweep = &batch->sweeps[i];
         const sk_kernels *walk = sweep->strips ? &kernels->strips : &kernels->groups;
-        add(writer, (sk_row){.kind = kind,
-                             .order = SK_ORDERED,
-                             .kernel = walk->version[writer->isa],
-                             .dst = dst,
-                             .source = {SK_X, second},
-                             .rule = sweep,
-                             .label = sweep->label,
-                             .walk = sweep->walk,
-                             .end = sweep->strips ? sweep->walk.rows - sweep->walk.reach : sweep->group_count});
+        sk_add_row(writer, (sk_row){.kind = kind,
+                                    .order = SK_ORDERED,
+                                    .kernel = walk->version[writer->isa],
+                                    .dst = dst,
+                                    .source = {SK_X, second},
+                                    .rule = sweep,
+                                    .label = sweep->label,
+                                    .walk = sweep->walk,
+                                    .end = sweep->strips ? sweep->walk.rows - sweep->walk.reach : sweep->group_count});
     }
 }
 
@@ -191,13 +191,13 @@ void sk_write_projections(sk_writer *writer, int passes) {
             const sk_sweep *sweep = &batch->sweeps[w];
             sk_walk walk = sweep->walk;
             walk.reach = 0;
-            add(writer, (sk_row){.kind = SK_ROW_MULTIPLIER,
-                                 .order = SK_ORDERED,
-                                 .kernel = sk_sweep_clear_multipliers,
-                                 .rule = sweep,
-                                 .label = sweep->label,
-                                 .walk = walk,
-                                 .end = sweep->strips ? walk.rows : sweep->group_count});
+            sk_add_row(writer, (sk_row){.kind = SK_ROW_MULTIPLIER,
+                                        .order = SK_ORDERED,
+                                        .kernel = sk_sweep_clear_multipliers,
+                                        .rule = sweep,
+                                        .label = sweep->label,
+                                        .walk = walk,
+                                        .end = sweep->strips ? walk.rows : sweep->group_count});
         }
     }
     for (int pass = 0; pass < passes; pass++)
@@ -257,14 +257,14 @@ void sk_write_contacts(sk_writer *writer, sk_contact_sort sort, sk_vector before
     for (size_t i = 0; i < writer->rules->colliders.count; i++) {
         const sk_collider *collider = writer->rules->colliders.data[i];
         if (!collider->common->enabled) continue;
-        add(writer, (sk_row){.kind = sorts[sort].kind,
-                             .order = SK_FREE,
-                             .kernel = sorts[sort].kernels->version[writer->isa],
-                             .dst = sorts[sort].dst,
-                             .source = {SK_X, before},
-                             .rule = collider,
-                             .label = collider->label,
-                             .end = writer->slot_count});
+        sk_add_row(writer, (sk_row){.kind = sorts[sort].kind,
+                                    .order = SK_FREE,
+                                    .kernel = sorts[sort].kernels->version[writer->isa],
+                                    .dst = sorts[sort].dst,
+                                    .source = {SK_X, before},
+                                    .rule = collider,
+                                    .label = collider->label,
+                                    .end = writer->slot_count});
     }
 }
 
@@ -279,15 +279,15 @@ void sk_write_limits(sk_writer *writer, sk_vector velocity) {
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
         if (!is_kept(limit)) continue;
-        add(writer, (sk_row){.kind = SK_ROW_LIMIT,
-                             .order = SK_FREE,
-                             .kernel = limit->kernel.version[writer->isa],
-                             .dst = SK_X,
-                             .source = {SK_X, velocity},
-                             .rule = limit,
-                             .label = limit->label,
-                             .begin = limit->first_slot,
-                             .end = limit->first_slot + limit->slot_count});
+        sk_add_row(writer, (sk_row){.kind = SK_ROW_LIMIT,
+                                    .order = SK_FREE,
+                                    .kernel = limit->kernel.version[writer->isa],
+                                    .dst = SK_X,
+                                    .source = {SK_X, velocity},
+                                    .rule = limit,
+                                    .label = limit->label,
+                                    .begin = limit->first_slot,
+                                    .end = limit->first_slot + limit->slot_count});
     }
 }
 

@@ -82,4 +82,7 @@ void sk_write_contacts(sk_writer *writer, sk_contact_sort sort, sk_vector before
 /* Limits move X; `velocity` is SK_V where the method does not take velocities from positions, else SK_NONE. */
 void sk_write_limits(sk_writer *writer, sk_vector velocity);
 
+/* For the writers' own files: adds a row, with the present substep and layout. */
+void sk_add_row(sk_writer *writer, sk_row row);
+
 #endif

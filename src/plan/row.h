@@ -55,6 +55,11 @@ typedef enum sk_row_kind {
     SK_ROW_CONTACT_VELOCITY,
     SK_ROW_CONTACT_POSITION,
     SK_ROW_LIMIT,
+    SK_ROW_APPLY,
+    SK_ROW_LINEARISE,
+    SK_ROW_CONTACT_FILTER,
+    SK_ROW_DOT,
+    SK_ROW_SCALAR,
     SK_ROW_REPEAT,
     SK_ROW_KIND_COUNT
 } sk_row_kind;
@@ -79,6 +84,7 @@ typedef struct sk_run {
     sk_grid *grid;
     sk_allocator *allocator;
     double time;    /* at the end of the present substep, s */
+    double *cell;   /* what rows of a solve hand to each other (plan/solve.h) */
     bool no_memory; /* a growing list could not grow: the step fails and says so */
 } sk_run;
 
@@ -113,6 +119,7 @@ struct sk_row {
     size_t packed;     /* slots [0, packed) are in packed blocks when it runs */
     sk_walk walk;      /* of rows whose elements are strip rows */
     size_t length;     /* a repeat: how many rows after it are repeated */
+    int cell;          /* which cell it reads; a repeat that has one ends when it is not 0, and moves no time on */
 };
 
 typedef struct sk_plan {

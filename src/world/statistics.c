@@ -75,6 +75,10 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     statistics->steps = world->steps;
     statistics->substeps = world->substeps;
     statistics->time = world->time;
+    statistics->residual = world->cell[SK_CELL_WORST];
+    statistics->unsolved = (size_t)world->cell[SK_CELL_UNSOLVED];
+    statistics->solver_turns = (size_t)world->cell[SK_CELL_NEWTON_TURNS];
+    statistics->solver_iterations = (size_t)world->cell[SK_CELL_CG_TURNS];
     statistics->particles = all->count;
     skein_status status = sk_world_arrange(world, error); // the slots of new rules may not be known yet
     if (status) return status;

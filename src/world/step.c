@@ -76,6 +76,7 @@ sk_run sk_world_run_context(skein_world *world) {
         .grid = &world->grid,
         .allocator = &world->allocator,
         .time = world->time,
+        .cell = world->cell,
     };
     memcpy(run.vector, world->particles.vector, sizeof run.vector);
     return run;
@@ -90,6 +91,7 @@ skein_status skein_world_step(skein_world *world, double dt) {
         sk_world_measure_energy(world, &start);
         world->first_energy = start.kinetic_energy + start.potential_energy + start.elastic_energy;
     }
+    memset(world->cell, 0, sizeof world->cell);
     sk_run run = sk_world_run_context(world);
     uint64_t mode = sk_float_mode_enter();
     sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
@@ -102,6 +104,7 @@ skein_status skein_world_step(skein_world *world, double dt) {
 }
 
 skein_status skein_world_reset(skein_world *world) {
+    memset(world->cell, 0, sizeof world->cell);
     sk_particles_reset(&world->particles);
     world->time = 0;
     world->steps = world->substeps = 0;
@@ -117,14 +120,15 @@ skein_status skein_world_explain(skein_world *world, double dt, void (*write)(vo
     skein_status status = sk_world_compile(world, dt, sk_world_error(world));
     if (status) return status;
     if (!write) return SKEIN_OK;
-    size_t open_until = 0;
+    enum { MOST_DEPTH = 8 };
+    size_t open_until[MOST_DEPTH], depth = 0; // of the repeats around a row
     for (size_t r = 0; r < world->plan.count; r++) {
         const sk_row *row = &world->plan.data[r];
-        char line[384] = "    ";
-        size_t indent = r < open_until ? 4 : 0;
-        sk_row_describe(row, line + indent, sizeof line - indent);
+        while (depth && r >= open_until[depth - 1]) depth--;
+        char line[384] = "                                ";
+        sk_row_describe(row, line + 4 * depth, sizeof line - 4 * depth);
         write(user, line);
-        if (row->kind == SK_ROW_REPEAT) open_until = r + row->length + 1;
+        if (row->kind == SK_ROW_REPEAT && depth < MOST_DEPTH) open_until[depth++] = r + row->length + 1;
     }
     return SKEIN_OK;
 }
