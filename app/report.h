@@ -5,6 +5,7 @@
 #include <jansson.h>
 
 #include "app/command.h"
+#include "app/log.h"
 
 typedef struct app_report {
     const app_scene *loaded;
@@ -14,6 +15,8 @@ typedef struct app_report {
     skein_statistics statistics; /* of the end */
     double worst_stretch;        /* over the whole run, sampled now and then */
     json_t *files;               /* their paths */
+    app_log *log;                /* a line a step, or NULL */
+    const char *log_path;
 } app_report;
 
 /* Writes FOLDER/report.json and adds it to the files. False after a printed fault. */

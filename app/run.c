@@ -18,17 +18,30 @@ static bool measure(app_report *r) {
     return true;
 }
 
+/* Notes the state in the log, if there is one; false after a printed fault. */
+static bool note_step(app_report *r) {
+    if (!r->log) return true;
+    if (!measure(r)) return false;
+    app_log_line(r->log, &r->statistics);
+    return true;
+}
+
 /* Steps one frame; false after a printed fault. */
 static bool run_frame(app_report *r, app_progress *p) {
-    double start = app_seconds();
-    if (!app_step_frame(r->loaded, r->frames + 1, r->steps_per_frame, r->dt, p)) return false;
-    r->seconds += app_seconds() - start;
+    for (int s = 0; s < r->steps_per_frame; s++) {
+        double start = app_seconds();
+        if (!app_step_frame(r->loaded, r->frames + 1, 1, r->dt, p)) return false;
+        r->seconds += app_seconds() - start;
+        if (note_step(r)) continue;
+        app_progress_end(p);
+        return false;
+    }
     r->frames++;
     return r->frames % 16 || measure(r);
 }
 
 static bool run_frames(app_report *r, app_outputs *outputs, app_progress *p) {
-    bool good = !outputs || app_outputs_frame(outputs, 0);
+    bool good = note_step(r) && (!outputs || app_outputs_frame(outputs, 0));
     while (good && r->frames < p->frames && !app_interrupted()) {
         good = run_frame(r, p) && (!outputs || app_outputs_frame(outputs, r->frames));
         if (good) app_progress_show(p, r->frames);
@@ -47,14 +60,21 @@ static int simulate(app_report *r, const char *folder, bool quiet) {
     app_catch_interrupts();
     int status = folder ? app_outputs_begin(r->loaded, folder, quiet, &outputs) : EXIT_OK;
     if (status) return status;
+    if (r->log_path && !(r->log = app_log_begin(r->log_path))) {
+        app_outputs_abandon(outputs);
+        return EXIT_FAULT;
+    }
     app_progress p = app_progress_start("frame", r->loaded->settings.frames, quiet);
-    if (!run_frames(r, outputs, &p)) {
+    bool ran = run_frames(r, outputs, &p);
+    bool logged = app_log_finish(r->log); // of a run that failed, too: it may say why
+    if (!ran) {
         app_outputs_abandon(outputs);
         return EXIT_FAILURE_RUN;
     }
     int signal_number = app_interrupted(); // a later one interrupts nothing that matters
     r->interrupted = signal_number != 0;
-    bool good = !outputs || app_outputs_finish(outputs, note_file, r);
+    if (r->log && logged) note_file(r, r->log_path);
+    bool good = (!outputs || app_outputs_finish(outputs, note_file, r)) && logged;
     if (folder) good = app_report_write(r, folder) && good;
     app_report_print(r);
     return !good ? EXIT_FAILURE_RUN : signal_number ? EXIT_SIGNAL + signal_number : EXIT_OK;
@@ -70,6 +90,7 @@ static int run(int argc, char **argv) {
         {"--frames", "N", "frames to run, instead of the scene's", false, NULL, 0},
         {"--fps", "N", "frames a second of simulated time, instead of the scene's", false, NULL, 0},
         {"--threads", "N", "threads to run on, 1 to 64; the result is the same", false, NULL, 0},
+        {"--log", "FILE", "write a line a step there, as CSV: energies, momenta, stretch, contacts", false, NULL, 0},
         {"--quiet", NULL, "no progress", false, NULL, 0},
     };
     enum { COUNT = sizeof options / sizeof *options };
@@ -81,7 +102,8 @@ static int run(int argc, char **argv) {
         app_scene loaded;
         status = app_load(path, options[0].values, &loaded);
         if (!status) {
-            app_report report = {.loaded = &loaded, .files = json_array()};
+            app_report report = {
+                .loaded = &loaded, .files = json_array(), .log_path = app_value(options, COUNT, "--log")};
             report.steps_per_frame = io_scene_steps_per_frame(&loaded.settings, &report.dt);
             status =
                 simulate(&report, app_value(options, COUNT, "--out"), app_value(options, COUNT, "--quiet") != NULL);

@@ -10,7 +10,8 @@
 enum { SCENE_VERSION = 1, MOST_EXPORTS = 16, MOST_SCENE_BYTES = 64 << 20, MOST_STEPS_PER_FRAME = 1000000 };
 
 struct io_scene {
-    json_t *root; /* an object */
+    json_t *root;  /* an object */
+    json_t *notes; /* texts for the log */
     char *path;
     io_scene_settings settings;
     io_export exports[MOST_EXPORTS];
@@ -301,14 +302,15 @@ io_scene *io_scene_read_text(const char *text, size_t size, const char *path, co
     json_t *root = parse(text, size, path, faults);
     if (!root) return NULL;
     io_scene *scene = calloc(1, sizeof *scene);
-    if (!scene || !(scene->path = strdup(path))) {
+    if (!scene || !(scene->path = strdup(path)) || !(scene->notes = json_array())) {
         json_decref(root);
+        if (scene) free(scene->path);
         free(scene);
         io_fault(place, "", SKEIN_ERROR_MEMORY, "out of memory");
         return NULL;
     }
     scene->root = root;
-    for (; json_is_object(root) && sets && *sets; sets++) io_scene_override(root, *sets, faults);
+    for (; json_is_object(root) && sets && *sets; sets++) io_scene_override(root, *sets, faults, scene->notes);
     if (is_a_scene(root, place)) {
         read_top(scene, place);
         read_outputs(scene, place, exporters);
@@ -342,6 +344,7 @@ void io_scene_free(io_scene *scene) {
     if (scene->view) clear_params(scene->view_kind, scene->view);
     free(scene->view);
     json_decref(scene->root);
+    json_decref(scene->notes);
     free(scene->path);
     free(scene);
 }
@@ -353,5 +356,7 @@ const io_scene_settings *io_scene_get(const io_scene *scene) {
 skein_world *io_scene_build(const io_scene *scene, const skein_world_desc *desc, io_faults *faults) {
     double dt;
     io_scene_steps_per_frame(&scene->settings, &dt);
+    for (size_t i = 0; desc && desc->log && i < json_array_size(scene->notes); i++)
+        desc->log(desc->log_user, SKEIN_LOG_INFO, json_string_value(json_array_get(scene->notes, i)));
     return io_world_from_document(scene->root, scene->path, dt, desc, faults);
 }

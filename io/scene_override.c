@@ -2,7 +2,7 @@
  *
  *   bodies.0.stretch.stiffness=2e4     a place in a list, then fields
  *   colliders.ball.centre=[0,1,0]      a name in a list; JSON after the equals sign
- *   method.type=symplectic_euler       a word needs no quotes
+ *   method.type=symplectic_euler       a word needs no quotes; the method keeps what both kinds have
  *
  * A member that an object does not have yet is made: whether there is such a field is found out by the
  * reader, as for every other member. */
@@ -64,7 +64,24 @@ static void report_dead_end(io_place place, const char *path, const json_t *at, 
     else io_fault(place, "", SKEIN_ERROR_NAME, "%.100s is %s: it has no '%.100s'", path, io_json_words(at, words), key);
 }
 
-bool io_scene_override(json_t *root, const char *set, io_faults *faults) {
+/* Another kind of method takes over: what it does not know is left out, and said. A kind that does not exist is
+ * for the reader to find. */
+static void leave_out_strangers(json_t *method, const char *type, json_t *notes) {
+    const skein_kind *kind = type ? skein_kind_find(SKEIN_METHOD, type, NULL) : NULL;
+    const char *name, *old = json_string_value(json_object_get(method, "type"));
+    json_t *value;
+    void *next;
+    if (!kind || (old && !strcmp(old, type))) return;
+    json_object_foreach_safe(method, next, name, value) {
+        char note[300];
+        if (!strcmp(name, "type") || skein_field_find(kind, name, NULL)) continue;
+        snprintf(note, sizeof note, "method.%.100s is left out: %s has no such field", name, type);
+        json_array_append_new(notes, json_string(note));
+        json_object_del(method, name);
+    }
+}
+
+bool io_scene_override(json_t *root, const char *set, io_faults *faults, json_t *notes) {
     char option[200];
     snprintf(option, sizeof option, "--set %s", set);
     io_place place = {option, "", faults};
@@ -92,6 +109,7 @@ bool io_scene_override(json_t *root, const char *set, io_faults *faults) {
             at = next;
         }
     }
+    if (good && !strncmp(set, "method.type=", 12)) leave_out_strangers(at, json_string_value(value), notes);
     if (good && !set_member(at, key, value)) {
         if (key > path) key[-1] = 0;
         report_dead_end(place, path, at, key);

@@ -42,8 +42,9 @@ char *io_json_join(const json_t *json);
 /* How many numbers a field takes; 0 for texts and words. */
 int io_field_numbers(const skein_field *field);
 
-/* Sets "path=value" in a document; names stand for places in lists. */
-bool io_scene_override(json_t *root, const char *set, io_faults *faults);
+/* Sets "path=value" in a document; names stand for places in lists. What the reader should know goes to the list
+ * `notes` as texts. */
+bool io_scene_override(json_t *root, const char *set, io_faults *faults, json_t *notes);
 
 /* The path of a file that the scene names: relative to the scene's folder. NULL when there is no memory; free it. */
 char *io_path_beside(const char *scene, const char *file);

@@ -13,9 +13,15 @@ static void must(const skein_world *world, skein_status status) {
     abort();
 }
 
+typedef struct bits_case {
+    const char *method;
+    int substeps; /* that are stable, or nearly */
+    bool plain;   /* only forces that XPBD takes in with its prediction */
+} bits_case;
+
 /* A grid in strips, a mesh in groups, loose particles, tethers, contact: every wide kernel has a part. */
-/* `plain`: only forces that XPBD takes in with its prediction. */
-static uint64_t hash_of_run(const char *method, bool plain, const char *isa, int threads) {
+static uint64_t hash_of_run(const bits_case *c, const char *isa, int threads) {
+    bool plain = c->plain;
     setenv("SKEIN_SIMD", isa, 1);
     skein_world_desc desc = skein_default_world_desc();
     desc.thread_count = threads;
@@ -25,7 +31,7 @@ static uint64_t hash_of_run(const char *method, bool plain, const char *isa, int
     static const double corners[] = {0, 0, 0, 0.4, 0, 0.1, 0.1, 0.1, 0.5, 0.6, 0.1, 0.6, 0.3, 0.2, 0.9};
     static const uint32_t sizes[] = {3, 3, 3}, faces[] = {0, 1, 2, 1, 3, 2, 2, 3, 4};
     skein_mesh mesh = {corners, 5, sizes, 3, faces, 9};
-    must(world, skein_method_set(world, method, SKEIN_SETTINGS(SKEIN_REAL("substeps", 8))));
+    must(world, skein_method_set(world, c->method, SKEIN_SETTINGS(SKEIN_REAL("substeps", c->substeps))));
     must(world, skein_body_add(world, "cloth", NULL,
                                SKEIN_SETTINGS(SKEIN_PAIR("grid", 53, 70), SKEIN_VEC3("position", 0.1, 0.6, 0),
                                               SKEIN_TEXT("pins", "top corners"), SKEIN_REAL("stretch.stiffness", 30),
@@ -61,13 +67,19 @@ static uint64_t hash_of_run(const char *method, bool plain, const char *isa, int
 }
 
 /* Any compiler and machine must come to these; they change only when the arithmetic or its order does. */
-enum { BITS_CASES = 3 };
-static const char *const bits_methods[BITS_CASES] = {"symplectic_euler", "xpbd", "xpbd"};
-static const bool bits_plain[BITS_CASES] = {false, false, true};
+enum { BITS_CASES = 10 };
+static const bits_case bits_cases[BITS_CASES] = {
+    {"symplectic_euler", 8, false}, {"xpbd", 8, false},      {"xpbd", 8, true},       {"explicit_euler", 64, false},
+    {"lookahead_euler", 24, false}, {"midpoint", 24, false}, {"leapfrog", 12, false}, {"rk4", 8, false},
+    {"backward_euler", 1, false},   {"pbd", 8, false}};
 #ifdef SKEIN_DOUBLE
-static const uint64_t golden[BITS_CASES] = {0xad9f462d98c7e551, 0xc17cb68e47f5d100, 0x64fa64a0851d6d63};
+static const uint64_t golden[BITS_CASES] = {
+    0xad9f462d98c7e551, 0xc17cb68e47f5d100, 0x64fa64a0851d6d63, 0xb33b981a0dac0ae4, 0xdcf3f89d3aeea72d,
+    0x0b23cb7b5c63d9bb, 0xd0de5d83fc4f138a, 0x0426aadc33732c76, 0x47120f698a25ded3, 0x91c99204525cd8b4};
 #else
-static const uint64_t golden[BITS_CASES] = {0x15e27e80dbe1339b, 0x656747569eb24730, 0xea71418305bbe6dd};
+static const uint64_t golden[BITS_CASES] = {
+    0x15e27e80dbe1339b, 0x656747569eb24730, 0xea71418305bbe6dd, 0xf777ef762213a0ba, 0x85e18c9a00eb7427,
+    0x1c09e8a47f05d485, 0x5c0446e3f5793462, 0x1877b099722a3c93, 0x83bddc8c254eb057, 0x5879374aa1da2269};
 #endif
 
 #endif

@@ -24,6 +24,9 @@ static void judge_report(const json_t *report, int frames) {
         {"ms_per_step", 0, 1e5},
         {"realtime_factor", 0, 1e6},
         {"kinetic_energy", 0, 1e3},
+        {"potential_energy", -1e3, 1e3},
+        {"elastic_energy", 0, 1e3},
+        {"dissipated_energy", -1e3, 1e3},
         {"max_stretch", 0, 1},
         {"p99_stretch", 0, 1},
         {"worst_stretch_of_run", 0, 1},
@@ -284,12 +287,62 @@ static void seams_are_welded_and_exported_as_they_came(void **state) {
     outcome_free(&o);
 }
 
+/* A header with units, then a line for the start and for each step. */
+static void a_log_has_a_line_a_step(void **state) {
+    (void)state;
+    const char *s = tiny_scene();
+    outcome o = SKEIN("run", s, "--frames", "3", "--fps", "30", "--log", in_folder("run.csv"), "--quiet");
+    assert_status(o, 0);
+    assert_contains(o.out, "run.csv\n");
+    outcome_free(&o);
+    char *text = read_text(in_folder("run.csv")), *line = strtok(text, "\n");
+    assert_non_null(
+        strstr(line, "step,time (s),kinetic (J),potential (J),elastic (J),dissipated (J),momentum x (kg m/s)"));
+    size_t columns = 1;
+    for (const char *at = line; (at = strchr(at, ',')) != NULL; at++) columns++;
+    double start = 0;
+    for (int n = 0; n <= 6; n++) {
+        char *at = strtok(NULL, "\n");
+        assert_non_null(at);
+        double value[32];
+        for (size_t c = 0; c < columns; c++, at++) {
+            value[c] = strtod(at, &at);
+            assert_true(isfinite(value[c]));
+            assert_int_equal(*at, c + 1 < columns ? ',' : 0);
+        }
+        assert_true(value[0] == n && fabs(value[1] - n / 60.0) < 1e-8);
+        // the account of energies is kept
+        double all = value[2] + value[3] + value[4];
+        if (!n) start = all;
+        assert_true(fabs(value[5] - (start - all)) < 1e-6);
+    }
+    assert_null(strtok(NULL, "\n"));
+    free(text);
+
+    // a run that blows up leaves its log, which says how it came to it
+    o = SKEIN("run", s, "--log", in_folder("bad.csv"), "--quiet", "--frames", "400", "--set",
+              "method={\"type\":\"explicit_euler\",\"substeps\":1}", "--set", "bodies.0.stretch.stiffness=1e6");
+    assert_status(o, 1);
+    assert_contains(o.err, "blew up");
+    assert_true(exists(in_folder("bad.csv")));
+    outcome_free(&o);
+    o = SKEIN("run", s, "--log", in_folder("no/such/run.csv"), "--quiet", "--out", in_folder("not made"));
+    assert_status(o, 2);
+    assert_contains(o.err, "no/such/run.csv");
+    assert_false(exists(in_folder("not made")));
+    outcome_free(&o);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
 #define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
-        TEST(every_scene_runs),          TEST(runs_and_threads_give_the_same_bits),
-        TEST(sets_reach_what_they_name), TEST(frames_and_their_rate_can_be_told),
-        TEST(bodies_never_share_a_file), TEST(seams_are_welded_and_exported_as_they_came),
+        TEST(every_scene_runs),
+        TEST(runs_and_threads_give_the_same_bits),
+        TEST(sets_reach_what_they_name),
+        TEST(frames_and_their_rate_can_be_told),
+        TEST(a_log_has_a_line_a_step),
+        TEST(bodies_never_share_a_file),
+        TEST(seams_are_welded_and_exported_as_they_came),
     };
     return cmocka_run_group_tests_name("command run", tests, NULL, NULL);
 }

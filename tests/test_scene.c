@@ -197,6 +197,46 @@ static void sets_change_the_scene(void **state) {
     skein_world_destroy(world);
 }
 
+static void collect_log(void *user, skein_log_level level, const char *message) {
+    (void)level;
+    char *all = user;
+    strcat(strcat(all, message), "\n");
+}
+
+/* Another kind of method keeps what it knows, drops what it does not, and says so. */
+static void a_method_changes_its_type_alone(void **state) {
+    (void)state;
+    static const char scene[] = "{ 'method': { 'type': 'xpbd', 'substeps': 7, 'iterations': 3 },\n"
+                                "  'bodies': [ { 'type': 'cloth', 'grid': [3, 3] } ] }";
+    for (size_t i = 0; skein_kind_at(SKEIN_METHOD, i); i++) {
+        const char *name = skein_kind_at(SKEIN_METHOD, i)->name;
+        bool knows = skein_field_find(skein_kind_at(SKEIN_METHOD, i), "iterations", NULL) != NULL;
+        char set[64], log[256] = "", note[128] = "";
+        snprintf(set, sizeof set, "method.type=%s", name);
+        const char *const sets[] = {set, NULL};
+        io_faults faults = {print_fault, NULL, 0};
+        io_scene *read = read_scene(scene, sets);
+        skein_world_desc desc = skein_default_world_desc();
+        desc.log = collect_log, desc.log_user = log;
+        skein_world *world = io_scene_build(read, &desc, &faults);
+        io_scene_free(read);
+        assert_non_null(world);
+        assert_string_equal(skein_object_kind(world, skein_object_at(world, SKEIN_METHOD, 0))->name, name);
+        assert_true(number_at(world, "method.substeps") == 7);
+        if (knows) assert_true(number_at(world, "method.iterations") == 3);
+        else snprintf(note, sizeof note, "method.iterations is left out: %s has no such field\n", name);
+        assert_string_equal(log, note);
+        skein_world_destroy(world);
+    }
+    // what is asked for after the change is meant for the new type: a fault if it does not know it
+    const char *const sets[] = {"method.type=leapfrog", "method.iterations=3", NULL};
+    io_faults quiet = {NULL, NULL, 0};
+    io_scene *read = read_scene(scene, sets);
+    assert_null(io_scene_build(read, NULL, &quiet));
+    assert_int_equal(quiet.count, 1);
+    io_scene_free(read);
+}
+
 /* ---- Constraints between particles that bodies made -------------------------------------------------- */
 
 /* Three patches of cloth, each of 4 particles, threaded on a rope: 0-3 are held, 4-7 and 8-11 hang by it. */
@@ -244,6 +284,7 @@ int main(void) {
         TEST(the_top_has_defaults_and_values), TEST(every_type_of_field_arrives),
         TEST(pins_have_short_forms),           TEST(meshes_are_found_beside_the_scene),
         TEST(sets_change_the_scene),           TEST(constraints_tie_bodies_together),
+        TEST(a_method_changes_its_type_alone),
     };
     return cmocka_run_group_tests_name("scene", tests, NULL, NULL);
 }

@@ -221,7 +221,7 @@ static void a_refusal_leaves_the_folder_as_it_was(void **state) {
 static void all_faults_are_named_in_one_run(void **state) {
     (void)state;
     char *path = in_folder("faults.json"), words[2048];
-    write_scene(path, "{ 'frames': -1, 'fsp': 60, 'method': { 'type': 'rk4' },\n"
+    write_scene(path, "{ 'frames': -1, 'fsp': 60, 'method': { 'type': 'rk5' },\n"
                       "  'bodies': [ { 'type': 'cloth', 'grid': [3, 3], 'size': [1], 'density': 'x' },\n"
                       "    { 'type': 'cloth', 'grid': [3, 3], 'pins': 'botom edge' },\n"
                       "    { 'type': 'cloth', 'mesh': 'no.obj' } ],\n"
@@ -239,7 +239,7 @@ static void all_faults_are_named_in_one_run(void **state) {
         "%s: fsp: scene has no field 'fsp'; did you mean 'fps'?",
         "%s: output.0: there is no exporter 'gif'",
         "%s: output.1.every: 0 is out of range",
-        "%s: method.type: there is no method 'rk4'",
+        "%s: method.type: there is no method 'rk5'",
         "%s: bodies.0.size: expected two numbers in m, not a list of 1",
         "%s: bodies.0.density: expected a number in kg/m2, not the text 'x'",
         "%s: bodies.1.pins: 'botom edge' names no part of a cloth; did you mean 'bottom edge'?",

@@ -348,13 +348,25 @@ skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, s
 
 typedef struct skein_statistics {
     uint64_t steps, substeps;
-    double time;            /* s, simulated */
-    double kinetic_energy;  /* J */
-    double momentum[3];     /* kg m/s */
-    double max_stretch;     /* largest (length - rest)/rest of the edges; 0.01 is one per cent */
-    double p99_stretch;     /* 99 % of the edges stretch at most so much */
-    double max_penetration; /* m, below a collider's thickness */
-    size_t contacts;        /* pairs of a particle and a collider that touch */
+    double time;                /* s, simulated */
+    double kinetic_energy;      /* J */
+    double potential_energy;    /* J, of gravity; 0 at the origin */
+    double elastic_energy;      /* J, in constraints; what is rigid holds none */
+    double dissipated_energy;   /* J: the energy when the first step began, less the energy now. What damping, friction,
+                                   impacts and the method itself have taken; wind, moving colliders and changes made by
+                                   hand count against it */
+    double momentum[3];         /* kg m/s */
+    double angular_momentum[3]; /* kg m2/s, about the origin */
+    double max_stretch;         /* largest (length - rest)/rest of the edges; 0.01 is one per cent */
+    double p99_stretch;         /* 99 % of the edges stretch at most so much */
+    /* of the last step of a method that solves for it (backward_euler), else 0 */
+    double residual;          /* what was left of the balance of momentum, as a share of its start: the worst
+                                 substep's */
+    size_t unsolved;          /* substeps left with more than the tolerance, and more than rounding explains */
+    size_t solver_turns;      /* of Newton's method */
+    size_t solver_iterations; /* of conjugate gradients */
+    double max_penetration;   /* m, below a collider's thickness */
+    size_t contacts;          /* pairs of a particle and a collider that touch */
     size_t particles, held_particles, constraints;
     size_t nonfinite;    /* particles with a position or velocity that is not finite */
     size_t memory_bytes; /* held by the world now */

@@ -76,6 +76,11 @@ extern const sk_kernels sk_contact_push;
 /* Position methods, once V has followed X: pushes X out with friction against X0, the second source, and gives V
  * the same move, and the bounce that V0, the third source, had coming. */
 extern const sk_kernels sk_contact_settle;
+/* Implicit methods: what a collider holds through the substep, as a filter in dst and the second source (xx yy zz and
+ * xy xz yz), friction added to the third, and V as it is held. */
+extern const sk_kernels sk_contact_filter;
+/* The same for what has come inside since, X being where V leads from X0. */
+extern const sk_kernels sk_contact_filter_more;
 
 /* Whether contact with this collider looks at F after the velocity update: what bounces must know what weighs. */
 bool sk_contact_reads_force(const sk_collider *collider);

@@ -36,8 +36,14 @@ typedef struct sk_constraint_type {
     sk_sweep_kernels project_damped; /* with damping or several passes */
     sk_sweep_kernels limit;          /* keeps C under the batch's bound; positions */
     sk_sweep_kernels limit_moving;   /* the same, and velocities: where they are not taken from positions */
+    /* For implicit solves, over a batch's elements, with the row's coefficients a and b: dst += (a k + b c) p for the
+     * direction p, its second source, k and c being the stiffness and damping at X (positive definite); and that
+     * matrix's diagonal 3 x 3 blocks, xx yy zz into dst, xy xz yz into its second source. */
+    sk_kernels apply, diagonal;
     /* Relative violation of elements [begin, end): (length - rest)/rest for a distance. */
     void (*strain)(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, real *strain);
+    /* C of elements [begin, end): half of its square times the stiffness is their energy. */
+    void (*value)(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, double *value);
 } sk_constraint_type;
 
 /* What every constraint kind is made of. */

@@ -50,6 +50,14 @@ SK_INLINE void SK_ISA(pair)(sk_pair *p, const sk_pair_constants *c, sk_pair_mode
     p->db = SK_ISA(along)(s * p->wb, d);
 }
 
+/* k along the spring; the tension over the length across it, where it is stretched (pressed, it would give way). */
+SK_INLINE void SK_ISA(stiffness)(sk_wide k, sk_wide rest, sk_wide length, sk_wide inverse_length, sk_wide *along,
+                                 sk_wide *across) {
+    *along = k;
+    *across = SK_ISA(sk_keep)(SK_ISA(sk_more)(length, rest), k * (length - rest) * inverse_length);
+}
+
+#include "constraints/pair_solve.h"
 #include "constraints/pair_sweeps.h"
 
 #else
@@ -82,6 +90,15 @@ static void strain(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t
     }
 }
 
+static void value(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, double *out) {
+    for (size_t e = begin; e < end; e++) {
+        const sk_vec4 *a = &x[batch->slot[2 * e]], *b = &x[batch->slot[2 * e + 1]];
+        const double at[2][3] = {{(double)a->x, (double)a->y, (double)a->z},
+                                 {(double)b->x, (double)b->y, (double)b->z}};
+        out[e - begin] = rest_length(at) - (double)batch->rest[e];
+    }
+}
+
 const sk_constraint_type sk_distance = {
     .kind = {"distance", "keeps two particles at their rest distance (a spring and damper)", SKEIN_CONSTRAINT, fields,
              sizeof fields / sizeof *fields, sizeof(distance_params)},
@@ -92,6 +109,9 @@ const sk_constraint_type sk_distance = {
     .project_damped = {{SK_EACH_ISA(project_damped_strips)}, {SK_EACH_ISA(project_damped_groups)}},
     .limit = {{SK_EACH_ISA(limit_strips)}, {SK_EACH_ISA(limit_groups)}},
     .limit_moving = {{SK_EACH_ISA(limit_moving_strips)}, {SK_EACH_ISA(limit_moving_groups)}},
+    .apply = {SK_EACH_ISA(apply)},
+    .diagonal = {SK_EACH_ISA(diagonal)},
     .strain = strain,
+    .value = value,
 };
 #endif

@@ -18,6 +18,24 @@ static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t 
     }
 }
 
+/* The quadratic part grows by |v| across the motion and twice that along it: the larger one keeps a solve steady. */
+static void SK_ISA(resistance)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const drag_params *params = ((const sk_force *)row->rule)->params;
+    real a = (real)row->coefficient[0], rate = (real)params->rate, quadratic = (real)params->quadratic;
+    sk_wide linear = SK_ISA(sk_splat)((real)params->linear);
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        bool packed = slot < row->packed;
+        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed);
+        sk_wide4 d = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed);
+        sk_wide speed = SK_ISA(sk_wide_sqrt)(v.x * v.x + v.y * v.y + v.z * v.z);
+        sk_wide drag = a * ((linear + rate * v.w) + 2 * quadratic * speed);
+        // slots without a particle have no mass, and stay without
+        drag = SK_ISA(sk_keep)(SK_ISA(sk_positive)(v.w), drag);
+        d.x += drag, d.y += drag, d.z += drag;
+        SK_ISA(sk_store_block)(run->vector[row->dst], slot, packed, d);
+    }
+}
+
 #else
 #include "forces/force.h"
 
@@ -46,7 +64,9 @@ const sk_force_type sk_drag = {
     .kind = {"drag", "air damping, linear and quadratic in the speed", SKEIN_FORCE, fields,
              sizeof fields / sizeof *fields, sizeof(drag_params)},
     .domain = SK_OVER_PARTICLES,
+    .on_velocity = true,
     .kernel = {SK_EACH_ISA(kernel)},
     .plain = plain,
+    .resistance = {SK_EACH_ISA(resistance)},
 };
 #endif

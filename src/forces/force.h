@@ -13,12 +13,18 @@ typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOUR
 typedef struct sk_force_type {
     skein_kind kind;
     sk_domain domain;
-    bool sets; /* its kernel minds the row's `sets`: it can be the first to write F */
+    bool sets;        /* its kernel minds the row's `sets`: it can be the first to write F */
+    bool on_velocity; /* it depends on velocities */
     sk_kernels kernel;
     /* Adds the force to the sum if it is plain with these parameters, else returns false; NULL: it never is. */
     bool (*plain)(const void *params, sk_plain_force *sum);
+    /* For implicit methods, with the row's coefficient a: dst += a d, where -d is how the force grows with the
+     * particle's own velocity; the same in x, y and z. NULL: it does not, or too little to matter. */
+    sk_kernels resistance;
     /* Neighbour rules: how far they reach, m; NULL else. */
     double (*radius)(const void *params);
+    /* The potential energy of a particle at x; NULL: it has none. */
+    double (*potential)(const void *params, const double x[3], double mass);
 } sk_force_type;
 
 /* A force as methods see it: a type with its parameters. A row's rule is one of these. */

@@ -32,6 +32,11 @@ static bool plain(const void *params, sk_plain_force *sum) {
     return true;
 }
 
+static double potential(const void *data, const double x[3], double mass) {
+    const double *g = ((const gravity_params *)data)->acceleration;
+    return -mass * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
+}
+
 #define SK_KERNELS "forces/gravity.c"
 #include "base/for_each_isa.h"
 
@@ -42,5 +47,6 @@ const sk_force_type sk_gravity = {
     .sets = true,
     .kernel = {SK_EACH_ISA(kernel)},
     .plain = plain,
+    .potential = potential,
 };
 #endif

@@ -49,5 +49,6 @@ const sk_force_type sk_surface_wind = {
     .kind = {"surface_wind", "wind by triangle: lift and drag from its normal and its velocity through the air",
              SKEIN_FORCE, fields, sizeof fields / sizeof *fields, sizeof(surface_wind_params)},
     .domain = SK_OVER_TRIANGLES,
+    .on_velocity = true,
     .kernel = {SK_ANY_ISA(kernel)},
 };

@@ -13,11 +13,28 @@ typedef struct sk_method_type {
     /* Writes the rows of one step of `dt` seconds. */
     void (*write)(sk_writer *writer, const void *params, double dt);
     int (*substeps)(const void *params);
+    /* One substep of the oscillator x'' = -x - 2 zeta x' as a matrix on (x, v), by rows; `z` is the substep
+     * (of any oscillator: times its angular frequency). It says which substeps are stable. NULL: all are. */
+    void (*amplify)(double z, double zeta, double matrix[4]);
 } sk_method_type;
+
+/* The parameters of a method that has nothing to choose but its substeps; others begin with the same. */
+typedef struct sk_substeps {
+    int32_t substeps;
+} sk_substeps;
+
+#define SK_SUBSTEPS_FIELD(initial) \
+    SK_INT(sk_substeps, substeps, "substeps", "", initial, 1, 100000, "equal parts that a step is cut into")
+
+int sk_substeps_of(const void *params);
 
 /* For methods that need finite forces: names the first rigid batch. */
 skein_status sk_refuse_rigid(const sk_rules *rules, const char *method, skein_error *error);
 
-extern const sk_method_type sk_symplectic_euler, sk_xpbd;
+/* The matrix 1 + c1 zA + c2 (zA)^2 + c3 (zA)^3 + c4 (zA)^4 of a Runge-Kutta method, A being the oscillator's. */
+void sk_amplify_polynomial(double z, double zeta, const double c[4], double matrix[4]);
+
+extern const sk_method_type sk_explicit_euler, sk_symplectic_euler, sk_lookahead_euler, sk_midpoint, sk_leapfrog,
+    sk_rk4, sk_backward_euler, sk_pbd, sk_xpbd;
 
 #endif

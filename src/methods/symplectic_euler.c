@@ -2,26 +2,16 @@
  * undamped motion bounded while h is under 2/omega of the stiffest spring. */
 #include "methods/method.h"
 
-typedef struct symplectic_euler_params {
-    int32_t substeps;
-} symplectic_euler_params;
-
-static const skein_field fields[] = {
-    SK_INT(symplectic_euler_params, substeps, "substeps", "", 20, 1, 100000, "equal parts that a step is cut into"),
-};
+static const skein_field fields[] = {SK_SUBSTEPS_FIELD(20)};
 
 static skein_status check(const void *params, const sk_rules *rules, skein_error *error) {
     (void)params;
     return sk_refuse_rigid(rules, "symplectic_euler", error);
 }
 
-static int substeps(const void *params) {
-    return ((const symplectic_euler_params *)params)->substeps;
-}
-
 static void write(sk_writer *writer, const void *params, double dt) {
-    double h = dt / substeps(params);
-    size_t repeat = sk_write_repeat(writer, (size_t)substeps(params), h);
+    double h = dt / sk_substeps_of(params);
+    size_t repeat = sk_write_repeat(writer, (size_t)sk_substeps_of(params), h);
     sk_write_fields(writer);
     sk_write_forces(writer);
     sk_write_contacts(writer, SK_CONTACT_FORCE);
@@ -33,10 +23,17 @@ static void write(sk_writer *writer, const void *params, double dt) {
     sk_write_end(writer, repeat);
 }
 
+static void amplify(double z, double zeta, double matrix[4]) {
+    double kicked[2] = {-z, 1 - 2 * z * zeta};
+    matrix[0] = 1 + z * kicked[0], matrix[1] = z * kicked[1];
+    matrix[2] = kicked[0], matrix[3] = kicked[1];
+}
+
 const sk_method_type sk_symplectic_euler = {
     .kind = {"symplectic_euler", "forces, then velocities, then positions; needs small substeps for stiff springs",
-             SKEIN_METHOD, fields, sizeof fields / sizeof *fields, sizeof(symplectic_euler_params)},
+             SKEIN_METHOD, fields, sizeof fields / sizeof *fields, sizeof(sk_substeps)},
     .check = check,
     .write = write,
-    .substeps = substeps,
+    .substeps = sk_substeps_of,
+    .amplify = amplify,
 };

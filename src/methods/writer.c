@@ -6,7 +6,7 @@
 #include "constraints/sweep.h"
 #include "methods/method.h"
 
-static void add(sk_writer *writer, sk_row row) {
+void sk_add_row(sk_writer *writer, sk_row row) {
     row.dt = writer->h;
     row.packed = writer->packed;
     if (!sk_plan_add(writer->plan, writer->allocator, row)) writer->no_memory = true;
@@ -14,7 +14,7 @@ static void add(sk_writer *writer, sk_row row) {
 
 size_t sk_write_repeat(sk_writer *writer, size_t times, double h) {
     writer->h = h;
-    add(writer, (sk_row){.kind = SK_ROW_REPEAT, .end = times, .order = SK_ORDERED, .label = "repeat"});
+    sk_add_row(writer, (sk_row){.kind = SK_ROW_REPEAT, .end = times, .order = SK_ORDERED, .label = "repeat"});
     return writer->plan->count - 1;
 }
 
@@ -24,25 +24,25 @@ void sk_write_end(sk_writer *writer, size_t repeat) {
 
 static void add_combine(sk_writer *writer, const sk_kernels *kernels, sk_vector dst, double a, sk_vector p, double b,
                         sk_vector q) {
-    add(writer, (sk_row){.kind = SK_ROW_COMBINE,
-                         .order = SK_FREE,
-                         .kernel = kernels->version[writer->isa],
-                         .dst = dst,
-                         .source = {p, q, SK_NONE},
-                         .coefficient = {a, b, 0},
-                         .end = writer->slot_count});
+    sk_add_row(writer, (sk_row){.kind = SK_ROW_COMBINE,
+                                .order = SK_FREE,
+                                .kernel = kernels->version[writer->isa],
+                                .dst = dst,
+                                .source = {p, q, SK_NONE},
+                                .coefficient = {a, b, 0},
+                                .end = writer->slot_count});
 }
 
 static void add_layout_rows(sk_writer *writer, sk_row_kind kind, const sk_kernels *kernels) {
     static const sk_vector vectors[] = {SK_X, SK_V};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
-        add(writer, (sk_row){.kind = kind,
-                             .order = SK_FREE,
-                             .kernel = kernels->version[writer->isa],
-                             .dst = vectors[i],
-                             .source = {vectors[i]},
-                             .label = "strips",
-                             .end = writer->strip_slots});
+        sk_add_row(writer, (sk_row){.kind = kind,
+                                    .order = SK_FREE,
+                                    .kernel = kernels->version[writer->isa],
+                                    .dst = vectors[i],
+                                    .source = {vectors[i]},
+                                    .label = "strips",
+                                    .end = writer->strip_slots});
 }
 
 void sk_write_pack(sk_writer *writer) {
@@ -94,13 +94,13 @@ void sk_write_fields(sk_writer *writer) {
     bool first = true; // gravity and the like set F when they come first; others add to a cleared one
     double radius = widest_radius(rules);
     if (radius > 0)
-        add(writer, (sk_row){.kind = SK_ROW_GRID,
-                             .order = SK_ORDERED,
-                             .kernel = build_grid,
-                             .source = {SK_X},
-                             .coefficient = {radius},
-                             .label = "cells",
-                             .end = writer->particle_count});
+        sk_add_row(writer, (sk_row){.kind = SK_ROW_GRID,
+                                    .order = SK_ORDERED,
+                                    .kernel = build_grid,
+                                    .source = {SK_X},
+                                    .coefficient = {radius},
+                                    .label = "cells",
+                                    .end = writer->particle_count});
     for (size_t i = 0; i < rules->forces.count; i++) {
         const sk_force *force = rules->forces.data[i];
         if (!*force->enabled) continue;
@@ -124,7 +124,7 @@ void sk_write_fields(sk_writer *writer) {
             row.end = writer->particle_count;
         }
         row.sets = sets;
-        add(writer, row);
+        sk_add_row(writer, row);
     }
     if (first) sk_write_clear(writer, SK_F);
 }
@@ -171,13 +171,13 @@ void sk_write_prediction(sk_writer *writer, int passes) {
     bool plain = add_up_plain_forces(rules, &writer->plan->plain);
     if (!plain) sk_write_fields(writer);
     sk_vector kept = only_follows(rules, passes) ? SK_X : rules->colliders.count ? SK_V0 : SK_NONE;
-    add(writer, (sk_row){.kind = SK_ROW_COMBINE,
-                         .order = SK_FREE,
-                         .kernel = (plain ? &sk_combine_fall : &sk_combine_predict)->version[writer->isa],
-                         .dst = SK_X,
-                         .source = {SK_V, plain ? SK_NONE : SK_F, kept},
-                         .rule = &writer->plan->plain,
-                         .end = writer->slot_count});
+    sk_add_row(writer, (sk_row){.kind = SK_ROW_COMBINE,
+                                .order = SK_FREE,
+                                .kernel = (plain ? &sk_combine_fall : &sk_combine_predict)->version[writer->isa],
+                                .dst = SK_X,
+                                .source = {SK_V, plain ? SK_NONE : SK_F, kept},
+                                .rule = &writer->plan->plain,
+                                .end = writer->slot_count});
 }
 
 void sk_write_following(sk_writer *writer, int passes) {
@@ -191,15 +191,15 @@ static void add_sweeps(sk_writer *writer, const sk_batch *batch, size_t first, s
     for (size_t i = first; i < batch->sweep_count; i++) {
         const sk_sweep *sweep = &batch->sweeps[i];
         const sk_kernels *walk = sweep->strips ? &kernels->strips : &kernels->groups;
-        add(writer, (sk_row){.kind = kind,
-                             .order = SK_ORDERED,
-                             .kernel = walk->version[writer->isa],
-                             .dst = dst,
-                             .source = {SK_X, second},
-                             .rule = sweep,
-                             .label = sweep->label,
-                             .walk = sweep->walk,
-                             .end = sweep->strips ? sweep->walk.rows - sweep->walk.reach : sweep->group_count});
+        sk_add_row(writer, (sk_row){.kind = kind,
+                                    .order = SK_ORDERED,
+                                    .kernel = walk->version[writer->isa],
+                                    .dst = dst,
+                                    .source = {SK_X, second},
+                                    .rule = sweep,
+                                    .label = sweep->label,
+                                    .walk = sweep->walk,
+                                    .end = sweep->strips ? sweep->walk.rows - sweep->walk.reach : sweep->group_count});
     }
 }
 
@@ -219,8 +219,16 @@ static void add_strip_forces(sk_writer *writer, const sk_batch *batch, size_t *f
                       .end = sweep->walk.rows};
         for (size_t i = 1; i < sweep->together; i++)
             if (sweep[i].walk.reach > row.walk.reach) row.walk.reach = sweep[i].walk.reach;
-        add(writer, row);
+        sk_add_row(writer, row);
     }
+}
+
+static bool has_bound(const sk_batch *batch) {
+    return is_on(batch) && batch->bound && *batch->bound < SK_UNBOUNDED;
+}
+
+static bool is_kept(const sk_limit *limit) {
+    return *limit->enabled && limit->count && *limit->bound < SK_UNBOUNDED;
 }
 
 void sk_write_forces(sk_writer *writer) {
@@ -242,13 +250,13 @@ void sk_write_projections(sk_writer *writer, int passes) {
             const sk_sweep *sweep = &batch->sweeps[w];
             sk_walk walk = sweep->walk;
             walk.reach = 0;
-            add(writer, (sk_row){.kind = SK_ROW_MULTIPLIER,
-                                 .order = SK_ORDERED,
-                                 .kernel = sk_sweep_clear_multipliers,
-                                 .rule = sweep,
-                                 .label = sweep->label,
-                                 .walk = walk,
-                                 .end = sweep->strips ? walk.rows : sweep->group_count});
+            sk_add_row(writer, (sk_row){.kind = SK_ROW_MULTIPLIER,
+                                        .order = SK_ORDERED,
+                                        .kernel = sk_sweep_clear_multipliers,
+                                        .rule = sweep,
+                                        .label = sweep->label,
+                                        .walk = walk,
+                                        .end = sweep->strips ? walk.rows : sweep->group_count});
         }
     }
     for (int pass = 0; pass < passes; pass++)
@@ -259,6 +267,39 @@ void sk_write_projections(sk_writer *writer, int passes) {
             add_sweeps(writer, batch, 0, SK_ROW_PROJECT, keeps ? &batch->type->project_damped : &batch->type->project,
                        SK_X, keeps ? SK_X0 : SK_NONE);
         }
+}
+
+void sk_write_rigid_projections(sk_writer *writer, int passes) {
+    // compliances stand against the square of the substep: over an endless one they are nothing
+    const double endless = 1e10;
+    double h = writer->h;
+    writer->h = endless;
+    for (int pass = 0; pass < passes; pass++)
+        for (size_t i = 0; i < writer->rules->batches.count; i++) {
+            const sk_batch *batch = writer->rules->batches.data[i];
+            if (is_on(batch)) add_sweeps(writer, batch, 0, SK_ROW_PROJECT, &batch->type->project, SK_X, SK_NONE);
+        }
+    writer->h = h;
+}
+
+bool sk_writes_velocity_forces(const sk_writer *writer) {
+    const sk_rules *rules = writer->rules;
+    for (size_t i = 0; i < rules->batches.count; i++)
+        if (is_on(rules->batches.data[i]) && sk_batch_damping_time(rules->batches.data[i]) > 0) return true;
+    for (size_t i = 0; i < rules->forces.count; i++)
+        if (*rules->forces.data[i]->enabled && rules->forces.data[i]->type->on_velocity) return true;
+    return false;
+}
+
+bool sk_writes_corrections(const sk_writer *writer) {
+    const sk_rules *rules = writer->rules;
+    for (size_t i = 0; i < rules->colliders.count; i++)
+        if (rules->colliders.data[i]->common->enabled) return true;
+    for (size_t i = 0; i < rules->batches.count; i++)
+        if (has_bound(rules->batches.data[i])) return true;
+    for (size_t i = 0; i < rules->limits.count; i++)
+        if (is_kept(rules->limits.data[i])) return true;
+    return false;
 }
 
 void sk_write_contacts(sk_writer *writer, sk_contact_sort sort) {
@@ -276,14 +317,14 @@ void sk_write_contacts(sk_writer *writer, sk_contact_sort sort) {
     for (size_t i = 0; i < writer->rules->colliders.count; i++) {
         const sk_collider *collider = writer->rules->colliders.data[i];
         if (!collider->common->enabled) continue;
-        add(writer, (sk_row){.kind = sorts[sort].kind,
-                             .order = SK_FREE,
-                             .kernel = sorts[sort].kernels->version[writer->isa],
-                             .dst = sorts[sort].dst,
-                             .source = {SK_X, settles ? SK_X0 : SK_NONE, settles ? SK_V0 : SK_NONE},
-                             .rule = collider,
-                             .label = collider->label,
-                             .end = writer->slot_count});
+        sk_add_row(writer, (sk_row){.kind = sorts[sort].kind,
+                                    .order = SK_FREE,
+                                    .kernel = sorts[sort].kernels->version[writer->isa],
+                                    .dst = sorts[sort].dst,
+                                    .source = {SK_X, settles ? SK_X0 : SK_NONE, settles ? SK_V0 : SK_NONE},
+                                    .rule = collider,
+                                    .label = collider->label,
+                                    .end = writer->slot_count});
     }
 }
 
@@ -291,22 +332,22 @@ void sk_write_limits(sk_writer *writer, sk_vector velocity) {
     const sk_rules *rules = writer->rules;
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
-        if (!is_on(batch) || !batch->bound || *batch->bound >= SK_UNBOUNDED) continue;
+        if (!has_bound(batch)) continue;
         add_sweeps(writer, batch, 0, SK_ROW_LIMIT,
                    velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving, SK_X, velocity);
     }
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
-        if (!*limit->enabled || !limit->count || *limit->bound >= SK_UNBOUNDED) continue;
-        add(writer, (sk_row){.kind = SK_ROW_LIMIT,
-                             .order = SK_FREE,
-                             .kernel = limit->kernel.version[writer->isa],
-                             .dst = SK_X,
-                             .source = {SK_X, velocity},
-                             .rule = limit,
-                             .label = limit->label,
-                             .begin = limit->first_slot,
-                             .end = limit->first_slot + limit->slot_count});
+        if (!is_kept(limit)) continue;
+        sk_add_row(writer, (sk_row){.kind = SK_ROW_LIMIT,
+                                    .order = SK_FREE,
+                                    .kernel = limit->kernel.version[writer->isa],
+                                    .dst = SK_X,
+                                    .source = {SK_X, velocity},
+                                    .rule = limit,
+                                    .label = limit->label,
+                                    .begin = limit->first_slot,
+                                    .end = limit->first_slot + limit->slot_count});
     }
 }
 

@@ -65,6 +65,14 @@ void sk_write_forces(sk_writer *writer);
 /* X: `passes` sweeps over every batch; X0 is the state at the start of the substep. */
 void sk_write_projections(sk_writer *writer, int passes);
 
+/* The same as if every constraint with a stiffness were rigid and undamped. */
+void sk_write_rigid_projections(sk_writer *writer, int passes);
+
+/* Whether any force or damped constraint depends on velocities. */
+bool sk_writes_velocity_forces(const sk_writer *writer);
+/* Whether contact or limits may change the state behind a substep's back. */
+bool sk_writes_corrections(const sk_writer *writer);
+
 typedef enum sk_contact_sort {
     SK_CONTACT_FORCE,
     SK_CONTACT_IMPULSE,
@@ -75,5 +83,8 @@ typedef enum sk_contact_sort {
 void sk_write_contacts(sk_writer *writer, sk_contact_sort sort);
 /* Limits move X; `velocity` is SK_V where the method does not take velocities from positions, else SK_NONE. */
 void sk_write_limits(sk_writer *writer, sk_vector velocity);
+
+/* For the writers' own files: adds a row, with the present substep and layout. */
+void sk_add_row(sk_writer *writer, sk_row row);
 
 #endif

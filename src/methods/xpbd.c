@@ -15,10 +15,6 @@ static const skein_field fields[] = {
            "passes over the constraints in a substep; more substeps are better spent"),
 };
 
-static int substeps(const void *params) {
-    return ((const xpbd_params *)params)->substeps;
-}
-
 static void write(sk_writer *writer, const void *data, double dt) {
     const xpbd_params *params = data;
     double h = dt / params->substeps;
@@ -39,5 +35,5 @@ const sk_method_type sk_xpbd = {
     .kind = {"xpbd", "positions corrected constraint by constraint; stable at any stiffness", SKEIN_METHOD, fields,
              sizeof fields / sizeof *fields, sizeof(xpbd_params)},
     .write = write,
-    .substeps = substeps,
+    .substeps = sk_substeps_of,
 };

@@ -4,7 +4,10 @@
 
 /* Below this width an element of two columns' step would meet its own block (constraints/sweep.h). */
 enum { LEAST_WIDTH = 3 };
-enum { APART = 11 * 64 }; /* bytes between the vectors' places in a page */
+/* Where a vector begins in a page: all elsewhere. */
+static size_t apart(int vector) {
+    return (size_t)vector * 11 * 64 % 4096;
+}
 
 /* Moves one array into a larger block; the new part is zero. */
 static bool grow(sk_allocator *allocator, void **array, size_t old_count, size_t new_count, size_t size) {
@@ -21,11 +24,33 @@ static size_t room_for(size_t capacity, size_t need) {
     return (room + 15) / 16 * 16;
 }
 
+/* Temporaries hold nothing between steps: they go when slots change, and come back with the next plan. */
+static void drop_temporaries(sk_particles *particles, sk_allocator *allocator) {
+    for (int v = SK_T0; v < SK_VECTOR_COUNT; v++) {
+        sk_release(allocator, particles->vector[v]);
+        particles->vector[v] = NULL;
+    }
+}
+
+bool sk_particles_want(sk_particles *particles, sk_allocator *allocator, uint32_t wanted) {
+    for (int v = SK_T0; v < SK_VECTOR_COUNT; v++) {
+        sk_vec4 **vector = &particles->vector[v];
+        bool is_wanted = wanted >> v & 1;
+        if (is_wanted == (*vector != NULL)) continue;
+        sk_release(allocator, *vector);
+        *vector =
+            is_wanted ? sk_allocate_shifted(allocator, particles->slot_capacity * sizeof **vector, apart(v)) : NULL;
+        if (is_wanted && !*vector) return false;
+    }
+    return true;
+}
+
 static bool reserve(sk_particles *particles, sk_allocator *allocator, size_t particle_need, size_t slot_need) {
     // each array grows on its own: if one fails, the others are merely larger than they need be
     if (slot_need > particles->slot_capacity) {
         size_t old = particles->slot_capacity, room = room_for(old, slot_need);
-        for (int v = SK_X; v < SK_VECTOR_COUNT; v++)
+        drop_temporaries(particles, allocator);
+        for (int v = SK_X; v < SK_T0; v++)
             if (!grow(allocator, (void **)&particles->vector[v], old, room, sizeof(sk_vec4))) return false;
         particles->slot_capacity = room;
     }
@@ -79,8 +104,7 @@ bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, s
 
 void sk_particles_truncate(sk_particles *particles, size_t count) {
     for (size_t i = count; i < particles->count; i++)
-        for (int v = SK_X; v < SK_VECTOR_COUNT; v++)
-            particles->vector[v][particles->slot_of[i]] = (sk_vec4){0, 0, 0, 0};
+        for (int v = SK_X; v < SK_T0; v++) particles->vector[v][particles->slot_of[i]] = (sk_vec4){0, 0, 0, 0};
     while (particles->strips.count && particles->strips.data[particles->strips.count - 1].first_particle >= count)
         particles->strips.count--;
     particles->count = count;
@@ -122,14 +146,14 @@ bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
     uint32_t *by_rank = sk_allocate(allocator, particles->count * sizeof *by_rank);
     bool good = slot_of && by_rank;
     for (size_t i = 0; i < particles->count && good; i++) by_rank[particles->rank[i]] = (uint32_t)i;
-    for (int v = SK_X; v < SK_VECTOR_COUNT && good; v++)
-        good = (vector[v] = sk_allocate_shifted(allocator, slot_count * sizeof(sk_vec4), (size_t)v * APART)) != NULL;
+    for (int v = SK_X; v < SK_T0 && good; v++)
+        good = (vector[v] = sk_allocate_shifted(allocator, slot_count * sizeof(sk_vec4), apart(v))) != NULL;
     if (good) {
         number_slots(particles, by_rank, slot_of);
-        for (int v = SK_X; v < SK_VECTOR_COUNT; v++)
+        for (int v = SK_X; v < SK_T0; v++)
             for (size_t i = 0; i < particles->count; i++)
                 vector[v][slot_of[i]] = particles->vector[v][particles->slot_of[i]];
-        for (int v = SK_X; v < SK_VECTOR_COUNT; v++) {
+        for (int v = SK_X; v < SK_T0; v++) {
             sk_vec4 *old = particles->vector[v];
             particles->vector[v] = vector[v];
             vector[v] = old;
@@ -137,12 +161,13 @@ bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
         uint32_t *old = particles->slot_of;
         particles->slot_of = slot_of;
         slot_of = old;
+        drop_temporaries(particles, allocator);
         particles->slot_count = particles->slot_capacity = slot_count;
         particles->strip_slots = strip_slots;
         particles->empty_slot = empty_slot;
         particles->arranged = true;
     }
-    for (int v = SK_X; v < SK_VECTOR_COUNT; v++) sk_release(allocator, vector[v]);
+    for (int v = SK_X; v < SK_T0; v++) sk_release(allocator, vector[v]);
     sk_release(allocator, slot_of);
     sk_release(allocator, by_rank);
     return good;

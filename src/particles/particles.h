@@ -27,7 +27,7 @@ typedef struct sk_particles {
     size_t strip_slots;               /* the first ones, in strips */
     size_t empty_slot;                /* the first of the last sixteen */
     bool arranged;                    /* slots are as the picture shows */
-    sk_vec4 *vector[SK_VECTOR_COUNT]; /* slots; SK_NONE is unused */
+    sk_vec4 *vector[SK_VECTOR_COUNT]; /* slots; SK_NONE is unused, temporaries may be NULL */
     uint32_t *slot_of;
     uint32_t *place; /* of particles in strips: row x columns + column in their grid */
     uint32_t *rank;  /* where a particle would like to lie: its own index, unless said otherwise */
@@ -49,6 +49,8 @@ bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, s
 void sk_particles_truncate(sk_particles *particles, size_t count);
 /* Gives every particle its slot; the state goes along. False when there is no memory: all as before. */
 bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator);
+/* Makes the temporaries that are wanted (bit v: vector v) and lets the others go. False when there is no memory. */
+bool sk_particles_want(sk_particles *particles, sk_allocator *allocator, uint32_t wanted);
 /* Positions as built, all else zero. */
 void sk_particles_reset(sk_particles *particles);
 /* Holds a particle, or gives it back its mass. */

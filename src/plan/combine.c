@@ -45,6 +45,7 @@ static void SK_ISA(kick)(sk_run *run, const sk_row *row, size_t begin, size_t en
                  q = SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, packed);
         sk_wide k = a * SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed).w;
         p.x += k * q.x, p.y += k * q.y, p.z += k * q.z;
+        if (row->dst != row->source[0]) p.w = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed).w;
         SK_ISA(sk_store_block)(run->vector[row->dst], slot, packed, p);
     }
 }

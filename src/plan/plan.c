@@ -24,13 +24,19 @@ const char *sk_row_kind_text(sk_row_kind kind) {
         [SK_ROW_CONTACT_POSITION] = "contact X",
         [SK_ROW_CONTACT_SETTLE] = "contact XV",
         [SK_ROW_LIMIT] = "limit",
+        [SK_ROW_APPLY] = "apply",
+        [SK_ROW_LINEARISE] = "linearise",
+        [SK_ROW_CONTACT_FILTER] = "contact S",
+        [SK_ROW_DOT] = "dot",
+        [SK_ROW_SCALAR] = "scalar",
         [SK_ROW_REPEAT] = "repeat",
     };
     return names[kind];
 }
 
 static const char *vector_text(sk_vector vector) {
-    static const char *const names[SK_VECTOR_COUNT] = {"", "X", "V", "F", "X0", "V0", "P"};
+    static const char *const names[SK_VECTOR_COUNT] = {"",   "X",  "V",  "F",  "X0", "V0", "P",  "T0",  "T1", "T2",
+                                                       "T3", "T4", "T5", "T6", "T7", "T8", "T9", "T10", "T11"};
     return names[vector];
 }
 
@@ -79,12 +85,19 @@ static void describe_combine(const sk_row *row, char *text, size_t size) {
 }
 
 void sk_row_describe(const sk_row *row, char *text, size_t size) {
+    if (row->kind == SK_ROW_REPEAT && row->cell) {
+        snprintf(text, size, "%-10s %zu times at most the next %zu rows: %s", "repeat", row->end, row->length,
+                 row->label);
+        return;
+    }
     if (row->kind == SK_ROW_REPEAT) {
         snprintf(text, size, "%-10s %zu times the next %zu rows, %g s each", "repeat", row->end, row->length, row->dt);
         return;
     }
     char what[160];
-    if (row->kind == SK_ROW_COMBINE) {
+    if (row->label && (row->kind == SK_ROW_COMBINE || row->kind == SK_ROW_SCALAR)) {
+        snprintf(what, sizeof what, "%s", row->label);
+    } else if (row->kind == SK_ROW_COMBINE) {
         describe_combine(row, what, sizeof what);
     } else {
         char sources[64] = "";

@@ -26,6 +26,18 @@ typedef enum sk_vector {
     SK_X0,       /* position saved at the start of a substep */
     SK_V0,       /* velocity saved likewise */
     SK_PREVIOUS, /* position at the start of the step, for blending between frames; always quads */
+    SK_T0,       /* temporaries: there only while the plan names them, and empty outside a step */
+    SK_T1,
+    SK_T2,
+    SK_T3,
+    SK_T4,
+    SK_T5,
+    SK_T6,
+    SK_T7,
+    SK_T8,
+    SK_T9,
+    SK_T10,
+    SK_T11,
     SK_VECTOR_COUNT
 } sk_vector;
 
@@ -44,6 +56,11 @@ typedef enum sk_row_kind {
     SK_ROW_CONTACT_POSITION,
     SK_ROW_CONTACT_SETTLE,
     SK_ROW_LIMIT,
+    SK_ROW_APPLY,
+    SK_ROW_LINEARISE,
+    SK_ROW_CONTACT_FILTER,
+    SK_ROW_DOT,
+    SK_ROW_SCALAR,
     SK_ROW_REPEAT,
     SK_ROW_KIND_COUNT
 } sk_row_kind;
@@ -68,6 +85,7 @@ typedef struct sk_run {
     sk_grid *grid;
     sk_allocator *allocator;
     double time;    /* at the end of the present substep, s */
+    double *cell;   /* what rows of a solve hand to each other (plan/solve.h) */
     bool no_memory; /* a growing list could not grow: the step fails and says so */
 } sk_run;
 
@@ -103,6 +121,7 @@ struct sk_row {
     size_t packed;     /* slots [0, packed) are in packed blocks when it runs */
     sk_walk walk;      /* of rows whose elements are strip rows */
     size_t length;     /* a repeat: how many rows after it are repeated */
+    int cell;          /* which cell it reads; a repeat that has one ends when it is not 0, and moves no time on */
 };
 
 /* m g + f - (linear + rate m) v on every particle: gravity, plain wind and air drag together. Methods that

@@ -252,6 +252,16 @@ static void run_segments(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_
     }
 }
 
+/* The turns of a repeat, one after the other; further repeats may lie within it. */
+static void run_turns(sk_run *run, sk_tasks *tasks, const sk_row *repeat) {
+    double start = run->time;
+    for (size_t turn = 0; turn < repeat->end; turn++) {
+        if (repeat->cell && run->cell[repeat->cell] != 0) break;
+        if (!repeat->cell) run->time = start + (double)(turn + 1) * repeat->dt;
+        sk_run_rows(run, tasks, repeat + 1, repeat->length);
+    }
+}
+
 void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count) {
     double start = run->time;
     for (size_t r = 0; r < count;) {
@@ -264,15 +274,12 @@ void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count)
             continue;
         }
         sk_walk walk;
-        if (segment_length(row + 1, row->length, &walk) == row->length && walk.rows) {
+        if (!row->cell && segment_length(row + 1, row->length, &walk) == row->length && walk.rows) {
             // the whole repeat is one walk: threads need not meet between turns
             run_walk(run, tasks, row + 1, row->length, &walk, row->end, start, row->dt);
             run->time = start + (double)row->end * row->dt;
         } else {
-            for (size_t turn = 0; turn < row->end; turn++) {
-                run->time = start + (double)(turn + 1) * row->dt;
-                run_segments(run, tasks, row + 1, row->length);
-            }
+            run_turns(run, tasks, row);
         }
         r += 1 + row->length;
     }

@@ -1,12 +1,9 @@
-/* Measures of the present state. Sums are taken in blocks of 1,024 particles in the user's order, so
- * that they do not depend on slots or threads. */
+/* Measures of the present state. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/hash.h"
 #include "world/world.h"
-
-enum { SUM_BLOCK = 1024 };
 
 uint64_t skein_world_hash(const skein_world *world) {
     uint64_t hash = SK_HASH_START;
@@ -29,22 +26,12 @@ static bool is_finite(sk_vec4 p) {
     return sk_abs(p.x) <= SK_REAL_MAX && sk_abs(p.y) <= SK_REAL_MAX && sk_abs(p.z) <= SK_REAL_MAX;
 }
 
-static void measure_motion(const skein_world *world, skein_statistics *s) {
+static void count_particles(const skein_world *world, skein_statistics *s) {
     const sk_particles *all = &world->particles;
-    for (size_t first = 0; first < all->count; first += SUM_BLOCK) {
-        size_t last = first + SUM_BLOCK < all->count ? first + SUM_BLOCK : all->count;
-        double energy = 0, momentum[3] = {0, 0, 0};
-        for (size_t i = first; i < last; i++) {
-            sk_vec4 v = all->vector[SK_V][all->slot_of[i]], x = all->vector[SK_X][all->slot_of[i]];
-            s->nonfinite += !is_finite(v) || !is_finite(x);
-            s->held_particles += !(x.w > 0);
-            if (!(x.w > 0)) continue;
-            double m = (double)v.w, u[3] = {(double)v.x, (double)v.y, (double)v.z};
-            energy += 0.5 * m * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
-            for (int k = 0; k < 3; k++) momentum[k] += m * u[k];
-        }
-        s->kinetic_energy += energy;
-        for (int k = 0; k < 3; k++) s->momentum[k] += momentum[k];
+    for (size_t i = 0; i < all->count; i++) {
+        sk_vec4 v = all->vector[SK_V][all->slot_of[i]], x = all->vector[SK_X][all->slot_of[i]];
+        s->nonfinite += !is_finite(v) || !is_finite(x);
+        s->held_particles += !(x.w > 0);
     }
 }
 
@@ -88,10 +75,18 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     statistics->steps = world->steps;
     statistics->substeps = world->substeps;
     statistics->time = world->time;
+    statistics->residual = world->cell[SK_CELL_WORST];
+    statistics->unsolved = (size_t)world->cell[SK_CELL_UNSOLVED];
+    statistics->solver_turns = (size_t)world->cell[SK_CELL_NEWTON_TURNS];
+    statistics->solver_iterations = (size_t)world->cell[SK_CELL_CG_TURNS];
     statistics->particles = all->count;
     skein_status status = sk_world_arrange(world, error); // the slots of new rules may not be known yet
     if (status) return status;
-    measure_motion(world, statistics);
+    count_particles(world, statistics);
+    sk_world_measure_energy(world, statistics);
+    if (world->steps)
+        statistics->dissipated_energy = world->first_energy - statistics->kinetic_energy -
+                                        statistics->potential_energy - statistics->elastic_energy;
     for (size_t i = 0; i < world->rules.colliders.count; i++) {
         const sk_collider *collider = world->rules.colliders.data[i];
         if (!collider->common->enabled) continue;

@@ -39,6 +39,17 @@ static void warn_of_light_colliders(skein_world *world) {
     }
 }
 
+/* Makes the temporaries that the plan names, and no others. */
+static bool make_temporaries(skein_world *world) {
+    uint32_t wanted = 0;
+    for (size_t r = 0; r < world->plan.count; r++) {
+        const sk_row *row = &world->plan.data[r];
+        wanted |= 1u << row->dst;
+        for (int i = 0; i < 3; i++) wanted |= 1u << row->source[i];
+    }
+    return sk_particles_want(&world->particles, &world->allocator, wanted);
+}
+
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error) {
     if (!(dt > 0) || !(dt <= 1e6))
         return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0", dt);
@@ -68,7 +79,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     sk_write_pack(&writer);
     method->write(&writer, world->method_params, dt);
     sk_write_unpack(&writer);
-    if (writer.no_memory) return sk_fail_memory(error, "the plan");
+    if (writer.no_memory || !make_temporaries(world)) return sk_fail_memory(error, "the plan");
     world->plan_dt = dt;
     world->plan_stale = false;
     return SKEIN_OK;
@@ -83,6 +94,7 @@ sk_run sk_world_run_context(skein_world *world) {
         .grid = &world->grid,
         .allocator = &world->allocator,
         .time = world->time,
+        .cell = world->cell,
     };
     memcpy(run.vector, world->particles.vector, sizeof run.vector);
     return run;
@@ -92,6 +104,12 @@ skein_status skein_world_step(skein_world *world, double dt) {
     skein_error *error = sk_world_error(world);
     skein_status status = sk_world_compile(world, dt, error);
     if (status) return status;
+    if (!world->steps) {
+        skein_statistics start = {0};
+        sk_world_measure_energy(world, &start);
+        world->first_energy = start.kinetic_energy + start.potential_energy + start.elastic_energy;
+    }
+    memset(world->cell, 0, sizeof world->cell);
     sk_run run = sk_world_run_context(world);
     uint64_t mode = sk_float_mode_enter();
     sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
@@ -104,6 +122,7 @@ skein_status skein_world_step(skein_world *world, double dt) {
 }
 
 skein_status skein_world_reset(skein_world *world) {
+    memset(world->cell, 0, sizeof world->cell);
     sk_particles_reset(&world->particles);
     world->time = 0;
     world->steps = world->substeps = 0;
@@ -119,14 +138,15 @@ skein_status skein_world_explain(skein_world *world, double dt, void (*write)(vo
     skein_status status = sk_world_compile(world, dt, sk_world_error(world));
     if (status) return status;
     if (!write) return SKEIN_OK;
-    size_t open_until = 0;
+    enum { MOST_DEPTH = 8 };
+    size_t open_until[MOST_DEPTH], depth = 0; // of the repeats around a row
     for (size_t r = 0; r < world->plan.count; r++) {
         const sk_row *row = &world->plan.data[r];
-        char line[384] = "    ";
-        size_t indent = r < open_until ? 4 : 0;
-        sk_row_describe(row, line + indent, sizeof line - indent);
+        while (depth && r >= open_until[depth - 1]) depth--;
+        char line[384] = "                                ";
+        sk_row_describe(row, line + 4 * depth, sizeof line - 4 * depth);
         write(user, line);
-        if (row->kind == SK_ROW_REPEAT) open_until = r + row->length + 1;
+        if (row->kind == SK_ROW_REPEAT && depth < MOST_DEPTH) open_until[depth++] = r + row->length + 1;
     }
     return SKEIN_OK;
 }

@@ -12,6 +12,7 @@
 #include "base/tasks.h"
 #include "methods/method.h"
 #include "particles/particles.h"
+#include "plan/solve.h"
 
 typedef struct sk_body sk_body;
 
@@ -93,6 +94,8 @@ struct skein_world {
     sk_grid grid;
     double time;
     uint64_t steps, substeps;
+    double first_energy;        /* J, when the first step began */
+    double cell[SK_CELL_COUNT]; /* of the last step */
 };
 
 /* ---- for the catalogue: adding objects of a known type ---- */
@@ -149,7 +152,9 @@ skein_status sk_world_arrange(skein_world *world, skein_error *error);
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error);
 /* The run context of the world's present state. */
 sk_run sk_world_run_context(skein_world *world);
-/* Runs rows in their order; the plan's are a whole step. Repeats do not lie within repeats. */
+/* Fills in the kinetic, potential and elastic energies, and the momenta. The slots are to be up to date. */
+void sk_world_measure_energy(const skein_world *world, skein_statistics *statistics);
+/* Runs rows in their order; the plan's are a whole step. */
 void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count);
 
 #endif

@@ -1,0 +1,68 @@
+#include "app/log.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+
+#include "app/command.h"
+#include "io/file.h"
+
+struct app_log {
+    io_output *output;
+};
+
+/* The columns that are plain numbers: their names, with units, and where in the statistics they are. */
+#define COLUMN(name, member) \
+    { name, offsetof(skein_statistics, member) }
+static const struct {
+    const char *name;
+    size_t offset;
+} columns[] = {
+    COLUMN("time (s)", time),
+    COLUMN("kinetic (J)", kinetic_energy),
+    COLUMN("potential (J)", potential_energy),
+    COLUMN("elastic (J)", elastic_energy),
+    COLUMN("dissipated (J)", dissipated_energy),
+    COLUMN("momentum x (kg m/s)", momentum[0]),
+    COLUMN("momentum y (kg m/s)", momentum[1]),
+    COLUMN("momentum z (kg m/s)", momentum[2]),
+    COLUMN("angular momentum x (kg m2/s)", angular_momentum[0]),
+    COLUMN("angular momentum y (kg m2/s)", angular_momentum[1]),
+    COLUMN("angular momentum z (kg m2/s)", angular_momentum[2]),
+    COLUMN("largest stretch", max_stretch),
+    COLUMN("penetration (m)", max_penetration),
+    COLUMN("residual", residual),
+};
+enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
+
+app_log *app_log_begin(const char *path) {
+    skein_error error = {SKEIN_ERROR_MEMORY, "", "out of memory"};
+    app_log *log = calloc(1, sizeof *log);
+    if (log) log->output = io_output_open(path, &error);
+    if (!log || !log->output) {
+        app_print_error(&error);
+        free(log);
+        return NULL;
+    }
+    io_output_printf(log->output, "step");
+    for (size_t i = 0; i < COLUMN_COUNT; i++) io_output_printf(log->output, ",%s", columns[i].name);
+    io_output_printf(log->output, ",contacts,solver turns,solver iterations,unsolved\n");
+    return log;
+}
+
+void app_log_line(app_log *log, const skein_statistics *statistics) {
+    io_output_printf(log->output, "%" PRIu64, statistics->steps);
+    for (size_t i = 0; i < COLUMN_COUNT; i++)
+        io_output_printf(log->output, ",%.9g",
+                         *(const double *)(const void *)((const char *)statistics + columns[i].offset));
+    io_output_printf(log->output, ",%zu,%zu,%zu,%zu\n", statistics->contacts, statistics->solver_turns,
+                     statistics->solver_iterations, statistics->unsolved);
+}
+
+bool app_log_finish(app_log *log) {
+    if (!log) return true;
+    skein_error error;
+    bool good = !io_output_commit(log->output, &error);
+    if (!good) app_print_error(&error);
+    free(log);
+    return good;
+}

@@ -1,0 +1,38 @@
+/* Explicit Euler: x' = x + h v, v' = v + h w F(x, v), both from the start of the substep. First order. It
+ * gains energy: an undamped spring grows by 1 + (omega h)^2 a substep in the square of its amplitude, however
+ * small the substep; a damped one is stable while h is under 2 zeta/omega. */
+#include "methods/method.h"
+
+static const skein_field fields[] = {SK_SUBSTEPS_FIELD(100)};
+
+static skein_status check(const void *params, const sk_rules *rules, skein_error *error) {
+    (void)params;
+    return sk_refuse_rigid(rules, "explicit_euler", error);
+}
+
+static void write(sk_writer *writer, const void *params, double dt) {
+    double h = dt / sk_substeps_of(params);
+    size_t repeat = sk_write_repeat(writer, (size_t)sk_substeps_of(params), h);
+    sk_write_fields(writer);
+    sk_write_forces(writer);
+    sk_write_contacts(writer, SK_CONTACT_FORCE);
+    sk_write_sum(writer, SK_X, 1, SK_X, h, SK_V);
+    sk_write_kick(writer, SK_V, SK_V, h, SK_F);
+    sk_write_contacts(writer, SK_CONTACT_IMPULSE);
+    sk_write_limits(writer, SK_V);
+    sk_write_contacts(writer, SK_CONTACT_PUSH);
+    sk_write_end(writer, repeat);
+}
+
+static void amplify(double z, double zeta, double matrix[4]) {
+    sk_amplify_polynomial(z, zeta, (const double[4]){1, 0, 0, 0}, matrix);
+}
+
+const sk_method_type sk_explicit_euler = {
+    .kind = {"explicit_euler", "positions and velocities both from the start of the substep: first order, gains energy",
+             SKEIN_METHOD, fields, sizeof fields / sizeof *fields, sizeof(sk_substeps)},
+    .check = check,
+    .write = write,
+    .substeps = sk_substeps_of,
+    .amplify = amplify,
+};

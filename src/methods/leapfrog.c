@@ -1,0 +1,68 @@
+/* Leapfrog, kick-drift-kick (velocity Verlet): half a kick, a whole drift, half a kick at the new place.
+ *
+ *   v* = v + h/2 w F(x, v),   x' = x + h v*,   v' = v* + h/2 w F(x', v')
+ *
+ * Second order, and the energy of undamped motion stays bounded while h is under 2/omega. Where forces
+ * depend on velocities, the closing kick stands on both sides: it is predicted with v* and corrected once
+ * with what came of that, which keeps the second order. Where nothing does, and no contact or limit
+ * interferes, the closing force is the next substep's opening one, and is found once. */
+#include "methods/method.h"
+
+static const skein_field fields[] = {SK_SUBSTEPS_FIELD(20)};
+
+static skein_status check(const void *params, const sk_rules *rules, skein_error *error) {
+    (void)params;
+    return sk_refuse_rigid(rules, "leapfrog", error);
+}
+
+static void write_force(sk_writer *writer) {
+    sk_write_fields(writer);
+    sk_write_forces(writer);
+    sk_write_contacts(writer, SK_CONTACT_FORCE);
+}
+
+static void write_closing_kick(sk_writer *writer, double h) {
+    write_force(writer);
+    if (!sk_writes_velocity_forces(writer)) {
+        sk_write_kick(writer, SK_V, SK_V, h / 2, SK_F);
+        return;
+    }
+    sk_write_sum(writer, SK_V0, 1, SK_V, 0, SK_NONE);
+    sk_write_kick(writer, SK_V, SK_V0, h / 2, SK_F);
+    write_force(writer);
+    sk_write_kick(writer, SK_V, SK_V0, h / 2, SK_F);
+}
+
+static void write(sk_writer *writer, const void *params, double dt) {
+    double h = dt / sk_substeps_of(params);
+    bool force_stays = !sk_writes_velocity_forces(writer) && !sk_writes_corrections(writer);
+    if (force_stays) write_force(writer);
+    size_t repeat = sk_write_repeat(writer, (size_t)sk_substeps_of(params), h);
+    if (!force_stays) write_force(writer);
+    sk_write_kick(writer, SK_V, SK_V, h / 2, SK_F);
+    sk_write_sum(writer, SK_X, 1, SK_X, h, SK_V);
+    write_closing_kick(writer, h);
+    sk_write_contacts(writer, SK_CONTACT_IMPULSE);
+    sk_write_limits(writer, SK_V);
+    sk_write_contacts(writer, SK_CONTACT_PUSH);
+    sk_write_end(writer, repeat);
+}
+
+static void amplify(double z, double zeta, double matrix[4]) {
+    // half a kick, a drift; the rows of x' and of v* in terms of x and v
+    double k[2] = {-z / 2, 1 - z * zeta}, x[2] = {1 + z * k[0], z * k[1]};
+    double predicted[2] = {k[0] - z / 2 * x[0] - z * zeta * k[0], k[1] - z / 2 * x[1] - z * zeta * k[1]};
+    matrix[0] = x[0], matrix[1] = x[1];
+    matrix[2] = k[0] - z / 2 * x[0] - z * zeta * predicted[0];
+    matrix[3] = k[1] - z / 2 * x[1] - z * zeta * predicted[1];
+}
+
+const sk_method_type sk_leapfrog = {
+    .kind = {"leapfrog",
+             "half a kick, a drift, half a kick: second order, keeps energy; the choice for undamped motion",
+             SKEIN_METHOD, fields, sizeof fields / sizeof *fields, sizeof(sk_substeps)},
+    .check = check,
+    .write = write,
+    .substeps = sk_substeps_of,
+    .amplify = amplify,
+};

@@ -1,0 +1,118 @@
+#include "methods/writer_solve.h"
+
+size_t sk_write_until(sk_writer *writer, size_t times, sk_cell cell, const char *label) {
+    sk_add_row(writer,
+               (sk_row){.kind = SK_ROW_REPEAT, .order = SK_ORDERED, .end = times, .cell = (int)cell, .label = label});
+    return writer->plan->count - 1;
+}
+
+void sk_write_solve(sk_writer *writer, const sk_kernels *kernels, sk_vector dst, sk_vector p, sk_vector q,
+                    const char *label) {
+    sk_add_row(writer, (sk_row){.kind = SK_ROW_COMBINE,
+                                .order = SK_FREE,
+                                .kernel = kernels->version[writer->isa],
+                                .dst = dst,
+                                .source = {p, q, SK_NONE},
+                                .label = label,
+                                .end = writer->slot_count});
+}
+
+void sk_write_cell_sum(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_cell cell, sk_vector q,
+                       const char *label) {
+    sk_add_row(writer, (sk_row){.kind = SK_ROW_COMBINE,
+                                .order = SK_FREE,
+                                .kernel = sk_solve_cell_sum.version[writer->isa],
+                                .dst = dst,
+                                .source = {p, q, SK_NONE},
+                                .coefficient = {a},
+                                .cell = (int)cell,
+                                .label = label,
+                                .end = writer->slot_count});
+}
+
+void sk_write_dot(sk_writer *writer, const sk_kernels *kernels, sk_vector p, sk_vector q, double a, const char *label) {
+    sk_add_row(writer, (sk_row){.kind = SK_ROW_DOT,
+                                .order = SK_FREE,
+                                .kernel = kernels->version[writer->isa],
+                                .dst = (sk_vector)SK_SUMS,
+                                .source = {p, q, SK_NONE},
+                                .coefficient = {a},
+                                .label = label,
+                                .end = writer->slot_count});
+}
+
+void sk_write_scalar(sk_writer *writer, sk_row_kernel *kernel, double a, const char *label) {
+    sk_add_row(writer, (sk_row){.kind = SK_ROW_SCALAR,
+                                .order = SK_ORDERED,
+                                .kernel = kernel,
+                                .coefficient = {a},
+                                .label = label,
+                                .end = 1});
+}
+
+static void add_stiffness(sk_writer *writer, sk_row_kind kind, sk_vector dst, sk_vector second, double a, double b) {
+    for (size_t i = 0; i < writer->rules->batches.count; i++) {
+        const sk_batch *batch = writer->rules->batches.data[i];
+        const sk_constraint_type *type = batch->type;
+        if (!*batch->enabled || !batch->count) continue;
+        sk_add_row(writer,
+                   (sk_row){.kind = kind,
+                            .order = SK_ORDERED, // elements that share a particle add to it in their order
+                            .kernel = (kind == SK_ROW_APPLY ? &type->apply : &type->diagonal)->version[writer->isa],
+                            .dst = dst,
+                            .source = {SK_X, second, SK_NONE},
+                            .coefficient = {a, b},
+                            .rule = batch,
+                            .label = batch->label,
+                            .end = batch->count});
+    }
+}
+
+void sk_write_apply(sk_writer *writer, sk_vector dst, sk_vector p, double a, double b) {
+    add_stiffness(writer, SK_ROW_APPLY, dst, p, a, b);
+}
+
+void sk_write_diagonal(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b) {
+    add_stiffness(writer, SK_ROW_LINEARISE, diagonal, off, a, b);
+}
+
+void sk_write_resistance(sk_writer *writer, sk_vector dst, double a) {
+    for (size_t i = 0; i < writer->rules->forces.count; i++) {
+        const sk_force *force = writer->rules->forces.data[i];
+        if (!*force->enabled || !force->type->resistance.version[writer->isa]) continue;
+        sk_add_row(writer, (sk_row){.kind = SK_ROW_LINEARISE,
+                                    .order = SK_FREE,
+                                    .kernel = force->type->resistance.version[writer->isa],
+                                    .dst = dst,
+                                    .source = {SK_V, SK_NONE, SK_NONE},
+                                    .coefficient = {a},
+                                    .rule = force,
+                                    .label = force->label,
+                                    .end = writer->slot_count});
+    }
+}
+
+static void add_filters(sk_writer *writer, const sk_kernels *kernels, sk_vector friction) {
+    for (size_t i = 0; i < writer->rules->colliders.count; i++) {
+        const sk_collider *collider = writer->rules->colliders.data[i];
+        if (!collider->common->enabled) continue;
+        sk_add_row(writer, (sk_row){.kind = SK_ROW_CONTACT_FILTER,
+                                    .order = SK_FREE,
+                                    .kernel = kernels->version[writer->isa],
+                                    .dst = (sk_vector)SK_FILTER0,
+                                    .source = {SK_X, (sk_vector)SK_FILTER1, friction},
+                                    .rule = collider,
+                                    .label = collider->label,
+                                    .end = writer->slot_count});
+    }
+}
+
+void sk_write_filters(sk_writer *writer) {
+    sk_write_solve(writer, &sk_solve_open, (sk_vector)SK_FILTER0, SK_X, (sk_vector)SK_FILTER1, "S = 1 (0 if held)");
+    sk_write_clear(writer, (sk_vector)SK_FRICTION);
+    add_filters(writer, &sk_contact_filter, (sk_vector)SK_FRICTION);
+}
+
+void sk_write_more_filters(sk_writer *writer) {
+    add_filters(writer, &sk_contact_filter_more, SK_X0);
+}

@@ -1,0 +1,32 @@
+/* The pen's second set of nibs: the rows of an implicit solve (plan/solve.h says what they mean). */
+#ifndef SK_METHODS_WRITER_SOLVE_H
+#define SK_METHODS_WRITER_SOLVE_H
+
+#include "methods/writer.h"
+#include "plan/solve.h"
+
+/* Opens a repeat of at most `times` turns that ends when the cell is not 0; sk_write_end closes it. */
+size_t sk_write_until(sk_writer *writer, size_t times, sk_cell cell, const char *label);
+
+/* A combine row of plan/solve.h, as `label` says it. */
+void sk_write_solve(sk_writer *writer, const sk_kernels *kernels, sk_vector dst, sk_vector p, sk_vector q,
+                    const char *label);
+/* dst = p + a cell q */
+void sk_write_cell_sum(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_cell cell, sk_vector q,
+                       const char *label);
+/* Partial sums, and the scalar row that takes them; `a` is the coefficient of whichever needs one. */
+void sk_write_dot(sk_writer *writer, const sk_kernels *kernels, sk_vector p, sk_vector q, double a, const char *label);
+void sk_write_scalar(sk_writer *writer, sk_row_kernel *kernel, double a, const char *label);
+
+/* dst += (a k + b c) p, over every batch: k stiffness and c damping of its springs as they lie at X. */
+void sk_write_apply(sk_writer *writer, sk_vector dst, sk_vector p, double a, double b);
+/* The same matrix's diagonal blocks, added to two vectors. */
+void sk_write_diagonal(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b);
+/* dst += a times what the fields' forces lose with velocity. */
+void sk_write_resistance(sk_writer *writer, sk_vector dst, double a);
+/* S, friction, and V as contact holds it: after F is known at the start of a substep. */
+void sk_write_filters(sk_writer *writer);
+/* S and V for what the present guess has brought inside a collider. */
+void sk_write_more_filters(sk_writer *writer);
+
+#endif

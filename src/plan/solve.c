@@ -1,0 +1,272 @@
+/* The arithmetic of an implicit solve: vectors, partial sums, and the decisions between them. */
+#ifdef SK_ISA
+
+SK_INLINE sk_wide4 SK_ISA(load)(const sk_run *run, const sk_row *row, int vector, size_t slot) {
+    return SK_ISA(sk_load_block)(run->vector[vector], slot, slot < row->packed);
+}
+
+/* Writes x, y and z of a block; w is left as it is. */
+SK_INLINE void SK_ISA(store)(sk_run *run, const sk_row *row, int vector, size_t slot, sk_wide x, sk_wide y, sk_wide z) {
+    sk_wide4 old = SK_ISA(load)(run, row, vector, slot);
+    SK_ISA(sk_store_block)(run->vector[vector], slot, slot < row->packed, (sk_wide4){x, y, z, old.w});
+}
+
+#define FOR_BLOCKS for (size_t slot = begin; slot < end; slot += SK_LANES)
+
+static void SK_ISA(product)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    FOR_BLOCKS {
+        sk_wide4 p = SK_ISA(load)(run, row, (int)row->source[0], slot),
+                 q = SK_ISA(load)(run, row, (int)row->source[1], slot);
+        SK_ISA(store)(run, row, (int)row->dst, slot, p.x * q.x, p.y * q.y, p.z * q.z);
+    }
+}
+
+static void SK_ISA(mass)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    FOR_BLOCKS {
+        sk_wide m = SK_ISA(load)(run, row, SK_V, slot).w;
+        SK_ISA(store)(run, row, (int)row->dst, slot, m, m, m);
+    }
+}
+
+static void SK_ISA(momentum)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    FOR_BLOCKS {
+        sk_wide4 p = SK_ISA(load)(run, row, (int)row->source[0], slot),
+                 q = SK_ISA(load)(run, row, (int)row->source[1], slot);
+        sk_wide4 d = SK_ISA(load)(run, row, (int)row->dst, slot);
+        sk_wide m = SK_ISA(load)(run, row, SK_V, slot).w;
+        SK_ISA(store)
+        (run, row, (int)row->dst, slot, d.x + m * (p.x - q.x), d.y + m * (p.y - q.y), d.z + m * (p.z - q.z));
+    }
+}
+
+static void SK_ISA(cell_sum)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    real a = (real)(row->coefficient[0] * run->cell[row->cell]);
+    FOR_BLOCKS {
+        sk_wide4 p = SK_ISA(load)(run, row, (int)row->source[0], slot),
+                 q = SK_ISA(load)(run, row, (int)row->source[1], slot);
+        SK_ISA(store)(run, row, (int)row->dst, slot, p.x + a * q.x, p.y + a * q.y, p.z + a * q.z);
+    }
+}
+
+static void SK_ISA(filter)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    FOR_BLOCKS {
+        sk_wide4 d = SK_ISA(load)(run, row, SK_FILTER0, slot), o = SK_ISA(load)(run, row, SK_FILTER1, slot);
+        sk_wide4 p = SK_ISA(load)(run, row, (int)row->dst, slot);
+        SK_ISA(store)
+        (run, row, (int)row->dst, slot, d.x * p.x + o.x * p.y + o.y * p.z, o.x * p.x + d.y * p.y + o.z * p.z,
+         o.y * p.x + o.z * p.y + d.z * p.z);
+    }
+}
+
+static void SK_ISA(open)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    FOR_BLOCKS {
+        sk_mask is_free = SK_ISA(sk_positive)(SK_ISA(load)(run, row, SK_X, slot).w);
+        sk_wide one = SK_ISA(sk_keep)(is_free, SK_ISA(sk_splat)(1)), none = {0};
+        SK_ISA(store)(run, row, SK_FILTER0, slot, one, one, one);
+        SK_ISA(store)(run, row, SK_FILTER1, slot, none, none, none);
+    }
+}
+
+SK_INLINE sk_wide SK_ISA(at_least)(sk_wide a, sk_wide least) {
+    return SK_ISA(sk_select)(SK_ISA(sk_more)(a, least), a, least);
+}
+
+/* 1/a, and 0 for slots without a particle. */
+SK_INLINE sk_wide SK_ISA(inverse)(sk_wide a) {
+    return SK_ISA(sk_keep)(SK_ISA(sk_positive)(a), 1 / a);
+}
+
+/* L D L^T, unit triangular L: 1/D in the first vector, l21 l31 l32 in the second. */
+static void SK_ISA(factor)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    FOR_BLOCKS {
+        sk_wide4 d = SK_ISA(load)(run, row, SK_BLOCK0, slot), o = SK_ISA(load)(run, row, SK_BLOCK1, slot);
+        sk_wide least = SK_ISA(load)(run, row, SK_INERTIA, slot).x;
+        sk_wide i1 = SK_ISA(inverse)(SK_ISA(at_least)(d.x, least));
+        sk_wide l21 = o.x * i1, l31 = o.y * i1;
+        sk_wide i2 = SK_ISA(inverse)(SK_ISA(at_least)(d.y - l21 * o.x, least));
+        sk_wide u = o.z - l31 * o.x, l32 = u * i2;
+        sk_wide i3 = SK_ISA(inverse)(SK_ISA(at_least)(d.z - l31 * o.y - l32 * u, least));
+        SK_ISA(store)(run, row, SK_BLOCK0, slot, i1, i2, i3);
+        SK_ISA(store)(run, row, SK_BLOCK1, slot, l21, l31, l32);
+    }
+}
+
+static void SK_ISA(backsolve)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    FOR_BLOCKS {
+        sk_wide4 i = SK_ISA(load)(run, row, SK_BLOCK0, slot), l = SK_ISA(load)(run, row, SK_BLOCK1, slot);
+        sk_wide4 r = SK_ISA(load)(run, row, (int)row->source[0], slot);
+        sk_wide y2 = r.y - l.x * r.x, y3 = r.z - l.y * r.x - l.z * y2;
+        sk_wide z = y3 * i.z, y = y2 * i.y - l.z * z, x = r.x * i.x - l.x * y - l.y * z;
+        SK_ISA(store)(run, row, (int)row->dst, slot, x, y, z);
+    }
+}
+
+/* Leaves the sum of sixteen numbers; `place` tells sums apart that are wanted at the same time. */
+SK_INLINE void SK_ISA(leave)(sk_run *run, size_t slot, int place, sk_wide value) {
+    double sum[4] = {0, 0, 0, 0};
+    for (int l = 0; l < SK_LANES; l += 4)
+        for (int k = 0; k < 4; k++) sum[k] += (double)value[l + k];
+    ((double *)(void *)(run->vector[SK_SUMS] + slot))[place] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+static void SK_ISA(dot)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    FOR_BLOCKS {
+        sk_wide4 p = SK_ISA(load)(run, row, (int)row->source[0], slot),
+                 q = SK_ISA(load)(run, row, (int)row->source[1], slot);
+        SK_ISA(leave)(run, slot, 0, p.x * q.x + p.y * q.y + p.z * q.z);
+    }
+}
+
+static void SK_ISA(norm)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    FOR_BLOCKS {
+        sk_wide4 p = SK_ISA(load)(run, row, (int)row->source[0], slot);
+        sk_wide w = SK_ISA(load)(run, row, SK_X, slot).w;
+        SK_ISA(leave)(run, slot, 0, w * (p.x * p.x + p.y * p.y + p.z * p.z));
+    }
+}
+
+/* A position is rounded to its size times epsilon; the springs at it turn that into a force. Velocities and forces
+ * are rounded themselves. */
+static void SK_ISA(rounding)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    real h = (real)row->dt, epsilon = (real)row->coefficient[0];
+    FOR_BLOCKS {
+        sk_wide4 x = SK_ISA(load)(run, row, SK_X, slot), v = SK_ISA(load)(run, row, SK_V, slot);
+        sk_wide4 f = SK_ISA(load)(run, row, SK_F, slot), d = SK_ISA(load)(run, row, SK_BLOCK0, slot);
+        sk_wide inertia = SK_ISA(load)(run, row, SK_INERTIA, slot).x;
+        sk_wide far = x.x * x.x + x.y * x.y + x.z * x.z, fast = v.x * v.x + v.y * v.y + v.z * v.z;
+        sk_wide strong = f.x * f.x + f.y * f.y + f.z * f.z, springs = (d.x + d.y + d.z - 3 * inertia) / h;
+        sk_wide square = far * springs * springs + fast * inertia * inertia + h * h * strong;
+        SK_ISA(leave)(run, slot, 0, epsilon * epsilon * (x.w * square));
+    }
+}
+#undef FOR_BLOCKS
+
+#else
+#include "plan/solve.h"
+
+#include <math.h>
+
+#include "base/wide_types.h"
+
+#define SK_KERNELS "plan/solve.c"
+#include "base/for_each_isa.h"
+
+const sk_kernels sk_solve_product = {SK_EACH_ISA(product)};
+const sk_kernels sk_solve_mass = {SK_EACH_ISA(mass)};
+const sk_kernels sk_solve_momentum = {SK_EACH_ISA(momentum)};
+const sk_kernels sk_solve_cell_sum = {SK_EACH_ISA(cell_sum)};
+const sk_kernels sk_solve_filter = {SK_EACH_ISA(filter)};
+const sk_kernels sk_solve_open = {SK_EACH_ISA(open)};
+const sk_kernels sk_solve_factor = {SK_EACH_ISA(factor)};
+const sk_kernels sk_solve_backsolve = {SK_EACH_ISA(backsolve)};
+const sk_kernels sk_solve_dot = {SK_EACH_ISA(dot)};
+const sk_kernels sk_solve_norm = {SK_EACH_ISA(norm)};
+const sk_kernels sk_solve_rounding = {SK_EACH_ISA(rounding)};
+
+/* ---- scalars ---- */
+
+/* Adds up what a dot row has left. */
+static double sum_up(const sk_run *run) {
+    enum { BLOCK = 1024 };
+    double all = 0;
+    for (size_t first = 0; first < run->slot_count; first += BLOCK) {
+        size_t last = first + BLOCK < run->slot_count ? first + BLOCK : run->slot_count;
+        double sum = 0;
+        for (size_t slot = first; slot < last; slot += SK_LANES)
+            sum += *(const double *)(const void *)(run->vector[SK_SUMS] + slot);
+        all += sum;
+    }
+    return all;
+}
+
+static bool is_solved(const double *cell, double tolerance) {
+    return cell[SK_CELL_PRESENT] <= tolerance * tolerance * cell[SK_CELL_START] ||
+           cell[SK_CELL_PRESENT] <= cell[SK_CELL_ROUNDING];
+}
+
+/* A residual that is not finite cannot get better. */
+static bool is_lost(double residual) {
+    return !(residual <= SK_REAL_MAX);
+}
+
+void sk_solve_start(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    (void)row, (void)begin, (void)end;
+    double *cell = run->cell;
+    cell[SK_CELL_START] = sum_up(run);
+    cell[SK_CELL_ROUNDING] = cell[SK_CELL_TURN] = cell[SK_CELL_SOLVED] = 0;
+}
+
+void sk_solve_line_start(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    (void)row, (void)begin, (void)end;
+    run->cell[SK_CELL_SLOPE] = sum_up(run);
+    run->cell[SK_CELL_SHARE] = 1;
+    run->cell[SK_CELL_LINE_DONE] = 0;
+}
+
+/* One turn is always made, however small the residual: among it may be a weight that moves everything. */
+void sk_solve_judge(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    (void)begin, (void)end;
+    double *cell = run->cell;
+    cell[SK_CELL_PRESENT] = sum_up(run);
+    bool solved = is_solved(cell, row->coefficient[0]) && (cell[SK_CELL_TURN] > 0 || cell[SK_CELL_PRESENT] <= 0);
+    solved |= is_lost(cell[SK_CELL_PRESENT]);
+    cell[SK_CELL_TURN]++;
+    cell[SK_CELL_SOLVED] = solved;
+    cell[SK_CELL_CG_DONE] = cell[SK_CELL_LINE_DONE] = 0;
+    cell[SK_CELL_NEWTON_TURNS] += !solved;
+}
+
+void sk_solve_note_rounding(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    (void)row, (void)begin, (void)end;
+    run->cell[SK_CELL_ROUNDING] = sum_up(run);
+}
+
+void sk_solve_cg_start(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    (void)row, (void)begin, (void)end;
+    double *cell = run->cell;
+    cell[SK_CELL_RZ] = sum_up(run);
+    if (cell[SK_CELL_TURN] == 1) cell[SK_CELL_RZ_START] = cell[SK_CELL_RZ];
+    cell[SK_CELL_SLOPE] = 0;
+    cell[SK_CELL_SHARE] = 1;
+    if (!(cell[SK_CELL_RZ] > 0)) cell[SK_CELL_CG_DONE] = 1;
+}
+
+void sk_solve_cg_alpha(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    (void)row, (void)begin, (void)end;
+    double *cell = run->cell, curvature = sum_up(run);
+    bool good = curvature > 0 && !is_lost(curvature);
+    cell[SK_CELL_ALPHA] = good ? cell[SK_CELL_RZ] / curvature : 0;
+    // every direction is as far from the first residual as from the present one
+    cell[SK_CELL_SLOPE] += cell[SK_CELL_ALPHA] * cell[SK_CELL_RZ];
+    cell[SK_CELL_CG_DONE] = !good;
+}
+
+void sk_solve_cg_beta(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    (void)begin, (void)end;
+    double *cell = run->cell, rz = sum_up(run), tolerance = row->coefficient[0];
+    cell[SK_CELL_BETA] = rz / cell[SK_CELL_RZ];
+    cell[SK_CELL_RZ] = rz;
+    cell[SK_CELL_CG_TURNS]++;
+    if (!(rz > tolerance * tolerance * cell[SK_CELL_RZ_START])) cell[SK_CELL_CG_DONE] = 1;
+}
+
+/* The potential whose minimum is sought falls along the change while R times the change is positive. Too far past
+ * the minimum, the secant says where it was. (Comparing potentials would compare roundings.) */
+void sk_solve_line_judge(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    (void)row, (void)begin, (void)end;
+    double *cell = run->cell, before = cell[SK_CELL_SLOPE], slope = sum_up(run);
+    cell[SK_CELL_LINE_DONE] = slope >= -0.5 * fabs(before);
+    if (cell[SK_CELL_LINE_DONE] != 0) return;
+    double share = before > 0 && !is_lost(-slope) ? before / (before - slope) : 0;
+    cell[SK_CELL_SHARE] *= share > 0.1 ? share : 0.1;
+}
+
+void sk_solve_end(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    (void)begin, (void)end;
+    double *cell = run->cell, start = cell[SK_CELL_START];
+    cell[SK_CELL_PRESENT] = sum_up(run);
+    double left = start > 0 ? sqrt(cell[SK_CELL_PRESENT] / start) : 0;
+    if (!(left <= cell[SK_CELL_WORST])) cell[SK_CELL_WORST] = left;
+    if (start != 0 && !is_solved(cell, row->coefficient[0])) cell[SK_CELL_UNSOLVED]++;
+}
+#endif

@@ -1,0 +1,66 @@
+/* Energies and momenta. Sums are taken in blocks of 1,024 particles or elements in the user's order, so that
+ * they do not depend on slots or threads. */
+#include "world/world.h"
+
+enum { SUM_BLOCK = 1024 };
+
+/* What a block of particles adds up to. */
+typedef struct block_sums {
+    double kinetic, potential, momentum[3], angular[3];
+} block_sums;
+
+static void add_particle(const sk_rules *rules, sk_vec4 x, sk_vec4 v, block_sums *sums) {
+    double m = (double)v.w, p[3] = {(double)x.x, (double)x.y, (double)x.z};
+    double u[3] = {(double)v.x, (double)v.y, (double)v.z};
+    sums->kinetic += 0.5 * m * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+    for (int k = 0; k < 3; k++) {
+        int next = (k + 1) % 3, last = (k + 2) % 3;
+        sums->momentum[k] += m * u[k];
+        sums->angular[k] += m * (p[next] * u[last] - p[last] * u[next]);
+    }
+    for (size_t f = 0; f < rules->forces.count; f++) {
+        const sk_force *force = rules->forces.data[f];
+        if (*force->enabled && force->type->potential) sums->potential += force->type->potential(force->params, p, m);
+    }
+}
+
+static void measure_particles(const skein_world *world, skein_statistics *s) {
+    const sk_particles *all = &world->particles;
+    for (size_t first = 0; first < all->count; first += SUM_BLOCK) {
+        size_t last = first + SUM_BLOCK < all->count ? first + SUM_BLOCK : all->count;
+        block_sums sums = {0};
+        for (size_t i = first; i < last; i++) {
+            sk_vec4 x = all->vector[SK_X][all->slot_of[i]];
+            if (x.w > 0) add_particle(&world->rules, x, all->vector[SK_V][all->slot_of[i]], &sums);
+        }
+        s->kinetic_energy += sums.kinetic;
+        s->potential_energy += sums.potential;
+        for (int k = 0; k < 3; k++) {
+            s->momentum[k] += sums.momentum[k];
+            s->angular_momentum[k] += sums.angular[k];
+        }
+    }
+}
+
+static double batch_energy(const sk_batch *batch, const sk_vec4 *x) {
+    const sk_material *material = batch->params;
+    double energy = 0, value[SUM_BLOCK];
+    if (material->stiffness >= SK_UNBOUNDED) return 0;
+    for (size_t first = 0; first < batch->count; first += SUM_BLOCK) {
+        size_t last = first + SUM_BLOCK < batch->count ? first + SUM_BLOCK : batch->count;
+        double block = 0;
+        batch->type->value(batch, x, first, last, value);
+        for (size_t e = first; e < last; e++)
+            block += (batch->scale ? (double)batch->scale[e] : 1.0) * value[e - first] * value[e - first];
+        energy += block;
+    }
+    return 0.5 * material->stiffness * energy;
+}
+
+void sk_world_measure_energy(const skein_world *world, skein_statistics *statistics) {
+    measure_particles(world, statistics);
+    for (size_t i = 0; i < world->rules.batches.count; i++) {
+        const sk_batch *batch = world->rules.batches.data[i];
+        if (*batch->enabled) statistics->elastic_energy += batch_energy(batch, world->particles.vector[SK_X]);
+    }
+}
