@@ -27,10 +27,11 @@ sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *typ
 
 void sk_batch_release(sk_batch *batch, sk_allocator *allocator) {
     if (!batch) return;
+    sk_batch_forget_sweeps(batch, allocator);
     void *arrays[] = {batch->particle,        batch->slot,           batch->rest,
                       batch->scale,           batch->sweeps,         batch->lane,
                       batch->lane_rest,       batch->lane_stiffness, batch->lane_compliance,
-                      batch->lane_multiplier, batch->special,        batch->group_slots};
+                      batch->lane_multiplier, batch->special};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     sk_release(allocator, batch);
 }
@@ -43,6 +44,8 @@ double sk_batch_damping_time(const sk_batch *batch) {
 void sk_sweep_clear_multipliers(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     (void)run;
     const sk_sweep *sweep = row->rule;
-    size_t lanes = (sweep->strips ? sweep->walk.width : 1) * SK_LANES; // an element of the row: a strip row or a group
+    // an element of the row is a strip row, a slab or a group
+    if (sweep->slab_start) begin = sweep->slab_start[begin], end = sweep->slab_start[end];
+    size_t lanes = (sweep->strips ? sweep->walk.width : 1) * SK_LANES;
     memset(sweep->batch->lane_multiplier + sweep->first_lane + begin * lanes, 0, (end - begin) * lanes * sizeof(real));
 }

@@ -75,7 +75,6 @@ struct sk_batch {
     real *lane_compliance; /* and infinity, so that nothing comes of them */
     real *lane_multiplier; /* lambda of XPBD, only read where a substep keeps it */
     uint8_t *special;      /* a block of 16 lanes each: not all as the sweep's common values say */
-    uint32_t *group_slots; /* of group sweeps: 16 first and 16 second particles a group */
 };
 
 /* Makes a batch of copies; NULL when there is no memory. `rest` and `scale` (or NULL) have `count` reals. */
@@ -84,6 +83,8 @@ sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *typ
 void sk_batch_release(sk_batch *batch, sk_allocator *allocator);
 /* Cuts the batch into sweeps for the particles' present slots. False when there is no memory. */
 bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles);
+/* Releases the sweeps and all that belongs to them. */
+void sk_batch_forget_sweeps(sk_batch *batch, sk_allocator *allocator);
 /* Brings the lanes' rest lengths and stiffness up to date with the parameters. */
 void sk_batch_refresh(sk_batch *batch);
 /* Sets the multipliers of a sweep to zero: the kernel of multiplier rows. */

@@ -230,10 +230,12 @@ SK_INLINE void SK_ISA(meet_group)(sk_run *run, const sk_row *row, const sk_sweep
     }
 }
 
-/* Groups [begin, end). Groups with a particle in strips are rare: they are reached one by one. */
+/* Groups [begin, end), or those of slabs [begin, end). Groups with a particle in strips are rare: they are reached one
+ * by one. */
 SK_INLINE void SK_ISA(sweep_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_pair_mode mode) {
     const sk_sweep *sweep = row->rule;
     sk_pair_constants constants = sk_pair_prepare(sweep->batch, row);
+    if (sweep->slab_start) begin = sweep->slab_start[begin], end = sweep->slab_start[end];
     for (size_t g = begin; g < end; g++) {
         const uint32_t *slots = sweep->slots + g * 2 * SK_LANES;
         bool strips = false;

@@ -1,12 +1,11 @@
 /* Cutting a batch into sweeps. */
-#include "constraints/sweep.h"
+#include "constraints/groups.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    GROUP_DISTANCE = 4, /* dependent groups stand so far apart where they can, to hide each other's latency */
     MOST_DIRECTIONS = 64,
     LEAST_SHARE = 5 /* a direction becomes a strip sweep if a fifth of its places have an element */
 };
@@ -125,121 +124,23 @@ static size_t strip_lane(cutter *c, size_t e, const bool *taken) {
     return taken[lane] ? SIZE_MAX : lane;
 }
 
-/* ---- groups ---- */
-
-/* The first group from `group` on that has room; paths are shortened as they are walked. */
-static uint32_t first_open(uint32_t *next, uint32_t group) {
-    uint32_t open = group;
-    while (next[open] != open) open = next[open];
-    while (next[group] != open) {
-        uint32_t step = next[group];
-        next[group] = open;
-        group = step;
-    }
-    return open;
-}
-
-typedef struct grouping {
-    uint32_t *last;  /* a slot's newest group, counted from 1; 0: none */
-    uint32_t *next;  /* the group itself while it has room, else a later one */
-    uint8_t *filled; /* elements of a group */
-    uint32_t *group; /* of each element */
-    size_t group_count;
-} grouping;
-
-/* Deals the elements that are left into groups, in their order. */
-static void deal(cutter *c, grouping *g, const size_t *lane_of) {
-    for (size_t e = 0; e < c->batch->count; e++) {
-        if (lane_of[e] != SIZE_MAX) continue;
-        uint32_t a = c->batch->slot[2 * e], b = c->batch->slot[2 * e + 1];
-        uint32_t after = g->last[a] > g->last[b] ? g->last[a] : g->last[b];
-        uint32_t group = first_open(g->next, after ? after - 1 + GROUP_DISTANCE : 0);
-        g->group[e] = group;
-        g->last[a] = g->last[b] = group + 1;
-        if (++g->filled[group] == SK_LANES) g->next[group] = group + 1;
-        if (group + 1 > g->group_count) g->group_count = group + 1;
-    }
-}
-
-/* Leaves out groups that stayed empty: a chain has one element a group, and none between. */
-static void close_up(grouping *g, size_t element_count, const size_t *lane_of) {
-    size_t count = 0;
-    for (size_t i = 0; i < g->group_count; i++) {
-        g->next[i] = (uint32_t)count; // what it will be called
-        if (g->filled[i]) g->filled[count++] = g->filled[i];
-    }
-    for (size_t e = 0; e < element_count; e++)
-        if (lane_of[e] == SIZE_MAX) g->group[e] = g->next[g->group[e]];
-    g->group_count = count;
-}
-
-/* Gives the dealt elements their lanes, in their order within a group, and the groups their slots. Free
- * lanes point at the empty slot, which weighs nothing. */
-static bool fill_groups(cutter *c, const grouping *g, size_t *lane_of, size_t left) {
-    sk_batch *batch = c->batch;
-    batch->group_slots = sk_allocate(c->allocator, g->group_count * 2 * SK_LANES * sizeof *batch->group_slots);
-    if (!batch->group_slots || !sk_reserve(c->allocator, (void **)&batch->sweeps, &batch->sweep_capacity,
-                                           batch->sweep_count + 1, sizeof(sk_sweep)))
-        return false;
-    sk_sweep *sweep = &batch->sweeps[batch->sweep_count++];
-    *sweep = (sk_sweep){.batch = batch,
-                        .element_count = left,
-                        .first_lane = batch->lane_count,
-                        .slots = batch->group_slots,
-                        .group_count = g->group_count};
-    snprintf(sweep->label, sizeof sweep->label, "%.40s groups", batch->label);
-    for (size_t i = 0; i < g->group_count * 2 * SK_LANES; i++)
-        batch->group_slots[i] = (uint32_t)c->particles->empty_slot;
-    memset(g->filled, 0, g->group_count);
-    for (size_t e = 0; e < batch->count; e++) {
-        if (lane_of[e] != SIZE_MAX) continue;
-        size_t group = g->group[e], lane = g->filled[group]++;
-        batch->group_slots[group * 2 * SK_LANES + lane] = batch->slot[2 * e];
-        batch->group_slots[group * 2 * SK_LANES + SK_LANES + lane] = batch->slot[2 * e + 1];
-        lane_of[e] = batch->lane_count + group * SK_LANES + lane;
-    }
-    batch->lane_count += g->group_count * SK_LANES;
-    return true;
-}
-
-static bool add_group_sweep(cutter *c, size_t *lane_of) {
-    size_t left = 0;
-    for (size_t e = 0; e < c->batch->count; e++) left += lane_of[e] == SIZE_MAX;
-    if (!left) return true;
-    // in the worst case all elements share a particle: each has a group of its own, GROUP_DISTANCE apart
-    size_t most = left * GROUP_DISTANCE + GROUP_DISTANCE + 1;
-    grouping g = {0};
-    g.last = sk_allocate(c->allocator, (c->particles->slot_count + SK_LANES) * sizeof *g.last);
-    g.next = sk_allocate(c->allocator, most * sizeof *g.next);
-    g.filled = sk_allocate(c->allocator, most);
-    g.group = sk_allocate(c->allocator, c->batch->count * sizeof *g.group);
-    bool good = g.last && g.next && g.filled && g.group;
-    for (size_t i = 0; i < most && good; i++) g.next[i] = (uint32_t)i;
-    if (good) {
-        deal(c, &g, lane_of);
-        close_up(&g, c->batch->count, lane_of);
-    }
-    if (good) good = fill_groups(c, &g, lane_of, left);
-    sk_release(c->allocator, g.last);
-    sk_release(c->allocator, g.next);
-    sk_release(c->allocator, g.filled);
-    sk_release(c->allocator, g.group);
-    return good;
-}
-
 /* ---- the whole cut ---- */
 
-static void forget_sweeps(sk_batch *batch, sk_allocator *allocator) {
+void sk_batch_forget_sweeps(sk_batch *batch, sk_allocator *allocator) {
     void **arrays[] = {(void **)&batch->lane,
                        (void **)&batch->lane_rest,
                        (void **)&batch->lane_stiffness,
                        (void **)&batch->lane_compliance,
                        (void **)&batch->lane_multiplier,
-                       (void **)&batch->special,
-                       (void **)&batch->group_slots};
+                       (void **)&batch->special};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         sk_release(allocator, *arrays[i]);
         *arrays[i] = NULL;
+    }
+    for (size_t i = 0; i < batch->sweep_count; i++) {
+        sk_release(allocator, batch->sweeps[i].slots);
+        sk_release(allocator, batch->sweeps[i].slab_start);
+        batch->sweeps[i].slots = batch->sweeps[i].slab_start = NULL;
     }
     batch->sweep_count = batch->lane_count = 0;
 }
@@ -260,7 +161,7 @@ bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particl
     cutter *c = sk_allocate(allocator, sizeof *c);
     size_t *lane_of = sk_allocate(allocator, batch->count * sizeof *lane_of);
     bool *taken = NULL, good = c && lane_of;
-    forget_sweeps(batch, allocator);
+    sk_batch_forget_sweeps(batch, allocator);
     for (size_t i = 0; i < 2 * batch->count; i++) batch->slot[i] = particles->slot_of[batch->particle[i]];
     if (good) {
         *c = (cutter){.batch = batch, .allocator = allocator, .particles = particles};
@@ -271,7 +172,7 @@ bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particl
         lane_of[e] = strip_lane(c, e, taken);
         if (lane_of[e] != SIZE_MAX) taken[lane_of[e]] = true;
     }
-    good = good && add_group_sweep(c, lane_of) && allocate_lanes(batch, allocator);
+    good = good && sk_groups_deal(batch, allocator, particles, lane_of) && allocate_lanes(batch, allocator);
     for (size_t e = 0; e < batch->count && good; e++) batch->lane[e] = (uint32_t)lane_of[e];
     sk_release(allocator, taken);
     sk_release(allocator, lane_of);

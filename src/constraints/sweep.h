@@ -9,12 +9,16 @@
  *     . a b . . | a b . . . |  ...              a block is one column of every strip
  *
  * Places without an element have zero stiffness. Groups. All other elements go in groups of sixteen that
- * share no particle, such that elements which share one stay in their order: the scalar loop, bit for bit. */
+ * share no particle, such that elements which share one stay in their order: the scalar loop, bit for bit.
+ * Where their particles come in nearly the same order, they walk along, too: a *slab* is so many blocks of slots
+ * (in strips a row), and the groups of slab j touch slabs j to j + reach only. */
 #ifndef SK_CONSTRAINTS_SWEEP_H
 #define SK_CONSTRAINTS_SWEEP_H
 
 #include "base/wide_types.h"
 #include "constraints/constraint.h"
+
+enum { SK_SLAB_BLOCKS = 16 }; /* blocks a slab, where there are no strips */
 
 struct sk_sweep {
     const sk_batch *batch;
@@ -26,10 +30,11 @@ struct sk_sweep {
     int32_t row_step, column_step;
     size_t together;                  /* sweeps from this one on along the same strips */
     real rest, stiffness, compliance; /* what most blocks have in every lane */
-    /* groups */
-    const uint32_t *slots; /* 32 a group */
+    /* groups, in the order of the elements */
+    uint32_t *slots; /* of each group 16 first and 16 second particles */
     size_t group_count;
-    char label[48]; /* the batch's, and the direction */
+    uint32_t *slab_start; /* where they walk: the groups of slab j are [slab_start[j], slab_start[j + 1]) */
+    char label[48];       /* the batch's, and the direction */
 };
 
 #endif

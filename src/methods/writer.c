@@ -185,6 +185,11 @@ void sk_write_following(sk_writer *writer, int passes) {
     add_combine(writer, &sk_combine_correction, SK_V, 1 / writer->h, SK_X, h, SK_X0);
 }
 
+/* The elements of a sweep's row: strip rows that have a partner, slabs or groups. */
+static size_t rows_of(const sk_sweep *sweep, size_t reach) {
+    return sweep->strips ? sweep->walk.rows - reach : sweep->slab_start ? sweep->walk.rows : sweep->group_count;
+}
+
 /* A row for each sweep of a batch from the `first` on. */
 static void add_sweeps(sk_writer *writer, const sk_batch *batch, size_t first, sk_row_kind kind,
                        const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second) {
@@ -199,7 +204,7 @@ static void add_sweeps(sk_writer *writer, const sk_batch *batch, size_t first, s
                                     .rule = sweep,
                                     .label = sweep->label,
                                     .walk = sweep->walk,
-                                    .end = sweep->strips ? sweep->walk.rows - sweep->walk.reach : sweep->group_count});
+                                    .end = rows_of(sweep, sweep->walk.reach)});
     }
 }
 
@@ -256,7 +261,7 @@ void sk_write_projections(sk_writer *writer, int passes) {
                                         .rule = sweep,
                                         .label = sweep->label,
                                         .walk = walk,
-                                        .end = sweep->strips ? walk.rows : sweep->group_count});
+                                        .end = rows_of(sweep, 0)});
         }
     }
     for (int pass = 0; pass < passes; pass++)
