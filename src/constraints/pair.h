@@ -39,21 +39,4 @@ static inline sk_pair_constants sk_pair_prepare(const sk_batch *batch, const sk_
                                (real)(1 + (batch->bound ? *batch->bound : 0))};
 }
 
-/* Blocks [first, last) of a strip row that meet blocks `shift` strips on. */
-typedef struct sk_span {
-    size_t first, last;
-    int shift;
-} sk_span;
-
-/* The spans of a strip row, one or two. */
-static inline size_t sk_spans(const sk_sweep *sweep, sk_span span[2]) {
-    int64_t width = (int64_t)sweep->walk.width, step = sweep->column_step;
-    int64_t shift = step >= 0 ? step / width : -((width - 1 - step) / width);
-    int64_t cut = (shift + 1) * width - step; // from here on one strip farther
-    if (cut > width) cut = width;
-    span[0] = (sk_span){0, (size_t)cut, (int)shift};
-    span[1] = (sk_span){(size_t)cut, (size_t)width, (int)shift + 1};
-    return cut < width ? 2 : 1;
-}
-
 #endif

@@ -95,12 +95,10 @@ SK_INLINE void SK_ISA(sweep_strips)(sk_run *run, const sk_row *row, size_t begin
     const sk_sweep *sweep = row->rule;
     sk_pair_constants constants = sk_pair_prepare(sweep->batch, row);
     size_t side_by_side = sweep->row_step == 0 ? SK_ROWS_SIDE_BY_SIDE : 1;
-    sk_span span[2];
-    size_t span_count = sk_spans(sweep, span);
     for (size_t r = begin; r < end; r += side_by_side) {
         size_t stop = r + side_by_side < end ? r + side_by_side : end;
-        for (size_t i = 0; i < span_count; i++) {
-            sk_span at = span[i];
+        for (size_t i = 0; i < sweep->span_count; i++) {
+            sk_span at = sweep->span[i];
             if (!at.shift) SK_ISA(meet_span)(run, sweep, &constants, r, stop, at.first, at.last, 0, mode);
             else if (mode == SK_PAIR_PROJECT)
                 SK_ISA(meet_span)(run, sweep, &constants, r, stop, at.first, at.last, at.shift, mode);
@@ -111,31 +109,42 @@ SK_INLINE void SK_ISA(sweep_strips)(sk_run *run, const sk_row *row, size_t begin
 
 /* ---- strips: forces ---- */
 
-/* What block a gets from block b, and the other way. */
-SK_INLINE sk_pair SK_ISA(pull_blocks)(const sk_run *run, const sk_sweep *sweep, const sk_pair_constants *constants,
-                                      sk_wide4 a, sk_wide3 v, size_t lane, size_t slot_b, int shift) {
-    const sk_wide *xb = (const sk_wide *)(const void *)(run->vector[SK_X] + slot_b),
-                  *vb = (const sk_wide *)(const void *)(run->vector[SK_V] + slot_b);
-    sk_pair p = {.a = {a.x, a.y, a.z},
-                 .b = SK_ISA(turn3)(SK_ISA(load3)(xb), shift),
-                 .other_a = v,
-                 .other_b = SK_ISA(turn3)(SK_ISA(load3)(vb), shift)};
-    SK_ISA(set_values)(&p, sweep, constants, lane, shift || sweep->batch->special[lane / SK_LANES], false);
-    SK_ISA(pair)(&p, constants, SK_PAIR_FORCE);
-    return p;
+/* Which ends of a strip row's elements get their forces: those in the rows that are asked for. */
+typedef struct SK_ISA(pull_ends) {
+    bool a, b;
+} SK_ISA(pull_ends);
+
+/* Blocks [first, last) of strip row r pull at their partners. */
+SK_INLINE void SK_ISA(pull_span)(sk_run *run, const sk_row *row, const sk_sweep *sweep,
+                                 const sk_pair_constants *constants, size_t r, sk_span span, int shift,
+                                 SK_ISA(pull_ends) ends) {
+    size_t line = sweep->walk.width * SK_LANES;
+    ptrdiff_t to_b = ((ptrdiff_t)sweep->row_step * (ptrdiff_t)line +
+                      (sweep->column_step - (ptrdiff_t)shift * (ptrdiff_t)sweep->walk.width) * SK_LANES) *
+                     4;
+    size_t begin = r * line + span.first * SK_LANES, end = r * line + span.last * SK_LANES;
+    for (size_t at = begin; at < end; at += SK_LANES) {
+        size_t slot = sweep->walk.first_slot + at;
+        const real *x = (const real *)(const void *)(run->vector[SK_X] + slot),
+                   *v = (const real *)(const void *)(run->vector[SK_V] + slot);
+        real *f = (real *)(void *)(run->vector[row->dst] + slot);
+        sk_pair p = {.a = SK_ISA(load3)((const sk_wide *)(const void *)x),
+                     .b = SK_ISA(turn3)(SK_ISA(load3)((const sk_wide *)(const void *)(x + to_b)), shift),
+                     .other_a = SK_ISA(load3)((const sk_wide *)(const void *)v),
+                     .other_b = SK_ISA(turn3)(SK_ISA(load3)((const sk_wide *)(const void *)(v + to_b)), shift)};
+        size_t lane = sweep->first_lane + at;
+        SK_ISA(set_values)(&p, sweep, constants, lane, shift || sweep->batch->special[lane / SK_LANES], false);
+        SK_ISA(pair)(&p, constants, SK_PAIR_FORCE);
+        if (ends.a) SK_ISA(add3)((sk_wide *)(void *)f, p.da);
+        if (ends.b) SK_ISA(take3)((sk_wide *)(void *)(f + to_b), SK_ISA(turn3)(p.db, -shift));
+    }
 }
 
-/* The same over the end of a strip, as a function of its own: adds to b, and to the force on a. */
-static __attribute__((noinline)) void SK_ISA(pull_turned)(sk_run *run, const sk_sweep *sweep,
-                                                          const sk_pair_constants *constants, size_t slot_a,
-                                                          size_t lane, size_t slot_b, int shift, sk_wide *fb,
-                                                          sk_wide3 *force) {
-    sk_wide *xa = (sk_wide *)(void *)(run->vector[SK_X] + slot_a),
-            *va = (sk_wide *)(void *)(run->vector[SK_V] + slot_a);
-    sk_pair p = SK_ISA(pull_blocks)(run, sweep, constants, (sk_wide4){xa[0], xa[1], xa[2], xa[3]}, SK_ISA(load3)(va),
-                                    lane, slot_b, shift);
-    force->x += p.da.x, force->y += p.da.y, force->z += p.da.z;
-    if (fb) SK_ISA(take3)(fb, SK_ISA(turn3)(p.db, -shift));
+/* The same over the end of a strip, as a function of its own. */
+static __attribute__((noinline)) void SK_ISA(pull_turned)(sk_run *run, const sk_row *row, const sk_sweep *sweep,
+                                                          const sk_pair_constants *constants, size_t r, sk_span span,
+                                                          SK_ISA(pull_ends) ends) {
+    SK_ISA(pull_span)(run, row, sweep, constants, r, span, span.shift, ends);
 }
 
 /* All directions of a batch at once, for the forces on strip rows [begin, end): what they get from rows before
@@ -143,34 +152,18 @@ static __attribute__((noinline)) void SK_ISA(pull_turned)(sk_run *run, const sk_
 static void SK_ISA(force_strips)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_sweep *sweeps = row->rule;
     sk_pair_constants constants = sk_pair_prepare(sweeps->batch, row);
-    size_t width = sweeps->walk.width, count = sweeps->together, reach = row->walk.reach;
-    sk_vec4 *f = run->vector[row->dst] + sweeps->walk.first_slot;
+    size_t reach = row->walk.reach;
     for (size_t r = begin > reach ? begin - reach : 0; r < end; r++)
-        for (size_t k = 0; k < width; k++) {
-            size_t block = (r * width + k) * SK_LANES, slot_a = sweeps->walk.first_slot + block;
-            const sk_wide *xa = (const sk_wide *)(const void *)(run->vector[SK_X] + slot_a);
-            sk_wide4 a = {xa[0], xa[1], xa[2], xa[3]};
-            sk_wide3 v = SK_ISA(load3)((const sk_wide *)(const void *)(run->vector[SK_V] + slot_a)), force = {0};
-            for (size_t d = 0; d < count; d++) {
-                const sk_sweep *sweep = &sweeps[d];
-                size_t partner_row = r + (size_t)sweep->row_step;
-                if (partner_row >= sweep->walk.rows || (r < begin && partner_row < begin)) continue;
-                int64_t partner = (int64_t)k + sweep->column_step;
-                int shift = 0;
-                for (; partner >= (int64_t)width; shift++) partner -= (int64_t)width;
-                for (; partner < 0; shift--) partner += (int64_t)width;
-                size_t block_b = (partner_row * width + (size_t)partner) * SK_LANES,
-                       slot_b = sweeps->walk.first_slot + block_b, lane = sweep->first_lane + block;
-                sk_wide *fb = partner_row < end ? (sk_wide *)(void *)(f + block_b) : NULL;
-                if (__builtin_expect(shift == 0, 1)) {
-                    sk_pair p = SK_ISA(pull_blocks)(run, sweep, &constants, a, v, lane, slot_b, 0);
-                    force.x += p.da.x, force.y += p.da.y, force.z += p.da.z;
-                    if (fb) SK_ISA(take3)(fb, p.db);
-                } else {
-                    SK_ISA(pull_turned)(run, sweep, &constants, slot_a, lane, slot_b, shift, fb, &force);
-                }
+        for (size_t d = 0; d < sweeps->together; d++) {
+            const sk_sweep *sweep = &sweeps[d];
+            size_t partner = r + (size_t)sweep->row_step;
+            SK_ISA(pull_ends) ends = {r >= begin, partner >= begin && partner < end};
+            if (partner >= sweep->walk.rows || (!ends.a && !ends.b)) continue;
+            for (size_t i = 0; i < sweep->span_count; i++) {
+                sk_span at = sweep->span[i];
+                if (!at.shift) SK_ISA(pull_span)(run, row, sweep, &constants, r, at, 0, ends);
+                else SK_ISA(pull_turned)(run, row, sweep, &constants, r, at, ends);
             }
-            if (r >= begin) SK_ISA(add3)((sk_wide *)(void *)(f + block), force);
         }
 }
 

@@ -78,6 +78,17 @@ static int compare_directions(const void *p, const void *q) {
     return (a->column_step > b->column_step) - (a->column_step < b->column_step);
 }
 
+/* Finds the spans of a strip row, one or two. */
+static void find_spans(sk_sweep *sweep) {
+    int64_t width = (int64_t)sweep->walk.width, step = sweep->column_step;
+    int64_t shift = step >= 0 ? step / width : -((width - 1 - step) / width);
+    int64_t cut = (shift + 1) * width - step; // from here on one strip farther
+    if (cut > width) cut = width;
+    sweep->span[0] = (sk_span){0, (size_t)cut, (int)shift};
+    sweep->span[1] = (sk_span){(size_t)cut, (size_t)width, (int)shift + 1};
+    sweep->span_count = cut < width ? 2 : 1;
+}
+
 /* Counts the directions, and makes a strip sweep of each that fills enough of its places. */
 static bool add_strip_sweeps(cutter *c) {
     sk_batch *batch = c->batch;
@@ -102,6 +113,7 @@ static bool add_strip_sweeps(cutter *c) {
                             .row_step = d->row_step,
                             .column_step = d->column_step,
                             .walk = {d->strips->first_slot, d->strips->rows, d->strips->width, (size_t)d->row_step}};
+        find_spans(sweep);
         snprintf(sweep->label, sizeof sweep->label, "%.30s %+d %+d", batch->label, d->row_step, d->column_step);
         batch->lane_count += (size_t)d->strips->rows * d->strips->width * SK_LANES;
     }

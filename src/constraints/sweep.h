@@ -20,6 +20,12 @@
 
 enum { SK_SLAB_BLOCKS = 16 }; /* blocks a slab, where there are no strips */
 
+/* Blocks [first, last) of a strip row that meet blocks `shift` strips on. */
+typedef struct sk_span {
+    size_t first, last;
+    int shift;
+} sk_span;
+
 struct sk_sweep {
     const sk_batch *batch;
     bool strips;          /* else groups */
@@ -28,6 +34,8 @@ struct sk_sweep {
     /* strips */
     sk_walk walk;
     int32_t row_step, column_step;
+    sk_span span[2]; /* a strip row's */
+    size_t span_count;
     size_t together;                  /* sweeps from this one on along the same strips */
     real rest, stiffness, compliance; /* what most blocks have in every lane */
     /* groups, in the order of the elements */
