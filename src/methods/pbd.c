@@ -17,8 +17,7 @@ static const skein_field fields[] = {
 static void write(sk_writer *writer, const void *data, double dt) {
     const pbd_params *params = data;
     double h = dt / params->substeps;
-    size_t repeat = sk_write_repeat(writer, (size_t)params->substeps, h);
-    sk_write_prediction(writer, params->iterations);
+    size_t repeat = sk_write_predicted_repeat(writer, (size_t)params->substeps, h, params->iterations);
     sk_write_rigid_projections(writer, params->iterations);
     sk_write_limits(writer, SK_NONE);
     sk_write_following(writer, params->iterations);

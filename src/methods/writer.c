@@ -166,21 +166,49 @@ static bool add_up_plain_forces(const sk_rules *rules, sk_plain_force *sum) {
     return true;
 }
 
-void sk_write_prediction(sk_writer *writer, int passes) {
+/* A row that predicts: X, V and whatever else `kept` says. */
+static sk_row prediction(sk_writer *writer, const sk_kernels *kernels, sk_vector force, sk_vector kept) {
+    return (sk_row){.kind = SK_ROW_COMBINE,
+                    .order = SK_FREE,
+                    .kernel = kernels->version[writer->isa],
+                    .dst = SK_X,
+                    .source = {SK_V, force, kept},
+                    .rule = &writer->plan->plain,
+                    .end = writer->slot_count};
+}
+
+/* Where nobody else looks at X0 and F, the end of a substep and the start of the next are one row. */
+static bool falls_on(sk_writer *writer, int passes) {
+    return only_follows(writer->rules, passes) && add_up_plain_forces(writer->rules, &writer->plan->plain);
+}
+
+static void write_prediction(sk_writer *writer, int passes) {
     const sk_rules *rules = writer->rules;
     bool plain = add_up_plain_forces(rules, &writer->plan->plain);
     if (!plain) sk_write_fields(writer);
     sk_vector kept = only_follows(rules, passes) ? SK_X : rules->colliders.count ? SK_V0 : SK_NONE;
-    sk_add_row(writer, (sk_row){.kind = SK_ROW_COMBINE,
-                                .order = SK_FREE,
-                                .kernel = (plain ? &sk_combine_fall : &sk_combine_predict)->version[writer->isa],
-                                .dst = SK_X,
-                                .source = {SK_V, plain ? SK_NONE : SK_F, kept},
-                                .rule = &writer->plan->plain,
-                                .end = writer->slot_count});
+    sk_add_row(writer,
+               prediction(writer, plain ? &sk_combine_fall : &sk_combine_predict, plain ? SK_NONE : SK_F, kept));
+}
+
+size_t sk_write_predicted_repeat(sk_writer *writer, size_t times, double h, int passes) {
+    writer->h = h;
+    if (falls_on(writer, passes)) {
+        write_prediction(writer, passes);
+        return sk_write_repeat(writer, times, h);
+    }
+    size_t repeat = sk_write_repeat(writer, times, h);
+    write_prediction(writer, passes);
+    return repeat;
 }
 
 void sk_write_following(sk_writer *writer, int passes) {
+    if (falls_on(writer, passes)) {
+        sk_row row = prediction(writer, &sk_combine_fall_on, SK_NONE, SK_X);
+        row.coefficient[0] = 1 / writer->h;
+        sk_add_row(writer, row);
+        return;
+    }
     double h = only_follows(writer->rules, passes) ? 0 : writer->h; // X0 is where X was going, or where it was
     add_combine(writer, &sk_combine_correction, SK_V, 1 / writer->h, SK_X, h, SK_X0);
 }

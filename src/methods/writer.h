@@ -52,10 +52,11 @@ void sk_write_sum(sk_writer *writer, sk_vector dst, double a, sk_vector p, doubl
 void sk_write_clear(sk_writer *writer, sk_vector dst);
 void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_vector q);
 
-/* The fields, then V += h w F, V0 = V (where there are colliders), X0 = X, X += h V; in one row where all forces
- * are plain. `passes` is what the projections will be told. */
-void sk_write_prediction(sk_writer *writer, int passes);
-/* V += (X - where X was going)/h: V learns what the projections did. */
+/* Begins a repeat whose turns predict: the fields, then V += h w F, V0 = V (where there are colliders), X0 = X,
+ * X += h V; in one row where all forces are plain. `passes` is what the projections will be told. */
+size_t sk_write_predicted_repeat(sk_writer *writer, size_t times, double h, int passes);
+/* V += (X - where X was going)/h: V learns what the projections did. Where nothing else looks at the start of a
+ * substep, the same row predicts for the next one. */
 void sk_write_following(sk_writer *writer, int passes);
 
 /* F = all forces on X moving with V: the grid if a rule wants neighbours, then fields and neighbours. */

@@ -18,10 +18,8 @@ static const skein_field fields[] = {
 static void write(sk_writer *writer, const void *data, double dt) {
     const xpbd_params *params = data;
     double h = dt / params->substeps;
-    size_t repeat = sk_write_repeat(writer, (size_t)params->substeps, h);
-    // predict
-    sk_write_prediction(writer, params->iterations);
-    // correct
+    size_t repeat = sk_write_predicted_repeat(writer, (size_t)params->substeps, h, params->iterations);
+    // correct what was predicted
     sk_write_projections(writer, params->iterations);
     sk_write_limits(writer, SK_NONE);
     // learn the velocity. (X - X0)/h says the same but for the rounding of X, which would stay in V: measured in

@@ -74,25 +74,62 @@ static void SK_ISA(predict)(sk_run *run, const sk_row *row, size_t begin, size_t
     }
 }
 
-static void SK_ISA(fall)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+/* What a plain force does to the velocity of a block within h. */
+typedef struct SK_ISA(pull) {
+    sk_vec3 a, f;
+    real linear, rate, h;
+    bool by_mass; /* no force of its own weight: the mass does not matter */
+} SK_ISA(pull);
+
+SK_INLINE SK_ISA(pull) SK_ISA(pull_of)(const sk_row *row) {
     const sk_plain_force *plain = row->rule;
-    sk_vec3 a = sk_v3_of(plain->acceleration), f = sk_v3_of(plain->force);
-    real linear = (real)plain->linear, rate = (real)plain->rate, h = (real)row->dt;
-    bool by_mass = linear == 0 && f.x == 0 && f.y == 0 && f.z == 0;
+    SK_ISA(pull)
+    p = {sk_v3_of(plain->acceleration),
+         sk_v3_of(plain->force),
+         (real)plain->linear,
+         (real)plain->rate,
+         (real)row->dt,
+         false};
+    p.by_mass = p.linear == 0 && p.f.x == 0 && p.f.y == 0 && p.f.z == 0;
+    return p;
+}
+
+SK_INLINE sk_wide4 SK_ISA(pulled)(const SK_ISA(pull) * p, sk_wide w, sk_wide4 v) {
+    sk_wide k = SK_ISA(sk_keep)(SK_ISA(sk_positive)(w), SK_ISA(sk_splat)(p->h));
+    if (p->by_mass) {
+        v.x += k * (p->a.x - p->rate * v.x);
+        v.y += k * (p->a.y - p->rate * v.y);
+        v.z += k * (p->a.z - p->rate * v.z);
+    } else {
+        sk_wide drag = p->rate + p->linear * w;
+        v.x += k * ((p->a.x + p->f.x * w) - drag * v.x);
+        v.y += k * ((p->a.y + p->f.y * w) - drag * v.y);
+        v.z += k * ((p->a.z + p->f.z * w) - drag * v.z);
+    }
+    return v;
+}
+
+static void SK_ISA(fall)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    SK_ISA(pull) pull = SK_ISA(pull_of)(row);
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
         sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed),
                  v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed);
-        sk_wide k = SK_ISA(sk_keep)(SK_ISA(sk_positive)(x.w), SK_ISA(sk_splat)(h));
-        if (by_mass) {
-            v.x += k * (a.x - rate * v.x), v.y += k * (a.y - rate * v.y), v.z += k * (a.z - rate * v.z);
-        } else {
-            sk_wide drag = rate + linear * x.w;
-            v.x += k * ((a.x + f.x * x.w) - drag * v.x);
-            v.y += k * ((a.y + f.y * x.w) - drag * v.y);
-            v.z += k * ((a.z + f.z * x.w) - drag * v.z);
-        }
-        SK_ISA(set_out)(run, row, slot, packed, x, v);
+        SK_ISA(set_out)(run, row, slot, packed, x, SK_ISA(pulled)(&pull, x.w, v));
+    }
+}
+
+static void SK_ISA(fall_on)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    SK_ISA(pull) pull = SK_ISA(pull_of)(row);
+    real a = (real)row->coefficient[0];
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        bool packed = slot < row->packed;
+        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed),
+                 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed),
+                 x0 = SK_ISA(sk_load_block)(run->vector[SK_X0], slot, packed);
+        v.x += a * (x.x - x0.x), v.y += a * (x.y - x0.y), v.z += a * (x.z - x0.z);
+        if (run->last_turn) SK_ISA(sk_store_moved)(run->vector[SK_V], slot, packed, v);
+        else SK_ISA(set_out)(run, row, slot, packed, x, SK_ISA(pulled)(&pull, x.w, v));
     }
 }
 #undef FOR_PARTS
@@ -118,6 +155,7 @@ const sk_kernels sk_combine_correction = {SK_EACH_ISA(correction)};
 const sk_kernels sk_combine_kick = {SK_EACH_ISA(kick)};
 const sk_kernels sk_combine_predict = {SK_EACH_ISA(predict)};
 const sk_kernels sk_combine_fall = {SK_EACH_ISA(fall)};
+const sk_kernels sk_combine_fall_on = {SK_EACH_ISA(fall_on)};
 const sk_kernels sk_pack = {SK_EACH_ISA(pack)};
 const sk_kernels sk_unpack = {SK_EACH_ISA(unpack)};
 #endif

@@ -61,6 +61,12 @@ static void describe_combine(const sk_row *row, char *text, size_t size) {
         snprintf(text, size, "X + h V, V + h (%s); %s", label[0] ? label : "0", kept);
         return;
     }
+    if (is_version(row, &sk_combine_fall_on)) {
+        const char *label = ((const sk_plain_force *)row->rule)->label;
+        snprintf(text, size, "V + %g (X - X0); X + h V, V + h (%s); X0 = X, but for the last turn", row->coefficient[0],
+                 label[0] ? label : "0");
+        return;
+    }
     if (is_version(row, &sk_combine_correction)) {
         const char *dst = vector_text(row->dst);
         if (row->coefficient[1] == 0) snprintf(text, size, "%s + %g (%s - %s)", dst, row->coefficient[0], p, q);

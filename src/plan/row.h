@@ -86,6 +86,7 @@ typedef struct sk_run {
     sk_allocator *allocator;
     double time;    /* at the end of the present substep, s */
     double *cell;   /* what rows of a solve hand to each other (plan/solve.h) */
+    bool last_turn; /* of the innermost repeat */
     bool no_memory; /* a growing list could not grow: the step fails and says so */
 } sk_run;
 
@@ -150,8 +151,11 @@ const char *sk_row_kind_text(sk_row_kind kind);
  *   predict                      V += h w F; V0 = V where the third source is V0; X0 = X, or what X is going to
  *                                be where the third source is X; X += h V: one row
  *                                for what would be four, since each block is read and written once
- *   fall                         the same, with the plan's plain force in place of F */
-extern const sk_kernels sk_combine_sum, sk_combine_correction, sk_combine_kick, sk_combine_predict, sk_combine_fall;
+ *   fall                         the same, with the plan's plain force in place of F
+ *   fall_on                      V += a (X - X0), and but for the last turn of its repeat a fall: the end of one
+ *                                substep and the start of the next */
+extern const sk_kernels sk_combine_sum, sk_combine_correction, sk_combine_kick, sk_combine_predict, sk_combine_fall,
+    sk_combine_fall_on;
 /* Turns blocks of dst from quads to packed, and back, in place. */
 extern const sk_kernels sk_pack, sk_unpack;
 

@@ -108,9 +108,11 @@ static void run_part(sk_run *run, const segment_job *job, size_t g, size_t count
     run_tiled(run, row, count, begin, end);
 }
 
-/* The time of a turn's end, where turns have one. */
-static void set_time(sk_run *run, const segment_job *job, size_t turn) {
-    if (job->dt > 0) run->time = job->start + (double)(turn + 1) * job->dt;
+/* The time of a turn's end, and whether it is the last, where the segment is a whole repeat. */
+static void set_turn(sk_run *run, const segment_job *job, size_t turn) {
+    if (!(job->dt > 0)) return;
+    run->time = job->start + (double)(turn + 1) * job->dt;
+    run->last_turn = turn + 1 == job->turns;
 }
 
 /* How many rows of a chunk are done, counted over all turns. Threads' counts lie in different cache lines. */
@@ -128,7 +130,7 @@ static void run_chunks(const segment_job *job, size_t thread) {
     sk_run run = *job->run; // a copy each: threads may be at different times
     size_t first = first_chunk(job, thread), end = first_chunk(job, thread + 1);
     for (size_t turn = 0; turn < job->turns; turn++) {
-        set_time(&run, job, turn);
+        set_turn(&run, job, turn);
         uint32_t before = (uint32_t)(turn * job->count);
         for (size_t k = first; k < end; k++) {
             for (size_t next = end; next <= k + job->ahead && next < job->chunk_count; next++)
@@ -153,7 +155,7 @@ static void run_chunks_alone(const segment_job *job) {
             for (size_t t = 0; t < abreast && t * job->ahead <= front; t++) {
                 size_t k = front - t * job->ahead;
                 if (k >= job->chunk_count) continue;
-                set_time(&run, job, first + t);
+                set_turn(&run, job, first + t);
                 for (size_t g = 0, count; g < job->count; g += count) {
                     count = together(job, g);
                     run_part(&run, job, g, count, k);
@@ -255,11 +257,14 @@ static void run_segments(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_
 /* The turns of a repeat, one after the other; further repeats may lie within it. */
 static void run_turns(sk_run *run, sk_tasks *tasks, const sk_row *repeat) {
     double start = run->time;
+    bool outer = run->last_turn;
     for (size_t turn = 0; turn < repeat->end; turn++) {
         if (repeat->cell && run->cell[repeat->cell] != 0) break;
         if (!repeat->cell) run->time = start + (double)(turn + 1) * repeat->dt;
+        run->last_turn = turn + 1 == repeat->end;
         sk_run_rows(run, tasks, repeat + 1, repeat->length);
     }
+    run->last_turn = outer;
 }
 
 void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count) {
