@@ -23,7 +23,8 @@ typedef struct app_command {
     int (*run)(int argc, char **argv);
 } app_command;
 
-extern const app_command app_run_command, app_check_command, app_explain_command, app_list_command;
+extern const app_command app_run_command, app_check_command, app_explain_command, app_list_command,
+    app_stability_command;
 
 /* Sorts arguments into options and at most one word (NULL if there is none, which is a fault where it is
  * `needed`, as in "scene"); prints help for --help. Returns -1 to go on, else an exit status. */
