@@ -8,8 +8,8 @@
 
 #include "app/command.h"
 
-static const app_command *const commands[] = {&app_run_command, &app_check_command, &app_stability_command,
-                                              &app_explain_command, &app_list_command};
+static const app_command *const commands[] = {&app_run_command,       &app_check_command,   &app_compare_command,
+                                              &app_stability_command, &app_explain_command, &app_list_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 static void print_help(FILE *to) {
