@@ -148,6 +148,7 @@ static void report_fault(void *user, const skein_error *error) {
 static void print_log(void *user, skein_log_level level, const char *message) {
     app_scene *loaded = user;
     if (level == SKEIN_LOG_WARNING) loaded->warnings++;
+    if (loaded->quiet) return;
     fprintf(stderr, "skein: %s%s\n", level == SKEIN_LOG_WARNING ? "warning: " : "", message);
 }
 
@@ -164,9 +165,10 @@ const skein_kind *const *app_exporters(void) {
     return all;
 }
 
-int app_load(const char *path, const char *const *sets, app_scene *loaded) {
+static int load(const char *path, const char *const *sets, bool quiet, app_scene *loaded) {
     memset(loaded, 0, sizeof *loaded);
     loaded->path = path;
+    loaded->quiet = quiet;
     double start = app_seconds();
     io_faults faults = {report_fault, NULL, 0};
     loaded->scene = io_scene_read(path, sets, app_exporters(), &faults);
@@ -183,6 +185,21 @@ int app_load(const char *path, const char *const *sets, app_scene *loaded) {
     app_unload(loaded);
     if (faults.count > 1) fprintf(stderr, "skein: %s: %zu faults\n", path, faults.count);
     return EXIT_FAULT;
+}
+
+int app_load(const char *path, const char *const *sets, app_scene *loaded) {
+    return load(path, sets, false, loaded);
+}
+
+int app_load_quietly(const char *path, const char *const *sets, app_scene *loaded) {
+    return load(path, sets, true, loaded);
+}
+
+int app_try(const char *path, const char *const *sets) {
+    app_scene loaded;
+    int status = app_load(path, sets, &loaded);
+    if (!status) app_unload(&loaded);
+    return status;
 }
 
 void app_unload(app_scene *loaded) {

@@ -23,7 +23,8 @@ typedef struct app_command {
     int (*run)(int argc, char **argv);
 } app_command;
 
-extern const app_command app_run_command, app_render_command, app_check_command, app_explain_command, app_list_command;
+extern const app_command app_run_command, app_render_command, app_check_command, app_compare_command,
+    app_stability_command, app_explain_command, app_list_command;
 
 /* Sorts arguments into options and at most one word (NULL if there is none, which is a fault where it is
  * `needed`, as in "scene"); prints help for --help. Returns -1 to go on, else an exit status. */
@@ -51,10 +52,15 @@ typedef struct app_scene {
     skein_world *world;
     double load_seconds;
     size_t warnings;
+    bool quiet;
 } app_scene;
 
 /* Reads, checks and builds; every fault is printed. Returns an exit status. */
 int app_load(const char *path, const char *const *sets, app_scene *loaded);
+/* The same without notes on the terminal: only faults. */
+int app_load_quietly(const char *path, const char *const *sets, app_scene *loaded);
+/* Only looks whether it can be loaded. */
+int app_try(const char *path, const char *const *sets);
 void app_unload(app_scene *loaded);
 /* The name of the method's kind. */
 const char *app_method(const app_scene *loaded);

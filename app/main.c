@@ -8,8 +8,9 @@
 
 #include "app/command.h"
 
-static const app_command *const commands[] = {&app_run_command, &app_render_command, &app_check_command,
-                                              &app_explain_command, &app_list_command};
+static const app_command *const commands[] = {&app_run_command,     &app_render_command,    &app_check_command,
+                                              &app_compare_command, &app_stability_command, &app_explain_command,
+                                              &app_list_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 static void print_help(FILE *to) {
@@ -17,7 +18,7 @@ static void print_help(FILE *to) {
                 "usage: skein COMMAND [ARGUMENTS]\n\n");
     for (int c = 0; c < COMMAND_COUNT; c++) {
         const char *line = commands[c]->help;
-        fprintf(to, "  %-8s %.*s\n", commands[c]->name, (int)strcspn(line, "\n"), line);
+        fprintf(to, "  %-9s %.*s\n", commands[c]->name, (int)strcspn(line, "\n"), line);
     }
     fprintf(to, "\n`skein COMMAND --help` teaches a command, `skein --version` names the version. First steps:\n\n"
                 "  skein run scenes/drape.json --out out/\n"

@@ -1,6 +1,7 @@
 /* The catalogue: every kind that ships with the library, by category, and the public calls that take a
  * kind by its name. A new kind is its own file and one row here. The roof of the house: it sees all
  * floors, and nothing sees it. */
+#include <math.h>
 #include <string.h>
 
 #include "bodies/body.h"
@@ -66,6 +67,11 @@ skein_status skein_collider_add(skein_world *world, const char *kind, const skei
                                 skein_handle *handle) {
     const sk_collider_type *type = type_of(world, SKEIN_COLLIDER, kind);
     return type ? sk_world_add_collider(world, type, settings, handle) : SKEIN_ERROR_NAME;
+}
+
+double skein_stable_substep(const char *method, const skein_stability *stability) {
+    const sk_method_type *type = (const void *)skein_kind_find(SKEIN_METHOD, method, NULL);
+    return type ? sk_stable_substep(type, stability) : (double)NAN;
 }
 
 skein_status skein_method_set(skein_world *world, const char *kind, const skein_setting *settings) {

@@ -70,7 +70,7 @@ static void help_is_there_when_asked_for(void **state) {
     // without a word it is help, too, but no success
     assert_says(2, "", top.out, NULL);
 
-    static const char *const commands[] = {"run", "render", "check", "explain", "list"};
+    static const char *const commands[] = {"run", "render", "check", "compare", "stability", "explain", "list"};
     for (size_t c = 0; c < COUNT(commands); c++) {
         char words[64];
         snprintf(words, sizeof words, "\n  %s ", commands[c]);

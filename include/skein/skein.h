@@ -378,6 +378,31 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
 /* Only the hash. */
 uint64_t skein_world_hash(const skein_world *world);
 
+/* ---- Stability --------------------------------------------------------------------------------- */
+
+/* A way in which the world can vibrate. */
+typedef struct skein_mode {
+    double frequency;    /* omega, rad/s */
+    double damping_rate; /* zeta omega, 1/s: its amplitude dies as exp(-rate t) */
+} skein_mode;
+
+/* What limits the substep of explicit methods: the stiffest mode first, then (where there is damping) the most damped
+ * one, and one between. None without finite springs and without air. */
+typedef struct skein_stability {
+    skein_mode modes[3];
+    size_t mode_count;
+    bool swinging_is_free; /* the only damping is along constraints: swinging is not damped, and grows, however
+                              slowly, under methods that gain energy */
+} skein_stability;
+
+/* Finds those modes for the world as it lies, by power iteration; costs as much as some hundred force evaluations.
+ * Rigid constraints, contact and neighbour rules are left out. (Under explicit_euler and midpoint slower modes that have
+ * less damping for their stiffness may still grow, slowly.) */
+skein_status skein_world_stability(skein_world *world, skein_stability *stability);
+/* The largest substep (s) at which no mode grows under the method: 0 if there is none, infinity if any will do. NaN for
+ * a method that does not exist. */
+double skein_stable_substep(const char *method, const skein_stability *stability);
+
 /* ---- The plan ---------------------------------------------------------------------------------- */
 
 /* Writes the plan's rows as text, a line each, for a step of `dt`. Lines go to `write` in order; NULL only

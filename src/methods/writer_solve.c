@@ -54,7 +54,8 @@ static void add_stiffness(sk_writer *writer, sk_row_kind kind, sk_vector dst, sk
     for (size_t i = 0; i < writer->rules->batches.count; i++) {
         const sk_batch *batch = writer->rules->batches.data[i];
         const sk_constraint_type *type = batch->type;
-        if (!*batch->enabled || !batch->count) continue;
+        const sk_material *material = batch->params;
+        if (!*batch->enabled || !batch->count || material->stiffness >= SK_UNBOUNDED) continue;
         sk_add_row(writer,
                    (sk_row){.kind = kind,
                             .order = SK_ORDERED, // elements that share a particle add to it in their order

@@ -165,8 +165,7 @@ const sk_kernels sk_solve_rounding = {SK_EACH_ISA(rounding)};
 
 /* ---- scalars ---- */
 
-/* Adds up what a dot row has left. */
-static double sum_up(const sk_run *run) {
+double sk_solve_sum(const sk_run *run) {
     enum { BLOCK = 1024 };
     double all = 0;
     for (size_t first = 0; first < run->slot_count; first += BLOCK) {
@@ -192,13 +191,13 @@ static bool is_lost(double residual) {
 void sk_solve_start(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     (void)row, (void)begin, (void)end;
     double *cell = run->cell;
-    cell[SK_CELL_START] = sum_up(run);
+    cell[SK_CELL_START] = sk_solve_sum(run);
     cell[SK_CELL_ROUNDING] = cell[SK_CELL_TURN] = cell[SK_CELL_SOLVED] = 0;
 }
 
 void sk_solve_line_start(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     (void)row, (void)begin, (void)end;
-    run->cell[SK_CELL_SLOPE] = sum_up(run);
+    run->cell[SK_CELL_SLOPE] = sk_solve_sum(run);
     run->cell[SK_CELL_SHARE] = 1;
     run->cell[SK_CELL_LINE_DONE] = 0;
 }
@@ -207,7 +206,7 @@ void sk_solve_line_start(sk_run *run, const sk_row *row, size_t begin, size_t en
 void sk_solve_judge(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     (void)begin, (void)end;
     double *cell = run->cell;
-    cell[SK_CELL_PRESENT] = sum_up(run);
+    cell[SK_CELL_PRESENT] = sk_solve_sum(run);
     bool solved = is_solved(cell, row->coefficient[0]) && (cell[SK_CELL_TURN] > 0 || cell[SK_CELL_PRESENT] <= 0);
     solved |= is_lost(cell[SK_CELL_PRESENT]);
     cell[SK_CELL_TURN]++;
@@ -218,13 +217,13 @@ void sk_solve_judge(sk_run *run, const sk_row *row, size_t begin, size_t end) {
 
 void sk_solve_note_rounding(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     (void)row, (void)begin, (void)end;
-    run->cell[SK_CELL_ROUNDING] = sum_up(run);
+    run->cell[SK_CELL_ROUNDING] = sk_solve_sum(run);
 }
 
 void sk_solve_cg_start(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     (void)row, (void)begin, (void)end;
     double *cell = run->cell;
-    cell[SK_CELL_RZ] = sum_up(run);
+    cell[SK_CELL_RZ] = sk_solve_sum(run);
     if (cell[SK_CELL_TURN] == 1) cell[SK_CELL_RZ_START] = cell[SK_CELL_RZ];
     cell[SK_CELL_SLOPE] = 0;
     cell[SK_CELL_SHARE] = 1;
@@ -233,7 +232,7 @@ void sk_solve_cg_start(sk_run *run, const sk_row *row, size_t begin, size_t end)
 
 void sk_solve_cg_alpha(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     (void)row, (void)begin, (void)end;
-    double *cell = run->cell, curvature = sum_up(run);
+    double *cell = run->cell, curvature = sk_solve_sum(run);
     bool good = curvature > 0 && !is_lost(curvature);
     cell[SK_CELL_ALPHA] = good ? cell[SK_CELL_RZ] / curvature : 0;
     // every direction is as far from the first residual as from the present one
@@ -243,7 +242,7 @@ void sk_solve_cg_alpha(sk_run *run, const sk_row *row, size_t begin, size_t end)
 
 void sk_solve_cg_beta(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     (void)begin, (void)end;
-    double *cell = run->cell, rz = sum_up(run), tolerance = row->coefficient[0];
+    double *cell = run->cell, rz = sk_solve_sum(run), tolerance = row->coefficient[0];
     cell[SK_CELL_BETA] = rz / cell[SK_CELL_RZ];
     cell[SK_CELL_RZ] = rz;
     cell[SK_CELL_CG_TURNS]++;
@@ -254,7 +253,7 @@ void sk_solve_cg_beta(sk_run *run, const sk_row *row, size_t begin, size_t end) 
  * the minimum, the secant says where it was. (Comparing potentials would compare roundings.) */
 void sk_solve_line_judge(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     (void)row, (void)begin, (void)end;
-    double *cell = run->cell, before = cell[SK_CELL_SLOPE], slope = sum_up(run);
+    double *cell = run->cell, before = cell[SK_CELL_SLOPE], slope = sk_solve_sum(run);
     cell[SK_CELL_LINE_DONE] = slope >= -0.5 * fabs(before);
     if (cell[SK_CELL_LINE_DONE] != 0) return;
     double share = before > 0 && !is_lost(-slope) ? before / (before - slope) : 0;
@@ -264,7 +263,7 @@ void sk_solve_line_judge(sk_run *run, const sk_row *row, size_t begin, size_t en
 void sk_solve_end(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     (void)begin, (void)end;
     double *cell = run->cell, start = cell[SK_CELL_START];
-    cell[SK_CELL_PRESENT] = sum_up(run);
+    cell[SK_CELL_PRESENT] = sk_solve_sum(run);
     double left = start > 0 ? sqrt(cell[SK_CELL_PRESENT] / start) : 0;
     if (!(left <= cell[SK_CELL_WORST])) cell[SK_CELL_WORST] = left;
     if (start != 0 && !is_solved(cell, row->coefficient[0])) cell[SK_CELL_UNSOLVED]++;

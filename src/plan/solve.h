@@ -61,6 +61,8 @@ extern const sk_kernels sk_solve_product, sk_solve_mass, sk_solve_momentum, sk_s
     sk_solve_open, sk_solve_factor, sk_solve_backsolve;
 /* Partial sums.   dot  p q      norm  p w p      rounding  what rounding alone may make of R w R */
 extern const sk_kernels sk_solve_dot, sk_solve_norm, sk_solve_rounding;
+/* Adds up what a row of partial sums has left. */
+double sk_solve_sum(const sk_run *run);
 /* Scalars; each begins with the sum of what the row before it left. */
 extern sk_row_kernel sk_solve_start, sk_solve_line_start, sk_solve_judge, sk_solve_note_rounding, sk_solve_cg_start,
     sk_solve_cg_alpha, sk_solve_cg_beta, sk_solve_line_judge, sk_solve_end;

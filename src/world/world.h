@@ -152,6 +152,8 @@ skein_status sk_world_arrange(skein_world *world, skein_error *error);
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error);
 /* The run context of the world's present state. */
 sk_run sk_world_run_context(skein_world *world);
+/* What skein_stable_substep says, of a known type. */
+double sk_stable_substep(const sk_method_type *method, const skein_stability *stability);
 /* Fills in the kinetic, potential and elastic energies, and the momenta. The slots are to be up to date. */
 void sk_world_measure_energy(const skein_world *world, skein_statistics *statistics);
 /* Runs rows in their order; the plan's are a whole step. */

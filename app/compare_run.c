@@ -1,0 +1,145 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/compare.h"
+
+/* Beyond these a run counts as blown up even where its numbers are still finite (limits can hold together what no
+ * longer has to do with the scene): m; stretch; times the energy that moves about in the reference. */
+static const double far_away = 1e6, torn = 10, wild = 10;
+
+enum { MOST_SETS = 256 };
+
+/* The scene under this method and step: the user's changes, then these. */
+static int load(const compare_scene *scene, const char *method, double step, app_scene *loaded) {
+    const char *sets[MOST_SETS + 5];
+    char type[64], length[64], frames[64];
+    size_t count = 0;
+    for (; scene->sets && scene->sets[count] && count < MOST_SETS; count++) sets[count] = scene->sets[count];
+    snprintf(type, sizeof type, "method.type=%s", method);
+    snprintf(length, sizeof length, "step=%.17g", step);
+    snprintf(frames, sizeof frames, "frames=%d", scene->frames);
+    sets[count++] = type;
+    sets[count++] = "method.substeps=1";
+    sets[count++] = length;
+    if (scene->frames) sets[count++] = frames;
+    sets[count] = NULL;
+    return app_load_quietly(scene->path, sets, loaded);
+}
+
+/* Whether every particle is where one could be, and all have an energy that they could have. */
+static bool is_sane(const compare_scene *scene, skein_world *world) {
+    skein_view x = skein_position_view(world), v = skein_velocity_view(world);
+    double energy = 0;
+    for (size_t i = 0; i < x.count; i++) {
+        const skein_real *p = x.xyzw + 4 * (size_t)x.slot_of[i], *u = v.xyzw + 4 * (size_t)v.slot_of[i];
+        for (int k = 0; k < 3; k++) {
+            if (!(fabs((double)p[k]) < far_away)) return false;
+            energy += 0.5 * (double)u[3] * (double)u[k] * (double)u[k];
+        }
+    }
+    return !(scene->energy_scale > 0) || energy < wild * scene->energy_scale;
+}
+
+/* Root of the mean square distance to the reference at a frame. */
+static double error_at(const compare_scene *scene, const skein_world *world, size_t frame) {
+    skein_view view = skein_position_view(world);
+    if (!scene->reference || frame >= scene->reference_frames || view.count != scene->particles) return NAN;
+    const double *ought = scene->reference + 3 * scene->particles * frame;
+    double sum = 0;
+    for (size_t i = 0; i < view.count; i++)
+        for (size_t k = 0; k < 3; k++) {
+            double d = (double)view.xyzw[4 * (size_t)view.slot_of[i] + k] - ought[3 * i + k];
+            sum += d * d;
+        }
+    return sqrt(sum / (double)view.count);
+}
+
+static bool take_sample(compare_scene *scene, compare_run *run, skein_world *world) {
+    skein_statistics s;
+    if (skein_world_statistics(world, &s)) return false;
+    size_t frame = run->sample_count++;
+    run->samples[frame] = (compare_sample){s.time, s.kinetic_energy + s.potential_energy + s.elastic_energy,
+                                           s.max_stretch, error_at(scene, world, frame)};
+    if (s.nonfinite || s.max_stretch > torn) run->outcome = COMPARE_BLEW_UP;
+    if (scene->energy_scale > 0 && s.kinetic_energy + s.elastic_energy > wild * scene->energy_scale)
+        run->outcome = COMPARE_BLEW_UP;
+    scene->most_moving = fmax(scene->most_moving, s.kinetic_energy + s.elastic_energy);
+    return true;
+}
+
+/* Steps a frame; false when a call failed. */
+static bool step_frame(const compare_scene *scene, compare_run *run, skein_world *world, int steps) {
+    for (int i = 0; i < steps && run->outcome == COMPARE_GOOD; i++) {
+        double start = app_seconds();
+        if (skein_world_step(world, run->step)) return false;
+        run->seconds += app_seconds() - start;
+        run->steps++;
+        if (!is_sane(scene, world)) run->outcome = COMPARE_BLEW_UP;
+    }
+    return true;
+}
+
+/* What the samples say of the whole run. */
+static void sum_up(compare_run *run) {
+    double square = 0;
+    run->stretch = 0;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        square += run->samples[i].error * run->samples[i].error;
+        run->stretch = fmax(run->stretch, run->samples[i].stretch);
+    }
+    run->error = run->outcome == COMPARE_GOOD ? sqrt(square / (double)run->sample_count) : (double)NAN;
+    if (run->sample_count) run->loss = run->samples[0].energy - run->samples[run->sample_count - 1].energy;
+}
+
+static bool run_frames(compare_scene *scene, compare_run *run, app_scene *loaded, bool keep) {
+    skein_world *world = loaded->world;
+    size_t frames = (size_t)loaded->settings.frames + 1;
+    int steps = io_scene_steps_per_frame(&loaded->settings, &run->step);
+    if (keep) {
+        scene->particles = skein_particle_count(world);
+        scene->reference = calloc(frames * scene->particles * 3 + 1, sizeof *scene->reference);
+        if (!scene->reference) return false;
+    }
+    run->samples = calloc(frames, sizeof *run->samples);
+    if (!run->samples) return false;
+    bool good = true;
+    for (size_t f = 0; f < frames && good && run->outcome == COMPARE_GOOD; f++) {
+        good = (f == 0 || step_frame(scene, run, world, steps)) && take_sample(scene, run, world);
+        if (good && keep &&
+            !skein_positions_copy(world, 0, scene->particles, scene->reference + 3 * scene->particles * f))
+            scene->reference_frames = f + 1;
+    }
+    if (!good) {
+        app_print_error(skein_world_error(world));
+        run->outcome = COMPARE_FAILED;
+    }
+    return true;
+}
+
+bool compare_run_one(compare_scene *scene, compare_run *run, bool keep) {
+    app_scene loaded;
+    run->outcome = COMPARE_GOOD;
+    if (load(scene, run->method, run->step, &loaded)) {
+        run->outcome = COMPARE_REFUSED; // it has been said why
+        run->error = NAN;
+        return true;
+    }
+    bool good = run_frames(scene, run, &loaded, keep);
+    if (keep && run->outcome == COMPARE_GOOD) scene->energy_scale = scene->most_moving;
+    app_unload(&loaded);
+    sum_up(run);
+    return good;
+}
+
+double compare_reference_step(const compare_scene *scene, const char *method, double least) {
+    app_scene loaded;
+    skein_stability s;
+    if (load(scene, method, least, &loaded)) return 0;
+    double step = least / 8;
+    if (skein_world_stability(loaded.world, &s)) app_print_error(skein_world_error(loaded.world));
+    else step = fmin(step, 0.5 * skein_stable_substep(method, &s));
+    app_unload(&loaded);
+    return step;
+}

@@ -1,0 +1,100 @@
+/* skein stability SCENE: the largest stable step of each method. */
+#include "app/stability.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* The substep that the scene asks for. */
+static double substep_of(const app_scene *loaded, double *dt) {
+    skein_value substeps = skein_number(1);
+    io_scene_steps_per_frame(&loaded->settings, dt);
+    skein_get_path(loaded->world, "method.substeps", &substeps);
+    return *dt / substeps.number[0];
+}
+
+static bool find(const app_scene *loaded, skein_stability *stability) {
+    if (!skein_world_stability(loaded->world, stability)) return true;
+    app_print_error(skein_world_error(loaded->world));
+    return false;
+}
+
+static void print_modes(const app_scene *loaded, const skein_stability *s) {
+    static const char *const names[] = {"stiffest", "most damped", "between them"};
+    printf("%s: ", loaded->path);
+    if (!s->mode_count) printf("no finite springs and no air: nothing limits the step\n");
+    for (size_t i = 0; i < s->mode_count; i++) {
+        const skein_mode *m = &s->modes[i];
+        printf("%smode %-12s %.4g rad/s (%.4g Hz), damping ratio %.3g\n", i ? "  " : "\n  ", names[i], m->frequency,
+               m->frequency / (2 * 3.14159265358979323846),
+               m->frequency > 0 ? m->damping_rate / m->frequency : INFINITY);
+    }
+}
+
+static void print_methods(const app_scene *loaded, const skein_stability *s) {
+    double dt, substep = substep_of(loaded, &dt);
+    printf("\n%-18s %-22s %s %.4g ms\n", "method", "largest stable substep", "substeps for a step of", 1e3 * dt);
+    for (size_t i = 0; skein_kind_at(SKEIN_METHOD, i); i++) {
+        const char *name = skein_kind_at(SKEIN_METHOD, i)->name;
+        double most = skein_stable_substep(name, s);
+        if (isinf(most)) printf("%-18s %-22s 1\n", name, "any");
+        else if (most <= 0) printf("%-18s %-22s none is enough: it grows at any step\n", name, "none");
+        else printf("%-18s %-6.4g %-15s %.0f\n", name, 1e3 * most, "ms", ceil(dt / most));
+    }
+    printf("\nThe scene runs %s with substeps of %.4g ms: %s.\n", app_method(loaded), 1e3 * substep,
+           substep <= skein_stable_substep(app_method(loaded), s) ? "stable" : "UNSTABLE");
+    if (s->swinging_is_free)
+        printf("Damping along constraints does not damp swinging: under explicit_euler and midpoint that grows,\n"
+               "slowly, at any step. The force \"drag\" damps it.\n");
+}
+
+bool app_warn_of_instability(app_scene *loaded) {
+    skein_stability s;
+    double dt, substep = substep_of(loaded, &dt);
+    // most methods have no limit, which no search is needed to know
+    const skein_stability stiff = {.modes = {{1 / substep * 1e3, 0}}, .mode_count = 1};
+    if (isinf(skein_stable_substep(app_method(loaded), &stiff))) return true;
+    if (!find(loaded, &s)) return false;
+    double most = skein_stable_substep(app_method(loaded), &s);
+    if (substep <= most) return true;
+    loaded->warnings++;
+    if (most > 0)
+        fprintf(stderr,
+                "skein: warning: %s: %s is stable with substeps of %.3g ms at most, and these are %.3g ms: set "
+                "method.substeps to %.0f or more\n",
+                loaded->path, app_method(loaded), 1e3 * most, 1e3 * substep, ceil(dt / most));
+    else
+        fprintf(stderr, "skein: warning: %s: undamped springs grow under %s at any step\n", loaded->path,
+                app_method(loaded));
+    return true;
+}
+
+static int stability(int argc, char **argv) {
+    app_option options[] = {
+        {"--set", "PATH=VALUE", "change a value first, as for `skein run`; may be repeated", true, NULL, 0}};
+    const char *path;
+    int status = app_parse(&app_stability_command, argc, argv, options, 1, "scene", &path);
+    if (status < 0) {
+        app_scene loaded;
+        skein_stability s;
+        status = app_load(path, options[0].values, &loaded);
+        if (!status && !find(&loaded, &s)) status = EXIT_FAILURE_RUN;
+        if (!status) {
+            print_modes(&loaded, &s);
+            print_methods(&loaded, &s);
+        }
+        app_unload(&loaded);
+    }
+    app_options_free(options, 1);
+    return status;
+}
+
+const app_command app_stability_command = {
+    "stability",
+    "SCENE [--set PATH=VALUE]...",
+    "say how large a step each method can take before things blow up\n\n"
+    "From the stiffest way in which the scene can vibrate, as it lies at its start: its springs and their damping,\n"
+    "and the air's. What is stretched later on can be stiffer; contact and rigid constraints are left out.\n"
+    "With frequency omega and damping ratio zeta, the limits are about 2/omega (symplectic_euler, leapfrog), \n"
+    "2.828/omega (rk4), 1/omega (lookahead_euler), and 2 zeta/omega (explicit_euler).",
+    stability,
+};
