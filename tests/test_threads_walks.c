@@ -1,0 +1,126 @@
+/* The same bits for any number of threads where whole repeats are walks: threads follow each other down the rows of
+ * a grid, of a lattice and of an irregular mesh, several substeps at once. */
+#include "helpers.h"
+
+enum { SIDE = 90, VERTICES = SIDE * SIDE, MOST_FACES = 2 * VERTICES };
+
+/* Triangles over a square on edge, jittered, cut at random and numbered at random: no grid. */
+typedef struct triangles {
+    double positions[3 * VERTICES];
+    uint32_t sizes[MOST_FACES], corners[3 * MOST_FACES], number[VERTICES];
+    skein_mesh mesh;
+} triangles;
+
+static void make_triangles(triangles *t) {
+    uint64_t seed = 5;
+    for (uint32_t i = 0; i < VERTICES; i++) t->number[i] = i;
+    for (uint32_t i = VERTICES; i > 1; i--) {
+        uint32_t j = (uint32_t)random_between(&seed, 0, i), k = t->number[i - 1];
+        t->number[i - 1] = t->number[j], t->number[j] = k;
+    }
+    for (int i = 0; i < VERTICES; i++) {
+        double *p = t->positions + 3 * t->number[i];
+        p[0] = (i % SIDE + random_between(&seed, -0.2, 0.2)) / SIDE;
+        p[1] = -(i / SIDE + random_between(&seed, -0.2, 0.2)) / SIDE;
+        p[2] = 0;
+    }
+    size_t faces = 0;
+    for (uint32_t r = 0; r + 1 < SIDE; r++)
+        for (uint32_t c = 0; c + 1 < SIDE; c++) {
+            uint32_t a = r * SIDE + c, b = a + 1, d = a + SIDE, e = d + 1, cut = random_between(&seed, 0, 1) < 0.5;
+            uint32_t corners[6] = {a, d, cut ? e : b, cut ? a : d, e, b};
+            for (int k = 0; k < 6; k++) t->corners[3 * faces + (size_t)k] = t->number[corners[k]];
+            t->sizes[faces] = t->sizes[faces + 1] = 3;
+            faces += 2;
+        }
+    t->mesh = (skein_mesh){t->positions, VERTICES, t->sizes, faces, t->corners, 3 * faces};
+}
+
+typedef enum body { GRID, LATTICE, TRIANGLES, TWO_BODIES } body;
+
+static void add_body(skein_world *world, body which) {
+    static triangles t;
+    char pins[64];
+    if (!t.mesh.vertex_count) make_triangles(&t);
+    if (which == GRID || which == TWO_BODIES)
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 101, 83), SKEIN_VEC3("position", 0, 0.5, 0),
+                                                SKEIN_VEC3("velocity", 0.1, -2, 0), SKEIN_TEXT("pins", "top corners"),
+                                                SKEIN_REAL("stretch.stiffness", 5), SKEIN_REAL("shear.stiffness", 1),
+                                                SKEIN_REAL("bend.stiffness", 0.1)),
+                                 NULL));
+    if (which == LATTICE)
+        OK(world, skein_body_add(world, "lattice", NULL,
+                                 SKEIN_SETTINGS(SKEIN_VEC3("grid", 18, 18, 18), SKEIN_VEC3("position", 0, 1, 0),
+                                                SKEIN_REAL("mass", 5), SKEIN_REAL("structural.stiffness", 20),
+                                                SKEIN_REAL("shear.stiffness", 10), SKEIN_REAL("bending.stiffness", 5)),
+                                 NULL));
+    if (which < TRIANGLES) return;
+    snprintf(pins, sizeof pins, "%u, %u", t.number[0], t.number[SIDE - 1]);
+    OK(world, skein_body_add(world, "cloth", &t.mesh,
+                             SKEIN_SETTINGS(SKEIN_TEXT("pins", pins), SKEIN_VEC3("position", 0, 0.6, 0.2),
+                                            SKEIN_REAL("stretch.stiffness", 5), SKEIN_REAL("bend.stiffness", 0.1)),
+                             NULL));
+}
+
+static uint64_t hash_of_run(const char *method, body which, bool contact, int threads) {
+    skein_world_desc desc = skein_default_world_desc();
+    desc.thread_count = threads;
+    skein_world *world = skein_world_create(&desc, NULL);
+    assert_non_null(world);
+    OK(world, skein_method_set(world, method, SKEIN_SETTINGS(SKEIN_REAL("substeps", 34))));
+    add_body(world, which);
+    add_gravity(world);
+    OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.5)), NULL));
+    if (contact)
+        OK(world, skein_collider_add(world, "sphere",
+                                     SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.1, 0), SKEIN_REAL("radius", 0.39),
+                                                    SKEIN_REAL("motion.spin", 5)),
+                                     NULL));
+    steps(world, 3, 1.0 / 90);
+    skein_statistics s = statistics_of(world);
+    assert_int_equal(s.nonfinite, 0);
+    assert_true(!contact || s.contacts > 10);
+    skein_world_destroy(world);
+    return s.state_hash;
+}
+
+static void walks_do_not_depend_on_threads(void **state) {
+    (void)state;
+    static const int counts[] = {2, 3, 5, 8};
+    for (size_t m = 0; m < COUNT(method_names); m++)
+        for (body which = GRID; which <= TWO_BODIES; which++)
+            for (int contact = 0; contact < 2; contact++) {
+                if (contact && which != GRID) continue;
+                uint64_t one = hash_of_run(method_names[m], which, contact, 1);
+                for (size_t i = 0; i < COUNT(counts); i++) {
+                    uint64_t hash = hash_of_run(method_names[m], which, contact, counts[i]);
+                    if (hash != one)
+                        fail_msg("%s, body %d, contact %d, %d threads", method_names[m], which, contact, counts[i]);
+                }
+            }
+}
+
+/* The irregular mesh's groups walk, so that all this is about something. */
+static void count_walks(void *user, const char *line) {
+    size_t *count = user;
+    count[0] += strstr(line, "project") && strstr(line, "groups");
+}
+
+static void the_irregular_mesh_goes_in_groups(void **state) {
+    (void)state;
+    size_t count = 0;
+    skein_world *world = skein_world_create(NULL, NULL);
+    add_body(world, TRIANGLES);
+    OK(world, skein_world_explain(world, 1.0 / 90, count_walks, &count));
+    assert_true(count >= 4); // edges and bends, outward and round
+    skein_world_destroy(world);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(walks_do_not_depend_on_threads),
+        cmocka_unit_test(the_irregular_mesh_goes_in_groups),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
