@@ -12,14 +12,14 @@ SK_INLINE void SK_ISA(pull_in)(sk_wide3 *p, sk_wide3 anchor, sk_wide most) {
     p->z = SK_ISA(sk_select)(out, anchor.z + s * d.z, p->z);
 }
 
-/* Anchor k of a block; one that is not held any more lets go. */
-SK_INLINE sk_wide3 SK_ISA(anchor_of)(sk_run *run, const sk_row *row, const sk_limit *limit, size_t block, size_t k,
-                                     sk_wide *most) {
+/* Anchor k of a block, where it stood at the start of the step: held particles stay there, and another thread may be
+ * storing their block. One that is not held any more lets go. */
+SK_INLINE sk_wide3 SK_ISA(anchor_of)(sk_run *run, const sk_limit *limit, size_t block, size_t k, sk_wide *most) {
     const uint32_t *anchor = limit->anchor + (limit->shared ? k : (block * limit->anchors + k) * SK_LANES);
     sk_wide3 at;
     for (int l = 0; l < SK_LANES; l++) {
         if (l && limit->shared) break;
-        sk_vec4 q = sk_load(run->vector[SK_X], row->packed, anchor[l]);
+        sk_vec4 q = run->vector[SK_PREVIOUS][anchor[l]];
         if (limit->shared) {
             at = (sk_wide3){SK_ISA(sk_splat)(q.x), SK_ISA(sk_splat)(q.y), SK_ISA(sk_splat)(q.z)};
             if (q.w > 0) *most = SK_ISA(sk_splat)((real)SK_FAR);
@@ -45,7 +45,7 @@ static void SK_ISA(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, s
         sk_wide3 forth = {x.x, x.y, x.z}, back = forth;
         for (size_t k = 0; k < anchors; k++) {
             sk_wide most = factor * length[k];
-            sk_wide3 anchor = SK_ISA(anchor_of)(run, row, limit, block, k, &most);
+            sk_wide3 anchor = SK_ISA(anchor_of)(run, limit, block, k, &most);
             SK_ISA(pull_in)(&forth, anchor, most);
         }
         sk_mask moved =
@@ -55,7 +55,7 @@ static void SK_ISA(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, s
         if (anchors > 1) {
             for (size_t k = anchors; k-- > 0;) {
                 sk_wide most = factor * length[k];
-                sk_wide3 anchor = SK_ISA(anchor_of)(run, row, limit, block, k, &most);
+                sk_wide3 anchor = SK_ISA(anchor_of)(run, limit, block, k, &most);
                 SK_ISA(pull_in)(&back, anchor, most);
             }
             real half = (real)0.5;

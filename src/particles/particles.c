@@ -189,7 +189,7 @@ void sk_particle_hold(sk_particles *particles, size_t particle, bool held) {
     uint32_t s = particles->slot_of[particle];
     real mass = particles->mass[particle];
     particles->held[particle] = held || !(mass > 0);
-    particles->vector[SK_X][s].w = particles->held[particle] ? 0 : 1 / mass;
+    particles->vector[SK_X][s].w = particles->vector[SK_PREVIOUS][s].w = particles->held[particle] ? 0 : 1 / mass;
     if (held) particles->vector[SK_V][s] = (sk_vec4){0, 0, 0, particles->vector[SK_V][s].w};
 }
 
