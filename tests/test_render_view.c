@@ -94,7 +94,9 @@ static void the_view_is_described(void **state) {
     assert_int_equal(kind->params_size, sizeof(render_view));
     for (size_t i = 0; i < kind->field_count; i++) {
         const skein_field *field = &kind->fields[i];
-        static const int numbers[] = {1, 1, 2, 1, 2, 3, 1, 0};
+        static const int numbers[] = {
+            [SKEIN_FIELD_BOOL] = 1,  [SKEIN_FIELD_INT] = 1,  [SKEIN_FIELD_INT2] = 2,   [SKEIN_FIELD_INT3] = 3, [SKEIN_FIELD_REAL] = 1,
+            [SKEIN_FIELD_REAL2] = 2, [SKEIN_FIELD_VEC3] = 3, [SKEIN_FIELD_CHOICE] = 1, [SKEIN_FIELD_TEXT] = 0};
         skein_value value = {
             numbers[field->type], {field->initial[0], field->initial[1], field->initial[2]}, field->text};
         assert_int_equal(skein_field_check(field, &value, NULL), SKEIN_OK);
