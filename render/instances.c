@@ -8,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Floats of a ball: centre and radius, three rows of its rotation, paint, marking; of a line: both ends, paint. */
-enum { ball_floats = 4 + 9 + 3 + 3, line_floats = 6 + 3 };
+/* Floats of a ball: centre and radius, three rows of its rotation, paint, marking; of a solid: the same, and its
+ * extent; of a line: both ends, paint. */
+enum { ball_floats = 4 + 9 + 3 + 3, solid_floats = ball_floats + 3, line_floats = 6 + 3 };
 
 /* ---- Making --------------------------------------------------------------------------------- */
 
@@ -25,14 +26,23 @@ static void make_attributes(GLuint arrays, GLuint first, const GLint *parts, GLu
     glVertexArrayBindingDivisor(arrays, 1, 1);
 }
 
-void render_instances_make_balls(render_instances *instances, const render_shape *shape) {
-    static const GLint parts[6] = {4, 3, 3, 3, 3, 3};
+/* Of one shape, with `count` attributes after its own. */
+static void make_shaped(render_instances *instances, const render_shape *shape, GLuint count) {
+    static const GLint parts[7] = {4, 3, 3, 3, 3, 3, 3};
     glCreateVertexArrays(1, &instances->arrays);
     glVertexArrayAttribFormat(instances->arrays, 0, 3, GL_FLOAT, GL_FALSE, 0);
     glVertexArrayAttribBinding(instances->arrays, 0, 0);
     glEnableVertexArrayAttrib(instances->arrays, 0);
     render_instances_take_shape(instances, shape);
-    make_attributes(instances->arrays, 1, parts, 6);
+    make_attributes(instances->arrays, 1, parts, count);
+}
+
+void render_instances_make_balls(render_instances *instances, const render_shape *shape) {
+    make_shaped(instances, shape, 6);
+}
+
+void render_instances_make_solids(render_instances *instances, const render_shape *shape) {
+    make_shaped(instances, shape, 7);
 }
 
 void render_instances_take_shape(const render_instances *instances, const render_shape *shape) {
@@ -97,6 +107,19 @@ skein_status render_instances_bring_spheres(render_instances *instances, const r
                    sphere->colour, sphere->marking);
     }
     send(instances, ball_floats);
+    return SKEIN_OK;
+}
+
+skein_status render_instances_bring_solids(render_instances *instances, const render_solid *solids, size_t count,
+                                           skein_error *error) {
+    skein_status status = reserve(instances, count, solid_floats, error);
+    if (status != SKEIN_OK) return status;
+    for (size_t i = 0; i < count; i++) {
+        float *out = &instances->staged[i * solid_floats];
+        stage_ball(out, solids[i].centre, solids[i].radius, solids[i].rotation, solids[i].colour, solids[i].marking);
+        for (int k = 0; k < 3; k++) out[ball_floats + k] = (float)solids[i].extent[k];
+    }
+    send(instances, solid_floats);
     return SKEIN_OK;
 }
 
