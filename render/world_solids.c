@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* A rope's radius, in radii of the scene; so many of its pieces have its colour, and then one is marked. */
-static const double rope_size = 0.011;
+static const double rope_size = 0.014;
 enum { mark_every = 6 };
 /* A box's round edges, in parts of half its shortest side. */
 static const double roundness = 0.12;
