@@ -323,18 +323,6 @@ static void draw_casters(const render_draw *draw, const drawing *d) {
     render_solids_draw_depth(&draw->solids, d->frame);
 }
 
-static void draw_lines(const render_draw *draw, const drawing *d) {
-    GLuint program = draw->programs[LINE], first = 0;
-    glUseProgram(program);
-    glBindVertexArray(draw->lines.arrays);
-    for (size_t i = 0; i < d->frame->lines_count; i++) {
-        const render_lines *lines = &d->frame->lines[i];
-        glProgramUniform3f(program, 0, 1.0f / (float)d->width, 1.0f / (float)d->height, (float)lines->width);
-        glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)lines->count, first);
-        first += (GLuint)lines->count;
-    }
-}
-
 static void use_pass(const render_draw *draw, render_pass pass) {
     glBindBufferRange(GL_UNIFORM_BUFFER, 1, draw->uniforms, pass * RENDER_PASS_STRIDE, 16 * sizeof(float));
 }
@@ -373,7 +361,7 @@ static void draw_picture(const render_draw *draw, const drawing *d, unsigned fra
     render_solids_draw(&draw->solids, d->frame);
     draw_slabs(draw, d, 0);
     draw_ground(draw, d);
-    draw_lines(draw, d);
+    render_instances_draw_lines(&draw->lines, draw->programs[LINE], d->frame, d->width, d->height);
 
     // the sky fills what is left, so that colours need no clearing
     glDepthFunc(GL_GEQUAL);

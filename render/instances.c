@@ -160,3 +160,18 @@ skein_status render_instances_bring_lines(render_instances *instances, const ren
     send(instances, line_floats);
     return SKEIN_OK;
 }
+
+/* ---- Drawing -------------------------------------------------------------------------------- */
+
+void render_instances_draw_lines(const render_instances *instances, unsigned program, const render_frame *frame,
+                                 int width, int height) {
+    GLuint first = 0;
+    glUseProgram(program);
+    glBindVertexArray(instances->arrays);
+    for (size_t i = 0; i < frame->lines_count; i++) {
+        const render_lines *lines = &frame->lines[i];
+        glProgramUniform3f(program, 0, 1.0f / (float)width, 1.0f / (float)height, (float)lines->width);
+        glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)lines->count, first);
+        first += (GLuint)lines->count;
+    }
+}

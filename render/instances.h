@@ -34,4 +34,8 @@ skein_status render_instances_bring_points(render_instances *instances, const re
                                            const double rotation[9], skein_error *error);
 skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame, skein_error *error);
 
+/* All of a frame's lines, which were brought before, each group in its width. */
+void render_instances_draw_lines(const render_instances *instances, unsigned program, const render_frame *frame,
+                                 int width, int height);
+
 #endif

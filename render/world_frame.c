@@ -287,8 +287,17 @@ static skein_status take_lines(render_world_frame *made, skein_error *error) {
     return made->lines.no_memory ? render_fail_memory(error, "the lines") : SKEIN_OK;
 }
 
+/* The lowest that slabs reach; infinite where there are none. */
+static double lowest_slab(const render_world_frame *made) {
+    render_bounds things = bounds_to_hold(made), slabs = render_bounds_nothing();
+    double middle[3], radius = render_bounds_radius(&things);
+    render_bounds_centre(&things, middle);
+    render_bounds_add_slabs(&slabs, &made->frame, middle, radius > 0 ? radius : 1);
+    return slabs.least[1];
+}
+
 /* Where no plane is ground, one is put at height 0 if the things stand not far above it, else a little
- * below them. */
+ * below them; and slopes stand on it. */
 static void place_floor(render_world_frame *made) {
     bool level = false;
     for (size_t i = 0; i < made->frame.plane_count; i++) level |= render_plane_level(&made->frame.planes[i]);
@@ -296,7 +305,7 @@ static void place_floor(render_world_frame *made) {
         render_bounds bounds = bounds_to_hold(made);
         double size = 2 * render_bounds_radius(&bounds), lowest = bounds.least[1];
         if (render_bounds_empty(&bounds)) lowest = size = 0;
-        made->floor_height = lowest >= 0 && lowest <= size ? 0 : lowest - 0.1 * size;
+        made->floor_height = fmin(lowest >= 0 && lowest <= size ? 0 : lowest - 0.1 * size, lowest_slab(made));
         made->has_floor = true;
     }
     made->frame.look.floor = made->has_floor && !level && made->view.ground;
@@ -334,7 +343,7 @@ double render_world_frame_range(const render_world_frame *made) {
 
 void render_world_frame_settle(render_world_frame *made) {
     render_bounds bounds = render_frame_bounds(&made->frame);
-    if (!made->frame.look.floor || render_bounds_empty(&bounds)) return;
+    if (!made->frame.look.floor || render_bounds_empty(&bounds) || isfinite(lowest_slab(made))) return;
     double most_gap = floor_gap * (bounds.most[1] - bounds.least[1]);
     made->floor_height = fmax(made->floor_height, bounds.least[1] - most_gap);
     made->frame.look.floor_height = made->floor_height;
@@ -349,7 +358,8 @@ void render_world_frame_hold(render_world_frame *made, const render_bounds *boun
 render_camera render_world_frame_camera(const render_world_frame *made, double aspect) {
     const render_look *look = &made->frame.look;
     render_bounds bounds = bounds_to_hold(made);
-    double gap = bounds.least[1] - look->floor_height, most_gap = floor_gap * (bounds.most[1] - bounds.least[1]), ground;
+    double gap = bounds.least[1] - look->floor_height, most_gap = floor_gap * (bounds.most[1] - bounds.least[1]),
+           ground;
     if (look->floor && gap > 0 && gap < 1.01 * most_gap) bounds.least[1] = look->floor_height;
     // ground that is a collider is what things fall on to, or hang over: its shadows belong to the picture
     bool is_there = !look->floor && render_find_ground(&made->frame, &ground);
