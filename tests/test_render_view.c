@@ -543,6 +543,7 @@ static void images_that_cannot_be_read_are_told(void **state) {
     view.image = path;
     assert_int_equal(render_world_frame_update(made, world, &view, &error), SKEIN_ERROR_FILE);
     assert_string_equal(error.where, path);
+    assert_non_null(strstr(error.message, "; give the path of a PNG or JPEG"));
     view.image = (char[]){"CMakeLists.txt"};
     assert_int_equal(render_world_frame_update(made, world, &view, &error), SKEIN_ERROR_SYNTAX);
     assert_non_null(strstr(error.message, "PNG or JPEG"));
