@@ -141,6 +141,13 @@ static void print_list(size_t list) {
     char all[64];
     snprintf(all, sizeof all, "all %s have", lists[list].word);
     printf("%s\n\n", lists[list].word);
+    if (!kind_at(lists[list].category, 0)) { // only what draws can be missing
+        print_words(
+            0, 2,
+            "this skein was built without pictures: it passes a scene's view over; build it with SKEIN_RENDER=ON");
+        printf("\n");
+        return;
+    }
     print_heads();
     for (size_t i = 0; kind_at(lists[list].category, i); i++) print_kind(kind_at(lists[list].category, i));
     print_common(lists[list].category, all);

@@ -174,9 +174,13 @@ static const skein_kind *find_exporter(io_place place, const json_t *object, con
         names[count++] = (*exporters)->name;
         if (json_is_string(name) && !strcmp((*exporters)->name, json_string_value(name))) return *exporters;
     }
-    if (json_is_string(name))
-        io_fault(place, member, SKEIN_ERROR_NAME, "there is no exporter '%s'%s", json_string_value(name),
-                 io_hint(json_string_value(name), names, count, hint));
+    const char *word = json_is_string(name) ? json_string_value(name) : "";
+    if (!strcmp(word, "png") || !strcmp(word, "film"))
+        io_fault(place, member, SKEIN_ERROR_NAME,
+                 "'%s' needs pictures, which this program was built without: build it with SKEIN_RENDER=ON", word);
+    else if (json_is_string(name))
+        io_fault(place, member, SKEIN_ERROR_NAME, "there is no exporter '%s'%s", word,
+                 io_hint(word, names, count, hint));
     else
         io_fault(place, member, SKEIN_ERROR_VALUE, "expected the name of an exporter, such as \"obj\"%s%s",
                  name ? ", not " : ": it is missing", name ? io_json_words(name, words) : "");

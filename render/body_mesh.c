@@ -1,6 +1,8 @@
 /* What stays of a body while it moves; see body_mesh.h. */
 #include "render/body_mesh.h"
 
+#include "render/linear.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,8 +13,20 @@ typedef struct maker {
     const skein_surface *surface;
     const double *positions;
     float *corner_uv;    /* face_vertex_count x 2 */
+    uint32_t *side;      /* of each corner: a corner at the same particle, on the same side of all creases */
     uint32_t *vertex_of; /* of each corner */
 } maker;
+
+/* From a corner of a face to the next one. */
+typedef struct way {
+    uint32_t least, most;       /* the particles at its ends */
+    uint32_t at_least, at_most; /* and the corners */
+    uint32_t face;
+} way;
+
+/* Where the normals of two faces differ by more, in the body's first shape, there is a crease between them; else they
+ * are parts of one smooth surface. */
+static const double crease_cosine = 0.342; // of 70 degrees
 
 static const double *place(const maker *m, uint32_t vertex) {
     return &m->positions[3 * (size_t)m->surface->particle_of_vertex[vertex]];
@@ -98,29 +112,101 @@ static bool make_corner_uv(maker *m) {
     return true;
 }
 
+/* ---- Edges and creases ------------------------------------------------------------------------ */
+
+static int compare_ways(const void *a, const void *b) {
+    const way *p = a, *q = b;
+    if (p->least != q->least) return p->least < q->least ? -1 : 1;
+    if (p->most != q->most) return p->most < q->most ? -1 : 1;
+    return (p->face > q->face) - (p->face < q->face);
+}
+
+/* All faces' sides, those between the same particles after each other; and each face's normal. */
+static void list_ways(const maker *m, way *ways, double (*normals)[3]) {
+    const skein_surface *s = m->surface;
+    uint32_t first = 0;
+    for (uint32_t f = 0; f < s->face_count; first += s->face_sizes[f++]) {
+        face_normal(m, s->face_vertices + first, s->face_sizes[f], normals[f]);
+        for (uint32_t k = 0; k < s->face_sizes[f]; k++) {
+            uint32_t c = first + k, d = first + (k + 1) % s->face_sizes[f];
+            uint32_t p = s->particle_of_vertex[s->face_vertices[c]], q = s->particle_of_vertex[s->face_vertices[d]];
+            ways[c] = p < q ? (way){p, q, c, d, f} : (way){q, p, d, c, f};
+        }
+    }
+    qsort(ways, s->face_vertex_count, sizeof *ways, compare_ways);
+}
+
+/* The corner that stands for all on the same side. */
+static uint32_t root_of(uint32_t *side, uint32_t corner) {
+    while (side[corner] != corner) corner = side[corner] = side[side[corner]];
+    return corner;
+}
+
+static void join(uint32_t *side, uint32_t a, uint32_t b) {
+    a = root_of(side, a), b = root_of(side, b);
+    if (a < b) side[b] = a;
+    else side[a] = b;
+}
+
+/* Faces of no area, which have no normal, are part of whatever they touch. */
+static bool is_smooth(const double a[3], const double b[3]) {
+    return !(render_dot(a, b) < crease_cosine * sqrt(render_dot(a, a) * render_dot(b, b)));
+}
+
+static bool make_edges(maker *m) {
+    size_t corners = m->surface->face_vertex_count, kept = 0;
+    way *ways = malloc(corners * sizeof *ways + 1);
+    double(*normals)[3] = malloc(m->surface->face_count * sizeof *normals + 1);
+    m->side = malloc(corners * sizeof *m->side + 1);
+    m->mesh->edges = malloc(corners * 2 * sizeof *m->mesh->edges + 1);
+    bool good = ways && normals && m->side && m->mesh->edges;
+    if (good) list_ways(m, ways, normals);
+    for (size_t c = 0; c < corners && good; c++) m->side[c] = (uint32_t)c;
+    for (size_t i = 0; i < corners && good; i++) {
+        const way *now = &ways[i], *before = &ways[i ? i - 1 : 0];
+        if (!i || now->least != before->least || now->most != before->most) {
+            m->mesh->edges[2 * kept] = now->least, m->mesh->edges[2 * kept++ + 1] = now->most;
+        } else if (is_smooth(normals[now->face], normals[before->face])) {
+            join(m->side, now->at_least, before->at_least);
+            join(m->side, now->at_most, before->at_most);
+        }
+    }
+    for (size_t c = 0; c < corners && good; c++) m->side[c] = root_of(m->side, (uint32_t)c);
+    free(ways);
+    free(normals);
+    m->mesh->edge_count = kept;
+    return good;
+}
+
 /* ---- Vertices --------------------------------------------------------------------------------- */
 
-/* A vertex for each pair of a particle and a uv that a corner has. */
+/* A vertex for each particle with a uv and a side of its creases that a corner has. */
 static bool make_vertices(maker *m) {
     render_body_mesh *mesh = m->mesh;
     size_t corners = m->surface->face_vertex_count, particles = m->surface->particle_count;
     uint32_t first = m->surface->first_particle;
     uint32_t *newest = malloc(particles * sizeof *newest + 1), *older = malloc(corners * sizeof *older + 1);
+    uint32_t *side = malloc(corners * sizeof *side + 1); // of each vertex
     m->vertex_of = malloc(corners * sizeof *m->vertex_of + 1);
     mesh->particles = malloc(corners * sizeof *mesh->particles + 1);
     mesh->weld = malloc(corners * sizeof *mesh->weld + 1);
     mesh->uv = malloc(corners * 2 * sizeof *mesh->uv + 1);
-    bool good = newest && older && m->vertex_of && mesh->particles && mesh->weld && mesh->uv;
+    bool good = newest && older && side && m->vertex_of && mesh->particles && mesh->weld && mesh->uv;
     if (good) memset(newest, 0xff, particles * sizeof *newest);
     for (size_t c = 0; c < corners && good; c++) {
         uint32_t particle = m->surface->particle_of_vertex[m->surface->face_vertices[c]];
-        uint32_t *head = &newest[particle - first], v = *head;
-        while (v != UINT32_MAX && memcmp(&mesh->uv[2 * v], &m->corner_uv[2 * c], 2 * sizeof *mesh->uv)) v = older[v];
+        uint32_t *head = &newest[particle - first], v = *head, weld = (uint32_t)mesh->vertex_count;
+        for (; v != UINT32_MAX; v = older[v]) {
+            if (side[v] != m->side[c]) continue;
+            weld = mesh->weld[v];
+            if (!memcmp(&mesh->uv[2 * v], &m->corner_uv[2 * c], 2 * sizeof *mesh->uv)) break;
+        }
         if (v == UINT32_MAX) {
             v = (uint32_t)mesh->vertex_count++;
             mesh->particles[v] = particle;
-            mesh->weld[v] = *head == UINT32_MAX ? v : mesh->weld[*head];
+            mesh->weld[v] = weld;
             memcpy(&mesh->uv[2 * v], &m->corner_uv[2 * c], 2 * sizeof *mesh->uv);
+            side[v] = m->side[c];
             older[v] = *head;
             *head = v;
         }
@@ -128,6 +214,7 @@ static bool make_vertices(maker *m) {
     }
     free(newest);
     free(older);
+    free(side);
     return good;
 }
 
@@ -148,37 +235,6 @@ static bool make_triangles(maker *m) {
     return true;
 }
 
-/* ---- Edges ------------------------------------------------------------------------------------ */
-
-static int compare_edges(const void *a, const void *b) {
-    const uint32_t *p = a, *q = b;
-    if (p[0] != q[0]) return p[0] < q[0] ? -1 : 1;
-    return (p[1] > q[1]) - (p[1] < q[1]);
-}
-
-static bool make_edges(maker *m) {
-    const skein_surface *s = m->surface;
-    uint32_t *edges = malloc(s->face_vertex_count * 2 * sizeof *edges + 1);
-    if (!edges) return false;
-    size_t count = 0, kept = 0;
-    const uint32_t *corner = s->face_vertices;
-    for (size_t f = 0; f < s->face_count; corner += s->face_sizes[f++]) {
-        for (uint32_t k = 0; k < s->face_sizes[f]; k++, count++) {
-            uint32_t a = s->particle_of_vertex[corner[k]];
-            uint32_t b = s->particle_of_vertex[corner[(k + 1) % s->face_sizes[f]]];
-            edges[2 * count] = a < b ? a : b, edges[2 * count + 1] = a < b ? b : a;
-        }
-    }
-    qsort(edges, count, 2 * sizeof *edges, compare_edges);
-    for (size_t i = 0; i < count; i++) {
-        if (kept && !compare_edges(&edges[2 * i], &edges[2 * (kept - 1)])) continue;
-        memmove(&edges[2 * kept++], &edges[2 * i], 2 * sizeof *edges);
-    }
-    m->mesh->edges = edges;
-    m->mesh->edge_count = kept;
-    return true;
-}
-
 /* ---- All of it -------------------------------------------------------------------------------- */
 
 /* FNV-1a, by words. */
@@ -189,9 +245,10 @@ static uint64_t hash(uint64_t so_far, const void *data, size_t words) {
 }
 
 bool render_body_mesh_make(render_body_mesh *mesh, const skein_surface *surface, const double *positions) {
-    maker m = {mesh, surface, positions, NULL, NULL};
-    bool good = make_corner_uv(&m) && make_vertices(&m) && make_triangles(&m) && make_edges(&m);
+    maker m = {mesh, surface, positions, NULL, NULL, NULL};
+    bool good = make_corner_uv(&m) && make_edges(&m) && make_vertices(&m) && make_triangles(&m);
     free(m.corner_uv);
+    free(m.side);
     free(m.vertex_of);
     if (!good) {
         render_body_mesh_release(mesh);

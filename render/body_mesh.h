@@ -1,9 +1,10 @@
 /* What stays of a body while it moves: its triangles, edges and texture coordinates.
  *
- *     surface of the world --make--> vertices with one uv each (a seam has its vertices twice)
+ *     surface of the world --make--> vertices with one uv and one normal each (seams and creases have theirs twice)
  *
  * Called by world_frame.c, once for a body. Texture coordinates are the mesh's own; for a grid u = row / (rows - 1),
- * v = column / (columns - 1); else the body's first shape is projected on to the sides of a box. */
+ * v = column / (columns - 1); else the body's first shape is projected on to the sides of a box.
+ * Creases, too, are those of the first shape: a cube's edges. */
 #ifndef SKEIN_RENDER_BODY_MESH_H
 #define SKEIN_RENDER_BODY_MESH_H
 
@@ -12,13 +13,13 @@
 typedef struct render_body_mesh {
     size_t vertex_count, triangle_count, edge_count;
     uint32_t *particles; /* of each vertex */
-    uint32_t *weld;      /* the first vertex of each vertex's particle */
+    uint32_t *weld;      /* the first vertex at each vertex's particle that is on the same side of all creases */
     uint32_t *triangles; /* triangle_count x 3, vertices */
     uint32_t *edges;     /* edge_count x 2, particles: of the faces, each once */
     float *uv;           /* vertex_count x 2 */
     double sides[2];     /* metres along u and v from 0 to 1, about */
     bool grid;           /* u goes along the rows */
-    uint64_t shape; /* a hash of all this; never 0 */
+    uint64_t shape;      /* a hash of all this; never 0 */
 } render_body_mesh;
 
 /* Start from {0}. `positions` are those of all particles. False where there is no memory: what is there is released. */

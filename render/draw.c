@@ -9,6 +9,7 @@
 #include "render/paints.h"
 #include "render/planes.h"
 #include "render/shader.h"
+#include "render/solids.h"
 
 #include <epoxy/gl.h>
 #include <math.h>
@@ -16,7 +17,8 @@
 #include <string.h>
 
 /* Those that have a depth-only twin for the light maps, DEPTH_ONLY further on, come first. */
-enum { PLANE, SURFACE, BALL, DEPTH_ONLY, SKY = 2 * DEPTH_ONLY, FINE_SURFACE, FINE_BALL, LINE, PROGRAM_COUNT };
+enum { PLANE, SURFACE, BALL, DEPTH_ONLY };
+enum { SKY = 2 * DEPTH_ONLY, FINE_SURFACE, GLAZED_SURFACE, FINE_BALL, LINE, PROGRAM_COUNT };
 
 struct render_draw {
     GLuint programs[PROGRAM_COUNT];
@@ -27,6 +29,7 @@ struct render_draw {
     render_shape disc, square;
     render_shape sphere, pearl, grain; /* fine for colliders, coarse for particles, and for many of them */
     render_instances balls, particles, lines;
+    render_solids solids;
     const render_shape *particle_shape; /* in this frame */
     render_mesh *meshes;                /* by the surface's place in the frame */
     size_t mesh_count;
@@ -66,8 +69,9 @@ static skein_status make_all(render_draw *draw, skein_error *error) {
         [PLANE] = {"plane.vert", "display,light,plane.frag"},
         [SURFACE] = {"surface.vert", "display,light,surface.frag"},
         [FINE_SURFACE] = {"fine,light,surface.vert", "fine,display,surface.frag"},
-        [BALL] = {"ball.vert", "display,light,ball.frag"},
-        [FINE_BALL] = {"fine,light,ball.vert", "fine,display,ball.frag"},
+        [GLAZED_SURFACE] = {"surface.vert", "glazed,display,light,glaze,surface.frag"},
+        [BALL] = {"ball.vert", "display,light,glaze,ball.frag"},
+        [FINE_BALL] = {"fine,light,ball.vert", "fine,display,glaze,ball.frag"},
         [PLANE + DEPTH_ONLY] = {"plane.vert", NULL},
         [SURFACE + DEPTH_ONLY] = {"depth.vert", NULL},
         [BALL + DEPTH_ONLY] = {"ball.vert", NULL},
@@ -83,6 +87,7 @@ static skein_status make_all(render_draw *draw, skein_error *error) {
     if (status == SKEIN_OK) status = render_shape_sphere(&draw->sphere, 24, error);
     if (status == SKEIN_OK) status = render_shape_sphere(&draw->pearl, 10, error);
     if (status == SKEIN_OK) status = render_shape_dome(&draw->grain, error);
+    if (status == SKEIN_OK) status = render_solids_create(&draw->solids, error);
     if (status != SKEIN_OK) return status;
 
     render_instances_make_balls(&draw->balls, &draw->sphere);
@@ -124,6 +129,7 @@ void render_draw_destroy(render_draw *draw) {
     render_shape_destroy(&draw->sphere);
     render_shape_destroy(&draw->pearl);
     render_shape_destroy(&draw->grain);
+    render_solids_destroy(&draw->solids);
     render_paints_destroy(&draw->paints);
     render_light_destroy(&draw->light);
     glDeleteVertexArrays(1, &draw->no_arrays);
@@ -163,6 +169,7 @@ static skein_status bring_particles(render_draw *draw, const drawing *d, skein_e
 static skein_status bring(render_draw *draw, const drawing *d, skein_error *error) {
     skein_status status = bring_surfaces(draw, d->frame, error);
     if (status == SKEIN_OK) status = render_instances_bring_spheres(&draw->balls, d->frame, error);
+    if (status == SKEIN_OK) status = render_solids_bring(&draw->solids, d->frame, error);
     if (status == SKEIN_OK) status = bring_particles(draw, d, error);
     if (status == SKEIN_OK) status = render_instances_bring_lines(&draw->lines, d->frame, error);
     if (status == SKEIN_OK) status = render_paints_bring(&draw->paints, d->frame, error);
@@ -284,7 +291,8 @@ static void draw_surfaces(const render_draw *draw, const drawing *d, int twin) {
     for (size_t i = 0; i < d->frame->surface_count; i++) {
         const render_mesh *mesh = &draw->meshes[i];
         bool fine = !twin && render_mesh_edge_pixels(mesh, d->camera, d->height) < fine_edge;
-        GLuint program = draw->programs[fine ? FINE_SURFACE : SURFACE + twin];
+        bool glazed = !twin && d->frame->surfaces[i].material.glazed;
+        GLuint program = draw->programs[fine ? FINE_SURFACE : glazed ? GLAZED_SURFACE : SURFACE + twin];
         glUseProgram(program);
         if (!twin) {
             glProgramUniform1f(program, 0, lift);
@@ -308,16 +316,11 @@ static void draw_balls(const render_draw *draw, int twin) {
     glDisable(GL_CULL_FACE);
 }
 
-static void draw_lines(const render_draw *draw, const drawing *d) {
-    GLuint program = draw->programs[LINE], first = 0;
-    glUseProgram(program);
-    glBindVertexArray(draw->lines.arrays);
-    for (size_t i = 0; i < d->frame->lines_count; i++) {
-        const render_lines *lines = &d->frame->lines[i];
-        glProgramUniform3f(program, 0, 1.0f / (float)d->width, 1.0f / (float)d->height, (float)lines->width);
-        glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)lines->count, first);
-        first += (GLuint)lines->count;
-    }
+/* All that stands between a light and the ground. */
+static void draw_casters(const render_draw *draw, const drawing *d) {
+    draw_surfaces(draw, d, DEPTH_ONLY);
+    draw_balls(draw, DEPTH_ONLY);
+    render_solids_draw_depth(&draw->solids, d->frame);
 }
 
 static void use_pass(const render_draw *draw, render_pass pass) {
@@ -328,14 +331,12 @@ static void use_pass(const render_draw *draw, render_pass pass) {
 static void draw_light(const render_draw *draw, const drawing *d) {
     if (render_light_begin_sun(&draw->light)) {
         use_pass(draw, RENDER_PASS_SUN);
-        draw_surfaces(draw, d, DEPTH_ONLY);
-        draw_balls(draw, DEPTH_ONLY);
+        draw_casters(draw, d);
         draw_slabs(draw, d, DEPTH_ONLY);
     }
     if (render_light_begin_below(&draw->light)) {
         use_pass(draw, RENDER_PASS_BELOW);
-        draw_surfaces(draw, d, DEPTH_ONLY);
-        draw_balls(draw, DEPTH_ONLY);
+        draw_casters(draw, d);
         render_light_end_below(&draw->light);
     }
 }
@@ -357,15 +358,18 @@ static void draw_picture(const render_draw *draw, const drawing *d, unsigned fra
     glDepthFunc(GL_GREATER);
     draw_surfaces(draw, d, 0);
     draw_balls(draw, 0);
+    render_solids_draw(&draw->solids, d->frame);
     draw_slabs(draw, d, 0);
     draw_ground(draw, d);
-    draw_lines(draw, d);
+    render_instances_draw_lines(&draw->lines, draw->programs[LINE], d->frame, d->width, d->height);
 
     // the sky fills what is left, so that colours need no clearing
     glDepthFunc(GL_GEQUAL);
     glUseProgram(draw->programs[SKY]);
     glBindVertexArray(draw->no_arrays);
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthFunc(GL_GREATER);
+    render_solids_draw_glass(&draw->solids, d->frame);
 }
 
 skein_status render_draw_frame(render_draw *draw, const render_frame *frame, const render_camera *camera,

@@ -62,14 +62,40 @@ render_material render_plain_material(size_t index) {
     return material;
 }
 
+render_material render_jelly_material(size_t index) {
+    render_material material = render_default_material(index);
+    material.pattern = RENDER_CHECKER;
+    material.repeats[0] = material.repeats[1] = 3.0f;
+    material.translucency = 0.45f;
+    material.glazed = true;
+    for (int i = 0; i < 3; i++) {
+        material.accent[i] = material.colour[i] + 0.13f * (1.0f - material.colour[i]);
+        material.lining[i] = material.colour[i];
+    }
+    return material;
+}
+
+/* The paint of colliders, and its marking. */
+#define PAINT \
+    { 0.150f, 0.330f, 0.400f }
+#define MARKING \
+    { 0.930f, 0.890f, 0.800f }
+#define NOT_TURNED \
+    { 1, 0, 0, 0, 1, 0, 0, 0, 1 }
+
 render_sphere render_default_sphere(void) {
-    return (render_sphere){
-        .centre = {0, 0, 0},
-        .radius = 1,
-        .rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1},
-        .colour = {0.150f, 0.330f, 0.400f},
-        .marking = {0.930f, 0.890f, 0.800f},
-    };
+    return (render_sphere){.radius = 1, .rotation = NOT_TURNED, .colour = PAINT, .marking = MARKING};
+}
+
+render_solid render_default_solid(void) {
+    return (render_solid){
+        .extent = {0.94, 0.94, 0.94}, .radius = 0.06, .rotation = NOT_TURNED, .colour = PAINT, .marking = MARKING};
+}
+
+const double render_bowl_height = 0.577382, render_bowl_width = 0.906308; // 65 degrees from the lowest point up
+
+render_bowl render_default_bowl(void) {
+    return (render_bowl){.radius = 1, .rotation = NOT_TURNED, .colour = PAINT, .marking = MARKING};
 }
 
 /* ---- Bounds --------------------------------------------------------------------------------- */
@@ -105,6 +131,28 @@ void render_bounds_centre(const render_bounds *bounds, double centre[3]) {
     for (int i = 0; i < 3; i++) centre[i] = empty ? 0 : 0.5 * (bounds->least[i] + bounds->most[i]);
 }
 
+static void add_solid(render_bounds *bounds, const render_solid *solid) {
+    for (int corner = 0; corner < 8; corner++) {
+        double point[3];
+        for (int r = 0; r < 3; r++) {
+            point[r] = solid->centre[r];
+            for (int c = 0; c < 3; c++)
+                point[r] += solid->rotation[3 * r + c] * (corner >> c & 1 ? solid->extent[c] : -solid->extent[c]);
+        }
+        render_bounds_add(bounds, point, solid->radius);
+    }
+}
+
+static void add_bowl(render_bounds *bounds, const render_bowl *bowl) {
+    double wide = render_bowl_width * bowl->radius, point[3];
+    for (int corner = 0; corner < 4; corner++) {
+        point[0] = bowl->centre[0] + (corner & 1 ? wide : -wide);
+        point[1] = bowl->centre[1] - bowl->radius * (corner & 2 ? 1 : 1 - render_bowl_height);
+        point[2] = bowl->centre[2] + (corner & 1 ? wide : -wide);
+        render_bounds_add(bounds, point, 0);
+    }
+}
+
 render_bounds render_frame_bounds(const render_frame *frame) {
     render_bounds bounds = render_bounds_nothing();
     for (size_t s = 0; s < frame->surface_count; s++) {
@@ -116,6 +164,9 @@ render_bounds render_frame_bounds(const render_frame *frame) {
     for (size_t s = 0; s < frame->sphere_count; s++) {
         render_bounds_add(&bounds, frame->spheres[s].centre, frame->spheres[s].radius);
     }
+    for (size_t s = 0; s < frame->solid_count; s++) add_solid(&bounds, &frame->solids[s]);
+    for (size_t s = 0; s < frame->rod_count; s++) add_solid(&bounds, &frame->rods[s]);
+    for (size_t s = 0; s < frame->bowl_count; s++) add_bowl(&bounds, &frame->bowls[s]);
     for (size_t s = 0; s < frame->points_count; s++) {
         const render_points *points = &frame->points[s];
         for (size_t p = 0; p < points->count; p++) {

@@ -30,6 +30,7 @@ typedef struct render_material {
     render_pattern pattern;
     float repeats[2];   /* how often the pattern repeats along u and v */
     float translucency; /* light that passes through from behind, 0 to 1 */
+    bool glazed;        /* smooth and wet, as jelly is: it mirrors the sky; else cloth */
 } render_material;
 
 /* A triangle mesh, drawn with smooth normals that the renderer computes. */
@@ -60,6 +61,24 @@ typedef struct render_sphere {
     double rotation[9]; /* rows of a rotation matrix; turns the marking */
     float colour[3], marking[3];
 } render_sphere;
+
+/* All that is within a radius of a box: a box with round edges, or a rod with round ends where only the first
+ * extent is over 0. A box's edges are marked; so are a rod's ends and a line along it. */
+typedef struct render_solid {
+    double centre[3];
+    double extent[3]; /* half the inner box's sides */
+    double radius;
+    double rotation[9]; /* rows of a rotation matrix */
+    float colour[3], marking[3];
+} render_solid;
+
+/* The lower part of a hollow sphere: its far wall is solid to the eye, the near one is glass. */
+typedef struct render_bowl {
+    double centre[3];
+    double radius;
+    double rotation[9]; /* turns the marking; the rim stays level */
+    float colour[3], marking[3];
+} render_bowl;
 
 /* Particles as little balls of one size and colour. */
 typedef struct render_points {
@@ -101,6 +120,12 @@ typedef struct render_frame {
     size_t plane_count;
     const render_sphere *spheres;
     size_t sphere_count;
+    const render_solid *solids; /* few: colliders */
+    size_t solid_count;
+    const render_solid *rods; /* many: pieces of ropes; drawn more coarsely */
+    size_t rod_count;
+    const render_bowl *bowls;
+    size_t bowl_count;
     const render_points *points;
     size_t points_count;
     const render_lines *lines;
@@ -122,10 +147,16 @@ render_look render_default_look(void);
 /* Gingham in a warm colour, another one for each `index`; and the same in one softer colour. */
 render_material render_default_material(size_t index);
 render_material render_plain_material(size_t index);
-/* A painted ball at the origin: radius 1, not turned. */
+/* Jelly of that colour, with a faint checker. */
+render_material render_jelly_material(size_t index);
+/* A painted ball at the origin: radius 1, not turned. In the same paint: a cube with a side of 2, a bowl. */
 render_sphere render_default_sphere(void);
+render_solid render_default_solid(void);
+render_bowl render_default_bowl(void);
+/* The height of a bowl's rim above its lowest point, and the rim's radius; in radii of its sphere. */
+extern const double render_bowl_height, render_bowl_width;
 
-/* The box around everything finite: surfaces, spheres, points, lines. Points that are not finite
+/* The box around everything finite: surfaces, spheres, solids, bowls, points, lines. Points that are not finite
  * do not count. */
 render_bounds render_frame_bounds(const render_frame *frame);
 render_bounds render_bounds_nothing(void);

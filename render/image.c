@@ -104,7 +104,9 @@ skein_status render_image_write_png(const render_image *image, const char *path,
 
 skein_status render_image_read(render_image *image, const char *path, skein_error *error) {
     FILE *file = fopen(path, "rb");
-    if (!file) return fail_file(error, path, "open the file", errno);
+    if (!file)
+        return render_fail(error, SKEIN_ERROR_FILE, path, "cannot read: %s; give the path of a PNG or JPEG",
+                           strerror(errno));
 
     int width = 0, height = 0;
     const char *problem = "";

@@ -8,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Floats of a ball: centre and radius, three rows of its rotation, paint, marking; of a line: both ends, paint. */
-enum { ball_floats = 4 + 9 + 3 + 3, line_floats = 6 + 3 };
+/* Floats of a ball: centre and radius, three rows of its rotation, paint, marking; of a solid: the same, and its
+ * extent; of a line: both ends, paint. */
+enum { ball_floats = 4 + 9 + 3 + 3, solid_floats = ball_floats + 3, line_floats = 6 + 3 };
 
 /* ---- Making --------------------------------------------------------------------------------- */
 
@@ -25,14 +26,23 @@ static void make_attributes(GLuint arrays, GLuint first, const GLint *parts, GLu
     glVertexArrayBindingDivisor(arrays, 1, 1);
 }
 
-void render_instances_make_balls(render_instances *instances, const render_shape *shape) {
-    static const GLint parts[6] = {4, 3, 3, 3, 3, 3};
+/* Of one shape, with `count` attributes after its own. */
+static void make_shaped(render_instances *instances, const render_shape *shape, GLuint count) {
+    static const GLint parts[7] = {4, 3, 3, 3, 3, 3, 3};
     glCreateVertexArrays(1, &instances->arrays);
     glVertexArrayAttribFormat(instances->arrays, 0, 3, GL_FLOAT, GL_FALSE, 0);
     glVertexArrayAttribBinding(instances->arrays, 0, 0);
     glEnableVertexArrayAttrib(instances->arrays, 0);
     render_instances_take_shape(instances, shape);
-    make_attributes(instances->arrays, 1, parts, 6);
+    make_attributes(instances->arrays, 1, parts, count);
+}
+
+void render_instances_make_balls(render_instances *instances, const render_shape *shape) {
+    make_shaped(instances, shape, 6);
+}
+
+void render_instances_make_solids(render_instances *instances, const render_shape *shape) {
+    make_shaped(instances, shape, 7);
 }
 
 void render_instances_take_shape(const render_instances *instances, const render_shape *shape) {
@@ -100,6 +110,19 @@ skein_status render_instances_bring_spheres(render_instances *instances, const r
     return SKEIN_OK;
 }
 
+skein_status render_instances_bring_solids(render_instances *instances, const render_solid *solids, size_t count,
+                                           skein_error *error) {
+    skein_status status = reserve(instances, count, solid_floats, error);
+    if (status != SKEIN_OK) return status;
+    for (size_t i = 0; i < count; i++) {
+        float *out = &instances->staged[i * solid_floats];
+        stage_ball(out, solids[i].centre, solids[i].radius, solids[i].rotation, solids[i].colour, solids[i].marking);
+        for (int k = 0; k < 3; k++) out[ball_floats + k] = (float)solids[i].extent[k];
+    }
+    send(instances, solid_floats);
+    return SKEIN_OK;
+}
+
 skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame,
                                            const double rotation[9], skein_error *error) {
     size_t count = 0, next = 0;
@@ -136,4 +159,19 @@ skein_status render_instances_bring_lines(render_instances *instances, const ren
     }
     send(instances, line_floats);
     return SKEIN_OK;
+}
+
+/* ---- Drawing -------------------------------------------------------------------------------- */
+
+void render_instances_draw_lines(const render_instances *instances, unsigned program, const render_frame *frame,
+                                 int width, int height) {
+    GLuint first = 0;
+    glUseProgram(program);
+    glBindVertexArray(instances->arrays);
+    for (size_t i = 0; i < frame->lines_count; i++) {
+        const render_lines *lines = &frame->lines[i];
+        glProgramUniform3f(program, 0, 1.0f / (float)width, 1.0f / (float)height, (float)lines->width);
+        glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)lines->count, first);
+        first += (GLuint)lines->count;
+    }
 }

@@ -21,14 +21,21 @@ typedef struct render_instances {
 void render_instances_make_balls(render_instances *instances, const render_shape *shape);
 /* Makes balls take another shape from now on. */
 void render_instances_take_shape(const render_instances *instances, const render_shape *shape);
+void render_instances_make_solids(render_instances *instances, const render_shape *shape);
 void render_instances_make_lines(render_instances *instances);
 void render_instances_destroy(render_instances *instances);
 
 /* Bring a frame's things to the card, one group after the other. */
 skein_status render_instances_bring_spheres(render_instances *instances, const render_frame *frame, skein_error *error);
+skein_status render_instances_bring_solids(render_instances *instances, const render_solid *solids, size_t count,
+                                           skein_error *error);
 /* `rotation` (rows) turns all of them. */
 skein_status render_instances_bring_points(render_instances *instances, const render_frame *frame,
                                            const double rotation[9], skein_error *error);
 skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame, skein_error *error);
+
+/* All of a frame's lines, which were brought before, each group in its width. */
+void render_instances_draw_lines(const render_instances *instances, unsigned program, const render_frame *frame,
+                                 int width, int height);
 
 #endif

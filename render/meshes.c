@@ -9,6 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Along a quarter of a solid's round edges. */
+enum { fine_steps = 6, coarse_steps = 2 };
+
 static const double pi = 3.141592653589793;
 
 /* ---- Surfaces that move --------------------------------------------------------------------- */
@@ -174,6 +177,39 @@ static void place_sphere(double along, double around, float *out) {
     out[2] = (float)(-sin(pi * along) * sin(2 * pi * around));
 }
 
+/* A sphere that is cut into its eight octants, which go apart to the corners of a box. Rows from the middle of the top:
+ * there, the top's rim, down to the equator, the equator again, down to the rim of the bottom, its middle. */
+static void place_solid(int steps, double along, double around, float *out) {
+    int row = (int)lround(along * (2 * steps + 3)), column = (int)lround(around * 4 * (steps + 1));
+    int quarter = column / (steps + 1) % 4, lower = row > steps + 1;
+    double turn = 0.5 * pi * (quarter + (double)(column % (steps + 1)) / steps);
+    double tilt = 0.5 * pi * fmin(fmax((double)(row - 1 - lower) / steps, 0), 2);
+    bool middle = row == 0 || row == 2 * steps + 3;
+    const double corner[3] = {middle                         ? 0
+                              : quarter == 0 || quarter == 3 ? 1
+                                                             : -1,
+                              lower ? -1 : 1,
+                              middle        ? 0
+                              : quarter < 2 ? -1
+                                            : 1};
+    const double direction[3] = {sin(tilt) * cos(turn), cos(tilt), -sin(tilt) * sin(turn)};
+    for (int k = 0; k < 3; k++) out[k] = (float)(4 * corner[k] + direction[k]);
+}
+
+static void place_fine_solid(double along, double around, float *out) {
+    place_solid(fine_steps, along, around, out);
+}
+
+static void place_coarse_solid(double along, double around, float *out) {
+    place_solid(coarse_steps, along, around, out);
+}
+
+/* From the rim down. */
+static void place_bowl(double along, double around, float *out) {
+    double rim = acos(render_bowl_height - 1);
+    place_sphere((rim + (pi - rim) * along) / pi, around, out);
+}
+
 static void place_dome(double along, double around, float *out) {
     out[0] = (float)(sin(0.5 * pi * along) * cos(2 * pi * around));
     out[1] = (float)(sin(0.5 * pi * along) * sin(2 * pi * around));
@@ -192,6 +228,15 @@ static void place_square(double along, double around, float *out) {
 
 skein_status render_shape_sphere(render_shape *shape, int rings, skein_error *error) {
     return make_shape(shape, rings, 2 * rings, 3, place_sphere, error);
+}
+
+skein_status render_shape_solid(render_shape *shape, bool fine, skein_error *error) {
+    int steps = fine ? fine_steps : coarse_steps;
+    return make_shape(shape, 2 * steps + 3, 4 * (steps + 1), 3, fine ? place_fine_solid : place_coarse_solid, error);
+}
+
+skein_status render_shape_bowl(render_shape *shape, skein_error *error) {
+    return make_shape(shape, 16, 64, 3, place_bowl, error);
 }
 
 skein_status render_shape_dome(render_shape *shape, skein_error *error) {

@@ -1,4 +1,4 @@
-/* Geometry on the card: surfaces that move, and the fixed shapes (sphere, disc, square).
+/* Geometry on the card: surfaces that move, and the fixed shapes (sphere, box, bowl, disc, square).
  *
  * Called by draw.c. A moving surface's triangles and uv go to the card once; its positions and normals
  * go there every frame into the buffers that stand ready. */
@@ -36,6 +36,11 @@ typedef struct render_shape {
 
 /* The unit sphere with `rings` from pole to pole; attribute: direction (3 floats). */
 skein_status render_shape_sphere(render_shape *shape, int rings, skein_error *error);
+/* For render_solid, of fine or coarse triangles; attribute: 4 times the inner box's corner, from -1
+ * to 1, plus the direction from there (3 floats). */
+skein_status render_shape_solid(render_shape *shape, bool fine, skein_error *error);
+/* For render_bowl: the unit sphere up to the rim, seen from outside; attribute: direction (3 floats). */
+skein_status render_shape_bowl(render_shape *shape, skein_error *error);
 /* The half of a unit sphere around +z, of eight triangles: for many small ones that are turned to the viewer. */
 skein_status render_shape_dome(render_shape *shape, skein_error *error);
 /* The unit disc (an octagon: its rim is lost in the haze) and the square from -1 to 1; attribute: place (2 floats). */

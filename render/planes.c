@@ -4,7 +4,7 @@
 #include "render/linear.h"
 
 /* Radii of the scene from a slab's middle to its side. */
-static const double slab_size = 1.25;
+static const double slab_size = 1.1;
 
 bool render_plane_level(const render_plane *plane) {
     double length = sqrt(render_dot(plane->normal, plane->normal));

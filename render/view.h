@@ -38,7 +38,7 @@ typedef struct render_view {
     bool pins, normals, velocities, contacts, colliders, ground, grid, axes;
     int32_t colour;  /* a render_colouring */
     double range;    /* the speed or strain at the end of the colours; 0: the largest there is now */
-    int32_t pattern; /* a render_pattern */
+    int32_t pattern; /* 0: as suits the body; else woven, checker or none */
     char *image;     /* path of a picture that is laid on instead of the pattern; "" for none */
     double repeats;  /* along a body's longer side; 0: as suits the pattern */
     double particle_radius, line_width, velocity_scale;

@@ -6,6 +6,7 @@
 #include "render/planes.h"
 #include "render/world_lines.h"
 #include "render/world_points.h"
+#include "render/world_solids.h"
 #include "render/world_state.h"
 
 #include <math.h>
@@ -15,7 +16,8 @@
 /* What is kept for a body, by its place among the world's bodies. */
 typedef struct body {
     skein_handle handle;
-    skein_surface source; /* that it was made from */
+    enum { CLOTH, JELLY, ROPE } kind; /* what it looks like */
+    skein_surface source;             /* that it was made from */
     bool made;
     render_body_mesh mesh;
     double *positions; /* by vertex: now */
@@ -32,8 +34,7 @@ struct render_world_frame {
     body *bodies;
     size_t body_count;
     render_surface *surfaces;
-    render_plane *planes;
-    render_sphere *spheres;
+    render_world_solids solids;
     render_image image;
     char *image_path; /* of the image that is loaded */
     bool has_floor;
@@ -48,6 +49,8 @@ static const double usual_repeats[] = {
 static const double normal_length = 0.03, contact_length = 0.06;
 /* The ground is near when it is no farther below things than this part of their height. */
 static const double floor_gap = 0.25;
+/* A level plane is in the picture when it is no farther below things than so many of their radii. */
+static const double seen_fall = 2;
 
 render_world_frame *render_world_frame_create(skein_error *error) {
     render_world_frame *made = calloc(1, sizeof *made);
@@ -77,8 +80,7 @@ void render_world_frame_destroy(render_world_frame *made) {
     free(made->image_path);
     free(made->bodies);
     free(made->surfaces);
-    free(made->planes);
-    free(made->spheres);
+    render_world_solids_release(&made->solids);
     free(made);
 }
 
@@ -121,10 +123,13 @@ static skein_status take_image(render_world_frame *made, skein_error *error) {
 
 /* ---- Bodies --------------------------------------------------------------------------------- */
 
-static bool make_body(body *b, const skein_surface *surface, skein_handle handle, const double *positions) {
+static bool make_body(body *b, const skein_world *world, const skein_surface *surface, skein_handle handle,
+                      const double *positions) {
+    const skein_kind *kind = skein_object_kind(world, handle);
     release_body(b);
     if (!render_body_mesh_make(&b->mesh, surface, positions)) return false;
     b->handle = handle;
+    b->kind = !kind ? CLOTH : !strcmp(kind->name, "rope") ? ROPE : !strcmp(kind->name, "lattice") ? JELLY : CLOTH;
     b->source = *surface;
     b->made = grow(&b->positions, 3 * b->mesh.vertex_count, sizeof *b->positions) &&
               grow(&b->values, b->mesh.vertex_count, sizeof *b->values);
@@ -141,7 +146,7 @@ static void gather(body *b, const render_world_state *state) {
 
 /* Which pattern a body's surface has under a view. */
 static render_pattern pattern_of(const render_world_frame *made) {
-    static const render_pattern patterns[] = {RENDER_WEAVE, RENDER_CHECKER, RENDER_PLAIN};
+    static const render_pattern patterns[] = {RENDER_WEAVE, RENDER_WEAVE, RENDER_CHECKER, RENDER_PLAIN};
     const render_view *view = &made->view;
     if (view->colour == RENDER_BY_SPEED || view->colour == RENDER_BY_STRAIN) return RENDER_VALUES;
     if (view->colour == RENDER_BY_BODY) return RENDER_PLAIN;
@@ -150,7 +155,11 @@ static render_pattern pattern_of(const render_world_frame *made) {
 
 static void dress(const render_world_frame *made, const body *b, size_t index, render_material *material) {
     render_pattern pattern = pattern_of(made);
-    *material = pattern == RENDER_PLAIN ? render_plain_material(index) : render_default_material(index);
+    bool jelly = b->kind == JELLY && pattern == RENDER_WEAVE && made->view.pattern == 0;
+    *material = jelly                     ? render_jelly_material(index)
+                : pattern == RENDER_PLAIN ? render_plain_material(index)
+                                          : render_default_material(index);
+    if (jelly) return;
     material->pattern = pattern;
     double repeats = made->view.repeats > 0 ? made->view.repeats : usual_repeats[pattern];
     double unit = fmax(b->mesh.sides[0], b->mesh.sides[1]) / repeats;
@@ -189,14 +198,17 @@ static skein_status take_body(render_world_frame *made, const skein_world *world
     bool same = b->made && b->handle.index == handle.index && b->handle.generation == handle.generation &&
                 b->source.face_vertices == surface.face_vertices && b->source.corner_uv == surface.corner_uv &&
                 b->source.vertex_count == surface.vertex_count;
-    if (!same && !make_body(b, &surface, handle, made->state.positions))
+    if (!same && !make_body(b, world, &surface, handle, made->state.positions))
         return render_fail_memory(error, "a body's surface");
     gather(b, &made->state);
 
     // a body without faces shows its particles; a hidden one shows nothing
     bool visible = is_visible(world, handle), faces = b->mesh.triangle_count > 0;
-    mark(&made->state, &surface, !visible ? RENDER_HIDDEN : faces ? RENDER_IN_SURFACE : RENDER_LOOSE, index);
+    bool rope = b->kind == ROPE && made->view.surface;
+    mark(&made->state, &surface, !visible ? RENDER_HIDDEN : faces || rope ? RENDER_IN_SURFACE : RENDER_LOOSE, index);
     if (!visible) return SKEIN_OK;
+    if (rope && !render_add_rope(&made->solids, &made->state, &surface, index, &made->view))
+        return render_fail_memory(error, "a rope");
     if (faces && made->view.surface) add_surface(made, b, index);
     if (made->view.wireframe) render_add_wireframe(&made->lines, &b->mesh, &made->state);
     return SKEIN_OK;
@@ -212,6 +224,7 @@ static skein_status take_bodies(render_world_frame *made, const skein_world *wor
     }
     made->frame.surfaces = made->surfaces;
     made->frame.surface_count = 0;
+    render_world_solids_clear(&made->solids);
     skein_status status = SKEIN_OK;
     for (size_t i = 0; i < count && status == SKEIN_OK; i++) status = take_body(made, world, i, error);
     return status;
@@ -243,51 +256,9 @@ static skein_status take_particles(render_world_frame *made, const skein_world *
     made->frame.points_count = RENDER_POINT_KIND_COUNT;
 
     render_bounds bounds = render_frame_bounds(&made->frame);
-    render_world_points_size(&made->points, &made->view, render_bounds_radius(&bounds), mean_edge(made));
-    return SKEIN_OK;
-}
-
-/* ---- Colliders ------------------------------------------------------------------------------ */
-
-/* A level plane is ground, and shown with it; others are colliders like spheres. */
-static void add_plane(render_world_frame *made, const skein_world *world, skein_handle handle, const skein_pose *pose) {
-    skein_value normal;
-    if (skein_get(world, handle, "normal", &normal) != SKEIN_OK) return;
-    render_plane *plane = &made->planes[made->frame.plane_count];
-    memcpy(plane->point, pose->position, sizeof plane->point);
-    for (int r = 0; r < 3; r++) {
-        plane->normal[r] = 0;
-        for (int c = 0; c < 3; c++) plane->normal[r] += pose->rotation[3 * r + c] * normal.number[c];
-    }
-    if (render_plane_level(plane) ? made->view.ground : made->view.colliders) made->frame.plane_count++;
-}
-
-static void add_sphere(render_world_frame *made, const skein_world *world, skein_handle handle,
-                       const skein_pose *pose) {
-    skein_value radius;
-    if (!made->view.colliders || skein_get(world, handle, "radius", &radius) != SKEIN_OK) return;
-    render_sphere *sphere = &made->spheres[made->frame.sphere_count++];
-    *sphere = render_default_sphere();
-    sphere->radius = radius.number[0];
-    memcpy(sphere->centre, pose->position, sizeof sphere->centre);
-    memcpy(sphere->rotation, pose->rotation, sizeof sphere->rotation);
-}
-
-static skein_status take_colliders(render_world_frame *made, const skein_world *world, skein_error *error) {
-    size_t count = skein_object_count(world, SKEIN_COLLIDER);
-    if (!grow(&made->planes, count, sizeof *made->planes) || !grow(&made->spheres, count, sizeof *made->spheres)) {
-        return render_fail_memory(error, "the colliders");
-    }
-    made->frame.planes = made->planes, made->frame.plane_count = 0;
-    made->frame.spheres = made->spheres, made->frame.sphere_count = 0;
-    for (size_t i = 0; i < count; i++) {
-        skein_handle handle = skein_object_at(world, SKEIN_COLLIDER, i);
-        const skein_kind *kind = skein_object_kind(world, handle);
-        skein_pose pose;
-        if (!kind || !is_visible(world, handle) || skein_collider_pose(world, handle, &pose) != SKEIN_OK) continue;
-        if (strcmp(kind->name, "plane") == 0) add_plane(made, world, handle, &pose);
-        if (strcmp(kind->name, "sphere") == 0) add_sphere(made, world, handle, &pose);
-    }
+    double radius = made->frame.radius > 0 ? made->frame.radius : render_bounds_radius(&bounds);
+    render_world_points_size(&made->points, &made->view, radius, mean_edge(made));
+    render_world_solids_size(&made->solids, &made->view, radius);
     return SKEIN_OK;
 }
 
@@ -316,16 +287,25 @@ static skein_status take_lines(render_world_frame *made, skein_error *error) {
     return made->lines.no_memory ? render_fail_memory(error, "the lines") : SKEIN_OK;
 }
 
+/* The lowest that slabs reach; infinite where there are none. */
+static double lowest_slab(const render_world_frame *made) {
+    render_bounds things = bounds_to_hold(made), slabs = render_bounds_nothing();
+    double middle[3], radius = render_bounds_radius(&things);
+    render_bounds_centre(&things, middle);
+    render_bounds_add_slabs(&slabs, &made->frame, middle, radius > 0 ? radius : 1);
+    return slabs.least[1];
+}
+
 /* Where no plane is ground, one is put at height 0 if the things stand not far above it, else a little
- * below them. */
+ * below them; and slopes stand on it. */
 static void place_floor(render_world_frame *made) {
     bool level = false;
-    for (size_t i = 0; i < made->frame.plane_count; i++) level |= render_plane_level(&made->planes[i]);
+    for (size_t i = 0; i < made->frame.plane_count; i++) level |= render_plane_level(&made->frame.planes[i]);
     if (!made->has_floor && !level && made->view.ground) {
         render_bounds bounds = bounds_to_hold(made);
         double size = 2 * render_bounds_radius(&bounds), lowest = bounds.least[1];
         if (render_bounds_empty(&bounds)) lowest = size = 0;
-        made->floor_height = lowest >= 0 && lowest <= size ? 0 : lowest - 0.1 * size;
+        made->floor_height = fmin(lowest >= 0 && lowest <= size ? 0 : lowest - 0.1 * size, lowest_slab(made));
         made->has_floor = true;
     }
     made->frame.look.floor = made->has_floor && !level && made->view.ground;
@@ -349,7 +329,8 @@ skein_status render_world_frame_update(render_world_frame *made, skein_world *wo
     skein_status status = take_image(made, error);
     if (status == SKEIN_OK) status = render_world_state_read(&made->state, world, &made->view, error);
     if (status == SKEIN_OK) status = take_bodies(made, world, error);
-    if (status == SKEIN_OK) status = take_colliders(made, world, error);
+    if (status == SKEIN_OK) status = render_take_colliders(&made->solids, world, &made->view, error);
+    render_world_solids_show(&made->solids, &made->frame);
     if (status == SKEIN_OK) status = take_particles(made, world, error);
     if (status == SKEIN_OK) status = take_lines(made, error);
     if (status == SKEIN_OK) place_floor(made);
@@ -362,7 +343,7 @@ double render_world_frame_range(const render_world_frame *made) {
 
 void render_world_frame_settle(render_world_frame *made) {
     render_bounds bounds = render_frame_bounds(&made->frame);
-    if (!made->frame.look.floor || render_bounds_empty(&bounds)) return;
+    if (!made->frame.look.floor || render_bounds_empty(&bounds) || isfinite(lowest_slab(made))) return;
     double most_gap = floor_gap * (bounds.most[1] - bounds.least[1]);
     made->floor_height = fmax(made->floor_height, bounds.least[1] - most_gap);
     made->frame.look.floor_height = made->floor_height;
@@ -377,8 +358,12 @@ void render_world_frame_hold(render_world_frame *made, const render_bounds *boun
 render_camera render_world_frame_camera(const render_world_frame *made, double aspect) {
     const render_look *look = &made->frame.look;
     render_bounds bounds = bounds_to_hold(made);
-    double gap = bounds.least[1] - look->floor_height,
-           most_gap = floor_gap * (bounds.most[1] - bounds.least[1]);
+    double gap = bounds.least[1] - look->floor_height, most_gap = floor_gap * (bounds.most[1] - bounds.least[1]),
+           ground;
     if (look->floor && gap > 0 && gap < 1.01 * most_gap) bounds.least[1] = look->floor_height;
+    // ground that is a collider is what things fall on to, or hang over: its shadows belong to the picture
+    bool is_there = !look->floor && render_find_ground(&made->frame, &ground);
+    if (is_there && bounds.least[1] - ground < seen_fall * render_bounds_radius(&bounds))
+        bounds.least[1] = fmin(bounds.least[1], ground);
     return render_camera_of_view(&made->view.camera, &bounds, made->time, aspect);
 }

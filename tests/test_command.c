@@ -115,8 +115,9 @@ static void check_counts_what_is_there(void **state) {
 
 static void explain_shows_every_kind_of_row(void **state) {
     (void)state;
-    static const char *const kinds[] = {"combine",    "grid",      "field",     "neighbour", "force", "project",
-                                        "multiplier", "contact F", "contact V", "contact X", "contact XV", "limit", "repeat"};
+    static const char *const kinds[] = {"combine",    "grid",       "field",     "neighbour", "force",
+                                        "project",    "multiplier", "contact F", "contact V", "contact X",
+                                        "contact XV", "limit",      "repeat"};
     bool seen[COUNT(kinds)] = {false};
     static const char *const methods[] = {"method={\"type\":\"symplectic_euler\"}",
                                           "method={\"type\":\"xpbd\",\"iterations\":2}"};
@@ -206,6 +207,9 @@ static void list_shows_every_kind_and_field(void **state) {
         outcome_free(&o);
     }
     assert_int_equal(strlen(all.out), length);
+    // a build without pictures says so
+    assert_true(strstr(all.out, "\n    wireframe  ") ||
+                strstr(all.out, "view\n\n  this skein was built without pictures"));
     assert_contains(all.out, "\n    stiffness          10000 N/m        0 to infinite      force a metre of stretch;");
     assert_contains(all.out, "\n    restitution        0                0 to 1             ");
     assert_contains(all.out, "\n    normals            area             area|uniform|angle what ");

@@ -1,4 +1,4 @@
-/* A picture of every scene in scenes/, checked for what it must contain; and the "view" of scenes. */
+/* A picture of every scene in scenes/, 640 x 360, checked for what it must contain; and the "view" of scenes. */
 #include "pictures.h"
 
 #include <glob.h>
@@ -87,93 +87,199 @@ static void faults_of_a_view_are_told(void **state) {
 
 /* ---- Every scene ------------------------------------------------------------------------------ */
 
-/* The scene's world after some frames; NULL where it needs a mesh that was not fetched. */
-static skein_world *world_of(const char *path, int frames) {
-    static const char *const sets[] = {"method.substeps=5", NULL}; // it need not be stiff to be seen
-    io_faults faults = {note_fault, NULL, 0};
-    kinds[0] = render_view_kind();
-    io_scene *scene = io_scene_read(path, sets, kinds, &faults);
-    assert_non_null(scene);
-    skein_world *world = io_scene_build(scene, NULL, &faults);
-    if (!world && !strstr(last_fault, "meshes/fetched")) fail_msg("%s", last_fault);
-    double dt;
-    int steps = io_scene_steps_per_frame(io_scene_get(scene), &dt);
-    for (int i = 0; i < frames * steps && world; i++) assert_int_equal(skein_world_step(world, dt), SKEIN_OK);
-    io_scene_free(scene);
-    return world;
-}
+/* What can be told apart by its colour alone, as parts of the picture, of its rows and columns. */
+typedef struct parts {
+    double warm;                     /* red, orange and yellow: cloth, jelly, ropes */
+    double left, right, top, bottom; /* the box around that */
+    double dark_blue;                /* colliders' paint */
+    double pale;                     /* a bowl's inside: lighter than the ground and yellower than the sky */
+    double shade, shade_x;           /* of the ground, and its middle across */
+} parts;
+
+typedef struct expectation {
+    const char *name;
+    int frame;
+    double warm;      /* at least so much of the picture */
+    double dark_blue; /* at least so much without bodies; 0: none at all */
+    double hidden;    /* at least so much of that the bodies hide */
+    double pale;      /* at least */
+    double azimuth;   /* from where it is the same left and right, or NOT_SYMMETRIC */
+} expectation;
+
+#define NOT_SYMMETRIC NAN
+
+/* A scene that is new here must show something warm, sky, ground and a shadow. */
+static const expectation expectations[] = {
+    {"bowl_masses", 60, 0.015, 0.004, 0, 0.03, 90},
+    {"cube_bowl", 40, 0.015, 0.004, 0, 0.03, 90},
+    {"cube_plane", 60, 0.06, 0, 0, 0, 20},
+    {"cube_slope", 40, 0.06, 0, 0, 0, 90},
+    {"cube_sphere", 40, 0.015, 0.05, 0, 0, 90},
+    {"drape", 70, 0.06, 0.03, 0.4, 0, NOT_SYMMETRIC},
+    {"elephant", 20, 0.006, 0.03, 0, 0, NOT_SYMMETRIC},
+    {"flag", 60, 0.06, 0, 0, 0, NOT_SYMMETRIC},
+    {"hanging", 60, 0.02, 0, 0, 0, 0},
+    {"rope", 45, 0.003, 0.001, 0, 0, NOT_SYMMETRIC},
+    {"turntable", 60, 0.02, 0.03, 0.15, 0, 0},
+};
 
 static bool is_warm(const uint8_t *p) {
-    return p[0] > p[1] + 50 && p[0] > p[2] + 50;
+    return p[0] > p[2] + 60 && p[0] > p[1] + 30;
 }
 
-/* The part of a row's pixels that are darker than `most`. */
-static double dark_part(const render_image *image, int from, int to, int most) {
-    size_t dark = 0, all = 0;
-    for (int y = height / 3; y < height; y++) {
-        for (int x = from; x < to; x++, all++) dark += brightness(image, x, y) < most;
-    }
-    return (double)dark / (double)all;
-}
-
-static void check_scene(const char *path) {
-    skein_error error = {0};
-    skein_world *world = world_of(path, 30);
-    if (!world) return;
-    render_world_frame *made = render_world_frame_create(&error);
-    assert_int_equal(render_world_frame_update(made, world, NULL, &error), SKEIN_OK);
-    render_world_frame_settle(made);
-    const render_frame *frame = render_world_frame_get(made);
-    render_camera camera = render_world_frame_camera(made, (double)width / height);
-    render_image image = shoot(frame, &camera);
-
-    // cloth, neither a speck nor everything; all of it inside the picture's rim
-    size_t warm = 0, rim = 0;
-    for (int y = 0; y < height; y++) {
+static parts look_at(const render_image *image) {
+    parts seen = {.left = 1, .top = 1};
+    const double all = width * height;
+    for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
-            bool is = is_warm(render_image_pixel(&image, x, y));
-            warm += is;
-            rim += is && (x < 10 || y < 10 || x >= width - 10 || y >= height - 10);
+            const uint8_t *p = render_image_pixel(image, x, y);
+            int light = p[0] + p[1] + p[2];
+            seen.dark_blue += (p[2] > p[0] + 30 && light < 330) / all;
+            seen.pale += (y > height / 6 && p[0] > 222 && p[0] > p[2] + 12 && !is_warm(p)) / all;
+            if (y > height / 3 && light < 520 && light > 200 && abs(p[0] - p[2]) < 30)
+                seen.shade += 1 / all, seen.shade_x += x / all / width;
+            if (!is_warm(p)) continue;
+            seen.warm += 1 / all;
+            seen.left = fmin(seen.left, (double)x / width), seen.right = fmax(seen.right, (double)x / width);
+            seen.top = fmin(seen.top, (double)y / height), seen.bottom = fmax(seen.bottom, (double)y / height);
         }
-    }
-    if (warm < width * height / 200 || warm > width * height / 2) fail_msg("%s: %zu pixels of cloth", path, warm);
-    assert_int_equal(rim, 0);
+    seen.shade_x /= seen.shade > 0 ? seen.shade : 1;
+    return seen;
+}
 
-    // blue sky above, the ground's warm grey below, and a horizon between them without a jump
+/* A scene as it stands after some frames, and all that draws it. */
+typedef struct stage {
+    skein_world *world;
+    render_world_frame *made;
+    render_camera camera;
+} stage;
+
+/* False where the scene needs a mesh that was not fetched. */
+static bool set_stage(stage *s, const char *path, int frames) {
+    io_faults faults = {note_fault, NULL, 0};
+    skein_error error = {0};
+    kinds[0] = render_view_kind();
+    io_scene *scene = io_scene_read(path, NULL, kinds, &faults);
+    assert_non_null(scene);
+    s->world = io_scene_build(scene, NULL, &faults);
+    if (!s->world && !strstr(last_fault, "meshes/fetched")) fail_msg("%s", last_fault);
+    double dt;
+    int steps = io_scene_steps_per_frame(io_scene_get(scene), &dt);
+    for (int i = 0; i < frames * steps && s->world; i++) assert_int_equal(skein_world_step(s->world, dt), SKEIN_OK);
+    s->made = render_world_frame_create(&error);
+    assert_non_null(s->made);
+    if (s->world) {
+        assert_int_equal(render_world_frame_update(s->made, s->world, io_scene_view(scene), &error), SKEIN_OK);
+        render_world_frame_settle(s->made);
+        s->camera = render_world_frame_camera(s->made, (double)width / height);
+    }
+    io_scene_free(scene);
+    return s->world != NULL;
+}
+
+static void clear_stage(stage *s) {
+    render_world_frame_destroy(s->made);
+    skein_world_destroy(s->world);
+}
+
+/* Blue sky above, the ground's warm grey below, and between them a horizon without a jump. */
+static void check_surroundings(const stage *s) {
+    render_image image = shoot(render_world_frame_get(s->made), &s->camera);
     const uint8_t *sky = render_image_pixel(&image, 8, 4), *ground = render_image_pixel(&image, 8, height - 5);
     assert_true(sky[2] > sky[0] + 20);
     assert_true(ground[0] > ground[2] + 5 && ground[0] > 130);
-    int least = 765;
-    for (int y = 1; y < height; y++) {
-        least = brightness(&image, 8, y) < least ? brightness(&image, 8, y) : least;
-        assert_true(abs(brightness(&image, 8, y) - brightness(&image, 8, y - 1)) < 45);
-    }
-    assert_true(brightness(&image, 8, height / 4) > brightness(&image, 8, height - 5) + 20); // haze far out
-
-    // the sun stands on the left: the shadow is on the right
-    double left = dark_part(&image, 0, width / 4, least - 60), right = dark_part(&image, width / 2, width, least - 60);
-    if (!(right > 0.01 && left == 0)) fail_msg("%s: shadows left %g, right %g", path, left, right);
-
-    // with a sun on the right it is on the left
-    render_frame mirrored = *frame;
-    mirrored.look.sun[0] = -mirrored.look.sun[0];
-    render_image other = shoot(&mirrored, &camera);
-    assert_true(dark_part(&other, 0, width / 2, least - 60) > dark_part(&image, 0, width / 2, least - 60));
+    assert_true(brightness(&image, width - 9, height / 4) > brightness(&image, 8, height - 5) + 20); // haze far out
+    for (int y = 1; y < height / 3; y++)
+        assert_true(abs(brightness(&image, width - 9, y) - brightness(&image, width - 9, y - 1)) < 45);
     render_image_release(&image);
-    render_image_release(&other);
-    render_world_frame_destroy(made);
-    skein_world_destroy(world);
+}
+
+/* The shadow lies on the sun's far side: where the sun stands on the right, on the left. */
+static void check_shadow(const stage *s, const parts *seen) {
+    double right[3], up[3], back[3];
+    render_frame frame = *render_world_frame_get(s->made);
+    render_camera_axes(&s->camera, right, up, back);
+    double across = frame.look.sun[0] * right[0] + frame.look.sun[2] * right[2];
+    for (int k = 0; k < 3; k += 2) frame.look.sun[k] -= 2 * across * right[k];
+    render_image image = shoot(&frame, &s->camera);
+    parts other = look_at(&image);
+    assert_true(across < -0.2); // the sun stands on the left
+    assert_true(seen->shade > 0.002 && other.shade > 0.002);
+    if (!(seen->shade_x > other.shade_x + 0.05)) fail_msg("shadows at %g and %g", seen->shade_x, other.shade_x);
+    render_image_release(&image);
+}
+
+/* From its plane of symmetry, under a sun in that plane, in one colour and without marks, left is as right. */
+static void check_symmetry(stage *s, double azimuth) {
+    skein_error error = {0};
+    render_view view = render_view_default();
+    render_bounds bounds = render_frame_bounds(render_world_frame_get(s->made));
+    double side = azimuth * pi / 180, away = 4 * render_bounds_radius(&bounds);
+    render_bounds_centre(&bounds, view.camera.at);
+    view.camera.from[0] = view.camera.at[0] + away * sin(side);
+    view.camera.from[1] = view.camera.at[1] + 0.3 * away;
+    view.camera.from[2] = view.camera.at[2] + away * cos(side);
+    view.colliders = view.grid = false;
+    view.colour = RENDER_BY_BODY;
+    view.sun[0] = sin(side), view.sun[1] = 1.5, view.sun[2] = cos(side);
+    assert_int_equal(render_world_frame_update(s->made, s->world, &view, &error), SKEIN_OK);
+    render_camera camera = render_world_frame_camera(s->made, (double)width / height);
+    render_image image = shoot(render_world_frame_get(s->made), &camera), mirrored = {0};
+    assert_int_equal(render_image_resize(&mirrored, width, height, &error), SKEIN_OK);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            memcpy(&mirrored.pixels[3 * (y * width + x)], render_image_pixel(&image, width - 1 - x, y), 3);
+    double off = difference(&image, &mirrored, 24);
+    if (off > 0.005) fail_msg("left and right differ in %g of the picture", off);
+    render_image_release(&image);
+    render_image_release(&mirrored);
+}
+
+/* What the picture holds beside what it holds without bodies. */
+static void check_parts(const expectation *e, const parts *seen, const parts *bare) {
+    assert_true(seen->warm > e->warm && seen->warm < 0.6 && bare->warm < seen->warm / 4);
+    assert_true(e->dark_blue > 0 ? bare->dark_blue > e->dark_blue : bare->dark_blue < 0.001);
+    assert_true(seen->dark_blue <= (1 - e->hidden) * bare->dark_blue + 0.001);
+    assert_true(seen->pale >= e->pale && (e->pale > 0 || bare->pale < 0.02));
+}
+
+static void check_scene(const char *path) {
+    expectation e = {NULL, 30, 0.001, -1, 0, 0, NOT_SYMMETRIC};
+    stage s;
+    const char *name = strrchr(path, '/') + 1;
+    for (size_t i = 0; i < sizeof expectations / sizeof *expectations; i++)
+        if (strlen(expectations[i].name) == strcspn(name, ".") &&
+            !strncmp(name, expectations[i].name, strcspn(name, ".")))
+            e = expectations[i];
+    if (!set_stage(&s, path, e.frame)) {
+        fprintf(stderr, "%s: its mesh was not fetched\n", path);
+        clear_stage(&s);
+        return;
+    }
+    render_frame without = *render_world_frame_get(s.made);
+    without.surface_count = without.rod_count = without.points_count = 0;
+    render_image image = shoot(render_world_frame_get(s.made), &s.camera), empty = shoot(&without, &s.camera);
+    parts seen = look_at(&image), bare = look_at(&empty);
+    fprintf(stderr, "%s: warm %.4f (%.4f without), dark blue %.4f (%.4f), pale %.4f (%.4f), shade %.4f at %.2f\n", path,
+            seen.warm, bare.warm, seen.dark_blue, bare.dark_blue, seen.pale, bare.pale, seen.shade, seen.shade_x);
+    if (e.name) check_parts(&e, &seen, &bare);
+    // all of it is there, and not at the rim
+    assert_true(seen.warm > 0.001);
+    assert_true(seen.left > 0.02 && seen.right < 0.98 && seen.top > 0.02 && seen.bottom < 0.98);
+    check_surroundings(&s);
+    check_shadow(&s, &seen);
+    if (!isnan(e.azimuth)) check_symmetry(&s, e.azimuth);
+    render_image_release(&image);
+    render_image_release(&empty);
+    clear_stage(&s);
 }
 
 static void every_scene_has_what_it_must(void **state) {
     (void)state;
     glob_t found;
     assert_int_equal(glob("scenes/*.json", 0, NULL, &found), 0);
-    assert_true(found.gl_pathc >= 4);
-    for (size_t i = 0; i < found.gl_pathc; i++) {
-        fprintf(stderr, "%s\n", found.gl_pathv[i]);
-        check_scene(found.gl_pathv[i]);
-    }
+    assert_true(found.gl_pathc >= sizeof expectations / sizeof *expectations);
+    for (size_t i = 0; i < found.gl_pathc; i++) check_scene(found.gl_pathv[i]);
     globfree(&found);
 }
 

@@ -94,7 +94,9 @@ static void the_view_is_described(void **state) {
     assert_int_equal(kind->params_size, sizeof(render_view));
     for (size_t i = 0; i < kind->field_count; i++) {
         const skein_field *field = &kind->fields[i];
-        static const int numbers[] = {1, 1, 2, 1, 2, 3, 1, 0};
+        static const int numbers[] = {[SKEIN_FIELD_BOOL] = 1, [SKEIN_FIELD_INT] = 1,    [SKEIN_FIELD_INT2] = 2,
+                                      [SKEIN_FIELD_INT3] = 3, [SKEIN_FIELD_REAL] = 1,   [SKEIN_FIELD_REAL2] = 2,
+                                      [SKEIN_FIELD_VEC3] = 3, [SKEIN_FIELD_CHOICE] = 1, [SKEIN_FIELD_TEXT] = 0};
         skein_value value = {
             numbers[field->type], {field->initial[0], field->initial[1], field->initial[2]}, field->text};
         assert_int_equal(skein_field_check(field, &value, NULL), SKEIN_OK);
@@ -136,7 +138,7 @@ static void a_surface_is_shown_or_not(void **state) {
     (void)state;
     skein_world *world = upright_cloth();
     look_from_the_front();
-    view.pattern = 2;
+    view.pattern = 3;
     render_image with = picture_of(world);
     view.surface = false;
     render_image without = picture_of(world);
@@ -155,7 +157,7 @@ static void a_wireframe_has_every_edge_once(void **state) {
     (void)state;
     skein_world *world = upright_cloth();
     look_from_the_front();
-    view.pattern = 2, view.wireframe = true, view.line_width = 4;
+    view.pattern = 3, view.wireframe = true, view.line_width = 4;
     const render_frame *frame = update(world);
     assert_int_equal(frame->lines[RENDER_WIREFRAME].count, 9 * 16 + 17 * 8);
     // on a line of the grid there is ink, in the middle of a square there is cloth
@@ -346,7 +348,7 @@ static void colliders_follow_at_once(void **state) {
     OK(skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 1.2, 0.5), SKEIN_REAL("radius", 0.2)),
                           &ball));
     look_from_the_front();
-    view.pattern = 2;
+    view.pattern = 3;
     render_image image = picture_of(world);
     assert_false(is_red(pixel_at(&image, 0, 1.2)));
     assert_true(is_red(pixel_at(&image, 0.6, 1.2)));
@@ -514,7 +516,7 @@ static void a_checker_repeats_as_often_as_asked(void **state) {
     (void)state;
     skein_world *world = upright_cloth();
     look_from_the_front();
-    view.pattern = 1;
+    view.pattern = 2;
     for (int repeats = 2; repeats < 9; repeats *= 2) {
         view.repeats = repeats;
         render_image image = picture_of(world);
@@ -541,6 +543,7 @@ static void images_that_cannot_be_read_are_told(void **state) {
     view.image = path;
     assert_int_equal(render_world_frame_update(made, world, &view, &error), SKEIN_ERROR_FILE);
     assert_string_equal(error.where, path);
+    assert_non_null(strstr(error.message, "; give the path of a PNG or JPEG"));
     view.image = (char[]){"CMakeLists.txt"};
     assert_int_equal(render_world_frame_update(made, world, &view, &error), SKEIN_ERROR_SYNTAX);
     assert_non_null(strstr(error.message, "PNG or JPEG"));
@@ -593,7 +596,7 @@ static void the_camera_stands_where_it_is_told(void **state) {
 static void a_camera_that_frames_by_itself_can_be_turned_and_zoomed(void **state) {
     (void)state;
     skein_world *world = upright_cloth();
-    view.pattern = 2;
+    view.pattern = 3;
     view.camera.azimuth = 0, view.camera.elevation = 5;
     render_image front = picture_of(world);
     render_camera first = render_world_frame_camera(made, 1.5);

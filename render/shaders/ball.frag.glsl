@@ -34,19 +34,12 @@ void main() {
     marked = max(marked, band(vec3(-0.383, 0.0, 0.924), 0.028, where));
     vec3 albedo = mix(ball_paint, ball_marking, marked);
 
-    float seen = sun_seen(world, n), below = ground_seen(world);
+    float seen = sun_seen(world, n), below = ground_seen(world, n);
     float open = balls_seen(world, n, collider == 1 ? number : -1);
 #endif
     vec3 sun = scene.sun_light.rgb * seen * max(dot(n, scene.sun.xyz), 0.0);
     vec3 ambient = ambient_light(n, below) * open;
 
-    // glaze: the sky and the ground mirrored, more so at grazing angles, and the sun's soft spot
-    vec3 mirror = reflect(-view, n);
-    vec3 around = mix(scene.ground.rgb * 0.7, sky_colour(mirror), smoothstep(-0.3, 0.3, mirror.y));
-    float glance = 0.035 + 0.5 * pow(1.0 - clamp(dot(n, view), 0.0, 1.0), 5.0);
-    vec3 half_way = normalize(scene.sun.xyz + view);
-    vec3 spot = scene.sun_light.rgb * seen * 0.5 * pow(max(dot(n, half_way), 0.0), 160.0);
-    vec3 glaze = around * glance * open * below + spot;
-    vec3 light = albedo * (sun + ambient) + glaze;
+    vec3 light = albedo * (sun + ambient) + glaze(n, view) * open * below + sun_spot(n, view, seen);
     colour = vec4(display(scene.modes.x == 1 ? blinn_phong(albedo, n, view) : light), 1.0);
 }

@@ -26,7 +26,7 @@ void main() {
     number = gl_InstanceID;
 #ifdef FINE
     vec3 sunny = centre_radius.xyz + 1.3 * centre_radius.w * scene.sun.xyz;
-    light_here = vec3(sun_seen(sunny, scene.sun.xyz), balls_seen(sunny, scene.sun.xyz, -1), ground_seen(sunny));
+    light_here = vec3(sun_seen(sunny, scene.sun.xyz), balls_seen(sunny, scene.sun.xyz, -1), ground_seen(sunny, vec3(0.0)));
 #endif
     gl_Position = pass.to_clip * vec4(centre_radius.xyz + centre_radius.w * facing, 1.0);
 }

@@ -105,7 +105,9 @@ float balls_seen(vec3 point, vec3 normal, int own) {
     return light;
 }
 
-// How much of the ground's light reaches a point above it: less where the ground lies in the dark.
-float ground_seen(vec3 point) {
-    return mix(0.25, 1.0, under_seen(point));
+// How much of the ground's light reaches a point above it: less where the ground lies in the dark. A wall sees the
+// ground before it, the farther out the higher up.
+float ground_seen(vec3 point, vec3 normal) {
+    float out_there = 0.5 * max(point.y - scene.ground.w, 0.0) + 0.03 / scene.under_map.z;
+    return mix(0.25, 1.0, under_seen(point + normal * vec3(out_there, 0.0, out_there)));
 }

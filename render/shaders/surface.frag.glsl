@@ -56,18 +56,24 @@ void main() {
 #ifdef FINE
     float seen = light_here.x, open = light_here.y, below = light_here.z;
 #else
-    float seen = sun_seen(world, n), open = balls_seen(world, n, -1), below = ground_seen(world);
+    float seen = sun_seen(world, n), open = balls_seen(world, n, -1), below = ground_seen(world, n);
 #endif
     vec3 sun = scene.sun_light.rgb * seen * max(cosine, 0.0);
     vec3 through = scene.sun_light.rgb * seen * max(-cosine, 0.0) * translucency;
 
     vec3 ambient = ambient_light(n, below) * open;
 
+#ifdef GLAZED
+    // light goes in and about: the sides that look away from the sun are not dark
+    vec3 within = albedo * scene.sun_light.rgb * (0.10 + 0.10 * cosine) * open;
+    vec3 sheen = within + glaze(n, view) * open * below, gloss = 0.6 * sun_spot(n, view, seen);
+#else
     // fibres that stand up catch light at grazing angles
     float rim = pow(1.0 - clamp(dot(n, view), 0.0, 1.0), 4.0);
     vec3 sheen = (0.10 * sun + 0.16 * ambient) * rim;
     vec3 half_way = normalize(scene.sun.xyz + view);
     vec3 gloss = sun * 0.05 * pow(max(dot(n, half_way), 0.0), 18.0);
+#endif
 
     vec3 light = albedo * (sun + ambient) + albedo * albedo * through + sheen + gloss;
     colour = vec4(display(scene.modes.x == 1 ? blinn_phong(albedo, n, view) : light), 1.0);

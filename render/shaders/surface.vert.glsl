@@ -19,7 +19,7 @@ void main() {
     place = vec3(uv, value);
 #ifdef FINE
     vec3 side = dot(normal, scene.eye.xyz - position) < 0.0 ? -normal : normal;
-    light_here = vec3(sun_seen(position, normal), balls_seen(position, side, -1), ground_seen(position));
+    light_here = vec3(sun_seen(position, normal), balls_seen(position, side, -1), ground_seen(position, side));
 #endif
     gl_Position = pass.to_clip * vec4(position, 1.0);
     gl_Position.z *= 1.0 + lift;

@@ -1,0 +1,2 @@
+// Ahead of the stages of surfaces that are jelly and not cloth.
+#define GLAZED
