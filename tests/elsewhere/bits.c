@@ -5,7 +5,7 @@
 int main(void) {
     int wrong = 0;
     for (int m = 0; m < (int)(sizeof bits_methods / sizeof *bits_methods); m++) {
-        uint64_t hash = hash_of_run(bits_methods[m].method, bits_methods[m].substeps, "", 1 + m % 3);
+        uint64_t hash = hash_of_run(bits_methods[m].method, bits_methods[m].steps, bits_methods[m].substeps, "", 1 + m % 3);
         printf("%s: %016llx, expected %016llx\n", bits_methods[m].method, (unsigned long long)hash, (unsigned long long)golden[m]);
         wrong |= hash != golden[m];
     }
