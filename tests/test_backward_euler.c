@@ -184,8 +184,6 @@ static void few_turns_solve_one_spring(void **state) {
         double before = statistics_of(world).elastic_energy + statistics_of(world).kinetic_energy;
         steps(world, 1, 0.1);
         skein_statistics s = statistics_of(world);
-        print_message("%zu: %zu turns, %zu iterations, residual %.2g, energy %.3g of the start\n", i, s.solver_turns,
-                      s.solver_iterations, s.residual, (s.elastic_energy + s.kinetic_energy) / before);
         assert_int_equal(s.unsolved, 0);
         assert_true(s.solver_turns <= 8);
         assert_true(s.elastic_energy + s.kinetic_energy <= before);
