@@ -170,6 +170,27 @@ static void corners_hold_both_ways(void **state) {
     skein_world_destroy(world);
 }
 
+/* Newton's method takes few turns: for a stretched spring that turns, and for one that is thrown at its own end, which
+ * takes the first guess and the line search to solve. */
+static void few_turns_solve_one_spring(void **state) {
+    (void)state;
+    static const struct { double x, vx, vy; } rows[] = {{2, 0, 8}, {1, -30, 0}, {0.3, 5, -20}, {4, -100, 3}};
+    for (size_t i = 0; i < COUNT(rows); i++) {
+        skein_world *world = new_world("backward_euler", 1);
+        uint32_t a = add_particle(world, 0, 0, 0, 0), b = add_particle(world, 1, 1, 0, 0);
+        add_spring(world, a, b, 1e4, 0);
+        place_particle(world, b, rows[i].x, 0, 0);
+        throw_particle(world, b, rows[i].vx, rows[i].vy, 0);
+        double before = statistics_of(world).elastic_energy + statistics_of(world).kinetic_energy;
+        steps(world, 1, 0.1);
+        skein_statistics s = statistics_of(world);
+        assert_int_equal(s.unsolved, 0);
+        assert_true(s.solver_turns <= 8);
+        assert_true(s.elastic_energy + s.kinetic_energy <= before);
+        skein_world_destroy(world);
+    }
+}
+
 /* A bounce keeps the speed that restitution says. */
 static void restitution_is_kept(void **state) {
     (void)state;
@@ -227,6 +248,7 @@ int main(void) {
         cmocka_unit_test(drag_is_implicit),
         cmocka_unit_test(degenerate_worlds_are_solved),
         cmocka_unit_test(corners_hold_both_ways),
+        cmocka_unit_test(few_turns_solve_one_spring),
         cmocka_unit_test(restitution_is_kept),
         cmocka_unit_test(nothing_is_allocated_after_the_second_step),
     };

@@ -83,7 +83,12 @@ static void runs_grow_beyond_it_and_not_before(void **state) {
         {"symplectic_euler", 0.05, 0}, {"leapfrog", 0.05, 0},    {"rk4", 0.05, 0},    {"lookahead_euler", 0.05, 0},
         {"symplectic_euler", 0.4, 0},  {"explicit_euler", 2, 0}, {"midpoint", 2, 0},  {"rk4", 2, 0},
         {"symplectic_euler", 0, 800},  {"leapfrog", 0, 800},     {"midpoint", 0, 800}};
-    for (size_t m = 0; m < COUNT(rows); m++) {
+#ifdef SK_ONE_ISA
+    const size_t stride = 4; // sanitizers need not see them all
+#else
+    const size_t stride = 1;
+#endif
+    for (size_t m = 0; m < COUNT(rows); m += stride) {
         skein_stability s;
         skein_world *world = net(rows[m].method, rows[m].damping, rows[m].rate);
         OK(world, skein_world_stability(world, &s));

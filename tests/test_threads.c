@@ -82,6 +82,9 @@ static void no_method_depends_on_threads(void **state) {
     (void)state;
     enum { SMALL = 67 };
     for (size_t m = 0; m < COUNT(all_methods); m++) {
+#ifdef SK_ONE_ISA
+        if (m % 3) continue; // sanitizers need not see them all
+#endif
         int substeps = !strcmp(all_methods[m], "backward_euler") ? 1 : 24;
         uint64_t one = hash_of_run(all_methods[m], SMALL, substeps, 1, NULL);
         assert_true(hash_of_run(all_methods[m], SMALL, substeps, 3, NULL) == one);
