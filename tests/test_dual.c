@@ -278,6 +278,22 @@ static void guarded_points(void **state) {
     assert_dual(skein_dual3d_real_pow(0, AT(2)), 0, 0, 0, 0);
 }
 
+/* Rounding where it matters: along an axis a length has the slopes 1 and -1 exactly, and close to the guard at 1 and
+ * -1 the slope of asin keeps all the digits that its argument has. */
+static void precise_slopes(void **state) {
+    (void)state;
+    for (int x = 1; x <= 200; x++) {
+        skein_dual6_vec v = skein_dual6_vec_seed((float)-x, 0, 0, 1);
+        assert_true(skein_dual6_vec_length(v).d[1] == -1);
+    }
+    for (int k = 1; k <= 100; k++) {
+        float x = 1 - (float)k * FLT_EPSILON / 2;
+        double ought = 1 / sqrt(1 - (double)x * (double)x);
+        assert_share(skein_dual3_asin(skein_dual3_seed(x, 1)).d[1], ought, 3e-7);
+        assert_share(skein_dual3_acos(skein_dual3_seed(-x, 1)).d[1], -ought, 3e-7);
+    }
+}
+
 /* Whatever awkward numbers go in, no function makes a NaN or an infinity of them, in either real. */
 static void always_finite(void **state) {
     (void)state;
@@ -531,10 +547,19 @@ static void example(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_operand),   cmocka_unit_test(two_operands),   cmocka_unit_test(plain_operands),
-        cmocka_unit_test(making),        cmocka_unit_test(compound_forms), cmocka_unit_test(guarded_points),
-        cmocka_unit_test(always_finite), cmocka_unit_test(vectors),        cmocka_unit_test(vectors_at_zero),
-        cmocka_unit_test(long_formula),  cmocka_unit_test(spring_exactly), cmocka_unit_test(spring_from_anywhere),
+        cmocka_unit_test(one_operand),
+        cmocka_unit_test(two_operands),
+        cmocka_unit_test(plain_operands),
+        cmocka_unit_test(making),
+        cmocka_unit_test(compound_forms),
+        cmocka_unit_test(guarded_points),
+        cmocka_unit_test(precise_slopes),
+        cmocka_unit_test(always_finite),
+        cmocka_unit_test(vectors),
+        cmocka_unit_test(vectors_at_zero),
+        cmocka_unit_test(long_formula),
+        cmocka_unit_test(spring_exactly),
+        cmocka_unit_test(spring_from_anywhere),
         cmocka_unit_test(example),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
