@@ -35,8 +35,8 @@
  *     dual_vec_dot distance (v, w)  dual_vec_length(v)       these are duals
  *
  * Guards. Where a function has no finite value or slope, it gets a sensible one, so that finite numbers make no NaN and
- * no infinity unless a sum, a product or a quotient grows beyond the real's range. Skein's formulas are to have the same.
- * With `least` the least normal number of the real (FLT_MIN, DBL_MIN):
+ * no infinity unless a sum, a product or a quotient grows beyond the real's range. Skein's formulas are to have the
+ * same. With `least` the least normal number of the real (FLT_MIN, DBL_MIN):
  *
  *     sqrt(x)           the derivative is x > least ? 1 / (2 sqrt(x)) : 0; below 0 the value is 0. So a length of 0
  *                       has the derivative 0, and the vector 0 is normalized to 0 with the derivative 0
