@@ -7,7 +7,7 @@
 #include <epoxy/gl.h>
 #include <string.h>
 
-enum { SOLID, ROD, BOWL, SOLID_DEPTH, BOWL_DEPTH, PROGRAM_COUNT };
+enum { SOLID, ROD, BOWL, GLASS, SOLID_DEPTH, BOWL_DEPTH, PROGRAM_COUNT };
 
 /* ---- Making --------------------------------------------------------------------------------- */
 
@@ -16,6 +16,7 @@ skein_status render_solids_create(render_solids *solids, skein_error *error) {
         [SOLID] = {"solid.vert", "display,light,glaze,solid.frag"},
         [ROD] = {"fine,light,solid.vert", "fine,display,solid.frag"},
         [BOWL] = {"bowl.vert", "display,light,glaze,bowl.frag"},
+        [GLASS] = {"bowl.vert", "glass,display,glaze,bowl.frag"},
         [SOLID_DEPTH] = {"solid.vert", NULL},
         [BOWL_DEPTH] = {"bowl.vert", NULL},
     };
@@ -65,14 +66,18 @@ static void draw_bowls(const render_solids *solids, const render_frame *frame, G
         const render_bowl *bowl = &frame->bowls[i];
         glProgramUniform4f(program, 0, (float)bowl->centre[0], (float)bowl->centre[1], (float)bowl->centre[2],
                            (float)bowl->radius);
-        if (program == solids->programs[BOWL]) {
-            float paint[3], marking[3], turned[9];
+        if (program != solids->programs[BOWL_DEPTH]) {
+            float paint[3];
             render_to_light(bowl->colour, 1, paint);
+            glProgramUniform3fv(program, 1, 1, paint);
+            glProgramUniform1f(program, 3, (float)(render_bowl_height - 1));
+        }
+        if (program == solids->programs[BOWL]) {
+            float marking[3], turned[9];
             render_to_light(bowl->marking, 1, marking);
             for (int k = 0; k < 9; k++) turned[k] = (float)bowl->rotation[k];
-            glProgramUniform3fv(program, 1, 1, paint);
             glProgramUniform3fv(program, 2, 1, marking);
-            glProgramUniformMatrix3fv(program, 5, 1, GL_TRUE, turned);
+            glProgramUniformMatrix3fv(program, 4, 1, GL_TRUE, turned);
         }
         glDrawElements(GL_TRIANGLES, solids->bowl.index_count, GL_UNSIGNED_SHORT, NULL);
     }
@@ -92,8 +97,6 @@ void render_solids_draw(const render_solids *solids, const render_frame *frame) 
     draw_instances(&solids->piece, &solids->rods, solids->programs[ROD]);
     // the walls that we see from within
     glCullFace(GL_FRONT);
-    glProgramUniform1f(solids->programs[BOWL], 3, (float)(render_bowl_height - 1));
-    glProgramUniform1i(solids->programs[BOWL], 4, 0);
     draw_bowls(solids, frame, solids->programs[BOWL]);
     glCullFace(GL_BACK);
     glDisable(GL_CULL_FACE);
@@ -107,8 +110,7 @@ void render_solids_draw_glass(const render_solids *solids, const render_frame *f
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     glDepthMask(GL_FALSE);
-    glProgramUniform1i(solids->programs[BOWL], 4, 1);
-    draw_bowls(solids, frame, solids->programs[BOWL]);
+    draw_bowls(solids, frame, solids->programs[GLASS]);
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);

@@ -8,7 +8,7 @@
 #include "render/instances.h"
 
 typedef struct render_solids {
-    unsigned programs[5];
+    unsigned programs[6];
     render_shape block, piece, bowl;
     render_instances solids, rods;
 } render_solids;

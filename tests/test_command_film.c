@@ -96,7 +96,7 @@ static void what_is_changed_is_noted(void **state) {
 static void the_exporter_makes_a_film_where_it_is_asked_for(void **state) {
     (void)state;
     const char *s = tiny_scene();
-    outcome o = SKEIN("run", s, "--out", in_folder("out"), "--frames", "12", "--quiet", "--set",
+    outcome o = SKEIN("run", s, "--out", in_folder("out"), "--frames", "6", "--quiet", "--set",
                       "output=[\"obj\",{\"type\":\"film\",\"size\":[64,36],\"samples\":1,\"format\":\"webm\"}]");
     assert_status(o, 0);
     assert_string_equal(o.err, "");
@@ -104,16 +104,16 @@ static void the_exporter_makes_a_film_where_it_is_asked_for(void **state) {
     outcome_free(&o);
     assert_int_equal(count_entries(in_folder("out")), 4);
     film_seen seen = film_see(in_folder("out/my_scene_1.webm"));
-    assert_true(seen.pictures == 12 && seen.width == 64);
-    assert_true(fabs(seen.length - 0.2) < 0.01);
+    assert_true(seen.pictures == 6 && seen.width == 64);
+    assert_true(fabs(seen.length - 0.1) < 0.01);
     film_seen_free(&seen);
     json_t *report = read_report(in_folder("out/report.json"));
     assert_int_equal(json_array_size(json_object_get(report, "files")), 3);
     json_decref(report);
     // the film changes nothing in what is simulated
-    uint64_t with = hash_of(SKEIN("run", s, "--out", in_folder("out"), "--frames", "12", "--quiet", "--set",
+    uint64_t with = hash_of(SKEIN("run", s, "--out", in_folder("out"), "--frames", "6", "--quiet", "--set",
                                   "output=[{\"type\":\"film\",\"size\":[64,36],\"samples\":1}]"));
-    assert_true(with == hash_of(SKEIN("run", s, "--frames", "12", "--quiet")));
+    assert_true(with == hash_of(SKEIN("run", s, "--frames", "6", "--quiet")));
     assert_true(exists(in_folder("out/my_scene_1.mp4")));
     // by default there is none, and a run that fails leaves none
     write_scene(in_folder("plain.json"),
@@ -123,7 +123,7 @@ static void the_exporter_makes_a_film_where_it_is_asked_for(void **state) {
     assert_false(exists(in_folder("plain/plain.mp4")));
     assert_true(exists(in_folder("plain/plain.png")));
     outcome_free(&o);
-    o = SKEIN_IN((surroundings){.file_limit = 3000}, "run", s, "--out", in_folder("full"), "--frames", "300", "--quiet",
+    o = SKEIN_IN((surroundings){.file_limit = 1500}, "run", s, "--out", in_folder("full"), "--frames", "130", "--quiet",
                  "--set", "output=[{\"type\":\"film\",\"size\":[64,36],\"samples\":1,\"quality\":100}]");
     assert_status(o, 1);
     assert_contains(o.err, "my_scene_1.mp4: cannot write: it grew over the limit for a file's size\n");
@@ -203,7 +203,7 @@ static void a_full_disk_ends_a_film(void **state) {
     (void)state;
     const char *s = tiny_scene();
     char words[600];
-    outcome o = SKEIN_IN((surroundings){.file_limit = 6000}, "render", s, "-o", in_folder("a.mp4"), "--frames",
+    outcome o = SKEIN_IN((surroundings){.file_limit = 3000}, "render", s, "-o", in_folder("a.mp4"), "--frames",
                          "100000", "--fps", "10", "--set", "step=0.1", SMALL);
     assert_status(o, 1);
     snprintf(words, sizeof words, "skein: %s: cannot write: it grew over the limit for a file's size\n",

@@ -1,0 +1,2 @@
+// Ahead of the stages of a bowl's near wall.
+#define GLASS
