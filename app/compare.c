@@ -168,7 +168,7 @@ static int compare(int argc, char **argv) {
     };
     enum { COUNT = sizeof options / sizeof *options };
     static compare_run runs[COMPARE_MOST_RUNS];
-    compare_scene scene = {NULL};
+    compare_scene scene = {.path = NULL};
     int status = app_parse(&app_compare_command, argc, argv, options, COUNT, "scene", &scene.path);
     if (status < 0) {
         const char *methods = app_value(options, COUNT, "--methods"), *steps = app_value(options, COUNT, "--steps");
