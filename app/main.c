@@ -14,7 +14,7 @@ static const app_command *const commands[] = {&app_run_command,     &app_render_
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 static void print_help(FILE *to) {
-    fprintf(to, "skein " SKEIN_VERSION ": real-time particle dynamics: cloth, jelly, rope and flocks\n\n"
+    fprintf(to, "skein " SKEIN_VERSION ": real-time particle dynamics: cloth, jelly and rope\n\n"
                 "usage: skein COMMAND [ARGUMENTS]\n\n");
     for (int c = 0; c < COMMAND_COUNT; c++) {
         const char *line = commands[c]->help;
