@@ -120,7 +120,7 @@ static const expectation expectations[] = {
     {"flag", 60, 0.06, 0, 0, 0, NOT_SYMMETRIC},
     {"hanging", 60, 0.02, 0, 0, 0, 0},
     {"rope", 45, 0.003, 0.001, 0, 0, NOT_SYMMETRIC},
-    {"turntable", 60, 0.02, 0.03, 0.15, 0, 0},
+    {"turntable", 60, 0.02, 0.03, 0.15, 0, NOT_SYMMETRIC}, // its folds grow from rounding: in double they differ
 };
 
 static bool is_warm(const uint8_t *p) {
