@@ -240,6 +240,20 @@ static void nothing_is_allocated_after_the_second_step(void **state) {
     skein_world_destroy(world);
 }
 
+/* A tangent leads into a hollow wall; what is pulled off it harder than that leaves it nevertheless. */
+static void nothing_is_glued_to_a_hollow(void **state) {
+    (void)state;
+    skein_world *world = new_world("backward_euler", 1);
+    OK(world, skein_force_add(world, "wind", SKEIN_SETTINGS(SKEIN_VEC3("force", 0, 3, 0)), NULL));
+    OK(world,
+       skein_collider_add(world, "bowl", SKEIN_SETTINGS(SKEIN_REAL("radius", 1), SKEIN_REAL("friction", 0.3)), NULL));
+    add_moving(world, 1, 0, -0.998, 0, 1, 0, 0);
+    steps(world, 100, 1e-3);
+    assert_near(position_of(world, 0).x, 0.1, 1e-4);
+    assert_near(position_of(world, 0).y, -0.998 + 0.5 * 3 * 0.01, 3e-4);
+    skein_world_destroy(world);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_stiff_cube_stands_at_large_steps),
@@ -250,6 +264,7 @@ int main(void) {
         cmocka_unit_test(corners_hold_both_ways),
         cmocka_unit_test(few_turns_solve_one_spring),
         cmocka_unit_test(restitution_is_kept),
+        cmocka_unit_test(nothing_is_glued_to_a_hollow),
         cmocka_unit_test(nothing_is_allocated_after_the_second_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

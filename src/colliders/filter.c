@@ -4,7 +4,7 @@
  *   sticks     friction can stop it: it goes with the surface, S = 0
  *   slides     it keeps its normal velocity, and friction is a force: S loses the normal
  *   arrives    it would be inside by the end: it may come as far as the surface, S loses the normal
- *              (not where there is restitution: then it has to arrive with its own velocity)
+ *              (not where it bounces: then it has to arrive with its own velocity)
  *
  * Whether a particle is held follows from its force at the start of the substep, contact's own left out:
  * where that pulls it off, it is free. */
@@ -39,17 +39,29 @@ SK_INLINE sk_mask SK_ISA(touches)(const sk_collider *collider, sk_wide3 p, sk_wi
     return SK_ISA(sk_at_most)(gap, (real)1e-3 * thickness + (real)4e-6 * (size + (real)0.1));
 }
 
+/* The velocity relative to the surface at p. */
+SK_INLINE sk_wide3 SK_ISA(against)(const sk_pose *pose, sk_wide3 p, sk_wide4 v) {
+    sk_vec3 u = pose->velocity, spin = pose->spin;
+    sk_wide3 arm = {p.x - pose->position.x, p.y - pose->position.y, p.z - pose->position.z};
+    return (sk_wide3){v.x - (u.x + (spin.y * arm.z - spin.z * arm.y)), v.y - (u.y + (spin.z * arm.x - spin.x * arm.z)),
+                      v.z - (u.z + (spin.x * arm.y - spin.y * arm.x))};
+}
+
+/* What comes faster than a substep's force alone would bring it is to bounce, if the collider lets it. */
+SK_INLINE sk_mask SK_ISA(bounces)(const sk_collider *collider, sk_wide speed, sk_wide hw, sk_wide4 force) {
+    sk_wide3 f = {force.x, force.y, force.z};
+    sk_wide resting = 2 * hw * SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(f, f));
+    sk_mask fast = SK_ISA(sk_more)(-speed, resting);
+    return sk_contact_reads_force(collider) ? fast : fast & ~fast;
+}
+
 SK_INLINE sk_wide3 SK_ISA(hold)(const sk_collider *collider, const sk_pose *pose, sk_wide4 x, sk_wide4 force, real h,
                                 SK_ISA(filtering) * f) {
     sk_contact contact;
     sk_wide3 p = {x.x, x.y, x.z}, n;
     collider->type->probe[SK_ISA(sk_version)](collider->params, pose, &p, &contact);
     n = contact.normal;
-    sk_vec3 u = pose->velocity, spin = pose->spin;
-    sk_wide3 arm = {p.x - pose->position.x, p.y - pose->position.y, p.z - pose->position.z};
-    sk_wide3 slide = {f->v.x - (u.x + (spin.y * arm.z - spin.z * arm.y)),
-                      f->v.y - (u.y + (spin.z * arm.x - spin.x * arm.z)),
-                      f->v.z - (u.z + (spin.x * arm.y - spin.y * arm.x))};
+    sk_wide3 slide = SK_ISA(against)(pose, p, f->v);
     sk_wide speed = SK_ISA(sk_dot_wide)(slide, n), hw = h * x.w;
     slide = (sk_wide3){slide.x - speed * n.x, slide.y - speed * n.y, slide.z - speed * n.z};
     sk_wide3 f3 = {force.x, force.y, force.z};
@@ -57,10 +69,10 @@ SK_INLINE sk_wide3 SK_ISA(hold)(const sk_collider *collider, const sk_pose *pose
 
     sk_wide gap = contact.distance - (real)collider->common->thickness;
     sk_mask is_free = SK_ISA(sk_positive)(x.w), touching = SK_ISA(touches)(collider, p, gap) & is_free;
-    sk_mask held = touching & SK_ISA(sk_negative)(coming);
+    sk_mask held = touching & SK_ISA(sk_negative)(coming) & ~SK_ISA(bounces)(collider, speed, hw, force);
     // by its velocity alone: what a stiff spring would do to it over a whole substep it does not get to do
     sk_mask arriving = is_free & ~touching & SK_ISA(sk_negative)(gap + h * speed);
-    if (collider->common->restitution > 0) arriving &= ~arriving;
+    if (sk_contact_reads_force(collider)) arriving &= ~arriving;
     if (!SK_ISA(sk_any)(held | arriving)) return (sk_wide3){{0}, {0}, {0}};
 
     // the friction that would stop it in this substep, against Coulomb's cone
@@ -105,8 +117,35 @@ static void SK_ISA(contact_filter)(sk_run *run, const sk_row *row, size_t begin,
     }
 }
 
-/* Within the solve: what has come inside is held too, and taken back to the surface; where there is restitution, only
- * what lay on it. What is held already goes on along its tangent. */
+/* What the solve must hold of what is inside at its present guess: all that comes from outside (but what is to
+ * bounce), and of what lay on the surface only what presses. The rest is inside because its tangent leads there, in
+ * a hollow, and the solve may take it off: holding that would glue it on, with more weight and friction for the rest.
+ */
+SK_INLINE sk_mask SK_ISA(comes_inside)(const sk_run *run, const sk_row *row, const sk_pose *pose, size_t slot,
+                                       sk_wide4 x, sk_wide4 v, const sk_contact *contact) {
+    const sk_collider *collider = row->rule;
+    bool packed = slot < row->packed;
+    real thickness = (real)collider->common->thickness;
+    sk_wide4 x0 = SK_ISA(sk_load_block)(run->vector[SK_X0], slot, packed);
+    sk_wide4 v0 = SK_ISA(sk_load_block)(run->vector[SK_V0], slot, packed);
+    sk_wide4 force = SK_ISA(sk_load_block)(run->vector[SK_F], slot, packed);
+    sk_mask inside = SK_ISA(sk_negative)(contact->distance - thickness) & SK_ISA(sk_positive)(x.w);
+    if (!SK_ISA(sk_any)(inside)) return inside;
+    sk_wide3 p0 = {x0.x, x0.y, x0.z}, n = contact->normal;
+    sk_contact before;
+    collider->type->probe[SK_ISA(sk_version)](collider->params, pose, &p0, &before);
+    sk_mask lay = SK_ISA(touches)(collider, p0, before.distance - thickness);
+    // the balance of momentum along the normal, without what contact does to it
+    sk_wide hw = (real)row->dt * x.w;
+    sk_wide3 short_of = {hw * force.x - (v.x - v0.x), hw * force.y - (v.y - v0.y), hw * force.z - (v.z - v0.z)};
+    sk_mask presses = SK_ISA(sk_negative)(SK_ISA(sk_dot_wide)(short_of, n));
+    if (!sk_contact_reads_force(collider)) return inside & (presses | ~lay);
+    sk_wide speed = SK_ISA(sk_dot_wide)(SK_ISA(against)(pose, p0, v0), before.normal);
+    return inside & lay & presses & ~SK_ISA(bounces)(collider, speed, hw, force);
+}
+
+/* Within the solve: what has come inside is held too, and taken back to the surface. What is held already goes on
+ * along its tangent. */
 static void SK_ISA(contact_filter_more)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_collider *collider = row->rule;
     sk_pose pose = sk_collider_pose_at(collider, run->time);
@@ -115,22 +154,17 @@ static void SK_ISA(contact_filter_more)(sk_run *run, const sk_row *row, size_t b
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
         sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed);
+        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed);
         sk_wide3 p = {x.x, x.y, x.z};
-        sk_contact contact, before;
+        sk_contact contact;
         collider->type->probe[SK_ISA(sk_version)](collider->params, &pose, &p, &contact);
-        sk_wide gap = contact.distance - thickness;
-        sk_mask inside = SK_ISA(sk_negative)(gap) & SK_ISA(sk_positive)(x.w);
+        sk_mask inside = SK_ISA(comes_inside)(run, row, &pose, slot, x, v, &contact);
         if (!SK_ISA(sk_any)(inside)) continue;
-        if (collider->common->restitution > 0) {
-            sk_wide4 x0 = SK_ISA(sk_load_block)(run->vector[SK_X0], slot, packed);
-            sk_wide3 p0 = {x0.x, x0.y, x0.z};
-            collider->type->probe[SK_ISA(sk_version)](collider->params, &pose, &p0, &before);
-            inside &= SK_ISA(touches)(collider, p0, before.distance - thickness);
-        }
+        sk_wide gap = contact.distance - thickness;
         SK_ISA(filtering)
         f = {SK_ISA(sk_load_block)(diagonal, slot, packed),
              SK_ISA(sk_load_block)(off, slot, packed),
-             SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed),
+             v,
              {{0}, {0}, {0}, {0}}};
         SK_ISA(hold_normal)(&f, inside, contact.normal, -gap / (real)row->dt, (real)0.5);
         SK_ISA(sk_store_block)(diagonal, slot, packed, f.d);
