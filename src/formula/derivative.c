@@ -11,11 +11,11 @@ enum { NONE = UINT32_MAX };
 /* Of an operation on one argument, by that: for these it takes the form of a factor. */
 static sk_node factor_of(sk_graph *g, sk_node node) {
     const sk_graph_node n = g->data[node];
-    const sk_node x = n.arg[0], one = sk_constant(g, 1), zero = sk_constant(g, 0);
+    const sk_node x = n.arg[0], one = sk_constant(g, 1), zero = sk_constant(g, 0), half = sk_constant(g, 0.5);
     switch (n.op) {
     case SK_OP_NEGATE: return sk_constant(g, -1);
     case SK_OP_RECIPROCAL: return sk_negative_of(g, sk_times(g, node, node));
-    case SK_OP_SQRT: return sk_times(g, sk_constant(g, 0.5), sk_of(g, SK_OP_RECIPROCAL, node));
+    case SK_OP_SQRT: return sk_times(g, half, sk_of(g, SK_OP_RECIPROCAL, node));
     case SK_OP_ABS: return sk_less(g, x, zero, sk_constant(g, -1), one);
     case SK_OP_EXP: return node;
     case SK_OP_LOG: return sk_less(g, zero, x, sk_of(g, SK_OP_RECIPROCAL, x), zero);
@@ -24,7 +24,7 @@ static sk_node factor_of(sk_graph *g, sk_node node) {
     case SK_OP_TAN: return sk_plus(g, one, sk_times(g, node, node));
     case SK_OP_ASIN:
     case SK_OP_ACOS: {
-        sk_node square = sk_times(g, sk_minus(g, one, x), sk_plus(g, one, x));
+        sk_node below = sk_minus(g, one, x), above = sk_plus(g, one, x), square = sk_times(g, below, above);
         sk_node slope = sk_of(g, SK_OP_RECIPROCAL, sk_of(g, SK_OP_SQRT, square));
         return n.op == SK_OP_ASIN ? slope : sk_negative_of(g, slope);
     }
@@ -37,7 +37,7 @@ static sk_node partial(sk_graph *g, sk_node node, int which) {
     const sk_graph_node n = g->data[node];
     const sk_node a = n.arg[0], b = n.arg[1];
     if (n.op == SK_OP_ATAN2) {
-        sk_node square = sk_plus(g, sk_times(g, b, b), sk_times(g, a, a));
+        sk_node xx = sk_times(g, b, b), yy = sk_times(g, a, a), square = sk_plus(g, xx, yy);
         sk_node over = sk_of(g, SK_OP_RECIPROCAL, square);
         return which == 0 ? sk_times(g, b, over) : sk_negative_of(g, sk_times(g, a, over));
     }
@@ -105,10 +105,12 @@ static void find_wanted(const sk_graph *graph, const uint32_t *inputs, size_t co
 }
 
 bool sk_gradient(sk_graph *graph, sk_node output, const uint32_t *inputs, size_t count, sk_node *derivatives) {
+    if (graph->no_memory || graph->too_large) return false;
     size_t before = graph->count; // what is made below is no part of what is differentiated
     sk_node *of = sk_allocate(graph->allocator, before * sizeof *of);
     bool *wanted = sk_allocate(graph->allocator, before * sizeof *wanted);
     if (!of || !wanted) graph->no_memory = true;
+    graph->name = "d";
     if (of && wanted) {
         adjoints a = {graph, of, wanted};
         for (size_t i = 0; i < before; i++) of[i] = NONE;
@@ -121,6 +123,7 @@ bool sk_gradient(sk_graph *graph, sk_node output, const uint32_t *inputs, size_t
             derivatives[k] = input < before && of[input] != NONE ? of[input] : sk_constant(graph, 0);
         }
     }
+    graph->name = "";
     sk_release(graph->allocator, of);
     sk_release(graph->allocator, wanted);
     return !graph->no_memory && !graph->too_large;
@@ -150,10 +153,12 @@ static sk_node tangent_of(sk_graph *g, sk_node node, const sk_node *of) {
 }
 
 bool sk_tangents(sk_graph *graph, const sk_node *outputs, size_t count, uint32_t input, sk_node *derivatives) {
+    if (graph->no_memory || graph->too_large) return false;
     size_t before = graph->count;
     sk_node *of = sk_allocate(graph->allocator, before * sizeof *of);
     bool *live = sk_allocate(graph->allocator, before * sizeof *live);
     if (!of || !live) graph->no_memory = true;
+    graph->name = "dd";
     if (of && live) {
         sk_graph_mark(graph, outputs, count, live);
         for (size_t i = 0; i < before; i++) {
@@ -164,6 +169,7 @@ bool sk_tangents(sk_graph *graph, const sk_node *outputs, size_t count, uint32_t
         for (size_t k = 0; k < count; k++)
             derivatives[k] = of[outputs[k]] == NONE ? sk_constant(graph, 0) : of[outputs[k]];
     }
+    graph->name = "";
     sk_release(graph->allocator, of);
     sk_release(graph->allocator, live);
     return !graph->no_memory && !graph->too_large;

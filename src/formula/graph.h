@@ -84,7 +84,9 @@ void sk_graph_free(sk_graph *graph);
 
 /* Each makes a node, or finds the one that there is, or a simpler one of the same value. When there is no memory, or
  * the graph is as large as it may be, the graph's flag says so and node 0 stands for the result: one look at the end
- * is enough. */
+ * is enough.
+ * Never two of these as arguments of one call: C leaves open which is made first, and the order of nodes decides the
+ * order of sums in derivatives, so the bits. */
 sk_node sk_constant(sk_graph *graph, double value);
 sk_node sk_input(sk_graph *graph, uint32_t input);
 sk_node sk_parameter(sk_graph *graph, uint32_t parameter);

@@ -75,9 +75,13 @@ static sk_value unknown_name(parser *p, const sk_token *token) {
     for (size_t i = 0; i < sk_function_count; i++) names[count++] = sk_functions[i].name;
     for (int i = 0; i < (p->desc->particles ? p->desc->particles : 8); i++) names[count++] = points[i];
     names[count++] = "pi", names[count++] = "let";
-    const char *near = sk_nearest_name(token->name, names, count);
-    return FAIL(p, token->begin, NAME, "there is no name '%s'%s%s%s", token->name, near ? "; did you mean '" : "",
-                near ? near : "; parameters must be named by whoever uses the formula", near ? "'?" : "");
+    // of a name of one or two letters, nearly every other is near
+    const char *near = token->name[1] && token->name[2] ? sk_nearest_name(token->name, names, count) : NULL;
+    if (near) return FAIL(p, token->begin, NAME, "there is no name '%s'; did you mean '%s'?", token->name, near);
+    return FAIL(p, token->begin, NAME,
+                "there is no name '%s': parameters are named by whoever uses the formula, other "
+                "names by let",
+                token->name);
 }
 
 /* p, v, or one of them with digits: the particle's number; -1 for any other name. */
@@ -112,7 +116,9 @@ static sk_value particle(parser *p, const sk_token *token, long number) {
                     token->name);
     if (number >= p->formula->particles) p->formula->particles = (int)number + 1;
     uint32_t first = (uint32_t)((velocity ? SK_INPUT_VELOCITY : SK_INPUT_POSITION) + 3 * number);
-    return sk_vector3(sk_input(p->graph, first), sk_input(p->graph, first + 1), sk_input(p->graph, first + 2));
+    sk_value out = {.type = SK_VECTOR3};
+    for (uint32_t axis = 0; axis < 3; axis++) out.node[axis] = sk_input(p->graph, first + axis);
+    return out;
 }
 
 static sk_value named(parser *p, const sk_token *token) {
@@ -276,7 +282,9 @@ static sk_value power(parser *p) {
     if (p->text.failed || !sk_text_take(&p->text, '^')) return base;
     if (!need(p, begin, &base, SK_NUMBER, "'^'")) return nothing;
     size_t exponent_begin = p->text.now.begin;
+    if (!enter(p)) return nothing;
     sk_value exponent = sign(p);
+    p->depth--;
     if (!need(p, exponent_begin, &exponent, SK_NUMBER, "'^'")) return nothing;
     return sk_number(sk_power(p->graph, base.node[0], exponent.node[0]));
 }

@@ -139,7 +139,9 @@ static void read_number(sk_text *text) {
     text->at += (size_t)(c - begin);
     text->now.number = mantissa ? scaled_by_ten((double)mantissa, exponent) : 0;
     text->now.end = text->at;
-    if (is_letter(*c) || *c == '.')
+    if (*c == '.')
+        sk_text_fail(text, text->now.begin, text->at + 1, SKEIN_ERROR_SYNTAX, "a number has one point at the most");
+    else if (is_letter(*c))
         sk_text_fail(text, text->now.begin, text->at + 1, SKEIN_ERROR_SYNTAX,
                      "a number ends with '%c': write 2*x, not 2x", *c);
     else if (!isfinite(text->now.number))

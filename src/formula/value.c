@@ -31,15 +31,17 @@ sk_value sk_compare(sk_graph *g, sk_comparison comparison, sk_node a, sk_node b)
 /* ---- vectors ---- */
 
 static sk_node dot_of(sk_graph *g, const sk_value *u, const sk_value *v) {
-    sk_node sum = sk_plus(g, sk_times(g, u->node[0], v->node[0]), sk_times(g, u->node[1], v->node[1]));
-    return sk_plus(g, sum, sk_times(g, u->node[2], v->node[2]));
+    sk_node x = sk_times(g, u->node[0], v->node[0]), y = sk_times(g, u->node[1], v->node[1]);
+    sk_node z = sk_times(g, u->node[2], v->node[2]), sum = sk_plus(g, x, y);
+    return sk_plus(g, sum, z);
 }
 
 static sk_value cross_of(sk_graph *g, const sk_value *u, const sk_value *v) {
     sk_value out = {.type = SK_VECTOR3};
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
-        out.node[i] = sk_minus(g, sk_times(g, u->node[j], v->node[k]), sk_times(g, u->node[k], v->node[j]));
+        sk_node plus = sk_times(g, u->node[j], v->node[k]), minus = sk_times(g, u->node[k], v->node[j]);
+        out.node[i] = sk_minus(g, plus, minus);
     }
     return out;
 }
@@ -70,7 +72,9 @@ static sk_value apply_length(sk_graph *g, const sk_value *a) {
 
 static sk_value apply_normalize(sk_graph *g, const sk_value *a) {
     sk_node over = sk_of(g, SK_OP_RECIPROCAL, length_of(g, &a[0]));
-    return sk_vector3(sk_times(g, a->node[0], over), sk_times(g, a->node[1], over), sk_times(g, a->node[2], over));
+    sk_value out = {.type = SK_VECTOR3};
+    for (int i = 0; i < 3; i++) out.node[i] = sk_times(g, a->node[i], over);
+    return out;
 }
 
 static sk_value apply_distance(sk_graph *g, const sk_value *a) {
@@ -88,7 +92,8 @@ static sk_value apply_vec3(sk_graph *g, const sk_value *a) {
 /* By atan2: acos loses half the digits where the vectors are nearly parallel. */
 static sk_value apply_angle(sk_graph *g, const sk_value *a) {
     sk_value across = cross_of(g, &a[0], &a[1]);
-    return sk_number(sk_arctangent(g, length_of(g, &across), dot_of(g, &a[0], &a[1])));
+    sk_node sine = length_of(g, &across), cosine = dot_of(g, &a[0], &a[1]);
+    return sk_number(sk_arctangent(g, sine, cosine));
 }
 
 /* Between the triangles (p0 p1 p2) and (p1 p0 p3): with e = p1 - p0, a = p2 - p0, b = p3 - p0 their normals are
@@ -96,8 +101,9 @@ static sk_value apply_angle(sk_graph *g, const sk_value *a) {
 static sk_value apply_dihedral(sk_graph *g, const sk_value *p) {
     sk_value e = minus_of(g, &p[1], &p[0]), a = minus_of(g, &p[2], &p[0]), b = minus_of(g, &p[3], &p[0]);
     sk_value left = cross_of(g, &e, &a), right = cross_of(g, &b, &e);
-    sk_node sine = sk_times(g, length_of(g, &e), dot_of(g, &left, &b));
-    return sk_number(sk_arctangent(g, sine, dot_of(g, &left, &right)));
+    sk_node along = length_of(g, &e), volume = dot_of(g, &left, &b), sine = sk_times(g, along, volume);
+    sk_node cosine = dot_of(g, &left, &right);
+    return sk_number(sk_arctangent(g, sine, cosine));
 }
 
 /* ---- numbers ---- */
@@ -154,9 +160,9 @@ static sk_value apply_clamp(sk_graph *g, const sk_value *a) {
 /* s^2 (3 - 2 s) with s = (x - from)/(to - from), from 0 to 1. */
 static sk_value apply_smoothstep(sk_graph *g, const sk_value *a) {
     sk_node from = a[0].node[0], to = a[1].node[0], x = a[2].node[0];
-    sk_node share = sk_over(g, sk_minus(g, x, from), sk_minus(g, to, from));
-    sk_node s = least(g, most(g, share, sk_constant(g, 0)), sk_constant(g, 1));
-    sk_node rest = sk_minus(g, sk_constant(g, 3), sk_times(g, sk_constant(g, 2), s));
+    sk_node gone = sk_minus(g, x, from), all = sk_minus(g, to, from), share = sk_over(g, gone, all);
+    sk_node zero = sk_constant(g, 0), one = sk_constant(g, 1), two = sk_constant(g, 2), three = sk_constant(g, 3);
+    sk_node s = least(g, most(g, share, zero), one), rest = sk_minus(g, three, sk_times(g, two, s));
     return sk_number(sk_times(g, sk_times(g, s, s), rest));
 }
 
