@@ -49,7 +49,7 @@ static void judge_tape(const skein_formula *f) {
         require(error.status == SKEIN_ERROR_LIMIT && allocator.bytes == 0);
         return;
     }
-    static sk_vec4 positions[64];
+    static _Alignas(64) sk_vec4 positions[64];
     static uint32_t slots[SK_FORMULA_PARTICLES][ELEMENTS];
     static real values[64][ELEMENTS], out[OUTPUTS][ELEMENTS];
     const uint32_t *slot[SK_FORMULA_PARTICLES];

@@ -69,7 +69,8 @@ skein_status sk_tape_create(sk_tape *tape, const sk_graph *graph, const sk_node 
                             sk_allocator *allocator, skein_error *error);
 void sk_tape_free(sk_tape *tape);
 
-/* What a tape runs on. Positions and velocities are state vectors: slots [0, packed) in packed blocks, else quads. */
+/* What a tape runs on. Positions and velocities are state vectors, aligned as such: slots [0, packed) in packed blocks,
+ * else quads. */
 typedef struct sk_tape_input {
     const sk_vec4 *positions, *velocities;
     size_t packed;
@@ -79,8 +80,8 @@ typedef struct sk_tape_input {
     real time;
 } sk_tape_input;
 
-/* What a run leaves besides its registers: for each lane, whether a guard acted, and whether all outputs are finite.
- * An element with an output that is not finite should be left out. */
+/* What a run leaves besides its registers: for each lane, whether a guard acted, and whether the sum of all outputs is
+ * finite. An element whose sum is not should be left out. */
 typedef struct sk_tape_verdict {
     sk_mask guarded[SK_TAPE_WIDES], finite[SK_TAPE_WIDES];
 } sk_tape_verdict;

@@ -130,15 +130,22 @@ SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask
     }
 }
 
+/* Infinities and NaN go through sums; what is only so large that the sum overflows is left out, too. */
+SK_INLINE void SK_ISA(judge)(const sk_tape *tape, const sk_wide *registers, sk_mask *finite, const size_t wides) {
+    sk_wide sum[SK_TAPE_WIDES] = {0};
+    for (size_t k = 0; k < tape->outputs; k++)
+        for (size_t i = 0; i < wides; i++) sum[i] += registers[tape->output[k] * wides + i];
+    for (size_t i = 0; i < wides; i++) finite[i] = ~SK_ISA(sk_differ)(sum[i] - sum[i], (sk_wide){0});
+}
+
 static void SK_ISA(run)(const sk_tape *tape, sk_wide *registers, sk_tape_verdict *verdict) {
-    const size_t wides = tape->wides;
-    memset(verdict->guarded, 0, sizeof verdict->guarded);
-    if (wides == SK_TAPE_WIDES) SK_ISA(run_code)(tape, registers, verdict->guarded, SK_TAPE_WIDES);
-    else SK_ISA(run_code)(tape, registers, verdict->guarded, wides);
-    for (size_t i = 0; i < wides; i++) {
-        sk_wide sum = {0}; // 0 times a number is 0, but for infinities and NaN
-        for (size_t k = 0; k < tape->outputs; k++) sum += 0 * registers[tape->output[k] * wides + i];
-        verdict->finite[i] = ~SK_ISA(sk_differ)(sum, (sk_wide){0});
+    for (size_t i = 0; i < SK_TAPE_WIDES; i++) verdict->guarded[i] = (sk_mask){0};
+    if (tape->wides == SK_TAPE_WIDES) {
+        SK_ISA(run_code)(tape, registers, verdict->guarded, SK_TAPE_WIDES);
+        SK_ISA(judge)(tape, registers, verdict->finite, SK_TAPE_WIDES);
+    } else {
+        SK_ISA(run_code)(tape, registers, verdict->guarded, tape->wides);
+        SK_ISA(judge)(tape, registers, verdict->finite, tape->wides);
     }
 }
 
@@ -210,7 +217,10 @@ static void SK_ISA(store)(const sk_tape *tape, const sk_wide *registers, const s
         for (size_t i = 0; SK_LANES * i < count; i++) {
             size_t left = count - SK_LANES * i;
             sk_wide out = SK_ISA(sk_keep)(verdict->finite[i], from[i]);
-            memcpy(outputs[k] + element + SK_LANES * i, &out, left < SK_LANES ? left * sizeof(real) : sizeof out);
+            real *to = outputs[k] + element + SK_LANES * i;
+            // of a size that is known, it is a store
+            if (left >= SK_LANES) memcpy(to, &out, sizeof out);
+            else memcpy(to, &out, left * sizeof(real));
         }
     }
 }
