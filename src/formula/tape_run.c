@@ -5,36 +5,7 @@
     for (size_t i = 0; i < wides; i++) to[i] = (value_); \
     break
 
-/* ---- elementary functions: lane by lane, so their bits are those of base/elementary.h ---- */
-
-#define LANE_BY_LANE(name_)                                                      \
-    SK_INLINE sk_wide SK_ISA(name_)(sk_wide x) {                                 \
-        real lane[SK_LANES];                                                     \
-        memcpy(lane, &x, sizeof x);                                              \
-        for (int l = 0; l < SK_LANES; l++) lane[l] = ELEMENTARY(name_)(lane[l]); \
-        memcpy(&x, lane, sizeof x);                                              \
-        return x;                                                                \
-    }
-#define LANE_BY_LANE_2(name_)                                                    \
-    SK_INLINE sk_wide SK_ISA(name_)(sk_wide x, sk_wide y) {                      \
-        real a[SK_LANES], b[SK_LANES];                                           \
-        memcpy(a, &x, sizeof x);                                                 \
-        memcpy(b, &y, sizeof y);                                                 \
-        for (int l = 0; l < SK_LANES; l++) a[l] = ELEMENTARY(name_)(a[l], b[l]); \
-        memcpy(&x, a, sizeof x);                                                 \
-        return x;                                                                \
-    }
-LANE_BY_LANE(exp)
-LANE_BY_LANE(log)
-LANE_BY_LANE(sin)
-LANE_BY_LANE(cos)
-LANE_BY_LANE(tan)
-LANE_BY_LANE(asin)
-LANE_BY_LANE(acos)
-LANE_BY_LANE_2(atan2)
-LANE_BY_LANE_2(pow)
-#undef LANE_BY_LANE
-#undef LANE_BY_LANE_2
+#include "base/wide_elementary.h"
 
 /* ---- guards, as in evaluate_in.h ---- */
 
@@ -54,21 +25,21 @@ SK_INLINE sk_wide SK_ISA(guarded_exp)(sk_wide x, sk_mask *guarded) {
     sk_wide most = SK_ISA(sk_splat)(MOST_EXP);
     sk_mask good = SK_ISA(sk_at_most)(x, most);
     *guarded |= ~good;
-    return SK_ISA(exp)(SK_ISA(sk_select)(good, x, most));
+    return SK_ISA(sk_wide_exp)(SK_ISA(sk_select)(good, x, most));
 }
 
 SK_INLINE sk_wide SK_ISA(guarded_log)(sk_wide x, sk_mask *guarded) {
     sk_wide least = SK_ISA(sk_splat)(LEAST);
     sk_mask good = SK_ISA(sk_at_most)(least, x);
     *guarded |= ~good;
-    return SK_ISA(log)(SK_ISA(sk_select)(good, x, least));
+    return SK_ISA(sk_wide_log)(SK_ISA(sk_select)(good, x, least));
 }
 
 SK_INLINE sk_wide SK_ISA(guarded_pow)(sk_wide x, sk_wide y, sk_mask *guarded) {
     sk_wide one = SK_ISA(sk_splat)(1);
     sk_mask good = SK_ISA(sk_positive)(x), plain = SK_ISA(sk_differ)(y, (sk_wide){0});
     *guarded |= ~good & plain;
-    sk_wide power = SK_ISA(sk_keep)(good, SK_ISA(pow)(SK_ISA(sk_select)(good, x, one), y));
+    sk_wide power = SK_ISA(sk_keep)(good, SK_ISA(sk_wide_pow)(SK_ISA(sk_select)(good, x, one), y));
     return SK_ISA(sk_select)(plain, power, one);
 }
 
@@ -118,12 +89,12 @@ SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask
         case SK_OP_LESS: EACH(SK_ISA(sk_select)(SK_ISA(sk_more)(FROM(1), FROM(0)), FROM(2), FROM(3)));
         case SK_OP_EXP: EACH(SK_ISA(guarded_exp)(FROM(0), &guarded[i]));
         case SK_OP_LOG: EACH(SK_ISA(guarded_log)(FROM(0), &guarded[i]));
-        case SK_OP_SIN: EACH(SK_ISA(sin)(FROM(0)));
-        case SK_OP_COS: EACH(SK_ISA(cos)(FROM(0)));
-        case SK_OP_TAN: EACH(SK_ISA(tan)(FROM(0)));
-        case SK_OP_ASIN: EACH(SK_ISA(asin)(SK_ISA(within_one)(FROM(0))));
-        case SK_OP_ACOS: EACH(SK_ISA(acos)(SK_ISA(within_one)(FROM(0))));
-        case SK_OP_ATAN2: EACH(SK_ISA(atan2)(FROM(0), FROM(1)));
+        case SK_OP_SIN: EACH(SK_ISA(sk_wide_sin)(FROM(0)));
+        case SK_OP_COS: EACH(SK_ISA(sk_wide_cos)(FROM(0)));
+        case SK_OP_TAN: EACH(SK_ISA(sk_wide_tan)(FROM(0)));
+        case SK_OP_ASIN: EACH(SK_ISA(sk_wide_asin)(SK_ISA(within_one)(FROM(0))));
+        case SK_OP_ACOS: EACH(SK_ISA(sk_wide_acos)(SK_ISA(within_one)(FROM(0))));
+        case SK_OP_ATAN2: EACH(SK_ISA(sk_wide_atan2)(FROM(0), FROM(1)));
         case SK_OP_POW: EACH(SK_ISA(guarded_pow)(FROM(0), FROM(1), &guarded[i]));
         default: break;
         }
@@ -268,14 +239,13 @@ static size_t SK_ISA(evaluate)(const sk_tape *tape, const sk_tape_input *input, 
 
 #include "base/elementary.h"
 #include "base/layout.h"
+#include "base/polynomial.h"
 #include "formula/evaluate.h"
 
 #ifdef SKEIN_DOUBLE
-#define ELEMENTARY(name_) sk_##name_
 #define LEAST SK_LEAST_DOUBLE
 #define MOST_EXP SK_MOST_EXP_DOUBLE
 #else
-#define ELEMENTARY(name_) sk_##name_##f
 #define LEAST SK_LEAST_FLOAT
 #define MOST_EXP SK_MOST_EXP_FLOAT
 #endif
