@@ -204,7 +204,6 @@ static sk_value call(parser *p, const sk_token *token) {
         if (count < wanted) {
             arguments[count] = value;
             fits(p, function, arguments, count, begin);
-            warn_of_acos(p, function, &value, token->begin);
         }
         count++;
         more = sk_text_take(&p->text, ',');
@@ -217,6 +216,7 @@ static sk_value call(parser *p, const sk_token *token) {
                     wanted == 1 ? "" : "s", count);
     if (p->text.failed) return nothing;
     if (rest) return rest_of(p, &arguments[0], token->begin);
+    warn_of_acos(p, function, &arguments[0], token->begin);
     p->graph->name = function->name;
     sk_value out = function->apply(p->graph, arguments);
     p->graph->name = "";
