@@ -11,10 +11,12 @@
  * value, each coefficient rounded in turn, the lowest first, and the others fitted again. Each names its error.
  * Terms are summed in pairs (Estrin's scheme), which gives the processor more to do at a time than Horner's.
  *
- * The float functions are written on `lane`: with vector types for it and its kin, vector conversions in four small
- * functions, and PICK as a blend of bits, they are wide functions with the same bits. Only angles beyond 2^25 must
- * then be reduced lane by lane. */
+ * The float functions stand in elementary_lanes.h, written on `lane`: with vector types for it and its kin, vector
+ * conversions in four small functions, and PICK as a blend of bits, they are wide functions with the same bits
+ * (wide_elementary.h). Only angles beyond 2^25 are then reduced lane by lane. */
 #include "base/elementary.h"
+
+#include "base/polynomial.h"
 
 #include <math.h> // INFINITY, NAN; none of its functions
 #include <stdint.h>
@@ -26,11 +28,6 @@
 
 /* Both sides are evaluated: a blend, not a branch. */
 #define PICK(take_, yes_, no_) ((take_) ? (yes_) : (no_))
-
-/* a + b x + c x^2 + d x^3, given x^2 too. */
-#define P2(x_, a_, b_) ((a_) + (b_) * (x_))
-#define P3(x_, x2_, a_, b_, c_) (P2(x_, a_, b_) + (c_) * (x2_))
-#define P4(x_, x2_, a_, b_, c_, d_) (P2(x_, a_, b_) + P2(x_, c_, d_) * (x2_))
 
 /* ---- double: bits and pairs ---- */
 
@@ -88,10 +85,6 @@ static inline pair pair_plus(pair a, pair b) {
 }
 
 /* ---- double: sine, cosine, tangent ---- */
-
-#define ROUND 0x1.8p52 // x + ROUND has x, rounded to a whole number, in its last bits
-#define ROUND_BITS UINT64_C(0x4338000000000000)
-#define TWO_BY_PI 0x1.45f306dc9c883p-1
 
 /* |x| = k pi/2 + r + lo with |r| <= pi/4 and a bit: k counts modulo 4. */
 typedef struct quarter {
@@ -388,218 +381,62 @@ double sk_atan2(double y, double x) {
     return PICK((x == x) & (y == y), angle, x + y);
 }
 
-/* ---- float: the same functions on 32 bits; what was said above is not said again ---- */
+/* ---- float: the same functions on 32 bits, written so that they are wide functions, too ---- */
 
-typedef float lane;
-typedef int32_t lane_int;
-typedef uint32_t lane_bits;
-typedef double lane_double;
+#define lane float
+#define lane_int int32_t
+#define lane_bits uint32_t
+#define lane_double double
+#define LANE(name_) name_##_lane
+#define LANE_INLINE static inline
+#define LANE_SQRT __builtin_sqrtf
+#define LANE_REDUCE_FAR(x_, wide_, r_, quarters_) \
+    if ((x_) >= 0x1p25f) sk_reduce_far((wide_), &(r_), &(quarters_))
 
-#define SIGN_F 0x80000000u
-#define ROUND_F 0x1.8p23f
-#define ROUND_BITS_F 0x4b400000u
-#define SQRT_HALF_F 0x3f3504f3u // its bits
-
-static inline lane_bits bits_of_f(lane x) {
-    lane_bits bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits;
+static inline double widen_lane(float x) {
+    return (double)x;
+}
+static inline float narrow_lane(double x) {
+    return (float)x;
+}
+static inline uint32_t last_bits_lane(double x) {
+    return (uint32_t)bits_of(x);
+}
+static inline float number_of_lane(int32_t i) {
+    return (float)i;
 }
 
-static inline lane of_bits_f(lane_bits bits) {
-    lane x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
+void sk_reduce_far(double x, double *r, uint32_t *quarters) {
+    quarter far = reduce(x);
+    *r = far.r, *quarters = (uint32_t)far.k;
 }
 
-static inline lane_double widen(lane x) {
-    return (lane_double)x;
-}
-
-static inline lane narrow(lane_double x) {
-    return (lane)x;
-}
-
-static inline lane_bits last_bits(lane_double x) {
-    return (lane_bits)bits_of(x);
-}
-
-static inline lane number_of(lane_int i) {
-    return (lane)i;
-}
-
-static inline lane size_of_f(lane x) {
-    return of_bits_f(bits_of_f(x) & ~SIGN_F);
-}
-
-static inline lane with_sign_f(lane x, lane_bits sign) {
-    return of_bits_f(bits_of_f(x) ^ (sign & SIGN_F));
-}
-
-/* The upper 12 bits. */
-static inline lane head_of_f(lane x) {
-    return of_bits_f(bits_of_f(x) & ~0xfffu);
-}
-
-static inline lane two_to(lane_int k) {
-    return of_bits_f((lane_bits)(k + 127) << 23);
-}
-
-static inline lane residue_f(lane n, lane q, lane d) {
-    lane qh = head_of_f(q), qt = q - qh, dh = head_of_f(d), dt = d - dh;
-    return ((n - qh * dh) - (qh * dt + qt * dh)) - qt * dt;
-}
-
-typedef struct quarter_f {
-    lane r, lo;
-    lane_bits k;
-} quarter_f;
-
-/* In double, two parts of pi/2 do up to 2^25: no float below is so near a multiple that what they lack would show.
- * In a wide version this costs about as much as the five parts that it would take in float. */
-static inline quarter_f reduce_f(lane x) {
-    lane_double wide = widen(x), t = wide * TWO_BY_PI + ROUND, k = t - ROUND;
-    lane_double r = (wide - k * 0x1.921fb54p+0) - k * 0x1.10b4611a62633p-30;
-    lane_bits quarters = last_bits(t);
-    if (x >= 0x1p25f) {
-        quarter far = reduce(wide);
-        r = far.r, quarters = (lane_bits)far.k;
-    }
-    lane big = narrow(r);
-    return (quarter_f){big, narrow(r - widen(big)), quarters};
-}
-
-typedef struct circle_f {
-    lane sine, sine_lo, cosine, cosine_lo;
-} circle_f;
-
-/* Relative errors 2^-32.5 and 2^-33.0. */
-static inline circle_f circle_of_f(lane r, lane lo) {
-    lane z = r * r, z2 = z * z, h = head_of_f(r), half = 0.5f * h * h, one = 1 - half;
-    lane s = r * z * P4(z, z2, -0.166666672f, 0.0083333794f, -0.000198530615f, 2.83256645e-06f) + lo * (1 - 0.5f * z);
-    lane rest = z2 * P3(z, z2, 0.0416666456f, -0.00138873095f, 2.44323237e-05f) - r * lo;
-    lane c = ((1 - one) - half) + (rest - 0.5f * (r - h) * (r + h));
-    lane sine = r + s, cosine = one + c;
-    return (circle_f){sine, (r - sine) + s, cosine, (one - cosine) + c};
-}
+#include "base/elementary_lanes.h"
 
 void sk_sincosf(float x, float *sine, float *cosine) {
-    quarter_f q = reduce_f(size_of_f(x));
-    circle_f c = circle_of_f(q.r, q.lo);
-    lane_int odd = (q.k & 1) != 0;
-    *sine = with_sign_f(PICK(odd, c.cosine, c.sine), q.k << 30 ^ bits_of_f(x));
-    *cosine = with_sign_f(PICK(odd, c.sine, c.cosine), (q.k + 1) << 30);
+    sincos_lane(x, sine, cosine);
 }
-
 float sk_sinf(float x) {
-    quarter_f q = reduce_f(size_of_f(x));
-    circle_f c = circle_of_f(q.r, q.lo);
-    return with_sign_f(PICK((q.k & 1) != 0, c.cosine, c.sine), q.k << 30 ^ bits_of_f(x));
+    return sin_lane(x);
 }
-
 float sk_cosf(float x) {
-    quarter_f q = reduce_f(size_of_f(x));
-    circle_f c = circle_of_f(q.r, q.lo);
-    return with_sign_f(PICK((q.k & 1) != 0, c.sine, c.cosine), (q.k + 1) << 30);
+    return cos_lane(x);
 }
-
 float sk_tanf(float x) {
-    quarter_f q = reduce_f(size_of_f(x));
-    circle_f c = circle_of_f(q.r, q.lo);
-    lane_int odd = (q.k & 1) != 0;
-    lane n = PICK(odd, c.cosine, c.sine), n_lo = PICK(odd, c.cosine_lo, c.sine_lo);
-    lane d = PICK(odd, c.sine, c.cosine), d_lo = PICK(odd, c.sine_lo, c.cosine_lo);
-    lane t = n / d;
-    return with_sign_f(t + ((residue_f(n, t, d) + n_lo) - t * d_lo) / d, q.k << 31 ^ bits_of_f(x));
+    return tan_lane(x);
 }
-
-#define LN2_HIGH_F 0x1.62e4p-1f // 15 bits
-#define LN2_LOW_F 0x1.7f7d1cp-20f
-
-/* Relative error 2^-28.2. */
 float sk_expf(float x) {
-    x = PICK(x > 89, 89, x);
-    x = PICK(x < -104, -104, x);
-    lane t = x * 0x1.715476p+0f + ROUND_F, k = t - ROUND_F;
-    lane a = x - k * LN2_HIGH_F, b = k * LN2_LOW_F, r = a - b, lo = (a - r) - b;
-    lane r2 = r * r, one = 1 + r;
-    lane p = P4(r, r2, 0.49999994f, 0.166665167f, 0.0416681059f, 0.00836910121f) + 0.00138354569f * (r2 * r2);
-    lane e = one + ((r - (one - 1)) + (r2 * p + (lo + lo * r)));
-    lane_int power = (lane_int)(bits_of_f(t) - ROUND_BITS_F), half = power >> 1;
-    return e * two_to(half) * two_to(power - half);
+    return exp_lane(x);
 }
-
-/* Relative error 2^-30.2. */
 float sk_logf(float x) {
-    lane_int tiny = x < 0x1p-126f;
-    lane_bits bits = bits_of_f(PICK(tiny, x * 0x1p24f, x));
-    lane_int e = (lane_int)(bits - SQRT_HALF_F) >> 23;
-    lane k = number_of(e) - PICK(tiny, 24.0f, 0.0f);
-    lane f = of_bits_f(bits - ((lane_bits)e << 23)) - 1, s = f / (2 + f), z = s * s;
-    lane p = P3(z, z * z, 0.666667759f, 0.399775803f, 0.298709422f);
-    lane h = head_of_f(f), half = 0.5f * h * h, half_rest = 0.5f * (f - h) * (f + h);
-    lane big = k * LN2_HIGH_F, sum = big + f, less = sum - half;
-    lane lost = ((big - sum) + f) + ((sum - less) - half) + (k * LN2_LOW_F - half_rest);
-    lane y = less + (lost + s * ((half + half_rest) + z * p));
-    y = PICK(x < INFINITY, y, x);
-    y = PICK(x == 0, -INFINITY, y);
-    return PICK(x < 0, NAN, y);
+    return log_lane(x);
 }
-
-/* Relative error 2^-27.6. */
-static inline lane arc_sine_f(lane x, lane *rest) {
-    lane size = size_of_f(x), z = PICK(size > 0.5f, 0.5f * (1 - size), size * size), z2 = z * z;
-    lane s = PICK(size > 0.5f, __builtin_sqrtf(z), size);
-    lane lost = PICK((size > 0.5f) & (size < 1), residue_f(z, s, s) / (s + s), 0);
-    lane p = P4(z, z2, 0.166667521f, 0.0749530941f, 0.045469135f, 0.0241849385f) + 0.0421579033f * (z2 * z2);
-    *rest = s * z * p + lost;
-    return s;
-}
-
-static inline lane angle_sum_f(lane quarters, lane t, lane rest) {
-    lane big = quarters * 0x1.921fbp-1f, sum = big + t;
-    return sum + (((big - sum) + t) + (rest + quarters * 0x1.5110b4p-23f));
-}
-
 float sk_asinf(float x) {
-    lane rest, s = arc_sine_f(x, &rest);
-    lane_int far = size_of_f(x) > 0.5f;
-    lane y = angle_sum_f(PICK(far, 2.0f, 0.0f), PICK(far, -2 * s, s), PICK(far, -2 * rest, rest));
-    return with_sign_f(y, bits_of_f(x));
+    return asin_lane(x);
 }
-
 float sk_acosf(float x) {
-    lane rest, s = arc_sine_f(x, &rest), side = PICK(x < 0, 1.0f, -1.0f);
-    lane_int far = size_of_f(x) > 0.5f;
-    lane times = PICK(far, -2 * side, side);
-    return angle_sum_f(PICK(far, PICK(x < 0, 4.0f, 0.0f), 2.0f), times * s, times * rest);
+    return acos_lane(x);
 }
-
-/* Relative error 2^-30.4. */
 float sk_atan2f(float y, float x) {
-    lane size_x = size_of_f(x), size_y = size_of_f(y);
-    lane_int steep = size_y > size_x;
-    lane n = PICK(steep, size_x, size_y), d = PICK(steep, size_y, size_x);
-    d = PICK((d == 0) | (n == INFINITY), 1, d);
-    n = PICK(n == INFINITY, 1, n);
-    lane scale = PICK(d < 0x1p-60f, 0x1p80f, PICK(d > 0x1p120f, 0x1p-80f, 1));
-    n *= scale, d *= scale;
-
-    lane_int fold = n > 0.414213568f * d;
-    lane minus = n - d, plus = n + d;
-    lane top = PICK(fold, minus, n), top_lo = PICK(fold, n - (d + minus), 0);
-    lane low = PICK(fold, plus, d), low_lo = PICK(fold, (d - plus) + n, 0);
-    lane t = top / low, lost = ((residue_f(top, t, low) + top_lo) - t * low_lo) / low;
-    lost = PICK(n < 0x1p-30f * d, 0, lost);
-
-    lane z = t * t, z2 = z * z;
-    lane p = P4(z, z2, -0.333333164f, 0.199985266f, -0.142443448f, 0.105987281f) - 0.0608873181f * (z2 * z2);
-    lane rest = t * z * p + lost * (1 - z);
-
-    lane quarters = PICK(fold, 1.0f, 0.0f), side = PICK(steep, -1.0f, 1.0f);
-    quarters = PICK(steep, 2 - quarters, quarters);
-    lane_int left = (bits_of_f(x) & SIGN_F) != 0;
-    side = PICK(left, -side, side), quarters = PICK(left, 4 - quarters, quarters);
-    lane angle = with_sign_f(angle_sum_f(quarters, side * t, side * rest), bits_of_f(y));
-    return PICK((x == x) & (y == y), angle, x + y);
+    return atan2_lane(y, x);
 }

@@ -28,6 +28,8 @@
 #ifndef SK_BASE_ELEMENTARY_H
 #define SK_BASE_ELEMENTARY_H
 
+#include <stdint.h>
+
 /* Angles in radians. One reduction up to |x| = 2^30 (float: 2^25), a slower one beyond. */
 double sk_sin(double x);
 double sk_cos(double x);
@@ -37,6 +39,9 @@ float sk_sinf(float x);
 float sk_cosf(float x);
 float sk_tanf(float x);
 void sk_sincosf(float x, float *sine, float *cosine);
+
+/* What is left of an angle of 2^25 or more after whole quarter turns, and their number modulo 4: for wide versions. */
+void sk_reduce_far(double x, double *rest, uint32_t *quarters);
 
 /* e to the x: exp(-inf) = 0, exp(inf) = inf. */
 double sk_exp(double x);

@@ -1,0 +1,176 @@
+/* Derivatives, as nodes of the graph that they are derivatives of: backwards for gradients, and forwards over those
+ * for second derivatives. Reads graph.h's operations only; what they guard is guarded here, too. */
+#include <string.h>
+
+#include "formula/graph.h"
+
+enum { NONE = UINT32_MAX };
+
+/* ---- the local derivatives ---- */
+
+/* Of an operation on one argument, by that: for these it takes the form of a factor. */
+static sk_node factor_of(sk_graph *g, sk_node node) {
+    const sk_graph_node n = g->data[node];
+    const sk_node x = n.arg[0], one = sk_constant(g, 1), zero = sk_constant(g, 0), half = sk_constant(g, 0.5);
+    switch (n.op) {
+    case SK_OP_NEGATE: return sk_constant(g, -1);
+    case SK_OP_RECIPROCAL: return sk_negative_of(g, sk_times(g, node, node));
+    case SK_OP_SQRT: return sk_times(g, half, sk_of(g, SK_OP_RECIPROCAL, node));
+    case SK_OP_ABS: return sk_less(g, x, zero, sk_constant(g, -1), one);
+    case SK_OP_EXP: return node;
+    case SK_OP_LOG: return sk_less(g, zero, x, sk_of(g, SK_OP_RECIPROCAL, x), zero);
+    case SK_OP_SIN: return sk_of(g, SK_OP_COS, x);
+    case SK_OP_COS: return sk_negative_of(g, sk_of(g, SK_OP_SIN, x));
+    case SK_OP_TAN: return sk_plus(g, one, sk_times(g, node, node));
+    case SK_OP_ASIN:
+    case SK_OP_ACOS: {
+        sk_node below = sk_minus(g, one, x), above = sk_plus(g, one, x), square = sk_times(g, below, above);
+        sk_node slope = sk_of(g, SK_OP_RECIPROCAL, sk_of(g, SK_OP_SQRT, square));
+        return n.op == SK_OP_ASIN ? slope : sk_negative_of(g, slope);
+    }
+    default: return zero;
+    }
+}
+
+/* Of atan2(y, x): x/(x^2 + y^2) by y, and -y/(x^2 + y^2) by x. Of x^y: y x^(y-1) by x, and log(x) x^y by y. */
+static sk_node partial(sk_graph *g, sk_node node, int which) {
+    const sk_graph_node n = g->data[node];
+    const sk_node a = n.arg[0], b = n.arg[1];
+    if (n.op == SK_OP_ATAN2) {
+        sk_node xx = sk_times(g, b, b), yy = sk_times(g, a, a), square = sk_plus(g, xx, yy);
+        sk_node over = sk_of(g, SK_OP_RECIPROCAL, square);
+        return which == 0 ? sk_times(g, b, over) : sk_negative_of(g, sk_times(g, a, over));
+    }
+    if (n.op == SK_OP_POW) {
+        if (which == 0) return sk_times(g, b, sk_power(g, a, sk_minus(g, b, sk_constant(g, 1))));
+        return sk_times(g, sk_of(g, SK_OP_LOG, a), node);
+    }
+    return factor_of(g, node);
+}
+
+/* ---- backwards ---- */
+
+/* What there is by now for each node: the derivative of the output by it. */
+typedef struct adjoints {
+    sk_graph *graph;
+    sk_node *of;
+    const bool *wanted; /* depends on one of the inputs */
+} adjoints;
+
+static void accumulate(adjoints *a, sk_node node, sk_node contribution) {
+    if (!a->wanted[node]) return;
+    a->of[node] = a->of[node] == NONE ? contribution : sk_plus(a->graph, a->of[node], contribution);
+}
+
+static void pass_back(adjoints *a, sk_node node, sk_node d) {
+    sk_graph *g = a->graph;
+    const sk_graph_node n = g->data[node];
+    switch (n.op) {
+    case SK_OP_ADD:
+        accumulate(a, n.arg[0], d);
+        accumulate(a, n.arg[1], d);
+        break;
+    case SK_OP_SUBTRACT:
+        accumulate(a, n.arg[0], d);
+        if (a->wanted[n.arg[1]]) accumulate(a, n.arg[1], sk_negative_of(g, d));
+        break;
+    case SK_OP_MULTIPLY:
+        if (a->wanted[n.arg[0]]) accumulate(a, n.arg[0], sk_times(g, d, n.arg[1]));
+        if (a->wanted[n.arg[1]]) accumulate(a, n.arg[1], sk_times(g, d, n.arg[0]));
+        break;
+    case SK_OP_LESS: {
+        sk_node zero = sk_constant(g, 0);
+        if (a->wanted[n.arg[2]]) accumulate(a, n.arg[2], sk_less(g, n.arg[0], n.arg[1], d, zero));
+        if (a->wanted[n.arg[3]]) accumulate(a, n.arg[3], sk_less(g, n.arg[0], n.arg[1], zero, d));
+        break;
+    }
+    case SK_OP_RECIPROCAL: // -(d r) r: the product with d keeps the size of what comes between
+        if (a->wanted[n.arg[0]]) accumulate(a, n.arg[0], sk_negative_of(g, sk_times(g, sk_times(g, d, node), node)));
+        break;
+    default:
+        for (int k = 0; k < sk_op_info[n.op].arity; k++)
+            if (a->wanted[n.arg[k]]) accumulate(a, n.arg[k], sk_times(g, d, partial(g, node, k)));
+    }
+}
+
+/* wanted[i]: whether node i depends on an input of the list. */
+static void find_wanted(const sk_graph *graph, const uint32_t *inputs, size_t count, bool *wanted) {
+    bool listed[SK_INPUT_COUNT] = {0};
+    for (size_t i = 0; i < count; i++) listed[inputs[i]] = true;
+    for (size_t i = 0; i < graph->count; i++) {
+        const sk_graph_node *n = &graph->data[i];
+        wanted[i] = n->op == SK_OP_INPUT && listed[n->arg[0]];
+        for (int k = 0; k < sk_op_info[n->op].arity; k++) wanted[i] |= wanted[n->arg[k]];
+    }
+}
+
+bool sk_gradient(sk_graph *graph, sk_node output, const uint32_t *inputs, size_t count, sk_node *derivatives) {
+    if (graph->no_memory || graph->too_large) return false;
+    size_t before = graph->count; // what is made below is no part of what is differentiated
+    sk_node *of = sk_allocate(graph->allocator, before * sizeof *of);
+    bool *wanted = sk_allocate(graph->allocator, before * sizeof *wanted);
+    if (!of || !wanted) graph->no_memory = true;
+    graph->name = "d";
+    if (of && wanted) {
+        adjoints a = {graph, of, wanted};
+        for (size_t i = 0; i < before; i++) of[i] = NONE;
+        find_wanted(graph, inputs, count, wanted);
+        of[output] = sk_constant(graph, 1);
+        for (size_t i = (size_t)output + 1; i-- > 0;)
+            if (of[i] != NONE && wanted[i]) pass_back(&a, (sk_node)i, of[i]);
+        for (size_t k = 0; k < count; k++) {
+            sk_node input = sk_input(graph, inputs[k]);
+            derivatives[k] = input < before && of[input] != NONE ? of[input] : sk_constant(graph, 0);
+        }
+    }
+    graph->name = "";
+    sk_release(graph->allocator, of);
+    sk_release(graph->allocator, wanted);
+    return !graph->no_memory && !graph->too_large;
+}
+
+/* ---- forwards ---- */
+
+/* The tangent of a node from those of its arguments, each NONE where it does not change. */
+static sk_node tangent_of(sk_graph *g, sk_node node, const sk_node *of) {
+    const sk_graph_node n = g->data[node];
+    const sk_node zero = sk_constant(g, 0);
+    sk_node t[4], sum = NONE;
+    bool moves = false;
+    for (int k = 0; k < sk_op_info[n.op].arity; k++) moves |= (t[k] = of[n.arg[k]]) != NONE;
+    if (!moves) return NONE;
+    if (n.op == SK_OP_LESS)
+        return sk_less(g, n.arg[0], n.arg[1], t[2] == NONE ? zero : t[2], t[3] == NONE ? zero : t[3]);
+    for (int k = 0; k < sk_op_info[n.op].arity; k++) {
+        if (t[k] == NONE) continue;
+        sk_node term = n.op == SK_OP_ADD || (n.op == SK_OP_SUBTRACT && k == 0) ? t[k]
+                       : n.op == SK_OP_SUBTRACT                                ? sk_negative_of(g, t[k])
+                       : n.op == SK_OP_MULTIPLY                                ? sk_times(g, t[k], n.arg[1 - k])
+                                                                               : sk_times(g, t[k], partial(g, node, k));
+        sum = sum == NONE ? term : sk_plus(g, sum, term);
+    }
+    return sum;
+}
+
+bool sk_tangents(sk_graph *graph, const sk_node *outputs, size_t count, uint32_t input, sk_node *derivatives) {
+    if (graph->no_memory || graph->too_large) return false;
+    size_t before = graph->count;
+    sk_node *of = sk_allocate(graph->allocator, before * sizeof *of);
+    bool *live = sk_allocate(graph->allocator, before * sizeof *live);
+    if (!of || !live) graph->no_memory = true;
+    graph->name = "dd";
+    if (of && live) {
+        sk_graph_mark(graph, outputs, count, live);
+        for (size_t i = 0; i < before; i++) {
+            const sk_graph_node *n = &graph->data[i];
+            bool leaf = n->op <= SK_OP_PARAMETER, self = n->op == SK_OP_INPUT && n->arg[0] == input;
+            of[i] = !live[i] ? NONE : self ? sk_constant(graph, 1) : leaf ? NONE : tangent_of(graph, (sk_node)i, of);
+        }
+        for (size_t k = 0; k < count; k++)
+            derivatives[k] = of[outputs[k]] == NONE ? sk_constant(graph, 0) : of[outputs[k]];
+    }
+    graph->name = "";
+    sk_release(graph->allocator, of);
+    sk_release(graph->allocator, live);
+    return !graph->no_memory && !graph->too_large;
+}

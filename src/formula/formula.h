@@ -1,0 +1,51 @@
+/* A formula: its text, its graph, and which nodes are what. The lead-in to the rest of the folder: parser.c makes one
+ * from text, formula.c its derivatives and answers; whoever runs it on many elements takes tapes from it (tape.h).
+ * Parameters are numbered as the caller names them; after those come the values of rest(...), in the order in which
+ * they stand in the text. Not changed after it was made. */
+#ifndef SK_FORMULA_FORMULA_H
+#define SK_FORMULA_FORMULA_H
+
+#include <skein/formula.h>
+
+#include "formula/text.h"
+#include "formula/value.h"
+
+enum {
+    SK_FORMULA_MOST_LETS = 128,
+    SK_FORMULA_MOST_WARNINGS = 4,
+    SK_FORMULA_MOST_RATES = 3 * SK_INPUT_VELOCITY /* a vector by all coordinates */
+};
+
+typedef struct sk_formula_warning {
+    skein_formula_mark mark;
+    const char *text;
+} sk_formula_warning;
+
+struct skein_formula {
+    sk_allocator *allocator, own; /* `own` is the allocator of those made by the public call */
+    char *text;
+    sk_graph graph;
+    int particles, parameters, rests;
+    char parameter_name[SKEIN_FORMULA_MOST_PARAMETERS][SK_NAME_SIZE];
+    char (*let_name)[SK_NAME_SIZE]; /* what nodes are called by, SK_FORMULA_MOST_LETS */
+    int lets;
+    int size; /* of the value: 1 or 3 */
+    bool at_least_zero;
+    uint8_t uses; /* what the value depends on */
+    sk_node value[3];
+    sk_node rest[SKEIN_FORMULA_MOST_RESTS]; /* what parameter `parameters` + i is at the rest pose */
+    sk_node by_position[3][SK_INPUT_VELOCITY], by_velocity[3][SK_INPUT_VELOCITY], by_time[3];
+    sk_node *hessian; /* (3 particles)^2, or NULL */
+    sk_formula_warning warning[SK_FORMULA_MOST_WARNINGS];
+    int warnings;
+};
+
+/* As skein_formula_create, with the caller's memory. */
+skein_formula *sk_formula_create(const skein_formula_desc *desc, sk_allocator *allocator, skein_formula_mark *mark,
+                                 skein_error *error);
+
+/* Reads the text into the formula's value, rests and warnings. */
+skein_status sk_formula_parse(skein_formula *formula, const skein_formula_desc *desc, skein_formula_mark *mark,
+                              skein_error *error);
+
+#endif

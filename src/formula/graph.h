@@ -1,0 +1,113 @@
+/* A formula as a graph of scalar operations: each node is made once and shared by all who use it.
+ *
+ * Made by the parser, extended by derivatives (derivative.c), read by everything else: evaluate.c computes it number
+ * by number, tape.c sixteen at a time, emit.c writes it as C or GLSL. Nodes come after the nodes that they read, so
+ * every pass is a loop over an array; nothing here recurses.
+ *
+ * Operations are total: each gives a finite number for finite arguments, unless it overflows. Where mathematics has
+ * none they say 0 or the nearest value, and count as *guarded*:
+ *
+ *     reciprocal   1/x, 0 at 0 (and where 1/x would overflow)        log    of x under the least normal number, of that
+ *     sqrt         0 under 0                                         exp    of x over what the format holds, of that
+ *     asin, acos   of x beyond -1 and 1, of those (not counted)      pow    0 for x <= 0, but 1 where y is 0
+ *
+ * With reciprocals guarded so, the derivative of a length at length 0 is 0, and that of acos at 1 as well. */
+#ifndef SK_FORMULA_GRAPH_H
+#define SK_FORMULA_GRAPH_H
+
+#include "base/memory.h"
+
+typedef uint32_t sk_node;
+
+typedef enum sk_op {
+    SK_OP_CONSTANT,
+    SK_OP_INPUT,
+    SK_OP_PARAMETER,
+    SK_OP_ADD,
+    SK_OP_SUBTRACT,
+    SK_OP_MULTIPLY,
+    SK_OP_NEGATE,
+    SK_OP_RECIPROCAL,
+    SK_OP_SQRT,
+    SK_OP_ABS,
+    SK_OP_LESS, /* a < b ? c : d; all that is piecewise is made of these */
+    SK_OP_EXP,
+    SK_OP_LOG,
+    SK_OP_SIN,
+    SK_OP_COS,
+    SK_OP_TAN,
+    SK_OP_ASIN,
+    SK_OP_ACOS,
+    SK_OP_ATAN2, /* y, x */
+    SK_OP_POW,
+    SK_OP_COUNT
+} sk_op;
+
+extern const struct sk_op_info {
+    const char *name;
+    int arity;
+} sk_op_info[SK_OP_COUNT];
+
+/* Inputs: coordinates of positions, then of velocities, then time. */
+enum {
+    SK_FORMULA_PARTICLES = 8,
+    SK_INPUT_POSITION = 0, /* + 3 particle + axis */
+    SK_INPUT_VELOCITY = 3 * SK_FORMULA_PARTICLES,
+    SK_INPUT_TIME = 2 * SK_INPUT_VELOCITY,
+    SK_INPUT_COUNT
+};
+
+/* What a node depends on. */
+enum { SK_USES_POSITION = 1, SK_USES_VELOCITY = 2, SK_USES_TIME = 4, SK_USES_PARAMETER = 8 };
+
+typedef struct sk_graph_node {
+    uint8_t op, uses;
+    sk_node arg[4];   /* an input's and a parameter's number is arg[0] */
+    double value;     /* of a constant */
+    const char *name; /* where it came from, for readers: "length", "" */
+} sk_graph_node;
+
+typedef struct sk_graph {
+    sk_graph_node *data;
+    size_t count, capacity;
+    uint32_t *table; /* node + 1 by hash; a power of two, at most half full */
+    size_t table_size;
+    sk_allocator *allocator;
+    const char *name; /* given to nodes made from now on */
+    bool no_memory, too_large;
+} sk_graph;
+
+enum { SK_GRAPH_MOST_NODES = 1 << 18 };
+
+void sk_graph_init(sk_graph *graph, sk_allocator *allocator);
+void sk_graph_free(sk_graph *graph);
+
+/* Each makes a node, or finds the one that there is, or a simpler one of the same value. When there is no memory, or
+ * the graph is as large as it may be, the graph's flag says so and node 0 stands for the result: one look at the end
+ * is enough.
+ * Never two of these as arguments of one call: C leaves open which is made first, and the order of nodes decides the
+ * order of sums in derivatives, so the bits. */
+sk_node sk_constant(sk_graph *graph, double value);
+sk_node sk_input(sk_graph *graph, uint32_t input);
+sk_node sk_parameter(sk_graph *graph, uint32_t parameter);
+sk_node sk_plus(sk_graph *graph, sk_node a, sk_node b);
+sk_node sk_minus(sk_graph *graph, sk_node a, sk_node b);
+sk_node sk_times(sk_graph *graph, sk_node a, sk_node b);
+sk_node sk_over(sk_graph *graph, sk_node a, sk_node b); /* a (1/b) */
+sk_node sk_negative_of(sk_graph *graph, sk_node a);
+sk_node sk_of(sk_graph *graph, sk_op op, sk_node a); /* an operation on one argument */
+sk_node sk_less(sk_graph *graph, sk_node a, sk_node b, sk_node yes, sk_node no);
+sk_node sk_arctangent(sk_graph *graph, sk_node y, sk_node x);
+sk_node sk_power(sk_graph *graph, sk_node x, sk_node y);
+
+bool sk_is_constant(const sk_graph *graph, sk_node node, double *value);
+
+/* live[i] for each node below `count` that the outputs depend on. */
+void sk_graph_mark(const sk_graph *graph, const sk_node *outputs, size_t output_count, bool *live);
+
+/* The derivative of `output` by each of the inputs, by the chain rule backwards. False when there is no memory. */
+bool sk_gradient(sk_graph *graph, sk_node output, const uint32_t *inputs, size_t count, sk_node *derivatives);
+/* The derivatives of all outputs by one input, by the chain rule forwards. */
+bool sk_tangents(sk_graph *graph, const sk_node *outputs, size_t count, uint32_t input, sk_node *derivatives);
+
+#endif

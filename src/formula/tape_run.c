@@ -1,0 +1,264 @@
+/* Running tapes: once for each instruction set (base/for_each_isa.h). */
+#ifdef SK_ISA
+
+#define EACH(value_)                                     \
+    for (size_t i = 0; i < wides; i++) to[i] = (value_); \
+    break
+
+#include "base/wide_elementary.h"
+
+/* ---- guards, as in evaluate_in.h ---- */
+
+SK_INLINE sk_wide SK_ISA(reciprocal)(sk_wide x, sk_mask *guarded) {
+    sk_mask good = SK_ISA(sk_at_most)(SK_ISA(sk_splat)(LEAST), SK_ISA(sk_wide_abs)(x));
+    *guarded |= ~good;
+    return SK_ISA(sk_keep)(good, 1 / x);
+}
+
+SK_INLINE sk_wide SK_ISA(root)(sk_wide x, sk_mask *guarded) {
+    sk_mask good = SK_ISA(sk_at_most)((sk_wide){0}, x);
+    *guarded |= ~good;
+    return SK_ISA(sk_wide_sqrt)(SK_ISA(sk_keep)(good, x));
+}
+
+SK_INLINE sk_wide SK_ISA(guarded_exp)(sk_wide x, sk_mask *guarded) {
+    sk_wide most = SK_ISA(sk_splat)(MOST_EXP);
+    sk_mask good = SK_ISA(sk_at_most)(x, most);
+    *guarded |= ~good;
+    return SK_ISA(sk_wide_exp)(SK_ISA(sk_select)(good, x, most));
+}
+
+SK_INLINE sk_wide SK_ISA(guarded_log)(sk_wide x, sk_mask *guarded) {
+    sk_wide least = SK_ISA(sk_splat)(LEAST);
+    sk_mask good = SK_ISA(sk_at_most)(least, x);
+    *guarded |= ~good;
+    return SK_ISA(sk_wide_log)(SK_ISA(sk_select)(good, x, least));
+}
+
+SK_INLINE sk_wide SK_ISA(guarded_pow)(sk_wide x, sk_wide y, sk_mask *guarded) {
+    sk_wide one = SK_ISA(sk_splat)(1);
+    sk_mask good = SK_ISA(sk_positive)(x), plain = SK_ISA(sk_differ)(y, (sk_wide){0});
+    *guarded |= ~good & plain;
+    sk_wide power = SK_ISA(sk_keep)(good, SK_ISA(sk_wide_pow)(SK_ISA(sk_select)(good, x, one), y));
+    return SK_ISA(sk_select)(plain, power, one);
+}
+
+/* x, taken into -1 to 1. */
+SK_INLINE sk_wide SK_ISA(within_one)(sk_wide x) {
+    sk_wide one = SK_ISA(sk_splat)(1);
+    x = SK_ISA(sk_select)(SK_ISA(sk_more)(x, one), one, x);
+    return SK_ISA(sk_select)(SK_ISA(sk_more)(-one, x), -one, x);
+}
+
+/* ---- instructions ---- */
+
+#define FROM(k_) (registers + instruction->from[k_] * wides)[i]
+#define A(k_) FROM(k_)
+#define P(k_) (FROM(k_) * FROM((k_) + 1))
+#define SIZE_A 1
+#define SIZE_P 2
+#define SUM2(number_, first_, sign_, second_) \
+    case SK_TAPE_SUM2 + (number_):            \
+        EACH(first_(0) sign_ second_(SIZE_##first_));
+#define SUM3(number_, first_, sign_, second_, other_, third_) \
+    case SK_TAPE_SUM3 + (number_):                            \
+        EACH((first_(0) sign_ second_(SIZE_##first_))other_ third_(SIZE_##first_ + SIZE_##second_));
+/* The four ways to go on from a first sum. */
+#define SUM3_OF(number_, first_, sign_, second_)        \
+    SUM3((number_)*4 + 0, first_, sign_, second_, +, A) \
+    SUM3((number_)*4 + 1, first_, sign_, second_, +, P) \
+    SUM3((number_)*4 + 2, first_, sign_, second_, -, A) \
+    SUM3((number_)*4 + 3, first_, sign_, second_, -, P)
+#define SUMS(kind_)                                                                                             \
+    kind_(0, A, +, A) kind_(1, A, +, P) kind_(2, A, -, A) kind_(3, A, -, P) kind_(4, P, +, A) kind_(5, P, +, P) \
+        kind_(6, P, -, A) kind_(7, P, -, P)
+
+/* `wides` is known where this is inlined. */
+SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask *guarded, const size_t wides) {
+    const sk_instruction *end = tape->code.data + tape->code.count;
+    for (const sk_instruction *instruction = tape->code.data; instruction < end; instruction++) {
+        sk_wide *to = registers + instruction->to * wides;
+        switch (instruction->op) {
+            SUMS(SUM2)
+            SUMS(SUM3_OF)
+        case SK_OP_MULTIPLY: EACH(FROM(0) * FROM(1));
+        case SK_OP_NEGATE: EACH(-FROM(0));
+        case SK_OP_RECIPROCAL: EACH(SK_ISA(reciprocal)(FROM(0), &guarded[i]));
+        case SK_OP_SQRT: EACH(SK_ISA(root)(FROM(0), &guarded[i]));
+        case SK_OP_ABS: EACH(SK_ISA(sk_wide_abs)(FROM(0)));
+        case SK_OP_LESS: EACH(SK_ISA(sk_select)(SK_ISA(sk_more)(FROM(1), FROM(0)), FROM(2), FROM(3)));
+        case SK_OP_EXP: EACH(SK_ISA(guarded_exp)(FROM(0), &guarded[i]));
+        case SK_OP_LOG: EACH(SK_ISA(guarded_log)(FROM(0), &guarded[i]));
+        case SK_OP_SIN: EACH(SK_ISA(sk_wide_sin)(FROM(0)));
+        case SK_OP_COS: EACH(SK_ISA(sk_wide_cos)(FROM(0)));
+        case SK_OP_TAN: EACH(SK_ISA(sk_wide_tan)(FROM(0)));
+        case SK_OP_ASIN: EACH(SK_ISA(sk_wide_asin)(SK_ISA(within_one)(FROM(0))));
+        case SK_OP_ACOS: EACH(SK_ISA(sk_wide_acos)(SK_ISA(within_one)(FROM(0))));
+        case SK_OP_ATAN2: EACH(SK_ISA(sk_wide_atan2)(FROM(0), FROM(1)));
+        case SK_OP_POW: EACH(SK_ISA(guarded_pow)(FROM(0), FROM(1), &guarded[i]));
+        default: break;
+        }
+    }
+}
+
+/* Infinities and NaN go through sums; what is only so large that the sum overflows is left out, too. */
+SK_INLINE void SK_ISA(judge)(const sk_tape *tape, const sk_wide *registers, sk_mask *finite, const size_t wides) {
+    sk_wide sum[SK_TAPE_WIDES] = {0};
+    for (size_t k = 0; k < tape->outputs; k++)
+        for (size_t i = 0; i < wides; i++) sum[i] += registers[tape->output[k] * wides + i];
+    for (size_t i = 0; i < wides; i++) finite[i] = ~SK_ISA(sk_differ)(sum[i] - sum[i], (sk_wide){0});
+}
+
+static void SK_ISA(run)(const sk_tape *tape, sk_wide *registers, sk_tape_verdict *verdict) {
+    for (size_t i = 0; i < SK_TAPE_WIDES; i++) verdict->guarded[i] = (sk_mask){0};
+    if (tape->wides == SK_TAPE_WIDES) {
+        SK_ISA(run_code)(tape, registers, verdict->guarded, SK_TAPE_WIDES);
+        SK_ISA(judge)(tape, registers, verdict->finite, SK_TAPE_WIDES);
+    } else {
+        SK_ISA(run_code)(tape, registers, verdict->guarded, tape->wides);
+        SK_ISA(judge)(tape, registers, verdict->finite, tape->wides);
+    }
+}
+
+/* ---- in and out ---- */
+
+static void SK_ISA(begin)(const sk_tape *tape, const sk_tape_input *input, sk_wide *registers) {
+    const size_t wides = tape->wides;
+    for (size_t c = 0; c < tape->constants.count; c++)
+        for (size_t i = 0; i < wides; i++)
+            registers[tape->constants.data[c].to * wides + i] = SK_ISA(sk_splat)(tape->constants.data[c].value);
+    for (size_t l = 0; l < tape->loads.count; l++) {
+        const sk_tape_load *load = &tape->loads.data[l];
+        bool uniform = load->source == SK_TAPE_PARAMETER && (input->uniform >> load->index & 1);
+        if (!uniform && load->source != SK_TAPE_TIME) continue;
+        real value = uniform ? input->parameter[load->index][0] : input->time;
+        for (size_t i = 0; i < wides; i++) registers[load->to * wides + i] = SK_ISA(sk_splat)(value);
+    }
+}
+
+/* Sixteen elements' particle. */
+SK_INLINE sk_wide4 SK_ISA(fetch)(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
+    if (!packed) return SK_ISA(sk_gather)(vector, slot);
+    real lane[3][SK_LANES];
+    for (int l = 0; l < SK_LANES; l++) {
+        sk_vec4 one = sk_load(vector, packed, slot[l]);
+        lane[0][l] = one.x, lane[1][l] = one.y, lane[2][l] = one.z;
+    }
+    sk_wide4 out = {0};
+    memcpy(&out.x, lane[0], sizeof out.x);
+    memcpy(&out.y, lane[1], sizeof out.y);
+    memcpy(&out.z, lane[2], sizeof out.z);
+    return out;
+}
+
+static void SK_ISA(load)(const sk_tape *tape, const sk_tape_input *input, size_t element, size_t count,
+                         sk_wide *registers) {
+    const size_t wides = tape->wides;
+    for (size_t l = 0; l < tape->loads.count; l++) {
+        const sk_tape_load load = tape->loads.data[l];
+        sk_wide *to = registers + load.to * wides;
+        if (load.source == SK_TAPE_TIME || (load.source == SK_TAPE_PARAMETER && (input->uniform >> load.index & 1)))
+            continue;
+        for (size_t i = 0; i < wides; i++) {
+            // the last, partial sixteen repeat their last element; all that follow repeat it, too
+            size_t first = element + SK_LANES * i, left = SK_LANES * i < count ? count - SK_LANES * i : 0;
+            bool whole = left >= SK_LANES;
+            if (load.source == SK_TAPE_PARAMETER) {
+                const real *from = input->parameter[load.index];
+                real lane[SK_LANES];
+                for (size_t k = 0; k < SK_LANES && !whole; k++)
+                    lane[k] = from[k < left ? first + k : element + count - 1];
+                memcpy(to + i, whole ? from + first : lane, sizeof *to);
+                continue;
+            }
+            const uint32_t *slot = input->slot[load.index];
+            uint32_t lane[SK_LANES];
+            for (size_t k = 0; k < SK_LANES && !whole; k++) lane[k] = slot[k < left ? first + k : element + count - 1];
+            const sk_vec4 *vector = load.source == SK_TAPE_POSITION ? input->positions : input->velocities;
+            sk_wide4 got = SK_ISA(fetch)(vector, input->packed, whole ? slot + first : lane);
+            to[i] = got.x, to[wides + i] = got.y, to[2 * wides + i] = got.z;
+        }
+    }
+}
+
+static void SK_ISA(store)(const sk_tape *tape, const sk_wide *registers, const sk_tape_verdict *verdict, size_t element,
+                          size_t count, real *const *outputs) {
+    for (size_t k = 0; k < tape->outputs; k++) {
+        const sk_wide *from = registers + tape->output[k] * tape->wides;
+        for (size_t i = 0; SK_LANES * i < count; i++) {
+            size_t left = count - SK_LANES * i;
+            sk_wide out = SK_ISA(sk_keep)(verdict->finite[i], from[i]);
+            real *to = outputs[k] + element + SK_LANES * i;
+            // of a size that is known, it is a store
+            if (left >= SK_LANES) memcpy(to, &out, sizeof out);
+            else memcpy(to, &out, left * sizeof(real));
+        }
+    }
+}
+
+static size_t SK_ISA(count_guarded)(const sk_tape_verdict *verdict, size_t count) {
+    size_t guarded = 0;
+    for (size_t i = 0; SK_LANES * i < count; i++) {
+        sk_mask mask = verdict->guarded[i] | ~verdict->finite[i];
+        if (!SK_ISA(sk_any)(mask)) continue;
+        for (size_t l = 0; l < SK_LANES && SK_LANES * i + l < count; l++) guarded += mask[l] != 0;
+    }
+    return guarded;
+}
+
+static size_t SK_ISA(evaluate)(const sk_tape *tape, const sk_tape_input *input, size_t begin, size_t end,
+                               real *const *outputs) {
+    sk_wide registers[SK_TAPE_MEMORY / sizeof(sk_wide)];
+    sk_tape_verdict verdict;
+    size_t block = SK_LANES * tape->wides, guarded = 0;
+    SK_ISA(begin)(tape, input, registers);
+    for (size_t element = begin; element < end; element += block) {
+        size_t count = end - element < block ? end - element : block;
+        SK_ISA(load)(tape, input, element, count, registers);
+        SK_ISA(run)(tape, registers, &verdict);
+        SK_ISA(store)(tape, registers, &verdict, element, count, outputs);
+        guarded += SK_ISA(count_guarded)(&verdict, count);
+    }
+    return guarded;
+}
+
+#undef EACH
+#undef FROM
+#undef A
+#undef P
+#undef SIZE_A
+#undef SIZE_P
+#undef SUM2
+#undef SUM3
+#undef SUM3_OF
+#undef SUMS
+
+#else
+
+#include "formula/tape.h"
+
+#include "base/elementary.h"
+#include "base/layout.h"
+#include "base/polynomial.h"
+#include "formula/evaluate.h"
+
+#ifdef SKEIN_DOUBLE
+#define LEAST SK_LEAST_DOUBLE
+#define MOST_EXP SK_MOST_EXP_DOUBLE
+#else
+#define LEAST SK_LEAST_FLOAT
+#define MOST_EXP SK_MOST_EXP_FLOAT
+#endif
+
+#define SK_KERNELS "formula/tape_run.c"
+#include "base/for_each_isa.h"
+
+#define PARTS(set_) \
+    { begin_##set_, load_##set_, run_##set_, evaluate_##set_ }
+#ifdef SK_X86_ISAS
+const sk_tape_kernels sk_tape_kernels_of[SK_ISA_COUNT] = {PARTS(sse), PARTS(avx2), PARTS(avx512)};
+#else
+const sk_tape_kernels sk_tape_kernels_of[SK_ISA_COUNT] = {PARTS(plain)};
+#endif
+
+#endif
