@@ -26,7 +26,7 @@ static const struct measured {
 } all[] = {
     {"distance", "length(p1-p0) - rest0", dihedral_parameters, by_hand_distance, by_hand_wide_distance, 2, 1, false},
     {"dihedral", "dihedral(p0,p1,p2,p3) - rest0", dihedral_parameters, by_hand_dihedral, by_hand_wide_dihedral, 4, 1,
-     false, 4},
+     false},
     {"volume", "dot(cross(p1-p0, p2-p0), p3-p0)/6 - rest0", dihedral_parameters, by_hand_volume, by_hand_wide_volume, 4,
      1, true},
     {"neo-Hookean",
