@@ -5,7 +5,7 @@
  *   worlds.c       worlds to measure, and rows of their plans run alone
  *   meshes.c       meshes made in code
  *   plain.c        the student's loops
- *   by_hand.c      formulas' values and gradients, by hand
+ *   by_hand*.c     formulas' values and gradients, by hand
  *   bullet.cpp     Bullet's soft body; only there if Bullet is
  *   case_*.c       the cases
  *

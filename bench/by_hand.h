@@ -20,4 +20,11 @@ void by_hand_volume(void *input);
 void by_hand_neo_hookean(void *input);
 void by_hand_stvk(void *input);
 
+/* The same sixteen at a time (by_hand_wide.c); arrays must go on to the next multiple of sixteen elements. */
+void by_hand_wide_distance(void *input);
+void by_hand_wide_dihedral(void *input);
+void by_hand_wide_volume(void *input);
+void by_hand_wide_neo_hookean(void *input);
+void by_hand_wide_stvk(void *input);
+
 #endif

@@ -23,7 +23,8 @@ typedef struct language {
     void (*open)(writer *);
     void (*result)(writer *, int component);                             /* up to the value */
     void (*derivative)(writer *, int component, int particle, int axis); /* the same */
-    const char *end_result, *close;
+    const char *end_result;
+    void (*close)(writer *);
 } language;
 
 struct writer {
@@ -183,7 +184,7 @@ static void put_all(writer *w, const sk_node *outputs, size_t count) {
         w->language->result(w, k);
         put_output(w, f->value[k]);
     }
-    put(w, "%s", w->language->close);
+    w->language->close(w);
 }
 
 /* ---- C ---- */
@@ -280,6 +281,10 @@ static void c_derivative(writer *w, int component, int particle, int axis) {
     put(w, "    GRADIENT(%d, %d, %d, ", component, particle, axis);
 }
 
+static void c_close(writer *w) {
+    put(w, "}\n");
+}
+
 static const language c_language = {.call = {[SK_OP_RECIPROCAL] = "RECIPROCAL",
                                              [SK_OP_SQRT] = "SQRT",
                                              [SK_OP_ABS] = "ABS",
@@ -301,7 +306,7 @@ static const language c_language = {.call = {[SK_OP_RECIPROCAL] = "RECIPROCAL",
                                     .result = c_result,
                                     .derivative = c_derivative,
                                     .end_result = ");\n",
-                                    .close = "}\n"};
+                                    .close = c_close};
 
 /* ---- GLSL ---- */
 
@@ -369,6 +374,10 @@ static void glsl_derivative(writer *w, int component, int particle, int axis) {
     else put(w, "    by_p%d.%c = ", particle, "xyz"[axis]);
 }
 
+static void glsl_close(writer *w) {
+    put(w, w->formula->size == 3 ? "    return value;\n}\n" : "}\n");
+}
+
 static const language glsl_language = {.call = {[SK_OP_RECIPROCAL] = "formula_reciprocal",
                                                 [SK_OP_SQRT] = "formula_sqrt",
                                                 [SK_OP_ABS] = "abs",
@@ -390,7 +399,7 @@ static const language glsl_language = {.call = {[SK_OP_RECIPROCAL] = "formula_re
                                        .result = glsl_result,
                                        .derivative = glsl_derivative,
                                        .end_result = ";\n",
-                                       .close = "}\n"};
+                                       .close = glsl_close};
 
 /* ---- the graph ---- */
 

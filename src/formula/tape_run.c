@@ -75,8 +75,8 @@ SK_INLINE sk_wide SK_ISA(within_one)(sk_wide x) {
 
 /* `wides` is known where this is inlined. */
 SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask *guarded, const size_t wides) {
-    const sk_instruction *end = tape->code.data + tape->code.count;
-    for (const sk_instruction *instruction = tape->code.data; instruction < end; instruction++) {
+    for (size_t at = 0; at < tape->code.count; at++) {
+        const sk_instruction *instruction = &tape->code.data[at];
         sk_wide *to = registers + instruction->to * wides;
         switch (instruction->op) {
             SUMS(SUM2)
