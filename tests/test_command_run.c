@@ -15,7 +15,7 @@ static void judge_report(const json_t *report, int frames) {
         {"fps", 1, 1000},
         {"step", 1e-4, 0.1},
         {"time", 0, 1e3},
-        {"particles", 4, 1e6},
+        {"particles", 2, 1e6},
         {"held_particles", 0, 1e3},
         {"constraints", 1, 1e6},
         {"contacts", 0, 1e6},
