@@ -293,6 +293,47 @@ static void too_many_registers(void **state) {
     skein_formula_destroy(f);
 }
 
+/* Near flat and near folded, where acos would be off by half: the tape's gradient against the one in double at the
+ * same, rounded, places; relative to the gradient's size. */
+static void the_dihedral_is_exact_near_flat(void **state) {
+    (void)state;
+    elements *e = new_elements();
+    sk_allocator allocator = sk_default_allocator();
+    skein_formula *f = make("dihedral(p0, p1, p2, p3)");
+    sk_node outputs[OUTPUTS];
+    size_t count = outputs_of(f, outputs);
+    sk_tape tape;
+    real out[OUTPUTS][64], *arrays[OUTPUTS];
+    fill(e, 3, false);
+    for (size_t k = 0; k < count; k++) arrays[k] = out[k];
+    for (int i = 0; i < 64; i++) {
+        double off = pow(10, -1 - i % 16 * 0.5),
+               angle = (i < 32 ? 0 : PI - off) + (i < 32 ? off : 0) * (i & 16 ? -1 : 1);
+        const double p[4][3] = {{0.1, 0.2, 0}, {1.1, 0.3, 0}, {0.5, 1.4, 0}, {0.7, 0.25 - cos(angle), sin(angle)}};
+        for (int k = 0; k < 4; k++) {
+            e->position[4 * i + k] = (sk_vec4){(real)p[k][0], (real)p[k][1], (real)p[k][2], 1};
+            e->slot[k][i] = (uint32_t)(4 * i + k);
+        }
+    }
+    assert_int_equal(sk_tape_create(&tape, &f->graph, outputs, count, &allocator, NULL), SKEIN_OK);
+    sk_tape_kernels_of[sk_isa_choose()].evaluate(&tape, &e->input, 0, 64, arrays);
+    for (int i = 0; i < 64; i++) {
+        double p[12], size = 0;
+        skein_formula_value v;
+        for (int k = 0; k < 4; k++)
+            p[3 * k] = e->position[4 * i + k].x, p[3 * k + 1] = e->position[4 * i + k].y,
+                  p[3 * k + 2] = e->position[4 * i + k].z;
+        const double parameters[] = {0, 0, 0};
+        assert_int_equal(skein_formula_evaluate(f, &(skein_formula_point){p, NULL, NULL, parameters, 0}, &v, NULL), 0);
+        for (int k = 0; k < 12; k++) size = fmax(size, fabs(v.by_position[0][k]));
+        for (int k = 0; k < 12; k++) assert_near((double)out[1 + k][i], v.by_position[0][k], 1e-5 * size);
+        assert_near((double)out[0][i], v.number[0], 1e-6);
+    }
+    sk_tape_free(&tape);
+    skein_formula_destroy(f);
+    free(e);
+}
+
 /* ---- memory ---- */
 
 typedef struct purse {
@@ -344,9 +385,13 @@ static void failing_allocations(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(ordinary_numbers),   cmocka_unit_test(awkward_numbers),
-                                       cmocka_unit_test(sums_are_fused),     cmocka_unit_test(guards_are_counted),
-                                       cmocka_unit_test(packed_positions),   cmocka_unit_test(too_many_registers),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(ordinary_numbers),
+                                       cmocka_unit_test(awkward_numbers),
+                                       cmocka_unit_test(sums_are_fused),
+                                       cmocka_unit_test(guards_are_counted),
+                                       cmocka_unit_test(packed_positions),
+                                       cmocka_unit_test(too_many_registers),
+                                       cmocka_unit_test(the_dihedral_is_exact_near_flat),
                                        cmocka_unit_test(failing_allocations)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -131,7 +131,7 @@ static void put_output(writer *w, sk_node node) {
 
 /* ---- the walk ---- */
 
-static size_t outputs_of(const skein_formula *f, sk_node outputs[3 + SK_FORMULA_MOST_RATES]) {
+static size_t outputs_of(const skein_formula *f, sk_node outputs[SK_FORMULA_MOST_OUTPUTS]) {
     size_t count = 0;
     for (int k = 0; k < f->size; k++) {
         outputs[count++] = f->value[k];
@@ -419,7 +419,7 @@ static void put_leaf(writer *w, const sk_graph_node *n) {
 static void put_graph(writer *w, const sk_node *outputs, size_t count) {
     const skein_formula *f = w->formula;
     const sk_graph *g = &f->graph;
-    sk_node all[3 + SK_FORMULA_MOST_RATES + SKEIN_FORMULA_MOST_RESTS];
+    sk_node all[SK_FORMULA_MOST_OUTPUTS + SKEIN_FORMULA_MOST_RESTS];
     memcpy(all, outputs, count * sizeof *all);
     memcpy(all + count, f->rest, (size_t)f->rests * sizeof *all);
     sk_graph_mark(g, all, count + (size_t)f->rests, w->live);
@@ -441,7 +441,7 @@ static void put_graph(writer *w, const sk_node *outputs, size_t count) {
 skein_status skein_formula_emit(const skein_formula *f, skein_formula_language asked,
                                 void (*write)(void *user, const char *text), void *user, skein_error *error) {
     sk_allocator allocator = sk_default_allocator();
-    sk_node outputs[3 + SK_FORMULA_MOST_RATES];
+    sk_node outputs[SK_FORMULA_MOST_OUTPUTS];
     size_t nodes = f->graph.count, count = outputs_of(f, outputs);
     writer w = {.formula = f,
                 .language = asked == SKEIN_FORMULA_C ? &c_language : &glsl_language,

@@ -106,7 +106,7 @@ const char *skein_formula_warning(const skein_formula *formula, size_t index, sk
 }
 
 /* The value's and the derivatives' nodes, one after the other; returns how many. */
-static size_t outputs_of(const skein_formula *f, sk_node outputs[static 3 + SK_FORMULA_MOST_RATES + 3]) {
+static size_t outputs_of(const skein_formula *f, sk_node outputs[static SK_FORMULA_MOST_OUTPUTS]) {
     size_t count = 0;
     for (int k = 0; k < f->size; k++) {
         outputs[count++] = f->value[k];
@@ -128,7 +128,7 @@ skein_formula_info skein_formula_about(const skein_formula *f) {
                                .positions = f->uses & SK_USES_POSITION,
                                .velocities = f->uses & SK_USES_VELOCITY,
                                .time = f->uses & SK_USES_TIME};
-    sk_node outputs[3 + SK_FORMULA_MOST_RATES + 3];
+    sk_node outputs[SK_FORMULA_MOST_OUTPUTS];
     sk_allocator allocator = sk_default_allocator();
     bool *live = sk_allocate(&allocator, f->graph.count * sizeof *live);
     if (live) sk_graph_mark(&f->graph, outputs, outputs_of(f, outputs), live);
@@ -189,7 +189,7 @@ static skein_status find_answer(const skein_formula *f, const skein_formula_poin
 
 skein_status skein_formula_evaluate(const skein_formula *f, const skein_formula_point *point,
                                     skein_formula_value *value, skein_error *error) {
-    sk_node outputs[3 + SK_FORMULA_MOST_RATES + 3];
+    sk_node outputs[SK_FORMULA_MOST_OUTPUTS];
     answer a;
     skein_status status = find_answer(f, point, outputs, outputs_of(f, outputs), &a, error);
     if (status) return status;

@@ -13,7 +13,8 @@
 enum {
     SK_FORMULA_MOST_LETS = 128,
     SK_FORMULA_MOST_WARNINGS = 4,
-    SK_FORMULA_MOST_RATES = 3 * SK_INPUT_VELOCITY /* a vector by all coordinates */
+    /* a vector's value, and its derivatives by positions, velocities and time */
+    SK_FORMULA_MOST_OUTPUTS = 3 * (1 + SK_INPUT_COUNT)
 };
 
 typedef struct sk_formula_warning {
