@@ -10,7 +10,7 @@
 
 #include "base/status.h"
 
-enum { NAMED = 0, MOST_HEIGHT = 3 };
+enum { MOST_HEIGHT = 3 };
 
 /* ---- what languages are made of ---- */
 

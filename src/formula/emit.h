@@ -27,7 +27,7 @@ struct sk_writer {
     bool *live;
     uint32_t *uses;   /* by live nodes and outputs */
     uint32_t *number; /* of a temporary, from 1 on */
-    uint8_t *height;  /* of an expression written in place; NAMED: it has a name */
+    uint8_t *height;  /* of an expression written in place; 0: it has a name */
 };
 
 extern const sk_language sk_c_language, sk_glsl_language;
