@@ -4,7 +4,7 @@
 
 #include "formula/graph.h"
 
-enum { NONE = UINT32_MAX };
+static const sk_node NONE = UINT32_MAX;
 
 /* ---- the local derivatives ---- */
 

@@ -14,214 +14,9 @@
 #include <string.h>
 
 #include "base/status.h"
-#include "formula/formula.h"
+#include "formula/parser.h"
 
-typedef struct let {
-    const char *name;
-    sk_value value;
-} let;
-
-typedef struct parser {
-    sk_text text;
-    sk_graph *graph;
-    skein_formula *formula;
-    const skein_formula_desc *desc;
-    let lets[SK_FORMULA_MOST_LETS];
-    const char *defining; /* the name of the `let` that is being read */
-    int depth;
-    bool in_rest;
-} parser;
-
-static sk_value either(parser *p);
 static sk_value sign(parser *p);
-
-static const sk_value nothing = {.type = SK_NUMBER};
-
-/* A fault from the place `begin` to the last token read. */
-#define FAIL(p_, begin_, status_, ...) \
-    (sk_text_fail(&(p_)->text, (begin_), (p_)->text.before.end, SKEIN_ERROR_##status_, __VA_ARGS__), nothing)
-
-static bool need(parser *p, size_t begin, const sk_value *value, sk_value_type type, const char *by) {
-    if (p->text.failed || value->type == type) return !p->text.failed;
-    const char *hint =
-        value->type == SK_VECTOR3 && type == SK_NUMBER ? "; its length is length(v), a component v.x" : "";
-    return sk_text_fail(&p->text, begin, p->text.before.end, SKEIN_ERROR_VALUE, "%s takes %s, and this is %s%s", by,
-                        sk_type_text(type), sk_type_text(value->type), hint);
-}
-
-/* ---- names ---- */
-
-static const char *const words[] = {"p", "v", "t", "pi", "let"};
-
-static let *find_let(parser *p, const char *name) {
-    for (int i = 0; i < p->formula->lets; i++)
-        if (!strcmp(p->lets[i].name, name)) return &p->lets[i];
-    return NULL;
-}
-
-static int find_parameter(const parser *p, const char *name) {
-    for (int i = 0; i < p->formula->parameters; i++)
-        if (!strcmp(p->formula->parameter_name[i], name)) return i;
-    return -1;
-}
-
-static sk_value unknown_name(parser *p, const sk_token *token) {
-    enum { MOST = 256 };
-    const char *names[MOST];
-    static const char *const points[] = {"p0", "p1", "p2", "p3", "p4", "p5", "p6", "p7"};
-    size_t count = 0;
-    for (int i = 0; i < p->formula->parameters; i++) names[count++] = p->formula->parameter_name[i];
-    for (int i = 0; i < p->formula->lets; i++) names[count++] = p->lets[i].name;
-    for (size_t i = 0; i < sk_function_count; i++) names[count++] = sk_functions[i].name;
-    for (int i = 0; i < (p->desc->particles ? p->desc->particles : 8); i++) names[count++] = points[i];
-    names[count++] = "pi", names[count++] = "let";
-    // of a name of one or two letters, nearly every other is near
-    const char *near = token->name[1] && token->name[2] ? sk_nearest_name(token->name, names, count) : NULL;
-    if (near) return FAIL(p, token->begin, NAME, "there is no name '%s'; did you mean '%s'?", token->name, near);
-    return FAIL(p, token->begin, NAME,
-                "there is no name '%s': parameters are named by whoever uses the formula, other "
-                "names by let",
-                token->name);
-}
-
-/* p, v, or one of them with digits: the particle's number; -1 for any other name. */
-static long particle_number(const char *name) {
-    long number = 0;
-    if (name[0] != 'p' && name[0] != 'v') return -1;
-    for (const char *c = name + 1; *c; c++) {
-        if (*c < '0' || *c > '9') return -1;
-        number = number < 1000 ? number * 10 + (*c - '0') : number;
-    }
-    return name[1] == '0' && name[2] ? -1 : number;
-}
-
-static sk_value particle(parser *p, const sk_token *token, long number) {
-    const int given = p->desc->particles;
-    if (number >= SKEIN_FORMULA_MOST_PARTICLES)
-        return FAIL(p, token->begin, LIMIT, "too many particles: a formula has %d at the most, p0 to p%d",
-                    SKEIN_FORMULA_MOST_PARTICLES, SKEIN_FORMULA_MOST_PARTICLES - 1);
-    if (given && number >= given)
-        return FAIL(p, token->begin, LIMIT,
-                    given == 1 ? "this formula is on one particle: there is only p"
-                               : "too many particles: this formula is on %d, p0 to p%d",
-                    given, given - 1);
-    bool velocity = token->name[0] == 'v';
-    if (velocity && !p->desc->velocities)
-        return FAIL(p, token->begin, NAME,
-                    "'%s' is a velocity, and those are for force fields: a constraint, an "
-                    "energy or a surface depends on positions and t",
-                    token->name);
-    if (velocity && p->in_rest)
-        return FAIL(p, token->begin, VALUE, "nothing moves at the rest pose: there is no '%s' in rest(...)",
-                    token->name);
-    if (number >= p->formula->particles) p->formula->particles = (int)number + 1;
-    uint32_t first = (uint32_t)((velocity ? SK_INPUT_VELOCITY : SK_INPUT_POSITION) + 3 * number);
-    sk_value out = {.type = SK_VECTOR3};
-    for (uint32_t axis = 0; axis < 3; axis++) out.node[axis] = sk_input(p->graph, first + axis);
-    return out;
-}
-
-static sk_value named(parser *p, const sk_token *token) {
-    const char *name = token->name;
-    const let *found = find_let(p, name);
-    int parameter = find_parameter(p, name);
-    long number = particle_number(name);
-    if (found) return found->value;
-    if (parameter >= 0) return sk_number(sk_parameter(p->graph, (uint32_t)parameter));
-    if (number >= 0) return particle(p, token, number);
-    if (!strcmp(name, "pi")) return sk_number(sk_constant(p->graph, 3.14159265358979323846));
-    if (!strcmp(name, "t") && p->in_rest)
-        return FAIL(p, token->begin, VALUE, "there is no time at the rest pose: no 't' in rest(...)");
-    if (!strcmp(name, "t")) return sk_number(sk_input(p->graph, SK_INPUT_TIME));
-    if (p->defining && !strcmp(name, p->defining))
-        return FAIL(p, token->begin, NAME, "'%s' is used in its own definition: formulas do not recur", name);
-    if (!strcmp(name, "let"))
-        return FAIL(p, token->begin, SYNTAX, "'let' begins a line, as in: let a = p1 - p0; length(a)");
-    const sk_function *function = sk_function_find(name);
-    if (function) return FAIL(p, token->begin, SYNTAX, "'%s' is a function: %s", name, function->usage);
-    return unknown_name(p, token);
-}
-
-/* ---- functions ---- */
-
-static void warn_of_acos(parser *p, const sk_function *function, const sk_value *argument, size_t begin) {
-    skein_formula *f = p->formula;
-    if (strcmp(function->name, "acos") || !argument->of_dot || f->warnings == SK_FORMULA_MOST_WARNINGS) return;
-    f->warning[f->warnings++] = (sk_formula_warning){
-        sk_text_mark(&p->text, begin, p->text.before.end),
-        "acos of a dot product is inexact near 0 and 180 degrees, and its gradient is worse: use angle(u, v), or "
-        "dihedral(p0, p1, p2, p3)"};
-}
-
-/* Does an argument fit its letter? 'a' is number or vector, and as the one before it. */
-static bool fits(parser *p, const sk_function *function, const sk_value *arguments, int at, size_t begin) {
-    const sk_value *value = &arguments[at];
-    char letter = function->arguments[at], by[80];
-    if (p->text.failed) return false;
-    snprintf(by, sizeof by, "%s, as argument %d,", function->usage, at + 1);
-    if (letter == 'n') return need(p, begin, value, SK_NUMBER, by);
-    if (letter == 'v') return need(p, begin, value, SK_VECTOR3, by);
-    if (letter == 'b') return need(p, begin, value, SK_TRUTH, by);
-    if (at > 0 && function->arguments[at - 1] == 'a') return need(p, begin, value, arguments[at - 1].type, by);
-    if (value->type != SK_TRUTH) return true;
-    return sk_text_fail(&p->text, begin, p->text.before.end, SKEIN_ERROR_VALUE,
-                        "%s takes a number or a vector, and this is a comparison", by);
-}
-
-/* Becomes parameters, one for each component, whose values at the rest pose are the argument. */
-static sk_value rest_of(parser *p, const sk_value *argument, size_t begin) {
-    skein_formula *f = p->formula;
-    sk_value out = *argument;
-    for (int i = 0; i < (out.type == SK_VECTOR3 ? 3 : 1) && !p->text.failed; i++) {
-        int which = 0;
-        while (which < f->rests && f->rest[which] != argument->node[i]) which++;
-        if (which == SKEIN_FORMULA_MOST_RESTS)
-            return FAIL(p, begin, LIMIT, "too many rest values: %d numbers are the most", SKEIN_FORMULA_MOST_RESTS);
-        if (which == f->rests) f->rest[f->rests++] = argument->node[i];
-        out.node[i] = sk_parameter(p->graph, (uint32_t)(f->parameters + which));
-    }
-    out.of_dot = false;
-    return out;
-}
-
-static sk_value call(parser *p, const sk_token *token) {
-    const sk_function *function = sk_function_find(token->name);
-    sk_value arguments[SK_MOST_ARGUMENTS];
-    if (!function) {
-        named(p, token); // an unknown name is said to be one
-        return FAIL(p, token->begin, SYNTAX, "'%s' is no function; to multiply, write %s*(...)", token->name,
-                    token->name);
-    }
-    bool rest = !strcmp(function->name, "rest");
-    if (rest && p->in_rest) return FAIL(p, token->begin, SYNTAX, "rest(...) in rest(...): the outer one is enough");
-    p->in_rest |= rest;
-    sk_text_next(&p->text); // the bracket
-    int count = 0, wanted = (int)strlen(function->arguments);
-    bool more = p->text.now.kind != ')';
-    while (more && !p->text.failed) {
-        size_t begin = p->text.now.begin;
-        sk_value value = either(p);
-        if (count < wanted) {
-            arguments[count] = value;
-            fits(p, function, arguments, count, begin);
-        }
-        count++;
-        more = sk_text_take(&p->text, ',');
-    }
-    if (rest) p->in_rest = false;
-    if (!p->text.failed && p->text.now.kind != ')') sk_text_expected(&p->text, "',' or ')'");
-    sk_text_take(&p->text, ')');
-    if (!p->text.failed && count != wanted)
-        return FAIL(p, token->begin, VALUE, "%s takes %d argument%s, not %d", function->usage, wanted,
-                    wanted == 1 ? "" : "s", count);
-    if (p->text.failed) return nothing;
-    if (rest) return rest_of(p, &arguments[0], token->begin);
-    warn_of_acos(p, function, &arguments[0], token->begin);
-    p->graph->name = function->name;
-    sk_value out = function->apply(p->graph, arguments);
-    p->graph->name = "";
-    return out;
-}
 
 /* ---- the grammar ---- */
 
@@ -235,14 +30,14 @@ static bool enter(parser *p) {
 
 static sk_value primary(parser *p) {
     sk_token token = p->text.now;
-    sk_value out = nothing;
-    if (!enter(p)) return nothing;
+    sk_value out = sk_nothing;
+    if (!enter(p)) return sk_nothing;
     if (sk_text_take(&p->text, SK_TOKEN_NUMBER)) {
         out = sk_number(sk_constant(p->graph, token.number));
     } else if (sk_text_take(&p->text, SK_TOKEN_NAME)) {
-        out = p->text.now.kind == '(' ? call(p, &token) : named(p, &token);
+        out = p->text.now.kind == '(' ? sk_parser_call(p, &token) : sk_parser_named(p, &token);
     } else if (sk_text_take(&p->text, '(')) {
-        out = either(p);
+        out = sk_parser_either(p);
         if (!p->text.failed && p->text.now.kind != ')') {
             skein_formula_mark open = sk_text_mark(&p->text, token.begin, token.end);
             char what[64];
@@ -264,7 +59,7 @@ static sk_value swizzled(parser *p) {
         sk_token letters = p->text.now;
         size_t count = letters.kind == SK_TOKEN_NAME ? strlen(letters.name) : 0;
         if (!count) sk_text_expected(&p->text, "x, y or z after '.'");
-        if (!need(p, begin, &value, SK_VECTOR3, "'.'")) return nothing;
+        if (!sk_parser_need(p, begin, &value, SK_VECTOR3, "'.'")) return sk_nothing;
         sk_text_next(&p->text);
         if (strspn(letters.name, "xyz") != count || (count != 1 && count != 3))
             return FAIL(p, letters.begin, NAME, "'.%s': one or three of the letters x, y and z stand after '.'",
@@ -280,29 +75,30 @@ static sk_value power(parser *p) {
     size_t begin = p->text.now.begin;
     sk_value base = swizzled(p);
     if (p->text.failed || !sk_text_take(&p->text, '^')) return base;
-    if (!need(p, begin, &base, SK_NUMBER, "'^'")) return nothing;
+    if (!sk_parser_need(p, begin, &base, SK_NUMBER, "'^'")) return sk_nothing;
     size_t exponent_begin = p->text.now.begin;
-    if (!enter(p)) return nothing;
+    if (!enter(p)) return sk_nothing;
     sk_value exponent = sign(p);
     p->depth--;
-    if (!need(p, exponent_begin, &exponent, SK_NUMBER, "'^'")) return nothing;
+    if (!sk_parser_need(p, exponent_begin, &exponent, SK_NUMBER, "'^'")) return sk_nothing;
     return sk_number(sk_power(p->graph, base.node[0], exponent.node[0]));
 }
 
 static sk_value sign(parser *p) {
     int kind = p->text.now.kind;
     if (kind != '-' && kind != '+' && kind != '!') return power(p);
-    if (!enter(p)) return nothing;
+    if (!enter(p)) return sk_nothing;
     sk_text_next(&p->text);
     size_t begin = p->text.now.begin;
     sk_value value = sign(p);
     p->depth--;
     if (kind == '!') {
-        if (!need(p, begin, &value, SK_TRUTH, "'!'")) return nothing;
+        if (!sk_parser_need(p, begin, &value, SK_TRUTH, "'!'")) return sk_nothing;
         sk_node no = sk_minus(p->graph, sk_constant(p->graph, 1), value.node[0]);
         return (sk_value){.type = SK_TRUTH, .node = {no}};
     }
-    if (value.type == SK_TRUTH) return need(p, begin, &value, SK_NUMBER, kind == '-' ? "'-'" : "'+'"), nothing;
+    if (value.type == SK_TRUTH)
+        return sk_parser_need(p, begin, &value, SK_NUMBER, kind == '-' ? "'-'" : "'+'"), sk_nothing;
     for (int i = 0; kind == '-' && i < (value.type == SK_VECTOR3 ? 3 : 1); i++)
         value.node[i] = sk_negative_of(p->graph, value.node[i]);
     value.of_dot &= kind == '+';
@@ -321,7 +117,7 @@ static sk_value multiply(parser *p, size_t begin, sk_value a, sk_value b) {
 static sk_value divide(parser *p, size_t begin, size_t divisor_begin, sk_value a, sk_value b) {
     double value;
     (void)begin;
-    if (!need(p, divisor_begin, &b, SK_NUMBER, "'/', on its right,")) return nothing;
+    if (!sk_parser_need(p, divisor_begin, &b, SK_NUMBER, "'/', on its right,")) return sk_nothing;
     if (sk_is_constant(p->graph, b.node[0], &value) && value == 0)
         return FAIL(p, divisor_begin, VALUE, "division by zero");
     sk_value out = {.type = a.type};
@@ -337,9 +133,9 @@ static sk_value product(parser *p) {
         sk_text_next(&p->text);
         size_t right_begin = p->text.now.begin;
         sk_value right = sign(p);
-        if (left.type == SK_TRUTH) need(p, begin, &left, SK_NUMBER, kind == '*' ? "'*'" : "'/'");
-        if (right.type == SK_TRUTH) need(p, right_begin, &right, SK_NUMBER, kind == '*' ? "'*'" : "'/'");
-        if (p->text.failed) return nothing;
+        if (left.type == SK_TRUTH) sk_parser_need(p, begin, &left, SK_NUMBER, kind == '*' ? "'*'" : "'/'");
+        if (right.type == SK_TRUTH) sk_parser_need(p, right_begin, &right, SK_NUMBER, kind == '*' ? "'*'" : "'/'");
+        if (p->text.failed) return sk_nothing;
         left = kind == '*' ? multiply(p, begin, left, right) : divide(p, begin, right_begin, left, right);
     }
     return left;
@@ -353,8 +149,8 @@ static sk_value sum(parser *p) {
         sk_text_next(&p->text);
         size_t right_begin = p->text.now.begin;
         sk_value right = product(p), out = {.type = left.type};
-        if (left.type == SK_TRUTH) need(p, begin, &left, SK_NUMBER, kind == '+' ? "'+'" : "'-'");
-        if (right.type == SK_TRUTH) need(p, right_begin, &right, SK_NUMBER, kind == '+' ? "'+'" : "'-'");
+        if (left.type == SK_TRUTH) sk_parser_need(p, begin, &left, SK_NUMBER, kind == '+' ? "'+'" : "'-'");
+        if (right.type == SK_TRUTH) sk_parser_need(p, right_begin, &right, SK_NUMBER, kind == '+' ? "'+'" : "'-'");
         if (!p->text.failed && left.type != right.type)
             return FAIL(p, begin, VALUE, "'%c' takes two numbers or two vectors, and these are %s and %s", kind,
                         sk_type_text(left.type), sk_type_text(right.type));
@@ -380,12 +176,13 @@ static sk_value comparison(parser *p) {
     sk_text_next(&p->text);
     size_t right_begin = p->text.now.begin;
     sk_value right = sum(p);
-    if (!need(p, begin, &left, SK_NUMBER, "a comparison") || !need(p, right_begin, &right, SK_NUMBER, "a comparison"))
-        return nothing;
+    if (!sk_parser_need(p, begin, &left, SK_NUMBER, "a comparison") ||
+        !sk_parser_need(p, right_begin, &right, SK_NUMBER, "a comparison"))
+        return sk_nothing;
     if (is_comparison(p->text.now.kind)) {
         sk_text_fail(&p->text, p->text.now.begin, p->text.now.end, SKEIN_ERROR_SYNTAX,
                      "comparisons do not chain: write a < b && b < c");
-        return nothing;
+        return sk_nothing;
     }
     bool swapped = kind == '>' || kind == SK_TOKEN_GE;
     sk_comparison meaning = kind == '<' || kind == '>'                   ? SK_LESS
@@ -405,20 +202,24 @@ static sk_value both(parser *p) {
     while (!p->text.failed && sk_text_take(&p->text, SK_TOKEN_AND)) {
         size_t right_begin = p->text.now.begin;
         sk_value right = comparison(p);
-        if (!need(p, begin, &left, SK_TRUTH, "'&&'") || !need(p, right_begin, &right, SK_TRUTH, "'&&'")) return nothing;
+        if (!sk_parser_need(p, begin, &left, SK_TRUTH, "'&&'") ||
+            !sk_parser_need(p, right_begin, &right, SK_TRUTH, "'&&'"))
+            return sk_nothing;
         sk_node node = sk_times(p->graph, left.node[0], right.node[0]);
         left = (sk_value){.type = SK_TRUTH, .node = {node}};
     }
     return left;
 }
 
-static sk_value either(parser *p) {
+sk_value sk_parser_either(parser *p) {
     size_t begin = p->text.now.begin;
     sk_value left = both(p);
     while (!p->text.failed && sk_text_take(&p->text, SK_TOKEN_OR)) {
         size_t right_begin = p->text.now.begin;
         sk_value right = both(p);
-        if (!need(p, begin, &left, SK_TRUTH, "'||'") || !need(p, right_begin, &right, SK_TRUTH, "'||'")) return nothing;
+        if (!sk_parser_need(p, begin, &left, SK_TRUTH, "'||'") ||
+            !sk_parser_need(p, right_begin, &right, SK_TRUTH, "'||'"))
+            return sk_nothing;
         sk_node a = left.node[0], b = right.node[0], node = sk_less(p->graph, a, b, b, a);
         left = (sk_value){.type = SK_TRUTH, .node = {node}};
     }
@@ -427,12 +228,6 @@ static sk_value either(parser *p) {
 
 /* ---- lines ---- */
 
-static bool is_taken(const char *name) {
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-        if (!strcmp(name, words[i])) return true;
-    return particle_number(name) >= 0 || sk_function_find(name);
-}
-
 static void read_let(parser *p) {
     skein_formula *f = p->formula;
     sk_token name = p->text.now;
@@ -440,10 +235,11 @@ static void read_let(parser *p) {
         sk_text_expected(&p->text, "a name after let");
         return;
     }
-    if (is_taken(name.name)) FAIL(p, name.begin, NAME, "'%s' has a meaning already: choose another name", name.name);
-    else if (find_let(p, name.name))
+    if (sk_parser_is_taken(name.name))
+        FAIL(p, name.begin, NAME, "'%s' has a meaning already: choose another name", name.name);
+    else if (sk_parser_let(p, name.name))
         FAIL(p, name.begin, NAME, "'%s' was defined before: names do not change", name.name);
-    else if (find_parameter(p, name.name) >= 0) FAIL(p, name.begin, NAME, "'%s' is a parameter", name.name);
+    else if (sk_parser_parameter(p, name.name) >= 0) FAIL(p, name.begin, NAME, "'%s' is a parameter", name.name);
     else if (f->lets == SK_FORMULA_MOST_LETS)
         FAIL(p, name.begin, LIMIT, "too many names: %d lines of let are the most", SK_FORMULA_MOST_LETS);
     if (p->text.failed) return;
@@ -453,7 +249,7 @@ static void read_let(parser *p) {
     }
     sk_text_next(&p->text);
     p->defining = name.name;
-    let defined = {.value = either(p)};
+    let defined = {.value = sk_parser_either(p)};
     p->defining = NULL;
     if (!p->text.failed && p->text.now.kind != ';') sk_text_expected(&p->text, "';' at the end of the let");
     sk_text_take(&p->text, ';');
@@ -487,7 +283,7 @@ static void read_result(parser *p) {
     if (p->text.now.kind == SK_TOKEN_END && !p->text.failed)
         sk_text_fail(&p->text, begin, begin, SKEIN_ERROR_SYNTAX,
                      p->formula->lets ? "the result is missing behind the last let" : "the formula is empty");
-    sk_value value = either(p);
+    sk_value value = sk_parser_either(p);
     if (!p->text.failed && value.type == SK_TRUTH) value = difference(p, value, begin);
     size_t end = p->text.before.end;
     sk_text_take(&p->text, ';');
@@ -515,9 +311,9 @@ static skein_status read_parameters(parser *p, skein_error *error) {
                            "'%.40s' cannot be a parameter's name: that is up to %d letters, digits and _, and no digit "
                            "first",
                            *name, SK_NAME_SIZE - 1);
-        if (is_taken(*name))
+        if (sk_parser_is_taken(*name))
             return sk_fail(error, SKEIN_ERROR_NAME, "", "'%s' cannot be a parameter: it has a meaning already", *name);
-        if (find_parameter(p, *name) >= 0)
+        if (sk_parser_parameter(p, *name) >= 0)
             return sk_fail(error, SKEIN_ERROR_NAME, "", "the parameter '%s' is given twice", *name);
         strcpy(f->parameter_name[f->parameters++], *name);
     }

@@ -5,7 +5,8 @@
 
 #include "base/status.h"
 
-enum { NO_REGISTER = UINT16_MAX, NEVER = UINT32_MAX };
+enum { NO_REGISTER = UINT16_MAX };
+static const uint32_t NEVER = UINT32_MAX; // as the place of a last use
 
 /* What is known of a node while its tape is made. */
 typedef struct plan_of_node {

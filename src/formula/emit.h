@@ -1,0 +1,44 @@
+/* Writing formulas as text: what the walk over the graph (emit.c) and the languages (emit_c.c, emit_glsl.c) share. */
+#ifndef SK_FORMULA_EMIT_H
+#define SK_FORMULA_EMIT_H
+
+#include "formula/formula.h"
+
+typedef struct sk_writer sk_writer;
+
+typedef struct sk_language {
+    const char *call[SK_OP_COUNT]; /* operations that are written as functions */
+    const char *declaration;       /* of a temporary */
+    void (*constant)(sk_writer *, double);
+    void (*input)(sk_writer *, uint32_t);
+    void (*parameter)(sk_writer *, uint32_t);
+    void (*open)(sk_writer *);
+    void (*result)(sk_writer *, int component);                             /* up to the value */
+    void (*derivative)(sk_writer *, int component, int particle, int axis); /* the same */
+    const char *end_result;
+    void (*close)(sk_writer *);
+} sk_language;
+
+struct sk_writer {
+    const skein_formula *formula;
+    const sk_language *language;
+    void (*write)(void *user, const char *text);
+    void *user;
+    bool *live;
+    uint32_t *uses;   /* by live nodes and outputs */
+    uint32_t *number; /* of a temporary, from 1 on */
+    uint8_t *height;  /* of an expression written in place; 0: it has a name */
+};
+
+extern const sk_language sk_c_language, sk_glsl_language;
+
+void sk_put(sk_writer *w, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* A number with a point or an exponent, whatever the locale says. */
+void sk_put_number(sk_writer *w, double value, int digits);
+/* The formula's own text, made fit for a comment; and what its parameters are. Each line begins so. */
+void sk_put_source(sk_writer *w, const char *line_begin);
+void sk_put_parameters(sk_writer *w, const char *line_begin);
+/* Of `count` helpers those whose operation the formula has; those of SK_OP_CONSTANT always. */
+void sk_put_helpers(sk_writer *w, const char *(*text_of)(size_t), size_t count, int (*op_of)(size_t));
+
+#endif

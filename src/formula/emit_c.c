@@ -1,0 +1,106 @@
+/* Formulas as C. */
+#include <float.h>
+
+#include "formula/emit.h"
+
+/* What a program may define otherwise, for another layout, another type, or elementary functions of its own. */
+static const struct {
+    int op; /* where it is needed; SK_OP_CONSTANT: everywhere */
+    const char *text;
+} c_macros[] = {
+    {SK_OP_CONSTANT,
+     "#include <math.h>\n"
+     "#define FORMULA(name) \\\n"
+     "    static void name(const double *position, const double *velocity, const double *parameter, \\\n"
+     "                     double time, double *value, double *gradient)\n"
+     "#define REAL double\n"
+     "#define NUMBER(x) (x)\n"
+     "#define POSITION(particle, axis) position[3 * (particle) + (axis)]\n"
+     "#define VELOCITY(particle, axis) velocity[3 * (particle) + (axis)]\n"
+     "#define PARAMETER(index) parameter[index]\n"
+     "#define TIME time\n"
+     "#define VALUE(component, x) value[component] = (x)\n"
+     "#define GRADIENT(component, particle, axis, x) \\\n"
+     "    gradient[3 * (PARTICLES * (component) + (particle)) + (axis)] = (x)\n"},
+    {SK_OP_RECIPROCAL, "#define RECIPROCAL(x) (fabs(x) >= 2.2250738585072014e-308 ? 1 / (x) : 0)\n"},
+    {SK_OP_SQRT, "#define SQRT(x) sqrt((x) >= 0 ? (x) : 0)\n"},
+    {SK_OP_ABS, "#define ABS(x) fabs(x)\n"},
+    {SK_OP_LESS, "#define LESS(a, b, yes, no) ((a) < (b) ? (yes) : (no))\n"},
+    {SK_OP_EXP, "#define EXP(x) exp((x) <= 709 ? (x) : 709)\n"},
+    {SK_OP_LOG, "#define LOG(x) log((x) >= 2.2250738585072014e-308 ? (x) : 2.2250738585072014e-308)\n"},
+    {SK_OP_SIN, "#define SIN(x) sin(x)\n"},
+    {SK_OP_COS, "#define COS(x) cos(x)\n"},
+    {SK_OP_TAN, "#define TAN(x) tan(x)\n"},
+    {SK_OP_ASIN, "#define ASIN(x) asin((x) > 1 ? 1 : (x) < -1 ? -1 : (x))\n"},
+    {SK_OP_ACOS, "#define ACOS(x) acos((x) > 1 ? 1 : (x) < -1 ? -1 : (x))\n"},
+    {SK_OP_ATAN2, "#define ATAN2(y, x) atan2(y, x)\n"},
+    {SK_OP_POW, "#define POW(x, y) ((y) == 0 ? 1 : (x) > 0 ? pow(x, y) : 0)\n"},
+};
+
+static const char *c_text_of(size_t i) {
+    return c_macros[i].text;
+}
+static int c_op_of(size_t i) {
+    return c_macros[i].op;
+}
+
+static void c_open(sk_writer *w) {
+    sk_put_source(w, "// ");
+    sk_put(w, "//\n// Made by `skein formula --emit c`: the value, and its derivatives by the positions.\n");
+    sk_put_parameters(w, "// ");
+    sk_put(w, "#ifndef FORMULA\n#define PARTICLES %d\n", w->formula->particles);
+    sk_put_helpers(w, c_text_of, sizeof c_macros / sizeof *c_macros, c_op_of);
+    sk_put(w, "#endif\n\nFORMULA(formula) {\n");
+}
+
+static void c_constant(sk_writer *w, double value) {
+    sk_put(w, "NUMBER(");
+    sk_put_number(w, value, DBL_DECIMAL_DIG);
+    sk_put(w, ")");
+}
+
+static void c_input(sk_writer *w, uint32_t input) {
+    if (input == SK_INPUT_TIME) sk_put(w, "TIME");
+    else
+        sk_put(w, "%s(%u, %u)", input >= SK_INPUT_VELOCITY ? "VELOCITY" : "POSITION", input % SK_INPUT_VELOCITY / 3,
+               input % 3);
+}
+
+static void c_parameter(sk_writer *w, uint32_t parameter) {
+    sk_put(w, "PARAMETER(%u)", parameter);
+}
+
+static void c_result(sk_writer *w, int component) {
+    sk_put(w, "    VALUE(%d, ", component);
+}
+
+static void c_derivative(sk_writer *w, int component, int particle, int axis) {
+    sk_put(w, "    GRADIENT(%d, %d, %d, ", component, particle, axis);
+}
+
+static void c_close(sk_writer *w) {
+    sk_put(w, "}\n");
+}
+
+const sk_language sk_c_language = {.call = {[SK_OP_RECIPROCAL] = "RECIPROCAL",
+                                            [SK_OP_SQRT] = "SQRT",
+                                            [SK_OP_ABS] = "ABS",
+                                            [SK_OP_LESS] = "LESS",
+                                            [SK_OP_EXP] = "EXP",
+                                            [SK_OP_LOG] = "LOG",
+                                            [SK_OP_SIN] = "SIN",
+                                            [SK_OP_COS] = "COS",
+                                            [SK_OP_TAN] = "TAN",
+                                            [SK_OP_ASIN] = "ASIN",
+                                            [SK_OP_ACOS] = "ACOS",
+                                            [SK_OP_ATAN2] = "ATAN2",
+                                            [SK_OP_POW] = "POW"},
+                                   .declaration = "const REAL",
+                                   .constant = c_constant,
+                                   .input = c_input,
+                                   .parameter = c_parameter,
+                                   .open = c_open,
+                                   .result = c_result,
+                                   .derivative = c_derivative,
+                                   .end_result = ");\n",
+                                   .close = c_close};

@@ -1,0 +1,95 @@
+/* Formulas as GLSL. */
+#include <float.h>
+
+#include "formula/emit.h"
+
+static const struct {
+    int op;
+    const char *text;
+} glsl_helpers[] = {
+    {SK_OP_RECIPROCAL,
+     "float formula_reciprocal(float x) {\n    return abs(x) >= 1.17549435e-38 ? 1.0 / x : 0.0;\n}\n"},
+    {SK_OP_SQRT, "float formula_sqrt(float x) {\n    return x >= 0.0 ? sqrt(x) : 0.0;\n}\n"},
+    {SK_OP_LESS, "float formula_less(float a, float b, float yes, float no) {\n    return a < b ? yes : no;\n}\n"},
+    {SK_OP_EXP, "float formula_exp(float x) {\n    return exp(min(x, 88.0));\n}\n"},
+    {SK_OP_LOG, "float formula_log(float x) {\n    return log(max(x, 1.17549435e-38));\n}\n"},
+    {SK_OP_ASIN, "float formula_asin(float x) {\n    return asin(clamp(x, -1.0, 1.0));\n}\n"},
+    {SK_OP_ACOS, "float formula_acos(float x) {\n    return acos(clamp(x, -1.0, 1.0));\n}\n"},
+    {SK_OP_POW, "float formula_pow(float x, float y) {\n    return y == 0.0 ? 1.0 : x > 0.0 ? pow(x, y) : 0.0;\n}\n"},
+};
+
+static const char *glsl_text_of(size_t i) {
+    return glsl_helpers[i].text;
+}
+static int glsl_op_of(size_t i) {
+    return glsl_helpers[i].op;
+}
+
+static void glsl_open(sk_writer *w) {
+    const skein_formula *f = w->formula;
+    sk_put_source(w, "// ");
+    sk_put(w, "//\n// Made by `skein formula --emit glsl`: the value, and its derivatives by the positions.\n");
+    sk_put_parameters(w, "// ");
+    sk_put_helpers(w, glsl_text_of, sizeof glsl_helpers / sizeof *glsl_helpers, glsl_op_of);
+    sk_put(w, "%s formula(", f->size == 3 ? "vec3" : "float");
+    for (int p = 0; p < f->particles; p++) sk_put(w, "vec3 p%d, ", p);
+    for (int p = 0; p < f->particles && (f->uses & SK_USES_VELOCITY); p++) sk_put(w, "vec3 v%d, ", p);
+    for (int i = 0; i < f->parameters + f->rests; i++) sk_put(w, "float q%d, ", i);
+    sk_put(w, "float t");
+    for (int p = 0; p < f->particles; p++) sk_put(w, ", out %s by_p%d", f->size == 3 ? "mat3" : "vec3", p);
+    sk_put(w, ") {\n");
+    if (f->size == 3) sk_put(w, "    vec3 value;\n");
+}
+
+static void glsl_constant(sk_writer *w, double value) {
+    double most = FLT_MAX;
+    sk_put(w, value < 0 ? "(" : "");
+    sk_put_number(w, value > most ? most : value < -most ? -most : value, FLT_DECIMAL_DIG);
+    sk_put(w, value < 0 ? ")" : "");
+}
+
+static void glsl_input(sk_writer *w, uint32_t input) {
+    if (input == SK_INPUT_TIME) sk_put(w, "t");
+    else sk_put(w, "%c%u.%c", input >= SK_INPUT_VELOCITY ? 'v' : 'p', input % SK_INPUT_VELOCITY / 3, "xyz"[input % 3]);
+}
+
+static void glsl_parameter(sk_writer *w, uint32_t parameter) {
+    sk_put(w, "q%u", parameter);
+}
+
+static void glsl_result(sk_writer *w, int component) {
+    if (w->formula->size == 3) sk_put(w, "    value.%c = ", "xyz"[component]);
+    else sk_put(w, "    return ");
+}
+
+static void glsl_derivative(sk_writer *w, int component, int particle, int axis) {
+    if (w->formula->size == 3) sk_put(w, "    by_p%d[%d][%d] = ", particle, axis, component);
+    else sk_put(w, "    by_p%d.%c = ", particle, "xyz"[axis]);
+}
+
+static void glsl_close(sk_writer *w) {
+    sk_put(w, w->formula->size == 3 ? "    return value;\n}\n" : "}\n");
+}
+
+const sk_language sk_glsl_language = {.call = {[SK_OP_RECIPROCAL] = "formula_reciprocal",
+                                               [SK_OP_SQRT] = "formula_sqrt",
+                                               [SK_OP_ABS] = "abs",
+                                               [SK_OP_LESS] = "formula_less",
+                                               [SK_OP_EXP] = "formula_exp",
+                                               [SK_OP_LOG] = "formula_log",
+                                               [SK_OP_SIN] = "sin",
+                                               [SK_OP_COS] = "cos",
+                                               [SK_OP_TAN] = "tan",
+                                               [SK_OP_ASIN] = "formula_asin",
+                                               [SK_OP_ACOS] = "formula_acos",
+                                               [SK_OP_ATAN2] = "atan",
+                                               [SK_OP_POW] = "formula_pow"},
+                                      .declaration = "float",
+                                      .constant = glsl_constant,
+                                      .input = glsl_input,
+                                      .parameter = glsl_parameter,
+                                      .open = glsl_open,
+                                      .result = glsl_result,
+                                      .derivative = glsl_derivative,
+                                      .end_result = ";\n",
+                                      .close = glsl_close};
