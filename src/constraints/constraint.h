@@ -21,20 +21,22 @@
 typedef struct sk_batch sk_batch;
 typedef struct sk_sweep sk_sweep;
 
-/* A kernel for each way that a sweep can walk. */
+enum { SK_MOST_ARITY = 8 }; /* particles an element */
+
+/* A kernel for each way that a sweep can walk; a kind without walks along strips goes in groups. */
 typedef struct sk_sweep_kernels {
     sk_kernels strips, groups;
 } sk_sweep_kernels;
 
 typedef struct sk_constraint_type {
     skein_kind kind; /* the parameters begin with an sk_material */
-    int arity;       /* particles an element; 2 is the only one that sweeps know so far */
+    int arity;       /* particles an element, 2 to 8 */
     /* The rest value of an element whose particles stand at x[0 .. arity). */
     double (*rest)(const double (*x)[3]);
     sk_sweep_kernels force;
     sk_sweep_kernels project;        /* without damping, one pass a substep: no multiplier is kept */
     sk_sweep_kernels project_damped; /* with damping or several passes */
-    sk_sweep_kernels limit;          /* keeps C under the batch's bound; positions */
+    sk_sweep_kernels limit;          /* keeps C under the batch's bound; positions. Not every kind has one */
     sk_sweep_kernels limit_moving;   /* the same, and velocities: where they are not taken from positions */
     /* For implicit solves, over a batch's elements, with the row's coefficients a and b: dst += (a k + b c) p for the
      * direction p, its second source, k and c being the stiffness and damping at X (positive definite); and that

@@ -1,67 +1,17 @@
-/* Distance: C = |xa - xb| - rest. As a force it is the classical spring and damper pair. */
+/* Distance: C = |p0 - p1| - L. As a force it is the classical spring and damper pair. */
 #ifdef SK_ISA
 
-SK_INLINE sk_wide3 SK_ISA(along)(sk_wide s, sk_wide3 d) {
-    return (sk_wide3){s * d.x, s * d.y, s * d.z};
-}
-
-/* Particles in one place have no direction: they get no force, and no NaN. */
-SK_INLINE void SK_ISA(pair)(sk_pair *p, const sk_pair_constants *c, sk_pair_mode mode) {
-    sk_wide3 d = {p->a.x - p->b.x, p->a.y - p->b.y, p->a.z - p->b.z};
-    sk_wide square = SK_ISA(sk_dot_wide)(d, d);
-    sk_wide length = SK_ISA(sk_wide_sqrt)(square);
-    if (mode == SK_PAIR_FORCE) {
-        sk_wide inverse = SK_ISA(sk_keep)(SK_ISA(sk_positive)(length), 1 / length);
-        sk_wide3 u = {p->other_a.x - p->other_b.x, p->other_a.y - p->other_b.y, p->other_a.z - p->other_b.z};
-        sk_wide rate = SK_ISA(sk_dot_wide)(d, u) * inverse;
-        sk_wide push = (p->stiffness * ((p->rest - length) - c->damping_time * rate)) * inverse;
-        p->da = p->db = SK_ISA(along)(push, d);
-        return;
-    }
-    sk_wide weight = p->wa + p->wb, s;
-    if (mode == SK_PAIR_PROJECT) {
-        sk_wide below = length * (weight + p->soft);
-        s = SK_ISA(sk_keep)(SK_ISA(sk_positive)(below), (p->rest - length) / below);
-    } else if (mode == SK_PAIR_PROJECT_DAMPED) {
-        sk_wide3 moved = {d.x - (p->other_a.x - p->other_b.x), d.y - (p->other_a.y - p->other_b.y),
-                          d.z - (p->other_a.z - p->other_b.z)};
-        sk_wide inverse = SK_ISA(sk_keep)(SK_ISA(sk_positive)(length), 1 / length);
-        sk_wide below = (1 + c->gamma) * weight + p->soft;
-        // a multiplier of 0 against an infinite compliance is nothing
-        sk_wide held = SK_ISA(sk_keep)(SK_ISA(sk_differ)(p->multiplier, (sk_wide){0}), p->soft * p->multiplier);
-        sk_wide above = (p->rest - length) - held - c->gamma * (SK_ISA(sk_dot_wide)(d, moved) * inverse);
-        sk_wide change = SK_ISA(sk_keep)(SK_ISA(sk_positive)(below), above / below);
-        p->multiplier += change;
-        s = change * inverse;
-    } else {
-        // lanes without an element have a rest length of 0: for them any length is right
-        sk_wide most = c->most * p->rest, below = length * weight;
-        sk_mask over = SK_ISA(sk_more)(length, most) & SK_ISA(sk_positive)(below) & SK_ISA(sk_positive)(p->rest);
-        s = SK_ISA(sk_keep)(over, (most - length) / below);
-        if (mode == SK_PAIR_LIMIT_MOVING) {
-            sk_wide3 u = {p->other_a.x - p->other_b.x, p->other_a.y - p->other_b.y, p->other_a.z - p->other_b.z};
-            sk_wide parting = SK_ISA(sk_dot_wide)(d, u);
-            sk_wide stop = SK_ISA(sk_keep)(over & SK_ISA(sk_positive)(parting), -parting / (square * weight));
-            p->dv_a = SK_ISA(along)(stop * p->wa, d);
-            p->dv_b = SK_ISA(along)(stop * p->wb, d);
-        }
-    }
-    p->da = SK_ISA(along)(s * p->wa, d);
-    p->db = SK_ISA(along)(s * p->wb, d);
-}
-
-/* k along the spring; the tension over the length across it, where it is stretched (pressed, it would give way). */
-SK_INLINE void SK_ISA(stiffness)(sk_wide k, sk_wide rest, sk_wide length, sk_wide inverse_length, sk_wide *along,
-                                 sk_wide *across) {
-    *along = k;
-    *across = SK_ISA(sk_keep)(SK_ISA(sk_more)(length, rest), k * (length - rest) * inverse_length);
-}
-
-#include "constraints/pair_solve.h"
-#include "constraints/pair_sweeps.h"
+#include "constraints/element_arithmetic.h"
+#include "constraints/element_stiffness.h"
+#include "constraints/element_sweeps.h"
 
 #else
-#include "constraints/pair.h"
+#define SK_ARITY 2
+#define SK_FORMULA "constraints/emitted/distance.h"
+#define SK_WITH_STRIPS
+#define SK_WITH_LIMITS
+#define SK_ACROSS
+#include "constraints/element.h"
 
 #define SK_KERNELS "constraints/distance.c"
 #include "base/for_each_isa.h"

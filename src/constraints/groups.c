@@ -19,6 +19,7 @@ typedef struct dealer {
     sk_allocator *allocator;
     const sk_particles *particles;
     size_t *lane_of;
+    size_t arity;
 } dealer;
 
 typedef struct grouping {
@@ -51,11 +52,13 @@ static uint32_t first_open(uint32_t *next, uint32_t group) {
 static void deal(const dealer *d, grouping *g) {
     for (size_t e = g->first; e < g->last; e++) {
         if (!is_left(d, e)) continue;
-        uint32_t a = d->batch->slot[2 * e], b = d->batch->slot[2 * e + 1];
-        uint32_t after = g->latest[a] > g->latest[b] ? g->latest[a] : g->latest[b];
+        const uint32_t *slot = d->batch->slot + e * d->arity;
+        uint32_t after = 0;
+        for (size_t i = 0; i < d->arity; i++)
+            if (g->latest[slot[i]] > after) after = g->latest[slot[i]];
         uint32_t group = first_open(g->next, after ? after - 1 + GROUP_DISTANCE : 0);
         g->group[e - g->first] = group;
-        g->latest[a] = g->latest[b] = group + 1;
+        for (size_t i = 0; i < d->arity; i++) g->latest[slot[i]] = group + 1;
         if (++g->filled[group] == SK_LANES) g->next[group] = group + 1;
         if (group + 1 > g->group_count) g->group_count = group + 1;
     }
@@ -82,7 +85,8 @@ static sk_sweep *add_sweep(const dealer *d, grouping *g, size_t left) {
     if (!sk_reserve(d->allocator, (void **)&batch->sweeps, &batch->sweep_capacity, batch->sweep_count + 1,
                     sizeof(sk_sweep)))
         return NULL;
-    uint32_t *slots = sk_allocate(d->allocator, g->group_count * 2 * SK_LANES * sizeof *slots);
+    size_t count = g->group_count * d->arity * SK_LANES;
+    uint32_t *slots = sk_allocate(d->allocator, count * sizeof *slots);
     if (!slots) return NULL;
     sk_sweep *sweep = &batch->sweeps[batch->sweep_count++];
     *sweep = (sk_sweep){.batch = batch,
@@ -91,13 +95,13 @@ static sk_sweep *add_sweep(const dealer *d, grouping *g, size_t left) {
                         .slots = slots,
                         .group_count = g->group_count};
     snprintf(sweep->label, sizeof sweep->label, "%.40s groups", batch->label);
-    for (size_t i = 0; i < g->group_count * 2 * SK_LANES; i++) slots[i] = (uint32_t)d->particles->empty_slot;
+    for (size_t i = 0; i < count; i++) slots[i] = (uint32_t)d->particles->empty_slot;
     memset(g->filled, 0, g->group_count);
     for (size_t e = g->first; e < g->last; e++) {
         if (!is_left(d, e)) continue;
         size_t group = g->group[e - g->first], lane = g->filled[group]++;
-        slots[group * 2 * SK_LANES + lane] = batch->slot[2 * e];
-        slots[group * 2 * SK_LANES + SK_LANES + lane] = batch->slot[2 * e + 1];
+        for (size_t i = 0; i < d->arity; i++)
+            slots[(group * d->arity + i) * SK_LANES + lane] = batch->slot[e * d->arity + i];
         d->lane_of[e] = batch->lane_count + group * SK_LANES + lane;
     }
     batch->lane_count += g->group_count * SK_LANES;
@@ -121,7 +125,7 @@ static sk_walk region_of(const sk_particles *particles, uint32_t slot) {
 /* The first and last slab that a group touches; false if it leaves the region. */
 static bool find_slabs(const dealer *d, const uint32_t *slots, const sk_walk *walk, size_t slab[2]) {
     slab[0] = SIZE_MAX, slab[1] = 0;
-    for (size_t i = 0; i < 2 * SK_LANES; i++) {
+    for (size_t i = 0; i < d->arity * SK_LANES; i++) {
         if (slots[i] == d->particles->empty_slot) continue;
         if (slots[i] < walk->first_slot) return false;
         size_t at = (slots[i] - walk->first_slot) / (walk->width * SK_LANES);
@@ -144,7 +148,7 @@ static bool find_walk(const dealer *d, sk_sweep *sweep) {
     for (size_t j = 0; j <= walk.rows; j++) start[j] = (uint32_t)sweep->group_count;
     for (size_t g = sweep->group_count; g-- > 0 && walks;) {
         size_t slab[2];
-        walks = find_slabs(d, sweep->slots + g * 2 * SK_LANES, &walk, slab);
+        walks = find_slabs(d, sweep->slots + g * d->arity * SK_LANES, &walk, slab);
         if (slab[0] < lowest) lowest = slab[0];
         if (walks && slab[1] - lowest > walk.reach) walk.reach = slab[1] - lowest;
         start[lowest] = (uint32_t)g;
@@ -169,7 +173,9 @@ static size_t find_passes(const dealer *d, size_t first[MOST_PASSES + 1]) {
     first[count++] = 0;
     for (size_t e = 0; e < d->batch->count && count < MOST_PASSES; e++) {
         if (!is_left(d, e)) continue;
-        size_t a = d->batch->slot[2 * e], b = d->batch->slot[2 * e + 1], low = a < b ? a : b;
+        size_t low = SIZE_MAX;
+        for (size_t i = 0; i < d->arity; i++)
+            if (d->batch->slot[e * d->arity + i] < low) low = d->batch->slot[e * d->arity + i];
         if (low + d->particles->slot_count / 2 < highest) first[count++] = e, highest = 0;
         if (low > highest) highest = low;
     }
@@ -204,7 +210,7 @@ static bool add_pass(const dealer *d, size_t first, size_t last) {
 }
 
 bool sk_groups_deal(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles, size_t *lane_of) {
-    dealer d = {batch, allocator, particles, lane_of};
+    dealer d = {batch, allocator, particles, lane_of, (size_t)batch->type->arity};
     size_t first[MOST_PASSES + 1], count = find_passes(&d, first);
     for (size_t i = 0; i < count; i++)
         if (!add_pass(&d, first[i], first[i + 1])) return false;
