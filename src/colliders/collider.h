@@ -8,6 +8,7 @@
 
 #include "base/fields.h"
 #include "base/wide_types.h"
+#include "formula/parameters.h"
 #include "plan/row.h"
 
 /* Where a collider stands at a time, and how it moves there. */
@@ -49,6 +50,7 @@ typedef struct sk_collider_type {
     double (*mass)(const void *params);
     /* Distance and normal of sixteen particles; a version for each instruction set. */
     sk_probe *probe[SK_ISA_COUNT];
+    const sk_making *making; /* what is made from its texts; NULL: nothing */
 } sk_collider_type;
 
 typedef struct sk_collider {

@@ -15,6 +15,7 @@
 #define SK_CONSTRAINTS_CONSTRAINT_H
 
 #include "base/fields.h"
+#include "formula/parameters.h"
 #include "particles/particles.h"
 #include "plan/row.h"
 
@@ -46,6 +47,7 @@ typedef struct sk_constraint_type {
     void (*strain)(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, real *strain);
     /* C of elements [begin, end): half of its square times the stiffness is their energy. */
     void (*value)(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, double *value);
+    const sk_making *making; /* what is made from its texts; NULL: nothing */
 } sk_constraint_type;
 
 /* What every constraint kind is made of. */

@@ -50,18 +50,10 @@ static void release_body(skein_world *world, sk_body *body) {
     sk_release(allocator, body);
 }
 
-/* Releases an object's parameters and itself; its rules are released with the world's lists. */
+/* An object's rules are released with the world's lists. */
 static void release_object(skein_world *world, sk_object *object) {
-    sk_allocator *allocator = &world->allocator;
-    size_t common_count;
-    const skein_field *common = sk_common_fields(object->category, &common_count);
-    if (object->kind) {
-        sk_fields_clear(allocator, object->kind->fields, object->kind->field_count, object->params);
-        sk_fields_clear(allocator, common, common_count, sk_common_of(object));
-    }
-    sk_release(allocator, object->params);
     if (object->category == SKEIN_BODY && object->as.body) release_body(world, object->as.body);
-    sk_release(allocator, object);
+    sk_object_release(&world->allocator, object);
 }
 
 void skein_world_destroy(skein_world *world) {
