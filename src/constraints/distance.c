@@ -7,6 +7,7 @@
 
 #else
 #define SK_ARITY 2
+#define SK_RESTS 1
 #define SK_FORMULA "constraints/emitted/distance.h"
 #define SK_WITH_STRIPS
 #define SK_WITH_LIMITS
@@ -27,33 +28,14 @@ static const skein_field fields[] = {
             "force a metre a second of stretching; it does not slow other motion"),
 };
 
-static double rest_length(const double (*x)[3]) {
-    double d[3] = {x[0][0] - x[1][0], x[0][1] - x[1][1], x[0][2] - x[1][2]};
-    return __builtin_sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-}
-
-static void strain(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, real *out) {
-    for (size_t e = begin; e < end; e++) {
-        sk_vec3 d = sk_sub(sk_xyz(x[batch->slot[2 * e]]), sk_xyz(x[batch->slot[2 * e + 1]]));
-        real rest = batch->rest[e];
-        out[e - begin] = rest > 0 ? (sk_length(d) - rest) / rest : 0;
-    }
-}
-
-static void value(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, double *out) {
-    for (size_t e = begin; e < end; e++) {
-        const sk_vec4 *a = &x[batch->slot[2 * e]], *b = &x[batch->slot[2 * e + 1]];
-        const double at[2][3] = {{(double)a->x, (double)a->y, (double)a->z},
-                                 {(double)b->x, (double)b->y, (double)b->z}};
-        out[e - begin] = rest_length(at) - (double)batch->rest[e];
-    }
-}
+#include "constraints/element_scalar.h"
 
 const sk_constraint_type sk_distance = {
     .kind = {"distance", "keeps two particles at their rest distance (a spring and damper)", SKEIN_CONSTRAINT, fields,
              sizeof fields / sizeof *fields, sizeof(distance_params)},
-    .arity = 2,
-    .rest = rest_length,
+    .arity = SK_ARITY,
+    .rest_count = SK_RESTS,
+    .rest = rest_of,
     .force = {{SK_EACH_ISA(force_strips)}, {SK_EACH_ISA(force_groups)}},
     .project = {{SK_EACH_ISA(project_strips)}, {SK_EACH_ISA(project_groups)}},
     .project_damped = {{SK_EACH_ISA(project_damped_strips)}, {SK_EACH_ISA(project_damped_groups)}},
@@ -62,6 +44,6 @@ const sk_constraint_type sk_distance = {
     .apply = {SK_EACH_ISA(apply)},
     .diagonal = {SK_EACH_ISA(diagonal)},
     .strain = strain,
-    .value = value,
+    .energy = energy,
 };
 #endif

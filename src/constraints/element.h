@@ -1,5 +1,5 @@
 /* Sixteen constraints of one kind, on their way through its arithmetic. A kind that is compiled into the library says
- * how many particles an element has (SK_ARITY) before it includes this. */
+ * how many particles an element has (SK_ARITY), and how many rest values (SK_RESTS), before it includes this. */
 #ifndef SK_CONSTRAINTS_ELEMENT_H
 #define SK_CONSTRAINTS_ELEMENT_H
 
@@ -29,7 +29,7 @@ typedef struct sk_element {
     sk_wide3 x[SK_ARITY];
     sk_wide w[SK_ARITY];      /* inverse masses */
     sk_wide3 other[SK_ARITY]; /* velocities; of damped projection the positions at the substep's start */
-    sk_wide rest, stiffness, multiplier;
+    sk_wide rest[SK_RESTS], stiffness, multiplier;
     sk_wide soft; /* 1/(k h^2) */
     sk_wide value, divisor;
     sk_wide3 gradient[SK_ARITY];      /* G */

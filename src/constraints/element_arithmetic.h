@@ -3,13 +3,14 @@
  * emitted/, and the macros below say what that file's words mean here. */
 
 #define FORMULA(name) SK_INLINE void SK_ISA(name)(sk_element * e)
+#define RESTS(name) SK_INLINE void SK_ISA(name)(sk_element * e)
 #define REAL sk_wide
 #define NUMBER(x) SK_ISA(sk_splat)((real)(x))
 #define AXIS_0 x
 #define AXIS_1 y
 #define AXIS_2 z
 #define POSITION(particle, axis) e->x[particle].AXIS_##axis
-#define PARAMETER(index) e->rest
+#define PARAMETER(index) e->rest[index]
 #define VALUE(component, x) e->value = (x)
 #define GRADIENT(component, particle, axis, g) e->gradient[particle].AXIS_##axis = (g)
 #define OPPOSITE(particle, of)                                     \
@@ -20,6 +21,9 @@
 #define UNIT_DIVISOR(x) e->divided = true, e->divisor = (x)
 #define RECIPROCAL(x) SK_ISA(reciprocal)(x)
 #define SQRT(x) SK_ISA(sk_wide_sqrt)(x)
+#define REST(index, x) e->rest[index] = (x)
+#define ABS(x) SK_ISA(sk_wide_abs)(x)
+#define LESS(a, b, yes, no) SK_ISA(sk_select)(SK_ISA(sk_more)(b, a), yes, no)
 #define ATAN2(y, x) SK_ISA(sk_wide_atan2)(y, x)
 
 SK_INLINE sk_wide SK_ISA(reciprocal)(sk_wide x) {
@@ -90,9 +94,9 @@ SK_INLINE void SK_ISA(project_damped)(sk_element *e, const sk_element_constants 
 
 /* Back to the bound, as if rigid there. Lanes without an element have a rest value of 0: for them any is right. */
 SK_INLINE void SK_ISA(limit)(sk_element *e, const sk_element_constants *c, bool moving) {
-    sk_wide weight = SK_ISA(weight)(e), most = c->bound * e->rest, below = weight;
+    sk_wide weight = SK_ISA(weight)(e), most = c->bound * e->rest[0], below = weight;
     if (e->divided) below = e->divisor * weight;
-    sk_mask over = SK_ISA(sk_more)(e->value, most) & SK_ISA(sk_positive)(below) & SK_ISA(sk_positive)(e->rest);
+    sk_mask over = SK_ISA(sk_more)(e->value, most) & SK_ISA(sk_positive)(below) & SK_ISA(sk_positive)(e->rest[0]);
     sk_wide s = SK_ISA(sk_keep)(over, (most - e->value) / below);
     SK_EACH_PARTICLE (i) e->scale[i] = s * e->w[i];
     if (!moving) return;
@@ -111,6 +115,7 @@ SK_INLINE void SK_ISA(work_out)(sk_element *e, const sk_element_constants *c, sk
 }
 
 #undef FORMULA
+#undef RESTS
 #undef REAL
 #undef NUMBER
 #undef AXIS_0
@@ -124,4 +129,7 @@ SK_INLINE void SK_ISA(work_out)(sk_element *e, const sk_element_constants *c, sk
 #undef UNIT_DIVISOR
 #undef RECIPROCAL
 #undef SQRT
+#undef REST
+#undef ABS
+#undef LESS
 #undef ATAN2

@@ -23,7 +23,7 @@ SK_INLINE void SK_ISA(stiffen)(SK_ISA(stiff) * s, const sk_run *run, const sk_ro
     sk_element *e = &s->e;
     s->count = end - begin < SK_LANES ? end - begin : SK_LANES;
     memset(e->x, 0, sizeof e->x);
-    e->rest = (sk_wide){0};
+    memset(e->rest, 0, sizeof e->rest);
     sk_wide stiff = {0};
     for (size_t l = 0; l < s->count; l++) {
         size_t element = begin + l;
@@ -32,7 +32,7 @@ SK_INLINE void SK_ISA(stiffen)(SK_ISA(stiff) * s, const sk_run *run, const sk_ro
             sk_vec4 x = sk_load(run->vector[SK_X], row->packed, s->slot[i][l]);
             e->x[i].x[l] = x.x, e->x[i].y[l] = x.y, e->x[i].z[l] = x.z;
         }
-        e->rest[l] = batch->rest[element];
+        for (int r = 0; r < SK_RESTS; r++) e->rest[r][l] = batch->rest[(size_t)r * batch->count + element];
         stiff[l] = batch->scale ? k * batch->scale[element] : k;
     }
     e->divided = e->opposite = false;

@@ -20,11 +20,12 @@ SK_INLINE void SK_ISA(set_values)(sk_element *e, const sk_sweep *sweep, const sk
                                   size_t lane, bool special, bool multiplier) {
     const sk_batch *batch = sweep->batch;
     if (special) {
-        e->rest = *(const sk_wide *)(const void *)(batch->lane_rest + lane);
+        for (int r = 0; r < SK_RESTS; r++)
+            e->rest[r] = *(const sk_wide *)(const void *)(batch->lane_rest + (size_t)r * batch->lane_count + lane);
         e->stiffness = *(const sk_wide *)(const void *)(batch->lane_stiffness + lane);
         e->soft = *(const sk_wide *)(const void *)(batch->lane_compliance + lane) * constants->per_step;
     } else {
-        e->rest = SK_ISA(sk_splat)(sweep->rest);
+        for (int r = 0; r < SK_RESTS; r++) e->rest[r] = SK_ISA(sk_splat)(sweep->rest[r]);
         e->stiffness = SK_ISA(sk_splat)(sweep->stiffness);
         e->soft = SK_ISA(sk_splat)(sweep->compliance * constants->per_step);
     }

@@ -8,7 +8,8 @@
 #include <string.h>
 
 enum {
-    GROUP_DISTANCE = 4, /* dependent groups stand so far apart where they can, to hide each other's latency */
+    GROUP_DISTANCE = 4, /* dependent groups stand so far apart where they can, to hide each other's latency, */
+    BLOCK_DISTANCE = SK_BLOCK_GROUPS, /* or so far, to make blocks */
     MOST_PASSES = 8,    /* sweeps that a batch is cut into */
     LEAST_SLABS = 12,   /* of a walk, */
     LEAST_SHARE = 6     /* and for each slab of its reach */
@@ -19,7 +20,7 @@ typedef struct dealer {
     sk_allocator *allocator;
     const sk_particles *particles;
     size_t *lane_of;
-    size_t arity;
+    size_t arity, distance;
 } dealer;
 
 typedef struct grouping {
@@ -56,7 +57,7 @@ static void deal(const dealer *d, grouping *g) {
         uint32_t after = 0;
         for (size_t i = 0; i < d->arity; i++)
             if (g->latest[slot[i]] > after) after = g->latest[slot[i]];
-        uint32_t group = first_open(g->next, after ? after - 1 + GROUP_DISTANCE : 0);
+        uint32_t group = first_open(g->next, after ? after - 1 + (uint32_t)d->distance : 0);
         g->group[e - g->first] = group;
         for (size_t i = 0; i < d->arity; i++) g->latest[slot[i]] = group + 1;
         if (++g->filled[group] == SK_LANES) g->next[group] = group + 1;
@@ -106,6 +107,27 @@ static sk_sweep *add_sweep(const dealer *d, grouping *g, size_t left) {
     }
     batch->lane_count += g->group_count * SK_LANES;
     return sweep;
+}
+
+/* Finds how many groups from each one on share no particle. False when there is no memory. */
+static bool find_blocks(const dealer *d, sk_sweep *sweep, uint32_t *latest) {
+    sweep->ahead = sk_allocate(d->allocator, sweep->group_count);
+    if (!sweep->ahead) return false;
+    memset(latest, 0, d->particles->slot_count * sizeof *latest);
+    size_t open = 0; // groups before it know how many they have
+    for (size_t g = 0; g < sweep->group_count; g++) {
+        size_t before = 0; // the newest group that shares a particle, counted from 1
+        for (size_t i = 0; i < d->arity * SK_LANES; i++) {
+            uint32_t slot = sweep->slots[g * d->arity * SK_LANES + i];
+            if (slot == d->particles->empty_slot) continue;
+            if (latest[slot] > before && latest[slot] != g + 1) before = latest[slot];
+            latest[slot] = (uint32_t)g + 1;
+        }
+        if (g >= SK_BLOCK_GROUPS && before + SK_BLOCK_GROUPS < g + 1) before = g + 1 - SK_BLOCK_GROUPS;
+        for (; open < before; open++) sweep->ahead[open] = (uint8_t)(g - open);
+    }
+    for (; open < sweep->group_count; open++) sweep->ahead[open] = (uint8_t)(sweep->group_count - open);
+    return true;
 }
 
 /* ---- its walk ---- */
@@ -187,8 +209,8 @@ static bool add_pass(const dealer *d, size_t first, size_t last) {
     size_t left = 0;
     for (size_t e = first; e < last; e++) left += is_left(d, e);
     if (!left) return true;
-    // in the worst case all elements share a particle: each has a group of its own, GROUP_DISTANCE apart
-    size_t most = left * GROUP_DISTANCE + GROUP_DISTANCE + 1;
+    // in the worst case all elements share a particle: each has a group of its own, all far apart
+    size_t most = left * d->distance + d->distance + 1;
     grouping g = {.first = first, .last = last};
     g.latest = sk_allocate(d->allocator, (d->particles->slot_count + SK_LANES) * sizeof *g.latest);
     g.next = sk_allocate(d->allocator, most * sizeof *g.next);
@@ -200,7 +222,7 @@ static bool add_pass(const dealer *d, size_t first, size_t last) {
         deal(d, &g);
         close_up(d, &g);
         sk_sweep *sweep = add_sweep(d, &g, left);
-        good = sweep && find_walk(d, sweep);
+        good = sweep && find_walk(d, sweep) && (!d->batch->type->in_blocks || find_blocks(d, sweep, g.latest));
     }
     sk_release(d->allocator, g.latest);
     sk_release(d->allocator, g.next);
@@ -210,7 +232,8 @@ static bool add_pass(const dealer *d, size_t first, size_t last) {
 }
 
 bool sk_groups_deal(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles, size_t *lane_of) {
-    dealer d = {batch, allocator, particles, lane_of, (size_t)batch->type->arity};
+    dealer d = {batch, allocator, particles, lane_of, batch->arity,
+                batch->type->in_blocks ? BLOCK_DISTANCE : GROUP_DISTANCE};
     size_t first[MOST_PASSES + 1], count = find_passes(&d, first);
     for (size_t i = 0; i < count; i++)
         if (!add_pass(&d, first[i], first[i + 1])) return false;

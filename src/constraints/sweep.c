@@ -190,7 +190,8 @@ void sk_batch_forget_sweeps(sk_batch *batch, sk_allocator *allocator) {
     for (size_t i = 0; i < batch->sweep_count; i++) {
         sk_release(allocator, batch->sweeps[i].slots);
         sk_release(allocator, batch->sweeps[i].slab_start);
-        batch->sweeps[i].slots = batch->sweeps[i].slab_start = NULL;
+        sk_release(allocator, batch->sweeps[i].ahead);
+        batch->sweeps[i] = (sk_sweep){.batch = NULL};
     }
     batch->sweep_count = batch->lane_count = 0;
 }
@@ -198,7 +199,7 @@ void sk_batch_forget_sweeps(sk_batch *batch, sk_allocator *allocator) {
 static bool allocate_lanes(sk_batch *batch, sk_allocator *allocator) {
     size_t size = batch->lane_count * sizeof(real);
     batch->lane = sk_allocate(allocator, batch->count * sizeof *batch->lane);
-    batch->lane_rest = sk_allocate(allocator, size);
+    batch->lane_rest = sk_allocate(allocator, batch->rest_count * size);
     batch->lane_stiffness = sk_allocate(allocator, size);
     batch->lane_compliance = sk_allocate(allocator, size);
     batch->lane_multiplier = sk_allocate(allocator, size);
@@ -212,10 +213,9 @@ bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particl
     size_t *lane_of = sk_allocate(allocator, batch->count * sizeof *lane_of);
     bool *taken = NULL, good = c && lane_of;
     sk_batch_forget_sweeps(batch, allocator);
-    size_t arity = (size_t)batch->type->arity;
-    for (size_t i = 0; i < arity * batch->count; i++) batch->slot[i] = particles->slot_of[batch->particle[i]];
+    for (size_t i = 0; i < batch->arity * batch->count; i++) batch->slot[i] = particles->slot_of[batch->particle[i]];
     if (good) {
-        *c = (cutter){.batch = batch, .allocator = allocator, .particles = particles, .arity = batch->type->arity};
+        *c = (cutter){.batch = batch, .allocator = allocator, .particles = particles, .arity = (int)batch->arity};
         good = !batch->type->project.strips.version[0] || add_strip_sweeps(c);
     }
     if (good) good = (taken = sk_allocate(allocator, batch->lane_count)) != NULL;
@@ -235,29 +235,34 @@ bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particl
 static void mark_special(sk_batch *batch, sk_sweep *sweep) {
     size_t blocks = sweep->walk.rows * sweep->walk.width;
     size_t middle = sweep->first_lane + (blocks / 2) * SK_LANES + SK_LANES / 2;
-    sweep->rest = batch->lane_rest[middle];
+    for (size_t r = 0; r < batch->rest_count; r++)
+        sweep->rest[r] = batch->lane_rest[r * batch->lane_count + middle];
     sweep->stiffness = batch->lane_stiffness[middle];
     sweep->compliance = batch->lane_compliance[middle];
     for (size_t b = 0; b < blocks; b++) {
         size_t lane = sweep->first_lane + b * SK_LANES;
         bool special = false;
         for (size_t l = lane; l < lane + SK_LANES; l++)
-            special |= batch->lane_rest[l] != sweep->rest || batch->lane_stiffness[l] != sweep->stiffness ||
-                       batch->lane_compliance[l] != sweep->compliance;
+            special |= batch->lane_stiffness[l] != sweep->stiffness || batch->lane_compliance[l] != sweep->compliance;
+        for (size_t r = 0; r < batch->rest_count; r++)
+            for (size_t l = lane; l < lane + SK_LANES; l++)
+                special |= batch->lane_rest[r * batch->lane_count + l] != sweep->rest[r];
         batch->special[lane / SK_LANES] = special;
     }
 }
 
 void sk_batch_refresh(sk_batch *batch) {
     const sk_material *material = batch->params;
+    for (size_t i = 0; i < batch->rest_count * batch->lane_count; i++) batch->lane_rest[i] = 0;
     for (size_t l = 0; l < batch->lane_count; l++) {
-        batch->lane_rest[l] = batch->lane_stiffness[l] = 0;
+        batch->lane_stiffness[l] = 0;
         batch->lane_compliance[l] = (real)SK_UNBOUNDED;
     }
     for (size_t e = 0; e < batch->count; e++) {
         double k = material->stiffness * (batch->scale ? (double)batch->scale[e] : 1.0);
         size_t lane = batch->lane[e];
-        batch->lane_rest[lane] = batch->rest[e];
+        for (size_t r = 0; r < batch->rest_count; r++)
+            batch->lane_rest[r * batch->lane_count + lane] = batch->rest[r * batch->count + e];
         batch->lane_stiffness[lane] = (real)k;
         batch->lane_compliance[lane] = (real)(k > 0 ? 1 / k : SK_UNBOUNDED);
     }

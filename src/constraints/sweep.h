@@ -18,7 +18,11 @@
 #include "base/wide_types.h"
 #include "constraints/constraint.h"
 
-enum { SK_SLAB_BLOCKS = 16 }; /* blocks a slab, where there are no strips */
+enum {
+    SK_SLAB_BLOCKS = 16, /* blocks a slab, where there are no strips */
+    SK_BLOCK_GROUPS = 8, /* groups that are worked out together at the most */
+    SK_MOST_RESTS = 4    /* rest values of an element that walks along strips */
+};
 
 /* Blocks [first, last) of a strip row: particle i of their elements lies shift[i] strips on. */
 typedef struct sk_span {
@@ -38,10 +42,11 @@ struct sk_sweep {
     sk_span span[SK_MOST_ARITY];                                 /* a strip row's */
     size_t span_count;
     size_t together;                  /* sweeps from this one on along the same strips */
-    real rest, stiffness, compliance; /* what most blocks have in every lane */
+    real rest[SK_MOST_RESTS], stiffness, compliance; /* what most blocks have in every lane */
     /* groups, in the order of the elements */
     uint32_t *slots; /* of each group 16 first particles, 16 second ones ... */
     size_t group_count;
+    uint8_t *ahead; /* of each group: how many from it on share no particle; NULL where nobody asks */
     uint32_t *slab_start; /* where they walk: the groups of slab j are [slab_start[j], slab_start[j + 1]) */
     char label[48];       /* the batch's, and the direction */
 };

@@ -137,7 +137,7 @@ skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk
     if (!SK_RESERVE(allocator, &world->rules.batches, world->rules.batches.count + 1))
         return sk_fail_memory(error, label);
     sk_material *own = sk_allocate(allocator, sizeof *own);
-    sk_batch *batch = own ? sk_batch_create(allocator, type, count, particles, rest, scale) : NULL;
+    sk_batch *batch = own ? sk_batch_create(allocator, type, own, count, particles, rest, scale) : NULL;
     if (!batch) {
         sk_release(allocator, own);
         return sk_fail_memory(error, label);
