@@ -139,7 +139,7 @@ static void bad_names_are_refused(void **state) {
                    "did you mean 'parameters.R'?");
     expect_refused(
         SKEIN_SETTINGS(SKEIN_TEXT("text", "R*0"), SKEIN_REAL("parameters.R", 1), SKEIN_REAL("parameters.S", 1)),
-        "parameters.S", "no formula of this pull names 'S'");
+        "parameters.S", "'S' is in no formula of this object");
 }
 
 static void at_most_32(void **state) {

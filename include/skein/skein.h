@@ -373,6 +373,8 @@ typedef struct skein_statistics {
     size_t contacts;          /* pairs of a particle and a collider that touch */
     size_t particles, held_particles, constraints;
     size_t nonfinite;    /* particles with a position or velocity that is not finite */
+    size_t guarded;      /* values of formulas that have none at the present state, where 0 or the nearest was taken:
+                            of each collider and force at each free particle (docs/formula.md) */
     size_t memory_bytes; /* held by the world now */
     uint64_t state_hash; /* of positions and velocities in the user's order */
 } skein_statistics;
