@@ -28,15 +28,15 @@ typedef struct sk_pair {
 /* What is the same for all elements of a row. */
 typedef struct sk_pair_constants {
     real damping_time; /* c/k, s */
-    real per_step;     /* 1/h^2 */
+    real per_step;     /* 1/h^2, times the projections that share the stiffness */
     real gamma;        /* c/(k h) */
     real most;         /* 1 + bound */
 } sk_pair_constants;
 
 static inline sk_pair_constants sk_pair_prepare(const sk_batch *batch, const sk_row *row) {
     double damping_time = sk_batch_damping_time(batch);
-    return (sk_pair_constants){(real)damping_time, (real)(1 / (row->dt * row->dt)), (real)(damping_time / row->dt),
-                               (real)(1 + (batch->bound ? *batch->bound : 0))};
+    return (sk_pair_constants){(real)damping_time, (real)(row->coefficient[0] / (row->dt * row->dt)),
+                               (real)(damping_time / row->dt), (real)(1 + (batch->bound ? *batch->bound : 0))};
 }
 
 #endif
