@@ -70,8 +70,8 @@ void sk_write_forces(sk_writer *writer);
 /* X: `passes` sweeps over every batch; X0 is the state at the start of the substep. */
 void sk_write_projections(sk_writer *writer, int passes);
 
-/* The same as if every constraint with a stiffness were rigid and undamped. */
-void sk_write_rigid_projections(sk_writer *writer, int passes);
+/* The same without a memory from pass to pass: each has its share, a `passes`-th, of the stiffness and damping. */
+void sk_write_shared_projections(sk_writer *writer, int passes);
 
 /* Whether any force or damped constraint depends on velocities. */
 bool sk_writes_velocity_forces(const sk_writer *writer);
