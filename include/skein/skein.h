@@ -210,10 +210,12 @@ skein_status skein_particles_add(skein_world *world, size_t count, const double 
  * without. `settings` may be NULL; so may `handle`. */
 skein_status skein_body_add(skein_world *world, const char *kind, const skein_mesh *mesh, const skein_setting *settings,
                             skein_handle *handle);
-/* Adds `count` constraints of one kind, each on the kind's number of particles, with the rest
- * values of the present positions (`distance`: 2 particles each). They share their settings. */
+/* Adds `count` constraints of one kind, each on the kind's number of particles (`distance`: 2; `formula` and `energy`:
+ * as many as the formula names), with the rest values of the present positions. They share their settings. */
 skein_status skein_constraint_add(skein_world *world, const char *kind, const uint32_t *particles, size_t count,
                                   const skein_setting *settings, skein_handle *handle);
+/* How many particles each constraint of the kind takes, with these settings (NULL: the defaults). */
+skein_status skein_constraint_arity(skein_world *world, const char *kind, const skein_setting *settings, size_t *arity);
 skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings, skein_handle *handle);
 skein_status skein_collider_add(skein_world *world, const char *kind, const skein_setting *settings,
                                 skein_handle *handle);

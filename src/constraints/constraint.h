@@ -50,7 +50,8 @@ typedef struct sk_constraint_type {
     sk_kernels apply, diagonal;
     /* Relative violation of elements [begin, end): (length - rest)/rest for a distance. */
     void (*strain)(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, real *strain);
-    /* Energies over the stiffness of elements [begin, end), C^2 / 2; returns how many had to be guarded (formula/graph.h). */
+    /* Energies over the stiffness of elements [begin, end), C^2 / 2; returns how many had to be guarded
+     * (formula/graph.h). */
     size_t (*energy)(const sk_batch *batch, double time, const sk_vec4 *x, size_t begin, size_t end, double *energy);
     const sk_making *making; /* what is made from its texts; NULL: nothing */
 } sk_constraint_type;
@@ -72,7 +73,7 @@ struct sk_batch {
     uint32_t *particle; /* count x arity, user's indices */
     uint32_t *slot;     /* the same as slots */
     real *rest;         /* rest_count x count: first all first ones */
-    real *scale; /* NULL: all 1 */
+    real *scale;        /* NULL: all 1 */
 
     /* Made from the above when slots change: elements in the order of sweeps, a lane each. */
     sk_sweep *sweeps;
@@ -86,8 +87,8 @@ struct sk_batch {
     uint8_t *special;      /* a block of 16 lanes each: not all as the sweep's common values say */
 };
 
-/* Makes a batch of copies, for the type's parameters; NULL when there is no memory. `rest` has rest_count x count reals,
- * `scale` (or NULL) `count`. */
+/* Makes a batch of copies, for the type's parameters; NULL when there is no memory. `rest` has rest_count x count
+ * reals, `scale` (or NULL) `count`. */
 sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *type, const void *params, size_t count,
                           const uint32_t *particles, const real *rest, const real *scale);
 int sk_constraint_arity(const sk_constraint_type *type, const void *params);

@@ -42,15 +42,15 @@ typedef struct sk_element {
 /* What is the same for all elements of a row. */
 typedef struct sk_element_constants {
     real damping_time; /* c/k, s */
-    real per_step;     /* 1/h^2 */
+    real per_step;     /* 1/h^2, times the projections that share the stiffness */
     real gamma;        /* c/(k h) */
     real bound;        /* of the relative violation */
 } sk_element_constants;
 
 static inline sk_element_constants sk_element_prepare(const sk_batch *batch, const sk_row *row) {
     double damping_time = sk_batch_damping_time(batch);
-    return (sk_element_constants){(real)damping_time, (real)(1 / (row->dt * row->dt)), (real)(damping_time / row->dt),
-                                  (real)(batch->bound ? *batch->bound : 0)};
+    return (sk_element_constants){(real)damping_time, (real)(row->coefficient[0] / (row->dt * row->dt)),
+                                  (real)(damping_time / row->dt), (real)(batch->bound ? *batch->bound : 0)};
 }
 
 #endif

@@ -10,9 +10,9 @@
 enum {
     GROUP_DISTANCE = 4, /* dependent groups stand so far apart where they can, to hide each other's latency, */
     BLOCK_DISTANCE = SK_BLOCK_GROUPS, /* or so far, to make blocks */
-    MOST_PASSES = 8,    /* sweeps that a batch is cut into */
-    LEAST_SLABS = 12,   /* of a walk, */
-    LEAST_SHARE = 6     /* and for each slab of its reach */
+    MOST_PASSES = 8,                  /* sweeps that a batch is cut into */
+    LEAST_SLABS = 12,                 /* of a walk, */
+    LEAST_SHARE = 6                   /* and for each slab of its reach */
 };
 
 typedef struct dealer {
@@ -232,8 +232,8 @@ static bool add_pass(const dealer *d, size_t first, size_t last) {
 }
 
 bool sk_groups_deal(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles, size_t *lane_of) {
-    dealer d = {batch, allocator, particles, lane_of, batch->arity,
-                batch->type->in_blocks ? BLOCK_DISTANCE : GROUP_DISTANCE};
+    dealer d = {batch,   allocator,    particles,
+                lane_of, batch->arity, batch->type->in_blocks ? BLOCK_DISTANCE : GROUP_DISTANCE};
     size_t first[MOST_PASSES + 1], count = find_passes(&d, first);
     for (size_t i = 0; i < count; i++)
         if (!add_pass(&d, first[i], first[i + 1])) return false;

@@ -235,8 +235,7 @@ bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particl
 static void mark_special(sk_batch *batch, sk_sweep *sweep) {
     size_t blocks = sweep->walk.rows * sweep->walk.width;
     size_t middle = sweep->first_lane + (blocks / 2) * SK_LANES + SK_LANES / 2;
-    for (size_t r = 0; r < batch->rest_count; r++)
-        sweep->rest[r] = batch->lane_rest[r * batch->lane_count + middle];
+    for (size_t r = 0; r < batch->rest_count; r++) sweep->rest[r] = batch->lane_rest[r * batch->lane_count + middle];
     sweep->stiffness = batch->lane_stiffness[middle];
     sweep->compliance = batch->lane_compliance[middle];
     for (size_t b = 0; b < blocks; b++) {

@@ -41,12 +41,12 @@ struct sk_sweep {
     int32_t row_step[SK_MOST_ARITY], column_step[SK_MOST_ARITY]; /* of each particle from the element's place */
     sk_span span[SK_MOST_ARITY];                                 /* a strip row's */
     size_t span_count;
-    size_t together;                  /* sweeps from this one on along the same strips */
+    size_t together;                                 /* sweeps from this one on along the same strips */
     real rest[SK_MOST_RESTS], stiffness, compliance; /* what most blocks have in every lane */
     /* groups, in the order of the elements */
     uint32_t *slots; /* of each group 16 first particles, 16 second ones ... */
     size_t group_count;
-    uint8_t *ahead; /* of each group: how many from it on share no particle; NULL where nobody asks */
+    uint8_t *ahead;       /* of each group: how many from it on share no particle; NULL where nobody asks */
     uint32_t *slab_start; /* where they walk: the groups of slab j are [slab_start[j], slab_start[j + 1]) */
     char label[48];       /* the batch's, and the direction */
 };

@@ -201,6 +201,16 @@ skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_typ
     return finish_object(world, object, handle);
 }
 
+skein_status sk_world_find_arity(skein_world *world, const sk_constraint_type *type, const skein_setting *settings,
+                                 size_t *arity) {
+    sk_object *object;
+    skein_status status = make_object(world, &type->kind, type->making, settings, &object, sk_world_error(world));
+    if (status) return status;
+    *arity = (size_t)sk_constraint_arity(type, object->params);
+    unmake_object(world, object);
+    return SKEIN_OK;
+}
+
 /* Takes back what a builder that failed has added since the marks. */
 static void undo_body(skein_world *world, sk_object *object, size_t particles, size_t triangles, size_t batches,
                       size_t limits) {

@@ -107,6 +107,8 @@ skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, con
                                const skein_setting *settings, skein_handle *handle);
 skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_type *type, const uint32_t *particles,
                                      size_t count, const skein_setting *settings, skein_handle *handle);
+skein_status sk_world_find_arity(skein_world *world, const sk_constraint_type *type, const skein_setting *settings,
+                                 size_t *arity);
 skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, const skein_setting *settings,
                                 skein_handle *handle);
 skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *type, const skein_setting *settings,
