@@ -42,7 +42,7 @@ static skein_status complete(sk_pointwise *pointwise, sk_pointwise_choice *choos
                              sk_allocator *allocator, skein_error *error) {
     skein_formula *f = pointwise->formula;
     const skein_formula *all[] = {f};
-    sk_node outputs[SK_POINTWISE_MOST_OUTPUTS];
+    sk_node outputs[SK_POINTWISE_MOST_OUTPUTS + 3];
     pointwise->parameters = f->parameters;
     if (f->rests)
         return sk_fail(error, SKEIN_ERROR_VALUE, "",
@@ -60,7 +60,8 @@ static skein_status complete(sk_pointwise *pointwise, sk_pointwise_choice *choos
     pointwise->live = sk_allocate(allocator, f->graph.count * sizeof *pointwise->live);
     pointwise->values = sk_allocate(allocator, f->graph.count * sizeof *pointwise->values);
     if (!pointwise->live || !pointwise->values) return sk_fail_memory(error, "a formula");
-    sk_graph_mark(&f->graph, outputs, count, pointwise->live);
+    memcpy(outputs + count, f->value, (size_t)f->size * sizeof *outputs);
+    sk_graph_mark(&f->graph, outputs, count + (size_t)f->size, pointwise->live);
     return SKEIN_OK;
 }
 

@@ -13,7 +13,7 @@ typedef struct sk_pointwise {
     skein_formula *formula;
     sk_tape tape;
     int parameters;
-    /* for single places, by whoever owns the world: which nodes the outputs need, and room for their values */
+    /* for single places, by whoever owns the world: which nodes the value and the outputs need, and room for theirs */
     bool *live;
     double *values;
 } sk_pointwise;
@@ -34,8 +34,8 @@ typedef void sk_pointwise_run(const sk_pointwise *pointwise, const double *param
                               const sk_wide3 *v, sk_wide *out, sk_mask *guarded);
 extern sk_pointwise_run *const sk_pointwise_run_of[SK_ISA_COUNT];
 
-/* The value at one place, in double, and whether it or another output had to be guarded (NULL: never mind). The value
- * is to be among the outputs. Not for several threads at once. */
+/* The value at one place, in double, and whether it or an output had to be guarded (NULL: never mind). Not for several
+ * threads at once. */
 void sk_pointwise_value(const sk_pointwise *pointwise, const double *parameters, double time, const double p[3],
                         const double v[3], double value[3], bool *guarded);
 
