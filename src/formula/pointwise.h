@@ -13,6 +13,7 @@ typedef struct sk_pointwise {
     skein_formula *formula;
     sk_tape tape;
     int parameters;
+    sk_node output[SK_POINTWISE_MOST_OUTPUTS]; /* of the graph */
     /* for single places, by whoever owns the world: which nodes the value and the outputs need, and room for theirs */
     bool *live;
     double *values;
@@ -28,8 +29,8 @@ skein_status sk_pointwise_create(const char *field, const char *text, skein_form
                                  sk_allocator *allocator, sk_pointwise **made, skein_error *error);
 void sk_pointwise_destroy(sk_pointwise *pointwise, sk_allocator *allocator); /* NULL is allowed */
 
-/* Sixteen places (`v` may be NULL where the formula takes no velocities); output k into out[k]. Lanes whose outputs are
- * not finite get 0s and count as guarded. */
+/* Sixteen places (`v` may be NULL where the formula takes no velocities); output k into out[k]. Lanes with an output
+ * that is not finite, or over SK_FAR, get 0s and count as guarded. */
 typedef void sk_pointwise_run(const sk_pointwise *pointwise, const double *parameters, double time, const sk_wide3 *p,
                               const sk_wide3 *v, sk_wide *out, sk_mask *guarded);
 extern sk_pointwise_run *const sk_pointwise_run_of[SK_ISA_COUNT];
