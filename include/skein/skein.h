@@ -350,6 +350,11 @@ typedef struct skein_contact {
 /* Copies up to `most` of the contacts of enabled colliders; `count` receives how many there are. */
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count);
 
+/* Where `count` points (count x 3) are seen from a collider's surface as it stands now: how far off, as contact takes it
+ * (negative inside; far away, formulas may say 1e15), and the unit normals out of the solid. Either may be NULL. */
+skein_status skein_collider_probe(const skein_world *world, skein_handle collider, size_t count, const double *points,
+                                  double *distances, double *normals);
+
 /* ---- Measures ---------------------------------------------------------------------------------- */
 
 typedef struct skein_statistics {

@@ -100,6 +100,10 @@ void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4
 size_t sk_collider_count_guarded(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
                                  size_t particle_count);
 
+/* The same for points anywhere, 3 numbers each; distances and normals may be NULL. */
+void sk_collider_probe_points(const sk_collider *collider, double time, sk_isa isa, size_t count, const double *points,
+                              double *distances, double *normals);
+
 /* Calls `visit` for every particle in touch: what sk_collider_measure() counts. */
 void sk_collider_visit(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
                        size_t particle_count,

@@ -330,7 +330,7 @@ bool sk_writes_velocity_forces(const sk_writer *writer) {
     for (size_t i = 0; i < rules->batches.count; i++)
         if (is_on(rules->batches.data[i]) && sk_batch_damping_time(rules->batches.data[i]) > 0) return true;
     for (size_t i = 0; i < rules->forces.count; i++)
-        if (*rules->forces.data[i]->enabled && rules->forces.data[i]->type->on_velocity) return true;
+        if (*rules->forces.data[i]->enabled && sk_force_on_velocity(rules->forces.data[i])) return true;
     return false;
 }
 
