@@ -68,7 +68,7 @@ static uint64_t hash_of_run(const bits_case *c, const char *isa, int threads) {
 
 /* Any compiler and machine must come to these; they change only when the arithmetic or its order does. */
 enum { BITS_CASES = 10 };
-static const bits_case bits_cases[BITS_CASES] = {{"symplectic_euler", 30, 8, false},
+static const bits_case bits_cases[BITS_CASES] = {{"symplectic_euler", 30, 12, false},
                                                  {"xpbd", 30, 8, false},
                                                  {"xpbd", 30, 8, true},
                                                  {"explicit_euler", 20, 64, false},
@@ -80,12 +80,12 @@ static const bits_case bits_cases[BITS_CASES] = {{"symplectic_euler", 30, 8, fal
                                                  {"pbd", 20, 8, false}};
 #ifdef SKEIN_DOUBLE
 static const uint64_t golden[BITS_CASES] = {
-    0x8c615a1cf9ca40b0, 0xc17cb68e47f5d100, 0x64fa64a0851d6d63, 0xc4bce30a26863391, 0xb2a69d06c8625443,
-    0x0b3b2d3e94fadd0a, 0x5e3a661e4574518d, 0x4a5acce964498a6b, 0x04d4a86cc19876a9, 0x11d09fe24d34e637};
+    0x8d5602e3b1035d6b, 0xc17cb68e47f5d100, 0x64fa64a0851d6d63, 0xf962e1ee20a074ce, 0x644a89e8fcb51a72,
+    0xa4f241e90034ff54, 0x34be23d503b6af48, 0x1d97c737fef15fd0, 0x04d4a86cc19876a9, 0x11d09fe24d34e637};
 #else
 static const uint64_t golden[BITS_CASES] = {
-    0xc8d6fafed94827ad, 0x656747569eb24730, 0xea71418305bbe6dd, 0xe3299de165845119, 0xd6f060b3d338f490,
-    0xf1bbcc91ca7b74ce, 0xb4587daf3c096006, 0x3ef7c4b33ac48870, 0xee1e36fc1c4af6df, 0x22666bce7bbc8c53};
+    0x093f5cee264bce4f, 0x656747569eb24730, 0xea71418305bbe6dd, 0xa050e7533ea9c9c2, 0xafa3efefc6e2d2b7,
+    0xe5c6f311b766c208, 0x494ecba1e68473c4, 0x32e987a795e3b2a3, 0xee1e36fc1c4af6df, 0x22666bce7bbc8c53};
 #endif
 
 #endif
