@@ -8,7 +8,7 @@
 
 typedef struct flock_params {
     int32_t count, side, seed;
-    double position[3], spread[3], speed, velocity[3], mass;
+    double position[3], spread[3], speed, swirl, velocity[3], mass;
 } flock_params;
 
 // clang-format off
@@ -19,6 +19,8 @@ static const skein_field fields[] = {
     {"spread", SKEIN_FIELD_VEC3, offsetof(flock_params, spread), "m", {20, 20, 20}, 0, 1e9, NULL, NULL,
      "size of the box that they are strewn in, evenly"},
     SK_REAL(flock_params, speed, "speed", "m/s", 5, 0, SK_FAR, "each flies so fast, in a direction of its own"),
+    SK_REAL(flock_params, swirl, "swirl", "m/s", 0, -SK_FAR, SK_FAR,
+            "and all of them so, about the vertical through the middle"),
     SK_VEC3(flock_params, velocity, "velocity", "m/s", 0, 0, 0, "and all of them so, besides"),
     SK_REAL(flock_params, mass, "mass", "kg", 0.1, 1e-9, 1e9, "of each"),
     SK_INT(flock_params, seed, "seed", "", 1, 0, 2147483647, "another one strews them differently"),
@@ -37,9 +39,11 @@ static void strew(const flock_params *params, size_t i, double position[3], doub
     // evenly over the sphere of directions
     double y = 2 * random_number(params, i, 3) - 1, ring = sqrt(1 - y * y), sine, cosine;
     sk_sincos(6.283185307179586 * random_number(params, i, 4), &sine, &cosine);
-    velocity[0] = params->velocity[0] + params->speed * ring * cosine;
+    double x = position[0] - params->position[0], z = position[2] - params->position[2], out = sqrt(x * x + z * z);
+    double swirl = out > 0 ? params->swirl / out : 0;
+    velocity[0] = params->velocity[0] + params->speed * ring * cosine + swirl * z;
     velocity[1] = params->velocity[1] + params->speed * y;
-    velocity[2] = params->velocity[2] + params->speed * ring * sine;
+    velocity[2] = params->velocity[2] + params->speed * ring * sine - swirl * x;
 }
 
 static skein_status build(skein_world *world, sk_body *body, const void *data, const skein_mesh *mesh,
