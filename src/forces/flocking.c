@@ -7,6 +7,7 @@
  * at distance 0, where there is no direction: it adds nothing, nor does another in the same place. */
 #ifdef SK_ISA
 
+enum { SK_ISA(AHEAD) = 8 };
 enum { SK_ISA(ROOM) = 256 }; // neighbours that are kept before they are worked out
 
 typedef struct SK_ISA(near) {
@@ -210,7 +211,11 @@ static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t 
     if (!cells->count) return; // nobody is near, or there is no memory for the cells
     if (among && end > cells->count) end = cells->count;
     for (size_t i = begin; i < end; i++) {
-        uint32_t slot = run->slot_of[among ? cells->particle[i] : i];
+        uint32_t slot = among ? cells->record[i].slot : run->slot_of[i];
+        // records are padded; their slots are anywhere in memory
+        if (among)
+            __builtin_prefetch(
+                &run->vector[row->dst][cells->record[i + SK_ISA(AHEAD) < end ? i + SK_ISA(AHEAD) : i].slot], 1);
         sk_vec3 p = among ? sk_v3(cells->x[i], cells->y[i], cells->z[i])
                           : sk_xyz(sk_load(run->vector[SK_X], row->packed, slot));
         sk_add_at(run->vector[row->dst], row->packed, slot,
