@@ -9,6 +9,7 @@
 #include "base/fields.h"
 #include "base/wide_types.h"
 #include "plan/row.h"
+#include "plan/shader.h"
 
 /* Where a collider stands at a time, and how it moves there. */
 typedef struct sk_pose {
@@ -49,6 +50,9 @@ typedef struct sk_collider_type {
     double (*mass)(const void *params);
     /* Distance and normal of sixteen particles; a version for each instruction set. */
     sk_probe *probe[SK_ISA_COUNT];
+    /* Defines vec4 probe@(vec3 p): the unit normal out of the solid, and the distance in w. What every collider has
+     * is pose@ (colliders/contact.glsl). */
+    sk_shader shader;
 } sk_collider_type;
 
 typedef struct sk_collider {

@@ -7,6 +7,7 @@
 
 #include "base/fields.h"
 #include "plan/row.h"
+#include "plan/shader.h"
 
 typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOURS } sk_domain;
 
@@ -25,6 +26,13 @@ typedef struct sk_force_type {
     double (*radius)(const void *params);
     /* The potential energy of a particle at x; NULL: it has none. */
     double (*potential)(const void *params, const double x[3], double mass);
+    /* Over particles, it defines
+     *     vec3 force@(vec3 x, vec3 v, float mass)
+     * and over neighbours a sum of its own type, what each neighbour adds, and what comes of it:
+     *     sum@ start@(),   void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction),   vec3 force@(sum@ sum)
+     * where `apart` leads from the neighbour here, `square` is its squared length (less than that of the radius, and
+     * 0 in one place), and `direction` is the neighbour's unit direction of flight. */
+    sk_shader shader;
 } sk_force_type;
 
 /* A force as methods see it: a type with its parameters. A row's rule is one of these. */

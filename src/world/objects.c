@@ -127,6 +127,8 @@ skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_typ
         if (particles[i] >= world->particles.count)
             return sk_fail(error, SKEIN_ERROR_VALUE, "", "%s %zu: there is no particle %u (the world has %zu)",
                            type->kind.name, i / arity, particles[i], world->particles.count);
+    skein_status fetched = sk_world_fetch(world);
+    if (fetched) return fetched;
     real *rest = sk_allocate(allocator, count * sizeof *rest);
     if (!rest) return sk_fail_memory(error, type->kind.name);
     for (size_t e = 0; e < count; e++) {
