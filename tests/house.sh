@@ -1,7 +1,7 @@
 #!/bin/sh
 # Checks the rules of the house, which no compiler checks: house.sh ROOT [C-COMPILER [C++-COMPILER]]
 #   1  src/ includes only the C library, <skein/...> and floors below or beside it in its own folder
-#   2  no method has a loop: src/methods/ writes rows, and only writer.c and writer_solve.c walk over rules
+#   2  no method has a loop: src/methods/ writes rows, and only the writer's own files walk over rules
 #   3  src/world/ names no kind: what the catalogue lists is unknown to the step; nor does src/gpu/
 #   4  each public header compiles alone, as C17 and as C++17
 # Prints each fault as FILE:LINE: words, and fails if there is one.

@@ -406,6 +406,23 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
 /* Only the hash. */
 uint64_t skein_world_hash(const skein_world *world);
 
+/* How particles fly together: a flock's order parameters. */
+typedef struct skein_order {
+    size_t count;        /* particles with finite positions and velocities */
+    double polarization; /* length of the mean direction of flight: 1, all fly the same way; 0, no common way */
+    double milling;      /* length of the mean of (r x v)/(|r| |v|), with r from the centre: 1, all circle it the
+                            same way round */
+    double nearest;      /* m, mean distance to the nearest one */
+    size_t groups;       /* of particles that are nearer than the group distance to one of the group */
+    double radius;       /* m, mean distance from the centre */
+    double farthest;     /* m, the largest of them */
+    double speed;        /* m/s, mean */
+} skein_order;
+
+/* Measures `count` particles from `first` on, about a centre (m). A group distance (m) of 0 counts no groups. */
+skein_status skein_order_measure(skein_world *world, size_t first, size_t count, const double centre[3],
+                                 double group_distance, skein_order *order);
+
 /* ---- Stability --------------------------------------------------------------------------------- */
 
 /* A way in which the world can vibrate. */
@@ -424,8 +441,8 @@ typedef struct skein_stability {
 } skein_stability;
 
 /* Finds those modes for the world as it lies, by power iteration; costs as much as some hundred force evaluations.
- * Rigid constraints, contact and neighbour rules are left out. (Under explicit_euler and midpoint slower modes that have
- * less damping for their stiffness may still grow, slowly.) */
+ * Rigid constraints, contact and neighbour rules are left out. (Under explicit_euler and midpoint slower modes that
+ * have less damping for their stiffness may still grow, slowly.) */
 skein_status skein_world_stability(skein_world *world, skein_stability *stability);
 /* The largest substep (s) at which no mode grows under the method: 0 if there is none, infinity if any will do. NaN for
  * a method that does not exist. */

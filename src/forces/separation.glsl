@@ -11,6 +11,6 @@ void meet@(inout sum@ push, vec3 apart, float square, vec3 direction) {
     if (square > 0) push += (1 - distance / reach) / distance * apart;
 }
 
-vec3 force@(sum@ push) {
+vec3 finish@(sum@ push, float dt) {
     return rule@[0].y * push;
 }

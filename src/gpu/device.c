@@ -143,9 +143,9 @@ static skein_status step(sk_device *base, skein_world *world, sk_run *run, skein
     if (base->behind) {
         copy_vector(device, world->particles.vector[SK_X], device->vector[SK_X], true);
         copy_vector(device, world->particles.vector[SK_V], device->vector[SK_V], true);
-        device->grid.fresh = true;
+        device->grid.begin = device->grid.end = 0; // nobody knows where they are
     }
-    sk_gpu_run(device, world, run);
+    sk_gpu_run(device, run);
     skein_status status = check_gl("a step", error);
     sk_gpu_context_leave(&device->context);
     base->behind = false;
@@ -177,6 +177,7 @@ static void release(sk_device *base, skein_world *world) {
     sk_gpu_context_leave(&device->context);
     sk_gpu_context_release(&device->context);
     sk_release(allocator, device->passes.data);
+    sk_release(allocator, device->passes.rows.data);
     sk_release(allocator, device->stage);
     sk_release(allocator, device->calls);
     sk_release(allocator, device);

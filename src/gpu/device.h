@@ -42,7 +42,7 @@ void sk_gpu_buffer_free(sk_gpu_device *device, unsigned *buffer, size_t bytes);
 /* Dispatches the program in use over so many invocations, and makes what it wrote seen by the next. */
 void sk_gpu_dispatch(const sk_gpu_device *device, size_t invocations);
 /* Runs the passes, `repeats` and all. */
-void sk_gpu_run(sk_gpu_device *device, skein_world *world, sk_run *run);
+void sk_gpu_run(sk_gpu_device *device, sk_run *run);
 /* Sends all that waits. */
 void sk_gpu_flush(sk_gpu_device *device);
 

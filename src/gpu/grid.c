@@ -1,6 +1,7 @@
 #include "gpu/grid.h"
 
 #include <epoxy/gl.h>
+#include <string.h>
 
 #include "base/status.h"
 #include "gpu/device.h"
@@ -97,7 +98,7 @@ static skein_status make_buffers(sk_gpu_device *device, const skein_world *world
     glTextureBuffer(grid->texture, GL_RGBA32F, grid->position);
     if (!device->identity)
         glNamedBufferSubData(grid->slot_of, 0, (GLsizeiptr)(4 * grid->particles), world->particles.slot_of);
-    grid->fresh = true;
+    grid->begin = grid->end = 0;
     return SKEIN_OK;
 }
 
@@ -112,11 +113,10 @@ skein_status sk_gpu_grid_make(sk_gpu_device *device, skein_world *world, skein_e
     return status;
 }
 
-void sk_gpu_grid_pack(const sk_gpu_grid *grid, size_t particles, double radius, float (*block)[4]) {
-    uint32_t *head = (uint32_t *)(void *)block[0];
-    head[0] = (uint32_t)particles;
-    head[1] = (uint32_t)(grid->room - 2);
-    block[1][0] = (float)radius;
+void sk_gpu_grid_pack(const sk_gpu_grid *grid, const sk_row *row, float (*block)[4]) {
+    const uint32_t head[4] = {(uint32_t)(row->end - row->begin), (uint32_t)(grid->room - 2), (uint32_t)row->begin, 0};
+    memcpy(block[0], head, sizeof head);
+    block[1][0] = (float)row->coefficient[0];
 }
 
 static void run_program(const sk_gpu_device *device, int which, size_t groups) {
@@ -124,18 +124,18 @@ static void run_program(const sk_gpu_device *device, int which, size_t groups) {
     sk_gpu_dispatch(device, groups * SK_GPU_GROUP);
 }
 
-void sk_gpu_grid_build(sk_gpu_device *device, size_t block) {
+void sk_gpu_grid_build(sk_gpu_device *device, size_t begin, size_t count, size_t block) {
     sk_gpu_grid *grid = &device->grid;
     const unsigned buffers[] = {device->vector[SK_X], device->vector[SK_V], grid->cells, grid->number,
                                 grid->order,          grid->position,       grid->sums,  grid->slot_of};
     glBindBufferRange(GL_UNIFORM_BUFFER, 0, device->blocks, (GLintptr)block, SK_GPU_GRID_BLOCK * 16);
     for (GLuint i = 0; i < 8; i++) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffers[i]);
-    size_t groups = (grid->particles + SK_GPU_GROUP - 1) / SK_GPU_GROUP;
-    if (grid->fresh) {
+    size_t groups = (count + SK_GPU_GROUP - 1) / SK_GPU_GROUP;
+    if (grid->begin != begin || grid->end != begin + count) {
         glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         glClearNamedBufferSubData(grid->cells, GL_R32UI, 0, 6 * 4, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
         run_program(device, BOUNDS, groups);
-        grid->fresh = false;
+        grid->begin = begin, grid->end = begin + count;
     }
     run_program(device, FRAME, 1);
     run_program(device, CLEAR, (grid->room + SK_GPU_GROUP - 1) / SK_GPU_GROUP);

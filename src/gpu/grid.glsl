@@ -1,6 +1,6 @@
 // What the grid's shaders share: the buffers, the head of the cells' buffer, and a particle's cell.
 layout(std140, binding = 0) uniform grid_block {
-    uvec4 head; // particles; most cells
+    uvec4 head; // particles; most cells; the first particle
     vec4 asked; // the least size of a cell
 };
 

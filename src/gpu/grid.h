@@ -30,16 +30,16 @@ typedef struct sk_gpu_grid {
     unsigned sums;     /* of 4,096 cells each */
     unsigned slot_of;  /* where particles are not in slots of their own number */
     size_t particles, room; /* for which it was made; cells at most, a multiple of 4,096 */
-    bool fresh;             /* no box is known */
+    size_t begin, end;      /* the particles whose box is known; none where both are 0 */
 } sk_gpu_grid;
 
 /* Makes buffers and programs for so many particles. */
 skein_status sk_gpu_grid_make(sk_gpu_device *device, skein_world *world, skein_error *error);
 void sk_gpu_grid_free(sk_gpu_device *device);
-/* What the grid's shaders are told for cells of at least `radius`. */
-void sk_gpu_grid_pack(const sk_gpu_grid *grid, size_t particles, double radius, float (*block)[4]);
-/* Sorts, with the block at this place of the device's blocks. */
-void sk_gpu_grid_build(sk_gpu_device *device, size_t block);
+/* What the grid's shaders are told: the particles of the row, and cells of at least its radius. */
+void sk_gpu_grid_pack(const sk_gpu_grid *grid, const sk_row *row, float (*block)[4]);
+/* Sorts so many particles, with the block at this place of the device's blocks. */
+void sk_gpu_grid_build(sk_gpu_device *device, size_t begin, size_t count, size_t block);
 /* Binds what a walk along the grid reads. */
 void sk_gpu_grid_bind(const sk_gpu_grid *grid);
 

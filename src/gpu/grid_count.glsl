@@ -3,7 +3,7 @@ void main() {
     begin_box();
     uint particle = invocation();
     if (particle < head.x) {
-        vec3 p = at_X[slot_of_particle(particle)].xyz;
+        vec3 p = at_X[slot_of_particle(head.z + particle)].xyz;
         number[particle] = atomicAdd(cell[cell_of(p)], 1u);
         if (is_finite(p)) add_to_box(p);
     }

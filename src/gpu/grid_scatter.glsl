@@ -2,5 +2,5 @@
 void main() {
     uint particle = invocation();
     if (particle >= head.x) return;
-    order[cell[cell_of(at_X[slot_of_particle(particle)].xyz)] + number[particle]] = particle;
+    order[cell[cell_of(at_X[slot_of_particle(head.z + particle)].xyz)] + number[particle]] = head.z + particle;
 }

@@ -14,12 +14,16 @@ layout(std430, binding = 7) restrict readonly buffer block_slot_of { uint slot_o
 #endif
 layout(binding = 0) uniform samplerBuffer positions; // in order, with the packed direction
 
-uint slot_at(uint place) {
+uint slot_of_particle(uint particle) {
 #if IDENTITY
-    return number[place];
+    return particle;
 #else
-    return slot_of[number[place]];
+    return slot_of[particle];
 #endif
+}
+
+uint slot_at(uint place) {
+    return slot_of_particle(number[place]);
 }
 
 // 11, 11 and 10 bits as the fractions of numbers from 1 to 2.

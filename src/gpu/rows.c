@@ -6,7 +6,7 @@
 
 const char *sk_gpu_vector_name(sk_vector vector) {
     static const char *const names[SK_VECTOR_COUNT] = {"none", "X",  "V",  "F",  "X0", "V0", "P",  "T0",  "T1", "T2",
-                                                       "T3",   "T4", "T5", "T6", "T7", "T8", "T9", "T10", "T11"};
+                                                       "T3",   "T4", "T5", "T6", "T7", "T8", "T9", "T10", "T11", "S"};
     return names[vector];
 }
 
@@ -18,27 +18,54 @@ static bool is_fall(const sk_row *row) {
     return sk_row_is(row, &sk_combine_fall) || sk_row_is(row, &sk_combine_fall_on);
 }
 
+/* Fields, neighbours, and bounds on velocities: limits on positions are of another sort. */
+static const sk_force *force_of(const sk_row *row) {
+    bool is_force = row->kind == SK_ROW_FIELD || row->kind == SK_ROW_NEIGHBOUR ||
+                    (row->kind == SK_ROW_LIMIT && row->dst == SK_V);
+    return is_force ? row->rule : NULL;
+}
+
 static const sk_shader *shader_of(const sk_row *row) {
-    if (row->kind == SK_ROW_FIELD || row->kind == SK_ROW_NEIGHBOUR) return &((const sk_force *)row->rule)->type->shader;
+    if (force_of(row)) return &force_of(row)->type->shader;
     if (is_contact(row)) return &((const sk_collider *)row->rule)->type->shader;
     return NULL;
 }
 
-bool sk_gpu_row_can(const sk_row *row) {
+static bool is_combine(const sk_row *row) {
+    static const sk_kernels *const known[] = {&sk_combine_sum,     &sk_combine_correction, &sk_combine_kick,
+                                              &sk_combine_predict, &sk_combine_fall,       &sk_combine_fall_on,
+                                              &sk_combine_wipe,    &sk_combine_steer};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (sk_row_is(row, known[i])) return true;
+    return false;
+}
+
+bool sk_gpu_row_can(const sk_row *row, const char **why) {
+    const sk_shader *shader = shader_of(row);
+    const void *params = force_of(row)     ? force_of(row)->params
+                         : is_contact(row) ? ((const sk_collider *)row->rule)->params
+                                           : NULL;
+    if (shader && shader->file && shader->refuse && (*why = shader->refuse(params))) return false;
     switch (row->kind) {
     case SK_ROW_GRID: return true;
     case SK_ROW_REPEAT: return !row->cell;
-    case SK_ROW_COMBINE:
-        return sk_row_is(row, &sk_combine_sum) || sk_row_is(row, &sk_combine_correction) ||
-               sk_row_is(row, &sk_combine_kick) || sk_row_is(row, &sk_combine_predict) || is_fall(row);
-    case SK_ROW_FIELD: return row->order == SK_FREE && shader_of(row)->file;
-    case SK_ROW_NEIGHBOUR: return shader_of(row)->file != NULL;
+    case SK_ROW_COMBINE: return is_combine(row);
+    case SK_ROW_FIELD:
+    case SK_ROW_NEIGHBOUR:
+    case SK_ROW_LIMIT:
     case SK_ROW_CONTACT_FORCE:
     case SK_ROW_CONTACT_VELOCITY:
-    case SK_ROW_CONTACT_SETTLE: return shader_of(row)->file != NULL;
-    case SK_ROW_CONTACT_POSITION: return shader_of(row)->file && row->source[1] == SK_NONE;
+    case SK_ROW_CONTACT_SETTLE: return shader && shader->file;
+    case SK_ROW_CONTACT_POSITION: return shader->file && row->source[1] == SK_NONE;
     default: return false;
     }
+}
+
+bool sk_gpu_row_everyone(const sk_row *row, size_t particle_count) {
+    const sk_force *force = force_of(row);
+    if (force->type->deed == SK_PUSHES) return true;
+    return force->moved.first == 0 && force->moved.end == particle_count && force->seen.first == 0 &&
+           force->seen.end == particle_count;
 }
 
 /* ---- vectors ---- */
@@ -53,7 +80,7 @@ static sk_gpu_use use_of_combine(const sk_row *row) {
         return use;
     }
     for (int i = 0; i < 3; i++) use.reads |= BIT(row->source[i]);
-    if (sk_row_is(row, &sk_combine_kick)) use.reads |= BIT(SK_X);
+    if (sk_row_is(row, &sk_combine_kick) || sk_row_is(row, &sk_combine_steer)) use.reads |= BIT(SK_X);
     if (sk_row_is(row, &sk_combine_correction)) use.reads |= BIT(row->dst);
     return use;
 }
@@ -67,6 +94,10 @@ sk_gpu_use sk_gpu_row_use(const sk_row *row) {
     case SK_ROW_NEIGHBOUR:
         use.reads = BIT(SK_X) | BIT(SK_V) | (row->sets ? 0 : BIT(row->dst));
         use.writes = BIT(row->dst);
+        break;
+    case SK_ROW_LIMIT:
+        use.reads = BIT(SK_V) | BIT(row->source[2]);
+        use.writes = BIT(SK_V);
         break;
     case SK_ROW_CONTACT_FORCE: use = (sk_gpu_use){BIT(SK_X) | BIT(SK_V) | BIT(SK_F), BIT(SK_F)}; break;
     case SK_ROW_CONTACT_VELOCITY: use = (sk_gpu_use){BIT(SK_X) | BIT(SK_V), BIT(SK_V)}; break;
@@ -177,6 +208,10 @@ static void put_combine(sk_gpu_text *text, const sk_row *row, size_t n) {
         sk_gpu_put(text, "    }\n");
     } else if (sk_row_is(row, &sk_combine_kick)) {
         sk_gpu_put(text, "    %s.xyz = %s.xyz + row%zu[0].x * X.w * %s.xyz;\n", dst, p, n, q);
+    } else if (sk_row_is(row, &sk_combine_wipe)) {
+        sk_gpu_put(text, "    %s = vec4(0);\n", dst);
+    } else if (sk_row_is(row, &sk_combine_steer)) {
+        sk_gpu_put(text, "    if (X.w > 0) %s.xyz += %s.xyz;\n", dst, q);
     } else if (sk_row_is(row, &sk_combine_correction)) {
         // the same operations as predicted p, so that an untouched p corrects nothing
         if (row->coefficient[1] == 0)
@@ -194,14 +229,33 @@ static void put_combine(sk_gpu_text *text, const sk_row *row, size_t n) {
     }
 }
 
-void sk_gpu_put_statements(sk_gpu_text *text, const sk_row *row, size_t n) {
+/* Only for the particles that the rule moves, where these are not all. */
+static void put_guard(sk_gpu_text *text, const sk_row *row, size_t particle_count) {
+    const sk_force *force = force_of(row);
+    if (force->type->deed == SK_PUSHES || row->kind == SK_ROW_NEIGHBOUR) return;
+    if (force->moved.first == 0 && force->moved.end == particle_count) return;
+    sk_gpu_put(text, "    if (first_slot + slot >= %zuu && first_slot + slot < %zuu)\n", force->moved.first_slot,
+               force->moved.end_slot);
+}
+
+static void put_force(sk_gpu_text *text, const sk_row *row, size_t n, size_t particle_count) {
     const char *dst = sk_gpu_vector_name(row->dst);
+    put_guard(text, row, particle_count);
+    if (row->kind == SK_ROW_NEIGHBOUR)
+        sk_gpu_put(text, "    %s.xyz += walk%zu(place, X.xyz);\n", dst, n);
+    else if (row->kind == SK_ROW_LIMIT)
+        sk_gpu_put(text, "    V.xyz = bound%zu(V.xyz, %s);\n", n, row->source[2] == SK_NONE ? "0" : "S.w");
+    else if (force_of(row)->type->deed == SK_STEERS)
+        sk_gpu_put(text, "    %s += steer%zu(X.xyz, row%zu[0].w);\n", dst, n, n);
+    else sk_gpu_put(text, "    %s.xyz %s force%zu(X.xyz, V.xyz, V.w);\n", dst, row->sets ? "=" : "+=", n);
+}
+
+void sk_gpu_put_statements(sk_gpu_text *text, const sk_row *row, size_t n, size_t particle_count) {
     switch (row->kind) {
     case SK_ROW_COMBINE: put_combine(text, row, n); break;
     case SK_ROW_FIELD:
-        sk_gpu_put(text, "    %s.xyz %s force%zu(X.xyz, V.xyz, V.w);\n", dst, row->sets ? "=" : "+=", n);
-        break;
-    case SK_ROW_NEIGHBOUR: sk_gpu_put(text, "    %s.xyz += walk%zu(place);\n", dst, n); break;
+    case SK_ROW_NEIGHBOUR:
+    case SK_ROW_LIMIT: put_force(text, row, n, particle_count); break;
     case SK_ROW_CONTACT_FORCE: sk_gpu_put(text, "    contact_force%zu(X, V, F);\n", n); break;
     case SK_ROW_CONTACT_VELOCITY: sk_gpu_put(text, "    contact_impulse%zu(X, V);\n", n); break;
     case SK_ROW_CONTACT_POSITION: sk_gpu_put(text, "    contact_push%zu(X);\n", n); break;

@@ -30,7 +30,7 @@ void sk_gpu_flush(sk_gpu_device *device) {
         glNamedBufferSubData(device->blocks, 0, (GLsizeiptr)device->staged, device->stage);
     for (size_t i = 0; i < device->call_count; i++) {
         const sk_gpu_call *call = &device->calls[i];
-        if (call->pass->kind == SK_GPU_GRID) sk_gpu_grid_build(device, call->block);
+        if (call->pass->kind == SK_GPU_GRID) sk_gpu_grid_build(device, call->first, call->count, call->block);
         else run_call(device, call);
     }
     device->staged = device->call_count = 0;
@@ -46,45 +46,45 @@ static float (*stage_block(sk_gpu_device *device, size_t vectors, size_t *at))[4
     return (float(*)[4])(void *)(device->stage + *at);
 }
 
-/* A pass over `count` elements, in as many parts as a binding is too small for. */
-static void call_pass(sk_gpu_device *device, const sk_plan *plan, const sk_run *run, const sk_gpu_pass *pass,
-                      size_t turns) {
+/* A pass, in as many parts as a binding is too small for. */
+static void call_pass(sk_gpu_device *device, const sk_run *run, const sk_gpu_pass *pass, size_t turns) {
     bool walks = pass->kind == SK_GPU_NEIGHBOURS;
-    size_t all = walks ? device->particle_count : device->slot_count;
+    size_t all = walks ? pass->end - pass->begin : device->slot_count;
     size_t most = walks ? all : device->most_bytes / 16 / SK_GPU_GROUP * SK_GPU_GROUP;
     for (size_t first = 0; first < all; first += most) {
         sk_gpu_call call = {.pass = pass, .first = first, .count = all - first < most ? all - first : most};
         float(*block)[4] = stage_block(device, pass->block, &call.block);
-        const uint32_t head[4] = {(uint32_t)call.count, (uint32_t)first, (uint32_t)turns, run->last_turn};
+        const uint32_t head[4] = {(uint32_t)call.count, (uint32_t)(walks ? pass->begin : first), (uint32_t)turns,
+                                  run->last_turn};
         memcpy(block[0], head, sizeof head);
-        sk_gpu_pack(pass, plan, run->time, block);
+        sk_gpu_pack(&device->passes, pass, run->time, block);
         device->calls[device->call_count++] = call;
     }
 }
 
-static void call_grid(sk_gpu_device *device, const sk_plan *plan, const sk_gpu_pass *pass) {
-    sk_gpu_call call = {.pass = pass};
+static void call_grid(sk_gpu_device *device, const sk_gpu_pass *pass) {
+    sk_gpu_call call = {.pass = pass, .first = pass->row->begin, .count = pass->row->end - pass->row->begin};
     float(*block)[4] = stage_block(device, SK_GPU_GRID_BLOCK, &call.block);
-    sk_gpu_grid_pack(&device->grid, device->particle_count, plan->data[pass->first].coefficient[0], block);
+    sk_gpu_grid_pack(&device->grid, pass->row, block);
     device->calls[device->call_count++] = call;
 }
 
-static void run_passes(sk_gpu_device *device, const sk_plan *plan, sk_run *run, size_t begin, size_t end) {
+static void run_passes(sk_gpu_device *device, sk_run *run, size_t begin, size_t end) {
     for (size_t i = begin; i < end; i++) {
         const sk_gpu_pass *pass = &device->passes.data[i];
         if (pass->kind == SK_GPU_GRID) {
-            call_grid(device, plan, pass);
+            call_grid(device, pass);
         } else if (pass->kind != SK_GPU_REPEAT) {
-            call_pass(device, plan, run, pass, 1);
+            call_pass(device, run, pass, 1);
         } else {
-            const sk_row *repeat = &plan->data[pass->first];
+            const sk_row *repeat = pass->row;
             double start = run->time;
             bool outer = run->last_turn, looped = pass->count == 1 && pass[1].looped;
-            if (looped) call_pass(device, plan, run, &pass[1], repeat->end);
+            if (looped) call_pass(device, run, &pass[1], repeat->end);
             for (size_t turn = 0; turn < repeat->end && !looped; turn++) {
                 run->time = start + (double)(turn + 1) * repeat->dt;
                 run->last_turn = turn + 1 == repeat->end;
-                run_passes(device, plan, run, i + 1, i + 1 + pass->count);
+                run_passes(device, run, i + 1, i + 1 + pass->count);
             }
             run->time = start + (double)repeat->end * repeat->dt;
             run->last_turn = outer;
@@ -93,7 +93,7 @@ static void run_passes(sk_gpu_device *device, const sk_plan *plan, sk_run *run, 
     }
 }
 
-void sk_gpu_run(sk_gpu_device *device, skein_world *world, sk_run *run) {
-    run_passes(device, &world->plan, run, 0, device->passes.count);
+void sk_gpu_run(sk_gpu_device *device, sk_run *run) {
+    run_passes(device, run, 0, device->passes.count);
     sk_gpu_flush(device);
 }

@@ -1,9 +1,14 @@
-// All neighbours of the particle at a place. Two phases for each 32 of a row of cells: distances become a mask of
+// All neighbours of the particle at p, which is at a place of the grid. Two phases for each 32 of a row of cells: distances become a mask of
 // hits, then the hits are met one by one, so that invocations side by side part as little as can be.
-vec3 walk@(uint place) {
+vec3 walk@(uint place, vec3 p) {
     sum@ sum = start@();
-    if (place >= cell[cell_count]) return force@(sum); // it is nowhere
-    vec3 p = texelFetch(positions, int(place)).xyz, origin = vec3(origin_x, origin_y, origin_z);
+#if BY_PLACE
+    if (place >= cell[cell_count]) return finish@(sum, row@[0].w); // it is nowhere
+#else
+    if (!(dot(p, p) <= 1e38)) return finish@(sum, row@[0].w); // it is nowhere
+    place = 0xffffffffu;                                      // and not among those that it looks at
+#endif
+    vec3 origin = vec3(origin_x, origin_y, origin_z);
     float reach = row@[1].x, square = reach * reach, top = float(cells_x);
     float slack = 1e-6 * max(max(abs(p.x), abs(p.y)), abs(p.z)) + 1e-5 * reach;
     int cy = clamped((p.y - origin.y) * per_size, cells_y), cz = clamped((p.z - origin.z) * per_size, cells_z);
@@ -45,5 +50,5 @@ vec3 walk@(uint place) {
             }
         }
     }
-    return force@(sum);
+    return finish@(sum, row@[0].w);
 }

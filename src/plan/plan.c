@@ -35,8 +35,8 @@ const char *sk_row_kind_text(sk_row_kind kind) {
 }
 
 static const char *vector_text(sk_vector vector) {
-    static const char *const names[SK_VECTOR_COUNT] = {"",   "X",  "V",  "F",  "X0", "V0", "P",  "T0",  "T1", "T2",
-                                                       "T3", "T4", "T5", "T6", "T7", "T8", "T9", "T10", "T11"};
+    static const char *const names[SK_VECTOR_COUNT] = {"",   "X",  "V",  "F",  "X0", "V0", "P",  "T0",  "T1",  "T2",
+                                                       "T3", "T4", "T5", "T6", "T7", "T8", "T9", "T10", "T11", "S"};
     return names[vector];
 }
 

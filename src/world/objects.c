@@ -87,7 +87,8 @@ skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, c
         unmake_object(world, object);
         return sk_fail_memory(error, type->kind.name);
     }
-    *force = (sk_force){type, object->params, object->label, &object->common.plain.enabled};
+    *force = (sk_force){
+        .type = type, .params = object->params, .label = object->label, .enabled = &object->common.plain.enabled};
     world->rules.forces.data[world->rules.forces.count++] = force;
     object->as.force = force;
     return finish_object(world, object, handle);

@@ -52,6 +52,46 @@ static bool make_temporaries(skein_world *world) {
     return sk_particles_want(&world->particles, &world->allocator, wanted);
 }
 
+/* The particles of the body of that name, or all where there is no name. False when there is no such body. */
+static bool find_group(const skein_world *world, const char *name, sk_group *group) {
+    const sk_particles *all = &world->particles;
+    *group = (sk_group){0, all->count, 0, all->slot_count};
+    if (!name[0]) return true;
+    for (size_t i = 0; i < world->objects.count; i++) {
+        const sk_object *object = world->objects.data[i];
+        if (!(object->generation % 2) || object->category != SKEIN_BODY) continue;
+        if (strcmp(object->common.plain.name, name)) continue;
+        const sk_body *body = object->as.body;
+        *group = (sk_group){body->first_particle, body->first_particle + body->particle_count, SIZE_MAX, 0};
+        for (size_t k = group->first; k < group->end; k++) {
+            if (all->slot_of[k] < group->first_slot) group->first_slot = all->slot_of[k];
+            if (all->slot_of[k] >= group->end_slot) group->end_slot = (size_t)all->slot_of[k] + 1;
+        }
+        if (!body->particle_count) group->first_slot = 0;
+        return true;
+    }
+    return false;
+}
+
+/* Whom the rules move and look at, and what they say about it. */
+static skein_status find_groups(skein_world *world, skein_error *error) {
+    for (size_t i = 0; i < world->rules.forces.count; i++) {
+        sk_force *force = world->rules.forces.data[i];
+        if (!*force->enabled) continue;
+        const char *moved = "", *seen = "";
+        if (force->type->bodies) force->type->bodies(force->params, &moved, &seen);
+        const char *unknown = !find_group(world, moved, &force->moved)                   ? moved
+                              : !find_group(world, seen[0] ? seen : moved, &force->seen) ? seen
+                                                                                         : NULL;
+        if (unknown)
+            return sk_fail(error, SKEIN_ERROR_NAME, force->label, "there is no body of the name '%s'", unknown);
+        skein_status status =
+            force->type->check ? force->type->check(force->params, world->particles.count, error) : SKEIN_OK;
+        if (status) return status;
+    }
+    return SKEIN_OK;
+}
+
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error) {
     if (!(dt > 0) || !(dt <= 1e6))
         return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0", dt);
@@ -63,6 +103,8 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         status = method->check(world->method_params, &world->rules, error);
         if (status) return status;
     }
+    status = find_groups(world, error);
+    if (status) return status;
     for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);
     warn_of_light_colliders(world);
     world->plan_stale = true; // until it is whole
@@ -96,6 +138,7 @@ sk_run sk_world_run_context(skein_world *world) {
         .particle_count = world->particles.count,
         .triangles = &world->slots_of_triangles,
         .grid = &world->grid,
+        .cells = &world->cells,
         .allocator = &world->allocator,
         .time = world->time,
         .cell = world->cell,

@@ -87,6 +87,7 @@ void skein_world_destroy(skein_world *world) {
     sk_release(allocator, world->slots_of_triangles.corner);
     sk_release(allocator, world->plan.data);
     sk_grid_release(&world->grid, allocator);
+    sk_cells_release(&world->cells, allocator);
     sk_particles_release(&world->particles, allocator);
     sk_allocator last = world->allocator;
     sk_release(&last, world);

@@ -107,6 +107,7 @@ struct skein_world {
     bool slots_stale; /* particles, batches or limits were added: slots and sweeps are to be found anew */
     sk_isa isa;
     sk_grid grid;
+    sk_cells cells;
     double time;
     uint64_t steps, substeps;
     double first_energy;        /* J, when the first step began */
