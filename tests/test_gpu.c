@@ -5,8 +5,8 @@
 
 static const double dt = 1.0 / 60;
 
-static const char *const explicit_methods[] = {"explicit_euler", "symplectic_euler", "lookahead_euler", "midpoint",
-                                               "leapfrog",       "rk4",              "xpbd",            "pbd"};
+static const char *const explicit_methods[] = {
+    "explicit_euler", "symplectic_euler", "lookahead_euler", "midpoint", "leapfrog", "rk4", "xpbd", "pbd"};
 
 /* The world on a card; skips the test where there is none. */
 static void to_card(skein_world *world) {
@@ -187,6 +187,150 @@ static void the_same_bits_come_again(void **state) {
     assert_true(hash[0] == hash[1]);
 }
 
+/* ---- a flock ------------------------------------------------------------------------------------ */
+
+/* About 30 neighbours each, going round; the hawk is seen along z. */
+static skein_world *flying(const char *method, size_t count, bool hawk) {
+    skein_world *world = new_world(method, 1);
+    double side = 2 * cbrt((double)count / 7.2);
+    OK(world, skein_body_add(world, "flock", NULL,
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", "birds"), SKEIN_REAL("count", (double)count),
+                                            SKEIN_VEC3("spread", side, side, side), SKEIN_REAL("swirl", 4)),
+                             NULL));
+    OK(world, skein_force_add(world, "flocking",
+                              SKEIN_SETTINGS(SKEIN_REAL("separation", 0.8), SKEIN_REAL("alignment", 0.6),
+                                             SKEIN_REAL("cohesion", 0.6)),
+                              NULL));
+    OK(world, skein_force_add(world, "attraction", NULL, NULL));
+    if (hawk)
+        OK(world, skein_force_add(world, "predator",
+                                  SKEIN_SETTINGS(SKEIN_REAL("radius", side / 3), SKEIN_VEC3("line", 0, 0, 2)), NULL));
+    OK(world, skein_force_add(world, "speed_limit", SKEIN_SETTINGS(SKEIN_REAL("limit", 6)), NULL));
+    return world;
+}
+
+static void a_flock_agrees_after_a_step(void **state) {
+    (void)state;
+    static const size_t counts[] = {1, 33, 1024, 4096, 16384};
+    for (size_t i = 0; i < COUNT(counts); i++)
+        assert_agree(flying("symplectic_euler", counts[i], i % 2), flying("symplectic_euler", counts[i], i % 2), 1,
+                     1e-5, "a flock");
+    for (size_t m = 0; m < COUNT(explicit_methods); m++)
+        assert_agree(flying(explicit_methods[m], 300, true), flying(explicit_methods[m], 300, true), 2, 1e-4,
+                     explicit_methods[m]);
+}
+
+/* What neighbours within 2 make of a bird's velocity in a step, looking at all of them (flocking.h). */
+static void add_steering(const double *x, const double *v, size_t count, size_t i, double out[3]) {
+    for (size_t j = 0; j < count; j++) {
+        double d[3], square = 0, speed = 0;
+        for (int k = 0; k < 3; k++) {
+            d[k] = x[3 * j + (size_t)k] - x[3 * i + (size_t)k];
+            square += d[k] * d[k];
+            speed += v[3 * j + (size_t)k] * v[3 * j + (size_t)k];
+        }
+        double distance = sqrt(square), percent = distance / 2;
+        if (!(distance > 0) || !(percent < 1)) continue;
+        double towards = 0, with = 0;
+        if (percent < 0.4) towards = 1 - 0.4 / percent;
+        else if (percent < 0.7) with = 1 - 0.5 * cos(2 * PI * (percent - 0.4) / 0.3);
+        else towards = 0.5 * cos(2 * PI * (percent - 0.7) / 0.3);
+        for (int k = 0; k < 3; k++)
+            out[k] += dt * (towards * d[k] / distance + with * v[3 * j + (size_t)k] / sqrt(speed));
+    }
+}
+
+static void the_cards_grid_is_all_pairs(void **state) {
+    (void)state;
+    for (size_t count = 1024; count <= 16384; count *= 4) {
+        skein_world *world = flying("symplectic_euler", count, false);
+        OK(world, skein_set_path(world, "forces.1.enabled", skein_number(0)));
+        OK(world, skein_set_path(world, "forces.2.limit", skein_number(1e6)));
+        double *before = calloc(9 * count, sizeof *before), *v = before + 3 * count, *after = before + 6 * count;
+        OK(world, skein_positions_copy(world, 0, count, before));
+        OK(world, skein_velocities_copy(world, 0, count, v));
+        to_card(world);
+        OK(world, skein_world_step(world, dt));
+        OK(world, skein_velocities_copy(world, 0, count, after));
+        double moved = 0;
+        for (size_t i = 0; i < count; i += count / 256) {
+            double ought[3] = {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
+            add_steering(before, v, count, i, ought);
+            for (int k = 0; k < 3; k++) {
+                assert_near(after[3 * i + (size_t)k], ought[k], 1e-5);
+                moved = fmax(moved, fabs(ought[k] - v[3 * i + (size_t)k]));
+            }
+        }
+        assert_true(moved > 0.1);
+        free(before);
+        skein_world_destroy(world);
+    }
+}
+
+/* Two flocks: one minds only itself, the other only the first; a hawk frightens one; loose particles are let be. */
+static skein_world *two_flocks(const char *method) {
+    static const char *const names[] = {"jays", "daws"};
+    skein_world *world = new_world(method, 2);
+    scatter(world, 50, 3, 9);
+    for (int f = 0; f < 2; f++) {
+        OK(world, skein_body_add(world, "flock", NULL,
+                                 SKEIN_SETTINGS(SKEIN_TEXT("name", names[f]), SKEIN_REAL("count", 400 + 300 * f),
+                                                SKEIN_VEC3("spread", 6, 6, 6), SKEIN_REAL("seed", f)),
+                                 NULL));
+        OK(world, skein_force_add(world, "flocking",
+                                  SKEIN_SETTINGS(SKEIN_REAL("separation", 0.5), SKEIN_REAL("alignment", 0.3 + 0.2 * f),
+                                                 SKEIN_REAL("cohesion", 0.2), SKEIN_TEXT("on", names[f]),
+                                                 SKEIN_TEXT("minds", "jays"), SKEIN_TEXT("measure", "distance^2")),
+                                  NULL));
+    }
+    OK(world,
+       skein_force_add(world, "predator", SKEIN_SETTINGS(SKEIN_REAL("radius", 4), SKEIN_TEXT("on", "daws")), NULL));
+    OK(world,
+       skein_force_add(world, "speed_limit", SKEIN_SETTINGS(SKEIN_REAL("limit", 4), SKEIN_TEXT("on", "jays")), NULL));
+    return world;
+}
+
+static void flocks_that_mind_each_other_agree(void **state) {
+    (void)state;
+    for (int m = 0; m < 2; m++)
+        assert_agree(two_flocks(method_names[m]), two_flocks(method_names[m]), 2, 1e-4, "one of two flocks");
+}
+
+/* After a thousand steps every bird is elsewhere; but the flocks are alike. And 100 bytes a bird are enough. */
+static void the_flocks_stay_alike(void **state) {
+    (void)state;
+    skein_order order[2];
+    for (int w = 0; w < 2; w++) {
+        skein_world *world = flying("symplectic_euler", 1024, false);
+        if (w) to_card(world);
+        for (int i = 0; i < 300; i++) OK(world, skein_world_step(world, dt));
+        OK(world, skein_order_measure(world, 0, 1024, (const double[3]){0, 0, 0}, 0, &order[w]));
+        skein_world_destroy(world);
+    }
+    assert_share(order[1].polarization, order[0].polarization, 0.05);
+    assert_share(order[1].milling, order[0].milling, 0.05);
+    assert_share(order[1].radius, order[0].radius, 0.05);
+    assert_share(order[1].nearest, order[0].nearest, 0.05);
+}
+
+static void four_thousand_birds_fly_a_hundred_steps(void **state) {
+    (void)state;
+    skein_world *world = flying("symplectic_euler", 100000, true);
+    to_card(world);
+    OK(world, skein_world_step(world, dt));
+    skein_device_info info = skein_world_device(world);
+    assert_true((double)info.bytes < 100.0 * 100000);
+    assert_int_equal(info.pass_count, 3); // the loop of substeps, the grid, and one shader for all the rest
+    skein_world_destroy(world);
+    world = flying("symplectic_euler", 4096, true);
+    to_card(world);
+    for (int i = 0; i < 100; i++) OK(world, skein_world_step(world, dt));
+    skein_statistics statistics;
+    OK(world, skein_world_statistics(world, &statistics));
+    assert_int_equal(statistics.nonfinite, 0);
+    skein_world_destroy(world);
+}
+
 /* ---- limits of drivers: a binding smaller than a vector, an axis shorter than the groups -------- */
 
 static void small_bindings_and_short_axes_do(void **state) {
@@ -289,8 +433,8 @@ static void what_cannot_run_is_named(void **state) {
     (void)state;
     skein_world *world = new_world("xpbd", 2);
     add_gravity(world);
-    OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_TEXT("name", "sail"), SKEIN_PAIR("grid", 8, 8)), NULL));
+    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_TEXT("name", "sail"), SKEIN_PAIR("grid", 8, 8)),
+                             NULL));
     to_card(world);
     FAILS(world, SKEIN_ERROR_VALUE, "sail: its ", skein_world_step(world, dt));
     FAILS(world, SKEIN_ERROR_VALUE, "--device cpu", skein_world_explain(world, dt, NULL, NULL));
@@ -334,6 +478,11 @@ int main(void) {
         cmocka_unit_test(neighbours_agree),
         cmocka_unit_test(particles_that_are_nowhere_harm_nobody),
         cmocka_unit_test(the_same_bits_come_again),
+        cmocka_unit_test(a_flock_agrees_after_a_step),
+        cmocka_unit_test(the_cards_grid_is_all_pairs),
+        cmocka_unit_test(flocks_that_mind_each_other_agree),
+        cmocka_unit_test(the_flocks_stay_alike),
+        cmocka_unit_test(four_thousand_birds_fly_a_hundred_steps),
         cmocka_unit_test(small_bindings_and_short_axes_do),
         cmocka_unit_test(changes_by_hand_arrive),
         cmocka_unit_test(the_card_is_described),

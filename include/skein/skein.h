@@ -292,9 +292,9 @@ skein_status skein_world_device_set(skein_world *world, skein_device device);
 
 typedef struct skein_device_info {
     skein_device device;
-    const char *name; /* "processor", or the card and its driver; as long as the device is the world's */
-    bool software;    /* a graphics card that the processor plays: right, but slow */
-    size_t bytes;     /* held on the card now */
+    const char *name;  /* "processor", or the card and its driver; as long as the device is the world's */
+    bool software;     /* a graphics card that the processor plays: right, but slow */
+    size_t bytes;      /* held on the card now */
     size_t pass_count; /* shaders that a step runs, and the loops around them */
     /* For drawing without reading back: OpenGL buffers of four floats a slot, x, y, z and the inverse mass, or velocity
      * and mass; particle i is in slot slot_of[i]. 0 before the first step, and changed by whatever adds particles. */

@@ -81,9 +81,9 @@ static void fill_pass(const cutter *c, sk_gpu_pass *pass, size_t at, size_t end)
         bool walks = row->kind == SK_ROW_NEIGHBOUR, alone = walks && !is_everyone(c, row);
         // a walk along the grid needs three buffers more
         size_t most = SK_GPU_MOST_VECTORS - (walks || pass->row ? 3 : 0);
-        if (pass->count && (alone || (walks && written & BIT(SK_X)) ||
-                            (size_t)__builtin_popcount(vectors | touched(row)) > most ||
-                            pass->block + sk_gpu_row_size(row) > SK_GPU_MOST_BLOCK))
+        if (pass->count &&
+            (alone || (walks && written & BIT(SK_X)) || (size_t)__builtin_popcount(vectors | touched(row)) > most ||
+             pass->block + sk_gpu_row_size(row) > SK_GPU_MOST_BLOCK))
             return;
         if (walks) pass->kind = SK_GPU_NEIGHBOURS, pass->row = row;
         vectors |= touched(row);
@@ -133,9 +133,7 @@ static void add_row(cutter *c, const sk_row *row) {
 /* A grid: pending rows that it must see the work of come before it, others wait. Its rows are one pass. */
 static size_t cut_grid(cutter *c, const sk_row *row, size_t most) {
     size_t end = c->passes->rows.count, count = 1;
-    while (end > c->pending &&
-           !(sk_gpu_row_use(c->passes->rows.data[end - 1]).writes & (BIT(SK_X) | BIT(SK_V))))
-        end--;
+    while (end > c->pending && !(sk_gpu_row_use(c->passes->rows.data[end - 1]).writes & (BIT(SK_X) | BIT(SK_V)))) end--;
     flush(c, end);
     while (count < most && row[count].kind == SK_ROW_GRID && row[count].begin == row->begin &&
            row[count].end == row->end)
@@ -221,10 +219,11 @@ static void put_buffers(sk_gpu_text *text, const sk_gpu_pass *pass, uint32_t loa
 
 static void put_main(sk_gpu_text *text, const sk_gpu_pass *pass, const sk_row *const *rows, const traffic *t,
                      uint32_t stores, size_t particle_count) {
-    sk_gpu_put(text, "void main() {\n"
-                     "    uint place = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x +"
-                     " gl_LocalInvocationID.x;\n"
-                     "    if (place >= head.x) return;\n");
+    sk_gpu_put(text,
+               "void main() {\n"
+               "    uint place = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x +"
+               " gl_LocalInvocationID.x;\n"
+               "    if (place >= head.x) return;\n");
     sk_gpu_put(text, pass->kind != SK_GPU_NEIGHBOURS ? "    uint slot = place;\n"
                      : pass->by_place                ? "    uint slot = slot_at(place);\n"
                                                      : "    uint slot = slot_of_particle(head.y + place);\n");

@@ -24,10 +24,9 @@ static skein_status look_at(sk_gpu_context *context, skein_error *error) {
 /* Makes a 4.5 core context on a display, and looks at it. It is left. */
 static bool try_display(sk_gpu_context *context, EGLDisplay display, skein_error *error) {
     static const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
-    static const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,       4,
-                                        EGL_CONTEXT_MINOR_VERSION,       5,
-                                        EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                        EGL_NONE};
+    static const EGLint attributes[] = {
+        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     EGLint major, minor, count = 0;
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, &major, &minor) || 10 * major + minor < 15 ||
         !epoxy_has_egl_extension(display, "EGL_KHR_surfaceless_context") || !eglBindAPI(EGL_OPENGL_API))

@@ -36,8 +36,7 @@ void sk_gpu_buffer_free(sk_gpu_device *device, unsigned *buffer, size_t bytes) {
 }
 
 static void free_vectors(sk_gpu_device *device) {
-    for (int v = SK_X; v < SK_VECTOR_COUNT; v++)
-        sk_gpu_buffer_free(device, &device->vector[v], vector_bytes(device));
+    for (int v = SK_X; v < SK_VECTOR_COUNT; v++) sk_gpu_buffer_free(device, &device->vector[v], vector_bytes(device));
 }
 
 static bool is_identity(const sk_particles *particles) {
@@ -125,8 +124,7 @@ static void copy_vector(sk_gpu_device *device, sk_vec4 *vector, unsigned buffer,
         else glGetNamedBufferSubData(buffer, (GLintptr)first * 16, (GLsizeiptr)count * 16, part);
         // masses stay as exact as they are here
         for (size_t i = 0; i < count && !write; i++)
-            vector[first + i] =
-                (sk_vec4){(real)part[i][0], (real)part[i][1], (real)part[i][2], vector[first + i].w};
+            vector[first + i] = (sk_vec4){(real)part[i][0], (real)part[i][1], (real)part[i][2], vector[first + i].w};
     }
 }
 

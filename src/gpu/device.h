@@ -26,8 +26,8 @@ typedef struct sk_gpu_device {
     sk_gpu_grid grid;
     unsigned vector[SK_VECTOR_COUNT]; /* buffers, 0 where there is none */
     size_t slot_count, particle_count;
-    bool identity;      /* particle i is in slot i */
-    unsigned blocks;    /* the buffer that the passes' blocks go to */
+    bool identity;   /* particle i is in slot i */
+    unsigned blocks; /* the buffer that the passes' blocks go to */
     unsigned char *stage;
     size_t staged;      /* bytes */
     sk_gpu_call *calls; /* that wait */

@@ -39,8 +39,8 @@ static skein_status make_programs(sk_gpu_device *device, skein_world *world, ske
         sk_gpu_put_file(&text, "gpu/grid", 0);
         if (shaders[i].extent) sk_gpu_put_file(&text, "gpu/grid_extent", 0);
         sk_gpu_put_file(&text, shaders[i].file, 0);
-        status = sk_gpu_program(&device->programs, &world->allocator, &text, shaders[i].label,
-                                &device->grid.program[i], error);
+        status = sk_gpu_program(&device->programs, &world->allocator, &text, shaders[i].label, &device->grid.program[i],
+                                error);
         sk_release(&world->allocator, text.data);
     }
     return status;
@@ -60,12 +60,10 @@ enum { PARTS = 6 };
 
 static void list_parts(sk_gpu_device *device, part parts[PARTS]) {
     sk_gpu_grid *grid = &device->grid;
-    const part all[PARTS] = {{&grid->cells, HEAD_BYTES + 4 * grid->room},
-                             {&grid->number, 4 * grid->particles},
-                             {&grid->order, 4 * grid->particles},
-                             {&grid->position, 16 * grid->particles},
-                             {&grid->sums, 4 * sum_count(grid)},
-                             {&grid->slot_of, device->identity ? 0 : 4 * grid->particles}};
+    const part all[PARTS] = {
+        {&grid->cells, HEAD_BYTES + 4 * grid->room}, {&grid->number, 4 * grid->particles},
+        {&grid->order, 4 * grid->particles},         {&grid->position, 16 * grid->particles},
+        {&grid->sums, 4 * sum_count(grid)},          {&grid->slot_of, device->identity ? 0 : 4 * grid->particles}};
     for (int i = 0; i < PARTS; i++) parts[i] = all[i];
 }
 
@@ -84,8 +82,8 @@ static skein_status make_buffers(sk_gpu_device *device, const skein_world *world
     GLint texels = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
     if (device->particle_count > (size_t)texels)
-        return sk_fail(error, SKEIN_ERROR_LIMIT, "device", "%zu particles with neighbours: this driver reads at most %d",
-                       device->particle_count, texels);
+        return sk_fail(error, SKEIN_ERROR_LIMIT, "device",
+                       "%zu particles with neighbours: this driver reads at most %d", device->particle_count, texels);
     grid->particles = device->particle_count;
     grid->room = (device->particle_count + 2 * BLOCK_CELLS - 1) / BLOCK_CELLS * BLOCK_CELLS;
     part parts[PARTS];

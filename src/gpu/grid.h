@@ -5,8 +5,8 @@
  *   sum up   cells become places, in three dispatches
  *   scatter  each particle's number goes to its place
  *   settle   within each cell the places are given by the particles' numbers, so that the bits repeat, and what
- *            neighbours look at is copied in that order: the position, and the direction of flight in 11, 11 and
- *            10 bits
+ *            neighbours look at is copied in that order: the position, and the direction of flight in 32
+ *            bits
  *
  * The box is the one that was found while counting the last time: who has left it since is in a cell at its side,
  * and still no farther in cells from its neighbours. Cells are finer along x, where those beside each other are one
@@ -22,13 +22,13 @@ enum { SK_GPU_GRID_BLOCK = 2, SK_GPU_GRID_PROGRAMS = 9 };
 
 typedef struct sk_gpu_grid {
     unsigned program[SK_GPU_GRID_PROGRAMS];
-    unsigned cells;    /* a head of 32 words, then the cells' counts, and later where they begin */
-    unsigned number;   /* of particles: the one they got in their cell; later the particles in order */
-    unsigned order;    /* the particles as they were scattered */
-    unsigned position; /* in order: x, y, z and the packed direction */
-    unsigned texture;  /* the same, to read from */
-    unsigned sums;     /* of 4,096 cells each */
-    unsigned slot_of;  /* where particles are not in slots of their own number */
+    unsigned cells;         /* a head of 32 words, then the cells' counts, and later where they begin */
+    unsigned number;        /* of particles: the one they got in their cell; later the particles in order */
+    unsigned order;         /* the particles as they were scattered */
+    unsigned position;      /* in order: x, y, z and the packed direction */
+    unsigned texture;       /* the same, to read from */
+    unsigned sums;          /* of 4,096 cells each */
+    unsigned slot_of;       /* where particles are not in slots of their own number */
     size_t particles, room; /* for which it was made; cells at most, a multiple of 4,096 */
     size_t begin, end;      /* the particles whose box is known; none where both are 0 */
 } sk_gpu_grid;

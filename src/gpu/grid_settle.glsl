@@ -1,10 +1,17 @@
 // Within its cell a particle stands behind those with lower numbers, however the scatter went; what its neighbours
 // look at is copied there.
+//
+// A direction is two numbers of 16 bits: the sphere laid out as an octahedron, whose lower half is folded outwards. It is
+// off by 3e-5 at most; three numbers of 11, 11 and 10 bits, in as much room, are off by 5e-4, which shows in the sums.
+const uint standing = 0x80008000u; // a code that no direction has
+
 uint packed_direction(vec3 v) {
     float square = dot(v, v);
-    vec3 d = square > 0 ? v * inversesqrt(square) : vec3(0);
-    uvec3 q = uvec3(clamp(floor(d * vec3(1023, 1023, 511) + vec3(1024.5, 1024.5, 512.5)), vec3(0), vec3(2047, 2047, 1023)));
-    return q.x << 21 | q.y << 10 | q.z;
+    if (!(square > 0)) return standing;
+    v *= inversesqrt(square);
+    v /= abs(v.x) + abs(v.y) + abs(v.z);
+    vec2 folded = mix(vec2(-1), vec2(1), greaterThanEqual(v.xy, vec2(0))) * (1 - abs(v.yx));
+    return packSnorm2x16(v.z < 0 ? folded : v.xy);
 }
 
 void main() {

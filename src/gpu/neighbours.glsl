@@ -26,12 +26,15 @@ uint slot_at(uint place) {
     return slot_of_particle(number[place]);
 }
 
-// 11, 11 and 10 bits as the fractions of numbers from 1 to 2.
+// What grid_settle.glsl packed: a unit vector, or 0.
 vec3 unpacked(float direction) {
     uint bits = floatBitsToUint(direction);
-    uvec3 fraction = uvec3(bits >> 9 & 0x7ff000u, bits << 2 & 0x7ff000u, bits << 13 & 0x7fe000u);
-    return uintBitsToFloat(fraction | 0x3f800000u) * vec3(2048.0 / 1023, 2048.0 / 1023, 1024.0 / 511) -
-           vec3(3072.0 / 1023, 3072.0 / 1023, 1536.0 / 511);
+    vec2 flat_part = unpackSnorm2x16(bits);
+    vec3 v = vec3(flat_part, 1 - abs(flat_part.x) - abs(flat_part.y));
+    float fold = max(-v.z, 0.0);
+    v.x -= v.x >= 0 ? fold : -fold;
+    v.y -= v.y >= 0 ? fold : -fold;
+    return v * (bits == 0x80008000u ? 0 : inversesqrt(dot(v, v)));
 }
 
 int clamped(float place, int cells) {

@@ -5,7 +5,7 @@
 #define BIT(vector) (1u << (vector))
 
 const char *sk_gpu_vector_name(sk_vector vector) {
-    static const char *const names[SK_VECTOR_COUNT] = {"none", "X",  "V",  "F",  "X0", "V0", "P",  "T0",  "T1", "T2",
+    static const char *const names[SK_VECTOR_COUNT] = {"none", "X",  "V",  "F",  "X0", "V0", "P",  "T0",  "T1",  "T2",
                                                        "T3",   "T4", "T5", "T6", "T7", "T8", "T9", "T10", "T11", "S"};
     return names[vector];
 }
@@ -20,8 +20,8 @@ static bool is_fall(const sk_row *row) {
 
 /* Fields, neighbours, and bounds on velocities: limits on positions are of another sort. */
 static const sk_force *force_of(const sk_row *row) {
-    bool is_force = row->kind == SK_ROW_FIELD || row->kind == SK_ROW_NEIGHBOUR ||
-                    (row->kind == SK_ROW_LIMIT && row->dst == SK_V);
+    bool is_force =
+        row->kind == SK_ROW_FIELD || row->kind == SK_ROW_NEIGHBOUR || (row->kind == SK_ROW_LIMIT && row->dst == SK_V);
     return is_force ? row->rule : NULL;
 }
 
@@ -241,8 +241,7 @@ static void put_guard(sk_gpu_text *text, const sk_row *row, size_t particle_coun
 static void put_force(sk_gpu_text *text, const sk_row *row, size_t n, size_t particle_count) {
     const char *dst = sk_gpu_vector_name(row->dst);
     put_guard(text, row, particle_count);
-    if (row->kind == SK_ROW_NEIGHBOUR)
-        sk_gpu_put(text, "    %s.xyz += walk%zu(place, X.xyz);\n", dst, n);
+    if (row->kind == SK_ROW_NEIGHBOUR) sk_gpu_put(text, "    %s.xyz += walk%zu(place, X.xyz);\n", dst, n);
     else if (row->kind == SK_ROW_LIMIT)
         sk_gpu_put(text, "    V.xyz = bound%zu(V.xyz, %s);\n", n, row->source[2] == SK_NONE ? "0" : "S.w");
     else if (force_of(row)->type->deed == SK_STEERS)

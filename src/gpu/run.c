@@ -26,8 +26,7 @@ static void run_call(sk_gpu_device *device, const sk_gpu_call *call) {
 }
 
 void sk_gpu_flush(sk_gpu_device *device) {
-    if (device->staged)
-        glNamedBufferSubData(device->blocks, 0, (GLsizeiptr)device->staged, device->stage);
+    if (device->staged) glNamedBufferSubData(device->blocks, 0, (GLsizeiptr)device->staged, device->stage);
     for (size_t i = 0; i < device->call_count; i++) {
         const sk_gpu_call *call = &device->calls[i];
         if (call->pass->kind == SK_GPU_GRID) sk_gpu_grid_build(device, call->first, call->count, call->block);

@@ -14,7 +14,8 @@ typedef struct sk_shader {
     size_t size;      /* of its block, in vectors of four floats */
     /* Fills the block, which is zero before. */
     void (*pack)(const void *params, float (*block)[4]);
-    /* NULL if it can run on a card with these parameters, else why not, as the end of a sentence. Itself NULL: always. */
+    /* NULL if it can run on a card with these parameters, else why not, as the end of a sentence. Itself NULL: always.
+     */
     const char *(*refuse)(const void *params);
 } sk_shader;
 
