@@ -282,6 +282,34 @@ int skein_pacer_feed(skein_pacer *pacer, double seconds);
 /* How far the present lies between the last two states, 0 to 1. */
 double skein_pacer_blend(const skein_pacer *pacer);
 
+/* ---- Where steps are computed -------------------------------------------------------------------- */
+
+typedef enum skein_device {
+    SKEIN_DEVICE_CPU,       /* the processor: every rule, the same bits everywhere */
+    SKEIN_DEVICE_GPU,       /* a graphics card, through an OpenGL 4.5 context of the world's own */
+    SKEIN_DEVICE_CURRENT_GL /* the same, in the OpenGL context that is current on this thread: it must be current at
+                               every later call on the world, too */
+} skein_device;
+
+/* Changes where steps are computed; the state goes along. The card runs the same plan, in float, and keeps the state
+ * there: it comes back when a call looks at it (a view, a copy, statistics, a hash), and only then. A rule that cannot
+ * run on a card is named when a plan is made: by the next step, or by skein_world_explain(). */
+skein_status skein_world_device_set(skein_world *world, skein_device device);
+
+typedef struct skein_device_info {
+    skein_device device;
+    const char *name;  /* "processor", or the card and its driver; as long as the device is the world's */
+    bool software;     /* a graphics card that the processor plays: right, but slow */
+    size_t bytes;      /* held on the card now */
+    size_t pass_count; /* shaders that a step runs, and the loops around them */
+    /* For drawing without reading back: OpenGL buffers of four floats a slot, x, y, z and the inverse mass, or velocity
+     * and mass; particle i is in slot slot_of[i]. 0 before the first step, and changed by whatever adds particles. */
+    unsigned position_buffer, velocity_buffer;
+    const uint32_t *slot_of;
+    size_t slot_count;
+} skein_device_info;
+skein_device_info skein_world_device(const skein_world *world);
+
 /* ---- Reading and writing the state ------------------------------------------------------------- */
 
 /* The state without a copy, valid until the next step or change. Particle i stands at

@@ -10,6 +10,7 @@
 #include "base/wide_types.h"
 #include "formula/parameters.h"
 #include "plan/row.h"
+#include "plan/shader.h"
 
 /* Where a collider stands at a time, and how it moves there. */
 typedef struct sk_pose {
@@ -56,6 +57,9 @@ typedef struct sk_collider_type {
     /* Whether a value at x had to be guarded (formula/graph.h): for the statistics; NULL: there is nothing to guard. */
     bool (*guarded)(const void *params, const sk_pose *pose, const double x[3]);
     const sk_making *making; /* what is made from its texts; NULL: nothing */
+    /* Defines vec4 probe@(vec3 p): the unit normal out of the solid, and the distance in w. What every collider has
+     * is pose@ (colliders/contact.glsl). */
+    sk_shader shader;
 } sk_collider_type;
 
 typedef struct sk_collider {

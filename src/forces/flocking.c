@@ -226,6 +226,8 @@ static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t 
 #else
 #include "forces/flocking.h"
 
+#include <string.h>
+
 #include "base/status.h"
 
 // clang-format off
@@ -268,6 +270,15 @@ sk_flocking_numbers sk_flocking_numbers_of(const sk_flocking_params *params) {
     };
 }
 
+static void pack(const void *data, float (*block)[4]) {
+    const sk_flocking_params *params = data;
+    sk_flocking_numbers n = sk_flocking_numbers_of(params);
+    const float numbers[2][4] = {
+        {1 / (float)n.reach, (float)n.away, (float)n.along, (float)n.per_along},
+        {(float)n.per_towards, (float)n.nearest, (float)params->strength, n.squared ? 1.0f : 0.0f}};
+    memcpy(block, numbers, sizeof numbers);
+}
+
 #define SK_KERNELS "forces/flocking.c"
 #include "base/for_each_isa.h"
 
@@ -279,5 +290,6 @@ const sk_force_type sk_flocking = {
     .kernel = {SK_EACH_ISA(kernel)},
     .radius = radius,
     .bodies = bodies,
+    .shader = {"forces/flocking", 2, pack, NULL},
 };
 #endif

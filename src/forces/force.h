@@ -8,6 +8,7 @@
 #include "base/fields.h"
 #include "formula/parameters.h"
 #include "plan/row.h"
+#include "plan/shader.h"
 
 typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOURS } sk_domain;
 
@@ -48,6 +49,16 @@ typedef struct sk_force_type {
     /* The names of the body that it moves and of the one that it looks at: "" is every particle, and the same as it
      * moves. NULL: every particle. */
     void (*bodies)(const void *params, const char **moved, const char **seen);
+    /* Over particles it defines, for a rule that pushes, steers (w: how much more speed is allowed) or bounds (by
+     * `more` speed):
+     *     vec3 force@(vec3 x, vec3 v, float mass),   vec4 steer@(vec3 x, float dt),   vec3 bound@(vec3 v, float more)
+     * and over neighbours a sum of its own type, what each neighbour adds, and the newtons or metres a second that
+     * come of it:
+     *     sum@ start@(),   void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction),
+     *     vec3 finish@(sum@ sum, float dt)
+     * where `apart` leads from the neighbour here, `square` is its squared length (less than that of the radius, and
+     * 0 in one place), and `direction` is the neighbour's unit direction of flight. */
+    sk_shader shader;
 } sk_force_type;
 
 /* Particles of one body, or all: the user's indices, and the slots that they and nobody else lie in. */

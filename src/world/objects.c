@@ -184,6 +184,11 @@ skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_typ
         unmake_object(world, object);
         return status;
     }
+    status = sk_world_fetch(world);
+    if (status) {
+        unmake_object(world, object);
+        return status;
+    }
     real *rest = find_rests(world, type, object->params, particles, count);
     sk_batch *batch = rest && SK_RESERVE(allocator, &world->rules.batches, world->rules.batches.count + 1)
                           ? sk_batch_create(allocator, type, object->params, count, particles, rest, NULL)

@@ -7,6 +7,8 @@
 
 skein_status sk_world_arrange(skein_world *world, skein_error *error) {
     if (!world->slots_stale) return SKEIN_OK;
+    skein_status status = sk_world_touch(world); // the state goes to new slots
+    if (status) return status;
     sk_allocator *allocator = &world->allocator;
     bool good = sk_particles_arrange(&world->particles, allocator);
     for (size_t i = 0; i < world->rules.batches.count && good; i++)
@@ -105,6 +107,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     if (status) return status;
     for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);
     warn_of_light_colliders(world);
+    world->plan_stale = true; // until it is whole
     world->plan.count = 0;
     sk_writer writer = {
         .plan = &world->plan,
@@ -118,10 +121,11 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         .h = dt,
     };
     sk_write_sum(&writer, SK_PREVIOUS, 1, SK_X, 0, SK_NONE);
-    sk_write_pack(&writer);
+    if (!world->device) sk_write_pack(&writer);
     method->write(&writer, world->method_params, dt);
-    sk_write_unpack(&writer);
-    if (writer.no_memory || !make_temporaries(world)) return sk_fail_memory(error, "the plan");
+    if (!world->device) sk_write_unpack(&writer);
+    if (writer.no_memory || (!world->device && !make_temporaries(world))) return sk_fail_memory(error, "the plan");
+    if (world->device && (status = world->device->prepare(world->device, world, error))) return status;
     world->plan_dt = dt;
     world->plan_stale = false;
     return SKEIN_OK;
@@ -154,10 +158,15 @@ skein_status skein_world_step(skein_world *world, double dt) {
     }
     memset(world->cell, 0, sizeof world->cell);
     sk_run run = sk_world_run_context(world);
-    uint64_t mode = sk_float_mode_enter();
-    sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
-    sk_float_mode_leave(mode);
-    if (run.no_memory) return sk_fail_memory(error, "the neighbour grid; the step was not finished");
+    if (world->device) {
+        status = world->device->step(world->device, world, &run, error);
+        if (status) return status;
+    } else {
+        uint64_t mode = sk_float_mode_enter();
+        sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
+        sk_float_mode_leave(mode);
+        if (run.no_memory) return sk_fail_memory(error, "the neighbour grid; the step was not finished");
+    }
     world->time += dt;
     world->steps++;
     world->substeps += (uint64_t)world->method->substeps(world->method_params);
@@ -165,6 +174,8 @@ skein_status skein_world_step(skein_world *world, double dt) {
 }
 
 skein_status skein_world_reset(skein_world *world) {
+    skein_status status = sk_world_touch(world); // masses may have changed, and where particles are held
+    if (status) return status;
     memset(world->cell, 0, sizeof world->cell);
     sk_particles_reset(&world->particles);
     world->time = 0;
