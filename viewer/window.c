@@ -4,6 +4,7 @@
  * does is sorted out after Dear ImGui has seen it: over a panel it is the panel's, else the stage's. */
 #include <errno.h>
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -29,6 +30,7 @@ typedef struct window {
     render_messages messages;
     viewer_request pending[MOST_PENDING]; /* of the pointer, until Dear ImGui has seen it */
     int pending_count;
+    double x, y; /* of the pointer, as its events say: it may be elsewhere by now */
     int stage_buttons; /* that went down over the picture: the stage gets their end, too */
     int frames_due;    /* to draw, since something happened */
     unsigned framebuffer;
@@ -55,8 +57,7 @@ static void to_pixels(GLFWwindow *glfw, double *x, double *y) {
 
 /* Notes what the pointer did; moves that follow each other are one. */
 static void note_pointer(window *w, viewer_request request) {
-    double x, y;
-    glfwGetCursorPos(w->glfw, &x, &y);
+    double x = w->x, y = w->y;
     to_pixels(w->glfw, &x, &y);
     if (request.kind != VIEWER_SCROLL) request.x = x, request.y = y;
     viewer_request *last = w->pending_count ? &w->pending[w->pending_count - 1] : NULL;
@@ -66,8 +67,9 @@ static void note_pointer(window *w, viewer_request request) {
 }
 
 static void on_move(GLFWwindow *glfw, double x, double y) {
-    (void)x, (void)y;
-    note_pointer(window_of(glfw), (viewer_request){.kind = VIEWER_MOVE});
+    window *w = window_of(glfw);
+    w->x = x, w->y = y;
+    note_pointer(w, (viewer_request){.kind = VIEWER_MOVE});
 }
 
 static void on_button(GLFWwindow *glfw, int button, int action, int mods) {
@@ -257,13 +259,20 @@ static double scale_of(const window *w) {
     return x > 0.5f ? (double)x : 1;
 }
 
+/* Ctrl-C on the terminal closes the window as its own button would: a film that is recorded gets its end. */
+static volatile sig_atomic_t interrupted;
+
+static void interrupt(int number) {
+    interrupted = number;
+}
+
 static void wake(void) {
     glfwPostEmptyEvent();
 }
 
 static void loop(window *w) {
     uint64_t seen = 0;
-    while (!glfwWindowShouldClose(w->glfw)) {
+    while (!glfwWindowShouldClose(w->glfw) && !interrupted) {
         if (w->frames_due > 0) glfwPollEvents();
         else glfwWaitEventsTimeout(0.5);
         if (w->frames_due > 0) w->frames_due--;
@@ -292,7 +301,11 @@ static skein_status run(window *w, skein_error *error) {
     w->exchange.wake = wake;
     if (!viewer_stage_start(&w->stage, w->options, &w->exchange, w->hidden))
         return render_fail(error, SKEIN_ERROR_MEMORY, "window", "no thread can be started");
+    signal(SIGINT, interrupt);
+    signal(SIGTERM, interrupt);
     loop(w);
+    signal(SIGINT, SIG_DFL);
+    signal(SIGTERM, SIG_DFL);
     viewer_stage_join(&w->stage);
     widgets_close();
     glDeleteFramebuffers(1, &w->framebuffer);
