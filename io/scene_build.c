@@ -136,10 +136,12 @@ static bool read_indices(index_list *list, io_place place, const json_t *json, s
 
 static void add_constraint(const builder *b, io_place place, const skein_kind *kind, const json_t *object,
                            const io_settings *settings) {
-    enum { ARITY = 2 }; // of every kind that there is
     index_list list = {0};
-    if (read_indices(&list, place, json_object_get(object, "particles"), ARITY) && !b->body_missing &&
-        skein_constraint_add(b->world, kind->name, list.data, list.count / ARITY, settings->data, NULL))
+    size_t arity;
+    if (skein_constraint_arity(b->world, kind->name, settings->data, &arity))
+        report_object_fault(b, place, kind, "particles");
+    else if (read_indices(&list, place, json_object_get(object, "particles"), arity) && !b->body_missing &&
+             skein_constraint_add(b->world, kind->name, list.data, list.count / arity, settings->data, NULL))
         report_object_fault(b, place, kind, "particles");
     free(list.data);
 }

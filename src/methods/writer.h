@@ -65,13 +65,18 @@ void sk_write_following(sk_writer *writer, int passes);
 
 /* F = all forces on X moving with V: the grid if a rule wants neighbours, then fields and neighbours. */
 void sk_write_fields(sk_writer *writer);
+/* V += what the rules that steer ask for, then bounds on V: once a substep, see writer_steer.c. */
+void sk_write_steering(sk_writer *writer);
+/* The bounds once more, where forces have acted on V after them. */
+void sk_write_bounds(sk_writer *writer);
+bool sk_writes_steering(const sk_rules *rules);
 /* F += the springs of every batch. */
 void sk_write_forces(sk_writer *writer);
 /* X: `passes` sweeps over every batch; X0 is the state at the start of the substep. */
 void sk_write_projections(sk_writer *writer, int passes);
 
-/* The same as if every constraint with a stiffness were rigid and undamped. */
-void sk_write_rigid_projections(sk_writer *writer, int passes);
+/* The same without a memory from pass to pass: each has its share, a `passes`-th, of the stiffness and damping. */
+void sk_write_shared_projections(sk_writer *writer, int passes);
 
 /* Whether any force or damped constraint depends on velocities. */
 bool sk_writes_velocity_forces(const sk_writer *writer);

@@ -18,6 +18,7 @@ static void copy_batch(const sk_batch *batch, const sk_vec4 *x, skein_spring *ou
 
 skein_status skein_springs_copy(skein_world *world, skein_spring *out, size_t most, size_t *count) {
     skein_status status = sk_world_arrange(world, sk_world_error(world)); // the slots of new rules may not be known yet
+    if (!status) status = sk_world_fetch(world);
     *count = 0;
     for (size_t i = 0; i < world->rules.batches.count && !status; i++) {
         const sk_batch *batch = world->rules.batches.data[i];
@@ -54,8 +55,9 @@ skein_status skein_collider_probe(const skein_world *world, skein_handle handle,
 
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count) {
     const sk_particles *all = &world->particles;
+    skein_status status = sk_world_fetch(world);
     contact_list list = {out, most, 0, {0, 0}};
-    for (size_t i = 0; i < world->objects.count; i++) {
+    for (size_t i = 0; i < world->objects.count && !status; i++) {
         const sk_object *object = world->objects.data[i];
         if (!(object->generation % 2) || object->category != SKEIN_COLLIDER || !object->as.collider->common->enabled)
             continue;
@@ -64,5 +66,5 @@ skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, s
                           &list);
     }
     *count = list.count;
-    return SKEIN_OK;
+    return status;
 }

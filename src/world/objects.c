@@ -105,7 +105,8 @@ skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, c
         unmake_object(world, object);
         return sk_fail_memory(error, type->kind.name);
     }
-    *force = (sk_force){type, object->params, object->label, &object->common.plain.enabled};
+    *force = (sk_force){
+        .type = type, .params = object->params, .label = object->label, .enabled = &object->common.plain.enabled};
     world->rules.forces.data[world->rules.forces.count++] = force;
     object->as.force = force;
     return finish_object(world, object, handle);
@@ -134,35 +135,63 @@ skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *t
     return finish_object(world, object, handle);
 }
 
-skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_type *type, const uint32_t *particles,
-                                     size_t count, const skein_setting *settings, skein_handle *handle) {
-    skein_error *error = sk_world_error(world);
-    sk_allocator *allocator = &world->allocator;
-    // rest values from where the particles stand
-    size_t arity = (size_t)type->arity;
-    if (count > SIZE_MAX / 64) return sk_fail(error, SKEIN_ERROR_LIMIT, "", "%zu constraints are too many", count);
+/* What is wrong with a constraint's particles; NULL: nothing. */
+static skein_status check_particles(const skein_world *world, const sk_object *object, const uint32_t *particles,
+                                    size_t count, size_t arity, skein_error *error) {
     for (size_t i = 0; i < count * arity; i++)
         if (particles[i] >= world->particles.count)
             return sk_fail(error, SKEIN_ERROR_VALUE, "", "%s %zu: there is no particle %u (the world has %zu)",
-                           type->kind.name, i / arity, particles[i], world->particles.count);
-    real *rest = sk_allocate(allocator, count * sizeof *rest);
-    if (!rest) return sk_fail_memory(error, type->kind.name);
-    for (size_t e = 0; e < count; e++) {
-        double x[8][3];
+                           object->kind->name, i / arity, particles[i], world->particles.count);
+    for (size_t e = 0; e < count && arity > 2; e++)
+        for (size_t i = 1; i < arity; i++)
+            for (size_t j = 0; j < i; j++)
+                if (particles[e * arity + i] == particles[e * arity + j])
+                    return sk_fail(error, SKEIN_ERROR_VALUE, "", "%s %zu: particle %u is named twice",
+                                   object->kind->name, e, particles[e * arity + i]);
+    return SKEIN_OK;
+}
+
+/* Rest values from where the particles stand; NULL when there is no memory. */
+static real *find_rests(skein_world *world, const sk_constraint_type *type, const void *params,
+                        const uint32_t *particles, size_t count) {
+    size_t arity = (size_t)sk_constraint_arity(type, params), rests = (size_t)sk_constraint_rest_count(type, params);
+    real *rest = sk_allocate(&world->allocator, count * rests * sizeof *rest);
+    for (size_t e = 0; e < count && rest && rests; e++) {
+        double x[SK_MOST_ARITY][3], values[SKEIN_FORMULA_MOST_RESTS];
         for (size_t k = 0; k < arity; k++) {
             sk_vec4 p = world->particles.vector[SK_X][world->particles.slot_of[particles[e * arity + k]]];
             x[k][0] = (double)p.x, x[k][1] = (double)p.y, x[k][2] = (double)p.z;
         }
-        rest[e] = (real)type->rest((const double(*)[3])x);
+        if (!type->rest(params, (const double(*)[3])x, values)) {
+            sk_release(&world->allocator, rest);
+            return NULL;
+        }
+        for (size_t r = 0; r < rests; r++) rest[r * count + e] = (real)values[r];
     }
+    return rest;
+}
+
+skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_type *type, const uint32_t *particles,
+                                     size_t count, const skein_setting *settings, skein_handle *handle) {
+    skein_error *error = sk_world_error(world);
+    sk_allocator *allocator = &world->allocator;
+    if (count > SIZE_MAX / 1024) return sk_fail(error, SKEIN_ERROR_LIMIT, "", "%zu constraints are too many", count);
     sk_object *object;
     skein_status status = make_object(world, &type->kind, type->making, settings, &object, error);
+    if (status) return status;
+    status = check_particles(world, object, particles, count, (size_t)sk_constraint_arity(type, object->params), error);
     if (status) {
-        sk_release(allocator, rest);
+        unmake_object(world, object);
         return status;
     }
-    sk_batch *batch = SK_RESERVE(allocator, &world->rules.batches, world->rules.batches.count + 1)
-                          ? sk_batch_create(allocator, type, count, particles, rest, NULL)
+    status = sk_world_fetch(world);
+    if (status) {
+        unmake_object(world, object);
+        return status;
+    }
+    real *rest = find_rests(world, type, object->params, particles, count);
+    sk_batch *batch = rest && SK_RESERVE(allocator, &world->rules.batches, world->rules.batches.count + 1)
+                          ? sk_batch_create(allocator, type, object->params, count, particles, rest, NULL)
                           : NULL;
     sk_release(allocator, rest);
     if (!batch) {
@@ -172,10 +201,20 @@ skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_typ
     batch->params = object->params;
     batch->label = object->label;
     batch->enabled = &object->common.plain.enabled;
-    batch->measured = true;
+    batch->measured = type->strain != NULL;
     world->rules.batches.data[world->rules.batches.count++] = batch;
     object->as.batch = batch;
     return finish_object(world, object, handle);
+}
+
+skein_status sk_world_find_arity(skein_world *world, const sk_constraint_type *type, const skein_setting *settings,
+                                 size_t *arity) {
+    sk_object *object;
+    skein_status status = make_object(world, &type->kind, type->making, settings, &object, sk_world_error(world));
+    if (status) return status;
+    *arity = (size_t)sk_constraint_arity(type, object->params);
+    unmake_object(world, object);
+    return SKEIN_OK;
 }
 
 /* Takes back what a builder that failed has added since the marks. */

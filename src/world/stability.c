@@ -107,6 +107,7 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
     skein_error *error = sk_world_error(world);
     *stability = (skein_stability){.mode_count = 0};
     skein_status status = sk_world_arrange(world, error);
+    if (!status) status = sk_world_fetch(world);
     if (status) return status;
     uint32_t wanted = 1u << mode_at | 1u << image | 1u << zero | 1u << resistance | 1u << SK_SUMS;
     world->plan_stale = true; // its temporaries go

@@ -6,6 +6,7 @@
 #include "world/world.h"
 
 uint64_t skein_world_hash(const skein_world *world) {
+    sk_world_fetch(world);
     uint64_t hash = SK_HASH_START;
     for (size_t i = 0; i < world->particles.count; i++) {
         uint32_t slot = world->particles.slot_of[i];
@@ -81,7 +82,9 @@ static skein_status measure_stretch(skein_world *world, skein_statistics *s, ske
 
 skein_status skein_world_statistics(skein_world *world, skein_statistics *statistics) {
     skein_error *error = sk_world_error(world);
+    skein_status status = sk_world_fetch(world);
     memset(statistics, 0, sizeof *statistics);
+    if (status) return status;
     const sk_particles *all = &world->particles;
     statistics->memory_bytes = world->allocator.bytes;
     statistics->steps = world->steps;
@@ -92,7 +95,7 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     statistics->solver_turns = (size_t)world->cell[SK_CELL_NEWTON_TURNS];
     statistics->solver_iterations = (size_t)world->cell[SK_CELL_CG_TURNS];
     statistics->particles = all->count;
-    skein_status status = sk_world_arrange(world, error); // the slots of new rules may not be known yet
+    status = sk_world_arrange(world, error); // the slots of new rules may not be known yet
     if (status) return status;
     count_particles(world, statistics);
     sk_world_measure_energy(world, statistics);
