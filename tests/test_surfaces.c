@@ -10,9 +10,9 @@ static const struct {
     skein_setting own[4], formula[6];
 } pairs[] = {
     {"plane",
-     {SKEIN_REAL("offset", 0.2), SKEIN_VEC3("normal", 0.42261826, 0.90630779, 0)},
-     {SKEIN_VEC3("centre", 0.2 * 0.42261826, 0.2 * 0.90630779, 0), SKEIN_TEXT("surface", "dot(vec3(s, c, 0), p)"),
-      SKEIN_REAL("parameters.s", 0.42261826), SKEIN_REAL("parameters.c", 0.90630779)}},
+     {SKEIN_REAL("offset", 0.2), SKEIN_VEC3("normal", 0.6, 0.8, 0)},
+     {SKEIN_VEC3("centre", 0.2 * 0.6, 0.2 * 0.8, 0), SKEIN_TEXT("surface", "dot(vec3(s, c, 0), p)"),
+      SKEIN_REAL("parameters.s", 0.6), SKEIN_REAL("parameters.c", 0.8)}},
     {"plane", {SKEIN_VEC3("normal", 0, 1, 0)}, {SKEIN_TEXT("surface", "p.y*2")}},
     {"sphere",
      {SKEIN_VEC3("centre", 0.05, -0.5, 0), SKEIN_REAL("radius", 0.7)},
