@@ -119,10 +119,12 @@ static const expectation expectations[] = {
     {"elephant", 20, 0.006, 0.03, 0, 0, NOT_SYMMETRIC},
     {"flag", 60, 0.06, 0, 0, 0, NOT_SYMMETRIC},
     {"hanging", 60, 0.02, 0, 0, 0, 0},
+    {"orbits", 60, 0.03, 0, 0, 0, NOT_SYMMETRIC},
     {"rope", 45, 0.003, 0.001, 0, 0, NOT_SYMMETRIC},
     {"torus", 90, 0.04, 0.03, 0.3, 0, NOT_SYMMETRIC},
     {"turntable", 60, 0.02, 0.03, 0.15, 0, NOT_SYMMETRIC}, // its folds grow from rounding: in double they differ
     {"wave", 60, 0.01, 0, 0, 0.03, NOT_SYMMETRIC},
+    {"whirl", 200, 0.005, 0, 0, 0, NOT_SYMMETRIC},
 };
 
 static bool is_warm(const uint8_t *p) {

@@ -258,6 +258,38 @@ static void bounces_know_the_surfaces_speed(void **state) {
 
 /* ---- While it lives ------------------------------------------------------------------------------ */
 
+/* What a program sees of a collider at any point, and that is refused of other things. */
+static void colliders_are_probed(void **state) {
+    (void)state;
+    enum { MANY = 37 };
+    double points[3 * MANY], distances[MANY], normals[3 * MANY];
+    skein_world *world = new_world("xpbd", 1);
+    skein_handle sphere, formula, gravity;
+    OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.5)), &sphere));
+    OK(world,
+       skein_collider_add(
+           world, "formula",
+           SKEIN_SETTINGS(SKEIN_TEXT("surface", "length(p) - 0.5"), SKEIN_VEC3("motion.velocity", 1, 0, 0)), &formula));
+    OK(world, skein_force_add(world, "gravity", NULL, &gravity));
+    add_particle(world, 1, 0, 9, 0);
+    steps(world, 1, 0.25);
+    uint64_t seed = 9;
+    for (int i = 0; i < 3 * MANY; i++) points[i] = random_between(&seed, -2, 2);
+    for (int moved = 0; moved < 2; moved++) {
+        OK(world, skein_collider_probe(world, moved ? formula : sphere, MANY, points, distances, normals));
+        for (int i = 0; i < MANY; i++) {
+            vec3 off = {points[3 * i] - (moved ? 0.25 : 0), points[3 * i + 1], points[3 * i + 2]};
+            assert_near(distances[i], length3(off) - 0.5, 1e-6);
+            assert_near(normals[3 * i], off.x / length3(off), 1e-6);
+            assert_near(normals[3 * i + 2], off.z / length3(off), 1e-6);
+        }
+    }
+    OK(world, skein_collider_probe(world, sphere, MANY, points, NULL, NULL));
+    FAILS(world, SKEIN_ERROR_HANDLE, "no such collider",
+          skein_collider_probe(world, gravity, MANY, points, distances, NULL));
+    skein_world_destroy(world);
+}
+
 static void surfaces_change_while_they_live(void **state) {
     (void)state;
     skein_world *world = new_world("xpbd", 10);
@@ -366,6 +398,7 @@ int main(void) {
         cmocka_unit_test(cubes_rest_where_they_do_on_the_shapes),
         cmocka_unit_test(a_piston_carries),
         cmocka_unit_test(bounces_know_the_surfaces_speed),
+        cmocka_unit_test(colliders_are_probed),
         cmocka_unit_test(surfaces_change_while_they_live),
         cmocka_unit_test(awkward_places_are_finite),
         cmocka_unit_test(guards_are_counted),
