@@ -52,6 +52,8 @@ static const double usual_repeats[] = {
 static const double normal_length = 0.03, contact_length = 0.06;
 /* The ground is near when it is no farther below things than this part of their height. */
 static const double floor_gap = 0.25;
+/* The ground lies so far below terrain, in radii of the things on it: less would meet where waves go down. */
+static const double ground_gap = 0.02;
 /* A level plane is in the picture when it is no farther below things than so many of their radii. */
 static const double seen_fall = 2;
 
@@ -307,12 +309,18 @@ static skein_status take_lines(render_world_frame *made, skein_error *error) {
     return made->lines.no_memory ? render_fail_memory(error, "the lines") : SKEIN_OK;
 }
 
-/* The lowest that slabs reach; infinite where there are none. */
+/* The lowest that slabs and terrain reach; infinite where there are none. */
 static double lowest_slab(const render_world_frame *made) {
     render_bounds things = bounds_to_hold(made), slabs = render_bounds_nothing();
     double middle[3], radius = render_bounds_radius(&things);
     render_bounds_centre(&things, middle);
     render_bounds_add_slabs(&slabs, &made->frame, middle, radius > 0 ? radius : 1);
+    for (size_t s = 0; s < made->frame.surface_count; s++) {
+        const render_surface *surface = &made->surfaces[s];
+        for (size_t v = 0; v < surface->vertex_count && surface->scenery; v++)
+            slabs.least[1] =
+                fmin(slabs.least[1], surface->positions[3 * v + 1] - ground_gap * (radius > 0 ? radius : 1));
+    }
     return slabs.least[1];
 }
 

@@ -420,7 +420,7 @@ typedef struct skein_statistics {
     uint64_t steps, substeps;
     double time;                /* s, simulated */
     double kinetic_energy;      /* J */
-    double potential_energy;    /* J, of gravity; 0 at the origin */
+    double potential_energy;    /* J, of gravity (0 at the origin) and potentials */
     double elastic_energy;      /* J, in constraints; what is rigid holds none */
     double dissipated_energy;   /* J: the energy when the first step began, less the energy now. What damping, friction,
                                    impacts and the method itself have taken; wind, moving colliders and changes made by
