@@ -30,10 +30,10 @@ static void rays_meet_a_sheet(void **state) {
     skein_world *world = empty_world();
     skein_handle body;
     (void)state;
-    OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_PAIR("size", 2, 2),
-                                            SKEIN_VEC3("position", 0, 2, 0)),
-                             &body));
+    OK(world,
+       skein_body_add(
+           world, "cloth", NULL,
+           SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_PAIR("size", 2, 2), SKEIN_VEC3("position", 0, 2, 0)), &body));
     uint64_t seed = 1;
     int met = 0;
     for (int i = 0; i < 400; i++) {
@@ -135,10 +135,10 @@ static void rays_meet_boxes_and_capsules(void **state) {
     (void)state;
     OK(world, skein_collider_add(world, "box",
                                  SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0, 0), SKEIN_VEC3("size", 2, 1, 0.5)), &box));
-    OK(world, skein_collider_add(world, "capsule",
-                                 SKEIN_SETTINGS(SKEIN_VEC3("from", 3, 0, 0), SKEIN_VEC3("to", 5, 0, 0),
-                                                SKEIN_REAL("radius", 0.5)),
-                                 &rod));
+    OK(world,
+       skein_collider_add(
+           world, "capsule",
+           SKEIN_SETTINGS(SKEIN_VEC3("from", 3, 0, 0), SKEIN_VEC3("to", 5, 0, 0), SKEIN_REAL("radius", 0.5)), &rod));
     skein_hit hit = cast(world, (vec3){0.7, 0.3, 4}, (vec3){0, 0, -2}, SKEIN_COLLIDER);
     assert_near(hit.distance, 3.75, 1e-4);
     assert_near(hit.normal[2], 1, 1e-4);
@@ -167,7 +167,8 @@ static void finds_the_nearest_particles(void **state) {
     FAILS(world, SKEIN_ERROR_VALUE, "no particles",
           skein_particle_near_point(world, (const double[]){0, 0, 0}, &particle, &distance));
     for (int i = 0; i < MANY; i++)
-        add_particle(world, 1, random_between(&seed, -1, 1), random_between(&seed, -1, 1), random_between(&seed, -1, 1));
+        add_particle(world, 1, random_between(&seed, -1, 1), random_between(&seed, -1, 1),
+                     random_between(&seed, -1, 1));
     for (int i = 0; i < 50; i++) {
         vec3 p = {random_between(&seed, -1, 1), random_between(&seed, -1, 1), random_between(&seed, -1, 1)};
         const double point[3] = {p.x, p.y, p.z};

@@ -190,6 +190,8 @@ void viewer_stage_answer(viewer_stage *stage, const viewer_request *r) {
     case VIEWER_RESIZE:
         stage->wide = (int)r->x, stage->tall = (int)r->y;
         stage->dirty = true;
+        if (stage->film) viewer_film_toggle(stage); // its pictures have one size
+        viewer_event(stage->events, "size %d %d", stage->wide, stage->tall);
         break;
     case VIEWER_FOCUS: focus(stage, r->down); break;
     case VIEWER_SET: viewer_stage_set(stage, r); break;

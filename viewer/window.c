@@ -30,7 +30,7 @@ typedef struct window {
     render_messages messages;
     viewer_request pending[MOST_PENDING]; /* of the pointer, until Dear ImGui has seen it */
     int pending_count;
-    double x, y; /* of the pointer, as its events say: it may be elsewhere by now */
+    double x, y;       /* of the pointer, as its events say: it may be elsewhere by now */
     int stage_buttons; /* that went down over the picture: the stage gets their end, too */
     int frames_due;    /* to draw, since something happened */
     unsigned framebuffer;
