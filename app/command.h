@@ -62,6 +62,10 @@ int app_load_quietly(const char *path, const char *const *sets, app_scene *loade
 /* Only looks whether it can be loaded. */
 int app_try(const char *path, const char *const *sets);
 void app_unload(app_scene *loaded);
+/* The option --device, and what it asks for: "cpu", "gpu", "auto" or NULL. Says on the terminal what it chose unless
+ * that is plain. Returns an exit status. */
+extern const app_option app_device_option;
+int app_device(app_scene *loaded, const char *word);
 /* The name of the method's kind. */
 const char *app_method(const app_scene *loaded);
 

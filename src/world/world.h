@@ -10,6 +10,7 @@
 
 #include "base/status.h"
 #include "base/tasks.h"
+#include "formula/parameters.h"
 #include "methods/method.h"
 #include "particles/particles.h"
 #include "plan/solve.h"
@@ -55,7 +56,9 @@ typedef struct sk_object {
     uint32_t generation; /* odd while it lives */
     skein_category category;
     const skein_kind *kind;
-    void *params; /* the kind's fields */
+    skein_kind *own_kind;    /* what `kind` is where it takes parameters, else NULL */
+    const sk_making *making; /* what its type makes from its parameters; NULL: nothing */
+    void *params;            /* the kind's fields */
     union {
         sk_common plain;
         sk_collider_common collider;
@@ -69,6 +72,21 @@ typedef struct sk_object {
         sk_collider *collider;
     } as;
 } sk_object;
+
+/* Where steps are computed, when it is not the processor: runs the same plan on its own copy of the state. The
+ * world does not know what it is; src/gpu/ makes one. A device is `ahead` when its X, V and P are newer than the
+ * world's, and `behind` when the world's are newer. */
+typedef struct sk_device sk_device;
+struct sk_device {
+    /* Takes a new plan, or says which rule of it cannot run there. */
+    skein_status (*prepare)(sk_device *device, skein_world *world, skein_error *error);
+    /* Runs the plan once; `run` holds the time, and the world's vectors if the device is behind. */
+    skein_status (*step)(sk_device *device, skein_world *world, sk_run *run, skein_error *error);
+    /* Copies X, V and P into the world's. */
+    skein_status (*read)(sk_device *device, skein_world *world, skein_error *error);
+    void (*release)(sk_device *device, skein_world *world);
+    bool ahead, behind;
+};
 
 struct skein_world {
     sk_allocator allocator;
@@ -92,10 +110,12 @@ struct skein_world {
     bool slots_stale; /* particles, batches or limits were added: slots and sweeps are to be found anew */
     sk_isa isa;
     sk_grid grid;
+    sk_cells cells;
     double time;
     uint64_t steps, substeps;
     double first_energy;        /* J, when the first step began */
     double cell[SK_CELL_COUNT]; /* of the last step */
+    sk_device *device;          /* NULL: the processor */
 };
 
 /* ---- for the catalogue: adding objects of a known type ---- */
@@ -104,6 +124,8 @@ skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, con
                                const skein_setting *settings, skein_handle *handle);
 skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_type *type, const uint32_t *particles,
                                      size_t count, const skein_setting *settings, skein_handle *handle);
+skein_status sk_world_find_arity(skein_world *world, const sk_constraint_type *type, const skein_setting *settings,
+                                 size_t *arity);
 skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, const skein_setting *settings,
                                 skein_handle *handle);
 skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *type, const skein_setting *settings,
@@ -138,6 +160,8 @@ void sk_world_log(skein_world *world, skein_log_level level, const char *format,
 /* ---- between the world's own files ---- */
 
 sk_object *sk_object_of(const skein_world *world, skein_handle handle);
+/* Releases an object's parameters and itself. */
+void sk_object_release(sk_allocator *allocator, sk_object *object);
 /* Fields that objects of a category share, and where they are stored. */
 const skein_field *sk_common_fields(skein_category category, size_t *count);
 void *sk_common_of(sk_object *object);
@@ -150,6 +174,14 @@ const skein_field *sk_kind_field(const skein_kind *kind, const char *name, skein
 skein_status sk_world_arrange(skein_world *world, skein_error *error);
 /* Brings the plan up to date for a step of dt. */
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error);
+/* Before the state is read: what a device is ahead comes back. It changes no state, only where it stands; a failure
+ * is in the world's error, and the state is then the last one that came back. */
+skein_status sk_world_fetch(const skein_world *world);
+/* Before the state is changed by hand: the same, and the device is behind. */
+skein_status sk_world_touch(skein_world *world);
+/* Changes where steps are computed; NULL is the processor. The former device is released. On failure nothing changes,
+ * and the caller keeps the new one. */
+skein_status sk_world_set_device(skein_world *world, sk_device *device);
 /* The run context of the world's present state. */
 sk_run sk_world_run_context(skein_world *world);
 /* What skein_stable_substep says, of a known type. */
