@@ -504,7 +504,7 @@ static void solves_by_keys(void **state) {
 static void compares_and_waits_for_the_focus(void **state) {
     const char *const arguments[] = {
         in_folder("scenes/sheet.json"), "--size", "640x360", "--unfocused", "pause", "--compare",
-        "method.type=symplectic_euler", NULL};
+        "method.type=pbd", NULL};
     (void)state;
     mkdir(in_folder("scenes"), 0777);
     write_scene(in_folder("scenes/sheet.json"), hanging);

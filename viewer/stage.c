@@ -83,13 +83,19 @@ static void blew_up(viewer_stage *stage) {
                "may hold it");
 }
 
-static bool is_finite(const skein_world *world) {
+static bool world_is_finite(const skein_world *world) {
     // a particle that blew up takes its neighbours along: one in some tells
     skein_view view = skein_position_view(world);
     for (size_t i = 0; i < view.count; i += view.count / 64 + 1) {
         const skein_real *p = view.xyzw + 4 * (size_t)view.slot_of[i];
         if (!isfinite((double)p[0]) || !isfinite((double)p[1]) || !isfinite((double)p[2])) return false;
     }
+    return true;
+}
+
+static bool is_finite(const viewer_stage *stage) {
+    for (size_t s = 0; s < stage->side_count; s++)
+        if (!world_is_finite(stage->sides[s].world)) return false;
     return true;
 }
 
@@ -114,7 +120,7 @@ void viewer_stage_step(viewer_stage *stage) {
     while (good && !new_frame) good = step_all(stage, &new_frame);
     stage->step_ms = 1e3 * (viewer_seconds() - start);
     if (good && stage->film) viewer_film_frame(stage);
-    if (good && !is_finite(stage->sides[0].world)) blew_up(stage);
+    if (good && !is_finite(stage)) blew_up(stage);
     stage->sampled = 0; // measured at once
     stage->dirty = true;
 }
@@ -151,7 +157,7 @@ static void advance(viewer_stage *stage) {
     if (due) stage->step_ms = 1e3 * (viewer_seconds() - now) / due * stage->sides[0].steps;
     judge_speed(stage, now);
     if (!good) viewer_stage_pause(stage, true);
-    else if (!is_finite(stage->sides[0].world)) blew_up(stage);
+    else if (!is_finite(stage)) blew_up(stage);
     stage->dirty = true; // time goes on between steps, too
 }
 
