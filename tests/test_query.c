@@ -286,6 +286,47 @@ static void a_world_goes_back_to_a_copy(void **state) {
     }
 }
 
+/* A step that is measured is a step: the same bits under every method; its passes have names and times. */
+static void measures_the_passes_of_a_step(void **state) {
+    enum { MOST = 64 };
+    (void)state;
+    for (size_t m = 0; m < COUNT(all_methods); m++) {
+        skein_world *worlds[2];
+        skein_pass passes[MOST];
+        size_t count = 0, few = 0;
+        for (int w = 0; w < 2; w++) {
+            worlds[w] = new_world(all_methods[m], 20);
+            OK(worlds[w],
+               skein_body_add(worlds[w], "cloth", NULL,
+                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 20, 20), SKEIN_TEXT("pins", "top corners"),
+                                             SKEIN_REAL("density", 2), SKEIN_REAL("stretch.stiffness", 50),
+                                             SKEIN_REAL("shear.stiffness", 10), SKEIN_REAL("bend.stiffness", 1)),
+                              NULL));
+            add_gravity(worlds[w]);
+            OK(worlds[w], skein_collider_add(worlds[w], "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.1)), NULL));
+        }
+        for (int i = 0; i < 20; i++) {
+            OK(worlds[0], skein_world_step(worlds[0], 1.0 / 120));
+            OK(worlds[1], skein_world_profile(worlds[1], 1.0 / 120, passes, MOST, &count));
+        }
+        if (skein_world_hash(worlds[0]) != skein_world_hash(worlds[1])) fail_msg("%s has other bits", all_methods[m]);
+        assert_near(skein_world_time(worlds[0]), skein_world_time(worlds[1]), 0);
+        assert_true(count > 3 && count < MOST);
+        bool plane = false;
+        for (size_t p = 0; p < count; p++) {
+            assert_true(passes[p].seconds >= 0 && passes[p].seconds < 10);
+            plane |= !strcmp(passes[p].label, "plane");
+            for (size_t q = 0; q < p; q++)
+                assert_false(passes[p].kind == passes[q].kind && !strcmp(passes[p].label, passes[q].label));
+        }
+        assert_true(plane);
+        OK(worlds[1], skein_world_profile(worlds[1], 1.0 / 120, passes, 2, &few));
+        assert_true(few >= count);
+        FAILS(worlds[1], SKEIN_ERROR_VALUE, "more than 0", skein_world_profile(worlds[1], 0, passes, MOST, &count));
+        for (int w = 0; w < 2; w++) skein_world_destroy(worlds[w]);
+    }
+}
+
 static void tells_which_fields_can_change(void **state) {
     skein_world *world = empty_world();
     skein_handle body;
@@ -311,6 +352,7 @@ int main(void) {
         cmocka_unit_test(refuses_bad_rays),
         cmocka_unit_test(held_particles_move_with_their_velocity),
         cmocka_unit_test(a_world_goes_back_to_a_copy),
+        cmocka_unit_test(measures_the_passes_of_a_step),
         cmocka_unit_test(tells_which_fields_can_change),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -43,6 +43,7 @@ void viewer_show_plots(viewer_panels *panels) {
         plot(shown, "largest stretch (%)", stretch, none, 1);
         plot(shown, "contacts", contacts, none, 1);
         plot(shown, "milliseconds a frame", times, passes, shown->side_count > 1 ? 1 : 2);
+        if (shown->sides[0].pass_count) widgets_text("by pass of the plan, a frame:");
         for (size_t p = 0; p < shown->sides[0].pass_count; p++) {
             char line[120];
             snprintf(line, sizeof line, "%8.3f ms  %s", shown->sides[0].passes[p].milliseconds,

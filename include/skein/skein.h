@@ -493,6 +493,18 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
  * a method that does not exist. */
 double skein_stable_substep(const char *method, const skein_stability *stability);
 
+/* What the rows of one kind and name took together. */
+typedef struct skein_pass {
+    const char *kind; /* "project", "force", ... */
+    char label[64];   /* of the rule: "stretch +0 +1"; "" for the arithmetic of whole vectors */
+    double seconds;
+} skein_pass;
+
+/* Takes a step, with the same bits as skein_world_step(), but one row of the plan after the other, and measures each.
+ * That is slower than a step, whose rows share the cache; the shares tell where the time goes. Copies up to `most`
+ * passes in the order of the plan; `count` receives how many there are. A step on a device is one pass. */
+skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out, size_t most, size_t *count);
+
 /* ---- The plan ---------------------------------------------------------------------------------- */
 
 /* Writes the plan's rows as text, a line each, for a step of `dt`. Lines go to `write` in order; NULL only
