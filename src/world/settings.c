@@ -99,19 +99,6 @@ static const skein_field *locate(const skein_world *world, skein_handle handle, 
     return field;
 }
 
-/* What shaped a body that stands cannot change any more. */
-static bool shapes(const sk_object *object, const void *params, const char *name) {
-    bool body = object && object->category == SKEIN_BODY && params == object->params;
-    return body && !object->body_type->live(name);
-}
-
-bool skein_field_is_live(const skein_world *world, skein_handle handle, const char *name) {
-    sk_object *object;
-    void *params;
-    skein_error ignored;
-    return locate(world, handle, name, &params, &object, &ignored) && !shapes(object, params, name);
-}
-
 /* What the object's type says to its parameters as they are; `field` has changed. */
 static skein_status accept(skein_world *world, sk_object *object, const skein_field *field, skein_error *error) {
     skein_status status = SKEIN_OK;
@@ -140,6 +127,19 @@ static skein_status replace(skein_world *world, sk_object *object, const skein_f
         sk_field_store(&world->allocator, field, params, &old, NULL);
     }
     return status;
+}
+
+/* What shaped a body that stands cannot change any more. */
+static bool shapes(const sk_object *object, const void *params, const char *name) {
+    bool body = object && object->category == SKEIN_BODY && params == object->params;
+    return body && !object->body_type->live(name);
+}
+
+bool skein_field_is_live(const skein_world *world, skein_handle handle, const char *name) {
+    sk_object *object;
+    void *params;
+    skein_error ignored;
+    return locate(world, handle, name, &params, &object, &ignored) && !shapes(object, params, name);
 }
 
 skein_status skein_set(skein_world *world, skein_handle handle, const char *name, skein_value value) {
