@@ -502,9 +502,14 @@ static void solves_by_keys(void **state) {
 
 /* Two worlds, in step; and without the focus they wait, if they are asked to. */
 static void compares_and_waits_for_the_focus(void **state) {
-    const char *const arguments[] = {
-        in_folder("scenes/sheet.json"), "--size", "640x360", "--unfocused", "pause", "--compare",
-        "method.type=pbd", NULL};
+    const char *const arguments[] = {in_folder("scenes/sheet.json"),
+                                     "--size",
+                                     "640x360",
+                                     "--unfocused",
+                                     "pause",
+                                     "--compare",
+                                     "method.type=pbd",
+                                     NULL};
     (void)state;
     mkdir(in_folder("scenes"), 0777);
     write_scene(in_folder("scenes/sheet.json"), hanging);
@@ -521,6 +526,48 @@ static void compares_and_waits_for_the_focus(void **state) {
     listen_from_here();
     tool("key x");
     expect("note saved sheet-");
+    close_window();
+}
+
+/* In a flock the arrows, Home and End change its rules, the mouse is the predator, and it waits for the focus. */
+static void steers_a_flock(void **state) {
+    static const struct {
+        const char *key, *field;
+        int way;
+    } rows[] = {{"Up", "separation", 1},   {"Down", "separation", -1}, {"Right", "alignment", 1},
+                {"Left", "alignment", -1}, {"Home", "cohesion", 1},    {"End", "cohesion", -1}};
+    const char *const arguments[] = {
+        SKEIN_SOURCE_DIR "/scenes/birds.json", "--size", "640x360", "--samples", "1", "--paused", NULL};
+    double before = 0, after;
+    (void)state;
+    open_window(arguments);
+    expect("opened ");
+    for (size_t r = 0; r < COUNT(rows); r++) {
+        char words[64], format[64];
+        snprintf(words, sizeof words, "key %s", rows[r].key);
+        snprintf(format, sizeof format, "note %s %%lf", rows[r].field);
+        for (int turn = 0; turn < 2; turn++) {
+            listen_from_here();
+            tool(words);
+            snprintf(words, sizeof words, "note %s ", rows[r].field);
+            expect(words);
+            assert_int_equal(sscanf(screen.line, format, &after), 1);
+            if (turn == 1) assert_true(rows[r].way * (after - before) > 0);
+            before = after;
+            snprintf(words, sizeof words, "key %s", rows[r].key);
+        }
+    }
+    listen_from_here();
+    tool("mousemove 450 180 sleep 0.2 mousemove 460 190");
+    expect("hunts");
+    tool("mousemove 60 180 sleep 0.2 mousemove 61 180"); // over the panel
+    expect("rests");
+    press_key("space");
+    listen_from_here();
+    focus_elsewhere(true);
+    expect("paused");
+    focus_elsewhere(false);
+    expect("plays");
     close_window();
 }
 
@@ -588,6 +635,7 @@ int main(void) {
         cmocka_unit_test(pictures_agree_with_the_offscreen_path),
         cmocka_unit_test(solves_by_keys),
         cmocka_unit_test(compares_and_waits_for_the_focus),
+        cmocka_unit_test(steers_a_flock),
     };
     int failed = cmocka_run_group_tests(alone, make_folder, remove_folder);
     if (!can_open_screen()) return failed;

@@ -141,7 +141,7 @@ static void point(viewer_stage *stage, const viewer_request *r) {
     double dx = r->x - stage->x, dy = r->y - stage->y;
     stage->x = r->x, stage->y = r->y;
     if (!stage->side_count) return;
-    if (stage->button < 0) hunt(stage, !r->down && r->x >= 0 && r->y >= 0 && r->x < stage->width && r->y < stage->height);
+    if (stage->button < 0) hunt(stage, !r->down);
     if (stage->button >= 0) drag(stage, dx, dy);
 }
 
