@@ -44,10 +44,10 @@ static void rays_meet_a_sheet(void **state) {
         if (fabs(fabs(to.x) - 1) < 1e-3 || fabs(fabs(to.z) - 1) < 1e-3) continue;
         vec3 any_length = {0.3 * way.x, 0.3 * way.y, 0.3 * way.z};
         skein_hit hit = cast(world, from, any_length, SKEIN_BODY);
-        assert_int_equal(hit.distance < INFINITY, inside);
+        assert_int_equal(hit.t < INFINITY, inside);
         if (!inside) continue;
         met++;
-        assert_near(hit.distance, length3(way), 1e-5);
+        assert_near(hit.t, length3(way), 1e-5);
         assert_near(hit.point[0], to.x, 1e-5);
         assert_near(hit.point[2], to.z, 1e-5);
         assert_near(hit.normal[1], i % 2 ? 1 : -1, 1e-5); // towards the origin
@@ -60,11 +60,11 @@ static void rays_meet_a_sheet(void **state) {
     }
     assert_true(met > 100);
     // away from it, and along it
-    assert_true(isinf(cast(world, (vec3){0, 5, 0}, (vec3){0, 1, 0}, SKEIN_BODY).distance));
-    assert_true(isinf(cast(world, (vec3){0, 3, 0}, (vec3){1, 0, 0}, SKEIN_BODY).distance));
+    assert_true(isinf(cast(world, (vec3){0, 5, 0}, (vec3){0, 1, 0}, SKEIN_BODY).t));
+    assert_true(isinf(cast(world, (vec3){0, 3, 0}, (vec3){1, 0, 0}, SKEIN_BODY).t));
     // what is not visible is not met
     OK(world, skein_set(world, body, "visible", skein_number(0)));
-    assert_true(isinf(cast(world, (vec3){0.1, 5, 0.2}, (vec3){0, -1, 0}, SKEIN_BODY).distance));
+    assert_true(isinf(cast(world, (vec3){0.1, 5, 0.2}, (vec3){0, -1, 0}, SKEIN_BODY).t));
     skein_world_destroy(world);
 }
 
@@ -92,18 +92,18 @@ static void rays_meet_balls_and_bowls(void **state) {
         double ought = meet_ball(from, along, 0.8, false), out = meet_ball(from, along, 0.8, true);
         if (ought < INFINITY && out - ought < 0.05) continue; // it only grazes
         skein_hit hit = cast(ball, from, along, SKEIN_COLLIDER);
-        assert_int_equal(hit.distance < INFINITY, ought < INFINITY);
+        assert_int_equal(hit.t < INFINITY, ought < INFINITY);
         skein_hit wall = cast(bowl, from, along, SKEIN_COLLIDER);
-        assert_int_equal(wall.distance < INFINITY, out < INFINITY);
+        assert_int_equal(wall.t < INFINITY, out < INFINITY);
         if (isinf(ought)) continue;
         met++;
         // rounding in the distance, on a surface that leans so much against the ray
         double lean = (out - ought) / 2 / 0.8, off = 2e-5 / lean;
-        assert_near(hit.distance, ought, off);
+        assert_near(hit.t, ought, off);
         assert_int_equal(hit.particle, UINT32_MAX);
         for (int k = 0; k < 3; k++) assert_near(hit.normal[k], hit.point[k] / 0.8, 1e-3);
         // one looks into a bowl from outside, and sees its far wall
-        assert_near(wall.distance, out, off);
+        assert_near(wall.t, out, off);
         for (int k = 0; k < 3; k++) assert_near(wall.normal[k], -wall.point[k] / 0.8, 1e-3);
     }
     assert_true(met > 100);
@@ -119,12 +119,12 @@ static void rays_meet_planes_at_any_angle(void **state) {
     for (int degrees = 1; degrees < 90; degrees += 4) {
         double angle = degrees * PI / 180;
         skein_hit hit = cast(world, (vec3){0.3, 1.25, -0.4}, (vec3){cos(angle), -sin(angle), 0}, SKEIN_COLLIDER);
-        assert_share(hit.distance, 1 / sin(angle), 1e-3);
+        assert_share(hit.t, 1 / sin(angle), 1e-3);
         assert_near(hit.normal[1], 1, 1e-6);
     }
-    assert_true(isinf(cast(world, (vec3){0, 1, 0}, (vec3){1, 0.01, 0}, SKEIN_COLLIDER).distance));
+    assert_true(isinf(cast(world, (vec3){0, 1, 0}, (vec3){1, 0.01, 0}, SKEIN_COLLIDER).t));
     OK(world, skein_set(world, plane, "enabled", skein_number(0)));
-    assert_true(isinf(cast(world, (vec3){0, 1, 0}, (vec3){0, -1, 0}, SKEIN_COLLIDER).distance));
+    assert_true(isinf(cast(world, (vec3){0, 1, 0}, (vec3){0, -1, 0}, SKEIN_COLLIDER).t));
     skein_world_destroy(world);
 }
 
@@ -140,14 +140,14 @@ static void rays_meet_boxes_and_capsules(void **state) {
            world, "capsule",
            SKEIN_SETTINGS(SKEIN_VEC3("from", 3, 0, 0), SKEIN_VEC3("to", 5, 0, 0), SKEIN_REAL("radius", 0.5)), &rod));
     skein_hit hit = cast(world, (vec3){0.7, 0.3, 4}, (vec3){0, 0, -2}, SKEIN_COLLIDER);
-    assert_near(hit.distance, 3.75, 1e-4);
+    assert_near(hit.t, 3.75, 1e-4);
     assert_near(hit.normal[2], 1, 1e-4);
     assert_int_equal(hit.object.index, box.index);
     hit = cast(world, (vec3){-4, -4, 0.1}, (vec3){1, 1, 0}, SKEIN_COLLIDER); // enters by the lower face, at x = -0.5
     assert_near(hit.point[0], -0.5, 1e-4);
     assert_near(hit.normal[1], -1, 1e-4);
     hit = cast(world, (vec3){9, 0, 0}, (vec3){-1, 0, 0}, SKEIN_COLLIDER);
-    assert_near(hit.distance, 3.5, 1e-4);
+    assert_near(hit.t, 3.5, 1e-4);
     assert_int_equal(hit.object.index, rod.index);
     hit = cast(world, (vec3){4, 3, 0.3}, (vec3){0, -1, 0}, SKEIN_COLLIDER);
     assert_near(hit.point[1], 0.4, 1e-4); // sqrt(0.5^2 - 0.3^2)

@@ -35,7 +35,7 @@ void viewer_show_plots(viewer_panels *panels) {
                                  times[] = {VIEWER_STEP_MS, VIEWER_DRAW_MS};
     static const char *const none[] = {""}, *const passes[] = {"step", "draw"};
     const viewer_shown *shown = &panels->exchange->shown;
-    double width = 260 * widgets_scale(), height = 330 * widgets_scale();
+    double width = 260 * widgets_scale(), height = 500 * widgets_scale();
     bool open = true;
     if (height > shown->height - 4) height = shown->height - 4;
     if (widgets_panel("Plots", WIDGETS_FREE, shown->width - width - 4, 2, width, height, &open)) {

@@ -143,7 +143,8 @@ void viewer_stage_step(viewer_stage *stage) {
     stage->step_ms = 1e3 * (viewer_seconds() - start);
     if (good && stage->film) viewer_film_frame(stage);
     if (good && !is_finite(stage)) blew_up(stage);
-    stage->sampled = 0; // measured at once
+    stage->sampled = 0; // every frame that was asked for is in the plots
+    viewer_measure(stage);
     stage->dirty = true;
 }
 

@@ -42,10 +42,10 @@ static uint32_t pick(const viewer_stage *stage, size_t side, double x, double y,
         skein_particle_near_ray(world, eye, direction, view->particle_radius, slope * reach_pixels / stage->height,
                                 &loose, &near_ray))
         return UINT32_MAX;
-    if (body.distance < INFINITY) picked = body.particle, *distance = body.distance;
+    if (body.t < INFINITY) picked = body.particle, *distance = body.t;
     else if (near_ray < INFINITY) picked = loose, *distance = near_ray;
     // a little tolerance: cloth lies on colliders
-    if (view->colliders && wall.distance < 0.99 * *distance) return UINT32_MAX;
+    if (view->colliders && wall.t < 0.99 * *distance) return UINT32_MAX;
     return picked;
 }
 

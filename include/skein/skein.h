@@ -392,7 +392,7 @@ skein_status skein_collider_probe(const skein_world *world, skein_handle collide
 
 /* What a ray meets first. */
 typedef struct skein_hit {
-    double distance;     /* m along the ray; infinity where it meets nothing, and then nothing else holds */
+    double t;            /* m along the ray; infinity where it meets nothing, and then nothing else holds */
     double point[3];     /* where */
     double normal[3];    /* unit: a collider's, out of the solid; a face's, towards the ray's origin */
     skein_handle object; /* a body or a collider */
@@ -406,14 +406,14 @@ typedef struct skein_hit {
  * passed over. Costs a look at every face, or some probes of every collider. */
 skein_status skein_ray_cast(const skein_world *world, const double origin[3], const double direction[3],
                             skein_category category, skein_hit *hit);
-/* The particle that is nearest to a point; `distance` (or NULL) receives how far. Fails where there are none. */
+/* The particle that is nearest to a point; `metres` (or NULL) receives how far. Fails where there are none. */
 skein_status skein_particle_near_point(const skein_world *world, const double point[3], uint32_t *particle,
-                                       double *distance);
+                                       double *metres);
 /* Of the particles within `radius` + `slope` t of a ray, t metres along it, the one nearest to it by that measure; for
- * particles that are drawn as balls of that radius, and a pointer that is a few pixels wide. `distance` receives t,
+ * particles that are drawn as balls of that radius, and a pointer that is a few pixels wide. `t` receives that,
  * infinity where there is none. */
 skein_status skein_particle_near_ray(const skein_world *world, const double origin[3], const double direction[3],
-                                     double radius, double slope, uint32_t *particle, double *distance);
+                                     double radius, double slope, uint32_t *particle, double *t);
 
 /* ---- Measures ---------------------------------------------------------------------------------- */
 
