@@ -217,7 +217,9 @@ size_t sk_write_predicted_repeat(sk_writer *writer, size_t times, double h, int 
     writer->h = h;
     if (falls_on(writer, passes)) {
         write_prediction(writer, passes);
-        return sk_write_repeat(writer, times, h);
+        size_t repeat = sk_write_repeat(writer, times, h);
+        sk_write_moment(writer, 1); // each turn begins with what was predicted before it
+        return repeat;
     }
     size_t repeat = sk_write_repeat(writer, times, h);
     write_prediction(writer, passes);
