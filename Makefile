@@ -6,7 +6,7 @@
 all: ## (or plain make) build the command: build/skein
 	@tools/build release skein
 
-demo: ## set up, build, and drop a real mesh as cloth: files, a picture and a film in out/demo
+demo: ## set up, build, and drop a real mesh as cloth: files, a picture and a film in out/demo, and a window
 	@tools/setup build
 	@tools/build release skein
 	@tools/demo

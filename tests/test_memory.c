@@ -110,11 +110,16 @@ static skein_status make_call(scenario *s) {
     case 23: return skein_world_reset(s->world);
     case 24: return skein_world_step(s->world, dt);
     case 25: return skein_world_step(s->world, dt / 2);
-    case 26: return skein_world_statistics(s->world, &s->statistics);
+    case 26: {
+        skein_pass passes[8];
+        size_t count;
+        return skein_world_profile(s->world, dt, passes, 8, &count);
+    }
+    case 27: return skein_world_statistics(s->world, &s->statistics);
     default: return SKEIN_ERROR_LIMIT;
     }
 }
-enum { CALLS = 27 };
+enum { CALLS = 28 };
 
 /* What a failed call must leave as it was. */
 typedef struct census {

@@ -387,11 +387,12 @@ skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, s
  * (negative inside; far away, formulas may say 1e15), and the unit normals out of the solid. Either may be NULL. */
 skein_status skein_collider_probe(const skein_world *world, skein_handle collider, size_t count, const double *points,
                                   double *distances, double *normals);
+
 /* ---- What is where: for picking with a mouse, and for sensors ------------------------------------- */
 
 /* What a ray meets first. */
 typedef struct skein_hit {
-    double distance;     /* m along the ray; infinity where it meets nothing, and then nothing else holds */
+    double t;            /* m along the ray; infinity where it meets nothing, and then nothing else holds */
     double point[3];     /* where */
     double normal[3];    /* unit: a collider's, out of the solid; a face's, towards the ray's origin */
     skein_handle object; /* a body or a collider */
@@ -405,14 +406,14 @@ typedef struct skein_hit {
  * passed over. Costs a look at every face, or some probes of every collider. */
 skein_status skein_ray_cast(const skein_world *world, const double origin[3], const double direction[3],
                             skein_category category, skein_hit *hit);
-/* The particle that is nearest to a point; `distance` (or NULL) receives how far. Fails where there are none. */
+/* The particle that is nearest to a point; `metres` (or NULL) receives how far. Fails where there are none. */
 skein_status skein_particle_near_point(const skein_world *world, const double point[3], uint32_t *particle,
-                                       double *distance);
+                                       double *metres);
 /* Of the particles within `radius` + `slope` t of a ray, t metres along it, the one nearest to it by that measure; for
- * particles that are drawn as balls of that radius, and a pointer that is a few pixels wide. `distance` receives t,
+ * particles that are drawn as balls of that radius, and a pointer that is a few pixels wide. `t` receives that,
  * infinity where there is none. */
 skein_status skein_particle_near_ray(const skein_world *world, const double origin[3], const double direction[3],
-                                     double radius, double slope, uint32_t *particle, double *distance);
+                                     double radius, double slope, uint32_t *particle, double *t);
 
 /* ---- Measures ---------------------------------------------------------------------------------- */
 
@@ -491,6 +492,18 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
 /* The largest substep (s) at which no mode grows under the method: 0 if there is none, infinity if any will do. NaN for
  * a method that does not exist. */
 double skein_stable_substep(const char *method, const skein_stability *stability);
+
+/* What the rows of one kind and name took together. */
+typedef struct skein_pass {
+    const char *kind; /* "project", "force", ... */
+    char label[64];   /* of the rule: "stretch +0 +1"; "" for the arithmetic of whole vectors */
+    double seconds;
+} skein_pass;
+
+/* Takes a step, with the same bits as skein_world_step(), but one row of the plan after the other, and measures each.
+ * That is slower than a step, whose rows share the cache; the shares tell where the time goes. Copies up to `most`
+ * passes in the order of the plan; `count` receives how many there are. A step on a device is one pass. */
+skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out, size_t most, size_t *count);
 
 /* ---- The plan ---------------------------------------------------------------------------------- */
 
