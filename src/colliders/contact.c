@@ -70,6 +70,10 @@ SK_INLINE bool SK_ISA(meet)(sk_run *run, const sk_row *row, const sk_pose *pose,
     sk_vec3 v = pose->velocity, s = pose->spin;
     e->surface = (sk_wide3){v.x + (s.y * arm.z - s.z * arm.y), v.y + (s.z * arm.x - s.x * arm.z),
                             v.z + (s.x * arm.y - s.y * arm.x)};
+    if (collider->type->deforms) {
+        sk_wide3 own = SK_ISA(times)(e->contact.speed, e->contact.normal);
+        e->surface = (sk_wide3){e->surface.x + own.x, e->surface.y + own.y, e->surface.z + own.z};
+    }
     return true;
 }
 
@@ -91,7 +95,7 @@ SK_INLINE sk_wide SK_ISA(restitution_of)(const sk_collider *collider, sk_wide ma
 
 static void SK_ISA(contact_force)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_collider *collider = row->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time);
+    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
     bool by_mass = sk_collider_mass(collider) > 0;
     SK_ISA(encounter) e;
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
@@ -117,7 +121,7 @@ static void SK_ISA(contact_force)(sk_run *run, const sk_row *row, size_t begin, 
 
 static void SK_ISA(contact_impulse)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_collider *collider = row->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time);
+    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
     SK_ISA(encounter) e;
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         if (!SK_ISA(meet)(run, row, &pose, slot, &e)) continue;
@@ -151,7 +155,7 @@ SK_INLINE sk_wide3 SK_ISA(way_out)(const sk_run *run, const sk_row *row, size_t 
 
 static void SK_ISA(contact_push)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_collider *collider = row->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time);
+    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
     SK_ISA(encounter) e;
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         if (!SK_ISA(meet)(run, row, &pose, slot, &e)) continue;
@@ -174,7 +178,7 @@ SK_INLINE sk_wide SK_ISA(bounce_of)(const sk_run *run, const sk_row *row, size_t
 static void SK_ISA(contact_settle)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_collider *collider = row->rule;
     bool bounces = sk_contact_reads_force(collider);
-    sk_pose pose = sk_collider_pose_at(collider, run->time);
+    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
     sk_wide per_step = SK_ISA(sk_splat)((real)(1 / row->dt));
     SK_ISA(encounter) e;
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
@@ -258,7 +262,7 @@ static void turn_first(const sk_collider *collider, real rotation[9]) {
 sk_pose sk_collider_pose_at(const sk_collider *collider, double time) {
     const sk_collider_common *common = collider->common;
     double since = time - common->start, position[3], axis[3] = {0, 1, 0};
-    bool moving = since > 0;
+    bool moving = since >= 0;
     if (!moving) since = 0;
     collider->type->place(collider->params, position);
     for (int k = 0; k < 3; k++) position[k] += common->velocity[k] * since;
@@ -267,7 +271,7 @@ sk_pose sk_collider_pose_at(const sk_collider *collider, double time) {
     double spin = moving && length > 0 ? common->spin : 0;
     for (int k = 0; k < 3 && length > 0; k++) axis[k] = a[k] / length;
 
-    sk_pose pose = {.position = sk_v3_of(position)};
+    sk_pose pose = {.position = sk_v3_of(position), .time = time};
     pose.velocity = moving ? sk_v3_of(common->velocity) : sk_v3(0, 0, 0);
     pose.spin = sk_v3((real)(axis[0] * spin), (real)(axis[1] * spin), (real)(axis[2] * spin));
     pose.rotation[0] = pose.rotation[4] = pose.rotation[8] = 1;
@@ -325,6 +329,18 @@ void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4
             if (q.w > 0 && thickness - distance > *penetration) *penetration = thickness - distance;
         }
     }
+}
+
+size_t sk_collider_count_guarded(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
+                                 size_t particle_count) {
+    sk_pose pose = sk_collider_pose_at(collider, time);
+    size_t guarded = 0;
+    for (size_t i = 0; i < particle_count && collider->type->guarded; i++) {
+        sk_vec4 q = x[slot_of[i]];
+        const double at[3] = {(double)q.x, (double)q.y, (double)q.z};
+        if (q.w > 0) guarded += collider->type->guarded(collider->params, &pose, at);
+    }
+    return guarded;
 }
 
 void sk_collider_visit(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,

@@ -6,6 +6,7 @@
 #define SK_FORCES_FORCE_H
 
 #include "base/fields.h"
+#include "formula/parameters.h"
 #include "plan/row.h"
 
 typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOURS } sk_domain;
@@ -25,6 +26,7 @@ typedef struct sk_force_type {
     double (*radius)(const void *params);
     /* The potential energy of a particle at x; NULL: it has none. */
     double (*potential)(const void *params, const double x[3], double mass);
+    const sk_making *making; /* what is made from its texts; NULL: nothing */
 } sk_force_type;
 
 /* A force as methods see it: a type with its parameters. A row's rule is one of these. */

@@ -8,18 +8,23 @@
 
 void sk_add_row(sk_writer *writer, sk_row row) {
     row.dt = writer->h;
+    row.before = writer->before;
     row.packed = writer->packed;
     if (!sk_plan_add(writer->plan, writer->allocator, row)) writer->no_memory = true;
 }
 
 size_t sk_write_repeat(sk_writer *writer, size_t times, double h) {
-    writer->h = h;
+    writer->h = writer->before = h;
     sk_add_row(writer, (sk_row){.kind = SK_ROW_REPEAT, .end = times, .order = SK_ORDERED, .label = "repeat"});
     return writer->plan->count - 1;
 }
 
 void sk_write_end(sk_writer *writer, size_t repeat) {
     if (!writer->no_memory) writer->plan->data[repeat].length = writer->plan->count - repeat - 1;
+}
+
+void sk_write_moment(sk_writer *writer, double part) {
+    writer->before = (1 - part) * writer->h;
 }
 
 static void add_combine(sk_writer *writer, const sk_kernels *kernels, sk_vector dst, double a, sk_vector p, double b,
@@ -189,6 +194,7 @@ static void write_prediction(sk_writer *writer, int passes) {
     sk_vector kept = only_follows(rules, passes) ? SK_X : rules->colliders.count ? SK_V0 : SK_NONE;
     sk_add_row(writer,
                prediction(writer, plain ? &sk_combine_fall : &sk_combine_predict, plain ? SK_NONE : SK_F, kept));
+    sk_write_moment(writer, 1);
 }
 
 size_t sk_write_predicted_repeat(sk_writer *writer, size_t times, double h, int passes) {

@@ -42,25 +42,27 @@ static void measure_particles(const skein_world *world, skein_statistics *s) {
     }
 }
 
-static double batch_energy(const sk_batch *batch, const sk_vec4 *x) {
+static double batch_energy(const sk_batch *batch, double time, const sk_vec4 *x, size_t *guarded) {
     const sk_material *material = batch->params;
-    double energy = 0, value[SUM_BLOCK];
-    if (material->stiffness >= SK_UNBOUNDED) return 0;
+    double sum = 0, energy[SUM_BLOCK];
+    bool rigid = material->stiffness >= SK_UNBOUNDED;
     for (size_t first = 0; first < batch->count; first += SUM_BLOCK) {
         size_t last = first + SUM_BLOCK < batch->count ? first + SUM_BLOCK : batch->count;
         double block = 0;
-        batch->type->value(batch, x, first, last, value);
+        *guarded += batch->type->energy(batch, time, x, first, last, energy);
         for (size_t e = first; e < last; e++)
-            block += (batch->scale ? (double)batch->scale[e] : 1.0) * value[e - first] * value[e - first];
-        energy += block;
+            block += (batch->scale ? (double)batch->scale[e] : 1.0) * energy[e - first];
+        sum += block;
     }
-    return 0.5 * material->stiffness * energy;
+    return rigid ? 0 : material->stiffness * sum;
 }
 
 void sk_world_measure_energy(const skein_world *world, skein_statistics *statistics) {
     measure_particles(world, statistics);
     for (size_t i = 0; i < world->rules.batches.count; i++) {
         const sk_batch *batch = world->rules.batches.data[i];
-        if (*batch->enabled) statistics->elastic_energy += batch_energy(batch, world->particles.vector[SK_X]);
+        if (*batch->enabled)
+            statistics->elastic_energy +=
+                batch_energy(batch, world->time, world->particles.vector[SK_X], &statistics->guarded);
     }
 }

@@ -92,6 +92,8 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
         if (!collider->common->enabled) continue;
         sk_collider_measure(collider, world->time, all->vector[SK_X], all->slot_of, all->count,
                             &statistics->max_penetration, &statistics->contacts);
+        statistics->guarded +=
+            sk_collider_count_guarded(collider, world->time, all->vector[SK_X], all->slot_of, all->count);
     }
     status = measure_stretch(world, statistics, error);
     statistics->state_hash = skein_world_hash(world);
