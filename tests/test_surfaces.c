@@ -110,6 +110,99 @@ static void motion_is_that_of_the_shapes(void **state) {
             }
 }
 
+/* ---- The four terrains --------------------------------------------------------------------------- */
+
+static const struct {
+    const char *kind;
+    skein_setting own[5], formula[6];
+    vec3 at;
+    double turn;
+    int frames;
+    bool rests;
+} terrains[] = {
+    {"plane",
+     {SKEIN_VEC3("normal", 0, 1, 0), SKEIN_REAL("friction", 0.5)},
+     {SKEIN_TEXT("surface", "p.y"), SKEIN_REAL("friction", 0.5)},
+     {0, 0.5, 0},
+     0,
+     120,
+     true},
+    {"plane",
+     {SKEIN_VEC3("normal", 0.42261826, 0.90630779, 0), SKEIN_REAL("friction", 0.55)},
+     {SKEIN_TEXT("surface", "p.x*sin(25*pi/180) + p.y*cos(25*pi/180)"), SKEIN_REAL("friction", 0.55)},
+     {0.116, 0.249, 0},
+     -25,
+     120,
+     true},
+    {"bowl",
+     {SKEIN_VEC3("centre", 0, 1.5, 0), SKEIN_REAL("radius", 1.5), SKEIN_REAL("friction", 0.2)},
+     {SKEIN_VEC3("centre", 0, 1.5, 0), SKEIN_TEXT("surface", "R - length(p)"), SKEIN_REAL("parameters.R", 1.5),
+      SKEIN_REAL("friction", 0.2)},
+     {-0.595, 0.469, 0},
+     -30,
+     240,
+     true},
+    {"sphere",
+     {SKEIN_VEC3("centre", 0, 0.7, 0), SKEIN_REAL("radius", 0.7), SKEIN_REAL("friction", 0.2)},
+     {SKEIN_TEXT("surface", "length(p - vec3(0, R, 0)) - R"), SKEIN_REAL("parameters.R", 0.7),
+      SKEIN_REAL("friction", 0.2)},
+     {0.12, 1.7, 0},
+     0,
+     50,
+     false},
+};
+
+static skein_world *cube_on(const char *method, size_t i, bool formula) {
+    skein_world *world = new_world(method, 20);
+    add_gravity(world);
+    OK(world, skein_collider_add(world, formula ? "formula" : terrains[i].kind,
+                                 formula ? terrains[i].formula : terrains[i].own, NULL));
+    OK(world,
+       skein_body_add(world, "lattice", NULL,
+                      SKEIN_SETTINGS(SKEIN_VEC3("grid", 3, 3, 3), SKEIN_VEC3("size", 0.5, 0.5, 0.5),
+                                     SKEIN_VEC3("position", terrains[i].at.x, terrains[i].at.y, terrains[i].at.z),
+                                     SKEIN_VEC3("rotation", 0, 0, terrains[i].turn), SKEIN_REAL("mass", 10),
+                                     SKEIN_REAL("structural.stiffness", 1000), SKEIN_REAL("structural.damping", 5),
+                                     SKEIN_REAL("shear.stiffness", 500), SKEIN_REAL("shear.damping", 2.5),
+                                     SKEIN_REAL("bending.stiffness", 250), SKEIN_REAL("bending.damping", 1.2),
+                                     SKEIN_REAL("struts", 1)),
+                      NULL));
+    return world;
+}
+
+static vec3 middle_of(const skein_world *world) {
+    vec3 sum = {0, 0, 0};
+    size_t count = skein_particle_count(world);
+    for (size_t i = 0; i < count; i++) {
+        vec3 p = position_of(world, i);
+        sum.x += p.x / (double)count, sum.y += p.y / (double)count, sum.z += p.z / (double)count;
+    }
+    return sum;
+}
+
+/* A jelly cube comes to rest where it does on the built-in terrain; on the ball, the way is compared. */
+static void cubes_rest_where_they_do_on_the_shapes(void **state) {
+    (void)state;
+    static const char *const methods[] = {"symplectic_euler", "backward_euler", "xpbd"};
+    for (size_t m = 0; m < COUNT(methods); m++)
+        for (size_t i = 0; i < COUNT(terrains); i++) {
+            vec3 end[2];
+            for (int formula = 0; formula < 2; formula++) {
+                skein_world *world = cube_on(methods[m], i, formula);
+                steps(world, terrains[i].frames, frame);
+                end[formula] = middle_of(world);
+                skein_statistics s = statistics_of(world);
+                if (terrains[i].rests) assert_under(s.kinetic_energy, 2e-3);
+                assert_under(s.max_penetration, 1e-4);
+                assert_true(s.contacts > 0);
+                skein_world_destroy(world);
+            }
+            double off = length3(minus(end[1], end[0]));
+            if (off > 2e-3) print_message("%s, terrain %zu: off by %g m\n", methods[m], i, off);
+            assert_under(off, 2e-3);
+        }
+}
+
 /* ---- Surfaces that move by themselves ---------------------------------------------------------- */
 
 /* What lies on a slow piston goes up and down with it. */
@@ -270,6 +363,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(distances_are_those_of_the_shapes),
         cmocka_unit_test(motion_is_that_of_the_shapes),
+        cmocka_unit_test(cubes_rest_where_they_do_on_the_shapes),
         cmocka_unit_test(a_piston_carries),
         cmocka_unit_test(bounces_know_the_surfaces_speed),
         cmocka_unit_test(surfaces_change_while_they_live),

@@ -230,7 +230,9 @@ skein_status skein_remove(skein_world *world, skein_handle handle);
  * is refused with SKEIN_ERROR_VALUE. A text that is returned lives until the field changes. */
 skein_status skein_set(skein_world *world, skein_handle handle, const char *field, skein_value value);
 skein_status skein_get(const skein_world *world, skein_handle handle, const char *field, skein_value *value);
-/* The same by path: "bodies.0.stretch.stiffness", "colliders.ball.radius" (a name), "method.substeps".
+/* Whether the field of an object can be set now: it exists, and shapes nothing that is already built. */
+bool skein_field_is_live(const skein_world *world, skein_handle handle, const char *field);
+/* Set and get by path: "bodies.0.stretch.stiffness", "colliders.ball.radius" (a name), "method.substeps".
  * Numbers count objects of the category in the order of their making. */
 skein_status skein_set_path(skein_world *world, const char *path, skein_value value);
 skein_status skein_get_path(const skein_world *world, const char *path, skein_value *value);
@@ -266,6 +268,9 @@ skein_status skein_world_step(skein_world *world, double dt);
 /* Positions as they were built; velocities, forces, time and counters zero. */
 skein_status skein_world_reset(skein_world *world);
 double skein_world_time(const skein_world *world); /* seconds of simulated time */
+/* Sets the clock alone: what moves by it (colliders) is elsewhere then. With positions and velocities that were copied
+ * before, it takes a world back to where it was. Finite, at least 0. */
+skein_status skein_world_time_set(skein_world *world, double seconds);
 
 /* A fixed step for a loop with uneven frames: time goes in, whole steps come out, the rest is kept.
  * Feed it frame times only, never the time spent loading. */
@@ -281,6 +286,34 @@ skein_pacer skein_default_pacer(void); /* SKEIN_DEFAULT_STEP, at most 8 steps a 
 int skein_pacer_feed(skein_pacer *pacer, double seconds);
 /* How far the present lies between the last two states, 0 to 1. */
 double skein_pacer_blend(const skein_pacer *pacer);
+
+/* ---- Where steps are computed -------------------------------------------------------------------- */
+
+typedef enum skein_device {
+    SKEIN_DEVICE_CPU,       /* the processor: every rule, the same bits everywhere */
+    SKEIN_DEVICE_GPU,       /* a graphics card, through an OpenGL 4.5 context of the world's own */
+    SKEIN_DEVICE_CURRENT_GL /* the same, in the OpenGL context that is current on this thread: it must be current at
+                               every later call on the world, too */
+} skein_device;
+
+/* Changes where steps are computed; the state goes along. The card runs the same plan, in float, and keeps the state
+ * there: it comes back when a call looks at it (a view, a copy, statistics, a hash), and only then. A rule that cannot
+ * run on a card is named when a plan is made: by the next step, or by skein_world_explain(). */
+skein_status skein_world_device_set(skein_world *world, skein_device device);
+
+typedef struct skein_device_info {
+    skein_device device;
+    const char *name;  /* "processor", or the card and its driver; as long as the device is the world's */
+    bool software;     /* a graphics card that the processor plays: right, but slow */
+    size_t bytes;      /* held on the card now */
+    size_t pass_count; /* shaders that a step runs, and the loops around them */
+    /* For drawing without reading back: OpenGL buffers of four floats a slot, x, y, z and the inverse mass, or velocity
+     * and mass; particle i is in slot slot_of[i]. 0 before the first step, and changed by whatever adds particles. */
+    unsigned position_buffer, velocity_buffer;
+    const uint32_t *slot_of;
+    size_t slot_count;
+} skein_device_info;
+skein_device_info skein_world_device(const skein_world *world);
 
 /* ---- Reading and writing the state ------------------------------------------------------------- */
 
@@ -350,6 +383,37 @@ typedef struct skein_contact {
 /* Copies up to `most` of the contacts of enabled colliders; `count` receives how many there are. */
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count);
 
+/* Where `count` points (count x 3) are seen from a collider's surface as it stands now: how far off, as contact takes it
+ * (negative inside; far away, formulas may say 1e15), and the unit normals out of the solid. Either may be NULL. */
+skein_status skein_collider_probe(const skein_world *world, skein_handle collider, size_t count, const double *points,
+                                  double *distances, double *normals);
+/* ---- What is where: for picking with a mouse, and for sensors ------------------------------------- */
+
+/* What a ray meets first. */
+typedef struct skein_hit {
+    double distance;     /* m along the ray; infinity where it meets nothing, and then nothing else holds */
+    double point[3];     /* where */
+    double normal[3];    /* unit: a collider's, out of the solid; a face's, towards the ray's origin */
+    skein_handle object; /* a body or a collider */
+    size_t face;         /* of a body: which, as it came */
+    uint32_t particle;   /* of a body: that corner of the face which is nearest to the point */
+} skein_hit;
+
+/* Casts a ray at the surfaces of bodies (SKEIN_BODY) or at colliders (SKEIN_COLLIDER), without their thickness. The
+ * direction may have any length but 0. From inside a solid the ray goes on until it comes out and meets another wall,
+ * so that one looks into a bowl from outside. Objects that are not `visible`, and colliders that are not `enabled`, are
+ * passed over. Costs a look at every face, or some probes of every collider. */
+skein_status skein_ray_cast(const skein_world *world, const double origin[3], const double direction[3],
+                            skein_category category, skein_hit *hit);
+/* The particle that is nearest to a point; `distance` (or NULL) receives how far. Fails where there are none. */
+skein_status skein_particle_near_point(const skein_world *world, const double point[3], uint32_t *particle,
+                                       double *distance);
+/* Of the particles within `radius` + `slope` t of a ray, t metres along it, the one nearest to it by that measure; for
+ * particles that are drawn as balls of that radius, and a pointer that is a few pixels wide. `distance` receives t,
+ * infinity where there is none. */
+skein_status skein_particle_near_ray(const skein_world *world, const double origin[3], const double direction[3],
+                                     double radius, double slope, uint32_t *particle, double *distance);
+
 /* ---- Measures ---------------------------------------------------------------------------------- */
 
 typedef struct skein_statistics {
@@ -385,6 +449,23 @@ typedef struct skein_statistics {
 skein_status skein_world_statistics(skein_world *world, skein_statistics *statistics);
 /* Only the hash. */
 uint64_t skein_world_hash(const skein_world *world);
+
+/* How particles fly together: a flock's order parameters. */
+typedef struct skein_order {
+    size_t count;        /* particles with finite positions and velocities */
+    double polarization; /* length of the mean direction of flight: 1, all fly the same way; 0, no common way */
+    double milling;      /* length of the mean of (r x v)/(|r| |v|), with r from the centre: 1, all circle it the
+                            same way round */
+    double nearest;      /* m, mean distance to the nearest one */
+    size_t groups;       /* of particles that are nearer than the group distance to one of the group */
+    double radius;       /* m, mean distance from the centre */
+    double farthest;     /* m, the largest of them */
+    double speed;        /* m/s, mean */
+} skein_order;
+
+/* Measures `count` particles from `first` on, about a centre (m). A group distance (m) of 0 counts no groups. */
+skein_status skein_order_measure(skein_world *world, size_t first, size_t count, const double centre[3],
+                                 double group_distance, skein_order *order);
 
 /* ---- Stability --------------------------------------------------------------------------------- */
 

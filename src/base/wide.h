@@ -95,6 +95,57 @@ SK_INLINE sk_wide SK_ISA(sk_wide_abs)(sk_wide a) {
     return (sk_wide)((sk_mask)a & all_but_sign);
 }
 
+/* Bit l of the result: whether a > b in lane l. */
+SK_INLINE uint32_t SK_ISA(sk_more_bits)(sk_wide a, sk_wide b) {
+#if defined(SK_HAS_AVX512) && !defined(SKEIN_DOUBLE)
+    return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_GT_OQ);
+#else
+    SK_ISA(parts) p = {.mask = SK_ISA(sk_more)(a, b)};
+    uint32_t bits = 0;
+    for (int i = 0; i < SK_ISA(native_parts); i++) {
+        enum { LANES = SK_ISA(native_bytes) / sizeof(real) };
+#if defined(SK_HAS_AVX512)
+        uint32_t part = _mm512_movepi64_mask((__m512i)p.native_mask[i]);
+#elif defined(SK_HAS_AVX2) && defined(SKEIN_DOUBLE)
+        uint32_t part = (uint32_t)_mm256_movemask_pd((__m256d)p.native_mask[i]);
+#elif defined(SK_HAS_AVX2)
+        uint32_t part = (uint32_t)_mm256_movemask_ps((__m256)p.native_mask[i]);
+#elif defined(__x86_64__) && defined(SKEIN_DOUBLE)
+        uint32_t part = (uint32_t)_mm_movemask_pd((__m128d)p.native_mask[i]);
+#elif defined(__x86_64__)
+        uint32_t part = (uint32_t)_mm_movemask_ps((__m128)p.native_mask[i]);
+#else
+        uint32_t part = 0;
+        for (int l = 0; l < LANES; l++) part |= p.native_mask[i][l] ? 1u << l : 0;
+#endif
+        bits |= part << (i * LANES);
+    }
+    return bits;
+#endif
+}
+
+/* The lanes of a block that begins at `slot` whose slots are in [first, end). */
+SK_INLINE sk_mask SK_ISA(sk_lanes_between)(size_t slot, size_t first, size_t end) {
+    const sk_wide lanes = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    real low = first > slot ? (real)(first - slot) : 0, high = end > slot ? (real)(end - slot) : 0;
+    return SK_ISA(sk_at_most)(SK_ISA(sk_splat)(low), lanes) & SK_ISA(sk_more)(SK_ISA(sk_splat)(high), lanes);
+}
+
+/* The sum of the lanes, in one order on every machine. */
+SK_INLINE real SK_ISA(sk_sum)(sk_wide a) {
+#ifdef SK_HAS_AVX512
+    SK_ISA(sk_eight)
+    eight = __builtin_shufflevector(a, a, 0, 1, 2, 3, 4, 5, 6, 7) +
+            __builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15);
+    SK_ISA(sk_quad)
+    q = __builtin_shufflevector(eight, eight, 0, 1, 2, 3) + __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
+#else
+    SK_ISA(parts) p = {.wide = a};
+    SK_ISA(sk_quad) q = (p.quad[0] + p.quad[2]) + (p.quad[1] + p.quad[3]);
+#endif
+    return (q[0] + q[2]) + (q[1] + q[3]);
+}
+
 SK_INLINE bool SK_ISA(sk_any)(sk_mask mask) {
     SK_ISA(parts) p = {.mask = mask};
 #ifdef SK_HAS_AVX512

@@ -10,6 +10,7 @@
 #include "base/wide_types.h"
 #include "formula/parameters.h"
 #include "plan/row.h"
+#include "plan/shader.h"
 
 /* Where a collider stands at a time, and how it moves there. */
 typedef struct sk_pose {
@@ -56,6 +57,9 @@ typedef struct sk_collider_type {
     /* Whether a value at x had to be guarded (formula/graph.h): for the statistics; NULL: there is nothing to guard. */
     bool (*guarded)(const void *params, const sk_pose *pose, const double x[3]);
     const sk_making *making; /* what is made from its texts; NULL: nothing */
+    /* Defines vec4 probe@(vec3 p): the unit normal out of the solid, and the distance in w. What every collider has
+     * is pose@ (colliders/contact.glsl). */
+    sk_shader shader;
 } sk_collider_type;
 
 typedef struct sk_collider {
@@ -100,10 +104,19 @@ void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4
 size_t sk_collider_count_guarded(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
                                  size_t particle_count);
 
+/* The same for points anywhere, 3 numbers each; distances and normals may be NULL. */
+void sk_collider_probe_points(const sk_collider *collider, double time, sk_isa isa, size_t count, const double *points,
+                              double *distances, double *normals);
+
 /* Calls `visit` for every particle in touch: what sk_collider_measure() counts. */
 void sk_collider_visit(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
                        size_t particle_count,
                        void (*visit)(void *user, size_t particle, sk_vec3 normal, double distance), void *user);
+
+/* Where a ray (`along` is of length 1) first comes from outside to the surface, in metres, and the unit normal there;
+ * infinity where it does not within `most` metres. */
+double sk_collider_cast(const sk_collider *collider, double time, const double origin[3], const double along[3],
+                        double most, double normal[3]);
 
 extern const sk_collider_type sk_plane, sk_sphere, sk_bowl, sk_capsule, sk_box, sk_formula_surface;
 

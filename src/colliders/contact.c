@@ -331,6 +331,28 @@ void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4
     }
 }
 
+void sk_collider_probe_points(const sk_collider *collider, double time, sk_isa isa, size_t count, const double *points,
+                              double *distances, double *normals) {
+    sk_pose pose = sk_collider_pose_at(collider, time);
+    for (size_t first = 0; first < count; first += SK_LANES) {
+        size_t lanes = count - first < SK_LANES ? count - first : SK_LANES;
+        sk_wide3 p = {{0}, {0}, {0}};
+        sk_contact contact;
+        for (size_t i = 0; i < lanes; i++) {
+            const double *at = points + 3 * (first + i);
+            p.x[i] = (real)at[0], p.y[i] = (real)at[1], p.z[i] = (real)at[2];
+        }
+        collider->type->probe[isa](collider->params, &pose, &p, &contact);
+        for (size_t i = 0; i < lanes; i++) {
+            double *normal = normals ? normals + 3 * (first + i) : NULL;
+            if (distances) distances[first + i] = (double)contact.distance[i];
+            if (normal)
+                normal[0] = (double)contact.normal.x[i], normal[1] = (double)contact.normal.y[i],
+                normal[2] = (double)contact.normal.z[i];
+        }
+    }
+}
+
 size_t sk_collider_count_guarded(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
                                  size_t particle_count) {
     sk_pose pose = sk_collider_pose_at(collider, time);

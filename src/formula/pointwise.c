@@ -20,8 +20,12 @@ static void SK_ISA(run)(const sk_pointwise *pointwise, const double *parameters,
         to[0] = from->x, to[1] = from->y, to[2] = from->z;
     }
     kernels->run(tape, registers, &verdict);
-    for (size_t k = 0; k < tape->outputs; k++) out[k] = SK_ISA(sk_keep)(verdict.finite[0], registers[tape->output[k]]);
-    *guarded = verdict.guarded[0] | ~verdict.finite[0];
+    // a force that is over what fields take would leave the format with a few substeps
+    sk_mask good = verdict.finite[0];
+    for (size_t k = 0; k < tape->outputs; k++)
+        good &= SK_ISA(sk_at_most)(SK_ISA(sk_wide_abs)(registers[tape->output[k]]), SK_ISA(sk_splat)((real)SK_FAR));
+    for (size_t k = 0; k < tape->outputs; k++) out[k] = SK_ISA(sk_keep)(good, registers[tape->output[k]]);
+    *guarded = verdict.guarded[0] | ~good;
 }
 
 #else
@@ -30,6 +34,7 @@ static void SK_ISA(run)(const sk_pointwise *pointwise, const double *parameters,
 #include <stdio.h>
 #include <string.h>
 
+#include "base/fields.h"
 #include "base/status.h"
 #include "formula/evaluate.h"
 
@@ -42,7 +47,7 @@ static skein_status complete(sk_pointwise *pointwise, sk_pointwise_choice *choos
                              sk_allocator *allocator, skein_error *error) {
     skein_formula *f = pointwise->formula;
     const skein_formula *all[] = {f};
-    sk_node outputs[SK_POINTWISE_MOST_OUTPUTS];
+    sk_node outputs[SK_POINTWISE_MOST_OUTPUTS + 3];
     pointwise->parameters = f->parameters;
     if (f->rests)
         return sk_fail(error, SKEIN_ERROR_VALUE, "",
@@ -60,7 +65,9 @@ static skein_status complete(sk_pointwise *pointwise, sk_pointwise_choice *choos
     pointwise->live = sk_allocate(allocator, f->graph.count * sizeof *pointwise->live);
     pointwise->values = sk_allocate(allocator, f->graph.count * sizeof *pointwise->values);
     if (!pointwise->live || !pointwise->values) return sk_fail_memory(error, "a formula");
-    sk_graph_mark(&f->graph, outputs, count, pointwise->live);
+    memcpy(pointwise->output, outputs, count * sizeof *outputs);
+    memcpy(outputs + count, f->value, (size_t)f->size * sizeof *outputs);
+    sk_graph_mark(&f->graph, outputs, count + (size_t)f->size, pointwise->live);
     return SKEIN_OK;
 }
 
@@ -93,6 +100,10 @@ void sk_pointwise_destroy(sk_pointwise *pointwise, sk_allocator *allocator) {
     sk_release(allocator, pointwise);
 }
 
+static bool is_sane(double x) {
+    return x >= -SK_FAR && x <= SK_FAR;
+}
+
 void sk_pointwise_value(const sk_pointwise *pointwise, const double *parameters, double time, const double p[3],
                         const double v[3], double value[3], bool *guarded) {
     const skein_formula *f = pointwise->formula;
@@ -101,11 +112,10 @@ void sk_pointwise_value(const sk_pointwise *pointwise, const double *parameters,
     if (v) memcpy(inputs + SK_INPUT_VELOCITY, v, 3 * sizeof *v);
     inputs[SK_INPUT_TIME] = time;
     bool acted = sk_evaluate_double(&f->graph, pointwise->live, inputs, parameters, pointwise->values);
+    for (size_t k = 0; k < pointwise->tape.outputs; k++) acted |= !is_sane(pointwise->values[pointwise->output[k]]);
     for (int k = 0; k < f->size; k++) {
         double x = pointwise->values[f->value[k]];
-        bool finite = x - x == 0;
-        acted |= !finite;
-        value[k] = finite ? x : 0;
+        value[k] = is_sane(x) ? x : 0;
     }
     if (guarded) *guarded = acted;
 }

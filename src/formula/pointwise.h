@@ -13,7 +13,8 @@ typedef struct sk_pointwise {
     skein_formula *formula;
     sk_tape tape;
     int parameters;
-    /* for single places, by whoever owns the world: which nodes the outputs need, and room for their values */
+    sk_node output[SK_POINTWISE_MOST_OUTPUTS]; /* of the graph */
+    /* for single places, by whoever owns the world: which nodes the value and the outputs need, and room for theirs */
     bool *live;
     double *values;
 } sk_pointwise;
@@ -28,14 +29,14 @@ skein_status sk_pointwise_create(const char *field, const char *text, skein_form
                                  sk_allocator *allocator, sk_pointwise **made, skein_error *error);
 void sk_pointwise_destroy(sk_pointwise *pointwise, sk_allocator *allocator); /* NULL is allowed */
 
-/* Sixteen places (`v` may be NULL where the formula takes no velocities); output k into out[k]. Lanes whose outputs are
- * not finite get 0s and count as guarded. */
+/* Sixteen places (`v` may be NULL where the formula takes no velocities); output k into out[k]. Lanes with an output
+ * that is not finite, or over SK_FAR, get 0s and count as guarded. */
 typedef void sk_pointwise_run(const sk_pointwise *pointwise, const double *parameters, double time, const sk_wide3 *p,
                               const sk_wide3 *v, sk_wide *out, sk_mask *guarded);
 extern sk_pointwise_run *const sk_pointwise_run_of[SK_ISA_COUNT];
 
-/* The value at one place, in double, and whether it or another output had to be guarded (NULL: never mind). The value
- * is to be among the outputs. Not for several threads at once. */
+/* The value at one place, in double, and whether it or an output had to be guarded (NULL: never mind). Not for several
+ * threads at once. */
 void sk_pointwise_value(const sk_pointwise *pointwise, const double *parameters, double time, const double p[3],
                         const double v[3], double value[3], bool *guarded);
 

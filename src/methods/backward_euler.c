@@ -135,6 +135,7 @@ static void write(sk_writer *writer, const void *data, double dt) {
     const backward_euler_params *params = data;
     double h = dt / params->substeps;
     size_t repeat = sk_write_repeat(writer, (size_t)params->substeps, h);
+    sk_write_steering(writer);
     sk_write_fields(writer);
     sk_write_forces(writer);
     sk_write_filters(writer);
@@ -143,6 +144,7 @@ static void write(sk_writer *writer, const void *data, double dt) {
     sk_write_moment(writer, 1);
     write_first_guess(writer, h);
     write_newton(writer, params, h);
+    sk_write_bounds(writer);
     sk_write_contacts(writer, SK_CONTACT_IMPULSE);
     sk_write_limits(writer, SK_V);
     sk_write_contacts(writer, SK_CONTACT_PUSH);

@@ -82,12 +82,16 @@ static void build_grid(sk_run *run, const sk_row *row, size_t begin, size_t end)
         run->no_memory = true;
 }
 
+static bool pushes(const sk_force *force) {
+    return *force->enabled && force->type->deed == SK_PUSHES;
+}
+
 /* The widest reach of the enabled neighbour rules; 0 if there is none. */
 static double widest_radius(const sk_rules *rules) {
     double widest = 0;
     for (size_t i = 0; i < rules->forces.count; i++) {
         const sk_force *force = rules->forces.data[i];
-        if (!*force->enabled || force->type->domain != SK_OVER_NEIGHBOURS) continue;
+        if (!pushes(force) || force->type->domain != SK_OVER_NEIGHBOURS) continue;
         double radius = force->type->radius(force->params);
         if (radius > widest) widest = radius;
     }
@@ -108,7 +112,7 @@ void sk_write_fields(sk_writer *writer) {
                                     .end = writer->particle_count});
     for (size_t i = 0; i < rules->forces.count; i++) {
         const sk_force *force = rules->forces.data[i];
-        if (!*force->enabled) continue;
+        if (!pushes(force)) continue;
         bool sets = first && force->type->sets;
         if (first && !sets) sk_write_clear(writer, SK_F);
         first = false;
@@ -161,7 +165,7 @@ static bool add_up_plain_forces(const sk_rules *rules, sk_plain_force *sum) {
     size_t length = 0;
     for (size_t i = 0; i < rules->forces.count; i++) {
         const sk_force *force = rules->forces.data[i];
-        if (!*force->enabled) continue;
+        if (!pushes(force)) continue;
         if (!force->type->plain || !force->type->plain(force->params, sum)) return false;
         int added = snprintf(sum->label + length, sizeof sum->label - length, "%s%s", length ? ", " : "", force->label);
         if (added > 0 && length + (size_t)added < sizeof sum->label) length += (size_t)added;
@@ -184,12 +188,24 @@ static sk_row prediction(sk_writer *writer, const sk_kernels *kernels, sk_vector
 
 /* Where nobody else looks at X0 and F, the end of a substep and the start of the next are one row. */
 static bool falls_on(sk_writer *writer, int passes) {
-    return only_follows(writer->rules, passes) && add_up_plain_forces(writer->rules, &writer->plan->plain);
+    return only_follows(writer->rules, passes) && !sk_writes_steering(writer->rules) &&
+           add_up_plain_forces(writer->rules, &writer->plan->plain);
+}
+
+/* Where rules steer, or bound the velocity, they come between kick and drift: these are rows of their own then, and
+ * the prediction has nothing left to add. */
+static bool write_steered_kick(sk_writer *writer) {
+    if (!sk_writes_steering(writer->rules)) return false;
+    sk_write_fields(writer);
+    sk_write_kick(writer, SK_V, SK_V, writer->h, SK_F);
+    sk_write_steering(writer);
+    writer->plan->plain = (sk_plain_force){.label = ""};
+    return true;
 }
 
 static void write_prediction(sk_writer *writer, int passes) {
     const sk_rules *rules = writer->rules;
-    bool plain = add_up_plain_forces(rules, &writer->plan->plain);
+    bool plain = write_steered_kick(writer) || add_up_plain_forces(rules, &writer->plan->plain);
     if (!plain) sk_write_fields(writer);
     sk_vector kept = only_follows(rules, passes) ? SK_X : rules->colliders.count ? SK_V0 : SK_NONE;
     sk_add_row(writer,
@@ -330,7 +346,7 @@ bool sk_writes_velocity_forces(const sk_writer *writer) {
     for (size_t i = 0; i < rules->batches.count; i++)
         if (is_on(rules->batches.data[i]) && sk_batch_damping_time(rules->batches.data[i]) > 0) return true;
     for (size_t i = 0; i < rules->forces.count; i++)
-        if (*rules->forces.data[i]->enabled && rules->forces.data[i]->type->on_velocity) return true;
+        if (pushes(rules->forces.data[i]) && sk_force_on_velocity(rules->forces.data[i])) return true;
     return false;
 }
 

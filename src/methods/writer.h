@@ -65,6 +65,11 @@ void sk_write_following(sk_writer *writer, int passes);
 
 /* F = all forces on X moving with V: the grid if a rule wants neighbours, then fields and neighbours. */
 void sk_write_fields(sk_writer *writer);
+/* V += what the rules that steer ask for, then bounds on V: once a substep, see writer_steer.c. */
+void sk_write_steering(sk_writer *writer);
+/* The bounds once more, where forces have acted on V after them. */
+void sk_write_bounds(sk_writer *writer);
+bool sk_writes_steering(const sk_rules *rules);
 /* F += the springs of every batch. */
 void sk_write_forces(sk_writer *writer);
 /* X: `passes` sweeps over every batch; X0 is the state at the start of the substep. */

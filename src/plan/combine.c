@@ -50,6 +50,21 @@ static void SK_ISA(kick)(sk_run *run, const sk_row *row, size_t begin, size_t en
     }
 }
 
+static void SK_ISA(wipe)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    memset(run->vector[row->dst] + begin, 0, (end - begin) * sizeof(sk_vec4));
+}
+
+static void SK_ISA(steer)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        bool packed = slot < row->packed;
+        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed),
+                 s = SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, packed);
+        sk_mask free = SK_ISA(sk_positive)(SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed).w);
+        v.x += SK_ISA(sk_keep)(free, s.x), v.y += SK_ISA(sk_keep)(free, s.y), v.z += SK_ISA(sk_keep)(free, s.z);
+        SK_ISA(sk_store_moved)(run->vector[row->dst], slot, packed, v);
+    }
+}
+
 /* The start of a position method's substep in one go, once the block's v has its new value: V = v, V0 = V,
  * X0 = X, X += h V; or, where only the correction will ask, X0 = X + h V. */
 SK_INLINE void SK_ISA(set_out)(sk_run *run, const sk_row *row, size_t slot, bool packed, sk_wide4 x, sk_wide4 v) {
@@ -153,6 +168,8 @@ static void SK_ISA(unpack)(sk_run *run, const sk_row *row, size_t begin, size_t 
 const sk_kernels sk_combine_sum = {SK_EACH_ISA(sum)};
 const sk_kernels sk_combine_correction = {SK_EACH_ISA(correction)};
 const sk_kernels sk_combine_kick = {SK_EACH_ISA(kick)};
+const sk_kernels sk_combine_wipe = {SK_EACH_ISA(wipe)};
+const sk_kernels sk_combine_steer = {SK_EACH_ISA(steer)};
 const sk_kernels sk_combine_predict = {SK_EACH_ISA(predict)};
 const sk_kernels sk_combine_fall = {SK_EACH_ISA(fall)};
 const sk_kernels sk_combine_fall_on = {SK_EACH_ISA(fall_on)};

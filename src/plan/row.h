@@ -15,6 +15,7 @@
 #include "base/layout.h"
 #include "base/memory.h"
 #include "base/vector.h"
+#include "space/cells.h"
 #include "space/grid.h"
 
 /* The state vectors, one sk_vec4 a slot. */
@@ -38,6 +39,7 @@ typedef enum sk_vector {
     SK_T9,
     SK_T10,
     SK_T11,
+    SK_S, /* what steers: a change of velocity, and in w how much more speed is allowed; a temporary, too */
     SK_VECTOR_COUNT
 } sk_vector;
 
@@ -83,6 +85,7 @@ typedef struct sk_run {
     size_t particle_count;
     const sk_triangles *triangles;
     sk_grid *grid;
+    sk_cells *cells;
     sk_allocator *allocator;
     double time;    /* at the end of the present substep, s */
     double *cell;   /* what rows of a solve hand to each other (plan/solve.h) */
@@ -144,19 +147,23 @@ bool sk_plan_add(sk_plan *plan, sk_allocator *allocator, sk_row row);
 /* One line about a row, as `skein explain` shows it. */
 void sk_row_describe(const sk_row *row, char *text, size_t size);
 const char *sk_row_kind_text(sk_row_kind kind);
+/* Whether the row's kernel is one of these. */
+bool sk_row_is(const sk_row *row, const sk_kernels *kernels);
 
 /* The arithmetic of vectors: the kernels of combine rows. The w components stay as they are.
  *   dst = a p + b q + c r        (a source of SK_NONE is left out)
  *   dst += a (p - (q + b dst))   velocity: what moved p away from where dst alone would have taken q
  *   dst = p + a w q              a kick: w is the inverse mass
+ *   wipe                         dst = 0, w too
+ *   steer                        dst += q, where the inverse mass is not 0
  *   predict                      V += h w F; V0 = V where the third source is V0; X0 = X, or what X is going to
  *                                be where the third source is X; X += h V: one row
  *                                for what would be four, since each block is read and written once
  *   fall                         the same, with the plan's plain force in place of F
  *   fall_on                      V += a (X - X0), and but for the last turn of its repeat a fall: the end of one
  *                                substep and the start of the next */
-extern const sk_kernels sk_combine_sum, sk_combine_correction, sk_combine_kick, sk_combine_predict, sk_combine_fall,
-    sk_combine_fall_on;
+extern const sk_kernels sk_combine_sum, sk_combine_correction, sk_combine_kick, sk_combine_wipe, sk_combine_steer,
+    sk_combine_predict, sk_combine_fall, sk_combine_fall_on;
 /* Turns blocks of dst from quads to packed, and back, in place. */
 extern const sk_kernels sk_pack, sk_unpack;
 

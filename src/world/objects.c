@@ -105,7 +105,8 @@ skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, c
         unmake_object(world, object);
         return sk_fail_memory(error, type->kind.name);
     }
-    *force = (sk_force){type, object->params, object->label, &object->common.plain.enabled};
+    *force = (sk_force){
+        .type = type, .params = object->params, .label = object->label, .enabled = &object->common.plain.enabled};
     world->rules.forces.data[world->rules.forces.count++] = force;
     object->as.force = force;
     return finish_object(world, object, handle);
@@ -179,6 +180,11 @@ skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_typ
     skein_status status = make_object(world, &type->kind, type->making, settings, &object, error);
     if (status) return status;
     status = check_particles(world, object, particles, count, (size_t)sk_constraint_arity(type, object->params), error);
+    if (status) {
+        unmake_object(world, object);
+        return status;
+    }
+    status = sk_world_fetch(world);
     if (status) {
         unmake_object(world, object);
         return status;

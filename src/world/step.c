@@ -7,6 +7,8 @@
 
 skein_status sk_world_arrange(skein_world *world, skein_error *error) {
     if (!world->slots_stale) return SKEIN_OK;
+    skein_status status = sk_world_touch(world); // the state goes to new slots
+    if (status) return status;
     sk_allocator *allocator = &world->allocator;
     bool good = sk_particles_arrange(&world->particles, allocator);
     for (size_t i = 0; i < world->rules.batches.count && good; i++)
@@ -50,6 +52,46 @@ static bool make_temporaries(skein_world *world) {
     return sk_particles_want(&world->particles, &world->allocator, wanted);
 }
 
+/* The particles of the body of that name, or all where there is no name. False when there is no such body. */
+static bool find_group(const skein_world *world, const char *name, sk_group *group) {
+    const sk_particles *all = &world->particles;
+    *group = (sk_group){0, all->count, 0, all->slot_count};
+    if (!name[0]) return true;
+    for (size_t i = 0; i < world->objects.count; i++) {
+        const sk_object *object = world->objects.data[i];
+        if (!(object->generation % 2) || object->category != SKEIN_BODY) continue;
+        if (strcmp(object->common.plain.name, name)) continue;
+        const sk_body *body = object->as.body;
+        *group = (sk_group){body->first_particle, body->first_particle + body->particle_count, SIZE_MAX, 0};
+        for (size_t k = group->first; k < group->end; k++) {
+            if (all->slot_of[k] < group->first_slot) group->first_slot = all->slot_of[k];
+            if (all->slot_of[k] >= group->end_slot) group->end_slot = (size_t)all->slot_of[k] + 1;
+        }
+        if (!body->particle_count) group->first_slot = 0;
+        return true;
+    }
+    return false;
+}
+
+/* Whom the rules move and look at, and what they say about it. */
+static skein_status find_groups(skein_world *world, skein_error *error) {
+    for (size_t i = 0; i < world->rules.forces.count; i++) {
+        sk_force *force = world->rules.forces.data[i];
+        if (!*force->enabled) continue;
+        const char *moved = "", *seen = "";
+        if (force->type->bodies) force->type->bodies(force->params, &moved, &seen);
+        const char *unknown = !find_group(world, moved, &force->moved)                   ? moved
+                              : !find_group(world, seen[0] ? seen : moved, &force->seen) ? seen
+                                                                                         : NULL;
+        if (unknown)
+            return sk_fail(error, SKEIN_ERROR_NAME, force->label, "there is no body of the name '%s'", unknown);
+        skein_status status =
+            force->type->check ? force->type->check(force->params, world->particles.count, error) : SKEIN_OK;
+        if (status) return status;
+    }
+    return SKEIN_OK;
+}
+
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error) {
     if (!(dt > 0) || !(dt <= 1e6))
         return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0", dt);
@@ -61,8 +103,11 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         status = method->check(world->method_params, &world->rules, error);
         if (status) return status;
     }
+    status = find_groups(world, error);
+    if (status) return status;
     for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);
     warn_of_light_colliders(world);
+    world->plan_stale = true; // until it is whole
     world->plan.count = 0;
     sk_writer writer = {
         .plan = &world->plan,
@@ -76,10 +121,11 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         .h = dt,
     };
     sk_write_sum(&writer, SK_PREVIOUS, 1, SK_X, 0, SK_NONE);
-    sk_write_pack(&writer);
+    if (!world->device) sk_write_pack(&writer);
     method->write(&writer, world->method_params, dt);
-    sk_write_unpack(&writer);
-    if (writer.no_memory || !make_temporaries(world)) return sk_fail_memory(error, "the plan");
+    if (!world->device) sk_write_unpack(&writer);
+    if (writer.no_memory || (!world->device && !make_temporaries(world))) return sk_fail_memory(error, "the plan");
+    if (world->device && (status = world->device->prepare(world->device, world, error))) return status;
     world->plan_dt = dt;
     world->plan_stale = false;
     return SKEIN_OK;
@@ -92,6 +138,7 @@ sk_run sk_world_run_context(skein_world *world) {
         .particle_count = world->particles.count,
         .triangles = &world->slots_of_triangles,
         .grid = &world->grid,
+        .cells = &world->cells,
         .allocator = &world->allocator,
         .time = world->time,
         .cell = world->cell,
@@ -111,10 +158,15 @@ skein_status skein_world_step(skein_world *world, double dt) {
     }
     memset(world->cell, 0, sizeof world->cell);
     sk_run run = sk_world_run_context(world);
-    uint64_t mode = sk_float_mode_enter();
-    sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
-    sk_float_mode_leave(mode);
-    if (run.no_memory) return sk_fail_memory(error, "the neighbour grid; the step was not finished");
+    if (world->device) {
+        status = world->device->step(world->device, world, &run, error);
+        if (status) return status;
+    } else {
+        uint64_t mode = sk_float_mode_enter();
+        sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
+        sk_float_mode_leave(mode);
+        if (run.no_memory) return sk_fail_memory(error, "the neighbour grid; the step was not finished");
+    }
     world->time += dt;
     world->steps++;
     world->substeps += (uint64_t)world->method->substeps(world->method_params);
@@ -122,6 +174,8 @@ skein_status skein_world_step(skein_world *world, double dt) {
 }
 
 skein_status skein_world_reset(skein_world *world) {
+    skein_status status = sk_world_touch(world); // masses may have changed, and where particles are held
+    if (status) return status;
     memset(world->cell, 0, sizeof world->cell);
     sk_particles_reset(&world->particles);
     world->time = 0;
@@ -131,6 +185,14 @@ skein_status skein_world_reset(skein_world *world) {
 
 double skein_world_time(const skein_world *world) {
     return world->time;
+}
+
+skein_status skein_world_time_set(skein_world *world, double seconds) {
+    if (!(seconds >= 0) || !(seconds <= SK_FAR))
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "seconds", "a time of %g s: expected 0 or more",
+                       seconds);
+    world->time = seconds;
+    return SKEIN_OK;
 }
 
 skein_status skein_world_explain(skein_world *world, double dt, void (*write)(void *user, const char *line),

@@ -60,6 +60,7 @@ void skein_world_destroy(skein_world *world) {
     if (!world) return;
     sk_allocator *allocator = &world->allocator;
     sk_rules *rules = &world->rules;
+    if (world->device) world->device->release(world->device, world);
     sk_tasks_destroy(world->tasks);
     for (size_t i = 0; i < rules->batches.count; i++) sk_batch_release(rules->batches.data[i], allocator);
     for (size_t i = 0; i < rules->forces.count; i++) sk_release(allocator, rules->forces.data[i]);
@@ -78,6 +79,7 @@ void skein_world_destroy(skein_world *world) {
     sk_release(allocator, world->slots_of_triangles.corner);
     sk_release(allocator, world->plan.data);
     sk_grid_release(&world->grid, allocator);
+    sk_cells_release(&world->cells, allocator);
     sk_particles_release(&world->particles, allocator);
     sk_allocator last = world->allocator;
     sk_release(&last, world);
@@ -121,6 +123,8 @@ skein_status sk_world_add_particles(skein_world *world, size_t count, const doub
             return sk_fail(error, SKEIN_ERROR_VALUE, "",
                            "particle %zu: a mass of %g kg; expected 0 (held) or 1e-15 to 1e15", i / 3, masses[i / 3]);
     }
+    skein_status status = sk_world_touch(world);
+    if (status) return status;
     if (!sk_particles_add(&world->particles, &world->allocator, count, positions, velocities, masses))
         return sk_fail_memory(error, "particles");
     world->plan_stale = world->slots_stale = true;

@@ -73,6 +73,21 @@ typedef struct sk_object {
     } as;
 } sk_object;
 
+/* Where steps are computed, when it is not the processor: runs the same plan on its own copy of the state. The
+ * world does not know what it is; src/gpu/ makes one. A device is `ahead` when its X, V and P are newer than the
+ * world's, and `behind` when the world's are newer. */
+typedef struct sk_device sk_device;
+struct sk_device {
+    /* Takes a new plan, or says which rule of it cannot run there. */
+    skein_status (*prepare)(sk_device *device, skein_world *world, skein_error *error);
+    /* Runs the plan once; `run` holds the time, and the world's vectors if the device is behind. */
+    skein_status (*step)(sk_device *device, skein_world *world, sk_run *run, skein_error *error);
+    /* Copies X, V and P into the world's. */
+    skein_status (*read)(sk_device *device, skein_world *world, skein_error *error);
+    void (*release)(sk_device *device, skein_world *world);
+    bool ahead, behind;
+};
+
 struct skein_world {
     sk_allocator allocator;
     skein_world_desc desc;
@@ -95,10 +110,12 @@ struct skein_world {
     bool slots_stale; /* particles, batches or limits were added: slots and sweeps are to be found anew */
     sk_isa isa;
     sk_grid grid;
+    sk_cells cells;
     double time;
     uint64_t steps, substeps;
     double first_energy;        /* J, when the first step began */
     double cell[SK_CELL_COUNT]; /* of the last step */
+    sk_device *device;          /* NULL: the processor */
 };
 
 /* ---- for the catalogue: adding objects of a known type ---- */
@@ -157,6 +174,14 @@ const skein_field *sk_kind_field(const skein_kind *kind, const char *name, skein
 skein_status sk_world_arrange(skein_world *world, skein_error *error);
 /* Brings the plan up to date for a step of dt. */
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error);
+/* Before the state is read: what a device is ahead comes back. It changes no state, only where it stands; a failure
+ * is in the world's error, and the state is then the last one that came back. */
+skein_status sk_world_fetch(const skein_world *world);
+/* Before the state is changed by hand: the same, and the device is behind. */
+skein_status sk_world_touch(skein_world *world);
+/* Changes where steps are computed; NULL is the processor. The former device is released. On failure nothing changes,
+ * and the caller keeps the new one. */
+skein_status sk_world_set_device(skein_world *world, sk_device *device);
 /* The run context of the world's present state. */
 sk_run sk_world_run_context(skein_world *world);
 /* What skein_stable_substep says, of a known type. */

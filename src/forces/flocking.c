@@ -1,0 +1,295 @@
+/* Flocking: neighbours push apart when near, fly along when farther, and draw together at the edge of the reach
+ * (Reynolds 1987, in three zones). See flocking.h for the weights.
+ *
+ * For each particle the candidates in up to nine ranges of the cells are tested sixteen at a time; those within reach
+ * are moved up close to each other, and worked out sixteen at a time. The k-th of them is added to lane k mod 16, and
+ * the lanes are added up in a fixed order: the same bits for any width. A particle finds itself among its neighbours,
+ * at distance 0, where there is no direction: it adds nothing, nor does another in the same place. */
+#ifdef SK_ISA
+
+enum { SK_ISA(AHEAD) = 8 };
+enum { SK_ISA(ROOM) = 256 }; // neighbours that are kept before they are worked out
+
+typedef struct SK_ISA(near) {
+    real x[SK_ISA(ROOM) + 2 * SK_LANES], y[SK_ISA(ROOM) + 2 * SK_LANES], z[SK_ISA(ROOM) + 2 * SK_LANES];
+    real ux[SK_ISA(ROOM) + 2 * SK_LANES], uy[SK_ISA(ROOM) + 2 * SK_LANES], uz[SK_ISA(ROOM) + 2 * SK_LANES];
+    size_t count;
+} SK_ISA(near);
+
+SK_INLINE sk_wide SK_ISA(wide_at)(const real *at) {
+    sk_wide a;
+    memcpy(&a, at, sizeof a);
+    return a;
+}
+
+/* Adds the candidates of bits to the list; d is where they are from the particle. */
+SK_INLINE void SK_ISA(keep_near)(SK_ISA(near) * near, const sk_cells *cells, size_t place, sk_wide3 d, uint32_t bits) {
+#if defined(SK_HAS_AVX512) && !defined(SKEIN_DOUBLE)
+    __mmask16 mask = (__mmask16)bits;
+    size_t k = near->count;
+    _mm512_storeu_ps(near->x + k, _mm512_maskz_compress_ps(mask, (__m512)d.x));
+    _mm512_storeu_ps(near->y + k, _mm512_maskz_compress_ps(mask, (__m512)d.y));
+    _mm512_storeu_ps(near->z + k, _mm512_maskz_compress_ps(mask, (__m512)d.z));
+    _mm512_storeu_ps(near->ux + k, _mm512_maskz_compress_ps(mask, _mm512_loadu_ps(cells->ux + place)));
+    _mm512_storeu_ps(near->uy + k, _mm512_maskz_compress_ps(mask, _mm512_loadu_ps(cells->uy + place)));
+    _mm512_storeu_ps(near->uz + k, _mm512_maskz_compress_ps(mask, _mm512_loadu_ps(cells->uz + place)));
+    near->count = k + (size_t)__builtin_popcount(bits);
+#else
+    size_t k = near->count;
+    for (; bits; bits &= bits - 1, k++) {
+        int l = __builtin_ctz(bits);
+        near->x[k] = d.x[l], near->y[k] = d.y[l], near->z[k] = d.z[l];
+        near->ux[k] = cells->ux[place + (size_t)l];
+        near->uy[k] = cells->uy[place + (size_t)l];
+        near->uz[k] = cells->uz[place + (size_t)l];
+    }
+    near->count = k;
+#endif
+}
+
+/* What sixteen neighbours from k on add. */
+SK_INLINE void SK_ISA(add_near)(const SK_ISA(near) * near, size_t k, const sk_flocking_numbers *n, sk_wide3 *sum) {
+    sk_wide3 d = {SK_ISA(wide_at)(near->x + k), SK_ISA(wide_at)(near->y + k), SK_ISA(wide_at)(near->z + k)};
+    sk_wide nearest = SK_ISA(sk_splat)(n->nearest), one = SK_ISA(sk_splat)(1), half = SK_ISA(sk_splat)((real)0.5);
+    sk_wide square = SK_ISA(sk_dot_wide)(d, d), distance = SK_ISA(sk_wide_sqrt)(square);
+    distance = SK_ISA(sk_select)(SK_ISA(sk_more)(distance, nearest), distance, nearest);
+    sk_wide per = one / distance, inverse = n->reach * per, percent = distance * n->per_reach;
+    if (n->squared) percent *= percent, inverse *= inverse;
+    sk_mask away = SK_ISA(sk_more)(SK_ISA(sk_splat)(n->away), percent);
+    sk_mask along = SK_ISA(sk_more)(SK_ISA(sk_splat)(n->along), percent) & ~away;
+    // from -0.5 to 0.5 through the zone
+    sk_wide a =
+        SK_ISA(sk_select)(along, (percent - n->away) * n->per_along, (percent - n->along) * n->per_towards) - half;
+    sk_wide s = a * a, cosine = half * SK_FLOCKING_COSINE(s);
+    sk_wide towards = SK_ISA(sk_select)(away, one - n->away * inverse, cosine) * per;
+    towards = SK_ISA(sk_keep)(~along, towards);
+    sk_wide with = SK_ISA(sk_keep)(along & SK_ISA(sk_positive)(square), one - cosine);
+    sum->x += towards * d.x + with * SK_ISA(wide_at)(near->ux + k);
+    sum->y += towards * d.y + with * SK_ISA(wide_at)(near->uy + k);
+    sum->z += towards * d.z + with * SK_ISA(wide_at)(near->uz + k);
+}
+
+/* Works out all whole sixteens, and what is left of them moves to the front. */
+SK_INLINE void SK_ISA(work_out)(SK_ISA(near) * near, const sk_flocking_numbers *n, sk_wide3 *sum) {
+    size_t whole = near->count / SK_LANES * SK_LANES;
+    for (size_t k = 0; k < whole; k += SK_LANES) SK_ISA(add_near)(near, k, n, sum);
+    real *lists[] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
+    for (int i = 0; i < 6; i++) memcpy(lists[i], lists[i] + whole, SK_LANES * sizeof(real));
+    near->count -= whole;
+}
+
+/* Where the nine rows of cells around a particle are, a row a lane; see sk_cells_ranges(), which this is wide. */
+typedef struct SK_ISA(rows) {
+    sk_wide wall_y, wall_z, share_y, share_z; // the distance to the row, in cells, is wall + share * place in the cell
+    sk_mask step;                             // in the array of cells
+    sk_mask step_y, step_z;
+} SK_ISA(rows);
+
+SK_INLINE SK_ISA(rows) SK_ISA(rows_of)(const sk_cells *cells) {
+    SK_ISA(rows) rows;
+    for (int l = 0; l < SK_LANES; l++) {
+        int dy = l < 9 ? l % 3 - 1 : 0, dz = l < 9 ? l / 3 - 1 : 0;
+        rows.wall_y[l] = dy ? (real)(dy > 0) - cells->slack : 0;
+        rows.wall_z[l] = dz ? (real)(dz > 0) - cells->slack : 0;
+        rows.share_y[l] = (real)-dy, rows.share_z[l] = (real)-dz;
+        rows.step_y[l] = dy, rows.step_z[l] = dz;
+        rows.step[l] = (sk_lane_int)cells->count_x * (dy + (sk_lane_int)cells->count_y * dz);
+    }
+    return rows;
+}
+
+/* Sixteens of candidates: where each begins, and how many there are from there on. */
+enum { SK_ISA(SIXTEENS) = 48 };
+typedef struct SK_ISA(sixteens) {
+    uint32_t place[SK_ISA(SIXTEENS) + SK_LANES];
+    int32_t left[SK_ISA(SIXTEENS) + SK_LANES];
+    size_t count;
+} SK_ISA(sixteens);
+
+/* Lists the next sixteen of each range that is not used up; false when all are. Ranges take turns, so that rows of
+ * fewer than sixteen, the most of them, are listed without a branch each. */
+SK_INLINE bool SK_ISA(list)(int32_t begin[SK_LANES], int32_t left[SK_LANES], SK_ISA(sixteens) * list) {
+    size_t before = list->count;
+#if defined(SK_HAS_AVX512)
+    __m512i b = _mm512_loadu_si512(begin), l = _mm512_loadu_si512(left);
+    __mmask16 some = _mm512_cmpgt_epi32_mask(l, _mm512_setzero_si512());
+    _mm512_storeu_si512(list->place + before, _mm512_maskz_compress_epi32(some, b));
+    _mm512_storeu_si512(list->left + before, _mm512_maskz_compress_epi32(some, l));
+    _mm512_storeu_si512(begin, _mm512_add_epi32(b, _mm512_set1_epi32(SK_LANES)));
+    _mm512_storeu_si512(left, _mm512_sub_epi32(l, _mm512_set1_epi32(SK_LANES)));
+    list->count = before + (size_t)__builtin_popcount(some);
+#else
+    for (int r = 0; r < 9; r++) {
+        list->place[list->count] = (uint32_t)begin[r];
+        list->left[list->count] = left[r];
+        list->count += left[r] > 0;
+        begin[r] += SK_LANES, left[r] -= SK_LANES;
+    }
+#endif
+    return list->count != before;
+}
+
+/* The ranges of candidates of a particle at p: where each of nine rows begins, and how many are in it. */
+SK_INLINE void SK_ISA(find_ranges)(const sk_cells *cells, const SK_ISA(rows) * rows, sk_vec3 p, real reach,
+                                   int32_t begin[SK_LANES], int32_t count[SK_LANES]) {
+    real py = (p.y - cells->origin.y) * cells->per_yz, pz = (p.z - cells->origin.z) * cells->per_yz;
+    int32_t iy = sk_cells_place(p.y, cells->origin.y, cells->per_yz, cells->count_y);
+    int32_t iz = sk_cells_place(p.z, cells->origin.z, cells->per_yz, cells->count_z);
+    sk_wide my = rows->wall_y + rows->share_y * (py - (real)iy), mz = rows->wall_z + rows->share_z * (pz - (real)iz);
+    my = SK_ISA(sk_keep)(SK_ISA(sk_positive)(my), my) * cells->size;
+    mz = SK_ISA(sk_keep)(SK_ISA(sk_positive)(mz), mz) * cells->size;
+    sk_wide left = (reach * reach - mz * mz) - my * my;
+    sk_mask some = SK_ISA(sk_positive)(left);
+    sk_wide half = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_keep)(some, left)) * (real)1.00001;
+    sk_wide low = ((p.x - half) - cells->origin.x) * cells->per_x,
+            high = ((p.x + half) - cells->origin.x) * cells->per_x;
+    sk_wide last = SK_ISA(sk_splat)((real)(cells->count_x - 1));
+    low = SK_ISA(sk_keep)(SK_ISA(sk_positive)(low), low), high = SK_ISA(sk_keep)(SK_ISA(sk_positive)(high), high);
+    low = SK_ISA(sk_select)(SK_ISA(sk_more)(last, low), low, last);
+    high = SK_ISA(sk_select)(SK_ISA(sk_more)(last, high), high, last);
+    sk_mask base = rows->step + ((sk_lane_int)cells->count_x * (iy + (sk_lane_int)cells->count_y * iz));
+    sk_mask first = (base + __builtin_convertvector(low, sk_mask)) & some,
+            end = (base + __builtin_convertvector(high, sk_mask) + 1) & some;
+    uint32_t inside = 0;
+    for (int dz = -1; dz <= 1; dz++)
+        for (int dy = -1; dy <= 1; dy++)
+            inside |= (uint32_t)(iy + dy >= 0 && iy + dy < cells->count_y && iz + dz >= 0 && iz + dz < cells->count_z)
+                      << (4 + dy + 3 * dz);
+    for (int l = 9; l < SK_LANES; l++) begin[l] = count[l] = 0;
+    for (int l = 0; l < 9; l++) {
+        sk_lane_int from = inside >> l & 1 ? first[l] : 0, to = inside >> l & 1 ? end[l] : 0;
+        begin[l] = (int32_t)cells->start[from];
+        count[l] = (int32_t)cells->start[to] - begin[l];
+    }
+}
+
+/* Tests the listed candidates, and keeps those within reach. */
+SK_INLINE void SK_ISA(test)(const sk_cells *cells, const sk_flocking_numbers *n, sk_vec3 p, SK_ISA(sixteens) * sixteens,
+                            SK_ISA(near) * near, sk_wide3 *sum) {
+    sk_wide square = SK_ISA(sk_splat)(n->reach * n->reach);
+    for (size_t k = 0; k < sixteens->count; k++) {
+        size_t place = sixteens->place[k];
+        sk_wide3 d = {SK_ISA(wide_at)(cells->x + place) - p.x, SK_ISA(wide_at)(cells->y + place) - p.y,
+                      SK_ISA(wide_at)(cells->z + place) - p.z};
+        uint32_t bits = SK_ISA(sk_more_bits)(square, SK_ISA(sk_dot_wide)(d, d));
+        bits &= sixteens->left[k] < SK_LANES ? (1u << sixteens->left[k]) - 1 : 0xffffu;
+        SK_ISA(keep_near)(near, cells, place, d, bits);
+        if (near->count >= SK_ISA(ROOM)) SK_ISA(work_out)(near, n, sum);
+    }
+    sixteens->count = 0;
+}
+
+/* The steering of one particle at p. */
+SK_INLINE sk_vec3 SK_ISA(steer)(const sk_cells *cells, const SK_ISA(rows) * rows, const sk_flocking_numbers *n,
+                                sk_vec3 p, SK_ISA(near) * near) {
+    int32_t begin[SK_LANES], left[SK_LANES];
+    SK_ISA(find_ranges)(cells, rows, p, n->reach, begin, left);
+    SK_ISA(sixteens) sixteens;
+    sixteens.count = 0;
+    sk_wide3 sum = {{0}, {0}, {0}};
+    near->count = 0;
+    while (SK_ISA(list)(begin, left, &sixteens))
+        if (sixteens.count >= SK_ISA(SIXTEENS)) SK_ISA(test)(cells, n, p, &sixteens, near, &sum);
+    SK_ISA(test)(cells, n, p, &sixteens, near, &sum);
+    // fill up with neighbours in the same place, which add nothing
+    real *lists[] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
+    for (int i = 0; i < 6; i++) memset(lists[i] + near->count, 0, SK_LANES * sizeof(real));
+    for (size_t k = 0; k < near->count; k += SK_LANES) SK_ISA(add_near)(near, k, n, &sum);
+    return sk_v3(SK_ISA(sk_sum)(sum.x), SK_ISA(sk_sum)(sum.y), SK_ISA(sk_sum)(sum.z));
+}
+
+/* Elements are places where particles look at each other, else the user's particles. */
+static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_force *force = row->rule;
+    const sk_flocking_params *params = force->params;
+    const sk_flocking_numbers numbers = sk_flocking_numbers_of(params);
+    const sk_cells *cells = run->cells;
+    bool among = force->moved.first == force->seen.first && force->moved.end == force->seen.end;
+    real scale = (real)(row->dt * params->strength);
+    SK_ISA(rows) rows = SK_ISA(rows_of)(cells);
+    SK_ISA(near) near;
+    if (!cells->count) return; // nobody is near, or there is no memory for the cells
+    if (among && end > cells->count) end = cells->count;
+    for (size_t i = begin; i < end; i++) {
+        uint32_t slot = among ? cells->record[i].slot : run->slot_of[i];
+        // records are padded; their slots are anywhere in memory
+        if (among)
+            __builtin_prefetch(
+                &run->vector[row->dst][cells->record[i + SK_ISA(AHEAD) < end ? i + SK_ISA(AHEAD) : i].slot], 1);
+        sk_vec3 p = among ? sk_v3(cells->x[i], cells->y[i], cells->z[i])
+                          : sk_xyz(sk_load(run->vector[SK_X], row->packed, slot));
+        sk_add_at(run->vector[row->dst], row->packed, slot,
+                  sk_scale(scale, SK_ISA(steer)(cells, &rows, &numbers, p, &near)));
+    }
+}
+
+#else
+#include "forces/flocking.h"
+
+#include <string.h>
+
+#include "base/status.h"
+
+// clang-format off
+static const skein_field fields[] = {
+    SK_REAL(sk_flocking_params, separation, "separation", "m", 45, 0, 1e9, "width of the zone whose neighbours push away"),
+    SK_REAL(sk_flocking_params, alignment, "alignment", "m", 20, 0, 1e9, "and of the next zone, whose neighbours are flown along with"),
+    SK_REAL(sk_flocking_params, cohesion, "cohesion", "m", 35, 0, 1e9, "and of the last, at whose edges neighbours are drawn to; 0, 0, 0: no neighbours"),
+    {"measure", SKEIN_FIELD_CHOICE, offsetof(sk_flocking_params, measure), "", {0, 0, 0}, 0, 0, "distance|distance^2", NULL,
+     "how far through the zones a neighbour is: by its distance, or by the square of it"},
+    SK_REAL(sk_flocking_params, strength, "strength", "m/s2", 1, 0, SK_FAR, "how strongly each neighbour counts"),
+    SK_TEXT(sk_flocking_params, on, "on", "", "the name of the body that it moves; empty: every particle"),
+    SK_TEXT(sk_flocking_params, minds, "minds", "", "the name of the body that it looks at; empty: the same"),
+};
+// clang-format on
+
+static double radius(const void *data) {
+    const sk_flocking_params *params = data;
+    return params->separation + params->alignment + params->cohesion;
+}
+
+static void bodies(const void *data, const char **moved, const char **seen) {
+    const sk_flocking_params *params = data;
+    *moved = params->on;
+    *seen = params->minds;
+}
+
+sk_flocking_numbers sk_flocking_numbers_of(const sk_flocking_params *params) {
+    double reach = radius(params);
+    if (!(reach > 0)) return (sk_flocking_numbers){0};
+    double away = params->separation / reach, along = (params->separation + params->alignment) / reach;
+    return (sk_flocking_numbers){
+        .reach = (real)reach,
+        .per_reach = (real)(1 / reach),
+        .away = (real)away,
+        .along = (real)along,
+        .per_along = params->alignment > 0 ? (real)(1 / (along - away)) : 0,
+        .per_towards = params->cohesion > 0 ? (real)(1 / (1 - along)) : 0,
+        .nearest = (real)(1e-4 * reach),
+        .squared = params->measure != 0,
+    };
+}
+
+static void pack(const void *data, float (*block)[4]) {
+    const sk_flocking_params *params = data;
+    sk_flocking_numbers n = sk_flocking_numbers_of(params);
+    const float numbers[2][4] = {
+        {1 / (float)n.reach, (float)n.away, (float)n.along, (float)n.per_along},
+        {(float)n.per_towards, (float)n.nearest, (float)params->strength, n.squared ? 1.0f : 0.0f}};
+    memcpy(block, numbers, sizeof numbers);
+}
+
+#define SK_KERNELS "forces/flocking.c"
+#include "base/for_each_isa.h"
+
+const sk_force_type sk_flocking = {
+    .kind = {"flocking", "neighbours push apart, fly along or draw together, by how far they are", SKEIN_FORCE, fields,
+             sizeof fields / sizeof *fields, sizeof(sk_flocking_params)},
+    .domain = SK_OVER_NEIGHBOURS,
+    .deed = SK_STEERS,
+    .kernel = {SK_EACH_ISA(kernel)},
+    .radius = radius,
+    .bodies = bodies,
+    .shader = {"forces/flocking", 2, pack, NULL},
+};
+#endif

@@ -1,0 +1,48 @@
+/* Flocking as numbers: what kernels on the processor and on the card compute from.
+ *
+ * A neighbour at distance d inside the reach r has percent = d/r, or d^2/r^2. Its part of the steering, in units of
+ * strength dt:
+ *
+ *   percent   0 ........ away ........ along ........ 1          away, along: thresholds
+ *   it is     pushed away    | flown with | drawn near
+ *
+ *   under `away`:   away/percent - 1,            away from the neighbour
+ *   under `along`:  0.5 - 0.5 cos(2 pi a) + 0.5, along the neighbour's direction of flight
+ *   else:           0.5 cos(2 pi a),             towards it; it pushes in the middle of its zone
+ *
+ * with a from 0 to 1 through each zone. Parts are summed, not averaged. */
+#ifndef SK_FORCES_FLOCKING_H
+#define SK_FORCES_FLOCKING_H
+
+#include "forces/force.h"
+
+/* The fields of the kind. */
+typedef struct sk_flocking_params {
+    double separation, alignment, cohesion; /* m: widths of the zones */
+    int32_t measure;                        /* 0: distance, 1: its square */
+    double strength;                        /* m/s2 */
+    char *on, *minds;                       /* names of bodies */
+} sk_flocking_params;
+
+typedef struct sk_flocking_numbers {
+    real reach;       /* r, m; 0: there are no neighbours */
+    real per_reach;   /* 1/r */
+    real away, along; /* thresholds of percent */
+    real per_along;   /* 1/(along - away), 0 where that zone has no width */
+    real per_towards; /* 1/(1 - along), likewise */
+    real nearest;     /* m: nearer neighbours count as so near; it keeps weights finite */
+    bool squared;
+} sk_flocking_numbers;
+
+sk_flocking_numbers sk_flocking_numbers_of(const sk_flocking_params *params);
+
+/* -cos(2 pi t) = cos(2 pi (t + 0.5)) for |t| <= 0.5, as a polynomial in t^2: off by 1.2e-8 at most. */
+#define SK_FLOCKING_COSINE(s_)                                   \
+    ((real)-0.99999998894457653 +                                \
+     (s_) * ((real)19.739204466576133 +                          \
+             (s_) * ((real)-64.939115928346439 +                 \
+                     (s_) * ((real)85.450113427506139 +          \
+                             (s_) * ((real)-60.167429791965688 + \
+                                     (s_) * ((real)25.966884612699047 + (s_) * (real)-6.5277059631782182))))))
+
+#endif
