@@ -23,7 +23,8 @@ static const skein_field fields[] = {
             "false: constraints move positions and nothing else does; velocities and forces are as if they were not"),
 };
 
-/* Projections alone: a solver for constraints. With velocities a spring that is at rest after one solve would fly on. */
+/* Projections alone: a solver for constraints. With velocities a spring that is at rest after one solve would fly on.
+ */
 static void write_projections_only(sk_writer *writer, const pbd_params *params, double h) {
     size_t repeat = sk_write_repeat(writer, (size_t)params->substeps, h);
     sk_write_moment(writer, 1);
