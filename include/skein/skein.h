@@ -290,6 +290,9 @@ typedef enum skein_device {
  * run on a card is named when a plan is made: by the next step, or by skein_world_explain(). */
 skein_status skein_world_device_set(skein_world *world, skein_device device);
 
+/* Waits until the steps asked for are done: a card works behind the calls. For measuring; nothing else needs it. */
+void skein_world_wait(const skein_world *world);
+
 typedef struct skein_device_info {
     skein_device device;
     const char *name;  /* "processor", or the card and its driver; as long as the device is the world's */

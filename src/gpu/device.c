@@ -163,6 +163,13 @@ static skein_status read_back(sk_device *base, skein_world *world, skein_error *
     return status;
 }
 
+static void wait_for(sk_device *base) {
+    sk_gpu_device *device = (sk_gpu_device *)(void *)base;
+    sk_gpu_context_enter(&device->context);
+    glFinish();
+    sk_gpu_context_leave(&device->context);
+}
+
 static void release(sk_device *base, skein_world *world) {
     sk_gpu_device *device = (sk_gpu_device *)(void *)base;
     sk_allocator *allocator = &world->allocator;
@@ -199,7 +206,7 @@ static skein_status create(skein_world *world, bool adopt, sk_device **out, skei
     sk_allocator *allocator = &world->allocator;
     sk_gpu_device *device = sk_allocate(allocator, sizeof *device);
     if (!device) return sk_fail_memory(error, "the device");
-    device->base = (sk_device){prepare, step, read_back, release, false, true};
+    device->base = (sk_device){prepare, step, read_back, release, wait_for, false, true};
     device->stage = sk_allocate(allocator, SK_GPU_STAGE);
     device->calls = sk_allocate(allocator, SK_GPU_STAGE / 256 * sizeof *device->calls);
     skein_status status = device->stage && device->calls ? SKEIN_OK : sk_fail_memory(error, "the device");
