@@ -66,6 +66,7 @@ static json_t *make_document(const app_report *r) {
         {"worst_stretch_of_run", number(r->worst_stretch)},
         {"max_penetration", number(s->max_penetration)},
         {"nonfinite_particles", count(s->nonfinite)},
+        {"guarded_values", count(s->guarded)},
         {"state_hash", json_string(hash)},
         {"files", json_incref(r->files)},
     };

@@ -20,6 +20,15 @@ static void report_library_fault(const builder *b, io_place place, const char *n
     io_fault(place, error->where[0] ? error->where : nothing, error->status, "%s", error->message);
 }
 
+/* The same about an object of a kind. What is wrong in a formula is shown there, in lines of their own. */
+static void report_object_fault(const builder *b, io_place place, const skein_kind *kind, const char *nothing) {
+    const skein_error *error = skein_world_error(b->world);
+    const skein_field *field = skein_field_find(kind, error->where, NULL);
+    bool formula = field && field->type == SKEIN_FIELD_TEXT && skein_field_find(kind, "parameters.*", NULL);
+    if (formula) io_fault_shown(place, error->where, error->status, error->message);
+    else report_library_fault(b, place, nothing);
+}
+
 /* ---- bodies: the mesh is read here ---- */
 
 static void pass_warning(void *user, const char *line) {
@@ -127,11 +136,13 @@ static bool read_indices(index_list *list, io_place place, const json_t *json, s
 
 static void add_constraint(const builder *b, io_place place, const skein_kind *kind, const json_t *object,
                            const io_settings *settings) {
-    enum { ARITY = 2 }; // of every kind that there is
     index_list list = {0};
-    if (read_indices(&list, place, json_object_get(object, "particles"), ARITY) && !b->body_missing &&
-        skein_constraint_add(b->world, kind->name, list.data, list.count / ARITY, settings->data, NULL))
-        report_library_fault(b, place, "particles");
+    size_t arity;
+    if (skein_constraint_arity(b->world, kind->name, settings->data, &arity))
+        report_object_fault(b, place, kind, "particles");
+    else if (read_indices(&list, place, json_object_get(object, "particles"), arity) && !b->body_missing &&
+             skein_constraint_add(b->world, kind->name, list.data, list.count / arity, settings->data, NULL))
+        report_object_fault(b, place, kind, "particles");
     free(list.data);
 }
 
@@ -168,7 +179,7 @@ static bool add_of_kind(const builder *b, io_place place, const json_t *object, 
     case SKEIN_COLLIDER: status = skein_collider_add(b->world, kind->name, settings->data, NULL); break;
     default: status = skein_method_set(b->world, kind->name, settings->data); break;
     }
-    if (status) report_library_fault(b, place, "");
+    if (status) report_object_fault(b, place, kind, "");
     return !status;
 }
 

@@ -157,7 +157,7 @@ render_bounds render_frame_bounds(const render_frame *frame) {
     render_bounds bounds = render_bounds_nothing();
     for (size_t s = 0; s < frame->surface_count; s++) {
         const render_surface *surface = &frame->surfaces[s];
-        for (size_t v = 0; v < surface->vertex_count; v++) {
+        for (size_t v = 0; v < surface->vertex_count && !surface->scenery; v++) {
             render_bounds_add(&bounds, &surface->positions[3 * v], 0);
         }
     }

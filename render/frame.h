@@ -44,6 +44,7 @@ typedef struct render_surface {
     bool rows_first;      /* u goes down an image and v across, as in a grid; else u goes across and v up */
     const float *values;  /* vertex_count, 0 to 1, for RENDER_VALUES; or NULL */
     render_colour_map map;
+    bool scenery;   /* the picture need not hold all of it: terrain */
     uint64_t shape; /* changes whenever triangles, weld or uv do; 0: they may be new every frame */
     render_material material;
 } render_surface;

@@ -11,8 +11,7 @@ enum { most_files = 8 };
 
 static const char *find_text(const char *name, size_t length) {
     for (const render_shader_file *file = render_shader_files; file->name; file++) {
-        if (strncmp(file->name, name, length) == 0 && strcmp(file->name + length, ".glsl") == 0)
-            return file->text;
+        if (strncmp(file->name, name, length) == 0 && strcmp(file->name + length, ".glsl") == 0) return file->text;
     }
     return NULL;
 }

@@ -4,6 +4,7 @@
 #include "render/body_mesh.h"
 #include "render/fail.h"
 #include "render/planes.h"
+#include "render/world_implicit.h"
 #include "render/world_lines.h"
 #include "render/world_points.h"
 #include "render/world_solids.h"
@@ -35,6 +36,7 @@ struct render_world_frame {
     size_t body_count;
     render_surface *surfaces;
     render_world_solids solids;
+    render_world_implicit implicit;
     render_image image;
     char *image_path; /* of the image that is loaded */
     bool has_floor;
@@ -81,6 +83,7 @@ void render_world_frame_destroy(render_world_frame *made) {
     free(made->bodies);
     free(made->surfaces);
     render_world_solids_release(&made->solids);
+    render_world_implicit_release(&made->implicit);
     free(made);
 }
 
@@ -94,6 +97,14 @@ static bool grow(void *array, size_t count, size_t size) {
     void *grown = realloc(*pointer, count * size + 1);
     if (grown) *pointer = grown;
     return grown != NULL;
+}
+
+static render_bounds bounds_to_hold(const render_world_frame *made) {
+    render_bounds bounds = render_frame_bounds(&made->frame);
+    if (render_bounds_empty(&made->held)) return bounds;
+    render_bounds_add(&bounds, made->held.least, 0);
+    render_bounds_add(&bounds, made->held.most, 0);
+    return bounds;
 }
 
 static bool is_visible(const skein_world *world, skein_handle handle) {
@@ -230,6 +241,21 @@ static skein_status take_bodies(render_world_frame *made, const skein_world *wor
     return status;
 }
 
+/* ---- Colliders that are formulas ------------------------------------------------------------ */
+
+/* Their meshes come after the bodies', and fill what the rest of the picture takes. */
+static skein_status take_implicit(render_world_frame *made, const skein_world *world, skein_error *error) {
+    if (!made->view.colliders) return SKEIN_OK;
+    render_bounds things = bounds_to_hold(made);
+    skein_status status = render_take_implicit(&made->implicit, world, &things, error);
+    if (status != SKEIN_OK) return status;
+    if (!grow(&made->surfaces, made->frame.surface_count + made->implicit.count, sizeof *made->surfaces))
+        return render_fail_memory(error, "a frame");
+    made->frame.surfaces = made->surfaces;
+    made->frame.surface_count += render_show_implicit(&made->implicit, made->surfaces + made->frame.surface_count);
+    return SKEIN_OK;
+}
+
 /* ---- Particles ------------------------------------------------------------------------------ */
 
 /* The mean length of some edges, as a measure of how close particles are; infinite where there are none. */
@@ -263,14 +289,6 @@ static skein_status take_particles(render_world_frame *made, const skein_world *
 }
 
 /* ---- All of it ------------------------------------------------------------------------------ */
-
-static render_bounds bounds_to_hold(const render_world_frame *made) {
-    render_bounds bounds = render_frame_bounds(&made->frame);
-    if (render_bounds_empty(&made->held)) return bounds;
-    render_bounds_add(&bounds, made->held.least, 0);
-    render_bounds_add(&bounds, made->held.most, 0);
-    return bounds;
-}
 
 static skein_status take_lines(render_world_frame *made, skein_error *error) {
     const render_view *view = &made->view;
@@ -331,6 +349,7 @@ skein_status render_world_frame_update(render_world_frame *made, skein_world *wo
     if (status == SKEIN_OK) status = take_bodies(made, world, error);
     if (status == SKEIN_OK) status = render_take_colliders(&made->solids, world, &made->view, error);
     render_world_solids_show(&made->solids, &made->frame);
+    if (status == SKEIN_OK) status = take_implicit(made, world, error);
     if (status == SKEIN_OK) status = take_particles(made, world, error);
     if (status == SKEIN_OK) status = take_lines(made, error);
     if (status == SKEIN_OK) place_floor(made);

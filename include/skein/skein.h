@@ -73,7 +73,8 @@ typedef enum skein_field_type {
 /* One parameter of a kind. Defaults, the scene reader, its messages, `--set`, `skein list` and the
  * reference page all come from tables of these. */
 typedef struct skein_field {
-    const char *name; /* dots make groups: "stretch.stiffness" */
+    const char *name; /* dots make groups: "stretch.stiffness"; "parameters.*" stands for all that an object's formulas
+                         name, "parameters.R", say, which the object's own kind has one by one */
     skein_field_type type;
     size_t offset;       /* of the value in the kind's parameters; internal */
     const char *unit;    /* "N/m"; "" where there is none */
@@ -139,7 +140,8 @@ const skein_kind *skein_kind_find(skein_category category, const char *name, ske
 const char *skein_category_text(skein_category category);
 /* Fields that every kind of the category has besides its own ("enabled", "visible", ...). */
 const skein_field *skein_common_fields(skein_category category, size_t *count);
-/* A kind's own or common field by name; NULL (and the nearest right name in `error`) if none. */
+/* A kind's own or common field by name; NULL (and the nearest right name in `error`) if none. In a kind that takes
+ * parameters, "parameters.R" is found as "parameters.*". */
 const skein_field *skein_field_find(const skein_kind *kind, const char *name, skein_error *error);
 /* Checks a value against a field's type and range without setting anything. */
 skein_status skein_field_check(const skein_field *field, const skein_value *value, skein_error *error);
@@ -208,10 +210,12 @@ skein_status skein_particles_add(skein_world *world, size_t count, const double 
  * without. `settings` may be NULL; so may `handle`. */
 skein_status skein_body_add(skein_world *world, const char *kind, const skein_mesh *mesh, const skein_setting *settings,
                             skein_handle *handle);
-/* Adds `count` constraints of one kind, each on the kind's number of particles, with the rest
- * values of the present positions (`distance`: 2 particles each). They share their settings. */
+/* Adds `count` constraints of one kind, each on the kind's number of particles (`distance`: 2; `formula` and `energy`:
+ * as many as the formula names), with the rest values of the present positions. They share their settings. */
 skein_status skein_constraint_add(skein_world *world, const char *kind, const uint32_t *particles, size_t count,
                                   const skein_setting *settings, skein_handle *handle);
+/* How many particles each constraint of the kind takes, with these settings (NULL: the defaults). */
+skein_status skein_constraint_arity(skein_world *world, const char *kind, const skein_setting *settings, size_t *arity);
 skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings, skein_handle *handle);
 skein_status skein_collider_add(skein_world *world, const char *kind, const skein_setting *settings,
                                 skein_handle *handle);
@@ -247,7 +251,9 @@ static inline skein_value skein_text(const char *text) {
 /* Living objects of a category, in the order of their making. */
 size_t skein_object_count(const skein_world *world, skein_category category);
 skein_handle skein_object_at(const skein_world *world, skein_category category, size_t index);
-/* The kind of an object; NULL for a stale handle. The method's handle is skein_object_at(..., SKEIN_METHOD, 0). */
+/* The kind of an object; NULL for a stale handle. The method's handle is skein_object_at(..., SKEIN_METHOD, 0). Where
+ * the kind takes parameters of formulas, it is the object's own, and lives as long as the object: its fields are the
+ * kind's and the parameters that the object was made with. */
 const skein_kind *skein_object_kind(const skein_world *world, skein_handle handle);
 bool skein_handle_valid(const skein_world *world, skein_handle handle);
 
@@ -375,6 +381,11 @@ typedef struct skein_contact {
 /* Copies up to `most` of the contacts of enabled colliders; `count` receives how many there are. */
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count);
 
+/* Where `count` points (count x 3) are seen from a collider's surface as it stands now: how far off, as contact takes it
+ * (negative inside; far away, formulas may say 1e15), and the unit normals out of the solid. Either may be NULL. */
+skein_status skein_collider_probe(const skein_world *world, skein_handle collider, size_t count, const double *points,
+                                  double *distances, double *normals);
+
 /* ---- Measures ---------------------------------------------------------------------------------- */
 
 typedef struct skein_statistics {
@@ -400,6 +411,8 @@ typedef struct skein_statistics {
     size_t contacts;          /* pairs of a particle and a collider that touch */
     size_t particles, held_particles, constraints;
     size_t nonfinite;    /* particles with a position or velocity that is not finite */
+    size_t guarded;      /* values of formulas that have none at the present state, where 0 or the nearest was taken:
+                            of each collider and force at each free particle (docs/formula.md) */
     size_t memory_bytes; /* held by the world now */
     uint64_t state_hash; /* of positions and velocities in the user's order */
 } skein_statistics;

@@ -133,8 +133,16 @@ SK_INLINE sk_mask SK_ISA(sk_lanes_between)(size_t slot, size_t first, size_t end
 
 /* The sum of the lanes, in one order on every machine. */
 SK_INLINE real SK_ISA(sk_sum)(sk_wide a) {
+#ifdef SK_HAS_AVX512
+    SK_ISA(sk_eight)
+    eight = __builtin_shufflevector(a, a, 0, 1, 2, 3, 4, 5, 6, 7) +
+            __builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15);
+    SK_ISA(sk_quad)
+    q = __builtin_shufflevector(eight, eight, 0, 1, 2, 3) + __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
+#else
     SK_ISA(parts) p = {.wide = a};
     SK_ISA(sk_quad) q = (p.quad[0] + p.quad[2]) + (p.quad[1] + p.quad[3]);
+#endif
     return (q[0] + q[2]) + (q[1] + q[3]);
 }
 

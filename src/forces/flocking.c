@@ -7,6 +7,7 @@
  * at distance 0, where there is no direction: it adds nothing, nor does another in the same place. */
 #ifdef SK_ISA
 
+enum { SK_ISA(AHEAD) = 8 };
 enum { SK_ISA(ROOM) = 256 }; // neighbours that are kept before they are worked out
 
 typedef struct SK_ISA(near) {
@@ -52,7 +53,7 @@ SK_INLINE void SK_ISA(add_near)(const SK_ISA(near) * near, size_t k, const sk_fl
     sk_wide nearest = SK_ISA(sk_splat)(n->nearest), one = SK_ISA(sk_splat)(1), half = SK_ISA(sk_splat)((real)0.5);
     sk_wide square = SK_ISA(sk_dot_wide)(d, d), distance = SK_ISA(sk_wide_sqrt)(square);
     distance = SK_ISA(sk_select)(SK_ISA(sk_more)(distance, nearest), distance, nearest);
-    sk_wide per = one / distance, inverse = n->reach * per, percent = distance * (1 / n->reach);
+    sk_wide per = one / distance, inverse = n->reach * per, percent = distance * n->per_reach;
     if (n->squared) percent *= percent, inverse *= inverse;
     sk_mask away = SK_ISA(sk_more)(SK_ISA(sk_splat)(n->away), percent);
     sk_mask along = SK_ISA(sk_more)(SK_ISA(sk_splat)(n->along), percent) & ~away;
@@ -77,23 +78,119 @@ SK_INLINE void SK_ISA(work_out)(SK_ISA(near) * near, const sk_flocking_numbers *
     near->count -= whole;
 }
 
-/* The steering of one particle at p. */
-SK_INLINE sk_vec3 SK_ISA(steer)(const sk_cells *cells, const sk_flocking_numbers *n, sk_vec3 p, SK_ISA(near) * near) {
-    uint32_t range[9][2];
-    int ranges = sk_cells_ranges(cells, p, n->reach, range);
+/* Where the nine rows of cells around a particle are, a row a lane; see sk_cells_ranges(), which this is wide. */
+typedef struct SK_ISA(rows) {
+    sk_wide wall_y, wall_z, share_y, share_z; // the distance to the row, in cells, is wall + share * place in the cell
+    sk_mask step;                             // in the array of cells
+    sk_mask step_y, step_z;
+} SK_ISA(rows);
+
+SK_INLINE SK_ISA(rows) SK_ISA(rows_of)(const sk_cells *cells) {
+    SK_ISA(rows) rows;
+    for (int l = 0; l < SK_LANES; l++) {
+        int dy = l < 9 ? l % 3 - 1 : 0, dz = l < 9 ? l / 3 - 1 : 0;
+        rows.wall_y[l] = dy ? (real)(dy > 0) - cells->slack : 0;
+        rows.wall_z[l] = dz ? (real)(dz > 0) - cells->slack : 0;
+        rows.share_y[l] = (real)-dy, rows.share_z[l] = (real)-dz;
+        rows.step_y[l] = dy, rows.step_z[l] = dz;
+        rows.step[l] = (sk_lane_int)cells->count_x * (dy + (sk_lane_int)cells->count_y * dz);
+    }
+    return rows;
+}
+
+/* Sixteens of candidates: where each begins, and how many there are from there on. */
+enum { SK_ISA(SIXTEENS) = 48 };
+typedef struct SK_ISA(sixteens) {
+    uint32_t place[SK_ISA(SIXTEENS) + SK_LANES];
+    int32_t left[SK_ISA(SIXTEENS) + SK_LANES];
+    size_t count;
+} SK_ISA(sixteens);
+
+/* Lists the next sixteen of each range that is not used up; false when all are. Ranges take turns, so that rows of
+ * fewer than sixteen, the most of them, are listed without a branch each. */
+SK_INLINE bool SK_ISA(list)(int32_t begin[SK_LANES], int32_t left[SK_LANES], SK_ISA(sixteens) * list) {
+    size_t before = list->count;
+#if defined(SK_HAS_AVX512)
+    __m512i b = _mm512_loadu_si512(begin), l = _mm512_loadu_si512(left);
+    __mmask16 some = _mm512_cmpgt_epi32_mask(l, _mm512_setzero_si512());
+    _mm512_storeu_si512(list->place + before, _mm512_maskz_compress_epi32(some, b));
+    _mm512_storeu_si512(list->left + before, _mm512_maskz_compress_epi32(some, l));
+    _mm512_storeu_si512(begin, _mm512_add_epi32(b, _mm512_set1_epi32(SK_LANES)));
+    _mm512_storeu_si512(left, _mm512_sub_epi32(l, _mm512_set1_epi32(SK_LANES)));
+    list->count = before + (size_t)__builtin_popcount(some);
+#else
+    for (int r = 0; r < 9; r++) {
+        list->place[list->count] = (uint32_t)begin[r];
+        list->left[list->count] = left[r];
+        list->count += left[r] > 0;
+        begin[r] += SK_LANES, left[r] -= SK_LANES;
+    }
+#endif
+    return list->count != before;
+}
+
+/* The ranges of candidates of a particle at p: where each of nine rows begins, and how many are in it. */
+SK_INLINE void SK_ISA(find_ranges)(const sk_cells *cells, const SK_ISA(rows) * rows, sk_vec3 p, real reach,
+                                   int32_t begin[SK_LANES], int32_t count[SK_LANES]) {
+    real py = (p.y - cells->origin.y) * cells->per_yz, pz = (p.z - cells->origin.z) * cells->per_yz;
+    int32_t iy = sk_cells_place(p.y, cells->origin.y, cells->per_yz, cells->count_y);
+    int32_t iz = sk_cells_place(p.z, cells->origin.z, cells->per_yz, cells->count_z);
+    sk_wide my = rows->wall_y + rows->share_y * (py - (real)iy), mz = rows->wall_z + rows->share_z * (pz - (real)iz);
+    my = SK_ISA(sk_keep)(SK_ISA(sk_positive)(my), my) * cells->size;
+    mz = SK_ISA(sk_keep)(SK_ISA(sk_positive)(mz), mz) * cells->size;
+    sk_wide left = (reach * reach - mz * mz) - my * my;
+    sk_mask some = SK_ISA(sk_positive)(left);
+    sk_wide half = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_keep)(some, left)) * (real)1.00001;
+    sk_wide low = ((p.x - half) - cells->origin.x) * cells->per_x,
+            high = ((p.x + half) - cells->origin.x) * cells->per_x;
+    sk_wide last = SK_ISA(sk_splat)((real)(cells->count_x - 1));
+    low = SK_ISA(sk_keep)(SK_ISA(sk_positive)(low), low), high = SK_ISA(sk_keep)(SK_ISA(sk_positive)(high), high);
+    low = SK_ISA(sk_select)(SK_ISA(sk_more)(last, low), low, last);
+    high = SK_ISA(sk_select)(SK_ISA(sk_more)(last, high), high, last);
+    sk_mask base = rows->step + ((sk_lane_int)cells->count_x * (iy + (sk_lane_int)cells->count_y * iz));
+    sk_mask first = (base + __builtin_convertvector(low, sk_mask)) & some,
+            end = (base + __builtin_convertvector(high, sk_mask) + 1) & some;
+    uint32_t inside = 0;
+    for (int dz = -1; dz <= 1; dz++)
+        for (int dy = -1; dy <= 1; dy++)
+            inside |= (uint32_t)(iy + dy >= 0 && iy + dy < cells->count_y && iz + dz >= 0 && iz + dz < cells->count_z)
+                      << (4 + dy + 3 * dz);
+    for (int l = 9; l < SK_LANES; l++) begin[l] = count[l] = 0;
+    for (int l = 0; l < 9; l++) {
+        sk_lane_int from = inside >> l & 1 ? first[l] : 0, to = inside >> l & 1 ? end[l] : 0;
+        begin[l] = (int32_t)cells->start[from];
+        count[l] = (int32_t)cells->start[to] - begin[l];
+    }
+}
+
+/* Tests the listed candidates, and keeps those within reach. */
+SK_INLINE void SK_ISA(test)(const sk_cells *cells, const sk_flocking_numbers *n, sk_vec3 p, SK_ISA(sixteens) * sixteens,
+                            SK_ISA(near) * near, sk_wide3 *sum) {
     sk_wide square = SK_ISA(sk_splat)(n->reach * n->reach);
+    for (size_t k = 0; k < sixteens->count; k++) {
+        size_t place = sixteens->place[k];
+        sk_wide3 d = {SK_ISA(wide_at)(cells->x + place) - p.x, SK_ISA(wide_at)(cells->y + place) - p.y,
+                      SK_ISA(wide_at)(cells->z + place) - p.z};
+        uint32_t bits = SK_ISA(sk_more_bits)(square, SK_ISA(sk_dot_wide)(d, d));
+        bits &= sixteens->left[k] < SK_LANES ? (1u << sixteens->left[k]) - 1 : 0xffffu;
+        SK_ISA(keep_near)(near, cells, place, d, bits);
+        if (near->count >= SK_ISA(ROOM)) SK_ISA(work_out)(near, n, sum);
+    }
+    sixteens->count = 0;
+}
+
+/* The steering of one particle at p. */
+SK_INLINE sk_vec3 SK_ISA(steer)(const sk_cells *cells, const SK_ISA(rows) * rows, const sk_flocking_numbers *n,
+                                sk_vec3 p, SK_ISA(near) * near) {
+    int32_t begin[SK_LANES], left[SK_LANES];
+    SK_ISA(find_ranges)(cells, rows, p, n->reach, begin, left);
+    SK_ISA(sixteens) sixteens;
+    sixteens.count = 0;
     sk_wide3 sum = {{0}, {0}, {0}};
     near->count = 0;
-    for (int r = 0; r < ranges; r++)
-        for (uint32_t place = range[r][0]; place < range[r][1]; place += SK_LANES) {
-            sk_wide3 d = {SK_ISA(wide_at)(cells->x + place) - p.x, SK_ISA(wide_at)(cells->y + place) - p.y,
-                          SK_ISA(wide_at)(cells->z + place) - p.z};
-            uint32_t bits = SK_ISA(sk_more_bits)(square, SK_ISA(sk_dot_wide)(d, d)), left = range[r][1] - place;
-            if (left < SK_LANES) bits &= (1u << left) - 1;
-            if (!bits) continue;
-            SK_ISA(keep_near)(near, cells, place, d, bits);
-            if (near->count >= SK_ISA(ROOM)) SK_ISA(work_out)(near, n, &sum);
-        }
+    while (SK_ISA(list)(begin, left, &sixteens))
+        if (sixteens.count >= SK_ISA(SIXTEENS)) SK_ISA(test)(cells, n, p, &sixteens, near, &sum);
+    SK_ISA(test)(cells, n, p, &sixteens, near, &sum);
     // fill up with neighbours in the same place, which add nothing
     real *lists[] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
     for (int i = 0; i < 6; i++) memset(lists[i] + near->count, 0, SK_LANES * sizeof(real));
@@ -109,14 +206,20 @@ static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t 
     const sk_cells *cells = run->cells;
     bool among = force->moved.first == force->seen.first && force->moved.end == force->seen.end;
     real scale = (real)(row->dt * params->strength);
+    SK_ISA(rows) rows = SK_ISA(rows_of)(cells);
     SK_ISA(near) near;
     if (!cells->count) return; // nobody is near, or there is no memory for the cells
     if (among && end > cells->count) end = cells->count;
     for (size_t i = begin; i < end; i++) {
-        uint32_t slot = run->slot_of[among ? cells->particle[i] : i];
+        uint32_t slot = among ? cells->record[i].slot : run->slot_of[i];
+        // records are padded; their slots are anywhere in memory
+        if (among)
+            __builtin_prefetch(
+                &run->vector[row->dst][cells->record[i + SK_ISA(AHEAD) < end ? i + SK_ISA(AHEAD) : i].slot], 1);
         sk_vec3 p = among ? sk_v3(cells->x[i], cells->y[i], cells->z[i])
                           : sk_xyz(sk_load(run->vector[SK_X], row->packed, slot));
-        sk_add_at(run->vector[row->dst], row->packed, slot, sk_scale(scale, SK_ISA(steer)(cells, &numbers, p, &near)));
+        sk_add_at(run->vector[row->dst], row->packed, slot,
+                  sk_scale(scale, SK_ISA(steer)(cells, &rows, &numbers, p, &near)));
     }
 }
 
@@ -157,6 +260,7 @@ sk_flocking_numbers sk_flocking_numbers_of(const sk_flocking_params *params) {
     double away = params->separation / reach, along = (params->separation + params->alignment) / reach;
     return (sk_flocking_numbers){
         .reach = (real)reach,
+        .per_reach = (real)(1 / reach),
         .away = (real)away,
         .along = (real)along,
         .per_along = params->alignment > 0 ? (real)(1 / (along - away)) : 0,

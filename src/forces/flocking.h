@@ -26,6 +26,7 @@ typedef struct sk_flocking_params {
 
 typedef struct sk_flocking_numbers {
     real reach;       /* r, m; 0: there are no neighbours */
+    real per_reach;   /* 1/r */
     real away, along; /* thresholds of percent */
     real per_along;   /* 1/(along - away), 0 where that zone has no width */
     real per_towards; /* 1/(1 - along), likewise */

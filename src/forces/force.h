@@ -6,6 +6,7 @@
 #define SK_FORCES_FORCE_H
 
 #include "base/fields.h"
+#include "formula/parameters.h"
 #include "plan/row.h"
 #include "plan/shader.h"
 
@@ -22,8 +23,9 @@ typedef struct sk_force_type {
     skein_kind kind;
     sk_domain domain;
     sk_deed deed;
-    bool sets;        /* its kernel minds the row's `sets`: it can be the first to write F */
-    bool on_velocity; /* it depends on velocities */
+    bool sets;                                 /* its kernel minds the row's `sets`: it can be the first to write F */
+    bool on_velocity;                          /* it depends on velocities, */
+    bool (*uses_velocity)(const void *params); /* or does so with these parameters; NULL: what on_velocity says */
     sk_kernels kernel;
     /* Adds the force to the sum if it is plain with these parameters, else returns false; NULL: it never is. */
     bool (*plain)(const void *params, sk_plain_force *sum);
@@ -32,8 +34,16 @@ typedef struct sk_force_type {
     sk_kernels resistance;
     /* Neighbour rules: how far they reach, m; NULL else. */
     double (*radius)(const void *params);
+    /* The same where a force depends on place, over slots, with coefficients a and b: dst += (a k + b c) p for the
+     * direction p, its second source, where -k and -c, positive definite, are about how the force grows with the
+     * particle's own position and velocity; and that matrix's 3 x 3 blocks, xx yy zz into dst, xy xz yz into its second
+     * source. As constraints have them; NULL: none. */
+    sk_kernels apply, diagonal;
     /* The potential energy of a particle at x; NULL: it has none. */
-    double (*potential)(const void *params, const double x[3], double mass);
+    double (*potential)(const void *params, const double x[3], double mass, double time);
+    /* Whether a value had to be guarded (formula/graph.h): for the statistics; NULL: there is nothing to guard. */
+    bool (*guarded)(const void *params, const double x[3], const double v[3], double time);
+    const sk_making *making; /* what is made from its texts; NULL: nothing */
     /* What a rule that steers or bounds says about the parameters together, before a plan is written; NULL: nothing. */
     skein_status (*check)(const void *params, size_t particle_count, skein_error *error);
     /* The names of the body that it moves and of the one that it looks at: "" is every particle, and the same as it
@@ -66,7 +76,9 @@ typedef struct sk_force {
     sk_group moved, seen; /* found when a plan is written */
 } sk_force;
 
+bool sk_force_on_velocity(const sk_force *force);
+
 extern const sk_force_type sk_gravity, sk_wind, sk_surface_wind, sk_drag, sk_separation, sk_flocking, sk_attraction,
-    sk_predator, sk_speed_limit;
+    sk_predator, sk_speed_limit, sk_force_field, sk_potential;
 
 #endif

@@ -32,7 +32,8 @@ static bool plain(const void *params, sk_plain_force *sum) {
     return true;
 }
 
-static double potential(const void *data, const double x[3], double mass) {
+static double potential(const void *data, const double x[3], double mass, double time) {
+    (void)time;
     const double *g = ((const gravity_params *)data)->acceleration;
     return -mass * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
 }

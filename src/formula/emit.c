@@ -208,9 +208,10 @@ static void put_graph(sk_writer *w, const sk_node *outputs, size_t count) {
         sk_put(w, "%s%s\n", n->name[0] ? "    // " : "", n->name);
     }
     for (int k = 0; k < f->size; k++) {
-        sk_put(w, "value%s%.1s = #%u\n", f->size == 3 ? "." : "", f->size == 3 ? &"xyz"[k] : "", f->value[k]);
+        if (f->size == 3) sk_put(w, "value.%c = #%u\n", 'x' + k, f->value[k]);
+        else sk_put(w, "value = #%u\n", f->value[k]);
         for (int i = 0; i < 3 * f->particles; i++)
-            sk_put(w, "d/dp%d.%c = #%u\n", i / 3, "xyz"[i % 3], f -> by_position[k][i]);
+            sk_put(w, "d/dp%d.%c = #%u\n", i / 3, 'x' + i % 3, f->by_position[k][i]);
     }
 }
 

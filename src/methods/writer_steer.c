@@ -1,13 +1,14 @@
 /* Rows of rules that steer: what adds to velocities once a substep, whatever the method.
  *
  *   S = 0                       what the rules ask for; in w, how much more speed is allowed
- *   grid, grid, grid, grid      who is near whom, for each rule that looks at neighbours: it sorts its own particles
+ *   grid (five rows)            who is near whom, for each rule that looks at neighbours: it sorts its own particles
  *   S += neighbours, then all other rules that steer, in the order of their making: all look at the same X and V
  *   V += S
  *   V bounded                   speed limits and the like
  *
  * Methods that kick and then drift call this between the two, others before all else in a substep. */
 #include "methods/writer.h"
+#include "plan/sort.h"
 
 static bool is_on(const sk_force *force, sk_deed deed) {
     return *force->enabled && force->type->deed == deed;
@@ -23,52 +24,19 @@ bool sk_writes_steering(const sk_rules *rules) {
     return has(rules, SK_STEERS) || has(rules, SK_BOUNDS);
 }
 
-/* ---- the cells, in four rows ---- */
-
-static sk_state state_of(const sk_run *run, const sk_row *row) {
-    return (sk_state){run->vector[SK_X], run->vector[SK_V], row->packed, run->slot_of};
-}
-
-static void frame_cells(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    sk_state state = state_of(run, row);
-    if (!sk_cells_frame(run->cells, run->allocator, &state, begin, end, (real)row->coefficient[0]))
-        run->no_memory = true;
-}
-
-static void find_cells(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    sk_state state = state_of(run, row);
-    if (!run->no_memory) sk_cells_find(run->cells, &state, begin, end);
-}
-
-static void rank_cells(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    (void)row, (void)begin, (void)end;
-    if (!run->no_memory) sk_cells_rank(run->cells);
-}
-
-static void copy_cells(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    sk_state state = state_of(run, row);
-    if (!run->no_memory) sk_cells_copy(run->cells, &state, begin, end);
-}
-
 static void write_cells(sk_writer *writer, const sk_group *group, double radius) {
-    static const struct {
-        sk_row_kernel *kernel;
-        sk_order order;
-        const char *label;
-    } parts[] = {{frame_cells, SK_ORDERED, "frame of cells"},
-                 {find_cells, SK_FREE, "cell of each"},
-                 {rank_cells, SK_ORDERED, "place of each"},
-                 {copy_cells, SK_FREE, "copies by place"}};
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+    for (int i = 0; i < SK_SORT_ROWS; i++) {
+        const sk_sort_row *part = &sk_sort_rows[i];
         sk_add_row(writer, (sk_row){.kind = SK_ROW_GRID,
-                                    .order = parts[i].order,
-                                    .kernel = parts[i].kernel,
-                                    .source = {SK_X, i == 3 ? SK_V : SK_NONE},
+                                    .order = part->order,
+                                    .kernel = part->kernels.version[writer->isa],
+                                    .source = {SK_X, SK_V},
                                     .coefficient = {radius},
-                                    .label = parts[i].label,
+                                    .label = part->label,
                                     .by_particle = true,
-                                    .begin = group->first,
-                                    .end = group->end});
+                                    .begin = part->by_place ? 0 : group->first,
+                                    .end = part->by_place ? group->end - group->first : group->end});
+    }
 }
 
 /* ---- the rules ---- */

@@ -117,6 +117,7 @@ struct sk_row {
     sk_vector dst, source[3];
     double coefficient[3];
     double dt;         /* of the substep, s */
+    double before;     /* how long before the end of the substep the state is that it looks at, s */
     const void *rule;  /* a force, a collider, a batch */
     const char *label; /* its name in `skein explain` */
     size_t begin, end; /* elements; a repeat: the number of turns is `end` */

@@ -63,7 +63,8 @@ bool sk_cells_frame(sk_cells *cells, sk_allocator *allocator, const sk_state *st
             return false;
     return sk_reserve(allocator, (void **)&cells->start, &cells->start_capacity, cell_count(cells) + 2,
                       sizeof(uint32_t)) &&
-           sk_reserve(allocator, (void **)&cells->particle, &cells->particle_capacity, count, sizeof(uint32_t)) &&
+           sk_reserve(allocator, (void **)&cells->record, &cells->record_capacity, count + PADDING,
+                      sizeof *cells->record) &&
            sk_reserve(allocator, (void **)&cells->place, &cells->place_capacity, count, sizeof(uint32_t));
 }
 
@@ -91,16 +92,14 @@ void sk_cells_rank(sk_cells *cells) {
     cells->count = start[count];
 }
 
-void sk_cells_copy(sk_cells *cells, const sk_state *state, size_t begin, size_t end) {
+void sk_cells_scatter(sk_cells *cells, const sk_state *state, size_t begin, size_t end) {
     for (size_t i = begin; i < end; i++) {
         size_t place = cells->place[i - cells->first];
         if (place == SK_NOWHERE) continue;
-        sk_vec4 p = sk_load(state->x, state->packed, state->slot_of[i]);
-        sk_vec4 v = sk_load(state->v, state->packed, state->slot_of[i]);
-        real speed = sk_length(sk_xyz(v)), s = speed > 0 && speed <= SK_REAL_MAX ? 1 / speed : 0;
-        cells->particle[place] = (uint32_t)i;
-        cells->x[place] = p.x, cells->y[place] = p.y, cells->z[place] = p.z;
-        cells->ux[place] = s * v.x, cells->uy[place] = s * v.y, cells->uz[place] = s * v.z;
+        uint32_t slot = state->slot_of[i];
+        sk_vec4 p = sk_load(state->x, state->packed, slot), v = sk_load(state->v, state->packed, slot);
+        cells->record[place] = (sk_cell_record){
+            .x = p.x, .y = p.y, .z = p.z, .slot = slot, .vx = v.x, .vy = v.y, .vz = v.z, .particle = (uint32_t)i};
     }
 }
 
@@ -108,7 +107,7 @@ void sk_cells_release(sk_cells *cells, sk_allocator *allocator) {
     real *copies[6] = {cells->x, cells->y, cells->z, cells->ux, cells->uy, cells->uz};
     for (int k = 0; k < 6; k++) sk_release(allocator, copies[k]);
     sk_release(allocator, cells->start);
-    sk_release(allocator, cells->particle);
+    sk_release(allocator, cells->record);
     sk_release(allocator, cells->place);
     memset(cells, 0, sizeof *cells);
 }

@@ -7,12 +7,12 @@
  *     z x+---+---+---+---+---+---+
  *
  *   start:          [0 . . 2 . 5 . . .]     particles of cell c are at places start[c] .. start[c + 1]
- *   x, y, z:        [ . . | . . . | ...]    by place: positions
- *   ux, uy, uz:     [ . . | . . . | ...]    unit velocities (0 for one that stands still)
- *   particle:       [3 7 | 1 4 9 | ...]     the user's indices
+ *   record:         [3 7 | 1 4 9 | ...]     by place: the whole of a particle, in one piece, for it is put there at
+ * random x, y, z:        [ . . | . . . | ...]    by place: positions ux, uy, uz:     [ . . | . . . | ...]    unit
+ * velocities (0 for one that stands still)
  *
- * A counting sort in four parts, of which two may be cut over threads. Within a cell particles stand in the user's
- * order, so that sums over neighbours come out the same. Owned by the world, filled by rows of the plan. */
+ * A counting sort; see plan/sort.h for its rows. Within a cell particles stand in the user's order, so that sums over
+ * neighbours come out the same. Owned by the world, filled by rows of the plan. */
 #ifndef SK_SPACE_CELLS_H
 #define SK_SPACE_CELLS_H
 
@@ -21,6 +21,20 @@
 #include "base/vector.h"
 
 enum { SK_CELLS_ACROSS = 4 }; /* cells along x in the width of one along y */
+
+/* A particle at its place. */
+typedef struct sk_cell_record {
+    real x, y, z;
+    union {
+        real w;
+        uint32_t slot;
+    };
+    real vx, vy, vz;
+    union {
+        real vw;
+        uint32_t particle; /* the user's index */
+    };
+} sk_cell_record;
 
 typedef struct sk_cells {
     sk_vec3 origin;
@@ -31,9 +45,9 @@ typedef struct sk_cells {
     int32_t count_x, count_y, count_z;
     uint32_t *start; /* cells + 1, and one more while sorting */
     real *x, *y, *z, *ux, *uy, *uz;
-    uint32_t *particle;
+    sk_cell_record *record;
     uint32_t *place; /* by the user's index from `first` on: the cell, then the place; SK_NOWHERE if not finite */
-    size_t start_capacity, copy_capacity[6], particle_capacity, place_capacity;
+    size_t start_capacity, copy_capacity[6], record_capacity, place_capacity;
     size_t first, end; /* the user's indices that are sorted */
     size_t count;      /* of them in cells */
 } sk_cells;
@@ -56,8 +70,8 @@ bool sk_cells_frame(sk_cells *cells, sk_allocator *allocator, const sk_state *st
 void sk_cells_find(sk_cells *cells, const sk_state *state, size_t begin, size_t end);
 /* Gives each of them its place in the order of cells. */
 void sk_cells_rank(sk_cells *cells);
-/* Copies [begin, end) to their places; any cut will do. */
-void sk_cells_copy(sk_cells *cells, const sk_state *state, size_t begin, size_t end);
+/* Writes the records of [begin, end) to their places; any cut will do. */
+void sk_cells_scatter(sk_cells *cells, const sk_state *state, size_t begin, size_t end);
 void sk_cells_release(sk_cells *cells, sk_allocator *allocator);
 
 /* A coordinate in cells, clamped into [0, count). It never falls where the coordinate grows. */

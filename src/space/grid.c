@@ -45,7 +45,8 @@ bool sk_grid_build(sk_grid *grid, sk_allocator *allocator, const sk_vec4 *positi
     grid->cells_z = (int32_t)((double)extent.z / size) + 1;
     size_t cells = (size_t)grid->cells_x * (size_t)grid->cells_y * (size_t)grid->cells_z;
 
-    if (!sk_reserve(allocator, (void **)&grid->cell_start, &grid->cell_start_capacity, 4 * count + 66, sizeof(uint32_t)) ||
+    if (!sk_reserve(allocator, (void **)&grid->cell_start, &grid->cell_start_capacity, 4 * count + 66,
+                    sizeof(uint32_t)) ||
         !sk_reserve(allocator, (void **)&grid->slot, &grid->slot_capacity, count, sizeof(uint32_t)) ||
         !sk_reserve(allocator, (void **)&grid->position, &grid->position_capacity, count, sizeof(sk_vec4)) ||
         !sk_reserve(allocator, (void **)&grid->cell_of, &grid->cell_of_capacity, count, sizeof(uint32_t)))

@@ -43,6 +43,16 @@ static void add_contact(void *user, size_t particle, sk_vec3 normal, double gap)
         (uint32_t)particle, list->collider, {(double)normal.x, (double)normal.y, (double)normal.z}, gap};
 }
 
+skein_status skein_collider_probe(const skein_world *world, skein_handle handle, size_t count, const double *points,
+                                  double *distances, double *normals) {
+    const sk_object *object = sk_object_of(world, handle);
+    if (!object || object->category != SKEIN_COLLIDER)
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_HANDLE, "",
+                       "there is no such collider: its handle is stale, or of another category");
+    sk_collider_probe_points(object->as.collider, world->time, world->isa, count, points, distances, normals);
+    return SKEIN_OK;
+}
+
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count) {
     const sk_particles *all = &world->particles;
     skein_status status = sk_world_fetch(world);

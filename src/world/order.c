@@ -19,22 +19,30 @@ static bool sort_cells(search *s, sk_allocator *allocator, double radius) {
     if (!sk_cells_frame(&s->cells, allocator, &s->state, s->first, s->end, (real)radius)) return false;
     sk_cells_find(&s->cells, &s->state, s->first, s->end);
     sk_cells_rank(&s->cells);
-    sk_cells_copy(&s->cells, &s->state, s->first, s->end);
+    sk_cells_scatter(&s->cells, &s->state, s->first, s->end);
     return true;
+}
+
+static sk_vec3 place_of(const sk_cell_record *record) {
+    return sk_v3(record->x, record->y, record->z);
+}
+
+static double square_between(const sk_cell_record *a, const sk_cell_record *b) {
+    double dx = (double)a->x - (double)b->x, dy = (double)a->y - (double)b->y, dz = (double)a->z - (double)b->z;
+    return dx * dx + dy * dy + dz * dz;
 }
 
 /* ---- the nearest ---- */
 
 /* The square of the distance from the particle at a place to its nearest one within the radius; negative: none. */
 static double nearest_within(const search *s, size_t place, double radius) {
-    const sk_cells *c = &s->cells;
+    const sk_cell_record *record = s->cells.record;
     uint32_t range[9][2];
     double best = -1;
-    int ranges = sk_cells_ranges(c, sk_v3(c->x[place], c->y[place], c->z[place]), (real)radius, range);
+    int ranges = sk_cells_ranges(&s->cells, place_of(&record[place]), (real)radius, range);
     for (int r = 0; r < ranges; r++)
         for (uint32_t k = range[r][0]; k < range[r][1]; k++) {
-            double dx = (double)c->x[k] - (double)c->x[place], dy = (double)c->y[k] - (double)c->y[place],
-                   dz = (double)c->z[k] - (double)c->z[place], square = dx * dx + dy * dy + dz * dz;
+            double square = square_between(&record[k], &record[place]);
             if (k != place && square < radius * radius && (best < 0 || square < best)) best = square;
         }
     return best;
@@ -49,7 +57,7 @@ static bool measure_nearest(search *s, sk_allocator *allocator, double extent, s
     for (; waiting && radius < 2 * widest; radius *= 2) {
         if (!sort_cells(s, allocator, radius)) return false;
         for (size_t place = 0; place < s->cells.count; place++) {
-            double *square = &s->square[s->cells.particle[place] - s->first];
+            double *square = &s->square[s->cells.record[place].particle - s->first];
             if (*square >= 0) continue;
             *square = nearest_within(s, place, radius);
             waiting -= *square >= 0;
@@ -81,12 +89,10 @@ static bool count_groups(search *s, sk_allocator *allocator, double distance, sk
     for (uint32_t i = 0; i < c->count; i++) s->parent[i] = i;
     for (uint32_t i = 0; i < c->count; i++) {
         uint32_t range[9][2];
-        int ranges = sk_cells_ranges(c, sk_v3(c->x[i], c->y[i], c->z[i]), (real)distance, range);
+        int ranges = sk_cells_ranges(c, place_of(&c->record[i]), (real)distance, range);
         for (int r = 0; r < ranges; r++)
             for (uint32_t k = range[r][0]; k < range[r][1]; k++) {
-                double dx = (double)c->x[k] - (double)c->x[i], dy = (double)c->y[k] - (double)c->y[i],
-                       dz = (double)c->z[k] - (double)c->z[i];
-                if (k <= i || !(dx * dx + dy * dy + dz * dz < distance * distance)) continue;
+                if (k <= i || !(square_between(&c->record[i], &c->record[k]) < distance * distance)) continue;
                 uint32_t a = root_of(s->parent, i), b = root_of(s->parent, k);
                 if (a == b) continue;
                 s->parent[a > b ? a : b] = a > b ? b : a;

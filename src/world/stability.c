@@ -82,7 +82,7 @@ static void add_mode(finder *f, skein_stability *s) {
 /* Whether forces of the air, and constraints along themselves, take energy. */
 static void look_for_damping(const sk_rules *rules, bool *air, bool *along) {
     for (size_t i = 0; i < rules->forces.count; i++)
-        *air |= *rules->forces.data[i]->enabled && rules->forces.data[i]->type->on_velocity;
+        *air |= *rules->forces.data[i]->enabled && sk_force_on_velocity(rules->forces.data[i]);
     for (size_t i = 0; i < rules->batches.count; i++)
         *along |= *rules->batches.data[i]->enabled && sk_batch_damping_time(rules->batches.data[i]) > 0;
 }

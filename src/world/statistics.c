@@ -27,6 +27,18 @@ static bool is_finite(sk_vec4 p) {
     return sk_abs(p.x) <= SK_REAL_MAX && sk_abs(p.y) <= SK_REAL_MAX && sk_abs(p.z) <= SK_REAL_MAX;
 }
 
+/* Free particles at which formulas of forces had to be guarded. */
+static size_t count_guarded(const skein_world *world, const sk_force *force) {
+    const sk_particles *all = &world->particles;
+    size_t guarded = 0;
+    for (size_t i = 0; i < all->count && *force->enabled && force->type->guarded; i++) {
+        sk_vec4 x = all->vector[SK_X][all->slot_of[i]], v = all->vector[SK_V][all->slot_of[i]];
+        const double p[3] = {(double)x.x, (double)x.y, (double)x.z}, u[3] = {(double)v.x, (double)v.y, (double)v.z};
+        if (x.w > 0) guarded += force->type->guarded(force->params, p, u, world->time);
+    }
+    return guarded;
+}
+
 static void count_particles(const skein_world *world, skein_statistics *s) {
     const sk_particles *all = &world->particles;
     for (size_t i = 0; i < all->count; i++) {
@@ -95,7 +107,11 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
         if (!collider->common->enabled) continue;
         sk_collider_measure(collider, world->time, all->vector[SK_X], all->slot_of, all->count,
                             &statistics->max_penetration, &statistics->contacts);
+        statistics->guarded +=
+            sk_collider_count_guarded(collider, world->time, all->vector[SK_X], all->slot_of, all->count);
     }
+    for (size_t i = 0; i < world->rules.forces.count; i++)
+        statistics->guarded += count_guarded(world, world->rules.forces.data[i]);
     status = measure_stretch(world, statistics, error);
     statistics->state_hash = skein_world_hash(world);
     return status;

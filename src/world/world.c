@@ -50,18 +50,10 @@ static void release_body(skein_world *world, sk_body *body) {
     sk_release(allocator, body);
 }
 
-/* Releases an object's parameters and itself; its rules are released with the world's lists. */
+/* An object's rules are released with the world's lists. */
 static void release_object(skein_world *world, sk_object *object) {
-    sk_allocator *allocator = &world->allocator;
-    size_t common_count;
-    const skein_field *common = sk_common_fields(object->category, &common_count);
-    if (object->kind) {
-        sk_fields_clear(allocator, object->kind->fields, object->kind->field_count, object->params);
-        sk_fields_clear(allocator, common, common_count, sk_common_of(object));
-    }
-    sk_release(allocator, object->params);
     if (object->category == SKEIN_BODY && object->as.body) release_body(world, object->as.body);
-    sk_release(allocator, object);
+    sk_object_release(&world->allocator, object);
 }
 
 void skein_world_destroy(skein_world *world) {
@@ -149,7 +141,7 @@ skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk
     if (!SK_RESERVE(allocator, &world->rules.batches, world->rules.batches.count + 1))
         return sk_fail_memory(error, label);
     sk_material *own = sk_allocate(allocator, sizeof *own);
-    sk_batch *batch = own ? sk_batch_create(allocator, type, count, particles, rest, scale) : NULL;
+    sk_batch *batch = own ? sk_batch_create(allocator, type, own, count, particles, rest, scale) : NULL;
     if (!batch) {
         sk_release(allocator, own);
         return sk_fail_memory(error, label);

@@ -10,6 +10,7 @@
 
 #include "base/status.h"
 #include "base/tasks.h"
+#include "formula/parameters.h"
 #include "methods/method.h"
 #include "particles/particles.h"
 #include "plan/solve.h"
@@ -55,7 +56,9 @@ typedef struct sk_object {
     uint32_t generation; /* odd while it lives */
     skein_category category;
     const skein_kind *kind;
-    void *params; /* the kind's fields */
+    skein_kind *own_kind;    /* what `kind` is where it takes parameters, else NULL */
+    const sk_making *making; /* what its type makes from its parameters; NULL: nothing */
+    void *params;            /* the kind's fields */
     union {
         sk_common plain;
         sk_collider_common collider;
@@ -122,6 +125,8 @@ skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, con
                                const skein_setting *settings, skein_handle *handle);
 skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_type *type, const uint32_t *particles,
                                      size_t count, const skein_setting *settings, skein_handle *handle);
+skein_status sk_world_find_arity(skein_world *world, const sk_constraint_type *type, const skein_setting *settings,
+                                 size_t *arity);
 skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, const skein_setting *settings,
                                 skein_handle *handle);
 skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *type, const skein_setting *settings,
@@ -156,6 +161,8 @@ void sk_world_log(skein_world *world, skein_log_level level, const char *format,
 /* ---- between the world's own files ---- */
 
 sk_object *sk_object_of(const skein_world *world, skein_handle handle);
+/* Releases an object's parameters and itself. */
+void sk_object_release(sk_allocator *allocator, sk_object *object);
 /* Fields that objects of a category share, and where they are stored. */
 const skein_field *sk_common_fields(skein_category category, size_t *count);
 void *sk_common_of(sk_object *object);
