@@ -34,8 +34,8 @@ static bool fill(skein_world *world, const bench_case *c, const char *on) {
                                                 SKEIN_VEC3("spread", side, side, side), SKEIN_REAL("speed", 5));
     const skein_setting *scout = SKEIN_SETTINGS(SKEIN_TEXT("name", "scout"), SKEIN_REAL("count", 1));
     const skein_setting *flocking = SKEIN_SETTINGS(
-        SKEIN_REAL("separation", reach * 0.45), SKEIN_REAL("alignment", reach * 0.2), SKEIN_REAL("cohesion", reach * 0.35),
-        SKEIN_TEXT("on", on), SKEIN_TEXT("minds", on[0] ? "birds" : ""));
+        SKEIN_REAL("separation", reach * 0.45), SKEIN_REAL("alignment", reach * 0.2),
+        SKEIN_REAL("cohesion", reach * 0.35), SKEIN_TEXT("on", on), SKEIN_TEXT("minds", on[0] ? "birds" : ""));
     return !failed(world, skein_method_set(world, "symplectic_euler", SKEIN_SETTINGS(SKEIN_REAL("substeps", 1)))) &&
            !failed(world, skein_body_add(world, "flock", NULL, birds, NULL)) &&
            (!on[0] || !failed(world, skein_body_add(world, "flock", NULL, scout, NULL))) &&
@@ -50,7 +50,8 @@ static double time_steps(skein_world *world, const bench_setup *setup) {
     skein_world_wait(world);
     double start = app_seconds(), seconds = 0;
     int steps = 0;
-    for (; (steps < setup->least_steps || seconds < setup->seconds) && !app_interrupted(); seconds = app_seconds() - start) {
+    for (; (steps < setup->least_steps || seconds < setup->seconds) && !app_interrupted();
+         seconds = app_seconds() - start) {
         if (failed(world, skein_world_step(world, dt))) return -1;
         steps++;
         if (steps % 8 == 0 || steps >= setup->least_steps) skein_world_wait(world);
@@ -127,7 +128,8 @@ static bool measure(const bench_setup *setup, const bench_case *c) {
     return true;
 }
 
-static bool number_of(const app_option *options, size_t count, const char *name, double least, double most, double *out) {
+static bool number_of(const app_option *options, size_t count, const char *name, double least, double most,
+                      double *out) {
     const char *given = app_value(options, count, name);
     char *end;
     if (!given) return true;
@@ -141,8 +143,8 @@ static bool number_of(const app_option *options, size_t count, const char *name,
 static int print_table(const bench_setup *setup, double least, double most, int after) {
     static const double densities[] = {7, 30, 120};
     bool gpu = !strcmp(setup->device, "gpu");
-    printf("%10s %6s %10s %10s %10s %10s %9s%s\n", "birds", "after", "neighbours", "ms a step", "million/s", "ns a pair",
-           "sorting", gpu ? "  B a bird" : "");
+    printf("%10s %6s %10s %10s %10s %10s %9s%s\n", "birds", "after", "neighbours", "ms a step", "million/s",
+           "ns a pair", "sorting", gpu ? "  B a bird" : "");
     app_catch_interrupts();
     for (double birds = least; birds <= most; birds *= 4) {
         for (size_t d = 0; d < sizeof densities / sizeof *densities && !app_interrupted(); d++)
@@ -172,8 +174,7 @@ static int bench(int argc, char **argv) {
         status = EXIT_FAULT;
         const char *device = app_value(options, COUNT, "--device");
         if (device) setup.device = device;
-        if (strcmp(what, "flock"))
-            fprintf(stderr, "skein bench: there is no benchmark '%s': there is flock\n", what);
+        if (strcmp(what, "flock")) fprintf(stderr, "skein bench: there is no benchmark '%s': there is flock\n", what);
         else if (strcmp(setup.device, "cpu") && strcmp(setup.device, "gpu"))
             fprintf(stderr, "skein bench: --device %s: expected cpu or gpu\n", setup.device);
         else if (number_of(options, COUNT, "--threads", 1, 64, &threads) &&

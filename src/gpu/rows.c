@@ -149,7 +149,7 @@ void sk_gpu_row_pack(const sk_row *row, double time, float (*block)[4]) {
     const sk_shader *shader = shader_of(row);
     if (is_contact(row)) {
         const sk_collider *collider = row->rule;
-        pack_pose(collider, time, block);
+        pack_pose(collider, time - row->before, block);
         if (shader->pack) shader->pack(collider->params, block + SK_GPU_POSE);
     } else if (shader) {
         if (shader->pack) shader->pack(((const sk_force *)row->rule)->params, block);
