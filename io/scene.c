@@ -34,6 +34,16 @@ static const skein_field scene_fields[] = {
     FIELD(step, "step", SKEIN_FIELD_REAL, "s", 1.0 / 60, 1e-9, 1e3, NULL,
           "the longest step; a frame is cut into as many equal steps as it takes"),
     FIELD(threads, "threads", SKEIN_FIELD_INT, "", 1, 1, 64, NULL, "threads to run on; the result is the same"),
+    {"advance",
+     SKEIN_FIELD_CHOICE,
+     offsetof(io_scene_settings, advance),
+     "",
+     {0, 0, 0},
+     0,
+     0,
+     "time|key",
+     NULL,
+     "in a window: by itself, as time goes on; or one step at a press of Enter, or of any key without another meaning"},
 };
 
 static const io_scene_section sections[] = {

@@ -54,9 +54,11 @@ bool render_add_birds(render_world_birds *all, const skein_world *world, const r
         birds->velocity_buffer = device.velocity_buffer;
         birds->slots = device.slot_of + surface->first_particle;
     } else {
-        skein_view x = skein_position_view(world), v = skein_velocity_view(world);
+        skein_view v = skein_velocity_view(world);
         float *numbers = all->numbers + all->number_count;
-        copy(&x, surface, numbers);
+        for (size_t i = 0; i < birds->count; i++)
+            for (size_t k = 0; k < 3; k++)
+                numbers[4 * i + k] = (float)state->positions[3 * (surface->first_particle + i) + k];
         copy(&v, surface, numbers + 4 * birds->count);
         all->number_count += 8 * birds->count;
     }

@@ -30,6 +30,7 @@ struct render_world_frame {
     render_frame frame;
     render_view view; /* of the last update; its texts are not ours */
     double time;      /* of the last update */
+    double blend;     /* between the last two steps */
     render_world_state state;
     render_world_lines lines;
     render_world_points points;
@@ -67,6 +68,7 @@ render_world_frame *render_world_frame_create(skein_error *error) {
     }
     made->frame = render_default_frame();
     made->held = render_bounds_nothing();
+    made->blend = 1;
     return made;
 }
 
@@ -379,7 +381,8 @@ skein_status render_world_frame_update(render_world_frame *made, skein_world *wo
     take_look(made);
     skein_status status = take_image(made, error);
     made->unread = needs_no_numbers(made, world);
-    if (status == SKEIN_OK && !made->unread) status = render_world_state_read(&made->state, world, &made->view, error);
+    if (status == SKEIN_OK && !made->unread)
+        status = render_world_state_read(&made->state, world, &made->view, made->blend, error);
     if (status == SKEIN_OK) status = take_bodies(made, world, error);
     if (status == SKEIN_OK) status = render_take_colliders(&made->solids, world, &made->view, error);
     render_world_solids_show(&made->solids, &made->frame);
@@ -392,6 +395,10 @@ skein_status render_world_frame_update(render_world_frame *made, skein_world *wo
 
 double render_world_frame_range(const render_world_frame *made) {
     return made->state.range > 0 ? made->state.range : made->state.spring_range;
+}
+
+void render_world_frame_blend(render_world_frame *made, double blend) {
+    made->blend = blend;
 }
 
 void render_world_frame_settle(render_world_frame *made) {

@@ -230,7 +230,9 @@ skein_status skein_remove(skein_world *world, skein_handle handle);
  * is refused with SKEIN_ERROR_VALUE. A text that is returned lives until the field changes. */
 skein_status skein_set(skein_world *world, skein_handle handle, const char *field, skein_value value);
 skein_status skein_get(const skein_world *world, skein_handle handle, const char *field, skein_value *value);
-/* The same by path: "bodies.0.stretch.stiffness", "colliders.ball.radius" (a name), "method.substeps".
+/* Whether the field of an object can be set now: it exists, and shapes nothing that is already built. */
+bool skein_field_is_live(const skein_world *world, skein_handle handle, const char *field);
+/* Set and get by path: "bodies.0.stretch.stiffness", "colliders.ball.radius" (a name), "method.substeps".
  * Numbers count objects of the category in the order of their making. */
 skein_status skein_set_path(skein_world *world, const char *path, skein_value value);
 skein_status skein_get_path(const skein_world *world, const char *path, skein_value *value);
@@ -266,6 +268,9 @@ skein_status skein_world_step(skein_world *world, double dt);
 /* Positions as they were built; velocities, forces, time and counters zero. */
 skein_status skein_world_reset(skein_world *world);
 double skein_world_time(const skein_world *world); /* seconds of simulated time */
+/* Sets the clock alone: what moves by it (colliders) is elsewhere then. With positions and velocities that were copied
+ * before, it takes a world back to where it was. Finite, at least 0. */
+skein_status skein_world_time_set(skein_world *world, double seconds);
 
 /* A fixed step for a loop with uneven frames: time goes in, whole steps come out, the rest is kept.
  * Feed it frame times only, never the time spent loading. */
@@ -385,6 +390,32 @@ skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, s
  * (negative inside; far away, formulas may say 1e15), and the unit normals out of the solid. Either may be NULL. */
 skein_status skein_collider_probe(const skein_world *world, skein_handle collider, size_t count, const double *points,
                                   double *distances, double *normals);
+/* ---- What is where: for picking with a mouse, and for sensors ------------------------------------- */
+
+/* What a ray meets first. */
+typedef struct skein_hit {
+    double distance;     /* m along the ray; infinity where it meets nothing, and then nothing else holds */
+    double point[3];     /* where */
+    double normal[3];    /* unit: a collider's, out of the solid; a face's, towards the ray's origin */
+    skein_handle object; /* a body or a collider */
+    size_t face;         /* of a body: which, as it came */
+    uint32_t particle;   /* of a body: that corner of the face which is nearest to the point */
+} skein_hit;
+
+/* Casts a ray at the surfaces of bodies (SKEIN_BODY) or at colliders (SKEIN_COLLIDER), without their thickness. The
+ * direction may have any length but 0. From inside a solid the ray goes on until it comes out and meets another wall,
+ * so that one looks into a bowl from outside. Objects that are not `visible`, and colliders that are not `enabled`, are
+ * passed over. Costs a look at every face, or some probes of every collider. */
+skein_status skein_ray_cast(const skein_world *world, const double origin[3], const double direction[3],
+                            skein_category category, skein_hit *hit);
+/* The particle that is nearest to a point; `distance` (or NULL) receives how far. Fails where there are none. */
+skein_status skein_particle_near_point(const skein_world *world, const double point[3], uint32_t *particle,
+                                       double *distance);
+/* Of the particles within `radius` + `slope` t of a ray, t metres along it, the one nearest to it by that measure; for
+ * particles that are drawn as balls of that radius, and a pointer that is a few pixels wide. `distance` receives t,
+ * infinity where there is none. */
+skein_status skein_particle_near_ray(const skein_world *world, const double origin[3], const double direction[3],
+                                     double radius, double slope, uint32_t *particle, double *distance);
 
 /* ---- Measures ---------------------------------------------------------------------------------- */
 

@@ -113,6 +113,11 @@ void sk_collider_visit(const sk_collider *collider, double time, const sk_vec4 *
                        size_t particle_count,
                        void (*visit)(void *user, size_t particle, sk_vec3 normal, double distance), void *user);
 
+/* Where a ray (`along` is of length 1) first comes from outside to the surface, in metres, and the unit normal there;
+ * infinity where it does not within `most` metres. */
+double sk_collider_cast(const sk_collider *collider, double time, const double origin[3], const double along[3],
+                        double most, double normal[3]);
+
 extern const sk_collider_type sk_plane, sk_sphere, sk_bowl, sk_capsule, sk_box, sk_formula_surface;
 
 #endif

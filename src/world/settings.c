@@ -129,15 +129,27 @@ static skein_status replace(skein_world *world, sk_object *object, const skein_f
     return status;
 }
 
+/* What shaped a body that stands cannot change any more. */
+static bool shapes(const sk_object *object, const void *params, const char *name) {
+    bool body = object && object->category == SKEIN_BODY && params == object->params;
+    return body && !object->body_type->live(name);
+}
+
+bool skein_field_is_live(const skein_world *world, skein_handle handle, const char *name) {
+    sk_object *object;
+    void *params;
+    skein_error ignored;
+    return locate(world, handle, name, &params, &object, &ignored) && !shapes(object, params, name);
+}
+
 skein_status skein_set(skein_world *world, skein_handle handle, const char *name, skein_value value) {
     skein_error *error = sk_world_error(world);
     sk_object *object;
     void *params;
     const skein_field *field = locate(world, handle, name, &params, &object, error);
     if (!field) return error->status;
-    // what shaped a body that stands cannot change any more
     const sk_body_type *body = object && object->category == SKEIN_BODY ? object->body_type : NULL;
-    if (body && params == object->params && !body->live(name))
+    if (shapes(object, params, name))
         return sk_fail(error, SKEIN_ERROR_VALUE, name, "%s shapes what is already built: set it when the body is added",
                        name);
     skein_status status = replace(world, object, field, params, value, error);

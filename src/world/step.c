@@ -187,6 +187,14 @@ double skein_world_time(const skein_world *world) {
     return world->time;
 }
 
+skein_status skein_world_time_set(skein_world *world, double seconds) {
+    if (!(seconds >= 0) || !(seconds <= SK_FAR))
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "seconds", "a time of %g s: expected 0 or more",
+                       seconds);
+    world->time = seconds;
+    return SKEIN_OK;
+}
+
 skein_status skein_world_explain(skein_world *world, double dt, void (*write)(void *user, const char *line),
                                  void *user) {
     skein_status status = sk_world_compile(world, dt, sk_world_error(world));
