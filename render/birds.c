@@ -93,12 +93,17 @@ static void reserve(render_flight *flight, size_t count) {
     flight->posture_count = 0;
 }
 
+/* What the list of slots is to the shaders: see bird_block.glsl. */
+static GLint list_of(const render_birds *birds) {
+    return !birds->position_buffer ? 0 : birds->slots ? 1 : 2;
+}
+
 /* Binds what a flock's numbers are read from. */
 static void bind(const render_flight *flight, const render_birds *birds) {
     bool own = !birds->position_buffer;
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, POSITIONS, own ? flight->positions : birds->position_buffer);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, VELOCITIES, own ? flight->velocities : birds->velocity_buffer);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SLOTS, flight->slots);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SLOTS, birds->bird_buffer ? birds->bird_buffer : flight->slots);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, POSTURES, flight->postures);
 }
 
@@ -108,7 +113,7 @@ static void advance(const render_flight *flight, const render_birds *birds, size
     glUseProgram(program);
     glProgramUniform1ui(program, 0, (GLuint)birds->count);
     glProgramUniform1ui(program, 1, (GLuint)first);
-    glProgramUniform1i(program, 2, birds->position_buffer != 0);
+    glProgramUniform1i(program, 2, list_of(birds));
     glProgramUniform1f(program, 3, (float)seconds);
     glProgramUniform1i(program, 4, fresh);
     size_t groups = (birds->count + group - 1) / group, rows = (groups + 65534) / 65535;
@@ -127,9 +132,9 @@ skein_status render_flight_bring(render_flight *flight, const render_frame *fram
     for (size_t i = 0; i < frame->bird_count; i++) {
         const render_birds *birds = &frame->birds[i];
         if (!birds->count) continue;
-        if (birds->position_buffer) {
+        if (birds->slots) {
             glNamedBufferSubData(flight->slots, (GLintptr)(4 * first), (GLsizeiptr)(4 * birds->count), birds->slots);
-        } else {
+        } else if (!birds->position_buffer) {
             GLintptr at = (GLintptr)(16 * first);
             GLsizeiptr size = (GLsizeiptr)(16 * birds->count);
             glNamedBufferSubData(flight->positions, at, size, birds->positions);
@@ -154,7 +159,7 @@ void render_flight_draw(const render_flight *flight, const render_frame *frame, 
         bind(flight, birds);
         glUseProgram(program);
         glProgramUniform1ui(program, 1, (GLuint)first);
-        glProgramUniform1i(program, 2, birds->position_buffer != 0);
+        glProgramUniform1i(program, 2, list_of(birds));
         glProgramUniform1f(program, 3, (float)(0.5 * birds->span));
         if (!depth) {
             float light[3];

@@ -95,8 +95,9 @@ typedef enum render_feathers { RENDER_OWN_FEATHERS, RENDER_BY_DIRECTION_FEATHERS
 typedef struct render_birds {
     size_t count;
     const float *positions, *velocities; /* count x 4; the fourth is not used */
-    /* Or OpenGL's buffers of the same in this context, where the i-th bird is in slots[i]; 0 if there are none. */
-    unsigned position_buffer, velocity_buffer;
+    /* Or OpenGL's buffers of the same in this context, 0 if there are none. The i-th bird is in slots[i]; or, where
+     * that is NULL, bird_buffer holds the bird of every slot. */
+    unsigned position_buffer, velocity_buffer, bird_buffer;
     const uint32_t *slots;
     double span; /* from tip to tip */
     render_feathers paint;

@@ -52,7 +52,8 @@ bool render_add_birds(render_world_birds *all, const skein_world *world, const r
     if (on_card) {
         birds->position_buffer = device.position_buffer;
         birds->velocity_buffer = device.velocity_buffer;
-        birds->slots = device.slot_of + surface->first_particle;
+        birds->bird_buffer = device.particle_buffer; // then they are all there is
+        if (device.slot_of) birds->slots = device.slot_of + surface->first_particle;
     } else {
         skein_view v = skein_velocity_view(world);
         float *numbers = all->numbers + all->number_count;

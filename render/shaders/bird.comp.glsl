@@ -6,9 +6,10 @@ layout(location = 3) uniform float seconds; // since the postures; 0: nothing is
 layout(location = 4) uniform int fresh;     // 1: there are no postures yet
 
 void main() {
-    uint bird = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
-    if (bird >= count) return;
-    vec3 v = velocities[slot_of(bird)].xyz;
+    uint instance = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
+    if (instance >= count) return;
+    uint bird = bird_of(instance);
+    vec3 v = velocities[slot_of(instance)].xyz;
     vec4 posture = fresh == 1 ? vec4(0, 6.2831853 * own_number(bird, 3u), 0, 0) : postures[first + bird];
     float level = length(v.xz), speed = length(v), heading = level > 0 ? atan(v.x, v.z) : posture.x;
     if (seconds > 0) {

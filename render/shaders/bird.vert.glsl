@@ -12,7 +12,7 @@ flat out vec3 light_here; // as for balls
 #endif
 
 void main() {
-    uint bird = uint(gl_InstanceID), slot = slot_of(bird);
+    uint bird = bird_of(uint(gl_InstanceID)), slot = slot_of(uint(gl_InstanceID));
     vec3 at = positions[slot].xyz, v = velocities[slot].xyz;
     vec4 posture = postures[first + bird];
     float speed = length(v);

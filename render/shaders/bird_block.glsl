@@ -4,10 +4,14 @@ layout(std430, binding = 1) restrict readonly buffer velocities_block { vec4 vel
 layout(std430, binding = 2) restrict readonly buffer slots_block { uint slots[]; };
 
 layout(location = 1) uniform uint first; // of the flock, among all birds
-layout(location = 2) uniform int listed; // 1: in the slots of a list; 0: in order
+layout(location = 2) uniform int listed; // 0: in order; 1: in the slots of a list; 2: the list says who is in a slot
 
-uint slot_of(uint bird) {
-    return listed == 1 ? slots[first + bird] : first + bird;
+uint slot_of(uint instance) {
+    return listed == 2 ? instance : listed == 1 ? slots[first + instance] : first + instance;
+}
+
+uint bird_of(uint instance) {
+    return listed == 2 ? slots[instance] : instance;
 }
 
 // Numbers from 0 to 1 that belong to a bird.

@@ -68,6 +68,12 @@ bool sk_gpu_row_everyone(const sk_row *row, size_t particle_count) {
            force->seen.end == particle_count;
 }
 
+bool sk_gpu_row_knows_no_slots(const sk_row *row, size_t particle_count) {
+    const sk_force *force = force_of(row);
+    if (row->kind == SK_ROW_GRID) return row->begin == 0; // the rows of one sort have the same end, or fewer places
+    return !force || force->type->deed == SK_PUSHES || sk_gpu_row_everyone(row, particle_count);
+}
+
 /* ---- vectors ---- */
 
 static sk_gpu_use use_of_combine(const sk_row *row) {
