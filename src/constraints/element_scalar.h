@@ -49,10 +49,12 @@ static double value_of(const sk_batch *batch, const sk_vec4 *x, size_t element) 
     return e.value;
 }
 
+#ifdef SK_WITH_LIMITS
 static void strain(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, real *out) {
     for (size_t e = begin; e < end; e++)
         out[e - begin] = batch->rest[e] > 0 ? (real)(value_of(batch, x, e) / (double)batch->rest[e]) : 0;
 }
+#endif
 
 static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_t begin, size_t end, double *out) {
     (void)time;

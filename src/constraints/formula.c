@@ -61,7 +61,7 @@ typedef struct SK_ISA(answer) {
 } SK_ISA(answer);
 
 SK_INLINE void SK_ISA(take_answer)(SK_ISA(answer) * a, const SK_ISA(block) * b, const sk_constraint_formula *made,
-                              size_t arity, size_t i) {
+                                   size_t arity, size_t i) {
     const sk_tape *tape = &made->tape;
     const uint16_t *output = tape->output;
     sk_mask finite = b->verdict.finite[i];
