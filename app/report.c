@@ -38,6 +38,7 @@ static json_t *make_document(const app_report *r) {
         {"name", json_string(scene->name)},
         {"method", json_string(app_method(r->loaded))},
         {"threads", count((uint64_t)scene->threads)},
+        {"device", json_string(r->device)},
         {"interrupted", json_boolean(r->interrupted)},
         {"warnings", count(r->loaded->warnings)},
         // what was done
@@ -52,6 +53,7 @@ static json_t *make_document(const app_report *r) {
         {"ms_per_step", number(ms_per_step(r))},
         {"realtime_factor", number(realtime_factor(r))},
         {"memory_bytes", count(s->memory_bytes)},
+        {"device_bytes", count(r->device_bytes)},
         // the state at the end
         {"particles", count(s->particles)},
         {"held_particles", count(s->held_particles)},

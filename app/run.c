@@ -26,21 +26,32 @@ static bool note_step(app_report *r) {
     return true;
 }
 
+/* Notes where it runs; a film's context is gone at the end of the run. */
+static void note_device(app_report *r) {
+    skein_device_info info = skein_world_device(r->loaded->world);
+    snprintf(r->device, sizeof r->device, "%s", info.name);
+    r->device_bytes = info.bytes;
+}
+
 /* Steps one frame; false after a printed fault. */
 static bool run_frame(app_report *r, app_progress *p) {
+    bool here = skein_world_device(r->loaded->world).device == SKEIN_DEVICE_CPU;
     for (int s = 0; s < r->steps_per_frame; s++) {
         double start = app_seconds();
         if (!app_step_frame(r->loaded, r->frames + 1, 1, r->dt, p)) return false;
+        if (s + 1 == r->steps_per_frame) skein_world_wait(r->loaded->world);
         r->seconds += app_seconds() - start;
         if (note_step(r)) continue;
         app_progress_end(p);
         return false;
     }
     r->frames++;
-    return r->frames % 16 || measure(r);
+    note_device(r);
+    return !here || r->frames % 16 || measure(r); // from a card the state would have to come for it
 }
 
 static bool run_frames(app_report *r, app_outputs *outputs, app_progress *p) {
+    note_device(r);
     bool good = note_step(r) && (!outputs || app_outputs_frame(outputs, 0));
     while (good && r->frames < p->frames && !app_interrupted()) {
         good = run_frame(r, p) && (!outputs || app_outputs_frame(outputs, r->frames));

@@ -301,6 +301,9 @@ typedef enum skein_device {
  * run on a card is named when a plan is made: by the next step, or by skein_world_explain(). */
 skein_status skein_world_device_set(skein_world *world, skein_device device);
 
+/* Waits until the steps asked for are done: a card works behind the calls. For measuring; nothing else needs it. */
+void skein_world_wait(const skein_world *world);
+
 typedef struct skein_device_info {
     skein_device device;
     const char *name;  /* "processor", or the card and its driver; as long as the device is the world's */
@@ -308,8 +311,9 @@ typedef struct skein_device_info {
     size_t bytes;      /* held on the card now */
     size_t pass_count; /* shaders that a step runs, and the loops around them */
     /* For drawing without reading back: OpenGL buffers of four floats a slot, x, y, z and the inverse mass, or velocity
-     * and mass; particle i is in slot slot_of[i]. 0 before the first step, and changed by whatever adds particles. */
-    unsigned position_buffer, velocity_buffer;
+     * and mass. 0 before the first step, and changed by whatever adds particles. Particle i is in slot slot_of[i]; or,
+     * where that is NULL, particle_buffer holds a whole number a slot, the particle there, and a step may change it. */
+    unsigned position_buffer, velocity_buffer, particle_buffer;
     const uint32_t *slot_of;
     size_t slot_count;
 } skein_device_info;
@@ -383,8 +387,8 @@ typedef struct skein_contact {
 /* Copies up to `most` of the contacts of enabled colliders; `count` receives how many there are. */
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count);
 
-/* Where `count` points (count x 3) are seen from a collider's surface as it stands now: how far off, as contact takes it
- * (negative inside; far away, formulas may say 1e15), and the unit normals out of the solid. Either may be NULL. */
+/* Where `count` points (count x 3) are seen from a collider's surface as it stands now: how far off, as contact takes
+ * it (negative inside; far away, formulas may say 1e15), and the unit normals out of the solid. Either may be NULL. */
 skein_status skein_collider_probe(const skein_world *world, skein_handle collider, size_t count, const double *points,
                                   double *distances, double *normals);
 

@@ -85,6 +85,7 @@ struct sk_device {
     /* Copies X, V and P into the world's. */
     skein_status (*read)(sk_device *device, skein_world *world, skein_error *error);
     void (*release)(sk_device *device, skein_world *world);
+    void (*wait)(sk_device *device); /* until all that was asked for is done */
     bool ahead, behind;
 };
 
