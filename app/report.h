@@ -15,6 +15,8 @@ typedef struct app_report {
     skein_statistics statistics; /* of the end */
     double worst_stretch;        /* over the whole run, sampled now and then */
     json_t *files;               /* their paths */
+    json_t *flocks;              /* their order parameters over time */
+    int flocks_noted;            /* the frame after the one that they were last noted at */
     app_log *log;                /* a line a step, or NULL */
     const char *log_path;
 } app_report;

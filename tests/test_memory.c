@@ -36,6 +36,7 @@ typedef struct scenario {
     skein_world *world;
     skein_handle gravity, ground;
     skein_statistics statistics;
+    skein_order order;
     int call;
 } scenario;
 
@@ -101,10 +102,19 @@ static skein_status make_call(scenario *s) {
     case 20: return skein_world_step(s->world, dt);
     case 21: return skein_world_step(s->world, dt / 2);
     case 22: return skein_world_statistics(s->world, &s->statistics);
+    case 23:
+        return skein_body_add(s->world, "flock", NULL,
+                              SKEIN_SETTINGS(SKEIN_TEXT("name", "birds"), SKEIN_REAL("count", 40)), NULL);
+    case 24: return skein_force_add(s->world, "flocking", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL);
+    case 25: return skein_force_add(s->world, "predator", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL);
+    case 26: return skein_force_add(s->world, "speed_limit", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL);
+    case 27: return skein_world_step(s->world, dt);
+    case 28: return skein_order_measure(s->world, 5, 60, (const double[]){0, 0, 0}, 1, &s->order);
+    case 29: return skein_world_statistics(s->world, &s->statistics);
     default: return SKEIN_ERROR_LIMIT;
     }
 }
-enum { CALLS = 23 };
+enum { CALLS = 30 };
 
 /* What a failed call must leave as it was. */
 typedef struct census {

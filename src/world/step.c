@@ -50,6 +50,16 @@ static bool make_temporaries(skein_world *world) {
     return sk_particles_want(&world->particles, &world->allocator, wanted);
 }
 
+/* Memory for what the plan sorts, so that it cannot be wanting in the midst of a step. */
+static bool make_cells(skein_world *world) {
+    size_t most = 0;
+    for (size_t r = 0; r < world->plan.count; r++) {
+        const sk_row *row = &world->plan.data[r];
+        if (row->kind == SK_ROW_GRID && row->by_particle && row->end - row->begin > most) most = row->end - row->begin;
+    }
+    return !most || sk_cells_reserve(&world->cells, &world->allocator, most);
+}
+
 /* The particles of the body of that name, or all where there is no name. False when there is no such body. */
 static bool find_group(const skein_world *world, const char *name, sk_group *group) {
     const sk_particles *all = &world->particles;
@@ -121,7 +131,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     sk_write_pack(&writer);
     method->write(&writer, world->method_params, dt);
     sk_write_unpack(&writer);
-    if (writer.no_memory || !make_temporaries(world)) return sk_fail_memory(error, "the plan");
+    if (writer.no_memory || !make_temporaries(world) || !make_cells(world)) return sk_fail_memory(error, "the plan");
     world->plan_dt = dt;
     world->plan_stale = false;
     return SKEIN_OK;
