@@ -52,12 +52,15 @@ static bool make_temporaries(skein_world *world) {
 
 /* Memory for what the plan sorts, so that it cannot be wanting in the midst of a step. */
 static bool make_cells(skein_world *world) {
-    size_t most = 0;
-    for (size_t r = 0; r < world->plan.count; r++) {
+    bool good = true;
+    for (size_t r = 0; r < world->plan.count && good; r++) {
         const sk_row *row = &world->plan.data[r];
-        if (row->kind == SK_ROW_GRID && row->by_particle && row->end - row->begin > most) most = row->end - row->begin;
+        if (row->kind != SK_ROW_GRID) continue;
+        size_t count = row->end - row->begin;
+        good = row->by_particle ? sk_cells_reserve(&world->cells, &world->allocator, count)
+                                : sk_grid_reserve(&world->grid, &world->allocator, count);
     }
-    return !most || sk_cells_reserve(&world->cells, &world->allocator, most);
+    return good;
 }
 
 /* The particles of the body of that name, or all where there is no name. False when there is no such body. */
