@@ -8,7 +8,7 @@
 #include "base/fields.h"
 #include "plan/row.h"
 
-typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOURS } sk_domain;
+typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOURS, SK_OVER_COLLIDERS } sk_domain;
 
 /* What a rule's kernel writes, and when.
  *   pushes   adds newtons to F, in every stage of a method
@@ -21,6 +21,7 @@ typedef struct sk_force_type {
     skein_kind kind;
     sk_domain domain;
     sk_deed deed;
+    bool once;        /* what it bounds is bounded between kick and drift only, and not at the end of a substep */
     bool sets;        /* its kernel minds the row's `sets`: it can be the first to write F */
     bool on_velocity; /* it depends on velocities */
     sk_kernels kernel;
@@ -38,13 +39,9 @@ typedef struct sk_force_type {
     /* The names of the body that it moves and of the one that it looks at: "" is every particle, and the same as it
      * moves. NULL: every particle. */
     void (*bodies)(const void *params, const char **moved, const char **seen);
+    /* Over colliders: the time ahead (s), the clearance (m) and the strength (m/s2) of steering clear. */
+    void (*look)(const void *params, double look[3]);
 } sk_force_type;
-
-/* Particles of one body, or all: the user's indices, and the slots that they and nobody else lie in. */
-typedef struct sk_group {
-    size_t first, end;           /* particles */
-    size_t first_slot, end_slot; /* not always multiples of 16 */
-} sk_group;
 
 /* A force as methods see it: a type with its parameters. A row's rule is one of these. */
 typedef struct sk_force {
@@ -56,6 +53,6 @@ typedef struct sk_force {
 } sk_force;
 
 extern const sk_force_type sk_gravity, sk_wind, sk_surface_wind, sk_drag, sk_separation, sk_flocking, sk_attraction,
-    sk_predator, sk_speed_limit;
+    sk_predator, sk_lookout, sk_speed_limit, sk_turn_limit, sk_bounds;
 
 #endif
