@@ -86,6 +86,16 @@ static void birds_see_ahead_and_the_nearest(void **state) {
     assert_seen(2000, 70, 360, 7);
     assert_seen(2000, 70, 120, 20);
     assert_seen(2000, 70, 120, 0);
+    // of those at the same distance the first few: as many as asked for, not more
+    skein_world *ties = new_world("symplectic_euler", 1);
+    for (int i = 0; i < 27; i++) add_particle(ties, 1, i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    OK(ties, skein_force_add(ties, "flocking",
+                             SKEIN_SETTINGS(SKEIN_REAL("separation", 4), SKEIN_REAL("alignment", 0),
+                                            SKEIN_REAL("cohesion", 0), SKEIN_REAL("nearest", 5)),
+                             NULL));
+    steps(ties, 1, dt);
+    assert_near(length3(velocity_of(ties, 13)) / dt, 3, 1e-5); // of six round it one is left out, and two pairs cancel
+    skein_world_destroy(ties);
     // a bird that stands still sees all round
     skein_world *world = new_world("symplectic_euler", 1);
     add_particle(world, 1, 0, 0, 0), add_moving(world, 1, 3, 0, 0, 1, 0, 0), add_moving(world, 1, 0, 3, 0, 0, 1, 0);
@@ -136,6 +146,7 @@ static void turning_and_climbing_are_limited(void **state) {
     world = new_world("symplectic_euler", 1);
     add_moving(world, 1, 0, 0, 0, 3, 4, 0), add_moving(world, 1, 9, 0, 0, 0, -5, 0),
         add_moving(world, 1, 0, 9, 0, 4, 1, 3);
+    add_moving(world, 1, 0, 0, 9, 0, 3, -4);
     OK(world, skein_force_add(world, "turn_limit", SKEIN_SETTINGS(SKEIN_REAL("climb", 30)), NULL));
     steps(world, 1, dt);
     v = velocity_of(world, 0), side = velocity_of(world, 1), up = velocity_of(world, 2);
@@ -144,6 +155,8 @@ static void turning_and_climbing_are_limited(void **state) {
     assert_near(side.y, -2.5, 1e-6);
     assert_near(length3(side), 5, 1e-6);
     assert_under(length3(minus(up, (vec3){4, 1, 3})), 0);
+    assert_near(velocity_of(world, 3).y, 2.5, 1e-6);
+    assert_near(velocity_of(world, 3).z, -5 * cos(PI / 6), 1e-6);
     skein_world_destroy(world);
 }
 
@@ -190,7 +203,19 @@ static void bounds_are_not_left_by_more_than_a_step(void **state) {
             assert_true(wrapped == (kind == 2));
             skein_world_destroy(world);
         }
-    skein_world *world = flock_of(3, 1, 1);
+    // a mirror
+    skein_world *world = new_world("symplectic_euler", 1);
+    add_moving(world, 1, 0, 4.999, 0, 2, 3, 4), add_moving(world, 1, 0, 4, 0, 2, 3, 4);
+    add_moving(world, 1, 0, 7, 0, 2, -3, 4);
+    OK(world,
+       skein_force_add(world, "bounds", SKEIN_SETTINGS(SKEIN_TEXT("shape", "sphere"), SKEIN_REAL("radius", 5)), NULL));
+    steps(world, 1, 1e-3);
+    assert_under(length3(minus(velocity_of(world, 0), (vec3){2, -3, 4})), 1e-2);
+    assert_share(length3(velocity_of(world, 0)), sqrt(29), 1e-6);
+    assert_under(length3(minus(velocity_of(world, 1), (vec3){2, 3, 4})), 0);
+    assert_under(length3(minus(velocity_of(world, 2), (vec3){2, -3, 4})), 0); // outside, and on its way in
+    skein_world_destroy(world);
+    world = flock_of(3, 1, 1);
     OK(world, skein_force_add(world, "bounds",
                               SKEIN_SETTINGS(SKEIN_TEXT("shape", "sphere"), SKEIN_TEXT("edge", "periodic")), NULL));
     FAILS(world, SKEIN_ERROR_VALUE, "no other side", skein_world_step(world, dt));
