@@ -1,16 +1,25 @@
 /* skein run SCENE: simulate, with progress, files and a report. */
 #include <stdio.h>
 
+#include "app/flocks.h"
 #include "app/outputs.h"
 #include "app/progress.h"
 #include "app/report.h"
 
 /* ---- the run ---- */
 
+/* Every sixteenth frame, and the last; more would cost more than steps do. */
+static bool note_flocks(app_report *r) {
+    if (r->frames % 16 && r->frames != r->loaded->settings.frames && !app_interrupted()) return true;
+    if (r->flocks_noted == r->frames + 1) return true;
+    r->flocks_noted = r->frames + 1;
+    return app_flocks_note(r->flocks, r->loaded->world);
+}
+
 /* Measures the world as it stands; false after a printed fault. */
 static bool measure(app_report *r) {
     skein_world *world = r->loaded->world;
-    if (skein_world_statistics(world, &r->statistics)) {
+    if (skein_world_statistics(world, &r->statistics) || !note_flocks(r)) {
         app_print_error(skein_world_error(world));
         return false;
     }
@@ -52,7 +61,7 @@ static bool run_frame(app_report *r, app_progress *p) {
 
 static bool run_frames(app_report *r, app_outputs *outputs, app_progress *p) {
     note_device(r);
-    bool good = note_step(r) && (!outputs || app_outputs_frame(outputs, 0));
+    bool good = measure(r) && note_step(r) && (!outputs || app_outputs_frame(outputs, 0));
     while (good && r->frames < p->frames && !app_interrupted()) {
         good = run_frame(r, p) && (!outputs || app_outputs_frame(outputs, r->frames));
         if (good) app_progress_show(p, r->frames);
@@ -115,12 +124,15 @@ static int run(int argc, char **argv) {
         status = app_load(path, options[0].values, &loaded);
         if (!status) status = app_device(&loaded, app_value(options, COUNT, "--device"));
         if (!status) {
-            app_report report = {
-                .loaded = &loaded, .files = json_array(), .log_path = app_value(options, COUNT, "--log")};
+            app_report report = {.loaded = &loaded,
+                                 .files = json_array(),
+                                 .flocks = json_array(),
+                                 .log_path = app_value(options, COUNT, "--log")};
             report.steps_per_frame = io_scene_steps_per_frame(&loaded.settings, &report.dt);
             status =
                 simulate(&report, app_value(options, COUNT, "--out"), app_value(options, COUNT, "--quiet") != NULL);
             json_decref(report.files);
+            json_decref(report.flocks);
         }
         app_unload(&loaded);
     }

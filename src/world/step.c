@@ -53,6 +53,19 @@ static bool make_temporaries(skein_world *world) {
     return sk_particles_want(&world->particles, &world->allocator, wanted);
 }
 
+/* Memory for what the plan sorts, so that it cannot be wanting in the midst of a step. */
+static bool make_cells(skein_world *world) {
+    bool good = true;
+    for (size_t r = 0; r < world->plan.count && good; r++) {
+        const sk_row *row = &world->plan.data[r];
+        if (row->kind != SK_ROW_GRID) continue;
+        size_t count = row->end - row->begin;
+        good = row->by_particle ? sk_cells_reserve(&world->cells, &world->allocator, count)
+                                : sk_grid_reserve(&world->grid, &world->allocator, count);
+    }
+    return good;
+}
+
 /* The particles of the body of that name, or all where there is no name. False when there is no such body. */
 static bool find_group(const skein_world *world, const char *name, sk_group *group) {
     const sk_particles *all = &world->particles;
@@ -125,7 +138,8 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     if (!world->device) sk_write_pack(&writer);
     method->write(&writer, world->method_params, dt);
     if (!world->device) sk_write_unpack(&writer);
-    if (writer.no_memory || (!world->device && !make_temporaries(world))) return sk_fail_memory(error, "the plan");
+    if (writer.no_memory || (!world->device && (!make_temporaries(world) || !make_cells(world))))
+        return sk_fail_memory(error, "the plan");
     if (world->device && (status = world->device->prepare(world->device, world, error))) return status;
     world->plan_dt = dt;
     world->plan_stale = false;
