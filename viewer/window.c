@@ -35,6 +35,7 @@ typedef struct window {
     int frames_due;    /* to draw, since something happened */
     unsigned framebuffer;
     uint64_t generation;
+    bool finished;    /* there is no stage any more */
     bool save_window; /* Shift and X */
     double longest;   /* ms between events being looked at */
     uint64_t turns;
@@ -226,6 +227,7 @@ static void draw(window *w) {
     show_picture(w, width, height);
     viewer_panels_show(&w->panels, width, height);
     memcpy(title, w->exchange.shown.title, sizeof title);
+    w->finished = w->exchange.shown.finished;
     pthread_mutex_unlock(&w->exchange.lock);
     glDisable(GL_FRAMEBUFFER_SRGB);
     widgets_end();
@@ -287,7 +289,7 @@ static void wake(void) {
 
 static void loop(window *w) {
     uint64_t seen = 0;
-    while (!glfwWindowShouldClose(w->glfw) && !interrupted) {
+    while (!glfwWindowShouldClose(w->glfw) && !interrupted && !w->finished) {
         if (w->frames_due > 0) glfwPollEvents();
         else glfwWaitEventsTimeout(0.5);
         if (w->frames_due > 0) w->frames_due--;
@@ -332,7 +334,8 @@ static skein_status run(window *w, skein_error *error) {
     viewer_event(&w->events, "turns %llu longest=%.1f ms", (unsigned long long)w->turns, w->longest);
     viewer_event(&w->events, "closed");
     viewer_exchange_close(&w->exchange);
-    return SKEIN_OK;
+    if (w->stage.failure.status && error) *error = w->stage.failure;
+    return w->stage.failure.status;
 }
 
 skein_status viewer_run(const viewer_options *options, skein_error *error) {
