@@ -96,7 +96,7 @@ static void switches_methods_and_colours(void **state) {
     press_key("9");
     assert_string_equal(word_of("method", method), "pbd");
     for (int i = 0; i < 9; i++) {
-        char key[8];
+        char key[16];
         snprintf(key, sizeof key, "%d", i + 1);
         press_key(key);
         assert_string_equal(word_of("method", method), skein_kind_at(SKEIN_METHOD, (size_t)i)->name);

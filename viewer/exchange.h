@@ -162,7 +162,8 @@ typedef struct viewer_exchange {
 bool viewer_exchange_open(viewer_exchange *exchange, const viewer_events *events);
 void viewer_exchange_close(viewer_exchange *exchange);
 
-/* Puts a request into the queue (a move replaces a move before it). Without memory it is dropped, and said. */
+/* Puts a request into the queue (a move replaces a move right before it, a field's new value
+ * the one before). Without memory it is dropped, and said. */
 void viewer_ask(viewer_exchange *exchange, const viewer_request *request);
 /* Waits until something is asked, at most so long; returns what was asked, in order, valid until the next call. */
 const viewer_request *viewer_take(viewer_exchange *exchange, double seconds, size_t *count);

@@ -35,6 +35,7 @@ typedef struct window {
     int frames_due;    /* to draw, since something happened */
     unsigned framebuffer;
     uint64_t generation;
+    char title[256];
     bool finished;    /* there is no stage any more */
     bool save_window; /* Shift and X */
     double longest;   /* ms between events being looked at */
@@ -233,7 +234,8 @@ static void draw(window *w) {
     widgets_end();
     if (w->save_window) save_window(w, width, height);
     glfwSwapBuffers(w->glfw);
-    glfwSetWindowTitle(w->glfw, title[0] ? title : "Skein");
+    // setting it is an event of its own, and would wake the loop for ever
+    if (title[0] && strcmp(title, w->title) != 0) glfwSetWindowTitle(w->glfw, memcpy(w->title, title, sizeof w->title));
 }
 
 /* ---- Opening and closing ---- */
@@ -346,7 +348,8 @@ skein_status viewer_run(const viewer_options *options, skein_error *error) {
     skein_status status = run(w, error);
     if (w->hidden) glfwDestroyWindow(w->hidden);
     if (w->glfw) glfwDestroyWindow(w->glfw);
-    glfwTerminate();
+    // GLFW stays as it is: ending it unloads Mesa's driver, which forgets a few tables each time (as in
+    // render/context.c)
     viewer_events_close(&w->events);
     free(w);
     return status;
