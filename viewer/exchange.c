@@ -33,11 +33,19 @@ void viewer_exchange_close(viewer_exchange *exchange) {
     pthread_mutex_destroy(&exchange->lock);
 }
 
+/* Whether only the later of two requests matters: of the pointer's places, and of a slider's values. */
+static bool replaces(const viewer_request *later, const viewer_request *last) {
+    if (later->kind != last->kind) return false;
+    return later->kind == VIEWER_MOVE ||
+           (later->kind == VIEWER_SET && later->field == last->field && later->category == last->category &&
+            later->index == last->index && later->side == last->side);
+}
+
 void viewer_ask(viewer_exchange *exchange, const viewer_request *request) {
     pthread_mutex_lock(&exchange->queue_lock);
     size_t count = exchange->queue_count;
     viewer_request *last = count ? &exchange->queue[count - 1] : NULL;
-    if (last && request->kind == VIEWER_MOVE && last->kind == VIEWER_MOVE) {
+    if (last && replaces(request, last)) {
         *last = *request;
     } else {
         if (count == exchange->queue_room) {

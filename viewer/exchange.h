@@ -13,7 +13,7 @@
 #include "skein/skein.h"
 #include "viewer/events.h"
 
-enum { VIEWER_TEXT = 1024, VIEWER_PICTURES = 3, VIEWER_SIDES = 2, VIEWER_SAMPLES = 240, VIEWER_LOG_LINES = 200 };
+enum { VIEWER_TEXT = 1024, VIEWER_PICTURES = 4, VIEWER_SIDES = 2, VIEWER_SAMPLES = 240, VIEWER_LOG_LINES = 200 };
 
 /* ---- requests ---- */
 
@@ -137,7 +137,7 @@ typedef struct viewer_shown {
     uint64_t generation;                /* changes with the pictures */
     int newest, in_use;                 /* places of pictures; -1: none. in_use is the window's */
     char title[256], message[240];
-    bool has_scene, paused, recording, flying, by_key, play_away, slow, finished;
+    bool has_scene, paused, recording, flying, by_key, play_away, slow, finished /* the stage has ended */;
     bool panel[VIEWER_PANEL_COUNT];
     uint64_t frame, first_frame, last_frame; /* of the history */
     double time, speed;                      /* s; simulated over real time */
@@ -162,7 +162,8 @@ typedef struct viewer_exchange {
 bool viewer_exchange_open(viewer_exchange *exchange, const viewer_events *events);
 void viewer_exchange_close(viewer_exchange *exchange);
 
-/* Puts a request into the queue (a move replaces a move before it). Without memory it is dropped, and said. */
+/* Puts a request into the queue (a move replaces a move right before it, a field's new value
+ * the one before). Without memory it is dropped, and said. */
 void viewer_ask(viewer_exchange *exchange, const viewer_request *request);
 /* Waits until something is asked, at most so long; returns what was asked, in order, valid until the next call. */
 const viewer_request *viewer_take(viewer_exchange *exchange, double seconds, size_t *count);

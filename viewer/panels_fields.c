@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "viewer/panels.h"
+#include "viewer/stage.h"
 
 /* A range that is wider than so many steps is no use as a slider: it is then measured by the default. */
 static const double widest = 1e4, many_times = 100;
@@ -60,6 +61,29 @@ static void describe(const viewer_entry *entry, char *text, size_t size) {
 
 /* ---- One field ---- */
 
+const double viewer_asked_for_long = 5;
+
+/* The value to show: that which was asked for last, as long as the stage has not got to it. */
+static skein_value value_of(viewer_panels *panels, const viewer_object *object, const viewer_entry *entry, int side) {
+    viewer_request *asked = &panels->asked;
+    bool same = asked->field == entry->field && asked->category == object->category && asked->index == object->index &&
+                asked->side == side;
+    if (!same || entry->field->type == SKEIN_FIELD_TEXT) return entry->value;
+    bool there = !memcmp(asked->value.number, entry->value.number, sizeof entry->value.number) && !asked->down;
+    if (there || (!asked->down && viewer_seconds() - panels->asked_at > viewer_asked_for_long)) {
+        asked->field = NULL;
+        return entry->value;
+    }
+    return asked->value;
+}
+
+/* Notes what is to be shown from now on; `down`: it is not asked for before the control is let go. */
+static void keep_asked(viewer_panels *panels, const viewer_request *request, bool down) {
+    panels->asked = *request;
+    panels->asked.down = down;
+    panels->asked_at = viewer_seconds();
+}
+
 static viewer_request request_for(const viewer_object *object, const viewer_entry *entry, int side) {
     viewer_request request = {.kind = VIEWER_SET,
                               .category = object->category,
@@ -103,18 +127,19 @@ static bool show_menu(const viewer_entry *entry, skein_value *value) {
 static void show_entry(viewer_panels *panels, const viewer_object *object, const viewer_entry *entry, int side) {
     const skein_field *field = entry->field;
     viewer_request request = request_for(object, entry, side);
+    request.value = value_of(panels, object, entry, side);
     char name[200], help[700];
     bool changed = false;
     widgets_push(entry->field);
     switch (field->type) {
     case SKEIN_FIELD_BOOL: {
-        bool on = entry->value.number[0] != 0;
+        bool on = request.value.number[0] != 0;
         changed = widgets_tick(field->name, &on);
         request.value = skein_number(on);
         break;
     }
     case SKEIN_FIELD_CHOICE: {
-        int place = (int)entry->value.number[0];
+        int place = (int)request.value.number[0];
         changed = widgets_choice(field->name, field->choices, &place);
         request.value = skein_number(place);
         break;
@@ -126,6 +151,12 @@ static void show_entry(viewer_panels *panels, const viewer_object *object, const
         break;
     default: changed = show_number(entry, field->name, &request.value); break;
     }
+    // what builds the scene anew waits until the slider is let go
+    bool slider =
+        field->type != SKEIN_FIELD_BOOL && field->type != SKEIN_FIELD_CHOICE && field->type != SKEIN_FIELD_TEXT;
+    bool waits = slider && entry->shapes && !widgets_released();
+    if (changed && waits) keep_asked(panels, &request, true);
+    if (slider && entry->shapes) changed = !waits;
     snprintf(name, sizeof name, "%s%s.%zu.%.60s", side ? "other " : "", skein_category_text(object->category),
              object->index, field->name);
     viewer_place_control(panels, name);
@@ -134,7 +165,9 @@ static void show_entry(viewer_panels *panels, const viewer_object *object, const
     if (request.value.count > 0 && field->type != SKEIN_FIELD_BOOL && field->type != SKEIN_FIELD_CHOICE)
         changed |= show_menu(entry, &request.value);
     widgets_pop();
-    if (changed) viewer_ask(panels->exchange, &request);
+    if (!changed) return;
+    keep_asked(panels, &request, false);
+    viewer_ask(panels->exchange, &request);
 }
 
 /* ---- Objects ---- */

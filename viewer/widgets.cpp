@@ -186,6 +186,10 @@ bool widgets_numbers(const char *title, double *numbers, int count, double least
     return changed;
 }
 
+bool widgets_released(void) {
+    return ImGui::IsItemDeactivatedAfterEdit();
+}
+
 bool widgets_input(const char *title, char *text, size_t size) {
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
     return ImGui::InputText(title, text, size, ImGuiInputTextFlags_EnterReturnsTrue);
