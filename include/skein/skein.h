@@ -356,6 +356,15 @@ typedef struct skein_surface {
     const float *corner_uv;           /* face_vertex_count x 2, or NULL: see skein_body_uv_set() */
 } skein_surface;
 skein_status skein_body_surface(const skein_world *world, skein_handle body, skein_surface *surface);
+/* Sets of a body's particles that constraints can be made on. Faces are cut into triangles from their first corner. */
+typedef enum skein_elements {
+    SKEIN_EDGES,     /* 2: whatever the body's stretch is measured along */
+    SKEIN_TRIANGLES, /* 3 */
+    SKEIN_HINGES     /* 4: the ends of a side that two triangles share, and the corners across from it */
+} skein_elements;
+/* Copies up to `most` of them, with so many particles each; `count` receives how many there are. `out` may be NULL. */
+skein_status skein_body_elements(skein_world *world, skein_handle body, skein_elements what, uint32_t *out, size_t most,
+                                 size_t *count);
 /* Keeps texture coordinates for a body's surface, one pair for each corner of each face (so that a seam may have
  * two); they are for drawing only. `corner_count` is the surface's face_vertex_count. */
 skein_status skein_body_uv_set(skein_world *world, skein_handle body, const float *corner_uv, size_t corner_count);

@@ -328,8 +328,14 @@ static void pack(const void *data, float (*block)[4]) {
     sk_flocking_numbers n = sk_flocking_numbers_of(params);
     const float numbers[2][4] = {
         {1 / (float)n.reach, (float)n.away, (float)n.along, (float)n.per_along},
-        {(float)n.per_towards, (float)n.nearest, (float)params->strength, n.squared ? 1.0f : 0.0f}};
+        {(float)n.per_towards, (float)n.least, (float)params->strength, n.squared ? 1.0f : 0.0f}};
     memcpy(block, numbers, sizeof numbers);
+}
+
+static const char *refuse(const void *data) {
+    const sk_flocking_params *params = data;
+    if (params->nearest) return "with a number of nearest neighbours";
+    return params->view < 360 ? "with a field of view" : NULL;
 }
 
 #define SK_KERNELS "forces/flocking.c"
@@ -343,6 +349,6 @@ const sk_force_type sk_flocking = {
     .kernel = {SK_EACH_ISA(kernel)},
     .radius = radius,
     .bodies = bodies,
-    .shader = {"forces/flocking", 2, pack, NULL},
+    .shader = {"forces/flocking", 2, pack, refuse},
 };
 #endif
