@@ -20,7 +20,7 @@ static void restart_clock(viewer_stage *stage) {
     stage->last = viewer_seconds();
     stage->simulated = stage->real = 0;
     stage->speed = 1;
-    stage->slow = false;
+    stage->slow = stage->told_slow = false;
     stage->sampled = 0;
     stage->grab.holding = false;
     stage->facts = stage->dirty = true;
