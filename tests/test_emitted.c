@@ -5,6 +5,8 @@
 #include "constraints/distance.c"
 #undef sk_distance
 
+extern const sk_constraint_type sk_distance;
+
 #include "helpers.h"
 #include "world/world.h"
 

@@ -24,6 +24,10 @@ void viewer_exchange_close(viewer_exchange *exchange) {
     for (int s = 0; s < VIEWER_SIDES; s++) {
         free(exchange->shown.sides[s].objects);
         free(exchange->shown.sides[s].entries);
+        for (viewer_own_field *own = exchange->shown.sides[s].own_fields, *next; own; own = next) {
+            next = own->next;
+            free(own);
+        }
     }
     free(exchange->shown.cards);
     free(exchange->queue);

@@ -63,13 +63,22 @@ typedef enum viewer_panel {
     VIEWER_PANEL_COUNT
 } viewer_panel;
 
+/* A field of one object alone, a parameter of its formulas: its kind goes with its world, and what is shown or asked
+ * for may be of a world that has just gone. */
+typedef struct viewer_own_field {
+    skein_field field;
+    char name[64];
+    struct viewer_own_field *next;
+} viewer_own_field;
+
 /* A field of something as it stands. */
 typedef struct viewer_entry {
     const skein_field *field;
     skein_value value;
-    double anchor;  /* its largest number when it was first seen: sliders are measured by it */
-    bool shapes;    /* a change builds the scene anew */
-    char text[120]; /* of a text */
+    double anchor; /* its largest number when it was first seen: sliders are measured by it */
+    bool shapes;   /* a change builds the scene anew */
+    bool cut;      /* of a longer text */
+    char text[VIEWER_TEXT];
 } viewer_entry;
 
 /* An object, the method, the view or the scene, with its fields. */
@@ -125,6 +134,7 @@ typedef struct viewer_side {
     size_t object_count, object_room;
     viewer_entry *entries;
     size_t entry_count, entry_room;
+    viewer_own_field *own_fields; /* each that there ever was */
     skein_statistics statistics;
     viewer_plots plots;
     viewer_pass passes[VIEWER_PASSES];

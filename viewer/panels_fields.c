@@ -55,7 +55,10 @@ static void describe(const viewer_entry *entry, char *text, size_t size) {
     if (number && field->most < 1e14) snprintf(limits, sizeof limits, ", %g to %g", field->least, field->most);
     else if (number && field->least > -1e14) snprintf(limits, sizeof limits, ", at least %g", field->least);
     snprintf(text, size, "%s\n%s%s%s%s%s%s%s", field->help, word[0] ? "default " : "", word, word[0] ? " " : "",
-             field->unit, limits, entry->shapes ? "\na change builds the scene anew" : "",
+             field->unit, limits,
+             entry->shapes ? "\na change builds the scene anew"
+             : entry->cut  ? "\ntoo long to be changed here"
+                           : "",
              number ? "\nCtrl and click: type a number; right button: more" : "");
 }
 
@@ -146,7 +149,10 @@ static void show_entry(viewer_panels *panels, const viewer_object *object, const
     }
     case SKEIN_FIELD_TEXT:
         snprintf(request.text, sizeof request.text, "%s", entry->text);
-        changed = widgets_input(field->name, request.text, 120);
+        if (strlen(entry->text) > 30 || strchr(entry->text, '\n'))
+            changed = widgets_input_lines(field->name, request.text, sizeof request.text);
+        else changed = widgets_input(field->name, request.text, sizeof request.text);
+        changed &= !entry->cut; // what does not fit must not replace what does
         request.value = skein_text(NULL);
         break;
     default: changed = show_number(entry, field->name, &request.value); break;

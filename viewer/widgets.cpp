@@ -195,6 +195,15 @@ bool widgets_input(const char *title, char *text, size_t size) {
     return ImGui::InputText(title, text, size, ImGuiInputTextFlags_EnterReturnsTrue);
 }
 
+bool widgets_input_lines(const char *title, char *text, size_t size) {
+    float lines = 2;
+    for (const char *c = text; *c; c++) lines += *c == '\n';
+    if (lines > 12) lines = 12;
+    ImVec2 room(ImGui::GetContentRegionAvail().x * 0.55f, ImGui::GetTextLineHeight() * (lines + 0.5f));
+    return ImGui::InputTextMultiline(title, text, size, room,
+                                     ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CtrlEnterForNewLine);
+}
+
 void widgets_help(const char *text) {
     if (!ImGui::IsItemHovered()) return;
     ImGui::BeginTooltip();

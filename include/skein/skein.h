@@ -190,7 +190,8 @@ const skein_error *skein_world_error(const skein_world *world);
 /* ---- Building ---------------------------------------------------------------------------------- */
 
 /* A polygon mesh, only read during the call it is given to. Faces are stored one after the other:
- * face f has `face_sizes[f]` corners (3 or more), 0-based indices into the vertices. */
+ * face f has `face_sizes[f]` corners (3 or more), 0-based indices into the vertices. For a body that is made of
+ * tetrahedra ("tetrahedra") each "face" is one of them, of four corners in any order. */
 typedef struct skein_mesh {
     const double *positions; /* vertex_count x 3, metres */
     size_t vertex_count;
@@ -301,6 +302,9 @@ typedef enum skein_device {
  * run on a card is named when a plan is made: by the next step, or by skein_world_explain(). */
 skein_status skein_world_device_set(skein_world *world, skein_device device);
 
+/* Waits until the steps asked for are done: a card works behind the calls. For measuring; nothing else needs it. */
+void skein_world_wait(const skein_world *world);
+
 typedef struct skein_device_info {
     skein_device device;
     const char *name;  /* "processor", or the card and its driver; as long as the device is the world's */
@@ -308,8 +312,9 @@ typedef struct skein_device_info {
     size_t bytes;      /* held on the card now */
     size_t pass_count; /* shaders that a step runs, and the loops around them */
     /* For drawing without reading back: OpenGL buffers of four floats a slot, x, y, z and the inverse mass, or velocity
-     * and mass; particle i is in slot slot_of[i]. 0 before the first step, and changed by whatever adds particles. */
-    unsigned position_buffer, velocity_buffer;
+     * and mass. 0 before the first step, and changed by whatever adds particles. Particle i is in slot slot_of[i]; or,
+     * where that is NULL, particle_buffer holds a whole number a slot, the particle there, and a step may change it. */
+    unsigned position_buffer, velocity_buffer, particle_buffer;
     const uint32_t *slot_of;
     size_t slot_count;
 } skein_device_info;
@@ -352,6 +357,15 @@ typedef struct skein_surface {
     const float *corner_uv;           /* face_vertex_count x 2, or NULL: see skein_body_uv_set() */
 } skein_surface;
 skein_status skein_body_surface(const skein_world *world, skein_handle body, skein_surface *surface);
+/* Sets of a body's particles that constraints can be made on. Faces are cut into triangles from their first corner. */
+typedef enum skein_elements {
+    SKEIN_EDGES,     /* 2: whatever the body's stretch is measured along */
+    SKEIN_TRIANGLES, /* 3 */
+    SKEIN_HINGES     /* 4: the ends of a side that two triangles share, and the corners across from it */
+} skein_elements;
+/* Copies up to `most` of them, with so many particles each; `count` receives how many there are. `out` may be NULL. */
+skein_status skein_body_elements(skein_world *world, skein_handle body, skein_elements what, uint32_t *out, size_t most,
+                                 size_t *count);
 /* Keeps texture coordinates for a body's surface, one pair for each corner of each face (so that a seam may have
  * two); they are for drawing only. `corner_count` is the surface's face_vertex_count. */
 skein_status skein_body_uv_set(skein_world *world, skein_handle body, const float *corner_uv, size_t corner_count);
@@ -383,8 +397,8 @@ typedef struct skein_contact {
 /* Copies up to `most` of the contacts of enabled colliders; `count` receives how many there are. */
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count);
 
-/* Where `count` points (count x 3) are seen from a collider's surface as it stands now: how far off, as contact takes it
- * (negative inside; far away, formulas may say 1e15), and the unit normals out of the solid. Either may be NULL. */
+/* Where `count` points (count x 3) are seen from a collider's surface as it stands now: how far off, as contact takes
+ * it (negative inside; far away, formulas may say 1e15), and the unit normals out of the solid. Either may be NULL. */
 skein_status skein_collider_probe(const skein_world *world, skein_handle collider, size_t count, const double *points,
                                   double *distances, double *normals);
 
@@ -421,7 +435,7 @@ typedef struct skein_statistics {
     uint64_t steps, substeps;
     double time;                /* s, simulated */
     double kinetic_energy;      /* J */
-    double potential_energy;    /* J, of gravity; 0 at the origin */
+    double potential_energy;    /* J, of gravity (0 at the origin) and potentials */
     double elastic_energy;      /* J, in constraints; what is rigid holds none */
     double dissipated_energy;   /* J: the energy when the first step began, less the energy now. What damping, friction,
                                    impacts and the method itself have taken; wind, moving colliders and changes made by

@@ -10,7 +10,7 @@
 #include "plan/row.h"
 #include "plan/shader.h"
 
-typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOURS } sk_domain;
+typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOURS, SK_OVER_COLLIDERS } sk_domain;
 
 /* What a rule's kernel writes, and when.
  *   pushes   adds newtons to F, in every stage of a method
@@ -23,8 +23,9 @@ typedef struct sk_force_type {
     skein_kind kind;
     sk_domain domain;
     sk_deed deed;
-    bool sets;                                 /* its kernel minds the row's `sets`: it can be the first to write F */
-    bool on_velocity;                          /* it depends on velocities, */
+    bool once;        /* what it bounds is bounded between kick and drift only, and not at the end of a substep */
+    bool sets;        /* its kernel minds the row's `sets`: it can be the first to write F */
+    bool on_velocity; /* it depends on velocities, */
     bool (*uses_velocity)(const void *params); /* or does so with these parameters; NULL: what on_velocity says */
     sk_kernels kernel;
     /* Adds the force to the sum if it is plain with these parameters, else returns false; NULL: it never is. */
@@ -49,9 +50,10 @@ typedef struct sk_force_type {
     /* The names of the body that it moves and of the one that it looks at: "" is every particle, and the same as it
      * moves. NULL: every particle. */
     void (*bodies)(const void *params, const char **moved, const char **seen);
-    /* Over particles it defines, for a rule that pushes, steers (w: how much more speed is allowed) or bounds (by
-     * `more` speed):
-     *     vec3 force@(vec3 x, vec3 v, float mass),   vec4 steer@(vec3 x, float dt),   vec3 bound@(vec3 v, float more)
+    /* Over particles it defines, for a rule that pushes, steers (w: how much more speed is allowed) or bounds
+     * (`steering` is what has been added to v in this substep):
+     *     vec3 force@(vec3 x, vec3 v, float mass),   vec4 steer@(vec3 x, float dt),
+     *     vec3 bound@(vec3 v, vec3 x, vec4 steering, float dt)
      * and over neighbours a sum of its own type, what each neighbour adds, and the newtons or metres a second that
      * come of it:
      *     sum@ start@(),   void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction),
@@ -59,13 +61,13 @@ typedef struct sk_force_type {
      * where `apart` leads from the neighbour here, `square` is its squared length (less than that of the radius, and
      * 0 in one place), and `direction` is the neighbour's unit direction of flight. */
     sk_shader shader;
+    /* Makes the state that the kernel needs besides the parameters, before a plan is written; *state is what it made
+     * the last time. On failure *state is NULL. NULL: there is none. */
+    skein_status (*prepare)(const void *params, void **state, sk_allocator *allocator, skein_error *error);
+    void (*release)(void *state, sk_allocator *allocator);
+    /* Over colliders: the time ahead (s), the clearance (m) and the strength (m/s2) of steering clear. */
+    void (*look)(const void *params, double look[3]);
 } sk_force_type;
-
-/* Particles of one body, or all: the user's indices, and the slots that they and nobody else lie in. */
-typedef struct sk_group {
-    size_t first, end;           /* particles */
-    size_t first_slot, end_slot; /* not always multiples of 16 */
-} sk_group;
 
 /* A force as methods see it: a type with its parameters. A row's rule is one of these. */
 typedef struct sk_force {
@@ -73,12 +75,13 @@ typedef struct sk_force {
     const void *params;
     const char *label;
     const bool *enabled;
+    void *state;          /* what the type has prepared from the parameters, or NULL */
     sk_group moved, seen; /* found when a plan is written */
 } sk_force;
 
 bool sk_force_on_velocity(const sk_force *force);
 
 extern const sk_force_type sk_gravity, sk_wind, sk_surface_wind, sk_drag, sk_separation, sk_flocking, sk_attraction,
-    sk_predator, sk_speed_limit, sk_force_field, sk_potential;
+    sk_predator, sk_lookout, sk_speed_limit, sk_turn_limit, sk_bounds, sk_force_field, sk_potential;
 
 #endif

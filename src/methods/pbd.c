@@ -11,6 +11,7 @@
 
 typedef struct pbd_params {
     int32_t substeps, iterations;
+    bool inertia;
 } pbd_params;
 
 static const skein_field fields[] = {
@@ -18,11 +19,29 @@ static const skein_field fields[] = {
            "equal parts that a step is cut into; more is firmer and more exact"),
     SK_INT(pbd_params, iterations, "iterations", "", 1, 1, 1000,
            "passes over the constraints in a substep, which share the stiffness; stiff ones come out stiffer"),
+    SK_BOOL(pbd_params, inertia, "inertia", 1,
+            "false: constraints move positions and nothing else does; velocities and forces are as if they were not"),
 };
+
+/* Projections alone: a solver for constraints. With velocities a spring that is at rest after one solve would fly on.
+ */
+static void write_projections_only(sk_writer *writer, const pbd_params *params, double h) {
+    size_t repeat = sk_write_repeat(writer, (size_t)params->substeps, h);
+    sk_write_moment(writer, 1);
+    if (sk_writes_velocity_forces(writer)) sk_write_sum(writer, SK_X0, 1, SK_X, 0, SK_NONE); // damping looks back
+    sk_write_shared_projections(writer, params->iterations);
+    sk_write_limits(writer, SK_NONE);
+    sk_write_contacts(writer, SK_CONTACT_PUSH);
+    sk_write_end(writer, repeat);
+}
 
 static void write(sk_writer *writer, const void *data, double dt) {
     const pbd_params *params = data;
     double h = dt / params->substeps;
+    if (!params->inertia) {
+        write_projections_only(writer, params, h);
+        return;
+    }
     // told of one pass: none keeps a multiplier for the next
     size_t repeat = sk_write_predicted_repeat(writer, (size_t)params->substeps, h, 1);
     sk_write_shared_projections(writer, params->iterations);

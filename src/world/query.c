@@ -15,6 +15,7 @@ static void cross(const double a[3], const double b[3], double out[3]) {
 }
 
 static void position_of(const skein_world *world, size_t particle, double x[3]) {
+    sk_world_fetch(world); // a device's positions come once; a failure stands in the world's error
     sk_vec4 p = world->particles.vector[SK_X][world->particles.slot_of[particle]];
     x[0] = (double)p.x, x[1] = (double)p.y, x[2] = (double)p.z;
 }

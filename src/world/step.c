@@ -53,6 +53,19 @@ static bool make_temporaries(skein_world *world) {
     return sk_particles_want(&world->particles, &world->allocator, wanted);
 }
 
+/* Memory for what the plan sorts, so that it cannot be wanting in the midst of a step. */
+static bool make_cells(skein_world *world) {
+    bool good = true;
+    for (size_t r = 0; r < world->plan.count && good; r++) {
+        const sk_row *row = &world->plan.data[r];
+        if (row->kind != SK_ROW_GRID) continue;
+        size_t count = row->end - row->begin;
+        good = row->by_particle ? sk_cells_reserve(&world->cells, &world->allocator, count)
+                                : sk_grid_reserve(&world->grid, &world->allocator, count);
+    }
+    return good;
+}
+
 /* The particles of the body of that name, or all where there is no name. False when there is no such body. */
 static bool find_group(const skein_world *world, const char *name, sk_group *group) {
     const sk_particles *all = &world->particles;
@@ -88,6 +101,8 @@ static skein_status find_groups(skein_world *world, skein_error *error) {
             return sk_fail(error, SKEIN_ERROR_NAME, force->label, "there is no body of the name '%s'", unknown);
         skein_status status =
             force->type->check ? force->type->check(force->params, world->particles.count, error) : SKEIN_OK;
+        if (!status && force->type->prepare)
+            status = force->type->prepare(force->params, &force->state, &world->allocator, error);
         if (status) return status;
     }
     return SKEIN_OK;
@@ -125,7 +140,8 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     if (!world->device) sk_write_pack(&writer);
     method->write(&writer, world->method_params, dt);
     if (!world->device) sk_write_unpack(&writer);
-    if (writer.no_memory || (!world->device && !make_temporaries(world))) return sk_fail_memory(error, "the plan");
+    if (writer.no_memory || (!world->device && (!make_temporaries(world) || !make_cells(world))))
+        return sk_fail_memory(error, "the plan");
     if (world->device && (status = world->device->prepare(world->device, world, error))) return status;
     world->plan_dt = dt;
     world->plan_stale = false;
@@ -202,20 +218,23 @@ static void add_to_passes(const sk_row *row, double seconds, skein_pass *out, si
 skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out, size_t most, size_t *count) {
     skein_error *error = sk_world_error(world);
     *count = 0;
-    double begin = sk_now();
     skein_status status = sk_world_compile(world, dt, error);
     if (status) return status;
+    if (world->device) { // whose rows run together
+        double start = sk_seconds();
+        status = take_step(world, dt, NULL, error);
+        skein_world_wait(world);
+        if (!status && most) out[0] = (skein_pass){.kind = "device", .seconds = sk_seconds() - start};
+        *count = status ? 0 : 1;
+        return status;
+    }
     double *seconds = sk_allocate(&world->allocator, world->plan.count * sizeof *seconds);
     if (!seconds) return sk_fail_memory(error, "the profile");
     memset(seconds, 0, world->plan.count * sizeof *seconds);
     status = take_step(world, dt, seconds, error);
-    for (size_t r = 0; r < world->plan.count && !status && !world->device; r++)
+    for (size_t r = 0; r < world->plan.count && !status; r++)
         if (world->plan.data[r].kind != SK_ROW_REPEAT)
             add_to_passes(&world->plan.data[r], seconds[r], out, most, count);
-    if (!status && world->device) {
-        *count = 1;
-        if (most) out[0] = (skein_pass){"device", "", sk_now() - begin};
-    }
     sk_release(&world->allocator, seconds);
     return status;
 }

@@ -85,6 +85,7 @@ struct sk_device {
     /* Copies X, V and P into the world's. */
     skein_status (*read)(sk_device *device, skein_world *world, skein_error *error);
     void (*release)(sk_device *device, skein_world *world);
+    void (*wait)(sk_device *device); /* until all that was asked for is done */
     bool ahead, behind;
 };
 
@@ -172,6 +173,7 @@ skein_status sk_settings_apply(sk_allocator *allocator, const skein_kind *kind, 
 const skein_field *sk_kind_field(const skein_kind *kind, const char *name, skein_error *error);
 /* Finds the particles' slots and cuts batches into sweeps, if anything was added. */
 skein_status sk_world_arrange(skein_world *world, skein_error *error);
+void sk_world_release_force(skein_world *world, sk_force *force);
 /* Brings the plan up to date for a step of dt. */
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error);
 /* Before the state is read: what a device is ahead comes back. It changes no state, only where it stands; a failure
@@ -189,8 +191,8 @@ double sk_stable_substep(const sk_method_type *method, const skein_stability *st
 /* Fills in the kinetic, potential and elastic energies, and the momenta. The slots are to be up to date. */
 void sk_world_measure_energy(const skein_world *world, skein_statistics *statistics);
 /* Runs rows in their order; the plan's are a whole step. `seconds`: of each row, what it takes is added to. */
+double sk_seconds(void); /* of a clock that only goes forward */
 void sk_run_rows_timed(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count, double *seconds);
-double sk_now(void); /* s, of a clock that only goes forward */
 /* The same without looking at the clock, and as fast as it can be. */
 void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count);
 
