@@ -18,8 +18,18 @@ static bool is_fall(const sk_row *row) {
     return sk_row_is(row, &sk_combine_fall) || sk_row_is(row, &sk_combine_fall_on);
 }
 
+/* Steering clear of a collider, which is the row's rule. */
+static bool is_avoid(const sk_row *row) {
+    return row->kind == SK_ROW_FIELD && sk_row_is(row, &sk_avoid);
+}
+
+static bool has_pose(const sk_row *row) {
+    return is_contact(row) || is_avoid(row);
+}
+
 /* Fields, neighbours, and bounds on velocities: limits on positions are of another sort. */
 static const sk_force *force_of(const sk_row *row) {
+    if (is_avoid(row)) return NULL;
     bool is_force =
         row->kind == SK_ROW_FIELD || row->kind == SK_ROW_NEIGHBOUR || (row->kind == SK_ROW_LIMIT && row->dst == SK_V);
     return is_force ? row->rule : NULL;
@@ -251,7 +261,7 @@ static void put_force(sk_gpu_text *text, const sk_row *row, size_t n, size_t par
     const char *dst = sk_gpu_vector_name(row->dst);
     put_guard(text, row, particle_count);
     if (is_avoid(row)) sk_gpu_put(text, "    %s += avoid%zu(X.xyz, V.xyz);\n", dst, n);
-    else if (row->kind == SK_ROW_NEIGHBOUR) sk_gpu_put(text, "    %s.xyz += walk%zu(place, X.xyz);\n", dst, n);
+    else if (row->kind == SK_ROW_NEIGHBOUR) sk_gpu_put(text, "    %s.xyz += walk%zu(place, X.xyz, V.xyz);\n", dst, n);
     else if (row->kind == SK_ROW_LIMIT)
         sk_gpu_put(text, "    V.xyz = bound%zu(V.xyz, X.xyz, %s, row%zu[0].w);\n", n,
                    row->source[2] == SK_NONE ? "vec4(0)" : "S", n);
