@@ -11,6 +11,7 @@
 #include "io/exporters.h"
 #include "io/mesh.h"
 #include "io/pc2.h"
+#include "io/recording.h"
 #ifdef SKEIN_RENDER
 #include "app/footage.h"
 #include "render/picture.h"
@@ -26,6 +27,15 @@ typedef struct cache {
     int every;
 } cache;
 
+/* One body's growing recording. */
+typedef struct record {
+    const io_recording_format *format;
+    void *file;
+    char path[PATH_SIZE]; /* without its ending */
+    size_t body;
+    int every;
+} record;
+
 struct app_outputs {
     const app_scene *loaded;
     char folder[FOLDER_SIZE];
@@ -35,7 +45,10 @@ struct app_outputs {
     io_export exports[MOST_EXPORTS];
     size_t export_count, body_count, cache_count;
     cache *caches;
-    double *positions; /* room for the largest body */
+    record *records;
+    size_t record_count;
+    double *velocities; /* room for the largest body, where there are recordings */
+    double *positions;  /* room for the largest body */
 #ifdef SKEIN_RENDER
     app_footage *footage; /* of the film, if one is made */
     char film_path[PATH_SIZE];
@@ -150,6 +163,29 @@ static bool begin_caches(app_outputs *outputs, const io_pc2_params *params) {
     return true;
 }
 
+/* Begins the recordings of all bodies, if the scene asks for them by name. */
+static bool begin_records(app_outputs *outputs, const io_export *wanted) {
+    const io_recording_format *format = io_recording_named(wanted->kind->name);
+    if (!wanted->asked) return true;
+    skein_surface surface;
+    for (size_t b = 0; b < outputs->body_count; b++) {
+        char path[PATH_SIZE + 8];
+        if (surface_of(outputs, b, &surface)) continue;
+        record *r = &outputs->records[outputs->record_count];
+        *r = (record){.format = format, .body = b, .every = ((const io_recording_params *)wanted->params)->every};
+        snprintf(r->path, sizeof r->path, "%s/%s", outputs->folder, outputs->names[b]);
+        snprintf(path, sizeof path, "%s%s", r->path, format->ending);
+        skein_error error = {SKEIN_OK, "", ""};
+        r->file = format->create(path, surface.particle_count, &error);
+        if (!r->file) {
+            app_print_error(&error);
+            return false;
+        }
+        outputs->record_count++;
+    }
+    return true;
+}
+
 #ifdef SKEIN_RENDER
 /* Begins the film, if the scene asks for one by name. */
 static bool begin_film(app_outputs *outputs, const io_export *wanted, bool quiet) {
@@ -168,10 +204,14 @@ static bool reserve(app_outputs *outputs) {
     skein_surface surface;
     for (size_t b = 0; b < outputs->body_count; b++)
         if (!surface_of(outputs, b, &surface) && surface.vertex_count > most) most = surface.vertex_count;
+    for (size_t b = 0; b < outputs->body_count; b++)
+        if (!surface_of(outputs, b, &surface) && surface.particle_count > most) most = surface.particle_count;
     outputs->positions = malloc(3 * most * sizeof *outputs->positions);
+    outputs->velocities = malloc(3 * most * sizeof *outputs->velocities);
+    outputs->records = calloc(2 * outputs->body_count + 1, sizeof *outputs->records);
     outputs->caches = calloc(outputs->body_count + 1, sizeof *outputs->caches);
     outputs->names = calloc(outputs->body_count + 1, sizeof *outputs->names);
-    return outputs->positions && outputs->caches && outputs->names;
+    return outputs->positions && outputs->velocities && outputs->records && outputs->caches && outputs->names;
 }
 
 /* Begins what grows with the run. */
@@ -179,6 +219,7 @@ static bool begin_export(app_outputs *outputs, const io_export *wanted, bool qui
     const char *kind = wanted->kind->name;
     (void)quiet;
     if (!strcmp(kind, "pc2")) return begin_caches(outputs, wanted->params);
+    if (io_recording_named(kind)) return begin_records(outputs, wanted);
 #ifdef SKEIN_RENDER
     if (!strcmp(kind, "film")) return begin_film(outputs, wanted, quiet);
 #endif
@@ -223,7 +264,25 @@ static void gather_vertices(const app_outputs *outputs, const skein_surface *sur
     }
 }
 
+static bool add_records(app_outputs *outputs, int frame) {
+    skein_world *world = outputs->loaded->world;
+    for (size_t i = 0; i < outputs->record_count; i++) {
+        const record *r = &outputs->records[i];
+        skein_surface s;
+        skein_error error = {SKEIN_OK, "", ""};
+        if (frame % r->every || surface_of(outputs, r->body, &s)) continue;
+        skein_positions_copy(world, s.first_particle, s.particle_count, outputs->positions);
+        skein_velocities_copy(world, s.first_particle, s.particle_count, outputs->velocities);
+        if (!r->format->add(r->file, skein_world_time(world), outputs->positions, outputs->velocities, &error))
+            continue;
+        app_print_error(&error);
+        return false;
+    }
+    return true;
+}
+
 bool app_outputs_frame(app_outputs *outputs, int frame) {
+    if (!add_records(outputs, frame)) return false;
     for (size_t i = 0; i < outputs->cache_count; i++) {
         cache *c = &outputs->caches[i];
         skein_surface surface;
@@ -288,6 +347,18 @@ bool app_outputs_finish(app_outputs *outputs, void (*wrote)(void *user, const ch
         c->writer = NULL;
         note(&book, c->path, status, &error);
     }
+    for (size_t i = 0; i < outputs->record_count; i++) {
+        record *r = &outputs->records[i];
+        char path[PATH_SIZE + 8];
+        skein_error error = {SKEIN_OK, "", ""};
+        skein_status status = r->format->commit(r->file, &error);
+        r->file = NULL;
+        for (const char *ending = r->format->ending; ending;
+             ending = status || ending != r->format->ending ? NULL : r->format->second) {
+            snprintf(path, sizeof path, "%s%s", r->path, ending);
+            note(&book, path, status, &error);
+        }
+    }
     for (size_t e = 0; e < outputs->export_count; e++) {
         const char *kind = outputs->exports[e].kind->name;
         if (!strcmp(kind, "obj")) write_objs(outputs, outputs->exports[e].params, &book);
@@ -314,7 +385,11 @@ void app_outputs_abandon(app_outputs *outputs) {
 #ifdef SKEIN_RENDER
     app_footage_abandon(outputs->footage);
 #endif
+    for (size_t i = 0; i < outputs->record_count; i++)
+        if (outputs->records[i].file) outputs->records[i].format->abandon(outputs->records[i].file);
     remove_folders(outputs);
+    free(outputs->records);
+    free(outputs->velocities);
     free(outputs->caches);
     free(outputs->names);
     free(outputs->positions);

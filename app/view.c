@@ -1,7 +1,9 @@
 /* skein view [SCENE|MESH]: the window. */
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "app/command.h"
 #ifdef SKEIN_VIEWER
@@ -95,6 +97,10 @@ static int view(int argc, char **argv) {
     int status = app_parse(&app_view_command, argc, argv, options, OPTION_COUNT, NULL, &path);
     if (status == EXIT_OK) print_keys();
     if (status < 0 && !read_options(options, &asked)) status = EXIT_FAULT;
+    if (status < 0 && path && access(path, R_OK)) {
+        fprintf(stderr, "skein view: %s: cannot read: %s\n", path, strerror(errno));
+        status = EXIT_FAULT;
+    }
     if (status < 0) {
         asked.path = path;
         status = viewer_run(&asked, &error) ? EXIT_FAILURE_RUN : EXIT_OK;

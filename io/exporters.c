@@ -31,6 +31,17 @@ static const skein_field pc2_fields[] = {
      .help = "one sample each so many frames"},
 };
 
+static const skein_field recording_fields[] = {
+    {.name = "every",
+     .type = SKEIN_FIELD_INT,
+     .offset = offsetof(io_recording_params, every),
+     .unit = "frames",
+     .initial = {1, 0, 0},
+     .least = 1,
+     .most = 1000000,
+     .help = "one sample each so many frames"},
+};
+
 static const skein_kind kinds[] = {
     {.name = "obj",
      .help = "Wavefront OBJ of the last frame: the mesh as it came, with unit vertex normals.",
@@ -44,6 +55,20 @@ static const skein_kind kinds[] = {
      .fields = pc2_fields,
      .field_count = COUNT(pc2_fields),
      .params_size = sizeof(io_pc2_params)},
+    {.name = "csv",
+     .help = "Positions and velocities of the run as comma separated values; only where a scene asks for it.",
+     .category = SKEIN_EXPORTER,
+     .fields = recording_fields,
+     .field_count = COUNT(recording_fields),
+     .params_size = sizeof(io_recording_params)},
+#ifdef SKEIN_HDF5
+    {.name = "hdf5",
+     .help = "The same as HDF5, with an XDMF index beside it for ParaView; only where a scene asks for it.",
+     .category = SKEIN_EXPORTER,
+     .fields = recording_fields,
+     .field_count = COUNT(recording_fields),
+     .params_size = sizeof(io_recording_params)},
+#endif
 };
 
 const skein_kind *io_exporter_at(size_t index) {

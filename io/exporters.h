@@ -17,6 +17,11 @@ typedef struct io_pc2_params {
     int32_t every; /* frames from one sample to the next */
 } io_pc2_params;
 
+/* csv and hdf5. */
+typedef struct io_recording_params {
+    int32_t every; /* frames from one sample to the next */
+} io_recording_params;
+
 /* The exporters, `index` from 0; NULL past the end. */
 const skein_kind *io_exporter_at(size_t index);
 

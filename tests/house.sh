@@ -129,7 +129,7 @@ kinds=$(code 0 src/catalogue.c | awk '
         }
         if (ends) list = 0
     }')
-ordinary='angle area box bowl distance drag energy formula mesh plane potential self sphere volume' # also plain words: as sk_WORD only
+ordinary='angle area bounds box bowl distance drag energy formula mesh plane potential self sphere volume' # also plain words: as sk_WORD only
 [ -n "$kinds" ] || echo "src/catalogue.c:1: tests/house.sh finds no kind in it" >>"$faults"
 code 1 "$(find src/world src/gpu -name '*.[ch]' | sort)" | awk -v kinds="$kinds lattice rope flock" -v ordinary=" $ordinary " '
     BEGIN { count = split(kinds, kind, /[ \n]+/) }

@@ -106,6 +106,85 @@ static void birds_see_ahead_and_the_nearest(void **state) {
     skein_world_destroy(world);
 }
 
+/* ---- Weights as formulas -------------------------------------------------------------------------- */
+
+static uint64_t fly(const char *isa, const char *towards, const char *along, vec3 *v, size_t count, double nearest) {
+    setenv("SKEIN_SIMD", isa, 1);
+    skein_world *world = flock_of((int)count, 220, 1e-3);
+    unsetenv("SKEIN_SIMD");
+    OK(world,
+       skein_force_add(world, "flocking",
+                       SKEIN_SETTINGS(SKEIN_TEXT("formula.towards", towards), SKEIN_TEXT("formula.along", along),
+                                      SKEIN_REAL("nearest", nearest), SKEIN_REAL("view", nearest > 0 ? 300 : 360)),
+                       NULL));
+    steps(world, 1, dt);
+    OK(world, skein_velocities_copy(world, 0, count, &v[0].x));
+    uint64_t hash = skein_world_hash(world);
+    skein_world_destroy(world);
+    return hash;
+}
+
+/* The zones written as formulas give what the zones give; one of the two may be left out. */
+static void weights_may_be_formulas(void **state) {
+    (void)state;
+    enum { COUNT_ = 600 };
+    static vec3 plain[COUNT_], is[COUNT_], first[COUNT_], second[COUNT_], start[COUNT_];
+    const char *towards = "select(percent < 0.45, 1 - 0.45/percent, select(percent < 0.65, 0, "
+                          "0.5*cos(2*pi*(percent - 0.65)/0.35)))",
+               *along =
+                   "let a = (percent - 0.45)/0.2; select(percent >= 0.45 && percent < 0.65, 1 - 0.5*cos(2*pi*a), 0)";
+    skein_world *world = flock_of(COUNT_, 220, 1e-3);
+    OK(world, skein_velocities_copy(world, 0, COUNT_, &start[0].x));
+    skein_world_destroy(world);
+    for (int nearest = 0; nearest < 20; nearest += 9) {
+        fly("sse", "", "", plain, COUNT_, nearest);
+        uint64_t hash = fly("sse", towards, along, is, COUNT_, nearest);
+        fly("sse", towards, "", first, COUNT_, nearest), fly("sse", "", along, second, COUNT_, nearest);
+        for (int i = 0; i < COUNT_; i++) {
+            vec3 ought = minus(plain[i], start[i]),
+                 both = plus(minus(first[i], start[i]), 1, minus(second[i], start[i]));
+            assert_under(length3(minus(minus(is[i], start[i]), ought)) / dt, 2e-4);
+            assert_under(length3(minus(both, ought)) / dt, 2e-4);
+        }
+        assert_true(fly("avx2", towards, along, is, COUNT_, nearest) == hash);
+        assert_true(fly("avx512", towards, along, is, COUNT_, nearest) == hash);
+    }
+    // by hand, with the time; what is not finite counts for nothing
+    world = new_world("symplectic_euler", 1);
+    add_particle(world, 1, 0, 0, 0), add_moving(world, 1, 0, 50, 0, 0, 0, 3);
+    skein_handle rule;
+    OK(world, skein_force_add(
+                  world, "flocking",
+                  SKEIN_SETTINGS(SKEIN_TEXT("formula.towards", "3 - 2*percent"), SKEIN_TEXT("formula.along", "100*t")),
+                  &rule));
+    steps(world, 1, 0.01);
+    assert_near(velocity_of(world, 0).y, 0.02, 1e-7);
+    assert_near(velocity_of(world, 0).z, 0.01, 1e-7); // t is the end of the substep
+    OK(world, skein_set(world, rule, "formula.towards", skein_text("exp(1e3*percent)^9")));
+    OK(world, skein_set(world, rule, "formula.along", skein_text("")));
+    vec3 v = velocity_of(world, 0);
+    steps(world, 1, 0.01);
+    assert_under(length3(minus(velocity_of(world, 0), v)), 0);
+    // faults are told with the field and the place
+    static const struct {
+        const char *text, *words;
+    } faults[] = {{"percent +", "formula.towards"},
+                  {"distance*2", "formula.towards"},
+                  {"length(p0)", "depends on particles"},
+                  {"vec3(1, 2, 3)", "formula.towards"}};
+    for (size_t i = 0; i < COUNT(faults); i++) {
+        OK(world, skein_set(world, rule, "formula.towards", skein_text(faults[i].text)));
+        skein_status status = skein_world_step(world, 0.01);
+        const skein_error *error = skein_world_error(world);
+        assert_true(status && (strstr(error->message, faults[i].words) || strstr(error->where, faults[i].words)));
+    }
+    OK(world, skein_set(world, rule, "formula.towards", skein_text("1")));
+    steps(world, 1, 0.01);
+    OK(world, skein_remove(world, rule));
+    steps(world, 1, 0.01);
+    skein_world_destroy(world);
+}
+
 /* ---- Limits --------------------------------------------------------------------------------------- */
 
 static void turning_and_climbing_are_limited(void **state) {
@@ -315,9 +394,9 @@ static void birds_and_cloth_mind_each_other(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(birds_see_ahead_and_the_nearest),         cmocka_unit_test(turning_and_climbing_are_limited),
-        cmocka_unit_test(bounds_are_not_left_by_more_than_a_step), cmocka_unit_test(obstacles_are_looked_ahead_for),
-        cmocka_unit_test(birds_and_cloth_mind_each_other),
+        cmocka_unit_test(birds_see_ahead_and_the_nearest),  cmocka_unit_test(weights_may_be_formulas),
+        cmocka_unit_test(turning_and_climbing_are_limited), cmocka_unit_test(bounds_are_not_left_by_more_than_a_step),
+        cmocka_unit_test(obstacles_are_looked_ahead_for),   cmocka_unit_test(birds_and_cloth_mind_each_other),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

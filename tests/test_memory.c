@@ -120,7 +120,10 @@ static skein_status make_call(scenario *s) {
     case 28:
         return skein_body_add(s->world, "flock", NULL,
                               SKEIN_SETTINGS(SKEIN_TEXT("name", "birds"), SKEIN_REAL("count", 40)), NULL);
-    case 29: return skein_force_add(s->world, "flocking", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL);
+    case 29:
+        return skein_force_add(
+            s->world, "flocking",
+            SKEIN_SETTINGS(SKEIN_TEXT("on", "birds"), SKEIN_TEXT("formula.towards", "1 - percent^2")), NULL);
     case 30: return skein_force_add(s->world, "predator", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL);
     case 31: return skein_force_add(s->world, "speed_limit", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL);
     case 32:

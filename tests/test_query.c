@@ -76,9 +76,11 @@ static double meet_ball(vec3 from, vec3 along, double radius, bool leave) {
     return root < 0 ? INFINITY : -b + (leave ? 1 : -1) * sqrt(root);
 }
 
+/* A ball, one that a formula says which is no distance, and a bowl. */
 static void rays_meet_balls_and_bowls(void **state) {
-    skein_world *ball = empty_world(), *bowl = empty_world();
+    skein_world *ball = empty_world(), *bowl = empty_world(), *said = empty_world();
     (void)state;
+    OK(said, skein_collider_add(said, "formula", SKEIN_SETTINGS(SKEIN_TEXT("surface", "dot(p, p) - 0.64")), NULL));
     OK(ball, skein_collider_add(ball, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.8)), NULL));
     OK(bowl, skein_collider_add(bowl, "bowl", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.8)), NULL));
     uint64_t seed = 2;
@@ -93,6 +95,8 @@ static void rays_meet_balls_and_bowls(void **state) {
         if (ought < INFINITY && out - ought < 0.05) continue; // it only grazes
         skein_hit hit = cast(ball, from, along, SKEIN_COLLIDER);
         assert_int_equal(hit.t < INFINITY, ought < INFINITY);
+        skein_hit formula = cast(said, from, along, SKEIN_COLLIDER);
+        assert_int_equal(formula.t < INFINITY, ought < INFINITY);
         skein_hit wall = cast(bowl, from, along, SKEIN_COLLIDER);
         assert_int_equal(wall.t < INFINITY, out < INFINITY);
         if (isinf(ought)) continue;
@@ -100,6 +104,7 @@ static void rays_meet_balls_and_bowls(void **state) {
         // rounding in the distance, on a surface that leans so much against the ray
         double lean = (out - ought) / 2 / 0.8, off = 2e-5 / lean;
         assert_near(hit.t, ought, off);
+        assert_near(formula.t, ought, off);
         assert_int_equal(hit.particle, UINT32_MAX);
         for (int k = 0; k < 3; k++) assert_near(hit.normal[k], hit.point[k] / 0.8, 1e-3);
         // one looks into a bowl from outside, and sees its far wall
@@ -107,6 +112,7 @@ static void rays_meet_balls_and_bowls(void **state) {
         for (int k = 0; k < 3; k++) assert_near(wall.normal[k], -wall.point[k] / 0.8, 1e-3);
     }
     assert_true(met > 100);
+    skein_world_destroy(said);
     skein_world_destroy(ball);
     skein_world_destroy(bowl);
 }

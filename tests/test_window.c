@@ -95,11 +95,11 @@ static void switches_methods_and_colours(void **state) {
     word_of("method", method_before);
     press_key("9");
     assert_string_equal(word_of("method", method), "pbd");
-    for (int i = 0; i < 3; i++) {
-        char key[8];
-        snprintf(key, sizeof key, "%d", i + 2);
+    for (int i = 0; i < 9; i++) {
+        char key[16];
+        snprintf(key, sizeof key, "%d", i + 1);
         press_key(key);
-        assert_string_equal(word_of("method", method), skein_kind_at(SKEIN_METHOD, (size_t)i + 1)->name);
+        assert_string_equal(word_of("method", method), skein_kind_at(SKEIN_METHOD, (size_t)i)->name);
     }
     press_key("8");
     assert_string_equal(word_of("method", method), "xpbd");
@@ -500,6 +500,20 @@ static void solves_by_keys(void **state) {
     free(said);
 }
 
+/* A scene with a fault opens as soon as it is mended. */
+static void waits_for_a_mended_scene(void **state) {
+    (void)state;
+    write_text(in_folder("broken.json"), "{ \"bodies\": [ { \"type\": \"clot\" } ] }");
+    const char *const arguments[] = {in_folder("broken.json"), "--size", "640x360", "--paused", NULL};
+    open_window(arguments);
+    expect("warning ");
+    assert_contains(screen.line, "bodies.0.type: there is no body 'clot'; did you mean 'cloth'?");
+    expect("cannot open ");
+    write_scene(in_folder("broken.json"), hanging);
+    expect("opened particles=81 ");
+    close_window();
+}
+
 /* Two worlds, in step; and without the focus they wait, if they are asked to. */
 static void compares_and_waits_for_the_focus(void **state) {
     const char *const arguments[] = {in_folder("scenes/sheet.json"),
@@ -592,6 +606,7 @@ static void refuses_bad_arguments(void **state) {
     assert_says(2, "", "skein view: --unfocused often: expected scene, pause or play\n", "view", "--unfocused",
                 "often");
     assert_says(2, "", "skein view: --scale big: expected a number from 0.5 to 8\n", "view", "--scale", "big");
+    assert_says(2, "", "skein view: no/such.json: cannot read: No such file or directory\n", "view", "no/such.json");
     outcome help = SKEIN("view", "--help");
     assert_status(help, 0);
     assert_contains(help.out, "Backspace    puts the scene back to its start");
@@ -634,6 +649,7 @@ int main(void) {
         cmocka_unit_test(closes_cleanly),
         cmocka_unit_test(pictures_agree_with_the_offscreen_path),
         cmocka_unit_test(solves_by_keys),
+        cmocka_unit_test(waits_for_a_mended_scene),
         cmocka_unit_test(compares_and_waits_for_the_focus),
         cmocka_unit_test(steers_a_flock),
     };

@@ -24,6 +24,10 @@ void viewer_exchange_close(viewer_exchange *exchange) {
     for (int s = 0; s < VIEWER_SIDES; s++) {
         free(exchange->shown.sides[s].objects);
         free(exchange->shown.sides[s].entries);
+        for (viewer_own_field *own = exchange->shown.sides[s].own_fields, *next; own; own = next) {
+            next = own->next;
+            free(own);
+        }
     }
     free(exchange->shown.cards);
     free(exchange->queue);
@@ -33,11 +37,19 @@ void viewer_exchange_close(viewer_exchange *exchange) {
     pthread_mutex_destroy(&exchange->lock);
 }
 
+/* Whether only the later of two requests matters: of the pointer's places, and of a slider's values. */
+static bool replaces(const viewer_request *later, const viewer_request *last) {
+    if (later->kind != last->kind) return false;
+    return later->kind == VIEWER_MOVE ||
+           (later->kind == VIEWER_SET && later->field == last->field && later->category == last->category &&
+            later->index == last->index && later->side == last->side);
+}
+
 void viewer_ask(viewer_exchange *exchange, const viewer_request *request) {
     pthread_mutex_lock(&exchange->queue_lock);
     size_t count = exchange->queue_count;
     viewer_request *last = count ? &exchange->queue[count - 1] : NULL;
-    if (last && request->kind == VIEWER_MOVE && last->kind == VIEWER_MOVE) {
+    if (last && replaces(request, last)) {
         *last = *request;
     } else {
         if (count == exchange->queue_room) {

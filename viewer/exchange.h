@@ -13,7 +13,7 @@
 #include "skein/skein.h"
 #include "viewer/events.h"
 
-enum { VIEWER_TEXT = 1024, VIEWER_PICTURES = 3, VIEWER_SIDES = 2, VIEWER_SAMPLES = 240, VIEWER_LOG_LINES = 200 };
+enum { VIEWER_TEXT = 1024, VIEWER_PICTURES = 4, VIEWER_SIDES = 2, VIEWER_SAMPLES = 240, VIEWER_LOG_LINES = 200 };
 
 /* ---- requests ---- */
 
@@ -63,13 +63,22 @@ typedef enum viewer_panel {
     VIEWER_PANEL_COUNT
 } viewer_panel;
 
+/* A field of one object alone, a parameter of its formulas: its kind goes with its world, and what is shown or asked
+ * for may be of a world that has just gone. */
+typedef struct viewer_own_field {
+    skein_field field;
+    char name[64];
+    struct viewer_own_field *next;
+} viewer_own_field;
+
 /* A field of something as it stands. */
 typedef struct viewer_entry {
     const skein_field *field;
     skein_value value;
-    double anchor;  /* its largest number when it was first seen: sliders are measured by it */
-    bool shapes;    /* a change builds the scene anew */
-    char text[120]; /* of a text */
+    double anchor; /* its largest number when it was first seen: sliders are measured by it */
+    bool shapes;   /* a change builds the scene anew */
+    bool cut;      /* of a longer text */
+    char text[VIEWER_TEXT];
 } viewer_entry;
 
 /* An object, the method, the view or the scene, with its fields. */
@@ -125,6 +134,7 @@ typedef struct viewer_side {
     size_t object_count, object_room;
     viewer_entry *entries;
     size_t entry_count, entry_room;
+    viewer_own_field *own_fields; /* each that there ever was */
     skein_statistics statistics;
     viewer_plots plots;
     viewer_pass passes[VIEWER_PASSES];
@@ -137,7 +147,7 @@ typedef struct viewer_shown {
     uint64_t generation;                /* changes with the pictures */
     int newest, in_use;                 /* places of pictures; -1: none. in_use is the window's */
     char title[256], message[240];
-    bool has_scene, paused, recording, flying, by_key, play_away, slow, finished;
+    bool has_scene, paused, recording, flying, by_key, play_away, slow, finished /* the stage has ended */;
     bool panel[VIEWER_PANEL_COUNT];
     uint64_t frame, first_frame, last_frame; /* of the history */
     double time, speed;                      /* s; simulated over real time */
@@ -162,7 +172,8 @@ typedef struct viewer_exchange {
 bool viewer_exchange_open(viewer_exchange *exchange, const viewer_events *events);
 void viewer_exchange_close(viewer_exchange *exchange);
 
-/* Puts a request into the queue (a move replaces a move before it). Without memory it is dropped, and said. */
+/* Puts a request into the queue (a move replaces a move right before it, a field's new value
+ * the one before). Without memory it is dropped, and said. */
 void viewer_ask(viewer_exchange *exchange, const viewer_request *request);
 /* Waits until something is asked, at most so long; returns what was asked, in order, valid until the next call. */
 const viewer_request *viewer_take(viewer_exchange *exchange, double seconds, size_t *count);

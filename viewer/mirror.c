@@ -60,6 +60,7 @@ static bool add_entry(viewer_side *side, const skein_field *field, skein_value v
     if (!reserve(&side->entries, &side->entry_room, side->entry_count + 1, sizeof *side->entries)) return false;
     viewer_entry *entry = &side->entries[side->entry_count];
     *entry = (viewer_entry){.field = field, .value = value, .anchor = largest(&value), .shapes = shapes};
+    entry->cut = value.text && strlen(value.text) >= sizeof entry->text;
     snprintf(entry->text, sizeof entry->text, "%s", value.text ? value.text : "");
     entry->value.text = NULL;
     side->entry_count++;
@@ -76,24 +77,41 @@ static bool begin_object(viewer_side *side, skein_category category, size_t inde
     return true;
 }
 
+/* The field itself, or one that stays where it is an object's own. NULL when there is no memory. */
+static const skein_field *field_to_keep(viewer_side *side, const skein_field *field) {
+    if (strncmp(field->name, "parameters.", 11) != 0) return field;
+    for (viewer_own_field *own = side->own_fields; own; own = own->next)
+        if (!strcmp(own->name, field->name)) return &own->field;
+    viewer_own_field *own = calloc(1, sizeof *own);
+    if (!own) return NULL;
+    own->field = *field;
+    snprintf(own->name, sizeof own->name, "%s", field->name);
+    own->field.name = own->name;
+    own->next = side->own_fields;
+    side->own_fields = own;
+    return &own->field;
+}
+
 static void add_fields(viewer_side *side, const skein_world *world, skein_handle handle, const skein_field *fields,
                        size_t count) {
     for (size_t f = 0; f < count; f++) {
         skein_value value;
         if (skein_get(world, handle, fields[f].name, &value)) continue;
-        add_entry(side, &fields[f], value, !skein_field_is_live(world, handle, fields[f].name));
+        const skein_field *field = field_to_keep(side, &fields[f]);
+        if (field) add_entry(side, field, value, !skein_field_is_live(world, handle, field->name));
     }
 }
 
 static void add_objects(viewer_side *side, const skein_world *world, skein_category category) {
     for (size_t i = 0; i < skein_object_count(world, category); i++) {
         skein_handle handle = skein_object_at(world, category, i);
-        const skein_kind *kind = skein_object_kind(world, handle);
+        const skein_kind *kind = skein_object_kind(world, handle),
+                         *listed = skein_kind_find(category, kind->name, NULL);
         skein_value name = {0, {0, 0, 0}, NULL};
         size_t common_count;
         const skein_field *common = skein_common_fields(category, &common_count);
         bool named = category != SKEIN_METHOD && !skein_get(world, handle, "name", &name) && name.text && name.text[0];
-        if (!begin_object(side, category, i, kind, named ? name.text : kind->name)) return;
+        if (!begin_object(side, category, i, listed ? listed : kind, named ? name.text : kind->name)) return;
         add_fields(side, world, handle, kind->fields, kind->field_count);
         if (category != SKEIN_METHOD) add_fields(side, world, handle, common, common_count);
         side->object_count++;

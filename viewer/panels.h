@@ -19,13 +19,17 @@ typedef struct viewer_panels {
     viewer_exchange *exchange;
     viewer_place places[VIEWER_PLACES];
     size_t place_count;
-    char text[VIEWER_TEXT]; /* being typed */
+    viewer_request asked; /* the last value that was asked for: shown until the stage, in its own time, has it */
+    double asked_at;
     char compare[VIEWER_TEXT];
 } viewer_panels;
 
 void viewer_panels_show(viewer_panels *panels, int width, int height);
 
 /* ---- between the panels' files ---- */
+
+/* The seconds after which a value that was asked for, and refused or lost, is not shown any more. */
+extern const double viewer_asked_for_long;
 
 /* Tells the events where the last control is, if that is new. */
 void viewer_place_control(viewer_panels *panels, const char *name);

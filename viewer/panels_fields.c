@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "viewer/panels.h"
+#include "viewer/stage.h"
 
 /* A range that is wider than so many steps is no use as a slider: it is then measured by the default. */
 static const double widest = 1e4, many_times = 100;
@@ -54,11 +55,37 @@ static void describe(const viewer_entry *entry, char *text, size_t size) {
     if (number && field->most < 1e14) snprintf(limits, sizeof limits, ", %g to %g", field->least, field->most);
     else if (number && field->least > -1e14) snprintf(limits, sizeof limits, ", at least %g", field->least);
     snprintf(text, size, "%s\n%s%s%s%s%s%s%s", field->help, word[0] ? "default " : "", word, word[0] ? " " : "",
-             field->unit, limits, entry->shapes ? "\na change builds the scene anew" : "",
+             field->unit, limits,
+             entry->shapes ? "\na change builds the scene anew"
+             : entry->cut  ? "\ntoo long to be changed here"
+                           : "",
              number ? "\nCtrl and click: type a number; right button: more" : "");
 }
 
 /* ---- One field ---- */
+
+const double viewer_asked_for_long = 5;
+
+/* The value to show: that which was asked for last, as long as the stage has not got to it. */
+static skein_value value_of(viewer_panels *panels, const viewer_object *object, const viewer_entry *entry, int side) {
+    viewer_request *asked = &panels->asked;
+    bool same = asked->field == entry->field && asked->category == object->category && asked->index == object->index &&
+                asked->side == side;
+    if (!same || entry->field->type == SKEIN_FIELD_TEXT) return entry->value;
+    bool there = !memcmp(asked->value.number, entry->value.number, sizeof entry->value.number) && !asked->down;
+    if (there || (!asked->down && viewer_seconds() - panels->asked_at > viewer_asked_for_long)) {
+        asked->field = NULL;
+        return entry->value;
+    }
+    return asked->value;
+}
+
+/* Notes what is to be shown from now on; `down`: it is not asked for before the control is let go. */
+static void keep_asked(viewer_panels *panels, const viewer_request *request, bool down) {
+    panels->asked = *request;
+    panels->asked.down = down;
+    panels->asked_at = viewer_seconds();
+}
 
 static viewer_request request_for(const viewer_object *object, const viewer_entry *entry, int side) {
     viewer_request request = {.kind = VIEWER_SET,
@@ -103,29 +130,39 @@ static bool show_menu(const viewer_entry *entry, skein_value *value) {
 static void show_entry(viewer_panels *panels, const viewer_object *object, const viewer_entry *entry, int side) {
     const skein_field *field = entry->field;
     viewer_request request = request_for(object, entry, side);
+    request.value = value_of(panels, object, entry, side);
     char name[200], help[700];
     bool changed = false;
     widgets_push(entry->field);
     switch (field->type) {
     case SKEIN_FIELD_BOOL: {
-        bool on = entry->value.number[0] != 0;
+        bool on = request.value.number[0] != 0;
         changed = widgets_tick(field->name, &on);
         request.value = skein_number(on);
         break;
     }
     case SKEIN_FIELD_CHOICE: {
-        int place = (int)entry->value.number[0];
+        int place = (int)request.value.number[0];
         changed = widgets_choice(field->name, field->choices, &place);
         request.value = skein_number(place);
         break;
     }
     case SKEIN_FIELD_TEXT:
         snprintf(request.text, sizeof request.text, "%s", entry->text);
-        changed = widgets_input(field->name, request.text, 120);
+        if (strlen(entry->text) > 30 || strchr(entry->text, '\n'))
+            changed = widgets_input_lines(field->name, request.text, sizeof request.text);
+        else changed = widgets_input(field->name, request.text, sizeof request.text);
+        changed &= !entry->cut; // what does not fit must not replace what does
         request.value = skein_text(NULL);
         break;
     default: changed = show_number(entry, field->name, &request.value); break;
     }
+    // what builds the scene anew waits until the slider is let go
+    bool slider =
+        field->type != SKEIN_FIELD_BOOL && field->type != SKEIN_FIELD_CHOICE && field->type != SKEIN_FIELD_TEXT;
+    bool waits = slider && entry->shapes && !widgets_released();
+    if (changed && waits) keep_asked(panels, &request, true);
+    if (slider && entry->shapes) changed = !waits;
     snprintf(name, sizeof name, "%s%s.%zu.%.60s", side ? "other " : "", skein_category_text(object->category),
              object->index, field->name);
     viewer_place_control(panels, name);
@@ -134,7 +171,9 @@ static void show_entry(viewer_panels *panels, const viewer_object *object, const
     if (request.value.count > 0 && field->type != SKEIN_FIELD_BOOL && field->type != SKEIN_FIELD_CHOICE)
         changed |= show_menu(entry, &request.value);
     widgets_pop();
-    if (changed) viewer_ask(panels->exchange, &request);
+    if (!changed) return;
+    keep_asked(panels, &request, false);
+    viewer_ask(panels->exchange, &request);
 }
 
 /* ---- Objects ---- */

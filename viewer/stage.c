@@ -242,12 +242,16 @@ static void *stage_thread(void *data) {
         viewer_gallery_close(stage);
         for (size_t s = 0; s < VIEWER_SIDES; s++) viewer_player_close(&stage->sides[s]);
     } else {
-        viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", error.where, error.message);
+        stage->failure = error;
     }
     viewer_pictures_close(stage);
     viewer_event(stage->events, "opengl stage errors=%zu warnings=%zu %s", stage->messages.errors,
                  stage->messages.warnings, stage->messages.last);
     glfwMakeContextCurrent(NULL);
+    pthread_mutex_lock(&stage->exchange->lock);
+    stage->exchange->shown.finished = true;
+    pthread_mutex_unlock(&stage->exchange->lock);
+    if (stage->exchange->wake) stage->exchange->wake();
     return NULL;
 }
 

@@ -21,6 +21,7 @@
 typedef struct GLFWwindow GLFWwindow;
 
 typedef struct viewer_stage {
+    skein_error failure; /* why there is no stage */
     const viewer_options *options;
     const viewer_events *events;
     viewer_exchange *exchange;
@@ -31,6 +32,7 @@ typedef struct viewer_stage {
     viewer_player sides[VIEWER_SIDES];
     size_t side_count; /* 0: the gallery alone */
     char compare[VIEWER_TEXT];
+    char wanted[VIEWER_TEXT]; /* a scene that could not be opened: tried again when its file changes */
     viewer_camera camera;
     viewer_grab grab;
     skein_pacer pacer;

@@ -144,11 +144,14 @@ void viewer_film_frame(viewer_stage *stage) {
 
 void viewer_watch(viewer_stage *stage, bool only_note) {
     struct stat info;
-    if (!stage->side_count || stat(stage->sides[0].path, &info)) return; // away for a moment: editors do that
+    const char *path = stage->side_count ? stage->sides[0].path : stage->wanted;
+    if (!path[0] || stat(path, &info)) return; // away for a moment: editors do that
     bool same = stage->stamp.seconds == info.st_mtim.tv_sec && stage->stamp.nanoseconds == info.st_mtim.tv_nsec &&
                 stage->stamp.size == info.st_size;
     stage->stamp.seconds = info.st_mtim.tv_sec;
     stage->stamp.nanoseconds = info.st_mtim.tv_nsec;
     stage->stamp.size = info.st_size;
-    if (!same && !only_note) viewer_stage_reopen(stage, NULL);
+    if (same || only_note) return;
+    if (stage->side_count) viewer_stage_reopen(stage, NULL);
+    else viewer_stage_open(stage, path, stage->options->sets);
 }

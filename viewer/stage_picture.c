@@ -1,8 +1,9 @@
 /* The stage's pictures: one world, or two beside each other, drawn into buffers that the window shows.
  *
- *     players --> targets (several samples a pixel) --> one of three pictures --> window
+ *     players --> targets (several samples a pixel) --> one of four pictures --> window
  *
- * Three pictures go round: the one that the window shows, the newest, and the one that is being drawn. */
+ * Four pictures go round: the one that the window has, the one that it may take next, the stage's newest, and the one
+ * that is being drawn. */
 #include <string.h>
 
 #include <epoxy/gl.h>
@@ -87,13 +88,13 @@ static bool draw_side(viewer_stage *stage, size_t side) {
     return !status;
 }
 
-/* A place that neither the window nor the newest picture has. */
+/* A place that the window neither has nor may take, and that is not the newest. */
 static int free_place(viewer_stage *stage) {
     pthread_mutex_lock(&stage->exchange->lock);
-    int in_use = stage->exchange->shown.in_use;
+    int in_use = stage->exchange->shown.in_use, offered = stage->exchange->shown.newest;
     pthread_mutex_unlock(&stage->exchange->lock);
     int place = 0;
-    while (place == in_use || place == stage->newest) place++;
+    while (place == in_use || place == offered || place == stage->newest) place++;
     return place;
 }
 

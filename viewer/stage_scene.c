@@ -49,6 +49,8 @@ void viewer_stage_open(viewer_stage *stage, const char *path, const char *const 
     if (!viewer_player_open(&stage->sides[0], path, sets, &reading, (viewer_reporter){player_says, stage})) {
         viewer_event(stage->events, "cannot open %s", path);
         stage->panel[VIEWER_PANEL_LOG] = true;
+        if (!stage->side_count) snprintf(stage->wanted, sizeof stage->wanted, "%s", path);
+        viewer_watch(stage, true);
         restart_clock(stage);
         return;
     }

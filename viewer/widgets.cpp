@@ -186,9 +186,22 @@ bool widgets_numbers(const char *title, double *numbers, int count, double least
     return changed;
 }
 
+bool widgets_released(void) {
+    return ImGui::IsItemDeactivatedAfterEdit();
+}
+
 bool widgets_input(const char *title, char *text, size_t size) {
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
     return ImGui::InputText(title, text, size, ImGuiInputTextFlags_EnterReturnsTrue);
+}
+
+bool widgets_input_lines(const char *title, char *text, size_t size) {
+    float lines = 2;
+    for (const char *c = text; *c; c++) lines += *c == '\n';
+    if (lines > 12) lines = 12;
+    ImVec2 room(ImGui::GetContentRegionAvail().x * 0.55f, ImGui::GetTextLineHeight() * (lines + 0.5f));
+    return ImGui::InputTextMultiline(title, text, size, room,
+                                     ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CtrlEnterForNewLine);
 }
 
 void widgets_help(const char *text) {

@@ -47,8 +47,12 @@ bool widgets_choice(const char *title, const char *words, int *place);
 /* `count` numbers as sliders from `least` to `most`; any other may be typed after Ctrl and a click. */
 bool widgets_numbers(const char *title, double *numbers, int count, double least, double most, bool logarithmic,
                      bool whole, const char *format);
+/* The last control was changed and has now been let go. */
+bool widgets_released(void);
 /* True once it is typed and Enter pressed. */
 bool widgets_input(const char *title, char *text, size_t size);
+/* The same in several lines: Enter says that it is done, Ctrl and Enter makes a new line. */
+bool widgets_input_lines(const char *title, char *text, size_t size);
 void widgets_help(const char *text);  /* shown over the last control, while the pointer rests on it */
 bool widgets_menu(const char *title); /* of the last control, by the right button; end it if true */
 bool widgets_menu_row(const char *title);

@@ -35,6 +35,8 @@ typedef struct window {
     int frames_due;    /* to draw, since something happened */
     unsigned framebuffer;
     uint64_t generation;
+    char title[256];
+    bool finished;    /* there is no stage any more */
     bool save_window; /* Shift and X */
     double longest;   /* ms between events being looked at */
     uint64_t turns;
@@ -226,12 +228,14 @@ static void draw(window *w) {
     show_picture(w, width, height);
     viewer_panels_show(&w->panels, width, height);
     memcpy(title, w->exchange.shown.title, sizeof title);
+    w->finished = w->exchange.shown.finished;
     pthread_mutex_unlock(&w->exchange.lock);
     glDisable(GL_FRAMEBUFFER_SRGB);
     widgets_end();
     if (w->save_window) save_window(w, width, height);
     glfwSwapBuffers(w->glfw);
-    glfwSetWindowTitle(w->glfw, title[0] ? title : "Skein");
+    // setting it is an event of its own, and would wake the loop for ever
+    if (title[0] && strcmp(title, w->title) != 0) glfwSetWindowTitle(w->glfw, memcpy(w->title, title, sizeof w->title));
 }
 
 /* ---- Opening and closing ---- */
@@ -287,7 +291,7 @@ static void wake(void) {
 
 static void loop(window *w) {
     uint64_t seen = 0;
-    while (!glfwWindowShouldClose(w->glfw) && !interrupted) {
+    while (!glfwWindowShouldClose(w->glfw) && !interrupted && !w->finished) {
         if (w->frames_due > 0) glfwPollEvents();
         else glfwWaitEventsTimeout(0.5);
         if (w->frames_due > 0) w->frames_due--;
@@ -332,7 +336,8 @@ static skein_status run(window *w, skein_error *error) {
     viewer_event(&w->events, "turns %llu longest=%.1f ms", (unsigned long long)w->turns, w->longest);
     viewer_event(&w->events, "closed");
     viewer_exchange_close(&w->exchange);
-    return SKEIN_OK;
+    if (w->stage.failure.status && error) *error = w->stage.failure;
+    return w->stage.failure.status;
 }
 
 skein_status viewer_run(const viewer_options *options, skein_error *error) {
@@ -343,7 +348,8 @@ skein_status viewer_run(const viewer_options *options, skein_error *error) {
     skein_status status = run(w, error);
     if (w->hidden) glfwDestroyWindow(w->hidden);
     if (w->glfw) glfwDestroyWindow(w->glfw);
-    glfwTerminate();
+    // GLFW stays as it is: ending it unloads Mesa's driver, which forgets a few tables each time (as in
+    // render/context.c)
     viewer_events_close(&w->events);
     free(w);
     return status;

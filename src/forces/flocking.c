@@ -7,14 +7,23 @@
  * at distance 0, where there is no direction: it adds nothing, nor does another in the same place. */
 #ifdef SK_ISA
 
+#include "space/cells_wide.h"
+
 enum { SK_ISA(AHEAD) = 8 };
 enum { SK_ISA(ROOM) = 256 }; // neighbours that are kept before they are worked out
+
+/* Where the weights are formulas: their tapes, and room for the registers. */
+typedef struct SK_ISA(formulas) {
+    const sk_pair_formula *pair;
+    sk_wide registers[SK_PAIR_WEIGHTS][SK_TAPE_MEMORY / sizeof(sk_wide)];
+} SK_ISA(formulas);
 
 typedef struct SK_ISA(near) {
     real x[SK_ISA(ROOM) + 2 * SK_LANES], y[SK_ISA(ROOM) + 2 * SK_LANES], z[SK_ISA(ROOM) + 2 * SK_LANES];
     real ux[SK_ISA(ROOM) + 2 * SK_LANES], uy[SK_ISA(ROOM) + 2 * SK_LANES], uz[SK_ISA(ROOM) + 2 * SK_LANES];
     size_t count;
-    sk_vec3 heading; // the particle's own direction; 0 when it stands still: it sees all round then
+    sk_vec3 heading;             // the particle's own direction; 0 when it stands still: it sees all round then
+    SK_ISA(formulas) * formulas; // NULL: the zones' own weights
 } SK_ISA(near);
 
 SK_INLINE sk_wide SK_ISA(wide_at)(const real *at) {
@@ -75,33 +84,94 @@ static void SK_ISA(prune)(SK_ISA(near) * near, const sk_flocking_numbers *n) {
     near->count = kept;
 }
 
-/* What sixteen neighbours from k on add. */
-SK_INLINE void SK_ISA(add_near)(const SK_ISA(near) * near, size_t k, const sk_flocking_numbers *n, sk_wide3 *sum) {
-    sk_wide3 d = {SK_ISA(wide_at)(near->x + k), SK_ISA(wide_at)(near->y + k), SK_ISA(wide_at)(near->z + k)};
-    sk_wide least = SK_ISA(sk_splat)(n->least), one = SK_ISA(sk_splat)(1), half = SK_ISA(sk_splat)((real)0.5);
-    sk_wide square = SK_ISA(sk_dot_wide)(d, d), distance = SK_ISA(sk_wide_sqrt)(square);
+/* Sixteen neighbours from k on. */
+typedef struct SK_ISA(hits) {
+    sk_wide3 d;
+    sk_wide per, percent; // 1/distance
+    sk_mask counts;
+} SK_ISA(hits);
+
+SK_INLINE SK_ISA(hits) SK_ISA(hits_at)(const SK_ISA(near) * near, size_t k, const sk_flocking_numbers *n) {
+    SK_ISA(hits)
+    h = {.d = {SK_ISA(wide_at)(near->x + k), SK_ISA(wide_at)(near->y + k), SK_ISA(wide_at)(near->z + k)}};
+    sk_wide least = SK_ISA(sk_splat)(n->least), square = SK_ISA(sk_dot_wide)(h.d, h.d);
+    sk_wide distance = SK_ISA(sk_wide_sqrt)(square);
     distance = SK_ISA(sk_select)(SK_ISA(sk_more)(distance, least), distance, least);
-    sk_wide per = one / distance, inverse = n->reach * per, percent = distance * n->per_reach;
-    if (n->squared) percent *= percent, inverse *= inverse;
-    sk_mask away = SK_ISA(sk_more)(SK_ISA(sk_splat)(n->away), percent);
-    sk_mask along = SK_ISA(sk_more)(SK_ISA(sk_splat)(n->along), percent) & ~away;
-    sk_mask counts = SK_ISA(sk_positive)(square);
+    h.per = (real)1 / distance;
+    h.percent = distance * n->per_reach;
+    if (n->squared) h.percent *= h.percent;
+    h.counts = SK_ISA(sk_positive)(square);
     if (!n->sees_all) {
         sk_vec3 u = near->heading;
-        sk_wide ahead = d.x * u.x + d.y * u.y + d.z * u.z;
+        sk_wide ahead = h.d.x * u.x + h.d.y * u.y + h.d.z * u.z;
         real all_round = u.x * u.x + u.y * u.y + u.z * u.z > 0 ? 0 : 1; // a particle that stands still
-        counts &= SK_ISA(sk_at_most)(n->view * distance, ahead + all_round * (2 * distance));
+        h.counts &= SK_ISA(sk_at_most)(n->view * distance, ahead + all_round * (2 * distance));
     }
+    return h;
+}
+
+/* Adds what the weights make of sixteen neighbours. */
+SK_INLINE void SK_ISA(add_hits)(const SK_ISA(near) * near, size_t k, const SK_ISA(hits) * h, sk_wide towards,
+                                sk_wide with, sk_wide3 *sum) {
+    towards = SK_ISA(sk_keep)(h->counts, towards * h->per);
+    with = SK_ISA(sk_keep)(h->counts, with);
+    sum->x += towards * h->d.x + with * SK_ISA(wide_at)(near->ux + k);
+    sum->y += towards * h->d.y + with * SK_ISA(wide_at)(near->uy + k);
+    sum->z += towards * h->d.z + with * SK_ISA(wide_at)(near->uz + k);
+}
+
+SK_INLINE void SK_ISA(add_near)(const SK_ISA(near) * near, size_t k, const sk_flocking_numbers *n, sk_wide3 *sum) {
+    SK_ISA(hits) h = SK_ISA(hits_at)(near, k, n);
+    sk_wide one = SK_ISA(sk_splat)(1), half = SK_ISA(sk_splat)((real)0.5);
+    sk_wide inverse = n->reach * h.per; // 1/percent
+    if (n->squared) inverse *= inverse;
+    sk_mask away = SK_ISA(sk_more)(SK_ISA(sk_splat)(n->away), h.percent);
+    sk_mask along = SK_ISA(sk_more)(SK_ISA(sk_splat)(n->along), h.percent) & ~away;
     // from -0.5 to 0.5 through the zone
     sk_wide a =
-        SK_ISA(sk_select)(along, (percent - n->away) * n->per_along, (percent - n->along) * n->per_towards) - half;
+        SK_ISA(sk_select)(along, (h.percent - n->away) * n->per_along, (h.percent - n->along) * n->per_towards) - half;
     sk_wide s = a * a, cosine = half * SK_FLOCKING_COSINE(s);
-    sk_wide towards = SK_ISA(sk_select)(away, one - n->away * inverse, cosine) * per;
-    towards = SK_ISA(sk_keep)(~along & counts, towards);
-    sk_wide with = SK_ISA(sk_keep)(along & counts, one - cosine);
-    sum->x += towards * d.x + with * SK_ISA(wide_at)(near->ux + k);
-    sum->y += towards * d.y + with * SK_ISA(wide_at)(near->uy + k);
-    sum->z += towards * d.z + with * SK_ISA(wide_at)(near->uz + k);
+    sk_wide towards = SK_ISA(sk_select)(away, one - n->away * inverse, cosine);
+    SK_ISA(add_hits)(near, k, &h, SK_ISA(sk_keep)(~along, towards), SK_ISA(sk_keep)(along, one - cosine), sum);
+}
+
+/* The same with formulas: of `count` neighbours from k on, a multiple of sixteen that fits the tape's block. */
+static void SK_ISA(add_by_formula)(const SK_ISA(near) * near, size_t k, size_t count, const sk_flocking_numbers *n,
+                                   sk_wide3 *sum) {
+    const sk_pair_formula *pair = near->formulas->pair;
+    sk_tape_verdict verdict[SK_PAIR_WEIGHTS];
+    for (int w = 0; w < SK_PAIR_WEIGHTS; w++) {
+        sk_wide *registers = near->formulas->registers[w];
+        if (!pair->formula[w]) continue;
+        for (size_t i = 0; i < pair->tape[w].wides && pair->percent[w] != UINT16_MAX; i++)
+            registers[pair->percent[w] * pair->tape[w].wides + i] =
+                SK_ISA(hits_at)(near, k + (SK_LANES * i < count ? SK_LANES * i : 0), n).percent;
+        sk_tape_kernels_of[SK_ISA(sk_version)].run(&pair->tape[w], registers, &verdict[w]);
+    }
+    for (size_t i = 0; SK_LANES * i < count; i++) {
+        SK_ISA(hits) h = SK_ISA(hits_at)(near, k + SK_LANES * i, n);
+        sk_wide weight[SK_PAIR_WEIGHTS] = {{0}, {0}};
+        for (int w = 0; w < SK_PAIR_WEIGHTS; w++)
+            if (pair->formula[w])
+                weight[w] =
+                    SK_ISA(sk_keep)(verdict[w].finite[i],
+                                    near->formulas->registers[w][pair->tape[w].output[0] * pair->tape[w].wides + i]);
+        SK_ISA(add_hits)(near, k + SK_LANES * i, &h, weight[SK_TOWARDS], weight[SK_ALONG], sum);
+    }
+}
+
+/* Adds `count` neighbours from the front of the list, a multiple of sixteen. */
+SK_INLINE void SK_ISA(add_all)(const SK_ISA(near) * near, size_t count, const sk_flocking_numbers *n, sk_wide3 *sum) {
+    if (!near->formulas) {
+        for (size_t k = 0; k < count; k += SK_LANES) SK_ISA(add_near)(near, k, n, sum);
+        return;
+    }
+    size_t block = SK_LANES * SK_TAPE_WIDES;
+    for (int w = 0; w < SK_PAIR_WEIGHTS; w++)
+        if (near->formulas->pair->formula[w] && SK_LANES * near->formulas->pair->tape[w].wides < block)
+            block = SK_LANES * near->formulas->pair->tape[w].wides;
+    for (size_t k = 0; k < count; k += block)
+        SK_ISA(add_by_formula)(near, k, count - k < block ? count - k : block, n, sum);
 }
 
 /* Works out all whole sixteens, and what is left of them moves to the front. */
@@ -111,95 +181,10 @@ SK_INLINE void SK_ISA(work_out)(SK_ISA(near) * near, const sk_flocking_numbers *
         return;
     }
     size_t whole = near->count / SK_LANES * SK_LANES;
-    for (size_t k = 0; k < whole; k += SK_LANES) SK_ISA(add_near)(near, k, n, sum);
+    SK_ISA(add_all)(near, whole, n, sum);
     real *lists[] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
     for (int i = 0; i < 6; i++) memcpy(lists[i], lists[i] + whole, SK_LANES * sizeof(real));
     near->count -= whole;
-}
-
-/* Where the nine rows of cells around a particle are, a row a lane; see sk_cells_ranges(), which this is wide. */
-typedef struct SK_ISA(rows) {
-    sk_wide wall_y, wall_z, share_y, share_z; // the distance to the row, in cells, is wall + share * place in the cell
-    sk_mask step;                             // in the array of cells
-    sk_mask step_y, step_z;
-} SK_ISA(rows);
-
-SK_INLINE SK_ISA(rows) SK_ISA(rows_of)(const sk_cells *cells) {
-    SK_ISA(rows) rows;
-    for (int l = 0; l < SK_LANES; l++) {
-        int dy = l < 9 ? l % 3 - 1 : 0, dz = l < 9 ? l / 3 - 1 : 0;
-        rows.wall_y[l] = dy ? (real)(dy > 0) - cells->slack : 0;
-        rows.wall_z[l] = dz ? (real)(dz > 0) - cells->slack : 0;
-        rows.share_y[l] = (real)-dy, rows.share_z[l] = (real)-dz;
-        rows.step_y[l] = dy, rows.step_z[l] = dz;
-        rows.step[l] = (sk_lane_int)cells->count_x * (dy + (sk_lane_int)cells->count_y * dz);
-    }
-    return rows;
-}
-
-/* Sixteens of candidates: where each begins, and how many there are from there on. */
-enum { SK_ISA(SIXTEENS) = 48 };
-typedef struct SK_ISA(sixteens) {
-    uint32_t place[SK_ISA(SIXTEENS) + SK_LANES];
-    int32_t left[SK_ISA(SIXTEENS) + SK_LANES];
-    size_t count;
-} SK_ISA(sixteens);
-
-/* Lists the next sixteen of each range that is not used up; false when all are. Ranges take turns, so that rows of
- * fewer than sixteen, the most of them, are listed without a branch each. */
-SK_INLINE bool SK_ISA(list)(int32_t begin[SK_LANES], int32_t left[SK_LANES], SK_ISA(sixteens) * list) {
-    size_t before = list->count;
-#if defined(SK_HAS_AVX512)
-    __m512i b = _mm512_loadu_si512(begin), l = _mm512_loadu_si512(left);
-    __mmask16 some = _mm512_cmpgt_epi32_mask(l, _mm512_setzero_si512());
-    _mm512_storeu_si512(list->place + before, _mm512_maskz_compress_epi32(some, b));
-    _mm512_storeu_si512(list->left + before, _mm512_maskz_compress_epi32(some, l));
-    _mm512_storeu_si512(begin, _mm512_add_epi32(b, _mm512_set1_epi32(SK_LANES)));
-    _mm512_storeu_si512(left, _mm512_sub_epi32(l, _mm512_set1_epi32(SK_LANES)));
-    list->count = before + (size_t)__builtin_popcount(some);
-#else
-    for (int r = 0; r < 9; r++) {
-        list->place[list->count] = (uint32_t)begin[r];
-        list->left[list->count] = left[r];
-        list->count += left[r] > 0;
-        begin[r] += SK_LANES, left[r] -= SK_LANES;
-    }
-#endif
-    return list->count != before;
-}
-
-/* The ranges of candidates of a particle at p: where each of nine rows begins, and how many are in it. */
-SK_INLINE void SK_ISA(find_ranges)(const sk_cells *cells, const SK_ISA(rows) * rows, sk_vec3 p, real reach,
-                                   int32_t begin[SK_LANES], int32_t count[SK_LANES]) {
-    real py = (p.y - cells->origin.y) * cells->per_yz, pz = (p.z - cells->origin.z) * cells->per_yz;
-    int32_t iy = sk_cells_place(p.y, cells->origin.y, cells->per_yz, cells->count_y);
-    int32_t iz = sk_cells_place(p.z, cells->origin.z, cells->per_yz, cells->count_z);
-    sk_wide my = rows->wall_y + rows->share_y * (py - (real)iy), mz = rows->wall_z + rows->share_z * (pz - (real)iz);
-    my = SK_ISA(sk_keep)(SK_ISA(sk_positive)(my), my) * cells->size;
-    mz = SK_ISA(sk_keep)(SK_ISA(sk_positive)(mz), mz) * cells->size;
-    sk_wide left = (reach * reach - mz * mz) - my * my;
-    sk_mask some = SK_ISA(sk_positive)(left);
-    sk_wide half = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_keep)(some, left)) * (real)1.00001;
-    sk_wide low = ((p.x - half) - cells->origin.x) * cells->per_x,
-            high = ((p.x + half) - cells->origin.x) * cells->per_x;
-    sk_wide last = SK_ISA(sk_splat)((real)(cells->count_x - 1));
-    low = SK_ISA(sk_keep)(SK_ISA(sk_positive)(low), low), high = SK_ISA(sk_keep)(SK_ISA(sk_positive)(high), high);
-    low = SK_ISA(sk_select)(SK_ISA(sk_more)(last, low), low, last);
-    high = SK_ISA(sk_select)(SK_ISA(sk_more)(last, high), high, last);
-    sk_mask base = rows->step + ((sk_lane_int)cells->count_x * (iy + (sk_lane_int)cells->count_y * iz));
-    sk_mask first = (base + __builtin_convertvector(low, sk_mask)) & some,
-            end = (base + __builtin_convertvector(high, sk_mask) + 1) & some;
-    uint32_t inside = 0;
-    for (int dz = -1; dz <= 1; dz++)
-        for (int dy = -1; dy <= 1; dy++)
-            inside |= (uint32_t)(iy + dy >= 0 && iy + dy < cells->count_y && iz + dz >= 0 && iz + dz < cells->count_z)
-                      << (4 + dy + 3 * dz);
-    for (int l = 9; l < SK_LANES; l++) begin[l] = count[l] = 0;
-    for (int l = 0; l < 9; l++) {
-        sk_lane_int from = inside >> l & 1 ? first[l] : 0, to = inside >> l & 1 ? end[l] : 0;
-        begin[l] = (int32_t)cells->start[from];
-        count[l] = (int32_t)cells->start[to] - begin[l];
-    }
 }
 
 /* Tests the listed candidates, and keeps those within reach. */
@@ -234,7 +219,7 @@ SK_INLINE sk_vec3 SK_ISA(steer)(const sk_cells *cells, const SK_ISA(rows) * rows
     // fill up with neighbours in the same place, which add nothing
     real *lists[] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
     for (int i = 0; i < 6; i++) memset(lists[i] + near->count, 0, SK_LANES * sizeof(real));
-    for (size_t k = 0; k < near->count; k += SK_LANES) SK_ISA(add_near)(near, k, n, &sum);
+    SK_ISA(add_all)(near, (near->count + SK_LANES - 1) / SK_LANES * SK_LANES, n, &sum);
     return sk_v3(SK_ISA(sk_sum)(sum.x), SK_ISA(sk_sum)(sum.y), SK_ISA(sk_sum)(sum.z));
 }
 
@@ -244,7 +229,7 @@ SK_INLINE sk_vec3 SK_ISA(heading_of)(sk_vec4 v) {
 }
 
 /* Elements are places where particles look at each other, else the user's particles. */
-static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+static void SK_ISA(fly)(sk_run *run, const sk_row *row, size_t begin, size_t end, SK_ISA(formulas) * formulas) {
     const sk_force *force = row->rule;
     const sk_flocking_params *params = force->params;
     const sk_flocking_numbers numbers = sk_flocking_numbers_of(params);
@@ -253,6 +238,7 @@ static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t 
     real scale = (real)(row->dt * params->strength);
     SK_ISA(rows) rows = SK_ISA(rows_of)(cells);
     SK_ISA(near) near;
+    near.formulas = formulas;
     if (!cells->count) return; // nobody is near, or there is no memory for the cells
     if (among && end > cells->count) end = cells->count;
     for (size_t i = begin; i < end; i++) {
@@ -270,6 +256,21 @@ static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t 
     }
 }
 
+static void SK_ISA(fly_by_formula)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    SK_ISA(formulas) formulas;
+    formulas.pair = ((const sk_force *)row->rule)->state;
+    sk_tape_input input = {.time = (real)run->time};
+    for (int w = 0; w < SK_PAIR_WEIGHTS; w++)
+        if (formulas.pair->formula[w])
+            sk_tape_kernels_of[SK_ISA(sk_version)].begin(&formulas.pair->tape[w], &input, formulas.registers[w]);
+    SK_ISA(fly)(run, row, begin, end, &formulas);
+}
+
+static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    if (((const sk_force *)row->rule)->state) SK_ISA(fly_by_formula)(run, row, begin, end);
+    else SK_ISA(fly)(run, row, begin, end, NULL);
+}
+
 #else
 #include "forces/flocking.h"
 
@@ -277,6 +278,7 @@ static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t 
 
 #include "base/elementary.h"
 #include "base/status.h"
+#include "forces/pair_formula.h"
 
 // clang-format off
 static const skein_field fields[] = {
@@ -290,6 +292,8 @@ static const skein_field fields[] = {
     SK_INT(sk_flocking_params, nearest, "nearest", "", 0, 0, SK_FLOCKING_MOST_NEAREST, "of the neighbours in reach only so many count, the nearest; 0: all"),
     SK_TEXT(sk_flocking_params, on, "on", "", "the name of the body that it moves; empty: every particle"),
     SK_TEXT(sk_flocking_params, minds, "minds", "", "the name of the body that it looks at; empty: the same"),
+    SK_TEXT(sk_flocking_params, towards, "formula.towards", "", "the weight of a neighbour along the direction to it, as a formula of percent; where there is a formula, the zones only say how far the rule reaches"),
+    SK_TEXT(sk_flocking_params, along, "formula.along", "", "the weight along its direction of flight, likewise"),
 };
 // clang-format on
 
@@ -302,6 +306,20 @@ static void bodies(const void *data, const char **moved, const char **seen) {
     const sk_flocking_params *params = data;
     *moved = params->on;
     *seen = params->minds;
+}
+
+static skein_status prepare(const void *data, void **state, sk_allocator *allocator, skein_error *error) {
+    const sk_flocking_params *params = data;
+    sk_pair_formula *pair = *state;
+    skein_status status =
+        sk_pair_formula_prepare(&pair, (const char *const[]){params->towards, params->along},
+                                (const char *const[]){"formula.towards", "formula.along"}, allocator, error);
+    *state = pair;
+    return status;
+}
+
+static void release(void *state, sk_allocator *allocator) {
+    sk_pair_formula_release(state, allocator);
 }
 
 sk_flocking_numbers sk_flocking_numbers_of(const sk_flocking_params *params) {
@@ -333,8 +351,10 @@ static void pack(const void *data, float (*block)[4]) {
     memcpy(block, numbers, sizeof numbers);
 }
 
-static const char *refuse(const void *params) {
-    return ((const sk_flocking_params *)params)->nearest ? "while only the nearest neighbours count" : NULL;
+static const char *refuse(const void *data) {
+    const sk_flocking_params *params = data;
+    if (params->towards[0] || params->along[0]) return "with weights that are formulas";
+    return params->nearest ? "while only the nearest neighbours count" : NULL;
 }
 
 #define SK_KERNELS "forces/flocking.c"
@@ -349,5 +369,7 @@ const sk_force_type sk_flocking = {
     .radius = radius,
     .bodies = bodies,
     .shader = {"forces/flocking", 3, pack, refuse},
+    .prepare = prepare,
+    .release = release,
 };
 #endif

@@ -26,6 +26,7 @@ typedef struct sk_flocking_params {
     double view;                            /* degrees: the angle that a particle sees, round its direction of flight */
     int32_t nearest;                        /* only so many neighbours count, the nearest; 0: all in reach */
     char *on, *minds;                       /* names of bodies */
+    char *towards, *along;                  /* formulas in place of the zones' weights, or "" */
 } sk_flocking_params;
 
 typedef struct sk_flocking_numbers {

@@ -62,6 +62,10 @@ typedef struct sk_force_type {
      * 0 in one place), and `direction` is the neighbour's unit direction of flight, as
      * `heading` is the particle's own. */
     sk_shader shader;
+    /* Makes the state that the kernel needs besides the parameters, before a plan is written; *state is what it made
+     * the last time. On failure *state is NULL. NULL: there is none. */
+    skein_status (*prepare)(const void *params, void **state, sk_allocator *allocator, skein_error *error);
+    void (*release)(void *state, sk_allocator *allocator);
     /* Over colliders: the time ahead (s), the clearance (m) and the strength (m/s2) of steering clear. */
     void (*look)(const void *params, double look[3]);
 } sk_force_type;
@@ -72,6 +76,7 @@ typedef struct sk_force {
     const void *params;
     const char *label;
     const bool *enabled;
+    void *state;          /* what the type has prepared from the parameters, or NULL */
     sk_group moved, seen; /* found when a plan is written */
 } sk_force;
 

@@ -80,19 +80,19 @@ static uint32_t root_of(uint32_t *parent, uint32_t i) {
     return i;
 }
 
-/* Particles nearer than `distance` are in one group, and so are their neighbours. */
-static bool count_groups(search *s, sk_allocator *allocator, double distance, skein_order *order) {
-    if (!(distance > 0)) return true;
-    if (!sort_cells(s, allocator, distance)) return false;
+/* Particles nearer than `reach` are in one group, and so are their neighbours. */
+static bool count_groups(search *s, sk_allocator *allocator, double reach, skein_order *order) {
+    if (!(reach > 0)) return true;
+    if (!sort_cells(s, allocator, reach)) return false;
     const sk_cells *c = &s->cells;
     order->groups = c->count;
     for (uint32_t i = 0; i < c->count; i++) s->parent[i] = i;
     for (uint32_t i = 0; i < c->count; i++) {
         uint32_t range[9][2];
-        int ranges = sk_cells_ranges(c, place_of(&c->record[i]), (real)distance, range);
+        int ranges = sk_cells_ranges(c, place_of(&c->record[i]), (real)reach, range);
         for (int r = 0; r < ranges; r++)
             for (uint32_t k = range[r][0]; k < range[r][1]; k++) {
-                if (k <= i || !(square_between(&c->record[i], &c->record[k]) < distance * distance)) continue;
+                if (k <= i || !(square_between(&c->record[i], &c->record[k]) < reach * reach)) continue;
                 uint32_t a = root_of(s->parent, i), b = root_of(s->parent, k);
                 if (a == b) continue;
                 s->parent[a > b ? a : b] = a > b ? b : a;
@@ -113,17 +113,17 @@ static void measure_directions(const skein_world *world, size_t first, size_t en
         sk_vec4 p = all->vector[SK_X][all->slot_of[i]], q = all->vector[SK_V][all->slot_of[i]];
         double r[3] = {(double)p.x - centre[0], (double)p.y - centre[1], (double)p.z - centre[2]};
         double v[3] = {(double)q.x, (double)q.y, (double)q.z};
-        double distance = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+        double out = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
         double speed = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-        if (!(distance + speed <= (double)SK_REAL_MAX)) continue; // nowhere: counted in the statistics
+        if (!(out + speed <= (double)SK_REAL_MAX)) continue; // nowhere: counted in the statistics
         order->count++;
-        order->radius += distance;
+        order->radius += out;
         order->speed += speed;
-        if (distance > order->farthest) order->farthest = distance;
+        if (out > order->farthest) order->farthest = out;
         for (int k = 0; k < 3; k++) {
             int next = (k + 1) % 3, last = (k + 2) % 3;
             if (speed > 0) flight[k] += v[k] / speed;
-            if (speed > 0 && distance > 0) turn[k] += (r[next] * v[last] - r[last] * v[next]) / (distance * speed);
+            if (speed > 0 && out > 0) turn[k] += (r[next] * v[last] - r[last] * v[next]) / (out * speed);
         }
     }
     if (!order->count) return;
@@ -135,7 +135,7 @@ static void measure_directions(const skein_world *world, size_t first, size_t en
 }
 
 skein_status skein_order_measure(skein_world *world, size_t first, size_t count, const double centre[3],
-                                 double group_distance, skein_order *order) {
+                                 double group_reach, skein_order *order) {
     skein_error *error = sk_world_error(world);
     sk_particles *all = &world->particles;
     memset(order, 0, sizeof *order);
@@ -146,7 +146,7 @@ skein_status skein_order_measure(skein_world *world, size_t first, size_t count,
     if (status) return status;
     measure_directions(world, first, first + count, centre, order);
     if (order->count < 2) {
-        order->groups = group_distance > 0 ? order->count : 0;
+        order->groups = group_reach > 0 ? order->count : 0;
         return SKEIN_OK;
     }
     sk_allocator *allocator = &world->allocator;
@@ -154,7 +154,7 @@ skein_status skein_order_measure(skein_world *world, size_t first, size_t count,
     s.square = sk_allocate(allocator, count * sizeof *s.square);
     s.parent = sk_allocate(allocator, count * sizeof *s.parent);
     bool good = s.square && s.parent && measure_nearest(&s, allocator, order->farthest, order) &&
-                count_groups(&s, allocator, group_distance, order);
+                count_groups(&s, allocator, group_reach, order);
     sk_release(allocator, s.square);
     sk_release(allocator, s.parent);
     sk_cells_release(&s.cells, allocator);

@@ -111,6 +111,7 @@ skein_status skein_ray_cast(const skein_world *world, const double origin[3], co
         return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "category", "rays meet bodies and colliders, no %s",
                        skein_category_text(category));
     skein_status status = check_ray(world, origin, direction, along);
+    if (!status) status = sk_world_fetch(world);
     if (status) return status;
     for (size_t i = 0; i < world->objects.count; i++) {
         const sk_object *object = world->objects.data[i];
@@ -127,8 +128,9 @@ skein_status skein_ray_cast(const skein_world *world, const double origin[3], co
 /* ---- Particles ---- */
 
 static skein_status check_particles(const skein_world *world) {
-    return world->particles.count ? SKEIN_OK
-                                  : sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "", "the world has no particles");
+    if (!world->particles.count)
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "", "the world has no particles");
+    return sk_world_fetch(world);
 }
 
 skein_status skein_particle_near_point(const skein_world *world, const double point[3], uint32_t *particle,
@@ -157,6 +159,8 @@ skein_status skein_particle_near_ray(const skein_world *world, const double orig
     if (!(radius >= 0) || !(slope >= 0) || !(radius + slope > 0))
         return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "radius",
                        "radius %g m and slope %g: expected 0 or more, and one of them more", radius, slope);
+    status = sk_world_fetch(world);
+    if (status) return status;
     for (size_t i = 0; i < world->particles.count; i++) {
         double x[3], off[3];
         position_of(world, i, x);

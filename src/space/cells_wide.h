@@ -1,0 +1,87 @@
+/* Which places of the cells a particle has to look at, as sixteens of candidates: once for each instruction set (no
+ * include guard: see for_each_isa.h). Includers outside of SK_ISA: space/cells.h. */
+
+/* Where the nine rows of cells around a particle are, a row a lane; see sk_cells_ranges(), which this is wide. */
+typedef struct SK_ISA(rows) {
+    sk_wide wall_y, wall_z, share_y, share_z; // the distance to the row, in cells, is wall + share * place in the cell
+    sk_mask step;                             // in the array of cells
+    sk_mask step_y, step_z;
+} SK_ISA(rows);
+
+SK_INLINE SK_ISA(rows) SK_ISA(rows_of)(const sk_cells *cells) {
+    SK_ISA(rows) rows;
+    for (int l = 0; l < SK_LANES; l++) {
+        int dy = l < 9 ? l % 3 - 1 : 0, dz = l < 9 ? l / 3 - 1 : 0;
+        rows.wall_y[l] = dy ? (real)(dy > 0) - cells->slack : 0;
+        rows.wall_z[l] = dz ? (real)(dz > 0) - cells->slack : 0;
+        rows.share_y[l] = (real)-dy, rows.share_z[l] = (real)-dz;
+        rows.step_y[l] = dy, rows.step_z[l] = dz;
+        rows.step[l] = (sk_lane_int)cells->count_x * (dy + (sk_lane_int)cells->count_y * dz);
+    }
+    return rows;
+}
+
+/* Sixteens of candidates: where each begins, and how many there are from there on. */
+enum { SK_ISA(SIXTEENS) = 48 };
+typedef struct SK_ISA(sixteens) {
+    uint32_t place[SK_ISA(SIXTEENS) + SK_LANES];
+    int32_t left[SK_ISA(SIXTEENS) + SK_LANES];
+    size_t count;
+} SK_ISA(sixteens);
+
+/* Lists the next sixteen of each range that is not used up; false when all are. Ranges take turns, so that rows of
+ * fewer than sixteen, the most of them, are listed without a branch each. */
+SK_INLINE bool SK_ISA(list)(int32_t begin[SK_LANES], int32_t left[SK_LANES], SK_ISA(sixteens) * list) {
+    size_t before = list->count;
+#if defined(SK_HAS_AVX512)
+    __m512i b = _mm512_loadu_si512(begin), l = _mm512_loadu_si512(left);
+    __mmask16 some = _mm512_cmpgt_epi32_mask(l, _mm512_setzero_si512());
+    _mm512_storeu_si512(list->place + before, _mm512_maskz_compress_epi32(some, b));
+    _mm512_storeu_si512(list->left + before, _mm512_maskz_compress_epi32(some, l));
+    _mm512_storeu_si512(begin, _mm512_add_epi32(b, _mm512_set1_epi32(SK_LANES)));
+    _mm512_storeu_si512(left, _mm512_sub_epi32(l, _mm512_set1_epi32(SK_LANES)));
+    list->count = before + (size_t)__builtin_popcount(some);
+#else
+    for (int r = 0; r < 9; r++) {
+        list->place[list->count] = (uint32_t)begin[r];
+        list->left[list->count] = left[r];
+        list->count += left[r] > 0;
+        begin[r] += SK_LANES, left[r] -= SK_LANES;
+    }
+#endif
+    return list->count != before;
+}
+
+/* The ranges of candidates of a particle at p: where each of nine rows begins, and how many are in it. */
+SK_INLINE void SK_ISA(find_ranges)(const sk_cells *cells, const SK_ISA(rows) * rows, sk_vec3 p, real reach,
+                                   int32_t begin[SK_LANES], int32_t count[SK_LANES]) {
+    real py = (p.y - cells->origin.y) * cells->per_yz, pz = (p.z - cells->origin.z) * cells->per_yz;
+    int32_t iy = sk_cells_place(p.y, cells->origin.y, cells->per_yz, cells->count_y);
+    int32_t iz = sk_cells_place(p.z, cells->origin.z, cells->per_yz, cells->count_z);
+    sk_wide my = rows->wall_y + rows->share_y * (py - (real)iy), mz = rows->wall_z + rows->share_z * (pz - (real)iz);
+    my = SK_ISA(sk_keep)(SK_ISA(sk_positive)(my), my) * cells->size;
+    mz = SK_ISA(sk_keep)(SK_ISA(sk_positive)(mz), mz) * cells->size;
+    sk_wide left = (reach * reach - mz * mz) - my * my;
+    sk_mask some = SK_ISA(sk_positive)(left);
+    sk_wide half = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_keep)(some, left)) * (real)1.00001;
+    sk_wide low = ((p.x - half) - cells->origin.x) * cells->per_x,
+            high = ((p.x + half) - cells->origin.x) * cells->per_x;
+    sk_wide last = SK_ISA(sk_splat)((real)(cells->count_x - 1));
+    low = SK_ISA(sk_keep)(SK_ISA(sk_positive)(low), low), high = SK_ISA(sk_keep)(SK_ISA(sk_positive)(high), high);
+    low = SK_ISA(sk_select)(SK_ISA(sk_more)(last, low), low, last);
+    high = SK_ISA(sk_select)(SK_ISA(sk_more)(last, high), high, last);
+    sk_mask base = rows->step + ((sk_lane_int)cells->count_x * (iy + (sk_lane_int)cells->count_y * iz));
+    sk_mask first = (base + __builtin_convertvector(low, sk_mask)) & some,
+            end = (base + __builtin_convertvector(high, sk_mask) + 1) & some;
+    uint32_t inside = 0;
+    for (int dz = -1; dz <= 1; dz++)
+        for (int dy = -1; dy <= 1; dy++)
+            inside |= (uint32_t)(iy + dy >= 0 && iy + dy < cells->count_y && iz + dz >= 0 && iz + dz < cells->count_z)
+                      << (4 + dy + 3 * dz);
+    for (int l = 9; l < SK_LANES; l++) begin[l] = count[l] = 0;
+    for (int l = 0; l < 9; l++) {
+        sk_lane_int from = inside >> l & 1 ? first[l] : 0, to = inside >> l & 1 ? end[l] : 0;
+        begin[l] = (int32_t)cells->start[from];
+        count[l] = (int32_t)cells->start[to] - begin[l];
+    }
+}
