@@ -56,10 +56,11 @@ typedef struct sk_force_type {
      *     vec3 bound@(vec3 v, vec3 x, vec4 steering, float dt)
      * and over neighbours a sum of its own type, what each neighbour adds, and the newtons or metres a second that
      * come of it:
-     *     sum@ start@(),   void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction),
+     *     sum@ start@(vec3 heading),   void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction),
      *     vec3 finish@(sum@ sum, float dt)
      * where `apart` leads from the neighbour here, `square` is its squared length (less than that of the radius, and
-     * 0 in one place), and `direction` is the neighbour's unit direction of flight. */
+     * 0 in one place), and `direction` is the neighbour's unit direction of flight, as
+     * `heading` is the particle's own. */
     sk_shader shader;
     /* Makes the state that the kernel needs besides the parameters, before a plan is written; *state is what it made
      * the last time. On failure *state is NULL. NULL: there is none. */
