@@ -26,6 +26,7 @@ static int check(int argc, char **argv) {
         app_scene loaded;
         status = app_load(path, options[0].values, &loaded);
         if (!status && !app_warn_of_instability(&loaded)) status = EXIT_FAILURE_RUN;
+        if (!status) app_warn_of_rounding(&loaded);
         if (!status) status = print_summary(&loaded);
         app_unload(&loaded);
     }
@@ -38,6 +39,7 @@ const app_command app_check_command = {
     "SCENE [--set PATH=VALUE]...",
     "read and validate a scene; every fault is named, exit status 2 if there is one\n\n"
     "Faults name the file, the line or the path in the scene, what was found and what was expected.\n"
-    "Warnings (a mesh with holes in its seams, a step that is too long for the method) do not fail the check.",
+    "Warnings (a mesh with holes in its seams, a step that is too long for the method, or\n"
+    "so short that positions round it away) do not fail the check.",
     check,
 };

@@ -24,7 +24,8 @@ typedef struct app_command {
 } app_command;
 
 extern const app_command app_run_command, app_render_command, app_check_command, app_compare_command,
-    app_stability_command, app_explain_command, app_list_command, app_formula_command;
+    app_stability_command, app_explain_command, app_list_command, app_formula_command, app_view_command,
+    app_bench_command;
 
 /* Sorts arguments into options and at most one word (NULL if there is none, which is a fault where it is
  * `needed`, as in "scene"); prints help for --help. Returns -1 to go on, else an exit status. */
@@ -62,6 +63,10 @@ int app_load_quietly(const char *path, const char *const *sets, app_scene *loade
 /* Only looks whether it can be loaded. */
 int app_try(const char *path, const char *const *sets);
 void app_unload(app_scene *loaded);
+/* The option --device, and what it asks for: "cpu", "gpu", "auto" or NULL. Says on the terminal what it chose unless
+ * that is plain. Returns an exit status. */
+extern const app_option app_device_option;
+int app_device(app_scene *loaded, const char *word);
 /* The name of the method's kind. */
 const char *app_method(const app_scene *loaded);
 

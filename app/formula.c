@@ -161,8 +161,8 @@ static int answer(const char *text, const app_option *options, question *q) {
                                    .velocities = true,
                                    .comparison = true,
                                    .second = options[HESSIAN].count > 0};
-    if (language && strcmp(language, "c") && strcmp(language, "glsl")) {
-        fault("--emit", language, "c or glsl");
+    if (language && strcmp(language, "c") && strcmp(language, "glsl") && strcmp(language, "kernel")) {
+        fault("--emit", language, "c, glsl or kernel");
         return EXIT_FAULT;
     }
     skein_formula *f = skein_formula_create(&q->desc, &mark, &error);
@@ -172,9 +172,10 @@ static int answer(const char *text, const app_option *options, question *q) {
     }
     print_warnings(text, f);
     int status = EXIT_OK;
-    skein_formula_language wanted = !language                ? SKEIN_FORMULA_GRAPH
-                                    : !strcmp(language, "c") ? SKEIN_FORMULA_C
-                                                             : SKEIN_FORMULA_GLSL;
+    skein_formula_language wanted = !language                     ? SKEIN_FORMULA_GRAPH
+                                    : !strcmp(language, "c")      ? SKEIN_FORMULA_C
+                                    : !strcmp(language, "kernel") ? SKEIN_FORMULA_KERNEL
+                                                                  : SKEIN_FORMULA_GLSL;
     if (language || options[GRAPH].count) {
         if (skein_formula_emit(f, wanted, print_text, NULL, &error)) app_print_error(&error), status = EXIT_FAILURE_RUN;
     } else {
@@ -200,7 +201,7 @@ static int formula(int argc, char **argv) {
         [GRAD] = {"--grad", NULL, "print the derivatives, too", false, NULL, 0},
         [HESSIAN] = {"--hessian", NULL, "print the second derivatives, too", false, NULL, 0},
         [GRAPH] = {"--graph", NULL, "print the operations, for the value and its gradient", false, NULL, 0},
-        [EMIT] = {"--emit", "c|glsl", "print it as a function in that language", false, NULL, 0},
+        [EMIT] = {"--emit", "c|glsl|kernel", "print it as a function in that language", false, NULL, 0},
         [FUNCTIONS] = {"--functions", NULL, "print what functions there are", false, NULL, 0}};
     const char *text;
     question q = {0};

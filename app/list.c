@@ -100,6 +100,7 @@ static void default_text(const skein_field *field, char *text, size_t size) {
 static void print_field(const skein_field *field) {
     char initial[192], range[96];
     default_text(field, initial, sizeof initial);
+    if (strchr(field->name, '*')) initial[0] = 0; // a name that an object gives: there is no default
     range_text(field, range, sizeof range);
     int column = print_cell(0, NAME_AT, field->name);
     column = print_cell(column, DEFAULT_AT, initial);

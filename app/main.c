@@ -8,9 +8,9 @@
 
 #include "app/command.h"
 
-static const app_command *const commands[] = {&app_run_command,     &app_render_command,    &app_check_command,
-                                              &app_compare_command, &app_stability_command, &app_explain_command,
-                                              &app_list_command,    &app_formula_command};
+static const app_command *const commands[] = {
+    &app_run_command,       &app_view_command,    &app_render_command, &app_check_command,   &app_compare_command,
+    &app_stability_command, &app_explain_command, &app_list_command,   &app_formula_command, &app_bench_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 static void print_help(FILE *to) {
@@ -22,6 +22,7 @@ static void print_help(FILE *to) {
     }
     fprintf(to, "\n`skein COMMAND --help` teaches a command, `skein --version` names the version. First steps:\n\n"
                 "  skein run scenes/drape.json --out out/\n"
+                "  skein view scenes/flag.json\n"
                 "  skein render scenes/flag.json -o flag.mp4\n"
                 "  skein list colliders\n");
 }

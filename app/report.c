@@ -40,6 +40,7 @@ static json_t *make_document(const app_report *r) {
         {"name", json_string(scene->name)},
         {"method", json_string(app_method(r->loaded))},
         {"threads", count((uint64_t)scene->threads)},
+        {"device", json_string(r->device)},
         {"interrupted", json_boolean(r->interrupted)},
         {"warnings", count(r->loaded->warnings)},
         // what was done
@@ -54,6 +55,7 @@ static json_t *make_document(const app_report *r) {
         {"ms_per_step", number(ms_per_step(r))},
         {"realtime_factor", number(realtime_factor(r))},
         {"memory_bytes", count(s->memory_bytes)},
+        {"device_bytes", count(r->device_bytes)},
         // the state at the end
         {"particles", count(s->particles)},
         {"held_particles", count(s->held_particles)},
@@ -68,6 +70,7 @@ static json_t *make_document(const app_report *r) {
         {"worst_stretch_of_run", number(r->worst_stretch)},
         {"max_penetration", number(s->max_penetration)},
         {"nonfinite_particles", count(s->nonfinite)},
+        {"guarded_values", count(s->guarded)},
         {"state_hash", json_string(hash)},
         {"files", json_incref(r->files)},
     };

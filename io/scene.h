@@ -12,12 +12,16 @@
 
 typedef struct io_scene io_scene;
 
+/* What makes time go on in a window. */
+typedef enum io_advance { IO_BY_TIME, IO_BY_KEY } io_advance;
+
 /* What a scene says besides its objects. Its table is the kind "scene". */
 typedef struct io_scene_settings {
     int32_t version;
     char *name, *description;
     int32_t frames, threads;
     double fps, step;
+    int32_t advance; /* an io_advance */
 } io_scene_settings;
 
 /* The kind "scene": its fields and their defaults. */

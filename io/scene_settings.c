@@ -184,7 +184,10 @@ static void report_unknown(io_place place, const char *name, const json_t *json,
                            const char *const *others) {
     char hint[IO_HINT_SIZE], words[IO_JSON_WORDS_SIZE];
     const skein_field *member = field_of_group(kind, name);
-    if (member)
+    if (member && strchr(member->name, '*'))
+        io_fault(place, name, SKEIN_ERROR_VALUE, "expected an object of numbers, { \"R\": 0.5 }, say, not %s",
+                 io_json_words(json, words));
+    else if (member)
         io_fault(place, name, SKEIN_ERROR_VALUE, "expected an object with fields such as '%s', not %s",
                  member->name + strlen(name) + 1, io_json_words(json, words));
     else
@@ -194,18 +197,26 @@ static void report_unknown(io_place place, const char *name, const json_t *json,
 
 /* ---- objects ---- */
 
+/* The name that a setting of the field goes by: the field's, or one that the scene gives a parameter. NULL when there
+ * is no memory. */
+static const char *name_of(io_settings *settings, const skein_field *field, const char *name) {
+    return strcmp(field->name, name) ? keep_text(settings, strdup(name)) : field->name;
+}
+
 /* One member, whose full name is `name`. */
 static bool read_member(io_settings *settings, io_place place, const char *name, const json_t *json,
                         const skein_kind *kind, const char *const *others) {
     const skein_field *field = skein_field_find(kind, name, NULL);
     skein_error error = {SKEIN_OK, "", ""};
     skein_value value;
+    const char *kept = NULL;
     if (!field) report_unknown(place, name, json, kind, others);
     else if (find_setting(settings, name))
         io_fault(place, name, SKEIN_ERROR_VALUE, "is there twice, once in a group and once with a dot");
     else if (!convert(settings, kind, field, json, &value)) report_type(place, name, kind, field, json);
     else if (skein_field_check(field, &value, &error)) io_fault(place, name, error.status, "%s", error.message);
-    else if (!append(settings, field->name, value)) io_fault(place, name, SKEIN_ERROR_MEMORY, "out of memory");
+    else if (!(kept = name_of(settings, field, name)) || !append(settings, kept, value))
+        io_fault(place, name, SKEIN_ERROR_MEMORY, "out of memory");
     else return true;
     return false;
 }

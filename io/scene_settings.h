@@ -23,6 +23,9 @@ typedef struct io_place {
 /* Names a fault of the member `member` of the place ("" is the place itself). */
 void io_fault(io_place place, const char *member, skein_status status, const char *format, ...) IO_PRINTF(4, 5);
 
+/* The same where the words are lines: they show the place in a text. */
+void io_fault_shown(io_place place, const char *member, skein_status status, const char *words);
+
 /* A value in words: "the number 5", "a list of 4". Returns `out`. */
 #define IO_JSON_WORDS_SIZE 64
 const char *io_json_words(const json_t *json, char out[IO_JSON_WORDS_SIZE]);

@@ -10,26 +10,35 @@
 /* ---- faults ---- */
 
 /* Names and values come from the file: what would break the line or steer a terminal shows as '?'. */
-static void keep_on_one_line(char *text) {
+static void keep_on_one_line(char *text, bool lines) {
     for (; *text; text++)
-        if ((unsigned char)*text < ' ' || *text == 0x7f) *text = '?';
+        if (((unsigned char)*text < ' ' && !(lines && *text == '\n')) || *text == 0x7f) *text = '?';
 }
 
-void io_fault(io_place place, const char *member, skein_status status, const char *format, ...) {
-    char words[sizeof(skein_error)], where[4096 + 256];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(words, sizeof words, format, arguments);
-    va_end(arguments);
+static void report(io_place place, const char *member, skein_status status, const char *words, bool lines) {
+    char where[4096 + 256];
     const char *dot = place.path[0] && member[0] ? "." : "";
     const char *colon = place.path[0] || member[0] ? ": " : "";
     snprintf(where, sizeof where, "%.4000s%s%.100s%s%.120s", place.file, colon, place.path, dot, member);
     skein_error error;
     io_error_set(&error, status, where, "%s", words);
-    keep_on_one_line(error.where);
-    keep_on_one_line(error.message);
+    keep_on_one_line(error.where, false);
+    keep_on_one_line(error.message, lines);
     place.faults->count++;
     if (place.faults->report) place.faults->report(place.faults->user, &error);
+}
+
+void io_fault(io_place place, const char *member, skein_status status, const char *format, ...) {
+    char words[sizeof(skein_error)];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(words, sizeof words, format, arguments);
+    va_end(arguments);
+    report(place, member, status, words, false);
+}
+
+void io_fault_shown(io_place place, const char *member, skein_status status, const char *words) {
+    report(place, member, status, words, true);
 }
 
 /* The library knows how to find the nearest name; here the names stand in as the fields of a kind. */

@@ -78,20 +78,18 @@ static bool make_context(render_context *context, const char **reason) {
 }
 
 /* Tries one display. */
-static bool try_display(render_context *context, EGLDisplay display, const char *platform, char *tried,
-                        size_t room) {
+static bool try_display(render_context *context, EGLDisplay display, const char *platform, char *tried, size_t room) {
     EGLint major = 0, minor = 0;
     const char *reason = "";
     if (display == EGL_NO_DISPLAY) return give_up(tried, room, platform, egl_text(eglGetError()));
-    if (!eglInitialize(display, &major, &minor))
-        return give_up(tried, room, platform, egl_text(eglGetError()));
+    if (!eglInitialize(display, &major, &minor)) return give_up(tried, room, platform, egl_text(eglGetError()));
 
     context->display = display;
     if (10 * major + minor < 15) {
         reason = "EGL is older than 1.5";
     } else if (make_context(context, &reason)) {
-        snprintf(context->name, sizeof context->name, "%s: %s, %s", platform,
-                 (const char *)glGetString(GL_RENDERER), (const char *)glGetString(GL_VERSION));
+        snprintf(context->name, sizeof context->name, "%s: %s, %s", platform, (const char *)glGetString(GL_RENDERER),
+                 (const char *)glGetString(GL_VERSION));
         return true;
     }
     return give_up(tried, room, platform, reason);

@@ -4,8 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-skein_status render_fail(skein_error *error, skein_status status, const char *where, const char *format,
-                         ...) {
+skein_status render_fail(skein_error *error, skein_status status, const char *where, const char *format, ...) {
     if (error) {
         va_list arguments;
         error->status = status;

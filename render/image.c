@@ -50,8 +50,7 @@ static int write_all(int file, const uint8_t *bytes, size_t length, bool to_disk
 }
 
 /* Straight into what `path` names: for devices and pipes, which cannot be replaced. */
-static skein_status write_straight(const char *path, const uint8_t *bytes, size_t length,
-                                   skein_error *error) {
+static skein_status write_straight(const char *path, const uint8_t *bytes, size_t length, skein_error *error) {
     int file = open(path, O_WRONLY | O_CLOEXEC);
     if (file < 0) return fail_file(error, path, "open the file", errno);
     int reason = write_all(file, bytes, length, false);
@@ -93,9 +92,8 @@ skein_status render_image_write_png(const render_image *image, const char *path,
     int length = 0;
     uint8_t *bytes = render_stb_encode_png(image->pixels, image->width, image->height, &length);
     if (!bytes) return render_fail_memory(error, "the PNG");
-    skein_status status = exists && !S_ISREG(there.st_mode)
-                              ? write_straight(path, bytes, (size_t)length, error)
-                              : write_beside(path, bytes, (size_t)length, error);
+    skein_status status = exists && !S_ISREG(there.st_mode) ? write_straight(path, bytes, (size_t)length, error)
+                                                            : write_beside(path, bytes, (size_t)length, error);
     free(bytes);
     return status;
 }

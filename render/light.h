@@ -30,8 +30,7 @@ void render_light_destroy(render_light *light);
 /* Fits both maps to what casts shadows. Fills to_sun, sun_map and under_map of the block, and the
  * matrices of both passes (columns; depth 0 to 1). `ground` is NULL where there is no ground. */
 void render_light_aim(render_light *light, const double sun[3], double spread, const render_bounds *casters,
-                      const double *ground, render_scene_block *block, double sun_clip[16],
-                      double below_clip[16]);
+                      const double *ground, render_scene_block *block, double sun_clip[16], double below_clip[16]);
 
 /* Between begin and end draw.c draws all casters; false where there is nothing to draw for. */
 bool render_light_begin_sun(const render_light *light);

@@ -11,8 +11,7 @@ static void GLAPIENTRY collect(GLenum source, GLenum type, GLuint id, GLenum sev
     (void)source, (void)id, (void)length;
     if (severity == GL_DEBUG_SEVERITY_NOTIFICATION) return;
 
-    if (type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR ||
-        severity == GL_DEBUG_SEVERITY_HIGH) {
+    if (type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR || severity == GL_DEBUG_SEVERITY_HIGH) {
         messages->errors++;
     } else if (type == GL_DEBUG_TYPE_PERFORMANCE) {
         return;

@@ -23,8 +23,7 @@ bool render_find_ground(const render_frame *frame, double *height) {
     return found;
 }
 
-void render_place_slab(const render_plane *plane, const double middle[3], double radius,
-                       double vectors[4][3]) {
+void render_place_slab(const render_plane *plane, const double middle[3], double radius, double vectors[4][3]) {
     double off[3], side = slab_size * radius, *normal = vectors[3];
     for (int k = 0; k < 3; k++) normal[k] = plane->normal[k], off[k] = plane->point[k] - middle[k];
     render_normalise(normal);
@@ -38,8 +37,7 @@ void render_place_slab(const render_plane *plane, const double middle[3], double
     }
 }
 
-void render_bounds_add_slabs(render_bounds *bounds, const render_frame *frame, const double middle[3],
-                             double radius) {
+void render_bounds_add_slabs(render_bounds *bounds, const render_frame *frame, const double middle[3], double radius) {
     for (size_t i = 0; i < frame->plane_count; i++) {
         double v[4][3];
         if (render_plane_level(&frame->planes[i])) continue;

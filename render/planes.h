@@ -17,12 +17,10 @@ bool render_plane_level(const render_plane *plane);
 bool render_find_ground(const render_frame *frame, double *height);
 
 /* A slab's middle, two half sides, of which the first is level, and its unit normal. */
-void render_place_slab(const render_plane *plane, const double middle[3], double radius,
-                       double vectors[4][3]);
+void render_place_slab(const render_plane *plane, const double middle[3], double radius, double vectors[4][3]);
 
 /* Adds the corners of all slabs. */
-void render_bounds_add_slabs(render_bounds *bounds, const render_frame *frame, const double middle[3],
-                             double radius);
+void render_bounds_add_slabs(render_bounds *bounds, const render_frame *frame, const double middle[3], double radius);
 
 /* The side of a grid's cells that reads well for a scene of that radius: 1, 2 or 5 times a power of ten. */
 double render_grid_cell(double radius);

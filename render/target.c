@@ -35,14 +35,13 @@ static GLuint make_buffer(GLenum format, int width, int height, int samples) {
     return buffer;
 }
 
-skein_status render_target_create(render_target *target, int width, int height, int samples,
-                                  skein_error *error) {
+skein_status render_target_create(render_target *target, int width, int height, int samples, skein_error *error) {
     GLint most = 0;
     glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most);
     if (width < 1 || height < 1 || width > most || height > most) {
         return render_fail(error, SKEIN_ERROR_VALUE, "size",
-                           "a picture of %d x %d cannot be drawn; this driver has 1 x 1 to %d x %d", width,
-                           height, most, most);
+                           "a picture of %d x %d cannot be drawn; this driver has 1 x 1 to %d x %d", width, height,
+                           most, most);
     }
 
     memset(target, 0, sizeof *target);
@@ -52,19 +51,17 @@ skein_status render_target_create(render_target *target, int width, int height, 
     target->depth = make_buffer(GL_DEPTH_COMPONENT32F, width, height, target->samples);
     target->plain = make_buffer(GL_SRGB8_ALPHA8, width, height, 1);
     glCreateFramebuffers(1, &target->framebuffer);
-    glNamedFramebufferRenderbuffer(target->framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
-                                   target->colour);
+    glNamedFramebufferRenderbuffer(target->framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target->colour);
     glNamedFramebufferRenderbuffer(target->framebuffer, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, target->depth);
     glCreateFramebuffers(1, &target->plain_framebuffer);
-    glNamedFramebufferRenderbuffer(target->plain_framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
-                                   target->plain);
+    glNamedFramebufferRenderbuffer(target->plain_framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target->plain);
 
     if (glCheckNamedFramebufferStatus(target->framebuffer, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE ||
         glCheckNamedFramebufferStatus(target->plain_framebuffer, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
         render_target_destroy(target);
         return render_fail(error, SKEIN_ERROR_MEMORY, "size",
-                           "the driver has no room for a picture of %d x %d with %d samples; ask for less",
-                           width, height, samples);
+                           "the driver has no room for a picture of %d x %d with %d samples; ask for less", width,
+                           height, samples);
     }
     return SKEIN_OK;
 }
@@ -87,16 +84,15 @@ skein_status render_target_read(const render_target *target, render_image *image
     if (!swap) return render_fail_memory(error, "a row of the picture");
 
     glEnable(GL_FRAMEBUFFER_SRGB);
-    glBlitNamedFramebuffer(target->framebuffer, target->plain_framebuffer, 0, 0, width, height, 0, 0, width,
-                           height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBlitNamedFramebuffer(target->framebuffer, target->plain_framebuffer, 0, 0, width, height, 0, 0, width, height,
+                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, target->plain_framebuffer);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, image->pixels);
 
     // OpenGL's rows start at the bottom
     for (int y = 0; y < height / 2; y++) {
-        uint8_t *upper = image->pixels + (size_t)y * row,
-                *lower = image->pixels + (size_t)(height - 1 - y) * row;
+        uint8_t *upper = image->pixels + (size_t)y * row, *lower = image->pixels + (size_t)(height - 1 - y) * row;
         memcpy(swap, upper, row);
         memcpy(upper, lower, row);
         memcpy(lower, swap, row);

@@ -15,8 +15,7 @@ typedef struct render_target {
 } render_target;
 
 /* As many samples a pixel as asked for, or the most the driver has below that. Start from {0}. */
-skein_status render_target_create(render_target *target, int width, int height, int samples,
-                                  skein_error *error);
+skein_status render_target_create(render_target *target, int width, int height, int samples, skein_error *error);
 void render_target_destroy(render_target *target); /* one that was never created is allowed */
 
 /* Averages the samples, then brings the picture into memory. */

@@ -25,6 +25,10 @@ skein_status render_world_frame_update(render_world_frame *frame, skein_world *w
                                        skein_error *error);
 const render_frame *render_world_frame_get(const render_world_frame *frame);
 
+/* From the next update on particles are drawn between the last two steps: 0 shows the state before the last step, 1
+ * the present, as at first. */
+void render_world_frame_blend(render_world_frame *frame, double blend);
+
 /* For a picture that stands alone: brings such a ground close under the present state. (In a film it
  * must stay where things have room to move.) */
 void render_world_frame_settle(render_world_frame *frame);

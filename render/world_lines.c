@@ -107,8 +107,7 @@ void render_add_contacts(render_world_lines *lines, const render_world_state *st
         double foot[3];
         if (contact->particle >= state->particle_count || state->shown[contact->particle] == RENDER_HIDDEN) continue;
         for (int k = 0; k < 3; k++)
-            foot[k] =
-                state->positions[3 * (size_t)contact->particle + (size_t)k] - contact->gap * contact->normal[k];
+            foot[k] = state->positions[3 * (size_t)contact->particle + (size_t)k] - contact->gap * contact->normal[k];
         add_ray(lines, RENDER_CONTACTS, foot, contact->normal, length, magenta);
     }
 }

@@ -105,7 +105,7 @@ static void find_strains(render_world_state *s, bool edges, double asked) {
 
 /* ---- Reading ---------------------------------------------------------------------------------- */
 
-skein_status render_world_state_read(render_world_state *s, skein_world *world, const render_view *view,
+skein_status render_world_state_read(render_world_state *s, skein_world *world, const render_view *view, double blend,
                                      skein_error *error) {
     size_t count = skein_particle_count(world);
     bool strain = view->colour == RENDER_BY_STRAIN, speed = view->colour == RENDER_BY_SPEED;
@@ -114,7 +114,8 @@ skein_status render_world_state_read(render_world_state *s, skein_world *world, 
     s->spring_count = s->contact_count = 0;
     memset(s->shown, RENDER_LOOSE, count * sizeof *s->shown);
     memset(s->body, 0xff, count * sizeof *s->body);
-    skein_status status = skein_positions_copy(world, 0, count, s->positions);
+    skein_status status = blend < 1 ? skein_positions_blend(world, blend, 0, count, s->positions)
+                                    : skein_positions_copy(world, 0, count, s->positions);
     if (!status && (view->velocities || speed)) status = skein_velocities_copy(world, 0, count, s->velocities);
     if (status) return render_fail(error, status, "", "the particles cannot be read");
     if (view->springs || strain) status = read_springs(s, world, error);

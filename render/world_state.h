@@ -26,9 +26,9 @@ typedef struct render_world_state {
     size_t particle_room, spring_room, contact_room;
 } render_world_state;
 
-/* Start from {0}. */
+/* Start from {0}. Positions are those between the last two steps where `blend` is under 1 (0: before the last step). */
 skein_status render_world_state_read(render_world_state *state, skein_world *world, const render_view *view,
-                                     skein_error *error);
+                                     double blend, skein_error *error);
 void render_world_state_release(render_world_state *state);
 
 /* The colour (sRGB) of a strain, or of a particle by the state's values. */

@@ -7,11 +7,13 @@
 #include "bodies/body.h"
 
 static const sk_body_type *const bodies[] = {&sk_cloth, &sk_lattice, &sk_rope, &sk_flock};
-static const sk_constraint_type *const constraints[] = {&sk_distance};
-static const sk_force_type *const forces[] = {&sk_gravity,    &sk_wind,        &sk_surface_wind, &sk_drag,
-                                              &sk_separation, &sk_flocking,    &sk_attraction,   &sk_predator,
-                                              &sk_lookout,    &sk_speed_limit, &sk_turn_limit,   &sk_bounds};
-static const sk_collider_type *const colliders[] = {&sk_plane, &sk_sphere, &sk_bowl, &sk_capsule, &sk_box};
+static const sk_constraint_type *const constraints[] = {&sk_distance, &sk_dihedral, &sk_isometric,          &sk_area,
+                                                        &sk_volume,   &sk_angle,    &sk_formula_constraint, &sk_energy};
+static const sk_force_type *const forces[] = {
+    &sk_gravity,  &sk_wind,    &sk_surface_wind, &sk_drag,       &sk_separation, &sk_flocking,    &sk_attraction,
+    &sk_predator, &sk_lookout, &sk_speed_limit,  &sk_turn_limit, &sk_bounds,     &sk_force_field, &sk_potential};
+static const sk_collider_type *const colliders[] = {&sk_plane,   &sk_sphere, &sk_bowl,
+                                                    &sk_capsule, &sk_box,    &sk_formula_surface};
 static const sk_method_type *const methods[] = {&sk_explicit_euler,
                                                 &sk_symplectic_euler,
                                                 &sk_lookahead_euler,
@@ -63,6 +65,12 @@ skein_status skein_constraint_add(skein_world *world, const char *kind, const ui
                                   const skein_setting *settings, skein_handle *handle) {
     const sk_constraint_type *type = type_of(world, SKEIN_CONSTRAINT, kind);
     return type ? sk_world_add_constraint(world, type, particles, count, settings, handle) : SKEIN_ERROR_NAME;
+}
+
+skein_status skein_constraint_arity(skein_world *world, const char *kind, const skein_setting *settings,
+                                    size_t *arity) {
+    const sk_constraint_type *type = type_of(world, SKEIN_CONSTRAINT, kind);
+    return type ? sk_world_find_arity(world, type, settings, arity) : SKEIN_ERROR_NAME;
 }
 
 skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings,

@@ -121,12 +121,40 @@ static void stability_is_foretold(void **state) {
     outcome_free(&o);
 }
 
+/* Position methods keep what forces do in a substep in the positions, which round it. */
+static void substeps_that_rounding_swallows(void **state) {
+    (void)state;
+    const char *s = sheet_scene();
+    bool is_double = sizeof(skein_real) == sizeof(double);
+    const char *many = is_double ? "method.substeps=90000" : "method.substeps=300";
+    static const char *const methods[] = {"method.type=xpbd", "method.type=pbd", "method.type=backward_euler"};
+    for (size_t m = 0; m < COUNT(methods); m++) {
+        outcome o = SKEIN("check", s, "--set", methods[m], "--set", many);
+        assert_status(o, 0);
+        if (m == 2 || is_double) {
+            assert_string_equal(o.err, "");
+            outcome_free(&o);
+            continue;
+        }
+        assert_contains(o.err, "hardly more than positions are rounded to");
+        assert_contains(o.out, "; 1 warning\n");
+        double most = number_behind(o.err, "set method.substeps to ");
+        outcome_free(&o);
+        char set[64];
+        snprintf(set, sizeof set, "method.substeps=%g", most);
+        o = SKEIN("check", s, "--set", methods[m], "--set", set);
+        assert_string_equal(o.err, "");
+        outcome_free(&o);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
 #define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
         TEST(runs_are_compared),
         TEST(what_cannot_be_compared_is_said),
         TEST(stability_is_foretold),
+        TEST(substeps_that_rounding_swallows),
     };
     return cmocka_run_group_tests_name("compare", tests, NULL, NULL);
 }

@@ -34,7 +34,7 @@ static void give_back(void *user, void *memory, size_t size) {
 /* The calls of the scenario, each to be made again after a failure. */
 typedef struct scenario {
     skein_world *world;
-    skein_handle gravity, ground;
+    skein_handle gravity, ground, surface;
     skein_statistics statistics;
     skein_order order;
     int call;
@@ -81,43 +81,65 @@ static skein_status make_call(scenario *s) {
         return skein_collider_add(s->world, "sphere",
                                   SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.8, 0), SKEIN_REAL("radius", 0.15)), NULL);
     case 9: return skein_collider_add(s->world, "plane", NULL, &s->ground);
-    case 10: {
+    case 10:
+        return skein_collider_add(
+            s->world, "formula",
+            SKEIN_SETTINGS(SKEIN_TEXT("surface", "length(p - vec3(0, h, 0)) - 0.15"), SKEIN_REAL("parameters.h", 0.8)),
+            &s->surface);
+    case 11:
+        return skein_force_add(s->world, "force_field",
+                               SKEIN_SETTINGS(SKEIN_TEXT("force", "-k*v"), SKEIN_REAL("parameters.k", 0.1)), NULL);
+    case 12: return skein_force_add(s->world, "potential", SKEIN_SETTINGS(SKEIN_TEXT("energy", "sin(p.x - t)")), NULL);
+    case 13: return skein_set(s->world, s->surface, "surface", skein_text("length(p - vec3(0, h, 0)) - 0.2"));
+    case 14: {
         static const double positions[3 * 90] = {0, 3, 0, 1, 3, 0};
         double masses[90];
         for (int i = 0; i < 90; i++) masses[i] = 0.1;
         return skein_particles_add(s->world, 90, positions, NULL, masses, NULL);
     }
-    case 11:
+    case 15:
         return skein_constraint_add(s->world, "distance", (const uint32_t[]){0, 20, 3, 31}, 2,
                                     SKEIN_SETTINGS(SKEIN_TEXT("name", "string")), NULL);
-    case 12: return skein_set_path(s->world, "colliders.1.name", skein_text("ground"));
-    case 13: return skein_world_explain(s->world, dt, NULL, NULL);
-    case 14: return skein_world_step(s->world, dt);
-    case 15: return skein_world_step(s->world, dt);
-    case 16: return skein_world_statistics(s->world, &s->statistics);
-    case 17: return skein_method_set(s->world, "xpbd", NULL);
-    case 18:
+    case 16: return skein_set_path(s->world, "colliders.1.name", skein_text("ground"));
+    case 17: return skein_world_explain(s->world, dt, NULL, NULL);
+    case 18: return skein_world_step(s->world, dt);
+    case 19: return skein_world_step(s->world, dt);
+    case 20: return skein_world_statistics(s->world, &s->statistics);
+    case 21: return skein_method_set(s->world, "xpbd", NULL);
+    case 22:
         return skein_set(s->world, s->gravity, "name", skein_text("a name that is long enough for a block of its own"));
-    case 19: return skein_world_reset(s->world);
-    case 20: return skein_world_step(s->world, dt);
-    case 21: return skein_world_step(s->world, dt / 2);
-    case 22: return skein_world_statistics(s->world, &s->statistics);
-    case 23:
+    case 23: return skein_world_reset(s->world);
+    case 24: return skein_world_step(s->world, dt);
+    case 25: return skein_world_step(s->world, dt / 2);
+    case 26: {
+        skein_pass passes[8];
+        size_t count;
+        return skein_world_profile(s->world, dt, passes, 8, &count);
+    }
+    case 27: return skein_world_statistics(s->world, &s->statistics);
+    case 28:
         return skein_body_add(s->world, "flock", NULL,
                               SKEIN_SETTINGS(SKEIN_TEXT("name", "birds"), SKEIN_REAL("count", 40)), NULL);
-    case 24:
+    case 29:
         return skein_force_add(
             s->world, "flocking",
             SKEIN_SETTINGS(SKEIN_TEXT("on", "birds"), SKEIN_TEXT("formula.towards", "1 - percent^2")), NULL);
-    case 25: return skein_force_add(s->world, "predator", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL);
-    case 26: return skein_force_add(s->world, "speed_limit", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL);
-    case 27: return skein_world_step(s->world, dt);
-    case 28: return skein_order_measure(s->world, 5, 60, (const double[]){0, 0, 0}, 1, &s->order);
-    case 29: return skein_world_statistics(s->world, &s->statistics);
+    case 30: return skein_force_add(s->world, "predator", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL);
+    case 31: return skein_force_add(s->world, "speed_limit", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL);
+    case 32:
+        return skein_constraint_add(
+            s->world, "formula", (const uint32_t[]){0, 20, 3, 31}, 2,
+            SKEIN_SETTINGS(SKEIN_TEXT("constraint", "length(p0 - p1) - k * rest(length(p0 - p1))"),
+                           SKEIN_REAL("parameters.k", 1), SKEIN_REAL("stiffness", 10)),
+            NULL);
+    case 33: return skein_constraint_add(s->world, "energy", (const uint32_t[]){0, 20}, 1, NULL, NULL);
+    case 34: return skein_world_step(s->world, dt);
+    case 35: return skein_order_measure(s->world, 5, 60, (const double[]){0, 0, 0}, 1, &s->order);
+    case 36: return skein_world_statistics(s->world, &s->statistics);
     default: return SKEIN_ERROR_LIMIT;
     }
 }
-enum { CALLS = 30 };
+enum { CALLS = 37 };
 
 /* What a failed call must leave as it was. */
 typedef struct census {

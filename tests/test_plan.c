@@ -10,17 +10,19 @@ static skein_world *busy_world(const char *method) {
     skein_world *world = new_world(method, 3);
     if (!strcmp(method, "xpbd")) OK(world, skein_set_path(world, "method.iterations", skein_number(2)));
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_TEXT("name", "rag"), SKEIN_PAIR("grid", 6, 6), SKEIN_VEC3("position", 0, 0.6, 0),
-                                            SKEIN_TEXT("pins", "top corners"), SKEIN_REAL("density", 0.5),
-                                            SKEIN_REAL("stretch.stiffness", 20), SKEIN_REAL("stretch.damping", 0.05),
-                                            SKEIN_REAL("shear.stiffness", 10), SKEIN_REAL("shear.damping", 0.02),
-                                            SKEIN_REAL("bend.stiffness", 5), SKEIN_REAL("bend.damping", 0.01),
-                                            SKEIN_REAL("stretch.limit", 0.02), SKEIN_REAL("stretch.tether", 0)),
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", "rag"), SKEIN_PAIR("grid", 6, 6),
+                                            SKEIN_VEC3("position", 0, 0.6, 0), SKEIN_TEXT("pins", "top corners"),
+                                            SKEIN_REAL("density", 0.5), SKEIN_REAL("stretch.stiffness", 20),
+                                            SKEIN_REAL("stretch.damping", 0.05), SKEIN_REAL("shear.stiffness", 10),
+                                            SKEIN_REAL("shear.damping", 0.02), SKEIN_REAL("bend.stiffness", 5),
+                                            SKEIN_REAL("bend.damping", 0.01), SKEIN_REAL("stretch.limit", 0.02),
+                                            SKEIN_REAL("stretch.tether", 0)),
                              NULL));
     uint64_t seed = 11;
     for (int i = 0; i < 20; i++)
-        add_moving(world, random_between(&seed, 0.05, 0.2), random_between(&seed, -0.5, 0.5), random_between(&seed, 0.2, 0.5),
-                   random_between(&seed, -0.5, 0.5), random_between(&seed, -1, 1), random_between(&seed, -2, 0), random_between(&seed, -1, 1));
+        add_moving(world, random_between(&seed, 0.05, 0.2), random_between(&seed, -0.5, 0.5),
+                   random_between(&seed, 0.2, 0.5), random_between(&seed, -0.5, 0.5), random_between(&seed, -1, 1),
+                   random_between(&seed, -2, 0), random_between(&seed, -1, 1));
     // a triangle of springs: one spring alone would be solved by its first pass, and a second one not matter
     OK(world, skein_constraint_add(world, "distance", (const uint32_t[]){36, 37, 37, 38, 38, 36}, 3,
                                    SKEIN_SETTINGS(SKEIN_REAL("stiffness", 50), SKEIN_REAL("damping", 0.1)), NULL));
@@ -28,11 +30,13 @@ static skein_world *busy_world(const char *method) {
     OK(world, skein_force_add(world, "wind", SKEIN_SETTINGS(SKEIN_VEC3("force", 0.01, 0, 0.02)), NULL));
     OK(world, skein_force_add(world, "surface_wind", SKEIN_SETTINGS(SKEIN_VEC3("velocity", 1, 0.2, 2)), NULL));
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.5)), NULL));
-    OK(world, skein_force_add(world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.25), SKEIN_REAL("strength", 0.3)), NULL));
-    OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_TEXT("name", "ground"), SKEIN_REAL("restitution", 0.5)), NULL));
+    OK(world, skein_force_add(world, "separation",
+                              SKEIN_SETTINGS(SKEIN_REAL("radius", 0.25), SKEIN_REAL("strength", 0.3)), NULL));
+    OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_TEXT("name", "ground")), NULL));
     OK(world, skein_collider_add(world, "sphere",
-                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "ball"), SKEIN_VEC3("centre", 0, 0.1, 0.2), SKEIN_REAL("radius", 0.3),
-                                                SKEIN_REAL("restitution", 0.4), SKEIN_REAL("motion.spin", 3)),
+                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "ball"), SKEIN_VEC3("centre", 0, 0.1, 0.2),
+                                                SKEIN_REAL("radius", 0.3), SKEIN_REAL("restitution", 0.4),
+                                                SKEIN_REAL("motion.spin", 3)),
                                  NULL));
     return world;
 }
@@ -122,12 +126,14 @@ static void explain_prints_a_line_a_row(void **state) {
         }
         // the repeat says how often and how much, and what it repeats is indented
         assert_int_equal(lines_with(&p, "3 times"), 1);
-        assert_true(lines_with(&p, "gravity") == 1 && lines_with(&p, "separation") == 1 && lines_with(&p, "limit") >= 1);
+        assert_true(lines_with(&p, "gravity") == 1 && lines_with(&p, "separation") == 1 &&
+                    lines_with(&p, "limit") >= 1);
         assert_true(lines_with(&p, "ball") == lines_with(&p, "ground") && lines_with(&p, "ball") >= 1);
         assert_int_equal(lines_with(&p, "    "), p.count);
         size_t repeat = 0;
         while (world->plan.data[repeat].kind != SK_ROW_REPEAT) repeat++;
-        for (size_t i = repeat + 1; i <= repeat + world->plan.data[repeat].length; i++) assert_memory_equal(p.lines[i], "    ", 4);
+        for (size_t i = repeat + 1; i <= repeat + world->plan.data[repeat].length; i++)
+            assert_memory_equal(p.lines[i], "    ", 4);
 
         // rows bear the names that rules have now
         OK(world, skein_set_path(world, "forces.0.name", skein_text("weight")));
@@ -157,7 +163,8 @@ static void needless_rows_are_left_out(void **state) {
     (void)state;
     skein_world *world = new_world("xpbd", 1);
     skein_handle body;
-    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 3), SKEIN_TEXT("pins", "0")), &body));
+    OK(world,
+       skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 3), SKEIN_TEXT("pins", "0")), &body));
     page p = {.count = 0};
     OK(world, skein_world_explain(world, dt, write_line, &p));
     assert_true(lines_with(&p, "multiplier") == 0 && lines_with(&p, "grid") == 0 && lines_with(&p, "V0") == 0);

@@ -103,7 +103,8 @@ skein_status skein_formula_hessian(const skein_formula *formula, const skein_for
 typedef enum skein_formula_language {
     SKEIN_FORMULA_C,
     SKEIN_FORMULA_GLSL,
-    SKEIN_FORMULA_GRAPH /* the operations, a line each */
+    SKEIN_FORMULA_KERNEL, /* C for a constraint that is compiled into the library (docs/formula.md) */
+    SKEIN_FORMULA_GRAPH   /* the operations, a line each */
 } skein_formula_language;
 
 /* Writes the value and its gradient as text, in pieces. */

@@ -73,7 +73,8 @@ typedef enum skein_field_type {
 /* One parameter of a kind. Defaults, the scene reader, its messages, `--set`, `skein list` and the
  * reference page all come from tables of these. */
 typedef struct skein_field {
-    const char *name; /* dots make groups: "stretch.stiffness" */
+    const char *name; /* dots make groups: "stretch.stiffness"; "parameters.*" stands for all that an object's formulas
+                         name, "parameters.R", say, which the object's own kind has one by one */
     skein_field_type type;
     size_t offset;       /* of the value in the kind's parameters; internal */
     const char *unit;    /* "N/m"; "" where there is none */
@@ -139,7 +140,8 @@ const skein_kind *skein_kind_find(skein_category category, const char *name, ske
 const char *skein_category_text(skein_category category);
 /* Fields that every kind of the category has besides its own ("enabled", "visible", ...). */
 const skein_field *skein_common_fields(skein_category category, size_t *count);
-/* A kind's own or common field by name; NULL (and the nearest right name in `error`) if none. */
+/* A kind's own or common field by name; NULL (and the nearest right name in `error`) if none. In a kind that takes
+ * parameters, "parameters.R" is found as "parameters.*". */
 const skein_field *skein_field_find(const skein_kind *kind, const char *name, skein_error *error);
 /* Checks a value against a field's type and range without setting anything. */
 skein_status skein_field_check(const skein_field *field, const skein_value *value, skein_error *error);
@@ -208,10 +210,12 @@ skein_status skein_particles_add(skein_world *world, size_t count, const double 
  * without. `settings` may be NULL; so may `handle`. */
 skein_status skein_body_add(skein_world *world, const char *kind, const skein_mesh *mesh, const skein_setting *settings,
                             skein_handle *handle);
-/* Adds `count` constraints of one kind, each on the kind's number of particles, with the rest
- * values of the present positions (`distance`: 2 particles each). They share their settings. */
+/* Adds `count` constraints of one kind, each on the kind's number of particles (`distance`: 2; `formula` and `energy`:
+ * as many as the formula names), with the rest values of the present positions. They share their settings. */
 skein_status skein_constraint_add(skein_world *world, const char *kind, const uint32_t *particles, size_t count,
                                   const skein_setting *settings, skein_handle *handle);
+/* How many particles each constraint of the kind takes, with these settings (NULL: the defaults). */
+skein_status skein_constraint_arity(skein_world *world, const char *kind, const skein_setting *settings, size_t *arity);
 skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings, skein_handle *handle);
 skein_status skein_collider_add(skein_world *world, const char *kind, const skein_setting *settings,
                                 skein_handle *handle);
@@ -226,7 +230,9 @@ skein_status skein_remove(skein_world *world, skein_handle handle);
  * is refused with SKEIN_ERROR_VALUE. A text that is returned lives until the field changes. */
 skein_status skein_set(skein_world *world, skein_handle handle, const char *field, skein_value value);
 skein_status skein_get(const skein_world *world, skein_handle handle, const char *field, skein_value *value);
-/* The same by path: "bodies.0.stretch.stiffness", "colliders.ball.radius" (a name), "method.substeps".
+/* Whether the field of an object can be set now: it exists, and shapes nothing that is already built. */
+bool skein_field_is_live(const skein_world *world, skein_handle handle, const char *field);
+/* Set and get by path: "bodies.0.stretch.stiffness", "colliders.ball.radius" (a name), "method.substeps".
  * Numbers count objects of the category in the order of their making. */
 skein_status skein_set_path(skein_world *world, const char *path, skein_value value);
 skein_status skein_get_path(const skein_world *world, const char *path, skein_value *value);
@@ -247,7 +253,9 @@ static inline skein_value skein_text(const char *text) {
 /* Living objects of a category, in the order of their making. */
 size_t skein_object_count(const skein_world *world, skein_category category);
 skein_handle skein_object_at(const skein_world *world, skein_category category, size_t index);
-/* The kind of an object; NULL for a stale handle. The method's handle is skein_object_at(..., SKEIN_METHOD, 0). */
+/* The kind of an object; NULL for a stale handle. The method's handle is skein_object_at(..., SKEIN_METHOD, 0). Where
+ * the kind takes parameters of formulas, it is the object's own, and lives as long as the object: its fields are the
+ * kind's and the parameters that the object was made with. */
 const skein_kind *skein_object_kind(const skein_world *world, skein_handle handle);
 bool skein_handle_valid(const skein_world *world, skein_handle handle);
 
@@ -260,6 +268,9 @@ skein_status skein_world_step(skein_world *world, double dt);
 /* Positions as they were built; velocities, forces, time and counters zero. */
 skein_status skein_world_reset(skein_world *world);
 double skein_world_time(const skein_world *world); /* seconds of simulated time */
+/* Sets the clock alone: what moves by it (colliders) is elsewhere then. With positions and velocities that were copied
+ * before, it takes a world back to where it was. Finite, at least 0. */
+skein_status skein_world_time_set(skein_world *world, double seconds);
 
 /* A fixed step for a loop with uneven frames: time goes in, whole steps come out, the rest is kept.
  * Feed it frame times only, never the time spent loading. */
@@ -275,6 +286,38 @@ skein_pacer skein_default_pacer(void); /* SKEIN_DEFAULT_STEP, at most 8 steps a 
 int skein_pacer_feed(skein_pacer *pacer, double seconds);
 /* How far the present lies between the last two states, 0 to 1. */
 double skein_pacer_blend(const skein_pacer *pacer);
+
+/* ---- Where steps are computed -------------------------------------------------------------------- */
+
+typedef enum skein_device {
+    SKEIN_DEVICE_CPU,       /* the processor: every rule, the same bits everywhere */
+    SKEIN_DEVICE_GPU,       /* a graphics card, through an OpenGL 4.5 context of the world's own */
+    SKEIN_DEVICE_CURRENT_GL /* the same, in the OpenGL context that is current on this thread: it must be current at
+                               every later call on the world, too */
+} skein_device;
+
+/* Changes where steps are computed; the state goes along. The card runs the same plan, in float, and keeps the state
+ * there: it comes back when a call looks at it (a view, a copy, statistics, a hash), and only then. A rule that cannot
+ * run on a card is named when a plan is made: by the next step, or by skein_world_explain(). */
+skein_status skein_world_device_set(skein_world *world, skein_device device);
+
+/* Waits until the steps asked for are done: a card works behind the calls. For measuring; nothing else needs it. */
+void skein_world_wait(const skein_world *world);
+
+typedef struct skein_device_info {
+    skein_device device;
+    const char *name;  /* "processor", or the card and its driver; as long as the device is the world's */
+    bool software;     /* a graphics card that the processor plays: right, but slow */
+    size_t bytes;      /* held on the card now */
+    size_t pass_count; /* shaders that a step runs, and the loops around them */
+    /* For drawing without reading back: OpenGL buffers of four floats a slot, x, y, z and the inverse mass, or velocity
+     * and mass. 0 before the first step, and changed by whatever adds particles. Particle i is in slot slot_of[i]; or,
+     * where that is NULL, particle_buffer holds a whole number a slot, the particle there, and a step may change it. */
+    unsigned position_buffer, velocity_buffer, particle_buffer;
+    const uint32_t *slot_of;
+    size_t slot_count;
+} skein_device_info;
+skein_device_info skein_world_device(const skein_world *world);
 
 /* ---- Reading and writing the state ------------------------------------------------------------- */
 
@@ -313,6 +356,15 @@ typedef struct skein_surface {
     const float *corner_uv;           /* face_vertex_count x 2, or NULL: see skein_body_uv_set() */
 } skein_surface;
 skein_status skein_body_surface(const skein_world *world, skein_handle body, skein_surface *surface);
+/* Sets of a body's particles that constraints can be made on. Faces are cut into triangles from their first corner. */
+typedef enum skein_elements {
+    SKEIN_EDGES,     /* 2: whatever the body's stretch is measured along */
+    SKEIN_TRIANGLES, /* 3 */
+    SKEIN_HINGES     /* 4: the ends of a side that two triangles share, and the corners across from it */
+} skein_elements;
+/* Copies up to `most` of them, with so many particles each; `count` receives how many there are. `out` may be NULL. */
+skein_status skein_body_elements(skein_world *world, skein_handle body, skein_elements what, uint32_t *out, size_t most,
+                                 size_t *count);
 /* Keeps texture coordinates for a body's surface, one pair for each corner of each face (so that a seam may have
  * two); they are for drawing only. `corner_count` is the surface's face_vertex_count. */
 skein_status skein_body_uv_set(skein_world *world, skein_handle body, const float *corner_uv, size_t corner_count);
@@ -344,13 +396,45 @@ typedef struct skein_contact {
 /* Copies up to `most` of the contacts of enabled colliders; `count` receives how many there are. */
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count);
 
+/* Where `count` points (count x 3) are seen from a collider's surface as it stands now: how far off, as contact takes
+ * it (negative inside; far away, formulas may say 1e15), and the unit normals out of the solid. Either may be NULL. */
+skein_status skein_collider_probe(const skein_world *world, skein_handle collider, size_t count, const double *points,
+                                  double *distances, double *normals);
+
+/* ---- What is where: for picking with a mouse, and for sensors ------------------------------------- */
+
+/* What a ray meets first. */
+typedef struct skein_hit {
+    double t;            /* m along the ray; infinity where it meets nothing, and then nothing else holds */
+    double point[3];     /* where */
+    double normal[3];    /* unit: a collider's, out of the solid; a face's, towards the ray's origin */
+    skein_handle object; /* a body or a collider */
+    size_t face;         /* of a body: which, as it came */
+    uint32_t particle;   /* of a body: that corner of the face which is nearest to the point */
+} skein_hit;
+
+/* Casts a ray at the surfaces of bodies (SKEIN_BODY) or at colliders (SKEIN_COLLIDER), without their thickness. The
+ * direction may have any length but 0. From inside a solid the ray goes on until it comes out and meets another wall,
+ * so that one looks into a bowl from outside. Objects that are not `visible`, and colliders that are not `enabled`, are
+ * passed over. Costs a look at every face, or some probes of every collider. */
+skein_status skein_ray_cast(const skein_world *world, const double origin[3], const double direction[3],
+                            skein_category category, skein_hit *hit);
+/* The particle that is nearest to a point; `metres` (or NULL) receives how far. Fails where there are none. */
+skein_status skein_particle_near_point(const skein_world *world, const double point[3], uint32_t *particle,
+                                       double *metres);
+/* Of the particles within `radius` + `slope` t of a ray, t metres along it, the one nearest to it by that measure; for
+ * particles that are drawn as balls of that radius, and a pointer that is a few pixels wide. `t` receives that,
+ * infinity where there is none. */
+skein_status skein_particle_near_ray(const skein_world *world, const double origin[3], const double direction[3],
+                                     double radius, double slope, uint32_t *particle, double *t);
+
 /* ---- Measures ---------------------------------------------------------------------------------- */
 
 typedef struct skein_statistics {
     uint64_t steps, substeps;
     double time;                /* s, simulated */
     double kinetic_energy;      /* J */
-    double potential_energy;    /* J, of gravity; 0 at the origin */
+    double potential_energy;    /* J, of gravity (0 at the origin) and potentials */
     double elastic_energy;      /* J, in constraints; what is rigid holds none */
     double dissipated_energy;   /* J: the energy when the first step began, less the energy now. What damping, friction,
                                    impacts and the method itself have taken; wind, moving colliders and changes made by
@@ -369,6 +453,8 @@ typedef struct skein_statistics {
     size_t contacts;          /* pairs of a particle and a collider that touch */
     size_t particles, held_particles, constraints;
     size_t nonfinite;    /* particles with a position or velocity that is not finite */
+    size_t guarded;      /* values of formulas that have none at the present state, where 0 or the nearest was taken:
+                            of each collider and force at each free particle (docs/formula.md) */
     size_t memory_bytes; /* held by the world now */
     uint64_t state_hash; /* of positions and velocities in the user's order */
 } skein_statistics;
@@ -419,6 +505,18 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
 /* The largest substep (s) at which no mode grows under the method: 0 if there is none, infinity if any will do. NaN for
  * a method that does not exist. */
 double skein_stable_substep(const char *method, const skein_stability *stability);
+
+/* What the rows of one kind and name took together. */
+typedef struct skein_pass {
+    const char *kind; /* "project", "force", ... */
+    char label[64];   /* of the rule: "stretch +0 +1"; "" for the arithmetic of whole vectors */
+    double seconds;
+} skein_pass;
+
+/* Takes a step, with the same bits as skein_world_step(), but one row of the plan after the other, and measures each.
+ * That is slower than a step, whose rows share the cache; the shares tell where the time goes. Copies up to `most`
+ * passes in the order of the plan; `count` receives how many there are. A step on a device is one pass. */
+skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out, size_t most, size_t *count);
 
 /* ---- The plan ---------------------------------------------------------------------------------- */
 

@@ -28,6 +28,11 @@
     {name_, SKEIN_FIELD_VEC3, offsetof(s, member), unit_, {x_, y_, z_}, 1e-6, 1e9, NULL, NULL, help_}
 #define SK_TEXT(s, member, name_, initial_, help_)                                                            \
     {name_, SKEIN_FIELD_TEXT, offsetof(s, member), "", {0, 0, 0}, 0, 0, NULL, initial_, help_}
+#define SK_CHOICE(s, member, name_, initial_, choices_, help_)                                                \
+    {name_, SKEIN_FIELD_CHOICE, offsetof(s, member), "", {initial_, 0, 0}, 0, 0, choices_, NULL, help_}
+/* The numbers that an object's formulas name, an array of SKEIN_FORMULA_MOST_PARAMETERS doubles: formula/parameters.h. */
+#define SK_PARAMETERS(s, member, help_)                                                                       \
+    {"parameters.*", SKEIN_FIELD_REAL, offsetof(s, member), "", {0, 0, 0}, -SK_FAR, SK_FAR, NULL, NULL, help_}
 // clang-format on
 
 /* The largest finite length, speed or force that a field takes: squares of it stay finite in float. */

@@ -20,6 +20,7 @@ typedef struct sk_vec3 {
 
 #ifdef SKEIN_DOUBLE
 #define SK_REAL_MAX 1.7976931348623157e308
+#define SK_LEAST_NORMAL 2.2250738585072014e-308
 static inline real sk_sqrt(real a) {
     return __builtin_sqrt(a);
 }
@@ -28,6 +29,7 @@ static inline real sk_abs(real a) {
 }
 #else
 #define SK_REAL_MAX 3.402823466e38f
+#define SK_LEAST_NORMAL 1.17549435e-38f
 static inline real sk_sqrt(real a) {
     return __builtin_sqrtf(a);
 }

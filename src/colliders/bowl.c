@@ -35,6 +35,10 @@ static double mass_of(const void *params) {
     return ((const bowl_params *)params)->mass;
 }
 
+static void pack(const void *params, float (*block)[4]) {
+    block[0][0] = (float)((const bowl_params *)params)->radius;
+}
+
 #define SK_KERNELS "colliders/bowl.c"
 #include "base/for_each_isa.h"
 
@@ -44,5 +48,6 @@ const sk_collider_type sk_bowl = {
     .place = place,
     .mass = mass_of,
     .probe = SK_EACH_ISA(probe),
+    .shader = {"colliders/bowl", 1, pack, NULL},
 };
 #endif

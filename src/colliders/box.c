@@ -61,6 +61,10 @@ static void turn(const void *data, double rotation[9]) {
     sk_rotation_of_degrees(((const box_params *)data)->rotation, rotation);
 }
 
+static void pack(const void *params, float (*block)[4]) {
+    for (int k = 0; k < 3; k++) block[0][k] = (float)(0.5 * ((const box_params *)params)->size[k]);
+}
+
 #define SK_KERNELS "colliders/box.c"
 #include "base/for_each_isa.h"
 
@@ -70,5 +74,6 @@ const sk_collider_type sk_box = {
     .place = place,
     .turn = turn,
     .probe = SK_EACH_ISA(probe),
+    .shader = {"colliders/box", 1, pack, NULL},
 };
 #endif

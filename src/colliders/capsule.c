@@ -62,6 +62,12 @@ static capsule_axis axis_now(const capsule_params *params, const sk_pose *pose) 
     return (capsule_axis){half, aside, 1 / square};
 }
 
+static void pack(const void *data, float (*block)[4]) {
+    const capsule_params *params = data;
+    for (int k = 0; k < 3; k++) block[0][k] = (float)(0.5 * (params->to[k] - params->from[k]));
+    block[0][3] = (float)params->radius;
+}
+
 #define SK_KERNELS "colliders/capsule.c"
 #include "base/for_each_isa.h"
 
@@ -70,5 +76,6 @@ const sk_collider_type sk_capsule = {
              sizeof fields / sizeof *fields, sizeof(capsule_params)},
     .place = place,
     .probe = SK_EACH_ISA(probe),
+    .shader = {"colliders/capsule", 1, pack, NULL},
 };
 #endif

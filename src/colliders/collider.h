@@ -8,7 +8,9 @@
 
 #include "base/fields.h"
 #include "base/wide_types.h"
+#include "formula/parameters.h"
 #include "plan/row.h"
+#include "plan/shader.h"
 
 /* Where a collider stands at a time, and how it moves there. */
 typedef struct sk_pose {
@@ -17,12 +19,14 @@ typedef struct sk_pose {
     sk_vec3 axis;     /* the shape's own direction, where it has one */
     sk_vec3 velocity; /* of `position`, m/s */
     sk_vec3 spin;     /* angular velocity, rad/s */
+    double time;      /* s */
 } sk_pose;
 
 /* Of sixteen particles. */
 typedef struct sk_contact {
     sk_wide3 normal;  /* unit, out of the solid */
     sk_wide distance; /* to the surface, negative inside */
+    sk_wide speed;    /* of the surface along the normal, besides the pose's motion; only of types that deform */
 } sk_contact;
 
 typedef void sk_probe(const void *params, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact);
@@ -49,6 +53,13 @@ typedef struct sk_collider_type {
     double (*mass)(const void *params);
     /* Distance and normal of sixteen particles; a version for each instruction set. */
     sk_probe *probe[SK_ISA_COUNT];
+    bool deforms; /* its surface moves by itself, too */
+    /* Whether a value at x had to be guarded (formula/graph.h): for the statistics; NULL: there is nothing to guard. */
+    bool (*guarded)(const void *params, const sk_pose *pose, const double x[3]);
+    const sk_making *making; /* what is made from its texts; NULL: nothing */
+    /* Defines vec4 probe@(vec3 p): the unit normal out of the solid, and the distance in w. What every collider has
+     * is pose@ (colliders/contact.glsl). */
+    sk_shader shader;
 } sk_collider_type;
 
 typedef struct sk_collider {
@@ -92,11 +103,24 @@ bool sk_contact_reads_force(const sk_collider *collider);
 void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
                          size_t particle_count, double *penetration, size_t *contacts);
 
+/* How many of the free particles had to be guarded against at the present state. */
+size_t sk_collider_count_guarded(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
+                                 size_t particle_count);
+
+/* The same for points anywhere, 3 numbers each; distances and normals may be NULL. */
+void sk_collider_probe_points(const sk_collider *collider, double time, sk_isa isa, size_t count, const double *points,
+                              double *distances, double *normals);
+
 /* Calls `visit` for every particle in touch: what sk_collider_measure() counts. */
 void sk_collider_visit(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
                        size_t particle_count,
                        void (*visit)(void *user, size_t particle, sk_vec3 normal, double distance), void *user);
 
-extern const sk_collider_type sk_plane, sk_sphere, sk_bowl, sk_capsule, sk_box;
+/* Where a ray (`along` is of length 1) first comes from outside to the surface, in metres, and the unit normal there;
+ * infinity where it does not within `most` metres. */
+double sk_collider_cast(const sk_collider *collider, double time, const double origin[3], const double along[3],
+                        double most, double normal[3]);
+
+extern const sk_collider_type sk_plane, sk_sphere, sk_bowl, sk_capsule, sk_box, sk_formula_surface;
 
 #endif

@@ -40,11 +40,15 @@ SK_INLINE sk_mask SK_ISA(touches)(const sk_collider *collider, sk_wide3 p, sk_wi
 }
 
 /* The velocity relative to the surface at p. */
-SK_INLINE sk_wide3 SK_ISA(against)(const sk_pose *pose, sk_wide3 p, sk_wide4 v) {
+SK_INLINE sk_wide3 SK_ISA(against)(const sk_collider *collider, const sk_pose *pose, sk_wide3 p,
+                                   const sk_contact *contact, sk_wide4 v) {
     sk_vec3 u = pose->velocity, spin = pose->spin;
     sk_wide3 arm = {p.x - pose->position.x, p.y - pose->position.y, p.z - pose->position.z};
-    return (sk_wide3){v.x - (u.x + (spin.y * arm.z - spin.z * arm.y)), v.y - (u.y + (spin.z * arm.x - spin.x * arm.z)),
-                      v.z - (u.z + (spin.x * arm.y - spin.y * arm.x))};
+    sk_wide3 out = {v.x - (u.x + (spin.y * arm.z - spin.z * arm.y)), v.y - (u.y + (spin.z * arm.x - spin.x * arm.z)),
+                    v.z - (u.z + (spin.x * arm.y - spin.y * arm.x))};
+    if (!collider->type->deforms) return out;
+    sk_wide3 n = contact->normal;
+    return (sk_wide3){out.x - contact->speed * n.x, out.y - contact->speed * n.y, out.z - contact->speed * n.z};
 }
 
 /* What comes faster than a substep's force alone would bring it is to bounce, if the collider lets it. */
@@ -61,7 +65,7 @@ SK_INLINE sk_wide3 SK_ISA(hold)(const sk_collider *collider, const sk_pose *pose
     sk_wide3 p = {x.x, x.y, x.z}, n;
     collider->type->probe[SK_ISA(sk_version)](collider->params, pose, &p, &contact);
     n = contact.normal;
-    sk_wide3 slide = SK_ISA(against)(pose, p, f->v);
+    sk_wide3 slide = SK_ISA(against)(collider, pose, p, &contact, f->v);
     sk_wide speed = SK_ISA(sk_dot_wide)(slide, n), hw = h * x.w;
     slide = (sk_wide3){slide.x - speed * n.x, slide.y - speed * n.y, slide.z - speed * n.z};
     sk_wide3 f3 = {force.x, force.y, force.z};
@@ -99,7 +103,7 @@ SK_INLINE sk_wide3 SK_ISA(hold)(const sk_collider *collider, const sk_pose *pose
 
 static void SK_ISA(contact_filter)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_collider *collider = row->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time);
+    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
     sk_vec4 *diagonal = run->vector[row->dst], *off = run->vector[row->source[1]], *rub = run->vector[row->source[2]];
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
@@ -121,7 +125,7 @@ static void SK_ISA(contact_filter)(sk_run *run, const sk_row *row, size_t begin,
  * bounce), and of what lay on the surface only what presses. The rest is inside because its tangent leads there, in
  * a hollow, and the solve may take it off: holding that would glue it on, with more weight and friction for the rest.
  */
-SK_INLINE sk_mask SK_ISA(comes_inside)(const sk_run *run, const sk_row *row, const sk_pose *pose, size_t slot,
+SK_INLINE sk_mask SK_ISA(comes_inside)(const sk_run *run, const sk_row *row, const sk_pose *start, size_t slot,
                                        sk_wide4 x, sk_wide4 v, const sk_contact *contact) {
     const sk_collider *collider = row->rule;
     bool packed = slot < row->packed;
@@ -133,14 +137,14 @@ SK_INLINE sk_mask SK_ISA(comes_inside)(const sk_run *run, const sk_row *row, con
     if (!SK_ISA(sk_any)(inside)) return inside;
     sk_wide3 p0 = {x0.x, x0.y, x0.z}, n = contact->normal;
     sk_contact before;
-    collider->type->probe[SK_ISA(sk_version)](collider->params, pose, &p0, &before);
+    collider->type->probe[SK_ISA(sk_version)](collider->params, start, &p0, &before);
     sk_mask lay = SK_ISA(touches)(collider, p0, before.distance - thickness);
     // the balance of momentum along the normal, without what contact does to it
     sk_wide hw = (real)row->dt * x.w;
     sk_wide3 short_of = {hw * force.x - (v.x - v0.x), hw * force.y - (v.y - v0.y), hw * force.z - (v.z - v0.z)};
     sk_mask presses = SK_ISA(sk_negative)(SK_ISA(sk_dot_wide)(short_of, n));
     if (!sk_contact_reads_force(collider)) return inside & (presses | ~lay);
-    sk_wide speed = SK_ISA(sk_dot_wide)(SK_ISA(against)(pose, p0, v0), before.normal);
+    sk_wide speed = SK_ISA(sk_dot_wide)(SK_ISA(against)(collider, start, p0, &before, v0), before.normal);
     return inside & lay & presses & ~SK_ISA(bounces)(collider, speed, hw, force);
 }
 
@@ -148,7 +152,8 @@ SK_INLINE sk_mask SK_ISA(comes_inside)(const sk_run *run, const sk_row *row, con
  * along its tangent. */
 static void SK_ISA(contact_filter_more)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_collider *collider = row->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time);
+    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
+    sk_pose start = sk_collider_pose_at(collider, run->time - row->dt);
     sk_vec4 *diagonal = run->vector[row->dst], *off = run->vector[row->source[1]];
     real thickness = (real)collider->common->thickness;
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
@@ -158,7 +163,7 @@ static void SK_ISA(contact_filter_more)(sk_run *run, const sk_row *row, size_t b
         sk_wide3 p = {x.x, x.y, x.z};
         sk_contact contact;
         collider->type->probe[SK_ISA(sk_version)](collider->params, &pose, &p, &contact);
-        sk_mask inside = SK_ISA(comes_inside)(run, row, &pose, slot, x, v, &contact);
+        sk_mask inside = SK_ISA(comes_inside)(run, row, &start, slot, x, v, &contact);
         if (!SK_ISA(sk_any)(inside)) continue;
         sk_wide gap = contact.distance - thickness;
         SK_ISA(filtering)

@@ -36,6 +36,10 @@ static double mass_of(const void *params) {
     return ((const sphere_params *)params)->mass;
 }
 
+static void pack(const void *params, float (*block)[4]) {
+    block[0][0] = (float)((const sphere_params *)params)->radius;
+}
+
 #define SK_KERNELS "colliders/sphere.c"
 #include "base/for_each_isa.h"
 
@@ -45,5 +49,6 @@ const sk_collider_type sk_sphere = {
     .place = place,
     .mass = mass_of,
     .probe = SK_EACH_ISA(probe),
+    .shader = {"colliders/sphere", 1, pack, NULL},
 };
 #endif

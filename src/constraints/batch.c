@@ -2,16 +2,26 @@
 
 #include "constraints/sweep.h"
 
-sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *type, size_t count,
+int sk_constraint_arity(const sk_constraint_type *type, const void *params) {
+    return type->arity_of ? type->arity_of(params) : type->arity;
+}
+
+int sk_constraint_rest_count(const sk_constraint_type *type, const void *params) {
+    return type->rest_count_of ? type->rest_count_of(params) : type->rest_count;
+}
+
+sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *type, const void *params, size_t count,
                           const uint32_t *particles, const real *rest, const real *scale) {
     sk_batch *batch = sk_allocate(allocator, sizeof *batch);
     if (!batch) return NULL;
-    size_t indices = count * (size_t)type->arity;
     batch->type = type;
     batch->count = count;
+    batch->arity = (size_t)sk_constraint_arity(type, params);
+    batch->rest_count = (size_t)sk_constraint_rest_count(type, params);
+    size_t indices = count * batch->arity, rests = count * batch->rest_count;
     batch->particle = sk_allocate(allocator, indices * sizeof *batch->particle);
     batch->slot = sk_allocate(allocator, indices * sizeof *batch->slot);
-    batch->rest = sk_allocate(allocator, count * sizeof *batch->rest);
+    batch->rest = sk_allocate(allocator, rests * sizeof *batch->rest);
     batch->scale = scale ? sk_allocate(allocator, count * sizeof *batch->scale) : NULL;
     if (!batch->particle || !batch->slot || !batch->rest || (scale && !batch->scale)) {
         sk_batch_release(batch, allocator);
@@ -19,7 +29,7 @@ sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *typ
     }
     if (count) {
         memcpy(batch->particle, particles, indices * sizeof *particles);
-        memcpy(batch->rest, rest, count * sizeof *rest);
+        if (rests) memcpy(batch->rest, rest, rests * sizeof *rest);
         if (scale) memcpy(batch->scale, scale, count * sizeof *scale);
     }
     return batch;

@@ -15,26 +15,34 @@
 #define SK_CONSTRAINTS_CONSTRAINT_H
 
 #include "base/fields.h"
+#include "formula/parameters.h"
 #include "particles/particles.h"
 #include "plan/row.h"
 
 typedef struct sk_batch sk_batch;
 typedef struct sk_sweep sk_sweep;
 
-/* A kernel for each way that a sweep can walk. */
+enum { SK_MOST_ARITY = 8 }; /* particles an element */
+
+/* A kernel for each way that a sweep can walk; a kind without walks along strips goes in groups. */
 typedef struct sk_sweep_kernels {
     sk_kernels strips, groups;
 } sk_sweep_kernels;
 
 typedef struct sk_constraint_type {
     skein_kind kind; /* the parameters begin with an sk_material */
-    int arity;       /* particles an element; 2 is the only one that sweeps know so far */
-    /* The rest value of an element whose particles stand at x[0 .. arity). */
-    double (*rest)(const double (*x)[3]);
+    int arity;       /* particles an element, 2 to 8 */
+    int rest_count;  /* rest values of an element */
+    /* The same where each object has its own numbers; NULL: they are above. */
+    int (*arity_of)(const void *params);
+    int (*rest_count_of)(const void *params);
+    /* The rest values of an element whose particles stand at x[0 .. arity); false when there is no memory. */
+    bool (*rest)(const void *params, const double (*x)[3], double *rest);
+    bool in_blocks; /* groups that share no particle are worked out together */
     sk_sweep_kernels force;
     sk_sweep_kernels project;        /* without damping, one pass a substep: no multiplier is kept */
     sk_sweep_kernels project_damped; /* with damping or several passes */
-    sk_sweep_kernels limit;          /* keeps C under the batch's bound; positions */
+    sk_sweep_kernels limit;          /* keeps C under the batch's bound; positions. Not every kind has one */
     sk_sweep_kernels limit_moving;   /* the same, and velocities: where they are not taken from positions */
     /* For implicit solves, over a batch's elements, with the row's coefficients a and b: dst += (a k + b c) p for the
      * direction p, its second source, k and c being the stiffness and damping at X (positive definite); and that
@@ -42,8 +50,10 @@ typedef struct sk_constraint_type {
     sk_kernels apply, diagonal;
     /* Relative violation of elements [begin, end): (length - rest)/rest for a distance. */
     void (*strain)(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, real *strain);
-    /* C of elements [begin, end): half of its square times the stiffness is their energy. */
-    void (*value)(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, double *value);
+    /* Energies over the stiffness of elements [begin, end), C^2 / 2; returns how many had to be guarded
+     * (formula/graph.h). */
+    size_t (*energy)(const sk_batch *batch, double time, const sk_vec4 *x, size_t begin, size_t end, double *energy);
+    const sk_making *making; /* what is made from its texts; NULL: nothing */
 } sk_constraint_type;
 
 /* What every constraint kind is made of. */
@@ -59,27 +69,30 @@ struct sk_batch {
     const bool *enabled;
     const double *bound; /* of the relative violation, kept by limit rows; NULL: none */
     bool measured;       /* an edge of a body: it counts in the stretch of the statistics */
-    size_t count;
+    size_t count, arity, rest_count;
     uint32_t *particle; /* count x arity, user's indices */
     uint32_t *slot;     /* the same as slots */
-    real *rest;
-    real *scale; /* NULL: all 1 */
+    real *rest;         /* rest_count x count: first all first ones */
+    real *scale;        /* NULL: all 1 */
 
     /* Made from the above when slots change: elements in the order of sweeps, a lane each. */
     sk_sweep *sweeps;
     size_t sweep_count, sweep_capacity;
     uint32_t *lane; /* of each element */
     size_t lane_count;
-    real *lane_rest;       /* lanes without an element: 0, */
+    real *lane_rest;       /* rest_count x lane_count; lanes without an element: 0, */
     real *lane_stiffness;  /* 0, */
     real *lane_compliance; /* and infinity, so that nothing comes of them */
     real *lane_multiplier; /* lambda of XPBD, only read where a substep keeps it */
     uint8_t *special;      /* a block of 16 lanes each: not all as the sweep's common values say */
 };
 
-/* Makes a batch of copies; NULL when there is no memory. `rest` and `scale` (or NULL) have `count` reals. */
-sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *type, size_t count,
+/* Makes a batch of copies, for the type's parameters; NULL when there is no memory. `rest` has rest_count x count
+ * reals, `scale` (or NULL) `count`. */
+sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *type, const void *params, size_t count,
                           const uint32_t *particles, const real *rest, const real *scale);
+int sk_constraint_arity(const sk_constraint_type *type, const void *params);
+int sk_constraint_rest_count(const sk_constraint_type *type, const void *params);
 void sk_batch_release(sk_batch *batch, sk_allocator *allocator);
 /* Cuts the batch into sweeps for the particles' present slots. False when there is no memory. */
 bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles);
@@ -93,6 +106,7 @@ sk_row_kernel sk_sweep_clear_multipliers;
 /* The batch's damping over stiffness, in seconds; 0 for a rigid batch. */
 double sk_batch_damping_time(const sk_batch *batch);
 
-extern const sk_constraint_type sk_distance;
+extern const sk_constraint_type sk_distance, sk_dihedral, sk_isometric, sk_area, sk_volume, sk_angle, sk_formula_constraint,
+    sk_energy;
 
 #endif

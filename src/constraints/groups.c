@@ -8,10 +8,11 @@
 #include <string.h>
 
 enum {
-    GROUP_DISTANCE = 4, /* dependent groups stand so far apart where they can, to hide each other's latency */
-    MOST_PASSES = 8,    /* sweeps that a batch is cut into */
-    LEAST_SLABS = 12,   /* of a walk, */
-    LEAST_SHARE = 6     /* and for each slab of its reach */
+    GROUP_DISTANCE = 4, /* dependent groups stand so far apart where they can, to hide each other's latency, */
+    BLOCK_DISTANCE = SK_BLOCK_GROUPS, /* or so far, to make blocks */
+    MOST_PASSES = 8,                  /* sweeps that a batch is cut into */
+    LEAST_SLABS = 12,                 /* of a walk, */
+    LEAST_SHARE = 6                   /* and for each slab of its reach */
 };
 
 typedef struct dealer {
@@ -19,6 +20,7 @@ typedef struct dealer {
     sk_allocator *allocator;
     const sk_particles *particles;
     size_t *lane_of;
+    size_t arity, distance;
 } dealer;
 
 typedef struct grouping {
@@ -51,11 +53,13 @@ static uint32_t first_open(uint32_t *next, uint32_t group) {
 static void deal(const dealer *d, grouping *g) {
     for (size_t e = g->first; e < g->last; e++) {
         if (!is_left(d, e)) continue;
-        uint32_t a = d->batch->slot[2 * e], b = d->batch->slot[2 * e + 1];
-        uint32_t after = g->latest[a] > g->latest[b] ? g->latest[a] : g->latest[b];
-        uint32_t group = first_open(g->next, after ? after - 1 + GROUP_DISTANCE : 0);
+        const uint32_t *slot = d->batch->slot + e * d->arity;
+        uint32_t after = 0;
+        for (size_t i = 0; i < d->arity; i++)
+            if (g->latest[slot[i]] > after) after = g->latest[slot[i]];
+        uint32_t group = first_open(g->next, after ? after - 1 + (uint32_t)d->distance : 0);
         g->group[e - g->first] = group;
-        g->latest[a] = g->latest[b] = group + 1;
+        for (size_t i = 0; i < d->arity; i++) g->latest[slot[i]] = group + 1;
         if (++g->filled[group] == SK_LANES) g->next[group] = group + 1;
         if (group + 1 > g->group_count) g->group_count = group + 1;
     }
@@ -82,7 +86,8 @@ static sk_sweep *add_sweep(const dealer *d, grouping *g, size_t left) {
     if (!sk_reserve(d->allocator, (void **)&batch->sweeps, &batch->sweep_capacity, batch->sweep_count + 1,
                     sizeof(sk_sweep)))
         return NULL;
-    uint32_t *slots = sk_allocate(d->allocator, g->group_count * 2 * SK_LANES * sizeof *slots);
+    size_t count = g->group_count * d->arity * SK_LANES;
+    uint32_t *slots = sk_allocate(d->allocator, count * sizeof *slots);
     if (!slots) return NULL;
     sk_sweep *sweep = &batch->sweeps[batch->sweep_count++];
     *sweep = (sk_sweep){.batch = batch,
@@ -91,17 +96,38 @@ static sk_sweep *add_sweep(const dealer *d, grouping *g, size_t left) {
                         .slots = slots,
                         .group_count = g->group_count};
     snprintf(sweep->label, sizeof sweep->label, "%.40s groups", batch->label);
-    for (size_t i = 0; i < g->group_count * 2 * SK_LANES; i++) slots[i] = (uint32_t)d->particles->empty_slot;
+    for (size_t i = 0; i < count; i++) slots[i] = (uint32_t)d->particles->empty_slot;
     memset(g->filled, 0, g->group_count);
     for (size_t e = g->first; e < g->last; e++) {
         if (!is_left(d, e)) continue;
         size_t group = g->group[e - g->first], lane = g->filled[group]++;
-        slots[group * 2 * SK_LANES + lane] = batch->slot[2 * e];
-        slots[group * 2 * SK_LANES + SK_LANES + lane] = batch->slot[2 * e + 1];
+        for (size_t i = 0; i < d->arity; i++)
+            slots[(group * d->arity + i) * SK_LANES + lane] = batch->slot[e * d->arity + i];
         d->lane_of[e] = batch->lane_count + group * SK_LANES + lane;
     }
     batch->lane_count += g->group_count * SK_LANES;
     return sweep;
+}
+
+/* Finds how many groups from each one on share no particle. False when there is no memory. */
+static bool find_blocks(const dealer *d, sk_sweep *sweep, uint32_t *latest) {
+    sweep->ahead = sk_allocate(d->allocator, sweep->group_count);
+    if (!sweep->ahead) return false;
+    memset(latest, 0, d->particles->slot_count * sizeof *latest);
+    size_t open = 0; // groups before it know how many they have
+    for (size_t g = 0; g < sweep->group_count; g++) {
+        size_t before = 0; // the newest group that shares a particle, counted from 1
+        for (size_t i = 0; i < d->arity * SK_LANES; i++) {
+            uint32_t slot = sweep->slots[g * d->arity * SK_LANES + i];
+            if (slot == d->particles->empty_slot) continue;
+            if (latest[slot] > before && latest[slot] != g + 1) before = latest[slot];
+            latest[slot] = (uint32_t)g + 1;
+        }
+        if (g >= SK_BLOCK_GROUPS && before + SK_BLOCK_GROUPS < g + 1) before = g + 1 - SK_BLOCK_GROUPS;
+        for (; open < before; open++) sweep->ahead[open] = (uint8_t)(g - open);
+    }
+    for (; open < sweep->group_count; open++) sweep->ahead[open] = (uint8_t)(sweep->group_count - open);
+    return true;
 }
 
 /* ---- its walk ---- */
@@ -121,7 +147,7 @@ static sk_walk region_of(const sk_particles *particles, uint32_t slot) {
 /* The first and last slab that a group touches; false if it leaves the region. */
 static bool find_slabs(const dealer *d, const uint32_t *slots, const sk_walk *walk, size_t slab[2]) {
     slab[0] = SIZE_MAX, slab[1] = 0;
-    for (size_t i = 0; i < 2 * SK_LANES; i++) {
+    for (size_t i = 0; i < d->arity * SK_LANES; i++) {
         if (slots[i] == d->particles->empty_slot) continue;
         if (slots[i] < walk->first_slot) return false;
         size_t at = (slots[i] - walk->first_slot) / (walk->width * SK_LANES);
@@ -144,7 +170,7 @@ static bool find_walk(const dealer *d, sk_sweep *sweep) {
     for (size_t j = 0; j <= walk.rows; j++) start[j] = (uint32_t)sweep->group_count;
     for (size_t g = sweep->group_count; g-- > 0 && walks;) {
         size_t slab[2];
-        walks = find_slabs(d, sweep->slots + g * 2 * SK_LANES, &walk, slab);
+        walks = find_slabs(d, sweep->slots + g * d->arity * SK_LANES, &walk, slab);
         if (slab[0] < lowest) lowest = slab[0];
         if (walks && slab[1] - lowest > walk.reach) walk.reach = slab[1] - lowest;
         start[lowest] = (uint32_t)g;
@@ -169,7 +195,9 @@ static size_t find_passes(const dealer *d, size_t first[MOST_PASSES + 1]) {
     first[count++] = 0;
     for (size_t e = 0; e < d->batch->count && count < MOST_PASSES; e++) {
         if (!is_left(d, e)) continue;
-        size_t a = d->batch->slot[2 * e], b = d->batch->slot[2 * e + 1], low = a < b ? a : b;
+        size_t low = SIZE_MAX;
+        for (size_t i = 0; i < d->arity; i++)
+            if (d->batch->slot[e * d->arity + i] < low) low = d->batch->slot[e * d->arity + i];
         if (low + d->particles->slot_count / 2 < highest) first[count++] = e, highest = 0;
         if (low > highest) highest = low;
     }
@@ -181,8 +209,8 @@ static bool add_pass(const dealer *d, size_t first, size_t last) {
     size_t left = 0;
     for (size_t e = first; e < last; e++) left += is_left(d, e);
     if (!left) return true;
-    // in the worst case all elements share a particle: each has a group of its own, GROUP_DISTANCE apart
-    size_t most = left * GROUP_DISTANCE + GROUP_DISTANCE + 1;
+    // in the worst case all elements share a particle: each has a group of its own, all far apart
+    size_t most = left * d->distance + d->distance + 1;
     grouping g = {.first = first, .last = last};
     g.latest = sk_allocate(d->allocator, (d->particles->slot_count + SK_LANES) * sizeof *g.latest);
     g.next = sk_allocate(d->allocator, most * sizeof *g.next);
@@ -194,7 +222,7 @@ static bool add_pass(const dealer *d, size_t first, size_t last) {
         deal(d, &g);
         close_up(d, &g);
         sk_sweep *sweep = add_sweep(d, &g, left);
-        good = sweep && find_walk(d, sweep);
+        good = sweep && find_walk(d, sweep) && (!d->batch->type->in_blocks || find_blocks(d, sweep, g.latest));
     }
     sk_release(d->allocator, g.latest);
     sk_release(d->allocator, g.next);
@@ -204,7 +232,8 @@ static bool add_pass(const dealer *d, size_t first, size_t last) {
 }
 
 bool sk_groups_deal(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles, size_t *lane_of) {
-    dealer d = {batch, allocator, particles, lane_of};
+    dealer d = {batch,   allocator,    particles,
+                lane_of, batch->arity, batch->type->in_blocks ? BLOCK_DISTANCE : GROUP_DISTANCE};
     size_t first[MOST_PASSES + 1], count = find_passes(&d, first);
     for (size_t i = 0; i < count; i++)
         if (!add_pass(&d, first[i], first[i + 1])) return false;

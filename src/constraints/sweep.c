@@ -10,16 +10,15 @@ enum {
     LEAST_SHARE = 5 /* a direction becomes a strip sweep if a fifth of its places have an element */
 };
 
-/* Where an element lies: in which strips and direction, and at which place of the first particle. */
+/* How an element lies in strips: its place, which is the lowest of its particles', and the steps from there. */
 typedef struct element_place {
     const sk_strips *strips; /* NULL: in none */
-    int32_t row_step, column_step;
+    int32_t row_step[SK_MOST_ARITY], column_step[SK_MOST_ARITY];
     uint32_t row, column;
 } element_place;
 
 typedef struct direction {
-    const sk_strips *strips;
-    int32_t row_step, column_step;
+    element_place like; /* an element of it */
     size_t count;
     size_t sweep; /* its place among the batch's sweeps, SIZE_MAX: goes in groups */
 } direction;
@@ -28,6 +27,7 @@ typedef struct cutter {
     sk_batch *batch;
     sk_allocator *allocator;
     const sk_particles *particles;
+    int arity;
     direction directions[MOST_DIRECTIONS];
     size_t direction_count;
 } cutter;
@@ -40,82 +40,119 @@ static const sk_strips *strips_of(const sk_particles *particles, uint32_t partic
     return NULL;
 }
 
-/* Elements are told apart by the step from the lower to the higher place. */
-static element_place place_of(const sk_particles *particles, uint32_t p, uint32_t q) {
-    element_place none = {NULL, 0, 0, 0, 0};
-    const sk_strips *strips = strips_of(particles, p);
-    if (!strips || strips != strips_of(particles, q) || p == q) return none;
-    uint32_t a = particles->place[p], b = particles->place[q];
-    if (a > b) a = particles->place[q], b = particles->place[p];
-    element_place place = {strips, (int32_t)(b / strips->columns) - (int32_t)(a / strips->columns),
-                           (int32_t)(b % strips->columns) - (int32_t)(a % strips->columns), a / strips->columns,
-                           a % strips->columns};
-    // a block that met itself would move a particle twice at once
-    return place.row_step || place.column_step % (int32_t)strips->width ? place : none;
-}
-
-static direction *find_direction(cutter *c, element_place place) {
-    if (!place.strips) return NULL;
-    for (size_t d = 0; d < c->direction_count; d++) {
-        direction *known = &c->directions[d];
-        if (known->strips == place.strips && known->row_step == place.row_step &&
-            known->column_step == place.column_step)
-            return known;
-    }
-    if (c->direction_count == MOST_DIRECTIONS) return NULL;
-    c->directions[c->direction_count] = (direction){place.strips, place.row_step, place.column_step, 0, SIZE_MAX};
-    return &c->directions[c->direction_count++];
+/* Whether two of the particles lie in one block: it would move a particle twice at once. */
+static bool meets_itself(const element_place *place, int arity) {
+    for (int i = 0; i < arity; i++)
+        for (int j = 0; j < i; j++)
+            if (place->row_step[i] == place->row_step[j] &&
+                (place->column_step[i] - place->column_step[j]) % (int32_t)place->strips->width == 0)
+                return true;
+    return false;
 }
 
 static element_place place_of_element(const cutter *c, size_t e) {
-    return place_of(c->particles, c->batch->particle[2 * e], c->batch->particle[2 * e + 1]);
+    const uint32_t *particle = c->batch->particle + e * (size_t)c->arity;
+    element_place place = {.strips = strips_of(c->particles, particle[0])}, none = {.strips = NULL};
+    if (!place.strips) return none;
+    uint32_t at[SK_MOST_ARITY], lowest = UINT32_MAX, columns = place.strips->columns;
+    for (int i = 0; i < c->arity; i++) {
+        if (strips_of(c->particles, particle[i]) != place.strips) return none;
+        at[i] = c->particles->place[particle[i]];
+        if (at[i] < lowest) lowest = at[i];
+    }
+    // which end of a pair comes first does not matter
+    if (c->arity == 2 && at[0] > at[1]) at[0] = at[1], at[1] = c->particles->place[particle[0]];
+    place.row = lowest / columns, place.column = lowest % columns;
+    for (int i = 0; i < c->arity; i++) {
+        place.row_step[i] = (int32_t)(at[i] / columns) - (int32_t)place.row;
+        place.column_step[i] = (int32_t)(at[i] % columns) - (int32_t)place.column;
+    }
+    return meets_itself(&place, c->arity) ? none : place;
+}
+
+/* The order of directions: by strips, then by rows, then by columns. */
+static int compare_places(const element_place *a, const element_place *b) {
+    if (a->strips != b->strips) return a->strips < b->strips ? -1 : 1;
+    for (int i = 0; i < SK_MOST_ARITY; i++)
+        if (a->row_step[i] != b->row_step[i]) return a->row_step[i] < b->row_step[i] ? -1 : 1;
+    for (int i = 0; i < SK_MOST_ARITY; i++)
+        if (a->column_step[i] != b->column_step[i]) return a->column_step[i] < b->column_step[i] ? -1 : 1;
+    return 0;
 }
 
 static int compare_directions(const void *p, const void *q) {
-    const direction *a = p, *b = q;
-    if (a->strips != b->strips) return a->strips < b->strips ? -1 : 1;
-    if (a->row_step != b->row_step) return a->row_step < b->row_step ? -1 : 1;
-    return (a->column_step > b->column_step) - (a->column_step < b->column_step);
+    return compare_places(&((const direction *)p)->like, &((const direction *)q)->like);
 }
 
-/* Finds the spans of a strip row, one or two. */
-static void find_spans(sk_sweep *sweep) {
-    int64_t width = (int64_t)sweep->walk.width, step = sweep->column_step;
-    int64_t shift = step >= 0 ? step / width : -((width - 1 - step) / width);
-    int64_t cut = (shift + 1) * width - step; // from here on one strip farther
-    if (cut > width) cut = width;
-    sweep->span[0] = (sk_span){0, (size_t)cut, (int)shift};
-    sweep->span[1] = (sk_span){(size_t)cut, (size_t)width, (int)shift + 1};
-    sweep->span_count = cut < width ? 2 : 1;
+static direction *find_direction(cutter *c, const element_place *place) {
+    if (!place->strips) return NULL;
+    for (size_t d = 0; d < c->direction_count; d++)
+        if (!compare_places(&c->directions[d].like, place)) return &c->directions[d];
+    if (c->direction_count == MOST_DIRECTIONS) return NULL;
+    c->directions[c->direction_count] = (direction){*place, 0, SIZE_MAX};
+    return &c->directions[c->direction_count++];
+}
+
+/* Strips on from the block k of a row. */
+static int shift_from(const sk_sweep *sweep, int64_t k, int i) {
+    int64_t width = (int64_t)sweep->walk.width, column = k + sweep->column_step[i];
+    return (int)(column >= 0 ? column / width : -((width - 1 - column) / width));
+}
+
+/* Finds the spans of a strip row: each particle's blocks come to the end of their strip once in a row at the most. */
+static void find_spans(sk_sweep *sweep, int arity) {
+    sweep->span_count = 0;
+    for (size_t k = 0; k < sweep->walk.width; k++) {
+        sk_span span = {.first = k, .last = k + 1};
+        for (int i = 0; i < arity; i++) {
+            span.shift[i] = shift_from(sweep, (int64_t)k, i);
+            span.turned |= span.shift[i] != 0;
+        }
+        sk_span *last = sweep->span_count ? &sweep->span[sweep->span_count - 1] : NULL;
+        if (last && !memcmp(last->shift, span.shift, sizeof span.shift)) last->last = k + 1;
+        else sweep->span[sweep->span_count++] = span;
+    }
+}
+
+static void name_sweep(sk_sweep *sweep, int arity) {
+    int at = snprintf(sweep->label, sizeof sweep->label, "%.30s", sweep->batch->label);
+    for (int i = 0; i < arity && at < (int)sizeof sweep->label; i++)
+        if (sweep->row_step[i] || sweep->column_step[i])
+            at += snprintf(sweep->label + at, sizeof sweep->label - (size_t)at, " %+d %+d", sweep->row_step[i],
+                           sweep->column_step[i]);
 }
 
 /* Counts the directions, and makes a strip sweep of each that fills enough of its places. */
 static bool add_strip_sweeps(cutter *c) {
     sk_batch *batch = c->batch;
     for (size_t e = 0; e < batch->count; e++) {
-        direction *d = find_direction(c, place_of_element(c, e));
+        element_place place = place_of_element(c, e);
+        direction *d = find_direction(c, &place);
         if (d) d->count++;
     }
     qsort(c->directions, c->direction_count, sizeof *c->directions, compare_directions);
     for (size_t i = 0; i < c->direction_count; i++) {
         direction *d = &c->directions[i];
-        size_t places = (size_t)d->strips->rows * d->strips->columns;
+        const sk_strips *strips = d->like.strips;
+        size_t places = (size_t)strips->rows * strips->columns, reach = 0;
         if (d->count * LEAST_SHARE < places) continue;
         if (!sk_reserve(c->allocator, (void **)&batch->sweeps, &batch->sweep_capacity, batch->sweep_count + 1,
                         sizeof(sk_sweep)))
             return false;
         d->sweep = batch->sweep_count;
         sk_sweep *sweep = &batch->sweeps[batch->sweep_count++];
+        for (int k = 0; k < c->arity; k++)
+            if ((size_t)d->like.row_step[k] > reach) reach = (size_t)d->like.row_step[k];
         *sweep = (sk_sweep){.batch = batch,
                             .strips = true,
                             .element_count = d->count,
                             .first_lane = batch->lane_count,
-                            .row_step = d->row_step,
-                            .column_step = d->column_step,
-                            .walk = {d->strips->first_slot, d->strips->rows, d->strips->width, (size_t)d->row_step}};
-        find_spans(sweep);
-        snprintf(sweep->label, sizeof sweep->label, "%.30s %+d %+d", batch->label, d->row_step, d->column_step);
-        batch->lane_count += (size_t)d->strips->rows * d->strips->width * SK_LANES;
+                            .walk = {strips->first_slot, strips->rows, strips->width, reach}};
+        memcpy(sweep->row_step, d->like.row_step, sizeof sweep->row_step);
+        memcpy(sweep->column_step, d->like.column_step, sizeof sweep->column_step);
+        find_spans(sweep, c->arity);
+        name_sweep(sweep, c->arity);
+        batch->lane_count += (size_t)strips->rows * strips->width * SK_LANES;
     }
     for (size_t i = batch->sweep_count; i-- > 0;) {
         bool goes_on =
@@ -127,8 +164,9 @@ static bool add_strip_sweeps(cutter *c) {
 
 /* The lane of an element in a strip sweep; SIZE_MAX if it is in none or the lane is taken. */
 static size_t strip_lane(cutter *c, size_t e, const bool *taken) {
+    if (!c->batch->sweep_count) return SIZE_MAX;
     element_place place = place_of_element(c, e);
-    direction *d = find_direction(c, place);
+    direction *d = find_direction(c, &place);
     if (!d || d->sweep == SIZE_MAX) return SIZE_MAX;
     size_t width = place.strips->width;
     size_t lane = c->batch->sweeps[d->sweep].first_lane + (place.row * width + place.column % width) * SK_LANES +
@@ -152,7 +190,8 @@ void sk_batch_forget_sweeps(sk_batch *batch, sk_allocator *allocator) {
     for (size_t i = 0; i < batch->sweep_count; i++) {
         sk_release(allocator, batch->sweeps[i].slots);
         sk_release(allocator, batch->sweeps[i].slab_start);
-        batch->sweeps[i].slots = batch->sweeps[i].slab_start = NULL;
+        sk_release(allocator, batch->sweeps[i].ahead);
+        batch->sweeps[i] = (sk_sweep){.batch = NULL};
     }
     batch->sweep_count = batch->lane_count = 0;
 }
@@ -160,7 +199,7 @@ void sk_batch_forget_sweeps(sk_batch *batch, sk_allocator *allocator) {
 static bool allocate_lanes(sk_batch *batch, sk_allocator *allocator) {
     size_t size = batch->lane_count * sizeof(real);
     batch->lane = sk_allocate(allocator, batch->count * sizeof *batch->lane);
-    batch->lane_rest = sk_allocate(allocator, size);
+    batch->lane_rest = sk_allocate(allocator, batch->rest_count * size);
     batch->lane_stiffness = sk_allocate(allocator, size);
     batch->lane_compliance = sk_allocate(allocator, size);
     batch->lane_multiplier = sk_allocate(allocator, size);
@@ -174,10 +213,10 @@ bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particl
     size_t *lane_of = sk_allocate(allocator, batch->count * sizeof *lane_of);
     bool *taken = NULL, good = c && lane_of;
     sk_batch_forget_sweeps(batch, allocator);
-    for (size_t i = 0; i < 2 * batch->count; i++) batch->slot[i] = particles->slot_of[batch->particle[i]];
+    for (size_t i = 0; i < batch->arity * batch->count; i++) batch->slot[i] = particles->slot_of[batch->particle[i]];
     if (good) {
-        *c = (cutter){.batch = batch, .allocator = allocator, .particles = particles};
-        good = add_strip_sweeps(c);
+        *c = (cutter){.batch = batch, .allocator = allocator, .particles = particles, .arity = (int)batch->arity};
+        good = !batch->type->project.strips.version[0] || add_strip_sweeps(c);
     }
     if (good) good = (taken = sk_allocate(allocator, batch->lane_count)) != NULL;
     for (size_t e = 0; e < batch->count && good; e++) {
@@ -196,29 +235,33 @@ bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particl
 static void mark_special(sk_batch *batch, sk_sweep *sweep) {
     size_t blocks = sweep->walk.rows * sweep->walk.width;
     size_t middle = sweep->first_lane + (blocks / 2) * SK_LANES + SK_LANES / 2;
-    sweep->rest = batch->lane_rest[middle];
+    for (size_t r = 0; r < batch->rest_count; r++) sweep->rest[r] = batch->lane_rest[r * batch->lane_count + middle];
     sweep->stiffness = batch->lane_stiffness[middle];
     sweep->compliance = batch->lane_compliance[middle];
     for (size_t b = 0; b < blocks; b++) {
         size_t lane = sweep->first_lane + b * SK_LANES;
         bool special = false;
         for (size_t l = lane; l < lane + SK_LANES; l++)
-            special |= batch->lane_rest[l] != sweep->rest || batch->lane_stiffness[l] != sweep->stiffness ||
-                       batch->lane_compliance[l] != sweep->compliance;
+            special |= batch->lane_stiffness[l] != sweep->stiffness || batch->lane_compliance[l] != sweep->compliance;
+        for (size_t r = 0; r < batch->rest_count; r++)
+            for (size_t l = lane; l < lane + SK_LANES; l++)
+                special |= batch->lane_rest[r * batch->lane_count + l] != sweep->rest[r];
         batch->special[lane / SK_LANES] = special;
     }
 }
 
 void sk_batch_refresh(sk_batch *batch) {
     const sk_material *material = batch->params;
+    for (size_t i = 0; i < batch->rest_count * batch->lane_count; i++) batch->lane_rest[i] = 0;
     for (size_t l = 0; l < batch->lane_count; l++) {
-        batch->lane_rest[l] = batch->lane_stiffness[l] = 0;
+        batch->lane_stiffness[l] = 0;
         batch->lane_compliance[l] = (real)SK_UNBOUNDED;
     }
     for (size_t e = 0; e < batch->count; e++) {
         double k = material->stiffness * (batch->scale ? (double)batch->scale[e] : 1.0);
         size_t lane = batch->lane[e];
-        batch->lane_rest[lane] = batch->rest[e];
+        for (size_t r = 0; r < batch->rest_count; r++)
+            batch->lane_rest[r * batch->lane_count + lane] = batch->rest[r * batch->count + e];
         batch->lane_stiffness[lane] = (real)k;
         batch->lane_compliance[lane] = (real)(k > 0 ? 1 / k : SK_UNBOUNDED);
     }

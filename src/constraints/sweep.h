@@ -1,8 +1,8 @@
 /* Sweeps: how a batch is walked. The order is part of the answer; lanes and threads only keep to it.
  *
- * Strips. Where particles lie in strips (particles/particles.h), the elements that lead from grid place
- * (r, c) to (r + row_step, c + column_step) make one sweep: block (r, k) of sixteen slots meets block
- * (r + row_step, k + column_step), lane by lane, and no index is read. Over the end of a strip it meets
+ * Strips. Where particles lie in strips (particles/particles.h), the elements whose particles are at grid places
+ * (r + row_step[i], c + column_step[i]) make one sweep: blocks (r + row_step[i], k + column_step[i]) of sixteen slots
+ * meet, lane by lane, and no index is read. Over the end of a strip it meets
  * the next strip's first blocks, one lane on (a long step may lead over several strips):
  *
  *       strip 0   strip 1 ...  strip 15         lane l owns columns [l w, (l + 1) w)
@@ -18,12 +18,17 @@
 #include "base/wide_types.h"
 #include "constraints/constraint.h"
 
-enum { SK_SLAB_BLOCKS = 16 }; /* blocks a slab, where there are no strips */
+enum {
+    SK_SLAB_BLOCKS = 16, /* blocks a slab, where there are no strips */
+    SK_BLOCK_GROUPS = 8, /* groups that are worked out together at the most */
+    SK_MOST_RESTS = 4    /* rest values of an element that walks along strips */
+};
 
-/* Blocks [first, last) of a strip row that meet blocks `shift` strips on. */
+/* Blocks [first, last) of a strip row: particle i of their elements lies shift[i] strips on. */
 typedef struct sk_span {
     size_t first, last;
-    int shift;
+    int shift[SK_MOST_ARITY];
+    bool turned; /* some shift is not 0 */
 } sk_span;
 
 struct sk_sweep {
@@ -33,14 +38,15 @@ struct sk_sweep {
     size_t first_lane;
     /* strips */
     sk_walk walk;
-    int32_t row_step, column_step;
-    sk_span span[2]; /* a strip row's */
+    int32_t row_step[SK_MOST_ARITY], column_step[SK_MOST_ARITY]; /* of each particle from the element's place */
+    sk_span span[SK_MOST_ARITY];                                 /* a strip row's */
     size_t span_count;
-    size_t together;                  /* sweeps from this one on along the same strips */
-    real rest, stiffness, compliance; /* what most blocks have in every lane */
+    size_t together;                                 /* sweeps from this one on along the same strips */
+    real rest[SK_MOST_RESTS], stiffness, compliance; /* what most blocks have in every lane */
     /* groups, in the order of the elements */
-    uint32_t *slots; /* of each group 16 first and 16 second particles */
+    uint32_t *slots; /* of each group 16 first particles, 16 second ones ... */
     size_t group_count;
+    uint8_t *ahead;       /* of each group: how many from it on share no particle; NULL where nobody asks */
     uint32_t *slab_start; /* where they walk: the groups of slab j are [slab_start[j], slab_start[j + 1]) */
     char label[48];       /* the batch's, and the direction */
 };

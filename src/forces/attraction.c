@@ -44,6 +44,12 @@ static void bodies(const void *params, const char **moved, const char **seen) {
     *seen = "";
 }
 
+static void pack(const void *data, float (*block)[4]) {
+    const attraction_params *params = data;
+    sk_shader_vector(block[0], params->centre);
+    block[0][3] = (float)params->strength, block[1][0] = (float)params->flatness;
+}
+
 #define SK_KERNELS "forces/attraction.c"
 #include "base/for_each_isa.h"
 
@@ -54,5 +60,6 @@ const sk_force_type sk_attraction = {
     .deed = SK_STEERS,
     .kernel = {SK_EACH_ISA(kernel)},
     .bodies = bodies,
+    .shader = {"forces/attraction", 2, pack, NULL},
 };
 #endif

@@ -57,6 +57,11 @@ static bool plain(const void *data, sk_plain_force *sum) {
     return params->quadratic == 0;
 }
 
+static void pack(const void *data, float (*block)[4]) {
+    const drag_params *params = data;
+    block[0][0] = (float)params->linear, block[0][1] = (float)params->rate, block[0][2] = (float)params->quadratic;
+}
+
 #define SK_KERNELS "forces/drag.c"
 #include "base/for_each_isa.h"
 
@@ -68,5 +73,6 @@ const sk_force_type sk_drag = {
     .kernel = {SK_EACH_ISA(kernel)},
     .plain = plain,
     .resistance = {SK_EACH_ISA(resistance)},
+    .shader = {"forces/drag", 1, pack, NULL},
 };
 #endif

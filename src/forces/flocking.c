@@ -258,7 +258,7 @@ static void SK_ISA(fly)(sk_run *run, const sk_row *row, size_t begin, size_t end
 
 static void SK_ISA(fly_by_formula)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     SK_ISA(formulas) formulas;
-    formulas.pair = ((const sk_force *)row->rule)->state;
+    formulas.pair = ((const sk_flocking_params *)((const sk_force *)row->rule)->params)->pair;
     sk_tape_input input = {.time = (real)run->time};
     for (int w = 0; w < SK_PAIR_WEIGHTS; w++)
         if (formulas.pair->formula[w])
@@ -267,12 +267,15 @@ static void SK_ISA(fly_by_formula)(sk_run *run, const sk_row *row, size_t begin,
 }
 
 static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    if (((const sk_force *)row->rule)->state) SK_ISA(fly_by_formula)(run, row, begin, end);
+    const sk_flocking_params *params = ((const sk_force *)row->rule)->params;
+    if (params->pair) SK_ISA(fly_by_formula)(run, row, begin, end);
     else SK_ISA(fly)(run, row, begin, end, NULL);
 }
 
 #else
 #include "forces/flocking.h"
+
+#include <string.h>
 
 #include "base/elementary.h"
 #include "base/status.h"
@@ -306,19 +309,24 @@ static void bodies(const void *data, const char **moved, const char **seen) {
     *seen = params->minds;
 }
 
-static skein_status prepare(const void *data, void **state, sk_allocator *allocator, skein_error *error) {
-    const sk_flocking_params *params = data;
-    sk_pair_formula *pair = *state;
+static skein_status make(void *data, const skein_kind *kind, sk_allocator *allocator, skein_error *error) {
+    sk_flocking_params *params = data;
+    sk_pair_formula *pair;
+    (void)kind;
     skein_status status =
-        sk_pair_formula_prepare(&pair, (const char *const[]){params->towards, params->along},
-                                (const char *const[]){"formula.towards", "formula.along"}, allocator, error);
-    *state = pair;
-    return status;
+        sk_pair_formula_create(&pair, (const char *const[]){params->towards, params->along},
+                               (const char *const[]){"formula.towards", "formula.along"}, allocator, error);
+    if (status) return status;
+    sk_pair_formula_release(params->pair, allocator);
+    params->pair = pair;
+    return SKEIN_OK;
 }
 
-static void release(void *state, sk_allocator *allocator) {
-    sk_pair_formula_release(state, allocator);
+static void unmake(void *data, sk_allocator *allocator) {
+    sk_pair_formula_release(((sk_flocking_params *)data)->pair, allocator);
 }
+
+static const sk_making making = {make, unmake};
 
 sk_flocking_numbers sk_flocking_numbers_of(const sk_flocking_params *params) {
     double reach = radius(params);
@@ -339,6 +347,22 @@ sk_flocking_numbers sk_flocking_numbers_of(const sk_flocking_params *params) {
     };
 }
 
+static void pack(const void *data, float (*block)[4]) {
+    const sk_flocking_params *params = data;
+    sk_flocking_numbers n = sk_flocking_numbers_of(params);
+    const float numbers[2][4] = {
+        {1 / (float)n.reach, (float)n.away, (float)n.along, (float)n.per_along},
+        {(float)n.per_towards, (float)n.least, (float)params->strength, n.squared ? 1.0f : 0.0f}};
+    memcpy(block, numbers, sizeof numbers);
+}
+
+static const char *refuse(const void *data) {
+    const sk_flocking_params *params = data;
+    if (params->pair) return "by a formula";
+    if (params->nearest) return "with a number of nearest neighbours";
+    return params->view < 360 ? "with a field of view" : NULL;
+}
+
 #define SK_KERNELS "forces/flocking.c"
 #include "base/for_each_isa.h"
 
@@ -350,7 +374,7 @@ const sk_force_type sk_flocking = {
     .kernel = {SK_EACH_ISA(kernel)},
     .radius = radius,
     .bodies = bodies,
-    .prepare = prepare,
-    .release = release,
+    .making = &making,
+    .shader = {"forces/flocking", 2, pack, refuse},
 };
 #endif

@@ -6,7 +6,9 @@
 #define SK_FORCES_FORCE_H
 
 #include "base/fields.h"
+#include "formula/parameters.h"
 #include "plan/row.h"
+#include "plan/shader.h"
 
 typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOURS, SK_OVER_COLLIDERS } sk_domain;
 
@@ -23,7 +25,8 @@ typedef struct sk_force_type {
     sk_deed deed;
     bool once;        /* what it bounds is bounded between kick and drift only, and not at the end of a substep */
     bool sets;        /* its kernel minds the row's `sets`: it can be the first to write F */
-    bool on_velocity; /* it depends on velocities */
+    bool on_velocity; /* it depends on velocities, */
+    bool (*uses_velocity)(const void *params); /* or does so with these parameters; NULL: what on_velocity says */
     sk_kernels kernel;
     /* Adds the force to the sum if it is plain with these parameters, else returns false; NULL: it never is. */
     bool (*plain)(const void *params, sk_plain_force *sum);
@@ -32,17 +35,31 @@ typedef struct sk_force_type {
     sk_kernels resistance;
     /* Neighbour rules: how far they reach, m; NULL else. */
     double (*radius)(const void *params);
+    /* The same where a force depends on place, over slots, with coefficients a and b: dst += (a k + b c) p for the
+     * direction p, its second source, where -k and -c, positive definite, are about how the force grows with the
+     * particle's own position and velocity; and that matrix's 3 x 3 blocks, xx yy zz into dst, xy xz yz into its second
+     * source. As constraints have them; NULL: none. */
+    sk_kernels apply, diagonal;
     /* The potential energy of a particle at x; NULL: it has none. */
-    double (*potential)(const void *params, const double x[3], double mass);
+    double (*potential)(const void *params, const double x[3], double mass, double time);
+    /* Whether a value had to be guarded (formula/graph.h): for the statistics; NULL: there is nothing to guard. */
+    bool (*guarded)(const void *params, const double x[3], const double v[3], double time);
+    const sk_making *making; /* what is made from its texts; NULL: nothing */
     /* What a rule that steers or bounds says about the parameters together, before a plan is written; NULL: nothing. */
     skein_status (*check)(const void *params, size_t particle_count, skein_error *error);
     /* The names of the body that it moves and of the one that it looks at: "" is every particle, and the same as it
      * moves. NULL: every particle. */
     void (*bodies)(const void *params, const char **moved, const char **seen);
-    /* Makes the state that the kernel needs besides the parameters, before a plan is written; *state is what it made
-     * the last time. On failure *state is NULL. NULL: there is none. */
-    skein_status (*prepare)(const void *params, void **state, sk_allocator *allocator, skein_error *error);
-    void (*release)(void *state, sk_allocator *allocator);
+    /* Over particles it defines, for a rule that pushes, steers (w: how much more speed is allowed) or bounds (by
+     * `more` speed):
+     *     vec3 force@(vec3 x, vec3 v, float mass),   vec4 steer@(vec3 x, float dt),   vec3 bound@(vec3 v, float more)
+     * and over neighbours a sum of its own type, what each neighbour adds, and the newtons or metres a second that
+     * come of it:
+     *     sum@ start@(),   void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction),
+     *     vec3 finish@(sum@ sum, float dt)
+     * where `apart` leads from the neighbour here, `square` is its squared length (less than that of the radius, and
+     * 0 in one place), and `direction` is the neighbour's unit direction of flight. */
+    sk_shader shader;
     /* Over colliders: the time ahead (s), the clearance (m) and the strength (m/s2) of steering clear. */
     void (*look)(const void *params, double look[3]);
 } sk_force_type;
@@ -53,11 +70,12 @@ typedef struct sk_force {
     const void *params;
     const char *label;
     const bool *enabled;
-    void *state;          /* what the type has prepared from the parameters, or NULL */
     sk_group moved, seen; /* found when a plan is written */
 } sk_force;
 
+bool sk_force_on_velocity(const sk_force *force);
+
 extern const sk_force_type sk_gravity, sk_wind, sk_surface_wind, sk_drag, sk_separation, sk_flocking, sk_attraction,
-    sk_predator, sk_lookout, sk_speed_limit, sk_turn_limit, sk_bounds;
+    sk_predator, sk_lookout, sk_speed_limit, sk_turn_limit, sk_bounds, sk_force_field, sk_potential;
 
 #endif

@@ -32,9 +32,14 @@ static bool plain(const void *params, sk_plain_force *sum) {
     return true;
 }
 
-static double potential(const void *data, const double x[3], double mass) {
+static double potential(const void *data, const double x[3], double mass, double time) {
+    (void)time;
     const double *g = ((const gravity_params *)data)->acceleration;
     return -mass * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
+}
+
+static void pack(const void *params, float (*block)[4]) {
+    sk_shader_vector(block[0], ((const gravity_params *)params)->acceleration);
 }
 
 #define SK_KERNELS "forces/gravity.c"
@@ -48,5 +53,6 @@ const sk_force_type sk_gravity = {
     .kernel = {SK_EACH_ISA(kernel)},
     .plain = plain,
     .potential = potential,
+    .shader = {"forces/gravity", 1, pack, NULL},
 };
 #endif

@@ -74,6 +74,19 @@ static void bodies(const void *params, const char **moved, const char **seen) {
     *seen = "";
 }
 
+static void pack(const void *data, float (*block)[4]) {
+    const predator_params *params = data;
+    const double *line = params->line;
+    double length = sqrt(line[0] * line[0] + line[1] * line[1] + line[2] * line[2]);
+    sk_shader_vector(block[0], params->position);
+    for (int k = 0; k < 3 && length > 0; k++) block[1][k] = (float)(line[k] / length);
+    block[0][3] = (float)params->radius, block[1][3] = (float)params->strength, block[2][0] = (float)params->alarm;
+}
+
+static const char *refuse(const void *params) {
+    return ((const predator_params *)params)->particle >= 0 ? "while it is a particle" : NULL;
+}
+
 #define SK_KERNELS "forces/predator.c"
 #include "base/for_each_isa.h"
 
@@ -85,5 +98,6 @@ const sk_force_type sk_predator = {
     .kernel = {SK_EACH_ISA(kernel)},
     .check = check,
     .bodies = bodies,
+    .shader = {"forces/predator", 3, pack, refuse},
 };
 #endif

@@ -54,10 +54,16 @@ static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     }
 }
 
+static void pack(const void *data, float (*block)[4]) {
+    const separation_params *params = data;
+    block[0][0] = (float)params->radius, block[0][1] = (float)params->strength;
+}
+
 const sk_force_type sk_separation = {
     .kind = {"separation", "neighbours closer than a radius push each other apart", SKEIN_FORCE, fields,
              sizeof fields / sizeof *fields, sizeof(separation_params)},
     .domain = SK_OVER_NEIGHBOURS,
     .kernel = {SK_ANY_ISA(kernel)},
     .radius = radius,
+    .shader = {"forces/separation", 1, pack, NULL},
 };

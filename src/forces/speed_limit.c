@@ -39,6 +39,10 @@ static void bodies(const void *params, const char **moved, const char **seen) {
     *seen = "";
 }
 
+static void pack(const void *params, float (*block)[4]) {
+    block[0][0] = (float)((const speed_limit_params *)params)->limit;
+}
+
 #define SK_KERNELS "forces/speed_limit.c"
 #include "base/for_each_isa.h"
 
@@ -49,5 +53,6 @@ const sk_force_type sk_speed_limit = {
     .deed = SK_BOUNDS,
     .kernel = {SK_EACH_ISA(kernel)},
     .bodies = bodies,
+    .shader = {"forces/speed_limit", 1, pack, NULL},
 };
 #endif

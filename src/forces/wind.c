@@ -30,6 +30,10 @@ static bool plain(const void *params, sk_plain_force *sum) {
     return true;
 }
 
+static void pack(const void *params, float (*block)[4]) {
+    sk_shader_vector(block[0], ((const wind_params *)params)->force);
+}
+
 #define SK_KERNELS "forces/wind.c"
 #include "base/for_each_isa.h"
 
@@ -39,5 +43,6 @@ const sk_force_type sk_wind = {
     .domain = SK_OVER_PARTICLES,
     .kernel = {SK_EACH_ISA(kernel)},
     .plain = plain,
+    .shader = {"forces/wind", 1, pack, NULL},
 };
 #endif

@@ -78,7 +78,7 @@ static void put_temporary(sk_writer *w, sk_node node) {
 
 static void put_expression(sk_writer *w, sk_node node);
 
-static void put_operand(sk_writer *w, sk_node node, int least) {
+void sk_put_operand(sk_writer *w, sk_node node, int least) {
     bool name = w->number[node] != 0, brackets = tightness(w, node) < least;
     sk_put(w, "%s", brackets ? "(" : "");
     if (name) put_temporary(w, node);
@@ -100,22 +100,22 @@ static void put_expression(sk_writer *w, sk_node node) {
         sk_put(w, "%s(", call);
         for (int k = 0; k < sk_op_info[n->op].arity; k++) {
             sk_put(w, "%s", k ? ", " : "");
-            put_operand(w, n->arg[k], 0);
+            sk_put_operand(w, n->arg[k], 0);
         }
         sk_put(w, ")");
     } else if (n->op == SK_OP_NEGATE) {
         sk_put(w, "-");
-        put_operand(w, n->arg[0], 2);
+        sk_put_operand(w, n->arg[0], 2);
     } else {
         bool product = n->op == SK_OP_MULTIPLY;
-        put_operand(w, n->arg[0], product ? 2 : 1);
+        sk_put_operand(w, n->arg[0], product ? 2 : 1);
         sk_put(w, product ? " * " : n->op == SK_OP_ADD ? " + " : " - ");
-        put_operand(w, n->arg[1], product ? 3 : 2);
+        sk_put_operand(w, n->arg[1], product ? 3 : 2);
     }
 }
 
 static void put_output(sk_writer *w, sk_node node) {
-    put_operand(w, node, 0);
+    sk_put_operand(w, node, 0);
     sk_put(w, "%s", w->language->end_result);
 }
 
@@ -146,9 +146,9 @@ static void find_names(sk_writer *w) {
     }
 }
 
-static void put_all(sk_writer *w, const sk_node *outputs, size_t count) {
-    const skein_formula *f = w->formula;
-    const sk_graph *g = &f->graph;
+void sk_put_temporaries(sk_writer *w, const sk_node *outputs, size_t count) {
+    const sk_graph *g = &w->formula->graph;
+    for (size_t i = 0; i < g->count; i++) w->live[i] = false, w->uses[i] = w->number[i] = 0, w->height[i] = 0;
     sk_graph_mark(g, outputs, count, w->live);
     for (size_t i = 0; i < count; i++) w->uses[outputs[i]]++;
     for (size_t i = 0; i < g->count; i++)
@@ -163,6 +163,11 @@ static void put_all(sk_writer *w, const sk_node *outputs, size_t count) {
         put_expression(w, (sk_node)i);
         sk_put(w, ";\n");
     }
+}
+
+static void put_all(sk_writer *w, const sk_node *outputs, size_t count) {
+    const skein_formula *f = w->formula;
+    sk_put_temporaries(w, outputs, count);
     for (int k = 0; k < f->size; k++) {
         for (int p = 0; p < f->particles; p++)
             for (int axis = 0; axis < 3; axis++) {
@@ -208,9 +213,10 @@ static void put_graph(sk_writer *w, const sk_node *outputs, size_t count) {
         sk_put(w, "%s%s\n", n->name[0] ? "    // " : "", n->name);
     }
     for (int k = 0; k < f->size; k++) {
-        sk_put(w, "value%s%.1s = #%u\n", f->size == 3 ? "." : "", f->size == 3 ? &"xyz"[k] : "", f->value[k]);
+        if (f->size == 3) sk_put(w, "value.%c = #%u\n", 'x' + k, f->value[k]);
+        else sk_put(w, "value = #%u\n", f->value[k]);
         for (int i = 0; i < 3 * f->particles; i++)
-            sk_put(w, "d/dp%d.%c = #%u\n", i / 3, "xyz"[i % 3], f -> by_position[k][i]);
+            sk_put(w, "d/dp%d.%c = #%u\n", i / 3, 'x' + i % 3, f->by_position[k][i]);
     }
 }
 
@@ -219,8 +225,12 @@ skein_status skein_formula_emit(const skein_formula *f, skein_formula_language a
     sk_allocator allocator = sk_default_allocator();
     sk_node outputs[SK_FORMULA_MOST_OUTPUTS];
     size_t nodes = f->graph.count, count = outputs_of(f, outputs);
+    if (asked == SKEIN_FORMULA_KERNEL && f->size != 1)
+        return sk_fail(error, SKEIN_ERROR_VALUE, "", "a constraint's formula is a number, and this one is a vector");
     sk_writer w = {.formula = f,
-                   .language = asked == SKEIN_FORMULA_C ? &sk_c_language : &sk_glsl_language,
+                   .language = asked == SKEIN_FORMULA_C        ? &sk_c_language
+                               : asked == SKEIN_FORMULA_KERNEL ? &sk_kernel_language
+                                                               : &sk_glsl_language,
                    .write = write,
                    .user = user,
                    .live = sk_allocate(&allocator, nodes * sizeof *w.live),
@@ -229,6 +239,7 @@ skein_status skein_formula_emit(const skein_formula *f, skein_formula_language a
                    .height = sk_allocate(&allocator, nodes * sizeof *w.height)};
     bool good = w.live && w.uses && w.number && w.height;
     if (good && asked == SKEIN_FORMULA_GRAPH) put_graph(&w, outputs, count);
+    else if (good && asked == SKEIN_FORMULA_KERNEL) sk_put_kernel(&w);
     else if (good) put_all(&w, outputs, count);
     sk_release(&allocator, w.live);
     sk_release(&allocator, w.uses);

@@ -30,7 +30,14 @@ struct sk_writer {
     uint8_t *height;  /* of an expression written in place; 0: it has a name */
 };
 
-extern const sk_language sk_c_language, sk_glsl_language;
+extern const sk_language sk_c_language, sk_glsl_language, sk_kernel_language;
+
+/* A number's value and gradient for the library's own walks (emit_kernel.c). */
+void sk_put_kernel(sk_writer *w);
+/* What the language opens with, and a line for each node that has a name. */
+void sk_put_temporaries(sk_writer *w, const sk_node *outputs, size_t count);
+/* A node's name or expression, in brackets if it holds together less than 1 sums, 2 products, 3 calls do. */
+void sk_put_operand(sk_writer *w, sk_node node, int least);
 
 void sk_put(sk_writer *w, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* A number with a point or an exponent, whatever the locale says. */

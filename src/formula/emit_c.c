@@ -82,25 +82,29 @@ static void c_close(sk_writer *w) {
     sk_put(w, "}\n");
 }
 
-const sk_language sk_c_language = {.call = {[SK_OP_RECIPROCAL] = "RECIPROCAL",
-                                            [SK_OP_SQRT] = "SQRT",
-                                            [SK_OP_ABS] = "ABS",
-                                            [SK_OP_LESS] = "LESS",
-                                            [SK_OP_EXP] = "EXP",
-                                            [SK_OP_LOG] = "LOG",
-                                            [SK_OP_SIN] = "SIN",
-                                            [SK_OP_COS] = "COS",
-                                            [SK_OP_TAN] = "TAN",
-                                            [SK_OP_ASIN] = "ASIN",
-                                            [SK_OP_ACOS] = "ACOS",
-                                            [SK_OP_ATAN2] = "ATAN2",
-                                            [SK_OP_POW] = "POW"},
-                                   .declaration = "const REAL",
-                                   .constant = c_constant,
-                                   .input = c_input,
-                                   .parameter = c_parameter,
-                                   .open = c_open,
-                                   .result = c_result,
-                                   .derivative = c_derivative,
-                                   .end_result = ");\n",
-                                   .close = c_close};
+/* How C and kernels spell operations. */
+#define SPELLING                                \
+    .call = {[SK_OP_RECIPROCAL] = "RECIPROCAL", \
+             [SK_OP_SQRT] = "SQRT",             \
+             [SK_OP_ABS] = "ABS",               \
+             [SK_OP_LESS] = "LESS",             \
+             [SK_OP_EXP] = "EXP",               \
+             [SK_OP_LOG] = "LOG",               \
+             [SK_OP_SIN] = "SIN",               \
+             [SK_OP_COS] = "COS",               \
+             [SK_OP_TAN] = "TAN",               \
+             [SK_OP_ASIN] = "ASIN",             \
+             [SK_OP_ACOS] = "ACOS",             \
+             [SK_OP_ATAN2] = "ATAN2",           \
+             [SK_OP_POW] = "POW"},              \
+    .declaration = "const REAL", .constant = c_constant, .input = c_input, .parameter = c_parameter
+
+const sk_language sk_c_language = {
+    SPELLING, .open = c_open, .result = c_result, .derivative = c_derivative, .end_result = ");\n", .close = c_close,
+};
+
+static void nothing(sk_writer *w) {
+    (void)w;
+}
+
+const sk_language sk_kernel_language = {SPELLING, .open = nothing};

@@ -141,6 +141,7 @@ static void write(sk_writer *writer, const void *data, double dt) {
     sk_write_filters(writer);
     sk_write_sum(writer, SK_X0, 1, SK_X, 0, SK_NONE);
     sk_write_sum(writer, SK_V0, 1, SK_V, 0, SK_NONE);
+    sk_write_moment(writer, 1);
     write_first_guess(writer, h);
     write_newton(writer, params, h);
     sk_write_bounds(writer);

@@ -42,6 +42,7 @@ static void write(sk_writer *writer, const void *params, double dt) {
     sk_write_kick(writer, SK_V, SK_V, h / 2, SK_F);
     sk_write_steering(writer);
     sk_write_sum(writer, SK_X, 1, SK_X, h, SK_V);
+    sk_write_moment(writer, 1);
     write_closing_kick(writer, h);
     sk_write_bounds(writer);
     sk_write_contacts(writer, SK_CONTACT_IMPULSE);

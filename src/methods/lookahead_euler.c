@@ -29,6 +29,7 @@ static void write(sk_writer *writer, const void *params, double dt) {
     sk_write_sum(writer, SK_X0, 1, SK_X, 0, SK_NONE);
     sk_write_sum(writer, SK_V0, 1, SK_V, 0, SK_NONE);
     write_stage(writer, h);
+    sk_write_moment(writer, 1);
     write_stage(writer, h);
     sk_write_bounds(writer);
     sk_write_contacts(writer, SK_CONTACT_IMPULSE);

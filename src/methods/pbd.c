@@ -1,32 +1,58 @@
-/* PBD, position based dynamics (Mueller and others 2007): predict, project every constraint as if it were
- * rigid, and take the velocity from the way that was made. How firm things become depends on passes and
- * substeps, not on the constraints' stiffness: that is what xpbd adds. A stiffness of 0 is no constraint;
- * dampings are not used. */
+/* PBD, position based dynamics (Mueller and others 2007): predict, correct every constraint by a share of what it is
+ * off, and take the velocity from the way that was made. The textbook's share is a number between 0 and 1 that means
+ * another stiffness for every substep and mass; here it follows from the constraint's own stiffness k,
+ *
+ *   s = K/(n + K),   K = k h^2 sum w |grad C|^2,   n passes,
+ *
+ * so that a soft spring is soft, and a rigid one (s = 1) is a rod. Passes know nothing of each other, which is what
+ * XPBD adds: a constraint by itself is left with 1/(1 + K/n)^n of its error after n of them, 1/(1 + K) after one. So
+ * one pass is XPBD's own step, and with several whatever K makes stiff becomes stiffer than it says. */
 #include "methods/method.h"
 
 typedef struct pbd_params {
     int32_t substeps, iterations;
+    bool inertia;
 } pbd_params;
 
 static const skein_field fields[] = {
     SK_INT(pbd_params, substeps, "substeps", "", 10, 1, 100000,
            "equal parts that a step is cut into; more is firmer and more exact"),
-    SK_INT(pbd_params, iterations, "iterations", "", 1, 1, 1000, "passes over the constraints in a substep"),
+    SK_INT(pbd_params, iterations, "iterations", "", 1, 1, 1000,
+           "passes over the constraints in a substep, which share the stiffness; stiff ones come out stiffer"),
+    SK_BOOL(pbd_params, inertia, "inertia", 1,
+            "false: constraints move positions and nothing else does; velocities and forces are as if they were not"),
 };
+
+/* Projections alone: a solver for constraints. With velocities a spring that is at rest after one solve would fly on.
+ */
+static void write_projections_only(sk_writer *writer, const pbd_params *params, double h) {
+    size_t repeat = sk_write_repeat(writer, (size_t)params->substeps, h);
+    sk_write_moment(writer, 1);
+    if (sk_writes_velocity_forces(writer)) sk_write_sum(writer, SK_X0, 1, SK_X, 0, SK_NONE); // damping looks back
+    sk_write_shared_projections(writer, params->iterations);
+    sk_write_limits(writer, SK_NONE);
+    sk_write_contacts(writer, SK_CONTACT_PUSH);
+    sk_write_end(writer, repeat);
+}
 
 static void write(sk_writer *writer, const void *data, double dt) {
     const pbd_params *params = data;
     double h = dt / params->substeps;
-    size_t repeat = sk_write_predicted_repeat(writer, (size_t)params->substeps, h, params->iterations);
-    sk_write_rigid_projections(writer, params->iterations);
+    if (!params->inertia) {
+        write_projections_only(writer, params, h);
+        return;
+    }
+    // told of one pass: none keeps a multiplier for the next
+    size_t repeat = sk_write_predicted_repeat(writer, (size_t)params->substeps, h, 1);
+    sk_write_shared_projections(writer, params->iterations);
     sk_write_limits(writer, SK_NONE);
-    sk_write_following(writer, params->iterations);
+    sk_write_following(writer, 1);
     sk_write_contacts(writer, SK_CONTACT_SETTLE);
     sk_write_end(writer, repeat);
 }
 
 const sk_method_type sk_pbd = {
-    .kind = {"pbd", "positions corrected as if every constraint were rigid; substeps and passes say how firm",
+    .kind = {"pbd", "positions corrected by a share of each error; passes forget each other and share the stiffness",
              SKEIN_METHOD, fields, sizeof fields / sizeof *fields, sizeof(pbd_params)},
     .write = write,
     .substeps = sk_substeps_of,

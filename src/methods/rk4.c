@@ -44,10 +44,12 @@ static void write(sk_writer *writer, const void *params, double dt) {
     sk_write_sum(writer, SK_V0, 1, SK_V, 0, SK_NONE);
     write_derivative(writer, 1, true);
     write_move(writer, h / 2, SK_V, SK_F);
+    sk_write_moment(writer, 0.5);
     write_derivative(writer, 2, false);
     write_move(writer, h / 2, SK_V, SK_F);
     write_derivative(writer, 2, false);
     write_move(writer, h, SK_V, SK_F);
+    sk_write_moment(writer, 1);
     write_derivative(writer, 1, false);
     write_move(writer, h / 6, velocities, forces);
     sk_write_bounds(writer);

@@ -19,8 +19,9 @@ static void write(sk_writer *writer, const void *params, double dt) {
         sk_write_kick(writer, SK_V, SK_V, h, SK_F);
     }
     sk_write_steering(writer);
-    sk_write_contacts(writer, SK_CONTACT_IMPULSE);
     sk_write_sum(writer, SK_X, 1, SK_X, h, SK_V);
+    sk_write_moment(writer, 1);
+    sk_write_contacts(writer, SK_CONTACT_IMPULSE);
     sk_write_limits(writer, SK_V);
     sk_write_contacts(writer, SK_CONTACT_PUSH);
     sk_write_end(writer, repeat);

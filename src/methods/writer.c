@@ -8,18 +8,23 @@
 
 void sk_add_row(sk_writer *writer, sk_row row) {
     row.dt = writer->h;
+    row.before = writer->before;
     row.packed = writer->packed;
     if (!sk_plan_add(writer->plan, writer->allocator, row)) writer->no_memory = true;
 }
 
 size_t sk_write_repeat(sk_writer *writer, size_t times, double h) {
-    writer->h = h;
+    writer->h = writer->before = h;
     sk_add_row(writer, (sk_row){.kind = SK_ROW_REPEAT, .end = times, .order = SK_ORDERED, .label = "repeat"});
     return writer->plan->count - 1;
 }
 
 void sk_write_end(sk_writer *writer, size_t repeat) {
     if (!writer->no_memory) writer->plan->data[repeat].length = writer->plan->count - repeat - 1;
+}
+
+void sk_write_moment(sk_writer *writer, double part) {
+    writer->before = (1 - part) * writer->h;
 }
 
 static void add_combine(sk_writer *writer, const sk_kernels *kernels, sk_vector dst, double a, sk_vector p, double b,
@@ -207,13 +212,16 @@ static void write_prediction(sk_writer *writer, int passes) {
     sk_vector kept = only_follows(rules, passes) ? SK_X : rules->colliders.count ? SK_V0 : SK_NONE;
     sk_add_row(writer,
                prediction(writer, plain ? &sk_combine_fall : &sk_combine_predict, plain ? SK_NONE : SK_F, kept));
+    sk_write_moment(writer, 1);
 }
 
 size_t sk_write_predicted_repeat(sk_writer *writer, size_t times, double h, int passes) {
     writer->h = h;
     if (falls_on(writer, passes)) {
         write_prediction(writer, passes);
-        return sk_write_repeat(writer, times, h);
+        size_t repeat = sk_write_repeat(writer, times, h);
+        sk_write_moment(writer, 1); // each turn begins with what was predicted before it
+        return repeat;
     }
     size_t repeat = sk_write_repeat(writer, times, h);
     write_prediction(writer, passes);
@@ -236,9 +244,9 @@ static size_t rows_of(const sk_sweep *sweep, size_t reach) {
     return sweep->strips ? sweep->walk.rows - reach : sweep->slab_start ? sweep->walk.rows : sweep->group_count;
 }
 
-/* A row for each sweep of a batch from the `first` on. */
+/* A row for each sweep of a batch from the `first` on; projections share their stiffness among `coefficient` rows. */
 static void add_sweeps(sk_writer *writer, const sk_batch *batch, size_t first, sk_row_kind kind,
-                       const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second) {
+                       const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second, double coefficient) {
     for (size_t i = first; i < batch->sweep_count; i++) {
         const sk_sweep *sweep = &batch->sweeps[i];
         const sk_kernels *walk = sweep->strips ? &kernels->strips : &kernels->groups;
@@ -247,6 +255,7 @@ static void add_sweeps(sk_writer *writer, const sk_batch *batch, size_t first, s
                                     .kernel = walk->version[writer->isa],
                                     .dst = dst,
                                     .source = {SK_X, second},
+                                    .coefficient = {coefficient},
                                     .rule = sweep,
                                     .label = sweep->label,
                                     .walk = sweep->walk,
@@ -288,11 +297,11 @@ void sk_write_forces(sk_writer *writer) {
         size_t first = 0;
         if (!is_on(batch)) continue;
         add_strip_forces(writer, batch, &first);
-        add_sweeps(writer, batch, first, SK_ROW_FORCE, &batch->type->force, SK_F, SK_V);
+        add_sweeps(writer, batch, first, SK_ROW_FORCE, &batch->type->force, SK_F, SK_V, 1);
     }
 }
 
-void sk_write_projections(sk_writer *writer, int passes) {
+static void write_multipliers(sk_writer *writer, int passes) {
     const sk_rules *rules = writer->rules;
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
@@ -310,27 +319,30 @@ void sk_write_projections(sk_writer *writer, int passes) {
                                         .end = rows_of(sweep, 0)});
         }
     }
-    for (int pass = 0; pass < passes; pass++)
-        for (size_t i = 0; i < rules->batches.count; i++) {
-            const sk_batch *batch = rules->batches.data[i];
-            if (!is_on(batch)) continue;
-            bool keeps = keeps_multiplier(batch, passes);
-            add_sweeps(writer, batch, 0, SK_ROW_PROJECT, keeps ? &batch->type->project_damped : &batch->type->project,
-                       SK_X, keeps ? SK_X0 : SK_NONE);
-        }
 }
 
-void sk_write_rigid_projections(sk_writer *writer, int passes) {
-    // compliances stand against the square of the substep: over an endless one they are nothing
-    const double endless = 1e10;
-    double h = writer->h;
-    writer->h = endless;
-    for (int pass = 0; pass < passes; pass++)
-        for (size_t i = 0; i < writer->rules->batches.count; i++) {
-            const sk_batch *batch = writer->rules->batches.data[i];
-            if (is_on(batch)) add_sweeps(writer, batch, 0, SK_ROW_PROJECT, &batch->type->project, SK_X, SK_NONE);
-        }
-    writer->h = h;
+/* A sweep over every batch, with an n-th of its stiffness and damping for `sharing` n. */
+static void write_pass(sk_writer *writer, int passes, int sharing) {
+    const sk_rules *rules = writer->rules;
+    for (size_t i = 0; i < rules->batches.count; i++) {
+        const sk_batch *batch = rules->batches.data[i];
+        if (!is_on(batch)) continue;
+        bool keeps = keeps_multiplier(batch, passes);
+        add_sweeps(writer, batch, 0, SK_ROW_PROJECT, keeps ? &batch->type->project_damped : &batch->type->project, SK_X,
+                   keeps ? SK_X0 : SK_NONE, sharing);
+    }
+}
+
+void sk_write_projections(sk_writer *writer, int passes) {
+    write_multipliers(writer, passes);
+    for (int pass = 0; pass < passes; pass++) write_pass(writer, passes, 1);
+}
+
+void sk_write_shared_projections(sk_writer *writer, int passes) {
+    for (int pass = 0; pass < passes; pass++) {
+        write_multipliers(writer, 1);
+        write_pass(writer, 1, passes);
+    }
 }
 
 bool sk_writes_forces(const sk_writer *writer) {
@@ -347,7 +359,7 @@ bool sk_writes_velocity_forces(const sk_writer *writer) {
     for (size_t i = 0; i < rules->batches.count; i++)
         if (is_on(rules->batches.data[i]) && sk_batch_damping_time(rules->batches.data[i]) > 0) return true;
     for (size_t i = 0; i < rules->forces.count; i++)
-        if (pushes(rules->forces.data[i]) && rules->forces.data[i]->type->on_velocity) return true;
+        if (pushes(rules->forces.data[i]) && sk_force_on_velocity(rules->forces.data[i])) return true;
     return false;
 }
 
@@ -394,7 +406,7 @@ void sk_write_limits(sk_writer *writer, sk_vector velocity) {
         const sk_batch *batch = rules->batches.data[i];
         if (!has_bound(batch)) continue;
         add_sweeps(writer, batch, 0, SK_ROW_LIMIT,
-                   velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving, SK_X, velocity);
+                   velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving, SK_X, velocity, 1);
     }
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];

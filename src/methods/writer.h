@@ -36,12 +36,16 @@ typedef struct sk_writer {
     size_t strip_slots; /* the first slots, which are in strips */
     size_t packed;      /* the first slots that are in packed blocks now */
     double h;           /* of the present substep, s */
+    double before;      /* and how long before its end X is by now, s */
     bool no_memory;     /* the plan is incomplete */
 } sk_writer;
 
 /* Opens a repeat of `times` substeps of `h` seconds; sk_write_end closes it. Returns its place. */
 size_t sk_write_repeat(sk_writer *writer, size_t times, double h);
 void sk_write_end(sk_writer *writer, size_t repeat);
+/* Says where X stands from here on: `part` of the substep, 0 at its start (so a repeat begins), 1 at its end. Rules
+ * that depend on time take it from there. */
+void sk_write_moment(sk_writer *writer, double part);
 
 /* X and V of the strips from quads to packed blocks, and back: around all other rows of a step. */
 void sk_write_pack(sk_writer *writer);
@@ -71,8 +75,8 @@ void sk_write_forces(sk_writer *writer);
 /* X: `passes` sweeps over every batch; X0 is the state at the start of the substep. */
 void sk_write_projections(sk_writer *writer, int passes);
 
-/* The same as if every constraint with a stiffness were rigid and undamped. */
-void sk_write_rigid_projections(sk_writer *writer, int passes);
+/* The same without a memory from pass to pass: each has its share, a `passes`-th, of the stiffness and damping. */
+void sk_write_shared_projections(sk_writer *writer, int passes);
 
 /* Whether anything acts on F; where nothing steers either, it is said to, and F is 0. */
 bool sk_writes_forces(const sk_writer *writer);

@@ -67,6 +67,20 @@ static void add_stiffness(sk_writer *writer, sk_row_kind kind, sk_vector dst, sk
                             .label = batch->label,
                             .end = batch->count});
     }
+    for (size_t i = 0; i < writer->rules->forces.count; i++) {
+        const sk_force *force = writer->rules->forces.data[i];
+        const sk_kernels *kernels = kind == SK_ROW_APPLY ? &force->type->apply : &force->type->diagonal;
+        if (!*force->enabled || !kernels->version[writer->isa]) continue;
+        sk_add_row(writer, (sk_row){.kind = kind,
+                                    .order = SK_FREE,
+                                    .kernel = kernels->version[writer->isa],
+                                    .dst = dst,
+                                    .source = {SK_X, second, SK_NONE},
+                                    .coefficient = {a, b},
+                                    .rule = force,
+                                    .label = force->label,
+                                    .end = writer->slot_count});
+    }
 }
 
 void sk_write_apply(sk_writer *writer, sk_vector dst, sk_vector p, double a, double b) {

@@ -40,7 +40,7 @@ static const char *vector_text(sk_vector vector) {
     return names[vector];
 }
 
-static bool is_version(const sk_row *row, const sk_kernels *kernels) {
+bool sk_row_is(const sk_row *row, const sk_kernels *kernels) {
     for (int isa = 0; isa < SK_ISA_COUNT; isa++)
         if (row->kernel == kernels->version[isa]) return true;
     return false;
@@ -52,29 +52,29 @@ static void describe_combine(const sk_row *row, char *text, size_t size) {
     const char *kept = row->source[2] == SK_X    ? "X0 = X"
                        : row->source[2] == SK_V0 ? "X0 = old X; V0 = V"
                                                  : "X0 = old X";
-    if (is_version(row, &sk_combine_predict)) {
+    if (sk_row_is(row, &sk_combine_predict)) {
         snprintf(text, size, "X + h V, V + h w F; %s", kept);
         return;
     }
-    if (is_version(row, &sk_combine_fall)) {
+    if (sk_row_is(row, &sk_combine_fall)) {
         const char *label = ((const sk_plain_force *)row->rule)->label;
         snprintf(text, size, "X + h V, V + h (%s); %s", label[0] ? label : "0", kept);
         return;
     }
-    if (is_version(row, &sk_combine_fall_on)) {
+    if (sk_row_is(row, &sk_combine_fall_on)) {
         const char *label = ((const sk_plain_force *)row->rule)->label;
         snprintf(text, size, "V + %g (X - X0); X + h V, V + h (%s); X0 = X, but for the last turn", row->coefficient[0],
                  label[0] ? label : "0");
         return;
     }
-    if (is_version(row, &sk_combine_correction)) {
+    if (sk_row_is(row, &sk_combine_correction)) {
         const char *dst = vector_text(row->dst);
         if (row->coefficient[1] == 0) snprintf(text, size, "%s + %g (%s - %s)", dst, row->coefficient[0], p, q);
         else
             snprintf(text, size, "%s + %g (%s - %s - %g %s)", dst, row->coefficient[0], p, q, row->coefficient[1], dst);
         return;
     }
-    if (is_version(row, &sk_combine_kick)) {
+    if (sk_row_is(row, &sk_combine_kick)) {
         snprintf(text, size, "%s + %g w %s", p, row->coefficient[0], q);
         return;
     }

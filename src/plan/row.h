@@ -123,6 +123,7 @@ struct sk_row {
     sk_vector dst, source[3];
     double coefficient[3];
     double dt;             /* of the substep, s */
+    double before;         /* how long before the end of the substep the state is that it looks at, s */
     const void *rule;      /* a force, a collider, a batch */
     const sk_group *group; /* whom it moves, where the rule does not say; NULL: everybody */
     const char *label;     /* its name in `skein explain` */
@@ -153,6 +154,8 @@ bool sk_plan_add(sk_plan *plan, sk_allocator *allocator, sk_row row);
 /* One line about a row, as `skein explain` shows it. */
 void sk_row_describe(const sk_row *row, char *text, size_t size);
 const char *sk_row_kind_text(sk_row_kind kind);
+/* Whether the row's kernel is one of these. */
+bool sk_row_is(const sk_row *row, const sk_kernels *kernels);
 
 /* The arithmetic of vectors: the kernels of combine rows. The w components stay as they are.
  *   dst = a p + b q + c r        (a source of SK_NONE is left out)

@@ -9,7 +9,7 @@ typedef struct block_sums {
     double kinetic, potential, momentum[3], angular[3];
 } block_sums;
 
-static void add_particle(const sk_rules *rules, sk_vec4 x, sk_vec4 v, block_sums *sums) {
+static void add_particle(const sk_rules *rules, double time, sk_vec4 x, sk_vec4 v, block_sums *sums) {
     double m = (double)v.w, p[3] = {(double)x.x, (double)x.y, (double)x.z};
     double u[3] = {(double)v.x, (double)v.y, (double)v.z};
     sums->kinetic += 0.5 * m * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
@@ -20,7 +20,8 @@ static void add_particle(const sk_rules *rules, sk_vec4 x, sk_vec4 v, block_sums
     }
     for (size_t f = 0; f < rules->forces.count; f++) {
         const sk_force *force = rules->forces.data[f];
-        if (*force->enabled && force->type->potential) sums->potential += force->type->potential(force->params, p, m);
+        if (*force->enabled && force->type->potential)
+            sums->potential += force->type->potential(force->params, p, m, time);
     }
 }
 
@@ -31,7 +32,7 @@ static void measure_particles(const skein_world *world, skein_statistics *s) {
         block_sums sums = {0};
         for (size_t i = first; i < last; i++) {
             sk_vec4 x = all->vector[SK_X][all->slot_of[i]];
-            if (x.w > 0) add_particle(&world->rules, x, all->vector[SK_V][all->slot_of[i]], &sums);
+            if (x.w > 0) add_particle(&world->rules, world->time, x, all->vector[SK_V][all->slot_of[i]], &sums);
         }
         s->kinetic_energy += sums.kinetic;
         s->potential_energy += sums.potential;
@@ -42,25 +43,27 @@ static void measure_particles(const skein_world *world, skein_statistics *s) {
     }
 }
 
-static double batch_energy(const sk_batch *batch, const sk_vec4 *x) {
+static double batch_energy(const sk_batch *batch, double time, const sk_vec4 *x, size_t *guarded) {
     const sk_material *material = batch->params;
-    double energy = 0, value[SUM_BLOCK];
-    if (material->stiffness >= SK_UNBOUNDED) return 0;
+    double sum = 0, energy[SUM_BLOCK];
+    bool rigid = material->stiffness >= SK_UNBOUNDED;
     for (size_t first = 0; first < batch->count; first += SUM_BLOCK) {
         size_t last = first + SUM_BLOCK < batch->count ? first + SUM_BLOCK : batch->count;
         double block = 0;
-        batch->type->value(batch, x, first, last, value);
+        *guarded += batch->type->energy(batch, time, x, first, last, energy);
         for (size_t e = first; e < last; e++)
-            block += (batch->scale ? (double)batch->scale[e] : 1.0) * value[e - first] * value[e - first];
-        energy += block;
+            block += (batch->scale ? (double)batch->scale[e] : 1.0) * energy[e - first];
+        sum += block;
     }
-    return 0.5 * material->stiffness * energy;
+    return rigid ? 0 : material->stiffness * sum;
 }
 
 void sk_world_measure_energy(const skein_world *world, skein_statistics *statistics) {
     measure_particles(world, statistics);
     for (size_t i = 0; i < world->rules.batches.count; i++) {
         const sk_batch *batch = world->rules.batches.data[i];
-        if (*batch->enabled) statistics->elastic_energy += batch_energy(batch, world->particles.vector[SK_X]);
+        if (*batch->enabled)
+            statistics->elastic_energy +=
+                batch_energy(batch, world->time, world->particles.vector[SK_X], &statistics->guarded);
     }
 }

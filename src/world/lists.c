@@ -18,6 +18,7 @@ static void copy_batch(const sk_batch *batch, const sk_vec4 *x, skein_spring *ou
 
 skein_status skein_springs_copy(skein_world *world, skein_spring *out, size_t most, size_t *count) {
     skein_status status = sk_world_arrange(world, sk_world_error(world)); // the slots of new rules may not be known yet
+    if (!status) status = sk_world_fetch(world);
     *count = 0;
     for (size_t i = 0; i < world->rules.batches.count && !status; i++) {
         const sk_batch *batch = world->rules.batches.data[i];
@@ -42,10 +43,21 @@ static void add_contact(void *user, size_t particle, sk_vec3 normal, double gap)
         (uint32_t)particle, list->collider, {(double)normal.x, (double)normal.y, (double)normal.z}, gap};
 }
 
+skein_status skein_collider_probe(const skein_world *world, skein_handle handle, size_t count, const double *points,
+                                  double *distances, double *normals) {
+    const sk_object *object = sk_object_of(world, handle);
+    if (!object || object->category != SKEIN_COLLIDER)
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_HANDLE, "",
+                       "there is no such collider: its handle is stale, or of another category");
+    sk_collider_probe_points(object->as.collider, world->time, world->isa, count, points, distances, normals);
+    return SKEIN_OK;
+}
+
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count) {
     const sk_particles *all = &world->particles;
+    skein_status status = sk_world_fetch(world);
     contact_list list = {out, most, 0, {0, 0}};
-    for (size_t i = 0; i < world->objects.count; i++) {
+    for (size_t i = 0; i < world->objects.count && !status; i++) {
         const sk_object *object = world->objects.data[i];
         if (!(object->generation % 2) || object->category != SKEIN_COLLIDER || !object->as.collider->common->enabled)
             continue;
@@ -54,5 +66,5 @@ skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, s
                           &list);
     }
     *count = list.count;
-    return SKEIN_OK;
+    return status;
 }

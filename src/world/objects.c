@@ -22,29 +22,53 @@ static skein_handle handle_of(const skein_world *world, const sk_object *object)
     return (skein_handle){UINT32_MAX, 0};
 }
 
+void sk_object_release(sk_allocator *allocator, sk_object *object) {
+    size_t common_count;
+    const skein_field *common = sk_common_fields(object->category, &common_count);
+    if (object->params) {
+        if (object->making) object->making->unmake(object->params, allocator);
+        sk_fields_clear(allocator, object->kind->fields, object->kind->field_count, object->params);
+        sk_fields_clear(allocator, common, common_count, sk_common_of(object));
+    }
+    sk_release(allocator, object->params);
+    sk_release(allocator, object->own_kind);
+    sk_release(allocator, object);
+}
+
+/* Its kind, its parameters, and what its type makes from them. */
+static skein_status fill_object(sk_allocator *allocator, sk_object *object, const skein_setting *settings,
+                                skein_error *error) {
+    skein_status status = SKEIN_OK;
+    if (sk_takes_parameters(object->kind)) {
+        status = sk_own_kind_create(allocator, object->kind, settings, &object->own_kind, error);
+        if (status) return status;
+        object->kind = object->own_kind;
+    }
+    size_t common_count;
+    const skein_field *common = sk_common_fields(object->category, &common_count);
+    object->params = sk_allocate(allocator, object->kind->params_size);
+    if (!object->params) return sk_fail_memory(error, object->kind->name);
+    status = sk_settings_apply(allocator, object->kind, object->params, common, common_count, sk_common_of(object),
+                               settings, error);
+    if (!status && object->making) status = object->making->make(object->params, object->kind, allocator, error);
+    return status;
+}
+
 /* A new object with its parameters set; it lives (its generation turns odd) once its rule is made. */
-static skein_status make_object(skein_world *world, const skein_kind *kind, const skein_setting *settings,
-                                sk_object **made, skein_error *error) {
+static skein_status make_object(skein_world *world, const skein_kind *kind, const sk_making *making,
+                                const skein_setting *settings, sk_object **made, skein_error *error) {
     sk_allocator *allocator = &world->allocator;
     if (!SK_RESERVE(allocator, &world->objects, world->objects.count + 1)) return sk_fail_memory(error, kind->name);
     sk_object *object = sk_allocate(allocator, sizeof *object);
-    void *params = object ? sk_allocate(allocator, kind->params_size) : NULL;
-    if (!params) {
-        sk_release(allocator, object);
-        return sk_fail_memory(error, kind->name);
-    }
+    if (!object) return sk_fail_memory(error, kind->name);
     object->category = kind->category;
-    object->params = params;
-    size_t common_count;
-    const skein_field *common = sk_common_fields(kind->category, &common_count);
-    skein_status status =
-        sk_settings_apply(allocator, kind, params, common, common_count, sk_common_of(object), settings, error);
+    object->kind = kind;
+    object->making = making;
+    skein_status status = fill_object(allocator, object, settings, error);
     if (status) {
-        sk_release(allocator, params);
-        sk_release(allocator, object);
+        sk_object_release(allocator, object);
         return status;
     }
-    object->kind = kind;
     const char *name = kind->category == SKEIN_COLLIDER ? object->common.collider.name : object->common.plain.name;
     snprintf(object->label, sizeof object->label, "%s", name[0] ? name : kind->name);
     world->objects.data[world->objects.count++] = object;
@@ -54,13 +78,7 @@ static skein_status make_object(skein_world *world, const skein_kind *kind, cons
 
 /* Takes the newest object back. */
 static void unmake_object(skein_world *world, sk_object *object) {
-    sk_allocator *allocator = &world->allocator;
-    size_t common_count;
-    const skein_field *common = sk_common_fields(object->category, &common_count);
-    sk_fields_clear(allocator, object->kind->fields, object->kind->field_count, object->params);
-    sk_fields_clear(allocator, common, common_count, sk_common_of(object));
-    sk_release(allocator, object->params);
-    sk_release(allocator, object);
+    sk_object_release(&world->allocator, object);
     world->objects.count--;
 }
 
@@ -78,7 +96,7 @@ skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, c
                                 skein_handle *handle) {
     skein_error *error = sk_world_error(world);
     sk_object *object;
-    skein_status status = make_object(world, &type->kind, settings, &object, error);
+    skein_status status = make_object(world, &type->kind, type->making, settings, &object, error);
     if (status) return status;
     sk_force *force = SK_RESERVE(&world->allocator, &world->rules.forces, world->rules.forces.count + 1)
                           ? sk_allocate(&world->allocator, sizeof *force)
@@ -98,7 +116,7 @@ skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *t
                                    skein_handle *handle) {
     skein_error *error = sk_world_error(world);
     sk_object *object;
-    skein_status status = make_object(world, &type->kind, settings, &object, error);
+    skein_status status = make_object(world, &type->kind, type->making, settings, &object, error);
     if (status) return status;
     if (type->check && (status = type->check(object->params, error))) {
         unmake_object(world, object);
@@ -117,35 +135,63 @@ skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *t
     return finish_object(world, object, handle);
 }
 
-skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_type *type, const uint32_t *particles,
-                                     size_t count, const skein_setting *settings, skein_handle *handle) {
-    skein_error *error = sk_world_error(world);
-    sk_allocator *allocator = &world->allocator;
-    // rest values from where the particles stand
-    size_t arity = (size_t)type->arity;
-    if (count > SIZE_MAX / 64) return sk_fail(error, SKEIN_ERROR_LIMIT, "", "%zu constraints are too many", count);
+/* What is wrong with a constraint's particles; NULL: nothing. */
+static skein_status check_particles(const skein_world *world, const sk_object *object, const uint32_t *particles,
+                                    size_t count, size_t arity, skein_error *error) {
     for (size_t i = 0; i < count * arity; i++)
         if (particles[i] >= world->particles.count)
             return sk_fail(error, SKEIN_ERROR_VALUE, "", "%s %zu: there is no particle %u (the world has %zu)",
-                           type->kind.name, i / arity, particles[i], world->particles.count);
-    real *rest = sk_allocate(allocator, count * sizeof *rest);
-    if (!rest) return sk_fail_memory(error, type->kind.name);
-    for (size_t e = 0; e < count; e++) {
-        double x[8][3];
+                           object->kind->name, i / arity, particles[i], world->particles.count);
+    for (size_t e = 0; e < count && arity > 2; e++)
+        for (size_t i = 1; i < arity; i++)
+            for (size_t j = 0; j < i; j++)
+                if (particles[e * arity + i] == particles[e * arity + j])
+                    return sk_fail(error, SKEIN_ERROR_VALUE, "", "%s %zu: particle %u is named twice",
+                                   object->kind->name, e, particles[e * arity + i]);
+    return SKEIN_OK;
+}
+
+/* Rest values from where the particles stand; NULL when there is no memory. */
+static real *find_rests(skein_world *world, const sk_constraint_type *type, const void *params,
+                        const uint32_t *particles, size_t count) {
+    size_t arity = (size_t)sk_constraint_arity(type, params), rests = (size_t)sk_constraint_rest_count(type, params);
+    real *rest = sk_allocate(&world->allocator, count * rests * sizeof *rest);
+    for (size_t e = 0; e < count && rest && rests; e++) {
+        double x[SK_MOST_ARITY][3], values[SKEIN_FORMULA_MOST_RESTS];
         for (size_t k = 0; k < arity; k++) {
             sk_vec4 p = world->particles.vector[SK_X][world->particles.slot_of[particles[e * arity + k]]];
             x[k][0] = (double)p.x, x[k][1] = (double)p.y, x[k][2] = (double)p.z;
         }
-        rest[e] = (real)type->rest((const double(*)[3])x);
+        if (!type->rest(params, (const double(*)[3])x, values)) {
+            sk_release(&world->allocator, rest);
+            return NULL;
+        }
+        for (size_t r = 0; r < rests; r++) rest[r * count + e] = (real)values[r];
     }
+    return rest;
+}
+
+skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_type *type, const uint32_t *particles,
+                                     size_t count, const skein_setting *settings, skein_handle *handle) {
+    skein_error *error = sk_world_error(world);
+    sk_allocator *allocator = &world->allocator;
+    if (count > SIZE_MAX / 1024) return sk_fail(error, SKEIN_ERROR_LIMIT, "", "%zu constraints are too many", count);
     sk_object *object;
-    skein_status status = make_object(world, &type->kind, settings, &object, error);
+    skein_status status = make_object(world, &type->kind, type->making, settings, &object, error);
+    if (status) return status;
+    status = check_particles(world, object, particles, count, (size_t)sk_constraint_arity(type, object->params), error);
     if (status) {
-        sk_release(allocator, rest);
+        unmake_object(world, object);
         return status;
     }
-    sk_batch *batch = SK_RESERVE(allocator, &world->rules.batches, world->rules.batches.count + 1)
-                          ? sk_batch_create(allocator, type, count, particles, rest, NULL)
+    status = sk_world_fetch(world);
+    if (status) {
+        unmake_object(world, object);
+        return status;
+    }
+    real *rest = find_rests(world, type, object->params, particles, count);
+    sk_batch *batch = rest && SK_RESERVE(allocator, &world->rules.batches, world->rules.batches.count + 1)
+                          ? sk_batch_create(allocator, type, object->params, count, particles, rest, NULL)
                           : NULL;
     sk_release(allocator, rest);
     if (!batch) {
@@ -155,10 +201,20 @@ skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_typ
     batch->params = object->params;
     batch->label = object->label;
     batch->enabled = &object->common.plain.enabled;
-    batch->measured = true;
+    batch->measured = type->strain != NULL;
     world->rules.batches.data[world->rules.batches.count++] = batch;
     object->as.batch = batch;
     return finish_object(world, object, handle);
+}
+
+skein_status sk_world_find_arity(skein_world *world, const sk_constraint_type *type, const skein_setting *settings,
+                                 size_t *arity) {
+    sk_object *object;
+    skein_status status = make_object(world, &type->kind, type->making, settings, &object, sk_world_error(world));
+    if (status) return status;
+    *arity = (size_t)sk_constraint_arity(type, object->params);
+    unmake_object(world, object);
+    return SKEIN_OK;
 }
 
 /* Takes back what a builder that failed has added since the marks. */
@@ -184,7 +240,7 @@ skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, con
                                const skein_setting *settings, skein_handle *handle) {
     skein_error *error = sk_world_error(world);
     sk_object *object;
-    skein_status status = make_object(world, &type->kind, settings, &object, error);
+    skein_status status = make_object(world, &type->kind, NULL, settings, &object, error);
     if (status) return status;
     sk_body *body = sk_allocate(&world->allocator, sizeof *body);
     if (!body) {
@@ -249,7 +305,7 @@ skein_status skein_remove(skein_world *world, skein_handle handle) {
         break;
     case SKEIN_FORCE:
         drop_pointer((void **)rules->forces.data, &rules->forces.count, object->as.force);
-        sk_world_release_force(world, object->as.force);
+        sk_release(&world->allocator, object->as.force);
         break;
     case SKEIN_COLLIDER:
         drop_pointer((void **)rules->colliders.data, &rules->colliders.count, object->as.collider);

@@ -142,6 +142,8 @@ skein_status skein_order_measure(skein_world *world, size_t first, size_t count,
     if (first > all->count || count > all->count - first)
         return sk_fail(error, SKEIN_ERROR_VALUE, "", "particles %zu to %zu: the world has %zu", first, first + count,
                        all->count);
+    skein_status status = sk_world_fetch(world);
+    if (status) return status;
     measure_directions(world, first, first + count, centre, order);
     if (order->count < 2) {
         order->groups = group_reach > 0 ? order->count : 0;

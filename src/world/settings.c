@@ -40,6 +40,8 @@ const skein_field *sk_kind_field(const skein_kind *kind, const char *name, skein
     const skein_field *common = sk_common_fields(kind->category, &common_count);
     const skein_field *field = sk_field_named(kind->fields, kind->field_count, name);
     if (!field) field = sk_field_named(common, common_count, name);
+    if (!field && !strncmp(name, "parameters.", 11) && name[11])
+        field = sk_field_named(kind->fields, kind->field_count, "parameters.*");
     if (field) return field;
 
     const char *names[64];
@@ -97,31 +99,69 @@ static const skein_field *locate(const skein_world *world, skein_handle handle, 
     return field;
 }
 
+/* What the object's type says to its parameters as they are; `field` has changed. */
+static skein_status accept(skein_world *world, sk_object *object, const skein_field *field, skein_error *error) {
+    skein_status status = SKEIN_OK;
+    if (object->category == SKEIN_COLLIDER && object->as.collider->type->check)
+        status = object->as.collider->type->check(object->params, error);
+    bool own = sk_field_named(object->kind->fields, object->kind->field_count, field->name) == field;
+    if (!status && object->making && own && field->type == SKEIN_FIELD_TEXT)
+        status = object->making->make(object->params, object->kind, &world->allocator, error);
+    return status;
+}
+
+/* Stores a value, or leaves the old one where the new one is no good. */
+static skein_status replace(skein_world *world, sk_object *object, const skein_field *field, void *params,
+                            skein_value value, skein_error *error) {
+    skein_value old = sk_field_load(field, params);
+    char **text = field->type == SKEIN_FIELD_TEXT ? (char **)(void *)((char *)params + field->offset) : NULL;
+    char *kept = text ? *text : NULL;
+    if (text) *text = NULL; // it stays until the new one is known to be good
+    skein_status status = sk_field_store(&world->allocator, field, params, &value, error);
+    bool stored = !status;
+    if (!status && object) status = accept(world, object, field, error);
+    if (text) {
+        sk_release(&world->allocator, status ? *text : kept);
+        if (status) *text = kept;
+    } else if (status && stored) {
+        sk_field_store(&world->allocator, field, params, &old, NULL);
+    }
+    return status;
+}
+
+/* What shaped a body that stands cannot change any more. */
+static bool shapes(const sk_object *object, const void *params, const char *name) {
+    bool body = object && object->category == SKEIN_BODY && params == object->params;
+    return body && !object->body_type->live(name);
+}
+
+bool skein_field_is_live(const skein_world *world, skein_handle handle, const char *name) {
+    sk_object *object;
+    void *params;
+    skein_error ignored;
+    return locate(world, handle, name, &params, &object, &ignored) && !shapes(object, params, name);
+}
+
 skein_status skein_set(skein_world *world, skein_handle handle, const char *name, skein_value value) {
     skein_error *error = sk_world_error(world);
     sk_object *object;
     void *params;
     const skein_field *field = locate(world, handle, name, &params, &object, error);
     if (!field) return error->status;
-    skein_value old = sk_field_load(field, params);
-    // what shaped a body that stands cannot change any more
     const sk_body_type *body = object && object->category == SKEIN_BODY ? object->body_type : NULL;
-    if (body && params == object->params && !body->live(name))
+    if (shapes(object, params, name))
         return sk_fail(error, SKEIN_ERROR_VALUE, name, "%s shapes what is already built: set it when the body is added",
                        name);
-    skein_status status = sk_field_store(&world->allocator, field, params, &value, error);
+    skein_status status = replace(world, object, field, params, value, error);
     if (status) return status;
-    if (object && object->category == SKEIN_COLLIDER && object->as.collider->type->check &&
-        (status = object->as.collider->type->check(object->params, error))) {
-        sk_field_store(&world->allocator, field, params, &old, NULL);
-        return status;
-    }
     if (body) {
         body->change(object->as.body, object->params);
         object->as.body->enabled = object->common.plain.enabled;
     }
-    if (object && !strcmp(name, "name"))
-        snprintf(object->label, sizeof object->label, "%s", value.text[0] ? value.text : object->kind->name);
+    if (object && !strcmp(name, "name")) {
+        const char *given = sk_field_load(field, params).text;
+        snprintf(object->label, sizeof object->label, "%s", given[0] ? given : object->kind->name);
+    }
     world->plan_stale = true;
     return SKEIN_OK;
 }

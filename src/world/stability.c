@@ -82,7 +82,7 @@ static void add_mode(finder *f, skein_stability *s) {
 /* Whether forces of the air, and constraints along themselves, take energy. */
 static void look_for_damping(const sk_rules *rules, bool *air, bool *along) {
     for (size_t i = 0; i < rules->forces.count; i++)
-        *air |= *rules->forces.data[i]->enabled && rules->forces.data[i]->type->on_velocity;
+        *air |= *rules->forces.data[i]->enabled && sk_force_on_velocity(rules->forces.data[i]);
     for (size_t i = 0; i < rules->batches.count; i++)
         *along |= *rules->batches.data[i]->enabled && sk_batch_damping_time(rules->batches.data[i]) > 0;
 }
@@ -107,6 +107,7 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
     skein_error *error = sk_world_error(world);
     *stability = (skein_stability){.mode_count = 0};
     skein_status status = sk_world_arrange(world, error);
+    if (!status) status = sk_world_fetch(world);
     if (status) return status;
     uint32_t wanted = 1u << mode_at | 1u << image | 1u << zero | 1u << resistance | 1u << SK_SUMS;
     world->plan_stale = true; // its temporaries go

@@ -3,6 +3,39 @@
 
 #include "world/world.h"
 
+/* ---- where the state stands: in the world's vectors, or on a device ---- */
+
+/* What a device is ahead belongs to the state as much as what stands here: fetching it changes no state, and so a
+ * constant world's may be fetched. */
+skein_status sk_world_fetch(const skein_world *world) {
+    sk_device *device = world->device;
+    if (!device || !device->ahead) return SKEIN_OK;
+    device->ahead = false;
+    return device->read(device, (skein_world *)(uintptr_t)world, world->error);
+}
+
+skein_status sk_world_touch(skein_world *world) {
+    skein_status status = sk_world_fetch(world);
+    if (!status && world->device) world->device->behind = true;
+    return status;
+}
+
+skein_status sk_world_set_device(skein_world *world, sk_device *device) {
+    skein_status status = sk_world_fetch(world);
+    if (status) return status;
+    if (world->device) world->device->release(world->device, world);
+    world->device = device;
+    world->plan_stale = true;
+    if (device) device->ahead = false, device->behind = true;
+    return SKEIN_OK;
+}
+
+void skein_world_wait(const skein_world *world) {
+    if (world->device) world->device->wait(world->device);
+}
+
+/* ---- reading and writing ---- */
+
 size_t skein_particle_count(const skein_world *world) {
     return world->particles.count;
 }
@@ -13,10 +46,12 @@ static skein_view view_of(const skein_world *world, sk_vector vector) {
 }
 
 skein_view skein_position_view(const skein_world *world) {
+    sk_world_fetch(world);
     return view_of(world, SK_X);
 }
 
 skein_view skein_velocity_view(const skein_world *world) {
+    sk_world_fetch(world);
     return view_of(world, SK_V);
 }
 
@@ -30,6 +65,7 @@ static skein_status check_range(const skein_world *world, size_t first, size_t c
 
 static skein_status copy_out(const skein_world *world, sk_vector vector, size_t first, size_t count, double *out) {
     skein_status status = check_range(world, first, count);
+    if (!status) status = sk_world_fetch(world);
     if (status) return status;
     for (size_t i = 0; i < count; i++) {
         sk_vec4 p = world->particles.vector[vector][world->particles.slot_of[first + i]];
@@ -63,6 +99,8 @@ static skein_status copy_in(skein_world *world, sk_vector vector, size_t first, 
         if (!(xyz[i] >= -SK_FAR && xyz[i] <= SK_FAR))
             return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "",
                            "particle %zu: numbers must be finite, under 1e15", first + i / 3);
+    status = sk_world_touch(world);
+    if (status) return status;
     for (size_t i = 0; i < count; i++) {
         sk_vec4 *p = &world->particles.vector[vector][world->particles.slot_of[first + i]];
         *p = (sk_vec4){(real)xyz[3 * i], (real)xyz[3 * i + 1], (real)xyz[3 * i + 2], p->w};
@@ -82,6 +120,7 @@ skein_status skein_velocities_set(skein_world *world, size_t first, size_t count
 
 skein_status skein_particle_hold(skein_world *world, size_t particle, bool held) {
     skein_status status = check_range(world, particle, 1);
+    if (!status) status = sk_world_touch(world);
     if (!status) sk_particle_hold(&world->particles, particle, held);
     return status;
 }

@@ -6,6 +6,7 @@
 #include "world/world.h"
 
 uint64_t skein_world_hash(const skein_world *world) {
+    sk_world_fetch(world);
     uint64_t hash = SK_HASH_START;
     for (size_t i = 0; i < world->particles.count; i++) {
         uint32_t slot = world->particles.slot_of[i];
@@ -24,6 +25,18 @@ uint64_t skein_world_hash(const skein_world *world) {
 
 static bool is_finite(sk_vec4 p) {
     return sk_abs(p.x) <= SK_REAL_MAX && sk_abs(p.y) <= SK_REAL_MAX && sk_abs(p.z) <= SK_REAL_MAX;
+}
+
+/* Free particles at which formulas of forces had to be guarded. */
+static size_t count_guarded(const skein_world *world, const sk_force *force) {
+    const sk_particles *all = &world->particles;
+    size_t guarded = 0;
+    for (size_t i = 0; i < all->count && *force->enabled && force->type->guarded; i++) {
+        sk_vec4 x = all->vector[SK_X][all->slot_of[i]], v = all->vector[SK_V][all->slot_of[i]];
+        const double p[3] = {(double)x.x, (double)x.y, (double)x.z}, u[3] = {(double)v.x, (double)v.y, (double)v.z};
+        if (x.w > 0) guarded += force->type->guarded(force->params, p, u, world->time);
+    }
+    return guarded;
 }
 
 static void count_particles(const skein_world *world, skein_statistics *s) {
@@ -69,7 +82,9 @@ static skein_status measure_stretch(skein_world *world, skein_statistics *s, ske
 
 skein_status skein_world_statistics(skein_world *world, skein_statistics *statistics) {
     skein_error *error = sk_world_error(world);
+    skein_status status = sk_world_fetch(world);
     memset(statistics, 0, sizeof *statistics);
+    if (status) return status;
     const sk_particles *all = &world->particles;
     statistics->memory_bytes = world->allocator.bytes;
     statistics->steps = world->steps;
@@ -80,7 +95,7 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     statistics->solver_turns = (size_t)world->cell[SK_CELL_NEWTON_TURNS];
     statistics->solver_iterations = (size_t)world->cell[SK_CELL_CG_TURNS];
     statistics->particles = all->count;
-    skein_status status = sk_world_arrange(world, error); // the slots of new rules may not be known yet
+    status = sk_world_arrange(world, error); // the slots of new rules may not be known yet
     if (status) return status;
     count_particles(world, statistics);
     sk_world_measure_energy(world, statistics);
@@ -92,7 +107,11 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
         if (!collider->common->enabled) continue;
         sk_collider_measure(collider, world->time, all->vector[SK_X], all->slot_of, all->count,
                             &statistics->max_penetration, &statistics->contacts);
+        statistics->guarded +=
+            sk_collider_count_guarded(collider, world->time, all->vector[SK_X], all->slot_of, all->count);
     }
+    for (size_t i = 0; i < world->rules.forces.count; i++)
+        statistics->guarded += count_guarded(world, world->rules.forces.data[i]);
     status = measure_stretch(world, statistics, error);
     statistics->state_hash = skein_world_hash(world);
     return status;

@@ -1,5 +1,6 @@
 /* Stepping: bring the plan up to date, run it, move the clock. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/float_mode.h"
@@ -7,6 +8,8 @@
 
 skein_status sk_world_arrange(skein_world *world, skein_error *error) {
     if (!world->slots_stale) return SKEIN_OK;
+    skein_status status = sk_world_touch(world); // the state goes to new slots
+    if (status) return status;
     sk_allocator *allocator = &world->allocator;
     bool good = sk_particles_arrange(&world->particles, allocator);
     for (size_t i = 0; i < world->rules.batches.count && good; i++)
@@ -98,8 +101,6 @@ static skein_status find_groups(skein_world *world, skein_error *error) {
             return sk_fail(error, SKEIN_ERROR_NAME, force->label, "there is no body of the name '%s'", unknown);
         skein_status status =
             force->type->check ? force->type->check(force->params, world->particles.count, error) : SKEIN_OK;
-        if (!status && force->type->prepare)
-            status = force->type->prepare(force->params, &force->state, &world->allocator, error);
         if (status) return status;
     }
     return SKEIN_OK;
@@ -120,6 +121,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     if (status) return status;
     for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);
     warn_of_light_colliders(world);
+    world->plan_stale = true; // until it is whole
     world->plan.count = 0;
     sk_writer writer = {
         .plan = &world->plan,
@@ -133,10 +135,12 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         .h = dt,
     };
     sk_write_sum(&writer, SK_PREVIOUS, 1, SK_X, 0, SK_NONE);
-    sk_write_pack(&writer);
+    if (!world->device) sk_write_pack(&writer);
     method->write(&writer, world->method_params, dt);
-    sk_write_unpack(&writer);
-    if (writer.no_memory || !make_temporaries(world) || !make_cells(world)) return sk_fail_memory(error, "the plan");
+    if (!world->device) sk_write_unpack(&writer);
+    if (writer.no_memory || (!world->device && (!make_temporaries(world) || !make_cells(world))))
+        return sk_fail_memory(error, "the plan");
+    if (world->device && (status = world->device->prepare(world->device, world, error))) return status;
     world->plan_dt = dt;
     world->plan_stale = false;
     return SKEIN_OK;
@@ -158,10 +162,8 @@ sk_run sk_world_run_context(skein_world *world) {
     return run;
 }
 
-skein_status skein_world_step(skein_world *world, double dt) {
-    skein_error *error = sk_world_error(world);
-    skein_status status = sk_world_compile(world, dt, error);
-    if (status) return status;
+/* One step; `seconds` of each row of the plan, or NULL to run them as fast as they go. The plan is up to date. */
+static skein_status take_step(skein_world *world, double dt, double *seconds, skein_error *error) {
     if (!world->steps) {
         skein_statistics start = {0};
         sk_world_measure_energy(world, &start);
@@ -169,17 +171,72 @@ skein_status skein_world_step(skein_world *world, double dt) {
     }
     memset(world->cell, 0, sizeof world->cell);
     sk_run run = sk_world_run_context(world);
-    uint64_t mode = sk_float_mode_enter();
-    sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
-    sk_float_mode_leave(mode);
-    if (run.no_memory) return sk_fail_memory(error, "the neighbour grid; the step was not finished");
+    if (world->device) {
+        skein_status status = world->device->step(world->device, world, &run, error);
+        if (status) return status;
+    } else {
+        uint64_t mode = sk_float_mode_enter();
+        if (seconds) sk_run_rows_timed(&run, world->tasks, world->plan.data, world->plan.count, seconds);
+        else sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
+        sk_float_mode_leave(mode);
+        if (run.no_memory) return sk_fail_memory(error, "the neighbour grid; the step was not finished");
+    }
     world->time += dt;
     world->steps++;
     world->substeps += (uint64_t)world->method->substeps(world->method_params);
     return SKEIN_OK;
 }
 
+skein_status skein_world_step(skein_world *world, double dt) {
+    skein_error *error = sk_world_error(world);
+    skein_status status = sk_world_compile(world, dt, error);
+    return status ? status : take_step(world, dt, NULL, error);
+}
+
+/* ---- what its passes take ---- */
+
+/* Adds a row's seconds to the pass of its kind and name; `count` passes are there, the first `most` of them in `out`.
+ */
+static void add_to_passes(const sk_row *row, double seconds, skein_pass *out, size_t most, size_t *count) {
+    const char *kind = sk_row_kind_text(row->kind),
+               *label = row->kind == SK_ROW_COMBINE || !row->label ? "" : row->label;
+    for (size_t i = 0; i < *count && i < most; i++)
+        if (out[i].kind == kind && !strncmp(out[i].label, label, sizeof out[i].label - 1)) {
+            out[i].seconds += seconds;
+            return;
+        }
+    if (*count < most) {
+        out[*count].kind = kind;
+        out[*count].seconds = seconds;
+        snprintf(out[*count].label, sizeof out[*count].label, "%s", label);
+    }
+    ++*count;
+}
+
+skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out, size_t most, size_t *count) {
+    skein_error *error = sk_world_error(world);
+    *count = 0;
+    double begin = sk_now();
+    skein_status status = sk_world_compile(world, dt, error);
+    if (status) return status;
+    double *seconds = sk_allocate(&world->allocator, world->plan.count * sizeof *seconds);
+    if (!seconds) return sk_fail_memory(error, "the profile");
+    memset(seconds, 0, world->plan.count * sizeof *seconds);
+    status = take_step(world, dt, seconds, error);
+    for (size_t r = 0; r < world->plan.count && !status && !world->device; r++)
+        if (world->plan.data[r].kind != SK_ROW_REPEAT)
+            add_to_passes(&world->plan.data[r], seconds[r], out, most, count);
+    if (!status && world->device) {
+        *count = 1;
+        if (most) out[0] = (skein_pass){"device", "", sk_now() - begin};
+    }
+    sk_release(&world->allocator, seconds);
+    return status;
+}
+
 skein_status skein_world_reset(skein_world *world) {
+    skein_status status = sk_world_touch(world); // masses may have changed, and where particles are held
+    if (status) return status;
     memset(world->cell, 0, sizeof world->cell);
     sk_particles_reset(&world->particles);
     world->time = 0;
@@ -189,6 +246,14 @@ skein_status skein_world_reset(skein_world *world) {
 
 double skein_world_time(const skein_world *world) {
     return world->time;
+}
+
+skein_status skein_world_time_set(skein_world *world, double seconds) {
+    if (!(seconds >= 0) || !(seconds <= SK_FAR))
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "seconds", "a time of %g s: expected 0 or more",
+                       seconds);
+    world->time = seconds;
+    return SKEIN_OK;
 }
 
 skein_status skein_world_explain(skein_world *world, double dt, void (*write)(void *user, const char *line),

@@ -50,32 +50,20 @@ static void release_body(skein_world *world, sk_body *body) {
     sk_release(allocator, body);
 }
 
-/* Releases an object's parameters and itself; its rules are released with the world's lists. */
+/* An object's rules are released with the world's lists. */
 static void release_object(skein_world *world, sk_object *object) {
-    sk_allocator *allocator = &world->allocator;
-    size_t common_count;
-    const skein_field *common = sk_common_fields(object->category, &common_count);
-    if (object->kind) {
-        sk_fields_clear(allocator, object->kind->fields, object->kind->field_count, object->params);
-        sk_fields_clear(allocator, common, common_count, sk_common_of(object));
-    }
-    sk_release(allocator, object->params);
     if (object->category == SKEIN_BODY && object->as.body) release_body(world, object->as.body);
-    sk_release(allocator, object);
-}
-
-void sk_world_release_force(skein_world *world, sk_force *force) {
-    if (force->state) force->type->release(force->state, &world->allocator);
-    sk_release(&world->allocator, force);
+    sk_object_release(&world->allocator, object);
 }
 
 void skein_world_destroy(skein_world *world) {
     if (!world) return;
     sk_allocator *allocator = &world->allocator;
     sk_rules *rules = &world->rules;
+    if (world->device) world->device->release(world->device, world);
     sk_tasks_destroy(world->tasks);
     for (size_t i = 0; i < rules->batches.count; i++) sk_batch_release(rules->batches.data[i], allocator);
-    for (size_t i = 0; i < rules->forces.count; i++) sk_world_release_force(world, rules->forces.data[i]);
+    for (size_t i = 0; i < rules->forces.count; i++) sk_release(allocator, rules->forces.data[i]);
     for (size_t i = 0; i < rules->colliders.count; i++) sk_release(allocator, rules->colliders.data[i]);
     for (size_t i = 0; i < rules->limits.count; i++) sk_limit_release(rules->limits.data[i], allocator);
     sk_release(allocator, rules->batches.data);
@@ -135,6 +123,8 @@ skein_status sk_world_add_particles(skein_world *world, size_t count, const doub
             return sk_fail(error, SKEIN_ERROR_VALUE, "",
                            "particle %zu: a mass of %g kg; expected 0 (held) or 1e-15 to 1e15", i / 3, masses[i / 3]);
     }
+    skein_status status = sk_world_touch(world);
+    if (status) return status;
     if (!sk_particles_add(&world->particles, &world->allocator, count, positions, velocities, masses))
         return sk_fail_memory(error, "particles");
     world->plan_stale = world->slots_stale = true;
@@ -151,7 +141,7 @@ skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk
     if (!SK_RESERVE(allocator, &world->rules.batches, world->rules.batches.count + 1))
         return sk_fail_memory(error, label);
     sk_material *own = sk_allocate(allocator, sizeof *own);
-    sk_batch *batch = own ? sk_batch_create(allocator, type, count, particles, rest, scale) : NULL;
+    sk_batch *batch = own ? sk_batch_create(allocator, type, own, count, particles, rest, scale) : NULL;
     if (!batch) {
         sk_release(allocator, own);
         return sk_fail_memory(error, label);

@@ -10,6 +10,7 @@
 
 #include "base/status.h"
 #include "base/tasks.h"
+#include "formula/parameters.h"
 #include "methods/method.h"
 #include "particles/particles.h"
 #include "plan/solve.h"
@@ -55,7 +56,9 @@ typedef struct sk_object {
     uint32_t generation; /* odd while it lives */
     skein_category category;
     const skein_kind *kind;
-    void *params; /* the kind's fields */
+    skein_kind *own_kind;    /* what `kind` is where it takes parameters, else NULL */
+    const sk_making *making; /* what its type makes from its parameters; NULL: nothing */
+    void *params;            /* the kind's fields */
     union {
         sk_common plain;
         sk_collider_common collider;
@@ -69,6 +72,22 @@ typedef struct sk_object {
         sk_collider *collider;
     } as;
 } sk_object;
+
+/* Where steps are computed, when it is not the processor: runs the same plan on its own copy of the state. The
+ * world does not know what it is; src/gpu/ makes one. A device is `ahead` when its X, V and P are newer than the
+ * world's, and `behind` when the world's are newer. */
+typedef struct sk_device sk_device;
+struct sk_device {
+    /* Takes a new plan, or says which rule of it cannot run there. */
+    skein_status (*prepare)(sk_device *device, skein_world *world, skein_error *error);
+    /* Runs the plan once; `run` holds the time, and the world's vectors if the device is behind. */
+    skein_status (*step)(sk_device *device, skein_world *world, sk_run *run, skein_error *error);
+    /* Copies X, V and P into the world's. */
+    skein_status (*read)(sk_device *device, skein_world *world, skein_error *error);
+    void (*release)(sk_device *device, skein_world *world);
+    void (*wait)(sk_device *device); /* until all that was asked for is done */
+    bool ahead, behind;
+};
 
 struct skein_world {
     sk_allocator allocator;
@@ -97,6 +116,7 @@ struct skein_world {
     uint64_t steps, substeps;
     double first_energy;        /* J, when the first step began */
     double cell[SK_CELL_COUNT]; /* of the last step */
+    sk_device *device;          /* NULL: the processor */
 };
 
 /* ---- for the catalogue: adding objects of a known type ---- */
@@ -105,6 +125,8 @@ skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, con
                                const skein_setting *settings, skein_handle *handle);
 skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_type *type, const uint32_t *particles,
                                      size_t count, const skein_setting *settings, skein_handle *handle);
+skein_status sk_world_find_arity(skein_world *world, const sk_constraint_type *type, const skein_setting *settings,
+                                 size_t *arity);
 skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, const skein_setting *settings,
                                 skein_handle *handle);
 skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *type, const skein_setting *settings,
@@ -139,6 +161,8 @@ void sk_world_log(skein_world *world, skein_log_level level, const char *format,
 /* ---- between the world's own files ---- */
 
 sk_object *sk_object_of(const skein_world *world, skein_handle handle);
+/* Releases an object's parameters and itself. */
+void sk_object_release(sk_allocator *allocator, sk_object *object);
 /* Fields that objects of a category share, and where they are stored. */
 const skein_field *sk_common_fields(skein_category category, size_t *count);
 void *sk_common_of(sk_object *object);
@@ -149,16 +173,26 @@ skein_status sk_settings_apply(sk_allocator *allocator, const skein_kind *kind, 
 const skein_field *sk_kind_field(const skein_kind *kind, const char *name, skein_error *error);
 /* Finds the particles' slots and cuts batches into sweeps, if anything was added. */
 skein_status sk_world_arrange(skein_world *world, skein_error *error);
-void sk_world_release_force(skein_world *world, sk_force *force);
 /* Brings the plan up to date for a step of dt. */
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error);
+/* Before the state is read: what a device is ahead comes back. It changes no state, only where it stands; a failure
+ * is in the world's error, and the state is then the last one that came back. */
+skein_status sk_world_fetch(const skein_world *world);
+/* Before the state is changed by hand: the same, and the device is behind. */
+skein_status sk_world_touch(skein_world *world);
+/* Changes where steps are computed; NULL is the processor. The former device is released. On failure nothing changes,
+ * and the caller keeps the new one. */
+skein_status sk_world_set_device(skein_world *world, sk_device *device);
 /* The run context of the world's present state. */
 sk_run sk_world_run_context(skein_world *world);
 /* What skein_stable_substep says, of a known type. */
 double sk_stable_substep(const sk_method_type *method, const skein_stability *stability);
 /* Fills in the kinetic, potential and elastic energies, and the momenta. The slots are to be up to date. */
 void sk_world_measure_energy(const skein_world *world, skein_statistics *statistics);
-/* Runs rows in their order; the plan's are a whole step. */
+/* Runs rows in their order; the plan's are a whole step. `seconds`: of each row, what it takes is added to. */
+void sk_run_rows_timed(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count, double *seconds);
+double sk_now(void); /* s, of a clock that only goes forward */
+/* The same without looking at the clock, and as fast as it can be. */
 void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count);
 
 #endif

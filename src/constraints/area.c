@@ -1,0 +1,43 @@
+/* Area: of the triangle p0 p1 p2, less that at rest. */
+#ifdef SK_ISA
+
+#include "constraints/element_arithmetic.h"
+#include "constraints/element_stiffness.h"
+#include "constraints/element_sweeps.h"
+
+#else
+#define SK_ARITY 3
+#define SK_RESTS 1
+#define SK_FORMULA "constraints/emitted/area.h"
+#include "constraints/element.h"
+
+#define SK_KERNELS "constraints/area.c"
+#include "base/for_each_isa.h"
+
+typedef struct area_params {
+    sk_material material;
+} area_params;
+
+static const skein_field fields[] = {
+    SK_REAL(area_params, material.stiffness, "stiffness", "N/m3", 1e6, 0, SK_UNBOUNDED,
+            "force over length and square metre of change; \"infinite\" is rigid (position methods only)"),
+    SK_REAL(area_params, material.damping, "damping", "N s/m3", 0, 0, SK_FAR,
+            "the same against the area's change in time"),
+};
+
+#include "constraints/element_scalar.h"
+
+const sk_constraint_type sk_area = {
+    .kind = {"area", "keeps the area of a triangle of particles", SKEIN_CONSTRAINT, fields,
+             sizeof fields / sizeof *fields, sizeof(area_params)},
+    .arity = SK_ARITY,
+    .rest_count = SK_RESTS,
+    .rest = rest_of,
+    .force = {.groups = {SK_EACH_ISA(force_groups)}},
+    .project = {.groups = {SK_EACH_ISA(project_groups)}},
+    .project_damped = {.groups = {SK_EACH_ISA(project_damped_groups)}},
+    .apply = {SK_EACH_ISA(apply)},
+    .diagonal = {SK_EACH_ISA(diagonal)},
+    .energy = energy,
+};
+#endif

@@ -1,0 +1,83 @@
+/* One element of a kind at a time, in double: its rest values, its strain and its energy. Once a kind, after
+ * element.h, outside of instruction sets. */
+#include "base/elementary.h"
+
+typedef struct one_element {
+    double x[SK_ARITY][3], rest[SK_RESTS], value;
+} one_element;
+
+static inline double reciprocal(double x) {
+    return x >= 2.2250738585072014e-308 || x <= -2.2250738585072014e-308 ? 1 / x : 0;
+}
+
+#define FORMULA(name) static void name(one_element *e)
+#define RESTS(name) static void name(one_element *e)
+#define REAL double
+#define NUMBER(x) (x)
+#define POSITION(particle, axis) e->x[particle][axis]
+#define PARAMETER(index) e->rest[index]
+#define VALUE(component, x) e->value = (x)
+#define REST(index, x) e->rest[index] = (x)
+#define GRADIENT(component, particle, axis, x) (void)(x)
+#define OPPOSITE(particle, of)
+#define UNIT_DIVISOR(x) (void)(x)
+#define RECIPROCAL(x) reciprocal(x)
+#define SQRT(x) __builtin_sqrt(x)
+#define ABS(x) __builtin_fabs(x)
+#define LESS(a, b, yes, no) ((a) < (b) ? (yes) : (no))
+#define ATAN2(y, x) sk_atan2(y, x)
+
+#include SK_FORMULA
+
+static bool rest_of(const void *params, const double (*x)[3], double *rest) {
+    (void)params;
+    one_element e;
+    memcpy(e.x, x, sizeof e.x);
+    rests(&e);
+    memcpy(rest, e.rest, sizeof e.rest);
+    return true;
+}
+
+static double value_of(const sk_batch *batch, const sk_vec4 *x, size_t element) {
+    one_element e;
+    for (size_t i = 0; i < SK_ARITY; i++) {
+        sk_vec4 p = x[batch->slot[SK_ARITY * element + i]];
+        e.x[i][0] = (double)p.x, e.x[i][1] = (double)p.y, e.x[i][2] = (double)p.z;
+    }
+    for (size_t r = 0; r < SK_RESTS; r++) e.rest[r] = (double)batch->rest[r * batch->count + element];
+    formula(&e);
+    return e.value;
+}
+
+#ifdef SK_WITH_LIMITS
+static void strain(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, real *out) {
+    for (size_t e = begin; e < end; e++)
+        out[e - begin] = batch->rest[e] > 0 ? (real)(value_of(batch, x, e) / (double)batch->rest[e]) : 0;
+}
+#endif
+
+static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_t begin, size_t end, double *out) {
+    (void)time;
+    for (size_t e = begin; e < end; e++) {
+        double value = value_of(batch, x, e);
+        out[e - begin] = 0.5 * value * value;
+    }
+    return 0;
+}
+
+#undef FORMULA
+#undef RESTS
+#undef REAL
+#undef NUMBER
+#undef POSITION
+#undef PARAMETER
+#undef VALUE
+#undef REST
+#undef GRADIENT
+#undef OPPOSITE
+#undef UNIT_DIVISOR
+#undef RECIPROCAL
+#undef SQRT
+#undef ABS
+#undef LESS
+#undef ATAN2

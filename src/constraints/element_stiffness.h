@@ -1,0 +1,97 @@
+/* What an implicit solve asks of a kind's elements, once for each instruction set (no include guard), after
+ * element_arithmetic.h: the matrix h^2 k + h c of each element times a direction, and its diagonal blocks.
+ *
+ * The matrix is k (grad C)(grad C)^T, which is positive definite whatever C is (Gauss and Newton's). A kind with
+ * SK_ACROSS adds what turns the gradient, the tension across it, where that is positive, too. An element of the row is
+ * an element of the batch. Sixteen are worked out at once; they may share particles, so they are added one after the
+ * other, in their order. */
+
+/* Sixteen elements: the unit of their gradient (or the gradient itself), their stiffness times h^2 and damping times h.
+ */
+typedef struct SK_ISA(stiff) {
+    uint32_t slot[SK_ARITY][SK_LANES];
+    size_t count;
+    sk_element e;
+    sk_wide along, across;
+} SK_ISA(stiff);
+
+SK_INLINE void SK_ISA(stiffen)(SK_ISA(stiff) * s, const sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_batch *batch = row->rule;
+    const sk_material *material = batch->params;
+    real k = (real)material->stiffness, elastic = (real)row->coefficient[0];
+    real both = elastic + (real)(row->coefficient[1] * sk_batch_damping_time(batch));
+    sk_element *e = &s->e;
+    s->count = end - begin < SK_LANES ? end - begin : SK_LANES;
+    memset(e->x, 0, sizeof e->x);
+    memset(e->rest, 0, sizeof e->rest);
+    sk_wide stiff = {0};
+    for (size_t l = 0; l < s->count; l++) {
+        size_t element = begin + l;
+        SK_EACH_PARTICLE (i) {
+            s->slot[i][l] = batch->slot[SK_ARITY * element + (size_t)i];
+            sk_vec4 x = sk_load(run->vector[SK_X], row->packed, s->slot[i][l]);
+            e->x[i].x[l] = x.x, e->x[i].y[l] = x.y, e->x[i].z[l] = x.z;
+        }
+        for (int r = 0; r < SK_RESTS; r++) e->rest[r][l] = batch->rest[(size_t)r * batch->count + element];
+        stiff[l] = batch->scale ? k * batch->scale[element] : k;
+    }
+    e->divided = e->opposite = false;
+    SK_ISA(formula)(e);
+    s->along = both * stiff;
+    s->across = (sk_wide){0};
+    if (!e->divided) return;
+    sk_wide inverse = SK_ISA(inverse_divisor)(e);
+    SK_EACH_PARTICLE (i) {
+        sk_wide3 *g = &e->gradient[i];
+        *g = (sk_wide3){inverse * g->x, inverse * g->y, inverse * g->z};
+    }
+#ifdef SK_ACROSS
+    s->across = elastic * SK_ISA(sk_keep)(SK_ISA(sk_positive)(e->value), stiff * e->value * inverse);
+#endif
+}
+
+static void SK_ISA(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_vec4 *q = run->vector[row->source[1]];
+    sk_vec4 *dst = run->vector[row->dst];
+    SK_ISA(stiff) s;
+    for (size_t at = begin; at < end; at += SK_LANES) {
+        SK_ISA(stiffen)(&s, run, row, at, end);
+        sk_wide3 u[SK_ARITY] = {{{0}, {0}, {0}}};
+        for (size_t l = 0; l < s.count; l++)
+            SK_EACH_PARTICLE (i) {
+                sk_vec4 p = sk_load(q, row->packed, s.slot[i][l]);
+                u[i].x[l] = p.x, u[i].y[l] = p.y, u[i].z[l] = p.z;
+            }
+        sk_wide along = SK_ISA(along)(&s.e, u);
+        sk_wide push = (s.along - s.across) * along;
+        SK_EACH_PARTICLE (i) {
+            sk_wide3 g = s.e.gradient[i], f = {push * g.x, push * g.y, push * g.z};
+#ifdef SK_ACROSS
+            int j = 1 - i;
+            f.x += s.across * (u[i].x - u[j].x), f.y += s.across * (u[i].y - u[j].y);
+            f.z += s.across * (u[i].z - u[j].z);
+#endif
+            for (size_t l = 0; l < s.count; l++)
+                sk_add_at(dst, row->packed, s.slot[i][l], sk_v3(f.x[l], f.y[l], f.z[l]));
+        }
+    }
+}
+
+/* The blocks' xx yy zz go to dst, xy xz yz to the second source. */
+static void SK_ISA(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    sk_vec4 *diagonal = run->vector[row->dst], *off = run->vector[row->source[1]];
+    SK_ISA(stiff) s;
+    for (size_t at = begin; at < end; at += SK_LANES) {
+        SK_ISA(stiffen)(&s, run, row, at, end);
+        sk_wide push = s.along - s.across;
+        SK_EACH_PARTICLE (i) {
+            sk_wide3 n = s.e.gradient[i], sn = {push * n.x, push * n.y, push * n.z};
+            sk_wide3 d = {s.across + sn.x * n.x, s.across + sn.y * n.y, s.across + sn.z * n.z};
+            sk_wide3 o = {sn.x * n.y, sn.x * n.z, sn.y * n.z};
+            for (size_t l = 0; l < s.count; l++) {
+                sk_add_at(diagonal, row->packed, s.slot[i][l], sk_v3(d.x[l], d.y[l], d.z[l]));
+                sk_add_at(off, row->packed, s.slot[i][l], sk_v3(o.x[l], o.y[l], o.z[l]));
+            }
+        }
+    }
+}

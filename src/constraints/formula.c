@@ -1,0 +1,432 @@
+/* Constraints and energies that are texts: any formula of up to eight particles (docs/formula.md).
+ *
+ * A constraint C wants to be 0, or, written `a >= b`, at least 0. An energy E is what its forces come from; under
+ * position methods it is the constraint C = sqrt(2 E), without ever dividing by the root: where E and its gradient are
+ * 0, so is the correction. Both run on a tape: up to eight groups of sixteen elements that share no particle are one
+ * block, gathered, run through the tape, solved and put back group by group, in their order. */
+#ifdef SK_ISA
+
+/* ---- in and out ---- */
+
+/* Groups [first, first + count) of a sweep, or sixteen elements of a batch, on their way. */
+typedef struct SK_ISA(block) {
+    sk_wide registers[SK_TAPE_MEMORY / sizeof(sk_wide)];
+    sk_wide4 x[SK_BLOCK_GROUPS][SK_MOST_ARITY];
+    sk_tape_verdict verdict;
+} SK_ISA(block);
+
+SK_INLINE sk_wide4 SK_ISA(gather)(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
+    if (!packed) return SK_ISA(sk_gather)(vector, slot);
+    sk_wide4 out = {{0}, {0}, {0}, {0}};
+    for (int l = 0; l < SK_LANES; l++) {
+        sk_vec4 q = sk_load(vector, packed, slot[l]);
+        out.x[l] = q.x, out.y[l] = q.y, out.z[l] = q.z, out.w[l] = q.w;
+    }
+    return out;
+}
+
+/* Once before the blocks of a row: what is the same for all elements. */
+static void SK_ISA(begin)(SK_ISA(block) * b, const sk_batch *batch, const sk_tape *tape, double time) {
+    const sk_formula_params *params = batch->params;
+    int count = params->made->formula->parameters;
+    real value[SKEIN_FORMULA_MOST_PARAMETERS];
+    const real *parameter[SKEIN_FORMULA_MOST_PARAMETERS];
+    for (int i = 0; i < count; i++) value[i] = (real)params->parameter[i], parameter[i] = &value[i];
+    sk_tape_input input = {.parameter = parameter, .uniform = ((uint64_t)1 << count) - 1, .time = (real)time};
+    sk_tape_kernels_of[SK_ISA(sk_version)].begin(tape, &input, b->registers);
+}
+
+/* Puts sixteen elements' positions into the tape's registers, as number i of a block. Their rest values are `rest`,
+ * `stride` reals from one to the next. */
+SK_INLINE void SK_ISA(fill)(SK_ISA(block) * b, const sk_batch *batch, const sk_tape *tape, size_t i, const real *rest,
+                            size_t stride) {
+    int first_rest = ((const sk_formula_params *)batch->params)->made->formula->parameters;
+    for (size_t l = 0; l < tape->loads.count; l++) {
+        sk_tape_load load = tape->loads.data[l];
+        sk_wide *to = b->registers + load.to * tape->wides + i;
+        if (load.source == SK_TAPE_POSITION) {
+            sk_wide4 p = b->x[i][load.index];
+            to[0] = p.x, to[tape->wides] = p.y, to[2 * tape->wides] = p.z;
+        } else if (load.source == SK_TAPE_PARAMETER && load.index >= first_rest) {
+            memcpy(to, rest + (size_t)(load.index - first_rest) * stride, sizeof *to);
+        }
+    }
+}
+
+/* What came out of the tape for sixteen elements. */
+typedef struct SK_ISA(answer) {
+    sk_wide value, by_time;
+    sk_wide3 gradient[SK_MOST_ARITY];
+    sk_mask active; /* finite, and not on the free side */
+} SK_ISA(answer);
+
+SK_INLINE void SK_ISA(take_answer)(SK_ISA(answer) * a, const SK_ISA(block) * b, const sk_constraint_formula *made,
+                                   size_t arity, size_t i) {
+    const sk_tape *tape = &made->tape;
+    const uint16_t *output = tape->output;
+    sk_mask finite = b->verdict.finite[i];
+#define OUTPUT(k_) SK_ISA(sk_keep)(finite, b->registers[output[k_] * tape->wides + i])
+    a->value = OUTPUT(0);
+    for (size_t p = 0; p < arity; p++)
+        a->gradient[p] = (sk_wide3){OUTPUT(3 * p + 1), OUTPUT(3 * p + 2), OUTPUT(3 * p + 3)};
+    a->by_time = OUTPUT(3 * arity + 1);
+#undef OUTPUT
+    a->active = made->one_sided ? finite & SK_ISA(sk_negative)(a->value) : finite;
+}
+
+SK_INLINE sk_wide SK_ISA(sum_along)(const SK_ISA(answer) * a, const sk_wide3 *u, size_t arity) {
+    sk_wide sum = SK_ISA(sk_dot_wide)(a->gradient[0], u[0]);
+    for (size_t p = 1; p < arity; p++) sum += SK_ISA(sk_dot_wide)(a->gradient[p], u[p]);
+    return sum;
+}
+
+/* ---- from value and gradient to a factor of the gradient ---- */
+
+SK_INLINE sk_wide SK_ISA(pull)(const SK_ISA(answer) * a, const sk_wide3 *v, size_t arity, bool is_energy,
+                               sk_wide stiffness, real damping_time) {
+    if (is_energy) return SK_ISA(sk_keep)(a->active, -stiffness);
+    sk_wide rate = SK_ISA(sum_along)(a, v, arity) + a->by_time;
+    return SK_ISA(sk_keep)(a->active, stiffness * (-a->value - damping_time * rate));
+}
+
+/* Of an energy C^2 = 2 E takes part in place of C = sqrt(2 E), whose gradient has no value where E is 0. */
+SK_INLINE sk_wide SK_ISA(project)(const SK_ISA(answer) * a, const sk_wide *w, size_t arity, bool is_energy,
+                                  sk_wide soft) {
+    sk_wide weight = w[0] * SK_ISA(sk_dot_wide)(a->gradient[0], a->gradient[0]);
+    for (size_t p = 1; p < arity; p++) weight += w[p] * SK_ISA(sk_dot_wide)(a->gradient[p], a->gradient[p]);
+    sk_wide square = SK_ISA(sk_keep)(SK_ISA(sk_positive)(a->value), 2 * a->value);
+    sk_wide above = is_energy ? -square : -a->value;
+    // an infinite compliance times 0 is nothing
+    sk_wide held = SK_ISA(sk_keep)(SK_ISA(sk_positive)(square), soft * square);
+    sk_wide below = is_energy ? weight + held : weight + soft;
+    return SK_ISA(sk_keep)(a->active & SK_ISA(sk_positive)(below), above / below);
+}
+
+/* `moved` from the substep's start on; `multiplier` is kept up to date. A one-sided one only ever pushes. */
+SK_INLINE sk_wide SK_ISA(project_damped)(const SK_ISA(answer) * a, const sk_wide *w, const sk_wide3 *moved,
+                                         size_t arity, const sk_constraint_formula *made, sk_wide soft, real gamma,
+                                         real h, sk_wide *multiplier) {
+    sk_wide weight = w[0] * SK_ISA(sk_dot_wide)(a->gradient[0], a->gradient[0]);
+    for (size_t p = 1; p < arity; p++) weight += w[p] * SK_ISA(sk_dot_wide)(a->gradient[p], a->gradient[p]);
+    sk_wide held = SK_ISA(sk_keep)(SK_ISA(sk_differ)(*multiplier, (sk_wide){0}), soft * *multiplier), change, s;
+    if (made->is_energy) {
+        sk_wide square = SK_ISA(sk_keep)(SK_ISA(sk_positive)(a->value), 2 * a->value);
+        sk_wide root = SK_ISA(sk_wide_sqrt)(square);
+        sk_wide below = weight + SK_ISA(sk_keep)(SK_ISA(sk_positive)(square), soft * square);
+        s = SK_ISA(sk_keep)(a->active & SK_ISA(sk_positive)(below), root * (-root - held) / below);
+        *multiplier += root * s;
+        return s;
+    }
+    sk_wide rate = SK_ISA(sum_along)(a, moved, arity) + h * a->by_time;
+    sk_wide below = (1 + gamma) * weight + soft;
+    sk_mask on =
+        SK_ISA(sk_positive)(below) & (made->one_sided ? a->active | SK_ISA(sk_positive)(*multiplier) : a->active);
+    change = SK_ISA(sk_keep)(on, (-a->value - held - gamma * rate) / below);
+    if (made->one_sided) change = SK_ISA(sk_select)(SK_ISA(sk_negative)(*multiplier + change), -*multiplier, change);
+    *multiplier += change;
+    return change;
+}
+
+/* ---- the walk ---- */
+
+SK_INLINE void SK_ISA(put_back)(sk_vec4 *vector, size_t packed, const uint32_t *slot, sk_wide4 old, sk_wide s,
+                                sk_wide3 g) {
+    old.x += s * g.x, old.y += s * g.y, old.z += s * g.z;
+    if (!packed) {
+        SK_ISA(sk_scatter)(vector, slot, old);
+        return;
+    }
+    for (int l = 0; l < SK_LANES; l++) sk_store_at(vector, packed, slot[l], sk_v3(old.x[l], old.y[l], old.z[l]));
+}
+
+/* Group `i` of a block whose tape has run. */
+SK_INLINE void SK_ISA(settle_group)(sk_run *run, const sk_row *row, const sk_sweep *sweep, const SK_ISA(block) * b,
+                                    size_t i, size_t group, size_t packed, sk_row_kind kind, bool damped) {
+    const sk_batch *batch = sweep->batch;
+    const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
+    size_t arity = batch->arity, lane = sweep->first_lane + group * SK_LANES;
+    const uint32_t *slots = sweep->slots + group * arity * SK_LANES;
+    double damping_time = sk_batch_damping_time(batch);
+    SK_ISA(answer) a;
+    sk_wide w[SK_MOST_ARITY], s;
+    sk_wide3 other[SK_MOST_ARITY];
+    SK_ISA(take_answer)(&a, b, made, arity, i);
+    for (size_t p = 0; p < arity; p++) {
+        w[p] = b->x[i][p].w;
+        if (!damped) continue;
+        sk_wide4 o = SK_ISA(gather)(run->vector[row->source[1]], packed, slots + p * SK_LANES);
+        other[p] = (sk_wide3){o.x, o.y, o.z};
+        if (kind == SK_ROW_PROJECT) other[p] = (sk_wide3){b->x[i][p].x - o.x, b->x[i][p].y - o.y, b->x[i][p].z - o.z};
+    }
+    sk_vec4 *dst = run->vector[row->dst];
+    if (kind == SK_ROW_FORCE) {
+        sk_wide stiffness = *(const sk_wide *)(const void *)(batch->lane_stiffness + lane);
+        s = SK_ISA(pull)(&a, other, arity, made->is_energy, stiffness, (real)damping_time);
+    } else {
+        real per_step = (real)(row->coefficient[0] / (row->dt * row->dt));
+        sk_wide soft = *(const sk_wide *)(const void *)(batch->lane_compliance + lane) * per_step;
+        sk_wide *multiplier = (sk_wide *)(void *)(batch->lane_multiplier + lane);
+        s = damped ? SK_ISA(project_damped)(&a, w, other, arity, made, soft, (real)(damping_time / row->dt),
+                                            (real)row->dt, multiplier)
+                   : SK_ISA(project)(&a, w, arity, made->is_energy, soft);
+    }
+    for (size_t p = 0; p < arity; p++) {
+        const uint32_t *slot = slots + p * SK_LANES;
+        sk_wide4 old = kind == SK_ROW_FORCE ? SK_ISA(gather)(dst, packed, slot) : b->x[i][p];
+        SK_ISA(put_back)(dst, packed, slot, old, kind == SK_ROW_FORCE ? s : s * w[p], a.gradient[p]);
+    }
+}
+
+/* Groups [begin, end), or those of slabs [begin, end), block after block. */
+static void SK_ISA(walk)(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_row_kind kind, bool damped) {
+    const sk_sweep *sweep = row->rule;
+    const sk_batch *batch = sweep->batch;
+    const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
+    const sk_tape *tape = &made->tape;
+    size_t arity = batch->arity;
+    SK_ISA(block) b;
+    if (sweep->slab_start) begin = sweep->slab_start[begin], end = sweep->slab_start[end];
+    SK_ISA(begin)(&b, batch, tape, run->time - row->before);
+    for (size_t first = begin, count; first < end; first += count) {
+        size_t packed[SK_BLOCK_GROUPS];
+        count = sweep->ahead[first] < tape->wides ? sweep->ahead[first] : tape->wides;
+        if (count > end - first) count = end - first;
+        for (size_t i = 0; i < tape->wides; i++) {
+            size_t group = first + (i < count ? i : count - 1); // what is beyond repeats the last
+            const uint32_t *slots = sweep->slots + group * arity * SK_LANES;
+            bool strips = false;
+            for (size_t l = 0; l < arity * SK_LANES && row->packed; l++) strips |= slots[l] < row->packed;
+            packed[i] = strips ? row->packed : 0;
+            for (size_t p = 0; p < arity; p++)
+                b.x[i][p] = SK_ISA(gather)(run->vector[SK_X], packed[i], slots + p * SK_LANES);
+            SK_ISA(fill)
+            (&b, batch, tape, i, batch->lane_rest + sweep->first_lane + group * SK_LANES, batch->lane_count);
+        }
+        sk_tape_kernels_of[SK_ISA(sk_version)].run(tape, b.registers, &b.verdict);
+        for (size_t i = 0; i < count; i++)
+            SK_ISA(settle_group)(run, row, sweep, &b, i, first + i, packed[i], kind, damped);
+    }
+}
+
+static void SK_ISA(force_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_sweep *sweep = row->rule;
+    SK_ISA(walk)(run, row, begin, end, SK_ROW_FORCE, sk_batch_damping_time(sweep->batch) > 0);
+}
+static void SK_ISA(project_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    SK_ISA(walk)(run, row, begin, end, SK_ROW_PROJECT, false);
+}
+static void SK_ISA(project_damped_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    SK_ISA(walk)(run, row, begin, end, SK_ROW_PROJECT, true);
+}
+
+/* ---- implicit solves: elements, not groups ---- */
+
+/* Runs a tape on elements [begin, begin + count), at most sixteen; lanes past them repeat the last. */
+static void SK_ISA(run_elements)(SK_ISA(block) * b, const sk_batch *batch, const sk_tape *tape, const sk_vec4 *x,
+                                 size_t packed, size_t begin, size_t count) {
+    uint32_t slot[SK_MOST_ARITY][SK_LANES];
+    real rest[SKEIN_FORMULA_MOST_RESTS][SK_LANES];
+    for (size_t l = 0; l < SK_LANES; l++) {
+        size_t e = begin + (l < count ? l : count - 1);
+        for (size_t p = 0; p < batch->arity; p++) slot[p][l] = batch->slot[e * batch->arity + p];
+        for (size_t r = 0; r < batch->rest_count; r++) rest[r][l] = batch->rest[r * batch->count + e];
+    }
+    for (size_t p = 0; p < batch->arity; p++) b->x[0][p] = SK_ISA(gather)(x, packed, slot[p]);
+    for (size_t i = 0; i < tape->wides; i++) {
+        memcpy(b->x[i], b->x[0], sizeof b->x[0]);
+        SK_ISA(fill)(b, batch, tape, i, rest[0], SK_LANES);
+    }
+    sk_tape_kernels_of[SK_ISA(sk_version)].run(tape, b->registers, &b->verdict);
+}
+
+/* The matrix of sixteen elements: a lower triangle of 3 arity rows, positive definite. */
+typedef struct SK_ISA(matrix) {
+    sk_wide entry[3 * SK_MOST_ARITY * (3 * SK_MOST_ARITY + 1) / 2];
+} SK_ISA(matrix);
+#define ENTRY(m_, i_, j_) (m_)->entry[(i_) * ((i_) + 1) / 2 + (j_)]
+
+/* A constraint's k grad C grad C^T. */
+static void SK_ISA(square_gradient)(SK_ISA(matrix) * m, const SK_ISA(answer) * a, size_t arity) {
+    sk_wide g[3 * SK_MOST_ARITY];
+    for (size_t p = 0; p < arity; p++) {
+        g[3 * p] = SK_ISA(sk_keep)(a->active, a->gradient[p].x);
+        g[3 * p + 1] = SK_ISA(sk_keep)(a->active, a->gradient[p].y);
+        g[3 * p + 2] = SK_ISA(sk_keep)(a->active, a->gradient[p].z);
+    }
+    for (size_t i = 0; i < 3 * arity; i++)
+        for (size_t j = 0; j <= i; j++) ENTRY(m, i, j) = g[i] * g[j];
+}
+
+/* The nearest that Gill's and Murray's factorisation comes to a symmetric matrix with one that is positive definite:
+ * pivots that are too small for their columns are raised, and what they were raised by is added to the diagonal. */
+static void SK_ISA(make_definite)(SK_ISA(matrix) * m, size_t size) {
+    SK_ISA(matrix) l = *m;
+    sk_wide largest = {0}, off = {0}, raised[3 * SK_MOST_ARITY];
+    for (size_t i = 0; i < size; i++)
+        for (size_t j = 0; j <= i; j++) {
+            sk_wide a = SK_ISA(sk_wide_abs)(ENTRY(m, i, j)), *most = i == j ? &largest : &off;
+            *most = SK_ISA(sk_select)(SK_ISA(sk_more)(a, *most), a, *most);
+        }
+    sk_wide bound = SK_ISA(sk_select)(SK_ISA(sk_more)(off, (real)size * largest), off / (real)size, largest);
+    sk_wide least = largest * (real)(sizeof(real) == 8 ? 1e-12 : 1e-5);
+    for (size_t j = 0; j < size; j++) {
+        sk_wide pivot = ENTRY(&l, j, j), column = {0};
+        for (size_t i = j + 1; i < size; i++) {
+            sk_wide a = SK_ISA(sk_wide_abs)(ENTRY(&l, i, j));
+            column = SK_ISA(sk_select)(SK_ISA(sk_more)(a, column), a, column);
+        }
+        sk_wide needed = SK_ISA(sk_keep)(SK_ISA(sk_positive)(bound), column * column / bound), d = pivot;
+        d = SK_ISA(sk_select)(SK_ISA(sk_more)(needed, d), needed, d);
+        d = SK_ISA(sk_select)(SK_ISA(sk_more)(least, d), least, d);
+        raised[j] = d - pivot;
+        sk_wide inverse = SK_ISA(sk_keep)(SK_ISA(sk_positive)(d), 1 / d);
+        for (size_t i = j + 1; i < size; i++) {
+            sk_wide factor = ENTRY(&l, i, j) * inverse;
+            for (size_t k = j + 1; k <= i; k++) ENTRY(&l, i, k) -= factor * ENTRY(&l, k, j);
+        }
+    }
+    for (size_t j = 0; j < size; j++) ENTRY(m, j, j) += raised[j];
+}
+
+/* The stiffness over k of sixteen elements, elastic and both with damping. */
+static void SK_ISA(stiffness)(SK_ISA(block) * b, SK_ISA(matrix) * m, const sk_batch *batch, const sk_run *run,
+                              const sk_row *row, size_t begin, size_t count) {
+    const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
+    const sk_tape *tape = made->is_energy ? &made->hessian : &made->tape;
+    SK_ISA(begin)(b, batch, tape, run->time - row->before);
+    SK_ISA(run_elements)(b, batch, tape, run->vector[SK_X], row->packed, begin, count);
+    if (made->is_energy) {
+        for (size_t k = 0; k < tape->outputs; k++)
+            m->entry[k] = SK_ISA(sk_keep)(b->verdict.finite[0], b->registers[tape->output[k] * tape->wides]);
+        SK_ISA(make_definite)(m, 3 * batch->arity);
+    } else {
+        SK_ISA(answer) a;
+        SK_ISA(take_answer)(&a, b, made, batch->arity, 0);
+        SK_ISA(square_gradient)(m, &a, batch->arity);
+    }
+    const sk_material *material = batch->params;
+    real both =
+        (real)(material->stiffness * (row->coefficient[0] + row->coefficient[1] * sk_batch_damping_time(batch)));
+    for (size_t k = 0; k < 3 * batch->arity * (3 * batch->arity + 1) / 2; k++) m->entry[k] *= both;
+}
+
+static void SK_ISA(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_batch *batch = row->rule;
+    const sk_vec4 *q = run->vector[row->source[1]];
+    size_t size = 3 * batch->arity;
+    SK_ISA(block) b;
+    SK_ISA(matrix) m;
+    for (size_t at = begin; at < end; at += SK_LANES) {
+        size_t count = end - at < SK_LANES ? end - at : SK_LANES;
+        sk_wide u[3 * SK_MOST_ARITY] = {{0}}, f[3 * SK_MOST_ARITY];
+        SK_ISA(stiffness)(&b, &m, batch, run, row, at, count);
+        for (size_t l = 0; l < count; l++)
+            for (size_t p = 0; p < batch->arity; p++) {
+                sk_vec4 v = sk_load(q, row->packed, batch->slot[(at + l) * batch->arity + p]);
+                u[3 * p][l] = v.x, u[3 * p + 1][l] = v.y, u[3 * p + 2][l] = v.z;
+            }
+        for (size_t i = 0; i < size; i++) {
+            f[i] = (sk_wide){0};
+            for (size_t j = 0; j < size; j++) f[i] += (j <= i ? ENTRY(&m, i, j) : ENTRY(&m, j, i)) * u[j];
+        }
+        for (size_t l = 0; l < count; l++)
+            for (size_t p = 0; p < batch->arity; p++)
+                sk_add_at(run->vector[row->dst], row->packed, batch->slot[(at + l) * batch->arity + p],
+                          sk_v3(f[3 * p][l], f[3 * p + 1][l], f[3 * p + 2][l]));
+    }
+}
+
+static void SK_ISA(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_batch *batch = row->rule;
+    SK_ISA(block) b;
+    SK_ISA(matrix) m;
+    for (size_t at = begin; at < end; at += SK_LANES) {
+        size_t count = end - at < SK_LANES ? end - at : SK_LANES;
+        SK_ISA(stiffness)(&b, &m, batch, run, row, at, count);
+        for (size_t l = 0; l < count; l++)
+            for (size_t p = 0; p < batch->arity; p++) {
+                uint32_t slot = batch->slot[(at + l) * batch->arity + p];
+                size_t i = 3 * p;
+                sk_add_at(run->vector[row->dst], row->packed, slot,
+                          sk_v3(ENTRY(&m, i, i)[l], ENTRY(&m, i + 1, i + 1)[l], ENTRY(&m, i + 2, i + 2)[l]));
+                sk_add_at(run->vector[row->source[1]], row->packed, slot,
+                          sk_v3(ENTRY(&m, i + 1, i)[l], ENTRY(&m, i + 2, i)[l], ENTRY(&m, i + 2, i + 1)[l]));
+            }
+    }
+}
+#undef ENTRY
+
+/* ---- measuring ---- */
+
+static size_t SK_ISA(energy)(const sk_batch *batch, double time, const sk_vec4 *x, size_t begin, size_t end,
+                             double *energy) {
+    const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
+    size_t guarded = 0;
+    SK_ISA(block) b;
+    SK_ISA(begin)(&b, batch, &made->tape, time);
+    for (size_t at = begin; at < end; at += SK_LANES) {
+        size_t count = end - at < SK_LANES ? end - at : SK_LANES;
+        SK_ISA(answer) a;
+        SK_ISA(run_elements)(&b, batch, &made->tape, x, 0, at, count);
+        SK_ISA(take_answer)(&a, &b, made, batch->arity, 0);
+        sk_mask odd = b.verdict.guarded[0] | ~b.verdict.finite[0];
+        for (size_t l = 0; l < count; l++) {
+            double c = (double)a.value[l];
+            energy[at - begin + l] = !a.active[l] ? 0 : made->is_energy ? c : 0.5 * c * c;
+            guarded += odd[l] != 0;
+        }
+    }
+    return guarded;
+}
+
+#else
+#include "constraints/formula.h"
+
+#define SK_KERNELS "constraints/formula.c"
+#include "base/for_each_isa.h"
+
+static const skein_field constraint_fields[] = {
+    SK_TEXT(sk_formula_params, text, "constraint", "length(p0 - p1) - rest(length(p0 - p1))",
+            "a formula of p0 to p7 and t that wants to be 0, or `a >= b`; rest(...) is taken when it is made"),
+    SK_REAL(sk_formula_params, material.stiffness, "stiffness", "J", 1e4, 0, SK_UNBOUNDED,
+            "twice the energy where the formula is 1; \"infinite\" is rigid (position methods only)"),
+    SK_REAL(sk_formula_params, material.damping, "damping", "J s", 0, 0, SK_FAR,
+            "against the formula's change in time, as stiffness is against its value"),
+    SK_PARAMETERS(sk_formula_params, parameter, "a number that the formula names: { \"L\": 0.5 }, say"),
+};
+
+static const skein_field energy_fields[] = {
+    SK_TEXT(sk_formula_params, text, "energy", "0.5 * (length(p0 - p1) - rest(length(p0 - p1)))^2",
+            "a formula of p0 to p7 and t, in joules; position methods need it to be 0 at the least"),
+    SK_REAL(sk_formula_params, material.stiffness, "scale", "", 1, 0, SK_FAR, "a factor of the energy"),
+    SK_PARAMETERS(sk_formula_params, parameter, "a number that the formula names: { \"k\": 100 }, say"),
+};
+
+/* Every version gives the same bits; the first is on every machine. */
+static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_t begin, size_t end, double *out) {
+    static size_t (*const versions[])(const sk_batch *, double, const sk_vec4 *, size_t, size_t, double *) =
+        SK_EACH_ISA(energy);
+    return versions[0](batch, time, x, begin, end, out);
+}
+
+/* What both kinds have in common. */
+#define ON_A_TAPE                                                                                                    \
+    .arity_of = sk_formula_arity_of, .rest_count_of = sk_formula_rest_count_of, .rest = sk_formula_rest,             \
+    .in_blocks = true, .force.groups = {SK_EACH_ISA(force_groups)}, .project.groups = {SK_EACH_ISA(project_groups)}, \
+    .project_damped.groups = {SK_EACH_ISA(project_damped_groups)}, .apply = {SK_EACH_ISA(apply)},                    \
+    .diagonal = {SK_EACH_ISA(diagonal)}, .energy = energy
+
+const sk_constraint_type sk_formula_constraint = {
+    .kind = {"formula", "any function of up to eight particles that wants to be 0, or at least 0", SKEIN_CONSTRAINT,
+             constraint_fields, sizeof constraint_fields / sizeof *constraint_fields, sizeof(sk_formula_params)},
+    ON_A_TAPE,
+    .making = &sk_formula_making,
+};
+
+const sk_constraint_type sk_energy = {
+    .kind = {"energy", "any energy of up to eight particles", SKEIN_CONSTRAINT, energy_fields,
+             sizeof energy_fields / sizeof *energy_fields, sizeof(sk_formula_params)},
+    ON_A_TAPE,
+    .making = &sk_energy_making,
+};
+#endif

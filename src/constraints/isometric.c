@@ -1,0 +1,47 @@
+/* Isometric bending (Bergou and others 2006): the length of the edge p0 p1's share of the sheet's mean curvature, which
+ * is linear in the positions as long as the triangles p0 p1 p2 and p1 p0 p3 keep their shape. Its stiffness is the
+ * sheet's bending rigidity; it wants to be flat, whatever it was at rest. Cheaper than an angle, and never at a loss
+ * for one. */
+#ifdef SK_ISA
+
+#include "constraints/element_arithmetic.h"
+#include "constraints/element_stiffness.h"
+#include "constraints/element_sweeps.h"
+
+#else
+#define SK_ARITY 4
+#define SK_RESTS 3
+#define SK_FORMULA "constraints/emitted/isometric.h"
+#define SK_WITH_STRIPS
+#include "constraints/element.h"
+
+#define SK_KERNELS "constraints/isometric.c"
+#include "base/for_each_isa.h"
+
+typedef struct isometric_params {
+    sk_material material;
+} isometric_params;
+
+static const skein_field fields[] = {
+    SK_REAL(isometric_params, material.stiffness, "stiffness", "N m", 0.01, 0, SK_UNBOUNDED,
+            "the bending rigidity of a sheet; \"infinite\" is rigid (position methods only)"),
+    SK_REAL(isometric_params, material.damping, "damping", "N m s", 0, 0, SK_FAR,
+            "the same against bending's change in time"),
+};
+
+#include "constraints/element_scalar.h"
+
+const sk_constraint_type sk_isometric = {
+    .kind = {"isometric", "keeps two triangles flat over an edge: the edge's two ends, then the two corners beside it",
+             SKEIN_CONSTRAINT, fields, sizeof fields / sizeof *fields, sizeof(isometric_params)},
+    .arity = SK_ARITY,
+    .rest_count = SK_RESTS,
+    .rest = rest_of,
+    .force = {{SK_EACH_ISA(force_strips)}, {SK_EACH_ISA(force_groups)}},
+    .project = {{SK_EACH_ISA(project_strips)}, {SK_EACH_ISA(project_groups)}},
+    .project_damped = {{SK_EACH_ISA(project_damped_strips)}, {SK_EACH_ISA(project_damped_groups)}},
+    .apply = {SK_EACH_ISA(apply)},
+    .diagonal = {SK_EACH_ISA(diagonal)},
+    .energy = energy,
+};
+#endif

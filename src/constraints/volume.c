@@ -1,0 +1,44 @@
+/* Volume: of the tetrahedron p0 p1 p2 p3, less that at rest; positive where p3 lies to the side that
+ * cross(p1 - p0, p2 - p0) points to, so that one which is turned inside out finds its way back. */
+#ifdef SK_ISA
+
+#include "constraints/element_arithmetic.h"
+#include "constraints/element_stiffness.h"
+#include "constraints/element_sweeps.h"
+
+#else
+#define SK_ARITY 4
+#define SK_RESTS 1
+#define SK_FORMULA "constraints/emitted/volume.h"
+#include "constraints/element.h"
+
+#define SK_KERNELS "constraints/volume.c"
+#include "base/for_each_isa.h"
+
+typedef struct volume_params {
+    sk_material material;
+} volume_params;
+
+static const skein_field fields[] = {
+    SK_REAL(volume_params, material.stiffness, "stiffness", "Pa/m3", 1e9, 0, SK_UNBOUNDED,
+            "pressure a cubic metre of change; \"infinite\" is rigid (position methods only)"),
+    SK_REAL(volume_params, material.damping, "damping", "Pa s/m3", 0, 0, SK_FAR,
+            "the same against the volume's change in time"),
+};
+
+#include "constraints/element_scalar.h"
+
+const sk_constraint_type sk_volume = {
+    .kind = {"volume", "keeps the volume of a tetrahedron of particles", SKEIN_CONSTRAINT, fields,
+             sizeof fields / sizeof *fields, sizeof(volume_params)},
+    .arity = SK_ARITY,
+    .rest_count = SK_RESTS,
+    .rest = rest_of,
+    .force = {.groups = {SK_EACH_ISA(force_groups)}},
+    .project = {.groups = {SK_EACH_ISA(project_groups)}},
+    .project_damped = {.groups = {SK_EACH_ISA(project_damped_groups)}},
+    .apply = {SK_EACH_ISA(apply)},
+    .diagonal = {SK_EACH_ISA(diagonal)},
+    .energy = energy,
+};
+#endif

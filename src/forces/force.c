@@ -1,0 +1,6 @@
+#include "forces/force.h"
+
+bool sk_force_on_velocity(const sk_force *force) {
+    const sk_force_type *type = force->type;
+    return type->uses_velocity ? type->uses_velocity(force->params) : type->on_velocity;
+}

@@ -1,0 +1,14 @@
+/* In a library that was built without OpenGL: there is the processor, and nothing else. */
+#include "world/world.h"
+
+skein_status skein_world_device_set(skein_world *world, skein_device device) {
+    if (device == SKEIN_DEVICE_CPU) return SKEIN_OK;
+    return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "device",
+                   "this build cannot run on graphics cards: build it with -DSKEIN_GPU=ON, which needs libepoxy "
+                   "(Debian: libepoxy-dev, libegl-dev)");
+}
+
+skein_device_info skein_world_device(const skein_world *world) {
+    (void)world;
+    return (skein_device_info){.device = SKEIN_DEVICE_CPU, .name = "processor"};
+}

@@ -1,0 +1,274 @@
+#include "gpu/rows.h"
+
+#include <stdio.h>
+
+#define BIT(vector) (1u << (vector))
+
+const char *sk_gpu_vector_name(sk_vector vector) {
+    static const char *const names[SK_VECTOR_COUNT] = {"none", "X",  "V",  "F",  "X0", "V0", "P",  "T0",  "T1",  "T2",
+                                                       "T3",   "T4", "T5", "T6", "T7", "T8", "T9", "T10", "T11", "S"};
+    return names[vector];
+}
+
+static bool is_contact(const sk_row *row) {
+    return row->kind >= SK_ROW_CONTACT_FORCE && row->kind <= SK_ROW_CONTACT_SETTLE;
+}
+
+static bool is_fall(const sk_row *row) {
+    return sk_row_is(row, &sk_combine_fall) || sk_row_is(row, &sk_combine_fall_on);
+}
+
+/* Fields, neighbours, and bounds on velocities: limits on positions are of another sort. */
+static const sk_force *force_of(const sk_row *row) {
+    bool is_force =
+        row->kind == SK_ROW_FIELD || row->kind == SK_ROW_NEIGHBOUR || (row->kind == SK_ROW_LIMIT && row->dst == SK_V);
+    return is_force ? row->rule : NULL;
+}
+
+static const sk_shader *shader_of(const sk_row *row) {
+    if (force_of(row)) return &force_of(row)->type->shader;
+    if (is_contact(row)) return &((const sk_collider *)row->rule)->type->shader;
+    return NULL;
+}
+
+static bool is_combine(const sk_row *row) {
+    static const sk_kernels *const known[] = {&sk_combine_sum,     &sk_combine_correction, &sk_combine_kick,
+                                              &sk_combine_predict, &sk_combine_fall,       &sk_combine_fall_on,
+                                              &sk_combine_wipe,    &sk_combine_steer};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (sk_row_is(row, known[i])) return true;
+    return false;
+}
+
+bool sk_gpu_row_can(const sk_row *row, const char **why) {
+    const sk_shader *shader = shader_of(row);
+    const void *params = force_of(row)     ? force_of(row)->params
+                         : is_contact(row) ? ((const sk_collider *)row->rule)->params
+                                           : NULL;
+    if (shader && shader->file && shader->refuse && (*why = shader->refuse(params))) return false;
+    switch (row->kind) {
+    case SK_ROW_GRID: return true;
+    case SK_ROW_REPEAT: return !row->cell;
+    case SK_ROW_COMBINE: return is_combine(row);
+    case SK_ROW_FIELD:
+    case SK_ROW_NEIGHBOUR:
+    case SK_ROW_LIMIT:
+    case SK_ROW_CONTACT_FORCE:
+    case SK_ROW_CONTACT_VELOCITY:
+    case SK_ROW_CONTACT_SETTLE: return shader && shader->file;
+    case SK_ROW_CONTACT_POSITION: return shader->file && row->source[1] == SK_NONE;
+    default: return false;
+    }
+}
+
+bool sk_gpu_row_everyone(const sk_row *row, size_t particle_count) {
+    const sk_force *force = force_of(row);
+    if (force->type->deed == SK_PUSHES) return true;
+    return force->moved.first == 0 && force->moved.end == particle_count && force->seen.first == 0 &&
+           force->seen.end == particle_count;
+}
+
+bool sk_gpu_row_knows_no_slots(const sk_row *row, size_t particle_count) {
+    const sk_force *force = force_of(row);
+    if (row->kind == SK_ROW_GRID) return row->begin == 0; // the rows of one sort have the same end, or fewer places
+    return !force || force->type->deed == SK_PUSHES || sk_gpu_row_everyone(row, particle_count);
+}
+
+/* ---- vectors ---- */
+
+static sk_gpu_use use_of_combine(const sk_row *row) {
+    sk_gpu_use use = {0, BIT(row->dst)};
+    bool predicts = sk_row_is(row, &sk_combine_predict);
+    if (predicts || is_fall(row)) {
+        use.reads = BIT(SK_X) | BIT(SK_V) | (predicts ? BIT(SK_F) : 0);
+        use.writes = BIT(SK_X) | BIT(SK_V) | BIT(SK_X0) | (row->source[2] == SK_V0 ? BIT(SK_V0) : 0);
+        if (sk_row_is(row, &sk_combine_fall_on)) use.reads |= BIT(SK_X0); // in the last turn it stays
+        return use;
+    }
+    for (int i = 0; i < 3; i++) use.reads |= BIT(row->source[i]);
+    if (sk_row_is(row, &sk_combine_kick) || sk_row_is(row, &sk_combine_steer)) use.reads |= BIT(SK_X);
+    if (sk_row_is(row, &sk_combine_correction)) use.reads |= BIT(row->dst);
+    return use;
+}
+
+sk_gpu_use sk_gpu_row_use(const sk_row *row) {
+    sk_gpu_use use = {0, 0};
+    switch (row->kind) {
+    case SK_ROW_COMBINE: use = use_of_combine(row); break;
+    case SK_ROW_GRID: use.reads = BIT(SK_X) | BIT(SK_V); break;
+    case SK_ROW_FIELD:
+    case SK_ROW_NEIGHBOUR:
+        use.reads = BIT(SK_X) | BIT(SK_V) | (row->sets ? 0 : BIT(row->dst));
+        use.writes = BIT(row->dst);
+        break;
+    case SK_ROW_LIMIT:
+        use.reads = BIT(SK_V) | BIT(row->source[2]);
+        use.writes = BIT(SK_V);
+        break;
+    case SK_ROW_CONTACT_FORCE: use = (sk_gpu_use){BIT(SK_X) | BIT(SK_V) | BIT(SK_F), BIT(SK_F)}; break;
+    case SK_ROW_CONTACT_VELOCITY: use = (sk_gpu_use){BIT(SK_X) | BIT(SK_V), BIT(SK_V)}; break;
+    case SK_ROW_CONTACT_POSITION: use = (sk_gpu_use){BIT(SK_X), BIT(SK_X)}; break;
+    case SK_ROW_CONTACT_SETTLE:
+        use = (sk_gpu_use){BIT(SK_X) | BIT(SK_V) | BIT(row->source[1]) | BIT(row->source[2]), BIT(SK_X) | BIT(SK_V)};
+        if (sk_contact_reads_force(row->rule)) use.reads |= BIT(SK_F);
+        break;
+    default: break;
+    }
+    use.reads &= ~BIT(SK_NONE);
+    // the w of a state vector stays, whoever writes the rest
+    use.reads |= use.writes & (BIT(SK_X) | BIT(SK_V));
+    return use;
+}
+
+/* ---- the block ---- */
+
+static size_t rule_size(const sk_row *row) {
+    const sk_shader *shader = shader_of(row);
+    return shader ? shader->size : row->kind == SK_ROW_COMBINE && is_fall(row) ? 3 : 0;
+}
+
+size_t sk_gpu_row_size(const sk_row *row) {
+    return SK_GPU_ROW + (is_contact(row) ? (size_t)SK_GPU_POSE : 0) + rule_size(row);
+}
+
+static void pack_pose(const sk_collider *collider, double time, float (*block)[4]) {
+    sk_pose pose = sk_collider_pose_at(collider, time);
+    const sk_vec3 three[4] = {pose.position, pose.velocity, pose.spin, pose.axis};
+    const double one[4] = {collider->common->thickness, collider->common->friction, collider->common->restitution,
+                           sk_collider_mass(collider)};
+    for (int i = 0; i < 4; i++) {
+        block[i][0] = (float)three[i].x, block[i][1] = (float)three[i].y, block[i][2] = (float)three[i].z;
+        block[i][3] = (float)one[i];
+    }
+    for (int i = 0; i < 9; i++) block[4 + i / 3][i % 3] = (float)pose.rotation[i];
+}
+
+void sk_gpu_row_pack(const sk_row *row, double time, float (*block)[4]) {
+    for (int k = 0; k < 3; k++) block[0][k] = (float)row->coefficient[k];
+    block[0][3] = (float)row->dt;
+    if (row->kind == SK_ROW_NEIGHBOUR) {
+        const sk_force *force = row->rule;
+        block[1][0] = (float)force->type->radius(force->params);
+    }
+    if (row->kind == SK_ROW_CONTACT_SETTLE) block[1][0] = sk_contact_reads_force(row->rule);
+    block += SK_GPU_ROW;
+    const sk_shader *shader = shader_of(row);
+    if (is_contact(row)) {
+        const sk_collider *collider = row->rule;
+        pack_pose(collider, time - row->before, block);
+        if (shader->pack) shader->pack(collider->params, block + SK_GPU_POSE);
+    } else if (shader) {
+        if (shader->pack) shader->pack(((const sk_force *)row->rule)->params, block);
+    } else if (rule_size(row)) {
+        const sk_plain_force *plain = row->rule;
+        sk_shader_vector(block[0], plain->acceleration);
+        sk_shader_vector(block[1], plain->force);
+        block[2][0] = (float)plain->linear, block[2][1] = (float)plain->rate;
+    }
+}
+
+bool sk_gpu_row_moves(const sk_row *row) {
+    if (!is_contact(row)) return false;
+    const sk_collider_common *common = ((const sk_collider *)row->rule)->common;
+    const double *v = common->velocity;
+    return v[0] != 0 || v[1] != 0 || v[2] != 0 || common->spin != 0;
+}
+
+/* ---- texts ---- */
+
+void sk_gpu_put_members(sk_gpu_text *text, const sk_row *row, size_t number) {
+    sk_gpu_put(text, "    vec4 row%zu[%d];\n", number, SK_GPU_ROW);
+    if (is_contact(row)) sk_gpu_put(text, "    vec4 pose%zu[%d];\n", number, SK_GPU_POSE);
+    if (rule_size(row)) sk_gpu_put(text, "    vec4 rule%zu[%zu];\n", number, rule_size(row));
+}
+
+void sk_gpu_put_functions(sk_gpu_text *text, const sk_row *row, size_t number) {
+    if (row->kind == SK_ROW_COMBINE && is_fall(row)) sk_gpu_put_file(text, "gpu/pull", number);
+    if (is_contact(row)) sk_gpu_put_file(text, "colliders/pose", number);
+    if (shader_of(row)) sk_gpu_put_file(text, shader_of(row)->file, number);
+    if (is_contact(row)) sk_gpu_put_file(text, "colliders/contact", number);
+    if (row->kind == SK_ROW_NEIGHBOUR) sk_gpu_put_file(text, "gpu/walk", number);
+}
+
+/* V = v, V0 = V, X0 = X, X += h V; or, where only the correction will ask, X0 = X + h V. */
+static void put_set_out(sk_gpu_text *text, const sk_row *row, size_t n) {
+    if (row->source[2] == SK_V0) sk_gpu_put(text, "    V0.xyz = V.xyz;\n");
+    if (row->source[2] != SK_X) sk_gpu_put(text, "    X0.xyz = X.xyz;\n");
+    sk_gpu_put(text, "    X.xyz = X.xyz + row%zu[0].w * V.xyz;\n", n);
+    if (row->source[2] == SK_X) sk_gpu_put(text, "    X0.xyz = X.xyz;\n");
+}
+
+static void put_combine(sk_gpu_text *text, const sk_row *row, size_t n) {
+    const char *dst = sk_gpu_vector_name(row->dst), *p = sk_gpu_vector_name(row->source[0]),
+               *q = sk_gpu_vector_name(row->source[1]), *r = sk_gpu_vector_name(row->source[2]);
+    if (sk_row_is(row, &sk_combine_predict)) {
+        sk_gpu_put(text, "    V.xyz = V.xyz + row%zu[0].w * X.w * F.xyz;\n", n);
+        put_set_out(text, row, n);
+    } else if (sk_row_is(row, &sk_combine_fall)) {
+        sk_gpu_put(text, "    V.xyz = pulled%zu(X.w, V.xyz);\n", n);
+        put_set_out(text, row, n);
+    } else if (sk_row_is(row, &sk_combine_fall_on)) {
+        sk_gpu_put(text, "    V.xyz = V.xyz + row%zu[0].x * (X.xyz - X0.xyz);\n    if (!last_turn) {\n", n);
+        sk_gpu_put(text, "    V.xyz = pulled%zu(X.w, V.xyz);\n", n);
+        put_set_out(text, row, n);
+        sk_gpu_put(text, "    }\n");
+    } else if (sk_row_is(row, &sk_combine_kick)) {
+        sk_gpu_put(text, "    %s.xyz = %s.xyz + row%zu[0].x * X.w * %s.xyz;\n", dst, p, n, q);
+    } else if (sk_row_is(row, &sk_combine_wipe)) {
+        sk_gpu_put(text, "    %s = vec4(0);\n", dst);
+    } else if (sk_row_is(row, &sk_combine_steer)) {
+        sk_gpu_put(text, "    if (X.w > 0) %s.xyz += %s.xyz;\n", dst, q);
+    } else if (sk_row_is(row, &sk_combine_correction)) {
+        // the same operations as predicted p, so that an untouched p corrects nothing
+        if (row->coefficient[1] == 0)
+            sk_gpu_put(text, "    %s.xyz = %s.xyz + row%zu[0].x * (%s.xyz - %s.xyz);\n", dst, dst, n, p, q);
+        else
+            sk_gpu_put(text, "    %s.xyz = %s.xyz + row%zu[0].x * (%s.xyz - (%s.xyz + row%zu[0].y * %s.xyz));\n", dst,
+                       dst, n, p, q, n, dst);
+    } else { // a sum
+        sk_gpu_put(text, "    %s.xyz = ", dst);
+        if (row->source[0] == SK_NONE) sk_gpu_put(text, "vec3(0)");
+        else sk_gpu_put(text, "row%zu[0].x * %s.xyz", n, p);
+        if (row->source[1] != SK_NONE) sk_gpu_put(text, " + row%zu[0].y * %s.xyz", n, q);
+        if (row->source[2] != SK_NONE) sk_gpu_put(text, " + row%zu[0].z * %s.xyz", n, r);
+        sk_gpu_put(text, ";\n");
+    }
+}
+
+/* Only for the particles that the rule moves, where these are not all. */
+static void put_guard(sk_gpu_text *text, const sk_row *row, size_t particle_count) {
+    const sk_force *force = force_of(row);
+    if (force->type->deed == SK_PUSHES || row->kind == SK_ROW_NEIGHBOUR) return;
+    if (force->moved.first == 0 && force->moved.end == particle_count) return;
+    sk_gpu_put(text, "    if (first_slot + slot >= %zuu && first_slot + slot < %zuu)\n", force->moved.first_slot,
+               force->moved.end_slot);
+}
+
+static void put_force(sk_gpu_text *text, const sk_row *row, size_t n, size_t particle_count) {
+    const char *dst = sk_gpu_vector_name(row->dst);
+    put_guard(text, row, particle_count);
+    if (row->kind == SK_ROW_NEIGHBOUR) sk_gpu_put(text, "    %s.xyz += walk%zu(place, X.xyz);\n", dst, n);
+    else if (row->kind == SK_ROW_LIMIT)
+        sk_gpu_put(text, "    V.xyz = bound%zu(V.xyz, %s);\n", n, row->source[2] == SK_NONE ? "0" : "S.w");
+    else if (force_of(row)->type->deed == SK_STEERS)
+        sk_gpu_put(text, "    %s += steer%zu(X.xyz, row%zu[0].w);\n", dst, n, n);
+    else sk_gpu_put(text, "    %s.xyz %s force%zu(X.xyz, V.xyz, V.w);\n", dst, row->sets ? "=" : "+=", n);
+}
+
+void sk_gpu_put_statements(sk_gpu_text *text, const sk_row *row, size_t n, size_t particle_count) {
+    switch (row->kind) {
+    case SK_ROW_COMBINE: put_combine(text, row, n); break;
+    case SK_ROW_FIELD:
+    case SK_ROW_NEIGHBOUR:
+    case SK_ROW_LIMIT: put_force(text, row, n, particle_count); break;
+    case SK_ROW_CONTACT_FORCE: sk_gpu_put(text, "    contact_force%zu(X, V, F);\n", n); break;
+    case SK_ROW_CONTACT_VELOCITY: sk_gpu_put(text, "    contact_impulse%zu(X, V);\n", n); break;
+    case SK_ROW_CONTACT_POSITION: sk_gpu_put(text, "    contact_push%zu(X);\n", n); break;
+    case SK_ROW_CONTACT_SETTLE:
+        sk_gpu_put(text, "    contact_settle%zu(X, V, %s, %s, %s);\n", n,
+                   sk_contact_reads_force(row->rule) ? "F" : "vec4(0)", sk_gpu_vector_name(row->source[1]),
+                   sk_gpu_vector_name(row->source[2]));
+        break;
+    default: break;
+    }
+}

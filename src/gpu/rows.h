@@ -1,0 +1,32 @@
+/* What single rows are on a card: which vectors they read and write, their text, their part of the block.
+ * Called by compose.c. */
+#ifndef SK_GPU_ROWS_H
+#define SK_GPU_ROWS_H
+
+#include "gpu/compose.h"
+
+/* Bit v: vector v. `reads` are those whose value before the row matters. */
+typedef struct sk_gpu_use {
+    uint32_t reads, writes;
+} sk_gpu_use;
+
+/* Whether there is a text for it, and it can run as it is set now; else `why` not, where there is more to say. */
+bool sk_gpu_row_can(const sk_row *row, const char **why);
+/* Whether a row over neighbours moves all particles, and they look at all. */
+bool sk_gpu_row_everyone(const sk_row *row, size_t particle_count);
+/* Whether it is the same for every slot. */
+bool sk_gpu_row_knows_no_slots(const sk_row *row, size_t particle_count);
+sk_gpu_use sk_gpu_row_use(const sk_row *row);
+/* The size of its part of the block, in vectors. */
+size_t sk_gpu_row_size(const sk_row *row);
+void sk_gpu_row_pack(const sk_row *row, double time, float (*block)[4]);
+/* Whether it is another at another time: a moving collider's. */
+bool sk_gpu_row_moves(const sk_row *row);
+
+/* Its members of the block; what stands before main; what stands in main. `number` is its place in the shader. */
+void sk_gpu_put_members(sk_gpu_text *text, const sk_row *row, size_t number);
+void sk_gpu_put_functions(sk_gpu_text *text, const sk_row *row, size_t number);
+void sk_gpu_put_statements(sk_gpu_text *text, const sk_row *row, size_t number, size_t particle_count);
+const char *sk_gpu_vector_name(sk_vector vector);
+
+#endif

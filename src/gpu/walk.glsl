@@ -1,0 +1,54 @@
+// All neighbours of the particle at p, which is at a place of the grid. Two phases for each 32 of a row of cells: distances become a mask of
+// hits, then the hits are met one by one, so that invocations side by side part as little as can be.
+vec3 walk@(uint place, vec3 p) {
+    sum@ sum = start@();
+#if BY_PLACE
+    if (place >= cell[cell_count]) return finish@(sum, row@[0].w); // it is nowhere
+#else
+    if (!(dot(p, p) <= 1e38)) return finish@(sum, row@[0].w); // it is nowhere
+    place = 0xffffffffu;                                      // and not among those that it looks at
+#endif
+    vec3 origin = vec3(origin_x, origin_y, origin_z);
+    float reach = row@[1].x, square = reach * reach, top = float(cells_x);
+    float slack = 1e-6 * max(max(abs(p.x), abs(p.y)), abs(p.z)) + 1e-5 * reach;
+    int cy = clamped((p.y - origin.y) * per_size, cells_y), cz = clamped((p.z - origin.z) * per_size, cells_z);
+    for (int z = max(cz - 1, 0); z <= min(cz + 1, cells_z - 1); z++) {
+        // how far the row of cells is off at least
+        float off_z = z == cz ? 0 : z < cz ? p.z - (origin.z + float(cz) * size) : origin.z + float(z) * size - p.z;
+        off_z = max(off_z - slack, 0.0);
+        for (int y = max(cy - 1, 0); y <= min(cy + 1, cells_y - 1); y++) {
+            float off_y = y == cy ? 0 : y < cy ? p.y - (origin.y + float(cy) * size) : origin.y + float(y) * size - p.y;
+            off_y = max(off_y - slack, 0.0);
+            float rest = square - off_z * off_z - off_y * off_y;
+            if (rest < 0) continue;
+            float half_width = sqrt(rest) + slack;
+            int line = (z * cells_y + y) * cells_x;
+            uint at = cell[line + clamped((p.x - half_width - origin.x) * per_size_x, cells_x)];
+            uint end = cell[line + clamped((p.x + half_width - origin.x) * per_size_x, cells_x) + 1];
+            while (at < end) {
+                uint first = at & ~3u, hits = 0u; // four at a time; those before and behind are cut off below
+                for (uint four = 0u; four < 32u && first + four < end; four += 4u) {
+                    int k = int(first + four);
+                    vec3 a = texelFetch(positions, k).xyz - p, b = texelFetch(positions, k + 1).xyz - p;
+                    vec3 c = texelFetch(positions, k + 2).xyz - p, d = texelFetch(positions, k + 3).xyz - p;
+                    uint some = uint(dot(a, a) < square) | uint(dot(b, b) < square) << 1 |
+                                uint(dot(c, c) < square) << 2 | uint(dot(d, d) < square) << 3;
+                    hits |= some << four;
+                }
+                hits &= 0xffffffffu << (at - first);
+                if (end - first < 32u) hits &= (1u << (end - first)) - 1u;
+                while (hits != 0u) {
+                    int bit = findLSB(hits);
+                    hits &= hits - 1u;
+                    uint other = first + uint(bit);
+                    if (other == place) continue;
+                    vec4 q = texelFetch(positions, int(other));
+                    vec3 apart = p - q.xyz;
+                    meet@(sum, apart, dot(apart, apart), unpacked(q.w));
+                }
+                at = first + 32u;
+            }
+        }
+    }
+    return finish@(sum, row@[0].w);
+}

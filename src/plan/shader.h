@@ -1,0 +1,27 @@
+/* What a rule is on a graphics card: GLSL beside its C file, and its parameters as the shader sees them.
+ *
+ * A type of rule that has one says so in its constant struct; gpu/ puts the texts of a row's rule and of its
+ * neighbours in the plan together to one compute shader. In the text, '@' stands for the row's number in that
+ * shader, so that rules of one kind do not meet: `rule@[k]` is the k-th vector of the rule's block. What a text
+ * must define is in the header of its floor (force.h, collider.h). */
+#ifndef SK_PLAN_SHADER_H
+#define SK_PLAN_SHADER_H
+
+#include <stddef.h>
+
+typedef struct sk_shader {
+    const char *file; /* "forces/gravity": src/forces/gravity.glsl; NULL: it cannot run on a card */
+    size_t size;      /* of its block, in vectors of four floats */
+    /* Fills the block, which is zero before. */
+    void (*pack)(const void *params, float (*block)[4]);
+    /* NULL if it can run on a card with these parameters, else why not, as the end of a sentence. Itself NULL: always.
+     */
+    const char *(*refuse)(const void *params);
+} sk_shader;
+
+/* Three numbers of a parameter struct, as the first three of a block's vector. */
+static inline void sk_shader_vector(float vector[4], const double v[3]) {
+    for (int k = 0; k < 3; k++) vector[k] = (float)v[k];
+}
+
+#endif

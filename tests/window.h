@@ -1,0 +1,363 @@
+/* A real window on a virtual screen, driven as a user would: Xvfb, xdotool, and what `skein view --events` tells.
+ *
+ *     open_screen()  Xvfb on a display of its own        open_window()  skein view on it
+ *     tool("key space")  xdotool                         expect("paused")  waits for a line of the events
+ *
+ * No window manager is needed: keys go to the window that has the focus, which is given to it by hand. */
+#ifndef SKEIN_TEST_WINDOW_H
+#define SKEIN_TEST_WINDOW_H
+
+#include "test_command.h"
+
+#include <X11/Xatom.h>
+#include <X11/Xlib.h>
+
+#include "render/image.h"
+
+static struct {
+    pid_t xvfb, skein;
+    char display[16], window[32];
+    char events[512];
+    long seen; /* of the events, bytes */
+    char line[2048];
+} screen;
+
+/* After the first failure nothing is worth waiting for. */
+static double patience_seconds = 60;
+
+static inline void lose_patience(void) {
+    patience_seconds = 0.5;
+    fail();
+}
+
+static inline double seconds_now(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static inline void pause_for(double seconds) {
+    struct timespec span = {(time_t)seconds, (long)(1e9 * (seconds - (double)(time_t)seconds))};
+    nanosleep(&span, NULL);
+}
+
+static inline bool have(const char *program) {
+    char line[128];
+    snprintf(line, sizeof line, "command -v %s >/dev/null 2>&1", program);
+    return system(line) == 0;
+}
+
+/* Whether there is a screen to test on; says why not. */
+static inline bool can_open_screen(void) {
+    if (have("Xvfb") && have("xdotool")) return true;
+    fprintf(stderr, "skipped: Xvfb or xdotool is missing, `tools/setup test` installs them\n");
+    return false;
+}
+
+static inline void open_screen(void) {
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    screen.xvfb = fork();
+    assert_true(screen.xvfb >= 0);
+    if (screen.xvfb == 0) {
+        char descriptor[16];
+        int quiet = open("/dev/null", O_RDWR);
+        close(ends[0]);
+        dup2(quiet, 1);
+        dup2(quiet, 2);
+        snprintf(descriptor, sizeof descriptor, "%d", ends[1]);
+        execlp("Xvfb", "Xvfb", "-displayfd", descriptor, "-screen", "0", "1024x768x24", "-nolisten", "tcp",
+               (char *)NULL);
+        _exit(127);
+    }
+    close(ends[1]);
+    char number[16] = "";
+    // a number and a newline, when the server is ready; nothing, when it is dead
+    for (size_t length = 0; length + 1 < sizeof number && read(ends[0], number + length, 1) == 1;)
+        if (number[length++] == '\n') break;
+    close(ends[0]);
+    assert_non_null(strchr(number, '\n'));
+    snprintf(screen.display, sizeof screen.display, ":%d", atoi(number));
+    setenv("DISPLAY", screen.display, 1);
+    unsetenv("WAYLAND_DISPLAY");
+}
+
+static inline void end_process(pid_t *process, int number) {
+    if (*process > 0) {
+        kill(*process, number);
+        waitpid(*process, NULL, 0);
+    }
+    *process = 0;
+}
+
+/* xdotool with these words; "WINDOW" stands for the window. */
+static inline void tool(const char *words) {
+    char line[1024];
+    snprintf(line, sizeof line, "xdotool %s", words);
+    if (system(line)) {
+        fprintf(stderr, "failed: %s\n", line);
+        lose_patience();
+    }
+}
+
+/* ---- What the window tells ------------------------------------------------------------------------ */
+
+/* The next line, from where the last search ended, that begins with `begin`; false after `seconds`. */
+static inline bool hear(const char *begin, double seconds) {
+    double until = seconds_now() + seconds;
+    do {
+        FILE *file = fopen(screen.events, "r");
+        if (file) {
+            fseek(file, screen.seen, SEEK_SET);
+            while (fgets(screen.line, sizeof screen.line, file)) {
+                size_t length = strlen(screen.line);
+                if (!length || screen.line[length - 1] != '\n') break; // it is not whole yet
+                screen.seen += (long)length;
+                screen.line[length - 1] = 0;
+                if (!strncmp(screen.line, begin, strlen(begin))) {
+                    fclose(file);
+                    return true;
+                }
+            }
+            fclose(file);
+        }
+        pause_for(0.01);
+    } while (seconds_now() < until);
+    return false;
+}
+
+/* Forgets what was told so far. */
+static inline void listen_from_here(void) {
+    struct stat info;
+    if (!stat(screen.events, &info)) screen.seen = (long)info.st_size;
+}
+
+static inline const char *expect(const char *begin) {
+    long from = screen.seen;
+    if (hear(begin, patience_seconds)) return screen.line;
+    char *all = read_text(screen.events);
+    fprintf(stderr, "no line '%s' since:\n%s\n", begin, all + from);
+    free(all);
+    lose_patience();
+    return NULL;
+}
+
+/* The number after "name=" in the line that was heard last. */
+static inline double told(const char *name) {
+    char word[64];
+    snprintf(word, sizeof word, " %s=", name);
+    const char *at = strstr(screen.line, word);
+    assert_non_null(at);
+    return strtod(at + strlen(word), NULL);
+}
+
+/* Presses a key (xdotool's name) and returns the state after it. */
+static inline const char *press_key(const char *key) {
+    char words[64];
+    snprintf(words, sizeof words, "key %s", key);
+    listen_from_here();
+    tool(words);
+    expect("key ");
+    return expect("state ");
+}
+
+/* The middle of a control, by its last place; waits until there is one. */
+static inline void place_of(const char *name, double *x, double *y) {
+    double until = seconds_now() + patience_seconds;
+    *x = *y = 0;
+    do {
+        char *all = read_text(screen.events), *line = all;
+        bool found = false;
+        for (char *next; line && *line; line = next) {
+            double at[4];
+            int used = 0;
+            next = strchr(line, '\n');
+            if (next) *next++ = 0;
+            if (sscanf(line, "control %lf %lf %lf %lf %n", &at[0], &at[1], &at[2], &at[3], &used) < 4) continue;
+            if (strcmp(line + used, name) != 0) continue;
+            *x = at[0] + 0.5 * at[2];
+            *y = at[1] + 0.5 * at[3];
+            found = true;
+        }
+        free(all);
+        if (found) return;
+        pause_for(0.05);
+    } while (seconds_now() < until);
+    fprintf(stderr, "there is no control '%s'\n", name);
+    lose_patience();
+}
+
+/* ---- The window ------------------------------------------------------------------------------------ */
+
+/* Opens skein view in the temporary folder with arguments up to NULL, and waits until it shows something. */
+static inline void open_window(const char *const *arguments) {
+    const char *list[24];
+    size_t count = 0;
+    screen.seen = 0;
+    snprintf(screen.events, sizeof screen.events, "%s", in_folder("events"));
+    remove(screen.events);
+    for (; arguments[count] && count < 16; count++) list[count] = arguments[count];
+    list[count++] = "--events";
+    list[count++] = screen.events;
+    list[count] = NULL;
+    fflush(NULL);
+    screen.skein = fork();
+    assert_true(screen.skein >= 0);
+    if (screen.skein == 0) {
+        char *words[32] = {(char *)(uintptr_t)SKEIN_COMMAND, (char *)(uintptr_t) "view"};
+        int out = open(in_folder("words"), O_RDWR | O_CREAT | O_TRUNC, 0666);
+        for (size_t i = 0; i < count; i++) words[i + 2] = (char *)(uintptr_t)list[i];
+        alarm(300);
+        dup2(out, 1);
+        dup2(out, 2);
+        if (!chdir(folder)) execv(SKEIN_COMMAND, words);
+        _exit(127);
+    }
+    expect("open ");
+    // the focus, which a window manager would give
+    char line[256];
+    FILE *answer = popen("xdotool search --onlyvisible --name '^Skein'", "r");
+    assert_non_null(answer);
+    assert_non_null(fgets(screen.window, sizeof screen.window, answer));
+    pclose(answer);
+    screen.window[strcspn(screen.window, "\n")] = 0;
+    snprintf(line, sizeof line, "windowmove %s 0 0 windowfocus --sync %s", screen.window, screen.window);
+    tool(line);
+}
+
+/* Waits for the window's end; returns the exit status. */
+static inline int await_end(void) {
+    int status = -1;
+    double until = seconds_now() + patience_seconds;
+    pid_t ended = 0;
+    while (!ended && seconds_now() < until) {
+        ended = waitpid(screen.skein, &status, WNOHANG);
+        if (!ended) pause_for(0.02);
+    }
+    if (!ended) end_process(&screen.skein, SIGKILL);
+    screen.skein = 0;
+    if (ended && WIFEXITED(status) && WEXITSTATUS(status) == 0) return 0;
+    char *words = read_text(in_folder("words"));
+    fprintf(stderr, "%s\n", words);
+    free(words);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/* Drags from one place to another in some steps. */
+static inline void drag(double x, double y, double to_x, double to_y, int button) {
+    char words[512];
+    snprintf(
+        words, sizeof words,
+        "mousemove %.0f %.0f sleep 0.1 mousedown %d sleep 0.05 mousemove %.0f %.0f sleep 0.05 mousemove %.0f %.0f sleep 0.1 "
+        "mouseup %d",
+        x, y, button, 0.5 * (x + to_x), 0.5 * (y + to_y), to_x, to_y, button);
+    tool(words);
+}
+
+static inline void click(double x, double y) {
+    char words[128];
+    snprintf(words, sizeof words, "mousemove %.0f %.0f sleep 0.1 click 1", x, y);
+    tool(words);
+}
+
+/* ---- Other programs on the screen ------------------------------------------------------------------- */
+
+/* A second window, which takes the focus; or, asked again, gives it back. */
+static inline void focus_elsewhere(bool elsewhere) {
+    static Display *display;
+    static Window other;
+    if (!display) {
+        display = XOpenDisplay(screen.display);
+        assert_non_null(display);
+        other = XCreateSimpleWindow(display, DefaultRootWindow(display), 900, 700, 20, 20, 0, 0, 0);
+        XMapWindow(display, other);
+        XSync(display, False);
+        pause_for(0.1);
+    }
+    Window target = elsewhere ? other : (Window)strtoul(screen.window, NULL, 10);
+    XSetInputFocus(display, target, RevertToParent, CurrentTime);
+    XSync(display, False);
+}
+
+static inline void send_message(Display *display, Window from, Window to, const char *type, long a, long b, long c,
+                                long d) {
+    XEvent event = {.xclient = {.type = ClientMessage,
+                                .window = to,
+                                .message_type = XInternAtom(display, type, False),
+                                .format = 32,
+                                .data.l = {(long)from, a, b, c, d}}};
+    XSendEvent(display, to, False, NoEventMask, &event);
+    XFlush(display);
+}
+
+/* The window asks for what was dropped, and gets it. */
+static inline void hand_over(Display *display, const XSelectionRequestEvent *asked, const char *text) {
+    XChangeProperty(display, asked->requestor, asked->property, asked->target, 8, PropModeReplace,
+                    (const unsigned char *)text, (int)strlen(text));
+    XEvent answer = {.xselection = {.type = SelectionNotify,
+                                    .requestor = asked->requestor,
+                                    .selection = asked->selection,
+                                    .target = asked->target,
+                                    .property = asked->property,
+                                    .time = asked->time}};
+    XSendEvent(display, asked->requestor, False, NoEventMask, &answer);
+    XFlush(display);
+}
+
+/* Drops a file on the window, as a file manager does (XDND, version 5). */
+static inline void drop_file(const char *path) {
+    Display *display = XOpenDisplay(screen.display);
+    assert_non_null(display);
+    Window target = (Window)strtoul(screen.window, NULL, 10);
+    Window source = XCreateSimpleWindow(display, DefaultRootWindow(display), 0, 0, 1, 1, 0, 0, 0);
+    Atom list = XInternAtom(display, "text/uri-list", False), copy = XInternAtom(display, "XdndActionCopy", False);
+    char text[600];
+    snprintf(text, sizeof text, "file://%s\r\n", path);
+    XSetSelectionOwner(display, XInternAtom(display, "XdndSelection", False), source, CurrentTime);
+    send_message(display, source, target, "XdndEnter", 5L << 24, (long)list, 0, 0);
+    send_message(display, source, target, "XdndPosition", 0, 320 << 16 | 180, CurrentTime, (long)copy);
+    send_message(display, source, target, "XdndDrop", 0, CurrentTime, 0, 0);
+    bool done = false;
+    for (double until = seconds_now() + patience_seconds; !done && seconds_now() < until;) {
+        if (!XPending(display)) {
+            pause_for(0.01);
+            continue;
+        }
+        XEvent event;
+        XNextEvent(display, &event);
+        if (event.type == SelectionRequest) hand_over(display, &event.xselectionrequest, text);
+        done = event.type == ClientMessage && event.xclient.message_type == XInternAtom(display, "XdndFinished", False);
+    }
+    XCloseDisplay(display);
+    assert_true(done);
+}
+
+/* What a window manager's closing button says. */
+static inline void ask_to_close(void) {
+    Display *display = XOpenDisplay(screen.display);
+    assert_non_null(display);
+    Window target = (Window)strtoul(screen.window, NULL, 10);
+    send_message(display, XInternAtom(display, "WM_DELETE_WINDOW", False), target, "WM_PROTOCOLS", CurrentTime, 0, 0,
+                 0);
+    XCloseDisplay(display);
+}
+
+/* ---- Pictures -------------------------------------------------------------------------------------------- */
+
+/* The share of pixels that differ by more than a little. */
+static inline double difference(const char *one, const char *other) {
+    render_image a = {0}, b = {0};
+    assert_int_equal(render_image_read(&a, one, NULL), SKEIN_OK);
+    assert_int_equal(render_image_read(&b, other, NULL), SKEIN_OK);
+    assert_int_equal(a.width, b.width);
+    assert_int_equal(a.height, b.height);
+    size_t count = (size_t)a.width * (size_t)a.height, differ = 0;
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = 0, most = 0; k < 3 && !most; k++)
+            if (abs((int)a.pixels[3 * i + k] - (int)b.pixels[3 * i + k]) > 3) differ++, most = 1;
+    render_image_release(&a);
+    render_image_release(&b);
+    return (double)differ / (double)count;
+}
+
+#endif

@@ -1,0 +1,248 @@
+/* The table of keys; see keys.h. */
+#include "viewer/keys.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <math.h>
+#include <string.h>
+
+/* When a key has its meaning. */
+typedef enum key_when { ALWAYS, WITH_SCENE, BY_KEY, WITH_FIELD } key_when;
+
+typedef struct viewer_key {
+    int code, mods;   /* mods: GLFW_MOD_SHIFT or 0 */
+    const char *name; /* NULL: goes with the row before it */
+    key_when when;
+    void (*act)(viewer_stage *stage, const struct viewer_key *key);
+    int number;        /* what `act` makes of it */
+    const char *field; /* of WITH_FIELD: that some rule has */
+    bool repeats;      /* while it is held down */
+    const char *help;
+} viewer_key;
+
+/* ---- What keys do ---- */
+
+static void pause_or_play(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    viewer_stage_pause(stage, !stage->paused);
+}
+
+static void step(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    viewer_stage_pause(stage, true);
+    viewer_stage_step(stage);
+}
+
+static void step_back(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    viewer_stage_pause(stage, true);
+    if (stage->sides[0].frame > 0) viewer_stage_go_to(stage, stage->sides[0].frame - 1);
+}
+
+static void reset(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    viewer_stage_reset(stage);
+}
+
+/* As long as the key is down; but a tap moves it a little, too, however fast it was. */
+static void move(viewer_stage *stage, const viewer_key *key) {
+    static const double tap = 0.03;
+    stage->camera.down[key->number] = true;
+    stage->dirty |= viewer_camera_move(&stage->camera, tap);
+}
+
+static void fly(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    viewer_camera_fly(&stage->camera);
+    stage->dirty = true;
+    viewer_note(stage, stage->camera.flying ? "flight: the mouse looks around, W A S D Q E move, C ends it"
+                                            : "back to the first view");
+}
+
+static void save_picture(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    viewer_save_picture(stage);
+}
+
+static void record(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    viewer_film_toggle(stage);
+}
+
+static void save_mesh(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    viewer_save_mesh(stage);
+}
+
+static void next_colours(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    static const char *const names[] = {"by material", "by body", "by speed", "by strain"};
+    int next = (stage->sides[0].view.colour + 1) % 4;
+    for (size_t s = 0; s < stage->side_count; s++) stage->sides[s].view.colour = next;
+    stage->dirty = stage->facts = true;
+    viewer_note(stage, "colours %s", names[next]);
+}
+
+static void choose_method(viewer_stage *stage, const viewer_key *key) {
+    const skein_kind *kind = skein_kind_at(SKEIN_METHOD, (size_t)key->number);
+    for (size_t s = 0; kind && s < stage->side_count; s++)
+        if (!stage->compare[0] || s == 0) viewer_stage_method(stage, s, kind->name);
+}
+
+static void toggle_panel(viewer_stage *stage, const viewer_key *key) {
+    stage->panel[key->number] = !stage->panel[key->number];
+    stage->dirty = true;
+    viewer_event(stage->events, "panel %d %s", key->number, stage->panel[key->number] ? "open" : "closed");
+}
+
+static void reload(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    viewer_stage_reopen(stage, NULL);
+}
+
+static void solve(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    viewer_stage_solve(stage);
+}
+
+/* A rule's field goes up or down by a tenth of itself, wherever a rule has it. */
+static void change_field(viewer_stage *stage, const viewer_key *key) {
+    for (size_t s = 0; s < stage->side_count; s++) {
+        skein_world *world = stage->sides[s].world;
+        for (size_t i = 0; i < skein_object_count(world, SKEIN_FORCE); i++) {
+            skein_handle handle = skein_object_at(world, SKEIN_FORCE, i);
+            const skein_field *field = skein_field_find(skein_object_kind(world, handle), key->field, NULL);
+            skein_value value;
+            if (!field || field->type != SKEIN_FIELD_REAL || skein_get(world, handle, key->field, &value)) continue;
+            double step_size = fmax(0.1 * fabs(value.number[0]), 0.01 * fmax(fabs(field->initial[0]), 1));
+            double changed = value.number[0] + key->number * step_size;
+            changed = fmin(fmax(changed, field->least), field->most);
+            if (!skein_set(world, handle, key->field, skein_number(changed)) && s == 0)
+                viewer_note(stage, "%s %.4g %s", key->field, changed, field->unit);
+        }
+    }
+    stage->facts = true;
+}
+
+/* ---- The table ---- */
+
+#define PANEL(code_, name_, panel_, help_) \
+    { .code = code_, .name = name_, .when = ALWAYS, .act = toggle_panel, .number = panel_, .help = help_ }
+#define MOVE(code_, name_, motion_, help_) \
+    { .code = code_, .name = name_, .when = WITH_SCENE, .act = move, .number = motion_, .help = help_ }
+#define SCENE(code_, name_, act_, help_) \
+    { .code = code_, .name = name_, .when = WITH_SCENE, .act = act_, .help = help_ }
+#define REPEAT(code_, name_, act_, help_) \
+    { .code = code_, .name = name_, .when = WITH_SCENE, .act = act_, .repeats = true, .help = help_ }
+#define FIELD(code_, name_, field_, by_, help_)                                                                \
+    {                                                                                                          \
+        .code = code_, .name = name_, .when = WITH_FIELD, .act = change_field, .number = by_, .field = field_, \
+        .repeats = true, .help = help_                                                                         \
+    }
+#define METHOD(number_, name_, help_)                                                                             \
+    {                                                                                                             \
+        .code = GLFW_KEY_1 + number_, .name = name_, .when = WITH_SCENE, .act = choose_method, .number = number_, \
+        .help = help_                                                                                             \
+    }
+
+static const viewer_key keys[] = {
+    SCENE(GLFW_KEY_SPACE, "Space", pause_or_play, "pauses and plays"),
+    REPEAT(GLFW_KEY_PERIOD, ". (period)", step, "pauses, and goes one frame on"),
+    REPEAT(GLFW_KEY_COMMA, ", (comma)", step_back, "pauses, and goes one frame back; playing goes on from there"),
+    SCENE(GLFW_KEY_BACKSPACE, "Backspace", reset, "puts the scene back to its start"),
+    MOVE(GLFW_KEY_W, "W S", VIEWER_FORWARD, "move forward and back"),
+    MOVE(GLFW_KEY_S, NULL, VIEWER_BACK, NULL),
+    MOVE(GLFW_KEY_A, "A D", VIEWER_LEFT, "move left and right"),
+    MOVE(GLFW_KEY_D, NULL, VIEWER_RIGHT, NULL),
+    MOVE(GLFW_KEY_Q, "Q E", VIEWER_TURN_LEFT, "turn the view left and right"),
+    MOVE(GLFW_KEY_E, NULL, VIEWER_TURN_RIGHT, NULL),
+    SCENE(GLFW_KEY_C, "C", fly, "flight in the first person, and back to the first view"),
+    SCENE(GLFW_KEY_R, "R", next_colours, "other colours: by material, body, speed, strain"),
+    METHOD(0, "1 to 9", "the method: the n-th that `skein list methods` names"),
+    METHOD(1, NULL, NULL),
+    METHOD(2, NULL, NULL),
+    METHOD(3, NULL, NULL),
+    METHOD(4, NULL, NULL),
+    METHOD(5, NULL, NULL),
+    METHOD(6, NULL, NULL),
+    METHOD(7, NULL, NULL),
+    METHOD(8, NULL, NULL),
+    SCENE(GLFW_KEY_X, "X", save_picture,
+          "saves the picture as a PNG in the working directory (with Shift: the window)"),
+    SCENE(GLFW_KEY_V, "V", record, "records a film, and ends it"),
+    SCENE(GLFW_KEY_O, "O", save_mesh, "saves the bodies' meshes as OBJ"),
+    SCENE(GLFW_KEY_F5, "F5", reload, "reads the scene's file again"),
+    PANEL(GLFW_KEY_F1, "F1", VIEWER_PANEL_KEYS, "shows all keys"),
+    PANEL(GLFW_KEY_F2, "F2", VIEWER_PANEL_GALLERY, "the gallery of scenes"),
+    PANEL(GLFW_KEY_F3, "F3", VIEWER_PANEL_PLOTS, "plots of energy, stretch, contacts and time"),
+    PANEL(GLFW_KEY_F4, "F4", VIEWER_PANEL_LOG, "the log"),
+    PANEL(GLFW_KEY_TAB, "Tab", VIEWER_PANEL_SIDE, "the panel at the side"),
+    {.code = GLFW_KEY_ENTER,
+     .name = "Enter",
+     .when = BY_KEY,
+     .act = solve,
+     .repeats = true,
+     .help = "in a scene that advances by keys: one solve (as any key without another meaning)"},
+    FIELD(GLFW_KEY_UP, "Up Down", "separation", 1, "in a flock: more and less separation"),
+    FIELD(GLFW_KEY_DOWN, NULL, "separation", -1, NULL),
+    FIELD(GLFW_KEY_RIGHT, "Right Left", "alignment", 1, "in a flock: more and less alignment"),
+    FIELD(GLFW_KEY_LEFT, NULL, "alignment", -1, NULL),
+    FIELD(GLFW_KEY_HOME, "Home End", "cohesion", 1, "in a flock: more and less cohesion"),
+    FIELD(GLFW_KEY_END, NULL, "cohesion", -1, NULL),
+};
+enum { KEY_COUNT = sizeof keys / sizeof *keys };
+
+/* ---- The handler ---- */
+
+static bool some_rule_has(const viewer_stage *stage, const char *field) {
+    const skein_world *world = stage->side_count ? stage->sides[0].world : NULL;
+    for (size_t i = 0; world && i < skein_object_count(world, SKEIN_FORCE); i++) {
+        const skein_kind *kind = skein_object_kind(world, skein_object_at(world, SKEIN_FORCE, i));
+        if (skein_field_find(kind, field, NULL)) return true;
+    }
+    return false;
+}
+
+static bool applies(const viewer_stage *stage, const viewer_key *key) {
+    switch (key->when) {
+    case ALWAYS: return true;
+    case WITH_SCENE: return stage->side_count > 0;
+    case BY_KEY: return viewer_stage_by_key(stage);
+    case WITH_FIELD: return some_rule_has(stage, key->field);
+    }
+    return false;
+}
+
+bool viewer_key_down(viewer_stage *stage, int code, int mods) {
+    for (int k = 0; k < KEY_COUNT; k++) {
+        const viewer_key *key = &keys[k];
+        if (key->code != code || !applies(stage, key)) continue;
+        if ((mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return false;
+        key->act(stage, key);
+        return true;
+    }
+    // modifiers alone are no key
+    bool by_key = viewer_stage_by_key(stage) && code < GLFW_KEY_LEFT_SHIFT && code != GLFW_KEY_ESCAPE;
+    if (by_key) viewer_stage_solve(stage);
+    return by_key;
+}
+
+void viewer_key_up(viewer_stage *stage, int code) {
+    for (int k = 0; k < KEY_COUNT; k++)
+        if (keys[k].act == move && keys[k].code == code) stage->camera.down[keys[k].number] = false;
+}
+
+const char *viewer_key_help(size_t index, const char **name) {
+    for (int k = 0; k < KEY_COUNT; k++) {
+        if (!keys[k].name || index--) continue;
+        *name = keys[k].name;
+        return keys[k].help;
+    }
+    return NULL;
+}
+
+bool viewer_key_line(size_t index, char *line, size_t size) {
+    const char *name, *help = viewer_key_help(index, &name);
+    if (help) snprintf(line, size, "%-12s %s", name, help);
+    return help != NULL;
+}

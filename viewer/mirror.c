@@ -1,0 +1,226 @@
+/* Copies of what the panels show, so that the window never touches a world: objects with their fields, measures, plots.
+ *
+ * Called by the stage after every picture, viewer_mirror() under the exchange's lock. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "viewer/stage.h"
+
+/* Measures are taken at most so often, and for at most so large a part of the time. */
+static const double sample_every = 0.1, sample_share = 0.1;
+
+/* ---- Objects and fields ---- */
+
+static bool reserve(void *array, size_t *room, size_t count, size_t size) {
+    void **pointer = array;
+    if (count <= *room) return true;
+    void *grown = realloc(*pointer, 2 * count * size);
+    if (!grown) return false;
+    *pointer = grown;
+    *room = 2 * count;
+    return true;
+}
+
+/* The value in a plain struct at the field's offset: of the view and the scene's settings. */
+static skein_value load_plain(const skein_field *field, const void *params) {
+    const char *at = (const char *)params + field->offset;
+    skein_value value = {1, {0, 0, 0}, NULL};
+    switch (field->type) {
+    case SKEIN_FIELD_BOOL: value.number[0] = *(const bool *)at; break;
+    case SKEIN_FIELD_INT:
+    case SKEIN_FIELD_CHOICE: value.number[0] = *(const int32_t *)(const void *)at; break;
+    case SKEIN_FIELD_INT2:
+    case SKEIN_FIELD_INT3:
+        value.count = field->type == SKEIN_FIELD_INT2 ? 2 : 3;
+        for (int i = 0; i < value.count; i++) value.number[i] = ((const int32_t *)(const void *)at)[i];
+        break;
+    case SKEIN_FIELD_REAL: value.number[0] = *(const double *)(const void *)at; break;
+    case SKEIN_FIELD_REAL2:
+        value.count = 2;
+        memcpy(value.number, at, 2 * sizeof(double));
+        break;
+    case SKEIN_FIELD_VEC3:
+        value.count = 3;
+        memcpy(value.number, at, 3 * sizeof(double));
+        break;
+    case SKEIN_FIELD_TEXT: value = (skein_value){0, {0, 0, 0}, *(char *const *)(const void *)at}; break;
+    }
+    return value;
+}
+
+static double largest(const skein_value *value) {
+    double most = 0;
+    for (int i = 0; i < value->count; i++)
+        if (isfinite(value->number[i])) most = fmax(most, fabs(value->number[i]));
+    return most;
+}
+
+static bool add_entry(viewer_side *side, const skein_field *field, skein_value value, bool shapes) {
+    if (!reserve(&side->entries, &side->entry_room, side->entry_count + 1, sizeof *side->entries)) return false;
+    viewer_entry *entry = &side->entries[side->entry_count];
+    *entry = (viewer_entry){.field = field, .value = value, .anchor = largest(&value), .shapes = shapes};
+    entry->cut = value.text && strlen(value.text) >= sizeof entry->text;
+    snprintf(entry->text, sizeof entry->text, "%s", value.text ? value.text : "");
+    entry->value.text = NULL;
+    side->entry_count++;
+    side->objects[side->object_count].count++;
+    return true;
+}
+
+static bool begin_object(viewer_side *side, skein_category category, size_t index, const skein_kind *kind,
+                         const char *name) {
+    if (!reserve(&side->objects, &side->object_room, side->object_count + 1, sizeof *side->objects)) return false;
+    side->objects[side->object_count] =
+        (viewer_object){.category = category, .index = index, .kind = kind, .first = side->entry_count};
+    snprintf(side->objects[side->object_count].name, sizeof side->objects->name, "%s", name);
+    return true;
+}
+
+/* The field itself, or one that stays where it is an object's own. NULL when there is no memory. */
+static const skein_field *field_to_keep(viewer_side *side, const skein_field *field) {
+    if (strncmp(field->name, "parameters.", 11) != 0) return field;
+    for (viewer_own_field *own = side->own_fields; own; own = own->next)
+        if (!strcmp(own->name, field->name)) return &own->field;
+    viewer_own_field *own = calloc(1, sizeof *own);
+    if (!own) return NULL;
+    own->field = *field;
+    snprintf(own->name, sizeof own->name, "%s", field->name);
+    own->field.name = own->name;
+    own->next = side->own_fields;
+    side->own_fields = own;
+    return &own->field;
+}
+
+static void add_fields(viewer_side *side, const skein_world *world, skein_handle handle, const skein_field *fields,
+                       size_t count) {
+    for (size_t f = 0; f < count; f++) {
+        skein_value value;
+        if (skein_get(world, handle, fields[f].name, &value)) continue;
+        const skein_field *field = field_to_keep(side, &fields[f]);
+        if (field) add_entry(side, field, value, !skein_field_is_live(world, handle, field->name));
+    }
+}
+
+static void add_objects(viewer_side *side, const skein_world *world, skein_category category) {
+    for (size_t i = 0; i < skein_object_count(world, category); i++) {
+        skein_handle handle = skein_object_at(world, category, i);
+        const skein_kind *kind = skein_object_kind(world, handle),
+                         *listed = skein_kind_find(category, kind->name, NULL);
+        skein_value name = {0, {0, 0, 0}, NULL};
+        size_t common_count;
+        const skein_field *common = skein_common_fields(category, &common_count);
+        bool named = category != SKEIN_METHOD && !skein_get(world, handle, "name", &name) && name.text && name.text[0];
+        if (!begin_object(side, category, i, listed ? listed : kind, named ? name.text : kind->name)) return;
+        add_fields(side, world, handle, kind->fields, kind->field_count);
+        if (category != SKEIN_METHOD) add_fields(side, world, handle, common, common_count);
+        side->object_count++;
+    }
+}
+
+static void add_plain(viewer_side *side, const skein_kind *kind, const void *params) {
+    if (!begin_object(side, kind->category, 0, kind, kind->name)) return;
+    for (size_t f = 0; f < kind->field_count; f++)
+        add_entry(side, &kind->fields[f], load_plain(&kind->fields[f], params), kind->category == SKEIN_SCENE);
+    side->object_count++;
+}
+
+/* Sliders keep the measure that they began with, as long as the objects are the same. */
+static void keep_anchors(viewer_side *side, const viewer_entry *old, size_t count) {
+    for (size_t e = 0; e < side->entry_count && e < count; e++)
+        if (old[e].field == side->entries[e].field) side->entries[e].anchor = old[e].anchor;
+}
+
+static void mirror_objects(viewer_side *side, const viewer_player *player) {
+    size_t count = side->entry_count;
+    viewer_entry *old = malloc(count * sizeof *old + 1);
+    if (old && count) memcpy(old, side->entries, count * sizeof *old);
+    side->object_count = side->entry_count = 0;
+    add_objects(side, player->world, SKEIN_METHOD);
+    add_objects(side, player->world, SKEIN_BODY);
+    add_objects(side, player->world, SKEIN_CONSTRAINT);
+    add_objects(side, player->world, SKEIN_FORCE);
+    add_objects(side, player->world, SKEIN_COLLIDER);
+    add_plain(side, render_view_kind(), &player->view);
+    add_plain(side, io_scene_kind(), &player->settings);
+    if (old) keep_anchors(side, old, count);
+    free(old);
+}
+
+/* ---- Measures ---- */
+
+static void add_sample(viewer_plots *plots, const skein_statistics *s, double step_ms, double draw_ms) {
+    const double values[VIEWER_QUANTITY_COUNT] = {
+        [VIEWER_KINETIC] = s->kinetic_energy,
+        [VIEWER_POTENTIAL] = s->potential_energy,
+        [VIEWER_ELASTIC] = s->elastic_energy,
+        [VIEWER_TOTAL] = s->kinetic_energy + s->potential_energy + s->elastic_energy,
+        [VIEWER_STRETCH] = 100 * s->max_stretch,
+        [VIEWER_CONTACTS] = (double)s->contacts,
+        [VIEWER_STEP_MS] = step_ms,
+        [VIEWER_DRAW_MS] = draw_ms,
+    };
+    for (int q = 0; q < VIEWER_QUANTITY_COUNT; q++) {
+        double value = isfinite(values[q]) ? values[q] : 0;
+        plots->value[q][plots->next] = (float)value;
+    }
+    plots->next = (plots->next + 1) % VIEWER_SAMPLES;
+    if (plots->count < VIEWER_SAMPLES) plots->count++;
+}
+
+void viewer_measure(viewer_stage *stage) {
+    double now = viewer_seconds();
+    if (now < stage->sampled) return;
+    for (size_t s = 0; s < stage->side_count; s++) {
+        skein_statistics statistics;
+        if (skein_world_statistics(stage->sides[s].world, &statistics)) continue;
+        viewer_side *side = &stage->exchange->shown.sides[s];
+        pthread_mutex_lock(&stage->exchange->lock);
+        side->statistics = statistics;
+        add_sample(&side->plots, &statistics, stage->step_ms, stage->draw_ms);
+        pthread_mutex_unlock(&stage->exchange->lock);
+    }
+    double took = viewer_seconds() - now;
+    stage->sampled = now + fmax(sample_every, took / sample_share);
+}
+
+/* ---- All of it ---- */
+
+static void mirror_time(viewer_stage *stage, viewer_shown *shown) {
+    const viewer_player *player = &stage->sides[0];
+    shown->frame = player->frame;
+    shown->first_frame = player->history.first;
+    shown->last_frame = player->history.last;
+    shown->time = skein_world_time(player->world);
+    const char *name = player->settings.name[0] ? player->settings.name : player->path;
+    snprintf(shown->title, sizeof shown->title, "Skein: %.160s%s", name, stage->paused ? " (paused)" : "");
+    for (size_t s = 0; s < stage->side_count; s++) {
+        const viewer_player *p = &stage->sides[s];
+        snprintf(shown->sides[s].name, sizeof shown->sides[s].name, "%.150s",
+                 s == 1 ? stage->compare
+                        : skein_object_kind(p->world, skein_object_at(p->world, SKEIN_METHOD, 0))->name);
+        if (stage->facts) mirror_objects(&shown->sides[s], p);
+    }
+}
+
+void viewer_mirror(viewer_stage *stage) {
+    viewer_shown *shown = &stage->exchange->shown;
+    memcpy(shown->pictures, stage->pictures, sizeof shown->pictures);
+    shown->width = stage->width, shown->height = stage->height;
+    shown->generation = stage->generation;
+    shown->newest = stage->newest;
+    shown->has_scene = stage->side_count > 0;
+    shown->paused = stage->paused;
+    shown->recording = stage->film != NULL;
+    shown->flying = stage->camera.flying;
+    shown->by_key = viewer_stage_by_key(stage);
+    shown->play_away = stage->play_away;
+    shown->slow = stage->slow;
+    shown->speed = stage->speed;
+    memcpy(shown->panel, stage->panel, sizeof shown->panel);
+    snprintf(shown->message, sizeof shown->message, "%s", stage->message);
+    shown->side_count = stage->side_count;
+    if (stage->side_count) mirror_time(stage, shown);
+    else snprintf(shown->title, sizeof shown->title, "Skein");
+    stage->facts = false;
+}

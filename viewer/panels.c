@@ -1,0 +1,235 @@
+/* The side panel, the gallery, the keys and the log; see panels.h. */
+#include "viewer/panels.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "viewer/keys.h"
+
+void viewer_place_control(viewer_panels *panels, const char *name) {
+    if (!panels->exchange->events->file || !widgets_last_visible()) return;
+    double at[4];
+    size_t i = 0;
+    widgets_last(at);
+    while (i < panels->place_count && strcmp(panels->places[i].name, name) != 0) i++;
+    if (i == VIEWER_PLACES) return;
+    viewer_place *place = &panels->places[i];
+    if (i < panels->place_count && !memcmp(place->at, at, sizeof at)) return;
+    if (i == panels->place_count) panels->place_count++;
+    snprintf(place->name, sizeof place->name, "%s", name);
+    memcpy(place->at, at, sizeof at);
+    viewer_event(panels->exchange->events, "control %.0f %.0f %.0f %.0f %s", at[0], at[1], at[2], at[3], name);
+}
+
+static void ask_key(viewer_panels *panels, int code) {
+    viewer_request request = {.kind = VIEWER_KEY_DOWN, .code = code};
+    viewer_ask(panels->exchange, &request);
+}
+
+static bool button(viewer_panels *panels, const char *title, const char *help) {
+    bool pressed = widgets_button(title);
+    viewer_place_control(panels, title);
+    widgets_help(help);
+    return pressed;
+}
+
+/* ---- Time ---- */
+
+/* The same as the keys do. */
+enum { KEY_SPACE = 32, KEY_COMMA = 44, KEY_PERIOD = 46, KEY_BACKSPACE = 259, KEY_F1 = 290, KEY_F2 = 291, KEY_F3 = 292 };
+
+static void show_time(viewer_panels *panels, const viewer_shown *shown) {
+    if (button(panels, shown->paused ? "Play" : "Pause", "Space")) ask_key(panels, KEY_SPACE);
+    widgets_same_line();
+    if (button(panels, "<", "one frame back: comma")) ask_key(panels, KEY_COMMA);
+    widgets_same_line();
+    if (button(panels, ">", "one frame on: period")) ask_key(panels, KEY_PERIOD);
+    widgets_same_line();
+    if (button(panels, "Reset", "to the start: Backspace")) ask_key(panels, KEY_BACKSPACE);
+    widgets_same_line();
+    if (button(panels, "Keys", "all keys: F1")) ask_key(panels, KEY_F1);
+    if (button(panels, "Scenes", "the gallery: F2")) ask_key(panels, KEY_F2);
+    widgets_same_line();
+    if (button(panels, "Plots", "energy, stretch, contacts, time: F3")) ask_key(panels, KEY_F3);
+    double frame = (double)shown->frame;
+    if (shown->last_frame > shown->first_frame) {
+        bool moved = widgets_numbers("frame", &frame, 1, (double)shown->first_frame, (double)shown->last_frame, false,
+                                     true, "%.0f");
+        viewer_place_control(panels, "frame");
+        widgets_help("the frames that were: drag to go back; playing goes on from there");
+        if (moved && frame != (double)shown->frame) {
+            viewer_request request = {.kind = VIEWER_SCRUB, .x = frame};
+            viewer_ask(panels->exchange, &request);
+        }
+    }
+    char line[160];
+    snprintf(line, sizeof line, "%.2f s, %.0f %% of real time%s", shown->time, 100 * shown->speed,
+             shown->slow ? " (slow)" : "");
+    widgets_text(line);
+    bool away = shown->play_away;
+    if (widgets_tick("play in the background", &away)) {
+        viewer_request request = {.kind = VIEWER_PLAY_AWAY, .down = away};
+        viewer_ask(panels->exchange, &request);
+    }
+    widgets_help("go on when another window is typed into (see --unfocused)");
+}
+
+/* ---- Side by side ---- */
+
+static void show_compare(viewer_panels *panels, const viewer_shown *shown) {
+    if (!widgets_group("Side by side", false)) return;
+    viewer_request request = {.kind = VIEWER_COMPARE};
+    widgets_wrapped("The same scene beside itself, with another method or value, in step from the start:", false);
+    char words[512] = "", path[64];
+    int chosen = -1;
+    for (size_t k = 0; skein_kind_at(SKEIN_METHOD, k); k++) {
+        size_t length = strlen(words);
+        snprintf(words + length, sizeof words - length, "%s%s", k ? "|" : "", skein_kind_at(SKEIN_METHOD, k)->name);
+    }
+    if (widgets_choice("other method", words, &chosen) && chosen >= 0) {
+        snprintf(request.text, sizeof request.text, "method.type=%s",
+                 skein_kind_at(SKEIN_METHOD, (size_t)chosen)->name);
+        viewer_ask(panels->exchange, &request);
+    }
+    viewer_place_control(panels, "other method");
+    if (!panels->compare[0]) snprintf(panels->compare, sizeof panels->compare, "method.substeps=5");
+    if (widgets_input("path=value", panels->compare, sizeof panels->compare)) {
+        memcpy(request.text, panels->compare, sizeof request.text);
+        viewer_ask(panels->exchange, &request);
+    }
+    snprintf(path, sizeof path, "any value, as after --set; Enter begins");
+    widgets_help(path);
+    if (shown->side_count > 1 && widgets_button("one scene again")) {
+        request.text[0] = 0;
+        viewer_ask(panels->exchange, &request);
+    }
+}
+
+/* ---- The side panel ---- */
+
+static void show_facts(const viewer_shown *shown) {
+    const skein_statistics *s = &shown->sides[0].statistics;
+    char line[200];
+    snprintf(line, sizeof line, "%zu particles, %zu constraints", s->particles, s->constraints);
+    widgets_text(line);
+    snprintf(line, sizeof line, "energy %.4g J, stretch %.2f %%",
+             s->kinetic_energy + s->potential_energy + s->elastic_energy, 100 * s->max_stretch);
+    widgets_text(line);
+}
+
+static void show_side(viewer_panels *panels, const viewer_shown *shown, double width, double height) {
+    if (widgets_panel("Skein", WIDGETS_FIXED, 0, 0, width, height, NULL) && shown->has_scene) {
+        show_time(panels, shown);
+        show_facts(shown);
+        for (size_t s = 0; s < shown->side_count; s++) {
+            if (shown->side_count > 1) widgets_wrapped(shown->sides[s].name, false);
+            viewer_show_objects(panels, (int)s);
+        }
+        show_compare(panels, shown);
+    }
+    widgets_panel_end();
+}
+
+/* ---- The gallery ---- */
+
+static void close_panel(viewer_panels *panels, viewer_panel panel) {
+    viewer_request request = {.kind = VIEWER_PANEL, .code = (int)panel, .down = false};
+    viewer_ask(panels->exchange, &request);
+}
+
+static void show_card(viewer_panels *panels, const viewer_card *card, double width) {
+    char name[100];
+    widgets_push(card);
+    bool clicked = widgets_picture(card->broken ? 0 : card->texture, width, width * 9 / 16);
+    snprintf(name, sizeof name, "card %.80s", card->title);
+    viewer_place_control(panels, name);
+    widgets_help(card->about);
+    widgets_wrapped(card->title, card->broken);
+    widgets_pop();
+    if (!clicked) return;
+    viewer_request request = {.kind = VIEWER_OPEN};
+    memcpy(request.text, card->path, sizeof request.text);
+    viewer_ask(panels->exchange, &request);
+}
+
+static void show_gallery(viewer_panels *panels, const viewer_shown *shown, double width, double height) {
+    bool open = true;
+    double edge = 0.04 * width;
+    if (widgets_panel("Scenes", WIDGETS_FREE, edge, edge, width - 2 * edge, height - 2 * edge, &open)) {
+        double wanted = 150 * widgets_scale();
+        int columns = (int)fmax(1, floor(widgets_room() / wanted));
+        if (!shown->card_count)
+            widgets_wrapped("There are no scenes in the gallery's folder; `skein view --scenes FOLDER` names another. "
+                            "Or drop a scene or a mesh on this window.",
+                            true);
+        widgets_columns(columns);
+        for (size_t c = 0; c < shown->card_count; c++) {
+            show_card(panels, &shown->cards[c], widgets_room() - 4);
+            widgets_next_column();
+        }
+        widgets_columns(1);
+    }
+    widgets_panel_end();
+    if (!open) close_panel(panels, VIEWER_PANEL_GALLERY);
+}
+
+/* ---- Keys and log ---- */
+
+static void show_keys(viewer_panels *panels, double width, double height) {
+    bool open = true;
+    const char *name, *help;
+    if (widgets_panel("Keys", WIDGETS_FREE, 0.2 * width, 0.08 * height, 0.7 * width, 0.84 * height, &open)) {
+        for (size_t k = 0; (help = viewer_key_help(k, &name)) != NULL; k++) {
+            char line[300];
+            snprintf(line, sizeof line, "%s:  %s", name, help);
+            widgets_wrapped(line, false);
+        }
+        widgets_line_across();
+        widgets_wrapped(
+            "Mouse: drag a particle to pull it, click one to pin or free it; drag beside it to look around; "
+            "Shift or the middle button moves the view, the wheel comes closer; the right button always "
+            "looks around. Drop a scene or a mesh on the window to open it. Ctrl and a click on a slider "
+            "takes any number.",
+            false);
+    }
+    widgets_panel_end();
+    if (!open) close_panel(panels, VIEWER_PANEL_KEYS);
+}
+
+static void show_log(viewer_panels *panels, const viewer_shown *shown, double width, double height) {
+    bool open = true;
+    if (widgets_panel("Log", WIDGETS_FREE, 0.3 * width, 0.55 * height, 0.68 * width, 0.42 * height, &open)) {
+        size_t count = shown->log_count < VIEWER_LOG_LINES ? shown->log_count : VIEWER_LOG_LINES;
+        for (size_t i = shown->log_count - count; i < shown->log_count; i++) {
+            const viewer_line *line = &shown->log[i % VIEWER_LOG_LINES];
+            widgets_wrapped(line->text, line->level == SKEIN_LOG_WARNING);
+        }
+        widgets_follow();
+    }
+    widgets_panel_end();
+    if (!open) close_panel(panels, VIEWER_PANEL_LOG);
+}
+
+static void show_message(const viewer_shown *shown, double left, double width, double height) {
+    char text[300];
+    const char *records = shown->recording ? "recording   " : "";
+    snprintf(text, sizeof text, "%s%s", records, shown->message);
+    if (!text[0]) return;
+    if (widgets_panel("message", WIDGETS_NOTE, left + 0.02 * width, height - 1.5 * widgets_line(), 0, 0, NULL))
+        widgets_text(text);
+    widgets_panel_end();
+}
+
+void viewer_panels_show(viewer_panels *panels, int width, int height) {
+    const viewer_shown *shown = &panels->exchange->shown;
+    double w = width, h = height, side = fmin(fmax(0.3 * w, 230 * widgets_scale()), 0.6 * w);
+    bool has_side = shown->panel[VIEWER_PANEL_SIDE] && shown->has_scene;
+    if (has_side) show_side(panels, shown, side, h);
+    if (shown->panel[VIEWER_PANEL_PLOTS] && shown->has_scene) viewer_show_plots(panels);
+    if (shown->panel[VIEWER_PANEL_LOG]) show_log(panels, shown, w, h);
+    if (shown->panel[VIEWER_PANEL_GALLERY]) show_gallery(panels, shown, w, h);
+    if (shown->panel[VIEWER_PANEL_KEYS]) show_keys(panels, w, h);
+    // a picture without panels is a picture: no note in it
+    if (has_side || shown->recording) show_message(shown, has_side ? side : 0, w, h);
+}

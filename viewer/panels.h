@@ -1,0 +1,41 @@
+/* The panels: what the window shows over the picture, and what it asks the stage for when one touches them.
+ *
+ * Called by window.c between widgets_begin() and widgets_end(), under the exchange's lock: they only read `shown`. */
+#ifndef SKEIN_VIEWER_PANELS_H
+#define SKEIN_VIEWER_PANELS_H
+
+#include "viewer/exchange.h"
+#include "viewer/widgets.h"
+
+enum { VIEWER_PLACES = 400 };
+
+/* Where controls are, for those who follow the events. */
+typedef struct viewer_place {
+    char name[100];
+    double at[4];
+} viewer_place;
+
+typedef struct viewer_panels {
+    viewer_exchange *exchange;
+    viewer_place places[VIEWER_PLACES];
+    size_t place_count;
+    viewer_request asked; /* the last value that was asked for: shown until the stage, in its own time, has it */
+    double asked_at;
+    char compare[VIEWER_TEXT];
+} viewer_panels;
+
+void viewer_panels_show(viewer_panels *panels, int width, int height);
+
+/* ---- between the panels' files ---- */
+
+/* The seconds after which a value that was asked for, and refused or lost, is not shown any more. */
+extern const double viewer_asked_for_long;
+
+/* Tells the events where the last control is, if that is new. */
+void viewer_place_control(viewer_panels *panels, const char *name);
+/* panels_fields.c: the objects of a side, with a control for each field. */
+void viewer_show_objects(viewer_panels *panels, int side);
+/* panels_plots.c */
+void viewer_show_plots(viewer_panels *panels);
+
+#endif

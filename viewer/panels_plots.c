@@ -1,0 +1,58 @@
+/* The plots: energies, stretch, contacts and milliseconds, of both sides over each other. */
+#include <string.h>
+
+#include "viewer/panels.h"
+
+static void plot(const viewer_shown *shown, const char *title, const viewer_quantity *quantities,
+                 const char *const *names, int count) {
+    const float *series[8];
+    const char *words[8];
+    size_t first = 0, length = VIEWER_SAMPLES;
+    int lines = 0;
+    for (size_t s = 0; s < shown->side_count; s++) {
+        const viewer_plots *plots = &shown->sides[s].plots;
+        if (plots->count < length) length = plots->count;
+        first = (plots->next + VIEWER_SAMPLES - length) % VIEWER_SAMPLES;
+    }
+    for (int q = 0; q < count; q++)
+        for (size_t s = 0; s < shown->side_count && lines < 8; s++) {
+            series[lines] = shown->sides[s].plots.value[quantities[q]];
+            words[lines++] = shown->side_count > 1 ? (s ? shown->sides[1].name : shown->sides[0].name) : names[q];
+        }
+    widgets_plot(title, series, words, lines, first, length, VIEWER_SAMPLES, 52 * widgets_scale());
+}
+
+static void show_energies(const viewer_shown *shown) {
+    static const viewer_quantity all[] = {VIEWER_KINETIC, VIEWER_POTENTIAL, VIEWER_ELASTIC, VIEWER_TOTAL},
+                                 total[] = {VIEWER_TOTAL};
+    static const char *const names[] = {"kinetic", "potential", "elastic", "total"};
+    if (shown->side_count > 1) plot(shown, "energy (J)", total, names, 1);
+    else plot(shown, "energy (J)", all, names, 4);
+}
+
+void viewer_show_plots(viewer_panels *panels) {
+    static const viewer_quantity stretch[] = {VIEWER_STRETCH}, contacts[] = {VIEWER_CONTACTS},
+                                 times[] = {VIEWER_STEP_MS, VIEWER_DRAW_MS};
+    static const char *const none[] = {""}, *const passes[] = {"step", "draw"};
+    const viewer_shown *shown = &panels->exchange->shown;
+    double width = 260 * widgets_scale(), height = 500 * widgets_scale();
+    bool open = true;
+    if (height > shown->height - 4) height = shown->height - 4;
+    if (widgets_panel("Plots", WIDGETS_FREE, shown->width - width - 4, 2, width, height, &open)) {
+        show_energies(shown);
+        plot(shown, "largest stretch (%)", stretch, none, 1);
+        plot(shown, "contacts", contacts, none, 1);
+        plot(shown, "milliseconds a frame", times, passes, shown->side_count > 1 ? 1 : 2);
+        if (shown->sides[0].pass_count) widgets_text("by pass of the plan, a frame:");
+        for (size_t p = 0; p < shown->sides[0].pass_count; p++) {
+            char line[120];
+            snprintf(line, sizeof line, "%8.3f ms  %s", shown->sides[0].passes[p].milliseconds,
+                     shown->sides[0].passes[p].label);
+            widgets_text(line);
+        }
+    }
+    widgets_panel_end();
+    if (open) return;
+    viewer_request request = {.kind = VIEWER_PANEL, .code = VIEWER_PANEL_PLOTS, .down = false};
+    viewer_ask(panels->exchange, &request);
+}

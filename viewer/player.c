@@ -1,0 +1,243 @@
+/* Playing a scene; see player.h. */
+#include "viewer/player.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "io/mesh.h"
+
+/* ---- A mesh becomes a scene ---- */
+
+bool viewer_is_mesh(const char *path) {
+    const char *dot = strrchr(path, '.');
+    return dot && (!strcasecmp(dot, ".obj") || !strcasecmp(dot, ".off"));
+}
+
+/* A text as JSON has it, without the quotes. */
+static void quote(const char *text, char *out, size_t size) {
+    size_t length = 0;
+    for (; *text && length + 8 < size; text++) {
+        if (*text == '"' || *text == '\\') out[length++] = '\\', out[length++] = *text;
+        else if ((unsigned char)*text < 0x20) length += (size_t)sprintf(out + length, "\\u%04x", (unsigned char)*text);
+        else out[length++] = *text;
+    }
+    out[length] = 0;
+}
+
+/* A cloth that falls on a ball which is as large as suits it, over a ground below. False after a reported fault. */
+static bool scene_of_mesh(const char *path, char *text, size_t size, viewer_reporter reporter) {
+    io_mesh mesh;
+    skein_error error = {SKEIN_OK, "", ""};
+    double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY}, side = 0, length = 0;
+    if (io_mesh_read(path, &mesh, (io_warnings){NULL, NULL}, &error)) {
+        char line[800];
+        snprintf(line, sizeof line, "%s%s%s", error.where, error.where[0] ? ": " : "", error.message);
+        reporter.say(reporter.user, SKEIN_LOG_WARNING, line);
+        return false;
+    }
+    for (size_t v = 0; v < mesh.vertex_count; v++)
+        for (int k = 0; k < 3; k++) {
+            least[k] = fmin(least[k], mesh.positions[3 * v + (size_t)k]);
+            most[k] = fmax(most[k], mesh.positions[3 * v + (size_t)k]);
+        }
+    io_mesh_free(&mesh);
+    for (int k = 0; k < 3; k++) side = fmax(side, most[k] - least[k]);
+    if (!(side > 0)) side = 1;
+    length = 0.22 * side;
+    const char *file = strrchr(path, '/');
+    char name[1200];
+    quote(file ? file + 1 : path, name, sizeof name);
+    int written = snprintf(
+        text, size,
+        "{ \"skein\": 1, \"name\": \"%s\", \"description\": \"a mesh as a cloth\", \"frames\": 300,\n"
+        "  \"method\": { \"type\": \"xpbd\", \"substeps\": 20 },\n"
+        "  \"bodies\": [ { \"type\": \"cloth\", \"name\": \"mesh\", \"mesh\": \"%s\", \"density\": 0.25 } ],\n"
+        "  \"forces\": [ { \"type\": \"gravity\" }, { \"type\": \"drag\", \"rate\": 0.4 } ],\n"
+        "  \"colliders\": [\n"
+        "    { \"type\": \"plane\", \"name\": \"ground\", \"offset\": %.9g, \"thickness\": %.9g, \"friction\": 0.6 },\n"
+        "    { \"type\": \"sphere\", \"name\": \"ball\", \"centre\": [%.9g, %.9g, %.9g], \"radius\": %.9g,\n"
+        "      \"thickness\": %.9g, \"friction\": 0.6 } ] }\n",
+        name, name, least[1] - 3 * length, 0.003 * side, 0.5 * (least[0] + most[0]), least[1] - 1.6 * length,
+        0.5 * (least[2] + most[2]), length, 0.004 * side);
+    return written > 0 && (size_t)written < size;
+}
+
+/* ---- Opening ---- */
+
+static void report_fault(void *user, const skein_error *error) {
+    const viewer_reporter *reporter = user;
+    char line[800];
+    snprintf(line, sizeof line, "%s%s%s", error->where, error->where[0] ? ": " : "", error->message);
+    reporter->say(reporter->user, SKEIN_LOG_WARNING, line);
+}
+
+static void world_says(void *user, skein_log_level level, const char *message) {
+    const viewer_reporter *reporter = user;
+    reporter->say(reporter->user, level, message);
+}
+
+static io_scene *read_scene(const viewer_player *player, const viewer_reading *reading, io_faults *faults) {
+    const char *const *sets = (const char *const *)player->sets;
+    char text[8192];
+    if (!viewer_is_mesh(player->path)) return io_scene_read(player->path, sets, reading->exporters, faults);
+    if (!scene_of_mesh(player->path, text, sizeof text, player->reporter)) {
+        faults->count++;
+        return NULL;
+    }
+    return io_scene_read_text(text, strlen(text), player->path, sets, reading->exporters, faults);
+}
+
+static bool is_held(const skein_world *world, size_t particle) {
+    skein_view view = skein_position_view(world);
+    return !(view.xyzw[4 * (size_t)view.slot_of[particle] + 3] > 0);
+}
+
+static bool note_pins(viewer_player *player) {
+    size_t count = skein_particle_count(player->world);
+    player->pins = malloc(count + 1);
+    for (size_t i = 0; player->pins && i < count; i++) player->pins[i] = is_held(player->world, i);
+    return player->pins != NULL;
+}
+
+/* Fills in scene, world and all that belongs to them; `player` has path, sets and reporter. */
+static bool load(viewer_player *player, const viewer_reading *reading) {
+    io_faults faults = {report_fault, &player->reporter, 0};
+    skein_error error = {SKEIN_OK, "", ""};
+    player->scene = read_scene(player, reading, &faults);
+    if (!player->scene) return false;
+    player->settings = *io_scene_get(player->scene);
+    skein_world_desc desc = skein_default_world_desc();
+    desc.log = world_says;
+    desc.log_user = &player->reporter;
+    desc.thread_count = reading->threads > 0 ? reading->threads : player->settings.threads;
+    player->world = io_scene_build(player->scene, &desc, &faults);
+    if (!player->world) return false;
+    const render_view *view = io_scene_view(player->scene);
+    player->view = view ? *view : render_view_default();
+    player->steps = io_scene_steps_per_frame(&player->settings, &player->dt);
+    player->picture = render_world_frame_create(&error);
+    bool good = player->picture && viewer_history_begin(&player->history, player->world) && note_pins(player);
+    if (good) viewer_history_keep(&player->history, player->world, 0);
+    else player->reporter.say(player->reporter.user, SKEIN_LOG_WARNING, "out of memory");
+    return good;
+}
+
+static void free_sets(viewer_player *player) {
+    for (size_t s = 0; s < player->set_count; s++) free(player->sets[s]);
+    player->set_count = 0;
+    player->sets[0] = NULL;
+}
+
+static bool add_set(viewer_player *player, const char *set) {
+    const char *equals = strchr(set, '=');
+    size_t name = equals ? (size_t)(equals - set) + 1 : 0;
+    char *copy = strdup(set);
+    if (!copy) return false;
+    // a later value of the same path takes the place of the former
+    for (size_t s = 0; s < player->set_count && name; s++)
+        if (!strncmp(player->sets[s], set, name)) {
+            free(player->sets[s]);
+            player->sets[s] = copy;
+            return true;
+        }
+    if (player->set_count == PLAYER_SETS) {
+        free(copy);
+        return false;
+    }
+    player->sets[player->set_count++] = copy;
+    player->sets[player->set_count] = NULL;
+    return true;
+}
+
+void viewer_player_close(viewer_player *player) {
+    render_world_frame_destroy(player->picture);
+    skein_world_destroy(player->world);
+    io_scene_free(player->scene);
+    viewer_history_release(&player->history);
+    free(player->pins);
+    free_sets(player);
+    memset(player, 0, sizeof *player);
+}
+
+/* Loads what `next` describes and puts it in the player's place, if there is no fault. The world keeps the address of
+ * the reporter that it was built with, so that one lies where the player will. */
+static bool take_over(viewer_player *player, viewer_player *next, const viewer_reading *reading) {
+    viewer_player old = *player;
+    viewer_player given = *next;
+    *player = given;
+    if (load(player, reading)) {
+        viewer_player_close(&old);
+        return true;
+    }
+    viewer_player_close(player);
+    *player = old;
+    return false;
+}
+
+bool viewer_player_open(viewer_player *player, const char *path, const char *const *sets, const viewer_reading *reading,
+                        viewer_reporter reporter) {
+    viewer_player next = {.reporter = reporter};
+    snprintf(next.path, sizeof next.path, "%s", path);
+    for (; sets && *sets; sets++)
+        if (!add_set(&next, *sets)) reporter.say(reporter.user, SKEIN_LOG_WARNING, "too many values were set");
+    return take_over(player, &next, reading);
+}
+
+bool viewer_player_reopen(viewer_player *player, const char *set, const viewer_reading *reading) {
+    viewer_player next = {.reporter = player->reporter};
+    memcpy(next.path, player->path, sizeof next.path);
+    bool good = true;
+    for (size_t s = 0; s < player->set_count && good; s++) good = add_set(&next, player->sets[s]);
+    if (good && set) good = add_set(&next, set);
+    if (good) return take_over(player, &next, reading);
+    free_sets(&next);
+    player->reporter.say(player->reporter.user, SKEIN_LOG_WARNING, "too many values were set");
+    return false;
+}
+
+/* ---- Playing ---- */
+
+static bool end_step(viewer_player *player, skein_status status, bool *new_frame) {
+    *new_frame = false;
+    if (status) {
+        if (!player->failed) report_fault(&player->reporter, skein_world_error(player->world));
+        player->failed = true;
+        return false;
+    }
+    player->failed = false;
+    if (++player->step < player->steps) return true;
+    player->step = 0;
+    *new_frame = true;
+    viewer_history_keep(&player->history, player->world, ++player->frame);
+    return true;
+}
+
+bool viewer_player_step(viewer_player *player, bool *new_frame) {
+    return end_step(player, skein_world_step(player->world, player->dt), new_frame);
+}
+
+bool viewer_player_profile(viewer_player *player, bool *new_frame, skein_pass *passes, size_t most, size_t *count) {
+    return end_step(player, skein_world_profile(player->world, player->dt, passes, most, count), new_frame);
+}
+
+void viewer_player_reset(viewer_player *player) {
+    // pins that were set by hand go, too
+    for (size_t i = 0; i < skein_particle_count(player->world); i++)
+        if (is_held(player->world, i) != (player->pins[i] != 0)) skein_particle_hold(player->world, i, player->pins[i]);
+    skein_world_reset(player->world);
+    player->frame = 0;
+    player->step = 0;
+    player->failed = false;
+    viewer_history_begin(&player->history, player->world);
+    viewer_history_keep(&player->history, player->world, 0);
+}
+
+bool viewer_player_go_to(viewer_player *player, uint64_t frame) {
+    if (!viewer_history_restore(&player->history, player->world, frame)) return false;
+    player->frame = frame;
+    player->step = 0;
+    return true;
+}

@@ -1,0 +1,65 @@
+/* A scene that is played: its file, its world, the frames that were, and what it looks like.
+ *
+ *     file --open--> world --advance--> frames --> history
+ *
+ * The stage has one, or two side by side. Invariant: an open player has a scene and a world; opening another scene
+ * leaves it as it was if that one has a fault. */
+#ifndef SKEIN_VIEWER_PLAYER_H
+#define SKEIN_VIEWER_PLAYER_H
+
+#include "io/scene.h"
+#include "render/world_frame.h"
+#include "viewer/history.h"
+
+enum { PLAYER_PATH = 1024, PLAYER_SETS = 64 };
+
+/* Where messages go. */
+typedef struct viewer_reporter {
+    void (*say)(void *user, skein_log_level level, const char *text);
+    void *user;
+} viewer_reporter;
+
+typedef struct viewer_player {
+    char path[PLAYER_PATH];
+    char *sets[PLAYER_SETS + 1]; /* "path=value", NULL-terminated */
+    size_t set_count;
+    io_scene *scene;
+    io_scene_settings settings;
+    skein_world *world;
+    render_view view; /* the scene's, as changed since; its texts are the scene's */
+    render_world_frame *picture;
+    int steps, step; /* a frame; taken of the present one */
+    double dt;       /* of a step */
+    uint64_t frame;
+    viewer_history history;
+    unsigned char *pins; /* which particles were held when it was built */
+    viewer_reporter reporter;
+    bool failed; /* a step failed: said once */
+} viewer_player;
+
+/* How scenes are read. */
+typedef struct viewer_reading {
+    const skein_kind *const *exporters;
+    int threads; /* 0: the scene's */
+} viewer_reading;
+
+/* Opens a scene, or a mesh as a cloth. `sets` as for io_scene_read, copied. Faults are reported; false after one. */
+bool viewer_player_open(viewer_player *player, const char *path, const char *const *sets, const viewer_reading *reading,
+                        viewer_reporter reporter);
+/* The same scene anew from its file, with one more "path=value" (or NULL) on top. */
+bool viewer_player_reopen(viewer_player *player, const char *set, const viewer_reading *reading);
+void viewer_player_close(viewer_player *player); /* one that never was open is allowed */
+
+/* One step that is measured row by row: up to `most` passes go to `passes`. Else as viewer_player_step(). */
+bool viewer_player_profile(viewer_player *player, bool *new_frame, skein_pass *passes, size_t most, size_t *count);
+/* One step; `new_frame` tells whether it completed a frame. False after a reported fault. */
+bool viewer_player_step(viewer_player *player, bool *new_frame);
+/* As it was built. */
+void viewer_player_reset(viewer_player *player);
+/* As it was in a frame that is kept. */
+bool viewer_player_go_to(viewer_player *player, uint64_t frame);
+
+/* Whether the path's ending is a mesh's. */
+bool viewer_is_mesh(const char *path);
+
+#endif

@@ -1,0 +1,277 @@
+/* The stage's thread and its clock; see stage.h. */
+#include "viewer/stage.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+/* Pictures a second at most; how long steps may take before a picture is due all the same; how often the scene's file
+ * is looked at, and speed is judged. */
+static const double most_rate = 60, longest_stepping = 0.08, watch_every = 0.25, judge_every = 1, profile_every = 1;
+/* Under this share of real time a world is said to be slow. */
+static const double slow_speed = 0.9;
+
+double viewer_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* ---- Words ---- */
+
+static void log_line(viewer_stage *stage, skein_log_level level, const char *text) {
+    viewer_shown *shown = &stage->exchange->shown;
+    pthread_mutex_lock(&stage->exchange->lock);
+    viewer_line *line = &shown->log[shown->log_count++ % VIEWER_LOG_LINES];
+    line->level = level;
+    snprintf(line->text, sizeof line->text, "%.799s", text);
+    pthread_mutex_unlock(&stage->exchange->lock);
+    stage->dirty = true;
+}
+
+void viewer_say(viewer_stage *stage, skein_log_level level, const char *format, ...) {
+    char text[800];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    log_line(stage, level, text);
+    viewer_event(stage->events, "%s %s", level == SKEIN_LOG_WARNING ? "warning" : "log", text);
+    fprintf(stderr, "skein: %s%s\n", level == SKEIN_LOG_WARNING ? "warning: " : "", text);
+    if (level == SKEIN_LOG_WARNING) snprintf(stage->message, sizeof stage->message, "%.*s", 239, text);
+}
+
+void viewer_note(viewer_stage *stage, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(stage->message, sizeof stage->message, format, arguments);
+    va_end(arguments);
+    stage->spoke = viewer_seconds();
+    log_line(stage, SKEIN_LOG_INFO, stage->message);
+    viewer_event(stage->events, "note %s", stage->message);
+}
+
+void viewer_tell_state(viewer_stage *stage) {
+    if (!stage->events->file) return;
+    if (!stage->side_count) {
+        viewer_event(stage->events, "state no scene");
+        return;
+    }
+    const viewer_player *player = &stage->sides[0];
+    const double *eye = stage->camera.lens.eye, *at = stage->camera.lens.target;
+    viewer_event(stage->events,
+                 "state paused=%d frame=%" PRIu64 " time=%.9g method=%s colour=%d flying=%d sides=%zu hash=%016" PRIx64
+                 " eye=%.6g,%.6g,%.6g target=%.6g,%.6g,%.6g",
+                 stage->paused, player->frame, skein_world_time(player->world),
+                 skein_object_kind(player->world, skein_object_at(player->world, SKEIN_METHOD, 0))->name,
+                 player->view.colour, stage->camera.flying, stage->side_count, skein_world_hash(player->world), eye[0],
+                 eye[1], eye[2], at[0], at[1], at[2]);
+}
+
+/* ---- Time ---- */
+
+static void blew_up(viewer_stage *stage) {
+    viewer_stage_pause(stage, true);
+    viewer_say(stage, SKEIN_LOG_WARNING,
+               "the state is not finite any more: paused. Backspace starts anew; smaller substeps or another method "
+               "may hold it");
+}
+
+static bool world_is_finite(const skein_world *world) {
+    // a particle that blew up takes its neighbours along: one in some tells
+    skein_view view = skein_position_view(world);
+    for (size_t i = 0; i < view.count; i += view.count / 64 + 1) {
+        const skein_real *p = view.xyzw + 4 * (size_t)view.slot_of[i];
+        if (!isfinite((double)p[0]) || !isfinite((double)p[1]) || !isfinite((double)p[2])) return false;
+    }
+    return true;
+}
+
+static bool is_finite(const viewer_stage *stage) {
+    for (size_t s = 0; s < stage->side_count; s++)
+        if (!world_is_finite(stage->sides[s].world)) return false;
+    return true;
+}
+
+/* Now and then, while the plots are looked at, a step is measured pass by pass; it has the same bits. */
+static bool profile_is_due(const viewer_stage *stage) {
+    return stage->panel[VIEWER_PANEL_PLOTS] && viewer_seconds() - stage->profiled > profile_every;
+}
+
+static bool profile(viewer_stage *stage, bool *new_frame) {
+    skein_pass passes[VIEWER_PASSES];
+    size_t count = 0;
+    bool good = viewer_player_profile(&stage->sides[0], new_frame, passes, VIEWER_PASSES, &count);
+    if (count > VIEWER_PASSES) count = VIEWER_PASSES;
+    viewer_side *side = &stage->exchange->shown.sides[0];
+    pthread_mutex_lock(&stage->exchange->lock);
+    side->pass_count = good ? count : 0;
+    for (size_t p = 0; p < side->pass_count; p++) {
+        side->passes[p].milliseconds = 1e3 * passes[p].seconds * stage->sides[0].steps;
+        snprintf(side->passes[p].label, sizeof side->passes[p].label, "%.12s %.48s", passes[p].kind, passes[p].label);
+    }
+    pthread_mutex_unlock(&stage->exchange->lock);
+    stage->profiled = viewer_seconds();
+    return good;
+}
+
+/* One step of the first side, and as many of the second as bring it to the same time. */
+static bool step_all(viewer_stage *stage, bool *new_frame) {
+    viewer_player *first = &stage->sides[0];
+    if (stage->grab.side == 0) viewer_grab_lead(&stage->grab, first->world, first->dt);
+    bool good = profile_is_due(stage) ? profile(stage, new_frame) : viewer_player_step(first, new_frame), ignored;
+    for (size_t s = 1; s < stage->side_count; s++) {
+        viewer_player *other = &stage->sides[s];
+        while (good && skein_world_time(other->world) + 0.5 * other->dt <= skein_world_time(first->world)) {
+            if (stage->grab.side == s) viewer_grab_lead(&stage->grab, other->world, other->dt);
+            good = viewer_player_step(other, &ignored);
+        }
+    }
+    return good;
+}
+
+void viewer_stage_step(viewer_stage *stage) {
+    bool new_frame = false, good = stage->side_count > 0;
+    double start = viewer_seconds();
+    while (good && !new_frame) good = step_all(stage, &new_frame);
+    stage->step_ms = 1e3 * (viewer_seconds() - start);
+    if (good && stage->film) viewer_film_frame(stage);
+    if (good && !is_finite(stage)) blew_up(stage);
+    stage->sampled = 0; // every frame that was asked for is in the plots
+    viewer_measure(stage);
+    stage->dirty = true;
+}
+
+static void judge_speed(viewer_stage *stage, double now) {
+    if (now - stage->spoke < 0) stage->spoke = now;
+    if (stage->real < judge_every) return;
+    stage->speed = stage->simulated / stage->real;
+    stage->simulated = stage->real = 0;
+    bool slow = stage->speed < slow_speed;
+    if (slow && !stage->slow)
+        viewer_say(stage, SKEIN_LOG_INFO, "this machine is too slow for it: it goes at %.0f %% of real time",
+                   100 * stage->speed);
+    stage->slow = slow;
+}
+
+/* Takes the steps that are due. What a slow machine cannot do in time is dropped, so that it never has to catch up. */
+static void advance(viewer_stage *stage) {
+    double now = viewer_seconds(), elapsed = now - stage->last;
+    stage->last = now;
+    bool plays = stage->side_count && !stage->paused && !viewer_stage_by_key(stage);
+    if (viewer_camera_move(&stage->camera, fmin(elapsed, 0.1))) stage->dirty = true;
+    if (!plays) return;
+    int due = skein_pacer_feed(&stage->pacer, elapsed);
+    bool good = true;
+    for (int i = 0; i < due && good; i++) {
+        bool new_frame;
+        good = step_all(stage, &new_frame);
+        stage->simulated += good ? stage->pacer.step : 0;
+        if (good && new_frame && stage->film) viewer_film_frame(stage);
+        if (viewer_seconds() - now > longest_stepping) break;
+    }
+    stage->real += elapsed;
+    if (due) stage->step_ms = 1e3 * (viewer_seconds() - now) / due * stage->sides[0].steps;
+    judge_speed(stage, now);
+    if (!good) viewer_stage_pause(stage, true);
+    else if (!is_finite(stage)) blew_up(stage);
+    stage->dirty = true; // time goes on between steps, too
+}
+
+/* How long nothing has to happen by itself. */
+static double patience(const viewer_stage *stage) {
+    bool plays = stage->side_count && !stage->paused && !viewer_stage_by_key(stage), moves = false;
+    for (int m = 0; m < VIEWER_MOTION_COUNT; m++) moves |= stage->camera.down[m];
+    if (stage->dirty) return 0;
+    if (plays || moves) return fmax(stage->last + 1 / most_rate - viewer_seconds(), 0);
+    return watch_every;
+}
+
+/* ---- The thread ---- */
+
+static void publish(viewer_stage *stage) {
+    viewer_exchange *exchange = stage->exchange;
+    viewer_measure(stage);
+    pthread_mutex_lock(&exchange->lock);
+    viewer_mirror(stage);
+    pthread_mutex_unlock(&exchange->lock);
+    if (exchange->wake) exchange->wake();
+}
+
+static void turn(viewer_stage *stage) {
+    size_t count;
+    const viewer_request *requests = viewer_take(stage->exchange, patience(stage), &count);
+    for (size_t i = 0; i < count && !stage->closing; i++) viewer_stage_answer(stage, &requests[i]);
+    if (stage->closing) return;
+    double now = viewer_seconds();
+    if (now - stage->watched >= watch_every) {
+        viewer_watch(stage, false);
+        stage->watched = now;
+    }
+    advance(stage);
+    if (stage->message[0] && now - stage->spoke > 6) {
+        stage->message[0] = 0;
+        stage->dirty = true;
+    }
+    if (!stage->dirty && stage->panel[VIEWER_PANEL_GALLERY]) stage->dirty = viewer_gallery_work(stage);
+    if (!stage->dirty) return;
+    stage->dirty = false;
+    viewer_draw(stage);
+    publish(stage);
+}
+
+static void *stage_thread(void *data) {
+    viewer_stage *stage = data;
+    skein_error error = {SKEIN_OK, "", ""};
+    glfwMakeContextCurrent(stage->context);
+    if (viewer_pictures_open(stage, &error)) {
+        stage->last = stage->spoke = viewer_seconds();
+        if (stage->options->path) viewer_stage_open(stage, stage->options->path, stage->options->sets);
+        if (stage->side_count && stage->options->compare) viewer_stage_compare(stage, stage->options->compare);
+        if (!stage->side_count) stage->panel[VIEWER_PANEL_GALLERY] = true;
+        viewer_gallery_open(stage);
+        stage->dirty = true;
+        while (!stage->closing) turn(stage);
+        if (stage->film) viewer_film_toggle(stage);
+        viewer_gallery_close(stage);
+        for (size_t s = 0; s < VIEWER_SIDES; s++) viewer_player_close(&stage->sides[s]);
+    } else {
+        stage->failure = error;
+    }
+    viewer_pictures_close(stage);
+    viewer_event(stage->events, "opengl stage errors=%zu warnings=%zu %s", stage->messages.errors,
+                 stage->messages.warnings, stage->messages.last);
+    glfwMakeContextCurrent(NULL);
+    pthread_mutex_lock(&stage->exchange->lock);
+    stage->exchange->shown.finished = true;
+    pthread_mutex_unlock(&stage->exchange->lock);
+    if (stage->exchange->wake) stage->exchange->wake();
+    return NULL;
+}
+
+bool viewer_stage_start(viewer_stage *stage, const viewer_options *options, viewer_exchange *exchange,
+                        GLFWwindow *context) {
+    stage->options = options;
+    stage->exchange = exchange;
+    stage->events = exchange->events;
+    stage->context = context;
+    stage->paused = options->paused;
+    stage->panel[VIEWER_PANEL_SIDE] = options->panels;
+    stage->button = -1;
+    stage->newest = -1;
+    stage->speed = 1;
+    stage->pacer = skein_default_pacer();
+    return !pthread_create(&stage->thread, NULL, stage_thread, stage);
+}
+
+void viewer_stage_join(viewer_stage *stage) {
+    viewer_request close = {.kind = VIEWER_CLOSE};
+    viewer_ask(stage->exchange, &close);
+    pthread_join(stage->thread, NULL);
+}

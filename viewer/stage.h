@@ -1,0 +1,135 @@
+/* The stage: the thread that owns worlds, camera and pictures.
+ *
+ *     requests --> stage_answer.c, keys.c --> players, camera --> step --> draw --> exchange.shown
+ *
+ * Its own OpenGL context shares its pictures with the window's. Steps follow the clock through a pacer: time that was
+ * spent loading does not count, and a machine that cannot keep up slows down and says so. Between the files of the
+ * viewer only. */
+#ifndef SKEIN_VIEWER_STAGE_H
+#define SKEIN_VIEWER_STAGE_H
+
+#include "film/film.h"
+#include "render/draw.h"
+#include "render/messages.h"
+#include "render/target.h"
+#include "viewer/camera.h"
+#include "viewer/exchange.h"
+#include "viewer/grab.h"
+#include "viewer/player.h"
+#include "viewer/viewer.h"
+
+typedef struct GLFWwindow GLFWwindow;
+
+typedef struct viewer_stage {
+    skein_error failure; /* why there is no stage */
+    const viewer_options *options;
+    const viewer_events *events;
+    viewer_exchange *exchange;
+    GLFWwindow *context; /* hidden; its context is current on the stage's thread */
+    pthread_t thread;
+    render_messages messages;
+
+    viewer_player sides[VIEWER_SIDES];
+    size_t side_count; /* 0: the gallery alone */
+    char compare[VIEWER_TEXT];
+    char wanted[VIEWER_TEXT]; /* a scene that could not be opened: tried again when its file changes */
+    viewer_camera camera;
+    viewer_grab grab;
+    skein_pacer pacer;
+    bool paused, paused_by_focus, play_away, closing;
+    bool panel[VIEWER_PANEL_COUNT];
+    bool dirty; /* what is shown is not what there is */
+    bool facts; /* objects or fields have changed: the panels want them anew */
+    char message[240];
+
+    /* pictures */
+    render_draw *draw;
+    render_target target[VIEWER_SIDES]; /* as wide as their part of the window */
+    unsigned pictures[VIEWER_PICTURES], framebuffer;
+    int width, height; /* of a whole picture */
+    int wide, tall;    /* of the window, as it was last said */
+    int newest;
+    uint64_t generation;
+
+    /* the pointer */
+    double x, y, pressed_x, pressed_y;
+    int button; /* that is down; -1: none */
+    int button_mods;
+
+    /* time */
+    double last, spoke, sampled, profiled; /* when: frames, notes, statistics, passes */
+    double simulated, real, speed;         /* seconds since the last look, and their ratio */
+    bool slow;
+    double step_ms, draw_ms;
+
+    /* files */
+    film *film;
+    char film_path[64];
+    uint64_t film_frames;
+    double watched; /* when the scene's file was looked at */
+    struct {
+        long long seconds, nanoseconds, size;
+    } stamp;
+    struct viewer_gallery *gallery;
+} viewer_stage;
+
+/* Starts the thread; `context` is a hidden window whose context shares with the window's own. */
+bool viewer_stage_start(viewer_stage *stage, const viewer_options *options, viewer_exchange *exchange,
+                        GLFWwindow *context);
+/* Asks it to end, and waits. */
+void viewer_stage_join(viewer_stage *stage);
+
+/* ---- between the stage's files ---- */
+
+double viewer_seconds(void);
+/* A line for the log panel, the events and the terminal. */
+void viewer_say(viewer_stage *stage, skein_log_level level, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* A short note in the window, and an event. */
+void viewer_note(viewer_stage *stage, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* The "state" line of the events. */
+void viewer_tell_state(viewer_stage *stage);
+
+void viewer_stage_open(viewer_stage *stage, const char *path, const char *const *sets);
+void viewer_stage_reopen(viewer_stage *stage, const char *set); /* from its file; `set` as for the player */
+void viewer_stage_compare(viewer_stage *stage, const char *set);
+void viewer_stage_pause(viewer_stage *stage, bool paused);
+void viewer_stage_reset(viewer_stage *stage);
+void viewer_stage_step(viewer_stage *stage);                  /* one frame */
+void viewer_stage_go_to(viewer_stage *stage, uint64_t frame); /* of the history */
+void viewer_stage_method(viewer_stage *stage, size_t side, const char *kind);
+void viewer_stage_set(viewer_stage *stage, const viewer_request *request);
+void viewer_stage_answer(viewer_stage *stage, const viewer_request *request);
+bool viewer_stage_by_key(const viewer_stage *stage); /* the scene advances by keys */
+void viewer_stage_solve(viewer_stage *stage);        /* one solve of such a scene */
+/* The part of the window that a side has: x, and width. */
+int viewer_side_width(const viewer_stage *stage, size_t side, int *x);
+
+/* stage_picture.c */
+bool viewer_pictures_open(viewer_stage *stage, skein_error *error);
+void viewer_pictures_close(viewer_stage *stage);
+bool viewer_pictures_size(viewer_stage *stage, int width, int height);
+bool viewer_draw(viewer_stage *stage);
+/* Brings the whole picture, without panels, into memory. */
+bool viewer_picture_read(viewer_stage *stage, render_image *image);
+
+/* stage_files.c */
+void viewer_save_picture(viewer_stage *stage);
+void viewer_save_mesh(viewer_stage *stage);
+void viewer_film_toggle(viewer_stage *stage);
+void viewer_film_frame(viewer_stage *stage);
+void viewer_watch(viewer_stage *stage, bool only_note);
+/* "skein-001.png": the first of its kind that is not there yet. */
+void viewer_free_name(const char *stem, const char *ending, char *path, size_t size);
+
+/* mirror.c: copies what the panels show; under the exchange's lock */
+void viewer_mirror(viewer_stage *stage);
+void viewer_measure(viewer_stage *stage);
+
+/* gallery.c */
+bool viewer_gallery_open(viewer_stage *stage);
+void viewer_gallery_close(viewer_stage *stage);
+/* Draws one more picture of a scene; false where none is missing. */
+bool viewer_gallery_work(viewer_stage *stage);
+
+#endif

@@ -1,0 +1,38 @@
+/* The window: a scene is played, looked at, pulled, changed and measured.
+ *
+ *     app/view.c --viewer_run--> window.c (GLFW, panels) <--exchange.c--> stage.c (worlds, camera, pictures)
+ *
+ * Two threads: the window's own, which only shows the newest picture and the panels over it, and the stage's, which
+ * owns the worlds, steps them, draws them into pictures and answers what the window asks. So panels answer at once,
+ * however long a step or a picture takes. Invariant: nothing of a world is touched outside the stage's thread. */
+#ifndef SKEIN_VIEWER_VIEWER_H
+#define SKEIN_VIEWER_VIEWER_H
+
+#include "skein/skein.h"
+
+/* What to do when the window is not the one being typed into. */
+typedef enum viewer_unfocused { VIEWER_BY_SCENE, VIEWER_PAUSE, VIEWER_PLAY } viewer_unfocused;
+
+typedef struct viewer_options {
+    const char *path;                   /* a scene or a mesh; NULL: the gallery */
+    const char *scenes;                 /* the gallery's folder */
+    const char *const *sets;            /* "path=value" for the first scene, NULL-terminated; or NULL */
+    const skein_kind *const *exporters; /* for the scene reader, the view's kind among them */
+    const char *events;                 /* a file that is told what happens, "-" for standard output; NULL: none */
+    const char *compare;                /* "path=value" of a second world beside the first; NULL: none */
+    int32_t size[2], samples, threads;  /* threads 0: the scene's */
+    double scale;                       /* of the letters; 0: as the screen has it */
+    viewer_unfocused unfocused;
+    bool paused, panels;
+} viewer_options;
+
+viewer_options viewer_default_options(void);
+
+/* Opens the window and stays until it is closed. `error` says why it could not open: no display, no OpenGL 4.5. */
+skein_status viewer_run(const viewer_options *options, skein_error *error);
+
+/* One line about each key, in the order of the table that the window itself uses; `index` from 0, false past the end.
+ */
+bool viewer_key_line(size_t index, char *line, size_t size);
+
+#endif

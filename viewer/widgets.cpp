@@ -1,0 +1,303 @@
+/* Dear ImGui behind a C header; see widgets.h. The only C++ of the viewer. */
+#include "viewer/widgets.h"
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <cfloat>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+
+static double scale_of_all = 1;
+
+/* Letters that most systems have; without any of them the built-in ones are scaled. */
+static const char *const letters[] = {
+    "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+    "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
+    "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
+    "/usr/share/fonts/TTF/DejaVuSans.ttf",
+    "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
+};
+
+static void take_letters(double scale) {
+    ImGuiIO &io = ImGui::GetIO();
+    for (const char *path : letters) {
+        FILE *file = std::fopen(path, "rb");
+        if (!file) continue;
+        std::fclose(file);
+        if (io.Fonts->AddFontFromFileTTF(path, static_cast<float>(13 * scale))) return;
+    }
+    io.FontGlobalScale = static_cast<float>(scale);
+}
+
+bool widgets_open(struct GLFWwindow *window, double scale) {
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGuiIO &io = ImGui::GetIO();
+    io.IniFilename = nullptr; // nothing is left behind in the working directory
+    io.ConfigWindowsMoveFromTitleBarOnly = true;
+    scale_of_all = scale;
+    take_letters(scale);
+    ImGui::StyleColorsDark();
+    ImGuiStyle &style = ImGui::GetStyle();
+    style.WindowRounding = 4;
+    style.FrameRounding = 3;
+    style.GrabRounding = 3;
+    style.WindowPadding = ImVec2(6, 6);
+    style.FramePadding = ImVec2(4, 2);
+    style.ItemSpacing = ImVec2(5, 3);
+    style.IndentSpacing = 10;
+    style.ScrollbarSize = 11;
+    style.Colors[ImGuiCol_WindowBg].w = 0.90f;
+    style.ScaleAllSizes(static_cast<float>(scale));
+    return ImGui_ImplGlfw_InitForOpenGL(reinterpret_cast<GLFWwindow *>(window), true) &&
+           ImGui_ImplOpenGL3_Init("#version 450 core");
+}
+
+void widgets_close(void) {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+}
+
+void widgets_begin(void) {
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+}
+
+void widgets_end(void) {
+    ImGui::Render();
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+bool widgets_want_pointer(void) {
+    return ImGui::GetIO().WantCaptureMouse;
+}
+
+bool widgets_want_keys(void) {
+    return ImGui::GetIO().WantTextInput;
+}
+
+double widgets_scale(void) {
+    return scale_of_all;
+}
+
+double widgets_line(void) {
+    return ImGui::GetFrameHeightWithSpacing();
+}
+
+// ---- panels
+
+bool widgets_panel(const char *title, widgets_frame frame, double x, double y, double width, double height,
+                   bool *open) {
+    ImGuiCond when = frame == WIDGETS_FREE ? ImGuiCond_Appearing : ImGuiCond_Always;
+    ImGuiWindowFlags flags = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs;
+    if (frame == WIDGETS_FIXED)
+        flags |= ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar |
+                 ImGuiWindowFlags_NoBringToFrontOnFocus;
+    if (frame == WIDGETS_NOTE)
+        flags |= ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_AlwaysAutoResize |
+                 ImGuiWindowFlags_NoFocusOnAppearing;
+    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(x), static_cast<float>(y)), when);
+    if (frame != WIDGETS_NOTE)
+        ImGui::SetNextWindowSize(ImVec2(static_cast<float>(width), static_cast<float>(height)), when);
+    return ImGui::Begin(title, frame == WIDGETS_FREE ? open : nullptr, flags);
+}
+
+void widgets_panel_end(void) {
+    ImGui::End();
+}
+
+bool widgets_group(const char *title, bool open) {
+    return ImGui::CollapsingHeader(title, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+}
+
+bool widgets_tree(const char *title, bool open) {
+    return ImGui::TreeNodeEx(title, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+}
+
+void widgets_tree_end(void) {
+    ImGui::TreePop();
+}
+
+void widgets_push(const void *id) {
+    ImGui::PushID(id);
+}
+
+void widgets_pop(void) {
+    ImGui::PopID();
+}
+
+// ---- controls
+
+void widgets_text(const char *text) {
+    ImGui::TextUnformatted(text);
+}
+
+void widgets_wrapped(const char *text, bool warning) {
+    if (warning) ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1, 0.72f, 0.35f, 1));
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    if (warning) ImGui::PopStyleColor();
+}
+
+void widgets_same_line(void) {
+    ImGui::SameLine();
+}
+
+void widgets_gap(void) {
+    ImGui::Spacing();
+}
+
+void widgets_line_across(void) {
+    ImGui::Separator();
+}
+
+bool widgets_button(const char *title) {
+    return ImGui::Button(title);
+}
+
+bool widgets_tick(const char *title, bool *value) {
+    return ImGui::Checkbox(title, value);
+}
+
+bool widgets_choice(const char *title, const char *words, int *place) {
+    char list[1024]; // as Dear ImGui wants it: a zero after each word, and one more at the end
+    size_t length = std::strlen(words) < sizeof list - 2 ? std::strlen(words) : sizeof list - 2;
+    for (size_t i = 0; i < length; i++) list[i] = words[i] == '|' ? '\0' : words[i];
+    list[length] = list[length + 1] = '\0';
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
+    return ImGui::Combo(title, place, list);
+}
+
+bool widgets_numbers(const char *title, double *numbers, int count, double least, double most, bool logarithmic,
+                     bool whole, const char *format) {
+    ImGuiSliderFlags flags = (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_NoRoundToFormat;
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
+    if (!whole) return ImGui::SliderScalarN(title, ImGuiDataType_Double, numbers, count, &least, &most, format, flags);
+    int given[4], low = static_cast<int>(least), high = static_cast<int>(most);
+    for (int i = 0; i < count; i++) given[i] = static_cast<int>(numbers[i]);
+    bool changed = ImGui::SliderScalarN(title, ImGuiDataType_S32, given, count, &low, &high, "%d", flags);
+    for (int i = 0; i < count; i++) numbers[i] = given[i];
+    return changed;
+}
+
+bool widgets_released(void) {
+    return ImGui::IsItemDeactivatedAfterEdit();
+}
+
+bool widgets_input(const char *title, char *text, size_t size) {
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
+    return ImGui::InputText(title, text, size, ImGuiInputTextFlags_EnterReturnsTrue);
+}
+
+bool widgets_input_lines(const char *title, char *text, size_t size) {
+    float lines = 2;
+    for (const char *c = text; *c; c++) lines += *c == '\n';
+    if (lines > 12) lines = 12;
+    ImVec2 room(ImGui::GetContentRegionAvail().x * 0.55f, ImGui::GetTextLineHeight() * (lines + 0.5f));
+    return ImGui::InputTextMultiline(title, text, size, room,
+                                     ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CtrlEnterForNewLine);
+}
+
+void widgets_help(const char *text) {
+    if (!ImGui::IsItemHovered()) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 24);
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+bool widgets_menu(const char *title) {
+    return ImGui::BeginPopupContextItem(title);
+}
+
+bool widgets_menu_row(const char *title) {
+    return ImGui::MenuItem(title);
+}
+
+void widgets_menu_end(void) {
+    ImGui::EndPopup();
+}
+
+// ---- plots and pictures
+
+static const ImU32 colours[] = {IM_COL32(110, 190, 255, 255), IM_COL32(255, 170, 80, 255), IM_COL32(150, 220, 120, 255),
+                                IM_COL32(235, 235, 235, 255)};
+
+void widgets_plot(const char *title, const float *const *series, const char *const *names, int series_count,
+                  size_t first, size_t count, size_t room, double height) {
+    float least = FLT_MAX, most = -FLT_MAX;
+    for (int s = 0; s < series_count; s++)
+        for (size_t i = 0; series[s] && i < count; i++) {
+            float value = series[s][(first + i) % room];
+            least = value < least ? value : least;
+            most = value > most ? value : most;
+        }
+    if (least > most) least = most = 0;
+    if (most - least < 1e-6f) least -= 0.5f, most += 0.5f;
+    ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, static_cast<float>(height));
+    ImDrawList *list = ImGui::GetWindowDrawList();
+    list->AddRectFilled(at, ImVec2(at.x + size.x, at.y + size.y), IM_COL32(20, 22, 26, 200), 3);
+    float span = static_cast<float>(count > 60 ? count - 1 : 59); // a new plot does not start with one wide step
+    for (int s = 0; s < series_count; s++) {
+        if (!series[s] || count < 2) continue;
+        for (size_t i = 0; i + 1 < count; i++) {
+            float a = series[s][(first + i) % room], b = series[s][(first + i + 1) % room];
+            float x = at.x + size.x * static_cast<float>(i) / span, next = at.x + size.x * static_cast<float>(i + 1) / span;
+            list->AddLine(ImVec2(x, at.y + size.y * (1 - (a - least) / (most - least))),
+                          ImVec2(next, at.y + size.y * (1 - (b - least) / (most - least))), colours[s % 4], 1.5f);
+        }
+    }
+    char range[64];
+    std::snprintf(range, sizeof range, "%.4g", static_cast<double>(most));
+    list->AddText(ImVec2(at.x + 3, at.y + 1), IM_COL32(200, 200, 200, 190), range);
+    std::snprintf(range, sizeof range, "%.4g", static_cast<double>(least));
+    list->AddText(ImVec2(at.x + 3, at.y + size.y - ImGui::GetFontSize() - 1), IM_COL32(200, 200, 200, 190), range);
+    ImGui::Dummy(size);
+    ImGui::TextUnformatted(title);
+    for (int s = 0; s < series_count; s++) {
+        if (!series[s] || !names[s]) continue;
+        ImGui::SameLine();
+        ImGui::PushStyleColor(ImGuiCol_Text, colours[s % 4]);
+        ImGui::TextUnformatted(names[s]);
+        ImGui::PopStyleColor();
+    }
+}
+
+bool widgets_picture(unsigned texture, double width, double height) {
+    ImVec2 size(static_cast<float>(width), static_cast<float>(height));
+    if (!texture) return ImGui::Button("...", size);
+    ImTextureID id = reinterpret_cast<ImTextureID>(static_cast<intptr_t>(texture));
+    return ImGui::ImageButton(id, size, ImVec2(0, 0), ImVec2(1, 1), 0);
+}
+
+void widgets_columns(int count) {
+    ImGui::Columns(count, nullptr, false);
+}
+
+void widgets_next_column(void) {
+    ImGui::NextColumn();
+}
+
+double widgets_room(void) {
+    return ImGui::GetContentRegionAvail().x;
+}
+
+void widgets_last(double rectangle[4]) {
+    ImVec2 least = ImGui::GetItemRectMin(), size = ImGui::GetItemRectSize();
+    rectangle[0] = least.x, rectangle[1] = least.y, rectangle[2] = size.x, rectangle[3] = size.y;
+}
+
+bool widgets_last_visible(void) {
+    return ImGui::IsItemVisible();
+}
+
+void widgets_follow(void) {
+    if (ImGui::GetScrollY() >= ImGui::GetScrollMaxY() - 1) ImGui::SetScrollHereY(1.0f);
+}

@@ -1,0 +1,74 @@
+/* The little of Dear ImGui that the panels use, for C.
+ *
+ * widgets.cpp is the only file that speaks to Dear ImGui. Called by window.c and the panels, on the window's thread,
+ * between widgets_begin() and widgets_end() but for the first two. */
+#ifndef SKEIN_VIEWER_WIDGETS_H
+#define SKEIN_VIEWER_WIDGETS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct GLFWwindow;
+
+/* `scale` of letters and all sizes. After the window's own callbacks were set: these go on being called. */
+bool widgets_open(struct GLFWwindow *window, double scale);
+void widgets_close(void);
+void widgets_begin(void);
+void widgets_end(void); /* draws them into the window */
+bool widgets_want_pointer(void);
+bool widgets_want_keys(void); /* a text is being typed */
+double widgets_scale(void);
+double widgets_line(void); /* the height of a line with a control on it */
+
+typedef enum widgets_frame { WIDGETS_FIXED, WIDGETS_FREE, WIDGETS_NOTE } widgets_frame;
+/* A panel at a place (pixels); a free one may be moved and closed (`open` turns false). True where it is unfolded; in
+ * any case end it. */
+bool widgets_panel(const char *title, widgets_frame frame, double x, double y, double width, double height, bool *open);
+void widgets_panel_end(void);
+bool widgets_group(const char *title, bool open); /* a heading that folds */
+bool widgets_tree(const char *title, bool open);  /* a smaller one, indented; end it if true */
+void widgets_tree_end(void);
+void widgets_push(const void *id);
+void widgets_pop(void);
+
+void widgets_text(const char *text);
+void widgets_wrapped(const char *text, bool warning);
+void widgets_same_line(void);
+void widgets_gap(void);
+void widgets_line_across(void);
+bool widgets_button(const char *title);
+bool widgets_tick(const char *title, bool *value);
+/* `words` with '|' between them; `place` is the chosen one's. */
+bool widgets_choice(const char *title, const char *words, int *place);
+/* `count` numbers as sliders from `least` to `most`; any other may be typed after Ctrl and a click. */
+bool widgets_numbers(const char *title, double *numbers, int count, double least, double most, bool logarithmic,
+                     bool whole, const char *format);
+/* The last control was changed and has now been let go. */
+bool widgets_released(void);
+/* True once it is typed and Enter pressed. */
+bool widgets_input(const char *title, char *text, size_t size);
+/* The same in several lines: Enter says that it is done, Ctrl and Enter makes a new line. */
+bool widgets_input_lines(const char *title, char *text, size_t size);
+void widgets_help(const char *text);  /* shown over the last control, while the pointer rests on it */
+bool widgets_menu(const char *title); /* of the last control, by the right button; end it if true */
+bool widgets_menu_row(const char *title);
+void widgets_menu_end(void);
+/* Lines over each other; NULL entries are left out. `count` values from `first` on, in a ring of `room`. */
+void widgets_plot(const char *title, const float *const *series, const char *const *names, int series_count,
+                  size_t first, size_t count, size_t room, double height);
+bool widgets_picture(unsigned texture, double width, double height); /* true: it was clicked */
+void widgets_columns(int count);
+void widgets_next_column(void);
+double widgets_room(void);              /* width that is left on this line */
+void widgets_last(double rectangle[4]); /* x, y, width, height of the last control, pixels */
+bool widgets_last_visible(void);
+void widgets_follow(void); /* scrolls to the end, if the end was in view */
+
+#ifdef __cplusplus
+}
+#endif
+#endif
