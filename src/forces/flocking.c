@@ -258,7 +258,7 @@ static void SK_ISA(fly)(sk_run *run, const sk_row *row, size_t begin, size_t end
 
 static void SK_ISA(fly_by_formula)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     SK_ISA(formulas) formulas;
-    formulas.pair = ((const sk_force *)row->rule)->state;
+    formulas.pair = ((const sk_flocking_params *)((const sk_force *)row->rule)->params)->pair;
     sk_tape_input input = {.time = (real)run->time};
     for (int w = 0; w < SK_PAIR_WEIGHTS; w++)
         if (formulas.pair->formula[w])
@@ -267,7 +267,8 @@ static void SK_ISA(fly_by_formula)(sk_run *run, const sk_row *row, size_t begin,
 }
 
 static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    if (((const sk_force *)row->rule)->state) SK_ISA(fly_by_formula)(run, row, begin, end);
+    const sk_flocking_params *params = ((const sk_force *)row->rule)->params;
+    if (params->pair) SK_ISA(fly_by_formula)(run, row, begin, end);
     else SK_ISA(fly)(run, row, begin, end, NULL);
 }
 
@@ -308,19 +309,24 @@ static void bodies(const void *data, const char **moved, const char **seen) {
     *seen = params->minds;
 }
 
-static skein_status prepare(const void *data, void **state, sk_allocator *allocator, skein_error *error) {
-    const sk_flocking_params *params = data;
-    sk_pair_formula *pair = *state;
+static skein_status make(void *data, const skein_kind *kind, sk_allocator *allocator, skein_error *error) {
+    sk_flocking_params *params = data;
+    sk_pair_formula *pair;
+    (void)kind;
     skein_status status =
-        sk_pair_formula_prepare(&pair, (const char *const[]){params->towards, params->along},
-                                (const char *const[]){"formula.towards", "formula.along"}, allocator, error);
-    *state = pair;
-    return status;
+        sk_pair_formula_create(&pair, (const char *const[]){params->towards, params->along},
+                               (const char *const[]){"formula.towards", "formula.along"}, allocator, error);
+    if (status) return status;
+    sk_pair_formula_release(params->pair, allocator);
+    params->pair = pair;
+    return SKEIN_OK;
 }
 
-static void release(void *state, sk_allocator *allocator) {
-    sk_pair_formula_release(state, allocator);
+static void unmake(void *data, sk_allocator *allocator) {
+    sk_pair_formula_release(((sk_flocking_params *)data)->pair, allocator);
 }
+
+static const sk_making making = {make, unmake};
 
 sk_flocking_numbers sk_flocking_numbers_of(const sk_flocking_params *params) {
     double reach = radius(params);
@@ -353,7 +359,7 @@ static void pack(const void *data, float (*block)[4]) {
 
 static const char *refuse(const void *data) {
     const sk_flocking_params *params = data;
-    if (params->towards[0] || params->along[0]) return "with weights that are formulas";
+    if (params->pair) return "by a formula";
     return params->nearest ? "while only the nearest neighbours count" : NULL;
 }
 
@@ -368,8 +374,7 @@ const sk_force_type sk_flocking = {
     .kernel = {SK_EACH_ISA(kernel)},
     .radius = radius,
     .bodies = bodies,
+    .making = &making,
     .shader = {"forces/flocking", 3, pack, refuse},
-    .prepare = prepare,
-    .release = release,
 };
 #endif

@@ -27,6 +27,7 @@ typedef struct sk_flocking_params {
     int32_t nearest;                        /* only so many neighbours count, the nearest; 0: all in reach */
     char *on, *minds;                       /* names of bodies */
     char *towards, *along;                  /* formulas in place of the zones' weights, or "" */
+    struct sk_pair_formula *pair;           /* made from them; NULL where there are none */
 } sk_flocking_params;
 
 typedef struct sk_flocking_numbers {

@@ -76,7 +76,6 @@ typedef struct sk_force {
     const void *params;
     const char *label;
     const bool *enabled;
-    void *state;          /* what the type has prepared from the parameters, or NULL */
     sk_group moved, seen; /* found when a plan is written */
 } sk_force;
 

@@ -305,7 +305,7 @@ skein_status skein_remove(skein_world *world, skein_handle handle) {
         break;
     case SKEIN_FORCE:
         drop_pointer((void **)rules->forces.data, &rules->forces.count, object->as.force);
-        sk_world_release_force(world, object->as.force);
+        sk_release(&world->allocator, object->as.force);
         break;
     case SKEIN_COLLIDER:
         drop_pointer((void **)rules->colliders.data, &rules->colliders.count, object->as.collider);

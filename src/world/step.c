@@ -101,8 +101,6 @@ static skein_status find_groups(skein_world *world, skein_error *error) {
             return sk_fail(error, SKEIN_ERROR_NAME, force->label, "there is no body of the name '%s'", unknown);
         skein_status status =
             force->type->check ? force->type->check(force->params, world->particles.count, error) : SKEIN_OK;
-        if (!status && force->type->prepare)
-            status = force->type->prepare(force->params, &force->state, &world->allocator, error);
         if (status) return status;
     }
     return SKEIN_OK;

@@ -56,11 +56,6 @@ static void release_object(skein_world *world, sk_object *object) {
     sk_object_release(&world->allocator, object);
 }
 
-void sk_world_release_force(skein_world *world, sk_force *force) {
-    if (force->state) force->type->release(force->state, &world->allocator);
-    sk_release(&world->allocator, force);
-}
-
 void skein_world_destroy(skein_world *world) {
     if (!world) return;
     sk_allocator *allocator = &world->allocator;
@@ -68,7 +63,7 @@ void skein_world_destroy(skein_world *world) {
     if (world->device) world->device->release(world->device, world);
     sk_tasks_destroy(world->tasks);
     for (size_t i = 0; i < rules->batches.count; i++) sk_batch_release(rules->batches.data[i], allocator);
-    for (size_t i = 0; i < rules->forces.count; i++) sk_world_release_force(world, rules->forces.data[i]);
+    for (size_t i = 0; i < rules->forces.count; i++) sk_release(allocator, rules->forces.data[i]);
     for (size_t i = 0; i < rules->colliders.count; i++) sk_release(allocator, rules->colliders.data[i]);
     for (size_t i = 0; i < rules->limits.count; i++) sk_limit_release(rules->limits.data[i], allocator);
     sk_release(allocator, rules->batches.data);

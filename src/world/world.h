@@ -173,7 +173,6 @@ skein_status sk_settings_apply(sk_allocator *allocator, const skein_kind *kind, 
 const skein_field *sk_kind_field(const skein_kind *kind, const char *name, skein_error *error);
 /* Finds the particles' slots and cuts batches into sweeps, if anything was added. */
 skein_status sk_world_arrange(skein_world *world, skein_error *error);
-void sk_world_release_force(skein_world *world, sk_force *force);
 /* Brings the plan up to date for a step of dt. */
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error);
 /* Before the state is read: what a device is ahead comes back. It changes no state, only where it stands; a failure
