@@ -59,13 +59,9 @@ typedef struct sk_force_type {
      *     sum@ start@(vec3 heading),   void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction),
      *     vec3 finish@(sum@ sum, float dt)
      * where `apart` leads from the neighbour here, `square` is its squared length (less than that of the radius, and
-     * 0 in one place), and `direction` is the neighbour's unit direction of flight, as
-     * `heading` is the particle's own. */
+     * 0 in one place), and `direction` is the neighbour's unit direction of flight, as `heading` is the particle's own.
+     */
     sk_shader shader;
-    /* Makes the state that the kernel needs besides the parameters, before a plan is written; *state is what it made
-     * the last time. On failure *state is NULL. NULL: there is none. */
-    skein_status (*prepare)(const void *params, void **state, sk_allocator *allocator, skein_error *error);
-    void (*release)(void *state, sk_allocator *allocator);
     /* Over colliders: the time ahead (s), the clearance (m) and the strength (m/s2) of steering clear. */
     void (*look)(const void *params, double look[3]);
 } sk_force_type;
