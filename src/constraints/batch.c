@@ -1,6 +1,6 @@
 #include <string.h>
 
-#include "constraints/sweep.h"
+#include "constraints/enclosure.h"
 
 int sk_constraint_arity(const sk_constraint_type *type, const void *params) {
     return type->arity_of ? type->arity_of(params) : type->arity;
@@ -38,6 +38,7 @@ sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *typ
 void sk_batch_release(sk_batch *batch, sk_allocator *allocator) {
     if (!batch) return;
     sk_batch_forget_sweeps(batch, allocator);
+    sk_enclosure_release(batch->enclosure, allocator);
     void *arrays[] = {batch->particle,        batch->slot,           batch->rest,
                       batch->scale,           batch->sweeps,         batch->lane,
                       batch->lane_rest,       batch->lane_stiffness, batch->lane_compliance,

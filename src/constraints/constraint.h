@@ -21,6 +21,7 @@
 
 typedef struct sk_batch sk_batch;
 typedef struct sk_sweep sk_sweep;
+typedef struct sk_enclosure sk_enclosure;
 
 enum { SK_MOST_ARITY = 8 }; /* particles an element */
 
@@ -54,6 +55,12 @@ typedef struct sk_constraint_type {
      * (formula/graph.h). */
     size_t (*energy)(const sk_batch *batch, double time, const sk_vec4 *x, size_t begin, size_t end, double *energy);
     const sk_making *making; /* what is made from its texts; NULL: nothing */
+    /* A kind whose batch is one constraint on all its elements, the triangles of a closed surface: makes the batch's
+     * enclosure (enclosure.h), or says what is wrong with the surface. Its sweep kernels walk one group, apply and
+     * diagonal the whole batch, and it has one energy, J, instead of `energy`. NULL for all others. */
+    skein_status (*enclose)(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles,
+                            skein_error *error);
+    double (*whole_energy)(const sk_batch *batch, const sk_vec4 *x, size_t *guarded);
 } sk_constraint_type;
 
 /* What every constraint kind is made of. */
@@ -85,6 +92,8 @@ struct sk_batch {
     real *lane_compliance; /* and infinity, so that nothing comes of them */
     real *lane_multiplier; /* lambda of XPBD, only read where a substep keeps it */
     uint8_t *special;      /* a block of 16 lanes each: not all as the sweep's common values say */
+
+    sk_enclosure *enclosure; /* of a kind that has one, else NULL */
 };
 
 /* Makes a batch of copies, for the type's parameters; NULL when there is no memory. `rest` has rest_count x count
@@ -106,7 +115,7 @@ sk_row_kernel sk_sweep_clear_multipliers;
 /* The batch's damping over stiffness, in seconds; 0 for a rigid batch. */
 double sk_batch_damping_time(const sk_batch *batch);
 
-extern const sk_constraint_type sk_distance, sk_dihedral, sk_isometric, sk_area, sk_volume, sk_angle, sk_formula_constraint,
-    sk_energy;
+extern const sk_constraint_type sk_distance, sk_dihedral, sk_isometric, sk_area, sk_volume, sk_angle,
+    sk_formula_constraint, sk_energy, sk_enclosed_volume, sk_pressure;
 
 #endif

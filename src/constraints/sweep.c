@@ -1,4 +1,5 @@
 /* Cutting a batch into sweeps. */
+#include "constraints/enclosure.h"
 #include "constraints/groups.h"
 
 #include <stdio.h>
@@ -208,12 +209,10 @@ static bool allocate_lanes(sk_batch *batch, sk_allocator *allocator) {
            batch->lane_multiplier && batch->special;
 }
 
-bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles) {
+static bool cut(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles) {
     cutter *c = sk_allocate(allocator, sizeof *c);
     size_t *lane_of = sk_allocate(allocator, batch->count * sizeof *lane_of);
     bool *taken = NULL, good = c && lane_of;
-    sk_batch_forget_sweeps(batch, allocator);
-    for (size_t i = 0; i < batch->arity * batch->count; i++) batch->slot[i] = particles->slot_of[batch->particle[i]];
     if (good) {
         *c = (cutter){.batch = batch, .allocator = allocator, .particles = particles, .arity = (int)batch->arity};
         good = !batch->type->project.strips.version[0] || add_strip_sweeps(c);
@@ -229,6 +228,13 @@ bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particl
     sk_release(allocator, lane_of);
     sk_release(allocator, c);
     return good;
+}
+
+bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles) {
+    sk_batch_forget_sweeps(batch, allocator);
+    for (size_t i = 0; i < batch->arity * batch->count; i++) batch->slot[i] = particles->slot_of[batch->particle[i]];
+    if (!batch->enclosure) return cut(batch, allocator, particles);
+    return sk_enclosure_arrange(batch, allocator, particles) && allocate_lanes(batch, allocator);
 }
 
 /* The values of a strip sweep's middle element stand for all; blocks that differ are marked. */

@@ -201,6 +201,11 @@ skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_typ
     batch->params = object->params;
     batch->label = object->label;
     batch->enabled = &object->common.plain.enabled;
+    if (type->enclose && (status = type->enclose(batch, allocator, &world->particles, error))) {
+        sk_batch_release(batch, allocator);
+        unmake_object(world, object);
+        return status;
+    }
     batch->measured = type->strain != NULL;
     world->rules.batches.data[world->rules.batches.count++] = batch;
     object->as.batch = batch;

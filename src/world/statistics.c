@@ -57,7 +57,7 @@ static skein_status measure_stretch(skein_world *world, skein_statistics *s, ske
     const sk_rules *rules = &world->rules;
     size_t edges = 0;
     for (size_t i = 0; i < rules->batches.count; i++) {
-        s->constraints += rules->batches.data[i]->count;
+        s->constraints += rules->batches.data[i]->type->enclose ? 1 : rules->batches.data[i]->count;
         if (rules->batches.data[i]->measured) edges += rules->batches.data[i]->count;
     }
     if (!edges) return SKEIN_OK;
