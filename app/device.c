@@ -7,7 +7,7 @@
 const app_option app_device_option = {
     "--device",
     "WHERE",
-    "where steps are computed: cpu (the default), gpu, or auto: a graphics card if one is there that can run the scene",
+    "where steps are computed: cpu (the default), gpu, or auto: on a graphics card if one can",
     false,
     NULL,
     0};

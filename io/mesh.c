@@ -83,6 +83,8 @@ skein_status io_mesh_read(const char *path, io_mesh *out, io_warnings warnings, 
     const size_t limit = most < SIZE_MAX / 4 ? (size_t)most : SIZE_MAX / 4;
 
     *out = (io_mesh){0};
+    if (ends_with(path, ".node") || ends_with(path, ".ele"))
+        return io_tetrahedra_read_files(path, limit, out, warnings, error);
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
         if (!ends_with(path, formats[i].ending)) continue;
         io_bytes text;
@@ -91,7 +93,7 @@ skein_status io_mesh_read(const char *path, io_mesh *out, io_warnings warnings, 
         io_bytes_free(&text);
         return status;
     }
-    return io_error_set(error, SKEIN_ERROR_FILE, path, "not a mesh file by its ending: expected .obj or .off");
+    return io_error_set(error, SKEIN_ERROR_FILE, path, "not a mesh file by its ending: expected .obj, .off or .node");
 }
 
 /* ---- Lines and words ----------------------------------------------------------------------- */
@@ -177,6 +179,28 @@ const char *io_scan_cut_hint(const io_scan *scan) {
 bool io_word_is(io_word word, const char *text) {
     size_t length = (size_t)(word.end - word.begin);
     return strlen(text) == length && memcmp(word.begin, text, length) == 0;
+}
+
+bool io_scan_next_line_word(io_scan *scan, io_word *word) {
+    while (io_scan_line(scan))
+        if (io_scan_word(scan, word)) return true;
+    return false;
+}
+
+skein_status io_scan_count(const io_scan *scan, io_word word, const char *name, uint64_t most, uint64_t *value) {
+    const char *p = word.begin;
+    uint64_t number = 0;
+    for (; p < word.end && *p >= '0' && *p <= '9'; p++)
+        number = number < 1000000000000000000u ? number * 10 + (uint64_t)(*p - '0') : number;
+    char quote[IO_QUOTE_SIZE];
+    if (p < word.end)
+        return io_error_at(scan->error, SKEIN_ERROR_SYNTAX, scan->path, word.line, "%s is %s: expected a whole number",
+                           name, io_quote(word.begin, word.end, quote));
+    if (number > most)
+        return io_error_at(scan->error, SKEIN_ERROR_LIMIT, scan->path, word.line, "%s is %s: at most %llu are possible",
+                           name, io_quote(word.begin, word.end, quote), (unsigned long long)most);
+    *value = number;
+    return SKEIN_OK;
 }
 
 skein_status io_scan_number(const io_scan *scan, io_word word, const char *expected, double *value) {

@@ -1,4 +1,4 @@
-/* Polygon meshes as files: read OBJ and OFF, write OBJ.
+/* Meshes as files: polygons from OBJ and OFF, tetrahedra from .node and .ele; write OBJ.
  *
  * Owns: io_mesh, the mesh as it stands in a file. Called by the scene reader, the command and the
  * exporters. Invariant of a mesh that was read: at least one vertex and one face; every face has three
@@ -27,11 +27,13 @@ typedef struct io_mesh {
     size_t face_vertex_count;
     double *uvs; /* uv_count x 2 */
     size_t uv_count;
+    bool tetrahedra; /* the faces are none, but tetrahedra of four corners each, in no order of their own */
     size_t vertex_capacity, face_capacity, corner_capacity, corner_uv_capacity, uv_capacity; /* internal */
 } io_mesh;
 
-/* Reads a mesh by its ending, .obj or .off in any case. `out` is overwritten (free it afterwards) and
- * empty on failure. Faults that leave a usable mesh are warnings, one line each. */
+/* Reads a mesh by its ending, .obj or .off in any case; .node or .ele reads both files of the name. `out` is
+ * overwritten (free it afterwards) and empty on failure. Faults that leave a usable mesh are warnings, one line each.
+ */
 skein_status io_mesh_read(const char *path, io_mesh *out, io_warnings warnings, skein_error *error);
 void io_mesh_free(io_mesh *mesh); /* empty again; an empty one is allowed */
 
@@ -50,6 +52,19 @@ skein_status io_obj_read(const char *text, size_t size, const char *path, io_mes
                          skein_error *error);
 skein_status io_off_read(const char *text, size_t size, const char *path, io_mesh *out, io_warnings warnings,
                          skein_error *error);
+
+/* A text in memory; `path` serves the messages. */
+typedef struct io_text {
+    const char *text;
+    size_t size;
+    const char *path;
+} io_text;
+/* A mesh of tetrahedra: points in one text, corners in the other. */
+skein_status io_tetrahedra_read(const io_text *node, const io_text *ele, io_mesh *out, io_warnings warnings,
+                                skein_error *error);
+/* The same from both files of a name, of at most `most` bytes each; `path` is either. */
+skein_status io_tetrahedra_read_files(const char *path, size_t most, io_mesh *out, io_warnings warnings,
+                                      skein_error *error);
 
 /* Writes an OBJ with unit vertex normals, faces as `a//a b//b c//c` in the mesh's own order. Positions
  * are written as floats that read back bit for bit. Refuses a position that is not finite as a float.
@@ -81,6 +96,10 @@ skein_status io_scan_check_text(const io_scan *scan);
 bool io_scan_word(io_scan *scan, io_word *word);
 /* Goes to the next line; false at the text's end. */
 bool io_scan_line(io_scan *scan);
+/* The first word of the next line that has one; false at the text's end. */
+bool io_scan_next_line_word(io_scan *scan, io_word *word);
+/* The word as a whole number from 0 to `most`, or an error that begins with `name`. */
+skein_status io_scan_count(const io_scan *scan, io_word word, const char *name, uint64_t most, uint64_t *value);
 /* For the end of a message about a line that is too short. */
 const char *io_scan_cut_hint(const io_scan *scan);
 /* The word as a finite number, or an error that says what was expected: "a coordinate". */

@@ -27,32 +27,6 @@ static skein_status fail_memory(const off_reader *reader) {
                        reader->mesh->face_count);
 }
 
-/* The first word of the next line that has one; false at the text's end. */
-static bool next_line_word(io_scan *scan, io_word *word) {
-    while (io_scan_line(scan))
-        if (io_scan_word(scan, word)) return true;
-    return false;
-}
-
-/* A whole number from 0 to `most`. */
-static skein_status read_count(const off_reader *reader, io_word word, const char *name, uint64_t most,
-                               uint64_t *value) {
-    const char *p = word.begin;
-    uint64_t number = 0;
-    for (; p < word.end && *p >= '0' && *p <= '9'; p++)
-        number = number < 1000000000000000000u ? number * 10 + (uint64_t)(*p - '0') : number;
-    char quote[IO_QUOTE_SIZE];
-    if (p < word.end)
-        return io_error_at(reader->scan.error, SKEIN_ERROR_SYNTAX, reader->scan.path, word.line,
-                           "%s is %s: expected a whole number", name, io_quote(word.begin, word.end, quote));
-    if (number > most)
-        return io_error_at(reader->scan.error, SKEIN_ERROR_LIMIT, reader->scan.path, word.line,
-                           "%s is %s: at most %llu are possible", name, io_quote(word.begin, word.end, quote),
-                           (unsigned long long)most);
-    *value = number;
-    return SKEIN_OK;
-}
-
 /* ---- Header -------------------------------------------------------------------------------- */
 
 /* [ST][C][N]OFF */
@@ -82,7 +56,7 @@ static skein_status read_keyword(off_reader *reader, io_word word) {
 static skein_status read_header(off_reader *reader) {
     io_scan *scan = &reader->scan;
     io_word word;
-    if (!io_scan_word(scan, &word) && !next_line_word(scan, &word))
+    if (!io_scan_word(scan, &word) && !io_scan_next_line_word(scan, &word))
         return io_error_set(scan->error, SKEIN_ERROR_SYNTAX, scan->path,
                             "nothing but comments in the file: expected OFF");
     skein_status status = read_keyword(reader, word);
@@ -94,11 +68,11 @@ static skein_status read_header(off_reader *reader) {
     if ((status = io_scan_check_text(scan)) != SKEIN_OK) return status;
     uint64_t vertices = 0, faces = 0;
     io_word second;
-    if ((!here && !next_line_word(scan, &word)) || !io_scan_word(scan, &second))
+    if ((!here && !io_scan_next_line_word(scan, &word)) || !io_scan_word(scan, &second))
         return io_error_at(scan->error, SKEIN_ERROR_SYNTAX, scan->path, scan->line,
                            "the header is not complete: expected the numbers of vertices, faces and edges");
-    status = read_count(reader, word, "the number of vertices", IO_MESH_MOST_VERTICES, &vertices);
-    if (status == SKEIN_OK) status = read_count(reader, second, "the number of faces", SIZE_MAX / 16, &faces);
+    status = io_scan_count(&reader->scan, word, "the number of vertices", IO_MESH_MOST_VERTICES, &vertices);
+    if (status == SKEIN_OK) status = io_scan_count(&reader->scan, second, "the number of faces", SIZE_MAX / 16, &faces);
     // The number of edges is often 0, wrong or not there.
     if (status == SKEIN_OK && (vertices == 0 || faces == 0))
         status =
@@ -138,14 +112,14 @@ static skein_status read_face(off_reader *reader, io_word word) {
     io_scan *scan = &reader->scan;
     size_t line = word.line;
     uint64_t size, index;
-    skein_status status = read_count(reader, word, "a face's number of corners", UINT32_MAX, &size);
+    skein_status status = io_scan_count(&reader->scan, word, "a face's number of corners", UINT32_MAX, &size);
     if (status != SKEIN_OK) return status;
     for (uint64_t corner = 0; corner < size; corner++) {
         if (!io_scan_word(scan, &word))
             return io_error_at(scan->error, SKEIN_ERROR_SYNTAX, scan->path, line,
                                "the line ends after %llu of a face's %llu corners%s", (unsigned long long)corner,
                                (unsigned long long)size, io_scan_cut_hint(scan));
-        if ((status = read_count(reader, word, "a face's corner", IO_MESH_MOST_VERTICES, &index)) != SKEIN_OK)
+        if ((status = io_scan_count(&reader->scan, word, "a face's corner", IO_MESH_MOST_VERTICES, &index)) != SKEIN_OK)
             return status;
         if (index >= reader->vertices)
             return io_error_at(scan->error, SKEIN_ERROR_SYNTAX, scan->path, word.line,
@@ -170,11 +144,11 @@ static skein_status read_body(off_reader *reader) {
     skein_status status = SKEIN_OK;
     io_word word;
     for (size_t i = 0; i < reader->vertices && status == SKEIN_OK; i++)
-        status = next_line_word(&reader->scan, &word) ? read_vertex(reader, word)
-                                                      : fail_cut(reader, "vertices", i, reader->vertices);
+        status = io_scan_next_line_word(&reader->scan, &word) ? read_vertex(reader, word)
+                                                              : fail_cut(reader, "vertices", i, reader->vertices);
     for (size_t i = 0; i < reader->faces && status == SKEIN_OK; i++)
-        status = next_line_word(&reader->scan, &word) ? read_face(reader, word)
-                                                      : fail_cut(reader, "faces", i, reader->faces);
+        status = io_scan_next_line_word(&reader->scan, &word) ? read_face(reader, word)
+                                                              : fail_cut(reader, "faces", i, reader->faces);
     return status;
 }
 
@@ -190,7 +164,7 @@ skein_status io_off_read(const char *text, size_t size, const char *path, io_mes
         return status;
     }
     io_word word;
-    if (next_line_word(&reader.scan, &word))
+    if (io_scan_next_line_word(&reader.scan, &word))
         io_warn(warnings, "%s:%zu: what follows the last face was passed over", path, word.line);
     return SKEIN_OK;
 }

@@ -77,6 +77,13 @@ static bool add_body(const builder *b, io_place place, const skein_kind *kind, c
     bool has_mesh = file && file[0];
     io_mesh mesh = {0};
     if (has_mesh && !read_mesh(b, place, file, &mesh)) return false;
+    // as polygons they would be faces without any sense
+    if (mesh.tetrahedra && strcmp(kind->name, "tetrahedra") != 0) {
+        io_fault(place, "mesh", SKEIN_ERROR_MESH, "'%s' is made of tetrahedra: a %s needs faces, from .obj or .off",
+                 file, kind->name);
+        io_mesh_free(&mesh);
+        return false;
+    }
     skein_mesh view = io_mesh_view(&mesh);
     skein_handle body;
     bool good = !skein_body_add(b->world, kind->name, has_mesh ? &view : NULL, settings->data, &body);

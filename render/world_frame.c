@@ -150,7 +150,10 @@ static bool make_body(body *b, const skein_world *world, const skein_surface *su
     release_body(b);
     if (!render_body_mesh_make(&b->mesh, surface, positions)) return false;
     b->handle = handle;
-    b->kind = !kind ? CLOTH : !strcmp(kind->name, "rope") ? ROPE : !strcmp(kind->name, "lattice") ? JELLY : CLOTH;
+    b->kind = !kind                                                                 ? CLOTH
+              : !strcmp(kind->name, "rope")                                         ? ROPE
+              : !strcmp(kind->name, "lattice") || !strcmp(kind->name, "tetrahedra") ? JELLY
+                                                                                    : CLOTH;
     b->source = *surface;
     b->made = grow(&b->positions, 3 * b->mesh.vertex_count, sizeof *b->positions) &&
               grow(&b->values, b->mesh.vertex_count, sizeof *b->values);

@@ -6,7 +6,7 @@
 
 #include "bodies/body.h"
 
-static const sk_body_type *const bodies[] = {&sk_cloth, &sk_lattice, &sk_rope, &sk_flock};
+static const sk_body_type *const bodies[] = {&sk_cloth, &sk_lattice, &sk_rope, &sk_tetrahedra, &sk_flock};
 static const sk_constraint_type *const constraints[] = {&sk_distance, &sk_dihedral, &sk_isometric,          &sk_area,
                                                         &sk_volume,   &sk_angle,    &sk_formula_constraint, &sk_energy};
 static const sk_force_type *const forces[] = {

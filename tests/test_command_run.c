@@ -37,7 +37,7 @@ static void judge_report(const json_t *report, int frames) {
         {"steps", 0, 1e5},
         {"substeps", 0, 1e7},
         {"nonfinite_particles", 0, 0},
-        {"guarded_values", 0, 1e3},
+        {"guarded_values", 0, 0},
         {"device_bytes", 0, 0},
         {"frames", frames, frames},
     };
@@ -51,7 +51,8 @@ static void judge_report(const json_t *report, int frames) {
         const json_t *flock = json_array_get(flocks, i), *milling = json_object_get(flock, "milling");
         assert_int_equal(json_array_size(milling), (frames + 15) / 16 + 1);
         assert_int_equal(json_array_size(json_object_get(flock, "time")), json_array_size(milling));
-        assert_in_range((int)(1000 * json_number_value(json_array_get(milling, 0))), 1, 1000);
+        double first = json_number_value(json_array_get(milling, 0));
+        assert_true(first > (!strcmp(text_of(report, "name"), "birds") ? 0.4 : -1) && first <= 1);
     }
     assert_string_equal(text_of(report, "skein"), SKEIN_VERSION);
     assert_string_equal(text_of(report, "device"), "processor");

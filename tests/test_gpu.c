@@ -199,7 +199,7 @@ static skein_world *flying(const char *method, size_t count, bool hawk) {
                              NULL));
     OK(world, skein_force_add(world, "flocking",
                               SKEIN_SETTINGS(SKEIN_REAL("separation", 0.8), SKEIN_REAL("alignment", 0.6),
-                                             SKEIN_REAL("cohesion", 0.6)),
+                                             SKEIN_REAL("cohesion", 0.6), SKEIN_REAL("view", hawk ? 250 : 360)),
                               NULL));
     OK(world, skein_force_add(world, "attraction", NULL, NULL));
     if (hawk)
@@ -218,6 +218,69 @@ static void a_flock_agrees_after_a_step(void **state) {
     for (size_t m = 0; m < COUNT(explicit_methods); m++)
         assert_agree(flying(explicit_methods[m], 300, true), flying(explicit_methods[m], 300, true), 2, 1e-4,
                      explicit_methods[m]);
+}
+
+/* Kept from turning, climbing and leaving, and looking out for what is in the way. */
+static skein_world *kept(const char *method, bool ball) {
+    skein_world *world = flying(method, 400, true);
+    OK(world,
+       skein_force_add(world, "turn_limit", SKEIN_SETTINGS(SKEIN_REAL("turn", 60), SKEIN_REAL("climb", 20)), NULL));
+    if (ball)
+        OK(world, skein_force_add(world, "bounds",
+                                  SKEIN_SETTINGS(SKEIN_TEXT("shape", "sphere"), SKEIN_REAL("radius", 3)), NULL));
+    else
+        OK(world, skein_force_add(world, "bounds",
+                                  SKEIN_SETTINGS(SKEIN_VEC3("size", 6, 7, 5), SKEIN_VEC3("centre", 0.5, 0, 0)), NULL));
+    OK(world, skein_force_add(world, "lookout", SKEIN_SETTINGS(SKEIN_REAL("ahead", 0.5)), NULL));
+    OK(world, skein_collider_add(world, "capsule", SKEIN_SETTINGS(SKEIN_VEC3("motion.velocity", 1, 0, 0)), NULL));
+    // (who is stopped by friction has no direction of flight but rounding's, and these rules ask for one)
+    OK(world,
+       skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -3), SKEIN_REAL("friction", 0)), NULL));
+    return world;
+}
+
+static void a_flock_that_is_kept_agrees(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(explicit_methods); m++)
+        assert_agree(kept(explicit_methods[m], m % 2), kept(explicit_methods[m], m % 2), 2, 1e-4, explicit_methods[m]);
+    // the tests above are about something: each rule alone changes where the birds go
+    static const char *const rules[] = {"forces.2.enabled", "forces.4.enabled", "forces.5.enabled", "forces.6.enabled"};
+    for (size_t r = 0; r < COUNT(rules); r++) {
+        skein_world *with = kept("symplectic_euler", false), *without = kept("symplectic_euler", false);
+        to_card(with);
+        to_card(without);
+        OK(without, skein_set_path(without, rules[r], skein_number(0)));
+        for (int i = 0; i < 2; i++) {
+            OK(with, skein_world_step(with, dt));
+            OK(without, skein_world_step(without, dt));
+        }
+        assert_true(difference(with, without) > 0.01);
+        skein_world_destroy(with);
+        skein_world_destroy(without);
+    }
+    skein_world *world = kept("symplectic_euler", false);
+    to_card(world);
+    OK(world, skein_set_path(world, "forces.5.edge", skein_text("periodic")));
+    FAILS(world, SKEIN_ERROR_VALUE, "with periodic edges", skein_world_step(world, dt));
+    OK(world, skein_set_path(world, "forces.5.edge", skein_text("wall")));
+    OK(world, skein_set_path(world, "forces.2.particle", skein_number(7)));
+    FAILS(world, SKEIN_ERROR_VALUE, "predator cannot run", skein_world_step(world, dt));
+    OK(world, skein_set_path(world, "forces.2.particle", skein_number(-1)));
+    OK(world, skein_set_path(world, "forces.0.nearest", skein_number(7)));
+    FAILS(world, SKEIN_ERROR_VALUE, "only the nearest", skein_world_step(world, dt));
+    skein_world_destroy(world);
+}
+
+static void a_profile_is_one_pass(void **state) {
+    (void)state;
+    skein_world *world = flying("symplectic_euler", 300, false);
+    skein_pass passes[4];
+    size_t count;
+    to_card(world);
+    OK(world, skein_world_profile(world, dt, passes, COUNT(passes), &count));
+    assert_int_equal(count, 1);
+    assert_true(passes[0].seconds > 0);
+    skein_world_destroy(world);
 }
 
 /* What neighbours within 2 make of a bird's velocity in a step, looking at all of them (flocking.h). */
@@ -562,6 +625,8 @@ int main(void) {
         cmocka_unit_test(particles_that_are_nowhere_harm_nobody),
         cmocka_unit_test(the_same_bits_come_again),
         cmocka_unit_test(a_flock_agrees_after_a_step),
+        cmocka_unit_test(a_flock_that_is_kept_agrees),
+        cmocka_unit_test(a_profile_is_one_pass),
         cmocka_unit_test(the_cards_grid_is_all_pairs),
         cmocka_unit_test(flocks_that_mind_each_other_agree),
         cmocka_unit_test(the_flocks_stay_alike),

@@ -107,7 +107,7 @@ static const struct {
      ": bodies.0.mesh: tests/bad/scenes/../meshes/index_out_of_range.obj:6: vertex 5 in a face, but the file has 4 "
      "vertices"},
     {"mesh_is_a_directory",
-     ": bodies.0.mesh: tests/bad/scenes/../meshes: not a mesh file by its ending: expected .obj or .off"},
+     ": bodies.0.mesh: tests/bad/scenes/../meshes: not a mesh file by its ending: expected .obj, .off or .node"},
     {"mesh_missing", ": bodies.0.mesh: tests/bad/scenes/no/such.obj: cannot read: no such file or directory"},
     {"method_as_text", ": method: expected an object, { \"type\": ... }, not the text 'xpbd'"},
     {"neither_mesh_nor_grid", ": bodies.0.mesh: a cloth needs a mesh or a grid"},

@@ -182,6 +182,9 @@ static void moves_by_keys_and_flies(void **state) {
 
 /* ---- The hand ------------------------------------------------------------------------------------------- */
 
+/* Where the picture begins, beside the panel. */
+static double left = 230;
+
 /* Where the first camera of the state that was heard last shows a point. */
 static void pixel_of(const double point[3], double *x, double *y) {
     render_camera lens = {.up = {0, 1, 0}, .fov = render_view_default().camera.fov};
@@ -193,7 +196,7 @@ static void pixel_of(const double point[3], double *x, double *y) {
     render_camera_axes(&lens, right, up, back);
     for (int k = 0; k < 3; k++) off[k] = point[k] - lens.eye[k];
     double depth = -render_dot(off, back);
-    *x = 320 + 180 * render_dot(off, right) / depth / tall;
+    *x = left + 0.5 * (640 - left) + 180 * render_dot(off, right) / depth / tall;
     *y = 180 - 180 * render_dot(off, up) / depth / tall;
 }
 
@@ -364,11 +367,11 @@ static void changes_its_size(void **state) {
     listen_from_here();
     snprintf(words, sizeof words, "windowsize %s 500 410", screen.window);
     tool(words);
-    expect("size 500 410");
+    expect("size 270 410"); // beside the panel
     tool("key x");
     expect("note saved sheet-002.png");
     assert_int_equal(render_image_read(&image, in_folder("sheet-002.png"), NULL), SKEIN_OK);
-    assert_int_equal(image.width, 500);
+    assert_int_equal(image.width, 270);
     assert_int_equal(image.height, 410);
     render_image_release(&image);
 }
@@ -473,6 +476,7 @@ static void solves_by_keys(void **state) {
     expect("opened particles=2 ");
     ask_state();
     double x, y;
+    left = 0;
     pixel_of((const double[]){1, 1, 0}, &x, &y);
     listen_from_here();
     drag(x, y, x - 40, y - 60, 1);

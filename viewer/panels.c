@@ -221,12 +221,16 @@ static void show_message(const viewer_shown *shown, double left, double width, d
     widgets_panel_end();
 }
 
+int viewer_side_panel_width(int width) {
+    return (int)fmin(fmax(0.3 * width, 230 * widgets_scale()), 0.6 * width);
+}
+
 void viewer_panels_show(viewer_panels *panels, int width, int height) {
     const viewer_shown *shown = &panels->exchange->shown;
-    double w = width, h = height, side = fmin(fmax(0.3 * w, 230 * widgets_scale()), 0.6 * w);
+    double w = width, h = height, side = viewer_side_panel_width(width);
     bool has_side = shown->panel[VIEWER_PANEL_SIDE] && shown->has_scene;
     if (has_side) show_side(panels, shown, side, h);
-    if (shown->panel[VIEWER_PANEL_PLOTS] && shown->has_scene) viewer_show_plots(panels);
+    if (shown->panel[VIEWER_PANEL_PLOTS] && shown->has_scene) viewer_show_plots(panels, w, h);
     if (shown->panel[VIEWER_PANEL_LOG]) show_log(panels, shown, w, h);
     if (shown->panel[VIEWER_PANEL_GALLERY]) show_gallery(panels, shown, w, h);
     if (shown->panel[VIEWER_PANEL_KEYS]) show_keys(panels, w, h);

@@ -25,6 +25,8 @@ typedef struct viewer_panels {
 } viewer_panels;
 
 void viewer_panels_show(viewer_panels *panels, int width, int height);
+/* The width of the panel at the side: the picture lies beside it. */
+int viewer_side_panel_width(int width);
 
 /* ---- between the panels' files ---- */
 
@@ -36,6 +38,6 @@ void viewer_place_control(viewer_panels *panels, const char *name);
 /* panels_fields.c: the objects of a side, with a control for each field. */
 void viewer_show_objects(viewer_panels *panels, int side);
 /* panels_plots.c */
-void viewer_show_plots(viewer_panels *panels);
+void viewer_show_plots(viewer_panels *panels, double width, double height);
 
 #endif

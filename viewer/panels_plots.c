@@ -30,15 +30,15 @@ static void show_energies(const viewer_shown *shown) {
     else plot(shown, "energy (J)", all, names, 4);
 }
 
-void viewer_show_plots(viewer_panels *panels) {
+void viewer_show_plots(viewer_panels *panels, double wide, double tall) {
     static const viewer_quantity stretch[] = {VIEWER_STRETCH}, contacts[] = {VIEWER_CONTACTS},
                                  times[] = {VIEWER_STEP_MS, VIEWER_DRAW_MS};
     static const char *const none[] = {""}, *const passes[] = {"step", "draw"};
     const viewer_shown *shown = &panels->exchange->shown;
     double width = 260 * widgets_scale(), height = 500 * widgets_scale();
     bool open = true;
-    if (height > shown->height - 4) height = shown->height - 4;
-    if (widgets_panel("Plots", WIDGETS_FREE, shown->width - width - 4, 2, width, height, &open)) {
+    if (height > tall - 4) height = tall - 4;
+    if (widgets_panel("Plots", WIDGETS_FREE, wide - width - 4, 2, width, height, &open)) {
         show_energies(shown);
         plot(shown, "largest stretch (%)", stretch, none, 1);
         plot(shown, "contacts", contacts, none, 1);

@@ -154,10 +154,11 @@ static void judge_speed(viewer_stage *stage, double now) {
     stage->speed = stage->simulated / stage->real;
     stage->simulated = stage->real = 0;
     bool slow = stage->speed < slow_speed;
-    if (slow && !stage->slow)
+    if (slow && !stage->told_slow)
         viewer_say(stage, SKEIN_LOG_INFO, "this machine is too slow for it: it goes at %.0f %% of real time",
                    100 * stage->speed);
     stage->slow = slow;
+    stage->told_slow |= slow;
 }
 
 /* Takes the steps that are due. What a slow machine cannot do in time is dropped, so that it never has to catch up. */

@@ -59,7 +59,7 @@ typedef struct viewer_stage {
     /* time */
     double last, spoke, sampled, profiled; /* when: frames, notes, statistics, passes */
     double simulated, real, speed;         /* seconds since the last look, and their ratio */
-    bool slow;
+    bool slow, told_slow;                  /* now; was said of this scene */
     double step_ms, draw_ms;
 
     /* files */

@@ -215,7 +215,8 @@ void viewer_stage_answer(viewer_stage *stage, const viewer_request *r) {
     case VIEWER_RESIZE:
         stage->wide = (int)r->x, stage->tall = (int)r->y;
         stage->dirty = true;
-        if (stage->film) viewer_film_toggle(stage); // its pictures have one size
+        if (stage->film) viewer_film_toggle(stage);                                      // its pictures have one size
+        if (!stage->camera.moved && !stage->camera.flying) stage->camera.placed = false; // it frames anew
         viewer_event(stage->events, "size %d %d", stage->wide, stage->tall);
         break;
     case VIEWER_FOCUS: focus(stage, r->down); break;

@@ -20,7 +20,7 @@ static void restart_clock(viewer_stage *stage) {
     stage->last = viewer_seconds();
     stage->simulated = stage->real = 0;
     stage->speed = 1;
-    stage->slow = false;
+    stage->slow = stage->told_slow = false;
     stage->sampled = 0;
     stage->grab.holding = false;
     stage->facts = stage->dirty = true;
@@ -173,8 +173,8 @@ static void print_derivatives(viewer_stage *stage, const skein_spring *spring) {
     snprintf(line, sizeof line,
              "solve %" PRIu64 ": a (%.6g, %.6g, %.6g), b (%.6g, %.6g, %.6g), distance %.6g m; "
              "derivatives %.6g %.6g %.6g %.6g %.6g %.6g",
-             stage->sides[0].frame, a[0], a[1], a[2], b[0], b[1], b[2], length, off[0], off[1], off[2], -off[0],
-             -off[1], -off[2]);
+             stage->sides[0].frame, a[0], a[1], a[2], b[0], b[1], b[2], length, off[0], off[1], off[2], 0 - off[0],
+             0 - off[1], 0 - off[2]);
     viewer_note(stage, "%s", line);
     printf("%s\n", line);
     fflush(stdout);

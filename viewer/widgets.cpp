@@ -249,7 +249,8 @@ void widgets_plot(const char *title, const float *const *series, const char *con
         if (!series[s] || count < 2) continue;
         for (size_t i = 0; i + 1 < count; i++) {
             float a = series[s][(first + i) % room], b = series[s][(first + i + 1) % room];
-            float x = at.x + size.x * static_cast<float>(i) / span, next = at.x + size.x * static_cast<float>(i + 1) / span;
+            float x = at.x + size.x * static_cast<float>(i) / span,
+                  next = at.x + size.x * static_cast<float>(i + 1) / span;
             list->AddLine(ImVec2(x, at.y + size.y * (1 - (a - least) / (most - least))),
                           ImVec2(next, at.y + size.y * (1 - (b - least) / (most - least))), colours[s % 4], 1.5f);
         }

@@ -30,9 +30,11 @@ typedef struct window {
     render_messages messages;
     viewer_request pending[MOST_PENDING]; /* of the pointer, until Dear ImGui has seen it */
     int pending_count;
-    double x, y;       /* of the pointer, as its events say: it may be elsewhere by now */
-    int stage_buttons; /* that went down over the picture: the stage gets their end, too */
-    int frames_due;    /* to draw, since something happened */
+    double x, y;            /* of the pointer, as its events say: it may be elsewhere by now */
+    int stage_buttons;      /* that went down over the picture: the stage gets their end, too */
+    int left;               /* where the picture begins, beside the panel */
+    double picture_size[2]; /* that was asked for */
+    int frames_due;         /* to draw, since something happened */
     unsigned framebuffer;
     uint64_t generation;
     char title[256];
@@ -116,10 +118,8 @@ static void on_focus(GLFWwindow *glfw, int focused) {
 }
 
 static void on_size(GLFWwindow *glfw, int width, int height) {
-    window *w = window_of(glfw);
-    viewer_request request = {.kind = VIEWER_RESIZE, .x = width, .y = height};
-    w->frames_due = FRAMES_AFTER_EVENT;
-    if (width > 0 && height > 0) viewer_ask(&w->exchange, &request);
+    (void)width, (void)height; // drawing finds out
+    window_of(glfw)->frames_due = FRAMES_AFTER_EVENT;
 }
 
 static void on_refresh(GLFWwindow *glfw) {
@@ -150,23 +150,19 @@ static void set_callbacks(window *w) {
     glfwSetDropCallback(w->glfw, on_drop);
 }
 
-/* Hands on what the pointer did over the picture. */
+/* Hands on what the pointer did over the picture, at its place in it. */
 static void pass_pointer(window *w) {
     bool panels = widgets_want_pointer();
     for (int i = 0; i < w->pending_count; i++) {
-        const viewer_request *request = &w->pending[i];
-        int bit = request->kind == VIEWER_BUTTON ? 1 << (request->code & 15) : 0;
-        if (bit && request->down && panels) continue;
-        if (bit && !request->down && !(w->stage_buttons & bit)) continue;
-        if (request->kind == VIEWER_SCROLL && panels) continue;
-        if (request->kind == VIEWER_MOVE && panels) {
-            viewer_request covered = *request;
-            covered.down = true;
-            viewer_ask(&w->exchange, &covered);
-            continue;
-        }
-        if (bit) w->stage_buttons = request->down ? w->stage_buttons | bit : w->stage_buttons & ~bit;
-        viewer_ask(&w->exchange, request);
+        viewer_request request = w->pending[i];
+        int bit = request.kind == VIEWER_BUTTON ? 1 << (request.code & 15) : 0;
+        if (bit && request.down && panels) continue;
+        if (bit && !request.down && !(w->stage_buttons & bit)) continue;
+        if (request.kind == VIEWER_SCROLL && panels) continue;
+        if (request.kind == VIEWER_MOVE) request.down = panels;
+        if (bit) w->stage_buttons = request.down ? w->stage_buttons | bit : w->stage_buttons & ~bit;
+        if (request.kind != VIEWER_SCROLL) request.x -= w->left;
+        viewer_ask(&w->exchange, &request);
     }
     w->pending_count = 0;
 }
@@ -183,14 +179,13 @@ static void show_picture(window *w, int width, int height) {
     if (shown->generation != w->generation || shown->newest < 0) shown->in_use = -1;
     w->generation = shown->generation;
     if (shown->newest >= 0) shown->in_use = shown->newest;
-    if (shown->in_use < 0 || shown->width != width || shown->height != height)
-        glClearNamedFramebufferfv(0, GL_COLOR, 0, dark);
+    glClearNamedFramebufferfv(0, GL_COLOR, 0, dark);
     if (shown->in_use < 0) return;
     glNamedFramebufferRenderbuffer(w->framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
                                    shown->pictures[shown->in_use]);
     // while the window changes its size, the last picture is stretched
-    bool same = shown->width == width && shown->height == height;
-    glBlitNamedFramebuffer(w->framebuffer, 0, 0, 0, shown->width, shown->height, 0, 0, width, height,
+    bool same = shown->width == width - w->left && shown->height == height;
+    glBlitNamedFramebuffer(w->framebuffer, 0, 0, 0, shown->width, shown->height, w->left, 0, width, height,
                            GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
 }
 
@@ -218,6 +213,17 @@ static void save_window(window *w, int width, int height) {
     viewer_ask(&w->exchange, &request);
 }
 
+/* The picture is as large as what the side panel leaves of the window. */
+static void ask_for_size(window *w, int width, int height) {
+    const viewer_shown *shown = &w->exchange.shown;
+    w->left = shown->panel[VIEWER_PANEL_SIDE] && shown->has_scene ? viewer_side_panel_width(width) : 0;
+    viewer_request request = {.kind = VIEWER_RESIZE, .x = width - w->left, .y = height};
+    bool is_new = request.x != w->picture_size[0] || request.y != w->picture_size[1];
+    if (!is_new || width < 1 || height < 1) return;
+    w->picture_size[0] = request.x, w->picture_size[1] = request.y;
+    viewer_ask(&w->exchange, &request);
+}
+
 static void draw(window *w) {
     int width, height;
     char title[256];
@@ -225,6 +231,7 @@ static void draw(window *w) {
     widgets_begin();
     pass_pointer(w);
     pthread_mutex_lock(&w->exchange.lock);
+    if (w->exchange.shown.generation) ask_for_size(w, width, height); // the stage has begun
     show_picture(w, width, height);
     viewer_panels_show(&w->panels, width, height);
     memcpy(title, w->exchange.shown.title, sizeof title);
@@ -319,7 +326,10 @@ static skein_status run(window *w, skein_error *error) {
     w->panels.exchange = &w->exchange;
     int width, height;
     glfwGetFramebufferSize(w->glfw, &width, &height);
-    w->stage.wide = width, w->stage.tall = height;
+    // as it will be once there is a scene
+    w->stage.wide = w->options->panels && w->options->path ? width - viewer_side_panel_width(width) : width;
+    w->stage.tall = height;
+    w->picture_size[0] = w->stage.wide, w->picture_size[1] = height;
     w->exchange.wake = wake;
     if (!viewer_stage_start(&w->stage, w->options, &w->exchange, w->hidden))
         return render_fail(error, SKEIN_ERROR_MEMORY, "window", "no thread can be started");

@@ -190,7 +190,8 @@ const skein_error *skein_world_error(const skein_world *world);
 /* ---- Building ---------------------------------------------------------------------------------- */
 
 /* A polygon mesh, only read during the call it is given to. Faces are stored one after the other:
- * face f has `face_sizes[f]` corners (3 or more), 0-based indices into the vertices. */
+ * face f has `face_sizes[f]` corners (3 or more), 0-based indices into the vertices. For a body that is made of
+ * tetrahedra ("tetrahedra") each "face" is one of them, of four corners in any order. */
 typedef struct skein_mesh {
     const double *positions; /* vertex_count x 3, metres */
     size_t vertex_count;

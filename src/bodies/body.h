@@ -4,6 +4,6 @@
 
 #include "world/world.h"
 
-extern const sk_body_type sk_cloth, sk_lattice, sk_rope, sk_flock;
+extern const sk_body_type sk_cloth, sk_lattice, sk_rope, sk_tetrahedra, sk_flock;
 
 #endif

@@ -133,6 +133,17 @@ static void bodies(const void *params, const char **moved, const char **seen) {
     *seen = "";
 }
 
+static void pack(const void *data, float (*block)[4]) {
+    const bounds_params *params = data;
+    sk_shader_vector(block[0], params->centre);
+    block[0][3] = params->shape == BALL ? (float)params->radius : 0;
+    for (int k = 0; k < 3; k++) block[1][k] = (float)(0.5 * params->size[k]);
+}
+
+static const char *refuse(const void *params) {
+    return ((const bounds_params *)params)->edge == PERIODIC ? "with periodic edges" : NULL;
+}
+
 #define SK_KERNELS "forces/bounds.c"
 #include "base/for_each_isa.h"
 
@@ -145,5 +156,6 @@ const sk_force_type sk_bounds = {
     .kernel = {SK_EACH_ISA(kernel)},
     .check = check,
     .bodies = bodies,
+    .shader = {"forces/bounds", 2, pack, refuse},
 };
 #endif

@@ -350,17 +350,17 @@ sk_flocking_numbers sk_flocking_numbers_of(const sk_flocking_params *params) {
 static void pack(const void *data, float (*block)[4]) {
     const sk_flocking_params *params = data;
     sk_flocking_numbers n = sk_flocking_numbers_of(params);
-    const float numbers[2][4] = {
-        {1 / (float)n.reach, (float)n.away, (float)n.along, (float)n.per_along},
-        {(float)n.per_towards, (float)n.least, (float)params->strength, n.squared ? 1.0f : 0.0f}};
+    const float numbers[3][4] = {
+        {(float)n.per_reach, (float)n.away, (float)n.along, (float)n.per_along},
+        {(float)n.per_towards, (float)n.least, (float)params->strength, n.squared ? 1.0f : 0.0f},
+        {n.sees_all ? -2.0f : (float)n.view, 0, 0, 0}};
     memcpy(block, numbers, sizeof numbers);
 }
 
 static const char *refuse(const void *data) {
     const sk_flocking_params *params = data;
-    if (params->pair) return "by a formula";
-    if (params->nearest) return "with a number of nearest neighbours";
-    return params->view < 360 ? "with a field of view" : NULL;
+    if (params->towards[0] || params->along[0]) return "with weights that are formulas";
+    return params->nearest ? "while only the nearest neighbours count" : NULL;
 }
 
 #define SK_KERNELS "forces/flocking.c"
@@ -375,6 +375,6 @@ const sk_force_type sk_flocking = {
     .radius = radius,
     .bodies = bodies,
     .making = &making,
-    .shader = {"forces/flocking", 2, pack, refuse},
+    .shader = {"forces/flocking", 3, pack, refuse},
 };
 #endif

@@ -1,23 +1,28 @@
 // Flocking: neighbours push apart when near, fly along when farther, and draw together at the edge of the reach.
 // See flocking.h. The branches are selections: invocations side by side stay together.
-#define sum@ vec3
+struct sum@ {
+    vec3 total, heading;
+};
 
-sum@ start@() {
-    return vec3(0);
+sum@ start@(vec3 heading) {
+    return sum@(vec3(0), heading);
 }
 
 void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction) {
     float per_reach = rule@[0].x, away = rule@[0].y, along = rule@[0].z, per_along = rule@[0].w;
-    float per_towards = rule@[1].x, nearest = rule@[1].y;
-    float per = inversesqrt(max(square, nearest * nearest)), percent = per_reach / per;
+    float per_towards = rule@[1].x, least = rule@[1].y, view = rule@[2].x;
+    float per = inversesqrt(max(square, least * least)), percent = per_reach / per;
+    // behind it nobody is seen; a particle that stands still looks all round
+    bool counts = square > 0 && (dot(-apart, sum.heading) * per >= view || sum.heading == vec3(0));
     if (rule@[1].w != 0) percent *= percent;
     bool is_away = percent < away, is_along = percent < along && !is_away;
     float a = is_along ? (percent - away) * per_along : (percent - along) * per_towards;
     float cosine = -0.5 * cos(6.28318531 * (a - 0.5)); // where cards know it best
     float towards = is_away ? 1 - away / percent : is_along ? 0 : cosine;
-    sum += -towards * per * apart + (is_along && square > 0 ? 1 - cosine : 0) * direction;
+    vec3 part = -towards * per * apart + (is_along ? 1 - cosine : 0) * direction;
+    sum.total += counts ? part : vec3(0);
 }
 
 vec3 finish@(sum@ sum, float dt) {
-    return rule@[1].z * dt * sum;
+    return rule@[1].z * dt * sum.total;
 }

@@ -50,15 +50,17 @@ typedef struct sk_force_type {
     /* The names of the body that it moves and of the one that it looks at: "" is every particle, and the same as it
      * moves. NULL: every particle. */
     void (*bodies)(const void *params, const char **moved, const char **seen);
-    /* Over particles it defines, for a rule that pushes, steers (w: how much more speed is allowed) or bounds (by
-     * `more` speed):
-     *     vec3 force@(vec3 x, vec3 v, float mass),   vec4 steer@(vec3 x, float dt),   vec3 bound@(vec3 v, float more)
+    /* Over particles it defines, for a rule that pushes, steers (w: how much more speed is allowed) or bounds
+     * (`steering` is what has been added to v in this substep):
+     *     vec3 force@(vec3 x, vec3 v, float mass),   vec4 steer@(vec3 x, float dt),
+     *     vec3 bound@(vec3 v, vec3 x, vec4 steering, float dt)
      * and over neighbours a sum of its own type, what each neighbour adds, and the newtons or metres a second that
      * come of it:
-     *     sum@ start@(),   void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction),
+     *     sum@ start@(vec3 heading),   void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction),
      *     vec3 finish@(sum@ sum, float dt)
      * where `apart` leads from the neighbour here, `square` is its squared length (less than that of the radius, and
-     * 0 in one place), and `direction` is the neighbour's unit direction of flight. */
+     * 0 in one place), and `direction` is the neighbour's unit direction of flight, as
+     * `heading` is the particle's own. */
     sk_shader shader;
     /* Over colliders: the time ahead (s), the clearance (m) and the strength (m/s2) of steering clear. */
     void (*look)(const void *params, double look[3]);

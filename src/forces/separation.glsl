@@ -1,7 +1,7 @@
 // Separation: neighbours closer than the radius push, F = strength (1 - d/radius).
 #define sum@ vec3
 
-sum@ start@() {
+sum@ start@(vec3 heading) {
     return vec3(0);
 }
 

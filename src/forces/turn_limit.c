@@ -87,6 +87,14 @@ static void bodies(const void *params, const char **moved, const char **seen) {
     *seen = "";
 }
 
+static void pack(const void *data, float (*block)[4]) {
+    const turn_limit_params *params = data;
+    const double radian = 3.141592653589793 / 180;
+    double sine = 1, cosine = 0; // no limit
+    if (params->climb < 90) sk_sincos(params->climb * radian, &sine, &cosine);
+    block[0][0] = (float)(params->turn * radian), block[0][1] = (float)cosine, block[0][2] = (float)sine;
+}
+
 #define SK_KERNELS "forces/turn_limit.c"
 #include "base/for_each_isa.h"
 
@@ -98,5 +106,6 @@ const sk_force_type sk_turn_limit = {
     .once = true,
     .kernel = {SK_EACH_ISA(kernel)},
     .bodies = bodies,
+    .shader = {"forces/turn_limit", 1, pack, NULL},
 };
 #endif

@@ -11,7 +11,7 @@ enum {
     BLOCK_CELLS = 4096,
 };
 
-enum { BOUNDS, FRAME, CLEAR, COUNT, SUM_PARTS, SUM_SUMS, SUM_CELLS, SCATTER, SETTLE, PROGRAM_COUNT };
+enum { FIND, FRAME, CLEAR, COUNT, SUM_PARTS, SUM_SUMS, SUM_CELLS, SCATTER, SETTLE, PROGRAM_COUNT };
 _Static_assert((int)PROGRAM_COUNT == (int)SK_GPU_GRID_PROGRAMS, "as many as the grid has room for");
 
 static const struct {
@@ -19,7 +19,7 @@ static const struct {
     bool extent;
     int group, stage;
 } shaders[PROGRAM_COUNT] = {
-    [BOUNDS] = {"gpu/grid_bounds", "grid: bounds", true, SK_GPU_GROUP, 0},
+    [FIND] = {"gpu/grid_find", "grid: extent", true, SK_GPU_GROUP, 0},
     [FRAME] = {"gpu/grid_frame", "grid: frame", false, 1, 0},
     [CLEAR] = {"gpu/grid_clear", "grid: clear", false, SK_GPU_GROUP, 0},
     [COUNT] = {"gpu/grid_count", "grid: count", true, SK_GPU_GROUP, 0},
@@ -132,7 +132,7 @@ void sk_gpu_grid_build(sk_gpu_device *device, size_t begin, size_t count, size_t
     if (grid->begin != begin || grid->end != begin + count) {
         glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         glClearNamedBufferSubData(grid->cells, GL_R32UI, 0, 6 * 4, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
-        run_program(device, BOUNDS, groups);
+        run_program(device, FIND, groups);
         grid->begin = begin, grid->end = begin + count;
     }
     run_program(device, FRAME, 1);

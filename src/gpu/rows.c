@@ -18,8 +18,18 @@ static bool is_fall(const sk_row *row) {
     return sk_row_is(row, &sk_combine_fall) || sk_row_is(row, &sk_combine_fall_on);
 }
 
+/* Steering clear of a collider, which is the row's rule. */
+static bool is_avoid(const sk_row *row) {
+    return row->kind == SK_ROW_FIELD && sk_row_is(row, &sk_avoid);
+}
+
+static bool has_pose(const sk_row *row) {
+    return is_contact(row) || is_avoid(row);
+}
+
 /* Fields, neighbours, and bounds on velocities: limits on positions are of another sort. */
 static const sk_force *force_of(const sk_row *row) {
+    if (is_avoid(row)) return NULL;
     bool is_force =
         row->kind == SK_ROW_FIELD || row->kind == SK_ROW_NEIGHBOUR || (row->kind == SK_ROW_LIMIT && row->dst == SK_V);
     return is_force ? row->rule : NULL;
@@ -27,7 +37,7 @@ static const sk_force *force_of(const sk_row *row) {
 
 static const sk_shader *shader_of(const sk_row *row) {
     if (force_of(row)) return &force_of(row)->type->shader;
-    if (is_contact(row)) return &((const sk_collider *)row->rule)->type->shader;
+    if (has_pose(row)) return &((const sk_collider *)row->rule)->type->shader;
     return NULL;
 }
 
@@ -42,9 +52,9 @@ static bool is_combine(const sk_row *row) {
 
 bool sk_gpu_row_can(const sk_row *row, const char **why) {
     const sk_shader *shader = shader_of(row);
-    const void *params = force_of(row)     ? force_of(row)->params
-                         : is_contact(row) ? ((const sk_collider *)row->rule)->params
-                                           : NULL;
+    const void *params = force_of(row)   ? force_of(row)->params
+                         : has_pose(row) ? ((const sk_collider *)row->rule)->params
+                                         : NULL;
     if (shader && shader->file && shader->refuse && (*why = shader->refuse(params))) return false;
     switch (row->kind) {
     case SK_ROW_GRID: return true;
@@ -70,6 +80,7 @@ bool sk_gpu_row_everyone(const sk_row *row, size_t particle_count) {
 
 bool sk_gpu_row_knows_no_slots(const sk_row *row, size_t particle_count) {
     const sk_force *force = force_of(row);
+    if (is_avoid(row)) return row->group->first == 0 && row->group->end == particle_count;
     if (row->kind == SK_ROW_GRID) return row->begin == 0; // the rows of one sort have the same end, or fewer places
     return !force || force->type->deed == SK_PUSHES || sk_gpu_row_everyone(row, particle_count);
 }
@@ -102,7 +113,7 @@ sk_gpu_use sk_gpu_row_use(const sk_row *row) {
         use.writes = BIT(row->dst);
         break;
     case SK_ROW_LIMIT:
-        use.reads = BIT(SK_V) | BIT(row->source[2]);
+        use.reads = BIT(SK_X) | BIT(SK_V) | BIT(row->source[2]);
         use.writes = BIT(SK_V);
         break;
     case SK_ROW_CONTACT_FORCE: use = (sk_gpu_use){BIT(SK_X) | BIT(SK_V) | BIT(SK_F), BIT(SK_F)}; break;
@@ -128,7 +139,7 @@ static size_t rule_size(const sk_row *row) {
 }
 
 size_t sk_gpu_row_size(const sk_row *row) {
-    return SK_GPU_ROW + (is_contact(row) ? (size_t)SK_GPU_POSE : 0) + rule_size(row);
+    return SK_GPU_ROW + (has_pose(row) ? (size_t)SK_GPU_POSE : 0) + rule_size(row);
 }
 
 static void pack_pose(const sk_collider *collider, double time, float (*block)[4]) {
@@ -153,9 +164,9 @@ void sk_gpu_row_pack(const sk_row *row, double time, float (*block)[4]) {
     if (row->kind == SK_ROW_CONTACT_SETTLE) block[1][0] = sk_contact_reads_force(row->rule);
     block += SK_GPU_ROW;
     const sk_shader *shader = shader_of(row);
-    if (is_contact(row)) {
+    if (has_pose(row)) {
         const sk_collider *collider = row->rule;
-        pack_pose(collider, time - row->before, block);
+        pack_pose(collider, is_avoid(row) ? time : time - row->before, block);
         if (shader->pack) shader->pack(collider->params, block + SK_GPU_POSE);
     } else if (shader) {
         if (shader->pack) shader->pack(((const sk_force *)row->rule)->params, block);
@@ -168,7 +179,7 @@ void sk_gpu_row_pack(const sk_row *row, double time, float (*block)[4]) {
 }
 
 bool sk_gpu_row_moves(const sk_row *row) {
-    if (!is_contact(row)) return false;
+    if (!has_pose(row)) return false;
     const sk_collider_common *common = ((const sk_collider *)row->rule)->common;
     const double *v = common->velocity;
     return v[0] != 0 || v[1] != 0 || v[2] != 0 || common->spin != 0;
@@ -178,15 +189,16 @@ bool sk_gpu_row_moves(const sk_row *row) {
 
 void sk_gpu_put_members(sk_gpu_text *text, const sk_row *row, size_t number) {
     sk_gpu_put(text, "    vec4 row%zu[%d];\n", number, SK_GPU_ROW);
-    if (is_contact(row)) sk_gpu_put(text, "    vec4 pose%zu[%d];\n", number, SK_GPU_POSE);
+    if (has_pose(row)) sk_gpu_put(text, "    vec4 pose%zu[%d];\n", number, SK_GPU_POSE);
     if (rule_size(row)) sk_gpu_put(text, "    vec4 rule%zu[%zu];\n", number, rule_size(row));
 }
 
 void sk_gpu_put_functions(sk_gpu_text *text, const sk_row *row, size_t number) {
     if (row->kind == SK_ROW_COMBINE && is_fall(row)) sk_gpu_put_file(text, "gpu/pull", number);
-    if (is_contact(row)) sk_gpu_put_file(text, "colliders/pose", number);
+    if (has_pose(row)) sk_gpu_put_file(text, "colliders/pose", number);
     if (shader_of(row)) sk_gpu_put_file(text, shader_of(row)->file, number);
     if (is_contact(row)) sk_gpu_put_file(text, "colliders/contact", number);
+    if (is_avoid(row)) sk_gpu_put_file(text, "colliders/avoid", number);
     if (row->kind == SK_ROW_NEIGHBOUR) sk_gpu_put_file(text, "gpu/walk", number);
 }
 
@@ -238,18 +250,21 @@ static void put_combine(sk_gpu_text *text, const sk_row *row, size_t n) {
 /* Only for the particles that the rule moves, where these are not all. */
 static void put_guard(sk_gpu_text *text, const sk_row *row, size_t particle_count) {
     const sk_force *force = force_of(row);
-    if (force->type->deed == SK_PUSHES || row->kind == SK_ROW_NEIGHBOUR) return;
-    if (force->moved.first == 0 && force->moved.end == particle_count) return;
-    sk_gpu_put(text, "    if (first_slot + slot >= %zuu && first_slot + slot < %zuu)\n", force->moved.first_slot,
-               force->moved.end_slot);
+    if (row->kind == SK_ROW_NEIGHBOUR || (force && force->type->deed == SK_PUSHES)) return;
+    const sk_group *group = force ? &force->moved : row->group;
+    if (group->first == 0 && group->end == particle_count) return;
+    sk_gpu_put(text, "    if (first_slot + slot >= %zuu && first_slot + slot < %zuu)\n", group->first_slot,
+               group->end_slot);
 }
 
 static void put_force(sk_gpu_text *text, const sk_row *row, size_t n, size_t particle_count) {
     const char *dst = sk_gpu_vector_name(row->dst);
     put_guard(text, row, particle_count);
-    if (row->kind == SK_ROW_NEIGHBOUR) sk_gpu_put(text, "    %s.xyz += walk%zu(place, X.xyz);\n", dst, n);
+    if (is_avoid(row)) sk_gpu_put(text, "    %s += avoid%zu(X.xyz, V.xyz);\n", dst, n);
+    else if (row->kind == SK_ROW_NEIGHBOUR) sk_gpu_put(text, "    %s.xyz += walk%zu(place, X.xyz, V.xyz);\n", dst, n);
     else if (row->kind == SK_ROW_LIMIT)
-        sk_gpu_put(text, "    V.xyz = bound%zu(V.xyz, %s);\n", n, row->source[2] == SK_NONE ? "0" : "S.w");
+        sk_gpu_put(text, "    V.xyz = bound%zu(V.xyz, X.xyz, %s, row%zu[0].w);\n", n,
+                   row->source[2] == SK_NONE ? "vec4(0)" : "S", n);
     else if (force_of(row)->type->deed == SK_STEERS)
         sk_gpu_put(text, "    %s += steer%zu(X.xyz, row%zu[0].w);\n", dst, n, n);
     else sk_gpu_put(text, "    %s.xyz %s force%zu(X.xyz, V.xyz, V.w);\n", dst, row->sets ? "=" : "+=", n);

@@ -1,7 +1,8 @@
 // All neighbours of the particle at p, which is at a place of the grid. Two phases for each 32 of a row of cells: distances become a mask of
 // hits, then the hits are met one by one, so that invocations side by side part as little as can be.
-vec3 walk@(uint place, vec3 p) {
-    sum@ sum = start@();
+vec3 walk@(uint place, vec3 p, vec3 v) {
+    float speed = dot(v, v);
+    sum@ sum = start@(speed > 0 ? v * inversesqrt(speed) : vec3(0));
 #if BY_PLACE
     if (place >= cell[cell_count]) return finish@(sum, row@[0].w); // it is nowhere
 #else

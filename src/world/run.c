@@ -297,7 +297,7 @@ void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count)
 
 /* ---- row after row, with a clock ---- */
 
-double sk_now(void) {
+double sk_seconds(void) {
     struct timespec time;
     clock_gettime(CLOCK_MONOTONIC, &time);
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
@@ -306,10 +306,10 @@ double sk_now(void) {
 void sk_run_rows_timed(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count, double *seconds) {
     for (size_t r = 0; r < count; r++) {
         const sk_row *row = &rows[r];
-        double start = run->time, begin = sk_now();
+        double start = run->time, begin = sk_seconds();
         if (row->kind != SK_ROW_REPEAT) {
             run_segments(run, tasks, row, 1);
-            seconds[r] += sk_now() - begin;
+            seconds[r] += sk_seconds() - begin;
             continue;
         }
         bool outer = run->last_turn;
