@@ -2,22 +2,11 @@
 #ifdef SK_ISA
 
 #include "base/wide_elementary.h"
+#include "bench/wide_vectors.h"
 
 SK_INLINE sk_wide3 SK_ISA(at)(const by_hand_input *in, int particle, size_t e) {
     sk_wide4 p = SK_ISA(sk_gather)((const sk_vec4 *)(const void *)in->positions, in->slot[particle] + e);
     return (sk_wide3){p.x, p.y, p.z};
-}
-SK_INLINE sk_wide3 SK_ISA(minus)(sk_wide3 a, sk_wide3 b) {
-    return (sk_wide3){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-SK_INLINE sk_wide3 SK_ISA(sum)(sk_wide s, sk_wide3 a, sk_wide t, sk_wide3 b) {
-    return (sk_wide3){s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
-}
-SK_INLINE sk_wide3 SK_ISA(cross)(sk_wide3 a, sk_wide3 b) {
-    return (sk_wide3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-SK_INLINE sk_wide3 SK_ISA(scale)(sk_wide s, sk_wide3 a) {
-    return (sk_wide3){s * a.x, s * a.y, s * a.z};
 }
 SK_INLINE sk_wide SK_ISA(parameter)(const by_hand_input *in, int k, size_t e) {
     sk_wide x;
@@ -25,7 +14,7 @@ SK_INLINE sk_wide SK_ISA(parameter)(const by_hand_input *in, int k, size_t e) {
     return x;
 }
 SK_INLINE void SK_ISA(put)(const by_hand_input *in, int output, size_t e, sk_wide x) {
-    memcpy(in->output[output] + e, &x, sizeof x);
+    memcpy(in->output + (size_t)output * in->stride + e, &x, sizeof x);
 }
 SK_INLINE void SK_ISA(give_all)(const by_hand_input *in, size_t e, const sk_wide3 *g, int others) {
     sk_wide3 first = {{0}, {0}, {0}};
@@ -38,10 +27,6 @@ SK_INLINE void SK_ISA(give_all)(const by_hand_input *in, size_t e, const sk_wide
         if (k < others) first = SK_ISA(minus)(first, g[k]);
     }
 }
-SK_INLINE sk_wide SK_ISA(over)(sk_wide x) {
-    return SK_ISA(sk_keep)(SK_ISA(sk_positive)(x), 1 / x);
-}
-
 static void SK_ISA(distance)(const by_hand_input *in) {
     for (size_t e = 0; e < in->count; e += SK_LANES) {
         sk_wide3 d = SK_ISA(minus)(SK_ISA(at)(in, 1, e), SK_ISA(at)(in, 0, e));
@@ -129,13 +114,11 @@ static void SK_ISA(stvk)(const by_hand_input *in) {
 #define SK_KERNELS "bench/by_hand_wide.c"
 #include "base/for_each_isa.h"
 
-typedef void kernel(const by_hand_input *);
-
 /* The one for the instruction set that runs. */
-#define KERNEL(name_)                                         \
-    void by_hand_wide_##name_(void *input) {                  \
-        static kernel *const versions[] = SK_EACH_ISA(name_); \
-        versions[sk_isa_choose()](input);                     \
+#define KERNEL(name_)                                                   \
+    void by_hand_wide_##name_(const by_hand_input *in) {                \
+        static by_hand_function *const versions[] = SK_EACH_ISA(name_); \
+        versions[sk_isa_choose()](in);                                  \
     }
 KERNEL(distance)
 KERNEL(dihedral)

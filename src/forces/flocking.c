@@ -359,7 +359,7 @@ static void pack(const void *data, float (*block)[4]) {
 
 static const char *refuse(const void *data) {
     const sk_flocking_params *params = data;
-    if (params->towards[0] || params->along[0]) return "with weights that are formulas";
+    if (params->pair) return "by a formula";
     return params->nearest ? "while only the nearest neighbours count" : NULL;
 }
 

@@ -59,8 +59,8 @@ typedef struct sk_force_type {
      *     sum@ start@(vec3 heading),   void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction),
      *     vec3 finish@(sum@ sum, float dt)
      * where `apart` leads from the neighbour here, `square` is its squared length (less than that of the radius, and
-     * 0 in one place), and `direction` is the neighbour's unit direction of flight, as
-     * `heading` is the particle's own. */
+     * 0 in one place), and `direction` is the neighbour's unit direction of flight, as `heading` is the particle's own.
+     */
     sk_shader shader;
     /* Over colliders: the time ahead (s), the clearance (m) and the strength (m/s2) of steering clear. */
     void (*look)(const void *params, double look[3]);

@@ -1,0 +1,162 @@
+/* Whole projections of XPBD, gather to scatter, of constraints that a program adds between loose particles: the kernels
+ * that the library was built with, and the same texts on tapes, beside kernels by hand over the same groups. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/float_mode.h"
+#include "bench/elements.h"
+#include "bench/worlds.h"
+#include "constraints/sweep.h"
+#include "world/world.h"
+
+#define SUBSTEP (1.0 / 60) // one a frame, so that a run of the rows is a sweep
+
+/* The texts are those of src/constraints/emitted/. */
+static const struct measured {
+    const char *kind, *text;
+    by_hand_projection *by_hand;
+    size_t arity;
+    bool solid;
+} all[] = {
+    {"distance", "length(p0 - p1) - rest(length(p0 - p1))", by_hand_project_distance, 2, false},
+    {"dihedral",
+     "let a = dihedral(p0, p1, p2, p3) - rest(dihedral(p0, p1, p2, p3)); "
+     "a - 2*pi * select(a > pi, 1, select(a < -pi, -1, 0))",
+     by_hand_project_dihedral, 4, false},
+    {"volume", "dot(cross(p1 - p0, p2 - p0), p3 - p0) / 6 - rest(dot(cross(p1 - p0, p2 - p0), p3 - p0) / 6)",
+     by_hand_project_volume, 4, true},
+    {"area", "length(cross(p1 - p0, p2 - p0)) / 2 - rest(length(cross(p1 - p0, p2 - p0)) / 2)", by_hand_project_area, 3,
+     false},
+};
+
+/* A world of loose particles with constraints of one kind, its rows, and the state that every block starts from. */
+typedef struct subject {
+    skein_world *world;
+    bench_rows *rows;
+    const sk_batch *batch;
+    by_hand_projection *by_hand;
+    sk_vec4 *start, *copy; /* of all slots; by hand it is the copy that is projected */
+    size_t bytes;
+} subject;
+
+static void make_subject(subject *s, const struct measured *m, const bench_elements *e, bool as_formula) {
+    double *x = bench_allocate(3 * e->position_count, sizeof *x), *mass = bench_allocate(e->position_count, sizeof *x);
+    uint32_t *corners = bench_allocate(m->arity * e->count, sizeof *corners);
+    for (size_t i = 0; i < e->position_count; i++) {
+        x[3 * i] = (double)e->positions[i].x, x[3 * i + 1] = (double)e->positions[i].y;
+        x[3 * i + 2] = (double)e->positions[i].z, mass[i] = 1;
+    }
+    for (size_t i = 0; i < m->arity * e->count; i++) corners[i] = e->slot[i % m->arity][i / m->arity];
+    *s = (subject){.world = bench_world(1), .by_hand = m->by_hand};
+    bench_need(s->world, skein_particles_add(s->world, e->position_count, x, NULL, mass, NULL));
+    const skein_setting settings[] = {
+        SKEIN_REAL("stiffness", 1e4), SKEIN_TEXT("constraint", m->text), {NULL, {0, {0, 0, 0}, NULL}}};
+    const skein_setting built_in[] = {SKEIN_REAL("stiffness", 1e4), {NULL, {0, {0, 0, 0}, NULL}}};
+    bench_need(s->world, skein_constraint_add(s->world, as_formula ? "formula" : m->kind, corners, e->count,
+                                              as_formula ? settings : built_in, NULL));
+    bench_need(s->world, skein_method_set(s->world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 1))));
+    bench_shake(s->world, 0.2, 0);
+    s->rows = bench_rows_create(s->world, SK_ROW_PROJECT);
+    if (!s->rows) bench_stop("kinds: no projections");
+    s->batch = s->world->rules.batches.data[0];
+    s->bytes = (s->world->particles.slot_count * sizeof(sk_vec4) + 63) / 64 * 64;
+    s->start = aligned_alloc(64, s->bytes), s->copy = aligned_alloc(64, s->bytes);
+    if (!s->start || !s->copy) bench_stop("no memory");
+    memcpy(s->start, s->world->particles.vector[SK_X], s->world->particles.slot_count * sizeof(sk_vec4));
+    free(x);
+    free(mass);
+    free(corners);
+}
+
+static void free_subject(subject *s) {
+    bench_rows_destroy(s->rows);
+    skein_world_destroy(s->world);
+    free(s->start);
+    free(s->copy);
+}
+
+static void start_rows(void *data) {
+    subject *s = data;
+    memcpy(s->world->particles.vector[SK_X], s->start, s->world->particles.slot_count * sizeof(sk_vec4));
+}
+
+static void run_rows(void *data) {
+    bench_rows_run(((subject *)data)->rows);
+}
+
+static void start_by_hand(void *data) {
+    subject *s = data;
+    memcpy(s->copy, s->start, s->world->particles.slot_count * sizeof(sk_vec4));
+}
+
+static void run_by_hand(void *data) {
+    const subject *s = data;
+    uint64_t mode = sk_float_mode_enter();
+    for (size_t i = 0; i < s->batch->sweep_count; i++) {
+        const sk_sweep *sweep = &s->batch->sweeps[i];
+        s->by_hand(&(by_hand_sweep){.positions = &s->copy->x,
+                                    .slots = sweep->slots,
+                                    .rest = s->batch->lane_rest + sweep->first_lane,
+                                    .compliance = s->batch->lane_compliance + sweep->first_lane,
+                                    .group_count = sweep->group_count,
+                                    .per_step = (real)(1 / (SUBSTEP * SUBSTEP))});
+    }
+    sk_float_mode_leave(mode);
+}
+
+/* One sweep of each moves all particles alike, but for rounding. */
+static void check(subject *s, const char *name) {
+    const sk_vec4 *x = s->world->particles.vector[SK_X];
+    double off = 0, far = 0;
+    start_rows(s);
+    start_by_hand(s);
+    run_rows(s);
+    run_by_hand(s);
+    for (size_t i = 0; i < s->world->particles.count; i++) {
+        uint32_t at = s->world->particles.slot_of[i];
+        off = fmax(off, fabs((double)(x[at].x - s->copy[at].x)) + fabs((double)(x[at].y - s->copy[at].y)) +
+                            fabs((double)(x[at].z - s->copy[at].z)));
+        far = fmax(far, fabs((double)(x[at].x - s->start[at].x)));
+    }
+    if (!(off <= 1e-3 * far)) bench_fault("kinds, %s: by hand it differs by %g of %g", name, off, far);
+    if (bench_rows_turns(s->rows) != 1) bench_fault("kinds, %s: %zu sweeps in a run", name, bench_rows_turns(s->rows));
+}
+
+static void measure(const struct measured *m) {
+    bench_elements e;
+    subject built_in, formula;
+    bench_elements_make(&e, m->solid, 0, 0);
+    make_subject(&built_in, m, &e, false);
+    make_subject(&formula, m, &e, true);
+    check(&built_in, m->kind);
+    check(&formula, m->kind);
+    bench_job jobs[] = {{.run = run_rows, .data = &built_in, .prepare = start_rows},
+                        {.run = run_rows, .data = &formula, .prepare = start_rows},
+                        {.run = run_by_hand, .data = &built_in, .prepare = start_by_hand}};
+    double seconds[3];
+    bench_measure(jobs, 3, 0.05, seconds);
+    char note[80];
+    bench_result result = {.name = "kinds", .unit = "ns/element", .other = "wide by hand", .note = note};
+    result.theirs = 1e9 * seconds[2] / (double)e.count;
+    for (int i = 0; i < 2; i++) {
+        const sk_batch *batch = i ? formula.batch : built_in.batch;
+        char size[40];
+        snprintf(size, sizeof size, "%s, %s", m->kind, i ? "tape" : "emitted");
+        snprintf(note, sizeof note, "%zu groups", batch->lane_count / SK_LANES);
+        result.size = size;
+        result.ours = 1e9 * seconds[i] / (double)e.count;
+        result.as_long = i ? 1.5 : 1.15;
+        bench_report(&result);
+    }
+    free_subject(&built_in);
+    free_subject(&formula);
+    bench_elements_free(&e);
+}
+
+static void run(void) {
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) measure(&all[i]);
+}
+
+const bench_case bench_kinds = {"kinds", "whole projections of kinds and of formulas, against wide C by hand", run};

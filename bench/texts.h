@@ -1,0 +1,18 @@
+/* The formulas that are measured as values and gradients, as texts. Apart from what runs them, for emit.c. */
+#ifndef SKEIN_BENCH_TEXTS_H
+#define SKEIN_BENCH_TEXTS_H
+
+#include <stdbool.h>
+
+typedef struct bench_text {
+    const char *name, *identifier; /* for people, and for C */
+    const char *text;
+    const char *const *parameters;
+    int particles, parameter_count;
+    bool solid; /* on tetrahedra of a block, else on triangles and hinges of a sheet */
+} bench_text;
+
+enum { BENCH_FORMULAS = 5 };
+extern const bench_text bench_texts[BENCH_FORMULAS];
+
+#endif
