@@ -70,7 +70,6 @@ static skein_status compile(const char *text, const char *what, unsigned *name, 
     glDeleteShader(shader);
     if (fine) return *name = program, SKEIN_OK;
     glDeleteProgram(program);
-    if (getenv("SKEIN_SHADERS")) fputs(text, stderr);
     return sk_fail(error, SKEIN_ERROR_VALUE, "device", "%s: the driver cannot compile the shader: %s", what, log);
 }
 
