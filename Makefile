@@ -1,12 +1,12 @@
 # The short way in: each line below runs one script of tools/, and the scripts run CMake.
 # CMake alone does as well: cmake --preset release && cmake --build --preset release
 
-.PHONY: all demo test setup gallery debug format clean help
+.PHONY: all demo test setup gallery emit debug format clean help
 
 all: ## (or plain make) build the command: build/skein
 	@tools/build release skein
 
-demo: ## set up, build, and drop a real mesh as cloth: files, a picture and a film in out/demo
+demo: ## set up, build, and drop a real mesh as cloth: files, a picture and a film in out/demo, and a window
 	@tools/setup build
 	@tools/build release skein
 	@tools/demo
@@ -22,6 +22,10 @@ gallery: ## build, and draw the documents' pictures and film anew
 	@tools/setup build
 	@tools/build release skein
 	@tools/gallery
+
+emit: ## build, and write the constraints' kernels anew from their formulas (src/constraints/emitted)
+	@tools/build release skein
+	@tools/emit
 
 debug: ## build with assertions: build-debug/skein
 	@tools/build debug skein

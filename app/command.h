@@ -24,7 +24,8 @@ typedef struct app_command {
 } app_command;
 
 extern const app_command app_run_command, app_render_command, app_check_command, app_compare_command,
-    app_stability_command, app_explain_command, app_list_command, app_formula_command, app_view_command;
+    app_stability_command, app_explain_command, app_list_command, app_formula_command, app_view_command,
+    app_bench_command;
 
 /* Sorts arguments into options and at most one word (NULL if there is none, which is a fault where it is
  * `needed`, as in "scene"); prints help for --help. Returns -1 to go on, else an exit status. */

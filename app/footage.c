@@ -48,6 +48,9 @@ static render_bounds look_ahead(const app_scene *loaded, int frames, bool quiet)
     skein_world_desc desc = skein_default_world_desc();
     desc.thread_count = loaded->settings.threads;
     skein_world *world = io_scene_build(loaded->scene, &desc, &faults);
+    // where a card steps the world, it looks ahead as well
+    if (world && skein_world_device(loaded->world).device != SKEIN_DEVICE_CPU)
+        skein_world_device_set(world, SKEIN_DEVICE_CURRENT_GL);
     render_world_frame *frame = render_world_frame_create(NULL);
     double dt;
     int steps = io_scene_steps_per_frame(&loaded->settings, &dt);
@@ -105,6 +108,9 @@ app_footage *app_footage_begin(const app_scene *loaded, const char *path, const 
         app_footage_abandon(f);
         return NULL;
     }
+    // in the context that draws, what moves is drawn from where it is
+    if (skein_world_device(loaded->world).device == SKEIN_DEVICE_GPU)
+        skein_world_device_set(loaded->world, SKEIN_DEVICE_CURRENT_GL);
     render_bounds held = look_ahead(loaded, frames, quiet);
     if (!render_bounds_empty(&held)) render_studio_hold(f->studio, &held);
     return f;
@@ -134,6 +140,9 @@ bool app_footage_frame(app_footage *f) {
 }
 
 static void release(app_footage *f) {
+    // the context goes: what the world has there comes back first
+    if (skein_world_device(f->loaded->world).device == SKEIN_DEVICE_CURRENT_GL)
+        skein_world_device_set(f->loaded->world, SKEIN_DEVICE_CPU);
     render_studio_destroy(f->studio);
     render_image_release(&f->image);
     free(f);

@@ -8,9 +8,9 @@
 
 #include "app/command.h"
 
-static const app_command *const commands[] = {&app_run_command,     &app_view_command,    &app_render_command,
-                                              &app_check_command,   &app_compare_command, &app_stability_command,
-                                              &app_explain_command, &app_list_command,    &app_formula_command};
+static const app_command *const commands[] = {
+    &app_run_command,       &app_view_command,    &app_render_command, &app_check_command,   &app_compare_command,
+    &app_stability_command, &app_explain_command, &app_list_command,   &app_formula_command, &app_bench_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 static void print_help(FILE *to) {

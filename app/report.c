@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/flocks.h"
+
 static double ms_per_step(const app_report *r) {
     return r->statistics.steps ? 1e3 * r->seconds / (double)r->statistics.steps : 0;
 }
@@ -38,6 +40,7 @@ static json_t *make_document(const app_report *r) {
         {"name", json_string(scene->name)},
         {"method", json_string(app_method(r->loaded))},
         {"threads", count((uint64_t)scene->threads)},
+        {"device", json_string(r->device)},
         {"interrupted", json_boolean(r->interrupted)},
         {"warnings", count(r->loaded->warnings)},
         // what was done
@@ -52,6 +55,7 @@ static json_t *make_document(const app_report *r) {
         {"ms_per_step", number(ms_per_step(r))},
         {"realtime_factor", number(realtime_factor(r))},
         {"memory_bytes", count(s->memory_bytes)},
+        {"device_bytes", count(r->device_bytes)},
         // the state at the end
         {"particles", count(s->particles)},
         {"held_particles", count(s->held_particles)},
@@ -74,6 +78,7 @@ static json_t *make_document(const app_report *r) {
     bool good = true;
     for (size_t i = 0; i < sizeof members / sizeof *members; i++)
         good &= !json_object_set_new(root, members[i].key, members[i].value);
+    if (json_array_size(r->flocks)) good &= !json_object_set(root, "flocks", r->flocks);
     if (good) return root;
     json_decref(root);
     return NULL;
@@ -115,6 +120,7 @@ void app_report_print(const app_report *r) {
     printf(
         "kinetic energy %.3g J, stretch at most %.2f %% (99 %% of edges under %.2f %%), penetration at most %.2g mm\n",
         s->kinetic_energy, 100 * s->max_stretch, 100 * s->p99_stretch, 1e3 * s->max_penetration);
+    app_flocks_print(r->flocks);
     printf("state hash %016" PRIx64 "\n", s->state_hash);
     size_t index;
     json_t *file;

@@ -14,7 +14,11 @@ typedef struct app_report {
     bool interrupted;
     skein_statistics statistics; /* of the end */
     double worst_stretch;        /* over the whole run, sampled now and then */
+    char device[256];            /* where it was stepped */
+    size_t device_bytes;         /* held there, where that is a graphics card */
     json_t *files;               /* their paths */
+    json_t *flocks;              /* their order parameters over time */
+    int flocks_noted;            /* the frame after the one that they were last noted at */
     app_log *log;                /* a line a step, or NULL */
     const char *log_path;
 } app_report;

@@ -1,16 +1,25 @@
 /* skein run SCENE: simulate, with progress, files and a report. */
 #include <stdio.h>
 
+#include "app/flocks.h"
 #include "app/outputs.h"
 #include "app/progress.h"
 #include "app/report.h"
 
 /* ---- the run ---- */
 
+/* Every sixteenth frame, and the last; more would cost more than steps do. */
+static bool note_flocks(app_report *r) {
+    if (r->frames % 16 && r->frames != r->loaded->settings.frames && !app_interrupted()) return true;
+    if (r->flocks_noted == r->frames + 1) return true;
+    r->flocks_noted = r->frames + 1;
+    return app_flocks_note(r->flocks, r->loaded->world);
+}
+
 /* Measures the world as it stands; false after a printed fault. */
 static bool measure(app_report *r) {
     skein_world *world = r->loaded->world;
-    if (skein_world_statistics(world, &r->statistics)) {
+    if (skein_world_statistics(world, &r->statistics) || !note_flocks(r)) {
         app_print_error(skein_world_error(world));
         return false;
     }
@@ -26,22 +35,33 @@ static bool note_step(app_report *r) {
     return true;
 }
 
+/* Notes where it runs; a film's context is gone at the end of the run. */
+static void note_device(app_report *r) {
+    skein_device_info info = skein_world_device(r->loaded->world);
+    snprintf(r->device, sizeof r->device, "%s", info.name);
+    r->device_bytes = info.bytes;
+}
+
 /* Steps one frame; false after a printed fault. */
 static bool run_frame(app_report *r, app_progress *p) {
+    bool here = skein_world_device(r->loaded->world).device == SKEIN_DEVICE_CPU;
     for (int s = 0; s < r->steps_per_frame; s++) {
         double start = app_seconds();
         if (!app_step_frame(r->loaded, r->frames + 1, 1, r->dt, p)) return false;
+        if (s + 1 == r->steps_per_frame) skein_world_wait(r->loaded->world);
         r->seconds += app_seconds() - start;
         if (note_step(r)) continue;
         app_progress_end(p);
         return false;
     }
     r->frames++;
-    return r->frames % 16 || measure(r);
+    note_device(r);
+    return !here || r->frames % 16 || measure(r); // from a card the state would have to come for it
 }
 
 static bool run_frames(app_report *r, app_outputs *outputs, app_progress *p) {
-    bool good = note_step(r) && (!outputs || app_outputs_frame(outputs, 0));
+    note_device(r);
+    bool good = measure(r) && note_step(r) && (!outputs || app_outputs_frame(outputs, 0));
     while (good && r->frames < p->frames && !app_interrupted()) {
         good = run_frame(r, p) && (!outputs || app_outputs_frame(outputs, r->frames));
         if (good) app_progress_show(p, r->frames);
@@ -104,12 +124,15 @@ static int run(int argc, char **argv) {
         status = app_load(path, options[0].values, &loaded);
         if (!status) status = app_device(&loaded, app_value(options, COUNT, "--device"));
         if (!status) {
-            app_report report = {
-                .loaded = &loaded, .files = json_array(), .log_path = app_value(options, COUNT, "--log")};
+            app_report report = {.loaded = &loaded,
+                                 .files = json_array(),
+                                 .flocks = json_array(),
+                                 .log_path = app_value(options, COUNT, "--log")};
             report.steps_per_frame = io_scene_steps_per_frame(&loaded.settings, &report.dt);
             status =
                 simulate(&report, app_value(options, COUNT, "--out"), app_value(options, COUNT, "--quiet") != NULL);
             json_decref(report.files);
+            json_decref(report.flocks);
         }
         app_unload(&loaded);
     }

@@ -5,6 +5,7 @@
  *   worlds.c       worlds to measure, and rows of their plans run alone
  *   meshes.c       meshes made in code
  *   plain.c        the student's loops
+ *   plain_flock.c  the student's flock
  *   by_hand*.c     formulas' values and gradients, by hand
  *   bullet.cpp     Bullet's soft body; only there if Bullet is
  *   case_*.c       the cases
@@ -79,6 +80,6 @@ typedef struct bench_case {
 } bench_case;
 
 extern const bench_case bench_force, bench_sweep, bench_shapes, bench_substep, bench_threads, bench_w1, bench_w2,
-    bench_w3, bench_scale, bench_rope, bench_settled, bench_memory, bench_formula;
+    bench_w3, bench_scale, bench_rope, bench_settled, bench_memory, bench_formula, bench_flock;
 
 #endif

@@ -49,7 +49,8 @@ static const skein_field scene_fields[] = {
 static const io_scene_section sections[] = {
     {"method", SKEIN_METHOD, "what turns rules into motion: { \"type\": \"xpbd\", \"substeps\": 10 }, say"},
     {"bodies", SKEIN_BODY, "a list: [ { \"type\": \"cloth\", ... }, ... ]"},
-    {"constraints", SKEIN_CONSTRAINT, "a list; each has \"particles\", too: [[0, 1], [1, 2]]"},
+    {"constraints", SKEIN_CONSTRAINT,
+     "a list; each has \"particles\", too: [[0, 1], [1, 2]], or {\"body\": \"flag\", \"over\": \"edges\"}"},
     {"forces", SKEIN_FORCE, "a list"},
     {"colliders", SKEIN_COLLIDER, "a list"},
     {"output", SKEIN_EXPORTER,

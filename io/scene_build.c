@@ -141,13 +141,57 @@ static bool read_indices(index_list *list, io_place place, const json_t *json, s
     return false;
 }
 
+/* {"body": "flag", "over": "hinges"}: the body by its name or number. */
+static bool find_elements(const builder *b, io_place place, index_list *list, const json_t *json, size_t arity) {
+    static const char *const words[] = {"edges", "triangles", "hinges"};
+    char shown[IO_JSON_WORDS_SIZE], path[128];
+    const json_t *body = json_object_get(json, "body"), *over = json_object_get(json, "over");
+    skein_handle handle = {UINT32_MAX, 0};
+    for (size_t i = 0; i < skein_object_count(b->world, SKEIN_BODY); i++) {
+        skein_handle at = skein_object_at(b->world, SKEIN_BODY, i);
+        skein_value name;
+        snprintf(path, sizeof path, "bodies.%zu.name", i);
+        bool named = json_is_string(body) && !skein_get_path(b->world, path, &name) &&
+                     !strcmp(name.text, json_string_value(body));
+        if (named || (json_is_integer(body) && json_integer_value(body) == (json_int_t)i)) handle = at;
+    }
+    if (!skein_handle_valid(b->world, handle)) {
+        if (!b->body_missing)
+            io_fault(place, "particles.body", SKEIN_ERROR_NAME, "expected the name or number of a body, not %s",
+                     io_json_words(body, shown));
+        return false;
+    }
+    size_t what = 0, count;
+    while (what < 3 && !(json_is_string(over) && !strcmp(json_string_value(over), words[what]))) what++;
+    if (what == 3 || what + 2 != arity) {
+        io_fault(place, "particles.over", SKEIN_ERROR_VALUE,
+                 "expected \"edges\" (of 2 particles), \"triangles\" (3) or \"hinges\" (4) for a constraint on %zu "
+                 "particles, not %s",
+                 arity, io_json_words(over, shown));
+        return false;
+    }
+    skein_body_elements(b->world, handle, (skein_elements)what, NULL, 0, &count);
+    if (!io_grow(&list->data, &list->capacity, count * arity, sizeof *list->data) ||
+        skein_body_elements(b->world, handle, (skein_elements)what, list->data, count, &count)) {
+        io_fault(place, "particles", SKEIN_ERROR_MEMORY, "out of memory");
+        return false;
+    }
+    list->count = count * arity;
+    if (!count) io_fault(place, "particles.over", SKEIN_ERROR_VALUE, "the body has no %s", words[what]);
+    return count > 0;
+}
+
+static bool read_particles(const builder *b, io_place place, index_list *list, const json_t *json, size_t arity) {
+    return json_is_object(json) ? find_elements(b, place, list, json, arity) : read_indices(list, place, json, arity);
+}
+
 static void add_constraint(const builder *b, io_place place, const skein_kind *kind, const json_t *object,
                            const io_settings *settings) {
     index_list list = {0};
     size_t arity;
     if (skein_constraint_arity(b->world, kind->name, settings->data, &arity))
         report_object_fault(b, place, kind, "particles");
-    else if (read_indices(&list, place, json_object_get(object, "particles"), arity) && !b->body_missing &&
+    else if (read_particles(b, place, &list, json_object_get(object, "particles"), arity) && !b->body_missing &&
              skein_constraint_add(b->world, kind->name, list.data, list.count / arity, settings->data, NULL))
         report_object_fault(b, place, kind, "particles");
     free(list.data);

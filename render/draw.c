@@ -1,6 +1,7 @@
 /* Drawing a frame; see draw.h. */
 #include "render/draw.h"
 
+#include "render/birds.h"
 #include "render/fail.h"
 #include "render/instances.h"
 #include "render/light.h"
@@ -30,6 +31,7 @@ struct render_draw {
     render_shape sphere, pearl, grain; /* fine for colliders, coarse for particles, and for many of them */
     render_instances balls, particles, lines;
     render_solids solids;
+    render_flight flight;
     const render_shape *particle_shape; /* in this frame */
     render_mesh *meshes;                /* by the surface's place in the frame */
     size_t mesh_count;
@@ -88,6 +90,7 @@ static skein_status make_all(render_draw *draw, skein_error *error) {
     if (status == SKEIN_OK) status = render_shape_sphere(&draw->pearl, 10, error);
     if (status == SKEIN_OK) status = render_shape_dome(&draw->grain, error);
     if (status == SKEIN_OK) status = render_solids_create(&draw->solids, error);
+    if (status == SKEIN_OK) status = render_flight_create(&draw->flight, error);
     if (status != SKEIN_OK) return status;
 
     render_instances_make_balls(&draw->balls, &draw->sphere);
@@ -130,6 +133,7 @@ void render_draw_destroy(render_draw *draw) {
     render_shape_destroy(&draw->pearl);
     render_shape_destroy(&draw->grain);
     render_solids_destroy(&draw->solids);
+    render_flight_destroy(&draw->flight);
     render_paints_destroy(&draw->paints);
     render_light_destroy(&draw->light);
     glDeleteVertexArrays(1, &draw->no_arrays);
@@ -171,6 +175,7 @@ static skein_status bring(render_draw *draw, const drawing *d, skein_error *erro
     if (status == SKEIN_OK) status = render_instances_bring_spheres(&draw->balls, d->frame, error);
     if (status == SKEIN_OK) status = render_solids_bring(&draw->solids, d->frame, error);
     if (status == SKEIN_OK) status = bring_particles(draw, d, error);
+    if (status == SKEIN_OK) status = render_flight_bring(&draw->flight, d->frame, error);
     if (status == SKEIN_OK) status = render_instances_bring_lines(&draw->lines, d->frame, error);
     if (status == SKEIN_OK) status = render_paints_bring(&draw->paints, d->frame, error);
     return status;
@@ -320,6 +325,7 @@ static void draw_balls(const render_draw *draw, int twin) {
 static void draw_casters(const render_draw *draw, const drawing *d) {
     draw_surfaces(draw, d, DEPTH_ONLY);
     draw_balls(draw, DEPTH_ONLY);
+    render_flight_draw(&draw->flight, d->frame, true);
     render_solids_draw_depth(&draw->solids, d->frame);
 }
 
@@ -358,6 +364,7 @@ static void draw_picture(const render_draw *draw, const drawing *d, unsigned fra
     glDepthFunc(GL_GREATER);
     draw_surfaces(draw, d, 0);
     draw_balls(draw, 0);
+    render_flight_draw(&draw->flight, d->frame, false);
     render_solids_draw(&draw->solids, d->frame);
     draw_slabs(draw, d, 0);
     draw_ground(draw, d);

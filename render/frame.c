@@ -155,6 +155,11 @@ static void add_bowl(render_bounds *bounds, const render_bowl *bowl) {
 
 render_bounds render_frame_bounds(const render_frame *frame) {
     render_bounds bounds = render_bounds_nothing();
+    for (size_t i = 0; i < frame->bird_count; i++) {
+        if (!frame->birds[i].count) continue;
+        render_bounds_add(&bounds, frame->birds[i].least, 0.5 * frame->birds[i].span);
+        render_bounds_add(&bounds, frame->birds[i].most, 0.5 * frame->birds[i].span);
+    }
     for (size_t s = 0; s < frame->surface_count; s++) {
         const render_surface *surface = &frame->surfaces[s];
         for (size_t v = 0; v < surface->vertex_count && !surface->scenery; v++) {

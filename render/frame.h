@@ -90,6 +90,21 @@ typedef struct render_points {
     const float *colours; /* count x 3; or NULL: all have the one colour */
 } render_points;
 
+/* A flock: birds that fly along their velocities (render/birds.h). */
+typedef enum render_feathers { RENDER_OWN_FEATHERS, RENDER_BY_DIRECTION_FEATHERS, RENDER_ONE_FEATHER } render_feathers;
+typedef struct render_birds {
+    size_t count;
+    const float *positions, *velocities; /* count x 4; the fourth is not used */
+    /* Or OpenGL's buffers of the same in this context, 0 if there are none. The i-th bird is in slots[i]; or, where
+     * that is NULL, bird_buffer holds the bird of every slot. */
+    unsigned position_buffer, velocity_buffer, bird_buffer;
+    const uint32_t *slots;
+    double span; /* from tip to tip */
+    render_feathers paint;
+    float colour[3];
+    double least[3], most[3]; /* the box that they are in, about */
+} render_birds;
+
 /* Straight lines, `width` pixels wide wherever they are. */
 typedef struct render_lines {
     const double *positions; /* count x 6: both ends */
@@ -129,11 +144,14 @@ typedef struct render_frame {
     size_t bowl_count;
     const render_points *points;
     size_t points_count;
+    const render_birds *birds;
+    size_t bird_count;
     const render_lines *lines;
     size_t lines_count;
     const render_image *image; /* for RENDER_IMAGE; NULL: there is none */
     uint64_t image_number;     /* changes whenever the image does; not 0 */
     render_look look;
+    double time;              /* s: what moves by itself in a picture, as wings do, stands as it would then */
     double middle[3], radius; /* what haze and grid are measured by; radius 0: by what is in the frame */
 } render_frame;
 

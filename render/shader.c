@@ -53,25 +53,38 @@ static GLuint compile(GLenum stage, const char *files, skein_error *error) {
     return shader;
 }
 
+/* Links what is attached, or deletes the program; 0 on failure. */
+static GLuint finish(GLuint program, const char *files, skein_error *error) {
+    GLint fine = 0;
+    glLinkProgram(program);
+    glGetProgramiv(program, GL_LINK_STATUS, &fine);
+    if (fine) return program;
+    char log[400] = "";
+    glGetProgramInfoLog(program, sizeof log, NULL, log);
+    render_fail(error, SKEIN_ERROR_VALUE, files, "the driver cannot link the shaders: %s", log);
+    glDeleteProgram(program);
+    return 0;
+}
+
 unsigned render_shader_link(const char *vertex, const char *fragment, skein_error *error) {
     GLuint vertex_shader = compile(GL_VERTEX_SHADER, vertex, error), fragment_shader = 0, program = 0;
     if (vertex_shader && fragment) fragment_shader = compile(GL_FRAGMENT_SHADER, fragment, error);
     if (vertex_shader && (fragment_shader || !fragment)) {
-        GLint fine = 0;
         program = glCreateProgram();
         glAttachShader(program, vertex_shader);
         if (fragment_shader) glAttachShader(program, fragment_shader);
-        glLinkProgram(program);
-        glGetProgramiv(program, GL_LINK_STATUS, &fine);
-        if (!fine) {
-            char log[400] = "";
-            glGetProgramInfoLog(program, sizeof log, NULL, log);
-            render_fail(error, SKEIN_ERROR_VALUE, vertex, "the driver cannot link the shaders: %s", log);
-            glDeleteProgram(program);
-            program = 0;
-        }
+        program = finish(program, vertex, error);
     }
     glDeleteShader(vertex_shader);
     glDeleteShader(fragment_shader);
     return program;
+}
+
+unsigned render_shader_link_compute(const char *files, skein_error *error) {
+    GLuint shader = compile(GL_COMPUTE_SHADER, files, error), program = 0;
+    if (!shader) return 0;
+    program = glCreateProgram();
+    glAttachShader(program, shader);
+    glDeleteShader(shader); // with the program
+    return finish(program, files, error);
 }

@@ -18,5 +18,7 @@ extern const render_shader_file render_shader_files[];
  * between them ("shadow,surface.frag": ".glsl" is added), after common.glsl; fragment may be NULL.
  * 0 on failure: `error` holds the driver's words. */
 unsigned render_shader_link(const char *vertex, const char *fragment, skein_error *error);
+/* The same of a compute stage alone. */
+unsigned render_shader_link_compute(const char *files, skein_error *error);
 
 #endif

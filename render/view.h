@@ -17,7 +17,8 @@ typedef enum render_colouring {
     RENDER_BY_MATERIAL,
     RENDER_BY_BODY,
     RENDER_BY_SPEED,
-    RENDER_BY_STRAIN
+    RENDER_BY_STRAIN,
+    RENDER_BY_DIRECTION /* of flight: birds */
 } render_colouring;
 
 typedef enum render_shown_particles {
@@ -35,6 +36,7 @@ typedef struct render_view {
     int32_t shading; /* a render_shading */
     bool surface, wireframe, springs;
     int32_t particles; /* a render_shown_particles */
+    bool birds;        /* flocks, else as balls */
     bool pins, normals, velocities, contacts, colliders, ground, grid, axes;
     int32_t colour;  /* a render_colouring */
     double range;    /* the speed or strain at the end of the colours; 0: the largest there is now */

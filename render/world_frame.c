@@ -4,6 +4,7 @@
 #include "render/body_mesh.h"
 #include "render/fail.h"
 #include "render/planes.h"
+#include "render/world_birds.h"
 #include "render/world_implicit.h"
 #include "render/world_lines.h"
 #include "render/world_points.h"
@@ -33,6 +34,7 @@ struct render_world_frame {
     render_world_state state;
     render_world_lines lines;
     render_world_points points;
+    render_world_birds birds;
     body *bodies;
     size_t body_count;
     render_surface *surfaces;
@@ -40,6 +42,8 @@ struct render_world_frame {
     render_world_implicit implicit;
     render_image image;
     char *image_path; /* of the image that is loaded */
+    bool unread;      /* this time the particles' numbers stay where they are */
+    unsigned updates;
     bool has_floor;
     double floor_height;
     render_bounds held; /* in the picture, whatever the frame has */
@@ -50,8 +54,11 @@ static const double usual_repeats[] = {
     [RENDER_PLAIN] = 1, [RENDER_CHECKER] = 8, [RENDER_WEAVE] = 20, [RENDER_IMAGE] = 1, [RENDER_VALUES] = 1};
 /* Lengths of normals and contacts, in radii of the scene. */
 static const double normal_length = 0.03, contact_length = 0.06;
+enum { updates_between_looks = 30 };
 /* The ground is near when it is no farther below things than this part of their height. */
 static const double floor_gap = 0.25;
+/* The ground lies so far below terrain, in radii of the things on it: less would meet where waves go down. */
+static const double ground_gap = 0.02;
 /* A level plane is in the picture when it is no farther below things than so many of their radii. */
 static const double seen_fall = 2;
 
@@ -80,6 +87,7 @@ void render_world_frame_destroy(render_world_frame *made) {
     render_world_state_release(&made->state);
     render_world_lines_release(&made->lines);
     render_world_points_release(&made->points);
+    render_world_birds_release(&made->birds);
     render_image_release(&made->image);
     free(made->image_path);
     free(made->bodies);
@@ -221,6 +229,12 @@ static skein_status take_body(render_world_frame *made, const skein_world *world
     // a body without faces shows its particles; a hidden one shows nothing
     bool visible = is_visible(world, handle), faces = b->mesh.triangle_count > 0;
     bool rope = b->kind == ROPE && made->view.surface;
+    if (visible && render_are_birds(skein_object_kind(world, handle), &made->view)) {
+        mark(&made->state, &surface, RENDER_HIDDEN, index);
+        return render_add_birds(&made->birds, world, &made->state, &surface, index)
+                   ? SKEIN_OK
+                   : render_fail_memory(error, "the birds");
+    }
     mark(&made->state, &surface, !visible ? RENDER_HIDDEN : faces || rope ? RENDER_IN_SURFACE : RENDER_LOOSE, index);
     if (!visible) return SKEIN_OK;
     if (rope && !render_add_rope(&made->solids, &made->state, &surface, index, &made->view))
@@ -241,8 +255,10 @@ static skein_status take_bodies(render_world_frame *made, const skein_world *wor
     made->frame.surfaces = made->surfaces;
     made->frame.surface_count = 0;
     render_world_solids_clear(&made->solids);
+    render_world_birds_clear(&made->birds);
     skein_status status = SKEIN_OK;
     for (size_t i = 0; i < count && status == SKEIN_OK; i++) status = take_body(made, world, i, error);
+    render_world_birds_show(&made->birds, &made->view, &made->frame);
     return status;
 }
 
@@ -280,7 +296,7 @@ static double mean_edge(const render_world_frame *made) {
 }
 
 static skein_status take_particles(render_world_frame *made, const skein_world *world, skein_error *error) {
-    skein_view where = skein_position_view(world);
+    skein_view where = made->unread ? (skein_view){NULL, NULL, 0} : skein_position_view(world);
     if (!render_world_points_take(&made->points, &made->state, &where, &made->view))
         return render_fail_memory(error, "the particles");
     made->frame.points = made->points.points;
@@ -288,6 +304,7 @@ static skein_status take_particles(render_world_frame *made, const skein_world *
 
     render_bounds bounds = render_frame_bounds(&made->frame);
     double radius = made->frame.radius > 0 ? made->frame.radius : render_bounds_radius(&bounds);
+    render_world_birds_size(&made->birds, &made->view, radius);
     render_world_points_size(&made->points, &made->view, radius, mean_edge(made));
     render_world_solids_size(&made->solids, &made->view, radius);
     return SKEIN_OK;
@@ -310,12 +327,18 @@ static skein_status take_lines(render_world_frame *made, skein_error *error) {
     return made->lines.no_memory ? render_fail_memory(error, "the lines") : SKEIN_OK;
 }
 
-/* The lowest that slabs reach; infinite where there are none. */
+/* The lowest that slabs and terrain reach; infinite where there are none. */
 static double lowest_slab(const render_world_frame *made) {
     render_bounds things = bounds_to_hold(made), slabs = render_bounds_nothing();
     double middle[3], radius = render_bounds_radius(&things);
     render_bounds_centre(&things, middle);
     render_bounds_add_slabs(&slabs, &made->frame, middle, radius > 0 ? radius : 1);
+    for (size_t s = 0; s < made->frame.surface_count; s++) {
+        const render_surface *surface = &made->surfaces[s];
+        for (size_t v = 0; v < surface->vertex_count && surface->scenery; v++)
+            slabs.least[1] =
+                fmin(slabs.least[1], surface->positions[3 * v + 1] - ground_gap * (radius > 0 ? radius : 1));
+    }
     return slabs.least[1];
 }
 
@@ -343,14 +366,34 @@ static void take_look(render_world_frame *made) {
     look->grid = made->view.grid;
 }
 
+/* Birds that a card moves are drawn where they are, and their numbers come here only now and then: so that the camera
+ * knows about where. It takes a world of nothing else. */
+static bool needs_no_numbers(render_world_frame *made, const skein_world *world) {
+    if (skein_world_device(world).device != SKEIN_DEVICE_CURRENT_GL || made->view.velocities || made->view.contacts ||
+        made->state.particle_count != skein_particle_count(world) || ++made->updates % updates_between_looks == 0)
+        return false;
+    size_t birds = 0;
+    for (size_t i = 0; i < skein_object_count(world, SKEIN_BODY); i++) {
+        skein_handle handle = skein_object_at(world, SKEIN_BODY, i);
+        skein_surface surface;
+        if (!render_are_birds(skein_object_kind(world, handle), &made->view) ||
+            skein_body_surface(world, handle, &surface) != SKEIN_OK)
+            return false;
+        birds += surface.particle_count;
+    }
+    return birds == made->state.particle_count;
+}
+
 skein_status render_world_frame_update(render_world_frame *made, skein_world *world, const render_view *view,
                                        skein_error *error) {
     made->view = view ? *view : render_view_default();
-    made->time = skein_world_time(world);
+    made->time = made->frame.time = skein_world_time(world);
     render_world_lines_clear(&made->lines);
     take_look(made);
     skein_status status = take_image(made, error);
-    if (status == SKEIN_OK) status = render_world_state_read(&made->state, world, &made->view, made->blend, error);
+    made->unread = needs_no_numbers(made, world);
+    if (status == SKEIN_OK && !made->unread)
+        status = render_world_state_read(&made->state, world, &made->view, made->blend, error);
     if (status == SKEIN_OK) status = take_bodies(made, world, error);
     if (status == SKEIN_OK) status = render_take_colliders(&made->solids, world, &made->view, error);
     render_world_solids_show(&made->solids, &made->frame);

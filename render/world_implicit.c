@@ -2,16 +2,17 @@
 
 #include "render/fail.h"
 #include "render/net.h"
+#include "render/planes.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Cells along the longest side: to look for a surface with, to notice that it has changed with, to draw it with. */
-enum { SEARCH_CELLS = 24, NOTICE_CELLS = 10, DRAWN_CELLS = 72 };
+enum { SEARCH_CELLS = 24, NOTICE_CELLS = 10, DRAWN_CELLS = 56 };
 /* The box that a surface is looked for in is so many times as large as what else there is; and if it goes on beyond
  * that, and a larger box does not hold it either, it is terrain. */
-static const double room_around = 1.6, search_growth = 3;
+static const double room_around = 2.2, search_growth = 3;
 enum { SEARCHES = 3 };
 
 struct render_implicit {
@@ -21,7 +22,7 @@ struct render_implicit {
     render_bounds box, searched;
     uint64_t key; /* of what the mesh was made from */
     render_net net;
-    uint64_t number; /* of the mesh */
+    float *uv; /* of terrain: metres along x and z */
 };
 
 /* ---- Sampling --------------------------------------------------------------------------------- */
@@ -189,6 +190,16 @@ static bool settle(const skein_world *world, render_implicit *it, double cell) {
     return true;
 }
 
+/* Terrain has squares, as the ground has: so one sees how it lies. */
+static bool lay_pattern(render_implicit *it) {
+    float *uv = realloc(it->uv, (2 * it->net.vertex_count + 1) * sizeof *uv);
+    if (!uv) return false;
+    it->uv = uv;
+    for (size_t v = 0; v < it->net.vertex_count; v++)
+        for (size_t k = 0; k < 2; k++) uv[2 * v + k] = (float)it->net.positions[3 * v + 2 * k];
+    return true;
+}
+
 static bool make_mesh(const skein_world *world, render_implicit *it, bool *leaves) {
     render_net_grid grid;
     float *values = sample(world, it->handle, &it->box, DRAWN_CELLS, &grid);
@@ -201,8 +212,7 @@ static bool make_mesh(const skein_world *world, render_implicit *it, bool *leave
             double at = it->net.positions[3 * v + k] - grid.least[k], end = grid.cell * (double)grid.cells[k];
             *leaves |= (!it->open[2 * k] && at < grid.cell) || (!it->open[2 * k + 1] && at > end - grid.cell);
         }
-    it->number++;
-    return good && settle(world, it, grid.cell);
+    return good && settle(world, it, grid.cell) && lay_pattern(it);
 }
 
 static bool contains(const render_bounds *outer, const render_bounds *inner) {
@@ -220,12 +230,17 @@ static bool bring(const skein_world *world, render_implicit *it, const render_bo
     if (!key_of(world, it, &key)) return false;
     if (known && key == it->key) return true;
     if (!make_mesh(world, it, &leaves)) return false;
-    if (leaves && known) { // it has grown out of its box
+    if (known && (leaves || !it->net.triangle_count)) { // it has moved or grown out of its box
         if (!find_box(world, it, things) || !key_of(world, it, &key) || !make_mesh(world, it, &leaves)) return false;
     }
     it->made = true;
     it->key = key;
     return true;
+}
+
+static void release(render_implicit *it) {
+    render_net_release(&it->net);
+    free(it->uv);
 }
 
 static render_implicit *find(render_world_implicit *all, skein_handle handle) {
@@ -246,7 +261,7 @@ static void drop_unused(render_world_implicit *all) {
     size_t kept = 0;
     for (size_t i = 0; i < all->count; i++) {
         if (all->data[i].used) all->data[kept++] = all->data[i];
-        else render_net_release(&all->data[i].net);
+        else release(&all->data[i]);
     }
     all->count = kept;
 }
@@ -268,28 +283,38 @@ skein_status render_take_implicit(render_world_implicit *all, const skein_world 
     return SKEIN_OK;
 }
 
+/* Things are painted as other colliders are, terrain is as the ground. */
+static void paint(render_material *material, const render_implicit *it) {
+    render_solid solid = render_default_solid();
+    render_look look = render_default_look();
+    double side = render_grid_cell(render_bounds_radius(&it->searched) / room_around);
+    for (int k = 0; k < 3; k++) {
+        material->colour[k] = material->lining[k] = it->terrain ? look.ground[k] : solid.colour[k];
+        material->accent[k] = 0.94f * material->colour[k];
+    }
+    material->pattern = it->terrain ? RENDER_CHECKER : RENDER_PLAIN;
+    material->repeats[0] = material->repeats[1] = (float)(0.5 / side);
+}
+
 size_t render_show_implicit(const render_world_implicit *all, render_surface *surfaces) {
     size_t count = 0;
     for (size_t i = 0; i < all->count; i++) {
         const render_implicit *it = &all->data[i];
         if (!it->net.triangle_count) continue;
         render_surface *surface = &surfaces[count++];
-        render_solid paint = render_default_solid();
         *surface = (render_surface){.positions = it->net.positions,
                                     .vertex_count = it->net.vertex_count,
                                     .triangles = it->net.triangles,
                                     .triangle_count = it->net.triangle_count,
                                     .scenery = it->terrain};
-        memcpy(surface->material.colour, paint.colour, sizeof paint.colour);
-        memcpy(surface->material.accent, paint.marking, sizeof paint.marking);
-        memcpy(surface->material.lining, paint.colour, sizeof paint.colour);
-        surface->material.pattern = RENDER_PLAIN;
+        if (it->terrain) surface->uv = it->uv;
+        paint(&surface->material, it);
     }
     return count;
 }
 
 void render_world_implicit_release(render_world_implicit *all) {
-    for (size_t i = 0; i < all->count; i++) render_net_release(&all->data[i].net);
+    for (size_t i = 0; i < all->count; i++) release(&all->data[i]);
     free(all->data);
     memset(all, 0, sizeof *all);
 }

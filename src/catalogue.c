@@ -9,9 +9,9 @@
 static const sk_body_type *const bodies[] = {&sk_cloth, &sk_lattice, &sk_rope, &sk_tetrahedra, &sk_flock};
 static const sk_constraint_type *const constraints[] = {&sk_distance, &sk_dihedral, &sk_isometric,          &sk_area,
                                                         &sk_volume,   &sk_angle,    &sk_formula_constraint, &sk_energy};
-static const sk_force_type *const forces[] = {&sk_gravity,     &sk_wind,        &sk_surface_wind, &sk_drag,
-                                              &sk_separation,  &sk_flocking,    &sk_attraction,   &sk_predator,
-                                              &sk_speed_limit, &sk_force_field, &sk_potential};
+static const sk_force_type *const forces[] = {
+    &sk_gravity,  &sk_wind,    &sk_surface_wind, &sk_drag,       &sk_separation, &sk_flocking,    &sk_attraction,
+    &sk_predator, &sk_lookout, &sk_speed_limit,  &sk_turn_limit, &sk_bounds,     &sk_force_field, &sk_potential};
 static const sk_collider_type *const colliders[] = {&sk_plane,   &sk_sphere, &sk_bowl,
                                                     &sk_capsule, &sk_box,    &sk_formula_surface};
 static const sk_method_type *const methods[] = {&sk_explicit_euler,

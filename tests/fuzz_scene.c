@@ -4,7 +4,8 @@
  *
  * Owns nothing. Called by libFuzzer (clang -fsanitize=fuzzer,address), or, built with
  * -DSKEIN_FUZZ_REPLAY, by its own main with files and directories of a corpus as arguments.
- * Invariant: there is a world or there are faults; each fault has a place and words on one line; a world
+ * Invariant: there is a world or there are faults; each fault has a place and words on one line (and a place in a
+ * formula on two more); a world
  * can be measured, explained and stepped, and gives all memory back. A grid of 65536 x 65536 is legal, so
  * worlds have little memory here. */
 #include "io/exporters.h"
@@ -45,13 +46,27 @@ static void judge_line(const char *text) {
     for (; *text; text++) require(!iscntrl((unsigned char)*text));
 }
 
+/* What is wrong in a formula is shown in two more lines, set in by four blanks. */
+static void judge_words(const char *text) {
+    char line[sizeof(skein_error)];
+    for (int lines = 0; *text; lines++) {
+        size_t length = strcspn(text, "\n");
+        require(lines < 3 && (lines == 0 || strncmp(text, "    ", 4) == 0));
+        memcpy(line, text, length);
+        line[length] = '\0';
+        judge_line(line);
+        text += length + (text[length] == '\n');
+    }
+}
+
 static void judge_fault(void *user, const skein_error *error) {
     ++*(size_t *)user;
     require(error->status != SKEIN_OK);
     require(strncmp(error->where, "tests/corpus/", 13) == 0 || strncmp(error->where, "--set ", 6) == 0 ||
             strncmp(error->where, "...", 3) == 0);
     judge_line(error->where);
-    judge_line(error->message);
+    require(error->message[0]);
+    judge_words(error->message);
 }
 
 static void judge_scene(const io_scene *scene) {

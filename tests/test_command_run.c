@@ -17,16 +17,16 @@ static void judge_report(const json_t *report, int frames) {
         {"time", 0, 1e3},
         {"particles", 2, 1e6},
         {"held_particles", 0, 1e3},
-        {"constraints", 1, 1e6},
+        {"constraints", 0, 1e6},
         {"contacts", 0, 1e6},
         {"load_seconds", 0, 100},
         {"run_seconds", 0, 200},
         {"ms_per_step", 0, 1e5},
         {"realtime_factor", 0, 1e6},
-        {"kinetic_energy", 0, 1e3},
+        {"kinetic_energy", 0, 1e4},
         {"potential_energy", -1e3, 1e3},
         {"elastic_energy", 0, 1e3},
-        {"dissipated_energy", -1e3, 1e3},
+        {"dissipated_energy", -1e4, 1e3},
         {"max_stretch", 0, 1},
         {"p99_stretch", 0, 1},
         {"worst_stretch_of_run", 0, 1},
@@ -43,7 +43,14 @@ static void judge_report(const json_t *report, int frames) {
         double x = number_of(report, numbers[i].key);
         if (!(x >= numbers[i].least && x <= numbers[i].most)) fail_msg("'%s' is %g", numbers[i].key, x);
     }
-    assert_int_equal(json_object_size(report), COUNT(numbers) + 8);
+    const json_t *flocks = json_object_get(report, "flocks"); // where there are some
+    assert_int_equal(json_object_size(report), COUNT(numbers) + 8 + (flocks ? 1 : 0));
+    for (size_t i = 0; i < json_array_size(flocks); i++) {
+        const json_t *flock = json_array_get(flocks, i), *milling = json_object_get(flock, "milling");
+        assert_int_equal(json_array_size(milling), (frames + 15) / 16 + 1);
+        assert_int_equal(json_array_size(json_object_get(flock, "time")), json_array_size(milling));
+        assert_true(json_number_value(json_array_get(milling, 0)) > 0.5);
+    }
     assert_string_equal(text_of(report, "skein"), SKEIN_VERSION);
     assert_string_equal(text_of(report, "precision"), sizeof(skein_real) == 8 ? "double" : "float");
     assert_true(strlen(text_of(report, "scene")) > 0 && strlen(text_of(report, "method")) > 0);

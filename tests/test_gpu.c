@@ -331,6 +331,89 @@ static void four_thousand_birds_fly_a_hundred_steps(void **state) {
     skein_world_destroy(world);
 }
 
+/* After some steps the state lies in the order of the cells: a step from there is the processor's, bird by bird. */
+static void birds_that_were_moved_are_the_same_birds(void **state) {
+    (void)state;
+    skein_world *cpu = flying("symplectic_euler", 500, true), *gpu = flying("symplectic_euler", 500, true);
+    double *now = calloc(6 * 500, sizeof *now);
+    to_card(gpu);
+    for (int i = 0; i < 4; i++) OK(gpu, skein_world_step(gpu, dt));
+    assert_null(skein_world_device(gpu).slot_of);
+    assert_true(skein_world_device(gpu).particle_buffer != 0);
+    OK(gpu, skein_positions_copy(gpu, 0, 500, now));
+    OK(gpu, skein_velocities_copy(gpu, 0, 500, now + 1500));
+    OK(cpu, skein_positions_set(cpu, 0, 500, now));
+    OK(cpu, skein_velocities_set(cpu, 0, 500, now + 1500));
+    OK(cpu, skein_world_step(cpu, dt));
+    OK(gpu, skein_world_step(gpu, dt));
+    assert_under(difference(cpu, gpu), 1e-5);
+    // a rule for some of them only: now slots matter, and are the world's again
+    for (int w = 0; w < 2; w++) {
+        skein_world *world = w ? gpu : cpu;
+        scatter(world, 20, 3, 77);
+        OK(world, skein_set_path(world, "forces.0.on", skein_text("birds")));
+        OK(world, skein_world_step(world, dt));
+    }
+    assert_non_null(skein_world_device(gpu).slot_of);
+    assert_under(difference(cpu, gpu), 1e-4);
+    free(now);
+    skein_world_destroy(cpu);
+    skein_world_destroy(gpu);
+}
+
+/* ---- memory ------------------------------------------------------------------------------------- */
+
+typedef struct purse {
+    size_t calls, fail_at, blocks;
+} purse;
+
+static void *take(void *user, size_t size, size_t alignment) {
+    purse *p = user;
+    if (p->calls++ == p->fail_at) return NULL;
+    p->blocks++;
+    return aligned_alloc(alignment, size);
+}
+
+static void give_back(void *user, void *memory, size_t size) {
+    (void)size;
+    ((purse *)user)->blocks--;
+    free(memory);
+}
+
+/* Whichever allocation fails on the way to the card, the call says so, can be made again, and nothing is left. */
+static void failed_allocations_are_survived(void **state) {
+    (void)state;
+    purse p = {0, SIZE_MAX, 0};
+    bool failed = true;
+    for (size_t n = 0; failed; n++) {
+        skein_world_desc desc = skein_default_world_desc();
+        desc.allocate = take, desc.release = give_back, desc.memory_user = &p;
+        skein_world *world = skein_world_create(&desc, NULL);
+        OK(world, skein_force_add(world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.3)), NULL));
+        OK(world, skein_method_set(world, "symplectic_euler", NULL));
+        scatter(world, 60, 1, 3);
+        OK(world, skein_world_step(world, dt)); // what is not the card's is there already
+        p.fail_at = p.calls + n;
+        skein_status status = skein_world_device_set(world, SKEIN_DEVICE_GPU);
+        if (status == SKEIN_ERROR_MEMORY) status = skein_world_device_set(world, SKEIN_DEVICE_GPU);
+        if (status) fprintf(stderr, "skipped: %s\n", skein_world_error(world)->message);
+        for (int i = 0; i < 4 && !status; i++) {
+            skein_status stepped = skein_world_step(world, dt);
+            if (!stepped) continue;
+            assert_int_equal(stepped, SKEIN_ERROR_MEMORY);
+            OK(world, skein_world_step(world, dt));
+        }
+        failed = p.calls > p.fail_at && !status;
+        p.fail_at = SIZE_MAX;
+        skein_statistics statistics;
+        OK(world, skein_world_statistics(world, &statistics));
+        skein_world_destroy(world);
+        assert_int_equal(p.blocks, 0);
+        if (status) skip();
+        assert_true(n > 5 || failed);
+    }
+}
+
 /* ---- limits of drivers: a binding smaller than a vector, an axis shorter than the groups -------- */
 
 static void small_bindings_and_short_axes_do(void **state) {
@@ -483,6 +566,8 @@ int main(void) {
         cmocka_unit_test(flocks_that_mind_each_other_agree),
         cmocka_unit_test(the_flocks_stay_alike),
         cmocka_unit_test(four_thousand_birds_fly_a_hundred_steps),
+        cmocka_unit_test(birds_that_were_moved_are_the_same_birds),
+        cmocka_unit_test(failed_allocations_are_survived),
         cmocka_unit_test(small_bindings_and_short_axes_do),
         cmocka_unit_test(changes_by_hand_arrive),
         cmocka_unit_test(the_card_is_described),

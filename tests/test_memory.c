@@ -36,6 +36,7 @@ typedef struct scenario {
     skein_world *world;
     skein_handle gravity, ground, surface;
     skein_statistics statistics;
+    skein_order order;
     int call;
 } scenario;
 
@@ -81,10 +82,10 @@ static skein_status make_call(scenario *s) {
                                   SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.8, 0), SKEIN_REAL("radius", 0.15)), NULL);
     case 9: return skein_collider_add(s->world, "plane", NULL, &s->ground);
     case 10:
-        return skein_collider_add(s->world, "formula",
-                                  SKEIN_SETTINGS(SKEIN_TEXT("surface", "length(p - vec3(0, h, 0)) - 0.15"),
-                                                 SKEIN_REAL("parameters.h", 0.8)),
-                                  &s->surface);
+        return skein_collider_add(
+            s->world, "formula",
+            SKEIN_SETTINGS(SKEIN_TEXT("surface", "length(p - vec3(0, h, 0)) - 0.15"), SKEIN_REAL("parameters.h", 0.8)),
+            &s->surface);
     case 11:
         return skein_force_add(s->world, "force_field",
                                SKEIN_SETTINGS(SKEIN_TEXT("force", "-k*v"), SKEIN_REAL("parameters.k", 0.1)), NULL);
@@ -110,11 +111,32 @@ static skein_status make_call(scenario *s) {
     case 23: return skein_world_reset(s->world);
     case 24: return skein_world_step(s->world, dt);
     case 25: return skein_world_step(s->world, dt / 2);
-    case 26: return skein_world_statistics(s->world, &s->statistics);
+    case 26: {
+        skein_pass passes[8];
+        size_t count;
+        return skein_world_profile(s->world, dt, passes, 8, &count);
+    }
+    case 27: return skein_world_statistics(s->world, &s->statistics);
+    case 28:
+        return skein_body_add(s->world, "flock", NULL,
+                              SKEIN_SETTINGS(SKEIN_TEXT("name", "birds"), SKEIN_REAL("count", 40)), NULL);
+    case 29: return skein_force_add(s->world, "flocking", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL);
+    case 30: return skein_force_add(s->world, "predator", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL);
+    case 31: return skein_force_add(s->world, "speed_limit", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL);
+    case 32:
+        return skein_constraint_add(
+            s->world, "formula", (const uint32_t[]){0, 20, 3, 31}, 2,
+            SKEIN_SETTINGS(SKEIN_TEXT("constraint", "length(p0 - p1) - k * rest(length(p0 - p1))"),
+                           SKEIN_REAL("parameters.k", 1), SKEIN_REAL("stiffness", 10)),
+            NULL);
+    case 33: return skein_constraint_add(s->world, "energy", (const uint32_t[]){0, 20}, 1, NULL, NULL);
+    case 34: return skein_world_step(s->world, dt);
+    case 35: return skein_order_measure(s->world, 5, 60, (const double[]){0, 0, 0}, 1, &s->order);
+    case 36: return skein_world_statistics(s->world, &s->statistics);
     default: return SKEIN_ERROR_LIMIT;
     }
 }
-enum { CALLS = 27 };
+enum { CALLS = 37 };
 
 /* What a failed call must leave as it was. */
 typedef struct census {

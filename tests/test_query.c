@@ -30,10 +30,10 @@ static void rays_meet_a_sheet(void **state) {
     skein_world *world = empty_world();
     skein_handle body;
     (void)state;
-    OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_PAIR("size", 2, 2),
-                                            SKEIN_VEC3("position", 0, 2, 0)),
-                             &body));
+    OK(world,
+       skein_body_add(
+           world, "cloth", NULL,
+           SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_PAIR("size", 2, 2), SKEIN_VEC3("position", 0, 2, 0)), &body));
     uint64_t seed = 1;
     int met = 0;
     for (int i = 0; i < 400; i++) {
@@ -44,10 +44,10 @@ static void rays_meet_a_sheet(void **state) {
         if (fabs(fabs(to.x) - 1) < 1e-3 || fabs(fabs(to.z) - 1) < 1e-3) continue;
         vec3 any_length = {0.3 * way.x, 0.3 * way.y, 0.3 * way.z};
         skein_hit hit = cast(world, from, any_length, SKEIN_BODY);
-        assert_int_equal(hit.distance < INFINITY, inside);
+        assert_int_equal(hit.t < INFINITY, inside);
         if (!inside) continue;
         met++;
-        assert_near(hit.distance, length3(way), 1e-5);
+        assert_near(hit.t, length3(way), 1e-5);
         assert_near(hit.point[0], to.x, 1e-5);
         assert_near(hit.point[2], to.z, 1e-5);
         assert_near(hit.normal[1], i % 2 ? 1 : -1, 1e-5); // towards the origin
@@ -60,11 +60,11 @@ static void rays_meet_a_sheet(void **state) {
     }
     assert_true(met > 100);
     // away from it, and along it
-    assert_true(isinf(cast(world, (vec3){0, 5, 0}, (vec3){0, 1, 0}, SKEIN_BODY).distance));
-    assert_true(isinf(cast(world, (vec3){0, 3, 0}, (vec3){1, 0, 0}, SKEIN_BODY).distance));
+    assert_true(isinf(cast(world, (vec3){0, 5, 0}, (vec3){0, 1, 0}, SKEIN_BODY).t));
+    assert_true(isinf(cast(world, (vec3){0, 3, 0}, (vec3){1, 0, 0}, SKEIN_BODY).t));
     // what is not visible is not met
     OK(world, skein_set(world, body, "visible", skein_number(0)));
-    assert_true(isinf(cast(world, (vec3){0.1, 5, 0.2}, (vec3){0, -1, 0}, SKEIN_BODY).distance));
+    assert_true(isinf(cast(world, (vec3){0.1, 5, 0.2}, (vec3){0, -1, 0}, SKEIN_BODY).t));
     skein_world_destroy(world);
 }
 
@@ -92,18 +92,18 @@ static void rays_meet_balls_and_bowls(void **state) {
         double ought = meet_ball(from, along, 0.8, false), out = meet_ball(from, along, 0.8, true);
         if (ought < INFINITY && out - ought < 0.05) continue; // it only grazes
         skein_hit hit = cast(ball, from, along, SKEIN_COLLIDER);
-        assert_int_equal(hit.distance < INFINITY, ought < INFINITY);
+        assert_int_equal(hit.t < INFINITY, ought < INFINITY);
         skein_hit wall = cast(bowl, from, along, SKEIN_COLLIDER);
-        assert_int_equal(wall.distance < INFINITY, out < INFINITY);
+        assert_int_equal(wall.t < INFINITY, out < INFINITY);
         if (isinf(ought)) continue;
         met++;
         // rounding in the distance, on a surface that leans so much against the ray
         double lean = (out - ought) / 2 / 0.8, off = 2e-5 / lean;
-        assert_near(hit.distance, ought, off);
+        assert_near(hit.t, ought, off);
         assert_int_equal(hit.particle, UINT32_MAX);
         for (int k = 0; k < 3; k++) assert_near(hit.normal[k], hit.point[k] / 0.8, 1e-3);
         // one looks into a bowl from outside, and sees its far wall
-        assert_near(wall.distance, out, off);
+        assert_near(wall.t, out, off);
         for (int k = 0; k < 3; k++) assert_near(wall.normal[k], -wall.point[k] / 0.8, 1e-3);
     }
     assert_true(met > 100);
@@ -119,12 +119,12 @@ static void rays_meet_planes_at_any_angle(void **state) {
     for (int degrees = 1; degrees < 90; degrees += 4) {
         double angle = degrees * PI / 180;
         skein_hit hit = cast(world, (vec3){0.3, 1.25, -0.4}, (vec3){cos(angle), -sin(angle), 0}, SKEIN_COLLIDER);
-        assert_share(hit.distance, 1 / sin(angle), 1e-3);
+        assert_share(hit.t, 1 / sin(angle), 1e-3);
         assert_near(hit.normal[1], 1, 1e-6);
     }
-    assert_true(isinf(cast(world, (vec3){0, 1, 0}, (vec3){1, 0.01, 0}, SKEIN_COLLIDER).distance));
+    assert_true(isinf(cast(world, (vec3){0, 1, 0}, (vec3){1, 0.01, 0}, SKEIN_COLLIDER).t));
     OK(world, skein_set(world, plane, "enabled", skein_number(0)));
-    assert_true(isinf(cast(world, (vec3){0, 1, 0}, (vec3){0, -1, 0}, SKEIN_COLLIDER).distance));
+    assert_true(isinf(cast(world, (vec3){0, 1, 0}, (vec3){0, -1, 0}, SKEIN_COLLIDER).t));
     skein_world_destroy(world);
 }
 
@@ -135,19 +135,19 @@ static void rays_meet_boxes_and_capsules(void **state) {
     (void)state;
     OK(world, skein_collider_add(world, "box",
                                  SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0, 0), SKEIN_VEC3("size", 2, 1, 0.5)), &box));
-    OK(world, skein_collider_add(world, "capsule",
-                                 SKEIN_SETTINGS(SKEIN_VEC3("from", 3, 0, 0), SKEIN_VEC3("to", 5, 0, 0),
-                                                SKEIN_REAL("radius", 0.5)),
-                                 &rod));
+    OK(world,
+       skein_collider_add(
+           world, "capsule",
+           SKEIN_SETTINGS(SKEIN_VEC3("from", 3, 0, 0), SKEIN_VEC3("to", 5, 0, 0), SKEIN_REAL("radius", 0.5)), &rod));
     skein_hit hit = cast(world, (vec3){0.7, 0.3, 4}, (vec3){0, 0, -2}, SKEIN_COLLIDER);
-    assert_near(hit.distance, 3.75, 1e-4);
+    assert_near(hit.t, 3.75, 1e-4);
     assert_near(hit.normal[2], 1, 1e-4);
     assert_int_equal(hit.object.index, box.index);
     hit = cast(world, (vec3){-4, -4, 0.1}, (vec3){1, 1, 0}, SKEIN_COLLIDER); // enters by the lower face, at x = -0.5
     assert_near(hit.point[0], -0.5, 1e-4);
     assert_near(hit.normal[1], -1, 1e-4);
     hit = cast(world, (vec3){9, 0, 0}, (vec3){-1, 0, 0}, SKEIN_COLLIDER);
-    assert_near(hit.distance, 3.5, 1e-4);
+    assert_near(hit.t, 3.5, 1e-4);
     assert_int_equal(hit.object.index, rod.index);
     hit = cast(world, (vec3){4, 3, 0.3}, (vec3){0, -1, 0}, SKEIN_COLLIDER);
     assert_near(hit.point[1], 0.4, 1e-4); // sqrt(0.5^2 - 0.3^2)
@@ -167,7 +167,8 @@ static void finds_the_nearest_particles(void **state) {
     FAILS(world, SKEIN_ERROR_VALUE, "no particles",
           skein_particle_near_point(world, (const double[]){0, 0, 0}, &particle, &distance));
     for (int i = 0; i < MANY; i++)
-        add_particle(world, 1, random_between(&seed, -1, 1), random_between(&seed, -1, 1), random_between(&seed, -1, 1));
+        add_particle(world, 1, random_between(&seed, -1, 1), random_between(&seed, -1, 1),
+                     random_between(&seed, -1, 1));
     for (int i = 0; i < 50; i++) {
         vec3 p = {random_between(&seed, -1, 1), random_between(&seed, -1, 1), random_between(&seed, -1, 1)};
         const double point[3] = {p.x, p.y, p.z};
@@ -285,6 +286,47 @@ static void a_world_goes_back_to_a_copy(void **state) {
     }
 }
 
+/* A step that is measured is a step: the same bits under every method; its passes have names and times. */
+static void measures_the_passes_of_a_step(void **state) {
+    enum { MOST = 64 };
+    (void)state;
+    for (size_t m = 0; m < COUNT(all_methods); m++) {
+        skein_world *worlds[2];
+        skein_pass passes[MOST];
+        size_t count = 0, few = 0;
+        for (int w = 0; w < 2; w++) {
+            worlds[w] = new_world(all_methods[m], 20);
+            OK(worlds[w],
+               skein_body_add(worlds[w], "cloth", NULL,
+                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 20, 20), SKEIN_TEXT("pins", "top corners"),
+                                             SKEIN_REAL("density", 2), SKEIN_REAL("stretch.stiffness", 50),
+                                             SKEIN_REAL("shear.stiffness", 10), SKEIN_REAL("bend.stiffness", 1)),
+                              NULL));
+            add_gravity(worlds[w]);
+            OK(worlds[w], skein_collider_add(worlds[w], "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.1)), NULL));
+        }
+        for (int i = 0; i < 20; i++) {
+            OK(worlds[0], skein_world_step(worlds[0], 1.0 / 120));
+            OK(worlds[1], skein_world_profile(worlds[1], 1.0 / 120, passes, MOST, &count));
+        }
+        if (skein_world_hash(worlds[0]) != skein_world_hash(worlds[1])) fail_msg("%s has other bits", all_methods[m]);
+        assert_near(skein_world_time(worlds[0]), skein_world_time(worlds[1]), 0);
+        assert_true(count > 3 && count < MOST);
+        bool plane = false;
+        for (size_t p = 0; p < count; p++) {
+            assert_true(passes[p].seconds >= 0 && passes[p].seconds < 10);
+            plane |= !strcmp(passes[p].label, "plane");
+            for (size_t q = 0; q < p; q++)
+                assert_false(passes[p].kind == passes[q].kind && !strcmp(passes[p].label, passes[q].label));
+        }
+        assert_true(plane);
+        OK(worlds[1], skein_world_profile(worlds[1], 1.0 / 120, passes, 2, &few));
+        assert_true(few >= count);
+        FAILS(worlds[1], SKEIN_ERROR_VALUE, "more than 0", skein_world_profile(worlds[1], 0, passes, MOST, &count));
+        for (int w = 0; w < 2; w++) skein_world_destroy(worlds[w]);
+    }
+}
+
 static void tells_which_fields_can_change(void **state) {
     skein_world *world = empty_world();
     skein_handle body;
@@ -310,6 +352,7 @@ int main(void) {
         cmocka_unit_test(refuses_bad_rays),
         cmocka_unit_test(held_particles_move_with_their_velocity),
         cmocka_unit_test(a_world_goes_back_to_a_copy),
+        cmocka_unit_test(measures_the_passes_of_a_step),
         cmocka_unit_test(tells_which_fields_can_change),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

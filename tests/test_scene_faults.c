@@ -45,7 +45,32 @@ static const struct {
      ": bodies.0.stretch.stifness: cloth has no field 'stretch.stifness'; did you mean 'stretch.stiffness'?"},
     {"field_unknown", ": zzzzzzzzzzzzzzzzzzzz: scene has no field 'zzzzzzzzzzzzzzzzzzzz'"},
     {"field_with_line_break", ": fra?mes: scene has no field 'fra?mes'; did you mean 'frames'?"},
+    {"force_field_number",
+     ": forces.0.force: column 1: the result is a number; expected a vector: vec3(x, y, z)\n    length(p)\n    ^^^^^^^^^"},
     {"forces_as_object", ": forces: expected a list, [ { \"type\": ... }, ... ], not an object"},
+    {"formula_bracket_missing",
+     ": colliders.0.surface: column 9: expected ',' or ')', not the end\n    length(p\n            ^"},
+    {"formula_control_characters",
+     ": colliders.0.surface: column 7: a byte that is no printable ASCII (0x1b)\n    p.y - ?[31m\n          ^"},
+    {"formula_misspelt",
+     ": colliders.0.surface: line 2, column 1: there is no name 'lenght'; did you mean 'length'?\n    lenght(q) - R\n    ^^^^^^"},
+    {"formula_parameter_as_text", ": colliders.0.parameters.R: expected a number, not the text '1'"},
+    {"formula_parameter_in_groups", ": colliders.0.parameters.R: expected a number, not an object"},
+    {"formula_parameter_of_the_language",
+     ": colliders.0.parameters.sin: 'sin' cannot be a parameter: it has a meaning in formulas already"},
+    {"formula_parameter_twice", ": colliders.0.parameters.R: is there twice, once in a group and once with a dot"},
+    {"formula_parameter_unused", ": colliders.0.parameters.R: 'R' is in no formula of this object"},
+    {"formula_parameters_as_number",
+     ": colliders.0.parameters: expected an object of numbers, { \"R\": 0.5 }, say, not the number 5"},
+    {"formula_parameters_misspelt",
+     ": colliders.0.paramters: formula has no field 'paramters'; did you mean 'parameters'?"},
+    {"formula_parameters_of_a_sphere", ": colliders.0.parameters: sphere has no field 'parameters'"},
+    {"formula_same_everywhere",
+     ": colliders.0.surface: a surface is a formula of p, and this one is the same everywhere"},
+    {"formula_vector_for_surface",
+     ": colliders.0.surface: column 1: the result is a vector; expected a number, such as its length(v) or a component v.x\n    p*2\n    ^^^"},
+    {"formula_with_rest",
+     ": colliders.0.surface: there is no rest(...) here: only what is made of particles has a rest pose"},
     {"fps_zero", ": fps: 0 is out of range: expected from 0.001 to 1e+06 1/s"},
     {"frames_negative", ": frames: -1 is out of range: expected from 0 to 1e+08"},
     {"grid_of_one_row", ": bodies.0.grid: a grid of 1 x 9 particles: expected 2 or more each way"},
@@ -117,6 +142,8 @@ static const struct {
     {"pins_with_fraction", ": bodies.0.pins: '0.5': expected whole numbers"},
     {"pins_with_null", ": bodies.0.pins.1: expected a number or a text, not null"},
     {"plane_normal_zero", ": colliders.0.normal: a plane's normal cannot be zero"},
+    {"potential_of_velocity",
+     ": forces.0.energy: column 5: 'v' is a velocity, and those are for force fields: a constraint, an energy or a surface depends on positions and t\n    dot(v, v)\n        ^"},
     {"real2_as_text", ": bodies.0.size: expected two numbers in m, not the text '1 1'"},
     {"real2_of_three", ": bodies.0.size: expected two numbers in m, not a list of 3"},
     {"real_as_bool", ": bodies.0.density: expected a number in kg/m2, not true"},
@@ -174,7 +201,8 @@ static void every_broken_scene_is_in_the_table(void **state) {
     assert_int_equal(count, COUNT(broken));
 }
 
-/* One message, on one line, with file and place; exit status 2; the folder for the files is not even made. */
+/* One message, on one line (and the place in a formula on two more), with file and place; exit status 2; the folder for
+ * the files is not even made. */
 static void broken_scenes_are_refused(void **state) {
     (void)state;
     char path[256], words[1024];

@@ -4,6 +4,9 @@
 
 #include <math.h>
 
+#include "render/camera.h"
+#include "render/linear.h"
+
 static char method_before[64];
 
 /* A word after " name=" of the line that was heard last. */
@@ -177,6 +180,115 @@ static void moves_by_keys_and_flies(void **state) {
     assert_true(distance(before, after) < 1e-4); // the first view
 }
 
+/* ---- The hand ------------------------------------------------------------------------------------------- */
+
+/* Where the first camera of the state that was heard last shows a point. */
+static void pixel_of(const double point[3], double *x, double *y) {
+    render_camera lens = {.up = {0, 1, 0}, .fov = render_view_default().camera.fov};
+    double right[3], up[3], back[3], off[3], tall = tan(0.5 * lens.fov * 0.017453292519943295);
+    eye_of(lens.eye);
+    assert_int_equal(sscanf(strstr(screen.line, " target="), " target=%lf,%lf,%lf", &lens.target[0], &lens.target[1],
+                            &lens.target[2]),
+                     3);
+    render_camera_axes(&lens, right, up, back);
+    for (int k = 0; k < 3; k++) off[k] = point[k] - lens.eye[k];
+    double depth = -render_dot(off, back);
+    *x = 320 + 180 * render_dot(off, right) / depth / tall;
+    *y = 180 - 180 * render_dot(off, up) / depth / tall;
+}
+
+/* The sheet's lower corner on the right, in the picture of its start. */
+static uint32_t find_corner(double *x, double *y) {
+    skein_world *world = skein_world_create(NULL, NULL);
+    uint32_t corner = 0;
+    assert_int_equal(skein_body_add(world, "cloth", NULL,
+                                    SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 9), SKEIN_PAIR("size", 1, 1),
+                                                   SKEIN_VEC3("position", 0, 1, 0), SKEIN_VEC3("rotation", 90, 0, 0),
+                                                   SKEIN_TEXT("pins", "top corners")),
+                                    NULL),
+                     SKEIN_OK);
+    *x = *y = 0;
+    for (uint32_t i = 0; i < skein_particle_count(world); i++) {
+        double at[3], px, py;
+        skein_positions_copy(world, i, 1, at);
+        pixel_of(at, &px, &py);
+        if (px + py > *x + *y) *x = px, *y = py, corner = i;
+    }
+    skein_world_destroy(world);
+    return corner;
+}
+
+/* The corner goes where the pointer takes it, while the world plays; let go, it is a free particle again. */
+static void pulls_a_corner(void **state) {
+    char words[256];
+    double x, y, at[3], last[3];
+    uint32_t corner, picked;
+    (void)state;
+    listen_from_here();
+    tool("key F5"); // from the file: all that was changed is as it was
+    expect("reopened ");
+    press_key("BackSpace");
+    corner = find_corner(&x, &y);
+    x -= 2, y -= 2; // well inside the sheet
+    press_key("space");
+    listen_from_here();
+    snprintf(words, sizeof words, "mousemove %.0f %.0f sleep 0.1 mousedown 1 sleep 0.1", x, y);
+    tool(words);
+    expect("picked ");
+    assert_int_equal(sscanf(screen.line, "picked %u", &picked), 1);
+    assert_int_equal(picked, corner);
+    snprintf(words, sizeof words, "mousemove %.0f %.0f sleep 0.05 mousemove %.0f %.0f", x + 20, y - 20, x + 70, y - 60);
+    tool(words);
+    ask_state();
+    double begun = told("frame");
+    do ask_state();
+    while (told("frame") < begun + 30);
+    tool("mouseup 1");
+    expect("released ");
+    assert_int_equal(sscanf(screen.line, "released %u at %lf %lf %lf", &picked, &at[0], &at[1], &at[2]), 4);
+    ask_state();
+    double px, py;
+    pixel_of(at, &px, &py);
+    if (hypot(px - x - 70, py - y + 60) > 12) fail_msg("it is at %.0f %.0f, not at %.0f %.0f", px, py, x + 70, y - 60);
+    press_key("space");
+    // free again: a press on it does not find it where it was let go
+    begun = told("frame");
+    for (int i = 0; i < 20; i++) press_key("period");
+    listen_from_here();
+    snprintf(words, sizeof words, "mousemove %.0f %.0f sleep 0.1 mousedown 1 sleep 0.1 mouseup 1", px, py);
+    tool(words);
+    expect("picked ");
+    assert_int_equal(sscanf(screen.line, "picked %lf", &last[0]), 1);
+    assert_true(last[0] != corner);
+    press_key("BackSpace");
+}
+
+static void pins_and_frees(void **state) {
+    char words[64];
+    double x, y;
+    (void)state;
+    ask_state();
+    uint32_t corner = find_corner(&x, &y);
+    listen_from_here();
+    click(x - 2, y - 2);
+    snprintf(words, sizeof words, "note pinned particle %u", corner);
+    expect(words);
+    ask_state();
+    char hash[64], other[64];
+    for (int i = 0; i < 5; i++) press_key("period");
+    word_of("hash", hash);
+    press_key("BackSpace"); // takes such pins off
+    for (int i = 0; i < 5; i++) press_key("period");
+    assert_string_not_equal(word_of("hash", other), hash);
+    press_key("BackSpace");
+    listen_from_here();
+    click(x - 2, y - 2);
+    expect("note pinned");
+    click(x - 2, y - 2);
+    snprintf(words, sizeof words, "note freed particle %u", corner);
+    expect(words);
+}
+
 /* ---- Files ---------------------------------------------------------------------------------------------- */
 
 static void saves_pictures_and_meshes(void **state) {
@@ -194,15 +306,269 @@ static void saves_pictures_and_meshes(void **state) {
     io_mesh_free(&mesh);
 }
 
-/* With Ctrl and Q, as a user would; no driver had a word to say. */
+/* V begins and ends a film: one picture of every frame. */
+static void records_a_film(void **state) {
+    (void)state;
+    press_key("BackSpace");
+    listen_from_here();
+    tool("key v");
+    expect("note records sheet-001.mp4");
+    for (int i = 0; i < 3; i++) press_key("period");
+    listen_from_here();
+    tool("key v");
+    expect("note saved sheet-001.mp4: 4 pictures");
+    struct stat info;
+    assert_int_equal(stat(in_folder("sheet-001.mp4"), &info), 0);
+    assert_true(info.st_size > 1000);
+}
+
+/* ---- What comes from outside ------------------------------------------------------------------------------ */
+
+/* An editor's change is seen; a broken file leaves the last good scene. */
+static void reads_a_changed_file_again(void **state) {
+    (void)state;
+    listen_from_here();
+    char *changed = strdup(hanging);
+    memcpy(strstr(changed, "[9, 9]"), "[7, 9]", 6);
+    write_scene(in_folder("scenes/sheet.json"), changed);
+    free(changed);
+    expect("reopened particles=63 ");
+    write_text(in_folder("scenes/sheet.json"), "{ \"bodies\": [");
+    expect("warning ");
+    expect("kept path=");
+    press_key("period");
+    assert_true(told("frame") == 1); // and it still goes on
+    listen_from_here();
+    write_scene(in_folder("scenes/sheet.json"), hanging);
+    expect("reopened particles=81 ");
+}
+
+static void takes_a_dropped_mesh(void **state) {
+    (void)state;
+    write_text(in_folder("shirt.obj"), "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 2 0 0\nv 2 0 1\nf 1 4 3 2\nf 2 3 6 5\n");
+    listen_from_here();
+    drop_file(in_folder("shirt.obj"));
+    expect("dropped ");
+    expect("opened particles=6 bodies=1 ");
+    press_key("period");
+    assert_true(told("frame") == 1);
+    listen_from_here();
+    drop_file(in_folder("scenes/sheet.json"));
+    expect("opened particles=81 ");
+}
+
+static void changes_its_size(void **state) {
+    char words[64];
+    render_image image = {0};
+    (void)state;
+    listen_from_here();
+    snprintf(words, sizeof words, "windowsize %s 500 410", screen.window);
+    tool(words);
+    expect("size 500 410");
+    tool("key x");
+    expect("note saved sheet-002.png");
+    assert_int_equal(render_image_read(&image, in_folder("sheet-002.png"), NULL), SKEIN_OK);
+    assert_int_equal(image.width, 500);
+    assert_int_equal(image.height, 410);
+    render_image_release(&image);
+}
+
+/* Panels open and close by their keys; F1's list is the table that the handler uses. */
+static void opens_panels_by_keys(void **state) {
+    static const char *const keys[] = {"F1", "F2", "F3", "F4", "Tab"};
+    (void)state;
+    for (size_t k = 0; k < COUNT(keys); k++) {
+        char words[32];
+        snprintf(words, sizeof words, "key %s", keys[k]);
+        bool opened = false;
+        for (int turn = 0; turn < 2; turn++) {
+            listen_from_here();
+            tool(words);
+            expect("panel ");
+            bool opens = strstr(screen.line, "open") != NULL;
+            assert_true(turn == 0 || opens != opened);
+            opened = opens;
+        }
+    }
+}
+
+/* By the button of a window manager, as a user would; no driver had a word to say. */
 static void closes_cleanly(void **state) {
     (void)state;
     listen_from_here();
-    tool("key ctrl+q");
+    ask_to_close();
     expect("opengl stage errors=0 warnings=0");
     expect("opengl window errors=0 warnings=0");
     expect("closed");
     assert_int_equal(await_end(), 0);
+}
+
+/* ---- Windows of their own ------------------------------------------------------------------------------- */
+
+static void close_window(void) {
+    listen_from_here();
+    tool("key ctrl+q");
+    expect("opengl stage errors=0 warnings=0");
+    expect("closed");
+    assert_int_equal(await_end(), 0);
+}
+
+/* The picture, and the window itself, are what skein render draws, to 1 % of the pixels: where the camera frames the
+ * scene by itself, and later from a place of its own. */
+static void agree(const char *const *sets, int frame, const char *numbered) {
+    const char *arguments[16] = {SKEIN_SOURCE_DIR "/scenes/drape.json", "--size", "640x360", "--paused", "--no-panels"};
+    const char *render[16] = {"render", "scenes/drape.json",  "--size", "640x360", "--quiet",
+                              "-o",     in_folder("off.png"), "--frame"};
+    char number[16], name[64];
+    size_t count = 5, render_count = 8;
+    snprintf(number, sizeof number, "%d", frame);
+    render[render_count++] = number;
+    for (; *sets; sets++) {
+        arguments[count++] = render[render_count++] = "--set";
+        arguments[count++] = render[render_count++] = *sets;
+    }
+    open_window(arguments);
+    expect("opened ");
+    for (int i = 0; i < frame; i++) press_key("period");
+    listen_from_here();
+    tool("key x");
+    snprintf(name, sizeof name, "note saved drape-%s.png", numbered);
+    expect(name);
+    pause_for(0.3); // until the window shows it, too
+    tool("key shift+x");
+    snprintf(name, sizeof name, "note saved skein-%s.png", numbered);
+    expect(name);
+    close_window();
+    outcome said = finish_skein(start_skein((surroundings){0}, render));
+    assert_status(said, 0);
+    outcome_free(&said);
+    snprintf(name, sizeof name, "drape-%s.png", numbered);
+    double picture = difference(in_folder("off.png"), in_folder(name));
+    snprintf(name, sizeof name, "skein-%s.png", numbered);
+    double shown = difference(in_folder("off.png"), in_folder(name));
+    if (picture >= 0.01 || shown >= 0.01) fail_msg("frame %d: differences of %g and %g", frame, picture, shown);
+}
+
+static void pictures_agree_with_the_offscreen_path(void **state) {
+    const char *const none[] = {NULL}, *const placed[] = {"view.camera.from=[1.5,1.2,2.5]", "view.camera.at=[0,0.7,0]",
+                                                          "view.colour=speed", NULL};
+    (void)state;
+    agree(none, 0, "001");
+    agree(placed, 4, "002");
+    assert_true(difference(in_folder("drape-001.png"), in_folder("drape-002.png")) > 0.1); // what differs is seen
+}
+
+static const char one_spring[] =
+    "{ 'name': 'spring', 'advance': 'key', 'bodies': [ { 'type': 'rope', 'from': [0, 1, 0], 'to': [1, 1, 0],"
+    "  'count': 2, 'pins': 'first' } ], 'view': { 'particles': 'all', 'particle_radius': 0.05 } }";
+
+/* A scene that advances by keys: Enter and keys without a meaning solve once; the ends can be dragged. */
+static void solves_by_keys(void **state) {
+    double a[3], b[3], length, d[6];
+    char words[200];
+    (void)state;
+    write_scene(in_folder("spring.json"), one_spring);
+    const char *const arguments[] = {in_folder("spring.json"), "--size", "640x360", "--no-panels", NULL};
+    open_window(arguments);
+    expect("opened particles=2 ");
+    ask_state();
+    double x, y;
+    pixel_of((const double[]){1, 1, 0}, &x, &y);
+    listen_from_here();
+    drag(x, y, x - 40, y - 60, 1);
+    expect("released 1 ");
+    tool("key Return");
+    expect("note solve ");
+    for (int turn = 0; turn < 2; turn++) {
+        int count = sscanf(strchr(screen.line, ':') + 1,
+                           " a (%lf, %lf, %lf), b (%lf, %lf, %lf), distance %lf m; derivatives %lf %lf %lf %lf %lf %lf",
+                           &a[0], &a[1], &a[2], &b[0], &b[1], &b[2], &length, &d[0], &d[1], &d[2], &d[3], &d[4], &d[5]);
+        assert_int_equal(count, 13);
+        assert_true(fabs(length - distance(a, b)) < 1e-4);
+        for (int k = 0; k < 3; k++) {
+            assert_true(fabs(d[k] - (a[k] - b[k]) / length) < 1e-3);
+            assert_true(d[k + 3] == -d[k]);
+        }
+        snprintf(words, sizeof words, "key %s", "j");
+        tool(words);
+        expect("note solve ");
+    }
+    assert_true(b[1] > 1.01); // the drag has lifted it
+    close_window();
+    char *said = read_text(in_folder("words"));
+    assert_contains(said, "derivatives");
+    free(said);
+}
+
+/* Two worlds, in step; and without the focus they wait, if they are asked to. */
+static void compares_and_waits_for_the_focus(void **state) {
+    const char *const arguments[] = {in_folder("scenes/sheet.json"),
+                                     "--size",
+                                     "640x360",
+                                     "--unfocused",
+                                     "pause",
+                                     "--compare",
+                                     "method.type=pbd",
+                                     NULL};
+    (void)state;
+    mkdir(in_folder("scenes"), 0777);
+    write_scene(in_folder("scenes/sheet.json"), hanging);
+    open_window(arguments);
+    expect("note side by side");
+    ask_state();
+    assert_true(told("sides") == 2);
+    listen_from_here();
+    focus_elsewhere(true);
+    expect("paused");
+    focus_elsewhere(false);
+    expect("plays");
+    press_key("space");
+    listen_from_here();
+    tool("key x");
+    expect("note saved sheet-");
+    close_window();
+}
+
+/* In a flock the arrows, Home and End change its rules, the mouse is the predator, and it waits for the focus. */
+static void steers_a_flock(void **state) {
+    static const struct {
+        const char *key, *field;
+        int way;
+    } rows[] = {{"Up", "separation", 1},   {"Down", "separation", -1}, {"Right", "alignment", 1},
+                {"Left", "alignment", -1}, {"Home", "cohesion", 1},    {"End", "cohesion", -1}};
+    const char *const arguments[] = {
+        SKEIN_SOURCE_DIR "/scenes/birds.json", "--size", "640x360", "--samples", "1", "--paused", NULL};
+    double before = 0, after;
+    (void)state;
+    open_window(arguments);
+    expect("opened ");
+    for (size_t r = 0; r < COUNT(rows); r++) {
+        char words[64], format[64];
+        snprintf(words, sizeof words, "key %s", rows[r].key);
+        snprintf(format, sizeof format, "note %s %%lf", rows[r].field);
+        for (int turn = 0; turn < 2; turn++) {
+            listen_from_here();
+            tool(words);
+            snprintf(words, sizeof words, "note %s ", rows[r].field);
+            expect(words);
+            assert_int_equal(sscanf(screen.line, format, &after), 1);
+            if (turn == 1) assert_true(rows[r].way * (after - before) > 0);
+            before = after;
+            snprintf(words, sizeof words, "key %s", rows[r].key);
+        }
+    }
+    listen_from_here();
+    tool("mousemove 450 180 sleep 0.2 mousemove 460 190");
+    expect("hunts");
+    tool("mousemove 60 180 sleep 0.2 mousemove 61 180"); // over the panel
+    expect("rests");
+    press_key("space");
+    listen_from_here();
+    focus_elsewhere(true);
+    expect("paused");
+    focus_elsewhere(false);
+    expect("plays");
+    close_window();
 }
 
 /* ---- Without a window ------------------------------------------------------------------------------------ */
@@ -257,8 +623,19 @@ int main(void) {
         cmocka_unit_test(drags_a_slider),
         cmocka_unit_test(orbits_pans_and_zooms),
         cmocka_unit_test(moves_by_keys_and_flies),
+        cmocka_unit_test(pulls_a_corner),
+        cmocka_unit_test(pins_and_frees),
         cmocka_unit_test(saves_pictures_and_meshes),
+        cmocka_unit_test(records_a_film),
+        cmocka_unit_test(reads_a_changed_file_again),
+        cmocka_unit_test(takes_a_dropped_mesh),
+        cmocka_unit_test(changes_its_size),
+        cmocka_unit_test(opens_panels_by_keys),
         cmocka_unit_test(closes_cleanly),
+        cmocka_unit_test(pictures_agree_with_the_offscreen_path),
+        cmocka_unit_test(solves_by_keys),
+        cmocka_unit_test(compares_and_waits_for_the_focus),
+        cmocka_unit_test(steers_a_flock),
     };
     int failed = cmocka_run_group_tests(alone, make_folder, remove_folder);
     if (!can_open_screen()) return failed;

@@ -18,7 +18,7 @@ static struct {
     pid_t xvfb, skein;
     char display[16], window[32];
     char events[512];
-    long seen;    /* of the events, bytes */
+    long seen; /* of the events, bytes */
     char line[2048];
 } screen;
 
@@ -66,7 +66,8 @@ static inline void open_screen(void) {
         dup2(quiet, 1);
         dup2(quiet, 2);
         snprintf(descriptor, sizeof descriptor, "%d", ends[1]);
-        execlp("Xvfb", "Xvfb", "-displayfd", descriptor, "-screen", "0", "1024x768x24", "-nolisten", "tcp", (char *)NULL);
+        execlp("Xvfb", "Xvfb", "-displayfd", descriptor, "-screen", "0", "1024x768x24", "-nolisten", "tcp",
+               (char *)NULL);
         _exit(127);
     }
     close(ends[1]);
@@ -245,10 +246,11 @@ static inline int await_end(void) {
 /* Drags from one place to another in some steps. */
 static inline void drag(double x, double y, double to_x, double to_y, int button) {
     char words[512];
-    snprintf(words, sizeof words,
-             "mousemove %.0f %.0f sleep 0.1 mousedown %d sleep 0.05 mousemove %.0f %.0f sleep 0.05 mousemove %.0f %.0f sleep 0.1 "
-             "mouseup %d",
-             x, y, button, 0.5 * (x + to_x), 0.5 * (y + to_y), to_x, to_y, button);
+    snprintf(
+        words, sizeof words,
+        "mousemove %.0f %.0f sleep 0.1 mousedown %d sleep 0.05 mousemove %.0f %.0f sleep 0.05 mousemove %.0f %.0f sleep 0.1 "
+        "mouseup %d",
+        x, y, button, 0.5 * (x + to_x), 0.5 * (y + to_y), to_x, to_y, button);
     tool(words);
 }
 
@@ -257,6 +259,90 @@ static inline void click(double x, double y) {
     snprintf(words, sizeof words, "mousemove %.0f %.0f sleep 0.1 click 1", x, y);
     tool(words);
 }
+
+/* ---- Other programs on the screen ------------------------------------------------------------------- */
+
+/* A second window, which takes the focus; or, asked again, gives it back. */
+static inline void focus_elsewhere(bool elsewhere) {
+    static Display *display;
+    static Window other;
+    if (!display) {
+        display = XOpenDisplay(screen.display);
+        assert_non_null(display);
+        other = XCreateSimpleWindow(display, DefaultRootWindow(display), 900, 700, 20, 20, 0, 0, 0);
+        XMapWindow(display, other);
+        XSync(display, False);
+        pause_for(0.1);
+    }
+    Window target = elsewhere ? other : (Window)strtoul(screen.window, NULL, 10);
+    XSetInputFocus(display, target, RevertToParent, CurrentTime);
+    XSync(display, False);
+}
+
+static inline void send_message(Display *display, Window from, Window to, const char *type, long a, long b, long c,
+                                long d) {
+    XEvent event = {.xclient = {.type = ClientMessage,
+                                .window = to,
+                                .message_type = XInternAtom(display, type, False),
+                                .format = 32,
+                                .data.l = {(long)from, a, b, c, d}}};
+    XSendEvent(display, to, False, NoEventMask, &event);
+    XFlush(display);
+}
+
+/* The window asks for what was dropped, and gets it. */
+static inline void hand_over(Display *display, const XSelectionRequestEvent *asked, const char *text) {
+    XChangeProperty(display, asked->requestor, asked->property, asked->target, 8, PropModeReplace,
+                    (const unsigned char *)text, (int)strlen(text));
+    XEvent answer = {.xselection = {.type = SelectionNotify,
+                                    .requestor = asked->requestor,
+                                    .selection = asked->selection,
+                                    .target = asked->target,
+                                    .property = asked->property,
+                                    .time = asked->time}};
+    XSendEvent(display, asked->requestor, False, NoEventMask, &answer);
+    XFlush(display);
+}
+
+/* Drops a file on the window, as a file manager does (XDND, version 5). */
+static inline void drop_file(const char *path) {
+    Display *display = XOpenDisplay(screen.display);
+    assert_non_null(display);
+    Window target = (Window)strtoul(screen.window, NULL, 10);
+    Window source = XCreateSimpleWindow(display, DefaultRootWindow(display), 0, 0, 1, 1, 0, 0, 0);
+    Atom list = XInternAtom(display, "text/uri-list", False), copy = XInternAtom(display, "XdndActionCopy", False);
+    char text[600];
+    snprintf(text, sizeof text, "file://%s\r\n", path);
+    XSetSelectionOwner(display, XInternAtom(display, "XdndSelection", False), source, CurrentTime);
+    send_message(display, source, target, "XdndEnter", 5L << 24, (long)list, 0, 0);
+    send_message(display, source, target, "XdndPosition", 0, 320 << 16 | 180, CurrentTime, (long)copy);
+    send_message(display, source, target, "XdndDrop", 0, CurrentTime, 0, 0);
+    bool done = false;
+    for (double until = seconds_now() + patience_seconds; !done && seconds_now() < until;) {
+        if (!XPending(display)) {
+            pause_for(0.01);
+            continue;
+        }
+        XEvent event;
+        XNextEvent(display, &event);
+        if (event.type == SelectionRequest) hand_over(display, &event.xselectionrequest, text);
+        done = event.type == ClientMessage && event.xclient.message_type == XInternAtom(display, "XdndFinished", False);
+    }
+    XCloseDisplay(display);
+    assert_true(done);
+}
+
+/* What a window manager's closing button says. */
+static inline void ask_to_close(void) {
+    Display *display = XOpenDisplay(screen.display);
+    assert_non_null(display);
+    Window target = (Window)strtoul(screen.window, NULL, 10);
+    send_message(display, XInternAtom(display, "WM_DELETE_WINDOW", False), target, "WM_PROTOCOLS", CurrentTime, 0, 0,
+                 0);
+    XCloseDisplay(display);
+}
+
+/* ---- Pictures -------------------------------------------------------------------------------------------- */
 
 /* The share of pixels that differ by more than a little. */
 static inline double difference(const char *one, const char *other) {

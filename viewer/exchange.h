@@ -21,7 +21,7 @@ typedef enum viewer_request_kind {
     VIEWER_KEY_DOWN,  /* code: GLFW's key; mods */
     VIEWER_KEY_UP,    /* code */
     VIEWER_BUTTON,    /* code: the mouse's button; down; mods; x, y */
-    VIEWER_MOVE,      /* x, y */
+    VIEWER_MOVE,      /* x, y; down: over a panel, or out of the window */
     VIEWER_SCROLL,    /* y: clicks of the wheel, forward is closer */
     VIEWER_RESIZE,    /* x, y: pixels */
     VIEWER_FOCUS,     /* down: has it now */

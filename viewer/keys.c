@@ -44,8 +44,11 @@ static void reset(viewer_stage *stage, const viewer_key *key) {
     viewer_stage_reset(stage);
 }
 
+/* As long as the key is down; but a tap moves it a little, too, however fast it was. */
 static void move(viewer_stage *stage, const viewer_key *key) {
+    static const double tap = 0.03;
     stage->camera.down[key->number] = true;
+    stage->dirty |= viewer_camera_move(&stage->camera, tap);
 }
 
 static void fly(viewer_stage *stage, const viewer_key *key) {

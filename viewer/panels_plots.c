@@ -35,7 +35,7 @@ void viewer_show_plots(viewer_panels *panels) {
                                  times[] = {VIEWER_STEP_MS, VIEWER_DRAW_MS};
     static const char *const none[] = {""}, *const passes[] = {"step", "draw"};
     const viewer_shown *shown = &panels->exchange->shown;
-    double width = 260 * widgets_scale(), height = 330 * widgets_scale();
+    double width = 260 * widgets_scale(), height = 500 * widgets_scale();
     bool open = true;
     if (height > shown->height - 4) height = shown->height - 4;
     if (widgets_panel("Plots", WIDGETS_FREE, shown->width - width - 4, 2, width, height, &open)) {
@@ -43,6 +43,7 @@ void viewer_show_plots(viewer_panels *panels) {
         plot(shown, "largest stretch (%)", stretch, none, 1);
         plot(shown, "contacts", contacts, none, 1);
         plot(shown, "milliseconds a frame", times, passes, shown->side_count > 1 ? 1 : 2);
+        if (shown->sides[0].pass_count) widgets_text("by pass of the plan, a frame:");
         for (size_t p = 0; p < shown->sides[0].pass_count; p++) {
             char line[120];
             snprintf(line, sizeof line, "%8.3f ms  %s", shown->sides[0].passes[p].milliseconds,

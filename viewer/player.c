@@ -200,9 +200,9 @@ bool viewer_player_reopen(viewer_player *player, const char *set, const viewer_r
 
 /* ---- Playing ---- */
 
-bool viewer_player_step(viewer_player *player, bool *new_frame) {
+static bool end_step(viewer_player *player, skein_status status, bool *new_frame) {
     *new_frame = false;
-    if (skein_world_step(player->world, player->dt)) {
+    if (status) {
         if (!player->failed) report_fault(&player->reporter, skein_world_error(player->world));
         player->failed = true;
         return false;
@@ -213,6 +213,14 @@ bool viewer_player_step(viewer_player *player, bool *new_frame) {
     *new_frame = true;
     viewer_history_keep(&player->history, player->world, ++player->frame);
     return true;
+}
+
+bool viewer_player_step(viewer_player *player, bool *new_frame) {
+    return end_step(player, skein_world_step(player->world, player->dt), new_frame);
+}
+
+bool viewer_player_profile(viewer_player *player, bool *new_frame, skein_pass *passes, size_t most, size_t *count) {
+    return end_step(player, skein_world_profile(player->world, player->dt, passes, most, count), new_frame);
 }
 
 void viewer_player_reset(viewer_player *player) {

@@ -50,6 +50,8 @@ bool viewer_player_open(viewer_player *player, const char *path, const char *con
 bool viewer_player_reopen(viewer_player *player, const char *set, const viewer_reading *reading);
 void viewer_player_close(viewer_player *player); /* one that never was open is allowed */
 
+/* One step that is measured row by row: up to `most` passes go to `passes`. Else as viewer_player_step(). */
+bool viewer_player_profile(viewer_player *player, bool *new_frame, skein_pass *passes, size_t most, size_t *count);
 /* One step; `new_frame` tells whether it completed a frame. False after a reported fault. */
 bool viewer_player_step(viewer_player *player, bool *new_frame);
 /* As it was built. */

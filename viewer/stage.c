@@ -13,7 +13,7 @@
 
 /* Pictures a second at most; how long steps may take before a picture is due all the same; how often the scene's file
  * is looked at, and speed is judged. */
-static const double most_rate = 60, longest_stepping = 0.08, watch_every = 0.25, judge_every = 1;
+static const double most_rate = 60, longest_stepping = 0.08, watch_every = 0.25, judge_every = 1, profile_every = 1;
 /* Under this share of real time a world is said to be slow. */
 static const double slow_speed = 0.9;
 
@@ -83,7 +83,7 @@ static void blew_up(viewer_stage *stage) {
                "may hold it");
 }
 
-static bool is_finite(const skein_world *world) {
+static bool world_is_finite(const skein_world *world) {
     // a particle that blew up takes its neighbours along: one in some tells
     skein_view view = skein_position_view(world);
     for (size_t i = 0; i < view.count; i += view.count / 64 + 1) {
@@ -93,11 +93,39 @@ static bool is_finite(const skein_world *world) {
     return true;
 }
 
+static bool is_finite(const viewer_stage *stage) {
+    for (size_t s = 0; s < stage->side_count; s++)
+        if (!world_is_finite(stage->sides[s].world)) return false;
+    return true;
+}
+
+/* Now and then, while the plots are looked at, a step is measured pass by pass; it has the same bits. */
+static bool profile_is_due(const viewer_stage *stage) {
+    return stage->panel[VIEWER_PANEL_PLOTS] && viewer_seconds() - stage->profiled > profile_every;
+}
+
+static bool profile(viewer_stage *stage, bool *new_frame) {
+    skein_pass passes[VIEWER_PASSES];
+    size_t count = 0;
+    bool good = viewer_player_profile(&stage->sides[0], new_frame, passes, VIEWER_PASSES, &count);
+    if (count > VIEWER_PASSES) count = VIEWER_PASSES;
+    viewer_side *side = &stage->exchange->shown.sides[0];
+    pthread_mutex_lock(&stage->exchange->lock);
+    side->pass_count = good ? count : 0;
+    for (size_t p = 0; p < side->pass_count; p++) {
+        side->passes[p].milliseconds = 1e3 * passes[p].seconds * stage->sides[0].steps;
+        snprintf(side->passes[p].label, sizeof side->passes[p].label, "%.12s %.48s", passes[p].kind, passes[p].label);
+    }
+    pthread_mutex_unlock(&stage->exchange->lock);
+    stage->profiled = viewer_seconds();
+    return good;
+}
+
 /* One step of the first side, and as many of the second as bring it to the same time. */
 static bool step_all(viewer_stage *stage, bool *new_frame) {
     viewer_player *first = &stage->sides[0];
     if (stage->grab.side == 0) viewer_grab_lead(&stage->grab, first->world, first->dt);
-    bool good = viewer_player_step(first, new_frame), ignored;
+    bool good = profile_is_due(stage) ? profile(stage, new_frame) : viewer_player_step(first, new_frame), ignored;
     for (size_t s = 1; s < stage->side_count; s++) {
         viewer_player *other = &stage->sides[s];
         while (good && skein_world_time(other->world) + 0.5 * other->dt <= skein_world_time(first->world)) {
@@ -114,8 +142,9 @@ void viewer_stage_step(viewer_stage *stage) {
     while (good && !new_frame) good = step_all(stage, &new_frame);
     stage->step_ms = 1e3 * (viewer_seconds() - start);
     if (good && stage->film) viewer_film_frame(stage);
-    if (good && !is_finite(stage->sides[0].world)) blew_up(stage);
-    stage->sampled = 0; // measured at once
+    if (good && !is_finite(stage)) blew_up(stage);
+    stage->sampled = 0; // every frame that was asked for is in the plots
+    viewer_measure(stage);
     stage->dirty = true;
 }
 
@@ -151,7 +180,7 @@ static void advance(viewer_stage *stage) {
     if (due) stage->step_ms = 1e3 * (viewer_seconds() - now) / due * stage->sides[0].steps;
     judge_speed(stage, now);
     if (!good) viewer_stage_pause(stage, true);
-    else if (!is_finite(stage->sides[0].world)) blew_up(stage);
+    else if (!is_finite(stage)) blew_up(stage);
     stage->dirty = true; // time goes on between steps, too
 }
 

@@ -42,10 +42,10 @@ static uint32_t pick(const viewer_stage *stage, size_t side, double x, double y,
         skein_particle_near_ray(world, eye, direction, view->particle_radius, slope * reach_pixels / stage->height,
                                 &loose, &near_ray))
         return UINT32_MAX;
-    if (body.distance < INFINITY) picked = body.particle, *distance = body.distance;
+    if (body.t < INFINITY) picked = body.particle, *distance = body.t;
     else if (near_ray < INFINITY) picked = loose, *distance = near_ray;
     // a little tolerance: cloth lies on colliders
-    if (view->colliders && wall.distance < 0.99 * *distance) return UINT32_MAX;
+    if (view->colliders && wall.t < 0.99 * *distance) return UINT32_MAX;
     return picked;
 }
 
@@ -113,10 +113,35 @@ static void drag(viewer_stage *stage, double dx, double dy) {
     stage->dirty = true;
 }
 
+/* Where a rule flees from a line of sight, the pointer is that line: the mouse is the predator. It is one while it is
+ * over the picture. */
+static void hunt(viewer_stage *stage, bool over_picture) {
+    for (size_t s = 0; s < stage->side_count; s++) {
+        skein_world *world = stage->sides[s].world;
+        const double *eye = stage->camera.lens.eye;
+        double along[3];
+        ray_at(stage, s, stage->x, stage->y, along);
+        for (size_t i = 0; i < skein_object_count(world, SKEIN_FORCE); i++) {
+            skein_handle handle = skein_object_at(world, SKEIN_FORCE, i);
+            const skein_kind *kind = skein_object_kind(world, handle);
+            skein_value enabled;
+            if (!skein_field_find(kind, "line", NULL) || !skein_field_find(kind, "position", NULL)) continue;
+            if (skein_get(world, handle, "enabled", &enabled)) continue;
+            skein_set(world, handle, "position", skein_vector(eye[0], eye[1], eye[2]));
+            skein_set(world, handle, "line", skein_vector(along[0], along[1], along[2]));
+            if ((enabled.number[0] != 0) == over_picture) continue;
+            skein_set(world, handle, "enabled", skein_number(over_picture));
+            viewer_event(stage->events, over_picture ? "hunts" : "rests");
+            stage->facts = true;
+        }
+    }
+}
+
 static void point(viewer_stage *stage, const viewer_request *r) {
     double dx = r->x - stage->x, dy = r->y - stage->y;
     stage->x = r->x, stage->y = r->y;
     if (!stage->side_count) return;
+    if (stage->button < 0) hunt(stage, !r->down);
     if (stage->button >= 0) drag(stage, dx, dy);
 }
 
@@ -190,6 +215,8 @@ void viewer_stage_answer(viewer_stage *stage, const viewer_request *r) {
     case VIEWER_RESIZE:
         stage->wide = (int)r->x, stage->tall = (int)r->y;
         stage->dirty = true;
+        if (stage->film) viewer_film_toggle(stage); // its pictures have one size
+        viewer_event(stage->events, "size %d %d", stage->wide, stage->tall);
         break;
     case VIEWER_FOCUS: focus(stage, r->down); break;
     case VIEWER_SET: viewer_stage_set(stage, r); break;

@@ -231,14 +231,14 @@ void widgets_plot(const char *title, const float *const *series, const char *con
     ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, static_cast<float>(height));
     ImDrawList *list = ImGui::GetWindowDrawList();
     list->AddRectFilled(at, ImVec2(at.x + size.x, at.y + size.y), IM_COL32(20, 22, 26, 200), 3);
+    float span = static_cast<float>(count > 60 ? count - 1 : 59); // a new plot does not start with one wide step
     for (int s = 0; s < series_count; s++) {
         if (!series[s] || count < 2) continue;
         for (size_t i = 0; i + 1 < count; i++) {
             float a = series[s][(first + i) % room], b = series[s][(first + i + 1) % room];
-            float x = at.x + size.x * static_cast<float>(i) / static_cast<float>(room - 1);
-            float y = at.x + size.x * static_cast<float>(i + 1) / static_cast<float>(room - 1);
+            float x = at.x + size.x * static_cast<float>(i) / span, next = at.x + size.x * static_cast<float>(i + 1) / span;
             list->AddLine(ImVec2(x, at.y + size.y * (1 - (a - least) / (most - least))),
-                          ImVec2(y, at.y + size.y * (1 - (b - least) / (most - least))), colours[s % 4], 1.5f);
+                          ImVec2(next, at.y + size.y * (1 - (b - least) / (most - least))), colours[s % 4], 1.5f);
         }
     }
     char range[64];

@@ -30,12 +30,14 @@ typedef struct window {
     render_messages messages;
     viewer_request pending[MOST_PENDING]; /* of the pointer, until Dear ImGui has seen it */
     int pending_count;
-    double x, y; /* of the pointer, as its events say: it may be elsewhere by now */
+    double x, y;       /* of the pointer, as its events say: it may be elsewhere by now */
     int stage_buttons; /* that went down over the picture: the stage gets their end, too */
     int frames_due;    /* to draw, since something happened */
     unsigned framebuffer;
     uint64_t generation;
     bool save_window; /* Shift and X */
+    double longest;   /* ms between events being looked at */
+    uint64_t turns;
 } window;
 
 viewer_options viewer_default_options(void) {
@@ -70,6 +72,12 @@ static void on_move(GLFWwindow *glfw, double x, double y) {
     window *w = window_of(glfw);
     w->x = x, w->y = y;
     note_pointer(w, (viewer_request){.kind = VIEWER_MOVE});
+}
+
+static void on_enter(GLFWwindow *glfw, int inside) {
+    window *w = window_of(glfw);
+    viewer_request request = {.kind = VIEWER_MOVE, .x = w->x, .y = w->y, .down = true};
+    if (!inside && !w->stage_buttons) viewer_ask(&w->exchange, &request);
 }
 
 static void on_button(GLFWwindow *glfw, int button, int action, int mods) {
@@ -131,6 +139,7 @@ static void set_callbacks(window *w) {
     glfwSetWindowUserPointer(w->glfw, w);
     glfwSetCursorPosCallback(w->glfw, on_move);
     glfwSetMouseButtonCallback(w->glfw, on_button);
+    glfwSetCursorEnterCallback(w->glfw, on_enter);
     glfwSetScrollCallback(w->glfw, on_scroll);
     glfwSetKeyCallback(w->glfw, on_key);
     glfwSetWindowFocusCallback(w->glfw, on_focus);
@@ -148,6 +157,12 @@ static void pass_pointer(window *w) {
         if (bit && request->down && panels) continue;
         if (bit && !request->down && !(w->stage_buttons & bit)) continue;
         if (request->kind == VIEWER_SCROLL && panels) continue;
+        if (request->kind == VIEWER_MOVE && panels) {
+            viewer_request covered = *request;
+            covered.down = true;
+            viewer_ask(&w->exchange, &covered);
+            continue;
+        }
         if (bit) w->stage_buttons = request->down ? w->stage_buttons | bit : w->stage_buttons & ~bit;
         viewer_ask(&w->exchange, request);
     }
@@ -276,7 +291,10 @@ static void loop(window *w) {
         if (w->frames_due > 0) glfwPollEvents();
         else glfwWaitEventsTimeout(0.5);
         if (w->frames_due > 0) w->frames_due--;
+        double begin = viewer_seconds();
         draw(w);
+        double took = 1e3 * (viewer_seconds() - begin);
+        if (w->turns++ > 10 && took > w->longest) w->longest = took; // the first make the driver's shaders
         if (!seen++) viewer_event(&w->events, "open %s", (const char *)glGetString(GL_RENDERER));
         // without vertical synchronisation (a virtual display) the due frames are not to come all at once
         if (w->frames_due > 0) usleep(4000);
@@ -311,6 +329,7 @@ static skein_status run(window *w, skein_error *error) {
     glDeleteFramebuffers(1, &w->framebuffer);
     viewer_event(&w->events, "opengl window errors=%zu warnings=%zu %s", w->messages.errors, w->messages.warnings,
                  w->messages.last);
+    viewer_event(&w->events, "turns %llu longest=%.1f ms", (unsigned long long)w->turns, w->longest);
     viewer_event(&w->events, "closed");
     viewer_exchange_close(&w->exchange);
     return SKEIN_OK;

@@ -302,6 +302,9 @@ typedef enum skein_device {
  * run on a card is named when a plan is made: by the next step, or by skein_world_explain(). */
 skein_status skein_world_device_set(skein_world *world, skein_device device);
 
+/* Waits until the steps asked for are done: a card works behind the calls. For measuring; nothing else needs it. */
+void skein_world_wait(const skein_world *world);
+
 typedef struct skein_device_info {
     skein_device device;
     const char *name;  /* "processor", or the card and its driver; as long as the device is the world's */
@@ -309,8 +312,9 @@ typedef struct skein_device_info {
     size_t bytes;      /* held on the card now */
     size_t pass_count; /* shaders that a step runs, and the loops around them */
     /* For drawing without reading back: OpenGL buffers of four floats a slot, x, y, z and the inverse mass, or velocity
-     * and mass; particle i is in slot slot_of[i]. 0 before the first step, and changed by whatever adds particles. */
-    unsigned position_buffer, velocity_buffer;
+     * and mass. 0 before the first step, and changed by whatever adds particles. Particle i is in slot slot_of[i]; or,
+     * where that is NULL, particle_buffer holds a whole number a slot, the particle there, and a step may change it. */
+    unsigned position_buffer, velocity_buffer, particle_buffer;
     const uint32_t *slot_of;
     size_t slot_count;
 } skein_device_info;
@@ -353,6 +357,15 @@ typedef struct skein_surface {
     const float *corner_uv;           /* face_vertex_count x 2, or NULL: see skein_body_uv_set() */
 } skein_surface;
 skein_status skein_body_surface(const skein_world *world, skein_handle body, skein_surface *surface);
+/* Sets of a body's particles that constraints can be made on. Faces are cut into triangles from their first corner. */
+typedef enum skein_elements {
+    SKEIN_EDGES,     /* 2: whatever the body's stretch is measured along */
+    SKEIN_TRIANGLES, /* 3 */
+    SKEIN_HINGES     /* 4: the ends of a side that two triangles share, and the corners across from it */
+} skein_elements;
+/* Copies up to `most` of them, with so many particles each; `count` receives how many there are. `out` may be NULL. */
+skein_status skein_body_elements(skein_world *world, skein_handle body, skein_elements what, uint32_t *out, size_t most,
+                                 size_t *count);
 /* Keeps texture coordinates for a body's surface, one pair for each corner of each face (so that a seam may have
  * two); they are for drawing only. `corner_count` is the surface's face_vertex_count. */
 skein_status skein_body_uv_set(skein_world *world, skein_handle body, const float *corner_uv, size_t corner_count);
@@ -384,15 +397,16 @@ typedef struct skein_contact {
 /* Copies up to `most` of the contacts of enabled colliders; `count` receives how many there are. */
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count);
 
-/* Where `count` points (count x 3) are seen from a collider's surface as it stands now: how far off, as contact takes it
- * (negative inside; far away, formulas may say 1e15), and the unit normals out of the solid. Either may be NULL. */
+/* Where `count` points (count x 3) are seen from a collider's surface as it stands now: how far off, as contact takes
+ * it (negative inside; far away, formulas may say 1e15), and the unit normals out of the solid. Either may be NULL. */
 skein_status skein_collider_probe(const skein_world *world, skein_handle collider, size_t count, const double *points,
                                   double *distances, double *normals);
+
 /* ---- What is where: for picking with a mouse, and for sensors ------------------------------------- */
 
 /* What a ray meets first. */
 typedef struct skein_hit {
-    double distance;     /* m along the ray; infinity where it meets nothing, and then nothing else holds */
+    double t;            /* m along the ray; infinity where it meets nothing, and then nothing else holds */
     double point[3];     /* where */
     double normal[3];    /* unit: a collider's, out of the solid; a face's, towards the ray's origin */
     skein_handle object; /* a body or a collider */
@@ -406,14 +420,14 @@ typedef struct skein_hit {
  * passed over. Costs a look at every face, or some probes of every collider. */
 skein_status skein_ray_cast(const skein_world *world, const double origin[3], const double direction[3],
                             skein_category category, skein_hit *hit);
-/* The particle that is nearest to a point; `distance` (or NULL) receives how far. Fails where there are none. */
+/* The particle that is nearest to a point; `metres` (or NULL) receives how far. Fails where there are none. */
 skein_status skein_particle_near_point(const skein_world *world, const double point[3], uint32_t *particle,
-                                       double *distance);
+                                       double *metres);
 /* Of the particles within `radius` + `slope` t of a ray, t metres along it, the one nearest to it by that measure; for
- * particles that are drawn as balls of that radius, and a pointer that is a few pixels wide. `distance` receives t,
+ * particles that are drawn as balls of that radius, and a pointer that is a few pixels wide. `t` receives that,
  * infinity where there is none. */
 skein_status skein_particle_near_ray(const skein_world *world, const double origin[3], const double direction[3],
-                                     double radius, double slope, uint32_t *particle, double *distance);
+                                     double radius, double slope, uint32_t *particle, double *t);
 
 /* ---- Measures ---------------------------------------------------------------------------------- */
 
@@ -421,7 +435,7 @@ typedef struct skein_statistics {
     uint64_t steps, substeps;
     double time;                /* s, simulated */
     double kinetic_energy;      /* J */
-    double potential_energy;    /* J, of gravity; 0 at the origin */
+    double potential_energy;    /* J, of gravity (0 at the origin) and potentials */
     double elastic_energy;      /* J, in constraints; what is rigid holds none */
     double dissipated_energy;   /* J: the energy when the first step began, less the energy now. What damping, friction,
                                    impacts and the method itself have taken; wind, moving colliders and changes made by
@@ -492,6 +506,18 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
 /* The largest substep (s) at which no mode grows under the method: 0 if there is none, infinity if any will do. NaN for
  * a method that does not exist. */
 double skein_stable_substep(const char *method, const skein_stability *stability);
+
+/* What the rows of one kind and name took together. */
+typedef struct skein_pass {
+    const char *kind; /* "project", "force", ... */
+    char label[64];   /* of the rule: "stretch +0 +1"; "" for the arithmetic of whole vectors */
+    double seconds;
+} skein_pass;
+
+/* Takes a step, with the same bits as skein_world_step(), but one row of the plan after the other, and measures each.
+ * That is slower than a step, whose rows share the cache; the shares tell where the time goes. Copies up to `most`
+ * passes in the order of the plan; `count` receives how many there are. A step on a device is one pass. */
+skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out, size_t most, size_t *count);
 
 /* ---- The plan ---------------------------------------------------------------------------------- */
 

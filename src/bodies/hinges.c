@@ -64,11 +64,13 @@ static double area_of(const double a[3], const double b[3], const double c[3]) {
     return 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
-/* A sheet bent over an edge of length l between areas A and B has the energy of 3 l^2/(A + B) of its rigidity. */
+/* A sheet that is folded along edges of length l, between triangles of areas A and B, has the energy B kappa^2/2 a
+ * square metre if each edge has l^2/(A + B) of its rigidity. (With the 3 l^2/(A + B) that is often given, each edge
+ * standing for a third of its triangles, it would be three times as stiff.) */
 static double scale_of(const double x[4][3]) {
     double square = 0, area = area_of(x[0], x[1], x[2]) + area_of(x[0], x[1], x[3]);
     for (int k = 0; k < 3; k++) square += (x[1][k] - x[0][k]) * (x[1][k] - x[0][k]);
-    return area > 0 ? 3 * square / area : 0;
+    return area > 0 ? square / area : 0;
 }
 
 skein_status sk_hinges_find(sk_hinges *hinges, const sk_sheet *sheet, const sk_springs *springs,

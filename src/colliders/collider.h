@@ -93,6 +93,9 @@ extern const sk_kernels sk_contact_filter;
 /* The same for what has come inside since, X being where V leads from X0. */
 extern const sk_kernels sk_contact_filter_more;
 
+/* Rules that look out: adds to S, for the row's group. */
+extern const sk_kernels sk_avoid;
+
 /* Whether contact with this collider looks at F after the velocity update: what bounces must know what weighs. */
 bool sk_contact_reads_force(const sk_collider *collider);
 

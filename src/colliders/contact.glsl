@@ -27,15 +27,16 @@ float restitution@(float mass) {
     return own > 0 ? max((own - mass) / (own + mass), 0.0) : pose@[2].w;
 }
 
-// Cancels the inward force, and rubs what slides.
+// Cancels the force that would bring the particle inwards, and rubs what slides.
 void contact_force@(vec4 x, vec4 v, inout vec4 f) {
     encounter@ e = meet@(x);
-    float pressing = dot(f.xyz, e.normal);
+    vec3 past = v.xyz - e.surface;
+    float inward = dot(f.xyz, e.normal), leaving = dot(past, e.normal), mass_per_step = 1 / (x.w * row@[0].w);
+    float pressing = pose@[3].w > 0 ? inward : inward + mass_per_step * max(leaving, 0.0);
     if (!e.touching || !(pressing < 0)) return;
-    vec3 across = f.xyz - pressing * e.normal, past = v.xyz - e.surface;
-    vec3 slide = past - dot(past, e.normal) * e.normal;
+    vec3 across = f.xyz - inward * e.normal, slide = past - leaving * e.normal;
     // the friction that would stop the slide within this substep, cut to Coulomb's cone
-    vec3 stop = -slide / (x.w * row@[0].w) - across;
+    vec3 stop = -mass_per_step * slide - across;
     f.xyz += -pressing * e.normal + share@(length(stop), pose@[1].w * -pressing) * stop;
 }
 

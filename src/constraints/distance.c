@@ -8,7 +8,9 @@
 #else
 #define SK_ARITY 2
 #define SK_RESTS 1
+#ifndef SK_FORMULA
 #define SK_FORMULA "constraints/emitted/distance.h"
+#endif
 #define SK_WITH_STRIPS
 #define SK_WITH_LIMITS
 #define SK_ACROSS

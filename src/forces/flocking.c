@@ -14,6 +14,7 @@ typedef struct SK_ISA(near) {
     real x[SK_ISA(ROOM) + 2 * SK_LANES], y[SK_ISA(ROOM) + 2 * SK_LANES], z[SK_ISA(ROOM) + 2 * SK_LANES];
     real ux[SK_ISA(ROOM) + 2 * SK_LANES], uy[SK_ISA(ROOM) + 2 * SK_LANES], uz[SK_ISA(ROOM) + 2 * SK_LANES];
     size_t count;
+    sk_vec3 heading; // the particle's own direction; 0 when it stands still: it sees all round then
 } SK_ISA(near);
 
 SK_INLINE sk_wide SK_ISA(wide_at)(const real *at) {
@@ -47,23 +48,57 @@ SK_INLINE void SK_ISA(keep_near)(SK_ISA(near) * near, const sk_cells *cells, siz
 #endif
 }
 
+/* Leaves the n->count nearest of those in view, in their order; who is in the same place does not count. */
+static void SK_ISA(prune)(SK_ISA(near) * near, const sk_flocking_numbers *n) {
+    real square[SK_ISA(ROOM) + 2 * SK_LANES], best[SK_FLOCKING_MOST_NEAREST];
+    int found = 0, ties = 0;
+    for (size_t k = 0; k < near->count; k++) {
+        sk_vec3 d = {near->x[k], near->y[k], near->z[k]};
+        real s = square[k] = sk_dot(d, d);
+        bool seen = n->sees_all || sk_dot(near->heading, near->heading) == 0 ||
+                    sk_dot(d, near->heading) >= n->view * sk_sqrt(s);
+        if (!(s > 0) || !seen) square[k] = 0;
+        if (!(square[k] > 0) || (found == n->count && s >= best[found - 1])) continue;
+        int at = found < n->count ? found++ : found - 1;
+        for (; at > 0 && best[at - 1] > s; at--) best[at] = best[at - 1];
+        best[at] = s;
+    }
+    real farthest = found ? best[found - 1] : 0;
+    for (int k = found; k-- > 0 && best[k] == farthest;) ties++; // so many at that distance
+    size_t kept = 0;
+    real *lists[] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
+    for (size_t k = 0; k < near->count; k++) {
+        if (!(square[k] > 0) || square[k] > farthest || (square[k] == farthest && ties-- <= 0)) continue;
+        for (int i = 0; i < 6; i++) lists[i][kept] = lists[i][k];
+        kept++;
+    }
+    near->count = kept;
+}
+
 /* What sixteen neighbours from k on add. */
 SK_INLINE void SK_ISA(add_near)(const SK_ISA(near) * near, size_t k, const sk_flocking_numbers *n, sk_wide3 *sum) {
     sk_wide3 d = {SK_ISA(wide_at)(near->x + k), SK_ISA(wide_at)(near->y + k), SK_ISA(wide_at)(near->z + k)};
-    sk_wide nearest = SK_ISA(sk_splat)(n->nearest), one = SK_ISA(sk_splat)(1), half = SK_ISA(sk_splat)((real)0.5);
+    sk_wide least = SK_ISA(sk_splat)(n->least), one = SK_ISA(sk_splat)(1), half = SK_ISA(sk_splat)((real)0.5);
     sk_wide square = SK_ISA(sk_dot_wide)(d, d), distance = SK_ISA(sk_wide_sqrt)(square);
-    distance = SK_ISA(sk_select)(SK_ISA(sk_more)(distance, nearest), distance, nearest);
+    distance = SK_ISA(sk_select)(SK_ISA(sk_more)(distance, least), distance, least);
     sk_wide per = one / distance, inverse = n->reach * per, percent = distance * n->per_reach;
     if (n->squared) percent *= percent, inverse *= inverse;
     sk_mask away = SK_ISA(sk_more)(SK_ISA(sk_splat)(n->away), percent);
     sk_mask along = SK_ISA(sk_more)(SK_ISA(sk_splat)(n->along), percent) & ~away;
+    sk_mask counts = SK_ISA(sk_positive)(square);
+    if (!n->sees_all) {
+        sk_vec3 u = near->heading;
+        sk_wide ahead = d.x * u.x + d.y * u.y + d.z * u.z;
+        real all_round = u.x * u.x + u.y * u.y + u.z * u.z > 0 ? 0 : 1; // a particle that stands still
+        counts &= SK_ISA(sk_at_most)(n->view * distance, ahead + all_round * (2 * distance));
+    }
     // from -0.5 to 0.5 through the zone
     sk_wide a =
         SK_ISA(sk_select)(along, (percent - n->away) * n->per_along, (percent - n->along) * n->per_towards) - half;
     sk_wide s = a * a, cosine = half * SK_FLOCKING_COSINE(s);
     sk_wide towards = SK_ISA(sk_select)(away, one - n->away * inverse, cosine) * per;
-    towards = SK_ISA(sk_keep)(~along, towards);
-    sk_wide with = SK_ISA(sk_keep)(along & SK_ISA(sk_positive)(square), one - cosine);
+    towards = SK_ISA(sk_keep)(~along & counts, towards);
+    sk_wide with = SK_ISA(sk_keep)(along & counts, one - cosine);
     sum->x += towards * d.x + with * SK_ISA(wide_at)(near->ux + k);
     sum->y += towards * d.y + with * SK_ISA(wide_at)(near->uy + k);
     sum->z += towards * d.z + with * SK_ISA(wide_at)(near->uz + k);
@@ -71,6 +106,10 @@ SK_INLINE void SK_ISA(add_near)(const SK_ISA(near) * near, size_t k, const sk_fl
 
 /* Works out all whole sixteens, and what is left of them moves to the front. */
 SK_INLINE void SK_ISA(work_out)(SK_ISA(near) * near, const sk_flocking_numbers *n, sk_wide3 *sum) {
+    if (n->count) {
+        SK_ISA(prune)(near, n);
+        return;
+    }
     size_t whole = near->count / SK_LANES * SK_LANES;
     for (size_t k = 0; k < whole; k += SK_LANES) SK_ISA(add_near)(near, k, n, sum);
     real *lists[] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
@@ -191,11 +230,17 @@ SK_INLINE sk_vec3 SK_ISA(steer)(const sk_cells *cells, const SK_ISA(rows) * rows
     while (SK_ISA(list)(begin, left, &sixteens))
         if (sixteens.count >= SK_ISA(SIXTEENS)) SK_ISA(test)(cells, n, p, &sixteens, near, &sum);
     SK_ISA(test)(cells, n, p, &sixteens, near, &sum);
+    if (n->count) SK_ISA(prune)(near, n);
     // fill up with neighbours in the same place, which add nothing
     real *lists[] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
     for (int i = 0; i < 6; i++) memset(lists[i] + near->count, 0, SK_LANES * sizeof(real));
     for (size_t k = 0; k < near->count; k += SK_LANES) SK_ISA(add_near)(near, k, n, &sum);
     return sk_v3(SK_ISA(sk_sum)(sum.x), SK_ISA(sk_sum)(sum.y), SK_ISA(sk_sum)(sum.z));
+}
+
+SK_INLINE sk_vec3 SK_ISA(heading_of)(sk_vec4 v) {
+    real speed = sk_length(sk_xyz(v));
+    return speed > 0 && speed <= (real)SK_REAL_MAX ? sk_scale(1 / speed, sk_xyz(v)) : sk_v3(0, 0, 0);
 }
 
 /* Elements are places where particles look at each other, else the user's particles. */
@@ -218,6 +263,8 @@ static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t 
                 &run->vector[row->dst][cells->record[i + SK_ISA(AHEAD) < end ? i + SK_ISA(AHEAD) : i].slot], 1);
         sk_vec3 p = among ? sk_v3(cells->x[i], cells->y[i], cells->z[i])
                           : sk_xyz(sk_load(run->vector[SK_X], row->packed, slot));
+        near.heading = sk_v3(0, 0, 0);
+        if (!numbers.sees_all) near.heading = SK_ISA(heading_of)(sk_load(run->vector[SK_V], row->packed, slot));
         sk_add_at(run->vector[row->dst], row->packed, slot,
                   sk_scale(scale, SK_ISA(steer)(cells, &rows, &numbers, p, &near)));
     }
@@ -228,6 +275,7 @@ static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t 
 
 #include <string.h>
 
+#include "base/elementary.h"
 #include "base/status.h"
 
 // clang-format off
@@ -238,6 +286,8 @@ static const skein_field fields[] = {
     {"measure", SKEIN_FIELD_CHOICE, offsetof(sk_flocking_params, measure), "", {0, 0, 0}, 0, 0, "distance|distance^2", NULL,
      "how far through the zones a neighbour is: by its distance, or by the square of it"},
     SK_REAL(sk_flocking_params, strength, "strength", "m/s2", 1, 0, SK_FAR, "how strongly each neighbour counts"),
+    SK_REAL(sk_flocking_params, view, "view", "degrees", 360, 0, 360, "the angle that each sees, round its direction of flight; 360: all round"),
+    SK_INT(sk_flocking_params, nearest, "nearest", "", 0, 0, SK_FLOCKING_MOST_NEAREST, "of the neighbours in reach only so many count, the nearest; 0: all"),
     SK_TEXT(sk_flocking_params, on, "on", "", "the name of the body that it moves; empty: every particle"),
     SK_TEXT(sk_flocking_params, minds, "minds", "", "the name of the body that it looks at; empty: the same"),
 };
@@ -265,8 +315,11 @@ sk_flocking_numbers sk_flocking_numbers_of(const sk_flocking_params *params) {
         .along = (real)along,
         .per_along = params->alignment > 0 ? (real)(1 / (along - away)) : 0,
         .per_towards = params->cohesion > 0 ? (real)(1 / (1 - along)) : 0,
-        .nearest = (real)(1e-4 * reach),
+        .least = (real)(1e-4 * reach),
         .squared = params->measure != 0,
+        .sees_all = params->view >= 360,
+        .view = (real)sk_cos(params->view * (3.141592653589793 / 360)),
+        .count = params->nearest,
     };
 }
 
@@ -275,8 +328,14 @@ static void pack(const void *data, float (*block)[4]) {
     sk_flocking_numbers n = sk_flocking_numbers_of(params);
     const float numbers[2][4] = {
         {1 / (float)n.reach, (float)n.away, (float)n.along, (float)n.per_along},
-        {(float)n.per_towards, (float)n.nearest, (float)params->strength, n.squared ? 1.0f : 0.0f}};
+        {(float)n.per_towards, (float)n.least, (float)params->strength, n.squared ? 1.0f : 0.0f}};
     memcpy(block, numbers, sizeof numbers);
+}
+
+static const char *refuse(const void *data) {
+    const sk_flocking_params *params = data;
+    if (params->nearest) return "with a number of nearest neighbours";
+    return params->view < 360 ? "with a field of view" : NULL;
 }
 
 #define SK_KERNELS "forces/flocking.c"
@@ -290,6 +349,6 @@ const sk_force_type sk_flocking = {
     .kernel = {SK_EACH_ISA(kernel)},
     .radius = radius,
     .bodies = bodies,
-    .shader = {"forces/flocking", 2, pack, NULL},
+    .shader = {"forces/flocking", 2, pack, refuse},
 };
 #endif

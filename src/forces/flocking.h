@@ -16,11 +16,15 @@
 
 #include "forces/force.h"
 
+enum { SK_FLOCKING_MOST_NEAREST = 64 };
+
 /* The fields of the kind. */
 typedef struct sk_flocking_params {
     double separation, alignment, cohesion; /* m: widths of the zones */
     int32_t measure;                        /* 0: distance, 1: its square */
     double strength;                        /* m/s2 */
+    double view;                            /* degrees: the angle that a particle sees, round its direction of flight */
+    int32_t nearest;                        /* only so many neighbours count, the nearest; 0: all in reach */
     char *on, *minds;                       /* names of bodies */
 } sk_flocking_params;
 
@@ -30,8 +34,11 @@ typedef struct sk_flocking_numbers {
     real away, along; /* thresholds of percent */
     real per_along;   /* 1/(along - away), 0 where that zone has no width */
     real per_towards; /* 1/(1 - along), likewise */
-    real nearest;     /* m: nearer neighbours count as so near; it keeps weights finite */
+    real least;       /* m: nearer neighbours count as so near; it keeps weights finite */
     bool squared;
+    bool sees_all;
+    real view;     /* cosine of half the angle */
+    int32_t count; /* of neighbours at most; 0: all */
 } sk_flocking_numbers;
 
 sk_flocking_numbers sk_flocking_numbers_of(const sk_flocking_params *params);

@@ -10,7 +10,7 @@
 #include "plan/row.h"
 #include "plan/shader.h"
 
-typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOURS } sk_domain;
+typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOURS, SK_OVER_COLLIDERS } sk_domain;
 
 /* What a rule's kernel writes, and when.
  *   pushes   adds newtons to F, in every stage of a method
@@ -23,8 +23,9 @@ typedef struct sk_force_type {
     skein_kind kind;
     sk_domain domain;
     sk_deed deed;
-    bool sets;                                 /* its kernel minds the row's `sets`: it can be the first to write F */
-    bool on_velocity;                          /* it depends on velocities, */
+    bool once;        /* what it bounds is bounded between kick and drift only, and not at the end of a substep */
+    bool sets;        /* its kernel minds the row's `sets`: it can be the first to write F */
+    bool on_velocity; /* it depends on velocities, */
     bool (*uses_velocity)(const void *params); /* or does so with these parameters; NULL: what on_velocity says */
     sk_kernels kernel;
     /* Adds the force to the sum if it is plain with these parameters, else returns false; NULL: it never is. */
@@ -59,13 +60,9 @@ typedef struct sk_force_type {
      * where `apart` leads from the neighbour here, `square` is its squared length (less than that of the radius, and
      * 0 in one place), and `direction` is the neighbour's unit direction of flight. */
     sk_shader shader;
+    /* Over colliders: the time ahead (s), the clearance (m) and the strength (m/s2) of steering clear. */
+    void (*look)(const void *params, double look[3]);
 } sk_force_type;
-
-/* Particles of one body, or all: the user's indices, and the slots that they and nobody else lie in. */
-typedef struct sk_group {
-    size_t first, end;           /* particles */
-    size_t first_slot, end_slot; /* not always multiples of 16 */
-} sk_group;
 
 /* A force as methods see it: a type with its parameters. A row's rule is one of these. */
 typedef struct sk_force {
@@ -79,6 +76,6 @@ typedef struct sk_force {
 bool sk_force_on_velocity(const sk_force *force);
 
 extern const sk_force_type sk_gravity, sk_wind, sk_surface_wind, sk_drag, sk_separation, sk_flocking, sk_attraction,
-    sk_predator, sk_speed_limit, sk_force_field, sk_potential;
+    sk_predator, sk_lookout, sk_speed_limit, sk_turn_limit, sk_bounds, sk_force_field, sk_potential;
 
 #endif

@@ -103,17 +103,21 @@ SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask
 
 /* Infinities and NaN go through sums; what is only so large that the sum overflows is left out, too. */
 SK_INLINE void SK_ISA(judge)(const sk_tape *tape, const sk_wide *registers, sk_mask *finite, const size_t wides) {
-    sk_wide sum[SK_TAPE_WIDES] = {0};
+    sk_wide sum[SK_TAPE_WIDES];
+    for (size_t i = 0; i < wides; i++) sum[i] = (sk_wide){0};
     for (size_t k = 0; k < tape->outputs; k++)
         for (size_t i = 0; i < wides; i++) sum[i] += registers[tape->output[k] * wides + i];
     for (size_t i = 0; i < wides; i++) finite[i] = ~SK_ISA(sk_differ)(sum[i] - sum[i], (sk_wide){0});
 }
 
 static void SK_ISA(run)(const sk_tape *tape, sk_wide *registers, sk_tape_verdict *verdict) {
-    for (size_t i = 0; i < SK_TAPE_WIDES; i++) verdict->guarded[i] = (sk_mask){0};
+    for (size_t i = 0; i < tape->wides; i++) verdict->guarded[i] = (sk_mask){0};
     if (tape->wides == SK_TAPE_WIDES) {
         SK_ISA(run_code)(tape, registers, verdict->guarded, SK_TAPE_WIDES);
         SK_ISA(judge)(tape, registers, verdict->finite, SK_TAPE_WIDES);
+    } else if (tape->wides == 1) { // in the middle of a kernel: pointwise.h
+        SK_ISA(run_code)(tape, registers, verdict->guarded, 1);
+        SK_ISA(judge)(tape, registers, verdict->finite, 1);
     } else {
         SK_ISA(run_code)(tape, registers, verdict->guarded, tape->wides);
         SK_ISA(judge)(tape, registers, verdict->finite, tape->wides);

@@ -4,6 +4,7 @@
 
 #include "constraints/sweep.h"
 #include "gpu/rows.h"
+#include "plan/sort.h"
 
 #define BIT(vector) (1u << (vector))
 
@@ -130,14 +131,19 @@ static void add_row(cutter *c, const sk_row *row) {
     else c->passes->rows.data[c->passes->rows.count++] = row;
 }
 
+/* The parts that the processor's sort is made of are one here: all but the first, which says whom it sorts. */
+static bool is_next_part(const sk_row *row) {
+    for (int i = 1; i < SK_SORT_ROWS; i++)
+        if (sk_row_is(row, &sk_sort_rows[i].kernels)) return true;
+    return false;
+}
+
 /* A grid: pending rows that it must see the work of come before it, others wait. Its rows are one pass. */
 static size_t cut_grid(cutter *c, const sk_row *row, size_t most) {
     size_t end = c->passes->rows.count, count = 1;
     while (end > c->pending && !(sk_gpu_row_use(c->passes->rows.data[end - 1]).writes & (BIT(SK_X) | BIT(SK_V)))) end--;
     flush(c, end);
-    while (count < most && row[count].kind == SK_ROW_GRID && row[count].begin == row->begin &&
-           row[count].end == row->end)
-        count++;
+    while (count < most && is_next_part(&row[count])) count++;
     add_pass(c, (sk_gpu_pass){.kind = SK_GPU_GRID, .row = row});
     return count;
 }

@@ -91,6 +91,7 @@ static skein_status prepare_entered(sk_gpu_device *device, skein_world *world, s
     if (!status) status = make_vectors(device, error);
     if (!has_grid(device)) sk_gpu_grid_free(device);
     else if (!status) status = sk_gpu_grid_make(device, world, error);
+    if (!status) status = sk_gpu_arrange_make(device, world, error);
     return status;
 }
 
@@ -107,15 +108,17 @@ static skein_status prepare(sk_device *base, skein_world *world, skein_error *er
 
 /* Writes or reads a vector of the world, in parts where numbers are to be turned. */
 static void copy_vector(sk_gpu_device *device, sk_vec4 *vector, unsigned buffer, bool write) {
+    // slots behind the last particle are empty, and a copy in the world's order has none
+    size_t slots = device->identity && !write ? device->particle_count : device->slot_count;
     if (sizeof(real) == sizeof(float)) {
-        if (write) glNamedBufferSubData(buffer, 0, (GLsizeiptr)vector_bytes(device), vector);
-        else glGetNamedBufferSubData(buffer, 0, (GLsizeiptr)vector_bytes(device), vector);
+        if (write) glNamedBufferSubData(buffer, 0, (GLsizeiptr)(16 * slots), vector);
+        else glGetNamedBufferSubData(buffer, 0, (GLsizeiptr)(16 * slots), vector);
         return;
     }
     enum { PART = SK_GPU_STAGE / 16 };
     float(*part)[4] = (float(*)[4])(void *)device->stage;
-    for (size_t first = 0; first < device->slot_count; first += PART) {
-        size_t count = device->slot_count - first < PART ? device->slot_count - first : PART;
+    for (size_t first = 0; first < slots; first += PART) {
+        size_t count = slots - first < PART ? slots - first : PART;
         for (size_t i = 0; i < count && write; i++) {
             sk_vec4 v = vector[first + i];
             part[i][0] = (float)v.x, part[i][1] = (float)v.y, part[i][2] = (float)v.z, part[i][3] = (float)v.w;
@@ -142,7 +145,9 @@ static skein_status step(sk_device *base, skein_world *world, sk_run *run, skein
         copy_vector(device, world->particles.vector[SK_X], device->vector[SK_X], true);
         copy_vector(device, world->particles.vector[SK_V], device->vector[SK_V], true);
         device->grid.begin = device->grid.end = 0; // nobody knows where they are
+        sk_gpu_arrange_reset(device);
     }
+    sk_gpu_arrange_step(device);
     sk_gpu_run(device, run);
     skein_status status = check_gl("a step", error);
     sk_gpu_context_leave(&device->context);
@@ -157,10 +162,17 @@ static skein_status read_back(sk_device *base, skein_world *world, skein_error *
     sk_gpu_context_enter(&device->context);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     for (size_t i = 0; i < sizeof state / sizeof *state; i++)
-        copy_vector(device, world->particles.vector[state[i]], device->vector[state[i]], false);
+        copy_vector(device, world->particles.vector[state[i]], sk_gpu_arrange_back(device, state[i]), false);
     skein_status status = check_gl("reading the state", error);
     sk_gpu_context_leave(&device->context);
     return status;
+}
+
+static void wait_for(sk_device *base) {
+    sk_gpu_device *device = (sk_gpu_device *)(void *)base;
+    sk_gpu_context_enter(&device->context);
+    glFinish();
+    sk_gpu_context_leave(&device->context);
 }
 
 static void release(sk_device *base, skein_world *world) {
@@ -168,6 +180,7 @@ static void release(sk_device *base, skein_world *world) {
     sk_allocator *allocator = &world->allocator;
     sk_gpu_context_enter(&device->context);
     free_vectors(device);
+    sk_gpu_arrange_free(device);
     sk_gpu_grid_free(device);
     for (size_t i = 0; i < SK_GPU_GRID_PROGRAMS; i++) device->grid.program[i] = 0;
     sk_gpu_programs_release(&device->programs, allocator);
@@ -199,7 +212,7 @@ static skein_status create(skein_world *world, bool adopt, sk_device **out, skei
     sk_allocator *allocator = &world->allocator;
     sk_gpu_device *device = sk_allocate(allocator, sizeof *device);
     if (!device) return sk_fail_memory(error, "the device");
-    device->base = (sk_device){prepare, step, read_back, release, false, true};
+    device->base = (sk_device){prepare, step, read_back, release, wait_for, false, true};
     device->stage = sk_allocate(allocator, SK_GPU_STAGE);
     device->calls = sk_allocate(allocator, SK_GPU_STAGE / 256 * sizeof *device->calls);
     skein_status status = device->stage && device->calls ? SKEIN_OK : sk_fail_memory(error, "the device");
@@ -239,7 +252,8 @@ skein_device_info skein_world_device(const skein_world *world) {
         .bytes = device->bytes,
         .position_buffer = device->vector[SK_X],
         .velocity_buffer = device->vector[SK_V],
-        .slot_of = world->particles.slot_of,
+        .slot_of = device->arrangement.moved ? NULL : world->particles.slot_of,
+        .particle_buffer = device->arrangement.moved ? device->arrangement.home : 0,
         .slot_count = device->slot_count,
         .pass_count = device->passes.count,
     };

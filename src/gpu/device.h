@@ -5,6 +5,7 @@
 #ifndef SK_GPU_DEVICE_H
 #define SK_GPU_DEVICE_H
 
+#include "gpu/arrange.h"
 #include "gpu/compose.h"
 #include "gpu/context.h"
 #include "gpu/grid.h"
@@ -24,6 +25,7 @@ typedef struct sk_gpu_device {
     sk_gpu_programs programs;
     sk_gpu_passes passes;
     sk_gpu_grid grid;
+    sk_gpu_arrangement arrangement;
     unsigned vector[SK_VECTOR_COUNT]; /* buffers, 0 where there is none */
     size_t slot_count, particle_count;
     bool identity;   /* particle i is in slot i */

@@ -68,6 +68,12 @@ bool sk_gpu_row_everyone(const sk_row *row, size_t particle_count) {
            force->seen.end == particle_count;
 }
 
+bool sk_gpu_row_knows_no_slots(const sk_row *row, size_t particle_count) {
+    const sk_force *force = force_of(row);
+    if (row->kind == SK_ROW_GRID) return row->begin == 0; // the rows of one sort have the same end, or fewer places
+    return !force || force->type->deed == SK_PUSHES || sk_gpu_row_everyone(row, particle_count);
+}
+
 /* ---- vectors ---- */
 
 static sk_gpu_use use_of_combine(const sk_row *row) {
@@ -149,7 +155,7 @@ void sk_gpu_row_pack(const sk_row *row, double time, float (*block)[4]) {
     const sk_shader *shader = shader_of(row);
     if (is_contact(row)) {
         const sk_collider *collider = row->rule;
-        pack_pose(collider, time, block);
+        pack_pose(collider, time - row->before, block);
         if (shader->pack) shader->pack(collider->params, block + SK_GPU_POSE);
     } else if (shader) {
         if (shader->pack) shader->pack(((const sk_force *)row->rule)->params, block);

@@ -14,6 +14,8 @@ typedef struct sk_gpu_use {
 bool sk_gpu_row_can(const sk_row *row, const char **why);
 /* Whether a row over neighbours moves all particles, and they look at all. */
 bool sk_gpu_row_everyone(const sk_row *row, size_t particle_count);
+/* Whether it is the same for every slot. */
+bool sk_gpu_row_knows_no_slots(const sk_row *row, size_t particle_count);
 sk_gpu_use sk_gpu_row_use(const sk_row *row);
 /* The size of its part of the block, in vectors. */
 size_t sk_gpu_row_size(const sk_row *row);

@@ -12,10 +12,12 @@ static skein_status check(const void *params, const sk_rules *rules, skein_error
 static void write(sk_writer *writer, const void *params, double dt) {
     double h = dt / sk_substeps_of(params);
     size_t repeat = sk_write_repeat(writer, (size_t)sk_substeps_of(params), h);
-    sk_write_fields(writer);
-    sk_write_forces(writer);
-    sk_write_contacts(writer, SK_CONTACT_FORCE);
-    sk_write_kick(writer, SK_V, SK_V, h, SK_F);
+    if (sk_writes_forces(writer)) {
+        sk_write_fields(writer);
+        sk_write_forces(writer);
+        sk_write_contacts(writer, SK_CONTACT_FORCE);
+        sk_write_kick(writer, SK_V, SK_V, h, SK_F);
+    }
     sk_write_steering(writer);
     sk_write_sum(writer, SK_X, 1, SK_X, h, SK_V);
     sk_write_moment(writer, 1);

@@ -196,8 +196,10 @@ static bool falls_on(sk_writer *writer, int passes) {
  * the prediction has nothing left to add. */
 static bool write_steered_kick(sk_writer *writer) {
     if (!sk_writes_steering(writer->rules)) return false;
-    sk_write_fields(writer);
-    sk_write_kick(writer, SK_V, SK_V, writer->h, SK_F);
+    if (sk_writes_forces(writer)) {
+        sk_write_fields(writer);
+        sk_write_kick(writer, SK_V, SK_V, writer->h, SK_F);
+    }
     sk_write_steering(writer);
     writer->plan->plain = (sk_plain_force){.label = ""};
     return true;
@@ -217,7 +219,9 @@ size_t sk_write_predicted_repeat(sk_writer *writer, size_t times, double h, int 
     writer->h = h;
     if (falls_on(writer, passes)) {
         write_prediction(writer, passes);
-        return sk_write_repeat(writer, times, h);
+        size_t repeat = sk_write_repeat(writer, times, h);
+        sk_write_moment(writer, 1); // each turn begins with what was predicted before it
+        return repeat;
     }
     size_t repeat = sk_write_repeat(writer, times, h);
     write_prediction(writer, passes);
@@ -339,6 +343,15 @@ void sk_write_shared_projections(sk_writer *writer, int passes) {
         write_multipliers(writer, 1);
         write_pass(writer, 1, passes);
     }
+}
+
+bool sk_writes_forces(const sk_writer *writer) {
+    const sk_rules *rules = writer->rules;
+    bool any = !sk_writes_steering(rules);
+    for (size_t i = 0; i < rules->forces.count; i++) any |= pushes(rules->forces.data[i]);
+    for (size_t i = 0; i < rules->batches.count; i++) any |= is_on(rules->batches.data[i]);
+    for (size_t i = 0; i < rules->colliders.count; i++) any |= rules->colliders.data[i]->common->enabled;
+    return any;
 }
 
 bool sk_writes_velocity_forces(const sk_writer *writer) {

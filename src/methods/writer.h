@@ -78,6 +78,8 @@ void sk_write_projections(sk_writer *writer, int passes);
 /* The same without a memory from pass to pass: each has its share, a `passes`-th, of the stiffness and damping. */
 void sk_write_shared_projections(sk_writer *writer, int passes);
 
+/* Whether anything acts on F; where nothing steers either, it is said to, and F is 0. */
+bool sk_writes_forces(const sk_writer *writer);
 /* Whether any force or damped constraint depends on velocities. */
 bool sk_writes_velocity_forces(const sk_writer *writer);
 /* Whether contact or limits may change the state behind a substep's back. */

@@ -77,11 +77,30 @@ static void write_fields(sk_writer *writer, const sk_force *force) {
     sk_add_row(writer, row);
 }
 
-void sk_write_bounds(sk_writer *writer) {
+/* A row for each collider. */
+static void write_lookouts(sk_writer *writer, const sk_force *force) {
+    for (size_t i = 0; i < writer->rules->colliders.count; i++) {
+        const sk_collider *collider = writer->rules->colliders.data[i];
+        if (!collider->common->enabled) continue;
+        sk_row row = row_of_slots(writer, force);
+        row.kind = SK_ROW_FIELD;
+        row.kernel = sk_avoid.version[writer->isa];
+        row.dst = SK_S;
+        row.source[0] = SK_X;
+        row.source[1] = SK_V;
+        row.rule = collider;
+        row.group = &force->moved;
+        row.label = collider->label;
+        force->type->look(force->params, row.coefficient);
+        sk_add_row(writer, row);
+    }
+}
+
+static void write_bounds(sk_writer *writer, bool again) {
     const sk_rules *rules = writer->rules;
     for (size_t i = 0; i < rules->forces.count; i++) {
         const sk_force *force = rules->forces.data[i];
-        if (!is_on(force, SK_BOUNDS)) continue;
+        if (!is_on(force, SK_BOUNDS) || (again && force->type->once)) continue;
         sk_row row = row_of_slots(writer, force);
         row.kind = SK_ROW_LIMIT;
         row.dst = SK_V;
@@ -90,6 +109,10 @@ void sk_write_bounds(sk_writer *writer) {
         row.source[2] = has(rules, SK_STEERS) ? SK_S : SK_NONE;
         sk_add_row(writer, row);
     }
+}
+
+void sk_write_bounds(sk_writer *writer) {
+    write_bounds(writer, true);
 }
 
 static void write_combine(sk_writer *writer, const sk_kernels *kernels, sk_vector dst, sk_vector p, sk_vector q,
@@ -112,9 +135,10 @@ void sk_write_steering(sk_writer *writer) {
                 const sk_force *force = rules->forces.data[i];
                 if (!is_on(force, SK_STEERS) || (force->type->domain == SK_OVER_NEIGHBOURS) != neighbours) continue;
                 if (neighbours) write_neighbours(writer, force);
+                else if (force->type->domain == SK_OVER_COLLIDERS) write_lookouts(writer, force);
                 else write_fields(writer, force);
             }
         write_combine(writer, &sk_combine_steer, SK_V, SK_V, SK_S, "V + S, where free");
     }
-    sk_write_bounds(writer);
+    write_bounds(writer, false);
 }

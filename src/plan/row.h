@@ -71,6 +71,12 @@ typedef enum sk_row_kind {
  * Ordered: the sequential order is the answer. */
 typedef enum sk_order { SK_FREE, SK_ORDERED } sk_order;
 
+/* Particles of one body, or all: the user's indices, and the slots that they and nobody else lie in. */
+typedef struct sk_group {
+    size_t first, end;           /* particles */
+    size_t first_slot, end_slot; /* not always multiples of 16 */
+} sk_group;
+
 /* Triangles of all bodies' surfaces, as slots, for forces that act on areas. */
 typedef struct sk_triangles {
     uint32_t (*corner)[3];
@@ -116,17 +122,18 @@ struct sk_row {
     sk_row_kernel *kernel; /* NULL for a repeat */
     sk_vector dst, source[3];
     double coefficient[3];
-    double dt;         /* of the substep, s */
-    double before;     /* how long before the end of the substep the state is that it looks at, s */
-    const void *rule;  /* a force, a collider, a batch */
-    const char *label; /* its name in `skein explain` */
-    size_t begin, end; /* elements; a repeat: the number of turns is `end` */
-    bool sets;         /* a field row: F is written, not added to */
-    bool by_particle;  /* its elements are the user's particles, not slots: not to be run in chunks with others */
-    size_t packed;     /* slots [0, packed) are in packed blocks when it runs */
-    sk_walk walk;      /* of rows whose elements are strip rows */
-    size_t length;     /* a repeat: how many rows after it are repeated */
-    int cell;          /* which cell it reads; a repeat that has one ends when it is not 0, and moves no time on */
+    double dt;             /* of the substep, s */
+    double before;         /* how long before the end of the substep the state is that it looks at, s */
+    const void *rule;      /* a force, a collider, a batch */
+    const sk_group *group; /* whom it moves, where the rule does not say; NULL: everybody */
+    const char *label;     /* its name in `skein explain` */
+    size_t begin, end;     /* elements; a repeat: the number of turns is `end` */
+    bool sets;             /* a field row: F is written, not added to */
+    bool by_particle;      /* its elements are the user's particles, not slots: not to be run in chunks with others */
+    size_t packed;         /* slots [0, packed) are in packed blocks when it runs */
+    sk_walk walk;          /* of rows whose elements are strip rows */
+    size_t length;         /* a repeat: how many rows after it are repeated */
+    int cell;              /* which cell it reads; a repeat that has one ends when it is not 0, and moves no time on */
 };
 
 /* m g + f - (linear + rate m) v on every particle: gravity, plain wind and air drag together. Methods that

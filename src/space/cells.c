@@ -35,15 +35,31 @@ static double cells_needed(sk_vec3 extent, double size) {
            ((double)extent.z / size + 1);
 }
 
+/* At most so many cells for `count` particles. */
+static double most_cells(size_t count) {
+    return count < 500000000 ? 4.0 * (double)count + 64 : 2e9;
+}
+
+bool sk_cells_reserve(sk_cells *cells, sk_allocator *allocator, size_t count) {
+    real **copies[6] = {&cells->x, &cells->y, &cells->z, &cells->ux, &cells->uy, &cells->uz};
+    for (int k = 0; k < 6; k++)
+        if (!sk_reserve(allocator, (void **)copies[k], &cells->copy_capacity[k], count + PADDING, sizeof(real)))
+            return false;
+    return sk_reserve(allocator, (void **)&cells->start, &cells->start_capacity, (size_t)most_cells(count) + 2,
+                      sizeof *cells->start) &&
+           sk_reserve(allocator, (void **)&cells->record, &cells->record_capacity, count + PADDING,
+                      sizeof *cells->record) &&
+           sk_reserve(allocator, (void **)&cells->place, &cells->place_capacity, count, sizeof *cells->place);
+}
+
 bool sk_cells_frame(sk_cells *cells, sk_allocator *allocator, const sk_state *state, size_t first, size_t end,
                     real radius) {
     sk_vec3 low, high;
     find_bounds(state, first, end, &low, &high);
     size_t count = end - first;
-    double size = (double)radius, most = 8.0 * (double)count + 64;
-    if (most > 2e9) most = 2e9;
+    double size = (double)radius;
     sk_vec3 extent = sk_sub(high, low);
-    while (cells_needed(extent, size) > most) size *= 1.25;
+    while (cells_needed(extent, size) > most_cells(count)) size *= 1.25;
     cells->origin = low;
     cells->size = (real)size;
     cells->per_x = (real)(SK_CELLS_ACROSS / size);
@@ -57,15 +73,7 @@ bool sk_cells_frame(sk_cells *cells, sk_allocator *allocator, const sk_state *st
     cells->end = end;
     cells->count = 0;
 
-    real **copies[6] = {&cells->x, &cells->y, &cells->z, &cells->ux, &cells->uy, &cells->uz};
-    for (int k = 0; k < 6; k++)
-        if (!sk_reserve(allocator, (void **)copies[k], &cells->copy_capacity[k], count + PADDING, sizeof(real)))
-            return false;
-    return sk_reserve(allocator, (void **)&cells->start, &cells->start_capacity, cell_count(cells) + 2,
-                      sizeof(uint32_t)) &&
-           sk_reserve(allocator, (void **)&cells->record, &cells->record_capacity, count + PADDING,
-                      sizeof *cells->record) &&
-           sk_reserve(allocator, (void **)&cells->place, &cells->place_capacity, count, sizeof(uint32_t));
+    return sk_cells_reserve(cells, allocator, count);
 }
 
 void sk_cells_find(sk_cells *cells, const sk_state *state, size_t begin, size_t end) {

@@ -61,6 +61,9 @@ typedef struct sk_state {
     const uint32_t *slot_of;
 } sk_state;
 
+/* Memory for sorting so many particles, wherever they are: a step in which they were reserved needs no more. False
+ * when there is none. */
+bool sk_cells_reserve(sk_cells *cells, sk_allocator *allocator, size_t count);
 /* The frame of cells of at least `radius` around particles [first, end), and memory for them. Where they are spread
  * so far that there would be many more cells than particles, the cells are made larger. False when there is no
  * memory: nobody is in a cell then. */

@@ -30,6 +30,14 @@ static double cells_needed(sk_vec3 extent, double size) {
     return ((double)extent.x / size + 1) * ((double)extent.y / size + 1) * ((double)extent.z / size + 1);
 }
 
+bool sk_grid_reserve(sk_grid *grid, sk_allocator *allocator, size_t count) {
+    return sk_reserve(allocator, (void **)&grid->cell_start, &grid->cell_start_capacity, 4 * count + 66,
+                      sizeof(uint32_t)) &&
+           sk_reserve(allocator, (void **)&grid->slot, &grid->slot_capacity, count, sizeof(uint32_t)) &&
+           sk_reserve(allocator, (void **)&grid->position, &grid->position_capacity, count, sizeof(sk_vec4)) &&
+           sk_reserve(allocator, (void **)&grid->cell_of, &grid->cell_of_capacity, count, sizeof(uint32_t));
+}
+
 bool sk_grid_build(sk_grid *grid, sk_allocator *allocator, const sk_vec4 *positions, size_t packed,
                    const uint32_t *slot_of, size_t count, real radius) {
     // the grid's frame: cells grow until there are not too many of them
@@ -45,12 +53,7 @@ bool sk_grid_build(sk_grid *grid, sk_allocator *allocator, const sk_vec4 *positi
     grid->cells_z = (int32_t)((double)extent.z / size) + 1;
     size_t cells = (size_t)grid->cells_x * (size_t)grid->cells_y * (size_t)grid->cells_z;
 
-    if (!sk_reserve(allocator, (void **)&grid->cell_start, &grid->cell_start_capacity, 4 * count + 66,
-                    sizeof(uint32_t)) ||
-        !sk_reserve(allocator, (void **)&grid->slot, &grid->slot_capacity, count, sizeof(uint32_t)) ||
-        !sk_reserve(allocator, (void **)&grid->position, &grid->position_capacity, count, sizeof(sk_vec4)) ||
-        !sk_reserve(allocator, (void **)&grid->cell_of, &grid->cell_of_capacity, count, sizeof(uint32_t)))
-        return grid->count = 0, false;
+    if (!sk_grid_reserve(grid, allocator, count)) return grid->count = 0, false;
 
     // counting sort, stable in the user's order: count, sum up, scatter
     uint32_t *start = grid->cell_start;

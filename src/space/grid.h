@@ -28,6 +28,8 @@ typedef struct sk_grid {
 
 #define SK_NO_CELL UINT32_MAX
 
+/* Memory for sorting so many particles. False when there is none. */
+bool sk_grid_reserve(sk_grid *grid, sk_allocator *allocator, size_t count);
 /* Sorts `count` particles into cells of at least `radius`. Where the particles are spread so far that
  * the cells would outnumber them fourfold, the cells are made larger. False when there is no memory: the
  * grid is then empty. Slots [0, packed) are in packed blocks. */

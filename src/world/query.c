@@ -15,6 +15,7 @@ static void cross(const double a[3], const double b[3], double out[3]) {
 }
 
 static void position_of(const skein_world *world, size_t particle, double x[3]) {
+    sk_world_fetch(world); // a device's positions come once; a failure stands in the world's error
     sk_vec4 p = world->particles.vector[SK_X][world->particles.slot_of[particle]];
     x[0] = (double)p.x, x[1] = (double)p.y, x[2] = (double)p.z;
 }
@@ -73,8 +74,8 @@ static void cast_at_body(const skein_world *world, const sk_body *body, const do
             position_of(world, body->particle_of_vertex[face[c - 1]], corner[1]);
             position_of(world, body->particle_of_vertex[face[c]], corner[2]);
             double t = meet_triangle(origin, along, corner), nearest = INFINITY;
-            if (!(t < hit->distance)) continue;
-            hit->distance = t;
+            if (!(t < hit->t)) continue;
+            hit->t = t;
             hit->object = handle;
             hit->face = f;
             for (int k = 0; k < 3; k++) hit->point[k] = origin[k] + t * along[k];
@@ -93,9 +94,9 @@ static void cast_at_body(const skein_world *world, const sk_body *body, const do
 
 static void cast_at_collider(const skein_world *world, const sk_collider *collider, const double origin[3],
                              const double along[3], skein_handle handle, skein_hit *hit) {
-    double normal[3], t = sk_collider_cast(collider, world->time, origin, along, fmin(hit->distance, 1e9), normal);
-    if (!(t < hit->distance)) return;
-    hit->distance = t;
+    double normal[3], t = sk_collider_cast(collider, world->time, origin, along, fmin(hit->t, 1e9), normal);
+    if (!(t < hit->t)) return;
+    hit->t = t;
     hit->object = handle;
     hit->face = 0;
     hit->particle = UINT32_MAX;
@@ -105,7 +106,7 @@ static void cast_at_collider(const skein_world *world, const sk_collider *collid
 skein_status skein_ray_cast(const skein_world *world, const double origin[3], const double direction[3],
                             skein_category category, skein_hit *hit) {
     double along[3];
-    *hit = (skein_hit){.distance = INFINITY};
+    *hit = (skein_hit){.t = INFINITY};
     if (category != SKEIN_BODY && category != SKEIN_COLLIDER)
         return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "category", "rays meet bodies and colliders, no %s",
                        skein_category_text(category));
@@ -131,7 +132,7 @@ static skein_status check_particles(const skein_world *world) {
 }
 
 skein_status skein_particle_near_point(const skein_world *world, const double point[3], uint32_t *particle,
-                                       double *distance) {
+                                       double *metres) {
     skein_status status = check_particles(world);
     if (status) return status;
     double nearest = INFINITY;
@@ -142,14 +143,14 @@ skein_status skein_particle_near_point(const skein_world *world, const double po
         for (int k = 0; k < 3; k++) off[k] = x[k] - point[k];
         if (dot(off, off) < nearest) nearest = dot(off, off), *particle = (uint32_t)i;
     }
-    if (distance) *distance = sqrt(nearest);
+    if (metres) *metres = sqrt(nearest);
     return SKEIN_OK;
 }
 
 skein_status skein_particle_near_ray(const skein_world *world, const double origin[3], const double direction[3],
-                                     double radius, double slope, uint32_t *particle, double *distance) {
+                                     double radius, double slope, uint32_t *particle, double *t) {
     double along[3], best = 1;
-    *distance = INFINITY;
+    *t = INFINITY;
     *particle = UINT32_MAX;
     skein_status status = check_ray(world, origin, direction, along);
     if (status) return status;
@@ -160,14 +161,14 @@ skein_status skein_particle_near_ray(const skein_world *world, const double orig
         double x[3], off[3];
         position_of(world, i, x);
         for (int k = 0; k < 3; k++) off[k] = x[k] - origin[k];
-        double t = dot(off, along);
-        if (!(t > 0)) continue;
-        for (int k = 0; k < 3; k++) off[k] -= t * along[k];
-        double measure = sqrt(dot(off, off)) / (radius + slope * t);
+        double ahead = dot(off, along);
+        if (!(ahead > 0)) continue;
+        for (int k = 0; k < 3; k++) off[k] -= ahead * along[k];
+        double measure = sqrt(dot(off, off)) / (radius + slope * ahead);
         // of those that are equally near, the one in front
-        if (measure > best || (measure == best && *particle != UINT32_MAX && t >= *distance)) continue;
+        if (measure > best || (measure == best && *particle != UINT32_MAX && ahead >= *t)) continue;
         best = measure;
-        *distance = t;
+        *t = ahead;
         *particle = (uint32_t)i;
     }
     return SKEIN_OK;

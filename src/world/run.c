@@ -17,6 +17,7 @@
  * Free rows that follow each other go over a chunk in small tiles, which stay in the nearest cache.
  * Other free rows are cut over the threads; other ordered rows run on the caller, whole. */
 #include <stdatomic.h>
+#include <time.h>
 
 #include "base/float_mode.h"
 #include "world/world.h"
@@ -254,16 +255,20 @@ static void run_segments(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_
     }
 }
 
+/* Whether a repeat that began at `start` has this turn, too; sets its time. */
+static bool begin_turn(sk_run *run, const sk_row *repeat, double start, size_t turn) {
+    if (repeat->cell && run->cell[repeat->cell] != 0) return false;
+    if (!repeat->cell) run->time = start + (double)(turn + 1) * repeat->dt;
+    run->last_turn = turn + 1 == repeat->end;
+    return true;
+}
+
 /* The turns of a repeat, one after the other; further repeats may lie within it. */
 static void run_turns(sk_run *run, sk_tasks *tasks, const sk_row *repeat) {
     double start = run->time;
     bool outer = run->last_turn;
-    for (size_t turn = 0; turn < repeat->end; turn++) {
-        if (repeat->cell && run->cell[repeat->cell] != 0) break;
-        if (!repeat->cell) run->time = start + (double)(turn + 1) * repeat->dt;
-        run->last_turn = turn + 1 == repeat->end;
+    for (size_t turn = 0; turn < repeat->end && begin_turn(run, repeat, start, turn); turn++)
         sk_run_rows(run, tasks, repeat + 1, repeat->length);
-    }
     run->last_turn = outer;
 }
 
@@ -287,5 +292,32 @@ void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count)
             run_turns(run, tasks, row);
         }
         r += 1 + row->length;
+    }
+}
+
+/* ---- row after row, with a clock ---- */
+
+static double now(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+void sk_run_rows_timed(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count, double *seconds) {
+    for (size_t r = 0; r < count; r++) {
+        const sk_row *row = &rows[r];
+        double start = run->time, begin = now();
+        if (row->kind != SK_ROW_REPEAT) {
+            run_segments(run, tasks, row, 1);
+            seconds[r] += now() - begin;
+            continue;
+        }
+        bool outer = run->last_turn;
+        for (size_t turn = 0; turn < row->end; turn++) {
+            if (!begin_turn(run, row, start, turn)) break;
+            sk_run_rows_timed(run, tasks, row + 1, row->length, seconds + r + 1);
+        }
+        run->last_turn = outer;
+        r += row->length;
     }
 }

@@ -30,6 +30,10 @@ skein_status sk_world_set_device(skein_world *world, sk_device *device) {
     return SKEIN_OK;
 }
 
+void skein_world_wait(const skein_world *world) {
+    if (world->device) world->device->wait(world->device);
+}
+
 /* ---- reading and writing ---- */
 
 size_t skein_particle_count(const skein_world *world) {

@@ -1,5 +1,6 @@
 /* Stepping: bring the plan up to date, run it, move the clock. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/float_mode.h"
@@ -50,6 +51,19 @@ static bool make_temporaries(skein_world *world) {
         for (int i = 0; i < 3; i++) wanted |= 1u << row->source[i];
     }
     return sk_particles_want(&world->particles, &world->allocator, wanted);
+}
+
+/* Memory for what the plan sorts, so that it cannot be wanting in the midst of a step. */
+static bool make_cells(skein_world *world) {
+    bool good = true;
+    for (size_t r = 0; r < world->plan.count && good; r++) {
+        const sk_row *row = &world->plan.data[r];
+        if (row->kind != SK_ROW_GRID) continue;
+        size_t count = row->end - row->begin;
+        good = row->by_particle ? sk_cells_reserve(&world->cells, &world->allocator, count)
+                                : sk_grid_reserve(&world->grid, &world->allocator, count);
+    }
+    return good;
 }
 
 /* The particles of the body of that name, or all where there is no name. False when there is no such body. */
@@ -124,7 +138,8 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     if (!world->device) sk_write_pack(&writer);
     method->write(&writer, world->method_params, dt);
     if (!world->device) sk_write_unpack(&writer);
-    if (writer.no_memory || (!world->device && !make_temporaries(world))) return sk_fail_memory(error, "the plan");
+    if (writer.no_memory || (!world->device && (!make_temporaries(world) || !make_cells(world))))
+        return sk_fail_memory(error, "the plan");
     if (world->device && (status = world->device->prepare(world->device, world, error))) return status;
     world->plan_dt = dt;
     world->plan_stale = false;
@@ -147,10 +162,8 @@ sk_run sk_world_run_context(skein_world *world) {
     return run;
 }
 
-skein_status skein_world_step(skein_world *world, double dt) {
-    skein_error *error = sk_world_error(world);
-    skein_status status = sk_world_compile(world, dt, error);
-    if (status) return status;
+/* One step; `seconds` of each row of the plan, or NULL to run them as fast as they go. The plan is up to date. */
+static skein_status take_step(skein_world *world, double dt, double *seconds, skein_error *error) {
     if (!world->steps) {
         skein_statistics start = {0};
         sk_world_measure_energy(world, &start);
@@ -159,11 +172,12 @@ skein_status skein_world_step(skein_world *world, double dt) {
     memset(world->cell, 0, sizeof world->cell);
     sk_run run = sk_world_run_context(world);
     if (world->device) {
-        status = world->device->step(world->device, world, &run, error);
+        skein_status status = world->device->step(world->device, world, &run, error);
         if (status) return status;
     } else {
         uint64_t mode = sk_float_mode_enter();
-        sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
+        if (seconds) sk_run_rows_timed(&run, world->tasks, world->plan.data, world->plan.count, seconds);
+        else sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
         sk_float_mode_leave(mode);
         if (run.no_memory) return sk_fail_memory(error, "the neighbour grid; the step was not finished");
     }
@@ -171,6 +185,48 @@ skein_status skein_world_step(skein_world *world, double dt) {
     world->steps++;
     world->substeps += (uint64_t)world->method->substeps(world->method_params);
     return SKEIN_OK;
+}
+
+skein_status skein_world_step(skein_world *world, double dt) {
+    skein_error *error = sk_world_error(world);
+    skein_status status = sk_world_compile(world, dt, error);
+    return status ? status : take_step(world, dt, NULL, error);
+}
+
+/* ---- what its passes take ---- */
+
+/* Adds a row's seconds to the pass of its kind and name; `count` passes are there, the first `most` of them in `out`.
+ */
+static void add_to_passes(const sk_row *row, double seconds, skein_pass *out, size_t most, size_t *count) {
+    const char *kind = sk_row_kind_text(row->kind),
+               *label = row->kind == SK_ROW_COMBINE || !row->label ? "" : row->label;
+    for (size_t i = 0; i < *count && i < most; i++)
+        if (out[i].kind == kind && !strncmp(out[i].label, label, sizeof out[i].label - 1)) {
+            out[i].seconds += seconds;
+            return;
+        }
+    if (*count < most) {
+        out[*count].kind = kind;
+        out[*count].seconds = seconds;
+        snprintf(out[*count].label, sizeof out[*count].label, "%s", label);
+    }
+    ++*count;
+}
+
+skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out, size_t most, size_t *count) {
+    skein_error *error = sk_world_error(world);
+    *count = 0;
+    skein_status status = sk_world_compile(world, dt, error);
+    if (status) return status;
+    double *seconds = sk_allocate(&world->allocator, world->plan.count * sizeof *seconds);
+    if (!seconds) return sk_fail_memory(error, "the profile");
+    memset(seconds, 0, world->plan.count * sizeof *seconds);
+    status = take_step(world, dt, seconds, error);
+    for (size_t r = 0; r < world->plan.count && !status; r++)
+        if (world->plan.data[r].kind != SK_ROW_REPEAT)
+            add_to_passes(&world->plan.data[r], seconds[r], out, most, count);
+    sk_release(&world->allocator, seconds);
+    return status;
 }
 
 skein_status skein_world_reset(skein_world *world) {

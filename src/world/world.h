@@ -85,6 +85,7 @@ struct sk_device {
     /* Copies X, V and P into the world's. */
     skein_status (*read)(sk_device *device, skein_world *world, skein_error *error);
     void (*release)(sk_device *device, skein_world *world);
+    void (*wait)(sk_device *device); /* until all that was asked for is done */
     bool ahead, behind;
 };
 
@@ -188,7 +189,9 @@ sk_run sk_world_run_context(skein_world *world);
 double sk_stable_substep(const sk_method_type *method, const skein_stability *stability);
 /* Fills in the kinetic, potential and elastic energies, and the momenta. The slots are to be up to date. */
 void sk_world_measure_energy(const skein_world *world, skein_statistics *statistics);
-/* Runs rows in their order; the plan's are a whole step. */
+/* Runs rows in their order; the plan's are a whole step. `seconds`: of each row, what it takes is added to. */
+void sk_run_rows_timed(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count, double *seconds);
+/* The same without looking at the clock, and as fast as it can be. */
 void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count);
 
 #endif

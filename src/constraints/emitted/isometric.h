@@ -1,4 +1,4 @@
-// let a = p1 - p0; let b = p2 - p0; let c = p3 - p0; let d = p2 - p1; let e = p3 - p1; let s = sqrt(6 / (length(cross(a, b)) + length(cross(a, c)))); let k = s * dot(a, b) / length(cross(a, b)); let l = s * dot(a, c) / length(cross(a, c)); let m = -s * dot(a, d) / length(cross(a, d)); let n = -s * dot(a, e) / length(cross(a, e)); length(rest(k + l) * a - rest(k + m) * b - rest(l + n) * c)
+// let a = p1 - p0; let b = p2 - p0; let c = p3 - p0; let d = p2 - p1; let e = p3 - p1; let s = sqrt(2 / (length(cross(a, b)) + length(cross(a, c)))); let k = s * dot(a, b) / length(cross(a, b)); let l = s * dot(a, c) / length(cross(a, c)); let m = -s * dot(a, d) / length(cross(a, d)); let n = -s * dot(a, e) / length(cross(a, e)); length(rest(k + l) * a - rest(k + m) * b - rest(l + n) * c)
 // Parameter 0 is the value of rest(...) number 1.
 // Parameter 1 is the value of rest(...) number 2.
 // Parameter 2 is the value of rest(...) number 3.
@@ -26,7 +26,7 @@ RESTS(rests) {
     const REAL cross_21 = a_3 * c_7 - a_1 * c_9;
     const REAL cross_22 = a_1 * c_8 - a_2 * c_7;
     const REAL length_23 = SQRT(cross_22 * cross_22 + (cross_20 * cross_20 + cross_21 * cross_21));
-    const REAL s_24 = SQRT(NUMBER(6.0) * RECIPROCAL(length_19 + length_23));
+    const REAL s_24 = SQRT(NUMBER(2.0) * RECIPROCAL(length_19 + length_23));
     const REAL x_25 = s_24 * (a_3 * b_6 + (a_1 * b_4 + a_2 * b_5));
     const REAL k_26 = x_25 * RECIPROCAL(length_19);
     const REAL x_27 = s_24 * (a_3 * c_9 + (a_1 * c_7 + a_2 * c_8));

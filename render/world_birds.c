@@ -1,0 +1,108 @@
+/* The birds of a picture; see world_birds.h. */
+#include "render/world_birds.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* From tip to tip, in radii of the scene. */
+static const double usual_span = 0.045;
+
+bool render_are_birds(const skein_kind *kind, const render_view *view) {
+    bool told_by_balls = view->colour == RENDER_BY_SPEED || view->colour == RENDER_BY_STRAIN;
+    return kind && !strcmp(kind->name, "flock") && view->birds && !told_by_balls &&
+           view->particles != RENDER_NO_PARTICLES;
+}
+
+static bool reserve(render_world_birds *all, size_t birds) {
+    if (all->count == all->room) {
+        render_birds *grown = realloc(all->birds, (all->room + 4) * sizeof *grown);
+        if (!grown) return false;
+        all->birds = grown;
+        size_t *bodies = realloc(all->body, (all->room + 4) * sizeof *bodies);
+        if (!bodies) return false;
+        all->body = bodies;
+        all->room += 4;
+    }
+    size_t need = all->number_count + 8 * birds;
+    if (need > all->number_room) {
+        float *grown = realloc(all->numbers, need * sizeof *grown);
+        if (!grown) return false;
+        all->numbers = grown;
+        all->number_room = need;
+    }
+    return true;
+}
+
+static void copy(const skein_view *view, const skein_surface *surface, float *out) {
+    for (size_t i = 0; i < surface->particle_count; i++) {
+        const skein_real *from = &view->xyzw[4 * (size_t)view->slot_of[surface->first_particle + i]];
+        for (int k = 0; k < 4; k++) out[4 * i + (size_t)k] = (float)from[k];
+    }
+}
+
+bool render_add_birds(render_world_birds *all, const skein_world *world, const render_world_state *state,
+                      const skein_surface *surface, size_t index) {
+    skein_device_info device = skein_world_device(world);
+    bool on_card = device.device == SKEIN_DEVICE_CURRENT_GL && device.position_buffer;
+    if (!reserve(all, on_card ? 0 : surface->particle_count)) return false;
+    all->body[all->count] = index;
+    render_birds *birds = &all->birds[all->count++];
+    *birds = (render_birds){.count = surface->particle_count};
+    if (on_card) {
+        birds->position_buffer = device.position_buffer;
+        birds->velocity_buffer = device.velocity_buffer;
+        birds->bird_buffer = device.particle_buffer; // then they are all there is
+        if (device.slot_of) birds->slots = device.slot_of + surface->first_particle;
+    } else {
+        skein_view v = skein_velocity_view(world);
+        float *numbers = all->numbers + all->number_count;
+        for (size_t i = 0; i < birds->count; i++)
+            for (size_t k = 0; k < 3; k++)
+                numbers[4 * i + k] = (float)state->positions[3 * (surface->first_particle + i) + k];
+        copy(&v, surface, numbers + 4 * birds->count);
+        all->number_count += 8 * birds->count;
+    }
+    render_bounds bounds = render_bounds_nothing();
+    for (size_t i = 0; i < birds->count; i++)
+        render_bounds_add(&bounds, &state->positions[3 * (surface->first_particle + i)], 0);
+    memcpy(birds->least, bounds.least, sizeof bounds.least);
+    memcpy(birds->most, bounds.most, sizeof bounds.most);
+    return true;
+}
+
+void render_world_birds_show(render_world_birds *all, const render_view *view, render_frame *frame) {
+    size_t at = 0;
+    for (size_t i = 0; i < all->count; i++) {
+        render_birds *birds = &all->birds[i];
+        if (!birds->position_buffer) { // the array may have moved since they were added
+            birds->positions = all->numbers + at;
+            birds->velocities = birds->positions + 4 * birds->count;
+            at += 8 * birds->count;
+        }
+        render_material material = render_default_material(all->body[i]);
+        memcpy(birds->colour, material.colour, sizeof birds->colour);
+        birds->paint = view->colour == RENDER_BY_DIRECTION ? RENDER_BY_DIRECTION_FEATHERS
+                       : view->colour == RENDER_BY_BODY    ? RENDER_ONE_FEATHER
+                                                           : RENDER_OWN_FEATHERS;
+    }
+    frame->birds = all->birds;
+    frame->bird_count = all->count;
+}
+
+void render_world_birds_size(render_world_birds *all, const render_view *view, double radius) {
+    double fitting = usual_span * (radius > 0 ? radius : 1);
+    for (size_t i = 0; i < all->count; i++)
+        all->birds[i].span = view->particle_radius > 0 ? 4 * view->particle_radius : fitting;
+}
+
+void render_world_birds_clear(render_world_birds *all) {
+    all->count = all->number_count = 0;
+}
+
+void render_world_birds_release(render_world_birds *all) {
+    free(all->birds);
+    free(all->body);
+    free(all->numbers);
+    memset(all, 0, sizeof *all);
+}

@@ -1,0 +1,31 @@
+/* The birds of a picture: bodies that are flocks.
+ *
+ * Called by world_frame.c. Where the world's steps are computed in the OpenGL context that draws, birds are drawn from
+ * its buffers, and their numbers stay on the card. */
+#ifndef SKEIN_RENDER_WORLD_BIRDS_H
+#define SKEIN_RENDER_WORLD_BIRDS_H
+
+#include "render/frame.h"
+#include "render/world_state.h"
+
+/* Start from {0}. */
+typedef struct render_world_birds {
+    render_birds *birds;
+    size_t *body; /* by flock: the place of its body */
+    size_t count, room;
+    float *numbers; /* positions, then velocities, of all that are not on the card; 4 floats each */
+    size_t number_room, number_count;
+} render_world_birds;
+
+/* Whether a body of this kind is drawn as birds under a view. */
+bool render_are_birds(const skein_kind *kind, const render_view *view);
+/* Adds a flock; `index` is the body's place. False where there is no memory. */
+bool render_add_birds(render_world_birds *all, const skein_world *world, const render_world_state *state,
+                      const skein_surface *surface, size_t index);
+/* All that were added go into the frame; and then get a size that suits a scene of this radius. */
+void render_world_birds_show(render_world_birds *all, const render_view *view, render_frame *frame);
+void render_world_birds_size(render_world_birds *all, const render_view *view, double radius);
+void render_world_birds_clear(render_world_birds *all);
+void render_world_birds_release(render_world_birds *all);
+
+#endif

@@ -1,0 +1,17 @@
+#!/bin/sh
+# The committed kernels are what the emitter writes, byte for byte: emitted.sh ROOT SKEIN
+set -u
+cd "$1" || exit 2
+skein=$2 faults=0
+made=$(mktemp) || exit 2
+trap 'rm -f "$made"' EXIT
+for file in src/constraints/emitted/*.h tests/changed_distance.h; do
+    text=$(sed -n '1s,^// ,,p' "$file")
+    "$skein" formula "$text" --emit kernel >"$made" || faults=1
+    cmp "$made" "$file" || faults=1
+    lines=$(wc -l <"$file")
+    [ "$lines" -lt 200 ] || { echo "$file: $lines lines, more than a reader takes in"; faults=1; }
+    # no layout and no instruction set in the body
+    if grep -n '_mm\|sk_\|\[' "$file" | grep -v '^[0-9]*://'; then faults=1; fi
+done
+exit $faults
