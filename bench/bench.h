@@ -6,7 +6,11 @@
  *   meshes.c       meshes made in code
  *   plain.c        the student's loops
  *   plain_flock.c  the student's flock
- *   by_hand*.c     formulas' values and gradients, by hand
+ *   texts.c        formulas to measure, as texts
+ *   elements.c     100,000 elements that they are measured on, and tapes
+ *   by_hand*.c     values, gradients, projections and second derivatives by hand
+ *   emitted_wide.c the emitter's C on the same elements (emit.c writes it while building)
+ *   dual.cpp       dual numbers; adolc.cpp ADOL-C, only there if that is
  *   bullet.cpp     Bullet's soft body; only there if Bullet is
  *   case_*.c       the cases
  *

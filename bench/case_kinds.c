@@ -124,6 +124,15 @@ static void check(subject *s, const char *name) {
     if (bench_rows_turns(s->rows) != 1) bench_fault("kinds, %s: %zu sweeps in a run", name, bench_rows_turns(s->rows));
 }
 
+/* How many groups a tape runs at once, on the average. */
+static double groups_a_block(const sk_batch *batch) {
+    size_t groups = 0, blocks = 0;
+    for (size_t i = 0; i < batch->sweep_count; i++)
+        for (size_t g = 0; g < batch->sweeps[i].group_count; g += batch->sweeps[i].ahead[g], blocks++)
+            groups += batch->sweeps[i].ahead[g];
+    return (double)groups / (double)blocks;
+}
+
 static void measure(const struct measured *m) {
     bench_elements e;
     subject built_in, formula;
@@ -144,7 +153,8 @@ static void measure(const struct measured *m) {
         const sk_batch *batch = i ? formula.batch : built_in.batch;
         char size[40];
         snprintf(size, sizeof size, "%s, %s", m->kind, i ? "tape" : "emitted");
-        snprintf(note, sizeof note, "%zu groups", batch->lane_count / SK_LANES);
+        int length = snprintf(note, sizeof note, "%zu groups", batch->lane_count / SK_LANES);
+        if (i) snprintf(note + length, sizeof note - (size_t)length, ", %.1f a block", groups_a_block(batch));
         result.size = size;
         result.ours = 1e9 * seconds[i] / (double)e.count;
         result.as_long = i ? 1.5 : 1.15;

@@ -120,7 +120,7 @@ void bench_tape_run(void *data) {
     kernels->begin(&t->tape, &e->input, registers);
     for (size_t i = 0; i < e->count; i += block) {
         kernels->load(&t->tape, &e->input, i, e->count - i < block ? e->count - i : block, registers);
-        kernels->run(&t->tape, registers, &verdict);
+        kernels->run(&t->tape, registers, t->tape.wides, &verdict);
     }
 }
 

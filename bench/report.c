@@ -59,6 +59,11 @@ static void print_machine(FILE *out, const char *processor, const char *isa) {
 #else
     fprintf(out, "# Bullet: not in this build\n");
 #endif
+#ifdef BENCH_ADOLC
+    fprintf(out, "# ADOL-C: %s\n", BENCH_ADOLC);
+#else
+    fprintf(out, "# ADOL-C: not in this build\n");
+#endif
     if (bench_quick) fprintf(out, "# quick: these numbers mean nothing\n");
 }
 

@@ -36,21 +36,18 @@ static void SK_ISA(begin)(SK_ISA(block) * b, const sk_batch *batch, const sk_tap
     sk_tape_kernels_of[SK_ISA(sk_version)].begin(tape, &input, b->registers);
 }
 
-/* Puts sixteen elements' positions into the tape's registers, as number i of a block. Their rest values are `rest`,
- * `stride` reals from one to the next. */
-SK_INLINE void SK_ISA(fill)(SK_ISA(block) * b, const sk_batch *batch, const sk_tape *tape, size_t i, const real *rest,
-                            size_t stride) {
-    int first_rest = ((const sk_formula_params *)batch->params)->made->formula->parameters;
-    for (size_t l = 0; l < tape->loads.count; l++) {
-        sk_tape_load load = tape->loads.data[l];
-        sk_wide *to = b->registers + load.to * tape->wides + i;
-        if (load.source == SK_TAPE_POSITION) {
-            sk_wide4 p = b->x[i][load.index];
-            to[0] = p.x, to[tape->wides] = p.y, to[2 * tape->wides] = p.z;
-        } else if (load.source == SK_TAPE_PARAMETER && load.index >= first_rest) {
-            memcpy(to, rest + (size_t)(load.index - first_rest) * stride, sizeof *to);
-        }
+/* Puts sixteen elements into the tape's registers, as number i of a block. Their rest values are `rest`, `stride` reals
+ * from one to the next. */
+SK_INLINE void SK_ISA(fill)(SK_ISA(block) * b, const places *to, size_t i, size_t arity, size_t rests, size_t wides,
+                            const real *rest, size_t stride) {
+    UNROLLED
+    for (size_t p = 0; p < arity; p++) {
+        if (to->position[p] == NOWHERE) continue;
+        sk_wide *at = b->registers + to->position[p] * wides + i;
+        at[0] = b->x[i][p].x, at[wides] = b->x[i][p].y, at[2 * wides] = b->x[i][p].z;
     }
+    for (size_t r = 0; r < rests; r++)
+        if (to->rest[r] != NOWHERE) memcpy(b->registers + to->rest[r] * wides + i, rest + r * stride, sizeof(sk_wide));
 }
 
 /* What came out of the tape for sixteen elements. */
@@ -67,6 +64,7 @@ SK_INLINE void SK_ISA(take_answer)(SK_ISA(answer) * a, const SK_ISA(block) * b, 
     sk_mask finite = b->verdict.finite[i];
 #define OUTPUT(k_) SK_ISA(sk_keep)(finite, b->registers[output[k_] * tape->wides + i])
     a->value = OUTPUT(0);
+    UNROLLED
     for (size_t p = 0; p < arity; p++)
         a->gradient[p] = (sk_wide3){OUTPUT(3 * p + 1), OUTPUT(3 * p + 2), OUTPUT(3 * p + 3)};
     a->by_time = OUTPUT(3 * arity + 1);
@@ -93,6 +91,7 @@ SK_INLINE sk_wide SK_ISA(pull)(const SK_ISA(answer) * a, const sk_wide3 *v, size
 SK_INLINE sk_wide SK_ISA(project)(const SK_ISA(answer) * a, const sk_wide *w, size_t arity, bool is_energy,
                                   sk_wide soft) {
     sk_wide weight = w[0] * SK_ISA(sk_dot_wide)(a->gradient[0], a->gradient[0]);
+    UNROLLED
     for (size_t p = 1; p < arity; p++) weight += w[p] * SK_ISA(sk_dot_wide)(a->gradient[p], a->gradient[p]);
     sk_wide square = SK_ISA(sk_keep)(SK_ISA(sk_positive)(a->value), 2 * a->value);
     sk_wide above = is_energy ? -square : -a->value;
@@ -107,6 +106,7 @@ SK_INLINE sk_wide SK_ISA(project_damped)(const SK_ISA(answer) * a, const sk_wide
                                          size_t arity, const sk_constraint_formula *made, sk_wide soft, real gamma,
                                          real h, sk_wide *multiplier) {
     sk_wide weight = w[0] * SK_ISA(sk_dot_wide)(a->gradient[0], a->gradient[0]);
+    UNROLLED
     for (size_t p = 1; p < arity; p++) weight += w[p] * SK_ISA(sk_dot_wide)(a->gradient[p], a->gradient[p]);
     sk_wide held = SK_ISA(sk_keep)(SK_ISA(sk_differ)(*multiplier, (sk_wide){0}), soft * *multiplier), change, s;
     if (made->is_energy) {
@@ -141,18 +141,20 @@ SK_INLINE void SK_ISA(put_back)(sk_vec4 *vector, size_t packed, const uint32_t *
 
 /* Group `i` of a block whose tape has run. */
 SK_INLINE void SK_ISA(settle_group)(sk_run *run, const sk_row *row, const sk_sweep *sweep, const SK_ISA(block) * b,
-                                    size_t i, size_t group, size_t packed, sk_row_kind kind, bool damped) {
+                                    const factors *f, size_t arity, size_t i, size_t group, size_t packed,
+                                    sk_row_kind kind, bool damped) {
     const sk_batch *batch = sweep->batch;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
-    size_t arity = batch->arity, lane = sweep->first_lane + group * SK_LANES;
+    size_t lane = sweep->first_lane + group * SK_LANES;
     const uint32_t *slots = sweep->slots + group * arity * SK_LANES;
-    double damping_time = sk_batch_damping_time(batch);
     SK_ISA(answer) a;
     sk_wide w[SK_MOST_ARITY], s;
     sk_wide3 other[SK_MOST_ARITY];
     SK_ISA(take_answer)(&a, b, made, arity, i);
+    UNROLLED
     for (size_t p = 0; p < arity; p++) {
         w[p] = b->x[i][p].w;
+        other[p] = (sk_wide3){{0}, {0}, {0}}; // what no damping is multiplied by must be a number
         if (!damped) continue;
         sk_wide4 o = SK_ISA(gather)(run->vector[row->source[1]], packed, slots + p * SK_LANES);
         other[p] = (sk_wide3){o.x, o.y, o.z};
@@ -161,15 +163,14 @@ SK_INLINE void SK_ISA(settle_group)(sk_run *run, const sk_row *row, const sk_swe
     sk_vec4 *dst = run->vector[row->dst];
     if (kind == SK_ROW_FORCE) {
         sk_wide stiffness = *(const sk_wide *)(const void *)(batch->lane_stiffness + lane);
-        s = SK_ISA(pull)(&a, other, arity, made->is_energy, stiffness, (real)damping_time);
+        s = SK_ISA(pull)(&a, other, arity, made->is_energy, stiffness, f->damping_time);
     } else {
-        real per_step = (real)(row->coefficient[0] / (row->dt * row->dt));
-        sk_wide soft = *(const sk_wide *)(const void *)(batch->lane_compliance + lane) * per_step;
+        sk_wide soft = *(const sk_wide *)(const void *)(batch->lane_compliance + lane) * f->per_step;
         sk_wide *multiplier = (sk_wide *)(void *)(batch->lane_multiplier + lane);
-        s = damped ? SK_ISA(project_damped)(&a, w, other, arity, made, soft, (real)(damping_time / row->dt),
-                                            (real)row->dt, multiplier)
+        s = damped ? SK_ISA(project_damped)(&a, w, other, arity, made, soft, f->gamma, (real)row->dt, multiplier)
                    : SK_ISA(project)(&a, w, arity, made->is_energy, soft);
     }
+    UNROLLED
     for (size_t p = 0; p < arity; p++) {
         const uint32_t *slot = slots + p * SK_LANES;
         sk_wide4 old = kind == SK_ROW_FORCE ? SK_ISA(gather)(dst, packed, slot) : b->x[i][p];
@@ -177,13 +178,16 @@ SK_INLINE void SK_ISA(settle_group)(sk_run *run, const sk_row *row, const sk_swe
     }
 }
 
-/* Groups [begin, end), or those of slabs [begin, end), block after block. */
-static void SK_ISA(walk)(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_row_kind kind, bool damped) {
+/* Groups [begin, end), or those of slabs [begin, end), block after block. `arity` is the batch's, a constant where it
+ * pays: then what belongs to an element's particles stays in registers. */
+SK_INLINE void SK_ISA(walk)(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_row_kind kind, bool damped,
+                            size_t arity) {
     const sk_sweep *sweep = row->rule;
     const sk_batch *batch = sweep->batch;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
     const sk_tape *tape = &made->tape;
-    size_t arity = batch->arity;
+    places to = find_places(batch, tape);
+    factors f = find_factors(batch, row);
     SK_ISA(block) b;
     if (sweep->slab_start) begin = sweep->slab_start[begin], end = sweep->slab_start[end];
     SK_ISA(begin)(&b, batch, tape, run->time - row->before);
@@ -191,32 +195,44 @@ static void SK_ISA(walk)(sk_run *run, const sk_row *row, size_t begin, size_t en
         size_t packed[SK_BLOCK_GROUPS];
         count = sweep->ahead[first] < tape->wides ? sweep->ahead[first] : tape->wides;
         if (count > end - first) count = end - first;
-        for (size_t i = 0; i < tape->wides; i++) {
-            size_t group = first + (i < count ? i : count - 1); // what is beyond repeats the last
+        // what is beyond repeats the last, and later whatever an earlier block left there: nobody reads it
+        for (size_t i = 0; i < (first == begin ? tape->wides : count); i++) {
+            size_t group = first + (i < count ? i : count - 1);
             const uint32_t *slots = sweep->slots + group * arity * SK_LANES;
             bool strips = false;
             for (size_t l = 0; l < arity * SK_LANES && row->packed; l++) strips |= slots[l] < row->packed;
             packed[i] = strips ? row->packed : 0;
+            UNROLLED
             for (size_t p = 0; p < arity; p++)
                 b.x[i][p] = SK_ISA(gather)(run->vector[SK_X], packed[i], slots + p * SK_LANES);
             SK_ISA(fill)
-            (&b, batch, tape, i, batch->lane_rest + sweep->first_lane + group * SK_LANES, batch->lane_count);
+            (&b, &to, i, arity, batch->rest_count, tape->wides, batch->lane_rest + sweep->first_lane + group * SK_LANES,
+             batch->lane_count);
         }
-        sk_tape_kernels_of[SK_ISA(sk_version)].run(tape, b.registers, &b.verdict);
+        sk_tape_kernels_of[SK_ISA(sk_version)].run(tape, b.registers, count, &b.verdict);
         for (size_t i = 0; i < count; i++)
-            SK_ISA(settle_group)(run, row, sweep, &b, i, first + i, packed[i], kind, damped);
+            SK_ISA(settle_group)(run, row, sweep, &b, &f, arity, i, first + i, packed[i], kind, damped);
     }
 }
 
+static size_t SK_ISA(arity_of)(const sk_row *row) {
+    return ((const sk_sweep *)row->rule)->batch->arity;
+}
 static void SK_ISA(force_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_sweep *sweep = row->rule;
-    SK_ISA(walk)(run, row, begin, end, SK_ROW_FORCE, sk_batch_damping_time(sweep->batch) > 0);
+    bool damped = sk_batch_damping_time(sweep->batch) > 0;
+    SK_ISA(walk)(run, row, begin, end, SK_ROW_FORCE, damped, SK_ISA(arity_of)(row));
 }
 static void SK_ISA(project_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    SK_ISA(walk)(run, row, begin, end, SK_ROW_PROJECT, false);
+    switch (SK_ISA(arity_of)(row)) {
+    case 2: SK_ISA(walk)(run, row, begin, end, SK_ROW_PROJECT, false, 2); break;
+    case 3: SK_ISA(walk)(run, row, begin, end, SK_ROW_PROJECT, false, 3); break;
+    case 4: SK_ISA(walk)(run, row, begin, end, SK_ROW_PROJECT, false, 4); break;
+    default: SK_ISA(walk)(run, row, begin, end, SK_ROW_PROJECT, false, SK_ISA(arity_of)(row));
+    }
 }
 static void SK_ISA(project_damped_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    SK_ISA(walk)(run, row, begin, end, SK_ROW_PROJECT, true);
+    SK_ISA(walk)(run, row, begin, end, SK_ROW_PROJECT, true, SK_ISA(arity_of)(row));
 }
 
 /* ---- implicit solves: elements, not groups ---- */
@@ -226,6 +242,7 @@ static void SK_ISA(run_elements)(SK_ISA(block) * b, const sk_batch *batch, const
                                  size_t packed, size_t begin, size_t count) {
     uint32_t slot[SK_MOST_ARITY][SK_LANES];
     real rest[SKEIN_FORMULA_MOST_RESTS][SK_LANES];
+    places to = find_places(batch, tape);
     for (size_t l = 0; l < SK_LANES; l++) {
         size_t e = begin + (l < count ? l : count - 1);
         for (size_t p = 0; p < batch->arity; p++) slot[p][l] = batch->slot[e * batch->arity + p];
@@ -234,9 +251,9 @@ static void SK_ISA(run_elements)(SK_ISA(block) * b, const sk_batch *batch, const
     for (size_t p = 0; p < batch->arity; p++) b->x[0][p] = SK_ISA(gather)(x, packed, slot[p]);
     for (size_t i = 0; i < tape->wides; i++) {
         memcpy(b->x[i], b->x[0], sizeof b->x[0]);
-        SK_ISA(fill)(b, batch, tape, i, rest[0], SK_LANES);
+        SK_ISA(fill)(b, &to, i, batch->arity, batch->rest_count, tape->wides, rest[0], SK_LANES);
     }
-    sk_tape_kernels_of[SK_ISA(sk_version)].run(tape, b->registers, &b->verdict);
+    sk_tape_kernels_of[SK_ISA(sk_version)].run(tape, b->registers, 1, &b->verdict);
 }
 
 /* The matrix of sixteen elements: a lower triangle of 3 arity rows, positive definite. */
@@ -381,6 +398,47 @@ static size_t SK_ISA(energy)(const sk_batch *batch, double time, const sk_vec4 *
 
 #else
 #include "constraints/formula.h"
+
+/* Loops over an element's particles. */
+#ifdef __clang__
+#define UNROLLED
+#else
+#define UNROLLED _Pragma("GCC unroll 4")
+#endif
+
+enum { NOWHERE = 0xffff };
+
+/* The registers where a tape wants an element's positions and rest values. */
+typedef struct places {
+    uint16_t position[SK_MOST_ARITY], rest[SKEIN_FORMULA_MOST_RESTS];
+} places;
+
+static places find_places(const sk_batch *batch, const sk_tape *tape) {
+    int first_rest = ((const sk_formula_params *)batch->params)->made->formula->parameters;
+    places to;
+    memset(&to, 0xff, sizeof to);
+    for (size_t l = 0; l < tape->loads.count; l++) {
+        sk_tape_load load = tape->loads.data[l];
+        if (load.source == SK_TAPE_POSITION) to.position[load.index] = load.to;
+        else if (load.source == SK_TAPE_PARAMETER && load.index >= first_rest)
+            to.rest[load.index - first_rest] = load.to;
+    }
+    return to;
+}
+
+/* What is the same for all elements of a row. */
+typedef struct factors {
+    real damping_time; /* c/k, s */
+    real per_step;     /* 1/h^2, times the projections that share the stiffness */
+    real gamma;        /* c/(k h) */
+} factors;
+
+static factors find_factors(const sk_batch *batch, const sk_row *row) {
+    double damping_time = sk_batch_damping_time(batch);
+    if (!(row->dt > 0)) return (factors){(real)damping_time, 0, 0}; // a force knows no step
+    return (factors){(real)damping_time, (real)(row->coefficient[0] / (row->dt * row->dt)),
+                     (real)(damping_time / row->dt)};
+}
 
 #define SK_KERNELS "constraints/formula.c"
 #include "base/for_each_isa.h"

@@ -19,7 +19,7 @@ static void SK_ISA(run)(const sk_pointwise *pointwise, const double *parameters,
         sk_wide *to = registers + load->to;
         to[0] = from->x, to[1] = from->y, to[2] = from->z;
     }
-    kernels->run(tape, registers, &verdict);
+    kernels->run(tape, registers, 1, &verdict);
     // a force that is over what fields take would leave the format with a few substeps
     sk_mask good = verdict.finite[0];
     for (size_t k = 0; k < tape->outputs; k++)

@@ -92,7 +92,8 @@ typedef struct sk_tape_verdict {
 typedef struct sk_tape_kernels {
     void (*begin)(const sk_tape *tape, const sk_tape_input *input, sk_wide *registers);
     void (*load)(const sk_tape *tape, const sk_tape_input *input, size_t element, size_t count, sk_wide *registers);
-    void (*run)(const sk_tape *tape, sk_wide *registers, sk_tape_verdict *verdict);
+    /* The first `count` wides of the block, and perhaps more; the verdict is on these. */
+    void (*run)(const sk_tape *tape, sk_wide *registers, size_t count, sk_tape_verdict *verdict);
     /* Everything, for elements [begin, end): output k of element e into outputs[k][e]. Elements that are not finite
      * give 0s. Returns how many elements were guarded or not finite. */
     size_t (*evaluate)(const sk_tape *tape, const sk_tape_input *input, size_t begin, size_t end, real *const *outputs);

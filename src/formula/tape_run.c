@@ -2,7 +2,7 @@
 #ifdef SK_ISA
 
 #define EACH(value_)                                     \
-    for (size_t i = 0; i < wides; i++) to[i] = (value_); \
+    for (size_t i = 0; i < count; i++) to[i] = (value_); \
     break
 
 #include "base/wide_elementary.h"
@@ -73,8 +73,9 @@ SK_INLINE sk_wide SK_ISA(within_one)(sk_wide x) {
     kind_(0, A, +, A) kind_(1, A, +, P) kind_(2, A, -, A) kind_(3, A, -, P) kind_(4, P, +, A) kind_(5, P, +, P) \
         kind_(6, P, -, A) kind_(7, P, -, P)
 
-/* `wides` is known where this is inlined. */
-SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask *guarded, const size_t wides) {
+/* The first `count` wides of a block. `wides` and `count` are known where this is inlined. */
+SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask *guarded, const size_t wides,
+                                const size_t count) {
     for (size_t at = 0; at < tape->code.count; at++) {
         const sk_instruction *instruction = &tape->code.data[at];
         sk_wide *to = registers + instruction->to * wides;
@@ -102,26 +103,29 @@ SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask
 }
 
 /* Infinities and NaN go through sums; what is only so large that the sum overflows is left out, too. */
-SK_INLINE void SK_ISA(judge)(const sk_tape *tape, const sk_wide *registers, sk_mask *finite, const size_t wides) {
+SK_INLINE void SK_ISA(judge)(const sk_tape *tape, const sk_wide *registers, sk_mask *finite, const size_t wides,
+                             const size_t count) {
     sk_wide sum[SK_TAPE_WIDES];
-    for (size_t i = 0; i < wides; i++) sum[i] = (sk_wide){0};
+    for (size_t i = 0; i < count; i++) sum[i] = (sk_wide){0};
     for (size_t k = 0; k < tape->outputs; k++)
-        for (size_t i = 0; i < wides; i++) sum[i] += registers[tape->output[k] * wides + i];
-    for (size_t i = 0; i < wides; i++) finite[i] = ~SK_ISA(sk_differ)(sum[i] - sum[i], (sk_wide){0});
+        for (size_t i = 0; i < count; i++) sum[i] += registers[tape->output[k] * wides + i];
+    for (size_t i = 0; i < count; i++) finite[i] = ~SK_ISA(sk_differ)(sum[i] - sum[i], (sk_wide){0});
 }
 
-static void SK_ISA(run)(const sk_tape *tape, sk_wide *registers, sk_tape_verdict *verdict) {
-    for (size_t i = 0; i < tape->wides; i++) verdict->guarded[i] = (sk_mask){0};
-    if (tape->wides == SK_TAPE_WIDES) {
-        SK_ISA(run_code)(tape, registers, verdict->guarded, SK_TAPE_WIDES);
-        SK_ISA(judge)(tape, registers, verdict->finite, SK_TAPE_WIDES);
-    } else if (tape->wides == 1) { // in the middle of a kernel: pointwise.h
-        SK_ISA(run_code)(tape, registers, verdict->guarded, 1);
-        SK_ISA(judge)(tape, registers, verdict->finite, 1);
-    } else {
-        SK_ISA(run_code)(tape, registers, verdict->guarded, tape->wides);
-        SK_ISA(judge)(tape, registers, verdict->finite, tape->wides);
-    }
+SK_INLINE void SK_ISA(run_and_judge)(const sk_tape *tape, sk_wide *registers, sk_tape_verdict *verdict,
+                                     const size_t wides, const size_t count) {
+    for (size_t i = 0; i < count; i++) verdict->guarded[i] = (sk_mask){0};
+    SK_ISA(run_code)(tape, registers, verdict->guarded, wides, count);
+    SK_ISA(judge)(tape, registers, verdict->finite, wides, count);
+}
+
+static void SK_ISA(run)(const sk_tape *tape, sk_wide *registers, size_t count, sk_tape_verdict *verdict) {
+    enum { MOST = SK_TAPE_WIDES, HALF = SK_TAPE_WIDES / 2 };
+    if (tape->wides == MOST && count > HALF) SK_ISA(run_and_judge)(tape, registers, verdict, MOST, MOST);
+    else if (tape->wides == MOST) SK_ISA(run_and_judge)(tape, registers, verdict, MOST, HALF);
+    else if (tape->wides == HALF) SK_ISA(run_and_judge)(tape, registers, verdict, HALF, HALF);
+    else if (tape->wides == 1) SK_ISA(run_and_judge)(tape, registers, verdict, 1, 1); // within a kernel: pointwise.h
+    else SK_ISA(run_and_judge)(tape, registers, verdict, tape->wides, count);
 }
 
 /* ---- in and out ---- */
@@ -219,7 +223,7 @@ static size_t SK_ISA(evaluate)(const sk_tape *tape, const sk_tape_input *input, 
     for (size_t element = begin; element < end; element += block) {
         size_t count = end - element < block ? end - element : block;
         SK_ISA(load)(tape, input, element, count, registers);
-        SK_ISA(run)(tape, registers, &verdict);
+        SK_ISA(run)(tape, registers, (count + SK_LANES - 1) / SK_LANES, &verdict);
         SK_ISA(store)(tape, registers, &verdict, element, count, outputs);
         guarded += SK_ISA(count_guarded)(&verdict, count);
     }
