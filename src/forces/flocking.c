@@ -146,7 +146,7 @@ static void SK_ISA(add_by_formula)(const SK_ISA(near) * near, size_t k, size_t c
         for (size_t i = 0; i < pair->tape[w].wides && pair->percent[w] != UINT16_MAX; i++)
             registers[pair->percent[w] * pair->tape[w].wides + i] =
                 SK_ISA(hits_at)(near, k + (SK_LANES * i < count ? SK_LANES * i : 0), n).percent;
-        sk_tape_kernels_of[SK_ISA(sk_version)].run(&pair->tape[w], registers, &verdict[w]);
+        sk_tape_kernels_of[SK_ISA(sk_version)].run(&pair->tape[w], registers, pair->tape[w].wides, &verdict[w]);
     }
     for (size_t i = 0; SK_LANES * i < count; i++) {
         SK_ISA(hits) h = SK_ISA(hits_at)(near, k + SK_LANES * i, n);
