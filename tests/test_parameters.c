@@ -144,7 +144,7 @@ static void bad_names_are_refused(void **state) {
 
 static void at_most_32(void **state) {
     (void)state;
-    char name[33][20], text[400] = "0";
+    char name[33][32], text[400] = "0";
     skein_setting settings[35];
     settings[0] = (skein_setting)SKEIN_TEXT("text", text);
     for (int i = 0; i < 33; i++) {

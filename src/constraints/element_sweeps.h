@@ -68,8 +68,8 @@ SK_INLINE void SK_ISA(meet_blocks)(sk_run *run, const sk_sweep *sweep, const sk_
     bool special = turned || sweep->batch->special[lane / SK_LANES];
     bool reads_other = mode != SK_MODE_PROJECT && mode != SK_MODE_LIMIT;
     sk_element e;
-    sk_wide *x[SK_ARITY], *other[SK_ARITY];
-    sk_wide3 at[SK_ARITY], other_at[SK_ARITY];
+    sk_wide *x[SK_ARITY], *other[SK_ARITY] = {NULL};
+    sk_wide3 at[SK_ARITY], other_at[SK_ARITY] = {{{0}, {0}, {0}}};
     SK_EACH_PARTICLE (i) {
         size_t block = slot + (size_t)o->slots[i];
         int shift = turned ? o->shift[i] : 0;
@@ -228,7 +228,7 @@ SK_INLINE void SK_ISA(meet_group)(sk_run *run, const sk_row *row, const sk_sweep
                                   sk_element_mode mode) {
     const uint32_t *slots = sweep->slots + group * SK_ARITY * SK_LANES;
     sk_vec4 *x = run->vector[SK_X], *other = run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V];
-    sk_wide4 at[SK_ARITY], other_at[SK_ARITY];
+    sk_wide4 at[SK_ARITY], other_at[SK_ARITY] = {{{0}, {0}, {0}, {0}}};
     sk_element e;
     SK_EACH_PARTICLE (i) {
         at[i] = SK_ISA(gather)(x, packed, slots + i * SK_LANES);
