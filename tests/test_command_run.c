@@ -13,7 +13,7 @@ static void judge_report(const json_t *report, int frames) {
         double least, most;
     } numbers[] = {
         {"fps", 1, 1000},
-        {"step", 1e-4, 1e4},
+        {"step", 1e-4, 1}, // a scene that goes on by keys may take a whole second
         {"time", 0, 1e3},
         {"particles", 2, 1e6},
         {"held_particles", 0, 1e3},
@@ -23,10 +23,10 @@ static void judge_report(const json_t *report, int frames) {
         {"run_seconds", 0, 200},
         {"ms_per_step", 0, 1e5},
         {"realtime_factor", 0, 1e6},
-        {"kinetic_energy", 0, 1e40},
-        {"potential_energy", -1e40, 1e40},
-        {"elastic_energy", -10, 1e4}, // a gas that has expanded has given some away
-        {"dissipated_energy", -1e40, 1e40},
+        {"kinetic_energy", 0, 5e3},
+        {"potential_energy", -1e3, 1e3},
+        {"elastic_energy", -1, 1e3}, // a gas that has expanded has given some away
+        {"dissipated_energy", -1e3, 1e3},
         {"max_stretch", 0, 1},
         {"p99_stretch", 0, 1},
         {"worst_stretch_of_run", 0, 1},
@@ -51,8 +51,9 @@ static void judge_report(const json_t *report, int frames) {
         const json_t *flock = json_array_get(flocks, i), *milling = json_object_get(flock, "milling");
         assert_int_equal(json_array_size(milling), (frames + 15) / 16 + 1);
         assert_int_equal(json_array_size(json_object_get(flock, "time")), json_array_size(milling));
+        bool strewn = !strcmp(text_of(report, "name"), "whirl"); // all others begin in a ring
         double first = json_number_value(json_array_get(milling, 0));
-        assert_true(first > (!strcmp(text_of(report, "name"), "birds") ? 0.4 : -1) && first <= 1);
+        assert_true(first > (strewn ? 0 : 0.4) && first <= 1);
     }
     assert_string_equal(text_of(report, "skein"), SKEIN_VERSION);
     assert_string_equal(text_of(report, "device"), "processor");

@@ -33,14 +33,6 @@ static const skein_field fields[] = {
 const sk_constraint_type sk_angle = {
     .kind = {"angle", "keeps the angle at the second of three particles", SKEIN_CONSTRAINT, fields,
              sizeof fields / sizeof *fields, sizeof(angle_params)},
-    .arity = SK_ARITY,
-    .rest_count = SK_RESTS,
-    .rest = rest_of,
-    .force = {.groups = {SK_EACH_ISA(force_groups)}},
-    .project = {.groups = {SK_EACH_ISA(project_groups)}},
-    .project_damped = {.groups = {SK_EACH_ISA(project_damped_groups)}},
-    .apply = {SK_EACH_ISA(apply)},
-    .diagonal = {SK_EACH_ISA(diagonal)},
-    .energy = energy,
+    SK_ELEMENT_RULES,
 };
 #endif

@@ -37,14 +37,6 @@ const sk_constraint_type sk_dihedral = {
     .kind = {"dihedral",
              "keeps the angle between two triangles over an edge: the edge's two ends, then the two corners beside it",
              SKEIN_CONSTRAINT, fields, sizeof fields / sizeof *fields, sizeof(dihedral_params)},
-    .arity = SK_ARITY,
-    .rest_count = SK_RESTS,
-    .rest = rest_of,
-    .force = {{SK_EACH_ISA(force_strips)}, {SK_EACH_ISA(force_groups)}},
-    .project = {{SK_EACH_ISA(project_strips)}, {SK_EACH_ISA(project_groups)}},
-    .project_damped = {{SK_EACH_ISA(project_damped_strips)}, {SK_EACH_ISA(project_damped_groups)}},
-    .apply = {SK_EACH_ISA(apply)},
-    .diagonal = {SK_EACH_ISA(diagonal)},
-    .energy = energy,
+    SK_ELEMENT_RULES,
 };
 #endif

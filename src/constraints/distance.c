@@ -35,17 +35,9 @@ static const skein_field fields[] = {
 const sk_constraint_type sk_distance = {
     .kind = {"distance", "keeps two particles at their rest distance (a spring and damper)", SKEIN_CONSTRAINT, fields,
              sizeof fields / sizeof *fields, sizeof(distance_params)},
-    .arity = SK_ARITY,
-    .rest_count = SK_RESTS,
-    .rest = rest_of,
-    .force = {{SK_EACH_ISA(force_strips)}, {SK_EACH_ISA(force_groups)}},
-    .project = {{SK_EACH_ISA(project_strips)}, {SK_EACH_ISA(project_groups)}},
-    .project_damped = {{SK_EACH_ISA(project_damped_strips)}, {SK_EACH_ISA(project_damped_groups)}},
-    .limit = {{SK_EACH_ISA(limit_strips)}, {SK_EACH_ISA(limit_groups)}},
-    .limit_moving = {{SK_EACH_ISA(limit_moving_strips)}, {SK_EACH_ISA(limit_moving_groups)}},
-    .apply = {SK_EACH_ISA(apply)},
-    .diagonal = {SK_EACH_ISA(diagonal)},
+    SK_ELEMENT_RULES,
+    .limit = SK_WALKS_OF(limit),
+    .limit_moving = SK_WALKS_OF(limit_moving),
     .strain = strain,
-    .energy = energy,
 };
 #endif

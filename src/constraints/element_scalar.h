@@ -81,3 +81,22 @@ static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_
 #undef ABS
 #undef LESS
 #undef ATAN2
+
+/* What a kind's constant struct says of its walks and measures, besides its name and fields. */
+#ifdef SK_WITH_STRIPS
+#define SK_WALKS_OF(mode)               \
+    {                                   \
+        {SK_EACH_ISA(mode##_strips)}, { \
+            SK_EACH_ISA(mode##_groups)  \
+        }                               \
+    }
+#else
+#define SK_WALKS_OF(mode)                        \
+    {                                            \
+        .groups = { SK_EACH_ISA(mode##_groups) } \
+    }
+#endif
+#define SK_ELEMENT_RULES                                                                                           \
+    .arity = SK_ARITY, .rest_count = SK_RESTS, .rest = rest_of, .force = SK_WALKS_OF(force),                       \
+    .project = SK_WALKS_OF(project), .project_damped = SK_WALKS_OF(project_damped), .apply = {SK_EACH_ISA(apply)}, \
+    .diagonal = {SK_EACH_ISA(diagonal)}, .energy = energy
