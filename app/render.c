@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "app/compile.h"
 #include "app/footage.h"
 #include "app/progress.h"
 #ifdef SKEIN_RENDER
@@ -187,6 +188,8 @@ static int render(int argc, char **argv) {
     if (status < 0) {
         app_scene loaded;
         status = app_load(path, options[SET].values, &loaded);
+        if (!status && app_value(options, OPTION_COUNT, "--compile"))
+            loaded.warnings += app_compile(loaded.world, loaded.quiet);
         if (!status) status = app_device(&loaded, app_value(options, OPTION_COUNT, "--device"));
         if (!status) {
             app_catch_interrupts();

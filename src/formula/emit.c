@@ -220,17 +220,22 @@ static void put_graph(sk_writer *w, const sk_node *outputs, size_t count) {
     }
 }
 
-skein_status skein_formula_emit(const skein_formula *f, skein_formula_language asked,
-                                void (*write)(void *user, const char *text), void *user, skein_error *error) {
+/* `compiled` is the name of what is to be registered, or NULL for `asked`. */
+static skein_status emit(const skein_formula *f, skein_formula_language asked, const char *compiled,
+                         void (*write)(void *user, const char *text), void *user, skein_error *error) {
     sk_allocator allocator = sk_default_allocator();
     sk_node outputs[SK_FORMULA_MOST_OUTPUTS];
     size_t nodes = f->graph.count, count = outputs_of(f, outputs);
-    if (asked == SKEIN_FORMULA_KERNEL && f->size != 1)
+    bool kernel = asked == SKEIN_FORMULA_KERNEL || compiled;
+    if (kernel && f->size != 1)
         return sk_fail(error, SKEIN_ERROR_VALUE, "", "a constraint's formula is a number, and this one is a vector");
+    if (compiled && (f->particles == 0 || f->uses & SK_USES_VELOCITY))
+        return sk_fail(error, SKEIN_ERROR_VALUE, "", "a constraint's formula is on particles p0 to p7, and %s",
+                       f->particles ? "not on their velocities" : "this one names none");
     sk_writer w = {.formula = f,
-                   .language = asked == SKEIN_FORMULA_C        ? &sk_c_language
-                               : asked == SKEIN_FORMULA_KERNEL ? &sk_kernel_language
-                                                               : &sk_glsl_language,
+                   .language = kernel                     ? &sk_kernel_language
+                               : asked == SKEIN_FORMULA_C ? &sk_c_language
+                                                          : &sk_glsl_language,
                    .write = write,
                    .user = user,
                    .live = sk_allocate(&allocator, nodes * sizeof *w.live),
@@ -239,11 +244,28 @@ skein_status skein_formula_emit(const skein_formula *f, skein_formula_language a
                    .height = sk_allocate(&allocator, nodes * sizeof *w.height)};
     bool good = w.live && w.uses && w.number && w.height;
     if (good && asked == SKEIN_FORMULA_GRAPH) put_graph(&w, outputs, count);
-    else if (good && asked == SKEIN_FORMULA_KERNEL) sk_put_kernel(&w);
+    else if (good && compiled) sk_put_compiled(&w, compiled);
+    else if (good && kernel) sk_put_kernel(&w);
     else if (good) put_all(&w, outputs, count);
     sk_release(&allocator, w.live);
     sk_release(&allocator, w.uses);
     sk_release(&allocator, w.number);
     sk_release(&allocator, w.height);
     return good ? SKEIN_OK : sk_fail_memory(error, "a formula as text");
+}
+
+skein_status skein_formula_emit(const skein_formula *f, skein_formula_language language,
+                                void (*write)(void *user, const char *text), void *user, skein_error *error) {
+    return emit(f, language, NULL, write, user, error);
+}
+
+skein_status skein_formula_emit_compiled(const skein_formula *f, const char *name,
+                                         void (*write)(void *user, const char *text), void *user, skein_error *error) {
+    if (!name) name = "skein_compiled_formula";
+    size_t length = strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_");
+    if (!length || name[length] || length > 63 || (name[0] >= '0' && name[0] <= '9'))
+        return sk_fail(error, SKEIN_ERROR_NAME, "",
+                       "'%.60s' cannot be a name in C: that is up to 63 letters, digits and _, and no digit first",
+                       name);
+    return emit(f, SKEIN_FORMULA_C, name, write, user, error);
 }

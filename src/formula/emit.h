@@ -34,6 +34,8 @@ extern const sk_language sk_c_language, sk_glsl_language, sk_kernel_language;
 
 /* A number's value and gradient for the library's own walks (emit_kernel.c). */
 void sk_put_kernel(sk_writer *w);
+/* The same as a file to be compiled and registered (emit_compiled.c). */
+void sk_put_compiled(sk_writer *w, const char *name);
 /* What the language opens with, and a line for each node that has a name. */
 void sk_put_temporaries(sk_writer *w, const sk_node *outputs, size_t count);
 /* A node's name or expression, in brackets if it holds together less than 1 sums, 2 products, 3 calls do. */

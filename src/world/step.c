@@ -122,6 +122,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);
     warn_of_light_colliders(world);
     world->plan_stale = true; // until it is whole
+    sk_world_run_compiled(world);
     world->plan.count = 0;
     sk_writer writer = {
         .plan = &world->plan,

@@ -1,0 +1,502 @@
+/* What the macros of an emitted formula mean (compiled.h): value, gradient and all that constraints make of them, for
+ * groups of sixteen elements, gather to scatter. Included by the emitted file, which says beforehand how many
+ * particles, parameters and rest values an element has; without that there is nothing here. It needs gcc 12 or clang,
+ * for their vectors.
+ *
+ * The arithmetic is that of src/constraints/formula.c, operation by operation, on as many lanes as the processor works
+ * on at once. Lanes do not meet, so that their number does not matter, and the bits are those of the tape. */
+#ifndef SKEIN_COMPILED_WALK_H
+#define SKEIN_COMPILED_WALK_H
+#ifdef SKEIN_PARTICLES
+
+#include <skein/compiled.h>
+
+#ifdef __FAST_MATH__
+#error "-ffast-math would take the guards away, and give other bits: compile this file without it"
+#endif
+#ifdef __clang__
+#pragma STDC FP_CONTRACT OFF // no fused operations: they round otherwise
+#define SKEIN_UNROLLED
+#else
+#pragma GCC optimize("fp-contract=off,no-math-errno")
+#define SKEIN_UNROLLED _Pragma("GCC unroll 8")
+#endif
+#pragma GCC diagnostic ignored "-Wpsabi" // all that takes or returns vectors is inlined
+
+#include <string.h>
+#ifdef __x86_64__
+#include <immintrin.h>
+#endif
+
+/* ---- lanes: as many as the processor works on at once, but four ---- */
+
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512BW__) && defined(__AVX512VL__)
+#define SKEIN_NEEDS SKEIN_INSTRUCTIONS_AVX512
+#define SKEIN_LANE_BYTES 64
+#elif defined(__AVX2__)
+#define SKEIN_NEEDS SKEIN_INSTRUCTIONS_AVX2
+#define SKEIN_LANE_BYTES 32
+#else
+#define SKEIN_NEEDS SKEIN_INSTRUCTIONS_PLAIN
+#ifdef SKEIN_DOUBLE
+#define SKEIN_LANE_BYTES 32
+#else
+#define SKEIN_LANE_BYTES 16
+#endif
+#endif
+#ifdef SKEIN_DOUBLE
+#define SKEIN_LANES (SKEIN_LANE_BYTES / 8)
+typedef int64_t skein_lane_int;
+#else
+#define SKEIN_LANES (SKEIN_LANE_BYTES / 4)
+typedef int32_t skein_lane_int;
+#endif
+
+#define SKEIN_INLINE static inline __attribute__((always_inline, unused))
+
+typedef skein_real skein_lanes __attribute__((vector_size(SKEIN_LANE_BYTES)));
+typedef skein_lane_int skein_mask __attribute__((vector_size(SKEIN_LANE_BYTES))); /* -1 or 0 a lane */
+typedef skein_real skein_quad __attribute__((vector_size(4 * sizeof(skein_real))));
+typedef skein_lanes skein_lanes_in_memory __attribute__((may_alias));
+typedef skein_quad skein_quad_in_memory __attribute__((may_alias));
+
+SKEIN_INLINE skein_lanes skein_splat(skein_real a) {
+    return a - (skein_lanes){0};
+}
+SKEIN_INLINE skein_lanes skein_keep(skein_mask mask, skein_lanes yes) {
+    return (skein_lanes)(mask & (skein_mask)yes);
+}
+SKEIN_INLINE skein_lanes skein_select(skein_mask mask, skein_lanes yes, skein_lanes no) {
+    return (skein_lanes)((mask & (skein_mask)yes) | (~mask & (skein_mask)no));
+}
+SKEIN_INLINE skein_lanes skein_abs(skein_lanes a) {
+    const skein_lane_int all_but_sign = (skein_lane_int)((uint64_t)-1 >> (65 - 8 * sizeof(skein_real)));
+    return (skein_lanes)((skein_mask)a & all_but_sign);
+}
+SKEIN_INLINE skein_lanes skein_square_root(skein_lanes a) {
+#if defined(__AVX512F__) && SKEIN_LANE_BYTES == 64 && defined(SKEIN_DOUBLE)
+    return (skein_lanes)_mm512_sqrt_pd((__m512d)a);
+#elif defined(__AVX512F__) && SKEIN_LANE_BYTES == 64
+    return (skein_lanes)_mm512_sqrt_ps((__m512)a);
+#elif defined(__AVX__) && defined(SKEIN_DOUBLE)
+    return (skein_lanes)_mm256_sqrt_pd((__m256d)a);
+#elif defined(__AVX2__)
+    return (skein_lanes)_mm256_sqrt_ps((__m256)a);
+#elif defined(__x86_64__) && !defined(SKEIN_DOUBLE)
+    return (skein_lanes)_mm_sqrt_ps((__m128)a);
+#elif defined(SKEIN_DOUBLE)
+    for (int l = 0; l < SKEIN_LANES; l++) a[l] = __builtin_sqrt(a[l]);
+    return a;
+#else
+    for (int l = 0; l < SKEIN_LANES; l++) a[l] = __builtin_sqrtf(a[l]);
+    return a;
+#endif
+}
+SKEIN_INLINE skein_lanes skein_load(const skein_real *from) {
+    return *(const skein_lanes_in_memory *)(const void *)from;
+}
+SKEIN_INLINE void skein_store(skein_real *to, skein_lanes a) {
+    *(skein_lanes_in_memory *)(void *)to = a;
+}
+
+/* ---- the formula's operations, with the guards of docs/formula.md ---- */
+
+#ifdef SKEIN_DOUBLE
+#define SKEIN_LEAST 2.2250738585072014e-308
+#define SKEIN_MOST_EXP 709.0
+#else
+#define SKEIN_LEAST 1.17549435e-38f
+#define SKEIN_MOST_EXP 88.0f
+#endif
+
+SKEIN_INLINE skein_lanes skein_reciprocal(skein_lanes x) {
+    return skein_keep(skein_splat(SKEIN_LEAST) <= skein_abs(x), 1 / x);
+}
+SKEIN_INLINE skein_lanes skein_guarded_root(skein_lanes x) {
+    return skein_square_root(skein_keep((skein_lanes){0} <= x, x));
+}
+SKEIN_INLINE skein_lanes skein_call(skein_function *function, skein_lanes x) {
+    skein_lanes out;
+    function((const skein_real *)&x, (skein_real *)&out, SKEIN_LANES);
+    return out;
+}
+SKEIN_INLINE skein_lanes skein_call_two(skein_function_of_two *function, skein_lanes x, skein_lanes y) {
+    skein_lanes out;
+    function((const skein_real *)&x, (const skein_real *)&y, (skein_real *)&out, SKEIN_LANES);
+    return out;
+}
+SKEIN_INLINE skein_lanes skein_guarded_exp(const skein_elementary *f, skein_lanes x) {
+    skein_lanes most = skein_splat(SKEIN_MOST_EXP);
+    return skein_call(f->exp, skein_select(x <= most, x, most));
+}
+SKEIN_INLINE skein_lanes skein_guarded_log(const skein_elementary *f, skein_lanes x) {
+    skein_lanes least = skein_splat(SKEIN_LEAST);
+    return skein_call(f->log, skein_select(least <= x, x, least));
+}
+SKEIN_INLINE skein_lanes skein_guarded_pow(const skein_elementary *f, skein_lanes x, skein_lanes y) {
+    skein_lanes one = skein_splat(1), zero = {0};
+    skein_lanes power = skein_keep(x > zero, skein_call_two(f->pow, skein_select(x > zero, x, one), y));
+    return skein_select(y != zero, power, one);
+}
+SKEIN_INLINE skein_lanes skein_within_one(skein_lanes x) {
+    skein_lanes one = skein_splat(1);
+    x = skein_select(x > one, one, x);
+    return skein_select(-one > x, -one, x);
+}
+
+/* ---- an element's numbers, for all lanes ---- */
+
+typedef struct skein_element {
+    skein_lanes x[SKEIN_PARTICLES][3], w[SKEIN_PARTICLES]; /* places, inverse masses */
+    skein_lanes parameter[SKEIN_PARAMETERS + SKEIN_RESTS + 1], time;
+    skein_lanes value, by_time, gradient[SKEIN_PARTICLES][3];
+    skein_mask active; /* finite, and not on the free side */
+    const skein_elementary *elementary;
+} skein_element;
+
+#define SKEIN_EACH(i, count) SKEIN_UNROLLED for (int i = 0; i < (count); i++)
+#ifdef SKEIN_LONG // compiling it into each walk would take too long
+#define FORMULA(name) static __attribute__((noinline)) void name(skein_element *e)
+#else
+#define FORMULA(name) SKEIN_INLINE void name(skein_element *e)
+#endif
+#define SECOND(name) static void name(skein_element *e, skein_lanes *entry)
+#define REAL skein_lanes
+#define NUMBER(x) skein_splat((skein_real)(x))
+#define POSITION(particle, axis) e->x[particle][axis]
+#define PARAMETER(index) e->parameter[index]
+#define TIME e->time
+#define VALUE(component, number) e->value = (number)
+#define GRADIENT(component, particle, axis, number) e->gradient[particle][axis] = (number)
+#define BY_TIME(component, number) e->by_time = (number)
+#define HESSIAN(row, column, number) entry[(row) * ((row) + 1) / 2 + (column)] = (number)
+#define RECIPROCAL(x) skein_reciprocal(x)
+#define SQRT(x) skein_guarded_root(x)
+#define ABS(x) skein_abs(x)
+#define LESS(a, b, yes, no) skein_select((b) > (a), yes, no)
+#define EXP(x) skein_guarded_exp(e->elementary, x)
+#define LOG(x) skein_guarded_log(e->elementary, x)
+#define SIN(x) skein_call(e->elementary->sin, x)
+#define COS(x) skein_call(e->elementary->cos, x)
+#define TAN(x) skein_call(e->elementary->tan, x)
+#define ASIN(x) skein_call(e->elementary->asin, skein_within_one(x))
+#define ACOS(x) skein_call(e->elementary->acos, skein_within_one(x))
+#define ATAN2(y, x) skein_call_two(e->elementary->atan2, y, x)
+#define POW(x, y) skein_guarded_pow(e->elementary, x, y)
+
+/* What is the same for all elements. */
+SKEIN_INLINE void skein_begin(skein_element *e, const skein_real *parameters, skein_real time,
+                              const skein_elementary *elementary) {
+    for (int i = 0; i < SKEIN_PARAMETERS; i++) e->parameter[i] = skein_splat(parameters[i]);
+    e->time = skein_splat(time);
+    e->by_time = (skein_lanes){0};
+    e->elementary = elementary;
+}
+
+/* Infinities and NaN go through sums. */
+SKEIN_INLINE skein_mask skein_is_finite(skein_lanes sum) {
+    return ~(sum - sum != (skein_lanes){0});
+}
+
+SKEIN_INLINE skein_lanes skein_dot(const skein_lanes *a, const skein_lanes *b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* An element that is not finite gives 0s. */
+SKEIN_INLINE void skein_judge(skein_element *e) {
+    skein_lanes sum = (skein_lanes){0} + e->value;
+    SKEIN_EACH(p, SKEIN_PARTICLES)
+    for (int k = 0; k < 3; k++) sum += e->gradient[p][k];
+    skein_mask finite = skein_is_finite(sum + e->by_time);
+    e->value = skein_keep(finite, e->value);
+    SKEIN_EACH(p, SKEIN_PARTICLES)
+    for (int k = 0; k < 3; k++) e->gradient[p][k] = skein_keep(finite, e->gradient[p][k]);
+    e->by_time = skein_keep(finite, e->by_time);
+    e->active = SKEIN_ONE_SIDED ? finite & ((skein_lanes){0} > e->value) : finite;
+}
+
+SKEIN_INLINE skein_lanes skein_rate(const skein_element *e, const skein_lanes (*u)[3]) {
+    skein_lanes sum = skein_dot(e->gradient[0], u[0]);
+    SKEIN_EACH(p, SKEIN_PARTICLES) sum = p ? sum + skein_dot(e->gradient[p], u[p]) : sum;
+    return sum;
+}
+
+/* The sum of w |gradient|^2. */
+SKEIN_INLINE skein_lanes skein_weight(const skein_element *e) {
+    skein_lanes sum = e->w[0] * skein_dot(e->gradient[0], e->gradient[0]);
+    SKEIN_EACH(p, SKEIN_PARTICLES) sum = p ? sum + e->w[p] * skein_dot(e->gradient[p], e->gradient[p]) : sum;
+    return sum;
+}
+
+/* ---- from value and gradient to a factor of the gradient (docs/formula.md, Constraints and energies) ---- */
+
+SKEIN_INLINE skein_lanes skein_pull(const skein_element *e, const skein_groups *g, const skein_lanes (*v)[3],
+                                    skein_lanes stiffness) {
+    if (SKEIN_ENERGY) return skein_keep(e->active, -stiffness);
+    skein_lanes rate = skein_rate(e, v) + e->by_time;
+    return skein_keep(e->active, stiffness * (-e->value - g->damping_time * rate));
+}
+
+SKEIN_INLINE skein_lanes skein_push(const skein_element *e, skein_lanes soft) {
+    const skein_lanes zero = {0};
+    skein_lanes below = skein_weight(e), above = -e->value;
+    if (SKEIN_ENERGY) { // C^2 = 2 E in place of C = sqrt(2 E), whose gradient has no value where E is 0
+        skein_lanes square = skein_keep(e->value > zero, 2 * e->value);
+        below += skein_keep(square > zero, soft * square); // an infinite compliance times 0 is nothing
+        above = -square;
+    } else {
+        below += soft;
+    }
+    return skein_keep(e->active & (below > zero), above / below);
+}
+
+/* `moved` from the substep's start on; the multiplier is kept up to date. */
+SKEIN_INLINE skein_lanes skein_push_damped(const skein_element *e, const skein_groups *g, const skein_lanes (*moved)[3],
+                                           skein_lanes soft, skein_lanes *multiplier) {
+    const skein_lanes zero = {0};
+    skein_lanes weight = skein_weight(e), held = skein_keep(*multiplier != zero, soft * *multiplier);
+    if (SKEIN_ENERGY) {
+        skein_lanes square = skein_keep(e->value > zero, 2 * e->value), root = skein_square_root(square);
+        skein_lanes below = weight + skein_keep(square > zero, soft * square);
+        skein_lanes s = skein_keep(e->active & (below > zero), root * (-root - held) / below);
+        *multiplier += root * s;
+        return s;
+    }
+    skein_lanes rate = skein_rate(e, moved) + g->substep * e->by_time, below = (1 + g->gamma) * weight + soft;
+    skein_mask on = (below > zero) & (SKEIN_ONE_SIDED ? e->active | (*multiplier > zero) : e->active);
+    skein_lanes change = skein_keep(on, (-e->value - held - g->gamma * rate) / below);
+    if (SKEIN_ONE_SIDED) change = skein_select(zero > *multiplier + change, -*multiplier, change); // it only pushes
+    *multiplier += change;
+    return change;
+}
+
+/* ---- particles in and out ---- */
+
+#if SKEIN_LANES == 4
+#define SKEIN_LOW(a, b) __builtin_shufflevector(a, b, 0, 4, 1, 5)
+#define SKEIN_HIGH(a, b) __builtin_shufflevector(a, b, 2, 6, 3, 7)
+#define SKEIN_FIRST(a, b) __builtin_shufflevector(a, b, 0, 1, 4, 5)
+#define SKEIN_LAST(a, b) __builtin_shufflevector(a, b, 2, 3, 6, 7)
+#elif SKEIN_LANES == 8
+#define SKEIN_LOW(a, b) __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13)
+#define SKEIN_HIGH(a, b) __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15)
+#define SKEIN_FIRST(a, b) __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13)
+#define SKEIN_LAST(a, b) __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15)
+#else
+#define SKEIN_LOW(a, b) __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29)
+#define SKEIN_HIGH(a, b) __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31)
+#define SKEIN_FIRST(a, b) __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29)
+#define SKEIN_LAST(a, b) __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31)
+#endif
+
+/* In each four lanes rows become columns, and back: q[k] holds the quads of particles k, 4 + k, 8 + k, 12 + k. */
+SKEIN_INLINE void skein_transpose(skein_lanes q[4]) {
+    skein_lanes xy01 = SKEIN_LOW(q[0], q[1]), zw01 = SKEIN_HIGH(q[0], q[1]);
+    skein_lanes xy23 = SKEIN_LOW(q[2], q[3]), zw23 = SKEIN_HIGH(q[2], q[3]);
+    q[0] = SKEIN_FIRST(xy01, xy23), q[1] = SKEIN_LAST(xy01, xy23);
+    q[2] = SKEIN_FIRST(zw01, zw23), q[3] = SKEIN_LAST(zw01, zw23);
+}
+
+SKEIN_INLINE skein_quad skein_quad_at(const skein_real *vector, uint32_t slot) {
+    return *(const skein_quad_in_memory *)(const void *)(vector + 4 * (size_t)slot);
+}
+
+SKEIN_INLINE skein_lanes skein_join(const skein_real *vector, const uint32_t *slot) {
+#if SKEIN_LANES == 4
+    return skein_quad_at(vector, slot[0]);
+#elif SKEIN_LANES == 8
+    return __builtin_shufflevector(skein_quad_at(vector, slot[0]), skein_quad_at(vector, slot[4]), 0, 1, 2, 3, 4, 5, 6,
+                                   7);
+#else
+    typedef skein_real eight __attribute__((vector_size(8 * sizeof(skein_real))));
+    eight low =
+        __builtin_shufflevector(skein_quad_at(vector, slot[0]), skein_quad_at(vector, slot[4]), 0, 1, 2, 3, 4, 5, 6, 7);
+    eight high = __builtin_shufflevector(skein_quad_at(vector, slot[8]), skein_quad_at(vector, slot[12]), 0, 1, 2, 3, 4,
+                                         5, 6, 7);
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#endif
+}
+
+SKEIN_INLINE void skein_part(skein_real *vector, const uint32_t *slot, skein_lanes q) {
+#if SKEIN_LANES == 4
+    *(skein_quad_in_memory *)(void *)(vector + 4 * (size_t)slot[0]) = q;
+#else
+    *(skein_quad_in_memory *)(void *)(vector + 4 * (size_t)slot[0]) = __builtin_shufflevector(q, q, 0, 1, 2, 3);
+    *(skein_quad_in_memory *)(void *)(vector + 4 * (size_t)slot[4]) = __builtin_shufflevector(q, q, 4, 5, 6, 7);
+#if SKEIN_LANES == 16
+    *(skein_quad_in_memory *)(void *)(vector + 4 * (size_t)slot[8]) = __builtin_shufflevector(q, q, 8, 9, 10, 11);
+    *(skein_quad_in_memory *)(void *)(vector + 4 * (size_t)slot[12]) = __builtin_shufflevector(q, q, 12, 13, 14, 15);
+#endif
+#endif
+}
+
+/* Where a slot's x is, and how far y, z and w are from each other. */
+SKEIN_INLINE size_t skein_place(size_t packed, size_t slot, size_t *stride) {
+    *stride = slot < packed ? 16 : 1;
+    return slot < packed ? (slot & ~(size_t)15) * 4 + (slot & 15) : slot * 4;
+}
+
+/* Lanes are particles, q[0] their x, and so on. */
+SKEIN_INLINE void skein_gather(skein_lanes q[4], const skein_real *vector, size_t packed, const uint32_t *slot) {
+    if (!packed) {
+        for (int k = 0; k < 4; k++) q[k] = skein_join(vector, slot + k);
+        skein_transpose(q);
+        return;
+    }
+    skein_real number[4][SKEIN_LANES] __attribute__((aligned(SKEIN_LANE_BYTES)));
+    for (int l = 0; l < SKEIN_LANES; l++) {
+        size_t stride, at = skein_place(packed, slot[l], &stride);
+        for (size_t k = 0; k < 4; k++) number[k][l] = vector[at + k * stride];
+    }
+    for (int k = 0; k < 4; k++) q[k] = skein_load(number[k]);
+}
+
+SKEIN_INLINE void skein_scatter(skein_lanes q[4], skein_real *vector, size_t packed, const uint32_t *slot) {
+    if (!packed) {
+        skein_transpose(q);
+        for (int k = 0; k < 4; k++) skein_part(vector, slot + k, q[k]);
+        return;
+    }
+    for (int l = 0; l < SKEIN_LANES; l++) {
+        size_t stride, at = skein_place(packed, slot[l], &stride);
+        for (size_t k = 0; k < 3; k++) vector[at + k * stride] = q[k][l];
+    }
+}
+
+/* ---- walks ---- */
+
+FORMULA(formula);
+
+typedef enum skein_walk { SKEIN_WALK_PROJECT, SKEIN_WALK_PROJECT_DAMPED, SKEIN_WALK_FORCE } skein_walk;
+
+/* The lanes of a group from `lane` on. All but `groups` are constants where this is inlined, or nearly. */
+SKEIN_INLINE void skein_meet(skein_element *e, const skein_groups *g, const uint32_t *slots, size_t lane, size_t packed,
+                             skein_walk walk) {
+    skein_lanes at[SKEIN_PARTICLES][4], other[SKEIN_PARTICLES][3], s;
+    bool damped = walk == SKEIN_WALK_PROJECT_DAMPED || (walk == SKEIN_WALK_FORCE && g->other);
+    SKEIN_EACH(p, SKEIN_PARTICLES) {
+        skein_gather(at[p], g->positions, packed, slots + p * SKEIN_GROUP);
+        for (int k = 0; k < 3; k++) e->x[p][k] = at[p][k], other[p][k] = (skein_lanes){0};
+        e->w[p] = at[p][3];
+    }
+    for (int r = 0; r < SKEIN_RESTS; r++)
+        e->parameter[SKEIN_PARAMETERS + r] = skein_load(g->rest + (size_t)r * g->rest_stride + lane);
+    formula(e);
+    skein_judge(e);
+    if (damped) {
+        SKEIN_EACH(p, SKEIN_PARTICLES) {
+            skein_lanes o[4];
+            skein_gather(o, g->other, packed, slots + p * SKEIN_GROUP);
+            for (int k = 0; k < 3; k++) other[p][k] = walk == SKEIN_WALK_FORCE ? o[k] : at[p][k] - o[k];
+        }
+    }
+    if (walk == SKEIN_WALK_FORCE) {
+        s = skein_pull(e, g, (const skein_lanes(*)[3])other, skein_load(g->stiffness + lane));
+    } else {
+        skein_lanes soft = skein_load(g->compliance + lane) * g->per_step;
+        if (walk == SKEIN_WALK_PROJECT) {
+            s = skein_push(e, soft);
+        } else {
+            skein_lanes multiplier = skein_load(g->multiplier + lane);
+            s = skein_push_damped(e, g, (const skein_lanes(*)[3])other, soft, &multiplier);
+            skein_store(g->multiplier + lane, multiplier);
+        }
+    }
+    SKEIN_EACH(p, SKEIN_PARTICLES) {
+        const uint32_t *slot = slots + p * SKEIN_GROUP;
+        skein_lanes factor = walk == SKEIN_WALK_FORCE ? s : s * e->w[p];
+        if (walk == SKEIN_WALK_FORCE) skein_gather(at[p], g->forces, packed, slot);
+        for (int k = 0; k < 3; k++) at[p][k] += factor * e->gradient[p][k];
+        skein_scatter(at[p], walk == SKEIN_WALK_FORCE ? g->forces : g->positions, packed, slot);
+    }
+}
+
+/* Elements of a group share no particle, so its lanes may go in parts. */
+SKEIN_INLINE void skein_meet_group(skein_element *e, const skein_groups *g, size_t group, size_t packed,
+                                   skein_walk walk) {
+    const uint32_t *slots = g->slots + group * SKEIN_PARTICLES * SKEIN_GROUP;
+    for (size_t l = 0; l < SKEIN_GROUP; l += SKEIN_LANES)
+        skein_meet(e, g, slots + l, group * SKEIN_GROUP + l, packed, walk);
+}
+
+/* Groups with a particle in a packed block are reached lane by lane. */
+SKEIN_INLINE void skein_meet_all(const skein_groups *g, skein_walk walk) {
+    skein_element e;
+    skein_begin(&e, g->parameters, g->time, g->elementary);
+    if (!g->packed) {
+        for (size_t group = 0; group < g->count; group++) skein_meet_group(&e, g, group, 0, walk);
+        return;
+    }
+    for (size_t group = 0; group < g->count; group++) {
+        const uint32_t *slots = g->slots + group * SKEIN_PARTICLES * SKEIN_GROUP;
+        bool packed = false;
+        for (int i = 0; i < SKEIN_PARTICLES * SKEIN_GROUP; i++) packed |= slots[i] < g->packed;
+        skein_meet_group(&e, g, group, packed ? g->packed : 0, walk);
+    }
+}
+
+static void skein_project(const skein_groups *g) {
+    skein_meet_all(g, SKEIN_WALK_PROJECT);
+}
+static void skein_project_damped(const skein_groups *g) {
+    skein_meet_all(g, SKEIN_WALK_PROJECT_DAMPED);
+}
+static void skein_force(const skein_groups *g) {
+    skein_meet_all(g, SKEIN_WALK_FORCE);
+}
+
+/* ---- elements for implicit solves ---- */
+
+SKEIN_INLINE void skein_take(skein_element *e, const skein_group_values *in, size_t lane) {
+    skein_begin(e, in->parameters, in->time, in->elementary);
+    for (size_t p = 0; p < SKEIN_PARTICLES; p++)
+        for (size_t k = 0; k < 3; k++) e->x[p][k] = skein_load(in->positions + (4 * p + k) * SKEIN_GROUP + lane);
+    for (size_t r = 0; r < SKEIN_RESTS; r++)
+        e->parameter[SKEIN_PARAMETERS + r] = skein_load(in->rest + r * SKEIN_GROUP + lane);
+}
+
+SKEIN_INLINE void skein_give(const skein_group_values *out, size_t lane, const skein_lanes *numbers, size_t count) {
+    skein_lanes sum = {0};
+    for (size_t i = 0; i < count; i++) sum += numbers[i];
+    for (size_t i = 0; i < count; i++) skein_store(out->outputs[i] + lane, numbers[i]);
+    skein_store(out->finite + lane, skein_keep(skein_is_finite(sum), skein_splat(1)));
+}
+
+static void skein_evaluate(const skein_group_values *in) {
+    for (size_t lane = 0; lane < SKEIN_GROUP; lane += SKEIN_LANES) {
+        skein_element e;
+        skein_lanes out[3 * SKEIN_PARTICLES + 2];
+        skein_take(&e, in, lane);
+        formula(&e);
+        out[0] = e.value, out[3 * SKEIN_PARTICLES + 1] = e.by_time;
+        memcpy(out + 1, e.gradient, sizeof e.gradient);
+        skein_give(in, lane, out, sizeof out / sizeof *out);
+    }
+}
+
+#if SKEIN_ENERGY
+SECOND(second);
+
+static void skein_second(const skein_group_values *in) {
+    for (size_t lane = 0; lane < SKEIN_GROUP; lane += SKEIN_LANES) {
+        skein_element e;
+        skein_lanes out[3 * SKEIN_PARTICLES * (3 * SKEIN_PARTICLES + 1) / 2];
+        skein_take(&e, in, lane);
+        second(&e, out);
+        skein_give(in, lane, out, sizeof out / sizeof *out);
+    }
+}
+#else
+#define skein_second NULL
+#endif
+
+/* What an emitted file ends with. */
+#define SKEIN_COMPILED(name, hash_of_formula, text_of_formula, names)                                   \
+    extern const skein_compiled name;                                                                   \
+    const skein_compiled name = {SKEIN_COMPILED_ABI, sizeof(skein_real),   SKEIN_LANES, SKEIN_NEEDS,    \
+                                 hash_of_formula,    text_of_formula,      names,       SKEIN_ENERGY,   \
+                                 skein_project,      skein_project_damped, skein_force, skein_evaluate, \
+                                 skein_second}
+
+#endif
+#endif

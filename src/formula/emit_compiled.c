@@ -1,0 +1,107 @@
+/* A constraint's formula as a file of C to be compiled and registered: its value, gradient and, of an energy, second
+ * derivatives, in the macros of include/skein/compiled_walk.h. The operations are the graph's, one by one, so that the
+ * bits are those of tapes. */
+#include <inttypes.h>
+#include <string.h>
+
+#include "formula/emit.h"
+
+/* A formula of more operations is compiled once, and called by each walk. */
+enum { LONG = 2000, MOST_PIECE = 96 };
+
+/* The text as pieces of strings, since compilers need not take long ones. */
+static void put_text(sk_writer *w) {
+    const char *text = w->formula->text;
+    sk_put(w, "static const char *const formula_text[] = {");
+    for (size_t at = 0; text[at];) {
+        sk_put(w, "\n    \"");
+        for (size_t i = 0; i < MOST_PIECE && text[at]; i++, at++) {
+            char c = text[at];
+            if (c == '\n') {
+                sk_put(w, "\\n");
+                at++;
+                break;
+            }
+            if (c == '\t') sk_put(w, "\\t");
+            else if (c >= ' ' && c <= '~') sk_put(w, "%s%c", strchr("\"\\?", c) ? "\\" : "", c);
+            else sk_put(w, "\\%03o", (unsigned)(unsigned char)c);
+        }
+        sk_put(w, "\",");
+    }
+    sk_put(w, " NULL};\n");
+}
+
+static void put_sizes(sk_writer *w, size_t operations) {
+    const skein_formula *f = w->formula;
+    sk_put(w, "#ifndef FORMULA\n");
+    sk_put(w, "#define SKEIN_PARTICLES %d\n#define SKEIN_PARAMETERS %d\n#define SKEIN_RESTS %d\n", f->particles,
+           f->parameters, f->rests);
+    sk_put(w, "#define SKEIN_ENERGY %d\n#define SKEIN_ONE_SIDED %d\n", f->hessian != NULL, f->at_least_zero);
+    if (operations > LONG) sk_put(w, "#define SKEIN_LONG\n");
+    sk_put(w, "#include <skein/compiled_walk.h>\n#endif\n\n");
+}
+
+static void put_formula(sk_writer *w) {
+    const skein_formula *f = w->formula;
+    sk_node outputs[SK_INPUT_VELOCITY + 2];
+    size_t count = 0, coordinates = 3 * (size_t)f->particles;
+    outputs[count++] = f->value[0];
+    for (size_t i = 0; i < coordinates; i++) outputs[count++] = f->by_position[0][i];
+    double by_time;
+    bool moves = !sk_is_constant(&f->graph, f->by_time[0], &by_time) || by_time != 0;
+    if (moves) outputs[count++] = f->by_time[0];
+    sk_put(w, "FORMULA(formula) {\n");
+    sk_put_temporaries(w, outputs, count);
+    for (size_t i = 0; i < coordinates; i++) {
+        sk_put(w, "    GRADIENT(0, %zu, %zu, ", i / 3, i % 3);
+        sk_put_operand(w, f->by_position[0][i], 0);
+        sk_put(w, ");\n");
+    }
+    if (moves) {
+        sk_put(w, "    BY_TIME(0, ");
+        sk_put_operand(w, f->by_time[0], 0);
+        sk_put(w, ");\n");
+    }
+    sk_put(w, "    VALUE(0, ");
+    sk_put_operand(w, f->value[0], 0);
+    sk_put(w, ");\n}\n");
+}
+
+static void put_second(sk_writer *w) {
+    const skein_formula *f = w->formula;
+    sk_node outputs[SK_INPUT_VELOCITY * (SK_INPUT_VELOCITY + 1) / 2];
+    size_t count = 0, coordinates = 3 * (size_t)f->particles;
+    for (size_t i = 0; i < coordinates; i++)
+        for (size_t j = 0; j <= i; j++) outputs[count++] = f->hessian[i * coordinates + j];
+    sk_put(w, "\n#ifdef SECOND\nSECOND(second) {\n");
+    sk_put_temporaries(w, outputs, count);
+    count = 0;
+    for (size_t i = 0; i < coordinates; i++)
+        for (size_t j = 0; j <= i; j++) {
+            sk_put(w, "    HESSIAN(%zu, %zu, ", i, j);
+            sk_put_operand(w, outputs[count++], 0);
+            sk_put(w, ");\n");
+        }
+    sk_put(w, "}\n#endif\n");
+}
+
+void sk_put_compiled(sk_writer *w, const char *name) {
+    const skein_formula *f = w->formula;
+    sk_put_source(w, "// ");
+    sk_put(w,
+           "//\n// Made by `skein formula --emit c`, for constraints of kind `%s`; hash %016" PRIx64
+           ". Compile it with\n",
+           f->hessian ? "energy" : "formula", f->hash);
+    sk_put(w, "//     cc -std=gnu17 -O3 -march=native -ffp-contract=off -fno-math-errno -c\n");
+    sk_put(w, "// and give %s to skein_formula_register().\n", name);
+    sk_put_parameters(w, "// ");
+    put_sizes(w, skein_formula_about(f).operations);
+    put_formula(w);
+    if (f->hessian) put_second(w);
+    sk_put(w, "\n#ifdef SKEIN_COMPILED\n");
+    put_text(w);
+    sk_put(w, "static const char *const formula_parameters[] = {");
+    for (int i = 0; i < f->parameters; i++) sk_put(w, "\"%s\", ", f->parameter_name[i]);
+    sk_put(w, "NULL};\nSKEIN_COMPILED(%s, UINT64_C(0x%016" PRIx64 "), formula_text, formula_parameters);\n#endif\n",
+           name, f->hash);
+}
