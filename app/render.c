@@ -104,7 +104,7 @@ static int make_film(const app_scene *loaded, const request *r) {
 
 /* ---- the arguments ---- */
 
-enum { SET, OUT, LONG_OUT, FRAMES, FRAME, FPS, SIZE, SAMPLES, QUALITY, THREADS, DEVICE, QUIET, OPTION_COUNT };
+enum { SET, OUT, LONG_OUT, FRAMES, FRAME, FPS, SIZE, SAMPLES, QUALITY, THREADS, DEVICE, COMPILE, QUIET, OPTION_COUNT };
 
 /* Numbers of an option, "1920x1080", checked by the field that describes them; false after a printed fault. */
 static bool read_numbers(const app_option *option, const skein_field *field, int count, int32_t *out) {
@@ -176,6 +176,7 @@ static int render(int argc, char **argv) {
         [QUALITY] = {"--quality", "N", "of a film, 1 (small) to 100 (faithful), 75 if not given", false, NULL, 0},
         [THREADS] = {"--threads", "N", "threads to simulate on, 1 to 64; the result is the same", false, NULL, 0},
         [DEVICE] = app_device_option,
+        [COMPILE] = app_compile_option,
         [QUIET] = {"--quiet", NULL, "no progress and no notes", false, NULL, 0},
     };
     app_override_texts texts;
