@@ -65,6 +65,10 @@ static bool read_unfocused(const app_option *option, viewer_unfocused *unfocused
     return !given;
 }
 
+static void prepare(skein_world *world) {
+    app_compile(world, false);
+}
+
 /* False after a printed fault. */
 static bool read_options(const app_option *options, viewer_options *o) {
     double samples = o->samples, threads = 0;
@@ -83,10 +87,6 @@ static bool read_options(const app_option *options, viewer_options *o) {
     o->samples = (int32_t)samples;
     o->threads = (int32_t)threads;
     return good;
-}
-
-static void prepare(skein_world *world) {
-    app_compile(world, false);
 }
 
 static void print_keys(void) {

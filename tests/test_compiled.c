@@ -31,7 +31,7 @@ static const struct subject {
      2},
     {"room",
      "formula",
-     "let v = dot(cross(p1 - p0, p2 - p0), p3 - p0)/6; v >= share*rest(dot(cross(p1 - p0, p2 - p0), p3 - p0)/6)",
+     "let six = 6; dot(cross(p1 - p0, p2 - p0), p3 - p0)/six >= share*rest(dot(cross(p1 - p0, p2 - p0), p3 - p0)/6)",
      &compiled_room,
      4,
      {SKEIN_REAL("parameters.share", 1.05)},

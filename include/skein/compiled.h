@@ -52,6 +52,7 @@ typedef struct skein_compiled skein_compiled;
 typedef struct skein_groups {
     size_t count;
     const uint32_t *slots; /* of each group SKEIN_GROUP first particles, as many second ones ... */
+    const uint8_t *ahead;  /* of each group: how many from it on, itself among them, share no particle */
     size_t packed;
     skein_real *positions;
     const skein_real *other; /* of forces the velocities, or NULL without damping; of damped projection the positions at

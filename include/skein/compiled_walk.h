@@ -58,7 +58,6 @@ typedef skein_real skein_lanes __attribute__((vector_size(SKEIN_LANE_BYTES)));
 typedef skein_lane_int skein_mask __attribute__((vector_size(SKEIN_LANE_BYTES))); /* -1 or 0 a lane */
 typedef skein_real skein_quad __attribute__((vector_size(4 * sizeof(skein_real))));
 typedef skein_lanes skein_lanes_in_memory __attribute__((may_alias));
-typedef skein_quad skein_quad_in_memory __attribute__((may_alias));
 
 SKEIN_INLINE skein_lanes skein_splat(skein_real a) {
     return a - (skein_lanes){0};
@@ -149,6 +148,7 @@ SKEIN_INLINE skein_lanes skein_within_one(skein_lanes x) {
 typedef struct skein_element {
     skein_lanes x[SKEIN_PARTICLES][3], w[SKEIN_PARTICLES]; /* places, inverse masses */
     skein_lanes parameter[SKEIN_PARAMETERS + SKEIN_RESTS + 1], time;
+    skein_lanes shared[SKEIN_SHARED + 1]; /* what depends on parameters and time alone */
     skein_lanes value, by_time, gradient[SKEIN_PARTICLES][3];
     skein_mask active; /* finite, and not on the free side */
     const skein_elementary *elementary;
@@ -160,12 +160,15 @@ typedef struct skein_element {
 #else
 #define FORMULA(name) SKEIN_INLINE void name(skein_element *e)
 #endif
+#define SHARED_BY_ALL(name) SKEIN_INLINE void name(skein_element *e)
 #define SECOND(name) static void name(skein_element *e, skein_lanes *entry)
 #define REAL skein_lanes
 #define NUMBER(x) skein_splat((skein_real)(x))
 #define POSITION(particle, axis) e->x[particle][axis]
 #define PARAMETER(index) e->parameter[index]
 #define TIME e->time
+#define SHARE(index, number) e->shared[index] = (number)
+#define SHARED(index) e->shared[index]
 #define VALUE(component, number) e->value = (number)
 #define GRADIENT(component, particle, axis, number) e->gradient[particle][axis] = (number)
 #define BY_TIME(component, number) e->by_time = (number)
@@ -184,6 +187,10 @@ typedef struct skein_element {
 #define ATAN2(y, x) skein_call_two(e->elementary->atan2, y, x)
 #define POW(x, y) skein_guarded_pow(e->elementary, x, y)
 
+#if SKEIN_SHARED
+SHARED_BY_ALL(shared);
+#endif
+
 /* What is the same for all elements. */
 SKEIN_INLINE void skein_begin(skein_element *e, const skein_real *parameters, skein_real time,
                               const skein_elementary *elementary) {
@@ -191,6 +198,9 @@ SKEIN_INLINE void skein_begin(skein_element *e, const skein_real *parameters, sk
     e->time = skein_splat(time);
     e->by_time = (skein_lanes){0};
     e->elementary = elementary;
+#if SKEIN_SHARED
+    shared(e);
+#endif
 }
 
 /* Infinities and NaN go through sums. */
@@ -202,44 +212,67 @@ SKEIN_INLINE skein_lanes skein_dot(const skein_lanes *a, const skein_lanes *b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* Whether a < most in all lanes; a NaN is not. */
+SKEIN_INLINE bool skein_all_under(skein_lanes a, skein_real most) {
+#if SKEIN_LANE_BYTES == 64 && defined(SKEIN_DOUBLE)
+    return _mm512_cmp_pd_mask((__m512d)a, _mm512_set1_pd(most), _CMP_LT_OQ) == 0xff;
+#elif SKEIN_LANE_BYTES == 64
+    return _mm512_cmp_ps_mask((__m512)a, _mm512_set1_ps(most), _CMP_LT_OQ) == 0xffff;
+#else
+    skein_mask over = ~(a < skein_splat(most));
+    uint64_t words[SKEIN_LANE_BYTES / 8], any = 0;
+    memcpy(words, &over, sizeof words);
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) any |= words[i];
+    return !any;
+#endif
+}
+
 /* An element that is not finite gives 0s. */
 SKEIN_INLINE void skein_judge(skein_element *e) {
     skein_lanes sum = (skein_lanes){0} + e->value;
-    SKEIN_EACH(p, SKEIN_PARTICLES)
-    for (int k = 0; k < 3; k++) sum += e->gradient[p][k];
+    SKEIN_EACH (p, SKEIN_PARTICLES)
+        for (int k = 0; k < 3; k++) sum += e->gradient[p][k];
     skein_mask finite = skein_is_finite(sum + e->by_time);
     e->value = skein_keep(finite, e->value);
-    SKEIN_EACH(p, SKEIN_PARTICLES)
-    for (int k = 0; k < 3; k++) e->gradient[p][k] = skein_keep(finite, e->gradient[p][k]);
+    SKEIN_EACH (p, SKEIN_PARTICLES)
+        for (int k = 0; k < 3; k++) e->gradient[p][k] = skein_keep(finite, e->gradient[p][k]);
     e->by_time = skein_keep(finite, e->by_time);
-    e->active = SKEIN_ONE_SIDED ? finite & ((skein_lanes){0} > e->value) : finite;
+    e->active = finite;
+    if (SKEIN_ONE_SIDED) e->active &= (skein_lanes){0} > e->value;
+}
+
+/* The same where all are known to be finite. */
+SKEIN_INLINE void skein_trust(skein_element *e) {
+    e->active = (skein_lanes){0} == (skein_lanes){0};
+    if (SKEIN_ONE_SIDED) e->active = (skein_lanes){0} > e->value;
 }
 
 SKEIN_INLINE skein_lanes skein_rate(const skein_element *e, const skein_lanes (*u)[3]) {
     skein_lanes sum = skein_dot(e->gradient[0], u[0]);
-    SKEIN_EACH(p, SKEIN_PARTICLES) sum = p ? sum + skein_dot(e->gradient[p], u[p]) : sum;
+    SKEIN_EACH (p, SKEIN_PARTICLES) sum = p ? sum + skein_dot(e->gradient[p], u[p]) : sum;
     return sum;
 }
 
 /* The sum of w |gradient|^2. */
 SKEIN_INLINE skein_lanes skein_weight(const skein_element *e) {
     skein_lanes sum = e->w[0] * skein_dot(e->gradient[0], e->gradient[0]);
-    SKEIN_EACH(p, SKEIN_PARTICLES) sum = p ? sum + e->w[p] * skein_dot(e->gradient[p], e->gradient[p]) : sum;
+    SKEIN_EACH (p, SKEIN_PARTICLES) sum = p ? sum + e->w[p] * skein_dot(e->gradient[p], e->gradient[p]) : sum;
     return sum;
 }
 
 /* ---- from value and gradient to a factor of the gradient (docs/formula.md, Constraints and energies) ---- */
 
 SKEIN_INLINE skein_lanes skein_pull(const skein_element *e, const skein_groups *g, const skein_lanes (*v)[3],
-                                    skein_lanes stiffness) {
+                                    size_t lane) {
+    skein_lanes stiffness = skein_load(g->stiffness + lane);
     if (SKEIN_ENERGY) return skein_keep(e->active, -stiffness);
     skein_lanes rate = skein_rate(e, v) + e->by_time;
     return skein_keep(e->active, stiffness * (-e->value - g->damping_time * rate));
 }
 
-SKEIN_INLINE skein_lanes skein_push(const skein_element *e, skein_lanes soft) {
+SKEIN_INLINE skein_lanes skein_push(const skein_element *e, const skein_groups *g, skein_lanes weight, size_t lane) {
     const skein_lanes zero = {0};
-    skein_lanes below = skein_weight(e), above = -e->value;
+    skein_lanes soft = skein_load(g->compliance + lane) * g->per_step, below = weight, above = -e->value;
     if (SKEIN_ENERGY) { // C^2 = 2 E in place of C = sqrt(2 E), whose gradient has no value where E is 0
         skein_lanes square = skein_keep(e->value > zero, 2 * e->value);
         below += skein_keep(square > zero, soft * square); // an infinite compliance times 0 is nothing
@@ -252,21 +285,22 @@ SKEIN_INLINE skein_lanes skein_push(const skein_element *e, skein_lanes soft) {
 
 /* `moved` from the substep's start on; the multiplier is kept up to date. */
 SKEIN_INLINE skein_lanes skein_push_damped(const skein_element *e, const skein_groups *g, const skein_lanes (*moved)[3],
-                                           skein_lanes soft, skein_lanes *multiplier) {
+                                           skein_lanes weight, size_t lane) {
     const skein_lanes zero = {0};
-    skein_lanes weight = skein_weight(e), held = skein_keep(*multiplier != zero, soft * *multiplier);
+    skein_lanes soft = skein_load(g->compliance + lane) * g->per_step, multiplier = skein_load(g->multiplier + lane);
+    skein_lanes held = skein_keep(multiplier != zero, soft * multiplier);
     if (SKEIN_ENERGY) {
         skein_lanes square = skein_keep(e->value > zero, 2 * e->value), root = skein_square_root(square);
         skein_lanes below = weight + skein_keep(square > zero, soft * square);
         skein_lanes s = skein_keep(e->active & (below > zero), root * (-root - held) / below);
-        *multiplier += root * s;
+        skein_store(g->multiplier + lane, multiplier + root * s);
         return s;
     }
     skein_lanes rate = skein_rate(e, moved) + g->substep * e->by_time, below = (1 + g->gamma) * weight + soft;
-    skein_mask on = (below > zero) & (SKEIN_ONE_SIDED ? e->active | (*multiplier > zero) : e->active);
+    skein_mask on = (below > zero) & (SKEIN_ONE_SIDED ? e->active | (multiplier > zero) : e->active);
     skein_lanes change = skein_keep(on, (-e->value - held - g->gamma * rate) / below);
-    if (SKEIN_ONE_SIDED) change = skein_select(zero > *multiplier + change, -*multiplier, change); // it only pushes
-    *multiplier += change;
+    if (SKEIN_ONE_SIDED) change = skein_select(zero > multiplier + change, -multiplier, change); // it only pushes
+    skein_store(g->multiplier + lane, multiplier + change);
     return change;
 }
 
@@ -297,36 +331,42 @@ SKEIN_INLINE void skein_transpose(skein_lanes q[4]) {
     q[2] = SKEIN_FIRST(zw01, zw23), q[3] = SKEIN_LAST(zw01, zw23);
 }
 
-SKEIN_INLINE skein_quad skein_quad_at(const skein_real *vector, uint32_t slot) {
-    return *(const skein_quad_in_memory *)(const void *)(vector + 4 * (size_t)slot);
+SKEIN_INLINE const skein_real *skein_quad_at(const skein_real *vector, uint32_t slot) {
+    return vector + 4 * (size_t)slot;
 }
 
+/* The quads of every fourth slot side by side, and back. In float by instructions that put a quad from memory into its
+ * place, which leaves the one unit that shuffles to the transposing. */
 SKEIN_INLINE skein_lanes skein_join(const skein_real *vector, const uint32_t *slot) {
-#if SKEIN_LANES == 4
-    return skein_quad_at(vector, slot[0]);
-#elif SKEIN_LANES == 8
-    return __builtin_shufflevector(skein_quad_at(vector, slot[0]), skein_quad_at(vector, slot[4]), 0, 1, 2, 3, 4, 5, 6,
-                                   7);
+#if SKEIN_LANES == 16
+    __m256 low = _mm256_castps128_ps256(_mm_load_ps(skein_quad_at(vector, slot[0])));
+    low = _mm256_insertf128_ps(low, _mm_load_ps(skein_quad_at(vector, slot[4])), 1);
+    __m512 all = _mm512_castps256_ps512(low);
+    all = _mm512_insertf32x4(all, _mm_load_ps(skein_quad_at(vector, slot[8])), 2);
+    return (skein_lanes)_mm512_insertf32x4(all, _mm_load_ps(skein_quad_at(vector, slot[12])), 3);
+#elif SKEIN_LANES == 8 && SKEIN_LANE_BYTES == 32
+    __m256 low = _mm256_castps128_ps256(_mm_load_ps(skein_quad_at(vector, slot[0])));
+    return (skein_lanes)_mm256_insertf128_ps(low, _mm_load_ps(skein_quad_at(vector, slot[4])), 1);
 #else
-    typedef skein_real eight __attribute__((vector_size(8 * sizeof(skein_real))));
-    eight low =
-        __builtin_shufflevector(skein_quad_at(vector, slot[0]), skein_quad_at(vector, slot[4]), 0, 1, 2, 3, 4, 5, 6, 7);
-    eight high = __builtin_shufflevector(skein_quad_at(vector, slot[8]), skein_quad_at(vector, slot[12]), 0, 1, 2, 3, 4,
-                                         5, 6, 7);
-    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    skein_lanes out;
+    for (int i = 0; i < SKEIN_LANES / 4; i++)
+        memcpy((skein_real *)&out + 4 * i, skein_quad_at(vector, slot[4 * i]), sizeof(skein_quad));
+    return out;
 #endif
 }
 
 SKEIN_INLINE void skein_part(skein_real *vector, const uint32_t *slot, skein_lanes q) {
-#if SKEIN_LANES == 4
-    *(skein_quad_in_memory *)(void *)(vector + 4 * (size_t)slot[0]) = q;
-#else
-    *(skein_quad_in_memory *)(void *)(vector + 4 * (size_t)slot[0]) = __builtin_shufflevector(q, q, 0, 1, 2, 3);
-    *(skein_quad_in_memory *)(void *)(vector + 4 * (size_t)slot[4]) = __builtin_shufflevector(q, q, 4, 5, 6, 7);
 #if SKEIN_LANES == 16
-    *(skein_quad_in_memory *)(void *)(vector + 4 * (size_t)slot[8]) = __builtin_shufflevector(q, q, 8, 9, 10, 11);
-    *(skein_quad_in_memory *)(void *)(vector + 4 * (size_t)slot[12]) = __builtin_shufflevector(q, q, 12, 13, 14, 15);
-#endif
+    _mm_store_ps(vector + 4 * (size_t)slot[0], _mm512_castps512_ps128((__m512)q));
+    _mm_store_ps(vector + 4 * (size_t)slot[4], _mm512_extractf32x4_ps((__m512)q, 1));
+    _mm_store_ps(vector + 4 * (size_t)slot[8], _mm512_extractf32x4_ps((__m512)q, 2));
+    _mm_store_ps(vector + 4 * (size_t)slot[12], _mm512_extractf32x4_ps((__m512)q, 3));
+#elif SKEIN_LANES == 8 && SKEIN_LANE_BYTES == 32
+    _mm_store_ps(vector + 4 * (size_t)slot[0], _mm256_castps256_ps128((__m256)q));
+    _mm_store_ps(vector + 4 * (size_t)slot[4], _mm256_extractf128_ps((__m256)q, 1));
+#else
+    for (int i = 0; i < SKEIN_LANES / 4; i++)
+        memcpy(vector + 4 * (size_t)slot[4 * i], (const skein_real *)&q + 4 * i, sizeof(skein_quad));
 #endif
 }
 
@@ -367,71 +407,104 @@ SKEIN_INLINE void skein_scatter(skein_lanes q[4], skein_real *vector, size_t pac
 
 FORMULA(formula);
 
+/* Two groups that share no particle hide each other's latency, where registers are enough for both. */
+#if SKEIN_PARTICLES == 2 && !defined(SKEIN_LONG)
+#define SKEIN_TOGETHER 2
+#else
+#define SKEIN_TOGETHER 1
+#endif
+
 typedef enum skein_walk { SKEIN_WALK_PROJECT, SKEIN_WALK_PROJECT_DAMPED, SKEIN_WALK_FORCE } skein_walk;
 
-/* The lanes of a group from `lane` on. All but `groups` are constants where this is inlined, or nearly. */
-SKEIN_INLINE void skein_meet(skein_element *e, const skein_groups *g, const uint32_t *slots, size_t lane, size_t packed,
-                             skein_walk walk) {
-    skein_lanes at[SKEIN_PARTICLES][4], other[SKEIN_PARTICLES][3], s;
-    bool damped = walk == SKEIN_WALK_PROJECT_DAMPED || (walk == SKEIN_WALK_FORCE && g->other);
-    SKEIN_EACH(p, SKEIN_PARTICLES) {
-        skein_gather(at[p], g->positions, packed, slots + p * SKEIN_GROUP);
-        for (int k = 0; k < 3; k++) e->x[p][k] = at[p][k], other[p][k] = (skein_lanes){0};
-        e->w[p] = at[p][3];
-    }
-    for (int r = 0; r < SKEIN_RESTS; r++)
-        e->parameter[SKEIN_PARAMETERS + r] = skein_load(g->rest + (size_t)r * g->rest_stride + lane);
-    formula(e);
-    skein_judge(e);
-    if (damped) {
-        SKEIN_EACH(p, SKEIN_PARTICLES) {
-            skein_lanes o[4];
-            skein_gather(o, g->other, packed, slots + p * SKEIN_GROUP);
-            for (int k = 0; k < 3; k++) other[p][k] = walk == SKEIN_WALK_FORCE ? o[k] : at[p][k] - o[k];
+/* The lanes of `count` groups from `part` on; elements of a group share no particle, so they may go in parts. `walk`,
+ * `careful` and `count` are constants where this is inlined.
+ *
+ * Projections know the weight, the sum of w |gradient|^2: where it and the value are far from what a number can hold,
+ * all outputs are, and no sum of them is needed to tell. Where they are not (false is returned, and nothing has
+ * happened), one must be careful. */
+SKEIN_INLINE bool skein_meet(skein_element *e, const skein_groups *g, size_t group, size_t part, size_t packed,
+                             skein_walk walk, bool careful, size_t count) {
+    const uint32_t *slots = g->slots + group * SKEIN_PARTICLES * SKEIN_GROUP + part;
+    size_t lane = group * SKEIN_GROUP + part, slots_a_group = SKEIN_PARTICLES * SKEIN_GROUP;
+    bool force = walk == SKEIN_WALK_FORCE, good = true;
+    skein_lanes at[SKEIN_TOGETHER][SKEIN_PARTICLES][4], weight[SKEIN_TOGETHER], s[SKEIN_TOGETHER];
+    for (size_t i = 0; i < count; i++) {
+        SKEIN_EACH (p, SKEIN_PARTICLES) {
+            skein_gather(at[i][p], g->positions, packed, slots + i * slots_a_group + p * SKEIN_GROUP);
+            for (int k = 0; k < 3; k++) e[i].x[p][k] = at[i][p][k];
+            e[i].w[p] = at[i][p][3];
         }
+        for (int r = 0; r < SKEIN_RESTS; r++)
+            e[i].parameter[SKEIN_PARAMETERS + r] =
+                skein_load(g->rest + (size_t)r * g->rest_stride + lane + i * SKEIN_GROUP);
     }
-    if (walk == SKEIN_WALK_FORCE) {
-        s = skein_pull(e, g, (const skein_lanes(*)[3])other, skein_load(g->stiffness + lane));
-    } else {
-        skein_lanes soft = skein_load(g->compliance + lane) * g->per_step;
-        if (walk == SKEIN_WALK_PROJECT) {
-            s = skein_push(e, soft);
-        } else {
-            skein_lanes multiplier = skein_load(g->multiplier + lane);
-            s = skein_push_damped(e, g, (const skein_lanes(*)[3])other, soft, &multiplier);
-            skein_store(g->multiplier + lane, multiplier);
+    for (size_t i = 0; i < count; i++) {
+        formula(&e[i]);
+        if (careful || force) skein_judge(&e[i]);
+        else skein_trust(&e[i]);
+        if (force) continue;
+        weight[i] = skein_weight(&e[i]);
+        if (!careful)
+            good &= skein_all_under(weight[i] + skein_abs(e[i].value) + skein_abs(e[i].by_time), (skein_real)1e30);
+    }
+    if (!good) return false;
+    for (size_t i = 0; i < count; i++) {
+        skein_lanes other[SKEIN_PARTICLES][3] = {{{0}}};
+        if (walk == SKEIN_WALK_PROJECT_DAMPED || (force && g->other)) {
+            SKEIN_EACH (p, SKEIN_PARTICLES) {
+                skein_lanes o[4];
+                skein_gather(o, g->other, packed, slots + i * slots_a_group + p * SKEIN_GROUP);
+                for (int k = 0; k < 3; k++) other[p][k] = force ? o[k] : at[i][p][k] - o[k];
+            }
         }
+        s[i] = force ? skein_pull(&e[i], g, (const skein_lanes(*)[3])other, lane + i * SKEIN_GROUP)
+               : walk == SKEIN_WALK_PROJECT
+                   ? skein_push(&e[i], g, weight[i], lane + i * SKEIN_GROUP)
+                   : skein_push_damped(&e[i], g, (const skein_lanes(*)[3])other, weight[i], lane + i * SKEIN_GROUP);
     }
-    SKEIN_EACH(p, SKEIN_PARTICLES) {
-        const uint32_t *slot = slots + p * SKEIN_GROUP;
-        skein_lanes factor = walk == SKEIN_WALK_FORCE ? s : s * e->w[p];
-        if (walk == SKEIN_WALK_FORCE) skein_gather(at[p], g->forces, packed, slot);
-        for (int k = 0; k < 3; k++) at[p][k] += factor * e->gradient[p][k];
-        skein_scatter(at[p], walk == SKEIN_WALK_FORCE ? g->forces : g->positions, packed, slot);
-    }
+    for (size_t i = 0; i < count; i++)
+        SKEIN_EACH (p, SKEIN_PARTICLES) {
+            const uint32_t *slot = slots + i * slots_a_group + p * SKEIN_GROUP;
+            skein_lanes factor = force ? s[i] : s[i] * e[i].w[p];
+            if (force) skein_gather(at[i][p], g->forces, packed, slot);
+            for (int k = 0; k < 3; k++) at[i][p][k] += factor * e[i].gradient[p][k];
+            skein_scatter(at[i][p], force ? g->forces : g->positions, packed, slot);
+        }
+    return true;
 }
 
-/* Elements of a group share no particle, so its lanes may go in parts. */
-SKEIN_INLINE void skein_meet_group(skein_element *e, const skein_groups *g, size_t group, size_t packed,
-                                   skein_walk walk) {
-    const uint32_t *slots = g->slots + group * SKEIN_PARTICLES * SKEIN_GROUP;
-    for (size_t l = 0; l < SKEIN_GROUP; l += SKEIN_LANES)
-        skein_meet(e, g, slots + l, group * SKEIN_GROUP + l, packed, walk);
-}
-
-/* Groups with a particle in a packed block are reached lane by lane. */
-SKEIN_INLINE void skein_meet_all(const skein_groups *g, skein_walk walk) {
+/* For the few: groups with a particle in a packed block, and those whose numbers are large. */
+static __attribute__((noinline)) void skein_meet_few(const skein_groups *g, size_t group, size_t part, size_t packed,
+                                                     skein_walk walk) {
     skein_element e;
     skein_begin(&e, g->parameters, g->time, g->elementary);
-    if (!g->packed) {
-        for (size_t group = 0; group < g->count; group++) skein_meet_group(&e, g, group, 0, walk);
-        return;
-    }
-    for (size_t group = 0; group < g->count; group++) {
-        const uint32_t *slots = g->slots + group * SKEIN_PARTICLES * SKEIN_GROUP;
-        bool packed = false;
-        for (int i = 0; i < SKEIN_PARTICLES * SKEIN_GROUP; i++) packed |= slots[i] < g->packed;
-        skein_meet_group(&e, g, group, packed ? g->packed : 0, walk);
+    if (walk == SKEIN_WALK_FORCE) skein_meet(&e, g, group, part, packed, SKEIN_WALK_FORCE, true, 1);
+    else if (walk == SKEIN_WALK_PROJECT) skein_meet(&e, g, group, part, packed, SKEIN_WALK_PROJECT, true, 1);
+    else skein_meet(&e, g, group, part, packed, SKEIN_WALK_PROJECT_DAMPED, true, 1);
+}
+
+SKEIN_INLINE bool skein_is_packed(const skein_groups *g, size_t group) {
+    const uint32_t *slots = g->slots + group * SKEIN_PARTICLES * SKEIN_GROUP;
+    bool packed = false;
+    for (int i = 0; i < SKEIN_PARTICLES * SKEIN_GROUP && g->packed; i++) packed |= slots[i] < g->packed;
+    return packed;
+}
+
+SKEIN_INLINE void skein_meet_all(const skein_groups *g, skein_walk walk) {
+    skein_element e[SKEIN_TOGETHER];
+    for (size_t i = 0; i < SKEIN_TOGETHER; i++) skein_begin(&e[i], g->parameters, g->time, g->elementary);
+    for (size_t group = 0, count; group < g->count; group += count) {
+        bool packed = skein_is_packed(g, group);
+        count = SKEIN_TOGETHER == 2 && walk == SKEIN_WALK_PROJECT && !g->packed && group + 1 < g->count &&
+                        g->ahead[group] > 1
+                    ? 2
+                    : 1;
+        for (size_t part = 0; part < SKEIN_GROUP; part += SKEIN_LANES) {
+            bool done = count == 2 ? skein_meet(e, g, group, part, 0, walk, false, SKEIN_TOGETHER)
+                                   : !packed && skein_meet(e, g, group, part, 0, walk, false, 1);
+            for (size_t i = 0; i < count && !done; i++)
+                skein_meet_few(g, group + i, part, packed ? g->packed : 0, walk);
+        }
     }
 }
 

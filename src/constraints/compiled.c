@@ -42,6 +42,7 @@ void sk_compiled_walk(sk_run *run, const sk_row *row, size_t begin, size_t end, 
     const skein_groups groups = {
         .count = end - begin,
         .slots = sweep->slots + begin * batch->arity * SK_LANES,
+        .ahead = sweep->ahead + begin,
         .packed = row->packed,
         .positions = &run->vector[SK_X]->x,
         .other = damped ? &run->vector[row->source[1]]->x : NULL,

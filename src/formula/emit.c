@@ -65,7 +65,7 @@ void sk_put_helpers(sk_writer *w, const char *(*text_of)(size_t), size_t count, 
 /* How tightly an expression holds together: 1 sums and signs, 2 products, 3 what needs no brackets. */
 static int tightness(const sk_writer *w, sk_node node) {
     uint8_t op = w->formula->graph.data[node].op;
-    if (w->number[node] || op <= SK_OP_PARAMETER || w->language->call[op]) return 3;
+    if (w->number[node] || w->shared[node] || op <= SK_OP_PARAMETER || w->language->call[op]) return 3;
     return op == SK_OP_MULTIPLY ? 2 : 1;
 }
 
@@ -90,7 +90,9 @@ void sk_put_operand(sk_writer *w, sk_node node, int least) {
 static void put_expression(sk_writer *w, sk_node node) {
     const sk_graph_node *n = &w->formula->graph.data[node];
     const char *call = w->language->call[n->op];
-    if (n->op == SK_OP_CONSTANT) {
+    if (w->shared[node]) {
+        sk_put(w, "SHARED(%u)", w->shared[node] - 1);
+    } else if (n->op == SK_OP_CONSTANT) {
         w->language->constant(w, n->value);
     } else if (n->op == SK_OP_INPUT) {
         w->language->input(w, n->arg[0]);
@@ -137,7 +139,7 @@ static void find_names(sk_writer *w) {
     for (size_t i = 0; i < g->count; i++) {
         const sk_graph_node *n = &g->data[i];
         int height = 1;
-        if (!w->live[i] || n->op <= SK_OP_PARAMETER) continue;
+        if (!w->live[i] || n->op <= SK_OP_PARAMETER || w->shared[i]) continue;
         for (int k = 0; k < sk_op_info[n->op].arity; k++)
             if (w->height[n->arg[k]] >= height) height = w->height[n->arg[k]] + 1;
         bool named = w->uses[i] > 1 || height > MOST_HEIGHT || n->op == SK_OP_LESS;
@@ -149,10 +151,10 @@ static void find_names(sk_writer *w) {
 void sk_put_temporaries(sk_writer *w, const sk_node *outputs, size_t count) {
     const sk_graph *g = &w->formula->graph;
     for (size_t i = 0; i < g->count; i++) w->live[i] = false, w->uses[i] = w->number[i] = 0, w->height[i] = 0;
-    sk_graph_mark(g, outputs, count, w->live);
-    for (size_t i = 0; i < count; i++) w->uses[outputs[i]]++;
-    for (size_t i = 0; i < g->count; i++)
-        for (int k = 0; w->live[i] && k < sk_op_info[g->data[i].op].arity; k++) w->uses[g->data[i].arg[k]]++;
+    for (size_t i = 0; i < count; i++) w->live[outputs[i]] = true, w->uses[outputs[i]]++;
+    for (size_t i = g->count; i-- > 0;) // what is below something shared was needed for that alone
+        for (int k = 0; w->live[i] && !w->shared[i] && k < sk_op_info[g->data[i].op].arity; k++)
+            w->live[g->data[i].arg[k]] = true, w->uses[g->data[i].arg[k]]++;
     find_names(w);
     w->language->open(w);
     for (size_t i = 0; i < g->count; i++) {
@@ -241,8 +243,10 @@ static skein_status emit(const skein_formula *f, skein_formula_language asked, c
                    .live = sk_allocate(&allocator, nodes * sizeof *w.live),
                    .uses = sk_allocate(&allocator, nodes * sizeof *w.uses),
                    .number = sk_allocate(&allocator, nodes * sizeof *w.number),
-                   .height = sk_allocate(&allocator, nodes * sizeof *w.height)};
-    bool good = w.live && w.uses && w.number && w.height;
+                   .height = sk_allocate(&allocator, nodes * sizeof *w.height),
+                   .shared = sk_allocate(&allocator, nodes * sizeof *w.shared)};
+    bool good = w.live && w.uses && w.number && w.height && w.shared;
+    if (good) memset(w.shared, 0, nodes * sizeof *w.shared);
     if (good && asked == SKEIN_FORMULA_GRAPH) put_graph(&w, outputs, count);
     else if (good && compiled) sk_put_compiled(&w, compiled);
     else if (good && kernel) sk_put_kernel(&w);
@@ -251,6 +255,7 @@ static skein_status emit(const skein_formula *f, skein_formula_language asked, c
     sk_release(&allocator, w.uses);
     sk_release(&allocator, w.number);
     sk_release(&allocator, w.height);
+    sk_release(&allocator, w.shared);
     return good ? SKEIN_OK : sk_fail_memory(error, "a formula as text");
 }
 

@@ -28,6 +28,7 @@ struct sk_writer {
     uint32_t *uses;   /* by live nodes and outputs */
     uint32_t *number; /* of a temporary, from 1 on */
     uint8_t *height;  /* of an expression written in place; 0: it has a name */
+    uint32_t *shared; /* of what was computed for all elements beforehand, from 1 on; else 0 */
 };
 
 extern const sk_language sk_c_language, sk_glsl_language, sk_kernel_language;
