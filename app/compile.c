@@ -126,13 +126,13 @@ static const skein_compiled *compile(const app_compiler *compiler, const skein_f
     const skein_compiled *compiled = NULL;
     snprintf(folder, sizeof folder, "%s/skein-XXXXXX", temporary && temporary[0] ? temporary : "/tmp");
     if (!mkdtemp(folder)) {
-        snprintf(words, size, "no file can be written in %s", folder);
+        snprintf(words, size, "no file can be written in %.300s", folder);
         return NULL;
     }
     snprintf(made, sizeof made, "%s/formula.so", folder);
     bool good = write_file(folder, "formula.c", NULL, f) && make_folder(folder, "skein");
     for (const app_header *h = app_headers; h->name && good; h++) good = write_file(folder, h->name, h->text, NULL);
-    if (!good) snprintf(words, size, "no file can be written in %s", folder);
+    if (!good) snprintf(words, size, "no file can be written in %.300s", folder);
     if (good && app_compiler_run(compiler, folder, words, size)) {
         bool kept = cache && app_cache_put(made, cache);
         compiled = load(kept ? cache : made, f, words, size);
@@ -160,7 +160,7 @@ typedef struct work {
 
 static void warn(work *w, const char *what, const char *words) {
     w->warnings++;
-    if (!w->quiet) fprintf(stderr, "skein: warning: %s%s\n", what, words);
+    fprintf(stderr, "skein: warning: %s%s\n", what, words);
 }
 
 static const skein_compiled *from_cache(work *w, const skein_formula *f, const char *path) {

@@ -119,7 +119,7 @@ static void state_of(skein_world *world, skein_real *state) {
 
 /* How far the steps took the particles; 0 for a constraint that does nothing. */
 static double compare(const struct subject *s, const struct way *w, bool cloth) {
-    enum { STEPS = 12 };
+    enum { STEPS = 4 };
     static skein_real tape[8 * 200], compiled[8 * 200], idle[8 * 200];
     skein_world *world[3];
     for (int i = 0; i < 3; i++) world[i] = make(s, w, cloth);
@@ -161,7 +161,7 @@ static void the_bits_are_those_of_the_tape(void **state) {
 static void in_strips_too(void **state) {
     (void)state;
     assert_true(compare(&subjects[0], &ways[1], true) > 1e-4);
-    assert_true(compare(&subjects[1], &ways[3], true) > 1e-4);
+    assert_true(compare(&subjects[3], &ways[3], true) > 1e-4);
     assert_true(compare(&subjects[0], &ways[5], true) > 1e-4);
 }
 

@@ -524,8 +524,8 @@ SKEIN_INLINE void skein_take(skein_element *e, const skein_group_values *in, siz
     skein_begin(e, in->parameters, in->time, in->elementary);
     for (size_t p = 0; p < SKEIN_PARTICLES; p++)
         for (size_t k = 0; k < 3; k++) e->x[p][k] = skein_load(in->positions + (4 * p + k) * SKEIN_GROUP + lane);
-    for (size_t r = 0; r < SKEIN_RESTS; r++)
-        e->parameter[SKEIN_PARAMETERS + r] = skein_load(in->rest + r * SKEIN_GROUP + lane);
+    for (int r = 0; r < SKEIN_RESTS; r++)
+        e->parameter[SKEIN_PARAMETERS + r] = skein_load(in->rest + (size_t)r * SKEIN_GROUP + lane);
 }
 
 SKEIN_INLINE void skein_give(const skein_group_values *out, size_t lane, const skein_lanes *numbers, size_t count) {
