@@ -190,7 +190,7 @@ static int render(int argc, char **argv) {
         app_scene loaded;
         status = app_load(path, options[SET].values, &loaded);
         if (!status && app_value(options, OPTION_COUNT, "--compile"))
-            loaded.warnings += app_compile(loaded.world, loaded.quiet);
+            loaded.warnings += app_compile(loaded.world, app_value(options, OPTION_COUNT, "--quiet") != NULL);
         if (!status) status = app_device(&loaded, app_value(options, OPTION_COUNT, "--device"));
         if (!status) {
             app_catch_interrupts();

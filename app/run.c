@@ -125,7 +125,7 @@ static int run(int argc, char **argv) {
         app_scene loaded;
         status = app_load(path, options[0].values, &loaded);
         if (!status && app_value(options, COUNT, "--compile"))
-            loaded.warnings += app_compile(loaded.world, loaded.quiet);
+            loaded.warnings += app_compile(loaded.world, app_value(options, COUNT, "--quiet") != NULL);
         if (!status) status = app_device(&loaded, app_value(options, COUNT, "--device"));
         if (!status) {
             app_report report = {.loaded = &loaded,

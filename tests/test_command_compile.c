@@ -20,6 +20,14 @@ static void begin(void) {
     unsetenv("CC");
 }
 
+/* A compiler that takes less time: what it makes of a formula is as right. */
+static void hasten(void) {
+    char *hasty = in_folder("hasty");
+    write_text(hasty, "#!/bin/sh\nexec cc \"$@\" -O1\n");
+    assert_int_equal(chmod(hasty, 0700), 0);
+    setenv("CC", hasty, 1);
+}
+
 /* The one file in the cache. */
 static char *cached(void) {
     DIR *open_folder = opendir(cache);
@@ -63,6 +71,7 @@ static void bad_files_are_made_anew(void **state) {
     (void)state;
     begin();
     uint64_t hash = hash_of(SKEIN("run", scene));
+    hasten();
     outcome o = SKEIN("run", scene, "--compile", "--set", other);
     assert_status(o, 0);
     outcome_free(&o);
@@ -106,7 +115,7 @@ static void bad_files_are_made_anew(void **state) {
     assert_int_equal(unlink(path), 0);
     assert_int_equal(rename(wrong, path), 0);
     check(hash, refused);
-    unsetenv("CC");
+    hasten();
     check(hash, "1 by ");
     setenv("CC", "/bin/false", 1);
     check(hash, "1 from ");
@@ -130,11 +139,11 @@ static void without_a_compiler_tapes_run(void **state) {
     assert_int_equal(chmod(loud, 0700), 0);
     setenv("CC", loud, 1);
     check(hash, "failed (status 3)\n    formula.c:1: I do not like it\n");
-    unsetenv("CC");
+    hasten();
     setenv("SKEIN_CACHE", in_folder("rope.json/cache"), 1); // under a file there is no folder
     outcome o = SKEIN("run", scene, "--compile");
     assert_contains(o.err, "warning: --compile: nothing is kept for the next time: ");
-    assert_contains(o.err, "skein: compiled formulas: 1 by cc in ");
+    assert_contains(o.err, "skein: compiled formulas: 1 by ");
     assert_true(hash_of(o) == hash);
     // no temporary file is left
     setenv("TMPDIR", folder, 1);

@@ -49,7 +49,7 @@ static void it_shows_faults(void **state) {
                  {{"L", "--param", "L=x"}, "a name and a number"},
                  {{"L", "--param", "sin=1"}, "'sin' cannot be a parameter"},
                  {{"t", "--time", "noon"}, "a number of seconds"},
-                 {{"1", "--emit", "rust"}, "expected c, glsl or kernel"},
+                 {{"1", "--emit", "rust"}, "expected c, function, glsl or kernel"},
                  {{"vec3(1,2,3)", "--hessian"}, "must be a number"},
                  {{NULL}, "which formula?"}};
     for (size_t i = 0; i < COUNT(cases); i++) {
