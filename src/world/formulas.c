@@ -17,7 +17,12 @@ void sk_world_run_compiled(skein_world *world) {
     for (size_t i = 0; i < world->objects.count; i++) {
         sk_object *object = world->objects.data[i];
         const skein_formula *formula = object->generation % 2 ? formula_of(object) : NULL;
-        if (formula) object->making->run_compiled(object->params, find_compiled(world, formula));
+        if (!formula) continue;
+        const skein_compiled *compiled = find_compiled(world, formula);
+        object->making->run_compiled(object->params, compiled);
+        if (object->category != SKEIN_CONSTRAINT || object->as.batch->compiled == (compiled != NULL)) continue;
+        object->as.batch->compiled = compiled != NULL;
+        world->slots_stale = true; // its groups are to be dealt anew
     }
 }
 

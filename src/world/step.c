@@ -109,6 +109,7 @@ static skein_status find_groups(skein_world *world, skein_error *error) {
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error) {
     if (!(dt > 0) || !(dt <= 1e6))
         return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0", dt);
+    if (world->plan_stale) sk_world_run_compiled(world);
     skein_status status = sk_world_arrange(world, error);
     if (status) return status;
     if (!world->plan_stale && world->plan_dt == dt) return SKEIN_OK;
@@ -122,7 +123,6 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);
     warn_of_light_colliders(world);
     world->plan_stale = true; // until it is whole
-    sk_world_run_compiled(world);
     world->plan.count = 0;
     sk_writer writer = {
         .plan = &world->plan,
