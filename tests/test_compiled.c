@@ -69,7 +69,7 @@ static const struct way {
             {"backward_euler", 0.5, 0}};
 
 enum place { LOOSE, CLOTH, FAR };
-#define FARTHEST (sizeof(skein_real) == 8 ? 1e290 : 1e36)
+#define FARTHEST 9e14 // m; nothing may be farther
 
 enum { SIDE = 7, PARTICLES = SIDE * SIDE * 3, ELEMENTS = 150 };
 
@@ -97,7 +97,7 @@ static skein_world *make(const struct subject *s, const struct way *w, enum plac
                          0.5 * (i / SIDE / SIDE) + random_between(&seed, -0.1, 0.1));
         // so far away that squares, or their sums, are too large for a number; and some in one place
         for (int i = 0; i < PARTICLES && place == FAR; i += 5)
-            if (i % 3 == 0) place_particle(world, (size_t)i, pow(FARTHEST, 0.2 + 0.005 * i), 0, 0);
+            if (i % 3 == 0) place_particle(world, (size_t)i, pow(FARTHEST, 0.3 + 0.7 * i / PARTICLES), 0, 0);
             else place_particle(world, (size_t)i, 0.5, 0.5, 0.5);
     }
     uint32_t particles[4 * ELEMENTS];
