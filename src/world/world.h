@@ -24,7 +24,7 @@ typedef struct sk_body_type {
     skein_status (*build)(skein_world *world, sk_body *body, const void *params, const skein_mesh *mesh,
                           skein_error *error);
     /* Whether a field can change once the body is built (a stiffness can, a grid's size cannot). */
-    bool (*live)(const char *field);
+    bool (*live)(const void *params, const char *field);
     /* Passes changed parameters on to the body's rules. */
     void (*change)(sk_body *body, const void *params);
 } sk_body_type;
