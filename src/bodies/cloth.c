@@ -321,7 +321,7 @@ static skein_status build(skein_world *world, sk_body *body, const void *params,
 const sk_body_type sk_cloth = {
     .kind =
         {"cloth",
-         "a sheet from a triangle or quad mesh, or a grid: springs along edges and across, bending by angle, tethers to pins",
+         "a sheet from a triangle or quad mesh, or a grid: springs along and across, bending by angle, tethers to pins",
          SKEIN_BODY, fields, sizeof fields / sizeof *fields, sizeof(cloth_params)},
     .build = build,
     .live = live,
