@@ -275,11 +275,13 @@ static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t 
 #else
 #include "forces/flocking.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "base/elementary.h"
 #include "base/status.h"
 #include "forces/pair_formula.h"
+#include "formula/formula.h"
 
 // clang-format off
 static const skein_field fields[] = {
@@ -357,10 +359,21 @@ static void pack(const void *data, float (*block)[4]) {
     memcpy(block, numbers, sizeof numbers);
 }
 
-static const char *refuse(const void *data) {
+static bool write(const void *data, void (*put)(void *user, const char *text), void *user) {
     const sk_flocking_params *params = data;
-    if (params->pair) return "by a formula";
-    return params->nearest ? "while only the nearest neighbours count" : NULL;
+    char line[64];
+    snprintf(line, sizeof line, "#define MOST@ %d\n", (int)params->nearest);
+    if (params->nearest) put(user, line);
+    if (!params->pair) return true;
+    put(user, "#define FORMULA@\n");
+    return sk_pair_formula_put_glsl(params->pair, put, user);
+}
+
+static bool changes(const void *data) {
+    const sk_pair_formula *pair = ((const sk_flocking_params *)data)->pair;
+    for (int w = 0; pair && w < SK_PAIR_WEIGHTS; w++)
+        if (pair->formula[w] && pair->formula[w]->uses & SK_USES_TIME) return true;
+    return false;
 }
 
 #define SK_KERNELS "forces/flocking.c"
@@ -375,6 +388,6 @@ const sk_force_type sk_flocking = {
     .radius = radius,
     .bodies = bodies,
     .making = &making,
-    .shader = {"forces/flocking", 3, pack, refuse},
+    .shader = {.file = "forces/flocking", .size = 3, .pack = pack, .write = write, .changes = changes},
 };
 #endif
