@@ -32,26 +32,36 @@ SK_INLINE sk_wide SK_ISA(wide_at)(const real *at) {
     return a;
 }
 
+/* The cells' copies, where stores to the list cannot change them. */
+typedef struct SK_ISA(copies) {
+    const real *x, *y, *z, *ux, *uy, *uz;
+} SK_ISA(copies);
+
 /* Adds the candidates of bits to the list; d is where they are from the particle. */
-SK_INLINE void SK_ISA(keep_near)(SK_ISA(near) * near, const sk_cells *cells, size_t place, sk_wide3 d, uint32_t bits) {
+SK_INLINE void SK_ISA(keep_near)(SK_ISA(near) * near, const SK_ISA(copies) * copies, size_t place, sk_wide3 d,
+                                 sk_wide squares, sk_wide square, uint32_t some) {
 #if defined(SK_HAS_AVX512) && !defined(SKEIN_DOUBLE)
-    __mmask16 mask = (__mmask16)bits;
+    __mmask16 bits = _mm512_mask_cmp_ps_mask((__mmask16)some, (__m512)square, (__m512)squares, _CMP_GT_OQ);
+    // which lanes, once, for six permutations: half the work of six compressions
+    const sk_mask all = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    __m512i lanes = _mm512_maskz_compress_epi32(bits, (__m512i)all);
     size_t k = near->count;
-    _mm512_storeu_ps(near->x + k, _mm512_maskz_compress_ps(mask, (__m512)d.x));
-    _mm512_storeu_ps(near->y + k, _mm512_maskz_compress_ps(mask, (__m512)d.y));
-    _mm512_storeu_ps(near->z + k, _mm512_maskz_compress_ps(mask, (__m512)d.z));
-    _mm512_storeu_ps(near->ux + k, _mm512_maskz_compress_ps(mask, _mm512_loadu_ps(cells->ux + place)));
-    _mm512_storeu_ps(near->uy + k, _mm512_maskz_compress_ps(mask, _mm512_loadu_ps(cells->uy + place)));
-    _mm512_storeu_ps(near->uz + k, _mm512_maskz_compress_ps(mask, _mm512_loadu_ps(cells->uz + place)));
+    _mm512_storeu_ps(near->x + k, _mm512_permutexvar_ps(lanes, (__m512)d.x));
+    _mm512_storeu_ps(near->y + k, _mm512_permutexvar_ps(lanes, (__m512)d.y));
+    _mm512_storeu_ps(near->z + k, _mm512_permutexvar_ps(lanes, (__m512)d.z));
+    _mm512_storeu_ps(near->ux + k, _mm512_permutexvar_ps(lanes, _mm512_loadu_ps(copies->ux + place)));
+    _mm512_storeu_ps(near->uy + k, _mm512_permutexvar_ps(lanes, _mm512_loadu_ps(copies->uy + place)));
+    _mm512_storeu_ps(near->uz + k, _mm512_permutexvar_ps(lanes, _mm512_loadu_ps(copies->uz + place)));
     near->count = k + (size_t)__builtin_popcount(bits);
 #else
+    uint32_t bits = SK_ISA(sk_more_bits)(square, squares) & some;
     size_t k = near->count;
     for (; bits; bits &= bits - 1, k++) {
         int l = __builtin_ctz(bits);
         near->x[k] = d.x[l], near->y[k] = d.y[l], near->z[k] = d.z[l];
-        near->ux[k] = cells->ux[place + (size_t)l];
-        near->uy[k] = cells->uy[place + (size_t)l];
-        near->uz[k] = cells->uz[place + (size_t)l];
+        near->ux[k] = copies->ux[place + (size_t)l];
+        near->uy[k] = copies->uy[place + (size_t)l];
+        near->uz[k] = copies->uz[place + (size_t)l];
     }
     near->count = k;
 #endif
@@ -191,13 +201,12 @@ SK_INLINE void SK_ISA(work_out)(SK_ISA(near) * near, const sk_flocking_numbers *
 SK_INLINE void SK_ISA(test)(const sk_cells *cells, const sk_flocking_numbers *n, sk_vec3 p, SK_ISA(sixteens) * sixteens,
                             SK_ISA(near) * near, sk_wide3 *sum) {
     sk_wide square = SK_ISA(sk_splat)(n->reach * n->reach);
+    const SK_ISA(copies) copies = {cells->x, cells->y, cells->z, cells->ux, cells->uy, cells->uz};
     for (size_t k = 0; k < sixteens->count; k++) {
         size_t place = sixteens->place[k];
-        sk_wide3 d = {SK_ISA(wide_at)(cells->x + place) - p.x, SK_ISA(wide_at)(cells->y + place) - p.y,
-                      SK_ISA(wide_at)(cells->z + place) - p.z};
-        uint32_t bits = SK_ISA(sk_more_bits)(square, SK_ISA(sk_dot_wide)(d, d));
-        bits &= sixteens->left[k] < SK_LANES ? (1u << sixteens->left[k]) - 1 : 0xffffu;
-        SK_ISA(keep_near)(near, cells, place, d, bits);
+        sk_wide3 d = {SK_ISA(wide_at)(copies.x + place) - p.x, SK_ISA(wide_at)(copies.y + place) - p.y,
+                      SK_ISA(wide_at)(copies.z + place) - p.z};
+        SK_ISA(keep_near)(near, &copies, place, d, SK_ISA(sk_dot_wide)(d, d), square, sixteens->some[k]);
         if (near->count >= SK_ISA(ROOM)) SK_ISA(work_out)(near, n, sum);
     }
     sixteens->count = 0;
@@ -206,19 +215,24 @@ SK_INLINE void SK_ISA(test)(const sk_cells *cells, const sk_flocking_numbers *n,
 /* The steering of one particle at p. */
 SK_INLINE sk_vec3 SK_ISA(steer)(const sk_cells *cells, const SK_ISA(rows) * rows, const sk_flocking_numbers *n,
                                 sk_vec3 p, SK_ISA(near) * near) {
-    int32_t begin[SK_LANES], left[SK_LANES];
-    SK_ISA(find_ranges)(cells, rows, p, n->reach, begin, left);
+    SK_ISA(ranges) ranges;
+    SK_ISA(find_ranges)(cells, rows, p, n->reach, &ranges);
     SK_ISA(sixteens) sixteens;
     sixteens.count = 0;
     sk_wide3 sum = {{0}, {0}, {0}};
     near->count = 0;
-    while (SK_ISA(list)(begin, left, &sixteens))
+    // rows of over 32 are few: twice without asking
+    SK_ISA(list)(&ranges, &sixteens);
+    SK_ISA(list)(&ranges, &sixteens);
+    while (SK_ISA(list)(&ranges, &sixteens))
         if (sixteens.count >= SK_ISA(SIXTEENS)) SK_ISA(test)(cells, n, p, &sixteens, near, &sum);
     SK_ISA(test)(cells, n, p, &sixteens, near, &sum);
     if (n->count) SK_ISA(prune)(near, n);
     // fill up with neighbours in the same place, which add nothing
-    real *lists[] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
-    for (int i = 0; i < 6; i++) memset(lists[i] + near->count, 0, SK_LANES * sizeof(real));
+    const sk_wide none = {0};
+    memcpy(near->x + near->count, &none, sizeof none), memcpy(near->y + near->count, &none, sizeof none);
+    memcpy(near->z + near->count, &none, sizeof none), memcpy(near->ux + near->count, &none, sizeof none);
+    memcpy(near->uy + near->count, &none, sizeof none), memcpy(near->uz + near->count, &none, sizeof none);
     SK_ISA(add_all)(near, (near->count + SK_LANES - 1) / SK_LANES * SK_LANES, n, &sum);
     return sk_v3(SK_ISA(sk_sum)(sum.x), SK_ISA(sk_sum)(sum.y), SK_ISA(sk_sum)(sum.z));
 }
