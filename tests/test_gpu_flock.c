@@ -377,6 +377,33 @@ static void the_flocks_stay_alike(void **state) {
     assert_share(order[1].nearest, order[0].nearest, 0.05);
 }
 
+/* Where hundreds of neighbours are in reach, as flocks gather, and cells are full. */
+static skein_world *gathered(size_t count) {
+    skein_world *world = flying("symplectic_euler", count, false);
+    OK(world, skein_set_path(world, "forces.0.separation", skein_number(1.5)));
+    OK(world, skein_set_path(world, "forces.0.alignment", skein_number(1)));
+    OK(world, skein_set_path(world, "forces.0.cohesion", skein_number(1.5)));
+    return world;
+}
+
+/* It agrees, and comes again in every bit, also once the state has been moved about on the card. */
+static void a_gathered_flock_agrees_and_repeats(void **state) {
+    (void)state;
+    assert_agree(gathered(3000), gathered(3000), 1, 1e-4, "a gathered flock");
+    uint64_t hash[2];
+    for (int w = 0; w < 2; w++) {
+        skein_world *world = gathered(500);
+        to_card(world);
+        for (int i = 0; i < 70; i++) {
+            OK(world, skein_world_step(world, dt));
+            if (w && i % 20 == 0) skein_world_hash(world); // looking changes nothing
+        }
+        hash[w] = skein_world_hash(world);
+        skein_world_destroy(world);
+    }
+    assert_true(hash[0] == hash[1]);
+}
+
 static void four_thousand_birds_fly_a_hundred_steps(void **state) {
     (void)state;
     skein_world *world = flying("symplectic_euler", 100000, true);
@@ -438,6 +465,7 @@ int main(void) {
         cmocka_unit_test(the_cards_grid_is_all_pairs),
         cmocka_unit_test(flocks_that_mind_each_other_agree),
         cmocka_unit_test(the_flocks_stay_alike),
+        cmocka_unit_test(a_gathered_flock_agrees_and_repeats),
         cmocka_unit_test(four_thousand_birds_fly_a_hundred_steps),
         cmocka_unit_test(birds_that_were_moved_are_the_same_birds),
     };

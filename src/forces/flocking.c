@@ -104,18 +104,18 @@ typedef struct SK_ISA(hits) {
 SK_INLINE SK_ISA(hits) SK_ISA(hits_at)(const SK_ISA(near) * near, size_t k, const sk_flocking_numbers *n) {
     SK_ISA(hits)
     h = {.d = {SK_ISA(wide_at)(near->x + k), SK_ISA(wide_at)(near->y + k), SK_ISA(wide_at)(near->z + k)}};
-    sk_wide least = SK_ISA(sk_splat)(n->least), square = SK_ISA(sk_dot_wide)(h.d, h.d);
+    sk_wide least = SK_ISA(all)(n->least), square = SK_ISA(sk_dot_wide)(h.d, h.d);
     sk_wide distance = SK_ISA(sk_wide_sqrt)(square);
     distance = SK_ISA(sk_select)(SK_ISA(sk_more)(distance, least), distance, least);
-    h.per = (real)1 / distance;
-    h.percent = distance * n->per_reach;
+    h.per = SK_ISA(all)(1) / distance;
+    h.percent = distance * SK_ISA(all)(n->per_reach);
     if (n->squared) h.percent *= h.percent;
     h.counts = SK_ISA(sk_positive)(square);
     if (!n->sees_all) {
         sk_vec3 u = near->heading;
-        sk_wide ahead = h.d.x * u.x + h.d.y * u.y + h.d.z * u.z;
+        sk_wide ahead = h.d.x * SK_ISA(all)(u.x) + h.d.y * SK_ISA(all)(u.y) + h.d.z * SK_ISA(all)(u.z);
         real all_round = u.x * u.x + u.y * u.y + u.z * u.z > 0 ? 0 : 1; // a particle that stands still
-        h.counts &= SK_ISA(sk_at_most)(n->view * distance, ahead + all_round * (2 * distance));
+        h.counts &= SK_ISA(sk_at_most)(SK_ISA(all)(n->view) * distance, ahead + SK_ISA(all)(2 * all_round) * distance);
     }
     return h;
 }
@@ -132,16 +132,18 @@ SK_INLINE void SK_ISA(add_hits)(const SK_ISA(near) * near, size_t k, const SK_IS
 
 SK_INLINE void SK_ISA(add_near)(const SK_ISA(near) * near, size_t k, const sk_flocking_numbers *n, sk_wide3 *sum) {
     SK_ISA(hits) h = SK_ISA(hits_at)(near, k, n);
-    sk_wide one = SK_ISA(sk_splat)(1), half = SK_ISA(sk_splat)((real)0.5);
-    sk_wide inverse = n->reach * h.per; // 1/percent
+    sk_wide one = SK_ISA(all)(1), half = SK_ISA(all)((real)0.5), away_to = SK_ISA(all)(n->away),
+            along_to = SK_ISA(all)(n->along);
+    sk_wide inverse = SK_ISA(all)(n->reach) * h.per; // 1/percent
     if (n->squared) inverse *= inverse;
-    sk_mask away = SK_ISA(sk_more)(SK_ISA(sk_splat)(n->away), h.percent);
-    sk_mask along = SK_ISA(sk_more)(SK_ISA(sk_splat)(n->along), h.percent) & ~away;
+    sk_mask away = SK_ISA(sk_more)(away_to, h.percent);
+    sk_mask along = SK_ISA(sk_more)(along_to, h.percent) & ~away;
     // from -0.5 to 0.5 through the zone
-    sk_wide a =
-        SK_ISA(sk_select)(along, (h.percent - n->away) * n->per_along, (h.percent - n->along) * n->per_towards) - half;
+    sk_wide a = SK_ISA(sk_select)(along, (h.percent - away_to) * SK_ISA(all)(n->per_along),
+                                  (h.percent - along_to) * SK_ISA(all)(n->per_towards)) -
+                half;
     sk_wide s = a * a, cosine = half * SK_FLOCKING_COSINE(s);
-    sk_wide towards = SK_ISA(sk_select)(away, one - n->away * inverse, cosine);
+    sk_wide towards = SK_ISA(sk_select)(away, one - away_to * inverse, cosine);
     SK_ISA(add_hits)(near, k, &h, SK_ISA(sk_keep)(~along, towards), SK_ISA(sk_keep)(along, one - cosine), sum);
 }
 
@@ -200,12 +202,13 @@ SK_INLINE void SK_ISA(work_out)(SK_ISA(near) * near, const sk_flocking_numbers *
 /* Tests the listed candidates, and keeps those within reach. */
 SK_INLINE void SK_ISA(test)(const sk_cells *cells, const sk_flocking_numbers *n, sk_vec3 p, SK_ISA(sixteens) * sixteens,
                             SK_ISA(near) * near, sk_wide3 *sum) {
-    sk_wide square = SK_ISA(sk_splat)(n->reach * n->reach);
+    sk_wide square = SK_ISA(all)(n->reach * n->reach);
+    const sk_wide3 here = {SK_ISA(all)(p.x), SK_ISA(all)(p.y), SK_ISA(all)(p.z)};
     const SK_ISA(copies) copies = {cells->x, cells->y, cells->z, cells->ux, cells->uy, cells->uz};
     for (size_t k = 0; k < sixteens->count; k++) {
         size_t place = sixteens->place[k];
-        sk_wide3 d = {SK_ISA(wide_at)(copies.x + place) - p.x, SK_ISA(wide_at)(copies.y + place) - p.y,
-                      SK_ISA(wide_at)(copies.z + place) - p.z};
+        sk_wide3 d = {SK_ISA(wide_at)(copies.x + place) - here.x, SK_ISA(wide_at)(copies.y + place) - here.y,
+                      SK_ISA(wide_at)(copies.z + place) - here.z};
         SK_ISA(keep_near)(near, &copies, place, d, SK_ISA(sk_dot_wide)(d, d), square, sixteens->some[k]);
         if (near->count >= SK_ISA(ROOM)) SK_ISA(work_out)(near, n, sum);
     }

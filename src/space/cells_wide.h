@@ -1,6 +1,14 @@
 /* Which places of the cells a particle has to look at, as sixteens of candidates: once for each instruction set (no
  * include guard: see for_each_isa.h). Includers outside of SK_ISA: space/cells.h. */
 
+/* A number in all lanes, in the parts that the processor works on: of a whole one, or of a number beside a wide, gcc
+ * makes sixteen stores where it knows no 64 bytes at once. */
+SK_INLINE sk_wide SK_ISA(all)(real a) {
+    SK_ISA(parts) p;
+    for (int i = 0; i < SK_ISA(native_parts); i++) p.native[i] = a - (SK_ISA(native)){0};
+    return p.wide;
+}
+
 /* Where the nine rows of cells around a particle are, a row a lane; see sk_cells_ranges(), which this is wide. */
 typedef struct SK_ISA(rows) {
     sk_wide wall_y, wall_z, share_y, share_z; // the distance to the row, in cells, is wall + share * place in the cell
@@ -69,15 +77,16 @@ SK_INLINE void SK_ISA(find_ranges)(const sk_cells *cells, const SK_ISA(rows) * r
     real py = (p.y - cells->origin.y) * cells->per_yz, pz = (p.z - cells->origin.z) * cells->per_yz;
     int32_t iy = sk_cells_place(p.y, cells->origin.y, cells->per_yz, cells->count_y);
     int32_t iz = sk_cells_place(p.z, cells->origin.z, cells->per_yz, cells->count_z);
-    sk_wide my = rows->wall_y + rows->share_y * (py - (real)iy), mz = rows->wall_z + rows->share_z * (pz - (real)iz);
-    my = SK_ISA(sk_keep)(SK_ISA(sk_positive)(my), my) * cells->size;
-    mz = SK_ISA(sk_keep)(SK_ISA(sk_positive)(mz), mz) * cells->size;
-    sk_wide left = (reach * reach - mz * mz) - my * my;
+    sk_wide my = rows->wall_y + rows->share_y * SK_ISA(all)(py - (real)iy),
+            mz = rows->wall_z + rows->share_z * SK_ISA(all)(pz - (real)iz), size = SK_ISA(all)(cells->size);
+    my = SK_ISA(sk_keep)(SK_ISA(sk_positive)(my), my) * size;
+    mz = SK_ISA(sk_keep)(SK_ISA(sk_positive)(mz), mz) * size;
+    sk_wide left = (SK_ISA(all)(reach * reach) - mz * mz) - my * my;
     sk_mask some = SK_ISA(sk_positive)(left);
-    sk_wide half = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_keep)(some, left)) * (real)1.00001;
-    sk_wide low = ((p.x - half) - cells->origin.x) * cells->per_x,
-            high = ((p.x + half) - cells->origin.x) * cells->per_x;
-    sk_wide last = SK_ISA(sk_splat)((real)(cells->count_x - 1));
+    sk_wide half = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_keep)(some, left)) * SK_ISA(all)((real)1.00001);
+    sk_wide x = SK_ISA(all)(p.x), origin = SK_ISA(all)(cells->origin.x), per = SK_ISA(all)(cells->per_x);
+    sk_wide low = ((x - half) - origin) * per, high = ((x + half) - origin) * per;
+    sk_wide last = SK_ISA(all)((real)(cells->count_x - 1));
     low = SK_ISA(sk_keep)(SK_ISA(sk_positive)(low), low), high = SK_ISA(sk_keep)(SK_ISA(sk_positive)(high), high);
     low = SK_ISA(sk_select)(SK_ISA(sk_more)(last, low), low, last);
     high = SK_ISA(sk_select)(SK_ISA(sk_more)(last, high), high, last);
