@@ -44,6 +44,10 @@ static const struct shape {
     {"box",
      {SKEIN_VEC3("size", 1, 1.5, 0.8), SKEIN_VEC3("rotation", 20, 30, 40), SKEIN_REAL("motion.spin", -2),
       SKEIN_REAL("motion.start", 0.02), SKEIN_REAL("restitution", 0.3)}},
+    {"formula",
+     {SKEIN_TEXT("surface", "length(p) - R - 0.3*sin(20*t)*p.x"), SKEIN_REAL("parameters.R", 0.8),
+      SKEIN_VEC3("rotation", 20, 30, 40), SKEIN_REAL("restitution", 0.5), SKEIN_REAL("friction", 0.3),
+      SKEIN_REAL("motion.spin", 1)}},
 };
 
 static skein_world *colliding(const char *method, const struct shape *shape) {

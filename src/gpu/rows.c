@@ -41,6 +41,11 @@ static const sk_shader *shader_of(const sk_row *row) {
     return NULL;
 }
 
+static const void *params_of(const sk_row *row) {
+    if (force_of(row)) return force_of(row)->params;
+    return has_pose(row) ? ((const sk_collider *)row->rule)->params : NULL;
+}
+
 static bool is_combine(const sk_row *row) {
     static const sk_kernels *const known[] = {&sk_combine_sum,     &sk_combine_correction, &sk_combine_kick,
                                               &sk_combine_predict, &sk_combine_fall,       &sk_combine_fall_on,
@@ -52,10 +57,7 @@ static bool is_combine(const sk_row *row) {
 
 bool sk_gpu_row_can(const sk_row *row, const char **why) {
     const sk_shader *shader = shader_of(row);
-    const void *params = force_of(row)   ? force_of(row)->params
-                         : has_pose(row) ? ((const sk_collider *)row->rule)->params
-                                         : NULL;
-    if (shader && shader->file && shader->refuse && (*why = shader->refuse(params))) return false;
+    if (shader && shader->file && shader->refuse && (*why = shader->refuse(params_of(row)))) return false;
     switch (row->kind) {
     case SK_ROW_GRID: return true;
     case SK_ROW_REPEAT: return !row->cell;
@@ -177,6 +179,7 @@ static void pack_pose(const sk_collider *collider, double time, float (*block)[4
         block[i][3] = (float)one[i];
     }
     for (int i = 0; i < 9; i++) block[4 + i / 3][i % 3] = (float)pose.rotation[i];
+    block[4][3] = (float)pose.time;
 }
 
 void sk_gpu_row_pack(const sk_row *row, const sk_run *run, float (*block)[4]) {
@@ -212,7 +215,7 @@ void sk_gpu_row_pack(const sk_row *row, const sk_run *run, float (*block)[4]) {
 
 bool sk_gpu_row_moves(const sk_row *row) {
     const sk_shader *shader = shader_of(row);
-    if (force_of(row)) return shader->changes && shader->changes(force_of(row)->params);
+    if (shader && shader->changes && shader->changes(params_of(row))) return true;
     if (!has_pose(row)) return false;
     const sk_collider_common *common = ((const sk_collider *)row->rule)->common;
     const double *v = common->velocity;
@@ -241,13 +244,13 @@ static void put_numbered(void *user, const char *text) {
 static void put_written(sk_gpu_text *text, const sk_row *row, size_t number) {
     const sk_shader *shader = shader_of(row);
     numbered to = {text, number};
-    if (shader->write && !shader->write(force_of(row)->params, put_numbered, &to)) text->no_memory = true;
+    if (shader->write && !shader->write(params_of(row), put_numbered, &to)) text->no_memory = true;
 }
 
 void sk_gpu_put_functions(sk_gpu_text *text, const sk_row *row, size_t number) {
     if (row->kind == SK_ROW_COMBINE && is_fall(row)) sk_gpu_put_file(text, "gpu/pull", number);
     if (has_pose(row)) sk_gpu_put_file(text, "colliders/pose", number);
-    if (force_of(row)) put_written(text, row, number);
+    if (shader_of(row)) put_written(text, row, number);
     if (shader_of(row)) sk_gpu_put_file(text, shader_of(row)->file, number);
     if (is_contact(row)) sk_gpu_put_file(text, "colliders/contact", number);
     if (is_avoid(row)) sk_gpu_put_file(text, "colliders/avoid", number);
