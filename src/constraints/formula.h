@@ -3,6 +3,7 @@
 #define SK_CONSTRAINTS_FORMULA_H
 
 #include "constraints/sweep.h"
+#include "plan/matrix.h"
 #include "formula/formula.h"
 #include "formula/tape.h"
 

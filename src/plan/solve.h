@@ -44,11 +44,16 @@ typedef enum sk_cell {
     SK_CELL_BETA,     /* and what is kept of the direction */
     SK_CELL_SHARE,    /* of the change that the line search tries */
     SK_CELL_SLOPE,    /* R times the change, before it */
+    SK_CELL_FACTORED, /* there is a factor of the whole matrix, and it serves */
+    SK_CELL_IN_FACTOR, /* the first turn's residual was measured in the factor's norm */
+    SK_CELL_CG_FIRST, /* conjugate gradients' turns before the present turn of Newton's */
     /* a step's account */
     SK_CELL_NEWTON_TURNS,
     SK_CELL_CG_TURNS,
     SK_CELL_WORST,    /* the largest residual that was left, as a share of its start */
     SK_CELL_UNSOLVED, /* substeps that came neither to the tolerance nor to rounding */
+    SK_CELL_FACTORS,  /* factorisations, */
+    SK_CELL_FAILURES, /* and those that failed, or whose solves did */
     SK_CELL_COUNT
 } sk_cell;
 
@@ -65,6 +70,6 @@ extern const sk_kernels sk_solve_dot, sk_solve_norm, sk_solve_rounding;
 double sk_solve_sum(const sk_run *run);
 /* Scalars; each begins with the sum of what the row before it left. */
 extern sk_row_kernel sk_solve_start, sk_solve_line_start, sk_solve_judge, sk_solve_note_rounding, sk_solve_cg_start,
-    sk_solve_cg_alpha, sk_solve_cg_beta, sk_solve_line_judge, sk_solve_end;
+    sk_solve_cg_alpha, sk_solve_cg_beta, sk_solve_judge_factor, sk_solve_line_judge, sk_solve_end;
 
 #endif
