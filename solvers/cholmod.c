@@ -12,7 +12,7 @@
 
 typedef struct solver {
     cholmod_common common;
-    cholmod_factor *factor; /* of the pattern that was analysed; NULL before */
+    cholmod_factor *factor;   /* of the pattern that was analysed; NULL before */
     cholmod_dense *x, *y, *e; /* a solution, and scratch */
 } solver;
 
@@ -94,8 +94,8 @@ skein_status skein_cholmod_attach(skein_world *world, skein_error *error) {
     solver *s = calloc(1, sizeof *s);
     if (!s) return fail(error, SKEIN_ERROR_MEMORY, "no memory");
     cholmod_l_start(&s->common);
-    s->common.print = 0;            // what fails is said through the world
-    s->common.final_ll = true;      // L L^T: a pivot that is not positive fails, where L D L^T would go on
+    s->common.print = 0;       // what fails is said through the world
+    s->common.final_ll = true; // L L^T: a pivot that is not positive fails, where L D L^T would go on
     s->common.quick_return_if_not_posdef = true;
     skein_sparse_solver own = {"CHOLMOD", s, analyse, factor, solve, release};
     skein_status status = skein_sparse_solver_set(world, &own);

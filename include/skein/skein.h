@@ -343,8 +343,8 @@ typedef struct skein_sparse_solver {
      * and constraints. What it returns, with `error` filled in, the step or skein_world_explain() returns. */
     skein_status (*analyse)(void *user, const skein_sparse_matrix *pattern, skein_error *error);
     /* Factors a matrix of the last pattern, positive definite but for rounding. False where it cannot: that is counted
-     * (solver_failures), and the solve goes on with the particles' own blocks. Asked for at the start of each step, and
-     * again where a factor has come to serve badly. */
+     * (solver_failures), and the solve goes on with the particles' own blocks. Asked for in each turn of Newton's
+     * method. */
     bool (*factor)(void *user, const skein_sparse_matrix *matrix);
     /* x = matrix^-1 b, of the last matrix that was factored; `b` and `x` are `size` numbers, x unset. False where it
      * cannot. Asked for in each iteration of conjugate gradients. */

@@ -53,15 +53,14 @@ static void write_residual(sk_writer *writer, double h) {
     sk_write_solve(writer, &sk_solve_filter, residual, SK_NONE, SK_NONE, "S R");
 }
 
-/* The matrix's factor at X and V, unless the one that is there still serves. */
+/* The matrix's factor at X and V. (That of an earlier turn is no substitute: springs that have gone slack or taut since
+ * made conjugate gradients as long as the blocks do.) */
 static void write_factor(sk_writer *writer, sk_vector inertia, double h) {
     sk_vector block = (sk_vector)SK_BLOCK0, off = (sk_vector)SK_BLOCK1;
-    size_t once = sk_write_until(writer, 1, SK_CELL_FACTORED, "unless there is a good factor");
     sk_write_sum(writer, block, 1, inertia, 0, SK_NONE);
     sk_write_clear(writer, off);
     sk_write_diagonal_of_forces(writer, block, off, h * h, h);
     sk_write_factor(writer, block, off, h * h, h);
-    sk_write_end(writer, once);
 }
 
 /* The matrix's diagonal blocks at X and V, and their factors. */
@@ -115,8 +114,6 @@ static void write_conjugate_gradients(sk_writer *writer, const backward_euler_pa
     sk_write_scalar(writer, sk_solve_cg_beta, cg_share * params->tolerance, "beta = sum / rz, rz = sum");
     sk_write_cell_sum(writer, direction, product, 1, SK_CELL_BETA, direction, "T8 + beta T7");
     sk_write_end(writer, repeat);
-    if (params->preconditioner == CHOLESKY)
-        sk_write_scalar(writer, sk_solve_judge_factor, 0, "a new factor in the next turn?");
 }
 
 /* V = guess + share change, with the share at which the residual no longer points far back. */

@@ -41,8 +41,8 @@ static void list_pair(void *data, uint32_t low, uint32_t high, uint32_t *pair) {
 
 static void find_pair(void *data, uint32_t low, uint32_t high, uint32_t *pair) {
     const sk_matrix *m = data;
-    const uint32_t *found = bsearch(&high, m->below + m->first[low], m->first[low + 1] - m->first[low], sizeof high,
-                                    compare_indices);
+    const uint32_t *found =
+        bsearch(&high, m->below + m->first[low], m->first[low + 1] - m->first[low], sizeof high, compare_indices);
     *pair = (uint32_t)(found - m->below);
 }
 

@@ -4,7 +4,7 @@
  *   A = m + h c + h^2 k    a block row of three rows for each particle, in the user's order
  *
  * Its shape is made when slots are (sk_matrix_shape): a 3 x 3 block for each particle, and one for each two that an
- * element has in common. Each turn of Newton's method that needs a new factor fills it: what particles have by
+ * element has in common. Each turn of Newton's method fills it: what particles have by
  * themselves, then the blocks of every batch, in double: what an element does to both of its ends must cancel to more
  * than float's digits, or a stiff sheet would weigh what the rounding of its springs does. Then S A S + (1 - S), which
  * is definite where contact holds particles, goes to the solver.
@@ -72,8 +72,7 @@ static inline void sk_matrix_add_diagonal(sk_matrix *matrix, uint32_t particle, 
 }
 
 /* Adds a block with rows of particle a and columns of particle b. */
-static inline void sk_matrix_add_pair(sk_matrix *matrix, uint32_t a, uint32_t b, uint32_t pair,
-                                      double block[3][3]) {
+static inline void sk_matrix_add_pair(sk_matrix *matrix, uint32_t a, uint32_t b, uint32_t pair, double block[3][3]) {
     size_t n, column = a < b ? a : b;
     double *at = sk_matrix_column(matrix, column, &n) + 3 * (pair - matrix->first[column]);
     for (size_t c = 0; c < 3; c++, at += 3 * n)

@@ -94,11 +94,11 @@ typedef struct sk_run {
     sk_grid *grid;
     sk_cells *cells;
     sk_allocator *allocator;
-    double time;    /* at the end of the present substep, s */
-    double *cell;   /* what rows of a solve hand to each other (plan/solve.h) */
+    double time;              /* at the end of the present substep, s */
+    double *cell;             /* what rows of a solve hand to each other (plan/solve.h) */
     struct sk_matrix *matrix; /* of a solve with a factor (plan/matrix.h), else NULL */
-    bool last_turn; /* of the innermost repeat */
-    bool no_memory; /* a growing list could not grow: the step fails and says so */
+    bool last_turn;           /* of the innermost repeat */
+    bool no_memory;           /* a growing list could not grow: the step fails and says so */
 } sk_run;
 
 typedef struct sk_row sk_row;

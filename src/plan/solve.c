@@ -229,7 +229,6 @@ void sk_solve_cg_start(sk_run *run, const sk_row *row, size_t begin, size_t end)
         cell[SK_CELL_RZ_START] = cell[SK_CELL_RZ];
         cell[SK_CELL_IN_FACTOR] = cell[SK_CELL_FACTORED];
     }
-    cell[SK_CELL_CG_FIRST] = cell[SK_CELL_CG_TURNS];
     cell[SK_CELL_SLOPE] = 0;
     cell[SK_CELL_SHARE] = 1;
     if (!(cell[SK_CELL_RZ] > 0)) cell[SK_CELL_CG_DONE] = 1;
@@ -252,15 +251,6 @@ void sk_solve_cg_beta(sk_run *run, const sk_row *row, size_t begin, size_t end) 
     cell[SK_CELL_RZ] = rz;
     cell[SK_CELL_CG_TURNS]++;
     if (!(rz > tolerance * tolerance * cell[SK_CELL_RZ_START])) cell[SK_CELL_CG_DONE] = 1;
-}
-
-/* A factor of an earlier turn, or substep, still serves while it costs less to go on with it than to make a new one.
- * Each step begins with a new one, so that what it comes to depends on its start alone. */
-void sk_solve_judge_factor(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    (void)row, (void)begin, (void)end;
-    enum { MOST_ITERATIONS = 10 };
-    double *cell = run->cell;
-    if (cell[SK_CELL_CG_TURNS] - cell[SK_CELL_CG_FIRST] > MOST_ITERATIONS) cell[SK_CELL_FACTORED] = 0;
 }
 
 /* The potential whose minimum is sought falls along the change while R times the change is positive. Too far past

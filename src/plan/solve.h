@@ -34,19 +34,18 @@ typedef enum sk_cell {
     SK_CELL_SOLVED,
     SK_CELL_CG_DONE,
     SK_CELL_LINE_DONE,
-    SK_CELL_START,    /* R w R when the substep began */
-    SK_CELL_PRESENT,  /* the same now */
-    SK_CELL_ROUNDING, /* and what the rounding of positions makes of it */
-    SK_CELL_TURN,     /* of Newton's method, from 1 */
-    SK_CELL_RZ,       /* of conjugate gradients: the residual in the preconditioner's norm, */
-    SK_CELL_RZ_START, /* the same in the first turn */
-    SK_CELL_ALPHA,    /* the step along the direction, */
-    SK_CELL_BETA,     /* and what is kept of the direction */
-    SK_CELL_SHARE,    /* of the change that the line search tries */
-    SK_CELL_SLOPE,    /* R times the change, before it */
-    SK_CELL_FACTORED, /* there is a factor of the whole matrix, and it serves */
+    SK_CELL_START,     /* R w R when the substep began */
+    SK_CELL_PRESENT,   /* the same now */
+    SK_CELL_ROUNDING,  /* and what the rounding of positions makes of it */
+    SK_CELL_TURN,      /* of Newton's method, from 1 */
+    SK_CELL_RZ,        /* of conjugate gradients: the residual in the preconditioner's norm, */
+    SK_CELL_RZ_START,  /* the same in the first turn */
+    SK_CELL_ALPHA,     /* the step along the direction, */
+    SK_CELL_BETA,      /* and what is kept of the direction */
+    SK_CELL_SHARE,     /* of the change that the line search tries */
+    SK_CELL_SLOPE,     /* R times the change, before it */
+    SK_CELL_FACTORED,  /* there is a factor of the whole matrix */
     SK_CELL_IN_FACTOR, /* the first turn's residual was measured in the factor's norm */
-    SK_CELL_CG_FIRST, /* conjugate gradients' turns before the present turn of Newton's */
     /* a step's account */
     SK_CELL_NEWTON_TURNS,
     SK_CELL_CG_TURNS,
@@ -70,6 +69,6 @@ extern const sk_kernels sk_solve_dot, sk_solve_norm, sk_solve_rounding;
 double sk_solve_sum(const sk_run *run);
 /* Scalars; each begins with the sum of what the row before it left. */
 extern sk_row_kernel sk_solve_start, sk_solve_line_start, sk_solve_judge, sk_solve_note_rounding, sk_solve_cg_start,
-    sk_solve_cg_alpha, sk_solve_cg_beta, sk_solve_judge_factor, sk_solve_line_judge, sk_solve_end;
+    sk_solve_cg_alpha, sk_solve_cg_beta, sk_solve_line_judge, sk_solve_end;
 
 #endif

@@ -83,7 +83,8 @@ static skein_status make_matrix(skein_world *world, skein_error *error) {
         sk_batch *batch = world->rules.batches.data[i];
         if (!batch->type->blocks.version[world->isa]) continue;
         sk_release(allocator, batch->pair);
-        batch->pair = sk_allocate(allocator, batch->count * batch->arity * (batch->arity - 1) / 2 * sizeof *batch->pair);
+        batch->pair =
+            sk_allocate(allocator, batch->count * batch->arity * (batch->arity - 1) / 2 * sizeof *batch->pair);
         good = batch->pair != NULL;
         parts[part_count++] = (sk_matrix_part){batch->particle, batch->count, batch->arity, batch->pair};
     }
