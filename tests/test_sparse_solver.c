@@ -206,25 +206,35 @@ static skein_world *small_cloth(dense *d) {
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 6), SKEIN_VEC3("position", 0.05, 0.62, 0),
                                             SKEIN_REAL("stretch.stiffness", 2e3), SKEIN_REAL("shear.stiffness", 300),
                                             SKEIN_REAL("bend.stiffness", 20), SKEIN_TEXT("pins", "0"),
-                                            SKEIN_REAL("stretch.damping", 1)),
+                                            SKEIN_REAL("stretch.damping", 5)),
                              NULL));
     add_gravity(world);
-    OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 1)), NULL));
+    OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 3)), NULL));
     OK(world, skein_force_add(world, "potential", SKEIN_SETTINGS(SKEIN_TEXT("energy", "2 * p.x^2")), NULL));
     OK(world, skein_collider_add(world, "sphere",
                                  SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.2, 0), SKEIN_REAL("radius", 0.35),
-                                                SKEIN_REAL("friction", 0.2)),
+                                                SKEIN_REAL("friction", 0.8)),
                                  NULL));
     return world;
 }
+
+static double farthest(skein_world *a, skein_world *b) {
+    double off = 0;
+    for (size_t i = 0; i < 36; i++) off = fmax(off, length3(minus(position_of(a, i), position_of(b, i))));
+    return off;
+}
+
+/* Both are solved to the same tolerance. In float that is all rounding, which sliding and folding make larger. */
+static const double far_enough = sizeof(skein_real) == sizeof(double) ? 1e-4 : 5e-3;
 
 static void the_motion_is_that_of_conjugate_gradients_alone(void **state) {
     (void)state;
     dense d = sound();
     skein_world *alone = small_cloth(NULL), *world = small_cloth(&d);
     take_cholesky(world, 2);
+    double off = 0;
     size_t contacts = 0, iterations[2] = {0, 0}, turns = 0;
-    for (int n = 0; n < 40; n++) {
+    for (int n = 0; n < 35; n++) {
         steps(alone, 1, 1.0 / 60);
         steps(world, 1, 1.0 / 60);
         skein_statistics a = statistics_of(alone), b = statistics_of(world);
@@ -235,12 +245,12 @@ static void the_motion_is_that_of_conjugate_gradients_alone(void **state) {
         contacts += b.contacts;
         iterations[0] += a.solver_iterations, iterations[1] += b.solver_iterations;
         turns += b.solver_turns;
-        for (size_t i = 0; i < 36; i++)
-            assert_under(length3(minus(position_of(alone, i), position_of(world, i))), 2e-3);
+        off = fmax(off, farthest(alone, world));
     }
-    printf("%zu contacts, %zu turns, %zu iterations instead of %zu, %zu factors\n", contacts, turns, iterations[1],
-           iterations[0], d.factored);
-    assert_true(contacts > 100);
+    printf("%zu contacts, %zu turns, %zu iterations instead of %zu, off by %.2g m\n", contacts, turns, iterations[1],
+           iterations[0], off);
+    assert_under(off, far_enough);
+    assert_true(contacts > 50);
     assert_true(6 * iterations[1] < iterations[0]);
     assert_int_equal(d.analysed, 1);
     // a field that changes is no new arrangement; a constraint is
@@ -281,8 +291,8 @@ static void a_factor_that_fails_leaves_the_blocks(void **state) {
             assert_true(s.nonfinite == 0 && s.unsolved == 0);
         }
         assert_true(failures > 10);
-        for (size_t i = 0; i < 36; i++)
-            assert_under(length3(minus(position_of(alone, i), position_of(world, i))), 2e-3);
+        printf("%zu failures, off by %.2g m\n", failures, farthest(alone, world));
+        assert_under(farthest(alone, world), far_enough);
     }
     skein_world_destroy(alone);
     skein_world_destroy(world);
@@ -317,50 +327,61 @@ static void what_analysing_says_the_step_says(void **state) {
 
 /* ---- CHOLMOD ---- */
 
-enum { SIDE = 41 };
-
-/* A square metre of stiff cloth that swings down from two corners, for `count` steps of 1/60 s. */
-static skein_world *stiff_cloth(int threads, bool cholesky, int count, size_t *unsolved) {
+/* A square metre of stiff cloth that swings down from two corners, in one substep a step. */
+static skein_world *stiff_cloth(int side, int threads, bool cholesky, int turns) {
     skein_world_desc desc = skein_default_world_desc();
     desc.thread_count = threads;
     skein_world *world = skein_world_create(&desc, NULL);
     assert_non_null(world);
-    OK(world, skein_method_set(world, "backward_euler", SKEIN_SETTINGS(SKEIN_REAL("substeps", 1))));
-    if (cholesky) {
-        skein_error error;
-        assert_int_equal(skein_cholmod_attach(world, &error), SKEIN_OK);
-        take_cholesky(world, 1);
-    }
+    skein_error error;
+    if (cholesky) assert_int_equal(skein_cholmod_attach(world, &error), SKEIN_OK);
+    OK(world, skein_method_set(world, "backward_euler",
+                               SKEIN_SETTINGS(SKEIN_REAL("substeps", 1), SKEIN_REAL("turns", turns),
+                                              SKEIN_REAL("iterations", 15),
+                                              SKEIN_TEXT("preconditioner", cholesky ? "cholesky" : "blocks"))));
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", "top corners"),
-                                            SKEIN_REAL("stretch.stiffness", 1e5), SKEIN_REAL("shear.stiffness", 1e4),
-                                            SKEIN_REAL("bend.stiffness", 100)),
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_TEXT("pins", "top corners"),
+                                            SKEIN_REAL("density", 2), SKEIN_REAL("stretch.stiffness", 1e4),
+                                            SKEIN_REAL("shear.stiffness", 1e3), SKEIN_REAL("bend.stiffness", 100)),
                              NULL));
     add_gravity(world);
-    for (int n = 0; n < count; n++) {
-        steps(world, 1, 1.0 / 60);
-        *unsolved += statistics_of(world).unsolved;
-    }
     return world;
 }
 
 static void cholmod_solves_what_blocks_leave(void **state) {
     (void)state;
     if (!skein_cholmod_is_here()) skip();
-    size_t left = 0, unsolved = 0, again = 0;
-    skein_world_destroy(stiff_cloth(1, false, 6, &left));
-    skein_world *one = stiff_cloth(1, true, 6, &unsolved), *two = stiff_cloth(2, true, 6, &again);
-    skein_statistics s = statistics_of(one);
-    printf("%zu of 6 steps left by blocks, %zu with a factor; %zu turns, %zu iterations, %zu factors\n", left, unsolved,
-           s.solver_turns, s.solver_iterations, s.solver_factors);
-    assert_true(left > 0);
-    assert_int_equal(unsolved, 0);
-    assert_true(s.solver_factors > 0 && s.solver_failures == 0);
-    assert_true(skein_world_hash(one) == skein_world_hash(two));
-    // a reset begins anew, with no memory of what was factored before
+    enum { STEPS = 10 };
+    size_t left[2] = {0, 0}, iterations[2] = {0, 0};
+    for (int cholesky = 0; cholesky < 2; cholesky++) {
+        skein_world *world = stiff_cloth(17, 1, cholesky, 12);
+        for (int n = 0; n < STEPS; n++) {
+            steps(world, 1, 1.0 / 30);
+            skein_statistics s = statistics_of(world);
+            left[cholesky] += s.unsolved, iterations[cholesky] += s.solver_iterations;
+            assert_int_equal(s.solver_failures, 0);
+            assert_int_equal(s.solver_factors, cholesky ? s.solver_turns : 0);
+        }
+        skein_world_destroy(world);
+    }
+    printf("of %d steps blocks left %zu (%zu iterations), a factor %zu (%zu)\n", STEPS, left[0], iterations[0], left[1],
+           iterations[1]);
+    assert_true(left[0] > STEPS / 2);
+    assert_int_equal(left[1], 0);
+}
+
+/* Enough particles to be cut over threads. */
+static void a_factor_gives_the_same_bits_again(void **state) {
+    (void)state;
+    if (!skein_cholmod_is_here()) skip();
+    skein_world *one = stiff_cloth(65, 1, true, 1), *two = stiff_cloth(65, 2, true, 1);
+    steps(one, 2, 1.0 / 60);
+    steps(two, 2, 1.0 / 60);
+    uint64_t hash = skein_world_hash(one);
+    assert_true(skein_world_hash(two) == hash);
     OK(one, skein_world_reset(one));
-    steps(one, 6, 1.0 / 60);
-    assert_true(skein_world_hash(one) == skein_world_hash(two));
+    steps(one, 2, 1.0 / 60);
+    assert_true(skein_world_hash(one) == hash);
     skein_world_destroy(one);
     skein_world_destroy(two);
 }
@@ -386,6 +407,7 @@ int main(void) {
         cmocka_unit_test(a_factor_that_fails_leaves_the_blocks),
         cmocka_unit_test(what_analysing_says_the_step_says),
         cmocka_unit_test(cholmod_solves_what_blocks_leave),
+        cmocka_unit_test(a_factor_gives_the_same_bits_again),
         cmocka_unit_test(without_cholmod_attaching_says_so),
     };
     return cmocka_run_group_tests_name("sparse solvers", tests, NULL, NULL);
