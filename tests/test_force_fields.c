@@ -270,7 +270,7 @@ static uint64_t hash_under(const char *isa, const char *method, int threads) {
     OK(world, skein_method_set(world, method, SKEIN_SETTINGS(SKEIN_REAL("substeps", 15))));
     OK(world, skein_body_add(world, "cloth", NULL,
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 20, 20), SKEIN_REAL("stretch.stiffness", 20),
-                                            SKEIN_REAL("shear.stiffness", 2), SKEIN_REAL("bend.stiffness", 1)),
+                                            SKEIN_REAL("shear.stiffness", 2), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 1)),
                              NULL));
     OK(world, skein_force_add(world, "potential",
                               SKEIN_SETTINGS(SKEIN_TEXT("energy", "a*sin(5*p.x - t)*cos(p.z) + p.y^2"),

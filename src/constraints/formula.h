@@ -5,6 +5,7 @@
 #include "constraints/sweep.h"
 #include "formula/formula.h"
 #include "formula/tape.h"
+#include "plan/matrix.h"
 
 /* A formula on its way through the walks; made when its object is, and again when the text changes. */
 typedef struct sk_constraint_formula {

@@ -72,7 +72,8 @@ static int tightness(const sk_writer *w, sk_node node) {
 static void put_temporary(sk_writer *w, sk_node node) {
     const char *name = w->formula->graph.data[node].name;
     size_t length = strlen(name);
-    bool plain = length && name[0] != '_' && name[length - 1] != '_' && !strstr(name, "__");
+    bool plain =
+        length && name[0] != '_' && strncmp(name, "gl_", 3) != 0 && name[length - 1] != '_' && !strstr(name, "__");
     sk_put(w, "%s_%u", plain ? name : "x", w->number[node]);
 }
 
@@ -222,12 +223,50 @@ static void put_graph(sk_writer *w, const sk_node *outputs, size_t count) {
     }
 }
 
+/* ---- the calls ---- */
+
+/* Room for what is known of each node; false when there is no memory. To be ended in either case. */
+static bool begin(sk_writer *w, sk_allocator *allocator) {
+    size_t nodes = w->formula->graph.count;
+    w->live = sk_allocate(allocator, nodes * sizeof *w->live);
+    w->uses = sk_allocate(allocator, nodes * sizeof *w->uses);
+    w->number = sk_allocate(allocator, nodes * sizeof *w->number);
+    w->height = sk_allocate(allocator, nodes * sizeof *w->height);
+    w->shared = sk_allocate(allocator, nodes * sizeof *w->shared);
+    if (w->shared) memset(w->shared, 0, nodes * sizeof *w->shared);
+    return w->live && w->uses && w->number && w->height && w->shared;
+}
+
+static void end(sk_writer *w, sk_allocator *allocator) {
+    sk_release(allocator, w->live);
+    sk_release(allocator, w->uses);
+    sk_release(allocator, w->number);
+    sk_release(allocator, w->height);
+    sk_release(allocator, w->shared);
+}
+
+bool sk_formula_put_glsl(const skein_formula *f, const char *head, const sk_node *outputs, size_t count,
+                         void (*put)(void *user, const char *text), void *user) {
+    sk_writer w = {.formula = f, .language = &sk_shader_language, .write = put, .user = user, .head = head};
+    bool good = begin(&w, f->allocator);
+    if (good) {
+        sk_put_temporaries(&w, outputs, count);
+        sk_put(&w, "    float o[%zu];\n", count);
+        for (size_t k = 0; k < count; k++) {
+            sk_put(&w, "    o[%zu] = ", k);
+            put_output(&w, outputs[k]);
+        }
+    }
+    end(&w, f->allocator);
+    return good;
+}
+
 /* `compiled` is the name of what is to be registered, or NULL for `asked`. */
 static skein_status emit(const skein_formula *f, skein_formula_language asked, const char *compiled,
                          void (*write)(void *user, const char *text), void *user, skein_error *error) {
     sk_allocator allocator = sk_default_allocator();
     sk_node outputs[SK_FORMULA_MOST_OUTPUTS];
-    size_t nodes = f->graph.count, count = outputs_of(f, outputs);
+    size_t count = outputs_of(f, outputs);
     bool kernel = asked == SKEIN_FORMULA_KERNEL || compiled;
     if (kernel && f->size != 1)
         return sk_fail(error, SKEIN_ERROR_VALUE, "", "a constraint's formula is a number, and this one is a vector");
@@ -239,23 +278,13 @@ static skein_status emit(const skein_formula *f, skein_formula_language asked, c
                                : asked == SKEIN_FORMULA_C ? &sk_c_language
                                                           : &sk_glsl_language,
                    .write = write,
-                   .user = user,
-                   .live = sk_allocate(&allocator, nodes * sizeof *w.live),
-                   .uses = sk_allocate(&allocator, nodes * sizeof *w.uses),
-                   .number = sk_allocate(&allocator, nodes * sizeof *w.number),
-                   .height = sk_allocate(&allocator, nodes * sizeof *w.height),
-                   .shared = sk_allocate(&allocator, nodes * sizeof *w.shared)};
-    bool good = w.live && w.uses && w.number && w.height && w.shared;
-    if (good) memset(w.shared, 0, nodes * sizeof *w.shared);
+                   .user = user};
+    bool good = begin(&w, &allocator);
     if (good && asked == SKEIN_FORMULA_GRAPH) put_graph(&w, outputs, count);
     else if (good && compiled) sk_put_compiled(&w, compiled);
     else if (good && kernel) sk_put_kernel(&w);
     else if (good) put_all(&w, outputs, count);
-    sk_release(&allocator, w.live);
-    sk_release(&allocator, w.uses);
-    sk_release(&allocator, w.number);
-    sk_release(&allocator, w.height);
-    sk_release(&allocator, w.shared);
+    end(&w, &allocator);
     return good ? SKEIN_OK : sk_fail_memory(error, "a formula as text");
 }
 

@@ -63,6 +63,7 @@ typedef enum sk_row_kind {
     SK_ROW_CONTACT_FILTER,
     SK_ROW_DOT,
     SK_ROW_SCALAR,
+    SK_ROW_CALL, /* what is no loop over elements: a solver from outside */
     SK_ROW_REPEAT,
     SK_ROW_KIND_COUNT
 } sk_row_kind;
@@ -93,10 +94,11 @@ typedef struct sk_run {
     sk_grid *grid;
     sk_cells *cells;
     sk_allocator *allocator;
-    double time;    /* at the end of the present substep, s */
-    double *cell;   /* what rows of a solve hand to each other (plan/solve.h) */
-    bool last_turn; /* of the innermost repeat */
-    bool no_memory; /* a growing list could not grow: the step fails and says so */
+    double time;              /* at the end of the present substep, s */
+    double *cell;             /* what rows of a solve hand to each other (plan/solve.h) */
+    struct sk_matrix *matrix; /* of a solve with a factor (plan/matrix.h), else NULL */
+    bool last_turn;           /* of the innermost repeat */
+    bool no_memory;           /* a growing list could not grow: the step fails and says so */
 } sk_run;
 
 typedef struct sk_row sk_row;
@@ -130,6 +132,7 @@ struct sk_row {
     size_t begin, end;     /* elements; a repeat: the number of turns is `end` */
     bool sets;             /* a field row: F is written, not added to */
     bool by_particle;      /* its elements are the user's particles, not slots: not to be run in chunks with others */
+    bool alone;            /* it looks at slots that are not its own: nor is that */
     size_t packed;         /* slots [0, packed) are in packed blocks when it runs */
     sk_walk walk;          /* of rows whose elements are strip rows */
     size_t length;         /* a repeat: how many rows after it are repeated */

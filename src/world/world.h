@@ -13,6 +13,7 @@
 #include "formula/parameters.h"
 #include "methods/method.h"
 #include "particles/particles.h"
+#include "plan/matrix.h"
 #include "plan/solve.h"
 
 typedef struct sk_body sk_body;
@@ -24,7 +25,7 @@ typedef struct sk_body_type {
     skein_status (*build)(skein_world *world, sk_body *body, const void *params, const skein_mesh *mesh,
                           skein_error *error);
     /* Whether a field can change once the body is built (a stiffness can, a grid's size cannot). */
-    bool (*live)(const char *field);
+    bool (*live)(const void *params, const char *field);
     /* Passes changed parameters on to the body's rules. */
     void (*change)(sk_body *body, const void *params);
 } sk_body_type;
@@ -116,6 +117,7 @@ struct skein_world {
     uint64_t steps, substeps;
     double first_energy;        /* J, when the first step began */
     double cell[SK_CELL_COUNT]; /* of the last step */
+    sk_matrix matrix;           /* where a plan factors one, and the solver */
     sk_device *device;          /* NULL: the processor */
     struct {
         const skein_compiled **data;
