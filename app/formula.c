@@ -215,9 +215,7 @@ static int formula(int argc, char **argv) {
         [HESSIAN] = {"--hessian", NULL, "print the second derivatives, too", false, NULL, 0},
         [GRAPH] = {"--graph", NULL, "print the operations, for the value and its gradient", false, NULL, 0},
         [EMIT] = {"--emit", "c|function|glsl|kernel",
-                  "print it as a file of C to compile and register, with --hessian as an energy; as a function in C or "
-                  "GLSL; or as the library's own kernels are",
-                  false, NULL, 0},
+                  "print it as C to compile and register (--hessian: as an energy), or as a function", false, NULL, 0},
         [NAME] = {"--name", "NAME", "what the file of --emit c calls it; else skein_compiled_formula", false, NULL, 0},
         [FUNCTIONS] = {"--functions", NULL, "print what functions there are", false, NULL, 0}};
     const char *text;
