@@ -205,8 +205,8 @@ static skein_world *small_cloth(dense *d) {
     OK(world, skein_body_add(world, "cloth", NULL,
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 6), SKEIN_VEC3("position", 0.05, 0.62, 0),
                                             SKEIN_REAL("stretch.stiffness", 2e3), SKEIN_REAL("shear.stiffness", 300),
-                                            SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 20), SKEIN_TEXT("pins", "0"),
-                                            SKEIN_REAL("stretch.damping", 5)),
+                                            SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 20),
+                                            SKEIN_TEXT("pins", "0"), SKEIN_REAL("stretch.damping", 5)),
                              NULL));
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 3)), NULL));
@@ -342,7 +342,8 @@ static skein_world *stiff_cloth(int side, int threads, bool cholesky, int turns)
     OK(world, skein_body_add(world, "cloth", NULL,
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_TEXT("pins", "top corners"),
                                             SKEIN_REAL("density", 2), SKEIN_REAL("stretch.stiffness", 1e4),
-                                            SKEIN_REAL("shear.stiffness", 1e3), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 100)),
+                                            SKEIN_REAL("shear.stiffness", 1e3), SKEIN_TEXT("bend.by", "springs"),
+                                            SKEIN_REAL("bend.stiffness", 100)),
                              NULL));
     add_gravity(world);
     return world;
