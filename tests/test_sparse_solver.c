@@ -205,8 +205,8 @@ static skein_world *small_cloth(dense *d) {
     OK(world, skein_body_add(world, "cloth", NULL,
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 6), SKEIN_VEC3("position", 0.05, 0.62, 0),
                                             SKEIN_REAL("stretch.stiffness", 2e3), SKEIN_REAL("shear.stiffness", 300),
-                                            SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 20), SKEIN_TEXT("pins", "0"),
-                                            SKEIN_REAL("stretch.damping", 5)),
+                                            SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 20),
+                                            SKEIN_TEXT("pins", "0"), SKEIN_REAL("stretch.damping", 5)),
                              NULL));
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 3)), NULL));
@@ -342,7 +342,8 @@ static skein_world *stiff_cloth(int side, int threads, bool cholesky, int turns)
     OK(world, skein_body_add(world, "cloth", NULL,
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_TEXT("pins", "top corners"),
                                             SKEIN_REAL("density", 2), SKEIN_REAL("stretch.stiffness", 1e4),
-                                            SKEIN_REAL("shear.stiffness", 1e3), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 100)),
+                                            SKEIN_REAL("shear.stiffness", 1e3), SKEIN_TEXT("bend.by", "springs"),
+                                            SKEIN_REAL("bend.stiffness", 100)),
                              NULL));
     add_gravity(world);
     return world;
@@ -375,12 +376,12 @@ static void a_factor_gives_the_same_bits_again(void **state) {
     (void)state;
     if (!skein_cholmod_is_here()) skip();
     skein_world *one = stiff_cloth(65, 1, true, 1), *two = stiff_cloth(65, 2, true, 1);
-    steps(one, 2, 1.0 / 60);
-    steps(two, 2, 1.0 / 60);
+    steps(one, 1, 1.0 / 60);
+    steps(two, 1, 1.0 / 60);
     uint64_t hash = skein_world_hash(one);
     assert_true(skein_world_hash(two) == hash);
     OK(one, skein_world_reset(one));
-    steps(one, 2, 1.0 / 60);
+    steps(one, 1, 1.0 / 60);
     assert_true(skein_world_hash(one) == hash);
     skein_world_destroy(one);
     skein_world_destroy(two);
