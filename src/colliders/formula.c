@@ -113,7 +113,7 @@ static bool changes(const void *data) {
 #define SK_KERNELS "colliders/formula.c"
 #include "base/for_each_isa.h"
 
-static const sk_making making = {make, unmake};
+static const sk_making making = {.make = make, .unmake = unmake};
 const sk_collider_type sk_formula_surface = {
     .kind = {"formula", "any surface that a formula describes, also one that moves and changes", SKEIN_COLLIDER, fields,
              sizeof fields / sizeof *fields, sizeof(formula_params)},

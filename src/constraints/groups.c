@@ -233,7 +233,7 @@ static bool add_pass(const dealer *d, size_t first, size_t last) {
 
 bool sk_groups_deal(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles, size_t *lane_of) {
     dealer d = {batch,   allocator,    particles,
-                lane_of, batch->arity, batch->type->in_blocks ? BLOCK_DISTANCE : GROUP_DISTANCE};
+                lane_of, batch->arity, batch->type->in_blocks && !batch->compiled ? BLOCK_DISTANCE : GROUP_DISTANCE};
     size_t first[MOST_PASSES + 1], count = find_passes(&d, first);
     for (size_t i = 0; i < count; i++)
         if (!add_pass(&d, first[i], first[i + 1])) return false;

@@ -345,7 +345,7 @@ static void unmake(void *data, sk_allocator *allocator) {
     sk_pair_formula_release(((sk_flocking_params *)data)->pair, allocator);
 }
 
-static const sk_making making = {make, unmake};
+static const sk_making making = {.make = make, .unmake = unmake};
 
 sk_flocking_numbers sk_flocking_numbers_of(const sk_flocking_params *params) {
     double reach = radius(params);

@@ -151,7 +151,7 @@ static bool is_guarded(const void *data, const double x[3], const double v[3], d
 #define SK_KERNELS "forces/force_field.c"
 #include "base/for_each_isa.h"
 
-static const sk_making making = {make, unmake};
+static const sk_making making = {.make = make, .unmake = unmake};
 const sk_force_type sk_force_field = {
     .kind = {"force_field", "any force that is a formula of place, velocity and time", SKEIN_FORCE, fields,
              sizeof fields / sizeof *fields, sizeof(force_field_params)},

@@ -147,7 +147,7 @@ static bool is_guarded(const void *data, const double x[3], const double v[3], d
 #define SK_KERNELS "forces/potential.c"
 #include "base/for_each_isa.h"
 
-static const sk_making making = {make, unmake};
+static const sk_making making = {.make = make, .unmake = unmake};
 const sk_force_type sk_potential = {
     .kind = {"potential", "any potential energy of place (and time) that is a formula", SKEIN_FORCE, fields,
              sizeof fields / sizeof *fields, sizeof(potential_params)},

@@ -29,6 +29,7 @@ struct sk_writer {
     uint32_t *number; /* of a temporary, from 1 on */
     uint8_t *height;  /* of an expression written in place; 0: it has a name */
     const char *head; /* of the function that sk_formula_put_glsl writes */
+    uint32_t *shared; /* of what was computed for all elements beforehand, from 1 on; else 0 */
 };
 
 extern const sk_language sk_c_language, sk_glsl_language, sk_shader_language, sk_kernel_language;
@@ -42,6 +43,8 @@ bool sk_formula_put_glsl(const skein_formula *formula, const char *head, const s
 
 /* A number's value and gradient for the library's own walks (emit_kernel.c). */
 void sk_put_kernel(sk_writer *w);
+/* The same as a file to be compiled and registered (emit_compiled.c). */
+void sk_put_compiled(sk_writer *w, const char *name);
 /* What the language opens with, and a line for each node that has a name. */
 void sk_put_temporaries(sk_writer *w, const sk_node *outputs, size_t count);
 /* A node's name or expression, in brackets if it holds together less than 1 sums, 2 products, 3 calls do. */
