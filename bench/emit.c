@@ -1,5 +1,5 @@
-/* bench_emit NAME FILE: one of the formulas of texts.c as the emitter writes it for the library's kernels. The build
- * runs it, so that what is measured is what the emitter makes today. */
+/* bench_emit NAME FILE [second]: one of the formulas of texts.c as the emitter writes it for the library's kernels, or
+ * as C with second derivatives. The build runs it, so that what is measured is what the emitter makes today. */
 #include <stdio.h>
 #include <string.h>
 
@@ -14,20 +14,20 @@ static void print(void *file, const char *text) {
 int main(int argc, char **argv) {
     const bench_text *found = NULL;
     for (int i = 0; i < BENCH_FORMULAS; i++)
-        if (argc == 3 && !strcmp(argv[1], bench_texts[i].identifier)) found = &bench_texts[i];
+        if (argc >= 3 && !strcmp(argv[1], bench_texts[i].identifier)) found = &bench_texts[i];
     if (!found) {
-        fprintf(stderr, "usage: bench_emit NAME FILE, where NAME is an identifier in texts.c\n");
+        fprintf(stderr, "usage: bench_emit NAME FILE [second], where NAME is an identifier in texts.c\n");
         return 2;
     }
     skein_error error;
-    skein_formula_desc desc = {.text = found->text, .parameters = found->parameters};
+    skein_formula_desc desc = {.text = found->text, .parameters = found->parameters, .second = argc == 4};
     skein_formula *f = skein_formula_create(&desc, NULL, &error);
     FILE *file = f ? fopen(argv[2], "w") : NULL;
     if (f && !file) {
         perror(argv[2]);
         return 1;
     }
-    if (!f || skein_formula_emit(f, SKEIN_FORMULA_KERNEL, print, file, &error)) {
+    if (!f || skein_formula_emit(f, argc == 4 ? SKEIN_FORMULA_C : SKEIN_FORMULA_KERNEL, print, file, &error)) {
         fprintf(stderr, "bench_emit: %s: %s\n", error.where, error.message);
         return 1;
     }
