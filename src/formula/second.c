@@ -217,24 +217,33 @@ static bool find_by_cut(maker *m, const sk_node *cut, size_t count, workspace *w
 
 /* ---- cuts ---- */
 
-/* Goes down from the value, the last node first, until `last` has been opened; what is reached then is a cut.
- * lowest[k]: the node after which it had k members for the last time. Returns how many it has. */
-static size_t open_down_to(const maker *m, size_t last, bool *reached, size_t lowest[MOST_CUT + 1]) {
+/* Cuts by the number of their members: the last node that was opened on the way down to each, and how many of those
+ * before it were no sums. Of two cuts with as many of these the larger one only has sums taken apart. */
+typedef struct cuts {
+    size_t lowest[MOST_CUT + 1], bends[MOST_CUT + 1];
+} cuts;
+
+static bool is_linear(const sk_graph *g, const sk_graph_node *n) {
+    if (n->op != SK_OP_MULTIPLY) return n->op == SK_OP_ADD || n->op == SK_OP_SUBTRACT || n->op == SK_OP_NEGATE;
+    return !(g->data[n->arg[0]].uses & g->data[n->arg[1]].uses & SK_USES_POSITION);
+}
+
+/* Goes down from the value, the last node first, until `last` has been opened; what is reached then is a cut. */
+static void open_down_to(const maker *m, size_t last, bool *reached, cuts *found) {
     const sk_graph *g = m->graph;
-    size_t size = 1;
+    size_t size = 1, bends = 0;
     memset(reached, 0, ((size_t)m->output + 1) * sizeof *reached);
     reached[m->output] = true;
     for (size_t i = (size_t)m->output + 1; i-- > last;) {
         const sk_graph_node *n = &g->data[i];
         if (!reached[i] || n->op == SK_OP_INPUT) continue;
-        reached[i] = false, size--;
+        reached[i] = false, size--, bends += !is_linear(g, n);
         for (int k = n->op == SK_OP_LESS ? 2 : 0; k < sk_op_info[n->op].arity; k++) {
             bool counts = (g->data[n->arg[k]].uses & SK_USES_POSITION) && !reached[n->arg[k]];
             if (counts) reached[n->arg[k]] = true, size++;
         }
-        if (size <= MOST_CUT) lowest[size] = i;
+        if (size <= MOST_CUT && found) found->lowest[size] = i, found->bends[size] = bends;
     }
-    return size;
 }
 
 /* ---- all of it ---- */
@@ -302,21 +311,20 @@ static void keep_better(const maker *m, sk_node *try, sk_node *hessian, size_t *
 }
 
 static void try_all(maker *m, workspace *w, bool *reached, sk_node *try, sk_node *hessian) {
-    size_t fewest = SIZE_MAX, lowest[MOST_CUT + 1] = {0}, none[MOST_CUT + 1];
-    bool cut_is_best = false;
-    open_down_to(m, 0, reached, lowest);
+    size_t fewest = SIZE_MAX;
+    cuts found = {0};
+    open_down_to(m, 0, reached, &found);
     if (find_plainly(m)) keep_better(m, try, hessian, &fewest);
     for (size_t k = 1; k <= MOST_CUT && m->graph->count < MOST_NODES; k++) {
         sk_node cut[MOST_CUT];
-        size_t count = 0, before = fewest;
-        if (!lowest[k]) continue;
-        open_down_to(m, lowest[k], reached, none);
+        size_t count = 0;
+        bool is_new = found.bends[k] > 0; // else the value is a sum of it
+        for (size_t j = 1; j < k; j++) is_new &= found.bends[j] != found.bends[k];
+        if (!is_new) continue;
+        open_down_to(m, found.lowest[k], reached, NULL);
         for (size_t i = 0; i <= m->output && count < MOST_CUT; i++)
             if (reached[i]) cut[count++] = (sk_node)i;
-        if (!find_by_cut(m, cut, count, w)) continue;
-        keep_better(m, try, hessian, &fewest);
-        if (cut_is_best && fewest == before) break; // what is cut further down only grows
-        cut_is_best |= fewest < before;
+        if (find_by_cut(m, cut, count, w)) keep_better(m, try, hessian, &fewest);
     }
 }
 
