@@ -8,7 +8,7 @@
 
 #include "app/command.h"
 
-enum { AT, REST_AT, VELOCITY, PARAM, TIME, GRAD, HESSIAN, GRAPH, EMIT, FUNCTIONS, OPTION_COUNT };
+enum { AT, REST_AT, VELOCITY, PARAM, TIME, GRAD, HESSIAN, GRAPH, EMIT, NAME, FUNCTIONS, OPTION_COUNT };
 
 /* What was asked, as numbers. */
 typedef struct question {
@@ -152,17 +152,30 @@ static void print_text(void *user, const char *text) {
     fputs(text, stdout);
 }
 
+/* What --emit takes. */
+typedef struct language {
+    const char *word;
+    skein_formula_language language;
+} language;
+static const language languages[] = {{"c", SKEIN_FORMULA_C}, // to be compiled and registered
+                                     {"function", SKEIN_FORMULA_C},
+                                     {"glsl", SKEIN_FORMULA_GLSL},
+                                     {"kernel", SKEIN_FORMULA_KERNEL},
+                                     {NULL, SKEIN_FORMULA_C}};
+
 static int answer(const char *text, const app_option *options, question *q) {
     skein_formula_mark mark;
     skein_error error = {SKEIN_OK, "", ""};
-    const char *language = app_value(options, OPTION_COUNT, "--emit");
+    const char *word = app_value(options, OPTION_COUNT, "--emit");
+    const language *wanted = languages;
+    while (word && wanted->word && strcmp(word, wanted->word)) wanted++;
     q->desc = (skein_formula_desc){.text = text,
                                    .parameters = q->names,
                                    .velocities = true,
                                    .comparison = true,
                                    .second = options[HESSIAN].count > 0};
-    if (language && strcmp(language, "c") && strcmp(language, "glsl") && strcmp(language, "kernel")) {
-        fault("--emit", language, "c, glsl or kernel");
+    if (!wanted->word) {
+        fault("--emit", word, "c, function, glsl or kernel");
         return EXIT_FAULT;
     }
     skein_formula *f = skein_formula_create(&q->desc, &mark, &error);
@@ -172,12 +185,12 @@ static int answer(const char *text, const app_option *options, question *q) {
     }
     print_warnings(text, f);
     int status = EXIT_OK;
-    skein_formula_language wanted = !language                     ? SKEIN_FORMULA_GRAPH
-                                    : !strcmp(language, "c")      ? SKEIN_FORMULA_C
-                                    : !strcmp(language, "kernel") ? SKEIN_FORMULA_KERNEL
-                                                                  : SKEIN_FORMULA_GLSL;
-    if (language || options[GRAPH].count) {
-        if (skein_formula_emit(f, wanted, print_text, NULL, &error)) app_print_error(&error), status = EXIT_FAILURE_RUN;
+    if (word || options[GRAPH].count) {
+        const char *name = app_value(options, OPTION_COUNT, "--name");
+        if (word && wanted == languages
+                ? skein_formula_emit_compiled(f, name, print_text, NULL, &error)
+                : skein_formula_emit(f, word ? wanted->language : SKEIN_FORMULA_GRAPH, print_text, NULL, &error))
+            app_print_error(&error), status = EXIT_FAULT;
     } else {
         status = print_answer(f, options, q);
     }
@@ -201,7 +214,11 @@ static int formula(int argc, char **argv) {
         [GRAD] = {"--grad", NULL, "print the derivatives, too", false, NULL, 0},
         [HESSIAN] = {"--hessian", NULL, "print the second derivatives, too; or emit them, in C", false, NULL, 0},
         [GRAPH] = {"--graph", NULL, "print the operations, for the value and its gradient", false, NULL, 0},
-        [EMIT] = {"--emit", "c|glsl|kernel", "print it as a function in that language", false, NULL, 0},
+        [EMIT] = {"--emit", "c|function|glsl|kernel",
+                  "print it as a file of C to compile and register, with --hessian as an energy; as a function in C or "
+                  "GLSL; or as the library's own kernels are",
+                  false, NULL, 0},
+        [NAME] = {"--name", "NAME", "what the file of --emit c calls it; else skein_compiled_formula", false, NULL, 0},
         [FUNCTIONS] = {"--functions", NULL, "print what functions there are", false, NULL, 0}};
     const char *text;
     question q = {0};

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "app/compile.h"
 #include "app/footage.h"
 #include "app/progress.h"
 #ifdef SKEIN_RENDER
@@ -103,7 +104,7 @@ static int make_film(const app_scene *loaded, const request *r) {
 
 /* ---- the arguments ---- */
 
-enum { SET, OUT, LONG_OUT, FRAMES, FRAME, FPS, SIZE, SAMPLES, QUALITY, THREADS, DEVICE, QUIET, OPTION_COUNT };
+enum { SET, OUT, LONG_OUT, FRAMES, FRAME, FPS, SIZE, SAMPLES, QUALITY, THREADS, DEVICE, COMPILE, QUIET, OPTION_COUNT };
 
 /* Numbers of an option, "1920x1080", checked by the field that describes them; false after a printed fault. */
 static bool read_numbers(const app_option *option, const skein_field *field, int count, int32_t *out) {
@@ -175,6 +176,7 @@ static int render(int argc, char **argv) {
         [QUALITY] = {"--quality", "N", "of a film, 1 (small) to 100 (faithful), 75 if not given", false, NULL, 0},
         [THREADS] = {"--threads", "N", "threads to simulate on, 1 to 64; the result is the same", false, NULL, 0},
         [DEVICE] = app_device_option,
+        [COMPILE] = app_compile_option,
         [QUIET] = {"--quiet", NULL, "no progress and no notes", false, NULL, 0},
     };
     app_override_texts texts;
@@ -187,6 +189,8 @@ static int render(int argc, char **argv) {
     if (status < 0) {
         app_scene loaded;
         status = app_load(path, options[SET].values, &loaded);
+        if (!status && app_value(options, OPTION_COUNT, "--compile"))
+            loaded.warnings += app_compile(loaded.world, app_value(options, OPTION_COUNT, "--quiet") != NULL);
         if (!status) status = app_device(&loaded, app_value(options, OPTION_COUNT, "--device"));
         if (!status) {
             app_catch_interrupts();

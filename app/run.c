@@ -1,6 +1,7 @@
 /* skein run SCENE: simulate, with progress, files and a report. */
 #include <stdio.h>
 
+#include "app/compile.h"
 #include "app/flocks.h"
 #include "app/outputs.h"
 #include "app/progress.h"
@@ -111,6 +112,7 @@ static int run(int argc, char **argv) {
         {"--fps", "N", "frames a second of simulated time, instead of the scene's", false, NULL, 0},
         {"--threads", "N", "threads to run on, 1 to 64; the result is the same", false, NULL, 0},
         app_device_option,
+        app_compile_option,
         {"--log", "FILE", "write a line a step there, as CSV: energies, momenta, stretch, contacts", false, NULL, 0},
         {"--quiet", NULL, "no progress", false, NULL, 0},
     };
@@ -122,6 +124,8 @@ static int run(int argc, char **argv) {
     if (status < 0) {
         app_scene loaded;
         status = app_load(path, options[0].values, &loaded);
+        if (!status && app_value(options, COUNT, "--compile"))
+            loaded.warnings += app_compile(loaded.world, app_value(options, COUNT, "--quiet") != NULL);
         if (!status) status = app_device(&loaded, app_value(options, COUNT, "--device"));
         if (!status) {
             app_report report = {.loaded = &loaded,

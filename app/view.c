@@ -5,11 +5,25 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/command.h"
+#include "app/compile.h"
 #ifdef SKEIN_VIEWER
 #include "viewer/viewer.h"
 
-enum { SET, SIZE, PAUSED, NO_PANELS, UNFOCUSED, COMPARE, SCENES, SCALE, SAMPLES, THREADS, EVENTS, OPTION_COUNT };
+enum {
+    SET,
+    SIZE,
+    PAUSED,
+    NO_PANELS,
+    UNFOCUSED,
+    COMPARE,
+    SCENES,
+    SCALE,
+    SAMPLES,
+    THREADS,
+    COMPILE,
+    EVENTS,
+    OPTION_COUNT
+};
 
 static const char *last_of(const app_option *option) {
     return option->count ? option->values[option->count - 1] : NULL;
@@ -51,6 +65,10 @@ static bool read_unfocused(const app_option *option, viewer_unfocused *unfocused
     return !given;
 }
 
+static void prepare(skein_world *world) {
+    app_compile(world, false);
+}
+
 /* False after a printed fault. */
 static bool read_options(const app_option *options, viewer_options *o) {
     double samples = o->samples, threads = 0;
@@ -60,6 +78,7 @@ static bool read_options(const app_option *options, viewer_options *o) {
     o->panels = !options[NO_PANELS].count;
     o->compare = last_of(&options[COMPARE]);
     o->events = last_of(&options[EVENTS]);
+    if (options[COMPILE].count) o->prepare = prepare;
     if (options[SCENES].count) o->scenes = last_of(&options[SCENES]);
     bool good = read_size(&options[SIZE], o->size) && read_unfocused(&options[UNFOCUSED], &o->unfocused) &&
                 read_number(&options[SCALE], 0.5, 8, false, &o->scale) &&
@@ -89,6 +108,7 @@ static int view(int argc, char **argv) {
         [SCALE] = {"--scale", "N", "of letters and controls, instead of the screen's", false, NULL, 0},
         [SAMPLES] = {"--samples", "N", "samples a pixel for smooth edges, 4 if not given", false, NULL, 0},
         [THREADS] = {"--threads", "N", "threads to simulate on, 1 to 64; the result is the same", false, NULL, 0},
+        [COMPILE] = app_compile_option,
         [EVENTS] = {"--events", "FILE", "write what happens, a line each, - for the terminal", false, NULL, 0},
     };
     const char *path;

@@ -1,9 +1,12 @@
 /* Whole projections of XPBD, gather to scatter, of constraints that a program adds between loose particles: the kernels
- * that the library was built with, and the same texts on tapes, beside kernels by hand over the same groups. */
+ * that the library was built with, the same texts emitted and compiled beside the library, and on tapes; all beside
+ * kernels by hand over the same groups. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include <skein/compiled.h>
 
 #include "base/float_mode.h"
 #include "bench/elements.h"
@@ -13,23 +16,25 @@
 
 #define SUBSTEP (1.0 / 60) // one a frame, so that a run of the rows is a sweep
 
-/* The texts are those of src/constraints/emitted/. */
+/* Made by bench_emit --compiled, and built as a user's are. */
+extern const skein_compiled compiled_distance, compiled_dihedral, compiled_volume, compiled_area;
+
 static const struct measured {
-    const char *kind, *text;
+    const bench_kind_text *text;
+    const skein_compiled *compiled;
     by_hand_projection *by_hand;
     size_t arity;
     bool solid;
-} all[] = {
-    {"distance", "length(p0 - p1) - rest(length(p0 - p1))", by_hand_project_distance, 2, false},
-    {"dihedral",
-     "let a = dihedral(p0, p1, p2, p3) - rest(dihedral(p0, p1, p2, p3)); "
-     "a - 2*pi * select(a > pi, 1, select(a < -pi, -1, 0))",
-     by_hand_project_dihedral, 4, false},
-    {"volume", "dot(cross(p1 - p0, p2 - p0), p3 - p0) / 6 - rest(dot(cross(p1 - p0, p2 - p0), p3 - p0) / 6)",
-     by_hand_project_volume, 4, true},
-    {"area", "length(cross(p1 - p0, p2 - p0)) / 2 - rest(length(cross(p1 - p0, p2 - p0)) / 2)", by_hand_project_area, 3,
-     false},
+} all[BENCH_KINDS] = {
+    {&bench_kind_texts[BENCH_DISTANCE], &compiled_distance, by_hand_project_distance, 2, false},
+    {&bench_kind_texts[BENCH_DIHEDRAL], &compiled_dihedral, by_hand_project_dihedral, 4, false},
+    {&bench_kind_texts[BENCH_VOLUME], &compiled_volume, by_hand_project_volume, 4, true},
+    {&bench_kind_texts[BENCH_AREA], &compiled_area, by_hand_project_area, 3, false},
 };
+
+/* What runs the constraints. */
+enum { EMITTED, COMPILED, TAPE, WAYS };
+static const char *const way_names[WAYS] = {"emitted", "compiled", "tape"};
 
 /* A world of loose particles with constraints of one kind, its rows, and the state that every block starts from. */
 typedef struct subject {
@@ -41,7 +46,7 @@ typedef struct subject {
     size_t bytes;
 } subject;
 
-static void make_subject(subject *s, const struct measured *m, const bench_elements *e, bool as_formula) {
+static void make_subject(subject *s, const struct measured *m, const bench_elements *e, int way) {
     double *x = bench_allocate(3 * e->position_count, sizeof *x), *mass = bench_allocate(e->position_count, sizeof *x);
     uint32_t *corners = bench_allocate(m->arity * e->count, sizeof *corners);
     for (size_t i = 0; i < e->position_count; i++) {
@@ -52,10 +57,11 @@ static void make_subject(subject *s, const struct measured *m, const bench_eleme
     *s = (subject){.world = bench_world(1), .by_hand = m->by_hand};
     bench_need(s->world, skein_particles_add(s->world, e->position_count, x, NULL, mass, NULL));
     const skein_setting settings[] = {
-        SKEIN_REAL("stiffness", 1e4), SKEIN_TEXT("constraint", m->text), {NULL, {0, {0, 0, 0}, NULL}}};
+        SKEIN_REAL("stiffness", 1e4), SKEIN_TEXT("constraint", m->text->text), {NULL, {0, {0, 0, 0}, NULL}}};
     const skein_setting built_in[] = {SKEIN_REAL("stiffness", 1e4), {NULL, {0, {0, 0, 0}, NULL}}};
-    bench_need(s->world, skein_constraint_add(s->world, as_formula ? "formula" : m->kind, corners, e->count,
-                                              as_formula ? settings : built_in, NULL));
+    bench_need(s->world, skein_constraint_add(s->world, way == EMITTED ? m->text->kind : "formula", corners, e->count,
+                                              way == EMITTED ? built_in : settings, NULL));
+    if (way == COMPILED) bench_need(s->world, skein_formula_register(s->world, m->compiled));
     bench_need(s->world, skein_method_set(s->world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 1))));
     bench_shake(s->world, 0.2, 0);
     s->rows = bench_rows_create(s->world, SK_ROW_PROJECT);
@@ -135,38 +141,37 @@ static double groups_a_block(const sk_batch *batch) {
 
 static void measure(const struct measured *m) {
     bench_elements e;
-    subject built_in, formula;
+    subject subjects[WAYS];
+    bench_job jobs[WAYS + 1];
+    double seconds[WAYS + 1];
     bench_elements_make(&e, m->solid, 0, 0);
-    make_subject(&built_in, m, &e, false);
-    make_subject(&formula, m, &e, true);
-    check(&built_in, m->kind);
-    check(&formula, m->kind);
-    bench_job jobs[] = {{.run = run_rows, .data = &built_in, .prepare = start_rows},
-                        {.run = run_rows, .data = &formula, .prepare = start_rows},
-                        {.run = run_by_hand, .data = &built_in, .prepare = start_by_hand}};
-    double seconds[3];
-    bench_measure(jobs, 3, 0.05, seconds);
+    for (int i = 0; i < WAYS; i++) {
+        make_subject(&subjects[i], m, &e, i);
+        check(&subjects[i], m->text->kind);
+        jobs[i] = (bench_job){.run = run_rows, .data = &subjects[i], .prepare = start_rows};
+    }
+    jobs[WAYS] = (bench_job){.run = run_by_hand, .data = &subjects[EMITTED], .prepare = start_by_hand};
+    bench_measure(jobs, WAYS + 1, 0.05, seconds);
     char note[80];
     bench_result result = {.name = "kinds", .unit = "ns/element", .other = "wide by hand", .note = note};
-    result.theirs = 1e9 * seconds[2] / (double)e.count;
-    for (int i = 0; i < 2; i++) {
-        const sk_batch *batch = i ? formula.batch : built_in.batch;
+    result.theirs = 1e9 * seconds[WAYS] / (double)e.count;
+    for (int i = 0; i < WAYS; i++) {
+        const sk_batch *batch = subjects[i].batch;
         char size[40];
-        snprintf(size, sizeof size, "%s, %s", m->kind, i ? "tape" : "emitted");
+        snprintf(size, sizeof size, "%s, %s", m->text->kind, way_names[i]);
         int length = snprintf(note, sizeof note, "%zu groups", batch->lane_count / SK_LANES);
-        if (i) snprintf(note + length, sizeof note - (size_t)length, ", %.1f a block", groups_a_block(batch));
+        if (i == TAPE) snprintf(note + length, sizeof note - (size_t)length, ", %.1f a block", groups_a_block(batch));
         result.size = size;
         result.ours = 1e9 * seconds[i] / (double)e.count;
-        result.as_long = i ? 1.5 : 1.15;
+        result.as_long = i == TAPE ? 1.5 : 1.15;
         bench_report(&result);
     }
-    free_subject(&built_in);
-    free_subject(&formula);
+    for (int i = 0; i < WAYS; i++) free_subject(&subjects[i]);
     bench_elements_free(&e);
 }
 
 static void run(void) {
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) measure(&all[i]);
+    for (size_t i = 0; i < BENCH_KINDS; i++) measure(&all[i]);
 }
 
 const bench_case bench_kinds = {"kinds", "whole projections of kinds and of formulas, against wide C by hand", run};

@@ -22,3 +22,12 @@ const bench_text bench_texts[BENCH_FORMULAS] = {
      "area*(x*x + y*y + 2*z*z + 1.5*(x+y)^2)",
      triangle_parameters, 3, 5, false},
 };
+
+const bench_kind_text bench_kind_texts[BENCH_KINDS] = {
+    [BENCH_DISTANCE] = {"distance", "length(p0 - p1) - rest(length(p0 - p1))"},
+    [BENCH_DIHEDRAL] = {"dihedral", "let a = dihedral(p0, p1, p2, p3) - rest(dihedral(p0, p1, p2, p3)); "
+                                    "a - 2*pi * select(a > pi, 1, select(a < -pi, -1, 0))"},
+    [BENCH_VOLUME] = {"volume",
+                      "dot(cross(p1 - p0, p2 - p0), p3 - p0) / 6 - rest(dot(cross(p1 - p0, p2 - p0), p3 - p0) / 6)"},
+    [BENCH_AREA] = {"area", "length(cross(p1 - p0, p2 - p0)) / 2 - rest(length(cross(p1 - p0, p2 - p0)) / 2)"},
+};

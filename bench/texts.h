@@ -15,4 +15,12 @@ typedef struct bench_text {
 enum { BENCH_FORMULAS = 5 };
 extern const bench_text bench_texts[BENCH_FORMULAS];
 
+/* The texts of kinds that the library has kernels of, src/constraints/emitted/. */
+typedef struct bench_kind_text {
+    const char *kind, *text;
+} bench_kind_text;
+
+enum { BENCH_DISTANCE, BENCH_DIHEDRAL, BENCH_VOLUME, BENCH_AREA, BENCH_KINDS };
+extern const bench_kind_text bench_kind_texts[BENCH_KINDS];
+
 #endif

@@ -43,7 +43,7 @@ skein_world *bench_cloth(const bench_scene *scene) {
                                 SKEIN_TEXT("pins", pins),
                                 SKEIN_REAL("stretch.stiffness", stiffness),
                                 SKEIN_REAL("shear.stiffness", stiffness),
-                                SKEIN_REAL("bend.stiffness", stiffness),
+                                SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", stiffness),
                                 SKEIN_REAL("stretch.damping", damping),
                                 SKEIN_REAL("shear.damping", damping),
                                 SKEIN_REAL("bend.damping", damping),

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The committed kernels are what the emitter writes, byte for byte: emitted.sh ROOT SKEIN
+# The committed kernels are what the emitter writes, byte for byte, and so is the example's: emitted.sh ROOT SKEIN
 set -u
 cd "$1" || exit 2
 skein=$2 faults=0
@@ -14,4 +14,7 @@ for file in src/constraints/emitted/*.h tests/changed_distance.h; do
     # no layout and no instruction set in the body
     if grep -n '_mm\|sk_\|\[' "$file" | grep -v '^[0-9]*://'; then faults=1; fi
 done
+file=examples/compiled_spring/spring.c
+"$skein" formula "$(sed -n '1s,^// ,,p' $file)" --param L=1 --emit c --name spring >"$made" || faults=1
+cmp "$made" $file || faults=1
 exit $faults

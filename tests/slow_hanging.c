@@ -9,7 +9,7 @@ static skein_world *hanging(const char *method, int substeps, int side, double s
                       SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 1.2, 0),
                                      SKEIN_REAL("density", 0.2), SKEIN_TEXT("pins", "top corners"),
                                      SKEIN_REAL("stretch.stiffness", stiffness),
-                                     SKEIN_REAL("shear.stiffness", stiffness / 10), SKEIN_REAL("bend.stiffness", 100)),
+                                     SKEIN_REAL("shear.stiffness", stiffness / 10), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 100)),
                       NULL));
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 1.5)), NULL));

@@ -52,10 +52,10 @@ static void a_large_cloth_is_built_in_no_time(void **state) {
         if (!way)
             OK(world,
                skein_body_add(world, "cloth", NULL,
-                              SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", "corners")), NULL));
+                              SKEIN_SETTINGS(SKEIN_TEXT("bend.by", "springs"), SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", "corners")), NULL));
         else
             OK(world, skein_body_add(world, "cloth", &mesh,
-                                     SKEIN_SETTINGS(SKEIN_REAL("weld", way == 2 ? 1e-4 : 0),
+                                     SKEIN_SETTINGS(SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("weld", way == 2 ? 1e-4 : 0),
                                                     SKEIN_TEXT("pins", "0 255 65280 65535")),
                                      NULL));
         add_gravity(world);

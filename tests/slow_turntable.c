@@ -8,7 +8,7 @@ static skein_world *turntable(const char *method, int substeps, int side, double
        skein_body_add(world, "cloth", NULL,
                       SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 1.12, 0),
                                      SKEIN_REAL("density", 0.25), SKEIN_REAL("stretch.stiffness", stiffness),
-                                     SKEIN_REAL("shear.stiffness", stiffness / 10), SKEIN_REAL("bend.stiffness", 20)),
+                                     SKEIN_REAL("shear.stiffness", stiffness / 10), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 20)),
                       NULL));
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.3)), NULL));

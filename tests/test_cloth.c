@@ -65,6 +65,9 @@ static draft *loose_cube(void) {
     return d;
 }
 
+/* These tests are of springs over folds; test_kinds.c has those of bending by angle. */
+#define BY_SPRINGS SKEIN_TEXT("bend.by", "springs")
+
 /* ---- Worlds and what is in them ------------------------------------------------------------------- */
 
 typedef struct notes {
@@ -147,7 +150,7 @@ static void triangles_have_edges_and_bending_pairs(void **state) {
     assert_int_equal(d->vertices, 289);
     assert_int_equal(d->faces, 512);
     skein_world *world = new_world("xpbd", 1);
-    build(world, d, NULL);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     assert_int_equal(skein_particle_count(world), 289);
     assert_int_equal(springs(world, "stretch"), 800);
     assert_int_equal(springs(world, "shear"), 0);
@@ -170,7 +173,7 @@ static void a_grid_has_edges_diagonals_and_straight_bending(void **state) {
     for (size_t i = 0; i < COUNT(sides); i++) {
         int n = sides[i][0], m = sides[i][1];
         skein_world *world = new_world("xpbd", 1);
-        OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", n, m)), NULL));
+        OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", n, m)), NULL));
         assert_int_equal(skein_particle_count(world), n * m);
         assert_int_equal(springs(world, "stretch"), n * (m - 1) + m * (n - 1));
         assert_int_equal(springs(world, "shear"), 2 * (n - 1) * (m - 1));
@@ -188,7 +191,7 @@ static void a_grid_has_edges_diagonals_and_straight_bending(void **state) {
     // the same quads read as a mesh have the same springs
     draft *d = upright(9, 4, false);
     skein_world *world = new_world("xpbd", 1);
-    build(world, d, NULL);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     assert_int_equal(springs(world, "stretch"), 9 * 3 + 4 * 8);
     assert_int_equal(springs(world, "shear"), 2 * 8 * 3);
     assert_int_equal(springs(world, "bend"), 9 * 2 + 4 * 7);
@@ -208,7 +211,7 @@ static void no_pair_gets_two_springs(void **state) {
     FACE(d, 0, 3, 2);
     FACE(d, 1, 2, 3);
     skein_world *world = new_world("xpbd", 1);
-    build(world, d, NULL);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     assert_true(springs(world, "stretch") == 6 && springs(world, "bend") == 0);
     assert_springs_are_sound(world);
     skein_world_destroy(world);
@@ -218,7 +221,7 @@ static void no_pair_gets_two_springs(void **state) {
     for (int k = 0; k < 6; k++) vertex(d, k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0, k == 4 ? 1 : k == 5 ? -1 : 0);
     for (uint32_t n = 0; n < 8; n++) FACE(d, n & 1, 2 + (n >> 1 & 1), 4 + (n >> 2 & 1));
     world = new_world("xpbd", 1);
-    build(world, d, NULL);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     assert_true(springs(world, "stretch") == 12 && springs(world, "bend") == 3);
     assert_springs_are_sound(world);
     skein_world_destroy(world);
@@ -230,7 +233,7 @@ static void no_pair_gets_two_springs(void **state) {
     FACE(d, 0, 1, 2, 3, 4, 5);
     FACE(d, 1, 0, 6);
     world = new_world("xpbd", 1);
-    build(world, d, NULL);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     assert_true(springs(world, "stretch") == 8 && springs(world, "shear") == 6 && springs(world, "bend") == 2);
     assert_springs_are_sound(world);
     skein_world_destroy(world);
@@ -253,7 +256,7 @@ static void no_pair_gets_two_springs(void **state) {
         face(d, size, corners);
     }
     world = new_world("xpbd", 1);
-    build(world, d, NULL);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     assert_springs_are_sound(world);
     skein_world_destroy(world);
     free(d);
@@ -276,7 +279,7 @@ static void springs_share_the_material_by_area(void **state) {
     (void)state;
     double off = 8 * EPSILON;
     skein_world *world = new_world("xpbd", 1);
-    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_PAIR("size", 4, 4)), NULL));
+    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 5, 5), SKEIN_PAIR("size", 4, 4)), NULL));
     assert_near(share_of(world, "stretch", 6, 7), 1, off);
     assert_near(share_of(world, "stretch", 7, 12), 1, off);
     assert_near(share_of(world, "stretch", 1, 2), 0.5, off);
@@ -290,7 +293,7 @@ static void springs_share_the_material_by_area(void **state) {
 
     draft *d = upright(5, 5, true); // cut from upper left to lower right
     world = new_world("xpbd", 1);
-    build(world, d, NULL);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     assert_near(share_of(world, "stretch", 6, 7), 1, off);
     assert_near(share_of(world, "stretch", 1, 2), 0.5, off);
     assert_near(share_of(world, "stretch", 6, 12), 0.5, off);
@@ -306,7 +309,7 @@ static void springs_share_the_material_by_area(void **state) {
     FACE(d, 0, 3, 2);
     FACE(d, 1, 2, 3);
     world = new_world("xpbd", 1);
-    build(world, d, NULL);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     assert_near(share_of(world, "stretch", 0, 3), 1, off);
     assert_near(share_of(world, "stretch", 1, 2), (0.5 + sqrt(0.75)) / 2, off);
     skein_world_destroy(world);
@@ -316,7 +319,7 @@ static void springs_share_the_material_by_area(void **state) {
     vertex(d, 0, 0, 0), vertex(d, 1e-3, 0, 0), vertex(d, 0, 1, 0);
     FACE(d, 0, 1, 2);
     world = new_world("xpbd", 1);
-    build(world, d, NULL);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     assert_near(share_of(world, "stretch", 0, 1), 100, 1e-3);
     assert_near(share_of(world, "stretch", 0, 2), 5e-4, 1e-9);
     skein_world_destroy(world);
@@ -329,7 +332,7 @@ static void mass_is_density_times_area(void **state) {
     (void)state;
     skein_world *world = new_world("xpbd", 1);
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 4, 5), SKEIN_PAIR("size", 2, 0.6), SKEIN_REAL("density", 0.3)), NULL));
+                             SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 4, 5), SKEIN_PAIR("size", 2, 0.6), SKEIN_REAL("density", 0.3)), NULL));
     double cell = 2.0 / 4 * 0.6 / 3 * 0.3;
     for (size_t r = 0; r < 4; r++)
         for (size_t c = 0; c < 5; c++) {
@@ -344,7 +347,7 @@ static void mass_is_density_times_area(void **state) {
     FACE(d, 0, 1, 2, 3);
     FACE(d, 1, 4, 2);
     world = new_world("xpbd", 1);
-    build(world, d, SKEIN_SETTINGS(SKEIN_REAL("density", 0.25), SKEIN_REAL("scale", 2)));
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("density", 0.25), SKEIN_REAL("scale", 2)));
     static const double ought[] = {1, 1 + 1, 1 + 1, 1, 1};
     for (size_t i = 0; i < 5; i++) assert_share(mass_of(world, i), ought[i], 4 * EPSILON);
     skein_world_destroy(world);
@@ -358,7 +361,7 @@ static void a_sheet_is_placed_as_asked(void **state) {
     vertex(d, 1, 0, 0), vertex(d, 0, 1, 0), vertex(d, 0, 0, 1), vertex(d, 1, 1, 1);
     FACE(d, 0, 1, 2);
     skein_world *world = new_world("xpbd", 1);
-    build(world, d, SKEIN_SETTINGS(SKEIN_REAL("scale", 2), SKEIN_VEC3("rotation", 90, 0, 90), SKEIN_VEC3("position", 10, 20, 30),
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("scale", 2), SKEIN_VEC3("rotation", 90, 0, 90), SKEIN_VEC3("position", 10, 20, 30),
                                    SKEIN_VEC3("velocity", 1, 2, 3), SKEIN_TEXT("pins", "2")));
     // about x: y to z, z to -y; then about z: x to y, y to -x
     assert_under(length3(minus(position_of(world, 0), (vec3){10, 22, 30})), 1e-5);
@@ -370,14 +373,14 @@ static void a_sheet_is_placed_as_asked(void **state) {
     skein_world_destroy(world);
 
     world = new_world("xpbd", 1);
-    build(world, d, SKEIN_SETTINGS(SKEIN_VEC3("rotation", 0, 30, 0)));
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_VEC3("rotation", 0, 30, 0)));
     assert_under(length3(minus(position_of(world, 0), (vec3){cos(PI / 6), 0, -0.5})), 1e-6);
     assert_under(length3(minus(position_of(world, 2), (vec3){0.5, 0, cos(PI / 6)})), 1e-6);
     skein_world_destroy(world);
     free(d);
 
     world = new_world("xpbd", 1);
-    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 5), SKEIN_PAIR("size", 4, 1)), NULL));
+    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 3, 5), SKEIN_PAIR("size", 4, 1)), NULL));
     assert_under(length3(minus(position_of(world, 0), (vec3){-2, 0, -0.5})), 0);
     assert_under(length3(minus(position_of(world, 4), (vec3){2, 0, -0.5})), 0);
     assert_under(length3(minus(position_of(world, 10), (vec3){-2, 0, 0.5})), 0);
@@ -394,7 +397,7 @@ static void welding_joins_particles_and_keeps_vertices(void **state) {
     // corners a little apart, to both sides of where a hash cell might end
     uint64_t seed = 29;
     for (size_t i = 0; i < 3 * d->vertices; i++) d->positions[i] += random_between(&seed, -2e-4, 2e-4);
-    build(world, d, SKEIN_SETTINGS(SKEIN_REAL("weld", 1e-3), SKEIN_REAL("density", 2)));
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("weld", 1e-3), SKEIN_REAL("density", 2)));
     assert_int_equal(n.warnings, 0);
     assert_int_equal(skein_particle_count(world), 8);
     assert_int_equal(springs(world, "stretch"), 12);
@@ -422,7 +425,7 @@ static void welding_joins_particles_and_keeps_vertices(void **state) {
 
     // too small a distance joins nothing
     world = new_world("xpbd", 1);
-    build(world, d, SKEIN_SETTINGS(SKEIN_REAL("weld", 1e-7)));
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("weld", 1e-7)));
     assert_int_equal(skein_particle_count(world), 24);
     skein_world_destroy(world);
     free(d);
@@ -431,7 +434,7 @@ static void welding_joins_particles_and_keeps_vertices(void **state) {
     d = upright(2, 3, false);
     d->positions[3 * 2] = d->positions[3 * 1] + 1e-9, d->positions[3 * 5] = d->positions[3 * 4] + 1e-9;
     world = world_with_notes(&n);
-    build(world, d, SKEIN_SETTINGS(SKEIN_REAL("weld", 1e-6)));
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("weld", 1e-6)));
     assert_int_equal(skein_particle_count(world), 4);
     assert_int_equal(springs(world, "stretch"), 4);
     assert_string_equal(n.text, "cloth: 1 face without an area, such as face 1; they add no mass\n");
@@ -444,7 +447,7 @@ static void welding_joins_particles_and_keeps_vertices(void **state) {
         d = upright(2, 2, false); // corners 0, 2, 3, 1
         memcpy(d->positions + 3 * moved, d->positions + 3 * (moved - 1), 3 * sizeof *d->positions);
         world = world_with_notes(&n);
-        build(world, d, SKEIN_SETTINGS(SKEIN_REAL("weld", 1e-6), SKEIN_REAL("density", 6)));
+        build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("weld", 1e-6), SKEIN_REAL("density", 6)));
         assert_string_equal(n.text, "");
         assert_int_equal(skein_particle_count(world), 3);
         assert_true(springs(world, "stretch") == 3 && springs(world, "shear") == 0);
@@ -458,7 +461,7 @@ static void welding_joins_particles_and_keeps_vertices(void **state) {
     static const double places[3] = {0, 1.5, 0.75};
     for (size_t v = 0; v < 6; v++) d->positions[3 * v] = places[v % 3];
     world = new_world("xpbd", 1);
-    build(world, d, SKEIN_SETTINGS(SKEIN_REAL("weld", 0.9)));
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("weld", 0.9)));
     OK(world, skein_body_surface(world, skein_object_at(world, SKEIN_BODY, 0), &surface));
     assert_int_equal(skein_particle_count(world), 4);
     assert_true(surface.particle_of_vertex[2] == 0 && surface.particle_of_vertex[1] == 1 && surface.particle_of_vertex[5] == 2);
@@ -472,7 +475,7 @@ static void small_sheets_are_sheets(void **state) {
     notes n;
     draft *d = upright(3, 3, true);
     skein_world *world = world_with_notes(&n);
-    build(world, d, SKEIN_SETTINGS(SKEIN_REAL("scale", 1e-6), SKEIN_REAL("density", 1)));
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("scale", 1e-6), SKEIN_REAL("density", 1)));
     assert_string_equal(n.text, "");
     double mass = 0;
     for (size_t i = 0; i < 9; i++) mass += mass_of(world, i);
@@ -493,7 +496,7 @@ static void faults_of_meshes_are_warnings(void **state) {
     FACE(d, 1, 0, 3);
     FACE(d, 0, 1, 4);
     skein_world *world = world_with_notes(&n);
-    build(world, d, SKEIN_SETTINGS(SKEIN_TEXT("name", "fin")));
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_TEXT("name", "fin")));
     assert_string_equal(n.text, "fin: 1 edge with three faces or more, such as 0-1; they get no bending\n");
     assert_int_equal(n.warnings, 1);
     assert_int_equal(springs(world, "bend"), 0);
@@ -505,7 +508,7 @@ static void faults_of_meshes_are_warnings(void **state) {
     FACE(d, 0, 1, 2);
     FACE(d, 1, 0, 3);
     world = world_with_notes(&n);
-    build(world, d, NULL);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     assert_non_null(strstr(n.text, "cloth: 1 face without an area, such as face 1; they add no mass\n"));
     assert_non_null(strstr(n.text, "2 vertices are of no face, such as 3; without a mass they stay where they are\n"));
     assert_int_equal(n.warnings, 2);
@@ -522,26 +525,26 @@ static void faults_of_meshes_are_warnings(void **state) {
     FACE(d, 0, 1, 2, 3);
     FACE(d, 4, 5, 6, 7);
     world = world_with_notes(&n);
-    build(world, d, NULL);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     assert_non_null(strstr(n.text, "cloth: 2 parts that do not touch"));
     assert_non_null(strstr(n.text, "cloth: 2 border vertices lie on another one"));
     assert_non_null(strstr(n.text, "weld"));
     assert_int_equal(n.warnings, 2);
     skein_world_destroy(world);
     world = world_with_notes(&n);
-    build(world, d, SKEIN_SETTINGS(SKEIN_REAL("weld", 1e-6)));
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("weld", 1e-6)));
     assert_string_equal(n.text, "");
     skein_world_destroy(world);
 
     // three such sheets, far apart: parts, but no seams; and without a log nobody minds
     for (int k = 4; k < 8; k++) d->positions[3 * k] += 5;
     world = world_with_notes(&n);
-    build(world, d, NULL);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     assert_non_null(strstr(n.text, "2 parts that do not touch; a second one has vertex 4"));
     assert_int_equal(n.warnings, 1);
     skein_world_destroy(world);
     world = new_world("xpbd", 1);
-    build(world, d, NULL);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     skein_world_destroy(world);
 
     // sheets that cross each other inside touch nowhere that matters
@@ -557,7 +560,7 @@ static void faults_of_meshes_are_warnings(void **state) {
         FACE(d, a, a + 3, a + 4, a + 1);
     }
     world = world_with_notes(&n);
-    build(world, d, NULL);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     assert_non_null(strstr(n.text, "cloth: 2 parts that do not touch"));
     assert_int_equal(n.warnings, 1);
     skein_world_destroy(world);
@@ -566,7 +569,7 @@ static void faults_of_meshes_are_warnings(void **state) {
     // a sound mesh is met with silence
     draft *sound = upright(5, 5, true);
     world = world_with_notes(&n);
-    build(world, sound, NULL);
+    build(world, sound, SKEIN_SETTINGS(BY_SPRINGS));
     assert_string_equal(n.text, "");
     skein_world_destroy(world);
     free(sound);
@@ -598,9 +601,9 @@ static void impossible_meshes_are_refused(void **state) {
         FAILS(world, SKEIN_ERROR_MESH, "vertex 4", skein_body_add(world, "cloth", &mesh, NULL, NULL));
     }
     d->positions[3 * 4 + 1] = 0.5;
-    FAILS(world, SKEIN_ERROR_VALUE, "not both", skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 3)), NULL));
+    FAILS(world, SKEIN_ERROR_VALUE, "not both", skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 3, 3)), NULL));
     FAILS(world, SKEIN_ERROR_VALUE, "a mesh or a grid", skein_body_add(world, "cloth", NULL, NULL, NULL));
-    FAILS(world, SKEIN_ERROR_VALUE, "1 x 5", skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 1, 5)), NULL));
+    FAILS(world, SKEIN_ERROR_VALUE, "1 x 5", skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 1, 5)), NULL));
     // nothing of all that stayed, and the world is as good as new
     assert_int_equal(skein_particle_count(world), 0);
     assert_int_equal(skein_object_count(world, SKEIN_BODY), 0);
@@ -626,8 +629,8 @@ static void assert_pins(const draft *d, const char *pins, const char *held) {
     skein_mesh mesh;
     if (d) mesh = mesh_of(d);
     OK(world, skein_body_add(world, "cloth", d ? &mesh : NULL,
-                             d ? SKEIN_SETTINGS(SKEIN_TEXT("pins", pins))
-                               : SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 4), SKEIN_PAIR("size", 3, 2), SKEIN_TEXT("pins", pins)),
+                             d ? SKEIN_SETTINGS(BY_SPRINGS, SKEIN_TEXT("pins", pins))
+                               : SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 3, 4), SKEIN_PAIR("size", 3, 2), SKEIN_TEXT("pins", pins)),
                              NULL));
     char text[512];
     list_held(world, text, sizeof text);
@@ -640,8 +643,8 @@ static void assert_no_pins(const draft *d, const char *pins, skein_status status
     skein_mesh mesh;
     if (d) mesh = mesh_of(d);
     skein_status is = skein_body_add(world, "cloth", d ? &mesh : NULL,
-                                     d ? SKEIN_SETTINGS(SKEIN_TEXT("pins", pins))
-                                       : SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 4), SKEIN_TEXT("pins", pins)),
+                                     d ? SKEIN_SETTINGS(BY_SPRINGS, SKEIN_TEXT("pins", pins))
+                                       : SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 3, 4), SKEIN_TEXT("pins", pins)),
                                      NULL);
     const skein_error *error = skein_world_error(world);
     if (is != status || !strstr(error->message, words)) fprintf(stderr, "'%s': %s\n", pins, error->message);
@@ -739,8 +742,8 @@ static void pins_of_a_mesh(void **state) {
     static const char *const words[] = {"corners", "border", "top edge", "left corners"};
     for (size_t i = 0; i < COUNT(words); i++)
         FAILS(world, SKEIN_ERROR_MESH, "closed",
-              skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(SKEIN_REAL("weld", 1e-6), SKEIN_TEXT("pins", words[i])), NULL));
-    OK(world, skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(SKEIN_REAL("weld", 1e-6), SKEIN_TEXT("pins", "23 22")), NULL));
+              skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("weld", 1e-6), SKEIN_TEXT("pins", words[i])), NULL));
+    OK(world, skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("weld", 1e-6), SKEIN_TEXT("pins", "23 22")), NULL));
     skein_surface surface;
     OK(world, skein_body_surface(world, skein_object_at(world, SKEIN_BODY, 0), &surface));
     assert_int_equal(statistics_of(world).held_particles, 2);
@@ -784,7 +787,7 @@ static void tethers_of_a_flat_sheet_are_straight(void **state) {
         for (size_t t = 0; t < COUNT(turns); t++) {
             skein_world *world = new_world("xpbd", 1);
             OK(world, skein_body_add(world, "cloth", NULL,
-                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", 14, 19), SKEIN_PAIR("size", 1.3, 0.7), SKEIN_TEXT("pins", holds[i].pins),
+                                     SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 14, 19), SKEIN_PAIR("size", 1.3, 0.7), SKEIN_TEXT("pins", holds[i].pins),
                                                     SKEIN_VEC3("rotation", turns[t][0], turns[t][1], turns[t][2])),
                                      NULL));
             assert_straight_tethers(world, holds[i].anchors);
@@ -795,7 +798,7 @@ static void tethers_of_a_flat_sheet_are_straight(void **state) {
         for (size_t i = 0; i < COUNT(holds); i++) {
             draft *d = upright(15, 17, triangles);
             skein_world *world = new_world("xpbd", 1);
-            build(world, d, SKEIN_SETTINGS(SKEIN_TEXT("pins", holds[i].pins)));
+            build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_TEXT("pins", holds[i].pins)));
             assert_straight_tethers(world, holds[i].anchors);
             skein_world_destroy(world);
             free(d);
@@ -808,10 +811,10 @@ static void tethers_to_an_edge_go_to_the_nearest_pin(void **state) {
     for (int kind = 0; kind < 3; kind++) {
         skein_world *world = new_world("xpbd", 1);
         draft *d = upright(12, 10, kind == 2);
-        if (kind) build(world, d, SKEIN_SETTINGS(SKEIN_TEXT("pins", "top edge")));
+        if (kind) build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_TEXT("pins", "top edge")));
         else
             OK(world, skein_body_add(world, "cloth", NULL,
-                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", 12, 10), SKEIN_TEXT("pins", "top edge")), NULL));
+                                     SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 12, 10), SKEIN_TEXT("pins", "top edge")), NULL));
         assert_straight_tethers(world, 1);
         const sk_limit *limit = tethers_of(world);
         for (size_t e = 0; e < limit->count; e++) assert_int_equal(limit->particle[2 * e] % 10, limit->particle[2 * e + 1]);
@@ -829,7 +832,7 @@ static void tethers_follow_folds(void **state) {
         if (over > 0) p[0] = 0.5 - over * 0.5, p[2] = over * sqrt(0.75);
     }
     skein_world *world = new_world("xpbd", 1);
-    build(world, d, SKEIN_SETTINGS(SKEIN_TEXT("pins", "0")));
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_TEXT("pins", "0")));
     const sk_limit *limit = tethers_of(world);
     for (size_t e = 0; e < limit->count; e++) {
         const double *p = flat->positions + 3 * limit->particle[2 * e], *o = flat->positions;
@@ -858,7 +861,7 @@ static void tethers_go_around_corners(void **state) {
             if (x < 0.5 || y < 0.5) face(d, whole->sizes[f], c); // the upper right quarter is missing
         }
         skein_world *world = new_world("xpbd", 1);
-        build(world, d, SKEIN_SETTINGS(SKEIN_TEXT("pins", "6"))); // (0.5, 1), where the cut begins
+        build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_TEXT("pins", "6"))); // (0.5, 1), where the cut begins
         const sk_limit *limit = tethers_of(world);
         const double *pin = d->positions + 3 * 6;
         size_t behind = 0;
@@ -888,7 +891,7 @@ static void tethers_do_not_prefer_a_diagonal(void **state) {
         p[2] = p[0] * (1 - p[0]) * (1 + p[1]);
     }
     skein_world *world = new_world("xpbd", 1);
-    build(world, d, SKEIN_SETTINGS(SKEIN_TEXT("pins", "top corners")));
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_TEXT("pins", "top corners")));
     const sk_limit *limit = tethers_of(world);
     double length[2][SIDE * SIDE] = {{0}, {0}};
     for (size_t e = 0; e < limit->count; e++)
@@ -908,14 +911,14 @@ static void tethers_need_a_way(void **state) {
     for (int k = 0; k < 4; k++) vertex(d, 5 + (k == 1 || k == 2), 5 + (k > 1), 0);
     FACE(d, 9, 10, 11, 12);
     skein_world *world = new_world("xpbd", 1);
-    build(world, d, SKEIN_SETTINGS(SKEIN_TEXT("pins", "0 2")));
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_TEXT("pins", "0 2")));
     add_gravity(world);
     steps(world, 90, 1.0 / 90);
     assert_near(position_of(world, 10).y, 5 - 9.81 * 90 * 91 / 2 / 8100, 1e-3); // falls freely
     assert_true(position_of(world, 8).y > -0.02);
     skein_world_destroy(world);
     world = new_world("xpbd", 1);
-    build(world, d, NULL);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     assert_null(tethers_of(world));
     skein_world_destroy(world);
     free(d);
@@ -928,7 +931,7 @@ static void stretch_bounds_are_kept(void **state) {
         for (int bound = 0; bound < 3; bound++) { // none, the limit, the tethers
             skein_world *world = new_world(method_names[m], 20);
             OK(world, skein_body_add(world, "cloth", NULL,
-                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 9), SKEIN_TEXT("pins", "top edge"), SKEIN_VEC3("rotation", 90, 0, 0),
+                                     SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 9, 9), SKEIN_TEXT("pins", "top edge"), SKEIN_VEC3("rotation", 90, 0, 0),
                                                     SKEIN_REAL("stretch.stiffness", 5), SKEIN_REAL("shear.stiffness", 1),
                                                     SKEIN_REAL("bend.stiffness", 0), SKEIN_REAL("stretch.limit", bound == 1 ? 0.03 : INFINITY),
                                                     SKEIN_REAL("stretch.tether", bound == 2 ? 0.02 : INFINITY)),

@@ -106,8 +106,8 @@ static void check_counts_what_is_there(void **state) {
     char words[600];
     const char *s = tiny_scene();
     snprintf(words, sizeof words,
-             "%s: good; 34 particles (4 held), 140 constraints, 1 force, 1 collider, xpbd; 0 warnings\n", s);
-    // 5 x 5: 40 edges, 32 diagonals, 30 over folds; 3 x 3: 12, 8 and 6; and 12 more by what is set
+             "%s: good; 34 particles (4 held), 152 constraints, 1 force, 1 collider, xpbd; 0 warnings\n", s);
+    // 5 x 5: 40 edges, 32 diagonals, 40 hinges; 3 x 3: 12, 8 and 8; and 12 more by what is set
     assert_says(0, words, "", "check", s, "--set",
                 "constraints=[{\"type\":\"distance\",\"particles\":"
                 "[0,25,1,26,2,27,3,28,4,29,5,30,6,31,7,32,8,33,9,25,10,26,11,27]}]");

@@ -203,7 +203,7 @@ static void a_full_disk_ends_a_film(void **state) {
     (void)state;
     const char *s = tiny_scene();
     char words[600];
-    outcome o = SKEIN_IN((surroundings){.file_limit = 3000}, "render", s, "-o", in_folder("a.mp4"), "--frames",
+    outcome o = SKEIN_IN((surroundings){.file_limit = 8000}, "render", s, "-o", in_folder("a.mp4"), "--frames",
                          "100000", "--fps", "10", "--set", "step=0.1", SMALL);
     assert_status(o, 1);
     snprintf(words, sizeof words, "skein: %s: cannot write: it grew over the limit for a file's size\n",

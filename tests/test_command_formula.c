@@ -49,7 +49,7 @@ static void it_shows_faults(void **state) {
                  {{"L", "--param", "L=x"}, "a name and a number"},
                  {{"L", "--param", "sin=1"}, "'sin' cannot be a parameter"},
                  {{"t", "--time", "noon"}, "a number of seconds"},
-                 {{"1", "--emit", "rust"}, "expected c, glsl or kernel"},
+                 {{"1", "--emit", "rust"}, "expected c, function, glsl or kernel"},
                  {{"vec3(1,2,3)", "--hessian"}, "must be a number"},
                  {{NULL}, "which formula?"}};
     for (size_t i = 0; i < COUNT(cases); i++) {
@@ -68,8 +68,24 @@ static void it_writes_languages(void **state) {
     assert_contains(o.out, "// length(p0-p1) - L\n");
     assert_contains(o.out, "FORMULA(formula) {\n");
     assert_contains(o.out, "// Parameter 0 is L.\n");
+    assert_contains(o.out, "\nSKEIN_COMPILED(skein_compiled_formula, UINT64_C(0x");
     outcome_free(&o);
-    o = SKEIN("formula", "length(p0-p1) - L", "--param", "L=1", "--emit", "c", "--hessian");
+    o = SKEIN("formula", "0.5 * k * length(p0-p1)^2", "--param", "k=1", "--emit", "c", "--hessian", "--name", "spring");
+    assert_status(o, 0);
+    assert_contains(o.out, "for constraints of kind `energy`");
+    assert_contains(o.out, "SECOND(second) {\n");
+    assert_contains(o.out, "\nSKEIN_COMPILED(spring, UINT64_C(0x");
+    outcome_free(&o);
+    o = SKEIN("formula", "p0 - v0", "--emit", "c");
+    assert_contains(o.err, "this one is a vector");
+    assert_status(o, 2);
+    outcome_free(&o);
+    o = SKEIN("formula", "p0 - v0", "--emit", "function");
+    assert_status(o, 0);
+    assert_contains(o.out, "#define VELOCITY(particle, axis)");
+    assert_contains(o.out, "FORMULA(formula) {\n");
+    outcome_free(&o);
+    o = SKEIN("formula", "length(p0-p1) - L", "--param", "L=1", "--emit", "function", "--hessian");
     assert_status(o, 0);
     assert_contains(o.out, "HESSIAN(5, 5, ");
     outcome_free(&o);

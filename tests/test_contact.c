@@ -80,7 +80,7 @@ static skein_world *cloth_on_a_slope(const char *method, double friction) {
                                             SKEIN_VEC3("rotation", 0, 0, -20),
                                             SKEIN_VEC3("position", 0.004 * sin(slope), 0.004 * cos(slope), 0),
                                             SKEIN_REAL("stretch.stiffness", 500), SKEIN_REAL("shear.stiffness", 100),
-                                            SKEIN_REAL("bend.stiffness", 5)),
+                                            SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 5)),
                              NULL));
     return world;
 }

@@ -353,7 +353,7 @@ static void birds_and_cloth_mind_each_other(void **state) {
                               SKEIN_SETTINGS(SKEIN_TEXT("name", "flag"), SKEIN_PAIR("grid", 9, 9),
                                              SKEIN_PAIR("size", 4, 4), SKEIN_VEC3("rotation", 90, 0, 0),
                                              SKEIN_TEXT("pins", "top edge"), SKEIN_REAL("stretch.stiffness", 200),
-                                             SKEIN_REAL("shear.stiffness", 20), SKEIN_REAL("bend.stiffness", 1)),
+                                             SKEIN_REAL("shear.stiffness", 20), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 1)),
                               NULL));
             size_t cloth = skein_particle_count(world);
             OK(world, skein_body_add(world, "flock", NULL,

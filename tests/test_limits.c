@@ -8,7 +8,7 @@ static skein_world *limp_sheet(const char *method, int side, const char *pins, d
     skein_world *world = new_world(method, 1);
     OK(world, skein_body_add(world, "cloth", NULL,
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_TEXT("pins", pins), SKEIN_REAL("stretch.stiffness", 0),
-                                            SKEIN_REAL("shear.stiffness", 0), SKEIN_REAL("bend.stiffness", 0),
+                                            SKEIN_REAL("shear.stiffness", 0), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0),
                                             SKEIN_REAL("stretch.limit", limit), SKEIN_REAL("stretch.tether", tether)),
                              body));
     return world;

@@ -51,7 +51,7 @@ static void springs_agree_with_the_statistics(void **state) {
     skein_world *world = skein_world_create(NULL, NULL);
     OK(world, skein_body_add(world, "cloth", NULL,
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 20, 30), SKEIN_TEXT("pins", "top corners"),
-                                            SKEIN_REAL("shear.stiffness", 0), SKEIN_REAL("bend.stiffness", 0)),
+                                            SKEIN_REAL("shear.stiffness", 0), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0)),
                              NULL));
     OK(world, skein_force_add(world, "gravity", NULL, NULL));
     for (int i = 0; i < 20; i++) OK(world, skein_world_step(world, SKEIN_DEFAULT_STEP));

@@ -131,7 +131,7 @@ static skein_world *sheet_in_wind(const char *method, vec3 turn, vec3 wind, vec3
                                             SKEIN_REAL("density", 2), SKEIN_VEC3("rotation", turn.x, turn.y, turn.z),
                                             SKEIN_VEC3("velocity", motion.x, motion.y, motion.z),
                                             SKEIN_REAL("stretch.stiffness", 0), SKEIN_REAL("shear.stiffness", 0),
-                                            SKEIN_REAL("bend.stiffness", 0)),
+                                            SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0)),
                              NULL));
     OK(world, skein_force_add(world, "surface_wind",
                               SKEIN_SETTINGS(SKEIN_VEC3("velocity", wind.x, wind.y, wind.z), SKEIN_REAL("drag", drag),

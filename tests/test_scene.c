@@ -98,7 +98,7 @@ static void every_type_of_field_arrives(void **state) {
     skein_world *world = build_scene(
         "{ 'method': { 'type': 'symplectic_euler', 'substeps': 7 },\n"
         "  'bodies': [ { 'type': 'cloth', 'name': 'sheet', 'grid': [3, 5], 'size': [2, 1.5], 'position': [1, 2, 3],\n"
-        "    'visible': false, 'stretch': { 'stiffness': 3e3, 'limit': 'infinite' }, 'bend.stiffness': 5,\n"
+        "    'visible': false, 'stretch': { 'stiffness': 3e3, 'limit': 'infinite' }, 'bend.by': 'springs', 'bend.stiffness': 5,\n"
         "    'pins': [-1, 0] } ],\n"
         "  'forces': [ { 'type': 'gravity', 'acceleration': [0, -1.5, 0], 'name': 'weak' } ],\n"
         "  'colliders': [ { 'type': 'sphere', 'radius': 0.25, 'motion': { 'spin': 4 } } ] }",

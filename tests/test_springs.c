@@ -187,7 +187,7 @@ static void springs_join_bodies_and_loose_particles(void **state) {
             skein_world *world = new_world(method_names[m], 1);
             OK(world, skein_body_add(world, "cloth", NULL,
                                      SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 7), SKEIN_REAL("density", 50), SKEIN_REAL("stretch.stiffness", 0),
-                                                    SKEIN_REAL("shear.stiffness", 0), SKEIN_REAL("bend.stiffness", 0)),
+                                                    SKEIN_REAL("shear.stiffness", 0), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0)),
                                      NULL));
             vec3 knot = position_of(world, 16);
             uint32_t weight = add_particle(world, 0.5, knot.x, knot.y - 0.5, knot.z), other = add_particle(world, 2, 3, 3, 3);
@@ -221,7 +221,7 @@ static void the_same_pair_twice_is_twice_as_stiff(void **state) {
         skein_world *world = new_world("symplectic_euler", 10);
         OK(world, skein_body_add(world, "cloth", NULL,
                                  SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_REAL("density", 5), SKEIN_REAL("stretch.stiffness", 0),
-                                                SKEIN_REAL("shear.stiffness", 0), SKEIN_REAL("bend.stiffness", 0),
+                                                SKEIN_REAL("shear.stiffness", 0), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0),
                                                 SKEIN_REAL("stretch.limit", INFINITY)),
                                  NULL));
         uint32_t pairs[2 * 2 * SIDE * SIDE];
@@ -293,7 +293,7 @@ static double sag_of_strip(const char *method, int substeps, int rows, int colum
                                             SKEIN_VEC3("rotation", triangles ? 0 : 90, 0, 0), SKEIN_REAL("density", 0.5),
                                             SKEIN_TEXT("pins", "top edge"), SKEIN_REAL("stretch.stiffness", 20),
                                             SKEIN_REAL("stretch.damping", 0.02), SKEIN_REAL("shear.stiffness", shear),
-                                            SKEIN_REAL("bend.stiffness", 0), SKEIN_REAL("stretch.limit", INFINITY),
+                                            SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0), SKEIN_REAL("stretch.limit", INFINITY),
                                             SKEIN_REAL("stretch.tether", INFINITY)),
                              NULL));
     steps(world, 60 * 4, 1.0 / 60);

@@ -44,7 +44,7 @@ static void a_sheet_holds_its_energy_at_any_resolution(void **state) {
         skein_world *world = new_world("xpbd", 1);
         OK(world, skein_body_add(world, "cloth", NULL,
                                  SKEIN_SETTINGS(SKEIN_PAIR("grid", n, n), SKEIN_REAL("stretch.stiffness", 1000),
-                                                SKEIN_REAL("shear.stiffness", 0), SKEIN_REAL("bend.stiffness", 0)),
+                                                SKEIN_REAL("shear.stiffness", 0), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0)),
                                  NULL));
         for (int i = 0; i < n * n; i++) {
             vec3 p = position_of(world, (size_t)i);

@@ -52,7 +52,7 @@ static void add_body(skein_world *world, body which) {
                                  SKEIN_SETTINGS(SKEIN_PAIR("grid", 101, 83), SKEIN_VEC3("position", 0, 0.5, 0),
                                                 SKEIN_VEC3("velocity", 0.1, -2, 0), SKEIN_TEXT("pins", "top corners"),
                                                 SKEIN_REAL("stretch.stiffness", 5), SKEIN_REAL("shear.stiffness", 1),
-                                                SKEIN_REAL("bend.stiffness", 0.1)),
+                                                SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0.1)),
                                  NULL));
     if (which == LATTICE)
         OK(world, skein_body_add(world, "lattice", NULL,
@@ -64,7 +64,7 @@ static void add_body(skein_world *world, body which) {
     snprintf(pins, sizeof pins, "%u, %u", t.number[0], t.number[SIDE - 1]);
     OK(world, skein_body_add(world, "cloth", &t.mesh,
                              SKEIN_SETTINGS(SKEIN_TEXT("pins", pins), SKEIN_VEC3("position", 0, 0.6, 0.2),
-                                            SKEIN_REAL("stretch.stiffness", 5), SKEIN_REAL("bend.stiffness", 0.1)),
+                                            SKEIN_REAL("stretch.stiffness", 5), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0.1)),
                              NULL));
 }
 

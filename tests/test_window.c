@@ -603,6 +603,18 @@ static void says_what_to_do_without_a_display(void **state) {
     outcome_free(&said);
 }
 
+/* Mesa is told to be an older one. */
+static void says_what_to_do_without_opengl_4_5(void **state) {
+    (void)state;
+    setenv("MESA_GL_VERSION_OVERRIDE", "3.3", 1);
+    outcome said = SKEIN("view", "scenes/flag.json");
+    unsetenv("MESA_GL_VERSION_OVERRIDE");
+    assert_status(said, 1);
+    assert_contains(said.err, "no window with OpenGL 4.5");
+    assert_contains(said.err, "apt-get install libgl1-mesa-dri");
+    outcome_free(&said);
+}
+
 static void refuses_bad_arguments(void **state) {
     (void)state;
     assert_says(2, "", "skein view: --size 12: expected two whole numbers from 64 to 16384, as in 1280x720\n", "view",
@@ -635,6 +647,7 @@ int main(void) {
         cmocka_unit_test(refuses_bad_arguments),
     };
     const struct CMUnitTest sitting[] = {
+        cmocka_unit_test(says_what_to_do_without_opengl_4_5),
         cmocka_unit_test(opens_from_the_gallery),
         cmocka_unit_test(plays_and_pauses),
         cmocka_unit_test(steps_goes_back_and_branches),

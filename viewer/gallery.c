@@ -161,7 +161,7 @@ bool viewer_gallery_work(viewer_stage *stage) {
     if (!gallery || gallery->next >= shown->card_count) return false;
     viewer_card *card = &shown->cards[gallery->next++]; // cards stay where they are
     viewer_player player = {0};
-    viewer_reading reading = {stage->options->exporters, stage->options->threads};
+    viewer_reading reading = {stage->options->exporters, stage->options->threads, NULL};
     unsigned texture = 0;
     gallery->fault[0] = 0;
     if (viewer_player_open(&player, card->path, NULL, &reading, (viewer_reporter){gallery_hears, gallery})) {

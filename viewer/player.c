@@ -115,6 +115,7 @@ static bool load(viewer_player *player, const viewer_reading *reading) {
     desc.thread_count = reading->threads > 0 ? reading->threads : player->settings.threads;
     player->world = io_scene_build(player->scene, &desc, &faults);
     if (!player->world) return false;
+    if (reading->prepare) reading->prepare(player->world);
     const render_view *view = io_scene_view(player->scene);
     player->view = view ? *view : render_view_default();
     player->steps = io_scene_steps_per_frame(&player->settings, &player->dt);

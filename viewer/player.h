@@ -40,7 +40,8 @@ typedef struct viewer_player {
 /* How scenes are read. */
 typedef struct viewer_reading {
     const skein_kind *const *exporters;
-    int threads; /* 0: the scene's */
+    int threads;                         /* 0: the scene's */
+    void (*prepare)(skein_world *world); /* once it is built; or NULL */
 } viewer_reading;
 
 /* Opens a scene, or a mesh as a cloth. `sets` as for io_scene_read, copied. Faults are reported; false after one. */

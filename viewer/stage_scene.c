@@ -11,7 +11,7 @@ static void player_says(void *user, skein_log_level level, const char *text) {
 }
 
 static viewer_reading reading_of(const viewer_stage *stage) {
-    return (viewer_reading){stage->options->exporters, stage->options->threads};
+    return (viewer_reading){stage->options->exporters, stage->options->threads, stage->options->prepare};
 }
 
 /* After anything that took time which must not count, or that changed what the clock steps. */

@@ -24,6 +24,7 @@ typedef struct viewer_options {
     double scale;                       /* of the letters; 0: as the screen has it */
     viewer_unfocused unfocused;
     bool paused, panels;
+    void (*prepare)(skein_world *world); /* is given each world before its first step, on the stage's thread; or NULL */
 } viewer_options;
 
 viewer_options viewer_default_options(void);

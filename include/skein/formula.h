@@ -111,6 +111,28 @@ typedef enum skein_formula_language {
 skein_status skein_formula_emit(const skein_formula *formula, skein_formula_language language,
                                 void (*write)(void *user, const char *text), void *user, skein_error *error);
 
+/* ---- at compiled speed: compiled.h ---- */
+
+typedef struct skein_compiled skein_compiled;
+
+/* Writes a file of C that a compiler makes into a skein_compiled of that name, a C identifier (NULL:
+ * skein_compiled_formula). The formula is a constraint's: a number, without velocities; with second derivatives it is for
+ * constraints of kind `energy`. */
+skein_status skein_formula_emit_compiled(const skein_formula *formula, const char *name,
+                                         void (*write)(void *user, const char *text), void *user, skein_error *error);
+/* Of what a formula computes, whatever its names and blanks: formulas with the same hash are run by the same compiled
+ * code. */
+uint64_t skein_formula_hash(const skein_formula *formula);
+/* From its next step on the world runs this for every constraint (`formula` or `energy`) with that formula, those that
+ * are added later among them, in place of the tape. It is kept by its address until the world is destroyed. Fails for
+ * code of another ABI, precision or processor, and for what another version of Skein emitted, whose operations may
+ * differ. Of two with the same hash the later one runs. */
+skein_status skein_formula_register(skein_world *world, const skein_compiled *compiled);
+/* A constraint's formula, until its text is changed or it is removed; NULL where it has none. */
+const skein_formula *skein_formula_of(const skein_world *world, skein_handle constraint);
+/* Whether something compiled runs for it. */
+bool skein_formula_is_compiled(const skein_world *world, skein_handle constraint);
+
 /* A function of the language, by index from 0; false past the end. */
 bool skein_formula_function(size_t index, const char **usage, const char **help);
 

@@ -1,4 +1,4 @@
-/* Cloth from any mesh: a particle a vertex, springs along edges, across quads and over folds.
+/* Cloth from any mesh: a particle a vertex, springs along edges and across quads, angles or springs at folds.
  *
  *   sheet (mesh or grid, placed, welded) --> springs --> pins --> particles, batches, triangles, tethers
  *
@@ -55,9 +55,9 @@ static const skein_field fields[] = {
     SK_REAL(cloth_params, shear.stiffness, "shear.stiffness", "N/m", 2e3, 0, SK_UNBOUNDED, "across the threads"),
     SK_REAL(cloth_params, shear.damping, "shear.damping", "N s/m", 0, 0, SK_FAR, "of shearing"),
     SK_CHOICE(
-        cloth_params, bending, "bend.by", BY_SPRINGS, "springs|angle|curvature",
-        "springs over folds; or `dihedral` angles at edges, or `isometric` curvature there: both take the rigidity"),
-    SK_REAL(cloth_params, bend.stiffness, "bend.stiffness", "N/m", 20, 0, SK_UNBOUNDED, "of the springs over folds"),
+        cloth_params, bending, "bend.by", BY_ANGLE, "springs|angle|curvature",
+        "`dihedral` angles at edges, or `isometric` curvature there: both take the rigidity; or springs over folds"),
+    SK_REAL(cloth_params, bend.stiffness, "bend.stiffness", "N/m", 0, 0, SK_UNBOUNDED, "of the springs over folds"),
     SK_REAL(cloth_params, bend.damping, "bend.damping", "N s/m", 0, 0, SK_FAR, "of the springs over folds"),
     SK_REAL(cloth_params, rigidity, "bend.rigidity", "N m", 1e-5, 0, SK_UNBOUNDED,
             "of the sheet against angle or curvature, the same at any resolution (1e-5 is a cotton)"),
@@ -266,10 +266,13 @@ static void hand_over_surface(tailor *t) {
     sheet->particle_of_vertex = sheet->face_sizes = sheet->face_vertices = NULL;
 }
 
-static bool live(const char *field) {
+/* Of bending, what the cloth was built with. */
+static bool live(const void *data, const char *field) {
+    const cloth_params *params = data;
+    if (!strcmp(field, "bend.stiffness") || !strcmp(field, "bend.damping")) return params->bending == BY_SPRINGS;
+    if (!strcmp(field, "bend.rigidity")) return params->bending != BY_SPRINGS;
     static const char *const names[] = {"stretch.stiffness", "stretch.damping", "shear.stiffness",
-                                        "shear.damping",     "bend.stiffness",  "bend.damping",
-                                        "bend.rigidity",     "stretch.limit",   "stretch.tether"};
+                                        "shear.damping",     "stretch.limit",   "stretch.tether"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (!strcmp(field, names[i])) return true;
     return false;
@@ -284,10 +287,20 @@ static void change(sk_body *body, const void *data) {
     body->strain_bound = params->limit;
 }
 
+/* What only springs have is not taken without a word by what is none. */
+static skein_status check_bending(const cloth_params *p, skein_error *error) {
+    if (p->bending == BY_SPRINGS) return SKEIN_OK;
+    const char *field = p->bend.stiffness > 0 ? "bend.stiffness" : p->bend.damping > 0 ? "bend.damping" : NULL;
+    if (!field) return SKEIN_OK;
+    return sk_fail(error, SKEIN_ERROR_VALUE, field,
+                   "this is of springs over folds: set bend.by to springs, too; else give bend.rigidity, in N m");
+}
+
 static skein_status build(skein_world *world, sk_body *body, const void *params, const skein_mesh *mesh,
                           skein_error *error) {
     tailor t = {.world = world, .body = body, .params = params, .error = error};
-    skein_status status = make_sheet(&t, mesh);
+    skein_status status = check_bending(params, error);
+    if (!status) status = make_sheet(&t, mesh);
     if (!status) status = sk_report_faults(world, body->label, &t.sheet, &t.springs, error);
     if (!status) status = add_particles(&t);
     if (!status) status = put_in_order(&t);
@@ -306,9 +319,10 @@ static skein_status build(skein_world *world, sk_body *body, const void *params,
 }
 
 const sk_body_type sk_cloth = {
-    .kind = {"cloth",
-             "a sheet from a triangle or quad mesh, or a grid: edges, shear and bending as springs, tethers to pins",
-             SKEIN_BODY, fields, sizeof fields / sizeof *fields, sizeof(cloth_params)},
+    .kind =
+        {"cloth",
+         "a sheet from a triangle or quad mesh, or a grid: springs along and across, bending by angle, tethers to pins",
+         SKEIN_BODY, fields, sizeof fields / sizeof *fields, sizeof(cloth_params)},
     .build = build,
     .live = live,
     .change = change,

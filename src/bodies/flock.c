@@ -71,8 +71,8 @@ static skein_status build(skein_world *world, sk_body *body, const void *data, c
     return status;
 }
 
-static bool live(const char *field) {
-    (void)field;
+static bool live(const void *params, const char *field) {
+    (void)params, (void)field;
     return false; // all of it shapes what is built
 }
 

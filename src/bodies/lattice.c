@@ -180,7 +180,8 @@ static skein_status add_springs(sk_block *block, const lattice_params *params) {
 
 /* ---- the type ---- */
 
-static bool live(const char *field) {
+static bool live(const void *params, const char *field) {
+    (void)params;
     static const char *const names[] = {"structural.stiffness", "structural.damping", "structural.limit",
                                         "shear.stiffness",      "shear.damping",      "bending.stiffness",
                                         "bending.damping"};

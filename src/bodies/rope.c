@@ -175,7 +175,8 @@ static skein_status add_tethers(const sk_block *block, double link) {
 
 /* ---- the type ---- */
 
-static bool live(const char *field) {
+static bool live(const void *params, const char *field) {
+    (void)params;
     static const char *const names[] = {"stretch.stiffness", "stretch.damping", "bend.stiffness",
                                         "bend.damping",      "stretch.limit",   "stretch.tether"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)

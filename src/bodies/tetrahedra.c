@@ -332,7 +332,8 @@ static skein_status add_surface(builder *b) {
 
 /* ---- the type ---- */
 
-static bool live(const char *field) {
+static bool live(const void *params, const char *field) {
+    (void)params;
     static const char *const names[] = {"stiffness", "damping", "volume.stiffness", "volume.damping", "limit"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (!strcmp(field, names[i])) return true;

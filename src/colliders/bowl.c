@@ -48,6 +48,6 @@ const sk_collider_type sk_bowl = {
     .place = place,
     .mass = mass_of,
     .probe = SK_EACH_ISA(probe),
-    .shader = {"colliders/bowl", 1, pack, NULL},
+    .shader = {.file = "colliders/bowl", .size = 1, .pack = pack},
 };
 #endif

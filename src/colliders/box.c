@@ -74,6 +74,6 @@ const sk_collider_type sk_box = {
     .place = place,
     .turn = turn,
     .probe = SK_EACH_ISA(probe),
-    .shader = {"colliders/box", 1, pack, NULL},
+    .shader = {.file = "colliders/box", .size = 1, .pack = pack},
 };
 #endif

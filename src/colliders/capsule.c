@@ -76,6 +76,6 @@ const sk_collider_type sk_capsule = {
              sizeof fields / sizeof *fields, sizeof(capsule_params)},
     .place = place,
     .probe = SK_EACH_ISA(probe),
-    .shader = {"colliders/capsule", 1, pack, NULL},
+    .shader = {.file = "colliders/capsule", .size = 1, .pack = pack},
 };
 #endif

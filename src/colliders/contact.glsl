@@ -11,8 +11,13 @@ encounter@ meet@(vec4 x) {
     vec4 probed = probe@(x.xyz);
     // rounding must not break a resting contact: forces and velocities look a little beyond the thickness
     float size = max(abs(x.x), max(abs(x.y), abs(x.z))), thickness = pose@[0].w;
+#ifdef DEFORMS@
+    vec3 own = speed@ * probed.xyz;
+#else
+    const vec3 own = vec3(0);
+#endif
     float reach = thickness + 1e-3 * thickness + 4e-6 * (size + 0.1);
-    vec3 surface = pose@[1].xyz + cross(pose@[2].xyz, x.xyz - position@);
+    vec3 surface = pose@[1].xyz + cross(pose@[2].xyz, x.xyz - position@) + own;
     return encounter@(probed.xyz, surface, probed.w, probed.w <= reach && x.w > 0);
 }
 

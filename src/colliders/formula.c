@@ -97,10 +97,23 @@ static bool is_guarded(const void *data, const sk_pose *pose, const double x[3])
     return guarded;
 }
 
+static void pack(const void *data, float (*block)[4]) {
+    const formula_params *params = data;
+    sk_pointwise_pack(params->compiled, params->parameter, block);
+}
+
+static bool write(const void *data, void (*put)(void *user, const char *text), void *user) {
+    return sk_pointwise_put_glsl(((const formula_params *)data)->compiled, 0, put, user);
+}
+
+static bool changes(const void *data) {
+    return ((const formula_params *)data)->compiled->formula->uses & SK_USES_TIME;
+}
+
 #define SK_KERNELS "colliders/formula.c"
 #include "base/for_each_isa.h"
 
-static const sk_making making = {make, unmake};
+static const sk_making making = {.make = make, .unmake = unmake};
 const sk_collider_type sk_formula_surface = {
     .kind = {"formula", "any surface that a formula describes, also one that moves and changes", SKEIN_COLLIDER, fields,
              sizeof fields / sizeof *fields, sizeof(formula_params)},
@@ -110,5 +123,7 @@ const sk_collider_type sk_formula_surface = {
     .deforms = true,
     .guarded = is_guarded,
     .making = &making,
+    .shader =
+        {.file = "colliders/formula", .size = SK_POINTWISE_BLOCK, .pack = pack, .write = write, .changes = changes},
 };
 #endif

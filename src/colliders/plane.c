@@ -53,6 +53,6 @@ const sk_collider_type sk_plane = {
     .place = place,
     .axis = axis,
     .probe = SK_EACH_ISA(probe),
-    .shader = {"colliders/plane", 0, NULL, NULL},
+    .shader = {.file = "colliders/plane"},
 };
 #endif

@@ -1,6 +1,7 @@
 // Where a collider stands at the end of the substep; what the shapes' texts build on.
 //
-// pose@: position, thickness | velocity, friction | spin, restitution | axis, mass | three rows of the rotation
+// pose@: position, thickness | velocity, friction | spin, restitution | axis, mass | three rows of the rotation, the
+// first with the time
 #define position@ pose@[0].xyz
 #define axis@ pose@[3].xyz
 

@@ -49,6 +49,6 @@ const sk_collider_type sk_sphere = {
     .place = place,
     .mass = mass_of,
     .probe = SK_EACH_ISA(probe),
-    .shader = {"colliders/sphere", 1, pack, NULL},
+    .shader = {.file = "colliders/sphere", .size = 1, .pack = pack},
 };
 #endif

@@ -94,6 +94,7 @@ struct sk_batch {
     uint8_t *special;      /* a block of 16 lanes each: not all as the sweep's common values say */
 
     sk_enclosure *enclosure; /* of a kind that has one, else NULL */
+    bool compiled;           /* something compiled runs, which wants no blocks: its groups are dealt as all others */
 };
 
 /* Makes a batch of copies, for the type's parameters; NULL when there is no memory. `rest` has rest_count x count

@@ -71,8 +71,9 @@ SK_INLINE void SK_ISA(take_answer)(SK_ISA(answer) * a, const SK_ISA(block) * b, 
     }
     sum += a->by_time = OUTPUT(3 * arity + 1);
 #undef OUTPUT
-    // as tapes are judged
+    // as tapes are judged, which may have been done
     sk_mask finite = ~SK_ISA(sk_differ)(sum - sum, (sk_wide){0});
+    if (!tape->unjudged) finite &= b->verdict.finite[i];
     a->active = one_sided ? finite & SK_ISA(sk_negative)(a->value) : finite;
     if (!SK_ISA(sk_any)(~finite)) return;
     a->value = SK_ISA(sk_keep)(finite, a->value), a->by_time = SK_ISA(sk_keep)(finite, a->by_time);
@@ -156,7 +157,7 @@ SK_INLINE void SK_ISA(put_back)(sk_vec4 *vector, size_t packed, const uint32_t *
 
 /* Group `i` of a block whose tape has run. Particles that the formula does not read stay where they are. */
 SK_INLINE void SK_ISA(settle_group)(sk_run *run, const sk_row *row, const sk_sweep *sweep, const SK_ISA(block) * b,
-                                    const factors *f, const places *to, size_t arity, size_t i, size_t group,
+                                    const sk_formula_factors *f, const places *to, size_t arity, size_t i, size_t group,
                                     size_t packed, sk_row_kind kind, bool damped) {
     const sk_batch *batch = sweep->batch;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
@@ -207,9 +208,13 @@ SK_INLINE void SK_ISA(walk)(sk_run *run, const sk_row *row, size_t begin, size_t
     const sk_sweep *sweep = row->rule;
     const sk_batch *batch = sweep->batch;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
+    if (made->compiled) {
+        sk_compiled_walk(run, row, begin, end, kind, damped);
+        return;
+    }
     const sk_tape *tape = &made->tape;
     places to = find_places(batch, tape);
-    factors f = find_factors(batch, row);
+    sk_formula_factors f = sk_formula_find_factors(batch, row);
     SK_ISA(block) b;
     if (sweep->slab_start) begin = sweep->slab_start[begin], end = sweep->slab_start[end];
     SK_ISA(begin)(&b, batch, tape, run->time - row->before);
@@ -256,9 +261,10 @@ static void SK_ISA(project_damped_groups)(sk_run *run, const sk_row *row, size_t
 
 /* ---- implicit solves: elements, not groups ---- */
 
-/* Runs a tape of one wide on elements [begin, begin + count), at most sixteen; lanes past them repeat the last. */
-static void SK_ISA(run_elements)(SK_ISA(block) * b, const sk_batch *batch, const sk_tape *tape, const sk_vec4 *x,
-                                 size_t packed, size_t begin, size_t count) {
+/* Runs a tape of one wide that has begun, or what is compiled for it, on elements [begin, begin + count), at most
+ * sixteen; lanes past them repeat the last. */
+static void SK_ISA(run_elements)(SK_ISA(block) * b, const sk_batch *batch, const sk_tape *tape, bool compiled,
+                                 double time, const sk_vec4 *x, size_t packed, size_t begin, size_t count) {
     uint32_t slot[SK_MOST_ARITY][SK_LANES];
     real rest[SKEIN_FORMULA_MOST_RESTS][SK_LANES];
     places to = find_places(batch, tape);
@@ -266,6 +272,17 @@ static void SK_ISA(run_elements)(SK_ISA(block) * b, const sk_batch *batch, const
         size_t e = begin + (l < count ? l : count - 1);
         for (size_t p = 0; p < batch->arity; p++) slot[p][l] = batch->slot[e * batch->arity + p];
         for (size_t r = 0; r < batch->rest_count; r++) rest[r][l] = batch->rest[r * batch->count + e];
+    }
+    if (compiled) {
+        const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
+        real *outputs[3 * SK_MOST_ARITY * (3 * SK_MOST_ARITY + 1) / 2];
+        sk_wide4 at[SK_MOST_ARITY];
+        sk_wide finite;
+        for (size_t p = 0; p < batch->arity; p++) at[p] = SK_ISA(gather)(x, packed, slot[p]);
+        for (size_t k = 0; k < tape->outputs; k++) outputs[k] = (real *)(b->registers + tape->output[k]);
+        sk_compiled_evaluate(batch, time, tape == &made->hessian, (const real *)at, rest[0], outputs, (real *)&finite);
+        b->verdict.finite[0] = SK_ISA(sk_positive)(finite);
+        return;
     }
     SK_ISA(fill)(b, &to, 0, batch->arity, batch->rest_count, tape->wides, x, packed, slot[0], rest[0], SK_LANES);
     sk_tape_kernels_of[SK_ISA(sk_version)].run(tape, b->registers, 1, &b->verdict);
@@ -326,7 +343,8 @@ static void SK_ISA(stiffness)(SK_ISA(block) * b, SK_ISA(matrix) * m, const sk_ba
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
     const sk_tape *tape = made->is_energy ? &made->hessian : &made->single;
     SK_ISA(begin)(b, batch, tape, run->time - row->before);
-    SK_ISA(run_elements)(b, batch, tape, run->vector[SK_X], row->packed, begin, count);
+    SK_ISA(run_elements)
+    (b, batch, tape, made->compiled, run->time - row->before, run->vector[SK_X], row->packed, begin, count);
     if (made->is_energy) {
         for (size_t k = 0; k < tape->outputs; k++)
             m->entry[k] = SK_ISA(sk_keep)(b->verdict.finite[0], b->registers[tape->output[k]]);
@@ -399,7 +417,7 @@ static size_t SK_ISA(energy)(const sk_batch *batch, double time, const sk_vec4 *
     for (size_t at = begin; at < end; at += SK_LANES) {
         size_t count = end - at < SK_LANES ? end - at : SK_LANES;
         SK_ISA(answer) a;
-        SK_ISA(run_elements)(&b, batch, &made->single, x, 0, at, count);
+        SK_ISA(run_elements)(&b, batch, &made->single, false, time, x, 0, at, count); // a tape counts its guards
         SK_ISA(take_answer)(&a, &b, &made->single, batch->arity, 0, made->one_sided);
         sk_mask odd = b.verdict.guarded[0] | ~b.verdict.finite[0];
         for (size_t l = 0; l < count; l++) {
@@ -439,20 +457,6 @@ static places find_places(const sk_batch *batch, const sk_tape *tape) {
             to.rest[load.index - first_rest] = load.to;
     }
     return to;
-}
-
-/* What is the same for all elements of a row. */
-typedef struct factors {
-    real damping_time; /* c/k, s */
-    real per_step;     /* 1/h^2, times the projections that share the stiffness */
-    real gamma;        /* c/(k h) */
-} factors;
-
-static factors find_factors(const sk_batch *batch, const sk_row *row) {
-    double damping_time = sk_batch_damping_time(batch);
-    if (!(row->dt > 0)) return (factors){(real)damping_time, 0, 0}; // a force knows no step
-    return (factors){(real)damping_time, (real)(row->coefficient[0] / (row->dt * row->dt)),
-                     (real)(damping_time / row->dt)};
 }
 
 #define SK_KERNELS "constraints/formula.c"

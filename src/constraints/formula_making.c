@@ -88,7 +88,12 @@ static void unmake(void *params, sk_allocator *allocator) {
     release(((sk_formula_params *)params)->made, allocator);
 }
 
-const sk_making sk_formula_making = {make_constraint, unmake}, sk_energy_making = {make_energy, unmake};
+static const skein_formula *formula_of(const void *params) {
+    return ((const sk_formula_params *)params)->made->formula;
+}
+
+const sk_making sk_formula_making = {make_constraint, unmake, formula_of, sk_formula_run_compiled},
+                sk_energy_making = {make_energy, unmake, formula_of, sk_formula_run_compiled};
 
 /* ---- what a constraint asks of its type ---- */
 

@@ -60,6 +60,6 @@ const sk_force_type sk_attraction = {
     .deed = SK_STEERS,
     .kernel = {SK_EACH_ISA(kernel)},
     .bodies = bodies,
-    .shader = {"forces/attraction", 2, pack, NULL},
+    .shader = {.file = "forces/attraction", .size = 2, .pack = pack},
 };
 #endif

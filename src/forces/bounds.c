@@ -137,11 +137,15 @@ static void pack(const void *data, float (*block)[4]) {
     const bounds_params *params = data;
     sk_shader_vector(block[0], params->centre);
     block[0][3] = params->shape == BALL ? (float)params->radius : 0;
-    for (int k = 0; k < 3; k++) block[1][k] = (float)(0.5 * params->size[k]);
+    for (int k = 0; k < 3; k++) {
+        double half = 0.5 * params->size[k];
+        block[1][k] = (float)half;
+        block[2][k] = (float)(params->centre[k] - half), block[3][k] = (float)(params->centre[k] + half);
+    }
 }
 
-static const char *refuse(const void *params) {
-    return ((const bounds_params *)params)->edge == PERIODIC ? "with periodic edges" : NULL;
+static bool shifts(const void *params) {
+    return ((const bounds_params *)params)->edge == PERIODIC;
 }
 
 #define SK_KERNELS "forces/bounds.c"
@@ -156,6 +160,6 @@ const sk_force_type sk_bounds = {
     .kernel = {SK_EACH_ISA(kernel)},
     .check = check,
     .bodies = bodies,
-    .shader = {"forces/bounds", 2, pack, refuse},
+    .shader = {.file = "forces/bounds", .size = 4, .pack = pack, .shifts = shifts},
 };
 #endif

@@ -9,3 +9,10 @@ vec3 bound@(vec3 v, vec3 x, vec4 steering, float dt) {
     bvec3 leaves = bvec3(uvec3(greaterThan(abs(d), rule@[1].xyz)) & uvec3(greaterThan(d * v, vec3(0))));
     return mix(v, -v, leaves);
 }
+
+// Where edges are periodic: by how much what is outside comes in at the other side.
+vec3 shift@(vec3 x) {
+    vec3 size = 2 * rule@[1].xyz, shift = vec3(0);
+    for (int k = 0; k < 3; k++) shift[k] = x[k] > rule@[3][k] ? -size[k] : x[k] < rule@[2][k] ? size[k] : 0;
+    return shift;
+}

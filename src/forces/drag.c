@@ -73,6 +73,6 @@ const sk_force_type sk_drag = {
     .kernel = {SK_EACH_ISA(kernel)},
     .plain = plain,
     .resistance = {SK_EACH_ISA(resistance)},
-    .shader = {"forces/drag", 1, pack, NULL},
+    .shader = {.file = "forces/drag", .size = 1, .pack = pack},
 };
 #endif

@@ -32,26 +32,36 @@ SK_INLINE sk_wide SK_ISA(wide_at)(const real *at) {
     return a;
 }
 
+/* The cells' copies, where stores to the list cannot change them. */
+typedef struct SK_ISA(copies) {
+    const real *x, *y, *z, *ux, *uy, *uz;
+} SK_ISA(copies);
+
 /* Adds the candidates of bits to the list; d is where they are from the particle. */
-SK_INLINE void SK_ISA(keep_near)(SK_ISA(near) * near, const sk_cells *cells, size_t place, sk_wide3 d, uint32_t bits) {
+SK_INLINE void SK_ISA(keep_near)(SK_ISA(near) * near, const SK_ISA(copies) * copies, size_t place, sk_wide3 d,
+                                 sk_wide squares, sk_wide square, uint32_t some) {
 #if defined(SK_HAS_AVX512) && !defined(SKEIN_DOUBLE)
-    __mmask16 mask = (__mmask16)bits;
+    __mmask16 bits = _mm512_mask_cmp_ps_mask((__mmask16)some, (__m512)square, (__m512)squares, _CMP_GT_OQ);
+    // which lanes, once, for six permutations: half the work of six compressions
+    const sk_mask all = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    __m512i lanes = _mm512_maskz_compress_epi32(bits, (__m512i)all);
     size_t k = near->count;
-    _mm512_storeu_ps(near->x + k, _mm512_maskz_compress_ps(mask, (__m512)d.x));
-    _mm512_storeu_ps(near->y + k, _mm512_maskz_compress_ps(mask, (__m512)d.y));
-    _mm512_storeu_ps(near->z + k, _mm512_maskz_compress_ps(mask, (__m512)d.z));
-    _mm512_storeu_ps(near->ux + k, _mm512_maskz_compress_ps(mask, _mm512_loadu_ps(cells->ux + place)));
-    _mm512_storeu_ps(near->uy + k, _mm512_maskz_compress_ps(mask, _mm512_loadu_ps(cells->uy + place)));
-    _mm512_storeu_ps(near->uz + k, _mm512_maskz_compress_ps(mask, _mm512_loadu_ps(cells->uz + place)));
+    _mm512_storeu_ps(near->x + k, _mm512_permutexvar_ps(lanes, (__m512)d.x));
+    _mm512_storeu_ps(near->y + k, _mm512_permutexvar_ps(lanes, (__m512)d.y));
+    _mm512_storeu_ps(near->z + k, _mm512_permutexvar_ps(lanes, (__m512)d.z));
+    _mm512_storeu_ps(near->ux + k, _mm512_permutexvar_ps(lanes, _mm512_loadu_ps(copies->ux + place)));
+    _mm512_storeu_ps(near->uy + k, _mm512_permutexvar_ps(lanes, _mm512_loadu_ps(copies->uy + place)));
+    _mm512_storeu_ps(near->uz + k, _mm512_permutexvar_ps(lanes, _mm512_loadu_ps(copies->uz + place)));
     near->count = k + (size_t)__builtin_popcount(bits);
 #else
+    uint32_t bits = SK_ISA(sk_more_bits)(square, squares) & some;
     size_t k = near->count;
     for (; bits; bits &= bits - 1, k++) {
         int l = __builtin_ctz(bits);
         near->x[k] = d.x[l], near->y[k] = d.y[l], near->z[k] = d.z[l];
-        near->ux[k] = cells->ux[place + (size_t)l];
-        near->uy[k] = cells->uy[place + (size_t)l];
-        near->uz[k] = cells->uz[place + (size_t)l];
+        near->ux[k] = copies->ux[place + (size_t)l];
+        near->uy[k] = copies->uy[place + (size_t)l];
+        near->uz[k] = copies->uz[place + (size_t)l];
     }
     near->count = k;
 #endif
@@ -94,18 +104,18 @@ typedef struct SK_ISA(hits) {
 SK_INLINE SK_ISA(hits) SK_ISA(hits_at)(const SK_ISA(near) * near, size_t k, const sk_flocking_numbers *n) {
     SK_ISA(hits)
     h = {.d = {SK_ISA(wide_at)(near->x + k), SK_ISA(wide_at)(near->y + k), SK_ISA(wide_at)(near->z + k)}};
-    sk_wide least = SK_ISA(sk_splat)(n->least), square = SK_ISA(sk_dot_wide)(h.d, h.d);
+    sk_wide least = SK_ISA(all)(n->least), square = SK_ISA(sk_dot_wide)(h.d, h.d);
     sk_wide distance = SK_ISA(sk_wide_sqrt)(square);
     distance = SK_ISA(sk_select)(SK_ISA(sk_more)(distance, least), distance, least);
-    h.per = (real)1 / distance;
-    h.percent = distance * n->per_reach;
+    h.per = SK_ISA(all)(1) / distance;
+    h.percent = distance * SK_ISA(all)(n->per_reach);
     if (n->squared) h.percent *= h.percent;
     h.counts = SK_ISA(sk_positive)(square);
     if (!n->sees_all) {
         sk_vec3 u = near->heading;
-        sk_wide ahead = h.d.x * u.x + h.d.y * u.y + h.d.z * u.z;
+        sk_wide ahead = h.d.x * SK_ISA(all)(u.x) + h.d.y * SK_ISA(all)(u.y) + h.d.z * SK_ISA(all)(u.z);
         real all_round = u.x * u.x + u.y * u.y + u.z * u.z > 0 ? 0 : 1; // a particle that stands still
-        h.counts &= SK_ISA(sk_at_most)(n->view * distance, ahead + all_round * (2 * distance));
+        h.counts &= SK_ISA(sk_at_most)(SK_ISA(all)(n->view) * distance, ahead + SK_ISA(all)(2 * all_round) * distance);
     }
     return h;
 }
@@ -122,16 +132,18 @@ SK_INLINE void SK_ISA(add_hits)(const SK_ISA(near) * near, size_t k, const SK_IS
 
 SK_INLINE void SK_ISA(add_near)(const SK_ISA(near) * near, size_t k, const sk_flocking_numbers *n, sk_wide3 *sum) {
     SK_ISA(hits) h = SK_ISA(hits_at)(near, k, n);
-    sk_wide one = SK_ISA(sk_splat)(1), half = SK_ISA(sk_splat)((real)0.5);
-    sk_wide inverse = n->reach * h.per; // 1/percent
+    sk_wide one = SK_ISA(all)(1), half = SK_ISA(all)((real)0.5), away_to = SK_ISA(all)(n->away),
+            along_to = SK_ISA(all)(n->along);
+    sk_wide inverse = SK_ISA(all)(n->reach) * h.per; // 1/percent
     if (n->squared) inverse *= inverse;
-    sk_mask away = SK_ISA(sk_more)(SK_ISA(sk_splat)(n->away), h.percent);
-    sk_mask along = SK_ISA(sk_more)(SK_ISA(sk_splat)(n->along), h.percent) & ~away;
+    sk_mask away = SK_ISA(sk_more)(away_to, h.percent);
+    sk_mask along = SK_ISA(sk_more)(along_to, h.percent) & ~away;
     // from -0.5 to 0.5 through the zone
-    sk_wide a =
-        SK_ISA(sk_select)(along, (h.percent - n->away) * n->per_along, (h.percent - n->along) * n->per_towards) - half;
+    sk_wide a = SK_ISA(sk_select)(along, (h.percent - away_to) * SK_ISA(all)(n->per_along),
+                                  (h.percent - along_to) * SK_ISA(all)(n->per_towards)) -
+                half;
     sk_wide s = a * a, cosine = half * SK_FLOCKING_COSINE(s);
-    sk_wide towards = SK_ISA(sk_select)(away, one - n->away * inverse, cosine);
+    sk_wide towards = SK_ISA(sk_select)(away, one - away_to * inverse, cosine);
     SK_ISA(add_hits)(near, k, &h, SK_ISA(sk_keep)(~along, towards), SK_ISA(sk_keep)(along, one - cosine), sum);
 }
 
@@ -190,14 +202,14 @@ SK_INLINE void SK_ISA(work_out)(SK_ISA(near) * near, const sk_flocking_numbers *
 /* Tests the listed candidates, and keeps those within reach. */
 SK_INLINE void SK_ISA(test)(const sk_cells *cells, const sk_flocking_numbers *n, sk_vec3 p, SK_ISA(sixteens) * sixteens,
                             SK_ISA(near) * near, sk_wide3 *sum) {
-    sk_wide square = SK_ISA(sk_splat)(n->reach * n->reach);
+    sk_wide square = SK_ISA(all)(n->reach * n->reach);
+    const sk_wide3 here = {SK_ISA(all)(p.x), SK_ISA(all)(p.y), SK_ISA(all)(p.z)};
+    const SK_ISA(copies) copies = {cells->x, cells->y, cells->z, cells->ux, cells->uy, cells->uz};
     for (size_t k = 0; k < sixteens->count; k++) {
         size_t place = sixteens->place[k];
-        sk_wide3 d = {SK_ISA(wide_at)(cells->x + place) - p.x, SK_ISA(wide_at)(cells->y + place) - p.y,
-                      SK_ISA(wide_at)(cells->z + place) - p.z};
-        uint32_t bits = SK_ISA(sk_more_bits)(square, SK_ISA(sk_dot_wide)(d, d));
-        bits &= sixteens->left[k] < SK_LANES ? (1u << sixteens->left[k]) - 1 : 0xffffu;
-        SK_ISA(keep_near)(near, cells, place, d, bits);
+        sk_wide3 d = {SK_ISA(wide_at)(copies.x + place) - here.x, SK_ISA(wide_at)(copies.y + place) - here.y,
+                      SK_ISA(wide_at)(copies.z + place) - here.z};
+        SK_ISA(keep_near)(near, &copies, place, d, SK_ISA(sk_dot_wide)(d, d), square, sixteens->some[k]);
         if (near->count >= SK_ISA(ROOM)) SK_ISA(work_out)(near, n, sum);
     }
     sixteens->count = 0;
@@ -206,19 +218,24 @@ SK_INLINE void SK_ISA(test)(const sk_cells *cells, const sk_flocking_numbers *n,
 /* The steering of one particle at p. */
 SK_INLINE sk_vec3 SK_ISA(steer)(const sk_cells *cells, const SK_ISA(rows) * rows, const sk_flocking_numbers *n,
                                 sk_vec3 p, SK_ISA(near) * near) {
-    int32_t begin[SK_LANES], left[SK_LANES];
-    SK_ISA(find_ranges)(cells, rows, p, n->reach, begin, left);
+    SK_ISA(ranges) ranges;
+    SK_ISA(find_ranges)(cells, rows, p, n->reach, &ranges);
     SK_ISA(sixteens) sixteens;
     sixteens.count = 0;
     sk_wide3 sum = {{0}, {0}, {0}};
     near->count = 0;
-    while (SK_ISA(list)(begin, left, &sixteens))
+    // rows of over 32 are few: twice without asking
+    SK_ISA(list)(&ranges, &sixteens);
+    SK_ISA(list)(&ranges, &sixteens);
+    while (SK_ISA(list)(&ranges, &sixteens))
         if (sixteens.count >= SK_ISA(SIXTEENS)) SK_ISA(test)(cells, n, p, &sixteens, near, &sum);
     SK_ISA(test)(cells, n, p, &sixteens, near, &sum);
     if (n->count) SK_ISA(prune)(near, n);
     // fill up with neighbours in the same place, which add nothing
-    real *lists[] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
-    for (int i = 0; i < 6; i++) memset(lists[i] + near->count, 0, SK_LANES * sizeof(real));
+    const sk_wide none = {0};
+    memcpy(near->x + near->count, &none, sizeof none), memcpy(near->y + near->count, &none, sizeof none);
+    memcpy(near->z + near->count, &none, sizeof none), memcpy(near->ux + near->count, &none, sizeof none);
+    memcpy(near->uy + near->count, &none, sizeof none), memcpy(near->uz + near->count, &none, sizeof none);
     SK_ISA(add_all)(near, (near->count + SK_LANES - 1) / SK_LANES * SK_LANES, n, &sum);
     return sk_v3(SK_ISA(sk_sum)(sum.x), SK_ISA(sk_sum)(sum.y), SK_ISA(sk_sum)(sum.z));
 }
@@ -275,11 +292,13 @@ static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t 
 #else
 #include "forces/flocking.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "base/elementary.h"
 #include "base/status.h"
 #include "forces/pair_formula.h"
+#include "formula/formula.h"
 
 // clang-format off
 static const skein_field fields[] = {
@@ -326,7 +345,7 @@ static void unmake(void *data, sk_allocator *allocator) {
     sk_pair_formula_release(((sk_flocking_params *)data)->pair, allocator);
 }
 
-static const sk_making making = {make, unmake};
+static const sk_making making = {.make = make, .unmake = unmake};
 
 sk_flocking_numbers sk_flocking_numbers_of(const sk_flocking_params *params) {
     double reach = radius(params);
@@ -357,10 +376,21 @@ static void pack(const void *data, float (*block)[4]) {
     memcpy(block, numbers, sizeof numbers);
 }
 
-static const char *refuse(const void *data) {
+static bool write(const void *data, void (*put)(void *user, const char *text), void *user) {
     const sk_flocking_params *params = data;
-    if (params->pair) return "by a formula";
-    return params->nearest ? "while only the nearest neighbours count" : NULL;
+    char line[64];
+    snprintf(line, sizeof line, "#define MOST@ %d\n", (int)params->nearest);
+    if (params->nearest) put(user, line);
+    if (!params->pair) return true;
+    put(user, "#define FORMULA@\n");
+    return sk_pair_formula_put_glsl(params->pair, put, user);
+}
+
+static bool changes(const void *data) {
+    const sk_pair_formula *pair = ((const sk_flocking_params *)data)->pair;
+    for (int w = 0; pair && w < SK_PAIR_WEIGHTS; w++)
+        if (pair->formula[w] && pair->formula[w]->uses & SK_USES_TIME) return true;
+    return false;
 }
 
 #define SK_KERNELS "forces/flocking.c"
@@ -375,6 +405,6 @@ const sk_force_type sk_flocking = {
     .radius = radius,
     .bodies = bodies,
     .making = &making,
-    .shader = {"forces/flocking", 3, pack, refuse},
+    .shader = {.file = "forces/flocking", .size = 3, .pack = pack, .write = write, .changes = changes},
 };
 #endif

@@ -8,19 +8,27 @@ sum@ start@(vec3 heading) {
     return sum@(vec3(0), heading);
 }
 
+// Behind it nobody is seen; a particle that stands still looks all round.
+bool sees@(sum@ sum, vec3 apart, float square) {
+    return square > 0 && (dot(-apart, sum.heading) >= rule@[2].x * sqrt(square) || sum.heading == vec3(0));
+}
+
 void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction) {
     float per_reach = rule@[0].x, away = rule@[0].y, along = rule@[0].z, per_along = rule@[0].w;
-    float per_towards = rule@[1].x, least = rule@[1].y, view = rule@[2].x;
+    float per_towards = rule@[1].x, least = rule@[1].y;
     float per = inversesqrt(max(square, least * least)), percent = per_reach / per;
-    // behind it nobody is seen; a particle that stands still looks all round
-    bool counts = square > 0 && (dot(-apart, sum.heading) * per >= view || sum.heading == vec3(0));
     if (rule@[1].w != 0) percent *= percent;
+#ifdef FORMULA@
+    float towards = towards@(percent, row@[1].z), with = along@(percent, row@[1].z);
+#else
     bool is_away = percent < away, is_along = percent < along && !is_away;
     float a = is_along ? (percent - away) * per_along : (percent - along) * per_towards;
     float cosine = -0.5 * cos(6.28318531 * (a - 0.5)); // where cards know it best
     float towards = is_away ? 1 - away / percent : is_along ? 0 : cosine;
-    vec3 part = -towards * per * apart + (is_along ? 1 - cosine : 0) * direction;
-    sum.total += counts ? part : vec3(0);
+    float with = is_along ? 1 - cosine : 0;
+#endif
+    vec3 part = with * direction - towards * per * apart;
+    sum.total += sees@(sum, apart, square) ? part : vec3(0);
 }
 
 vec3 finish@(sum@ sum, float dt) {

@@ -45,6 +45,9 @@ typedef struct sk_force_type {
     /* Whether a value had to be guarded (formula/graph.h): for the statistics; NULL: there is nothing to guard. */
     bool (*guarded)(const void *params, const double x[3], const double v[3], double time);
     const sk_making *making; /* what is made from its texts; NULL: nothing */
+    /* Over particles, of a rule that looks where one of them is: which; that one it does not move. -1, or NULL: none.
+     * On a card its position is in the first three numbers of the block. */
+    int32_t (*particle)(const void *params);
     /* What a rule that steers or bounds says about the parameters together, before a plan is written; NULL: nothing. */
     skein_status (*check)(const void *params, size_t particle_count, skein_error *error);
     /* The names of the body that it moves and of the one that it looks at: "" is every particle, and the same as it
@@ -53,14 +56,16 @@ typedef struct sk_force_type {
     /* Over particles it defines, for a rule that pushes, steers (w: how much more speed is allowed) or bounds
      * (`steering` is what has been added to v in this substep):
      *     vec3 force@(vec3 x, vec3 v, float mass),   vec4 steer@(vec3 x, float dt),
-     *     vec3 bound@(vec3 v, vec3 x, vec4 steering, float dt)
+     *     vec3 bound@(vec3 v, vec3 x, vec4 steering, float dt)   or, where it moves particles, vec3 shift@(vec3 x),
      * and over neighbours a sum of its own type, what each neighbour adds, and the newtons or metres a second that
      * come of it:
      *     sum@ start@(vec3 heading),   void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction),
      *     vec3 finish@(sum@ sum, float dt)
      * where `apart` leads from the neighbour here, `square` is its squared length (less than that of the radius, and
      * 0 in one place), and `direction` is the neighbour's unit direction of flight, as `heading` is the particle's own.
-     */
+     * Where it defines MOST@, a number, it meets so many at the most: the nearest of those whom
+     *     bool sees@(sum@ sum, vec3 apart, float square)
+     * is true of. */
     sk_shader shader;
     /* Over colliders: the time ahead (s), the clearance (m) and the strength (m/s2) of steering clear. */
     void (*look)(const void *params, double look[3]);
@@ -76,6 +81,8 @@ typedef struct sk_force {
 } sk_force;
 
 bool sk_force_on_velocity(const sk_force *force);
+/* The particle that it looks at, or -1. */
+int32_t sk_force_particle(const sk_force *force);
 
 extern const sk_force_type sk_gravity, sk_wind, sk_surface_wind, sk_drag, sk_separation, sk_flocking, sk_attraction,
     sk_predator, sk_lookout, sk_speed_limit, sk_turn_limit, sk_bounds, sk_force_field, sk_potential;

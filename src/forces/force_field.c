@@ -126,6 +126,20 @@ static bool uses_velocity(const void *data) {
     return ((const force_field_params *)data)->force->formula->uses & SK_USES_VELOCITY;
 }
 
+static void pack(const void *data, float (*block)[4]) {
+    const force_field_params *params = data;
+    block[0][0] = params->per == PER_MASS;
+    sk_pointwise_pack(params->force, params->parameter, block + 1);
+}
+
+static bool write(const void *data, void (*put)(void *user, const char *text), void *user) {
+    return sk_pointwise_put_glsl(((const force_field_params *)data)->force, 1, put, user);
+}
+
+static bool changes(const void *data) {
+    return ((const force_field_params *)data)->force->formula->uses & SK_USES_TIME;
+}
+
 static bool is_guarded(const void *data, const double x[3], const double v[3], double time) {
     const force_field_params *params = data;
     double value[3];
@@ -137,7 +151,7 @@ static bool is_guarded(const void *data, const double x[3], const double v[3], d
 #define SK_KERNELS "forces/force_field.c"
 #include "base/for_each_isa.h"
 
-static const sk_making making = {make, unmake};
+static const sk_making making = {.make = make, .unmake = unmake};
 const sk_force_type sk_force_field = {
     .kind = {"force_field", "any force that is a formula of place, velocity and time", SKEIN_FORCE, fields,
              sizeof fields / sizeof *fields, sizeof(force_field_params)},
@@ -149,5 +163,10 @@ const sk_force_type sk_force_field = {
     .diagonal = {SK_EACH_ISA(diagonal)},
     .guarded = is_guarded,
     .making = &making,
+    .shader = {.file = "forces/force_field",
+               .size = 1 + SK_POINTWISE_BLOCK,
+               .pack = pack,
+               .write = write,
+               .changes = changes},
 };
 #endif

@@ -53,6 +53,6 @@ const sk_force_type sk_gravity = {
     .kernel = {SK_EACH_ISA(kernel)},
     .plain = plain,
     .potential = potential,
-    .shader = {"forces/gravity", 1, pack, NULL},
+    .shader = {.file = "forces/gravity", .size = 1, .pack = pack},
 };
 #endif

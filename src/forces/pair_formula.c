@@ -1,7 +1,7 @@
 #include "forces/pair_formula.h"
 
 #include "base/status.h"
-#include "formula/formula.h"
+#include "formula/emit.h"
 
 void sk_pair_formula_release(sk_pair_formula *pair, sk_allocator *allocator) {
     if (!pair) return;
@@ -56,4 +56,17 @@ skein_status sk_pair_formula_create(sk_pair_formula **made, const char *const te
     }
     *made = pair;
     return SKEIN_OK;
+}
+
+bool sk_pair_formula_put_glsl(const sk_pair_formula *pair, void (*put)(void *user, const char *text), void *user) {
+    static const char *const heads[SK_PAIR_WEIGHTS] = {"float towards@(float percent, float t) {\n",
+                                                       "float along@(float percent, float t) {\n"};
+    put(user, "#define parameter@(i) percent\n");
+    for (int w = 0; w < SK_PAIR_WEIGHTS; w++) {
+        const skein_formula *f = pair->formula[w];
+        if (f && !sk_formula_put_glsl(f, heads[w], f->value, 1, put, user)) return false;
+        if (!f) put(user, heads[w]), put(user, "    return 0;\n}\n");
+        else put(user, "    return abs(o[0]) <= 3.4e38 ? o[0] : 0;\n}\n");
+    }
+    return true;
 }

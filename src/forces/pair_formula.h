@@ -22,6 +22,8 @@ typedef struct sk_pair_formula {
 skein_status sk_pair_formula_create(sk_pair_formula **made, const char *const texts[SK_PAIR_WEIGHTS],
                                     const char *const fields[SK_PAIR_WEIGHTS], sk_allocator *allocator,
                                     skein_error *error);
+/* Writes float towards@(float percent, float t) and along@(...) in GLSL; false when there is no memory. */
+bool sk_pair_formula_put_glsl(const sk_pair_formula *pair, void (*put)(void *user, const char *text), void *user);
 void sk_pair_formula_release(sk_pair_formula *pair, sk_allocator *allocator); /* NULL is allowed */
 
 #endif

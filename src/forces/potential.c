@@ -122,6 +122,20 @@ static double energy_of(const void *data, const double x[3], double mass, double
     return (params->per == PER_MASS ? mass : 1) * value[0];
 }
 
+static void pack(const void *data, float (*block)[4]) {
+    const potential_params *params = data;
+    block[0][0] = params->per == PER_MASS;
+    sk_pointwise_pack(params->slope, params->parameter, block + 1);
+}
+
+static bool write(const void *data, void (*put)(void *user, const char *text), void *user) {
+    return sk_pointwise_put_glsl(((const potential_params *)data)->slope, 1, put, user);
+}
+
+static bool changes(const void *data) {
+    return ((const potential_params *)data)->slope->formula->uses & SK_USES_TIME;
+}
+
 static bool is_guarded(const void *data, const double x[3], const double v[3], double time) {
     const potential_params *params = data;
     double value[3];
@@ -133,7 +147,7 @@ static bool is_guarded(const void *data, const double x[3], const double v[3], d
 #define SK_KERNELS "forces/potential.c"
 #include "base/for_each_isa.h"
 
-static const sk_making making = {make, unmake};
+static const sk_making making = {.make = make, .unmake = unmake};
 const sk_force_type sk_potential = {
     .kind = {"potential", "any potential energy of place (and time) that is a formula", SKEIN_FORCE, fields,
              sizeof fields / sizeof *fields, sizeof(potential_params)},
@@ -145,5 +159,7 @@ const sk_force_type sk_potential = {
     .diagonal = {SK_EACH_ISA(diagonal)},
     .guarded = is_guarded,
     .making = &making,
+    .shader =
+        {.file = "forces/potential", .size = 1 + SK_POINTWISE_BLOCK, .pack = pack, .write = write, .changes = changes},
 };
 #endif

@@ -79,12 +79,12 @@ static void pack(const void *data, float (*block)[4]) {
     const double *line = params->line;
     double length = sqrt(line[0] * line[0] + line[1] * line[1] + line[2] * line[2]);
     sk_shader_vector(block[0], params->position);
-    for (int k = 0; k < 3 && length > 0; k++) block[1][k] = (float)(line[k] / length);
+    for (int k = 0; k < 3 && length > 0 && params->particle < 0; k++) block[1][k] = (float)(line[k] / length);
     block[0][3] = (float)params->radius, block[1][3] = (float)params->strength, block[2][0] = (float)params->alarm;
 }
 
-static const char *refuse(const void *params) {
-    return ((const predator_params *)params)->particle >= 0 ? "while it is a particle" : NULL;
+static int32_t particle(const void *params) {
+    return ((const predator_params *)params)->particle;
 }
 
 #define SK_KERNELS "forces/predator.c"
@@ -98,6 +98,7 @@ const sk_force_type sk_predator = {
     .kernel = {SK_EACH_ISA(kernel)},
     .check = check,
     .bodies = bodies,
-    .shader = {"forces/predator", 3, pack, refuse},
+    .particle = particle,
+    .shader = {.file = "forces/predator", .size = 3, .pack = pack},
 };
 #endif

@@ -65,5 +65,5 @@ const sk_force_type sk_separation = {
     .domain = SK_OVER_NEIGHBOURS,
     .kernel = {SK_ANY_ISA(kernel)},
     .radius = radius,
-    .shader = {"forces/separation", 1, pack, NULL},
+    .shader = {.file = "forces/separation", .size = 1, .pack = pack},
 };

@@ -53,6 +53,6 @@ const sk_force_type sk_speed_limit = {
     .deed = SK_BOUNDS,
     .kernel = {SK_EACH_ISA(kernel)},
     .bodies = bodies,
-    .shader = {"forces/speed_limit", 1, pack, NULL},
+    .shader = {.file = "forces/speed_limit", .size = 1, .pack = pack},
 };
 #endif

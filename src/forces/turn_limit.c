@@ -106,6 +106,6 @@ const sk_force_type sk_turn_limit = {
     .once = true,
     .kernel = {SK_EACH_ISA(kernel)},
     .bodies = bodies,
-    .shader = {"forces/turn_limit", 1, pack, NULL},
+    .shader = {.file = "forces/turn_limit", .size = 1, .pack = pack},
 };
 #endif

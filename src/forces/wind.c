@@ -43,6 +43,6 @@ const sk_force_type sk_wind = {
     .domain = SK_OVER_PARTICLES,
     .kernel = {SK_EACH_ISA(kernel)},
     .plain = plain,
-    .shader = {"forces/wind", 1, pack, NULL},
+    .shader = {.file = "forces/wind", .size = 1, .pack = pack},
 };
 #endif

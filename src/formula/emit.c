@@ -65,14 +65,15 @@ void sk_put_helpers(sk_writer *w, const char *(*text_of)(size_t), size_t count, 
 /* How tightly an expression holds together: 1 sums and signs, 2 products, 3 what needs no brackets. */
 static int tightness(const sk_writer *w, sk_node node) {
     uint8_t op = w->formula->graph.data[node].op;
-    if (w->number[node] || op <= SK_OP_PARAMETER || w->language->call[op]) return 3;
+    if (w->number[node] || w->shared[node] || op <= SK_OP_PARAMETER || w->language->call[op]) return 3;
     return op == SK_OP_MULTIPLY ? 2 : 1;
 }
 
 static void put_temporary(sk_writer *w, sk_node node) {
     const char *name = w->formula->graph.data[node].name;
     size_t length = strlen(name);
-    bool plain = length && name[0] != '_' && name[length - 1] != '_' && !strstr(name, "__");
+    bool plain =
+        length && name[0] != '_' && strncmp(name, "gl_", 3) != 0 && name[length - 1] != '_' && !strstr(name, "__");
     sk_put(w, "%s_%u", plain ? name : "x", w->number[node]);
 }
 
@@ -90,7 +91,9 @@ void sk_put_operand(sk_writer *w, sk_node node, int least) {
 static void put_expression(sk_writer *w, sk_node node) {
     const sk_graph_node *n = &w->formula->graph.data[node];
     const char *call = w->language->call[n->op];
-    if (n->op == SK_OP_CONSTANT) {
+    if (w->shared[node]) {
+        sk_put(w, "SHARED(%u)", w->shared[node] - 1);
+    } else if (n->op == SK_OP_CONSTANT) {
         w->language->constant(w, n->value);
     } else if (n->op == SK_OP_INPUT) {
         w->language->input(w, n->arg[0]);
@@ -137,7 +140,7 @@ static void find_names(sk_writer *w) {
     for (size_t i = 0; i < g->count; i++) {
         const sk_graph_node *n = &g->data[i];
         int height = 1;
-        if (!w->live[i] || n->op <= SK_OP_PARAMETER) continue;
+        if (!w->live[i] || n->op <= SK_OP_PARAMETER || w->shared[i]) continue;
         for (int k = 0; k < sk_op_info[n->op].arity; k++)
             if (w->height[n->arg[k]] >= height) height = w->height[n->arg[k]] + 1;
         bool named = w->uses[i] > 1 || height > MOST_HEIGHT || n->op == SK_OP_LESS;
@@ -149,10 +152,10 @@ static void find_names(sk_writer *w) {
 void sk_put_temporaries(sk_writer *w, const sk_node *outputs, size_t count) {
     const sk_graph *g = &w->formula->graph;
     for (size_t i = 0; i < g->count; i++) w->live[i] = false, w->uses[i] = w->number[i] = 0, w->height[i] = 0;
-    sk_graph_mark(g, outputs, count, w->live);
-    for (size_t i = 0; i < count; i++) w->uses[outputs[i]]++;
-    for (size_t i = 0; i < g->count; i++)
-        for (int k = 0; w->live[i] && k < sk_op_info[g->data[i].op].arity; k++) w->uses[g->data[i].arg[k]]++;
+    for (size_t i = 0; i < count; i++) w->live[outputs[i]] = true, w->uses[outputs[i]]++;
+    for (size_t i = g->count; i-- > 0;) // what is below something shared was needed for that alone
+        for (int k = 0; w->live[i] && !w->shared[i] && k < sk_op_info[g->data[i].op].arity; k++)
+            w->live[g->data[i].arg[k]] = true, w->uses[g->data[i].arg[k]]++;
     find_names(w);
     w->language->open(w);
     for (size_t i = 0; i < g->count; i++) {
@@ -238,30 +241,83 @@ static void put_graph(sk_writer *w, const sk_node *outputs, size_t count) {
     }
 }
 
-skein_status skein_formula_emit(const skein_formula *f, skein_formula_language asked,
-                                void (*write)(void *user, const char *text), void *user, skein_error *error) {
+/* ---- the calls ---- */
+
+/* Room for what is known of each node; false when there is no memory. To be ended in either case. */
+static bool begin(sk_writer *w, sk_allocator *allocator) {
+    size_t nodes = w->formula->graph.count;
+    w->live = sk_allocate(allocator, nodes * sizeof *w->live);
+    w->uses = sk_allocate(allocator, nodes * sizeof *w->uses);
+    w->number = sk_allocate(allocator, nodes * sizeof *w->number);
+    w->height = sk_allocate(allocator, nodes * sizeof *w->height);
+    w->shared = sk_allocate(allocator, nodes * sizeof *w->shared);
+    if (w->shared) memset(w->shared, 0, nodes * sizeof *w->shared);
+    return w->live && w->uses && w->number && w->height && w->shared;
+}
+
+static void end(sk_writer *w, sk_allocator *allocator) {
+    sk_release(allocator, w->live);
+    sk_release(allocator, w->uses);
+    sk_release(allocator, w->number);
+    sk_release(allocator, w->height);
+    sk_release(allocator, w->shared);
+}
+
+bool sk_formula_put_glsl(const skein_formula *f, const char *head, const sk_node *outputs, size_t count,
+                         void (*put)(void *user, const char *text), void *user) {
+    sk_writer w = {.formula = f, .language = &sk_shader_language, .write = put, .user = user, .head = head};
+    bool good = begin(&w, f->allocator);
+    if (good) {
+        sk_put_temporaries(&w, outputs, count);
+        sk_put(&w, "    float o[%zu];\n", count);
+        for (size_t k = 0; k < count; k++) {
+            sk_put(&w, "    o[%zu] = ", k);
+            put_output(&w, outputs[k]);
+        }
+    }
+    end(&w, f->allocator);
+    return good;
+}
+
+/* `compiled` is the name of what is to be registered, or NULL for `asked`. */
+static skein_status emit(const skein_formula *f, skein_formula_language asked, const char *compiled,
+                         void (*write)(void *user, const char *text), void *user, skein_error *error) {
     sk_allocator allocator = sk_default_allocator();
     sk_node outputs[SK_FORMULA_MOST_OUTPUTS];
-    size_t nodes = f->graph.count, count = outputs_of(f, outputs);
-    if (asked == SKEIN_FORMULA_KERNEL && f->size != 1)
+    size_t count = outputs_of(f, outputs);
+    bool kernel = asked == SKEIN_FORMULA_KERNEL || compiled;
+    if (kernel && f->size != 1)
         return sk_fail(error, SKEIN_ERROR_VALUE, "", "a constraint's formula is a number, and this one is a vector");
+    if (compiled && (f->particles == 0 || f->uses & SK_USES_VELOCITY))
+        return sk_fail(error, SKEIN_ERROR_VALUE, "", "a constraint's formula is on particles p0 to p7, and %s",
+                       f->particles ? "not on their velocities" : "this one names none");
     sk_writer w = {.formula = f,
-                   .language = asked == SKEIN_FORMULA_C        ? &sk_c_language
-                               : asked == SKEIN_FORMULA_KERNEL ? &sk_kernel_language
-                                                               : &sk_glsl_language,
+                   .language = kernel                     ? &sk_kernel_language
+                               : asked == SKEIN_FORMULA_C ? &sk_c_language
+                                                          : &sk_glsl_language,
                    .write = write,
-                   .user = user,
-                   .live = sk_allocate(&allocator, nodes * sizeof *w.live),
-                   .uses = sk_allocate(&allocator, nodes * sizeof *w.uses),
-                   .number = sk_allocate(&allocator, nodes * sizeof *w.number),
-                   .height = sk_allocate(&allocator, nodes * sizeof *w.height)};
-    bool good = w.live && w.uses && w.number && w.height;
+                   .user = user};
+    bool good = begin(&w, &allocator);
     if (good && asked == SKEIN_FORMULA_GRAPH) put_graph(&w, outputs, count);
-    else if (good && asked == SKEIN_FORMULA_KERNEL) sk_put_kernel(&w);
+    else if (good && compiled) sk_put_compiled(&w, compiled);
+    else if (good && kernel) sk_put_kernel(&w);
     else if (good) put_all(&w, outputs, count);
-    sk_release(&allocator, w.live);
-    sk_release(&allocator, w.uses);
-    sk_release(&allocator, w.number);
-    sk_release(&allocator, w.height);
+    end(&w, &allocator);
     return good ? SKEIN_OK : sk_fail_memory(error, "a formula as text");
+}
+
+skein_status skein_formula_emit(const skein_formula *f, skein_formula_language language,
+                                void (*write)(void *user, const char *text), void *user, skein_error *error) {
+    return emit(f, language, NULL, write, user, error);
+}
+
+skein_status skein_formula_emit_compiled(const skein_formula *f, const char *name,
+                                         void (*write)(void *user, const char *text), void *user, skein_error *error) {
+    if (!name) name = "skein_compiled_formula";
+    size_t length = strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_");
+    if (!length || name[length] || length > 63 || (name[0] >= '0' && name[0] <= '9'))
+        return sk_fail(error, SKEIN_ERROR_NAME, "",
+                       "'%.60s' cannot be a name in C: that is up to 63 letters, digits and _, and no digit first",
+                       name);
+    return emit(f, SKEIN_FORMULA_C, name, write, user, error);
 }

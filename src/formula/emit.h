@@ -29,12 +29,23 @@ struct sk_writer {
     uint32_t *uses;   /* by live nodes and outputs */
     uint32_t *number; /* of a temporary, from 1 on */
     uint8_t *height;  /* of an expression written in place; 0: it has a name */
+    uint32_t *shared; /* of what was computed for all elements beforehand, from 1 on; else 0 */
+    const char *head; /* of the function that sk_formula_put_glsl writes */
 };
 
-extern const sk_language sk_c_language, sk_glsl_language, sk_kernel_language;
+extern const sk_language sk_c_language, sk_glsl_language, sk_shader_language, sk_kernel_language;
+
+/* Nodes of a formula as the beginning of a function in GLSL that `head` opens: what they need, the head, and `float
+ * o[count]` filled with them. Positions are p0, p1 ..., velocities v0, v1 ..., time t, and parameter i is the
+ * includer's macro parameter@(i). The helpers stand in guards, so that several may stand in one shader. False when
+ * there is no memory. */
+bool sk_formula_put_glsl(const skein_formula *formula, const char *head, const sk_node *outputs, size_t count,
+                         void (*put)(void *user, const char *text), void *user);
 
 /* A number's value and gradient for the library's own walks (emit_kernel.c). */
 void sk_put_kernel(sk_writer *w);
+/* The same as a file to be compiled and registered (emit_compiled.c). */
+void sk_put_compiled(sk_writer *w, const char *name);
 /* What the language opens with, and a line for each node that has a name. */
 void sk_put_temporaries(sk_writer *w, const sk_node *outputs, size_t count);
 /* A node's name or expression, in brackets if it holds together less than 1 sums, 2 products, 3 calls do. */

@@ -42,7 +42,7 @@ static int c_op_of(size_t i) {
 
 static void c_open(sk_writer *w) {
     sk_put_source(w, "// ");
-    sk_put(w, "//\n// Made by `skein formula --emit c`: the value, and its derivatives by the positions.\n");
+    sk_put(w, "//\n// Made by `skein formula --emit function`: the value, and its derivatives by the positions.\n");
     if (w->formula->hessian) sk_put(w, "// Second derivatives are row by row, up to the diagonal.\n");
     sk_put_parameters(w, "// ");
     sk_put(w, "#ifndef FORMULA\n#define PARTICLES %d\n", w->formula->particles);

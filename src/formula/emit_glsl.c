@@ -71,19 +71,34 @@ static void glsl_close(sk_writer *w) {
     sk_put(w, w->formula->size == 3 ? "    return value;\n}\n" : "}\n");
 }
 
-const sk_language sk_glsl_language = {.call = {[SK_OP_RECIPROCAL] = "formula_reciprocal",
-                                               [SK_OP_SQRT] = "formula_sqrt",
-                                               [SK_OP_ABS] = "abs",
-                                               [SK_OP_LESS] = "formula_less",
-                                               [SK_OP_EXP] = "formula_exp",
-                                               [SK_OP_LOG] = "formula_log",
-                                               [SK_OP_SIN] = "sin",
-                                               [SK_OP_COS] = "cos",
-                                               [SK_OP_TAN] = "tan",
-                                               [SK_OP_ASIN] = "formula_asin",
-                                               [SK_OP_ACOS] = "formula_acos",
-                                               [SK_OP_ATAN2] = "atan",
-                                               [SK_OP_POW] = "formula_pow"},
+/* Within a shader: helpers that may be there already, and the includer's own head. */
+static void shader_open(sk_writer *w) {
+    const sk_graph *g = &w->formula->graph;
+    for (size_t h = 0; h < sizeof glsl_helpers / sizeof *glsl_helpers; h++) {
+        size_t i = 0;
+        while (i < g->count && !(w->live[i] && g->data[i].op == glsl_helpers[h].op)) i++;
+        if (i == g->count) continue;
+        sk_put(w, "#ifndef FORMULA_%zu\n#define FORMULA_%zu\n", h, h);
+        w->write(w->user, glsl_helpers[h].text);
+        sk_put(w, "#endif\n");
+    }
+    w->write(w->user, w->head);
+}
+
+static void shader_parameter(sk_writer *w, uint32_t parameter) {
+    sk_put(w, "parameter@(%u)", parameter);
+}
+
+/* How operations that are functions are written. */
+#define GLSL_CALLS                                                                                                    \
+    {                                                                                                                 \
+        [SK_OP_RECIPROCAL] = "formula_reciprocal", [SK_OP_SQRT] = "formula_sqrt", [SK_OP_ABS] = "abs",                \
+        [SK_OP_LESS] = "formula_less", [SK_OP_EXP] = "formula_exp", [SK_OP_LOG] = "formula_log", [SK_OP_SIN] = "sin", \
+        [SK_OP_COS] = "cos", [SK_OP_TAN] = "tan", [SK_OP_ASIN] = "formula_asin", [SK_OP_ACOS] = "formula_acos",       \
+        [SK_OP_ATAN2] = "atan", [SK_OP_POW] = "formula_pow"                                                           \
+    }
+
+const sk_language sk_glsl_language = {.call = GLSL_CALLS,
                                       .declaration = "float",
                                       .constant = glsl_constant,
                                       .input = glsl_input,
@@ -93,3 +108,12 @@ const sk_language sk_glsl_language = {.call = {[SK_OP_RECIPROCAL] = "formula_rec
                                       .derivative = glsl_derivative,
                                       .end_result = ";\n",
                                       .close = glsl_close};
+
+/* Only what sk_formula_put_glsl() needs. */
+const sk_language sk_shader_language = {.call = GLSL_CALLS,
+                                        .declaration = "float",
+                                        .constant = glsl_constant,
+                                        .input = glsl_input,
+                                        .parameter = shader_parameter,
+                                        .open = shader_open,
+                                        .end_result = ";\n"};

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/status.h"
+#include "formula/compiled.h"
 #include "formula/evaluate.h"
 
 /* ---- derivatives ---- */
@@ -65,7 +66,7 @@ static skein_status complete(skein_formula *f, const skein_formula_desc *desc, s
                        "the formula is too large: more than %d operations with its "
                        "derivatives",
                        SK_GRAPH_MOST_NODES);
-    return SKEIN_OK;
+    return sk_formula_find_hash(f, error);
 }
 
 skein_formula *sk_formula_create(const skein_formula_desc *desc, sk_allocator *allocator, skein_formula_mark *mark,
@@ -93,6 +94,10 @@ skein_formula *skein_formula_create(const skein_formula_desc *desc, skein_formul
 
 void skein_formula_destroy(skein_formula *formula) {
     if (formula) destroy(formula);
+}
+
+uint64_t skein_formula_hash(const skein_formula *f) {
+    return f->hash;
 }
 
 /* ---- answers ---- */

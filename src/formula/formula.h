@@ -39,6 +39,7 @@ struct skein_formula {
     sk_node *hessian; /* (3 particles)^2, or NULL */
     sk_formula_warning warning[SK_FORMULA_MOST_WARNINGS];
     int warnings;
+    uint64_t hash; /* of what it computes (compiled.h) */
 };
 
 /* As skein_formula_create, with the caller's memory. */

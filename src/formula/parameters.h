@@ -18,6 +18,10 @@ typedef struct sk_making {
      * what was there before stays. */
     skein_status (*make)(void *params, const skein_kind *kind, sk_allocator *allocator, skein_error *error);
     void (*unmake)(void *params, sk_allocator *allocator); /* also where nothing was made */
+    /* Of a type whose formula can be compiled, else NULL: the formula; and lets compiled code run for it, or (NULL) its
+     * tape. */
+    const skein_formula *(*formula_of)(const void *params);
+    void (*run_compiled)(void *params, const skein_compiled *compiled);
 } sk_making;
 
 /* Whether objects of the kind name parameters. */

@@ -36,6 +36,7 @@ static void SK_ISA(run)(const sk_pointwise *pointwise, const double *parameters,
 
 #include "base/fields.h"
 #include "base/status.h"
+#include "formula/emit.h"
 #include "formula/evaluate.h"
 
 #define SK_KERNELS "formula/pointwise.c"
@@ -98,6 +99,27 @@ void sk_pointwise_destroy(sk_pointwise *pointwise, sk_allocator *allocator) {
     sk_release(allocator, pointwise->live);
     sk_release(allocator, pointwise->values);
     sk_release(allocator, pointwise);
+}
+
+void sk_pointwise_pack(const sk_pointwise *pointwise, const double *parameters, float (*block)[4]) {
+    for (int i = 0; i < pointwise->parameters; i++) block[i / 4][i % 4] = (float)parameters[i];
+}
+
+bool sk_pointwise_put_glsl(const sk_pointwise *pointwise, int first, void (*put)(void *user, const char *text),
+                           void *user) {
+    size_t count = pointwise->tape.outputs;
+    char text[320];
+    snprintf(text, sizeof text, "#define parameter@(i) rule@[%d + (i) / 4][(i) %% 4]\n", first);
+    put(user, text);
+    snprintf(text, sizeof text, "void formula@(vec3 p0, vec3 v0, float t, out float result[%zu]) {\n", count);
+    if (!sk_formula_put_glsl(pointwise->formula, text, pointwise->output, count, put, user)) return false;
+    // as on the processor: nothing, where one of them is over what fields take
+    snprintf(text, sizeof text,
+             "    bool good = true;\n    for (int k = 0; k < %zu; k++) good = good && abs(o[k]) <= 1e15;\n"
+             "    for (int k = 0; k < %zu; k++) result[k] = good ? o[k] : 0;\n}\n",
+             count, count);
+    put(user, text);
+    return true;
 }
 
 static bool is_sane(double x) {

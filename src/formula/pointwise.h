@@ -7,7 +7,10 @@
 #include "formula/parameters.h"
 #include "formula/tape.h"
 
-enum { SK_POINTWISE_MOST_OUTPUTS = 12 };
+enum {
+    SK_POINTWISE_MOST_OUTPUTS = 12,
+    SK_POINTWISE_BLOCK = SKEIN_FORMULA_MOST_PARAMETERS / 4 /* vectors of a shader's block that hold the parameters */
+};
 
 typedef struct sk_pointwise {
     skein_formula *formula;
@@ -34,6 +37,13 @@ void sk_pointwise_destroy(sk_pointwise *pointwise, sk_allocator *allocator); /* 
 typedef void sk_pointwise_run(const sk_pointwise *pointwise, const double *parameters, double time, const sk_wide3 *p,
                               const sk_wide3 *v, sk_wide *out, sk_mask *guarded);
 extern sk_pointwise_run *const sk_pointwise_run_of[SK_ISA_COUNT];
+
+/* The same on a graphics card: the parameters as vectors of a block, and as GLSL
+ *     void formula@(vec3 p0, vec3 v0, float t, out float o[outputs])
+ * for a rule whose block has them from vector `first` on. False when there is no memory. */
+void sk_pointwise_pack(const sk_pointwise *pointwise, const double *parameters, float (*block)[4]);
+bool sk_pointwise_put_glsl(const sk_pointwise *pointwise, int first, void (*put)(void *user, const char *text),
+                           void *user);
 
 /* The value at one place, in double, and whether it or an output had to be guarded (NULL: never mind). Not for several
  * threads at once. */

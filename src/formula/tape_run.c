@@ -79,11 +79,12 @@ SK_INLINE sk_wide SK_ISA(within_one)(sk_wide x) {
 #define MINUS3(number_, first_, second_, third_) \
     case SK_TAPE_MINUS3 + (number_):             \
         EACH(-((first_(0) + second_(SIZE_##first_)) + third_(SIZE_##first_ + SIZE_##second_)));
-#define MINUS                                                                                                   \
-    MINUS2(0, A, A)                                                                                             \
-    MINUS2(1, A, P)                                                                                             \
-    MINUS2(2, P, A) MINUS2(3, P, P) MINUS3(0, A, A, A) MINUS3(1, A, A, P) MINUS3(2, A, P, A) MINUS3(3, A, P, P) \
-        MINUS3(4, P, A, A) MINUS3(5, P, A, P) MINUS3(6, P, P, A) MINUS3(7, P, P, P)
+#define MINUS                                                                                                      \
+    MINUS2(0, A, A)                                                                                                \
+    MINUS2(1, A, P)                                                                                                \
+    MINUS2(2, P, A)                                                                                                \
+    MINUS2(3, P, P) MINUS3(0, A, A, A) MINUS3(1, A, A, P) MINUS3(2, A, P, A) MINUS3(3, A, P, P) MINUS3(4, P, A, A) \
+        MINUS3(5, P, A, P) MINUS3(6, P, P, A) MINUS3(7, P, P, P)
 
 /* The first `count` wides of a block. `wides` and `count` are known where this is inlined. */
 SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask *guarded, const size_t wides,

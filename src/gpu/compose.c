@@ -79,14 +79,16 @@ static void fill_pass(const cutter *c, sk_gpu_pass *pass, size_t at, size_t end)
     *pass = (sk_gpu_pass){.kind = SK_GPU_SLOTS, .first = at, .block = SK_GPU_HEAD};
     for (; at + pass->count < end; pass->count++) {
         const sk_row *row = rows[at + pass->count];
+        bool looks = sk_gpu_row_looks(row), moves = sk_gpu_row_use(row).writes & BIT(SK_X);
         bool walks = row->kind == SK_ROW_NEIGHBOUR, alone = walks && !is_everyone(c, row);
         // a walk along the grid needs three buffers more
         size_t most = SK_GPU_MOST_VECTORS - (walks || pass->row ? 3 : 0);
-        if (pass->count &&
-            (alone || (walks && written & BIT(SK_X)) || (size_t)__builtin_popcount(vectors | touched(row)) > most ||
-             pass->block + sk_gpu_row_size(row) > SK_GPU_MOST_BLOCK))
+        if (pass->count && (alone || ((walks || looks) && written & BIT(SK_X)) || (pass->looks && moves) ||
+                            (size_t)__builtin_popcount(vectors | touched(row)) > most ||
+                            pass->block + sk_gpu_row_size(row) > SK_GPU_MOST_BLOCK))
             return;
         if (walks) pass->kind = SK_GPU_NEIGHBOURS, pass->row = row;
+        pass->looks |= looks;
         vectors |= touched(row);
         written |= sk_gpu_row_use(row).writes;
         pass->block += sk_gpu_row_size(row);
@@ -299,11 +301,11 @@ skein_status sk_gpu_compose(sk_gpu_passes *passes, sk_gpu_programs *programs, sk
     return SKEIN_OK;
 }
 
-void sk_gpu_pack(const sk_gpu_passes *passes, const sk_gpu_pass *pass, double time, float (*block)[4]) {
+void sk_gpu_pack(const sk_gpu_passes *passes, const sk_gpu_pass *pass, const sk_run *run, float (*block)[4]) {
     size_t at = SK_GPU_HEAD;
     for (size_t r = 0; r < pass->count; r++) {
         const sk_row *row = passes->rows.data[pass->first + r];
-        sk_gpu_row_pack(row, time, block + at);
+        sk_gpu_row_pack(row, run, block + at);
         at += sk_gpu_row_size(row);
     }
 }

@@ -40,6 +40,7 @@ typedef struct sk_gpu_pass {
     sk_vector vector[SK_GPU_MOST_VECTORS]; /* which buffers it binds, in this order */
     size_t vector_count, block;            /* the block's size, in vectors of four floats */
     bool looped;                           /* its shader takes the turns of the repeat that it is in */
+    bool looks;                            /* there are rows that look at one particle */
 } sk_gpu_pass;
 
 typedef struct sk_gpu_passes {
@@ -57,6 +58,6 @@ typedef struct sk_gpu_passes {
 skein_status sk_gpu_compose(sk_gpu_passes *passes, sk_gpu_programs *programs, skein_world *world, bool identity,
                             skein_error *error);
 /* Fills a pass's block but for its head: what its rows say at this time. */
-void sk_gpu_pack(const sk_gpu_passes *passes, const sk_gpu_pass *pass, double time, float (*block)[4]);
+void sk_gpu_pack(const sk_gpu_passes *passes, const sk_gpu_pass *pass, const sk_run *run, float (*block)[4]);
 
 #endif

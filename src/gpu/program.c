@@ -36,10 +36,10 @@ static const char *file_text(const char *name) {
     abort();
 }
 
-void sk_gpu_put_file(sk_gpu_text *text, const char *name, size_t number) {
+void sk_gpu_put_text(sk_gpu_text *text, const char *from, size_t number) {
     char digits[24];
     int length = snprintf(digits, sizeof digits, "%zu", number);
-    for (const char *rest = file_text(name); *rest;) {
+    for (const char *rest = from; *rest;) {
         size_t plain = strcspn(rest, "@");
         add(text, rest, plain);
         rest += plain;
@@ -47,7 +47,11 @@ void sk_gpu_put_file(sk_gpu_text *text, const char *name, size_t number) {
         add(text, digits, (size_t)length);
         rest++;
     }
-    add(text, "\n", 1);
+}
+
+void sk_gpu_put_file(sk_gpu_text *text, const char *name, size_t number) {
+    sk_gpu_put_text(text, file_text(name), number);
+    sk_gpu_put_text(text, "\n", number);
 }
 
 /* ---- programs ---- */

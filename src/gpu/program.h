@@ -22,6 +22,8 @@ typedef struct sk_gpu_text {
 } sk_gpu_text;
 
 void sk_gpu_put(sk_gpu_text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Adds a text, with `number` for every '@' in it. */
+void sk_gpu_put_text(sk_gpu_text *text, const char *from, size_t number);
 /* Adds a file, with `number` for every '@' in it. A name that the build has not is a fault of ours. */
 void sk_gpu_put_file(sk_gpu_text *text, const char *name, size_t number);
 

@@ -41,6 +41,11 @@ static const sk_shader *shader_of(const sk_row *row) {
     return NULL;
 }
 
+static const void *params_of(const sk_row *row) {
+    if (force_of(row)) return force_of(row)->params;
+    return has_pose(row) ? ((const sk_collider *)row->rule)->params : NULL;
+}
+
 static bool is_combine(const sk_row *row) {
     static const sk_kernels *const known[] = {&sk_combine_sum,     &sk_combine_correction, &sk_combine_kick,
                                               &sk_combine_predict, &sk_combine_fall,       &sk_combine_fall_on,
@@ -52,10 +57,7 @@ static bool is_combine(const sk_row *row) {
 
 bool sk_gpu_row_can(const sk_row *row, const char **why) {
     const sk_shader *shader = shader_of(row);
-    const void *params = force_of(row)   ? force_of(row)->params
-                         : has_pose(row) ? ((const sk_collider *)row->rule)->params
-                                         : NULL;
-    if (shader && shader->file && shader->refuse && (*why = shader->refuse(params))) return false;
+    if (shader && shader->file && shader->refuse && (*why = shader->refuse(params_of(row)))) return false;
     switch (row->kind) {
     case SK_ROW_GRID: return true;
     case SK_ROW_REPEAT: return !row->cell;
@@ -71,6 +73,29 @@ bool sk_gpu_row_can(const sk_row *row, const char **why) {
     }
 }
 
+static int32_t particle_of(const sk_row *row) {
+    const sk_force *force = force_of(row);
+    return force ? sk_force_particle(force) : -1;
+}
+
+bool sk_gpu_row_looks(const sk_row *row) {
+    return particle_of(row) >= 0;
+}
+
+size_t sk_gpu_row_looks_to(void) {
+    return SK_GPU_ROW;
+}
+
+/* A slot as two numbers that are exact as floats. */
+size_t sk_gpu_row_looks_from(const float (*block)[4]) {
+    return (size_t)block[1][1] << 16 | (size_t)block[1][3];
+}
+
+static bool shifts(const sk_row *row) {
+    const sk_shader *shader = shader_of(row);
+    return row->kind == SK_ROW_LIMIT && shader && shader->shifts && shader->shifts(force_of(row)->params);
+}
+
 bool sk_gpu_row_everyone(const sk_row *row, size_t particle_count) {
     const sk_force *force = force_of(row);
     if (force->type->deed == SK_PUSHES) return true;
@@ -81,6 +106,7 @@ bool sk_gpu_row_everyone(const sk_row *row, size_t particle_count) {
 bool sk_gpu_row_knows_no_slots(const sk_row *row, size_t particle_count) {
     const sk_force *force = force_of(row);
     if (is_avoid(row)) return row->group->first == 0 && row->group->end == particle_count;
+    if (sk_gpu_row_looks(row)) return false;
     if (row->kind == SK_ROW_GRID) return row->begin == 0; // the rows of one sort have the same end, or fewer places
     return !force || force->type->deed == SK_PUSHES || sk_gpu_row_everyone(row, particle_count);
 }
@@ -115,6 +141,7 @@ sk_gpu_use sk_gpu_row_use(const sk_row *row) {
     case SK_ROW_LIMIT:
         use.reads = BIT(SK_X) | BIT(SK_V) | BIT(row->source[2]);
         use.writes = BIT(SK_V);
+        if (shifts(row)) use = (sk_gpu_use){BIT(SK_X) | BIT(SK_PREVIOUS), BIT(SK_X) | BIT(SK_PREVIOUS)};
         break;
     case SK_ROW_CONTACT_FORCE: use = (sk_gpu_use){BIT(SK_X) | BIT(SK_V) | BIT(SK_F), BIT(SK_F)}; break;
     case SK_ROW_CONTACT_VELOCITY: use = (sk_gpu_use){BIT(SK_X) | BIT(SK_V), BIT(SK_V)}; break;
@@ -152,9 +179,11 @@ static void pack_pose(const sk_collider *collider, double time, float (*block)[4
         block[i][3] = (float)one[i];
     }
     for (int i = 0; i < 9; i++) block[4 + i / 3][i % 3] = (float)pose.rotation[i];
+    block[4][3] = (float)pose.time;
 }
 
-void sk_gpu_row_pack(const sk_row *row, double time, float (*block)[4]) {
+void sk_gpu_row_pack(const sk_row *row, const sk_run *run, float (*block)[4]) {
+    double time = run->time;
     for (int k = 0; k < 3; k++) block[0][k] = (float)row->coefficient[k];
     block[0][3] = (float)row->dt;
     if (row->kind == SK_ROW_NEIGHBOUR) {
@@ -162,6 +191,12 @@ void sk_gpu_row_pack(const sk_row *row, double time, float (*block)[4]) {
         block[1][0] = (float)force->type->radius(force->params);
     }
     if (row->kind == SK_ROW_CONTACT_SETTLE) block[1][0] = sk_contact_reads_force(row->rule);
+    if (sk_gpu_row_looks(row)) {
+        uint32_t slot = run->slot_of[particle_of(row)];
+        block[1][1] = (float)(slot >> 16), block[1][3] = (float)(slot & 0xffff);
+    }
+    // pair rules by formula know the end of the substep, fields the moment of the state
+    block[1][2] = (float)(row->kind == SK_ROW_NEIGHBOUR ? time : time - row->before);
     block += SK_GPU_ROW;
     const sk_shader *shader = shader_of(row);
     if (has_pose(row)) {
@@ -179,6 +214,8 @@ void sk_gpu_row_pack(const sk_row *row, double time, float (*block)[4]) {
 }
 
 bool sk_gpu_row_moves(const sk_row *row) {
+    const sk_shader *shader = shader_of(row);
+    if (shader && shader->changes && shader->changes(params_of(row))) return true;
     if (!has_pose(row)) return false;
     const sk_collider_common *common = ((const sk_collider *)row->rule)->common;
     const double *v = common->velocity;
@@ -193,9 +230,27 @@ void sk_gpu_put_members(sk_gpu_text *text, const sk_row *row, size_t number) {
     if (rule_size(row)) sk_gpu_put(text, "    vec4 rule%zu[%zu];\n", number, rule_size(row));
 }
 
+/* A text that a type writes, with the row's number in it. */
+typedef struct numbered {
+    sk_gpu_text *text;
+    size_t number;
+} numbered;
+
+static void put_numbered(void *user, const char *text) {
+    const numbered *to = user;
+    sk_gpu_put_text(to->text, text, to->number);
+}
+
+static void put_written(sk_gpu_text *text, const sk_row *row, size_t number) {
+    const sk_shader *shader = shader_of(row);
+    numbered to = {text, number};
+    if (shader->write && !shader->write(params_of(row), put_numbered, &to)) text->no_memory = true;
+}
+
 void sk_gpu_put_functions(sk_gpu_text *text, const sk_row *row, size_t number) {
     if (row->kind == SK_ROW_COMBINE && is_fall(row)) sk_gpu_put_file(text, "gpu/pull", number);
     if (has_pose(row)) sk_gpu_put_file(text, "colliders/pose", number);
+    if (shader_of(row)) put_written(text, row, number);
     if (shader_of(row)) sk_gpu_put_file(text, shader_of(row)->file, number);
     if (is_contact(row)) sk_gpu_put_file(text, "colliders/contact", number);
     if (is_avoid(row)) sk_gpu_put_file(text, "colliders/avoid", number);
@@ -247,9 +302,11 @@ static void put_combine(sk_gpu_text *text, const sk_row *row, size_t n) {
     }
 }
 
-/* Only for the particles that the rule moves, where these are not all. */
-static void put_guard(sk_gpu_text *text, const sk_row *row, size_t particle_count) {
+/* Only for the particles that the rule moves, where these are not all, and not for the one that it looks at. */
+static void put_guard(sk_gpu_text *text, const sk_row *row, size_t n, size_t particle_count) {
     const sk_force *force = force_of(row);
+    if (sk_gpu_row_looks(row))
+        sk_gpu_put(text, "    if (first_slot + slot != uint(row%zu[1].y) * 65536u + uint(row%zu[1].w))\n", n, n);
     if (row->kind == SK_ROW_NEIGHBOUR || (force && force->type->deed == SK_PUSHES)) return;
     const sk_group *group = force ? &force->moved : row->group;
     if (group->first == 0 && group->end == particle_count) return;
@@ -259,9 +316,11 @@ static void put_guard(sk_gpu_text *text, const sk_row *row, size_t particle_coun
 
 static void put_force(sk_gpu_text *text, const sk_row *row, size_t n, size_t particle_count) {
     const char *dst = sk_gpu_vector_name(row->dst);
-    put_guard(text, row, particle_count);
+    put_guard(text, row, n, particle_count);
     if (is_avoid(row)) sk_gpu_put(text, "    %s += avoid%zu(X.xyz, V.xyz);\n", dst, n);
     else if (row->kind == SK_ROW_NEIGHBOUR) sk_gpu_put(text, "    %s.xyz += walk%zu(place, X.xyz, V.xyz);\n", dst, n);
+    else if (shifts(row))
+        sk_gpu_put(text, "    if (X.w > 0) { vec3 shift = shift%zu(X.xyz); X.xyz += shift; P.xyz += shift; }\n", n);
     else if (row->kind == SK_ROW_LIMIT)
         sk_gpu_put(text, "    V.xyz = bound%zu(V.xyz, X.xyz, %s, row%zu[0].w);\n", n,
                    row->source[2] == SK_NONE ? "vec4(0)" : "S", n);

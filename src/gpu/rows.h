@@ -19,9 +19,14 @@ bool sk_gpu_row_knows_no_slots(const sk_row *row, size_t particle_count);
 sk_gpu_use sk_gpu_row_use(const sk_row *row);
 /* The size of its part of the block, in vectors. */
 size_t sk_gpu_row_size(const sk_row *row);
-void sk_gpu_row_pack(const sk_row *row, double time, float (*block)[4]);
-/* Whether it is another at another time: a moving collider's. */
+void sk_gpu_row_pack(const sk_row *row, const sk_run *run, float (*block)[4]);
+/* Whether it is another at another time: a moving collider's, a formula's of time. */
 bool sk_gpu_row_moves(const sk_row *row);
+/* Whether it looks at the position of one particle, which is to be in its block; nobody may move that in the same pass.
+ * Then: in which vector of its part of the block, and what the packed block says is the particle's slot. */
+bool sk_gpu_row_looks(const sk_row *row);
+size_t sk_gpu_row_looks_to(void);
+size_t sk_gpu_row_looks_from(const float (*block)[4]);
 
 /* Its members of the block; what stands before main; what stands in main. `number` is its place in the shader. */
 void sk_gpu_put_members(sk_gpu_text *text, const sk_row *row, size_t number);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "gpu/device.h"
+#include "gpu/rows.h"
 
 void sk_gpu_dispatch(const sk_gpu_device *device, size_t invocations) {
     size_t groups = (invocations + SK_GPU_GROUP - 1) / SK_GPU_GROUP;
@@ -12,8 +13,24 @@ void sk_gpu_dispatch(const sk_gpu_device *device, size_t invocations) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
+/* Brings the particles that rows look at into the block, from where they are now. */
+static void look(const sk_gpu_device *device, const sk_gpu_call *call) {
+    size_t at = call->block + 16 * SK_GPU_HEAD;
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    for (size_t r = 0; r < call->pass->count; r++) {
+        const sk_row *row = device->passes.rows.data[call->pass->first + r];
+        if (sk_gpu_row_looks(row)) {
+            size_t slot = sk_gpu_row_looks_from((const float(*)[4])(const void *)(device->stage + at));
+            glCopyNamedBufferSubData(device->vector[SK_X], device->blocks, (GLintptr)(16 * slot),
+                                     (GLintptr)(at + 16 * sk_gpu_row_looks_to()), 12);
+        }
+        at += 16 * sk_gpu_row_size(row);
+    }
+}
+
 static void run_call(sk_gpu_device *device, const sk_gpu_call *call) {
     const sk_gpu_pass *pass = call->pass;
+    if (pass->looks) look(device, call);
     glUseProgram(pass->program);
     glBindBufferRange(GL_UNIFORM_BUFFER, 0, device->blocks, (GLintptr)call->block, (GLsizeiptr)pass->block * 16);
     bool whole = pass->kind == SK_GPU_NEIGHBOURS;
@@ -56,7 +73,7 @@ static void call_pass(sk_gpu_device *device, const sk_run *run, const sk_gpu_pas
         const uint32_t head[4] = {(uint32_t)call.count, (uint32_t)(walks ? pass->begin : first), (uint32_t)turns,
                                   run->last_turn};
         memcpy(block[0], head, sizeof head);
-        sk_gpu_pack(&device->passes, pass, run->time, block);
+        sk_gpu_pack(&device->passes, pass, run, block);
         device->calls[device->call_count++] = call;
     }
 }

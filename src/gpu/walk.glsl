@@ -1,4 +1,22 @@
-// All neighbours of the particle at p, which is at a place of the grid. Two phases for each 32 of a row of cells: distances become a mask of
+#ifdef MOST@
+// The nearest so far, nearest first; those that came first of equals.
+float near_square@[MOST@];
+uint near_place@[MOST@];
+
+void keep@(float square, uint other) {
+    bool in_list = false; // from there on each takes the place of the next
+    for (int k = 0; k < MOST@; k++) {
+        if (!in_list && !(square < near_square@[k])) continue;
+        in_list = true;
+        float next_square = near_square@[k];
+        uint next = near_place@[k];
+        near_square@[k] = square, near_place@[k] = other;
+        square = next_square, other = next;
+    }
+}
+#endif
+
+// All neighbours of the particle at p, which is at a place of the grid, or the nearest. Two phases for each 32 of a row of cells: distances become a mask of
 // hits, then the hits are met one by one, so that invocations side by side part as little as can be.
 vec3 walk@(uint place, vec3 p, vec3 v) {
     float speed = dot(v, v);
@@ -11,6 +29,9 @@ vec3 walk@(uint place, vec3 p, vec3 v) {
 #endif
     vec3 origin = vec3(origin_x, origin_y, origin_z);
     float reach = row@[1].x, square = reach * reach, top = float(cells_x);
+#ifdef MOST@
+    for (int k = 0; k < MOST@; k++) near_square@[k] = square, near_place@[k] = 0xffffffffu;
+#endif
     float slack = 1e-6 * max(max(abs(p.x), abs(p.y)), abs(p.z)) + 1e-5 * reach;
     int cy = clamped((p.y - origin.y) * per_size, cells_y), cz = clamped((p.z - origin.z) * per_size, cells_z);
     for (int z = max(cz - 1, 0); z <= min(cz + 1, cells_z - 1); z++) {
@@ -45,11 +66,25 @@ vec3 walk@(uint place, vec3 p, vec3 v) {
                     if (other == place) continue;
                     vec4 q = texelFetch(positions, int(other));
                     vec3 apart = p - q.xyz;
+#ifdef MOST@
+                    if (sees@(sum, apart, dot(apart, apart))) keep@(dot(apart, apart), other);
+#else
                     meet@(sum, apart, dot(apart, apart), unpacked(q.w));
+#endif
                 }
                 at = first + 32u;
+#ifdef MOST@
+                square = near_square@[MOST@ - 1]; // who is farther cannot be among them
+#endif
             }
         }
     }
+#ifdef MOST@
+    for (int k = 0; k < MOST@ && near_place@[k] != 0xffffffffu; k++) {
+        vec4 q = texelFetch(positions, int(near_place@[k]));
+        vec3 apart = p - q.xyz;
+        meet@(sum, apart, dot(apart, apart), unpacked(q.w));
+    }
+#endif
     return finish@(sum, row@[0].w);
 }

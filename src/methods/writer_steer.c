@@ -74,6 +74,7 @@ static void write_fields(sk_writer *writer, const sk_force *force) {
     row.dst = SK_S;
     row.source[0] = SK_X;
     row.source[1] = SK_V;
+    row.alone = sk_force_particle(force) >= 0;
     sk_add_row(writer, row);
 }
 

@@ -130,6 +130,7 @@ struct sk_row {
     size_t begin, end;     /* elements; a repeat: the number of turns is `end` */
     bool sets;             /* a field row: F is written, not added to */
     bool by_particle;      /* its elements are the user's particles, not slots: not to be run in chunks with others */
+    bool alone;            /* it looks at slots that are not its own: nor is that */
     size_t packed;         /* slots [0, packed) are in packed blocks when it runs */
     sk_walk walk;          /* of rows whose elements are strip rows */
     size_t length;         /* a repeat: how many rows after it are repeated */

@@ -3,10 +3,13 @@
  * A type of rule that has one says so in its constant struct; gpu/ puts the texts of a row's rule and of its
  * neighbours in the plan together to one compute shader. In the text, '@' stands for the row's number in that
  * shader, so that rules of one kind do not meet: `rule@[k]` is the k-th vector of the rule's block. What a text
- * must define is in the header of its floor (force.h, collider.h). */
+ * must define is in the header of its floor (force.h, collider.h). * What of a text depends on parameters, a formula
+ * say, the type writes itself; it stands before the file.
+ */
 #ifndef SK_PLAN_SHADER_H
 #define SK_PLAN_SHADER_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef struct sk_shader {
@@ -17,6 +20,12 @@ typedef struct sk_shader {
     /* NULL if it can run on a card with these parameters, else why not, as the end of a sentence. Itself NULL: always.
      */
     const char *(*refuse)(const void *params);
+    /* The rest may be NULL. Text before the file's, with '@' as there; false when there is no memory. */
+    bool (*write)(const void *params, void (*put)(void *user, const char *text), void *user);
+    /* Whether it is another at another time, which is then in row@[1].z; NULL: it never is. */
+    bool (*changes)(const void *params);
+    /* Whether a rule that bounds moves particles, by shift@ (forces/force.h), instead. */
+    bool (*shifts)(const void *params);
 } sk_shader;
 
 /* Three numbers of a parameter struct, as the first three of a block's vector. */

@@ -7,7 +7,7 @@ enum { PADDING = 16 };
 
 /* Finite, and so far from overflow that the size of a box of such points is finite too. */
 static bool is_finite(sk_vec4 p) {
-    real most = SK_REAL_MAX / 4;
+    real most = SK_CELLS_FARTHEST;
     return sk_abs(p.x) <= most && sk_abs(p.y) <= most && sk_abs(p.z) <= most;
 }
 
@@ -56,6 +56,11 @@ bool sk_cells_frame(sk_cells *cells, sk_allocator *allocator, const sk_state *st
                     real radius) {
     sk_vec3 low, high;
     find_bounds(state, first, end, &low, &high);
+    return sk_cells_frame_box(cells, allocator, low, high, first, end, radius);
+}
+
+bool sk_cells_frame_box(sk_cells *cells, sk_allocator *allocator, sk_vec3 low, sk_vec3 high, size_t first, size_t end,
+                        real radius) {
     size_t count = end - first;
     double size = (double)radius;
     sk_vec3 extent = sk_sub(high, low);

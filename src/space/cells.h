@@ -53,6 +53,8 @@ typedef struct sk_cells {
 } sk_cells;
 
 #define SK_NOWHERE UINT32_MAX
+/* Whoever has a coordinate farther out is nowhere: the size of a box of others is finite. */
+#define SK_CELLS_FARTHEST (SK_REAL_MAX / 4)
 
 /* Where the state is; see particles.h. Slots [0, packed) are in packed blocks. */
 typedef struct sk_state {
@@ -69,6 +71,9 @@ bool sk_cells_reserve(sk_cells *cells, sk_allocator *allocator, size_t count);
  * memory: nobody is in a cell then. */
 bool sk_cells_frame(sk_cells *cells, sk_allocator *allocator, const sk_state *state, size_t first, size_t end,
                     real radius);
+/* The same where the box around them is known; a point where nobody is finite. */
+bool sk_cells_frame_box(sk_cells *cells, sk_allocator *allocator, sk_vec3 low, sk_vec3 high, size_t first, size_t end,
+                        real radius);
 /* Finds the cell of each of the particles [begin, end); any cut over threads will do. */
 void sk_cells_find(sk_cells *cells, const sk_state *state, size_t begin, size_t end);
 /* Gives each of them its place in the order of cells. */

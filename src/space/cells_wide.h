@@ -1,6 +1,14 @@
 /* Which places of the cells a particle has to look at, as sixteens of candidates: once for each instruction set (no
  * include guard: see for_each_isa.h). Includers outside of SK_ISA: space/cells.h. */
 
+/* A number in all lanes, in the parts that the processor works on: of a whole one, or of a number beside a wide, gcc
+ * makes sixteen stores where it knows no 64 bytes at once. */
+SK_INLINE sk_wide SK_ISA(all)(real a) {
+    SK_ISA(parts) p;
+    for (int i = 0; i < SK_ISA(native_parts); i++) p.native[i] = a - (SK_ISA(native)){0};
+    return p.wide;
+}
+
 /* Where the nine rows of cells around a particle are, a row a lane; see sk_cells_ranges(), which this is wide. */
 typedef struct SK_ISA(rows) {
     sk_wide wall_y, wall_z, share_y, share_z; // the distance to the row, in cells, is wall + share * place in the cell
@@ -21,32 +29,43 @@ SK_INLINE SK_ISA(rows) SK_ISA(rows_of)(const sk_cells *cells) {
     return rows;
 }
 
-/* Sixteens of candidates: where each begins, and how many there are from there on. */
-enum { SK_ISA(SIXTEENS) = 48 };
+/* Sixteens of candidates: where each begins, and which of them are candidates. */
+enum { SK_ISA(SIXTEENS) = 64 };
 typedef struct SK_ISA(sixteens) {
     uint32_t place[SK_ISA(SIXTEENS) + SK_LANES];
-    int32_t left[SK_ISA(SIXTEENS) + SK_LANES];
+    uint32_t some[SK_ISA(SIXTEENS) + SK_LANES]; // a bit for each that is a candidate
     size_t count;
 } SK_ISA(sixteens);
 
+/* Ranges of places, a lane each: where what is left of them begins, and how many that is. */
+typedef struct SK_ISA(ranges) {
+#if defined(SK_HAS_AVX512)
+    __m512i begin, left; // as they are worked on: stores of single lanes would hold up loads of all
+#else
+    int32_t begin[SK_LANES], left[SK_LANES];
+#endif
+} SK_ISA(ranges);
+
 /* Lists the next sixteen of each range that is not used up; false when all are. Ranges take turns, so that rows of
  * fewer than sixteen, the most of them, are listed without a branch each. */
-SK_INLINE bool SK_ISA(list)(int32_t begin[SK_LANES], int32_t left[SK_LANES], SK_ISA(sixteens) * list) {
+SK_INLINE bool SK_ISA(list)(SK_ISA(ranges) * ranges, SK_ISA(sixteens) * list) {
     size_t before = list->count;
 #if defined(SK_HAS_AVX512)
-    __m512i b = _mm512_loadu_si512(begin), l = _mm512_loadu_si512(left);
-    __mmask16 some = _mm512_cmpgt_epi32_mask(l, _mm512_setzero_si512());
-    _mm512_storeu_si512(list->place + before, _mm512_maskz_compress_epi32(some, b));
-    _mm512_storeu_si512(list->left + before, _mm512_maskz_compress_epi32(some, l));
-    _mm512_storeu_si512(begin, _mm512_add_epi32(b, _mm512_set1_epi32(SK_LANES)));
-    _mm512_storeu_si512(left, _mm512_sub_epi32(l, _mm512_set1_epi32(SK_LANES)));
+    __mmask16 some = _mm512_cmpgt_epi32_mask(ranges->left, _mm512_setzero_si512());
+    if (!some) return false;
+    _mm512_storeu_si512(list->place + before, _mm512_maskz_compress_epi32(some, ranges->begin));
+    const __m512i one = _mm512_set1_epi32(1), all = _mm512_set1_epi32(SK_LANES);
+    __m512i bits = _mm512_sub_epi32(_mm512_sllv_epi32(one, _mm512_min_epi32(ranges->left, all)), one);
+    _mm512_storeu_si512(list->some + before, _mm512_maskz_compress_epi32(some, bits));
+    ranges->begin = _mm512_add_epi32(ranges->begin, _mm512_set1_epi32(SK_LANES));
+    ranges->left = _mm512_sub_epi32(ranges->left, _mm512_set1_epi32(SK_LANES));
     list->count = before + (size_t)__builtin_popcount(some);
 #else
     for (int r = 0; r < 9; r++) {
-        list->place[list->count] = (uint32_t)begin[r];
-        list->left[list->count] = left[r];
-        list->count += left[r] > 0;
-        begin[r] += SK_LANES, left[r] -= SK_LANES;
+        list->place[list->count] = (uint32_t)ranges->begin[r];
+        list->some[list->count] = ranges->left[r] < SK_LANES ? (1u << (ranges->left[r] & 15)) - 1 : 0xffffu;
+        list->count += ranges->left[r] > 0;
+        ranges->begin[r] += SK_LANES, ranges->left[r] -= SK_LANES;
     }
 #endif
     return list->count != before;
@@ -54,19 +73,20 @@ SK_INLINE bool SK_ISA(list)(int32_t begin[SK_LANES], int32_t left[SK_LANES], SK_
 
 /* The ranges of candidates of a particle at p: where each of nine rows begins, and how many are in it. */
 SK_INLINE void SK_ISA(find_ranges)(const sk_cells *cells, const SK_ISA(rows) * rows, sk_vec3 p, real reach,
-                                   int32_t begin[SK_LANES], int32_t count[SK_LANES]) {
+                                   SK_ISA(ranges) * ranges) {
     real py = (p.y - cells->origin.y) * cells->per_yz, pz = (p.z - cells->origin.z) * cells->per_yz;
     int32_t iy = sk_cells_place(p.y, cells->origin.y, cells->per_yz, cells->count_y);
     int32_t iz = sk_cells_place(p.z, cells->origin.z, cells->per_yz, cells->count_z);
-    sk_wide my = rows->wall_y + rows->share_y * (py - (real)iy), mz = rows->wall_z + rows->share_z * (pz - (real)iz);
-    my = SK_ISA(sk_keep)(SK_ISA(sk_positive)(my), my) * cells->size;
-    mz = SK_ISA(sk_keep)(SK_ISA(sk_positive)(mz), mz) * cells->size;
-    sk_wide left = (reach * reach - mz * mz) - my * my;
+    sk_wide my = rows->wall_y + rows->share_y * SK_ISA(all)(py - (real)iy),
+            mz = rows->wall_z + rows->share_z * SK_ISA(all)(pz - (real)iz), size = SK_ISA(all)(cells->size);
+    my = SK_ISA(sk_keep)(SK_ISA(sk_positive)(my), my) * size;
+    mz = SK_ISA(sk_keep)(SK_ISA(sk_positive)(mz), mz) * size;
+    sk_wide left = (SK_ISA(all)(reach * reach) - mz * mz) - my * my;
     sk_mask some = SK_ISA(sk_positive)(left);
-    sk_wide half = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_keep)(some, left)) * (real)1.00001;
-    sk_wide low = ((p.x - half) - cells->origin.x) * cells->per_x,
-            high = ((p.x + half) - cells->origin.x) * cells->per_x;
-    sk_wide last = SK_ISA(sk_splat)((real)(cells->count_x - 1));
+    sk_wide half = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_keep)(some, left)) * SK_ISA(all)((real)1.00001);
+    sk_wide x = SK_ISA(all)(p.x), origin = SK_ISA(all)(cells->origin.x), per = SK_ISA(all)(cells->per_x);
+    sk_wide low = ((x - half) - origin) * per, high = ((x + half) - origin) * per;
+    sk_wide last = SK_ISA(all)((real)(cells->count_x - 1));
     low = SK_ISA(sk_keep)(SK_ISA(sk_positive)(low), low), high = SK_ISA(sk_keep)(SK_ISA(sk_positive)(high), high);
     low = SK_ISA(sk_select)(SK_ISA(sk_more)(last, low), low, last);
     high = SK_ISA(sk_select)(SK_ISA(sk_more)(last, high), high, last);
@@ -78,10 +98,19 @@ SK_INLINE void SK_ISA(find_ranges)(const sk_cells *cells, const SK_ISA(rows) * r
         for (int dy = -1; dy <= 1; dy++)
             inside |= (uint32_t)(iy + dy >= 0 && iy + dy < cells->count_y && iz + dz >= 0 && iz + dz < cells->count_z)
                       << (4 + dy + 3 * dz);
-    for (int l = 9; l < SK_LANES; l++) begin[l] = count[l] = 0;
+#if defined(SK_HAS_AVX512) && !defined(SKEIN_DOUBLE)
+    __mmask16 rows_inside = (__mmask16)inside;
+    ranges->begin = _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), rows_inside, (__m512i)first, cells->start, 4);
+    __m512i to = _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), rows_inside, (__m512i)end, cells->start, 4);
+    ranges->left = _mm512_sub_epi32(to, ranges->begin);
+#else
+    int32_t begin[SK_LANES] = {0}, count[SK_LANES] = {0};
     for (int l = 0; l < 9; l++) {
         sk_lane_int from = inside >> l & 1 ? first[l] : 0, to = inside >> l & 1 ? end[l] : 0;
         begin[l] = (int32_t)cells->start[from];
         count[l] = (int32_t)cells->start[to] - begin[l];
     }
+    memcpy(&ranges->begin, begin, sizeof begin);
+    memcpy(&ranges->left, count, sizeof count);
+#endif
 }

@@ -49,7 +49,7 @@ static size_t segment_length(const sk_row *rows, size_t count, sk_walk *walk) {
         if (row->walk.rows) {
             if (walk->rows && !same_strips(walk, &row->walk)) break;
             *walk = row->walk;
-        } else if (row->order != SK_FREE || row->by_particle) {
+        } else if (row->order != SK_FREE || row->by_particle || row->alone) {
             break;
         }
     }

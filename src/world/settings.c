@@ -132,7 +132,7 @@ static skein_status replace(skein_world *world, sk_object *object, const skein_f
 /* What shaped a body that stands cannot change any more. */
 static bool shapes(const sk_object *object, const void *params, const char *name) {
     bool body = object && object->category == SKEIN_BODY && params == object->params;
-    return body && !object->body_type->live(name);
+    return body && !object->body_type->live(params, name);
 }
 
 bool skein_field_is_live(const skein_world *world, skein_handle handle, const char *name) {

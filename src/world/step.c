@@ -109,6 +109,7 @@ static skein_status find_groups(skein_world *world, skein_error *error) {
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error) {
     if (!(dt > 0) || !(dt <= 1e6))
         return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0", dt);
+    if (world->plan_stale) sk_world_run_compiled(world);
     skein_status status = sk_world_arrange(world, error);
     if (status) return status;
     if (!world->plan_stale && world->plan_dt == dt) return SKEIN_OK;

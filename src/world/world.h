@@ -24,7 +24,7 @@ typedef struct sk_body_type {
     skein_status (*build)(skein_world *world, sk_body *body, const void *params, const skein_mesh *mesh,
                           skein_error *error);
     /* Whether a field can change once the body is built (a stiffness can, a grid's size cannot). */
-    bool (*live)(const char *field);
+    bool (*live)(const void *params, const char *field);
     /* Passes changed parameters on to the body's rules. */
     void (*change)(sk_body *body, const void *params);
 } sk_body_type;
@@ -117,6 +117,10 @@ struct skein_world {
     double first_energy;        /* J, when the first step began */
     double cell[SK_CELL_COUNT]; /* of the last step */
     sk_device *device;          /* NULL: the processor */
+    struct {
+        const skein_compiled **data;
+        size_t count, capacity;
+    } compiled; /* what was registered; the newest is asked first */
 };
 
 /* ---- for the catalogue: adding objects of a known type ---- */
@@ -173,6 +177,8 @@ skein_status sk_settings_apply(sk_allocator *allocator, const skein_kind *kind, 
 const skein_field *sk_kind_field(const skein_kind *kind, const char *name, skein_error *error);
 /* Finds the particles' slots and cuts batches into sweeps, if anything was added. */
 skein_status sk_world_arrange(skein_world *world, skein_error *error);
+/* Lets what is compiled run for all objects whose formula it is. */
+void sk_world_run_compiled(skein_world *world);
 /* Brings the plan up to date for a step of dt. */
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error);
 /* Before the state is read: what a device is ahead comes back. It changes no state, only where it stands; a failure

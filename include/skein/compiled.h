@@ -1,0 +1,106 @@
+/* Compiled formulas: what `skein formula --emit c` writes, and how it speaks with the library.
+ *
+ *     $ skein formula 'length(p0 - p1) - L' --param L=1 --emit c --name spring > spring.c
+ *     $ cc -std=gnu17 -O3 -march=native -ffp-contract=off -fno-math-errno -c spring.c
+ *
+ *     extern const skein_compiled spring;      // in the program that links spring.o
+ *     skein_formula_register(world, &spring);  // formula.h
+ *
+ * From then on every constraint of that formula in the world runs this code in place of the tape, with the tape's bits.
+ * Here are the plain structs between both sides. An emitted file is the formula alone, in macros (FORMULA, POSITION,
+ * GRADIENT ...), and compiled_walk.h says what they mean. */
+#ifndef SKEIN_COMPILED_H
+#define SKEIN_COMPILED_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#ifdef SKEIN_DOUBLE // as in skein.h
+typedef double skein_real;
+#else
+typedef float skein_real;
+#endif
+
+#define SKEIN_COMPILED_ABI 1
+#define SKEIN_GROUP 16 /* elements a group, which share no particle */
+
+/* What the code was compiled for: the library takes it only where the processor has that. */
+typedef enum skein_instructions {
+    SKEIN_INSTRUCTIONS_PLAIN,
+    SKEIN_INSTRUCTIONS_AVX2,
+    SKEIN_INSTRUCTIONS_AVX512 /* with DQ, BW and VL */
+} skein_instructions;
+
+/* The library's own elementary functions, which have the same bits on every machine: of `count` numbers, a multiple of
+ * the code's lanes. Results may be in an argument's place. */
+typedef void skein_function(const skein_real *x, skein_real *out, size_t count);
+typedef void skein_function_of_two(const skein_real *x, const skein_real *y, skein_real *out, size_t count);
+typedef struct skein_elementary {
+    skein_function *exp, *log, *sin, *cos, *tan, *asin, *acos;
+    skein_function_of_two *atan2 /* of y, x */, *pow;
+} skein_elementary;
+
+typedef struct skein_compiled skein_compiled;
+
+/* Groups of elements, for a walk. State vectors have four numbers a slot, x y z and in `positions` the inverse mass, as
+ * quads; slots under `packed` lie in blocks of sixteen, x16 y16 z16 w16. Values have SKEIN_GROUP lanes a group. */
+typedef struct skein_groups {
+    size_t count;
+    const uint32_t *slots; /* of each group SKEIN_GROUP first particles, as many second ones ... */
+    const uint8_t *ahead;  /* of each group: how many from it on, itself among them, share no particle */
+    size_t packed;
+    skein_real *positions;
+    const skein_real *other; /* of forces the velocities, or NULL without damping; of damped projection the positions at
+                                the substep's start */
+    skein_real *forces;      /* of forces: added to */
+    const skein_real *rest;  /* rest value r of lane l: rest[r * rest_stride + l] */
+    size_t rest_stride;
+    const skein_real *stiffness, *compliance;
+    skein_real *multiplier;       /* of damped projection */
+    const skein_real *parameters; /* in the formula's order */
+    skein_real time, substep;     /* s */
+    skein_real damping_time;      /* c/k, s */
+    skein_real per_step;          /* 1/h^2, times the projections that share the stiffness */
+    skein_real gamma;             /* c/(k h) */
+    const skein_elementary *elementary;
+} skein_groups;
+
+/* SKEIN_GROUP elements, for implicit solves: numbers in, numbers out, SKEIN_GROUP of each in a row, 64-byte aligned. */
+typedef struct skein_group_values {
+    const skein_real *positions; /* of each particle x, y, z and the inverse mass */
+    const skein_real *rest;      /* rest value r: rest + SKEIN_GROUP r */
+    const skein_real *parameters;
+    skein_real time;
+    const skein_elementary *elementary;
+    skein_real *const *outputs; /* the value, its gradient by particle and axis, and its derivative by t; or the lower
+                                   triangle of the second derivatives, row by row */
+    skein_real *finite;         /* 1 where the sum of all outputs is finite, else 0 */
+} skein_group_values;
+
+/* What an emitted file defines; all that it points to lasts as long. */
+struct skein_compiled {
+    uint32_t abi;       /* SKEIN_COMPILED_ABI */
+    uint32_t real_size; /* sizeof(skein_real) */
+    uint32_t lanes;     /* elements at once, 4, 8 or 16 */
+    skein_instructions needs;
+    uint64_t hash;                 /* of the formula's canonical form: skein_formula_hash() */
+    const char *const *text;       /* the formula, in pieces; ended by NULL */
+    const char *const *parameters; /* their names, ended by NULL */
+    bool energy;                   /* for constraints of kind `energy`, else for `formula` */
+    void (*project)(const skein_groups *groups);
+    void (*project_damped)(const skein_groups *groups); /* and wherever multipliers are kept */
+    void (*force)(const skein_groups *groups);
+    void (*evaluate)(const skein_group_values *elements);
+    void (*second)(const skein_group_values *elements); /* of an energy, else NULL */
+};
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
