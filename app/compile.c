@@ -22,8 +22,7 @@
 const app_option app_compile_option = {
     "--compile",
     NULL,
-    "compile constraints' formulas with the C compiler at hand ($CC, cc, gcc, clang), and keep them in ~/.cache/skein "
-    "($SKEIN_CACHE)",
+    "compile formulas with $CC, cc, gcc or clang; kept in $SKEIN_CACHE or ~/.cache/skein",
     false,
     NULL,
     0};

@@ -5,6 +5,7 @@
 
 #include "io/mesh.h"
 #include "io/scene_settings.h"
+#include "solvers/cholmod.h"
 
 typedef struct builder {
     skein_world *world;
@@ -277,6 +278,8 @@ skein_world *io_world_from_document(const json_t *root, const char *file, double
         io_fault(top, error.where, error.status, "%s", error.message);
         return NULL;
     }
+    if (skein_cholmod_is_here() && skein_cholmod_attach(b.world, &error))
+        io_fault(top, "", error.status, "%s", error.message);
     for (size_t i = 0; io_scene_section_at(i); i++) {
         skein_category category = io_scene_section_at(i)->category;
         if (category != SKEIN_EXPORTER && category != SKEIN_VIEW) add_section(&b, root, io_scene_section_at(i));

@@ -69,7 +69,7 @@ static const struct way {
             {"backward_euler", 0.5, 0}};
 
 enum place { LOOSE, CLOTH, FAR };
-#define FARTHEST (sizeof(skein_real) == 8 ? 1e290 : 1e36)
+#define FARTHEST 9e14 // m; nothing may be farther
 
 enum { SIDE = 7, PARTICLES = SIDE * SIDE * 3, ELEMENTS = 150 };
 
@@ -95,10 +95,13 @@ static skein_world *make(const struct subject *s, const struct way *w, enum plac
             add_particle(world, i % 11 ? 0.2 + 0.01 * (i % 7) : 0, 0.5 * (i % SIDE) + random_between(&seed, -0.1, 0.1),
                          0.5 * (i / SIDE % SIDE) + random_between(&seed, -0.1, 0.1),
                          0.5 * (i / SIDE / SIDE) + random_between(&seed, -0.1, 0.1));
-        // so far away that squares, or their sums, are too large for a number; and some in one place
-        for (int i = 0; i < PARTICLES && place == FAR; i += 5)
-            if (i % 3 == 0) place_particle(world, (size_t)i, pow(FARTHEST, 0.2 + 0.005 * i), 0, 0);
-            else place_particle(world, (size_t)i, 0.5, 0.5, 0.5);
+        // so far away that products are too large for a number (in float), each in a direction; and some in one place
+        for (int i = 0; i < PARTICLES && place == FAR; i++) {
+            double far = pow(FARTHEST, 0.3 + 0.7 * i / PARTICLES);
+            if (i / 4 % 4 == 0)
+                place_particle(world, (size_t)i, i % 3 ? 0 : far, i % 3 == 1 ? far : 0, i % 3 > 1 ? far : 0);
+            else if (i % 16 == 5) place_particle(world, (size_t)i, 0.5, 0.5, 0.5);
+        }
     }
     uint32_t particles[4 * ELEMENTS];
     for (uint32_t e = 0; e < ELEMENTS; e++) {

@@ -37,8 +37,25 @@ typedef struct scenario {
     skein_handle gravity, ground, surface;
     skein_statistics statistics;
     skein_order order;
+    double diagonal[1024];
     int call;
 } scenario;
+
+/* A sparse solver that takes a matrix for its diagonal. */
+static skein_status analyse(void *user, const skein_sparse_matrix *pattern, skein_error *error) {
+    (void)user, (void)error;
+    assert_in_range(pattern->size, 1, COUNT(((scenario *)user)->diagonal));
+    return SKEIN_OK;
+}
+static bool factor(void *user, const skein_sparse_matrix *matrix) {
+    for (size_t i = 0; i < matrix->size; i++) ((scenario *)user)->diagonal[i] = matrix->value[matrix->start[i]];
+    return true;
+}
+static bool solve(void *user, const double *b, double *x) {
+    const scenario *s = user;
+    for (size_t i = 0; i < 3 * skein_particle_count(s->world); i++) x[i] = b[i] / s->diagonal[i];
+    return true;
+}
 
 static const double cube[8][3] = {{2, 1, 0}, {3, 1, 0}, {3, 2, 0}, {2, 2, 0},
                                   {2, 1, 1}, {3, 1, 1}, {3, 2, 1}, {2, 2, 1}};
@@ -135,11 +152,18 @@ static skein_status make_call(scenario *s) {
     case 33: return skein_constraint_add(s->world, "energy", (const uint32_t[]){0, 20}, 1, NULL, NULL);
     case 34: return skein_world_step(s->world, dt);
     case 35: return skein_order_measure(s->world, 5, 60, (const double[]){0, 0, 0}, 1, &s->order);
-    case 36: return skein_world_statistics(s->world, &s->statistics);
+    case 36:
+        return skein_sparse_solver_set(s->world, &(skein_sparse_solver){"diagonal", s, analyse, factor, solve, NULL});
+    case 37:
+        return skein_method_set(s->world, "backward_euler",
+                                SKEIN_SETTINGS(SKEIN_TEXT("preconditioner", "cholesky"), SKEIN_REAL("turns", 1),
+                                               SKEIN_REAL("iterations", 3)));
+    case 38: return skein_world_step(s->world, dt);
+    case 39: return skein_world_statistics(s->world, &s->statistics);
     default: return SKEIN_ERROR_LIMIT;
     }
 }
-enum { CALLS = 37 };
+enum { CALLS = 40 };
 
 /* What a failed call must leave as it was. */
 typedef struct census {

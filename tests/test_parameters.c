@@ -47,7 +47,7 @@ static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     (void)run, (void)row, (void)begin, (void)end;
 }
 
-static const sk_making making = {make, unmake};
+static const sk_making making = {.make = make, .unmake = unmake};
 static const sk_force_type pull = {
     .kind = {"pull", "a force of the test", SKEIN_FORCE, fields, sizeof fields / sizeof *fields, sizeof(pull_params)},
     .domain = SK_OVER_PARTICLES,

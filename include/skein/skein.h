@@ -320,6 +320,42 @@ typedef struct skein_device_info {
 } skein_device_info;
 skein_device_info skein_world_device(const skein_world *world);
 
+/* ---- Sparse solvers ------------------------------------------------------------------------------ */
+
+/* A sparse symmetric matrix: its lower triangle, column after column. Row 3 i + k is of particle i (the user's index)
+ * along axis k. */
+typedef struct skein_sparse_matrix {
+    size_t size;          /* rows, and columns: 3 x particles */
+    const int64_t *start; /* size + 1: column c has the entries start[c] to start[c + 1] - 1 */
+    const int64_t *row;   /* start[size]: ascending in each column, which begins with its diagonal */
+    const double *value;  /* start[size], kg: mass, damping times substep, stiffness times its square. NULL while the
+                             matrix is analysed */
+} skein_sparse_matrix;
+
+/* What can factor such matrices, for backward_euler's `"preconditioner": "cholesky"`. The library brings none;
+ * solvers/cholmod.h does. Called on the thread that steps, one call at a time; two worlds that step at once need one
+ * each. What is passed to a call is only there until it returns. The same calls must lead to the same bits if steps are
+ * to. */
+typedef struct skein_sparse_solver {
+    const char *name; /* for messages; as long as the solver is the world's */
+    void *user;
+    /* Takes the places of a matrix's entries (no values): when a plan is made, once for each arrangement of particles
+     * and constraints. What it returns, with `error` filled in, the step or skein_world_explain() returns. */
+    skein_status (*analyse)(void *user, const skein_sparse_matrix *pattern, skein_error *error);
+    /* Factors a matrix of the last pattern, positive definite but for rounding. False where it cannot: that is counted
+     * (solver_failures), and the solve goes on with the particles' own blocks. Asked for in each turn of Newton's
+     * method. */
+    bool (*factor)(void *user, const skein_sparse_matrix *matrix);
+    /* x = matrix^-1 b, of the last matrix that was factored; `b` and `x` are `size` numbers, x unset. False where it
+     * cannot. Asked for in each iteration of conjugate gradients. */
+    bool (*solve)(void *user, const double *b, double *x);
+    void (*release)(void *user); /* when the world goes, or takes another; NULL: nothing is to be released */
+} skein_sparse_solver;
+
+/* Gives the world a solver (copied; the world releases it), or with NULL takes it away. On failure it stays the
+ * caller's, and the world keeps the one it had. */
+skein_status skein_sparse_solver_set(skein_world *world, const skein_sparse_solver *solver);
+
 /* ---- Reading and writing the state ------------------------------------------------------------- */
 
 /* The state without a copy, valid until the next step or change. Particle i stands at
@@ -450,6 +486,8 @@ typedef struct skein_statistics {
     size_t unsolved;          /* substeps left with more than the tolerance, and more than rounding explains */
     size_t solver_turns;      /* of Newton's method */
     size_t solver_iterations; /* of conjugate gradients */
+    size_t solver_factors;    /* that a sparse solver was asked for */
+    size_t solver_failures;   /* of these, and of its solves: the solve went on with each particle's own block */
     double max_penetration;   /* m, below a collider's thickness */
     size_t contacts;          /* pairs of a particle and a collider that touch */
     size_t particles, held_particles, constraints;

@@ -42,7 +42,7 @@ void sk_batch_release(sk_batch *batch, sk_allocator *allocator) {
     void *arrays[] = {batch->particle,        batch->slot,           batch->rest,
                       batch->scale,           batch->sweeps,         batch->lane,
                       batch->lane_rest,       batch->lane_stiffness, batch->lane_compliance,
-                      batch->lane_multiplier, batch->special};
+                      batch->lane_multiplier, batch->special,        batch->pair};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     sk_release(allocator, batch);
 }

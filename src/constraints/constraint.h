@@ -49,6 +49,9 @@ typedef struct sk_constraint_type {
      * direction p, its second source, k and c being the stiffness and damping at X (positive definite); and that
      * matrix's diagonal 3 x 3 blocks, xx yy zz into dst, xy xz yz into its second source. */
     sk_kernels apply, diagonal;
+    /* The same matrix's blocks, all of them, added to the run's (plan/matrix.h). NULL: each element takes in too many
+     * particles for that, and a factor does without them. */
+    sk_kernels blocks;
     /* Relative violation of elements [begin, end): (length - rest)/rest for a distance. */
     void (*strain)(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, real *strain);
     /* Energies over the stiffness of elements [begin, end), C^2 / 2; returns how many had to be guarded
@@ -81,6 +84,7 @@ struct sk_batch {
     uint32_t *slot;     /* the same as slots */
     real *rest;         /* rest_count x count: first all first ones */
     real *scale;        /* NULL: all 1 */
+    uint32_t *pair;     /* arity (arity - 1)/2 x count: where pairs' blocks lie in the world's matrix; NULL: none */
 
     /* Made from the above when slots change: elements in the order of sweeps, a lane each. */
     sk_sweep *sweeps;

@@ -5,6 +5,7 @@
 
 #include "base/wide_types.h"
 #include "constraints/sweep.h"
+#include "plan/matrix.h"
 
 /* A loop over an element's particles; unrolled, so that what it fills stays in registers. */
 #ifdef __clang__

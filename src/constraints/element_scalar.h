@@ -99,4 +99,4 @@ static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_
 #define SK_ELEMENT_RULES                                                                                           \
     .arity = SK_ARITY, .rest_count = SK_RESTS, .rest = rest_of, .force = SK_WALKS_OF(force),                       \
     .project = SK_WALKS_OF(project), .project_damped = SK_WALKS_OF(project_damped), .apply = {SK_EACH_ISA(apply)}, \
-    .diagonal = {SK_EACH_ISA(diagonal)}, .energy = energy
+    .diagonal = {SK_EACH_ISA(diagonal)}, .blocks = {SK_EACH_ISA(blocks)}, .energy = energy

@@ -95,3 +95,23 @@ static void SK_ISA(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_
         }
     }
 }
+
+/* The element's own rows and columns of the matrix. */
+static void SK_ISA(blocks)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    enum { PAIRS = SK_ARITY * (SK_ARITY - 1) / 2 };
+    const sk_batch *batch = row->rule;
+    SK_ISA(stiff) s;
+    for (size_t at = begin; at < end; at += SK_LANES) {
+        SK_ISA(stiffen)(&s, run, row, at, end);
+        sk_wide push = s.along - s.across;
+        for (size_t l = 0; l < s.count; l++) {
+            double g[SK_ARITY][3];
+            SK_EACH_PARTICLE (i) {
+                g[i][0] = (double)s.e.gradient[i].x[l], g[i][1] = (double)s.e.gradient[i].y[l];
+                g[i][2] = (double)s.e.gradient[i].z[l];
+            }
+            sk_matrix_add_square(run->matrix, SK_ARITY, batch->particle + SK_ARITY * (at + l),
+                                 batch->pair + PAIRS * (at + l), g, (double)push[l], (double)s.across[l]);
+        }
+    }
+}

@@ -404,6 +404,31 @@ static void SK_ISA(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_
             }
     }
 }
+
+static void SK_ISA(blocks)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_batch *batch = row->rule;
+    size_t arity = batch->arity, pairs = arity * (arity - 1) / 2;
+    SK_ISA(block) b;
+    SK_ISA(matrix) m;
+    for (size_t at = begin; at < end; at += SK_LANES) {
+        size_t count = end - at < SK_LANES ? end - at : SK_LANES;
+        SK_ISA(stiffness)(&b, &m, batch, run, row, at, count);
+        for (size_t l = 0; l < count; l++) {
+            const uint32_t *particle = batch->particle + arity * (at + l), *pair = batch->pair + pairs * (at + l);
+            for (size_t p = 0; p < arity; p++)
+                for (size_t q = 0; q <= p; q++) {
+                    double entry[3][3];
+                    for (size_t i = 0; i < 3; i++)
+                        for (size_t j = 0; j < 3; j++) {
+                            size_t r = 3 * p + i, c = 3 * q + j;
+                            entry[i][j] = (double)(c <= r ? ENTRY(&m, r, c)[l] : ENTRY(&m, c, r)[l]);
+                        }
+                    if (p == q) sk_matrix_add_diagonal(run->matrix, particle[p], entry);
+                    else sk_matrix_add_pair(run->matrix, particle[p], particle[q], pair[p * (p - 1) / 2 + q], entry);
+                }
+        }
+    }
+}
 #undef ENTRY
 
 /* ---- measuring ---- */
@@ -491,7 +516,7 @@ static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_
     .arity_of = sk_formula_arity_of, .rest_count_of = sk_formula_rest_count_of, .rest = sk_formula_rest,             \
     .in_blocks = true, .force.groups = {SK_EACH_ISA(force_groups)}, .project.groups = {SK_EACH_ISA(project_groups)}, \
     .project_damped.groups = {SK_EACH_ISA(project_damped_groups)}, .apply = {SK_EACH_ISA(apply)},                    \
-    .diagonal = {SK_EACH_ISA(diagonal)}, .energy = energy
+    .diagonal = {SK_EACH_ISA(diagonal)}, .blocks = {SK_EACH_ISA(blocks)}, .energy = energy
 
 const sk_constraint_type sk_formula_constraint = {
     .kind = {"formula", "any function of up to eight particles that wants to be 0, or at least 0", SKEIN_CONSTRAINT,

@@ -5,6 +5,7 @@
 #include "constraints/sweep.h"
 #include "formula/formula.h"
 #include "formula/tape.h"
+#include "plan/matrix.h"
 
 /* Groups that run through a tape together at the most. Eight would share its dispatch better, but few sweeps have eight
  * in a row that share no particle: of a sheet's 5.6 are found, and 3.5 of four. */

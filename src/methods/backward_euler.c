@@ -8,10 +8,12 @@
  * Contact is a filter inside that solve. */
 #include "methods/writer_solve.h"
 
+#include "base/status.h"
 #include "methods/method.h"
 
 typedef struct backward_euler_params {
     int32_t substeps, turns, iterations;
+    int32_t preconditioner;
     double tolerance;
 } backward_euler_params;
 
@@ -22,14 +24,21 @@ static const skein_field fields[] = {
     SK_INT(backward_euler_params, turns, "turns", "", 20, 1, 1000, "of Newton's method in a substep, at most"),
     SK_INT(backward_euler_params, iterations, "iterations", "", 400, 1, 100000,
            "of conjugate gradients in a turn, at most"),
+    SK_CHOICE(backward_euler_params, preconditioner, "preconditioner", 0, "blocks|cholesky",
+              "what shortens conjugate gradients: each particle's own block, or a sparse factor of the whole matrix"),
 };
+enum { BLOCKS, CHOLESKY };
 
 /* Conjugate gradients go somewhat further than the whole substep has to. */
 static const double cg_share = 0.3;
 static const size_t line_turns = 8;
 
 static skein_status check(const void *params, const sk_rules *rules, skein_error *error) {
-    (void)params;
+    const backward_euler_params *given = params;
+    if (given->preconditioner == CHOLESKY && !rules->sparse_solver)
+        return sk_fail(error, SKEIN_ERROR_VALUE, "method.preconditioner",
+                       "cholesky needs a sparse solver, and this world has none: 'tools/setup build' installs CHOLMOD, "
+                       "then build again (programs: skein_cholmod_attach()); or take blocks");
     return sk_refuse_rigid(rules, "backward_euler", error);
 }
 
@@ -44,31 +53,55 @@ static void write_residual(sk_writer *writer, double h) {
     sk_write_solve(writer, &sk_solve_filter, residual, SK_NONE, SK_NONE, "S R");
 }
 
+/* The matrix's factor at X and V. (That of an earlier turn is no substitute: springs that have gone slack or taut since
+ * made conjugate gradients as long as the blocks do.) */
+static void write_factor(sk_writer *writer, sk_vector inertia, double h) {
+    sk_vector block = (sk_vector)SK_BLOCK0, off = (sk_vector)SK_BLOCK1;
+    sk_write_sum(writer, block, 1, inertia, 0, SK_NONE);
+    sk_write_clear(writer, off);
+    sk_write_diagonal_of_forces(writer, block, off, h * h, h);
+    sk_write_factor(writer, block, off, h * h, h);
+}
+
 /* The matrix's diagonal blocks at X and V, and their factors. */
-static void write_linearise(sk_writer *writer, double h) {
+static void write_linearise(sk_writer *writer, const backward_euler_params *params, double h) {
     const double epsilon = sizeof(real) == sizeof(double) ? 1e-16 : 5e-8;
     sk_vector inertia = (sk_vector)SK_INERTIA, block = (sk_vector)SK_BLOCK0, off = (sk_vector)SK_BLOCK1;
     sk_write_solve(writer, &sk_solve_mass, inertia, SK_V, SK_NONE, "m");
     sk_write_resistance(writer, inertia, h);
+    if (params->preconditioner == CHOLESKY) write_factor(writer, inertia, h);
     sk_write_sum(writer, block, 1, inertia, 0, SK_NONE);
     sk_write_clear(writer, off);
     sk_write_diagonal(writer, block, off, h * h, h);
+    sk_write_diagonal_of_forces(writer, block, off, h * h, h);
     sk_write_dot(writer, &sk_solve_rounding, SK_X, SK_V, epsilon, "rounding");
     sk_write_scalar(writer, sk_solve_note_rounding, 0, "rounding = sum");
     sk_write_solve(writer, &sk_solve_factor, block, off, inertia, "L D L^T of the blocks");
 }
 
+/* T8 = about the matrix^-1 R. */
+static void write_precondition(sk_writer *writer, const backward_euler_params *params) {
+    sk_vector residual = (sk_vector)SK_RESIDUAL, product = (sk_vector)SK_PRODUCT;
+    size_t once = 0;
+    if (params->preconditioner == CHOLESKY) {
+        sk_write_factor_solve(writer, product, residual);
+        once = sk_write_until(writer, 1, SK_CELL_FACTORED, "unless there was a factor");
+    }
+    sk_write_solve(writer, &sk_solve_backsolve, product, residual, SK_NONE, "blocks^-1 R");
+    if (once) sk_write_end(writer, once);
+    sk_write_solve(writer, &sk_solve_filter, product, SK_NONE, SK_NONE, "S T8");
+}
+
 /* The change of V, from the residual; R is used up. */
-static void write_conjugate_gradients(sk_writer *writer, double h, double tolerance, size_t iterations) {
+static void write_conjugate_gradients(sk_writer *writer, const backward_euler_params *params, double h) {
     sk_vector residual = (sk_vector)SK_RESIDUAL, direction = (sk_vector)SK_DIRECTION, change = (sk_vector)SK_CHANGE;
     sk_vector product = (sk_vector)SK_PRODUCT;
     sk_write_clear(writer, change);
-    sk_write_solve(writer, &sk_solve_backsolve, product, residual, SK_NONE, "blocks^-1 R");
-    sk_write_solve(writer, &sk_solve_filter, product, SK_NONE, SK_NONE, "S T8");
+    write_precondition(writer, params);
     sk_write_sum(writer, direction, 1, product, 0, SK_NONE);
     sk_write_dot(writer, &sk_solve_dot, residual, product, 0, "R T8");
     sk_write_scalar(writer, sk_solve_cg_start, 0, "rz");
-    size_t repeat = sk_write_until(writer, iterations, SK_CELL_CG_DONE, "conjugate gradients");
+    size_t repeat = sk_write_until(writer, (size_t)params->iterations, SK_CELL_CG_DONE, "conjugate gradients");
     sk_write_solve(writer, &sk_solve_product, product, (sk_vector)SK_INERTIA, direction, "inertia T7");
     sk_write_apply(writer, product, direction, h * h, h);
     sk_write_solve(writer, &sk_solve_filter, product, SK_NONE, SK_NONE, "S T8");
@@ -76,10 +109,9 @@ static void write_conjugate_gradients(sk_writer *writer, double h, double tolera
     sk_write_scalar(writer, sk_solve_cg_alpha, 0, "alpha = rz / sum");
     sk_write_cell_sum(writer, change, change, 1, SK_CELL_ALPHA, direction, "T9 + alpha T7");
     sk_write_cell_sum(writer, residual, residual, -1, SK_CELL_ALPHA, product, "R - alpha T8");
-    sk_write_solve(writer, &sk_solve_backsolve, product, residual, SK_NONE, "blocks^-1 R");
-    sk_write_solve(writer, &sk_solve_filter, product, SK_NONE, SK_NONE, "S T8");
+    write_precondition(writer, params);
     sk_write_dot(writer, &sk_solve_dot, residual, product, 0, "R T8");
-    sk_write_scalar(writer, sk_solve_cg_beta, cg_share * tolerance, "beta = sum / rz, rz = sum");
+    sk_write_scalar(writer, sk_solve_cg_beta, cg_share * params->tolerance, "beta = sum / rz, rz = sum");
     sk_write_cell_sum(writer, direction, product, 1, SK_CELL_BETA, direction, "T8 + beta T7");
     sk_write_end(writer, repeat);
 }
@@ -121,8 +153,8 @@ static void write_newton(sk_writer *writer, const backward_euler_params *params,
     sk_write_dot(writer, &sk_solve_norm, residual, SK_X, 0, "R w R");
     sk_write_scalar(writer, sk_solve_judge, params->tolerance, "solved?");
     size_t once = sk_write_until(writer, 1, SK_CELL_SOLVED, "unless solved");
-    write_linearise(writer, h);
-    write_conjugate_gradients(writer, h, params->tolerance, (size_t)params->iterations);
+    write_linearise(writer, params, h);
+    write_conjugate_gradients(writer, params, h);
     sk_write_sum(writer, (sk_vector)SK_GUESS, 1, SK_V, 0, SK_NONE);
     write_line_search(writer, h);
     sk_write_end(writer, once);

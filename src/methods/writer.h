@@ -25,6 +25,7 @@ typedef struct sk_rules {
         sk_limit **data;
         size_t count, capacity;
     } limits;
+    const char *sparse_solver; /* the name of the world's; NULL: it has none */
 } sk_rules;
 
 typedef struct sk_writer {

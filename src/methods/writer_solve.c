@@ -50,23 +50,29 @@ void sk_write_scalar(sk_writer *writer, sk_row_kernel *kernel, double a, const c
                                 .end = 1});
 }
 
-static void add_stiffness(sk_writer *writer, sk_row_kind kind, sk_vector dst, sk_vector second, double a, double b) {
+static bool is_elastic(const sk_batch *batch) {
+    return *batch->enabled && batch->count && ((const sk_material *)batch->params)->stiffness < SK_UNBOUNDED;
+}
+
+static void add_batches(sk_writer *writer, sk_row_kind kind, const sk_kernels *(*kernels_of)(const sk_batch *batch),
+                        sk_vector dst, sk_vector second, double a, double b) {
     for (size_t i = 0; i < writer->rules->batches.count; i++) {
         const sk_batch *batch = writer->rules->batches.data[i];
-        const sk_constraint_type *type = batch->type;
-        const sk_material *material = batch->params;
-        if (!*batch->enabled || !batch->count || material->stiffness >= SK_UNBOUNDED) continue;
-        sk_add_row(writer,
-                   (sk_row){.kind = kind,
-                            .order = SK_ORDERED, // elements that share a particle add to it in their order
-                            .kernel = (kind == SK_ROW_APPLY ? &type->apply : &type->diagonal)->version[writer->isa],
-                            .dst = dst,
-                            .source = {SK_X, second, SK_NONE},
-                            .coefficient = {a, b},
-                            .rule = batch,
-                            .label = batch->label,
-                            .end = batch->count});
+        sk_row_kernel *kernel = kernels_of(batch)->version[writer->isa];
+        if (!is_elastic(batch) || !kernel) continue;
+        sk_add_row(writer, (sk_row){.kind = kind,
+                                    .order = SK_ORDERED, // elements that share a particle add to it in their order
+                                    .kernel = kernel,
+                                    .dst = dst,
+                                    .source = {SK_X, second, SK_NONE},
+                                    .coefficient = {a, b},
+                                    .rule = batch,
+                                    .label = batch->label,
+                                    .end = batch->count});
     }
+}
+
+static void add_forces(sk_writer *writer, sk_row_kind kind, sk_vector dst, sk_vector second, double a, double b) {
     for (size_t i = 0; i < writer->rules->forces.count; i++) {
         const sk_force *force = writer->rules->forces.data[i];
         const sk_kernels *kernels = kind == SK_ROW_APPLY ? &force->type->apply : &force->type->diagonal;
@@ -83,12 +89,48 @@ static void add_stiffness(sk_writer *writer, sk_row_kind kind, sk_vector dst, sk
     }
 }
 
+static const sk_kernels *apply_of(const sk_batch *batch) {
+    return &batch->type->apply;
+}
+static const sk_kernels *diagonal_of(const sk_batch *batch) {
+    return &batch->type->diagonal;
+}
+static const sk_kernels *blocks_of(const sk_batch *batch) {
+    return &batch->type->blocks;
+}
+
 void sk_write_apply(sk_writer *writer, sk_vector dst, sk_vector p, double a, double b) {
-    add_stiffness(writer, SK_ROW_APPLY, dst, p, a, b);
+    add_batches(writer, SK_ROW_APPLY, apply_of, dst, p, a, b);
+    add_forces(writer, SK_ROW_APPLY, dst, p, a, b);
 }
 
 void sk_write_diagonal(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b) {
-    add_stiffness(writer, SK_ROW_LINEARISE, diagonal, off, a, b);
+    add_batches(writer, SK_ROW_LINEARISE, diagonal_of, diagonal, off, a, b);
+}
+
+void sk_write_diagonal_of_forces(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b) {
+    add_forces(writer, SK_ROW_LINEARISE, diagonal, off, a, b);
+}
+
+static void add_call(sk_writer *writer, sk_row_kernel *kernel, sk_vector dst, sk_vector p, sk_vector q,
+                     const char *label) {
+    sk_add_row(writer, (sk_row){.kind = SK_ROW_CALL,
+                                .order = SK_ORDERED,
+                                .kernel = kernel,
+                                .dst = dst,
+                                .source = {p, q, SK_NONE},
+                                .label = label,
+                                .end = writer->particle_count});
+}
+
+void sk_write_factor(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b) {
+    add_call(writer, sk_matrix_clear, SK_NONE, diagonal, off, "A: particles");
+    add_batches(writer, SK_ROW_LINEARISE, blocks_of, SK_NONE, SK_NONE, a, b);
+    add_call(writer, sk_matrix_factor, SK_NONE, (sk_vector)SK_FILTER0, (sk_vector)SK_FILTER1, "L L^T of S A S + 1 - S");
+}
+
+void sk_write_factor_solve(sk_writer *writer, sk_vector dst, sk_vector p) {
+    add_call(writer, sk_matrix_solve, dst, p, SK_NONE, "(L L^T)^-1");
 }
 
 void sk_write_resistance(sk_writer *writer, sk_vector dst, double a) {

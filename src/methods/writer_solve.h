@@ -3,6 +3,7 @@
 #define SK_METHODS_WRITER_SOLVE_H
 
 #include "methods/writer.h"
+#include "plan/matrix.h"
 #include "plan/solve.h"
 
 /* Opens a repeat of at most `times` turns that ends when the cell is not 0; sk_write_end closes it. */
@@ -20,8 +21,13 @@ void sk_write_scalar(sk_writer *writer, sk_row_kernel *kernel, double a, const c
 
 /* dst += (a k + b c) p, over every batch: k stiffness and c damping of its springs as they lie at X. */
 void sk_write_apply(sk_writer *writer, sk_vector dst, sk_vector p, double a, double b);
-/* The same matrix's diagonal blocks, added to two vectors. */
+/* The same matrix's diagonal blocks, added to two vectors: those of batches, and those of forces. */
 void sk_write_diagonal(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b);
+void sk_write_diagonal_of_forces(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b);
+/* The whole of it, and its factor: what particles have by themselves lies in the two vectors. */
+void sk_write_factor(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b);
+/* dst = the matrix^-1 p, where there is a factor. */
+void sk_write_factor_solve(sk_writer *writer, sk_vector dst, sk_vector p);
 /* dst += a times what the fields' forces lose with velocity. */
 void sk_write_resistance(sk_writer *writer, sk_vector dst, double a);
 /* S, friction, and V as contact holds it: after F is known at the start of a substep. */

@@ -63,6 +63,7 @@ typedef enum sk_row_kind {
     SK_ROW_CONTACT_FILTER,
     SK_ROW_DOT,
     SK_ROW_SCALAR,
+    SK_ROW_CALL, /* what is no loop over elements: a solver from outside */
     SK_ROW_REPEAT,
     SK_ROW_KIND_COUNT
 } sk_row_kind;
@@ -93,10 +94,11 @@ typedef struct sk_run {
     sk_grid *grid;
     sk_cells *cells;
     sk_allocator *allocator;
-    double time;    /* at the end of the present substep, s */
-    double *cell;   /* what rows of a solve hand to each other (plan/solve.h) */
-    bool last_turn; /* of the innermost repeat */
-    bool no_memory; /* a growing list could not grow: the step fails and says so */
+    double time;              /* at the end of the present substep, s */
+    double *cell;             /* what rows of a solve hand to each other (plan/solve.h) */
+    struct sk_matrix *matrix; /* of a solve with a factor (plan/matrix.h), else NULL */
+    bool last_turn;           /* of the innermost repeat */
+    bool no_memory;           /* a growing list could not grow: the step fails and says so */
 } sk_run;
 
 typedef struct sk_row sk_row;

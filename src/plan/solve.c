@@ -224,7 +224,11 @@ void sk_solve_cg_start(sk_run *run, const sk_row *row, size_t begin, size_t end)
     (void)row, (void)begin, (void)end;
     double *cell = run->cell;
     cell[SK_CELL_RZ] = sk_solve_sum(run);
-    if (cell[SK_CELL_TURN] == 1) cell[SK_CELL_RZ_START] = cell[SK_CELL_RZ];
+    // what the first turn has to show is comparable in its own norm alone
+    if (cell[SK_CELL_TURN] == 1 || cell[SK_CELL_IN_FACTOR] != cell[SK_CELL_FACTORED]) {
+        cell[SK_CELL_RZ_START] = cell[SK_CELL_RZ];
+        cell[SK_CELL_IN_FACTOR] = cell[SK_CELL_FACTORED];
+    }
     cell[SK_CELL_SLOPE] = 0;
     cell[SK_CELL_SHARE] = 1;
     if (!(cell[SK_CELL_RZ] > 0)) cell[SK_CELL_CG_DONE] = 1;

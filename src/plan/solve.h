@@ -34,21 +34,25 @@ typedef enum sk_cell {
     SK_CELL_SOLVED,
     SK_CELL_CG_DONE,
     SK_CELL_LINE_DONE,
-    SK_CELL_START,    /* R w R when the substep began */
-    SK_CELL_PRESENT,  /* the same now */
-    SK_CELL_ROUNDING, /* and what the rounding of positions makes of it */
-    SK_CELL_TURN,     /* of Newton's method, from 1 */
-    SK_CELL_RZ,       /* of conjugate gradients: the residual in the preconditioner's norm, */
-    SK_CELL_RZ_START, /* the same in the first turn */
-    SK_CELL_ALPHA,    /* the step along the direction, */
-    SK_CELL_BETA,     /* and what is kept of the direction */
-    SK_CELL_SHARE,    /* of the change that the line search tries */
-    SK_CELL_SLOPE,    /* R times the change, before it */
+    SK_CELL_START,     /* R w R when the substep began */
+    SK_CELL_PRESENT,   /* the same now */
+    SK_CELL_ROUNDING,  /* and what the rounding of positions makes of it */
+    SK_CELL_TURN,      /* of Newton's method, from 1 */
+    SK_CELL_RZ,        /* of conjugate gradients: the residual in the preconditioner's norm, */
+    SK_CELL_RZ_START,  /* the same in the first turn */
+    SK_CELL_ALPHA,     /* the step along the direction, */
+    SK_CELL_BETA,      /* and what is kept of the direction */
+    SK_CELL_SHARE,     /* of the change that the line search tries */
+    SK_CELL_SLOPE,     /* R times the change, before it */
+    SK_CELL_FACTORED,  /* there is a factor of the whole matrix */
+    SK_CELL_IN_FACTOR, /* the first turn's residual was measured in the factor's norm */
     /* a step's account */
     SK_CELL_NEWTON_TURNS,
     SK_CELL_CG_TURNS,
     SK_CELL_WORST,    /* the largest residual that was left, as a share of its start */
     SK_CELL_UNSOLVED, /* substeps that came neither to the tolerance nor to rounding */
+    SK_CELL_FACTORS,  /* factorisations, */
+    SK_CELL_FAILURES, /* and those that failed, or whose solves did */
     SK_CELL_COUNT
 } sk_cell;
 

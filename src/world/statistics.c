@@ -94,6 +94,8 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     statistics->unsolved = (size_t)world->cell[SK_CELL_UNSOLVED];
     statistics->solver_turns = (size_t)world->cell[SK_CELL_NEWTON_TURNS];
     statistics->solver_iterations = (size_t)world->cell[SK_CELL_CG_TURNS];
+    statistics->solver_factors = (size_t)world->cell[SK_CELL_FACTORS];
+    statistics->solver_failures = (size_t)world->cell[SK_CELL_FAILURES];
     statistics->particles = all->count;
     status = sk_world_arrange(world, error); // the slots of new rules may not be known yet
     if (status) return status;

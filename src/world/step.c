@@ -22,6 +22,7 @@ skein_status sk_world_arrange(skein_world *world, skein_error *error) {
             world->slots_of_triangles.corner[t][k] = world->particles.slot_of[world->triangles.corner[t][k]];
     world->slots_stale = false;
     world->plan_stale = true;
+    world->matrix.shaped = false;
     return SKEIN_OK;
 }
 
@@ -64,6 +65,49 @@ static bool make_cells(skein_world *world) {
                                 : sk_grid_reserve(&world->grid, &world->allocator, count);
     }
     return good;
+}
+
+/* Makes the shape of the matrix where a row calls for it, and shows it to the solver. It has the blocks of all batches,
+ * also of those that are not enabled: analysing costs more than some zeros. */
+static skein_status make_matrix(skein_world *world, skein_error *error) {
+    sk_allocator *allocator = &world->allocator;
+    sk_matrix *matrix = &world->matrix;
+    size_t count = world->rules.batches.count, part_count = 0;
+    bool wanted = false;
+    for (size_t r = 0; r < world->plan.count; r++) wanted |= world->plan.data[r].kind == SK_ROW_CALL;
+    if (!wanted) sk_matrix_release(matrix, allocator);
+    if (!wanted || matrix->shaped) return SKEIN_OK;
+    sk_matrix_part *parts = sk_allocate(allocator, (count + 1) * sizeof *parts);
+    bool good = parts != NULL;
+    for (size_t i = 0; i < count && good; i++) {
+        sk_batch *batch = world->rules.batches.data[i];
+        if (!batch->type->blocks.version[world->isa]) continue;
+        sk_release(allocator, batch->pair);
+        batch->pair =
+            sk_allocate(allocator, batch->count * batch->arity * (batch->arity - 1) / 2 * sizeof *batch->pair);
+        good = batch->pair != NULL;
+        parts[part_count++] = (sk_matrix_part){batch->particle, batch->count, batch->arity, batch->pair};
+    }
+    good = good && sk_matrix_shape(matrix, allocator, world->particles.count, parts, part_count);
+    sk_release(allocator, parts);
+    if (!good) return sk_fail_memory(error, "the solve's matrix");
+    skein_sparse_matrix pattern = sk_matrix_view(matrix, false);
+    skein_status status = matrix->solver.analyse(matrix->solver.user, &pattern, error);
+    matrix->shaped = !status;
+    return status;
+}
+
+skein_status skein_sparse_solver_set(skein_world *world, const skein_sparse_solver *solver) {
+    if (solver && (!solver->analyse || !solver->factor || !solver->solve))
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "solver",
+                       "a sparse solver needs analyse, factor and solve");
+    sk_matrix *matrix = &world->matrix;
+    if (matrix->solver.release) matrix->solver.release(matrix->solver.user);
+    matrix->solver = solver ? *solver : (skein_sparse_solver){.name = NULL};
+    matrix->shaped = false;
+    world->rules.sparse_solver = solver ? solver->name ? solver->name : "a solver" : NULL;
+    world->plan_stale = true;
+    return SKEIN_OK;
 }
 
 /* The particles of the body of that name, or all where there is no name. False when there is no such body. */
@@ -141,6 +185,8 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     if (!world->device) sk_write_unpack(&writer);
     if (writer.no_memory || (!world->device && (!make_temporaries(world) || !make_cells(world))))
         return sk_fail_memory(error, "the plan");
+    status = make_matrix(world, error);
+    if (status) return status;
     if (world->device && (status = world->device->prepare(world->device, world, error))) return status;
     world->plan_dt = dt;
     world->plan_stale = false;
@@ -158,6 +204,7 @@ sk_run sk_world_run_context(skein_world *world) {
         .allocator = &world->allocator,
         .time = world->time,
         .cell = world->cell,
+        .matrix = &world->matrix,
     };
     memcpy(run.vector, world->particles.vector, sizeof run.vector);
     return run;

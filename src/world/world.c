@@ -79,6 +79,8 @@ void skein_world_destroy(skein_world *world) {
     sk_release(allocator, world->triangles.corner);
     sk_release(allocator, world->slots_of_triangles.corner);
     sk_release(allocator, world->plan.data);
+    skein_sparse_solver_set(world, NULL);
+    sk_matrix_release(&world->matrix, allocator);
     sk_grid_release(&world->grid, allocator);
     sk_cells_release(&world->cells, allocator);
     sk_particles_release(&world->particles, allocator);

@@ -13,6 +13,7 @@
 #include "formula/parameters.h"
 #include "methods/method.h"
 #include "particles/particles.h"
+#include "plan/matrix.h"
 #include "plan/solve.h"
 
 typedef struct sk_body sk_body;
@@ -116,6 +117,7 @@ struct skein_world {
     uint64_t steps, substeps;
     double first_energy;        /* J, when the first step began */
     double cell[SK_CELL_COUNT]; /* of the last step */
+    sk_matrix matrix;           /* where a plan factors one, and the solver */
     sk_device *device;          /* NULL: the processor */
     struct {
         const skein_compiled **data;
