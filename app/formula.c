@@ -212,7 +212,7 @@ static int formula(int argc, char **argv) {
         [PARAM] = {"--param", "NAME=X", "a parameter's name and number; may be repeated", true, NULL, 0},
         [TIME] = {"--time", "SECONDS", "what t is; else 0", false, NULL, 0},
         [GRAD] = {"--grad", NULL, "print the derivatives, too", false, NULL, 0},
-        [HESSIAN] = {"--hessian", NULL, "print the second derivatives, too", false, NULL, 0},
+        [HESSIAN] = {"--hessian", NULL, "print the second derivatives, too; or emit them, in C", false, NULL, 0},
         [GRAPH] = {"--graph", NULL, "print the operations, for the value and its gradient", false, NULL, 0},
         [EMIT] = {"--emit", "c|function|glsl|kernel",
                   "print it as C to compile and register (--hessian: as an energy), or as a function", false, NULL, 0},

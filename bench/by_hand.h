@@ -34,6 +34,8 @@ by_hand_function by_hand_second_neo_hookean, by_hand_second_stvk;
 
 /* Likewise, but what `skein formula --emit kernel` writes (emitted_wide.c). */
 by_hand_function emitted_distance, emitted_dihedral, emitted_volume, emitted_neo_hookean, emitted_stvk;
+/* And what `skein formula --emit c --hessian` writes (emitted_second.c). */
+by_hand_function emitted_second_neo_hookean, emitted_second_stvk;
 
 /* A textbook's class of dual numbers in C++ (dual.cpp), -O3 -march=native, one element after the other. */
 by_hand_function by_dual_distance, by_dual_dihedral, by_dual_volume, by_dual_neo_hookean, by_dual_stvk;

@@ -16,7 +16,7 @@
  * emitter's C; by dual numbers and by ADOL-C (NULL: not in this build); and second derivatives by hand, sixteen at a
  * time (NULL: there are none). */
 typedef struct bench_functions {
-    by_hand_function *by_hand, *by_hand_wide, *emitted, *by_dual, *by_adolc, *second;
+    by_hand_function *by_hand, *by_hand_wide, *emitted, *by_dual, *by_adolc, *second, *emitted_second;
 } bench_functions;
 extern const bench_functions bench_functions_of[BENCH_FORMULAS];
 

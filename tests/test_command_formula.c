@@ -85,6 +85,10 @@ static void it_writes_languages(void **state) {
     assert_contains(o.out, "#define VELOCITY(particle, axis)");
     assert_contains(o.out, "FORMULA(formula) {\n");
     outcome_free(&o);
+    o = SKEIN("formula", "length(p0-p1) - L", "--param", "L=1", "--emit", "function", "--hessian");
+    assert_status(o, 0);
+    assert_contains(o.out, "HESSIAN(5, 5, ");
+    outcome_free(&o);
     o = SKEIN("formula", "length(p0-p1) - L", "--param", "L=1", "--emit", "glsl");
     assert_status(o, 0);
     assert_contains(o.out, "float formula(vec3 p0, vec3 p1, float q0, float t, out vec3 by_p0, out vec3 by_p1) {\n");

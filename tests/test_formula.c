@@ -453,22 +453,23 @@ static void emitted_c_compiles_and_agrees(void **state) {
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     for (size_t c = 0; c < COUNT(smooth); c++) {
-        skein_formula *f = make((skein_formula_desc){.text = smooth[c]});
+        skein_formula *f = make((skein_formula_desc){.text = smooth[c], .second = c % 2});
         fprintf(file, "#define formula formula_%zu\n", c);
         assert_int_equal(skein_formula_emit(f, SKEIN_FORMULA_C, append, file, NULL), SKEIN_OK);
         fprintf(file, "#undef formula\n#undef FORMULA\n#undef PARTICLES\n");
         skein_formula_destroy(f);
     }
     fprintf(file,
-            "#include <stdio.h>\nint main(void) {\n    double p[12], q[2] = {%.17g, %.17g}, v, g[12];\n"
+            "#include <stdio.h>\nint main(void) {\n    double p[12], q[2] = {%.17g, %.17g}, v, g[12], h[78];\n"
             "    for (int i = 0; i < 12; i++) p[i] = 0.3 * i - 1.7 + 0.05 * (i %% 5);\n",
             parameters[0], parameters[1]);
     for (size_t c = 0; c < COUNT(smooth); c++)
-        fprintf(
-            file,
-            "    for (int i = 0; i < 12; i++) g[i] = 0;\n    formula_%zu(p, 0, q, 0.75, &v, g);\n    printf(\"%%.17g\", v);\n"
-            "    for (int i = 0; i < 12; i++) printf(\" %%.17g\", g[i]);\n    printf(\"\\n\");\n",
-            c);
+        fprintf(file,
+                "    for (int i = 0; i < 12; i++) g[i] = 0;\n    for (int i = 0; i < 78; i++) h[i] = 0;\n"
+                "    formula_%zu(p, 0, q, 0.75, &v, g%s);\n    printf(\"%%.17g\", v);\n"
+                "    for (int i = 0; i < 12; i++) printf(\" %%.17g\", g[i]);\n"
+                "    for (int i = 0; i < 78; i++) printf(\" %%.17g\", h[i]);\n    printf(\"\\n\");\n",
+                c, c % 2 ? ", h" : "");
     fprintf(file, "}\n");
     fclose(file);
     snprintf(
@@ -481,13 +482,20 @@ static void emitted_c_compiles_and_agrees(void **state) {
     double p[12];
     for (int i = 0; i < 12; i++) p[i] = 0.3 * i - 1.7 + 0.05 * (i % 5);
     for (size_t c = 0; c < COUNT(smooth); c++) {
-        skein_formula *f = make((skein_formula_desc){.text = smooth[c]});
+        skein_formula *f = make((skein_formula_desc){.text = smooth[c], .second = c % 2});
         skein_formula_value v = value_of(f, p, NULL, 0.75);
-        for (int i = 0; i < 13; i++) {
-            double is, ought = i ? v.by_position[0][i - 1] : v.number[0];
+        double ought[13 + 78] = {v.number[0]}, hessian[144];
+        int size = 3 * skein_formula_about(f).particles;
+        memcpy(ought + 1, v.by_position[0], 12 * sizeof *ought);
+        const skein_formula_point point = {p, NULL, NULL, parameters, 0.75};
+        if (c % 2) assert_int_equal(skein_formula_hessian(f, &point, hessian, NULL), SKEIN_OK);
+        for (int i = 0; i < size && c % 2; i++)
+            for (int j = 0; j <= i; j++) ought[13 + i * (i + 1) / 2 + j] = hessian[i * size + j];
+        for (int i = 0; i < 13 + 78; i++) {
+            double is;
             assert_int_equal(fscanf(file, "%lf", &is), 1);
-            if (!(fabs(is - ought) <= 1e-12 * (1 + fabs(ought))))
-                fail_msg("%s: output %d is %.17g, expected %.17g", smooth[c], i, is, ought);
+            if (!(fabs(is - ought[i]) <= 1e-12 * (1 + fabs(ought[i]))))
+                fail_msg("%s: output %d is %.17g, expected %.17g", smooth[c], i, is, ought[i]);
         }
         skein_formula_destroy(f);
     }

@@ -107,7 +107,7 @@ typedef enum skein_formula_language {
     SKEIN_FORMULA_GRAPH   /* the operations, a line each */
 } skein_formula_language;
 
-/* Writes the value and its gradient as text, in pieces. */
+/* Writes the value and its gradient as text, in pieces; in C also the second derivatives, if they were asked for. */
 skein_status skein_formula_emit(const skein_formula *formula, skein_formula_language language,
                                 void (*write)(void *user, const char *text), void *user, skein_error *error);
 

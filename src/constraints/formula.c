@@ -2,7 +2,7 @@
  *
  * A constraint C wants to be 0, or, written `a >= b`, at least 0. An energy E is what its forces come from; under
  * position methods it is the constraint C = sqrt(2 E), without ever dividing by the root: where E and its gradient are
- * 0, so is the correction. Both run on a tape: up to eight groups of sixteen elements that share no particle are one
+ * 0, so is the correction. Both run on a tape: up to four groups of sixteen elements that share no particle are one
  * block, gathered, run through the tape, solved and put back group by group, in their order. */
 #ifdef SK_ISA
 
@@ -10,8 +10,8 @@
 
 /* Groups [first, first + count) of a sweep, or sixteen elements of a batch, on their way. */
 typedef struct SK_ISA(block) {
-    sk_wide registers[SK_TAPE_MEMORY / sizeof(sk_wide)];
-    sk_wide4 x[SK_BLOCK_GROUPS][SK_MOST_ARITY];
+    sk_wide registers[SK_TAPE_MEMORY / sizeof(sk_wide)]; /* positions stay where the tape has them */
+    sk_wide w[SK_FORMULA_GROUPS][SK_MOST_ARITY];
     sk_tape_verdict verdict;
 } SK_ISA(block);
 
@@ -36,15 +36,16 @@ static void SK_ISA(begin)(SK_ISA(block) * b, const sk_batch *batch, const sk_tap
     sk_tape_kernels_of[SK_ISA(sk_version)].begin(tape, &input, b->registers);
 }
 
-/* Puts sixteen elements into the tape's registers, as number i of a block. Their rest values are `rest`, `stride` reals
- * from one to the next. */
+/* Puts sixteen elements into the tape's registers, as number i of a block: the particles that it reads, and rest
+ * values, which are `stride` reals from one to the next. */
 SK_INLINE void SK_ISA(fill)(SK_ISA(block) * b, const places *to, size_t i, size_t arity, size_t rests, size_t wides,
-                            const real *rest, size_t stride) {
+                            const sk_vec4 *x, size_t packed, const uint32_t *slots, const real *rest, size_t stride) {
     UNROLLED
     for (size_t p = 0; p < arity; p++) {
         if (to->position[p] == NOWHERE) continue;
         sk_wide *at = b->registers + to->position[p] * wides + i;
-        at[0] = b->x[i][p].x, at[wides] = b->x[i][p].y, at[2 * wides] = b->x[i][p].z;
+        sk_wide4 q = SK_ISA(gather)(x, packed, slots + p * SK_LANES);
+        at[0] = q.x, at[wides] = q.y, at[2 * wides] = q.z, b->w[i][p] = q.w;
     }
     for (size_t r = 0; r < rests; r++)
         if (to->rest[r] != NOWHERE) memcpy(b->registers + to->rest[r] * wides + i, rest + r * stride, sizeof(sk_wide));
@@ -57,19 +58,30 @@ typedef struct SK_ISA(answer) {
     sk_mask active; /* finite, and not on the free side */
 } SK_ISA(answer);
 
-SK_INLINE void SK_ISA(take_answer)(SK_ISA(answer) * a, const SK_ISA(block) * b, const sk_constraint_formula *made,
-                                   size_t arity, size_t i) {
-    const sk_tape *tape = &made->tape;
+SK_INLINE void SK_ISA(take_answer)(SK_ISA(answer) * a, const SK_ISA(block) * b, const sk_tape *tape, size_t arity,
+                                   size_t i, bool one_sided) {
     const uint16_t *output = tape->output;
-    sk_mask finite = b->verdict.finite[i];
-#define OUTPUT(k_) SK_ISA(sk_keep)(finite, b->registers[output[k_] * tape->wides + i])
-    a->value = OUTPUT(0);
+    const sk_wide *registers = b->registers + i;
+#define OUTPUT(k_) registers[output[k_] * tape->wides]
+    sk_wide sum = a->value = OUTPUT(0);
     UNROLLED
-    for (size_t p = 0; p < arity; p++)
-        a->gradient[p] = (sk_wide3){OUTPUT(3 * p + 1), OUTPUT(3 * p + 2), OUTPUT(3 * p + 3)};
-    a->by_time = OUTPUT(3 * arity + 1);
+    for (size_t p = 0; p < arity; p++) {
+        sk_wide3 g = a->gradient[p] = (sk_wide3){OUTPUT(3 * p + 1), OUTPUT(3 * p + 2), OUTPUT(3 * p + 3)};
+        sum += g.x, sum += g.y, sum += g.z;
+    }
+    sum += a->by_time = OUTPUT(3 * arity + 1);
 #undef OUTPUT
-    a->active = made->one_sided ? finite & SK_ISA(sk_negative)(a->value) : finite;
+    // as tapes are judged, which may have been done
+    sk_mask finite = ~SK_ISA(sk_differ)(sum - sum, (sk_wide){0});
+    if (!tape->unjudged) finite &= b->verdict.finite[i];
+    a->active = one_sided ? finite & SK_ISA(sk_negative)(a->value) : finite;
+    if (!SK_ISA(sk_any)(~finite)) return;
+    a->value = SK_ISA(sk_keep)(finite, a->value), a->by_time = SK_ISA(sk_keep)(finite, a->by_time);
+    for (size_t p = 0; p < arity; p++) {
+        sk_wide3 g = a->gradient[p];
+        a->gradient[p] =
+            (sk_wide3){SK_ISA(sk_keep)(finite, g.x), SK_ISA(sk_keep)(finite, g.y), SK_ISA(sk_keep)(finite, g.z)};
+    }
 }
 
 SK_INLINE sk_wide SK_ISA(sum_along)(const SK_ISA(answer) * a, const sk_wide3 *u, size_t arity) {
@@ -87,17 +99,23 @@ SK_INLINE sk_wide SK_ISA(pull)(const SK_ISA(answer) * a, const sk_wide3 *v, size
     return SK_ISA(sk_keep)(a->active, stiffness * (-a->value - damping_time * rate));
 }
 
-/* Of an energy C^2 = 2 E takes part in place of C = sqrt(2 E), whose gradient has no value where E is 0. */
-SK_INLINE sk_wide SK_ISA(project)(const SK_ISA(answer) * a, const sk_wide *w, size_t arity, bool is_energy,
-                                  sk_wide soft) {
+/* The sum of w |gradient|^2. */
+SK_INLINE sk_wide SK_ISA(weight)(const SK_ISA(answer) * a, const sk_wide *w, size_t arity) {
     sk_wide weight = w[0] * SK_ISA(sk_dot_wide)(a->gradient[0], a->gradient[0]);
     UNROLLED
     for (size_t p = 1; p < arity; p++) weight += w[p] * SK_ISA(sk_dot_wide)(a->gradient[p], a->gradient[p]);
-    sk_wide square = SK_ISA(sk_keep)(SK_ISA(sk_positive)(a->value), 2 * a->value);
-    sk_wide above = is_energy ? -square : -a->value;
-    // an infinite compliance times 0 is nothing
-    sk_wide held = SK_ISA(sk_keep)(SK_ISA(sk_positive)(square), soft * square);
-    sk_wide below = is_energy ? weight + held : weight + soft;
+    return weight;
+}
+
+/* Of an energy C^2 = 2 E takes part in place of C = sqrt(2 E), whose gradient has no value where E is 0. */
+SK_INLINE sk_wide SK_ISA(project)(const SK_ISA(answer) * a, const sk_wide *w, size_t arity, bool is_energy,
+                                  sk_wide soft) {
+    sk_wide weight = SK_ISA(weight)(a, w, arity), above = -a->value, below = weight + soft;
+    if (is_energy) {
+        sk_wide square = SK_ISA(sk_keep)(SK_ISA(sk_positive)(a->value), 2 * a->value);
+        // an infinite compliance times 0 is nothing
+        above = -square, below = weight + SK_ISA(sk_keep)(SK_ISA(sk_positive)(square), soft * square);
+    }
     return SK_ISA(sk_keep)(a->active & SK_ISA(sk_positive)(below), above / below);
 }
 
@@ -105,9 +123,7 @@ SK_INLINE sk_wide SK_ISA(project)(const SK_ISA(answer) * a, const sk_wide *w, si
 SK_INLINE sk_wide SK_ISA(project_damped)(const SK_ISA(answer) * a, const sk_wide *w, const sk_wide3 *moved,
                                          size_t arity, const sk_constraint_formula *made, sk_wide soft, real gamma,
                                          real h, sk_wide *multiplier) {
-    sk_wide weight = w[0] * SK_ISA(sk_dot_wide)(a->gradient[0], a->gradient[0]);
-    UNROLLED
-    for (size_t p = 1; p < arity; p++) weight += w[p] * SK_ISA(sk_dot_wide)(a->gradient[p], a->gradient[p]);
+    sk_wide weight = SK_ISA(weight)(a, w, arity);
     sk_wide held = SK_ISA(sk_keep)(SK_ISA(sk_differ)(*multiplier, (sk_wide){0}), soft * *multiplier), change, s;
     if (made->is_energy) {
         sk_wide square = SK_ISA(sk_keep)(SK_ISA(sk_positive)(a->value), 2 * a->value);
@@ -139,26 +155,29 @@ SK_INLINE void SK_ISA(put_back)(sk_vec4 *vector, size_t packed, const uint32_t *
     for (int l = 0; l < SK_LANES; l++) sk_store_at(vector, packed, slot[l], sk_v3(old.x[l], old.y[l], old.z[l]));
 }
 
-/* Group `i` of a block whose tape has run. */
+/* Group `i` of a block whose tape has run. Particles that the formula does not read stay where they are. */
 SK_INLINE void SK_ISA(settle_group)(sk_run *run, const sk_row *row, const sk_sweep *sweep, const SK_ISA(block) * b,
-                                    const sk_formula_factors *f, size_t arity, size_t i, size_t group, size_t packed,
-                                    sk_row_kind kind, bool damped) {
+                                    const sk_formula_factors *f, const places *to, size_t arity, size_t i, size_t group,
+                                    size_t packed, sk_row_kind kind, bool damped) {
     const sk_batch *batch = sweep->batch;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
-    size_t lane = sweep->first_lane + group * SK_LANES;
+    size_t lane = sweep->first_lane + group * SK_LANES, wides = made->tape.wides;
     const uint32_t *slots = sweep->slots + group * arity * SK_LANES;
     SK_ISA(answer) a;
     sk_wide w[SK_MOST_ARITY], s;
     sk_wide3 other[SK_MOST_ARITY];
-    SK_ISA(take_answer)(&a, b, made, arity, i);
+    SK_ISA(take_answer)(&a, b, &made->tape, arity, i, made->one_sided);
     UNROLLED
     for (size_t p = 0; p < arity; p++) {
-        w[p] = b->x[i][p].w;
+        w[p] = (sk_wide){0};
         other[p] = (sk_wide3){{0}, {0}, {0}}; // what no damping is multiplied by must be a number
+        if (to->position[p] == NOWHERE) continue;
+        const sk_wide *x = b->registers + to->position[p] * wides + i;
+        w[p] = b->w[i][p];
         if (!damped) continue;
         sk_wide4 o = SK_ISA(gather)(run->vector[row->source[1]], packed, slots + p * SK_LANES);
         other[p] = (sk_wide3){o.x, o.y, o.z};
-        if (kind == SK_ROW_PROJECT) other[p] = (sk_wide3){b->x[i][p].x - o.x, b->x[i][p].y - o.y, b->x[i][p].z - o.z};
+        if (kind == SK_ROW_PROJECT) other[p] = (sk_wide3){x[0] - o.x, x[wides] - o.y, x[2 * wides] - o.z};
     }
     sk_vec4 *dst = run->vector[row->dst];
     if (kind == SK_ROW_FORCE) {
@@ -172,8 +191,12 @@ SK_INLINE void SK_ISA(settle_group)(sk_run *run, const sk_row *row, const sk_swe
     }
     UNROLLED
     for (size_t p = 0; p < arity; p++) {
+        if (to->position[p] == NOWHERE) continue;
+        const sk_wide *x = b->registers + to->position[p] * wides + i;
         const uint32_t *slot = slots + p * SK_LANES;
-        sk_wide4 old = kind == SK_ROW_FORCE ? SK_ISA(gather)(dst, packed, slot) : b->x[i][p];
+        sk_wide4 old;
+        if (kind == SK_ROW_FORCE) old = SK_ISA(gather)(dst, packed, slot);
+        else old = (sk_wide4){x[0], x[wides], x[2 * wides], w[p]};
         SK_ISA(put_back)(dst, packed, slot, old, kind == SK_ROW_FORCE ? s : s * w[p], a.gradient[p]);
     }
 }
@@ -196,7 +219,7 @@ SK_INLINE void SK_ISA(walk)(sk_run *run, const sk_row *row, size_t begin, size_t
     if (sweep->slab_start) begin = sweep->slab_start[begin], end = sweep->slab_start[end];
     SK_ISA(begin)(&b, batch, tape, run->time - row->before);
     for (size_t first = begin, count; first < end; first += count) {
-        size_t packed[SK_BLOCK_GROUPS];
+        size_t packed[SK_FORMULA_GROUPS];
         count = sweep->ahead[first] < tape->wides ? sweep->ahead[first] : tape->wides;
         if (count > end - first) count = end - first;
         // what is beyond repeats the last, and later whatever an earlier block left there: nobody reads it
@@ -206,16 +229,13 @@ SK_INLINE void SK_ISA(walk)(sk_run *run, const sk_row *row, size_t begin, size_t
             bool strips = false;
             for (size_t l = 0; l < arity * SK_LANES && row->packed; l++) strips |= slots[l] < row->packed;
             packed[i] = strips ? row->packed : 0;
-            UNROLLED
-            for (size_t p = 0; p < arity; p++)
-                b.x[i][p] = SK_ISA(gather)(run->vector[SK_X], packed[i], slots + p * SK_LANES);
             SK_ISA(fill)
-            (&b, &to, i, arity, batch->rest_count, tape->wides, batch->lane_rest + sweep->first_lane + group * SK_LANES,
-             batch->lane_count);
+            (&b, &to, i, arity, batch->rest_count, tape->wides, run->vector[SK_X], packed[i], slots,
+             batch->lane_rest + sweep->first_lane + group * SK_LANES, batch->lane_count);
         }
         sk_tape_kernels_of[SK_ISA(sk_version)].run(tape, b.registers, count, &b.verdict);
         for (size_t i = 0; i < count; i++)
-            SK_ISA(settle_group)(run, row, sweep, &b, &f, arity, i, first + i, packed[i], kind, damped);
+            SK_ISA(settle_group)(run, row, sweep, &b, &f, &to, arity, i, first + i, packed[i], kind, damped);
     }
 }
 
@@ -241,8 +261,8 @@ static void SK_ISA(project_damped_groups)(sk_run *run, const sk_row *row, size_t
 
 /* ---- implicit solves: elements, not groups ---- */
 
-/* Runs a tape that has begun, or what is compiled for it, on elements [begin, begin + count), at most sixteen; lanes
- * past them repeat the last. */
+/* Runs a tape of one wide that has begun, or what is compiled for it, on elements [begin, begin + count), at most
+ * sixteen; lanes past them repeat the last. */
 static void SK_ISA(run_elements)(SK_ISA(block) * b, const sk_batch *batch, const sk_tape *tape, bool compiled,
                                  double time, const sk_vec4 *x, size_t packed, size_t begin, size_t count) {
     uint32_t slot[SK_MOST_ARITY][SK_LANES];
@@ -253,21 +273,18 @@ static void SK_ISA(run_elements)(SK_ISA(block) * b, const sk_batch *batch, const
         for (size_t p = 0; p < batch->arity; p++) slot[p][l] = batch->slot[e * batch->arity + p];
         for (size_t r = 0; r < batch->rest_count; r++) rest[r][l] = batch->rest[r * batch->count + e];
     }
-    for (size_t p = 0; p < batch->arity; p++) b->x[0][p] = SK_ISA(gather)(x, packed, slot[p]);
     if (compiled) {
         const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
         real *outputs[3 * SK_MOST_ARITY * (3 * SK_MOST_ARITY + 1) / 2];
+        sk_wide4 at[SK_MOST_ARITY];
         sk_wide finite;
-        for (size_t k = 0; k < tape->outputs; k++) outputs[k] = (real *)(b->registers + tape->output[k] * tape->wides);
-        sk_compiled_evaluate(batch, time, tape == &made->hessian, (const real *)b->x[0], rest[0], outputs,
-                             (real *)&finite);
+        for (size_t p = 0; p < batch->arity; p++) at[p] = SK_ISA(gather)(x, packed, slot[p]);
+        for (size_t k = 0; k < tape->outputs; k++) outputs[k] = (real *)(b->registers + tape->output[k]);
+        sk_compiled_evaluate(batch, time, tape == &made->hessian, (const real *)at, rest[0], outputs, (real *)&finite);
         b->verdict.finite[0] = SK_ISA(sk_positive)(finite);
         return;
     }
-    for (size_t i = 0; i < tape->wides; i++) {
-        memcpy(b->x[i], b->x[0], sizeof b->x[0]);
-        SK_ISA(fill)(b, &to, i, batch->arity, batch->rest_count, tape->wides, rest[0], SK_LANES);
-    }
+    SK_ISA(fill)(b, &to, 0, batch->arity, batch->rest_count, tape->wides, x, packed, slot[0], rest[0], SK_LANES);
     sk_tape_kernels_of[SK_ISA(sk_version)].run(tape, b->registers, 1, &b->verdict);
 }
 
@@ -324,17 +341,17 @@ static void SK_ISA(make_definite)(SK_ISA(matrix) * m, size_t size) {
 static void SK_ISA(stiffness)(SK_ISA(block) * b, SK_ISA(matrix) * m, const sk_batch *batch, const sk_run *run,
                               const sk_row *row, size_t begin, size_t count) {
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
-    const sk_tape *tape = made->is_energy ? &made->hessian : &made->tape;
+    const sk_tape *tape = made->is_energy ? &made->hessian : &made->single;
     SK_ISA(begin)(b, batch, tape, run->time - row->before);
     SK_ISA(run_elements)
     (b, batch, tape, made->compiled, run->time - row->before, run->vector[SK_X], row->packed, begin, count);
     if (made->is_energy) {
         for (size_t k = 0; k < tape->outputs; k++)
-            m->entry[k] = SK_ISA(sk_keep)(b->verdict.finite[0], b->registers[tape->output[k] * tape->wides]);
+            m->entry[k] = SK_ISA(sk_keep)(b->verdict.finite[0], b->registers[tape->output[k]]);
         SK_ISA(make_definite)(m, 3 * batch->arity);
     } else {
         SK_ISA(answer) a;
-        SK_ISA(take_answer)(&a, b, made, batch->arity, 0);
+        SK_ISA(take_answer)(&a, b, tape, batch->arity, 0, made->one_sided);
         SK_ISA(square_gradient)(m, &a, batch->arity);
     }
     const sk_material *material = batch->params;
@@ -421,12 +438,12 @@ static size_t SK_ISA(energy)(const sk_batch *batch, double time, const sk_vec4 *
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
     size_t guarded = 0;
     SK_ISA(block) b;
-    SK_ISA(begin)(&b, batch, &made->tape, time);
+    SK_ISA(begin)(&b, batch, &made->single, time);
     for (size_t at = begin; at < end; at += SK_LANES) {
         size_t count = end - at < SK_LANES ? end - at : SK_LANES;
         SK_ISA(answer) a;
-        SK_ISA(run_elements)(&b, batch, &made->tape, false, time, x, 0, at, count); // a tape counts its guards
-        SK_ISA(take_answer)(&a, &b, made, batch->arity, 0);
+        SK_ISA(run_elements)(&b, batch, &made->single, false, time, x, 0, at, count); // a tape counts its guards
+        SK_ISA(take_answer)(&a, &b, &made->single, batch->arity, 0, made->one_sided);
         sk_mask odd = b.verdict.guarded[0] | ~b.verdict.finite[0];
         for (size_t l = 0; l < count; l++) {
             double c = (double)a.value[l];

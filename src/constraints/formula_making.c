@@ -22,11 +22,17 @@ static skein_status make_tapes(sk_constraint_formula *made, sk_allocator *alloca
     for (size_t i = 0; i < coordinates; i++) outputs[count++] = f->by_position[0][i];
     outputs[count++] = f->by_time[0];
     skein_status status = sk_tape_create(&made->tape, &f->graph, outputs, count, allocator, error);
+    if (made->tape.wides > SK_FORMULA_GROUPS) made->tape.wides = SK_FORMULA_GROUPS;
+    made->single = made->tape;
+    made->single.wides = 1;
+    made->tape.unjudged = true; // its walk does so
     if (status || !made->is_energy) return status;
     count = 0;
     for (size_t i = 0; i < coordinates; i++)
         for (size_t j = 0; j <= i; j++) outputs[count++] = f->hessian[i * coordinates + j];
-    return sk_tape_create(&made->hessian, &f->graph, outputs, count, allocator, error);
+    status = sk_tape_create(&made->hessian, &f->graph, outputs, count, allocator, error);
+    made->hessian.wides = 1;
+    return status;
 }
 
 /* A living constraint keeps its particles and its rest values, so a new text must do with them. */

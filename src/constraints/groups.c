@@ -8,11 +8,10 @@
 #include <string.h>
 
 enum {
-    GROUP_DISTANCE = 4, /* dependent groups stand so far apart where they can, to hide each other's latency, */
-    BLOCK_DISTANCE = SK_BLOCK_GROUPS, /* or so far, to make blocks */
-    MOST_PASSES = 8,                  /* sweeps that a batch is cut into */
-    LEAST_SLABS = 12,                 /* of a walk, */
-    LEAST_SHARE = 6                   /* and for each slab of its reach */
+    GROUP_DISTANCE = 4, /* dependent groups stand so far apart where they can: to hide latency, and to make blocks */
+    MOST_PASSES = 8,    /* sweeps that a batch is cut into */
+    LEAST_SLABS = 12,   /* of a walk, */
+    LEAST_SHARE = 6     /* and for each slab of its reach */
 };
 
 typedef struct dealer {
@@ -20,7 +19,7 @@ typedef struct dealer {
     sk_allocator *allocator;
     const sk_particles *particles;
     size_t *lane_of;
-    size_t arity, distance;
+    size_t arity;
 } dealer;
 
 typedef struct grouping {
@@ -57,7 +56,7 @@ static void deal(const dealer *d, grouping *g) {
         uint32_t after = 0;
         for (size_t i = 0; i < d->arity; i++)
             if (g->latest[slot[i]] > after) after = g->latest[slot[i]];
-        uint32_t group = first_open(g->next, after ? after - 1 + (uint32_t)d->distance : 0);
+        uint32_t group = first_open(g->next, after ? after - 1 + GROUP_DISTANCE : 0);
         g->group[e - g->first] = group;
         for (size_t i = 0; i < d->arity; i++) g->latest[slot[i]] = group + 1;
         if (++g->filled[group] == SK_LANES) g->next[group] = group + 1;
@@ -210,7 +209,7 @@ static bool add_pass(const dealer *d, size_t first, size_t last) {
     for (size_t e = first; e < last; e++) left += is_left(d, e);
     if (!left) return true;
     // in the worst case all elements share a particle: each has a group of its own, all far apart
-    size_t most = left * d->distance + d->distance + 1;
+    size_t most = left * GROUP_DISTANCE + GROUP_DISTANCE + 1;
     grouping g = {.first = first, .last = last};
     g.latest = sk_allocate(d->allocator, (d->particles->slot_count + SK_LANES) * sizeof *g.latest);
     g.next = sk_allocate(d->allocator, most * sizeof *g.next);
@@ -232,8 +231,7 @@ static bool add_pass(const dealer *d, size_t first, size_t last) {
 }
 
 bool sk_groups_deal(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles, size_t *lane_of) {
-    dealer d = {batch,   allocator,    particles,
-                lane_of, batch->arity, batch->type->in_blocks && !batch->compiled ? BLOCK_DISTANCE : GROUP_DISTANCE};
+    dealer d = {batch, allocator, particles, lane_of, batch->arity};
     size_t first[MOST_PASSES + 1], count = find_passes(&d, first);
     for (size_t i = 0; i < count; i++)
         if (!add_pass(&d, first[i], first[i + 1])) return false;

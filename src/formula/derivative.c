@@ -104,6 +104,14 @@ static void find_wanted(const sk_graph *graph, const uint32_t *inputs, size_t co
     }
 }
 
+/* The derivative of the output by each node that is wanted, as far as `seed` (NULL: to the inputs). */
+static void go_back(adjoints *a, sk_node output, size_t count, const bool *seed) {
+    for (size_t i = 0; i < count; i++) a->of[i] = NONE;
+    a->of[output] = sk_constant(a->graph, 1);
+    for (size_t i = (size_t)output + 1; i-- > 0;)
+        if (a->of[i] != NONE && a->wanted[i] && !(seed && seed[i])) pass_back(a, (sk_node)i, a->of[i]);
+}
+
 bool sk_gradient(sk_graph *graph, sk_node output, const uint32_t *inputs, size_t count, sk_node *derivatives) {
     if (graph->no_memory || graph->too_large) return false;
     size_t before = graph->count; // what is made below is no part of what is differentiated
@@ -113,15 +121,38 @@ bool sk_gradient(sk_graph *graph, sk_node output, const uint32_t *inputs, size_t
     graph->name = "d";
     if (of && wanted) {
         adjoints a = {graph, of, wanted};
-        for (size_t i = 0; i < before; i++) of[i] = NONE;
         find_wanted(graph, inputs, count, wanted);
-        of[output] = sk_constant(graph, 1);
-        for (size_t i = (size_t)output + 1; i-- > 0;)
-            if (of[i] != NONE && wanted[i]) pass_back(&a, (sk_node)i, of[i]);
+        go_back(&a, output, before, NULL);
         for (size_t k = 0; k < count; k++) {
             sk_node input = sk_input(graph, inputs[k]);
             derivatives[k] = input < before && of[input] != NONE ? of[input] : sk_constant(graph, 0);
         }
+    }
+    graph->name = "";
+    sk_release(graph->allocator, of);
+    sk_release(graph->allocator, wanted);
+    return !graph->no_memory && !graph->too_large;
+}
+
+bool sk_gradient_by(sk_graph *graph, sk_node output, const sk_node *by, size_t count, sk_node *derivatives) {
+    if (graph->no_memory || graph->too_large) return false;
+    size_t before = graph->count;
+    sk_node *of = sk_allocate(graph->allocator, before * sizeof *of);
+    bool *wanted = sk_allocate(graph->allocator, 2 * before * sizeof *wanted);
+    if (!of || !wanted) graph->no_memory = true;
+    graph->name = "d";
+    if (of && wanted) {
+        adjoints a = {graph, of, wanted};
+        bool *seed = wanted + before;
+        memset(seed, 0, before * sizeof *seed);
+        for (size_t k = 0; k < count; k++) seed[by[k]] = true;
+        for (size_t i = 0; i < before; i++) {
+            const sk_graph_node *n = &graph->data[i];
+            wanted[i] = seed[i];
+            for (int k = 0; k < sk_op_info[n->op].arity; k++) wanted[i] |= wanted[n->arg[k]];
+        }
+        go_back(&a, output, before, seed);
+        for (size_t k = 0; k < count; k++) derivatives[k] = of[by[k]] != NONE ? of[by[k]] : sk_constant(graph, 0);
     }
     graph->name = "";
     sk_release(graph->allocator, of);
@@ -134,13 +165,14 @@ bool sk_gradient(sk_graph *graph, sk_node output, const uint32_t *inputs, size_t
 /* The tangent of a node from those of its arguments, each NONE where it does not change. */
 static sk_node tangent_of(sk_graph *g, sk_node node, const sk_node *of) {
     const sk_graph_node n = g->data[node];
-    const sk_node zero = sk_constant(g, 0);
     sk_node t[4], sum = NONE;
     bool moves = false;
     for (int k = 0; k < sk_op_info[n.op].arity; k++) moves |= (t[k] = of[n.arg[k]]) != NONE;
     if (!moves) return NONE;
-    if (n.op == SK_OP_LESS)
+    if (n.op == SK_OP_LESS) {
+        const sk_node zero = sk_constant(g, 0);
         return sk_less(g, n.arg[0], n.arg[1], t[2] == NONE ? zero : t[2], t[3] == NONE ? zero : t[3]);
+    }
     for (int k = 0; k < sk_op_info[n.op].arity; k++) {
         if (t[k] == NONE) continue;
         sk_node term = n.op == SK_OP_ADD || (n.op == SK_OP_SUBTRACT && k == 0) ? t[k]
@@ -154,9 +186,11 @@ static sk_node tangent_of(sk_graph *g, sk_node node, const sk_node *of) {
 
 bool sk_tangents(sk_graph *graph, const sk_node *outputs, size_t count, uint32_t input, sk_node *derivatives) {
     if (graph->no_memory || graph->too_large) return false;
-    size_t before = graph->count;
+    size_t before = 0; // nodes that outputs may depend on
+    for (size_t k = 0; k < count; k++)
+        if (outputs[k] >= before) before = outputs[k] + 1;
     sk_node *of = sk_allocate(graph->allocator, before * sizeof *of);
-    bool *live = sk_allocate(graph->allocator, before * sizeof *live);
+    bool *live = sk_allocate(graph->allocator, graph->count * sizeof *live);
     if (!of || !live) graph->no_memory = true;
     graph->name = "dd";
     if (of && live) {

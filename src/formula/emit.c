@@ -10,7 +10,7 @@
 
 #include "base/status.h"
 
-enum { MOST_HEIGHT = 3 };
+enum { MOST_HEIGHT = 3, MOST_SECOND = SK_INPUT_VELOCITY * (SK_INPUT_VELOCITY + 1) / 2 };
 
 /* ---- what languages are made of ---- */
 
@@ -168,9 +168,22 @@ void sk_put_temporaries(sk_writer *w, const sk_node *outputs, size_t count) {
     }
 }
 
+/* The lower triangle of second derivatives, where formula and language have them. */
+static size_t second_outputs_of(const sk_writer *w, sk_node outputs[static MOST_SECOND]) {
+    const skein_formula *f = w->formula;
+    size_t count = 0, size = 3 * (size_t)f->particles;
+    if (!f->hessian || !w->language->second) return 0;
+    for (size_t i = 0; i < size; i++)
+        for (size_t j = 0; j <= i; j++) outputs[count++] = f->hessian[i * size + j];
+    return count;
+}
+
 static void put_all(sk_writer *w, const sk_node *outputs, size_t count) {
     const skein_formula *f = w->formula;
-    sk_put_temporaries(w, outputs, count);
+    sk_node all[SK_FORMULA_MOST_OUTPUTS + MOST_SECOND];
+    memcpy(all, outputs, count * sizeof *all);
+    size_t second = second_outputs_of(w, all + count);
+    sk_put_temporaries(w, all, count + second);
     for (int k = 0; k < f->size; k++) {
         for (int p = 0; p < f->particles; p++)
             for (int axis = 0; axis < 3; axis++) {
@@ -178,6 +191,11 @@ static void put_all(sk_writer *w, const sk_node *outputs, size_t count) {
                 put_output(w, f->by_position[k][3 * p + axis]);
             }
     }
+    for (int i = 0; second && i < 3 * f->particles; i++)
+        for (int j = 0; j <= i; j++) {
+            w->language->second(w, i, j);
+            put_output(w, all[count++]);
+        }
     for (int k = 0; k < f->size; k++) {
         w->language->result(w, k);
         put_output(w, f->value[k]);

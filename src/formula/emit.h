@@ -15,6 +15,7 @@ typedef struct sk_language {
     void (*open)(sk_writer *);
     void (*result)(sk_writer *, int component);                             /* up to the value */
     void (*derivative)(sk_writer *, int component, int particle, int axis); /* the same */
+    void (*second)(sk_writer *, int row, int column);                       /* the same; NULL: these are left out */
     const char *end_result;
     void (*close)(sk_writer *);
 } sk_language;

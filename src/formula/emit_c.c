@@ -8,20 +8,16 @@ static const struct {
     int op; /* where it is needed; SK_OP_CONSTANT: everywhere */
     const char *text;
 } c_macros[] = {
-    {SK_OP_CONSTANT,
-     "#include <math.h>\n"
-     "#define FORMULA(name) \\\n"
-     "    static void name(const double *position, const double *velocity, const double *parameter, \\\n"
-     "                     double time, double *value, double *gradient)\n"
-     "#define REAL double\n"
-     "#define NUMBER(x) (x)\n"
-     "#define POSITION(particle, axis) position[3 * (particle) + (axis)]\n"
-     "#define VELOCITY(particle, axis) velocity[3 * (particle) + (axis)]\n"
-     "#define PARAMETER(index) parameter[index]\n"
-     "#define TIME time\n"
-     "#define VALUE(component, x) value[component] = (x)\n"
-     "#define GRADIENT(component, particle, axis, x) \\\n"
-     "    gradient[3 * (PARTICLES * (component) + (particle)) + (axis)] = (x)\n"},
+    {SK_OP_CONSTANT, "#include <math.h>\n"
+                     "#define REAL double\n"
+                     "#define NUMBER(x) (x)\n"
+                     "#define POSITION(particle, axis) position[3 * (particle) + (axis)]\n"
+                     "#define VELOCITY(particle, axis) velocity[3 * (particle) + (axis)]\n"
+                     "#define PARAMETER(index) parameter[index]\n"
+                     "#define TIME time\n"
+                     "#define VALUE(component, x) value[component] = (x)\n"
+                     "#define GRADIENT(component, particle, axis, x) \\\n"
+                     "    gradient[3 * (PARTICLES * (component) + (particle)) + (axis)] = (x)\n"},
     {SK_OP_RECIPROCAL, "#define RECIPROCAL(x) (fabs(x) >= 2.2250738585072014e-308 ? 1 / (x) : 0)\n"},
     {SK_OP_SQRT, "#define SQRT(x) sqrt((x) >= 0 ? (x) : 0)\n"},
     {SK_OP_ABS, "#define ABS(x) fabs(x)\n"},
@@ -46,10 +42,18 @@ static int c_op_of(size_t i) {
 
 static void c_open(sk_writer *w) {
     sk_put_source(w, "// ");
-    sk_put(w, "//\n// Made by `skein formula --emit c`: the value, and its derivatives by the positions.\n");
+    sk_put(w, "//\n// Made by `skein formula --emit function`: the value, and its derivatives by the positions.\n");
+    if (w->formula->hessian) sk_put(w, "// Second derivatives are row by row, up to the diagonal.\n");
     sk_put_parameters(w, "// ");
     sk_put(w, "#ifndef FORMULA\n#define PARTICLES %d\n", w->formula->particles);
     sk_put_helpers(w, c_text_of, sizeof c_macros / sizeof *c_macros, c_op_of);
+    sk_put(w,
+           "#define FORMULA(name) \\\n"
+           "    static void name(const double *position, const double *velocity, const double *parameter, \\\n"
+           "                     double time, double *value, double *gradient%s)\n",
+           w->formula->hessian ? ", double *hessian" : "");
+    if (w->formula->hessian)
+        sk_put(w, "#define HESSIAN(row, column, x) hessian[(row) * ((row) + 1) / 2 + (column)] = (x)\n");
     sk_put(w, "#endif\n\nFORMULA(formula) {\n");
 }
 
@@ -78,6 +82,10 @@ static void c_derivative(sk_writer *w, int component, int particle, int axis) {
     sk_put(w, "    GRADIENT(%d, %d, %d, ", component, particle, axis);
 }
 
+static void c_second(sk_writer *w, int row, int column) {
+    sk_put(w, "    HESSIAN(%d, %d, ", row, column);
+}
+
 static void c_close(sk_writer *w) {
     sk_put(w, "}\n");
 }
@@ -100,7 +108,8 @@ static void c_close(sk_writer *w) {
     .declaration = "const REAL", .constant = c_constant, .input = c_input, .parameter = c_parameter
 
 const sk_language sk_c_language = {
-    SPELLING, .open = c_open, .result = c_result, .derivative = c_derivative, .end_result = ");\n", .close = c_close,
+    SPELLING,           .open = c_open,       .result = c_result, .derivative = c_derivative,
+    .second = c_second, .end_result = ");\n", .close = c_close,
 };
 
 static void nothing(sk_writer *w) {

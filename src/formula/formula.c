@@ -26,13 +26,11 @@ static void differentiate(skein_formula *f) {
     }
 }
 
-/* Row i is the change of the gradient along coordinate i. */
 static void differentiate_again(skein_formula *f) {
     size_t coordinates = 3 * (size_t)f->particles;
     f->hessian = sk_allocate(f->allocator, (coordinates * coordinates + 1) * sizeof *f->hessian);
     if (!f->hessian) f->graph.no_memory = true;
-    for (uint32_t i = 0; i < coordinates && f->hessian; i++)
-        if (!sk_tangents(&f->graph, f->by_position[0], coordinates, i, f->hessian + i * coordinates)) return;
+    else sk_second_derivatives(&f->graph, f->value[0], (size_t)f->particles, f->hessian);
 }
 
 /* ---- making ---- */

@@ -246,9 +246,18 @@ sk_node sk_power(sk_graph *graph, sk_node x, sk_node y) {
     return power < 0 ? sk_of(graph, SK_OP_RECIPROCAL, result) : result;
 }
 
+sk_node sk_plain(sk_graph *graph, sk_op op, sk_node a, sk_node b) {
+    if (op != SK_OP_SUBTRACT) sort(&a, &b);
+    return make(graph, op, a, b, 0, 0);
+}
+
 void sk_graph_mark(const sk_graph *graph, const sk_node *outputs, size_t output_count, bool *live) {
     memset(live, 0, graph->count * sizeof *live);
-    for (size_t i = 0; i < output_count; i++) live[outputs[i]] = true;
-    for (size_t i = graph->count; i-- > 0;)
+    size_t end = 0;
+    for (size_t i = 0; i < output_count; i++) {
+        live[outputs[i]] = true;
+        if (outputs[i] >= end) end = outputs[i] + 1;
+    }
+    for (size_t i = end; i-- > 0;)
         for (int a = 0; live[i] && a < sk_op_info[graph->data[i].op].arity; a++) live[graph->data[i].arg[a]] = true;
 }

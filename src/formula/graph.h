@@ -99,6 +99,8 @@ sk_node sk_of(sk_graph *graph, sk_op op, sk_node a); /* an operation on one argu
 sk_node sk_less(sk_graph *graph, sk_node a, sk_node b, sk_node yes, sk_node no);
 sk_node sk_arctangent(sk_graph *graph, sk_node y, sk_node x);
 sk_node sk_power(sk_graph *graph, sk_node x, sk_node y);
+/* A sum or a product as it stands: without the rules that draw signs and constants out of it. */
+sk_node sk_plain(sk_graph *graph, sk_op op, sk_node a, sk_node b);
 
 bool sk_is_constant(const sk_graph *graph, sk_node node, double *value);
 
@@ -107,7 +109,12 @@ void sk_graph_mark(const sk_graph *graph, const sk_node *outputs, size_t output_
 
 /* The derivative of `output` by each of the inputs, by the chain rule backwards. False when there is no memory. */
 bool sk_gradient(sk_graph *graph, sk_node output, const uint32_t *inputs, size_t count, sk_node *derivatives);
+/* The same by nodes, as if these were inputs. */
+bool sk_gradient_by(sk_graph *graph, sk_node output, const sk_node *by, size_t count, sk_node *derivatives);
 /* The derivatives of all outputs by one input, by the chain rule forwards. */
 bool sk_tangents(sk_graph *graph, const sk_node *outputs, size_t count, uint32_t input, sk_node *derivatives);
+/* The second derivatives of `output` by the coordinates of positions, (3 particles)^2 of them; those that are mirrored
+ * at the diagonal are one node (second.c). False when there is no memory. */
+bool sk_second_derivatives(sk_graph *graph, sk_node output, size_t particles, sk_node *hessian);
 
 #endif

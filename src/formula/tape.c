@@ -72,6 +72,13 @@ static int prefix_of(const builder *b, sk_node node) {
     return -1;
 }
 
+/* Whether a sum's terms are all added. */
+static bool only_adds(const builder *b, sk_node sum) {
+    int prefix = b->plan[sum].terms == 3 ? prefix_of(b, sum) : -1;
+    const sk_graph_node *n = &b->graph->data[sum];
+    return n->op == SK_OP_ADD && (prefix < 0 || b->graph->data[n->arg[prefix]].op == SK_OP_ADD);
+}
+
 /* A product is computed anew in each of the sums that read it where these are two at the most, since a load and a
  * multiplication there cost less than an instruction and a register here. */
 static void choose_instructions(builder *b) {
@@ -81,6 +88,11 @@ static void choose_instructions(builder *b) {
         if (!plan->live) continue;
         if (b->graph->data[i].op == SK_OP_MULTIPLY)
             plan->inside = !plan->is_output && plan->uses == plan->uses_in_sums && plan->uses <= MOST_COPIES;
+        if (b->graph->data[i].op == SK_OP_NEGATE) {
+            sk_node sum = b->graph->data[i].arg[0];
+            const plan_of_node *of = &b->plan[sum];
+            if (is_sum(b, sum) && of->uses == 1 && !of->is_output && only_adds(b, sum)) b->plan[sum].inside = true;
+        }
         if (!is_sum(b, (sk_node)i)) continue;
         int prefix = prefix_of(b, (sk_node)i);
         plan->terms = prefix < 0 ? 2 : 3;
@@ -98,15 +110,9 @@ static unsigned add_term(const builder *b, sk_node node, sk_node operands[6], in
     return product;
 }
 
-/* The operands of a node's instruction, and the instruction's number. */
-static int operands_of(const builder *b, sk_node node, sk_node operands[6], uint16_t *op) {
+static int operands_of_sum(const builder *b, sk_node node, sk_node operands[6], uint16_t *op) {
     const sk_graph_node *n = &b->graph->data[node];
     int count = 0;
-    if (!is_sum(b, node)) {
-        *op = n->op;
-        for (; count < sk_op_info[n->op].arity; count++) operands[count] = n->arg[count];
-        return count;
-    }
     int prefix = b->plan[node].terms == 3 ? prefix_of(b, node) : -1;
     const sk_graph_node *two = prefix < 0 ? n : &b->graph->data[n->arg[prefix]];
     unsigned number = add_term(b, two->arg[0], operands, &count);
@@ -116,6 +122,27 @@ static int operands_of(const builder *b, sk_node node, sk_node operands[6], uint
     number = number * 4 + (n->op == SK_OP_SUBTRACT ? 2 : 0) + add_term(b, n->arg[1 - prefix], operands, &count);
     *op = (uint16_t)(SK_TAPE_SUM3 + number);
     return count;
+}
+
+/* The operands of a node's instruction, and the instruction's number. */
+static int operands_of(const builder *b, sk_node node, sk_node operands[6], uint16_t *op) {
+    const sk_graph_node *n = &b->graph->data[node];
+    int count = 0;
+    if (n->op == SK_OP_NEGATE && is_sum(b, n->arg[0]) && b->plan[n->arg[0]].inside) {
+        uint16_t sum;
+        count = operands_of_sum(b, n->arg[0], operands, &sum);
+        // without the signs' bits, which are 0
+        unsigned two = sum - (unsigned)SK_TAPE_SUM2, three = sum - (unsigned)SK_TAPE_SUM3;
+        if (sum < SK_TAPE_SUM3) *op = (uint16_t)(SK_TAPE_MINUS2 + (two >> 2 << 1 | (two & 1)));
+        else *op = (uint16_t)(SK_TAPE_MINUS3 + (three >> 4 << 2 | (three >> 2 & 1) << 1 | (three & 1)));
+        return count;
+    }
+    if (!is_sum(b, node)) {
+        *op = n->op;
+        for (; count < sk_op_info[n->op].arity; count++) operands[count] = n->arg[count];
+        return count;
+    }
+    return operands_of_sum(b, node, operands, op);
 }
 
 /* ---- the order ---- */

@@ -15,11 +15,13 @@
 #include "formula/graph.h"
 
 /* A sum of two or three terms is an instruction: each term a register (A) or the product of two (P). Its number says
- * which: a bit for each term, and one for each sign. */
+ * which: a bit for each term, and one for each sign. And so is minus the sum of two or three that are added. */
 enum {
-    SK_TAPE_SUM2 = SK_OP_COUNT,      /* + 4 (first is P) + 2 (minus) + (second is P) */
-    SK_TAPE_SUM3 = SK_TAPE_SUM2 + 8, /* + 16 (first is P) + 8 (minus) + 4 (second is P) + 2 (minus) + (third is P) */
-    SK_TAPE_OPS = SK_TAPE_SUM3 + 32
+    SK_TAPE_SUM2 = SK_OP_COUNT,         /* + 4 (first is P) + 2 (minus) + (second is P) */
+    SK_TAPE_SUM3 = SK_TAPE_SUM2 + 8,    /* + 16 (first is P) + 8 (minus) + 4 (second is P) + 2 (minus) + (third is P) */
+    SK_TAPE_MINUS2 = SK_TAPE_SUM3 + 32, /* + 2 (first is P) + (second is P) */
+    SK_TAPE_MINUS3 = SK_TAPE_MINUS2 + 4, /* + 4 (first is P) + 2 (second is P) + (third is P) */
+    SK_TAPE_OPS = SK_TAPE_MINUS3 + 8
 };
 
 enum {
@@ -60,7 +62,8 @@ typedef struct sk_tape {
     uint16_t *output; /* the registers of the outputs; two may share one, which may also be a load's */
     size_t outputs;
     size_t registers;
-    size_t wides; /* of a block: 8, or fewer where registers are so many that they would leave the cache */
+    size_t wides;  /* of a block: 8, or fewer where registers are so many that they would leave the cache */
+    bool unjudged; /* whoever runs it looks for himself for what is not finite: there is no verdict on that */
     sk_allocator *allocator;
 } sk_tape;
 

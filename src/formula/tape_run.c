@@ -73,6 +73,19 @@ SK_INLINE sk_wide SK_ISA(within_one)(sk_wide x) {
     kind_(0, A, +, A) kind_(1, A, +, P) kind_(2, A, -, A) kind_(3, A, -, P) kind_(4, P, +, A) kind_(5, P, +, P) \
         kind_(6, P, -, A) kind_(7, P, -, P)
 
+#define MINUS2(number_, first_, second_) \
+    case SK_TAPE_MINUS2 + (number_):     \
+        EACH(-(first_(0) + second_(SIZE_##first_)));
+#define MINUS3(number_, first_, second_, third_) \
+    case SK_TAPE_MINUS3 + (number_):             \
+        EACH(-((first_(0) + second_(SIZE_##first_)) + third_(SIZE_##first_ + SIZE_##second_)));
+#define MINUS                                                                                                      \
+    MINUS2(0, A, A)                                                                                                \
+    MINUS2(1, A, P)                                                                                                \
+    MINUS2(2, P, A)                                                                                                \
+    MINUS2(3, P, P) MINUS3(0, A, A, A) MINUS3(1, A, A, P) MINUS3(2, A, P, A) MINUS3(3, A, P, P) MINUS3(4, P, A, A) \
+        MINUS3(5, P, A, P) MINUS3(6, P, P, A) MINUS3(7, P, P, P)
+
 /* The first `count` wides of a block. `wides` and `count` are known where this is inlined. */
 SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask *guarded, const size_t wides,
                                 const size_t count) {
@@ -82,6 +95,7 @@ SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask
         switch (instruction->op) {
             SUMS(SUM2)
             SUMS(SUM3_OF)
+            MINUS
         case SK_OP_MULTIPLY: EACH(FROM(0) * FROM(1));
         case SK_OP_NEGATE: EACH(-FROM(0));
         case SK_OP_RECIPROCAL: EACH(SK_ISA(reciprocal)(FROM(0), &guarded[i]));
@@ -102,21 +116,33 @@ SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask
     }
 }
 
-/* Infinities and NaN go through sums; what is only so large that the sum overflows is left out, too. */
+/* Infinities and NaN go through sums; what is only so large that the sum overflows is left out, too. Four sums are
+ * variables, since compilers keep an array of them in memory. */
 SK_INLINE void SK_ISA(judge)(const sk_tape *tape, const sk_wide *registers, sk_mask *finite, const size_t wides,
                              const size_t count) {
-    sk_wide sum[SK_TAPE_WIDES];
-    for (size_t i = 0; i < count; i++) sum[i] = (sk_wide){0};
-    for (size_t k = 0; k < tape->outputs; k++)
-        for (size_t i = 0; i < count; i++) sum[i] += registers[tape->output[k] * wides + i];
-    for (size_t i = 0; i < count; i++) finite[i] = ~SK_ISA(sk_differ)(sum[i] - sum[i], (sk_wide){0});
+    const sk_wide zero = {0};
+    size_t i = 0;
+    for (; i + 4 <= count; i += 4) {
+        sk_wide a = zero, b = zero, c = zero, d = zero;
+        for (size_t k = 0; k < tape->outputs; k++) {
+            const sk_wide *from = registers + tape->output[k] * wides + i;
+            a += from[0], b += from[1], c += from[2], d += from[3];
+        }
+        finite[i] = ~SK_ISA(sk_differ)(a - a, zero), finite[i + 1] = ~SK_ISA(sk_differ)(b - b, zero);
+        finite[i + 2] = ~SK_ISA(sk_differ)(c - c, zero), finite[i + 3] = ~SK_ISA(sk_differ)(d - d, zero);
+    }
+    for (; i < count; i++) {
+        sk_wide sum = zero;
+        for (size_t k = 0; k < tape->outputs; k++) sum += registers[tape->output[k] * wides + i];
+        finite[i] = ~SK_ISA(sk_differ)(sum - sum, zero);
+    }
 }
 
 SK_INLINE void SK_ISA(run_and_judge)(const sk_tape *tape, sk_wide *registers, sk_tape_verdict *verdict,
                                      const size_t wides, const size_t count) {
     for (size_t i = 0; i < count; i++) verdict->guarded[i] = (sk_mask){0};
     SK_ISA(run_code)(tape, registers, verdict->guarded, wides, count);
-    SK_ISA(judge)(tape, registers, verdict->finite, wides, count);
+    if (!tape->unjudged) SK_ISA(judge)(tape, registers, verdict->finite, wides, count);
 }
 
 static void SK_ISA(run)(const sk_tape *tape, sk_wide *registers, size_t count, sk_tape_verdict *verdict) {
@@ -240,6 +266,9 @@ static size_t SK_ISA(evaluate)(const sk_tape *tape, const sk_tape_input *input, 
 #undef SUM3
 #undef SUM3_OF
 #undef SUMS
+#undef MINUS2
+#undef MINUS3
+#undef MINUS
 
 #else
 
