@@ -266,7 +266,7 @@ static void SK_ISA(project_damped_groups)(sk_run *run, const sk_row *row, size_t
 static void SK_ISA(run_elements)(SK_ISA(block) * b, const sk_batch *batch, const sk_tape *tape, bool compiled,
                                  double time, const sk_vec4 *x, size_t packed, size_t begin, size_t count) {
     uint32_t slot[SK_MOST_ARITY][SK_LANES];
-    real rest[SKEIN_FORMULA_MOST_RESTS][SK_LANES];
+    sk_wide rest[SKEIN_FORMULA_MOST_RESTS]; // wides, as compiled code takes aligned ones
     places to = find_places(batch, tape);
     for (size_t l = 0; l < SK_LANES; l++) {
         size_t e = begin + (l < count ? l : count - 1);
@@ -280,11 +280,13 @@ static void SK_ISA(run_elements)(SK_ISA(block) * b, const sk_batch *batch, const
         sk_wide finite;
         for (size_t p = 0; p < batch->arity; p++) at[p] = SK_ISA(gather)(x, packed, slot[p]);
         for (size_t k = 0; k < tape->outputs; k++) outputs[k] = (real *)(b->registers + tape->output[k]);
-        sk_compiled_evaluate(batch, time, tape == &made->hessian, (const real *)at, rest[0], outputs, (real *)&finite);
+        sk_compiled_evaluate(batch, time, tape == &made->hessian, (const real *)at, (const real *)rest, outputs,
+                             (real *)&finite);
         b->verdict.finite[0] = SK_ISA(sk_positive)(finite);
         return;
     }
-    SK_ISA(fill)(b, &to, 0, batch->arity, batch->rest_count, tape->wides, x, packed, slot[0], rest[0], SK_LANES);
+    SK_ISA(fill)
+    (b, &to, 0, batch->arity, batch->rest_count, tape->wides, x, packed, slot[0], (const real *)rest, SK_LANES);
     sk_tape_kernels_of[SK_ISA(sk_version)].run(tape, b->registers, 1, &b->verdict);
 }
 
