@@ -26,6 +26,7 @@ static const skein_field fields[] = {
     BOOL(normals, "normals", 0, "the surfaces' normals, as lines"),
     BOOL(velocities, "velocities", 0, "the particles' velocities, as lines"),
     BOOL(contacts, "contacts", 0, "where particles touch colliders, as lines along the collider's normal"),
+    BOOL(fields, "fields", 1, "force fields and potentials by formula, as arrows; the strongest is as long as they lie apart"),
     BOOL(colliders, "colliders", 1, "all but level planes, which are ground"),
     BOOL(ground, "ground", 1, "the ground: a level plane, or one of no effect where there is none"),
     BOOL(grid, "grid", 1, "lines on the ground; a cell is 1, 2 or 5 times a power of ten metres wide"),

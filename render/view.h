@@ -37,7 +37,7 @@ typedef struct render_view {
     bool surface, wireframe, springs;
     int32_t particles; /* a render_shown_particles */
     bool birds;        /* flocks, else as balls */
-    bool pins, normals, velocities, contacts, colliders, ground, grid, axes;
+    bool pins, normals, velocities, contacts, fields, colliders, ground, grid, axes;
     int32_t colour;  /* a render_colouring */
     double range;    /* the speed or strain at the end of the colours; 0: the largest there is now */
     int32_t pattern; /* 0: as suits the body; else woven, checker or none */

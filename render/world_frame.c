@@ -312,7 +312,44 @@ static skein_status take_particles(render_world_frame *made, const skein_world *
 
 /* ---- All of it ------------------------------------------------------------------------------ */
 
-static skein_status take_lines(render_world_frame *made, skein_error *error) {
+/* Arrows over a box around the things, on a grid. */
+static skein_status take_fields(render_world_frame *made, const skein_world *world, const render_bounds *things,
+                                skein_error *error) {
+    enum { ALONG = 9 }; // arrows along the longest side
+    render_bounds box = *things;
+    double longest = 0, spacing;
+    size_t n[3], count = 1;
+    for (int k = 0; k < 3; k++) longest = fmax(longest, box.most[k] - box.least[k]);
+    if (!(longest > 0 && isfinite(longest))) return SKEIN_OK;
+    spacing = longest / (ALONG - 1);
+    for (int k = 0; k < 3; k++) {
+        n[k] = (size_t)((box.most[k] - box.least[k]) / spacing + 1e-6) + 1;
+        count *= n[k];
+    }
+    double *points = malloc(6 * count * sizeof *points), *forces = points ? points + 3 * count : NULL;
+    if (!points) return render_fail_memory(error, "the arrows of a field");
+    for (size_t i = 0; i < count; i++) {
+        size_t place[3] = {i % n[0], i / n[0] % n[1], i / (n[0] * n[1])};
+        for (int k = 0; k < 3; k++) {
+            double middle = 0.5 * (box.least[k] + box.most[k]);
+            points[3 * i + (size_t)k] = middle + spacing * ((double)place[k] - 0.5 * (double)(n[k] - 1));
+        }
+    }
+    for (size_t f = 0; f < skein_object_count(world, SKEIN_FORCE); f++) {
+        skein_handle handle = skein_object_at(world, SKEIN_FORCE, f);
+        const char *kind = skein_object_kind(world, handle)->name;
+        skein_value enabled;
+        if ((strcmp(kind, "force_field") && strcmp(kind, "potential")) || !is_visible(world, handle) ||
+            skein_get(world, handle, "enabled", &enabled) || enabled.number[0] == 0 ||
+            skein_force_probe(world, handle, count, points, forces))
+            continue;
+        render_add_field(&made->lines, count, points, forces, 0.8 * spacing);
+    }
+    free(points);
+    return SKEIN_OK;
+}
+
+static skein_status take_lines(render_world_frame *made, const skein_world *world, skein_error *error) {
     const render_view *view = &made->view;
     if (view->springs) render_add_springs(&made->lines, &made->state);
     render_world_lines_show(&made->lines, view->line_width, &made->frame);
@@ -322,6 +359,7 @@ static skein_status take_lines(render_world_frame *made, skein_error *error) {
         render_add_normals(&made->lines, &made->surfaces[i], normal_length * radius);
     if (view->velocities) render_add_velocities(&made->lines, &made->state, view->velocity_scale);
     if (view->contacts) render_add_contacts(&made->lines, &made->state, contact_length * radius);
+    if (view->fields && take_fields(made, world, &bounds, error)) return SKEIN_ERROR_MEMORY;
     if (view->axes) render_add_axes(&made->lines, render_grid_cell(radius > 0 ? radius : 1));
     render_world_lines_show(&made->lines, view->line_width, &made->frame);
     return made->lines.no_memory ? render_fail_memory(error, "the lines") : SKEIN_OK;
@@ -399,7 +437,7 @@ skein_status render_world_frame_update(render_world_frame *made, skein_world *wo
     render_world_solids_show(&made->solids, &made->frame);
     if (status == SKEIN_OK) status = take_implicit(made, world, error);
     if (status == SKEIN_OK) status = take_particles(made, world, error);
-    if (status == SKEIN_OK) status = take_lines(made, error);
+    if (status == SKEIN_OK) status = take_lines(made, world, error);
     if (status == SKEIN_OK) place_floor(made);
     return status;
 }

@@ -112,6 +112,34 @@ void render_add_contacts(render_world_lines *lines, const render_world_state *st
     }
 }
 
+void render_add_field(render_world_lines *lines, size_t count, const double *points, const double *forces,
+                      double length) {
+    static const float orange[3] = {0.80f, 0.36f, 0.05f};
+    static const double least = 0.02 /* of the strongest, to be seen */, barb = 0.28, slant = 0.13;
+    double strongest = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double *f = &forces[3 * i];
+        double strength = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+        if (isfinite(strength)) strongest = fmax(strongest, strength);
+    }
+    for (size_t i = 0; i < count; i++) {
+        const double *f = &forces[3 * i];
+        double strength = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]), along[3], tip[3];
+        if (!(strength > least * strongest)) continue;
+        for (int k = 0; k < 3; k++) along[k] = f[k] / strongest * length, tip[k] = points[3 * i + (size_t)k] + along[k];
+        add(lines, RENDER_FIELDS, &points[3 * i], tip, orange);
+        // to both sides, level, or for an arrow that stands upright along x
+        double level = hypot(along[0], along[2]), size = length * strength / strongest;
+        bool upright = level < 1e-3 * size;
+        double side[3] = {upright ? size : size * along[2] / level, 0, upright ? 0 : -size * along[0] / level};
+        for (int sign = -1; sign <= 1; sign += 2) {
+            double back[3];
+            for (int k = 0; k < 3; k++) back[k] = -barb * along[k] + sign * slant * side[k];
+            add_ray(lines, RENDER_FIELDS, tip, back, 1, orange);
+        }
+    }
+}
+
 void render_add_axes(render_world_lines *lines, double length) {
     static const float colours[3][3] = {{0.85f, 0.12f, 0.10f}, {0.10f, 0.60f, 0.15f}, {0.10f, 0.30f, 0.85f}};
     for (int k = 0; k < 3; k++) {
@@ -123,7 +151,7 @@ void render_add_axes(render_world_lines *lines, double length) {
 }
 
 void render_world_lines_show(render_world_lines *lines, double width, render_frame *frame) {
-    static const double thickness[RENDER_LINE_KIND_COUNT] = {0.8, 1, 1, 1, 1.6, 2.2};
+    static const double thickness[RENDER_LINE_KIND_COUNT] = {0.8, 1, 1, 1, 1.6, 1, 2.2};
     for (int i = 0; i < RENDER_LINE_KIND_COUNT; i++) {
         const render_line_set *set = &lines->sets[i];
         bool body = i == RENDER_WIREFRAME || i == RENDER_SPRINGS;

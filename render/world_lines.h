@@ -1,4 +1,4 @@
-/* The lines of a picture: wireframes, springs, normals, velocities, contacts, axes.
+/* The lines of a picture: wireframes, springs, normals, velocities, contacts, fields, axes.
  *
  * Called by world_frame.c, which clears all sets, asks for what the view shows, and puts them into the frame. */
 #ifndef SKEIN_RENDER_WORLD_LINES_H
@@ -14,6 +14,7 @@ typedef enum render_line_kind {
     RENDER_NORMALS,
     RENDER_VELOCITIES,
     RENDER_CONTACTS,
+    RENDER_FIELDS,
     RENDER_AXES,
     RENDER_LINE_KIND_COUNT
 } render_line_kind;
@@ -42,6 +43,9 @@ void render_add_springs(render_world_lines *lines, const render_world_state *sta
 void render_add_normals(render_world_lines *lines, const render_surface *surface, double length);
 void render_add_velocities(render_world_lines *lines, const render_world_state *state, double seconds);
 void render_add_contacts(render_world_lines *lines, const render_world_state *state, double length);
+/* Arrows of a field: `count` points and what is there (count x 3), the strongest `length` long. */
+void render_add_field(render_world_lines *lines, size_t count, const double *points, const double *forces,
+                      double length);
 void render_add_axes(render_world_lines *lines, double length);
 
 /* Puts all sets, `width` pixels wide, into a frame. */

@@ -325,6 +325,34 @@ static void texts_change_while_they_live(void **state) {
     skein_world_destroy(world);
 }
 
+/* What a picture of a field asks for. */
+static void fields_are_probed(void **state) {
+    (void)state;
+    skein_world *world = new_world("xpbd", 1);
+    const double points[] = {1, 2, 3, -1, 0.5, 0};
+    double forces[6];
+    skein_handle field, well, gravity;
+    OK(world, skein_force_add(world, "force_field",
+                              SKEIN_SETTINGS(SKEIN_TEXT("force", "k*vec3(p.y, t, -p.x) - 5*v"), SKEIN_REAL("parameters.k", 2)),
+                              &field));
+    OK(world, skein_force_add(world, "potential", SKEIN_SETTINGS(SKEIN_TEXT("energy", "dot(p, p)*p.y")), &well));
+    OK(world, skein_force_add(world, "gravity", NULL, &gravity));
+    add_particle(world, 1, 9, 9, 9);
+    steps(world, 4, 0.25);
+    OK(world, skein_force_probe(world, field, 2, points, forces));
+    static const double by_field[] = {4, 2, -2, 1, 2, 2};
+    for (int i = 0; i < 6; i++) assert_near(forces[i], by_field[i], 1e-12);
+    OK(world, skein_force_probe(world, well, 2, points, forces));
+    for (int i = 0; i < 2; i++) {
+        const double *p = points + 3 * i, square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
+        for (int k = 0; k < 3; k++) assert_near(forces[3 * i + k], -2 * p[k] * p[1] - (k == 1) * square, 1e-12);
+    }
+    FAILS(world, SKEIN_ERROR_VALUE, "gravity is no field", skein_force_probe(world, gravity, 1, points, forces));
+    OK(world, skein_remove(world, field));
+    FAILS(world, SKEIN_ERROR_HANDLE, "stale", skein_force_probe(world, field, 1, points, forces));
+    skein_world_destroy(world);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(uniform_fields_are_gravity),
@@ -339,6 +367,7 @@ int main(void) {
         cmocka_unit_test(awkward_fields_are_finite),
         cmocka_unit_test(bits_do_not_depend_on_the_machine),
         cmocka_unit_test(texts_change_while_they_live),
+        cmocka_unit_test(fields_are_probed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

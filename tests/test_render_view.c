@@ -322,6 +322,42 @@ static void normals_and_velocities_are_lines(void **state) {
     skein_world_destroy(world);
 }
 
+/* Every third line is an arrow's shaft: along the field where it begins, as long as the field is strong. */
+static void fields_are_arrows(void **state) {
+    (void)state;
+    skein_world *world = skein_world_create(NULL, NULL);
+    const double corners[6] = {-1, 0, -1, 1, 1, 1}, masses[2] = {1, 1};
+    skein_handle whirl;
+    OK(skein_particles_add(world, 2, corners, NULL, masses, NULL));
+    OK(skein_force_add(world, "gravity", NULL, NULL)); // is no field
+    assert_int_equal(update(world)->lines[RENDER_FIELDS].count, 0);
+    OK(skein_force_add(world, "force_field", SKEIN_SETTINGS(SKEIN_TEXT("force", "vec3(-3*p.z, 0, 3*p.x)")), &whirl));
+    const render_lines *lines = &update(world)->lines[RENDER_FIELDS];
+    assert_true(lines->count > 100 && lines->count % 3 == 0);
+    double longest = 0, strongest = 0;
+    for (size_t i = 0; i < lines->count; i += 3) {
+        const double *from = &lines->positions[6 * i];
+        longest = fmax(longest, hypot(from[3] - from[0], from[5] - from[2]));
+        strongest = fmax(strongest, hypot(from[0], from[2]));
+    }
+    assert_true(longest > 0.1 && longest < 0.4);
+    for (size_t i = 0; i < lines->count; i += 3) {
+        const double *from = &lines->positions[6 * i];
+        double share = longest / strongest;
+        assert_near(from[3] - from[0], -from[2] * share, 1e-9);
+        assert_near(from[4] - from[1], 0, 1e-9);
+        assert_near(from[5] - from[2], from[0] * share, 1e-9);
+    }
+    size_t one = lines->count;
+    OK(skein_force_add(world, "potential", SKEIN_SETTINGS(SKEIN_TEXT("energy", "dot(p, p)")), NULL));
+    assert_true(update(world)->lines[RENDER_FIELDS].count > one + 100);
+    OK(skein_set(world, whirl, "visible", skein_number(0)));
+    assert_true(update(world)->lines[RENDER_FIELDS].count < 2 * one);
+    view.fields = false;
+    assert_int_equal(update(world)->lines[RENDER_FIELDS].count, 0);
+    skein_world_destroy(world);
+}
+
 static void contacts_are_lines_on_the_collider(void **state) {
     (void)state;
     skein_world *world = skein_world_create(NULL, NULL);
@@ -641,6 +677,7 @@ int main(void) {
         VIEW_TEST(a_surface_is_coloured_by_strain_and_speed),
         VIEW_TEST(bodies_differ_by_colour),
         VIEW_TEST(normals_and_velocities_are_lines),
+        VIEW_TEST(fields_are_arrows),
         VIEW_TEST(contacts_are_lines_on_the_collider),
         VIEW_TEST(colliders_follow_at_once),
         VIEW_TEST(ground_grid_and_axes),

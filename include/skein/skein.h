@@ -438,6 +438,12 @@ skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, s
 skein_status skein_collider_probe(const skein_world *world, skein_handle collider, size_t count, const double *points,
                                   double *distances, double *normals);
 
+/* What a force field or a potential does now to a particle that rests at each of `count` points (count x 3): `forces`
+ * (count x 3) in m/s2 where its formula is per mass, else in N. Fails with SKEIN_ERROR_HANDLE where there is no such
+ * force, with SKEIN_ERROR_VALUE for one that is no field by formula, and with SKEIN_ERROR_MEMORY. */
+skein_status skein_force_probe(const skein_world *world, skein_handle force, size_t count, const double *points,
+                               double *forces);
+
 /* ---- What is where: for picking with a mouse, and for sensors ------------------------------------- */
 
 /* What a ray meets first. */

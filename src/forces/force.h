@@ -44,6 +44,9 @@ typedef struct sk_force_type {
     double (*potential)(const void *params, const double x[3], double mass, double time);
     /* Whether a value had to be guarded (formula/graph.h): for the statistics; NULL: there is nothing to guard. */
     bool (*guarded)(const void *params, const double x[3], const double v[3], double time);
+    /* Of a field that a formula gives: the force on 1 kg, or on a particle where mass does not count, that rests at x.
+     * False where there is no memory. NULL: it is no such field. */
+    bool (*at)(const void *params, const double x[3], double time, double force[3]);
     const sk_making *making; /* what is made from its texts; NULL: nothing */
     /* Over particles, of a rule that looks where one of them is: which; that one it does not move. -1, or NULL: none.
      * On a card its position is in the first three numbers of the block. */

@@ -148,6 +148,16 @@ static bool is_guarded(const void *data, const double x[3], const double v[3], d
     return guarded;
 }
 
+static bool at(const void *data, const double x[3], double time, double force[3]) {
+    const force_field_params *params = data;
+    static const double rests[3];
+    skein_formula_point point = {.positions = x, .velocities = rests, .parameters = params->parameter, .time = time};
+    skein_formula_value value;
+    if (skein_formula_evaluate(params->force->formula, &point, &value, NULL)) return false;
+    for (int k = 0; k < 3; k++) force[k] = value.number[k];
+    return true;
+}
+
 #define SK_KERNELS "forces/force_field.c"
 #include "base/for_each_isa.h"
 
@@ -162,6 +172,7 @@ const sk_force_type sk_force_field = {
     .apply = {SK_EACH_ISA(apply)},
     .diagonal = {SK_EACH_ISA(diagonal)},
     .guarded = is_guarded,
+    .at = at,
     .making = &making,
     .shader = {.file = "forces/force_field",
                .size = 1 + SK_POINTWISE_BLOCK,

@@ -53,6 +53,22 @@ skein_status skein_collider_probe(const skein_world *world, skein_handle handle,
     return SKEIN_OK;
 }
 
+skein_status skein_force_probe(const skein_world *world, skein_handle handle, size_t count, const double *points,
+                               double *forces) {
+    const sk_object *object = sk_object_of(world, handle);
+    skein_error *error = sk_world_error(world);
+    if (!object || object->category != SKEIN_FORCE)
+        return sk_fail(error, SKEIN_ERROR_HANDLE, "",
+                       "there is no such force: its handle is stale, or of another category");
+    const sk_force *force = object->as.force;
+    if (!force->type->at)
+        return sk_fail(error, SKEIN_ERROR_VALUE, "", "%s is no field that a formula gives", object->kind->name);
+    for (size_t i = 0; i < count; i++)
+        if (!force->type->at(force->params, points + 3 * i, world->time, forces + 3 * i))
+            return sk_fail_memory(error, "a formula's value");
+    return SKEIN_OK;
+}
+
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count) {
     const sk_particles *all = &world->particles;
     skein_status status = sk_world_fetch(world);
