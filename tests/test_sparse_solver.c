@@ -355,7 +355,8 @@ static void cholmod_solves_what_blocks_leave(void **state) {
     enum { STEPS = 10 };
     size_t left[2] = {0, 0}, iterations[2] = {0, 0};
     for (int cholesky = 0; cholesky < 2; cholesky++) {
-        skein_world *world = stiff_cloth(17, 1, cholesky, 12);
+        skein_world *world =
+            stiff_cloth(17, 1, cholesky, sizeof(skein_real) == 8 ? 40 : 12); // rounding ends them in float
         for (int n = 0; n < STEPS; n++) {
             steps(world, 1, 1.0 / 30);
             skein_statistics s = statistics_of(world);
