@@ -6,7 +6,8 @@
 #ifndef SK_BASE_ISA_H
 #define SK_BASE_ISA_H
 
-/* SK_ONE_ISA builds the plain version alone: sanitizers take minutes for each of the others. */
+/* SK_ONE_ISA (SKEIN_ONE_ISA in CMake) builds the plain version alone: the others take minutes to build, with sanitizers
+ * above all. */
 #if defined(__x86_64__) && !defined(SK_ONE_ISA)
 #define SK_X86_ISAS
 typedef enum sk_isa { SK_ISA_SSE, SK_ISA_AVX2, SK_ISA_AVX512, SK_ISA_COUNT } sk_isa;
