@@ -20,8 +20,8 @@ extern "C" {
 /* Whether Skein was built with CHOLMOD. */
 bool skein_cholmod_is_here(void);
 
-/* Gives the world a solver of its own, which goes with it. It takes its memory from the C library: about a kilobyte a
- * particle of a cloth once a plan is made, more for bodies. Fails with SKEIN_ERROR_MEMORY, or with SKEIN_ERROR_VALUE
+/* Gives the world a solver of its own, which goes with it. It takes its memory from the C library: the factor of a
+ * cloth of 65 x 65 is 1.9 million numbers, 15 MB. Fails with SKEIN_ERROR_MEMORY, or with SKEIN_ERROR_VALUE
  * where CHOLMOD is not here; `error` may be NULL. */
 skein_status skein_cholmod_attach(skein_world *world, skein_error *error);
 
