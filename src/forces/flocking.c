@@ -259,11 +259,10 @@ static void SK_ISA(fly)(sk_run *run, const sk_row *row, size_t begin, size_t end
     if (!cells->count) return; // nobody is near, or there is no memory for the cells
     if (among && end > cells->count) end = cells->count;
     for (size_t i = begin; i < end; i++) {
-        uint32_t slot = among ? cells->record[i].slot : run->slot_of[i];
-        // records are padded; their slots are anywhere in memory
+        uint32_t slot = among ? cells->slot[i] : run->slot_of[i];
+        // slots may be anywhere in memory
         if (among)
-            __builtin_prefetch(
-                &run->vector[row->dst][cells->record[i + SK_ISA(AHEAD) < end ? i + SK_ISA(AHEAD) : i].slot], 1);
+            __builtin_prefetch(&run->vector[row->dst][cells->slot[i + SK_ISA(AHEAD) < end ? i + SK_ISA(AHEAD) : i]], 1);
         sk_vec3 p = among ? sk_v3(cells->x[i], cells->y[i], cells->z[i])
                           : sk_xyz(sk_load(run->vector[SK_X], row->packed, slot));
         near.heading = sk_v3(0, 0, 0);
