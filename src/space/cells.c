@@ -171,18 +171,19 @@ void sk_cells_settle(sk_cells *cells, const sk_state *state, size_t begin, size_
     *first = begin < cells->count ? begin : cells->count, *last = end < cells->count ? end : cells->count;
     if (cells->in_order || *first == *last) return;
     *first = next_beginning(cells, *first), *last = next_beginning(cells, *last);
-    uint32_t cell = SK_NOWHERE, particle = 0; // of the place before
+    // cells ascend from place to place; cell and particle as one number are to do so, too: one branch, hardly ever taken
+    uint64_t before = 0;
     for (size_t place = *first; place < *last; place++) {
-        uint32_t here = cells->cell[cells->slot[place] - cells->group.first_slot],
-                 next = state->particle_of[cells->slot[place]];
-        if ((here == cell) & (next < particle)) {
-            uint32_t *slot = cells->slot + cells->start[here];
-            size_t before = place - cells->start[here], members = cells->start[here + 1] - cells->start[here];
-            if (before < SMALL) move_forwards(slot, before + 1, state->particle_of);
+        uint32_t member = cells->slot[place], cell = cells->cell[member - cells->group.first_slot];
+        uint64_t here = (uint64_t)cell << 32 | state->particle_of[member];
+        if (here < before) {
+            uint32_t *slot = cells->slot + cells->start[cell];
+            size_t ahead = place - cells->start[cell], members = cells->start[cell + 1] - cells->start[cell];
+            if (ahead < SMALL) move_forwards(slot, ahead + 1, state->particle_of);
             else sort_as_heap(slot, members, state->particle_of);
-            next = state->particle_of[cells->slot[place]];
+            here = (uint64_t)cell << 32 | state->particle_of[cells->slot[place]];
         }
-        cell = here, particle = next;
+        before = here;
     }
 }
 
