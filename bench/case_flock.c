@@ -13,11 +13,22 @@ static void step(void *world) {
     bench_need(world, skein_world_step(world, dt));
 }
 
-/* Birds strewn evenly, so that each has about so many neighbours; `rules`: all that scenes/birds.json has. */
+/* The side of a cube in which birds strewn evenly have so many neighbours each in the mean. Those near its walls have
+ * fewer: of a ball of radius r, the part 1 - 9/8 p + 6/(5 pi) p^2 - p^3/(8 pi) is inside, with p = r/side. */
+static double side_for(double count, double neighbours, double reach) {
+    double full = cbrt(count / neighbours * 4.18879 * reach * reach * reach), side = full;
+    for (int turn = 0; turn < 20; turn++) {
+        double p = reach / side, inside = 1 - 1.125 * p + 0.381972 * p * p - 0.0397887 * p * p * p;
+        side = full * cbrt(inside);
+    }
+    return side;
+}
+
+/* Birds strewn evenly, with so many neighbours each in the mean; `rules`: all that scenes/birds.json has. */
 static skein_world *flock(double count, double neighbours, bool rules) {
     skein_world *world = bench_world(1);
     double reach = separation + alignment + cohesion;
-    double side = cbrt(count / neighbours * 4.18879 * reach * reach * reach);
+    double side = side_for(count, neighbours, reach);
     bench_need(world, skein_method_set(world, "symplectic_euler", SKEIN_SETTINGS(SKEIN_REAL("substeps", 1))));
     bench_need(world, skein_body_add(world, "flock", NULL,
                                      SKEIN_SETTINGS(SKEIN_REAL("count", count), SKEIN_VEC3("spread", side, side, side)),

@@ -150,7 +150,7 @@ skein_status render_flight_bring(render_flight *flight, const render_frame *fram
 
 /* ---- Drawing -------------------------------------------------------------------------------- */
 
-void render_flight_draw(const render_flight *flight, const render_frame *frame, bool depth) {
+void render_flight_draw(const render_flight *flight, const render_frame *frame, bool depth, size_t part) {
     GLuint program = depth ? flight->depth : flight->drawn;
     size_t first = 0;
     for (size_t i = 0; i < frame->bird_count; first += frame->birds[i].count, i++) {
@@ -168,6 +168,12 @@ void render_flight_draw(const render_flight *flight, const render_frame *frame, 
             glProgramUniform3f(program, 5, light[0], light[1], light[2]);
         }
         glBindVertexArray(flight->arrays);
-        glDrawArraysInstanced(GL_TRIANGLES, 0, bird_vertices, (GLsizei)birds->count);
+        size_t most = part ? 3 * part / bird_vertices + 1 : birds->count;
+        for (size_t from = 0; from < birds->count; from += most) {
+            size_t count = birds->count - from < most ? birds->count - from : most;
+            glProgramUniform1ui(program, 6, (GLuint)from);
+            glDrawArraysInstanced(GL_TRIANGLES, 0, bird_vertices, (GLsizei)count);
+            if (part) glFinish();
+        }
     }
 }

@@ -24,7 +24,7 @@ skein_status render_flight_create(render_flight *flight, skein_error *error);
 void render_flight_destroy(render_flight *flight);
 /* Brings the frame's flocks to the card, and moves their wings on to the frame's time. */
 skein_status render_flight_bring(render_flight *flight, const render_frame *frame, skein_error *error);
-/* Draws them; with `depth`, for a light's map. */
-void render_flight_draw(const render_flight *flight, const render_frame *frame, bool depth);
+/* Draws them; with `depth`, for a light's map. `part`: so many triangles at a time, as draw.h says; 0: all. */
+void render_flight_draw(const render_flight *flight, const render_frame *frame, bool depth, size_t part);
 
 #endif

@@ -32,6 +32,7 @@ struct render_draw {
     render_instances balls, particles, lines;
     render_solids solids;
     render_flight flight;
+    size_t part;                        /* triangles that are drawn at a time; 0: all */
     const render_shape *particle_shape; /* in this frame */
     render_mesh *meshes;                /* by the surface's place in the frame */
     size_t mesh_count;
@@ -57,6 +58,8 @@ static const float lift = 5e-4f;
 /* Where edges are under so many pixels, shadows on surfaces are found by vertex: a pixel each would cost more and
  * show no more. */
 static const double fine_edge = 4.5;
+/* Pixels of a picture's height that are drawn at a time, where it is drawn in parts. */
+enum { band_height = 60, overlap = 4 };
 /* More particles than these have the coarser shape: they are small then, and a sphere each is a lot to draw. */
 enum { many_particles = 600 };
 /* Taps of a shadow's map. (Loops that the compiler cannot unroll end early where all of a pixel's neighbours have
@@ -139,6 +142,10 @@ void render_draw_destroy(render_draw *draw) {
     glDeleteVertexArrays(1, &draw->no_arrays);
     glDeleteBuffers(1, &draw->uniforms);
     free(draw);
+}
+
+void render_draw_in_parts(render_draw *draw, size_t triangles) {
+    draw->part = triangles;
 }
 
 /* ---- Bringing a frame to the card ----------------------------------------------------------- */
@@ -304,7 +311,13 @@ static void draw_surfaces(const render_draw *draw, const drawing *d, int twin) {
             render_set_material(program, &d->frame->surfaces[i]);
         }
         glBindVertexArray(mesh->arrays);
-        glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
+        size_t part = draw->part ? draw->part : mesh->triangle_count;
+        for (size_t t = 0; t < mesh->triangle_count; t += part) {
+            size_t count = mesh->triangle_count - t < part ? mesh->triangle_count - t : part;
+            const void *begin = (const void *)(uintptr_t)(3 * t * sizeof(uint32_t)); // an offset
+            glDrawElements(GL_TRIANGLES, (GLsizei)(3 * count), GL_UNSIGNED_INT, begin);
+            if (draw->part) glFinish();
+        }
     }
 }
 
@@ -325,7 +338,7 @@ static void draw_balls(const render_draw *draw, int twin) {
 static void draw_casters(const render_draw *draw, const drawing *d) {
     draw_surfaces(draw, d, DEPTH_ONLY);
     draw_balls(draw, DEPTH_ONLY);
-    render_flight_draw(&draw->flight, d->frame, true);
+    render_flight_draw(&draw->flight, d->frame, true, draw->part);
     render_solids_draw_depth(&draw->solids, d->frame);
 }
 
@@ -340,11 +353,46 @@ static void draw_light(const render_draw *draw, const drawing *d) {
         draw_casters(draw, d);
         draw_slabs(draw, d, DEPTH_ONLY);
     }
+    if (draw->part) glFinish();
     if (render_light_begin_below(&draw->light)) {
         use_pass(draw, RENDER_PASS_BELOW);
         draw_casters(draw, d);
         render_light_end_below(&draw->light);
     }
+    if (draw->part) glFinish();
+}
+
+/* What covers much of a picture, with few triangles. */
+static void draw_still(const render_draw *draw, const drawing *d) {
+    render_solids_draw(&draw->solids, d->frame);
+    draw_slabs(draw, d, 0);
+    draw_ground(draw, d);
+}
+
+/* The sky fills what is left, so that colours need no clearing. */
+static void draw_sky(const render_draw *draw, const drawing *d) {
+    (void)d;
+    glDepthFunc(GL_GEQUAL);
+    glUseProgram(draw->programs[SKY]);
+    glBindVertexArray(draw->no_arrays);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthFunc(GL_GREATER);
+}
+
+/* Where a picture is drawn in parts, those are parts of its height here, for what may be drawn twice: they overlap,
+ * since llvmpipe leaves samples out along a scissor's edge. */
+static void in_bands(const render_draw *draw, const drawing *d, void (*part)(const render_draw *, const drawing *)) {
+    if (!draw->part) {
+        part(draw, d);
+        return;
+    }
+    glEnable(GL_SCISSOR_TEST);
+    for (int y = 0; y < d->height; y += band_height) {
+        glScissor(0, y - overlap, d->width, band_height + 2 * overlap);
+        part(draw, d);
+        glFinish();
+    }
+    glDisable(GL_SCISSOR_TEST);
 }
 
 static void draw_picture(const render_draw *draw, const drawing *d, unsigned framebuffer) {
@@ -364,18 +412,10 @@ static void draw_picture(const render_draw *draw, const drawing *d, unsigned fra
     glDepthFunc(GL_GREATER);
     draw_surfaces(draw, d, 0);
     draw_balls(draw, 0);
-    render_flight_draw(&draw->flight, d->frame, false);
-    render_solids_draw(&draw->solids, d->frame);
-    draw_slabs(draw, d, 0);
-    draw_ground(draw, d);
-    render_instances_draw_lines(&draw->lines, draw->programs[LINE], d->frame, d->width, d->height);
-
-    // the sky fills what is left, so that colours need no clearing
-    glDepthFunc(GL_GEQUAL);
-    glUseProgram(draw->programs[SKY]);
-    glBindVertexArray(draw->no_arrays);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glDepthFunc(GL_GREATER);
+    render_flight_draw(&draw->flight, d->frame, false, draw->part);
+    in_bands(draw, d, draw_still);
+    render_instances_draw_lines(&draw->lines, draw->programs[LINE], d->frame, d->width, d->height, draw->part);
+    in_bands(draw, d, draw_sky);
     render_solids_draw_glass(&draw->solids, d->frame);
 }
 

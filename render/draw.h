@@ -18,6 +18,10 @@ typedef struct render_draw render_draw;
 render_draw *render_draw_create(skein_error *error);
 void render_draw_destroy(render_draw *draw); /* NULL is allowed; the context must be current */
 
+/* Draws so many triangles at a time, and waits until they are there (0, as at first: all at once). A driver takes what
+ * several contexts ask for one after the other: in between, another one gets its turn. */
+void render_draw_in_parts(render_draw *draw, size_t triangles);
+
 /* Draws a frame into a framebuffer that has sRGB colour and float depth (see target.h). */
 skein_status render_draw_frame(render_draw *draw, const render_frame *frame, const render_camera *camera,
                                unsigned framebuffer, int width, int height, skein_error *error);

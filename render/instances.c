@@ -164,14 +164,19 @@ skein_status render_instances_bring_lines(render_instances *instances, const ren
 /* ---- Drawing -------------------------------------------------------------------------------- */
 
 void render_instances_draw_lines(const render_instances *instances, unsigned program, const render_frame *frame,
-                                 int width, int height) {
+                                 int width, int height, size_t part) {
     GLuint first = 0;
     glUseProgram(program);
     glBindVertexArray(instances->arrays);
     for (size_t i = 0; i < frame->lines_count; i++) {
         const render_lines *lines = &frame->lines[i];
         glProgramUniform3f(program, 0, 1.0f / (float)width, 1.0f / (float)height, (float)lines->width);
-        glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)lines->count, first);
+        size_t most = part ? part / 2 + 1 : lines->count;
+        for (size_t from = 0; from < lines->count; from += most) {
+            size_t count = lines->count - from < most ? lines->count - from : most;
+            glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)count, first + (GLuint)from);
+            if (part) glFinish();
+        }
         first += (GLuint)lines->count;
     }
 }

@@ -36,6 +36,6 @@ skein_status render_instances_bring_lines(render_instances *instances, const ren
 
 /* All of a frame's lines, which were brought before, each group in its width. */
 void render_instances_draw_lines(const render_instances *instances, unsigned program, const render_frame *frame,
-                                 int width, int height);
+                                 int width, int height, size_t part);
 
 #endif

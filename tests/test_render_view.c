@@ -664,6 +664,43 @@ static void the_driver_had_nothing_to_say(void **state) {
     assert_int_equal(messages->warnings, 0);
 }
 
+/* A cloth with its springs, birds, a ball, a glass bowl, walls and ground: of each, more than one part, or a band. */
+static void a_picture_drawn_in_parts_is_the_same(void **state) {
+    (void)state;
+    skein_world *world = upright_cloth();
+    OK(skein_body_add(world, "flock", NULL,
+                      SKEIN_SETTINGS(SKEIN_REAL("count", 90), SKEIN_VEC3("spread", 3, 2, 2), SKEIN_REAL("speed", 1)),
+                      NULL));
+    OK(skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_VEC3("centre", 1, 0.4, 0.5), SKEIN_REAL("radius", 0.3)),
+                          NULL));
+    OK(skein_collider_add(world, "bowl",
+                          SKEIN_SETTINGS(SKEIN_VEC3("centre", -0.8, 0.6, 0.5), SKEIN_REAL("radius", 0.5)), NULL));
+    OK(skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", 0)), NULL));
+    OK(skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_VEC3("normal", 0, 0.2, 1), SKEIN_REAL("offset", -2)),
+                          NULL));
+    view.springs = view.wireframe = view.axes = true;
+    render_image whole = picture_of(world);
+    static const size_t parts[] = {1000, 7, 1};
+    for (size_t i = 0; i < 3; i++) {
+        render_draw_in_parts(draw, parts[i]);
+        render_image image = picture_of(world);
+        assert_memory_equal(whole.pixels, image.pixels, (size_t)width * height * 3);
+        render_image_release(&image);
+    }
+    render_draw_in_parts(draw, 0);
+    // what was drawn is there: without the birds, and without the springs, it is another picture
+    view.birds = false;
+    render_image other = picture_of(world);
+    assert_true(difference(&whole, &other, 20) > 1e-3);
+    render_image_release(&other);
+    view.birds = true, view.springs = view.wireframe = false;
+    other = picture_of(world);
+    assert_true(difference(&whole, &other, 20) > 1e-3);
+    render_image_release(&other);
+    render_image_release(&whole);
+    skein_world_destroy(world);
+}
+
 int main(void) {
 #define VIEW_TEST(f_) cmocka_unit_test_setup_teardown(f_, set_up_view, tear_down_view)
     const struct CMUnitTest tests[] = {
@@ -688,6 +725,7 @@ int main(void) {
         VIEW_TEST(images_that_cannot_be_read_are_told),
         VIEW_TEST(the_camera_stands_where_it_is_told),
         VIEW_TEST(a_camera_that_frames_by_itself_can_be_turned_and_zoomed),
+        VIEW_TEST(a_picture_drawn_in_parts_is_the_same),
         cmocka_unit_test(the_driver_had_nothing_to_say),
     };
     if (!mkdtemp(directory)) return 1;

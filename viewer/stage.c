@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -230,6 +231,8 @@ static void turn(viewer_stage *stage) {
 static void *stage_thread(void *data) {
     viewer_stage *stage = data;
     skein_error error = {SKEIN_OK, "", ""};
+    // the window's own thread is to be served first; on Linux this is the thread's, and that of those it starts
+    if (nice(5) == -1) viewer_event(stage->events, "the stage is no nicer than the window");
     glfwMakeContextCurrent(stage->context);
     if (viewer_pictures_open(stage, &error)) {
         stage->last = stage->spoke = viewer_seconds();

@@ -61,6 +61,7 @@ typedef struct viewer_stage {
     double simulated, real, speed;         /* seconds since the last look, and their ratio */
     bool slow, told_slow;                  /* now; was said of this scene */
     double step_ms, draw_ms;
+    bool in_parts; /* the next picture is drawn in parts: the last took long, or nobody knows yet */
 
     /* files */
     film *film;

@@ -10,6 +10,10 @@
 
 #include "viewer/stage.h"
 
+/* A picture that takes so long is drawn in parts: of so many triangles, some milliseconds' worth without a card. */
+static const double long_ms = 25;
+enum { part_of_picture = 4096 };
+
 int viewer_side_width(const viewer_stage *stage, size_t side, int *x) {
     size_t count = stage->side_count ? stage->side_count : 1;
     int left = (int)((size_t)stage->width * side / count), right = (int)((size_t)stage->width * (side + 1) / count);
@@ -102,6 +106,8 @@ bool viewer_draw(viewer_stage *stage) {
     if (!viewer_pictures_size(stage, stage->wide > 0 ? stage->wide : 1, stage->tall > 0 ? stage->tall : 1))
         return false;
     double start = viewer_seconds();
+    // where that takes long, the window's panels are drawn in between
+    render_draw_in_parts(stage->draw, stage->in_parts ? part_of_picture : 0);
     for (size_t s = 0; s < stage->side_count; s++)
         if (!draw_side(stage, s)) return false;
     int place = free_place(stage), height = stage->height;
@@ -120,6 +126,7 @@ bool viewer_draw(viewer_stage *stage) {
     }
     glFinish(); // the other context sees what is finished
     stage->draw_ms = 1e3 * (viewer_seconds() - start);
+    stage->in_parts = stage->draw_ms > long_ms;
     stage->newest = place;
     return true;
 }

@@ -58,6 +58,7 @@ void viewer_stage_open(viewer_stage *stage, const char *path, const char *const 
     end_compare(stage);
     stage->panel[VIEWER_PANEL_GALLERY] = false;
     stage->camera.placed = false;
+    stage->in_parts = true;
     viewer_watch(stage, true);
     restart_clock(stage);
     const char *name = stage->sides[0].settings.name;

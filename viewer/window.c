@@ -189,6 +189,18 @@ static void show_picture(window *w, int width, int height) {
                            GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
 }
 
+/* Shows a picture of a few pixels (no power of two, which some drivers treat apart), as large and stretched: the driver
+ * makes what it needs for that before anybody waits for it (60 ms, on llvmpipe). */
+static void rehearse(const window *w) {
+    unsigned picture;
+    glCreateRenderbuffers(1, &picture);
+    glNamedRenderbufferStorage(picture, GL_SRGB8_ALPHA8, 7, 7);
+    glNamedFramebufferRenderbuffer(w->framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, picture);
+    glBlitNamedFramebuffer(w->framebuffer, 0, 0, 0, 7, 7, 0, 0, 7, 7, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBlitNamedFramebuffer(w->framebuffer, 0, 0, 0, 7, 7, 0, 0, 5, 7, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+    glDeleteRenderbuffers(1, &picture);
+}
+
 /* The window as it is, with its panels. */
 static void save_window(window *w, int width, int height) {
     render_image image = {0};
@@ -320,6 +332,7 @@ static skein_status run(window *w, skein_error *error) {
     glfwSwapInterval(1);
     render_messages_attach(&w->messages);
     glCreateFramebuffers(1, &w->framebuffer);
+    rehearse(w);
     set_callbacks(w);
     if (!viewer_exchange_open(&w->exchange, &w->events) || !widgets_open(w->glfw, scale_of(w)))
         return render_fail(error, SKEIN_ERROR_MEMORY, "window", "out of memory");

@@ -2,6 +2,7 @@
 layout(location = 0) in vec4 place; // of the mesh; w: 1 on wings
 layout(std430, binding = 3) restrict readonly buffer postures_block { vec4 postures[]; };
 layout(location = 3) uniform float size; // half the span
+layout(location = 6) uniform uint from;  // instances that are drawn already
 
 out vec3 world;
 #ifdef FINE
@@ -12,7 +13,7 @@ flat out vec3 light_here; // as for balls
 #endif
 
 void main() {
-    uint bird = bird_of(uint(gl_InstanceID)), slot = slot_of(uint(gl_InstanceID));
+    uint instance = uint(gl_InstanceID) + from, bird = bird_of(instance), slot = slot_of(instance);
     vec3 at = positions[slot].xyz, v = velocities[slot].xyz;
     vec4 posture = postures[first + bird];
     float speed = length(v);

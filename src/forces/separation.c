@@ -15,43 +15,31 @@ static double radius(const void *params) {
     return ((const separation_params *)params)->radius;
 }
 
-/* The push on one particle from the cells of one row [first, last] along x. */
-static sk_vec3 push_of_range(const sk_grid *grid, uint32_t first, uint32_t last, sk_vec3 p, real reach, real strength) {
+/* The push on the particle at a place. */
+static sk_vec3 push_at(const sk_cells *cells, size_t place, real reach, real strength) {
+    const sk_vec3 here = {cells->x[place], cells->y[place], cells->z[place]};
     sk_vec3 push = {0, 0, 0};
-    for (uint32_t k = grid->cell_start[first]; k < grid->cell_start[last + 1]; k++) {
-        sk_vec3 d = sk_sub(p, sk_xyz(grid->position[k]));
-        real distance = sk_length(d);
-        // at distance 0 there is no direction (and the particle itself is there)
-        if (!(distance > 0) || !(distance < reach)) continue;
-        push = sk_add(push, sk_scale(strength * (1 - distance / reach) / distance, d));
-    }
+    uint32_t range[9][2];
+    int ranges = sk_cells_ranges(cells, here, reach, range);
+    for (int r = 0; r < ranges; r++)
+        for (uint32_t k = range[r][0]; k < range[r][1]; k++) {
+            sk_vec3 d = sk_sub(here, sk_v3(cells->x[k], cells->y[k], cells->z[k]));
+            real distance = sk_length(d);
+            // at distance 0 there is no direction (and the particle itself is there)
+            if (!(distance > 0) || !(distance < reach)) continue;
+            push = sk_add(push, sk_scale(strength * (1 - distance / reach) / distance, d));
+        }
     return push;
 }
 
+/* Elements are places. */
 static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const separation_params *params = ((const sk_force *)row->rule)->params;
-    const sk_grid *grid = run->grid;
-    const sk_vec4 *x = run->vector[SK_X];
-    sk_vec4 *f = run->vector[row->dst];
-    real reach = (real)params->radius, strength = (real)params->strength;
-    if (!grid->count) return; // nobody is near, or the grid could not be built
-    for (size_t i = begin; i < end; i++) {
-        uint32_t cell = grid->cell_of[i];
-        if (cell == SK_NO_CELL) continue;
-        uint32_t slot = run->slot_of[i];
-        int32_t cx = (int32_t)(cell % (uint32_t)grid->cells_x), rest = (int32_t)(cell / (uint32_t)grid->cells_x);
-        int32_t cy = rest % grid->cells_y, cz = rest / grid->cells_y;
-        int32_t x0 = cx > 0 ? cx - 1 : 0, x1 = cx + 1 < grid->cells_x ? cx + 1 : cx;
-        sk_vec3 push = {0, 0, 0}, here = sk_xyz(sk_load(x, row->packed, slot));
-        for (int32_t z = cz - 1; z <= cz + 1; z++)
-            for (int32_t y = cy - 1; y <= cy + 1; y++) {
-                if (y < 0 || z < 0 || y >= grid->cells_y || z >= grid->cells_z) continue;
-                int32_t line = grid->cells_x * (y + grid->cells_y * z);
-                push = sk_add(push,
-                              push_of_range(grid, (uint32_t)(line + x0), (uint32_t)(line + x1), here, reach, strength));
-            }
-        sk_add_at(f, row->packed, slot, push);
-    }
+    const sk_cells *cells = run->cells;
+    if (end > cells->count) end = cells->count;
+    for (size_t place = begin; place < end; place++)
+        sk_add_at(run->vector[row->dst], row->packed, cells->slot[place],
+                  push_at(cells, place, (real)params->radius, (real)params->strength));
 }
 
 static void pack(const void *data, float (*block)[4]) {

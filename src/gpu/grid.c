@@ -112,7 +112,9 @@ skein_status sk_gpu_grid_make(sk_gpu_device *device, skein_world *world, skein_e
 }
 
 void sk_gpu_grid_pack(const sk_gpu_grid *grid, const sk_row *row, float (*block)[4]) {
-    const uint32_t head[4] = {(uint32_t)(row->end - row->begin), (uint32_t)(grid->room - 2), (uint32_t)row->begin, 0};
+    const sk_group *group = row->group;
+    const uint32_t head[4] = {(uint32_t)(group->end - group->first), (uint32_t)(grid->room - 2), (uint32_t)group->first,
+                              0};
     memcpy(block[0], head, sizeof head);
     block[1][0] = (float)row->coefficient[0];
 }

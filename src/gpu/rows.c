@@ -107,7 +107,7 @@ bool sk_gpu_row_knows_no_slots(const sk_row *row, size_t particle_count) {
     const sk_force *force = force_of(row);
     if (is_avoid(row)) return row->group->first == 0 && row->group->end == particle_count;
     if (sk_gpu_row_looks(row)) return false;
-    if (row->kind == SK_ROW_GRID) return row->begin == 0; // the rows of one sort have the same end, or fewer places
+    if (row->kind == SK_ROW_GRID) return row->group->first == 0 && row->group->end == particle_count;
     return !force || force->type->deed == SK_PUSHES || sk_gpu_row_everyone(row, particle_count);
 }
 

@@ -74,14 +74,6 @@ void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_v
     add_combine(writer, &sk_combine_kick, dst, a, p, 0, q);
 }
 
-/* The grid's row: sorts all particles into cells of at least coefficient[0]. */
-static void build_grid(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    (void)begin;
-    if (!sk_grid_build(run->grid, run->allocator, run->vector[row->source[0]], row->packed, run->slot_of, end,
-                       (real)row->coefficient[0]))
-        run->no_memory = true;
-}
-
 static bool pushes(const sk_force *force) {
     return *force->enabled && force->type->deed == SK_PUSHES;
 }
@@ -102,14 +94,7 @@ void sk_write_fields(sk_writer *writer) {
     const sk_rules *rules = writer->rules;
     bool first = true; // gravity and the like set F when they come first; others add to a cleared one
     double radius = widest_radius(rules);
-    if (radius > 0)
-        sk_add_row(writer, (sk_row){.kind = SK_ROW_GRID,
-                                    .order = SK_ORDERED,
-                                    .kernel = build_grid,
-                                    .source = {SK_X},
-                                    .coefficient = {radius},
-                                    .label = "cells",
-                                    .end = writer->particle_count});
+    if (radius > 0) sk_write_cells(writer, writer->everybody, radius);
     for (size_t i = 0; i < rules->forces.count; i++) {
         const sk_force *force = rules->forces.data[i];
         if (!pushes(force)) continue;

@@ -34,6 +34,7 @@ typedef struct sk_writer {
     const sk_rules *rules;
     sk_isa isa;
     size_t slot_count, particle_count, triangle_count;
+    const sk_group *everybody;
     size_t strip_slots; /* the first slots, which are in strips */
     size_t packed;      /* the first slots that are in packed blocks now */
     double h;           /* of the present substep, s */
@@ -64,7 +65,9 @@ size_t sk_write_predicted_repeat(sk_writer *writer, size_t times, double h, int 
  * substep, the same row predicts for the next one. */
 void sk_write_following(sk_writer *writer, int passes);
 
-/* F = all forces on X moving with V: the grid if a rule wants neighbours, then fields and neighbours. */
+/* The rows that sort a group into cells of at least `radius`; the group stays where it is while the plan does. */
+void sk_write_cells(sk_writer *writer, const sk_group *group, double radius);
+/* F = all forces on X moving with V: the cells if a rule wants neighbours, then fields and neighbours. */
 void sk_write_fields(sk_writer *writer);
 /* V += what the rules that steer ask for, then bounds on V: once a substep, see writer_steer.c. */
 void sk_write_steering(sk_writer *writer);

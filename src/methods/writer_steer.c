@@ -1,7 +1,7 @@
 /* Rows of rules that steer: what adds to velocities once a substep, whatever the method.
  *
  *   S = 0                       what the rules ask for; in w, how much more speed is allowed
- *   grid (five rows)            who is near whom, for each rule that looks at neighbours: it sorts its own particles
+ *   grid (four rows)            who is near whom, for each rule that looks at neighbours: it sorts its own particles
  *   S += neighbours, then all other rules that steer, in the order of their making: all look at the same X and V
  *   V += S
  *   V bounded                   speed limits and the like
@@ -24,18 +24,20 @@ bool sk_writes_steering(const sk_rules *rules) {
     return has(rules, SK_STEERS) || has(rules, SK_BOUNDS);
 }
 
-static void write_cells(sk_writer *writer, const sk_group *group, double radius) {
+void sk_write_cells(sk_writer *writer, const sk_group *group, double radius) {
     for (int i = 0; i < SK_SORT_ROWS; i++) {
         const sk_sort_row *part = &sk_sort_rows[i];
-        sk_add_row(writer, (sk_row){.kind = SK_ROW_GRID,
-                                    .order = part->order,
-                                    .kernel = part->kernels.version[writer->isa],
-                                    .source = {SK_X, SK_V},
-                                    .coefficient = {radius},
-                                    .label = part->label,
-                                    .by_particle = true,
-                                    .begin = part->by_place ? 0 : group->first,
-                                    .end = part->by_place ? group->end - group->first : group->end});
+        sk_add_row(writer,
+                   (sk_row){.kind = SK_ROW_GRID,
+                            .order = part->order,
+                            .kernel = part->kernels.version[writer->isa],
+                            .source = {SK_X, SK_V},
+                            .coefficient = {radius},
+                            .group = group,
+                            .label = part->label,
+                            .by_particle = true,
+                            .begin = part->by_place ? 0 : group->first_slot / 16 * 16,
+                            .end = part->by_place ? group->end - group->first : (group->end_slot + 15) / 16 * 16});
     }
 }
 
@@ -55,7 +57,7 @@ static void write_neighbours(sk_writer *writer, const sk_force *force) {
     double radius = force->type->radius(force->params);
     if (!(radius > 0)) return; // there are no neighbours
     bool among = force->moved.first == force->seen.first && force->moved.end == force->seen.end;
-    write_cells(writer, &force->seen, radius);
+    sk_write_cells(writer, &force->seen, radius);
     sk_add_row(writer, (sk_row){.kind = SK_ROW_NEIGHBOUR,
                                 .order = SK_FREE,
                                 .kernel = force->type->kernel.version[writer->isa],

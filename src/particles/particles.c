@@ -52,6 +52,7 @@ static bool reserve(sk_particles *particles, sk_allocator *allocator, size_t par
         drop_temporaries(particles, allocator);
         for (int v = SK_X; v < SK_T0; v++)
             if (!grow(allocator, (void **)&particles->vector[v], old, room, sizeof(sk_vec4))) return false;
+        if (!grow(allocator, (void **)&particles->particle_of, old, room, sizeof(uint32_t))) return false;
         particles->slot_capacity = room;
     }
     if (particle_need > particles->capacity) {
@@ -72,11 +73,13 @@ bool sk_particles_add(sk_particles *particles, sk_allocator *allocator, size_t c
                       const double *velocities, const double *masses) {
     size_t first_slot = particles->slot_count, slots = (count + 15) / 16 * 16;
     if (!reserve(particles, allocator, particles->count + count, first_slot + slots + 16)) return false;
+    for (size_t s = first_slot; s < first_slot + slots; s++) particles->particle_of[s] = SK_NOBODY;
     for (size_t k = 0; k < count; k++) {
         size_t i = particles->count + k, s = first_slot + k;
         const double *p = positions + 3 * k, *v = velocities ? velocities + 3 * k : (const double[3]){0, 0, 0};
         real mass = (real)masses[k];
         particles->slot_of[i] = (uint32_t)s;
+        particles->particle_of[s] = (uint32_t)i;
         particles->rank[i] = (uint32_t)i;
         particles->built[i] = sk_v3_of(p);
         particles->mass[i] = mass;
@@ -103,11 +106,20 @@ bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, s
 }
 
 void sk_particles_truncate(sk_particles *particles, size_t count) {
-    for (size_t i = count; i < particles->count; i++)
-        for (int v = SK_X; v < SK_T0; v++) particles->vector[v][particles->slot_of[i]] = (sk_vec4){0, 0, 0, 0};
+    for (size_t i = count; i < particles->count; i++) {
+        uint32_t slot = particles->slot_of[i];
+        particles->particle_of[slot] = SK_NOBODY;
+        for (int v = SK_X; v < SK_T0; v++) particles->vector[v][slot] = (sk_vec4){0, 0, 0, 0};
+    }
     while (particles->strips.count && particles->strips.data[particles->strips.count - 1].first_particle >= count)
         particles->strips.count--;
     particles->count = count;
+}
+
+static void swap(uint32_t **a, uint32_t **b) {
+    uint32_t *kept = *a;
+    *a = *b;
+    *b = kept;
 }
 
 /* Writes every particle's slot into `slot_of`: strips first. */
@@ -144,7 +156,8 @@ bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
     uint32_t *slot_of = sk_allocate(allocator, particles->capacity * sizeof *slot_of);
     sk_vec4 *vector[SK_VECTOR_COUNT] = {NULL};
     uint32_t *by_rank = sk_allocate(allocator, particles->count * sizeof *by_rank);
-    bool good = slot_of && by_rank;
+    uint32_t *particle_of = sk_allocate(allocator, slot_count * sizeof *particle_of);
+    bool good = slot_of && by_rank && particle_of;
     for (size_t i = 0; i < particles->count && good; i++) by_rank[particles->rank[i]] = (uint32_t)i;
     for (int v = SK_X; v < SK_T0 && good; v++)
         good = (vector[v] = sk_allocate_shifted(allocator, slot_count * sizeof(sk_vec4), apart(v))) != NULL;
@@ -158,9 +171,10 @@ bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
             particles->vector[v] = vector[v];
             vector[v] = old;
         }
-        uint32_t *old = particles->slot_of;
-        particles->slot_of = slot_of;
-        slot_of = old;
+        memset(particle_of, 0xff, slot_count * sizeof *particle_of);
+        for (size_t i = 0; i < particles->count; i++) particle_of[slot_of[i]] = (uint32_t)i;
+        swap(&particles->slot_of, &slot_of);
+        swap(&particles->particle_of, &particle_of);
         drop_temporaries(particles, allocator);
         particles->slot_count = particles->slot_capacity = slot_count;
         particles->strip_slots = strip_slots;
@@ -169,6 +183,7 @@ bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
     }
     for (int v = SK_X; v < SK_T0; v++) sk_release(allocator, vector[v]);
     sk_release(allocator, slot_of);
+    sk_release(allocator, particle_of);
     sk_release(allocator, by_rank);
     return good;
 }
@@ -196,6 +211,7 @@ void sk_particle_hold(sk_particles *particles, size_t particle, bool held) {
 void sk_particles_release(sk_particles *particles, sk_allocator *allocator) {
     for (int v = SK_X; v < SK_VECTOR_COUNT; v++) sk_release(allocator, particles->vector[v]);
     sk_release(allocator, particles->slot_of);
+    sk_release(allocator, particles->particle_of);
     sk_release(allocator, particles->place);
     sk_release(allocator, particles->rank);
     sk_release(allocator, particles->built);

@@ -29,6 +29,7 @@ typedef struct sk_particles {
     bool arranged;                    /* slots are as the picture shows */
     sk_vec4 *vector[SK_VECTOR_COUNT]; /* slots; SK_NONE is unused, temporaries may be NULL */
     uint32_t *slot_of;
+    uint32_t *particle_of; /* slots; SK_NOBODY in empty ones */
     uint32_t *place; /* of particles in strips: row x columns + column in their grid */
     uint32_t *rank;  /* where a particle would like to lie: its own index, unless said otherwise */
     sk_vec3 *built;  /* positions as they were built, user's order */

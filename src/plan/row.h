@@ -16,7 +16,6 @@
 #include "base/memory.h"
 #include "base/vector.h"
 #include "space/cells.h"
-#include "space/grid.h"
 
 /* The state vectors, one sk_vec4 a slot. */
 typedef enum sk_vector {
@@ -72,12 +71,6 @@ typedef enum sk_row_kind {
  * Ordered: the sequential order is the answer. */
 typedef enum sk_order { SK_FREE, SK_ORDERED } sk_order;
 
-/* Particles of one body, or all: the user's indices, and the slots that they and nobody else lie in. */
-typedef struct sk_group {
-    size_t first, end;           /* particles */
-    size_t first_slot, end_slot; /* not always multiples of 16 */
-} sk_group;
-
 /* Triangles of all bodies' surfaces, as slots, for forces that act on areas. */
 typedef struct sk_triangles {
     uint32_t (*corner)[3];
@@ -88,10 +81,10 @@ typedef struct sk_triangles {
 typedef struct sk_run {
     sk_vec4 *vector[SK_VECTOR_COUNT];
     size_t slot_count;       /* a multiple of 16; slots without a particle are zero and weigh nothing */
-    const uint32_t *slot_of; /* of the user's particles */
+    const uint32_t *slot_of;     /* of the user's particles */
+    const uint32_t *particle_of; /* of slots: the user's index, or SK_NOBODY */
     size_t particle_count;
     const sk_triangles *triangles;
-    sk_grid *grid;
     sk_cells *cells;
     sk_allocator *allocator;
     double time;              /* at the end of the present substep, s */
@@ -127,7 +120,7 @@ struct sk_row {
     double dt;             /* of the substep, s */
     double before;         /* how long before the end of the substep the state is that it looks at, s */
     const void *rule;      /* a force, a collider, a batch */
-    const sk_group *group; /* whom it moves, where the rule does not say; NULL: everybody */
+    const sk_group *group; /* whom it moves or sorts, where the rule does not say; NULL: everybody */
     const char *label;     /* its name in `skein explain` */
     size_t begin, end;     /* elements; a repeat: the number of turns is `end` */
     bool sets;             /* a field row: F is written, not added to */

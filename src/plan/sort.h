@@ -1,18 +1,17 @@
 /* The rows that sort particles into cells, for rules that look at neighbours (space/cells.h), in this order.
  *
  *   frame     ordered   the cells' frame, and memory for all of it; coefficient[0] is the radius
- *   find      free      each particle's cell
- *   rank      ordered   each particle's place: a counting sort
- *   scatter   free      records to their places: the only one that jumps about in memory
- *   spread    free      positions and directions of flight, sixteen at a time; its elements are places
+ *   find      free      the cell of each slot's particle
+ *   rank      ordered   who is at which place: a counting sort
+ *   copy      free      cells put in the user's order; positions and directions of flight, by place
  *
- * The elements of the others are the user's particles. */
+ * The elements of the last are places, those of the others the slots of the row's group. */
 #ifndef SK_PLAN_SORT_H
 #define SK_PLAN_SORT_H
 
 #include "plan/row.h"
 
-enum { SK_SORT_ROWS = 5 };
+enum { SK_SORT_ROWS = 4 };
 
 typedef struct sk_sort_row {
     sk_kernels kernels;

@@ -2,8 +2,12 @@
 
 #include <string.h>
 
-/* Places beyond the last that a wide load may read. */
-enum { PADDING = 16 };
+enum {
+    PADDING = 16, /* places beyond the last that a wide load may read */
+    LAYER = 8,    /* lines of a layer */
+    FEW = 16,     /* so many lines are one layer */
+    SMALL = 32,   /* particles of a cell that one is put in order among */
+};
 
 /* Finite, and so far from overflow that the size of a box of such points is finite too. */
 static bool is_finite(sk_vec4 p) {
@@ -11,13 +15,17 @@ static bool is_finite(sk_vec4 p) {
     return sk_abs(p.x) <= most && sk_abs(p.y) <= most && sk_abs(p.z) <= most;
 }
 
+static bool is_in(const sk_group *group, uint32_t particle) {
+    return particle != SK_NOBODY && particle >= group->first && particle < group->end;
+}
+
 /* The box around the finite particles; a point where there are none. */
-static void find_bounds(const sk_state *state, size_t first, size_t end, sk_vec3 *low, sk_vec3 *high) {
+static void find_bounds(const sk_state *state, const sk_group *group, sk_vec3 *low, sk_vec3 *high) {
     bool any = false;
     *low = *high = (sk_vec3){0, 0, 0};
-    for (size_t i = first; i < end; i++) {
-        sk_vec4 p = sk_load(state->x, state->packed, state->slot_of[i]);
-        if (!is_finite(p)) continue;
+    for (size_t slot = group->first_slot; slot < group->end_slot; slot++) {
+        sk_vec4 p = sk_load(state->x, state->packed, slot);
+        if (!is_in(group, state->particle_of[slot]) || !is_finite(p)) continue;
         if (!any) *low = *high = sk_xyz(p);
         any = true;
         *low = sk_v3(sk_min(low->x, p.x), sk_min(low->y, p.y), sk_min(low->z, p.z));
@@ -26,13 +34,15 @@ static void find_bounds(const sk_state *state, size_t first, size_t end, sk_vec3
 }
 
 static size_t cell_count(const sk_cells *cells) {
-    return (size_t)cells->count_x * (size_t)cells->count_y * (size_t)cells->count_z;
+    size_t layers = ((size_t)cells->count_y + (size_t)cells->layer - 1) / (size_t)cells->layer;
+    return (size_t)cells->count_x * (size_t)cells->layer * layers * (size_t)cells->count_z;
 }
 
 /* Cells of `size` that cover the box, as a double so that it cannot overflow. */
 static double cells_needed(sk_vec3 extent, double size) {
-    return (SK_CELLS_ACROSS * (double)extent.x / size + 1) * ((double)extent.y / size + 1) *
-           ((double)extent.z / size + 1);
+    double lines = (double)extent.y / size + 1;
+    if (lines > FEW) lines += LAYER;
+    return (SK_CELLS_ACROSS * (double)extent.x / size + 1) * lines * ((double)extent.z / size + 1);
 }
 
 /* At most so many cells for `count` particles. */
@@ -40,31 +50,36 @@ static double most_cells(size_t count) {
     return count < 500000000 ? 4.0 * (double)count + 64 : 2e9;
 }
 
-bool sk_cells_reserve(sk_cells *cells, sk_allocator *allocator, size_t count) {
+bool sk_cells_reserve(sk_cells *cells, sk_allocator *allocator, const sk_group *group) {
+    size_t count = group->end - group->first;
     real **copies[6] = {&cells->x, &cells->y, &cells->z, &cells->ux, &cells->uy, &cells->uz};
     for (int k = 0; k < 6; k++)
         if (!sk_reserve(allocator, (void **)copies[k], &cells->copy_capacity[k], count + PADDING, sizeof(real)))
             return false;
-    return sk_reserve(allocator, (void **)&cells->start, &cells->start_capacity, (size_t)most_cells(count) + 2,
-                      sizeof *cells->start) &&
-           sk_reserve(allocator, (void **)&cells->record, &cells->record_capacity, count + PADDING,
-                      sizeof *cells->record) &&
-           sk_reserve(allocator, (void **)&cells->place, &cells->place_capacity, count, sizeof *cells->place);
+    size_t had = cells->cell_capacity;
+    bool good =
+        sk_reserve(allocator, (void **)&cells->start, &cells->start_capacity, (size_t)most_cells(count) + 2,
+                   sizeof *cells->start) &&
+        sk_reserve(allocator, (void **)&cells->slot, &cells->slot_capacity, count + PADDING, sizeof *cells->slot) &&
+        sk_reserve(allocator, (void **)&cells->cell, &cells->cell_capacity, group->end_slot - group->first_slot,
+                   sizeof *cells->cell);
+    // whoever was not looked for yet is nowhere
+    if (good && cells->cell_capacity > had) memset(cells->cell, 0xff, cells->cell_capacity * sizeof *cells->cell);
+    return good;
 }
 
-bool sk_cells_frame(sk_cells *cells, sk_allocator *allocator, const sk_state *state, size_t first, size_t end,
+bool sk_cells_frame(sk_cells *cells, sk_allocator *allocator, const sk_state *state, const sk_group *group,
                     real radius) {
     sk_vec3 low, high;
-    find_bounds(state, first, end, &low, &high);
-    return sk_cells_frame_box(cells, allocator, low, high, first, end, radius);
+    find_bounds(state, group, &low, &high);
+    return sk_cells_frame_box(cells, allocator, low, high, group, radius);
 }
 
-bool sk_cells_frame_box(sk_cells *cells, sk_allocator *allocator, sk_vec3 low, sk_vec3 high, size_t first, size_t end,
+bool sk_cells_frame_box(sk_cells *cells, sk_allocator *allocator, sk_vec3 low, sk_vec3 high, const sk_group *group,
                         real radius) {
-    size_t count = end - first;
     double size = (double)radius;
     sk_vec3 extent = sk_sub(high, low);
-    while (cells_needed(extent, size) > most_cells(count)) size *= 1.25;
+    while (cells_needed(extent, size) > most_cells(group->end - group->first)) size *= 1.25;
     cells->origin = low;
     cells->size = (real)size;
     cells->per_x = (real)(SK_CELLS_ACROSS / size);
@@ -72,55 +87,135 @@ bool sk_cells_frame_box(sk_cells *cells, sk_allocator *allocator, sk_vec3 low, s
     cells->count_x = (int32_t)(SK_CELLS_ACROSS * (double)extent.x / size) + 1;
     cells->count_y = (int32_t)((double)extent.y / size) + 1;
     cells->count_z = (int32_t)((double)extent.z / size) + 1;
+    bool few = cells->count_y <= FEW;
+    cells->layer = few ? cells->count_y : LAYER;
+    cells->layer_y = few ? INT32_MAX : LAYER - 1;
+    cells->shift_y = few ? 31 : 3;
     int32_t longest = cells->count_y > cells->count_z ? cells->count_y : cells->count_z;
     cells->slack = (real)(1e-4 + 4 * (sizeof(real) == sizeof(float) ? 1.2e-7 : 2.3e-16) * (double)longest);
-    cells->first = first;
-    cells->end = end;
+    cells->group = *group;
     cells->count = 0;
-
-    return sk_cells_reserve(cells, allocator, count);
+    return sk_cells_reserve(cells, allocator, group);
 }
 
 void sk_cells_find(sk_cells *cells, const sk_state *state, size_t begin, size_t end) {
-    for (size_t i = begin; i < end; i++) {
-        sk_vec4 p = sk_load(state->x, state->packed, state->slot_of[i]);
+    for (size_t slot = begin; slot < end; slot++) {
+        sk_vec4 p = sk_load(state->x, state->packed, slot);
         int32_t x = sk_cells_place(p.x, cells->origin.x, cells->per_x, cells->count_x);
         int32_t y = sk_cells_place(p.y, cells->origin.y, cells->per_yz, cells->count_y);
         int32_t z = sk_cells_place(p.z, cells->origin.z, cells->per_yz, cells->count_z);
-        uint32_t cell = (uint32_t)x + (uint32_t)cells->count_x * ((uint32_t)y + (uint32_t)cells->count_y * (uint32_t)z);
-        cells->place[i - cells->first] = is_finite(p) ? cell : SK_NOWHERE;
+        bool counts = is_in(&cells->group, state->particle_of[slot]) && is_finite(p);
+        cells->cell[slot - cells->group.first_slot] = counts ? (uint32_t)(x + sk_cells_line(cells, y, z)) : SK_NOWHERE;
     }
 }
 
+/* (Nowhere is more than any cell.) */
 void sk_cells_rank(sk_cells *cells) {
-    size_t count = cell_count(cells), members = cells->end - cells->first;
+    size_t count = cell_count(cells), slots = cells->group.end_slot - cells->group.first_slot;
     uint32_t *start = cells->start;
     memset(start, 0, (count + 2) * sizeof *start);
-    for (size_t i = 0; i < members; i++)
-        if (cells->place[i] != SK_NOWHERE) start[cells->place[i] + 2]++;
+    for (size_t k = 0; k < slots; k++)
+        if (cells->cell[k] < count) start[cells->cell[k] + 2]++;
     uint32_t sum = 0;
     for (size_t c = 2; c < count + 2; c++) start[c] = sum += start[c];
-    for (size_t i = 0; i < members; i++)
-        if (cells->place[i] != SK_NOWHERE) cells->place[i] = start[cells->place[i] + 1]++;
+    for (size_t k = 0; k < slots; k++)
+        if (cells->cell[k] < count) cells->slot[start[cells->cell[k] + 1]++] = (uint32_t)(cells->group.first_slot + k);
     cells->count = start[count];
 }
 
-void sk_cells_scatter(sk_cells *cells, const sk_state *state, size_t begin, size_t end) {
-    for (size_t i = begin; i < end; i++) {
-        size_t place = cells->place[i - cells->first];
-        if (place == SK_NOWHERE) continue;
-        uint32_t slot = state->slot_of[i];
-        sk_vec4 p = sk_load(state->x, state->packed, slot), v = sk_load(state->v, state->packed, slot);
-        cells->record[place] = (sk_cell_record){
-            .x = p.x, .y = p.y, .z = p.z, .slot = slot, .vx = v.x, .vy = v.y, .vz = v.z, .particle = (uint32_t)i};
+/* ---- the order within a cell ---- */
+
+/* A heap's root sinks to where those below it are smaller. */
+static void sink(uint32_t *slot, size_t root, size_t count, const uint32_t *particle_of) {
+    uint32_t moved = slot[root];
+    for (size_t child; (child = 2 * root + 1) < count; root = child) {
+        if (child + 1 < count && particle_of[slot[child + 1]] > particle_of[slot[child]]) child++;
+        if (particle_of[slot[child]] < particle_of[moved]) break;
+        slot[root] = slot[child];
     }
+    slot[root] = moved;
+}
+
+/* However many are in one place: a heap needs no memory, and no time that grows with their square. */
+static void sort_as_heap(uint32_t *slot, size_t count, const uint32_t *particle_of) {
+    for (size_t root = count / 2; root-- > 0;) sink(slot, root, count, particle_of);
+    for (size_t end = count; end-- > 1;) {
+        uint32_t last = slot[end];
+        slot[end] = slot[0];
+        slot[0] = last;
+        sink(slot, 0, end, particle_of);
+    }
+}
+
+/* Moves the last of `count` members of a cell forwards to its place; those before it are in order. */
+static void move_forwards(uint32_t *slot, size_t count, const uint32_t *particle_of) {
+    uint32_t moved = slot[count - 1], particle = particle_of[moved];
+    size_t at = count - 1;
+    for (; at > 0 && particle_of[slot[at - 1]] > particle; at--) slot[at] = slot[at - 1];
+    slot[at] = moved;
+}
+
+/* The first place from this one on where a cell begins. (Others may be moving members of a cell about just now.) */
+static size_t next_beginning(const sk_cells *cells, size_t place) {
+    size_t low = 0, high = cell_count(cells);
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (cells->start[middle] < place) low = middle + 1;
+        else high = middle;
+    }
+    return cells->start[low];
+}
+
+/* (A walk from cell to cell took three times as long: how many are in one, nobody can guess.) */
+void sk_cells_settle(sk_cells *cells, const sk_state *state, size_t begin, size_t end, size_t *first, size_t *last) {
+    *first = begin < cells->count ? begin : cells->count, *last = end < cells->count ? end : cells->count;
+    if (cells->in_order || *first == *last) return;
+    *first = next_beginning(cells, *first), *last = next_beginning(cells, *last);
+    // cells ascend from place to place; cell and particle as one number are to do so, too: one branch, hardly ever taken
+    uint64_t before = 0;
+    for (size_t place = *first; place < *last; place++) {
+        uint32_t member = cells->slot[place], cell = cells->cell[member - cells->group.first_slot];
+        uint64_t here = (uint64_t)cell << 32 | state->particle_of[member];
+        if (here < before) {
+            uint32_t *slot = cells->slot + cells->start[cell];
+            size_t ahead = place - cells->start[cell], members = cells->start[cell + 1] - cells->start[cell];
+            if (ahead < SMALL) move_forwards(slot, ahead + 1, state->particle_of);
+            else sort_as_heap(slot, members, state->particle_of);
+            here = (uint64_t)cell << 32 | state->particle_of[cells->slot[place]];
+        }
+        before = here;
+    }
+}
+
+void sk_cells_copy(sk_cells *cells, const sk_state *state, size_t begin, size_t end) {
+    for (size_t place = begin; place < end; place++) {
+        uint32_t slot = cells->slot[place];
+        sk_vec4 p = sk_load(state->x, state->packed, slot), v = sk_load(state->v, state->packed, slot);
+        real speed = sk_sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+        bool flies = speed > 0 && speed <= (real)SK_REAL_MAX;
+        real per = flies ? 1 / speed : 0;
+        cells->x[place] = p.x, cells->y[place] = p.y, cells->z[place] = p.z;
+        cells->ux[place] = flies ? per * v.x : 0, cells->uy[place] = flies ? per * v.y : 0;
+        cells->uz[place] = flies ? per * v.z : 0;
+    }
+}
+
+bool sk_cells_sort(sk_cells *cells, sk_allocator *allocator, const sk_state *state, const sk_group *group,
+                   real radius) {
+    size_t first, last;
+    if (!sk_cells_frame(cells, allocator, state, group, radius)) return false;
+    sk_cells_find(cells, state, group->first_slot, group->end_slot);
+    sk_cells_rank(cells);
+    sk_cells_settle(cells, state, 0, cells->count, &first, &last);
+    sk_cells_copy(cells, state, first, last);
+    return true;
 }
 
 void sk_cells_release(sk_cells *cells, sk_allocator *allocator) {
     real *copies[6] = {cells->x, cells->y, cells->z, cells->ux, cells->uy, cells->uz};
     for (int k = 0; k < 6; k++) sk_release(allocator, copies[k]);
     sk_release(allocator, cells->start);
-    sk_release(allocator, cells->record);
-    sk_release(allocator, cells->place);
+    sk_release(allocator, cells->slot);
+    sk_release(allocator, cells->cell);
     memset(cells, 0, sizeof *cells);
 }

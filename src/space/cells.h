@@ -2,17 +2,19 @@
  * rules that look at every neighbour sixteen at a time.
  *
  *     y  +---+---+---+---+---+---+   a cell is as wide as the reach along y and z, and a quarter of it along x;
- *     ^  |   | : | : | : | : |   |   cells along x are consecutive, so that what a particle can reach in a row of
+ *     ^  |   | : | : | : | : |   |   cells along x are consecutive, so that what a particle can reach in a line of
  *     |  |   | : | : o : | : |   |   them is one range of memory, trimmed to the reach: nine ranges in all
  *     z x+---+---+---+---+---+---+
  *
- *   start:          [0 . . 2 . 5 . . .]     particles of cell c are at places start[c] .. start[c + 1]
- *   record:         [3 7 | 1 4 9 | ...]     by place: the whole of a particle, in one piece, for it is put there at
- * random x, y, z:        [ . . | . . . | ...]    by place: positions ux, uy, uz:     [ . . | . . . | ...]    unit
- * velocities (0 for one that stands still)
+ *   start:                 [0 . . 2 . 5 . . .]     particles of cell c are at places start[c] .. start[c + 1]
+ *   slot:                  [3 7 | 1 4 9 | ...]     by place: whose it is
+ *   x, y, z, ux, uy, uz:   [. . | . . . | ...]     by place: positions, and unit velocities (0 for one that stands)
  *
- * A counting sort; see plan/sort.h for its rows. Within a cell particles stand in the user's order, so that sums over
- * neighbours come out the same. Owned by the world, filled by rows of the plan. */
+ * Lines follow each other in layers of eight along y (all of them where they are few), each layer through all z, then
+ * the next: a walk through the places finds the lines around it in the second cache, however many there are.
+ *
+ * A counting sort over slots; see plan/sort.h for its rows. Within a cell particles stand in the user's order, wherever
+ * their slots are, so that sums over neighbours come out the same. Owned by the world, filled by rows of the plan. */
 #ifndef SK_SPACE_CELLS_H
 #define SK_SPACE_CELLS_H
 
@@ -22,19 +24,12 @@
 
 enum { SK_CELLS_ACROSS = 4 }; /* cells along x in the width of one along y */
 
-/* A particle at its place. */
-typedef struct sk_cell_record {
-    real x, y, z;
-    union {
-        real w;
-        uint32_t slot;
-    };
-    real vx, vy, vz;
-    union {
-        real vw;
-        uint32_t particle; /* the user's index */
-    };
-} sk_cell_record;
+/* Particles of one body, or all: the user's indices, and the slots that they and nobody else lie in (in cells: and
+ * perhaps others, who are passed over). */
+typedef struct sk_group {
+    size_t first, end;           /* particles */
+    size_t first_slot, end_slot; /* not always multiples of 16 */
+} sk_group;
 
 typedef struct sk_cells {
     sk_vec3 origin;
@@ -43,16 +38,21 @@ typedef struct sk_cells {
     real per_yz;
     real slack; /* rounding of a place in cells, along the longest axis */
     int32_t count_x, count_y, count_z;
+    int32_t layer;   /* lines along y that a layer has; a power of 2, or count_y or more */
+    int32_t layer_y; /* which bits of y are the line in its layer */
+    int32_t shift_y; /* the others, shifted by this, are the layer */
     uint32_t *start; /* cells + 1, and one more while sorting */
     real *x, *y, *z, *ux, *uy, *uz;
-    sk_cell_record *record;
-    uint32_t *place; /* by the user's index from `first` on: the cell, then the place; SK_NOWHERE if not finite */
-    size_t start_capacity, copy_capacity[6], record_capacity, place_capacity;
-    size_t first, end; /* the user's indices that are sorted */
-    size_t count;      /* of them in cells */
+    uint32_t *slot;
+    uint32_t *cell; /* by slot, from the group's first on; SK_NOWHERE if empty, another's, or not finite */
+    size_t start_capacity, copy_capacity[6], slot_capacity, cell_capacity;
+    sk_group group; /* who is sorted */
+    size_t count;   /* of them in cells */
+    bool in_order;  /* slots are in the user's order: cells need no sorting within. False is always right */
 } sk_cells;
 
 #define SK_NOWHERE UINT32_MAX
+#define SK_NOBODY UINT32_MAX /* whose an empty slot is */
 /* Whoever has a coordinate farther out is nowhere: the size of a box of others is finite. */
 #define SK_CELLS_FARTHEST (SK_REAL_MAX / 4)
 
@@ -60,27 +60,37 @@ typedef struct sk_cells {
 typedef struct sk_state {
     const sk_vec4 *x, *v;
     size_t packed;
-    const uint32_t *slot_of;
+    const uint32_t *particle_of;
 } sk_state;
 
-/* Memory for sorting so many particles, wherever they are: a step in which they were reserved needs no more. False
- * when there is none. */
-bool sk_cells_reserve(sk_cells *cells, sk_allocator *allocator, size_t count);
-/* The frame of cells of at least `radius` around particles [first, end), and memory for them. Where they are spread
- * so far that there would be many more cells than particles, the cells are made larger. False when there is no
- * memory: nobody is in a cell then. */
-bool sk_cells_frame(sk_cells *cells, sk_allocator *allocator, const sk_state *state, size_t first, size_t end,
+/* Memory for sorting these particles, wherever they are: a step in which they were reserved needs no more. False when
+ * there is none. */
+bool sk_cells_reserve(sk_cells *cells, sk_allocator *allocator, const sk_group *group);
+/* The frame of cells of at least `radius` around particles, and memory for them. Where they are spread so far that
+ * there would be many more cells than particles, the cells are made larger. False when there is no memory: nobody is in
+ * a cell then. */
+bool sk_cells_frame(sk_cells *cells, sk_allocator *allocator, const sk_state *state, const sk_group *group,
                     real radius);
 /* The same where the box around them is known; a point where nobody is finite. */
-bool sk_cells_frame_box(sk_cells *cells, sk_allocator *allocator, sk_vec3 low, sk_vec3 high, size_t first, size_t end,
+bool sk_cells_frame_box(sk_cells *cells, sk_allocator *allocator, sk_vec3 low, sk_vec3 high, const sk_group *group,
                         real radius);
-/* Finds the cell of each of the particles [begin, end); any cut over threads will do. */
+/* Finds the cells of those in slots [begin, end) of the group's; any cut over threads will do. */
 void sk_cells_find(sk_cells *cells, const sk_state *state, size_t begin, size_t end);
-/* Gives each of them its place in the order of cells. */
+/* Gives everybody a place in the order of cells. */
 void sk_cells_rank(sk_cells *cells);
-/* Writes the records of [begin, end) to their places; any cut will do. */
-void sk_cells_scatter(sk_cells *cells, const sk_state *state, size_t begin, size_t end);
+/* Puts the cells that begin at places [begin, end) in the user's order, and says which places they have; any cut of
+ * all places will do, and leaves none out. */
+void sk_cells_settle(sk_cells *cells, const sk_state *state, size_t begin, size_t end, size_t *first, size_t *last);
+/* Copies positions and directions of flight to places [begin, end). */
+void sk_cells_copy(sk_cells *cells, const sk_state *state, size_t begin, size_t end);
+/* All of it, on the caller's thread. */
+bool sk_cells_sort(sk_cells *cells, sk_allocator *allocator, const sk_state *state, const sk_group *group, real radius);
 void sk_cells_release(sk_cells *cells, sk_allocator *allocator);
+
+/* The first cell of the line at (y, z). */
+static inline int32_t sk_cells_line(const sk_cells *cells, int32_t y, int32_t z) {
+    return cells->count_x * ((y & cells->layer_y) + cells->layer * (z + cells->count_z * (y >> cells->shift_y)));
+}
 
 /* A coordinate in cells, clamped into [0, count). It never falls where the coordinate grows. */
 static inline int32_t sk_cells_place(real at, real origin, real per, int32_t count) {
@@ -109,8 +119,7 @@ static inline int sk_cells_ranges(const sk_cells *cells, sk_vec3 p, real reach, 
             real half = sk_sqrt(left) * (real)1.00001;
             int32_t x0 = sk_cells_place(p.x - half, cells->origin.x, cells->per_x, cells->count_x);
             int32_t x1 = sk_cells_place(p.x + half, cells->origin.x, cells->per_x, cells->count_x);
-            const uint32_t *line = cells->start + (size_t)cells->count_x *
-                                                      ((size_t)(iy + dy) + (size_t)cells->count_y * (size_t)(iz + dz));
+            const uint32_t *line = cells->start + sk_cells_line(cells, iy + dy, iz + dz);
             range[count][0] = line[x0];
             range[count][1] = line[x1 + 1];
             count += range[count][0] < range[count][1];

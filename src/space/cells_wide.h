@@ -9,11 +9,11 @@ SK_INLINE sk_wide SK_ISA(all)(real a) {
     return p.wide;
 }
 
-/* Where the nine rows of cells around a particle are, a row a lane; see sk_cells_ranges(), which this is wide. */
+/* Where the nine lines of cells around a particle are, a line a lane; see sk_cells_ranges(), which this is wide. */
 typedef struct SK_ISA(rows) {
-    sk_wide wall_y, wall_z, share_y, share_z; // the distance to the row, in cells, is wall + share * place in the cell
-    sk_mask step;                             // in the array of cells
-    sk_mask step_y, step_z;
+    sk_wide wall_y, wall_z, share_y, share_z; // the distance to the line, in cells, is wall + share * place in the cell
+    sk_mask step_z;                           // in the array of cells
+    sk_mask below, above;                     // lines at y - 1, at y + 1
 } SK_ISA(rows);
 
 SK_INLINE SK_ISA(rows) SK_ISA(rows_of)(const sk_cells *cells) {
@@ -23,10 +23,20 @@ SK_INLINE SK_ISA(rows) SK_ISA(rows_of)(const sk_cells *cells) {
         rows.wall_y[l] = dy ? (real)(dy > 0) - cells->slack : 0;
         rows.wall_z[l] = dz ? (real)(dz > 0) - cells->slack : 0;
         rows.share_y[l] = (real)-dy, rows.share_z[l] = (real)-dz;
-        rows.step_y[l] = dy, rows.step_z[l] = dz;
-        rows.step[l] = (sk_lane_int)cells->count_x * (dy + (sk_lane_int)cells->count_y * dz);
+        rows.below[l] = -(dy < 0), rows.above[l] = -(dy > 0);
+        rows.step_z[l] = (sk_lane_int)cells->count_x * cells->layer * dz;
     }
     return rows;
+}
+
+/* Which of the nine there are, a bit each. */
+SK_INLINE uint32_t SK_ISA(lines_inside)(const sk_cells *cells, int32_t iy, int32_t iz) {
+    uint32_t lines = 0x1ff;
+    if (iy == 0) lines &= ~0x049u;
+    if (iy + 1 == cells->count_y) lines &= ~0x124u;
+    if (iz == 0) lines &= ~0x007u;
+    if (iz + 1 == cells->count_z) lines &= ~0x1c0u;
+    return lines;
 }
 
 /* Sixteens of candidates: where each begins, and which of them are candidates. */
@@ -90,14 +100,13 @@ SK_INLINE void SK_ISA(find_ranges)(const sk_cells *cells, const SK_ISA(rows) * r
     low = SK_ISA(sk_keep)(SK_ISA(sk_positive)(low), low), high = SK_ISA(sk_keep)(SK_ISA(sk_positive)(high), high);
     low = SK_ISA(sk_select)(SK_ISA(sk_more)(last, low), low, last);
     high = SK_ISA(sk_select)(SK_ISA(sk_more)(last, high), high, last);
-    sk_mask base = rows->step + ((sk_lane_int)cells->count_x * (iy + (sk_lane_int)cells->count_y * iz));
+    int32_t line = sk_cells_line(cells, iy, iz);
+    const sk_mask none = {0};
+    sk_mask base = rows->step_z + (none + line) + (rows->below & (none + (sk_cells_line(cells, iy - 1, iz) - line))) +
+                   (rows->above & (none + (sk_cells_line(cells, iy + 1, iz) - line)));
     sk_mask first = (base + __builtin_convertvector(low, sk_mask)) & some,
             end = (base + __builtin_convertvector(high, sk_mask) + 1) & some;
-    uint32_t inside = 0;
-    for (int dz = -1; dz <= 1; dz++)
-        for (int dy = -1; dy <= 1; dy++)
-            inside |= (uint32_t)(iy + dy >= 0 && iy + dy < cells->count_y && iz + dz >= 0 && iz + dz < cells->count_z)
-                      << (4 + dy + 3 * dz);
+    uint32_t inside = SK_ISA(lines_inside)(cells, iy, iz);
 #if defined(SK_HAS_AVX512) && !defined(SKEIN_DOUBLE)
     __mmask16 rows_inside = (__mmask16)inside;
     ranges->begin = _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), rows_inside, (__m512i)first, cells->start, 4);

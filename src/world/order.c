@@ -10,25 +10,22 @@
 typedef struct search {
     sk_cells cells;
     sk_state state;
-    size_t first, end;
+    sk_group group;
     double *square;   /* of the distance to the nearest, by particle; negative: not found yet */
     uint32_t *parent; /* of a group's tree, by particle */
 } search;
 
 static bool sort_cells(search *s, sk_allocator *allocator, double radius) {
-    if (!sk_cells_frame(&s->cells, allocator, &s->state, s->first, s->end, (real)radius)) return false;
-    sk_cells_find(&s->cells, &s->state, s->first, s->end);
-    sk_cells_rank(&s->cells);
-    sk_cells_scatter(&s->cells, &s->state, s->first, s->end);
-    return true;
+    return sk_cells_sort(&s->cells, allocator, &s->state, &s->group, (real)radius);
 }
 
-static sk_vec3 place_of(const sk_cell_record *record) {
-    return sk_v3(record->x, record->y, record->z);
+static sk_vec3 place_of(const sk_cells *cells, size_t place) {
+    return sk_v3(cells->x[place], cells->y[place], cells->z[place]);
 }
 
-static double square_between(const sk_cell_record *a, const sk_cell_record *b) {
-    double dx = (double)a->x - (double)b->x, dy = (double)a->y - (double)b->y, dz = (double)a->z - (double)b->z;
+static double square_between(const sk_cells *cells, size_t a, size_t b) {
+    double dx = (double)cells->x[a] - (double)cells->x[b], dy = (double)cells->y[a] - (double)cells->y[b],
+           dz = (double)cells->z[a] - (double)cells->z[b];
     return dx * dx + dy * dy + dz * dz;
 }
 
@@ -36,13 +33,13 @@ static double square_between(const sk_cell_record *a, const sk_cell_record *b) {
 
 /* The square of the distance from the particle at a place to its nearest one within the radius; negative: none. */
 static double nearest_within(const search *s, size_t place, double radius) {
-    const sk_cell_record *record = s->cells.record;
+    const sk_cells *c = &s->cells;
     uint32_t range[9][2];
     double best = -1;
-    int ranges = sk_cells_ranges(&s->cells, place_of(&record[place]), (real)radius, range);
+    int ranges = sk_cells_ranges(c, place_of(c, place), (real)radius, range);
     for (int r = 0; r < ranges; r++)
         for (uint32_t k = range[r][0]; k < range[r][1]; k++) {
-            double square = square_between(&record[k], &record[place]);
+            double square = square_between(c, k, place);
             if (k != place && square < radius * radius && (best < 0 || square < best)) best = square;
         }
     return best;
@@ -50,14 +47,14 @@ static double nearest_within(const search *s, size_t place, double radius) {
 
 /* The mean distance to the nearest particle: cells grow until everybody has found one. */
 static bool measure_nearest(search *s, sk_allocator *allocator, double extent, skein_order *order) {
-    size_t count = s->end - s->first, waiting = order->count;
+    size_t count = s->group.end - s->group.first, waiting = order->count;
     double radius = 2 * extent / (1 + sqrt((double)count)), widest = 4 * extent;
     for (size_t i = 0; i < count; i++) s->square[i] = -1;
     if (!(extent > 0)) return true; // all in one place
     for (; waiting && radius < 2 * widest; radius *= 2) {
         if (!sort_cells(s, allocator, radius)) return false;
         for (size_t place = 0; place < s->cells.count; place++) {
-            double *square = &s->square[s->cells.record[place].particle - s->first];
+            double *square = &s->square[s->state.particle_of[s->cells.slot[place]] - s->group.first];
             if (*square >= 0) continue;
             *square = nearest_within(s, place, radius);
             waiting -= *square >= 0;
@@ -89,10 +86,10 @@ static bool count_groups(search *s, sk_allocator *allocator, double reach, skein
     for (uint32_t i = 0; i < c->count; i++) s->parent[i] = i;
     for (uint32_t i = 0; i < c->count; i++) {
         uint32_t range[9][2];
-        int ranges = sk_cells_ranges(c, place_of(&c->record[i]), (real)reach, range);
+        int ranges = sk_cells_ranges(c, place_of(c, i), (real)reach, range);
         for (int r = 0; r < ranges; r++)
             for (uint32_t k = range[r][0]; k < range[r][1]; k++) {
-                if (k <= i || !(square_between(&c->record[i], &c->record[k]) < reach * reach)) continue;
+                if (k <= i || !(square_between(c, i, k) < reach * reach)) continue;
                 uint32_t a = root_of(s->parent, i), b = root_of(s->parent, k);
                 if (a == b) continue;
                 s->parent[a > b ? a : b] = a > b ? b : a;
@@ -150,7 +147,8 @@ skein_status skein_order_measure(skein_world *world, size_t first, size_t count,
         return SKEIN_OK;
     }
     sk_allocator *allocator = &world->allocator;
-    search s = {.state = {all->vector[SK_X], all->vector[SK_V], 0, all->slot_of}, .first = first, .end = first + count};
+    search s = {.state = {all->vector[SK_X], all->vector[SK_V], 0, all->particle_of},
+                .group = {first, first + count, 0, all->slot_count}};
     s.square = sk_allocate(allocator, count * sizeof *s.square);
     s.parent = sk_allocate(allocator, count * sizeof *s.parent);
     bool good = s.square && s.parent && measure_nearest(&s, allocator, order->farthest, order) &&

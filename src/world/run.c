@@ -223,7 +223,8 @@ typedef struct free_job {
 static void run_tiles(void *data, size_t begin, size_t end) {
     const free_job *job = data;
     uint64_t mode = sk_float_mode_enter();
-    run_tiled(job->run, job->rows, job->count, begin, end);
+    if (job->count == 1) job->rows->kernel(job->run, job->rows, begin, end);
+    else run_tiled(job->run, job->rows, job->count, begin, end);
     sk_float_mode_leave(mode);
 }
 

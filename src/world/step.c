@@ -59,11 +59,11 @@ static bool make_cells(skein_world *world) {
     bool good = true;
     for (size_t r = 0; r < world->plan.count && good; r++) {
         const sk_row *row = &world->plan.data[r];
-        if (row->kind != SK_ROW_GRID) continue;
-        size_t count = row->end - row->begin;
-        good = row->by_particle ? sk_cells_reserve(&world->cells, &world->allocator, count)
-                                : sk_grid_reserve(&world->grid, &world->allocator, count);
+        if (row->kind == SK_ROW_GRID) good = sk_cells_reserve(&world->cells, &world->allocator, row->group);
     }
+    world->cells.in_order = true;
+    for (size_t i = 1; i < world->particles.count && world->cells.in_order; i++)
+        world->cells.in_order = world->particles.slot_of[i - 1] < world->particles.slot_of[i];
     return good;
 }
 
@@ -167,6 +167,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);
     warn_of_light_colliders(world);
     world->plan_stale = true; // until it is whole
+    find_group(world, "", &world->everybody);
     world->plan.count = 0;
     sk_writer writer = {
         .plan = &world->plan,
@@ -176,6 +177,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         .slot_count = world->particles.slot_count,
         .strip_slots = world->particles.strip_slots,
         .particle_count = world->particles.count,
+        .everybody = &world->everybody,
         .triangle_count = world->triangles.count,
         .h = dt,
     };
@@ -197,9 +199,9 @@ sk_run sk_world_run_context(skein_world *world) {
     sk_run run = {
         .slot_count = world->particles.slot_count,
         .slot_of = world->particles.slot_of,
+        .particle_of = world->particles.particle_of,
         .particle_count = world->particles.count,
         .triangles = &world->slots_of_triangles,
-        .grid = &world->grid,
         .cells = &world->cells,
         .allocator = &world->allocator,
         .time = world->time,
@@ -232,6 +234,7 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
     world->time += dt;
     world->steps++;
     world->substeps += (uint64_t)world->method->substeps(world->method_params);
+    if (!world->device) sk_world_tidy(world);
     return SKEIN_OK;
 }
 

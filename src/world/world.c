@@ -81,7 +81,6 @@ void skein_world_destroy(skein_world *world) {
     sk_release(allocator, world->plan.data);
     skein_sparse_solver_set(world, NULL);
     sk_matrix_release(&world->matrix, allocator);
-    sk_grid_release(&world->grid, allocator);
     sk_cells_release(&world->cells, allocator);
     sk_particles_release(&world->particles, allocator);
     sk_allocator last = world->allocator;

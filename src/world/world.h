@@ -111,8 +111,8 @@ struct skein_world {
     bool plan_stale;  /* rules, settings or the method have changed */
     bool slots_stale; /* particles, batches or limits were added: slots and sweeps are to be found anew */
     sk_isa isa;
-    sk_grid grid;
     sk_cells cells;
+    sk_group everybody;
     double time;
     uint64_t steps, substeps;
     double first_energy;        /* J, when the first step began */
@@ -193,6 +193,8 @@ skein_status sk_world_touch(skein_world *world);
 skein_status sk_world_set_device(skein_world *world, sk_device *device);
 /* The run context of the world's present state. */
 sk_run sk_world_run_context(skein_world *world);
+/* After a step: moves particles to slots near their neighbours', every so often (world/tidy.c). */
+void sk_world_tidy(skein_world *world);
 /* What skein_stable_substep says, of a known type. */
 double sk_stable_substep(const sk_method_type *method, const skein_stability *stability);
 /* Fills in the kinetic, potential and elastic energies, and the momenta. The slots are to be up to date. */
