@@ -8,6 +8,7 @@
 
 #include <dlfcn.h>
 #include <inttypes.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -118,7 +119,7 @@ static void remove_file(const char *folder, const char *name) {
 }
 
 /* In a folder of its own, which is gone afterwards. `cache` is the path to keep it at, or NULL. */
-static const skein_compiled *compile(const app_compiler *compiler, const skein_formula *f, const char *cache,
+static const skein_compiled *compile_in_folder(const app_compiler *compiler, const skein_formula *f, const char *cache,
                                      char *words, size_t size) {
     const char *temporary = getenv("TMPDIR");
     char folder[2048], made[2100];
@@ -141,6 +142,20 @@ static const skein_compiled *compile(const app_compiler *compiler, const skein_f
     for (const app_header *h = app_headers; h->name; h++) remove_file(folder, h->name);
     remove_file(folder, "skein");
     rmdir(folder);
+    return compiled;
+}
+
+/* The same; who interrupts it waits until the folder is gone. */
+static const skein_compiled *compile(const app_compiler *compiler, const skein_formula *f, const char *cache,
+                                     char *words, size_t size) {
+    sigset_t ends, before;
+    sigemptyset(&ends);
+    sigaddset(&ends, SIGINT);
+    sigaddset(&ends, SIGTERM);
+    sigaddset(&ends, SIGHUP);
+    pthread_sigmask(SIG_BLOCK, &ends, &before);
+    const skein_compiled *compiled = compile_in_folder(compiler, f, cache, words, size);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
     return compiled;
 }
 

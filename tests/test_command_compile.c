@@ -158,11 +158,42 @@ static void without_a_compiler_tapes_run(void **state) {
     outcome_free(&o);
 }
 
+/* Ctrl-C goes to both: the compiler ends, then the folder is gone, and then the command ends. */
+static void an_interrupted_compiler_leaves_nothing(void **state) {
+    (void)state;
+    begin();
+    char *slow = in_folder("slow"), *number = in_folder("number"), text[1100];
+    mkdir(in_folder("temporary"), 0700);
+    setenv("TMPDIR", in_folder("temporary"), 1);
+    snprintf(text, sizeof text, "#!/bin/sh\necho $$ > %s.new && mv %s.new %s\nexec sleep 100\n", number, number, number);
+    write_text(slow, text);
+    assert_int_equal(chmod(slow, 0700), 0);
+    setenv("CC", slow, 1);
+    const char *const arguments[] = {"run", scene, "--compile", NULL};
+    pid_t skein = start_skein((surroundings){0, 0, 0}, arguments);
+    const struct timespec pause = {0, 10000000};
+    for (int i = 0; i < 3000 && !exists(number); i++) nanosleep(&pause, NULL);
+    char *words = read_text(number);
+    int compiler = atoi(words);
+    free(words);
+    assert_true(compiler > 1);
+    assert_int_equal(count_entries(in_folder("temporary")), 1);
+    assert_int_equal(kill(skein, SIGINT), 0);
+    assert_int_equal(kill(compiler, SIGINT), 0);
+    outcome o = finish_skein(skein);
+    assert_true(o.status == -SIGINT || o.status == 128 + SIGINT);
+    assert_int_equal(count_entries(in_folder("temporary")), 0);
+    outcome_free(&o);
+    unsetenv("TMPDIR");
+    unsetenv("CC");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(compiled_once_and_kept, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(bad_files_are_made_anew, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(without_a_compiler_tapes_run, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(an_interrupted_compiler_leaves_nothing, make_folder, remove_folder),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

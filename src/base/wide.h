@@ -213,16 +213,22 @@ SK_INLINE sk_wide4 SK_ISA(sk_transpose)(sk_wide q0, sk_wide q1, sk_wide q2, sk_w
     return out;
 }
 
+/* (As inserts and extracts where the processor has them whole: of shuffles gcc makes a dozen.) */
 SK_INLINE sk_wide SK_ISA(sk_join)(const sk_vec4 *a, const sk_vec4 *b, const sk_vec4 *c, const sk_vec4 *d) {
-    typedef SK_ISA(sk_quad) quad;
-#ifdef SK_HAS_AVX512
-    typedef SK_ISA(sk_eight) eight;
-    eight low =
-        __builtin_shufflevector(*(const quad *)(const void *)a, *(const quad *)(const void *)b, 0, 1, 2, 3, 4, 5, 6, 7);
-    eight high =
-        __builtin_shufflevector(*(const quad *)(const void *)c, *(const quad *)(const void *)d, 0, 1, 2, 3, 4, 5, 6, 7);
-    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#if defined(SK_HAS_AVX512) && !defined(SKEIN_DOUBLE)
+    __m512 q = _mm512_castps128_ps512(_mm_load_ps((const real *)a));
+    q = _mm512_insertf32x4(q, _mm_load_ps((const real *)b), 1);
+    q = _mm512_insertf32x4(q, _mm_load_ps((const real *)c), 2);
+    return (sk_wide)_mm512_insertf32x4(q, _mm_load_ps((const real *)d), 3);
+#elif defined(SK_HAS_AVX2) && !defined(SKEIN_DOUBLE)
+    SK_ISA(parts) p;
+    p.native[0] = (SK_ISA(native))_mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps((const real *)a)),
+                                                       _mm_load_ps((const real *)b), 1);
+    p.native[1] = (SK_ISA(native))_mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps((const real *)c)),
+                                                       _mm_load_ps((const real *)d), 1);
+    return p.wide;
 #else
+    typedef SK_ISA(sk_quad) quad;
     SK_ISA(parts) p;
     p.quad[0] = *(const quad *)(const void *)a, p.quad[1] = *(const quad *)(const void *)b;
     p.quad[2] = *(const quad *)(const void *)c, p.quad[3] = *(const quad *)(const void *)d;
@@ -231,13 +237,13 @@ SK_INLINE sk_wide SK_ISA(sk_join)(const sk_vec4 *a, const sk_vec4 *b, const sk_v
 }
 
 SK_INLINE void SK_ISA(sk_part)(sk_wide q, sk_vec4 *a, sk_vec4 *b, sk_vec4 *c, sk_vec4 *d) {
-    typedef SK_ISA(sk_quad) quad;
-#ifdef SK_HAS_AVX512
-    *(quad *)(void *)a = __builtin_shufflevector(q, q, 0, 1, 2, 3);
-    *(quad *)(void *)b = __builtin_shufflevector(q, q, 4, 5, 6, 7);
-    *(quad *)(void *)c = __builtin_shufflevector(q, q, 8, 9, 10, 11);
-    *(quad *)(void *)d = __builtin_shufflevector(q, q, 12, 13, 14, 15);
+#if defined(SK_HAS_AVX512) && !defined(SKEIN_DOUBLE)
+    _mm_store_ps((real *)a, _mm512_castps512_ps128((__m512)q));
+    _mm_store_ps((real *)b, _mm512_extractf32x4_ps((__m512)q, 1));
+    _mm_store_ps((real *)c, _mm512_extractf32x4_ps((__m512)q, 2));
+    _mm_store_ps((real *)d, _mm512_extractf32x4_ps((__m512)q, 3));
 #else
+    typedef SK_ISA(sk_quad) quad;
     SK_ISA(parts) p = {.wide = q};
     *(quad *)(void *)a = p.quad[0], *(quad *)(void *)b = p.quad[1], *(quad *)(void *)c = p.quad[2],
                    *(quad *)(void *)d = p.quad[3];

@@ -101,9 +101,10 @@ SK_INLINE void SK_ISA(find_ranges)(const sk_cells *cells, const SK_ISA(rows) * r
     low = SK_ISA(sk_select)(SK_ISA(sk_more)(last, low), low, last);
     high = SK_ISA(sk_select)(SK_ISA(sk_more)(last, high), high, last);
     int32_t line = sk_cells_line(cells, iy, iz);
+    int32_t down = iy > 0 ? sk_cells_line(cells, iy - 1, iz) - line : 0,
+            up = iy + 1 < cells->count_y ? sk_cells_line(cells, iy + 1, iz) - line : 0;
     const sk_mask none = {0};
-    sk_mask base = rows->step_z + (none + line) + (rows->below & (none + (sk_cells_line(cells, iy - 1, iz) - line))) +
-                   (rows->above & (none + (sk_cells_line(cells, iy + 1, iz) - line)));
+    sk_mask base = rows->step_z + (none + line) + (rows->below & (none + down)) + (rows->above & (none + up));
     sk_mask first = (base + __builtin_convertvector(low, sk_mask)) & some,
             end = (base + __builtin_convertvector(high, sk_mask) + 1) & some;
     uint32_t inside = SK_ISA(lines_inside)(cells, iy, iz);
