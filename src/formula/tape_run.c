@@ -50,9 +50,32 @@ SK_INLINE sk_wide SK_ISA(within_one)(sk_wide x) {
     return SK_ISA(sk_select)(SK_ISA(sk_more)(-one, x), -one, x);
 }
 
+/* ---- functions: called, and so compiled, once for all lengths of a block ---- */
+
+#define FUNCTION(name_, value_)                                                                                  \
+    static __attribute__((noinline)) void SK_ISA(each_##name_)(sk_wide * to, const sk_wide *x, const sk_wide *y, \
+                                                               sk_mask *guarded, size_t count) {                 \
+        (void)y, (void)guarded;                                                                                  \
+        for (size_t i = 0; i < count; i++) to[i] = (value_);                                                     \
+    }
+FUNCTION(exp, SK_ISA(guarded_exp)(x[i], &guarded[i]))
+FUNCTION(log, SK_ISA(guarded_log)(x[i], &guarded[i]))
+FUNCTION(sin, SK_ISA(sk_wide_sin)(x[i]))
+FUNCTION(cos, SK_ISA(sk_wide_cos)(x[i]))
+FUNCTION(tan, SK_ISA(sk_wide_tan)(x[i]))
+FUNCTION(asin, SK_ISA(sk_wide_asin)(SK_ISA(within_one)(x[i])))
+FUNCTION(acos, SK_ISA(sk_wide_acos)(SK_ISA(within_one)(x[i])))
+FUNCTION(atan2, SK_ISA(sk_wide_atan2)(x[i], y[i]))
+FUNCTION(pow, SK_ISA(guarded_pow)(x[i], y[i], &guarded[i]))
+#undef FUNCTION
+
 /* ---- instructions ---- */
 
 #define FROM(k_) (registers + instruction->from[k_] * wides)[i]
+#define CALL(name_)                                                                                           \
+    SK_ISA(each_##name_)                                                                                      \
+    (to, registers + instruction->from[0] * wides, registers + instruction->from[1] * wides, guarded, count); \
+    break
 #define A(k_) FROM(k_)
 #define P(k_) (FROM(k_) * FROM((k_) + 1))
 #define SIZE_A 1
@@ -79,12 +102,13 @@ SK_INLINE sk_wide SK_ISA(within_one)(sk_wide x) {
 #define MINUS3(number_, first_, second_, third_) \
     case SK_TAPE_MINUS3 + (number_):             \
         EACH(-((first_(0) + second_(SIZE_##first_)) + third_(SIZE_##first_ + SIZE_##second_)));
-#define MINUS                                                                                                      \
-    MINUS2(0, A, A)                                                                                                \
-    MINUS2(1, A, P)                                                                                                \
-    MINUS2(2, P, A)                                                                                                \
-    MINUS2(3, P, P) MINUS3(0, A, A, A) MINUS3(1, A, A, P) MINUS3(2, A, P, A) MINUS3(3, A, P, P) MINUS3(4, P, A, A) \
-        MINUS3(5, P, A, P) MINUS3(6, P, P, A) MINUS3(7, P, P, P)
+#define MINUS                                                                                                         \
+    MINUS2(0, A, A)                                                                                                   \
+    MINUS2(1, A, P)                                                                                                   \
+    MINUS2(2, P, A)                                                                                                   \
+    MINUS2(3, P, P)                                                                                                   \
+    MINUS3(0, A, A, A) MINUS3(1, A, A, P) MINUS3(2, A, P, A) MINUS3(3, A, P, P) MINUS3(4, P, A, A) MINUS3(5, P, A, P) \
+        MINUS3(6, P, P, A) MINUS3(7, P, P, P)
 
 /* The first `count` wides of a block. `wides` and `count` are known where this is inlined. */
 SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask *guarded, const size_t wides,
@@ -102,15 +126,15 @@ SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask
         case SK_OP_SQRT: EACH(SK_ISA(root)(FROM(0), &guarded[i]));
         case SK_OP_ABS: EACH(SK_ISA(sk_wide_abs)(FROM(0)));
         case SK_OP_LESS: EACH(SK_ISA(sk_select)(SK_ISA(sk_more)(FROM(1), FROM(0)), FROM(2), FROM(3)));
-        case SK_OP_EXP: EACH(SK_ISA(guarded_exp)(FROM(0), &guarded[i]));
-        case SK_OP_LOG: EACH(SK_ISA(guarded_log)(FROM(0), &guarded[i]));
-        case SK_OP_SIN: EACH(SK_ISA(sk_wide_sin)(FROM(0)));
-        case SK_OP_COS: EACH(SK_ISA(sk_wide_cos)(FROM(0)));
-        case SK_OP_TAN: EACH(SK_ISA(sk_wide_tan)(FROM(0)));
-        case SK_OP_ASIN: EACH(SK_ISA(sk_wide_asin)(SK_ISA(within_one)(FROM(0))));
-        case SK_OP_ACOS: EACH(SK_ISA(sk_wide_acos)(SK_ISA(within_one)(FROM(0))));
-        case SK_OP_ATAN2: EACH(SK_ISA(sk_wide_atan2)(FROM(0), FROM(1)));
-        case SK_OP_POW: EACH(SK_ISA(guarded_pow)(FROM(0), FROM(1), &guarded[i]));
+        case SK_OP_EXP: CALL(exp);
+        case SK_OP_LOG: CALL(log);
+        case SK_OP_SIN: CALL(sin);
+        case SK_OP_COS: CALL(cos);
+        case SK_OP_TAN: CALL(tan);
+        case SK_OP_ASIN: CALL(asin);
+        case SK_OP_ACOS: CALL(acos);
+        case SK_OP_ATAN2: CALL(atan2);
+        case SK_OP_POW: CALL(pow);
         default: break;
         }
     }
@@ -258,6 +282,7 @@ static size_t SK_ISA(evaluate)(const sk_tape *tape, const sk_tape_input *input, 
 
 #undef EACH
 #undef FROM
+#undef CALL
 #undef A
 #undef P
 #undef SIZE_A
