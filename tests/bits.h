@@ -20,6 +20,9 @@ typedef struct bits_case {
     bool plain;      /* only forces that XPBD takes in with its prediction */
 } bits_case;
 
+/* What SKEIN_SIMD takes on x86-64; for one that the processor lacks, sse is taken. */
+static const char *const bits_isas[] = {"sse", "avx2", "avx512"};
+
 /* A grid in strips, a mesh in groups, loose particles, tethers, contact: every wide kernel has a part. */
 static uint64_t hash_of_run(const bits_case *c, const char *isa, int threads, int steps) {
     bool plain = c->plain;

@@ -54,7 +54,7 @@ static double energy_of(skein_world *world) {
 /* Explicit Euler grows without any contact. */
 static void springs_that_bounce_gain_nothing(void **state) {
     (void)state;
-    SKIP_IF_SANITIZED();
+    ONLY_IN_PLAIN_BUILDS();
     static const double restitutions[] = {0.5, 1};
     for (size_t m = 1; m < COUNT(all_methods); m++)
         for (size_t i = 0; i < COUNT(restitutions); i++) {

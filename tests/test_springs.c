@@ -244,7 +244,7 @@ static void the_same_pair_twice_is_twice_as_stiff(void **state) {
  * m g / k (n + (n - 1) + ... + 1) lower. Whatever the substeps and the iterations. */
 static void hanging_weights_sag_as_much_however_they_are_stepped(void **state) {
     (void)state;
-    SKIP_IF_SANITIZED();
+    ONLY_IN_PLAIN_BUILDS();
     enum { WEIGHTS = 6 };
     static const struct {
         const char *method;
@@ -308,7 +308,7 @@ static double sag_of_strip(const char *method, int substeps, int rows, int colum
  * masses at the ends of cells: the same, for at either edge it puts half as much.) */
 static void cloth_sags_as_much_at_any_resolution(void **state) {
     (void)state;
-    SKIP_IF_SANITIZED();
+    ONLY_IN_PLAIN_BUILDS();
     double ought = 0.5 * g * 1 / (2 * 20);
     for (size_t m = 0; m < COUNT(method_names); m++)
         for (int n = 5; n <= 17; n = 2 * n - 1)

@@ -52,7 +52,7 @@ static void a_cloth_and_its_mirror_image(void **state) {
  * beside the symmetric one, and chance decides. In float the small cloth, for the sanitizers' sake. */
 static void a_hanging_cloth_is_symmetric_at_rest(void **state) {
     (void)state;
-    SKIP_IF_SANITIZED();
+    ONLY_IN_PLAIN_BUILDS();
     size_t side = EPSILON < 1e-10 ? 17 : 9;
     skein_world *world = hanging((int)side, INFINITY);
     double most = 0;

@@ -3,7 +3,7 @@
 #include "helpers.h"
 
 #ifdef __SANITIZE_THREAD__
-enum { SUBSTEPS = 9, STEPS = 1 };
+enum { SUBSTEPS = 5, STEPS = 1 };
 #else
 enum { SUBSTEPS = 34, STEPS = 3 };
 #endif

@@ -147,7 +147,7 @@ static void moving_takes_no_memory(void **state) {
 /* Every method, whatever it keeps from step to step; some birds are nowhere. */
 static void under_every_method_the_bits_stay(void **state) {
     (void)state;
-    SKIP_IF_SANITIZED();
+    ONLY_IN_PLAIN_BUILDS();
     if (sizeof(skein_real) == sizeof(double)) skip(); // takes long there, and has nothing of its own
     for (size_t m = 0;; m++) {
         const skein_kind *method = skein_kind_at(SKEIN_METHOD, m);
