@@ -1,4 +1,4 @@
-/* skein check SCENE: read, validate, warn. */
+/* skein check SCENE...: read, validate, warn. */
 #include <stdio.h>
 
 #include "app/stability.h"
@@ -17,27 +17,38 @@ static int print_summary(const app_scene *loaded) {
     return EXIT_OK;
 }
 
+static int check_scene(const char *path, const char *const *sets) {
+    app_scene loaded;
+    int status = app_load(path, sets, &loaded);
+    if (!status && !app_warn_of_instability(&loaded)) status = EXIT_FAILURE_RUN;
+    if (!status) app_warn_of_rounding(&loaded);
+    if (!status) status = print_summary(&loaded);
+    app_unload(&loaded);
+    return status;
+}
+
+/* The worst of the scenes' statuses; one at fault does not keep the others from being looked at. */
 static int check(int argc, char **argv) {
     app_option options[] = {
         {"--set", "PATH=VALUE", "change a value first, as for `skein run`; may be repeated", true, NULL, 0}};
-    const char *path;
-    int status = app_parse(&app_check_command, argc, argv, options, 1, "scene", &path);
+    app_option scenes = {.repeats = true};
+    int status = app_parse_words(&app_check_command, argc, argv, options, 1, "scene", &scenes);
     if (status < 0) {
-        app_scene loaded;
-        status = app_load(path, options[0].values, &loaded);
-        if (!status && !app_warn_of_instability(&loaded)) status = EXIT_FAILURE_RUN;
-        if (!status) app_warn_of_rounding(&loaded);
-        if (!status) status = print_summary(&loaded);
-        app_unload(&loaded);
+        status = EXIT_OK;
+        for (size_t i = 0; i < scenes.count; i++) {
+            int one = check_scene(scenes.values[i], options[0].values);
+            if (one > status) status = one;
+        }
     }
     app_options_free(options, 1);
+    app_options_free(&scenes, 1);
     return status;
 }
 
 const app_command app_check_command = {
     "check",
-    "SCENE [--set PATH=VALUE]...",
-    "read and validate a scene; every fault is named, exit status 2 if there is one\n\n"
+    "SCENE... [--set PATH=VALUE]...",
+    "read and validate scenes; every fault is named, exit status 2 if there is one\n\n"
     "Faults name the file, the line or the path in the scene, what was found and what was expected.\n"
     "Warnings (a mesh with holes in its seams, a step that is too long for the method, or\n"
     "so short that positions round it away) do not fail the check.",

@@ -73,11 +73,10 @@ static int parse_option(const app_command *command, int argc, char **argv, int *
     return app_option_add(option, value ? value : option->name) ? -1 : EXIT_FAILURE_RUN;
 }
 
-int app_parse(const app_command *command, int argc, char **argv, app_option *options, size_t option_count,
-              const char *needed, const char **word) {
+int app_parse_words(const app_command *command, int argc, char **argv, app_option *options, size_t option_count,
+                    const char *needed, app_option *words) {
     int status = -1;
     bool only_words = false; // behind "--"
-    *word = NULL;
     for (int a = 0; a < argc && status < 0; a++) {
         const char *argument = argv[a];
         bool is_word = only_words || argument[0] != '-' || !argument[1];
@@ -88,17 +87,26 @@ int app_parse(const app_command *command, int argc, char **argv, app_option *opt
             status = EXIT_OK;
         } else if (!is_word) {
             status = parse_option(command, argc, argv, &a, options, option_count);
-        } else if (*word) {
+        } else if (words->count && !words->repeats) {
             fprintf(stderr, "skein %s: '%s' is one argument too many; usage: skein %s %s\n", command->name, argument,
                     command->name, command->usage);
             status = EXIT_FAULT;
-        } else {
-            *word = argument;
+        } else if (!app_option_add(words, argument)) {
+            status = EXIT_FAILURE_RUN;
         }
     }
-    if (status >= 0 || *word || !needed) return status;
+    if (status >= 0 || words->count || !needed) return status;
     fprintf(stderr, "skein %s: which %s? usage: skein %s %s\n", command->name, needed, command->name, command->usage);
     return EXIT_FAULT;
+}
+
+int app_parse(const app_command *command, int argc, char **argv, app_option *options, size_t option_count,
+              const char *needed, const char **word) {
+    app_option words = {.repeats = false};
+    int status = app_parse_words(command, argc, argv, options, option_count, needed, &words);
+    *word = words.count ? words.values[0] : NULL;
+    app_options_free(&words, 1);
+    return status;
 }
 
 void app_options_free(app_option *options, size_t option_count) {

@@ -31,6 +31,9 @@ extern const app_command app_run_command, app_render_command, app_check_command,
  * `needed`, as in "scene"); prints help for --help. Returns -1 to go on, else an exit status. */
 int app_parse(const app_command *command, int argc, char **argv, app_option *options, size_t option_count,
               const char *needed, const char **word);
+/* The same where `words` `repeats`: all of them, in order; free it as an option. */
+int app_parse_words(const app_command *command, int argc, char **argv, app_option *options, size_t option_count,
+                    const char *needed, app_option *words);
 void app_options_free(app_option *options, size_t option_count);
 /* The option's last value, or NULL. */
 const char *app_value(const app_option *options, size_t option_count, const char *name);

@@ -18,25 +18,14 @@
 #include <cmocka.h>
 #include <skein/skein.h>
 
+#include "sanitized.h"
+
 #define COUNT(array_) (sizeof(array_) / sizeof *(array_))
 
 /* One rounding of the library's numbers, relative. */
 #define EPSILON (sizeof(skein_real) == sizeof(double) ? DBL_EPSILON : (double)FLT_EPSILON)
 
 #define PI 3.14159265358979323846
-
-#ifdef __has_feature // clang
-#define HAS_SANITIZER (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
-#elif defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
-#define HAS_SANITIZER 1
-#else
-#define HAS_SANITIZER 0
-#endif
-#if HAS_SANITIZER
-#define SANITIZED 1
-#else
-#define SANITIZED 0
-#endif
 
 /* For what runs long to prove physics. Sanitizers look for faults of memory, at a twentieth of the speed, and long runs
  * show them nothing that a few steps would not; with more digits the physics is the same. */

@@ -29,6 +29,7 @@
 #include "io/file.h"
 #include "io/mesh.h"
 #include "io/pc2.h"
+#include "sanitized.h"
 
 #define COUNT(array_) (sizeof(array_) / sizeof *(array_))
 
@@ -126,7 +127,7 @@ static inline int caught(const char *name) {
 /* Starts skein with arguments up to NULL. */
 static inline pid_t start_skein(surroundings around, const char *const *arguments) {
     int out = around.out ? around.out : caught(".out"), err = around.err ? around.err : caught(".err");
-    char *list[32] = {(char *)(uintptr_t)SKEIN_COMMAND};
+    char *list[256] = {(char *)(uintptr_t)SKEIN_COMMAND};
     for (size_t i = 0; arguments[i]; i++) {
         assert_true(i + 2 < COUNT(list));
         list[i + 1] = (char *)(uintptr_t)arguments[i];
