@@ -21,12 +21,8 @@
 #include "app/headers.h"
 
 const app_option app_compile_option = {
-    "--compile",
-    NULL,
-    "compile formulas with $CC, cc, gcc or clang; kept in $SKEIN_CACHE or ~/.cache/skein",
-    false,
-    NULL,
-    0};
+    "--compile", NULL, "compile formulas with $CC, cc, gcc or clang; kept in $SKEIN_CACHE or ~/.cache/skein",
+    false,       NULL, 0};
 
 /* ---- the key ---- */
 
@@ -120,7 +116,7 @@ static void remove_file(const char *folder, const char *name) {
 
 /* In a folder of its own, which is gone afterwards. `cache` is the path to keep it at, or NULL. */
 static const skein_compiled *compile_in_folder(const app_compiler *compiler, const skein_formula *f, const char *cache,
-                                     char *words, size_t size) {
+                                               char *words, size_t size) {
     const char *temporary = getenv("TMPDIR");
     char folder[2048], made[2100];
     const skein_compiled *compiled = NULL;

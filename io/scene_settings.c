@@ -190,9 +190,11 @@ static void report_unknown(io_place place, const char *name, const json_t *json,
     else if (member)
         io_fault(place, name, SKEIN_ERROR_VALUE, "expected an object with fields such as '%s', not %s",
                  member->name + strlen(name) + 1, io_json_words(json, words));
+    else if (hint_for(kind, name, json_is_object(json), others, hint)[0])
+        io_fault(place, name, SKEIN_ERROR_NAME, "%s has no field '%.100s'%s", kind->name, name, hint);
     else
-        io_fault(place, name, SKEIN_ERROR_NAME, "%s has no field '%.100s'%s", kind->name, name,
-                 hint_for(kind, name, json_is_object(json), others, hint));
+        io_fault(place, name, SKEIN_ERROR_NAME, "%s has no field '%.100s'; `skein list %s` shows all", kind->name, name,
+                 kind->name);
 }
 
 /* ---- objects ---- */

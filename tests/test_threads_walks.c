@@ -2,7 +2,7 @@
  * a grid, of a lattice and of an irregular mesh, several substeps at once. */
 #include "helpers.h"
 
-#ifdef __SANITIZE_THREAD__
+#if SANITIZED
 enum { SUBSTEPS = 5, STEPS = 1 };
 #else
 enum { SUBSTEPS = 34, STEPS = 3 };
@@ -92,7 +92,7 @@ static uint64_t hash_of_run(const char *method, body which, bool contact, int th
 
 static void walks_do_not_depend_on_threads(void **state) {
     (void)state;
-#ifdef __SANITIZE_THREAD__ // which takes a hundred times as long: one count is as good as another
+#if SANITIZED // which takes a hundred times as long: one count is as good as another
     static const int counts[] = {2};
 #else
     static const int counts[] = {2, 3, 5, 8};
