@@ -193,8 +193,8 @@ static const skein_kind *find_exporter(io_place place, const json_t *object, con
         io_fault(place, member, SKEIN_ERROR_NAME, "there is no exporter '%s'%s", word,
                  io_hint(word, names, count, hint));
     else
-        io_fault(place, member, SKEIN_ERROR_VALUE, "expected the name of an exporter, such as \"obj\"%s%s",
-                 name ? ", not " : ": it is missing", name ? io_json_words(name, words) : "");
+        io_fault(place, member, SKEIN_ERROR_VALUE, "expected the name of an exporter, such as \"obj\"%s",
+                 io_json_instead(name, words));
     return NULL;
 }
 

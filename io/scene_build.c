@@ -142,6 +142,23 @@ static bool read_indices(index_list *list, io_place place, const json_t *json, s
     return false;
 }
 
+/* A member that nobody reads would be a misspelt one. */
+static bool only_body_and_over(io_place place, const json_t *json) {
+    static const char *const known[] = {"body", "over"};
+    char hint[IO_HINT_SIZE], member[128];
+    const char *key;
+    json_t *value;
+    json_object_foreach((json_t *)(uintptr_t)json, key, value) {
+        if (!strcmp(key, known[0]) || !strcmp(key, known[1])) continue;
+        snprintf(member, sizeof member, "particles.%s", key);
+        io_hint(key, known, 2, hint);
+        io_fault(place, member, SKEIN_ERROR_NAME, "there is no '%.100s' here%s", key,
+                 hint[0] ? hint : ": expected {\"body\": \"flag\", \"over\": \"edges\"}, say");
+        return false;
+    }
+    return true;
+}
+
 /* {"body": "flag", "over": "hinges"}: the body by its name or number. */
 static bool find_elements(const builder *b, io_place place, index_list *list, const json_t *json, size_t arity) {
     static const char *const words[] = {"edges", "triangles", "hinges"};
@@ -158,8 +175,8 @@ static bool find_elements(const builder *b, io_place place, index_list *list, co
     }
     if (!skein_handle_valid(b->world, handle)) {
         if (!b->body_missing)
-            io_fault(place, "particles.body", SKEIN_ERROR_NAME, "expected the name or number of a body, not %s",
-                     io_json_words(body, shown));
+            io_fault(place, "particles.body", SKEIN_ERROR_NAME, "expected the name or number of a body%s",
+                     io_json_instead(body, shown));
         return false;
     }
     size_t what = 0, count;
@@ -167,8 +184,8 @@ static bool find_elements(const builder *b, io_place place, index_list *list, co
     if (what == 3 || what + 2 != arity) {
         io_fault(place, "particles.over", SKEIN_ERROR_VALUE,
                  "expected \"edges\" (of 2 particles), \"triangles\" (3) or \"hinges\" (4) for a constraint on %zu "
-                 "particles, not %s",
-                 arity, io_json_words(over, shown));
+                 "particles%s",
+                 arity, io_json_instead(over, shown));
         return false;
     }
     skein_body_elements(b->world, handle, (skein_elements)what, NULL, 0, &count);
@@ -183,7 +200,8 @@ static bool find_elements(const builder *b, io_place place, index_list *list, co
 }
 
 static bool read_particles(const builder *b, io_place place, index_list *list, const json_t *json, size_t arity) {
-    return json_is_object(json) ? find_elements(b, place, list, json, arity) : read_indices(list, place, json, arity);
+    if (!json_is_object(json)) return read_indices(list, place, json, arity);
+    return only_body_and_over(place, json) && find_elements(b, place, list, json, arity);
 }
 
 static void add_constraint(const builder *b, io_place place, const skein_kind *kind, const json_t *object,
@@ -210,9 +228,8 @@ static const skein_kind *kind_of(io_place place, const json_t *object, skein_cat
     }
     const json_t *type = json_object_get(object, "type");
     if (!json_is_string(type)) {
-        io_fault(place, "type", SKEIN_ERROR_VALUE, "expected the name of a %s%s%s; `skein list` shows them",
-                 skein_category_text(category), type ? ", not " : ": it is missing",
-                 type ? io_json_words(type, words) : "");
+        io_fault(place, "type", SKEIN_ERROR_VALUE, "expected the name of a %s%s; `skein list` shows them",
+                 skein_category_text(category), io_json_instead(type, words));
         return NULL;
     }
     skein_error error = {SKEIN_OK, "", ""};

@@ -26,9 +26,12 @@ void io_fault(io_place place, const char *member, skein_status status, const cha
 /* The same where the words are lines: they show the place in a text. */
 void io_fault_shown(io_place place, const char *member, skein_status status, const char *words);
 
-/* A value in words: "the number 5", "a list of 4". Returns `out`. */
-#define IO_JSON_WORDS_SIZE 64
+/* A value in words: "the number 5", "a list of 4"; "nothing" for NULL, which a member is that is not there. Returns
+ * `out`. */
+#define IO_JSON_WORDS_SIZE 72
 const char *io_json_words(const json_t *json, char out[IO_JSON_WORDS_SIZE]);
+/* The end of "expected ...": ", not the number 5", or ": it is missing" for NULL. Returns `out`. */
+const char *io_json_instead(const json_t *json, char out[IO_JSON_WORDS_SIZE]);
 
 /* Reads the members of `object`, but for those named in `skip` (NULL-terminated). Faults are reported;
  * false when there was one. */

@@ -58,6 +58,8 @@ const char *io_hint(const char *name, const char *const *names, size_t count, ch
 
 const char *io_json_words(const json_t *json, char out[IO_JSON_WORDS_SIZE]) {
     char quote[IO_QUOTE_SIZE];
+    snprintf(out, IO_JSON_WORDS_SIZE, "nothing");
+    if (!json) return out;
     switch (json_typeof(json)) {
     case JSON_OBJECT: snprintf(out, IO_JSON_WORDS_SIZE, "an object"); break;
     case JSON_ARRAY: snprintf(out, IO_JSON_WORDS_SIZE, "a list of %zu", json_array_size(json)); break;
@@ -72,6 +74,14 @@ const char *io_json_words(const json_t *json, char out[IO_JSON_WORDS_SIZE]) {
     case JSON_FALSE: snprintf(out, IO_JSON_WORDS_SIZE, "false"); break;
     case JSON_NULL: snprintf(out, IO_JSON_WORDS_SIZE, "null"); break;
     }
+    return out;
+}
+
+const char *io_json_instead(const json_t *json, char out[IO_JSON_WORDS_SIZE]) {
+    enum { AHEAD = sizeof ", not " - 1 };
+    char words[IO_JSON_WORDS_SIZE];
+    if (json) snprintf(out, IO_JSON_WORDS_SIZE, ", not %.*s", IO_JSON_WORDS_SIZE - AHEAD - 1, io_json_words(json, words));
+    else snprintf(out, IO_JSON_WORDS_SIZE, ": it is missing");
     return out;
 }
 

@@ -124,6 +124,20 @@ static const struct {
     {"output_as_text", ": output: expected a list of exporters, such as [\"obj\", \"pc2\"], not the text 'obj'"},
     {"output_twice", ": output.1: a second pc2 would write the same files"},
     {"output_without_type", ": output.0.type: expected the name of an exporter, such as \"obj\": it is missing"},
+    {"particles_as_empty_object",
+     ": constraints.0.particles.body: expected the name or number of a body: it is missing"},
+    {"particles_misspelt",
+     ": constraints.0.particles.ovr: there is no 'ovr' here; did you mean 'over'?"},
+    {"particles_of_nobody",
+     ": constraints.0.particles.body: expected the name or number of a body, not null"},
+    {"particles_with_null_over",
+     ": constraints.0.particles.over: expected \"edges\" (of 2 particles), \"triangles\" (3) or \"hinges\" (4) for a "
+     "constraint on 2 particles, not null"},
+    {"particles_without_body",
+     ": constraints.0.particles.body: expected the name or number of a body: it is missing"},
+    {"particles_without_over",
+     ": constraints.0.particles.over: expected \"edges\" (of 2 particles), \"triangles\" (3) or \"hinges\" (4) for a "
+     "constraint on 2 particles: it is missing"},
     {"pins_as_bool",
      ": bodies.0.pins: expected a text, a list of numbers and words, {\"box\": [...]} or {\"sphere\": [...]}, not "
      "true"},
