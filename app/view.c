@@ -104,7 +104,7 @@ static int view(int argc, char **argv) {
         [UNFOCUSED] = {"--unfocused", "WORD",
                        "when another window is typed into: pause, play, or scene (pauses flocks)", false, NULL, 0},
         [COMPARE] = {"--compare", "PATH=VALUE", "the same scene beside it with another value, in step", false, NULL, 0},
-        [SCENES] = {"--scenes", "FOLDER", "of the gallery, scenes if not given", false, NULL, 0},
+        [SCENES] = {"--scenes", "FOLDER", "of the gallery, those that came with skein if not given", false, NULL, 0},
         [SCALE] = {"--scale", "N", "of letters and controls, instead of the screen's", false, NULL, 0},
         [SAMPLES] = {"--samples", "N", "samples a pixel for smooth edges, 4 if not given", false, NULL, 0},
         [THREADS] = {"--threads", "N", "threads to simulate on, 1 to 64; the result is the same", false, NULL, 0},

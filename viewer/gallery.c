@@ -9,9 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <epoxy/gl.h>
+
+#include "io/places.h"
 
 /* A picture shows the scene after so much of its frames, or what can be reached in so many seconds. */
 static const double shown_part = 0.3, longest_run = 0.5;
@@ -28,18 +29,10 @@ static int by_path(const void *a, const void *b) {
     return strcmp(((const viewer_card *)a)->path, ((const viewer_card *)b)->path);
 }
 
-/* The folder that was named, or the one beside the program. */
-static DIR *open_folder(const char *named, char *path, size_t size) {
-    snprintf(path, size, "%s", named);
-    DIR *folder = opendir(path);
-    if (folder) return folder;
-    char program[VIEWER_TEXT] = "";
-    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (length <= 0) return NULL;
-    program[length] = 0;
-    char *slash = strrchr(program, '/');
-    if (slash) *slash = 0;
-    snprintf(path, size, "%.900s/../%.100s", program, named);
+/* The folder that was named, or else the first that holds Skein's scenes. */
+static DIR *open_folder(const char *named, char path[IO_PLACE_SIZE]) {
+    if (named) snprintf(path, IO_PLACE_SIZE, "%s", named);
+    else if (!io_scenes_folder(0, path)) return NULL;
     return opendir(path);
 }
 
@@ -68,9 +61,9 @@ static void read_card(viewer_stage *stage, viewer_card *card) {
 }
 
 static viewer_card *list_folder(viewer_stage *stage, size_t *count) {
-    char path[VIEWER_TEXT];
+    char path[IO_PLACE_SIZE];
     viewer_card *cards = NULL;
-    DIR *folder = open_folder(stage->options->scenes, path, sizeof path);
+    DIR *folder = open_folder(stage->options->scenes, path);
     *count = 0;
     for (struct dirent *entry; folder && (entry = readdir(folder)) != NULL;) {
         size_t length = strlen(entry->d_name);

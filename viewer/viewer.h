@@ -15,7 +15,7 @@ typedef enum viewer_unfocused { VIEWER_BY_SCENE, VIEWER_PAUSE, VIEWER_PLAY } vie
 
 typedef struct viewer_options {
     const char *path;                   /* a scene or a mesh; NULL: the gallery */
-    const char *scenes;                 /* the gallery's folder */
+    const char *scenes;                 /* the gallery's folder; NULL: io_scenes_folder's first */
     const char *const *sets;            /* "path=value" for the first scene, NULL-terminated; or NULL */
     const skein_kind *const *exporters; /* for the scene reader, the view's kind among them */
     const char *events;                 /* a file that is told what happens, "-" for standard output; NULL: none */

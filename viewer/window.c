@@ -45,7 +45,7 @@ typedef struct window {
 } window;
 
 viewer_options viewer_default_options(void) {
-    return (viewer_options){.scenes = "scenes", .size = {1280, 720}, .samples = 4, .panels = true};
+    return (viewer_options){.size = {1280, 720}, .samples = 4, .panels = true};
 }
 
 static window *window_of(GLFWwindow *glfw) {
