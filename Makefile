@@ -1,7 +1,7 @@
 # The short way in: each line below runs one script of tools/, and the scripts run CMake.
 # CMake alone does as well: cmake --preset release && cmake --build --preset release
 
-.PHONY: all demo test setup gallery emit debug format clean help
+.PHONY: all demo test fuzz setup gallery emit debug format clean help
 
 all: ## (or plain make) build the command: build/skein
 	@tools/build release skein
@@ -11,9 +11,13 @@ demo: ## set up, build, and drop a real mesh as cloth: files, a picture and a fi
 	@tools/build release skein
 	@tools/demo
 
-test: ## set up, build and pass every test, in every build: 20 minutes at the most
+test: ## set up, build and pass every test, in every build; says how many minutes each took
 	@tools/setup test
 	@tools/test
+
+fuzz: ## look for crashes with random input: 60 seconds a reader (tools/fuzz --seconds N takes longer)
+	@tools/setup test
+	@tools/fuzz
 
 setup: ## install the Debian packages that building and testing need
 	@tools/setup test

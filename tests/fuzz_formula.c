@@ -2,27 +2,18 @@
  *
  *   flags formula      one byte: velocities, comparisons, what the result should be, second derivatives
  *
- * Owns nothing. Called by libFuzzer (clang -fsanitize=fuzzer,address), or, built with -DSKEIN_FUZZ_REPLAY, by its own
- * main with files and directories of a corpus as arguments.
+ * Owns nothing. Called as fuzz/fuzz.h says.
  * Invariant: there is a formula or a fault; a fault has a place within the text and words on one line; a formula can be
  * evaluated, written as text and run as a tape, whose outputs are finite and those of the graph. */
 #include <ctype.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "formula/evaluate.h"
 #include "formula/formula.h"
 #include "formula/tape.h"
-#include "io/file.h"
+#include "fuzz/fuzz.h"
 
 enum { ELEMENTS = 20, OUTPUTS = 1 + SK_INPUT_VELOCITY };
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(bool fine) {
-    if (!fine) abort();
-}
 
 static void judge_fault(const char *text, const skein_formula_mark *mark, const skein_error *error) {
     char shown[512];
@@ -112,47 +103,3 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     free(text);
     return 0;
 }
-
-#ifdef SKEIN_FUZZ_REPLAY
-
-#include <dirent.h>
-#include <stdio.h>
-
-static int replay_file(const char *path) {
-    skein_error error;
-    io_bytes bytes;
-    if (io_file_read(path, (size_t)1 << 30, &bytes, &error) != SKEIN_OK) {
-        fprintf(stderr, "%s: %s\n", error.where, error.message);
-        return 1;
-    }
-    LLVMFuzzerTestOneInput((const uint8_t *)bytes.data, bytes.size);
-    // And cut off at every place, as a full disk leaves it.
-    for (size_t cut = 0; cut < bytes.size && bytes.size <= 4096; cut++)
-        LLVMFuzzerTestOneInput((const uint8_t *)bytes.data, cut);
-    io_bytes_free(&bytes);
-    return 0;
-}
-
-int main(int argument_count, char **arguments) {
-    int failures = 0, count = 0;
-    for (int i = 1; i < argument_count; i++) {
-        DIR *folder = opendir(arguments[i]);
-        if (!folder) {
-            failures += replay_file(arguments[i]);
-            count++;
-            continue;
-        }
-        for (struct dirent *entry; (entry = readdir(folder)) != NULL;) {
-            char path[4096];
-            if (entry->d_name[0] == '.') continue;
-            snprintf(path, sizeof path, "%s/%s", arguments[i], entry->d_name);
-            failures += replay_file(path);
-            count++;
-        }
-        closedir(folder);
-    }
-    printf("%d inputs replayed\n", count);
-    return failures > 0 || count == 0;
-}
-
-#endif

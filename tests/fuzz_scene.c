@@ -2,42 +2,18 @@
  *
  *   document [\0 path=value]...      what follows a NUL byte is as behind --set
  *
- * Owns nothing. Called by libFuzzer (clang -fsanitize=fuzzer,address), or, built with
- * -DSKEIN_FUZZ_REPLAY, by its own main with files and directories of a corpus as arguments.
+ * Owns nothing. Called as fuzz/fuzz.h says.
  * Invariant: there is a world or there are faults; each fault has a place and words on one line (and a place in a
- * formula on two more); a world
- * can be measured, explained and stepped, and gives all memory back. A grid of 65536 x 65536 is legal, so
+ * formula on two more); a world can be measured, explained and stepped, and gives all memory back. A grid of 65536 x 65536 is legal, so
  * worlds have little memory here. */
+#include <ctype.h>
+#include <math.h>
+
+#include "fuzz/fuzz.h"
 #include "io/exporters.h"
 #include "io/scene.h"
 
-#include <ctype.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-enum { MOST_MEMORY = 4 << 20, MOST_SETS = 16, MOST_WORK = 200000 };
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(bool fine) {
-    if (!fine) abort();
-}
-
-/* ---- Little memory -------------------------------------------------------------------------- */
-
-static void *allocate(void *user, size_t size, size_t alignment) {
-    size_t *used = user;
-    if (size > MOST_MEMORY - *used) return NULL;
-    void *memory = aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-    *used += memory ? size : 0;
-    return memory;
-}
-
-static void release(void *user, void *memory, size_t size) {
-    *(size_t *)user -= size;
-    free(memory);
-}
+enum { MOST_SETS = 16 };
 
 /* ---- Judging -------------------------------------------------------------------------------- */
 
@@ -84,11 +60,6 @@ static void judge_scene(const io_scene *scene) {
         else require(((const io_pc2_params *)exports[i].params)->every >= 1);
 }
 
-static double number_or_one(const skein_world *world, const char *path) {
-    skein_value value;
-    return skein_get_path(world, path, &value) ? 1 : value.number[0];
-}
-
 static void read_line(void *user, const char *line) {
     (void)user;
     judge_line(line);
@@ -100,10 +71,7 @@ static void judge_world(skein_world *world, double dt) {
     if (skein_world_statistics(world, &s) == SKEIN_OK)
         require(s.nonfinite == 0 && s.particles == skein_particle_count(world));
     require(skein_world_explain(world, dt, read_line, NULL) == SKEIN_OK);
-    // A step of a hundred thousand substeps is legal, too; neighbours may be everyone.
-    double substeps = number_or_one(world, "method.substeps") * number_or_one(world, "method.iterations");
-    double work = (double)s.particles * (double)s.particles + (double)s.constraints;
-    if (substeps * work < MOST_WORK) (void)skein_world_step(world, dt);
+    if (fuzz_is_cheap(world)) (void)skein_world_step(world, dt);
 }
 
 static void ignore(void *user, skein_log_level level, const char *line) {
@@ -123,8 +91,8 @@ static void feed(const char *text, size_t size, const char *const *sets) {
     if (!scene) return;
     judge_scene(scene);
     skein_world_desc desc = skein_default_world_desc();
-    desc.allocate = allocate;
-    desc.release = release;
+    desc.allocate = fuzz_allocate;
+    desc.release = fuzz_release;
     desc.memory_user = &used;
     desc.log = ignore;
     skein_world *world = io_scene_build(scene, &desc, &faults);
@@ -138,18 +106,14 @@ static void feed(const char *text, size_t size, const char *const *sets) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    const uint8_t *end = size ? memchr(data, '\0', size) : NULL;
-    size_t length = end ? (size_t)(end - data) : size, count = 0;
-    // Each exactly as large as it is, so that a sanitizer sees the first byte too many.
-    char *document = malloc(length + (length == 0)), *sets[MOST_SETS + 1];
-    require(document != NULL);
-    memcpy(document, data, length);
-    while (end && count < MOST_SETS) {
-        const uint8_t *begin = end + 1;
-        end = memchr(begin, '\0', size - (size_t)(begin - data));
-        size_t set_size = end ? (size_t)(end - begin) : size - (size_t)(begin - data);
-        sets[count] = strndup((const char *)begin, set_size);
+    size_t length, count = 0;
+    char *document = fuzz_take_part(&data, &size, &length), *sets[MOST_SETS + 1];
+    while (data && count < MOST_SETS) {
+        size_t set_length;
+        char *set = fuzz_take_part(&data, &size, &set_length);
+        sets[count] = strndup(set, set_length);
         require(sets[count++] != NULL);
+        free(set);
     }
     sets[count] = NULL;
     feed(document, length, (const char *const *)sets);
@@ -157,47 +121,3 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     free(document);
     return 0;
 }
-
-#ifdef SKEIN_FUZZ_REPLAY
-
-#include <dirent.h>
-#include <stdio.h>
-
-static int replay_file(const char *path) {
-    skein_error error;
-    io_bytes bytes;
-    if (io_file_read(path, (size_t)1 << 30, &bytes, &error) != SKEIN_OK) {
-        fprintf(stderr, "%s: %s\n", error.where, error.message);
-        return 1;
-    }
-    LLVMFuzzerTestOneInput((const uint8_t *)bytes.data, bytes.size);
-    // And cut off at every place, as a full disk leaves it.
-    for (size_t cut = 0; cut < bytes.size && bytes.size <= 4096; cut++)
-        LLVMFuzzerTestOneInput((const uint8_t *)bytes.data, cut);
-    io_bytes_free(&bytes);
-    return 0;
-}
-
-int main(int argument_count, char **arguments) {
-    int failures = 0, count = 0;
-    for (int i = 1; i < argument_count; i++) {
-        DIR *folder = opendir(arguments[i]);
-        if (!folder) {
-            failures += replay_file(arguments[i]);
-            count++;
-            continue;
-        }
-        for (struct dirent *entry; (entry = readdir(folder)) != NULL;) {
-            char path[4096];
-            if (entry->d_name[0] == '.') continue;
-            snprintf(path, sizeof path, "%s/%s", arguments[i], entry->d_name);
-            failures += replay_file(path);
-            count++;
-        }
-        closedir(folder);
-    }
-    printf("%d inputs replayed\n", count);
-    return failures > 0 || count == 0;
-}
-
-#endif

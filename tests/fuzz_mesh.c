@@ -1,21 +1,12 @@
 /* Feeds any bytes to the readers of OBJ and OFF, and judges what they make of them.
  *
- * Owns nothing. Called by libFuzzer (clang -fsanitize=fuzzer,address), or, built with
- * -DSKEIN_FUZZ_REPLAY, by its own main with files and directories of a corpus as arguments.
+ * Owns nothing. Called as fuzz/fuzz.h says.
  * Invariant: a mesh that was read keeps the promise of io/mesh.h; a refusal has a place and words.
  */
-#include "io/mesh.h"
-
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(bool fine) {
-    if (!fine)
-        abort();
-}
+#include "fuzz/fuzz.h"
+#include "io/mesh.h"
 
 static void judge_mesh(const io_mesh *mesh) {
     require(mesh->vertex_count > 0 && mesh->face_count > 0);
@@ -66,58 +57,3 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     }
     return 0;
 }
-
-#ifdef SKEIN_FUZZ_REPLAY
-
-#include <dirent.h>
-#include <stdio.h>
-
-static int replay_file(const char *path) {
-    skein_error error;
-    io_bytes bytes;
-    if (io_file_read(path, (size_t)1 << 30, &bytes, &error) != SKEIN_OK) {
-        fprintf(stderr, "%s: %s\n", error.where, error.message);
-        return 1;
-    }
-    // Exactly as large as the input, so that a sanitizer sees the first byte too many.
-    uint8_t *copy = malloc(bytes.size + (bytes.size == 0));
-    require(copy != NULL);
-    memcpy(copy, bytes.data, bytes.size);
-    LLVMFuzzerTestOneInput(copy, bytes.size);
-    // And cut off at every place, as a full disk leaves it.
-    for (size_t cut = 0; cut < bytes.size && bytes.size <= 4096; cut++) {
-        uint8_t *part = malloc(cut + (cut == 0));
-        require(part != NULL);
-        memcpy(part, bytes.data, cut);
-        LLVMFuzzerTestOneInput(part, cut);
-        free(part);
-    }
-    free(copy);
-    io_bytes_free(&bytes);
-    return 0;
-}
-
-int main(int argument_count, char **arguments) {
-    int failures = 0, count = 0;
-    for (int i = 1; i < argument_count; i++) {
-        DIR *folder = opendir(arguments[i]);
-        if (!folder) {
-            failures += replay_file(arguments[i]);
-            count++;
-            continue;
-        }
-        for (struct dirent *entry; (entry = readdir(folder)) != NULL;) {
-            char path[4096];
-            if (entry->d_name[0] == '.')
-                continue;
-            snprintf(path, sizeof path, "%s/%s", arguments[i], entry->d_name);
-            failures += replay_file(path);
-            count++;
-        }
-        closedir(folder);
-    }
-    printf("%d inputs replayed\n", count);
-    return failures > 0 || count == 0;
-}
-
-#endif
