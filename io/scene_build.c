@@ -164,7 +164,7 @@ static bool find_elements(const builder *b, io_place place, index_list *list, co
     static const char *const words[] = {"edges", "triangles", "hinges"};
     char shown[IO_JSON_WORDS_SIZE], path[128];
     const json_t *body = json_object_get(json, "body"), *over = json_object_get(json, "over");
-    skein_handle handle = {UINT32_MAX, 0};
+    skein_handle handle = {UINT32_MAX, 0, 0};
     for (size_t i = 0; i < skein_object_count(b->world, SKEIN_BODY); i++) {
         skein_handle at = skein_object_at(b->world, SKEIN_BODY, i);
         skein_value name;

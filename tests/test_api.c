@@ -55,13 +55,81 @@ static void handles_go_stale(void **state) {
     skein_handle again;
     OK(s.world, skein_force_add(s.world, "gravity", NULL, &again));
     assert_true(skein_handle_valid(s.world, again) && !skein_handle_valid(s.world, s.gravity));
-    assert_true(again.index != s.gravity.index || again.generation != s.gravity.generation);
-    // handles that never were
-    static const skein_handle wild[] = {{0, 0}, {UINT32_MAX, 0}, {UINT32_MAX, 1}, {77, 1}, {0, 2}, {0, 3}};
-    for (size_t i = 0; i < COUNT(wild); i++) {
-        assert_false(skein_handle_valid(s.world, wild[i]));
-        assert_int_equal(skein_remove(s.world, wild[i]), SKEIN_ERROR_HANDLE);
+    assert_false(skein_handle_equal(again, s.gravity));
+    // handles that never were, of no world and of this one
+    static const skein_handle wild[] = {{0, 0, 0}, {UINT32_MAX, 0, 0}, {UINT32_MAX, 1, 0}, {77, 1, 0}, {0, 2, 0}, {0, 3, 0}};
+    for (size_t i = 0; i < 2 * COUNT(wild); i++) {
+        skein_handle handle = wild[i / 2];
+        if (i % 2) handle.world = s.cloth.world;
+        assert_false(skein_handle_valid(s.world, handle));
+        assert_int_equal(skein_remove(s.world, handle), SKEIN_ERROR_HANDLE);
     }
+    skein_world_destroy(s.world);
+}
+
+/* What a handle names in one world it does not name in another, not even where the same calls made both. */
+static void handles_know_their_world(void **state) {
+    (void)state;
+    scene a = make_scene(NULL), b = make_scene(NULL);
+    const skein_handle foreign[] = {b.cloth, b.gravity, b.drag, b.ball, b.spring, skein_object_at(b.world, SKEIN_METHOD, 0)};
+    for (size_t i = 0; i < COUNT(foreign); i++) {
+        skein_value value;
+        assert_true(skein_handle_valid(b.world, foreign[i]) || i == COUNT(foreign) - 1);
+        assert_non_null(skein_object_kind(b.world, foreign[i]));
+        assert_false(skein_handle_valid(a.world, foreign[i]));
+        assert_null(skein_object_kind(a.world, foreign[i]));
+        assert_false(skein_field_is_live(a.world, foreign[i], "enabled"));
+        FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_remove(a.world, foreign[i]));
+        FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_set(a.world, foreign[i], "enabled", skein_number(0)));
+        FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_get(a.world, foreign[i], "enabled", &value));
+        FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_user_set(a.world, foreign[i], &value));
+        assert_null(skein_user(a.world, foreign[i]));
+    }
+    skein_surface surface;
+    skein_pose pose;
+    double xyz[3] = {0};
+    size_t count;
+    FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_body_surface(a.world, b.cloth, &surface));
+    FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_body_elements(a.world, b.cloth, SKEIN_EDGES, NULL, 0, &count));
+    FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_collider_pose(a.world, b.ball, &pose));
+    FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_collider_probe(a.world, b.ball, 1, xyz, xyz, NULL));
+    FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_force_probe(a.world, b.drag, 1, xyz, xyz));
+    assert_int_equal(skein_object_count(a.world, SKEIN_COLLIDER), 1);
+    // what this world hands out is its own
+    skein_hit hit;
+    OK(a.world, skein_ray_cast(a.world, (const double[]){0, 5, 0}, (const double[]){0, -1, 0}, SKEIN_BODY, &hit));
+    assert_true(skein_handle_equal(hit.object, a.cloth) && !skein_handle_equal(hit.object, b.cloth));
+    assert_true(skein_handle_equal(skein_object_at(a.world, SKEIN_FORCE, 1), a.drag));
+    // nor does it name anything in a world that comes later, even to the same place
+    skein_world_destroy(b.world);
+    for (int i = 0; i < 8; i++) {
+        scene later = make_scene(NULL);
+        assert_false(skein_handle_valid(later.world, foreign[0]));
+        skein_world_destroy(later.world);
+    }
+    skein_world_destroy(a.world);
+}
+
+static void objects_carry_a_pointer_of_the_users(void **state) {
+    (void)state;
+    scene s = make_scene(NULL);
+    const skein_handle all[] = {s.cloth, s.gravity, s.drag, s.ball, s.spring};
+    int mine[COUNT(all)];
+    for (size_t i = 0; i < COUNT(all); i++) {
+        assert_null(skein_user(s.world, all[i]));
+        OK(s.world, skein_user_set(s.world, all[i], &mine[i]));
+    }
+    steps(s.world, 2, dt);
+    OK(s.world, skein_set(s.world, s.ball, "radius", skein_number(0.2)));
+    OK(s.world, skein_world_reset(s.world));
+    OK(s.world, skein_remove(s.world, s.drag));
+    for (size_t i = 0; i < COUNT(all); i++) assert_ptr_equal(skein_user(s.world, all[i]), i == 2 ? NULL : &mine[i]);
+    OK(s.world, skein_user_set(s.world, s.cloth, NULL));
+    assert_null(skein_user(s.world, s.cloth));
+    FAILS(s.world, SKEIN_ERROR_HANDLE, "stale", skein_user_set(s.world, s.drag, mine));
+    skein_handle method = skein_object_at(s.world, SKEIN_METHOD, 0);
+    FAILS(s.world, SKEIN_ERROR_HANDLE, "of a method", skein_user_set(s.world, method, mine));
+    assert_null(skein_user(s.world, method));
     skein_world_destroy(s.world);
 }
 
@@ -302,7 +370,7 @@ static void disabled_is_as_if_absent(void **state) {
             for (int way = WITHOUT; way < WAYS; way++) {
                 skein_world *world = new_world(method_names[m], 8);
                 // the cloth is there in any case, but for its own turn below
-                skein_handle handle = {0, 0}, cloth;
+                skein_handle handle = {0, 0, 0}, cloth;
                 OK(world, skein_body_add(world, "cloth", NULL,
                                          SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_VEC3("position", 0, 0.5, 0),
                                                         SKEIN_VEC3("velocity", 1, -3, 0.5), SKEIN_REAL("stretch.stiffness", 20),
@@ -486,6 +554,9 @@ static void numbers_that_are_none_are_refused(void **state) {
     FAILS(world, SKEIN_ERROR_VALUE, "mass", skein_particles_add(world, 1, (const double[3]){0}, NULL, (const double[]){-1}, NULL));
     FAILS(world, SKEIN_ERROR_VALUE, "mass", skein_particles_add(world, 1, (const double[3]){0}, NULL, (const double[]){1e-30}, NULL));
     FAILS(world, SKEIN_ERROR_VALUE, "no particle 2", skein_constraint_add(world, "distance", (const uint32_t[]){0, 2}, 1, NULL, NULL));
+    FAILS(world, SKEIN_ERROR_VALUE, "distance 1: particle 1 is named twice",
+          skein_constraint_add(world, "distance", (const uint32_t[]){0, 1, 1, 1}, 2, NULL, NULL));
+    assert_int_equal(skein_object_count(world, SKEIN_CONSTRAINT), 0);
     // not even in part
     assert_true(skein_particle_count(world) == 2 && skein_world_hash(world) == before);
     skein_world_destroy(world);
@@ -493,13 +564,16 @@ static void numbers_that_are_none_are_refused(void **state) {
 
 static void steps_have_a_length(void **state) {
     (void)state;
-    static const double bad[] = {0, -dt, NAN, INFINITY, -INFINITY};
+    static const double bad[] = {0, -dt, NAN, INFINITY, -INFINITY, 1.1e6};
     scene s = make_scene(NULL);
     uint64_t before = skein_world_hash(s.world);
     for (size_t i = 0; i < COUNT(bad); i++) {
-        FAILS(s.world, SKEIN_ERROR_VALUE, "expected more than 0", skein_world_step(s.world, bad[i]));
-        FAILS(s.world, SKEIN_ERROR_VALUE, "expected more than 0", skein_world_explain(s.world, bad[i], NULL, NULL));
+        FAILS(s.world, SKEIN_ERROR_VALUE, "expected more than 0, at most 1e6", skein_world_step(s.world, bad[i]));
+        FAILS(s.world, SKEIN_ERROR_VALUE, "expected more than 0, at most 1e6", skein_world_explain(s.world, bad[i], NULL, NULL));
     }
+    static const double no_time[] = {-dt, NAN, INFINITY, 1e300};
+    for (size_t i = 0; i < COUNT(no_time); i++)
+        FAILS(s.world, SKEIN_ERROR_VALUE, "expected 0 to 1e15", skein_world_time_set(s.world, no_time[i]));
     assert_true(skein_world_hash(s.world) == before && skein_world_time(s.world) == 0);
     // steps of different lengths in turn: the plan follows
     steps(s.world, 1, dt), steps(s.world, 1, 2 * dt), steps(s.world, 1, dt / 2);
@@ -538,7 +612,14 @@ static void blending_lies_between_the_last_two_steps(void **state) {
     OK(s.world, skein_world_reset(s.world));
     OK(s.world, skein_positions_blend(s.world, 0, 48, 1, &at.x));
     assert_under(length3(minus(at, position_of(s.world, 48))), 0);
-    FAILS(s.world, SKEIN_ERROR_VALUE, "the world has", skein_positions_blend(s.world, 0, 51, 1, &at.x));
+    FAILS(s.world, SKEIN_ERROR_VALUE, "1 particle from 51 on: the world has 51", skein_positions_blend(s.world, 0, 51, 1, &at.x));
+    // on beyond the two steps, but not without end
+    OK(s.world, skein_positions_blend(s.world, 2, 48, 1, &at.x));
+    static const double none[] = {NAN, INFINITY, -INFINITY};
+    at = (vec3){7, 7, 7};
+    for (size_t i = 0; i < COUNT(none); i++)
+        FAILS(s.world, SKEIN_ERROR_VALUE, "expected a finite number", skein_positions_blend(s.world, none[i], 48, 1, &at.x));
+    assert_true(at.x == 7 && at.y == 7 && at.z == 7);
     skein_world_destroy(s.world);
 }
 
@@ -751,9 +832,25 @@ static void values_are_printed_as_scenes_show_them(void **state) {
     assert_string_equal(skein_category_text(SKEIN_COLLIDER), "collider");
 }
 
+/* The version as numbers and as text, in the header, the library and the build. */
+static void the_version_is_one(void **state) {
+    (void)state;
+    char text[32];
+    snprintf(text, sizeof text, "%d.%d.%d", SKEIN_VERSION_MAJOR, SKEIN_VERSION_MINOR, SKEIN_VERSION_PATCH);
+    assert_string_equal(text, SKEIN_VERSION);
+    assert_string_equal(text, SKEIN_PROJECT_VERSION);
+    int version = skein_version();
+    assert_int_equal(version, SKEIN_VERSION_NUMBER);
+    assert_int_equal(version / 1000000, SKEIN_VERSION_MAJOR);
+    assert_int_equal(version / 1000 % 1000, SKEIN_VERSION_MINOR);
+    assert_int_equal(version % 1000, SKEIN_VERSION_PATCH);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(handles_go_stale),
+        cmocka_unit_test(handles_know_their_world),
+        cmocka_unit_test(objects_carry_a_pointer_of_the_users),
         cmocka_unit_test(rules_come_and_go_between_steps),
         cmocka_unit_test(handles_have_a_category),
         cmocka_unit_test(fields_by_handle_and_path),
@@ -775,6 +872,7 @@ int main(void) {
         cmocka_unit_test(two_worlds_do_not_touch),
         cmocka_unit_test(two_bodies_in_one_world),
         cmocka_unit_test(values_are_printed_as_scenes_show_them),
+        cmocka_unit_test(the_version_is_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -225,7 +225,7 @@ static void a_changed_text_goes_back_to_its_tape(void **state) {
     assert_true(skein_formula_is_compiled(world, constraint));
     steps(world, 2, 0.01);
     assert_null(skein_formula_of(world, skein_object_at(world, SKEIN_FORCE, 0)));
-    assert_false(skein_formula_is_compiled(world, (skein_handle){99, 1}));
+    assert_false(skein_formula_is_compiled(world, (skein_handle){.index = 99, .generation = 1}));
     skein_world_destroy(world);
 }
 

@@ -132,7 +132,7 @@ static void texture_coordinates_are_kept(void **state) {
     FAILS(world, SKEIN_ERROR_VALUE, "4 corners", skein_body_uv_set(world, body, uv, 4));
     uv[7] = NAN;
     FAILS(world, SKEIN_ERROR_VALUE, "corner 3", skein_body_uv_set(world, body, uv, 6));
-    FAILS(world, SKEIN_ERROR_HANDLE, "no such body", skein_body_uv_set(world, (skein_handle){9, 9}, uv, 6));
+    FAILS(world, SKEIN_ERROR_HANDLE, "no such body", skein_body_uv_set(world, (skein_handle){.index = 9, .generation = 9}, uv, 6));
     OK(world, skein_body_surface(world, body, &surface));
     assert_true(surface.corner_uv[7] == 0);
     skein_world_destroy(world);

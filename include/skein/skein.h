@@ -9,7 +9,9 @@
  *   Axes      right handed, y up (nothing but the default gravity and "top" depends on it).
  *   Positions are four `skein_real`: x, y, z, inverse mass (1/kg; 0 means the particle is held).
  *   Errors    every call that can fail returns a `skein_status`; the words are in `skein_error`.
- *   Threads   a world belongs to one thread at a time; different worlds are independent.
+ *   Threads   a world belongs to one thread at a time; different worlds are independent. After fork() a child has none
+ *             of the world's own threads: it may neither step nor destroy a world of more than one (both would wait for
+ *             ever). Make worlds after the fork, or call exec.
  *   Bits      the same input gives the same bits, for any number of threads.
  */
 #ifndef SKEIN_H
@@ -23,6 +25,11 @@
 extern "C" {
 #endif
 
+/* The version of this header, which compares as a number; skein_version() is the library's. */
+#define SKEIN_VERSION_MAJOR 0
+#define SKEIN_VERSION_MINOR 1
+#define SKEIN_VERSION_PATCH 0
+#define SKEIN_VERSION_NUMBER (1000000 * SKEIN_VERSION_MAJOR + 1000 * SKEIN_VERSION_MINOR + SKEIN_VERSION_PATCH)
 #define SKEIN_VERSION "0.1.0"
 
 /* The library computes in float, or in double when built with -DSKEIN_DOUBLE=ON. */
@@ -39,7 +46,7 @@ typedef enum skein_status {
     SKEIN_ERROR_MEMORY, /* the allocator returned NULL */
     SKEIN_ERROR_VALUE,  /* a value has the wrong type or is out of range */
     SKEIN_ERROR_NAME,   /* no kind, field or body of that name */
-    SKEIN_ERROR_HANDLE, /* the handle is stale or of another category */
+    SKEIN_ERROR_HANDLE, /* the handle is stale, of another world or of another category */
     SKEIN_ERROR_MESH,   /* the mesh cannot be what was asked of it */
     SKEIN_ERROR_FILE,   /* a file cannot be read or written */
     SKEIN_ERROR_SYNTAX, /* a file or text is malformed */
@@ -55,6 +62,9 @@ typedef struct skein_error {
 
 /* A constant word for a status: "ok", "out of memory", ... */
 const char *skein_status_text(skein_status status);
+
+/* The library's SKEIN_VERSION_NUMBER: that of the header it was compiled with. */
+int skein_version(void);
 
 /* ---- Values, fields and kinds: every parameter is described once ------------------------------ */
 
@@ -153,10 +163,16 @@ size_t skein_value_text(const skein_field *field, const skein_value *value, char
 
 typedef struct skein_world skein_world;
 
-/* A body, rule or collider. A handle that outlived its object is an error, never a crash. */
+/* A body, rule, collider or method of one world. A handle that outlived its object, or that is given to another world,
+ * is an error, never a crash. All zero it is no object's. What is in it is the library's. */
 typedef struct skein_handle {
     uint32_t index, generation;
+    uint64_t world;
 } skein_handle;
+
+static inline bool skein_handle_equal(skein_handle a, skein_handle b) {
+    return a.index == b.index && a.generation == b.generation && a.world == b.world;
+}
 
 typedef enum skein_log_level { SKEIN_LOG_INFO, SKEIN_LOG_WARNING } skein_log_level;
 
@@ -259,18 +275,22 @@ skein_handle skein_object_at(const skein_world *world, skein_category category, 
  * kind's and the parameters that the object was made with. */
 const skein_kind *skein_object_kind(const skein_world *world, skein_handle handle);
 bool skein_handle_valid(const skein_world *world, skein_handle handle);
+/* A pointer of the program's own on a body, constraint, force or collider: the library keeps it and never looks. NULL
+ * until it is set, and for a handle of none of these. Nothing is done with it when the object goes. */
+skein_status skein_user_set(skein_world *world, skein_handle handle, void *user);
+void *skein_user(const skein_world *world, skein_handle handle);
 
 /* ---- Stepping ---------------------------------------------------------------------------------- */
 
 #define SKEIN_DEFAULT_STEP (1.0 / 90.0) /* seconds */
 
-/* Advances the world by `dt` seconds (greater than 0), in the method's substeps. */
+/* Advances the world by `dt` seconds (more than 0, at most 1e6), in the method's substeps. */
 skein_status skein_world_step(skein_world *world, double dt);
 /* Positions as they were built; velocities, forces, time and counters zero. */
 skein_status skein_world_reset(skein_world *world);
 double skein_world_time(const skein_world *world); /* seconds of simulated time */
 /* Sets the clock alone: what moves by it (colliders) is elsewhere then. With positions and velocities that were copied
- * before, it takes a world back to where it was. Finite, at least 0. */
+ * before, it takes a world back to where it was. 0 to 1e15. */
 skein_status skein_world_time_set(skein_world *world, double seconds);
 
 /* A fixed step for a loop with uneven frames: time goes in, whole steps come out, the rest is kept.
@@ -372,7 +392,8 @@ skein_view skein_velocity_view(const skein_world *world); /* w is the mass, kg (
 /* Copies `count` particles from `first` on, in the user's order, into out[count x 3]. */
 skein_status skein_positions_copy(const skein_world *world, size_t first, size_t count, double *out);
 skein_status skein_velocities_copy(const skein_world *world, size_t first, size_t count, double *out);
-/* Positions between the last two steps: 0 gives the state before the last step, 1 the present. */
+/* Positions between the last two steps: 0 gives the state before the last step, 1 the present; beyond these it goes on
+ * straight. Any finite number. */
 skein_status skein_positions_blend(const skein_world *world, double blend, size_t first, size_t count, double *out);
 /* Writes positions or velocities, count x 3. Finite numbers only. */
 skein_status skein_positions_set(skein_world *world, size_t first, size_t count, const double *xyz);

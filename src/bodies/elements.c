@@ -93,9 +93,8 @@ skein_status skein_body_elements(skein_world *world, skein_handle handle, skein_
                                  size_t most, size_t *count) {
     static const size_t arity[] = {[SKEIN_EDGES] = 2, [SKEIN_TRIANGLES] = 3, [SKEIN_HINGES] = 4};
     skein_error *error = sk_world_error(world);
-    const sk_object *object = sk_object_of(world, handle);
-    if (!object || object->category != SKEIN_BODY)
-        return sk_fail(error, SKEIN_ERROR_HANDLE, "", "there is no such body: its handle is stale");
+    const sk_object *object = sk_object_find(world, handle, SKEIN_BODY);
+    if (!object) return SKEIN_ERROR_HANDLE;
     if (what > SKEIN_HINGES) return sk_fail(error, SKEIN_ERROR_VALUE, "", "a body has no elements of that sort");
     list l = {out, arity[what], most, 0};
     bool good = true;

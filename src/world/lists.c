@@ -45,21 +45,17 @@ static void add_contact(void *user, size_t particle, sk_vec3 normal, double gap)
 
 skein_status skein_collider_probe(const skein_world *world, skein_handle handle, size_t count, const double *points,
                                   double *distances, double *normals) {
-    const sk_object *object = sk_object_of(world, handle);
-    if (!object || object->category != SKEIN_COLLIDER)
-        return sk_fail(sk_world_error(world), SKEIN_ERROR_HANDLE, "",
-                       "there is no such collider: its handle is stale, or of another category");
+    const sk_object *object = sk_object_find(world, handle, SKEIN_COLLIDER);
+    if (!object) return SKEIN_ERROR_HANDLE;
     sk_collider_probe_points(object->as.collider, world->time, world->isa, count, points, distances, normals);
     return SKEIN_OK;
 }
 
 skein_status skein_force_probe(const skein_world *world, skein_handle handle, size_t count, const double *points,
                                double *forces) {
-    const sk_object *object = sk_object_of(world, handle);
+    const sk_object *object = sk_object_find(world, handle, SKEIN_FORCE);
     skein_error *error = sk_world_error(world);
-    if (!object || object->category != SKEIN_FORCE)
-        return sk_fail(error, SKEIN_ERROR_HANDLE, "",
-                       "there is no such force: its handle is stale, or of another category");
+    if (!object) return SKEIN_ERROR_HANDLE;
     const sk_force *force = object->as.force;
     if (!force->type->at)
         return sk_fail(error, SKEIN_ERROR_VALUE, "", "%s is no field that a formula gives", object->kind->name);
@@ -72,12 +68,12 @@ skein_status skein_force_probe(const skein_world *world, skein_handle handle, si
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count) {
     const sk_particles *all = &world->particles;
     skein_status status = sk_world_fetch(world);
-    contact_list list = {out, most, 0, {0, 0}};
+    contact_list list = {out, most, 0, {0, 0, 0}};
     for (size_t i = 0; i < world->objects.count && !status; i++) {
         const sk_object *object = world->objects.data[i];
         if (!(object->generation % 2) || object->category != SKEIN_COLLIDER || !object->as.collider->common->enabled)
             continue;
-        list.collider = (skein_handle){(uint32_t)i, object->generation};
+        list.collider = sk_handle_at(world, i);
         sk_collider_visit(object->as.collider, world->time, all->vector[SK_X], all->slot_of, all->count, add_contact,
                           &list);
     }

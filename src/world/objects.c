@@ -7,9 +7,31 @@
 /* ---- handles ---- */
 
 sk_object *sk_object_of(const skein_world *world, skein_handle handle) {
-    if (handle.index >= world->objects.count) return NULL;
+    if (handle.world != world->identity || handle.index >= world->objects.count) return NULL;
     sk_object *object = world->objects.data[handle.index];
     return object->generation == handle.generation && handle.generation % 2 ? object : NULL;
+}
+
+skein_status sk_fail_handle(const skein_world *world, skein_handle handle, const char *what, const char *where) {
+    const sk_object *object = sk_object_of(world, handle);
+    skein_error *error = sk_world_error(world);
+    if (object || skein_object_kind(world, handle))
+        return sk_fail(error, SKEIN_ERROR_HANDLE, where, "there is no such %s: the handle is of a %s", what,
+                       skein_category_text(object ? object->category : SKEIN_METHOD));
+    bool elsewhere = handle.generation % 2 && handle.world != world->identity;
+    return sk_fail(error, SKEIN_ERROR_HANDLE, where, "there is no such %s: its handle is %s", what,
+                   elsewhere ? "of another world" : "stale");
+}
+
+sk_object *sk_object_find(const skein_world *world, skein_handle handle, skein_category category) {
+    sk_object *object = sk_object_of(world, handle);
+    if (object && (category == SKEIN_CATEGORY_COUNT || object->category == category)) return object;
+    sk_fail_handle(world, handle, category == SKEIN_CATEGORY_COUNT ? "object" : skein_category_text(category), "");
+    return NULL;
+}
+
+skein_handle sk_handle_at(const skein_world *world, size_t index) {
+    return (skein_handle){(uint32_t)index, world->objects.data[index]->generation, world->identity};
 }
 
 bool skein_handle_valid(const skein_world *world, skein_handle handle) {
@@ -18,8 +40,20 @@ bool skein_handle_valid(const skein_world *world, skein_handle handle) {
 
 static skein_handle handle_of(const skein_world *world, const sk_object *object) {
     for (size_t i = 0; i < world->objects.count; i++)
-        if (world->objects.data[i] == object) return (skein_handle){(uint32_t)i, object->generation};
-    return (skein_handle){UINT32_MAX, 0};
+        if (world->objects.data[i] == object) return sk_handle_at(world, i);
+    return (skein_handle){UINT32_MAX, 0, 0};
+}
+
+skein_status skein_user_set(skein_world *world, skein_handle handle, void *user) {
+    sk_object *object = sk_object_find(world, handle, SKEIN_CATEGORY_COUNT);
+    if (!object) return SKEIN_ERROR_HANDLE;
+    object->user = user;
+    return SKEIN_OK;
+}
+
+void *skein_user(const skein_world *world, skein_handle handle) {
+    const sk_object *object = sk_object_of(world, handle);
+    return object ? object->user : NULL;
 }
 
 void sk_object_release(sk_allocator *allocator, sk_object *object) {
@@ -142,7 +176,7 @@ static skein_status check_particles(const skein_world *world, const sk_object *o
         if (particles[i] >= world->particles.count)
             return sk_fail(error, SKEIN_ERROR_VALUE, "", "%s %zu: there is no particle %u (the world has %zu)",
                            object->kind->name, i / arity, particles[i], world->particles.count);
-    for (size_t e = 0; e < count && arity > 2; e++)
+    for (size_t e = 0; e < count; e++)
         for (size_t i = 1; i < arity; i++)
             for (size_t j = 0; j < i; j++)
                 if (particles[e * arity + i] == particles[e * arity + j])
@@ -299,9 +333,9 @@ static void drop_pointer(void **data, size_t *count, const void *pointer) {
 }
 
 skein_status skein_remove(skein_world *world, skein_handle handle) {
-    sk_object *object = sk_object_of(world, handle);
+    sk_object *object = sk_object_find(world, handle, SKEIN_CATEGORY_COUNT);
     skein_error *error = sk_world_error(world);
-    if (!object) return sk_fail(error, SKEIN_ERROR_HANDLE, "", "there is no such object: its handle is stale");
+    if (!object) return SKEIN_ERROR_HANDLE;
     sk_rules *rules = &world->rules;
     switch (object->category) {
     case SKEIN_CONSTRAINT:
@@ -329,8 +363,8 @@ skein_status skein_remove(skein_world *world, skein_handle handle) {
 /* The method's handle: no object has this index. */
 static const uint32_t method_index = UINT32_MAX - 1;
 
-static bool is_method(skein_handle handle) {
-    return handle.index == method_index;
+static bool is_method(const skein_world *world, skein_handle handle) {
+    return handle.index == method_index && handle.world == world->identity;
 }
 
 size_t skein_object_count(const skein_world *world, skein_category category) {
@@ -342,17 +376,17 @@ size_t skein_object_count(const skein_world *world, skein_category category) {
 }
 
 skein_handle skein_object_at(const skein_world *world, skein_category category, size_t index) {
-    if (category == SKEIN_METHOD && index == 0) return (skein_handle){method_index, 1};
+    if (category == SKEIN_METHOD && index == 0) return (skein_handle){method_index, 1, world->identity};
     for (size_t i = 0; i < world->objects.count; i++) {
         const sk_object *object = world->objects.data[i];
         if (!(object->generation % 2) || object->category != category) continue;
-        if (index-- == 0) return (skein_handle){(uint32_t)i, object->generation};
+        if (index-- == 0) return sk_handle_at(world, i);
     }
-    return (skein_handle){UINT32_MAX, 0};
+    return (skein_handle){UINT32_MAX, 0, 0};
 }
 
 const skein_kind *skein_object_kind(const skein_world *world, skein_handle handle) {
-    if (is_method(handle)) return &world->method->kind;
+    if (is_method(world, handle)) return &world->method->kind;
     const sk_object *object = sk_object_of(world, handle);
     return object ? object->kind : NULL;
 }

@@ -116,7 +116,7 @@ skein_status skein_ray_cast(const skein_world *world, const double origin[3], co
     for (size_t i = 0; i < world->objects.count; i++) {
         const sk_object *object = world->objects.data[i];
         if (object->generation % 2 == 0 || object->category != category) continue;
-        skein_handle handle = {(uint32_t)i, object->generation};
+        skein_handle handle = sk_handle_at(world, i);
         if (category == SKEIN_BODY && object->common.plain.visible)
             cast_at_body(world, object->as.body, origin, along, handle, hit);
         if (category == SKEIN_COLLIDER && object->common.collider.visible && object->common.collider.enabled)

@@ -88,7 +88,7 @@ static const skein_field *locate(const skein_world *world, skein_handle handle, 
                                  sk_object **object, skein_error *error) {
     const skein_kind *kind = skein_object_kind(world, handle);
     if (!kind) {
-        sk_fail(error, SKEIN_ERROR_HANDLE, name, "there is no such object: its handle is stale");
+        sk_fail_handle(world, handle, "object", name);
         return NULL;
     }
     const skein_field *field = sk_kind_field(kind, name, error);

@@ -1,4 +1,5 @@
 /* Reading and writing the state: views, copies in the user's order, holding particles, surfaces. */
+#include <math.h>
 #include <string.h>
 
 #include "world/world.h"
@@ -59,8 +60,8 @@ skein_view skein_velocity_view(const skein_world *world) {
 static skein_status check_range(const skein_world *world, size_t first, size_t count) {
     size_t have = world->particles.count;
     if (first <= have && count <= have - first) return SKEIN_OK;
-    return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "", "particles %zu to %zu: the world has %zu", first,
-                   first + count, have);
+    return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "", "%zu particle%s from %zu on: the world has %zu", count,
+                   count == 1 ? "" : "s", first, have);
 }
 
 static skein_status copy_out(const skein_world *world, sk_vector vector, size_t first, size_t count, double *out) {
@@ -83,6 +84,9 @@ skein_status skein_velocities_copy(const skein_world *world, size_t first, size_
 }
 
 skein_status skein_positions_blend(const skein_world *world, double blend, size_t first, size_t count, double *out) {
+    if (!isfinite(blend))
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "blend", "a blend of %g: expected a finite number",
+                       blend);
     skein_status status = copy_out(world, SK_X, first, count, out);
     for (size_t i = 0; i < count && !status; i++) {
         sk_vec4 old = world->particles.vector[SK_PREVIOUS][world->particles.slot_of[first + i]];
@@ -126,10 +130,8 @@ skein_status skein_particle_hold(skein_world *world, size_t particle, bool held)
 }
 
 skein_status skein_body_surface(const skein_world *world, skein_handle handle, skein_surface *surface) {
-    const sk_object *object = sk_object_of(world, handle);
-    if (!object || object->category != SKEIN_BODY)
-        return sk_fail(sk_world_error(world), SKEIN_ERROR_HANDLE, "",
-                       "there is no such body: its handle is stale, or of another category");
+    const sk_object *object = sk_object_find(world, handle, SKEIN_BODY);
+    if (!object) return SKEIN_ERROR_HANDLE;
     const sk_body *body = object->as.body;
     *surface =
         (skein_surface){body->first_particle, body->particle_count, body->particle_of_vertex, body->vertex_count,
@@ -139,11 +141,9 @@ skein_status skein_body_surface(const skein_world *world, skein_handle handle, s
 }
 
 skein_status skein_body_uv_set(skein_world *world, skein_handle handle, const float *corner_uv, size_t corner_count) {
-    const sk_object *object = sk_object_of(world, handle);
+    const sk_object *object = sk_object_find(world, handle, SKEIN_BODY);
     skein_error *error = sk_world_error(world);
-    if (!object || object->category != SKEIN_BODY)
-        return sk_fail(error, SKEIN_ERROR_HANDLE, "",
-                       "there is no such body: its handle is stale, or of another category");
+    if (!object) return SKEIN_ERROR_HANDLE;
     sk_body *body = object->as.body;
     if (corner_count != body->face_vertex_count)
         return sk_fail(error, SKEIN_ERROR_VALUE, "", "texture coordinates for %zu corners: the body's faces have %zu",
@@ -161,10 +161,8 @@ skein_status skein_body_uv_set(skein_world *world, skein_handle handle, const fl
 }
 
 skein_status skein_collider_pose(const skein_world *world, skein_handle handle, skein_pose *out) {
-    const sk_object *object = sk_object_of(world, handle);
-    if (!object || object->category != SKEIN_COLLIDER)
-        return sk_fail(sk_world_error(world), SKEIN_ERROR_HANDLE, "",
-                       "there is no such collider: its handle is stale, or of another category");
+    const sk_object *object = sk_object_find(world, handle, SKEIN_COLLIDER);
+    if (!object) return SKEIN_ERROR_HANDLE;
     sk_pose pose = sk_collider_pose_at(object->as.collider, world->time);
     const double position[3] = {(double)pose.position.x, (double)pose.position.y, (double)pose.position.z};
     memcpy(out->position, position, sizeof position);

@@ -152,7 +152,7 @@ static skein_status find_groups(skein_world *world, skein_error *error) {
 
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error) {
     if (!(dt > 0) || !(dt <= 1e6))
-        return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0", dt);
+        return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0, at most 1e6", dt);
     if (world->plan_stale) sk_world_run_compiled(world);
     skein_status status = sk_world_arrange(world, error);
     if (status) return status;
@@ -304,8 +304,7 @@ double skein_world_time(const skein_world *world) {
 
 skein_status skein_world_time_set(skein_world *world, double seconds) {
     if (!(seconds >= 0) || !(seconds <= SK_FAR))
-        return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "seconds", "a time of %g s: expected 0 or more",
-                       seconds);
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "seconds", "a time of %g s: expected 0 to 1e15", seconds);
     world->time = seconds;
     return SKEIN_OK;
 }

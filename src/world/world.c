@@ -5,8 +5,21 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/hash.h"
+
+int skein_version(void) {
+    return SKEIN_VERSION_NUMBER;
+}
+
 skein_world_desc skein_default_world_desc(void) {
     return (skein_world_desc){.thread_count = 1};
+}
+
+/* Of all worlds that live none has the same address, which fills the upper bits; the time keeps a world that comes to
+ * lie where another was from answering to its handles. (A counter would have to be global.) */
+static uint64_t find_identity(const skein_world *world) {
+    uint64_t address = (uintptr_t)world;
+    return (address << 16 | address >> 48) ^ (sk_hash_mix((uint64_t)(sk_seconds() * 1e9)) >> 42);
 }
 
 skein_world *skein_world_create(const skein_world_desc *desc, skein_error *error) {
@@ -27,6 +40,7 @@ skein_world *skein_world_create(const skein_world_desc *desc, skein_error *error
         return NULL;
     }
     world->allocator = allocator;
+    world->identity = find_identity(world);
     world->error = &world->words;
     world->desc = taken;
     world->plan_stale = world->slots_stale = true;

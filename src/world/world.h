@@ -66,6 +66,7 @@ typedef struct sk_object {
     } common;
     char label[96];
     const sk_body_type *body_type; /* bodies only */
+    void *user;                    /* the program's own */
     union {
         sk_body *body;
         sk_batch *batch;
@@ -93,6 +94,7 @@ struct sk_device {
 struct skein_world {
     sk_allocator allocator;
     skein_world_desc desc;
+    uint64_t identity; /* in its handles: no other world that lives has it */
     skein_error words; /* the last failure; reached through `error`, also where the world is constant */
     skein_error *error;
     sk_tasks *tasks;
@@ -166,7 +168,14 @@ void sk_world_log(skein_world *world, skein_log_level level, const char *format,
 
 /* ---- between the world's own files ---- */
 
+/* The object of a handle; NULL for a stale one, one of another world, and the method's. */
 sk_object *sk_object_of(const skein_world *world, skein_handle handle);
+/* The same, of one category (SKEIN_CATEGORY_COUNT: of any); where it is NULL the world's error says why. */
+sk_object *sk_object_find(const skein_world *world, skein_handle handle, skein_category category);
+/* Says what is wrong with a handle that should be of `what`, and returns SKEIN_ERROR_HANDLE. */
+skein_status sk_fail_handle(const skein_world *world, skein_handle handle, const char *what, const char *where);
+/* The handle of the object at a place of the list; it may be dead. */
+skein_handle sk_handle_at(const skein_world *world, size_t index);
 /* Releases an object's parameters and itself. */
 void sk_object_release(sk_allocator *allocator, sk_object *object);
 /* Fields that objects of a category share, and where they are stored. */
