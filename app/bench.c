@@ -128,9 +128,8 @@ static bool measure(const bench_setup *setup, const bench_case *c) {
     return true;
 }
 
-static bool number_of(const app_option *options, size_t count, const char *name, double least, double most,
-                      double *out) {
-    const char *given = app_value(options, count, name);
+static bool number_of(const app_arguments *arguments, const char *name, double least, double most, double *out) {
+    const char *given = app_value(arguments, name);
     char *end;
     if (!given) return true;
     *out = strtod(given, &end);
@@ -155,40 +154,35 @@ static int print_table(const bench_setup *setup, double least, double most, int 
     return app_interrupted() ? EXIT_SIGNAL + app_interrupted() : EXIT_OK;
 }
 
-static int bench(int argc, char **argv) {
-    app_option options[] = {
-        {"--device", "WHERE", "cpu (the default) or gpu", false, NULL, 0},
-        {"--threads", "N", "threads on the processor, 1 to 64", false, NULL, 0},
-        {"--least", "N", "birds of the first size; 1,024 if not given", false, NULL, 0},
-        {"--most", "N", "birds of the last size; 65,536 if not given", false, NULL, 0},
-        {"--after", "STEPS", "measure each size once more after so many steps, when the flock has gathered", false,
-         NULL, 0},
-        {"--seconds", "S", "time for each number, at least; 0.3 if not given", false, NULL, 0},
-    };
-    enum { COUNT = sizeof options / sizeof *options };
-    const char *what;
+static int bench(app_arguments *arguments) {
+    const char *what = app_word(arguments), *device = app_value(arguments, "--device");
     double threads = 1, least = 1024, most = 65536, after = 0;
-    bench_setup setup = {.device = "cpu", .least_steps = 3, .seconds = 0.3};
-    int status = app_parse(&app_bench_command, argc, argv, options, COUNT, "benchmark", &what);
-    if (status < 0) {
-        status = EXIT_FAULT;
-        const char *device = app_value(options, COUNT, "--device");
-        if (device) setup.device = device;
-        if (strcmp(what, "flock")) fprintf(stderr, "skein bench: there is no benchmark '%s': there is flock\n", what);
-        else if (strcmp(setup.device, "cpu") && strcmp(setup.device, "gpu"))
-            fprintf(stderr, "skein bench: --device %s: expected cpu or gpu\n", setup.device);
-        else if (number_of(options, COUNT, "--threads", 1, 64, &threads) &&
-                 number_of(options, COUNT, "--least", 1, 1e8, &least) &&
-                 number_of(options, COUNT, "--most", 1, 1e8, &most) &&
-                 number_of(options, COUNT, "--after", 0, 1e6, &after) &&
-                 number_of(options, COUNT, "--seconds", 0, 1e4, &setup.seconds)) {
-            setup.threads = (int)threads;
-            status = print_table(&setup, least, most, (int)after);
-        }
+    bench_setup setup = {.device = device ? device : "cpu", .least_steps = 3, .seconds = 0.3};
+    if (strcmp(what, "flock")) {
+        fprintf(stderr, "skein bench: there is no benchmark '%s': there is flock\n", what);
+        return EXIT_FAULT;
     }
-    app_options_free(options, COUNT);
-    return status;
+    if (!number_of(arguments, "--threads", 1, 64, &threads) || !number_of(arguments, "--least", 1, 1e8, &least) ||
+        !number_of(arguments, "--most", 1, 1e8, &most) || !number_of(arguments, "--after", 0, 1e6, &after) ||
+        !number_of(arguments, "--seconds", 0, 1e4, &setup.seconds))
+        return EXIT_FAULT;
+    if (least > most) {
+        fprintf(stderr, "skein bench: --least %.0f --most %.0f: the first size is more than the last\n", least, most);
+        return EXIT_FAULT;
+    }
+    setup.threads = (int)threads;
+    return print_table(&setup, least, most, (int)after);
 }
+
+static const app_option options[] = {
+    {"--device", "cpu|gpu", "where it is measured; cpu if not given", false, APP_TAKES_ANY},
+    {"--threads", "N", "threads on the processor, 1 to 64", false, APP_TAKES_ANY},
+    {"--least", "N", "birds of the first size; 1,024 if not given", false, APP_TAKES_ANY},
+    {"--most", "N", "birds of the last size; 65,536 if not given", false, APP_TAKES_ANY},
+    {"--after", "STEPS", "measure each size once more after so many steps, when the flock has gathered", false,
+     APP_TAKES_ANY},
+    {"--seconds", "S", "time for each number, at least; 0.3 if not given", false, APP_TAKES_ANY},
+    APP_END_OF_OPTIONS};
 
 const app_command app_bench_command = {
     "bench",
@@ -200,5 +194,10 @@ const app_command app_bench_command = {
     "what they cost then.\n\n"
     "  skein bench flock --threads 2 --after 1000\n"
     "  skein bench flock --device gpu --least 1048576 --most 33554432",
+    options,
+    "benchmark",
+    false,
+    APP_TAKES_ANY,
     bench,
+    NULL,
 };

@@ -28,22 +28,16 @@ static int check_scene(const char *path, const char *const *sets) {
 }
 
 /* The worst of the scenes' statuses; one at fault does not keep the others from being looked at. */
-static int check(int argc, char **argv) {
-    app_option options[] = {
-        {"--set", "PATH=VALUE", "change a value first, as for `skein run`; may be repeated", true, NULL, 0}};
-    app_option scenes = {.repeats = true};
-    int status = app_parse_words(&app_check_command, argc, argv, options, 1, "scene", &scenes);
-    if (status < 0) {
-        status = EXIT_OK;
-        for (size_t i = 0; i < scenes.count; i++) {
-            int one = check_scene(scenes.values[i], options[0].values);
-            if (one > status) status = one;
-        }
+static int check(app_arguments *arguments) {
+    int status = EXIT_OK;
+    for (size_t i = 0; i < arguments->words.count; i++) {
+        int one = check_scene(arguments->words.values[i], app_values(arguments, "--set"));
+        if (one > status) status = one;
     }
-    app_options_free(options, 1);
-    app_options_free(&scenes, 1);
     return status;
 }
+
+static const app_option options[] = {APP_SET_OPTION, APP_END_OF_OPTIONS};
 
 const app_command app_check_command = {
     "check",
@@ -52,5 +46,10 @@ const app_command app_check_command = {
     "Faults name the file, the line or the path in the scene, what was found and what was expected.\n"
     "Warnings (a mesh with holes in its seams, a step that is too long for the method, or\n"
     "so short that positions round it away) do not fail the check.",
+    options,
+    "scene",
+    true,
+    APP_TAKES_SCENE,
     check,
+    NULL,
 };

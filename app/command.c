@@ -1,3 +1,4 @@
+/* Options: a command's table of them, and what was given. */
 #include "app/command.h"
 
 #include <stdio.h>
@@ -5,64 +6,126 @@
 #include <string.h>
 #include <time.h>
 
-#include "io/exporters.h"
-#ifdef SKEIN_RENDER
-#include "film/film.h"
-#include "render/picture.h"
-#include "render/view.h"
-#endif
-
 double app_seconds(void) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* ---- options ---- */
+/* ---- what was given ---- */
 
-static void print_help(const app_command *command, const app_option *options, size_t option_count) {
-    printf("usage: skein %s %s\n\n%s\n\nOptions\n", command->name, command->usage, command->help);
-    for (size_t i = 0; i < option_count; i++) {
-        char left[64];
-        snprintf(left, sizeof left, "%s %s", options[i].name, options[i].argument ? options[i].argument : "");
-        printf("  %-20s %s\n", left, options[i].help);
-    }
-    printf("  %-20s %s\n", "--help", "print this");
+static size_t place_of(const app_command *command, const char *name) {
+    size_t place = 0;
+    while (command->options && command->options[place].name && strcmp(command->options[place].name, name)) place++;
+    return place;
 }
 
-bool app_option_add(app_option *option, const char *value) {
-    if (!option->repeats) option->count = 0;
-    const char **grown = realloc(option->values, (option->count + 2) * sizeof *grown);
+static const app_option *find_option(const app_command *command, const char *name) {
+    const app_option *option = command->options ? &command->options[place_of(command, name)] : NULL;
+    return option && option->name ? option : NULL;
+}
+
+const char *app_word(const app_arguments *arguments) {
+    return arguments->words.count ? arguments->words.values[0] : NULL;
+}
+
+const char *const *app_values(const app_arguments *arguments, const char *name) {
+    return arguments->given[place_of(arguments->command, name)].values;
+}
+
+const char *app_value(const app_arguments *arguments, const char *name) {
+    const app_list *list = &arguments->given[place_of(arguments->command, name)];
+    return list->count ? list->values[list->count - 1] : NULL;
+}
+
+bool app_given(const app_arguments *arguments, const char *name) {
+    return app_value(arguments, name) != NULL;
+}
+
+bool app_list_add(app_list *list, const char *value, bool repeats) {
+    if (!repeats) list->count = 0;
+    const char **grown = realloc(list->values, (list->count + 2) * sizeof *grown);
     if (!grown) return false;
-    option->values = grown;
-    option->values[option->count++] = value;
-    option->values[option->count] = NULL;
+    list->values = grown;
+    list->values[list->count++] = value;
+    list->values[list->count] = NULL;
     return true;
 }
 
-static int unknown_option(const app_command *command, const app_option *options, size_t option_count,
-                          const char *name) {
-    const char *names[16];
-    char hint[IO_HINT_SIZE];
+/* ---- help and faults ---- */
+
+static void print_help(const app_command *command) {
+    printf("usage: skein %s %s\n\n%s\n\nOptions\n", command->name, command->usage, command->help);
+    for (const app_option *option = command->options; option && option->name; option++) {
+        char left[64];
+        snprintf(left, sizeof left, "%s %s", option->name, option->argument ? option->argument : "");
+        printf("  %-21s %s\n", left, option->help);
+    }
+    printf("  %-21s %s\n", "--help", "print this");
+    if (command->print_more) command->print_more();
+}
+
+/* "cpu|gpu|auto" as "cpu, gpu or auto". */
+static const char *in_words(const char *choices, char *text, size_t size) {
+    size_t length = 0;
+    for (; *choices && length + 8 < size; choices++) {
+        const char *between = *choices != '|' ? NULL : strchr(choices + 1, '|') ? ", " : " or ";
+        if (between) length += (size_t)snprintf(text + length, size - length, "%s", between);
+        else text[length++] = *choices;
+    }
+    text[length] = 0;
+    return text;
+}
+
+/* The commands that have the option: "run|render|explain". False where there is none. */
+static bool others_with(const char *name, char *text, size_t size) {
+    size_t length = 0;
+    for (size_t c = 0; app_command_at(c) && length < size; c++)
+        if (find_option(app_command_at(c), name))
+            length +=
+                (size_t)snprintf(text + length, size - length, "%s%s", length ? "|" : "", app_command_at(c)->name);
+    return length > 0;
+}
+
+/* The name that was meant, or another command that has the option, if there is either. */
+static int unknown_option(const app_command *command, const char *name) {
+    const char *names[APP_MOST_OPTIONS];
+    char hint[IO_HINT_SIZE], others[160], words[200];
     size_t count = 0;
     // without the dashes, which all have in common
-    for (; count < option_count && count < 16; count++) names[count] = options[count].name + 2;
+    for (const app_option *o = command->options; o && o->name; o++) names[count++] = o->name + strspn(o->name, "-");
     io_hint(name + strspn(name, "-"), names, count, hint);
-    fprintf(stderr, "skein %s: there is no option %s%s `skein %s --help` shows all\n", command->name, name,
-            hint[0] ? hint : ";", command->name);
+    const char *meant = strchr(hint, '\''), *end = meant ? strchr(meant + 1, '\'') : NULL;
+    fprintf(stderr, "skein %s: there is no option %s", command->name, name);
+    if (end) fprintf(stderr, "; did you mean --%.*s?", (int)(end - meant - 1), meant + 1);
+    else if (others_with(name, others, sizeof others))
+        fprintf(stderr, " here, only for %s;", in_words(others, words, sizeof words));
+    else fprintf(stderr, ";");
+    fprintf(stderr, " `skein %s --help` shows all\n", command->name);
     return EXIT_FAULT;
 }
 
-/* One option and its value: --name value or --name=value. Moves *a on. Returns as app_parse does. */
-static int parse_option(const app_command *command, int argc, char **argv, int *a, app_option *options,
-                        size_t option_count) {
+/* ---- sorting ---- */
+
+/* Whether the value is one of the words "cpu|gpu|auto"; any is where the argument is no list of words. */
+static bool is_one_of(const char *words, const char *value) {
+    size_t length = strlen(value);
+    if (!strchr(words, '|')) return true;
+    for (const char *at = words; at; at = strchr(at, '|')) {
+        at += *at == '|';
+        if (strcspn(at, "|") == length && !strncmp(at, value, length)) return true;
+    }
+    return false;
+}
+
+/* One option and its value: --name value or --name=value. Moves *a on. Returns -1 to go on, else an exit status. */
+static int parse_option(app_arguments *arguments, int argc, char **argv, int *a) {
     char name[64];
+    const app_command *command = arguments->command;
     const char *argument = argv[*a], *equals = strchr(argument, '=');
     snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - argument) : 63, argument);
-    app_option *option = NULL;
-    for (size_t i = 0; i < option_count; i++)
-        if (!strcmp(options[i].name, name)) option = &options[i];
-    if (!option) return unknown_option(command, options, option_count, name);
+    const app_option *option = find_option(command, name);
+    if (!option) return unknown_option(command, name);
     const char *value = equals ? equals + 1 : NULL;
     if (option->argument && !value && *a + 1 < argc) value = argv[++*a];
     if (!option->argument != !value) {
@@ -70,11 +133,19 @@ static int parse_option(const app_command *command, int argc, char **argv, int *
                 option->argument ? option->argument : "no value");
         return EXIT_FAULT;
     }
-    return app_option_add(option, value ? value : option->name) ? -1 : EXIT_FAILURE_RUN;
+    if (value && !is_one_of(option->argument, value)) {
+        char words[200];
+        fprintf(stderr, "skein %s: %s %s: expected %s\n", command->name, name, value,
+                in_words(option->argument, words, sizeof words));
+        return EXIT_FAULT;
+    }
+    app_list *given = &arguments->given[option - command->options];
+    return app_list_add(given, value ? value : option->name, option->repeats) ? -1 : EXIT_FAILURE_RUN;
 }
 
-int app_parse_words(const app_command *command, int argc, char **argv, app_option *options, size_t option_count,
-                    const char *needed, app_option *words) {
+/* Returns -1 to go on, else an exit status. */
+static int parse(app_arguments *arguments, int argc, char **argv) {
+    const app_command *command = arguments->command;
     int status = -1;
     bool only_words = false; // behind "--"
     for (int a = 0; a < argc && status < 0; a++) {
@@ -83,44 +154,36 @@ int app_parse_words(const app_command *command, int argc, char **argv, app_optio
         if (!is_word && !strcmp(argument, "--")) {
             only_words = true;
         } else if (!is_word && (!strcmp(argument, "--help") || !strcmp(argument, "-h"))) {
-            print_help(command, options, option_count);
+            print_help(command);
             status = EXIT_OK;
         } else if (!is_word) {
-            status = parse_option(command, argc, argv, &a, options, option_count);
-        } else if (words->count && !words->repeats) {
+            status = parse_option(arguments, argc, argv, &a);
+        } else if (arguments->words.count && !command->many) {
             fprintf(stderr, "skein %s: '%s' is one argument too many; usage: skein %s %s\n", command->name, argument,
                     command->name, command->usage);
             status = EXIT_FAULT;
-        } else if (!app_option_add(words, argument)) {
+        } else if (!app_list_add(&arguments->words, argument, true)) {
             status = EXIT_FAILURE_RUN;
         }
     }
-    if (status >= 0 || words->count || !needed) return status;
-    fprintf(stderr, "skein %s: which %s? usage: skein %s %s\n", command->name, needed, command->name, command->usage);
+    if (status >= 0 || arguments->words.count || !command->needed) return status;
+    fprintf(stderr, "skein %s: which %s? usage: skein %s %s\n", command->name, command->needed, command->name,
+            command->usage);
     return EXIT_FAULT;
 }
 
-int app_parse(const app_command *command, int argc, char **argv, app_option *options, size_t option_count,
-              const char *needed, const char **word) {
-    app_option words = {.repeats = false};
-    int status = app_parse_words(command, argc, argv, options, option_count, needed, &words);
-    *word = words.count ? words.values[0] : NULL;
-    app_options_free(&words, 1);
+int app_command_run(const app_command *command, int argc, char **argv) {
+    app_arguments arguments = {.command = command};
+    int status = parse(&arguments, argc, argv);
+    if (status < 0) status = command->run(&arguments);
+    free(arguments.words.values);
+    for (int i = 0; i < APP_MOST_OPTIONS; i++) free(arguments.given[i].values);
     return status;
 }
 
-void app_options_free(app_option *options, size_t option_count) {
-    for (size_t i = 0; i < option_count; i++) free(options[i].values);
-}
+/* ---- options for fields of the scene ---- */
 
-const char *app_value(const app_option *options, size_t option_count, const char *name) {
-    for (size_t i = 0; i < option_count; i++)
-        if (!strcmp(options[i].name, name)) return options[i].count ? options[i].values[options[i].count - 1] : NULL;
-    return NULL;
-}
-
-static bool override_field(const app_command *command, const char *name, const char *given, app_option *sets,
-                           char text[64]) {
+static bool override_field(app_arguments *arguments, const char *name, const char *given, char text[64]) {
     const skein_field *field = skein_field_find(io_scene_kind(), name + 2, NULL);
     char *end;
     skein_value value = skein_number(strtod(given, &end));
@@ -128,95 +191,16 @@ static bool override_field(const app_command *command, const char *name, const c
     if (end == given || *end) value.count = 4; // what no field takes, so that the field says what it does take
     bool good = field && !skein_field_check(field, &value, &error);
     snprintf(text, 64, "%s=%.17g", name + 2, value.number[0]);
-    if (!good) fprintf(stderr, "skein %s: %s %s: %s\n", command->name, name, given, error.message);
-    return good && app_option_add(sets, text);
+    if (!good) fprintf(stderr, "skein %s: %s %s: %s\n", arguments->command->name, name, given, error.message);
+    return good && app_list_add(&arguments->given[place_of(arguments->command, "--set")], text, true);
 }
 
-bool app_override(const app_command *command, app_option *options, size_t option_count, app_override_texts texts) {
+bool app_override(app_arguments *arguments, app_override_texts texts) {
     static const char *const names[] = {"--frames", "--fps", "--threads"};
     bool good = true;
     for (int i = 0; i < 3 && good; i++) {
-        const char *given = app_value(options, option_count, names[i]);
-        good = !given || override_field(command, names[i], given, &options[0], texts[i]);
+        const char *given = find_option(arguments->command, names[i]) ? app_value(arguments, names[i]) : NULL;
+        good = !given || override_field(arguments, names[i], given, texts[i]);
     }
     return good;
-}
-
-/* ---- scenes ---- */
-
-void app_print_error(const skein_error *error) {
-    fprintf(stderr, "skein: %s%s%s\n", error->where, error->where[0] ? ": " : "", error->message);
-}
-
-static void report_fault(void *user, const skein_error *error) {
-    (void)user;
-    app_print_error(error);
-}
-
-static void print_log(void *user, skein_log_level level, const char *message) {
-    app_scene *loaded = user;
-    if (level == SKEIN_LOG_WARNING) loaded->warnings++;
-    if (loaded->quiet) return;
-    fprintf(stderr, "skein: %s%s\n", level == SKEIN_LOG_WARNING ? "warning: " : "", message);
-}
-
-const skein_kind *const *app_exporters(void) {
-    static const skein_kind *all[16];
-    size_t count = 0;
-    for (size_t i = 0; io_exporter_at(i); i++) all[count++] = io_exporter_at(i);
-#ifdef SKEIN_RENDER
-    for (size_t i = 0; render_exporter_at(i); i++) all[count++] = render_exporter_at(i);
-    all[count++] = film_exporter();
-    all[count++] = render_view_kind();
-#endif
-    all[count] = NULL;
-    return all;
-}
-
-static int load(const char *path, const char *const *sets, bool quiet, app_scene *loaded) {
-    memset(loaded, 0, sizeof *loaded);
-    loaded->path = path;
-    loaded->quiet = quiet;
-    double start = app_seconds();
-    io_faults faults = {report_fault, NULL, 0};
-    loaded->scene = io_scene_read(path, sets, app_exporters(), &faults);
-    if (loaded->scene) {
-        loaded->settings = *io_scene_get(loaded->scene);
-        skein_world_desc desc = skein_default_world_desc();
-        desc.log = print_log;
-        desc.log_user = loaded;
-        desc.thread_count = loaded->settings.threads;
-        loaded->world = io_scene_build(loaded->scene, &desc, &faults);
-    }
-    loaded->load_seconds = app_seconds() - start;
-    if (loaded->world) return EXIT_OK;
-    app_unload(loaded);
-    if (faults.count > 1) fprintf(stderr, "skein: %s: %zu faults\n", path, faults.count);
-    return EXIT_FAULT;
-}
-
-int app_load(const char *path, const char *const *sets, app_scene *loaded) {
-    return load(path, sets, false, loaded);
-}
-
-int app_load_quietly(const char *path, const char *const *sets, app_scene *loaded) {
-    return load(path, sets, true, loaded);
-}
-
-int app_try(const char *path, const char *const *sets) {
-    app_scene loaded;
-    int status = app_load(path, sets, &loaded);
-    if (!status) app_unload(&loaded);
-    return status;
-}
-
-void app_unload(app_scene *loaded) {
-    skein_world_destroy(loaded->world);
-    io_scene_free(loaded->scene);
-    loaded->world = NULL;
-    loaded->scene = NULL;
-}
-
-const char *app_method(const app_scene *loaded) {
-    return skein_object_kind(loaded->world, skein_object_at(loaded->world, SKEIN_METHOD, 0))->name;
 }

@@ -7,43 +7,87 @@
 /* Exit statuses. A run that a signal ended early has 128 and the signal's number, as a shell would say. */
 enum { EXIT_OK = 0, EXIT_FAILURE_RUN = 1, EXIT_FAULT = 2, EXIT_SIGNAL = 128 };
 
-/* One option of a subcommand. A value is kept as text; `repeats` ones collect into a list. */
+/* What an argument names, for the shell that completes it. */
+typedef enum app_takes { APP_TAKES_ANY, APP_TAKES_SCENE, APP_TAKES_FILE, APP_TAKES_FOLDER, APP_TAKES_KIND } app_takes;
+
+/* One option of a subcommand: a row of its table, from which come its help, the manual page and completion. */
 typedef struct app_option {
     const char *name;     /* "--frames" */
-    const char *argument; /* "N"; NULL for a switch */
+    const char *argument; /* "N", or the words that it can be: "cpu|gpu|auto"; NULL for a switch */
     const char *help;
-    bool repeats;
-    const char **values; /* filled in: NULL-terminated; [0] is the value, or the name of a switch */
-    size_t count;
+    bool repeats; /* else the last one counts */
+    app_takes takes;
 } app_option;
+
+enum { APP_MOST_OPTIONS = 20 };
+
+/* What was given: a list of values for each of the command's options, and its words. */
+typedef struct app_list {
+    const char **values; /* NULL-terminated, or NULL where there is none; of a switch its name */
+    size_t count;
+} app_list;
+typedef struct app_arguments {
+    const struct app_command *command;
+    app_list words, given[APP_MOST_OPTIONS];
+} app_arguments;
 
 /* A subcommand: its table row is its help. */
 typedef struct app_command {
     const char *name, *usage, *help;
-    int (*run)(int argc, char **argv);
+    const app_option *options; /* ended by one without a name; or NULL */
+    const char *needed;        /* what its words are: "scene"; NULL where it does without */
+    bool many;                 /* takes more than one word */
+    app_takes takes;           /* what the words name */
+    int (*run)(app_arguments *arguments);
+    void (*print_more)(void); /* behind the help; or NULL */
 } app_command;
 
 extern const app_command app_run_command, app_render_command, app_check_command, app_compare_command,
     app_stability_command, app_explain_command, app_list_command, app_formula_command, app_view_command,
     app_bench_command;
 
-/* Sorts arguments into options and at most one word (NULL if there is none, which is a fault where it is
- * `needed`, as in "scene"); prints help for --help. Returns -1 to go on, else an exit status. */
-int app_parse(const app_command *command, int argc, char **argv, app_option *options, size_t option_count,
-              const char *needed, const char **word);
-/* The same where `words` `repeats`: all of them, in order; free it as an option. */
-int app_parse_words(const app_command *command, int argc, char **argv, app_option *options, size_t option_count,
-                    const char *needed, app_option *words);
-void app_options_free(app_option *options, size_t option_count);
-/* The option's last value, or NULL. */
-const char *app_value(const app_option *options, size_t option_count, const char *name);
+/* Every subcommand; NULL past the end. */
+const app_command *app_command_at(size_t index);
+
+/* Sorts arguments into options and words and runs the command with them; or prints its help, for --help. Returns an
+ * exit status. */
+int app_command_run(const app_command *command, int argc, char **argv);
+/* The first word, or NULL. */
+const char *app_word(const app_arguments *arguments);
+/* An option's last value, or NULL; all of them, NULL-terminated, or NULL. The name is one of the command's. */
+const char *app_value(const app_arguments *arguments, const char *name);
+const char *const *app_values(const app_arguments *arguments, const char *name);
+bool app_given(const app_arguments *arguments, const char *name);
 /* Adds a value as if it had been given; false when there is no memory. */
-bool app_option_add(app_option *option, const char *value);
+bool app_list_add(app_list *list, const char *value, bool repeats);
+
+/* Options that several commands have. */
+#define APP_SET_OPTION                                                                                               \
+    {                                                                                                                \
+        "--set", "PATH=VALUE", "change a value of the scene: bodies.0.stretch.stiffness=2e4; may be repeated", true, \
+            APP_TAKES_ANY                                                                                            \
+    }
+#define APP_THREADS_OPTION \
+    { "--threads", "N", "threads to run on, 1 to 64; the result is the same", false, APP_TAKES_ANY }
+#define APP_QUIET_OPTION \
+    { "--quiet", NULL, "say nothing but errors", false, APP_TAKES_ANY }
+#define APP_DEVICE_OPTION                                                                                     \
+    {                                                                                                         \
+        "--device", "cpu|gpu|auto", "where steps are computed: auto is on a graphics card if one can", false, \
+            APP_TAKES_ANY                                                                                     \
+    }
+#define APP_COMPILE_OPTION                                                                                        \
+    {                                                                                                             \
+        "--compile", NULL, "compile formulas with $CC, cc, gcc or clang; kept in $SKEIN_CACHE or ~/.cache/skein", \
+            false, APP_TAKES_ANY                                                                                  \
+    }
+#define APP_END_OF_OPTIONS \
+    { NULL, NULL, NULL, false, APP_TAKES_ANY }
 
 /* The options --frames, --fps and --threads stand for fields of the scene: those that were given become one
- * more value each of the first option, --set, and `texts` holds it. False after a printed fault. */
+ * more value each of --set, and `texts` holds it. False after a printed fault. */
 typedef char app_override_texts[3][64];
-bool app_override(const app_command *command, app_option *options, size_t option_count, app_override_texts texts);
+bool app_override(app_arguments *arguments, app_override_texts texts);
 
 /* Prints "skein: where: message" to standard error. */
 void app_print_error(const skein_error *error);
@@ -66,9 +110,8 @@ int app_load_quietly(const char *path, const char *const *sets, app_scene *loade
 /* Only looks whether it can be loaded. */
 int app_try(const char *path, const char *const *sets);
 void app_unload(app_scene *loaded);
-/* The option --device, and what it asks for: "cpu", "gpu", "auto" or NULL. Says on the terminal what it chose unless
- * that is plain. Returns an exit status. */
-extern const app_option app_device_option;
+/* What the option --device asks for: "cpu", "gpu", "auto" or NULL. Says on the terminal what it chose unless that is
+ * plain. Returns an exit status. */
 int app_device(app_scene *loaded, const char *word);
 /* The name of the method's kind. */
 const char *app_method(const app_scene *loaded);

@@ -156,40 +156,34 @@ static int compare_all(compare_scene *scene, compare_run *runs, size_t count, co
     return good ? EXIT_OK : EXIT_FAILURE_RUN;
 }
 
-static int compare(int argc, char **argv) {
-    app_option options[] = {
-        {"--set", "PATH=VALUE", "change a value first, as for `skein run`; may be repeated", true, NULL, 0},
-        {"--methods", "A,B", "which methods; symplectic_euler,leapfrog,rk4,backward_euler,xpbd if not given", false,
-         NULL, 0},
-        {"--steps", "S,S", "which steps, in seconds (substeps are not used); 1e-3,5e-4,2.5e-4 if not given", false,
-         NULL, 0},
-        {"--frames", "N", "frames to run, instead of the scene's", false, NULL, 0},
-        {"--out", "FOLDER", "write compare.csv, series.csv, compare.png and compare.svg there", false, NULL, 0},
-    };
-    enum { COUNT = sizeof options / sizeof *options };
+static int compare(app_arguments *arguments) {
     static compare_run runs[COMPARE_MOST_RUNS];
-    compare_scene scene = {.path = NULL};
-    int status = app_parse(&app_compare_command, argc, argv, options, COUNT, "scene", &scene.path);
-    if (status < 0) {
-        const char *methods = app_value(options, COUNT, "--methods"), *steps = app_value(options, COUNT, "--steps");
-        const char *frames = app_value(options, COUNT, "--frames");
-        size_t count = plan_runs(methods ? methods : "symplectic_euler,leapfrog,rk4,backward_euler,xpbd",
-                                 steps ? steps : "1e-3,5e-4,2.5e-4", runs);
-        char *end = NULL;
-        long wanted = frames ? strtol(frames, &end, 10) : 0;
-        status = count ? EXIT_OK : EXIT_FAULT;
-        if (frames && (*end || wanted < 1 || wanted > 100000)) {
-            fprintf(stderr, "skein compare: --frames %s: expected a whole number, 1 to 100000\n", frames);
-            status = EXIT_FAULT;
-        }
-        scene.sets = options[0].values;
-        scene.frames = (int)wanted;
-        if (!status) status = app_try(scene.path, scene.sets);
-        if (!status) status = compare_all(&scene, runs, count, app_value(options, COUNT, "--out"));
+    compare_scene scene = {.path = app_word(arguments), .sets = app_values(arguments, "--set")};
+    const char *methods = app_value(arguments, "--methods"), *steps = app_value(arguments, "--steps"),
+               *frames = app_value(arguments, "--frames");
+    size_t count = plan_runs(methods ? methods : "symplectic_euler,leapfrog,rk4,backward_euler,xpbd",
+                             steps ? steps : "1e-3,5e-4,2.5e-4", runs);
+    char *end = NULL;
+    long wanted = frames ? strtol(frames, &end, 10) : 0;
+    if (!count) return EXIT_FAULT;
+    if (frames && (*end || wanted < 1 || wanted > 100000)) {
+        fprintf(stderr, "skein compare: --frames %s: expected a whole number, 1 to 100000\n", frames);
+        return EXIT_FAULT;
     }
-    app_options_free(options, COUNT);
-    return status;
+    scene.frames = (int)wanted;
+    int status = app_try(scene.path, scene.sets);
+    return status ? status : compare_all(&scene, runs, count, app_value(arguments, "--out"));
 }
+
+static const app_option options[] = {
+    APP_SET_OPTION,
+    {"--methods", "A,B", "which methods; symplectic_euler,leapfrog,rk4,backward_euler,xpbd if not given", false,
+     APP_TAKES_ANY},
+    {"--steps", "S,S", "which steps, in seconds (substeps are not used); 1e-3,5e-4,2.5e-4 if not given", false,
+     APP_TAKES_ANY},
+    {"--frames", "N", "frames to run, instead of the scene's", false, APP_TAKES_ANY},
+    {"--out", "FOLDER", "write compare.csv, series.csv, compare.png and compare.svg there", false, APP_TAKES_FOLDER},
+    APP_END_OF_OPTIONS};
 
 const app_command app_compare_command = {
     "compare",
@@ -200,5 +194,10 @@ const app_command app_compare_command = {
     "and its time. A run that blows up is no error: the step at which it did is in the table. With --out, the same as\n"
     "CSV, a line a frame of every run in series.csv, and a plot (gnuplot draws it): energy, stretch and error over\n"
     "time, error and time by step, and error by cost.",
+    options,
+    "scene",
+    false,
+    APP_TAKES_SCENE,
     compare,
+    NULL,
 };

@@ -20,10 +20,6 @@
 
 #include "app/headers.h"
 
-const app_option app_compile_option = {
-    "--compile", NULL, "compile formulas with $CC, cc, gcc or clang; kept in $SKEIN_CACHE or ~/.cache/skein",
-    false,       NULL, 0};
-
 /* ---- the key ---- */
 
 static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count) {

@@ -4,8 +4,6 @@
 
 #include "app/command.h"
 
-extern const app_option app_compile_option;
-
 /* Has every constraint's formula of the scene compiled, or takes it from the cache, and registers it with the world.
  * Says on the terminal what it did, unless it is to be quiet; what cannot be compiled stays on its tape, with a
  * warning. Returns how many warnings there were. */

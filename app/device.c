@@ -4,14 +4,6 @@
 
 #include "app/command.h"
 
-const app_option app_device_option = {
-    "--device",
-    "WHERE",
-    "where steps are computed: cpu (the default), gpu, or auto: on a graphics card if one can",
-    false,
-    NULL,
-    0};
-
 static void say(const app_scene *loaded, const char *format, const char *what) {
     if (loaded->quiet) return;
     fputs("skein: ", stderr);
@@ -34,10 +26,6 @@ int app_device(app_scene *loaded, const char *word) {
     skein_error reason;
     if (!word || !strcmp(word, "cpu")) return EXIT_OK;
     bool automatic = !strcmp(word, "auto");
-    if (!automatic && strcmp(word, "gpu")) {
-        fprintf(stderr, "skein: --device: '%s'; expected cpu, gpu or auto\n", word);
-        return EXIT_FAULT;
-    }
     if (!try_card(loaded, &reason)) {
         if (!automatic) {
             app_print_error(&reason);

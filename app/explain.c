@@ -19,24 +19,16 @@ static int print_plan(const app_scene *loaded) {
     return EXIT_FAILURE_RUN;
 }
 
-static int explain(int argc, char **argv) {
-    app_option options[] = {
-        {"--set", "PATH=VALUE", "change a value first, as for `skein run`; may be repeated", true, NULL, 0},
-        app_device_option,
-    };
-    enum { COUNT = sizeof options / sizeof *options };
-    const char *path;
-    int status = app_parse(&app_explain_command, argc, argv, options, COUNT, "scene", &path);
-    if (status < 0) {
-        app_scene loaded;
-        status = app_load(path, options[0].values, &loaded);
-        if (!status) status = app_device(&loaded, app_value(options, COUNT, "--device"));
-        if (!status) status = print_plan(&loaded);
-        app_unload(&loaded);
-    }
-    app_options_free(options, COUNT);
+static int explain(app_arguments *arguments) {
+    app_scene loaded;
+    int status = app_load(app_word(arguments), app_values(arguments, "--set"), &loaded);
+    if (!status) status = app_device(&loaded, app_value(arguments, "--device"));
+    if (!status) status = print_plan(&loaded);
+    app_unload(&loaded);
     return status;
 }
+
+static const app_option options[] = {APP_SET_OPTION, APP_DEVICE_OPTION, APP_END_OF_OPTIONS};
 
 const app_command app_explain_command = {
     "explain",
@@ -48,5 +40,10 @@ const app_command app_explain_command = {
     "On a graphics card the rows are the same; those that look at nothing but their own particle run together, a pass\n"
     "each, with their vectors in registers.\n\n"
     "  skein explain scenes/flag.json --set method.type=symplectic_euler",
+    options,
+    "scene",
+    false,
+    APP_TAKES_SCENE,
     explain,
+    NULL,
 };

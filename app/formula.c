@@ -8,8 +8,6 @@
 
 #include "app/command.h"
 
-enum { AT, REST_AT, VELOCITY, PARAM, TIME, GRAD, HESSIAN, GRAPH, EMIT, NAME, FUNCTIONS, OPTION_COUNT };
-
 /* What was asked, as numbers. */
 typedef struct question {
     skein_formula_desc desc;
@@ -34,18 +32,16 @@ static bool read_number(const char *text, double *number) {
 }
 
 /* Points as x,y,z with blanks or semicolons between them; the option may be repeated, too. */
-static bool read_points(const app_option *option, double *points, size_t *count) {
-    for (size_t i = 0; i < option->count; i++) {
-        const char *text = option->values[i];
+static bool read_points(const app_arguments *arguments, const char *name, double *points, size_t *count) {
+    for (const char *const *given = app_values(arguments, name); given && *given; given++) {
+        const char *text = *given;
         while (*text) {
             double p[3];
             int length = 0;
             if (sscanf(text, " %lf , %lf , %lf %n", &p[0], &p[1], &p[2], &length) != 3 || !length ||
                 !isfinite(p[0] + p[1] + p[2]))
-                return fault(option->name, option->values[i],
-                             "points as x,y,z with blanks between them, as in '0,0,0 1,0,0'");
-            if (*count == SKEIN_FORMULA_MOST_PARTICLES)
-                return fault(option->name, option->values[i], "8 points at the most");
+                return fault(name, *given, "points as x,y,z with blanks between them, as in '0,0,0 1,0,0'");
+            if (*count == SKEIN_FORMULA_MOST_PARTICLES) return fault(name, *given, "8 points at the most");
             memcpy(points + 3 * (*count)++, p, sizeof p);
             text += length + (text[length] == ';');
         }
@@ -53,24 +49,25 @@ static bool read_points(const app_option *option, double *points, size_t *count)
     return true;
 }
 
-static bool read_parameters(const app_option *option, question *q) {
-    if (option->count > SKEIN_FORMULA_MOST_PARAMETERS) return fault(option->name, "...", "32 parameters at the most");
-    for (size_t i = 0; i < option->count; i++) {
-        const char *text = option->values[i], *equals = strchr(text, '=');
+static bool read_parameters(const app_arguments *arguments, question *q) {
+    const char *const *given = app_values(arguments, "--param");
+    for (size_t i = 0; given && given[i]; i++) {
+        if (i == SKEIN_FORMULA_MOST_PARAMETERS) return fault("--param", "...", "32 parameters at the most");
+        const char *text = given[i], *equals = strchr(text, '=');
         size_t length = equals ? (size_t)(equals - text) : 0;
         if (!length || length >= sizeof q->name_text[i] || !read_number(equals + 1, &q->parameters[i]))
-            return fault(option->name, text, "a name and a number, as in L=0.5");
+            return fault("--param", text, "a name and a number, as in L=0.5");
         memcpy(q->name_text[i], text, length);
         q->names[i] = q->name_text[i];
     }
     return true;
 }
 
-static bool read_question(const app_option *options, question *q) {
-    const char *time = options[TIME].count ? options[TIME].values[0] : NULL;
-    if (!read_points(&options[AT], q->positions, &q->particles) ||
-        !read_points(&options[REST_AT], q->rest, &q->rest_particles) ||
-        !read_points(&options[VELOCITY], q->velocities, &q->moving_particles) || !read_parameters(&options[PARAM], q))
+static bool read_question(const app_arguments *arguments, question *q) {
+    const char *time = app_value(arguments, "--time");
+    if (!read_points(arguments, "--at", q->positions, &q->particles) ||
+        !read_points(arguments, "--rest", q->rest, &q->rest_particles) ||
+        !read_points(arguments, "--velocity", q->velocities, &q->moving_particles) || !read_parameters(arguments, q))
         return false;
     return !time || read_number(time, &q->time) || fault("--time", time, "a number of seconds");
 }
@@ -125,7 +122,8 @@ static void print_hessian(const double *hessian, int size) {
         for (int k = 0; k < size; k++) printf("%11.5g%s", hessian[i * size + k] + 0, k + 1 < size ? " " : "\n");
 }
 
-static int print_answer(const skein_formula *f, const app_option *options, const question *q) {
+static int print_answer(const skein_formula *f, const app_arguments *arguments, const question *q) {
+    bool second = app_given(arguments, "--hessian");
     skein_formula_info info = skein_formula_about(f);
     skein_formula_value value;
     skein_error error = {SKEIN_OK, "", ""};
@@ -138,12 +136,12 @@ static int print_answer(const skein_formula *f, const app_option *options, const
     }
     double hessian[9 * SKEIN_FORMULA_MOST_PARTICLES * SKEIN_FORMULA_MOST_PARTICLES];
     if (skein_formula_evaluate(f, &point, &value, &error) ||
-        (options[HESSIAN].count && skein_formula_hessian(f, &point, hessian, &error))) {
+        (second && skein_formula_hessian(f, &point, hessian, &error))) {
         app_print_error(&error);
         return EXIT_FAULT;
     }
-    print_value(&info, &value, options[GRAD].count > 0);
-    if (options[HESSIAN].count) print_hessian(hessian, 3 * info.particles);
+    print_value(&info, &value, app_given(arguments, "--grad"));
+    if (second) print_hessian(hessian, 3 * info.particles);
     return EXIT_OK;
 }
 
@@ -163,21 +161,17 @@ static const language languages[] = {{"c", SKEIN_FORMULA_C}, // to be compiled a
                                      {"kernel", SKEIN_FORMULA_KERNEL},
                                      {NULL, SKEIN_FORMULA_C}};
 
-static int answer(const char *text, const app_option *options, question *q) {
+static int answer(const char *text, const app_arguments *arguments, question *q) {
     skein_formula_mark mark;
     skein_error error = {SKEIN_OK, "", ""};
-    const char *word = app_value(options, OPTION_COUNT, "--emit");
+    const char *word = app_value(arguments, "--emit");
     const language *wanted = languages;
     while (word && wanted->word && strcmp(word, wanted->word)) wanted++;
     q->desc = (skein_formula_desc){.text = text,
                                    .parameters = q->names,
                                    .velocities = true,
                                    .comparison = true,
-                                   .second = options[HESSIAN].count > 0};
-    if (!wanted->word) {
-        fault("--emit", word, "c, function, glsl or kernel");
-        return EXIT_FAULT;
-    }
+                                   .second = app_given(arguments, "--hessian")};
     skein_formula *f = skein_formula_create(&q->desc, &mark, &error);
     if (!f) {
         print_fault(text, &mark, &error);
@@ -185,14 +179,14 @@ static int answer(const char *text, const app_option *options, question *q) {
     }
     print_warnings(text, f);
     int status = EXIT_OK;
-    if (word || options[GRAPH].count) {
-        const char *name = app_value(options, OPTION_COUNT, "--name");
+    if (word || app_given(arguments, "--graph")) {
+        const char *name = app_value(arguments, "--name");
         if (word && wanted == languages
                 ? skein_formula_emit_compiled(f, name, print_text, NULL, &error)
                 : skein_formula_emit(f, word ? wanted->language : SKEIN_FORMULA_GRAPH, print_text, NULL, &error))
             app_print_error(&error), status = EXIT_FAULT;
     } else {
-        status = print_answer(f, options, q);
+        status = print_answer(f, arguments, q);
     }
     skein_formula_destroy(f);
     return status;
@@ -204,36 +198,30 @@ static int print_functions(void) {
     return EXIT_OK;
 }
 
-static int formula(int argc, char **argv) {
-    app_option options[OPTION_COUNT] = {
-        [AT] = {"--at", "POINTS", "where the particles are: '0,0,0 1,0,0' are p0 and p1", true, NULL, 0},
-        [REST_AT] = {"--rest", "POINTS", "where they are at rest, for rest(...); else where --at says", true, NULL, 0},
-        [VELOCITY] = {"--velocity", "POINTS", "their velocities, v0, v1, ...; else 0", true, NULL, 0},
-        [PARAM] = {"--param", "NAME=X", "a parameter's name and number; may be repeated", true, NULL, 0},
-        [TIME] = {"--time", "SECONDS", "what t is; else 0", false, NULL, 0},
-        [GRAD] = {"--grad", NULL, "print the derivatives, too", false, NULL, 0},
-        [HESSIAN] = {"--hessian", NULL, "print the second derivatives, too; or emit them, in C", false, NULL, 0},
-        [GRAPH] = {"--graph", NULL, "print the operations, for the value and its gradient", false, NULL, 0},
-        [EMIT] = {"--emit", "c|function|glsl|kernel",
-                  "print it as C to compile and register (--hessian: as an energy), or as a function", false, NULL, 0},
-        [NAME] = {"--name", "NAME", "what the file of --emit c calls it; else skein_compiled_formula", false, NULL, 0},
-        [FUNCTIONS] = {"--functions", NULL, "print what functions there are", false, NULL, 0}};
-    const char *text;
+static int formula(app_arguments *arguments) {
+    const char *text = app_word(arguments);
     question q = {0};
-    int status = app_parse(&app_formula_command, argc, argv, options, OPTION_COUNT, NULL, &text);
-    if (status < 0 && options[FUNCTIONS].count) {
-        status = print_functions();
-    } else if (status < 0 && !text) {
-        fprintf(
-            stderr,
+    if (app_given(arguments, "--functions")) return print_functions();
+    if (text) return read_question(arguments, &q) ? answer(text, arguments, &q) : EXIT_FAULT;
+    fprintf(stderr,
             "skein formula: which formula? As in: skein formula 'length(p0-p1)-L' --at '0,0,0 1,0,0' --param L=0.5\n");
-        status = EXIT_FAULT;
-    } else if (status < 0) {
-        status = read_question(options, &q) ? answer(text, options, &q) : EXIT_FAULT;
-    }
-    app_options_free(options, OPTION_COUNT);
-    return status;
+    return EXIT_FAULT;
 }
+
+static const app_option options[] = {
+    {"--at", "POINTS", "where the particles are: '0,0,0 1,0,0' are p0 and p1", true, APP_TAKES_ANY},
+    {"--rest", "POINTS", "where they are at rest, for rest(...); else where --at says", true, APP_TAKES_ANY},
+    {"--velocity", "POINTS", "their velocities, v0, v1, ...; else 0", true, APP_TAKES_ANY},
+    {"--param", "NAME=X", "a parameter's name and number; may be repeated", true, APP_TAKES_ANY},
+    {"--time", "SECONDS", "what t is; else 0", false, APP_TAKES_ANY},
+    {"--grad", NULL, "print the derivatives, too", false, APP_TAKES_ANY},
+    {"--hessian", NULL, "print the second derivatives, too; or emit them, in C", false, APP_TAKES_ANY},
+    {"--graph", NULL, "print the operations, for the value and its gradient", false, APP_TAKES_ANY},
+    {"--emit", "c|function|glsl|kernel",
+     "print it as C to compile and register (--hessian: as an energy), or as a function", false, APP_TAKES_ANY},
+    {"--name", "NAME", "what the file of --emit c calls it; else skein_compiled_formula", false, APP_TAKES_ANY},
+    {"--functions", NULL, "print what functions there are", false, APP_TAKES_ANY},
+    APP_END_OF_OPTIONS};
 
 const app_command app_formula_command = {
     "formula",
@@ -251,5 +239,10 @@ const app_command app_formula_command = {
     "      rest(...) is computed once, where the particles begin; --emit prints the whole as C or GLSL\n\n"
     "Operators: + - * / ^, comparisons, && || !, and v.x, v.zyx for parts of a vector. --functions lists the\n"
     "functions. Where a derivative has no value, as at a length of 0, it is 0, and the answer says so.",
+    options,
+    NULL,
+    false,
+    APP_TAKES_ANY,
     formula,
+    NULL,
 };

@@ -189,10 +189,8 @@ static int report_unknown(const char *name) {
     return EXIT_FAULT;
 }
 
-static int list(int argc, char **argv) {
-    const char *name;
-    int status = app_parse(&app_list_command, argc, argv, NULL, 0, NULL, &name);
-    if (status >= 0) return status;
+static int list(app_arguments *arguments) {
+    const char *name = app_word(arguments);
     if (name) return print_named(name) ? EXIT_OK : report_unknown(name);
     for (size_t l = 0; l < LIST_COUNT; l++) print_list(l);
     return EXIT_OK;
@@ -204,5 +202,10 @@ const app_command app_list_command = {
     "every kind with its fields: name, default, unit, range and help\n\n"
     "In a scene, dots are groups: stretch.stiffness is { \"stretch\": { \"stiffness\": ... } }. A range to\n"
     "infinite takes the word \"infinite\", too. A kind by its name: skein list cloth",
+    NULL,
+    NULL,
+    false,
+    APP_TAKES_KIND,
     list,
+    NULL,
 };

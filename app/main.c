@@ -13,6 +13,10 @@ static const app_command *const commands[] = {
     &app_stability_command, &app_explain_command, &app_list_command,   &app_formula_command, &app_bench_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
+const app_command *app_command_at(size_t index) {
+    return index < COMMAND_COUNT ? commands[index] : NULL;
+}
+
 static void print_help(FILE *to) {
     fprintf(to, "skein " SKEIN_VERSION ": real-time particle dynamics: cloth, jelly and rope\n\n"
                 "usage: skein COMMAND [ARGUMENTS]\n\n");
@@ -45,11 +49,11 @@ static int no_command(const char *name) {
 static int dispatch(int argc, char **argv) {
     const char *name = argc > 1 ? argv[1] : NULL;
     const app_command *command = name ? find_command(name) : NULL;
-    if (command) return command->run(argc - 2, argv + 2);
+    if (command) return app_command_run(command, argc - 2, argv + 2);
     bool asked = name && (!strcmp(name, "--help") || !strcmp(name, "-h") || !strcmp(name, "help"));
     if (asked && argc > 2) { // help COMMAND
         command = find_command(argv[2]);
-        return command ? command->run(1, (char *[]){"--help", NULL}) : no_command(argv[2]);
+        return command ? app_command_run(command, 1, (char *[]){"--help", NULL}) : no_command(argv[2]);
     }
     if (!name || asked) {
         print_help(asked ? stdout : stderr);

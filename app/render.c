@@ -104,11 +104,10 @@ static int make_film(const app_scene *loaded, const request *r) {
 
 /* ---- the arguments ---- */
 
-enum { SET, OUT, LONG_OUT, FRAMES, FRAME, FPS, SIZE, SAMPLES, QUALITY, THREADS, DEVICE, COMPILE, QUIET, OPTION_COUNT };
-
 /* Numbers of an option, "1920x1080", checked by the field that describes them; false after a printed fault. */
-static bool read_numbers(const app_option *option, const skein_field *field, int count, int32_t *out) {
-    const char *given = option->count ? option->values[option->count - 1] : NULL;
+static bool read_numbers(const app_arguments *arguments, const char *name, const skein_field *field, int count,
+                         int32_t *out) {
+    const char *given = app_value(arguments, name);
     if (!given) return true;
     skein_value value = {count, {0, 0, 0}, NULL};
     skein_error error = {SKEIN_ERROR_VALUE, "", ""};
@@ -122,7 +121,7 @@ static bool read_numbers(const app_option *option, const skein_field *field, int
     }
     if (!good) value.count = 4; // what no field takes, so that the field says what it does take
     if (skein_field_check(field, &value, &error)) {
-        fprintf(stderr, "skein render: %s %s: %s%s\n", option->name, given, error.message,
+        fprintf(stderr, "skein render: %s %s: %s%s\n", name, given, error.message,
                 count > 1 ? ", as in 1920x1080" : "");
         return false;
     }
@@ -130,88 +129,77 @@ static bool read_numbers(const app_option *option, const skein_field *field, int
     return true;
 }
 
-static bool refuse(const app_option *option, const char *why) {
-    if (option->count) fprintf(stderr, "skein render: %s: %s\n", option->name, why);
-    return option->count == 0;
+static bool refuse(const app_arguments *arguments, const char *name, const char *why) {
+    if (!app_given(arguments, name)) return true;
+    fprintf(stderr, "skein render: %s: %s\n", name, why);
+    return false;
 }
 
 /* False after a printed fault. */
-static bool read_request(const app_option *options, request *r) {
+static bool read_request(const app_arguments *arguments, request *r) {
     const skein_field *frames = skein_field_find(io_scene_kind(), "frames", NULL);
     const skein_kind *kind = film_exporter();
     skein_error error = {SKEIN_OK, "", ""};
-    *r = (request){.options = film_default_options(), .frame = -1, .quiet = options[QUIET].count > 0};
-    const app_option *out = options[OUT].count ? &options[OUT] : &options[LONG_OUT];
-    if (!out->count) {
+    *r = (request){.options = film_default_options(), .frame = -1, .quiet = app_given(arguments, "--quiet")};
+    const char *out = app_given(arguments, "-o") ? "-o" : "--out";
+    r->path = app_value(arguments, out);
+    if (!r->path) {
         fprintf(stderr, "skein render: where to? -o film.mp4, .webm or .gif; -o picture.png; -o many-%%04d.png\n");
         return false;
     }
-    r->path = out->values[0];
     const film_format *format = film_format_of(r->path, &error);
     if (!format) {
-        fprintf(stderr, "skein render: %s %s: %s\n", out->name, error.where, error.message);
+        fprintf(stderr, "skein render: %s %s: %s\n", out, error.where, error.message);
         return false;
     }
     r->single = !format->encoders && !film_path_is_numbered(r->path);
-    return read_numbers(&options[FRAME], frames, 1, &r->frame) &&
-           read_numbers(&options[SIZE], skein_field_find(kind, "size", NULL), 2, r->options.size) &&
-           read_numbers(&options[SAMPLES], skein_field_find(kind, "samples", NULL), 1, &r->options.samples) &&
-           read_numbers(&options[QUALITY], skein_field_find(kind, "quality", NULL), 1, &r->options.quality) &&
-           (r->single || refuse(&options[FRAME], "is for one picture, -o picture.png; a film takes --frames")) &&
-           (format->encoders || refuse(&options[QUALITY], "is for films; a PNG loses nothing"));
+    return read_numbers(arguments, "--frame", frames, 1, &r->frame) &&
+           read_numbers(arguments, "--size", skein_field_find(kind, "size", NULL), 2, r->options.size) &&
+           read_numbers(arguments, "--samples", skein_field_find(kind, "samples", NULL), 1, &r->options.samples) &&
+           read_numbers(arguments, "--quality", skein_field_find(kind, "quality", NULL), 1, &r->options.quality) &&
+           (r->single || refuse(arguments, "--frame", "is for one picture, -o picture.png; a film takes --frames")) &&
+           (format->encoders || refuse(arguments, "--quality", "is for films; a PNG loses nothing"));
 }
 
-static int render(int argc, char **argv) {
-    app_option options[OPTION_COUNT] = {
-        [SET] = {"--set", "PATH=VALUE", "change a value of the scene first; may be repeated", true, NULL, 0},
-        [OUT] = {"-o", "FILE", "what to write; its ending says what it becomes", false, NULL, 0},
-        [LONG_OUT] = {"--out", "FILE", "the same", false, NULL, 0},
-        [FRAMES] = {"--frames", "N", "frames to show, instead of the scene's", false, NULL, 0},
-        [FRAME] = {"--frame", "N", "the frame of a single picture, instead of the last; 0 is the start", false, NULL,
-                   0},
-        [FPS] = {"--fps", "N", "frames a second, of the film and of simulated time, instead of the scene's", false,
-                 NULL, 0},
-        [SIZE] = {"--size", "WxH", "width and height in pixels; 1280x720 if not given", false, NULL, 0},
-        [SAMPLES] = {"--samples", "N", "samples a pixel for smooth edges, 4 if not given", false, NULL, 0},
-        [QUALITY] = {"--quality", "N", "of a film, 1 (small) to 100 (faithful), 75 if not given", false, NULL, 0},
-        [THREADS] = {"--threads", "N", "threads to simulate on, 1 to 64; the result is the same", false, NULL, 0},
-        [DEVICE] = app_device_option,
-        [COMPILE] = app_compile_option,
-        [QUIET] = {"--quiet", NULL, "no progress and no notes", false, NULL, 0},
-    };
+static int render(app_arguments *arguments) {
     app_override_texts texts;
     request asked;
-    const char *path;
-    int status = app_parse(&app_render_command, argc, argv, options, OPTION_COUNT, "scene", &path);
-    if (status < 0 &&
-        (!read_request(options, &asked) || !app_override(&app_render_command, options, OPTION_COUNT, texts)))
-        status = EXIT_FAULT;
-    if (status < 0) {
-        app_scene loaded;
-        status = app_load(path, options[SET].values, &loaded);
-        if (!status && app_value(options, OPTION_COUNT, "--compile"))
-            loaded.warnings += app_compile(loaded.world, app_value(options, OPTION_COUNT, "--quiet") != NULL);
-        if (!status) status = app_device(&loaded, app_value(options, OPTION_COUNT, "--device"));
-        if (!status) {
-            app_catch_interrupts();
-            status = asked.single ? make_picture(&loaded, &asked) : make_film(&loaded, &asked);
-        }
-        app_unload(&loaded);
+    app_scene loaded;
+    if (!read_request(arguments, &asked) || !app_override(arguments, texts)) return EXIT_FAULT;
+    int status = app_load(app_word(arguments), app_values(arguments, "--set"), &loaded);
+    if (!status && app_given(arguments, "--compile")) loaded.warnings += app_compile(loaded.world, asked.quiet);
+    if (!status) status = app_device(&loaded, app_value(arguments, "--device"));
+    if (!status) {
+        app_catch_interrupts();
+        status = asked.single ? make_picture(&loaded, &asked) : make_film(&loaded, &asked);
     }
-    app_options_free(options, OPTION_COUNT);
+    app_unload(&loaded);
     return status;
 }
 #else
 
-static int render(int argc, char **argv) {
-    const char *word;
-    for (int a = 0; a < argc; a++)
-        if (!strcmp(argv[a], "--help") || !strcmp(argv[a], "-h"))
-            return app_parse(&app_render_command, 1, &argv[a], NULL, 0, NULL, &word);
+static int render(app_arguments *arguments) {
+    (void)arguments;
     fprintf(stderr, "skein render: this skein was built without pictures: build it with SKEIN_RENDER=ON\n");
     return EXIT_FAILURE_RUN;
 }
 #endif
+
+static const app_option options[] = {
+    APP_SET_OPTION,
+    {"-o", "FILE", "what to write; its ending says what it becomes", false, APP_TAKES_FILE},
+    {"--out", "FILE", "the same", false, APP_TAKES_FILE},
+    {"--frames", "N", "frames to show, instead of the scene's", false, APP_TAKES_ANY},
+    {"--frame", "N", "the frame of a single picture, instead of the last; 0 is the start", false, APP_TAKES_ANY},
+    {"--fps", "N", "frames a second, of the film and of simulated time, instead of the scene's", false, APP_TAKES_ANY},
+    {"--size", "WxH", "width and height in pixels; 1280x720 if not given", false, APP_TAKES_ANY},
+    {"--samples", "N", "samples a pixel for smooth edges, 4 if not given", false, APP_TAKES_ANY},
+    {"--quality", "N", "of a film, 1 (small) to 100 (faithful), 75 if not given", false, APP_TAKES_ANY},
+    APP_THREADS_OPTION,
+    APP_DEVICE_OPTION,
+    APP_COMPILE_OPTION,
+    {"--quiet", NULL, "no progress and no notes", false, APP_TAKES_ANY},
+    APP_END_OF_OPTIONS};
 
 const app_command app_render_command = {
     "render",
@@ -229,5 +217,10 @@ const app_command app_render_command = {
     "film ends early, as it should.\n\n"
     "Exit status 0: done; 1: the run failed, or the file could not be written; 2: a fault in the scene or the\n"
     "arguments; 130: interrupted.",
+    options,
+    "scene",
+    false,
+    APP_TAKES_SCENE,
     render,
+    NULL,
 };

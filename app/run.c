@@ -103,46 +103,39 @@ static int simulate(app_report *r, const char *folder, bool quiet) {
 
 /* ---- the arguments ---- */
 
-static int run(int argc, char **argv) {
-    app_option options[] = {
-        {"--set", "PATH=VALUE", "change a value of the scene: bodies.0.stretch.stiffness=2e4; may be repeated", true,
-         NULL, 0},
-        {"--out", "FOLDER", "write the scene's outputs and report.json there (made if missing)", false, NULL, 0},
-        {"--frames", "N", "frames to run, instead of the scene's", false, NULL, 0},
-        {"--fps", "N", "frames a second of simulated time, instead of the scene's", false, NULL, 0},
-        {"--threads", "N", "threads to run on, 1 to 64; the result is the same", false, NULL, 0},
-        app_device_option,
-        app_compile_option,
-        {"--log", "FILE", "write a line a step there, as CSV: energies, momenta, stretch, contacts", false, NULL, 0},
-        {"--quiet", NULL, "no progress", false, NULL, 0},
-    };
-    enum { COUNT = sizeof options / sizeof *options };
+static int run(app_arguments *arguments) {
     app_override_texts texts;
-    const char *path;
-    int status = app_parse(&app_run_command, argc, argv, options, COUNT, "scene", &path);
-    if (status < 0 && !app_override(&app_run_command, options, COUNT, texts)) status = EXIT_FAULT;
-    if (status < 0) {
-        app_scene loaded;
-        status = app_load(path, options[0].values, &loaded);
-        if (!status && app_value(options, COUNT, "--compile"))
-            loaded.warnings += app_compile(loaded.world, app_value(options, COUNT, "--quiet") != NULL);
-        if (!status) status = app_device(&loaded, app_value(options, COUNT, "--device"));
-        if (!status) {
-            app_report report = {.loaded = &loaded,
-                                 .files = json_array(),
-                                 .flocks = json_array(),
-                                 .log_path = app_value(options, COUNT, "--log")};
-            report.steps_per_frame = io_scene_steps_per_frame(&loaded.settings, &report.dt);
-            status =
-                simulate(&report, app_value(options, COUNT, "--out"), app_value(options, COUNT, "--quiet") != NULL);
-            json_decref(report.files);
-            json_decref(report.flocks);
-        }
-        app_unload(&loaded);
+    app_scene loaded;
+    bool quiet = app_given(arguments, "--quiet");
+    if (!app_override(arguments, texts)) return EXIT_FAULT;
+    int status = app_load(app_word(arguments), app_values(arguments, "--set"), &loaded);
+    if (!status && app_given(arguments, "--compile")) loaded.warnings += app_compile(loaded.world, quiet);
+    if (!status) status = app_device(&loaded, app_value(arguments, "--device"));
+    if (!status) {
+        app_report report = {.loaded = &loaded,
+                             .files = json_array(),
+                             .flocks = json_array(),
+                             .log_path = app_value(arguments, "--log")};
+        report.steps_per_frame = io_scene_steps_per_frame(&loaded.settings, &report.dt);
+        status = simulate(&report, app_value(arguments, "--out"), quiet);
+        json_decref(report.files);
+        json_decref(report.flocks);
     }
-    app_options_free(options, COUNT);
+    app_unload(&loaded);
     return status;
 }
+
+static const app_option options[] = {
+    APP_SET_OPTION,
+    {"--out", "FOLDER", "write the scene's outputs and report.json there (made if missing)", false, APP_TAKES_FOLDER},
+    {"--frames", "N", "frames to run, instead of the scene's", false, APP_TAKES_ANY},
+    {"--fps", "N", "frames a second of simulated time, instead of the scene's", false, APP_TAKES_ANY},
+    APP_THREADS_OPTION,
+    APP_DEVICE_OPTION,
+    APP_COMPILE_OPTION,
+    {"--log", "FILE", "write a line a step there, as CSV: energies, momenta, stretch, contacts", false, APP_TAKES_FILE},
+    {"--quiet", NULL, "no progress", false, APP_TAKES_ANY},
+    APP_END_OF_OPTIONS};
 
 const app_command app_run_command = {
     "run",
@@ -158,5 +151,10 @@ const app_command app_run_command = {
     "particles under forces, contact and neighbours; not yet cloth, jelly and rope. Numbers agree to rounding.\n\n"
     "Exit status 0: done; 1: the run failed, or a file could not be written; 2: a fault in the scene or the\n"
     "arguments; 130: interrupted.",
+    options,
+    "scene",
+    false,
+    APP_TAKES_SCENE,
     run,
+    NULL,
 };

@@ -107,25 +107,20 @@ void app_warn_of_rounding(app_scene *loaded) {
         loaded->path, 1e3 * h, extent, fmax(1, floor(dt / least)));
 }
 
-static int stability(int argc, char **argv) {
-    app_option options[] = {
-        {"--set", "PATH=VALUE", "change a value first, as for `skein run`; may be repeated", true, NULL, 0}};
-    const char *path;
-    int status = app_parse(&app_stability_command, argc, argv, options, 1, "scene", &path);
-    if (status < 0) {
-        app_scene loaded;
-        skein_stability s;
-        status = app_load(path, options[0].values, &loaded);
-        if (!status && !find(&loaded, &s)) status = EXIT_FAILURE_RUN;
-        if (!status) {
-            print_modes(&loaded, &s);
-            print_methods(&loaded, &s);
-        }
-        app_unload(&loaded);
+static int stability(app_arguments *arguments) {
+    app_scene loaded;
+    skein_stability s;
+    int status = app_load(app_word(arguments), app_values(arguments, "--set"), &loaded);
+    if (!status && !find(&loaded, &s)) status = EXIT_FAILURE_RUN;
+    if (!status) {
+        print_modes(&loaded, &s);
+        print_methods(&loaded, &s);
     }
-    app_options_free(options, 1);
+    app_unload(&loaded);
     return status;
 }
+
+static const app_option options[] = {APP_SET_OPTION, APP_END_OF_OPTIONS};
 
 const app_command app_stability_command = {
     "stability",
@@ -135,5 +130,10 @@ const app_command app_stability_command = {
     "and the air's. What is stretched later on can be stiffer; contact and rigid constraints are left out.\n"
     "With frequency omega and damping ratio zeta, the limits are about 2/omega (symplectic_euler, leapfrog), \n"
     "2.828/omega (rk4), 1/omega (lookahead_euler), and 2 zeta/omega (explicit_euler).",
+    options,
+    "scene",
+    false,
+    APP_TAKES_SCENE,
     stability,
+    NULL,
 };

@@ -80,7 +80,8 @@ const char *io_json_words(const json_t *json, char out[IO_JSON_WORDS_SIZE]) {
 const char *io_json_instead(const json_t *json, char out[IO_JSON_WORDS_SIZE]) {
     enum { AHEAD = sizeof ", not " - 1 };
     char words[IO_JSON_WORDS_SIZE];
-    if (json) snprintf(out, IO_JSON_WORDS_SIZE, ", not %.*s", IO_JSON_WORDS_SIZE - AHEAD - 1, io_json_words(json, words));
+    if (json)
+        snprintf(out, IO_JSON_WORDS_SIZE, ", not %.*s", IO_JSON_WORDS_SIZE - AHEAD - 1, io_json_words(json, words));
     else snprintf(out, IO_JSON_WORDS_SIZE, ": it is missing");
     return out;
 }

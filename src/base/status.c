@@ -40,34 +40,54 @@ skein_status sk_fail_memory(skein_error *error, const char *what) {
     return sk_fail(error, SKEIN_ERROR_MEMORY, "", "no memory for %s", what);
 }
 
-/* Levenshtein distance of two short texts, one row of the table at a time. */
+/* The least number of letters to be changed, added, left out or swapped with the next one (optimal string alignment);
+ * rows of the table are kept for two letters back. Names are short: longer ones are as far apart as can be. */
 static size_t edit_distance(const char *a, const char *b) {
-    size_t row[64], length = strlen(b);
-    if (length > 63 || strlen(a) > 63) return 64;
-    for (size_t j = 0; j <= length; j++) row[j] = j;
-    for (size_t i = 0; a[i]; i++) {
-        size_t corner = row[0];
-        row[0] = i + 1;
-        for (size_t j = 0; j < length; j++) {
-            size_t best = corner + (a[i] != b[j]);
-            if (row[j] + 1 < best) best = row[j] + 1;
-            if (row[j + 1] + 1 < best) best = row[j + 1] + 1;
-            corner = row[j + 1];
-            row[j + 1] = best;
+    enum { MOST = 64 };
+    size_t rows[3][MOST + 1], length = strlen(b), height = strlen(a);
+    if (length > MOST || height > MOST) return MOST;
+    for (size_t j = 0; j <= length; j++) rows[0][j] = j;
+    for (size_t i = 1; i <= height; i++) {
+        size_t *row = rows[i % 3];
+        const size_t *above = rows[(i + 2) % 3], *swapped = rows[(i + 1) % 3];
+        row[0] = i;
+        for (size_t j = 1; j <= length; j++) {
+            size_t best = above[j - 1] + (a[i - 1] != b[j - 1]);
+            if (above[j] + 1 < best) best = above[j] + 1;
+            if (row[j - 1] + 1 < best) best = row[j - 1] + 1;
+            bool swap = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+            if (swap && swapped[j - 2] + 1 < best) best = swapped[j - 2] + 1;
+            row[j] = best;
         }
     }
-    return row[length];
+    return rows[height % 3][length];
+}
+
+/* Whether `name` is one of the parts that dots and underscores divide `whole` into, or several in a row. */
+static bool is_part(const char *name, const char *whole) {
+    size_t length = strlen(name);
+    for (const char *at = whole; length && (at = strstr(at, name)) != NULL; at++)
+        if ((at == whole || strchr("._", at[-1])) && (!at[length] || strchr("._", at[length]))) return true;
+    return false;
+}
+
+/* Whether one begins with the other: "out" and "output". */
+static bool begin_alike(const char *a, const char *b) {
+    size_t shorter = strlen(a) < strlen(b) ? strlen(a) : strlen(b);
+    return shorter >= 3 && !strncmp(a, b, shorter);
 }
 
 const char *sk_nearest_name(const char *name, const char *const *names, size_t count) {
     const char *nearest = NULL;
-    size_t least = strlen(name) / 2 + 2; /* farther than this is no help */
+    size_t length = strlen(name), least = (length < 3 ? 1 : (length + 1) / 3) + 1; // farther than this is no help
     for (size_t i = 0; i < count; i++) {
         size_t distance = edit_distance(name, names[i]);
-        if (distance < least) {
+        if (distance < least && distance < strlen(names[i])) {
             least = distance;
             nearest = names[i];
         }
     }
+    for (size_t i = 0; i < count && !nearest; i++)
+        if (is_part(name, names[i]) || begin_alike(name, names[i])) nearest = names[i];
     return nearest;
 }

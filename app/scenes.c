@@ -1,0 +1,88 @@
+/* Loading the scenes that commands are given, with every fault and note on the terminal. */
+#include <stdio.h>
+#include <string.h>
+
+#include "app/command.h"
+#include "io/exporters.h"
+#ifdef SKEIN_RENDER
+#include "film/film.h"
+#include "render/picture.h"
+#include "render/view.h"
+#endif
+
+void app_print_error(const skein_error *error) {
+    fprintf(stderr, "skein: %s%s%s\n", error->where, error->where[0] ? ": " : "", error->message);
+}
+
+static void report_fault(void *user, const skein_error *error) {
+    (void)user;
+    app_print_error(error);
+}
+
+static void print_log(void *user, skein_log_level level, const char *message) {
+    app_scene *loaded = user;
+    if (level == SKEIN_LOG_WARNING) loaded->warnings++;
+    if (loaded->quiet) return;
+    fprintf(stderr, "skein: %s%s\n", level == SKEIN_LOG_WARNING ? "warning: " : "", message);
+}
+
+const skein_kind *const *app_exporters(void) {
+    static const skein_kind *all[16];
+    size_t count = 0;
+    for (size_t i = 0; io_exporter_at(i); i++) all[count++] = io_exporter_at(i);
+#ifdef SKEIN_RENDER
+    for (size_t i = 0; render_exporter_at(i); i++) all[count++] = render_exporter_at(i);
+    all[count++] = film_exporter();
+    all[count++] = render_view_kind();
+#endif
+    all[count] = NULL;
+    return all;
+}
+
+static int load(const char *path, const char *const *sets, bool quiet, app_scene *loaded) {
+    memset(loaded, 0, sizeof *loaded);
+    loaded->path = path;
+    loaded->quiet = quiet;
+    double start = app_seconds();
+    io_faults faults = {report_fault, NULL, 0};
+    loaded->scene = io_scene_read(path, sets, app_exporters(), &faults);
+    if (loaded->scene) {
+        loaded->settings = *io_scene_get(loaded->scene);
+        skein_world_desc desc = skein_default_world_desc();
+        desc.log = print_log;
+        desc.log_user = loaded;
+        desc.thread_count = loaded->settings.threads;
+        loaded->world = io_scene_build(loaded->scene, &desc, &faults);
+    }
+    loaded->load_seconds = app_seconds() - start;
+    if (loaded->world) return EXIT_OK;
+    app_unload(loaded);
+    if (faults.count > 1) fprintf(stderr, "skein: %s: %zu faults\n", path, faults.count);
+    return EXIT_FAULT;
+}
+
+int app_load(const char *path, const char *const *sets, app_scene *loaded) {
+    return load(path, sets, false, loaded);
+}
+
+int app_load_quietly(const char *path, const char *const *sets, app_scene *loaded) {
+    return load(path, sets, true, loaded);
+}
+
+int app_try(const char *path, const char *const *sets) {
+    app_scene loaded;
+    int status = app_load(path, sets, &loaded);
+    if (!status) app_unload(&loaded);
+    return status;
+}
+
+void app_unload(app_scene *loaded) {
+    skein_world_destroy(loaded->world);
+    io_scene_free(loaded->scene);
+    loaded->world = NULL;
+    loaded->scene = NULL;
+}
+
+const char *app_method(const app_scene *loaded) {
+    return skein_object_kind(loaded->world, skein_object_at(loaded->world, SKEIN_METHOD, 0))->name;
+}
