@@ -3,8 +3,8 @@
  *   mesh [\0 choices]      an OBJ or OFF; bytes that choose, 0 where there are no more: the body's kind (cloth first),
  *                          the method, a force and a collider, settings of each, and what happens between steps
  *
- * Kinds, fields and their ranges are the catalogue's: a new kind is chosen, too. Owns nothing. Called as fuzz/fuzz.h says.
- * Invariant: every call returns, with a status; one that fails has words; and all memory comes back. */
+ * Kinds, fields and their ranges are the catalogue's: a new kind is chosen, too. Owns nothing. Called as fuzz/fuzz.h
+ * says. Invariant: every call returns, with a status; one that fails has words; and all memory comes back. */
 #include <math.h>
 
 #include "fuzz/fuzz.h"
@@ -41,14 +41,14 @@ static double choose_number(chooser *c, const skein_field *field, double initial
 static skein_value choose_value(chooser *c, const skein_field *field) {
     static const char *const texts[] = {"corners", "top edge",       "0",  "0 1",        "box -9 0 -9 9 9 9",
                                         "",        "sphere 0 0 0 1", "x1", "d(x1) - 0.5"};
-    static const int counts[] = {[SKEIN_FIELD_BOOL] = 1,   [SKEIN_FIELD_INT] = 1,   [SKEIN_FIELD_INT2] = 2,
-                                 [SKEIN_FIELD_INT3] = 3,   [SKEIN_FIELD_REAL] = 1,  [SKEIN_FIELD_REAL2] = 2,
-                                 [SKEIN_FIELD_VEC3] = 3,   [SKEIN_FIELD_CHOICE] = 1, [SKEIN_FIELD_TEXT] = 0};
+    static const int counts[] = {[SKEIN_FIELD_BOOL] = 1, [SKEIN_FIELD_INT] = 1,    [SKEIN_FIELD_INT2] = 2,
+                                 [SKEIN_FIELD_INT3] = 3, [SKEIN_FIELD_REAL] = 1,   [SKEIN_FIELD_REAL2] = 2,
+                                 [SKEIN_FIELD_VEC3] = 3, [SKEIN_FIELD_CHOICE] = 1, [SKEIN_FIELD_TEXT] = 0};
     skein_value value = {.count = counts[field->type]};
     if (field->type == SKEIN_FIELD_TEXT) value.text = texts[choose(c, sizeof texts / sizeof *texts)];
     for (int i = 0; i < value.count; i++)
-        value.number[i] = field->type == SKEIN_FIELD_CHOICE ? (double)choose(c, 4)
-                                                            : choose_number(c, field, field->initial[i]);
+        value.number[i] =
+            field->type == SKEIN_FIELD_CHOICE ? (double)choose(c, 4) : choose_number(c, field, field->initial[i]);
     return value;
 }
 

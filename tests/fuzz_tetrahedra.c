@@ -56,8 +56,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (status == SKEIN_OK) {
         judge_mesh(&mesh);
         judge_body(&mesh);
-    } else
-        require(error.status == status && strncmp(error.where, "input.", 6) == 0 && error.message[0]);
+    } else require(error.status == status && strncmp(error.where, "input.", 6) == 0 && error.message[0]);
     io_mesh_free(&mesh);
     free(points);
     free(corners);

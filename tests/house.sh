@@ -72,7 +72,7 @@ awk -v floors="$floors" -v libc="$libc" '
             print FILENAME ":" FNR ": includes \"" what "\", from a floor above its own"
     }' $files >>"$faults"
 
-# ---- The code alone: comments blanked, and (strings=0) what stands in quotes ----
+# ---- The code alone: comments blanked, and what stands in quotes (0), or (2) kept with its quotes ----
 code() {
     awk -v strings="$1" '
         FNR == 1 { comment = 0 }
@@ -101,7 +101,7 @@ code() {
                 }
                 for (i = 1; i <= length(line) && substr(line, i, 1) != mark; i++)
                     if (substr(line, i, 1) == "\\") i++
-                if (strings) out = out substr(line, 1, i - 1) " "
+                if (strings && mark == "\"") out = out "\"" substr(line, 1, i - 1) "\" "
                 line = substr(line, i + 1)
             }
             print FILENAME ":" FNR ": " out
@@ -129,18 +129,36 @@ kinds=$(code 0 src/catalogue.c | awk '
         }
         if (ends) list = 0
     }')
-ordinary='angle area bounds box bowl distance drag energy formula mesh plane potential self sphere volume' # also plain words: as sk_WORD only
-[ -n "$kinds" ] || echo "src/catalogue.c:1: tests/house.sh finds no kind in it" >>"$faults"
-code 1 "$(find src/world src/gpu -name '*.[ch]' | sort)" | awk -v kinds="$kinds lattice rope flock" -v ordinary=" $ordinary " '
-    BEGIN { count = split(kinds, kind, /[ \n]+/) }
+names=$(code 2 "$(find src/bodies src/constraints src/forces src/colliders -name '*.c' | sort)" | awk '
+    /[.]kind =/ { begun = 1 }
+    begun && match($0, /"[a-z0-9_]+"/) { print substr($0, RSTART + 1, RLENGTH - 2); begun = 0 }')
+[ -n "$kinds" ] && [ -n "$names" ] || echo "src/catalogue.c:1: tests/house.sh finds no kind in it" >>"$faults"
+# A symbol is a kind's if it is sk_KIND or begins so; a text if it is the kind's name, or its file's, as a whole. Words
+# inside of others are anybody's: a kind may be called `line`.
+code 2 "$(find src/world src/gpu -name '*.[ch]' | sort)" | awk -v kinds="$kinds" -v names="$names" '
+    BEGIN {
+        count = split(kinds, kind, /[ \n]+/)
+        n = split(names, list, /[ \n]+/)
+        for (i = 1; i <= n; i++) name[list[i]] = 1
+    }
+    function fault(what) { print place " names the kind \"" what "\": the step knows none" }
     {
         place = $1
         sub(/^[^ ]*/, "")
-        words = "_" tolower($0) "_"
-        gsub(/[^a-z0-9]+/, "_", words)
-        for (i = 1; i <= count; i++)
-            if (index(words, (index(ordinary, " " kind[i] " ") ? "_sk_" : "_") kind[i] "_"))
-                print place " names the kind \"" kind[i] "\": the step knows none"
+        rest = $0
+        while (match(rest, /"[^"]*"/)) {
+            text = tolower(substr(rest, RSTART + 1, RLENGTH - 2))
+            sub(/^.*\//, "", text)
+            sub(/[.][a-z]*$/, "", text)
+            if (text in name) fault(text)
+            rest = substr(rest, 1, RSTART - 1) " " substr(rest, RSTART + RLENGTH)
+        }
+        while (match(rest, /[A-Za-z_][A-Za-z0-9_]*/)) {
+            symbol = tolower(substr(rest, RSTART, RLENGTH)) "_"
+            rest = substr(rest, RSTART + RLENGTH)
+            for (i = 1; i <= count; i++)
+                if (index(symbol, "sk_" kind[i] "_") == 1) fault(kind[i])
+        }
     }' >>"$faults"
 
 # ---- 4: headers that stand alone ----

@@ -1,7 +1,7 @@
 /* What fuzzers share: the entry that libFuzzer calls, judging, and little memory.
  *
- * tests/fuzz_NAME.c feeds any bytes to one reader and judges what comes out; it aborts where that is wrong. It is called
- * by libFuzzer (tools/fuzz), or by fuzz/replay.c with the files of a corpus. */
+ * tests/fuzz_NAME.c feeds any bytes to one reader and judges what comes out; it aborts where that is wrong. It is
+ * called by libFuzzer (tools/fuzz), or by fuzz/replay.c with the files of a corpus. */
 #ifndef SKEIN_TESTS_FUZZ_H
 #define SKEIN_TESTS_FUZZ_H
 
@@ -21,8 +21,8 @@ static inline void require(bool fine) {
 
 /* ---- Bytes -------------------------------------------------------------------------------------- */
 
-/* What stands before a NUL byte, or all; exactly as large as it is, so that a sanitizer sees the first byte too many. To
- * be freed. `data` and `size` become what stands behind the NUL: NULL and 0 if there is none. */
+/* What stands before a NUL byte, or all; exactly as large as it is, so that a sanitizer sees the first byte too many.
+ * To be freed. `data` and `size` become what stands behind the NUL: NULL and 0 if there is none. */
 static inline char *fuzz_take_part(const uint8_t **data, size_t *size, size_t *length) {
     const uint8_t *end = *size ? memchr(*data, '\0', *size) : NULL;
     *length = end ? (size_t)(end - *data) : *size;
