@@ -1,10 +1,13 @@
 # The short way in: each line below runs one script of tools/, and the scripts run CMake.
 # CMake alone does as well: cmake --preset release && cmake --build --preset release
 
-.PHONY: all demo test fuzz setup gallery emit debug format clean help
+.PHONY: all install demo test fuzz setup gallery emit debug format clean help
 
 all: ## (or plain make) build the command: build/skein
 	@tools/build release skein
+
+install: ## build and install it all: PREFIX=/usr/local, DESTDIR=
+	@PREFIX='$(PREFIX)' tools/install
 
 demo: ## set up, build, and drop a real mesh as cloth: files, a picture and a film in out/demo, and a window
 	@tools/setup build

@@ -16,6 +16,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#if defined(__GNUC__)
+#pragma GCC visibility push(default) /* what a shared library shows of itself, and nothing else */
+#endif
 
 /* Whether Skein was built with CHOLMOD. */
 bool skein_cholmod_is_here(void);
@@ -25,6 +28,9 @@ bool skein_cholmod_is_here(void);
  * where CHOLMOD is not here; `error` may be NULL. */
 skein_status skein_cholmod_attach(skein_world *world, skein_error *error);
 
+#if defined(__GNUC__)
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

@@ -22,6 +22,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#if defined(__GNUC__)
+#pragma GCC visibility push(default) /* what a shared library shows of itself, and nothing else */
+#endif
 
 enum {
     SKEIN_FORMULA_MOST_PARTICLES = 8,
@@ -136,6 +139,9 @@ bool skein_formula_is_compiled(const skein_world *world, skein_handle constraint
 /* A function of the language, by index from 0; false past the end. */
 bool skein_formula_function(size_t index, const char **usage, const char **help);
 
+#if defined(__GNUC__)
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

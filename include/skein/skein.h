@@ -24,6 +24,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#if defined(__GNUC__)
+#pragma GCC visibility push(default) /* what a shared library shows of itself, and nothing else */
+#endif
 
 /* The version of this header, which compares as a number; skein_version() is the library's. */
 #define SKEIN_VERSION_MAJOR 0
@@ -591,6 +594,9 @@ skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out,
 skein_status skein_world_explain(skein_world *world, double dt, void (*write)(void *user, const char *line),
                                  void *user);
 
+#if defined(__GNUC__)
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

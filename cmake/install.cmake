@@ -1,0 +1,60 @@
+# What `cmake --install` brings of the library: archive and shared library, headers, a package for CMake, one for
+# pkg-config. All of it may be moved afterwards, as it refers to itself from where it lies.
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/skein)
+set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+# Everything that is installed is built by this, and no more.
+add_custom_target(skein_installed DEPENDS skein_cholmod)
+set(archive_here OFF)
+set(shared_here OFF)
+if(build_static)
+    set(archive_here ON)
+    add_dependencies(skein_installed skein_library)
+    install(TARGETS skein_library EXPORT skein-static)
+    install(EXPORT skein-static NAMESPACE skein:: DESTINATION ${package_dir})
+endif()
+if(build_shared)
+    set(shared_here ON)
+    add_dependencies(skein_installed skein_shared)
+    install(TARGETS skein_shared EXPORT skein-shared)
+    install(EXPORT skein-shared NAMESPACE skein:: DESTINATION ${package_dir})
+endif()
+install(TARGETS skein_cholmod EXPORT skein-cholmod)
+install(EXPORT skein-cholmod NAMESPACE skein:: DESTINATION ${package_dir})
+
+install(DIRECTORY include/skein DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(FILES solvers/cholmod.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/skein)
+install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# ---- find_package(skein) ----
+configure_package_config_file(cmake/skein-config.cmake.in skein-config.cmake INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(skein-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/skein-config.cmake ${PROJECT_BINARY_DIR}/skein-config-version.cmake
+    DESTINATION ${package_dir})
+
+# ---- pkg-config ----
+file(RELATIVE_PATH prefix_from_pc ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+file(RELATIVE_PATH pc_include ${CMAKE_INSTALL_PREFIX} ${CMAKE_INSTALL_FULL_INCLUDEDIR})
+file(RELATIVE_PATH pc_lib ${CMAKE_INSTALL_PREFIX} ${CMAKE_INSTALL_FULL_LIBDIR})
+set(pc_defines "")
+if(SKEIN_DOUBLE)
+    set(pc_defines " -DSKEIN_DOUBLE")
+endif()
+set(pc_private "-lm -pthread")
+if(SKEIN_GPU)
+    set(pc_private "-lepoxy -lm -pthread")
+endif()
+set(pc_libs "")
+if(NOT build_shared) # there is only the archive, which needs all of them at every link
+    set(pc_libs " ${pc_private}")
+    set(pc_private "")
+endif()
+set(pc_cholmod "")
+if(SKEIN_CHOLMOD)
+    set(pc_cholmod " -lcholmod")
+endif()
+foreach(package skein skein-cholmod)
+    configure_file(cmake/${package}.pc.in ${package}.pc @ONLY)
+    install(FILES ${PROJECT_BINARY_DIR}/${package}.pc DESTINATION ${pkgconfig_dir})
+endforeach()

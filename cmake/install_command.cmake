@@ -1,0 +1,10 @@
+# What `cmake --install` brings of the command: itself, its modules, its scenes and their meshes.
+install(TARGETS skein)
+install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/skein/scenes
+    FILES_MATCHING PATTERN "*.json" PATTERN elephant.json EXCLUDE)
+install(DIRECTORY meshes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/skein/meshes)
+# This one's mesh is fetched, by `make demo`: it comes along where that was done.
+install(CODE "
+    if(EXISTS \"${PROJECT_SOURCE_DIR}/meshes/fetched/elephant.off\")
+        file(INSTALL \"${PROJECT_SOURCE_DIR}/scenes/elephant.json\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/skein/scenes\")
+    endif()")
