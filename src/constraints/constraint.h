@@ -96,6 +96,7 @@ struct sk_batch {
     real *lane_compliance; /* and infinity, so that nothing comes of them */
     real *lane_multiplier; /* lambda of XPBD, only read where a substep keeps it */
     uint8_t *special;      /* a block of 16 lanes each: not all as the sweep's common values say */
+    bool stale;            /* the lanes are new, or the parameters have changed: sk_batch_refresh() is due */
 
     sk_enclosure *enclosure; /* of a kind that has one, else NULL */
     bool compiled;           /* something compiled runs, which wants no blocks: its groups are dealt as all others */
@@ -112,7 +113,7 @@ void sk_batch_release(sk_batch *batch, sk_allocator *allocator);
 bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles);
 /* Releases the sweeps and all that belongs to them. */
 void sk_batch_forget_sweeps(sk_batch *batch, sk_allocator *allocator);
-/* Brings the lanes' rest lengths and stiffness up to date with the parameters. */
+/* Brings the lanes' rest lengths and stiffness up to date with the parameters, where they are stale. */
 void sk_batch_refresh(sk_batch *batch);
 /* Sets the multipliers of a sweep to zero: the kernel of multiplier rows. */
 sk_row_kernel sk_sweep_clear_multipliers;

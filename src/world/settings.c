@@ -135,6 +135,19 @@ static bool shapes(const sk_object *object, const void *params, const char *name
     return body && !object->body_type->live(params, name);
 }
 
+/* Passes a body's changed parameters on to its rules, and marks the batches that look at them. */
+static void change_body(sk_object *object) {
+    sk_body *body = object->as.body;
+    sk_material before[SK_MOST_BODY_BATCHES];
+    for (size_t i = 0; i < body->batch_count; i++) before[i] = *body->material[i];
+    object->body_type->change(body, object->params);
+    body->enabled = object->common.plain.enabled;
+    for (size_t i = 0; i < body->batch_count; i++) {
+        const sk_material *now = body->material[i];
+        body->batch[i]->stale |= now->stiffness != before[i].stiffness || now->damping != before[i].damping;
+    }
+}
+
 bool skein_field_is_live(const skein_world *world, skein_handle handle, const char *name) {
     sk_object *object;
     void *params;
@@ -148,16 +161,13 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
     void *params;
     const skein_field *field = locate(world, handle, name, &params, &object, error);
     if (!field) return error->status;
-    const sk_body_type *body = object && object->category == SKEIN_BODY ? object->body_type : NULL;
     if (shapes(object, params, name))
         return sk_fail(error, SKEIN_ERROR_VALUE, name, "%s shapes what is already built: set it when the body is added",
                        name);
     skein_status status = replace(world, object, field, params, value, error);
     if (status) return status;
-    if (body) {
-        body->change(object->as.body, object->params);
-        object->as.body->enabled = object->common.plain.enabled;
-    }
+    if (object && object->category == SKEIN_BODY) change_body(object);
+    if (object && object->category == SKEIN_CONSTRAINT) object->as.batch->stale |= params == object->params;
     if (object && !strcmp(name, "name")) {
         const char *given = sk_field_load(field, params).text;
         snprintf(object->label, sizeof object->label, "%s", given[0] ? given : object->kind->name);

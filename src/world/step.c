@@ -56,12 +56,14 @@ static bool make_temporaries(skein_world *world) {
 
 /* Memory for what the plan sorts, so that it cannot be wanting in the midst of a step. */
 static bool make_cells(skein_world *world) {
-    bool good = true;
+    bool good = true, sorts = false;
     for (size_t r = 0; r < world->plan.count && good; r++) {
         const sk_row *row = &world->plan.data[r];
-        if (row->kind == SK_ROW_GRID) good = sk_cells_reserve(&world->cells, &world->allocator, row->group);
+        if (row->kind != SK_ROW_GRID) continue;
+        sorts = true;
+        good = sk_cells_reserve(&world->cells, &world->allocator, row->group);
     }
-    world->cells.in_order = true;
+    world->cells.in_order = sorts;
     for (size_t i = 1; i < world->particles.count && world->cells.in_order; i++)
         world->cells.in_order = world->particles.slot_of[i - 1] < world->particles.slot_of[i];
     return good;
