@@ -401,8 +401,23 @@ skein_status skein_positions_blend(const skein_world *world, double blend, size_
 /* Writes positions or velocities, count x 3. Finite numbers only. */
 skein_status skein_positions_set(skein_world *world, size_t first, size_t count, const double *xyz);
 skein_status skein_velocities_set(skein_world *world, size_t first, size_t count, const double *xyz);
-/* Holds a particle where it is, or lets it go with the mass it was built with. */
+/* Holds a particle where it is, or lets it go with the mass it was built with, and with the velocity that it has. */
 skein_status skein_particle_hold(skein_world *world, size_t particle, bool held);
+/* Says where held particles are to be at the end of the next step: `particles` are `count` indices (NULL: 0 to count -
+ * 1), `xyz` are count x 3, in metres. In the step they go there in straight lines at constant velocities, substep by
+ * substep and under every method, so that what hangs on them is led, not torn: damping and tethers see that velocity.
+ * Called before each step, it moves pins along any path; `skein_positions_set` puts them there at a blow instead.
+ *
+ * After the step each stands at its place, to the last bit, and its velocity is 0: there it stays until it is moved
+ * again. (A held particle that was given a velocity, and no place, goes on with it instead.) What is let go then begins
+ * at rest, unless it is given a velocity. Of several places for one particle the last counts. Places wait until a step
+ * is taken; a reset forgets them, and so does a particle that is not held by then. Their work is counted with what was
+ * changed by hand (dissipated_energy). On a graphics card each such step brings the state back.
+ *
+ * SKEIN_ERROR_VALUE for a particle that is not there or not held, and for places that are not finite or beyond 1e15;
+ * nothing has changed then. A step in which a pin would have to be faster than 1e15 m/s fails, and forgets all places.
+ */
+skein_status skein_pins_move(skein_world *world, const uint32_t *particles, size_t count, const double *xyz);
 
 /* What a body drew and its particles. Pointers live as long as the body. */
 typedef struct skein_surface {

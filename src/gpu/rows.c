@@ -123,7 +123,8 @@ static sk_gpu_use use_of_combine(const sk_row *row) {
         return use;
     }
     for (int i = 0; i < 3; i++) use.reads |= BIT(row->source[i]);
-    if (sk_row_is(row, &sk_combine_kick) || sk_row_is(row, &sk_combine_steer)) use.reads |= BIT(SK_X);
+    if (sk_row_is(row, &sk_combine_kick) || sk_row_is(row, &sk_combine_steer) || sk_row_is(row, &sk_combine_lead))
+        use.reads |= BIT(SK_X);
     if (sk_row_is(row, &sk_combine_correction)) use.reads |= BIT(row->dst);
     return use;
 }
@@ -285,6 +286,8 @@ static void put_combine(sk_gpu_text *text, const sk_row *row, size_t n) {
         sk_gpu_put(text, "    %s = vec4(0);\n", dst);
     } else if (sk_row_is(row, &sk_combine_steer)) {
         sk_gpu_put(text, "    if (X.w > 0) %s.xyz += %s.xyz;\n", dst, q);
+    } else if (sk_row_is(row, &sk_combine_lead)) {
+        sk_gpu_put(text, "    if (!(X.w > 0)) %s.xyz += row%zu[0].x * %s.xyz;\n", dst, n, q);
     } else if (sk_row_is(row, &sk_combine_correction)) {
         // the same operations as predicted p, so that an untouched p corrects nothing
         if (row->coefficient[1] == 0)

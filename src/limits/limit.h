@@ -5,13 +5,23 @@
  * would. Each element moves its own particle (free). They are kept by slot, in the order of memory:
  *
  *   block of 16 slots:  lengths to anchor 0 of 16 particles | to anchor 1 | ...     infinite: not tethered
- */
+ *
+ * Anchors move, and another thread may be storing their blocks, in another substep even. What an anchor does within a
+ * step is known when it begins, for nothing acts on what is held: start + velocity x time. That is noted here then
+ * (sk_limit_begin), once an anchor, and is all that the kernel looks at. */
 #ifndef SK_LIMITS_LIMIT_H
 #define SK_LIMITS_LIMIT_H
 
 #include "base/fields.h"
 #include "particles/particles.h"
 #include "plan/row.h"
+
+/* A particle that others are tethered to, as the step began. */
+typedef struct sk_anchor {
+    sk_vec3 start, velocity;
+    real free;     /* its inverse mass: over 0 where it is not held any more */
+    uint32_t slot; /* (in the place of a real, or of half of one) */
+} sk_anchor;
 
 typedef struct sk_limit {
     sk_kernels kernel;
@@ -26,7 +36,13 @@ typedef struct sk_limit {
     /* by slot, from first_slot on (a multiple of 16) */
     size_t first_slot, slot_count;
     real *slot_length; /* slot_count x anchors, in blocks */
-    uint32_t *anchor;  /* slots: anchors of them where they are shared, else slot_count x anchors, in blocks */
+    uint32_t
+        *pin_of; /* places in `pins`: anchors of them where they are shared, else slot_count x anchors, in blocks */
+    /* of the present step */
+    sk_anchor *pins; /* each anchor once; the first is nobody */
+    size_t pin_count;
+    double start;        /* s, when it began */
+    bool moves, lets_go; /* any of them */
 } sk_limit;
 
 /* Copies; no particle is tethered twice. NULL when there is no memory. */
@@ -35,5 +51,7 @@ sk_limit *sk_tethers_create(sk_allocator *allocator, size_t count, size_t anchor
 void sk_limit_release(sk_limit *limit, sk_allocator *allocator);
 /* Follows the particles' slots. False when there is no memory. */
 bool sk_limit_arrange(sk_limit *limit, sk_allocator *allocator, const sk_particles *particles);
+/* A step begins at `time`, with these positions and velocities (quads). */
+void sk_limit_begin(sk_limit *limit, const sk_vec4 *x, const sk_vec4 *v, double time);
 
 #endif

@@ -1,34 +1,76 @@
 #ifdef SK_ISA
 
-/* Takes the lanes of p back onto the spheres around their anchors that they have left. */
-SK_INLINE void SK_ISA(pull_in)(sk_wide3 *p, sk_wide3 anchor, sk_wide most) {
+/* Takes the lanes of p back onto the spheres around their anchors that they have left; returns which. */
+SK_INLINE sk_mask SK_ISA(pull_in)(sk_wide3 *p, sk_wide3 anchor, sk_wide most) {
     sk_wide3 d = {p->x - anchor.x, p->y - anchor.y, p->z - anchor.z};
     sk_wide square = SK_ISA(sk_dot_wide)(d, d);
     sk_mask out = SK_ISA(sk_more)(square, most * most);
-    if (!SK_ISA(sk_any)(out)) return;
+    if (!SK_ISA(sk_any)(out)) return out;
     sk_wide s = most / SK_ISA(sk_wide_sqrt)(square);
     p->x = SK_ISA(sk_select)(out, anchor.x + s * d.x, p->x);
     p->y = SK_ISA(sk_select)(out, anchor.y + s * d.y, p->y);
     p->z = SK_ISA(sk_select)(out, anchor.z + s * d.z, p->z);
+    return out;
 }
 
-/* Anchor k of a block, where it stood at the start of the step: held particles stay there, and another thread may be
- * storing their block. One that is not held any more lets go. */
-SK_INLINE sk_wide3 SK_ISA(anchor_of)(sk_run *run, const sk_limit *limit, size_t block, size_t k, sk_wide *most) {
-    const uint32_t *anchor = limit->anchor + (limit->shared ? k : (block * limit->anchors + k) * SK_LANES);
-    sk_wide3 at;
-    for (int l = 0; l < SK_LANES; l++) {
-        if (l && limit->shared) break;
-        sk_vec4 q = run->vector[SK_PREVIOUS][anchor[l]];
-        if (limit->shared) {
-            at = (sk_wide3){SK_ISA(sk_splat)(q.x), SK_ISA(sk_splat)(q.y), SK_ISA(sk_splat)(q.z)};
-            if (q.w > 0) *most = SK_ISA(sk_splat)((real)SK_FAR);
-        } else {
-            at.x[l] = q.x, at.y[l] = q.y, at.z[l] = q.z;
-            if (q.w > 0) (*most)[l] = (real)SK_FAR;
-        }
+/* One number of anchor k of a block, lane by lane; `offset` is its place in an sk_anchor. */
+SK_INLINE sk_wide SK_ISA(of_anchor)(const sk_limit *limit, size_t block, size_t k, size_t offset) {
+    const uint32_t *pin = limit->pin_of + (limit->shared ? k : (block * limit->anchors + k) * SK_LANES);
+    const real *number = (const real *)(const void *)limit->pins + offset;
+    enum { STRIDE = sizeof(sk_anchor) / sizeof(real) };
+    if (limit->shared) return SK_ISA(sk_splat)(number[pin[0] * STRIDE]);
+    sk_wide all;
+    for (int l = 0; l < SK_LANES; l++) all[l] = number[pin[l] * STRIDE];
+    return all;
+}
+
+#define NUMBER_OF(member) (offsetof(sk_anchor, member) / sizeof(real))
+
+SK_INLINE sk_wide3 SK_ISA(velocity_of)(const sk_limit *limit, size_t block, size_t k) {
+    return (sk_wide3){SK_ISA(of_anchor)(limit, block, k, NUMBER_OF(velocity.x)),
+                      SK_ISA(of_anchor)(limit, block, k, NUMBER_OF(velocity.y)),
+                      SK_ISA(of_anchor)(limit, block, k, NUMBER_OF(velocity.z))};
+}
+
+/* Anchor k of a block, `since` seconds after the start of the step. One that is not held any more lets go. */
+SK_INLINE sk_wide3 SK_ISA(anchor_of)(const sk_limit *limit, size_t block, size_t k, real since, sk_wide *most) {
+    sk_wide3 at = {SK_ISA(of_anchor)(limit, block, k, NUMBER_OF(start.x)),
+                   SK_ISA(of_anchor)(limit, block, k, NUMBER_OF(start.y)),
+                   SK_ISA(of_anchor)(limit, block, k, NUMBER_OF(start.z))};
+    if (limit->lets_go) {
+        sk_mask free = SK_ISA(sk_positive)(SK_ISA(of_anchor)(limit, block, k, NUMBER_OF(free)));
+        *most = SK_ISA(sk_select)(free, SK_ISA(sk_splat)((real)SK_FAR), *most);
     }
-    return at;
+    if (!limit->moves) return at;
+    sk_wide3 v = SK_ISA(velocity_of)(limit, block, k);
+    return (sk_wide3){at.x + since * v.x, at.y + since * v.y, at.z + since * v.z};
+}
+
+/* The anchors that pulled at a lane, added up: how fast the sphere moves that it was taken back to. */
+typedef struct SK_ISA(pullers) {
+    sk_wide3 velocity;
+    sk_wide count;
+} SK_ISA(pullers);
+
+/* Pulls the lanes of p in by anchor k. */
+SK_INLINE void SK_ISA(pull_by)(const sk_limit *limit, size_t block, size_t k, real factor, real since, sk_wide3 *p,
+                               SK_ISA(pullers) * by) {
+    const sk_wide *length = (const sk_wide *)(const void *)limit->slot_length + block * limit->anchors;
+    sk_wide most = factor * length[k];
+    sk_wide3 anchor = SK_ISA(anchor_of)(limit, block, k, since, &most);
+    sk_mask out = SK_ISA(pull_in)(p, anchor, most);
+    if (!limit->moves || !SK_ISA(sk_any)(out)) return;
+    sk_wide3 v = SK_ISA(velocity_of)(limit, block, k);
+    by->velocity.x += SK_ISA(sk_keep)(out, v.x);
+    by->velocity.y += SK_ISA(sk_keep)(out, v.y);
+    by->velocity.z += SK_ISA(sk_keep)(out, v.z);
+    by->count += SK_ISA(sk_keep)(out, SK_ISA(sk_splat)(1));
+}
+
+/* A velocity as the anchors that pulled see it. */
+SK_INLINE sk_wide3 SK_ISA(seen_by)(const SK_ISA(pullers) * by, sk_wide4 v) {
+    sk_wide share = 1 / SK_ISA(sk_select)(SK_ISA(sk_positive)(by->count), by->count, SK_ISA(sk_splat)(1));
+    return (sk_wide3){v.x - share * by->velocity.x, v.y - share * by->velocity.y, v.z - share * by->velocity.z};
 }
 
 /* Several anchors are taken in turn, once forwards and once backwards, and the mean is kept: the last
@@ -36,28 +78,20 @@ SK_INLINE sk_wide3 SK_ISA(anchor_of)(sk_run *run, const sk_limit *limit, size_t 
  * not taken from positions (a second source), the velocity away from an anchor ends here too. */
 static void SK_ISA(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_limit *limit = row->rule;
-    real factor = (real)(1 + *limit->bound);
+    real factor = (real)(1 + *limit->bound), since = (real)(run->time - row->before - limit->start);
     size_t anchors = limit->anchors;
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         size_t block = (slot - limit->first_slot) / SK_LANES;
-        const sk_wide *length = (const sk_wide *)(const void *)limit->slot_length + block * anchors;
         sk_wide4 x = SK_ISA(sk_load_block)(run->vector[row->dst], slot, slot < row->packed);
         sk_wide3 forth = {x.x, x.y, x.z}, back = forth;
-        for (size_t k = 0; k < anchors; k++) {
-            sk_wide most = factor * length[k];
-            sk_wide3 anchor = SK_ISA(anchor_of)(run, limit, block, k, &most);
-            SK_ISA(pull_in)(&forth, anchor, most);
-        }
+        SK_ISA(pullers) by = {{{0}, {0}, {0}}, {0}};
+        for (size_t k = 0; k < anchors; k++) SK_ISA(pull_by)(limit, block, k, factor, since, &forth, &by);
         sk_mask moved =
             (SK_ISA(sk_differ)(forth.x, x.x) | SK_ISA(sk_differ)(forth.y, x.y) | SK_ISA(sk_differ)(forth.z, x.z)) &
             SK_ISA(sk_positive)(x.w);
         if (!SK_ISA(sk_any)(moved)) continue;
         if (anchors > 1) {
-            for (size_t k = anchors; k-- > 0;) {
-                sk_wide most = factor * length[k];
-                sk_wide3 anchor = SK_ISA(anchor_of)(run, limit, block, k, &most);
-                SK_ISA(pull_in)(&back, anchor, most);
-            }
+            for (size_t k = anchors; k-- > 0;) SK_ISA(pull_by)(limit, block, k, factor, since, &back, &by);
             real half = (real)0.5;
             forth = (sk_wide3){half * (forth.x + back.x), half * (forth.y + back.y), half * (forth.z + back.z)};
         }
@@ -70,17 +104,21 @@ static void SK_ISA(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, s
         // what still goes against the move stops
         sk_vec4 *velocity = run->vector[row->source[1]];
         sk_wide4 v = SK_ISA(sk_load_block)(velocity, slot, slot < row->packed);
-        sk_wide square = SK_ISA(sk_dot_wide)(move, move), against = move.x * v.x + move.y * v.y + move.z * v.z;
+        sk_wide3 u = {v.x, v.y, v.z};
+        if (limit->moves) u = SK_ISA(seen_by)(&by, v);
+        sk_wide square = SK_ISA(sk_dot_wide)(move, move), against = SK_ISA(sk_dot_wide)(move, u);
         sk_wide s =
             SK_ISA(sk_keep)(moved & SK_ISA(sk_positive)(square) & SK_ISA(sk_negative)(against), -against / square);
         v.x += s * move.x, v.y += s * move.y, v.z += s * move.z;
         SK_ISA(sk_store_block)(velocity, slot, slot < row->packed, v);
     }
 }
+#undef NUMBER_OF
 
 #else
 #include "limits/limit.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #define SK_KERNELS "limits/tether.c"
@@ -120,16 +158,55 @@ void sk_limit_release(sk_limit *limit, sk_allocator *allocator) {
     sk_release(allocator, limit->particle);
     sk_release(allocator, limit->length);
     sk_release(allocator, limit->slot_length);
-    sk_release(allocator, limit->anchor);
+    sk_release(allocator, limit->pin_of);
+    sk_release(allocator, limit->pins);
     sk_release(allocator, limit);
+}
+
+/* Lists the particles that are anchors, each once, and which place of the list is each one's. Place 0 is nobody. False
+ * when there is no memory. */
+static bool list_pins(sk_limit *limit, sk_allocator *allocator, const sk_particles *particles, uint32_t *place_of) {
+    size_t anchors = limit->anchors, count = 1;
+    memset(place_of, 0, particles->count * sizeof *place_of);
+    for (size_t i = 0; i < limit->count * anchors; i++) {
+        uint32_t particle = limit->particle[i / anchors * (1 + anchors) + 1 + i % anchors];
+        if (!place_of[particle]) place_of[particle] = (uint32_t)count++;
+    }
+    limit->pins = sk_allocate(allocator, count * sizeof *limit->pins);
+    if (!limit->pins) return false;
+    limit->pin_count = count;
+    limit->pins[0] = (sk_anchor){.slot = (uint32_t)particles->empty_slot};
+    for (size_t i = 0; i < particles->count; i++)
+        if (place_of[i]) limit->pins[place_of[i]] = (sk_anchor){.slot = particles->slot_of[i]};
+    return true;
+}
+
+/* Everything by slot, from the first to the last one that is tethered. */
+static void fill_blocks(sk_limit *limit, const sk_particles *particles, const uint32_t *place_of) {
+    size_t anchors = limit->anchors;
+    for (size_t i = 0; i < limit->slot_count * anchors; i++) {
+        limit->slot_length[i] = (real)SK_FAR;
+        if (!limit->shared) limit->pin_of[i] = 0;
+    }
+    for (size_t e = 0; e < limit->count; e++) {
+        const uint32_t *element = limit->particle + e * (1 + anchors);
+        size_t at = particles->slot_of[element[0]] - limit->first_slot, block = at / SK_LANES, lane = at % SK_LANES;
+        for (size_t k = 0; k < anchors; k++) {
+            size_t place = (block * anchors + k) * SK_LANES + lane;
+            limit->slot_length[place] = limit->length[e * anchors + k];
+            limit->pin_of[limit->shared ? k : place] = place_of[element[1 + k]];
+        }
+    }
 }
 
 bool sk_limit_arrange(sk_limit *limit, sk_allocator *allocator, const sk_particles *particles) {
     size_t anchors = limit->anchors, low = SIZE_MAX, high = 0;
     sk_release(allocator, limit->slot_length);
-    sk_release(allocator, limit->anchor);
+    sk_release(allocator, limit->pin_of);
+    sk_release(allocator, limit->pins);
     limit->slot_length = NULL;
-    limit->anchor = NULL;
+    limit->pin_of = NULL;
+    limit->pins = NULL;
     for (size_t e = 0; e < limit->count; e++) {
         size_t slot = particles->slot_of[limit->particle[e * (1 + anchors)]];
         if (slot < low) low = slot;
@@ -138,22 +215,26 @@ bool sk_limit_arrange(sk_limit *limit, sk_allocator *allocator, const sk_particl
     limit->first_slot = limit->count ? low / SK_LANES * SK_LANES : 0;
     limit->slot_count = limit->count ? (high + SK_LANES - 1) / SK_LANES * SK_LANES - limit->first_slot : 0;
     limit->slot_length = sk_allocate(allocator, limit->slot_count * anchors * sizeof *limit->slot_length);
-    limit->anchor =
-        sk_allocate(allocator, (limit->shared ? anchors : limit->slot_count * anchors) * sizeof *limit->anchor);
-    if (!limit->slot_length || !limit->anchor) return false;
-    for (size_t i = 0; i < limit->slot_count * anchors; i++) {
-        limit->slot_length[i] = (real)SK_FAR;
-        if (!limit->shared) limit->anchor[i] = (uint32_t)particles->empty_slot;
+    limit->pin_of =
+        sk_allocate(allocator, (limit->shared ? anchors : limit->slot_count * anchors) * sizeof *limit->pin_of);
+    uint32_t *place_of = sk_allocate(allocator, particles->count * sizeof *place_of);
+    bool good = limit->slot_length && limit->pin_of && place_of && list_pins(limit, allocator, particles, place_of);
+    if (good) fill_blocks(limit, particles, place_of);
+    sk_release(allocator, place_of);
+    return good;
+}
+
+void sk_limit_begin(sk_limit *limit, const sk_vec4 *x, const sk_vec4 *v, double time) {
+    limit->start = time;
+    limit->moves = limit->lets_go = false;
+    for (size_t i = 0; i < limit->pin_count; i++) {
+        sk_anchor *pin = &limit->pins[i];
+        sk_vec4 p = x[pin->slot], u = v[pin->slot];
+        pin->start = sk_v3(p.x, p.y, p.z);
+        pin->velocity = p.w > 0 ? sk_v3(0, 0, 0) : sk_v3(u.x, u.y, u.z);
+        pin->free = p.w;
+        limit->lets_go |= p.w > 0;
+        limit->moves |= pin->velocity.x != 0 || pin->velocity.y != 0 || pin->velocity.z != 0;
     }
-    for (size_t e = 0; e < limit->count; e++) {
-        const uint32_t *element = limit->particle + e * (1 + anchors);
-        size_t at = particles->slot_of[element[0]] - limit->first_slot, block = at / SK_LANES, lane = at % SK_LANES;
-        for (size_t k = 0; k < anchors; k++) {
-            size_t place = (block * anchors + k) * SK_LANES + lane;
-            limit->slot_length[place] = limit->length[e * anchors + k];
-            limit->anchor[limit->shared ? k : place] = particles->slot_of[element[1 + k]];
-        }
-    }
-    return true;
 }
 #endif

@@ -19,16 +19,18 @@ static const skein_field fields[] = {
            "equal parts that a step is cut into; more is firmer and more exact"),
     SK_INT(pbd_params, iterations, "iterations", "", 1, 1, 1000,
            "passes over the constraints in a substep, which share the stiffness; stiff ones come out stiffer"),
-    SK_BOOL(pbd_params, inertia, "inertia", 1,
-            "false: constraints move positions and nothing else does; velocities and forces are as if they were not"),
+    SK_BOOL(
+        pbd_params, inertia, "inertia", 1,
+        "false: constraints move positions, and pins go their way; other velocities, and forces, are as if they were not"),
 };
 
 /* Projections alone: a solver for constraints. With velocities a spring that is at rest after one solve would fly on.
- */
+ * What is held is led all the same, else it could not be. */
 static void write_projections_only(sk_writer *writer, const pbd_params *params, double h) {
     size_t repeat = sk_write_repeat(writer, (size_t)params->substeps, h);
     sk_write_moment(writer, 1);
     if (sk_writes_velocity_forces(writer)) sk_write_sum(writer, SK_X0, 1, SK_X, 0, SK_NONE); // damping looks back
+    sk_write_lead(writer, h);
     sk_write_shared_projections(writer, params->iterations);
     sk_write_limits(writer, SK_NONE);
     sk_write_contacts(writer, SK_CONTACT_PUSH);

@@ -74,6 +74,10 @@ void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_v
     add_combine(writer, &sk_combine_kick, dst, a, p, 0, q);
 }
 
+void sk_write_lead(sk_writer *writer, double h) {
+    add_combine(writer, &sk_combine_lead, SK_X, h, SK_X, 0, SK_V);
+}
+
 static bool pushes(const sk_force *force) {
     return *force->enabled && force->type->deed == SK_PUSHES;
 }

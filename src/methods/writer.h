@@ -57,6 +57,8 @@ void sk_write_unpack(sk_writer *writer);
 void sk_write_sum(sk_writer *writer, sk_vector dst, double a, sk_vector p, double b, sk_vector q);
 void sk_write_clear(sk_writer *writer, sk_vector dst);
 void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_vector q);
+/* X += h V of held particles alone, for methods that move nothing else by its velocity. */
+void sk_write_lead(sk_writer *writer, double h);
 
 /* Begins a repeat whose turns predict: the fields, then V += h w F, V0 = V (where there are colliders), X0 = X,
  * X += h V; in one row where all forces are plain. `passes` is what the projections will be told. */

@@ -65,6 +65,19 @@ static void SK_ISA(steer)(sk_run *run, const sk_row *row, size_t begin, size_t e
     }
 }
 
+/* dst += a q, where the inverse mass is 0. */
+static void SK_ISA(lead)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    real a = (real)row->coefficient[0];
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        bool packed = slot < row->packed;
+        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed),
+                 v = SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, packed);
+        sk_wide k = SK_ISA(sk_keep)(~SK_ISA(sk_positive)(x.w), SK_ISA(sk_splat)(a));
+        x.x += k * v.x, x.y += k * v.y, x.z += k * v.z;
+        SK_ISA(sk_store_block)(run->vector[row->dst], slot, packed, x);
+    }
+}
+
 /* The start of a position method's substep in one go, once the block's v has its new value: V = v, V0 = V,
  * X0 = X, X += h V; or, where only the correction will ask, X0 = X + h V. */
 SK_INLINE void SK_ISA(set_out)(sk_run *run, const sk_row *row, size_t slot, bool packed, sk_wide4 x, sk_wide4 v) {
@@ -170,6 +183,7 @@ const sk_kernels sk_combine_correction = {SK_EACH_ISA(correction)};
 const sk_kernels sk_combine_kick = {SK_EACH_ISA(kick)};
 const sk_kernels sk_combine_wipe = {SK_EACH_ISA(wipe)};
 const sk_kernels sk_combine_steer = {SK_EACH_ISA(steer)};
+const sk_kernels sk_combine_lead = {SK_EACH_ISA(lead)};
 const sk_kernels sk_combine_predict = {SK_EACH_ISA(predict)};
 const sk_kernels sk_combine_fall = {SK_EACH_ISA(fall)};
 const sk_kernels sk_combine_fall_on = {SK_EACH_ISA(fall_on)};

@@ -80,7 +80,7 @@ typedef struct sk_triangles {
 /* What a kernel may touch while a plan runs. */
 typedef struct sk_run {
     sk_vec4 *vector[SK_VECTOR_COUNT];
-    size_t slot_count;       /* a multiple of 16; slots without a particle are zero and weigh nothing */
+    size_t slot_count;           /* a multiple of 16; slots without a particle are zero and weigh nothing */
     const uint32_t *slot_of;     /* of the user's particles */
     const uint32_t *particle_of; /* of slots: the user's index, or SK_NOBODY */
     size_t particle_count;
@@ -159,6 +159,7 @@ bool sk_row_is(const sk_row *row, const sk_kernels *kernels);
  *   dst = p + a w q              a kick: w is the inverse mass
  *   wipe                         dst = 0, w too
  *   steer                        dst += q, where the inverse mass is not 0
+ *   lead                         dst += a q, where the inverse mass is 0; dst is X
  *   predict                      V += h w F; V0 = V where the third source is V0; X0 = X, or what X is going to
  *                                be where the third source is X; X += h V: one row
  *                                for what would be four, since each block is read and written once
@@ -166,7 +167,7 @@ bool sk_row_is(const sk_row *row, const sk_kernels *kernels);
  *   fall_on                      V += a (X - X0), and but for the last turn of its repeat a fall: the end of one
  *                                substep and the start of the next */
 extern const sk_kernels sk_combine_sum, sk_combine_correction, sk_combine_kick, sk_combine_wipe, sk_combine_steer,
-    sk_combine_predict, sk_combine_fall, sk_combine_fall_on;
+    sk_combine_lead, sk_combine_predict, sk_combine_fall, sk_combine_fall_on;
 /* Turns blocks of dst from quads to packed, and back, in place. */
 extern const sk_kernels sk_pack, sk_unpack;
 

@@ -222,17 +222,20 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
         world->first_energy = start.kinetic_energy + start.potential_energy + start.elastic_energy;
     }
     memset(world->cell, 0, sizeof world->cell);
+    skein_status status = sk_world_set_out(world, dt, error);
+    if (status) return status;
     sk_run run = sk_world_run_context(world);
     if (world->device) {
-        skein_status status = world->device->step(world->device, world, &run, error);
-        if (status) return status;
+        status = world->device->step(world->device, world, &run, error);
     } else {
         uint64_t mode = sk_float_mode_enter();
         if (seconds) sk_run_rows_timed(&run, world->tasks, world->plan.data, world->plan.count, seconds);
         else sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
         sk_float_mode_leave(mode);
-        if (run.no_memory) return sk_fail_memory(error, "the neighbour grid; the step was not finished");
+        if (run.no_memory) status = sk_fail_memory(error, "the neighbour grid; the step was not finished");
     }
+    skein_status arrived = sk_world_arrive(world, !status);
+    if (status || arrived) return status ? status : arrived;
     world->time += dt;
     world->steps++;
     world->substeps += (uint64_t)world->method->substeps(world->method_params);
@@ -295,6 +298,7 @@ skein_status skein_world_reset(skein_world *world) {
     if (status) return status;
     memset(world->cell, 0, sizeof world->cell);
     sk_particles_reset(&world->particles);
+    world->pins.count = 0;
     world->time = 0;
     world->steps = world->substeps = 0;
     return SKEIN_OK;

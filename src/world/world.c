@@ -87,6 +87,7 @@ void skein_world_destroy(skein_world *world) {
     for (size_t i = 0; i < world->objects.count; i++) release_object(world, world->objects.data[i]);
     sk_release(allocator, world->objects.data);
     sk_release(allocator, world->compiled.data);
+    sk_release(allocator, world->pins.data);
     if (world->method)
         sk_fields_clear(allocator, world->method->kind.fields, world->method->kind.field_count, world->method_params);
     sk_release(allocator, world->method_params);

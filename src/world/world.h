@@ -91,6 +91,12 @@ struct sk_device {
     bool ahead, behind;
 };
 
+/* A held particle and the place that it is to have at the end of the step. */
+typedef struct sk_pin {
+    uint32_t particle;
+    double place[3];
+} sk_pin;
+
 struct skein_world {
     sk_allocator allocator;
     skein_world_desc desc;
@@ -115,6 +121,10 @@ struct skein_world {
     sk_isa isa;
     sk_cells cells;
     sk_group everybody;
+    struct {
+        sk_pin *data;
+        size_t count, capacity;
+    } pins; /* what is to be led in the next step; a later one of the same particle counts */
     double time;
     uint64_t steps, substeps;
     double first_energy;        /* J, when the first step began */
@@ -197,6 +207,10 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
 skein_status sk_world_fetch(const skein_world *world);
 /* Before the state is changed by hand: the same, and the device is behind. */
 skein_status sk_world_touch(skein_world *world);
+/* Before a step of `dt` runs: all that is led is on its way, and whoever follows what moves is told (world/pins.c). */
+skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error);
+/* After it: what was led has arrived, and rests. Where the step failed it has not moved, and its places still wait. */
+skein_status sk_world_arrive(skein_world *world, bool done);
 /* Changes where steps are computed; NULL is the processor. The former device is released. On failure nothing changes,
  * and the caller keeps the new one. */
 skein_status sk_world_set_device(skein_world *world, sk_device *device);

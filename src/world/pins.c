@@ -1,0 +1,105 @@
+/* Pins that are led: held particles that are somewhere else at the end of a step.
+ *
+ * Held particles go on with their velocity under every method, and nothing acts on them. So a place for the end of a
+ * step is a velocity for its time: all rows see it, and know no pins. Between steps a pin rests, so that positions,
+ * velocities and what is held are still all of the state.
+ *
+ *   places wait --set out--> V = (place - X)/dt --the plan--> X --arrive--> X = place, V = 0 */
+#include <math.h>
+#include <string.h>
+
+#include "world/world.h"
+
+/* Drops what a later place has overridden, where the list holds more than there are particles. */
+static bool shorten(skein_world *world) {
+    size_t count = world->particles.count, kept = world->pins.count;
+    if (kept <= count) return true;
+    bool *seen = sk_allocate(&world->allocator, count * sizeof *seen);
+    if (!seen) return false;
+    memset(seen, 0, count * sizeof *seen);
+    for (size_t i = world->pins.count; i-- > 0;) {
+        sk_pin pin = world->pins.data[i];
+        if (!seen[pin.particle]) world->pins.data[--kept] = pin;
+        seen[pin.particle] = true;
+    }
+    sk_release(&world->allocator, seen);
+    world->pins.count -= kept;
+    memmove(world->pins.data, world->pins.data + kept, world->pins.count * sizeof *world->pins.data);
+    return true;
+}
+
+static skein_status check_pins(skein_world *world, const uint32_t *particles, size_t count, const double *xyz) {
+    const sk_particles *all = &world->particles;
+    skein_error *error = sk_world_error(world);
+    for (size_t i = 0; i < count; i++) {
+        size_t particle = particles ? particles[i] : i;
+        if (particle >= all->count)
+            return sk_fail(error, SKEIN_ERROR_VALUE, "", "there is no particle %zu (the world has %zu)", particle,
+                           all->count);
+        if (!all->held[particle])
+            return sk_fail(error, SKEIN_ERROR_VALUE, "",
+                           "particle %zu is not held: pin it, or hold it with skein_particle_hold()", particle);
+        for (size_t k = 0; k < 3; k++)
+            if (!(fabs(xyz[3 * i + k]) <= SK_FAR))
+                return sk_fail(error, SKEIN_ERROR_VALUE, "", "particle %zu: numbers must be finite, under 1e15",
+                               particle);
+    }
+    return SKEIN_OK;
+}
+
+skein_status skein_pins_move(skein_world *world, const uint32_t *particles, size_t count, const double *xyz) {
+    skein_status status = check_pins(world, particles, count, xyz);
+    if (status) return status;
+    if (!shorten(world) || !SK_RESERVE(&world->allocator, &world->pins, world->pins.count + count))
+        return sk_fail_memory(sk_world_error(world), "places for pins");
+    for (size_t i = 0; i < count; i++)
+        world->pins.data[world->pins.count++] =
+            (sk_pin){particles ? particles[i] : (uint32_t)i, {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]}};
+    return SKEIN_OK;
+}
+
+/* The velocity with which a pin is at its place after dt. */
+static skein_status set_out(skein_world *world, const sk_pin *pin, double dt, skein_error *error) {
+    const sk_particles *all = &world->particles;
+    size_t slot = all->slot_of[pin->particle];
+    sk_vec4 x = all->vector[SK_X][slot], *v = &all->vector[SK_V][slot];
+    double way[3] = {pin->place[0] - (double)x.x, pin->place[1] - (double)x.y, pin->place[2] - (double)x.z};
+    for (int k = 0; k < 3; k++)
+        if (!(fabs(way[k] / dt) <= SK_FAR))
+            return sk_fail(error, SKEIN_ERROR_VALUE, "", "pin %u: %g m in a step of %g s is too fast", pin->particle,
+                           way[k], dt);
+    *v = (sk_vec4){(real)(way[0] / dt), (real)(way[1] / dt), (real)(way[2] / dt), v->w};
+    return SKEIN_OK;
+}
+
+skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error) {
+    const sk_particles *all = &world->particles;
+    skein_status status = world->pins.count ? sk_world_touch(world) : SKEIN_OK;
+    for (size_t i = 0; i < world->pins.count && !status; i++)
+        if (all->held[world->pins.data[i].particle]) status = set_out(world, &world->pins.data[i], dt, error);
+    if (status) {
+        sk_world_arrive(world, false);
+        world->pins.count = 0;
+        return status;
+    }
+    if (world->device) return SKEIN_OK; // which runs no limits that look at pins
+    for (size_t i = 0; i < world->rules.limits.count; i++)
+        sk_limit_begin(world->rules.limits.data[i], all->vector[SK_X], all->vector[SK_V], world->time);
+    return SKEIN_OK;
+}
+
+skein_status sk_world_arrive(skein_world *world, bool done) {
+    const sk_particles *all = &world->particles;
+    if (!world->pins.count) return SKEIN_OK;
+    skein_status status = sk_world_touch(world);
+    for (size_t i = 0; i < world->pins.count && !status; i++) {
+        const sk_pin *pin = &world->pins.data[i];
+        if (!all->held[pin->particle]) continue;
+        sk_vec4 *x = &all->vector[SK_X][all->slot_of[pin->particle]],
+                *v = &all->vector[SK_V][all->slot_of[pin->particle]];
+        if (done) *x = (sk_vec4){(real)pin->place[0], (real)pin->place[1], (real)pin->place[2], x->w};
+        *v = (sk_vec4){0, 0, 0, v->w};
+    }
+    if (done) world->pins.count = 0;
+    return status;
+}
