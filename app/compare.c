@@ -14,15 +14,20 @@
 static const char *const outcomes[] = {"good", "blew up", "refused", "failed"};
 
 static void print_table(const compare_run *runs, size_t count, const compare_run *reference) {
-    printf("%-17s %10s %10s %12s %10s %12s %10s %8s\n", "method", "step (ms)", "steps", "error (m)", "stretch",
-           "lost (J)", "ms a step", "cost");
+    bool rounded = false;
+    printf("%-17s %10s %10s %12s %7s %10s %12s %10s %8s\n", "method", "step (ms)", "steps", "error (m)", "order",
+           "stretch", "lost (J)", "ms a step", "cost");
     for (size_t r = 0; r < count; r++) {
         const compare_run *run = &runs[r];
         printf("%-17s %10.4g ", run->method, 1e3 * run->step);
-        if (run->outcome == COMPARE_GOOD)
-            printf("%10llu %12.3g %9.2f%% %12.4g %10.4g %8.3g\n", (unsigned long long)run->steps, run->error,
+        if (run->outcome == COMPARE_GOOD) {
+            char order[16] = "-";
+            if (run->rounded) snprintf(order, sizeof order, "rounded");
+            else if (isfinite(run->order)) snprintf(order, sizeof order, "%.2f", run->order);
+            rounded |= run->rounded;
+            printf("%10llu %12.3g %7s %9.2f%% %12.4g %10.4g %8.3g\n", (unsigned long long)run->steps, run->error, order,
                    100 * run->stretch, run->loss, compare_ms_per_step(run), compare_cost(run));
-        else if (run->outcome == COMPARE_BLEW_UP)
+        } else if (run->outcome == COMPARE_BLEW_UP)
             printf("%10s at step %llu, after %.4g s\n", outcomes[run->outcome], (unsigned long long)run->steps,
                    (double)run->steps * run->step);
         else printf("%10s\n", outcomes[run->outcome]);
@@ -30,6 +35,10 @@ static void print_table(const compare_run *runs, size_t count, const compare_run
     printf("\nerror: root of the mean square distance to %s with steps of %.4g ms, over all particles and frames;\n"
            "lost: energy at the start less that at the end; cost: seconds of computing for a second of the scene\n",
            reference->method, 1e3 * reference->step);
+    printf("order: p of error ~ step^p, from the step before it in the table\n");
+    if (rounded)
+        printf("rounded: the error is rounding's, which shorter steps do not lessen%s\n",
+               sizeof(skein_real) == sizeof(float) ? "; a build with -DSKEIN_DOUBLE=ON goes further" : "");
     if (reference->outcome != COMPARE_GOOD) printf("(but the reference itself %s)\n", outcomes[reference->outcome]);
 }
 
@@ -44,12 +53,12 @@ static bool write_table(const char *folder, const compare_run *runs, size_t coun
     io_output *o = open_in(folder, "compare.csv", &error);
     if (o) {
         io_output_printf(
-            o, "method,step (s),outcome,steps,error (m),largest stretch,energy lost (J),time a step (ms),cost\n");
+            o, "method,step (s),outcome,steps,error (m),largest stretch,energy lost (J),time a step (ms),cost,order\n");
         for (size_t r = 0; r < count; r++) {
             const compare_run *run = &runs[r];
-            io_output_printf(o, "%s,%.9g,%s,%llu,%.6g,%.6g,%.6g,%.6g,%.6g\n", run->method, run->step,
+            io_output_printf(o, "%s,%.9g,%s,%llu,%.6g,%.6g,%.6g,%.6g,%.6g,%.4g\n", run->method, run->step,
                              outcomes[run->outcome], (unsigned long long)run->steps, run->error, run->stretch,
-                             run->loss, compare_ms_per_step(run), compare_cost(run));
+                             run->loss, compare_ms_per_step(run), compare_cost(run), run->order);
         }
         if (!io_output_commit(o, &error)) return true;
     }
@@ -139,8 +148,11 @@ static int compare_all(compare_scene *scene, compare_run *runs, size_t count, co
         fprintf(stderr, "%s, steps of %.4g ms\n", runs[r].method, 1e3 * runs[r].step);
         good = compare_run_one(scene, &runs[r], false);
     }
-    if (good) print_table(runs, count, &reference);
-    else fprintf(stderr, "skein compare: there is no reference, or no memory\n");
+    if (good) {
+        compare_orders(scene, runs, count);
+        print_table(runs, count, &reference);
+    }
+    if (!good) fprintf(stderr, "skein compare: there is no reference, or no memory\n");
     if (good && folder) {
         if (mkdir(folder, 0777) && errno != EEXIST) {
             fprintf(stderr, "skein compare: --out %s: cannot be made: %s\n", folder, strerror(errno));
@@ -190,8 +202,8 @@ const app_command app_compare_command = {
     "SCENE [--methods A,B,...] [--steps S,S,...] [--out FOLDER] [options]",
     "run a scene under several methods and steps, and say what each makes of it\n\n"
     "  skein compare scenes/hanging.json --methods leapfrog,rk4,xpbd --steps 2e-4,1e-4 --frames 30 --out out/\n\n"
-    "For each run: how far it strays from a reference of much smaller steps, its largest stretch, what energy it lost,\n"
-    "and its time. A run that blows up is no error: the step at which it did is in the table. With --out, the same as\n"
+    "For each run: how far it strays from a reference of much smaller steps, the order at which that falls with the\n"
+    "step, its largest stretch, what energy it lost, and its time. A run that blows up is no error: the step at which it did is in the table. With --out, the same as\n"
     "CSV, a line a frame of every run in series.csv, and a plot (gnuplot draws it): energy, stretch and error over\n"
     "time, error and time by step, and error by cost.",
     options,

@@ -25,6 +25,8 @@ typedef struct compare_run {
     uint64_t steps; /* taken; where it blew up, the step that did */
     double seconds; /* spent stepping */
     double error;   /* m, over all frames; NaN */
+    double order;   /* p of error ~ step^p, from the same method's longer step before it; NaN where there is none */
+    bool rounded;   /* its error is as small as rounding lets it be: shorter steps do not help */
     double stretch; /* the largest of all frames */
     double loss;    /* of energy, J, from the first to the last frame */
     compare_sample *samples;
@@ -40,11 +42,15 @@ typedef struct compare_scene {
     size_t particles, reference_frames;
     double most_moving;  /* J, kinetic and elastic, the most at any frame so far */
     double energy_scale; /* the same of the reference alone; 0: none yet */
+    double extent;       /* m, the largest coordinate of the reference */
+    uint64_t reference_steps;
 } compare_scene;
 
 /* Runs and fills in what is not asked for. With `keep`, the positions become the scene's reference. False when there
  * is no memory. */
 bool compare_run_one(compare_scene *scene, compare_run *run, bool keep);
+/* Fills in the orders of all runs, and which of them end in rounding. */
+void compare_orders(const compare_scene *scene, compare_run *runs, size_t count);
 /* The step of a reference: well under the others, and under what `method` can take. 0 after a printed fault. */
 double compare_reference_step(const compare_scene *scene, const char *method, double least);
 

@@ -1,3 +1,4 @@
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -118,6 +119,13 @@ static bool run_frames(compare_scene *scene, compare_run *run, app_scene *loaded
     return true;
 }
 
+/* What tells how far rounding alone may take a run from the reference. */
+static void note_reference(compare_scene *scene, const compare_run *run) {
+    scene->reference_steps = run->steps;
+    for (size_t i = 0; scene->reference && i < 3 * scene->particles * scene->reference_frames; i++)
+        scene->extent = fmax(scene->extent, fabs(scene->reference[i]));
+}
+
 bool compare_run_one(compare_scene *scene, compare_run *run, bool keep) {
     app_scene loaded;
     run->outcome = COMPARE_GOOD;
@@ -128,6 +136,7 @@ bool compare_run_one(compare_scene *scene, compare_run *run, bool keep) {
     }
     bool good = run_frames(scene, run, &loaded, keep);
     if (keep && run->outcome == COMPARE_GOOD) scene->energy_scale = scene->most_moving;
+    if (keep) note_reference(scene, run);
     app_unload(&loaded);
     sum_up(run);
     return good;
@@ -142,4 +151,22 @@ double compare_reference_step(const compare_scene *scene, const char *method, do
     else step = fmin(step, 0.5 * skein_stable_substep(method, &s));
     app_unload(&loaded);
     return step;
+}
+
+void compare_orders(const compare_scene *scene, compare_run *runs, size_t count) {
+    // each step rounds positions by up to half an epsilon, to either side: a random walk
+    double epsilon = sizeof(skein_real) == sizeof(double) ? DBL_EPSILON : FLT_EPSILON;
+    double rounding = epsilon * scene->extent * sqrt((double)scene->reference_steps);
+    for (size_t r = 0; r < count; r++) {
+        compare_run *run = &runs[r];
+        run->order = NAN;
+        if (run->outcome != COMPARE_GOOD) continue;
+        for (size_t i = r; i-- > 0;) {
+            if (runs[i].outcome != COMPARE_GOOD || strcmp(runs[i].method, run->method) || runs[i].step == run->step)
+                continue;
+            run->order = log(runs[i].error / run->error) / log(runs[i].step / run->step);
+            break;
+        }
+        run->rounded = isnan(run->order) ? run->error < rounding / 8 : run->order < 0.5 && run->error < rounding;
+    }
 }

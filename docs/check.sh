@@ -1,10 +1,13 @@
 #!/bin/sh
 # Checks that the documents are still true: docs/check.sh [SKEIN]      (SKEIN: build/skein)
 #   1  a block ```c FILE is in that file word for word, or, if there is none, compiles where it would stand
-#   2  a block ```json passes `skein check`
+#   2  a block ```json or ```json NEW-FILE passes `skein check`; one ```json SCENE is in that file word for word
 #   3  a block ```text skein explain SCENE is what that prints
 #   4  reference.md is what make-reference.sh makes
 #   5  links to files of this repository lead somewhere
+#   6  methods.md names every method, constraint, force, collider and limit there is, and its formulas are those that the
+#      kernels are made of (a block ```formula NAME)
+# What the documents tell readers to type is run by run-commands.sh.
 # Prints each fault, and fails if there is one.
 set -u
 cd "$(dirname "$0")/.." || exit 2
@@ -24,7 +27,8 @@ for document in README.md docs/*.md; do
         /^```/ {
             if (out) { close(out); out = ""; next }
             n = split(substr($0, 4), word, " ")
-            kind = n == 2 && word[1] == "c" && word[2] != "fragment" ? "c" : n == 1 && word[1] == "json" ? "json" : ""
+            kind = n == 2 && word[1] == "c" && word[2] != "fragment" ? "c" : word[1] == "json" && word[2] != "fragment" ? "json" : ""
+            if (n == 2 && word[1] == "formula") kind = "formula"
             if (n == 4 && word[1] == "text" && word[3] == "explain") kind = "explain"
             out = kind ? stem "-" NR "." kind : "/dev/null"
             if (kind) { print word[n] >(out ".word"); close(out ".word") }
@@ -49,6 +53,12 @@ done
 for block in "$work"/*.json; do
     [ -e "$block" ] || continue
     blocks=$((blocks + 1))
+    file=$(cat "$block.word")
+    if [ -e "$file" ]; then # a part of a scene
+        awk 'FNR == NR { block = block $0 "\n"; next } { file = file $0 "\n" } END { exit !index(file, block) }' \
+            "$block" "$file" || fault "$(basename "$block" .json): is not in $file any more"
+        continue
+    fi
     "$skein" check "$block" >/dev/null || fault "$(basename "$block" .json): is not a good scene"
 done
 
@@ -58,6 +68,23 @@ for block in "$work"/*.explain; do
     "$skein" explain "$(cat "$block.word")" | cmp -s - "$block" ||
         fault "$(basename "$block" .explain): is not what skein explain $(cat "$block.word") prints"
 done
+
+for block in "$work"/*.formula; do
+    [ -e "$block" ] || continue
+    blocks=$((blocks + 1))
+    sed -n '1s,^// ,,p' "src/constraints/emitted/$(cat "$block.word").h" | cmp -s - "$block" ||
+        fault "$(basename "$block" .formula): is not the formula of src/constraints/emitted/$(cat "$block.word").h"
+done
+for file in src/constraints/emitted/*.h; do
+    grep -q "^\`\`\`formula $(basename "$file" .h)\$" docs/methods.md ||
+        fault "docs/methods.md: lacks the formula of $file"
+done
+for category in methods constraints forces colliders; do
+    "$skein" list $category | sed -n 's/^  \([a-z_0-9]*\):.*/\1/p' | while read -r kind; do
+        grep -q -e "^### $kind\$" -e "\`$kind\`" docs/methods.md || echo "docs/methods.md: nothing about '$kind'"
+    done
+done >"$work/kinds"
+[ ! -s "$work/kinds" ] || fault "$(cat "$work/kinds")"
 
 SKEIN=$skein docs/make-reference.sh >"$work/reference.md"
 cmp -s "$work/reference.md" docs/reference.md ||

@@ -65,6 +65,39 @@ static void runs_are_compared(void **state) {
     outcome_free(&o);
 }
 
+/* The order that the formulas of docs/methods.md promise, on a soft pendulum; and rounding is called so. */
+static void orders_are_found(void **state) {
+    (void)state;
+    char *path = in_folder("swing.json");
+    write_scene(path, "{ 'frames': 30, 'output': [], 'method': { 'type': 'rk4' },\n"
+                      "  'bodies': [ { 'type': 'rope', 'count': 2,\n"
+                      "    'to': [0.6, 0, 0], 'pins': 'first', 'stretch': { 'stiffness': 8, 'tether': 'infinite' } } ],\n"
+                      "  'forces': [ { 'type': 'gravity' } ] }");
+    outcome o = SKEIN("compare", path, "--methods", "symplectic_euler,midpoint,rk4", "--steps", "0.008,0.004", "--out",
+                      in_folder("orders"));
+    assert_status(o, 0);
+    outcome_free(&o);
+    char *table = read_text(in_folder("orders/compare.csv"));
+    static const struct {
+        const char *method;
+        double order;
+    } known[] = {{"\nsymplectic_euler,0.00333", 1}, {"\nmidpoint,0.00333", 2}, {"\nrk4,0.00333", 4}};
+    for (size_t i = 0; i < COUNT(known) - (sizeof(skein_real) == sizeof(float)); i++) { // rk4 is at float's floor
+        const char *row = strstr(table, known[i].method);
+        assert_non_null(row);
+        const char *last = strchr(row + 1, '\n');
+        while (*last != ',') last--;
+        assert_float_equal(strtod(last + 1, NULL), known[i].order, 0.25);
+    }
+    free(table);
+    if (sizeof(skein_real) == sizeof(double)) return;
+    o = SKEIN("compare", path, "--methods", "rk4", "--steps", "0.001,0.0005");
+    assert_status(o, 0);
+    assert_contains(o.out, " rounded ");
+    assert_contains(o.out, "a build with -DSKEIN_DOUBLE=ON goes further");
+    outcome_free(&o);
+}
+
 static void what_cannot_be_compared_is_said(void **state) {
     (void)state;
     const char *s = sheet_scene();
@@ -152,6 +185,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
 #define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
         TEST(runs_are_compared),
+        TEST(orders_are_found),
         TEST(what_cannot_be_compared_is_said),
         TEST(stability_is_foretold),
         TEST(substeps_that_rounding_swallows),
