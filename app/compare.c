@@ -203,9 +203,9 @@ const app_command app_compare_command = {
     "run a scene under several methods and steps, and say what each makes of it\n\n"
     "  skein compare scenes/hanging.json --methods leapfrog,rk4,xpbd --steps 2e-4,1e-4 --frames 30 --out out/\n\n"
     "For each run: how far it strays from a reference of much smaller steps, the order at which that falls with the\n"
-    "step, its largest stretch, what energy it lost, and its time. A run that blows up is no error: the step at which it did is in the table. With --out, the same as\n"
-    "CSV, a line a frame of every run in series.csv, and a plot (gnuplot draws it): energy, stretch and error over\n"
-    "time, error and time by step, and error by cost.",
+    "step, its largest stretch, what energy it lost, and its time. A run that blows up is no error: the step at which\n"
+    "it did is in the table. With --out, the same as CSV, a line a frame of every run in series.csv, and a plot\n"
+    "(gnuplot draws it): energy, stretch and error over time, error and time by step, and error by cost.",
     options,
     "scene",
     false,
