@@ -1,5 +1,8 @@
 # What `cmake --install` brings of the command: itself, its modules, its scenes and their meshes.
 install(TARGETS skein)
+if(TARGET skein_film_module)
+    install(TARGETS skein_film_module DESTINATION ${CMAKE_INSTALL_LIBDIR}/skein)
+endif()
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/skein/scenes
     FILES_MATCHING PATTERN "*.json" PATTERN elephant.json EXCLUDE)
 install(DIRECTORY meshes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/skein/meshes)

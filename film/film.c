@@ -59,13 +59,11 @@ static void *make(void *argument) {
 
 /* ---- the caller's side ---- */
 
-static const film_maker *maker_of(const film_format *format) {
+/* NULL after an error. */
+static const film_maker *maker_of(const film_format *format, skein_error *error) {
     if (!format->encoders) return &film_series;
-#ifdef SKEIN_FILM
-    return strcmp(format->ending, ".gif") ? &film_video : &film_gif;
-#else
-    return NULL; // the lack of an encoder was told before
-#endif
+    const film_libav *libav = film_find_libav(error);
+    return !libav ? NULL : strcmp(format->ending, ".gif") ? libav->video : libav->gif;
 }
 
 /* Signals are for the caller's thread. */
@@ -80,16 +78,20 @@ static int start_thread(film *f) {
 
 film *film_create(const char *path, const film_options *options, double rate, skein_error *error) {
     const film_format *format = film_format_of(path, error);
-    if (!format || (format->encoders && !film_choose_encoder(format, path, film_encoder_is_here, error))) return NULL;
+    const char *encoder = NULL;
+    if (!format) return NULL;
+    if (format->encoders && !(encoder = film_choose_encoder(format, path, film_encoder_is_here, error))) return NULL;
+    const film_maker *maker = maker_of(format, error);
+    if (!maker) return NULL;
     film *f = calloc(1, sizeof *f);
     if (!f) {
         render_fail_memory(error, "the film");
         return NULL;
     }
-    film_job job = {path, format, *options, rate / film_every(format, rate)};
+    film_job job = {path, format, encoder, *options, rate / film_every(format, rate)};
     film_fit_size(format, job.options.size);
     f->options = job.options;
-    f->maker = maker_of(format);
+    f->maker = maker;
     f->state = f->maker->begin(&job, error);
     if (!f->state) {
         free(f);

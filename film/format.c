@@ -5,11 +5,8 @@
 #include <strings.h>
 
 #include "film/maker.h"
+#include "io/module.h"
 #include "render/fail.h"
-
-#ifdef SKEIN_FILM
-#include <libavcodec/avcodec.h>
-#endif
 
 #define COUNT(array_) (sizeof(array_) / sizeof *(array_))
 
@@ -31,13 +28,19 @@ const film_format *film_format_at(size_t index) {
 
 /* ---- what there is ---- */
 
-bool film_encoder_is_here(const char *name) {
+const film_libav *film_find_libav(skein_error *error) {
 #ifdef SKEIN_FILM
-    return avcodec_find_encoder_by_name(name) != NULL;
+    return io_module_load("film", error);
 #else
-    (void)name;
-    return false;
+    render_fail(error, SKEIN_ERROR_NAME, "",
+                "this skein was built without libavcodec ('tools/setup build' installs it; then build again)");
+    return NULL;
 #endif
+}
+
+bool film_encoder_is_here(const char *name) {
+    const film_libav *libav = film_find_libav(NULL);
+    return libav && libav->has_encoder(name);
 }
 
 static const char *find_encoder(const film_format *format, bool (*is_here)(const char *encoder)) {
@@ -64,22 +67,21 @@ const char *film_choose_encoder(const film_format *format, const char *path, boo
     const char *name = find_encoder(format, is_here);
     if (name) return name;
     char missing[128] = "", here[128];
+    skein_error absent = {SKEIN_OK, "", ""};
     for (const char *const *one = format->encoders; *one; one++) {
         size_t length = strlen(missing);
         snprintf(missing + length, sizeof missing - length, "%s%s", length ? " or " : "", *one);
     }
     film_list_formats(is_here, here, sizeof here);
-#ifdef SKEIN_FILM
-    render_fail(error, SKEIN_ERROR_NAME, path,
-                "%s needs an encoder that this libavcodec has not: %s; can be written here: %s (numbered: "
-                "name-%%04d.png)",
-                format->help, missing, here);
-#else
-    render_fail(error, SKEIN_ERROR_NAME, path,
-                "%s needs %s, but this skein was built without libavcodec ('tools/setup build' installs it; then "
-                "build again); can be written: %s (numbered: name-%%04d.png)",
-                format->help, missing, here);
-#endif
+    if (film_find_libav(&absent))
+        render_fail(error, SKEIN_ERROR_NAME, path,
+                    "%s needs an encoder that this libavcodec has not: %s; can be written here: %s (numbered: "
+                    "name-%%04d.png)",
+                    format->help, missing, here);
+    else
+        render_fail(error, SKEIN_ERROR_NAME, path,
+                    "%s needs %s, but %s%s%.350s; can be written: %s (numbered: name-%%04d.png)", format->help, missing,
+                    absent.where, absent.where[0] ? ": " : "", absent.message, here);
     return NULL;
 }
 

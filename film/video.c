@@ -76,15 +76,14 @@ static bool make_frame(video *v, int width, int height) {
 }
 
 static void *begin(const film_job *job, skein_error *error) {
-    const char *encoder = film_choose_encoder(job->format, job->path, film_encoder_is_here, error);
     video *v = calloc(1, sizeof *v);
-    if (!encoder || !v || !make_frame(v, job->options.size[0], job->options.size[1])) {
-        if (encoder) render_fail_memory(error, "the film");
+    if (!v || !make_frame(v, job->options.size[0], job->options.size[1])) {
+        render_fail_memory(error, "the film");
         if (v) end(v, false, NULL);
         return NULL;
     }
     setenv("SVT_LOG", "1", 0); // or that encoder tells its life on standard error
-    v->stream = film_stream_open(job, encoder, AV_PIX_FMT_YUV420P, prepare,
+    v->stream = film_stream_open(job, job->encoder, AV_PIX_FMT_YUV420P, prepare,
                                  strcmp(job->format->ending, ".mp4") ? webm_options : mp4_options, error);
     if (v->stream) return v;
     end(v, false, NULL);
