@@ -113,7 +113,7 @@ void bench_tape_free(bench_tape *t) {
 void bench_tape_run(void *data) {
     const bench_tape *t = data;
     const bench_elements *e = t->elements;
-    const sk_tape_kernels *kernels = &sk_tape_kernels_of[sk_isa_choose()];
+    const sk_tape_kernels *kernels = sk_tape_kernels_of[sk_isa_choose()];
     static sk_wide registers[SK_TAPE_MEMORY / sizeof(sk_wide)];
     sk_tape_verdict verdict;
     size_t block = SK_LANES * t->tape.wides;
@@ -154,7 +154,7 @@ void bench_check_by_hand(const bench_elements *e, const bench_tape *t, const ben
     double off = 0, size = 0;
     for (size_t k = 0; k < t->tape.outputs; k++) ours[k] = e->ours + k * e->count;
     h->run(&h->all);
-    sk_tape_kernels_of[sk_isa_choose()].evaluate(&t->tape, &e->input, 0, e->count, ours);
+    sk_tape_kernels_of[sk_isa_choose()]->evaluate(&t->tape, &e->input, 0, e->count, ours);
     for (size_t i = 0; i < t->tape.outputs * e->count; i++) {
         off = fmax(off, fabs((double)(e->ours[i] - e->theirs[i])));
         size = fmax(size, fabs((double)e->theirs[i]));

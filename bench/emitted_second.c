@@ -1,17 +1,27 @@
 /* Second derivatives by what the emitter writes (emit.c; the build puts it into emitted/), sixteen at a time, in the
  * library's own arithmetic: the lower triangle, as by_hand_second.c gives it. */
+#include "bench/by_hand.h"
+
+#include "base/elementary.h"
+#include "base/kernels.h"
+#include "base/polynomial.h"
+
+#define SK_UNIT bench_emitted_second
+SK_KERNELS(by_hand_function, neo_hookean);
+SK_KERNELS(by_hand_function, stvk);
+
 #ifdef SK_ISA
 
 #include "base/wide_elementary.h"
 
-typedef struct SK_ISA(lanes) {
+typedef struct lanes {
     sk_wide3 x[4];
     sk_wide parameter[BY_HAND_MOST_PARAMETERS];
-} SK_ISA(lanes);
+} lanes;
 
-#define FORMULA(name) SK_INLINE void SK_ISA(EMITTED)(const SK_ISA(lanes) * e, const by_hand_input *in, size_t n)
+#define FORMULA(name) SK_INLINE void EMITTED(const lanes *e, const by_hand_input *in, size_t n)
 #define REAL sk_wide
-#define NUMBER(x) SK_ISA(sk_splat)((real)(x))
+#define NUMBER(x) sk_splat((real)(x))
 #define AXIS_0 x
 #define AXIS_1 y
 #define AXIS_2 z
@@ -19,21 +29,21 @@ typedef struct SK_ISA(lanes) {
 #define PARAMETER(index) e->parameter[index]
 #define VALUE(component, x) (void)(x)
 #define GRADIENT(component, particle, axis, x) (void)(x)
-#define HESSIAN(row, column, x) SK_ISA(put)(in, (row) * ((row) + 1) / 2 + (column), n, (x))
-#define RECIPROCAL(x) SK_ISA(reciprocal)(x)
-#define LESS(a, b, yes, no) SK_ISA(sk_select)(SK_ISA(sk_more)(b, a), yes, no)
-#define LOG(x) SK_ISA(sk_wide_log)(x)
+#define HESSIAN(row, column, x) put(in, (row) * ((row) + 1) / 2 + (column), n, (x))
+#define RECIPROCAL(x) reciprocal(x)
+#define LESS(a, b, yes, no) sk_select(sk_more(b, a), yes, no)
+#define LOG(x) sk_wide_log(x)
 
-SK_INLINE sk_wide SK_ISA(reciprocal)(sk_wide x) {
-    sk_wide least = SK_ISA(sk_splat)(SK_LEAST_NORMAL);
-    return SK_ISA(sk_keep)(SK_ISA(sk_at_most)(least, SK_ISA(sk_wide_abs)(x)), 1 / x);
+SK_INLINE sk_wide reciprocal(sk_wide x) {
+    sk_wide least = sk_splat(SK_LEAST_NORMAL);
+    return sk_keep(sk_at_most(least, sk_wide_abs(x)), 1 / x);
 }
-SK_INLINE void SK_ISA(put)(const by_hand_input *in, size_t entry, size_t n, sk_wide x) {
+SK_INLINE void put(const by_hand_input *in, size_t entry, size_t n, sk_wide x) {
     memcpy(in->output + entry * in->stride + n, &x, sizeof x);
 }
-SK_INLINE void SK_ISA(load)(SK_ISA(lanes) * e, const by_hand_input *in, size_t n, int particles, int parameters) {
+SK_INLINE void load(lanes *e, const by_hand_input *in, size_t n, int particles, int parameters) {
     for (int k = 0; k < particles; k++) {
-        sk_wide4 p = SK_ISA(sk_gather)((const sk_vec4 *)(const void *)in->positions, in->slot[k] + n);
+        sk_wide4 p = sk_gather((const sk_vec4 *)(const void *)in->positions, in->slot[k] + n);
         e->x[k] = (sk_wide3){p.x, p.y, p.z};
     }
     for (int k = 0; k < parameters; k++) memcpy(&e->parameter[k], in->parameter[k] + n, sizeof(sk_wide));
@@ -46,42 +56,18 @@ SK_INLINE void SK_ISA(load)(SK_ISA(lanes) * e, const by_hand_input *in, size_t n
 #include "emitted/second_stvk.h"
 #undef EMITTED
 
-#define RUN(name_, particles_, parameters_)                   \
-    static void SK_ISA(name_)(const by_hand_input *in) {      \
-        for (size_t n = 0; n < in->count; n += SK_LANES) {    \
-            SK_ISA(lanes) e;                                  \
-            SK_ISA(load)(&e, in, n, particles_, parameters_); \
-            SK_ISA(formula_##name_)(&e, in, n);               \
-        }                                                     \
+#define RUN(name_, particles_, parameters_)                \
+    void SK_KERNEL(name_)(const by_hand_input *in) {       \
+        for (size_t n = 0; n < in->count; n += SK_LANES) { \
+            lanes e;                                       \
+            load(&e, in, n, particles_, parameters_);      \
+            formula_##name_(&e, in, n);                    \
+        }                                                  \
     }
 RUN(neo_hookean, 4, 10)
 RUN(stvk, 3, 5)
 
-#undef RUN
-#undef FORMULA
-#undef REAL
-#undef NUMBER
-#undef AXIS_0
-#undef AXIS_1
-#undef AXIS_2
-#undef POSITION
-#undef PARAMETER
-#undef VALUE
-#undef GRADIENT
-#undef HESSIAN
-#undef RECIPROCAL
-#undef LESS
-#undef LOG
-
 #else
-
-#include "bench/by_hand.h"
-
-#include "base/elementary.h"
-#include "base/polynomial.h"
-
-#define SK_KERNELS "bench/emitted_second.c"
-#include "base/for_each_isa.h"
 
 #define KERNEL(name_)                                                   \
     void emitted_second_##name_(const by_hand_input *in) {              \

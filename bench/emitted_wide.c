@@ -1,18 +1,31 @@
 /* Values and gradients by what the emitter writes (emit.c; the build puts it into emitted/), sixteen at a time, in the
  * arithmetic of the library's own kernels. */
+#include "bench/by_hand.h"
+
+#include "base/elementary.h"
+#include "base/kernels.h"
+#include "base/polynomial.h"
+
+#define SK_UNIT bench_emitted_wide
+SK_KERNELS(by_hand_function, distance);
+SK_KERNELS(by_hand_function, dihedral);
+SK_KERNELS(by_hand_function, volume);
+SK_KERNELS(by_hand_function, neo_hookean);
+SK_KERNELS(by_hand_function, stvk);
+
 #ifdef SK_ISA
 
 #include "base/wide_elementary.h"
 
-typedef struct SK_ISA(lanes) {
+typedef struct lanes {
     sk_wide3 x[4], gradient[4];
     sk_wide parameter[BY_HAND_MOST_PARAMETERS], value, divisor;
     bool divided;
-} SK_ISA(lanes);
+} lanes;
 
-#define FORMULA(name) SK_INLINE void SK_ISA(EMITTED)(SK_ISA(lanes) * e)
+#define FORMULA(name) SK_INLINE void EMITTED(lanes *e)
 #define REAL sk_wide
-#define NUMBER(x) SK_ISA(sk_splat)((real)(x))
+#define NUMBER(x) sk_splat((real)(x))
 #define AXIS_0 x
 #define AXIS_1 y
 #define AXIS_2 z
@@ -25,26 +38,26 @@ typedef struct SK_ISA(lanes) {
         -e->gradient[of].x, -e->gradient[of].y, -e->gradient[of].z \
     }
 #define UNIT_DIVISOR(x) e->divided = true, e->divisor = (x)
-#define RECIPROCAL(x) SK_ISA(reciprocal)(x)
-#define SQRT(x) SK_ISA(sk_wide_sqrt)(x)
-#define LESS(a, b, yes, no) SK_ISA(sk_select)(SK_ISA(sk_more)(b, a), yes, no)
-#define LOG(x) SK_ISA(sk_wide_log)(x)
-#define ATAN2(y, x) SK_ISA(sk_wide_atan2)(y, x)
+#define RECIPROCAL(x) reciprocal(x)
+#define SQRT(x) sk_wide_sqrt(x)
+#define LESS(a, b, yes, no) sk_select(sk_more(b, a), yes, no)
+#define LOG(x) sk_wide_log(x)
+#define ATAN2(y, x) sk_wide_atan2(y, x)
 
-SK_INLINE sk_wide SK_ISA(reciprocal)(sk_wide x) {
-    sk_wide least = SK_ISA(sk_splat)(SK_LEAST_NORMAL);
-    return SK_ISA(sk_keep)(SK_ISA(sk_at_most)(least, SK_ISA(sk_wide_abs)(x)), 1 / x);
+SK_INLINE sk_wide reciprocal(sk_wide x) {
+    sk_wide least = sk_splat(SK_LEAST_NORMAL);
+    return sk_keep(sk_at_most(least, sk_wide_abs(x)), 1 / x);
 }
-SK_INLINE void SK_ISA(load)(SK_ISA(lanes) * e, const by_hand_input *in, size_t i, int particles, int parameters) {
+SK_INLINE void load(lanes *e, const by_hand_input *in, size_t i, int particles, int parameters) {
     for (int k = 0; k < particles; k++) {
-        sk_wide4 p = SK_ISA(sk_gather)((const sk_vec4 *)(const void *)in->positions, in->slot[k] + i);
+        sk_wide4 p = sk_gather((const sk_vec4 *)(const void *)in->positions, in->slot[k] + i);
         e->x[k] = (sk_wide3){p.x, p.y, p.z};
     }
     for (int k = 0; k < parameters; k++) memcpy(&e->parameter[k], in->parameter[k] + i, sizeof(sk_wide));
     e->divided = false;
 }
-SK_INLINE void SK_ISA(store)(SK_ISA(lanes) * e, const by_hand_input *in, size_t i, int particles) {
-    sk_wide inverse = e->divided ? SK_ISA(reciprocal)(e->divisor) : (sk_wide){0};
+SK_INLINE void store(lanes *e, const by_hand_input *in, size_t i, int particles) {
+    sk_wide inverse = e->divided ? reciprocal(e->divisor) : (sk_wide){0};
     memcpy(in->output + i, &e->value, sizeof(sk_wide));
     for (int k = 0; k < particles; k++) {
         sk_wide3 g = e->gradient[k];
@@ -71,14 +84,14 @@ SK_INLINE void SK_ISA(store)(SK_ISA(lanes) * e, const by_hand_input *in, size_t 
 #include "emitted/stvk.h"
 #undef EMITTED
 
-#define RUN(name_, particles_, parameters_)                   \
-    static void SK_ISA(name_)(const by_hand_input *in) {      \
-        for (size_t i = 0; i < in->count; i += SK_LANES) {    \
-            SK_ISA(lanes) e;                                  \
-            SK_ISA(load)(&e, in, i, particles_, parameters_); \
-            SK_ISA(formula_##name_)(&e);                      \
-            SK_ISA(store)(&e, in, i, particles_);             \
-        }                                                     \
+#define RUN(name_, particles_, parameters_)                \
+    void SK_KERNEL(name_)(const by_hand_input *in) {       \
+        for (size_t i = 0; i < in->count; i += SK_LANES) { \
+            lanes e;                                       \
+            load(&e, in, i, particles_, parameters_);      \
+            formula_##name_(&e);                           \
+            store(&e, in, i, particles_);                  \
+        }                                                  \
     }
 RUN(distance, 2, 1)
 RUN(dihedral, 4, 1)
@@ -86,34 +99,7 @@ RUN(volume, 4, 1)
 RUN(neo_hookean, 4, 10)
 RUN(stvk, 3, 5)
 
-#undef RUN
-#undef FORMULA
-#undef REAL
-#undef NUMBER
-#undef AXIS_0
-#undef AXIS_1
-#undef AXIS_2
-#undef POSITION
-#undef PARAMETER
-#undef VALUE
-#undef GRADIENT
-#undef OPPOSITE
-#undef UNIT_DIVISOR
-#undef RECIPROCAL
-#undef SQRT
-#undef LESS
-#undef LOG
-#undef ATAN2
-
 #else
-
-#include "bench/by_hand.h"
-
-#include "base/elementary.h"
-#include "base/polynomial.h"
-
-#define SK_KERNELS "bench/emitted_wide.c"
-#include "base/for_each_isa.h"
 
 #define KERNEL(name_)                                                   \
     void emitted_##name_(const by_hand_input *in) {                     \

@@ -54,7 +54,7 @@ static void judge_tape(const skein_formula *f) {
     for (int k = 0; k < 64; k++) parameter[k] = values[k];
     for (size_t k = 0; k < count; k++) arrays[k] = out[k];
     const sk_tape_input input = {positions, positions, 0, slot, parameter, 0, (real)0.25};
-    sk_tape_kernels_of[0].evaluate(&tape, &input, 0, ELEMENTS, arrays);
+    sk_tape_kernels_of[0]->evaluate(&tape, &input, 0, ELEMENTS, arrays);
     for (size_t k = 0; k < count; k++)
         for (int i = 0; i < ELEMENTS; i++) require(isfinite(out[k][i]));
     sk_tape_free(&tape);

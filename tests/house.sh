@@ -51,7 +51,6 @@ awk -v floors="$floors" -v libc="$libc" '
     /^[ \t]*#[ \t]*include/ {
         what = $0
         sub(/^[ \t]*#[ \t]*include[ \t]*/, "", what)
-        if (what == "SK_KERNELS") next # a file that includes itself, once for each instruction set
         if (what == "SK_FORMULA") next # the kernel that was emitted for a kind
         if (what ~ /^</) {
             sub(/>.*/, ">", what)

@@ -1,14 +1,10 @@
 /* What the library runs is what stands in src/constraints/emitted/: with another formula there, things move otherwise.
  * (That the files are the emitter's is emitted.sh's to say.) */
-#define sk_distance sk_changed_distance
-#define SK_FORMULA "changed_distance.h"
-#include "constraints/distance.c"
-#undef sk_distance
-
-extern const sk_constraint_type sk_distance;
-
+#include "constraints/constraint.h"
 #include "helpers.h"
 #include "world/world.h"
+
+extern const sk_constraint_type sk_changed_distance; // changed_distance.c
 
 static double length_after(const sk_constraint_type *type, const char *method, double stiffness) {
     skein_world *world = new_world(method, 20);

@@ -138,7 +138,7 @@ static void compare(const skein_formula *f, const sk_tape *tape, const elements 
         arrays[k] = out[k];
         for (int i = 0; i <= ELEMENTS; i++) out[k][i] = -77;
     }
-    sk_tape_kernels_of[isa].evaluate(tape, &e->input, begin, end, arrays);
+    sk_tape_kernels_of[isa]->evaluate(tape, &e->input, begin, end, arrays);
     for (size_t i = 0; i < ELEMENTS; i++) {
         by_graph(f, e, i, outputs, count, ought);
         for (size_t k = 0; k < count; k++) {
@@ -295,7 +295,7 @@ static void guards_are_counted(void **state) {
     assert_int_equal(sk_tape_create(&tape, &f->graph, outputs, count, &allocator, NULL), SKEIN_OK);
     for (int isa = 0; isa < SK_ISA_COUNT; isa++) {
         if (!processor_has(isa)) continue;
-        assert_int_equal(sk_tape_kernels_of[isa].evaluate(&tape, &e->input, 0, 34, arrays), 5);
+        assert_int_equal(sk_tape_kernels_of[isa]->evaluate(&tape, &e->input, 0, 34, arrays), 5);
         assert_true(out[0][3] == -e->parameter[0][3] && out[1][3] == 0 && out[0][25] == 0 && out[1][25] == 0);
         assert_true(out[0][24] != 0 && out[1][24] != 0);
     }
@@ -385,7 +385,7 @@ static void the_dihedral_is_exact_near_flat(void **state) {
         }
     }
     assert_int_equal(sk_tape_create(&tape, &f->graph, outputs, count, &allocator, NULL), SKEIN_OK);
-    sk_tape_kernels_of[sk_isa_choose()].evaluate(&tape, &e->input, 0, 64, arrays);
+    sk_tape_kernels_of[sk_isa_choose()]->evaluate(&tape, &e->input, 0, 64, arrays);
     for (int i = 0; i < 64; i++) {
         double p[12], size = 0;
         skein_formula_value v;

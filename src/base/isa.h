@@ -1,8 +1,8 @@
 /* Instruction sets: which version of a wide kernel runs.
  *
- * Wide kernels are compiled once for each set (base/for_each_isa.h) and chosen when a world is made: the
- * widest that the processor has, or the one that SKEIN_SIMD names (sse, avx2, avx512). All of them give
- * the same bits: sixteen logical lanes, plain + - * / sqrt, no fused operations. */
+ * Wide kernels are compiled once for each set (base/kernels.h) and chosen when a world is made: the widest
+ * that the processor has, or the one that SKEIN_SIMD names (sse, avx2, avx512). All of them give the same
+ * bits: sixteen logical lanes, plain + - * / sqrt, no fused operations. */
 #ifndef SK_BASE_ISA_H
 #define SK_BASE_ISA_H
 
@@ -11,15 +11,14 @@
 #if defined(__x86_64__) && !defined(SK_ONE_ISA)
 #define SK_X86_ISAS
 typedef enum sk_isa { SK_ISA_SSE, SK_ISA_AVX2, SK_ISA_AVX512, SK_ISA_COUNT } sk_isa;
-/* A table of a kernel's versions, and one of a kernel that has only one. */
-#define SK_EACH_ISA(kernel) \
-    { kernel##_sse, kernel##_avx2, kernel##_avx512 }
+/* By the names that the build gives SK_ISA. */
+enum { SK_ISA_OF_sse = SK_ISA_SSE, SK_ISA_OF_avx2 = SK_ISA_AVX2, SK_ISA_OF_avx512 = SK_ISA_AVX512 };
+/* A table of a kernel that has one version; of those that have several, see base/kernels.h. */
 #define SK_ANY_ISA(kernel) \
     { kernel, kernel, kernel }
 #else
 typedef enum sk_isa { SK_ISA_PLAIN, SK_ISA_COUNT } sk_isa;
-#define SK_EACH_ISA(kernel) \
-    { kernel##_plain }
+enum { SK_ISA_OF_plain = SK_ISA_PLAIN };
 #define SK_ANY_ISA(kernel) \
     { kernel }
 #endif

@@ -1,40 +1,42 @@
 /* Steering clear of a collider: what looks ahead along its flight and sees the surface nearer than the clearance there,
  * half way or all the way, is pushed along the surface's normal: by (1 - distance/clearance) strength, twice that at
  * the most. The row's coefficients are the time ahead, the clearance and the strength. */
+#include "base/kernels.h"
+#include "colliders/collider.h"
+
+#define SK_UNIT avoid
+SK_KERNELS(sk_row_kernel, avoid);
+
 #ifdef SK_ISA
 
-static void SK_ISA(avoid)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(avoid)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_collider *collider = row->rule;
     sk_pose pose = sk_collider_pose_at(collider, run->time);
     real clearance = (real)(row->coefficient[1] + collider->common->thickness),
          dv = (real)(row->dt * row->coefficient[2]);
-    sk_wide one = SK_ISA(sk_splat)(1), two = SK_ISA(sk_splat)(2);
+    sk_wide one = sk_splat(1), two = sk_splat(2);
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
-        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed);
-        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed);
-        sk_wide4 s = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed);
-        sk_mask moved = SK_ISA(sk_lanes_between)(slot, row->group->first_slot, row->group->end_slot);
+        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
+        sk_wide4 v = sk_load_block(run->vector[SK_V], slot, packed);
+        sk_wide4 s = sk_load_block(run->vector[row->dst], slot, packed);
+        sk_mask moved = sk_lanes_between(slot, row->group->first_slot, row->group->end_slot);
         for (int look = 1; look <= 2; look++) {
             real ahead = (real)(0.5 * look * row->coefficient[0]);
             sk_wide3 p = {x.x + ahead * v.x, x.y + ahead * v.y, x.z + ahead * v.z};
             sk_contact contact;
-            collider->type->probe[SK_ISA(sk_version)](collider->params, &pose, &p, &contact);
-            sk_mask near = moved & SK_ISA(sk_more)(SK_ISA(sk_splat)(clearance), contact.distance);
-            if (!SK_ISA(sk_any)(near)) continue;
+            collider->type->probe[SK_THIS_ISA](collider->params, &pose, &p, &contact);
+            sk_mask near = moved & sk_more(sk_splat(clearance), contact.distance);
+            if (!sk_any(near)) continue;
             sk_wide k = one - contact.distance / clearance;
-            k = SK_ISA(sk_keep)(near, dv * SK_ISA(sk_select)(SK_ISA(sk_more)(k, two), two, k));
+            k = sk_keep(near, dv * sk_select(sk_more(k, two), two, k));
             s.x += k * contact.normal.x, s.y += k * contact.normal.y, s.z += k * contact.normal.z;
         }
-        SK_ISA(sk_store_block)(run->vector[row->dst], slot, packed, s);
+        sk_store_block(run->vector[row->dst], slot, packed, s);
     }
 }
 
 #else
-#include "colliders/collider.h"
-
-#define SK_KERNELS "colliders/avoid.c"
-#include "base/for_each_isa.h"
 
 const sk_kernels sk_avoid = {SK_EACH_ISA(avoid)};
 #endif

@@ -1,23 +1,28 @@
 /* A ball from inside: everything outside of it is solid. */
-#ifdef SK_ISA
-
-static void SK_ISA(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
-    real radius = (real)((const bowl_params *)data)->radius;
-    sk_wide3 d = {pose->position.x - p->x, pose->position.y - p->y, pose->position.z - p->z};
-    sk_wide length = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(d, d));
-    // in the very middle no way leads to the wall: there is no contact
-    sk_mask apart = SK_ISA(sk_positive)(length);
-    sk_wide below = SK_ISA(sk_select)(apart, length, SK_ISA(sk_splat)(1));
-    contact->normal = (sk_wide3){d.x / below, SK_ISA(sk_select)(apart, d.y / below, SK_ISA(sk_splat)(1)), d.z / below};
-    contact->distance = SK_ISA(sk_select)(apart, radius - length, SK_ISA(sk_splat)((real)SK_FAR));
-}
-
-#else
+#include "base/kernels.h"
 #include "colliders/collider.h"
 
 typedef struct bowl_params {
     double centre[3], radius, mass;
 } bowl_params;
+
+#define SK_UNIT bowl
+SK_KERNELS(sk_probe, probe);
+
+#ifdef SK_ISA
+
+void SK_KERNEL(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
+    real radius = (real)((const bowl_params *)data)->radius;
+    sk_wide3 d = {pose->position.x - p->x, pose->position.y - p->y, pose->position.z - p->z};
+    sk_wide length = sk_wide_sqrt(sk_dot_wide(d, d));
+    // in the very middle no way leads to the wall: there is no contact
+    sk_mask apart = sk_positive(length);
+    sk_wide below = sk_select(apart, length, sk_splat(1));
+    contact->normal = (sk_wide3){d.x / below, sk_select(apart, d.y / below, sk_splat(1)), d.z / below};
+    contact->distance = sk_select(apart, radius - length, sk_splat((real)SK_FAR));
+}
+
+#else
 
 static const skein_field fields[] = {
     SK_VEC3(bowl_params, centre, "centre", "m", 0, 0, 0, "the middle, before any motion"),
@@ -38,9 +43,6 @@ static double mass_of(const void *params) {
 static void pack(const void *params, float (*block)[4]) {
     block[0][0] = (float)((const bowl_params *)params)->radius;
 }
-
-#define SK_KERNELS "colliders/bowl.c"
-#include "base/for_each_isa.h"
 
 const sk_collider_type sk_bowl = {
     .kind = {"bowl", "the inside of a ball: what is in it stays in it", SKEIN_COLLIDER, fields,

@@ -1,38 +1,10 @@
 /* All that is within a radius of a line between two points: a rod with round ends. */
-#ifdef SK_ISA
-
-static void SK_ISA(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
-    real radius = (real)((const capsule_params *)data)->radius;
-    capsule_axis axis = axis_now(data, pose);
-    sk_vec3 half = axis.half, aside = axis.aside;
-    sk_wide3 d = {p->x - pose->position.x, p->y - pose->position.y, p->z - pose->position.z};
-    // the nearest point of the line is at the middle plus t halves of it
-    sk_wide t = (d.x * half.x + d.y * half.y + d.z * half.z) * axis.per_square, one = SK_ISA(sk_splat)(1);
-    t = SK_ISA(sk_select)(SK_ISA(sk_more)(t, one), one, t);
-    t = SK_ISA(sk_select)(SK_ISA(sk_more)(-one, t), -one, t);
-    d = (sk_wide3){d.x - t * half.x, d.y - t * half.y, d.z - t * half.z};
-    sk_wide length = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(d, d));
-    // on the line itself every way aside is as good
-    sk_mask apart = SK_ISA(sk_positive)(length);
-    sk_wide below = SK_ISA(sk_select)(apart, length, one);
-    contact->normal = (sk_wide3){SK_ISA(sk_select)(apart, d.x / below, SK_ISA(sk_splat)(aside.x)),
-                                 SK_ISA(sk_select)(apart, d.y / below, SK_ISA(sk_splat)(aside.y)),
-                                 SK_ISA(sk_select)(apart, d.z / below, SK_ISA(sk_splat)(aside.z))};
-    contact->distance = length - radius;
-}
-
-#else
+#include "base/kernels.h"
 #include "colliders/collider.h"
 
 typedef struct capsule_params {
     double from[3], to[3], radius;
 } capsule_params;
-
-static const skein_field fields[] = {
-    SK_VEC3(capsule_params, from, "from", "m", -0.5, 0, 0, "one end of its line, before any motion"),
-    SK_VEC3(capsule_params, to, "to", "m", 0.5, 0, 0, "the other end"),
-    SK_REAL(capsule_params, radius, "radius", "m", 0.1, 1e-9, SK_FAR, "around the line"),
-};
 
 /* The line as it is turned now. */
 typedef struct capsule_axis {
@@ -41,10 +13,10 @@ typedef struct capsule_axis {
     real per_square; /* 1/|half|^2; 0 where both ends are in one place */
 } capsule_axis;
 
-static void place(const void *data, double position[3]) {
-    const capsule_params *params = data;
-    for (int k = 0; k < 3; k++) position[k] = 0.5 * (params->from[k] + params->to[k]);
-}
+#define SK_UNIT capsule
+SK_KERNELS(sk_probe, probe);
+
+#ifdef SK_ISA
 
 static capsule_axis axis_now(const capsule_params *params, const sk_pose *pose) {
     const real *r = pose->rotation;
@@ -61,15 +33,44 @@ static capsule_axis axis_now(const capsule_params *params, const sk_pose *pose) 
     sk_vec3 aside = rise > (real)1e-3 ? sk_scale(1 / rise, up) : sk_v3(1, 0, 0);
     return (capsule_axis){half, aside, 1 / square};
 }
+void SK_KERNEL(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
+    real radius = (real)((const capsule_params *)data)->radius;
+    capsule_axis axis = axis_now(data, pose);
+    sk_vec3 half = axis.half, aside = axis.aside;
+    sk_wide3 d = {p->x - pose->position.x, p->y - pose->position.y, p->z - pose->position.z};
+    // the nearest point of the line is at the middle plus t halves of it
+    sk_wide t = (d.x * half.x + d.y * half.y + d.z * half.z) * axis.per_square, one = sk_splat(1);
+    t = sk_select(sk_more(t, one), one, t);
+    t = sk_select(sk_more(-one, t), -one, t);
+    d = (sk_wide3){d.x - t * half.x, d.y - t * half.y, d.z - t * half.z};
+    sk_wide length = sk_wide_sqrt(sk_dot_wide(d, d));
+    // on the line itself every way aside is as good
+    sk_mask apart = sk_positive(length);
+    sk_wide below = sk_select(apart, length, one);
+    contact->normal =
+        (sk_wide3){sk_select(apart, d.x / below, sk_splat(aside.x)), sk_select(apart, d.y / below, sk_splat(aside.y)),
+                   sk_select(apart, d.z / below, sk_splat(aside.z))};
+    contact->distance = length - radius;
+}
+
+#else
+
+static const skein_field fields[] = {
+    SK_VEC3(capsule_params, from, "from", "m", -0.5, 0, 0, "one end of its line, before any motion"),
+    SK_VEC3(capsule_params, to, "to", "m", 0.5, 0, 0, "the other end"),
+    SK_REAL(capsule_params, radius, "radius", "m", 0.1, 1e-9, SK_FAR, "around the line"),
+};
+
+static void place(const void *data, double position[3]) {
+    const capsule_params *params = data;
+    for (int k = 0; k < 3; k++) position[k] = 0.5 * (params->from[k] + params->to[k]);
+}
 
 static void pack(const void *data, float (*block)[4]) {
     const capsule_params *params = data;
     for (int k = 0; k < 3; k++) block[0][k] = (float)(0.5 * (params->to[k] - params->from[k]));
     block[0][3] = (float)params->radius;
 }
-
-#define SK_KERNELS "colliders/capsule.c"
-#include "base/for_each_isa.h"
 
 const sk_collider_type sk_capsule = {
     .kind = {"capsule", "a rod with round ends: a ball drawn along a line", SKEIN_COLLIDER, fields,

@@ -20,202 +20,202 @@
  *
  * Position methods say the same with moves: friction takes up to mu times the push out.
  * Sixteen particles at a time; lanes that do not touch are masked out. */
-#ifdef SK_ISA
-
-/* Sixteen particles near a collider. */
-typedef struct SK_ISA(encounter) {
-    sk_wide4 x;
-    sk_contact contact;
-    sk_wide3 surface; /* the surface's velocity there */
-    sk_mask touching; /* free particles within the thickness, and a hair beyond it */
-} SK_ISA(encounter);
-
-SK_INLINE sk_wide3 SK_ISA(minus)(sk_wide3 a, sk_wide3 b) {
-    return (sk_wide3){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-SK_INLINE sk_wide3 SK_ISA(times)(sk_wide s, sk_wide3 a) {
-    return (sk_wide3){s * a.x, s * a.y, s * a.z};
-}
-SK_INLINE sk_wide3 SK_ISA(three)(sk_wide4 a) {
-    return (sk_wide3){a.x, a.y, a.z};
-}
-
-/* Splits u into its part along the unit normal (returned) and the rest. */
-SK_INLINE sk_wide SK_ISA(split)(sk_wide3 u, sk_wide3 normal, sk_wide3 *tangential) {
-    sk_wide along = SK_ISA(sk_dot_wide)(u, normal);
-    *tangential = SK_ISA(minus)(u, SK_ISA(times)(along, normal));
-    return along;
-}
-
-/* The part of a vector of length `length` that friction takes, at most `most`: 1 where it takes all. */
-SK_INLINE sk_wide SK_ISA(share_of)(sk_wide length, sk_wide most) {
-    return SK_ISA(sk_select)(SK_ISA(sk_more)(length, most), most / length, SK_ISA(sk_splat)(1));
-}
-
-/* Probes a block; false where nobody touches. */
-SK_INLINE bool SK_ISA(meet)(sk_run *run, const sk_row *row, const sk_pose *pose, size_t slot, SK_ISA(encounter) * e) {
-    const sk_collider *collider = row->rule;
-    e->x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, slot < row->packed);
-    sk_wide3 p = SK_ISA(three)(e->x);
-    collider->type->probe[SK_ISA(sk_version)](collider->params, pose, &p, &e->contact);
-    // rounding must not break a resting contact: forces and velocities look a little beyond the thickness
-    sk_wide size = SK_ISA(sk_wide_abs)(p.x), ay = SK_ISA(sk_wide_abs)(p.y), az = SK_ISA(sk_wide_abs)(p.z);
-    size = SK_ISA(sk_select)(SK_ISA(sk_more)(ay, size), ay, size);
-    size = SK_ISA(sk_select)(SK_ISA(sk_more)(az, size), az, size);
-    real thickness = (real)collider->common->thickness;
-    sk_wide reach = thickness + (real)1e-3 * thickness + (real)4e-6 * (size + (real)0.1);
-    e->touching = SK_ISA(sk_at_most)(e->contact.distance, reach) & SK_ISA(sk_positive)(e->x.w);
-    if (!SK_ISA(sk_any)(e->touching)) return false;
-    sk_wide3 arm = {p.x - pose->position.x, p.y - pose->position.y, p.z - pose->position.z};
-    sk_vec3 v = pose->velocity, s = pose->spin;
-    e->surface = (sk_wide3){v.x + (s.y * arm.z - s.z * arm.y), v.y + (s.z * arm.x - s.x * arm.z),
-                            v.z + (s.x * arm.y - s.y * arm.x)};
-    if (collider->type->deforms) {
-        sk_wide3 own = SK_ISA(times)(e->contact.speed, e->contact.normal);
-        e->surface = (sk_wide3){e->surface.x + own.x, e->surface.y + own.y, e->surface.z + own.z};
-    }
-    return true;
-}
-
-/* Adds `change` to a block of dst in the lanes of the mask. */
-SK_INLINE void SK_ISA(apply)(sk_run *run, const sk_row *row, size_t slot, sk_wide4 old, sk_mask mask, sk_wide3 change) {
-    old.x = SK_ISA(sk_select)(mask, old.x + change.x, old.x);
-    old.y = SK_ISA(sk_select)(mask, old.y + change.y, old.y);
-    old.z = SK_ISA(sk_select)(mask, old.z + change.z, old.z);
-    SK_ISA(sk_store_block)(run->vector[row->dst], slot, slot < row->packed, old);
-}
-
-/* Speed after a bounce over speed before: of a collider with a mass (m - M)/(m + M), but never inwards. */
-SK_INLINE sk_wide SK_ISA(restitution_of)(const sk_collider *collider, sk_wide mass) {
-    real own = (real)sk_collider_mass(collider);
-    if (!(own > 0)) return SK_ISA(sk_splat)((real)collider->common->restitution);
-    sk_wide share = (own - mass) / (own + mass);
-    return SK_ISA(sk_keep)(SK_ISA(sk_positive)(share), share);
-}
-
-static void SK_ISA(contact_force)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_collider *collider = row->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
-    bool by_mass = sk_collider_mass(collider) > 0;
-    SK_ISA(encounter) e;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        if (!SK_ISA(meet)(run, row, &pose, slot, &e)) continue;
-        sk_wide4 f = SK_ISA(sk_load_block)(run->vector[row->dst], slot, slot < row->packed);
-        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, slot < row->packed);
-        sk_wide3 force_t, slide;
-        sk_wide inward = SK_ISA(split)(SK_ISA(three)(f), e.contact.normal, &force_t);
-        sk_wide leaving = SK_ISA(split)(SK_ISA(minus)(SK_ISA(three)(v), e.surface), e.contact.normal, &slide);
-        sk_wide mass_per_step = 1 / (e.x.w * (real)row->dt), pressing = inward;
-        if (!by_mass) pressing += mass_per_step * SK_ISA(sk_keep)(SK_ISA(sk_positive)(leaving), leaving);
-        // the friction that would stop the slide within this substep, cut to Coulomb's cone
-        sk_wide3 stop = SK_ISA(minus)(SK_ISA(times)(-mass_per_step, slide), force_t);
-        sk_wide needed = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(stop, stop)),
-                most = (real)collider->common->friction * -pressing;
-        sk_wide share = SK_ISA(share_of)(needed, most);
-        sk_wide3 push = SK_ISA(times)(-pressing, e.contact.normal), rub = SK_ISA(times)(share, stop);
-        SK_ISA(apply)
-        (run, row, slot, f, e.touching & SK_ISA(sk_negative)(pressing),
-         (sk_wide3){push.x + rub.x, push.y + rub.y, push.z + rub.z});
-    }
-}
-
-static void SK_ISA(contact_impulse)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_collider *collider = row->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
-    SK_ISA(encounter) e;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        if (!SK_ISA(meet)(run, row, &pose, slot, &e)) continue;
-        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[row->dst], slot, slot < row->packed);
-        sk_wide3 slide;
-        sk_wide approach = SK_ISA(split)(SK_ISA(minus)(SK_ISA(three)(v), e.surface), e.contact.normal, &slide);
-        sk_wide bounce = (1 + SK_ISA(restitution_of)(collider, v.w)) * -approach;
-        sk_wide speed = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(slide, slide));
-        sk_wide share = SK_ISA(share_of)(speed, (real)collider->common->friction * bounce);
-        sk_wide3 change = SK_ISA(minus)(SK_ISA(times)(bounce, e.contact.normal), SK_ISA(times)(share, slide));
-        SK_ISA(apply)(run, row, slot, v, e.touching & SK_ISA(sk_negative)(approach), change);
-    }
-}
-
-/* The way out of the solid, up to the thickness; where a vector of old positions is given, less the slide since
- * then that friction takes back, up to mu times the push. */
-SK_INLINE sk_wide3 SK_ISA(way_out)(const sk_run *run, const sk_row *row, size_t slot, const SK_ISA(encounter) * e,
-                                   sk_wide push) {
-    sk_wide3 move = SK_ISA(times)(push, e->contact.normal);
-    if (row->source[1] == SK_NONE) return move;
-    sk_wide4 start = SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, slot < row->packed);
-    sk_wide3 moved = SK_ISA(minus)(SK_ISA(minus)(SK_ISA(three)(e->x), SK_ISA(three)(start)),
-                                   SK_ISA(times)(SK_ISA(sk_splat)((real)row->dt), e->surface));
-    sk_wide3 slide;
-    SK_ISA(split)(moved, e->contact.normal, &slide);
-    sk_wide length = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(slide, slide));
-    const sk_collider *collider = row->rule;
-    sk_wide share = SK_ISA(share_of)(length, (real)collider->common->friction * push);
-    return SK_ISA(minus)(move, SK_ISA(times)(share, slide));
-}
-
-static void SK_ISA(contact_push)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_collider *collider = row->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
-    SK_ISA(encounter) e;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        if (!SK_ISA(meet)(run, row, &pose, slot, &e)) continue;
-        sk_wide push = (real)collider->common->thickness - e.contact.distance;
-        SK_ISA(apply)
-        (run, row, slot, e.x, e.touching & SK_ISA(sk_positive)(push), SK_ISA(way_out)(run, row, slot, &e, push));
-    }
-}
-
-/* The speed at which particles leave that came at `approach` < 0. */
-SK_INLINE sk_wide SK_ISA(bounce_of)(const sk_run *run, const sk_row *row, size_t slot, const SK_ISA(encounter) * e,
-                                    sk_wide mass, sk_wide approach) {
-    const sk_collider *collider = row->rule;
-    // what a substep's force alone brings is no impact; bouncing it would make resting things jitter
-    sk_wide3 f = SK_ISA(three)(SK_ISA(sk_load_block)(run->vector[SK_F], slot, slot < row->packed));
-    sk_wide resting = (2 * (real)row->dt) * e->x.w * SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(f, f));
-    return SK_ISA(sk_keep)(SK_ISA(sk_more)(-approach, resting), SK_ISA(restitution_of)(collider, mass) * -approach);
-}
-
-static void SK_ISA(contact_settle)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_collider *collider = row->rule;
-    bool bounces = sk_contact_reads_force(collider);
-    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
-    sk_wide per_step = SK_ISA(sk_splat)((real)(1 / row->dt));
-    SK_ISA(encounter) e;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        if (!SK_ISA(meet)(run, row, &pose, slot, &e)) continue;
-        bool packed = slot < row->packed;
-        sk_wide push = (real)collider->common->thickness - e.contact.distance;
-        sk_mask pushed = e.touching & SK_ISA(sk_positive)(push);
-        sk_wide3 move = SK_ISA(way_out)(run, row, slot, &e, push);
-        SK_ISA(apply)(run, row, slot, e.x, pushed, move);
-
-        // the move is velocity, too; but along the normal what counts is how the particle came
-        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed);
-        v.x += SK_ISA(sk_keep)(pushed, per_step * move.x);
-        v.y += SK_ISA(sk_keep)(pushed, per_step * move.y);
-        v.z += SK_ISA(sk_keep)(pushed, per_step * move.z);
-        sk_wide3 before = SK_ISA(three)(SK_ISA(sk_load_block)(run->vector[row->source[2]], slot, packed));
-        sk_wide approach = SK_ISA(sk_dot_wide)(SK_ISA(minus)(before, e.surface), e.contact.normal);
-        sk_wide change = -SK_ISA(sk_dot_wide)(SK_ISA(minus)(SK_ISA(three)(v), e.surface), e.contact.normal);
-        if (bounces) change += SK_ISA(bounce_of)(run, row, slot, &e, v.w, approach);
-        change = SK_ISA(sk_keep)(e.touching & SK_ISA(sk_negative)(approach), change);
-        v.x += change * e.contact.normal.x;
-        v.y += change * e.contact.normal.y;
-        v.z += change * e.contact.normal.z;
-        SK_ISA(sk_store_moved)(run->vector[SK_V], slot, packed, v);
-    }
-}
-
-#else
 #include "colliders/collider.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/elementary.h"
+#include "base/kernels.h"
 
-#define SK_KERNELS "colliders/contact.c"
-#include "base/for_each_isa.h"
+#define SK_UNIT contact
+SK_KERNELS(sk_row_kernel, contact_force);
+SK_KERNELS(sk_row_kernel, contact_impulse);
+SK_KERNELS(sk_row_kernel, contact_push);
+SK_KERNELS(sk_row_kernel, contact_settle);
+
+#ifdef SK_ISA
+
+/* Sixteen particles near a collider. */
+typedef struct encounter {
+    sk_wide4 x;
+    sk_contact contact;
+    sk_wide3 surface; /* the surface's velocity there */
+    sk_mask touching; /* free particles within the thickness, and a hair beyond it */
+} encounter;
+
+SK_INLINE sk_wide3 minus(sk_wide3 a, sk_wide3 b) {
+    return (sk_wide3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+SK_INLINE sk_wide3 times(sk_wide s, sk_wide3 a) {
+    return (sk_wide3){s * a.x, s * a.y, s * a.z};
+}
+SK_INLINE sk_wide3 three(sk_wide4 a) {
+    return (sk_wide3){a.x, a.y, a.z};
+}
+
+/* Splits u into its part along the unit normal (returned) and the rest. */
+SK_INLINE sk_wide split(sk_wide3 u, sk_wide3 normal, sk_wide3 *tangential) {
+    sk_wide along = sk_dot_wide(u, normal);
+    *tangential = minus(u, times(along, normal));
+    return along;
+}
+
+/* The part of a vector of length `length` that friction takes, at most `most`: 1 where it takes all. */
+SK_INLINE sk_wide share_of(sk_wide length, sk_wide most) {
+    return sk_select(sk_more(length, most), most / length, sk_splat(1));
+}
+
+/* Probes a block; false where nobody touches. */
+SK_INLINE bool meet(sk_run *run, const sk_row *row, const sk_pose *pose, size_t slot, encounter *e) {
+    const sk_collider *collider = row->rule;
+    e->x = sk_load_block(run->vector[SK_X], slot, slot < row->packed);
+    sk_wide3 p = three(e->x);
+    collider->type->probe[SK_THIS_ISA](collider->params, pose, &p, &e->contact);
+    // rounding must not break a resting contact: forces and velocities look a little beyond the thickness
+    sk_wide size = sk_wide_abs(p.x), ay = sk_wide_abs(p.y), az = sk_wide_abs(p.z);
+    size = sk_select(sk_more(ay, size), ay, size);
+    size = sk_select(sk_more(az, size), az, size);
+    real thickness = (real)collider->common->thickness;
+    sk_wide reach = thickness + (real)1e-3 * thickness + (real)4e-6 * (size + (real)0.1);
+    e->touching = sk_at_most(e->contact.distance, reach) & sk_positive(e->x.w);
+    if (!sk_any(e->touching)) return false;
+    sk_wide3 arm = {p.x - pose->position.x, p.y - pose->position.y, p.z - pose->position.z};
+    sk_vec3 v = pose->velocity, s = pose->spin;
+    e->surface = (sk_wide3){v.x + (s.y * arm.z - s.z * arm.y), v.y + (s.z * arm.x - s.x * arm.z),
+                            v.z + (s.x * arm.y - s.y * arm.x)};
+    if (collider->type->deforms) {
+        sk_wide3 own = times(e->contact.speed, e->contact.normal);
+        e->surface = (sk_wide3){e->surface.x + own.x, e->surface.y + own.y, e->surface.z + own.z};
+    }
+    return true;
+}
+
+/* Adds `change` to a block of dst in the lanes of the mask. */
+SK_INLINE void apply(sk_run *run, const sk_row *row, size_t slot, sk_wide4 old, sk_mask mask, sk_wide3 change) {
+    old.x = sk_select(mask, old.x + change.x, old.x);
+    old.y = sk_select(mask, old.y + change.y, old.y);
+    old.z = sk_select(mask, old.z + change.z, old.z);
+    sk_store_block(run->vector[row->dst], slot, slot < row->packed, old);
+}
+
+/* Speed after a bounce over speed before: of a collider with a mass (m - M)/(m + M), but never inwards. */
+SK_INLINE sk_wide restitution_of(const sk_collider *collider, sk_wide mass) {
+    real own = (real)sk_collider_mass(collider);
+    if (!(own > 0)) return sk_splat((real)collider->common->restitution);
+    sk_wide share = (own - mass) / (own + mass);
+    return sk_keep(sk_positive(share), share);
+}
+
+void SK_KERNEL(contact_force)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_collider *collider = row->rule;
+    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
+    bool by_mass = sk_collider_mass(collider) > 0;
+    encounter e;
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        if (!meet(run, row, &pose, slot, &e)) continue;
+        sk_wide4 f = sk_load_block(run->vector[row->dst], slot, slot < row->packed);
+        sk_wide4 v = sk_load_block(run->vector[SK_V], slot, slot < row->packed);
+        sk_wide3 force_t, slide;
+        sk_wide inward = split(three(f), e.contact.normal, &force_t);
+        sk_wide leaving = split(minus(three(v), e.surface), e.contact.normal, &slide);
+        sk_wide mass_per_step = 1 / (e.x.w * (real)row->dt), pressing = inward;
+        if (!by_mass) pressing += mass_per_step * sk_keep(sk_positive(leaving), leaving);
+        // the friction that would stop the slide within this substep, cut to Coulomb's cone
+        sk_wide3 stop = minus(times(-mass_per_step, slide), force_t);
+        sk_wide needed = sk_wide_sqrt(sk_dot_wide(stop, stop)), most = (real)collider->common->friction * -pressing;
+        sk_wide share = share_of(needed, most);
+        sk_wide3 push = times(-pressing, e.contact.normal), rub = times(share, stop);
+        apply(run, row, slot, f, e.touching & sk_negative(pressing),
+              (sk_wide3){push.x + rub.x, push.y + rub.y, push.z + rub.z});
+    }
+}
+
+void SK_KERNEL(contact_impulse)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_collider *collider = row->rule;
+    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
+    encounter e;
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        if (!meet(run, row, &pose, slot, &e)) continue;
+        sk_wide4 v = sk_load_block(run->vector[row->dst], slot, slot < row->packed);
+        sk_wide3 slide;
+        sk_wide approach = split(minus(three(v), e.surface), e.contact.normal, &slide);
+        sk_wide bounce = (1 + restitution_of(collider, v.w)) * -approach;
+        sk_wide speed = sk_wide_sqrt(sk_dot_wide(slide, slide));
+        sk_wide share = share_of(speed, (real)collider->common->friction * bounce);
+        sk_wide3 change = minus(times(bounce, e.contact.normal), times(share, slide));
+        apply(run, row, slot, v, e.touching & sk_negative(approach), change);
+    }
+}
+
+/* The way out of the solid, up to the thickness; where a vector of old positions is given, less the slide since
+ * then that friction takes back, up to mu times the push. */
+SK_INLINE sk_wide3 way_out(const sk_run *run, const sk_row *row, size_t slot, const encounter *e, sk_wide push) {
+    sk_wide3 move = times(push, e->contact.normal);
+    if (row->source[1] == SK_NONE) return move;
+    sk_wide4 start = sk_load_block(run->vector[row->source[1]], slot, slot < row->packed);
+    sk_wide3 moved = minus(minus(three(e->x), three(start)), times(sk_splat((real)row->dt), e->surface));
+    sk_wide3 slide;
+    split(moved, e->contact.normal, &slide);
+    sk_wide length = sk_wide_sqrt(sk_dot_wide(slide, slide));
+    const sk_collider *collider = row->rule;
+    sk_wide share = share_of(length, (real)collider->common->friction * push);
+    return minus(move, times(share, slide));
+}
+
+void SK_KERNEL(contact_push)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_collider *collider = row->rule;
+    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
+    encounter e;
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        if (!meet(run, row, &pose, slot, &e)) continue;
+        sk_wide push = (real)collider->common->thickness - e.contact.distance;
+        apply(run, row, slot, e.x, e.touching & sk_positive(push), way_out(run, row, slot, &e, push));
+    }
+}
+
+/* The speed at which particles leave that came at `approach` < 0. */
+SK_INLINE sk_wide bounce_of(const sk_run *run, const sk_row *row, size_t slot, const encounter *e, sk_wide mass,
+                            sk_wide approach) {
+    const sk_collider *collider = row->rule;
+    // what a substep's force alone brings is no impact; bouncing it would make resting things jitter
+    sk_wide3 f = three(sk_load_block(run->vector[SK_F], slot, slot < row->packed));
+    sk_wide resting = (2 * (real)row->dt) * e->x.w * sk_wide_sqrt(sk_dot_wide(f, f));
+    return sk_keep(sk_more(-approach, resting), restitution_of(collider, mass) * -approach);
+}
+
+void SK_KERNEL(contact_settle)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_collider *collider = row->rule;
+    bool bounces = sk_contact_reads_force(collider);
+    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
+    sk_wide per_step = sk_splat((real)(1 / row->dt));
+    encounter e;
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        if (!meet(run, row, &pose, slot, &e)) continue;
+        bool packed = slot < row->packed;
+        sk_wide push = (real)collider->common->thickness - e.contact.distance;
+        sk_mask pushed = e.touching & sk_positive(push);
+        sk_wide3 move = way_out(run, row, slot, &e, push);
+        apply(run, row, slot, e.x, pushed, move);
+
+        // the move is velocity, too; but along the normal what counts is how the particle came
+        sk_wide4 v = sk_load_block(run->vector[SK_V], slot, packed);
+        v.x += sk_keep(pushed, per_step * move.x);
+        v.y += sk_keep(pushed, per_step * move.y);
+        v.z += sk_keep(pushed, per_step * move.z);
+        sk_wide3 before = three(sk_load_block(run->vector[row->source[2]], slot, packed));
+        sk_wide approach = sk_dot_wide(minus(before, e.surface), e.contact.normal);
+        sk_wide change = -sk_dot_wide(minus(three(v), e.surface), e.contact.normal);
+        if (bounces) change += bounce_of(run, row, slot, &e, v.w, approach);
+        change = sk_keep(e.touching & sk_negative(approach), change);
+        v.x += change * e.contact.normal.x;
+        v.y += change * e.contact.normal.y;
+        v.z += change * e.contact.normal.z;
+        sk_store_moved(run->vector[SK_V], slot, packed, v);
+    }
+}
+
+#else
 
 const sk_kernels sk_contact_force = {SK_EACH_ISA(contact_force)};
 const sk_kernels sk_contact_impulse = {SK_EACH_ISA(contact_impulse)};

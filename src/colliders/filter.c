@@ -8,40 +8,47 @@
  *
  * Whether a particle is held follows from its force at the start of the substep, contact's own left out:
  * where that pulls it off, it is free. */
+#include "base/kernels.h"
+#include "colliders/collider.h"
+
+#define SK_UNIT filter
+SK_KERNELS(sk_row_kernel, contact_filter);
+SK_KERNELS(sk_row_kernel, contact_filter_more);
+
 #ifdef SK_ISA
 
-typedef struct SK_ISA(filtering) {
+typedef struct filtering {
     sk_wide4 d, o; /* S: xx yy zz and xy xz yz */
     sk_wide4 v, friction;
-} SK_ISA(filtering);
+} filtering;
 
-SK_INLINE sk_wide3 SK_ISA(through)(const SK_ISA(filtering) * f, sk_wide3 p) {
+SK_INLINE sk_wide3 through(const filtering *f, sk_wide3 p) {
     return (sk_wide3){f->d.x * p.x + f->o.x * p.y + f->o.y * p.z, f->o.x * p.x + f->d.y * p.y + f->o.z * p.z,
                       f->o.y * p.x + f->o.z * p.y + f->d.z * p.z};
 }
 
 /* Changes the velocity along n by `change` in the lanes of the mask, and takes n out of S: as far as S lets it
  * through, and only if that is more than `least` of its square. */
-SK_INLINE void SK_ISA(hold_normal)(SK_ISA(filtering) * f, sk_mask mask, sk_wide3 n, sk_wide change, real least) {
-    sk_wide3 m = SK_ISA(through)(f, n);
-    sk_wide square = SK_ISA(sk_dot_wide)(m, m);
-    mask &= SK_ISA(sk_more)(square, SK_ISA(sk_splat)(least));
-    sk_wide s = SK_ISA(sk_keep)(mask, 1 / square), t = s * change;
+SK_INLINE void hold_normal(filtering *f, sk_mask mask, sk_wide3 n, sk_wide change, real least) {
+    sk_wide3 m = through(f, n);
+    sk_wide square = sk_dot_wide(m, m);
+    mask &= sk_more(square, sk_splat(least));
+    sk_wide s = sk_keep(mask, 1 / square), t = s * change;
     f->v.x += t * m.x, f->v.y += t * m.y, f->v.z += t * m.z;
     f->d.x -= s * m.x * m.x, f->d.y -= s * m.y * m.y, f->d.z -= s * m.z * m.z;
     f->o.x -= s * m.x * m.y, f->o.y -= s * m.x * m.z, f->o.z -= s * m.y * m.z;
 }
 
 /* Rounding must not break a resting contact: a little beyond the thickness counts as touching. */
-SK_INLINE sk_mask SK_ISA(touches)(const sk_collider *collider, sk_wide3 p, sk_wide gap) {
-    sk_wide size = SK_ISA(sk_wide_abs)(p.x) + SK_ISA(sk_wide_abs)(p.y) + SK_ISA(sk_wide_abs)(p.z);
+SK_INLINE sk_mask touches(const sk_collider *collider, sk_wide3 p, sk_wide gap) {
+    sk_wide size = sk_wide_abs(p.x) + sk_wide_abs(p.y) + sk_wide_abs(p.z);
     real thickness = (real)collider->common->thickness;
-    return SK_ISA(sk_at_most)(gap, (real)1e-3 * thickness + (real)4e-6 * (size + (real)0.1));
+    return sk_at_most(gap, (real)1e-3 * thickness + (real)4e-6 * (size + (real)0.1));
 }
 
 /* The velocity relative to the surface at p. */
-SK_INLINE sk_wide3 SK_ISA(against)(const sk_collider *collider, const sk_pose *pose, sk_wide3 p,
-                                   const sk_contact *contact, sk_wide4 v) {
+SK_INLINE sk_wide3 against(const sk_collider *collider, const sk_pose *pose, sk_wide3 p, const sk_contact *contact,
+                           sk_wide4 v) {
     sk_vec3 u = pose->velocity, spin = pose->spin;
     sk_wide3 arm = {p.x - pose->position.x, p.y - pose->position.y, p.z - pose->position.z};
     sk_wide3 out = {v.x - (u.x + (spin.y * arm.z - spin.z * arm.y)), v.y - (u.y + (spin.z * arm.x - spin.x * arm.z)),
@@ -52,72 +59,71 @@ SK_INLINE sk_wide3 SK_ISA(against)(const sk_collider *collider, const sk_pose *p
 }
 
 /* What comes faster than a substep's force alone would bring it is to bounce, if the collider lets it. */
-SK_INLINE sk_mask SK_ISA(bounces)(const sk_collider *collider, sk_wide speed, sk_wide hw, sk_wide4 force) {
+SK_INLINE sk_mask bounces(const sk_collider *collider, sk_wide speed, sk_wide hw, sk_wide4 force) {
     sk_wide3 f = {force.x, force.y, force.z};
-    sk_wide resting = 2 * hw * SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(f, f));
-    sk_mask fast = SK_ISA(sk_more)(-speed, resting);
+    sk_wide resting = 2 * hw * sk_wide_sqrt(sk_dot_wide(f, f));
+    sk_mask fast = sk_more(-speed, resting);
     return sk_contact_reads_force(collider) ? fast : fast & ~fast;
 }
 
-SK_INLINE sk_wide3 SK_ISA(hold)(const sk_collider *collider, const sk_pose *pose, sk_wide4 x, sk_wide4 force, real h,
-                                SK_ISA(filtering) * f) {
+SK_INLINE sk_wide3 hold(const sk_collider *collider, const sk_pose *pose, sk_wide4 x, sk_wide4 force, real h,
+                        filtering *f) {
     sk_contact contact;
     sk_wide3 p = {x.x, x.y, x.z}, n;
-    collider->type->probe[SK_ISA(sk_version)](collider->params, pose, &p, &contact);
+    collider->type->probe[SK_THIS_ISA](collider->params, pose, &p, &contact);
     n = contact.normal;
-    sk_wide3 slide = SK_ISA(against)(collider, pose, p, &contact, f->v);
-    sk_wide speed = SK_ISA(sk_dot_wide)(slide, n), hw = h * x.w;
+    sk_wide3 slide = against(collider, pose, p, &contact, f->v);
+    sk_wide speed = sk_dot_wide(slide, n), hw = h * x.w;
     slide = (sk_wide3){slide.x - speed * n.x, slide.y - speed * n.y, slide.z - speed * n.z};
     sk_wide3 f3 = {force.x, force.y, force.z};
-    sk_wide normal_force = SK_ISA(sk_dot_wide)(f3, n), coming = speed + hw * normal_force;
+    sk_wide normal_force = sk_dot_wide(f3, n), coming = speed + hw * normal_force;
 
     sk_wide gap = contact.distance - (real)collider->common->thickness;
-    sk_mask is_free = SK_ISA(sk_positive)(x.w), touching = SK_ISA(touches)(collider, p, gap) & is_free;
-    sk_mask held = touching & SK_ISA(sk_negative)(coming) & ~SK_ISA(bounces)(collider, speed, hw, force);
+    sk_mask is_free = sk_positive(x.w), touching = touches(collider, p, gap) & is_free;
+    sk_mask held = touching & sk_negative(coming) & ~bounces(collider, speed, hw, force);
     // by its velocity alone: what a stiff spring would do to it over a whole substep it does not get to do
-    sk_mask arriving = is_free & ~touching & SK_ISA(sk_negative)(gap + h * speed);
+    sk_mask arriving = is_free & ~touching & sk_negative(gap + h * speed);
     if (sk_contact_reads_force(collider)) arriving &= ~arriving;
-    if (!SK_ISA(sk_any)(held | arriving)) return (sk_wide3){{0}, {0}, {0}};
+    if (!sk_any(held | arriving)) return (sk_wide3){{0}, {0}, {0}};
 
     // the friction that would stop it in this substep, against Coulomb's cone
-    sk_wide mass = SK_ISA(sk_keep)(is_free, 1 / hw);
+    sk_wide mass = sk_keep(is_free, 1 / hw);
     sk_wide3 stop = {-mass * slide.x - (f3.x - normal_force * n.x), -mass * slide.y - (f3.y - normal_force * n.y),
                      -mass * slide.z - (f3.z - normal_force * n.z)};
-    sk_wide needed = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(stop, stop));
+    sk_wide needed = sk_wide_sqrt(sk_dot_wide(stop, stop));
     sk_wide most = (real)collider->common->friction * -(mass * coming);
-    sk_mask sticks = held & SK_ISA(sk_at_most)(needed, most);
-    sk_wide share = SK_ISA(sk_keep)(held & ~sticks & SK_ISA(sk_positive)(needed), most / needed);
-    sk_wide target = SK_ISA(sk_keep)(arriving, -gap / h);
-    SK_ISA(hold_normal)(f, held | arriving, n, target - speed, (real)1e-3);
+    sk_mask sticks = held & sk_at_most(needed, most);
+    sk_wide share = sk_keep(held & ~sticks & sk_positive(needed), most / needed);
+    sk_wide target = sk_keep(arriving, -gap / h);
+    hold_normal(f, held | arriving, n, target - speed, (real)1e-3);
     sk_wide none = {0};
-    sk_wide3 along = SK_ISA(through)(f, slide);
-    f->v.x -= SK_ISA(sk_keep)(sticks, along.x);
-    f->v.y -= SK_ISA(sk_keep)(sticks, along.y);
-    f->v.z -= SK_ISA(sk_keep)(sticks, along.z);
-    f->d = (sk_wide4){SK_ISA(sk_select)(sticks, none, f->d.x), SK_ISA(sk_select)(sticks, none, f->d.y),
-                      SK_ISA(sk_select)(sticks, none, f->d.z), f->d.w};
-    f->o = (sk_wide4){SK_ISA(sk_select)(sticks, none, f->o.x), SK_ISA(sk_select)(sticks, none, f->o.y),
-                      SK_ISA(sk_select)(sticks, none, f->o.z), f->o.w};
+    sk_wide3 along = through(f, slide);
+    f->v.x -= sk_keep(sticks, along.x);
+    f->v.y -= sk_keep(sticks, along.y);
+    f->v.z -= sk_keep(sticks, along.z);
+    f->d = (sk_wide4){sk_select(sticks, none, f->d.x), sk_select(sticks, none, f->d.y), sk_select(sticks, none, f->d.z),
+                      f->d.w};
+    f->o = (sk_wide4){sk_select(sticks, none, f->o.x), sk_select(sticks, none, f->o.y), sk_select(sticks, none, f->o.z),
+                      f->o.w};
     return (sk_wide3){share * stop.x, share * stop.y, share * stop.z};
 }
 
-static void SK_ISA(contact_filter)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(contact_filter)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_collider *collider = row->rule;
     sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
     sk_vec4 *diagonal = run->vector[row->dst], *off = run->vector[row->source[1]], *rub = run->vector[row->source[2]];
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
-        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed);
-        sk_wide4 force = SK_ISA(sk_load_block)(run->vector[SK_F], slot, packed);
-        SK_ISA(filtering)
-        f = {SK_ISA(sk_load_block)(diagonal, slot, packed), SK_ISA(sk_load_block)(off, slot, packed),
-             SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed), SK_ISA(sk_load_block)(rub, slot, packed)};
-        sk_wide3 g = SK_ISA(hold)(collider, &pose, x, force, (real)row->dt, &f);
+        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
+        sk_wide4 force = sk_load_block(run->vector[SK_F], slot, packed);
+        filtering f = {sk_load_block(diagonal, slot, packed), sk_load_block(off, slot, packed),
+                       sk_load_block(run->vector[SK_V], slot, packed), sk_load_block(rub, slot, packed)};
+        sk_wide3 g = hold(collider, &pose, x, force, (real)row->dt, &f);
         f.friction.x += g.x, f.friction.y += g.y, f.friction.z += g.z;
-        SK_ISA(sk_store_block)(diagonal, slot, packed, f.d);
-        SK_ISA(sk_store_block)(off, slot, packed, f.o);
-        SK_ISA(sk_store_block)(run->vector[SK_V], slot, packed, f.v);
-        SK_ISA(sk_store_block)(rub, slot, packed, f.friction);
+        sk_store_block(diagonal, slot, packed, f.d);
+        sk_store_block(off, slot, packed, f.o);
+        sk_store_block(run->vector[SK_V], slot, packed, f.v);
+        sk_store_block(rub, slot, packed, f.friction);
     }
 }
 
@@ -125,32 +131,32 @@ static void SK_ISA(contact_filter)(sk_run *run, const sk_row *row, size_t begin,
  * bounce), and of what lay on the surface only what presses. The rest is inside because its tangent leads there, in
  * a hollow, and the solve may take it off: holding that would glue it on, with more weight and friction for the rest.
  */
-SK_INLINE sk_mask SK_ISA(comes_inside)(const sk_run *run, const sk_row *row, const sk_pose *start, size_t slot,
-                                       sk_wide4 x, sk_wide4 v, const sk_contact *contact) {
+SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_row *row, const sk_pose *start, size_t slot, sk_wide4 x,
+                               sk_wide4 v, const sk_contact *contact) {
     const sk_collider *collider = row->rule;
     bool packed = slot < row->packed;
     real thickness = (real)collider->common->thickness;
-    sk_wide4 x0 = SK_ISA(sk_load_block)(run->vector[SK_X0], slot, packed);
-    sk_wide4 v0 = SK_ISA(sk_load_block)(run->vector[SK_V0], slot, packed);
-    sk_wide4 force = SK_ISA(sk_load_block)(run->vector[SK_F], slot, packed);
-    sk_mask inside = SK_ISA(sk_negative)(contact->distance - thickness) & SK_ISA(sk_positive)(x.w);
-    if (!SK_ISA(sk_any)(inside)) return inside;
+    sk_wide4 x0 = sk_load_block(run->vector[SK_X0], slot, packed);
+    sk_wide4 v0 = sk_load_block(run->vector[SK_V0], slot, packed);
+    sk_wide4 force = sk_load_block(run->vector[SK_F], slot, packed);
+    sk_mask inside = sk_negative(contact->distance - thickness) & sk_positive(x.w);
+    if (!sk_any(inside)) return inside;
     sk_wide3 p0 = {x0.x, x0.y, x0.z}, n = contact->normal;
     sk_contact before;
-    collider->type->probe[SK_ISA(sk_version)](collider->params, start, &p0, &before);
-    sk_mask lay = SK_ISA(touches)(collider, p0, before.distance - thickness);
+    collider->type->probe[SK_THIS_ISA](collider->params, start, &p0, &before);
+    sk_mask lay = touches(collider, p0, before.distance - thickness);
     // the balance of momentum along the normal, without what contact does to it
     sk_wide hw = (real)row->dt * x.w;
     sk_wide3 short_of = {hw * force.x - (v.x - v0.x), hw * force.y - (v.y - v0.y), hw * force.z - (v.z - v0.z)};
-    sk_mask presses = SK_ISA(sk_negative)(SK_ISA(sk_dot_wide)(short_of, n));
+    sk_mask presses = sk_negative(sk_dot_wide(short_of, n));
     if (!sk_contact_reads_force(collider)) return inside & (presses | ~lay);
-    sk_wide speed = SK_ISA(sk_dot_wide)(SK_ISA(against)(collider, start, p0, &before, v0), before.normal);
-    return inside & lay & presses & ~SK_ISA(bounces)(collider, speed, hw, force);
+    sk_wide speed = sk_dot_wide(against(collider, start, p0, &before, v0), before.normal);
+    return inside & lay & presses & ~bounces(collider, speed, hw, force);
 }
 
 /* Within the solve: what has come inside is held too, and taken back to the surface. What is held already goes on
  * along its tangent. */
-static void SK_ISA(contact_filter_more)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(contact_filter_more)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_collider *collider = row->rule;
     sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
     sk_pose start = sk_collider_pose_at(collider, run->time - row->dt);
@@ -158,31 +164,24 @@ static void SK_ISA(contact_filter_more)(sk_run *run, const sk_row *row, size_t b
     real thickness = (real)collider->common->thickness;
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
-        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed);
-        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed);
+        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
+        sk_wide4 v = sk_load_block(run->vector[SK_V], slot, packed);
         sk_wide3 p = {x.x, x.y, x.z};
         sk_contact contact;
-        collider->type->probe[SK_ISA(sk_version)](collider->params, &pose, &p, &contact);
-        sk_mask inside = SK_ISA(comes_inside)(run, row, &start, slot, x, v, &contact);
-        if (!SK_ISA(sk_any)(inside)) continue;
+        collider->type->probe[SK_THIS_ISA](collider->params, &pose, &p, &contact);
+        sk_mask inside = comes_inside(run, row, &start, slot, x, v, &contact);
+        if (!sk_any(inside)) continue;
         sk_wide gap = contact.distance - thickness;
-        SK_ISA(filtering)
-        f = {SK_ISA(sk_load_block)(diagonal, slot, packed),
-             SK_ISA(sk_load_block)(off, slot, packed),
-             v,
-             {{0}, {0}, {0}, {0}}};
-        SK_ISA(hold_normal)(&f, inside, contact.normal, -gap / (real)row->dt, (real)0.5);
-        SK_ISA(sk_store_block)(diagonal, slot, packed, f.d);
-        SK_ISA(sk_store_block)(off, slot, packed, f.o);
-        SK_ISA(sk_store_block)(run->vector[SK_V], slot, packed, f.v);
+        filtering f = {
+            sk_load_block(diagonal, slot, packed), sk_load_block(off, slot, packed), v, {{0}, {0}, {0}, {0}}};
+        hold_normal(&f, inside, contact.normal, -gap / (real)row->dt, (real)0.5);
+        sk_store_block(diagonal, slot, packed, f.d);
+        sk_store_block(off, slot, packed, f.o);
+        sk_store_block(run->vector[SK_V], slot, packed, f.v);
     }
 }
 
 #else
-#include "colliders/collider.h"
-
-#define SK_KERNELS "colliders/filter.c"
-#include "base/for_each_isa.h"
 
 const sk_kernels sk_contact_filter = {SK_EACH_ISA(contact_filter)};
 const sk_kernels sk_contact_filter_more = {SK_EACH_ISA(contact_filter_more)};

@@ -3,32 +3,7 @@
  * To first order a particle is f/|grad f| away from the surface, which is exact where f is a distance, and good near
  * the surface wherever f is smooth there. The normal is grad f/|grad f|; where t makes the surface move, it moves along
  * it at -(df/dt)/|grad f|. Where there is no gradient, as in the middle of a ball, up is the way out. */
-#ifdef SK_ISA
-
-static void SK_ISA(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
-    const formula_params *params = data;
-    const real *r = pose->rotation;
-    sk_wide out[SK_POINTWISE_MOST_OUTPUTS], one = SK_ISA(sk_splat)(1), none = {0};
-    sk_mask guarded;
-    sk_wide3 d = {p->x - pose->position.x, p->y - pose->position.y, p->z - pose->position.z};
-    sk_wide3 own = {r[0] * d.x + r[3] * d.y + r[6] * d.z, r[1] * d.x + r[4] * d.y + r[7] * d.z,
-                    r[2] * d.x + r[5] * d.y + r[8] * d.z};
-    sk_pointwise_run_of[SK_ISA(sk_version)](params->compiled, params->parameter, pose->time, &own, NULL, out, &guarded);
-    sk_wide3 g = {out[1], out[2], out[3]};
-    sk_wide square = SK_ISA(sk_dot_wide)(g, g);
-    sk_mask slopes = SK_ISA(sk_positive)(square) & SK_ISA(sk_at_most)(square, SK_ISA(sk_splat)(SK_REAL_MAX));
-    sk_wide inverse = 1 / SK_ISA(sk_wide_sqrt)(SK_ISA(sk_select)(slopes, square, one));
-    sk_wide nx = SK_ISA(sk_keep)(slopes, g.x * inverse), nz = SK_ISA(sk_keep)(slopes, g.z * inverse),
-            ny = SK_ISA(sk_select)(slopes, g.y * inverse, one);
-    contact->normal = (sk_wide3){r[0] * nx + r[1] * ny + r[2] * nz, r[3] * nx + r[4] * ny + r[5] * nz,
-                                 r[6] * nx + r[7] * ny + r[8] * nz};
-    // without a slope, what is not inside is far off
-    sk_wide flat = SK_ISA(sk_select)(SK_ISA(sk_negative)(out[0]), out[0], SK_ISA(sk_splat)((real)SK_FAR));
-    contact->distance = SK_ISA(sk_select)(slopes, out[0] * inverse, flat);
-    contact->speed = SK_ISA(sk_select)(slopes, -out[4] * inverse, none);
-}
-
-#else
+#include "base/kernels.h"
 #include "base/rotation.h"
 #include "base/status.h"
 #include "colliders/collider.h"
@@ -40,6 +15,36 @@ typedef struct formula_params {
     char *surface;
     sk_pointwise *compiled;
 } formula_params;
+
+#define SK_UNIT surface
+SK_KERNELS(sk_probe, probe);
+
+#ifdef SK_ISA
+
+void SK_KERNEL(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
+    const formula_params *params = data;
+    const real *r = pose->rotation;
+    sk_wide out[SK_POINTWISE_MOST_OUTPUTS], one = sk_splat(1), none = {0};
+    sk_mask guarded;
+    sk_wide3 d = {p->x - pose->position.x, p->y - pose->position.y, p->z - pose->position.z};
+    sk_wide3 own = {r[0] * d.x + r[3] * d.y + r[6] * d.z, r[1] * d.x + r[4] * d.y + r[7] * d.z,
+                    r[2] * d.x + r[5] * d.y + r[8] * d.z};
+    sk_pointwise_run_of[SK_THIS_ISA](params->compiled, params->parameter, pose->time, &own, NULL, out, &guarded);
+    sk_wide3 g = {out[1], out[2], out[3]};
+    sk_wide square = sk_dot_wide(g, g);
+    sk_mask slopes = sk_positive(square) & sk_at_most(square, sk_splat(SK_REAL_MAX));
+    sk_wide inverse = 1 / sk_wide_sqrt(sk_select(slopes, square, one));
+    sk_wide nx = sk_keep(slopes, g.x * inverse), nz = sk_keep(slopes, g.z * inverse),
+            ny = sk_select(slopes, g.y * inverse, one);
+    contact->normal = (sk_wide3){r[0] * nx + r[1] * ny + r[2] * nz, r[3] * nx + r[4] * ny + r[5] * nz,
+                                 r[6] * nx + r[7] * ny + r[8] * nz};
+    // without a slope, what is not inside is far off
+    sk_wide flat = sk_select(sk_negative(out[0]), out[0], sk_splat((real)SK_FAR));
+    contact->distance = sk_select(slopes, out[0] * inverse, flat);
+    contact->speed = sk_select(slopes, -out[4] * inverse, none);
+}
+
+#else
 
 static const skein_field fields[] = {
     SK_TEXT(formula_params, surface, "surface", "p.y",
@@ -109,9 +114,6 @@ static bool write(const void *data, void (*put)(void *user, const char *text), v
 static bool changes(const void *data) {
     return ((const formula_params *)data)->compiled->formula->uses & SK_USES_TIME;
 }
-
-#define SK_KERNELS "colliders/formula.c"
-#include "base/for_each_isa.h"
 
 static const sk_making making = {.make = make, .unmake = unmake};
 const sk_collider_type sk_formula_surface = {

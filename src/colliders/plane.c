@@ -1,20 +1,25 @@
 /* A half space: solid below the plane normal . p = offset. */
-#ifdef SK_ISA
-
-static void SK_ISA(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
-    (void)data;
-    sk_vec3 n = pose->axis, o = pose->position;
-    contact->normal = (sk_wide3){SK_ISA(sk_splat)(n.x), SK_ISA(sk_splat)(n.y), SK_ISA(sk_splat)(n.z)};
-    contact->distance = n.x * (p->x - o.x) + n.y * (p->y - o.y) + n.z * (p->z - o.z);
-}
-
-#else
+#include "base/kernels.h"
 #include "base/status.h"
 #include "colliders/collider.h"
 
 typedef struct plane_params {
     double normal[3], offset;
 } plane_params;
+
+#define SK_UNIT plane
+SK_KERNELS(sk_probe, probe);
+
+#ifdef SK_ISA
+
+void SK_KERNEL(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
+    (void)data;
+    sk_vec3 n = pose->axis, o = pose->position;
+    contact->normal = (sk_wide3){sk_splat(n.x), sk_splat(n.y), sk_splat(n.z)};
+    contact->distance = n.x * (p->x - o.x) + n.y * (p->y - o.y) + n.z * (p->z - o.z);
+}
+
+#else
 
 static const skein_field fields[] = {
     SK_VEC3(plane_params, normal, "normal", "", 0, 1, 0, "out of the solid; any length but 0"),
@@ -42,9 +47,6 @@ static void axis(const void *data, double unit[3]) {
     double length = normal_length(params);
     for (int k = 0; k < 3; k++) unit[k] = params->normal[k] / length;
 }
-
-#define SK_KERNELS "colliders/plane.c"
-#include "base/for_each_isa.h"
 
 const sk_collider_type sk_plane = {
     .kind = {"plane", "everything below a plane of any normal and offset", SKEIN_COLLIDER, fields,

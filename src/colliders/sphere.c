@@ -1,24 +1,28 @@
 /* A solid ball. */
-#ifdef SK_ISA
-
-static void SK_ISA(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
-    real radius = (real)((const sphere_params *)data)->radius;
-    sk_wide3 d = {p->x - pose->position.x, p->y - pose->position.y, p->z - pose->position.z};
-    sk_wide length = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_dot_wide)(d, d));
-    // at the very centre every way out is as good: take up
-    sk_mask apart = SK_ISA(sk_positive)(length);
-    sk_wide inverse = 1 / SK_ISA(sk_select)(apart, length, SK_ISA(sk_splat)(1));
-    contact->normal =
-        (sk_wide3){d.x * inverse, SK_ISA(sk_select)(apart, d.y * inverse, SK_ISA(sk_splat)(1)), d.z * inverse};
-    contact->distance = length - radius;
-}
-
-#else
+#include "base/kernels.h"
 #include "colliders/collider.h"
 
 typedef struct sphere_params {
     double centre[3], radius, mass;
 } sphere_params;
+
+#define SK_UNIT sphere
+SK_KERNELS(sk_probe, probe);
+
+#ifdef SK_ISA
+
+void SK_KERNEL(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
+    real radius = (real)((const sphere_params *)data)->radius;
+    sk_wide3 d = {p->x - pose->position.x, p->y - pose->position.y, p->z - pose->position.z};
+    sk_wide length = sk_wide_sqrt(sk_dot_wide(d, d));
+    // at the very centre every way out is as good: take up
+    sk_mask apart = sk_positive(length);
+    sk_wide inverse = 1 / sk_select(apart, length, sk_splat(1));
+    contact->normal = (sk_wide3){d.x * inverse, sk_select(apart, d.y * inverse, sk_splat(1)), d.z * inverse};
+    contact->distance = length - radius;
+}
+
+#else
 
 static const skein_field fields[] = {
     SK_VEC3(sphere_params, centre, "centre", "m", 0, 0, 0, "the centre, before any motion"),
@@ -39,9 +43,6 @@ static double mass_of(const void *params) {
 static void pack(const void *params, float (*block)[4]) {
     block[0][0] = (float)((const sphere_params *)params)->radius;
 }
-
-#define SK_KERNELS "colliders/sphere.c"
-#include "base/for_each_isa.h"
 
 const sk_collider_type sk_sphere = {
     .kind = {"sphere", "a ball, solid inside", SKEIN_COLLIDER, fields, sizeof fields / sizeof *fields,

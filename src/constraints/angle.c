@@ -1,4 +1,16 @@
 /* Angle: at p1, between the ways to p0 and to p2, less that at rest. */
+#include "base/elementary.h"
+#include "base/polynomial.h"
+
+#define SK_ARITY 3
+#define SK_RESTS 1
+#define SK_FORMULA "constraints/emitted/angle.h"
+#include "base/kernels.h"
+#include "constraints/element.h"
+
+#define SK_UNIT angle
+SK_ELEMENT_KERNELS
+
 #ifdef SK_ISA
 
 #include "base/wide_elementary.h"
@@ -7,16 +19,6 @@
 #include "constraints/element_sweeps.h"
 
 #else
-#include "base/elementary.h"
-#include "base/polynomial.h"
-
-#define SK_ARITY 3
-#define SK_RESTS 1
-#define SK_FORMULA "constraints/emitted/angle.h"
-#include "constraints/element.h"
-
-#define SK_KERNELS "constraints/angle.c"
-#include "base/for_each_isa.h"
 
 typedef struct angle_params {
     sk_material material;

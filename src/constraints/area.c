@@ -1,4 +1,13 @@
 /* Area: of the triangle p0 p1 p2, less that at rest. */
+#define SK_ARITY 3
+#define SK_RESTS 1
+#define SK_FORMULA "constraints/emitted/area.h"
+#include "base/kernels.h"
+#include "constraints/element.h"
+
+#define SK_UNIT area
+SK_ELEMENT_KERNELS
+
 #ifdef SK_ISA
 
 #include "constraints/element_arithmetic.h"
@@ -6,13 +15,6 @@
 #include "constraints/element_sweeps.h"
 
 #else
-#define SK_ARITY 3
-#define SK_RESTS 1
-#define SK_FORMULA "constraints/emitted/area.h"
-#include "constraints/element.h"
-
-#define SK_KERNELS "constraints/area.c"
-#include "base/for_each_isa.h"
 
 typedef struct area_params {
     sk_material material;

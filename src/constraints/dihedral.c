@@ -1,6 +1,19 @@
 /* Dihedral: the angle between the triangles p0 p1 p2 and p1 p0 p3 over their edge p0 p1, less that at rest, taken into
  * -pi to pi. Made of atan2, so it is exact near flat. As bending of a sheet of rigidity B (N m) an edge of length l
  * between triangles of areas A and A' has the stiffness B l^2/(A + A') (bodies/hinges.c). */
+#include "base/elementary.h"
+#include "base/polynomial.h"
+
+#define SK_ARITY 4
+#define SK_RESTS 1
+#define SK_FORMULA "constraints/emitted/dihedral.h"
+#define SK_WITH_STRIPS
+#include "base/kernels.h"
+#include "constraints/element.h"
+
+#define SK_UNIT dihedral
+SK_ELEMENT_KERNELS
+
 #ifdef SK_ISA
 
 #include "base/wide_elementary.h"
@@ -9,17 +22,6 @@
 #include "constraints/element_sweeps.h"
 
 #else
-#include "base/elementary.h"
-#include "base/polynomial.h"
-
-#define SK_ARITY 4
-#define SK_RESTS 1
-#define SK_FORMULA "constraints/emitted/dihedral.h"
-#define SK_WITH_STRIPS
-#include "constraints/element.h"
-
-#define SK_KERNELS "constraints/dihedral.c"
-#include "base/for_each_isa.h"
 
 typedef struct dihedral_params {
     sk_material material;

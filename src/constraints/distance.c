@@ -1,4 +1,18 @@
 /* Distance: C = |p0 - p1| - L. As a force it is the classical spring and damper pair. */
+#define SK_ARITY 2
+#define SK_RESTS 1
+#ifndef SK_FORMULA // a test has another one, and a unit of its own
+#define SK_FORMULA "constraints/emitted/distance.h"
+#define SK_UNIT distance
+#endif
+#define SK_WITH_STRIPS
+#define SK_WITH_LIMITS
+#define SK_ACROSS
+#include "base/kernels.h"
+#include "constraints/element.h"
+
+SK_ELEMENT_KERNELS
+
 #ifdef SK_ISA
 
 #include "constraints/element_arithmetic.h"
@@ -6,18 +20,6 @@
 #include "constraints/element_sweeps.h"
 
 #else
-#define SK_ARITY 2
-#define SK_RESTS 1
-#ifndef SK_FORMULA
-#define SK_FORMULA "constraints/emitted/distance.h"
-#endif
-#define SK_WITH_STRIPS
-#define SK_WITH_LIMITS
-#define SK_ACROSS
-#include "constraints/element.h"
-
-#define SK_KERNELS "constraints/distance.c"
-#include "base/for_each_isa.h"
 
 typedef struct distance_params {
     sk_material material;

@@ -3,7 +3,7 @@
 #ifndef SK_CONSTRAINTS_ELEMENT_H
 #define SK_CONSTRAINTS_ELEMENT_H
 
-#include "base/wide_types.h"
+#include "base/kernels.h"
 #include "constraints/sweep.h"
 #include "plan/matrix.h"
 
@@ -53,5 +53,24 @@ static inline sk_element_constants sk_element_prepare(const sk_batch *batch, con
     return (sk_element_constants){(real)damping_time, (real)(row->coefficient[0] / (row->dt * row->dt)),
                                   (real)(damping_time / row->dt), (real)(batch->bound ? *batch->bound : 0)};
 }
+
+/* Declares the kernels that element_sweeps.h and element_stiffness.h define. */
+#ifdef SK_WITH_STRIPS
+#define SK_WALK_KERNELS(mode)                 \
+    SK_KERNELS(sk_row_kernel, mode##_strips); \
+    SK_KERNELS(sk_row_kernel, mode##_groups);
+#else
+#define SK_WALK_KERNELS(mode) SK_KERNELS(sk_row_kernel, mode##_groups);
+#endif
+#ifdef SK_WITH_LIMITS
+#define SK_LIMIT_KERNELS SK_WALK_KERNELS(limit) SK_WALK_KERNELS(limit_moving)
+#else
+#define SK_LIMIT_KERNELS
+#endif
+#define SK_ELEMENT_KERNELS                                                                                      \
+    SK_WALK_KERNELS(force)                                                                                      \
+    SK_WALK_KERNELS(project) SK_WALK_KERNELS(project_damped) SK_LIMIT_KERNELS SK_KERNELS(sk_row_kernel, apply); \
+    SK_KERNELS(sk_row_kernel, diagonal);                                                                        \
+    SK_KERNELS(sk_row_kernel, blocks);
 
 #endif

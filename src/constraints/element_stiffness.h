@@ -1,4 +1,4 @@
-/* What an implicit solve asks of a kind's elements, once for each instruction set (no include guard), after
+/* What an implicit solve asks of a kind's elements, once for each instruction set, after
  * element_arithmetic.h: the matrix h^2 k + h c of each element times a direction, and its diagonal blocks.
  *
  * The matrix is k (grad C)(grad C)^T, which is positive definite whatever C is (Gauss and Newton's). A kind with
@@ -8,14 +8,14 @@
 
 /* Sixteen elements: the unit of their gradient (or the gradient itself), their stiffness times h^2 and damping times h.
  */
-typedef struct SK_ISA(stiff) {
+typedef struct stiff_elements {
     uint32_t slot[SK_ARITY][SK_LANES];
     size_t count;
     sk_element e;
     sk_wide along, across;
-} SK_ISA(stiff);
+} stiff_elements;
 
-SK_INLINE void SK_ISA(stiffen)(SK_ISA(stiff) * s, const sk_run *run, const sk_row *row, size_t begin, size_t end) {
+SK_INLINE void stiffen(stiff_elements *s, const sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_batch *batch = row->rule;
     const sk_material *material = batch->params;
     real k = (real)material->stiffness, elastic = (real)row->coefficient[0];
@@ -36,33 +36,33 @@ SK_INLINE void SK_ISA(stiffen)(SK_ISA(stiff) * s, const sk_run *run, const sk_ro
         stiff[l] = batch->scale ? k * batch->scale[element] : k;
     }
     e->divided = e->opposite = false;
-    SK_ISA(formula)(e);
+    formula(e);
     s->along = both * stiff;
     s->across = (sk_wide){0};
     if (!e->divided) return;
-    sk_wide inverse = SK_ISA(inverse_divisor)(e);
+    sk_wide inverse = inverse_divisor(e);
     SK_EACH_PARTICLE (i) {
         sk_wide3 *g = &e->gradient[i];
         *g = (sk_wide3){inverse * g->x, inverse * g->y, inverse * g->z};
     }
 #ifdef SK_ACROSS
-    s->across = elastic * SK_ISA(sk_keep)(SK_ISA(sk_positive)(e->value), stiff * e->value * inverse);
+    s->across = elastic * sk_keep(sk_positive(e->value), stiff * e->value * inverse);
 #endif
 }
 
-static void SK_ISA(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_vec4 *q = run->vector[row->source[1]];
     sk_vec4 *dst = run->vector[row->dst];
-    SK_ISA(stiff) s;
+    stiff_elements s;
     for (size_t at = begin; at < end; at += SK_LANES) {
-        SK_ISA(stiffen)(&s, run, row, at, end);
+        stiffen(&s, run, row, at, end);
         sk_wide3 u[SK_ARITY] = {{{0}, {0}, {0}}};
         for (size_t l = 0; l < s.count; l++)
             SK_EACH_PARTICLE (i) {
                 sk_vec4 p = sk_load(q, row->packed, s.slot[i][l]);
                 u[i].x[l] = p.x, u[i].y[l] = p.y, u[i].z[l] = p.z;
             }
-        sk_wide along = SK_ISA(along)(&s.e, u);
+        sk_wide along = sum_along(&s.e, u);
         sk_wide push = (s.along - s.across) * along;
         SK_EACH_PARTICLE (i) {
             sk_wide3 g = s.e.gradient[i], f = {push * g.x, push * g.y, push * g.z};
@@ -78,11 +78,11 @@ static void SK_ISA(apply)(sk_run *run, const sk_row *row, size_t begin, size_t e
 }
 
 /* The blocks' xx yy zz go to dst, xy xz yz to the second source. */
-static void SK_ISA(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     sk_vec4 *diagonal = run->vector[row->dst], *off = run->vector[row->source[1]];
-    SK_ISA(stiff) s;
+    stiff_elements s;
     for (size_t at = begin; at < end; at += SK_LANES) {
-        SK_ISA(stiffen)(&s, run, row, at, end);
+        stiffen(&s, run, row, at, end);
         sk_wide push = s.along - s.across;
         SK_EACH_PARTICLE (i) {
             sk_wide3 n = s.e.gradient[i], sn = {push * n.x, push * n.y, push * n.z};
@@ -97,12 +97,12 @@ static void SK_ISA(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_
 }
 
 /* The element's own rows and columns of the matrix. */
-static void SK_ISA(blocks)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(blocks)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     enum { PAIRS = SK_ARITY * (SK_ARITY - 1) / 2 };
     const sk_batch *batch = row->rule;
-    SK_ISA(stiff) s;
+    stiff_elements s;
     for (size_t at = begin; at < end; at += SK_LANES) {
-        SK_ISA(stiffen)(&s, run, row, at, end);
+        stiffen(&s, run, row, at, end);
         sk_wide push = s.along - s.across;
         for (size_t l = 0; l < s.count; l++) {
             double g[SK_ARITY][3];

@@ -1,23 +1,23 @@
-/* The walks of a kind's elements, once for each instruction set (no include guard): after element_arithmetic.h, whose
+/* The walks of a kind's elements, once for each instruction set: after element_arithmetic.h, whose
  * work_out() they call. How particles come in and go out is here alone, so that the arithmetic does not know the
  * layout. SK_WITH_STRIPS asks for walks along strips, SK_WITH_LIMITS for limits. */
 
-SK_INLINE sk_wide3 SK_ISA(load3)(const sk_wide *block) {
+SK_INLINE sk_wide3 load3(const sk_wide *block) {
     return (sk_wide3){block[0], block[1], block[2]};
 }
 /* scale G, without the sign that the second of two opposite gradients has; that is in `with_sign`. */
-SK_INLINE sk_wide3 SK_ISA(moved)(const sk_element *e, const sk_wide *scale, int i) {
+SK_INLINE sk_wide3 moved(const sk_element *e, const sk_wide *scale, int i) {
     const sk_wide3 *g = &e->gradient[e->opposite ? 0 : i];
     return (sk_wide3){scale[i] * g->x, scale[i] * g->y, scale[i] * g->z};
 }
-SK_INLINE sk_wide3 SK_ISA(with_sign)(const sk_element *e, int i, sk_wide3 a, sk_wide3 d) {
+SK_INLINE sk_wide3 with_sign(const sk_element *e, int i, sk_wide3 a, sk_wide3 d) {
     if (e->opposite && i) return (sk_wide3){a.x - d.x, a.y - d.y, a.z - d.z};
     return (sk_wide3){a.x + d.x, a.y + d.y, a.z + d.z};
 }
 
 /* Reads what a mode needs of sixteen elements besides positions. */
-SK_INLINE void SK_ISA(set_values)(sk_element *e, const sk_sweep *sweep, const sk_element_constants *constants,
-                                  size_t lane, bool special, bool multiplier) {
+SK_INLINE void set_values(sk_element *e, const sk_sweep *sweep, const sk_element_constants *constants, size_t lane,
+                          bool special, bool multiplier) {
     const sk_batch *batch = sweep->batch;
     if (special) {
         for (int r = 0; r < SK_RESTS; r++)
@@ -25,30 +25,30 @@ SK_INLINE void SK_ISA(set_values)(sk_element *e, const sk_sweep *sweep, const sk
         e->stiffness = *(const sk_wide *)(const void *)(batch->lane_stiffness + lane);
         e->soft = *(const sk_wide *)(const void *)(batch->lane_compliance + lane) * constants->per_step;
     } else {
-        for (int r = 0; r < SK_RESTS; r++) e->rest[r] = SK_ISA(sk_splat)(sweep->rest[r]);
-        e->stiffness = SK_ISA(sk_splat)(sweep->stiffness);
-        e->soft = SK_ISA(sk_splat)(sweep->compliance * constants->per_step);
+        for (int r = 0; r < SK_RESTS; r++) e->rest[r] = sk_splat(sweep->rest[r]);
+        e->stiffness = sk_splat(sweep->stiffness);
+        e->soft = sk_splat(sweep->compliance * constants->per_step);
     }
     if (multiplier) e->multiplier = *(const sk_wide *)(const void *)(batch->lane_multiplier + lane);
 }
 
 #ifdef SK_WITH_STRIPS
 /* Lanes turned by `shift`, as blocks do that meet over the end of a strip. */
-SK_INLINE sk_wide SK_ISA(turn)(sk_wide a, int shift) {
-    return shift ? SK_ISA(sk_rotate)(a, shift) : a;
+SK_INLINE sk_wide turn(sk_wide a, int shift) {
+    return shift ? sk_rotate(a, shift) : a;
 }
-SK_INLINE sk_wide3 SK_ISA(turn3)(sk_wide3 a, int shift) {
-    return (sk_wide3){SK_ISA(turn)(a.x, shift), SK_ISA(turn)(a.y, shift), SK_ISA(turn)(a.z, shift)};
+SK_INLINE sk_wide3 turn3(sk_wide3 a, int shift) {
+    return (sk_wide3){turn(a.x, shift), turn(a.y, shift), turn(a.z, shift)};
 }
 
 /* Where the blocks of an element's particles are, in slots from the block of its place. */
-typedef struct SK_ISA(offsets) {
+typedef struct offsets {
     ptrdiff_t slots[SK_ARITY];
     int shift[SK_ARITY];
-} SK_ISA(offsets);
+} offsets;
 
-SK_INLINE SK_ISA(offsets) SK_ISA(offsets_of)(const sk_sweep *sweep, const sk_span *span, bool turned) {
-    SK_ISA(offsets) o;
+SK_INLINE offsets offsets_of(const sk_sweep *sweep, const sk_span *span, bool turned) {
+    offsets o;
     SK_EACH_PARTICLE (i) {
         o.shift[i] = turned ? span->shift[i] : 0;
         o.slots[i] = ((ptrdiff_t)sweep->row_step[i] * (ptrdiff_t)sweep->walk.width + sweep->column_step[i] -
@@ -62,9 +62,8 @@ SK_INLINE SK_ISA(offsets) SK_ISA(offsets_of)(const sk_sweep *sweep, const sk_spa
 
 /* The blocks of sixteen elements meet. `mode` is a constant where this is inlined, and so is `turned`: whether some
  * block's lanes are. */
-SK_INLINE void SK_ISA(meet_blocks)(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants,
-                                   size_t lane, size_t slot, const SK_ISA(offsets) * o, bool turned,
-                                   sk_element_mode mode) {
+SK_INLINE void meet_blocks(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t lane,
+                           size_t slot, const offsets *o, bool turned, sk_element_mode mode) {
     bool special = turned || sweep->batch->special[lane / SK_LANES];
     bool reads_other = mode != SK_MODE_PROJECT && mode != SK_MODE_LIMIT;
     sk_element e;
@@ -74,23 +73,23 @@ SK_INLINE void SK_ISA(meet_blocks)(sk_run *run, const sk_sweep *sweep, const sk_
         size_t block = slot + (size_t)o->slots[i];
         int shift = turned ? o->shift[i] : 0;
         x[i] = (sk_wide *)(void *)(run->vector[SK_X] + block);
-        at[i] = SK_ISA(load3)(x[i]);
-        e.x[i] = SK_ISA(turn3)(at[i], shift);
-        e.w[i] = SK_ISA(turn)(x[i][3], shift);
+        at[i] = load3(x[i]);
+        e.x[i] = turn3(at[i], shift);
+        e.w[i] = turn(x[i][3], shift);
         if (!reads_other) continue;
         other[i] = (sk_wide *)(void *)(run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V] + block);
-        other_at[i] = SK_ISA(load3)(other[i]);
-        e.other[i] = SK_ISA(turn3)(other_at[i], shift);
+        other_at[i] = load3(other[i]);
+        e.other[i] = turn3(other_at[i], shift);
     }
-    SK_ISA(set_values)(&e, sweep, constants, lane, special, mode == SK_MODE_PROJECT_DAMPED);
-    SK_ISA(work_out)(&e, constants, mode);
+    set_values(&e, sweep, constants, lane, special, mode == SK_MODE_PROJECT_DAMPED);
+    work_out(&e, constants, mode);
     // from what was loaded: reading again would wait for the stores
     SK_EACH_PARTICLE (i) {
         int back = turned ? -o->shift[i] : 0;
-        sk_wide3 to = SK_ISA(with_sign)(&e, i, at[i], SK_ISA(turn3)(SK_ISA(moved)(&e, e.scale, i), back));
+        sk_wide3 to = with_sign(&e, i, at[i], turn3(moved(&e, e.scale, i), back));
         x[i][0] = to.x, x[i][1] = to.y, x[i][2] = to.z;
         if (mode != SK_MODE_LIMIT_MOVING) continue;
-        to = SK_ISA(with_sign)(&e, i, other_at[i], SK_ISA(turn3)(SK_ISA(moved)(&e, e.velocity_scale, i), back));
+        to = with_sign(&e, i, other_at[i], turn3(moved(&e, e.velocity_scale, i), back));
         other[i][0] = to.x, other[i][1] = to.y, other[i][2] = to.z;
     }
     if (mode == SK_MODE_PROJECT_DAMPED) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + lane) = e.multiplier;
@@ -98,29 +97,28 @@ SK_INLINE void SK_ISA(meet_blocks)(sk_run *run, const sk_sweep *sweep, const sk_
 
 /* The blocks of a span in strip rows [begin, end): along a row each block waits for the one before it, so rows that
  * share no particle go side by side. */
-SK_INLINE void SK_ISA(meet_span)(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants,
-                                 size_t begin, size_t end, const sk_span *span, bool turned, sk_element_mode mode) {
+SK_INLINE void meet_span(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
+                         size_t end, const sk_span *span, bool turned, sk_element_mode mode) {
     size_t line = sweep->walk.width * SK_LANES, first_slot = sweep->walk.first_slot;
-    SK_ISA(offsets) o = SK_ISA(offsets_of)(sweep, span, turned);
+    offsets o = offsets_of(sweep, span, turned);
     if (sweep->walk.reach) {
         for (size_t at = begin * line + span->first * SK_LANES; at < begin * line + span->last * SK_LANES;
              at += SK_LANES)
-            SK_ISA(meet_blocks)
-        (run, sweep, constants, sweep->first_lane + at, first_slot + at, &o, turned, mode);
+            meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, &o, turned, mode);
         return;
     }
     for (size_t k = span->first; k < span->last; k++)
-        for (size_t at = begin * line + k * SK_LANES; at < end * line; at += line) SK_ISA(meet_blocks)
-    (run, sweep, constants, sweep->first_lane + at, first_slot + at, &o, turned, mode);
+        for (size_t at = begin * line + k * SK_LANES; at < end * line; at += line)
+            meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, &o, turned, mode);
 }
 
-typedef void SK_ISA(span_walk)(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
-                               size_t end, const sk_span *span);
+typedef void span_walk(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
+                       size_t end, const sk_span *span);
 
 /* Strip rows [begin, end), one by one unless they go side by side. `turned` walks the spans that lead over a strip's
  * end: a function of its own, since few do and inlining it everywhere would be slow to compile. */
-SK_INLINE void SK_ISA(sweep_strips)(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_element_mode mode,
-                                    SK_ISA(span_walk) * turned) {
+SK_INLINE void sweep_strips(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_element_mode mode,
+                            span_walk *turned) {
     const sk_sweep *sweep = row->rule;
     sk_element_constants constants = sk_element_prepare(sweep->batch, row);
     size_t side_by_side = sweep->walk.reach == 0 ? SK_ROWS_SIDE_BY_SIDE : 1;
@@ -128,9 +126,9 @@ SK_INLINE void SK_ISA(sweep_strips)(sk_run *run, const sk_row *row, size_t begin
         size_t stop = r + side_by_side < end ? r + side_by_side : end;
         for (size_t i = 0; i < sweep->span_count; i++) {
             const sk_span *at = &sweep->span[i];
-            if (!at->turned) SK_ISA(meet_span)(run, sweep, &constants, r, stop, at, false, mode);
+            if (!at->turned) meet_span(run, sweep, &constants, r, stop, at, false, mode);
             else if (mode == SK_MODE_PROJECT && SK_ARITY == 2)
-                SK_ISA(meet_span)(run, sweep, &constants, r, stop, at, true, mode);
+                meet_span(run, sweep, &constants, r, stop, at, true, mode);
             else turned(run, sweep, &constants, r, stop, at);
         }
     }
@@ -139,42 +137,41 @@ SK_INLINE void SK_ISA(sweep_strips)(sk_run *run, const sk_row *row, size_t begin
 /* ---- strips: forces ---- */
 
 /* The blocks of a span in strip row r pull; `gets` says which of their particles lie in the rows that are asked for. */
-SK_INLINE void SK_ISA(pull_span)(sk_run *run, const sk_row *row, const sk_sweep *sweep,
-                                 const sk_element_constants *constants, size_t r, const sk_span *span, bool turned,
-                                 const bool *gets) {
+SK_INLINE void pull_span(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_element_constants *constants,
+                         size_t r, const sk_span *span, bool turned, const bool *gets) {
     size_t line = sweep->walk.width * SK_LANES;
-    SK_ISA(offsets) o = SK_ISA(offsets_of)(sweep, span, turned);
+    offsets o = offsets_of(sweep, span, turned);
     for (size_t at = r * line + span->first * SK_LANES; at < r * line + span->last * SK_LANES; at += SK_LANES) {
         sk_element e;
         size_t lane = sweep->first_lane + at, slot = sweep->walk.first_slot + at;
         SK_EACH_PARTICLE (i) {
             const sk_wide *x = (const sk_wide *)(const void *)(run->vector[SK_X] + slot + o.slots[i]),
                           *v = (const sk_wide *)(const void *)(run->vector[SK_V] + slot + o.slots[i]);
-            e.x[i] = SK_ISA(turn3)(SK_ISA(load3)(x), turned ? o.shift[i] : 0);
-            e.other[i] = SK_ISA(turn3)(SK_ISA(load3)(v), turned ? o.shift[i] : 0);
+            e.x[i] = turn3(load3(x), turned ? o.shift[i] : 0);
+            e.other[i] = turn3(load3(v), turned ? o.shift[i] : 0);
         }
-        SK_ISA(set_values)(&e, sweep, constants, lane, turned || sweep->batch->special[lane / SK_LANES], false);
-        SK_ISA(work_out)(&e, constants, SK_MODE_FORCE);
+        set_values(&e, sweep, constants, lane, turned || sweep->batch->special[lane / SK_LANES], false);
+        work_out(&e, constants, SK_MODE_FORCE);
         SK_EACH_PARTICLE (i) {
             if (!gets[i]) continue;
             sk_wide *f = (sk_wide *)(void *)(run->vector[row->dst] + slot + o.slots[i]);
-            sk_wide3 d = SK_ISA(turn3)(SK_ISA(moved)(&e, e.scale, i), turned ? -o.shift[i] : 0);
-            sk_wide3 to = SK_ISA(with_sign)(&e, i, SK_ISA(load3)(f), d);
+            sk_wide3 d = turn3(moved(&e, e.scale, i), turned ? -o.shift[i] : 0);
+            sk_wide3 to = with_sign(&e, i, load3(f), d);
             f[0] = to.x, f[1] = to.y, f[2] = to.z;
         }
     }
 }
 
 /* The same over the end of a strip, as a function of its own. */
-static __attribute__((noinline)) void SK_ISA(pull_turned)(sk_run *run, const sk_row *row, const sk_sweep *sweep,
-                                                          const sk_element_constants *constants, size_t r,
-                                                          const sk_span *span, const bool *gets) {
-    SK_ISA(pull_span)(run, row, sweep, constants, r, span, true, gets);
+static __attribute__((noinline)) void pull_turned(sk_run *run, const sk_row *row, const sk_sweep *sweep,
+                                                  const sk_element_constants *constants, size_t r, const sk_span *span,
+                                                  const bool *gets) {
+    pull_span(run, row, sweep, constants, r, span, true, gets);
 }
 
 /* All directions of a batch at once, for the forces on strip rows [begin, end): what they get from rows before
  * is worked out again rather than waited for, so that every cut of the rows gives the same sums. */
-static void SK_ISA(force_strips)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(force_strips)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_sweep *sweeps = row->rule;
     sk_element_constants constants = sk_element_prepare(sweeps->batch, row);
     size_t reach = row->walk.reach;
@@ -189,8 +186,8 @@ static void SK_ISA(force_strips)(sk_run *run, const sk_row *row, size_t begin, s
             }
             for (size_t i = 0; i < sweep->span_count && any; i++) {
                 const sk_span *at = &sweep->span[i];
-                if (!at->turned) SK_ISA(pull_span)(run, row, sweep, &constants, r, at, false, gets);
-                else SK_ISA(pull_turned)(run, row, sweep, &constants, r, at, gets);
+                if (!at->turned) pull_span(run, row, sweep, &constants, r, at, false, gets);
+                else pull_turned(run, row, sweep, &constants, r, at, gets);
             }
         }
 }
@@ -199,7 +196,7 @@ static void SK_ISA(force_strips)(sk_run *run, const sk_row *row, size_t begin, s
 /* ---- groups ---- */
 
 /* Sixteen particles of a vector, some of which are in packed blocks. */
-SK_INLINE sk_wide4 SK_ISA(gather_any)(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
+SK_INLINE sk_wide4 gather_any(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
     sk_wide4 out;
     for (int l = 0; l < SK_LANES; l++) {
         sk_vec4 q = sk_load(vector, packed, slot[l]);
@@ -208,52 +205,50 @@ SK_INLINE sk_wide4 SK_ISA(gather_any)(const sk_vec4 *vector, size_t packed, cons
     return out;
 }
 
-SK_INLINE sk_wide4 SK_ISA(gather)(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
-    return packed ? SK_ISA(gather_any)(vector, packed, slot) : SK_ISA(sk_gather)(vector, slot);
+SK_INLINE sk_wide4 gather(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
+    return packed ? gather_any(vector, packed, slot) : sk_gather(vector, slot);
 }
 
 /* Puts sixteen different particles back, with scale G added to what was gathered. */
-SK_INLINE void SK_ISA(scatter_sum)(const sk_element *e, const sk_wide *scale, int i, sk_vec4 *vector, size_t packed,
-                                   const uint32_t *slot, sk_wide4 old) {
-    sk_wide3 to = SK_ISA(with_sign)(e, i, (sk_wide3){old.x, old.y, old.z}, SK_ISA(moved)(e, scale, i));
+SK_INLINE void scatter_sum(const sk_element *e, const sk_wide *scale, int i, sk_vec4 *vector, size_t packed,
+                           const uint32_t *slot, sk_wide4 old) {
+    sk_wide3 to = with_sign(e, i, (sk_wide3){old.x, old.y, old.z}, moved(e, scale, i));
     if (!packed) {
-        SK_ISA(sk_scatter)(vector, slot, (sk_wide4){to.x, to.y, to.z, old.w});
+        sk_scatter(vector, slot, (sk_wide4){to.x, to.y, to.z, old.w});
         return;
     }
     for (int l = 0; l < SK_LANES; l++) sk_store_at(vector, packed, slot[l], sk_v3(to.x[l], to.y[l], to.z[l]));
 }
 
-SK_INLINE void SK_ISA(meet_group)(sk_run *run, const sk_row *row, const sk_sweep *sweep,
-                                  const sk_element_constants *constants, size_t group, size_t packed,
-                                  sk_element_mode mode) {
+SK_INLINE void meet_group(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_element_constants *constants,
+                          size_t group, size_t packed, sk_element_mode mode) {
     const uint32_t *slots = sweep->slots + group * SK_ARITY * SK_LANES;
     sk_vec4 *x = run->vector[SK_X], *other = run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V];
     sk_wide4 at[SK_ARITY], other_at[SK_ARITY] = {{{0}, {0}, {0}, {0}}};
     sk_element e;
     SK_EACH_PARTICLE (i) {
-        at[i] = SK_ISA(gather)(x, packed, slots + i * SK_LANES);
+        at[i] = gather(x, packed, slots + i * SK_LANES);
         e.x[i] = (sk_wide3){at[i].x, at[i].y, at[i].z};
         e.w[i] = at[i].w;
         if (mode == SK_MODE_PROJECT || mode == SK_MODE_LIMIT) continue;
-        other_at[i] = SK_ISA(gather)(other, packed, slots + i * SK_LANES);
+        other_at[i] = gather(other, packed, slots + i * SK_LANES);
         e.other[i] = (sk_wide3){other_at[i].x, other_at[i].y, other_at[i].z};
     }
     size_t lane = sweep->first_lane + group * SK_LANES;
-    SK_ISA(set_values)(&e, sweep, constants, lane, true, mode == SK_MODE_PROJECT_DAMPED);
-    SK_ISA(work_out)(&e, constants, mode);
+    set_values(&e, sweep, constants, lane, true, mode == SK_MODE_PROJECT_DAMPED);
+    work_out(&e, constants, mode);
     sk_vec4 *dst = mode == SK_MODE_FORCE ? run->vector[row->dst] : x;
     SK_EACH_PARTICLE (i) {
         const uint32_t *slot = slots + i * SK_LANES;
-        sk_wide4 old = mode == SK_MODE_FORCE ? SK_ISA(gather)(dst, packed, slot) : at[i];
-        SK_ISA(scatter_sum)(&e, e.scale, i, dst, packed, slot, old);
-        if (mode == SK_MODE_LIMIT_MOVING)
-            SK_ISA(scatter_sum)(&e, e.velocity_scale, i, other, packed, slot, other_at[i]);
+        sk_wide4 old = mode == SK_MODE_FORCE ? gather(dst, packed, slot) : at[i];
+        scatter_sum(&e, e.scale, i, dst, packed, slot, old);
+        if (mode == SK_MODE_LIMIT_MOVING) scatter_sum(&e, e.velocity_scale, i, other, packed, slot, other_at[i]);
     }
     if (mode == SK_MODE_PROJECT_DAMPED) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + lane) = e.multiplier;
 }
 
 /* Groups [begin, end), or those of slabs [begin, end). Groups with a particle in strips are reached one by one. */
-SK_INLINE void SK_ISA(sweep_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_element_mode mode) {
+SK_INLINE void sweep_groups(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_element_mode mode) {
     const sk_sweep *sweep = row->rule;
     sk_element_constants constants = sk_element_prepare(sweep->batch, row);
     if (sweep->slab_start) begin = sweep->slab_start[begin], end = sweep->slab_start[end];
@@ -261,24 +256,24 @@ SK_INLINE void SK_ISA(sweep_groups)(sk_run *run, const sk_row *row, size_t begin
         const uint32_t *slots = sweep->slots + g * SK_ARITY * SK_LANES;
         bool strips = false;
         for (int i = 0; i < SK_ARITY * SK_LANES && row->packed; i++) strips |= slots[i] < row->packed;
-        SK_ISA(meet_group)(run, row, sweep, &constants, g, strips ? row->packed : 0, mode);
+        meet_group(run, row, sweep, &constants, g, strips ? row->packed : 0, mode);
     }
 }
 
-#define SK_GROUP_WALK(name, mode)                                                                  \
-    static void SK_ISA(name##_groups)(sk_run * run, const sk_row *row, size_t begin, size_t end) { \
-        SK_ISA(sweep_groups)(run, row, begin, end, mode);                                          \
+#define SK_GROUP_WALK(name, mode)                                                              \
+    void SK_KERNEL(name##_groups)(sk_run * run, const sk_row *row, size_t begin, size_t end) { \
+        sweep_groups(run, row, begin, end, mode);                                              \
     }
 #ifdef SK_WITH_STRIPS
-#define SK_WALKS(name, mode)                                                                                         \
-    static __attribute__((noinline)) void SK_ISA(name##_turned)(sk_run * run, const sk_sweep *sweep,                 \
-                                                                const sk_element_constants *constants, size_t begin, \
-                                                                size_t end, const sk_span *span) {                   \
-        SK_ISA(meet_span)(run, sweep, constants, begin, end, span, true, mode);                                      \
-    }                                                                                                                \
-    static void SK_ISA(name##_strips)(sk_run * run, const sk_row *row, size_t begin, size_t end) {                   \
-        SK_ISA(sweep_strips)(run, row, begin, end, mode, SK_ISA(name##_turned));                                     \
-    }                                                                                                                \
+#define SK_WALKS(name, mode)                                                                                 \
+    static __attribute__((noinline)) void name##_turned(sk_run *run, const sk_sweep *sweep,                  \
+                                                        const sk_element_constants *constants, size_t begin, \
+                                                        size_t end, const sk_span *span) {                   \
+        meet_span(run, sweep, constants, begin, end, span, true, mode);                                      \
+    }                                                                                                        \
+    void SK_KERNEL(name##_strips)(sk_run * run, const sk_row *row, size_t begin, size_t end) {               \
+        sweep_strips(run, row, begin, end, mode, name##_turned);                                             \
+    }                                                                                                        \
     SK_GROUP_WALK(name, mode)
 #else
 #define SK_WALKS SK_GROUP_WALK

@@ -4,19 +4,59 @@
  * position methods it is the constraint C = sqrt(2 E), without ever dividing by the root: where E and its gradient are
  * 0, so is the correction. Both run on a tape: up to four groups of sixteen elements that share no particle are one
  * block, gathered, run through the tape, solved and put back group by group, in their order. */
+#include "constraints/formula.h"
+#include "base/kernels.h"
+
+/* Loops over an element's particles. */
+#ifdef __clang__
+#define UNROLLED
+#else
+#define UNROLLED _Pragma("GCC unroll 4")
+#endif
+
+enum { NOWHERE = 0xffff };
+
+/* The registers where a tape wants an element's positions and rest values. */
+typedef struct places {
+    uint16_t position[SK_MOST_ARITY], rest[SKEIN_FORMULA_MOST_RESTS];
+} places;
+
+typedef size_t energy_of(const sk_batch *batch, double time, const sk_vec4 *x, size_t begin, size_t end, double *out);
+
+#define SK_UNIT formula
+SK_KERNELS(energy_of, energy);
+SK_KERNELS(sk_row_kernel, force_groups);
+SK_KERNELS(sk_row_kernel, project_groups);
+SK_KERNELS(sk_row_kernel, project_damped_groups);
+SK_KERNELS(sk_row_kernel, apply);
+SK_KERNELS(sk_row_kernel, diagonal);
+SK_KERNELS(sk_row_kernel, blocks);
+
 #ifdef SK_ISA
 
+static places find_places(const sk_batch *batch, const sk_tape *tape) {
+    int first_rest = ((const sk_formula_params *)batch->params)->made->formula->parameters;
+    places to;
+    memset(&to, 0xff, sizeof to);
+    for (size_t l = 0; l < tape->loads.count; l++) {
+        sk_tape_load load = tape->loads.data[l];
+        if (load.source == SK_TAPE_POSITION) to.position[load.index] = load.to;
+        else if (load.source == SK_TAPE_PARAMETER && load.index >= first_rest)
+            to.rest[load.index - first_rest] = load.to;
+    }
+    return to;
+}
 /* ---- in and out ---- */
 
 /* Groups [first, first + count) of a sweep, or sixteen elements of a batch, on their way. */
-typedef struct SK_ISA(block) {
+typedef struct block {
     sk_wide registers[SK_TAPE_MEMORY / sizeof(sk_wide)]; /* positions stay where the tape has them */
     sk_wide w[SK_FORMULA_GROUPS][SK_MOST_ARITY];
     sk_tape_verdict verdict;
-} SK_ISA(block);
+} block;
 
-SK_INLINE sk_wide4 SK_ISA(gather)(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
-    if (!packed) return SK_ISA(sk_gather)(vector, slot);
+SK_INLINE sk_wide4 gather(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
+    if (!packed) return sk_gather(vector, slot);
     sk_wide4 out = {{0}, {0}, {0}, {0}};
     for (int l = 0; l < SK_LANES; l++) {
         sk_vec4 q = sk_load(vector, packed, slot[l]);
@@ -26,25 +66,25 @@ SK_INLINE sk_wide4 SK_ISA(gather)(const sk_vec4 *vector, size_t packed, const ui
 }
 
 /* Once before the blocks of a row: what is the same for all elements. */
-static void SK_ISA(begin)(SK_ISA(block) * b, const sk_batch *batch, const sk_tape *tape, double time) {
+static void begin_tape(block *b, const sk_batch *batch, const sk_tape *tape, double time) {
     const sk_formula_params *params = batch->params;
     int count = params->made->formula->parameters;
     real value[SKEIN_FORMULA_MOST_PARAMETERS];
     const real *parameter[SKEIN_FORMULA_MOST_PARAMETERS];
     for (int i = 0; i < count; i++) value[i] = (real)params->parameter[i], parameter[i] = &value[i];
     sk_tape_input input = {.parameter = parameter, .uniform = ((uint64_t)1 << count) - 1, .time = (real)time};
-    sk_tape_kernels_of[SK_ISA(sk_version)].begin(tape, &input, b->registers);
+    sk_tape_kernels_of[SK_THIS_ISA]->begin(tape, &input, b->registers);
 }
 
 /* Puts sixteen elements into the tape's registers, as number i of a block: the particles that it reads, and rest
  * values, which are `stride` reals from one to the next. */
-SK_INLINE void SK_ISA(fill)(SK_ISA(block) * b, const places *to, size_t i, size_t arity, size_t rests, size_t wides,
-                            const sk_vec4 *x, size_t packed, const uint32_t *slots, const real *rest, size_t stride) {
+SK_INLINE void fill(block *b, const places *to, size_t i, size_t arity, size_t rests, size_t wides, const sk_vec4 *x,
+                    size_t packed, const uint32_t *slots, const real *rest, size_t stride) {
     UNROLLED
     for (size_t p = 0; p < arity; p++) {
         if (to->position[p] == NOWHERE) continue;
         sk_wide *at = b->registers + to->position[p] * wides + i;
-        sk_wide4 q = SK_ISA(gather)(x, packed, slots + p * SK_LANES);
+        sk_wide4 q = gather(x, packed, slots + p * SK_LANES);
         at[0] = q.x, at[wides] = q.y, at[2 * wides] = q.z, b->w[i][p] = q.w;
     }
     for (size_t r = 0; r < rests; r++)
@@ -52,14 +92,13 @@ SK_INLINE void SK_ISA(fill)(SK_ISA(block) * b, const places *to, size_t i, size_
 }
 
 /* What came out of the tape for sixteen elements. */
-typedef struct SK_ISA(answer) {
+typedef struct answer {
     sk_wide value, by_time;
     sk_wide3 gradient[SK_MOST_ARITY];
     sk_mask active; /* finite, and not on the free side */
-} SK_ISA(answer);
+} answer;
 
-SK_INLINE void SK_ISA(take_answer)(SK_ISA(answer) * a, const SK_ISA(block) * b, const sk_tape *tape, size_t arity,
-                                   size_t i, bool one_sided) {
+SK_INLINE void take_answer(answer *a, const block *b, const sk_tape *tape, size_t arity, size_t i, bool one_sided) {
     const uint16_t *output = tape->output;
     const sk_wide *registers = b->registers + i;
 #define OUTPUT(k_) registers[output[k_] * tape->wides]
@@ -72,101 +111,97 @@ SK_INLINE void SK_ISA(take_answer)(SK_ISA(answer) * a, const SK_ISA(block) * b, 
     sum += a->by_time = OUTPUT(3 * arity + 1);
 #undef OUTPUT
     // as tapes are judged, which may have been done
-    sk_mask finite = ~SK_ISA(sk_differ)(sum - sum, (sk_wide){0});
+    sk_mask finite = ~sk_differ(sum - sum, (sk_wide){0});
     if (!tape->unjudged) finite &= b->verdict.finite[i];
-    a->active = one_sided ? finite & SK_ISA(sk_negative)(a->value) : finite;
-    if (!SK_ISA(sk_any)(~finite)) return;
-    a->value = SK_ISA(sk_keep)(finite, a->value), a->by_time = SK_ISA(sk_keep)(finite, a->by_time);
+    a->active = one_sided ? finite & sk_negative(a->value) : finite;
+    if (!sk_any(~finite)) return;
+    a->value = sk_keep(finite, a->value), a->by_time = sk_keep(finite, a->by_time);
     for (size_t p = 0; p < arity; p++) {
         sk_wide3 g = a->gradient[p];
-        a->gradient[p] =
-            (sk_wide3){SK_ISA(sk_keep)(finite, g.x), SK_ISA(sk_keep)(finite, g.y), SK_ISA(sk_keep)(finite, g.z)};
+        a->gradient[p] = (sk_wide3){sk_keep(finite, g.x), sk_keep(finite, g.y), sk_keep(finite, g.z)};
     }
 }
 
-SK_INLINE sk_wide SK_ISA(sum_along)(const SK_ISA(answer) * a, const sk_wide3 *u, size_t arity) {
-    sk_wide sum = SK_ISA(sk_dot_wide)(a->gradient[0], u[0]);
-    for (size_t p = 1; p < arity; p++) sum += SK_ISA(sk_dot_wide)(a->gradient[p], u[p]);
+SK_INLINE sk_wide sum_along(const answer *a, const sk_wide3 *u, size_t arity) {
+    sk_wide sum = sk_dot_wide(a->gradient[0], u[0]);
+    for (size_t p = 1; p < arity; p++) sum += sk_dot_wide(a->gradient[p], u[p]);
     return sum;
 }
 
 /* ---- from value and gradient to a factor of the gradient ---- */
 
-SK_INLINE sk_wide SK_ISA(pull)(const SK_ISA(answer) * a, const sk_wide3 *v, size_t arity, bool is_energy,
-                               sk_wide stiffness, real damping_time) {
-    if (is_energy) return SK_ISA(sk_keep)(a->active, -stiffness);
-    sk_wide rate = SK_ISA(sum_along)(a, v, arity) + a->by_time;
-    return SK_ISA(sk_keep)(a->active, stiffness * (-a->value - damping_time * rate));
+SK_INLINE sk_wide pull(const answer *a, const sk_wide3 *v, size_t arity, bool is_energy, sk_wide stiffness,
+                       real damping_time) {
+    if (is_energy) return sk_keep(a->active, -stiffness);
+    sk_wide rate = sum_along(a, v, arity) + a->by_time;
+    return sk_keep(a->active, stiffness * (-a->value - damping_time * rate));
 }
 
 /* The sum of w |gradient|^2. */
-SK_INLINE sk_wide SK_ISA(weight)(const SK_ISA(answer) * a, const sk_wide *w, size_t arity) {
-    sk_wide weight = w[0] * SK_ISA(sk_dot_wide)(a->gradient[0], a->gradient[0]);
+SK_INLINE sk_wide weight_of(const answer *a, const sk_wide *w, size_t arity) {
+    sk_wide weight = w[0] * sk_dot_wide(a->gradient[0], a->gradient[0]);
     UNROLLED
-    for (size_t p = 1; p < arity; p++) weight += w[p] * SK_ISA(sk_dot_wide)(a->gradient[p], a->gradient[p]);
+    for (size_t p = 1; p < arity; p++) weight += w[p] * sk_dot_wide(a->gradient[p], a->gradient[p]);
     return weight;
 }
 
 /* Of an energy C^2 = 2 E takes part in place of C = sqrt(2 E), whose gradient has no value where E is 0. */
-SK_INLINE sk_wide SK_ISA(project)(const SK_ISA(answer) * a, const sk_wide *w, size_t arity, bool is_energy,
-                                  sk_wide soft) {
-    sk_wide weight = SK_ISA(weight)(a, w, arity), above = -a->value, below = weight + soft;
+SK_INLINE sk_wide project(const answer *a, const sk_wide *w, size_t arity, bool is_energy, sk_wide soft) {
+    sk_wide weight = weight_of(a, w, arity), above = -a->value, below = weight + soft;
     if (is_energy) {
-        sk_wide square = SK_ISA(sk_keep)(SK_ISA(sk_positive)(a->value), 2 * a->value);
+        sk_wide square = sk_keep(sk_positive(a->value), 2 * a->value);
         // an infinite compliance times 0 is nothing
-        above = -square, below = weight + SK_ISA(sk_keep)(SK_ISA(sk_positive)(square), soft * square);
+        above = -square, below = weight + sk_keep(sk_positive(square), soft * square);
     }
-    return SK_ISA(sk_keep)(a->active & SK_ISA(sk_positive)(below), above / below);
+    return sk_keep(a->active & sk_positive(below), above / below);
 }
 
 /* `moved` from the substep's start on; `multiplier` is kept up to date. A one-sided one only ever pushes. */
-SK_INLINE sk_wide SK_ISA(project_damped)(const SK_ISA(answer) * a, const sk_wide *w, const sk_wide3 *moved,
-                                         size_t arity, const sk_constraint_formula *made, sk_wide soft, real gamma,
-                                         real h, sk_wide *multiplier) {
-    sk_wide weight = SK_ISA(weight)(a, w, arity);
-    sk_wide held = SK_ISA(sk_keep)(SK_ISA(sk_differ)(*multiplier, (sk_wide){0}), soft * *multiplier), change, s;
+SK_INLINE sk_wide project_damped(const answer *a, const sk_wide *w, const sk_wide3 *moved, size_t arity,
+                                 const sk_constraint_formula *made, sk_wide soft, real gamma, real h,
+                                 sk_wide *multiplier) {
+    sk_wide weight = weight_of(a, w, arity);
+    sk_wide held = sk_keep(sk_differ(*multiplier, (sk_wide){0}), soft * *multiplier), change, s;
     if (made->is_energy) {
-        sk_wide square = SK_ISA(sk_keep)(SK_ISA(sk_positive)(a->value), 2 * a->value);
-        sk_wide root = SK_ISA(sk_wide_sqrt)(square);
-        sk_wide below = weight + SK_ISA(sk_keep)(SK_ISA(sk_positive)(square), soft * square);
-        s = SK_ISA(sk_keep)(a->active & SK_ISA(sk_positive)(below), root * (-root - held) / below);
+        sk_wide square = sk_keep(sk_positive(a->value), 2 * a->value);
+        sk_wide root = sk_wide_sqrt(square);
+        sk_wide below = weight + sk_keep(sk_positive(square), soft * square);
+        s = sk_keep(a->active & sk_positive(below), root * (-root - held) / below);
         *multiplier += root * s;
         return s;
     }
-    sk_wide rate = SK_ISA(sum_along)(a, moved, arity) + h * a->by_time;
+    sk_wide rate = sum_along(a, moved, arity) + h * a->by_time;
     sk_wide below = (1 + gamma) * weight + soft;
-    sk_mask on =
-        SK_ISA(sk_positive)(below) & (made->one_sided ? a->active | SK_ISA(sk_positive)(*multiplier) : a->active);
-    change = SK_ISA(sk_keep)(on, (-a->value - held - gamma * rate) / below);
-    if (made->one_sided) change = SK_ISA(sk_select)(SK_ISA(sk_negative)(*multiplier + change), -*multiplier, change);
+    sk_mask on = sk_positive(below) & (made->one_sided ? a->active | sk_positive(*multiplier) : a->active);
+    change = sk_keep(on, (-a->value - held - gamma * rate) / below);
+    if (made->one_sided) change = sk_select(sk_negative(*multiplier + change), -*multiplier, change);
     *multiplier += change;
     return change;
 }
 
 /* ---- the walk ---- */
 
-SK_INLINE void SK_ISA(put_back)(sk_vec4 *vector, size_t packed, const uint32_t *slot, sk_wide4 old, sk_wide s,
-                                sk_wide3 g) {
+SK_INLINE void put_back(sk_vec4 *vector, size_t packed, const uint32_t *slot, sk_wide4 old, sk_wide s, sk_wide3 g) {
     old.x += s * g.x, old.y += s * g.y, old.z += s * g.z;
     if (!packed) {
-        SK_ISA(sk_scatter)(vector, slot, old);
+        sk_scatter(vector, slot, old);
         return;
     }
     for (int l = 0; l < SK_LANES; l++) sk_store_at(vector, packed, slot[l], sk_v3(old.x[l], old.y[l], old.z[l]));
 }
 
 /* Group `i` of a block whose tape has run. Particles that the formula does not read stay where they are. */
-SK_INLINE void SK_ISA(settle_group)(sk_run *run, const sk_row *row, const sk_sweep *sweep, const SK_ISA(block) * b,
-                                    const sk_formula_factors *f, const places *to, size_t arity, size_t i, size_t group,
-                                    size_t packed, sk_row_kind kind, bool damped) {
+SK_INLINE void settle_group(sk_run *run, const sk_row *row, const sk_sweep *sweep, const block *b,
+                            const sk_formula_factors *f, const places *to, size_t arity, size_t i, size_t group,
+                            size_t packed, sk_row_kind kind, bool damped) {
     const sk_batch *batch = sweep->batch;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
     size_t lane = sweep->first_lane + group * SK_LANES, wides = made->tape.wides;
     const uint32_t *slots = sweep->slots + group * arity * SK_LANES;
-    SK_ISA(answer) a;
+    answer a;
     sk_wide w[SK_MOST_ARITY], s;
     sk_wide3 other[SK_MOST_ARITY];
-    SK_ISA(take_answer)(&a, b, &made->tape, arity, i, made->one_sided);
+    take_answer(&a, b, &made->tape, arity, i, made->one_sided);
     UNROLLED
     for (size_t p = 0; p < arity; p++) {
         w[p] = (sk_wide){0};
@@ -175,19 +210,19 @@ SK_INLINE void SK_ISA(settle_group)(sk_run *run, const sk_row *row, const sk_swe
         const sk_wide *x = b->registers + to->position[p] * wides + i;
         w[p] = b->w[i][p];
         if (!damped) continue;
-        sk_wide4 o = SK_ISA(gather)(run->vector[row->source[1]], packed, slots + p * SK_LANES);
+        sk_wide4 o = gather(run->vector[row->source[1]], packed, slots + p * SK_LANES);
         other[p] = (sk_wide3){o.x, o.y, o.z};
         if (kind == SK_ROW_PROJECT) other[p] = (sk_wide3){x[0] - o.x, x[wides] - o.y, x[2 * wides] - o.z};
     }
     sk_vec4 *dst = run->vector[row->dst];
     if (kind == SK_ROW_FORCE) {
         sk_wide stiffness = *(const sk_wide *)(const void *)(batch->lane_stiffness + lane);
-        s = SK_ISA(pull)(&a, other, arity, made->is_energy, stiffness, f->damping_time);
+        s = pull(&a, other, arity, made->is_energy, stiffness, f->damping_time);
     } else {
         sk_wide soft = *(const sk_wide *)(const void *)(batch->lane_compliance + lane) * f->per_step;
         sk_wide *multiplier = (sk_wide *)(void *)(batch->lane_multiplier + lane);
-        s = damped ? SK_ISA(project_damped)(&a, w, other, arity, made, soft, f->gamma, (real)row->dt, multiplier)
-                   : SK_ISA(project)(&a, w, arity, made->is_energy, soft);
+        s = damped ? project_damped(&a, w, other, arity, made, soft, f->gamma, (real)row->dt, multiplier)
+                   : project(&a, w, arity, made->is_energy, soft);
     }
     UNROLLED
     for (size_t p = 0; p < arity; p++) {
@@ -195,16 +230,16 @@ SK_INLINE void SK_ISA(settle_group)(sk_run *run, const sk_row *row, const sk_swe
         const sk_wide *x = b->registers + to->position[p] * wides + i;
         const uint32_t *slot = slots + p * SK_LANES;
         sk_wide4 old;
-        if (kind == SK_ROW_FORCE) old = SK_ISA(gather)(dst, packed, slot);
+        if (kind == SK_ROW_FORCE) old = gather(dst, packed, slot);
         else old = (sk_wide4){x[0], x[wides], x[2 * wides], w[p]};
-        SK_ISA(put_back)(dst, packed, slot, old, kind == SK_ROW_FORCE ? s : s * w[p], a.gradient[p]);
+        put_back(dst, packed, slot, old, kind == SK_ROW_FORCE ? s : s * w[p], a.gradient[p]);
     }
 }
 
 /* Groups [begin, end), or those of slabs [begin, end), block after block. `arity` is the batch's, a constant where it
  * pays: then what belongs to an element's particles stays in registers. */
-SK_INLINE void SK_ISA(walk)(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_row_kind kind, bool damped,
-                            size_t arity) {
+SK_INLINE void walk(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_row_kind kind, bool damped,
+                    size_t arity) {
     const sk_sweep *sweep = row->rule;
     const sk_batch *batch = sweep->batch;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
@@ -215,9 +250,9 @@ SK_INLINE void SK_ISA(walk)(sk_run *run, const sk_row *row, size_t begin, size_t
     const sk_tape *tape = &made->tape;
     places to = find_places(batch, tape);
     sk_formula_factors f = sk_formula_find_factors(batch, row);
-    SK_ISA(block) b;
+    block b;
     if (sweep->slab_start) begin = sweep->slab_start[begin], end = sweep->slab_start[end];
-    SK_ISA(begin)(&b, batch, tape, run->time - row->before);
+    begin_tape(&b, batch, tape, run->time - row->before);
     for (size_t first = begin, count; first < end; first += count) {
         size_t packed[SK_FORMULA_GROUPS];
         count = sweep->ahead[first] < tape->wides ? sweep->ahead[first] : tape->wides;
@@ -229,42 +264,41 @@ SK_INLINE void SK_ISA(walk)(sk_run *run, const sk_row *row, size_t begin, size_t
             bool strips = false;
             for (size_t l = 0; l < arity * SK_LANES && row->packed; l++) strips |= slots[l] < row->packed;
             packed[i] = strips ? row->packed : 0;
-            SK_ISA(fill)
-            (&b, &to, i, arity, batch->rest_count, tape->wides, run->vector[SK_X], packed[i], slots,
-             batch->lane_rest + sweep->first_lane + group * SK_LANES, batch->lane_count);
+            fill(&b, &to, i, arity, batch->rest_count, tape->wides, run->vector[SK_X], packed[i], slots,
+                 batch->lane_rest + sweep->first_lane + group * SK_LANES, batch->lane_count);
         }
-        sk_tape_kernels_of[SK_ISA(sk_version)].run(tape, b.registers, count, &b.verdict);
+        sk_tape_kernels_of[SK_THIS_ISA]->run(tape, b.registers, count, &b.verdict);
         for (size_t i = 0; i < count; i++)
-            SK_ISA(settle_group)(run, row, sweep, &b, &f, &to, arity, i, first + i, packed[i], kind, damped);
+            settle_group(run, row, sweep, &b, &f, &to, arity, i, first + i, packed[i], kind, damped);
     }
 }
 
-static size_t SK_ISA(arity_of)(const sk_row *row) {
+static size_t arity_of(const sk_row *row) {
     return ((const sk_sweep *)row->rule)->batch->arity;
 }
-static void SK_ISA(force_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(force_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_sweep *sweep = row->rule;
     bool damped = sk_batch_damping_time(sweep->batch) > 0;
-    SK_ISA(walk)(run, row, begin, end, SK_ROW_FORCE, damped, SK_ISA(arity_of)(row));
+    walk(run, row, begin, end, SK_ROW_FORCE, damped, arity_of(row));
 }
-static void SK_ISA(project_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    switch (SK_ISA(arity_of)(row)) {
-    case 2: SK_ISA(walk)(run, row, begin, end, SK_ROW_PROJECT, false, 2); break;
-    case 3: SK_ISA(walk)(run, row, begin, end, SK_ROW_PROJECT, false, 3); break;
-    case 4: SK_ISA(walk)(run, row, begin, end, SK_ROW_PROJECT, false, 4); break;
-    default: SK_ISA(walk)(run, row, begin, end, SK_ROW_PROJECT, false, SK_ISA(arity_of)(row));
+void SK_KERNEL(project_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    switch (arity_of(row)) {
+    case 2: walk(run, row, begin, end, SK_ROW_PROJECT, false, 2); break;
+    case 3: walk(run, row, begin, end, SK_ROW_PROJECT, false, 3); break;
+    case 4: walk(run, row, begin, end, SK_ROW_PROJECT, false, 4); break;
+    default: walk(run, row, begin, end, SK_ROW_PROJECT, false, arity_of(row));
     }
 }
-static void SK_ISA(project_damped_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    SK_ISA(walk)(run, row, begin, end, SK_ROW_PROJECT, true, SK_ISA(arity_of)(row));
+void SK_KERNEL(project_damped_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    walk(run, row, begin, end, SK_ROW_PROJECT, true, arity_of(row));
 }
 
 /* ---- implicit solves: elements, not groups ---- */
 
 /* Runs a tape of one wide that has begun, or what is compiled for it, on elements [begin, begin + count), at most
  * sixteen; lanes past them repeat the last. */
-static void SK_ISA(run_elements)(SK_ISA(block) * b, const sk_batch *batch, const sk_tape *tape, bool compiled,
-                                 double time, const sk_vec4 *x, size_t packed, size_t begin, size_t count) {
+static void run_elements(block *b, const sk_batch *batch, const sk_tape *tape, bool compiled, double time,
+                         const sk_vec4 *x, size_t packed, size_t begin, size_t count) {
     uint32_t slot[SK_MOST_ARITY][SK_LANES];
     sk_wide rest[SKEIN_FORMULA_MOST_RESTS]; // wides, as compiled code takes aligned ones
     places to = find_places(batch, tape);
@@ -278,31 +312,30 @@ static void SK_ISA(run_elements)(SK_ISA(block) * b, const sk_batch *batch, const
         real *outputs[3 * SK_MOST_ARITY * (3 * SK_MOST_ARITY + 1) / 2];
         sk_wide4 at[SK_MOST_ARITY];
         sk_wide finite;
-        for (size_t p = 0; p < batch->arity; p++) at[p] = SK_ISA(gather)(x, packed, slot[p]);
+        for (size_t p = 0; p < batch->arity; p++) at[p] = gather(x, packed, slot[p]);
         for (size_t k = 0; k < tape->outputs; k++) outputs[k] = (real *)(b->registers + tape->output[k]);
         sk_compiled_evaluate(batch, time, tape == &made->hessian, (const real *)at, (const real *)rest, outputs,
                              (real *)&finite);
-        b->verdict.finite[0] = SK_ISA(sk_positive)(finite);
+        b->verdict.finite[0] = sk_positive(finite);
         return;
     }
-    SK_ISA(fill)
-    (b, &to, 0, batch->arity, batch->rest_count, tape->wides, x, packed, slot[0], (const real *)rest, SK_LANES);
-    sk_tape_kernels_of[SK_ISA(sk_version)].run(tape, b->registers, 1, &b->verdict);
+    fill(b, &to, 0, batch->arity, batch->rest_count, tape->wides, x, packed, slot[0], (const real *)rest, SK_LANES);
+    sk_tape_kernels_of[SK_THIS_ISA]->run(tape, b->registers, 1, &b->verdict);
 }
 
 /* The matrix of sixteen elements: a lower triangle of 3 arity rows, positive definite. */
-typedef struct SK_ISA(matrix) {
+typedef struct matrix {
     sk_wide entry[3 * SK_MOST_ARITY * (3 * SK_MOST_ARITY + 1) / 2];
-} SK_ISA(matrix);
+} matrix;
 #define ENTRY(m_, i_, j_) (m_)->entry[(i_) * ((i_) + 1) / 2 + (j_)]
 
 /* A constraint's k grad C grad C^T. */
-static void SK_ISA(square_gradient)(SK_ISA(matrix) * m, const SK_ISA(answer) * a, size_t arity) {
+static void square_gradient(matrix *m, const answer *a, size_t arity) {
     sk_wide g[3 * SK_MOST_ARITY];
     for (size_t p = 0; p < arity; p++) {
-        g[3 * p] = SK_ISA(sk_keep)(a->active, a->gradient[p].x);
-        g[3 * p + 1] = SK_ISA(sk_keep)(a->active, a->gradient[p].y);
-        g[3 * p + 2] = SK_ISA(sk_keep)(a->active, a->gradient[p].z);
+        g[3 * p] = sk_keep(a->active, a->gradient[p].x);
+        g[3 * p + 1] = sk_keep(a->active, a->gradient[p].y);
+        g[3 * p + 2] = sk_keep(a->active, a->gradient[p].z);
     }
     for (size_t i = 0; i < 3 * arity; i++)
         for (size_t j = 0; j <= i; j++) ENTRY(m, i, j) = g[i] * g[j];
@@ -310,27 +343,27 @@ static void SK_ISA(square_gradient)(SK_ISA(matrix) * m, const SK_ISA(answer) * a
 
 /* The nearest that Gill's and Murray's factorisation comes to a symmetric matrix with one that is positive definite:
  * pivots that are too small for their columns are raised, and what they were raised by is added to the diagonal. */
-static void SK_ISA(make_definite)(SK_ISA(matrix) * m, size_t size) {
-    SK_ISA(matrix) l = *m;
+static void make_definite(matrix *m, size_t size) {
+    matrix l = *m;
     sk_wide largest = {0}, off = {0}, raised[3 * SK_MOST_ARITY];
     for (size_t i = 0; i < size; i++)
         for (size_t j = 0; j <= i; j++) {
-            sk_wide a = SK_ISA(sk_wide_abs)(ENTRY(m, i, j)), *most = i == j ? &largest : &off;
-            *most = SK_ISA(sk_select)(SK_ISA(sk_more)(a, *most), a, *most);
+            sk_wide a = sk_wide_abs(ENTRY(m, i, j)), *most = i == j ? &largest : &off;
+            *most = sk_select(sk_more(a, *most), a, *most);
         }
-    sk_wide bound = SK_ISA(sk_select)(SK_ISA(sk_more)(off, (real)size * largest), off / (real)size, largest);
+    sk_wide bound = sk_select(sk_more(off, (real)size * largest), off / (real)size, largest);
     sk_wide least = largest * (real)(sizeof(real) == 8 ? 1e-12 : 1e-5);
     for (size_t j = 0; j < size; j++) {
         sk_wide pivot = ENTRY(&l, j, j), column = {0};
         for (size_t i = j + 1; i < size; i++) {
-            sk_wide a = SK_ISA(sk_wide_abs)(ENTRY(&l, i, j));
-            column = SK_ISA(sk_select)(SK_ISA(sk_more)(a, column), a, column);
+            sk_wide a = sk_wide_abs(ENTRY(&l, i, j));
+            column = sk_select(sk_more(a, column), a, column);
         }
-        sk_wide needed = SK_ISA(sk_keep)(SK_ISA(sk_positive)(bound), column * column / bound), d = pivot;
-        d = SK_ISA(sk_select)(SK_ISA(sk_more)(needed, d), needed, d);
-        d = SK_ISA(sk_select)(SK_ISA(sk_more)(least, d), least, d);
+        sk_wide needed = sk_keep(sk_positive(bound), column * column / bound), d = pivot;
+        d = sk_select(sk_more(needed, d), needed, d);
+        d = sk_select(sk_more(least, d), least, d);
         raised[j] = d - pivot;
-        sk_wide inverse = SK_ISA(sk_keep)(SK_ISA(sk_positive)(d), 1 / d);
+        sk_wide inverse = sk_keep(sk_positive(d), 1 / d);
         for (size_t i = j + 1; i < size; i++) {
             sk_wide factor = ENTRY(&l, i, j) * inverse;
             for (size_t k = j + 1; k <= i; k++) ENTRY(&l, i, k) -= factor * ENTRY(&l, k, j);
@@ -340,21 +373,20 @@ static void SK_ISA(make_definite)(SK_ISA(matrix) * m, size_t size) {
 }
 
 /* The stiffness over k of sixteen elements, elastic and both with damping. */
-static void SK_ISA(stiffness)(SK_ISA(block) * b, SK_ISA(matrix) * m, const sk_batch *batch, const sk_run *run,
-                              const sk_row *row, size_t begin, size_t count) {
+static void stiffness(block *b, matrix *m, const sk_batch *batch, const sk_run *run, const sk_row *row, size_t begin,
+                      size_t count) {
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
     const sk_tape *tape = made->is_energy ? &made->hessian : &made->single;
-    SK_ISA(begin)(b, batch, tape, run->time - row->before);
-    SK_ISA(run_elements)
-    (b, batch, tape, made->compiled, run->time - row->before, run->vector[SK_X], row->packed, begin, count);
+    begin_tape(b, batch, tape, run->time - row->before);
+    run_elements(b, batch, tape, made->compiled, run->time - row->before, run->vector[SK_X], row->packed, begin, count);
     if (made->is_energy) {
         for (size_t k = 0; k < tape->outputs; k++)
-            m->entry[k] = SK_ISA(sk_keep)(b->verdict.finite[0], b->registers[tape->output[k]]);
-        SK_ISA(make_definite)(m, 3 * batch->arity);
+            m->entry[k] = sk_keep(b->verdict.finite[0], b->registers[tape->output[k]]);
+        make_definite(m, 3 * batch->arity);
     } else {
-        SK_ISA(answer) a;
-        SK_ISA(take_answer)(&a, b, tape, batch->arity, 0, made->one_sided);
-        SK_ISA(square_gradient)(m, &a, batch->arity);
+        answer a;
+        take_answer(&a, b, tape, batch->arity, 0, made->one_sided);
+        square_gradient(m, &a, batch->arity);
     }
     const sk_material *material = batch->params;
     real both =
@@ -362,16 +394,16 @@ static void SK_ISA(stiffness)(SK_ISA(block) * b, SK_ISA(matrix) * m, const sk_ba
     for (size_t k = 0; k < 3 * batch->arity * (3 * batch->arity + 1) / 2; k++) m->entry[k] *= both;
 }
 
-static void SK_ISA(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_batch *batch = row->rule;
     const sk_vec4 *q = run->vector[row->source[1]];
     size_t size = 3 * batch->arity;
-    SK_ISA(block) b;
-    SK_ISA(matrix) m;
+    block b;
+    matrix m;
     for (size_t at = begin; at < end; at += SK_LANES) {
         size_t count = end - at < SK_LANES ? end - at : SK_LANES;
         sk_wide u[3 * SK_MOST_ARITY] = {{0}}, f[3 * SK_MOST_ARITY];
-        SK_ISA(stiffness)(&b, &m, batch, run, row, at, count);
+        stiffness(&b, &m, batch, run, row, at, count);
         for (size_t l = 0; l < count; l++)
             for (size_t p = 0; p < batch->arity; p++) {
                 sk_vec4 v = sk_load(q, row->packed, batch->slot[(at + l) * batch->arity + p]);
@@ -388,13 +420,13 @@ static void SK_ISA(apply)(sk_run *run, const sk_row *row, size_t begin, size_t e
     }
 }
 
-static void SK_ISA(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_batch *batch = row->rule;
-    SK_ISA(block) b;
-    SK_ISA(matrix) m;
+    block b;
+    matrix m;
     for (size_t at = begin; at < end; at += SK_LANES) {
         size_t count = end - at < SK_LANES ? end - at : SK_LANES;
-        SK_ISA(stiffness)(&b, &m, batch, run, row, at, count);
+        stiffness(&b, &m, batch, run, row, at, count);
         for (size_t l = 0; l < count; l++)
             for (size_t p = 0; p < batch->arity; p++) {
                 uint32_t slot = batch->slot[(at + l) * batch->arity + p];
@@ -407,14 +439,14 @@ static void SK_ISA(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_
     }
 }
 
-static void SK_ISA(blocks)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(blocks)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_batch *batch = row->rule;
     size_t arity = batch->arity, pairs = arity * (arity - 1) / 2;
-    SK_ISA(block) b;
-    SK_ISA(matrix) m;
+    block b;
+    matrix m;
     for (size_t at = begin; at < end; at += SK_LANES) {
         size_t count = end - at < SK_LANES ? end - at : SK_LANES;
-        SK_ISA(stiffness)(&b, &m, batch, run, row, at, count);
+        stiffness(&b, &m, batch, run, row, at, count);
         for (size_t l = 0; l < count; l++) {
             const uint32_t *particle = batch->particle + arity * (at + l), *pair = batch->pair + pairs * (at + l);
             for (size_t p = 0; p < arity; p++)
@@ -435,17 +467,17 @@ static void SK_ISA(blocks)(sk_run *run, const sk_row *row, size_t begin, size_t 
 
 /* ---- measuring ---- */
 
-static size_t SK_ISA(energy)(const sk_batch *batch, double time, const sk_vec4 *x, size_t begin, size_t end,
-                             double *energy) {
+size_t SK_KERNEL(energy)(const sk_batch *batch, double time, const sk_vec4 *x, size_t begin, size_t end,
+                         double *energy) {
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
     size_t guarded = 0;
-    SK_ISA(block) b;
-    SK_ISA(begin)(&b, batch, &made->single, time);
+    block b;
+    begin_tape(&b, batch, &made->single, time);
     for (size_t at = begin; at < end; at += SK_LANES) {
         size_t count = end - at < SK_LANES ? end - at : SK_LANES;
-        SK_ISA(answer) a;
-        SK_ISA(run_elements)(&b, batch, &made->single, false, time, x, 0, at, count); // a tape counts its guards
-        SK_ISA(take_answer)(&a, &b, &made->single, batch->arity, 0, made->one_sided);
+        answer a;
+        run_elements(&b, batch, &made->single, false, time, x, 0, at, count); // a tape counts its guards
+        take_answer(&a, &b, &made->single, batch->arity, 0, made->one_sided);
         sk_mask odd = b.verdict.guarded[0] | ~b.verdict.finite[0];
         for (size_t l = 0; l < count; l++) {
             double c = (double)a.value[l];
@@ -457,37 +489,6 @@ static size_t SK_ISA(energy)(const sk_batch *batch, double time, const sk_vec4 *
 }
 
 #else
-#include "constraints/formula.h"
-
-/* Loops over an element's particles. */
-#ifdef __clang__
-#define UNROLLED
-#else
-#define UNROLLED _Pragma("GCC unroll 4")
-#endif
-
-enum { NOWHERE = 0xffff };
-
-/* The registers where a tape wants an element's positions and rest values. */
-typedef struct places {
-    uint16_t position[SK_MOST_ARITY], rest[SKEIN_FORMULA_MOST_RESTS];
-} places;
-
-static places find_places(const sk_batch *batch, const sk_tape *tape) {
-    int first_rest = ((const sk_formula_params *)batch->params)->made->formula->parameters;
-    places to;
-    memset(&to, 0xff, sizeof to);
-    for (size_t l = 0; l < tape->loads.count; l++) {
-        sk_tape_load load = tape->loads.data[l];
-        if (load.source == SK_TAPE_POSITION) to.position[load.index] = load.to;
-        else if (load.source == SK_TAPE_PARAMETER && load.index >= first_rest)
-            to.rest[load.index - first_rest] = load.to;
-    }
-    return to;
-}
-
-#define SK_KERNELS "constraints/formula.c"
-#include "base/for_each_isa.h"
 
 static const skein_field constraint_fields[] = {
     SK_TEXT(sk_formula_params, text, "constraint", "length(p0 - p1) - rest(length(p0 - p1))",
@@ -508,8 +509,7 @@ static const skein_field energy_fields[] = {
 
 /* Every version gives the same bits; the first is on every machine. */
 static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_t begin, size_t end, double *out) {
-    static size_t (*const versions[])(const sk_batch *, double, const sk_vec4 *, size_t, size_t, double *) =
-        SK_EACH_ISA(energy);
+    static energy_of *const versions[] = SK_EACH_ISA(energy);
     return versions[0](batch, time, x, begin, end, out);
 }
 

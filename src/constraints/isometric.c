@@ -2,6 +2,16 @@
  * is linear in the positions as long as the triangles p0 p1 p2 and p1 p0 p3 keep their shape. Its stiffness is the
  * sheet's bending rigidity; it wants to be flat, whatever it was at rest. Cheaper than an angle, and never at a loss
  * for one. */
+#define SK_ARITY 4
+#define SK_RESTS 3
+#define SK_FORMULA "constraints/emitted/isometric.h"
+#define SK_WITH_STRIPS
+#include "base/kernels.h"
+#include "constraints/element.h"
+
+#define SK_UNIT isometric
+SK_ELEMENT_KERNELS
+
 #ifdef SK_ISA
 
 #include "constraints/element_arithmetic.h"
@@ -9,14 +19,6 @@
 #include "constraints/element_sweeps.h"
 
 #else
-#define SK_ARITY 4
-#define SK_RESTS 3
-#define SK_FORMULA "constraints/emitted/isometric.h"
-#define SK_WITH_STRIPS
-#include "constraints/element.h"
-
-#define SK_KERNELS "constraints/isometric.c"
-#include "base/for_each_isa.h"
 
 typedef struct isometric_params {
     sk_material material;

@@ -11,111 +11,11 @@
  * which is XPBD's projection where p = -k (V - target), and its linearisation where the law is another. The sums over
  * triangles, and the walk that follows, are in the triangles' and the particles' order on one thread: their bits are
  * the same for any number of threads. */
-#ifdef SK_ISA
-
-#include "constraints/element_arithmetic.h"
-
-/* The volume, m3; the places and the gradient are left in the enclosure. */
-static double SK_ISA(measure)(sk_enclosure *s, const sk_vec4 *x, size_t packed) {
-    sk_vec3 origin = sk_xyz(sk_load(x, packed, s->slot[0]));
-    for (size_t v = 0; v < s->vertex_count; v++) {
-        sk_vec3 p = sk_sub(sk_xyz(sk_load(x, packed, s->slot[v])), origin);
-        real *place = s->place + 3 * v;
-        place[0] = p.x, place[1] = p.y, place[2] = p.z;
-    }
-    memset(s->gradient, 0, 3 * s->vertex_count * sizeof *s->gradient);
-    double volume = 0;
-    for (size_t t = 0; t < s->lane_count; t += SK_LANES) {
-        sk_element e;
-        SK_EACH_PARTICLE (i)
-            for (size_t l = 0; l < SK_LANES; l++) {
-                const real *place = s->place + 3 * (size_t)s->corner[i][t + l];
-                e.x[i].x[l] = place[0], e.x[i].y[l] = place[1], e.x[i].z[l] = place[2];
-            }
-        SK_ISA(formula)(&e);
-        for (size_t l = 0; l < SK_LANES; l++) volume += (double)e.value[l];
-        for (size_t l = 0; l < SK_LANES; l++)
-            SK_EACH_PARTICLE (i) {
-                real *gradient = s->gradient + 3 * (size_t)s->corner[i][t + l];
-                gradient[0] += e.gradient[i].x[l], gradient[1] += e.gradient[i].y[l];
-                gradient[2] += e.gradient[i].z[l];
-            }
-    }
-    return volume;
-}
-
-static void SK_ISA(force_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    (void)begin, (void)end;
-    const sk_batch *batch = ((const sk_sweep *)row->rule)->batch;
-    sk_enclosure *s = batch->enclosure;
-    law now = law_of(batch, SK_ISA(measure)(s, run->vector[SK_X], row->packed));
-    double damping = ((const sk_material *)batch->params)->damping;
-    double rate = damping > 0 ? along(s, run->vector[SK_V], NULL, row->packed) : 0;
-    push(s, run->vector[row->dst], NULL, row->packed, now.pressure - damping * rate);
-}
-
-static void SK_ISA(project_whole)(sk_run *run, const sk_row *row, bool damped) {
-    const sk_sweep *sweep = row->rule;
-    const sk_batch *batch = sweep->batch;
-    const sk_material *material = batch->params;
-    sk_enclosure *s = batch->enclosure;
-    real *multiplier = batch->lane_multiplier + sweep->first_lane;
-    sk_vec4 *x = run->vector[SK_X];
-    law now = law_of(batch, SK_ISA(measure)(s, x, row->packed));
-    double weight = weigh(s, x, row->packed), change = 0;
-    if (material->stiffness >= SK_UNBOUNDED) {
-        change = weight > 0 ? now.missing / weight : 0;
-    } else {
-        double h = row->dt, inertia = row->coefficient[0] / (h * h), drag = damped ? material->damping / h : 0;
-        double moved = damped ? along(s, x, run->vector[row->source[1]], row->packed) : 0;
-        double held = damped ? (double)*multiplier * inertia : 0;
-        change = (now.pressure - held - drag * moved) / ((now.stiffness + drag) * weight + inertia);
-    }
-    if (damped) *multiplier += (real)change;
-    push(s, x, x, row->packed, change);
-}
-
-static void SK_ISA(project_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    (void)begin, (void)end;
-    SK_ISA(project_whole)(run, row, false);
-}
-static void SK_ISA(project_damped_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    (void)begin, (void)end;
-    SK_ISA(project_whole)(run, row, true);
-}
-
-/* a k + b c at the present volume; the gradient is left in the enclosure. */
-static double SK_ISA(stiffen)(const sk_run *run, const sk_row *row) {
-    const sk_batch *batch = row->rule;
-    law now = law_of(batch, SK_ISA(measure)(batch->enclosure, run->vector[SK_X], row->packed));
-    return row->coefficient[0] * now.stiffness + row->coefficient[1] * ((const sk_material *)batch->params)->damping;
-}
-
-static void SK_ISA(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    (void)begin, (void)end;
-    sk_enclosure *s = ((const sk_batch *)row->rule)->enclosure;
-    double both = SK_ISA(stiffen)(run, row);
-    push(s, run->vector[row->dst], NULL, row->packed, both * along(s, run->vector[row->source[1]], NULL, row->packed));
-}
-
-static void SK_ISA(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    (void)begin, (void)end;
-    const sk_enclosure *s = ((const sk_batch *)row->rule)->enclosure;
-    real both = (real)SK_ISA(stiffen)(run, row);
-    for (size_t v = 0; v < s->vertex_count; v++) {
-        const real *g = s->gradient + 3 * v;
-        sk_add_at(run->vector[row->dst], row->packed, s->slot[v],
-                  sk_v3(both * g[0] * g[0], both * g[1] * g[1], both * g[2] * g[2]));
-        sk_add_at(run->vector[row->source[1]], row->packed, s->slot[v],
-                  sk_v3(both * g[0] * g[1], both * g[0] * g[2], both * g[1] * g[2]));
-    }
-}
-
-#else
 #define SK_ARITY 3
 #define SK_RESTS 1 // none; an array has one at the least
 #define SK_FORMULA "constraints/emitted/enclosed.h"
 #include "base/elementary.h"
+#include "base/kernels.h"
 #include "base/layout.h"
 #include "base/status.h"
 #include "constraints/element.h"
@@ -162,6 +62,20 @@ static law law_of(const sk_batch *batch, double volume) {
     return (law){.pressure = k * missing, .stiffness = k, .missing = missing, .energy = 0.5 * k * missing * missing};
 }
 
+typedef double measurer(sk_enclosure *s, const sk_vec4 *x, size_t packed);
+
+#define SK_UNIT pressure
+SK_KERNELS(measurer, measure);
+SK_KERNELS(sk_row_kernel, force_groups);
+SK_KERNELS(sk_row_kernel, project_groups);
+SK_KERNELS(sk_row_kernel, project_damped_groups);
+SK_KERNELS(sk_row_kernel, apply);
+SK_KERNELS(sk_row_kernel, diagonal);
+
+#ifdef SK_ISA
+
+#include "constraints/element_arithmetic.h"
+
 /* ---- over the particles ---- */
 
 /* grad V . u, or grad V . (u - from). */
@@ -194,12 +108,107 @@ static void push(const sk_enclosure *s, sk_vec4 *dst, const sk_vec4 *weights, si
     }
 }
 
-#define SK_KERNELS "constraints/pressure.c"
-#include "base/for_each_isa.h"
+/* The volume, m3; the places and the gradient are left in the enclosure. */
+double SK_KERNEL(measure)(sk_enclosure *s, const sk_vec4 *x, size_t packed) {
+    sk_vec3 origin = sk_xyz(sk_load(x, packed, s->slot[0]));
+    for (size_t v = 0; v < s->vertex_count; v++) {
+        sk_vec3 p = sk_sub(sk_xyz(sk_load(x, packed, s->slot[v])), origin);
+        real *place = s->place + 3 * v;
+        place[0] = p.x, place[1] = p.y, place[2] = p.z;
+    }
+    memset(s->gradient, 0, 3 * s->vertex_count * sizeof *s->gradient);
+    double volume = 0;
+    for (size_t t = 0; t < s->lane_count; t += SK_LANES) {
+        sk_element e;
+        SK_EACH_PARTICLE (i)
+            for (size_t l = 0; l < SK_LANES; l++) {
+                const real *place = s->place + 3 * (size_t)s->corner[i][t + l];
+                e.x[i].x[l] = place[0], e.x[i].y[l] = place[1], e.x[i].z[l] = place[2];
+            }
+        formula(&e);
+        for (size_t l = 0; l < SK_LANES; l++) volume += (double)e.value[l];
+        for (size_t l = 0; l < SK_LANES; l++)
+            SK_EACH_PARTICLE (i) {
+                real *gradient = s->gradient + 3 * (size_t)s->corner[i][t + l];
+                gradient[0] += e.gradient[i].x[l], gradient[1] += e.gradient[i].y[l];
+                gradient[2] += e.gradient[i].z[l];
+            }
+    }
+    return volume;
+}
+
+void SK_KERNEL(force_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    (void)begin, (void)end;
+    const sk_batch *batch = ((const sk_sweep *)row->rule)->batch;
+    sk_enclosure *s = batch->enclosure;
+    law now = law_of(batch, SK_KERNEL(measure)(s, run->vector[SK_X], row->packed));
+    double damping = ((const sk_material *)batch->params)->damping;
+    double rate = damping > 0 ? along(s, run->vector[SK_V], NULL, row->packed) : 0;
+    push(s, run->vector[row->dst], NULL, row->packed, now.pressure - damping * rate);
+}
+
+static void project_whole(sk_run *run, const sk_row *row, bool damped) {
+    const sk_sweep *sweep = row->rule;
+    const sk_batch *batch = sweep->batch;
+    const sk_material *material = batch->params;
+    sk_enclosure *s = batch->enclosure;
+    real *multiplier = batch->lane_multiplier + sweep->first_lane;
+    sk_vec4 *x = run->vector[SK_X];
+    law now = law_of(batch, SK_KERNEL(measure)(s, x, row->packed));
+    double weight = weigh(s, x, row->packed), change = 0;
+    if (material->stiffness >= SK_UNBOUNDED) {
+        change = weight > 0 ? now.missing / weight : 0;
+    } else {
+        double h = row->dt, inertia = row->coefficient[0] / (h * h), drag = damped ? material->damping / h : 0;
+        double moved = damped ? along(s, x, run->vector[row->source[1]], row->packed) : 0;
+        double held = damped ? (double)*multiplier * inertia : 0;
+        change = (now.pressure - held - drag * moved) / ((now.stiffness + drag) * weight + inertia);
+    }
+    if (damped) *multiplier += (real)change;
+    push(s, x, x, row->packed, change);
+}
+
+void SK_KERNEL(project_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    (void)begin, (void)end;
+    project_whole(run, row, false);
+}
+void SK_KERNEL(project_damped_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    (void)begin, (void)end;
+    project_whole(run, row, true);
+}
+
+/* a k + b c at the present volume; the gradient is left in the enclosure. */
+static double stiffen(const sk_run *run, const sk_row *row) {
+    const sk_batch *batch = row->rule;
+    law now = law_of(batch, SK_KERNEL(measure)(batch->enclosure, run->vector[SK_X], row->packed));
+    return row->coefficient[0] * now.stiffness + row->coefficient[1] * ((const sk_material *)batch->params)->damping;
+}
+
+void SK_KERNEL(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    (void)begin, (void)end;
+    sk_enclosure *s = ((const sk_batch *)row->rule)->enclosure;
+    double both = stiffen(run, row);
+    push(s, run->vector[row->dst], NULL, row->packed, both * along(s, run->vector[row->source[1]], NULL, row->packed));
+}
+
+void SK_KERNEL(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    (void)begin, (void)end;
+    const sk_enclosure *s = ((const sk_batch *)row->rule)->enclosure;
+    real both = (real)stiffen(run, row);
+    for (size_t v = 0; v < s->vertex_count; v++) {
+        const real *g = s->gradient + 3 * v;
+        sk_add_at(run->vector[row->dst], row->packed, s->slot[v],
+                  sk_v3(both * g[0] * g[0], both * g[1] * g[1], both * g[2] * g[2]));
+        sk_add_at(run->vector[row->source[1]], row->packed, s->slot[v],
+                  sk_v3(both * g[0] * g[1], both * g[0] * g[2], both * g[1] * g[2]));
+    }
+}
+
+#else
 
 /* Every version gives the same bits; the first is on every machine. */
 static double volume_of(sk_enclosure *s, const sk_vec4 *x) {
-    static double (*const versions[])(sk_enclosure *, const sk_vec4 *, size_t) = SK_EACH_ISA(measure);
+    static measurer *const versions[] = SK_EACH_ISA(measure);
     return versions[0](s, x, 0);
 }
 

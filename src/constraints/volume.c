@@ -1,5 +1,14 @@
 /* Volume: of the tetrahedron p0 p1 p2 p3, less that at rest; positive where p3 lies to the side that
  * cross(p1 - p0, p2 - p0) points to, so that one which is turned inside out finds its way back. */
+#define SK_ARITY 4
+#define SK_RESTS 1
+#define SK_FORMULA "constraints/emitted/volume.h"
+#include "base/kernels.h"
+#include "constraints/element.h"
+
+#define SK_UNIT volume
+SK_ELEMENT_KERNELS
+
 #ifdef SK_ISA
 
 #include "constraints/element_arithmetic.h"
@@ -7,13 +16,6 @@
 #include "constraints/element_sweeps.h"
 
 #else
-#define SK_ARITY 4
-#define SK_RESTS 1
-#define SK_FORMULA "constraints/emitted/volume.h"
-#include "constraints/element.h"
-
-#define SK_KERNELS "constraints/volume.c"
-#include "base/for_each_isa.h"
 
 typedef struct volume_params {
     sk_material material;

@@ -2,34 +2,38 @@
  * in the vertical, what flies about the centre gathers in a ring round it: of radius v^2/strength at speed v.
  *
  *   d = (centre - x), with d.y flatness times as large:   v += strength dt d/|d| */
-#ifdef SK_ISA
-
-static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_force *force = row->rule;
-    const attraction_params *params = force->params;
-    sk_vec3 centre = sk_v3_of(params->centre);
-    real flatness = (real)params->flatness, dv = (real)(row->dt * params->strength);
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        bool packed = slot < row->packed;
-        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed);
-        sk_wide4 s = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed);
-        sk_wide3 d = {centre.x - x.x, flatness * (centre.y - x.y), centre.z - x.z};
-        sk_wide square = SK_ISA(sk_dot_wide)(d, d);
-        sk_mask moved = SK_ISA(sk_positive)(square) &
-                        SK_ISA(sk_lanes_between)(slot, force->moved.first_slot, force->moved.end_slot);
-        sk_wide k = SK_ISA(sk_keep)(moved, dv / SK_ISA(sk_wide_sqrt)(square));
-        s.x += k * d.x, s.y += k * d.y, s.z += k * d.z;
-        SK_ISA(sk_store_block)(run->vector[row->dst], slot, packed, s);
-    }
-}
-
-#else
+#include "base/kernels.h"
 #include "forces/force.h"
 
 typedef struct attraction_params {
     double centre[3], strength, flatness;
     char *on;
 } attraction_params;
+
+#define SK_UNIT attraction
+SK_KERNELS(sk_row_kernel, kernel);
+
+#ifdef SK_ISA
+
+void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_force *force = row->rule;
+    const attraction_params *params = force->params;
+    sk_vec3 centre = sk_v3_of(params->centre);
+    real flatness = (real)params->flatness, dv = (real)(row->dt * params->strength);
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        bool packed = slot < row->packed;
+        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
+        sk_wide4 s = sk_load_block(run->vector[row->dst], slot, packed);
+        sk_wide3 d = {centre.x - x.x, flatness * (centre.y - x.y), centre.z - x.z};
+        sk_wide square = sk_dot_wide(d, d);
+        sk_mask moved = sk_positive(square) & sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot);
+        sk_wide k = sk_keep(moved, dv / sk_wide_sqrt(square));
+        s.x += k * d.x, s.y += k * d.y, s.z += k * d.z;
+        sk_store_block(run->vector[row->dst], slot, packed, s);
+    }
+}
+
+#else
 
 static const skein_field fields[] = {
     SK_VEC3(attraction_params, centre, "centre", "m", 0, 0, 0, "where everything is drawn to"),
@@ -49,9 +53,6 @@ static void pack(const void *data, float (*block)[4]) {
     sk_shader_vector(block[0], params->centre);
     block[0][3] = (float)params->strength, block[1][0] = (float)params->flatness;
 }
-
-#define SK_KERNELS "forces/attraction.c"
-#include "base/for_each_isa.h"
 
 const sk_force_type sk_attraction = {
     .kind = {"attraction", "draws everything to a centre, equally at any distance; flatter in the vertical",

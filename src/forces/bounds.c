@@ -2,86 +2,9 @@
  *
  *   wall       what would be outside after this substep, or is, has its velocity turned inwards, as by a mirror
  *   periodic   what is outside a box comes in again at the other side; the two sides do not see each other */
-#ifdef SK_ISA
-
-SK_INLINE sk_wide SK_ISA(axis_of)(const sk_wide4 *v, int k) {
-    return k == 0 ? v->x : k == 1 ? v->y : v->z;
-}
-
-SK_INLINE void SK_ISA(set_axis)(sk_wide4 *v, int k, sk_wide to) {
-    if (k == 0) v->x = to;
-    else if (k == 1) v->y = to;
-    else v->z = to;
-}
-
-/* Mirrors what leaves the box. */
-SK_INLINE void SK_ISA(in_box)(const bounds_params *params, sk_wide4 x, sk_wide4 *v, real h, sk_mask moved) {
-    for (int k = 0; k < 3; k++) {
-        sk_wide at = SK_ISA(axis_of)(&x, k), speed = SK_ISA(axis_of)(v, k), next = at + h * speed;
-        real low = (real)(params->centre[k] - 0.5 * params->size[k]),
-             high = (real)(params->centre[k] + 0.5 * params->size[k]);
-        sk_mask over = SK_ISA(sk_more)(next, SK_ISA(sk_splat)(high)) & SK_ISA(sk_positive)(speed);
-        sk_mask under = SK_ISA(sk_more)(SK_ISA(sk_splat)(low), next) & SK_ISA(sk_negative)(speed);
-        SK_ISA(set_axis)(v, k, SK_ISA(sk_select)(moved & (over | under), -speed, speed));
-    }
-}
-
-SK_INLINE void SK_ISA(in_ball)(const bounds_params *params, sk_wide4 x, sk_wide4 *v, real h, sk_mask moved) {
-    sk_vec3 c = sk_v3_of(params->centre);
-    sk_wide3 d = {x.x + h * v->x - c.x, x.y + h * v->y - c.y, x.z + h * v->z - c.z};
-    sk_wide square = SK_ISA(sk_dot_wide)(d, d), out = d.x * v->x + d.y * v->y + d.z * v->z;
-    real radius = (real)params->radius;
-    sk_mask over = moved & SK_ISA(sk_more)(square, SK_ISA(sk_splat)(radius * radius)) & SK_ISA(sk_positive)(out);
-    sk_wide k = SK_ISA(sk_keep)(over, (real)2 * out / square);
-    v->x -= k * d.x, v->y -= k * d.y, v->z -= k * d.z;
-}
-
-/* Moves what is outside by whole sizes of the box, in all vectors that say where it is or was. */
-SK_INLINE void SK_ISA(come_in)(sk_run *run, const sk_row *row, size_t slot, sk_wide4 x, sk_mask moved) {
-    const bounds_params *params = ((const sk_force *)row->rule)->params;
-    bool packed = slot < row->packed;
-    sk_wide4 shift = {{0}, {0}, {0}, {0}};
-    sk_mask any = {0};
-    for (int k = 0; k < 3; k++) {
-        sk_wide at = SK_ISA(axis_of)(&x, k), size = SK_ISA(sk_splat)((real)params->size[k]);
-        real low = (real)(params->centre[k] - 0.5 * params->size[k]),
-             high = (real)(params->centre[k] + 0.5 * params->size[k]);
-        sk_mask over = moved & SK_ISA(sk_more)(at, SK_ISA(sk_splat)(high));
-        sk_mask under = moved & SK_ISA(sk_more)(SK_ISA(sk_splat)(low), at);
-        SK_ISA(set_axis)(&shift, k, SK_ISA(sk_select)(over, -size, SK_ISA(sk_keep)(under, size)));
-        any |= over | under;
-    }
-    if (!SK_ISA(sk_any)(any)) return;
-    x.x += shift.x, x.y += shift.y, x.z += shift.z;
-    SK_ISA(sk_store_block)(run->vector[SK_X], slot, packed, x);
-    sk_wide4 before = SK_ISA(sk_load_block)(run->vector[SK_PREVIOUS], slot, false); // always quads
-    before.x += shift.x, before.y += shift.y, before.z += shift.z;
-    SK_ISA(sk_store_block)(run->vector[SK_PREVIOUS], slot, false, before);
-}
-
-static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_force *force = row->rule;
-    const bounds_params *params = force->params;
-    real h = (real)row->dt;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        bool packed = slot < row->packed;
-        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed);
-        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed);
-        sk_mask moved =
-            SK_ISA(sk_lanes_between)(slot, force->moved.first_slot, force->moved.end_slot) & SK_ISA(sk_positive)(x.w);
-        if (params->edge) {
-            SK_ISA(come_in)(run, row, slot, x, moved);
-            continue;
-        }
-        if (params->shape) SK_ISA(in_ball)(params, x, &v, h, moved);
-        else SK_ISA(in_box)(params, x, &v, h, moved);
-        SK_ISA(sk_store_moved)(run->vector[SK_V], slot, packed, v);
-    }
-}
-
-#else
 #include "forces/force.h"
 
+#include "base/kernels.h"
 #include "base/status.h"
 
 typedef struct bounds_params {
@@ -92,6 +15,87 @@ typedef struct bounds_params {
 
 enum { BOX, BALL };
 enum { WALL, PERIODIC };
+
+#define SK_UNIT bounds
+SK_KERNELS(sk_row_kernel, kernel);
+
+#ifdef SK_ISA
+
+SK_INLINE sk_wide axis_of(const sk_wide4 *v, int k) {
+    return k == 0 ? v->x : k == 1 ? v->y : v->z;
+}
+
+SK_INLINE void set_axis(sk_wide4 *v, int k, sk_wide to) {
+    if (k == 0) v->x = to;
+    else if (k == 1) v->y = to;
+    else v->z = to;
+}
+
+/* Mirrors what leaves the box. */
+SK_INLINE void in_box(const bounds_params *params, sk_wide4 x, sk_wide4 *v, real h, sk_mask moved) {
+    for (int k = 0; k < 3; k++) {
+        sk_wide at = axis_of(&x, k), speed = axis_of(v, k), next = at + h * speed;
+        real low = (real)(params->centre[k] - 0.5 * params->size[k]),
+             high = (real)(params->centre[k] + 0.5 * params->size[k]);
+        sk_mask over = sk_more(next, sk_splat(high)) & sk_positive(speed);
+        sk_mask under = sk_more(sk_splat(low), next) & sk_negative(speed);
+        set_axis(v, k, sk_select(moved & (over | under), -speed, speed));
+    }
+}
+
+SK_INLINE void in_ball(const bounds_params *params, sk_wide4 x, sk_wide4 *v, real h, sk_mask moved) {
+    sk_vec3 c = sk_v3_of(params->centre);
+    sk_wide3 d = {x.x + h * v->x - c.x, x.y + h * v->y - c.y, x.z + h * v->z - c.z};
+    sk_wide square = sk_dot_wide(d, d), out = d.x * v->x + d.y * v->y + d.z * v->z;
+    real radius = (real)params->radius;
+    sk_mask over = moved & sk_more(square, sk_splat(radius * radius)) & sk_positive(out);
+    sk_wide k = sk_keep(over, (real)2 * out / square);
+    v->x -= k * d.x, v->y -= k * d.y, v->z -= k * d.z;
+}
+
+/* Moves what is outside by whole sizes of the box, in all vectors that say where it is or was. */
+SK_INLINE void come_in(sk_run *run, const sk_row *row, size_t slot, sk_wide4 x, sk_mask moved) {
+    const bounds_params *params = ((const sk_force *)row->rule)->params;
+    bool packed = slot < row->packed;
+    sk_wide4 shift = {{0}, {0}, {0}, {0}};
+    sk_mask any = {0};
+    for (int k = 0; k < 3; k++) {
+        sk_wide at = axis_of(&x, k), size = sk_splat((real)params->size[k]);
+        real low = (real)(params->centre[k] - 0.5 * params->size[k]),
+             high = (real)(params->centre[k] + 0.5 * params->size[k]);
+        sk_mask over = moved & sk_more(at, sk_splat(high));
+        sk_mask under = moved & sk_more(sk_splat(low), at);
+        set_axis(&shift, k, sk_select(over, -size, sk_keep(under, size)));
+        any |= over | under;
+    }
+    if (!sk_any(any)) return;
+    x.x += shift.x, x.y += shift.y, x.z += shift.z;
+    sk_store_block(run->vector[SK_X], slot, packed, x);
+    sk_wide4 before = sk_load_block(run->vector[SK_PREVIOUS], slot, false); // always quads
+    before.x += shift.x, before.y += shift.y, before.z += shift.z;
+    sk_store_block(run->vector[SK_PREVIOUS], slot, false, before);
+}
+
+void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_force *force = row->rule;
+    const bounds_params *params = force->params;
+    real h = (real)row->dt;
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        bool packed = slot < row->packed;
+        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
+        sk_wide4 v = sk_load_block(run->vector[SK_V], slot, packed);
+        sk_mask moved = sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot) & sk_positive(x.w);
+        if (params->edge) {
+            come_in(run, row, slot, x, moved);
+            continue;
+        }
+        if (params->shape) in_ball(params, x, &v, h, moved);
+        else in_box(params, x, &v, h, moved);
+        sk_store_moved(run->vector[SK_V], slot, packed, v);
+    }
+}
+
+#else
 
 static const skein_field fields[] = {
     {"shape",
@@ -147,9 +151,6 @@ static void pack(const void *data, float (*block)[4]) {
 static bool shifts(const void *params) {
     return ((const bounds_params *)params)->edge == PERIODIC;
 }
-
-#define SK_KERNELS "forces/bounds.c"
-#include "base/for_each_isa.h"
 
 const sk_force_type sk_bounds = {
     .kind = {"bounds", "a box or a sphere that is not left", SKEIN_FORCE, fields, sizeof fields / sizeof *fields,

@@ -5,44 +5,58 @@
  * are moved up close to each other, and worked out sixteen at a time. The k-th of them is added to lane k mod 16, and
  * the lanes are added up in a fixed order: the same bits for any width. A particle finds itself among its neighbours,
  * at distance 0, where there is no direction: it adds nothing, nor does another in the same place. */
+#include "forces/flocking.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/elementary.h"
+#include "base/kernels.h"
+#include "base/status.h"
+#include "forces/pair_formula.h"
+#include "formula/formula.h"
+
+#define SK_UNIT flocking
+SK_KERNELS(sk_row_kernel, kernel);
+
 #ifdef SK_ISA
 
 #include "space/cells_wide.h"
 
-enum { SK_ISA(AHEAD) = 8 };
-enum { SK_ISA(ROOM) = 256 }; // neighbours that are kept before they are worked out
+enum { AHEAD = 8 };
+enum { ROOM = 256 }; // neighbours that are kept before they are worked out
 
 /* Where the weights are formulas: their tapes, and room for the registers. */
-typedef struct SK_ISA(formulas) {
+typedef struct weight_formulas {
     const sk_pair_formula *pair;
     sk_wide registers[SK_PAIR_WEIGHTS][SK_TAPE_MEMORY / sizeof(sk_wide)];
-} SK_ISA(formulas);
+} weight_formulas;
 
-typedef struct SK_ISA(near) {
-    real x[SK_ISA(ROOM) + 2 * SK_LANES], y[SK_ISA(ROOM) + 2 * SK_LANES], z[SK_ISA(ROOM) + 2 * SK_LANES];
-    real ux[SK_ISA(ROOM) + 2 * SK_LANES], uy[SK_ISA(ROOM) + 2 * SK_LANES], uz[SK_ISA(ROOM) + 2 * SK_LANES];
+typedef struct neighbours {
+    real x[ROOM + 2 * SK_LANES], y[ROOM + 2 * SK_LANES], z[ROOM + 2 * SK_LANES];
+    real ux[ROOM + 2 * SK_LANES], uy[ROOM + 2 * SK_LANES], uz[ROOM + 2 * SK_LANES];
     size_t count;
-    sk_vec3 heading;             // the particle's own direction; 0 when it stands still: it sees all round then
-    SK_ISA(formulas) * formulas; // NULL: the zones' own weights
-} SK_ISA(near);
+    sk_vec3 heading;           // the particle's own direction; 0 when it stands still: it sees all round then
+    weight_formulas *formulas; // NULL: the zones' own weights
+} neighbours;
 
-SK_INLINE sk_wide SK_ISA(wide_at)(const real *at) {
+SK_INLINE sk_wide wide_at(const real *at) {
     sk_wide a;
     memcpy(&a, at, sizeof a);
     return a;
 }
 
 /* The cells' copies, where stores to the list cannot change them. */
-typedef struct SK_ISA(copies) {
+typedef struct cell_copies {
     const real *x, *y, *z, *ux, *uy, *uz;
-} SK_ISA(copies);
+} cell_copies;
 
 /* Puts the candidates of bits into the list from k on, and returns where it ends then; d is where they are from the
  * particle. (In a register: kept in the list itself, where it ends waits for the store before it each time, 40 cycles a
  * bird.) */
-SK_INLINE size_t SK_ISA(keep_near)(SK_ISA(near) * near, size_t k, const SK_ISA(copies) * copies, size_t place,
-                                   sk_wide3 d, sk_wide squares, sk_wide square, uint32_t some) {
-#if defined(SK_HAS_AVX512) && !defined(SKEIN_DOUBLE)
+SK_INLINE size_t keep_near(neighbours *near, size_t k, const cell_copies *copies, size_t place, sk_wide3 d, sk_wide squares,
+                           sk_wide square, uint32_t some) {
+#if SK_WIDTH == 64 && !defined(SKEIN_DOUBLE)
     __mmask16 bits = _mm512_mask_cmp_ps_mask((__mmask16)some, (__m512)square, (__m512)squares, _CMP_GT_OQ);
     // which lanes, once, for six permutations: half the work of six compressions
     const sk_mask all = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -55,7 +69,7 @@ SK_INLINE size_t SK_ISA(keep_near)(SK_ISA(near) * near, size_t k, const SK_ISA(c
     _mm512_storeu_ps(near->uz + k, _mm512_permutexvar_ps(lanes, _mm512_loadu_ps(copies->uz + place)));
     return k + (size_t)__builtin_popcount(bits);
 #else
-    uint32_t bits = SK_ISA(sk_more_bits)(square, squares) & some;
+    uint32_t bits = sk_more_bits(square, squares) & some;
     for (; bits; bits &= bits - 1, k++) {
         int l = __builtin_ctz(bits);
         near->x[k] = d.x[l], near->y[k] = d.y[l], near->z[k] = d.z[l];
@@ -68,8 +82,8 @@ SK_INLINE size_t SK_ISA(keep_near)(SK_ISA(near) * near, size_t k, const SK_ISA(c
 }
 
 /* Leaves the n->count nearest of those in view, in their order; who is in the same place does not count. */
-static void SK_ISA(prune)(SK_ISA(near) * near, const sk_flocking_numbers *n) {
-    real square[SK_ISA(ROOM) + 2 * SK_LANES], best[SK_FLOCKING_MOST_NEAREST];
+static void prune(neighbours *near, const sk_flocking_numbers *n) {
+    real square[ROOM + 2 * SK_LANES], best[SK_FLOCKING_MOST_NEAREST];
     int found = 0, ties = 0;
     for (size_t k = 0; k < near->count; k++) {
         sk_vec3 d = {near->x[k], near->y[k], near->z[k]};
@@ -95,61 +109,57 @@ static void SK_ISA(prune)(SK_ISA(near) * near, const sk_flocking_numbers *n) {
 }
 
 /* Sixteen neighbours from k on. */
-typedef struct SK_ISA(hits) {
+typedef struct hits {
     sk_wide3 d;
     sk_wide per, percent; // 1/distance
     sk_mask counts;
-} SK_ISA(hits);
+} hits;
 
-SK_INLINE SK_ISA(hits) SK_ISA(hits_at)(const SK_ISA(near) * near, size_t k, const sk_flocking_numbers *n) {
-    SK_ISA(hits)
-    h = {.d = {SK_ISA(wide_at)(near->x + k), SK_ISA(wide_at)(near->y + k), SK_ISA(wide_at)(near->z + k)}};
-    sk_wide least = SK_ISA(all)(n->least), square = SK_ISA(sk_dot_wide)(h.d, h.d);
-    sk_wide distance = SK_ISA(sk_wide_sqrt)(square);
-    distance = SK_ISA(sk_select)(SK_ISA(sk_more)(distance, least), distance, least);
-    h.per = SK_ISA(all)(1) / distance;
-    h.percent = distance * SK_ISA(all)(n->per_reach);
+SK_INLINE hits hits_at(const neighbours *near, size_t k, const sk_flocking_numbers *n) {
+    hits h = {.d = {wide_at(near->x + k), wide_at(near->y + k), wide_at(near->z + k)}};
+    sk_wide least = all(n->least), square = sk_dot_wide(h.d, h.d);
+    sk_wide distance = sk_wide_sqrt(square);
+    distance = sk_select(sk_more(distance, least), distance, least);
+    h.per = all(1) / distance;
+    h.percent = distance * all(n->per_reach);
     if (n->squared) h.percent *= h.percent;
-    h.counts = SK_ISA(sk_positive)(square);
+    h.counts = sk_positive(square);
     if (!n->sees_all) {
         sk_vec3 u = near->heading;
-        sk_wide ahead = h.d.x * SK_ISA(all)(u.x) + h.d.y * SK_ISA(all)(u.y) + h.d.z * SK_ISA(all)(u.z);
+        sk_wide ahead = h.d.x * all(u.x) + h.d.y * all(u.y) + h.d.z * all(u.z);
         real all_round = u.x * u.x + u.y * u.y + u.z * u.z > 0 ? 0 : 1; // a particle that stands still
-        h.counts &= SK_ISA(sk_at_most)(SK_ISA(all)(n->view) * distance, ahead + SK_ISA(all)(2 * all_round) * distance);
+        h.counts &= sk_at_most(all(n->view) * distance, ahead + all(2 * all_round) * distance);
     }
     return h;
 }
 
 /* Adds what the weights make of sixteen neighbours. */
-SK_INLINE void SK_ISA(add_hits)(const SK_ISA(near) * near, size_t k, const SK_ISA(hits) * h, sk_wide towards,
-                                sk_wide with, sk_wide3 *sum) {
-    towards = SK_ISA(sk_keep)(h->counts, towards * h->per);
-    with = SK_ISA(sk_keep)(h->counts, with);
-    sum->x += towards * h->d.x + with * SK_ISA(wide_at)(near->ux + k);
-    sum->y += towards * h->d.y + with * SK_ISA(wide_at)(near->uy + k);
-    sum->z += towards * h->d.z + with * SK_ISA(wide_at)(near->uz + k);
+SK_INLINE void add_hits(const neighbours *near, size_t k, const hits *h, sk_wide towards, sk_wide with, sk_wide3 *sum) {
+    towards = sk_keep(h->counts, towards * h->per);
+    with = sk_keep(h->counts, with);
+    sum->x += towards * h->d.x + with * wide_at(near->ux + k);
+    sum->y += towards * h->d.y + with * wide_at(near->uy + k);
+    sum->z += towards * h->d.z + with * wide_at(near->uz + k);
 }
 
-SK_INLINE void SK_ISA(add_near)(const SK_ISA(near) * near, size_t k, const sk_flocking_numbers *n, sk_wide3 *sum) {
-    SK_ISA(hits) h = SK_ISA(hits_at)(near, k, n);
-    sk_wide one = SK_ISA(all)(1), half = SK_ISA(all)((real)0.5), away_to = SK_ISA(all)(n->away),
-            along_to = SK_ISA(all)(n->along);
-    sk_wide inverse = SK_ISA(all)(n->reach) * h.per; // 1/percent
+SK_INLINE void add_near(const neighbours *near, size_t k, const sk_flocking_numbers *n, sk_wide3 *sum) {
+    hits h = hits_at(near, k, n);
+    sk_wide one = all(1), half = all((real)0.5), away_to = all(n->away), along_to = all(n->along);
+    sk_wide inverse = all(n->reach) * h.per; // 1/percent
     if (n->squared) inverse *= inverse;
-    sk_mask away = SK_ISA(sk_more)(away_to, h.percent);
-    sk_mask along = SK_ISA(sk_more)(along_to, h.percent) & ~away;
+    sk_mask away = sk_more(away_to, h.percent);
+    sk_mask along = sk_more(along_to, h.percent) & ~away;
     // from -0.5 to 0.5 through the zone
-    sk_wide a = SK_ISA(sk_select)(along, (h.percent - away_to) * SK_ISA(all)(n->per_along),
-                                  (h.percent - along_to) * SK_ISA(all)(n->per_towards)) -
-                half;
+    sk_wide a =
+        sk_select(along, (h.percent - away_to) * all(n->per_along), (h.percent - along_to) * all(n->per_towards)) -
+        half;
     sk_wide s = a * a, cosine = half * SK_FLOCKING_COSINE(s);
-    sk_wide towards = SK_ISA(sk_select)(away, one - away_to * inverse, cosine);
-    SK_ISA(add_hits)(near, k, &h, SK_ISA(sk_keep)(~along, towards), SK_ISA(sk_keep)(along, one - cosine), sum);
+    sk_wide towards = sk_select(away, one - away_to * inverse, cosine);
+    add_hits(near, k, &h, sk_keep(~along, towards), sk_keep(along, one - cosine), sum);
 }
 
 /* The same with formulas: of `count` neighbours from k on, a multiple of sixteen that fits the tape's block. */
-static void SK_ISA(add_by_formula)(const SK_ISA(near) * near, size_t k, size_t count, const sk_flocking_numbers *n,
-                                   sk_wide3 *sum) {
+static void add_by_formula(const neighbours *near, size_t k, size_t count, const sk_flocking_numbers *n, sk_wide3 *sum) {
     const sk_pair_formula *pair = near->formulas->pair;
     sk_tape_verdict verdict[SK_PAIR_WEIGHTS];
     for (int w = 0; w < SK_PAIR_WEIGHTS; w++) {
@@ -157,64 +167,61 @@ static void SK_ISA(add_by_formula)(const SK_ISA(near) * near, size_t k, size_t c
         if (!pair->formula[w]) continue;
         for (size_t i = 0; i < pair->tape[w].wides && pair->percent[w] != UINT16_MAX; i++)
             registers[pair->percent[w] * pair->tape[w].wides + i] =
-                SK_ISA(hits_at)(near, k + (SK_LANES * i < count ? SK_LANES * i : 0), n).percent;
-        sk_tape_kernels_of[SK_ISA(sk_version)].run(&pair->tape[w], registers, pair->tape[w].wides, &verdict[w]);
+                hits_at(near, k + (SK_LANES * i < count ? SK_LANES * i : 0), n).percent;
+        sk_tape_kernels_of[SK_THIS_ISA]->run(&pair->tape[w], registers, pair->tape[w].wides, &verdict[w]);
     }
     for (size_t i = 0; SK_LANES * i < count; i++) {
-        SK_ISA(hits) h = SK_ISA(hits_at)(near, k + SK_LANES * i, n);
+        hits h = hits_at(near, k + SK_LANES * i, n);
         sk_wide weight[SK_PAIR_WEIGHTS] = {{0}, {0}};
         for (int w = 0; w < SK_PAIR_WEIGHTS; w++)
             if (pair->formula[w])
-                weight[w] =
-                    SK_ISA(sk_keep)(verdict[w].finite[i],
+                weight[w] = sk_keep(verdict[w].finite[i],
                                     near->formulas->registers[w][pair->tape[w].output[0] * pair->tape[w].wides + i]);
-        SK_ISA(add_hits)(near, k + SK_LANES * i, &h, weight[SK_TOWARDS], weight[SK_ALONG], sum);
+        add_hits(near, k + SK_LANES * i, &h, weight[SK_TOWARDS], weight[SK_ALONG], sum);
     }
 }
 
 /* Adds `count` neighbours from the front of the list, a multiple of sixteen. */
-SK_INLINE void SK_ISA(add_all)(const SK_ISA(near) * near, size_t count, const sk_flocking_numbers *n, sk_wide3 *sum) {
+SK_INLINE void add_all(const neighbours *near, size_t count, const sk_flocking_numbers *n, sk_wide3 *sum) {
     if (!near->formulas) {
-        for (size_t k = 0; k < count; k += SK_LANES) SK_ISA(add_near)(near, k, n, sum);
+        for (size_t k = 0; k < count; k += SK_LANES) add_near(near, k, n, sum);
         return;
     }
     size_t block = SK_LANES * SK_TAPE_WIDES;
     for (int w = 0; w < SK_PAIR_WEIGHTS; w++)
         if (near->formulas->pair->formula[w] && SK_LANES * near->formulas->pair->tape[w].wides < block)
             block = SK_LANES * near->formulas->pair->tape[w].wides;
-    for (size_t k = 0; k < count; k += block)
-        SK_ISA(add_by_formula)(near, k, count - k < block ? count - k : block, n, sum);
+    for (size_t k = 0; k < count; k += block) add_by_formula(near, k, count - k < block ? count - k : block, n, sum);
 }
 
 /* Works out all whole sixteens, and what is left of them moves to the front. */
-SK_INLINE void SK_ISA(work_out)(SK_ISA(near) * near, const sk_flocking_numbers *n, sk_wide3 *sum) {
+SK_INLINE void work_out(neighbours *near, const sk_flocking_numbers *n, sk_wide3 *sum) {
     if (n->count) {
-        SK_ISA(prune)(near, n);
+        prune(near, n);
         return;
     }
     size_t whole = near->count / SK_LANES * SK_LANES;
-    SK_ISA(add_all)(near, whole, n, sum);
+    add_all(near, whole, n, sum);
     real *lists[] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
     for (int i = 0; i < 6; i++) memcpy(lists[i], lists[i] + whole, SK_LANES * sizeof(real));
     near->count -= whole;
 }
 
 /* Tests the listed candidates, and keeps those within reach. */
-SK_INLINE void SK_ISA(test)(const sk_cells *cells, const sk_flocking_numbers *n, sk_vec3 p, SK_ISA(sixteens) * sixteens,
-                            SK_ISA(near) * near, sk_wide3 *sum) {
-    sk_wide square = SK_ISA(all)(n->reach * n->reach);
-    const sk_wide3 here = {SK_ISA(all)(p.x), SK_ISA(all)(p.y), SK_ISA(all)(p.z)};
-    const SK_ISA(copies) copies = {cells->x, cells->y, cells->z, cells->ux, cells->uy, cells->uz};
+SK_INLINE void test(const sk_cells *cells, const sk_flocking_numbers *n, sk_vec3 p, sixteen_lists *sixteens,
+                    neighbours *near, sk_wide3 *sum) {
+    sk_wide square = all(n->reach * n->reach);
+    const sk_wide3 here = {all(p.x), all(p.y), all(p.z)};
+    const cell_copies copies = {cells->x, cells->y, cells->z, cells->ux, cells->uy, cells->uz};
     size_t count = near->count;
     for (size_t k = 0, all = sixteens->count; k < all; k++) {
         size_t place = sixteens->place[k];
-        sk_wide3 d = {SK_ISA(wide_at)(copies.x + place) - here.x, SK_ISA(wide_at)(copies.y + place) - here.y,
-                      SK_ISA(wide_at)(copies.z + place) - here.z};
-        count =
-            SK_ISA(keep_near)(near, count, &copies, place, d, SK_ISA(sk_dot_wide)(d, d), square, sixteens->some[k]);
-        if (count < SK_ISA(ROOM)) continue;
+        sk_wide3 d = {wide_at(copies.x + place) - here.x, wide_at(copies.y + place) - here.y,
+                      wide_at(copies.z + place) - here.z};
+        count = keep_near(near, count, &copies, place, d, sk_dot_wide(d, d), square, sixteens->some[k]);
+        if (count < ROOM) continue;
         near->count = count;
-        SK_ISA(work_out)(near, n, sum);
+        work_out(near, n, sum);
         count = near->count;
     }
     near->count = count;
@@ -222,88 +229,77 @@ SK_INLINE void SK_ISA(test)(const sk_cells *cells, const sk_flocking_numbers *n,
 }
 
 /* The steering of one particle at p. */
-SK_INLINE sk_vec3 SK_ISA(steer)(const sk_cells *cells, const SK_ISA(rows) * rows, const sk_flocking_numbers *n,
-                                sk_vec3 p, SK_ISA(near) * near) {
-    SK_ISA(ranges) ranges;
-    SK_ISA(find_ranges)(cells, rows, p, n->reach, &ranges);
-    SK_ISA(sixteens) sixteens;
+SK_INLINE sk_vec3 steer(const sk_cells *cells, const nine_lines *rows, const sk_flocking_numbers *n, sk_vec3 p,
+                        neighbours *near) {
+    nine_ranges ranges;
+    find_ranges(cells, rows, p, n->reach, &ranges);
+    sixteen_lists sixteens;
     sixteens.count = 0;
     sk_wide3 sum = {{0}, {0}, {0}};
     near->count = 0;
     // rows of over 32 are few: twice without asking
-    SK_ISA(list)(&ranges, &sixteens);
-    SK_ISA(list)(&ranges, &sixteens);
-    while (SK_ISA(list)(&ranges, &sixteens))
-        if (sixteens.count >= SK_ISA(SIXTEENS)) SK_ISA(test)(cells, n, p, &sixteens, near, &sum);
-    SK_ISA(test)(cells, n, p, &sixteens, near, &sum);
-    if (n->count) SK_ISA(prune)(near, n);
+    list(&ranges, &sixteens);
+    list(&ranges, &sixteens);
+    while (list(&ranges, &sixteens))
+        if (sixteens.count >= SIXTEENS) test(cells, n, p, &sixteens, near, &sum);
+    test(cells, n, p, &sixteens, near, &sum);
+    if (n->count) prune(near, n);
     // fill up with neighbours in the same place, which add nothing
     const sk_wide none = {0};
     memcpy(near->x + near->count, &none, sizeof none), memcpy(near->y + near->count, &none, sizeof none);
     memcpy(near->z + near->count, &none, sizeof none), memcpy(near->ux + near->count, &none, sizeof none);
     memcpy(near->uy + near->count, &none, sizeof none), memcpy(near->uz + near->count, &none, sizeof none);
-    SK_ISA(add_all)(near, (near->count + SK_LANES - 1) / SK_LANES * SK_LANES, n, &sum);
-    return sk_v3(SK_ISA(sk_sum)(sum.x), SK_ISA(sk_sum)(sum.y), SK_ISA(sk_sum)(sum.z));
+    add_all(near, (near->count + SK_LANES - 1) / SK_LANES * SK_LANES, n, &sum);
+    return sk_v3(sk_sum(sum.x), sk_sum(sum.y), sk_sum(sum.z));
 }
 
-SK_INLINE sk_vec3 SK_ISA(heading_of)(sk_vec4 v) {
+SK_INLINE sk_vec3 heading_of(sk_vec4 v) {
     real speed = sk_length(sk_xyz(v));
     return speed > 0 && speed <= (real)SK_REAL_MAX ? sk_scale(1 / speed, sk_xyz(v)) : sk_v3(0, 0, 0);
 }
 
 /* Elements are places where particles look at each other, else the user's particles. */
-static void SK_ISA(fly)(sk_run *run, const sk_row *row, size_t begin, size_t end, SK_ISA(formulas) * formulas) {
+static void fly(sk_run *run, const sk_row *row, size_t begin, size_t end, weight_formulas *formulas) {
     const sk_force *force = row->rule;
     const sk_flocking_params *params = force->params;
     const sk_flocking_numbers numbers = sk_flocking_numbers_of(params);
     const sk_cells *cells = run->cells;
     bool among = force->moved.first == force->seen.first && force->moved.end == force->seen.end;
     real scale = (real)(row->dt * params->strength);
-    SK_ISA(rows) rows = SK_ISA(rows_of)(cells);
-    SK_ISA(near) near;
+    nine_lines rows = rows_of(cells);
+    neighbours near;
     near.formulas = formulas;
     if (!cells->count) return; // nobody is near, or there is no memory for the cells
     if (among && end > cells->count) end = cells->count;
     for (size_t i = begin; i < end; i++) {
         uint32_t slot = among ? cells->slot[i] : run->slot_of[i];
         // slots may be anywhere in memory
-        if (among)
-            __builtin_prefetch(&run->vector[row->dst][cells->slot[i + SK_ISA(AHEAD) < end ? i + SK_ISA(AHEAD) : i]], 1);
+        if (among) __builtin_prefetch(&run->vector[row->dst][cells->slot[i + AHEAD < end ? i + AHEAD : i]], 1);
         sk_vec3 p = among ? sk_v3(cells->x[i], cells->y[i], cells->z[i])
                           : sk_xyz(sk_load(run->vector[SK_X], row->packed, slot));
         near.heading = sk_v3(0, 0, 0);
-        if (!numbers.sees_all) near.heading = SK_ISA(heading_of)(sk_load(run->vector[SK_V], row->packed, slot));
-        sk_add_at(run->vector[row->dst], row->packed, slot,
-                  sk_scale(scale, SK_ISA(steer)(cells, &rows, &numbers, p, &near)));
+        if (!numbers.sees_all) near.heading = heading_of(sk_load(run->vector[SK_V], row->packed, slot));
+        sk_add_at(run->vector[row->dst], row->packed, slot, sk_scale(scale, steer(cells, &rows, &numbers, p, &near)));
     }
 }
 
-static void SK_ISA(fly_by_formula)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    SK_ISA(formulas) formulas;
+static void fly_by_formula(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    weight_formulas formulas;
     formulas.pair = ((const sk_flocking_params *)((const sk_force *)row->rule)->params)->pair;
     sk_tape_input input = {.time = (real)run->time};
     for (int w = 0; w < SK_PAIR_WEIGHTS; w++)
         if (formulas.pair->formula[w])
-            sk_tape_kernels_of[SK_ISA(sk_version)].begin(&formulas.pair->tape[w], &input, formulas.registers[w]);
-    SK_ISA(fly)(run, row, begin, end, &formulas);
+            sk_tape_kernels_of[SK_THIS_ISA]->begin(&formulas.pair->tape[w], &input, formulas.registers[w]);
+    fly(run, row, begin, end, &formulas);
 }
 
-static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_flocking_params *params = ((const sk_force *)row->rule)->params;
-    if (params->pair) SK_ISA(fly_by_formula)(run, row, begin, end);
-    else SK_ISA(fly)(run, row, begin, end, NULL);
+    if (params->pair) fly_by_formula(run, row, begin, end);
+    else fly(run, row, begin, end, NULL);
 }
 
 #else
-#include "forces/flocking.h"
-
-#include <stdio.h>
-#include <string.h>
-
-#include "base/elementary.h"
-#include "base/status.h"
-#include "forces/pair_formula.h"
-#include "formula/formula.h"
 
 // clang-format off
 static const skein_field fields[] = {
@@ -397,9 +393,6 @@ static bool changes(const void *data) {
         if (pair->formula[w] && pair->formula[w]->uses & SK_USES_TIME) return true;
     return false;
 }
-
-#define SK_KERNELS "forces/flocking.c"
-#include "base/for_each_isa.h"
 
 const sk_force_type sk_flocking = {
     .kind = {"flocking", "neighbours push apart, fly along or draw together, by how far they are", SKEIN_FORCE, fields,

@@ -1,65 +1,5 @@
 /* A force by a formula of place, velocity and time. */
-#ifdef SK_ISA
-#include "forces/blocks.h"
-
-/* What a formula's value counts in newtons: a particle's mass, or 1; 0 for slots without a particle. */
-SK_INLINE sk_wide SK_ISA(weight)(const force_field_params *params, sk_wide mass) {
-    if (params->per == PER_MASS) return mass;
-    return SK_ISA(sk_keep)(SK_ISA(sk_positive)(mass), SK_ISA(sk_splat)(1));
-}
-
-static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const force_field_params *params = ((const sk_force *)row->rule)->params;
-    double time = run->time - row->before;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        bool packed = slot < row->packed;
-        sk_wide out[SK_POINTWISE_MOST_OUTPUTS];
-        sk_mask guarded;
-        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed);
-        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed), f = {0};
-        sk_wide3 p = {x.x, x.y, x.z}, u = {v.x, v.y, v.z};
-        sk_pointwise_run_of[SK_ISA(sk_version)](params->force, params->parameter, time, &p, &u, out, &guarded);
-        sk_wide m = SK_ISA(weight)(params, v.w);
-        if (!row->sets) f = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed);
-        f.x += m * out[0], f.y += m * out[1], f.z += m * out[2];
-        SK_ISA(sk_store_block)(run->vector[row->dst], slot, packed, f);
-    }
-}
-
-/* a times the stiffness and b times the damping. */
-SK_INLINE SK_ISA(block) SK_ISA(slope)(sk_run *run, const sk_row *row, size_t slot) {
-    const force_field_params *params = ((const sk_force *)row->rule)->params;
-    bool packed = slot < row->packed;
-    real a = (real)row->coefficient[0], b = (real)row->coefficient[1];
-    sk_wide out[SK_POINTWISE_MOST_OUTPUTS], k[6];
-    sk_mask guarded;
-    sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed);
-    sk_wide4 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed);
-    sk_wide3 p = {x.x, x.y, x.z}, u = {v.x, v.y, v.z};
-    sk_pointwise_run_of[SK_ISA(sk_version)](params->slopes, params->parameter, run->time - row->before, &p, &u, out,
-                                            &guarded);
-    sk_wide m = SK_ISA(weight)(params, v.w);
-    for (int i = 0; i < 6; i++) k[i] = m * (a * out[i] + b * out[6 + i]);
-    SK_ISA(block) block = {k[0], k[1], k[2], k[3], k[4], k[5]};
-    SK_ISA(make_positive)(&block);
-    return block;
-}
-
-static void SK_ISA(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        SK_ISA(block) block = SK_ISA(slope)(run, row, slot);
-        SK_ISA(add_product)(run, row, slot, &block);
-    }
-}
-
-static void SK_ISA(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        SK_ISA(block) block = SK_ISA(slope)(run, row, slot);
-        SK_ISA(add_block)(run, row, slot, &block);
-    }
-}
-
-#else
+#include "base/kernels.h"
 #include "forces/force.h"
 #include "formula/pointwise.h"
 
@@ -71,6 +11,73 @@ typedef struct force_field_params {
     int32_t per;
     sk_pointwise *force, *slopes;
 } force_field_params;
+
+#define SK_UNIT force_field
+SK_KERNELS(sk_row_kernel, kernel);
+SK_KERNELS(sk_row_kernel, apply);
+SK_KERNELS(sk_row_kernel, diagonal);
+
+#ifdef SK_ISA
+
+#include "forces/blocks.h"
+
+/* What a formula's value counts in newtons: a particle's mass, or 1; 0 for slots without a particle. */
+SK_INLINE sk_wide weight(const force_field_params *params, sk_wide mass) {
+    if (params->per == PER_MASS) return mass;
+    return sk_keep(sk_positive(mass), sk_splat(1));
+}
+
+void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const force_field_params *params = ((const sk_force *)row->rule)->params;
+    double time = run->time - row->before;
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        bool packed = slot < row->packed;
+        sk_wide out[SK_POINTWISE_MOST_OUTPUTS];
+        sk_mask guarded;
+        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
+        sk_wide4 v = sk_load_block(run->vector[SK_V], slot, packed), f = {0};
+        sk_wide3 p = {x.x, x.y, x.z}, u = {v.x, v.y, v.z};
+        sk_pointwise_run_of[SK_THIS_ISA](params->force, params->parameter, time, &p, &u, out, &guarded);
+        sk_wide m = weight(params, v.w);
+        if (!row->sets) f = sk_load_block(run->vector[row->dst], slot, packed);
+        f.x += m * out[0], f.y += m * out[1], f.z += m * out[2];
+        sk_store_block(run->vector[row->dst], slot, packed, f);
+    }
+}
+
+/* a times the stiffness and b times the damping. */
+SK_INLINE stiffness_block slope(sk_run *run, const sk_row *row, size_t slot) {
+    const force_field_params *params = ((const sk_force *)row->rule)->params;
+    bool packed = slot < row->packed;
+    real a = (real)row->coefficient[0], b = (real)row->coefficient[1];
+    sk_wide out[SK_POINTWISE_MOST_OUTPUTS], k[6];
+    sk_mask guarded;
+    sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
+    sk_wide4 v = sk_load_block(run->vector[SK_V], slot, packed);
+    sk_wide3 p = {x.x, x.y, x.z}, u = {v.x, v.y, v.z};
+    sk_pointwise_run_of[SK_THIS_ISA](params->slopes, params->parameter, run->time - row->before, &p, &u, out, &guarded);
+    sk_wide m = weight(params, v.w);
+    for (int i = 0; i < 6; i++) k[i] = m * (a * out[i] + b * out[6 + i]);
+    stiffness_block block = {k[0], k[1], k[2], k[3], k[4], k[5]};
+    make_positive(&block);
+    return block;
+}
+
+void SK_KERNEL(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        stiffness_block block = slope(run, row, slot);
+        add_product(run, row, slot, &block);
+    }
+}
+
+void SK_KERNEL(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        stiffness_block block = slope(run, row, slot);
+        add_block(run, row, slot, &block);
+    }
+}
+
+#else
 
 static const skein_field fields[] = {
     SK_TEXT(force_field_params, text, "force", "vec3(0, 0, 0)", "a vector, as a formula of p, v and t"),
@@ -157,9 +164,6 @@ static bool at(const void *data, const double x[3], double time, double force[3]
     for (int k = 0; k < 3; k++) force[k] = value.number[k];
     return true;
 }
-
-#define SK_KERNELS "forces/force_field.c"
-#include "base/for_each_isa.h"
 
 static const sk_making making = {.make = make, .unmake = unmake};
 const sk_force_type sk_force_field = {

@@ -1,27 +1,32 @@
 /* Gravity: F = m g on every particle. */
-#ifdef SK_ISA
-
-static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const gravity_params *params = ((const sk_force *)row->rule)->params;
-    sk_vec3 g = sk_v3_of(params->acceleration);
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        bool packed = slot < row->packed;
-        sk_wide mass = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed).w;
-        sk_wide4 f = {0};
-        if (!row->sets) f = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed);
-        f.x += mass * g.x;
-        f.y += mass * g.y;
-        f.z += mass * g.z;
-        SK_ISA(sk_store_block)(run->vector[row->dst], slot, packed, f);
-    }
-}
-
-#else
+#include "base/kernels.h"
 #include "forces/force.h"
 
 typedef struct gravity_params {
     double acceleration[3];
 } gravity_params;
+
+#define SK_UNIT gravity
+SK_KERNELS(sk_row_kernel, kernel);
+
+#ifdef SK_ISA
+
+void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const gravity_params *params = ((const sk_force *)row->rule)->params;
+    sk_vec3 g = sk_v3_of(params->acceleration);
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        bool packed = slot < row->packed;
+        sk_wide mass = sk_load_block(run->vector[SK_V], slot, packed).w;
+        sk_wide4 f = {0};
+        if (!row->sets) f = sk_load_block(run->vector[row->dst], slot, packed);
+        f.x += mass * g.x;
+        f.y += mass * g.y;
+        f.z += mass * g.z;
+        sk_store_block(run->vector[row->dst], slot, packed, f);
+    }
+}
+
+#else
 
 static const skein_field fields[] = {
     SK_VEC3(gravity_params, acceleration, "acceleration", "m/s2", 0, -9.81, 0, "the free fall's acceleration"),
@@ -41,9 +46,6 @@ static double potential(const void *data, const double x[3], double mass, double
 static void pack(const void *params, float (*block)[4]) {
     sk_shader_vector(block[0], ((const gravity_params *)params)->acceleration);
 }
-
-#define SK_KERNELS "forces/gravity.c"
-#include "base/for_each_isa.h"
 
 const sk_force_type sk_gravity = {
     .kind = {"gravity", "weight: the same acceleration for every particle", SKEIN_FORCE, fields,

@@ -1,63 +1,5 @@
 /* A potential energy by a formula: F = -grad U. */
-#ifdef SK_ISA
-#include "forces/blocks.h"
-
-/* What a formula's value counts in joules: a particle's mass, or 1; 0 for slots without a particle. */
-SK_INLINE sk_wide SK_ISA(weight)(const potential_params *params, sk_wide mass) {
-    if (params->per == PER_MASS) return mass;
-    return SK_ISA(sk_keep)(SK_ISA(sk_positive)(mass), SK_ISA(sk_splat)(1));
-}
-
-static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const potential_params *params = ((const sk_force *)row->rule)->params;
-    double time = run->time - row->before;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        bool packed = slot < row->packed;
-        sk_wide out[SK_POINTWISE_MOST_OUTPUTS];
-        sk_mask guarded;
-        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed), f = {0};
-        sk_wide mass = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed).w;
-        sk_wide3 p = {x.x, x.y, x.z};
-        sk_pointwise_run_of[SK_ISA(sk_version)](params->slope, params->parameter, time, &p, NULL, out, &guarded);
-        sk_wide m = SK_ISA(weight)(params, mass);
-        if (!row->sets) f = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed);
-        f.x -= m * out[0], f.y -= m * out[1], f.z -= m * out[2];
-        SK_ISA(sk_store_block)(run->vector[row->dst], slot, packed, f);
-    }
-}
-
-/* a times the stiffness. */
-SK_INLINE SK_ISA(block) SK_ISA(curve)(sk_run *run, const sk_row *row, size_t slot) {
-    const potential_params *params = ((const sk_force *)row->rule)->params;
-    bool packed = slot < row->packed;
-    sk_wide out[SK_POINTWISE_MOST_OUTPUTS];
-    sk_mask guarded;
-    sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed);
-    sk_wide mass = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed).w;
-    sk_wide3 p = {x.x, x.y, x.z};
-    sk_pointwise_run_of[SK_ISA(sk_version)](params->curvature, params->parameter, run->time - row->before, &p, NULL,
-                                            out, &guarded);
-    sk_wide m = (real)row->coefficient[0] * SK_ISA(weight)(params, mass);
-    SK_ISA(block) block = {m * out[0], m * out[1], m * out[2], m * out[3], m * out[4], m * out[5]};
-    SK_ISA(make_positive)(&block);
-    return block;
-}
-
-static void SK_ISA(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        SK_ISA(block) block = SK_ISA(curve)(run, row, slot);
-        SK_ISA(add_product)(run, row, slot, &block);
-    }
-}
-
-static void SK_ISA(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        SK_ISA(block) block = SK_ISA(curve)(run, row, slot);
-        SK_ISA(add_block)(run, row, slot, &block);
-    }
-}
-
-#else
+#include "base/kernels.h"
 #include "forces/force.h"
 #include "formula/pointwise.h"
 
@@ -69,6 +11,72 @@ typedef struct potential_params {
     int32_t per;
     sk_pointwise *slope, *curvature;
 } potential_params;
+
+#define SK_UNIT potential
+SK_KERNELS(sk_row_kernel, kernel);
+SK_KERNELS(sk_row_kernel, apply);
+SK_KERNELS(sk_row_kernel, diagonal);
+
+#ifdef SK_ISA
+
+#include "forces/blocks.h"
+
+/* What a formula's value counts in joules: a particle's mass, or 1; 0 for slots without a particle. */
+SK_INLINE sk_wide weight(const potential_params *params, sk_wide mass) {
+    if (params->per == PER_MASS) return mass;
+    return sk_keep(sk_positive(mass), sk_splat(1));
+}
+
+void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const potential_params *params = ((const sk_force *)row->rule)->params;
+    double time = run->time - row->before;
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        bool packed = slot < row->packed;
+        sk_wide out[SK_POINTWISE_MOST_OUTPUTS];
+        sk_mask guarded;
+        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed), f = {0};
+        sk_wide mass = sk_load_block(run->vector[SK_V], slot, packed).w;
+        sk_wide3 p = {x.x, x.y, x.z};
+        sk_pointwise_run_of[SK_THIS_ISA](params->slope, params->parameter, time, &p, NULL, out, &guarded);
+        sk_wide m = weight(params, mass);
+        if (!row->sets) f = sk_load_block(run->vector[row->dst], slot, packed);
+        f.x -= m * out[0], f.y -= m * out[1], f.z -= m * out[2];
+        sk_store_block(run->vector[row->dst], slot, packed, f);
+    }
+}
+
+/* a times the stiffness. */
+SK_INLINE stiffness_block curve(sk_run *run, const sk_row *row, size_t slot) {
+    const potential_params *params = ((const sk_force *)row->rule)->params;
+    bool packed = slot < row->packed;
+    sk_wide out[SK_POINTWISE_MOST_OUTPUTS];
+    sk_mask guarded;
+    sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
+    sk_wide mass = sk_load_block(run->vector[SK_V], slot, packed).w;
+    sk_wide3 p = {x.x, x.y, x.z};
+    sk_pointwise_run_of[SK_THIS_ISA](params->curvature, params->parameter, run->time - row->before, &p, NULL, out,
+                                     &guarded);
+    sk_wide m = (real)row->coefficient[0] * weight(params, mass);
+    stiffness_block block = {m * out[0], m * out[1], m * out[2], m * out[3], m * out[4], m * out[5]};
+    make_positive(&block);
+    return block;
+}
+
+void SK_KERNEL(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        stiffness_block block = curve(run, row, slot);
+        add_product(run, row, slot, &block);
+    }
+}
+
+void SK_KERNEL(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        stiffness_block block = curve(run, row, slot);
+        add_block(run, row, slot, &block);
+    }
+}
+
+#else
 
 static const skein_field fields[] = {
     SK_TEXT(potential_params, energy, "energy", "0",
@@ -153,9 +161,6 @@ static bool at(const void *data, const double x[3], double time, double force[3]
     for (int k = 0; k < 3; k++) force[k] = -value.by_position[0][k];
     return true;
 }
-
-#define SK_KERNELS "forces/potential.c"
-#include "base/for_each_isa.h"
 
 static const sk_making making = {.make = make, .unmake = unmake};
 const sk_force_type sk_potential = {

@@ -5,9 +5,23 @@
  *
  * It is a place seen along a line (as under the mouse: it acts at any depth), or a place in space where there is no
  * line, or one of the particles. */
+#include "forces/force.h"
+
+#include "base/kernels.h"
+#include "base/status.h"
+
+typedef struct predator_params {
+    double position[3], line[3], radius, strength, alarm;
+    int32_t particle;
+    char *on;
+} predator_params;
+
+#define SK_UNIT predator
+SK_KERNELS(sk_row_kernel, kernel);
+
 #ifdef SK_ISA
 
-static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_force *force = row->rule;
     const predator_params *params = force->params;
     bool flies = params->particle >= 0; // checked when the plan was written
@@ -19,34 +33,25 @@ static void SK_ISA(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t 
     real dv = (real)(row->dt * params->strength), alarm = (real)params->alarm;
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
-        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed);
-        sk_wide4 s = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed);
+        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
+        sk_wide4 s = sk_load_block(run->vector[row->dst], slot, packed);
         sk_wide3 d = {at.x - x.x, at.y - x.y, at.z - x.z};
         sk_wide depth = d.x * line.x + d.y * line.y + d.z * line.z;
         d.x -= depth * line.x, d.y -= depth * line.y, d.z -= depth * line.z;
-        sk_wide square = SK_ISA(sk_dot_wide)(d, d);
-        sk_mask near = SK_ISA(sk_more)(SK_ISA(sk_splat)(square_reach), square) &
-                       SK_ISA(sk_lanes_between)(slot, force->moved.first_slot, force->moved.end_slot);
+        sk_wide square = sk_dot_wide(d, d);
+        sk_mask near = sk_more(sk_splat(square_reach), square) &
+                       sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot);
         if (flies && own - slot < SK_LANES) near[own - slot] = 0;
-        if (!SK_ISA(sk_any)(near)) continue;
-        sk_mask apart = near & SK_ISA(sk_positive)(square); // right on it there is no way to flee
-        sk_wide k = SK_ISA(sk_keep)(apart, dv * (square / square_reach - (real)1) / SK_ISA(sk_wide_sqrt)(square));
+        if (!sk_any(near)) continue;
+        sk_mask apart = near & sk_positive(square); // right on it there is no way to flee
+        sk_wide k = sk_keep(apart, dv * (square / square_reach - (real)1) / sk_wide_sqrt(square));
         s.x += k * d.x, s.y += k * d.y, s.z += k * d.z;
-        s.w += SK_ISA(sk_keep)(near, SK_ISA(sk_splat)(alarm));
-        SK_ISA(sk_store_block)(run->vector[row->dst], slot, packed, s);
+        s.w += sk_keep(near, sk_splat(alarm));
+        sk_store_block(run->vector[row->dst], slot, packed, s);
     }
 }
 
 #else
-#include "forces/force.h"
-
-#include "base/status.h"
-
-typedef struct predator_params {
-    double position[3], line[3], radius, strength, alarm;
-    int32_t particle;
-    char *on;
-} predator_params;
 
 static const skein_field fields[] = {
     SK_VEC3(predator_params, position, "position", "m", 0, 0, 0, "where it is, where no particle is given"),
@@ -86,9 +91,6 @@ static void pack(const void *data, float (*block)[4]) {
 static int32_t particle(const void *params) {
     return ((const predator_params *)params)->particle;
 }
-
-#define SK_KERNELS "forces/predator.c"
-#include "base/for_each_isa.h"
 
 const sk_force_type sk_predator = {
     .kind = {"predator", "what is near flees from it: a place, a line of sight or a particle", SKEIN_FORCE, fields,

@@ -1,10 +1,24 @@
 /* Formulas on one particle. */
+#include "formula/pointwise.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/fields.h"
+#include "base/kernels.h"
+#include "base/status.h"
+#include "formula/emit.h"
+#include "formula/evaluate.h"
+
+#define SK_UNIT pointwise
+SK_KERNELS(sk_pointwise_run, run);
+
 #ifdef SK_ISA
 
-static void SK_ISA(run)(const sk_pointwise *pointwise, const double *parameters, double time, const sk_wide3 *p,
-                        const sk_wide3 *v, sk_wide *out, sk_mask *guarded) {
+void SK_KERNEL(run)(const sk_pointwise *pointwise, const double *parameters, double time, const sk_wide3 *p,
+                    const sk_wide3 *v, sk_wide *out, sk_mask *guarded) {
     const sk_tape *tape = &pointwise->tape;
-    const sk_tape_kernels *kernels = &sk_tape_kernels_of[SK_ISA(sk_version)];
+    const sk_tape_kernels *kernels = sk_tape_kernels_of[SK_THIS_ISA];
     sk_wide registers[SK_TAPE_MEMORY / sizeof(sk_wide)];
     sk_tape_verdict verdict;
     real number[SKEIN_FORMULA_MOST_PARAMETERS];
@@ -23,24 +37,12 @@ static void SK_ISA(run)(const sk_pointwise *pointwise, const double *parameters,
     // a force that is over what fields take would leave the format with a few substeps
     sk_mask good = verdict.finite[0];
     for (size_t k = 0; k < tape->outputs; k++)
-        good &= SK_ISA(sk_at_most)(SK_ISA(sk_wide_abs)(registers[tape->output[k]]), SK_ISA(sk_splat)((real)SK_FAR));
-    for (size_t k = 0; k < tape->outputs; k++) out[k] = SK_ISA(sk_keep)(good, registers[tape->output[k]]);
+        good &= sk_at_most(sk_wide_abs(registers[tape->output[k]]), sk_splat((real)SK_FAR));
+    for (size_t k = 0; k < tape->outputs; k++) out[k] = sk_keep(good, registers[tape->output[k]]);
     *guarded = verdict.guarded[0] | ~good;
 }
 
 #else
-#include "formula/pointwise.h"
-
-#include <stdio.h>
-#include <string.h>
-
-#include "base/fields.h"
-#include "base/status.h"
-#include "formula/emit.h"
-#include "formula/evaluate.h"
-
-#define SK_KERNELS "formula/pointwise.c"
-#include "base/for_each_isa.h"
 
 sk_pointwise_run *const sk_pointwise_run_of[SK_ISA_COUNT] = SK_EACH_ISA(run);
 

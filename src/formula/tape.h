@@ -102,6 +102,6 @@ typedef struct sk_tape_kernels {
     size_t (*evaluate)(const sk_tape *tape, const sk_tape_input *input, size_t begin, size_t end, real *const *outputs);
 } sk_tape_kernels;
 
-extern const sk_tape_kernels sk_tape_kernels_of[SK_ISA_COUNT];
+extern const sk_tape_kernels *const sk_tape_kernels_of[SK_ISA_COUNT];
 
 #endif

@@ -1,4 +1,23 @@
-/* Running tapes: once for each instruction set (base/for_each_isa.h). */
+/* Running tapes: kernels alone (base/kernels.h). */
+#include "formula/tape.h"
+
+#include "base/elementary.h"
+#include "base/kernels.h"
+#include "base/layout.h"
+#include "base/polynomial.h"
+#include "formula/evaluate.h"
+
+#ifdef SKEIN_DOUBLE
+#define LEAST SK_LEAST_DOUBLE
+#define MOST_EXP SK_MOST_EXP_DOUBLE
+#else
+#define LEAST SK_LEAST_FLOAT
+#define MOST_EXP SK_MOST_EXP_FLOAT
+#endif
+
+#define SK_UNIT tape
+SK_KERNELS(const sk_tape_kernels, kernels);
+
 #ifdef SK_ISA
 
 #define EACH(value_)                                     \
@@ -9,72 +28,72 @@
 
 /* ---- guards, as in evaluate_in.h ---- */
 
-SK_INLINE sk_wide SK_ISA(reciprocal)(sk_wide x, sk_mask *guarded) {
-    sk_mask good = SK_ISA(sk_at_most)(SK_ISA(sk_splat)(LEAST), SK_ISA(sk_wide_abs)(x));
+SK_INLINE sk_wide reciprocal(sk_wide x, sk_mask *guarded) {
+    sk_mask good = sk_at_most(sk_splat(LEAST), sk_wide_abs(x));
     *guarded |= ~good;
-    return SK_ISA(sk_keep)(good, 1 / x);
+    return sk_keep(good, 1 / x);
 }
 
-SK_INLINE sk_wide SK_ISA(root)(sk_wide x, sk_mask *guarded) {
-    sk_mask good = SK_ISA(sk_at_most)((sk_wide){0}, x);
+SK_INLINE sk_wide root(sk_wide x, sk_mask *guarded) {
+    sk_mask good = sk_at_most((sk_wide){0}, x);
     *guarded |= ~good;
-    return SK_ISA(sk_wide_sqrt)(SK_ISA(sk_keep)(good, x));
+    return sk_wide_sqrt(sk_keep(good, x));
 }
 
-SK_INLINE sk_wide SK_ISA(guarded_exp)(sk_wide x, sk_mask *guarded) {
-    sk_wide most = SK_ISA(sk_splat)(MOST_EXP);
-    sk_mask good = SK_ISA(sk_at_most)(x, most);
+SK_INLINE sk_wide guarded_exp(sk_wide x, sk_mask *guarded) {
+    sk_wide most = sk_splat(MOST_EXP);
+    sk_mask good = sk_at_most(x, most);
     *guarded |= ~good;
-    return SK_ISA(sk_wide_exp)(SK_ISA(sk_select)(good, x, most));
+    return sk_wide_exp(sk_select(good, x, most));
 }
 
-SK_INLINE sk_wide SK_ISA(guarded_log)(sk_wide x, sk_mask *guarded) {
-    sk_wide least = SK_ISA(sk_splat)(LEAST);
-    sk_mask good = SK_ISA(sk_at_most)(least, x);
+SK_INLINE sk_wide guarded_log(sk_wide x, sk_mask *guarded) {
+    sk_wide least = sk_splat(LEAST);
+    sk_mask good = sk_at_most(least, x);
     *guarded |= ~good;
-    return SK_ISA(sk_wide_log)(SK_ISA(sk_select)(good, x, least));
+    return sk_wide_log(sk_select(good, x, least));
 }
 
-SK_INLINE sk_wide SK_ISA(guarded_pow)(sk_wide x, sk_wide y, sk_mask *guarded) {
-    sk_wide one = SK_ISA(sk_splat)(1);
-    sk_mask good = SK_ISA(sk_positive)(x), plain = SK_ISA(sk_differ)(y, (sk_wide){0});
+SK_INLINE sk_wide guarded_pow(sk_wide x, sk_wide y, sk_mask *guarded) {
+    sk_wide one = sk_splat(1);
+    sk_mask good = sk_positive(x), plain = sk_differ(y, (sk_wide){0});
     *guarded |= ~good & plain;
-    sk_wide power = SK_ISA(sk_keep)(good, SK_ISA(sk_wide_pow)(SK_ISA(sk_select)(good, x, one), y));
-    return SK_ISA(sk_select)(plain, power, one);
+    sk_wide power = sk_keep(good, sk_wide_pow(sk_select(good, x, one), y));
+    return sk_select(plain, power, one);
 }
 
 /* x, taken into -1 to 1. */
-SK_INLINE sk_wide SK_ISA(within_one)(sk_wide x) {
-    sk_wide one = SK_ISA(sk_splat)(1);
-    x = SK_ISA(sk_select)(SK_ISA(sk_more)(x, one), one, x);
-    return SK_ISA(sk_select)(SK_ISA(sk_more)(-one, x), -one, x);
+SK_INLINE sk_wide within_one(sk_wide x) {
+    sk_wide one = sk_splat(1);
+    x = sk_select(sk_more(x, one), one, x);
+    return sk_select(sk_more(-one, x), -one, x);
 }
 
 /* ---- functions: called, and so compiled, once for all lengths of a block ---- */
 
-#define FUNCTION(name_, value_)                                                                                  \
-    static __attribute__((noinline)) void SK_ISA(each_##name_)(sk_wide * to, const sk_wide *x, const sk_wide *y, \
-                                                               sk_mask *guarded, size_t count) {                 \
-        (void)y, (void)guarded;                                                                                  \
-        for (size_t i = 0; i < count; i++) to[i] = (value_);                                                     \
+#define FUNCTION(name_, value_)                                                                         \
+    static __attribute__((noinline)) void each_##name_(sk_wide *to, const sk_wide *x, const sk_wide *y, \
+                                                       sk_mask *guarded, size_t count) {                \
+        (void)y, (void)guarded;                                                                         \
+        for (size_t i = 0; i < count; i++) to[i] = (value_);                                            \
     }
-FUNCTION(exp, SK_ISA(guarded_exp)(x[i], &guarded[i]))
-FUNCTION(log, SK_ISA(guarded_log)(x[i], &guarded[i]))
-FUNCTION(sin, SK_ISA(sk_wide_sin)(x[i]))
-FUNCTION(cos, SK_ISA(sk_wide_cos)(x[i]))
-FUNCTION(tan, SK_ISA(sk_wide_tan)(x[i]))
-FUNCTION(asin, SK_ISA(sk_wide_asin)(SK_ISA(within_one)(x[i])))
-FUNCTION(acos, SK_ISA(sk_wide_acos)(SK_ISA(within_one)(x[i])))
-FUNCTION(atan2, SK_ISA(sk_wide_atan2)(x[i], y[i]))
-FUNCTION(pow, SK_ISA(guarded_pow)(x[i], y[i], &guarded[i]))
+FUNCTION(exp, guarded_exp(x[i], &guarded[i]))
+FUNCTION(log, guarded_log(x[i], &guarded[i]))
+FUNCTION(sin, sk_wide_sin(x[i]))
+FUNCTION(cos, sk_wide_cos(x[i]))
+FUNCTION(tan, sk_wide_tan(x[i]))
+FUNCTION(asin, sk_wide_asin(within_one(x[i])))
+FUNCTION(acos, sk_wide_acos(within_one(x[i])))
+FUNCTION(atan2, sk_wide_atan2(x[i], y[i]))
+FUNCTION(pow, guarded_pow(x[i], y[i], &guarded[i]))
 #undef FUNCTION
 
 /* ---- instructions ---- */
 
 #define FROM(k_) (registers + instruction->from[k_] * wides)[i]
-#define CALL(name_)                                                                                           \
-    SK_ISA(each_##name_)                                                                                      \
-    (to, registers + instruction->from[0] * wides, registers + instruction->from[1] * wides, guarded, count); \
+#define CALL(name_)                                                                                               \
+    each_##name_(to, registers + instruction->from[0] * wides, registers + instruction->from[1] * wides, guarded, \
+                 count);                                                                                          \
     break
 #define A(k_) FROM(k_)
 #define P(k_) (FROM(k_) * FROM((k_) + 1))
@@ -102,17 +121,18 @@ FUNCTION(pow, SK_ISA(guarded_pow)(x[i], y[i], &guarded[i]))
 #define MINUS3(number_, first_, second_, third_) \
     case SK_TAPE_MINUS3 + (number_):             \
         EACH(-((first_(0) + second_(SIZE_##first_)) + third_(SIZE_##first_ + SIZE_##second_)));
-#define MINUS                                                                                                         \
-    MINUS2(0, A, A)                                                                                                   \
-    MINUS2(1, A, P)                                                                                                   \
-    MINUS2(2, P, A)                                                                                                   \
-    MINUS2(3, P, P)                                                                                                   \
-    MINUS3(0, A, A, A) MINUS3(1, A, A, P) MINUS3(2, A, P, A) MINUS3(3, A, P, P) MINUS3(4, P, A, A) MINUS3(5, P, A, P) \
-        MINUS3(6, P, P, A) MINUS3(7, P, P, P)
+#define MINUS          \
+    MINUS2(0, A, A)    \
+    MINUS2(1, A, P)    \
+    MINUS2(2, P, A)    \
+    MINUS2(3, P, P)    \
+    MINUS3(0, A, A, A) \
+    MINUS3(1, A, A, P) \
+    MINUS3(2, A, P, A) MINUS3(3, A, P, P) MINUS3(4, P, A, A) MINUS3(5, P, A, P) MINUS3(6, P, P, A) MINUS3(7, P, P, P)
 
 /* The first `count` wides of a block. `wides` and `count` are known where this is inlined. */
-SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask *guarded, const size_t wides,
-                                const size_t count) {
+SK_INLINE void run_code(const sk_tape *tape, sk_wide *registers, sk_mask *guarded, const size_t wides,
+                        const size_t count) {
     for (size_t at = 0; at < tape->code.count; at++) {
         const sk_instruction *instruction = &tape->code.data[at];
         sk_wide *to = registers + instruction->to * wides;
@@ -122,10 +142,10 @@ SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask
             MINUS
         case SK_OP_MULTIPLY: EACH(FROM(0) * FROM(1));
         case SK_OP_NEGATE: EACH(-FROM(0));
-        case SK_OP_RECIPROCAL: EACH(SK_ISA(reciprocal)(FROM(0), &guarded[i]));
-        case SK_OP_SQRT: EACH(SK_ISA(root)(FROM(0), &guarded[i]));
-        case SK_OP_ABS: EACH(SK_ISA(sk_wide_abs)(FROM(0)));
-        case SK_OP_LESS: EACH(SK_ISA(sk_select)(SK_ISA(sk_more)(FROM(1), FROM(0)), FROM(2), FROM(3)));
+        case SK_OP_RECIPROCAL: EACH(reciprocal(FROM(0), &guarded[i]));
+        case SK_OP_SQRT: EACH(root(FROM(0), &guarded[i]));
+        case SK_OP_ABS: EACH(sk_wide_abs(FROM(0)));
+        case SK_OP_LESS: EACH(sk_select(sk_more(FROM(1), FROM(0)), FROM(2), FROM(3)));
         case SK_OP_EXP: CALL(exp);
         case SK_OP_LOG: CALL(log);
         case SK_OP_SIN: CALL(sin);
@@ -142,8 +162,8 @@ SK_INLINE void SK_ISA(run_code)(const sk_tape *tape, sk_wide *registers, sk_mask
 
 /* Infinities and NaN go through sums; what is only so large that the sum overflows is left out, too. Four sums are
  * variables, since compilers keep an array of them in memory. */
-SK_INLINE void SK_ISA(judge)(const sk_tape *tape, const sk_wide *registers, sk_mask *finite, const size_t wides,
-                             const size_t count) {
+SK_INLINE void judge(const sk_tape *tape, const sk_wide *registers, sk_mask *finite, const size_t wides,
+                     const size_t count) {
     const sk_wide zero = {0};
     size_t i = 0;
     for (; i + 4 <= count; i += 4) {
@@ -152,51 +172,51 @@ SK_INLINE void SK_ISA(judge)(const sk_tape *tape, const sk_wide *registers, sk_m
             const sk_wide *from = registers + tape->output[k] * wides + i;
             a += from[0], b += from[1], c += from[2], d += from[3];
         }
-        finite[i] = ~SK_ISA(sk_differ)(a - a, zero), finite[i + 1] = ~SK_ISA(sk_differ)(b - b, zero);
-        finite[i + 2] = ~SK_ISA(sk_differ)(c - c, zero), finite[i + 3] = ~SK_ISA(sk_differ)(d - d, zero);
+        finite[i] = ~sk_differ(a - a, zero), finite[i + 1] = ~sk_differ(b - b, zero);
+        finite[i + 2] = ~sk_differ(c - c, zero), finite[i + 3] = ~sk_differ(d - d, zero);
     }
     for (; i < count; i++) {
         sk_wide sum = zero;
         for (size_t k = 0; k < tape->outputs; k++) sum += registers[tape->output[k] * wides + i];
-        finite[i] = ~SK_ISA(sk_differ)(sum - sum, zero);
+        finite[i] = ~sk_differ(sum - sum, zero);
     }
 }
 
-SK_INLINE void SK_ISA(run_and_judge)(const sk_tape *tape, sk_wide *registers, sk_tape_verdict *verdict,
-                                     const size_t wides, const size_t count) {
+SK_INLINE void run_and_judge(const sk_tape *tape, sk_wide *registers, sk_tape_verdict *verdict, const size_t wides,
+                             const size_t count) {
     for (size_t i = 0; i < count; i++) verdict->guarded[i] = (sk_mask){0};
-    SK_ISA(run_code)(tape, registers, verdict->guarded, wides, count);
-    if (!tape->unjudged) SK_ISA(judge)(tape, registers, verdict->finite, wides, count);
+    run_code(tape, registers, verdict->guarded, wides, count);
+    if (!tape->unjudged) judge(tape, registers, verdict->finite, wides, count);
 }
 
-static void SK_ISA(run)(const sk_tape *tape, sk_wide *registers, size_t count, sk_tape_verdict *verdict) {
+static void run(const sk_tape *tape, sk_wide *registers, size_t count, sk_tape_verdict *verdict) {
     enum { MOST = SK_TAPE_WIDES, HALF = SK_TAPE_WIDES / 2 };
-    if (tape->wides == MOST && count > HALF) SK_ISA(run_and_judge)(tape, registers, verdict, MOST, MOST);
-    else if (tape->wides == MOST) SK_ISA(run_and_judge)(tape, registers, verdict, MOST, HALF);
-    else if (tape->wides == HALF) SK_ISA(run_and_judge)(tape, registers, verdict, HALF, HALF);
-    else if (tape->wides == 1) SK_ISA(run_and_judge)(tape, registers, verdict, 1, 1); // within a kernel: pointwise.h
-    else SK_ISA(run_and_judge)(tape, registers, verdict, tape->wides, count);
+    if (tape->wides == MOST && count > HALF) run_and_judge(tape, registers, verdict, MOST, MOST);
+    else if (tape->wides == MOST) run_and_judge(tape, registers, verdict, MOST, HALF);
+    else if (tape->wides == HALF) run_and_judge(tape, registers, verdict, HALF, HALF);
+    else if (tape->wides == 1) run_and_judge(tape, registers, verdict, 1, 1); // within a kernel: pointwise.h
+    else run_and_judge(tape, registers, verdict, tape->wides, count);
 }
 
 /* ---- in and out ---- */
 
-static void SK_ISA(begin)(const sk_tape *tape, const sk_tape_input *input, sk_wide *registers) {
+static void begin_block(const sk_tape *tape, const sk_tape_input *input, sk_wide *registers) {
     const size_t wides = tape->wides;
     for (size_t c = 0; c < tape->constants.count; c++)
         for (size_t i = 0; i < wides; i++)
-            registers[tape->constants.data[c].to * wides + i] = SK_ISA(sk_splat)(tape->constants.data[c].value);
+            registers[tape->constants.data[c].to * wides + i] = sk_splat(tape->constants.data[c].value);
     for (size_t l = 0; l < tape->loads.count; l++) {
         const sk_tape_load *load = &tape->loads.data[l];
         bool uniform = load->source == SK_TAPE_PARAMETER && (input->uniform >> load->index & 1);
         if (!uniform && load->source != SK_TAPE_TIME) continue;
         real value = uniform ? input->parameter[load->index][0] : input->time;
-        for (size_t i = 0; i < wides; i++) registers[load->to * wides + i] = SK_ISA(sk_splat)(value);
+        for (size_t i = 0; i < wides; i++) registers[load->to * wides + i] = sk_splat(value);
     }
 }
 
 /* Sixteen elements' particle. */
-SK_INLINE sk_wide4 SK_ISA(fetch)(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
-    if (!packed) return SK_ISA(sk_gather)(vector, slot);
+SK_INLINE sk_wide4 fetch(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
+    if (!packed) return sk_gather(vector, slot);
     real lane[3][SK_LANES];
     for (int l = 0; l < SK_LANES; l++) {
         sk_vec4 one = sk_load(vector, packed, slot[l]);
@@ -209,8 +229,7 @@ SK_INLINE sk_wide4 SK_ISA(fetch)(const sk_vec4 *vector, size_t packed, const uin
     return out;
 }
 
-static void SK_ISA(load)(const sk_tape *tape, const sk_tape_input *input, size_t element, size_t count,
-                         sk_wide *registers) {
+static void load(const sk_tape *tape, const sk_tape_input *input, size_t element, size_t count, sk_wide *registers) {
     const size_t wides = tape->wides;
     for (size_t l = 0; l < tape->loads.count; l++) {
         const sk_tape_load load = tape->loads.data[l];
@@ -233,19 +252,19 @@ static void SK_ISA(load)(const sk_tape *tape, const sk_tape_input *input, size_t
             uint32_t lane[SK_LANES];
             for (size_t k = 0; k < SK_LANES && !whole; k++) lane[k] = slot[k < left ? first + k : element + count - 1];
             const sk_vec4 *vector = load.source == SK_TAPE_POSITION ? input->positions : input->velocities;
-            sk_wide4 got = SK_ISA(fetch)(vector, input->packed, whole ? slot + first : lane);
+            sk_wide4 got = fetch(vector, input->packed, whole ? slot + first : lane);
             to[i] = got.x, to[wides + i] = got.y, to[2 * wides + i] = got.z;
         }
     }
 }
 
-static void SK_ISA(store)(const sk_tape *tape, const sk_wide *registers, const sk_tape_verdict *verdict, size_t element,
-                          size_t count, real *const *outputs) {
+static void store(const sk_tape *tape, const sk_wide *registers, const sk_tape_verdict *verdict, size_t element,
+                  size_t count, real *const *outputs) {
     for (size_t k = 0; k < tape->outputs; k++) {
         const sk_wide *from = registers + tape->output[k] * tape->wides;
         for (size_t i = 0; SK_LANES * i < count; i++) {
             size_t left = count - SK_LANES * i;
-            sk_wide out = SK_ISA(sk_keep)(verdict->finite[i], from[i]);
+            sk_wide out = sk_keep(verdict->finite[i], from[i]);
             real *to = outputs[k] + element + SK_LANES * i;
             // of a size that is known, it is a store
             if (left >= SK_LANES) memcpy(to, &out, sizeof out);
@@ -254,73 +273,35 @@ static void SK_ISA(store)(const sk_tape *tape, const sk_wide *registers, const s
     }
 }
 
-static size_t SK_ISA(count_guarded)(const sk_tape_verdict *verdict, size_t count) {
+static size_t count_guarded(const sk_tape_verdict *verdict, size_t count) {
     size_t guarded = 0;
     for (size_t i = 0; SK_LANES * i < count; i++) {
         sk_mask mask = verdict->guarded[i] | ~verdict->finite[i];
-        if (!SK_ISA(sk_any)(mask)) continue;
+        if (!sk_any(mask)) continue;
         for (size_t l = 0; l < SK_LANES && SK_LANES * i + l < count; l++) guarded += mask[l] != 0;
     }
     return guarded;
 }
 
-static size_t SK_ISA(evaluate)(const sk_tape *tape, const sk_tape_input *input, size_t begin, size_t end,
-                               real *const *outputs) {
+static size_t evaluate(const sk_tape *tape, const sk_tape_input *input, size_t begin, size_t end,
+                       real *const *outputs) {
     sk_wide registers[SK_TAPE_MEMORY / sizeof(sk_wide)];
     sk_tape_verdict verdict;
     size_t block = SK_LANES * tape->wides, guarded = 0;
-    SK_ISA(begin)(tape, input, registers);
+    begin_block(tape, input, registers);
     for (size_t element = begin; element < end; element += block) {
         size_t count = end - element < block ? end - element : block;
-        SK_ISA(load)(tape, input, element, count, registers);
-        SK_ISA(run)(tape, registers, (count + SK_LANES - 1) / SK_LANES, &verdict);
-        SK_ISA(store)(tape, registers, &verdict, element, count, outputs);
-        guarded += SK_ISA(count_guarded)(&verdict, count);
+        load(tape, input, element, count, registers);
+        run(tape, registers, (count + SK_LANES - 1) / SK_LANES, &verdict);
+        store(tape, registers, &verdict, element, count, outputs);
+        guarded += count_guarded(&verdict, count);
     }
     return guarded;
 }
 
-#undef EACH
-#undef FROM
-#undef CALL
-#undef A
-#undef P
-#undef SIZE_A
-#undef SIZE_P
-#undef SUM2
-#undef SUM3
-#undef SUM3_OF
-#undef SUMS
-#undef MINUS2
-#undef MINUS3
-#undef MINUS
+const sk_tape_kernels SK_KERNEL(kernels) = {begin_block, load, run, evaluate};
 
 #else
 
-#include "formula/tape.h"
-
-#include "base/elementary.h"
-#include "base/layout.h"
-#include "base/polynomial.h"
-#include "formula/evaluate.h"
-
-#ifdef SKEIN_DOUBLE
-#define LEAST SK_LEAST_DOUBLE
-#define MOST_EXP SK_MOST_EXP_DOUBLE
-#else
-#define LEAST SK_LEAST_FLOAT
-#define MOST_EXP SK_MOST_EXP_FLOAT
-#endif
-
-#define SK_KERNELS "formula/tape_run.c"
-#include "base/for_each_isa.h"
-
-#define PARTS(set_) \
-    { begin_##set_, load_##set_, run_##set_, evaluate_##set_ }
-#ifdef SK_X86_ISAS
-const sk_tape_kernels sk_tape_kernels_of[SK_ISA_COUNT] = {PARTS(sse), PARTS(avx2), PARTS(avx512)};
-#else
-const sk_tape_kernels sk_tape_kernels_of[SK_ISA_COUNT] = {PARTS(plain)};
-#endif
-
+const sk_tape_kernels *const sk_tape_kernels_of[SK_ISA_COUNT] = SK_EACH_ISA(kernels);
 #endif

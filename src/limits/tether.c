@@ -1,24 +1,33 @@
+#include "base/kernels.h"
+#include "limits/limit.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#define SK_UNIT tether
+SK_KERNELS(sk_row_kernel, keep_tethers);
+
 #ifdef SK_ISA
 
 /* Takes the lanes of p back onto the spheres around their anchors that they have left; returns which. */
-SK_INLINE sk_mask SK_ISA(pull_in)(sk_wide3 *p, sk_wide3 anchor, sk_wide most) {
+SK_INLINE sk_mask pull_in(sk_wide3 *p, sk_wide3 anchor, sk_wide most) {
     sk_wide3 d = {p->x - anchor.x, p->y - anchor.y, p->z - anchor.z};
-    sk_wide square = SK_ISA(sk_dot_wide)(d, d);
-    sk_mask out = SK_ISA(sk_more)(square, most * most);
-    if (!SK_ISA(sk_any)(out)) return out;
-    sk_wide s = most / SK_ISA(sk_wide_sqrt)(square);
-    p->x = SK_ISA(sk_select)(out, anchor.x + s * d.x, p->x);
-    p->y = SK_ISA(sk_select)(out, anchor.y + s * d.y, p->y);
-    p->z = SK_ISA(sk_select)(out, anchor.z + s * d.z, p->z);
+    sk_wide square = sk_dot_wide(d, d);
+    sk_mask out = sk_more(square, most * most);
+    if (!sk_any(out)) return out;
+    sk_wide s = most / sk_wide_sqrt(square);
+    p->x = sk_select(out, anchor.x + s * d.x, p->x);
+    p->y = sk_select(out, anchor.y + s * d.y, p->y);
+    p->z = sk_select(out, anchor.z + s * d.z, p->z);
     return out;
 }
 
 /* One number of anchor k of a block, lane by lane; `offset` is its place in an sk_anchor. */
-SK_INLINE sk_wide SK_ISA(of_anchor)(const sk_limit *limit, size_t block, size_t k, size_t offset) {
+SK_INLINE sk_wide of_anchor(const sk_limit *limit, size_t block, size_t k, size_t offset) {
     const uint32_t *pin = limit->pin_of + (limit->shared ? k : (block * limit->anchors + k) * SK_LANES);
     const real *number = (const real *)(const void *)limit->pins + offset;
     enum { STRIDE = sizeof(sk_anchor) / sizeof(real) };
-    if (limit->shared) return SK_ISA(sk_splat)(number[pin[0] * STRIDE]);
+    if (limit->shared) return sk_splat(number[pin[0] * STRIDE]);
     sk_wide all;
     for (int l = 0; l < SK_LANES; l++) all[l] = number[pin[l] * STRIDE];
     return all;
@@ -26,103 +35,93 @@ SK_INLINE sk_wide SK_ISA(of_anchor)(const sk_limit *limit, size_t block, size_t 
 
 #define NUMBER_OF(member) (offsetof(sk_anchor, member) / sizeof(real))
 
-SK_INLINE sk_wide3 SK_ISA(velocity_of)(const sk_limit *limit, size_t block, size_t k) {
-    return (sk_wide3){SK_ISA(of_anchor)(limit, block, k, NUMBER_OF(velocity.x)),
-                      SK_ISA(of_anchor)(limit, block, k, NUMBER_OF(velocity.y)),
-                      SK_ISA(of_anchor)(limit, block, k, NUMBER_OF(velocity.z))};
+SK_INLINE sk_wide3 velocity_of(const sk_limit *limit, size_t block, size_t k) {
+    return (sk_wide3){of_anchor(limit, block, k, NUMBER_OF(velocity.x)),
+                      of_anchor(limit, block, k, NUMBER_OF(velocity.y)),
+                      of_anchor(limit, block, k, NUMBER_OF(velocity.z))};
 }
 
 /* Anchor k of a block, `since` seconds after the start of the step. One that is not held any more lets go. */
-SK_INLINE sk_wide3 SK_ISA(anchor_of)(const sk_limit *limit, size_t block, size_t k, real since, sk_wide *most) {
-    sk_wide3 at = {SK_ISA(of_anchor)(limit, block, k, NUMBER_OF(start.x)),
-                   SK_ISA(of_anchor)(limit, block, k, NUMBER_OF(start.y)),
-                   SK_ISA(of_anchor)(limit, block, k, NUMBER_OF(start.z))};
+SK_INLINE sk_wide3 anchor_of(const sk_limit *limit, size_t block, size_t k, real since, sk_wide *most) {
+    sk_wide3 at = {of_anchor(limit, block, k, NUMBER_OF(start.x)), of_anchor(limit, block, k, NUMBER_OF(start.y)),
+                   of_anchor(limit, block, k, NUMBER_OF(start.z))};
     if (limit->lets_go) {
-        sk_mask free = SK_ISA(sk_positive)(SK_ISA(of_anchor)(limit, block, k, NUMBER_OF(free)));
-        *most = SK_ISA(sk_select)(free, SK_ISA(sk_splat)((real)SK_FAR), *most);
+        sk_mask free = sk_positive(of_anchor(limit, block, k, NUMBER_OF(free)));
+        *most = sk_select(free, sk_splat((real)SK_FAR), *most);
     }
     if (!limit->moves) return at;
-    sk_wide3 v = SK_ISA(velocity_of)(limit, block, k);
+    sk_wide3 v = velocity_of(limit, block, k);
     return (sk_wide3){at.x + since * v.x, at.y + since * v.y, at.z + since * v.z};
 }
 
 /* The anchors that pulled at a lane, added up: how fast the sphere moves that it was taken back to. */
-typedef struct SK_ISA(pullers) {
+typedef struct pullers {
     sk_wide3 velocity;
     sk_wide count;
-} SK_ISA(pullers);
+} pullers;
 
 /* Pulls the lanes of p in by anchor k. */
-SK_INLINE void SK_ISA(pull_by)(const sk_limit *limit, size_t block, size_t k, real factor, real since, sk_wide3 *p,
-                               SK_ISA(pullers) * by) {
+SK_INLINE void pull_by(const sk_limit *limit, size_t block, size_t k, real factor, real since, sk_wide3 *p,
+                       pullers *by) {
     const sk_wide *length = (const sk_wide *)(const void *)limit->slot_length + block * limit->anchors;
     sk_wide most = factor * length[k];
-    sk_wide3 anchor = SK_ISA(anchor_of)(limit, block, k, since, &most);
-    sk_mask out = SK_ISA(pull_in)(p, anchor, most);
-    if (!limit->moves || !SK_ISA(sk_any)(out)) return;
-    sk_wide3 v = SK_ISA(velocity_of)(limit, block, k);
-    by->velocity.x += SK_ISA(sk_keep)(out, v.x);
-    by->velocity.y += SK_ISA(sk_keep)(out, v.y);
-    by->velocity.z += SK_ISA(sk_keep)(out, v.z);
-    by->count += SK_ISA(sk_keep)(out, SK_ISA(sk_splat)(1));
+    sk_wide3 anchor = anchor_of(limit, block, k, since, &most);
+    sk_mask out = pull_in(p, anchor, most);
+    if (!limit->moves || !sk_any(out)) return;
+    sk_wide3 v = velocity_of(limit, block, k);
+    by->velocity.x += sk_keep(out, v.x);
+    by->velocity.y += sk_keep(out, v.y);
+    by->velocity.z += sk_keep(out, v.z);
+    by->count += sk_keep(out, sk_splat(1));
 }
 
 /* A velocity as the anchors that pulled see it. */
-SK_INLINE sk_wide3 SK_ISA(seen_by)(const SK_ISA(pullers) * by, sk_wide4 v) {
-    sk_wide share = 1 / SK_ISA(sk_select)(SK_ISA(sk_positive)(by->count), by->count, SK_ISA(sk_splat)(1));
+SK_INLINE sk_wide3 seen_by(const pullers *by, sk_wide4 v) {
+    sk_wide share = 1 / sk_select(sk_positive(by->count), by->count, sk_splat(1));
     return (sk_wide3){v.x - share * by->velocity.x, v.y - share * by->velocity.y, v.z - share * by->velocity.z};
 }
 
 /* Several anchors are taken in turn, once forwards and once backwards, and the mean is kept: the last
  * one to pull would win otherwise, and a cloth between two pins would hang askew. Where velocities are
  * not taken from positions (a second source), the velocity away from an anchor ends here too. */
-static void SK_ISA(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_limit *limit = row->rule;
     real factor = (real)(1 + *limit->bound), since = (real)(run->time - row->before - limit->start);
     size_t anchors = limit->anchors;
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         size_t block = (slot - limit->first_slot) / SK_LANES;
-        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[row->dst], slot, slot < row->packed);
+        sk_wide4 x = sk_load_block(run->vector[row->dst], slot, slot < row->packed);
         sk_wide3 forth = {x.x, x.y, x.z}, back = forth;
-        SK_ISA(pullers) by = {{{0}, {0}, {0}}, {0}};
-        for (size_t k = 0; k < anchors; k++) SK_ISA(pull_by)(limit, block, k, factor, since, &forth, &by);
+        pullers by = {{{0}, {0}, {0}}, {0}};
+        for (size_t k = 0; k < anchors; k++) pull_by(limit, block, k, factor, since, &forth, &by);
         sk_mask moved =
-            (SK_ISA(sk_differ)(forth.x, x.x) | SK_ISA(sk_differ)(forth.y, x.y) | SK_ISA(sk_differ)(forth.z, x.z)) &
-            SK_ISA(sk_positive)(x.w);
-        if (!SK_ISA(sk_any)(moved)) continue;
+            (sk_differ(forth.x, x.x) | sk_differ(forth.y, x.y) | sk_differ(forth.z, x.z)) & sk_positive(x.w);
+        if (!sk_any(moved)) continue;
         if (anchors > 1) {
-            for (size_t k = anchors; k-- > 0;) SK_ISA(pull_by)(limit, block, k, factor, since, &back, &by);
+            for (size_t k = anchors; k-- > 0;) pull_by(limit, block, k, factor, since, &back, &by);
             real half = (real)0.5;
             forth = (sk_wide3){half * (forth.x + back.x), half * (forth.y + back.y), half * (forth.z + back.z)};
         }
         sk_wide3 move = {forth.x - x.x, forth.y - x.y, forth.z - x.z};
-        x.x = SK_ISA(sk_select)(moved, forth.x, x.x);
-        x.y = SK_ISA(sk_select)(moved, forth.y, x.y);
-        x.z = SK_ISA(sk_select)(moved, forth.z, x.z);
-        SK_ISA(sk_store_block)(run->vector[row->dst], slot, slot < row->packed, x);
+        x.x = sk_select(moved, forth.x, x.x);
+        x.y = sk_select(moved, forth.y, x.y);
+        x.z = sk_select(moved, forth.z, x.z);
+        sk_store_block(run->vector[row->dst], slot, slot < row->packed, x);
         if (row->source[1] == SK_NONE) continue;
         // what still goes against the move stops
         sk_vec4 *velocity = run->vector[row->source[1]];
-        sk_wide4 v = SK_ISA(sk_load_block)(velocity, slot, slot < row->packed);
+        sk_wide4 v = sk_load_block(velocity, slot, slot < row->packed);
         sk_wide3 u = {v.x, v.y, v.z};
-        if (limit->moves) u = SK_ISA(seen_by)(&by, v);
-        sk_wide square = SK_ISA(sk_dot_wide)(move, move), against = SK_ISA(sk_dot_wide)(move, u);
-        sk_wide s =
-            SK_ISA(sk_keep)(moved & SK_ISA(sk_positive)(square) & SK_ISA(sk_negative)(against), -against / square);
+        if (limit->moves) u = seen_by(&by, v);
+        sk_wide square = sk_dot_wide(move, move), against = sk_dot_wide(move, u);
+        sk_wide s = sk_keep(moved & sk_positive(square) & sk_negative(against), -against / square);
         v.x += s * move.x, v.y += s * move.y, v.z += s * move.z;
-        SK_ISA(sk_store_block)(velocity, slot, slot < row->packed, v);
+        sk_store_block(velocity, slot, slot < row->packed, v);
     }
 }
 #undef NUMBER_OF
 
 #else
-#include "limits/limit.h"
-
-#include <stddef.h>
-#include <string.h>
-
-#define SK_KERNELS "limits/tether.c"
-#include "base/for_each_isa.h"
 
 /* Whether all elements have the anchors of the first one. */
 static bool anchors_shared(size_t count, size_t anchors, const uint32_t *particles) {

@@ -1,33 +1,49 @@
 /* The arithmetic of whole vectors, and turning their blocks from quads to packed and back. */
+#include "base/kernels.h"
+#include "plan/row.h"
+
+#define SK_UNIT combine
+SK_KERNELS(sk_row_kernel, sum);
+SK_KERNELS(sk_row_kernel, correction);
+SK_KERNELS(sk_row_kernel, kick);
+SK_KERNELS(sk_row_kernel, wipe);
+SK_KERNELS(sk_row_kernel, steer);
+SK_KERNELS(sk_row_kernel, lead);
+SK_KERNELS(sk_row_kernel, predict);
+SK_KERNELS(sk_row_kernel, fall);
+SK_KERNELS(sk_row_kernel, fall_on);
+SK_KERNELS(sk_row_kernel, pack);
+SK_KERNELS(sk_row_kernel, unpack);
+
 #ifdef SK_ISA
 
 /* Runs VALUE, an expression of the wides at place `at` of the vectors, over the blocks of [begin, end). In
  * packed blocks x, y and z are wides of their own; in quads every fourth lane is a w, which stays. */
-#define FOR_PARTS(VALUE)                                                                                   \
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {                                              \
-        size_t at = slot / 4;                                                                              \
-        if (slot < row->packed) {                                                                          \
-            for (int part = 0; part < 3; part++, at++) dst[at] = (VALUE);                                  \
-        } else {                                                                                           \
-            const sk_mask xyz = {-1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0};              \
-            for (int part = 0; part < 4; part++, at++) dst[at] = SK_ISA(sk_select)(xyz, (VALUE), dst[at]); \
-        }                                                                                                  \
+#define FOR_PARTS(VALUE)                                                                           \
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {                                      \
+        size_t at = slot / 4;                                                                      \
+        if (slot < row->packed) {                                                                  \
+            for (int part = 0; part < 3; part++, at++) dst[at] = (VALUE);                          \
+        } else {                                                                                   \
+            const sk_mask xyz = {-1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0};      \
+            for (int part = 0; part < 4; part++, at++) dst[at] = sk_select(xyz, (VALUE), dst[at]); \
+        }                                                                                          \
     }
 
-static void SK_ISA(sum)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(sum)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     sk_wide *dst = (sk_wide *)(void *)run->vector[row->dst];
     const sk_wide *p = (const sk_wide *)(const void *)run->vector[row->source[0]];
     const sk_wide *q = (const sk_wide *)(const void *)run->vector[row->source[1]];
     const sk_wide *r = (const sk_wide *)(const void *)run->vector[row->source[2]];
-    sk_wide a = SK_ISA(sk_splat)((real)row->coefficient[0]), b = SK_ISA(sk_splat)((real)row->coefficient[1]);
-    sk_wide c = SK_ISA(sk_splat)((real)row->coefficient[2]);
+    sk_wide a = sk_splat((real)row->coefficient[0]), b = sk_splat((real)row->coefficient[1]);
+    sk_wide c = sk_splat((real)row->coefficient[2]);
     if (row->source[0] == SK_NONE) FOR_PARTS((sk_wide){0})
     else if (row->source[1] == SK_NONE) FOR_PARTS(a * p[at])
     else if (row->source[2] == SK_NONE) FOR_PARTS(a * p[at] + b * q[at])
     else FOR_PARTS(a * p[at] + b * q[at] + c * r[at])
 }
 
-static void SK_ISA(correction)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(correction)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     sk_wide *dst = (sk_wide *)(void *)run->vector[row->dst];
     const sk_wide *p = (const sk_wide *)(const void *)run->vector[row->source[0]];
     const sk_wide *q = (const sk_wide *)(const void *)run->vector[row->source[1]];
@@ -37,93 +53,91 @@ static void SK_ISA(correction)(sk_run *run, const sk_row *row, size_t begin, siz
     else FOR_PARTS(dst[at] + a * (p[at] - (q[at] + b * dst[at])))
 }
 
-static void SK_ISA(kick)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(kick)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     real a = (real)row->coefficient[0];
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
-        sk_wide4 p = SK_ISA(sk_load_block)(run->vector[row->source[0]], slot, packed),
-                 q = SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, packed);
-        sk_wide k = a * SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed).w;
+        sk_wide4 p = sk_load_block(run->vector[row->source[0]], slot, packed),
+                 q = sk_load_block(run->vector[row->source[1]], slot, packed);
+        sk_wide k = a * sk_load_block(run->vector[SK_X], slot, packed).w;
         p.x += k * q.x, p.y += k * q.y, p.z += k * q.z;
-        if (row->dst != row->source[0]) p.w = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed).w;
-        SK_ISA(sk_store_block)(run->vector[row->dst], slot, packed, p);
+        if (row->dst != row->source[0]) p.w = sk_load_block(run->vector[row->dst], slot, packed).w;
+        sk_store_block(run->vector[row->dst], slot, packed, p);
     }
 }
 
-static void SK_ISA(wipe)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(wipe)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     memset(run->vector[row->dst] + begin, 0, (end - begin) * sizeof(sk_vec4));
 }
 
-static void SK_ISA(steer)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(steer)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
-        sk_wide4 v = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed),
-                 s = SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, packed);
-        sk_mask free = SK_ISA(sk_positive)(SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed).w);
-        v.x += SK_ISA(sk_keep)(free, s.x), v.y += SK_ISA(sk_keep)(free, s.y), v.z += SK_ISA(sk_keep)(free, s.z);
-        SK_ISA(sk_store_moved)(run->vector[row->dst], slot, packed, v);
+        sk_wide4 v = sk_load_block(run->vector[row->dst], slot, packed),
+                 s = sk_load_block(run->vector[row->source[1]], slot, packed);
+        sk_mask free = sk_positive(sk_load_block(run->vector[SK_X], slot, packed).w);
+        v.x += sk_keep(free, s.x), v.y += sk_keep(free, s.y), v.z += sk_keep(free, s.z);
+        sk_store_moved(run->vector[row->dst], slot, packed, v);
     }
 }
 
 /* dst += a q, where the inverse mass is 0. */
-static void SK_ISA(lead)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(lead)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     real a = (real)row->coefficient[0];
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
-        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[row->dst], slot, packed),
-                 v = SK_ISA(sk_load_block)(run->vector[row->source[1]], slot, packed);
-        sk_wide k = SK_ISA(sk_keep)(~SK_ISA(sk_positive)(x.w), SK_ISA(sk_splat)(a));
+        sk_wide4 x = sk_load_block(run->vector[row->dst], slot, packed),
+                 v = sk_load_block(run->vector[row->source[1]], slot, packed);
+        sk_wide k = sk_keep(~sk_positive(x.w), sk_splat(a));
         x.x += k * v.x, x.y += k * v.y, x.z += k * v.z;
-        SK_ISA(sk_store_block)(run->vector[row->dst], slot, packed, x);
+        sk_store_block(run->vector[row->dst], slot, packed, x);
     }
 }
 
 /* The start of a position method's substep in one go, once the block's v has its new value: V = v, V0 = V,
  * X0 = X, X += h V; or, where only the correction will ask, X0 = X + h V. */
-SK_INLINE void SK_ISA(set_out)(sk_run *run, const sk_row *row, size_t slot, bool packed, sk_wide4 x, sk_wide4 v) {
+SK_INLINE void set_out(sk_run *run, const sk_row *row, size_t slot, bool packed, sk_wide4 x, sk_wide4 v) {
     real h = (real)row->dt;
-    SK_ISA(sk_store_moved)(run->vector[SK_V], slot, packed, v);
-    if (row->source[2] == SK_V0) SK_ISA(sk_store_moved)(run->vector[SK_V0], slot, packed, v);
-    if (row->source[2] != SK_X) SK_ISA(sk_store_moved)(run->vector[SK_X0], slot, packed, x);
+    sk_store_moved(run->vector[SK_V], slot, packed, v);
+    if (row->source[2] == SK_V0) sk_store_moved(run->vector[SK_V0], slot, packed, v);
+    if (row->source[2] != SK_X) sk_store_moved(run->vector[SK_X0], slot, packed, x);
     x.x += h * v.x, x.y += h * v.y, x.z += h * v.z;
-    SK_ISA(sk_store_moved)(run->vector[SK_X], slot, packed, x);
-    if (row->source[2] == SK_X) SK_ISA(sk_store_moved)(run->vector[SK_X0], slot, packed, x);
+    sk_store_moved(run->vector[SK_X], slot, packed, x);
+    if (row->source[2] == SK_X) sk_store_moved(run->vector[SK_X0], slot, packed, x);
 }
 
-static void SK_ISA(predict)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(predict)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
-        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed),
-                 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed),
-                 f = SK_ISA(sk_load_block)(run->vector[SK_F], slot, packed);
+        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed), v = sk_load_block(run->vector[SK_V], slot, packed),
+                 f = sk_load_block(run->vector[SK_F], slot, packed);
         sk_wide k = (real)row->dt * x.w;
         v.x += k * f.x, v.y += k * f.y, v.z += k * f.z;
-        SK_ISA(set_out)(run, row, slot, packed, x, v);
+        set_out(run, row, slot, packed, x, v);
     }
 }
 
 /* What a plain force does to the velocity of a block within h. */
-typedef struct SK_ISA(pull) {
+typedef struct uniform_pull {
     sk_vec3 a, f;
     real linear, rate, h;
     bool by_mass; /* no force of its own weight: the mass does not matter */
-} SK_ISA(pull);
+} uniform_pull;
 
-SK_INLINE SK_ISA(pull) SK_ISA(pull_of)(const sk_row *row) {
+SK_INLINE uniform_pull pull_of(const sk_row *row) {
     const sk_plain_force *plain = row->rule;
-    SK_ISA(pull)
-    p = {sk_v3_of(plain->acceleration),
-         sk_v3_of(plain->force),
-         (real)plain->linear,
-         (real)plain->rate,
-         (real)row->dt,
-         false};
+    uniform_pull p = {sk_v3_of(plain->acceleration),
+                      sk_v3_of(plain->force),
+                      (real)plain->linear,
+                      (real)plain->rate,
+                      (real)row->dt,
+                      false};
     p.by_mass = p.linear == 0 && p.f.x == 0 && p.f.y == 0 && p.f.z == 0;
     return p;
 }
 
-SK_INLINE sk_wide4 SK_ISA(pulled)(const SK_ISA(pull) * p, sk_wide w, sk_wide4 v) {
-    sk_wide k = SK_ISA(sk_keep)(SK_ISA(sk_positive)(w), SK_ISA(sk_splat)(p->h));
+SK_INLINE sk_wide4 pulled(const uniform_pull *p, sk_wide w, sk_wide4 v) {
+    sk_wide k = sk_keep(sk_positive(w), sk_splat(p->h));
     if (p->by_mass) {
         v.x += k * (p->a.x - p->rate * v.x);
         v.y += k * (p->a.y - p->rate * v.y);
@@ -137,46 +151,40 @@ SK_INLINE sk_wide4 SK_ISA(pulled)(const SK_ISA(pull) * p, sk_wide w, sk_wide4 v)
     return v;
 }
 
-static void SK_ISA(fall)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    SK_ISA(pull) pull = SK_ISA(pull_of)(row);
+void SK_KERNEL(fall)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    uniform_pull pull = pull_of(row);
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
-        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed),
-                 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed);
-        SK_ISA(set_out)(run, row, slot, packed, x, SK_ISA(pulled)(&pull, x.w, v));
+        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed), v = sk_load_block(run->vector[SK_V], slot, packed);
+        set_out(run, row, slot, packed, x, pulled(&pull, x.w, v));
     }
 }
 
-static void SK_ISA(fall_on)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    SK_ISA(pull) pull = SK_ISA(pull_of)(row);
+void SK_KERNEL(fall_on)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    uniform_pull pull = pull_of(row);
     real a = (real)row->coefficient[0];
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         bool packed = slot < row->packed;
-        sk_wide4 x = SK_ISA(sk_load_block)(run->vector[SK_X], slot, packed),
-                 v = SK_ISA(sk_load_block)(run->vector[SK_V], slot, packed),
-                 x0 = SK_ISA(sk_load_block)(run->vector[SK_X0], slot, packed);
+        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed), v = sk_load_block(run->vector[SK_V], slot, packed),
+                 x0 = sk_load_block(run->vector[SK_X0], slot, packed);
         v.x += a * (x.x - x0.x), v.y += a * (x.y - x0.y), v.z += a * (x.z - x0.z);
-        if (run->last_turn) SK_ISA(sk_store_moved)(run->vector[SK_V], slot, packed, v);
-        else SK_ISA(set_out)(run, row, slot, packed, x, SK_ISA(pulled)(&pull, x.w, v));
+        if (run->last_turn) sk_store_moved(run->vector[SK_V], slot, packed, v);
+        else set_out(run, row, slot, packed, x, pulled(&pull, x.w, v));
     }
 }
 #undef FOR_PARTS
 
-static void SK_ISA(pack)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for (size_t slot = begin; slot < end; slot += SK_LANES) SK_ISA(sk_store_block)
-    (run->vector[row->dst], slot, true, SK_ISA(sk_load_block)(run->vector[row->dst], slot, false));
+void SK_KERNEL(pack)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    for (size_t slot = begin; slot < end; slot += SK_LANES)
+        sk_store_block(run->vector[row->dst], slot, true, sk_load_block(run->vector[row->dst], slot, false));
 }
 
-static void SK_ISA(unpack)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for (size_t slot = begin; slot < end; slot += SK_LANES) SK_ISA(sk_store_block)
-    (run->vector[row->dst], slot, false, SK_ISA(sk_load_block)(run->vector[row->dst], slot, true));
+void SK_KERNEL(unpack)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    for (size_t slot = begin; slot < end; slot += SK_LANES)
+        sk_store_block(run->vector[row->dst], slot, false, sk_load_block(run->vector[row->dst], slot, true));
 }
 
 #else
-#include "plan/row.h"
-
-#define SK_KERNELS "plan/combine.c"
-#include "base/for_each_isa.h"
 
 const sk_kernels sk_combine_sum = {SK_EACH_ISA(sum)};
 const sk_kernels sk_combine_correction = {SK_EACH_ISA(correction)};

@@ -1,155 +1,161 @@
 /* The arithmetic of an implicit solve: vectors, partial sums, and the decisions between them. */
+#include "plan/solve.h"
+
+#include <math.h>
+
+#include "base/kernels.h"
+#include "base/wide_types.h"
+
+#define SK_UNIT solve
+SK_KERNELS(sk_row_kernel, product);
+SK_KERNELS(sk_row_kernel, mass);
+SK_KERNELS(sk_row_kernel, momentum);
+SK_KERNELS(sk_row_kernel, cell_sum);
+SK_KERNELS(sk_row_kernel, filter);
+SK_KERNELS(sk_row_kernel, open);
+SK_KERNELS(sk_row_kernel, factor);
+SK_KERNELS(sk_row_kernel, backsolve);
+SK_KERNELS(sk_row_kernel, dot);
+SK_KERNELS(sk_row_kernel, norm);
+SK_KERNELS(sk_row_kernel, rounding);
+
 #ifdef SK_ISA
 
-SK_INLINE sk_wide4 SK_ISA(load)(const sk_run *run, const sk_row *row, int vector, size_t slot) {
-    return SK_ISA(sk_load_block)(run->vector[vector], slot, slot < row->packed);
+SK_INLINE sk_wide4 load(const sk_run *run, const sk_row *row, int vector, size_t slot) {
+    return sk_load_block(run->vector[vector], slot, slot < row->packed);
 }
 
 /* Writes x, y and z of a block; w is left as it is. */
-SK_INLINE void SK_ISA(store)(sk_run *run, const sk_row *row, int vector, size_t slot, sk_wide x, sk_wide y, sk_wide z) {
-    sk_wide4 old = SK_ISA(load)(run, row, vector, slot);
-    SK_ISA(sk_store_block)(run->vector[vector], slot, slot < row->packed, (sk_wide4){x, y, z, old.w});
+SK_INLINE void store(sk_run *run, const sk_row *row, int vector, size_t slot, sk_wide x, sk_wide y, sk_wide z) {
+    sk_wide4 old = load(run, row, vector, slot);
+    sk_store_block(run->vector[vector], slot, slot < row->packed, (sk_wide4){x, y, z, old.w});
 }
 
 #define FOR_BLOCKS for (size_t slot = begin; slot < end; slot += SK_LANES)
 
-static void SK_ISA(product)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(product)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     FOR_BLOCKS {
-        sk_wide4 p = SK_ISA(load)(run, row, (int)row->source[0], slot),
-                 q = SK_ISA(load)(run, row, (int)row->source[1], slot);
-        SK_ISA(store)(run, row, (int)row->dst, slot, p.x * q.x, p.y * q.y, p.z * q.z);
+        sk_wide4 p = load(run, row, (int)row->source[0], slot), q = load(run, row, (int)row->source[1], slot);
+        store(run, row, (int)row->dst, slot, p.x * q.x, p.y * q.y, p.z * q.z);
     }
 }
 
-static void SK_ISA(mass)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(mass)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     FOR_BLOCKS {
-        sk_wide m = SK_ISA(load)(run, row, SK_V, slot).w;
-        SK_ISA(store)(run, row, (int)row->dst, slot, m, m, m);
+        sk_wide m = load(run, row, SK_V, slot).w;
+        store(run, row, (int)row->dst, slot, m, m, m);
     }
 }
 
-static void SK_ISA(momentum)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(momentum)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     FOR_BLOCKS {
-        sk_wide4 p = SK_ISA(load)(run, row, (int)row->source[0], slot),
-                 q = SK_ISA(load)(run, row, (int)row->source[1], slot);
-        sk_wide4 d = SK_ISA(load)(run, row, (int)row->dst, slot);
-        sk_wide m = SK_ISA(load)(run, row, SK_V, slot).w;
-        SK_ISA(store)
-        (run, row, (int)row->dst, slot, d.x + m * (p.x - q.x), d.y + m * (p.y - q.y), d.z + m * (p.z - q.z));
+        sk_wide4 p = load(run, row, (int)row->source[0], slot), q = load(run, row, (int)row->source[1], slot);
+        sk_wide4 d = load(run, row, (int)row->dst, slot);
+        sk_wide m = load(run, row, SK_V, slot).w;
+        store(run, row, (int)row->dst, slot, d.x + m * (p.x - q.x), d.y + m * (p.y - q.y), d.z + m * (p.z - q.z));
     }
 }
 
-static void SK_ISA(cell_sum)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(cell_sum)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     real a = (real)(row->coefficient[0] * run->cell[row->cell]);
     FOR_BLOCKS {
-        sk_wide4 p = SK_ISA(load)(run, row, (int)row->source[0], slot),
-                 q = SK_ISA(load)(run, row, (int)row->source[1], slot);
-        SK_ISA(store)(run, row, (int)row->dst, slot, p.x + a * q.x, p.y + a * q.y, p.z + a * q.z);
+        sk_wide4 p = load(run, row, (int)row->source[0], slot), q = load(run, row, (int)row->source[1], slot);
+        store(run, row, (int)row->dst, slot, p.x + a * q.x, p.y + a * q.y, p.z + a * q.z);
     }
 }
 
-static void SK_ISA(filter)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(filter)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     FOR_BLOCKS {
-        sk_wide4 d = SK_ISA(load)(run, row, SK_FILTER0, slot), o = SK_ISA(load)(run, row, SK_FILTER1, slot);
-        sk_wide4 p = SK_ISA(load)(run, row, (int)row->dst, slot);
-        SK_ISA(store)
-        (run, row, (int)row->dst, slot, d.x * p.x + o.x * p.y + o.y * p.z, o.x * p.x + d.y * p.y + o.z * p.z,
-         o.y * p.x + o.z * p.y + d.z * p.z);
+        sk_wide4 d = load(run, row, SK_FILTER0, slot), o = load(run, row, SK_FILTER1, slot);
+        sk_wide4 p = load(run, row, (int)row->dst, slot);
+        store(run, row, (int)row->dst, slot, d.x * p.x + o.x * p.y + o.y * p.z, o.x * p.x + d.y * p.y + o.z * p.z,
+              o.y * p.x + o.z * p.y + d.z * p.z);
     }
 }
 
-static void SK_ISA(open)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(open)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     FOR_BLOCKS {
-        sk_mask is_free = SK_ISA(sk_positive)(SK_ISA(load)(run, row, SK_X, slot).w);
-        sk_wide one = SK_ISA(sk_keep)(is_free, SK_ISA(sk_splat)(1)), none = {0};
-        SK_ISA(store)(run, row, SK_FILTER0, slot, one, one, one);
-        SK_ISA(store)(run, row, SK_FILTER1, slot, none, none, none);
+        sk_mask is_free = sk_positive(load(run, row, SK_X, slot).w);
+        sk_wide one = sk_keep(is_free, sk_splat(1)), none = {0};
+        store(run, row, SK_FILTER0, slot, one, one, one);
+        store(run, row, SK_FILTER1, slot, none, none, none);
     }
 }
 
-SK_INLINE sk_wide SK_ISA(at_least)(sk_wide a, sk_wide least) {
-    return SK_ISA(sk_select)(SK_ISA(sk_more)(a, least), a, least);
+SK_INLINE sk_wide at_least(sk_wide a, sk_wide least) {
+    return sk_select(sk_more(a, least), a, least);
 }
 
 /* 1/a, and 0 for slots without a particle. */
-SK_INLINE sk_wide SK_ISA(inverse)(sk_wide a) {
-    return SK_ISA(sk_keep)(SK_ISA(sk_positive)(a), 1 / a);
+SK_INLINE sk_wide inverse(sk_wide a) {
+    return sk_keep(sk_positive(a), 1 / a);
 }
 
 /* L D L^T, unit triangular L: 1/D in the first vector, l21 l31 l32 in the second. */
-static void SK_ISA(factor)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(factor)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     FOR_BLOCKS {
-        sk_wide4 d = SK_ISA(load)(run, row, SK_BLOCK0, slot), o = SK_ISA(load)(run, row, SK_BLOCK1, slot);
-        sk_wide least = SK_ISA(load)(run, row, SK_INERTIA, slot).x;
-        sk_wide i1 = SK_ISA(inverse)(SK_ISA(at_least)(d.x, least));
+        sk_wide4 d = load(run, row, SK_BLOCK0, slot), o = load(run, row, SK_BLOCK1, slot);
+        sk_wide least = load(run, row, SK_INERTIA, slot).x;
+        sk_wide i1 = inverse(at_least(d.x, least));
         sk_wide l21 = o.x * i1, l31 = o.y * i1;
-        sk_wide i2 = SK_ISA(inverse)(SK_ISA(at_least)(d.y - l21 * o.x, least));
+        sk_wide i2 = inverse(at_least(d.y - l21 * o.x, least));
         sk_wide u = o.z - l31 * o.x, l32 = u * i2;
-        sk_wide i3 = SK_ISA(inverse)(SK_ISA(at_least)(d.z - l31 * o.y - l32 * u, least));
-        SK_ISA(store)(run, row, SK_BLOCK0, slot, i1, i2, i3);
-        SK_ISA(store)(run, row, SK_BLOCK1, slot, l21, l31, l32);
+        sk_wide i3 = inverse(at_least(d.z - l31 * o.y - l32 * u, least));
+        store(run, row, SK_BLOCK0, slot, i1, i2, i3);
+        store(run, row, SK_BLOCK1, slot, l21, l31, l32);
     }
 }
 
-static void SK_ISA(backsolve)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(backsolve)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     FOR_BLOCKS {
-        sk_wide4 i = SK_ISA(load)(run, row, SK_BLOCK0, slot), l = SK_ISA(load)(run, row, SK_BLOCK1, slot);
-        sk_wide4 r = SK_ISA(load)(run, row, (int)row->source[0], slot);
+        sk_wide4 i = load(run, row, SK_BLOCK0, slot), l = load(run, row, SK_BLOCK1, slot);
+        sk_wide4 r = load(run, row, (int)row->source[0], slot);
         sk_wide y2 = r.y - l.x * r.x, y3 = r.z - l.y * r.x - l.z * y2;
         sk_wide z = y3 * i.z, y = y2 * i.y - l.z * z, x = r.x * i.x - l.x * y - l.y * z;
-        SK_ISA(store)(run, row, (int)row->dst, slot, x, y, z);
+        store(run, row, (int)row->dst, slot, x, y, z);
     }
 }
 
 /* Leaves the sum of sixteen numbers; `place` tells sums apart that are wanted at the same time. */
-SK_INLINE void SK_ISA(leave)(sk_run *run, size_t slot, int place, sk_wide value) {
+SK_INLINE void leave(sk_run *run, size_t slot, int place, sk_wide value) {
     double sum[4] = {0, 0, 0, 0};
     for (int l = 0; l < SK_LANES; l += 4)
         for (int k = 0; k < 4; k++) sum[k] += (double)value[l + k];
     ((double *)(void *)(run->vector[SK_SUMS] + slot))[place] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-static void SK_ISA(dot)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(dot)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     FOR_BLOCKS {
-        sk_wide4 p = SK_ISA(load)(run, row, (int)row->source[0], slot),
-                 q = SK_ISA(load)(run, row, (int)row->source[1], slot);
-        SK_ISA(leave)(run, slot, 0, p.x * q.x + p.y * q.y + p.z * q.z);
+        sk_wide4 p = load(run, row, (int)row->source[0], slot), q = load(run, row, (int)row->source[1], slot);
+        leave(run, slot, 0, p.x * q.x + p.y * q.y + p.z * q.z);
     }
 }
 
-static void SK_ISA(norm)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(norm)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     FOR_BLOCKS {
-        sk_wide4 p = SK_ISA(load)(run, row, (int)row->source[0], slot);
-        sk_wide w = SK_ISA(load)(run, row, SK_X, slot).w;
-        SK_ISA(leave)(run, slot, 0, w * (p.x * p.x + p.y * p.y + p.z * p.z));
+        sk_wide4 p = load(run, row, (int)row->source[0], slot);
+        sk_wide w = load(run, row, SK_X, slot).w;
+        leave(run, slot, 0, w * (p.x * p.x + p.y * p.y + p.z * p.z));
     }
 }
 
 /* A position is rounded to its size times epsilon; the springs at it turn that into a force. Velocities and forces
  * are rounded themselves. */
-static void SK_ISA(rounding)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(rounding)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     real h = (real)row->dt, epsilon = (real)row->coefficient[0];
     FOR_BLOCKS {
-        sk_wide4 x = SK_ISA(load)(run, row, SK_X, slot), v = SK_ISA(load)(run, row, SK_V, slot);
-        sk_wide4 f = SK_ISA(load)(run, row, SK_F, slot), d = SK_ISA(load)(run, row, SK_BLOCK0, slot);
-        sk_wide inertia = SK_ISA(load)(run, row, SK_INERTIA, slot).x;
+        sk_wide4 x = load(run, row, SK_X, slot), v = load(run, row, SK_V, slot);
+        sk_wide4 f = load(run, row, SK_F, slot), d = load(run, row, SK_BLOCK0, slot);
+        sk_wide inertia = load(run, row, SK_INERTIA, slot).x;
         sk_wide far = x.x * x.x + x.y * x.y + x.z * x.z, fast = v.x * v.x + v.y * v.y + v.z * v.z;
         sk_wide strong = f.x * f.x + f.y * f.y + f.z * f.z, springs = (d.x + d.y + d.z - 3 * inertia) / h;
         sk_wide square = far * springs * springs + fast * inertia * inertia + h * h * strong;
-        SK_ISA(leave)(run, slot, 0, epsilon * epsilon * (x.w * square));
+        leave(run, slot, 0, epsilon * epsilon * (x.w * square));
     }
 }
 #undef FOR_BLOCKS
 
 #else
-#include "plan/solve.h"
-
-#include <math.h>
-
-#include "base/wide_types.h"
-
-#define SK_KERNELS "plan/solve.c"
-#include "base/for_each_isa.h"
 
 const sk_kernels sk_solve_product = {SK_EACH_ISA(product)};
 const sk_kernels sk_solve_mass = {SK_EACH_ISA(mass)};

@@ -1,23 +1,24 @@
-/* Which places of the cells a particle has to look at, as sixteens of candidates: once for each instruction set (no
- * include guard: see for_each_isa.h). Includers outside of SK_ISA: space/cells.h. */
+/* Which places of the cells a particle has to look at, as sixteens of candidates: for kernels, once for
+ * each instruction set. */
+#include "space/cells.h"
 
 /* A number in all lanes, in the parts that the processor works on: of a whole one, or of a number beside a wide, gcc
  * makes sixteen stores where it knows no 64 bytes at once. */
-SK_INLINE sk_wide SK_ISA(all)(real a) {
-    SK_ISA(parts) p;
-    for (int i = 0; i < SK_ISA(native_parts); i++) p.native[i] = a - (SK_ISA(native)){0};
+SK_INLINE sk_wide all(real a) {
+    parts p;
+    for (int i = 0; i < native_parts; i++) p.native[i] = a - (native){0};
     return p.wide;
 }
 
 /* Where the nine lines of cells around a particle are, a line a lane; see sk_cells_ranges(), which this is wide. */
-typedef struct SK_ISA(rows) {
+typedef struct nine_lines {
     sk_wide wall_y, wall_z, share_y, share_z; // the distance to the line, in cells, is wall + share * place in the cell
     sk_mask step_z;                           // in the array of cells
     sk_mask below, above;                     // lines at y - 1, at y + 1
-} SK_ISA(rows);
+} nine_lines;
 
-SK_INLINE SK_ISA(rows) SK_ISA(rows_of)(const sk_cells *cells) {
-    SK_ISA(rows) rows;
+SK_INLINE nine_lines rows_of(const sk_cells *cells) {
+    nine_lines rows;
     for (int l = 0; l < SK_LANES; l++) {
         int dy = l < 9 ? l % 3 - 1 : 0, dz = l < 9 ? l / 3 - 1 : 0;
         rows.wall_y[l] = dy ? (real)(dy > 0) - cells->slack : 0;
@@ -30,7 +31,7 @@ SK_INLINE SK_ISA(rows) SK_ISA(rows_of)(const sk_cells *cells) {
 }
 
 /* Which of the nine there are, a bit each. */
-SK_INLINE uint32_t SK_ISA(lines_inside)(const sk_cells *cells, int32_t iy, int32_t iz) {
+SK_INLINE uint32_t lines_inside(const sk_cells *cells, int32_t iy, int32_t iz) {
     uint32_t lines = 0x1ff;
     if (iy == 0) lines &= ~0x049u;
     if (iy + 1 == cells->count_y) lines &= ~0x124u;
@@ -40,27 +41,27 @@ SK_INLINE uint32_t SK_ISA(lines_inside)(const sk_cells *cells, int32_t iy, int32
 }
 
 /* Sixteens of candidates: where each begins, and which of them are candidates. */
-enum { SK_ISA(SIXTEENS) = 64 };
-typedef struct SK_ISA(sixteens) {
-    uint32_t place[SK_ISA(SIXTEENS) + SK_LANES];
-    uint32_t some[SK_ISA(SIXTEENS) + SK_LANES]; // a bit for each that is a candidate
+enum { SIXTEENS = 64 };
+typedef struct sixteen_lists {
+    uint32_t place[SIXTEENS + SK_LANES];
+    uint32_t some[SIXTEENS + SK_LANES]; // a bit for each that is a candidate
     size_t count;
-} SK_ISA(sixteens);
+} sixteen_lists;
 
 /* Ranges of places, a lane each: where what is left of them begins, and how many that is. */
-typedef struct SK_ISA(ranges) {
-#if defined(SK_HAS_AVX512)
+typedef struct nine_ranges {
+#if SK_WIDTH == 64
     __m512i begin, left; // as they are worked on: stores of single lanes would hold up loads of all
 #else
     int32_t begin[SK_LANES], left[SK_LANES];
 #endif
-} SK_ISA(ranges);
+} nine_ranges;
 
 /* Lists the next sixteen of each range that is not used up; false when all are. Ranges take turns, so that rows of
  * fewer than sixteen, the most of them, are listed without a branch each. */
-SK_INLINE bool SK_ISA(list)(SK_ISA(ranges) * ranges, SK_ISA(sixteens) * list) {
+SK_INLINE bool list(nine_ranges *ranges, sixteen_lists *list) {
     size_t before = list->count;
-#if defined(SK_HAS_AVX512)
+#if SK_WIDTH == 64
     __mmask16 some = _mm512_cmpgt_epi32_mask(ranges->left, _mm512_setzero_si512());
     if (!some) return false;
     _mm512_storeu_si512(list->place + before, _mm512_maskz_compress_epi32(some, ranges->begin));
@@ -82,24 +83,23 @@ SK_INLINE bool SK_ISA(list)(SK_ISA(ranges) * ranges, SK_ISA(sixteens) * list) {
 }
 
 /* The ranges of candidates of a particle at p: where each of nine rows begins, and how many are in it. */
-SK_INLINE void SK_ISA(find_ranges)(const sk_cells *cells, const SK_ISA(rows) * rows, sk_vec3 p, real reach,
-                                   SK_ISA(ranges) * ranges) {
+SK_INLINE void find_ranges(const sk_cells *cells, const nine_lines *rows, sk_vec3 p, real reach, nine_ranges *ranges) {
     real py = (p.y - cells->origin.y) * cells->per_yz, pz = (p.z - cells->origin.z) * cells->per_yz;
     int32_t iy = sk_cells_place(p.y, cells->origin.y, cells->per_yz, cells->count_y);
     int32_t iz = sk_cells_place(p.z, cells->origin.z, cells->per_yz, cells->count_z);
-    sk_wide my = rows->wall_y + rows->share_y * SK_ISA(all)(py - (real)iy),
-            mz = rows->wall_z + rows->share_z * SK_ISA(all)(pz - (real)iz), size = SK_ISA(all)(cells->size);
-    my = SK_ISA(sk_keep)(SK_ISA(sk_positive)(my), my) * size;
-    mz = SK_ISA(sk_keep)(SK_ISA(sk_positive)(mz), mz) * size;
-    sk_wide left = (SK_ISA(all)(reach * reach) - mz * mz) - my * my;
-    sk_mask some = SK_ISA(sk_positive)(left);
-    sk_wide half = SK_ISA(sk_wide_sqrt)(SK_ISA(sk_keep)(some, left)) * SK_ISA(all)((real)1.00001);
-    sk_wide x = SK_ISA(all)(p.x), origin = SK_ISA(all)(cells->origin.x), per = SK_ISA(all)(cells->per_x);
+    sk_wide my = rows->wall_y + rows->share_y * all(py - (real)iy),
+            mz = rows->wall_z + rows->share_z * all(pz - (real)iz), size = all(cells->size);
+    my = sk_keep(sk_positive(my), my) * size;
+    mz = sk_keep(sk_positive(mz), mz) * size;
+    sk_wide left = (all(reach * reach) - mz * mz) - my * my;
+    sk_mask some = sk_positive(left);
+    sk_wide half = sk_wide_sqrt(sk_keep(some, left)) * all((real)1.00001);
+    sk_wide x = all(p.x), origin = all(cells->origin.x), per = all(cells->per_x);
     sk_wide low = ((x - half) - origin) * per, high = ((x + half) - origin) * per;
-    sk_wide last = SK_ISA(all)((real)(cells->count_x - 1));
-    low = SK_ISA(sk_keep)(SK_ISA(sk_positive)(low), low), high = SK_ISA(sk_keep)(SK_ISA(sk_positive)(high), high);
-    low = SK_ISA(sk_select)(SK_ISA(sk_more)(last, low), low, last);
-    high = SK_ISA(sk_select)(SK_ISA(sk_more)(last, high), high, last);
+    sk_wide last = all((real)(cells->count_x - 1));
+    low = sk_keep(sk_positive(low), low), high = sk_keep(sk_positive(high), high);
+    low = sk_select(sk_more(last, low), low, last);
+    high = sk_select(sk_more(last, high), high, last);
     int32_t line = sk_cells_line(cells, iy, iz);
     int32_t down = iy > 0 ? sk_cells_line(cells, iy - 1, iz) - line : 0,
             up = iy + 1 < cells->count_y ? sk_cells_line(cells, iy + 1, iz) - line : 0;
@@ -107,8 +107,8 @@ SK_INLINE void SK_ISA(find_ranges)(const sk_cells *cells, const SK_ISA(rows) * r
     sk_mask base = rows->step_z + (none + line) + (rows->below & (none + down)) + (rows->above & (none + up));
     sk_mask first = (base + __builtin_convertvector(low, sk_mask)) & some,
             end = (base + __builtin_convertvector(high, sk_mask) + 1) & some;
-    uint32_t inside = SK_ISA(lines_inside)(cells, iy, iz);
-#if defined(SK_HAS_AVX512) && !defined(SKEIN_DOUBLE)
+    uint32_t inside = lines_inside(cells, iy, iz);
+#if SK_WIDTH == 64 && !defined(SKEIN_DOUBLE)
     __mmask16 rows_inside = (__mmask16)inside;
     ranges->begin = _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), rows_inside, (__m512i)first, cells->start, 4);
     __m512i to = _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), rows_inside, (__m512i)end, cells->start, 4);

@@ -13,7 +13,25 @@ trap 'rm -rf "$work"' EXIT
 files=$(ls src/*.c src/*/*.c | grep -v '^src/gpu/')
 for precision; do
     [ "$precision" = double ] && macro=-DSKEIN_DOUBLE || macro=
-    "$compiler" ${BITS_FLAGS:-} $macro -O1 -std=gnu17 -ffp-contract=off -fno-math-errno -Wno-psabi $static -Iinclude -Isrc \
-        $files src/gpu/absent.c tests/elsewhere/bits.c -o "$work/bits" -lm -pthread
+    flags="${BITS_FLAGS:-} $macro -O1 -std=gnu17 -ffp-contract=off -fno-math-errno -Wno-psabi -Iinclude -Isrc"
+    # files of kernels once more for each instruction set, as CMakeLists.txt has them
+    sets=plain
+    printf '#include "base/isa.h"\n#ifdef SK_X86_ISAS\nseveral\n#endif\n' | "$compiler" $flags -E - | grep -q several &&
+        sets='sse avx2 avx512'
+    objects=
+    for set in $sets; do
+        case $set in
+        plain) own=-DSK_WIDTH=16 ;;
+        sse) own='-DSK_WIDTH=16 -msse4.1' ;;
+        avx2) own='-DSK_WIDTH=32 -mavx2' ;;
+        avx512) own='-DSK_WIDTH=64 -mavx2 -mavx512f -mavx512dq -mavx512bw -mavx512vl' ;;
+        esac
+        for file in $(grep -l '^#ifdef SK_ISA$' $files); do
+            object=$work/$set-$(echo "$file" | tr / -).o
+            "$compiler" $flags $own -DSK_ISA=$set -c "$file" -o "$object"
+            objects="$objects $object"
+        done
+    done
+    "$compiler" $flags $static $files $objects src/gpu/absent.c tests/elsewhere/bits.c -o "$work/bits" -lm -pthread
     "$launcher" "$work/bits"
 done
