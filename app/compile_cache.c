@@ -1,5 +1,5 @@
 /* Where compiled formulas are kept. A file there is loaded as code, so it must be the user's own, in a folder where
- * nobody else can write; and it must be whole, for a loader falls over one that is not: its last bytes are a checksum,
+ * nobody else can write, below folders where nobody else can put another in its place; and it must be whole, for a loader falls over one that is not: its last bytes are a checksum,
  * which a loader does not look at. */
 #include <errno.h>
 #include <fcntl.h>
@@ -32,6 +32,24 @@ static bool make_folders(char *path) {
     return !mkdir(path, 0700) || errno == EEXIST;
 }
 
+/* Whether somebody else could rename what is in the folder: not where it is the user's or the system's own, and who
+ * else may write there (as in /tmp) may only rename what is theirs. */
+static bool is_firm(const struct stat *s) {
+    struct stat root;
+    bool owned = s->st_uid == 0 || s->st_uid == geteuid() || (!stat("/", &root) && s->st_uid == root.st_uid);
+    return owned && (!(s->st_mode & (S_IWGRP | S_IWOTH)) || s->st_mode & S_ISVTX);
+}
+
+/* Looks at the folders above a real path; the first that is not firm is left in `path`. */
+static bool are_firm_above(char *path) {
+    struct stat s;
+    for (char *slash; (slash = strrchr(path, '/')) && path[1];) {
+        slash[slash == path] = '\0';
+        if (stat(path, &s) || !is_firm(&s)) return false;
+    }
+    return true;
+}
+
 bool app_cache_folder(char *path, size_t size, char *words, size_t words_size) {
     const char *own = getenv("SKEIN_CACHE"), *xdg = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
     int length = 0;
@@ -43,21 +61,17 @@ bool app_cache_folder(char *path, size_t size, char *words, size_t words_size) {
         snprintf(words, words_size, "there is no home folder; SKEIN_CACHE may name another");
         return false;
     }
-    char absolute[2048];
-    if (path[0] != '/' && getcwd(absolute, sizeof absolute)) { // dlopen() looks elsewhere for what has no slash
-        char relative[2048];
-        snprintf(relative, sizeof relative, "%s", path);
-        if ((size_t)snprintf(path, size, "%s/%s", absolute, relative) >= size) path[0] = '\0';
-    }
     if (!make_folders(path) || stat(path, &s) || !S_ISDIR(s.st_mode)) {
         snprintf(words, words_size, "the folder %.300s cannot be made: %s", path, strerror(errno));
         return false;
     }
-    if (!is_private(&s)) {
-        snprintf(words, words_size, "others than you can write in %.300s", path);
-        return false;
-    }
-    return true;
+    char *real = realpath(path, NULL); // what is looked at is what is used; and dlopen() wants a slash
+    bool fits = real && strlen(real) < size;
+    if (fits) snprintf(path, size, "%s", real);
+    bool safe = fits && is_private(&s) && are_firm_above(real);
+    if (!safe) snprintf(words, words_size, "others than you can write in %.300s", fits && is_private(&s) ? real : path);
+    free(real);
+    return safe;
 }
 
 /* ---- its files ---- */

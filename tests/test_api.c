@@ -303,6 +303,32 @@ static void values_out_of_range_are_refused(void **state) {
     skein_world_destroy(s.world);
 }
 
+/* By word or by place, from 0 to the last. */
+static void choices_are_whole_and_within_the_list(void **state) {
+    (void)state;
+    int found = 0;
+    for (skein_category c = 0; c < SKEIN_CATEGORY_COUNT; c++)
+        for (size_t k = 0; skein_kind_at(c, k); k++)
+            for (size_t f = 0; f < skein_kind_at(c, k)->field_count; f++) {
+                const skein_field *field = &skein_kind_at(c, k)->fields[f];
+                if (field->type != SKEIN_FIELD_CHOICE) continue;
+                double count = 1;
+                for (const char *at = field->choices; *at; at++) count += *at == '|';
+                skein_error error;
+                for (double place = -1; place <= count + 1; place += 0.5) {
+                    skein_value value = skein_number(place);
+                    bool good = place >= 0 && place < count && place == floor(place);
+                    skein_status status = skein_field_check(field, &value, &error);
+                    if ((status == SKEIN_OK) != good) fail_msg("%s: place %g of %s", field->name, place, field->choices);
+                    if (!good) assert_non_null(strstr(error.message, field->choices));
+                }
+                skein_value value = skein_text("no such word");
+                assert_int_equal(skein_field_check(field, &value, &error), SKEIN_ERROR_VALUE);
+                found++;
+            }
+    assert_true(found > 5);
+}
+
 static void what_shaped_a_body_cannot_change(void **state) {
     (void)state;
     scene s = make_scene(NULL);
@@ -856,6 +882,7 @@ int main(void) {
         cmocka_unit_test(fields_by_handle_and_path),
         cmocka_unit_test(wrong_names_suggest_the_nearest),
         cmocka_unit_test(values_out_of_range_are_refused),
+        cmocka_unit_test(choices_are_whole_and_within_the_list),
         cmocka_unit_test(what_shaped_a_body_cannot_change),
         cmocka_unit_test(live_fields_are_as_if_built_so),
         cmocka_unit_test(disabled_is_as_if_absent),

@@ -691,6 +691,13 @@ static void pins_of_a_grid(void **state) {
     assert_no_pins(NULL, "3 four", SKEIN_ERROR_VALUE, "expected whole numbers");
     assert_no_pins(NULL, "box 1 2 3", SKEIN_ERROR_VALUE, "expected box and 6 numbers");
     assert_no_pins(NULL, "box 1 2 3 4 5 six", SKEIN_ERROR_VALUE, "expected box and 6 numbers");
+    assert_no_pins(NULL, "box 0 0 0 1 1", SKEIN_ERROR_VALUE, "expected box and 6 numbers");
+    assert_no_pins(NULL, "box 0 0 0 1 1 1 1", SKEIN_ERROR_VALUE, "expected box and 6 numbers");
+    assert_no_pins(NULL, "box -inf 0 0 1 1 1", SKEIN_ERROR_VALUE, "expected box and 6 numbers");
+    char crowd[2000] = "box"; // more than any place for numbers holds
+    for (size_t i = 3; i + 2 < sizeof crowd; i += 2) memcpy(crowd + i, " 1", 3);
+    assert_no_pins(NULL, crowd, SKEIN_ERROR_VALUE, "expected box and 6 numbers");
+    assert_no_pins(NULL, "sphere 1 2 3", SKEIN_ERROR_VALUE, "expected sphere and 4 numbers");
     assert_no_pins(NULL, "sphere 1 2 3 4 5", SKEIN_ERROR_VALUE, "expected sphere and 4 numbers");
     assert_no_pins(NULL, "sphere 0 0 0 nan", SKEIN_ERROR_VALUE, "expected sphere and 4 numbers");
     assert_no_pins(NULL, "box 5 5 5 6 6 6", SKEIN_ERROR_VALUE, "no particle is in there");

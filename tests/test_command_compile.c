@@ -122,6 +122,27 @@ static void bad_files_are_made_anew(void **state) {
     assert_int_equal(count_entries(cache), 1);
 }
 
+/* Nor if others could put it there. */
+static void what_others_can_put_in_its_place_is_not_loaded(void **state) {
+    (void)state;
+    begin();
+    uint64_t hash = hash_of(SKEIN("run", scene));
+    hasten();
+    check(hash, "1 by ");
+    setenv("CC", "/bin/false", 1);
+    char *path = cached(), *right = in_folder("right.so"), *above = in_folder("a cache");
+    check(hash, "1 from ");
+    assert_int_equal(rename(path, right), 0); // a link, to what is whole, right and one's own
+    assert_int_equal(symlink(right, path), 0);
+    check(hash, "a formula stays on its tape");
+    assert_int_equal(unlink(path) || rename(right, path), 0);
+    check(hash, "1 from ");
+    assert_int_equal(chmod(above, 0777), 0); // others may rename the cache, and put theirs in its place
+    check(hash, "warning: --compile: nothing is kept for the next time: others than you can write in ");
+    assert_int_equal(chmod(above, 01777), 0); // as in /tmp: nobody can rename what is another's
+    check(hash, "1 from ");
+}
+
 static void without_a_compiler_tapes_run(void **state) {
     (void)state;
     begin();
@@ -192,6 +213,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(compiled_once_and_kept, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(bad_files_are_made_anew, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(what_others_can_put_in_its_place_is_not_loaded, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(without_a_compiler_tapes_run, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(an_interrupted_compiler_leaves_nothing, make_folder, remove_folder),
     };

@@ -197,9 +197,14 @@ static void a_place_that_cannot_be_written_is_told_at_once(void **state) {
     assert_status(o, 1);
     assert_contains(o.err, "a-00.png: cannot create the file: No such file or directory; make the directory first\n");
     outcome_free(&o);
-    if (geteuid() == 0) return; // the superuser may write everywhere
+}
+
+static void a_folder_that_may_not_be_written_is_told(void **state) {
+    (void)state;
+    if (geteuid() == 0) skip(); // the superuser may write everywhere
+    const char *s = tiny_scene();
     assert_int_equal(mkdir(in_folder("closed"), 0555), 0);
-    o = SKEIN("render", s, "-o", in_folder("closed/a.png"), "--frame", "100000000", SMALL);
+    outcome o = SKEIN("render", s, "-o", in_folder("closed/a.png"), "--frame", "100000000", SMALL);
     assert_status(o, 1);
     assert_contains(o.err, "a.png: cannot write: Permission denied\n");
     outcome_free(&o);
@@ -276,6 +281,7 @@ int main(void) {
         TEST(wrong_arguments_are_told),
         TEST(help_teaches),
         TEST(a_place_that_cannot_be_written_is_told_at_once),
+        TEST(a_folder_that_may_not_be_written_is_told),
         TEST(a_full_disk_leaves_the_old_picture),
         TEST(without_opengl_it_says_what_to_do),
         TEST(an_interrupted_picture_is_none),

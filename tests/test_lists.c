@@ -130,6 +130,7 @@ static void texture_coordinates_are_kept(void **state) {
     OK(world, skein_body_surface(world, body, &surface));
     assert_memory_equal(surface.corner_uv, uv, sizeof uv);
     FAILS(world, SKEIN_ERROR_VALUE, "4 corners", skein_body_uv_set(world, body, uv, 4));
+    FAILS(world, SKEIN_ERROR_VALUE, "7 corners", skein_body_uv_set(world, body, uv, 7));
     uv[7] = NAN;
     FAILS(world, SKEIN_ERROR_VALUE, "corner 3", skein_body_uv_set(world, body, uv, 6));
     FAILS(world, SKEIN_ERROR_HANDLE, "no such body", skein_body_uv_set(world, (skein_handle){.index = 9, .generation = 9}, uv, 6));

@@ -284,6 +284,9 @@ static void meshes_that_are_none_are_refused(void **state) {
         {{p, 4, three, 1, good, 3}, "0 has 3 corners, and a tetrahedron 4"},
         {{p, 5, four, 1, flat, 4}, "tetrahedron 0, of the points 0 1 2 4, is flat"},
         {{p, 4, four, 1, far, 4}, "tetrahedron 0 names point 7, but there are only 4"},
+        {{p, 4, four, 1, flat, 4}, "tetrahedron 0 names point 4, but there are only 4"}, // one past the last
+        {{p, 7, four, 1, crowd, 8}, "8 corners for 1 tetrahedra"},
+        {{p, 7, four, 3, crowd, 8}, "8 corners for 3 tetrahedra"},
         {{p, 7, four, 3, crowd, 12}, "3 tetrahedra share the face 0 1 2"},
         {{p, 4, four, 0, good, 0}, "4 points and 0 tetrahedra"},
         {{(const double[]){0, 0, 0, 1, 0, 0, 0, 1, 0, 0, NAN, 1}, 4, four, 1, good, 4}, "point 3"},

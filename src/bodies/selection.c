@@ -35,7 +35,7 @@ static skein_status choose_in_box_or_sphere(const selector *s, const char *part)
     double n[7];
     int count = read_numbers(rest, n, 7);
     if (count != (box ? 6 : 4))
-        return sk_fail(s->error, SKEIN_ERROR_VALUE, s->where, "'%s': expected %s", part,
+        return sk_fail(s->error, SKEIN_ERROR_VALUE, s->where, "'%.80s': expected %s", part,
                        box ? "box and 6 numbers: two corners" : "sphere and 4 numbers: centre and radius");
     size_t found = 0;
     for (size_t i = 0; i < s->of->particle_count; i++) {
