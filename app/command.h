@@ -91,6 +91,9 @@ bool app_override(app_arguments *arguments, app_override_texts texts);
 
 /* Prints "skein: where: message" to standard error. */
 void app_print_error(const skein_error *error);
+/* Keeps the same words for a report. */
+enum { APP_FAILURE_SIZE = 1280 };
+void app_keep_error(const skein_error *error, char out[APP_FAILURE_SIZE]);
 
 /* A scene read, with its world built. */
 typedef struct app_scene {

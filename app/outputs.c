@@ -2,9 +2,11 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -38,6 +40,8 @@ typedef struct record {
 
 struct app_outputs {
     const app_scene *loaded;
+    int lock; /* the folder, held for this run alone; -1: not */
+    char failure[APP_FAILURE_SIZE];
     char folder[FOLDER_SIZE];
     bool made[FOLDER_SIZE];   /* by length: this part of the folder's path was made here */
     char stem[NAME_SIZE];     /* the scene's name, for pictures */
@@ -120,6 +124,13 @@ static void remove_folders(app_outputs *outputs) {
     }
 }
 
+/* Two runs would give each other's files their names. The lock goes with the process, so that nothing is left of it
+ * after a crash; where a file system has no locks there is none. False: another run has it. */
+static bool lock_folder(app_outputs *outputs) {
+    outputs->lock = open(outputs->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    return outputs->lock < 0 || !flock(outputs->lock, LOCK_EX | LOCK_NB) || errno != EWOULDBLOCK;
+}
+
 static int prepare_folder(app_outputs *outputs, const char *folder) {
     size_t length = strlen(folder);
     while (length > 1 && folder[length - 1] == '/') length--;
@@ -129,13 +140,24 @@ static int prepare_folder(app_outputs *outputs, const char *folder) {
         return EXIT_FAULT;
     }
     snprintf(outputs->folder, sizeof outputs->folder, "%.*s", (int)length, folder);
-    if (make_folders(outputs)) return EXIT_OK;
+    if (make_folders(outputs)) {
+        if (lock_folder(outputs)) return EXIT_OK;
+        fprintf(stderr, "skein run: --out %s: another run writes there; wait for its end, or name another folder\n",
+                folder);
+        return EXIT_FAULT;
+    }
     fprintf(stderr, "skein run: --out %s: cannot write there: %s\n", folder,
             errno == ENOTDIR ? "there is a file where a folder should be" : strerror(errno));
     return EXIT_FAULT;
 }
 
 /* ---- beginning ---- */
+
+/* Prints a fault, and keeps it for the report. */
+static void tell(app_outputs *outputs, const skein_error *error) {
+    app_print_error(error);
+    app_keep_error(error, outputs->failure);
+}
 
 static skein_status surface_of(const app_outputs *outputs, size_t body, skein_surface *surface) {
     return skein_body_surface(outputs->loaded->world, skein_object_at(outputs->loaded->world, SKEIN_BODY, body),
@@ -155,12 +177,76 @@ static bool begin_caches(app_outputs *outputs, const io_pc2_params *params) {
         io_pc2_header header = {(uint32_t)surface.vertex_count, 0, (float)params->every, IO_PC2_UNKNOWN};
         c->writer = io_pc2_create(c->path, header, &error);
         if (!c->writer) {
-            app_print_error(&error);
+            tell(outputs, &error);
             return false;
         }
         outputs->cache_count++;
     }
     return true;
+}
+
+/* What of a body is recorded besides its motion. The arrays are the caller's, to be freed. */
+typedef struct record_parts {
+    double *masses;
+    uint32_t *cells, *sizes;
+    char *scene;
+} record_parts;
+
+static void free_parts(record_parts *parts) {
+    free(parts->masses);
+    free(parts->cells);
+    free(parts->sizes);
+    free(parts->scene);
+}
+
+/* Its faces, as particles of its own; of a body without any its edges. False without memory. */
+static bool gather_cells(const app_outputs *outputs, size_t body, const skein_surface *s, io_recorded *r,
+                         record_parts *parts) {
+    skein_world *world = outputs->loaded->world;
+    skein_handle handle = skein_object_at(world, SKEIN_BODY, body);
+    size_t edges = 0, corners = s->face_vertex_count;
+    if (!s->face_count && !skein_body_elements(world, handle, SKEIN_EDGES, NULL, 0, &edges)) corners = 2 * edges;
+    r->cell_count = s->face_count ? s->face_count : edges;
+    if (!r->cell_count) return true;
+    parts->cells = malloc(corners * sizeof *parts->cells);
+    parts->sizes = malloc(r->cell_count * sizeof *parts->sizes);
+    if (!parts->cells || !parts->sizes) return false;
+    if (edges) skein_body_elements(world, handle, SKEIN_EDGES, parts->cells, edges, &edges);
+    for (size_t c = 0; c < corners; c++)
+        parts->cells[c] = (edges ? parts->cells[c] : s->particle_of_vertex[s->face_vertices[c]]) - s->first_particle;
+    for (size_t f = 0; f < r->cell_count; f++) parts->sizes[f] = edges ? 2 : s->face_sizes[f];
+    r->cells = parts->cells;
+    r->cell_sizes = parts->sizes;
+    return true;
+}
+
+static bool gather_parts(const app_outputs *outputs, size_t body, const skein_surface *s, io_recorded *r,
+                         record_parts *parts) {
+    skein_view v = skein_velocity_view(outputs->loaded->world);
+    parts->masses = malloc(s->particle_count * sizeof *parts->masses + 1);
+    parts->scene = io_scene_text(outputs->loaded->scene);
+    if (!parts->masses || !parts->scene) return false;
+    for (size_t i = 0; i < s->particle_count; i++)
+        parts->masses[i] = (double)v.xyzw[4 * (size_t)v.slot_of[s->first_particle + i] + 3];
+    *r = (io_recorded){.particles = s->particle_count,
+                       .masses = parts->masses,
+                       .body = body_text(outputs->loaded->world, body),
+                       .scene = parts->scene};
+    return gather_cells(outputs, body, s, r, parts);
+}
+
+static bool begin_record(app_outputs *outputs, record *r, const skein_surface *surface) {
+    char path[PATH_SIZE + 8];
+    snprintf(r->path, sizeof r->path, "%s/%s", outputs->folder, outputs->names[r->body]);
+    snprintf(path, sizeof path, "%s%s", r->path, r->format->ending);
+    skein_error error = {SKEIN_ERROR_MEMORY, "", "out of memory"};
+    io_recorded recorded;
+    record_parts parts = {NULL, NULL, NULL, NULL};
+    if (gather_parts(outputs, r->body, surface, &recorded, &parts))
+        r->file = r->format->create(path, &recorded, &error);
+    free_parts(&parts);
+    if (!r->file) tell(outputs, &error);
+    return r->file != NULL;
 }
 
 /* Begins the recordings of all bodies, if the scene asks for them by name. */
@@ -169,18 +255,10 @@ static bool begin_records(app_outputs *outputs, const io_export *wanted) {
     if (!wanted->asked) return true;
     skein_surface surface;
     for (size_t b = 0; b < outputs->body_count; b++) {
-        char path[PATH_SIZE + 8];
         if (surface_of(outputs, b, &surface)) continue;
         record *r = &outputs->records[outputs->record_count];
         *r = (record){.format = format, .body = b, .every = ((const io_recording_params *)wanted->params)->every};
-        snprintf(r->path, sizeof r->path, "%s/%s", outputs->folder, outputs->names[b]);
-        snprintf(path, sizeof path, "%s%s", r->path, format->ending);
-        skein_error error = {SKEIN_OK, "", ""};
-        r->file = format->create(path, surface.particle_count, &error);
-        if (!r->file) {
-            app_print_error(&error);
-            return false;
-        }
+        if (!begin_record(outputs, r, &surface)) return false;
         outputs->record_count++;
     }
     return true;
@@ -247,6 +325,7 @@ int app_outputs_begin(const app_scene *loaded, const char *folder, bool quiet, a
     *begun = NULL;
     if (!outputs) return EXIT_FAILURE_RUN;
     outputs->loaded = loaded;
+    outputs->lock = -1;
     int status = begin(outputs, folder, quiet);
     if (!status) *begun = outputs;
     else app_outputs_abandon(outputs);
@@ -275,7 +354,7 @@ static bool add_records(app_outputs *outputs, int frame) {
         skein_velocities_copy(world, s.first_particle, s.particle_count, outputs->velocities);
         if (!r->format->add(r->file, skein_world_time(world), outputs->positions, outputs->velocities, &error))
             continue;
-        app_print_error(&error);
+        tell(outputs, &error);
         return false;
     }
     return true;
@@ -290,15 +369,22 @@ bool app_outputs_frame(app_outputs *outputs, int frame) {
         if (frame % c->every || surface_of(outputs, c->body, &surface)) continue;
         gather_vertices(outputs, &surface);
         if (!io_pc2_add(c->writer, outputs->positions, &error)) continue;
-        app_print_error(&error);
+        tell(outputs, &error);
         return false;
     }
 #ifdef SKEIN_RENDER
     // picture k shows the world after k frames, so that the film is as long as the run
     bool in_film = outputs->footage && (!frame || frame < outputs->loaded->settings.frames);
-    if (in_film && !app_footage_frame(outputs->footage)) return false;
+    if (in_film && !app_footage_frame(outputs->footage)) {
+        snprintf(outputs->failure, sizeof outputs->failure, "%s: the film could not be written", outputs->film_path);
+        return false;
+    }
 #endif
     return true;
+}
+
+const char *app_outputs_failure(const app_outputs *outputs) {
+    return outputs->failure;
 }
 
 typedef struct notebook {
@@ -379,6 +465,63 @@ bool app_outputs_finish(app_outputs *outputs, void (*wrote)(void *user, const ch
     return book.good;
 }
 
+/* ---- a run that failed ---- */
+
+static void keep_caches(app_outputs *outputs, notebook *book) {
+    for (size_t i = 0; i < outputs->cache_count; i++) {
+        cache *c = &outputs->caches[i];
+        char path[PATH_SIZE + 8];
+        skein_error error = {SKEIN_OK, "", ""};
+        snprintf(path, sizeof path, "%s/%s.failed.pc2", outputs->folder, outputs->names[c->body]);
+        skein_status status = io_pc2_keep(c->writer, path, &error);
+        c->writer = NULL;
+        note(book, path, status, &error);
+    }
+}
+
+static void keep_records(app_outputs *outputs, notebook *book) {
+    for (size_t i = 0; i < outputs->record_count; i++) {
+        record *r = &outputs->records[i];
+        char path[PATH_SIZE + 16];
+        skein_error error = {SKEIN_OK, "", ""};
+        snprintf(path, sizeof path, "%s.failed%s", r->path, r->format->ending);
+        skein_status status = r->format->keep(r->file, path, &error);
+        r->file = NULL;
+        note(book, path, status, &error);
+        if (status || !r->format->second) continue;
+        snprintf(path, sizeof path, "%s.failed%s", r->path, r->format->second);
+        note(book, path, status, &error);
+    }
+}
+
+#ifdef SKEIN_RENDER
+/* A film grows under its own name; what there is of it plays. */
+static void keep_film(app_outputs *outputs, notebook *book) {
+    if (!outputs->footage) return;
+    char path[PATH_SIZE + 8];
+    const char *ending = strrchr(outputs->film_path, '.');
+    snprintf(path, sizeof path, "%.*s.failed%s", (int)(ending - outputs->film_path), outputs->film_path, ending);
+    book->good &= app_footage_end(outputs->footage, NULL);
+    outputs->footage = NULL;
+    skein_error error = {SKEIN_OK, "", ""};
+    skein_status status = SKEIN_OK;
+    if (rename(outputs->film_path, path))
+        status = io_error_set(&error, SKEIN_ERROR_FILE, path, "cannot write: %s", strerror(errno));
+    note(book, path, status, &error);
+}
+#endif
+
+void app_outputs_keep(app_outputs *outputs, void (*wrote)(void *user, const char *path), void *user) {
+    notebook book = {wrote, user, true};
+    keep_caches(outputs, &book);
+    keep_records(outputs, &book);
+#ifdef SKEIN_RENDER
+    keep_film(outputs, &book);
+#endif
+    memset(outputs->made, 0, sizeof outputs->made); // the folders stay
+    app_outputs_abandon(outputs);
+}
+
 void app_outputs_abandon(app_outputs *outputs) {
     if (!outputs) return;
     for (size_t i = 0; i < outputs->cache_count; i++) io_pc2_abandon(outputs->caches[i].writer);
@@ -388,6 +531,7 @@ void app_outputs_abandon(app_outputs *outputs) {
     for (size_t i = 0; i < outputs->record_count; i++)
         if (outputs->records[i].file) outputs->records[i].format->abandon(outputs->records[i].file);
     remove_folders(outputs);
+    if (outputs->lock >= 0) close(outputs->lock);
     free(outputs->records);
     free(outputs->velocities);
     free(outputs->caches);

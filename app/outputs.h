@@ -6,14 +6,20 @@
 
 typedef struct app_outputs app_outputs;
 
-/* Makes the folder and begins what grows with the run. Returns an exit status, after a printed fault:
- * EXIT_FAULT where the folder cannot be. */
+/* Makes the folder, takes it for this run alone, and begins what grows with the run. Returns an exit status, after a
+ * printed fault: EXIT_FAULT where the folder cannot be, or another run writes there. */
 int app_outputs_begin(const app_scene *loaded, const char *folder, bool quiet, app_outputs **begun);
 /* Adds the world's present state as a frame, 0 being the start. False after a printed fault. */
 bool app_outputs_frame(app_outputs *outputs, int frame);
 /* Writes what comes last, gives all files their names and names each to `wrote`. False after a printed
  * fault. Frees `outputs` in any case. */
 bool app_outputs_finish(app_outputs *outputs, void (*wrote)(void *user, const char *path), void *user);
+/* The same for a run that failed: keeps the frames that were finished, under names that say so, NAME.failed.pc2 beside
+ * what may stand under NAME.pc2, and names each to `wrote`. What only the end can show (a mesh, a picture) is not
+ * written. Frees `outputs`. */
+void app_outputs_keep(app_outputs *outputs, void (*wrote)(void *user, const char *path), void *user);
+/* Why app_outputs_frame() failed last, or "". */
+const char *app_outputs_failure(const app_outputs *outputs);
 /* Leaves all as it was: no files, and no folders that were made for them. NULL is allowed. */
 void app_outputs_abandon(app_outputs *outputs);
 

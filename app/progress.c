@@ -78,11 +78,14 @@ bool app_step_frame(const app_scene *loaded, int frame, int steps, double dt, ap
     // said at once, instead of writing such files to the end
     app_progress_end(p);
     skein_statistics now;
-    if (!good || skein_world_statistics(world, &now)) app_print_error(skein_world_error(world));
+    skein_error error;
+    if (!good || skein_world_statistics(world, &now)) error = *skein_world_error(world);
     else
-        fprintf(stderr,
-                "skein: %s: blew up in frame %d: %zu of %zu particles are no longer finite; "
-                "more substeps or less stiffness help\n",
-                loaded->path, frame, now.nonfinite, now.particles);
+        io_error_set(&error, SKEIN_ERROR_VALUE, loaded->path,
+                     "blew up in frame %d: %zu of %zu particles are no longer finite; "
+                     "more substeps or less stiffness help",
+                     frame, now.nonfinite, now.particles);
+    app_print_error(&error);
+    app_keep_error(&error, p->failure);
     return false;
 }

@@ -11,6 +11,7 @@ typedef struct app_progress {
     bool line_open; /* the cursor stands behind the bar */
     int frames;
     double start, last;
+    char failure[APP_FAILURE_SIZE]; /* what app_step_frame() printed when it failed, or "" */
 } app_progress;
 
 app_progress app_progress_start(const char *what, int frames, bool quiet);

@@ -42,6 +42,7 @@ static json_t *make_document(const app_report *r) {
         {"threads", count((uint64_t)scene->threads)},
         {"device", json_string(r->device)},
         {"interrupted", json_boolean(r->interrupted)},
+        {"failed", r->failure[0] ? json_string(r->failure) : json_false()},
         {"warnings", count(r->loaded->warnings)},
         // what was done
         {"frames", count((uint64_t)r->frames)},
@@ -85,14 +86,14 @@ static json_t *make_document(const app_report *r) {
 }
 
 bool app_report_write(app_report *report, const char *folder) {
-    size_t size = strlen(folder) + sizeof "/report.json";
+    size_t size = strlen(folder) + sizeof "/report.failed.json";
     char *path = malloc(size);
     json_t *root = make_document(report);
     char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(root);
     skein_error error = {SKEIN_ERROR_MEMORY, "report.json", "out of memory"};
     if (path && text) {
-        snprintf(path, size, "%s/report.json", folder);
+        snprintf(path, size, "%s/report%s.json", folder, report->failure[0] ? ".failed" : "");
         io_output *output = io_output_open(path, &error);
         if (output) {
             io_output_write(output, text, strlen(text));

@@ -21,9 +21,11 @@ typedef struct app_report {
     int flocks_noted;            /* the frame after the one that they were last noted at */
     app_log *log;                /* a line a step, or NULL */
     const char *log_path;
+    char failure[APP_FAILURE_SIZE]; /* why it failed, or "" */
 } app_report;
 
-/* Writes FOLDER/report.json and adds it to the files. False after a printed fault. */
+/* Writes FOLDER/report.json (of a run that failed, report.failed.json) and adds it to the files. False after a printed
+ * fault. */
 bool app_report_write(app_report *report, const char *folder);
 void app_report_print(const app_report *report);
 

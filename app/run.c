@@ -76,6 +76,25 @@ static void note_file(void *user, const char *path) {
     json_array_append_new(report->files, json_string(path));
 }
 
+/* A run that failed keeps the frames before that, if there are any, and says so. */
+static void keep_frames(app_report *r, app_outputs *outputs, const char *folder, const app_progress *p) {
+    if (!outputs || !r->frames) {
+        app_outputs_abandon(outputs);
+        return;
+    }
+    const char *why = p->failure[0] ? p->failure : app_outputs_failure(outputs);
+    snprintf(r->failure, sizeof r->failure, "%s", why[0] ? why : "the state could not be measured");
+    skein_world_statistics(r->loaded->world, &r->statistics); // as it is, whatever that is
+    app_outputs_keep(outputs, note_file, r);
+    bool kept = json_array_size(r->files) > 0;
+    app_report_write(r, folder);
+    if (!kept) return;
+    if (p->failure[0])
+        fprintf(stderr, "skein: the %d frame%s before that %s kept in %s/*.failed.*\n", r->frames,
+                r->frames == 1 ? "" : "s", r->frames == 1 ? "is" : "are", folder);
+    else fprintf(stderr, "skein: what was written before that is kept in %s/*.failed.*\n", folder);
+}
+
 static int simulate(app_report *r, const char *folder, bool quiet) {
     app_outputs *outputs = NULL;
     app_catch_interrupts();
@@ -89,7 +108,7 @@ static int simulate(app_report *r, const char *folder, bool quiet) {
     bool ran = run_frames(r, outputs, &p);
     bool logged = app_log_finish(r->log); // of a run that failed, too: it may say why
     if (!ran) {
-        app_outputs_abandon(outputs);
+        keep_frames(r, outputs, folder, &p);
         return EXIT_FAILURE_RUN;
     }
     int signal_number = app_interrupted(); // a later one interrupts nothing that matters

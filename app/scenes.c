@@ -14,6 +14,10 @@ void app_print_error(const skein_error *error) {
     fprintf(stderr, "skein: %s%s%s\n", error->where, error->where[0] ? ": " : "", error->message);
 }
 
+void app_keep_error(const skein_error *error, char out[APP_FAILURE_SIZE]) {
+    snprintf(out, APP_FAILURE_SIZE, "%s%s%s", error->where, error->where[0] ? ": " : "", error->message);
+}
+
 static void report_fault(void *user, const skein_error *error) {
     (void)user;
     app_print_error(error);

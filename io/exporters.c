@@ -61,14 +61,12 @@ static const skein_kind kinds[] = {
      .fields = recording_fields,
      .field_count = COUNT(recording_fields),
      .params_size = sizeof(io_recording_params)},
-#ifdef SKEIN_HDF5
     {.name = "hdf5",
      .help = "The same as HDF5, with an XDMF index beside it for ParaView; only where a scene asks for it.",
      .category = SKEIN_EXPORTER,
      .fields = recording_fields,
      .field_count = COUNT(recording_fields),
      .params_size = sizeof(io_recording_params)},
-#endif
 };
 
 const skein_kind *io_exporter_at(size_t index) {

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 /* ---- Errors -------------------------------------------------------------------------------- */
@@ -171,9 +172,13 @@ struct io_output {
     char *path;       /* as the caller named it, for messages */
     char *final_path; /* where the file will stand, links followed */
     char *part_path;  /* where it stands until then; NULL where a device or pipe is written directly */
+    uint64_t written; /* bytes that went through, without those in the buffer */
+    double looked;    /* seconds: when io_output_is_due() last said yes */
     size_t used;
     char buffer[1 << 16];
 };
+
+enum { MOST_PART_NAME = 200 }; /* of the final name in the part's: the whole must be a name, too */
 
 static void output_free(io_output *output) {
     if (output->fd >= 0) close(output->fd);
@@ -187,14 +192,16 @@ static void output_free(io_output *output) {
 /* Creates the part file beside the final name. Returns 0 or an errno. */
 static int part_open(io_output *output) {
     const char *slash = strrchr(output->final_path, '/');
-    size_t folder = slash ? (size_t)(slash + 1 - output->final_path) : 0, size = folder + 64;
+    size_t folder = slash ? (size_t)(slash + 1 - output->final_path) : 0, size = folder + MOST_PART_NAME + 64;
     char *part = malloc(size);
     if (!part) return ENOMEM;
     memcpy(part, output->final_path, folder);
-    // O_EXCL picks a name nobody has, O_CREAT with 0666 leaves the mode to the user's umask.
+    // O_EXCL picks a name nobody has and follows no link; 0666 leaves the mode to the user's umask.
     for (int n = 0; n < 1000; n++) {
-        snprintf(part + folder, size - folder, "skein-%ld-%d.part", (long)getpid(), n);
-        output->fd = open(part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        int length = snprintf(part + folder, size - folder, "%.*s.%ld", (int)MOST_PART_NAME,
+                              output->final_path + folder, (long)getpid());
+        snprintf(part + folder + length, size - folder - (size_t)length, n ? "-%d.part" : ".part", n);
+        output->fd = open(part, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (output->fd >= 0) {
             output->part_path = part;
             return 0;
@@ -227,12 +234,20 @@ static int output_start(io_output *output) {
     return fault;
 }
 
+static double seconds_now(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 io_output *io_output_open(const char *path, skein_error *error) {
     io_output *output = malloc(sizeof *output);
     if (output) {
         output->fd = -1;
         output->fault = 0;
         output->used = 0;
+        output->written = 0;
+        output->looked = seconds_now();
         output->path = strdup(path);
         output->final_path = output->part_path = NULL;
     }
@@ -254,17 +269,18 @@ static void write_through(io_output *output, const char *bytes, size_t size, off
         }
         bytes += done;
         size -= (size_t)done;
+        output->written += offset < 0 ? (uint64_t)done : 0;
         offset = offset < 0 ? offset : offset + done;
     }
 }
 
-static void output_flush(io_output *output) {
+void io_output_flush(io_output *output) {
     write_through(output, output->buffer, output->used, -1);
     output->used = 0;
 }
 
 void io_output_write(io_output *output, const void *bytes, size_t size) {
-    if (size > sizeof output->buffer - output->used) output_flush(output);
+    if (size > sizeof output->buffer - output->used) io_output_flush(output);
     if (size > sizeof output->buffer) {
         write_through(output, bytes, size, -1);
         return;
@@ -297,8 +313,31 @@ void io_output_count(io_output *output, uint64_t value) {
 }
 
 void io_output_patch(io_output *output, uint64_t offset, const void *bytes, size_t size) {
-    output_flush(output);
+    io_output_flush(output);
     write_through(output, bytes, size, (off_t)offset);
+}
+
+const char *io_output_part(const io_output *output) {
+    return output->part_path;
+}
+
+uint64_t io_output_place(const io_output *output) {
+    return output->written + output->used;
+}
+
+uint64_t io_output_written(const io_output *output) {
+    return output->written;
+}
+
+bool io_output_is_due(io_output *output) {
+    double now = seconds_now();
+    if (now - output->looked < 0.25) return false;
+    output->looked = now;
+    return true;
+}
+
+void io_output_fail_memory(io_output *output) {
+    if (output->fault == 0) output->fault = ENOMEM;
 }
 
 skein_status io_output_status(const io_output *output, skein_error *error) {
@@ -307,7 +346,7 @@ skein_status io_output_status(const io_output *output, skein_error *error) {
 }
 
 skein_status io_output_commit(io_output *output, skein_error *error) {
-    output_flush(output);
+    io_output_flush(output);
     // Some file systems report a full disk only here.
     int closed = close(output->fd), fault = errno;
     output->fd = -1;
@@ -317,6 +356,36 @@ skein_status io_output_commit(io_output *output, skein_error *error) {
     skein_status status = io_output_status(output, error);
     if (status == SKEIN_OK) {
         // The part file has become the file: nothing is left to remove.
+        free(output->part_path);
+        output->part_path = NULL;
+    }
+    output_free(output);
+    return status;
+}
+
+void io_output_cut(io_output *output, uint64_t size) {
+    output->used = 0;
+    output->fault = 0;
+    if (ftruncate(output->fd, (off_t)size) != 0 || lseek(output->fd, (off_t)size, SEEK_SET) < 0) output->fault = errno;
+    else output->written = size;
+}
+
+skein_status io_output_keep(io_output *output, const char *path, uint64_t size, const io_output_change *change,
+                            skein_error *error) {
+    io_output_flush(output);
+    if (!output->part_path) { // a device has what it has
+        output_free(output);
+        return SKEIN_OK;
+    }
+    // After a full disk, places that were written before can still be changed.
+    output->fault = 0;
+    if (size < output->written && ftruncate(output->fd, (off_t)size) != 0) output->fault = errno;
+    if (change) write_through(output, change->bytes, change->size, (off_t)change->offset);
+    if (output->fault == 0 && rename(output->part_path, path) != 0) output->fault = errno;
+    skein_status status = SKEIN_OK;
+    if (output->fault != 0)
+        status = io_error_set(error, SKEIN_ERROR_FILE, path, "cannot write: %s", fault_text(output->fault));
+    else {
         free(output->part_path);
         output->part_path = NULL;
     }

@@ -57,9 +57,10 @@ void io_bytes_free(io_bytes *bytes);
 
 /* ---- Writing ------------------------------------------------------------------------------- */
 
-/* A file in the making. It grows as "skein-PID-N.part" beside its final name and is renamed at the
+/* A file in the making. It grows as "NAME.PID.part" beside its final name NAME and is renamed at the
  * commit; a device or pipe is written directly. The first failure is kept and the rest ignored, so
- * a writer may write on and look at the commit only. A target's mode is kept; a link is followed. */
+ * a writer may write on and look at the commit only. A target's mode is kept; a link is followed,
+ * but never one under the name that the file has while it grows. */
 typedef struct io_output io_output;
 
 io_output *io_output_open(const char *path, skein_error *error); /* NULL on failure */
@@ -68,11 +69,37 @@ void io_output_printf(io_output *output, const char *format, ...) IO_PRINTF(2, 3
 void io_output_count(io_output *output, uint64_t value);                           /* in decimal */
 /* Overwrites bytes already written; fails on a pipe. */
 void io_output_patch(io_output *output, uint64_t offset, const void *bytes, size_t size);
-/* The first failure so far, for a writer that wants to stop early. */
+/* The path of the file while it grows; NULL where a device or pipe is written directly. */
+const char *io_output_part(const io_output *output);
+/* Bytes written so far, one after the other: where the next one goes. */
+uint64_t io_output_place(const io_output *output);
+/* For files that grow for long, so that what is there can be read if the program is killed: whether a
+ * quarter of a second has gone by since it last said so; and writes all that was given so far. */
+bool io_output_is_due(io_output *output);
+void io_output_flush(io_output *output);
+/* Notes that the writer had no memory for what should be written. */
+void io_output_fail_memory(io_output *output);
+/* The first failure so far (or SKEIN_OK), for a writer that wants to stop early. */
 skein_status io_output_status(const io_output *output, skein_error *error);
 /* Writes the rest, checks every error, gives the file its name. Frees `output` in any case; on
  * failure nothing is left and what stood under the name before still stands. */
 skein_status io_output_commit(io_output *output, skein_error *error);
+/* Takes back what was written after the first `size` bytes, and forgets a failure: for a writer that can
+ * round off what is there by io_output_patch() before it keeps it. */
+void io_output_cut(io_output *output, uint64_t size);
+/* Gives what was written another name, for the good part of a file that cannot be completed: its first
+ * `size` bytes, or all (UINT64_MAX), with bytes at one place changed (NULL: none). What stands under that
+ * name is replaced; a failure of writing before does not matter. Frees `output` in any case. */
+#define IO_NOTHING_KEPT "not one sample was written: nothing of it is kept"
+typedef struct io_output_change {
+    uint64_t offset;
+    const void *bytes;
+    size_t size;
+} io_output_change;
+skein_status io_output_keep(io_output *output, const char *path, uint64_t size, const io_output_change *change,
+                            skein_error *error);
+/* Of the bytes given so far, how many surely are in the file. */
+uint64_t io_output_written(const io_output *output);
 /* Removes what was written; NULL is allowed. */
 void io_output_abandon(io_output *output);
 

@@ -89,6 +89,12 @@ io_pc2_writer *io_pc2_create(const char *path, io_pc2_header header, skein_error
     return writer;
 }
 
+static void count_samples(io_pc2_writer *writer, uint32_t samples) {
+    unsigned char bytes[4];
+    put_u32(bytes, samples);
+    io_output_patch(writer->output, SAMPLES_OFFSET, bytes, sizeof bytes);
+}
+
 skein_status io_pc2_add(io_pc2_writer *writer, const double *positions, skein_error *error) {
     if (writer->added == INT32_MAX)
         return io_error_set(error, SKEIN_ERROR_LIMIT, writer->path, "a PC2 file holds at most 2147483647 samples");
@@ -101,16 +107,17 @@ skein_status io_pc2_add(io_pc2_writer *writer, const double *positions, skein_er
         left -= count;
     }
     writer->added++;
+    // samples first, then their number: a reader never finds it too large
+    if (writer->header.samples == IO_PC2_UNKNOWN) {
+        io_output_flush(writer->output);
+        if (io_output_is_due(writer->output)) count_samples(writer, writer->added);
+    }
     return io_output_status(writer->output, error);
 }
 
 skein_status io_pc2_commit(io_pc2_writer *writer, skein_error *error) {
     skein_status status;
-    if (writer->header.samples == IO_PC2_UNKNOWN) {
-        unsigned char bytes[4];
-        put_u32(bytes, writer->added);
-        io_output_patch(writer->output, SAMPLES_OFFSET, bytes, sizeof bytes);
-    }
+    if (writer->header.samples == IO_PC2_UNKNOWN) count_samples(writer, writer->added);
     if (writer->header.samples != IO_PC2_UNKNOWN && writer->header.samples != writer->added)
         status = io_error_set(error, SKEIN_ERROR_VALUE, writer->path, "%lu samples were promised, %lu were added",
                               (unsigned long)writer->header.samples, (unsigned long)writer->added);
@@ -118,6 +125,25 @@ skein_status io_pc2_commit(io_pc2_writer *writer, skein_error *error) {
         status = io_output_commit(writer->output, error);
         writer->output = NULL;
     }
+    io_pc2_abandon(writer);
+    return status;
+}
+
+skein_status io_pc2_keep(io_pc2_writer *writer, const char *path, skein_error *error) {
+    assert(writer->header.samples == IO_PC2_UNKNOWN);
+    io_output_flush(writer->output);
+    uint64_t sample_bytes = (uint64_t)writer->header.points * POINT_BYTES, written = io_output_written(writer->output);
+    uint32_t whole = written > HEADER_BYTES ? (uint32_t)((written - HEADER_BYTES) / sample_bytes) : 0;
+    if (!whole) {
+        io_pc2_abandon(writer);
+        return io_error_set(error, SKEIN_ERROR_VALUE, path, IO_NOTHING_KEPT);
+    }
+    unsigned char bytes[4];
+    put_u32(bytes, whole < writer->added ? whole : writer->added);
+    uint64_t size = HEADER_BYTES + get_u32(bytes) * sample_bytes;
+    skein_status status =
+        io_output_keep(writer->output, path, size, &(io_output_change){SAMPLES_OFFSET, bytes, 4}, error);
+    writer->output = NULL;
     io_pc2_abandon(writer);
     return status;
 }
@@ -159,7 +185,7 @@ static skein_status read_header(io_pc2_reader *reader, skein_error *error) {
     off_t size = fseeko(reader->file, 0, SEEK_END) == 0 ? ftello(reader->file) : -1;
     if (size < 0) return io_error_set(error, SKEIN_ERROR_FILE, reader->path, "cannot read: %s", strerror(errno));
     uint64_t sample_bytes = points * POINT_BYTES, body = (uint64_t)size - HEADER_BYTES;
-    if (body / sample_bytes != samples || body % sample_bytes != 0)
+    if (body / sample_bytes < samples)
         return io_error_set(error, SKEIN_ERROR_SYNTAX, reader->path,
                             "the header counts %llu samples, the file holds %llu%s", (unsigned long long)samples,
                             (unsigned long long)(body / sample_bytes),

@@ -8,6 +8,7 @@
 typedef struct csv_file {
     io_output *output;
     size_t particles;
+    uint64_t whole; /* bytes of whole samples in the file */
 } csv_file;
 
 static void abandon(void *data) {
@@ -17,13 +18,13 @@ static void abandon(void *data) {
     free(file);
 }
 
-static void *create(const char *path, size_t particles, skein_error *error) {
+static void *create(const char *path, const io_recorded *recorded, skein_error *error) {
     csv_file *file = calloc(1, sizeof *file);
     if (!file) {
         io_error_set(error, SKEIN_ERROR_MEMORY, path, "out of memory");
         return NULL;
     }
-    file->particles = particles;
+    file->particles = recorded->particles;
     file->output = io_output_open(path, error);
     if (!file->output) {
         free(file);
@@ -40,7 +41,21 @@ static skein_status add(void *data, double time, const double *x, const double *
         io_output_printf(file->output, "%.17g,%zu,%.*g,%.*g,%.*g,%.*g,%.*g,%.*g\n", time, i, digits, x[3 * i], digits,
                          x[3 * i + 1], digits, x[3 * i + 2], digits, v[3 * i], digits, v[3 * i + 1], digits,
                          v[3 * i + 2]);
-    return io_output_status(file->output, error);
+    io_output_flush(file->output); // what is there can be read if the program is killed
+    skein_status status = io_output_status(file->output, error);
+    if (!status) file->whole = io_output_written(file->output);
+    return status;
+}
+
+static skein_status keep(void *data, const char *path, skein_error *error) {
+    csv_file *file = data;
+    if (!file->whole) {
+        abandon(file);
+        return io_error_set(error, SKEIN_ERROR_VALUE, path, IO_NOTHING_KEPT);
+    }
+    skein_status status = io_output_keep(file->output, path, file->whole, NULL, error);
+    free(file);
+    return status;
 }
 
 static skein_status commit(void *data, skein_error *error) {
@@ -50,14 +65,12 @@ static skein_status commit(void *data, skein_error *error) {
     return status;
 }
 
-const io_recording_format io_recording_csv = {"csv", ".csv", NULL, create, add, commit, abandon};
+const io_recording_format io_recording_csv = {"csv", ".csv", NULL, create, add, commit, keep, abandon};
 
 const io_recording_format *io_recording_named(const char *name) {
     static const io_recording_format *const formats[] = {
         &io_recording_csv,
-#ifdef SKEIN_HDF5
         &io_recording_hdf5,
-#endif
     };
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
         if (!strcmp(formats[i]->name, name)) return formats[i];

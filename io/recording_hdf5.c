@@ -1,192 +1,211 @@
-/* HDF5 recordings, with an XDMF index beside them; built only where the HDF5 library is. The library writes its file by
- * itself, so it grows under a name of its own, and is renamed at the commit. */
-#ifdef SKEIN_HDF5
-#include <errno.h>
-#include <hdf5.h>
-#include <stdio.h>
+/* HDF5 recordings, with an XDMF index beside them (xdmf.h). hdf5.h keeps the file readable while it grows; the index is
+ * written anew now and then, as its own part file, seldom enough that it takes a fiftieth of the time. */
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
+#include <unistd.h>
 
-#include "io/file.h"
+#include "io/hdf5.h"
 #include "io/recording.h"
+#include "io/xdmf.h"
+
+enum { MOST_SETS = 6 };
 
 typedef struct h5_file {
-    char *path, *part; /* the final name, and that while it grows */
-    hid_t file, time, sets[2];
-    size_t particles;
-    hsize_t samples;
-    double *times; /* for the index */
+    char *path, *index_path, *index_part; /* index_part: NULL as long as there is none */
+    io_hdf5 *hdf5;
+    io_xdmf index;
     size_t time_capacity;
+    skein_real *samples[2];
+    double indexed, pause; /* seconds: when the index was last written, and for how long it is good enough */
 } h5_file;
 
-static const char *const set_names[2] = {"positions", "velocities"};
-
-/* Samples as they are computed. */
-static hid_t real_type(void) {
-    return sizeof(skein_real) == sizeof(double) ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
-}
-
-static void close_all(h5_file *f) {
-    for (int k = 0; k < 2; k++)
-        if (f->sets[k] >= 0) H5Dclose(f->sets[k]);
-    if (f->time >= 0) H5Dclose(f->time);
-    if (f->file >= 0) H5Fclose(f->file);
-    f->sets[0] = f->sets[1] = f->time = f->file = -1;
+static double seconds_now(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 static void release(h5_file *f) {
+    if (f->index_part) unlink(f->index_part);
+    free(f->index_part);
+    free(f->index_path);
     free(f->path);
-    free(f->part);
-    free(f->times);
+    free(f->index.times);
+    free(f->samples[0]);
+    free(f->samples[1]);
     free(f);
 }
 
 static void abandon(void *data) {
     h5_file *f = data;
     if (!f) return;
-    close_all(f);
-    if (f->part) remove(f->part);
+    io_hdf5_abandon(f->hdf5);
     release(f);
 }
 
-static skein_status fail(const h5_file *f, skein_error *error) {
-    return io_error_set(error, SKEIN_ERROR_FILE, f->path, "cannot write: %s",
-                        errno ? strerror(errno) : "the HDF5 library failed");
+/* ---- what stands still ---- */
+
+/* Faces of one size as count x size, of several as XDMF's mixed topology: for each its kind (3 polygon, 4 triangle, 5
+ * quadrilateral), of a polygon its size, and its corners. NULL without memory. */
+static uint32_t *lay_cells(const io_recorded *r, io_xdmf *index) {
+    size_t length = 0, at = 0;
+    bool mixed = false;
+    for (size_t i = 0; i < r->cell_count; i++) {
+        length += r->cell_sizes[i] + 2;
+        mixed |= r->cell_sizes[i] != r->cell_sizes[0] || r->cell_sizes[i] > 4;
+    }
+    uint32_t *laid = malloc(length * sizeof *laid);
+    for (size_t i = 0, corner = 0; laid && i < r->cell_count; corner += r->cell_sizes[i++]) {
+        uint32_t size = r->cell_sizes[i];
+        if (mixed) laid[at++] = size == 3 ? 4 : size == 4 ? 5 : size == 2 ? 2 : 3;
+        if (mixed && size != 3 && size != 4) laid[at++] = size;
+        memcpy(laid + at, r->cells + corner, size * sizeof *laid);
+        at += size;
+    }
+    index->cell_count = r->cell_count;
+    index->cell_size = mixed ? 0 : r->cell_sizes[0];
+    index->cell_length = at;
+    return laid;
 }
 
-/* A set of no samples yet, that grows along its first axis, in chunks of one sample (times: of 1,024). */
-static hid_t make_set(const h5_file *f, const char *name, hid_t type, int rank) {
-    hsize_t size[3] = {0, f->particles, 3}, most[3] = {H5S_UNLIMITED, f->particles, 3};
-    hsize_t chunk[3] = {rank == 1 ? 1024 : 1, f->particles, 3};
-    hid_t space = H5Screate_simple(rank, size, most), list = H5Pcreate(H5P_DATASET_CREATE);
-    hid_t set = -1;
-    if (space >= 0 && list >= 0 && H5Pset_chunk(list, rank, chunk) >= 0)
-        set = H5Dcreate2(f->file, name, type, space, H5P_DEFAULT, list, H5P_DEFAULT);
-    if (list >= 0) H5Pclose(list);
-    if (space >= 0) H5Sclose(space);
-    return set;
+static io_hdf5 *begin(const char *path, const io_recorded *r, h5_file *f, skein_error *error) {
+    io_hdf5_set sets[MOST_SETS];
+    size_t count = 0;
+    uint32_t *cells = NULL;
+    if (r->cell_count) {
+        if (!(cells = lay_cells(r, &f->index))) {
+            io_error_set(error, SKEIN_ERROR_MEMORY, path, "out of memory");
+            return NULL;
+        }
+        const io_xdmf *x = &f->index;
+        sets[count++] = (io_hdf5_set){.name = io_xdmf_cells_name(x),
+                                      .type = IO_HDF5_UINT32,
+                                      .rank = x->cell_size ? 2 : 1,
+                                      .dims = {x->cell_size ? x->cell_count : x->cell_length, x->cell_size},
+                                      .data = cells,
+                                      .notes = {{"about", x->cell_size ? "particles, from 0"
+                                                                       : "XDMF mixed topology: 3 polygon (its size "
+                                                                         "follows), 4 triangle, 5 quadrilateral"}}};
+    }
+    if (r->masses)
+        sets[count++] = (io_hdf5_set){.name = "masses",
+                                      .type = IO_HDF5_DOUBLE,
+                                      .rank = 1,
+                                      .dims = {r->particles},
+                                      .data = r->masses,
+                                      .notes = {{"unit", "kg"}}};
+    sets[count++] = (io_hdf5_set){
+        .name = "positions", .type = IO_HDF5_REAL, .rank = 3, .dims = {0, r->particles, 3}, .notes = {{"unit", "m"}}};
+    if (r->scene)
+        sets[count++] = (io_hdf5_set){.name = "scene",
+                                      .type = IO_HDF5_TEXT,
+                                      .size = (uint32_t)strlen(r->scene) + 1,
+                                      .data = r->scene,
+                                      .notes = {{"about", "the scene as it was run, JSON"}}};
+    sets[count++] = (io_hdf5_set){.name = "time", .type = IO_HDF5_DOUBLE, .rank = 1, .notes = {{"unit", "s"}}};
+    sets[count++] = (io_hdf5_set){.name = "velocities",
+                                  .type = IO_HDF5_REAL,
+                                  .rank = 3,
+                                  .dims = {0, r->particles, 3},
+                                  .notes = {{"unit", "m/s"}}};
+    io_hdf5_note notes[IO_HDF5_MOST_NOTES] = {{"skein", SKEIN_VERSION}, {"axes", "metres, y up"}};
+    if (r->body && r->body[0]) notes[2] = (io_hdf5_note){"body", r->body};
+    io_hdf5 *hdf5 = io_hdf5_begin(path, sets, count, notes, error);
+    free(cells);
+    return hdf5;
 }
 
-static void *create(const char *path, size_t particles, skein_error *error) {
+static void *create(const char *path, const io_recorded *r, skein_error *error) {
+    if (r->particles == 0 || r->particles > UINT32_MAX / 24) { // a chunk is under 4 GB
+        io_error_set(error, SKEIN_ERROR_LIMIT, path, "an HDF5 recording holds 1 to %lu particles, not %zu",
+                     (unsigned long)UINT32_MAX / 24, r->particles);
+        return NULL;
+    }
     h5_file *f = calloc(1, sizeof *f);
-    size_t size = strlen(path) + sizeof ".part";
-    if (f) f->path = strdup(path), f->part = malloc(size);
-    if (!f || !f->path || !f->part) {
+    if (f) {
+        f->path = strdup(path);
+        f->index_path = io_xdmf_path(path);
+        for (int k = 0; k < 2; k++) f->samples[k] = malloc(3 * r->particles * sizeof **f->samples);
+    }
+    if (!f || !f->path || !f->index_path || !f->samples[0] || !f->samples[1]) {
         if (f) release(f);
         io_error_set(error, SKEIN_ERROR_MEMORY, path, "out of memory");
         return NULL;
     }
-    f->file = f->time = f->sets[0] = f->sets[1] = -1;
-    if (particles == 0 || particles > UINT32_MAX / 24) { // a chunk is under 4 GB
-        io_error_set(error, SKEIN_ERROR_LIMIT, path, "an HDF5 recording holds 1 to %lu particles, not %zu",
-                     (unsigned long)UINT32_MAX / 24, particles);
-        release(f);
-        return NULL;
-    }
-    snprintf(f->part, size, "%s.part", path);
-    f->particles = particles;
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL); // faults are told once, below
-    errno = 0;
-    FILE *first = fopen(f->part, "wb"); // which says why it cannot be; the HDF5 library does not
-    if (!first) {
-        fail(f, error);
-        release(f);
-        return NULL;
-    }
-    fclose(first);
-    f->file = H5Fcreate(f->part, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-    if (f->file >= 0) {
-        f->time = make_set(f, "time", H5T_NATIVE_DOUBLE, 1);
-        for (int k = 0; k < 2; k++) f->sets[k] = make_set(f, set_names[k], real_type(), 3);
-    }
-    if (f->time >= 0 && f->sets[0] >= 0 && f->sets[1] >= 0) return f;
-    fail(f, error);
-    abandon(f);
+    f->index.particles = r->particles;
+    f->hdf5 = begin(path, r, f, error);
+    if (f->hdf5) return f;
+    release(f);
     return NULL;
 }
 
-/* Appends one sample to a set: `size` elements after the first axis. */
-static bool append(const h5_file *f, hid_t set, int rank, const double *numbers) {
-    hsize_t all[3] = {f->samples + 1, f->particles, 3}, at[3] = {f->samples, 0, 0}, one[3] = {1, f->particles, 3};
-    if (H5Dset_extent(set, all) < 0) return false;
-    hid_t there = H5Dget_space(set), here = H5Screate_simple(rank, one, NULL);
-    bool good = there >= 0 && here >= 0 && H5Sselect_hyperslab(there, H5S_SELECT_SET, at, NULL, one, NULL) >= 0 &&
-                H5Dwrite(set, H5T_NATIVE_DOUBLE, here, there, H5P_DEFAULT, numbers) >= 0;
-    if (here >= 0) H5Sclose(here);
-    if (there >= 0) H5Sclose(there);
-    return good;
+/* ---- the index ---- */
+
+static skein_status write_index(h5_file *f, const char *h5_path, const char *path, skein_error *error) {
+    io_output *output = io_output_open(path, error);
+    if (!output) return error->status;
+    io_xdmf_write(output, &f->index, h5_path);
+    return io_output_commit(output, error);
 }
+
+/* Writes the part anew, beside the old one, and then takes its place. A failure is told when the index is written. */
+static void renew_index_part(h5_file *f) {
+    double start = seconds_now();
+    io_output *output = io_output_open(f->index_path, NULL);
+    const char *name = output ? io_output_part(output) : NULL;
+    if (name && !f->index_part) f->index_part = strdup(name);
+    if (name && f->index_part) {
+        io_xdmf_write(output, &f->index, f->path);
+        if (!io_output_status(output, NULL)) {
+            io_output_keep(output, f->index_part, UINT64_MAX, NULL, NULL);
+            output = NULL;
+        }
+    }
+    io_output_abandon(output);
+    f->indexed = seconds_now();
+    f->pause = 0.25 + 50 * (f->indexed - start);
+}
+
+/* ---- samples ---- */
 
 static skein_status add(void *data, double time, const double *x, const double *v, skein_error *error) {
     h5_file *f = data;
-    if (!io_grow(&f->times, &f->time_capacity, f->samples + 1, sizeof *f->times))
+    if (!io_grow(&f->index.times, &f->time_capacity, f->index.samples + 1, sizeof *f->index.times))
         return io_error_set(error, SKEIN_ERROR_MEMORY, f->path, "out of memory");
-    f->times[f->samples] = time;
-    errno = 0;
-    if (!append(f, f->time, 1, &time) || !append(f, f->sets[0], 3, x) || !append(f, f->sets[1], 3, v))
-        return fail(f, error);
-    f->samples++;
-    return SKEIN_OK;
-}
-
-/* A part of a set in the index: sample `k` of all. */
-static void write_item(io_output *output, const h5_file *f, const char *name, const char *set, hsize_t k) {
-    io_output_printf(output,
-                     "          <DataItem ItemType=\"HyperSlab\" Dimensions=\"%zu 3\">\n"
-                     "            <DataItem Dimensions=\"3 3\" Format=\"XML\">%llu 0 0 1 1 1 1 %zu 3</DataItem>\n"
-                     "            <DataItem Dimensions=\"%llu %zu 3\" NumberType=\"Float\" Precision=\"%zu\" "
-                     "Format=\"HDF\">%s:/%s</DataItem>\n"
-                     "          </DataItem>\n",
-                     f->particles, (unsigned long long)k, f->particles, (unsigned long long)f->samples, f->particles,
-                     sizeof(skein_real), name, set);
-}
-
-/* NAME.xdmf beside NAME.h5: one grid of points a sample. */
-static skein_status write_index(const h5_file *f, skein_error *error) {
-    size_t length = strlen(f->path);
-    char *path = malloc(length + sizeof ".xdmf");
-    if (!path) return io_error_set(error, SKEIN_ERROR_MEMORY, f->path, "out of memory");
-    if (length > 3 && !strcmp(f->path + length - 3, ".h5")) length -= 3;
-    snprintf(path, length + sizeof ".xdmf", "%.*s.xdmf", (int)length, f->path);
-    const char *slash = strrchr(f->path, '/'), *name = slash ? slash + 1 : f->path;
-    io_output *output = io_output_open(path, error);
-    free(path);
-    if (!output) return error->status;
-    io_output_printf(output, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
-                             "    <Grid Name=\"particles\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
-    for (hsize_t k = 0; k < f->samples; k++) {
-        io_output_printf(output,
-                         "      <Grid Name=\"particles\">\n        <Time Value=\"%.17g\"/>\n"
-                         "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%zu\"/>\n"
-                         "        <Geometry GeometryType=\"XYZ\">\n",
-                         f->times[k], f->particles);
-        write_item(output, f, name, set_names[0], k);
-        io_output_printf(output, "        </Geometry>\n        <Attribute Name=\"velocity\" "
-                                 "AttributeType=\"Vector\" Center=\"Node\">\n");
-        write_item(output, f, name, set_names[1], k);
-        io_output_printf(output, "        </Attribute>\n      </Grid>\n");
+    f->index.times[f->index.samples] = time;
+    for (size_t i = 0; i < 3 * f->index.particles; i++) {
+        f->samples[0][i] = (skein_real)x[i];
+        f->samples[1][i] = (skein_real)v[i];
     }
-    io_output_printf(output, "    </Grid>\n  </Domain>\n</Xdmf>\n");
-    return io_output_commit(output, error);
+    skein_status status = io_hdf5_add(f->hdf5, (const void *const[]){f->samples[0], &time, f->samples[1]}, error);
+    if (status) return status;
+    f->index.samples++;
+    if (io_hdf5_readable(f->hdf5) == f->index.samples && seconds_now() - f->indexed >= f->pause) renew_index_part(f);
+    return SKEIN_OK;
 }
 
 static skein_status commit(void *data, skein_error *error) {
     h5_file *f = data;
-    errno = 0;
-    bool good = H5Fflush(f->file, H5F_SCOPE_LOCAL) >= 0;
-    close_all(f);
-    if (!good || rename(f->part, f->path)) {
-        skein_status status = fail(f, error);
-        abandon(f);
-        return status;
-    }
-    skein_status status = write_index(f, error);
+    skein_status status = io_hdf5_commit(f->hdf5, error);
+    if (!status) status = write_index(f, f->path, f->index_path, error);
     release(f);
     return status;
 }
 
-const io_recording_format io_recording_hdf5 = {"hdf5", ".h5", ".xdmf", create, add, commit, abandon};
+static skein_status keep(void *data, const char *path, skein_error *error) {
+    h5_file *f = data;
+    f->index.samples = (size_t)io_hdf5_round_off(f->hdf5);
+    if (!f->index.samples) {
+        abandon(f);
+        return io_error_set(error, SKEIN_ERROR_VALUE, path, IO_NOTHING_KEPT);
+    }
+    char *index_path = io_xdmf_path(path);
+    skein_status status = io_hdf5_keep(f->hdf5, path, error);
+    if (!status && index_path) status = write_index(f, path, index_path, error);
+    free(index_path);
+    release(f);
+    return status;
+}
 
-#else
-typedef int io_recording_hdf5_is_not_built; // a file has something in it
-#endif
+const io_recording_format io_recording_hdf5 = {"hdf5", ".h5", ".xdmf", create, add, commit, keep, abandon};

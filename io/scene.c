@@ -368,6 +368,10 @@ const io_scene_settings *io_scene_get(const io_scene *scene) {
     return &scene->settings;
 }
 
+char *io_scene_text(const io_scene *scene) {
+    return json_dumps(scene->root, JSON_INDENT(2));
+}
+
 skein_world *io_scene_build(const io_scene *scene, const skein_world_desc *desc, io_faults *faults) {
     double dt;
     io_scene_steps_per_frame(&scene->settings, &dt);

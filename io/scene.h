@@ -54,6 +54,8 @@ io_scene *io_scene_read_text(const char *text, size_t size, const char *path, co
 void io_scene_free(io_scene *scene); /* NULL is allowed */
 
 const io_scene_settings *io_scene_get(const io_scene *scene);
+/* The document with what was set, as JSON, to be freed; NULL without memory. */
+char *io_scene_text(const io_scene *scene);
 
 /* Checks everything, the method's demands too, and builds the world. NULL if there was any fault, here or
  * in reading. `desc` as for skein_world_create. */
