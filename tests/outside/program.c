@@ -1,0 +1,25 @@
+/* Somebody's program, in what C11 and C++17 have in common: a cloth hangs for a second. Its caller compares the hash.
+ */
+#include <skein/formula.h>
+#include <skein/skein.h>
+#include <stdio.h>
+#include <string.h>
+
+int main(int argc, char **argv) {
+    skein_error error = {SKEIN_OK, "", ""};
+    skein_world *world = skein_world_create(NULL, &error);
+    const skein_setting grid = SKEIN_PAIR("grid", 9, 9), pins = SKEIN_TEXT("pins", "top corners");
+    const skein_setting end = {NULL, {0, {0, 0, 0}, NULL}};
+    const skein_setting cloth[] = {grid, pins, end};
+    skein_statistics now;
+    int good =
+        world && !skein_body_add(world, "cloth", NULL, cloth, NULL) && !skein_force_add(world, "gravity", NULL, NULL);
+    for (int i = 0; good && i < 60; i++) good = !skein_world_step(world, SKEIN_DEFAULT_STEP);
+    good = good && !skein_world_statistics(world, &now) && now.particles == 81;
+    if (good) printf("%016llx\n", (unsigned long long)skein_world_hash(world));
+    else fprintf(stderr, "program: %s\n", world ? skein_world_error(world)->message : error.message);
+    skein_world_destroy(world);
+    (void)argc;
+    (void)argv;
+    return !good;
+}
