@@ -1,7 +1,7 @@
 # The short way in: each line below runs one script of tools/, and the scripts run CMake.
 # CMake alone does as well: cmake --preset release && cmake --build --preset release
 
-.PHONY: all install demo test fuzz setup gallery emit debug format clean help
+.PHONY: all install demo test fuzz setup gallery emit names debug format clean help
 
 all: ## (or plain make) build the command: build/skein
 	@tools/build release skein
@@ -33,6 +33,11 @@ gallery: ## build, and draw the documents' pictures and film anew
 emit: ## build, and write the constraints' kernels anew from their formulas (src/constraints/emitted)
 	@tools/build release skein
 	@tools/emit
+
+names: ## build, and write the header of names anew from the tables of fields (include/skein/names.h)
+	@tools/build release skein_names
+	@build/skein_names >build/names.h
+	@cp build/names.h include/skein/names.h
 
 debug: ## build with assertions: build-debug/skein
 	@tools/build debug skein

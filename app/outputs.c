@@ -410,7 +410,7 @@ static void write_objs(const app_outputs *outputs, const io_obj_params *params, 
         skein_mesh mesh = {outputs->positions, s.vertex_count,  s.face_sizes,
                            s.face_count,       s.face_vertices, s.face_vertex_count};
         snprintf(path, sizeof path, "%s/%s.obj", outputs->folder, outputs->names[b]);
-        note(book, path, io_obj_write(path, &mesh, (io_normals)params->normals, &error), &error);
+        note(book, path, io_obj_write(path, &mesh, (skein_normals)params->normals, &error), &error);
     }
 }
 

@@ -1,5 +1,8 @@
 /* A cloth from a program's own arrays: pinned by two corners, in a wind, and hit by a ball that comes
- * flying. Writes the last state as an OBJ: cloth_from_arrays [FILE], else to the standard output. */
+ * flying. Writes the last state as an OBJ: cloth_from_arrays [FILE], else to the standard output.
+ *
+ * Kinds and fields are named by the constants of skein/names.h, which an editor completes and a compiler checks. */
+#include <skein/names.h>
 #include <skein/skein.h>
 
 #include <stdio.h>
@@ -28,31 +31,35 @@ static void fill_arrays(void) {
 static skein_status build(skein_world *world, skein_handle *cloth) {
     skein_mesh mesh = {positions[0], VERTICES, face_sizes, FACES, face_vertices[0], (size_t)3 * FACES};
     /* vertices 0 and 30 are the upper corners; "top corners" would find them, too */
-    const skein_setting *sheet = SKEIN_SETTINGS(SKEIN_TEXT("pins", "0 30"), SKEIN_REAL("density", 0.15));
-    const skein_setting *wind = SKEIN_SETTINGS(SKEIN_VEC3("velocity", 0.5, 0, 2.5));
+    const skein_setting sheet[] = {SKEIN_TEXT(SKEIN_CLOTH_PINS, "0 30"), SKEIN_REAL(SKEIN_CLOTH_DENSITY, 0.15), SKEIN_END};
+    const skein_setting wind[] = {SKEIN_VEC3(SKEIN_SURFACE_WIND_VELOCITY, 0.5, 0, 2.5), SKEIN_END};
     /* the ball starts behind the curtain and goes through its plane in half a second */
-    const skein_setting *ball = SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.9, -0.8), SKEIN_REAL("radius", 0.2),
-                                               SKEIN_REAL("thickness", 0.01), SKEIN_VEC3("motion.velocity", 0, 0, 1.6));
+    const skein_setting ball[] = {SKEIN_VEC3(SKEIN_SPHERE_CENTRE, 0, 0.9, -0.8), SKEIN_REAL(SKEIN_SPHERE_RADIUS, 0.2),
+                                  SKEIN_REAL(SKEIN_COLLIDER_THICKNESS, 0.01),
+                                  SKEIN_VEC3(SKEIN_COLLIDER_MOTION_VELOCITY, 0, 0, 1.6), SKEIN_END};
     skein_status status;
-    if ((status = skein_body_add(world, "cloth", &mesh, sheet, cloth))) return status;
-    if ((status = skein_force_add(world, "gravity", NULL, NULL))) return status;
-    if ((status = skein_force_add(world, "surface_wind", wind, NULL))) return status;
-    return skein_collider_add(world, "sphere", ball, NULL);
+    if ((status = skein_body_add(world, SKEIN_CLOTH, &mesh, sheet, cloth))) return status;
+    if ((status = skein_force_add(world, SKEIN_GRAVITY, NULL, NULL))) return status;
+    if ((status = skein_force_add(world, SKEIN_SURFACE_WIND, wind, NULL))) return status;
+    return skein_collider_add(world, SKEIN_SPHERE, ball, NULL);
 }
 
-/* Vertices go through particle_of_vertex, for welding can join several into one particle. */
-static bool write_obj(const skein_world *world, skein_handle cloth, FILE *to) {
+/* Vertices and their normals come interleaved, as a graphics card takes them. */
+static bool write_obj(skein_world *world, skein_handle cloth, FILE *to) {
+    static struct vertex {
+        float position[3], normal[3];
+    } v[VERTICES];
     skein_surface s;
-    if (skein_body_surface(world, cloth, &s)) return false;
-    for (size_t i = 0; i < s.vertex_count; i++) {
-        double p[3];
-        if (skein_positions_copy(world, s.particle_of_vertex[i], 1, p)) return false;
-        fprintf(to, "v %.6f %.6f %.6f\n", p[0], p[1], p[2]);
-    }
+    if (skein_body_surface(world, cloth, &s) ||
+        skein_body_vertices_copy(world, cloth, 1, skein_floats(v[0].position, sizeof *v), skein_floats(v[0].normal, sizeof *v)))
+        return false;
+    for (size_t i = 0; i < s.vertex_count; i++)
+        fprintf(to, "v %.6f %.6f %.6f\nvn %.6f %.6f %.6f\n", (double)v[i].position[0], (double)v[i].position[1],
+                (double)v[i].position[2], (double)v[i].normal[0], (double)v[i].normal[1], (double)v[i].normal[2]);
     const uint32_t *corner = s.face_vertices;
     for (size_t f = 0; f < s.face_count; f++) {
         fputc('f', to);
-        for (uint32_t k = 0; k < s.face_sizes[f]; k++) fprintf(to, " %u", *corner++ + 1);
+        for (uint32_t k = 0; k < s.face_sizes[f]; k++, corner++) fprintf(to, " %u//%u", *corner + 1, *corner + 1);
         fputc('\n', to);
     }
     return !ferror(to);

@@ -28,7 +28,7 @@ static skein_status add_rope(skein_world *world) {
         pairs[i][0] = first + i;
         pairs[i][1] = first + i + 1;
     }
-    const skein_setting *stiff = SKEIN_SETTINGS(SKEIN_REAL("stiffness", 5e4), SKEIN_REAL("damping", 1));
+    const skein_setting stiff[] = {SKEIN_REAL("stiffness", 5e4), SKEIN_REAL("damping", 1), SKEIN_END};
     return skein_constraint_add(world, "distance", pairs[0], LINKS, stiff, NULL);
 }
 
@@ -38,7 +38,7 @@ static skein_status build(skein_world *world) {
     if ((status = skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 20))))) return status;
     if ((status = skein_force_add(world, "gravity", NULL, NULL))) return status;
     if ((status = skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.2)), NULL))) return status;
-    const skein_setting *floor = SKEIN_SETTINGS(SKEIN_VEC3("normal", 0, 1, 0), SKEIN_REAL("friction", 0.5));
+    const skein_setting floor[] = {SKEIN_VEC3("normal", 0, 1, 0), SKEIN_REAL("friction", 0.5), SKEIN_END};
     return skein_collider_add(world, "plane", floor, NULL);
 }
 

@@ -61,7 +61,7 @@ static skein_status play(skein_world *world, bool live) {
 int main(int argc, char **argv) {
     skein_error failure = {0};
     skein_world *world = skein_world_create(NULL, &failure);
-    const skein_setting *cloth = SKEIN_SETTINGS(SKEIN_PAIR("grid", 17, 17), SKEIN_TEXT("pins", "top edge"));
+    const skein_setting cloth[] = {SKEIN_PAIR("grid", 17, 17), SKEIN_TEXT("pins", "top edge"), SKEIN_END};
     bool good = world && !skein_body_add(world, "cloth", NULL, cloth, NULL) &&
                 !skein_force_add(world, "gravity", NULL, NULL) && !play(world, argc > 1 && !strcmp(argv[1], "live"));
     const skein_error *why = world ? skein_world_error(world) : &failure;

@@ -5,7 +5,7 @@
 int main(void) {
     skein_error failure = {0};
     skein_world *world = skein_world_create(NULL, &failure);
-    const skein_setting *cloth = SKEIN_SETTINGS(SKEIN_PAIR("grid", 33, 33), SKEIN_TEXT("pins", "top corners"));
+    const skein_setting cloth[] = {SKEIN_PAIR("grid", 33, 33), SKEIN_TEXT("pins", "top corners"), SKEIN_END};
     bool good =
         world && !skein_body_add(world, "cloth", NULL, cloth, NULL) && !skein_force_add(world, "gravity", NULL, NULL);
     for (int i = 0; good && i < 900; i++) good = !skein_world_step(world, SKEIN_DEFAULT_STEP);

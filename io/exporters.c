@@ -4,8 +4,6 @@
  */
 #include "io/exporters.h"
 
-#include "io/normals.h"
-
 #define COUNT(array_) (sizeof(array_) / sizeof *(array_))
 
 static const skein_field obj_fields[] = {
@@ -13,9 +11,9 @@ static const skein_field obj_fields[] = {
      .type = SKEIN_FIELD_CHOICE,
      .offset = offsetof(io_obj_params, normals),
      .unit = "",
-     .initial = {IO_NORMALS_AREA, 0, 0},
-     .least = IO_NORMALS_AREA,
-     .most = IO_NORMALS_ANGLE,
+     .initial = {SKEIN_NORMALS_AREA, 0, 0},
+     .least = SKEIN_NORMALS_AREA,
+     .most = SKEIN_NORMALS_ANGLE,
      .choices = "area|uniform|angle",
      .help = "what a face counts in its vertices' normals: its area, one, or its angle at the vertex"},
 };

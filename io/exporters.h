@@ -10,7 +10,7 @@
 #include <skein/skein.h>
 
 typedef struct io_obj_params {
-    int32_t normals; /* an io_normals */
+    int32_t normals; /* a skein_normals */
 } io_obj_params;
 
 typedef struct io_pc2_params {

@@ -9,7 +9,6 @@
 #define SKEIN_IO_MESH_H
 
 #include "io/file.h"
-#include "io/normals.h"
 
 #define IO_NO_UV UINT32_MAX
 #define IO_MESH_MOST_VERTICES (UINT32_MAX - 1) /* 2^32 - 2 */
@@ -69,7 +68,7 @@ skein_status io_tetrahedra_read_files(const char *path, size_t most, io_mesh *ou
 /* Writes an OBJ with unit vertex normals, faces as `a//a b//b c//c` in the mesh's own order. Positions
  * are written as floats that read back bit for bit. Refuses a position that is not finite as a float.
  * `mesh` needs valid indices. */
-skein_status io_obj_write(const char *path, const skein_mesh *mesh, io_normals normals, skein_error *error);
+skein_status io_obj_write(const char *path, const skein_mesh *mesh, skein_normals normals, skein_error *error);
 
 /* ---- For the readers and writers: lines, words and numbers -------------------------------------- */
 

@@ -84,7 +84,7 @@ static skein_status check_positions(const char *path, const skein_mesh *mesh, sk
     return SKEIN_OK;
 }
 
-skein_status io_obj_write(const char *path, const skein_mesh *mesh, io_normals normals, skein_error *error) {
+skein_status io_obj_write(const char *path, const skein_mesh *mesh, skein_normals normals, skein_error *error) {
     skein_error unseen;
     error = error ? error : &unseen;
     skein_status status = check_positions(path, mesh, error);
@@ -92,9 +92,9 @@ skein_status io_obj_write(const char *path, const skein_mesh *mesh, io_normals n
     double *vectors = malloc((mesh->vertex_count + 1) * 3 * sizeof *vectors);
     if (!vectors)
         return io_error_set(error, SKEIN_ERROR_MEMORY, path, "out of memory for %zu normals", mesh->vertex_count);
-    io_normals_compute(mesh, normals, vectors);
+    status = skein_mesh_normals(mesh, normals, vectors, error);
 
-    io_output *output = io_output_open(path, error);
+    io_output *output = status ? NULL : io_output_open(path, error);
     if (output) {
         io_output_printf(output, "# Skein %s: metres, y up; %zu vertices, %zu faces\n", SKEIN_VERSION,
                          mesh->vertex_count, mesh->face_count);

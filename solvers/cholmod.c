@@ -91,6 +91,7 @@ static void release(void *user) {
 }
 
 skein_status skein_cholmod_attach(skein_world *world, skein_error *error) {
+    if (!world) return fail(error, SKEIN_ERROR_VALUE, "world is NULL");
     solver *s = calloc(1, sizeof *s);
     if (!s) return fail(error, SKEIN_ERROR_MEMORY, "no memory");
     cholmod_l_start(&s->common);

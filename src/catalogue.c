@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "bodies/body.h"
+#include "space/normals.h"
 
 static const sk_body_type *const bodies[] = {&sk_cloth, &sk_lattice, &sk_rope, &sk_tetrahedra, &sk_flock};
 static const sk_constraint_type *const constraints[] = {
@@ -39,6 +40,10 @@ const skein_kind *skein_kind_at(skein_category category, size_t index) {
 }
 
 const skein_kind *skein_kind_find(skein_category category, const char *name, skein_error *error) {
+    if (!name) {
+        sk_fail_null(error, "name");
+        return NULL;
+    }
     const char *names[64];
     size_t count = 0;
     for (const skein_kind *kind; count < 64 && (kind = skein_kind_at(category, count)); count++) {
@@ -58,40 +63,56 @@ static const void *type_of(const skein_world *world, skein_category category, co
 
 skein_status skein_body_add(skein_world *world, const char *kind, const skein_mesh *mesh, const skein_setting *settings,
                             skein_handle *handle) {
+    SK_NEED(world, world);
+    SK_NEED(world, kind);
+    if (mesh && sk_mesh_check_pointers(mesh, sk_world_error(world))) return SKEIN_ERROR_VALUE;
     const sk_body_type *type = type_of(world, SKEIN_BODY, kind);
     return type ? sk_world_add_body(world, type, mesh, settings, handle) : SKEIN_ERROR_NAME;
 }
 
 skein_status skein_constraint_add(skein_world *world, const char *kind, const uint32_t *particles, size_t count,
                                   const skein_setting *settings, skein_handle *handle) {
+    SK_NEED(world, world);
+    SK_NEED(world, kind);
+    if (count) SK_NEED(world, particles);
     const sk_constraint_type *type = type_of(world, SKEIN_CONSTRAINT, kind);
     return type ? sk_world_add_constraint(world, type, particles, count, settings, handle) : SKEIN_ERROR_NAME;
 }
 
 skein_status skein_constraint_arity(skein_world *world, const char *kind, const skein_setting *settings,
                                     size_t *arity) {
+    SK_NEED(world, world);
+    SK_NEED(world, kind);
+    SK_NEED(world, arity);
     const sk_constraint_type *type = type_of(world, SKEIN_CONSTRAINT, kind);
     return type ? sk_world_find_arity(world, type, settings, arity) : SKEIN_ERROR_NAME;
 }
 
 skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings,
                              skein_handle *handle) {
+    SK_NEED(world, world);
+    SK_NEED(world, kind);
     const sk_force_type *type = type_of(world, SKEIN_FORCE, kind);
     return type ? sk_world_add_force(world, type, settings, handle) : SKEIN_ERROR_NAME;
 }
 
 skein_status skein_collider_add(skein_world *world, const char *kind, const skein_setting *settings,
                                 skein_handle *handle) {
+    SK_NEED(world, world);
+    SK_NEED(world, kind);
     const sk_collider_type *type = type_of(world, SKEIN_COLLIDER, kind);
     return type ? sk_world_add_collider(world, type, settings, handle) : SKEIN_ERROR_NAME;
 }
 
 double skein_stable_substep(const char *method, const skein_stability *stability) {
+    if (!method || !stability) return (double)NAN;
     const sk_method_type *type = (const void *)skein_kind_find(SKEIN_METHOD, method, NULL);
     return type ? sk_stable_substep(type, stability) : (double)NAN;
 }
 
 skein_status skein_method_set(skein_world *world, const char *kind, const skein_setting *settings) {
+    SK_NEED(world, world);
+    SK_NEED(world, kind);
     const sk_method_type *type = type_of(world, SKEIN_METHOD, kind);
     return type ? sk_world_set_method(world, type, settings) : SKEIN_ERROR_NAME;
 }

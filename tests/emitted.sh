@@ -1,8 +1,10 @@
 #!/bin/sh
-# The committed kernels are what the emitter writes, byte for byte, and so is the example's: emitted.sh ROOT SKEIN
+# What is committed and made by programs is what they write, byte for byte: emitted.sh ROOT SKEIN NAMES
+#   src/constraints/emitted, the constraints' kernels, and the example's: `make emit`
+#   include/skein/names.h, from the tables of fields: `make names`
 set -u
 cd "$1" || exit 2
-skein=$2 faults=0
+skein=$2 names=$3 faults=0
 made=$(mktemp) || exit 2
 trap 'rm -f "$made"' EXIT
 for file in src/constraints/emitted/*.h tests/changed_distance.h; do
@@ -17,4 +19,6 @@ done
 file=examples/compiled_spring/spring.c
 "$skein" formula "$(sed -n '1s,^// ,,p' $file)" --param L=1 --emit c --name spring >"$made" || faults=1
 cmp "$made" $file || faults=1
+"$names" >"$made" || faults=1
+cmp "$made" include/skein/names.h || { echo "include/skein/names.h is out of date: make names"; faults=1; }
 exit $faults

@@ -29,8 +29,8 @@ static void judge_normals(const io_mesh *mesh) {
     skein_mesh view = io_mesh_view(mesh);
     double *normals = malloc(3 * mesh->vertex_count * sizeof *normals);
     require(normals != NULL);
-    for (int mode = IO_NORMALS_AREA; mode <= IO_NORMALS_ANGLE; mode++) {
-        io_normals_compute(&view, (io_normals)mode, normals);
+    for (int mode = SKEIN_NORMALS_AREA; mode <= SKEIN_NORMALS_ANGLE; mode++) {
+        require(!skein_mesh_normals(&view, (skein_normals)mode, normals, NULL));
         for (const double *n = normals; n < normals + 3 * mesh->vertex_count; n += 3)
             require(fabs(sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) - 1) < 1e-12);
     }

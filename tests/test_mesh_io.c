@@ -607,7 +607,7 @@ static void flat_meshes_have_exact_normals(void **state) {
             mesh.face_vertices[3 * f + 1] = first;
         }
         for (int mode = 0; mode < 3; mode++) {
-            io_normals_compute(&view, (io_normals)mode, normals);
+            assert_int_equal(skein_mesh_normals(&view, (skein_normals)mode, normals, NULL), SKEIN_OK);
             for (size_t v = 0; v < mesh.vertex_count; v++) {
                 double expected[3] = {0, turned ? -1 : 1, 0};
                 assert_memory_equal(normals + 3 * v, expected, sizeof expected); // no -0 either
@@ -631,22 +631,22 @@ static void a_box_has_the_normals_of_the_formulas(void **state) {
     io_mesh mesh = read_text(BOX BOX_QUADS, false, NULL);
     skein_mesh view = io_mesh_view(&mesh);
     // The corner at the origin sees areas 6 (x), 3 (y) and 2 (z): 6^2 + 3^2 + 2^2 = 7^2.
-    io_normals_compute(&view, IO_NORMALS_AREA, normals);
+    assert_int_equal(skein_mesh_normals(&view, SKEIN_NORMALS_AREA, normals, NULL), SKEIN_OK);
     expect_normal(normals, -6.0 / 7, -3.0 / 7, -2.0 / 7);
     expect_normal(normals + 18, 6.0 / 7, 3.0 / 7, 2.0 / 7);
-    io_normals_compute(&view, IO_NORMALS_UNIFORM, normals);
+    assert_int_equal(skein_mesh_normals(&view, SKEIN_NORMALS_UNIFORM, normals, NULL), SKEIN_OK);
     expect_normal(normals, -1, -1, -1);
-    io_normals_compute(&view, IO_NORMALS_ANGLE, normals);
+    assert_int_equal(skein_mesh_normals(&view, SKEIN_NORMALS_ANGLE, normals, NULL), SKEIN_OK);
     expect_normal(normals, -1, -1, -1);
     io_mesh_free(&mesh);
 
     mesh = read_text(BOX BOX_CUT, false, NULL);
     view = io_mesh_view(&mesh);
-    io_normals_compute(&view, IO_NORMALS_AREA, normals);
+    assert_int_equal(skein_mesh_normals(&view, SKEIN_NORMALS_AREA, normals, NULL), SKEIN_OK);
     expect_normal(normals, -3, -1.5, -2); // half of x and y, all of z
-    io_normals_compute(&view, IO_NORMALS_UNIFORM, normals);
+    assert_int_equal(skein_mesh_normals(&view, SKEIN_NORMALS_UNIFORM, normals, NULL), SKEIN_OK);
     expect_normal(normals, -1, -1, -2);
-    io_normals_compute(&view, IO_NORMALS_ANGLE, normals);
+    assert_int_equal(skein_mesh_normals(&view, SKEIN_NORMALS_ANGLE, normals, NULL), SKEIN_OK);
     for (int v = 0; v < 8; v++)
         expect_normal(normals + 3 * v, v == 1 || v == 2 || v == 5 || v == 6 ? 1 : -1,
                       v == 2 || v == 3 || v == 6 || v == 7 ? 1 : -1, v >= 4 ? 1 : -1);
@@ -664,7 +664,7 @@ static void odd_faces_do_no_harm(void **state) {
                   false, NULL);
     skein_mesh view = io_mesh_view(&mesh);
     for (int mode = 0; mode < 3; mode++) {
-        io_normals_compute(&view, (io_normals)mode, normals);
+        assert_int_equal(skein_mesh_normals(&view, (skein_normals)mode, normals, NULL), SKEIN_OK);
         for (int v = 0; v < 9; v++)
             expect_normal(normals + 3 * v, 0, 1, 0);
     }
@@ -675,7 +675,7 @@ static void odd_faces_do_no_harm(void **state) {
                      "f 1 2 3 4 5 6\nf 1 2 7\n",
                      false, NULL);
     view = io_mesh_view(&mesh);
-    io_normals_compute(&view, IO_NORMALS_ANGLE, normals);
+    assert_int_equal(skein_mesh_normals(&view, SKEIN_NORMALS_ANGLE, normals, NULL), SKEIN_OK);
     expect_normal(normals, -1, 3, 0);
     io_mesh_free(&mesh);
 }
@@ -688,7 +688,7 @@ static void obj_is_written_as_promised(void **state) {
     static const uint32_t sizes[] = {4, 3}, corners[] = {3, 2, 1, 0, 0, 3, 1};
     skein_mesh mesh = {positions, 5, sizes, 2, corners, 7};
     skein_error error;
-    assert_int_equal(io_obj_write(in_folder("out.obj"), &mesh, IO_NORMALS_AREA, &error), SKEIN_OK);
+    assert_int_equal(io_obj_write(in_folder("out.obj"), &mesh, SKEIN_NORMALS_AREA, &error), SKEIN_OK);
     io_bytes bytes = read_all(in_folder("out.obj"));
     assert_string_equal(bytes.data, "# Skein " SKEIN_VERSION ": metres, y up; 5 vertices, 2 faces\n"
                                     "v 0 0.100000001 0\nv 1 0.100000001 0\nv 1 0.100000001 1\n"
@@ -701,7 +701,7 @@ static void obj_is_written_as_promised(void **state) {
     memcpy(broken, positions, sizeof broken);
     broken[4] = 1e300;
     mesh.positions = broken;
-    assert_int_equal(io_obj_write(in_folder("out.obj"), &mesh, IO_NORMALS_AREA, &error), SKEIN_ERROR_VALUE);
+    assert_int_equal(io_obj_write(in_folder("out.obj"), &mesh, SKEIN_NORMALS_AREA, &error), SKEIN_ERROR_VALUE);
     assert_string_equal(error.message,
                         "not written: vertex 1 is at (1, 1e+300, 0), which is not finite as a float "
                         "(has the motion blown up?)");
@@ -726,7 +726,7 @@ static void obj_round_trip_keeps_all(void **state) {
         assert_true(io_mesh_add_face(&mesh, 3 + f % 5));
     }
     skein_mesh view = io_mesh_view(&mesh);
-    assert_int_equal(io_obj_write(in_folder("trip.obj"), &view, IO_NORMALS_ANGLE, NULL), SKEIN_OK);
+    assert_int_equal(io_obj_write(in_folder("trip.obj"), &view, SKEIN_NORMALS_ANGLE, NULL), SKEIN_OK);
     io_mesh back;
     assert_int_equal(io_mesh_read(in_folder("trip.obj"), &back, (io_warnings){NULL, NULL}, NULL), SKEIN_OK);
     expect_mesh(&back, VERTICES, NULL, FACES, mesh.face_sizes, mesh.face_vertices);
@@ -831,10 +831,10 @@ static void a_full_device_is_an_error(void **state) {
     static const uint32_t sizes[] = {3}, corners[] = {0, 1, 2};
     skein_mesh mesh = {positions, 3, sizes, 1, corners, 3};
     skein_error error;
-    assert_int_equal(io_obj_write("/dev/full", &mesh, IO_NORMALS_AREA, &error), SKEIN_ERROR_FILE);
+    assert_int_equal(io_obj_write("/dev/full", &mesh, SKEIN_NORMALS_AREA, &error), SKEIN_ERROR_FILE);
     assert_string_equal(error.where, "/dev/full");
     assert_string_equal(error.message, "cannot write: the disk is full");
-    assert_int_equal(io_obj_write("/dev/null", &mesh, IO_NORMALS_AREA, &error), SKEIN_OK);
+    assert_int_equal(io_obj_write("/dev/null", &mesh, SKEIN_NORMALS_AREA, &error), SKEIN_OK);
     struct stat info;
     assert_int_equal(stat("/dev/null", &info), 0);
     assert_true(S_ISCHR(info.st_mode));
@@ -857,7 +857,7 @@ static void a_limit_leaves_nothing_half_written(void **state) {
     low.rlim_cur = 100000;
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
     skein_error error, pc2_error;
-    skein_status status = io_obj_write(old_path, &view, IO_NORMALS_AREA, &error);
+    skein_status status = io_obj_write(old_path, &view, SKEIN_NORMALS_AREA, &error);
     io_pc2_writer *writer = io_pc2_create(
         new_path, (io_pc2_header){(uint32_t)mesh.vertex_count, 0, 1, IO_PC2_UNKNOWN}, &pc2_error);
     skein_status add_status = SKEIN_OK, commit_status = SKEIN_OK;
@@ -900,7 +900,7 @@ static void exporters_describe_their_fields(void **state) {
         }
     }
     assert_string_equal(obj->fields[0].choices, "area|uniform|angle");
-    assert_int_equal(IO_NORMALS_ANGLE, 2);
+    assert_int_equal(SKEIN_NORMALS_ANGLE, 2);
 }
 
 int main(void) {

@@ -56,7 +56,7 @@ static void save_body(viewer_stage *stage, size_t body, const char *stem) {
     skein_mesh mesh = {positions, s.vertex_count, s.face_sizes, s.face_count, s.face_vertices, s.face_vertex_count};
     char path[64];
     viewer_free_name(stem, ".obj", path, sizeof path);
-    if (good) good = !io_obj_write(path, &mesh, IO_NORMALS_ANGLE, &error);
+    if (good) good = !io_obj_write(path, &mesh, SKEIN_NORMALS_ANGLE, &error);
     if (good) viewer_note(stage, "saved %s: %zu vertices, %zu faces", path, s.vertex_count, s.face_count);
     else viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", path, error.message);
     free(positions);

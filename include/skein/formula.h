@@ -13,6 +13,8 @@
  *
  * Values are finite wherever they do not overflow: at places where a derivative has no value (a length at 0) it is 0,
  * and `guarded` says so. A formula is not changed by evaluating it: threads may share one.
+ *
+ * Errors and pointers are as in skein.h: a `skein_error` may be NULL; so may what is said to be, and nothing else.
  */
 #ifndef SKEIN_FORMULA_H
 #define SKEIN_FORMULA_H
@@ -58,14 +60,16 @@ typedef struct skein_formula_mark {
 
 typedef struct skein_formula skein_formula;
 
-/* NULL on failure: the place is then in `mark` and, in words, in error->where. Both may be NULL. */
+/* NULL on failure: the place is then in `mark` and, in words, in error->where. Both may be NULL. Fails with
+ * SKEIN_ERROR_SYNTAX, SKEIN_ERROR_NAME, SKEIN_ERROR_LIMIT and SKEIN_ERROR_MEMORY. The caller destroys it. */
 skein_formula *skein_formula_create(const skein_formula_desc *desc, skein_formula_mark *mark, skein_error *error);
 void skein_formula_destroy(skein_formula *formula); /* NULL is allowed */
 /* The marked line of a text, and a second line with carets under the marked place. Returns the length that it needs,
- * as snprintf does. Bytes that are no printable ASCII are shown as '?'. */
+ * as snprintf does. Bytes that are no printable ASCII are shown as '?'. `out` may be NULL. */
 size_t skein_formula_show(const char *text, const skein_formula_mark *mark, char *out, size_t size);
 
-/* What is right but unwise, by index from 0; NULL past the end. */
+/* What is right but unwise, by index from 0; NULL past the end. `mark` may be NULL. The text lives as long as the
+ * formula. */
 const char *skein_formula_warning(const skein_formula *formula, size_t index, skein_formula_mark *mark);
 
 typedef struct skein_formula_info {
@@ -96,10 +100,12 @@ typedef struct skein_formula_value {
     bool guarded; /* something had no value here, and 0 or the nearest was taken */
 } skein_formula_value;
 
-/* In double, whatever the library computes in. */
+/* In double, whatever the library computes in. Fails with SKEIN_ERROR_VALUE where what the formula names is not given,
+ * and with SKEIN_ERROR_MEMORY. */
 skein_status skein_formula_evaluate(const skein_formula *formula, const skein_formula_point *point,
                                     skein_formula_value *value, skein_error *error);
-/* The second derivatives of a number by all coordinates of the positions: (3 particles)^2, row by row. */
+/* The second derivatives of a number by all coordinates of the positions: (3 particles)^2, row by row. Fails in the same
+ * way, and with SKEIN_ERROR_VALUE for a formula that was made without `second`. */
 skein_status skein_formula_hessian(const skein_formula *formula, const skein_formula_point *point, double *hessian,
                                    skein_error *error);
 
@@ -110,7 +116,8 @@ typedef enum skein_formula_language {
     SKEIN_FORMULA_GRAPH   /* the operations, a line each */
 } skein_formula_language;
 
-/* Writes the value and its gradient as text, in pieces; in C also the second derivatives, if they were asked for. */
+/* Writes the value and its gradient as text, in pieces; in C also the second derivatives, if they were asked for. Fails
+ * with SKEIN_ERROR_VALUE for a formula that the language cannot have, and with SKEIN_ERROR_MEMORY. */
 skein_status skein_formula_emit(const skein_formula *formula, skein_formula_language language,
                                 void (*write)(void *user, const char *text), void *user, skein_error *error);
 
@@ -120,23 +127,23 @@ typedef struct skein_compiled skein_compiled;
 
 /* Writes a file of C that a compiler makes into a skein_compiled of that name, a C identifier (NULL:
  * skein_compiled_formula). The formula is a constraint's: a number, without velocities; with second derivatives it is for
- * constraints of kind `energy`. */
+ * constraints of kind `energy`. Fails in the same way, and with SKEIN_ERROR_NAME for what is no identifier. */
 skein_status skein_formula_emit_compiled(const skein_formula *formula, const char *name,
                                          void (*write)(void *user, const char *text), void *user, skein_error *error);
 /* Of what a formula computes, whatever its names and blanks: formulas with the same hash are run by the same compiled
  * code. */
 uint64_t skein_formula_hash(const skein_formula *formula);
 /* From its next step on the world runs this for every constraint (`formula` or `energy`) with that formula, those that
- * are added later among them, in place of the tape. It is kept by its address until the world is destroyed. Fails for
- * code of another ABI, precision or processor, and for what another version of Skein emitted, whose operations may
- * differ. Of two with the same hash the later one runs. */
+ * are added later among them, in place of the tape. It is kept by its address until the world is destroyed. Fails with
+ * SKEIN_ERROR_VALUE for code of another ABI, precision or processor, and for what another version of Skein emitted, whose
+ * operations may differ; and with SKEIN_ERROR_MEMORY. Of two with the same hash the later one runs. */
 skein_status skein_formula_register(skein_world *world, const skein_compiled *compiled);
 /* A constraint's formula, until its text is changed or it is removed; NULL where it has none. */
 const skein_formula *skein_formula_of(const skein_world *world, skein_handle constraint);
 /* Whether something compiled runs for it. */
 bool skein_formula_is_compiled(const skein_world *world, skein_handle constraint);
 
-/* A function of the language, by index from 0; false past the end. */
+/* A function of the language, by index from 0; false past the end. Either may be NULL. */
 bool skein_formula_function(size_t index, const char **usage, const char **help);
 
 #if defined(__GNUC__)

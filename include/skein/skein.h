@@ -8,7 +8,15 @@
  *   Units     SI: metres, kilograms, seconds, newtons. Angles in degrees where a field says so.
  *   Axes      right handed, y up (nothing but the default gravity and "top" depends on it).
  *   Positions are four `skein_real`: x, y, z, inverse mass (1/kg; 0 means the particle is held).
- *   Errors    every call that can fail returns a `skein_status`; the words are in `skein_error`.
+ *   Errors    every call that can fail returns a `skein_status`; the words are in skein_world_error(), or in the
+ *             `skein_error` that is passed, which may always be NULL. A call that fails changes nothing, unless its
+ *             words say so, and what it would have filled in is not to be read. SKEIN_ERROR_VALUE may come from any
+ *             call, SKEIN_ERROR_HANDLE from any that takes a handle; which others may is said with each ("fails with").
+ *             Where a graphics card steps, calls that look at the state may fail as skein_world_device_set() may.
+ *   Pointers  may be NULL where it is said, and an array where its count is 0; `handle` and `settings` of calls that add,
+ *             too. Elsewhere NULL is an error like any other: SKEIN_ERROR_VALUE with the argument's name; from calls
+ *             that return no status 0, NULL, false or an empty view. What is passed stays the caller's and is only read
+ *             during the call, unless it is said.
  *   Threads   a world belongs to one thread at a time; different worlds are independent. After fork() a child has none
  *             of the world's own threads: it may neither step nor destroy a world of more than one (both would wait for
  *             ever). Make worlds after the fork, or call exec.
@@ -35,11 +43,21 @@ extern "C" {
 #define SKEIN_VERSION_NUMBER (1000000 * SKEIN_VERSION_MAJOR + 1000 * SKEIN_VERSION_MINOR + SKEIN_VERSION_PATCH)
 #define SKEIN_VERSION "0.1.0"
 
-/* The library computes in float, or in double when built with -DSKEIN_DOUBLE=ON. */
+/* The library computes in float, or in double when built with -DSKEIN_DOUBLE=ON; a program says the same by defining
+ * SKEIN_DOUBLE. Where the two differ they do not link: what makes a world and what hands out numbers of this type has a
+ * name of its own in each. A binding that looks names up (dlsym) asks for skein_world_create_float, then for
+ * skein_world_create_double: the one that is there says how wide numbers in views are. All other names, and all other
+ * numbers of this header, are the same in both. */
 #ifdef SKEIN_DOUBLE
 typedef double skein_real;
+#define skein_world_create skein_world_create_double
+#define skein_position_view skein_position_view_double
+#define skein_velocity_view skein_velocity_view_double
 #else
 typedef float skein_real;
+#define skein_world_create skein_world_create_float
+#define skein_position_view skein_position_view_float
+#define skein_velocity_view skein_velocity_view_float
 #endif
 
 /* ---- Status and errors --------------------------------------------------------------------- */
@@ -129,25 +147,41 @@ typedef struct skein_value {
     const char *text;
 } skein_value;
 
-/* One field set by name. A list of settings ends with a NULL name:
- *     SKEIN_SETTINGS(SKEIN_REAL("radius", 0.3), SKEIN_VEC3("centre", 0, 1, 0))
- * Fields not named keep their defaults. */
+/* One field set by name. Fields not named keep their defaults. names.h has the names as constants. A list of settings
+ * is given where it is used, or kept as an array that ends with SKEIN_END, in C and in C++:
+ *     skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.3), SKEIN_VEC3("centre", 0, 1, 0)), NULL);
+ *     const skein_setting ball[] = {SKEIN_REAL("radius", 0.3), SKEIN_VEC3("centre", 0, 1, 0), SKEIN_END};
+ * A call reads its settings and keeps none of them, nor their texts. (In C, SKEIN_SETTINGS lives to the end of the block
+ * that it stands in. In C++ it is a value, skein_settings<count>: `auto ball = SKEIN_SETTINGS(...)` keeps it, and a
+ * pointer to one that is about to go does not compile.) */
 typedef struct skein_setting {
     const char *name;
     skein_value value;
 } skein_setting;
 
 // clang-format off
-#define SKEIN_REAL(name_, x_) {(name_), {1, {(double)(x_), 0, 0}, NULL}}
-#define SKEIN_PAIR(name_, x_, y_) {(name_), {2, {(double)(x_), (double)(y_), 0}, NULL}}
-#define SKEIN_VEC3(name_, x_, y_, z_) {(name_), {3, {(double)(x_), (double)(y_), (double)(z_)}, NULL}}
-#define SKEIN_TEXT(name_, text_) {(name_), {0, {0, 0, 0}, (text_)}}
-#define SKEIN_SETTINGS(...) ((const skein_setting[]){__VA_ARGS__, {NULL, {0, {0, 0, 0}, NULL}}})
+#ifdef __cplusplus
+#define SKEIN_SETTING_OF(name_, count_, x_, y_, z_, text_)                                                    \
+    skein_setting{(name_), {(count_), {static_cast<double>(x_), static_cast<double>(y_), static_cast<double>(z_)}, (text_)}}
+#define SKEIN_NO_TEXT nullptr
+#define SKEIN_SETTINGS(...) skein_settings_of(__VA_ARGS__)
+#else
+#define SKEIN_SETTING_OF(name_, count_, x_, y_, z_, text_)                                                    \
+    {(name_), {(count_), {(double)(x_), (double)(y_), (double)(z_)}, (text_)}}
+#define SKEIN_NO_TEXT NULL
+#define SKEIN_SETTINGS(...) ((const skein_setting[]){__VA_ARGS__, SKEIN_END})
+#endif
+#define SKEIN_REAL(name_, x_) SKEIN_SETTING_OF(name_, 1, x_, 0, 0, SKEIN_NO_TEXT)
+#define SKEIN_PAIR(name_, x_, y_) SKEIN_SETTING_OF(name_, 2, x_, y_, 0, SKEIN_NO_TEXT)
+#define SKEIN_VEC3(name_, x_, y_, z_) SKEIN_SETTING_OF(name_, 3, x_, y_, z_, SKEIN_NO_TEXT)
+#define SKEIN_TEXT(name_, text_) SKEIN_SETTING_OF(name_, 0, 0, 0, 0, text_)
+#define SKEIN_END SKEIN_SETTING_OF(SKEIN_NO_TEXT, 0, 0, 0, 0, SKEIN_NO_TEXT)
 // clang-format on
 
-/* The library's kinds of a category, `index` from 0; NULL past the end. */
+/* The library's kinds of a category, `index` from 0; NULL past the end, and for SKEIN_SCENE, SKEIN_EXPORTER and SKEIN_VIEW,
+ * which the command has and the library has not. What is returned here and below is constant and lasts. */
 const skein_kind *skein_kind_at(skein_category category, size_t index);
-/* The kind of that name; NULL (and the nearest right name in `error`) where there is none. */
+/* The kind of that name; NULL (and SKEIN_ERROR_NAME with the nearest right name in `error`) where there is none. */
 const skein_kind *skein_kind_find(skein_category category, const char *name, skein_error *error);
 /* "body", "constraint", ... */
 const char *skein_category_text(skein_category category);
@@ -156,10 +190,10 @@ const skein_field *skein_common_fields(skein_category category, size_t *count);
 /* A kind's own or common field by name; NULL (and the nearest right name in `error`) if none. In a kind that takes
  * parameters, "parameters.R" is found as "parameters.*". */
 const skein_field *skein_field_find(const skein_kind *kind, const char *name, skein_error *error);
-/* Checks a value against a field's type and range without setting anything. */
+/* Checks a value against a field's type and range without setting anything: SKEIN_OK or SKEIN_ERROR_VALUE. */
 skein_status skein_field_check(const skein_field *field, const skein_value *value, skein_error *error);
 
-/* Prints a value as a scene would show it; returns the length that it needs, as snprintf does. */
+/* Prints a value as a scene would show it; returns the length that it needs, as snprintf does. `text` may be NULL. */
 size_t skein_value_text(const skein_field *field, const skein_value *value, char *text, size_t size);
 
 /* ---- Worlds ------------------------------------------------------------------------------------ */
@@ -199,11 +233,13 @@ typedef struct skein_world_desc {
 
 skein_world_desc skein_default_world_desc(void);
 
-/* Makes an empty world under XPBD. `desc` NULL means the defaults. NULL on failure: see `error`. */
+/* Makes an empty world under XPBD. `desc` NULL means the defaults. NULL on failure, with SKEIN_ERROR_VALUE or
+ * SKEIN_ERROR_MEMORY in `error`. The caller destroys it. */
 skein_world *skein_world_create(const skein_world_desc *desc, skein_error *error);
 void skein_world_destroy(skein_world *world); /* NULL is allowed */
 
-/* The last failure of a call on this world; its status is SKEIN_OK if none failed yet. */
+/* The last failure of a call on this world; its status is SKEIN_OK if none failed yet. The world's own, and as long as
+ * it; of NULL a constant that says so. */
 const skein_error *skein_world_error(const skein_world *world);
 
 /* ---- Building ---------------------------------------------------------------------------------- */
@@ -220,18 +256,32 @@ typedef struct skein_mesh {
     size_t face_vertex_count;
 } skein_mesh;
 
+/* How much a face counts in the normals of its vertices. */
+typedef enum skein_normals {
+    SKEIN_NORMALS_AREA,    /* by its area */
+    SKEIN_NORMALS_UNIFORM, /* as much as any other */
+    SKEIN_NORMALS_ANGLE    /* by its angle at the vertex: the same for any cut into triangles */
+} skein_normals;
+
+/* Unit normals of a mesh's vertices, into out[vertex_count x 3]; the mesh as for skein_body_add(). A face without area
+ * counts nothing; a vertex without a face that counts has (0, 1, 0). Fails with SKEIN_ERROR_MESH for a face of fewer
+ * than 3 corners and for a corner that is no vertex. */
+skein_status skein_mesh_normals(const skein_mesh *mesh, skein_normals weighting, double *out, skein_error *error);
+
 /* Adds loose particles, in order. `positions` and `velocities` are count x 3 (velocities may be
  * NULL: at rest); `masses` are in kg, 0 holds the particle where it is. `first` receives the index
- * of the first one and may be NULL. Indices never change. */
+ * of the first one and may be NULL. Indices never change. Fails with SKEIN_ERROR_MEMORY and SKEIN_ERROR_LIMIT. */
 skein_status skein_particles_add(skein_world *world, size_t count, const double *positions, const double *velocities,
                                  const double *masses, uint32_t *first);
 
-/* Adds a body of a kind of SKEIN_BODY ("cloth", ...). `mesh` may be NULL where the kind can do
- * without. `settings` may be NULL; so may `handle`. */
+/* Adds a body of a kind of SKEIN_BODY ("cloth", ...). `mesh` may be NULL where the kind can do without. This and the
+ * next calls fail with SKEIN_ERROR_NAME (of a kind or field), SKEIN_ERROR_SYNTAX (of a formula), SKEIN_ERROR_LIMIT and
+ * SKEIN_ERROR_MEMORY; this one with SKEIN_ERROR_MESH, too. */
 skein_status skein_body_add(skein_world *world, const char *kind, const skein_mesh *mesh, const skein_setting *settings,
                             skein_handle *handle);
 /* Adds `count` constraints of one kind, each on the kind's number of particles (`distance`: 2; `formula` and `energy`:
- * as many as the formula names), with the rest values of the present positions. They share their settings. */
+ * as many as the formula names), with the rest values of the present positions. They share their settings. `particles`
+ * are theirs one after the other, no one twice in a constraint. */
 skein_status skein_constraint_add(skein_world *world, const char *kind, const uint32_t *particles, size_t count,
                                   const skein_setting *settings, skein_handle *handle);
 /* How many particles each constraint of the kind takes, with these settings (NULL: the defaults). */
@@ -247,13 +297,16 @@ skein_status skein_remove(skein_world *world, skein_handle handle);
 /* ---- Fields of living objects ------------------------------------------------------------------ */
 
 /* Sets or gets one field of an object. A field that shapes what was already built (a grid's size)
- * is refused with SKEIN_ERROR_VALUE. A text that is returned lives until the field changes. */
+ * is refused with SKEIN_ERROR_VALUE. A text that is set is copied; one that is returned lives until the field changes.
+ * Fails with SKEIN_ERROR_NAME where there is no such field; setting, also with SKEIN_ERROR_SYNTAX, SKEIN_ERROR_LIMIT and
+ * SKEIN_ERROR_MEMORY. */
 skein_status skein_set(skein_world *world, skein_handle handle, const char *field, skein_value value);
 skein_status skein_get(const skein_world *world, skein_handle handle, const char *field, skein_value *value);
 /* Whether the field of an object can be set now: it exists, and shapes nothing that is already built. */
 bool skein_field_is_live(const skein_world *world, skein_handle handle, const char *field);
 /* Set and get by path: "bodies.0.stretch.stiffness", "colliders.ball.radius" (a name), "method.substeps".
- * Numbers count objects of the category in the order of their making. */
+ * Numbers count objects of the category in the order of their making. Fails as the two above, and with
+ * SKEIN_ERROR_NAME where the path leads nowhere. */
 skein_status skein_set_path(skein_world *world, const char *path, skein_value value);
 skein_status skein_get_path(const skein_world *world, const char *path, skein_value *value);
 /* Shorthands for values. */
@@ -270,7 +323,7 @@ static inline skein_value skein_text(const char *text) {
     return v;
 }
 
-/* Living objects of a category, in the order of their making. */
+/* Living objects of a category, in the order of their making; past the end a handle of no object. */
 size_t skein_object_count(const skein_world *world, skein_category category);
 skein_handle skein_object_at(const skein_world *world, skein_category category, size_t index);
 /* The kind of an object; NULL for a stale handle. The method's handle is skein_object_at(..., SKEIN_METHOD, 0). Where
@@ -287,7 +340,9 @@ void *skein_user(const skein_world *world, skein_handle handle);
 
 #define SKEIN_DEFAULT_STEP (1.0 / 90.0) /* seconds */
 
-/* Advances the world by `dt` seconds (more than 0, at most 1e6), in the method's substeps. */
+/* Advances the world by `dt` seconds (more than 0, at most 1e6), in the method's substeps. Fails with SKEIN_ERROR_VALUE
+ * where the method or device cannot run a rule, SKEIN_ERROR_NAME where a rule names a body that is not there,
+ * SKEIN_ERROR_MEMORY, and with what a sparse solver returns. */
 skein_status skein_world_step(skein_world *world, double dt);
 /* Positions as they were built; velocities, forces, time and counters zero. */
 skein_status skein_world_reset(skein_world *world);
@@ -322,7 +377,9 @@ typedef enum skein_device {
 
 /* Changes where steps are computed; the state goes along. The card runs the same plan, in float, and keeps the state
  * there: it comes back when a call looks at it (a view, a copy, statistics, a hash), and only then. A rule that cannot
- * run on a card is named when a plan is made: by the next step, or by skein_world_explain(). */
+ * run on a card is named when a plan is made: by the next step, or by skein_world_explain(). Fails with
+ * SKEIN_ERROR_VALUE where there is no such device, with SKEIN_ERROR_LIMIT for what is too much for it, and with
+ * SKEIN_ERROR_MEMORY. */
 skein_status skein_world_device_set(skein_world *world, skein_device device);
 
 /* Waits until the steps asked for are done: a card works behind the calls. For measuring; nothing else needs it. */
@@ -376,7 +433,7 @@ typedef struct skein_sparse_solver {
 } skein_sparse_solver;
 
 /* Gives the world a solver (copied; the world releases it), or with NULL takes it away. On failure it stays the
- * caller's, and the world keeps the one it had. */
+ * caller's, and the world keeps the one it had. Analyse, factor and solve may not be NULL; a name may. */
 skein_status skein_sparse_solver_set(skein_world *world, const skein_sparse_solver *solver);
 
 /* ---- Reading and writing the state ------------------------------------------------------------- */
@@ -389,12 +446,35 @@ typedef struct skein_view {
     size_t count;
 } skein_view;
 
+/* The caller's memory for three numbers each of many: those of the i-th begin at data + i * stride bytes, and what lies
+ * between is left alone. Make one with skein_floats() or skein_doubles(). */
+typedef enum skein_number_type { SKEIN_FLOAT32, SKEIN_FLOAT64 } skein_number_type;
+typedef struct skein_buffer {
+    void *data;
+    size_t stride; /* bytes, at least those of three numbers; 0: one three right after the other */
+    skein_number_type type;
+} skein_buffer;
+
+static inline skein_buffer skein_floats(float *data, size_t stride) {
+    skein_buffer buffer = {data, stride, SKEIN_FLOAT32};
+    return buffer;
+}
+static inline skein_buffer skein_doubles(double *data, size_t stride) {
+    skein_buffer buffer = {data, stride, SKEIN_FLOAT64};
+    return buffer;
+}
+
 size_t skein_particle_count(const skein_world *world);
+/* Where the state cannot be fetched from a device, skein_world_error() says so, and a view has what was there before. */
 skein_view skein_position_view(const skein_world *world); /* w is the inverse mass */
 skein_view skein_velocity_view(const skein_world *world); /* w is the mass, kg (held ones too) */
-/* Copies `count` particles from `first` on, in the user's order, into out[count x 3]. */
+/* Copies `count` particles from `first` on, in the user's order, into out[count x 3]. These fail with
+ * SKEIN_ERROR_VALUE where there are not so many. */
 skein_status skein_positions_copy(const skein_world *world, size_t first, size_t count, double *out);
 skein_status skein_velocities_copy(const skein_world *world, size_t first, size_t count, double *out);
+/* The same into memory of any layout, a vertex buffer's, say. */
+skein_status skein_positions_copy_to(const skein_world *world, size_t first, size_t count, skein_buffer to);
+skein_status skein_velocities_copy_to(const skein_world *world, size_t first, size_t count, skein_buffer to);
 /* Positions between the last two steps: 0 gives the state before the last step, 1 the present; beyond these it goes on
  * straight. Any finite number. */
 skein_status skein_positions_blend(const skein_world *world, double blend, size_t first, size_t count, double *out);
@@ -432,17 +512,25 @@ typedef struct skein_surface {
     const float *corner_uv;           /* face_vertex_count x 2, or NULL: see skein_body_uv_set() */
 } skein_surface;
 skein_status skein_body_surface(const skein_world *world, skein_handle body, skein_surface *surface);
+/* Copies where the vertices of a body's surface are, and their unit normals, weighted by area (vertices that welding
+ * joined share one): both of the surface's `vertex_count` vertices, between the last two steps as
+ * skein_positions_blend() says (1: now). The data of one of the buffers may be NULL: it is left out. Fails with
+ * SKEIN_ERROR_MEMORY. */
+skein_status skein_body_vertices_copy(skein_world *world, skein_handle body, double blend, skein_buffer positions,
+                                      skein_buffer normals);
 /* Sets of a body's particles that constraints can be made on. Faces are cut into triangles from their first corner. */
 typedef enum skein_elements {
     SKEIN_EDGES,     /* 2: whatever the body's stretch is measured along */
     SKEIN_TRIANGLES, /* 3 */
     SKEIN_HINGES     /* 4: the ends of a side that two triangles share, and the corners across from it */
 } skein_elements;
-/* Copies up to `most` of them, with so many particles each; `count` receives how many there are. `out` may be NULL. */
+/* Copies up to `most` of them, with so many particles each; `count` receives how many there are. `out` may be NULL: only
+ * the count is wanted. Fails with SKEIN_ERROR_MEMORY. */
 skein_status skein_body_elements(skein_world *world, skein_handle body, skein_elements what, uint32_t *out, size_t most,
                                  size_t *count);
 /* Keeps texture coordinates for a body's surface, one pair for each corner of each face (so that a seam may have
- * two); they are for drawing only. `corner_count` is the surface's face_vertex_count. */
+ * two); they are for drawing only, and copied. `corner_count` is the surface's face_vertex_count. Fails with
+ * SKEIN_ERROR_MEMORY. */
 skein_status skein_body_uv_set(skein_world *world, skein_handle body, const float *corner_uv, size_t corner_count);
 
 /* Where a collider stands now, for drawing. `shape` is the kind's name. */
@@ -459,7 +547,7 @@ typedef struct skein_spring {
     bool measured; /* it counts in the statistics' stretch: an edge of a mesh, or added by itself */
 } skein_spring;
 /* Copies up to `most` of the springs of enabled rules, in the order of their making; `count` receives how many
- * there are. */
+ * there are. Fails with SKEIN_ERROR_MEMORY. */
 skein_status skein_springs_copy(skein_world *world, skein_spring *out, size_t most, size_t *count);
 
 /* A particle within a collider's thickness, as the statistics count them. */
@@ -478,8 +566,8 @@ skein_status skein_collider_probe(const skein_world *world, skein_handle collide
                                   double *distances, double *normals);
 
 /* What a force field or a potential does now to a particle that rests at each of `count` points (count x 3): `forces`
- * (count x 3) in m/s2 where its formula is per mass, else in N. Fails with SKEIN_ERROR_HANDLE where there is no such
- * force, with SKEIN_ERROR_VALUE for one that is no field by formula, and with SKEIN_ERROR_MEMORY. */
+ * (count x 3) in m/s2 where its formula is per mass, else in N. Fails with SKEIN_ERROR_VALUE for one that is no field
+ * by formula, and with SKEIN_ERROR_MEMORY. */
 skein_status skein_force_probe(const skein_world *world, skein_handle force, size_t count, const double *points,
                                double *forces);
 
@@ -543,7 +631,7 @@ typedef struct skein_statistics {
     uint64_t state_hash; /* of positions and velocities in the user's order */
 } skein_statistics;
 
-/* Measures the present state; costs about one step, and scratch memory for the edges. */
+/* Measures the present state; costs about one step, and scratch memory for the edges. Fails with SKEIN_ERROR_MEMORY. */
 skein_status skein_world_statistics(skein_world *world, skein_statistics *statistics);
 /* Only the hash. */
 uint64_t skein_world_hash(const skein_world *world);
@@ -561,7 +649,8 @@ typedef struct skein_order {
     double speed;        /* m/s, mean */
 } skein_order;
 
-/* Measures `count` particles from `first` on, about a centre (m). A group distance (m) of 0 counts no groups. */
+/* Measures `count` particles from `first` on, about a centre (m). A group distance (m) of 0 counts no groups. Fails with
+ * SKEIN_ERROR_MEMORY. */
 skein_status skein_order_measure(skein_world *world, size_t first, size_t count, const double centre[3],
                                  double group_distance, skein_order *order);
 
@@ -584,7 +673,7 @@ typedef struct skein_stability {
 
 /* Finds those modes for the world as it lies, by power iteration; costs as much as some hundred force evaluations.
  * Rigid constraints, contact and neighbour rules are left out. (Under explicit_euler and midpoint slower modes that
- * have less damping for their stiffness may still grow, slowly.) */
+ * have less damping for their stiffness may still grow, slowly.) Fails with SKEIN_ERROR_MEMORY. */
 skein_status skein_world_stability(skein_world *world, skein_stability *stability);
 /* The largest substep (s) at which no mode grows under the method: 0 if there is none, infinity if any will do. NaN for
  * a method that does not exist. */
@@ -599,13 +688,14 @@ typedef struct skein_pass {
 
 /* Takes a step, with the same bits as skein_world_step(), but one row of the plan after the other, and measures each.
  * That is slower than a step, whose rows share the cache; the shares tell where the time goes. Copies up to `most`
- * passes in the order of the plan; `count` receives how many there are. A step on a device is one pass. */
+ * passes in the order of the plan; `count` receives how many there are. A step on a device is one pass. Fails as a step
+ * does. */
 skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out, size_t most, size_t *count);
 
 /* ---- The plan ---------------------------------------------------------------------------------- */
 
 /* Writes the plan's rows as text, a line each, for a step of `dt`. Lines go to `write` in order; NULL only
- * makes the plan, which says whether the method can run the rules. */
+ * makes the plan, which says whether the method can run the rules. Fails as a step does. */
 skein_status skein_world_explain(skein_world *world, double dt, void (*write)(void *user, const char *line),
                                  void *user);
 
@@ -613,6 +703,52 @@ skein_status skein_world_explain(skein_world *world, double dt, void (*write)(vo
 #pragma GCC visibility pop
 #endif
 #ifdef __cplusplus
+}
+
+/* ---- Settings in C++ ----------------------------------------------------------------------------- */
+
+/* A list of settings as a value. It turns into a pointer where it stays, and only there: given to a call as it is made,
+ * it goes by the functions below; kept by `auto` it is an array like any other. */
+template <size_t count_> struct skein_settings {
+    skein_setting list[count_ + 1];
+    operator const skein_setting *() const & {
+        return list;
+    }
+    operator const skein_setting *() const && = delete; /* the list would be gone: keep it by auto, or as an array */
+};
+
+template <typename... setting_> skein_settings<sizeof...(setting_)> skein_settings_of(const setting_ &...setting) {
+    return {{setting..., SKEIN_END}};
+}
+
+template <size_t count_>
+skein_status skein_body_add(skein_world *world, const char *kind, const skein_mesh *mesh,
+                            const skein_settings<count_> &settings, skein_handle *handle) {
+    return skein_body_add(world, kind, mesh, settings.list, handle);
+}
+template <size_t count_>
+skein_status skein_constraint_add(skein_world *world, const char *kind, const uint32_t *particles, size_t count,
+                                  const skein_settings<count_> &settings, skein_handle *handle) {
+    return skein_constraint_add(world, kind, particles, count, settings.list, handle);
+}
+template <size_t count_>
+skein_status skein_constraint_arity(skein_world *world, const char *kind, const skein_settings<count_> &settings,
+                                    size_t *arity) {
+    return skein_constraint_arity(world, kind, settings.list, arity);
+}
+template <size_t count_>
+skein_status skein_force_add(skein_world *world, const char *kind, const skein_settings<count_> &settings,
+                             skein_handle *handle) {
+    return skein_force_add(world, kind, settings.list, handle);
+}
+template <size_t count_>
+skein_status skein_collider_add(skein_world *world, const char *kind, const skein_settings<count_> &settings,
+                                skein_handle *handle) {
+    return skein_collider_add(world, kind, settings.list, handle);
+}
+template <size_t count_>
+skein_status skein_method_set(skein_world *world, const char *kind, const skein_settings<count_> &settings) {
+    return skein_method_set(world, kind, settings.list);
 }
 #endif
 #endif

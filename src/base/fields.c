@@ -71,6 +71,7 @@ static bool is_whole(skein_field_type type) {
 }
 
 skein_status skein_field_check(const skein_field *field, const skein_value *value, skein_error *error) {
+    if (!field || !value) return sk_fail_null(error, field ? "value" : "field");
     int need = number_count(field->type);
     char range[96];
     // texts and words; a choice may also be given by its place
@@ -154,6 +155,8 @@ skein_value sk_field_load(const skein_field *field, const void *params) {
 }
 
 size_t skein_value_text(const skein_field *field, const skein_value *value, char *text, size_t size) {
+    if (!text) size = 0;
+    if (!field || !value) return (size_t)snprintf(text, size, "%s", "");
     if (field->type == SKEIN_FIELD_BOOL)
         return (size_t)snprintf(text, size, "%s", value->number[0] != 0 ? "true" : "false");
     if (field->type == SKEIN_FIELD_TEXT || (field->type == SKEIN_FIELD_CHOICE && !value->count))

@@ -11,6 +11,9 @@ skein_status sk_fail(skein_error *error, skein_status status, const char *where,
 /* The failure of an allocation, said in one way everywhere. */
 skein_status sk_fail_memory(skein_error *error, const char *what);
 
+/* A pointer that must not be NULL is: SKEIN_ERROR_VALUE, for every public call that returns a status. */
+skein_status sk_fail_null(skein_error *error, const char *argument);
+
 /* Of `count` names, the one nearest to `name` by edit distance, or NULL if none is near. */
 const char *sk_nearest_name(const char *name, const char *const *names, size_t count);
 

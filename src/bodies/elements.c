@@ -91,6 +91,8 @@ static bool list_hinges(list *l, const sk_body *body, sk_allocator *allocator) {
 
 skein_status skein_body_elements(skein_world *world, skein_handle handle, skein_elements what, uint32_t *out,
                                  size_t most, size_t *count) {
+    SK_NEED(world, world);
+    SK_NEED(world, count);
     static const size_t arity[] = {[SKEIN_EDGES] = 2, [SKEIN_TRIANGLES] = 3, [SKEIN_HINGES] = 4};
     skein_error *error = sk_world_error(world);
     const sk_object *object = sk_object_find(world, handle, SKEIN_BODY);

@@ -308,11 +308,13 @@ static skein_status emit(const skein_formula *f, skein_formula_language asked, c
 
 skein_status skein_formula_emit(const skein_formula *f, skein_formula_language language,
                                 void (*write)(void *user, const char *text), void *user, skein_error *error) {
+    if (!f || !write) return sk_fail_null(error, f ? "write" : "formula");
     return emit(f, language, NULL, write, user, error);
 }
 
 skein_status skein_formula_emit_compiled(const skein_formula *f, const char *name,
                                          void (*write)(void *user, const char *text), void *user, skein_error *error) {
+    if (!f || !write) return sk_fail_null(error, f ? "write" : "formula");
     if (!name) name = "skein_compiled_formula";
     size_t length = strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_");
     if (!length || name[length] || length > 63 || (name[0] >= '0' && name[0] <= '9'))

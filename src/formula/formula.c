@@ -84,6 +84,10 @@ skein_formula *sk_formula_create(const skein_formula_desc *desc, sk_allocator *a
 }
 
 skein_formula *skein_formula_create(const skein_formula_desc *desc, skein_formula_mark *mark, skein_error *error) {
+    if (!desc || !desc->text) {
+        sk_fail_null(error, desc ? "desc->text" : "desc");
+        return NULL;
+    }
     sk_allocator allocator = sk_default_allocator();
     skein_formula *f = sk_formula_create(desc, &allocator, mark, error);
     if (!f) return NULL;
@@ -97,13 +101,13 @@ void skein_formula_destroy(skein_formula *formula) {
 }
 
 uint64_t skein_formula_hash(const skein_formula *f) {
-    return f->hash;
+    return f ? f->hash : 0;
 }
 
 /* ---- answers ---- */
 
 const char *skein_formula_warning(const skein_formula *formula, size_t index, skein_formula_mark *mark) {
-    if (index >= (size_t)formula->warnings) return NULL;
+    if (!formula || index >= (size_t)formula->warnings) return NULL;
     if (mark) *mark = formula->warning[index].mark;
     return formula->warning[index].text;
 }
@@ -123,6 +127,7 @@ static size_t outputs_of(const skein_formula *f, sk_node outputs[static SK_FORMU
 }
 
 skein_formula_info skein_formula_about(const skein_formula *f) {
+    if (!f) return (skein_formula_info){0};
     skein_formula_info info = {.particles = f->particles,
                                .parameters = f->parameters,
                                .rests = f->rests,
@@ -192,6 +197,9 @@ static skein_status find_answer(const skein_formula *f, const skein_formula_poin
 
 skein_status skein_formula_evaluate(const skein_formula *f, const skein_formula_point *point,
                                     skein_formula_value *value, skein_error *error) {
+    if (!f) return sk_fail_null(error, "formula");
+    if (!point) return sk_fail_null(error, "point");
+    if (!value) return sk_fail_null(error, "value");
     sk_node outputs[SK_FORMULA_MOST_OUTPUTS];
     answer a;
     skein_status status = find_answer(f, point, outputs, outputs_of(f, outputs), &a, error);
@@ -211,6 +219,9 @@ skein_status skein_formula_evaluate(const skein_formula *f, const skein_formula_
 
 skein_status skein_formula_hessian(const skein_formula *f, const skein_formula_point *point, double *hessian,
                                    skein_error *error) {
+    if (!f) return sk_fail_null(error, "formula");
+    if (!point) return sk_fail_null(error, "point");
+    if (!hessian) return sk_fail_null(error, "hessian");
     if (!f->hessian)
         return sk_fail(error, SKEIN_ERROR_VALUE, "",
                        "there are no second derivatives: ask for them when making the formula, which must be a number");

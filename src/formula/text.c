@@ -63,6 +63,8 @@ bool sk_text_expected(sk_text *text, const char *what) {
 }
 
 size_t skein_formula_show(const char *text, const skein_formula_mark *mark, char *out, size_t size) {
+    if (!out) size = 0;
+    if (!text || !mark) return (size_t)snprintf(out, size, "%s", "");
     enum { MOST = 120 }; // of a line: what is longer is cut around the mark
     for (size_t line = 1; line < mark->line && *text; text++) line += *text == '\n';
     size_t length = strcspn(text, "\n"), at = mark->column - 1 < length ? mark->column - 1 : length;

@@ -219,6 +219,7 @@ const sk_function *sk_function_find(const char *name) {
 
 bool skein_formula_function(size_t index, const char **usage, const char **help) {
     if (index >= sk_function_count) return false;
-    *usage = sk_functions[index].usage, *help = sk_functions[index].help;
+    if (usage) *usage = sk_functions[index].usage;
+    if (help) *help = sk_functions[index].help;
     return true;
 }

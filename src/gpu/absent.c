@@ -2,6 +2,7 @@
 #include "world/world.h"
 
 skein_status skein_world_device_set(skein_world *world, skein_device device) {
+    SK_NEED(world, world);
     if (device == SKEIN_DEVICE_CPU) return SKEIN_OK;
     return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "device",
                    "this build cannot run on graphics cards: build it with -DSKEIN_GPU=ON, which needs libepoxy "
@@ -9,6 +10,6 @@ skein_status skein_world_device_set(skein_world *world, skein_device device) {
 }
 
 skein_device_info skein_world_device(const skein_world *world) {
-    (void)world;
+    if (!world) return (skein_device_info){.name = ""};
     return (skein_device_info){.device = SKEIN_DEVICE_CPU, .name = "processor"};
 }

@@ -234,6 +234,7 @@ static skein_status create(skein_world *world, bool adopt, sk_device **out, skei
 }
 
 skein_status skein_world_device_set(skein_world *world, skein_device device) {
+    SK_NEED(world, world);
     skein_error *error = sk_world_error(world);
     sk_device *made = NULL;
     skein_status status = SKEIN_OK;
@@ -243,6 +244,7 @@ skein_status skein_world_device_set(skein_world *world, skein_device device) {
 }
 
 skein_device_info skein_world_device(const skein_world *world) {
+    if (!world) return (skein_device_info){.name = ""};
     const sk_gpu_device *device = (const sk_gpu_device *)(const void *)world->device;
     if (!device) return (skein_device_info){.device = SKEIN_DEVICE_CPU, .name = "processor"};
     return (skein_device_info){

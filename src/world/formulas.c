@@ -27,6 +27,8 @@ void sk_world_run_compiled(skein_world *world) {
 }
 
 skein_status skein_formula_register(skein_world *world, const skein_compiled *compiled) {
+    SK_NEED(world, world);
+    SK_NEED(world, compiled);
     skein_error *error = sk_world_error(world);
     skein_status status = sk_compiled_check(compiled, &world->allocator, error);
     if (status) return status;
@@ -38,10 +40,11 @@ skein_status skein_formula_register(skein_world *world, const skein_compiled *co
 }
 
 const skein_formula *skein_formula_of(const skein_world *world, skein_handle constraint) {
+    if (!world) return NULL;
     const sk_object *object = sk_object_of(world, constraint);
     return object ? formula_of(object) : NULL;
 }
 
 bool skein_formula_is_compiled(const skein_world *world, skein_handle constraint) {
-    return find_compiled(world, skein_formula_of(world, constraint)) != NULL;
+    return world && find_compiled(world, skein_formula_of(world, constraint)) != NULL;
 }

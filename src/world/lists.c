@@ -17,6 +17,9 @@ static void copy_batch(const sk_batch *batch, const sk_vec4 *x, skein_spring *ou
 }
 
 skein_status skein_springs_copy(skein_world *world, skein_spring *out, size_t most, size_t *count) {
+    SK_NEED(world, world);
+    SK_NEED(world, count);
+    if (most) SK_NEED(world, out);
     skein_status status = sk_world_arrange(world, sk_world_error(world)); // the slots of new rules may not be known yet
     if (!status) status = sk_world_fetch(world);
     *count = 0;
@@ -45,6 +48,8 @@ static void add_contact(void *user, size_t particle, sk_vec3 normal, double gap)
 
 skein_status skein_collider_probe(const skein_world *world, skein_handle handle, size_t count, const double *points,
                                   double *distances, double *normals) {
+    SK_NEED(world, world);
+    if (count) SK_NEED(world, points);
     const sk_object *object = sk_object_find(world, handle, SKEIN_COLLIDER);
     if (!object) return SKEIN_ERROR_HANDLE;
     sk_collider_probe_points(object->as.collider, world->time, world->isa, count, points, distances, normals);
@@ -53,6 +58,9 @@ skein_status skein_collider_probe(const skein_world *world, skein_handle handle,
 
 skein_status skein_force_probe(const skein_world *world, skein_handle handle, size_t count, const double *points,
                                double *forces) {
+    SK_NEED(world, world);
+    if (count) SK_NEED(world, points);
+    if (count) SK_NEED(world, forces);
     const sk_object *object = sk_object_find(world, handle, SKEIN_FORCE);
     skein_error *error = sk_world_error(world);
     if (!object) return SKEIN_ERROR_HANDLE;
@@ -66,6 +74,9 @@ skein_status skein_force_probe(const skein_world *world, skein_handle handle, si
 }
 
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count) {
+    SK_NEED(world, world);
+    SK_NEED(world, count);
+    if (most) SK_NEED(world, out);
     const sk_particles *all = &world->particles;
     skein_status status = sk_world_fetch(world);
     contact_list list = {out, most, 0, {0, 0, 0}};

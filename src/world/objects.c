@@ -35,6 +35,7 @@ skein_handle sk_handle_at(const skein_world *world, size_t index) {
 }
 
 bool skein_handle_valid(const skein_world *world, skein_handle handle) {
+    if (!world) return false;
     return sk_object_of(world, handle) != NULL;
 }
 
@@ -45,6 +46,7 @@ static skein_handle handle_of(const skein_world *world, const sk_object *object)
 }
 
 skein_status skein_user_set(skein_world *world, skein_handle handle, void *user) {
+    SK_NEED(world, world);
     sk_object *object = sk_object_find(world, handle, SKEIN_CATEGORY_COUNT);
     if (!object) return SKEIN_ERROR_HANDLE;
     object->user = user;
@@ -52,6 +54,7 @@ skein_status skein_user_set(skein_world *world, skein_handle handle, void *user)
 }
 
 void *skein_user(const skein_world *world, skein_handle handle) {
+    if (!world) return NULL;
     const sk_object *object = sk_object_of(world, handle);
     return object ? object->user : NULL;
 }
@@ -333,6 +336,7 @@ static void drop_pointer(void **data, size_t *count, const void *pointer) {
 }
 
 skein_status skein_remove(skein_world *world, skein_handle handle) {
+    SK_NEED(world, world);
     sk_object *object = sk_object_find(world, handle, SKEIN_CATEGORY_COUNT);
     skein_error *error = sk_world_error(world);
     if (!object) return SKEIN_ERROR_HANDLE;
@@ -368,6 +372,7 @@ static bool is_method(const skein_world *world, skein_handle handle) {
 }
 
 size_t skein_object_count(const skein_world *world, skein_category category) {
+    if (!world) return 0;
     if (category == SKEIN_METHOD) return 1;
     size_t count = 0;
     for (size_t i = 0; i < world->objects.count; i++)
@@ -376,6 +381,7 @@ size_t skein_object_count(const skein_world *world, skein_category category) {
 }
 
 skein_handle skein_object_at(const skein_world *world, skein_category category, size_t index) {
+    if (!world) return (skein_handle){UINT32_MAX, 0, 0};
     if (category == SKEIN_METHOD && index == 0) return (skein_handle){method_index, 1, world->identity};
     for (size_t i = 0; i < world->objects.count; i++) {
         const sk_object *object = world->objects.data[i];
@@ -386,6 +392,7 @@ skein_handle skein_object_at(const skein_world *world, skein_category category, 
 }
 
 const skein_kind *skein_object_kind(const skein_world *world, skein_handle handle) {
+    if (!world) return NULL;
     if (is_method(world, handle)) return &world->method->kind;
     const sk_object *object = sk_object_of(world, handle);
     return object ? object->kind : NULL;

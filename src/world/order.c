@@ -133,13 +133,14 @@ static void measure_directions(const skein_world *world, size_t first, size_t en
 
 skein_status skein_order_measure(skein_world *world, size_t first, size_t count, const double centre[3],
                                  double group_reach, skein_order *order) {
+    SK_NEED(world, world);
+    SK_NEED(world, centre);
+    SK_NEED(world, order);
     skein_error *error = sk_world_error(world);
     sk_particles *all = &world->particles;
     memset(order, 0, sizeof *order);
-    if (first > all->count || count > all->count - first)
-        return sk_fail(error, SKEIN_ERROR_VALUE, "", "particles %zu to %zu: the world has %zu", first, first + count,
-                       all->count);
-    skein_status status = sk_world_fetch(world);
+    skein_status status = sk_world_check_range(world, first, count);
+    if (!status) status = sk_world_fetch(world);
     if (status) return status;
     measure_directions(world, first, first + count, centre, order);
     if (order->count < 2) {

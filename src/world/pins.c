@@ -48,6 +48,8 @@ static skein_status check_pins(skein_world *world, const uint32_t *particles, si
 }
 
 skein_status skein_pins_move(skein_world *world, const uint32_t *particles, size_t count, const double *xyz) {
+    SK_NEED(world, world);
+    if (count) SK_NEED(world, xyz);
     skein_status status = check_pins(world, particles, count, xyz);
     if (status) return status;
     if (!shorten(world) || !SK_RESERVE(&world->allocator, &world->pins, world->pins.count + count))

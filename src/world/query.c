@@ -105,6 +105,10 @@ static void cast_at_collider(const skein_world *world, const sk_collider *collid
 
 skein_status skein_ray_cast(const skein_world *world, const double origin[3], const double direction[3],
                             skein_category category, skein_hit *hit) {
+    SK_NEED(world, world);
+    SK_NEED(world, origin);
+    SK_NEED(world, direction);
+    SK_NEED(world, hit);
     double along[3];
     *hit = (skein_hit){.t = INFINITY};
     if (category != SKEIN_BODY && category != SKEIN_COLLIDER)
@@ -135,6 +139,9 @@ static skein_status check_particles(const skein_world *world) {
 
 skein_status skein_particle_near_point(const skein_world *world, const double point[3], uint32_t *particle,
                                        double *metres) {
+    SK_NEED(world, world);
+    SK_NEED(world, point);
+    SK_NEED(world, particle);
     skein_status status = check_particles(world);
     if (status) return status;
     double nearest = INFINITY;
@@ -151,6 +158,11 @@ skein_status skein_particle_near_point(const skein_world *world, const double po
 
 skein_status skein_particle_near_ray(const skein_world *world, const double origin[3], const double direction[3],
                                      double radius, double slope, uint32_t *particle, double *t) {
+    SK_NEED(world, world);
+    SK_NEED(world, origin);
+    SK_NEED(world, direction);
+    SK_NEED(world, particle);
+    SK_NEED(world, t);
     double along[3], best = 1;
     *t = INFINITY;
     *particle = UINT32_MAX;

@@ -28,6 +28,7 @@ const skein_field *sk_common_fields(skein_category category, size_t *count) {
 }
 
 const skein_field *skein_common_fields(skein_category category, size_t *count) {
+    if (!count) return NULL;
     return sk_common_fields(category, count);
 }
 
@@ -55,6 +56,10 @@ const skein_field *sk_kind_field(const skein_kind *kind, const char *name, skein
 }
 
 const skein_field *skein_field_find(const skein_kind *kind, const char *name, skein_error *error) {
+    if (!kind || !name) {
+        sk_fail_null(error, kind ? "name" : "kind");
+        return NULL;
+    }
     return sk_kind_field(kind, name, error);
 }
 
@@ -149,6 +154,7 @@ static void change_body(sk_object *object) {
 }
 
 bool skein_field_is_live(const skein_world *world, skein_handle handle, const char *name) {
+    if (!world || !name) return false;
     sk_object *object;
     void *params;
     skein_error ignored;
@@ -156,6 +162,8 @@ bool skein_field_is_live(const skein_world *world, skein_handle handle, const ch
 }
 
 skein_status skein_set(skein_world *world, skein_handle handle, const char *name, skein_value value) {
+    SK_NEED(world, world);
+    if (!name) return sk_fail_null(sk_world_error(world), "field");
     skein_error *error = sk_world_error(world);
     sk_object *object;
     void *params;
@@ -177,6 +185,9 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
 }
 
 skein_status skein_get(const skein_world *world, skein_handle handle, const char *name, skein_value *value) {
+    SK_NEED(world, world);
+    if (!name) return sk_fail_null(sk_world_error(world), "field");
+    SK_NEED(world, value);
     skein_error *error = sk_world_error(world);
     sk_object *object;
     void *params;
@@ -234,6 +245,8 @@ static skein_status resolve(const skein_world *world, const char *path, skein_ha
 }
 
 skein_status skein_set_path(skein_world *world, const char *path, skein_value value) {
+    SK_NEED(world, world);
+    SK_NEED(world, path);
     skein_handle handle;
     const char *field;
     skein_status status = resolve(world, path, &handle, &field, sk_world_error(world));
@@ -241,6 +254,9 @@ skein_status skein_set_path(skein_world *world, const char *path, skein_value va
 }
 
 skein_status skein_get_path(const skein_world *world, const char *path, skein_value *value) {
+    SK_NEED(world, world);
+    SK_NEED(world, path);
+    SK_NEED(world, value);
     skein_handle handle;
     const char *field;
     skein_status status = resolve(world, path, &handle, &field, sk_world_error(world));

@@ -104,6 +104,8 @@ static void find_modes(finder *f, skein_stability *s) {
 }
 
 skein_status skein_world_stability(skein_world *world, skein_stability *stability) {
+    SK_NEED(world, world);
+    SK_NEED(world, stability);
     skein_error *error = sk_world_error(world);
     *stability = (skein_stability){.mode_count = 0};
     skein_status status = sk_world_arrange(world, error);

@@ -32,13 +32,13 @@ skein_status sk_world_set_device(skein_world *world, sk_device *device) {
 }
 
 void skein_world_wait(const skein_world *world) {
-    if (world->device) world->device->wait(world->device);
+    if (world && world->device) world->device->wait(world->device);
 }
 
 /* ---- reading and writing ---- */
 
 size_t skein_particle_count(const skein_world *world) {
-    return world->particles.count;
+    return world ? world->particles.count : 0;
 }
 
 static skein_view view_of(const skein_world *world, sk_vector vector) {
@@ -47,17 +47,18 @@ static skein_view view_of(const skein_world *world, sk_vector vector) {
 }
 
 skein_view skein_position_view(const skein_world *world) {
+    if (!world) return (skein_view){0};
     sk_world_fetch(world);
     return view_of(world, SK_X);
 }
 
 skein_view skein_velocity_view(const skein_world *world) {
+    if (!world) return (skein_view){0};
     sk_world_fetch(world);
     return view_of(world, SK_V);
 }
 
-/* Whether [first, first + count) are particles. */
-static skein_status check_range(const skein_world *world, size_t first, size_t count) {
+skein_status sk_world_check_range(const skein_world *world, size_t first, size_t count) {
     size_t have = world->particles.count;
     if (first <= have && count <= have - first) return SKEIN_OK;
     return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "", "%zu particle%s from %zu on: the world has %zu", count,
@@ -65,7 +66,7 @@ static skein_status check_range(const skein_world *world, size_t first, size_t c
 }
 
 static skein_status copy_out(const skein_world *world, sk_vector vector, size_t first, size_t count, double *out) {
-    skein_status status = check_range(world, first, count);
+    skein_status status = sk_world_check_range(world, first, count);
     if (!status) status = sk_world_fetch(world);
     if (status) return status;
     for (size_t i = 0; i < count; i++) {
@@ -76,14 +77,20 @@ static skein_status copy_out(const skein_world *world, sk_vector vector, size_t 
 }
 
 skein_status skein_positions_copy(const skein_world *world, size_t first, size_t count, double *out) {
+    SK_NEED(world, world);
+    if (count) SK_NEED(world, out);
     return copy_out(world, SK_X, first, count, out);
 }
 
 skein_status skein_velocities_copy(const skein_world *world, size_t first, size_t count, double *out) {
+    SK_NEED(world, world);
+    if (count) SK_NEED(world, out);
     return copy_out(world, SK_V, first, count, out);
 }
 
 skein_status skein_positions_blend(const skein_world *world, double blend, size_t first, size_t count, double *out) {
+    SK_NEED(world, world);
+    if (count) SK_NEED(world, out);
     if (!isfinite(blend))
         return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "blend", "a blend of %g: expected a finite number",
                        blend);
@@ -97,7 +104,7 @@ skein_status skein_positions_blend(const skein_world *world, double blend, size_
 }
 
 static skein_status copy_in(skein_world *world, sk_vector vector, size_t first, size_t count, const double *xyz) {
-    skein_status status = check_range(world, first, count);
+    skein_status status = sk_world_check_range(world, first, count);
     if (status) return status;
     for (size_t i = 0; i < 3 * count; i++)
         if (!(xyz[i] >= -SK_FAR && xyz[i] <= SK_FAR))
@@ -113,23 +120,30 @@ static skein_status copy_in(skein_world *world, sk_vector vector, size_t first, 
 }
 
 skein_status skein_positions_set(skein_world *world, size_t first, size_t count, const double *xyz) {
+    SK_NEED(world, world);
+    if (count) SK_NEED(world, xyz);
     skein_status status = copy_in(world, SK_X, first, count, xyz);
     // a particle that was moved by hand did not travel: there is nothing to blend
     return status ? status : copy_in(world, SK_PREVIOUS, first, count, xyz);
 }
 
 skein_status skein_velocities_set(skein_world *world, size_t first, size_t count, const double *xyz) {
+    SK_NEED(world, world);
+    if (count) SK_NEED(world, xyz);
     return copy_in(world, SK_V, first, count, xyz);
 }
 
 skein_status skein_particle_hold(skein_world *world, size_t particle, bool held) {
-    skein_status status = check_range(world, particle, 1);
+    SK_NEED(world, world);
+    skein_status status = sk_world_check_range(world, particle, 1);
     if (!status) status = sk_world_touch(world);
     if (!status) sk_particle_hold(&world->particles, particle, held);
     return status;
 }
 
 skein_status skein_body_surface(const skein_world *world, skein_handle handle, skein_surface *surface) {
+    SK_NEED(world, world);
+    SK_NEED(world, surface);
     const sk_object *object = sk_object_find(world, handle, SKEIN_BODY);
     if (!object) return SKEIN_ERROR_HANDLE;
     const sk_body *body = object->as.body;
@@ -141,6 +155,8 @@ skein_status skein_body_surface(const skein_world *world, skein_handle handle, s
 }
 
 skein_status skein_body_uv_set(skein_world *world, skein_handle handle, const float *corner_uv, size_t corner_count) {
+    SK_NEED(world, world);
+    if (corner_count) SK_NEED(world, corner_uv);
     const sk_object *object = sk_object_find(world, handle, SKEIN_BODY);
     skein_error *error = sk_world_error(world);
     if (!object) return SKEIN_ERROR_HANDLE;
@@ -160,12 +176,14 @@ skein_status skein_body_uv_set(skein_world *world, skein_handle handle, const fl
     return SKEIN_OK;
 }
 
-skein_status skein_collider_pose(const skein_world *world, skein_handle handle, skein_pose *out) {
+skein_status skein_collider_pose(const skein_world *world, skein_handle handle, skein_pose *pose) {
+    SK_NEED(world, world);
+    SK_NEED(world, pose);
     const sk_object *object = sk_object_find(world, handle, SKEIN_COLLIDER);
     if (!object) return SKEIN_ERROR_HANDLE;
-    sk_pose pose = sk_collider_pose_at(object->as.collider, world->time);
-    const double position[3] = {(double)pose.position.x, (double)pose.position.y, (double)pose.position.z};
-    memcpy(out->position, position, sizeof position);
-    for (int i = 0; i < 9; i++) out->rotation[i] = (double)pose.rotation[i];
+    sk_pose at = sk_collider_pose_at(object->as.collider, world->time);
+    const double position[3] = {(double)at.position.x, (double)at.position.y, (double)at.position.z};
+    memcpy(pose->position, position, sizeof position);
+    for (int i = 0; i < 9; i++) pose->rotation[i] = (double)at.rotation[i];
     return SKEIN_OK;
 }

@@ -6,6 +6,7 @@
 #include "world/world.h"
 
 uint64_t skein_world_hash(const skein_world *world) {
+    if (!world) return 0;
     sk_world_fetch(world);
     uint64_t hash = SK_HASH_START;
     for (size_t i = 0; i < world->particles.count; i++) {
@@ -81,6 +82,8 @@ static skein_status measure_stretch(skein_world *world, skein_statistics *s, ske
 }
 
 skein_status skein_world_statistics(skein_world *world, skein_statistics *statistics) {
+    SK_NEED(world, world);
+    SK_NEED(world, statistics);
     skein_error *error = sk_world_error(world);
     skein_status status = sk_world_fetch(world);
     memset(statistics, 0, sizeof *statistics);

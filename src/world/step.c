@@ -100,6 +100,7 @@ static skein_status make_matrix(skein_world *world, skein_error *error) {
 }
 
 skein_status skein_sparse_solver_set(skein_world *world, const skein_sparse_solver *solver) {
+    SK_NEED(world, world);
     if (solver && (!solver->analyse || !solver->factor || !solver->solve))
         return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "solver",
                        "a sparse solver needs analyse, factor and solve");
@@ -244,6 +245,7 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
 }
 
 skein_status skein_world_step(skein_world *world, double dt) {
+    SK_NEED(world, world);
     skein_error *error = sk_world_error(world);
     skein_status status = sk_world_compile(world, dt, error);
     return status ? status : take_step(world, dt, NULL, error);
@@ -270,6 +272,9 @@ static void add_to_passes(const sk_row *row, double seconds, skein_pass *out, si
 }
 
 skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out, size_t most, size_t *count) {
+    SK_NEED(world, world);
+    SK_NEED(world, count);
+    if (most) SK_NEED(world, out);
     skein_error *error = sk_world_error(world);
     *count = 0;
     skein_status status = sk_world_compile(world, dt, error);
@@ -294,6 +299,7 @@ skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out,
 }
 
 skein_status skein_world_reset(skein_world *world) {
+    SK_NEED(world, world);
     skein_status status = sk_world_touch(world); // masses may have changed, and where particles are held
     if (status) return status;
     memset(world->cell, 0, sizeof world->cell);
@@ -305,10 +311,11 @@ skein_status skein_world_reset(skein_world *world) {
 }
 
 double skein_world_time(const skein_world *world) {
-    return world->time;
+    return world ? world->time : 0;
 }
 
 skein_status skein_world_time_set(skein_world *world, double seconds) {
+    SK_NEED(world, world);
     if (!(seconds >= 0) || !(seconds <= SK_FAR))
         return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "seconds", "a time of %g s: expected 0 to 1e15", seconds);
     world->time = seconds;
@@ -317,6 +324,7 @@ skein_status skein_world_time_set(skein_world *world, double seconds) {
 
 skein_status skein_world_explain(skein_world *world, double dt, void (*write)(void *user, const char *line),
                                  void *user) {
+    SK_NEED(world, world);
     skein_status status = sk_world_compile(world, dt, sk_world_error(world));
     if (status) return status;
     if (!write) return SKEIN_OK;
@@ -340,6 +348,7 @@ skein_pacer skein_default_pacer(void) {
 }
 
 int skein_pacer_feed(skein_pacer *pacer, double seconds) {
+    if (!pacer) return 0;
     if (!(seconds > 0) || isinf(seconds)) seconds = 0;
     pacer->remainder += seconds;
     // a hair of tolerance, so that 1/60 s fed twice is the same as 1/30 s fed once
@@ -355,6 +364,7 @@ int skein_pacer_feed(skein_pacer *pacer, double seconds) {
 }
 
 double skein_pacer_blend(const skein_pacer *pacer) {
+    if (!pacer) return 0;
     double blend = pacer->remainder / pacer->step;
     return blend < 0 ? 0 : blend > 1 ? 1 : blend;
 }

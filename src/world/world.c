@@ -103,11 +103,12 @@ void skein_world_destroy(skein_world *world) {
 }
 
 const skein_error *skein_world_error(const skein_world *world) {
-    return world->error;
+    static const skein_error no_world = {SKEIN_ERROR_VALUE, "world", "there is no world: the pointer is NULL"};
+    return world ? world->error : &no_world;
 }
 
 skein_error *sk_world_error(const skein_world *world) {
-    return world->error;
+    return world ? world->error : NULL;
 }
 
 void sk_world_log(skein_world *world, skein_log_level level, const char *format, ...) {
@@ -222,6 +223,9 @@ skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint
 
 skein_status skein_particles_add(skein_world *world, size_t count, const double *positions, const double *velocities,
                                  const double *masses, uint32_t *first) {
+    SK_NEED(world, world);
+    if (count) SK_NEED(world, positions);
+    if (count) SK_NEED(world, masses);
     uint32_t place = (uint32_t)skein_particle_count(world);
     skein_status status = sk_world_add_particles(world, count, positions, velocities, masses, sk_world_error(world));
     if (!status && first) *first = place;

@@ -150,8 +150,13 @@ skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, c
 skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *type, const skein_setting *settings,
                                    skein_handle *handle);
 skein_status sk_world_set_method(skein_world *world, const sk_method_type *type, const skein_setting *settings);
-/* The error of a call on this world, to fill in; clear of the last one. */
+/* The error of a call on this world, to fill in; NULL where there is no world. */
 skein_error *sk_world_error(const skein_world *world);
+/* Returns from a public call where the argument of this name is NULL (`world_` may be it). */
+#define SK_NEED(world_, argument_)                                                 \
+    do {                                                                           \
+        if (!(argument_)) return sk_fail_null(sk_world_error(world_), #argument_); \
+    } while (0)
 
 /* ---- for builders ---- */
 
@@ -202,6 +207,8 @@ skein_status sk_world_arrange(skein_world *world, skein_error *error);
 void sk_world_run_compiled(skein_world *world);
 /* Brings the plan up to date for a step of dt. */
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error);
+/* Whether [first, first + count) are particles. */
+skein_status sk_world_check_range(const skein_world *world, size_t first, size_t count);
 /* Before the state is read: what a device is ahead comes back. It changes no state, only where it stands; a failure
  * is in the world's error, and the state is then the last one that came back. */
 skein_status sk_world_fetch(const skein_world *world);

@@ -1,4 +1,4 @@
-/* Unit vertex normals of polygon meshes: see normals.h for the contract.
+/* Unit vertex normals of polygon meshes: see space/normals.h and skein.h for the contract.
  *
  *         next            A face's normal is Newell's: the sum of the cross products around it, taken
  *        /                from its first corner so that a mesh far from the origin loses nothing. Its
@@ -8,11 +8,13 @@
  *
  * The three ways: Gouraud 1971 (uniform), Thuermer and Wuethrich 1998 (angle), Max 1999 (area and more).
  */
-#include "io/normals.h"
+#include "space/normals.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
+
+#include "base/status.h"
 
 static const double *corner_position(const skein_mesh *mesh, const uint32_t *face, uint32_t corner) {
     assert(face[corner] < mesh->vertex_count);
@@ -71,16 +73,16 @@ static double corner_angle(const skein_mesh *mesh, const uint32_t *face, uint32_
     return dot(product, unit) < 0 ? 2 * 3.14159265358979323846 - angle : angle;
 }
 
-void io_normals_compute(const skein_mesh *mesh, io_normals mode, double *out) {
+void sk_mesh_normals(const skein_mesh *mesh, skein_normals weighting, double *out) {
     memset(out, 0, 3 * mesh->vertex_count * sizeof *out);
     const uint32_t *face = mesh->face_vertices;
     for (size_t f = 0; f < mesh->face_count; face += mesh->face_sizes[f++]) {
         uint32_t size = mesh->face_sizes[f];
         double normal[3];
         assert(size >= 3);
-        if (!face_normal(mesh, face, size, normal) || (mode != IO_NORMALS_AREA && !normalise(normal))) continue;
+        if (!face_normal(mesh, face, size, normal) || (weighting != SKEIN_NORMALS_AREA && !normalise(normal))) continue;
         for (uint32_t corner = 0; corner < size; corner++) {
-            double weight = mode == IO_NORMALS_ANGLE ? corner_angle(mesh, face, size, corner, normal) : 1;
+            double weight = weighting == SKEIN_NORMALS_ANGLE ? corner_angle(mesh, face, size, corner, normal) : 1;
             for (int k = 0; k < 3; k++) out[3 * (size_t)face[corner] + (size_t)k] += weight * normal[k];
         }
     }
@@ -91,4 +93,34 @@ void io_normals_compute(const skein_mesh *mesh, io_normals mode, double *out) {
             normal[1] = 1;
         }
     }
+}
+
+skein_status sk_mesh_check_pointers(const skein_mesh *mesh, skein_error *error) {
+    if (mesh->vertex_count && !mesh->positions) return sk_fail_null(error, "mesh->positions");
+    if (mesh->face_count && !mesh->face_sizes) return sk_fail_null(error, "mesh->face_sizes");
+    if (mesh->face_vertex_count && !mesh->face_vertices) return sk_fail_null(error, "mesh->face_vertices");
+    return SKEIN_OK;
+}
+
+skein_status skein_mesh_normals(const skein_mesh *mesh, skein_normals weighting, double *out, skein_error *error) {
+    if (!mesh) return sk_fail_null(error, "mesh");
+    if (mesh->vertex_count && !out) return sk_fail_null(error, "out");
+    if (weighting > SKEIN_NORMALS_ANGLE)
+        return sk_fail(error, SKEIN_ERROR_VALUE, "weighting", "%d: expected an area, uniform or angle weighting",
+                       (int)weighting);
+    skein_status status = sk_mesh_check_pointers(mesh, error);
+    if (status) return status;
+    size_t corner = 0;
+    for (size_t f = 0; f < mesh->face_count; f++) {
+        uint32_t size = mesh->face_sizes[f];
+        if (size < 3 || size > mesh->face_vertex_count - corner)
+            return sk_fail(error, SKEIN_ERROR_MESH, "", "face %zu has %u corners: expected 3 or more, of the %zu left", f,
+                           size, mesh->face_vertex_count - corner);
+        for (uint32_t i = 0; i < size; i++, corner++)
+            if (mesh->face_vertices[corner] >= mesh->vertex_count)
+                return sk_fail(error, SKEIN_ERROR_MESH, "", "face %zu names vertex %u: the mesh has %zu", f,
+                               mesh->face_vertices[corner], mesh->vertex_count);
+    }
+    sk_mesh_normals(mesh, weighting, out);
+    return SKEIN_OK;
 }
