@@ -364,12 +364,16 @@ void io_scene_free(io_scene *scene) {
     free(scene);
 }
 
-const io_scene_settings *io_scene_get(const io_scene *scene) {
-    return &scene->settings;
+json_t *io_scene_document(const io_scene *scene) {
+    return scene->root;
 }
 
-char *io_scene_text(const io_scene *scene) {
-    return json_dumps(scene->root, JSON_INDENT(2));
+const char *io_scene_path(const io_scene *scene) {
+    return scene->path;
+}
+
+const io_scene_settings *io_scene_get(const io_scene *scene) {
+    return &scene->settings;
 }
 
 skein_world *io_scene_build(const io_scene *scene, const skein_world_desc *desc, io_faults *faults) {

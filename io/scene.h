@@ -42,7 +42,8 @@ typedef struct io_faults {
     size_t count; /* so far */
 } io_faults;
 
-/* Reads a scene and applies `sets`, each "path=value" (NULL-terminated list, or NULL). `exporters` are the
+/* Reads a scene and applies `sets`, each "path=value" (NULL-terminated list, or NULL). In a list the place after the last
+ * makes one more, "forces.2={ "type": "drag" }", and null takes one away, "forces.0=null", or a member of an object. `exporters` are the
  * kinds that its "output" may name and, if there is one, the kind of its "view", NULL-terminated. NULL where there is
  * no document to go on with; after any other fault the scene can still be built, to name the faults that only building
  * finds. */
@@ -54,8 +55,6 @@ io_scene *io_scene_read_text(const char *text, size_t size, const char *path, co
 void io_scene_free(io_scene *scene); /* NULL is allowed */
 
 const io_scene_settings *io_scene_get(const io_scene *scene);
-/* The document with what was set, as JSON, to be freed; NULL without memory. */
-char *io_scene_text(const io_scene *scene);
 
 /* Checks everything, the method's demands too, and builds the world. NULL if there was any fault, here or
  * in reading. `desc` as for skein_world_create. */
@@ -76,6 +75,16 @@ const void *io_scene_view(const io_scene *scene);
 
 /* How many whole steps of which length make one frame: the scene's step, made to fit. */
 int io_scene_steps_per_frame(const io_scene_settings *settings, double *dt);
+
+/* The scene as it was read, with what was set in it: JSON, with a newline at its end. NULL when there is no memory; free
+ * it. */
+char *io_scene_text(const io_scene *scene);
+/* Writes that to a file, from which the same scene can be read: where it lies in another folder than the scene, the
+ * paths of files in it become absolute. */
+skein_status io_scene_write(const io_scene *scene, const char *path, skein_error *error);
+/* A field's value as it stands in a scene and after the equals sign of a set: JSON, to all digits. NULL when there is no
+ * memory; free it. */
+char *io_value_json(const skein_field *field, const skein_value *value);
 
 /* "; did you mean 'x'?" for the nearest of `count` names, or "". Returns `hint`. */
 #define IO_HINT_SIZE 96

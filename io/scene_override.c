@@ -3,6 +3,8 @@
  *   bodies.0.stretch.stiffness=2e4     a place in a list, then fields
  *   colliders.ball.centre=[0,1,0]      a name in a list; JSON after the equals sign
  *   method.type=symplectic_euler       a word needs no quotes; the method keeps what both kinds have
+ *   forces.2={"type": "drag"}          one more, where the list has two
+ *   forces.0=null                      one less; for a member of an object: its default
  *
  * A member that an object does not have yet is made: whether there is such a field is found out by the
  * reader, as for every other member. */
@@ -45,9 +47,16 @@ static json_t *member_of(json_t *at, const char *key, bool top) {
     return json_object_get(at, key);
 }
 
+/* The place after the last of a list makes one more; null takes one away. */
 static bool set_member(json_t *at, const char *key, json_t *value) {
-    if (json_is_array(at)) return !json_array_set(at, place_in_list(at, key), value);
-    return json_is_object(at) && key[0] && !json_object_set(at, key, value);
+    if (!json_is_array(at)) {
+        if (json_is_null(value) && json_is_object(at) && key[0]) return !json_object_del(at, key);
+        return json_is_object(at) && key[0] && !json_object_set(at, key, value);
+    }
+    size_t place = place_in_list(at, key), size = json_array_size(at);
+    bool next = place == size && key[0] && strspn(key, "0123456789") == strlen(key) && strtoull(key, NULL, 10) == size;
+    if (json_is_null(value)) return place < size && !json_array_remove(at, place);
+    return next ? !json_array_append(at, value) : !json_array_set(at, place, value);
 }
 
 /* Says why `key` leads nowhere from `at`, whose own path is `path`. */

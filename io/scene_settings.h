@@ -55,6 +55,10 @@ bool io_scene_override(json_t *root, const char *set, io_faults *faults, json_t 
 /* The path of a file that the scene names: relative to the scene's folder. NULL when there is no memory; free it. */
 char *io_path_beside(const char *scene, const char *file);
 
+/* What a scene was read from, and where it lies. */
+json_t *io_scene_document(const io_scene *scene);
+const char *io_scene_path(const io_scene *scene);
+
 /* Builds a world from a whole document; NULL if there was any fault. */
 skein_world *io_world_from_document(const json_t *root, const char *file, double dt, const skein_world_desc *desc,
                                     io_faults *faults);

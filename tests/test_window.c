@@ -106,7 +106,7 @@ static void switches_methods_and_colours(void **state) {
     double colour = told("colour");
     press_key("r");
     assert_true(told("colour") == colour + 1);
-    for (int i = 0; i < 3; i++) press_key("r");
+    for (int i = 0; i < 4; i++) press_key("r"); // speed, strain, direction and round again
     assert_true(told("colour") == colour);
 }
 
@@ -228,7 +228,7 @@ static void pulls_a_corner(void **state) {
     uint32_t corner, picked;
     (void)state;
     listen_from_here();
-    tool("key F5"); // from the file: all that was changed is as it was
+    tool("key ctrl+r"); // back to the file: all that was changed is as it was
     expect("reopened ");
     press_key("BackSpace");
     corner = find_corner(&x, &y);
@@ -504,6 +504,127 @@ static void solves_by_keys(void **state) {
     free(said);
 }
 
+/* ---- Changes -------------------------------------------------------------------------------------------- */
+
+static const char cube[] =
+    "{ 'name': 'cube', 'method': { 'type': 'xpbd', 'substeps': 3 }, 'bodies': [ { 'type': 'lattice', 'grid': [4, 4, 4],"
+    "  'size': [1, 1, 1], 'position': [0, 2, 0] } ], 'forces': [ { 'type': 'gravity' } ],"
+    "  'colliders': [ { 'type': 'plane', 'offset': 0 } ] }";
+
+/* Drags a control to the right, and keeps what the window says that it has set: "set body 0 size=1 1 2". */
+static void change(const char *control, const char *said, char out[sizeof screen.line]) {
+    double x, y;
+    place_of(control, &x, &y);
+    listen_from_here();
+    drag(x - 60, y, x - 30, y, 1);
+    expect(said);
+    memcpy(out, screen.line, sizeof screen.line);
+}
+
+/* The hash after some frames from the start. */
+static void hash_after(int frames, char hash[64]) {
+    press_key("BackSpace");
+    for (int i = 0; i < frames; i++) press_key("period");
+    word_of("hash", hash);
+}
+
+/* A vector of a body can be changed; what was tuned stays when the body is built anew, can be undone and done again, and
+ * saved: the file opens to the same bits. */
+static void keeps_what_was_changed(void **state) {
+    char set[sizeof screen.line], first[64], stiff[64], sized[64], tuned[64], again[64];
+    (void)state;
+    write_scene(in_folder("cube.json"), cube);
+    const char *const arguments[] = {in_folder("cube.json"), "--size", "1000x740", "--samples", "1", "--paused", NULL};
+    open_window(arguments);
+    expect("opened particles=64 ");
+    hash_after(4, first);
+    change("body.0.structural.stiffness", "set body 0 structural.stiffness=", set);
+    hash_after(4, stiff);
+    assert_string_not_equal(first, stiff);
+    change("body.0.size", "set body 0 size=", set);
+    double size[3], mass;
+    assert_int_equal(sscanf(strchr(set, '=') + 1, "%lf %lf %lf", &size[0], &size[1], &size[2]), 3);
+    assert_true(size[0] != 1 || size[1] != 1 || size[2] != 1);
+    hash_after(4, sized);
+    change("body.0.mass", "set body 0 mass=", set);
+    mass = strtod(strchr(set, '=') + 1, NULL);
+    assert_true(mass != 10);
+    press_key("5"); // another method
+    press_key("r"); // other colours
+    hash_after(4, tuned);
+
+    // saved: the file says all of it
+    press_key("BackSpace");
+    listen_from_here();
+    tool("key ctrl+s");
+    expect("note saved cube-001.json");
+    char *text = read_text(in_folder("cube-001.json"));
+    assert_contains(text, "leapfrog");
+    assert_contains(text, "\"colour\": \"body\"");
+    assert_contains(text, "structural");
+    free(text);
+
+    // back and forth: colours, method, mass
+    for (int i = 0; i < 3; i++) press_key("ctrl+z");
+    hash_after(4, again);
+    assert_string_equal(again, sized);
+    press_key("ctrl+z");
+    hash_after(4, again);
+    assert_string_equal(again, stiff);
+    press_key("ctrl+z");
+    hash_after(4, again);
+    assert_string_equal(again, first);
+    press_key("ctrl+z");
+    assert_true(told("frame") == 4); // there was nothing to undo
+    for (int i = 0; i < 5; i++) press_key("ctrl+y");
+    hash_after(4, again);
+    assert_string_equal(again, tuned);
+    press_key("ctrl+r");
+    hash_after(4, again);
+    assert_string_equal(again, first);
+    close_window();
+
+    const char *const saved[] = {in_folder("cube-001.json"), "--size", "640x360", "--samples", "1", "--paused", NULL};
+    open_window(saved);
+    expect("opened particles=64 ");
+    hash_after(4, again);
+    assert_string_equal(again, tuned);
+    close_window();
+}
+
+/* The pointer leads a particle also where nothing has a velocity, and the constraint comes back to its length. */
+static void leads_where_nothing_has_a_velocity(void **state) {
+    double x, y, at[3];
+    int picked;
+    char words[256];
+    (void)state;
+    const char *const arguments[] = {
+        SKEIN_SOURCE_DIR "/scenes/one_spring_live.json", "--size", "640x360", "--no-panels", "--samples", "1", NULL};
+    open_window(arguments);
+    expect("opened particles=2 ");
+    ask_state();
+    press_key("space");
+    for (int i = 0; i < 3; i++) press_key("period");
+    pixel_of((const double[]){2.75, 0, 0}, &x, &y);
+    press_key("space");
+    listen_from_here();
+    snprintf(words, sizeof words, "mousemove %.0f %.0f sleep 0.1 mousedown 1 sleep 0.1 mousemove %.0f %.0f sleep 0.05 "
+                                  "mousemove %.0f %.0f", x, y, x + 10, y - 20, x + 20, y - 60);
+    tool(words);
+    expect("picked ");
+    assert_int_equal(sscanf(screen.line, "picked %d", &picked), 1);
+    assert_int_equal(picked, 1);
+    ask_state();
+    double begun = told("frame");
+    do ask_state();
+    while (told("frame") < begun + 40);
+    tool("mouseup 1");
+    expect("released 1 at ");
+    assert_int_equal(sscanf(screen.line, "released 1 at %lf %lf %lf", &at[0], &at[1], &at[2]), 3);
+    assert_true(at[1] > 0.5); // it was led upwards
+    close_window();
+}
+
 /* A scene with a fault opens as soon as it is mended. */
 static void waits_for_a_mended_scene(void **state) {
     (void)state;
@@ -666,6 +787,8 @@ int main(void) {
         cmocka_unit_test(closes_cleanly),
         cmocka_unit_test(pictures_agree_with_the_offscreen_path),
         cmocka_unit_test(solves_by_keys),
+        cmocka_unit_test(keeps_what_was_changed),
+        cmocka_unit_test(leads_where_nothing_has_a_velocity),
         cmocka_unit_test(waits_for_a_mended_scene),
         cmocka_unit_test(compares_and_waits_for_the_focus),
         cmocka_unit_test(steers_a_flock),

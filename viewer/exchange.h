@@ -151,6 +151,7 @@ typedef struct viewer_shown {
     bool panel[VIEWER_PANEL_COUNT];
     uint64_t frame, first_frame, last_frame; /* of the history */
     double time, speed;                      /* s; simulated over real time */
+    size_t changes;                          /* that are done, besides those that were given */
     size_t side_count;
     viewer_side sides[VIEWER_SIDES];
     viewer_line log[VIEWER_LOG_LINES];

@@ -69,22 +69,26 @@ static double give_way(const viewer_grab *grab, const skein_world *world, const 
 
 void viewer_grab_lead(viewer_grab *grab, skein_world *world, double dt) {
     if (!grab->holding || !grab->moved) return;
-    double x[3], way[3], velocity[3];
+    double x[3], way[3];
     if (skein_positions_copy(world, grab->particle, 1, x)) return;
     if (!is_held(world, grab->particle)) skein_particle_hold(world, grab->particle, true);
     for (int k = 0; k < 3; k++) way[k] = grab->goal[k] - x[k];
     // the exact way of x' = rate (goal - x) over the step
-    double share = (1 - exp(-rate * dt)) / dt * give_way(grab, world, x, way);
-    for (int k = 0; k < 3; k++) velocity[k] = share * way[k];
-    skein_velocities_set(world, grab->particle, 1, velocity);
+    double share = (1 - exp(-rate * dt)) * give_way(grab, world, x, way);
+    for (int k = 0; k < 3; k++) {
+        x[k] += share * way[k];
+        grab->led[k] = share * way[k] / dt;
+    }
+    skein_pins_move(world, &grab->particle, 1, x);
 }
 
 void viewer_grab_release(viewer_grab *grab, skein_world *world) {
     if (!grab->holding) return;
     grab->holding = false;
     if (!grab->moved) return;
-    // holding it once more stops it; let go, it flies on as it was led
     skein_particle_hold(world, grab->particle, grab->was_held);
+    // let go, it flies on as it was led
+    if (!grab->was_held) skein_velocities_set(world, grab->particle, 1, grab->led);
 }
 
 bool viewer_toggle_pin(skein_world *world, uint32_t particle) {

@@ -1,8 +1,8 @@
 /* The hand: particles that the mouse picks, pulls, pins and frees.
  *
- * A pulled particle is held, and led after the cursor at a speed that a spring would give it: held particles move with
- * their velocity under every method, so this works under all of them, and needs no stiffness that a step could be too
- * long for. Where the springs around it are stretched too far, the hand gives way. Called by the stage. */
+ * A pulled particle is held, and led after the cursor by the way that a spring would bring it, as a pin that moves: that
+ * works under every method, whether it has velocities or not, and needs no stiffness that a step could be too long for.
+ * Where the springs around it are stretched too far, the hand gives way. Called by the stage. */
 #ifndef SKEIN_VIEWER_GRAB_H
 #define SKEIN_VIEWER_GRAB_H
 
@@ -15,6 +15,7 @@ typedef struct viewer_grab {
     size_t side;
     uint32_t particle;
     double goal[3];  /* where the cursor has it */
+    double led[3];   /* m/s, in the last step: what it flies on with */
     double depth[3]; /* a point of the plane that the cursor moves in, facing the camera */
     /* the springs that it hangs on */
     uint32_t neighbours[16];
@@ -24,7 +25,7 @@ typedef struct viewer_grab {
 
 /* Takes hold of a particle. */
 void viewer_grab_take(viewer_grab *grab, skein_world *world, size_t side, uint32_t particle);
-/* Before each step of dt: gives the particle its velocity. */
+/* Before each step of dt: leads the particle on. */
 void viewer_grab_lead(viewer_grab *grab, skein_world *world, double dt);
 /* Lets go; a particle that was held before stays where it is now. */
 void viewer_grab_release(viewer_grab *grab, skein_world *world);

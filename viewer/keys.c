@@ -10,7 +10,7 @@
 typedef enum key_when { ALWAYS, WITH_SCENE, BY_KEY, WITH_FIELD } key_when;
 
 typedef struct viewer_key {
-    int code, mods;   /* mods: GLFW_MOD_SHIFT or 0 */
+    int code, mods;   /* mods: 0, or GLFW_MOD_CONTROL, with or without GLFW_MOD_SHIFT */
     const char *name; /* NULL: goes with the row before it */
     key_when when;
     void (*act)(viewer_stage *stage, const struct viewer_key *key);
@@ -74,13 +74,18 @@ static void save_mesh(viewer_stage *stage, const viewer_key *key) {
     viewer_save_mesh(stage);
 }
 
+/* The next of all colours that the view's field knows. */
 static void next_colours(viewer_stage *stage, const viewer_key *key) {
     (void)key;
-    static const char *const names[] = {"by material", "by body", "by speed", "by strain"};
-    int next = (stage->sides[0].view.colour + 1) % 4;
-    for (size_t s = 0; s < stage->side_count; s++) stage->sides[s].view.colour = next;
-    stage->dirty = stage->facts = true;
-    viewer_note(stage, "colours %s", names[next]);
+    const skein_field *field = skein_field_find(render_view_kind(), "colour", NULL);
+    int count = 1, next = stage->sides[0].view.colour + 1;
+    for (const char *c = field->choices; *c; c++) count += *c == '|';
+    next %= count;
+    const char *word = field->choices;
+    for (int i = 0; i < next; i++) word = strchr(word, '|') + 1;
+    viewer_request request = {.kind = VIEWER_SET, .category = SKEIN_VIEW, .field = field, .value = skein_number(next)};
+    viewer_stage_set(stage, &request);
+    viewer_note(stage, "colours by %.*s", (int)strcspn(word, "|"), word);
 }
 
 static void choose_method(viewer_stage *stage, const viewer_key *key) {
@@ -97,7 +102,22 @@ static void toggle_panel(viewer_stage *stage, const viewer_key *key) {
 
 static void reload(viewer_stage *stage, const viewer_key *key) {
     (void)key;
-    viewer_stage_reopen(stage, NULL);
+    viewer_stage_reload(stage);
+}
+
+static void undo(viewer_stage *stage, const viewer_key *key) {
+    if (key->number > 0) viewer_stage_redo(stage);
+    else viewer_stage_undo(stage);
+}
+
+static void revert(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    viewer_stage_revert(stage);
+}
+
+static void save_scene(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    viewer_save_scene(stage);
 }
 
 static void solve(viewer_stage *stage, const viewer_key *key) {
@@ -117,8 +137,10 @@ static void change_field(viewer_stage *stage, const viewer_key *key) {
             double step_size = fmax(0.1 * fabs(value.number[0]), 0.01 * fmax(fabs(field->initial[0]), 1));
             double changed = value.number[0] + key->number * step_size;
             changed = fmin(fmax(changed, field->least), field->most);
-            if (!skein_set(world, handle, key->field, skein_number(changed)) && s == 0)
-                viewer_note(stage, "%s %.4g %s", key->field, changed, field->unit);
+            viewer_request request = {.kind = VIEWER_SET, .category = SKEIN_FORCE, .index = i, .field = field,
+                                      .side = (int)s, .value = skein_number(changed)};
+            viewer_stage_set(stage, &request);
+            if (s == 0) viewer_note(stage, "%s %.4g %s", key->field, changed, field->unit);
         }
     }
     stage->facts = true;
@@ -132,6 +154,11 @@ static void change_field(viewer_stage *stage, const viewer_key *key) {
     { .code = code_, .name = name_, .when = WITH_SCENE, .act = move, .number = motion_, .help = help_ }
 #define SCENE(code_, name_, act_, help_) \
     { .code = code_, .name = name_, .when = WITH_SCENE, .act = act_, .help = help_ }
+#define CONTROL(code_, mods_, name_, act_, number_, help_)                                                    \
+    {                                                                                                       \
+        .code = code_, .mods = GLFW_MOD_CONTROL | (mods_), .name = name_, .when = WITH_SCENE, .act = act_,  \
+        .number = number_, .help = help_                                                                    \
+    }
 #define REPEAT(code_, name_, act_, help_) \
     { .code = code_, .name = name_, .when = WITH_SCENE, .act = act_, .repeats = true, .help = help_ }
 #define FIELD(code_, name_, field_, by_, help_)                                                                \
@@ -147,6 +174,11 @@ static void change_field(viewer_stage *stage, const viewer_key *key) {
 
 static const viewer_key keys[] = {
     SCENE(GLFW_KEY_SPACE, "Space", pause_or_play, "pauses and plays"),
+    CONTROL(GLFW_KEY_Z, 0, "Ctrl Z", undo, -1, "undoes the last change"),
+    CONTROL(GLFW_KEY_Z, GLFW_MOD_SHIFT, NULL, undo, 1, NULL),
+    CONTROL(GLFW_KEY_Y, 0, "Ctrl Y", undo, 1, "does it again (as Ctrl Shift Z)"),
+    CONTROL(GLFW_KEY_R, 0, "Ctrl R", revert, 0, "back to the scene's file, without the changes"),
+    CONTROL(GLFW_KEY_S, 0, "Ctrl S", save_scene, 0, "saves the scene as tuned, in the working directory"),
     REPEAT(GLFW_KEY_PERIOD, ". (period)", step, "pauses, and goes one frame on"),
     REPEAT(GLFW_KEY_COMMA, ", (comma)", step_back, "pauses, and goes one frame back; playing goes on from there"),
     SCENE(GLFW_KEY_BACKSPACE, "Backspace", reset, "puts the scene back to its start"),
@@ -157,7 +189,7 @@ static const viewer_key keys[] = {
     MOVE(GLFW_KEY_Q, "Q E", VIEWER_TURN_LEFT, "turn the view left and right"),
     MOVE(GLFW_KEY_E, NULL, VIEWER_TURN_RIGHT, NULL),
     SCENE(GLFW_KEY_C, "C", fly, "flight in the first person, and back to the first view"),
-    SCENE(GLFW_KEY_R, "R", next_colours, "other colours: by material, body, speed, strain"),
+    SCENE(GLFW_KEY_R, "R", next_colours, "other colours: by material, body, speed, strain, direction"),
     METHOD(0, "1 to 9", "the method: the n-th that `skein list methods` names"),
     METHOD(1, NULL, NULL),
     METHOD(2, NULL, NULL),
@@ -171,7 +203,7 @@ static const viewer_key keys[] = {
           "saves the picture as a PNG in the working directory (with Shift: the window)"),
     SCENE(GLFW_KEY_V, "V", record, "records a film, and ends it"),
     SCENE(GLFW_KEY_O, "O", save_mesh, "saves the bodies' meshes as OBJ"),
-    SCENE(GLFW_KEY_F5, "F5", reload, "reads the scene's file again"),
+    SCENE(GLFW_KEY_F5, "F5", reload, "reads the scene's file again; changes made here stay on top of it"),
     PANEL(GLFW_KEY_F1, "F1", VIEWER_PANEL_KEYS, "shows all keys"),
     PANEL(GLFW_KEY_F2, "F2", VIEWER_PANEL_GALLERY, "the gallery of scenes"),
     PANEL(GLFW_KEY_F3, "F3", VIEWER_PANEL_PLOTS, "plots of energy, stretch, contacts and time"),
@@ -214,13 +246,17 @@ static bool applies(const viewer_stage *stage, const viewer_key *key) {
 }
 
 bool viewer_key_down(viewer_stage *stage, int code, int mods) {
+    const int command = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER;
     for (int k = 0; k < KEY_COUNT; k++) {
         const viewer_key *key = &keys[k];
         if (key->code != code || !applies(stage, key)) continue;
-        if ((mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return false;
+        // Shift makes a difference only where Control does, too: X saves with both
+        int asked = mods & command ? mods & (command | GLFW_MOD_SHIFT) : 0;
+        if (asked != key->mods) continue;
         key->act(stage, key);
         return true;
     }
+    if (mods & command) return false;
     // modifiers alone are no key
     bool by_key = viewer_stage_by_key(stage) && code < GLFW_KEY_LEFT_SHIFT && code != GLFW_KEY_ESCAPE;
     if (by_key) viewer_stage_solve(stage);

@@ -192,6 +192,7 @@ static void mirror_time(viewer_stage *stage, viewer_shown *shown) {
     shown->first_frame = player->history.first;
     shown->last_frame = player->history.last;
     shown->time = skein_world_time(player->world);
+    shown->changes = player->changes.done - player->changes.given;
     const char *name = player->settings.name[0] ? player->settings.name : player->path;
     snprintf(shown->title, sizeof shown->title, "Skein: %.160s%s", name, stage->paused ? " (paused)" : "");
     for (size_t s = 0; s < stage->side_count; s++) {

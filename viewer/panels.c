@@ -22,9 +22,13 @@ void viewer_place_control(viewer_panels *panels, const char *name) {
     viewer_event(panels->exchange->events, "control %.0f %.0f %.0f %.0f %s", at[0], at[1], at[2], at[3], name);
 }
 
-static void ask_key(viewer_panels *panels, int code) {
-    viewer_request request = {.kind = VIEWER_KEY_DOWN, .code = code};
+static void ask_keys(viewer_panels *panels, int code, int mods) {
+    viewer_request request = {.kind = VIEWER_KEY_DOWN, .code = code, .mods = mods};
     viewer_ask(panels->exchange, &request);
+}
+
+static void ask_key(viewer_panels *panels, int code) {
+    ask_keys(panels, code, 0);
 }
 
 static bool button(viewer_panels *panels, const char *title, const char *help) {
@@ -37,7 +41,37 @@ static bool button(viewer_panels *panels, const char *title, const char *help) {
 /* ---- Time ---- */
 
 /* The same as the keys do. */
-enum { KEY_SPACE = 32, KEY_COMMA = 44, KEY_PERIOD = 46, KEY_BACKSPACE = 259, KEY_F1 = 290, KEY_F2 = 291, KEY_F3 = 292 };
+enum {
+    KEY_SPACE = 32,
+    KEY_COMMA = 44,
+    KEY_PERIOD = 46,
+    KEY_R = 82,
+    KEY_S = 83,
+    KEY_Y = 89,
+    KEY_Z = 90,
+    KEY_BACKSPACE = 259,
+    KEY_F1 = 290,
+    KEY_F2 = 291,
+    KEY_F3 = 292,
+    WITH_CONTROL = 2
+};
+
+/* What was changed: back, forth, to a file, and away. */
+static void show_changes(viewer_panels *panels, const viewer_shown *shown) {
+    char title[40];
+    if (button(panels, "Undo", "the last change: Ctrl Z")) ask_keys(panels, KEY_Z, WITH_CONTROL);
+    widgets_same_line();
+    if (button(panels, "Redo", "what was undone: Ctrl Y")) ask_keys(panels, KEY_Y, WITH_CONTROL);
+    widgets_same_line();
+    if (button(panels, "Save", "the scene as tuned, to a file in the working directory: Ctrl S"))
+        ask_keys(panels, KEY_S, WITH_CONTROL);
+    widgets_same_line();
+    if (button(panels, "Revert", "back to the scene's file: Ctrl R; redo brings the changes back"))
+        ask_keys(panels, KEY_R, WITH_CONTROL);
+    widgets_same_line();
+    snprintf(title, sizeof title, shown->changes == 1 ? "%zu change" : "%zu changes", shown->changes);
+    widgets_text(title);
+}
 
 static void show_time(viewer_panels *panels, const viewer_shown *shown) {
     if (button(panels, shown->paused ? "Play" : "Pause", "Space")) ask_key(panels, KEY_SPACE);
@@ -52,6 +86,7 @@ static void show_time(viewer_panels *panels, const viewer_shown *shown) {
     if (button(panels, "Scenes", "the gallery: F2")) ask_key(panels, KEY_F2);
     widgets_same_line();
     if (button(panels, "Plots", "energy, stretch, contacts, time: F3")) ask_key(panels, KEY_F3);
+    show_changes(panels, shown);
     double frame = (double)shown->frame;
     if (shown->last_frame > shown->first_frame) {
         bool moved = widgets_numbers("frame", &frame, 1, (double)shown->first_frame, (double)shown->last_frame, false,

@@ -157,12 +157,17 @@ static void show_entry(viewer_panels *panels, const viewer_object *object, const
         break;
     default: changed = show_number(entry, field->name, &request.value); break;
     }
-    // what builds the scene anew waits until the slider is let go
+    // what builds the scene anew waits until the slider is let go, and what is typed until it is entered
     bool slider =
         field->type != SKEIN_FIELD_BOOL && field->type != SKEIN_FIELD_CHOICE && field->type != SKEIN_FIELD_TEXT;
-    bool waits = slider && entry->shapes && !widgets_released();
-    if (changed && waits) keep_asked(panels, &request, true);
-    if (slider && entry->shapes) changed = !waits;
+    bool held = panels->asked.down && panels->asked.field == field && panels->asked.category == object->category &&
+                panels->asked.index == object->index && panels->asked.side == side;
+    bool released = slider && widgets_released();
+    if (changed && slider && (entry->shapes || widgets_typing()) && !released) {
+        keep_asked(panels, &request, true);
+        changed = false;
+    }
+    changed |= held && released;
     snprintf(name, sizeof name, "%s%s.%zu.%.60s", side ? "other " : "", skein_category_text(object->category),
              object->index, field->name);
     viewer_place_control(panels, name);

@@ -80,14 +80,15 @@ static void world_says(void *user, skein_log_level level, const char *message) {
 }
 
 static io_scene *read_scene(const viewer_player *player, const viewer_reading *reading, io_faults *faults) {
-    const char *const *sets = (const char *const *)player->sets;
+    const char **sets = viewer_changes_sets(&player->changes);
     char text[8192];
-    if (!viewer_is_mesh(player->path)) return io_scene_read(player->path, sets, reading->exporters, faults);
-    if (!scene_of_mesh(player->path, text, sizeof text, player->reporter)) {
-        faults->count++;
-        return NULL;
-    }
-    return io_scene_read_text(text, strlen(text), player->path, sets, reading->exporters, faults);
+    io_scene *scene = NULL;
+    if (!viewer_is_mesh(player->path)) scene = io_scene_read(player->path, sets, reading->exporters, faults);
+    else if (scene_of_mesh(player->path, text, sizeof text, player->reporter))
+        scene = io_scene_read_text(text, strlen(text), player->path, sets, reading->exporters, faults);
+    else faults->count++;
+    free(sets);
+    return scene;
 }
 
 static bool is_held(const skein_world *world, size_t particle) {
@@ -102,7 +103,7 @@ static bool note_pins(viewer_player *player) {
     return player->pins != NULL;
 }
 
-/* Fills in scene, world and all that belongs to them; `player` has path, sets and reporter. */
+/* Fills in scene, world and all that belongs to them; `player` has path, changes and reporter. */
 static bool load(viewer_player *player, const viewer_reading *reading) {
     io_faults faults = {report_fault, &player->reporter, 0};
     skein_error error = {SKEIN_OK, "", ""};
@@ -126,40 +127,13 @@ static bool load(viewer_player *player, const viewer_reading *reading) {
     return good;
 }
 
-static void free_sets(viewer_player *player) {
-    for (size_t s = 0; s < player->set_count; s++) free(player->sets[s]);
-    player->set_count = 0;
-    player->sets[0] = NULL;
-}
-
-static bool add_set(viewer_player *player, const char *set) {
-    const char *equals = strchr(set, '=');
-    size_t name = equals ? (size_t)(equals - set) + 1 : 0;
-    char *copy = strdup(set);
-    if (!copy) return false;
-    // a later value of the same path takes the place of the former
-    for (size_t s = 0; s < player->set_count && name; s++)
-        if (!strncmp(player->sets[s], set, name)) {
-            free(player->sets[s]);
-            player->sets[s] = copy;
-            return true;
-        }
-    if (player->set_count == PLAYER_SETS) {
-        free(copy);
-        return false;
-    }
-    player->sets[player->set_count++] = copy;
-    player->sets[player->set_count] = NULL;
-    return true;
-}
-
 void viewer_player_close(viewer_player *player) {
     render_world_frame_destroy(player->picture);
     skein_world_destroy(player->world);
     io_scene_free(player->scene);
     viewer_history_release(&player->history);
     free(player->pins);
-    free_sets(player);
+    viewer_changes_free(&player->changes);
     memset(player, 0, sizeof *player);
 }
 
@@ -182,21 +156,47 @@ bool viewer_player_open(viewer_player *player, const char *path, const char *con
                         viewer_reporter reporter) {
     viewer_player next = {.reporter = reporter};
     snprintf(next.path, sizeof next.path, "%s", path);
-    for (; sets && *sets; sets++)
-        if (!add_set(&next, *sets)) reporter.say(reporter.user, SKEIN_LOG_WARNING, "too many values were set");
-    return take_over(player, &next, reading);
+    bool good = true;
+    for (; sets && *sets; sets++) good &= viewer_changes_add(&next.changes, *sets, NULL, NULL);
+    next.changes.given = next.changes.count;
+    if (good) return take_over(player, &next, reading);
+    viewer_changes_free(&next.changes);
+    reporter.say(reporter.user, SKEIN_LOG_WARNING, "out of memory");
+    return false;
 }
 
-bool viewer_player_reopen(viewer_player *player, const char *set, const viewer_reading *reading) {
+/* The places, velocities, pins and clock of another world, if it has as many particles. */
+static void go_on_from(viewer_player *player, viewer_history *state) {
+    if (!viewer_history_restore(state, player->world, state->last)) return;
+    player->frame = state->last;
+    viewer_history_begin(&player->history, player->world);
+    viewer_history_keep(&player->history, player->world, player->frame);
+}
+
+bool viewer_player_reopen(viewer_player *player, viewer_changes *changes, bool stays, const viewer_reading *reading) {
     viewer_player next = {.reporter = player->reporter};
+    viewer_history state = {0};
     memcpy(next.path, player->path, sizeof next.path);
-    bool good = true;
-    for (size_t s = 0; s < player->set_count && good; s++) good = add_set(&next, player->sets[s]);
-    if (good && set) good = add_set(&next, set);
-    if (good) return take_over(player, &next, reading);
-    free_sets(&next);
-    player->reporter.say(player->reporter.user, SKEIN_LOG_WARNING, "too many values were set");
-    return false;
+    bool good = changes || viewer_changes_copy(&next.changes, &player->changes);
+    if (changes) next.changes = *changes, *changes = (viewer_changes){NULL, 0, 0, 0, 0};
+    if (!good) player->reporter.say(player->reporter.user, SKEIN_LOG_WARNING, "out of memory");
+    if (good && stays && viewer_history_begin(&state, player->world))
+        viewer_history_keep(&state, player->world, player->frame);
+    good = good && take_over(player, &next, reading);
+    if (good && stays && state.state) go_on_from(player, &state);
+    viewer_history_release(&state);
+    return good;
+}
+
+skein_status viewer_player_write(const viewer_player *player, const char *path, const viewer_reading *reading,
+                                 skein_error *error) {
+    viewer_reporter reporter = player->reporter;
+    io_faults faults = {report_fault, &reporter, 0};
+    io_scene *scene = read_scene(player, reading, &faults);
+    *error = (skein_error){SKEIN_ERROR_FILE, "", "the scene's file cannot be read any more"};
+    skein_status status = scene ? io_scene_write(scene, path, error) : error->status;
+    io_scene_free(scene);
+    return status;
 }
 
 /* ---- Playing ---- */

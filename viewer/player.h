@@ -9,9 +9,10 @@
 
 #include "io/scene.h"
 #include "render/world_frame.h"
+#include "viewer/changes.h"
 #include "viewer/history.h"
 
-enum { PLAYER_PATH = 1024, PLAYER_SETS = 64 };
+enum { PLAYER_PATH = 1024 };
 
 /* Where messages go. */
 typedef struct viewer_reporter {
@@ -21,8 +22,7 @@ typedef struct viewer_reporter {
 
 typedef struct viewer_player {
     char path[PLAYER_PATH];
-    char *sets[PLAYER_SETS + 1]; /* "path=value", NULL-terminated */
-    size_t set_count;
+    viewer_changes changes; /* on top of the file: what was given, then what was done */
     io_scene *scene;
     io_scene_settings settings;
     skein_world *world;
@@ -47,8 +47,12 @@ typedef struct viewer_reading {
 /* Opens a scene, or a mesh as a cloth. `sets` as for io_scene_read, copied. Faults are reported; false after one. */
 bool viewer_player_open(viewer_player *player, const char *path, const char *const *sets, const viewer_reading *reading,
                         viewer_reporter reporter);
-/* The same scene anew from its file, with one more "path=value" (or NULL) on top. */
-bool viewer_player_reopen(viewer_player *player, const char *set, const viewer_reading *reading);
+/* The same scene anew from its file, with these changes on top, which it takes over (or NULL: its own). With `stays` it
+ * goes on where it stood, if it has as many particles as before. */
+bool viewer_player_reopen(viewer_player *player, viewer_changes *changes, bool stays, const viewer_reading *reading);
+/* Writes the scene with all changes that are done, as a file that opens to the same. */
+skein_status viewer_player_write(const viewer_player *player, const char *path, const viewer_reading *reading,
+                                 skein_error *error);
 void viewer_player_close(viewer_player *player); /* one that never was open is allowed */
 
 /* One step that is measured row by row: up to `most` passes go to `passes`. Else as viewer_player_step(). */

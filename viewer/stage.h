@@ -92,19 +92,28 @@ void viewer_note(viewer_stage *stage, const char *format, ...) __attribute__((fo
 void viewer_tell_state(viewer_stage *stage);
 
 void viewer_stage_open(viewer_stage *stage, const char *path, const char *const *sets);
-void viewer_stage_reopen(viewer_stage *stage, const char *set); /* from its file; `set` as for the player */
+/* From its file, with these changes on top; as for the player. */
+bool viewer_stage_reopen(viewer_stage *stage, viewer_changes *changes, bool stays);
+void viewer_stage_reload(viewer_stage *stage); /* its file has changed; what was changed here stays on top */
+viewer_reading viewer_stage_reading(const viewer_stage *stage);
 void viewer_stage_compare(viewer_stage *stage, const char *set);
 void viewer_stage_pause(viewer_stage *stage, bool paused);
 void viewer_stage_reset(viewer_stage *stage);
 void viewer_stage_step(viewer_stage *stage);                  /* one frame */
 void viewer_stage_go_to(viewer_stage *stage, uint64_t frame); /* of the history */
-void viewer_stage_method(viewer_stage *stage, size_t side, const char *kind);
-void viewer_stage_set(viewer_stage *stage, const viewer_request *request);
 void viewer_stage_answer(viewer_stage *stage, const viewer_request *request);
 bool viewer_stage_by_key(const viewer_stage *stage); /* the scene advances by keys */
 void viewer_stage_solve(viewer_stage *stage);        /* one solve of such a scene */
 /* The part of the window that a side has: x, and width. */
 int viewer_side_width(const viewer_stage *stage, size_t side, int *x);
+
+/* stage_change.c: what the user changes; each is kept, and can be undone */
+void viewer_stage_method(viewer_stage *stage, size_t side, const char *kind);
+void viewer_stage_set(viewer_stage *stage, const viewer_request *request);
+void viewer_stage_add_or_remove(viewer_stage *stage, const viewer_request *request);
+void viewer_stage_undo(viewer_stage *stage);
+void viewer_stage_redo(viewer_stage *stage);
+void viewer_stage_revert(viewer_stage *stage); /* back to the file */
 
 /* stage_picture.c */
 bool viewer_pictures_open(viewer_stage *stage, skein_error *error);
@@ -117,6 +126,7 @@ bool viewer_picture_read(viewer_stage *stage, render_image *image);
 /* stage_files.c */
 void viewer_save_picture(viewer_stage *stage);
 void viewer_save_mesh(viewer_stage *stage);
+void viewer_save_scene(viewer_stage *stage);
 void viewer_film_toggle(viewer_stage *stage);
 void viewer_film_frame(viewer_stage *stage);
 void viewer_watch(viewer_stage *stage, bool only_note);

@@ -183,20 +183,9 @@ static void focus(viewer_stage *stage, bool has_it) {
 
 /* ---- All requests ---- */
 
-static void add_or_remove(viewer_stage *stage, const viewer_request *r) {
-    for (size_t s = 0; s < stage->side_count; s++) {
-        skein_world *world = stage->sides[s].world;
-        skein_status status = SKEIN_OK;
-        if (r->kind == VIEWER_REMOVE) status = skein_remove(world, skein_object_at(world, r->category, r->index));
-        else if (r->category == SKEIN_FORCE) status = skein_force_add(world, r->text, NULL, NULL);
-        else status = skein_collider_add(world, r->text, NULL, NULL);
-        if (status) viewer_say(stage, SKEIN_LOG_WARNING, "%s", skein_world_error(world)->message);
-    }
-    viewer_event(stage->events, "%s %s", r->kind == VIEWER_ADD ? "added" : "removed", r->text);
-    stage->facts = stage->dirty = true;
-}
-
 static void answer_key(viewer_stage *stage, const viewer_request *r) {
+    // keys may be faster than the first picture, which places the camera that they move
+    if (stage->side_count && !stage->camera.placed) viewer_draw(stage);
     bool meant = viewer_key_down(stage, r->code, r->mods);
     viewer_event(stage->events, "key %d %s", r->code, meant ? "done" : "without a meaning");
     viewer_tell_state(stage);
@@ -223,7 +212,7 @@ void viewer_stage_answer(viewer_stage *stage, const viewer_request *r) {
     case VIEWER_SET: viewer_stage_set(stage, r); break;
     case VIEWER_METHOD: viewer_stage_method(stage, (size_t)r->side, r->text); break;
     case VIEWER_ADD:
-    case VIEWER_REMOVE: add_or_remove(stage, r); break;
+    case VIEWER_REMOVE: viewer_stage_add_or_remove(stage, r); break;
     case VIEWER_OPEN: viewer_stage_open(stage, r->text, NULL); break;
     case VIEWER_SCRUB:
         viewer_stage_pause(stage, true);

@@ -75,6 +75,20 @@ void viewer_save_mesh(viewer_stage *stage) {
     if (!faces) viewer_note(stage, "there is no mesh to save: no body has faces");
 }
 
+/* ---- The scene ---- */
+
+/* As tuned: it opens to what this one would be if it were put back to its start. */
+void viewer_save_scene(viewer_stage *stage) {
+    const viewer_player *player = &stage->sides[0];
+    viewer_reading reading = viewer_stage_reading(stage);
+    skein_error error = {SKEIN_OK, "", ""};
+    char path[64], stem[48];
+    viewer_free_name(stem_of(stage, stem), ".json", path, sizeof path);
+    if (viewer_player_write(player, path, &reading, &error))
+        viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", path, error.message);
+    else viewer_note(stage, "saved %s: the scene as tuned", path);
+}
+
 /* ---- Films ---- */
 
 static void begin_film(viewer_stage *stage) {
@@ -152,6 +166,6 @@ void viewer_watch(viewer_stage *stage, bool only_note) {
     stage->stamp.nanoseconds = info.st_mtim.tv_nsec;
     stage->stamp.size = info.st_size;
     if (same || only_note) return;
-    if (stage->side_count) viewer_stage_reopen(stage, NULL);
+    if (stage->side_count) viewer_stage_reload(stage);
     else viewer_stage_open(stage, path, stage->options->sets);
 }

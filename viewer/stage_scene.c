@@ -1,4 +1,4 @@
-/* What happens to the stage's scenes: opening, going back, changing them, comparing two. */
+/* What happens to the stage's scenes: opening, going back, comparing two. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@ static void player_says(void *user, skein_log_level level, const char *text) {
     viewer_say(user, level, "%s", text);
 }
 
-static viewer_reading reading_of(const viewer_stage *stage) {
+viewer_reading viewer_stage_reading(const viewer_stage *stage) {
     return (viewer_reading){stage->options->exporters, stage->options->threads, stage->options->prepare};
 }
 
@@ -44,7 +44,7 @@ static void note_opened(viewer_stage *stage, const char *how) {
 }
 
 void viewer_stage_open(viewer_stage *stage, const char *path, const char *const *sets) {
-    viewer_reading reading = reading_of(stage);
+    viewer_reading reading = viewer_stage_reading(stage);
     if (stage->film) viewer_film_toggle(stage);
     if (!viewer_player_open(&stage->sides[0], path, sets, &reading, (viewer_reporter){player_says, stage})) {
         viewer_event(stage->events, "cannot open %s", path);
@@ -66,16 +66,15 @@ void viewer_stage_open(viewer_stage *stage, const char *path, const char *const 
     note_opened(stage, "opened");
 }
 
-void viewer_stage_reopen(viewer_stage *stage, const char *set) {
-    viewer_reading reading = reading_of(stage);
+bool viewer_stage_reopen(viewer_stage *stage, viewer_changes *changes, bool stays) {
+    viewer_reading reading = viewer_stage_reading(stage);
     if (stage->film) viewer_film_toggle(stage);
-    if (!viewer_player_reopen(&stage->sides[0], set, &reading)) {
+    bool good = viewer_player_reopen(&stage->sides[0], changes, stays, &reading);
+    if (!good) {
         viewer_note(stage, "the scene has a fault (see the log): the last good one goes on");
         stage->panel[VIEWER_PANEL_LOG] = true;
         viewer_event(stage->events, "kept path=%s", stage->sides[0].path);
     } else {
-        if (set) viewer_note(stage, "built anew with %s", set);
-        else viewer_note(stage, "read again");
         note_opened(stage, "reopened");
         if (stage->side_count > 1) {
             char compare[VIEWER_TEXT];
@@ -85,24 +84,35 @@ void viewer_stage_reopen(viewer_stage *stage, const char *set) {
     }
     viewer_watch(stage, true);
     restart_clock(stage);
+    return good;
+}
+
+void viewer_stage_reload(viewer_stage *stage) {
+    const viewer_changes *changes = &stage->sides[0].changes;
+    if (!viewer_stage_reopen(stage, NULL, false)) return;
+    if (changes->done > changes->given)
+        viewer_note(stage, "read again, with your changes on top (%zu)", changes->done - changes->given);
+    else viewer_note(stage, "read again");
 }
 
 /* ---- Two side by side ---- */
 
 void viewer_stage_compare(viewer_stage *stage, const char *set) {
-    viewer_reading reading = reading_of(stage);
+    viewer_reading reading = viewer_stage_reading(stage);
     char text[VIEWER_TEXT];
     snprintf(text, sizeof text, "%s", set); // it may be the stage's own
     if (!stage->side_count) return;
     end_compare(stage);
     if (text[0]) {
-        char *sets[PLAYER_SETS + 2];
-        size_t count = 0;
-        for (; count < stage->sides[0].set_count; count++) sets[count] = stage->sides[0].sets[count];
-        sets[count++] = text;
-        sets[count] = NULL;
-        if (viewer_player_open(&stage->sides[1], stage->sides[0].path, (const char *const *)sets, &reading,
-                               (viewer_reporter){player_says, stage})) {
+        viewer_changes changes = {NULL, 0, 0, 0, 0};
+        bool good = viewer_changes_copy(&changes, &stage->sides[0].changes) &&
+                    viewer_changes_add(&changes, text, NULL, NULL);
+        const char **sets = good ? viewer_changes_sets(&changes) : NULL;
+        good = sets && viewer_player_open(&stage->sides[1], stage->sides[0].path, sets, &reading,
+                                          (viewer_reporter){player_says, stage});
+        free(sets);
+        viewer_changes_free(&changes);
+        if (good) {
             stage->side_count = 2;
             snprintf(stage->compare, sizeof stage->compare, "%s", text);
             stage->sides[1].view = stage->sides[0].view;
@@ -188,90 +198,4 @@ void viewer_stage_solve(viewer_stage *stage) {
     viewer_stage_step(stage);
     if (skein_springs_copy(stage->sides[0].world, springs, MOST_PRINTED, &count)) return;
     for (size_t i = 0; i < count && i < MOST_PRINTED; i++) print_derivatives(stage, &springs[i]);
-}
-
-/* ---- Changing ---- */
-
-/* The settings that two kinds of method share stay. A method that cannot run the rules is refused. */
-void viewer_stage_method(viewer_stage *stage, size_t side, const char *name) {
-    enum { MOST = 32 };
-    skein_world *world = side < stage->side_count ? stage->sides[side].world : NULL;
-    const skein_kind *kind = skein_kind_find(SKEIN_METHOD, name, NULL);
-    if (!world || !kind) return;
-    skein_handle method = skein_object_at(world, SKEIN_METHOD, 0);
-    const skein_kind *old = skein_object_kind(world, method);
-    skein_setting all[MOST + 1] = {{NULL, {0, {0, 0, 0}, NULL}}}, shared[MOST + 1] = {{NULL, {0, {0, 0, 0}, NULL}}};
-    size_t all_count = 0, shared_count = 0;
-    for (size_t i = 0; i < old->field_count && i < MOST; i++) {
-        skein_value value;
-        const skein_field *field = &old->fields[i], *same = skein_field_find(kind, field->name, NULL);
-        if (field->type == SKEIN_FIELD_TEXT || skein_get(world, method, field->name, &value)) continue;
-        all[all_count++] = (skein_setting){field->name, value};
-        if (same && same->type == field->type && !skein_field_check(same, &value, NULL))
-            shared[shared_count++] = (skein_setting){field->name, value};
-    }
-    if (skein_method_set(world, kind->name, shared) || skein_world_explain(world, stage->sides[side].dt, NULL, NULL)) {
-        viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", kind->name, skein_world_error(world)->message);
-        skein_method_set(world, old->name, all);
-    } else {
-        viewer_note(stage, "method %s", kind->name);
-    }
-    stage->facts = stage->dirty = true;
-}
-
-/* "bodies.0.grid=[64, 64]": for what has to be built anew. */
-static void rebuild(viewer_stage *stage, const viewer_request *r, const skein_value *value) {
-    static const char *const lists[SKEIN_CATEGORY_COUNT] = {[SKEIN_BODY] = "bodies",
-                                                            [SKEIN_CONSTRAINT] = "constraints",
-                                                            [SKEIN_FORCE] = "forces",
-                                                            [SKEIN_COLLIDER] = "colliders"};
-    char text[VIEWER_TEXT], number[600];
-    skein_value_text(r->field, value, number, sizeof number);
-    const char *word = value->count == 0 && value->text ? value->text : number;
-    if (r->category == SKEIN_SCENE) snprintf(text, sizeof text, "%s=%s", r->field->name, word);
-    else snprintf(text, sizeof text, "%s.%zu.%s=%s", lists[r->category], r->index, r->field->name, word);
-    viewer_stage_reopen(stage, text);
-}
-
-/* The view's fields lie in a plain struct, at the table's offsets. */
-static void set_view(viewer_stage *stage, const skein_field *field, const skein_value *value) {
-    for (size_t s = 0; s < stage->side_count; s++) {
-        char *at = (char *)&stage->sides[s].view + field->offset;
-        switch (field->type) {
-        case SKEIN_FIELD_BOOL: *(bool *)at = value->number[0] != 0; break;
-        case SKEIN_FIELD_INT:
-        case SKEIN_FIELD_CHOICE: *(int32_t *)(void *)at = (int32_t)value->number[0]; break;
-        case SKEIN_FIELD_REAL: *(double *)(void *)at = value->number[0]; break;
-        case SKEIN_FIELD_VEC3: memcpy(at, value->number, 3 * sizeof(double)); break;
-        default: break; // texts are the scene's
-        }
-    }
-    if (!strncmp(field->name, "camera.", 7)) stage->camera.placed = false;
-}
-
-void viewer_stage_set(viewer_stage *stage, const viewer_request *r) {
-    if (!stage->side_count) return;
-    skein_value value = r->value;
-    skein_error error = {SKEIN_OK, "", ""};
-    if (value.count == 0) value.text = r->text;
-    if (skein_field_check(r->field, &value, &error)) {
-        viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", r->field->name, error.message);
-        return;
-    }
-    size_t side = (size_t)r->side < stage->side_count ? (size_t)r->side : 0;
-    skein_world *world = stage->sides[side].world;
-    if (r->category == SKEIN_VIEW) {
-        set_view(stage, r->field, &value);
-    } else if (r->category == SKEIN_SCENE) {
-        rebuild(stage, r, &value);
-    } else {
-        skein_handle handle = skein_object_at(world, r->category, r->index);
-        if (!skein_field_is_live(world, handle, r->field->name)) rebuild(stage, r, &value);
-        else if (skein_set(world, handle, r->field->name, value))
-            viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", r->field->name, skein_world_error(world)->message);
-    }
-    char shown[200];
-    skein_value_text(r->field, &value, shown, sizeof shown);
-    viewer_event(stage->events, "set %s %zu %s=%s", skein_category_text(r->category), r->index, r->field->name, shown);
-    stage->facts = stage->dirty = true;
 }

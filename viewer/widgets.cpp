@@ -51,6 +51,10 @@ bool widgets_open(struct GLFWwindow *window, double scale) {
     style.IndentSpacing = 10;
     style.ScrollbarSize = 11;
     style.Colors[ImGuiCol_WindowBg].w = 0.90f;
+    // a slider's knob lies over its number: dark, so that the number is read through it
+    style.Colors[ImGuiCol_SliderGrab] = ImVec4(0.24f, 0.42f, 0.66f, 0.75f);
+    style.Colors[ImGuiCol_SliderGrabActive] = ImVec4(0.26f, 0.50f, 0.80f, 0.85f);
+    style.GrabMinSize = 7;
     style.ScaleAllSizes(static_cast<float>(scale));
     return ImGui_ImplGlfw_InitForOpenGL(reinterpret_cast<GLFWwindow *>(window), true) &&
            ImGui_ImplOpenGL3_Init("#version 450 core");
@@ -188,6 +192,10 @@ bool widgets_numbers(const char *title, double *numbers, int count, double least
 
 bool widgets_released(void) {
     return ImGui::IsItemDeactivatedAfterEdit();
+}
+
+bool widgets_typing(void) {
+    return ImGui::IsItemActive() && ImGui::GetIO().WantTextInput;
 }
 
 bool widgets_input(const char *title, char *text, size_t size) {

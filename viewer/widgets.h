@@ -49,6 +49,8 @@ bool widgets_numbers(const char *title, double *numbers, int count, double least
                      bool whole, const char *format);
 /* The last control was changed and has now been let go. */
 bool widgets_released(void);
+/* Whether the last control's number is being typed: it is not what is meant before Enter. */
+bool widgets_typing(void);
 /* True once it is typed and Enter pressed. */
 bool widgets_input(const char *title, char *text, size_t size);
 /* The same in several lines: Enter says that it is done, Ctrl and Enter makes a new line. */

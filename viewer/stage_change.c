@@ -1,0 +1,243 @@
+/* What the user changes in the stage's scenes: methods, fields, rules. Each change is done at once where it can be, else
+ * by building the scene anew with it, and kept (changes.h), so that it can be undone, done again and saved. */
+#include <string.h>
+#include <stdlib.h>
+
+#include "viewer/stage.h"
+
+/* ---- Keeping changes ---- */
+
+/* Objects' lists in a scene. */
+static const char *list_of(skein_category category) {
+    for (size_t i = 0; io_scene_section_at(i); i++)
+        if (io_scene_section_at(i)->category == category) return io_scene_section_at(i)->name;
+    return "";
+}
+
+/* "bodies.0.grid=[64, 64]". NULL when there is no memory; free it. */
+static char *set_of(skein_category category, size_t index, const skein_field *field, const skein_value *value) {
+    char *json = io_value_json(field, value), *set = NULL;
+    size_t size = json ? strlen(json) + 256 : 0;
+    if (json) set = malloc(size);
+    if (set && category == SKEIN_SCENE) snprintf(set, size, "%s=%s", field->name, json);
+    else if (set && (category == SKEIN_METHOD || category == SKEIN_VIEW))
+        snprintf(set, size, "%s.%s=%s", list_of(category), field->name, json);
+    else if (set) snprintf(set, size, "%s.%zu.%s=%s", list_of(category), index, field->name, json);
+    free(json);
+    return set;
+}
+
+/* Keeps what was done; `before` and `after` NULL where it takes a new scene to undo it. */
+static void keep(viewer_stage *stage, size_t side, const char *set, const viewer_value *before,
+                 const viewer_value *after) {
+    if (!set || !viewer_changes_add(&stage->sides[side].changes, set, before, after))
+        viewer_say(stage, SKEIN_LOG_WARNING, "out of memory: this change cannot be undone or saved");
+}
+
+/* ---- Methods ---- */
+
+/* The settings that two kinds of method share stay. A method that cannot run the rules is refused. */
+void viewer_stage_method(viewer_stage *stage, size_t side, const char *name) {
+    enum { MOST = 32 };
+    skein_world *world = side < stage->side_count ? stage->sides[side].world : NULL;
+    const skein_kind *kind = skein_kind_find(SKEIN_METHOD, name, NULL);
+    if (!world || !kind) return;
+    skein_handle method = skein_object_at(world, SKEIN_METHOD, 0);
+    const skein_kind *old = skein_object_kind(world, method);
+    skein_setting all[MOST + 1] = {{NULL, {0, {0, 0, 0}, NULL}}}, shared[MOST + 1] = {{NULL, {0, {0, 0, 0}, NULL}}};
+    size_t all_count = 0, shared_count = 0;
+    if (kind == old) return;
+    for (size_t i = 0; i < old->field_count && i < MOST; i++) {
+        skein_value value;
+        const skein_field *field = &old->fields[i], *same = skein_field_find(kind, field->name, NULL);
+        if (field->type == SKEIN_FIELD_TEXT || skein_get(world, method, field->name, &value)) continue;
+        all[all_count++] = (skein_setting){field->name, value};
+        if (same && same->type == field->type && !skein_field_check(same, &value, NULL))
+            shared[shared_count++] = (skein_setting){field->name, value};
+    }
+    if (skein_method_set(world, kind->name, shared) || skein_world_explain(world, stage->sides[side].dt, NULL, NULL)) {
+        viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", kind->name, skein_world_error(world)->message);
+        skein_method_set(world, old->name, all);
+    } else {
+        char set[64];
+        snprintf(set, sizeof set, "method.type=%.40s", kind->name);
+        keep(stage, side, set, NULL, NULL);
+        viewer_note(stage, "method %s", kind->name);
+    }
+    stage->facts = stage->dirty = true;
+}
+
+/* ---- Fields ---- */
+
+/* The view's fields lie in a plain struct, at the table's offsets. */
+static skein_value get_view(const viewer_player *player, const skein_field *field) {
+    const char *at = (const char *)&player->view + field->offset;
+    skein_value value = {1, {0, 0, 0}, NULL};
+    switch (field->type) {
+    case SKEIN_FIELD_BOOL: value.number[0] = *(const bool *)at; break;
+    case SKEIN_FIELD_INT:
+    case SKEIN_FIELD_CHOICE: value.number[0] = *(const int32_t *)(const void *)at; break;
+    case SKEIN_FIELD_REAL: value.number[0] = *(const double *)(const void *)at; break;
+    case SKEIN_FIELD_VEC3:
+        value.count = 3;
+        memcpy(value.number, at, 3 * sizeof(double));
+        break;
+    default: break;
+    }
+    return value;
+}
+
+static void set_view(viewer_stage *stage, const skein_field *field, const skein_value *value) {
+    for (size_t s = 0; s < stage->side_count; s++) {
+        char *at = (char *)&stage->sides[s].view + field->offset;
+        switch (field->type) {
+        case SKEIN_FIELD_BOOL: *(bool *)at = value->number[0] != 0; break;
+        case SKEIN_FIELD_INT:
+        case SKEIN_FIELD_CHOICE: *(int32_t *)(void *)at = (int32_t)value->number[0]; break;
+        case SKEIN_FIELD_REAL: *(double *)(void *)at = value->number[0]; break;
+        case SKEIN_FIELD_VEC3: memcpy(at, value->number, 3 * sizeof(double)); break;
+        default: break; // texts are the scene's
+        }
+    }
+    if (!strncmp(field->name, "camera.", 7)) stage->camera.placed = false;
+}
+
+/* Whether a field changes at once; else the scene is built anew with it. */
+static bool is_live(const viewer_stage *stage, size_t side, const viewer_value *at) {
+    const skein_world *world = stage->sides[side].world;
+    if (at->category == SKEIN_VIEW) return at->field->type != SKEIN_FIELD_TEXT;
+    return at->category != SKEIN_SCENE &&
+           skein_field_is_live(world, skein_object_at(world, at->category, at->index), at->field->name);
+}
+
+/* Sets a live field; false after a printed fault. */
+static bool set_live(viewer_stage *stage, size_t side, const viewer_value *to) {
+    skein_world *world = stage->sides[side].world;
+    stage->facts = stage->dirty = true;
+    if (to->category == SKEIN_VIEW) {
+        set_view(stage, to->field, &to->value);
+        return true;
+    }
+    if (!skein_set(world, skein_object_at(world, to->category, to->index), to->field->name, to->value)) return true;
+    viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", to->field->name, skein_world_error(world)->message);
+    return false;
+}
+
+static void change_live(viewer_stage *stage, size_t side, const viewer_value *to, const char *set) {
+    const viewer_player *player = &stage->sides[side];
+    viewer_value before = *to;
+    if (to->category == SKEIN_VIEW) before.value = get_view(player, to->field);
+    else if (skein_get(player->world, skein_object_at(player->world, to->category, to->index), to->field->name,
+                       &before.value))
+        return;
+    // the world's own text goes with the change
+    char *text = before.value.text ? strdup(before.value.text) : NULL;
+    before.value.text = text;
+    if (set_live(stage, side, to)) keep(stage, side, set, &before, to);
+    free(text);
+}
+
+static void change_by_building(viewer_stage *stage, const char *set) {
+    viewer_changes changes;
+    if (!viewer_changes_copy(&changes, &stage->sides[0].changes)) return;
+    bool good = viewer_changes_add(&changes, set, NULL, NULL) && viewer_stage_reopen(stage, &changes, false);
+    viewer_changes_free(&changes);
+    if (good) viewer_note(stage, "built anew with %s", set);
+}
+
+void viewer_stage_set(viewer_stage *stage, const viewer_request *r) {
+    if (!stage->side_count) return;
+    viewer_value to = {r->category, r->index, r->field, r->value};
+    skein_error error = {SKEIN_OK, "", ""};
+    if (to.value.count == 0) to.value.text = r->text;
+    if (skein_field_check(r->field, &to.value, &error)) {
+        viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", r->field->name, error.message);
+        return;
+    }
+    size_t side = (size_t)r->side < stage->side_count ? (size_t)r->side : 0;
+    char *set = set_of(r->category, r->index, r->field, &to.value), shown[200];
+    if (is_live(stage, side, &to)) change_live(stage, side, &to, set);
+    else if (set) change_by_building(stage, set);
+    free(set);
+    skein_value_text(r->field, &to.value, shown, sizeof shown);
+    viewer_event(stage->events, "set %s %zu %s=%s", skein_category_text(r->category), r->index, r->field->name, shown);
+    stage->facts = stage->dirty = true;
+}
+
+/* ---- Rules ---- */
+
+void viewer_stage_add_or_remove(viewer_stage *stage, const viewer_request *r) {
+    bool adds = r->kind == VIEWER_ADD;
+    for (size_t s = 0; s < stage->side_count; s++) {
+        skein_world *world = stage->sides[s].world;
+        size_t place = adds ? skein_object_count(world, r->category) : r->index;
+        skein_status status = SKEIN_OK;
+        if (!adds) status = skein_remove(world, skein_object_at(world, r->category, r->index));
+        else if (r->category == SKEIN_FORCE) status = skein_force_add(world, r->text, NULL, NULL);
+        else status = skein_collider_add(world, r->text, NULL, NULL);
+        char set[200];
+        if (adds) snprintf(set, sizeof set, "%s.%zu={\"type\": \"%.60s\"}", list_of(r->category), place, r->text);
+        else snprintf(set, sizeof set, "%s.%zu=null", list_of(r->category), place);
+        if (status) viewer_say(stage, SKEIN_LOG_WARNING, "%s", skein_world_error(world)->message);
+        else keep(stage, s, set, NULL, NULL);
+    }
+    viewer_event(stage->events, "%s %s", adds ? "added" : "removed", r->text);
+    stage->facts = stage->dirty = true;
+}
+
+/* ---- Back and forth ---- */
+
+/* Goes to another number of changes, by a scene built anew that goes on where this one stands. */
+static void go_to_change(viewer_stage *stage, size_t done, const char *words) {
+    viewer_changes changes;
+    if (!viewer_changes_copy(&changes, &stage->sides[0].changes)) return;
+    changes.done = done;
+    if (viewer_stage_reopen(stage, &changes, true)) viewer_note(stage, "%s", words);
+    viewer_changes_free(&changes);
+}
+
+/* A change as a note says it. */
+static void say_change(char *words, size_t size, const char *what, const viewer_change *change) {
+    snprintf(words, size, "%s: %.180s", what, change->set);
+}
+
+void viewer_stage_undo(viewer_stage *stage) {
+    viewer_changes *changes = &stage->sides[0].changes;
+    char words[220];
+    if (!stage->side_count || changes->done == changes->given) {
+        viewer_note(stage, "there is nothing to undo");
+        return;
+    }
+    const viewer_change *last = &changes->data[changes->done - 1];
+    say_change(words, sizeof words, "undone", last);
+    if (last->before.field) {
+        if (set_live(stage, 0, &last->before)) changes->done--, viewer_note(stage, "%s", words);
+    } else {
+        go_to_change(stage, changes->done - 1, words);
+    }
+    viewer_tell_state(stage);
+}
+
+void viewer_stage_redo(viewer_stage *stage) {
+    viewer_changes *changes = &stage->sides[0].changes;
+    char words[220];
+    if (!stage->side_count || changes->done == changes->count) {
+        viewer_note(stage, "there is nothing to do again");
+        return;
+    }
+    const viewer_change *next = &changes->data[changes->done];
+    say_change(words, sizeof words, "done again", next);
+    if (next->after.field) {
+        if (set_live(stage, 0, &next->after)) changes->done++, viewer_note(stage, "%s", words);
+    } else {
+        go_to_change(stage, changes->done + 1, words);
+    }
+    viewer_tell_state(stage);
+}
+
+void viewer_stage_revert(viewer_stage *stage) {
+    const viewer_changes *changes = &stage->sides[0].changes;
+    if (!stage->side_count || changes->done == changes->given) viewer_note(stage, "nothing is changed");
+    else go_to_change(stage, changes->given, "as the file has it; redo brings the changes back");
+    viewer_tell_state(stage);
+}
