@@ -161,8 +161,8 @@ static void add_sample(viewer_plots *plots, const skein_statistics *s, double st
         [VIEWER_DRAW_MS] = draw_ms,
     };
     for (int q = 0; q < VIEWER_QUANTITY_COUNT; q++) {
-        double value = isfinite(values[q]) ? values[q] : 0;
-        plots->value[q][plots->next] = (float)value;
+        bool finite = isfinite(values[q]) && fabs(values[q]) < 1e30;
+        plots->value[q][plots->next] = finite ? (float)values[q] : NAN; // a gap
     }
     plots->next = (plots->next + 1) % VIEWER_SAMPLES;
     if (plots->count < VIEWER_SAMPLES) plots->count++;

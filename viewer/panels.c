@@ -247,13 +247,20 @@ static void show_log(viewer_panels *panels, const viewer_shown *shown, double wi
 }
 
 static void show_message(const viewer_shown *shown, double left, double width, double height) {
-    char text[300];
+    char text[sizeof shown->message + 16];
     const char *records = shown->recording ? "recording   " : "";
     snprintf(text, sizeof text, "%s%s", records, shown->message);
-    if (!text[0]) return;
-    if (widgets_panel("message", WIDGETS_NOTE, left + 0.02 * width, height - 1.5 * widgets_line(), 0, 0, NULL))
-        widgets_text(text);
-    widgets_panel_end();
+    if (text[0]) widgets_note("message", text, left + 4, height - 4, true, width - left - 8);
+}
+
+/* Which world is which, over each of two. */
+static void show_labels(const viewer_shown *shown, double left, double width) {
+    double room = (width - left) / (double)shown->side_count;
+    for (size_t s = 0; s < shown->side_count && shown->side_count > 1; s++) {
+        char id[32];
+        snprintf(id, sizeof id, "label %zu", s);
+        widgets_note(id, shown->sides[s].name, left + (double)s * room + 8, 6, false, room - 16);
+    }
 }
 
 int viewer_side_panel_width(int width) {
@@ -270,5 +277,6 @@ void viewer_panels_show(viewer_panels *panels, int width, int height) {
     if (shown->panel[VIEWER_PANEL_GALLERY]) show_gallery(panels, shown, w, h);
     if (shown->panel[VIEWER_PANEL_KEYS]) show_keys(panels, w, h);
     // a picture without panels is a picture: no note in it
+    if (shown->has_scene) show_labels(shown, has_side ? side : 0, w);
     if (has_side || shown->recording) show_message(shown, has_side ? side : 0, w, h);
 }

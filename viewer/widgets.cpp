@@ -5,10 +5,12 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
-#include <cfloat>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <vector>
 
 static double scale_of_all = 1;
 
@@ -102,13 +104,26 @@ bool widgets_panel(const char *title, widgets_frame frame, double x, double y, d
     if (frame == WIDGETS_FIXED)
         flags |= ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar |
                  ImGuiWindowFlags_NoBringToFrontOnFocus;
-    if (frame == WIDGETS_NOTE)
-        flags |= ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_AlwaysAutoResize |
-                 ImGuiWindowFlags_NoFocusOnAppearing;
     ImGui::SetNextWindowPos(ImVec2(static_cast<float>(x), static_cast<float>(y)), when);
-    if (frame != WIDGETS_NOTE)
-        ImGui::SetNextWindowSize(ImVec2(static_cast<float>(width), static_cast<float>(height)), when);
+    ImGui::SetNextWindowSize(ImVec2(static_cast<float>(width), static_cast<float>(height)), when);
     return ImGui::Begin(title, frame == WIDGETS_FREE ? open : nullptr, flags);
+}
+
+void widgets_note(const char *id, const char *text, double x, double y, bool above, double width) {
+    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(x), static_cast<float>(y)), ImGuiCond_Always,
+                            ImVec2(0, above ? 1.0f : 0.0f));
+    ImGuiWindowFlags flags = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs |
+                             ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
+                             ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing;
+    if (ImGui::Begin(id, nullptr, flags)) {
+        // as wide as the text, and at most as wide as there is room
+        float most = static_cast<float>(width) - 2 * ImGui::GetStyle().WindowPadding.x;
+        ImVec2 size = ImGui::CalcTextSize(text);
+        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + (size.x < most ? size.x + 1 : most));
+        ImGui::TextUnformatted(text);
+        ImGui::PopTextWrapPos();
+    }
+    ImGui::End();
 }
 
 void widgets_panel_end(void) {
@@ -238,31 +253,48 @@ void widgets_menu_end(void) {
 static const ImU32 colours[] = {IM_COL32(110, 190, 255, 255), IM_COL32(255, 170, 80, 255), IM_COL32(150, 220, 120, 255),
                                 IM_COL32(235, 235, 235, 255)};
 
-void widgets_plot(const char *title, const float *const *series, const char *const *names, int series_count,
-                  size_t first, size_t count, size_t room, double height) {
-    float least = FLT_MAX, most = -FLT_MAX;
+/* What an axis spans: all values, but for those far beyond most of them. What blows up leaves the picture at its edge,
+ * and what it is compared with stays to be seen. */
+static void find_range(const float *const *series, int series_count, size_t first, size_t count, size_t room,
+                       float *least, float *most) {
+    std::vector<float> values;
     for (int s = 0; s < series_count; s++)
         for (size_t i = 0; series[s] && i < count; i++) {
             float value = series[s][(first + i) % room];
-            least = value < least ? value : least;
-            most = value > most ? value : most;
+            if (std::isfinite(value)) values.push_back(value);
         }
-    if (least > most) least = most = 0;
-    if (most - least < 1e-6f) least -= 0.5f, most += 0.5f;
+    if (!values.empty()) {
+        std::sort(values.begin(), values.end());
+        float low = values[values.size() / 5], high = values[values.size() - 1 - values.size() / 5];
+        float reach = 10 * (high - low);
+        *least = values.front(), *most = values.back();
+        if (reach > 0 && *most > high + reach) *most = high + reach;
+        if (reach > 0 && *least < low - reach) *least = low - reach;
+    }
+    if (*most - *least < 1e-6f) *least -= 0.5f, *most += 0.5f;
+}
+
+void widgets_plot(const char *title, const float *const *series, const char *const *names, int series_count,
+                  size_t first, size_t count, size_t room, double height) {
+    float least = 0, most = 0;
+    find_range(series, series_count, first, count, room, &least, &most);
     ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, static_cast<float>(height));
     ImDrawList *list = ImGui::GetWindowDrawList();
     list->AddRectFilled(at, ImVec2(at.x + size.x, at.y + size.y), IM_COL32(20, 22, 26, 200), 3);
     float span = static_cast<float>(count > 60 ? count - 1 : 59); // a new plot does not start with one wide step
+    list->PushClipRect(at, ImVec2(at.x + size.x, at.y + size.y), true);
     for (int s = 0; s < series_count; s++) {
         if (!series[s] || count < 2) continue;
         for (size_t i = 0; i + 1 < count; i++) {
             float a = series[s][(first + i) % room], b = series[s][(first + i + 1) % room];
+            if (!std::isfinite(a) || !std::isfinite(b)) continue;
             float x = at.x + size.x * static_cast<float>(i) / span,
                   next = at.x + size.x * static_cast<float>(i + 1) / span;
             list->AddLine(ImVec2(x, at.y + size.y * (1 - (a - least) / (most - least))),
                           ImVec2(next, at.y + size.y * (1 - (b - least) / (most - least))), colours[s % 4], 1.5f);
         }
     }
+    list->PopClipRect();
     char range[64];
     std::snprintf(range, sizeof range, "%.4g", static_cast<double>(most));
     list->AddText(ImVec2(at.x + 3, at.y + 1), IM_COL32(200, 200, 200, 190), range);

@@ -24,10 +24,12 @@ bool widgets_want_keys(void); /* a text is being typed */
 double widgets_scale(void);
 double widgets_line(void); /* the height of a line with a control on it */
 
-typedef enum widgets_frame { WIDGETS_FIXED, WIDGETS_FREE, WIDGETS_NOTE } widgets_frame;
+typedef enum widgets_frame { WIDGETS_FIXED, WIDGETS_FREE } widgets_frame;
 /* A panel at a place (pixels); a free one may be moved and closed (`open` turns false). True where it is unfolded; in
  * any case end it. */
 bool widgets_panel(const char *title, widgets_frame frame, double x, double y, double width, double height, bool *open);
+/* Words over the picture, in lines of at most `width` pixels: from (x, y) on downwards, or `above` it. */
+void widgets_note(const char *id, const char *text, double x, double y, bool above, double width);
 void widgets_panel_end(void);
 bool widgets_group(const char *title, bool open); /* a heading that folds */
 bool widgets_tree(const char *title, bool open);  /* a smaller one, indented; end it if true */
