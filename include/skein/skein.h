@@ -539,6 +539,18 @@ typedef struct skein_pose {
     double rotation[9]; /* rows of a rotation matrix: the motion's, after a box's own */
 } skein_pose;
 skein_status skein_collider_pose(const skein_world *world, skein_handle collider, skein_pose *pose);
+/* A collider whose place was set since the last step (its centre, ends, rotation, normal or offset, by skein_set() or
+ * skein_set_path()) travels there through the next step, in a straight line and turning the shorter way round, evenly:
+ * friction and impacts see that velocity, and what is in its way is met in every substep. Set before each step, it
+ * moves along any path; when it is not set it rests, but for its `motion`. `motion` goes on from what is set: a centre
+ * is where it would be without it. Setting fields of `motion` alone is no way that is made: the collider is at once
+ * where they put it. Together they say how it goes on (`centre` where it stands now, `motion.velocity`, and
+ * `motion.start` now), and what they have not moved does not travel. Sizes and radii change at once.
+ *
+ * This call says that what has been set since the last step is no way, but where the collider stands from now on. So
+ * does a reset, and setting the time; a collider that is not enabled does not travel. Its work on particles counts
+ * against the dissipated energy. */
+skein_status skein_collider_teleport(skein_world *world, skein_handle collider);
 
 /* Two particles that a rule keeps at a distance: an edge or diagonal of a cloth, a `distance`. */
 typedef struct skein_spring {

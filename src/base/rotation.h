@@ -1,4 +1,4 @@
-/* Turns given in degrees, as fields give them: about x, then y, then z. */
+/* Turns: given in degrees, as fields give them, about x, then y, then z; and about an axis, by an angle. */
 #ifndef SK_BASE_ROTATION_H
 #define SK_BASE_ROTATION_H
 
@@ -6,5 +6,12 @@
 void sk_sincos_degrees(double degrees, double *sine, double *cosine);
 /* Rows of the matrix of the three turns. */
 void sk_rotation_of_degrees(const double degrees[3], double matrix[9]);
+/* Rows of the matrix of a turn by `angle` (radians) about a unit axis. */
+void sk_rotation_about(const double unit[3], double angle, double matrix[9]);
+/* The angle (0 to pi) and the unit axis of the turn that is left over when `from` is made up of `to` and that turn
+ * after it. Where the angle is 0 the axis is y. */
+double sk_rotation_from_to(const double from[9], const double to[9], double unit[3]);
+/* The same for the least turn that takes the unit direction `to` to `from`. */
+double sk_rotation_of_directions(const double from[3], const double to[3], double unit[3]);
 
 #endif

@@ -66,6 +66,13 @@ static void place(const void *data, double position[3]) {
     for (int k = 0; k < 3; k++) position[k] = 0.5 * (params->from[k] + params->to[k]);
 }
 
+static void axis(const void *data, double unit[3]) {
+    const capsule_params *params = data;
+    double d[3], square = 0;
+    for (int k = 0; k < 3; k++) d[k] = params->to[k] - params->from[k], square += d[k] * d[k];
+    for (int k = 0; k < 3; k++) unit[k] = square > 0 ? d[k] / __builtin_sqrt(square) : k == 1;
+}
+
 static void pack(const void *data, float (*block)[4]) {
     const capsule_params *params = data;
     for (int k = 0; k < 3; k++) block[0][k] = (float)(0.5 * (params->to[k] - params->from[k]));
@@ -76,6 +83,7 @@ const sk_collider_type sk_capsule = {
     .kind = {"capsule", "a rod with round ends: a ball drawn along a line", SKEIN_COLLIDER, fields,
              sizeof fields / sizeof *fields, sizeof(capsule_params)},
     .place = place,
+    .axis = axis,
     .probe = SK_EACH_ISA(probe),
     .shader = {.file = "colliders/capsule", .size = 1, .pack = pack},
 };

@@ -45,7 +45,7 @@ typedef struct sk_collider_type {
     skein_status (*check)(const void *params, skein_error *error);
     /* The shape's own point: a sphere's centre, a point of a plane. */
     void (*place)(const void *params, double position[3]);
-    /* Its own unit direction before any motion: a plane's normal; NULL: it has none. */
+    /* Its own unit direction before any motion: a plane's normal, a capsule's line; NULL: it has none. */
     void (*axis)(const void *params, double unit[3]);
     /* Rows of the matrix that turns the shape before any motion; NULL: it is not turned. */
     void (*turn)(const void *params, double rotation[9]);
@@ -63,12 +63,22 @@ typedef struct sk_collider_type {
     sk_shader shader;
 } sk_collider_type;
 
+/* A way that is made in a step because fields were set before it (pose.c). */
+typedef struct sk_travel {
+    bool noted, changed; /* a field was set since the last step, and it stands elsewhere by that */
+    bool ever;           /* it has once */
+    double position[3], rotation[9], direction[3], own[15]; /* as it stood before, and what its own fields said */
+    bool moving;                                            /* in the step that began at `start`: */
+    double way[3], axis[3], angle, start, dt;               /* from the end of the step back to its start */
+} sk_travel;
+
 typedef struct sk_collider {
     const sk_collider_type *type;
     const void *params;
     const sk_collider_common *common;
     const char *label;
     double warned_mass; /* that it was too light was said when its mass was this */
+    sk_travel travel;
 } sk_collider;
 
 /* Fields of sk_collider_common. */
@@ -76,6 +86,16 @@ extern const skein_field sk_collider_fields[];
 extern const size_t sk_collider_field_count;
 
 sk_pose sk_collider_pose_at(const sk_collider *collider, double time);
+/* Around a change of its fields at `time`: before it and after it. True when from now on it may stand elsewhere in
+ * every substep. */
+void sk_collider_note(sk_collider *collider, double time);
+bool sk_collider_changed(sk_collider *collider);
+/* A step begins: it sets out for where its fields have put it since the last one, or rests. */
+void sk_collider_begin(sk_collider *collider, double time, double dt);
+/* It is where its fields say, at once. */
+void sk_collider_stop(sk_collider *collider);
+/* Whether it may stand elsewhere in every substep. */
+bool sk_collider_moves(const sk_collider *collider);
 /* The collider's mass, 0 where it has none: particles then bounce by its restitution. */
 double sk_collider_mass(const sk_collider *collider);
 

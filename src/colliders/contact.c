@@ -23,9 +23,7 @@
 #include "colliders/collider.h"
 
 #include <math.h>
-#include <string.h>
 
-#include "base/elementary.h"
 #include "base/kernels.h"
 
 #define SK_UNIT contact
@@ -235,58 +233,6 @@ const skein_field sk_collider_fields[] = {
     SK_REAL(sk_collider_common, start, "motion.start", "s", 0, 0, SK_FAR, "when the motion begins"),
 };
 const size_t sk_collider_field_count = sizeof sk_collider_fields / sizeof *sk_collider_fields;
-
-/* Rows of the matrix of a turn by `angle` about a unit axis (Rodrigues). */
-static void rotation_about(const double u[3], double angle, real rotation[9]) {
-    double s, c;
-    sk_sincos(angle, &s, &c);
-    double d = 1 - c;
-    double m[9] = {c + u[0] * u[0] * d,        u[0] * u[1] * d - u[2] * s, u[0] * u[2] * d + u[1] * s,
-                   u[1] * u[0] * d + u[2] * s, c + u[1] * u[1] * d,        u[1] * u[2] * d - u[0] * s,
-                   u[2] * u[0] * d - u[1] * s, u[2] * u[1] * d + u[0] * s, c + u[2] * u[2] * d};
-    for (int i = 0; i < 9; i++) rotation[i] = (real)m[i];
-}
-
-/* rotation = rotation times the shape's own. */
-static void turn_first(const sk_collider *collider, real rotation[9]) {
-    double own[9];
-    real moved[9];
-    collider->type->turn(collider->params, own);
-    memcpy(moved, rotation, sizeof moved);
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++)
-            rotation[3 * r + c] =
-                moved[3 * r] * (real)own[c] + moved[3 * r + 1] * (real)own[3 + c] + moved[3 * r + 2] * (real)own[6 + c];
-}
-
-sk_pose sk_collider_pose_at(const sk_collider *collider, double time) {
-    const sk_collider_common *common = collider->common;
-    double since = time - common->start, position[3], axis[3] = {0, 1, 0};
-    bool moving = since >= 0;
-    if (!moving) since = 0;
-    collider->type->place(collider->params, position);
-    for (int k = 0; k < 3; k++) position[k] += common->velocity[k] * since;
-    const double *a = common->axis;
-    double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-    double spin = moving && length > 0 ? common->spin : 0;
-    for (int k = 0; k < 3 && length > 0; k++) axis[k] = a[k] / length;
-
-    sk_pose pose = {.position = sk_v3_of(position), .time = time};
-    pose.velocity = moving ? sk_v3_of(common->velocity) : sk_v3(0, 0, 0);
-    pose.spin = sk_v3((real)(axis[0] * spin), (real)(axis[1] * spin), (real)(axis[2] * spin));
-    pose.rotation[0] = pose.rotation[4] = pose.rotation[8] = 1;
-    if (spin != 0) rotation_about(axis, spin * since, pose.rotation);
-    if (collider->type->turn) turn_first(collider, pose.rotation);
-    if (collider->type->axis) {
-        double unit[3];
-        collider->type->axis(collider->params, unit);
-        const real *r = pose.rotation;
-        sk_vec3 n = sk_v3_of(unit);
-        pose.axis = sk_v3(r[0] * n.x + r[1] * n.y + r[2] * n.z, r[3] * n.x + r[4] * n.y + r[5] * n.z,
-                          r[6] * n.x + r[7] * n.y + r[8] * n.z);
-    }
-    return pose;
-}
 
 double sk_collider_mass(const sk_collider *collider) {
     return collider->type->mass ? collider->type->mass(collider->params) : 0;

@@ -218,9 +218,7 @@ bool sk_gpu_row_moves(const sk_row *row) {
     const sk_shader *shader = shader_of(row);
     if (shader && shader->changes && shader->changes(params_of(row))) return true;
     if (!has_pose(row)) return false;
-    const sk_collider_common *common = ((const sk_collider *)row->rule)->common;
-    const double *v = common->velocity;
-    return v[0] != 0 || v[1] != 0 || v[2] != 0 || common->spin != 0;
+    return sk_collider_moves(row->rule);
 }
 
 /* ---- texts ---- */

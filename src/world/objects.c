@@ -166,7 +166,8 @@ skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *t
         unmake_object(world, object);
         return sk_fail_memory(error, type->kind.name);
     }
-    *collider = (sk_collider){type, object->params, &object->common.collider, object->label, 0};
+    *collider = (sk_collider){
+        .type = type, .params = object->params, .common = &object->common.collider, .label = object->label};
     world->rules.colliders.data[world->rules.colliders.count++] = collider;
     object->as.collider = collider;
     return finish_object(world, object, handle);

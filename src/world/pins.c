@@ -84,6 +84,8 @@ skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error)
         world->pins.count = 0;
         return status;
     }
+    for (size_t i = 0; i < world->rules.colliders.count; i++)
+        sk_collider_begin(world->rules.colliders.data[i], world->time, dt);
     if (world->device) return SKEIN_OK; // which runs no limits that look at pins
     for (size_t i = 0; i < world->rules.limits.count; i++)
         sk_limit_begin(world->rules.limits.data[i], all->vector[SK_X], all->vector[SK_V], world->time);

@@ -172,8 +172,11 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
     if (shapes(object, params, name))
         return sk_fail(error, SKEIN_ERROR_VALUE, name, "%s shapes what is already built: set it when the body is added",
                        name);
+    sk_collider *collider = object && object->category == SKEIN_COLLIDER ? object->as.collider : NULL;
+    if (collider) sk_collider_note(collider, world->time);
     skein_status status = replace(world, object, field, params, value, error);
     if (status) return status;
+    if (collider && sk_collider_changed(collider)) world->plan_stale = true; // a card's passes differ
     if (object && object->category == SKEIN_BODY) change_body(object);
     if (object && object->category == SKEIN_CONSTRAINT) object->as.batch->stale |= params == object->params;
     if (object && !strcmp(name, "name")) {

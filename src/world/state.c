@@ -187,3 +187,10 @@ skein_status skein_collider_pose(const skein_world *world, skein_handle handle, 
     for (int i = 0; i < 9; i++) pose->rotation[i] = (double)at.rotation[i];
     return SKEIN_OK;
 }
+
+skein_status skein_collider_teleport(skein_world *world, skein_handle handle) {
+    sk_object *object = sk_object_find(world, handle, SKEIN_COLLIDER);
+    if (!object) return SKEIN_ERROR_HANDLE;
+    sk_collider_stop(object->as.collider);
+    return SKEIN_OK;
+}

@@ -298,6 +298,11 @@ skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out,
     return status;
 }
 
+/* Where time jumps, nothing is on its way. */
+static void stop_colliders(skein_world *world) {
+    for (size_t i = 0; i < world->rules.colliders.count; i++) sk_collider_stop(world->rules.colliders.data[i]);
+}
+
 skein_status skein_world_reset(skein_world *world) {
     SK_NEED(world, world);
     skein_status status = sk_world_touch(world); // masses may have changed, and where particles are held
@@ -305,6 +310,7 @@ skein_status skein_world_reset(skein_world *world) {
     memset(world->cell, 0, sizeof world->cell);
     sk_particles_reset(&world->particles);
     world->pins.count = 0;
+    stop_colliders(world);
     world->time = 0;
     world->steps = world->substeps = 0;
     return SKEIN_OK;
@@ -317,7 +323,9 @@ double skein_world_time(const skein_world *world) {
 skein_status skein_world_time_set(skein_world *world, double seconds) {
     SK_NEED(world, world);
     if (!(seconds >= 0) || !(seconds <= SK_FAR))
-        return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "seconds", "a time of %g s: expected 0 to 1e15", seconds);
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "seconds", "a time of %g s: expected 0 to 1e15",
+                       seconds);
+    stop_colliders(world);
     world->time = seconds;
     return SKEIN_OK;
 }
