@@ -3,6 +3,7 @@
 #   ```sh              each command must end well. `make TARGET` must be a target; `skein view` must open a window and
 #                      stay open (under Xvfb, if it is there); a graphics card is asked for only if SKEIN_DOCS_GPU is set
 #   ```json FILE       is written to that file, for the commands after it
+#   ```text of "$ COMMAND" lines: each ends well, and prints the lines below it
 #   ```text COMMAND    what it prints has these lines, in this order; times may differ, and a line of dots skips some
 # They run in a folder that has the repository's files as links, so that what they write is gone afterwards. Placeholders
 # that readers bring themselves (shirt.obj, photo.jpg) are made from files of the repository. Prints each fault.
@@ -24,6 +25,10 @@ for entry in "$root"/*; do
     esac
 done
 ln -s "$build" "$sandbox/build"
+HOME=$sandbox/home PATH=$build:$PATH # compiled formulas are kept in the home folder
+unset XDG_CACHE_HOME SKEIN_CACHE
+export HOME PATH
+mkdir -m 700 "$sandbox/home"
 cp "$root/meshes/ball.obj" "$sandbox/shirt.obj"
 cp "$root/docs/images/drape.png" "$sandbox/scenes/photo.jpg"
 
@@ -37,7 +42,7 @@ for document; do
             info = substr($0, 4)
             n = split(info, word, " ")
             kind = info == "sh" ? "sh" : n == 2 && word[1] == "json" ? "json" : \
-                n > 1 && word[1] == "text" && (word[2] ~ /^build\/|^[.]\//) ? "text" : ""
+                n > 1 && word[1] == "text" && (word[2] ~ /^build\/|^[.]\//) ? "text" : info == "text" ? "session" : ""
             out = kind ? stem "-" NR : "/dev/null"
             if (kind) {
                 rest = info
@@ -111,14 +116,16 @@ $(tail -n 5 "$sandbox/.said")"
 
 # Numbers that another run has otherwise: times, and what is worked out from them.
 without_times() {
-    sed -E 's/[0-9.e+-]+ ms a step/# ms a step/; s/[0-9.e+-]+ times real time/# times real time/' |
+    sed -E 's/[0-9.e+-]+ ms a step/# ms a step/; s/[0-9.e+-]+ times real time/# times real time/; s/ in [0-9.]+ s$/ in # s/
+        s,/[^ ]*/[.]cache/,/#/.cache/,' |
         awk '$1 ~ /_euler$|^rk4$|^leapfrog$|^midpoint$|pbd$/ && NF == 9 { $8 = $9 = "#" } { $1 = $1; print }'
 }
 
 # Whether the lines of a file are among what a command prints, in their order.
-compare() { # PLACE FILE COMMAND
+compare() { # PLACE FILE COMMAND [succeeds]
     ran=$((ran + 1))
-    (cd "$sandbox" && sh -c "$3") </dev/null 2>&1 | without_times >"$sandbox/.said"
+    (cd "$sandbox" && sh -c "$3") </dev/null >"$sandbox/.printed" 2>&1 || [ -z "${4:-}" ] || fault "$1: fails: $3"
+    without_times <"$sandbox/.printed" >"$sandbox/.said"
     without_times <"$2" | awk -v place="$1" -v command="$3" '
         FNR == NR { said[++count] = $0; next }
         /^[.]+$/ { next }
@@ -129,11 +136,22 @@ compare() { # PLACE FILE COMMAND
         }' "$sandbox/.said" - >&2 || faults=$((faults + 1))
 }
 
+# Commands after "$ ", each with the lines that it is to print.
+session() { # PLACE FILE
+    awk -v stem="$2" '/^[$] / { n++; print substr($0, 3) >(stem "." n); next } n { print >(stem "." n ".says") }' "$2"
+    for number in 1 2 3 4 5 6 7 8 9; do
+        [ -e "$2.$number" ] || continue
+        [ -e "$2.$number.says" ] || : >"$2.$number.says"
+        compare "$1" "$2.$number.says" "$(cat "$2.$number")" succeeds
+    done
+}
+
 tab=$(printf '\t')
 while IFS="$tab" read -r kind place file rest; do
     case $kind in
     json) [ -e "$root/$rest" ] || [ "$rest" = fragment ] || cp "$file" "$sandbox/$rest" ;;
     text) compare "$place" "$file" "$rest" ;;
+    session) session "$place" "$file" ;;
     sh)
         # lines that end with \ go on; comments go
         sed -e ':a' -e '/\\$/{N;s/\\\n *//;ba' -e '}' -e 's/[[:space:]][[:space:]]*#.*$//' -e '/^#/d' -e '/^[[:space:]]*$/d' \
