@@ -15,8 +15,9 @@ hand. `skein list forces` shows one part of it on the terminal.
 
 A field has the same name in a scene, in `--set`, and in a program. Dots are groups: `stretch.stiffness` is
 `"stretch": { "stiffness": 2e4 }` in a scene, `--set bodies.0.stretch.stiffness=2e4` on the command line, and
-`SKEIN_REAL("stretch.stiffness", 2e4)` in C. Where no range stands, any finite number will do. The functions of
-the library are described in [`include/skein/skein.h`](../include/skein/skein.h).
+`SKEIN_REAL("stretch.stiffness", 2e4)` in C; `skein/names.h` has a constant for each name, for a cloth's
+`SKEIN_CLOTH_STRETCH_STIFFNESS`. Where no range stands, any finite number will do. The functions of the library are
+described in [`include/skein/skein.h`](../include/skein/skein.h).
 HEAD
 
 # A line of one word begins a category; each becomes a heading and a block, with blank lines only inside.
