@@ -202,6 +202,7 @@ static void reading_and_writing(void **state) {
     REFUSES_ALL(skein_body_uv_set(NULL, s.cloth, uv, 1));
     REFUSES_ALL(skein_body_vertices_copy(NULL, s.cloth, 1, skein_doubles(xyz, 0), skein_doubles(NULL, 0)));
     REFUSES_ALL(skein_collider_pose(NULL, s.ball, &pose));
+    REFUSES_ALL(skein_collider_teleport(NULL, s.ball));
     skein_world_destroy(s.world);
 }
 

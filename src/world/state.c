@@ -189,6 +189,7 @@ skein_status skein_collider_pose(const skein_world *world, skein_handle handle, 
 }
 
 skein_status skein_collider_teleport(skein_world *world, skein_handle handle) {
+    SK_NEED(world, world);
     sk_object *object = sk_object_find(world, handle, SKEIN_COLLIDER);
     if (!object) return SKEIN_ERROR_HANDLE;
     sk_collider_stop(object->as.collider);
