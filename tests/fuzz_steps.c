@@ -10,7 +10,7 @@
 #include "fuzz/fuzz.h"
 #include "io/mesh.h"
 
-enum { MOST_SETTINGS = 6, MOST_DEEDS = 8 };
+enum { MOST_SETTINGS = 6, MOST_DEEDS = 8, MOST_WORK = 10000 };
 
 typedef struct chooser {
     const uint8_t *at, *end;
@@ -120,7 +120,7 @@ static void live(skein_world *world, chooser *c) {
         case 3: look(world); break;
         default: break;
         }
-        if (fuzz_is_cheap(world)) judge(world, skein_world_step(world, steps[choose(c, 5)]));
+        if (fuzz_is_cheap(world, MOST_WORK)) judge(world, skein_world_step(world, steps[choose(c, 5)]));
     }
     look(world);
 }

@@ -345,6 +345,39 @@ static void crushed_gas_is_guarded(void **state) {
     }
 }
 
+/* Under a thousandth s of its volume gas goes on along the tangent of its law: p0 s^-n (1 + n (s - V/V0)/s). One step
+ * from rest moves each particle by h p grad V / m. */
+static void crushed_gas_pushes_along_the_tangent(void **state) {
+    (void)state;
+    ball b = make_ball();
+    static const double shares[] = {0.0015, 0.0005, -0.0005};
+    for (size_t c = 0; c < COUNT(shares); c++) {
+        const double n = 1.4, h = 1e-9, s = 1e-3, share = shares[c];
+        const double pressure = share > s ? pow(share, -n) : pow(s, -n) * (1 + n * (s - share) / s);
+        skein_world *world = world_of(&b, "explicit_euler", 1, 0.5, origin, 0);
+        OK(world, skein_constraint_add(world, "pressure", b.triangle[0], TRIANGLES,
+                                       SKEIN_SETTINGS(SKEIN_REAL("pressure", 1), SKEIN_REAL("exponent", n)), NULL));
+        double x[VERTICES][3], v[VERTICES][3], worst = 0, most = 0;
+        OK(world, skein_positions_copy(world, 0, VERTICES, x[0]));
+        for (int i = 0; i < VERTICES; i++) x[i][1] *= share;
+        OK(world, skein_positions_set(world, 0, VERTICES, x[0]));
+        OK(world, skein_world_step(world, h));
+        OK(world, skein_velocities_copy(world, 0, VERTICES, v[0]));
+        for (int i = 0; i < VERTICES; i++) { // along y, where the ball is flat
+            const double kept = x[i][1], d = 1e-4;
+            x[i][1] = kept + d;
+            double more = volume_of(&b, x);
+            x[i][1] = kept - d;
+            double ought = h * pressure * (more - volume_of(&b, x)) / (2 * d) * VERTICES;
+            x[i][1] = kept;
+            worst = fmax(worst, fabs(v[i][1] - ought));
+            most = fmax(most, fabs(ought));
+        }
+        assert_under(worst, 0.02 * most);
+        skein_world_destroy(world);
+    }
+}
+
 /* The same bits for any number of threads. */
 static void threads_do_not_matter(void **state) {
     (void)state;
@@ -376,6 +409,7 @@ int main(void) {
         cmocka_unit_test(methods_agree),
         cmocka_unit_test(open_surfaces_are_refused),
         cmocka_unit_test(crushed_gas_is_guarded),
+        cmocka_unit_test(crushed_gas_pushes_along_the_tangent),
         cmocka_unit_test(threads_do_not_matter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -28,6 +28,42 @@ static void a_bounce_is_within_a_percent(void **state) {
             }
 }
 
+/* The impulse is (1 + e) |v.n|, and friction takes mu times that of the slide: not only of what came in. */
+static void friction_takes_its_share_of_the_whole_bounce(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(all_methods); m++) {
+        skein_world *world = new_world(all_methods[m], 1);
+        OK(world,
+           skein_collider_add(world, "plane",
+                              SKEIN_SETTINGS(SKEIN_REAL("restitution", 0.5), SKEIN_REAL("friction", 0.2)), NULL));
+        add_moving(world, 0.3, 0, 0.002, 0, 3, -2, 0);
+        steps(world, 1, 1e-4);
+        vec3 v = velocity_of(world, 0);
+        bool moves = strstr(all_methods[m], "pbd"); // whose friction knows the push out alone
+        assert_near(v.x, 3 - 0.2 * (moves ? 1 : 1.5) * 2, 1e-5 + moves * 1e-3);
+        assert_near(v.y, 0.5 * 2, 1e-5 + moves * 1e-3);
+        skein_world_destroy(world);
+    }
+}
+
+/* What touches and leaves already: weight that would not bring it back within the substep is not held, but for a
+ * collider with a mass, which holds all of it while it touches. */
+static void what_leaves_is_pulled_back_by_its_weight(void **state) {
+    (void)state;
+    for (int massive = 0; massive < 2; massive++) {
+        skein_world *world = new_world("explicit_euler", 1);
+        add_gravity(world);
+        OK(world, skein_collider_add(world, "sphere",
+                                     SKEIN_SETTINGS(SKEIN_REAL("radius", 1), SKEIN_VEC3("centre", 0, -1, 0),
+                                                    SKEIN_REAL("mass", massive)),
+                                     NULL));
+        add_moving(world, 0.3, 0, 0.001, 0, 0, 1, 0);
+        steps(world, 1, 1e-3);
+        assert_near(velocity_of(world, 0).y, massive ? 1 : 1 - g * 1e-3, 1e-6);
+        skein_world_destroy(world);
+    }
+}
+
 /* A cube on undamped springs, that falls on a corner. */
 static skein_world *bouncing_cube(const char *method, double restitution) {
     skein_world *world = new_world(method, 40);
@@ -74,6 +110,8 @@ static void springs_that_bounce_gain_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_bounce_is_within_a_percent),
+        cmocka_unit_test(friction_takes_its_share_of_the_whole_bounce),
+        cmocka_unit_test(what_leaves_is_pulled_back_by_its_weight),
         cmocka_unit_test(springs_that_bounce_gain_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -655,6 +655,25 @@ static void assert_no_pins(const draft *d, const char *pins, skein_status status
     skein_world_destroy(world);
 }
 
+/* Pages of a book: where two meet there is a hinge; three or four at one edge have no angle between two of them, and
+ * none. */
+static void only_two_faces_make_a_hinge(void **state) {
+    (void)state;
+    static const double p[][3] = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-1, 0, 0.2}, {0, 0, 1}, {0.1, 0, -1}};
+    static const uint32_t sizes[] = {3, 3, 3, 3}, corners[] = {0, 1, 2, 1, 0, 3, 0, 1, 4, 1, 0, 5};
+    for (size_t pages = 1; pages <= 4; pages++) {
+        const skein_mesh mesh = {p[0], 2 + pages, sizes, pages, corners, 3 * pages};
+        skein_world *world = new_world("xpbd", 1);
+        skein_handle cloth;
+        size_t edges;
+        OK(world, skein_body_add(world, "cloth", &mesh, NULL, &cloth));
+        OK(world, skein_body_elements(world, cloth, SKEIN_EDGES, NULL, 0, &edges));
+        assert_int_equal(edges, 1 + 2 * pages);
+        assert_int_equal(statistics_of(world).constraints - edges, pages == 2);
+        skein_world_destroy(world);
+    }
+}
+
 /*   0  1  2  3      the grid's vertices; x to the right from -1.5 to 1.5, z down from -1 to 1
  *   4  5  6  7
  *   8  9 10 11  */
@@ -969,6 +988,7 @@ int main(void) {
         cmocka_unit_test(small_sheets_are_sheets),
         cmocka_unit_test(faults_of_meshes_are_warnings),
         cmocka_unit_test(impossible_meshes_are_refused),
+        cmocka_unit_test(only_two_faces_make_a_hinge),
         cmocka_unit_test(pins_of_a_grid),
         cmocka_unit_test(pins_of_a_mesh),
         cmocka_unit_test(tethers_of_a_flat_sheet_are_straight),

@@ -135,6 +135,40 @@ static void predator_by_hand(void **state) {
     }
 }
 
+/* 40 m beside the line, whatever its direction and however far along. */
+static void a_line_of_sight_may_lie_askew(void **state) {
+    (void)state;
+    const vec3 along = {2 / 7.0, 3 / 7.0, 6 / 7.0}, beside = unit((vec3){3, -2, 0});
+    skein_world *world = new_world("symplectic_euler", 1);
+    for (int i = -1; i <= 1; i++) {
+        vec3 at = plus(plus((vec3){5, 6, 7}, 300 * i, along), 40, beside);
+        add_particle(world, 1, at.x, at.y, at.z);
+    }
+    OK(world, skein_force_add(world, "predator",
+                              SKEIN_SETTINGS(SKEIN_VEC3("line", 4, 6, 12), SKEIN_VEC3("position", 5, 6, 7)), NULL));
+    steps(world, 1, dt);
+    for (size_t i = 0; i < 3; i++) // (1 - 0.4^2) 100 m/s2, away
+        assert_under(length3(plus(velocity_of(world, i), -84 * dt, beside)), 1e-3 * 84 * dt);
+    skein_world_destroy(world);
+}
+
+/* What scares so much that the limit would be under 0 stops them; it does not turn them round. */
+static void an_alarm_may_lower_the_limit(void **state) {
+    (void)state;
+    skein_world *world = new_world("symplectic_euler", 1);
+    add_moving(world, 1, 1, 0, 0, 0, 5, 0);
+    skein_handle hawk;
+    OK(world, skein_force_add(world, "predator",
+                              SKEIN_SETTINGS(SKEIN_REAL("strength", 0), SKEIN_REAL("alarm", -6)), &hawk));
+    OK(world, skein_force_add(world, "speed_limit", NULL, NULL));
+    steps(world, 1, dt);
+    assert_near(velocity_of(world, 0).y, 3, 1e-5); // 9 - 6
+    OK(world, skein_set(world, hawk, "alarm", skein_number(-20)));
+    steps(world, 1, dt);
+    assert_under(length3(velocity_of(world, 0)), 0);
+    skein_world_destroy(world);
+}
+
 /* The limit is for one step only, and what is slower is left alone. */
 /* All flee from where it is when the substep begins, however many there are before and behind it. */
 static void a_predator_may_be_one_of_many(void **state) {
@@ -407,6 +441,8 @@ int main(void) {
         cmocka_unit_test(only_the_direction_of_flight_counts),
         cmocka_unit_test(attraction_by_hand),
         cmocka_unit_test(predator_by_hand),
+        cmocka_unit_test(a_line_of_sight_may_lie_askew),
+        cmocka_unit_test(an_alarm_may_lower_the_limit),
         cmocka_unit_test(a_predator_may_be_one_of_many),
         cmocka_unit_test(the_limit_is_raised_in_this_step_only),
         cmocka_unit_test(the_grid_is_all_pairs),

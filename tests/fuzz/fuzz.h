@@ -53,18 +53,17 @@ static inline void fuzz_release(void *user, void *memory, size_t size) {
 
 /* ---- Little time: a step of a hundred thousand substeps is legal, too; neighbours may be everyone - */
 
-enum { FUZZ_MOST_WORK = 200000 };
-
 static inline double fuzz_number(const skein_world *world, const char *path) {
     skein_value value;
     return skein_get_path(world, path, &value) ? 1 : value.number[0];
 }
 
-static inline bool fuzz_is_cheap(skein_world *world) {
+/* Whether a step is worth at most so many looks at a particle or pair, or thereabouts. */
+static inline bool fuzz_is_cheap(skein_world *world, double most) {
     skein_statistics s;
     if (skein_world_statistics(world, &s) != SKEIN_OK) return false;
     double substeps = fuzz_number(world, "method.substeps") * fuzz_number(world, "method.iterations");
-    return substeps * ((double)s.particles * (double)s.particles + (double)s.constraints) < FUZZ_MOST_WORK;
+    return substeps * ((double)s.particles * (double)s.particles + (double)s.constraints) < most;
 }
 
 #endif
