@@ -278,6 +278,38 @@ static void a_film_that_blows_up_is_kept_up_to_there(void **state) {
     outcome_free(&o);
 }
 
+/* ---- Films' libraries ------------------------------------------------------------------------------------ */
+
+static void a_missing_module_says_what_to_do(void **state) {
+    (void)state;
+    setenv("SKEIN_MODULES", in_folder("nothing"), 1);
+    outcome o = SKEIN("render", tiny_scene(), "-o", in_folder("a.mp4"), "--frames", "2", SMALL);
+    outcome pictures = SKEIN("render", tiny_scene(), "-o", in_folder("a.png"), "--frame", "2", SMALL);
+    unsetenv("SKEIN_MODULES");
+    assert_int_not_equal(o.status, 0);
+    assert_contains(o.err, "skein_film.so");
+    assert_contains(o.err, in_folder("nothing"));
+    assert_contains(o.err, "SKEIN_MODULES");
+    assert_status(pictures, 0); // these need no module
+    outcome_free(&o);
+    outcome_free(&pictures);
+    assert_int_equal(size_of(in_folder("a.mp4")), -1);
+}
+
+static void what_is_no_module_is_refused(void **state) {
+    (void)state;
+    FILE *file = fopen(in_folder("skein_film.so"), "w");
+    assert_non_null(file);
+    fputs("nothing\n", file);
+    fclose(file);
+    setenv("SKEIN_MODULES", folder, 1);
+    outcome o = SKEIN("render", tiny_scene(), "-o", in_folder("a.gif"), "--frames", "2", SMALL);
+    unsetenv("SKEIN_MODULES");
+    assert_int_not_equal(o.status, 0);
+    assert_contains(o.err, "cannot be loaded");
+    outcome_free(&o);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
 #define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
@@ -289,6 +321,8 @@ int main(void) {
         TEST(a_full_disk_ends_a_film),
         TEST(what_cannot_begin_leaves_the_old_film),
         TEST(a_film_that_blows_up_is_kept_up_to_there),
+        TEST(a_missing_module_says_what_to_do),
+        TEST(what_is_no_module_is_refused),
     };
     return cmocka_run_group_tests_name("command film", tests, NULL, NULL);
 }
