@@ -12,9 +12,9 @@ static const struct {
     const char *word;
     skein_category category;
 } lists[] = {
-    {"scene", SKEIN_SCENE},        {"bodies", SKEIN_BODY},        {"constraints", SKEIN_CONSTRAINT},
-    {"forces", SKEIN_FORCE},       {"colliders", SKEIN_COLLIDER}, {"methods", SKEIN_METHOD},
-    {"exporters", SKEIN_EXPORTER}, {"view", SKEIN_VIEW},
+    {"scene", SKEIN_SCENE},    {"bodies", SKEIN_BODY},        {"constraints", SKEIN_CONSTRAINT},
+    {"forces", SKEIN_FORCE},   {"colliders", SKEIN_COLLIDER}, {"motions", SKEIN_MOTION},
+    {"methods", SKEIN_METHOD}, {"exporters", SKEIN_EXPORTER}, {"view", SKEIN_VIEW},
 };
 enum { LIST_COUNT = sizeof lists / sizeof *lists };
 

@@ -53,6 +53,7 @@ static const io_scene_section sections[] = {
      "a list; each has \"particles\", too: [[0, 1], [1, 2]], or {\"body\": \"flag\", \"over\": \"edges\"}"},
     {"forces", SKEIN_FORCE, "a list"},
     {"colliders", SKEIN_COLLIDER, "a list"},
+    {"motions", SKEIN_MOTION, "a list: [ { \"type\": \"translate\", \"on\": \"flag\", ... }, ... ]"},
     {"output", SKEIN_EXPORTER,
      "a list of exporters: [\"obj\", { \"type\": \"pc2\", \"every\": 2 }]; all but \"film\" if it is missing"},
     {"view", SKEIN_VIEW, "how pictures are drawn: { \"wireframe\": true, \"colour\": \"speed\" }, say"},

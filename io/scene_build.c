@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/cache.h"
 #include "io/mesh.h"
 #include "io/scene_settings.h"
 #include "solvers/cholmod.h"
@@ -216,6 +217,19 @@ static void add_constraint(const builder *b, io_place place, const skein_kind *k
     free(list.data);
 }
 
+/* ---- motions: the point cache is read here ---- */
+
+static bool add_motion(const builder *b, io_place place, const skein_kind *kind, const io_settings *settings) {
+    io_cache cache = {0};
+    bool has_file = skein_field_find(kind, "file", NULL) != NULL;
+    if (b->body_missing && has_file) return false; // its points would be counted against the wrong bodies
+    if (has_file && !io_cache_read(&cache, b->world, place, settings)) return false;
+    bool good = !skein_motion_add(b->world, kind->name, has_file ? &cache.track : NULL, settings->data, NULL);
+    if (!good) report_library_fault(b, place, "");
+    io_cache_free(&cache);
+    return good;
+}
+
 /* ---- objects ---- */
 
 /* The kind that an object names by its "type"; NULL after a fault. */
@@ -246,6 +260,7 @@ static bool add_of_kind(const builder *b, io_place place, const json_t *object, 
     case SKEIN_CONSTRAINT: add_constraint(b, place, kind, object, settings); break;
     case SKEIN_FORCE: status = skein_force_add(b->world, kind->name, settings->data, NULL); break;
     case SKEIN_COLLIDER: status = skein_collider_add(b->world, kind->name, settings->data, NULL); break;
+    case SKEIN_MOTION: return add_motion(b, place, kind, settings);
     default: status = skein_method_set(b->world, kind->name, settings->data); break;
     }
     if (status) report_object_fault(b, place, kind, "");

@@ -57,10 +57,20 @@ int io_field_numbers(const skein_field *field) {
     return 0;
 }
 
-/* Only the texts of a body's own fields select parts of it, and so have short forms. */
+static bool is_own(const skein_kind *kind, const skein_field *field) {
+    return field >= kind->fields && field < kind->fields + kind->field_count;
+}
+
+/* Texts of a motion's own fields may be tables: a list of rows. */
+static bool takes_rows(const skein_kind *kind, const skein_field *field) {
+    return field->type == SKEIN_FIELD_TEXT && kind->category == SKEIN_MOTION && is_own(kind, field);
+}
+
+/* The texts of a body's own fields select parts of it, as a motion's "pins" do, and so have short forms. */
 static bool takes_lists(const skein_kind *kind, const skein_field *field) {
-    return field->type == SKEIN_FIELD_TEXT && kind->category == SKEIN_BODY && field >= kind->fields &&
-           field < kind->fields + kind->field_count;
+    bool selects = kind->category == SKEIN_BODY ? is_own(kind, field)
+                                                : kind->category == SKEIN_MOTION && !strcmp(field->name, "pins");
+    return field->type == SKEIN_FIELD_TEXT && selects;
 }
 
 static bool may_be_infinite(const skein_field *field) {
@@ -75,6 +85,7 @@ static bool convert(io_settings *settings, const skein_kind *kind, const skein_f
     if (count == 0) {
         if (json_is_string(json)) value->text = keep_text(settings, strdup(json_string_value(json)));
         else if (takes_lists(kind, field)) value->text = keep_text(settings, io_json_join(json));
+        else if (takes_rows(kind, field)) value->text = keep_text(settings, io_json_join_rows(json));
         return value->text != NULL;
     }
     if (field->type == SKEIN_FIELD_BOOL) {
@@ -124,9 +135,10 @@ static void report_type(io_place place, const char *name, const skein_kind *kind
     skein_value nothing = {4, {0, 0, 0}, NULL};
     skein_field_check(field, &nothing, &error);
     io_fault(place, name, SKEIN_ERROR_VALUE, "%s%s, not %s", error.message,
-             takes_lists(kind, field) ? ", a list of numbers and words, {\"box\": [...]} or {\"sphere\": [...]}"
-             : may_be_infinite(field) ? " or \"infinite\""
-                                      : "",
+             takes_lists(kind, field)  ? ", a list of numbers and words, {\"box\": [...]} or {\"sphere\": [...]}"
+             : takes_rows(kind, field) ? " or a list of rows, [[0, 0, 0, 0], [1, 0, 0.5, 0]], say"
+             : may_be_infinite(field)  ? " or \"infinite\""
+                                       : "",
              io_json_words(json, words));
 }
 

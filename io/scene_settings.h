@@ -44,6 +44,8 @@ void io_settings_free(io_settings *settings);
 /* A setting's value from JSON, for any field that takes texts: a list or a shape as one text. NULL if it is
  * neither; free it. */
 char *io_json_join(const json_t *json);
+/* A list of lists of numbers: rows, parted by commas. */
+char *io_json_join_rows(const json_t *json);
 
 /* How many numbers a field takes; 0 for texts and words. */
 int io_field_numbers(const skein_field *field);

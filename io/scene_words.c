@@ -133,6 +133,7 @@ static bool add_shape(joiner *j, json_t *object) {
 
 static bool add_item(joiner *j, json_t *json) {
     if (json_is_number(json)) return add_number(j, json);
+
     if (json_is_object(json)) return add_shape(j, json);
     j->after_number = false;
     return json_is_string(json) && add_text(j, j->length ? ", " : "", json_string_value(json));
@@ -145,6 +146,27 @@ char *io_json_join(const json_t *json) {
     json_t *item, *one = (json_t *)(uintptr_t)json; // jansson's getters take no const
     if (!json_is_array(json)) good = good && add_item(&j, one);
     else json_array_foreach(one, index, item) good = good && add_item(&j, item);
+    if (good) return j.text;
+    free(j.text);
+    return NULL;
+}
+
+/* [1, 2, 3] in a list: its numbers, parted from the rows before it by a comma. */
+static bool add_row(joiner *j, json_t *list) {
+    size_t index;
+    json_t *number;
+    if (!json_is_array(list) || (j->length && !add_text(j, ",", ""))) return false;
+    j->after_number = true;
+    json_array_foreach(list, index, number) if (!json_is_number(number) || !add_number(j, number)) return false;
+    return json_array_size(list) > 0;
+}
+
+char *io_json_join_rows(const json_t *json) {
+    joiner j = {0};
+    bool good = add_text(&j, "", "") && json_array_size(json) > 0;
+    size_t index;
+    json_t *item;
+    json_array_foreach((json_t *)(uintptr_t)json, index, item) good = good && add_row(&j, item);
     if (good) return j.text;
     free(j.text);
     return NULL;

@@ -16,6 +16,7 @@ static const sk_force_type *const forces[] = {
     &sk_predator, &sk_lookout, &sk_speed_limit,  &sk_turn_limit, &sk_bounds,     &sk_force_field, &sk_potential};
 static const sk_collider_type *const colliders[] = {&sk_plane,   &sk_sphere, &sk_bowl,
                                                     &sk_capsule, &sk_box,    &sk_formula_surface};
+static const sk_motion_type *const motions[] = {&sk_translate, &sk_turn, &sk_keys, &sk_cache};
 static const sk_method_type *const methods[] = {&sk_explicit_euler,
                                                 &sk_symplectic_euler,
                                                 &sk_lookahead_euler,
@@ -34,6 +35,7 @@ const skein_kind *skein_kind_at(skein_category category, size_t index) {
     case SKEIN_CONSTRAINT: return index < COUNT(constraints) ? &constraints[index]->kind : NULL;
     case SKEIN_FORCE: return index < COUNT(forces) ? &forces[index]->kind : NULL;
     case SKEIN_COLLIDER: return index < COUNT(colliders) ? &colliders[index]->kind : NULL;
+    case SKEIN_MOTION: return index < COUNT(motions) ? &motions[index]->kind : NULL;
     case SKEIN_METHOD: return index < COUNT(methods) ? &methods[index]->kind : NULL;
     default: return NULL;
     }
@@ -102,6 +104,12 @@ skein_status skein_collider_add(skein_world *world, const char *kind, const skei
     SK_NEED(world, kind);
     const sk_collider_type *type = type_of(world, SKEIN_COLLIDER, kind);
     return type ? sk_world_add_collider(world, type, settings, handle) : SKEIN_ERROR_NAME;
+}
+
+skein_status skein_motion_add(skein_world *world, const char *kind, const skein_track *track,
+                              const skein_setting *settings, skein_handle *handle) {
+    const sk_motion_type *type = type_of(world, SKEIN_MOTION, kind);
+    return type ? sk_world_add_motion(world, type, track, settings, handle) : SKEIN_ERROR_NAME;
 }
 
 double skein_stable_substep(const char *method, const skein_stability *stability) {

@@ -22,7 +22,7 @@ formula
 space
 plan
 particles
-constraints forces colliders limits
+constraints forces colliders limits motions
 methods
 world
 bodies

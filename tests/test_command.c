@@ -208,7 +208,7 @@ static void expect_kind(const char *text, const skein_kind *kind) {
 static void list_shows_every_kind_and_field(void **state) {
     (void)state;
     static const char *const words[] = {"bodies",  "constraints", "forces",    "colliders",
-                                        "methods", "scene",       "exporters", "view"};
+                                        "motions", "methods", "scene",       "exporters", "view"};
     outcome all = SKEIN("list");
     assert_status(all, 0);
     assert_string_equal(all.err, "");

@@ -141,6 +141,7 @@ static void mirror_objects(viewer_side *side, const viewer_player *player) {
     add_objects(side, player->world, SKEIN_CONSTRAINT);
     add_objects(side, player->world, SKEIN_FORCE);
     add_objects(side, player->world, SKEIN_COLLIDER);
+    add_objects(side, player->world, SKEIN_MOTION);
     add_plain(side, render_view_kind(), &player->view);
     add_plain(side, io_scene_kind(), &player->settings);
     if (old) keep_anchors(side, old, count);

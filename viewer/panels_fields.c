@@ -268,6 +268,7 @@ void viewer_show_objects(viewer_panels *panels, int side) {
     show_list(panels, SKEIN_CONSTRAINT, "Constraints", false, side);
     show_list(panels, SKEIN_FORCE, "Forces", false, side);
     show_list(panels, SKEIN_COLLIDER, "Colliders", false, side);
+    show_list(panels, SKEIN_MOTION, "Motions", false, side);
     for (size_t o = 0; o < shown->object_count && side == 0; o++) {
         const viewer_object *object = &shown->objects[o];
         bool view = object->category == SKEIN_VIEW;

@@ -121,6 +121,7 @@ typedef enum skein_category {
     SKEIN_CONSTRAINT,
     SKEIN_FORCE,
     SKEIN_COLLIDER,
+    SKEIN_MOTION,
     SKEIN_METHOD,
     SKEIN_SCENE,
     SKEIN_EXPORTER,
@@ -289,6 +290,23 @@ skein_status skein_constraint_arity(skein_world *world, const char *kind, const 
 skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings, skein_handle *handle);
 skein_status skein_collider_add(skein_world *world, const char *kind, const skein_setting *settings,
                                 skein_handle *handle);
+/* Places that particles go through, only read during the call they are given to: `sample_count` times, from the motion's
+ * start on, `interval` seconds apart, those of all `particle_count` particles. */
+typedef struct skein_track {
+    const uint32_t *particles; /* particle_count */
+    const double *places;      /* sample_count x particle_count x 3, metres; finite, under 1e15 */
+    size_t particle_count, sample_count;
+    double interval; /* s, over 0 */
+} skein_track;
+
+/* Adds a motion ("translate", "turn", "keys", "cache"): in each step it leads held particles, all or some of a body's, as
+ * skein_pins_move() would, to where its fields say for the end of the step. Those places follow from the time, and from
+ * where the particles were built; several motions of one pin act one after the other, in the order of their making. What
+ * skein_pins_move() says counts instead. Whom it leads is found when a step is made, or skein_world_explain() called: then
+ * a name of no body fails with SKEIN_ERROR_NAME. `track` is for "cache" and NULL for all others; `settings` and `handle`
+ * may be NULL. Fails with SKEIN_ERROR_VALUE, SKEIN_ERROR_NAME, SKEIN_ERROR_LIMIT and SKEIN_ERROR_MEMORY. */
+skein_status skein_motion_add(skein_world *world, const char *kind, const skein_track *track,
+                              const skein_setting *settings, skein_handle *handle);
 /* Sets the method; its former settings are gone. The world's own fields are kept. */
 skein_status skein_method_set(skein_world *world, const char *kind, const skein_setting *settings);
 /* Removes a constraint, force or collider. (Bodies stay: particle indices never change.) */

@@ -20,7 +20,7 @@ const char *skein_status_text(skein_status status) {
 }
 
 const char *skein_category_text(skein_category category) {
-    static const char *const names[SKEIN_CATEGORY_COUNT] = {"body",   "constraint", "force",    "collider",
+    static const char *const names[SKEIN_CATEGORY_COUNT] = {"body",   "constraint", "force",    "collider", "motion",
                                                             "method", "scene",      "exporter", "view"};
     return category < SKEIN_CATEGORY_COUNT ? names[category] : "unknown";
 }

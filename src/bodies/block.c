@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bodies/selection.h"
+#include "particles/selection.h"
 
 enum { LEAST_COLUMNS = 96 }; /* of a row of strips: six a lane */
 

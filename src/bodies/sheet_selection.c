@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/status.h"
-#include "bodies/selection.h"
+#include "particles/selection.h"
 
 typedef struct selector {
     const sk_sheet *sheet;

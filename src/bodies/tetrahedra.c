@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "bodies/body.h"
-#include "bodies/selection.h"
+#include "particles/selection.h"
 #include "bodies/sheet.h"
 
 typedef struct tetrahedra_params {

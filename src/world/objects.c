@@ -106,7 +106,9 @@ static skein_status make_object(skein_world *world, const skein_kind *kind, cons
         sk_object_release(allocator, object);
         return status;
     }
-    const char *name = kind->category == SKEIN_COLLIDER ? object->common.collider.name : object->common.plain.name;
+    const char *name = kind->category == SKEIN_COLLIDER ? object->common.collider.name
+                       : kind->category == SKEIN_MOTION ? object->common.motion.name
+                                                        : object->common.plain.name;
     snprintf(object->label, sizeof object->label, "%s", name[0] ? name : kind->name);
     world->objects.data[world->objects.count++] = object;
     *made = object;
@@ -121,7 +123,7 @@ static void unmake_object(skein_world *world, sk_object *object) {
 
 static skein_status finish_object(skein_world *world, sk_object *object, skein_handle *handle) {
     object->generation = 1;
-    world->plan_stale = true;
+    world->plan_stale = world->motions_stale = true;
     if (object->category == SKEIN_CONSTRAINT || object->category == SKEIN_BODY) world->slots_stale = true;
     if (handle) *handle = handle_of(world, object);
     return SKEIN_OK;
@@ -170,6 +172,32 @@ skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *t
         .type = type, .params = object->params, .common = &object->common.collider, .label = object->label};
     world->rules.colliders.data[world->rules.colliders.count++] = collider;
     object->as.collider = collider;
+    return finish_object(world, object, handle);
+}
+
+skein_status sk_world_add_motion(skein_world *world, const sk_motion_type *type, const skein_track *track,
+                                 const skein_setting *settings, skein_handle *handle) {
+    skein_error *error = sk_world_error(world);
+    sk_object *object;
+    skein_status status = sk_world_check_track(world, type, track);
+    if (!status) status = make_object(world, &type->kind, type->making, settings, &object, error);
+    if (status) return status;
+    if (type->check && (status = type->check(object->params, error))) {
+        unmake_object(world, object);
+        return status;
+    }
+    sk_motion *motion = SK_RESERVE(&world->allocator, &world->motions, world->motions.count + 1)
+                            ? sk_motion_create(&world->allocator, type, track)
+                            : NULL;
+    if (!motion) {
+        unmake_object(world, object);
+        return sk_fail_memory(error, type->kind.name);
+    }
+    motion->params = object->params;
+    motion->common = &object->common.motion;
+    motion->label = object->label;
+    world->motions.data[world->motions.count++] = motion;
+    object->as.motion = motion;
     return finish_object(world, object, handle);
 }
 
@@ -355,11 +383,15 @@ skein_status skein_remove(skein_world *world, skein_handle handle) {
         drop_pointer((void **)rules->colliders.data, &rules->colliders.count, object->as.collider);
         sk_release(&world->allocator, object->as.collider);
         break;
+    case SKEIN_MOTION:
+        drop_pointer((void **)world->motions.data, &world->motions.count, object->as.motion);
+        sk_motion_release(object->as.motion, &world->allocator);
+        break;
     default:
         return sk_fail(error, SKEIN_ERROR_HANDLE, "", "a %s cannot be removed", skein_category_text(object->category));
     }
     object->generation++;
-    world->plan_stale = true;
+    world->plan_stale = world->motions_stale = true;
     return SKEIN_OK;
 }
 

@@ -4,6 +4,8 @@
  * step is a velocity for its time: all rows see it, and know no pins. Between steps a pin rests, so that positions,
  * velocities and what is held are still all of the state.
  *
+ * Motions (world/motions.c) say places by the time; what a program says comes after them and counts.
+ *
  *   places wait --set out--> V = (place - X)/dt --the plan--> X --arrive--> X = place, V = 0 */
 #include <math.h>
 #include <string.h>
@@ -76,9 +78,10 @@ static skein_status set_out(skein_world *world, const sk_pin *pin, double dt, sk
 
 skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error) {
     const sk_particles *all = &world->particles;
-    skein_status status = world->pins.count ? sk_world_touch(world) : SKEIN_OK;
-    for (size_t i = 0; i < world->pins.count && !status; i++)
-        if (all->held[world->pins.data[i].particle]) status = set_out(world, &world->pins.data[i], dt, error);
+    if (!sk_world_lead(world, world->time + dt)) return sk_fail_memory(error, "places for pins");
+    skein_status status = world->led.count ? sk_world_touch(world) : SKEIN_OK;
+    for (size_t i = 0; i < world->led.count && !status; i++)
+        if (all->held[world->led.data[i].particle]) status = set_out(world, &world->led.data[i], dt, error);
     if (status) {
         sk_world_arrive(world, false);
         world->pins.count = 0;
@@ -94,16 +97,17 @@ skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error)
 
 skein_status sk_world_arrive(skein_world *world, bool done) {
     const sk_particles *all = &world->particles;
-    if (!world->pins.count) return SKEIN_OK;
+    if (!world->led.count) return SKEIN_OK;
     skein_status status = sk_world_touch(world);
-    for (size_t i = 0; i < world->pins.count && !status; i++) {
-        const sk_pin *pin = &world->pins.data[i];
+    for (size_t i = 0; i < world->led.count && !status; i++) {
+        const sk_pin *pin = &world->led.data[i];
         if (!all->held[pin->particle]) continue;
         sk_vec4 *x = &all->vector[SK_X][all->slot_of[pin->particle]],
                 *v = &all->vector[SK_V][all->slot_of[pin->particle]];
         if (done) *x = (sk_vec4){(real)pin->place[0], (real)pin->place[1], (real)pin->place[2], x->w};
         *v = (sk_vec4){0, 0, 0, v->w};
     }
+    world->led.count = 0;
     if (done) world->pins.count = 0;
     return status;
 }

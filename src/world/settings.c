@@ -23,6 +23,7 @@ const skein_field *sk_common_fields(skein_category category, size_t *count) {
     case SKEIN_CONSTRAINT:
     case SKEIN_FORCE: *count = sizeof rule_fields / sizeof *rule_fields; return rule_fields;
     case SKEIN_COLLIDER: *count = sk_collider_field_count; return sk_collider_fields;
+    case SKEIN_MOTION: *count = sk_motion_field_count; return sk_motion_fields;
     default: *count = 0; return NULL;
     }
 }
@@ -109,6 +110,8 @@ static skein_status accept(skein_world *world, sk_object *object, const skein_fi
     skein_status status = SKEIN_OK;
     if (object->category == SKEIN_COLLIDER && object->as.collider->type->check)
         status = object->as.collider->type->check(object->params, error);
+    if (object->category == SKEIN_MOTION && object->as.motion->type->check)
+        status = object->as.motion->type->check(object->params, error);
     bool own = sk_field_named(object->kind->fields, object->kind->field_count, field->name) == field;
     if (!status && object->making && own && field->type == SKEIN_FIELD_TEXT)
         status = object->making->make(object->params, object->kind, &world->allocator, error);
@@ -136,6 +139,8 @@ static skein_status replace(skein_world *world, sk_object *object, const skein_f
 
 /* What shaped a body that stands cannot change any more. */
 static bool shapes(const sk_object *object, const void *params, const char *name) {
+    if (object && object->category == SKEIN_MOTION && object->as.motion->type->given)
+        return !strcmp(name, object->as.motion->type->given);
     bool body = object && object->category == SKEIN_BODY && params == object->params;
     return body && !object->body_type->live(params, name);
 }
@@ -170,8 +175,8 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
     const skein_field *field = locate(world, handle, name, &params, &object, error);
     if (!field) return error->status;
     if (shapes(object, params, name))
-        return sk_fail(error, SKEIN_ERROR_VALUE, name, "%s shapes what is already built: set it when the body is added",
-                       name);
+        return sk_fail(error, SKEIN_ERROR_VALUE, name, "%s shapes what is already built: set it when the %s is added",
+                       name, skein_category_text(object->category));
     sk_collider *collider = object && object->category == SKEIN_COLLIDER ? object->as.collider : NULL;
     if (collider) sk_collider_note(collider, world->time);
     skein_status status = replace(world, object, field, params, value, error);
@@ -184,6 +189,7 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
         snprintf(object->label, sizeof object->label, "%s", given[0] ? given : object->kind->name);
     }
     world->plan_stale = true;
+    world->motions_stale = true;
     return SKEIN_OK;
 }
 
@@ -206,10 +212,8 @@ static const struct {
     const char *word;
     skein_category category;
 } lists[] = {
-    {"bodies", SKEIN_BODY},
-    {"constraints", SKEIN_CONSTRAINT},
-    {"forces", SKEIN_FORCE},
-    {"colliders", SKEIN_COLLIDER},
+    {"bodies", SKEIN_BODY},        {"constraints", SKEIN_CONSTRAINT}, {"forces", SKEIN_FORCE},
+    {"colliders", SKEIN_COLLIDER}, {"motions", SKEIN_MOTION},
 };
 
 /* Splits "colliders.ball.radius" into an object and "radius". */
@@ -231,8 +235,9 @@ static skein_status resolve(const skein_world *world, const char *path, skein_ha
         for (size_t i = 0; i < count; i++) {
             *handle = skein_object_at(world, lists[l].category, i);
             sk_object *object = sk_object_of(world, *handle);
-            const char *name =
-                lists[l].category == SKEIN_COLLIDER ? object->common.collider.name : object->common.plain.name;
+            const char *name = lists[l].category == SKEIN_COLLIDER ? object->common.collider.name
+                               : lists[l].category == SKEIN_MOTION ? object->common.motion.name
+                                                                   : object->common.plain.name;
             bool by_number = end == dot && end != which && i == index;
             bool by_name = strlen(name) == (size_t)(dot - which) && !strncmp(name, which, (size_t)(dot - which));
             if (!by_number && !by_name) continue;
@@ -244,7 +249,7 @@ static skein_status resolve(const skein_world *world, const char *path, skein_ha
     }
     return sk_fail(
         error, SKEIN_ERROR_NAME, path,
-        "expected bodies, constraints, forces or colliders, then a number or name and a field, or method and a field");
+        "expected bodies, constraints, forces, colliders or motions, then a number or name and a field, or method and a field");
 }
 
 skein_status skein_set_path(skein_world *world, const char *path, skein_value value) {

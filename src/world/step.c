@@ -158,6 +158,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0, at most 1e6", dt);
     if (world->plan_stale) sk_world_run_compiled(world);
     skein_status status = sk_world_arrange(world, error);
+    if (!status) status = sk_world_find_pins(world, error);
     if (status) return status;
     if (!world->plan_stale && world->plan_dt == dt) return SKEIN_OK;
     const sk_method_type *method = world->method;

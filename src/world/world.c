@@ -84,10 +84,14 @@ void skein_world_destroy(skein_world *world) {
     sk_release(allocator, rules->forces.data);
     sk_release(allocator, rules->colliders.data);
     sk_release(allocator, rules->limits.data);
+    for (size_t i = 0; i < world->motions.count; i++) sk_motion_release(world->motions.data[i], allocator);
+    sk_release(allocator, world->motions.data);
     for (size_t i = 0; i < world->objects.count; i++) release_object(world, world->objects.data[i]);
     sk_release(allocator, world->objects.data);
     sk_release(allocator, world->compiled.data);
     sk_release(allocator, world->pins.data);
+    sk_release(allocator, world->led.data);
+    sk_release(allocator, world->led_at);
     if (world->method)
         sk_fields_clear(allocator, world->method->kind.fields, world->method->kind.field_count, world->method_params);
     sk_release(allocator, world->method_params);
@@ -145,7 +149,7 @@ skein_status sk_world_add_particles(skein_world *world, size_t count, const doub
     if (status) return status;
     if (!sk_particles_add(&world->particles, &world->allocator, count, positions, velocities, masses))
         return sk_fail_memory(error, "particles");
-    world->plan_stale = world->slots_stale = true;
+    world->plan_stale = world->slots_stale = world->motions_stale = true;
     return SKEIN_OK;
 }
 

@@ -12,6 +12,7 @@
 #include "base/tasks.h"
 #include "formula/parameters.h"
 #include "methods/method.h"
+#include "motions/motion.h"
 #include "particles/particles.h"
 #include "plan/matrix.h"
 #include "plan/solve.h"
@@ -63,6 +64,7 @@ typedef struct sk_object {
     union {
         sk_common plain;
         sk_collider_common collider;
+        sk_motion_common motion;
     } common;
     char label[96];
     const sk_body_type *body_type; /* bodies only */
@@ -72,6 +74,7 @@ typedef struct sk_object {
         sk_batch *batch;
         sk_force *force;
         sk_collider *collider;
+        sk_motion *motion;
     } as;
 } sk_object;
 
@@ -124,7 +127,14 @@ struct skein_world {
     struct {
         sk_pin *data;
         size_t count, capacity;
-    } pins; /* what is to be led in the next step; a later one of the same particle counts */
+    } pins, led; /* what a program says for the next step, and that after what motions say; a later one of the same
+                    particle counts */
+    struct {
+        sk_motion **data;
+        size_t count, capacity;
+    } motions;
+    bool motions_stale; /* whom they lead is to be found anew */
+    uint32_t *led_at;   /* of each particle its place in `led`, while motions are asked */
     double time;
     uint64_t steps, substeps;
     double first_energy;        /* J, when the first step began */
@@ -149,6 +159,8 @@ skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, c
                                 skein_handle *handle);
 skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *type, const skein_setting *settings,
                                    skein_handle *handle);
+skein_status sk_world_add_motion(skein_world *world, const sk_motion_type *type, const skein_track *track,
+                                 const skein_setting *settings, skein_handle *handle);
 skein_status sk_world_set_method(skein_world *world, const sk_method_type *type, const skein_setting *settings);
 /* The error of a call on this world, to fill in; NULL where there is no world. */
 skein_error *sk_world_error(const skein_world *world);
@@ -214,6 +226,14 @@ skein_status sk_world_check_range(const skein_world *world, size_t first, size_t
 skein_status sk_world_fetch(const skein_world *world);
 /* Before the state is changed by hand: the same, and the device is behind. */
 skein_status sk_world_touch(skein_world *world);
+/* Whether a track is good for a motion of the type; makes one (NULL: no memory); releases it. */
+skein_status sk_world_check_track(const skein_world *world, const sk_motion_type *type, const skein_track *track);
+sk_motion *sk_motion_create(sk_allocator *allocator, const sk_motion_type *type, const skein_track *track);
+void sk_motion_release(sk_motion *motion, sk_allocator *allocator);
+/* Finds whom motions lead, if anything has changed. */
+skein_status sk_world_find_pins(skein_world *world, skein_error *error);
+/* Lists what is to be led to its place at `time`. False when there is no memory. */
+bool sk_world_lead(skein_world *world, double time);
 /* Before a step of `dt` runs: all that is led is on its way, and whoever follows what moves is told (world/pins.c). */
 skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error);
 /* After it: what was led has arrived, and rests. Where the step failed it has not moved, and its places still wait. */

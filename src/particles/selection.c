@@ -1,4 +1,4 @@
-#include "bodies/selection.h"
+#include "particles/selection.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -3,10 +3,10 @@
  *   "0 16 288"                by number (negative: from the end)
  *   "box -1 0 -1  1 2 1"      all in a box, two corners
  *   "sphere 0 1 0  0.3"       all within a radius of a centre
- *   "top corners"             words: what they mean is the body's matter (sheet_selection.h, lattice.c)
+ *   "top corners"             words: what they mean is the body's matter (bodies/)
  *   "top corners, 144"        several, separated by commas */
-#ifndef SK_BODIES_SELECTION_H
-#define SK_BODIES_SELECTION_H
+#ifndef SK_PARTICLES_SELECTION_H
+#define SK_PARTICLES_SELECTION_H
 
 #include "base/memory.h"
 

@@ -1,0 +1,196 @@
+/* Motions in a world: whom each leads, and the places for the end of a step. What is led is then on its way by
+ * world/pins.c, as if a program had said so. */
+#include <string.h>
+
+#include "particles/selection.h"
+#include "world/world.h"
+
+/* ---- adding and releasing ---- */
+
+void sk_motion_release(sk_motion *motion, sk_allocator *allocator) {
+    sk_release(allocator, motion->track.places);
+    sk_release(allocator, motion->track.particles);
+    sk_release(allocator, motion->particle);
+    sk_release(allocator, motion->column);
+    sk_release(allocator, motion);
+}
+
+skein_status sk_world_check_track(const skein_world *world, const sk_motion_type *type, const skein_track *track) {
+    skein_error *error = sk_world_error(world);
+    if (!type->given)
+        return track ? sk_fail(error, SKEIN_ERROR_VALUE, "", "%s takes no places", type->kind.name) : SKEIN_OK;
+    if (!track || !track->sample_count || !track->particle_count)
+        return sk_fail(error, SKEIN_ERROR_VALUE, type->given, "%s needs places: at least one sample of one particle",
+                       type->kind.name);
+    if (!(track->interval > 0) || !(track->interval <= SK_FAR))
+        return sk_fail(error, SKEIN_ERROR_VALUE, type->given, "an interval of %g s: expected more than 0",
+                       track->interval);
+    if (track->sample_count > SIZE_MAX / 1024 / track->particle_count)
+        return sk_fail(error, SKEIN_ERROR_LIMIT, type->given, "%zu samples of %zu particles are too many",
+                       track->sample_count, track->particle_count);
+    for (size_t i = 0; i < track->particle_count; i++)
+        if (track->particles[i] >= world->particles.count)
+            return sk_fail(error, SKEIN_ERROR_VALUE, type->given, "there is no particle %u (the world has %zu)",
+                           track->particles[i], world->particles.count);
+    for (size_t i = 0; i < 3 * track->sample_count * track->particle_count; i++)
+        if (!(track->places[i] >= -SK_FAR && track->places[i] <= SK_FAR))
+            return sk_fail(error, SKEIN_ERROR_VALUE, type->given,
+                           "sample %zu, place %zu: numbers must be finite, under 1e15", i / 3 / track->particle_count,
+                           i / 3 % track->particle_count);
+    return SKEIN_OK;
+}
+
+sk_motion *sk_motion_create(sk_allocator *allocator, const sk_motion_type *type, const skein_track *track) {
+    sk_motion *motion = sk_allocate(allocator, sizeof *motion);
+    if (!motion) return NULL;
+    memset(motion, 0, sizeof *motion);
+    motion->type = type;
+    if (!track) return motion;
+    size_t count = track->particle_count * track->sample_count;
+    motion->track = (sk_track){sk_allocate(allocator, count * sizeof *motion->track.places),
+                               sk_allocate(allocator, track->particle_count * sizeof *motion->track.particles),
+                               track->particle_count, track->sample_count, track->interval};
+    if (!motion->track.places || !motion->track.particles) {
+        sk_motion_release(motion, allocator);
+        return NULL;
+    }
+    memcpy(motion->track.places, track->places, count * sizeof *motion->track.places);
+    memcpy(motion->track.particles, track->particles, track->particle_count * sizeof *motion->track.particles);
+    return motion;
+}
+
+/* ---- whom they lead ---- */
+
+static skein_status refuse_words(void *data, const char *words) {
+    return sk_fail(
+        data, SKEIN_ERROR_NAME, "pins",
+        "'%s': expected numbers, \"box x y z x y z\" or \"sphere x y z radius\"; without \"pins\" it leads all "
+        "that are held",
+        words);
+}
+
+/* Marks those of [first, first + count) that the text names. */
+static skein_status choose(skein_world *world, const sk_body *body, size_t first, size_t count, const char *text,
+                           bool *chosen, skein_error *error) {
+    sk_allocator *allocator = &world->allocator;
+    bool vertices = body && body->vertex_count;
+    size_t numbers = vertices ? body->vertex_count : count;
+    double(*position)[3] = sk_allocate(allocator, count * sizeof *position);
+    uint32_t *number = sk_allocate(allocator, numbers * sizeof *number);
+    skein_status status = position && number ? SKEIN_OK : sk_fail_memory(error, "the pins of a motion");
+    for (size_t i = 0; i < count && !status; i++) {
+        sk_vec3 p = world->particles.built[first + i];
+        position[i][0] = (double)p.x, position[i][1] = (double)p.y, position[i][2] = (double)p.z;
+    }
+    for (size_t i = 0; i < numbers && !status; i++)
+        number[i] = vertices ? body->particle_of_vertex[i] - (uint32_t)first : (uint32_t)i;
+    sk_selectable of = {allocator,
+                        position,
+                        count,
+                        number,
+                        numbers,
+                        vertices ? "vertex" : "particle",
+                        body ? "the body" : "the world",
+                        refuse_words,
+                        error};
+    if (!status) status = sk_selection_apply(text, &of, "pins", chosen, error);
+    sk_release(allocator, position);
+    sk_release(allocator, number);
+    return status;
+}
+
+static const sk_body *body_named(const skein_world *world, const char *name) {
+    for (size_t i = 0; i < world->objects.count; i++) {
+        const sk_object *object = world->objects.data[i];
+        if (object->generation % 2 && object->category == SKEIN_BODY && !strcmp(object->common.plain.name, name))
+            return object->as.body;
+    }
+    return NULL;
+}
+
+/* Lists those that are chosen, in order; of a motion with a track, those that are in it. */
+static bool list_particles(sk_allocator *allocator, sk_motion *motion, size_t first, size_t count, const bool *chosen) {
+    const sk_track *track = &motion->track;
+    size_t from = motion->type->given ? track->particle_count : count;
+    sk_release(allocator, motion->particle);
+    sk_release(allocator, motion->column);
+    motion->count = 0;
+    motion->particle = sk_allocate(allocator, from * sizeof *motion->particle);
+    motion->column = sk_allocate(allocator, from * sizeof *motion->column);
+    if (!motion->particle || !motion->column) return false;
+    for (size_t i = 0; i < from; i++) {
+        size_t particle = motion->type->given ? track->particles[i] : first + i;
+        if (particle < first || particle - first >= count || !chosen[particle - first]) continue;
+        motion->column[motion->count] = (uint32_t)i;
+        motion->particle[motion->count++] = (uint32_t)particle;
+    }
+    return true;
+}
+
+static skein_status find_particles(skein_world *world, sk_motion *motion, skein_error *error) {
+    const sk_body *body = NULL;
+    const char *on = motion->common->on, *pins = motion->common->pins;
+    if (on[0] && !(body = body_named(world, on)))
+        return sk_fail(error, SKEIN_ERROR_NAME, motion->label, "there is no body of the name '%s'", on);
+    size_t first = body ? body->first_particle : 0, count = body ? body->particle_count : world->particles.count;
+    bool *chosen = sk_allocate(&world->allocator, count * sizeof *chosen);
+    skein_status status = chosen ? SKEIN_OK : sk_fail_memory(error, "the pins of a motion");
+    if (!status) memset(chosen, !pins[0], count * sizeof *chosen);
+    if (!status && pins[0]) status = choose(world, body, first, count, pins, chosen, error);
+    if (!status && !list_particles(&world->allocator, motion, first, count, chosen))
+        status = sk_fail_memory(error, "the pins of a motion");
+    sk_release(&world->allocator, chosen);
+    size_t held = 0;
+    for (size_t i = 0; i < motion->count && !status; i++) held += world->particles.held[motion->particle[i]];
+    if (!status && !held && motion->common->enabled)
+        sk_world_log(world, SKEIN_LOG_WARNING, "%s: none of the particles that it is to lead is held: pin them",
+                     motion->label);
+    return status;
+}
+
+skein_status sk_world_find_pins(skein_world *world, skein_error *error) {
+    if (!world->motions_stale) return SKEIN_OK;
+    for (size_t i = 0; i < world->motions.count; i++) {
+        skein_status status = find_particles(world, world->motions.data[i], error);
+        if (status) return status;
+    }
+    sk_release(&world->allocator, world->led_at);
+    size_t places = world->motions.count ? world->particles.count : 0;
+    world->led_at = sk_allocate(&world->allocator, places * sizeof *world->led_at);
+    if (!world->led_at) return sk_fail_memory(error, "the pins of motions");
+    for (size_t i = 0; i < places; i++) world->led_at[i] = SK_NOBODY;
+    world->motions_stale = false;
+    return SKEIN_OK;
+}
+
+/* ---- a step ---- */
+
+/* Adds the places that one motion leads to; a pin that is led already goes on from there. */
+static void lead(skein_world *world, const sk_motion *motion, double time) {
+    double since = time - motion->common->start;
+    if (since < 0) since = 0;
+    for (size_t i = 0; i < motion->count; i++) {
+        uint32_t particle = motion->particle[i];
+        if (!world->particles.held[particle]) continue;
+        sk_vec3 built = world->particles.built[particle];
+        if (world->led_at[particle] == SK_NOBODY) {
+            world->led_at[particle] = (uint32_t)world->led.count;
+            world->led.data[world->led.count++] =
+                (sk_pin){particle, {(double)built.x, (double)built.y, (double)built.z}};
+        }
+        motion->type->move(motion, i, since, world->led.data[world->led_at[particle]].place);
+    }
+}
+
+bool sk_world_lead(skein_world *world, double time) {
+    size_t most = world->pins.count;
+    for (size_t i = 0; i < world->motions.count; i++) most += world->motions.data[i]->count;
+    world->led.count = 0;
+    if (!most) return true;
+    if (!SK_RESERVE(&world->allocator, &world->led, most)) return false;
+    for (size_t i = 0; i < world->motions.count; i++)
+        if (world->motions.data[i]->common->enabled) lead(world, world->motions.data[i], time);
+    for (size_t i = 0; i < world->led.count; i++) world->led_at[world->led.data[i].particle] = SK_NOBODY;
+    for (size_t i = 0; i < world->pins.count; i++) world->led.data[world->led.count++] = world->pins.data[i];
+    return true;
+}
