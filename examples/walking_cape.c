@@ -1,8 +1,5 @@
 /* A cape on somebody who walks: a figure of capsules, and pins on its shoulders, both moved by the program before each
- * step. What is set is where they are at the end of the step; Skein sees how fast that is.
- *
- *     cc -std=c17 -Iinclude examples/walking_cape.c build/libskein.a -lm -pthread -o cape && ./cape
- */
+ * step. What is set is where they are at the end of the step; Skein sees how fast that is. */
 #include <math.h>
 #include <skein/skein.h>
 #include <stdio.h>
@@ -48,8 +45,7 @@ static void ends_of(const limb *l, double t, double from[3], double to[3]) {
 }
 
 static void build(skein_world *world) {
-    const skein_setting cape[] = {SKEIN_TEXT("name", "cape"),
-                                  SKEIN_PAIR("grid", ROWS, COLUMNS),
+    const skein_setting cape[] = {SKEIN_PAIR("grid", ROWS, COLUMNS),
                                   SKEIN_PAIR("size", 0.5, 0.85),
                                   SKEIN_VEC3("rotation", 90, 0, 0),
                                   SKEIN_VEC3("position", 0, 1.03, -0.17),

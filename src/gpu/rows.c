@@ -49,7 +49,7 @@ static const void *params_of(const sk_row *row) {
 static bool is_combine(const sk_row *row) {
     static const sk_kernels *const known[] = {&sk_combine_sum,     &sk_combine_correction, &sk_combine_kick,
                                               &sk_combine_predict, &sk_combine_fall,       &sk_combine_fall_on,
-                                              &sk_combine_wipe,    &sk_combine_steer};
+                                              &sk_combine_wipe,    &sk_combine_steer,      &sk_combine_lead};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (sk_row_is(row, known[i])) return true;
     return false;
