@@ -109,19 +109,22 @@ bool io_grow(void *array_pointer, size_t *capacity, size_t need, size_t item_siz
 
 /* ---- Reading ------------------------------------------------------------------------------- */
 
-/* Opens for reading; refuses what has no end or no content. */
+/* Opens a file for reading, and nothing else: a pipe would be waited for, perhaps for ever, and a device has no end.
+ * Not blocking makes no difference to a file. */
 static int open_to_read(const char *path, struct stat *info, skein_error *error) {
-    int fd = open(path, O_RDONLY | O_CLOEXEC);
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0 || fstat(fd, info) != 0) {
         int fault = errno;
         if (fd >= 0) close(fd);
         io_error_set(error, SKEIN_ERROR_FILE, path, "cannot read: %s", fault_text(fault));
         return -1;
     }
-    if (S_ISREG(info->st_mode) || S_ISFIFO(info->st_mode)) return fd;
+    if (S_ISREG(info->st_mode)) return fd;
     close(fd);
     io_error_set(error, SKEIN_ERROR_FILE, path, "cannot read: it is a %s, expected a file",
-                 S_ISDIR(info->st_mode) ? "directory" : "device");
+                 S_ISDIR(info->st_mode)    ? "directory"
+                 : S_ISFIFO(info->st_mode) ? "pipe"
+                                           : "device");
     return -1;
 }
 
@@ -131,10 +134,10 @@ skein_status io_file_read(const char *path, size_t most, io_bytes *out, skein_er
     int fd = open_to_read(path, &info, error);
     if (fd < 0) return SKEIN_ERROR_FILE;
 
-    // The size is a guess only: a pipe has none, and a file may grow while it is read.
+    // The size is a guess only: files of /proc have none, and a file may grow while it is read.
     size_t capacity = 0;
-    bool too_large = S_ISREG(info.st_mode) && (uintmax_t)info.st_size > most;
-    size_t guess = S_ISREG(info.st_mode) && !too_large ? (size_t)info.st_size + 2 : 1u << 16;
+    bool too_large = (uintmax_t)info.st_size > most;
+    size_t guess = !too_large && info.st_size > 0 ? (size_t)info.st_size + 2 : 1u << 16;
     bool memory = io_grow(&out->data, &capacity, guess, 1);
     ssize_t got = 0;
     while (memory && !too_large) {

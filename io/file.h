@@ -51,7 +51,7 @@ typedef struct io_bytes {
     size_t size;
 } io_bytes;
 
-/* Reads a whole file or pipe of at most `most` bytes. `out` is overwritten; {NULL, 0} on failure. */
+/* Reads a whole file, not a pipe or device, of at most `most` bytes. `out` is overwritten; {NULL, 0} on failure. */
 skein_status io_file_read(const char *path, size_t most, io_bytes *out, skein_error *error);
 void io_bytes_free(io_bytes *bytes);
 

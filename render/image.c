@@ -100,16 +100,39 @@ skein_status render_image_write_png(const render_image *image, const char *path,
 
 /* ---- Reading -------------------------------------------------------------------------------- */
 
-skein_status render_image_read(render_image *image, const char *path, skein_error *error) {
-    FILE *file = fopen(path, "rb");
+/* A pipe would be waited for, perhaps for ever; not blocking makes no difference to a file. */
+static FILE *open_to_read(const char *path, skein_error *error) {
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    struct stat info;
+    if (fd >= 0 && !fstat(fd, &info) && !S_ISREG(info.st_mode)) {
+        close(fd);
+        render_fail(error, SKEIN_ERROR_FILE, path, "cannot read: it is a %s, expected a PNG or JPEG",
+                    S_ISDIR(info.st_mode)    ? "directory"
+                    : S_ISFIFO(info.st_mode) ? "pipe"
+                                             : "device");
+        return NULL;
+    }
+    FILE *file = fd < 0 ? NULL : fdopen(fd, "rb");
     if (!file)
-        return render_fail(error, SKEIN_ERROR_FILE, path, "cannot read: %s; give the path of a PNG or JPEG",
-                           strerror(errno));
+        render_fail(error, SKEIN_ERROR_FILE, path, "cannot read: %s; give the path of a PNG or JPEG", strerror(errno));
+    if (!file && fd >= 0) close(fd);
+    return file;
+}
 
+skein_status render_image_read(render_image *image, const char *path, skein_error *error) {
+    FILE *file = open_to_read(path, error);
+    if (!file) return SKEIN_ERROR_FILE;
     int width = 0, height = 0;
     const char *problem = "";
-    uint8_t *pixels = render_stb_decode(file, &width, &height, &problem);
+    uint8_t *pixels = NULL;
+    bool measured = render_stb_measure(file, &width, &height, &problem);
+    bool small = measured && (int64_t)width * height <= RENDER_IMAGE_MOST_PIXELS;
+    if (small) pixels = render_stb_decode(file, &width, &height, &problem);
     fclose(file);
+    if (measured && !small)
+        return render_fail(error, SKEIN_ERROR_LIMIT, path,
+                           "the picture has %d x %d pixels, and at most %d are read, 8192 x 4096, say: make it smaller",
+                           width, height, RENDER_IMAGE_MOST_PIXELS);
     if (!pixels)
         return render_fail(error, SKEIN_ERROR_SYNTAX, path, "not a PNG or JPEG that can be read (%s)", problem);
     render_image_release(image);

@@ -22,7 +22,9 @@ const uint8_t *render_image_pixel(const render_image *image, int x, int y);
 /* Writes a PNG: into a new file beside `path`, renamed when all is on the disk. A path that names a
  * device or a pipe is written straight. */
 skein_status render_image_write_png(const render_image *image, const char *path, skein_error *error);
-/* Reads a PNG or JPEG (as colours, without its alpha) into an image. */
+/* Reads a PNG or JPEG (as colours, without its alpha) into an image. What is no file is refused, and so is a picture of
+ * more pixels: a small file can hold a very large one, and unpacking takes up to nine bytes for each. */
+enum { RENDER_IMAGE_MOST_PIXELS = 1 << 25 }; /* 8192 x 4096 */
 skein_status render_image_read(render_image *image, const char *path, skein_error *error);
 
 #endif

@@ -30,6 +30,13 @@ uint8_t *render_stb_encode_png(const uint8_t *pixels, int width, int height, int
     return stbi_write_png_to_mem(pixels, 3 * width, width, height, 3, length);
 }
 
+bool render_stb_measure(FILE *file, int *width, int *height, const char **problem) {
+    int channels = 0;
+    bool good = stbi_info_from_file(file, width, height, &channels) != 0;
+    if (!good) *problem = stbi_failure_reason();
+    return good;
+}
+
 uint8_t *render_stb_decode(FILE *file, int *width, int *height, const char **problem) {
     int channels = 0;
     uint8_t *pixels = stbi_load_from_file(file, width, height, &channels, 3);

@@ -97,6 +97,14 @@ static void file_faults_are_named(void **state) {
     assert_int_equal(io_file_read(folder, 100, &bytes, &error), SKEIN_ERROR_FILE);
     assert_string_equal(error.message, "cannot read: it is a directory, expected a file");
     assert_int_equal(io_file_read("/dev/null", 100, &bytes, NULL), SKEIN_ERROR_FILE);
+    // nobody writes into this pipe: whoever waits for that waits for ever
+    assert_int_equal(mkfifo(in_folder("pipe"), 0666), 0);
+    assert_int_equal(io_file_read(in_folder("pipe"), 100, &bytes, &error), SKEIN_ERROR_FILE);
+    assert_string_equal(error.message, "cannot read: it is a pipe, expected a file");
+    // the system's own files say that they are empty
+    assert_int_equal(io_file_read("/proc/self/status", 1 << 20, &bytes, &error), SKEIN_OK);
+    assert_true(bytes.size > 100);
+    io_bytes_free(&bytes);
 
     write_text(in_folder("large"), "12345678901");
     assert_int_equal(io_file_read(in_folder("large"), 10, &bytes, &error), SKEIN_ERROR_LIMIT);

@@ -7,6 +7,7 @@
 
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -469,8 +470,33 @@ static void file_errors_say_what_and_where(void **state) {
 
     path_in(path, "none.png");
     assert_int_equal(render_image_read(&image, path, &error), SKEIN_ERROR_FILE);
-    assert_int_equal(render_image_read(&image, "/dev/null", &error), SKEIN_ERROR_SYNTAX);
+    assert_int_equal(render_image_read(&image, "/dev/null", &error), SKEIN_ERROR_FILE);
+    assert_non_null(strstr(error.message, "it is a device"));
+    // nobody writes into this pipe: whoever waits for that waits for ever
+    path_in(path, "pipe");
+    assert_int_equal(mkfifo(path, 0666), 0);
+    assert_int_equal(render_image_read(&image, path, &error), SKEIN_ERROR_FILE);
+    assert_non_null(strstr(error.message, "it is a pipe"));
+    assert_int_equal(unlink(path), 0);
     render_image_release(&image);
+}
+
+/* What a file of a few bytes says about its size is not taken for memory. */
+static void a_picture_is_measured_before_it_is_unpacked(void **state) {
+    (void)state;
+    static const uint8_t huge[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0,    0, 13, 'I', 'H', 'D', 'R', 0,
+                                   0,    46,  224, 0,   0,    46,   224,  8,    2, 0, 0, 0,  0,   0,   0,   0}; // 12,000^2
+    char path[256];
+    render_image image = {0};
+    skein_error error = {0};
+    path_in(path, "huge.png");
+    FILE *file = fopen(path, "wb");
+    assert_int_equal(fwrite(huge, 1, sizeof huge, file), sizeof huge);
+    fclose(file);
+    assert_int_equal(render_image_read(&image, path, &error), SKEIN_ERROR_LIMIT);
+    assert_non_null(strstr(error.message, "the picture has 12000 x 12000 pixels, and at most 33554432 are read"));
+    assert_null(image.pixels);
+    assert_int_equal(unlink(path), 0);
 }
 
 static void a_full_disk_leaves_nothing(void **state) {
@@ -655,6 +681,7 @@ int main(void) {
         cmocka_unit_test(the_camera_holds_the_whole_box),
         cmocka_unit_test(a_png_comes_back_as_it_was),
         cmocka_unit_test(file_errors_say_what_and_where),
+        cmocka_unit_test(a_picture_is_measured_before_it_is_unpacked),
         cmocka_unit_test(a_full_disk_leaves_nothing),
         cmocka_unit_test(sizes_that_cannot_be_are_refused),
         cmocka_unit_test(a_world_becomes_a_frame),

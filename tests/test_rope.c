@@ -150,6 +150,21 @@ static void tethers_keep_it_short(void **state) {
         }
 }
 
+/* As long as a rope can be, held at both ends: whatever takes time by the square of the length takes many minutes here.
+ */
+static void the_longest_rope_is_built_soon(void **state) {
+    (void)state;
+    skein_world *world = new_world("xpbd", 1);
+    skein_handle rope;
+    OK(world, skein_body_add(world, "rope", NULL,
+                             SKEIN_SETTINGS(SKEIN_REAL("count", 1000000), SKEIN_REAL("length", 2),
+                                            SKEIN_TEXT("pins", "first, last")),
+                             &rope));
+    skein_statistics now = statistics_of(world);
+    assert_true(now.particles == 1000000 && now.held_particles == 2);
+    skein_world_destroy(world);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_rope_lies_between_its_ends),
@@ -157,6 +172,7 @@ int main(void) {
         cmocka_unit_test(it_hangs_the_same_at_any_resolution),
         cmocka_unit_test(bending_pushes_the_ends_apart),
         cmocka_unit_test(tethers_keep_it_short),
+        cmocka_unit_test(the_longest_rope_is_built_soon),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
