@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/printable.h"
+
 /* What is noted over time, and where it is in the measure. */
 #define LIST(member) \
     { #member, offsetof(skein_order, member) }
@@ -97,9 +99,12 @@ void app_flocks_print(const json_t *flocks) {
     size_t index;
     json_t *flock;
     json_array_foreach(flocks, index, flock) {
-        const char *name = json_string_value(json_object_get(flock, "name"));
+        const char *given = json_string_value(json_object_get(flock, "name"));
+        char name[256];
+        snprintf(name, sizeof name, "%s", given && given[0] ? given : "flock");
+        io_printable(name, false);
         printf("%s: polarization %.2f, milling %.2f, nearest %.3g m, %.0f groups; %.3g m from the centre, %.3g m/s\n",
-               name && name[0] ? name : "flock", last_of(flock, "polarization"), last_of(flock, "milling"),
-               last_of(flock, "nearest"), last_of(flock, "groups"), last_of(flock, "radius"), last_of(flock, "speed"));
+               name, last_of(flock, "polarization"), last_of(flock, "milling"), last_of(flock, "nearest"),
+               last_of(flock, "groups"), last_of(flock, "radius"), last_of(flock, "speed"));
     }
 }

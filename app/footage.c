@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "app/progress.h"
+#include "app/terminal.h"
 #include "render/studio.h"
 #include "render/world_frame.h"
 
@@ -64,7 +65,7 @@ static render_bounds look_ahead(const app_scene *loaded, int frames, bool quiet)
         if (!good) break; // the run itself will tell
         app_progress_show(&p, i + 1);
     }
-    if (p.line_open) fprintf(stderr, "\r%*s\r", 100, ""); // the run's own bar takes its place
+    if (p.line_open) app_terminal_draw("\r%*s\r", 100, ""); // the run's own bar takes its place
     render_world_frame_destroy(frame);
     skein_world_destroy(world);
     return held;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "app/command.h"
+#include "app/terminal.h"
 
 static const app_command *const commands[] = {
     &app_run_command,       &app_view_command,    &app_render_command, &app_check_command,   &app_compare_command,
@@ -71,6 +72,7 @@ int main(int argc, char **argv) {
     // a full disk or a closed pipe is an error to report, not the end of the process
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
+    app_terminal_guard();
     int status = dispatch(argc, argv);
     if (!fflush(stdout) && !ferror(stdout)) return status;
     fprintf(stderr, "skein: cannot write to standard output: %s\n", strerror(errno));

@@ -13,6 +13,7 @@
 #include "io/exporters.h"
 #include "io/mesh.h"
 #include "io/pc2.h"
+#include "io/printable.h"
 #include "io/recording.h"
 #ifdef SKEIN_RENDER
 #include "app/footage.h"
@@ -62,7 +63,10 @@ struct app_outputs {
 /* ---- names ---- */
 
 /* A name that is safe as a file's: letters, digits, '-', '_', '.' and whatever is not ASCII. */
-static void file_name(const char *name, const char *nameless, char out[NAME_SIZE]) {
+static void file_name(const char *given, const char *nameless, char out[NAME_SIZE]) {
+    char clean[2 * NAME_SIZE], *name = clean;
+    snprintf(clean, sizeof clean, "%s", given);
+    io_printable(clean, false);
     const size_t most = NAME_SIZE - 24; // room to tell namesakes apart
     size_t length = 0;
     for (; *name && length < most; name++)

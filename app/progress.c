@@ -1,5 +1,7 @@
 #include "app/progress.h"
 
+#include "app/terminal.h"
+
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -41,8 +43,8 @@ void app_progress_show(app_progress *p, int frame) {
     char bar[31];
     for (int i = 0; i < 30; i++) bar[i] = i < (int)(30.0 * frame / p->frames) ? '#' : '.';
     bar[30] = 0;
-    fprintf(stderr, "%s[%s] %s %d of %d, %.1f s, %.0f s left%s", p->terminal ? "\r" : "", bar, p->what, frame,
-            p->frames, elapsed, elapsed / frame * (p->frames - frame), p->terminal ? "   " : "\n");
+    app_terminal_draw("%s[%s] %s %d of %d, %.1f s, %.0f s left%s", p->terminal ? "\r" : "", bar, p->what, frame,
+                      p->frames, elapsed, elapsed / frame * (p->frames - frame), p->terminal ? "   " : "\n");
     p->line_open = p->terminal;
 }
 

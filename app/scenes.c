@@ -4,6 +4,7 @@
 
 #include "app/command.h"
 #include "io/exporters.h"
+#include "io/printable.h"
 #ifdef SKEIN_RENDER
 #include "film/film.h"
 #include "render/picture.h"
@@ -27,7 +28,10 @@ static void print_log(void *user, skein_log_level level, const char *message) {
     app_scene *loaded = user;
     if (level == SKEIN_LOG_WARNING) loaded->warnings++;
     if (loaded->quiet) return;
-    fprintf(stderr, "skein: %s%s\n", level == SKEIN_LOG_WARNING ? "warning: " : "", message);
+    char line[1024];
+    snprintf(line, sizeof line, "%s", message);
+    io_printable(line, false);
+    fprintf(stderr, "skein: %s%s\n", level == SKEIN_LOG_WARNING ? "warning: " : "", line);
 }
 
 const skein_kind *const *app_exporters(void) {

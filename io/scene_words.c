@@ -5,15 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/printable.h"
 #include "io/scene_settings.h"
 
 /* ---- faults ---- */
-
-/* Names and values come from the file: what would break the line or steer a terminal shows as '?'. */
-static void keep_on_one_line(char *text, bool lines) {
-    for (; *text; text++)
-        if (((unsigned char)*text < ' ' && !(lines && *text == '\n')) || *text == 0x7f) *text = '?';
-}
 
 static void report(io_place place, const char *member, skein_status status, const char *words, bool lines) {
     char where[4096 + 256];
@@ -22,8 +17,8 @@ static void report(io_place place, const char *member, skein_status status, cons
     snprintf(where, sizeof where, "%.4000s%s%.100s%s%.120s", place.file, colon, place.path, dot, member);
     skein_error error;
     io_error_set(&error, status, where, "%s", words);
-    keep_on_one_line(error.where, false);
-    keep_on_one_line(error.message, lines);
+    io_printable(error.where, false); // names and values come from the file
+    io_printable(error.message, lines);
     place.faults->count++;
     if (place.faults->report) place.faults->report(place.faults->user, &error);
 }

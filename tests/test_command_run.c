@@ -46,7 +46,7 @@ static void judge_report(const json_t *report, int frames) {
         if (!(x >= numbers[i].least && x <= numbers[i].most)) fail_msg("'%s' is %g", numbers[i].key, x);
     }
     const json_t *flocks = json_object_get(report, "flocks"); // where there are some
-    assert_int_equal(json_object_size(report), COUNT(numbers) + 9 + (flocks ? 1 : 0));
+    assert_int_equal(json_object_size(report), COUNT(numbers) + 10 + (flocks ? 1 : 0));
     for (size_t i = 0; i < json_array_size(flocks); i++) {
         const json_t *flock = json_array_get(flocks, i), *milling = json_object_get(flock, "milling");
         assert_int_equal(json_array_size(milling), (frames + 15) / 16 + 1);

@@ -36,6 +36,21 @@ skein_status sk_fail(skein_error *error, skein_status status, const char *where,
     return status;
 }
 
+void sk_label_copy(char *out, size_t size, const char *name) {
+    const unsigned char *from = (const unsigned char *)name;
+    size_t at = 0;
+    while (*from) {
+        size_t length = 1; // of a letter with all that continues it
+        while ((from[length] & 0xc0) == 0x80) length++;
+        if (at + length >= size) break;
+        bool control = from[0] < 0x20 || from[0] == 0x7f || (from[0] == 0xc2 && from[1] >= 0x80 && from[1] < 0xa0);
+        if (control) out[at++] = '?';
+        else memcpy(out + at, from, length), at += length;
+        from += length;
+    }
+    out[at] = 0;
+}
+
 skein_status sk_fail_memory(skein_error *error, const char *what) {
     return sk_fail(error, SKEIN_ERROR_MEMORY, "", "no memory for %s", what);
 }

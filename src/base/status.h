@@ -14,6 +14,10 @@ skein_status sk_fail_memory(skein_error *error, const char *what);
 /* A pointer that must not be NULL is: SKEIN_ERROR_VALUE, for every public call that returns a status. */
 skein_status sk_fail_null(skein_error *error, const char *argument);
 
+/* Copies a name that somebody gave to where it will be printed: what would break a line or steer a terminal (control
+ * characters, of UTF-8 too) becomes '?', and what is too long is cut between letters. */
+void sk_label_copy(char *out, size_t size, const char *name);
+
 /* Of `count` names, the one nearest to `name` by edit distance, or NULL if none is near. */
 const char *sk_nearest_name(const char *name, const char *const *names, size_t count);
 

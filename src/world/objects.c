@@ -109,7 +109,7 @@ static skein_status make_object(skein_world *world, const skein_kind *kind, cons
     const char *name = kind->category == SKEIN_COLLIDER ? object->common.collider.name
                        : kind->category == SKEIN_MOTION ? object->common.motion.name
                                                         : object->common.plain.name;
-    snprintf(object->label, sizeof object->label, "%s", name[0] ? name : kind->name);
+    sk_label_copy(object->label, sizeof object->label, name[0] ? name : kind->name);
     world->objects.data[world->objects.count++] = object;
     *made = object;
     return SKEIN_OK;

@@ -186,7 +186,7 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
     if (object && object->category == SKEIN_CONSTRAINT) object->as.batch->stale |= params == object->params;
     if (object && !strcmp(name, "name")) {
         const char *given = sk_field_load(field, params).text;
-        snprintf(object->label, sizeof object->label, "%s", given[0] ? given : object->kind->name);
+        sk_label_copy(object->label, sizeof object->label, given[0] ? given : object->kind->name);
     }
     world->plan_stale = true;
     world->motions_stale = true;
