@@ -404,6 +404,24 @@ static void note(notebook *book, const char *path, skein_status status, const sk
     book->good &= !status;
 }
 
+/* A mesh, with what its file says of its faces: that is read again, since nothing else of a run needs it. */
+static skein_status write_obj(const app_outputs *outputs, size_t body, const char *path, const skein_mesh *mesh,
+                              skein_normals normals, skein_error *error) {
+    char *read_path = io_scene_mesh_path(outputs->loaded->scene, body);
+    io_mesh read = {0};
+    bool same = read_path && !io_mesh_read(read_path, &read, (io_warnings){NULL, NULL}, NULL) &&
+                io_mesh_has_faces_of(&read, mesh);
+    if (read_path && !same && !read.tetrahedra)
+        fprintf(stderr,
+                "skein: warning: %s: it is no longer the mesh that was run: %s has no texture coordinates, objects, "
+                "groups and materials of it\n",
+                read_path, path);
+    skein_status status = io_obj_write_as(path, mesh, normals, same ? &read : NULL, same ? read_path : "", error);
+    io_mesh_free(&read);
+    free(read_path);
+    return status;
+}
+
 static void write_objs(const app_outputs *outputs, const io_obj_params *params, notebook *book) {
     char path[PATH_SIZE];
     for (size_t b = 0; b < outputs->body_count; b++) {
@@ -414,7 +432,7 @@ static void write_objs(const app_outputs *outputs, const io_obj_params *params, 
         skein_mesh mesh = {outputs->positions, s.vertex_count,  s.face_sizes,
                            s.face_count,       s.face_vertices, s.face_vertex_count};
         snprintf(path, sizeof path, "%s/%s.obj", outputs->folder, outputs->names[b]);
-        note(book, path, io_obj_write(path, &mesh, (skein_normals)params->normals, &error), &error);
+        note(book, path, write_obj(outputs, b, path, &mesh, (skein_normals)params->normals, &error), &error);
     }
 }
 

@@ -20,6 +20,8 @@ void io_mesh_free(io_mesh *mesh) {
     free(mesh->face_vertices);
     free(mesh->face_uvs);
     free(mesh->uvs);
+    for (size_t i = 0; i < mesh->mark_count; i++) free(mesh->marks[i].line);
+    free(mesh->marks);
     *mesh = (io_mesh){0};
 }
 
@@ -58,6 +60,22 @@ bool io_mesh_add_face(io_mesh *mesh, uint32_t size) {
     if (!io_grow(&mesh->face_sizes, &mesh->face_capacity, mesh->face_count + 1, sizeof(uint32_t))) return false;
     mesh->face_sizes[mesh->face_count++] = size;
     return true;
+}
+
+bool io_mesh_add_mark(io_mesh *mesh, char *line) {
+    if (!line || !io_grow(&mesh->marks, &mesh->mark_capacity, mesh->mark_count + 1, sizeof *mesh->marks)) {
+        free(line);
+        return false;
+    }
+    mesh->marks[mesh->mark_count++] = (io_mesh_mark){mesh->face_count, line};
+    return true;
+}
+
+bool io_mesh_has_faces_of(const io_mesh *read, const skein_mesh *mesh) {
+    return !read->tetrahedra && read->vertex_count == mesh->vertex_count && read->face_count == mesh->face_count &&
+           read->face_vertex_count == mesh->face_vertex_count &&
+           !memcmp(read->face_sizes, mesh->face_sizes, mesh->face_count * sizeof *mesh->face_sizes) &&
+           !memcmp(read->face_vertices, mesh->face_vertices, mesh->face_vertex_count * sizeof *mesh->face_vertices);
 }
 
 /* ---- Reading ------------------------------------------------------------------------------- */

@@ -16,6 +16,13 @@
 /* face_sizes      3        4
  * face_vertices   0 1 2    2 1 3 4      corners, face after face, 0-based
  * face_uvs        0 1 2    2 1 - -      the corners' places in uvs; IO_NO_UV where a corner has none */
+/* A line of an OBJ that names the object, group, smoothing or material of the faces from `face` on, or the file of the
+ * materials: "usemtl red", its words parted by one blank each. */
+typedef struct io_mesh_mark {
+    size_t face;
+    char *line;
+} io_mesh_mark;
+
 typedef struct io_mesh {
     double *positions; /* vertex_count x 3, as in the file */
     size_t vertex_count;
@@ -26,6 +33,8 @@ typedef struct io_mesh {
     size_t face_vertex_count;
     double *uvs; /* uv_count x 2 */
     size_t uv_count;
+    struct io_mesh_mark *marks; /* mark_count, by their faces: what OBJ says of the faces that follow */
+    size_t mark_count, mark_capacity;
     bool tetrahedra; /* the faces are none, but tetrahedra of four corners each, in no order of their own */
     size_t vertex_capacity, face_capacity, corner_capacity, corner_uv_capacity, uv_capacity; /* internal */
 } io_mesh;
@@ -45,6 +54,8 @@ bool io_mesh_add_vertex(io_mesh *mesh, const double position[3]);
 bool io_mesh_add_uv(io_mesh *mesh, const double uv[2]);
 bool io_mesh_add_corner(io_mesh *mesh, uint32_t vertex, uint32_t uv);
 bool io_mesh_add_face(io_mesh *mesh, uint32_t size);
+/* Takes `line`, which malloc() made, for the faces from here on. */
+bool io_mesh_add_mark(io_mesh *mesh, char *line);
 
 /* Read a mesh from memory; `path` serves the messages only. */
 skein_status io_obj_read(const char *text, size_t size, const char *path, io_mesh *out, io_warnings warnings,
@@ -69,6 +80,12 @@ skein_status io_tetrahedra_read_files(const char *path, size_t most, io_mesh *ou
  * are written as floats that read back bit for bit. Refuses a position that is not finite as a float.
  * `mesh` needs valid indices. */
 skein_status io_obj_write(const char *path, const skein_mesh *mesh, skein_normals normals, skein_error *error);
+/* The same with the texture coordinates, objects, groups and materials of the mesh that was read from `read_path`, of
+ * the same faces. A file of materials is named with its folder. */
+skein_status io_obj_write_as(const char *path, const skein_mesh *mesh, skein_normals normals, const io_mesh *read,
+                             const char *read_path, skein_error *error);
+/* Whether a mesh that was read has the same vertices and faces, in number and order. */
+bool io_mesh_has_faces_of(const io_mesh *read, const skein_mesh *mesh);
 
 /* ---- For the readers and writers: lines, words and numbers -------------------------------------- */
 

@@ -15,6 +15,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* How often something was passed over, and where first. */
 typedef struct tally {
@@ -39,12 +40,17 @@ typedef struct obj_reader {
     forward *forwards;
     size_t forward_count, forward_capacity;
     tally weights, uvs, undrawn, unknown;
+    size_t object;       /* the last mark that names one, and 1 more */
+    size_t object_count; /* that have faces */
+    size_t object_faces; /* faces there were before it */
+    bool in_face;
 } obj_reader;
 
-static const char *const passed_over[] = {
-    "vn",     "vp",    "g",        "o",        "s",    "mg",         "usemtl",    "mtllib", "usemap", "maplib",
-    "cstype", "deg",   "bmat",     "step",     "parm", "trim",       "hole",      "scrv",   "sp",     "end",
-    "con",    "bevel", "c_interp", "d_interp", "lod",  "shadow_obj", "trace_obj", "ctech",  "stech"};
+static const char *const passed_over[] = {"vn",       "vp",   "mg",         "usemap",    "maplib", "cstype",
+                                          "deg",      "bmat", "step",       "parm",      "trim",   "hole",
+                                          "scrv",     "sp",   "end",        "con",       "bevel",  "c_interp",
+                                          "d_interp", "lod",  "shadow_obj", "trace_obj", "ctech",  "stech"};
+static const char *const kept[] = {"o", "g", "s", "usemtl", "mtllib"};
 static const char *const undrawn[] = {"l", "p", "curv", "curv2", "surf", "call", "bsp", "bzp", "cdc", "cdp", "res"};
 
 static void count_in(tally *t, size_t line) {
@@ -198,8 +204,45 @@ static bool is_one_of(io_word word, const char *const *list, size_t count) {
     return false;
 }
 
+/* Keeps a line for the writer: its words, a blank between each two. */
+static skein_status keep_line(obj_reader *reader, io_word word) {
+    char *line = NULL;
+    size_t length = 0, capacity = 0;
+    bool object = io_word_is(word, "o"), good = true;
+    do {
+        size_t size = (size_t)(word.end - word.begin);
+        good = io_grow(&line, &capacity, length + size + 2, 1);
+        if (!good) break;
+        if (length) line[length++] = ' ';
+        memcpy(line + length, word.begin, size);
+        line[length += size] = 0;
+    } while (io_scan_word(&reader->scan, &word));
+    if (!good) free(line);
+    if (!good || !io_mesh_add_mark(reader->mesh, line)) return fail_memory(reader);
+    if (object) {
+        reader->object_count += reader->mesh->face_count > reader->object_faces;
+        reader->object_faces = reader->mesh->face_count;
+        reader->object = reader->mesh->mark_count;
+    }
+    return SKEIN_OK;
+}
+
+/* A fault in a face says whose it is, where the file has names: that is where to mend it. */
+static void name_object(const obj_reader *reader) {
+    skein_error *error = reader->scan.error;
+    if (!error || !reader->in_face || !reader->object) return;
+    const char *line = reader->mesh->marks[reader->object - 1].line, *name = line + strcspn(line, " ");
+    size_t length = strlen(error->message);
+    char quote[IO_QUOTE_SIZE];
+    name += *name == ' ';
+    snprintf(error->message + length, sizeof error->message - length,
+             "; it belongs to the object %s: mend or delete the face there",
+             io_quote(name, name + strlen(name), quote));
+}
+
 /* A word that is neither vertex nor face. */
 static skein_status pass_over(obj_reader *reader, io_word word) {
+    if (is_one_of(word, kept, sizeof kept / sizeof *kept)) return keep_line(reader, word);
     if (is_one_of(word, passed_over, sizeof passed_over / sizeof *passed_over)) return SKEIN_OK;
     if (is_one_of(word, undrawn, sizeof undrawn / sizeof *undrawn)) {
         count_in(&reader->undrawn, word.line);
@@ -220,7 +263,8 @@ static skein_status read_line(obj_reader *reader) {
     io_word word;
     if (!io_scan_word(&reader->scan, &word)) return SKEIN_OK;
     if (io_word_is(word, "v")) return read_vertex(reader, word.line);
-    if (io_word_is(word, "f") || io_word_is(word, "fo")) return read_face(reader, word.line);
+    reader->in_face = io_word_is(word, "f") || io_word_is(word, "fo");
+    if (reader->in_face) return read_face(reader, word.line);
     if (io_word_is(word, "vt")) return read_uv(reader, word.line);
     return pass_over(reader, word);
 }
@@ -262,12 +306,18 @@ skein_status io_obj_read(const char *text, size_t size, const char *path, io_mes
     if (status == SKEIN_OK) do
             status = read_line(&reader);
         while (status == SKEIN_OK && io_scan_line(&reader.scan));
+    if (status != SKEIN_OK) name_object(&reader);
     if (status == SKEIN_OK) status = finish(&reader);
     if (status == SKEIN_OK) {
         warn_tally(warnings, path, reader.unknown, "a line that OBJ does not know was passed over");
         warn_tally(warnings, path, reader.undrawn, "points, lines and curves are not read, only faces");
         warn_tally(warnings, path, reader.weights, "a vertex's weight other than 1 was left out");
         warn_tally(warnings, path, reader.uvs, "a texture coordinate that does not exist was left out");
+        reader.object_count += out->face_count > reader.object_faces;
+        if (reader.object_count > 1)
+            io_warn(warnings,
+                    "%s: its %zu objects become one body; save each as a file of its own for a body of its own", path,
+                    reader.object_count);
     } else io_mesh_free(out);
     free(reader.forwards);
     return status;

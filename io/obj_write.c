@@ -3,11 +3,13 @@
  *   # header: version, units, counts
  *   v x y z        every vertex, in the mesh's order, used or not
  *   vn x y z       as many normals: the same number serves both
- *   f a//a b//b c//c ...
+ *   vt u v         where the mesh that was read has them
+ *   f a//a b//b c//c ..., a/t/a with texture coordinates, and before them the lines o, g, s, usemtl and mtllib as read
  */
 #include "io/mesh.h"
 
 #include <assert.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -57,17 +59,56 @@ static void write_vector(io_output *output, const char *keyword, const double ve
     io_output_write(output, line, at);
 }
 
-/* "f 1//1 2//2 3//3" */
-static void write_face(io_output *output, const uint32_t *corners, uint32_t size) {
+/* "f 1//1 2//2 3//3", or "f 1/4/1 ..." with texture coordinates (NULL: none). */
+static void write_face(io_output *output, const uint32_t *corners, const uint32_t *uvs, uint32_t size) {
     io_output_write(output, "f", 1);
     for (uint32_t corner = 0; corner < size; corner++) {
         uint64_t number = (uint64_t)corners[corner] + 1;
         io_output_write(output, " ", 1);
         io_output_count(output, number);
-        io_output_write(output, "//", 2);
+        io_output_write(output, "/", 1);
+        if (uvs && uvs[corner] != IO_NO_UV) io_output_count(output, (uint64_t)uvs[corner] + 1);
+        io_output_write(output, "/", 1);
         io_output_count(output, number);
     }
     io_output_write(output, "\n", 1);
+}
+
+static void write_uv(io_output *output, const double uv[2]) {
+    char line[4 + 2 * IO_FLOAT_SIZE] = "vt";
+    size_t at = 2;
+    for (int k = 0; k < 2; k++) {
+        line[at++] = ' ';
+        at += io_float_print(isfinite((float)uv[k]) ? (float)uv[k] : 0, line + at);
+    }
+    line[at++] = '\n';
+    io_output_write(output, line, at);
+}
+
+/* A line as it was read; a file of materials is looked for where the mesh was. */
+static void write_mark(io_output *output, const char *line, const char *read_path) {
+    static const char library[] = "mtllib ";
+    const char *slash = strrchr(read_path, '/');
+    char folder[PATH_MAX] = "";
+    if (!strncmp(line, library, sizeof library - 1) && line[sizeof library - 1] != '/') {
+        snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash + 1 - read_path) : 0, read_path);
+        char *whole = realpath(slash ? folder : ".", NULL);
+        io_output_printf(output, "%s%s/%s\n", library, whole ? whole : ".", line + sizeof library - 1);
+        free(whole);
+    } else {
+        io_output_write(output, line, strlen(line));
+        io_output_write(output, "\n", 1);
+    }
+}
+
+/* All faces, and before each what was said of it. */
+static void write_faces(io_output *output, const skein_mesh *mesh, const io_mesh *read, const char *read_path) {
+    size_t mark = 0, corner = 0;
+    for (size_t f = 0; f < mesh->face_count; corner += mesh->face_sizes[f++]) {
+        for (; read && mark < read->mark_count && read->marks[mark].face <= f; mark++)
+            write_mark(output, read->marks[mark].line, read_path);
+        write_face(output, mesh->face_vertices + corner, read ? read->face_uvs + corner : NULL, mesh->face_sizes[f]);
+    }
 }
 
 /* No reader knows what to do with nan, so no such file is made. */
@@ -85,6 +126,11 @@ static skein_status check_positions(const char *path, const skein_mesh *mesh, sk
 }
 
 skein_status io_obj_write(const char *path, const skein_mesh *mesh, skein_normals normals, skein_error *error) {
+    return io_obj_write_as(path, mesh, normals, NULL, "", error);
+}
+
+skein_status io_obj_write_as(const char *path, const skein_mesh *mesh, skein_normals normals, const io_mesh *read,
+                             const char *read_path, skein_error *error) {
     skein_error unseen;
     error = error ? error : &unseen;
     skein_status status = check_positions(path, mesh, error);
@@ -100,9 +146,8 @@ skein_status io_obj_write(const char *path, const skein_mesh *mesh, skein_normal
                          mesh->vertex_count, mesh->face_count);
         for (size_t v = 0; v < mesh->vertex_count; v++) write_vector(output, "v", mesh->positions + 3 * v);
         for (size_t v = 0; v < mesh->vertex_count; v++) write_vector(output, "vn", vectors + 3 * v);
-        const uint32_t *corners = mesh->face_vertices;
-        for (size_t f = 0; f < mesh->face_count; corners += mesh->face_sizes[f++])
-            write_face(output, corners, mesh->face_sizes[f]);
+        for (size_t t = 0; read && t < read->uv_count; t++) write_uv(output, read->uvs + 2 * t);
+        write_faces(output, mesh, read, read_path);
         status = io_output_commit(output, error);
     } else status = error->status;
     free(vectors);

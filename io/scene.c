@@ -369,6 +369,12 @@ json_t *io_scene_document(const io_scene *scene) {
     return scene->root;
 }
 
+char *io_scene_mesh_path(const io_scene *scene, size_t body) {
+    const char *file =
+        json_string_value(json_object_get(json_array_get(json_object_get(scene->root, "bodies"), body), "mesh"));
+    return file && file[0] ? io_path_beside(scene->path, file) : NULL;
+}
+
 const char *io_scene_path(const io_scene *scene) {
     return scene->path;
 }

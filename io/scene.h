@@ -55,6 +55,8 @@ io_scene *io_scene_read_text(const char *text, size_t size, const char *path, co
 void io_scene_free(io_scene *scene); /* NULL is allowed */
 
 const io_scene_settings *io_scene_get(const io_scene *scene);
+/* Where the mesh of a body lies, by its place in the scene, to be freed; NULL if it has none. */
+char *io_scene_mesh_path(const io_scene *scene, size_t body);
 
 /* Checks everything, the method's demands too, and builds the world. NULL if there was any fault, here or
  * in reading. `desc` as for skein_world_create. */

@@ -237,13 +237,34 @@ static void two_runs_do_not_share_a_folder(void **state) {
     json_decref(report);
 }
 
+/* ---- What came in goes out ---------------------------------------------------------------------------------- */
+
+static void a_mesh_keeps_its_texture_and_materials(void **state) {
+    (void)state;
+    write_text(in_folder("m.obj"),
+               "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nvt 0 0\nvt 0.5 0\nvt 0.5 1\n"
+               "o cape\nusemtl red\nf 1/1 2/2 3/3 4\ng seam\nusemtl blue\nf 2/1 5/2 3/3\n");
+    char *s = in_folder("m.json"), words[700];
+    write_scene(s, "{ 'frames': 2, 'output': ['obj'], 'forces': [ { 'type': 'gravity' } ],\n"
+                   "  'bodies': [ { 'type': 'cloth', 'name': 'c', 'mesh': 'm.obj', 'pins': '0' } ] }\n");
+    outcome o = SKEIN("run", s, "--out", in_folder("out"), "--quiet");
+    assert_status(o, 0);
+    assert_string_equal(o.err, "");
+    outcome_free(&o);
+    char *text = read_text(in_folder("out/c.obj"));
+    snprintf(words, sizeof words,
+             "/m.mtl\no cape\nusemtl red\nf 1/1/1 2/2/2 3/3/3 4//4\ng seam\nusemtl blue\nf 2/1/2 5/2/5 3/3/3\n");
+    assert_contains(text, words);
+    assert_contains(text, "vt 0 0\nvt 0.5 0\nvt 0.5 1\nmtllib /");
+    free(text);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
 #define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
-        TEST(a_killed_run_leaves_what_can_be_read),
-        TEST(without_room_what_was_finished_is_kept),
-        TEST(no_link_is_followed_while_a_file_grows),
-        TEST(two_runs_do_not_share_a_folder),
+        TEST(a_killed_run_leaves_what_can_be_read),   TEST(without_room_what_was_finished_is_kept),
+        TEST(no_link_is_followed_while_a_file_grows), TEST(two_runs_do_not_share_a_folder),
+        TEST(a_mesh_keeps_its_texture_and_materials),
     };
     return cmocka_run_group_tests_name("what is kept", tests, NULL, NULL);
 }

@@ -18,6 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <limits.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -890,6 +891,56 @@ static void a_limit_leaves_nothing_half_written(void **state) {
 
 /* ---- Exporters ----------------------------------------------------------------------------- */
 
+static void ignore_line(void *user, const char *line) {
+    snprintf(user, 300, "%s", line);
+}
+
+/* What an OBJ says of its faces is written as it was read; and a fault in a face says whose it is. */
+static void obj_keeps_what_is_said_of_faces(void **state) {
+    (void)state;
+    static const char source[] = "mtllib my  paints.mtl\n"
+                                 "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0.5\n"
+                                 "vt 0 0\nvt 1 0.25\nvt 1 1 0\nvt 0 1e300\n"
+                                 "o left half # the first\ng a b\nusemtl red\ns 1\n"
+                                 "f 1/1 2/2 3/3 4/4\n"
+                                 "o right\nusemtl blue\ns off\n"
+                                 "f 2 5 3//\n";
+    char warning[300] = "", ought[1000], resolved[PATH_MAX];
+    io_mesh mesh, again;
+    skein_error error = {SKEIN_OK, "", ""};
+    write_text(in_folder("said.obj"), source);
+    assert_int_equal(io_mesh_read(in_folder("said.obj"), &mesh, (io_warnings){ignore_line, warning}, &error), SKEIN_OK);
+    assert_non_null(strstr(warning, "its 2 objects become one body; save each as a file of its own"));
+    skein_mesh view = io_mesh_view(&mesh);
+    assert_true(io_mesh_has_faces_of(&mesh, &view));
+    assert_int_equal(io_obj_write_as(in_folder("kept.obj"), &view, SKEIN_NORMALS_AREA, &mesh, in_folder("said.obj"), &error),
+                     SKEIN_OK);
+    io_bytes bytes = read_all(in_folder("kept.obj"));
+    snprintf(ought, sizeof ought,
+             "vt 0 0\nvt 1 0.25\nvt 1 1\nvt 0 0\n"
+             "mtllib %s/my paints.mtl\no left half\ng a b\nusemtl red\ns 1\n"
+             "f 1/1/1 2/2/2 3/3/3 4/4/4\n"
+             "o right\nusemtl blue\ns off\n"
+             "f 2//2 5//5 3//3\n",
+             realpath(folder, resolved));
+    assert_string_equal(bytes.data + bytes.size - strlen(ought), ought);
+    io_bytes_free(&bytes);
+    // and read again it is the same
+    assert_int_equal(io_mesh_read(in_folder("kept.obj"), &again, (io_warnings){NULL, NULL}, &error), SKEIN_OK);
+    assert_true(io_mesh_has_faces_of(&again, &view) && again.mark_count == mesh.mark_count);
+    assert_memory_equal(again.face_uvs, mesh.face_uvs, mesh.face_vertex_count * sizeof *mesh.face_uvs);
+    mesh.face_vertices[0] = 4; // another mesh
+    assert_false(io_mesh_has_faces_of(&again, &view));
+    io_mesh_free(&again);
+    io_mesh_free(&mesh);
+
+    static const char bad[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\no hat\nf 1 2 3\no cape\nf 1 2 9\nf 3 3 1\n";
+    assert_int_equal(io_obj_read(bad, sizeof bad - 1, "b.obj", &mesh, (io_warnings){NULL, NULL}, &error),
+                     SKEIN_ERROR_SYNTAX);
+    assert_string_equal(error.where, "b.obj:8");
+    assert_non_null(strstr(error.message, "; it belongs to the object 'cape': mend or delete the face there"));
+}
+
 static void exporters_describe_their_fields(void **state) {
     (void)state;
     static const char *const names[] = {"obj", "pc2", "csv", "hdf5", NULL};
@@ -936,6 +987,7 @@ int main(void) {
         cmocka_unit_test(pc2_faults_are_named),
         cmocka_unit_test(a_full_device_is_an_error),
         cmocka_unit_test(a_limit_leaves_nothing_half_written),
+        cmocka_unit_test(obj_keeps_what_is_said_of_faces),
         cmocka_unit_test(exporters_describe_their_fields),
     };
     return cmocka_run_group_tests_name("mesh io", tests, make_folder, remove_folder);
