@@ -117,9 +117,13 @@ static render_bounds bounds_to_hold(const render_world_frame *made) {
     return bounds;
 }
 
-static bool is_visible(const skein_world *world, skein_handle handle) {
+static bool says(const skein_world *world, skein_handle handle, const char *field) {
     skein_value value;
-    return skein_get(world, handle, "visible", &value) != SKEIN_OK || value.number[0] != 0;
+    return skein_get(world, handle, field, &value) != SKEIN_OK || value.number[0] != 0;
+}
+
+static bool is_visible(const skein_world *world, skein_handle handle) {
+    return says(world, handle, "visible");
 }
 
 /* ---- The image ------------------------------------------------------------------------------ */
@@ -227,7 +231,7 @@ static skein_status take_body(render_world_frame *made, const skein_world *world
     gather(b, &made->state);
 
     // a body without faces shows its particles; a hidden one shows nothing
-    bool visible = is_visible(world, handle), faces = b->mesh.triangle_count > 0;
+    bool visible = is_visible(world, handle) && says(world, handle, "enabled"), faces = b->mesh.triangle_count > 0;
     bool rope = b->kind == ROPE && made->view.surface;
     if (visible && render_are_birds(skein_object_kind(world, handle), &made->view)) {
         mark(&made->state, &surface, RENDER_HIDDEN, index);

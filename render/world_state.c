@@ -118,6 +118,11 @@ skein_status render_world_state_read(render_world_state *s, skein_world *world, 
                                     : skein_positions_copy(world, 0, count, s->positions);
     if (!status && (view->velocities || speed)) status = skein_velocities_copy(world, 0, count, s->velocities);
     if (status) return render_fail(error, status, "", "the particles cannot be read");
+    for (size_t p = 0; p < count; p++) { // what is not there is not shown, and not fast
+        if (skein_particle_present(world, p)) continue;
+        s->shown[p] = RENDER_HIDDEN;
+        memset(s->velocities + 3 * p, 0, 3 * sizeof *s->velocities);
+    }
     if (view->springs || strain) status = read_springs(s, world, error);
     if (!status && view->contacts) status = read_contacts(s, world, error);
     if (status) return status;

@@ -107,7 +107,7 @@ static void assert_cells_are_sound(const sk_cells *cells, const crowd *c, double
 static void assert_crowd_is_sorted(sk_cells *cells, sk_allocator *allocator, const crowd *c, double radius) {
     sk_state state = {c->at, c->v, 0, c->particle_of};
     for (int part = 0; part < 2; part++) {
-        sk_group group = {part ? c->count / 3 : 0, part ? c->count / 2 : c->count, 0, c->slots};
+        sk_group group = {part ? c->count / 3 : 0, part ? c->count / 2 : c->count, 0, c->slots, 0};
         assert_true(sk_cells_sort(cells, allocator, &state, &group, (real)radius));
         assert_cells_are_sound(cells, c, radius, group.first, group.end);
     }

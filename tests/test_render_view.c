@@ -358,6 +358,28 @@ static void fields_are_arrows(void **state) {
     skein_world_destroy(world);
 }
 
+/* A body that is disabled or removed leaves no surface, no particle and no arrow. */
+static void what_is_not_there_is_not_drawn(void **state) {
+    (void)state;
+    skein_world *world = skein_world_create(NULL, NULL);
+    skein_handle cloth, birds;
+    const double positions[3] = {5, 5, 5}, fast[3] = {1, 0, 0}, mass = 1;
+    OK(skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 4, 4)), &cloth));
+    OK(skein_body_add(world, "flock", NULL, SKEIN_SETTINGS(SKEIN_REAL("count", 7)), &birds));
+    OK(skein_particles_add(world, 1, positions, fast, &mass, NULL));
+    view.particles = view.velocities = true;
+    for (int turn = 0; turn < 3; turn++) {
+        const render_frame *frame = update(world);
+        assert_int_equal(frame->surface_count, turn == 0);
+        assert_int_equal(frame->points[RENDER_PARTICLES].count, turn == 0 ? 16 + 1 : 1);
+        if (turn == 0) OK(skein_set(world, cloth, "enabled", skein_number(0)));
+        if (turn == 0) OK(skein_set(world, birds, "enabled", skein_number(0)));
+        if (turn == 1) OK(skein_remove(world, cloth));
+        if (turn == 1) OK(skein_remove(world, birds));
+    }
+    skein_world_destroy(world);
+}
+
 static void contacts_are_lines_on_the_collider(void **state) {
     (void)state;
     skein_world *world = skein_world_create(NULL, NULL);
@@ -715,6 +737,7 @@ int main(void) {
         VIEW_TEST(bodies_differ_by_colour),
         VIEW_TEST(normals_and_velocities_are_lines),
         VIEW_TEST(fields_are_arrows),
+        VIEW_TEST(what_is_not_there_is_not_drawn),
         VIEW_TEST(contacts_are_lines_on_the_collider),
         VIEW_TEST(colliders_follow_at_once),
         VIEW_TEST(ground_grid_and_axes),

@@ -309,7 +309,22 @@ skein_status skein_motion_add(skein_world *world, const char *kind, const skein_
                               const skein_setting *settings, skein_handle *handle);
 /* Sets the method; its former settings are gone. The world's own fields are kept. */
 skein_status skein_method_set(skein_world *world, const char *kind, const skein_setting *settings);
-/* Removes a constraint, force or collider. (Bodies stay: particle indices never change.) */
+/* Removes a body, constraint, force or collider. Its handle is stale from then on; an `index` of a later object may be
+ * the same, its generation is not. SKEIN_ERROR_HANDLE for the method and for handles of nothing; SKEIN_ERROR_MEMORY.
+ *
+ * With a body go its particles, constraints and surface. The indices of all other particles stay. Its own are of nobody
+ * (skein_particle_present() is false): positions and velocities read 0 there, in views with a w of 0, and what is
+ * written there is dropped; until a body that is added later, and has no more particles than lie there together, gets
+ * them. So skein_particle_count() never falls, and a game that adds and removes bodies for hours holds no more
+ * than its largest moment needed, with some room between bodies of different sizes. Constraints of the program's own
+ * lose those of their elements that one of the particles was in (enclosed_volume and pressure act no more). Rules whose
+ * `on` or `minds` names the body move nobody until there is a body of that name again.
+ *
+ * A body that is not `enabled` is out of it in the same way, with all that it has: it does not move, is in no contact,
+ * statistics, hash, ray, flock or list, costs a step nothing, and constraints of the program's own on its particles
+ * rest. Its positions and velocities can be read and written; enabled again it goes on from them. All others move as if
+ * there were no such body, to the bit. Taking a body out or back costs about what adding one costs. Graphics cards refuse
+ * to step a world in which particles are out of it (SKEIN_ERROR_VALUE, in the step). */
 skein_status skein_remove(skein_world *world, skein_handle handle);
 
 /* ---- Fields of living objects ------------------------------------------------------------------ */
@@ -482,7 +497,10 @@ static inline skein_buffer skein_doubles(double *data, size_t stride) {
     return buffer;
 }
 
+/* All indices that there are, those of bodies that are disabled or were removed, too. */
 size_t skein_particle_count(const skein_world *world);
+/* Whether a particle takes part: its body, if it has one, is enabled and was not removed. False beyond the last one. */
+bool skein_particle_present(const skein_world *world, size_t particle);
 /* Where the state cannot be fetched from a device, skein_world_error() says so, and a view has what was there before. */
 skein_view skein_position_view(const skein_world *world); /* w is the inverse mass */
 skein_view skein_velocity_view(const skein_world *world); /* w is the mass, kg (held ones too) */

@@ -35,10 +35,93 @@ sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *typ
     return batch;
 }
 
+bool sk_batch_is_on(const sk_batch *batch) {
+    return *batch->enabled && batch->count && !batch->broken && !batch->rests;
+}
+
+/* ---- elements that are left out ---- */
+
+static sk_presence presence_of(const sk_batch *batch, const uint32_t *particle, const sk_particles *particles) {
+    uint8_t worst = SK_HERE;
+    for (size_t i = 0; i < batch->arity; i++)
+        if (particles->presence[particle[i]] > worst) worst = particles->presence[particle[i]];
+    return (sk_presence)worst;
+}
+
+static size_t count_up_to(const sk_batch *batch, const sk_elements *all, const sk_particles *particles,
+                          sk_presence most) {
+    size_t count = 0;
+    for (size_t e = 0; e < all->count; e++)
+        count += presence_of(batch, all->particle + e * batch->arity, particles) <= most;
+    return count;
+}
+
+static void release_elements(sk_elements *elements, sk_allocator *allocator) {
+    sk_release(allocator, elements->particle);
+    sk_release(allocator, elements->rest);
+    sk_release(allocator, elements->scale);
+    *elements = (sk_elements){0, NULL, NULL, NULL};
+}
+
+/* A copy of those elements whose particles are all that much there; false when there is no memory. */
+static bool copy_elements(const sk_batch *batch, const sk_elements *from, const sk_particles *particles,
+                          sk_presence most, sk_allocator *allocator, sk_elements *to) {
+    size_t count = count_up_to(batch, from, particles, most), next = 0;
+    *to = (sk_elements){count, sk_allocate(allocator, count * batch->arity * sizeof *to->particle),
+                        sk_allocate(allocator, count * batch->rest_count * sizeof *to->rest),
+                        from->scale ? sk_allocate(allocator, count * sizeof *to->scale) : NULL};
+    if (!to->particle || !to->rest || (from->scale && !to->scale)) {
+        release_elements(to, allocator);
+        return false;
+    }
+    for (size_t e = 0; e < from->count; e++) {
+        if (presence_of(batch, from->particle + e * batch->arity, particles) > most) continue;
+        memcpy(to->particle + next * batch->arity, from->particle + e * batch->arity,
+               batch->arity * sizeof *to->particle);
+        for (size_t r = 0; r < batch->rest_count; r++) to->rest[r * count + next] = from->rest[r * from->count + e];
+        if (from->scale) to->scale[next] = from->scale[e];
+        next++;
+    }
+    return true;
+}
+
+static sk_elements elements_of(const sk_batch *batch) {
+    return (sk_elements){batch->count, batch->particle, batch->rest, batch->scale};
+}
+
+static void set_elements(sk_batch *batch, const sk_elements *elements) {
+    batch->count = elements->count, batch->particle = elements->particle;
+    batch->rest = elements->rest, batch->scale = elements->scale;
+}
+
+bool sk_batch_leave_out(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles) {
+    sk_elements present = elements_of(batch), all = batch->whole.particle ? batch->whole : present, kept, now;
+    size_t not_gone = count_up_to(batch, &all, particles, SK_ASIDE), here = count_up_to(batch, &all, particles, SK_HERE);
+    if (batch->enclosure) {
+        batch->broken |= not_gone < all.count;
+        batch->rests = here < all.count;
+        return true;
+    }
+    if (not_gone == all.count && here == present.count) return true;
+    if (!copy_elements(batch, &all, particles, SK_ASIDE, allocator, &kept)) return false;
+    if (!copy_elements(batch, &kept, particles, SK_HERE, allocator, &now)) {
+        release_elements(&kept, allocator);
+        return false;
+    }
+    sk_batch_forget_sweeps(batch, allocator); // they know elements by their old numbers
+    release_elements(&batch->whole, allocator);
+    release_elements(&present, allocator);
+    set_elements(batch, &now);
+    if (now.count == kept.count) release_elements(&kept, allocator);
+    batch->whole = kept;
+    return true;
+}
+
 void sk_batch_release(sk_batch *batch, sk_allocator *allocator) {
     if (!batch) return;
     sk_batch_forget_sweeps(batch, allocator);
     sk_enclosure_release(batch->enclosure, allocator);
+    release_elements(&batch->whole, allocator);
     void *arrays[] = {batch->particle,        batch->slot,           batch->rest,
                       batch->scale,           batch->sweeps,         batch->lane,
                       batch->lane_rest,       batch->lane_stiffness, batch->lane_compliance,

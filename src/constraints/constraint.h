@@ -72,6 +72,14 @@ typedef struct sk_material {
     double damping;
 } sk_material;
 
+/* Elements that share their settings. */
+typedef struct sk_elements {
+    size_t count;
+    uint32_t *particle; /* count x arity, user's indices */
+    real *rest;         /* rest_count x count: first all first ones */
+    real *scale;        /* NULL: all 1 */
+} sk_elements;
+
 struct sk_batch {
     const sk_constraint_type *type;
     void *params; /* the type's, an sk_material first; owned by whoever owns the batch */
@@ -84,6 +92,8 @@ struct sk_batch {
     uint32_t *slot;     /* the same as slots */
     real *rest;         /* rest_count x count: first all first ones */
     real *scale;        /* NULL: all 1 */
+    sk_elements whole;  /* all elements, where some are left out of those above; else empty */
+    bool broken, rests; /* one constraint on all elements: some of its particles are gone, or out of it */
     uint32_t *pair;     /* arity (arity - 1)/2 x count: where pairs' blocks lie in the world's matrix; NULL: none */
 
     /* Made from the above when slots change: elements in the order of sweeps, a lane each. */
@@ -106,6 +116,11 @@ struct sk_batch {
  * reals, `scale` (or NULL) `count`. */
 sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *type, const void *params, size_t count,
                           const uint32_t *particles, const real *rest, const real *scale);
+/* Whether it acts. */
+bool sk_batch_is_on(const sk_batch *batch);
+/* Leaves out the elements of which a particle takes no part, for good where it is gone, and takes back those whose
+ * particles are all there again. False when there is no memory: all as before. */
+bool sk_batch_leave_out(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles);
 int sk_constraint_arity(const sk_constraint_type *type, const void *params);
 int sk_constraint_rest_count(const sk_constraint_type *type, const void *params);
 void sk_batch_release(sk_batch *batch, sk_allocator *allocator);

@@ -233,6 +233,8 @@ static bool cut(sk_batch *batch, sk_allocator *allocator, const sk_particles *pa
 bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles) {
     sk_batch_forget_sweeps(batch, allocator);
     batch->stale = true;
+    // those of a body that takes no part walk nowhere: all of its elements are out, or none (sk_batch_leave_out)
+    if (batch->count && !sk_particle_is_here(particles, batch->particle[0])) return true;
     for (size_t i = 0; i < batch->arity * batch->count; i++) batch->slot[i] = particles->slot_of[batch->particle[i]];
     if (!batch->enclosure) return cut(batch, allocator, particles);
     return sk_enclosure_arrange(batch, allocator, particles) && allocate_lanes(batch, allocator);
@@ -259,7 +261,7 @@ static void mark_special(sk_batch *batch, sk_sweep *sweep) {
 
 void sk_batch_refresh(sk_batch *batch) {
     const sk_material *material = batch->params;
-    if (!batch->stale) return;
+    if (!batch->stale || !batch->lane) return;
     batch->stale = false;
     for (size_t i = 0; i < batch->rest_count * batch->lane_count; i++) batch->lane_rest[i] = 0;
     for (size_t l = 0; l < batch->lane_count; l++) {

@@ -17,7 +17,6 @@ static const uint32_t state_vectors = BIT(SK_X) | BIT(SK_V) | BIT(SK_PREVIOUS);
 static const char *owner_of(const skein_world *world, const sk_row *row, const char **label) {
     for (size_t i = 0; i < world->objects.count; i++) {
         const sk_object *object = world->objects.data[i];
-        if (!(object->generation % 2)) continue;
         const sk_batch *const *batches = NULL;
         size_t count = 0;
         if (object->category == SKEIN_BODY)

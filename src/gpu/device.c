@@ -79,6 +79,11 @@ static bool has_grid(const sk_gpu_device *device) {
 
 static skein_status prepare_entered(sk_gpu_device *device, skein_world *world, skein_error *error) {
     const sk_particles *particles = &world->particles;
+    if (particles->out_count)
+        return sk_fail(error, SKEIN_ERROR_VALUE, "device",
+                       "%zu particles are of bodies that are disabled or were removed: a graphics card steps worlds in "
+                       "which all are there; enable them, or step on the processor",
+                       particles->out_count);
     if (device->slot_count != particles->slot_count) {
         free_vectors(device); // the world has fetched the state
         device->base.behind = true;

@@ -128,7 +128,7 @@ void sk_write_fields(sk_writer *writer) {
 }
 
 static bool is_on(const sk_batch *batch) {
-    return *batch->enabled && batch->count;
+    return sk_batch_is_on(batch);
 }
 
 /* Without damping the multiplier is zero whenever it is read in the only pass of a substep, and counts for nothing
@@ -416,7 +416,7 @@ skein_status sk_refuse_rigid(const sk_rules *rules, const char *method, skein_er
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
         const sk_material *material = batch->params;
-        if (*batch->enabled && material->stiffness >= SK_UNBOUNDED)
+        if (sk_batch_is_on(batch) && material->stiffness >= SK_UNBOUNDED)
             return sk_fail(error, SKEIN_ERROR_VALUE, "method.type",
                            "%s needs finite stiffness, but '%s' is rigid: give it a stiffness or use xpbd", method,
                            batch->label);

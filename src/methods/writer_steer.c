@@ -11,7 +11,7 @@
 #include "plan/sort.h"
 
 static bool is_on(const sk_force *force, sk_deed deed) {
-    return *force->enabled && force->type->deed == deed;
+    return *force->enabled && force->type->deed == deed && force->moved.first < force->moved.end;
 }
 
 static bool has(const sk_rules *rules, sk_deed deed) {
@@ -55,7 +55,7 @@ static sk_row row_of_slots(const sk_writer *writer, const sk_force *force) {
 
 static void write_neighbours(sk_writer *writer, const sk_force *force) {
     double radius = force->type->radius(force->params);
-    if (!(radius > 0)) return; // there are no neighbours
+    if (!(radius > 0) || force->seen.first == force->seen.end) return; // there are no neighbours
     bool among = force->moved.first == force->seen.first && force->moved.end == force->seen.end;
     sk_write_cells(writer, &force->seen, radius);
     sk_add_row(writer, (sk_row){.kind = SK_ROW_NEIGHBOUR,

@@ -62,7 +62,8 @@ static bool reserve(sk_particles *particles, sk_allocator *allocator, size_t par
             !grow(allocator, (void **)&particles->rank, old, room, sizeof(uint32_t)) ||
             !grow(allocator, (void **)&particles->built, old, room, sizeof(sk_vec3)) ||
             !grow(allocator, (void **)&particles->mass, old, room, sizeof(real)) ||
-            !grow(allocator, (void **)&particles->held, old, room, sizeof(bool)))
+            !grow(allocator, (void **)&particles->held, old, room, sizeof(bool)) ||
+            !grow(allocator, (void **)&particles->presence, old, room, sizeof(uint8_t)))
             return false;
         particles->capacity = room;
     }
@@ -71,7 +72,7 @@ static bool reserve(sk_particles *particles, sk_allocator *allocator, size_t par
 
 bool sk_particles_add(sk_particles *particles, sk_allocator *allocator, size_t count, const double *positions,
                       const double *velocities, const double *masses) {
-    size_t first_slot = particles->slot_count, slots = (count + 15) / 16 * 16;
+    size_t first_slot = particles->slot_end, slots = (count + 15) / 16 * 16;
     if (!reserve(particles, allocator, particles->count + count, first_slot + slots + 16)) return false;
     for (size_t s = first_slot; s < first_slot + slots; s++) particles->particle_of[s] = SK_NOBODY;
     for (size_t k = 0; k < count; k++) {
@@ -84,12 +85,13 @@ bool sk_particles_add(sk_particles *particles, sk_allocator *allocator, size_t c
         particles->built[i] = sk_v3_of(p);
         particles->mass[i] = mass;
         particles->held[i] = !(mass > 0);
+        particles->presence[i] = SK_HERE;
         particles->vector[SK_X][s] = (sk_vec4){(real)p[0], (real)p[1], (real)p[2], mass > 0 ? 1 / mass : 0};
         particles->vector[SK_V][s] = (sk_vec4){(real)v[0], (real)v[1], (real)v[2], mass};
         particles->vector[SK_PREVIOUS][s] = particles->vector[SK_X][s];
     }
     particles->count += count;
-    particles->slot_count += slots;
+    particles->slot_end += slots;
     particles->arranged = false;
     return true;
 }
@@ -116,19 +118,93 @@ void sk_particles_truncate(sk_particles *particles, size_t count) {
     particles->count = count;
 }
 
+/* ---- who takes part ---- */
+
+void sk_particles_set_presence(sk_particles *particles, size_t first, size_t count, sk_presence presence) {
+    for (size_t i = first; i < first + count; i++) {
+        uint32_t slot = particles->slot_of[i];
+        particles->out_count -= particles->presence[i] != SK_HERE;
+        particles->gone_count -= particles->presence[i] == SK_GONE;
+        particles->presence[i] = (uint8_t)presence;
+        particles->out_count += presence != SK_HERE;
+        particles->gone_count += presence == SK_GONE;
+        particles->vector[SK_PREVIOUS][slot] = particles->vector[SK_X][slot]; // it does not move between steps
+        if (presence != SK_GONE) continue;
+        for (int v = SK_X; v < SK_T0; v++) particles->vector[v][slot] = (sk_vec4){0, 0, 0, 0};
+        particles->rank[i] = (uint32_t)i;
+        particles->mass[i] = 0;
+        particles->held[i] = true;
+        particles->built[i] = (sk_vec3){0, 0, 0};
+    }
+    size_t kept = 0;
+    for (size_t s = 0; s < particles->strips.count; s++) {
+        const sk_strips strips = particles->strips.data[s];
+        bool mine = strips.first_particle >= first && strips.first_particle < first + count;
+        if (presence != SK_GONE || !mine) particles->strips.data[kept++] = strips;
+    }
+    particles->strips.count = kept;
+    particles->arranged = false;
+}
+
+size_t sk_particles_find_room(const sk_particles *particles, size_t first, size_t count) {
+    size_t run = 0;
+    for (size_t i = 0; i < first && particles->gone_count; i++) {
+        run = particles->presence[i] == SK_GONE ? run + 1 : 0;
+        if (run == count && count) return i + 1 - run;
+    }
+    return first - run; // it slides down over those before it that are gone
+}
+
+void sk_particles_renumber(sk_particles *particles, size_t first, size_t target) {
+    size_t count = particles->count - first, offset = first - target;
+    if (!offset) return;
+    for (size_t k = 0; k < count; k++) {
+        size_t i = target + k, old = first + k;
+        particles->gone_count -= particles->presence[i] == SK_GONE;
+        particles->out_count -= particles->presence[i] == SK_GONE;
+        particles->presence[i] = particles->presence[old];
+        particles->slot_of[i] = particles->slot_of[old];
+        particles->place[i] = particles->place[old];
+        particles->rank[i] = particles->rank[old] - (uint32_t)offset;
+        particles->built[i] = particles->built[old];
+        particles->mass[i] = particles->mass[old];
+        particles->held[i] = particles->held[old];
+        particles->particle_of[particles->slot_of[i]] = (uint32_t)i;
+    }
+    for (size_t s = 0; s < particles->strips.count; s++)
+        if (particles->strips.data[s].first_particle >= first)
+            particles->strips.data[s].first_particle -= (uint32_t)offset;
+    particles->count = target + count > first ? target + count : first;
+    particles->arranged = false;
+}
+
+bool sk_particles_next_run(const sk_particles *particles, size_t *first, size_t *end) {
+    while (*first < particles->count && particles->presence[*first] != SK_HERE) ++*first;
+    *end = particles->out_count ? *first : particles->count;
+    while (*end < particles->count && particles->presence[*end] == SK_HERE) ++*end;
+    return *first < particles->count;
+}
+
+/* ---- slots ---- */
+
 static void swap(uint32_t **a, uint32_t **b) {
     uint32_t *kept = *a;
     *a = *b;
     *b = kept;
 }
 
-/* Writes every particle's slot into `slot_of`: strips first. */
-static void number_slots(sk_particles *particles, const uint32_t *by_rank, uint32_t *slot_of) {
+static bool takes_part(const sk_particles *particles, const sk_strips *strips) {
+    return particles->presence[strips->first_particle] == SK_HERE;
+}
+
+/* Writes every particle's slot into `slot_of`: strips first, and those that are out of it from `behind` on. */
+static void number_slots(sk_particles *particles, const uint32_t *by_rank, size_t behind, uint32_t *slot_of) {
     size_t next = 0;
     memset(slot_of, 0xff, particles->count * sizeof *slot_of);
     for (size_t s = 0; s < particles->strips.count; s++) {
         sk_strips *strips = &particles->strips.data[s];
-        strips->first_slot = next;
+        strips->first_slot = takes_part(particles, strips) ? next : SIZE_MAX;
+        if (strips->first_slot == SIZE_MAX) continue;
         for (uint32_t i = 0; i < strips->count; i++) {
             uint32_t particle = strips->first_particle + i, place = particles->place[particle];
             size_t r = place / strips->columns, c = place % strips->columns;
@@ -138,45 +214,55 @@ static void number_slots(sk_particles *particles, const uint32_t *by_rank, uint3
     }
     for (size_t k = 0; k < particles->count; k++) {
         uint32_t i = by_rank[k];
-        if (slot_of[i] == UINT32_MAX) slot_of[i] = (uint32_t)next++;
+        if (slot_of[i] == UINT32_MAX && particles->presence[i] == SK_HERE) slot_of[i] = (uint32_t)next++;
     }
+    for (size_t i = 0; i < particles->count; i++)
+        if (particles->presence[i] == SK_ASIDE) slot_of[i] = (uint32_t)behind++;
+    for (size_t i = 0; i < particles->count; i++)
+        if (particles->presence[i] == SK_GONE) slot_of[i] = (uint32_t)behind;
 }
 
 bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
     if (particles->arranged) return true;
-    size_t strip_slots = 0, loose = particles->count;
+    size_t strip_slots = 0, loose = particles->count - particles->out_count;
     for (size_t s = 0; s < particles->strips.count; s++) {
         const sk_strips *strips = &particles->strips.data[s];
+        if (!takes_part(particles, strips)) continue;
         strip_slots += (size_t)strips->rows * strips->width * 16;
         loose -= strips->count;
     }
     size_t empty_slot = strip_slots + (loose + 15) / 16 * 16, slot_count = empty_slot + 16;
-    if (slot_count > UINT32_MAX) return false;
+    size_t behind = particles->out_count ? (particles->out_count - particles->gone_count + 1 + 15) / 16 * 16 : 0;
+    size_t slot_end = slot_count + behind;
+    if (slot_end > UINT32_MAX) return false;
     // everything anew first, so that a failure changes nothing
     uint32_t *slot_of = sk_allocate(allocator, particles->capacity * sizeof *slot_of);
     sk_vec4 *vector[SK_VECTOR_COUNT] = {NULL};
     uint32_t *by_rank = sk_allocate(allocator, particles->count * sizeof *by_rank);
-    uint32_t *particle_of = sk_allocate(allocator, slot_count * sizeof *particle_of);
+    uint32_t *particle_of = sk_allocate(allocator, slot_end * sizeof *particle_of);
     bool good = slot_of && by_rank && particle_of;
     for (size_t i = 0; i < particles->count && good; i++) by_rank[particles->rank[i]] = (uint32_t)i;
     for (int v = SK_X; v < SK_T0 && good; v++)
-        good = (vector[v] = sk_allocate_shifted(allocator, slot_count * sizeof(sk_vec4), apart(v))) != NULL;
+        good = (vector[v] = sk_allocate_shifted(allocator, slot_end * sizeof(sk_vec4), apart(v))) != NULL;
     if (good) {
-        number_slots(particles, by_rank, slot_of);
+        number_slots(particles, by_rank, slot_count, slot_of);
         for (int v = SK_X; v < SK_T0; v++)
             for (size_t i = 0; i < particles->count; i++)
-                vector[v][slot_of[i]] = particles->vector[v][particles->slot_of[i]];
+                if (particles->presence[i] != SK_GONE)
+                    vector[v][slot_of[i]] = particles->vector[v][particles->slot_of[i]];
         for (int v = SK_X; v < SK_T0; v++) {
             sk_vec4 *old = particles->vector[v];
             particles->vector[v] = vector[v];
             vector[v] = old;
         }
-        memset(particle_of, 0xff, slot_count * sizeof *particle_of);
-        for (size_t i = 0; i < particles->count; i++) particle_of[slot_of[i]] = (uint32_t)i;
+        memset(particle_of, 0xff, slot_end * sizeof *particle_of);
+        for (size_t i = 0; i < particles->count; i++)
+            if (particles->presence[i] != SK_GONE) particle_of[slot_of[i]] = (uint32_t)i;
         swap(&particles->slot_of, &slot_of);
         swap(&particles->particle_of, &particle_of);
         drop_temporaries(particles, allocator);
-        particles->slot_count = particles->slot_capacity = slot_count;
+        particles->slot_count = slot_count;
+        particles->slot_end = particles->slot_capacity = slot_end;
         particles->strip_slots = strip_slots;
         particles->empty_slot = empty_slot;
         particles->arranged = true;
@@ -192,6 +278,7 @@ void sk_particles_reset(sk_particles *particles) {
     for (size_t i = 0; i < particles->count; i++) {
         uint32_t s = particles->slot_of[i];
         sk_vec3 p = particles->built[i];
+        if (particles->presence[i] == SK_GONE) continue;
         particles->vector[SK_X][s] = (sk_vec4){p.x, p.y, p.z, particles->vector[SK_X][s].w};
         particles->vector[SK_V][s] = (sk_vec4){0, 0, 0, particles->vector[SK_V][s].w};
         particles->vector[SK_PREVIOUS][s] = particles->vector[SK_X][s];
@@ -203,6 +290,7 @@ void sk_particles_reset(sk_particles *particles) {
 void sk_particle_hold(sk_particles *particles, size_t particle, bool held) {
     uint32_t s = particles->slot_of[particle];
     real mass = particles->mass[particle];
+    if (particles->presence[particle] == SK_GONE) return;
     particles->held[particle] = held || !(mass > 0);
     particles->vector[SK_X][s].w = particles->vector[SK_PREVIOUS][s].w = particles->held[particle] ? 0 : 1 / mass;
     if (held) particles->vector[SK_V][s] = (sk_vec4){0, 0, 0, particles->vector[SK_V][s].w};
@@ -217,6 +305,7 @@ void sk_particles_release(sk_particles *particles, sk_allocator *allocator) {
     sk_release(allocator, particles->built);
     sk_release(allocator, particles->mass);
     sk_release(allocator, particles->held);
+    sk_release(allocator, particles->presence);
     sk_release(allocator, particles->strips.data);
     memset(particles, 0, sizeof *particles);
 }

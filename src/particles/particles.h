@@ -3,12 +3,14 @@
  * A slot is a place that is good for speed; the user's index is what every file and call uses, and
  * slot_of[user] leads from one to the other. Strips come first:
  *
- *   slots  | strips of a grid | strips of another | all other particles, by rank | empty |
+ *   slots  | strips of a grid | strips of another | all other particles, by rank | empty | out of it | zero |
  *
  * Strips: a grid of rows x columns is cut into sixteen strips of `width` columns, one a lane, so that the
  * particle at (r, c) has slot first + (r width + c mod width) 16 + c / width. A neighbour of a block of
  * sixteen slots is then one block, at a constant distance. Slots without a particle are zero and weigh
- * nothing; the last sixteen are always empty. Owned by the world; only the world adds particles. */
+ * nothing; the sixteen empty ones stay so. Particles that are out of it (their body is disabled) lie behind them, where no
+ * row of a plan comes; those that are gone (their body was removed) have no slot of their own but one that is zero. To
+ * all others it is as if they had never been. Owned by the world; only the world adds particles. */
 #ifndef SK_PARTICLES_PARTICLES_H
 #define SK_PARTICLES_PARTICLES_H
 
@@ -21,11 +23,20 @@ typedef struct sk_strips {
     size_t first_slot;
 } sk_strips;
 
+/* Whether a particle takes part. */
+typedef enum sk_presence {
+    SK_HERE,
+    SK_ASIDE, /* it stays as it is until it takes part again */
+    SK_GONE   /* its index is free for another body's */
+} sk_presence;
+
 typedef struct sk_particles {
     size_t count, capacity;           /* user's particles */
-    size_t slot_count, slot_capacity; /* multiples of 16 */
+    size_t slot_count, slot_capacity; /* multiples of 16; the slots of those who take part, and the empty ones */
+    size_t slot_end;                  /* all slots in use */
+    size_t out_count, gone_count;     /* who takes no part (those that are gone, too), and those that are gone */
     size_t strip_slots;               /* the first ones, in strips */
-    size_t empty_slot;                /* the first of the last sixteen */
+    size_t empty_slot;                /* the first of the sixteen */
     bool arranged;                    /* slots are as the picture shows */
     sk_vec4 *vector[SK_VECTOR_COUNT]; /* slots; SK_NONE is unused, temporaries may be NULL */
     uint32_t *slot_of;
@@ -35,6 +46,7 @@ typedef struct sk_particles {
     sk_vec3 *built;  /* positions as they were built, user's order */
     real *mass;      /* kg, user's order; 0 for one that was built as held */
     bool *held;
+    uint8_t *presence; /* an sk_presence */
     struct {
         sk_strips *data;
         size_t count, capacity;
@@ -46,6 +58,17 @@ bool sk_particles_add(sk_particles *particles, sk_allocator *allocator, size_t c
                       const double *velocities, const double *masses);
 /* Says that particles are a grid, at these places of it (NULL: in row order); width and first slot are found here. */
 bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, sk_strips strips, const uint32_t *place);
+/* Takes particles out, or back in; whole bodies only. They are as they were: slots are to be arranged. */
+void sk_particles_set_presence(sk_particles *particles, size_t first, size_t count, sk_presence presence);
+/* Where `count` particles that are gone, or end with the last one, lie together, before `first`; or `first`. */
+size_t sk_particles_find_room(const sk_particles *particles, size_t first, size_t count);
+/* Gives the particles from `first` on, the last ones, the indices from `target` on, and takes off what is then beyond. */
+void sk_particles_renumber(sk_particles *particles, size_t first, size_t target);
+/* The next run of particles that take part: [*first, *end) from *first on; false where there is none. */
+bool sk_particles_next_run(const sk_particles *particles, size_t *first, size_t *end);
+static inline bool sk_particle_is_here(const sk_particles *particles, size_t particle) {
+    return particles->presence[particle] == SK_HERE;
+}
 /* Takes back all particles and strips from `count` on: the last ones added, not yet arranged. */
 void sk_particles_truncate(sk_particles *particles, size_t count);
 /* Gives every particle its slot; the state goes along. False when there is no memory: all as before. */

@@ -79,7 +79,7 @@ bool sk_cells_frame_box(sk_cells *cells, sk_allocator *allocator, sk_vec3 low, s
                         real radius) {
     double size = (double)radius;
     sk_vec3 extent = sk_sub(high, low);
-    while (cells_needed(extent, size) > most_cells(group->end - group->first)) size *= 1.25;
+    while (cells_needed(extent, size) > most_cells(group->end - group->first - group->out)) size *= 1.25;
     cells->origin = low;
     cells->size = (real)size;
     cells->per_x = (real)(SK_CELLS_ACROSS / size);

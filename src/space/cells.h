@@ -29,6 +29,7 @@ enum { SK_CELLS_ACROSS = 4 }; /* cells along x in the width of one along y */
 typedef struct sk_group {
     size_t first, end;           /* particles */
     size_t first_slot, end_slot; /* not always multiples of 16 */
+    size_t out;                  /* how many of them take no part, and are in no cell */
 } sk_group;
 
 typedef struct sk_cells {

@@ -16,7 +16,7 @@ static const skein_formula *formula_of(const sk_object *object) {
 void sk_world_run_compiled(skein_world *world) {
     for (size_t i = 0; i < world->objects.count; i++) {
         sk_object *object = world->objects.data[i];
-        const skein_formula *formula = object->generation % 2 ? formula_of(object) : NULL;
+        const skein_formula *formula = formula_of(object);
         if (!formula) continue;
         const skein_compiled *compiled = find_compiled(world, formula);
         object->making->run_compiled(object->params, compiled);

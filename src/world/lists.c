@@ -25,7 +25,7 @@ skein_status skein_springs_copy(skein_world *world, skein_spring *out, size_t mo
     *count = 0;
     for (size_t i = 0; i < world->rules.batches.count && !status; i++) {
         const sk_batch *batch = world->rules.batches.data[i];
-        if (batch->type->arity != 2 || (batch->enabled && !*batch->enabled)) continue;
+        if (batch->type->arity != 2 || !sk_batch_is_on(batch)) continue;
         if (*count < most) copy_batch(batch, world->particles.vector[SK_X], out + *count, most - *count);
         *count += batch->count;
     }
@@ -35,7 +35,7 @@ skein_status skein_springs_copy(skein_world *world, skein_spring *out, size_t mo
 /* Where the contacts go. */
 typedef struct contact_list {
     skein_contact *out;
-    size_t most, count;
+    size_t most, count, first; /* the particle that is visited as 0 */
     skein_handle collider;
 } contact_list;
 
@@ -43,7 +43,7 @@ static void add_contact(void *user, size_t particle, sk_vec3 normal, double gap)
     contact_list *list = user;
     if (list->count++ >= list->most) return;
     list->out[list->count - 1] = (skein_contact){
-        (uint32_t)particle, list->collider, {(double)normal.x, (double)normal.y, (double)normal.z}, gap};
+        (uint32_t)(list->first + particle), list->collider, {(double)normal.x, (double)normal.y, (double)normal.z}, gap};
 }
 
 skein_status skein_collider_probe(const skein_world *world, skein_handle handle, size_t count, const double *points,
@@ -79,14 +79,16 @@ skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, s
     if (most) SK_NEED(world, out);
     const sk_particles *all = &world->particles;
     skein_status status = sk_world_fetch(world);
-    contact_list list = {out, most, 0, {0, 0, 0}};
+    contact_list list = {.out = out, .most = most};
     for (size_t i = 0; i < world->objects.count && !status; i++) {
         const sk_object *object = world->objects.data[i];
-        if (!(object->generation % 2) || object->category != SKEIN_COLLIDER || !object->as.collider->common->enabled)
+        if (object->category != SKEIN_COLLIDER || !object->as.collider->common->enabled)
             continue;
         list.collider = sk_handle_at(world, i);
-        sk_collider_visit(object->as.collider, world->time, all->vector[SK_X], all->slot_of, all->count, add_contact,
-                          &list);
+        for (size_t end; sk_particles_next_run(all, &list.first, &end); list.first = end)
+            sk_collider_visit(object->as.collider, world->time, all->vector[SK_X], all->slot_of + list.first,
+                              end - list.first, add_contact, &list);
+        list.first = 0;
     }
     *count = list.count;
     return status;

@@ -7,9 +7,9 @@
 /* ---- handles ---- */
 
 sk_object *sk_object_of(const skein_world *world, skein_handle handle) {
-    if (handle.world != world->identity || handle.index >= world->objects.count) return NULL;
-    sk_object *object = world->objects.data[handle.index];
-    return object->generation == handle.generation && handle.generation % 2 ? object : NULL;
+    if (handle.world != world->identity || handle.index >= world->places.count) return NULL;
+    const sk_entry *entry = &world->places.data[handle.index];
+    return entry->generation == handle.generation && handle.generation % 2 ? entry->object : NULL;
 }
 
 skein_status sk_fail_handle(const skein_world *world, skein_handle handle, const char *what, const char *where) {
@@ -31,18 +31,13 @@ sk_object *sk_object_find(const skein_world *world, skein_handle handle, skein_c
 }
 
 skein_handle sk_handle_at(const skein_world *world, size_t index) {
-    return (skein_handle){(uint32_t)index, world->objects.data[index]->generation, world->identity};
+    const sk_object *object = world->objects.data[index];
+    return (skein_handle){object->index, object->generation, world->identity};
 }
 
 bool skein_handle_valid(const skein_world *world, skein_handle handle) {
     if (!world) return false;
     return sk_object_of(world, handle) != NULL;
-}
-
-static skein_handle handle_of(const skein_world *world, const sk_object *object) {
-    for (size_t i = 0; i < world->objects.count; i++)
-        if (world->objects.data[i] == object) return sk_handle_at(world, i);
-    return (skein_handle){UINT32_MAX, 0, 0};
 }
 
 skein_status skein_user_set(skein_world *world, skein_handle handle, void *user) {
@@ -95,7 +90,9 @@ static skein_status fill_object(sk_allocator *allocator, sk_object *object, cons
 static skein_status make_object(skein_world *world, const skein_kind *kind, const sk_making *making,
                                 const skein_setting *settings, sk_object **made, skein_error *error) {
     sk_allocator *allocator = &world->allocator;
-    if (!SK_RESERVE(allocator, &world->objects, world->objects.count + 1)) return sk_fail_memory(error, kind->name);
+    if (!SK_RESERVE(allocator, &world->objects, world->objects.count + 1) ||
+        !SK_RESERVE(allocator, &world->places, world->places.count + 1))
+        return sk_fail_memory(error, kind->name);
     sk_object *object = sk_allocate(allocator, sizeof *object);
     if (!object) return sk_fail_memory(error, kind->name);
     object->category = kind->category;
@@ -121,11 +118,19 @@ static void unmake_object(skein_world *world, sk_object *object) {
     world->objects.count--;
 }
 
+/* Gives it a handle, the first whose object is gone; there is room for one more. */
 static skein_status finish_object(skein_world *world, sk_object *object, skein_handle *handle) {
-    object->generation = 1;
+    size_t index = 0;
+    if (world->objects.count > world->places.count) index = world->places.count; // all others have an object
+    while (index < world->places.count && world->places.data[index].object) index++;
+    if (index == world->places.count) world->places.data[world->places.count++] = (sk_entry){NULL, 0};
+    sk_entry *entry = &world->places.data[index];
+    entry->object = object;
+    object->index = (uint32_t)index;
+    object->generation = ++entry->generation;
     world->plan_stale = world->motions_stale = true;
     if (object->category == SKEIN_CONSTRAINT || object->category == SKEIN_BODY) world->slots_stale = true;
-    if (handle) *handle = handle_of(world, object);
+    if (handle) *handle = (skein_handle){object->index, object->generation, world->identity};
     return SKEIN_OK;
 }
 
@@ -280,7 +285,7 @@ skein_status sk_world_add_constraint(skein_world *world, const sk_constraint_typ
 
 skein_status sk_world_find_arity(skein_world *world, const sk_constraint_type *type, const skein_setting *settings,
                                  size_t *arity) {
-    sk_object *object;
+    sk_object *object = NULL;
     skein_status status = make_object(world, &type->kind, type->making, settings, &object, sk_world_error(world));
     if (status) return status;
     *arity = (size_t)sk_constraint_arity(type, object->params);
@@ -298,12 +303,7 @@ static void undo_body(skein_world *world, sk_object *object, size_t particles, s
     while (rules->limits.count > limits) sk_limit_release(rules->limits.data[--rules->limits.count], allocator);
     sk_particles_truncate(&world->particles, particles);
     world->triangles.count = world->slots_of_triangles.count = triangles;
-    for (size_t i = 0; i < body->batch_count; i++) sk_release(allocator, body->material[i]);
-    sk_release(allocator, body->particle_of_vertex);
-    sk_release(allocator, body->face_sizes);
-    sk_release(allocator, body->face_vertices);
-    sk_release(allocator, body->corner_uv);
-    sk_release(allocator, body);
+    sk_body_release(world, body);
     unmake_object(world, object);
 }
 
@@ -311,7 +311,8 @@ skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, con
                                const skein_setting *settings, skein_handle *handle) {
     skein_error *error = sk_world_error(world);
     sk_object *object;
-    skein_status status = make_object(world, &type->kind, NULL, settings, &object, error);
+    skein_status status = sk_world_settle_presence(world, error); // before indices are used again
+    if (!status) status = make_object(world, &type->kind, NULL, settings, &object, error);
     if (status) return status;
     sk_body *body = sk_allocate(&world->allocator, sizeof *body);
     if (!body) {
@@ -321,7 +322,7 @@ skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, con
     object->as.body = body;
     object->body_type = type;
     body->label = object->label;
-    body->enabled = object->common.plain.enabled;
+    body->enabled = true;
     body->first_particle = (uint32_t)world->particles.count;
     size_t particles = world->particles.count, triangles = world->triangles.count;
     size_t batches = world->rules.batches.count, limits = world->rules.limits.count;
@@ -331,6 +332,10 @@ skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, con
         return status;
     }
     body->particle_count = (uint32_t)(world->particles.count - particles);
+    body->first_triangle = triangles;
+    body->triangle_count = world->triangles.count - triangles;
+    sk_world_reuse_indices(world, body, batches, limits);
+    if (!object->common.plain.enabled) sk_world_enable_body(world, body, false);
     return finish_object(world, object, handle);
 }
 
@@ -364,13 +369,27 @@ static void drop_pointer(void **data, size_t *count, const void *pointer) {
         }
 }
 
+/* The object goes; its handle is stale, and its place free. */
+static void drop_object(skein_world *world, sk_object *object) {
+    sk_entry *entry = &world->places.data[object->index];
+    entry->object = NULL;
+    entry->generation++;
+    drop_pointer((void **)world->objects.data, &world->objects.count, object);
+    sk_object_release(&world->allocator, object);
+    world->plan_stale = true;
+}
+
 skein_status skein_remove(skein_world *world, skein_handle handle) {
     SK_NEED(world, world);
     sk_object *object = sk_object_find(world, handle, SKEIN_CATEGORY_COUNT);
-    skein_error *error = sk_world_error(world);
     if (!object) return SKEIN_ERROR_HANDLE;
     sk_rules *rules = &world->rules;
     switch (object->category) {
+    case SKEIN_BODY: {
+        skein_status status = sk_world_remove_body(world, object->as.body, object->common.plain.name);
+        if (status) return status;
+        break;
+    }
     case SKEIN_CONSTRAINT:
         drop_pointer((void **)rules->batches.data, &rules->batches.count, object->as.batch);
         sk_batch_release(object->as.batch, &world->allocator);
@@ -388,10 +407,11 @@ skein_status skein_remove(skein_world *world, skein_handle handle) {
         sk_motion_release(object->as.motion, &world->allocator);
         break;
     default:
-        return sk_fail(error, SKEIN_ERROR_HANDLE, "", "a %s cannot be removed", skein_category_text(object->category));
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_HANDLE, "", "a %s cannot be removed",
+                       skein_category_text(object->category));
     }
-    object->generation++;
-    world->plan_stale = world->motions_stale = true;
+    world->motions_stale = true;
+    drop_object(world, object);
     return SKEIN_OK;
 }
 
@@ -409,7 +429,7 @@ size_t skein_object_count(const skein_world *world, skein_category category) {
     if (category == SKEIN_METHOD) return 1;
     size_t count = 0;
     for (size_t i = 0; i < world->objects.count; i++)
-        count += world->objects.data[i]->generation % 2 && world->objects.data[i]->category == category;
+        count += world->objects.data[i]->category == category;
     return count;
 }
 
@@ -418,7 +438,7 @@ skein_handle skein_object_at(const skein_world *world, skein_category category, 
     if (category == SKEIN_METHOD && index == 0) return (skein_handle){method_index, 1, world->identity};
     for (size_t i = 0; i < world->objects.count; i++) {
         const sk_object *object = world->objects.data[i];
-        if (!(object->generation % 2) || object->category != category) continue;
+        if (object->category != category) continue;
         if (index-- == 0) return sk_handle_at(world, i);
     }
     return (skein_handle){UINT32_MAX, 0, 0};

@@ -112,6 +112,7 @@ static void measure_directions(const skein_world *world, size_t first, size_t en
         double v[3] = {(double)q.x, (double)q.y, (double)q.z};
         double out = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
         double speed = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        if (!sk_particle_is_here(all, i)) continue;
         if (!(out + speed <= (double)SK_REAL_MAX)) continue; // nowhere: counted in the statistics
         order->count++;
         order->radius += out;
@@ -140,6 +141,7 @@ skein_status skein_order_measure(skein_world *world, size_t first, size_t count,
     sk_particles *all = &world->particles;
     memset(order, 0, sizeof *order);
     skein_status status = sk_world_check_range(world, first, count);
+    if (!status) status = sk_world_arrange(world, error); // who has just come or gone
     if (!status) status = sk_world_fetch(world);
     if (status) return status;
     measure_directions(world, first, first + count, centre, order);
@@ -149,7 +151,7 @@ skein_status skein_order_measure(skein_world *world, size_t first, size_t count,
     }
     sk_allocator *allocator = &world->allocator;
     search s = {.state = {all->vector[SK_X], all->vector[SK_V], 0, all->particle_of},
-                .group = {first, first + count, 0, all->slot_count}};
+                .group = {first, first + count, 0, all->slot_count, 0}};
     s.square = sk_allocate(allocator, count * sizeof *s.square);
     s.parent = sk_allocate(allocator, count * sizeof *s.parent);
     bool good = s.square && s.parent && measure_nearest(&s, allocator, order->farthest, order) &&

@@ -76,12 +76,17 @@ static skein_status set_out(skein_world *world, const sk_pin *pin, double dt, sk
     return SKEIN_OK;
 }
 
+/* Whether it is still to be led: it may have been let go since, or its body taken out. */
+static bool is_led(const skein_world *world, const sk_pin *pin) {
+    return world->particles.held[pin->particle] && sk_particle_is_here(&world->particles, pin->particle);
+}
+
 skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error) {
     const sk_particles *all = &world->particles;
     if (!sk_world_lead(world, world->time + dt)) return sk_fail_memory(error, "places for pins");
     skein_status status = world->led.count ? sk_world_touch(world) : SKEIN_OK;
     for (size_t i = 0; i < world->led.count && !status; i++)
-        if (all->held[world->led.data[i].particle]) status = set_out(world, &world->led.data[i], dt, error);
+        if (is_led(world, &world->led.data[i])) status = set_out(world, &world->led.data[i], dt, error);
     if (status) {
         sk_world_arrive(world, false);
         world->pins.count = 0;
@@ -91,7 +96,8 @@ skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error)
         sk_collider_begin(world->rules.colliders.data[i], world->time, dt);
     if (world->device) return SKEIN_OK; // which runs no limits that look at pins
     for (size_t i = 0; i < world->rules.limits.count; i++)
-        sk_limit_begin(world->rules.limits.data[i], all->vector[SK_X], all->vector[SK_V], world->time);
+        if (*world->rules.limits.data[i]->enabled)
+            sk_limit_begin(world->rules.limits.data[i], all->vector[SK_X], all->vector[SK_V], world->time);
     return SKEIN_OK;
 }
 
@@ -101,7 +107,7 @@ skein_status sk_world_arrive(skein_world *world, bool done) {
     skein_status status = sk_world_touch(world);
     for (size_t i = 0; i < world->led.count && !status; i++) {
         const sk_pin *pin = &world->led.data[i];
-        if (!all->held[pin->particle]) continue;
+        if (!is_led(world, pin)) continue;
         sk_vec4 *x = &all->vector[SK_X][all->slot_of[pin->particle]],
                 *v = &all->vector[SK_V][all->slot_of[pin->particle]];
         if (done) *x = (sk_vec4){(real)pin->place[0], (real)pin->place[1], (real)pin->place[2], x->w};

@@ -119,9 +119,9 @@ skein_status skein_ray_cast(const skein_world *world, const double origin[3], co
     if (status) return status;
     for (size_t i = 0; i < world->objects.count; i++) {
         const sk_object *object = world->objects.data[i];
-        if (object->generation % 2 == 0 || object->category != category) continue;
+        if (object->category != category) continue;
         skein_handle handle = sk_handle_at(world, i);
-        if (category == SKEIN_BODY && object->common.plain.visible)
+        if (category == SKEIN_BODY && object->common.plain.visible && object->common.plain.enabled)
             cast_at_body(world, object->as.body, origin, along, handle, hit);
         if (category == SKEIN_COLLIDER && object->common.collider.visible && object->common.collider.enabled)
             cast_at_collider(world, object->as.collider, origin, along, handle, hit);
@@ -132,7 +132,7 @@ skein_status skein_ray_cast(const skein_world *world, const double origin[3], co
 /* ---- Particles ---- */
 
 static skein_status check_particles(const skein_world *world) {
-    if (!world->particles.count)
+    if (world->particles.count == world->particles.out_count)
         return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "", "the world has no particles");
     return sk_world_fetch(world);
 }
@@ -148,6 +148,7 @@ skein_status skein_particle_near_point(const skein_world *world, const double po
     *particle = 0;
     for (size_t i = 0; i < world->particles.count; i++) {
         double x[3], off[3];
+        if (!sk_particle_is_here(&world->particles, i)) continue;
         position_of(world, i, x);
         for (int k = 0; k < 3; k++) off[k] = x[k] - point[k];
         if (dot(off, off) < nearest) nearest = dot(off, off), *particle = (uint32_t)i;
@@ -175,6 +176,7 @@ skein_status skein_particle_near_ray(const skein_world *world, const double orig
     if (status) return status;
     for (size_t i = 0; i < world->particles.count; i++) {
         double x[3], off[3];
+        if (!sk_particle_is_here(&world->particles, i)) continue;
         position_of(world, i, x);
         for (int k = 0; k < 3; k++) off[k] = x[k] - origin[k];
         double ahead = dot(off, along);

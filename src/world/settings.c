@@ -8,7 +8,7 @@
 
 static const skein_field body_fields[] = {
     SK_TEXT(sk_common, name, "name", "", "for paths, messages and the names of files"),
-    SK_BOOL(sk_common, enabled, "enabled", 1, "false: its constraints rest (its particles still move)"),
+    SK_BOOL(sk_common, enabled, "enabled", 1, "false: as if it were not there; it stays as it is until it is again"),
     SK_BOOL(sk_common, visible, "visible", 1, "whether it is drawn"),
 };
 static const skein_field rule_fields[] = {
@@ -146,16 +146,16 @@ static bool shapes(const sk_object *object, const void *params, const char *name
 }
 
 /* Passes a body's changed parameters on to its rules, and marks the batches that look at them. */
-static void change_body(sk_object *object) {
+static skein_status change_body(skein_world *world, sk_object *object) {
     sk_body *body = object->as.body;
     sk_material before[SK_MOST_BODY_BATCHES];
     for (size_t i = 0; i < body->batch_count; i++) before[i] = *body->material[i];
     object->body_type->change(body, object->params);
-    body->enabled = object->common.plain.enabled;
     for (size_t i = 0; i < body->batch_count; i++) {
         const sk_material *now = body->material[i];
         body->batch[i]->stale |= now->stiffness != before[i].stiffness || now->damping != before[i].damping;
     }
+    return sk_world_enable_body(world, body, object->common.plain.enabled);
 }
 
 bool skein_field_is_live(const skein_world *world, skein_handle handle, const char *name) {
@@ -182,7 +182,7 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
     skein_status status = replace(world, object, field, params, value, error);
     if (status) return status;
     if (collider && sk_collider_changed(collider)) world->plan_stale = true; // a card's passes differ
-    if (object && object->category == SKEIN_BODY) change_body(object);
+    if (object && object->category == SKEIN_BODY && (status = change_body(world, object))) return status;
     if (object && object->category == SKEIN_CONSTRAINT) object->as.batch->stale |= params == object->params;
     if (object && !strcmp(name, "name")) {
         const char *given = sk_field_load(field, params).text;

@@ -84,7 +84,7 @@ static void look_for_damping(const sk_rules *rules, bool *air, bool *along) {
     for (size_t i = 0; i < rules->forces.count; i++)
         *air |= *rules->forces.data[i]->enabled && sk_force_on_velocity(rules->forces.data[i]);
     for (size_t i = 0; i < rules->batches.count; i++)
-        *along |= *rules->batches.data[i]->enabled && sk_batch_damping_time(rules->batches.data[i]) > 0;
+        *along |= sk_batch_is_on(rules->batches.data[i]) && sk_batch_damping_time(rules->batches.data[i]) > 0;
 }
 
 static void find_modes(finder *f, skein_stability *s) {

@@ -114,6 +114,7 @@ static skein_status copy_in(skein_world *world, sk_vector vector, size_t first, 
     if (status) return status;
     for (size_t i = 0; i < count; i++) {
         sk_vec4 *p = &world->particles.vector[vector][world->particles.slot_of[first + i]];
+        if (world->particles.presence[first + i] == SK_GONE) continue; // it has no place of its own
         *p = (sk_vec4){(real)xyz[3 * i], (real)xyz[3 * i + 1], (real)xyz[3 * i + 2], p->w};
     }
     return SKEIN_OK;

@@ -11,6 +11,7 @@ uint64_t skein_world_hash(const skein_world *world) {
     uint64_t hash = SK_HASH_START;
     for (size_t i = 0; i < world->particles.count; i++) {
         uint32_t slot = world->particles.slot_of[i];
+        if (!sk_particle_is_here(&world->particles, i)) continue;
         for (sk_vector vector = SK_X; vector <= SK_V; vector++) {
             const sk_vec4 *p = &world->particles.vector[vector][slot];
             const real xyz[3] = {p->x, p->y, p->z};
@@ -35,7 +36,7 @@ static size_t count_guarded(const skein_world *world, const sk_force *force) {
     for (size_t i = 0; i < all->count && *force->enabled && force->type->guarded; i++) {
         sk_vec4 x = all->vector[SK_X][all->slot_of[i]], v = all->vector[SK_V][all->slot_of[i]];
         const double p[3] = {(double)x.x, (double)x.y, (double)x.z}, u[3] = {(double)v.x, (double)v.y, (double)v.z};
-        if (x.w > 0) guarded += force->type->guarded(force->params, p, u, world->time);
+        if (x.w > 0 && sk_particle_is_here(all, i)) guarded += force->type->guarded(force->params, p, u, world->time);
     }
     return guarded;
 }
@@ -44,6 +45,7 @@ static void count_particles(const skein_world *world, skein_statistics *s) {
     const sk_particles *all = &world->particles;
     for (size_t i = 0; i < all->count; i++) {
         sk_vec4 v = all->vector[SK_V][all->slot_of[i]], x = all->vector[SK_X][all->slot_of[i]];
+        if (!sk_particle_is_here(all, i)) continue;
         s->nonfinite += !is_finite(v) || !is_finite(x);
         s->held_particles += !(x.w > 0);
     }
@@ -54,10 +56,16 @@ static int compare_reals(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+/* Those of a body that is not there do not count. */
+static bool is_there(const skein_world *world, const sk_batch *batch) {
+    return batch->count && !batch->rests && !batch->broken && sk_particle_is_here(&world->particles, batch->particle[0]);
+}
+
 static skein_status measure_stretch(skein_world *world, skein_statistics *s, skein_error *error) {
     const sk_rules *rules = &world->rules;
     size_t edges = 0;
     for (size_t i = 0; i < rules->batches.count; i++) {
+        if (!is_there(world, rules->batches.data[i])) continue;
         s->constraints += rules->batches.data[i]->type->enclose ? 1 : rules->batches.data[i]->count;
         if (rules->batches.data[i]->measured) edges += rules->batches.data[i]->count;
     }
@@ -67,7 +75,7 @@ static skein_status measure_stretch(skein_world *world, skein_statistics *s, ske
     size_t filled = 0;
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
-        if (!batch->measured) continue;
+        if (!batch->measured || !is_there(world, batch)) continue;
         batch->type->strain(batch, world->particles.vector[SK_X], 0, batch->count, strain + filled);
         filled += batch->count;
     }
@@ -99,7 +107,7 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     statistics->solver_iterations = (size_t)world->cell[SK_CELL_CG_TURNS];
     statistics->solver_factors = (size_t)world->cell[SK_CELL_FACTORS];
     statistics->solver_failures = (size_t)world->cell[SK_CELL_FAILURES];
-    statistics->particles = all->count;
+    statistics->particles = all->count - all->out_count;
     status = sk_world_arrange(world, error); // the slots of new rules may not be known yet
     if (status) return status;
     count_particles(world, statistics);
@@ -110,10 +118,12 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     for (size_t i = 0; i < world->rules.colliders.count; i++) {
         const sk_collider *collider = world->rules.colliders.data[i];
         if (!collider->common->enabled) continue;
-        sk_collider_measure(collider, world->time, all->vector[SK_X], all->slot_of, all->count,
-                            &statistics->max_penetration, &statistics->contacts);
-        statistics->guarded +=
-            sk_collider_count_guarded(collider, world->time, all->vector[SK_X], all->slot_of, all->count);
+        for (size_t first = 0, end; sk_particles_next_run(all, &first, &end); first = end) {
+            sk_collider_measure(collider, world->time, all->vector[SK_X], all->slot_of + first, end - first,
+                                &statistics->max_penetration, &statistics->contacts);
+            statistics->guarded += sk_collider_count_guarded(collider, world->time, all->vector[SK_X],
+                                                             all->slot_of + first, end - first);
+        }
     }
     for (size_t i = 0; i < world->rules.forces.count; i++)
         statistics->guarded += count_guarded(world, world->rules.forces.data[i]);

@@ -11,15 +11,21 @@ skein_status sk_world_arrange(skein_world *world, skein_error *error) {
     skein_status status = sk_world_touch(world); // the state goes to new slots
     if (status) return status;
     sk_allocator *allocator = &world->allocator;
+    if ((status = sk_world_settle_presence(world, error))) return status;
     bool good = sk_particles_arrange(&world->particles, allocator);
     for (size_t i = 0; i < world->rules.batches.count && good; i++)
         good = sk_batch_arrange(world->rules.batches.data[i], allocator, &world->particles);
     for (size_t i = 0; i < world->rules.limits.count && good; i++)
-        good = sk_limit_arrange(world->rules.limits.data[i], allocator, &world->particles);
+        if (*world->rules.limits.data[i]->enabled) good = sk_limit_arrange(world->rules.limits.data[i], allocator, &world->particles);
     if (!good) return sk_fail_memory(error, "the order of sweeps");
-    for (size_t t = 0; t < world->triangles.count; t++)
-        for (int k = 0; k < 3; k++)
-            world->slots_of_triangles.corner[t][k] = world->particles.slot_of[world->triangles.corner[t][k]];
+    sk_triangles *slots = &world->slots_of_triangles;
+    slots->count = 0; // of those that are there
+    for (size_t t = 0; t < world->triangles.count; t++) {
+        const uint32_t *corner = world->triangles.corner[t];
+        if (!sk_particle_is_here(&world->particles, corner[0])) continue;
+        for (int k = 0; k < 3; k++) slots->corner[slots->count][k] = world->particles.slot_of[corner[k]];
+        slots->count++;
+    }
     world->slots_stale = false;
     world->plan_stale = true;
     world->matrix.shaped = false;
@@ -34,7 +40,7 @@ static void warn_of_light_colliders(skein_world *world) {
         double mass = sk_collider_mass(collider), heaviest = 0;
         if (!(mass > 0) || mass == collider->warned_mass) continue;
         for (size_t p = 0; p < all->count; p++)
-            if (!all->held[p] && (double)all->mass[p] > heaviest) heaviest = (double)all->mass[p];
+            if (!all->held[p] && sk_particle_is_here(all, p) && (double)all->mass[p] > heaviest) heaviest = (double)all->mass[p];
         if (!(mass < heaviest)) continue;
         sk_world_log(world, SKEIN_LOG_WARNING,
                      "%s: its mass of %g kg is less than that of a particle, %g kg: such particles stop at it",
@@ -113,25 +119,28 @@ skein_status skein_sparse_solver_set(skein_world *world, const skein_sparse_solv
     return SKEIN_OK;
 }
 
-/* The particles of the body of that name, or all where there is no name. False when there is no such body. */
+/* The particles of the body of that name, or all where there is no name; none where the body takes no part, or is gone.
+ * False when there is no such body. */
 static bool find_group(const skein_world *world, const char *name, sk_group *group) {
     const sk_particles *all = &world->particles;
-    *group = (sk_group){0, all->count, 0, all->slot_count};
+    *group = (sk_group){0, all->count, 0, all->slot_count, all->out_count};
     if (!name[0]) return true;
     for (size_t i = 0; i < world->objects.count; i++) {
         const sk_object *object = world->objects.data[i];
-        if (!(object->generation % 2) || object->category != SKEIN_BODY) continue;
+        if (object->category != SKEIN_BODY) continue;
         if (strcmp(object->common.plain.name, name)) continue;
         const sk_body *body = object->as.body;
-        *group = (sk_group){body->first_particle, body->first_particle + body->particle_count, SIZE_MAX, 0};
+        *group = (sk_group){0, 0, 0, 0, 0};
+        if (!body->enabled || !body->particle_count) return true;
+        *group = (sk_group){body->first_particle, body->first_particle + body->particle_count, SIZE_MAX, 0, 0};
         for (size_t k = group->first; k < group->end; k++) {
             if (all->slot_of[k] < group->first_slot) group->first_slot = all->slot_of[k];
             if (all->slot_of[k] >= group->end_slot) group->end_slot = (size_t)all->slot_of[k] + 1;
         }
-        if (!body->particle_count) group->first_slot = 0;
         return true;
     }
-    return false;
+    *group = (sk_group){0, 0, 0, 0, 0};
+    return sk_world_knew(world, name);
 }
 
 /* Whom the rules move and look at, and what they say about it. */
@@ -146,6 +155,10 @@ static skein_status find_groups(skein_world *world, skein_error *error) {
                                                                                          : NULL;
         if (unknown)
             return sk_fail(error, SKEIN_ERROR_NAME, force->label, "there is no body of the name '%s'", unknown);
+        int32_t particle = sk_force_particle(force); // that it looks at: without it there is nothing to be done
+        if (particle >= 0 && (size_t)particle < world->particles.count &&
+            !sk_particle_is_here(&world->particles, (size_t)particle))
+            force->moved = (sk_group){0, 0, 0, 0, 0};
         skein_status status =
             force->type->check ? force->type->check(force->params, world->particles.count, error) : SKEIN_OK;
         if (status) return status;
@@ -182,7 +195,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         .strip_slots = world->particles.strip_slots,
         .particle_count = world->particles.count,
         .everybody = &world->everybody,
-        .triangle_count = world->triangles.count,
+        .triangle_count = world->slots_of_triangles.count,
         .h = dt,
     };
     sk_write_sum(&writer, SK_PREVIOUS, 1, SK_X, 0, SK_NONE);

@@ -40,7 +40,7 @@ static bool list_slots(skein_world *world, const sk_group *group, double radius)
 
 /* The body's particles move to its slots in the order of the list. Nothing is allocated: X0 holds nothing between
  * steps, and the cells are found anew in each. */
-static void move_to_list(skein_world *world, const sk_group *group) {
+static void move_to_list(skein_world *world, const sk_group *group, size_t first_rank) {
     sk_particles *all = &world->particles;
     size_t first = group->first_slot, count = group->end_slot - first;
     const uint32_t *list = world->cells.slot;
@@ -54,7 +54,8 @@ static void move_to_list(skein_world *world, const sk_group *group) {
     for (size_t k = 0; k < count; k++) particle[k] = all->particle_of[list[k]];
     for (size_t k = 0; k < count; k++) {
         all->particle_of[first + k] = particle[k];
-        all->slot_of[particle[k]] = all->rank[particle[k]] = (uint32_t)(first + k);
+        all->slot_of[particle[k]] = (uint32_t)(first + k);
+        all->rank[particle[k]] = (uint32_t)(first_rank + k);
     }
 }
 
@@ -73,12 +74,17 @@ void sk_world_tidy(skein_world *world) {
     if (world->steps % EVERY != 1 || !may_move(world)) return;
     for (size_t i = 0; i < world->objects.count; i++) {
         const sk_object *object = world->objects.data[i];
-        if (!(object->generation % 2) || object->category != SKEIN_BODY) continue;
+        if (object->category != SKEIN_BODY) continue;
         const sk_body *body = object->as.body;
         size_t first = body->first_particle, count = body->particle_count;
-        // without strips, slots are ranks, and a body's are its own: its particles stay among themselves
-        const sk_group group = {first, first + count, first, first + count};
+        if (count < LEAST || !body->enabled) continue;
+        // without strips, slots are ranks but for those who take no part, and a body's are its own: its particles stay
+        // among themselves
+        size_t slot = world->particles.slot_of[first];
+        for (size_t k = 1; k < count; k++)
+            if (world->particles.slot_of[first + k] < slot) slot = world->particles.slot_of[first + k];
+        const sk_group group = {first, first + count, slot, slot + count, 0};
         double radius = radius_for(&world->plan, &group);
-        if (count >= LEAST && radius > 0 && list_slots(world, &group, radius)) move_to_list(world, &group);
+        if (radius > 0 && list_slots(world, &group, radius)) move_to_list(world, &group, first);
     }
 }

@@ -54,7 +54,7 @@ skein_world *skein_world_create(const skein_world_desc *desc, skein_error *error
     return world;
 }
 
-static void release_body(skein_world *world, sk_body *body) {
+void sk_body_release(skein_world *world, sk_body *body) {
     sk_allocator *allocator = &world->allocator;
     for (size_t i = 0; i < body->batch_count; i++) sk_release(allocator, body->material[i]);
     sk_release(allocator, body->particle_of_vertex);
@@ -66,7 +66,7 @@ static void release_body(skein_world *world, sk_body *body) {
 
 /* An object's rules are released with the world's lists. */
 static void release_object(skein_world *world, sk_object *object) {
-    if (object->category == SKEIN_BODY && object->as.body) release_body(world, object->as.body);
+    if (object->category == SKEIN_BODY && object->as.body) sk_body_release(world, object->as.body);
     sk_object_release(&world->allocator, object);
 }
 
@@ -88,6 +88,9 @@ void skein_world_destroy(skein_world *world) {
     sk_release(allocator, world->motions.data);
     for (size_t i = 0; i < world->objects.count; i++) release_object(world, world->objects.data[i]);
     sk_release(allocator, world->objects.data);
+    sk_release(allocator, world->places.data);
+    sk_world_forget_names(world);
+    sk_release(allocator, world->gone_names.data);
     sk_release(allocator, world->compiled.data);
     sk_release(allocator, world->pins.data);
     sk_release(allocator, world->led.data);

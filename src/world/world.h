@@ -38,7 +38,8 @@ struct sk_body {
     uint32_t first_particle, particle_count;
     uint32_t *particle_of_vertex, *face_sizes, *face_vertices; /* the surface as it came */
     size_t vertex_count, face_count, face_vertex_count;
-    uint32_t grid_rows, grid_columns; /* 0: not a grid */
+    size_t first_triangle, triangle_count; /* of the world's */
+    uint32_t grid_rows, grid_columns;      /* 0: not a grid */
     float *corner_uv;                 /* face_vertex_count x 2, or NULL: kept for whoever draws */
     sk_batch *batch[SK_MOST_BODY_BATCHES];
     sk_material *material[SK_MOST_BODY_BATCHES]; /* of the batch beside it */
@@ -55,7 +56,7 @@ typedef struct sk_common {
 } sk_common;
 
 typedef struct sk_object {
-    uint32_t generation; /* odd while it lives */
+    uint32_t index, generation; /* of its handle; the generation is odd once it lives */
     skein_category category;
     const skein_kind *kind;
     skein_kind *own_kind;    /* what `kind` is where it takes parameters, else NULL */
@@ -77,6 +78,12 @@ typedef struct sk_object {
         sk_motion *motion;
     } as;
 } sk_object;
+
+/* Where a handle leads: to an object, or to nobody until the next one takes it. */
+typedef struct sk_entry {
+    sk_object *object;
+    uint32_t generation;
+} sk_entry;
 
 /* Where steps are computed, when it is not the processor: runs the same plan on its own copy of the state. The
  * world does not know what it is; src/gpu/ makes one. A device is `ahead` when its X, V and P are newer than the
@@ -114,13 +121,22 @@ struct skein_world {
     struct {
         sk_object **data;
         size_t count, capacity;
-    } objects; /* a handle's index leads here */
+    } objects; /* those that live, in the order of their making */
+    struct {
+        sk_entry *data;
+        size_t count, capacity;
+    } places; /* a handle's index leads here */
+    struct {
+        char **data;
+        size_t count, capacity;
+    } gone_names; /* of bodies that were removed, and that rules still name */
     const sk_method_type *method;
     void *method_params;
     sk_plan plan;
     double plan_dt;   /* the step that the plan was written for */
     bool plan_stale;  /* rules, settings or the method have changed */
     bool slots_stale; /* particles, batches or limits were added: slots and sweeps are to be found anew */
+    bool presence_stale; /* bodies were taken out or back: constraints on their particles are to be looked through */
     sk_isa isa;
     sk_cells cells;
     sk_group everybody;
@@ -201,7 +217,7 @@ sk_object *sk_object_of(const skein_world *world, skein_handle handle);
 sk_object *sk_object_find(const skein_world *world, skein_handle handle, skein_category category);
 /* Says what is wrong with a handle that should be of `what`, and returns SKEIN_ERROR_HANDLE. */
 skein_status sk_fail_handle(const skein_world *world, skein_handle handle, const char *what, const char *where);
-/* The handle of the object at a place of the list; it may be dead. */
+/* The handle of the object at a place of the list. */
 skein_handle sk_handle_at(const skein_world *world, size_t index);
 /* Releases an object's parameters and itself. */
 void sk_object_release(sk_allocator *allocator, sk_object *object);
@@ -213,6 +229,20 @@ skein_status sk_settings_apply(sk_allocator *allocator, const skein_kind *kind, 
                                size_t common_count, void *common_params, const skein_setting *settings,
                                skein_error *error);
 const skein_field *sk_kind_field(const skein_kind *kind, const char *name, skein_error *error);
+void sk_body_release(skein_world *world, sk_body *body);
+/* ---- bodies that come and go (world/presence.c) ---- */
+/* Takes a body out, or back in: what it is made of stays. */
+skein_status sk_world_enable_body(skein_world *world, sk_body *body, bool enabled);
+/* Releases all that a body has added, and itself; its particles are gone. */
+skein_status sk_world_remove_body(skein_world *world, sk_body *body, const char *name);
+/* Gives the newest body the indices of particles that are gone, if it fits in, before anybody has seen its own: all
+ * that it added from these marks on. */
+void sk_world_reuse_indices(skein_world *world, sk_body *body, size_t batches, size_t limits);
+/* Leaves out of constraints what is not there. */
+skein_status sk_world_settle_presence(skein_world *world, skein_error *error);
+/* Whether a body of that name was removed, and a rule still names it. */
+bool sk_world_knew(const skein_world *world, const char *name);
+void sk_world_forget_names(skein_world *world);
 /* Finds the particles' slots and cuts batches into sweeps, if anything was added. */
 skein_status sk_world_arrange(skein_world *world, skein_error *error);
 /* Lets what is compiled run for all objects whose formula it is. */

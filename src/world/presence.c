@@ -1,0 +1,151 @@
+/* Bodies that come and go: taken out of it and back, removed for good, and the indices that are used again.
+ *
+ * A body that is disabled keeps all it has; its particles lie behind those that take part (particles/particles.h), so
+ * that no row of a plan meets them. One that is removed leaves its particles' indices: they are gone, and the next body
+ * that fits into a run of them gets it. Constraints of the program's own on such particles are left out one by one. */
+#include <string.h>
+
+#include "world/world.h"
+
+static void mark(skein_world *world) {
+    world->plan_stale = world->slots_stale = world->presence_stale = true;
+}
+
+skein_status sk_world_enable_body(skein_world *world, sk_body *body, bool enabled) {
+    if (body->enabled == enabled) return SKEIN_OK;
+    skein_status status = sk_world_touch(world); // the state goes to new slots
+    if (status) return status;
+    body->enabled = enabled;
+    sk_particles_set_presence(&world->particles, body->first_particle, body->particle_count,
+                              enabled ? SK_HERE : SK_ASIDE);
+    mark(world);
+    return SKEIN_OK;
+}
+
+skein_status sk_world_settle_presence(skein_world *world, skein_error *error) {
+    for (size_t i = 0; i < world->rules.batches.count && world->presence_stale; i++)
+        if (!sk_batch_leave_out(world->rules.batches.data[i], &world->allocator, &world->particles))
+            return sk_fail_memory(error, "what is left of constraints");
+    world->presence_stale = false;
+    return SKEIN_OK;
+}
+
+/* ---- names ---- */
+
+/* Whether one of the bodies that a rule says is this one. */
+static bool names(const sk_force *force, const char *name) {
+    const char *moved = "", *seen = "";
+    if (force->type->bodies) force->type->bodies(force->params, &moved, &seen);
+    return !strcmp(moved, name) || !strcmp(seen, name);
+}
+
+bool sk_world_knew(const skein_world *world, const char *name) {
+    for (size_t i = 0; i < world->gone_names.count; i++)
+        if (!strcmp(world->gone_names.data[i], name)) return true;
+    return false;
+}
+
+/* Rules that name a body which is removed move nobody, until there is another of its name. */
+static skein_status remember_name(skein_world *world, const char *name) {
+    bool named = false;
+    for (size_t i = 0; i < world->rules.forces.count && name[0]; i++) named |= names(world->rules.forces.data[i], name);
+    if (!named || sk_world_knew(world, name)) return SKEIN_OK;
+    char *copy = SK_RESERVE(&world->allocator, &world->gone_names, world->gone_names.count + 1)
+                     ? sk_copy_text(&world->allocator, name)
+                     : NULL;
+    if (!copy) return sk_fail_memory(sk_world_error(world), "the name of a body");
+    world->gone_names.data[world->gone_names.count++] = copy;
+    return SKEIN_OK;
+}
+
+void sk_world_forget_names(skein_world *world) {
+    while (world->gone_names.count) sk_release(&world->allocator, world->gone_names.data[--world->gone_names.count]);
+}
+
+/* ---- removing ---- */
+
+static void remove_triangles(skein_world *world, const sk_body *body) {
+    sk_triangles *all = &world->triangles;
+    size_t first = body->first_triangle, end = first + body->triangle_count;
+    if (!body->triangle_count) return;
+    memmove(all->corner + first, all->corner + end, (all->count - end) * sizeof *all->corner);
+    all->count -= body->triangle_count;
+    for (size_t i = 0; i < world->objects.count; i++) {
+        const sk_object *object = world->objects.data[i];
+        if (object->category == SKEIN_BODY && object->as.body->first_triangle >= end)
+            object->as.body->first_triangle -= body->triangle_count;
+    }
+}
+
+static bool is_of(const sk_body *body, const sk_batch *batch) {
+    for (size_t i = 0; i < body->batch_count; i++)
+        if (body->batch[i] == batch) return true;
+    return false;
+}
+
+static void remove_rules(skein_world *world, const sk_body *body) {
+    sk_rules *rules = &world->rules;
+    size_t kept = 0;
+    for (size_t i = 0; i < rules->batches.count; i++) {
+        if (is_of(body, rules->batches.data[i])) sk_batch_release(rules->batches.data[i], &world->allocator);
+        else rules->batches.data[kept++] = rules->batches.data[i];
+    }
+    rules->batches.count = kept;
+    kept = 0;
+    for (size_t i = 0; i < rules->limits.count; i++) {
+        if (rules->limits.data[i]->enabled == &body->enabled)
+            sk_limit_release(rules->limits.data[i], &world->allocator);
+        else rules->limits.data[kept++] = rules->limits.data[i];
+    }
+    rules->limits.count = kept;
+}
+
+/* Nobody who gets the indices is led to where these were to go. */
+static void remove_pins(skein_world *world, const sk_body *body) {
+    size_t kept = 0;
+    for (size_t i = 0; i < world->pins.count; i++) {
+        const sk_pin pin = world->pins.data[i];
+        if (pin.particle - body->first_particle >= body->particle_count) world->pins.data[kept++] = pin;
+    }
+    world->pins.count = kept;
+}
+
+skein_status sk_world_remove_body(skein_world *world, sk_body *body, const char *name) {
+    skein_status status = sk_world_touch(world);
+    if (!status) status = remember_name(world, name);
+    if (status) return status;
+    remove_rules(world, body);
+    remove_triangles(world, body);
+    remove_pins(world, body);
+    sk_particles_set_presence(&world->particles, body->first_particle, body->particle_count, SK_GONE);
+    sk_body_release(world, body);
+    mark(world);
+    return SKEIN_OK;
+}
+
+/* ---- using indices again ---- */
+
+static void renumber(uint32_t *particles, size_t count, size_t offset) {
+    for (size_t i = 0; i < count; i++) particles[i] -= (uint32_t)offset;
+}
+
+void sk_world_reuse_indices(skein_world *world, sk_body *body, size_t batches, size_t limits) {
+    size_t first = body->first_particle;
+    size_t target = sk_particles_find_room(&world->particles, first, body->particle_count), offset = first - target;
+    if (!offset) return;
+    const sk_rules *rules = &world->rules;
+    for (size_t i = batches; i < rules->batches.count; i++)
+        renumber(rules->batches.data[i]->particle, rules->batches.data[i]->count * rules->batches.data[i]->arity, offset);
+    for (size_t i = limits; i < rules->limits.count; i++)
+        renumber(rules->limits.data[i]->particle, rules->limits.data[i]->count * (1 + rules->limits.data[i]->anchors),
+                 offset);
+    for (size_t t = body->first_triangle; t < world->triangles.count; t++)
+        renumber(world->triangles.corner[t], 3, offset);
+    renumber(body->particle_of_vertex, body->vertex_count, offset);
+    body->first_particle = (uint32_t)target;
+    sk_particles_renumber(&world->particles, first, target);
+}
+
+bool skein_particle_present(const skein_world *world, size_t particle) {
+    return world && particle < world->particles.count && sk_particle_is_here(&world->particles, particle);
+}
