@@ -66,6 +66,29 @@ static bool takes_rows(const skein_kind *kind, const skein_field *field) {
     return field->type == SKEIN_FIELD_TEXT && kind->category == SKEIN_MOTION && is_own(kind, field);
 }
 
+/* A rule's `on`: names of bodies, which are joined by commas. */
+static bool takes_names(const skein_kind *kind, const skein_field *field) {
+    return (kind->category == SKEIN_FORCE || kind->category == SKEIN_COLLIDER) && !strcmp(field->name, "on");
+}
+
+/* The names of a list; NULL where one is no text, or has a comma, or there is no memory. */
+static char *join_names(const json_t *list) {
+    size_t length = 1, index;
+    json_t *item, *names = (json_t *)(uintptr_t)list; // jansson's getters take no const
+    if (!json_is_array(list)) return NULL;
+    json_array_foreach(names, index, item) {
+        if (!json_is_string(item) || strchr(json_string_value(item), ',')) return NULL;
+        length += json_string_length(item) + 2;
+    }
+    char *text = calloc(length, 1);
+    json_array_foreach(names, index, item) {
+        if (!text) break;
+        if (index) strcat(text, ", ");
+        strcat(text, json_string_value(item));
+    }
+    return text;
+}
+
 /* The texts of a body's own fields select parts of it, as a motion's "pins" do, and so have short forms. */
 static bool takes_lists(const skein_kind *kind, const skein_field *field) {
     bool selects = kind->category == SKEIN_BODY ? is_own(kind, field)
@@ -84,6 +107,7 @@ static bool convert(io_settings *settings, const skein_kind *kind, const skein_f
     *value = (skein_value){count, {0, 0, 0}, NULL};
     if (count == 0) {
         if (json_is_string(json)) value->text = keep_text(settings, strdup(json_string_value(json)));
+        else if (takes_names(kind, field)) value->text = keep_text(settings, join_names(json));
         else if (takes_lists(kind, field)) value->text = keep_text(settings, io_json_join(json));
         else if (takes_rows(kind, field)) value->text = keep_text(settings, io_json_join_rows(json));
         return value->text != NULL;

@@ -33,7 +33,7 @@ typedef void sk_probe(const void *params, const sk_pose *pose, const sk_wide3 *p
 
 /* What every collider has besides its shape. */
 typedef struct sk_collider_common {
-    char *name;
+    char *name, *on;
     bool enabled, visible;
     double thickness, friction, restitution;
     double velocity[3], axis[3], spin, start;
@@ -79,6 +79,7 @@ typedef struct sk_collider {
     const char *label;
     double warned_mass; /* that it was too light was said when its mass was this */
     sk_travel travel;
+    sk_only only;       /* whom it meets, found when a plan is written */
 } sk_collider;
 
 /* Fields of sk_collider_common. */

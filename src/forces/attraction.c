@@ -7,7 +7,6 @@
 
 typedef struct attraction_params {
     double centre[3], strength, flatness;
-    char *on;
 } attraction_params;
 
 #define SK_UNIT attraction
@@ -40,13 +39,7 @@ static const skein_field fields[] = {
     SK_REAL(attraction_params, strength, "strength", "m/s2", 5, -SK_FAR, SK_FAR, "the acceleration, at any distance"),
     SK_REAL(attraction_params, flatness, "flatness", "", 2.5, 0, 1e6,
             "how many times more the vertical counts: over 1 makes a ring, 1 is the same all round"),
-    SK_TEXT(attraction_params, on, "on", "", "the name of the body that it moves; empty: every particle"),
 };
-
-static void bodies(const void *params, const char **moved, const char **seen) {
-    *moved = ((const attraction_params *)params)->on;
-    *seen = "";
-}
 
 static void pack(const void *data, float (*block)[4]) {
     const attraction_params *params = data;
@@ -60,7 +53,6 @@ const sk_force_type sk_attraction = {
     .domain = SK_OVER_PARTICLES,
     .deed = SK_STEERS,
     .kernel = {SK_EACH_ISA(kernel)},
-    .bodies = bodies,
     .shader = {.file = "forces/attraction", .size = 2, .pack = pack},
 };
 #endif

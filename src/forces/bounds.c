@@ -10,7 +10,6 @@
 typedef struct bounds_params {
     int32_t shape, edge;
     double centre[3], size[3], radius;
-    char *on;
 } bounds_params;
 
 enum { BOX, BALL };
@@ -121,7 +120,6 @@ static const skein_field fields[] = {
     SK_VEC3(bounds_params, centre, "centre", "m", 0, 0, 0, "its middle"),
     SK_SIZE3(bounds_params, size, "size", "m", 100, 100, 100, "of the box, from side to side"),
     SK_REAL(bounds_params, radius, "radius", "m", 50, 1e-6, 1e9, "of the sphere"),
-    SK_TEXT(bounds_params, on, "on", "", "the name of the body that it keeps; empty: every particle"),
 };
 
 static skein_status check(const void *data, size_t particle_count, skein_error *error) {
@@ -130,11 +128,6 @@ static skein_status check(const void *data, size_t particle_count, skein_error *
     if (params->edge == PERIODIC && params->shape == BALL)
         return sk_fail(error, SKEIN_ERROR_VALUE, "edge", "a sphere has no other side: periodic bounds are a box");
     return SKEIN_OK;
-}
-
-static void bodies(const void *params, const char **moved, const char **seen) {
-    *moved = ((const bounds_params *)params)->on;
-    *seen = "";
 }
 
 static void pack(const void *data, float (*block)[4]) {
@@ -160,7 +153,6 @@ const sk_force_type sk_bounds = {
     .once = true,
     .kernel = {SK_EACH_ISA(kernel)},
     .check = check,
-    .bodies = bodies,
     .shader = {.file = "forces/bounds", .size = 4, .pack = pack, .shifts = shifts},
 };
 #endif

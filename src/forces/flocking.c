@@ -311,8 +311,7 @@ static const skein_field fields[] = {
     SK_REAL(sk_flocking_params, strength, "strength", "m/s2", 1, 0, SK_FAR, "how strongly each neighbour counts"),
     SK_REAL(sk_flocking_params, view, "view", "degrees", 360, 0, 360, "the angle that each sees, round its direction of flight; 360: all round"),
     SK_INT(sk_flocking_params, nearest, "nearest", "", 0, 0, SK_FLOCKING_MOST_NEAREST, "of the neighbours in reach only so many count, the nearest; 0: all"),
-    SK_TEXT(sk_flocking_params, on, "on", "", "the name of the body that it moves; empty: every particle"),
-    SK_TEXT(sk_flocking_params, minds, "minds", "", "the name of the body that it looks at; empty: the same"),
+    SK_TEXT(sk_flocking_params, minds, "minds", "", "the name of the body that it looks at; empty: those that it is `on`"),
     SK_TEXT(sk_flocking_params, towards, "formula.towards", "", "the weight of a neighbour along the direction to it, as a formula of percent; where there is a formula, the zones only say how far the rule reaches"),
     SK_TEXT(sk_flocking_params, along, "formula.along", "", "the weight along its direction of flight, likewise"),
 };
@@ -323,10 +322,8 @@ static double radius(const void *data) {
     return params->separation + params->alignment + params->cohesion;
 }
 
-static void bodies(const void *data, const char **moved, const char **seen) {
-    const sk_flocking_params *params = data;
-    *moved = params->on;
-    *seen = params->minds;
+static const char *minds(const void *data) {
+    return ((const sk_flocking_params *)data)->minds;
 }
 
 static skein_status make(void *data, const skein_kind *kind, sk_allocator *allocator, skein_error *error) {
@@ -401,7 +398,7 @@ const sk_force_type sk_flocking = {
     .deed = SK_STEERS,
     .kernel = {SK_EACH_ISA(kernel)},
     .radius = radius,
-    .bodies = bodies,
+    .minds = minds,
     .making = &making,
     .shader = {.file = "forces/flocking", .size = 3, .pack = pack, .write = write, .changes = changes},
 };

@@ -25,7 +25,7 @@ typedef struct sk_flocking_params {
     double strength;                        /* m/s2 */
     double view;                            /* degrees: the angle that a particle sees, round its direction of flight */
     int32_t nearest;                        /* only so many neighbours count, the nearest; 0: all in reach */
-    char *on, *minds;                       /* names of bodies */
+    char *minds;                            /* the name of a body */
     char *towards, *along;                  /* formulas in place of the zones' weights, or "" */
     struct sk_pair_formula *pair;           /* made from them; NULL where there are none */
 } sk_flocking_params;

@@ -53,9 +53,8 @@ typedef struct sk_force_type {
     int32_t (*particle)(const void *params);
     /* What a rule that steers or bounds says about the parameters together, before a plan is written; NULL: nothing. */
     skein_status (*check)(const void *params, size_t particle_count, skein_error *error);
-    /* The names of the body that it moves and of the one that it looks at: "" is every particle, and the same as it
-     * moves. NULL: every particle. */
-    void (*bodies)(const void *params, const char **moved, const char **seen);
+    /* The name of the body that it looks at; "", or NULL: those that it acts on. */
+    const char *(*minds)(const void *params);
     /* Over particles it defines, for a rule that pushes, steers (w: how much more speed is allowed) or bounds
      * (`steering` is what has been added to v in this substep):
      *     vec3 force@(vec3 x, vec3 v, float mass),   vec4 steer@(vec3 x, float dt),
@@ -80,7 +79,9 @@ typedef struct sk_force {
     const void *params;
     const char *label;
     const bool *enabled;
-    sk_group moved, seen; /* found when a plan is written */
+    char *const *on;      /* the names of the bodies that it acts on; "": every particle */
+    sk_only only;         /* those, found when a plan is written; */
+    sk_group moved, seen; /* and of a rule that steers or bounds, whom it moves and looks at */
 } sk_force;
 
 bool sk_force_on_velocity(const sk_force *force);

@@ -4,7 +4,6 @@
 
 typedef struct lookout_params {
     double ahead, clearance, strength;
-    char *on;
 } lookout_params;
 
 static const skein_field fields[] = {
@@ -12,13 +11,7 @@ static const skein_field fields[] = {
     SK_REAL(lookout_params, clearance, "clearance", "m", 1, 0, 1e9, "nearer to a collider than this is too near"),
     SK_REAL(lookout_params, strength, "strength", "m/s2", 50, 0, SK_FAR,
             "the acceleration away where the way leads into one"),
-    SK_TEXT(lookout_params, on, "on", "", "the name of the body that looks out; empty: every particle"),
 };
-
-static void bodies(const void *params, const char **moved, const char **seen) {
-    *moved = ((const lookout_params *)params)->on;
-    *seen = "";
-}
 
 static void look(const void *data, double out[3]) {
     const lookout_params *params = data;
@@ -30,6 +23,5 @@ const sk_force_type sk_lookout = {
              sizeof fields / sizeof *fields, sizeof(lookout_params)},
     .domain = SK_OVER_COLLIDERS,
     .deed = SK_STEERS,
-    .bodies = bodies,
     .look = look,
 };

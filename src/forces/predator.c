@@ -13,7 +13,6 @@
 typedef struct predator_params {
     double position[3], line[3], radius, strength, alarm;
     int32_t particle;
-    char *on;
 } predator_params;
 
 #define SK_UNIT predator
@@ -63,7 +62,6 @@ static const skein_field fields[] = {
             "the acceleration away when it is very near"),
     SK_REAL(predator_params, alarm, "alarm", "m/s", 5, -SK_FAR, SK_FAR,
             "how much higher the speed limit is for those who flee"),
-    SK_TEXT(predator_params, on, "on", "", "the name of the body that fears it; empty: every particle"),
 };
 
 static skein_status check(const void *data, size_t particle_count, skein_error *error) {
@@ -72,11 +70,6 @@ static skein_status check(const void *data, size_t particle_count, skein_error *
         return sk_fail(error, SKEIN_ERROR_VALUE, "particle", "there is no particle %d: the world has %zu",
                        params->particle, particle_count);
     return SKEIN_OK;
-}
-
-static void bodies(const void *params, const char **moved, const char **seen) {
-    *moved = ((const predator_params *)params)->on;
-    *seen = "";
 }
 
 static void pack(const void *data, float (*block)[4]) {
@@ -99,7 +92,6 @@ const sk_force_type sk_predator = {
     .deed = SK_STEERS,
     .kernel = {SK_EACH_ISA(kernel)},
     .check = check,
-    .bodies = bodies,
     .particle = particle,
     .shader = {.file = "forces/predator", .size = 3, .pack = pack},
 };

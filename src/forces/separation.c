@@ -16,7 +16,7 @@ static double radius(const void *params) {
 }
 
 /* The push on the particle at a place. */
-static sk_vec3 push_at(const sk_cells *cells, size_t place, real reach, real strength) {
+static sk_vec3 push_at(const sk_cells *cells, const sk_only *only, size_t place, real reach, real strength) {
     const sk_vec3 here = {cells->x[place], cells->y[place], cells->z[place]};
     sk_vec3 push = {0, 0, 0};
     uint32_t range[9][2];
@@ -26,7 +26,7 @@ static sk_vec3 push_at(const sk_cells *cells, size_t place, real reach, real str
             sk_vec3 d = sk_sub(here, sk_v3(cells->x[k], cells->y[k], cells->z[k]));
             real distance = sk_length(d);
             // at distance 0 there is no direction (and the particle itself is there)
-            if (!(distance > 0) || !(distance < reach)) continue;
+            if (!(distance > 0) || !(distance < reach) || !sk_only_has_slot(only, cells->slot[k])) continue;
             push = sk_add(push, sk_scale(strength * (1 - distance / reach) / distance, d));
         }
     return push;
@@ -34,12 +34,14 @@ static sk_vec3 push_at(const sk_cells *cells, size_t place, real reach, real str
 
 /* Elements are places. */
 static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const separation_params *params = ((const sk_force *)row->rule)->params;
+    const sk_force *force = row->rule;
+    const separation_params *params = force->params;
     const sk_cells *cells = run->cells;
     if (end > cells->count) end = cells->count;
     for (size_t place = begin; place < end; place++)
-        sk_add_at(run->vector[row->dst], row->packed, cells->slot[place],
-                  push_at(cells, place, (real)params->radius, (real)params->strength));
+        if (sk_only_has_slot(&force->only, cells->slot[place]))
+            sk_add_at(run->vector[row->dst], row->packed, cells->slot[place],
+                      push_at(cells, &force->only, place, (real)params->radius, (real)params->strength));
 }
 
 static void pack(const void *data, float (*block)[4]) {

@@ -5,7 +5,6 @@
 
 typedef struct speed_limit_params {
     double limit;
-    char *on;
 } speed_limit_params;
 
 #define SK_UNIT speed_limit
@@ -36,13 +35,7 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end)
 
 static const skein_field fields[] = {
     SK_REAL(speed_limit_params, limit, "limit", "m/s", 9, 0, SK_FAR, "the highest speed; what flees may be faster"),
-    SK_TEXT(speed_limit_params, on, "on", "", "the name of the body that it slows down; empty: every particle"),
 };
-
-static void bodies(const void *params, const char **moved, const char **seen) {
-    *moved = ((const speed_limit_params *)params)->on;
-    *seen = "";
-}
 
 static void pack(const void *params, float (*block)[4]) {
     block[0][0] = (float)((const speed_limit_params *)params)->limit;
@@ -54,7 +47,6 @@ const sk_force_type sk_speed_limit = {
     .domain = SK_OVER_PARTICLES,
     .deed = SK_BOUNDS,
     .kernel = {SK_EACH_ISA(kernel)},
-    .bodies = bodies,
     .shader = {.file = "forces/speed_limit", .size = 1, .pack = pack},
 };
 #endif

@@ -10,7 +10,6 @@
 
 typedef struct turn_limit_params {
     double turn, climb;
-    char *on;
 } turn_limit_params;
 
 #define SK_UNIT turn_limit
@@ -84,13 +83,7 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end)
 static const skein_field fields[] = {
     SK_REAL(turn_limit_params, turn, "turn", "degrees/s", 180, 0, 1e6, "what steers turns nothing faster than this"),
     SK_REAL(turn_limit_params, climb, "climb", "degrees", 90, 0, 90, "nothing flies steeper, up or down; 90: no limit"),
-    SK_TEXT(turn_limit_params, on, "on", "", "the name of the body that it keeps; empty: every particle"),
 };
-
-static void bodies(const void *params, const char **moved, const char **seen) {
-    *moved = ((const turn_limit_params *)params)->on;
-    *seen = "";
-}
 
 static void pack(const void *data, float (*block)[4]) {
     const turn_limit_params *params = data;
@@ -107,7 +100,6 @@ const sk_force_type sk_turn_limit = {
     .deed = SK_BOUNDS,
     .once = true,
     .kernel = {SK_EACH_ISA(kernel)},
-    .bodies = bodies,
     .shader = {.file = "forces/turn_limit", .size = 1, .pack = pack},
 };
 #endif

@@ -58,6 +58,10 @@ static bool is_combine(const sk_row *row) {
 bool sk_gpu_row_can(const sk_row *row, const char **why) {
     const sk_shader *shader = shader_of(row);
     if (shader && shader->file && shader->refuse && (*why = shader->refuse(params_of(row)))) return false;
+    if (row->kind == SK_ROW_NEIGHBOUR && force_of(row)->type->deed == SK_PUSHES && force_of(row)->only.some) {
+        *why = "where it is 'on' some bodies only";
+        return false;
+    }
     switch (row->kind) {
     case SK_ROW_GRID: return true;
     case SK_ROW_REPEAT: return !row->cell;
@@ -105,6 +109,7 @@ bool sk_gpu_row_everyone(const sk_row *row, size_t particle_count) {
 
 bool sk_gpu_row_knows_no_slots(const sk_row *row, size_t particle_count) {
     const sk_force *force = force_of(row);
+    if (row->inner) return false;
     if (is_avoid(row)) return row->group->first == 0 && row->group->end == particle_count;
     if (sk_gpu_row_looks(row)) return false;
     if (row->kind == SK_ROW_GRID) return row->group->first == 0 && row->group->end == particle_count;
@@ -154,8 +159,8 @@ sk_gpu_use sk_gpu_row_use(const sk_row *row) {
     default: break;
     }
     use.reads &= ~BIT(SK_NONE);
-    // the w of a state vector stays, whoever writes the rest
-    use.reads |= use.writes & (BIT(SK_X) | BIT(SK_V));
+    // the w of a state vector stays, whoever writes the rest; and so does what slots beside the row's have
+    use.reads |= use.writes & (row->inner ? ~0u : BIT(SK_X) | BIT(SK_V));
     return use;
 }
 
@@ -330,7 +335,7 @@ static void put_force(sk_gpu_text *text, const sk_row *row, size_t n, size_t par
     else sk_gpu_put(text, "    %s.xyz %s force%zu(X.xyz, V.xyz, V.w);\n", dst, row->sets ? "=" : "+=", n);
 }
 
-void sk_gpu_put_statements(sk_gpu_text *text, const sk_row *row, size_t n, size_t particle_count) {
+static void put_statements(sk_gpu_text *text, const sk_row *row, size_t n, size_t particle_count) {
     switch (row->kind) {
     case SK_ROW_COMBINE: put_combine(text, row, n); break;
     case SK_ROW_FIELD:
@@ -346,4 +351,11 @@ void sk_gpu_put_statements(sk_gpu_text *text, const sk_row *row, size_t n, size_
         break;
     default: break;
     }
+}
+
+void sk_gpu_put_statements(sk_gpu_text *text, const sk_row *row, size_t n, size_t particle_count) {
+    if (row->inner)
+        sk_gpu_put(text, "    if (first_slot + slot >= %zuu && first_slot + slot < %zuu) {\n", row->first_slot, row->end_slot);
+    put_statements(text, row, n, particle_count);
+    if (row->inner) sk_gpu_put(text, "    }\n");
 }

@@ -1,6 +1,7 @@
 #include "methods/writer.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #include "base/status.h"
 #include "constraints/sweep.h"
@@ -11,6 +12,16 @@ void sk_add_row(sk_writer *writer, sk_row row) {
     row.before = writer->before;
     row.packed = writer->packed;
     if (!sk_plan_add(writer->plan, writer->allocator, row)) writer->no_memory = true;
+}
+
+void sk_add_row_on(sk_writer *writer, sk_row row, const sk_only *only) {
+    if (!only->some) sk_add_row(writer, row);
+    for (size_t i = 0; i < only->count; i++) {
+        size_t first = only->data[i].first_slot, end = only->data[i].end_slot;
+        if (first < row.begin) first = row.begin;
+        if (end > row.end) end = row.end;
+        if (first < end) sk_add_row(writer, sk_row_for(row, first, end));
+    }
 }
 
 size_t sk_write_repeat(sk_writer *writer, size_t times, double h) {
@@ -87,11 +98,33 @@ static double widest_radius(const sk_rules *rules) {
     double widest = 0;
     for (size_t i = 0; i < rules->forces.count; i++) {
         const sk_force *force = rules->forces.data[i];
-        if (!pushes(force) || force->type->domain != SK_OVER_NEIGHBOURS) continue;
+        if (!pushes(force) || force->type->domain != SK_OVER_NEIGHBOURS || force->only.some) continue;
         double radius = force->type->radius(force->params);
         if (radius > widest) widest = radius;
     }
     return widest;
+}
+
+/* A force's row, or those of the bodies that it names. */
+static void add_field(sk_writer *writer, sk_row row, const sk_force *force) {
+    const sk_only *only = &force->only;
+    if (only->some && force->type->domain == SK_OVER_TRIANGLES) {
+        for (size_t i = 0; i < only->count; i++) {
+            row.begin = only->data[i].first_triangle, row.end = only->data[i].end_triangle;
+            if (row.begin < row.end) sk_add_row(writer, row);
+        }
+    } else if (only->some && force->type->domain == SK_OVER_NEIGHBOURS) {
+        // cells of its own, so that what others add up does not depend on its radius; the kernel passes over strangers
+        if (only->count) sk_write_cells(writer, writer->everybody, force->type->radius(force->params));
+        if (only->count) sk_add_row(writer, row);
+    } else {
+        sk_add_row_on(writer, row, only);
+    }
+}
+
+/* Neighbour rules on some bodies only: they sort cells of their own, once all others have used theirs. */
+static bool comes_late(const sk_force *force) {
+    return force->only.some && force->type->domain == SK_OVER_NEIGHBOURS;
 }
 
 void sk_write_fields(sk_writer *writer) {
@@ -99,10 +132,10 @@ void sk_write_fields(sk_writer *writer) {
     bool first = true; // gravity and the like set F when they come first; others add to a cleared one
     double radius = widest_radius(rules);
     if (radius > 0) sk_write_cells(writer, writer->everybody, radius);
-    for (size_t i = 0; i < rules->forces.count; i++) {
-        const sk_force *force = rules->forces.data[i];
-        if (!pushes(force)) continue;
-        bool sets = first && force->type->sets;
+    for (size_t n = 0; n < 2 * rules->forces.count; n++) {
+        const sk_force *force = rules->forces.data[n % rules->forces.count];
+        if (!pushes(force) || comes_late(force) != (n >= rules->forces.count)) continue;
+        bool sets = first && force->type->sets && !force->only.some;
         if (first && !sets) sk_write_clear(writer, SK_F);
         first = false;
         sk_row row = {.kind = SK_ROW_FIELD,
@@ -122,7 +155,7 @@ void sk_write_fields(sk_writer *writer) {
             row.end = writer->particle_count;
         }
         row.sets = sets;
-        sk_add_row(writer, row);
+        add_field(writer, row, force);
     }
     if (first) sk_write_clear(writer, SK_F);
 }
@@ -148,64 +181,155 @@ static bool only_follows(const sk_rules *rules, int passes) {
     return only;
 }
 
-/* Adds up the forces if all are plain and F is not wanted later on. */
-static bool add_up_plain_forces(const sk_rules *rules, sk_plain_force *sum) {
-    *sum = (sk_plain_force){.label = ""};
-    size_t length = 0;
+/* ---- predicting ----
+ *
+ * Slots are cut into parts that the same rules act on. In a part where all forces are plain, and F is not wanted later
+ * on, the prediction takes them in at once, whatever acts on others: they move to the bit as without it. */
+
+static bool acts_on(const sk_only *only, size_t slot) {
+    return sk_only_has_slot(only, slot);
+}
+
+/* Adds up the forces on a part; false where they are not all plain, or F is wanted later on. */
+static bool add_up_plain_forces(const sk_rules *rules, sk_plan_part *part) {
+    size_t length = 0, slot = part->first_slot;
+    part->plain = (sk_plain_force){.label = ""};
     for (size_t i = 0; i < rules->forces.count; i++) {
         const sk_force *force = rules->forces.data[i];
-        if (!pushes(force)) continue;
-        if (!force->type->plain || !force->type->plain(force->params, sum)) return false;
-        int added = snprintf(sum->label + length, sizeof sum->label - length, "%s%s", length ? ", " : "", force->label);
-        if (added > 0 && length + (size_t)added < sizeof sum->label) length += (size_t)added;
+        if (!pushes(force) || !acts_on(&force->only, slot)) continue;
+        if (!force->type->plain || !force->type->plain(force->params, &part->plain)) return false;
+        char *label = part->plain.label;
+        size_t room = sizeof part->plain.label - length;
+        int added = snprintf(label + length, room, "%s%s", length ? ", " : "", force->label);
+        if (added > 0 && (size_t)added < room) length += (size_t)added;
     }
-    for (size_t i = 0; i < rules->colliders.count; i++)
-        if (rules->colliders.data[i]->common->enabled && sk_contact_reads_force(rules->colliders.data[i])) return false;
+    for (size_t i = 0; i < rules->colliders.count; i++) {
+        const sk_collider *collider = rules->colliders.data[i];
+        if (collider->common->enabled && sk_contact_reads_force(collider) && acts_on(&collider->only, slot))
+            return false;
+    }
     return true;
 }
 
+/* Whether a rule that steers, or bounds the velocity, moves particles of a part. */
+static bool is_steered(const sk_rules *rules, const sk_plan_part *part) {
+    for (size_t i = 0; i < rules->forces.count; i++) {
+        const sk_force *force = rules->forces.data[i];
+        if (*force->enabled && force->type->deed != SK_PUSHES && force->moved.first < force->moved.end &&
+            acts_on(&force->only, part->first_slot))
+            return true;
+    }
+    return false;
+}
+
+/* Cuts the parts at a slot. */
+static bool cut_parts(sk_writer *writer, size_t slot) {
+    sk_plan *plan = writer->plan;
+    if (!SK_RESERVE(writer->allocator, &plan->parts, plan->parts.count + 1)) return false;
+    for (size_t i = 0; i < plan->parts.count; i++) {
+        sk_plan_part *part = &plan->parts.data[i];
+        if (slot <= part->first_slot || slot >= part->end_slot) continue;
+        memmove(part + 1, part, (plan->parts.count - i) * sizeof *part);
+        plan->parts.count++;
+        part[0].end_slot = part[1].first_slot = slot;
+        break;
+    }
+    return true;
+}
+
+static void cut_at_bodies(sk_writer *writer, const sk_only *only) {
+    for (size_t i = 0; i < only->count && !writer->no_memory; i++)
+        if (!cut_parts(writer, only->data[i].first_slot) || !cut_parts(writer, only->data[i].end_slot))
+            writer->no_memory = true;
+}
+
+/* Finds the parts; once a plan, for rows point to them. */
+static void find_parts(sk_writer *writer) {
+    const sk_rules *rules = writer->rules;
+    sk_plan *plan = writer->plan;
+    if (!SK_RESERVE(writer->allocator, &plan->parts, 1)) {
+        writer->no_memory = true;
+        return;
+    }
+    plan->parts.count = 1;
+    plan->parts.data[0] = (sk_plan_part){.end_slot = writer->slot_count};
+    for (size_t i = 0; i < rules->forces.count; i++)
+        if (*rules->forces.data[i]->enabled) cut_at_bodies(writer, &rules->forces.data[i]->only);
+    for (size_t i = 0; i < rules->colliders.count; i++)
+        if (rules->colliders.data[i]->common->enabled) cut_at_bodies(writer, &rules->colliders.data[i]->only);
+    for (size_t i = 0; i < plan->parts.count; i++) {
+        sk_plan_part *part = &plan->parts.data[i];
+        part->steered = is_steered(rules, part);
+        part->is_plain = add_up_plain_forces(rules, part);
+    }
+}
+
+/* A row for a part; for all slots where there is but one. */
+static void add_row_of_part(sk_writer *writer, sk_row row, const sk_plan_part *part) {
+    bool whole = part->first_slot == 0 && part->end_slot == writer->slot_count;
+    sk_add_row(writer, whole ? row : sk_row_for(row, part->first_slot, part->end_slot));
+}
+
 /* A row that predicts: X, V and whatever else `kept` says. */
-static sk_row prediction(sk_writer *writer, const sk_kernels *kernels, sk_vector force, sk_vector kept) {
+static sk_row prediction(sk_writer *writer, const sk_kernels *kernels, sk_vector force, sk_vector kept,
+                         const sk_plan_part *part) {
     return (sk_row){.kind = SK_ROW_COMBINE,
                     .order = SK_FREE,
                     .kernel = kernels->version[writer->isa],
                     .dst = SK_X,
                     .source = {SK_V, force, kept},
-                    .rule = &writer->plan->plain,
+                    .rule = &part->plain,
                     .end = writer->slot_count};
 }
 
 /* Where nobody else looks at X0 and F, the end of a substep and the start of the next are one row. */
 static bool falls_on(sk_writer *writer, int passes) {
-    return only_follows(writer->rules, passes) && !sk_writes_steering(writer->rules) &&
-           add_up_plain_forces(writer->rules, &writer->plan->plain);
+    bool falls = only_follows(writer->rules, passes) && !sk_writes_steering(writer->rules);
+    for (size_t i = 0; i < writer->plan->parts.count; i++) falls &= writer->plan->parts.data[i].is_plain;
+    return falls;
 }
 
 /* Where rules steer, or bound the velocity, they come between kick and drift: these are rows of their own then, and
  * the prediction has nothing left to add. */
-static bool write_steered_kick(sk_writer *writer) {
-    if (!sk_writes_steering(writer->rules)) return false;
-    if (sk_writes_forces(writer)) {
-        sk_write_fields(writer);
-        sk_write_kick(writer, SK_V, SK_V, writer->h, SK_F);
+static void write_steered_kicks(sk_writer *writer) {
+    sk_plan *plan = writer->plan;
+    for (size_t i = 0; i < plan->parts.count && sk_writes_forces(writer); i++) {
+        if (!plan->parts.data[i].steered) continue;
+        sk_row kick = {.kind = SK_ROW_COMBINE,
+                       .order = SK_FREE,
+                       .kernel = sk_combine_kick.version[writer->isa],
+                       .dst = SK_V,
+                       .source = {SK_V, SK_F, SK_NONE},
+                       .coefficient = {writer->h},
+                       .end = writer->slot_count};
+        add_row_of_part(writer, kick, &plan->parts.data[i]);
     }
+    for (size_t i = 0; i < plan->parts.count; i++)
+        if (plan->parts.data[i].steered) plan->parts.data[i].plain = (sk_plain_force){.label = ""};
     sk_write_steering(writer);
-    writer->plan->plain = (sk_plain_force){.label = ""};
-    return true;
 }
 
 static void write_prediction(sk_writer *writer, int passes) {
     const sk_rules *rules = writer->rules;
-    bool plain = write_steered_kick(writer) || add_up_plain_forces(rules, &writer->plan->plain);
-    if (!plain) sk_write_fields(writer);
+    const sk_plan *plan = writer->plan;
+    bool wants_force = false, steers = sk_writes_steering(rules);
+    for (size_t i = 0; i < plan->parts.count; i++)
+        wants_force |= plan->parts.data[i].steered ? sk_writes_forces(writer) : !plan->parts.data[i].is_plain;
+    if (wants_force) sk_write_fields(writer);
+    if (steers) write_steered_kicks(writer);
     sk_vector kept = only_follows(rules, passes) ? SK_X : rules->colliders.count ? SK_V0 : SK_NONE;
-    sk_add_row(writer,
-               prediction(writer, plain ? &sk_combine_fall : &sk_combine_predict, plain ? SK_NONE : SK_F, kept));
+    for (size_t i = 0; i < plan->parts.count; i++) {
+        const sk_plan_part *part = &plan->parts.data[i];
+        bool falls = part->steered || part->is_plain;
+        const sk_kernels *kernels = falls ? &sk_combine_fall : &sk_combine_predict;
+        add_row_of_part(writer, prediction(writer, kernels, falls ? SK_NONE : SK_F, kept, part), part);
+    }
     sk_write_moment(writer, 1);
 }
 
 size_t sk_write_predicted_repeat(sk_writer *writer, size_t times, double h, int passes) {
     writer->h = h;
+    find_parts(writer);
     if (falls_on(writer, passes)) {
         write_prediction(writer, passes);
         size_t repeat = sk_write_repeat(writer, times, h);
@@ -219,9 +343,12 @@ size_t sk_write_predicted_repeat(sk_writer *writer, size_t times, double h, int 
 
 void sk_write_following(sk_writer *writer, int passes) {
     if (falls_on(writer, passes)) {
-        sk_row row = prediction(writer, &sk_combine_fall_on, SK_NONE, SK_X);
-        row.coefficient[0] = 1 / writer->h;
-        sk_add_row(writer, row);
+        for (size_t i = 0; i < writer->plan->parts.count; i++) {
+            const sk_plan_part *part = &writer->plan->parts.data[i];
+            sk_row row = prediction(writer, &sk_combine_fall_on, SK_NONE, SK_X, part);
+            row.coefficient[0] = 1 / writer->h;
+            add_row_of_part(writer, row, part);
+        }
         return;
     }
     double h = only_follows(writer->rules, passes) ? 0 : writer->h; // X0 is where X was going, or where it was
@@ -378,14 +505,15 @@ void sk_write_contacts(sk_writer *writer, sk_contact_sort sort) {
     for (size_t i = 0; i < writer->rules->colliders.count; i++) {
         const sk_collider *collider = writer->rules->colliders.data[i];
         if (!collider->common->enabled) continue;
-        sk_add_row(writer, (sk_row){.kind = sorts[sort].kind,
+        sk_row row = {.kind = sorts[sort].kind,
                                     .order = SK_FREE,
                                     .kernel = sorts[sort].kernels->version[writer->isa],
                                     .dst = sorts[sort].dst,
                                     .source = {SK_X, settles ? SK_X0 : SK_NONE, settles ? SK_V0 : SK_NONE},
                                     .rule = collider,
                                     .label = collider->label,
-                                    .end = writer->slot_count});
+                                    .end = writer->slot_count};
+        sk_add_row_on(writer, row, &collider->only);
     }
 }
 

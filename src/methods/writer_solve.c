@@ -77,7 +77,7 @@ static void add_forces(sk_writer *writer, sk_row_kind kind, sk_vector dst, sk_ve
         const sk_force *force = writer->rules->forces.data[i];
         const sk_kernels *kernels = kind == SK_ROW_APPLY ? &force->type->apply : &force->type->diagonal;
         if (!*force->enabled || !kernels->version[writer->isa]) continue;
-        sk_add_row(writer, (sk_row){.kind = kind,
+        sk_add_row_on(writer, (sk_row){.kind = kind,
                                     .order = SK_FREE,
                                     .kernel = kernels->version[writer->isa],
                                     .dst = dst,
@@ -85,7 +85,7 @@ static void add_forces(sk_writer *writer, sk_row_kind kind, sk_vector dst, sk_ve
                                     .coefficient = {a, b},
                                     .rule = force,
                                     .label = force->label,
-                                    .end = writer->slot_count});
+                                    .end = writer->slot_count}, &force->only);
     }
 }
 
@@ -137,7 +137,7 @@ void sk_write_resistance(sk_writer *writer, sk_vector dst, double a) {
     for (size_t i = 0; i < writer->rules->forces.count; i++) {
         const sk_force *force = writer->rules->forces.data[i];
         if (!*force->enabled || !force->type->resistance.version[writer->isa]) continue;
-        sk_add_row(writer, (sk_row){.kind = SK_ROW_LINEARISE,
+        sk_add_row_on(writer, (sk_row){.kind = SK_ROW_LINEARISE,
                                     .order = SK_FREE,
                                     .kernel = force->type->resistance.version[writer->isa],
                                     .dst = dst,
@@ -145,7 +145,7 @@ void sk_write_resistance(sk_writer *writer, sk_vector dst, double a) {
                                     .coefficient = {a},
                                     .rule = force,
                                     .label = force->label,
-                                    .end = writer->slot_count});
+                                    .end = writer->slot_count}, &force->only);
     }
 }
 
@@ -153,14 +153,14 @@ static void add_filters(sk_writer *writer, const sk_kernels *kernels, sk_vector 
     for (size_t i = 0; i < writer->rules->colliders.count; i++) {
         const sk_collider *collider = writer->rules->colliders.data[i];
         if (!collider->common->enabled) continue;
-        sk_add_row(writer, (sk_row){.kind = SK_ROW_CONTACT_FILTER,
+        sk_add_row_on(writer, (sk_row){.kind = SK_ROW_CONTACT_FILTER,
                                     .order = SK_FREE,
                                     .kernel = kernels->version[writer->isa],
                                     .dst = (sk_vector)SK_FILTER0,
                                     .source = {SK_X, (sk_vector)SK_FILTER1, friction},
                                     .rule = collider,
                                     .label = collider->label,
-                                    .end = writer->slot_count});
+                                    .end = writer->slot_count}, &collider->only);
     }
 }
 

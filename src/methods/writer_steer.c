@@ -95,7 +95,7 @@ static void write_lookouts(sk_writer *writer, const sk_force *force) {
         row.group = &force->moved;
         row.label = collider->label;
         force->type->look(force->params, row.coefficient);
-        sk_add_row(writer, row);
+        sk_add_row_on(writer, row, &collider->only);
     }
 }
 

@@ -1,6 +1,7 @@
 #include "plan/row.h"
 
 #include <stdio.h>
+#include <string.h>
 
 bool sk_plan_add(sk_plan *plan, sk_allocator *allocator, sk_row row) {
     if (!SK_RESERVE(allocator, plan, plan->count + 1)) return false;
@@ -35,6 +36,65 @@ const char *sk_row_kind_text(sk_row_kind kind) {
     return names[kind];
 }
 
+/* ---- rows over some slots ---- */
+
+sk_row sk_row_for(sk_row row, size_t first_slot, size_t end_slot) {
+    enum { BLOCK = 16 };
+    row.begin = first_slot / BLOCK * BLOCK;
+    row.end = (end_slot + BLOCK - 1) / BLOCK * BLOCK;
+    row.first_slot = first_slot, row.end_slot = end_slot;
+    row.inner = row.kernel;
+    row.kernel = sk_run_partly;
+    return row;
+}
+
+/* A block of the vectors that a row may write. */
+typedef struct kept_block {
+    sk_vec4 slots[16];
+    sk_vec4 *from;
+    bool packed;
+} kept_block;
+
+static void keep_block(kept_block *kept, const sk_run *run, const sk_row *row, sk_vector vector, size_t at) {
+    kept->from = run->vector[vector];
+    kept->packed = at < row->packed && vector != SK_PREVIOUS;
+    if (kept->from) memcpy(kept->slots, kept->from + at, sizeof kept->slots);
+}
+
+/* Puts back what slots beside the row's had. */
+static void put_back(const kept_block *kept, const sk_row *row, size_t at) {
+    for (size_t l = 0; l < 16 && kept->from; l++) {
+        if (at + l >= row->first_slot && at + l < row->end_slot) continue;
+        if (kept->packed) {
+            real *to = (real *)(void *)(kept->from + at);
+            const real *old = (const real *)(const void *)kept->slots;
+            for (size_t k = 0; k < 4; k++) to[16 * k + l] = old[16 * k + l];
+        } else {
+            kept->from[at + l] = kept->slots[l];
+        }
+    }
+}
+
+void sk_run_partly(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_vector written[] = {row->dst, row->source[0], row->source[1], row->source[2], SK_X, SK_V, SK_X0, SK_V0};
+    enum { WRITTEN = sizeof written / sizeof *written };
+    for (size_t at = begin, next; at < end; at = next) {
+        kept_block kept[WRITTEN];
+        next = at + 16;
+        if (at >= row->first_slot && next <= row->end_slot) {
+            size_t whole = row->end_slot / 16 * 16;
+            next = whole < end ? whole : end;
+            row->inner(run, row, at, next);
+            continue;
+        }
+        for (int i = 0; i < WRITTEN; i++) keep_block(&kept[i], run, row, written[i], at);
+        row->inner(run, row, at, next);
+        for (int i = 0; i < WRITTEN; i++) put_back(&kept[i], row, at);
+    }
+}
+
+/* ---- as text ---- */
+
 static const char *vector_text(sk_vector vector) {
     static const char *const names[SK_VECTOR_COUNT] = {"",   "X",  "V",  "F",  "X0", "V0", "P",  "T0",  "T1",  "T2",
                                                        "T3", "T4", "T5", "T6", "T7", "T8", "T9", "T10", "T11", "S"};
@@ -43,7 +103,7 @@ static const char *vector_text(sk_vector vector) {
 
 bool sk_row_is(const sk_row *row, const sk_kernels *kernels) {
     for (int isa = 0; isa < SK_ISA_COUNT; isa++)
-        if (row->kernel == kernels->version[isa]) return true;
+        if ((row->inner ? row->inner : row->kernel) == kernels->version[isa]) return true;
     return false;
 }
 

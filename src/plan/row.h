@@ -122,6 +122,8 @@ struct sk_row {
     const void *rule;      /* a force, a collider, a batch */
     const sk_group *group; /* whom it moves or sorts, where the rule does not say; NULL: everybody */
     const char *label;     /* its name in `skein explain` */
+    sk_row_kernel *inner;  /* of a row over some slots only: `kernel` is sk_run_partly then */
+    size_t first_slot, end_slot; /* of such a row, within [begin, end); else 0 */
     size_t begin, end;     /* elements; a repeat: the number of turns is `end` */
     bool sets;             /* a field row: F is written, not added to */
     bool by_particle;      /* its elements are the user's particles, not slots: not to be run in chunks with others */
@@ -139,14 +141,28 @@ typedef struct sk_plain_force {
     char label[64]; /* of the forces that it stands for */
 } sk_plain_force;
 
+/* Slots that the same rules act on, and what methods that predict do for them. */
+typedef struct sk_plan_part {
+    size_t first_slot, end_slot;
+    sk_plain_force plain; /* the rule of its prediction rows that need no F */
+    bool is_plain, steered;
+} sk_plan_part;
+
 typedef struct sk_plan {
     sk_row *data;
     size_t count, capacity;
-    sk_plain_force plain; /* the rule of its prediction rows that need no F */
+    struct {
+        sk_plan_part *data;
+        size_t count, capacity;
+    } parts; /* of all slots; rows point into them */
 } sk_plan;
 
 /* Appends a row; false when there is no memory. */
 bool sk_plan_add(sk_plan *plan, sk_allocator *allocator, sk_row row);
+/* Runs the row's inner kernel over whole blocks, and leaves what the slots beside [first_slot, end_slot) have. */
+sk_row_kernel sk_run_partly;
+/* The row for these slots alone. */
+sk_row sk_row_for(sk_row row, size_t first_slot, size_t end_slot);
 /* One line about a row, as `skein explain` shows it. */
 void sk_row_describe(const sk_row *row, char *text, size_t size);
 const char *sk_row_kind_text(sk_row_kind kind);

@@ -32,6 +32,31 @@ typedef struct sk_group {
     size_t out;                  /* how many of them take no part, and are in no cell */
 } sk_group;
 
+/* A body that a rule acts on: its particles, their slots (nobody else lies in them), and its triangles among those that
+ * take part. */
+typedef struct sk_span_of_body {
+    size_t first, end, first_slot, end_slot, first_triangle, end_triangle;
+} sk_span_of_body;
+
+/* Whom a rule acts on: everybody, or some bodies (perhaps none that is there), by their slots. */
+typedef struct sk_only {
+    bool some;
+    sk_span_of_body *data;
+    size_t count, capacity;
+} sk_only;
+
+static inline bool sk_only_has(const sk_only *only, size_t particle) {
+    for (size_t i = 0; i < only->count; i++)
+        if (particle >= only->data[i].first && particle < only->data[i].end) return true;
+    return !only->some;
+}
+
+static inline bool sk_only_has_slot(const sk_only *only, size_t slot) {
+    for (size_t i = 0; i < only->count; i++)
+        if (slot >= only->data[i].first_slot && slot < only->data[i].end_slot) return true;
+    return !only->some;
+}
+
 typedef struct sk_cells {
     sk_vec3 origin;
     real size;  /* along y and z: at least the radius asked for */

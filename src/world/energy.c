@@ -9,7 +9,7 @@ typedef struct block_sums {
     double kinetic, potential, momentum[3], angular[3];
 } block_sums;
 
-static void add_particle(const sk_rules *rules, double time, sk_vec4 x, sk_vec4 v, block_sums *sums) {
+static void add_particle(const sk_rules *rules, double time, size_t particle, sk_vec4 x, sk_vec4 v, block_sums *sums) {
     double m = (double)v.w, p[3] = {(double)x.x, (double)x.y, (double)x.z};
     double u[3] = {(double)v.x, (double)v.y, (double)v.z};
     sums->kinetic += 0.5 * m * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
@@ -20,7 +20,7 @@ static void add_particle(const sk_rules *rules, double time, sk_vec4 x, sk_vec4 
     }
     for (size_t f = 0; f < rules->forces.count; f++) {
         const sk_force *force = rules->forces.data[f];
-        if (*force->enabled && force->type->potential)
+        if (*force->enabled && force->type->potential && sk_only_has(&force->only, particle))
             sums->potential += force->type->potential(force->params, p, m, time);
     }
 }
@@ -32,7 +32,7 @@ static void measure_particles(const skein_world *world, skein_statistics *s) {
         block_sums sums = {0};
         for (size_t i = first; i < last; i++) {
             sk_vec4 x = all->vector[SK_X][all->slot_of[i]];
-            if (x.w > 0 && sk_particle_is_here(all, i)) add_particle(&world->rules, world->time, x, all->vector[SK_V][all->slot_of[i]], &sums);
+            if (x.w > 0 && sk_particle_is_here(all, i)) add_particle(&world->rules, world->time, i, x, all->vector[SK_V][all->slot_of[i]], &sums);
         }
         s->kinetic_energy += sums.kinetic;
         s->potential_energy += sums.potential;

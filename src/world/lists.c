@@ -85,10 +85,10 @@ skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, s
         if (object->category != SKEIN_COLLIDER || !object->as.collider->common->enabled)
             continue;
         list.collider = sk_handle_at(world, i);
-        for (size_t end; sk_particles_next_run(all, &list.first, &end); list.first = end)
+        const char *on = object->as.collider->common->on;
+        for (size_t at = 0, end; sk_world_next_run(world, on, &at, &list.first, &end);)
             sk_collider_visit(object->as.collider, world->time, all->vector[SK_X], all->slot_of + list.first,
                               end - list.first, add_contact, &list);
-        list.first = 0;
     }
     *count = list.count;
     return status;

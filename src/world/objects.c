@@ -150,7 +150,8 @@ skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, c
         return sk_fail_memory(error, type->kind.name);
     }
     *force = (sk_force){
-        .type = type, .params = object->params, .label = object->label, .enabled = &object->common.plain.enabled};
+        .type = type, .params = object->params, .label = object->label, .enabled = &object->common.plain.enabled,
+        .on = &object->common.plain.on};
     world->rules.forces.data[world->rules.forces.count++] = force;
     object->as.force = force;
     return finish_object(world, object, handle);
@@ -396,10 +397,12 @@ skein_status skein_remove(skein_world *world, skein_handle handle) {
         break;
     case SKEIN_FORCE:
         drop_pointer((void **)rules->forces.data, &rules->forces.count, object->as.force);
+        sk_release(&world->allocator, object->as.force->only.data);
         sk_release(&world->allocator, object->as.force);
         break;
     case SKEIN_COLLIDER:
         drop_pointer((void **)rules->colliders.data, &rules->colliders.count, object->as.collider);
+        sk_release(&world->allocator, object->as.collider->only.data);
         sk_release(&world->allocator, object->as.collider);
         break;
     case SKEIN_MOTION:

@@ -32,11 +32,16 @@ skein_status sk_world_settle_presence(skein_world *world, skein_error *error) {
 
 /* ---- names ---- */
 
-/* Whether one of the bodies that a rule says is this one. */
-static bool names(const sk_force *force, const char *name) {
-    const char *moved = "", *seen = "";
-    if (force->type->bodies) force->type->bodies(force->params, &moved, &seen);
-    return !strcmp(moved, name) || !strcmp(seen, name);
+/* Whether a rule names a body. */
+static bool is_named(const skein_world *world, const char *name) {
+    for (size_t i = 0; i < world->rules.forces.count; i++) {
+        const sk_force *force = world->rules.forces.data[i];
+        const char *minds = force->type->minds ? force->type->minds(force->params) : "";
+        if (sk_names_have(*force->on, name) || sk_names_have(minds, name)) return true;
+    }
+    for (size_t i = 0; i < world->rules.colliders.count; i++)
+        if (sk_names_have(world->rules.colliders.data[i]->common->on, name)) return true;
+    return false;
 }
 
 bool sk_world_knew(const skein_world *world, const char *name) {
@@ -47,9 +52,7 @@ bool sk_world_knew(const skein_world *world, const char *name) {
 
 /* Rules that name a body which is removed move nobody, until there is another of its name. */
 static skein_status remember_name(skein_world *world, const char *name) {
-    bool named = false;
-    for (size_t i = 0; i < world->rules.forces.count && name[0]; i++) named |= names(world->rules.forces.data[i], name);
-    if (!named || sk_world_knew(world, name)) return SKEIN_OK;
+    if (!is_named(world, name) || sk_world_knew(world, name)) return SKEIN_OK;
     char *copy = SK_RESERVE(&world->allocator, &world->gone_names, world->gone_names.count + 1)
                      ? sk_copy_text(&world->allocator, name)
                      : NULL;

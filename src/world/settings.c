@@ -16,12 +16,19 @@ static const skein_field rule_fields[] = {
     SK_BOOL(sk_common, enabled, "enabled", 1, "false: as if it were not there"),
     SK_BOOL(sk_common, visible, "visible", 1, "whether it is drawn"),
 };
+static const skein_field force_fields[] = {
+    SK_TEXT(sk_common, name, "name", "", "for paths and messages"),
+    SK_BOOL(sk_common, enabled, "enabled", 1, "false: as if it were not there"),
+    SK_BOOL(sk_common, visible, "visible", 1, "whether it is drawn"),
+    SK_TEXT(sk_common, on, "on", "",
+            "the names of the bodies that it acts on, commas between them; empty: every particle"),
+};
 
 const skein_field *sk_common_fields(skein_category category, size_t *count) {
     switch (category) {
     case SKEIN_BODY: *count = sizeof body_fields / sizeof *body_fields; return body_fields;
-    case SKEIN_CONSTRAINT:
-    case SKEIN_FORCE: *count = sizeof rule_fields / sizeof *rule_fields; return rule_fields;
+    case SKEIN_CONSTRAINT: *count = sizeof rule_fields / sizeof *rule_fields; return rule_fields;
+    case SKEIN_FORCE: *count = sizeof force_fields / sizeof *force_fields; return force_fields;
     case SKEIN_COLLIDER: *count = sk_collider_field_count; return sk_collider_fields;
     case SKEIN_MOTION: *count = sk_motion_field_count; return sk_motion_fields;
     default: *count = 0; return NULL;

@@ -109,6 +109,8 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
     skein_error *error = sk_world_error(world);
     *stability = (skein_stability){.mode_count = 0};
     skein_status status = sk_world_arrange(world, error);
+    skein_error ignored; // a name that no body has is a step's to tell
+    if (!status) sk_world_find_groups(world, &ignored);
     if (!status) status = sk_world_fetch(world);
     if (status) return status;
     uint32_t wanted = 1u << mode_at | 1u << image | 1u << zero | 1u << resistance | 1u << SK_SUMS;
@@ -126,6 +128,7 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
                            .h = 1};
     find_modes(&f, stability);
     sk_release(&world->allocator, f.plan.data);
+    sk_release(&world->allocator, f.plan.parts.data);
     return f.writer.no_memory ? sk_fail_memory(error, "stability") : SKEIN_OK;
 }
 

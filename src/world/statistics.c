@@ -36,7 +36,7 @@ static size_t count_guarded(const skein_world *world, const sk_force *force) {
     for (size_t i = 0; i < all->count && *force->enabled && force->type->guarded; i++) {
         sk_vec4 x = all->vector[SK_X][all->slot_of[i]], v = all->vector[SK_V][all->slot_of[i]];
         const double p[3] = {(double)x.x, (double)x.y, (double)x.z}, u[3] = {(double)v.x, (double)v.y, (double)v.z};
-        if (x.w > 0 && sk_particle_is_here(all, i)) guarded += force->type->guarded(force->params, p, u, world->time);
+        if (x.w > 0 && sk_particle_is_here(all, i) && sk_only_has(&force->only, i)) guarded += force->type->guarded(force->params, p, u, world->time);
     }
     return guarded;
 }
@@ -109,6 +109,8 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     statistics->solver_failures = (size_t)world->cell[SK_CELL_FAILURES];
     statistics->particles = all->count - all->out_count;
     status = sk_world_arrange(world, error); // the slots of new rules may not be known yet
+    skein_error ignored; // a name that no body has is a step's to tell
+    if (!status) sk_world_find_groups(world, &ignored);
     if (status) return status;
     count_particles(world, statistics);
     sk_world_measure_energy(world, statistics);
@@ -118,7 +120,7 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     for (size_t i = 0; i < world->rules.colliders.count; i++) {
         const sk_collider *collider = world->rules.colliders.data[i];
         if (!collider->common->enabled) continue;
-        for (size_t first = 0, end; sk_particles_next_run(all, &first, &end); first = end) {
+        for (size_t at = 0, first, end; sk_world_next_run(world, collider->common->on, &at, &first, &end);) {
             sk_collider_measure(collider, world->time, all->vector[SK_X], all->slot_of + first, end - first,
                                 &statistics->max_penetration, &statistics->contacts);
             statistics->guarded += sk_collider_count_guarded(collider, world->time, all->vector[SK_X],

@@ -119,53 +119,6 @@ skein_status skein_sparse_solver_set(skein_world *world, const skein_sparse_solv
     return SKEIN_OK;
 }
 
-/* The particles of the body of that name, or all where there is no name; none where the body takes no part, or is gone.
- * False when there is no such body. */
-static bool find_group(const skein_world *world, const char *name, sk_group *group) {
-    const sk_particles *all = &world->particles;
-    *group = (sk_group){0, all->count, 0, all->slot_count, all->out_count};
-    if (!name[0]) return true;
-    for (size_t i = 0; i < world->objects.count; i++) {
-        const sk_object *object = world->objects.data[i];
-        if (object->category != SKEIN_BODY) continue;
-        if (strcmp(object->common.plain.name, name)) continue;
-        const sk_body *body = object->as.body;
-        *group = (sk_group){0, 0, 0, 0, 0};
-        if (!body->enabled || !body->particle_count) return true;
-        *group = (sk_group){body->first_particle, body->first_particle + body->particle_count, SIZE_MAX, 0, 0};
-        for (size_t k = group->first; k < group->end; k++) {
-            if (all->slot_of[k] < group->first_slot) group->first_slot = all->slot_of[k];
-            if (all->slot_of[k] >= group->end_slot) group->end_slot = (size_t)all->slot_of[k] + 1;
-        }
-        return true;
-    }
-    *group = (sk_group){0, 0, 0, 0, 0};
-    return sk_world_knew(world, name);
-}
-
-/* Whom the rules move and look at, and what they say about it. */
-static skein_status find_groups(skein_world *world, skein_error *error) {
-    for (size_t i = 0; i < world->rules.forces.count; i++) {
-        sk_force *force = world->rules.forces.data[i];
-        if (!*force->enabled) continue;
-        const char *moved = "", *seen = "";
-        if (force->type->bodies) force->type->bodies(force->params, &moved, &seen);
-        const char *unknown = !find_group(world, moved, &force->moved)                   ? moved
-                              : !find_group(world, seen[0] ? seen : moved, &force->seen) ? seen
-                                                                                         : NULL;
-        if (unknown)
-            return sk_fail(error, SKEIN_ERROR_NAME, force->label, "there is no body of the name '%s'", unknown);
-        int32_t particle = sk_force_particle(force); // that it looks at: without it there is nothing to be done
-        if (particle >= 0 && (size_t)particle < world->particles.count &&
-            !sk_particle_is_here(&world->particles, (size_t)particle))
-            force->moved = (sk_group){0, 0, 0, 0, 0};
-        skein_status status =
-            force->type->check ? force->type->check(force->params, world->particles.count, error) : SKEIN_OK;
-        if (status) return status;
-    }
-    return SKEIN_OK;
-}
-
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error) {
     if (!(dt > 0) || !(dt <= 1e6))
         return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0, at most 1e6", dt);
@@ -179,12 +132,11 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         status = method->check(world->method_params, &world->rules, error);
         if (status) return status;
     }
-    status = find_groups(world, error);
+    status = sk_world_find_groups(world, error);
     if (status) return status;
     for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);
     warn_of_light_colliders(world);
     world->plan_stale = true; // until it is whole
-    find_group(world, "", &world->everybody);
     world->plan.count = 0;
     sk_writer writer = {
         .plan = &world->plan,

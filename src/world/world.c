@@ -77,6 +77,8 @@ void skein_world_destroy(skein_world *world) {
     if (world->device) world->device->release(world->device, world);
     sk_tasks_destroy(world->tasks);
     for (size_t i = 0; i < rules->batches.count; i++) sk_batch_release(rules->batches.data[i], allocator);
+    for (size_t i = 0; i < rules->forces.count; i++) sk_release(allocator, rules->forces.data[i]->only.data);
+    for (size_t i = 0; i < rules->colliders.count; i++) sk_release(allocator, rules->colliders.data[i]->only.data);
     for (size_t i = 0; i < rules->forces.count; i++) sk_release(allocator, rules->forces.data[i]);
     for (size_t i = 0; i < rules->colliders.count; i++) sk_release(allocator, rules->colliders.data[i]);
     for (size_t i = 0; i < rules->limits.count; i++) sk_limit_release(rules->limits.data[i], allocator);
@@ -101,6 +103,7 @@ void skein_world_destroy(skein_world *world) {
     sk_release(allocator, world->triangles.corner);
     sk_release(allocator, world->slots_of_triangles.corner);
     sk_release(allocator, world->plan.data);
+    sk_release(allocator, world->plan.parts.data);
     skein_sparse_solver_set(world, NULL);
     sk_matrix_release(&world->matrix, allocator);
     sk_cells_release(&world->cells, allocator);

@@ -51,7 +51,7 @@ struct sk_body {
 
 /* What bodies, constraints and forces have besides their own fields. */
 typedef struct sk_common {
-    char *name;
+    char *name, *on; /* on: forces only */
     bool enabled, visible;
 } sk_common;
 
@@ -240,6 +240,14 @@ skein_status sk_world_remove_body(skein_world *world, sk_body *body, const char 
 void sk_world_reuse_indices(skein_world *world, sk_body *body, size_t batches, size_t limits);
 /* Leaves out of constraints what is not there. */
 skein_status sk_world_settle_presence(skein_world *world, skein_error *error);
+/* ---- whom rules act on (world/groups.c) ---- */
+/* Finds the bodies that rules name; an unknown name is an error. The slots are up to date. */
+skein_status sk_world_find_groups(skein_world *world, skein_error *error);
+/* Whether a list of names has this one: it is the name, or is in it between commas. */
+bool sk_names_have(const char *names, const char *name);
+/* The next run of particles that take part and that a rule `on` these bodies acts on, from *cursor = 0 on: in the order
+ * of particles where it acts on all, else body by body. False at the end. */
+bool sk_world_next_run(const skein_world *world, const char *on, size_t *cursor, size_t *first, size_t *end);
 /* Whether a body of that name was removed, and a rule still names it. */
 bool sk_world_knew(const skein_world *world, const char *name);
 void sk_world_forget_names(skein_world *world);
