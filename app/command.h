@@ -97,7 +97,7 @@ void app_keep_error(const skein_error *error, char out[APP_FAILURE_SIZE]);
 
 /* A scene read, with its world built. */
 typedef struct app_scene {
-    const char *path;
+    char path[IO_PLACE_SIZE]; /* as messages have it */
     io_scene *scene;
     io_scene_settings settings;
     skein_world *world;
@@ -106,13 +106,16 @@ typedef struct app_scene {
     bool quiet;
 } app_scene;
 
-/* Reads, checks and builds; every fault is printed. Returns an exit status. */
-int app_load(const char *path, const char *const *sets, app_scene *loaded);
+/* Reads, checks and builds what a word means: a scene's file or name, a mesh, "-" for standard input. Every fault is
+ * printed. Returns an exit status. */
+int app_load(const char *word, const char *const *sets, app_scene *loaded);
 /* The same without notes on the terminal: only faults. */
-int app_load_quietly(const char *path, const char *const *sets, app_scene *loaded);
+int app_load_quietly(const char *word, const char *const *sets, app_scene *loaded);
 /* Only looks whether it can be loaded. */
-int app_try(const char *path, const char *const *sets);
+int app_try(const char *word, const char *const *sets);
 void app_unload(app_scene *loaded);
+/* Says that the word means no scene. */
+void app_not_found(const char *word);
 /* What the option --device asks for: "cpu", "gpu", "auto" or NULL. Says on the terminal what it chose unless that is
  * plain. Returns an exit status. */
 int app_device(app_scene *loaded, const char *word);

@@ -25,7 +25,8 @@ static void print_help(FILE *to) {
         const char *line = commands[c]->help;
         fprintf(to, "  %-9s %.*s\n", commands[c]->name, (int)strcspn(line, "\n"), line);
     }
-    fprintf(to, "\n`skein COMMAND --help` teaches a command, `skein --version` names the version. First steps:\n\n"
+    fprintf(to, "\n`skein COMMAND --help` teaches a command, `skein --version` names the version. A SCENE is\n"
+                "a file, a scene's name (skein run birds), a mesh (skein run shirt.obj), or - for standard input.\n\n"
                 "  skein run scenes/drape.json --out out/\n"
                 "  skein view scenes/flag.json\n"
                 "  skein render scenes/flag.json -o flag.mp4\n"

@@ -47,13 +47,35 @@ const skein_kind *const *app_exporters(void) {
     return all;
 }
 
-static int load(const char *path, const char *const *sets, bool quiet, app_scene *loaded) {
+/* Standard input, read once for all the times that a command looks at the scene. */
+static io_scene *read_stdin(const char *const *sets, io_faults *faults) {
+    static io_bytes given;
+    skein_error error;
+    if (!given.data && io_stdin_read(IO_MOST_SCENE_BYTES, &given, &error)) {
+        faults->report(faults->user, &error);
+        faults->count++;
+        return NULL;
+    }
+    return io_scene_read_text(given.data, given.size, IO_STDIN_NAME, sets, app_exporters(), faults);
+}
+
+/* Reads what the word means, and notes its path. */
+static io_scene *read_scene(const char *word, const char *const *sets, io_faults *faults, char path[IO_PLACE_SIZE]) {
+    if (!strcmp(word, "-")) {
+        snprintf(path, IO_PLACE_SIZE, "%s", IO_STDIN_NAME);
+        return read_stdin(sets, faults);
+    }
+    if (io_scene_find(word, path)) return io_scene_read(path, sets, app_exporters(), faults);
+    io_scene_not_found(word, faults);
+    return NULL;
+}
+
+static int load(const char *word, const char *const *sets, bool quiet, app_scene *loaded) {
     memset(loaded, 0, sizeof *loaded);
-    loaded->path = path;
     loaded->quiet = quiet;
     double start = app_seconds();
     io_faults faults = {report_fault, NULL, 0};
-    loaded->scene = io_scene_read(path, sets, app_exporters(), &faults);
+    loaded->scene = read_scene(word, sets, &faults, loaded->path);
     if (loaded->scene) {
         loaded->settings = *io_scene_get(loaded->scene);
         skein_world_desc desc = skein_default_world_desc();
@@ -65,7 +87,7 @@ static int load(const char *path, const char *const *sets, bool quiet, app_scene
     loaded->load_seconds = app_seconds() - start;
     if (loaded->world) return EXIT_OK;
     app_unload(loaded);
-    if (faults.count > 1) fprintf(stderr, "skein: %s: %zu faults\n", path, faults.count);
+    if (faults.count > 1) fprintf(stderr, "skein: %s: %zu faults\n", loaded->path, faults.count);
     return EXIT_FAULT;
 }
 
@@ -82,6 +104,11 @@ int app_try(const char *path, const char *const *sets) {
     int status = app_load(path, sets, &loaded);
     if (!status) app_unload(&loaded);
     return status;
+}
+
+void app_not_found(const char *word) {
+    io_faults faults = {report_fault, NULL, 0};
+    io_scene_not_found(word, &faults);
 }
 
 void app_unload(app_scene *loaded) {

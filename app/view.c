@@ -72,15 +72,24 @@ static void print_keys(void) {
 }
 
 static int view(app_arguments *arguments) {
-    const char *path = app_word(arguments);
+    static char path[IO_PLACE_SIZE];
+    const char *word = app_word(arguments);
     viewer_options asked = viewer_default_options();
     skein_error error = {SKEIN_OK, "", ""};
     if (!read_options(arguments, &asked)) return EXIT_FAULT;
-    if (path && access(path, R_OK)) {
+    if (word && !strcmp(word, "-")) {
+        fprintf(stderr, "skein view: -: a window reads its scene again when it changes, and so needs a file\n");
+        return EXIT_FAULT;
+    }
+    if (word && !io_scene_find(word, path)) {
+        app_not_found(word);
+        return EXIT_FAULT;
+    }
+    if (word && access(path, R_OK)) {
         fprintf(stderr, "skein view: %s: cannot read: %s\n", path, strerror(errno));
         return EXIT_FAULT;
     }
-    asked.path = path;
+    asked.path = word ? path : NULL;
     if (!viewer_run(&asked, &error)) return EXIT_OK;
     app_print_error(&error);
     return EXIT_FAILURE_RUN;

@@ -1,13 +1,15 @@
 #include "io/scene.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "io/scene_settings.h"
 
-enum { SCENE_VERSION = 1, MOST_EXPORTS = 16, MOST_SCENE_BYTES = 64 << 20, MOST_STEPS_PER_FRAME = 1000000 };
+enum { SCENE_VERSION = 1, MOST_EXPORTS = 16, MOST_STEPS_PER_FRAME = 1000000 };
 
 struct io_scene {
     json_t *root;  /* an object */
@@ -137,14 +139,18 @@ char *io_path_beside(const char *scene, const char *file) {
     return path;
 }
 
-/* Makes the paths in the view's parameters paths from here. False when there is no memory. */
-static bool place_paths(io_scene *scene) {
+/* Makes the paths in the view's parameters paths from here; a file that cannot be read is a fault now, not at the end
+ * of a run. False when there is no memory. */
+static bool place_paths(io_scene *scene, io_place place) {
     for (size_t i = 0; i < scene->view_kind->field_count; i++) {
         const skein_field *field = &scene->view_kind->fields[i];
         if (field->type != SKEIN_FIELD_TEXT || strcmp(field->unit, "path")) continue;
         char **text = (char **)(void *)((char *)scene->view + field->offset),
              *path = io_path_beside(scene->path, *text);
         if (!path) return false;
+        if (path[0] && access(path, R_OK))
+            io_fault(place, field->name, SKEIN_ERROR_FILE, "%s: cannot read: %s", path,
+                     errno == ENOENT ? "no such file or directory" : strerror(errno));
         free(*text);
         *text = path;
     }
@@ -165,7 +171,7 @@ static void read_view(io_scene *scene, io_place place, const skein_kind *const *
     if (json_is_object(object)) io_settings_read(&settings, inside, object, *kinds, NULL);
     scene->view_kind = *kinds;
     scene->view = calloc(1, (*kinds)->params_size);
-    if (!scene->view || !fill_params(*kinds, scene->view, &settings) || !place_paths(scene))
+    if (!scene->view || !fill_params(*kinds, scene->view, &settings) || !place_paths(scene, inside))
         io_fault(inside, "", SKEIN_ERROR_MEMORY, "out of memory");
     io_settings_free(&settings);
 }
@@ -326,7 +332,8 @@ io_scene *io_scene_read_text(const char *text, size_t size, const char *path, co
         return NULL;
     }
     scene->root = root;
-    for (; json_is_object(root) && sets && *sets; sets++) io_scene_override(root, *sets, faults, scene->notes);
+    for (; json_is_object(root) && sets && *sets; sets++)
+        io_scene_override(root, *sets, exporters, faults, scene->notes);
     if (is_a_scene(root, place)) {
         read_top(scene, place);
         read_outputs(scene, place, exporters);
@@ -341,7 +348,8 @@ io_scene *io_scene_read(const char *path, const char *const *sets, const skein_k
                         io_faults *faults) {
     skein_error error = {SKEIN_OK, "", ""};
     io_bytes bytes;
-    if (io_file_read(path, MOST_SCENE_BYTES, &bytes, &error)) {
+    if (io_path_is_mesh(path)) return io_scene_of_mesh(path, sets, exporters, faults);
+    if (io_file_read(path, IO_MOST_SCENE_BYTES, &bytes, &error)) {
         io_fault((io_place){path, "", faults}, "", error.status, "%s", error.message);
         return NULL;
     }

@@ -9,6 +9,7 @@
 #define SKEIN_IO_SCENE_H
 
 #include "io/file.h"
+#include "io/places.h"
 
 typedef struct io_scene io_scene;
 
@@ -42,7 +43,28 @@ typedef struct io_faults {
     size_t count; /* so far */
 } io_faults;
 
-/* Reads a scene and applies `sets`, each "path=value" (NULL-terminated list, or NULL). In a list the place after the last
+/* ---- where scenes come from (io/scene_source.c) ---- */
+
+/* The file that a word means: a file's own path, or where there is none the scene of that name, "birds", among those
+ * that come with Skein. False, with the word itself as the path, where it means neither. */
+bool io_scene_find(const char *word, char path[IO_PLACE_SIZE]);
+/* Reports that it means neither, with the name that may have been meant. */
+void io_scene_not_found(const char *word, io_faults *faults);
+/* The names of the scenes that come with Skein, in the alphabet's order, each once. Returns how many, up to `most`. */
+enum { IO_SCENE_NAME_SIZE = 64 };
+size_t io_scene_names(char (*names)[IO_SCENE_NAME_SIZE], size_t most);
+/* Whether the path's ending is that of a mesh. */
+bool io_path_is_mesh(const char *path);
+/* Reads all of standard input; what messages call it is IO_STDIN_NAME. */
+#define IO_STDIN_NAME "standard input"
+skein_status io_stdin_read(size_t most, io_bytes *out, skein_error *error);
+
+/* ---- reading ---- */
+
+/* The largest scene file. */
+enum { IO_MOST_SCENE_BYTES = 64 << 20 };
+
+/* Reads a scene, or a mesh as one, and applies `sets`, each "path=value" (NULL-terminated list, or NULL). In a list the place after the last
  * makes one more, "forces.2={ "type": "drag" }", and null takes one away, "forces.0=null", or a member of an object. `exporters` are the
  * kinds that its "output" may name and, if there is one, the kind of its "view", NULL-terminated. NULL where there is
  * no document to go on with; after any other fault the scene can still be built, to name the faults that only building
@@ -57,6 +79,9 @@ void io_scene_free(io_scene *scene); /* NULL is allowed */
 const io_scene_settings *io_scene_get(const io_scene *scene);
 /* Where the mesh of a body lies, by its place in the scene, to be freed; NULL if it has none. */
 char *io_scene_mesh_path(const io_scene *scene, size_t body);
+
+/* The whole document, with the changes that were asked for (a json_t of jansson); freed with the scene. */
+struct json_t *io_scene_document(const io_scene *scene);
 
 /* Checks everything, the method's demands too, and builds the world. NULL if there was any fault, here or
  * in reading. `desc` as for skein_world_create. */

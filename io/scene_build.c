@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "io/cache.h"
 #include "io/mesh.h"
@@ -45,11 +46,13 @@ static bool read_mesh(const builder *b, io_place place, const char *file, io_mes
     skein_error error = {SKEIN_ERROR_MEMORY, "", "out of memory"};
     // the library only reads a world's description, and so does pass_warning
     io_warnings warnings = {b->desc ? pass_warning : NULL, (void *)(uintptr_t)b->desc};
-    if (path) {
-        status = io_mesh_read(path, mesh, warnings, &error);
-        free(path);
-    }
-    if (status) io_fault(place, "mesh", status, "%s%s%s", error.where, error.where[0] ? ": " : "", error.message);
+    if (path) status = io_mesh_read(path, mesh, warnings, &error);
+    // the folder that tools/fetch-mesh fills
+    bool fetched = path && status == SKEIN_ERROR_FILE && strstr(path, "meshes/fetched/") && access(path, F_OK);
+    free(path);
+    if (status)
+        io_fault(place, "mesh", status, "%s%s%s%s", error.where, error.where[0] ? ": " : "", error.message,
+                 fetched ? "; `make demo` or `tools/fetch-mesh` in Skein's source fetches it" : "");
     return !status;
 }
 

@@ -2,12 +2,14 @@
  *
  *   bodies.0.stretch.stiffness=2e4     a place in a list, then fields
  *   colliders.ball.centre=[0,1,0]      a name in a list; JSON after the equals sign
+ *   forces.0.acceleration=0 -9.81 0    numbers as `skein list` shows them, with blanks or commas and a unit or none
  *   method.type=symplectic_euler       a word needs no quotes; the method keeps what both kinds have
  *   forces.2={"type": "drag"}          one more, where the list has two
  *   forces.0=null                      one less; for a member of an object: its default
  *
  * A member that an object does not have yet is made: whether there is such a field is found out by the
  * reader, as for every other member. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -90,7 +92,106 @@ static void leave_out_strangers(json_t *method, const char *type, json_t *notes)
     }
 }
 
-bool io_scene_override(json_t *root, const char *set, io_faults *faults, json_t *notes) {
+/* ---- values as texts ---- */
+
+/* The kind of the object that an item of a section is; NULL where it is of none that is known. */
+static const skein_kind *kind_of_item(const json_t *item, skein_category category, const skein_kind *const *kinds) {
+    const char *type = json_string_value(json_object_get(item, "type"));
+    if (category != SKEIN_EXPORTER && category != SKEIN_VIEW)
+        return type ? skein_kind_find(category, type, NULL) : NULL;
+    for (; kinds && *kinds; kinds++)
+        if ((*kinds)->category == category && (category == SKEIN_VIEW || (type && !strcmp((*kinds)->name, type))))
+            return *kinds;
+    return NULL;
+}
+
+/* The field that a path leads to; NULL where it leads to an object, or nowhere. */
+static const skein_field *field_at(const json_t *root, const char *path, const skein_kind *const *kinds) {
+    const char *dot = strchr(path, '.');
+    if (!dot) return skein_field_find(io_scene_kind(), path, NULL);
+    char name[64];
+    snprintf(name, sizeof name, "%.*s", (int)(dot - path < 63 ? dot - path : 63), path);
+    const io_scene_section *section = NULL;
+    for (size_t i = 0; io_scene_section_at(i) && !section; i++)
+        if (!strcmp(io_scene_section_at(i)->name, name)) section = io_scene_section_at(i);
+    const json_t *item = json_object_get(root, name);
+    if (!section || !item) return NULL;
+    if (json_is_array(item)) { // its place, or its name, comes first
+        const char *next = strchr(dot + 1, '.');
+        if (!next) return NULL;
+        snprintf(name, sizeof name, "%.*s", (int)(next - dot - 1 < 63 ? next - dot - 1 : 63), dot + 1);
+        item = json_array_get(item, place_in_list(item, name));
+        dot = next;
+    }
+    const skein_kind *kind = kind_of_item(item, section->category, kinds);
+    return kind ? skein_field_find(kind, dot + 1, NULL) : NULL;
+}
+
+/* Whether there is nothing but the field's unit, or nothing at all. */
+static bool is_unit(const skein_field *field, const char *text) {
+    text += strspn(text, " ");
+    size_t length = strlen(field->unit);
+    if (length && !strncmp(text, field->unit, length)) text += length;
+    return !text[strspn(text, " ")];
+}
+
+/* "0 -9.81 0", "(0, -9.81, 0)" or "0 -9.81 0 m/s2" for a field of three numbers; NULL where it is no such thing. */
+static json_t *read_numbers(const skein_field *field, const char *text) {
+    int count = io_field_numbers(field);
+    json_t *list = json_array();
+    text += strspn(text, " ");
+    const char *closing = *text == '(' ? ")" : *text == '[' ? "]" : "";
+    text += closing[0] != 0;
+    for (int i = 0; i < count && list; i++) {
+        char *end;
+        double x = strtod(text, &end);
+        if (end == text || !isfinite(x)) break;
+        json_array_append_new(list, x == floor(x) && fabs(x) < 1e9 ? json_integer((json_int_t)x) : json_real(x));
+        text = end + strspn(end, i + 1 < count ? " ," : " ");
+    }
+    bool closed = !closing[0] || *text == closing[0];
+    if (closed) text += closing[0] != 0;
+    if (list && (int)json_array_size(list) == count && closed && is_unit(field, text)) {
+        if (count > 1) return list;
+        json_t *one = json_incref(json_array_get(list, 0));
+        json_decref(list);
+        return one;
+    }
+    json_decref(list);
+    return NULL;
+}
+
+/* What stands behind the equals sign: JSON, or what the field's type makes of the text, or a text. */
+static json_t *read_value(const skein_field *field, const char *text) {
+    static const char infinite[] = "infinite";
+    json_t *value = json_loads(text, JSON_DECODE_ANY | JSON_REJECT_DUPLICATES, NULL), *numbers = NULL;
+    if (value && field && field->type == SKEIN_FIELD_TEXT && !strcmp(field->name, "name") && json_is_number(value)) {
+        json_decref(value); // "--set name=5": a title like any other
+        value = NULL;
+    }
+    if (value) return value;
+    bool takes_numbers = field && io_field_numbers(field) > 0 && field->type != SKEIN_FIELD_BOOL;
+    if (takes_numbers) numbers = read_numbers(field, text);
+    if (numbers) return numbers;
+    if (takes_numbers && !strncmp(text, infinite, strlen(infinite)) && is_unit(field, text + strlen(infinite)))
+        return json_string(infinite);
+    return json_string(text);
+}
+
+/* A scene that says nothing of its method has the world's own; its name, for one that says a part. */
+static void name_default_method(json_t *root) {
+    skein_world_desc desc = skein_default_world_desc();
+    skein_world *world = skein_world_create(&desc, NULL);
+    if (!world) return;
+    json_t *method = json_object();
+    const char *name = skein_object_kind(world, skein_object_at(world, SKEIN_METHOD, 0))->name;
+    json_object_set_new(method, "type", json_string(name));
+    json_object_set_new(root, "method", method);
+    skein_world_destroy(world);
+}
+
+bool io_scene_override(json_t *root, const char *set, const skein_kind *const *kinds, io_faults *faults,
+                       json_t *notes) {
     char option[200];
     snprintf(option, sizeof option, "--set %s", set);
     io_place place = {option, "", faults};
@@ -99,9 +200,9 @@ bool io_scene_override(json_t *root, const char *set, io_faults *faults, json_t 
         io_fault(place, "", SKEIN_ERROR_SYNTAX, "expected path=value, such as bodies.0.stretch.stiffness=2e4");
         return false;
     }
-    json_t *value = json_loads(equals + 1, JSON_DECODE_ANY | JSON_REJECT_DUPLICATES, NULL);
-    if (!value) value = json_string(equals + 1);
+    if (!strncmp(set, "method.", 7) && !json_object_get(root, "method")) name_default_method(root);
     char *path = strndup(set, (size_t)(equals - set)), *key = path;
+    json_t *value = path ? read_value(field_at(root, path, kinds), equals + 1) : NULL;
     if (!value || !path) io_fault(place, "", SKEIN_ERROR_SYNTAX, "the value is not UTF-8, or there is no memory");
     bool good = value && path;
     // down to the object or list that holds the last name

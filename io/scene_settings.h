@@ -50,15 +50,18 @@ char *io_json_join_rows(const json_t *json);
 /* How many numbers a field takes; 0 for texts and words. */
 int io_field_numbers(const skein_field *field);
 
-/* Sets "path=value" in a document; names stand for places in lists. What the reader should know goes to the list
- * `notes` as texts. */
-bool io_scene_override(json_t *root, const char *set, io_faults *faults, json_t *notes);
+/* Sets "path=value" in a document; names stand for places in lists. `kinds` as for io_scene_read(). What the reader
+ * should know goes to the list `notes` as texts. */
+bool io_scene_override(json_t *root, const char *set, const skein_kind *const *kinds, io_faults *faults, json_t *notes);
+
+/* A scene about a mesh: it falls on a ball. As io_scene_read(). */
+io_scene *io_scene_of_mesh(const char *path, const char *const *sets, const skein_kind *const *exporters,
+                           io_faults *faults);
 
 /* The path of a file that the scene names: relative to the scene's folder. NULL when there is no memory; free it. */
 char *io_path_beside(const char *scene, const char *file);
 
-/* What a scene was read from, and where it lies. */
-json_t *io_scene_document(const io_scene *scene);
+/* Where a scene lies. */
 const char *io_scene_path(const io_scene *scene);
 
 /* Builds a world from a whole document; NULL if there was any fault. */

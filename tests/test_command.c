@@ -136,6 +136,83 @@ static void check_takes_many_scenes(void **state) {
     outcome_free(&o);
 }
 
+/* A scene by its name, a mesh, standard input: every command that takes a scene takes them. */
+static void scenes_have_names(void **state) {
+    (void)state;
+    static const char *const words[][2] = {{"pendulum", "scenes/pendulum.json"},
+                                           {"pendulum.json", "scenes/pendulum.json"},
+                                           {"meshes/ball.obj", "meshes/ball.obj"}};
+    for (size_t i = 0; i < COUNT(words); i++) {
+        char good[128];
+        snprintf(good, sizeof good, "%s: good; ", words[i][1]);
+        outcome o = SKEIN("check", words[i][0]);
+        assert_status(o, 0);
+        assert_int_equal(strncmp(o.out, good, strlen(good)), 0);
+        outcome_free(&o);
+        o = SKEIN("explain", words[i][0]);
+        assert_status(o, 0);
+        assert_contains(o.out, words[i][1]);
+        outcome_free(&o);
+        o = SKEIN("run", words[i][0], "--frames", "2");
+        assert_status(o, 0);
+        assert_contains(o.out, "; 2 frames, ");
+        outcome_free(&o);
+    }
+    assert_true(hash_of(SKEIN("run", "pendulum", "--frames", "3")) ==
+                hash_of(SKEIN("run", "scenes/pendulum.json", "--frames", "3")));
+    assert_says(2, "", "skein: pendulun: there is no such file, and no scene of that name; did you mean 'pendulum'?\n",
+                "run", "pendulun");
+    assert_says(2, "", "skein: pendulun: there is no such file, and no scene of that name; did you mean 'pendulum'?\n",
+                "check", "pendulun");
+    assert_says(2, "", "skein: no/pendulum: cannot read: no such file or directory\n", "run", "no/pendulum");
+}
+
+/* The last vertex lies 2 m over the others; it falls on a ball below. Tetrahedra are a soft body. */
+static void meshes_are_scenes(void **state) {
+    (void)state;
+    write_text(in_folder("tent.obj"), "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 2 1\nf 1 2 3 4\n");
+    write_text(in_folder("one.node"), "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n");
+    write_text(in_folder("one.ele"), "1 4 0\n0 0 1 2 3\n");
+    outcome o = SKEIN("run", in_folder("tent.obj"), "--frames", "0", "--out", in_folder("out"), "--set", "output=[]");
+    assert_status(o, 0);
+    outcome_free(&o);
+    o = SKEIN("check", in_folder("one.node"));
+    assert_status(o, 0);
+    assert_contains(o.out, ": good; 4 particles (0 held), ");
+    outcome_free(&o);
+    o = SKEIN("check", in_folder("tent.obj"), "--set", "bodies.mesh.density=0.1 kg/m2", "--set",
+              "colliders.ball.radius=-1");
+    assert_status(o, 2);
+    assert_contains(o.err, "colliders.1.radius: -1 is out of range");
+    outcome_free(&o);
+    o = SKEIN("check", in_folder("none.obj"));
+    assert_status(o, 2);
+    assert_contains(o.err, "none.obj: cannot read: no such file or directory\n");
+    outcome_free(&o);
+}
+
+static void scenes_come_from_standard_input(void **state) {
+    (void)state;
+    const char *s = tiny_scene();
+    surroundings around = {.in = s};
+    outcome o = SKEIN_IN(around, "check", "-");
+    assert_status(o, 0);
+    assert_contains(o.out, "standard input: good; 34 particles");
+    outcome_free(&o);
+    assert_true(hash_of(SKEIN_IN(around, "run", "-")) == hash_of(SKEIN("run", s)));
+    // one that looks at the scene many times reads it once
+    o = SKEIN_IN(around, "compare", "-", "--methods", "xpbd,pbd", "--steps", "4e-3", "--frames", "2");
+    assert_status(o, 0);
+    assert_contains(o.out, "\npbd ");
+    outcome_free(&o);
+    write_text(in_folder("broken"), "{");
+    around.in = in_folder("broken");
+    o = SKEIN_IN(around, "run", "-");
+    assert_status(o, 2);
+    assert_contains(o.err, "skein: standard input:1:1: ");
+    outcome_free(&o);
+}
+
 static void explain_shows_every_kind_of_row(void **state) {
     (void)state;
     static const char *const kinds[] = {"combine",    "grid",       "field",     "neighbour", "force",
@@ -289,7 +366,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
 #define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
         TEST(wrong_arguments_are_told),        TEST(help_is_there_when_asked_for),    TEST(check_counts_what_is_there),
-        TEST(check_takes_many_scenes),
+        TEST(check_takes_many_scenes), TEST(scenes_have_names), TEST(meshes_are_scenes),
+        TEST(scenes_come_from_standard_input),
         TEST(explain_shows_every_kind_of_row), TEST(list_shows_every_kind_and_field), TEST(progress_is_shown),
     };
     return cmocka_run_group_tests_name("command", tests, NULL, NULL);

@@ -116,6 +116,7 @@ typedef struct surroundings {
     rlim_t file_limit; /* bytes, 0: none */
     int out;           /* a descriptor for its standard output, 0: caught */
     int err;           /* the same for its standard error */
+    const char *in;    /* a file for its standard input, NULL: ours */
 } surroundings;
 
 static inline int caught(const char *name) {
@@ -138,7 +139,8 @@ static inline pid_t start_skein(surroundings around, const char *const *argument
     if (child == 0) {
         struct rlimit limit = {around.file_limit, around.file_limit};
         alarm(200);
-        bool good = dup2(out, 1) == 1 && dup2(err, 2) == 2 && (!around.file_limit || !setrlimit(RLIMIT_FSIZE, &limit));
+        int in = around.in ? open(around.in, O_RDONLY) : STDIN_FILENO;
+        bool good = dup2(in, 0) == 0 && dup2(out, 1) == 1 && dup2(err, 2) == 2 && (!around.file_limit || !setrlimit(RLIMIT_FSIZE, &limit));
         if (good) execv(SKEIN_COMMAND, list);
         _exit(127);
     }

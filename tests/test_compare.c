@@ -165,7 +165,8 @@ static void substeps_that_rounding_swallows(void **state) {
         outcome o = SKEIN("check", s, "--set", methods[m], "--set", many);
         assert_status(o, 0);
         if (m == 2 || is_double) {
-            assert_string_equal(o.err, "");
+            // passes are no conjugate gradients: the scene's 2 are not carried over
+            assert_string_equal(o.err, m == 2 ? "skein: method.iterations is left out: backward_euler has no such field\n" : "");
             outcome_free(&o);
             continue;
         }

@@ -236,6 +236,66 @@ static void a_method_changes_its_type_alone(void **state) {
     io_scene_free(read);
 }
 
+/* Numbers as `skein list` prints them: with blanks or commas, in brackets or none, with their unit or none. */
+static void sets_take_numbers_as_they_are_listed(void **state) {
+    (void)state;
+    static const char scene[] = "{ 'bodies': [ { 'type': 'cloth', 'name': 'sheet', 'grid': [3, 3] } ],\n"
+                                "  'forces': [ { 'type': 'gravity' } ] }";
+    static const struct {
+        const char *set, *path;
+        skein_value value;
+    } cases[] = {
+        {"forces.0.acceleration=1 -2.5 3", "forces.0.acceleration", {3, {1, -2.5, 3}, NULL}},
+        {"forces.0.acceleration=0 -9.81 0 m/s2", "forces.0.acceleration", {3, {0, -9.81, 0}, NULL}},
+        {"forces.0.acceleration=(1, 2, 3)", "forces.0.acceleration", {3, {1, 2, 3}, NULL}},
+        {"forces.0.acceleration=[1e0, 2, 3]", "forces.0.acceleration", {3, {1, 2, 3}, NULL}},
+        {"bodies.sheet.size=2 0.5", "bodies.0.size", {2, {2, 0.5}, NULL}},
+        {"bodies.0.size=2, 0.5 m", "bodies.0.size", {2, {2, 0.5}, NULL}},
+        {"bodies.0.grid=4 6", "bodies.0.grid", {2, {4, 6}, NULL}},
+        {"bodies.0.density=0.3 kg/m2", "bodies.0.density", {1, {0.3}, NULL}},
+        {"bodies.0.stretch.stiffness=2e4 N/m", "bodies.0.stretch.stiffness", {1, {2e4}, NULL}},
+        {"bodies.0.stretch.limit=infinite", "bodies.0.stretch.limit", {1, {INFINITY}, NULL}},
+        {"bodies.0.stretch.stiffness=infinite N/m", "bodies.0.stretch.stiffness", {1, {INFINITY}, NULL}},
+        {"method.substeps=20", "method.substeps", {1, {20}, NULL}}, // the world's own method, as the scene has none
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const char *const sets[] = {cases[i].set, NULL};
+        skein_world *world = build_scene(scene, sets);
+        skein_value value;
+        assert_int_equal(skein_get_path(world, cases[i].path, &value), SKEIN_OK);
+        assert_int_equal(value.count, cases[i].value.count);
+        for (int k = 0; k < value.count; k++) assert_true(value.number[k] == cases[i].value.number[k]);
+        skein_world_destroy(world);
+    }
+    // every field of numbers takes its own default as it is printed
+    const skein_kind *kind = skein_kind_find(SKEIN_BODY, "cloth", NULL);
+    for (size_t f = 0; f < kind->field_count; f++) {
+        const skein_field *field = &kind->fields[f];
+        if (field->type == SKEIN_FIELD_TEXT || !strcmp(field->name, "grid")) continue;
+        char set[200], text[100];
+        skein_world *world = build_scene(scene, NULL);
+        skein_value value;
+        skein_get(world, skein_object_at(world, SKEIN_BODY, 0), field->name, &value);
+        skein_value_text(field, &value, text, sizeof text);
+        skein_world_destroy(world);
+        snprintf(set, sizeof set, "bodies.0.%s=%s%s%s", field->name, text[0] == 'i' ? "infinite" : text,
+                 field->unit[0] ? " " : "", field->unit);
+        const char *const sets[] = {set, NULL};
+        skein_world_destroy(build_scene(scene, sets));
+    }
+    // what is no number stays a text, and so does a unit of something else
+    static const char *const bad[] = {"bodies.0.size=2 0.5 kg", "bodies.0.size=2", "bodies.0.size=2 3 4",
+                                      "bodies.0.size=(2 3", "bodies.0.density=1 2", "forces.0.acceleration=1 2"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        const char *const sets[] = {bad[i], NULL};
+        io_faults quiet = {NULL, NULL, 0};
+        io_scene *read = read_scene(scene, sets);
+        assert_null(io_scene_build(read, NULL, &quiet));
+        assert_int_equal(quiet.count, 1);
+        io_scene_free(read);
+    }
+}
+
 /* ---- Constraints between particles that bodies made -------------------------------------------------- */
 
 /* Three patches of cloth, each of 4 particles, threaded on a rope: 0-3 are held, 4-7 and 8-11 hang by it. */
@@ -283,7 +343,7 @@ int main(void) {
         TEST(the_top_has_defaults_and_values), TEST(every_type_of_field_arrives),
         TEST(pins_have_short_forms),           TEST(meshes_are_found_beside_the_scene),
         TEST(sets_change_the_scene),           TEST(constraints_tie_bodies_together),
-        TEST(a_method_changes_its_type_alone),
+        TEST(a_method_changes_its_type_alone), TEST(sets_take_numbers_as_they_are_listed),
     };
     return cmocka_run_group_tests_name("scene", tests, NULL, NULL);
 }

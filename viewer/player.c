@@ -1,69 +1,9 @@
 /* Playing a scene; see player.h. */
 #include "viewer/player.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
-
-#include "io/mesh.h"
-
-/* ---- A mesh becomes a scene ---- */
-
-bool viewer_is_mesh(const char *path) {
-    const char *dot = strrchr(path, '.');
-    return dot && (!strcasecmp(dot, ".obj") || !strcasecmp(dot, ".off"));
-}
-
-/* A text as JSON has it, without the quotes. */
-static void quote(const char *text, char *out, size_t size) {
-    size_t length = 0;
-    for (; *text && length + 8 < size; text++) {
-        if (*text == '"' || *text == '\\') out[length++] = '\\', out[length++] = *text;
-        else if ((unsigned char)*text < 0x20) length += (size_t)sprintf(out + length, "\\u%04x", (unsigned char)*text);
-        else out[length++] = *text;
-    }
-    out[length] = 0;
-}
-
-/* A cloth that falls on a ball which is as large as suits it, over a ground below. False after a reported fault. */
-static bool scene_of_mesh(const char *path, char *text, size_t size, viewer_reporter reporter) {
-    io_mesh mesh;
-    skein_error error = {SKEIN_OK, "", ""};
-    double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY}, side = 0, length = 0;
-    if (io_mesh_read(path, &mesh, (io_warnings){NULL, NULL}, &error)) {
-        char line[800];
-        snprintf(line, sizeof line, "%s%s%s", error.where, error.where[0] ? ": " : "", error.message);
-        reporter.say(reporter.user, SKEIN_LOG_WARNING, line);
-        return false;
-    }
-    for (size_t v = 0; v < mesh.vertex_count; v++)
-        for (int k = 0; k < 3; k++) {
-            least[k] = fmin(least[k], mesh.positions[3 * v + (size_t)k]);
-            most[k] = fmax(most[k], mesh.positions[3 * v + (size_t)k]);
-        }
-    io_mesh_free(&mesh);
-    for (int k = 0; k < 3; k++) side = fmax(side, most[k] - least[k]);
-    if (!(side > 0)) side = 1;
-    length = 0.22 * side;
-    const char *file = strrchr(path, '/');
-    char name[1200];
-    quote(file ? file + 1 : path, name, sizeof name);
-    int written = snprintf(
-        text, size,
-        "{ \"skein\": 1, \"name\": \"%s\", \"description\": \"a mesh as a cloth\", \"frames\": 300,\n"
-        "  \"method\": { \"type\": \"xpbd\", \"substeps\": 20 },\n"
-        "  \"bodies\": [ { \"type\": \"cloth\", \"name\": \"mesh\", \"mesh\": \"%s\", \"density\": 0.25 } ],\n"
-        "  \"forces\": [ { \"type\": \"gravity\" }, { \"type\": \"drag\", \"rate\": 0.4 } ],\n"
-        "  \"colliders\": [\n"
-        "    { \"type\": \"plane\", \"name\": \"ground\", \"offset\": %.9g, \"thickness\": %.9g, \"friction\": 0.6 },\n"
-        "    { \"type\": \"sphere\", \"name\": \"ball\", \"centre\": [%.9g, %.9g, %.9g], \"radius\": %.9g,\n"
-        "      \"thickness\": %.9g, \"friction\": 0.6 } ] }\n",
-        name, name, least[1] - 3 * length, 0.003 * side, 0.5 * (least[0] + most[0]), least[1] - 1.6 * length,
-        0.5 * (least[2] + most[2]), length, 0.004 * side);
-    return written > 0 && (size_t)written < size;
-}
 
 /* ---- Opening ---- */
 
@@ -81,12 +21,7 @@ static void world_says(void *user, skein_log_level level, const char *message) {
 
 static io_scene *read_scene(const viewer_player *player, const viewer_reading *reading, io_faults *faults) {
     const char **sets = viewer_changes_sets(&player->changes);
-    char text[8192];
-    io_scene *scene = NULL;
-    if (!viewer_is_mesh(player->path)) scene = io_scene_read(player->path, sets, reading->exporters, faults);
-    else if (scene_of_mesh(player->path, text, sizeof text, player->reporter))
-        scene = io_scene_read_text(text, strlen(text), player->path, sets, reading->exporters, faults);
-    else faults->count++;
+    io_scene *scene = io_scene_read(player->path, sets, reading->exporters, faults);
     free(sets);
     return scene;
 }

@@ -64,7 +64,4 @@ void viewer_player_reset(viewer_player *player);
 /* As it was in a frame that is kept. */
 bool viewer_player_go_to(viewer_player *player, uint64_t frame);
 
-/* Whether the path's ending is a mesh's. */
-bool viewer_is_mesh(const char *path);
-
 #endif

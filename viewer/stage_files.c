@@ -25,7 +25,7 @@ static const char *stem_of(const viewer_stage *stage, char stem[48]) {
     stem[length] = 0;
     if (!length || stem[0] == '.') snprintf(stem, 48, "skein");
     char *dot = strrchr(stem, '.');
-    if (dot && viewer_is_mesh(stem)) *dot = 0;
+    if (dot && io_path_is_mesh(stem)) *dot = 0;
     return stem;
 }
 

@@ -12,7 +12,7 @@
 #include "methods/method.h"
 
 typedef struct backward_euler_params {
-    int32_t substeps, turns, iterations;
+    int32_t substeps, turns, cg_iterations;
     int32_t preconditioner;
     double tolerance;
 } backward_euler_params;
@@ -22,7 +22,7 @@ static const skein_field fields[] = {
     SK_REAL(backward_euler_params, tolerance, "tolerance", "", 1e-5, 1e-12, 0.1,
             "a substep is solved when its residual is so small a share of its start, or all rounding"),
     SK_INT(backward_euler_params, turns, "turns", "", 20, 1, 1000, "of Newton's method in a substep, at most"),
-    SK_INT(backward_euler_params, iterations, "iterations", "", 400, 1, 100000,
+    SK_INT(backward_euler_params, cg_iterations, "cg_iterations", "", 400, 1, 100000,
            "of conjugate gradients in a turn, at most"),
     SK_CHOICE(backward_euler_params, preconditioner, "preconditioner", 0, "blocks|cholesky",
               "what shortens conjugate gradients: each particle's own block, or a sparse factor of the whole matrix"),
@@ -101,7 +101,7 @@ static void write_conjugate_gradients(sk_writer *writer, const backward_euler_pa
     sk_write_sum(writer, direction, 1, product, 0, SK_NONE);
     sk_write_dot(writer, &sk_solve_dot, residual, product, 0, "R T8");
     sk_write_scalar(writer, sk_solve_cg_start, 0, "rz");
-    size_t repeat = sk_write_until(writer, (size_t)params->iterations, SK_CELL_CG_DONE, "conjugate gradients");
+    size_t repeat = sk_write_until(writer, (size_t)params->cg_iterations, SK_CELL_CG_DONE, "conjugate gradients");
     sk_write_solve(writer, &sk_solve_product, product, (sk_vector)SK_INERTIA, direction, "inertia T7");
     sk_write_apply(writer, product, direction, h * h, h);
     sk_write_solve(writer, &sk_solve_filter, product, SK_NONE, SK_NONE, "S T8");
