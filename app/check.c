@@ -1,7 +1,8 @@
 /* skein check SCENE...: read, validate, warn. */
+#include <jansson.h>
 #include <stdio.h>
 
-#include "app/stability.h"
+#include "app/command.h"
 
 static int print_summary(const app_scene *loaded) {
     skein_statistics s;
@@ -17,31 +18,65 @@ static int print_summary(const app_scene *loaded) {
     return EXIT_OK;
 }
 
-static int check_scene(const char *path, const char *const *sets) {
-    app_scene loaded;
+/* The same for programs. */
+static json_t *describe(const app_scene *loaded, int status, json_t *faults, json_t *warnings) {
+    json_t *json = json_object();
+    skein_statistics s;
+    json_object_set_new(json, "scene", json_string(loaded->path));
+    json_object_set_new(json, "good", json_boolean(!status));
+    json_object_set(json, "faults", faults);
+    json_object_set(json, "warnings", warnings);
+    if (status || skein_world_statistics(loaded->world, &s)) return json;
+    const struct {
+        const char *key;
+        size_t count;
+    } counts[] = {{"particles", s.particles},
+                  {"held_particles", s.held_particles},
+                  {"constraints", s.constraints},
+                  {"forces", skein_object_count(loaded->world, SKEIN_FORCE)},
+                  {"colliders", skein_object_count(loaded->world, SKEIN_COLLIDER)}};
+    json_object_set_new(json, "method", json_string(app_method(loaded)));
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+        json_object_set_new(json, counts[i].key, json_integer((json_int_t)counts[i].count));
+    return json;
+}
+
+/* With a list, the scene is described in it, and not printed. */
+static int check_scene(const char *path, const char *const *sets, bool quiet, json_t *list) {
+    app_scene loaded = {.quiet = quiet, .fault_list = json_array(), .warning_list = json_array()};
     int status = app_load(path, sets, &loaded);
-    if (!status && !app_warn_of_instability(&loaded)) status = EXIT_FAILURE_RUN;
-    if (!status) app_warn_of_rounding(&loaded);
-    if (!status) status = print_summary(&loaded);
+    if (!status) app_advise(&loaded);
+    if (list) json_array_append_new(list, describe(&loaded, status, loaded.fault_list, loaded.warning_list));
+    else if (!status && !quiet) status = print_summary(&loaded);
     app_unload(&loaded);
+    json_decref(loaded.fault_list);
+    json_decref(loaded.warning_list);
     return status;
 }
 
 /* The worst of the scenes' statuses; one at fault does not keep the others from being looked at. */
 static int check(app_arguments *arguments) {
     int status = EXIT_OK;
+    json_t *list = app_given(arguments, "--json") ? json_array() : NULL;
     for (size_t i = 0; i < arguments->words.count; i++) {
-        int one = check_scene(arguments->words.values[i], app_values(arguments, "--set"));
+        int one = check_scene(arguments->words.values[i], app_values(arguments, "--set"),
+                              list || app_given(arguments, "--quiet"), list);
         if (one > status) status = one;
     }
+    if (list && !json_dumpf(list, stdout, JSON_INDENT(2))) printf("\n");
+    json_decref(list);
     return status;
 }
 
-static const app_option options[] = {APP_SET_OPTION, APP_END_OF_OPTIONS};
+static const app_option options[] = {
+    APP_SET_OPTION,
+    {"--json", NULL, "print a list of scenes as JSON, each with its faults, warnings and counts", false, APP_TAKES_ANY},
+    APP_QUIET_OPTION,
+    APP_END_OF_OPTIONS};
 
 const app_command app_check_command = {
     "check",
-    "SCENE... [--set PATH=VALUE]...",
+    "SCENE... [--set PATH=VALUE]... [--json]",
     "read and validate scenes; every fault is named, exit status 2 if there is one\n\n"
     "Faults name the file, the line or the path in the scene, what was found and what was expected.\n"
     "Warnings (a mesh with holes in its seams, a step that is too long for the method, or\n"

@@ -173,7 +173,7 @@ static int parse(app_arguments *arguments, int argc, char **argv) {
 }
 
 int app_command_run(const app_command *command, int argc, char **argv) {
-    app_arguments arguments = {.command = command};
+    app_arguments arguments = {.command = command, .argc = argc, .argv = argv};
     int status = parse(&arguments, argc, argv);
     if (status < 0) status = command->run(&arguments);
     free(arguments.words.values);

@@ -8,7 +8,14 @@
 enum { EXIT_OK = 0, EXIT_FAILURE_RUN = 1, EXIT_FAULT = 2, EXIT_SIGNAL = 128 };
 
 /* What an argument names, for the shell that completes it. */
-typedef enum app_takes { APP_TAKES_ANY, APP_TAKES_SCENE, APP_TAKES_FILE, APP_TAKES_FOLDER, APP_TAKES_KIND } app_takes;
+typedef enum app_takes {
+    APP_TAKES_ANY,
+    APP_TAKES_SCENE,
+    APP_TAKES_FILE,
+    APP_TAKES_FOLDER,
+    APP_TAKES_KIND,
+    APP_TAKES_SHELL
+} app_takes;
 
 /* One option of a subcommand: a row of its table, from which come its help, the manual page and completion. */
 typedef struct app_option {
@@ -29,6 +36,8 @@ typedef struct app_list {
 typedef struct app_arguments {
     const struct app_command *command;
     app_list words, given[APP_MOST_OPTIONS];
+    int argc; /* as they were given, behind the command's name */
+    char **argv;
 } app_arguments;
 
 /* A subcommand: its table row is its help. */
@@ -44,7 +53,10 @@ typedef struct app_command {
 
 extern const app_command app_run_command, app_render_command, app_check_command, app_compare_command,
     app_stability_command, app_explain_command, app_list_command, app_formula_command, app_view_command,
-    app_bench_command;
+    app_bench_command, app_completion_command, app_man_command;
+
+/* What `skein list` takes: its lists and all kinds, each once; NULL past the end. */
+const char *app_list_word(size_t index);
 
 /* Every subcommand; NULL past the end. */
 const app_command *app_command_at(size_t index);
@@ -69,6 +81,8 @@ bool app_list_add(app_list *list, const char *value, bool repeats);
     }
 #define APP_THREADS_OPTION \
     { "--threads", "N", "threads to run on, 1 to 64; the result is the same", false, APP_TAKES_ANY }
+#define APP_NO_PROGRESS_OPTION \
+    { "--no-progress", NULL, "no progress on the terminal, only what is said at the end", false, APP_TAKES_ANY }
 #define APP_QUIET_OPTION \
     { "--quiet", NULL, "say nothing but errors", false, APP_TAKES_ANY }
 #define APP_DEVICE_OPTION                                                                                     \
@@ -102,18 +116,21 @@ typedef struct app_scene {
     io_scene_settings settings;
     skein_world *world;
     double load_seconds;
+    double needed; /* substeps for the method, as app_advise() found: 1 where there is no limit */
     size_t warnings;
-    bool quiet;
+    bool quiet;                               /* no notes and no warnings on the terminal */
+    struct json_t *fault_list, *warning_list; /* where their texts are kept, too; or NULL */
 } app_scene;
 
 /* Reads, checks and builds what a word means: a scene's file or name, a mesh, "-" for standard input. Every fault is
- * printed. Returns an exit status. */
+ * printed; `loaded` is all zero but for `quiet` and the lists. Returns an exit status. */
 int app_load(const char *word, const char *const *sets, app_scene *loaded);
-/* The same without notes on the terminal: only faults. */
-int app_load_quietly(const char *word, const char *const *sets, app_scene *loaded);
 /* Only looks whether it can be loaded. */
 int app_try(const char *word, const char *const *sets);
 void app_unload(app_scene *loaded);
+/* Says what the scene will suffer from, with the remedy: a step that is not stable, rounding. To be called once it
+ * stands as it will run. */
+void app_advise(app_scene *loaded);
 /* Says that the word means no scene. */
 void app_not_found(const char *word);
 /* What the option --device asks for: "cpu", "gpu", "auto" or NULL. Says on the terminal what it chose unless that is
@@ -124,6 +141,9 @@ const char *app_method(const app_scene *loaded);
 
 /* Every exporter there is, and the view's kind where pictures are; NULL-terminated. */
 const skein_kind *const *app_exporters(void);
+
+/* The commit that it was built from, of twelve digits, with "-changed" behind it; "unknown" where git did not tell. */
+extern const char app_commit[];
 
 double app_seconds(void); /* of a clock that only goes forward */
 

@@ -38,6 +38,7 @@ typedef struct compare_scene {
     const char *path;
     const char *const *sets; /* the user's */
     int frames;              /* 0: the scene's */
+    bool quiet, json;        /* how to say it */
     double *reference;       /* positions at every frame, particles x 3 each; NULL: none yet */
     size_t particles, reference_frames;
     double most_moving;  /* J, kinetic and elastic, the most at any frame so far */

@@ -26,7 +26,8 @@ static int load(const compare_scene *scene, const char *method, double step, app
     sets[count++] = length;
     if (scene->frames) sets[count++] = frames;
     sets[count] = NULL;
-    return app_load_quietly(scene->path, sets, loaded);
+    *loaded = (app_scene){.quiet = true};
+    return app_load(scene->path, sets, loaded);
 }
 
 /* Whether every particle is where one could be, and all have an energy that they could have. */
@@ -133,6 +134,11 @@ bool compare_run_one(compare_scene *scene, compare_run *run, bool keep) {
         run->outcome = COMPARE_REFUSED; // it has been said why
         run->error = NAN;
         return true;
+    }
+    if (!keep && !scene->quiet) { // notes are the same for each run, but this is about its own step
+        loaded.quiet = false;
+        app_advise(&loaded);
+        loaded.quiet = true;
     }
     bool good = run_frames(scene, run, &loaded, keep);
     if (keep && run->outcome == COMPARE_GOOD) scene->energy_scale = scene->most_moving;

@@ -1,6 +1,6 @@
 /* Where compiled formulas are kept. A file there is loaded as code, so it must be the user's own, in a folder where
- * nobody else can write, below folders where nobody else can put another in its place; and it must be whole, for a loader falls over one that is not: its last bytes are a checksum,
- * which a loader does not look at. */
+ * nobody else can write, below folders where nobody else can put another in its place; and it must be whole, for a
+ * loader falls over one that is not: its last bytes are a checksum, which a loader does not look at. */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdint.h>

@@ -20,7 +20,7 @@ static int print_plan(const app_scene *loaded) {
 }
 
 static int explain(app_arguments *arguments) {
-    app_scene loaded;
+    app_scene loaded = {.quiet = false};
     int status = app_load(app_word(arguments), app_values(arguments, "--set"), &loaded);
     if (!status) status = app_device(&loaded, app_value(arguments, "--device"));
     if (!status) status = print_plan(&loaded);

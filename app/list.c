@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/command.h"
+#include "app/list.h"
 
 /* "    name               default and unit range              help"; what is too long pushes the rest on. */
 enum { WIDTH = 120, NAME_AT = 4, DEFAULT_AT = 23, RANGE_AT = 40, HELP_AT = 59 };
@@ -189,20 +189,64 @@ static int report_unknown(const char *name) {
     return EXIT_FAULT;
 }
 
+const char *app_list_word(size_t index) {
+    for (size_t l = 0; l < LIST_COUNT; l++) {
+        if (!index--) return lists[l].word;
+        for (size_t i = 0; kind_at(lists[l].category, i); i++) {
+            const char *name = kind_at(lists[l].category, i)->name;
+            bool again = false; // "formula" is a constraint and a collider, "scene" a list and its kind
+            for (size_t o = 0; o <= l; o++) {
+                again |= !strcmp(lists[o].word, name);
+                for (size_t k = 0; o < l && kind_at(lists[o].category, k); k++)
+                    again |= !strcmp(kind_at(lists[o].category, k)->name, name);
+            }
+            if (!again && !index--) return name;
+        }
+    }
+    return NULL;
+}
+
+/* The lists, or the one, or the kinds that have the name, with nothing else in the lists. */
+static int print_json(const char *name) {
+    json_t *root = json_object();
+    bool found = !name;
+    for (size_t l = 0; l < LIST_COUNT; l++) {
+        bool whole = !name || !strcmp(name, lists[l].word);
+        json_t *list = json_array();
+        for (size_t i = 0; kind_at(lists[l].category, i); i++) {
+            const skein_kind *kind = kind_at(lists[l].category, i);
+            if (whole || !strcmp(name, kind->name)) json_array_append_new(list, app_kind_json(kind));
+        }
+        found |= whole || json_array_size(list);
+        if (whole || json_array_size(list)) json_object_set(root, lists[l].word, list);
+        json_decref(list);
+    }
+    bool good = found && !json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(15));
+    if (good) printf("\n");
+    json_decref(root);
+    return good ? EXIT_OK : found ? EXIT_FAILURE_RUN : report_unknown(name);
+}
+
 static int list(app_arguments *arguments) {
     const char *name = app_word(arguments);
+    if (app_given(arguments, "--json")) return print_json(name);
     if (name) return print_named(name) ? EXIT_OK : report_unknown(name);
     for (size_t l = 0; l < LIST_COUNT; l++) print_list(l);
     return EXIT_OK;
 }
 
+static const app_option options[] = {{"--json", NULL,
+                                      "print it as JSON: of each field its name, type, unit, default, range and help",
+                                      false, APP_TAKES_ANY},
+                                     APP_END_OF_OPTIONS};
+
 const app_command app_list_command = {
     "list",
-    "[scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND]",
+    "[scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]",
     "every kind with its fields: name, default, unit, range and help\n\n"
     "In a scene, dots are groups: stretch.stiffness is { \"stretch\": { \"stiffness\": ... } }. A range to\n"
     "infinite takes the word \"infinite\", too. A kind by its name: skein list cloth",
-    NULL,
+    options,
     NULL,
     false,
     APP_TAKES_KIND,

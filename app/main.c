@@ -9,9 +9,10 @@
 #include "app/command.h"
 #include "app/terminal.h"
 
-static const app_command *const commands[] = {
-    &app_run_command,       &app_view_command,    &app_render_command, &app_check_command,   &app_compare_command,
-    &app_stability_command, &app_explain_command, &app_list_command,   &app_formula_command, &app_bench_command};
+static const app_command *const commands[] = {&app_run_command,     &app_view_command,       &app_render_command,
+                                              &app_check_command,   &app_compare_command,    &app_stability_command,
+                                              &app_explain_command, &app_list_command,       &app_formula_command,
+                                              &app_bench_command,   &app_completion_command, &app_man_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 const app_command *app_command_at(size_t index) {
@@ -23,7 +24,7 @@ static void print_help(FILE *to) {
                 "usage: skein COMMAND [ARGUMENTS]\n\n");
     for (int c = 0; c < COMMAND_COUNT; c++) {
         const char *line = commands[c]->help;
-        fprintf(to, "  %-9s %.*s\n", commands[c]->name, (int)strcspn(line, "\n"), line);
+        fprintf(to, "  %-10s %.*s\n", commands[c]->name, (int)strcspn(line, "\n"), line);
     }
     fprintf(to, "\n`skein COMMAND --help` teaches a command, `skein --version` names the version. A SCENE is\n"
                 "a file, a scene's name (skein run birds), a mesh (skein run shirt.obj), or - for standard input.\n\n"

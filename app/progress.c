@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <unistd.h>
 
+#include "app/verdict.h"
+
 /* ---- interrupts ---- */
 
 static volatile sig_atomic_t interrupted;
@@ -81,12 +83,12 @@ bool app_step_frame(const app_scene *loaded, int frame, int steps, double dt, ap
     app_progress_end(p);
     skein_statistics now;
     skein_error error;
+    char remedy[200];
     if (!good || skein_world_statistics(world, &now)) error = *skein_world_error(world);
     else
         io_error_set(&error, SKEIN_ERROR_VALUE, loaded->path,
-                     "blew up in frame %d: %zu of %zu particles are no longer finite; "
-                     "more substeps or less stiffness help",
-                     frame, now.nonfinite, now.particles);
+                     "blew up in frame %d: %zu of %zu particles are no longer finite; %s", frame, now.nonfinite,
+                     now.particles, app_remedy(loaded, remedy, sizeof remedy));
     app_print_error(&error);
     app_keep_error(&error, p->failure);
     return false;

@@ -9,6 +9,7 @@
 #include "app/compile.h"
 #include "app/footage.h"
 #include "app/progress.h"
+#include "app/verdict.h"
 #ifdef SKEIN_RENDER
 #include "render/picture.h"
 
@@ -16,9 +17,22 @@
 typedef struct request {
     const char *path;
     film_options options;
-    int frame; /* of a single picture; -1: the last */
-    bool single, quiet;
+    int frame;                /* of a single picture; -1: the last */
+    bool single, quiet, calm; /* calm: without progress and notes about the film */
 } request;
+
+/* ---- what it shows is judged, too ---- */
+
+static bool measure(const app_scene *loaded, skein_statistics *statistics) {
+    if (!skein_world_statistics(loaded->world, statistics)) return true;
+    app_print_error(skein_world_error(loaded->world));
+    return false;
+}
+
+static bool judge(const app_scene *loaded, app_verdict *verdict) {
+    skein_statistics end;
+    return measure(loaded, &end) && app_verdict_end(verdict, &end);
+}
 
 /* ---- a picture ---- */
 
@@ -39,12 +53,14 @@ static bool can_write(const char *path) {
     return !fault;
 }
 
-static int make_picture(const app_scene *loaded, const request *r) {
+static int make_picture(app_scene *loaded, const request *r) {
     double dt;
+    skein_statistics start;
     int steps = io_scene_steps_per_frame(&loaded->settings, &dt), frames = r->frame;
     if (frames < 0) frames = loaded->settings.frames;
-    if (!can_write(r->path)) return EXIT_FAILURE_RUN;
-    app_progress p = app_progress_start("frame", frames, r->quiet);
+    if (!can_write(r->path) || !measure(loaded, &start)) return EXIT_FAILURE_RUN;
+    app_verdict verdict = app_verdict_begin(loaded, &start);
+    app_progress p = app_progress_start("frame", frames, r->calm);
     for (int i = 1; i <= frames; i++) {
         if (app_interrupted()) { // another frame than was asked for is of no use
             app_progress_end(&p);
@@ -61,9 +77,10 @@ static int make_picture(const app_scene *loaded, const request *r) {
         app_print_error(&error);
         return EXIT_FAILURE_RUN;
     }
-    printf("wrote %s: %d x %d, frame %d, at %.2f s\n", r->path, options.size[0], options.size[1], frames,
-           frames / loaded->settings.fps);
-    return EXIT_OK;
+    if (!r->quiet)
+        printf("wrote %s: %d x %d, frame %d, at %.2f s\n", r->path, options.size[0], options.size[1], frames,
+               frames / loaded->settings.fps);
+    return judge(loaded, &verdict) ? EXIT_OK : EXIT_FAILURE_RUN;
 }
 
 /* ---- a film ---- */
@@ -77,13 +94,16 @@ static void print_facts(const request *r, const app_footage_facts *facts, double
 }
 
 /* Picture k shows the world after k frames, from 0: so the film lasts as long as its frames. */
-static int make_film(const app_scene *loaded, const request *r) {
+static int make_film(app_scene *loaded, const request *r) {
     double dt, start = app_seconds();
+    skein_statistics first;
     int steps = io_scene_steps_per_frame(&loaded->settings, &dt),
         frames = loaded->settings.frames > 1 ? loaded->settings.frames : 1;
-    app_footage *footage = app_footage_begin(loaded, r->path, &r->options, frames, r->quiet);
+    if (!measure(loaded, &first)) return EXIT_FAILURE_RUN;
+    app_verdict verdict = app_verdict_begin(loaded, &first);
+    app_footage *footage = app_footage_begin(loaded, r->path, &r->options, frames, r->calm);
     if (!footage) return EXIT_FAILURE_RUN;
-    app_progress p = app_progress_start("frame", frames, r->quiet);
+    app_progress p = app_progress_start("frame", frames, r->calm);
     bool drawn = true, stepped = true;
     for (int i = 0; i < frames && drawn && stepped; i++) {
         if (i) stepped = app_step_frame(loaded, i, steps, dt, &p);
@@ -98,7 +118,8 @@ static int make_film(const app_scene *loaded, const request *r) {
     }
     int signal_number = app_interrupted();
     if (!app_footage_end(footage, &facts)) return EXIT_FAILURE_RUN;
-    print_facts(r, &facts, app_seconds() - start);
+    if (!r->quiet) print_facts(r, &facts, app_seconds() - start);
+    stepped = stepped && judge(loaded, &verdict);
     return !stepped ? EXIT_FAILURE_RUN : signal_number ? EXIT_SIGNAL + signal_number : EXIT_OK;
 }
 
@@ -141,6 +162,7 @@ static bool read_request(const app_arguments *arguments, request *r) {
     const skein_kind *kind = film_exporter();
     skein_error error = {SKEIN_OK, "", ""};
     *r = (request){.options = film_default_options(), .frame = -1, .quiet = app_given(arguments, "--quiet")};
+    r->calm = r->quiet || app_given(arguments, "--no-progress");
     const char *out = app_given(arguments, "-o") ? "-o" : "--out";
     r->path = app_value(arguments, out);
     if (!r->path) {
@@ -164,13 +186,14 @@ static bool read_request(const app_arguments *arguments, request *r) {
 static int render(app_arguments *arguments) {
     app_override_texts texts;
     request asked;
-    app_scene loaded;
     if (!read_request(arguments, &asked) || !app_override(arguments, texts)) return EXIT_FAULT;
+    app_scene loaded = {.quiet = asked.quiet};
     int status = app_load(app_word(arguments), app_values(arguments, "--set"), &loaded);
-    if (!status && app_given(arguments, "--compile")) loaded.warnings += app_compile(loaded.world, asked.quiet);
+    if (!status && app_given(arguments, "--compile")) loaded.warnings += app_compile(loaded.world, asked.calm);
     if (!status) status = app_device(&loaded, app_value(arguments, "--device"));
     if (!status) {
         app_catch_interrupts();
+        app_advise(&loaded);
         status = asked.single ? make_picture(&loaded, &asked) : make_film(&loaded, &asked);
     }
     app_unload(&loaded);
@@ -198,7 +221,8 @@ static const app_option options[] = {
     APP_THREADS_OPTION,
     APP_DEVICE_OPTION,
     APP_COMPILE_OPTION,
-    {"--quiet", NULL, "no progress and no notes", false, APP_TAKES_ANY},
+    APP_NO_PROGRESS_OPTION,
+    APP_QUIET_OPTION,
     APP_END_OF_OPTIONS};
 
 const app_command app_render_command = {

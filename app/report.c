@@ -25,9 +25,21 @@ static json_t *count(uint64_t x) {
     return json_integer((json_int_t)x);
 }
 
+/* What was typed behind "skein". */
+static json_t *command_line(const app_arguments *arguments) {
+    json_t *list = json_array();
+    json_array_append_new(list, json_string(arguments->command->name));
+    for (int i = 0; i < arguments->argc; i++) {
+        json_t *word = json_string(arguments->argv[i]);
+        json_array_append_new(list, word ? word : json_string("(not UTF-8)"));
+    }
+    return list;
+}
+
 static json_t *make_document(const app_report *r) {
     const skein_statistics *s = &r->statistics;
     const io_scene_settings *scene = &r->loaded->settings;
+    const char *failed = r->failure[0] ? r->failure : r->verdict.words;
     char hash[24];
     snprintf(hash, sizeof hash, "%016" PRIx64, s->state_hash);
     const struct {
@@ -35,6 +47,8 @@ static json_t *make_document(const app_report *r) {
         json_t *value;
     } members[] = {
         {"skein", json_string(SKEIN_VERSION)},
+        {"commit", json_string(app_commit)},
+        {"command_line", command_line(r->arguments)},
         {"precision", json_string(sizeof(skein_real) == 8 ? "double" : "float")},
         {"scene", json_string(r->loaded->path)},
         {"name", json_string(scene->name)},
@@ -42,7 +56,7 @@ static json_t *make_document(const app_report *r) {
         {"threads", count((uint64_t)scene->threads)},
         {"device", json_string(r->device)},
         {"interrupted", json_boolean(r->interrupted)},
-        {"failed", r->failure[0] ? json_string(r->failure) : json_false()},
+        {"failed", failed[0] ? json_string(failed) : json_false()},
         {"warnings", count(r->loaded->warnings)},
         // what was done
         {"frames", count((uint64_t)r->frames)},
@@ -70,10 +84,14 @@ static json_t *make_document(const app_report *r) {
         {"p99_stretch", number(s->p99_stretch)},
         {"worst_stretch_of_run", number(r->worst_stretch)},
         {"max_penetration", number(s->max_penetration)},
+        {"unsolved", count(s->all_unsolved)},
+        {"solver_failures", count(s->all_solver_failures)},
         {"nonfinite_particles", count(s->nonfinite)},
         {"guarded_values", count(s->guarded)},
         {"state_hash", json_string(hash)},
         {"files", json_incref(r->files)},
+        // what was run, with all changes
+        {"document", json_deep_copy(io_scene_document(r->loaded->scene))},
     };
     json_t *root = json_object();
     bool good = true;
@@ -83,6 +101,15 @@ static json_t *make_document(const app_report *r) {
     if (good) return root;
     json_decref(root);
     return NULL;
+}
+
+bool app_report_print_json(const app_report *report) {
+    json_t *root = make_document(report);
+    bool good = root && !json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+    if (good) putchar('\n');
+    else if (!root) fprintf(stderr, "skein: out of memory\n");
+    json_decref(root);
+    return good;
 }
 
 bool app_report_write(app_report *report, const char *folder) {
@@ -121,6 +148,12 @@ void app_report_print(const app_report *r) {
     printf(
         "kinetic energy %.3g J, stretch at most %.2f %% (99 %% of edges under %.2f %%), penetration at most %.2g mm\n",
         s->kinetic_energy, 100 * s->max_stretch, 100 * s->p99_stretch, 1e3 * s->max_penetration);
+    if (s->all_unsolved)
+        printf("%" PRIu64 " of %" PRIu64 " substeps were left unsolved: more substeps, turns or cg_iterations help\n",
+               s->all_unsolved, s->substeps);
+    if (s->all_solver_failures)
+        printf("%" PRIu64 " times a factor failed, and each particle's own block took its place\n",
+               s->all_solver_failures);
     app_flocks_print(r->flocks);
     printf("state hash %016" PRIx64 "\n", s->state_hash);
     size_t index;

@@ -6,9 +6,13 @@
 
 #include "app/command.h"
 #include "app/log.h"
+#include "app/verdict.h"
 
 typedef struct app_report {
-    const app_scene *loaded;
+    app_scene *loaded;
+    const app_arguments *arguments; /* as they were given */
+    bool quiet, calm, json;         /* calm: without progress */
+    app_verdict verdict;
     int frames, steps_per_frame;
     double dt, seconds; /* seconds: spent in steps */
     bool interrupted;
@@ -27,6 +31,9 @@ typedef struct app_report {
 /* Writes FOLDER/report.json (of a run that failed, report.failed.json) and adds it to the files. False after a printed
  * fault. */
 bool app_report_write(app_report *report, const char *folder);
+/* The same to standard output. False where there is no memory, after it was said. */
+bool app_report_print_json(const app_report *report);
+/* A few lines. */
 void app_report_print(const app_report *report);
 
 #endif

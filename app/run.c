@@ -1,5 +1,7 @@
 /* skein run SCENE: simulate, with progress, files and a report. */
 #include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
 
 #include "app/compile.h"
 #include "app/flocks.h"
@@ -24,6 +26,8 @@ static bool measure(app_report *r) {
         app_print_error(skein_world_error(world));
         return false;
     }
+    if (r->frames == 0 && !r->statistics.steps) r->verdict = app_verdict_begin(r->loaded, &r->statistics);
+    app_verdict_note(&r->verdict, &r->statistics);
     if (r->statistics.max_stretch > r->worst_stretch) r->worst_stretch = r->statistics.max_stretch;
     return true;
 }
@@ -95,48 +99,88 @@ static void keep_frames(app_report *r, app_outputs *outputs, const char *folder,
     else fprintf(stderr, "skein: what was written before that is kept in %s/*.failed.*\n", folder);
 }
 
-static int simulate(app_report *r, const char *folder, bool quiet) {
+/* Whether the log would get the name of a file that goes into the folder, too: the later one would replace it. */
+static bool log_is_in_the_way(const app_report *r, const char *folder) {
+    const char *slash = strrchr(r->log_path, '/'), *name = slash ? slash + 1 : r->log_path;
+    char beside[IO_PLACE_SIZE];
+    struct stat there, here;
+    snprintf(beside, sizeof beside, "%.*s", slash ? (int)(slash - r->log_path) + 1 : 1, slash ? r->log_path : ".");
+    if (stat(beside, &there) || stat(folder, &here) || there.st_ino != here.st_ino || there.st_dev != here.st_dev)
+        return false;
+    size_t stem = strcspn(name, ".");
+    bool taken = !strcmp(name, "report.json");
+    for (size_t i = 0; i < skein_object_count(r->loaded->world, SKEIN_BODY); i++) {
+        skein_handle body = skein_object_at(r->loaded->world, SKEIN_BODY, i);
+        skein_value value = {0, {0, 0, 0}, ""};
+        skein_get(r->loaded->world, body, "name", &value);
+        const char *own = value.text[0] ? value.text : skein_object_kind(r->loaded->world, body)->name;
+        taken |= strlen(own) == stem && !strncmp(own, name, stem);
+    }
+    if (taken)
+        fprintf(stderr, "skein run: --log %s: the run itself writes a file of that name into --out %s\n", r->log_path,
+                folder);
+    return taken;
+}
+
+/* What the run says at its end, and its exit status. */
+static int conclude(app_report *r, const char *folder, bool good) {
+    int signal_number = app_interrupted(); // a later one interrupts nothing that matters
+    r->interrupted = signal_number != 0;
+    good = app_verdict_end(&r->verdict, &r->statistics) && good;
+    if (folder) good = app_report_write(r, folder) && good;
+    if (r->json) good = app_report_print_json(r) && good;
+    else if (!r->quiet) app_report_print(r);
+    return !good ? EXIT_FAILURE_RUN : signal_number ? EXIT_SIGNAL + signal_number : EXIT_OK;
+}
+
+static int simulate(app_report *r, const char *folder) {
     app_outputs *outputs = NULL;
     app_catch_interrupts();
-    int status = folder ? app_outputs_begin(r->loaded, folder, quiet, &outputs) : EXIT_OK;
+    int status = folder ? app_outputs_begin(r->loaded, folder, r->calm, &outputs) : EXIT_OK;
     if (status) return status;
-    if (r->log_path && !(r->log = app_log_begin(r->log_path))) {
+    if (r->log_path && ((folder && log_is_in_the_way(r, folder)) || !(r->log = app_log_begin(r->log_path)))) {
         app_outputs_abandon(outputs);
         return EXIT_FAULT;
     }
-    app_progress p = app_progress_start("frame", r->loaded->settings.frames, quiet);
+    app_progress p = app_progress_start("frame", r->loaded->settings.frames, r->calm);
     bool ran = run_frames(r, outputs, &p);
     bool logged = app_log_finish(r->log); // of a run that failed, too: it may say why
     if (!ran) {
         keep_frames(r, outputs, folder, &p);
         return EXIT_FAILURE_RUN;
     }
-    int signal_number = app_interrupted(); // a later one interrupts nothing that matters
-    r->interrupted = signal_number != 0;
     if (r->log && logged) note_file(r, r->log_path);
     bool good = (!outputs || app_outputs_finish(outputs, note_file, r)) && logged;
-    if (folder) good = app_report_write(r, folder) && good;
-    app_report_print(r);
-    return !good ? EXIT_FAILURE_RUN : signal_number ? EXIT_SIGNAL + signal_number : EXIT_OK;
+    return conclude(r, folder, good);
 }
 
 /* ---- the arguments ---- */
 
 static int run(app_arguments *arguments) {
     app_override_texts texts;
-    app_scene loaded;
-    bool quiet = app_given(arguments, "--quiet");
+    bool quiet = app_given(arguments, "--quiet"), calm = quiet || app_given(arguments, "--no-progress");
+    const char *folder = app_value(arguments, "--out");
+    app_scene loaded = {.quiet = quiet};
     if (!app_override(arguments, texts)) return EXIT_FAULT;
+    if (folder && !strcmp(folder, "-")) {
+        fprintf(stderr, "skein run: --out -: a run writes many files into a folder; --json prints its report\n");
+        return EXIT_FAULT;
+    }
     int status = app_load(app_word(arguments), app_values(arguments, "--set"), &loaded);
-    if (!status && app_given(arguments, "--compile")) loaded.warnings += app_compile(loaded.world, quiet);
+    if (!status && app_given(arguments, "--compile")) loaded.warnings += app_compile(loaded.world, calm);
     if (!status) status = app_device(&loaded, app_value(arguments, "--device"));
     if (!status) {
+        app_advise(&loaded);
         app_report report = {.loaded = &loaded,
+                             .arguments = arguments,
+                             .quiet = quiet,
+                             .calm = calm,
+                             .json = app_given(arguments, "--json"),
                              .files = json_array(),
                              .flocks = json_array(),
                              .log_path = app_value(arguments, "--log")};
         report.steps_per_frame = io_scene_steps_per_frame(&loaded.settings, &report.dt);
-        status = simulate(&report, app_value(arguments, "--out"), quiet);
+        status = simulate(&report, folder);
         json_decref(report.files);
         json_decref(report.flocks);
     }
@@ -153,7 +197,9 @@ static const app_option options[] = {
     APP_DEVICE_OPTION,
     APP_COMPILE_OPTION,
     {"--log", "FILE", "write a line a step there, as CSV: energies, momenta, stretch, contacts", false, APP_TAKES_FILE},
-    {"--quiet", NULL, "no progress", false, APP_TAKES_ANY},
+    {"--json", NULL, "print the report as JSON instead of a summary", false, APP_TAKES_ANY},
+    APP_NO_PROGRESS_OPTION,
+    APP_QUIET_OPTION,
     APP_END_OF_OPTIONS};
 
 const app_command app_run_command = {
@@ -168,8 +214,9 @@ const app_command app_run_command = {
     "(Ctrl-C), a run writes what it has.\n\n"
     "On a graphics card (--device gpu) the same plan runs as OpenGL compute shaders, for rules that have one: loose\n"
     "particles under forces, contact and neighbours; not yet cloth, jelly and rope. Numbers agree to rounding.\n\n"
-    "Exit status 0: done; 1: the run failed, or a file could not be written; 2: a fault in the scene or the\n"
-    "arguments; 130: interrupted.",
+    "Exit status 0: done; 1: the run failed, or ended far beyond its bounds (an edge longer than the scene's\n"
+    "most_stretch allows, energy that came from nowhere), or a file could not be written; 2: a fault in the scene\n"
+    "or the arguments; 130: interrupted.",
     options,
     "scene",
     false,

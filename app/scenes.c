@@ -2,7 +2,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include <jansson.h>
+
 #include "app/command.h"
+#include "io/advice.h"
 #include "io/exporters.h"
 #include "io/printable.h"
 #ifdef SKEIN_RENDER
@@ -19,14 +22,22 @@ void app_keep_error(const skein_error *error, char out[APP_FAILURE_SIZE]) {
     snprintf(out, APP_FAILURE_SIZE, "%s%s%s", error->where, error->where[0] ? ": " : "", error->message);
 }
 
+static void keep(struct json_t *list, const char *where, const char *words) {
+    if (list) json_array_append_new(list, json_sprintf("%s%s%s", where, where[0] ? ": " : "", words));
+}
+
 static void report_fault(void *user, const skein_error *error) {
-    (void)user;
+    const app_scene *loaded = user;
     app_print_error(error);
+    if (loaded) keep(loaded->fault_list, error->where, error->message);
 }
 
 static void print_log(void *user, skein_log_level level, const char *message) {
     app_scene *loaded = user;
-    if (level == SKEIN_LOG_WARNING) loaded->warnings++;
+    if (level == SKEIN_LOG_WARNING) {
+        loaded->warnings++;
+        keep(loaded->warning_list, "", message);
+    }
     if (loaded->quiet) return;
     char line[1024];
     snprintf(line, sizeof line, "%s", message);
@@ -70,11 +81,9 @@ static io_scene *read_scene(const char *word, const char *const *sets, io_faults
     return NULL;
 }
 
-static int load(const char *word, const char *const *sets, bool quiet, app_scene *loaded) {
-    memset(loaded, 0, sizeof *loaded);
-    loaded->quiet = quiet;
+int app_load(const char *word, const char *const *sets, app_scene *loaded) {
     double start = app_seconds();
-    io_faults faults = {report_fault, NULL, 0};
+    io_faults faults = {report_fault, loaded, 0};
     loaded->scene = read_scene(word, sets, &faults, loaded->path);
     if (loaded->scene) {
         loaded->settings = *io_scene_get(loaded->scene);
@@ -91,19 +100,24 @@ static int load(const char *word, const char *const *sets, bool quiet, app_scene
     return EXIT_FAULT;
 }
 
-int app_load(const char *path, const char *const *sets, app_scene *loaded) {
-    return load(path, sets, false, loaded);
-}
-
-int app_load_quietly(const char *path, const char *const *sets, app_scene *loaded) {
-    return load(path, sets, true, loaded);
-}
-
-int app_try(const char *path, const char *const *sets) {
-    app_scene loaded;
-    int status = app_load(path, sets, &loaded);
+int app_try(const char *word, const char *const *sets) {
+    app_scene loaded = {.quiet = false};
+    int status = app_load(word, sets, &loaded);
     if (!status) app_unload(&loaded);
     return status;
+}
+
+/* Errors may be printed where notes are not. */
+static void print_advice(void *user, const char *line) {
+    const app_scene *loaded = user;
+    keep(loaded->warning_list, "", line);
+    if (!loaded->quiet) fprintf(stderr, "skein: warning: %s: %s\n", loaded->path, line);
+}
+
+void app_advise(app_scene *loaded) {
+    double dt;
+    io_scene_steps_per_frame(&loaded->settings, &dt);
+    loaded->warnings += io_advise(loaded->world, dt, (io_warnings){print_advice, loaded}, &loaded->needed);
 }
 
 void app_not_found(const char *word) {

@@ -1,10 +1,8 @@
 /* skein stability SCENE: the largest stable step of each method. */
-#include "app/stability.h"
-
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
+
+#include "app/command.h"
 
 /* The substep that the scene asks for. */
 static double substep_of(const app_scene *loaded, double *dt) {
@@ -49,66 +47,8 @@ static void print_methods(const app_scene *loaded, const skein_stability *s) {
                "slowly, at any step. The force \"drag\" damps it.\n");
 }
 
-bool app_warn_of_instability(app_scene *loaded) {
-    skein_stability s;
-    double dt, substep = substep_of(loaded, &dt);
-    // most methods have no limit, which no search is needed to know
-    const skein_stability stiff = {.modes = {{1 / substep * 1e3, 0}}, .mode_count = 1};
-    if (isinf(skein_stable_substep(app_method(loaded), &stiff))) return true;
-    if (!find(loaded, &s)) return false;
-    double most = skein_stable_substep(app_method(loaded), &s);
-    if (substep <= most) return true;
-    loaded->warnings++;
-    if (most > 0)
-        fprintf(stderr,
-                "skein: warning: %s: %s is stable with substeps of %.3g ms at most, and these are %.3g ms: set "
-                "method.substeps to %.0f or more\n",
-                loaded->path, app_method(loaded), 1e3 * most, 1e3 * substep, ceil(dt / most));
-    else
-        fprintf(stderr, "skein: warning: %s: undamped springs grow under %s at any step\n", loaded->path,
-                app_method(loaded));
-    return true;
-}
-
-/* The acceleration of gravity, m/s2. */
-static double gravity_of(const app_scene *loaded) {
-    for (size_t i = 0; i < skein_object_count(loaded->world, SKEIN_FORCE); i++) {
-        skein_handle force = skein_object_at(loaded->world, SKEIN_FORCE, i);
-        skein_value g;
-        if (!strcmp(skein_object_kind(loaded->world, force)->name, "gravity") &&
-            !skein_get(loaded->world, force, "acceleration", &g))
-            return sqrt(g.number[0] * g.number[0] + g.number[1] * g.number[1] + g.number[2] * g.number[2]);
-    }
-    return 0;
-}
-
-/* The largest coordinate. */
-static double extent_of(const app_scene *loaded) {
-    skein_view view = skein_position_view(loaded->world);
-    double most = 0;
-    for (size_t i = 0; i < view.count; i++)
-        for (int k = 0; k < 3; k++) most = fmax(most, fabs((double)view.xyzw[4 * view.slot_of[i] + (size_t)k]));
-    return most;
-}
-
-void app_warn_of_rounding(app_scene *loaded) {
-    // measured on a cube in a bowl: at 0.05 it rests 0.1 mm beside where it does in double, at 0.2 15 mm, at 0.8 45 mm
-    const double tolerable = 0.1;
-    const double epsilon = sizeof(skein_real) == sizeof(double) ? DBL_EPSILON : (double)FLT_EPSILON;
-    double dt, h = substep_of(loaded, &dt), g = gravity_of(loaded), extent = extent_of(loaded);
-    bool moves_positions = !strcmp(app_method(loaded), "xpbd") || !strcmp(app_method(loaded), "pbd");
-    if (!moves_positions || g <= 0 || epsilon / 2 * extent <= tolerable * g * h * h) return;
-    loaded->warnings++;
-    double least = sqrt(epsilon / 2 * extent / (tolerable * g));
-    fprintf(
-        stderr,
-        "skein: warning: %s: in a substep of %.3g ms gravity moves things by hardly more than positions are rounded "
-        "to at %.3g m: small forces get lost; set method.substeps to %.0f or less, or build with SKEIN_DOUBLE\n",
-        loaded->path, 1e3 * h, extent, fmax(1, floor(dt / least)));
-}
-
 static int stability(app_arguments *arguments) {
-    app_scene loaded;
+    app_scene loaded = {.quiet = false};
     skein_stability s;
     int status = app_load(app_word(arguments), app_values(arguments, "--set"), &loaded);
     if (!status && !find(&loaded, &s)) status = EXIT_FAILURE_RUN;

@@ -35,6 +35,8 @@ static const skein_field scene_fields[] = {
     FIELD(fps, "fps", SKEIN_FIELD_REAL, "1/s", 60, 1e-3, 1e6, NULL, "frames a second of simulated time"),
     FIELD(step, "step", SKEIN_FIELD_REAL, "s", 1.0 / 60, 1e-9, 1e3, NULL,
           "the longest step; a frame is cut into as many equal steps as it takes"),
+    FIELD(most_stretch, "most_stretch", SKEIN_FIELD_REAL, "", 1, 0, (double)INFINITY, NULL,
+          "a run that ends with an edge longer than its rest length times 1 + this fails; \"infinite\" is none"),
     FIELD(threads, "threads", SKEIN_FIELD_INT, "", 1, 1, 64, NULL, "threads to run on; the result is the same"),
     {"advance",
      SKEIN_FIELD_CHOICE,

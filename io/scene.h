@@ -22,7 +22,8 @@ typedef struct io_scene_settings {
     char *name, *description;
     int32_t frames, threads;
     double fps, step;
-    int32_t advance; /* an io_advance */
+    double most_stretch; /* as a share; INFINITY: any */
+    int32_t advance;     /* an io_advance */
 } io_scene_settings;
 
 /* The kind "scene": its fields and their defaults. */

@@ -18,10 +18,10 @@ static void wrong_arguments_are_told(void **state) {
         {{"help", "chek"}, "skein: there is no command 'chek'; did you mean 'check'? `skein --help` shows all\n"},
         {{"--frames"}, "skein: there is no command '--frames'; `skein --help` shows all\n"},
         {{"run"}, "skein run: which scene? " RUN_USAGE},
-        {{"check"}, "skein check: which scene? usage: skein check SCENE... [--set PATH=VALUE]...\n"},
+        {{"check"}, "skein check: which scene? usage: skein check SCENE... [--set PATH=VALUE]... [--json]\n"},
         {{"explain", "--set", "a=b"}, "skein explain: which scene? usage: skein explain SCENE [--set PATH=VALUE]... [--device WHERE]\n"},
         {{"run", "a.json", "b.json"}, "skein run: 'b.json' is one argument too many; " RUN_USAGE},
-        {{"run", "a.json", "--", "--quiet"}, "skein run: '--quiet' is one argument too many; " RUN_USAGE},
+        {{"run", "a.json", "--", "--no-progress"}, "skein run: '--no-progress' is one argument too many; " RUN_USAGE},
         {{"run", "a.json", "--frame", "3"},
          "skein run: there is no option --frame; did you mean --frames? `skein run --help` shows all\n"},
         {{"run", "a.json", "--frame=3"},
@@ -55,13 +55,13 @@ static void wrong_arguments_are_told(void **state) {
         {{"run", "no/such.json"}, "skein: no/such.json: cannot read: no such file or directory\n"},
         {{"list", "cats", "dogs"},
          "skein list: 'dogs' is one argument too many; "
-         "usage: skein list [scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND]\n"},
+         "usage: skein list [scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]\n"},
         {{"list", "bodys"},
          "skein list: there is no list or kind 'bodys'; did you mean 'bodies'? "
-         "usage: skein list [scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND]\n"},
+         "usage: skein list [scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]\n"},
         {{"list", "spere"},
          "skein list: there is no list or kind 'spere'; did you mean 'sphere'? "
-         "usage: skein list [scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND]\n"},
+         "usage: skein list [scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]\n"},
     };
     for (size_t i = 0; i < COUNT(wrong); i++) {
         const char *const *a = wrong[i].arguments;
@@ -95,7 +95,7 @@ static void help_is_there_when_asked_for(void **state) {
         outcome_free(&o);
     }
     static const char *const options[] = {"--out FOLDER",     "--frames N", "--fps N", "--threads N",
-                                          "--set PATH=VALUE", "--quiet",    "--help"};
+                                          "--set PATH=VALUE", "--no-progress",    "--help"};
     outcome o = SKEIN("run", "--help");
     for (size_t i = 0; i < COUNT(options); i++) {
         char words[64];
@@ -337,7 +337,7 @@ static void progress_is_shown(void **state) {
     o = SKEIN("run", s, "--frames", "3");
     assert_int_equal(count_words(o.err, "\n"), 3);
     outcome_free(&o);
-    o = SKEIN("run", s, "--frames", "3", "--quiet");
+    o = SKEIN("run", s, "--frames", "3", "--no-progress");
     assert_string_equal(o.err, "");
     assert_contains(o.out, "3 frames");
     outcome_free(&o);

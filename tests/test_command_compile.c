@@ -7,7 +7,8 @@ static const char rope[] =
     "  'bodies': [ { 'type': 'rope', 'name': 'rope', 'count': 40, 'pins': 'first' } ],\n"
     "  'forces': [ { 'type': 'gravity' } ],\n"
     "  'constraints': [ { 'type': 'formula', 'particles': { 'body': 'rope', 'over': 'edges' },\n"
-    "    'constraint': 'length(p0 - p1) - L * (1 + 0.2 * sin(t))', 'parameters': { 'L': 0.0417 }, 'stiffness': 900 } ] }\n";
+    "    'constraint': 'length(p0 - p1) - L * (1 + 0.2 * sin(t))', 'parameters': { 'L': 0.0417 }, 'stiffness': 900 } ],\n"
+    "  'most_stretch': 10 }\n";
 
 static const char other[] = "constraints.0.constraint=length(p0 - p1) - 1.5 * L";
 
@@ -54,7 +55,7 @@ static void compiled_once_and_kept(void **state) {
     assert_int_equal(count_entries(cache), 1);
     setenv("CC", "/bin/false", 1); // nobody asks it
     check(hash, "skein: compiled formulas: 1 from ");
-    outcome o = SKEIN("run", scene, "--compile", "--quiet");
+    outcome o = SKEIN("run", scene, "--compile", "--no-progress");
     assert_string_equal(o.err, "");
     assert_true(hash_of(o) == hash);
     // another number is not another formula, another text is
@@ -191,7 +192,7 @@ static void an_interrupted_compiler_leaves_nothing(void **state) {
     assert_int_equal(chmod(slow, 0700), 0);
     setenv("CC", slow, 1);
     const char *const arguments[] = {"run", scene, "--compile", NULL};
-    pid_t skein = start_skein((surroundings){0, 0, 0}, arguments);
+    pid_t skein = start_skein((surroundings){0}, arguments);
     const struct timespec pause = {0, 10000000};
     for (int i = 0; i < 3000 && !exists(number); i++) nanosleep(&pause, NULL);
     char *words = read_text(number);

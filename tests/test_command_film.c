@@ -6,7 +6,7 @@
 
 #include "film_reader.h"
 
-#define SMALL "--size", "64x36", "--samples", "1", "--quiet"
+#define SMALL "--size", "64x36", "--samples", "1", "--no-progress"
 
 static long size_of(const char *path) {
     struct stat info;
@@ -96,7 +96,7 @@ static void what_is_changed_is_noted(void **state) {
 static void the_exporter_makes_a_film_where_it_is_asked_for(void **state) {
     (void)state;
     const char *s = tiny_scene();
-    outcome o = SKEIN("run", s, "--out", in_folder("out"), "--frames", "6", "--quiet", "--set",
+    outcome o = SKEIN("run", s, "--out", in_folder("out"), "--frames", "6", "--no-progress", "--set",
                       "output=[\"obj\",{\"type\":\"film\",\"size\":[64,36],\"samples\":1,\"format\":\"webm\"}]");
     assert_status(o, 0);
     assert_string_equal(o.err, "");
@@ -111,19 +111,19 @@ static void the_exporter_makes_a_film_where_it_is_asked_for(void **state) {
     assert_int_equal(json_array_size(json_object_get(report, "files")), 3);
     json_decref(report);
     // the film changes nothing in what is simulated
-    uint64_t with = hash_of(SKEIN("run", s, "--out", in_folder("out"), "--frames", "6", "--quiet", "--set",
+    uint64_t with = hash_of(SKEIN("run", s, "--out", in_folder("out"), "--frames", "6", "--no-progress", "--set",
                                   "output=[{\"type\":\"film\",\"size\":[64,36],\"samples\":1}]"));
-    assert_true(with == hash_of(SKEIN("run", s, "--frames", "6", "--quiet")));
+    assert_true(with == hash_of(SKEIN("run", s, "--frames", "6", "--no-progress")));
     assert_true(exists(in_folder("out/my_scene_1.mp4")));
     // by default there is none, and a run that fails leaves none
     write_scene(in_folder("plain.json"),
                 "{ 'frames': 2, 'name': 'plain', 'bodies': [ { 'type': 'cloth', 'grid': [3, 3] } ] }");
-    o = SKEIN("run", in_folder("plain.json"), "--out", in_folder("plain"), "--quiet");
+    o = SKEIN("run", in_folder("plain.json"), "--out", in_folder("plain"), "--no-progress");
     assert_status(o, 0);
     assert_false(exists(in_folder("plain/plain.mp4")));
     assert_true(exists(in_folder("plain/plain.png")));
     outcome_free(&o);
-    o = SKEIN_IN((surroundings){.file_limit = 1500}, "run", s, "--out", in_folder("full"), "--frames", "130", "--quiet",
+    o = SKEIN_IN((surroundings){.file_limit = 1500}, "run", s, "--out", in_folder("full"), "--frames", "130", "--no-progress",
                  "--set", "output=[{\"type\":\"film\",\"size\":[64,36],\"samples\":1,\"quality\":100}]");
     assert_status(o, 1);
     assert_contains(o.err, "my_scene_1.mp4: cannot write: it grew over the limit for a file's size\n");

@@ -18,7 +18,7 @@ static double difference(const render_image *a, const render_image *b) {
     return (double)count / (double)total;
 }
 
-#define SMALL "--size", "64x36", "--samples", "1", "--quiet"
+#define SMALL "--size", "64x36", "--samples", "1", "--no-progress"
 
 /* ---- Pictures ----------------------------------------------------------------------------------------- */
 
@@ -51,7 +51,7 @@ static void a_picture_shows_the_frame_that_was_asked_for(void **state) {
     render_image c = read_png(last);
     assert_true(difference(&b, &c) == 0);
     // and what the exporter of a run draws after as many frames
-    o = SKEIN("run", s, "--out", in_folder("out"), "--frames", "30", "--quiet", "--set",
+    o = SKEIN("run", s, "--out", in_folder("out"), "--frames", "30", "--no-progress", "--set",
               "output=[{\"type\":\"png\",\"size\":[64,36],\"samples\":1}]");
     assert_status(o, 0);
     render_image d = read_png(in_folder("out/my_scene_1.png"));
@@ -156,7 +156,7 @@ static void wrong_arguments_are_told(void **state) {
 static void help_teaches(void **state) {
     static const char *const options[] = {"-o FILE",     "--out FILE", "--frames N",      "--frame N",
                                           "--fps N",     "--size WxH", "--samples N",     "--quality N",
-                                          "--threads N", "--quiet",    "--set PATH=VALUE"};
+                                          "--threads N", "--no-progress",    "--set PATH=VALUE"};
     (void)state;
     outcome o = SKEIN("render", "--help");
     assert_status(o, 0);

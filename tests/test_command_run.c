@@ -36,6 +36,8 @@ static void judge_report(const json_t *report, int frames) {
         {"threads", 1, 64},
         {"steps", 0, 1e5},
         {"substeps", 0, 1e7},
+        {"unsolved", 0, 0},
+        {"solver_failures", 0, 0},
         {"nonfinite_particles", 0, 0},
         {"guarded_values", 0, 0},
         {"device_bytes", 0, 0},
@@ -46,7 +48,7 @@ static void judge_report(const json_t *report, int frames) {
         if (!(x >= numbers[i].least && x <= numbers[i].most)) fail_msg("'%s' is %g", numbers[i].key, x);
     }
     const json_t *flocks = json_object_get(report, "flocks"); // where there are some
-    assert_int_equal(json_object_size(report), COUNT(numbers) + 10 + (flocks ? 1 : 0));
+    assert_int_equal(json_object_size(report), COUNT(numbers) + 13 + (flocks ? 1 : 0));
     for (size_t i = 0; i < json_array_size(flocks); i++) {
         const json_t *flock = json_array_get(flocks, i), *milling = json_object_get(flock, "milling");
         assert_int_equal(json_array_size(milling), (frames + 15) / 16 + 1);
@@ -56,6 +58,11 @@ static void judge_report(const json_t *report, int frames) {
         assert_true(first > (strewn ? 0 : 0.4) && first <= 1);
     }
     assert_string_equal(text_of(report, "skein"), SKEIN_VERSION);
+    assert_true(strlen(text_of(report, "commit")) >= 7);
+    assert_string_equal(json_string_value(json_array_get(json_object_get(report, "command_line"), 0)), "run");
+    // the scene with all that was set: it is a good scene by itself
+    const json_t *document = json_object_get(report, "document");
+    assert_int_equal(number_of(document, "frames"), frames);
     assert_string_equal(text_of(report, "device"), "processor");
     assert_string_equal(text_of(report, "precision"), sizeof(skein_real) == 8 ? "double" : "float");
     assert_true(strlen(text_of(report, "scene")) > 0 && strlen(text_of(report, "method")) > 0);
@@ -104,7 +111,7 @@ static void run_scene(const char *path, bool draws) {
     // a mesh has nothing to be made small: what is set in its place has no effect
     const char *output = draws ? "output=[\"obj\", \"pc2\", { \"type\": \"png\", \"size\": [64, 48], \"samples\": 1 }]"
                                : "output=[\"pc2\", \"obj\"]";
-    outcome o = SKEIN("run", path, "--out", in_folder("out"), "--frames", "3", "--quiet", "--set", output, "--set",
+    outcome o = SKEIN("run", path, "--out", in_folder("out"), "--frames", "3", "--no-progress", "--set", output, "--set",
                       mesh ? "skein=1" : "bodies.0.grid=[7,9]");
     assert_string_equal(o.err, "");
     assert_status(o, 0);
@@ -140,7 +147,7 @@ static void run_scene(const char *path, bool draws) {
 /* A scene of other bodies than one cloth: three frames as it is, and a pair of files for each body. */
 static void run_other_scene(const char *path, bool draws) {
     json_t *scene = json_load_file(path, 0, NULL), *bodies = json_object_get(scene, "bodies");
-    outcome o = SKEIN("run", path, "--out", in_folder("out"), "--frames", "3", "--quiet", "--set",
+    outcome o = SKEIN("run", path, "--out", in_folder("out"), "--frames", "3", "--no-progress", "--set",
                       draws ? "output=[\"obj\", \"pc2\", { \"type\": \"png\", \"size\": [64, 48], \"samples\": 1 }]"
                             : "output=[\"pc2\", \"obj\"]");
     assert_string_equal(o.err, "");
@@ -208,7 +215,7 @@ static void sets_reach_what_they_name(void **state) {
                                       "--set=bodies.sheet.stretch.stiffness=5")));
     assert_true(plain != hash_of(SKEIN("run", s, "--set", "forces.weight.acceleration=[0,-1,0]")));
     assert_true(plain != hash_of(SKEIN("run", s, "--set", "colliders.ball.centre=[0,-0.4,0]")));
-    assert_true(plain != hash_of(SKEIN("run", s, "--set", "method={\"type\": \"symplectic_euler\"}")));
+    assert_true(plain != hash_of(SKEIN("run", s, "--set", "method={\"type\": \"symplectic_euler\", \"substeps\": 40}")));
     assert_true(plain == hash_of(SKEIN("run", s, "--set", "bodies.0.visible=false", "--set", "name=other")));
 }
 
@@ -277,7 +284,7 @@ static void seams_are_welded_and_exported_as_they_came(void **state) {
                "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nv 1 0 0\nv 1 0 1\nv 2 0 1\nv 2 0 0\nf 1 2 3 4\nf 5 6 7 8\n");
     write_scene(s, "{ 'frames': 3, 'output': ['obj', 'pc2'], 'forces': [ { 'type': 'gravity' } ],\n"
                    "  'bodies': [ { 'type': 'cloth', 'mesh': 'seam.obj', 'weld': 1e-6, 'pins': [0] } ] }");
-    outcome o = SKEIN("run", s, "--out", in_folder("out"), "--quiet");
+    outcome o = SKEIN("run", s, "--out", in_folder("out"), "--no-progress");
     assert_status(o, 0);
     assert_string_equal(o.err, "");
     assert_int_equal(strncmp(o.out, "6 particles", 11), 0);
@@ -306,7 +313,7 @@ static void seams_are_welded_and_exported_as_they_came(void **state) {
 static void a_log_has_a_line_a_step(void **state) {
     (void)state;
     const char *s = tiny_scene();
-    outcome o = SKEIN("run", s, "--frames", "3", "--fps", "30", "--log", in_folder("run.csv"), "--quiet");
+    outcome o = SKEIN("run", s, "--frames", "3", "--fps", "30", "--log", in_folder("run.csv"), "--no-progress");
     assert_status(o, 0);
     assert_contains(o.out, "run.csv\n");
     outcome_free(&o);
@@ -335,17 +342,154 @@ static void a_log_has_a_line_a_step(void **state) {
     free(text);
 
     // a run that blows up leaves its log, which says how it came to it
-    o = SKEIN("run", s, "--log", in_folder("bad.csv"), "--quiet", "--frames", "400", "--set",
+    o = SKEIN("run", s, "--log", in_folder("bad.csv"), "--no-progress", "--frames", "400", "--set",
               "method={\"type\":\"explicit_euler\",\"substeps\":1}", "--set", "bodies.0.stretch.stiffness=1e6");
     assert_status(o, 1);
     assert_contains(o.err, "blew up");
     assert_true(exists(in_folder("bad.csv")));
     outcome_free(&o);
-    o = SKEIN("run", s, "--log", in_folder("no/such/run.csv"), "--quiet", "--out", in_folder("not made"));
+    o = SKEIN("run", s, "--log", in_folder("no/such/run.csv"), "--no-progress", "--out", in_folder("not made"));
     assert_status(o, 2);
     assert_contains(o.err, "no/such/run.csv");
     assert_false(exists(in_folder("not made")));
     outcome_free(&o);
+}
+
+/* ---- What is said, and how ------------------------------------------------------------------------- */
+
+/* A blow-up may stay finite: limits hold a sheet together, and a spring turns faster and faster. */
+static void an_end_beyond_bounds_is_no_success(void **state) {
+    (void)state;
+    outcome o = SKEIN("run", "hanging", "--set", "method.type=symplectic_euler", "--set", "bodies.0.grid=9 9", "--set",
+                      "method.substeps=1", "--set", "bodies.0.stretch.stiffness=2e5", "--frames", "40",
+                      "--no-progress", "--out", in_folder("out"), "--set", "output=[]");
+    assert_status(o, 1);
+    assert_contains(o.err, "warning: scenes/hanging.json: symplectic_euler is stable with substeps of ");
+    const char *remedy = strstr(o.err, "set method.substeps to ");
+    assert_non_null(remedy);
+    assert_contains(o.err, "ended far beyond its bounds: an edge is stretched by ");
+    json_t *report = read_report(in_folder("out/report.json"));
+    assert_contains(text_of(report, "failed"), "most_stretch is 100 %");
+    json_decref(report);
+    // the remedy is one
+    char enough[64];
+    snprintf(enough, sizeof enough, "method.substeps=%d", atoi(remedy + strlen("set method.substeps to ")));
+    outcome_free(&o);
+    o = SKEIN("run", "hanging", "--set", "method.type=symplectic_euler", "--set", "bodies.0.grid=9 9", "--set",
+              "bodies.0.stretch.stiffness=2e5", "--frames", "40", "--no-progress", "--set", enough);
+    assert_status(o, 0);
+    assert_string_equal(o.err, "");
+    outcome_free(&o);
+    // one who means it says so
+    write_scene(in_folder("long.json"),
+                "{ 'frames': 60, 'bodies': [ { 'type': 'cloth', 'grid': [2, 2], 'pins': 'top edge', 'density': 1,\n"
+                "  'stretch': { 'stiffness': 0.3, 'limit': 'infinite', 'tether': 'infinite' } } ],\n"
+                "  'forces': [ { 'type': 'gravity' } ] }");
+    o = SKEIN("run", in_folder("long.json"), "--quiet");
+    assert_status(o, 1);
+    outcome_free(&o);
+    o = SKEIN("run", in_folder("long.json"), "--quiet", "--set", "most_stretch=infinite");
+    assert_status(o, 0);
+    outcome_free(&o);
+}
+
+static void energy_from_nowhere_is_no_success(void **state) {
+    (void)state;
+    // a stone thrown into a spring of formulas has no edges that could be too long
+    write_scene(in_folder("orbit.json"),
+                "{ 'frames': 200, 'method': { 'type': 'explicit_euler', 'substeps': 1 },\n"
+                "  'bodies': [ { 'type': 'flock', 'count': 1, 'speed': 0, 'side': 1 } ],\n"
+                "  'forces': [ { 'type': 'potential', 'energy': '40 * dot(p - vec3(1, 0, 0), p - vec3(1, 0, 0))' } ] }");
+    outcome o = SKEIN("run", in_folder("orbit.json"), "--no-progress");
+    assert_status(o, 1);
+    assert_contains(o.err, "its energy has grown by ");
+    assert_contains(o.err, "nothing does work on it; ");
+    outcome_free(&o);
+    // a method that keeps energy, and one where something pushes
+    o = SKEIN("run", in_folder("orbit.json"), "--no-progress", "--set", "method.type=leapfrog");
+    assert_status(o, 0);
+    outcome_free(&o);
+    o = SKEIN("run", in_folder("orbit.json"), "--no-progress", "--set", "method.type=leapfrog", "--set",
+              "forces=[{\"type\": \"wind\", \"force\": [1, 0, 0]}]");
+    assert_status(o, 0);
+    outcome_free(&o);
+}
+
+/* All steps' unsolved substeps are counted, not the last one's. */
+static void what_was_not_solved_is_told(void **state) {
+    (void)state;
+    const char *arguments[] = {"run",
+                               "hanging",
+                               "--no-progress",
+                               "--frames",
+                               "6",
+                               "--set",
+                               "bodies.0.grid=9 9",
+                               "--set",
+                               "method.type=backward_euler",
+                               "--set",
+                               "method.cg_iterations=1",
+                               "--set",
+                               "method.turns=1",
+                               "--json",
+                               NULL};
+    outcome o = finish_skein(start_skein((surroundings){0}, arguments));
+    assert_status(o, 0);
+    json_t *report = json_loads(o.out, 0, NULL);
+    assert_non_null(report);
+    double unsolved = number_of(report, "unsolved");
+    assert_true(unsolved > 0 && unsolved <= number_of(report, "substeps"));
+    json_decref(report);
+    outcome_free(&o);
+    arguments[13] = NULL;
+    o = finish_skein(start_skein((surroundings){0}, arguments));
+    assert_contains(o.out, "substeps were left unsolved");
+    outcome_free(&o);
+}
+
+static void a_run_says_as_much_as_it_is_asked_to(void **state) {
+    (void)state;
+    const char *s = tiny_scene();
+    assert_says(0, "", "", "run", s, "--quiet");
+    assert_says(0, "", "", "render", s, "--quiet", "-o", in_folder("a.png"), "--frame", "1", "--size", "64x36");
+    // the report, to standard output: the same that --out writes
+    outcome o = SKEIN("run", s, "--json", "--set", "method.substeps=4", "--out", in_folder("out"), "--no-progress");
+    assert_status(o, 0);
+    assert_string_equal(o.err, "");
+    json_t *said = json_loads(o.out, 0, NULL), *written = read_report(in_folder("out/report.json"));
+    assert_non_null(said);
+    static const char *const same[] = {"state_hash", "document", "command_line", "commit", "frames", "unsolved"};
+    for (size_t i = 0; i < COUNT(same); i++) {
+        assert_non_null(json_object_get(said, same[i]));
+        assert_true(json_equal(json_object_get(said, same[i]), json_object_get(written, same[i])));
+    }
+    // the document runs again, to the same state
+    const json_t *method = json_object_get(json_object_get(said, "document"), "method");
+    assert_string_equal(text_of(method, "type"), "xpbd"); // the scene has none: it is the world's
+    assert_int_equal(json_dump_file(json_object_get(said, "document"), in_folder("again.json"), 0), 0);
+    uint64_t hash = strtoull(text_of(said, "state_hash"), NULL, 16);
+    assert_true(hash == hash_of(SKEIN("run", in_folder("again.json"))));
+    json_decref(said);
+    json_decref(written);
+    outcome_free(&o);
+}
+
+static void files_of_one_run_have_different_names(void **state) {
+    (void)state;
+    const char *s = tiny_scene();
+    char words[600];
+    static const char *const logs[] = {"out/report.json", "out/../out/report.json", "out/sheet.csv", "out/sheet.obj"};
+    for (size_t i = 0; i < COUNT(logs); i++) {
+        assert_true(!mkdir(in_folder("out"), 0777) || errno == EEXIST);
+        snprintf(words, sizeof words, "skein run: --log %s: the run itself writes a file of that name into --out %s\n",
+                 in_folder(logs[i]), in_folder("out"));
+        assert_says(2, "", words, "run", s, "--out", in_folder("out"), "--log", in_folder(logs[i]));
+        assert_int_equal(count_entries(in_folder("out")), 0);
+    }
+    hash_of(SKEIN("run", s, "--out", in_folder("out"), "--log", in_folder("out/log.csv")));
+    assert_true(exists(in_folder("out/log.csv")) && exists(in_folder("out/report.json")));
+    assert_says(2, "", "skein run: --out -: a run writes many files into a folder; --json prints its report\n", "run", s,
+                "--out", "-");
 }
 
 int main(void) {
@@ -354,6 +498,9 @@ int main(void) {
         TEST(every_scene_runs),
         TEST(runs_and_threads_give_the_same_bits),
         TEST(sets_reach_what_they_name),
+        TEST(an_end_beyond_bounds_is_no_success), TEST(energy_from_nowhere_is_no_success),
+        TEST(what_was_not_solved_is_told), TEST(a_run_says_as_much_as_it_is_asked_to),
+        TEST(files_of_one_run_have_different_names),
         TEST(frames_and_their_rate_can_be_told),
         TEST(a_log_has_a_line_a_step),
         TEST(bodies_never_share_a_file),

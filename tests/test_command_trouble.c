@@ -23,7 +23,7 @@ static void a_file_in_the_way_is_told(void **state) {
     assert_says(2, "", "skein run: --out '': expected the name of a folder, up to 1023 bytes\n", "run", s, "--out", "");
     // a directory under a file's name: the run fails at its end, the other files are whole
     assert_int_equal(mkdir(in_folder("out"), 0777) || mkdir(in_folder("out/sheet.obj"), 0777), 0);
-    outcome o = SKEIN("run", s, "--out", in_folder("out"), "--quiet");
+    outcome o = SKEIN("run", s, "--out", in_folder("out"), "--no-progress");
     assert_status(o, 1);
     snprintf(words, sizeof words, "skein: %s: cannot write: it is a directory\n", in_folder("out/sheet.obj"));
     assert_string_equal(o.err, words);
@@ -34,7 +34,7 @@ static void a_file_in_the_way_is_told(void **state) {
     outcome_free(&o);
     assert_int_equal(rmdir(in_folder("out/sheet.obj")) || unlink(in_folder("out/report.json")), 0);
     assert_int_equal(mkdir(in_folder("out/report.json"), 0777), 0);
-    o = SKEIN("run", s, "--out", in_folder("out"), "--quiet");
+    o = SKEIN("run", s, "--out", in_folder("out"), "--no-progress");
     assert_status(o, 1);
     snprintf(words, sizeof words, "skein: %s: cannot write: it is a directory\n", in_folder("out/report.json"));
     assert_string_equal(o.err, words);
@@ -60,7 +60,7 @@ static void a_full_disk_leaves_nothing_half_written(void **state) {
     const char *s = tiny_scene();
     // the point cache outgrows the limit in some frame
     outcome o = SKEIN_IN((surroundings){.file_limit = 30000}, "run", s, "--out", in_folder("out"), "--frames", "400",
-                         "--quiet");
+                         "--no-progress");
     assert_status(o, 1);
     snprintf(words, sizeof words, "skein: %s: cannot write: it grew over the limit for a file's size\n",
              in_folder("out/sheet.pc2"));
@@ -77,8 +77,8 @@ static void a_full_disk_leaves_nothing_half_written(void **state) {
     outcome_free(&o);
     assert_int_equal(nftw(in_folder("out"), remove_entry, 8, FTW_DEPTH | FTW_PHYS), 0);
     // the mesh does, at the end; the rest is whole, and the report lists what there is
-    o = SKEIN_IN((surroundings){.file_limit = 2000}, "run", s, "--out", in_folder("out"), "--quiet", "--set",
-                 "output=[\"obj\"]", "--set", "bodies.1.grid=[2,2]");
+    o = SKEIN_IN((surroundings){.file_limit = 10000}, "run", s, "--out", in_folder("out"), "--no-progress", "--set",
+                 "output=[\"obj\"]", "--set", "bodies.1.grid=[2,2]", "--set", "bodies.0.grid=[20,20]");
     assert_status(o, 1);
     snprintf(words, sizeof words, "skein: %s: cannot write: it grew over the limit for a file's size\n",
              in_folder("out/sheet.obj"));
@@ -92,7 +92,7 @@ static void a_full_disk_leaves_nothing_half_written(void **state) {
     // what stood there before still stands
     write_text(in_folder("out/sheet.pc2"), "old");
     o = SKEIN_IN((surroundings){.file_limit = 30000}, "run", s, "--out", in_folder("out"), "--frames", "400",
-                 "--quiet");
+                 "--no-progress");
     assert_status(o, 1);
     outcome_free(&o);
     assert_int_equal(count_entries(in_folder("out")), 6);
@@ -113,7 +113,7 @@ static void output_that_cannot_be_printed_is_told(void **state) {
     // nobody reads: the files are there all the same
     assert_int_equal(pipe2(ends, O_CLOEXEC), 0);
     close(ends[0]);
-    o = SKEIN_IN((surroundings){.out = ends[1]}, "run", tiny_scene(), "--out", in_folder("out"), "--quiet");
+    o = SKEIN_IN((surroundings){.out = ends[1]}, "run", tiny_scene(), "--out", in_folder("out"), "--no-progress");
     assert_status(o, 1);
     assert_string_equal(o.err, "skein: cannot write to standard output: Broken pipe\n");
     assert_int_equal(count_entries(in_folder("out")), 5);
@@ -146,7 +146,7 @@ static void an_interrupted_run_writes_what_it_has(void **state) {
     for (size_t i = 0; i < COUNT(signals); i++) {
         pid_t child =
             start_skein((surroundings){0}, (const char *const[]){"run", tiny_scene(), "--out", in_folder("out"),
-                                                                 "--frames", "100000000", "--quiet", NULL});
+                                                                 "--frames", "100000000", "--no-progress", NULL});
         wait_for_part(in_folder("out"));
         kill(child, signals[i]);
         outcome o = finish_skein(child);
@@ -168,7 +168,7 @@ static void an_interrupted_run_writes_what_it_has(void **state) {
 
 /* A scene that blows up after some frames, with other folders to write to. */
 #define BLOW_UP(...)                                                                                      \
-    SKEIN("run", s, "--quiet", "--set", "method={\"type\":\"symplectic_euler\",\"substeps\":1}", "--set", \
+    SKEIN("run", s, "--no-progress", "--set", "method={\"type\":\"symplectic_euler\",\"substeps\":1}", "--set", \
           "bodies.0.stretch={\"stiffness\":1e7,\"limit\":\"infinite\",\"tether\":\"infinite\"}", __VA_ARGS__)
 
 static void a_run_that_blows_up_names_the_frame(void **state) {
@@ -180,16 +180,25 @@ static void a_run_that_blows_up_names_the_frame(void **state) {
     assert_status(o, 1);
     assert_string_equal(o.out, "");
     snprintf(words, sizeof words, "skein: %s: blew up in frame %%d: %%d of %%d particles are no longer finite", s);
-    assert_int_equal(sscanf(o.err, words, &frame, &bad, &all), 3);
+    const char *told = strstr(o.err, "skein: /");
+    assert_non_null(told);
+    assert_int_equal(sscanf(told, words, &frame, &bad, &all), 3);
+    assert_contains(told, "; set method.substeps to ");
     assert_true(frame > 2 && frame < 400 && bad > 0 && bad <= all && all == 34);
-    snprintf(words, sizeof words,
-             "more substeps or less stiffness help\nskein: the %d frames before that are kept in %s/*.failed.*\n",
-             frame - 1, in_folder("out/deeper"));
-    assert_contains(o.err, words);
+    snprintf(words, sizeof words, "\nskein: the %d frames before that are kept in %s/*.failed.*\n", frame - 1,
+             in_folder("out/deeper"));
+    assert_contains(told, words);
+    // it was foretold
+    assert_contains(o.err, "warning: ");
+    assert_contains(o.err, "symplectic_euler is stable with substeps of ");
     outcome_free(&o);
-    // a frame earlier all was well
+    // a frame earlier all was finite, but far beyond what can be
     snprintf(words, sizeof words, "%d", frame - 1);
-    hash_of(BLOW_UP("--frames", words));
+    o = BLOW_UP("--frames", words);
+    assert_status(o, 1);
+    assert_contains(o.err, "ended far beyond its bounds: an edge is stretched by ");
+    assert_contains(o.out, "state hash ");
+    outcome_free(&o);
     // and so far it is kept, under names that say what it is
     shape grid = shape_of_grid(5, 5);
     io_pc2_header header;
@@ -216,7 +225,7 @@ static void a_run_that_blows_up_names_the_frame(void **state) {
     char *text = read_text(in_folder("there/sheet.pc2"));
     assert_string_equal(text, "old");
     free(text);
-    o = SKEIN("run", s, "--out", in_folder("there"), "--quiet");
+    o = SKEIN("run", s, "--out", in_folder("there"), "--no-progress");
     assert_status(o, 0);
     outcome_free(&o);
     report = read_report(in_folder("there/report.json"));
@@ -227,7 +236,7 @@ static void a_run_that_blows_up_names_the_frame(void **state) {
 static void a_run_that_fails_at_once_leaves_nothing(void **state) {
     (void)state;
     const char *s = tiny_scene();
-    outcome o = SKEIN("run", s, "--quiet", "--frames", "4", "--out", in_folder("out/deeper"), "--set",
+    outcome o = SKEIN("run", s, "--no-progress", "--frames", "4", "--out", in_folder("out/deeper"), "--set",
                       "bodies.0.stretch={\"stiffness\":1e30,\"limit\":\"infinite\",\"tether\":\"infinite\"}", "--set",
                       "method={\"type\":\"explicit_euler\",\"substeps\":1000}");
     assert_status(o, 1);

@@ -111,10 +111,49 @@ static void flight_keeps_its_energy(void **state) {
     }
 }
 
+/* Gravity and springs, drag and things at rest give no energy; wind, what moves and what depends on t may. */
+static void what_does_work_is_known(void **state) {
+    (void)state;
+    skein_world *world = new_world("symplectic_euler", 1);
+    add_gravity(world);
+    add_moving(world, 2, 1, 3, 0, 0, 1, 2);
+    add_moving(world, 0.5, 0, -4, 2, 4, 0, 0);
+    add_spring(world, 0, 1, 100, 1);
+    OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 1)), NULL));
+    OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -9)), NULL));
+    OK(world, skein_force_add(world, "potential", SKEIN_SETTINGS(SKEIN_TEXT("energy", "dot(p, p)")), NULL));
+    assert_false(skein_world_is_driven(world));
+    OK(world, skein_set_path(world, "colliders.0.motion.velocity", (skein_value){3, {0, 1, 0}, NULL}));
+    assert_true(skein_world_is_driven(world));
+    OK(world, skein_set_path(world, "colliders.0.enabled", skein_number(0)));
+    assert_false(skein_world_is_driven(world));
+    OK(world, skein_force_add(world, "wind", SKEIN_SETTINGS(SKEIN_VEC3("force", 1, 0, 0)), NULL));
+    assert_true(skein_world_is_driven(world));
+    OK(world, skein_set_path(world, "forces.3.enabled", skein_number(0)));
+    assert_false(skein_world_is_driven(world));
+    OK(world, skein_set_path(world, "forces.2.energy", (skein_value){0, {0, 0, 0}, "dot(p, p) * cos(t)"}));
+    assert_true(skein_world_is_driven(world));
+    OK(world, skein_set_path(world, "forces.2.enabled", skein_number(0)));
+    assert_false(skein_world_is_driven(world));
+    // one of the constraint's two rest lengths is at another time
+    const uint32_t ends[] = {0, 1};
+    OK(world, skein_constraint_add(world, "formula", ends, 1,
+                                   SKEIN_SETTINGS(SKEIN_TEXT("constraint", "length(p0 - p1) - 1 - sin(t)"),
+                                                  SKEIN_REAL("stiffness", 10)),
+                                   NULL));
+    assert_true(skein_world_is_driven(world));
+    OK(world, skein_set_path(world, "constraints.1.enabled", skein_number(0)));
+    assert_false(skein_world_is_driven(world));
+    add_moving(world, 0, 5, 5, 5, 1, 0, 0);
+    assert_true(skein_world_is_driven(world));
+    skein_world_destroy(world);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sums_are_those_of_the_particles),
         cmocka_unit_test(of_a_hundred_edges_one_stretches_more),
+        cmocka_unit_test(what_does_work_is_known),
         cmocka_unit_test(a_sheet_holds_its_energy_at_any_resolution),
         cmocka_unit_test(what_is_lost_is_counted),
         cmocka_unit_test(flight_keeps_its_energy),

@@ -420,7 +420,7 @@ static void close_window(void) {
  * scene by itself, and later from a place of its own. */
 static void agree(const char *const *sets, int frame, const char *numbered) {
     const char *arguments[16] = {SKEIN_SOURCE_DIR "/scenes/drape.json", "--size", "640x360", "--paused", "--no-panels"};
-    const char *render[16] = {"render", "scenes/drape.json",  "--size", "640x360", "--quiet",
+    const char *render[16] = {"render", "scenes/drape.json",  "--size", "640x360", "--no-progress",
                               "-o",     in_folder("off.png"), "--frame"};
     char number[16], name[64];
     size_t count = 5, render_count = 8;

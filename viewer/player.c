@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/advice.h"
+
 /* ---- Opening ---- */
 
 static void report_fault(void *user, const skein_error *error) {
@@ -38,6 +40,15 @@ static bool note_pins(viewer_player *player) {
     return player->pins != NULL;
 }
 
+static void say_advice(void *user, const char *line) {
+    const viewer_reporter *reporter = user;
+    reporter->say(reporter->user, SKEIN_LOG_WARNING, line);
+}
+
+void viewer_player_advise(viewer_player *player) {
+    io_advise(player->world, player->dt, (io_warnings){say_advice, &player->reporter}, NULL);
+}
+
 /* Fills in scene, world and all that belongs to them; `player` has path, changes and reporter. */
 static bool load(viewer_player *player, const viewer_reading *reading) {
     io_faults faults = {report_fault, &player->reporter, 0};
@@ -55,6 +66,7 @@ static bool load(viewer_player *player, const viewer_reading *reading) {
     const render_view *view = io_scene_view(player->scene);
     player->view = view ? *view : render_view_default();
     player->steps = io_scene_steps_per_frame(&player->settings, &player->dt);
+    viewer_player_advise(player);
     player->picture = render_world_frame_create(&error);
     bool good = player->picture && viewer_history_begin(&player->history, player->world) && note_pins(player);
     if (good) viewer_history_keep(&player->history, player->world, 0);

@@ -59,6 +59,8 @@ void viewer_player_close(viewer_player *player); /* one that never was open is a
 bool viewer_player_profile(viewer_player *player, bool *new_frame, skein_pass *passes, size_t most, size_t *count);
 /* One step; `new_frame` tells whether it completed a frame. False after a reported fault. */
 bool viewer_player_step(viewer_player *player, bool *new_frame);
+/* Says what the world will suffer from as it is now: a step that is not stable, rounding (io/advice.h). */
+void viewer_player_advise(viewer_player *player);
 /* As it was built. */
 void viewer_player_reset(viewer_player *player);
 /* As it was in a frame that is kept. */

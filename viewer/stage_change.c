@@ -63,6 +63,7 @@ void viewer_stage_method(viewer_stage *stage, size_t side, const char *name) {
         snprintf(set, sizeof set, "method.type=%.40s", kind->name);
         keep(stage, side, set, NULL, NULL);
         viewer_note(stage, "method %s", kind->name);
+        viewer_player_advise(&stage->sides[side]);
     }
     stage->facts = stage->dirty = true;
 }

@@ -669,6 +669,8 @@ typedef struct skein_statistics {
     size_t solver_iterations; /* of conjugate gradients */
     size_t solver_factors;    /* that a sparse solver was asked for */
     size_t solver_failures;   /* of these, and of its solves: the solve went on with each particle's own block */
+    /* of all steps since the beginning or the last skein_world_reset() */
+    uint64_t all_unsolved, all_solver_failures;
     double max_penetration;   /* m, below a collider's thickness */
     size_t contacts;          /* pairs of a particle and a collider that touch */
     size_t particles, held_particles, constraints;
@@ -681,6 +683,10 @@ typedef struct skein_statistics {
 
 /* Measures the present state; costs about one step, and scratch memory for the edges. Fails with SKEIN_ERROR_MEMORY. */
 skein_status skein_world_statistics(skein_world *world, skein_statistics *statistics);
+/* Whether anything but the method's own errors may give the world energy, as it stands: wind and steering, a field of
+ * force, an energy or a constraint that depends on t, a collider or a held particle that moves. Where nothing does,
+ * kinetic, potential and elastic energy together never grow. Costs two measurements of energy. */
+bool skein_world_is_driven(skein_world *world);
 /* Only the hash. */
 uint64_t skein_world_hash(const skein_world *world);
 

@@ -73,6 +73,7 @@ const sk_force_type sk_drag = {
              sizeof fields / sizeof *fields, sizeof(drag_params)},
     .domain = SK_OVER_PARTICLES,
     .on_velocity = true,
+    .passive = true,
     .kernel = {SK_EACH_ISA(kernel)},
     .plain = plain,
     .resistance = {SK_EACH_ISA(resistance)},

@@ -23,6 +23,7 @@ typedef struct sk_force_type {
     skein_kind kind;
     sk_domain domain;
     sk_deed deed;
+    bool passive;     /* it takes energy, as the drag of still air does, and never gives any */
     bool once;        /* what it bounds is bounded between kick and drift only, and not at the end of a substep */
     bool sets;        /* its kernel minds the row's `sets`: it can be the first to write F */
     bool on_velocity; /* it depends on velocities, */

@@ -71,3 +71,46 @@ void sk_world_measure_energy(const skein_world *world, skein_statistics *statist
                 batch_energy(batch, world->time, world->particles.vector[SK_X], &statistics->guarded);
     }
 }
+
+/* ---- what gives it energy ---- */
+
+static bool collider_moves(const sk_collider_common *common, bool deforms) {
+    const double *v = common->velocity;
+    return deforms || v[0] != 0 || v[1] != 0 || v[2] != 0 || common->spin != 0;
+}
+
+static bool held_particle_moves(const skein_world *world) {
+    const sk_particles *all = &world->particles;
+    for (size_t i = 0; i < all->count; i++) {
+        uint32_t slot = all->slot_of[i];
+        sk_vec4 v = all->vector[SK_V][slot];
+        if (!(all->vector[SK_X][slot].w > 0) && (v.x != 0 || v.y != 0 || v.z != 0)) return true;
+    }
+    return false;
+}
+
+/* Whether energies are others at another time, with everything in the same place. */
+static bool energy_depends_on_time(skein_world *world) {
+    const double later = 0.37; // of no period that anybody would choose
+    skein_statistics now = {0}, then = {0};
+    double time = world->time;
+    sk_world_measure_energy(world, &now);
+    world->time = time + later;
+    sk_world_measure_energy(world, &then);
+    world->time = time;
+    return now.potential_energy != then.potential_energy || now.elastic_energy != then.elastic_energy;
+}
+
+bool skein_world_is_driven(skein_world *world) {
+    const sk_rules *rules = &world->rules;
+    for (size_t i = 0; i < rules->forces.count; i++) {
+        const sk_force *force = rules->forces.data[i];
+        if (*force->enabled && !force->type->potential && !force->type->passive) return true;
+    }
+    for (size_t i = 0; i < rules->colliders.count; i++) {
+        const sk_collider *collider = rules->colliders.data[i];
+        if (collider->common->enabled && collider_moves(collider->common, collider->type->deforms)) return true;
+    }
+    if (sk_world_fetch(world) || sk_world_arrange(world, NULL)) return true; // it cannot be said
+    return held_particle_moves(world) || energy_depends_on_time(world);
+}

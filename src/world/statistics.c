@@ -107,6 +107,8 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     statistics->solver_iterations = (size_t)world->cell[SK_CELL_CG_TURNS];
     statistics->solver_factors = (size_t)world->cell[SK_CELL_FACTORS];
     statistics->solver_failures = (size_t)world->cell[SK_CELL_FAILURES];
+    statistics->all_unsolved = world->unsolved;
+    statistics->all_solver_failures = world->solver_failures;
     statistics->particles = all->count - all->out_count;
     status = sk_world_arrange(world, error); // the slots of new rules may not be known yet
     skein_error ignored; // a name that no body has is a step's to tell

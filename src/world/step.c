@@ -205,6 +205,8 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
     if (status || arrived) return status ? status : arrived;
     world->time += dt;
     world->steps++;
+    world->unsolved += (uint64_t)world->cell[SK_CELL_UNSOLVED];
+    world->solver_failures += (uint64_t)world->cell[SK_CELL_FAILURES];
     world->substeps += (uint64_t)world->method->substeps(world->method_params);
     if (!world->device) sk_world_tidy(world);
     return SKEIN_OK;
@@ -278,7 +280,7 @@ skein_status skein_world_reset(skein_world *world) {
     world->pins.count = 0;
     stop_colliders(world);
     world->time = 0;
-    world->steps = world->substeps = 0;
+    world->steps = world->substeps = world->unsolved = world->solver_failures = 0;
     return SKEIN_OK;
 }
 

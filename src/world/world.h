@@ -153,6 +153,7 @@ struct skein_world {
     uint32_t *led_at;   /* of each particle its place in `led`, while motions are asked */
     double time;
     uint64_t steps, substeps;
+    uint64_t unsolved, solver_failures; /* of all steps, where a method solves */
     double first_energy;        /* J, when the first step began */
     double cell[SK_CELL_COUNT]; /* of the last step */
     sk_matrix matrix;           /* where a plan factors one, and the solver */

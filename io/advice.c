@@ -1,0 +1,96 @@
+#include "io/advice.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+static double substeps_of(const skein_world *world) {
+    skein_value substeps = skein_number(1);
+    skein_get_path(world, "method.substeps", &substeps);
+    return substeps.number[0];
+}
+
+static const char *method_of(const skein_world *world) {
+    return skein_object_kind(world, skein_object_at(world, SKEIN_METHOD, 0))->name;
+}
+
+/* ---- stability ---- */
+
+/* The longest substep; INFINITY: any. Negative where it could not be found. */
+static double stable_substep(skein_world *world, double dt) {
+    skein_stability s;
+    // most methods have no limit, which no search is needed to know
+    const skein_stability stiff = {.modes = {{1e3 * substeps_of(world) / dt, 0}}, .mode_count = 1};
+    if (isinf(skein_stable_substep(method_of(world), &stiff))) return INFINITY;
+    return skein_world_stability(world, &s) ? -1 : skein_stable_substep(method_of(world), &s);
+}
+
+static double needed_for(double dt, double most) {
+    if (most < 0) return 0;
+    return isinf(most) ? 1 : most > 0 ? ceil(dt / most) : (double)INFINITY;
+}
+
+double io_substeps_needed(skein_world *world, double dt) {
+    return needed_for(dt, stable_substep(world, dt));
+}
+
+static size_t advise_of_instability(skein_world *world, double dt, io_warnings warnings, double *needed) {
+    double most = stable_substep(world, dt), substep = dt / substeps_of(world);
+    if (needed) *needed = needed_for(dt, most);
+    if (most < 0) {
+        io_warn(warnings, "whether the step is stable could not be found: %s", skein_world_error(world)->message);
+        return 1;
+    }
+    if (substep <= most) return 0;
+    if (most > 0)
+        io_warn(warnings,
+                "%s is stable with substeps of %.3g ms at most, and these are %.3g ms: set method.substeps to %.0f or "
+                "more",
+                method_of(world), 1e3 * most, 1e3 * substep, ceil(dt / most));
+    else io_warn(warnings, "undamped springs grow under %s at any step: take another method", method_of(world));
+    return 1;
+}
+
+/* ---- rounding ---- */
+
+/* The acceleration of gravity, m/s2. */
+static double gravity_of(const skein_world *world) {
+    for (size_t i = 0; i < skein_object_count(world, SKEIN_FORCE); i++) {
+        skein_handle force = skein_object_at(world, SKEIN_FORCE, i);
+        skein_value g;
+        if (!strcmp(skein_object_kind(world, force)->name, "gravity") && !skein_get(world, force, "acceleration", &g))
+            return sqrt(g.number[0] * g.number[0] + g.number[1] * g.number[1] + g.number[2] * g.number[2]);
+    }
+    return 0;
+}
+
+/* The largest coordinate. */
+static double extent_of(const skein_world *world) {
+    skein_view view = skein_position_view(world);
+    double most = 0;
+    for (size_t i = 0; i < view.count; i++)
+        for (size_t k = 0; k < 3; k++) most = fmax(most, fabs((double)view.xyzw[4 * (size_t)view.slot_of[i] + k]));
+    return most;
+}
+
+static size_t advise_of_rounding(const skein_world *world, double dt, io_warnings warnings) {
+    // measured on a cube in a bowl: at 0.05 it rests 0.1 mm beside where it does in double, at 0.2 15 mm, at 0.8 45 mm
+    const double tolerable = 0.1;
+    const double epsilon = sizeof(skein_real) == sizeof(double) ? DBL_EPSILON : (double)FLT_EPSILON;
+    double h = dt / substeps_of(world), g = gravity_of(world), extent = extent_of(world);
+    const char *method = method_of(world);
+    bool moves_positions = !strcmp(method, "xpbd") || !strcmp(method, "pbd");
+    if (!moves_positions || g <= 0 || epsilon / 2 * extent <= tolerable * g * h * h) return 0;
+    double least = sqrt(epsilon / 2 * extent / (tolerable * g));
+    io_warn(
+        warnings,
+        "in a substep of %.3g ms gravity moves things by hardly more than positions are rounded to at %.3g m: small "
+        "forces get lost; set method.substeps to %.0f or less, or build with SKEIN_DOUBLE",
+        1e3 * h, extent, fmax(1, floor(dt / least)));
+    return 1;
+}
+
+size_t io_advise(skein_world *world, double dt, io_warnings warnings, double *needed) {
+    size_t count = advise_of_instability(world, dt, warnings, needed);
+    return count + advise_of_rounding(world, dt, warnings);
+}
