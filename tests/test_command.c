@@ -213,6 +213,83 @@ static void scenes_come_from_standard_input(void **state) {
     outcome_free(&o);
 }
 
+/* Made from the tables, so that nothing can be missing; the shell itself says whether it can be read. */
+static void shells_complete_every_option(void **state) {
+    (void)state;
+    static const char *const shells[] = {"bash", "zsh", "fish"};
+    static const char *const options[] = {"most", "frames", "device", "no-progress", "json", "hessian"};
+    outcome help = SKEIN("--help");
+    for (size_t i = 0; i < COUNT(shells); i++) {
+        char path[600], line[700];
+        outcome o = SKEIN("completion", shells[i]);
+        assert_status(o, 0);
+        for (size_t k = 0; k < COUNT(options); k++) assert_contains(o.out, options[k]);
+        for (const char *at = help.out; (at = strstr(at, "\n  ")) != NULL; at++) {
+            char command[40] = "";
+            if (sscanf(at + 3, "%39[a-z]", command) == 1 && strcmp(command, "skein") != 0) assert_contains(o.out, command);
+        }
+        snprintf(path, sizeof path, "%s", in_folder(shells[i]));
+        write_text(path, o.out);
+        snprintf(line, sizeof line, "if command -v %s >/dev/null; then %s -n '%s'; fi", shells[i], shells[i], path);
+        assert_int_equal(system(line), 0);
+        outcome_free(&o);
+    }
+    outcome_free(&help);
+    // what bash makes of it
+    char line[1500];
+    snprintf(line, sizeof line,
+             "if command -v bash >/dev/null; then PATH='%.*s':$PATH bash -c '. %s; COMP_WORDS=(skein run --devi); "
+             "COMP_CWORD=2; _skein 2>/dev/null; [ \"${COMPREPLY[*]}\" = --device ] || exit 1; "
+             "COMP_WORDS=(skein run --device g); COMP_CWORD=3; _skein; [ \"${COMPREPLY[*]}\" = gpu ] || exit 2; "
+             "COMP_WORDS=(skein check pendu); COMP_CWORD=2; _skein 2>/dev/null; [ \"${COMPREPLY[0]}\" = pendulum ]'; fi",
+             (int)(strrchr(SKEIN_COMMAND, '/') - SKEIN_COMMAND), SKEIN_COMMAND, in_folder("bash"));
+    assert_int_equal(system(line), 0);
+    assert_says(2, "", "skein completion: 'csh': expected bash, zsh or fish\n", "completion", "csh");
+    outcome o = SKEIN("man");
+    assert_status(o, 0);
+    assert_contains(o.out, ".SH NAME\nskein \\- ");
+    assert_contains(o.out, "\\-\\-no\\-progress\n");
+    assert_contains(o.out, ".SS completion\n");
+    outcome_free(&o);
+}
+
+static void tables_are_there_for_programs(void **state) {
+    (void)state;
+    outcome o = SKEIN("list", "--json");
+    assert_status(o, 0);
+    json_t *root = json_loads(o.out, 0, NULL);
+    assert_non_null(root);
+    for (size_t i = 0; skein_kind_at(SKEIN_METHOD, i); i++) {
+        const json_t *kind = json_array_get(json_object_get(root, "methods"), i);
+        assert_string_equal(text_of(kind, "name"), skein_kind_at(SKEIN_METHOD, i)->name);
+        assert_int_equal(json_array_size(json_object_get(kind, "fields")), skein_kind_at(SKEIN_METHOD, i)->field_count);
+    }
+    json_decref(root);
+    outcome_free(&o);
+    o = SKEIN("list", "gravity", "--json");
+    root = json_loads(o.out, 0, NULL);
+    const json_t *field = json_array_get(
+        json_object_get(json_array_get(json_object_get(root, "forces"), 0), "fields"), 0);
+    assert_string_equal(text_of(field, "name"), "acceleration");
+    assert_string_equal(text_of(field, "type"), "vec3");
+    assert_string_equal(text_of(field, "unit"), "m/s2");
+    assert_true(json_number_value(json_array_get(json_object_get(field, "default"), 1)) == -9.81);
+    json_decref(root);
+    outcome_free(&o);
+    o = SKEIN("check", "pendulum", "tests/bad/scenes/fps_zero.json", "--json");
+    assert_status(o, 2);
+    root = json_loads(o.out, 0, NULL);
+    assert_int_equal(json_array_size(root), 2);
+    assert_true(json_is_true(json_object_get(json_array_get(root, 0), "good")));
+    assert_true(number_of(json_array_get(root, 0), "particles") >= 2);
+    assert_true(json_is_false(json_object_get(json_array_get(root, 1), "good")));
+    assert_contains(json_string_value(json_array_get(json_object_get(json_array_get(root, 1), "faults"), 0)),
+                    "fps: 0 is out of range");
+    json_decref(root);
+    outcome_free(&o);
+    assert_says(0, "", "", "check", "pendulum", "--quiet");
+}
+
 static void explain_shows_every_kind_of_row(void **state) {
     (void)state;
     static const char *const kinds[] = {"combine",    "grid",       "field",     "neighbour", "force",
@@ -367,7 +444,8 @@ int main(void) {
 #define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
         TEST(wrong_arguments_are_told),        TEST(help_is_there_when_asked_for),    TEST(check_counts_what_is_there),
         TEST(check_takes_many_scenes), TEST(scenes_have_names), TEST(meshes_are_scenes),
-        TEST(scenes_come_from_standard_input),
+        TEST(scenes_come_from_standard_input), TEST(shells_complete_every_option),
+        TEST(tables_are_there_for_programs),
         TEST(explain_shows_every_kind_of_row), TEST(list_shows_every_kind_and_field), TEST(progress_is_shown),
     };
     return cmocka_run_group_tests_name("command", tests, NULL, NULL);
