@@ -81,7 +81,7 @@ SK_INLINE void put_all(const by_hand_input *in, size_t e, matrix (*h)[3], int ed
 
 void SK_KERNEL(neo_hookean)(const by_hand_input *in) {
     const sk_wide one = sk_splat(1);
-    for (size_t n = 0; n < in->count; n += SK_LANES) {
+    for (size_t n = 0; n < in->count; n += SK_PART) {
         sk_wide3 p0 = at(in, 0, n), e[3], g[3], m[3], d[3], gs[3], ms[3];
         sk_wide mm[3][3];
         matrix h[3][3];
@@ -130,7 +130,7 @@ void SK_KERNEL(neo_hookean)(const by_hand_input *in) {
 
 void SK_KERNEL(stvk)(const by_hand_input *in) {
     const sk_wide half = sk_splat((real)0.5);
-    for (size_t n = 0; n < in->count; n += SK_LANES) {
+    for (size_t n = 0; n < in->count; n += SK_PART) {
         sk_wide3 p0 = at(in, 0, n), a = minus(at(in, 1, n), p0);
         sk_wide3 b = minus(at(in, 2, n), p0);
         sk_wide by_f[2] = {parameter(in, 0, n), parameter(in, 2, n)};

@@ -41,7 +41,7 @@ SK_INLINE void give_all(const by_hand_input *in, size_t e, const sk_wide3 *g, in
     }
 }
 void SK_KERNEL(distance)(const by_hand_input *in) {
-    for (size_t e = 0; e < in->count; e += SK_LANES) {
+    for (size_t e = 0; e < in->count; e += SK_PART) {
         sk_wide3 d = minus(at(in, 1, e), at(in, 0, e));
         sk_wide length = sk_wide_sqrt(sk_dot_wide(d, d));
         put(in, 0, e, length - parameter(in, 0, e));
@@ -51,7 +51,7 @@ void SK_KERNEL(distance)(const by_hand_input *in) {
 }
 
 void SK_KERNEL(dihedral)(const by_hand_input *in) {
-    for (size_t i = 0; i < in->count; i += SK_LANES) {
+    for (size_t i = 0; i < in->count; i += SK_PART) {
         sk_wide3 p0 = at(in, 0, i), e = minus(at(in, 1, i), p0);
         sk_wide3 a = minus(at(in, 2, i), p0), b = minus(at(in, 3, i), p0);
         sk_wide3 left = cross(e, a), right = cross(b, e);
@@ -67,7 +67,7 @@ void SK_KERNEL(dihedral)(const by_hand_input *in) {
 }
 
 void SK_KERNEL(volume)(const by_hand_input *in) {
-    for (size_t e = 0; e < in->count; e += SK_LANES) {
+    for (size_t e = 0; e < in->count; e += SK_PART) {
         sk_wide3 p0 = at(in, 0, e), a = minus(at(in, 1, e), p0);
         sk_wide3 b = minus(at(in, 2, e), p0), c = minus(at(in, 3, e), p0);
         sk_wide sixth = sk_splat((real)(1.0 / 6));
@@ -79,7 +79,7 @@ void SK_KERNEL(volume)(const by_hand_input *in) {
 }
 
 void SK_KERNEL(neo_hookean)(const by_hand_input *in) {
-    for (size_t e = 0; e < in->count; e += SK_LANES) {
+    for (size_t e = 0; e < in->count; e += SK_PART) {
         sk_wide3 p0 = at(in, 0, e), edge[3], f[3], p[3], g[3];
         sk_wide d[3][3], one = sk_splat(1), half = sk_splat((real)0.5);
         for (int i = 0; i < 9; i++) d[i / 3][i % 3] = parameter(in, i, e);
@@ -97,7 +97,7 @@ void SK_KERNEL(neo_hookean)(const by_hand_input *in) {
 }
 
 void SK_KERNEL(stvk)(const by_hand_input *in) {
-    for (size_t e = 0; e < in->count; e += SK_LANES) {
+    for (size_t e = 0; e < in->count; e += SK_PART) {
         sk_wide3 p0 = at(in, 0, e), a = minus(at(in, 1, e), p0);
         sk_wide3 b = minus(at(in, 2, e), p0);
         sk_wide d0 = parameter(in, 0, e), d1 = parameter(in, 1, e), d2 = parameter(in, 2, e);

@@ -113,15 +113,7 @@ void bench_tape_free(bench_tape *t) {
 void bench_tape_run(void *data) {
     const bench_tape *t = data;
     const bench_elements *e = t->elements;
-    const sk_tape_kernels *kernels = sk_tape_kernels_of[sk_isa_choose()];
-    static sk_wide registers[SK_TAPE_MEMORY / sizeof(sk_wide)];
-    sk_tape_verdict verdict;
-    size_t block = SK_LANES * t->tape.wides;
-    kernels->begin(&t->tape, &e->input, registers);
-    for (size_t i = 0; i < e->count; i += block) {
-        kernels->load(&t->tape, &e->input, i, e->count - i < block ? e->count - i : block, registers);
-        kernels->run(&t->tape, registers, t->tape.wides, &verdict);
-    }
+    sk_tape_kernels_of[sk_isa_choose()]->work(&t->tape, &e->input, 0, e->count);
 }
 
 /* ---- by hand ---- */

@@ -56,13 +56,13 @@ SK_INLINE void load(lanes *e, const by_hand_input *in, size_t n, int particles, 
 #include "emitted/second_stvk.h"
 #undef EMITTED
 
-#define RUN(name_, particles_, parameters_)                \
-    void SK_KERNEL(name_)(const by_hand_input *in) {       \
-        for (size_t n = 0; n < in->count; n += SK_LANES) { \
-            lanes e;                                       \
-            load(&e, in, n, particles_, parameters_);      \
-            formula_##name_(&e, in, n);                    \
-        }                                                  \
+#define RUN(name_, particles_, parameters_)               \
+    void SK_KERNEL(name_)(const by_hand_input *in) {      \
+        for (size_t n = 0; n < in->count; n += SK_PART) { \
+            lanes e;                                      \
+            load(&e, in, n, particles_, parameters_);     \
+            formula_##name_(&e, in, n);                   \
+        }                                                 \
     }
 RUN(neo_hookean, 4, 10)
 RUN(stvk, 3, 5)

@@ -84,14 +84,14 @@ SK_INLINE void store(lanes *e, const by_hand_input *in, size_t i, int particles)
 #include "emitted/stvk.h"
 #undef EMITTED
 
-#define RUN(name_, particles_, parameters_)                \
-    void SK_KERNEL(name_)(const by_hand_input *in) {       \
-        for (size_t i = 0; i < in->count; i += SK_LANES) { \
-            lanes e;                                       \
-            load(&e, in, i, particles_, parameters_);      \
-            formula_##name_(&e);                           \
-            store(&e, in, i, particles_);                  \
-        }                                                  \
+#define RUN(name_, particles_, parameters_)               \
+    void SK_KERNEL(name_)(const by_hand_input *in) {      \
+        for (size_t i = 0; i < in->count; i += SK_PART) { \
+            lanes e;                                      \
+            load(&e, in, i, particles_, parameters_);     \
+            formula_##name_(&e);                          \
+            store(&e, in, i, particles_);                 \
+        }                                                 \
     }
 RUN(distance, 2, 1)
 RUN(dihedral, 4, 1)

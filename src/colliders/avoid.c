@@ -15,11 +15,11 @@ void SK_KERNEL(avoid)(sk_run *run, const sk_row *row, size_t begin, size_t end) 
     real clearance = (real)(row->coefficient[1] + collider->common->thickness),
          dv = (real)(row->dt * row->coefficient[2]);
     sk_wide one = sk_splat(1), two = sk_splat(2);
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
-        sk_wide4 v = sk_load_block(run->vector[SK_V], slot, packed);
-        sk_wide4 s = sk_load_block(run->vector[row->dst], slot, packed);
+        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
+        sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
+        sk_wide4 s = sk_load_part(run->vector[row->dst], slot, packed);
         sk_mask moved = sk_lanes_between(slot, row->group->first_slot, row->group->end_slot);
         for (int look = 1; look <= 2; look++) {
             real ahead = (real)(0.5 * look * row->coefficient[0]);
@@ -29,10 +29,12 @@ void SK_KERNEL(avoid)(sk_run *run, const sk_row *row, size_t begin, size_t end) 
             sk_mask near = moved & sk_more(sk_splat(clearance), contact.distance);
             if (!sk_any(near)) continue;
             sk_wide k = one - contact.distance / clearance;
-            k = sk_keep(near, dv * sk_select(sk_more(k, two), two, k));
-            s.x += k * contact.normal.x, s.y += k * contact.normal.y, s.z += k * contact.normal.z;
+            k = dv * sk_select(sk_more(k, two), two, k);
+            s.x = sk_plus_where(near, s.x, k * contact.normal.x);
+            s.y = sk_plus_where(near, s.y, k * contact.normal.y);
+            s.z = sk_plus_where(near, s.z, k * contact.normal.z);
         }
-        sk_store_block(run->vector[row->dst], slot, packed, s);
+        sk_store_part(run->vector[row->dst], slot, packed, s);
     }
 }
 

@@ -24,19 +24,15 @@ typedef struct caster {
 
 /* The signed distances at t + step/16, t + 2 step/16, ... t + step. */
 static void probe_way(caster *c, double t, double step, double distance[SK_LANES]) {
-    sk_wide3 p = {{0}, {0}, {0}};
+    real p[3][SK_LANES];
     for (int i = 0; i < SK_LANES; i++) {
         double at = t + step * (i + 1) / SK_LANES;
-        p.x[i] = (real)(c->origin[0] + at * c->along[0]);
-        p.y[i] = (real)(c->origin[1] + at * c->along[1]);
-        p.z[i] = (real)(c->origin[2] + at * c->along[2]);
+        for (int k = 0; k < 3; k++) p[k][i] = (real)(c->origin[k] + at * c->along[k]);
     }
-    sk_contact contact;
-    c->collider->type->probe[0](c->collider->params, &c->pose, &p, &contact);
+    sk_sixteen_contacts contact;
+    sk_probe_sixteen_of[0](c->collider, &c->pose, p, &contact);
     for (int i = 0; i < SK_LANES; i++) distance[i] = (double)contact.distance[i];
-    c->normal[0] = (double)contact.normal.x[SK_LANES - 1];
-    c->normal[1] = (double)contact.normal.y[SK_LANES - 1];
-    c->normal[2] = (double)contact.normal.z[SK_LANES - 1];
+    for (int k = 0; k < 3; k++) c->normal[k] = (double)contact.normal[k][SK_LANES - 1];
 }
 
 static double probe_at(caster *c, double t) {

@@ -1,7 +1,7 @@
 /* Colliders: solid shapes that particles may not enter, and how contact answers.
  *
  * A *type* is one file: its fields, where it stands, and `probe`, the signed distance and unit normal
- * of sixteen particles. What contact does is the same for all types (contact.c), in the four kernels
+ * of many particles. What contact does is the same for all types (contact.c), in the four kernels
  * that methods put into their plans. Particles touch when their distance is under the thickness. */
 #ifndef SK_COLLIDERS_COLLIDER_H
 #define SK_COLLIDERS_COLLIDER_H
@@ -22,7 +22,7 @@ typedef struct sk_pose {
     double time;      /* s */
 } sk_pose;
 
-/* Of sixteen particles. */
+/* Of as many particles as a vector has. */
 typedef struct sk_contact {
     sk_wide3 normal;  /* unit, out of the solid */
     sk_wide distance; /* to the surface, negative inside */
@@ -51,7 +51,7 @@ typedef struct sk_collider_type {
     void (*turn)(const void *params, double rotation[9]);
     /* The collider's mass, which then says how particles bounce, or 0; NULL: it has none. */
     double (*mass)(const void *params);
-    /* Distance and normal of sixteen particles; a version for each instruction set. */
+    /* Distance and normal of a vector of particles; a version for each instruction set, which its own kernels call. */
     sk_probe *probe[SK_ISA_COUNT];
     bool deforms; /* its surface moves by itself, too */
     /* Whether a value at x had to be guarded (formula/graph.h): for the statistics; NULL: there is nothing to guard. */
@@ -128,6 +128,14 @@ void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4
 /* How many of the free particles had to be guarded against at the present state. */
 size_t sk_collider_count_guarded(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
                                  size_t particle_count);
+
+/* Sixteen points' distances and normals, from where that is no matter of kernels: x, y and z in three rows. */
+typedef struct sk_sixteen_contacts {
+    real normal[3][SK_LANES], distance[SK_LANES];
+} sk_sixteen_contacts;
+typedef void sk_probe_sixteen(const sk_collider *collider, const sk_pose *pose, real p[3][SK_LANES],
+                              sk_sixteen_contacts *contacts);
+extern sk_probe_sixteen *const sk_probe_sixteen_of[SK_ISA_COUNT];
 
 /* The same for points anywhere, 3 numbers each; distances and normals may be NULL. */
 void sk_collider_probe_points(const sk_collider *collider, double time, sk_isa isa, size_t count, const double *points,

@@ -19,7 +19,7 @@
  * textbook's, which cancels all of F.n < 0 while it touches: its cubes hop.
  *
  * Position methods say the same with moves: friction takes up to mu times the push out.
- * Sixteen particles at a time; lanes that do not touch are masked out. */
+ * Many particles at a time; lanes that do not touch are masked out. */
 #include "colliders/collider.h"
 
 #include <math.h>
@@ -31,10 +31,11 @@ SK_KERNELS(sk_row_kernel, contact_force);
 SK_KERNELS(sk_row_kernel, contact_impulse);
 SK_KERNELS(sk_row_kernel, contact_push);
 SK_KERNELS(sk_row_kernel, contact_settle);
+SK_KERNELS(sk_probe_sixteen, probe_sixteen);
 
 #ifdef SK_ISA
 
-/* Sixteen particles near a collider. */
+/* A part's particles near a collider. */
 typedef struct encounter {
     sk_wide4 x;
     sk_contact contact;
@@ -64,10 +65,10 @@ SK_INLINE sk_wide share_of(sk_wide length, sk_wide most) {
     return sk_select(sk_more(length, most), most / length, sk_splat(1));
 }
 
-/* Probes a block; false where nobody touches. */
+/* Probes a part of a block; false where nobody touches. */
 SK_INLINE bool meet(sk_run *run, const sk_row *row, const sk_pose *pose, size_t slot, encounter *e) {
     const sk_collider *collider = row->rule;
-    e->x = sk_load_block(run->vector[SK_X], slot, slot < row->packed);
+    e->x = sk_load_part(run->vector[SK_X], slot, slot < row->packed);
     sk_wide3 p = three(e->x);
     collider->type->probe[SK_THIS_ISA](collider->params, pose, &p, &e->contact);
     // rounding must not break a resting contact: forces and velocities look a little beyond the thickness
@@ -89,12 +90,12 @@ SK_INLINE bool meet(sk_run *run, const sk_row *row, const sk_pose *pose, size_t 
     return true;
 }
 
-/* Adds `change` to a block of dst in the lanes of the mask. */
+/* Adds `change` to a part of dst in the lanes of the mask. */
 SK_INLINE void apply(sk_run *run, const sk_row *row, size_t slot, sk_wide4 old, sk_mask mask, sk_wide3 change) {
-    old.x = sk_select(mask, old.x + change.x, old.x);
-    old.y = sk_select(mask, old.y + change.y, old.y);
-    old.z = sk_select(mask, old.z + change.z, old.z);
-    sk_store_block(run->vector[row->dst], slot, slot < row->packed, old);
+    old.x = sk_plus_where(mask, old.x, change.x);
+    old.y = sk_plus_where(mask, old.y, change.y);
+    old.z = sk_plus_where(mask, old.z, change.z);
+    sk_store_part(run->vector[row->dst], slot, slot < row->packed, old);
 }
 
 /* Speed after a bounce over speed before: of a collider with a mass (m - M)/(m + M), but never inwards. */
@@ -110,10 +111,10 @@ void SK_KERNEL(contact_force)(sk_run *run, const sk_row *row, size_t begin, size
     sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
     bool by_mass = sk_collider_mass(collider) > 0;
     encounter e;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         if (!meet(run, row, &pose, slot, &e)) continue;
-        sk_wide4 f = sk_load_block(run->vector[row->dst], slot, slot < row->packed);
-        sk_wide4 v = sk_load_block(run->vector[SK_V], slot, slot < row->packed);
+        sk_wide4 f = sk_load_part(run->vector[row->dst], slot, slot < row->packed);
+        sk_wide4 v = sk_load_part(run->vector[SK_V], slot, slot < row->packed);
         sk_wide3 force_t, slide;
         sk_wide inward = split(three(f), e.contact.normal, &force_t);
         sk_wide leaving = split(minus(three(v), e.surface), e.contact.normal, &slide);
@@ -133,9 +134,9 @@ void SK_KERNEL(contact_impulse)(sk_run *run, const sk_row *row, size_t begin, si
     const sk_collider *collider = row->rule;
     sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
     encounter e;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         if (!meet(run, row, &pose, slot, &e)) continue;
-        sk_wide4 v = sk_load_block(run->vector[row->dst], slot, slot < row->packed);
+        sk_wide4 v = sk_load_part(run->vector[row->dst], slot, slot < row->packed);
         sk_wide3 slide;
         sk_wide approach = split(minus(three(v), e.surface), e.contact.normal, &slide);
         sk_wide bounce = (1 + restitution_of(collider, v.w)) * -approach;
@@ -151,7 +152,7 @@ void SK_KERNEL(contact_impulse)(sk_run *run, const sk_row *row, size_t begin, si
 SK_INLINE sk_wide3 way_out(const sk_run *run, const sk_row *row, size_t slot, const encounter *e, sk_wide push) {
     sk_wide3 move = times(push, e->contact.normal);
     if (row->source[1] == SK_NONE) return move;
-    sk_wide4 start = sk_load_block(run->vector[row->source[1]], slot, slot < row->packed);
+    sk_wide4 start = sk_load_part(run->vector[row->source[1]], slot, slot < row->packed);
     sk_wide3 moved = minus(minus(three(e->x), three(start)), times(sk_splat((real)row->dt), e->surface));
     sk_wide3 slide;
     split(moved, e->contact.normal, &slide);
@@ -165,7 +166,7 @@ void SK_KERNEL(contact_push)(sk_run *run, const sk_row *row, size_t begin, size_
     const sk_collider *collider = row->rule;
     sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
     encounter e;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         if (!meet(run, row, &pose, slot, &e)) continue;
         sk_wide push = (real)collider->common->thickness - e.contact.distance;
         apply(run, row, slot, e.x, e.touching & sk_positive(push), way_out(run, row, slot, &e, push));
@@ -177,7 +178,7 @@ SK_INLINE sk_wide bounce_of(const sk_run *run, const sk_row *row, size_t slot, c
                             sk_wide approach) {
     const sk_collider *collider = row->rule;
     // what a substep's force alone brings is no impact; bouncing it would make resting things jitter
-    sk_wide3 f = three(sk_load_block(run->vector[SK_F], slot, slot < row->packed));
+    sk_wide3 f = three(sk_load_part(run->vector[SK_F], slot, slot < row->packed));
     sk_wide resting = (2 * (real)row->dt) * e->x.w * sk_wide_sqrt(sk_dot_wide(f, f));
     return sk_keep(sk_more(-approach, resting), restitution_of(collider, mass) * -approach);
 }
@@ -188,7 +189,7 @@ void SK_KERNEL(contact_settle)(sk_run *run, const sk_row *row, size_t begin, siz
     sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
     sk_wide per_step = sk_splat((real)(1 / row->dt));
     encounter e;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         if (!meet(run, row, &pose, slot, &e)) continue;
         bool packed = slot < row->packed;
         sk_wide push = (real)collider->common->thickness - e.contact.distance;
@@ -197,24 +198,40 @@ void SK_KERNEL(contact_settle)(sk_run *run, const sk_row *row, size_t begin, siz
         apply(run, row, slot, e.x, pushed, move);
 
         // the move is velocity, too; but along the normal what counts is how the particle came
-        sk_wide4 v = sk_load_block(run->vector[SK_V], slot, packed);
-        v.x += sk_keep(pushed, per_step * move.x);
-        v.y += sk_keep(pushed, per_step * move.y);
-        v.z += sk_keep(pushed, per_step * move.z);
-        sk_wide3 before = three(sk_load_block(run->vector[row->source[2]], slot, packed));
+        sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
+        v.x = sk_plus_where(pushed, v.x, per_step * move.x);
+        v.y = sk_plus_where(pushed, v.y, per_step * move.y);
+        v.z = sk_plus_where(pushed, v.z, per_step * move.z);
+        sk_wide3 before = three(sk_load_part(run->vector[row->source[2]], slot, packed));
         sk_wide approach = sk_dot_wide(minus(before, e.surface), e.contact.normal);
         sk_wide change = -sk_dot_wide(minus(three(v), e.surface), e.contact.normal);
         if (bounces) change += bounce_of(run, row, slot, &e, v.w, approach);
-        change = sk_keep(e.touching & sk_negative(approach), change);
-        v.x += change * e.contact.normal.x;
-        v.y += change * e.contact.normal.y;
-        v.z += change * e.contact.normal.z;
+        sk_mask came = e.touching & sk_negative(approach);
+        v.x = sk_plus_where(came, v.x, change * e.contact.normal.x);
+        v.y = sk_plus_where(came, v.y, change * e.contact.normal.y);
+        v.z = sk_plus_where(came, v.z, change * e.contact.normal.z);
         sk_store_moved(run->vector[SK_V], slot, packed, v);
+    }
+}
+
+void SK_KERNEL(probe_sixteen)(const sk_collider *collider, const sk_pose *pose, real p[3][SK_LANES],
+                              sk_sixteen_contacts *contacts) {
+    for (size_t l = 0; l < SK_LANES; l += SK_PART) {
+        sk_wide3 at;
+        sk_contact c;
+        memcpy(&at.x, p[0] + l, sizeof at.x), memcpy(&at.y, p[1] + l, sizeof at.y);
+        memcpy(&at.z, p[2] + l, sizeof at.z);
+        collider->type->probe[SK_THIS_ISA](collider->params, pose, &at, &c);
+        memcpy(contacts->normal[0] + l, &c.normal.x, sizeof c.normal.x);
+        memcpy(contacts->normal[1] + l, &c.normal.y, sizeof c.normal.y);
+        memcpy(contacts->normal[2] + l, &c.normal.z, sizeof c.normal.z);
+        memcpy(contacts->distance + l, &c.distance, sizeof c.distance);
     }
 }
 
 #else
 
+sk_probe_sixteen *const sk_probe_sixteen_of[SK_ISA_COUNT] = SK_EACH_ISA(probe_sixteen);
 const sk_kernels sk_contact_force = {SK_EACH_ISA(contact_force)};
 const sk_kernels sk_contact_impulse = {SK_EACH_ISA(contact_impulse)};
 const sk_kernels sk_contact_push = {SK_EACH_ISA(contact_push)};
@@ -246,14 +263,14 @@ bool sk_contact_reads_force(const sk_collider *collider) {
 
 /* Probes sixteen particles from `first` on, or as many as there are; returns how many. */
 static size_t probe_block(const sk_collider *collider, const sk_pose *pose, const sk_vec4 *x, const uint32_t *slot_of,
-                          size_t first, size_t particle_count, sk_contact *contact) {
+                          size_t first, size_t particle_count, sk_sixteen_contacts *contacts) {
     size_t count = particle_count - first < SK_LANES ? particle_count - first : SK_LANES;
-    sk_wide3 p = {{0}, {0}, {0}};
+    real p[3][SK_LANES] = {{0}};
     for (size_t i = 0; i < count; i++) {
         sk_vec4 q = x[slot_of[first + i]];
-        p.x[i] = q.x, p.y[i] = q.y, p.z[i] = q.z;
+        p[0][i] = q.x, p[1][i] = q.y, p[2][i] = q.z;
     }
-    collider->type->probe[0](collider->params, pose, &p, contact);
+    sk_probe_sixteen_of[0](collider, pose, p, contacts);
     return count;
 }
 
@@ -268,7 +285,7 @@ void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4
     sk_pose pose = sk_collider_pose_at(collider, time);
     double thickness = collider->common->thickness;
     for (size_t first = 0; first < particle_count; first += SK_LANES) {
-        sk_contact contact;
+        sk_sixteen_contacts contact;
         size_t count = probe_block(collider, &pose, x, slot_of, first, particle_count, &contact);
         for (size_t i = 0; i < count; i++) {
             sk_vec4 q = x[slot_of[first + i]];
@@ -284,19 +301,15 @@ void sk_collider_probe_points(const sk_collider *collider, double time, sk_isa i
     sk_pose pose = sk_collider_pose_at(collider, time);
     for (size_t first = 0; first < count; first += SK_LANES) {
         size_t lanes = count - first < SK_LANES ? count - first : SK_LANES;
-        sk_wide3 p = {{0}, {0}, {0}};
-        sk_contact contact;
-        for (size_t i = 0; i < lanes; i++) {
-            const double *at = points + 3 * (first + i);
-            p.x[i] = (real)at[0], p.y[i] = (real)at[1], p.z[i] = (real)at[2];
-        }
-        collider->type->probe[isa](collider->params, &pose, &p, &contact);
+        real p[3][SK_LANES] = {{0}};
+        sk_sixteen_contacts contact;
+        for (size_t i = 0; i < lanes; i++)
+            for (int k = 0; k < 3; k++) p[k][i] = (real)points[3 * (first + i) + (size_t)k];
+        sk_probe_sixteen_of[isa](collider, &pose, p, &contact);
         for (size_t i = 0; i < lanes; i++) {
             double *normal = normals ? normals + 3 * (first + i) : NULL;
             if (distances) distances[first + i] = (double)contact.distance[i];
-            if (normal)
-                normal[0] = (double)contact.normal.x[i], normal[1] = (double)contact.normal.y[i],
-                normal[2] = (double)contact.normal.z[i];
+            for (int k = 0; normal && k < 3; k++) normal[k] = (double)contact.normal[k][i];
         }
     }
 }
@@ -318,12 +331,12 @@ void sk_collider_visit(const sk_collider *collider, double time, const sk_vec4 *
                        void (*visit)(void *user, size_t particle, sk_vec3 normal, double distance), void *user) {
     sk_pose pose = sk_collider_pose_at(collider, time);
     for (size_t first = 0; first < particle_count; first += SK_LANES) {
-        sk_contact contact;
+        sk_sixteen_contacts contact;
         size_t count = probe_block(collider, &pose, x, slot_of, first, particle_count, &contact);
         for (size_t i = 0; i < count; i++) {
             double distance = (double)contact.distance[i];
             if (!in_touch(x[slot_of[first + i]], distance, collider->common->thickness)) continue;
-            sk_vec3 normal = {contact.normal.x[i], contact.normal.y[i], contact.normal.z[i]};
+            sk_vec3 normal = {contact.normal[0][i], contact.normal[1][i], contact.normal[2][i]};
             visit(user, first + i, normal, distance);
         }
     }

@@ -33,10 +33,14 @@ SK_INLINE void hold_normal(filtering *f, sk_mask mask, sk_wide3 n, sk_wide chang
     sk_wide3 m = through(f, n);
     sk_wide square = sk_dot_wide(m, m);
     mask &= sk_more(square, sk_splat(least));
-    sk_wide s = sk_keep(mask, 1 / square), t = s * change;
-    f->v.x += t * m.x, f->v.y += t * m.y, f->v.z += t * m.z;
-    f->d.x -= s * m.x * m.x, f->d.y -= s * m.y * m.y, f->d.z -= s * m.z * m.z;
-    f->o.x -= s * m.x * m.y, f->o.y -= s * m.x * m.z, f->o.z -= s * m.y * m.z;
+    sk_wide s = sk_keep(mask, 1 / square), t = s * change, *const v[3] = {&f->v.x, &f->v.y, &f->v.z};
+    sk_wide *const d[3] = {&f->d.x, &f->d.y, &f->d.z}, *const o[3] = {&f->o.x, &f->o.y, &f->o.z};
+    const sk_wide along[3] = {m.x, m.y, m.z}, first[3] = {m.x, m.x, m.y}, second[3] = {m.y, m.z, m.z};
+    for (int k = 0; k < 3; k++) {
+        *v[k] = sk_plus_where(mask, *v[k], t * along[k]);
+        *d[k] = sk_plus_where(mask, *d[k], -(s * along[k] * along[k]));
+        *o[k] = sk_plus_where(mask, *o[k], -(s * first[k] * second[k]));
+    }
 }
 
 /* Rounding must not break a resting contact: a little beyond the thickness counts as touching. */
@@ -66,8 +70,8 @@ SK_INLINE sk_mask bounces(const sk_collider *collider, sk_wide speed, sk_wide hw
     return sk_contact_reads_force(collider) ? fast : fast & ~fast;
 }
 
-SK_INLINE sk_wide3 hold(const sk_collider *collider, const sk_pose *pose, sk_wide4 x, sk_wide4 force, real h,
-                        filtering *f) {
+SK_INLINE void hold(const sk_collider *collider, const sk_pose *pose, sk_wide4 x, sk_wide4 force, real h,
+                    filtering *f) {
     sk_contact contact;
     sk_wide3 p = {x.x, x.y, x.z}, n;
     collider->type->probe[SK_THIS_ISA](collider->params, pose, &p, &contact);
@@ -84,7 +88,7 @@ SK_INLINE sk_wide3 hold(const sk_collider *collider, const sk_pose *pose, sk_wid
     // by its velocity alone: what a stiff spring would do to it over a whole substep it does not get to do
     sk_mask arriving = is_free & ~touching & sk_negative(gap + h * speed);
     if (sk_contact_reads_force(collider)) arriving &= ~arriving;
-    if (!sk_any(held | arriving)) return (sk_wide3){{0}, {0}, {0}};
+    if (!sk_any(held | arriving)) return;
 
     // the friction that would stop it in this substep, against Coulomb's cone
     sk_wide mass = sk_keep(is_free, 1 / hw);
@@ -98,32 +102,33 @@ SK_INLINE sk_wide3 hold(const sk_collider *collider, const sk_pose *pose, sk_wid
     hold_normal(f, held | arriving, n, target - speed, (real)1e-3);
     sk_wide none = {0};
     sk_wide3 along = through(f, slide);
-    f->v.x -= sk_keep(sticks, along.x);
-    f->v.y -= sk_keep(sticks, along.y);
-    f->v.z -= sk_keep(sticks, along.z);
+    f->v.x = sk_plus_where(sticks, f->v.x, -along.x);
+    f->v.y = sk_plus_where(sticks, f->v.y, -along.y);
+    f->v.z = sk_plus_where(sticks, f->v.z, -along.z);
     f->d = (sk_wide4){sk_select(sticks, none, f->d.x), sk_select(sticks, none, f->d.y), sk_select(sticks, none, f->d.z),
                       f->d.w};
     f->o = (sk_wide4){sk_select(sticks, none, f->o.x), sk_select(sticks, none, f->o.y), sk_select(sticks, none, f->o.z),
                       f->o.w};
-    return (sk_wide3){share * stop.x, share * stop.y, share * stop.z};
+    f->friction.x = sk_plus_where(held, f->friction.x, share * stop.x);
+    f->friction.y = sk_plus_where(held, f->friction.y, share * stop.y);
+    f->friction.z = sk_plus_where(held, f->friction.z, share * stop.z);
 }
 
 void SK_KERNEL(contact_filter)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_collider *collider = row->rule;
     sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
     sk_vec4 *diagonal = run->vector[row->dst], *off = run->vector[row->source[1]], *rub = run->vector[row->source[2]];
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
-        sk_wide4 force = sk_load_block(run->vector[SK_F], slot, packed);
-        filtering f = {sk_load_block(diagonal, slot, packed), sk_load_block(off, slot, packed),
-                       sk_load_block(run->vector[SK_V], slot, packed), sk_load_block(rub, slot, packed)};
-        sk_wide3 g = hold(collider, &pose, x, force, (real)row->dt, &f);
-        f.friction.x += g.x, f.friction.y += g.y, f.friction.z += g.z;
-        sk_store_block(diagonal, slot, packed, f.d);
-        sk_store_block(off, slot, packed, f.o);
-        sk_store_block(run->vector[SK_V], slot, packed, f.v);
-        sk_store_block(rub, slot, packed, f.friction);
+        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
+        sk_wide4 force = sk_load_part(run->vector[SK_F], slot, packed);
+        filtering f = {sk_load_part(diagonal, slot, packed), sk_load_part(off, slot, packed),
+                       sk_load_part(run->vector[SK_V], slot, packed), sk_load_part(rub, slot, packed)};
+        hold(collider, &pose, x, force, (real)row->dt, &f);
+        sk_store_part(diagonal, slot, packed, f.d);
+        sk_store_part(off, slot, packed, f.o);
+        sk_store_part(run->vector[SK_V], slot, packed, f.v);
+        sk_store_part(rub, slot, packed, f.friction);
     }
 }
 
@@ -136,9 +141,9 @@ SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_row *row, const sk_po
     const sk_collider *collider = row->rule;
     bool packed = slot < row->packed;
     real thickness = (real)collider->common->thickness;
-    sk_wide4 x0 = sk_load_block(run->vector[SK_X0], slot, packed);
-    sk_wide4 v0 = sk_load_block(run->vector[SK_V0], slot, packed);
-    sk_wide4 force = sk_load_block(run->vector[SK_F], slot, packed);
+    sk_wide4 x0 = sk_load_part(run->vector[SK_X0], slot, packed);
+    sk_wide4 v0 = sk_load_part(run->vector[SK_V0], slot, packed);
+    sk_wide4 force = sk_load_part(run->vector[SK_F], slot, packed);
     sk_mask inside = sk_negative(contact->distance - thickness) & sk_positive(x.w);
     if (!sk_any(inside)) return inside;
     sk_wide3 p0 = {x0.x, x0.y, x0.z}, n = contact->normal;
@@ -162,22 +167,21 @@ void SK_KERNEL(contact_filter_more)(sk_run *run, const sk_row *row, size_t begin
     sk_pose start = sk_collider_pose_at(collider, run->time - row->dt);
     sk_vec4 *diagonal = run->vector[row->dst], *off = run->vector[row->source[1]];
     real thickness = (real)collider->common->thickness;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
-        sk_wide4 v = sk_load_block(run->vector[SK_V], slot, packed);
+        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
+        sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         sk_wide3 p = {x.x, x.y, x.z};
         sk_contact contact;
         collider->type->probe[SK_THIS_ISA](collider->params, &pose, &p, &contact);
         sk_mask inside = comes_inside(run, row, &start, slot, x, v, &contact);
         if (!sk_any(inside)) continue;
         sk_wide gap = contact.distance - thickness;
-        filtering f = {
-            sk_load_block(diagonal, slot, packed), sk_load_block(off, slot, packed), v, {{0}, {0}, {0}, {0}}};
+        filtering f = {sk_load_part(diagonal, slot, packed), sk_load_part(off, slot, packed), v, {{0}, {0}, {0}, {0}}};
         hold_normal(&f, inside, contact.normal, -gap / (real)row->dt, (real)0.5);
-        sk_store_block(diagonal, slot, packed, f.d);
-        sk_store_block(off, slot, packed, f.o);
-        sk_store_block(run->vector[SK_V], slot, packed, f.v);
+        sk_store_part(diagonal, slot, packed, f.d);
+        sk_store_part(off, slot, packed, f.o);
+        sk_store_part(run->vector[SK_V], slot, packed, f.v);
     }
 }
 

@@ -1,5 +1,6 @@
-/* Sixteen constraints of one kind, on their way through its arithmetic. A kind that is compiled into the library says
- * how many particles an element has (SK_ARITY), and how many rest values (SK_RESTS), before it includes this. */
+/* As many constraints of one kind as the processor works on at once, on their way through its arithmetic. A kind that
+ * is compiled into the library says how many particles an element has (SK_ARITY), and how many rest values (SK_RESTS),
+ * before it includes this. */
 #ifndef SK_CONSTRAINTS_ELEMENT_H
 #define SK_CONSTRAINTS_ELEMENT_H
 

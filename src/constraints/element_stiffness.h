@@ -3,13 +3,13 @@
  *
  * The matrix is k (grad C)(grad C)^T, which is positive definite whatever C is (Gauss and Newton's). A kind with
  * SK_ACROSS adds what turns the gradient, the tension across it, where that is positive, too. An element of the row is
- * an element of the batch. Sixteen are worked out at once; they may share particles, so they are added one after the
- * other, in their order. */
+ * an element of the batch. They may share particles, so what is worked out is added one after the other: of sixteen
+ * elements first what their first particles get, in the order of the elements, and so on. */
 
-/* Sixteen elements: the unit of their gradient (or the gradient itself), their stiffness times h^2 and damping times h.
- */
+/* A part of sixteen elements: the unit of their gradient (or the gradient itself), their stiffness times h^2 and
+ * damping times h. */
 typedef struct stiff_elements {
-    uint32_t slot[SK_ARITY][SK_LANES];
+    uint32_t slot[SK_ARITY][SK_PART];
     size_t count;
     sk_element e;
     sk_wide along, across;
@@ -21,7 +21,7 @@ SK_INLINE void stiffen(stiff_elements *s, const sk_run *run, const sk_row *row, 
     real k = (real)material->stiffness, elastic = (real)row->coefficient[0];
     real both = elastic + (real)(row->coefficient[1] * sk_batch_damping_time(batch));
     sk_element *e = &s->e;
-    s->count = end - begin < SK_LANES ? end - begin : SK_LANES;
+    s->count = end - begin < SK_PART ? end - begin : SK_PART;
     memset(e->x, 0, sizeof e->x);
     memset(e->rest, 0, sizeof e->rest);
     sk_wide stiff = {0};
@@ -50,49 +50,72 @@ SK_INLINE void stiffen(stiff_elements *s, const sk_run *run, const sk_row *row, 
 #endif
 }
 
+/* What the particles of sixteen elements get. */
+typedef struct additions {
+    uint32_t slot[SK_ARITY][SK_LANES];
+    sk_vec3 value[SK_ARITY][SK_LANES];
+} additions;
+
+SK_INLINE void note(additions *a, const stiff_elements *s, size_t first, int i, sk_wide3 value) {
+    for (size_t l = 0; l < s->count; l++) {
+        a->slot[i][first + l] = s->slot[i][l];
+        a->value[i][first + l] = sk_v3(value.x[l], value.y[l], value.z[l]);
+    }
+}
+
+SK_INLINE void add(sk_vec4 *vector, size_t packed, const additions *a, size_t count) {
+    SK_EACH_PARTICLE (i)
+        for (size_t l = 0; l < count; l++) sk_add_at(vector, packed, a->slot[i][l], a->value[i][l]);
+}
+
 void SK_KERNEL(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_vec4 *q = run->vector[row->source[1]];
-    sk_vec4 *dst = run->vector[row->dst];
     stiff_elements s;
+    additions out;
     for (size_t at = begin; at < end; at += SK_LANES) {
-        stiffen(&s, run, row, at, end);
-        sk_wide3 u[SK_ARITY] = {{{0}, {0}, {0}}};
-        for (size_t l = 0; l < s.count; l++)
-            SK_EACH_PARTICLE (i) {
-                sk_vec4 p = sk_load(q, row->packed, s.slot[i][l]);
-                u[i].x[l] = p.x, u[i].y[l] = p.y, u[i].z[l] = p.z;
-            }
-        sk_wide along = sum_along(&s.e, u);
-        sk_wide push = (s.along - s.across) * along;
-        SK_EACH_PARTICLE (i) {
-            sk_wide3 g = s.e.gradient[i], f = {push * g.x, push * g.y, push * g.z};
-#ifdef SK_ACROSS
-            int j = 1 - i;
-            f.x += s.across * (u[i].x - u[j].x), f.y += s.across * (u[i].y - u[j].y);
-            f.z += s.across * (u[i].z - u[j].z);
-#endif
+        size_t count = end - at < SK_LANES ? end - at : SK_LANES;
+        for (size_t first = 0; first < count; first += SK_PART) {
+            stiffen(&s, run, row, at + first, at + count);
+            sk_wide3 u[SK_ARITY] = {{{0}, {0}, {0}}};
             for (size_t l = 0; l < s.count; l++)
-                sk_add_at(dst, row->packed, s.slot[i][l], sk_v3(f.x[l], f.y[l], f.z[l]));
+                SK_EACH_PARTICLE (i) {
+                    sk_vec4 p = sk_load(q, row->packed, s.slot[i][l]);
+                    u[i].x[l] = p.x, u[i].y[l] = p.y, u[i].z[l] = p.z;
+                }
+            sk_wide along = sum_along(&s.e, u);
+            sk_wide push = (s.along - s.across) * along;
+            SK_EACH_PARTICLE (i) {
+                sk_wide3 g = s.e.gradient[i], f = {push * g.x, push * g.y, push * g.z};
+#ifdef SK_ACROSS
+                int j = 1 - i;
+                f.x += s.across * (u[i].x - u[j].x), f.y += s.across * (u[i].y - u[j].y);
+                f.z += s.across * (u[i].z - u[j].z);
+#endif
+                note(&out, &s, first, i, f);
+            }
         }
+        add(run->vector[row->dst], row->packed, &out, count);
     }
 }
 
 /* The blocks' xx yy zz go to dst, xy xz yz to the second source. */
 void SK_KERNEL(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    sk_vec4 *diagonal = run->vector[row->dst], *off = run->vector[row->source[1]];
     stiff_elements s;
+    additions diagonal, off;
     for (size_t at = begin; at < end; at += SK_LANES) {
-        stiffen(&s, run, row, at, end);
-        sk_wide push = s.along - s.across;
-        SK_EACH_PARTICLE (i) {
-            sk_wide3 n = s.e.gradient[i], sn = {push * n.x, push * n.y, push * n.z};
-            sk_wide3 d = {s.across + sn.x * n.x, s.across + sn.y * n.y, s.across + sn.z * n.z};
-            sk_wide3 o = {sn.x * n.y, sn.x * n.z, sn.y * n.z};
-            for (size_t l = 0; l < s.count; l++) {
-                sk_add_at(diagonal, row->packed, s.slot[i][l], sk_v3(d.x[l], d.y[l], d.z[l]));
-                sk_add_at(off, row->packed, s.slot[i][l], sk_v3(o.x[l], o.y[l], o.z[l]));
+        size_t count = end - at < SK_LANES ? end - at : SK_LANES;
+        for (size_t first = 0; first < count; first += SK_PART) {
+            stiffen(&s, run, row, at + first, at + count);
+            sk_wide push = s.along - s.across;
+            SK_EACH_PARTICLE (i) {
+                sk_wide3 n = s.e.gradient[i], sn = {push * n.x, push * n.y, push * n.z};
+                note(&diagonal, &s, first, i,
+                     (sk_wide3){s.across + sn.x * n.x, s.across + sn.y * n.y, s.across + sn.z * n.z});
+                note(&off, &s, first, i, (sk_wide3){sn.x * n.y, sn.x * n.z, sn.y * n.z});
             }
         }
+        add(run->vector[row->dst], row->packed, &diagonal, count);
+        add(run->vector[row->source[1]], row->packed, &off, count);
     }
 }
 
@@ -101,7 +124,7 @@ void SK_KERNEL(blocks)(sk_run *run, const sk_row *row, size_t begin, size_t end)
     enum { PAIRS = SK_ARITY * (SK_ARITY - 1) / 2 };
     const sk_batch *batch = row->rule;
     stiff_elements s;
-    for (size_t at = begin; at < end; at += SK_LANES) {
+    for (size_t at = begin; at < end; at += SK_PART) {
         stiffen(&s, run, row, at, end);
         sk_wide push = s.along - s.across;
         for (size_t l = 0; l < s.count; l++) {

@@ -2,20 +2,25 @@
  * work_out() they call. How particles come in and go out is here alone, so that the arithmetic does not know the
  * layout. SK_WITH_STRIPS asks for walks along strips, SK_WITH_LIMITS for limits. */
 
-SK_INLINE sk_wide3 load3(const sk_wide *block) {
-    return (sk_wide3){block[0], block[1], block[2]};
+/* A part of a packed block. */
+SK_INLINE sk_wide3 load3(const sk_wide *part) {
+    return (sk_wide3){part[0], part[SK_PARTS], part[2 * SK_PARTS]};
+}
+SK_INLINE void store3(sk_wide *part, sk_wide3 a) {
+    part[0] = a.x, part[SK_PARTS] = a.y, part[2 * SK_PARTS] = a.z;
 }
 /* scale G, without the sign that the second of two opposite gradients has; that is in `with_sign`. */
 SK_INLINE sk_wide3 moved(const sk_element *e, const sk_wide *scale, int i) {
-    const sk_wide3 *g = &e->gradient[e->opposite ? 0 : i];
-    return (sk_wide3){scale[i] * g->x, scale[i] * g->y, scale[i] * g->z};
+    sk_wide3 g = e->gradient[i];
+    if (e->opposite) g = e->gradient[0]; // (by its address clang would keep the element in memory)
+    return (sk_wide3){scale[i] * g.x, scale[i] * g.y, scale[i] * g.z};
 }
 SK_INLINE sk_wide3 with_sign(const sk_element *e, int i, sk_wide3 a, sk_wide3 d) {
     if (e->opposite && i) return (sk_wide3){a.x - d.x, a.y - d.y, a.z - d.z};
     return (sk_wide3){a.x + d.x, a.y + d.y, a.z + d.z};
 }
 
-/* Reads what a mode needs of sixteen elements besides positions. */
+/* Reads what a mode needs of a part of sixteen elements besides positions. */
 SK_INLINE void set_values(sk_element *e, const sk_sweep *sweep, const sk_element_constants *constants, size_t lane,
                           bool special, bool multiplier) {
     const sk_batch *batch = sweep->batch;
@@ -33,12 +38,14 @@ SK_INLINE void set_values(sk_element *e, const sk_sweep *sweep, const sk_element
 }
 
 #ifdef SK_WITH_STRIPS
-/* Lanes turned by `shift`, as blocks do that meet over the end of a strip. */
-SK_INLINE sk_wide turn(sk_wide a, int shift) {
-    return shift ? sk_rotate(a, shift) : a;
+/* Blocks meet over the end of a strip with their lanes turned by `shift`: a copy of `rows` rows, and x, y and z back.
+ */
+SK_INLINE void turn(sk_wide *to, const sk_wide *block, int rows, int shift) {
+    for (int r = 0; r < rows * SK_PARTS; r += SK_PARTS)
+        for (int p = 0; p < SK_PARTS; p++) to[r + p] = shift ? sk_turned(block + r, p, shift) : block[r + p];
 }
-SK_INLINE sk_wide3 turn3(sk_wide3 a, int shift) {
-    return (sk_wide3){turn(a.x, shift), turn(a.y, shift), turn(a.z, shift)};
+SK_INLINE void turn_back(sk_wide *block, const sk_wide *from, int shift) {
+    turn(block, from, 3, -shift);
 }
 
 /* Where the blocks of an element's particles are, in slots from the block of its place. */
@@ -60,39 +67,55 @@ SK_INLINE offsets offsets_of(const sk_sweep *sweep, const sk_span *span, bool tu
 
 /* ---- strips: projections and limits ---- */
 
+/* A part of sixteen elements whose blocks meet: x and other are those of their particles. */
+SK_INLINE void meet_part(const sk_sweep *sweep, const sk_element_constants *constants, size_t lane, bool special,
+                         sk_element_mode mode, sk_wide *const *x, sk_wide *const *other) {
+    sk_element e;
+    SK_EACH_PARTICLE (i) {
+        e.x[i] = load3(x[i]);
+        e.w[i] = x[i][3 * SK_PARTS];
+        if (mode != SK_MODE_PROJECT && mode != SK_MODE_LIMIT) e.other[i] = load3(other[i]);
+    }
+    set_values(&e, sweep, constants, lane, special, mode == SK_MODE_PROJECT_DAMPED);
+    work_out(&e, constants, mode);
+    // from what was loaded: reading again would wait for the stores
+    SK_EACH_PARTICLE (i) {
+        store3(x[i], with_sign(&e, i, e.x[i], moved(&e, e.scale, i)));
+        if (mode == SK_MODE_LIMIT_MOVING)
+            store3(other[i], with_sign(&e, i, e.other[i], moved(&e, e.velocity_scale, i)));
+    }
+    if (mode == SK_MODE_PROJECT_DAMPED) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + lane) = e.multiplier;
+}
+
 /* The blocks of sixteen elements meet. `mode` is a constant where this is inlined, and so is `turned`: whether some
  * block's lanes are. */
 SK_INLINE void meet_blocks(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t lane,
                            size_t slot, const offsets *o, bool turned, sk_element_mode mode) {
     bool special = turned || sweep->batch->special[lane / SK_LANES];
     bool reads_other = mode != SK_MODE_PROJECT && mode != SK_MODE_LIMIT;
-    sk_element e;
-    sk_wide *x[SK_ARITY], *other[SK_ARITY] = {NULL};
-    sk_wide3 at[SK_ARITY], other_at[SK_ARITY] = {{{0}, {0}, {0}}};
+    sk_vec4 *from = run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V];
+    sk_wide *x[SK_ARITY], *other[SK_ARITY] = {NULL}, *at[SK_ARITY], *other_at[SK_ARITY] = {NULL};
+    sk_wide copy[SK_ARITY][4 * SK_PARTS], other_copy[SK_ARITY][3 * SK_PARTS];
     SK_EACH_PARTICLE (i) {
         size_t block = slot + (size_t)o->slots[i];
-        int shift = turned ? o->shift[i] : 0;
-        x[i] = (sk_wide *)(void *)(run->vector[SK_X] + block);
-        at[i] = load3(x[i]);
-        e.x[i] = turn3(at[i], shift);
-        e.w[i] = turn(x[i][3], shift);
+        at[i] = x[i] = (sk_wide *)(void *)(run->vector[SK_X] + block);
+        if (turned) turn(at[i] = copy[i], x[i], 4, o->shift[i]);
         if (!reads_other) continue;
-        other[i] = (sk_wide *)(void *)(run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V] + block);
-        other_at[i] = load3(other[i]);
-        e.other[i] = turn3(other_at[i], shift);
+        other_at[i] = other[i] = (sk_wide *)(void *)(from + block);
+        if (turned) turn(other_at[i] = other_copy[i], other[i], 3, o->shift[i]);
     }
-    set_values(&e, sweep, constants, lane, special, mode == SK_MODE_PROJECT_DAMPED);
-    work_out(&e, constants, mode);
-    // from what was loaded: reading again would wait for the stores
+    for (size_t p = 0; p < SK_PARTS; p++) {
+        sk_wide *part[SK_ARITY], *other_part[SK_ARITY] = {NULL};
+        SK_EACH_PARTICLE (i) {
+            part[i] = at[i] + p;
+            if (reads_other) other_part[i] = other_at[i] + p;
+        }
+        meet_part(sweep, constants, lane + p * SK_PART, special, mode, part, other_part);
+    }
     SK_EACH_PARTICLE (i) {
-        int back = turned ? -o->shift[i] : 0;
-        sk_wide3 to = with_sign(&e, i, at[i], turn3(moved(&e, e.scale, i), back));
-        x[i][0] = to.x, x[i][1] = to.y, x[i][2] = to.z;
-        if (mode != SK_MODE_LIMIT_MOVING) continue;
-        to = with_sign(&e, i, other_at[i], turn3(moved(&e, e.velocity_scale, i), back));
-        other[i][0] = to.x, other[i][1] = to.y, other[i][2] = to.z;
+        if (turned) turn_back(x[i], at[i], o->shift[i]);
+        if (turned && mode == SK_MODE_LIMIT_MOVING) turn_back(other[i], other_at[i], o->shift[i]);
     }
-    if (mode == SK_MODE_PROJECT_DAMPED) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + lane) = e.multiplier;
 }
 
 /* The blocks of a span in strip rows [begin, end): along a row each block waits for the one before it, so rows that
@@ -142,23 +165,32 @@ SK_INLINE void pull_span(sk_run *run, const sk_row *row, const sk_sweep *sweep, 
     size_t line = sweep->walk.width * SK_LANES;
     offsets o = offsets_of(sweep, span, turned);
     for (size_t at = r * line + span->first * SK_LANES; at < r * line + span->last * SK_LANES; at += SK_LANES) {
-        sk_element e;
         size_t lane = sweep->first_lane + at, slot = sweep->walk.first_slot + at;
+        bool special = turned || sweep->batch->special[lane / SK_LANES];
+        sk_wide *f[SK_ARITY], copy[SK_ARITY][3][3 * SK_PARTS];
+        const sk_wide *x[SK_ARITY], *v[SK_ARITY];
         SK_EACH_PARTICLE (i) {
-            const sk_wide *x = (const sk_wide *)(const void *)(run->vector[SK_X] + slot + o.slots[i]),
-                          *v = (const sk_wide *)(const void *)(run->vector[SK_V] + slot + o.slots[i]);
-            e.x[i] = turn3(load3(x), turned ? o.shift[i] : 0);
-            e.other[i] = turn3(load3(v), turned ? o.shift[i] : 0);
+            x[i] = (const sk_wide *)(const void *)(run->vector[SK_X] + slot + o.slots[i]);
+            v[i] = (const sk_wide *)(const void *)(run->vector[SK_V] + slot + o.slots[i]);
+            f[i] = (sk_wide *)(void *)(run->vector[row->dst] + slot + o.slots[i]);
+            if (!turned) continue;
+            turn(copy[i][0], x[i], 3, o.shift[i]);
+            turn(copy[i][1], v[i], 3, o.shift[i]);
+            turn(copy[i][2], f[i], 3, o.shift[i]);
+            x[i] = copy[i][0], v[i] = copy[i][1];
         }
-        set_values(&e, sweep, constants, lane, turned || sweep->batch->special[lane / SK_LANES], false);
-        work_out(&e, constants, SK_MODE_FORCE);
-        SK_EACH_PARTICLE (i) {
-            if (!gets[i]) continue;
-            sk_wide *f = (sk_wide *)(void *)(run->vector[row->dst] + slot + o.slots[i]);
-            sk_wide3 d = turn3(moved(&e, e.scale, i), turned ? -o.shift[i] : 0);
-            sk_wide3 to = with_sign(&e, i, load3(f), d);
-            f[0] = to.x, f[1] = to.y, f[2] = to.z;
+        for (size_t p = 0; p < SK_PARTS; p++) {
+            sk_element e;
+            SK_EACH_PARTICLE (i) e.x[i] = load3(x[i] + p), e.other[i] = load3(v[i] + p);
+            set_values(&e, sweep, constants, lane + p * SK_PART, special, false);
+            work_out(&e, constants, SK_MODE_FORCE);
+            SK_EACH_PARTICLE (i) {
+                sk_wide *to = (turned ? copy[i][2] : f[i]) + p;
+                if (gets[i]) store3(to, with_sign(&e, i, load3(to), moved(&e, e.scale, i)));
+            }
         }
+        SK_EACH_PARTICLE (i)
+            if (turned && gets[i]) turn_back(f[i], copy[i][2], o.shift[i]);
     }
 }
 
@@ -195,21 +227,7 @@ void SK_KERNEL(force_strips)(sk_run *run, const sk_row *row, size_t begin, size_
 
 /* ---- groups ---- */
 
-/* Sixteen particles of a vector, some of which are in packed blocks. */
-SK_INLINE sk_wide4 gather_any(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
-    sk_wide4 out;
-    for (int l = 0; l < SK_LANES; l++) {
-        sk_vec4 q = sk_load(vector, packed, slot[l]);
-        out.x[l] = q.x, out.y[l] = q.y, out.z[l] = q.z, out.w[l] = q.w;
-    }
-    return out;
-}
-
-SK_INLINE sk_wide4 gather(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
-    return packed ? gather_any(vector, packed, slot) : sk_gather(vector, slot);
-}
-
-/* Puts sixteen different particles back, with scale G added to what was gathered. */
+/* Puts a part's particles back, which are all different, with scale G added to what was gathered. */
 SK_INLINE void scatter_sum(const sk_element *e, const sk_wide *scale, int i, sk_vec4 *vector, size_t packed,
                            const uint32_t *slot, sk_wide4 old) {
     sk_wide3 to = with_sign(e, i, (sk_wide3){old.x, old.y, old.z}, moved(e, scale, i));
@@ -217,30 +235,30 @@ SK_INLINE void scatter_sum(const sk_element *e, const sk_wide *scale, int i, sk_
         sk_scatter(vector, slot, (sk_wide4){to.x, to.y, to.z, old.w});
         return;
     }
-    for (int l = 0; l < SK_LANES; l++) sk_store_at(vector, packed, slot[l], sk_v3(to.x[l], to.y[l], to.z[l]));
+    for (int l = 0; l < SK_PART; l++) sk_store_at(vector, packed, slot[l], sk_v3(to.x[l], to.y[l], to.z[l]));
 }
 
 SK_INLINE void meet_group(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_element_constants *constants,
-                          size_t group, size_t packed, sk_element_mode mode) {
-    const uint32_t *slots = sweep->slots + group * SK_ARITY * SK_LANES;
+                          size_t group, size_t part, size_t packed, sk_element_mode mode) {
+    const uint32_t *slots = sweep->slots + group * SK_ARITY * SK_LANES + part * SK_PART;
     sk_vec4 *x = run->vector[SK_X], *other = run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V];
     sk_wide4 at[SK_ARITY], other_at[SK_ARITY] = {{{0}, {0}, {0}, {0}}};
     sk_element e;
     SK_EACH_PARTICLE (i) {
-        at[i] = gather(x, packed, slots + i * SK_LANES);
+        at[i] = sk_gather_any(x, packed, slots + i * SK_LANES);
         e.x[i] = (sk_wide3){at[i].x, at[i].y, at[i].z};
         e.w[i] = at[i].w;
         if (mode == SK_MODE_PROJECT || mode == SK_MODE_LIMIT) continue;
-        other_at[i] = gather(other, packed, slots + i * SK_LANES);
+        other_at[i] = sk_gather_any(other, packed, slots + i * SK_LANES);
         e.other[i] = (sk_wide3){other_at[i].x, other_at[i].y, other_at[i].z};
     }
-    size_t lane = sweep->first_lane + group * SK_LANES;
+    size_t lane = sweep->first_lane + group * SK_LANES + part * SK_PART;
     set_values(&e, sweep, constants, lane, true, mode == SK_MODE_PROJECT_DAMPED);
     work_out(&e, constants, mode);
     sk_vec4 *dst = mode == SK_MODE_FORCE ? run->vector[row->dst] : x;
     SK_EACH_PARTICLE (i) {
         const uint32_t *slot = slots + i * SK_LANES;
-        sk_wide4 old = mode == SK_MODE_FORCE ? gather(dst, packed, slot) : at[i];
+        sk_wide4 old = mode == SK_MODE_FORCE ? sk_gather_any(dst, packed, slot) : at[i];
         scatter_sum(&e, e.scale, i, dst, packed, slot, old);
         if (mode == SK_MODE_LIMIT_MOVING) scatter_sum(&e, e.velocity_scale, i, other, packed, slot, other_at[i]);
     }
@@ -256,7 +274,8 @@ SK_INLINE void sweep_groups(sk_run *run, const sk_row *row, size_t begin, size_t
         const uint32_t *slots = sweep->slots + g * SK_ARITY * SK_LANES;
         bool strips = false;
         for (int i = 0; i < SK_ARITY * SK_LANES && row->packed; i++) strips |= slots[i] < row->packed;
-        meet_group(run, row, sweep, &constants, g, strips ? row->packed : 0, mode);
+        for (size_t p = 0; p < SK_PARTS; p++)
+            meet_group(run, row, sweep, &constants, g, p, strips ? row->packed : 0, mode);
     }
 }
 

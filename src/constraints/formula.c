@@ -46,24 +46,16 @@ static places find_places(const sk_batch *batch, const sk_tape *tape) {
     }
     return to;
 }
+
 /* ---- in and out ---- */
 
 /* Groups [first, first + count) of a sweep, or sixteen elements of a batch, on their way. */
 typedef struct block {
-    sk_wide registers[SK_TAPE_MEMORY / sizeof(sk_wide)]; /* positions stay where the tape has them */
-    sk_wide w[SK_FORMULA_GROUPS][SK_MOST_ARITY];
+    SK_VECTOR_ALIGNED sk_wide registers[SK_TAPE_MEMORY / sizeof(sk_wide)]; /* positions stay where the tape has them */
+    size_t vectors;                                                        /* of each register */
+    sk_wide w[SK_FORMULA_GROUPS * SK_PARTS][SK_MOST_ARITY];
     sk_tape_verdict verdict;
 } block;
-
-SK_INLINE sk_wide4 gather(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
-    if (!packed) return sk_gather(vector, slot);
-    sk_wide4 out = {{0}, {0}, {0}, {0}};
-    for (int l = 0; l < SK_LANES; l++) {
-        sk_vec4 q = sk_load(vector, packed, slot[l]);
-        out.x[l] = q.x, out.y[l] = q.y, out.z[l] = q.z, out.w[l] = q.w;
-    }
-    return out;
-}
 
 /* Once before the blocks of a row: what is the same for all elements. */
 static void begin_tape(block *b, const sk_batch *batch, const sk_tape *tape, double time) {
@@ -73,25 +65,28 @@ static void begin_tape(block *b, const sk_batch *batch, const sk_tape *tape, dou
     const real *parameter[SKEIN_FORMULA_MOST_PARAMETERS];
     for (int i = 0; i < count; i++) value[i] = (real)params->parameter[i], parameter[i] = &value[i];
     sk_tape_input input = {.parameter = parameter, .uniform = ((uint64_t)1 << count) - 1, .time = (real)time};
-    sk_tape_kernels_of[SK_THIS_ISA]->begin(tape, &input, b->registers);
+    b->vectors = tape->wides * SK_PARTS;
+    sk_tape_kernels_of[SK_THIS_ISA]->begin(tape, &input, b->registers, b->vectors);
 }
 
-/* Puts sixteen elements into the tape's registers, as number i of a block: the particles that it reads, and rest
+/* Puts a part of sixteen elements into the tape's registers, as vector i of each: the particles that it reads, and rest
  * values, which are `stride` reals from one to the next. */
-SK_INLINE void fill(block *b, const places *to, size_t i, size_t arity, size_t rests, size_t wides, const sk_vec4 *x,
-                    size_t packed, const uint32_t *slots, const real *rest, size_t stride) {
+SK_INLINE void fill(block *b, const places *to, size_t i, size_t arity, size_t rests, const sk_vec4 *x, size_t packed,
+                    const uint32_t *slots, const real *rest, size_t stride) {
+    size_t vectors = b->vectors;
     UNROLLED
     for (size_t p = 0; p < arity; p++) {
         if (to->position[p] == NOWHERE) continue;
-        sk_wide *at = b->registers + to->position[p] * wides + i;
-        sk_wide4 q = gather(x, packed, slots + p * SK_LANES);
-        at[0] = q.x, at[wides] = q.y, at[2 * wides] = q.z, b->w[i][p] = q.w;
+        sk_wide *at = b->registers + to->position[p] * vectors + i;
+        sk_wide4 q = sk_gather_any(x, packed, slots + p * SK_LANES);
+        at[0] = q.x, at[vectors] = q.y, at[2 * vectors] = q.z, b->w[i][p] = q.w;
     }
     for (size_t r = 0; r < rests; r++)
-        if (to->rest[r] != NOWHERE) memcpy(b->registers + to->rest[r] * wides + i, rest + r * stride, sizeof(sk_wide));
+        if (to->rest[r] != NOWHERE)
+            memcpy(b->registers + to->rest[r] * vectors + i, rest + r * stride, sizeof(sk_wide));
 }
 
-/* What came out of the tape for sixteen elements. */
+/* What came out of the tape for a part of sixteen elements. */
 typedef struct answer {
     sk_wide value, by_time;
     sk_wide3 gradient[SK_MOST_ARITY];
@@ -101,7 +96,7 @@ typedef struct answer {
 SK_INLINE void take_answer(answer *a, const block *b, const sk_tape *tape, size_t arity, size_t i, bool one_sided) {
     const uint16_t *output = tape->output;
     const sk_wide *registers = b->registers + i;
-#define OUTPUT(k_) registers[output[k_] * tape->wides]
+#define OUTPUT(k_) registers[output[k_] * b->vectors]
     sk_wide sum = a->value = OUTPUT(0);
     UNROLLED
     for (size_t p = 0; p < arity; p++) {
@@ -187,32 +182,31 @@ SK_INLINE void put_back(sk_vec4 *vector, size_t packed, const uint32_t *slot, sk
         sk_scatter(vector, slot, old);
         return;
     }
-    for (int l = 0; l < SK_LANES; l++) sk_store_at(vector, packed, slot[l], sk_v3(old.x[l], old.y[l], old.z[l]));
+    for (int l = 0; l < SK_PART; l++) sk_store_at(vector, packed, slot[l], sk_v3(old.x[l], old.y[l], old.z[l]));
 }
 
-/* Group `i` of a block whose tape has run. Particles that the formula does not read stay where they are. */
-SK_INLINE void settle_group(sk_run *run, const sk_row *row, const sk_sweep *sweep, const block *b,
-                            const sk_formula_factors *f, const places *to, size_t arity, size_t i, size_t group,
-                            size_t packed, sk_row_kind kind, bool damped) {
+/* Vector `i` of a block whose tape has run: some part of sixteen elements, their first one at `lane`, with their
+ * particles' slots. Particles that the formula does not read stay where they are. */
+SK_INLINE void settle_part(sk_run *run, const sk_row *row, const sk_sweep *sweep, const block *b,
+                           const sk_formula_factors *f, const places *to, size_t arity, size_t i, size_t lane,
+                           const uint32_t *slots, size_t packed, sk_row_kind kind, bool damped) {
     const sk_batch *batch = sweep->batch;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
-    size_t lane = sweep->first_lane + group * SK_LANES, wides = made->tape.wides;
-    const uint32_t *slots = sweep->slots + group * arity * SK_LANES;
+    size_t vectors = b->vectors;
     answer a;
-    sk_wide w[SK_MOST_ARITY], s;
+    sk_wide w[SK_MOST_ARITY] = {{0}}, s;
     sk_wide3 other[SK_MOST_ARITY];
     take_answer(&a, b, &made->tape, arity, i, made->one_sided);
     UNROLLED
     for (size_t p = 0; p < arity; p++) {
-        w[p] = (sk_wide){0};
         other[p] = (sk_wide3){{0}, {0}, {0}}; // what no damping is multiplied by must be a number
         if (to->position[p] == NOWHERE) continue;
-        const sk_wide *x = b->registers + to->position[p] * wides + i;
+        const sk_wide *x = b->registers + to->position[p] * vectors + i;
         w[p] = b->w[i][p];
         if (!damped) continue;
-        sk_wide4 o = gather(run->vector[row->source[1]], packed, slots + p * SK_LANES);
+        sk_wide4 o = sk_gather_any(run->vector[row->source[1]], packed, slots + p * SK_LANES);
         other[p] = (sk_wide3){o.x, o.y, o.z};
-        if (kind == SK_ROW_PROJECT) other[p] = (sk_wide3){x[0] - o.x, x[wides] - o.y, x[2 * wides] - o.z};
+        if (kind == SK_ROW_PROJECT) other[p] = (sk_wide3){x[0] - o.x, x[vectors] - o.y, x[2 * vectors] - o.z};
     }
     sk_vec4 *dst = run->vector[row->dst];
     if (kind == SK_ROW_FORCE) {
@@ -227,11 +221,11 @@ SK_INLINE void settle_group(sk_run *run, const sk_row *row, const sk_sweep *swee
     UNROLLED
     for (size_t p = 0; p < arity; p++) {
         if (to->position[p] == NOWHERE) continue;
-        const sk_wide *x = b->registers + to->position[p] * wides + i;
+        const sk_wide *x = b->registers + to->position[p] * vectors + i;
         const uint32_t *slot = slots + p * SK_LANES;
         sk_wide4 old;
-        if (kind == SK_ROW_FORCE) old = gather(dst, packed, slot);
-        else old = (sk_wide4){x[0], x[wides], x[2 * wides], w[p]};
+        if (kind == SK_ROW_FORCE) old = sk_gather_any(dst, packed, slot);
+        else old = (sk_wide4){x[0], x[vectors], x[2 * vectors], w[p]};
         put_back(dst, packed, slot, old, kind == SK_ROW_FORCE ? s : s * w[p], a.gradient[p]);
     }
 }
@@ -264,12 +258,17 @@ SK_INLINE void walk(sk_run *run, const sk_row *row, size_t begin, size_t end, sk
             bool strips = false;
             for (size_t l = 0; l < arity * SK_LANES && row->packed; l++) strips |= slots[l] < row->packed;
             packed[i] = strips ? row->packed : 0;
-            fill(&b, &to, i, arity, batch->rest_count, tape->wides, run->vector[SK_X], packed[i], slots,
-                 batch->lane_rest + sweep->first_lane + group * SK_LANES, batch->lane_count);
+            const real *rest = batch->lane_rest + sweep->first_lane + group * SK_LANES;
+            for (size_t part = 0; part < SK_PARTS; part++)
+                fill(&b, &to, i * SK_PARTS + part, arity, batch->rest_count, run->vector[SK_X], packed[i],
+                     slots + part * SK_PART, rest + part * SK_PART, batch->lane_count);
         }
-        sk_tape_kernels_of[SK_THIS_ISA]->run(tape, b.registers, count, &b.verdict);
+        sk_tape_kernels_of[SK_THIS_ISA]->run(tape, b.registers, b.vectors, count * SK_PARTS, &b.verdict);
         for (size_t i = 0; i < count; i++)
-            settle_group(run, row, sweep, &b, &f, &to, arity, i, first + i, packed[i], kind, damped);
+            for (size_t part = 0; part < SK_PARTS; part++)
+                settle_part(run, row, sweep, &b, &f, &to, arity, i * SK_PARTS + part,
+                            sweep->first_lane + (first + i) * SK_LANES + part * SK_PART,
+                            sweep->slots + (first + i) * arity * SK_LANES + part * SK_PART, packed[i], kind, damped);
     }
 }
 
@@ -295,12 +294,12 @@ void SK_KERNEL(project_damped_groups)(sk_run *run, const sk_row *row, size_t beg
 
 /* ---- implicit solves: elements, not groups ---- */
 
-/* Runs a tape of one wide that has begun, or what is compiled for it, on elements [begin, begin + count), at most
+/* Runs a tape of one sixteen that has begun, or what is compiled for it, on elements [begin, begin + count), at most
  * sixteen; lanes past them repeat the last. */
 static void run_elements(block *b, const sk_batch *batch, const sk_tape *tape, bool compiled, double time,
                          const sk_vec4 *x, size_t packed, size_t begin, size_t count) {
     uint32_t slot[SK_MOST_ARITY][SK_LANES];
-    sk_wide rest[SKEIN_FORMULA_MOST_RESTS]; // wides, as compiled code takes aligned ones
+    SK_VECTOR_ALIGNED real rest[SKEIN_FORMULA_MOST_RESTS][SK_LANES]; // as compiled code takes them
     places to = find_places(batch, tape);
     for (size_t l = 0; l < SK_LANES; l++) {
         size_t e = begin + (l < count ? l : count - 1);
@@ -310,20 +309,24 @@ static void run_elements(block *b, const sk_batch *batch, const sk_tape *tape, b
     if (compiled) {
         const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
         real *outputs[3 * SK_MOST_ARITY * (3 * SK_MOST_ARITY + 1) / 2];
-        sk_wide4 at[SK_MOST_ARITY];
-        sk_wide finite;
-        for (size_t p = 0; p < batch->arity; p++) at[p] = gather(x, packed, slot[p]);
-        for (size_t k = 0; k < tape->outputs; k++) outputs[k] = (real *)(b->registers + tape->output[k]);
-        sk_compiled_evaluate(batch, time, tape == &made->hessian, (const real *)at, (const real *)rest, outputs,
-                             (real *)&finite);
-        b->verdict.finite[0] = sk_positive(finite);
+        SK_VECTOR_ALIGNED sk_wide at[SK_MOST_ARITY][4][SK_PARTS], finite[SK_PARTS];
+        for (size_t p = 0; p < batch->arity; p++)
+            for (size_t part = 0; part < SK_PARTS; part++) {
+                sk_wide4 q = sk_gather_any(x, packed, slot[p] + part * SK_PART);
+                at[p][0][part] = q.x, at[p][1][part] = q.y, at[p][2][part] = q.z, at[p][3][part] = q.w;
+            }
+        for (size_t k = 0; k < tape->outputs; k++) outputs[k] = (real *)(b->registers + tape->output[k] * SK_PARTS);
+        sk_compiled_evaluate(batch, time, tape == &made->hessian, (const real *)at, rest[0], outputs, (real *)finite);
+        for (size_t part = 0; part < SK_PARTS; part++) b->verdict.finite[part] = sk_positive(finite[part]);
         return;
     }
-    fill(b, &to, 0, batch->arity, batch->rest_count, tape->wides, x, packed, slot[0], (const real *)rest, SK_LANES);
-    sk_tape_kernels_of[SK_THIS_ISA]->run(tape, b->registers, 1, &b->verdict);
+    for (size_t part = 0; part < SK_PARTS; part++)
+        fill(b, &to, part, batch->arity, batch->rest_count, x, packed, slot[0] + part * SK_PART,
+             rest[0] + part * SK_PART, SK_LANES);
+    sk_tape_kernels_of[SK_THIS_ISA]->run(tape, b->registers, SK_PARTS, SK_PARTS, &b->verdict);
 }
 
-/* The matrix of sixteen elements: a lower triangle of 3 arity rows, positive definite. */
+/* The matrix of a part of sixteen elements: a lower triangle of 3 arity rows, positive definite. */
 typedef struct matrix {
     sk_wide entry[3 * SK_MOST_ARITY * (3 * SK_MOST_ARITY + 1) / 2];
 } matrix;
@@ -372,69 +375,96 @@ static void make_definite(matrix *m, size_t size) {
     for (size_t j = 0; j < size; j++) ENTRY(m, j, j) += raised[j];
 }
 
-/* The stiffness over k of sixteen elements, elastic and both with damping. */
-static void stiffness(block *b, matrix *m, const sk_batch *batch, const sk_run *run, const sk_row *row, size_t begin,
-                      size_t count) {
+/* A walk over a row's elements, part by part, with their matrices: elements [at, at + count) of the batch. */
+typedef struct stiff_walk {
+    const sk_run *run;
+    const sk_row *row;
+    const sk_tape *tape;
+    block b; /* of sixteen elements */
+    size_t part, next, at, count, end;
+    matrix m;
+} stiff_walk;
+
+static void start_walk(stiff_walk *w, const sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_batch *batch = row->rule;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
-    const sk_tape *tape = made->is_energy ? &made->hessian : &made->single;
-    begin_tape(b, batch, tape, run->time - row->before);
-    run_elements(b, batch, tape, made->compiled, run->time - row->before, run->vector[SK_X], row->packed, begin, count);
+    w->run = run, w->row = row, w->next = begin, w->end = end, w->part = 0;
+    w->tape = made->is_energy ? &made->hessian : &made->single;
+    begin_tape(&w->b, batch, w->tape, run->time - row->before);
+}
+
+/* The stiffness over k of the part that the walk has come to, elastic and both with damping. */
+static void find_stiffness(stiff_walk *w) {
+    const sk_batch *batch = w->row->rule;
+    const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
     if (made->is_energy) {
-        for (size_t k = 0; k < tape->outputs; k++)
-            m->entry[k] = sk_keep(b->verdict.finite[0], b->registers[tape->output[k]]);
-        make_definite(m, 3 * batch->arity);
+        for (size_t k = 0; k < w->tape->outputs; k++)
+            w->m.entry[k] =
+                sk_keep(w->b.verdict.finite[w->part], w->b.registers[w->tape->output[k] * SK_PARTS + w->part]);
+        make_definite(&w->m, 3 * batch->arity);
     } else {
         answer a;
-        take_answer(&a, b, tape, batch->arity, 0, made->one_sided);
-        square_gradient(m, &a, batch->arity);
+        take_answer(&a, &w->b, w->tape, batch->arity, w->part, made->one_sided);
+        square_gradient(&w->m, &a, batch->arity);
     }
     const sk_material *material = batch->params;
     real both =
-        (real)(material->stiffness * (row->coefficient[0] + row->coefficient[1] * sk_batch_damping_time(batch)));
-    for (size_t k = 0; k < 3 * batch->arity * (3 * batch->arity + 1) / 2; k++) m->entry[k] *= both;
+        (real)(material->stiffness * (w->row->coefficient[0] + w->row->coefficient[1] * sk_batch_damping_time(batch)));
+    for (size_t k = 0; k < 3 * batch->arity * (3 * batch->arity + 1) / 2; k++) w->m.entry[k] *= both;
+}
+
+/* Goes on to the next part; false at the end. */
+static bool walk_on(stiff_walk *w) {
+    if (w->next >= w->end) return false;
+    const sk_batch *batch = w->row->rule;
+    size_t left = w->end - w->next;
+    if (w->part == 0)
+        run_elements(&w->b, batch, w->tape, ((const sk_formula_params *)batch->params)->made->compiled,
+                     w->run->time - w->row->before, w->run->vector[SK_X], w->row->packed, w->next,
+                     left < SK_LANES ? left : SK_LANES);
+    find_stiffness(w);
+    w->at = w->next, w->count = left < SK_PART ? left : SK_PART;
+    w->next += w->count, w->part = (w->part + 1) % SK_PARTS;
+    return true;
 }
 
 void SK_KERNEL(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_batch *batch = row->rule;
     const sk_vec4 *q = run->vector[row->source[1]];
     size_t size = 3 * batch->arity;
-    block b;
-    matrix m;
-    for (size_t at = begin; at < end; at += SK_LANES) {
-        size_t count = end - at < SK_LANES ? end - at : SK_LANES;
+    stiff_walk w;
+    start_walk(&w, run, row, begin, end);
+    while (walk_on(&w)) {
         sk_wide u[3 * SK_MOST_ARITY] = {{0}}, f[3 * SK_MOST_ARITY];
-        stiffness(&b, &m, batch, run, row, at, count);
-        for (size_t l = 0; l < count; l++)
+        for (size_t l = 0; l < w.count; l++)
             for (size_t p = 0; p < batch->arity; p++) {
-                sk_vec4 v = sk_load(q, row->packed, batch->slot[(at + l) * batch->arity + p]);
+                sk_vec4 v = sk_load(q, row->packed, batch->slot[(w.at + l) * batch->arity + p]);
                 u[3 * p][l] = v.x, u[3 * p + 1][l] = v.y, u[3 * p + 2][l] = v.z;
             }
         for (size_t i = 0; i < size; i++) {
             f[i] = (sk_wide){0};
-            for (size_t j = 0; j < size; j++) f[i] += (j <= i ? ENTRY(&m, i, j) : ENTRY(&m, j, i)) * u[j];
+            for (size_t j = 0; j < size; j++) f[i] += (j <= i ? ENTRY(&w.m, i, j) : ENTRY(&w.m, j, i)) * u[j];
         }
-        for (size_t l = 0; l < count; l++)
+        for (size_t l = 0; l < w.count; l++)
             for (size_t p = 0; p < batch->arity; p++)
-                sk_add_at(run->vector[row->dst], row->packed, batch->slot[(at + l) * batch->arity + p],
+                sk_add_at(run->vector[row->dst], row->packed, batch->slot[(w.at + l) * batch->arity + p],
                           sk_v3(f[3 * p][l], f[3 * p + 1][l], f[3 * p + 2][l]));
     }
 }
 
 void SK_KERNEL(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_batch *batch = row->rule;
-    block b;
-    matrix m;
-    for (size_t at = begin; at < end; at += SK_LANES) {
-        size_t count = end - at < SK_LANES ? end - at : SK_LANES;
-        stiffness(&b, &m, batch, run, row, at, count);
-        for (size_t l = 0; l < count; l++)
+    stiff_walk w;
+    start_walk(&w, run, row, begin, end);
+    while (walk_on(&w)) {
+        for (size_t l = 0; l < w.count; l++)
             for (size_t p = 0; p < batch->arity; p++) {
-                uint32_t slot = batch->slot[(at + l) * batch->arity + p];
+                uint32_t slot = batch->slot[(w.at + l) * batch->arity + p];
                 size_t i = 3 * p;
                 sk_add_at(run->vector[row->dst], row->packed, slot,
-                          sk_v3(ENTRY(&m, i, i)[l], ENTRY(&m, i + 1, i + 1)[l], ENTRY(&m, i + 2, i + 2)[l]));
+                          sk_v3(ENTRY(&w.m, i, i)[l], ENTRY(&w.m, i + 1, i + 1)[l], ENTRY(&w.m, i + 2, i + 2)[l]));
                 sk_add_at(run->vector[row->source[1]], row->packed, slot,
-                          sk_v3(ENTRY(&m, i + 1, i)[l], ENTRY(&m, i + 2, i)[l], ENTRY(&m, i + 2, i + 1)[l]));
+                          sk_v3(ENTRY(&w.m, i + 1, i)[l], ENTRY(&w.m, i + 2, i)[l], ENTRY(&w.m, i + 2, i + 1)[l]));
             }
     }
 }
@@ -442,20 +472,19 @@ void SK_KERNEL(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t en
 void SK_KERNEL(blocks)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_batch *batch = row->rule;
     size_t arity = batch->arity, pairs = arity * (arity - 1) / 2;
-    block b;
-    matrix m;
-    for (size_t at = begin; at < end; at += SK_LANES) {
-        size_t count = end - at < SK_LANES ? end - at : SK_LANES;
-        stiffness(&b, &m, batch, run, row, at, count);
-        for (size_t l = 0; l < count; l++) {
-            const uint32_t *particle = batch->particle + arity * (at + l), *pair = batch->pair + pairs * (at + l);
+    stiff_walk w;
+    start_walk(&w, run, row, begin, end);
+    while (walk_on(&w)) {
+        for (size_t l = 0; l < w.count; l++) {
+            const uint32_t *particle = batch->particle + arity * (w.at + l);
+            const uint32_t *pair = batch->pair + pairs * (w.at + l);
             for (size_t p = 0; p < arity; p++)
                 for (size_t q = 0; q <= p; q++) {
                     double entry[3][3];
                     for (size_t i = 0; i < 3; i++)
                         for (size_t j = 0; j < 3; j++) {
                             size_t r = 3 * p + i, c = 3 * q + j;
-                            entry[i][j] = (double)(c <= r ? ENTRY(&m, r, c)[l] : ENTRY(&m, c, r)[l]);
+                            entry[i][j] = (double)(c <= r ? ENTRY(&w.m, r, c)[l] : ENTRY(&w.m, c, r)[l]);
                         }
                     if (p == q) sk_matrix_add_diagonal(run->matrix, particle[p], entry);
                     else sk_matrix_add_pair(run->matrix, particle[p], particle[q], pair[p * (p - 1) / 2 + q], entry);
@@ -475,14 +504,16 @@ size_t SK_KERNEL(energy)(const sk_batch *batch, double time, const sk_vec4 *x, s
     begin_tape(&b, batch, &made->single, time);
     for (size_t at = begin; at < end; at += SK_LANES) {
         size_t count = end - at < SK_LANES ? end - at : SK_LANES;
-        answer a;
         run_elements(&b, batch, &made->single, false, time, x, 0, at, count); // a tape counts its guards
-        take_answer(&a, &b, &made->single, batch->arity, 0, made->one_sided);
-        sk_mask odd = b.verdict.guarded[0] | ~b.verdict.finite[0];
-        for (size_t l = 0; l < count; l++) {
-            double c = (double)a.value[l];
-            energy[at - begin + l] = !a.active[l] ? 0 : made->is_energy ? c : 0.5 * c * c;
-            guarded += odd[l] != 0;
+        for (size_t part = 0; part * SK_PART < count; part++) {
+            answer a;
+            take_answer(&a, &b, &made->single, batch->arity, part, made->one_sided);
+            sk_mask odd = b.verdict.guarded[part] | ~b.verdict.finite[part];
+            for (size_t l = 0; l < SK_PART && part * SK_PART + l < count; l++) {
+                double c = (double)a.value[l];
+                energy[at - begin + part * SK_PART + l] = !a.active[l] ? 0 : made->is_energy ? c : 0.5 * c * c;
+                guarded += odd[l] != 0;
+            }
         }
     }
     return guarded;

@@ -118,16 +118,18 @@ double SK_KERNEL(measure)(sk_enclosure *s, const sk_vec4 *x, size_t packed) {
     }
     memset(s->gradient, 0, 3 * s->vertex_count * sizeof *s->gradient);
     double volume = 0;
-    for (size_t t = 0; t < s->lane_count; t += SK_LANES) {
+    for (size_t t = 0; t < s->lane_count; t += SK_PART) {
         sk_element e;
+        real places[SK_ARITY][3][SK_PART];
         SK_EACH_PARTICLE (i)
-            for (size_t l = 0; l < SK_LANES; l++) {
+            for (size_t l = 0; l < SK_PART; l++) {
                 const real *place = s->place + 3 * (size_t)s->corner[i][t + l];
-                e.x[i].x[l] = place[0], e.x[i].y[l] = place[1], e.x[i].z[l] = place[2];
+                places[i][0][l] = place[0], places[i][1][l] = place[1], places[i][2][l] = place[2];
             }
+        memcpy(e.x, places, sizeof places);
         formula(&e);
-        for (size_t l = 0; l < SK_LANES; l++) volume += (double)e.value[l];
-        for (size_t l = 0; l < SK_LANES; l++)
+        for (size_t l = 0; l < SK_PART; l++) volume += (double)e.value[l];
+        for (size_t l = 0; l < SK_PART; l++)
             SK_EACH_PARTICLE (i) {
                 real *gradient = s->gradient + 3 * (size_t)s->corner[i][t + l];
                 gradient[0] += e.gradient[i].x[l], gradient[1] += e.gradient[i].y[l];

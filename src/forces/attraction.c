@@ -19,16 +19,16 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end)
     const attraction_params *params = force->params;
     sk_vec3 centre = sk_v3_of(params->centre);
     real flatness = (real)params->flatness, dv = (real)(row->dt * params->strength);
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
-        sk_wide4 s = sk_load_block(run->vector[row->dst], slot, packed);
+        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
+        sk_wide4 s = sk_load_part(run->vector[row->dst], slot, packed);
         sk_wide3 d = {centre.x - x.x, flatness * (centre.y - x.y), centre.z - x.z};
         sk_wide square = sk_dot_wide(d, d);
         sk_mask moved = sk_positive(square) & sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot);
         sk_wide k = sk_keep(moved, dv / sk_wide_sqrt(square));
         s.x += k * d.x, s.y += k * d.y, s.z += k * d.z;
-        sk_store_block(run->vector[row->dst], slot, packed, s);
+        sk_store_part(run->vector[row->dst], slot, packed, s);
     }
 }
 

@@ -68,21 +68,23 @@ SK_INLINE void come_in(sk_run *run, const sk_row *row, size_t slot, sk_wide4 x, 
         any |= over | under;
     }
     if (!sk_any(any)) return;
-    x.x += shift.x, x.y += shift.y, x.z += shift.z;
-    sk_store_block(run->vector[SK_X], slot, packed, x);
-    sk_wide4 before = sk_load_block(run->vector[SK_PREVIOUS], slot, false); // always quads
-    before.x += shift.x, before.y += shift.y, before.z += shift.z;
-    sk_store_block(run->vector[SK_PREVIOUS], slot, false, before);
+    x.x = sk_plus_where(any, x.x, shift.x), x.y = sk_plus_where(any, x.y, shift.y);
+    x.z = sk_plus_where(any, x.z, shift.z);
+    sk_store_part(run->vector[SK_X], slot, packed, x);
+    sk_wide4 before = sk_load_part(run->vector[SK_PREVIOUS], slot, false); // always quads
+    before.x = sk_plus_where(any, before.x, shift.x), before.y = sk_plus_where(any, before.y, shift.y);
+    before.z = sk_plus_where(any, before.z, shift.z);
+    sk_store_part(run->vector[SK_PREVIOUS], slot, false, before);
 }
 
 void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_force *force = row->rule;
     const bounds_params *params = force->params;
     real h = (real)row->dt;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
-        sk_wide4 v = sk_load_block(run->vector[SK_V], slot, packed);
+        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
+        sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         sk_mask moved = sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot) & sk_positive(x.w);
         if (params->edge) {
             come_in(run, row, slot, x, moved);

@@ -16,16 +16,16 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end)
     const drag_params *params = ((const sk_force *)row->rule)->params;
     sk_wide linear = sk_splat((real)params->linear);
     real rate = (real)params->rate, quadratic = (real)params->quadratic;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 v = sk_load_block(run->vector[SK_V], slot, packed);
-        sk_wide4 f = sk_load_block(run->vector[row->dst], slot, packed);
+        sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
+        sk_wide4 f = sk_load_part(run->vector[row->dst], slot, packed);
         sk_wide drag = linear + rate * v.w;
         if (quadratic != 0) drag += quadratic * sk_wide_sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
         f.x -= drag * v.x;
         f.y -= drag * v.y;
         f.z -= drag * v.z;
-        sk_store_block(run->vector[row->dst], slot, packed, f);
+        sk_store_part(run->vector[row->dst], slot, packed, f);
     }
 }
 
@@ -34,16 +34,16 @@ void SK_KERNEL(resistance)(sk_run *run, const sk_row *row, size_t begin, size_t 
     const drag_params *params = ((const sk_force *)row->rule)->params;
     real a = (real)row->coefficient[0], rate = (real)params->rate, quadratic = (real)params->quadratic;
     sk_wide linear = sk_splat((real)params->linear);
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 v = sk_load_block(run->vector[SK_V], slot, packed);
-        sk_wide4 d = sk_load_block(run->vector[row->dst], slot, packed);
+        sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
+        sk_wide4 d = sk_load_part(run->vector[row->dst], slot, packed);
         sk_wide speed = sk_wide_sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
         sk_wide drag = a * ((linear + rate * v.w) + 2 * quadratic * speed);
         // slots without a particle have no mass, and stay without
         drag = sk_keep(sk_positive(v.w), drag);
         d.x += drag, d.y += drag, d.z += drag;
-        sk_store_block(run->vector[row->dst], slot, packed, d);
+        sk_store_part(run->vector[row->dst], slot, packed, d);
     }
 }
 

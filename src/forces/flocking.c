@@ -54,8 +54,8 @@ typedef struct cell_copies {
 /* Puts the candidates of bits into the list from k on, and returns where it ends then; d is where they are from the
  * particle. (In a register: kept in the list itself, where it ends waits for the store before it each time, 40 cycles a
  * bird.) */
-SK_INLINE size_t keep_near(neighbours *near, size_t k, const cell_copies *copies, size_t place, sk_wide3 d, sk_wide squares,
-                           sk_wide square, uint32_t some) {
+SK_INLINE size_t keep_near(neighbours *near, size_t k, const cell_copies *copies, size_t place, sk_wide3 d,
+                           sk_wide squares, sk_wide square, uint32_t some) {
 #if SK_WIDTH == 64 && !defined(SKEIN_DOUBLE)
     __mmask16 bits = _mm512_mask_cmp_ps_mask((__mmask16)some, (__m512)square, (__m512)squares, _CMP_GT_OQ);
     // which lanes, once, for six permutations: half the work of six compressions
@@ -69,7 +69,7 @@ SK_INLINE size_t keep_near(neighbours *near, size_t k, const cell_copies *copies
     _mm512_storeu_ps(near->uz + k, _mm512_permutexvar_ps(lanes, _mm512_loadu_ps(copies->uz + place)));
     return k + (size_t)__builtin_popcount(bits);
 #else
-    uint32_t bits = sk_more_bits(square, squares) & some;
+    uint32_t bits = sk_more_bits(square, squares) & some; // (the former has none over a vector's lanes)
     for (; bits; bits &= bits - 1, k++) {
         int l = __builtin_ctz(bits);
         near->x[k] = d.x[l], near->y[k] = d.y[l], near->z[k] = d.z[l];
@@ -108,7 +108,7 @@ static void prune(neighbours *near, const sk_flocking_numbers *n) {
     near->count = kept;
 }
 
-/* Sixteen neighbours from k on. */
+/* A vector of neighbours from k on. */
 typedef struct hits {
     sk_wide3 d;
     sk_wide per, percent; // 1/distance
@@ -117,23 +117,23 @@ typedef struct hits {
 
 SK_INLINE hits hits_at(const neighbours *near, size_t k, const sk_flocking_numbers *n) {
     hits h = {.d = {wide_at(near->x + k), wide_at(near->y + k), wide_at(near->z + k)}};
-    sk_wide least = all(n->least), square = sk_dot_wide(h.d, h.d);
+    sk_wide least = sk_splat(n->least), square = sk_dot_wide(h.d, h.d);
     sk_wide distance = sk_wide_sqrt(square);
     distance = sk_select(sk_more(distance, least), distance, least);
-    h.per = all(1) / distance;
-    h.percent = distance * all(n->per_reach);
+    h.per = sk_splat(1) / distance;
+    h.percent = distance * sk_splat(n->per_reach);
     if (n->squared) h.percent *= h.percent;
     h.counts = sk_positive(square);
     if (!n->sees_all) {
         sk_vec3 u = near->heading;
-        sk_wide ahead = h.d.x * all(u.x) + h.d.y * all(u.y) + h.d.z * all(u.z);
+        sk_wide ahead = h.d.x * sk_splat(u.x) + h.d.y * sk_splat(u.y) + h.d.z * sk_splat(u.z);
         real all_round = u.x * u.x + u.y * u.y + u.z * u.z > 0 ? 0 : 1; // a particle that stands still
-        h.counts &= sk_at_most(all(n->view) * distance, ahead + all(2 * all_round) * distance);
+        h.counts &= sk_at_most(sk_splat(n->view) * distance, ahead + sk_splat(2 * all_round) * distance);
     }
     return h;
 }
 
-/* Adds what the weights make of sixteen neighbours. */
+/* Adds what the weights make of a vector of neighbours. */
 SK_INLINE void add_hits(const neighbours *near, size_t k, const hits *h, sk_wide towards, sk_wide with, sk_wide3 *sum) {
     towards = sk_keep(h->counts, towards * h->per);
     with = sk_keep(h->counts, with);
@@ -144,47 +144,52 @@ SK_INLINE void add_hits(const neighbours *near, size_t k, const hits *h, sk_wide
 
 SK_INLINE void add_near(const neighbours *near, size_t k, const sk_flocking_numbers *n, sk_wide3 *sum) {
     hits h = hits_at(near, k, n);
-    sk_wide one = all(1), half = all((real)0.5), away_to = all(n->away), along_to = all(n->along);
-    sk_wide inverse = all(n->reach) * h.per; // 1/percent
+    sk_wide one = sk_splat(1), half = sk_splat((real)0.5), away_to = sk_splat(n->away), along_to = sk_splat(n->along);
+    sk_wide inverse = sk_splat(n->reach) * h.per; // 1/percent
     if (n->squared) inverse *= inverse;
     sk_mask away = sk_more(away_to, h.percent);
     sk_mask along = sk_more(along_to, h.percent) & ~away;
     // from -0.5 to 0.5 through the zone
-    sk_wide a =
-        sk_select(along, (h.percent - away_to) * all(n->per_along), (h.percent - along_to) * all(n->per_towards)) -
-        half;
+    sk_wide a = sk_select(along, (h.percent - away_to) * sk_splat(n->per_along),
+                          (h.percent - along_to) * sk_splat(n->per_towards)) -
+                half;
     sk_wide s = a * a, cosine = half * SK_FLOCKING_COSINE(s);
     sk_wide towards = sk_select(away, one - away_to * inverse, cosine);
     add_hits(near, k, &h, sk_keep(~along, towards), sk_keep(along, one - cosine), sum);
 }
 
 /* The same with formulas: of `count` neighbours from k on, a multiple of sixteen that fits the tape's block. */
-static void add_by_formula(const neighbours *near, size_t k, size_t count, const sk_flocking_numbers *n, sk_wide3 *sum) {
+static void add_by_formula(const neighbours *near, size_t k, size_t count, const sk_flocking_numbers *n,
+                           sk_wide3 sum[SK_PARTS]) {
     const sk_pair_formula *pair = near->formulas->pair;
     sk_tape_verdict verdict[SK_PAIR_WEIGHTS];
     for (int w = 0; w < SK_PAIR_WEIGHTS; w++) {
         sk_wide *registers = near->formulas->registers[w];
         if (!pair->formula[w]) continue;
-        for (size_t i = 0; i < pair->tape[w].wides && pair->percent[w] != UINT16_MAX; i++)
-            registers[pair->percent[w] * pair->tape[w].wides + i] =
-                hits_at(near, k + (SK_LANES * i < count ? SK_LANES * i : 0), n).percent;
-        sk_tape_kernels_of[SK_THIS_ISA]->run(&pair->tape[w], registers, pair->tape[w].wides, &verdict[w]);
+        size_t vectors = pair->tape[w].wides * SK_PARTS;
+        for (size_t i = 0; i < vectors && pair->percent[w] != UINT16_MAX; i++)
+            registers[pair->percent[w] * vectors + i] =
+                hits_at(near, k + (SK_PART * i < count ? SK_PART * i : 0), n).percent;
+        sk_tape_kernels_of[SK_THIS_ISA]->run(&pair->tape[w], registers, vectors, vectors, &verdict[w]);
     }
-    for (size_t i = 0; SK_LANES * i < count; i++) {
-        hits h = hits_at(near, k + SK_LANES * i, n);
+    for (size_t i = 0; SK_PART * i < count; i++) {
+        hits h = hits_at(near, k + SK_PART * i, n);
         sk_wide weight[SK_PAIR_WEIGHTS] = {{0}, {0}};
-        for (int w = 0; w < SK_PAIR_WEIGHTS; w++)
+        for (int w = 0; w < SK_PAIR_WEIGHTS; w++) {
+            size_t vectors = pair->tape[w].wides * SK_PARTS;
             if (pair->formula[w])
-                weight[w] = sk_keep(verdict[w].finite[i],
-                                    near->formulas->registers[w][pair->tape[w].output[0] * pair->tape[w].wides + i]);
-        add_hits(near, k + SK_LANES * i, &h, weight[SK_TOWARDS], weight[SK_ALONG], sum);
+                weight[w] =
+                    sk_keep(verdict[w].finite[i], near->formulas->registers[w][pair->tape[w].output[0] * vectors + i]);
+        }
+        add_hits(near, k + SK_PART * i, &h, weight[SK_TOWARDS], weight[SK_ALONG], &sum[i % SK_PARTS]);
     }
 }
 
 /* Adds `count` neighbours from the front of the list, a multiple of sixteen. */
-SK_INLINE void add_all(const neighbours *near, size_t count, const sk_flocking_numbers *n, sk_wide3 *sum) {
+SK_INLINE void add_all(const neighbours *near, size_t count, const sk_flocking_numbers *n, sk_wide3 sum[SK_PARTS]) {
     if (!near->formulas) {
-        for (size_t k = 0; k < count; k += SK_LANES) add_near(near, k, n, sum);
+        for (size_t k = 0; k < count; k += SK_LANES)
+            for (size_t part = 0; part < SK_PARTS; part++) add_near(near, k + part * SK_PART, n, &sum[part]);
         return;
     }
     size_t block = SK_LANES * SK_TAPE_WIDES;
@@ -195,7 +200,7 @@ SK_INLINE void add_all(const neighbours *near, size_t count, const sk_flocking_n
 }
 
 /* Works out all whole sixteens, and what is left of them moves to the front. */
-SK_INLINE void work_out(neighbours *near, const sk_flocking_numbers *n, sk_wide3 *sum) {
+SK_INLINE void work_out(neighbours *near, const sk_flocking_numbers *n, sk_wide3 sum[SK_PARTS]) {
     if (n->count) {
         prune(near, n);
         return;
@@ -209,16 +214,18 @@ SK_INLINE void work_out(neighbours *near, const sk_flocking_numbers *n, sk_wide3
 
 /* Tests the listed candidates, and keeps those within reach. */
 SK_INLINE void test(const sk_cells *cells, const sk_flocking_numbers *n, sk_vec3 p, sixteen_lists *sixteens,
-                    neighbours *near, sk_wide3 *sum) {
-    sk_wide square = all(n->reach * n->reach);
-    const sk_wide3 here = {all(p.x), all(p.y), all(p.z)};
+                    neighbours *near, sk_wide3 sum[SK_PARTS]) {
+    sk_wide square = sk_splat(n->reach * n->reach);
+    const sk_wide3 here = {sk_splat(p.x), sk_splat(p.y), sk_splat(p.z)};
     const cell_copies copies = {cells->x, cells->y, cells->z, cells->ux, cells->uy, cells->uz};
     size_t count = near->count;
     for (size_t k = 0, all = sixteens->count; k < all; k++) {
         size_t place = sixteens->place[k];
-        sk_wide3 d = {wide_at(copies.x + place) - here.x, wide_at(copies.y + place) - here.y,
-                      wide_at(copies.z + place) - here.z};
-        count = keep_near(near, count, &copies, place, d, sk_dot_wide(d, d), square, sixteens->some[k]);
+        for (uint32_t some = sixteens->some[k]; some; some >>= SK_PART % 32, place += SK_PART) {
+            sk_wide3 d = {wide_at(copies.x + place) - here.x, wide_at(copies.y + place) - here.y,
+                          wide_at(copies.z + place) - here.z};
+            count = keep_near(near, count, &copies, place, d, sk_dot_wide(d, d), square, some);
+        }
         if (count < ROOM) continue;
         near->count = count;
         work_out(near, n, sum);
@@ -229,28 +236,28 @@ SK_INLINE void test(const sk_cells *cells, const sk_flocking_numbers *n, sk_vec3
 }
 
 /* The steering of one particle at p. */
-SK_INLINE sk_vec3 steer(const sk_cells *cells, const nine_lines *rows, const sk_flocking_numbers *n, sk_vec3 p,
+SK_INLINE sk_vec3 steer(const sk_cells *cells, const nine_lines *lines, const sk_flocking_numbers *n, sk_vec3 p,
                         neighbours *near) {
     nine_ranges ranges;
-    find_ranges(cells, rows, p, n->reach, &ranges);
+    find_ranges(cells, lines, p, n->reach, &ranges);
     sixteen_lists sixteens;
     sixteens.count = 0;
-    sk_wide3 sum = {{0}, {0}, {0}};
+    sk_wide3 sum[SK_PARTS] = {{{0}, {0}, {0}}};
     near->count = 0;
     // rows of over 32 are few: twice without asking
     list(&ranges, &sixteens);
     list(&ranges, &sixteens);
     while (list(&ranges, &sixteens))
-        if (sixteens.count >= SIXTEENS) test(cells, n, p, &sixteens, near, &sum);
-    test(cells, n, p, &sixteens, near, &sum);
+        if (sixteens.count >= SIXTEENS) test(cells, n, p, &sixteens, near, sum);
+    test(cells, n, p, &sixteens, near, sum);
     if (n->count) prune(near, n);
     // fill up with neighbours in the same place, which add nothing
-    const sk_wide none = {0};
-    memcpy(near->x + near->count, &none, sizeof none), memcpy(near->y + near->count, &none, sizeof none);
-    memcpy(near->z + near->count, &none, sizeof none), memcpy(near->ux + near->count, &none, sizeof none);
-    memcpy(near->uy + near->count, &none, sizeof none), memcpy(near->uz + near->count, &none, sizeof none);
-    add_all(near, (near->count + SK_LANES - 1) / SK_LANES * SK_LANES, n, &sum);
-    return sk_v3(sk_sum(sum.x), sk_sum(sum.y), sk_sum(sum.z));
+    real *lists[] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
+    for (int i = 0; i < 6; i++) memset(lists[i] + near->count, 0, SK_LANES * sizeof(real));
+    add_all(near, (near->count + SK_LANES - 1) / SK_LANES * SK_LANES, n, sum);
+    sk_wide x[SK_PARTS], y[SK_PARTS], z[SK_PARTS];
+    for (int i = 0; i < SK_PARTS; i++) x[i] = sum[i].x, y[i] = sum[i].y, z[i] = sum[i].z;
+    return sk_v3(sk_sum(x), sk_sum(y), sk_sum(z));
 }
 
 SK_INLINE sk_vec3 heading_of(sk_vec4 v) {
@@ -266,7 +273,7 @@ static void fly(sk_run *run, const sk_row *row, size_t begin, size_t end, weight
     const sk_cells *cells = run->cells;
     bool among = force->moved.first == force->seen.first && force->moved.end == force->seen.end;
     real scale = (real)(row->dt * params->strength);
-    nine_lines rows = rows_of(cells);
+    nine_lines lines = lines_of(cells);
     neighbours near;
     near.formulas = formulas;
     if (!cells->count) return; // nobody is near, or there is no memory for the cells
@@ -279,7 +286,7 @@ static void fly(sk_run *run, const sk_row *row, size_t begin, size_t end, weight
                           : sk_xyz(sk_load(run->vector[SK_X], row->packed, slot));
         near.heading = sk_v3(0, 0, 0);
         if (!numbers.sees_all) near.heading = heading_of(sk_load(run->vector[SK_V], row->packed, slot));
-        sk_add_at(run->vector[row->dst], row->packed, slot, sk_scale(scale, steer(cells, &rows, &numbers, p, &near)));
+        sk_add_at(run->vector[row->dst], row->packed, slot, sk_scale(scale, steer(cells, &lines, &numbers, p, &near)));
     }
 }
 
@@ -289,7 +296,8 @@ static void fly_by_formula(sk_run *run, const sk_row *row, size_t begin, size_t 
     sk_tape_input input = {.time = (real)run->time};
     for (int w = 0; w < SK_PAIR_WEIGHTS; w++)
         if (formulas.pair->formula[w])
-            sk_tape_kernels_of[SK_THIS_ISA]->begin(&formulas.pair->tape[w], &input, formulas.registers[w]);
+            sk_tape_kernels_of[SK_THIS_ISA]->begin(&formulas.pair->tape[w], &input, formulas.registers[w],
+                                                   formulas.pair->tape[w].wides * SK_PARTS);
     fly(run, row, begin, end, &formulas);
 }
 

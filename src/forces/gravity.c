@@ -14,15 +14,15 @@ SK_KERNELS(sk_row_kernel, kernel);
 void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const gravity_params *params = ((const sk_force *)row->rule)->params;
     sk_vec3 g = sk_v3_of(params->acceleration);
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide mass = sk_load_block(run->vector[SK_V], slot, packed).w;
+        sk_wide mass = sk_load_part(run->vector[SK_V], slot, packed).w;
         sk_wide4 f = {0};
-        if (!row->sets) f = sk_load_block(run->vector[row->dst], slot, packed);
+        if (!row->sets) f = sk_load_part(run->vector[row->dst], slot, packed);
         f.x += mass * g.x;
         f.y += mass * g.y;
         f.z += mass * g.z;
-        sk_store_block(run->vector[row->dst], slot, packed, f);
+        sk_store_part(run->vector[row->dst], slot, packed, f);
     }
 }
 

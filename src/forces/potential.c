@@ -30,18 +30,18 @@ SK_INLINE sk_wide weight(const potential_params *params, sk_wide mass) {
 void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const potential_params *params = ((const sk_force *)row->rule)->params;
     double time = run->time - row->before;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
         sk_wide out[SK_POINTWISE_MOST_OUTPUTS];
         sk_mask guarded;
-        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed), f = {0};
-        sk_wide mass = sk_load_block(run->vector[SK_V], slot, packed).w;
+        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), f = {0};
+        sk_wide mass = sk_load_part(run->vector[SK_V], slot, packed).w;
         sk_wide3 p = {x.x, x.y, x.z};
         sk_pointwise_run_of[SK_THIS_ISA](params->slope, params->parameter, time, &p, NULL, out, &guarded);
         sk_wide m = weight(params, mass);
-        if (!row->sets) f = sk_load_block(run->vector[row->dst], slot, packed);
+        if (!row->sets) f = sk_load_part(run->vector[row->dst], slot, packed);
         f.x -= m * out[0], f.y -= m * out[1], f.z -= m * out[2];
-        sk_store_block(run->vector[row->dst], slot, packed, f);
+        sk_store_part(run->vector[row->dst], slot, packed, f);
     }
 }
 
@@ -51,8 +51,8 @@ SK_INLINE stiffness_block curve(sk_run *run, const sk_row *row, size_t slot) {
     bool packed = slot < row->packed;
     sk_wide out[SK_POINTWISE_MOST_OUTPUTS];
     sk_mask guarded;
-    sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
-    sk_wide mass = sk_load_block(run->vector[SK_V], slot, packed).w;
+    sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
+    sk_wide mass = sk_load_part(run->vector[SK_V], slot, packed).w;
     sk_wide3 p = {x.x, x.y, x.z};
     sk_pointwise_run_of[SK_THIS_ISA](params->curvature, params->parameter, run->time - row->before, &p, NULL, out,
                                      &guarded);
@@ -63,14 +63,14 @@ SK_INLINE stiffness_block curve(sk_run *run, const sk_row *row, size_t slot) {
 }
 
 void SK_KERNEL(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         stiffness_block block = curve(run, row, slot);
         add_product(run, row, slot, &block);
     }
 }
 
 void SK_KERNEL(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         stiffness_block block = curve(run, row, slot);
         add_block(run, row, slot, &block);
     }

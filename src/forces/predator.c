@@ -30,23 +30,23 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end)
     real along = sk_length(line), square_reach = (real)(params->radius * params->radius);
     line = along > 0 && !flies ? sk_scale(1 / along, line) : sk_v3(0, 0, 0);
     real dv = (real)(row->dt * params->strength), alarm = (real)params->alarm;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed);
-        sk_wide4 s = sk_load_block(run->vector[row->dst], slot, packed);
+        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
+        sk_wide4 s = sk_load_part(run->vector[row->dst], slot, packed);
         sk_wide3 d = {at.x - x.x, at.y - x.y, at.z - x.z};
         sk_wide depth = d.x * line.x + d.y * line.y + d.z * line.z;
         d.x -= depth * line.x, d.y -= depth * line.y, d.z -= depth * line.z;
         sk_wide square = sk_dot_wide(d, d);
         sk_mask near = sk_more(sk_splat(square_reach), square) &
                        sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot);
-        if (flies && own - slot < SK_LANES) near[own - slot] = 0;
+        if (flies && own - slot < SK_PART) near[own - slot] = 0;
         if (!sk_any(near)) continue;
         sk_mask apart = near & sk_positive(square); // right on it there is no way to flee
-        sk_wide k = sk_keep(apart, dv * (square / square_reach - (real)1) / sk_wide_sqrt(square));
-        s.x += k * d.x, s.y += k * d.y, s.z += k * d.z;
-        s.w += sk_keep(near, sk_splat(alarm));
-        sk_store_block(run->vector[row->dst], slot, packed, s);
+        sk_wide k = dv * (square / square_reach - (real)1) / sk_wide_sqrt(square);
+        s.x = sk_plus_where(apart, s.x, k * d.x), s.y = sk_plus_where(apart, s.y, k * d.y);
+        s.z = sk_plus_where(apart, s.z, k * d.z), s.w = sk_plus_where(near, s.w, sk_splat(alarm));
+        sk_store_part(run->vector[row->dst], slot, packed, s);
     }
 }
 

@@ -15,11 +15,11 @@ SK_KERNELS(sk_row_kernel, kernel);
 void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_force *force = row->rule;
     const speed_limit_params *params = force->params;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 v = sk_load_block(run->vector[SK_V], slot, packed);
+        sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         sk_wide most = sk_splat((real)params->limit);
-        if (row->source[2] != SK_NONE) most += sk_load_block(run->vector[row->source[2]], slot, packed).w;
+        if (row->source[2] != SK_NONE) most += sk_load_part(run->vector[row->source[2]], slot, packed).w;
         most = sk_keep(sk_positive(most), most);
         sk_wide square = v.x * v.x + v.y * v.y + v.z * v.z;
         sk_mask over =
@@ -27,7 +27,7 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end)
         if (!sk_any(over)) continue;
         sk_wide k = sk_select(over, most / sk_wide_sqrt(square), sk_splat(1));
         v.x *= k, v.y *= k, v.z *= k;
-        sk_store_block(run->vector[SK_V], slot, packed, v);
+        sk_store_part(run->vector[SK_V], slot, packed, v);
     }
 }
 

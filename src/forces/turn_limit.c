@@ -64,12 +64,12 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end)
     bool turns = row->source[2] != SK_NONE && angle < 3.14159, climbs = params->climb < 90;
     sk_sincos(turns ? angle : 0, &turn_sine, &turn_cosine);
     sk_sincos(params->climb * radian, &climb_sine, &climb_cosine);
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 v = sk_load_block(run->vector[SK_V], slot, packed);
+        sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         sk_mask moved = sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot);
         if (turns) {
-            sk_wide4 s = sk_load_block(run->vector[row->source[2]], slot, packed);
+            sk_wide4 s = sk_load_part(run->vector[row->source[2]], slot, packed);
             sk_wide3 before = {v.x - s.x, v.y - s.y, v.z - s.z};
             turn(&v, before, (real)turn_cosine, (real)turn_sine, moved);
         }

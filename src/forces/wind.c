@@ -14,13 +14,13 @@ SK_KERNELS(sk_row_kernel, kernel);
 void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const wind_params *params = ((const sk_force *)row->rule)->params;
     sk_vec3 force = sk_v3_of(params->force);
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 f = sk_load_block(run->vector[row->dst], slot, packed);
+        sk_wide4 f = sk_load_part(run->vector[row->dst], slot, packed);
         f.x += force.x;
         f.y += force.y;
         f.z += force.z;
-        sk_store_block(run->vector[row->dst], slot, packed, f);
+        sk_store_part(run->vector[row->dst], slot, packed, f);
     }
 }
 

@@ -26,21 +26,21 @@ static void pow_of(const real *x, const real *y, real *out, size_t count) {
     for (size_t i = 0; i < count; i++) out[i] = sk_pow(x[i], y[i]);
 }
 #else
-#define ON_ARRAYS(name_)                                              \
-    static void name_##_of(const real *x, real *out, size_t count) {  \
-        native a;                                                     \
-        for (size_t i = 0; i < count; i += sizeof a / sizeof(real)) { \
-            memcpy(&a, x + i, sizeof a);                              \
-            a = lane_##name_(a);                                      \
-            memcpy(out + i, &a, sizeof a);                            \
-        }                                                             \
+#define ON_ARRAYS(name_)                                             \
+    static void name_##_of(const real *x, real *out, size_t count) { \
+        sk_wide a;                                                   \
+        for (size_t i = 0; i < count; i += SK_PART) {                \
+            memcpy(&a, x + i, sizeof a);                             \
+            a = sk_wide_##name_(a);                                  \
+            memcpy(out + i, &a, sizeof a);                           \
+        }                                                            \
     }
 static void atan2_of(const real *y, const real *x, real *out, size_t count) {
-    native a, b;
-    for (size_t i = 0; i < count; i += sizeof a / sizeof(real)) {
+    sk_wide a, b;
+    for (size_t i = 0; i < count; i += SK_PART) {
         memcpy(&a, y + i, sizeof a);
         memcpy(&b, x + i, sizeof b);
-        a = lane_atan2(a, b);
+        a = sk_wide_atan2(a, b);
         memcpy(out + i, &a, sizeof a);
     }
 }

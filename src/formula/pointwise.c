@@ -24,8 +24,8 @@ void SK_KERNEL(run)(const sk_pointwise *pointwise, const double *parameters, dou
     real number[SKEIN_FORMULA_MOST_PARAMETERS];
     const real *parameter[SKEIN_FORMULA_MOST_PARAMETERS];
     for (int i = 0; i < pointwise->parameters; i++) number[i] = (real)parameters[i], parameter[i] = &number[i];
-    kernels->begin(tape, &(sk_tape_input){.parameter = parameter, .uniform = UINT64_MAX, .time = (real)time},
-                   registers);
+    kernels->begin(tape, &(sk_tape_input){.parameter = parameter, .uniform = UINT64_MAX, .time = (real)time}, registers,
+                   1);
     for (size_t l = 0; l < tape->loads.count; l++) {
         const sk_tape_load *load = &tape->loads.data[l];
         const sk_wide3 *from = load->source == SK_TAPE_POSITION ? p : load->source == SK_TAPE_VELOCITY ? v : NULL;
@@ -33,7 +33,7 @@ void SK_KERNEL(run)(const sk_pointwise *pointwise, const double *parameters, dou
         sk_wide *to = registers + load->to;
         to[0] = from->x, to[1] = from->y, to[2] = from->z;
     }
-    kernels->run(tape, registers, 1, &verdict);
+    kernels->run(tape, registers, 1, 1, &verdict);
     // a force that is over what fields take would leave the format with a few substeps
     sk_mask good = verdict.finite[0];
     for (size_t k = 0; k < tape->outputs; k++)

@@ -1,5 +1,5 @@
-/* A formula on one particle, as colliders and forces run it: sixteen places at a time, in the middle of whoever asks.
- * Made from a text field (parameters.h) when its object is; not changed by running, so threads share one. */
+/* A formula on one particle, as colliders and forces run it: a vector of places at a time, in the middle of whoever
+ * asks. Made from a text field (parameters.h) when its object is; not changed by running, so threads share one. */
 #ifndef SK_FORMULA_POINTWISE_H
 #define SK_FORMULA_POINTWISE_H
 
@@ -32,8 +32,8 @@ skein_status sk_pointwise_create(const char *field, const char *text, skein_form
                                  sk_allocator *allocator, sk_pointwise **made, skein_error *error);
 void sk_pointwise_destroy(sk_pointwise *pointwise, sk_allocator *allocator); /* NULL is allowed */
 
-/* Sixteen places (`v` may be NULL where the formula takes no velocities); output k into out[k]. Lanes with an output
- * that is not finite, or over SK_FAR, get 0s and count as guarded. */
+/* As many places as a vector has (`v` may be NULL where the formula takes no velocities); output k into out[k]. Lanes
+ * with an output that is not finite, or over SK_FAR, get 0s and count as guarded. */
 typedef void sk_pointwise_run(const sk_pointwise *pointwise, const double *parameters, double time, const sk_wide3 *p,
                               const sk_wide3 *v, sk_wide *out, sk_mask *guarded);
 extern sk_pointwise_run *const sk_pointwise_run_of[SK_ISA_COUNT];

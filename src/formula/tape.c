@@ -259,7 +259,7 @@ static void build(builder *b, const sk_node *outputs, size_t output_count) {
 
 skein_status sk_tape_create(sk_tape *tape, const sk_graph *graph, const sk_node *outputs, size_t output_count,
                             sk_allocator *allocator, skein_error *error) {
-    const size_t most = SK_TAPE_MEMORY / sizeof(sk_wide), cached = most * 3 / 4;
+    const size_t most = SK_TAPE_MEMORY / (SK_LANES * sizeof(real)), cached = most * 3 / 4;
     *tape = (sk_tape){.allocator = allocator};
     builder b = {.graph = graph, .tape = tape};
     build(&b, outputs, output_count);

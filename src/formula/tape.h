@@ -86,20 +86,21 @@ typedef struct sk_tape_input {
 /* What a run leaves besides its registers: for each lane, whether a guard acted, and whether the sum of all outputs is
  * finite. An element whose sum is not should be left out. */
 typedef struct sk_tape_verdict {
-    sk_mask guarded[SK_TAPE_WIDES], finite[SK_TAPE_WIDES];
+    sk_mask guarded[SK_TAPE_WIDES * SK_PARTS], finite[SK_TAPE_WIDES * SK_PARTS];
 } sk_tape_verdict;
 
-/* A tape's parts, for kernels that go on with what is in its registers: register r's wide number i is
- * registers[r * tape->wides + i]. `begin` comes once, `load` and `run` for each block of at most 16 * tape->wides
- * elements; lanes past `count` repeat the last element. */
+/* A tape's parts, for kernels that go on with what is in its registers. A register has `vectors` vectors, the same in
+ * all calls: tape->wides * SK_PARTS for blocks of elements, and 1 will do where there are no more than SK_PART of them;
+ * register r's number i is registers[r * vectors + i]. `begin` comes once, then `run` for each block. */
 typedef struct sk_tape_kernels {
-    void (*begin)(const sk_tape *tape, const sk_tape_input *input, sk_wide *registers);
-    void (*load)(const sk_tape *tape, const sk_tape_input *input, size_t element, size_t count, sk_wide *registers);
-    /* The first `count` wides of the block, and perhaps more; the verdict is on these. */
-    void (*run)(const sk_tape *tape, sk_wide *registers, size_t count, sk_tape_verdict *verdict);
+    void (*begin)(const sk_tape *tape, const sk_tape_input *input, sk_wide *registers, size_t vectors);
+    /* The first `count` vectors of each register, and perhaps more; the verdict is on these. */
+    void (*run)(const sk_tape *tape, sk_wide *registers, size_t vectors, size_t count, sk_tape_verdict *verdict);
     /* Everything, for elements [begin, end): output k of element e into outputs[k][e]. Elements that are not finite
      * give 0s. Returns how many elements were guarded or not finite. */
     size_t (*evaluate)(const sk_tape *tape, const sk_tape_input *input, size_t begin, size_t end, real *const *outputs);
+    /* The same work without the last part, as the benchmark times it. */
+    void (*work)(const sk_tape *tape, const sk_tape_input *input, size_t begin, size_t end);
 } sk_tape_kernels;
 
 extern const sk_tape_kernels *const sk_tape_kernels_of[SK_ISA_COUNT];

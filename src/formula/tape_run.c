@@ -90,10 +90,10 @@ FUNCTION(pow, guarded_pow(x[i], y[i], &guarded[i]))
 
 /* ---- instructions ---- */
 
-#define FROM(k_) (registers + instruction->from[k_] * wides)[i]
-#define CALL(name_)                                                                                               \
-    each_##name_(to, registers + instruction->from[0] * wides, registers + instruction->from[1] * wides, guarded, \
-                 count);                                                                                          \
+#define FROM(k_) (registers + instruction->from[k_] * vectors)[i]
+#define CALL(name_)                                                                                                   \
+    each_##name_(to, registers + instruction->from[0] * vectors, registers + instruction->from[1] * vectors, guarded, \
+                 count);                                                                                              \
     break
 #define A(k_) FROM(k_)
 #define P(k_) (FROM(k_) * FROM((k_) + 1))
@@ -130,12 +130,12 @@ FUNCTION(pow, guarded_pow(x[i], y[i], &guarded[i]))
     MINUS3(1, A, A, P) \
     MINUS3(2, A, P, A) MINUS3(3, A, P, P) MINUS3(4, P, A, A) MINUS3(5, P, A, P) MINUS3(6, P, P, A) MINUS3(7, P, P, P)
 
-/* The first `count` wides of a block. `wides` and `count` are known where this is inlined. */
-SK_INLINE void run_code(const sk_tape *tape, sk_wide *registers, sk_mask *guarded, const size_t wides,
+/* The first `count` vectors of a block. `vectors` and `count` are known where this is inlined. */
+SK_INLINE void run_code(const sk_tape *tape, sk_wide *registers, sk_mask *guarded, const size_t vectors,
                         const size_t count) {
     for (size_t at = 0; at < tape->code.count; at++) {
         const sk_instruction *instruction = &tape->code.data[at];
-        sk_wide *to = registers + instruction->to * wides;
+        sk_wide *to = registers + instruction->to * vectors;
         switch (instruction->op) {
             SUMS(SUM2)
             SUMS(SUM3_OF)
@@ -162,112 +162,97 @@ SK_INLINE void run_code(const sk_tape *tape, sk_wide *registers, sk_mask *guarde
 
 /* Infinities and NaN go through sums; what is only so large that the sum overflows is left out, too. Four sums are
  * variables, since compilers keep an array of them in memory. */
-SK_INLINE void judge(const sk_tape *tape, const sk_wide *registers, sk_mask *finite, const size_t wides,
+SK_INLINE void judge(const sk_tape *tape, const sk_wide *registers, sk_mask *finite, const size_t vectors,
                      const size_t count) {
     const sk_wide zero = {0};
     size_t i = 0;
     for (; i + 4 <= count; i += 4) {
         sk_wide a = zero, b = zero, c = zero, d = zero;
         for (size_t k = 0; k < tape->outputs; k++) {
-            const sk_wide *from = registers + tape->output[k] * wides + i;
+            const sk_wide *from = registers + tape->output[k] * vectors + i;
             a += from[0], b += from[1], c += from[2], d += from[3];
         }
         finite[i] = ~sk_differ(a - a, zero), finite[i + 1] = ~sk_differ(b - b, zero);
         finite[i + 2] = ~sk_differ(c - c, zero), finite[i + 3] = ~sk_differ(d - d, zero);
     }
-    for (; i < count; i++) {
+    for (size_t left = count % 4; left; left--, i++) {
         sk_wide sum = zero;
-        for (size_t k = 0; k < tape->outputs; k++) sum += registers[tape->output[k] * wides + i];
+        for (size_t k = 0; k < tape->outputs; k++) sum += registers[tape->output[k] * vectors + i];
         finite[i] = ~sk_differ(sum - sum, zero);
     }
 }
 
-SK_INLINE void run_and_judge(const sk_tape *tape, sk_wide *registers, sk_tape_verdict *verdict, const size_t wides,
+SK_INLINE void run_and_judge(const sk_tape *tape, sk_wide *registers, sk_tape_verdict *verdict, const size_t vectors,
                              const size_t count) {
     for (size_t i = 0; i < count; i++) verdict->guarded[i] = (sk_mask){0};
-    run_code(tape, registers, verdict->guarded, wides, count);
-    if (!tape->unjudged) judge(tape, registers, verdict->finite, wides, count);
+    run_code(tape, registers, verdict->guarded, vectors, count);
+    if (!tape->unjudged) judge(tape, registers, verdict->finite, vectors, count);
 }
 
-static void run(const sk_tape *tape, sk_wide *registers, size_t count, sk_tape_verdict *verdict) {
-    enum { MOST = SK_TAPE_WIDES, HALF = SK_TAPE_WIDES / 2 };
-    if (tape->wides == MOST && count > HALF) run_and_judge(tape, registers, verdict, MOST, MOST);
-    else if (tape->wides == MOST) run_and_judge(tape, registers, verdict, MOST, HALF);
-    else if (tape->wides == HALF) run_and_judge(tape, registers, verdict, HALF, HALF);
-    else if (tape->wides == 1) run_and_judge(tape, registers, verdict, 1, 1); // within a kernel: pointwise.h
-    else run_and_judge(tape, registers, verdict, tape->wides, count);
+static void run(const sk_tape *tape, sk_wide *registers, size_t vectors, size_t count, sk_tape_verdict *verdict) {
+    enum { MOST = SK_TAPE_WIDES * SK_PARTS, HALF = MOST / 2 };
+    if (vectors == MOST && count > HALF) run_and_judge(tape, registers, verdict, MOST, MOST);
+    else if (vectors == MOST) run_and_judge(tape, registers, verdict, MOST, HALF);
+    else if (vectors == HALF) run_and_judge(tape, registers, verdict, HALF, HALF);
+    else if (vectors == 1) run_and_judge(tape, registers, verdict, 1, 1); // within a kernel: pointwise.h
+    else run_and_judge(tape, registers, verdict, vectors, count);
 }
 
 /* ---- in and out ---- */
 
-static void begin_block(const sk_tape *tape, const sk_tape_input *input, sk_wide *registers) {
-    const size_t wides = tape->wides;
+static void begin_block(const sk_tape *tape, const sk_tape_input *input, sk_wide *registers, size_t vectors) {
     for (size_t c = 0; c < tape->constants.count; c++)
-        for (size_t i = 0; i < wides; i++)
-            registers[tape->constants.data[c].to * wides + i] = sk_splat(tape->constants.data[c].value);
+        for (size_t i = 0; i < vectors; i++)
+            registers[tape->constants.data[c].to * vectors + i] = sk_splat(tape->constants.data[c].value);
     for (size_t l = 0; l < tape->loads.count; l++) {
         const sk_tape_load *load = &tape->loads.data[l];
         bool uniform = load->source == SK_TAPE_PARAMETER && (input->uniform >> load->index & 1);
         if (!uniform && load->source != SK_TAPE_TIME) continue;
         real value = uniform ? input->parameter[load->index][0] : input->time;
-        for (size_t i = 0; i < wides; i++) registers[load->to * wides + i] = sk_splat(value);
+        for (size_t i = 0; i < vectors; i++) registers[load->to * vectors + i] = sk_splat(value);
     }
 }
 
-/* Sixteen elements' particle. */
-SK_INLINE sk_wide4 fetch(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
-    if (!packed) return sk_gather(vector, slot);
-    real lane[3][SK_LANES];
-    for (int l = 0; l < SK_LANES; l++) {
-        sk_vec4 one = sk_load(vector, packed, slot[l]);
-        lane[0][l] = one.x, lane[1][l] = one.y, lane[2][l] = one.z;
-    }
-    sk_wide4 out = {0};
-    memcpy(&out.x, lane[0], sizeof out.x);
-    memcpy(&out.y, lane[1], sizeof out.y);
-    memcpy(&out.z, lane[2], sizeof out.z);
-    return out;
-}
-
-static void load(const sk_tape *tape, const sk_tape_input *input, size_t element, size_t count, sk_wide *registers) {
-    const size_t wides = tape->wides;
+/* Elements [element, element + count) into the registers that want them; lanes past them repeat the last. */
+static void load(const sk_tape *tape, const sk_tape_input *input, size_t element, size_t count, sk_wide *registers,
+                 size_t vectors) {
     for (size_t l = 0; l < tape->loads.count; l++) {
         const sk_tape_load load = tape->loads.data[l];
-        sk_wide *to = registers + load.to * wides;
+        sk_wide *to = registers + load.to * vectors;
         if (load.source == SK_TAPE_TIME || (load.source == SK_TAPE_PARAMETER && (input->uniform >> load.index & 1)))
             continue;
-        for (size_t i = 0; i < wides; i++) {
-            // the last, partial sixteen repeat their last element; all that follow repeat it, too
-            size_t first = element + SK_LANES * i, left = SK_LANES * i < count ? count - SK_LANES * i : 0;
-            bool whole = left >= SK_LANES;
+        for (size_t i = 0; i < vectors; i++) {
+            // the last, partial vector repeats its last element; all that follow repeat it, too
+            size_t first = element + SK_PART * i, left = SK_PART * i < count ? count - SK_PART * i : 0;
+            bool whole = left >= SK_PART;
             if (load.source == SK_TAPE_PARAMETER) {
                 const real *from = input->parameter[load.index];
-                real lane[SK_LANES];
-                for (size_t k = 0; k < SK_LANES && !whole; k++)
+                real lane[SK_PART];
+                for (size_t k = 0; k < SK_PART && !whole; k++)
                     lane[k] = from[k < left ? first + k : element + count - 1];
                 memcpy(to + i, whole ? from + first : lane, sizeof *to);
                 continue;
             }
             const uint32_t *slot = input->slot[load.index];
-            uint32_t lane[SK_LANES];
-            for (size_t k = 0; k < SK_LANES && !whole; k++) lane[k] = slot[k < left ? first + k : element + count - 1];
+            uint32_t lane[SK_PART];
+            for (size_t k = 0; k < SK_PART && !whole; k++) lane[k] = slot[k < left ? first + k : element + count - 1];
             const sk_vec4 *vector = load.source == SK_TAPE_POSITION ? input->positions : input->velocities;
-            sk_wide4 got = fetch(vector, input->packed, whole ? slot + first : lane);
-            to[i] = got.x, to[wides + i] = got.y, to[2 * wides + i] = got.z;
+            sk_wide4 got = sk_gather_any(vector, input->packed, whole ? slot + first : lane);
+            to[i] = got.x, to[vectors + i] = got.y, to[2 * vectors + i] = got.z;
         }
     }
 }
 
-static void store(const sk_tape *tape, const sk_wide *registers, const sk_tape_verdict *verdict, size_t element,
-                  size_t count, real *const *outputs) {
+static void store(const sk_tape *tape, const sk_wide *registers, size_t vectors, const sk_tape_verdict *verdict,
+                  size_t element, size_t count, real *const *outputs) {
     for (size_t k = 0; k < tape->outputs; k++) {
-        const sk_wide *from = registers + tape->output[k] * tape->wides;
-        for (size_t i = 0; SK_LANES * i < count; i++) {
-            size_t left = count - SK_LANES * i;
+        const sk_wide *from = registers + tape->output[k] * vectors;
+        for (size_t i = 0; SK_PART * i < count; i++) {
+            size_t left = count - SK_PART * i;
             sk_wide out = sk_keep(verdict->finite[i], from[i]);
-            real *to = outputs[k] + element + SK_LANES * i;
+            real *to = outputs[k] + element + SK_PART * i;
             // of a size that is known, it is a store
-            if (left >= SK_LANES) memcpy(to, &out, sizeof out);
+            if (left >= SK_PART) memcpy(to, &out, sizeof out);
             else memcpy(to, &out, left * sizeof(real));
         }
     }
@@ -275,31 +260,42 @@ static void store(const sk_tape *tape, const sk_wide *registers, const sk_tape_v
 
 static size_t count_guarded(const sk_tape_verdict *verdict, size_t count) {
     size_t guarded = 0;
-    for (size_t i = 0; SK_LANES * i < count; i++) {
+    for (size_t i = 0; SK_PART * i < count; i++) {
         sk_mask mask = verdict->guarded[i] | ~verdict->finite[i];
         if (!sk_any(mask)) continue;
-        for (size_t l = 0; l < SK_LANES && SK_LANES * i + l < count; l++) guarded += mask[l] != 0;
+        for (size_t l = 0; l < SK_PART && SK_PART * i + l < count; l++) guarded += mask[l] != 0;
+    }
+    return guarded;
+}
+
+/* Elements [begin, end) block by block; into outputs, if there are any. */
+SK_INLINE size_t go_through(const sk_tape *tape, const sk_tape_input *input, size_t begin, size_t end,
+                            real *const *outputs) {
+    sk_wide registers[SK_TAPE_MEMORY / sizeof(sk_wide)];
+    sk_tape_verdict verdict;
+    size_t block = SK_LANES * tape->wides, vectors = tape->wides * SK_PARTS, guarded = 0;
+    begin_block(tape, input, registers, vectors);
+    for (size_t element = begin; element < end; element += block) {
+        size_t count = end - element < block ? end - element : block;
+        load(tape, input, element, count, registers, vectors);
+        run(tape, registers, vectors, (count + SK_PART - 1) / SK_PART, &verdict);
+        if (!outputs) continue;
+        store(tape, registers, vectors, &verdict, element, count, outputs);
+        guarded += count_guarded(&verdict, count);
     }
     return guarded;
 }
 
 static size_t evaluate(const sk_tape *tape, const sk_tape_input *input, size_t begin, size_t end,
                        real *const *outputs) {
-    sk_wide registers[SK_TAPE_MEMORY / sizeof(sk_wide)];
-    sk_tape_verdict verdict;
-    size_t block = SK_LANES * tape->wides, guarded = 0;
-    begin_block(tape, input, registers);
-    for (size_t element = begin; element < end; element += block) {
-        size_t count = end - element < block ? end - element : block;
-        load(tape, input, element, count, registers);
-        run(tape, registers, (count + SK_LANES - 1) / SK_LANES, &verdict);
-        store(tape, registers, &verdict, element, count, outputs);
-        guarded += count_guarded(&verdict, count);
-    }
-    return guarded;
+    return go_through(tape, input, begin, end, outputs);
 }
 
-const sk_tape_kernels SK_KERNEL(kernels) = {begin_block, load, run, evaluate};
+static void work(const sk_tape *tape, const sk_tape_input *input, size_t begin, size_t end) {
+    go_through(tape, input, begin, end, NULL);
+}
+
+const sk_tape_kernels SK_KERNEL(kernels) = {begin_block, run, evaluate, work};
 
 #else
 

@@ -22,36 +22,40 @@ SK_INLINE sk_mask pull_in(sk_wide3 *p, sk_wide3 anchor, sk_wide most) {
     return out;
 }
 
-/* One number of anchor k of a block, lane by lane; `offset` is its place in an sk_anchor. */
-SK_INLINE sk_wide of_anchor(const sk_limit *limit, size_t block, size_t k, size_t offset) {
-    const uint32_t *pin = limit->pin_of + (limit->shared ? k : (block * limit->anchors + k) * SK_LANES);
+/* Where what belongs to anchor k is in a list by blocks, for a part that begins `at` slots after the first. */
+SK_INLINE size_t place_of(const sk_limit *limit, size_t at, size_t k) {
+    return (at / SK_LANES * limit->anchors + k) * SK_LANES + at % SK_LANES;
+}
+
+/* One number of anchor k of a part, lane by lane; `offset` is its place in an sk_anchor. */
+SK_INLINE sk_wide of_anchor(const sk_limit *limit, size_t at, size_t k, size_t offset) {
+    const uint32_t *pin = limit->pin_of + (limit->shared ? k : place_of(limit, at, k));
     const real *number = (const real *)(const void *)limit->pins + offset;
     enum { STRIDE = sizeof(sk_anchor) / sizeof(real) };
     if (limit->shared) return sk_splat(number[pin[0] * STRIDE]);
     sk_wide all;
-    for (int l = 0; l < SK_LANES; l++) all[l] = number[pin[l] * STRIDE];
+    for (int l = 0; l < SK_PART; l++) all[l] = number[pin[l] * STRIDE];
     return all;
 }
 
 #define NUMBER_OF(member) (offsetof(sk_anchor, member) / sizeof(real))
 
-SK_INLINE sk_wide3 velocity_of(const sk_limit *limit, size_t block, size_t k) {
-    return (sk_wide3){of_anchor(limit, block, k, NUMBER_OF(velocity.x)),
-                      of_anchor(limit, block, k, NUMBER_OF(velocity.y)),
-                      of_anchor(limit, block, k, NUMBER_OF(velocity.z))};
+SK_INLINE sk_wide3 velocity_of(const sk_limit *limit, size_t at, size_t k) {
+    return (sk_wide3){of_anchor(limit, at, k, NUMBER_OF(velocity.x)), of_anchor(limit, at, k, NUMBER_OF(velocity.y)),
+                      of_anchor(limit, at, k, NUMBER_OF(velocity.z))};
 }
 
-/* Anchor k of a block, `since` seconds after the start of the step. One that is not held any more lets go. */
-SK_INLINE sk_wide3 anchor_of(const sk_limit *limit, size_t block, size_t k, real since, sk_wide *most) {
-    sk_wide3 at = {of_anchor(limit, block, k, NUMBER_OF(start.x)), of_anchor(limit, block, k, NUMBER_OF(start.y)),
-                   of_anchor(limit, block, k, NUMBER_OF(start.z))};
+/* Anchor k of a part, `since` seconds after the start of the step. One that is not held any more lets go. */
+SK_INLINE sk_wide3 anchor_of(const sk_limit *limit, size_t at, size_t k, real since, sk_wide *most) {
+    sk_wide3 from = {of_anchor(limit, at, k, NUMBER_OF(start.x)), of_anchor(limit, at, k, NUMBER_OF(start.y)),
+                     of_anchor(limit, at, k, NUMBER_OF(start.z))};
     if (limit->lets_go) {
-        sk_mask free = sk_positive(of_anchor(limit, block, k, NUMBER_OF(free)));
+        sk_mask free = sk_positive(of_anchor(limit, at, k, NUMBER_OF(free)));
         *most = sk_select(free, sk_splat((real)SK_FAR), *most);
     }
-    if (!limit->moves) return at;
-    sk_wide3 v = velocity_of(limit, block, k);
-    return (sk_wide3){at.x + since * v.x, at.y + since * v.y, at.z + since * v.z};
+    if (!limit->moves) return from;
+    sk_wide3 v = velocity_of(limit, at, k);
+    return (sk_wide3){from.x + since * v.x, from.y + since * v.y, from.z + since * v.z};
 }
 
 /* The anchors that pulled at a lane, added up: how fast the sphere moves that it was taken back to. */
@@ -61,14 +65,12 @@ typedef struct pullers {
 } pullers;
 
 /* Pulls the lanes of p in by anchor k. */
-SK_INLINE void pull_by(const sk_limit *limit, size_t block, size_t k, real factor, real since, sk_wide3 *p,
-                       pullers *by) {
-    const sk_wide *length = (const sk_wide *)(const void *)limit->slot_length + block * limit->anchors;
-    sk_wide most = factor * length[k];
-    sk_wide3 anchor = anchor_of(limit, block, k, since, &most);
+SK_INLINE void pull_by(const sk_limit *limit, size_t at, size_t k, real factor, real since, sk_wide3 *p, pullers *by) {
+    sk_wide most = factor * *(const sk_wide *)(const void *)(limit->slot_length + place_of(limit, at, k));
+    sk_wide3 anchor = anchor_of(limit, at, k, since, &most);
     sk_mask out = pull_in(p, anchor, most);
     if (!limit->moves || !sk_any(out)) return;
-    sk_wide3 v = velocity_of(limit, block, k);
+    sk_wide3 v = velocity_of(limit, at, k);
     by->velocity.x += sk_keep(out, v.x);
     by->velocity.y += sk_keep(out, v.y);
     by->velocity.z += sk_keep(out, v.z);
@@ -88,17 +90,17 @@ void SK_KERNEL(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, size_
     const sk_limit *limit = row->rule;
     real factor = (real)(1 + *limit->bound), since = (real)(run->time - row->before - limit->start);
     size_t anchors = limit->anchors;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        size_t block = (slot - limit->first_slot) / SK_LANES;
-        sk_wide4 x = sk_load_block(run->vector[row->dst], slot, slot < row->packed);
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
+        size_t at = slot - limit->first_slot;
+        sk_wide4 x = sk_load_part(run->vector[row->dst], slot, slot < row->packed);
         sk_wide3 forth = {x.x, x.y, x.z}, back = forth;
         pullers by = {{{0}, {0}, {0}}, {0}};
-        for (size_t k = 0; k < anchors; k++) pull_by(limit, block, k, factor, since, &forth, &by);
+        for (size_t k = 0; k < anchors; k++) pull_by(limit, at, k, factor, since, &forth, &by);
         sk_mask moved =
             (sk_differ(forth.x, x.x) | sk_differ(forth.y, x.y) | sk_differ(forth.z, x.z)) & sk_positive(x.w);
         if (!sk_any(moved)) continue;
         if (anchors > 1) {
-            for (size_t k = anchors; k-- > 0;) pull_by(limit, block, k, factor, since, &back, &by);
+            for (size_t k = anchors; k-- > 0;) pull_by(limit, at, k, factor, since, &back, &by);
             real half = (real)0.5;
             forth = (sk_wide3){half * (forth.x + back.x), half * (forth.y + back.y), half * (forth.z + back.z)};
         }
@@ -106,17 +108,20 @@ void SK_KERNEL(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, size_
         x.x = sk_select(moved, forth.x, x.x);
         x.y = sk_select(moved, forth.y, x.y);
         x.z = sk_select(moved, forth.z, x.z);
-        sk_store_block(run->vector[row->dst], slot, slot < row->packed, x);
+        sk_store_part(run->vector[row->dst], slot, slot < row->packed, x);
         if (row->source[1] == SK_NONE) continue;
         // what still goes against the move stops
         sk_vec4 *velocity = run->vector[row->source[1]];
-        sk_wide4 v = sk_load_block(velocity, slot, slot < row->packed);
+        sk_wide4 v = sk_load_part(velocity, slot, slot < row->packed);
         sk_wide3 u = {v.x, v.y, v.z};
         if (limit->moves) u = seen_by(&by, v);
         sk_wide square = sk_dot_wide(move, move), against = sk_dot_wide(move, u);
-        sk_wide s = sk_keep(moved & sk_positive(square) & sk_negative(against), -against / square);
-        v.x += s * move.x, v.y += s * move.y, v.z += s * move.z;
-        sk_store_block(velocity, slot, slot < row->packed, v);
+        sk_mask stops = moved & sk_positive(square) & sk_negative(against);
+        sk_wide s = -against / square;
+        v.x = sk_plus_where(stops, v.x, s * move.x);
+        v.y = sk_plus_where(stops, v.y, s * move.y);
+        v.z = sk_plus_where(stops, v.z, s * move.z);
+        sk_store_part(velocity, slot, slot < row->packed, v);
     }
 }
 #undef NUMBER_OF

@@ -17,17 +17,23 @@ SK_KERNELS(sk_row_kernel, unpack);
 
 #ifdef SK_ISA
 
-/* Runs VALUE, an expression of the wides at place `at` of the vectors, over the blocks of [begin, end). In
- * packed blocks x, y and z are wides of their own; in quads every fourth lane is a w, which stays. */
-#define FOR_PARTS(VALUE)                                                                           \
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {                                      \
-        size_t at = slot / 4;                                                                      \
-        if (slot < row->packed) {                                                                  \
-            for (int part = 0; part < 3; part++, at++) dst[at] = (VALUE);                          \
-        } else {                                                                                   \
-            const sk_mask xyz = {-1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0, -1, -1, -1, 0};      \
-            for (int part = 0; part < 4; part++, at++) dst[at] = sk_select(xyz, (VALUE), dst[at]); \
-        }                                                                                          \
+/* Of part `at` of a row of quads, in which every fourth lane is a w: the lanes that are none. */
+SK_INLINE sk_mask without_w(size_t at) {
+    static const SK_VECTOR_ALIGNED sk_lane_int xyz[SK_LANES] = {-1, -1, -1, 0, -1, -1, -1, 0,
+                                                                -1, -1, -1, 0, -1, -1, -1, 0};
+    return ((const sk_mask *)(const void *)xyz)[at % SK_PARTS];
+}
+
+/* Runs VALUE, an expression of the vectors at place `at` of the state vectors, over the blocks of [begin, end). In
+ * packed blocks x, y and z are rows of their own; in quads the w stay. */
+#define FOR_PARTS(VALUE)                                                             \
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {                        \
+        size_t at = slot * 4 / SK_PART;                                              \
+        if (slot < row->packed)                                                      \
+            for (int part = 0; part < 3 * SK_PARTS; part++, at++) dst[at] = (VALUE); \
+        else                                                                         \
+            for (int part = 0; part < 4 * SK_PARTS; part++, at++)                    \
+                dst[at] = sk_select(without_w(at), (VALUE), dst[at]);                \
     }
 
 void SK_KERNEL(sum)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
@@ -55,14 +61,14 @@ void SK_KERNEL(correction)(sk_run *run, const sk_row *row, size_t begin, size_t 
 
 void SK_KERNEL(kick)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     real a = (real)row->coefficient[0];
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 p = sk_load_block(run->vector[row->source[0]], slot, packed),
-                 q = sk_load_block(run->vector[row->source[1]], slot, packed);
-        sk_wide k = a * sk_load_block(run->vector[SK_X], slot, packed).w;
+        sk_wide4 p = sk_load_part(run->vector[row->source[0]], slot, packed),
+                 q = sk_load_part(run->vector[row->source[1]], slot, packed);
+        sk_wide k = a * sk_load_part(run->vector[SK_X], slot, packed).w;
         p.x += k * q.x, p.y += k * q.y, p.z += k * q.z;
-        if (row->dst != row->source[0]) p.w = sk_load_block(run->vector[row->dst], slot, packed).w;
-        sk_store_block(run->vector[row->dst], slot, packed, p);
+        if (row->dst != row->source[0]) p.w = sk_load_part(run->vector[row->dst], slot, packed).w;
+        sk_store_part(run->vector[row->dst], slot, packed, p);
     }
 }
 
@@ -71,11 +77,11 @@ void SK_KERNEL(wipe)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
 }
 
 void SK_KERNEL(steer)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 v = sk_load_block(run->vector[row->dst], slot, packed),
-                 s = sk_load_block(run->vector[row->source[1]], slot, packed);
-        sk_mask free = sk_positive(sk_load_block(run->vector[SK_X], slot, packed).w);
+        sk_wide4 v = sk_load_part(run->vector[row->dst], slot, packed),
+                 s = sk_load_part(run->vector[row->source[1]], slot, packed);
+        sk_mask free = sk_positive(sk_load_part(run->vector[SK_X], slot, packed).w);
         v.x += sk_keep(free, s.x), v.y += sk_keep(free, s.y), v.z += sk_keep(free, s.z);
         sk_store_moved(run->vector[row->dst], slot, packed, v);
     }
@@ -84,13 +90,13 @@ void SK_KERNEL(steer)(sk_run *run, const sk_row *row, size_t begin, size_t end) 
 /* dst += a q, where the inverse mass is 0. */
 void SK_KERNEL(lead)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     real a = (real)row->coefficient[0];
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 x = sk_load_block(run->vector[row->dst], slot, packed),
-                 v = sk_load_block(run->vector[row->source[1]], slot, packed);
+        sk_wide4 x = sk_load_part(run->vector[row->dst], slot, packed),
+                 v = sk_load_part(run->vector[row->source[1]], slot, packed);
         sk_wide k = sk_keep(~sk_positive(x.w), sk_splat(a));
         x.x += k * v.x, x.y += k * v.y, x.z += k * v.z;
-        sk_store_block(run->vector[row->dst], slot, packed, x);
+        sk_store_part(run->vector[row->dst], slot, packed, x);
     }
 }
 
@@ -107,10 +113,10 @@ SK_INLINE void set_out(sk_run *run, const sk_row *row, size_t slot, bool packed,
 }
 
 void SK_KERNEL(predict)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed), v = sk_load_block(run->vector[SK_V], slot, packed),
-                 f = sk_load_block(run->vector[SK_F], slot, packed);
+        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), v = sk_load_part(run->vector[SK_V], slot, packed),
+                 f = sk_load_part(run->vector[SK_F], slot, packed);
         sk_wide k = (real)row->dt * x.w;
         v.x += k * f.x, v.y += k * f.y, v.z += k * f.z;
         set_out(run, row, slot, packed, x, v);
@@ -153,9 +159,9 @@ SK_INLINE sk_wide4 pulled(const uniform_pull *p, sk_wide w, sk_wide4 v) {
 
 void SK_KERNEL(fall)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     uniform_pull pull = pull_of(row);
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed), v = sk_load_block(run->vector[SK_V], slot, packed);
+        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), v = sk_load_part(run->vector[SK_V], slot, packed);
         set_out(run, row, slot, packed, x, pulled(&pull, x.w, v));
     }
 }
@@ -163,10 +169,10 @@ void SK_KERNEL(fall)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
 void SK_KERNEL(fall_on)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     uniform_pull pull = pull_of(row);
     real a = (real)row->coefficient[0];
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
-        sk_wide4 x = sk_load_block(run->vector[SK_X], slot, packed), v = sk_load_block(run->vector[SK_V], slot, packed),
-                 x0 = sk_load_block(run->vector[SK_X0], slot, packed);
+        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), v = sk_load_part(run->vector[SK_V], slot, packed),
+                 x0 = sk_load_part(run->vector[SK_X0], slot, packed);
         v.x += a * (x.x - x0.x), v.y += a * (x.y - x0.y), v.z += a * (x.z - x0.z);
         if (run->last_turn) sk_store_moved(run->vector[SK_V], slot, packed, v);
         else set_out(run, row, slot, packed, x, pulled(&pull, x.w, v));
@@ -174,14 +180,21 @@ void SK_KERNEL(fall_on)(sk_run *run, const sk_row *row, size_t begin, size_t end
 }
 #undef FOR_PARTS
 
+/* In place, so that a block is loaded as a whole before any of it is stored. */
+SK_INLINE void change_layout(sk_vec4 *vector, size_t begin, size_t end, bool packed) {
+    for (size_t slot = begin; slot < end; slot += SK_LANES) {
+        sk_wide4 part[SK_PARTS];
+        for (size_t i = 0; i < SK_PARTS; i++) part[i] = sk_load_part(vector, slot + i * SK_PART, !packed);
+        for (size_t i = 0; i < SK_PARTS; i++) sk_store_part(vector, slot + i * SK_PART, packed, part[i]);
+    }
+}
+
 void SK_KERNEL(pack)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for (size_t slot = begin; slot < end; slot += SK_LANES)
-        sk_store_block(run->vector[row->dst], slot, true, sk_load_block(run->vector[row->dst], slot, false));
+    change_layout(run->vector[row->dst], begin, end, true);
 }
 
 void SK_KERNEL(unpack)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    for (size_t slot = begin; slot < end; slot += SK_LANES)
-        sk_store_block(run->vector[row->dst], slot, false, sk_load_block(run->vector[row->dst], slot, true));
+    change_layout(run->vector[row->dst], begin, end, false);
 }
 
 #else

@@ -22,16 +22,16 @@ SK_KERNELS(sk_row_kernel, rounding);
 #ifdef SK_ISA
 
 SK_INLINE sk_wide4 load(const sk_run *run, const sk_row *row, int vector, size_t slot) {
-    return sk_load_block(run->vector[vector], slot, slot < row->packed);
+    return sk_load_part(run->vector[vector], slot, slot < row->packed);
 }
 
 /* Writes x, y and z of a block; w is left as it is. */
 SK_INLINE void store(sk_run *run, const sk_row *row, int vector, size_t slot, sk_wide x, sk_wide y, sk_wide z) {
     sk_wide4 old = load(run, row, vector, slot);
-    sk_store_block(run->vector[vector], slot, slot < row->packed, (sk_wide4){x, y, z, old.w});
+    sk_store_part(run->vector[vector], slot, slot < row->packed, (sk_wide4){x, y, z, old.w});
 }
 
-#define FOR_BLOCKS for (size_t slot = begin; slot < end; slot += SK_LANES)
+#define FOR_BLOCKS for (size_t slot = begin; slot < end; slot += SK_PART)
 
 void SK_KERNEL(product)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     FOR_BLOCKS {
@@ -116,32 +116,36 @@ void SK_KERNEL(backsolve)(sk_run *run, const sk_row *row, size_t begin, size_t e
     }
 }
 
-/* Leaves the sum of sixteen numbers; `place` tells sums apart that are wanted at the same time. */
-SK_INLINE void leave(sk_run *run, size_t slot, int place, sk_wide value) {
-    double sum[4] = {0, 0, 0, 0};
-    for (int l = 0; l < SK_LANES; l += 4)
-        for (int k = 0; k < 4; k++) sum[k] += (double)value[l + k];
-    ((double *)(void *)(run->vector[SK_SUMS] + slot))[place] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+/* Adds a part's numbers to four sums, lane by lane, and leaves the sum of all sixteen when its block ends. */
+SK_INLINE void leave(sk_run *run, size_t slot, sk_wide value, double sum[4]) {
+    size_t lane = slot % SK_LANES;
+    for (size_t k = 0; k < 4 && !lane; k++) sum[k] = 0;
+    for (size_t l = 0; l < SK_PART; l++) sum[(lane + l) % 4] += (double)value[l];
+    if (lane + SK_PART < SK_LANES) return;
+    *(double *)(void *)(run->vector[SK_SUMS] + (slot - lane)) = (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 void SK_KERNEL(dot)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    double sum[4];
     FOR_BLOCKS {
         sk_wide4 p = load(run, row, (int)row->source[0], slot), q = load(run, row, (int)row->source[1], slot);
-        leave(run, slot, 0, p.x * q.x + p.y * q.y + p.z * q.z);
+        leave(run, slot, p.x * q.x + p.y * q.y + p.z * q.z, sum);
     }
 }
 
 void SK_KERNEL(norm)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    double sum[4];
     FOR_BLOCKS {
         sk_wide4 p = load(run, row, (int)row->source[0], slot);
         sk_wide w = load(run, row, SK_X, slot).w;
-        leave(run, slot, 0, w * (p.x * p.x + p.y * p.y + p.z * p.z));
+        leave(run, slot, w * (p.x * p.x + p.y * p.y + p.z * p.z), sum);
     }
 }
 
 /* A position is rounded to its size times epsilon; the springs at it turn that into a force. Velocities and forces
  * are rounded themselves. */
 void SK_KERNEL(rounding)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    double sum[4];
     real h = (real)row->dt, epsilon = (real)row->coefficient[0];
     FOR_BLOCKS {
         sk_wide4 x = load(run, row, SK_X, slot), v = load(run, row, SK_V, slot);
@@ -150,7 +154,7 @@ void SK_KERNEL(rounding)(sk_run *run, const sk_row *row, size_t begin, size_t en
         sk_wide far = x.x * x.x + x.y * x.y + x.z * x.z, fast = v.x * v.x + v.y * v.y + v.z * v.z;
         sk_wide strong = f.x * f.x + f.y * f.y + f.z * f.z, springs = (d.x + d.y + d.z - 3 * inertia) / h;
         sk_wide square = far * springs * springs + fast * inertia * inertia + h * h * strong;
-        leave(run, slot, 0, epsilon * epsilon * (x.w * square));
+        leave(run, slot, epsilon * epsilon * (x.w * square), sum);
     }
 }
 #undef FOR_BLOCKS
@@ -177,7 +181,7 @@ double sk_solve_sum(const sk_run *run) {
     for (size_t first = 0; first < run->slot_count; first += BLOCK) {
         size_t last = first + BLOCK < run->slot_count ? first + BLOCK : run->slot_count;
         double sum = 0;
-        for (size_t slot = first; slot < last; slot += SK_LANES)
+        for (size_t slot = first; slot < last; slot += SK_PART)
             sum += *(const double *)(const void *)(run->vector[SK_SUMS] + slot);
         all += sum;
     }

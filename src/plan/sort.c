@@ -8,9 +8,9 @@ SK_KERNELS(sk_row_kernel, copy);
 
 #ifdef SK_ISA
 
-/* Which of the sixteen slots from `slot` on have particles of the group. */
+/* Which of a part's slots from `slot` on have particles of the group. */
 SK_INLINE sk_mask members(const sk_run *run, const sk_group *group, size_t slot) {
-    typedef int32_t numbers __attribute__((vector_size(16 * sizeof(int32_t))));
+    typedef int32_t numbers __attribute__((vector_size(SK_PART * sizeof(int32_t))));
     numbers particle;
     memcpy(&particle, run->particle_of + slot, sizeof particle); // nobody is -1
     return __builtin_convertvector((particle >= (int32_t)group->first) & (particle < (int32_t)group->end), sk_mask);
@@ -23,14 +23,18 @@ SK_INLINE sk_mask somewhere(sk_wide4 p) {
 }
 
 void SK_KERNEL(frame)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    sk_wide far = sk_splat(SK_REAL_MAX), low[3] = {far, far, far}, high[3] = {-far, -far, -far};
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        sk_wide4 p = sk_load_block(run->vector[SK_X], slot, slot < row->packed);
+    SK_VECTOR_ALIGNED real low[3][SK_LANES], high[3][SK_LANES];
+    for (int i = 0; i < 3 * SK_LANES; i++) low[i / SK_LANES][i % SK_LANES] = SK_REAL_MAX;
+    for (int i = 0; i < 3 * SK_LANES; i++) high[i / SK_LANES][i % SK_LANES] = -SK_REAL_MAX;
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
+        sk_wide4 p = sk_load_part(run->vector[SK_X], slot, slot < row->packed);
         sk_mask counts = members(run, row->group, slot) & somewhere(p);
         const sk_wide at[3] = {p.x, p.y, p.z};
         for (int k = 0; k < 3; k++) {
-            low[k] = sk_select(counts & sk_more(low[k], at[k]), at[k], low[k]);
-            high[k] = sk_select(counts & sk_more(at[k], high[k]), at[k], high[k]);
+            sk_wide *below = (sk_wide *)(void *)(low[k] + slot % SK_LANES);
+            sk_wide *above = (sk_wide *)(void *)(high[k] + slot % SK_LANES);
+            *below = sk_select(counts & sk_more(*below, at[k]), at[k], *below);
+            *above = sk_select(counts & sk_more(at[k], *above), at[k], *above);
         }
     }
     real least[3], most[3];
@@ -45,7 +49,7 @@ void SK_KERNEL(frame)(sk_run *run, const sk_row *row, size_t begin, size_t end) 
         run->no_memory = true;
 }
 
-/* sk_cells_place() of sixteen. */
+/* sk_cells_place() of a part. */
 SK_INLINE sk_mask cell_along(sk_wide at, real origin, real per, int32_t count) {
     sk_wide place = (at - origin) * per, top = sk_splat((real)count);
     sk_mask above = sk_positive(place), inside = above & sk_more(top, place);
@@ -56,8 +60,8 @@ SK_INLINE sk_mask cell_along(sk_wide at, real origin, real per, int32_t count) {
 void SK_KERNEL(find)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     sk_cells *cells = run->cells;
     if (run->no_memory) return;
-    for (size_t slot = begin; slot < end; slot += SK_LANES) {
-        sk_wide4 p = sk_load_block(run->vector[SK_X], slot, slot < row->packed);
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
+        sk_wide4 p = sk_load_part(run->vector[SK_X], slot, slot < row->packed);
         sk_mask counts = members(run, row->group, slot) & somewhere(p);
         sk_mask x = cell_along(p.x, cells->origin.x, cells->per_x, cells->count_x),
                 y = cell_along(p.y, cells->origin.y, cells->per_yz, cells->count_y),
@@ -66,7 +70,7 @@ void SK_KERNEL(find)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
             x + cells->count_x * ((y & cells->layer_y) + cells->layer * (z + cells->count_z * (y >> cells->shift_y)));
         cell |= ~counts; // SK_NOWHERE
         size_t first = row->group->first_slot;
-        for (size_t l = 0; l < SK_LANES; l++)
+        for (size_t l = 0; l < SK_PART; l++)
             if (slot + l >= first && slot + l < row->group->end_slot) cells->cell[slot + l - first] = (uint32_t)cell[l];
     }
 }
@@ -77,7 +81,7 @@ void SK_KERNEL(copy)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     sk_state state = {run->vector[SK_X], run->vector[SK_V], row->packed, run->particle_of};
     if (run->no_memory) return;
     sk_cells_settle(cells, &state, begin, end, &begin, &end);
-    for (; !row->packed && begin + SK_LANES <= end; begin += SK_LANES) {
+    for (; !row->packed && begin + SK_PART <= end; begin += SK_PART) {
         sk_wide4 p = sk_gather(run->vector[SK_X], cells->slot + begin),
                  v = sk_gather(run->vector[SK_V], cells->slot + begin);
         sk_wide speed = sk_wide_sqrt(v.x * v.x + v.y * v.y + v.z * v.z);

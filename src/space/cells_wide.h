@@ -2,32 +2,26 @@
  * each instruction set. */
 #include "space/cells.h"
 
-/* A number in all lanes, in the parts that the processor works on: of a whole one, or of a number beside a wide, gcc
- * makes sixteen stores where it knows no 64 bytes at once. */
-SK_INLINE sk_wide all(real a) {
-    parts p;
-    for (int i = 0; i < native_parts; i++) p.native[i] = a - (native){0};
-    return p.wide;
-}
-
 /* Where the nine lines of cells around a particle are, a line a lane; see sk_cells_ranges(), which this is wide. */
+enum { LINES = 9, LINE_VECTORS = (LINES + SK_PART - 1) / SK_PART };
 typedef struct nine_lines {
-    sk_wide wall_y, wall_z, share_y, share_z; // the distance to the line, in cells, is wall + share * place in the cell
-    sk_mask step_z;                           // in the array of cells
-    sk_mask below, above;                     // lines at y - 1, at y + 1
+    // the distance to the line, in cells, is wall + share * place in the cell
+    sk_wide wall_y[LINE_VECTORS], wall_z[LINE_VECTORS], share_y[LINE_VECTORS], share_z[LINE_VECTORS];
+    sk_mask step_z[LINE_VECTORS];                     // in the array of cells
+    sk_mask below[LINE_VECTORS], above[LINE_VECTORS]; // lines at y - 1, at y + 1
 } nine_lines;
 
-SK_INLINE nine_lines rows_of(const sk_cells *cells) {
-    nine_lines rows;
-    for (int l = 0; l < SK_LANES; l++) {
-        int dy = l < 9 ? l % 3 - 1 : 0, dz = l < 9 ? l / 3 - 1 : 0;
-        rows.wall_y[l] = dy ? (real)(dy > 0) - cells->slack : 0;
-        rows.wall_z[l] = dz ? (real)(dz > 0) - cells->slack : 0;
-        rows.share_y[l] = (real)-dy, rows.share_z[l] = (real)-dz;
-        rows.below[l] = -(dy < 0), rows.above[l] = -(dy > 0);
-        rows.step_z[l] = (sk_lane_int)cells->count_x * cells->layer * dz;
+SK_INLINE nine_lines lines_of(const sk_cells *cells) {
+    nine_lines lines;
+    for (int i = 0; i < LINE_VECTORS * SK_PART; i++) {
+        int dy = i < LINES ? i % 3 - 1 : 0, dz = i < LINES ? i / 3 - 1 : 0, v = i / SK_PART, l = i % SK_PART;
+        lines.wall_y[v][l] = dy ? (real)(dy > 0) - cells->slack : 0;
+        lines.wall_z[v][l] = dz ? (real)(dz > 0) - cells->slack : 0;
+        lines.share_y[v][l] = (real)-dy, lines.share_z[v][l] = (real)-dz;
+        lines.below[v][l] = -(dy < 0), lines.above[v][l] = -(dy > 0);
+        lines.step_z[v][l] = (sk_lane_int)cells->count_x * cells->layer * dz;
     }
-    return rows;
+    return lines;
 }
 
 /* Which of the nine there are, a bit each. */
@@ -83,42 +77,48 @@ SK_INLINE bool list(nine_ranges *ranges, sixteen_lists *list) {
 }
 
 /* The ranges of candidates of a particle at p: where each of nine rows begins, and how many are in it. */
-SK_INLINE void find_ranges(const sk_cells *cells, const nine_lines *rows, sk_vec3 p, real reach, nine_ranges *ranges) {
+SK_INLINE void find_ranges(const sk_cells *cells, const nine_lines *lines, sk_vec3 p, real reach, nine_ranges *ranges) {
     real py = (p.y - cells->origin.y) * cells->per_yz, pz = (p.z - cells->origin.z) * cells->per_yz;
     int32_t iy = sk_cells_place(p.y, cells->origin.y, cells->per_yz, cells->count_y);
     int32_t iz = sk_cells_place(p.z, cells->origin.z, cells->per_yz, cells->count_z);
-    sk_wide my = rows->wall_y + rows->share_y * all(py - (real)iy),
-            mz = rows->wall_z + rows->share_z * all(pz - (real)iz), size = all(cells->size);
-    my = sk_keep(sk_positive(my), my) * size;
-    mz = sk_keep(sk_positive(mz), mz) * size;
-    sk_wide left = (all(reach * reach) - mz * mz) - my * my;
-    sk_mask some = sk_positive(left);
-    sk_wide half = sk_wide_sqrt(sk_keep(some, left)) * all((real)1.00001);
-    sk_wide x = all(p.x), origin = all(cells->origin.x), per = all(cells->per_x);
-    sk_wide low = ((x - half) - origin) * per, high = ((x + half) - origin) * per;
-    sk_wide last = all((real)(cells->count_x - 1));
-    low = sk_keep(sk_positive(low), low), high = sk_keep(sk_positive(high), high);
-    low = sk_select(sk_more(last, low), low, last);
-    high = sk_select(sk_more(last, high), high, last);
     int32_t line = sk_cells_line(cells, iy, iz);
     int32_t down = iy > 0 ? sk_cells_line(cells, iy - 1, iz) - line : 0,
             up = iy + 1 < cells->count_y ? sk_cells_line(cells, iy + 1, iz) - line : 0;
+    sk_wide x = sk_splat(p.x), origin = sk_splat(cells->origin.x), per = sk_splat(cells->per_x);
+    sk_wide size = sk_splat(cells->size), last = sk_splat((real)(cells->count_x - 1));
     const sk_mask none = {0};
-    sk_mask base = rows->step_z + (none + line) + (rows->below & (none + down)) + (rows->above & (none + up));
-    sk_mask first = (base + __builtin_convertvector(low, sk_mask)) & some,
-            end = (base + __builtin_convertvector(high, sk_mask) + 1) & some;
+    sk_mask first[LINE_VECTORS], end[LINE_VECTORS];
+    for (int v = 0; v < LINE_VECTORS; v++) {
+        sk_wide my = lines->wall_y[v] + lines->share_y[v] * sk_splat(py - (real)iy),
+                mz = lines->wall_z[v] + lines->share_z[v] * sk_splat(pz - (real)iz);
+        my = sk_keep(sk_positive(my), my) * size;
+        mz = sk_keep(sk_positive(mz), mz) * size;
+        sk_wide left = (sk_splat(reach * reach) - mz * mz) - my * my;
+        sk_mask some = sk_positive(left);
+        sk_wide half = sk_wide_sqrt(sk_keep(some, left)) * sk_splat((real)1.00001);
+        sk_wide low = ((x - half) - origin) * per, high = ((x + half) - origin) * per;
+        low = sk_keep(sk_positive(low), low), high = sk_keep(sk_positive(high), high);
+        low = sk_select(sk_more(last, low), low, last);
+        high = sk_select(sk_more(last, high), high, last);
+        sk_mask base =
+            lines->step_z[v] + (none + line) + (lines->below[v] & (none + down)) + (lines->above[v] & (none + up));
+        first[v] = (base + __builtin_convertvector(low, sk_mask)) & some;
+        end[v] = (base + __builtin_convertvector(high, sk_mask) + 1) & some;
+    }
     uint32_t inside = lines_inside(cells, iy, iz);
 #if SK_WIDTH == 64 && !defined(SKEIN_DOUBLE)
     __mmask16 rows_inside = (__mmask16)inside;
-    ranges->begin = _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), rows_inside, (__m512i)first, cells->start, 4);
-    __m512i to = _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), rows_inside, (__m512i)end, cells->start, 4);
+    ranges->begin =
+        _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), rows_inside, (__m512i)first[0], cells->start, 4);
+    __m512i to = _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), rows_inside, (__m512i)end[0], cells->start, 4);
     ranges->left = _mm512_sub_epi32(to, ranges->begin);
 #else
     int32_t begin[SK_LANES] = {0}, count[SK_LANES] = {0};
-    for (int l = 0; l < 9; l++) {
-        sk_lane_int from = inside >> l & 1 ? first[l] : 0, to = inside >> l & 1 ? end[l] : 0;
-        begin[l] = (int32_t)cells->start[from];
-        count[l] = (int32_t)cells->start[to] - begin[l];
+    for (int i = 0; i < LINES; i++) {
+        bool there = inside >> i & 1;
+        sk_lane_int from = there ? first[i / SK_PART][i % SK_PART] : 0, to = there ? end[i / SK_PART][i % SK_PART] : 0;
+        begin[i] = (int32_t)cells->start[from];
+        count[i] = (int32_t)cells->start[to] - begin[i];
     }
     memcpy(&ranges->begin, begin, sizeof begin);
     memcpy(&ranges->left, count, sizeof count);
