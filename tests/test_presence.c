@@ -344,6 +344,40 @@ static void rules_wait_for_the_next_of_a_name(void **state) {
     skein_world_destroy(world);
 }
 
+/* A motion of a body that was removed leads nobody, not even who gets its indices, until there is one of its name. */
+static void motions_wait_for_the_next_of_a_name(void **state) {
+    (void)state;
+    skein_world *world = new_world("xpbd", 2);
+    skein_handle flag, motion;
+    const uint32_t first_two[] = {0, 1};
+    const double places[] = {5, 0, 0, 6, 0, 0};
+    const skein_track track = {first_two, places, 2, 1, 1};
+    const skein_setting named[] = {SKEIN_TEXT("name", "flag"), SKEIN_PAIR("grid", 3, 3), SKEIN_TEXT("pins", "0"),
+                                   {NULL, {0, {0, 0, 0}, NULL}}};
+    const skein_setting other[] = {SKEIN_TEXT("name", "other"), SKEIN_PAIR("grid", 3, 3), SKEIN_TEXT("pins", "0"),
+                                   {NULL, {0, {0, 0, 0}, NULL}}};
+    OK(world, skein_body_add(world, "cloth", NULL, named, &flag));
+    OK(world, skein_motion_add(world, "translate", NULL,
+                               SKEIN_SETTINGS(SKEIN_TEXT("on", "flag"), SKEIN_VEC3("velocity", 1, 0, 0)), &motion));
+    OK(world, skein_motion_add(world, "cache", &track, NULL, NULL));
+    steps(world, 1, 0.01);
+    assert_true(fabs(position_of(world, 0).x - 5) < 1e-6); // the last one counts
+    OK(world, skein_remove(world, flag));
+    skein_handle second;
+    OK(world, skein_body_add(world, "cloth", NULL, other, &second)); // it gets the indices
+    skein_surface surface;
+    OK(world, skein_body_surface(world, second, &surface));
+    assert_int_equal(surface.first_particle, 0);
+    vec3 built = position_of(world, 0);
+    steps(world, 3, 0.01);
+    assert_true(length3(minus(position_of(world, 0), built)) == 0);
+    OK(world, skein_remove(world, second));
+    OK(world, skein_body_add(world, "cloth", NULL, named, &flag));
+    steps(world, 3, 0.01);
+    assert_true(position_of(world, 0).x > built.x + 0.01);
+    skein_world_destroy(world);
+}
+
 static void a_card_refuses_in_plain_words(void **state) {
     (void)state;
     skein_world *world = new_world("xpbd", 2);
@@ -374,6 +408,7 @@ int main(void) {
         cmocka_unit_test(memory_does_not_grow),
         cmocka_unit_test(nobody_meets_what_is_not_there),
         cmocka_unit_test(rules_wait_for_the_next_of_a_name),
+        cmocka_unit_test(motions_wait_for_the_next_of_a_name),
         cmocka_unit_test(a_card_refuses_in_plain_words),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

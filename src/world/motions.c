@@ -130,9 +130,11 @@ static bool list_particles(sk_allocator *allocator, sk_motion *motion, size_t fi
 static skein_status find_particles(skein_world *world, sk_motion *motion, skein_error *error) {
     const sk_body *body = NULL;
     const char *on = motion->common->on, *pins = motion->common->pins;
-    if (on[0] && !(body = body_named(world, on)))
+    if (on[0] && !(body = body_named(world, on)) && !sk_world_knew(world, on))
         return sk_fail(error, SKEIN_ERROR_NAME, motion->label, "there is no body of the name '%s'", on);
-    size_t first = body ? body->first_particle : 0, count = body ? body->particle_count : world->particles.count;
+    // one whose body was removed leads nobody, until there is another of that name
+    size_t first = body ? body->first_particle : 0, count = body ? body->particle_count : on[0] ? 0 : world->particles.count;
+    if (on[0] && !body) pins = "";
     bool *chosen = sk_allocate(&world->allocator, count * sizeof *chosen);
     skein_status status = chosen ? SKEIN_OK : sk_fail_memory(error, "the pins of a motion");
     if (!status) memset(chosen, !pins[0], count * sizeof *chosen);
@@ -142,7 +144,7 @@ static skein_status find_particles(skein_world *world, sk_motion *motion, skein_
     sk_release(&world->allocator, chosen);
     size_t held = 0;
     for (size_t i = 0; i < motion->count && !status; i++) held += world->particles.held[motion->particle[i]];
-    if (!status && !held && motion->common->enabled)
+    if (!status && !held && count && motion->common->enabled)
         sk_world_log(world, SKEIN_LOG_WARNING, "%s: none of the particles that it is to lead is held: pin them",
                      motion->label);
     return status;

@@ -41,6 +41,8 @@ static bool is_named(const skein_world *world, const char *name) {
     }
     for (size_t i = 0; i < world->rules.colliders.count; i++)
         if (sk_names_have(world->rules.colliders.data[i]->common->on, name)) return true;
+    for (size_t i = 0; i < world->motions.count && name[0]; i++)
+        if (!strcmp(world->motions.data[i]->common->on, name)) return true;
     return false;
 }
 
@@ -103,9 +105,14 @@ static void remove_rules(skein_world *world, const sk_body *body) {
     rules->limits.count = kept;
 }
 
-/* Nobody who gets the indices is led to where these were to go. */
+/* Nobody who gets the indices is led to where these were to go, or along their tracks. */
 static void remove_pins(skein_world *world, const sk_body *body) {
     size_t kept = 0;
+    for (size_t i = 0; i < world->motions.count; i++) {
+        sk_track *track = &world->motions.data[i]->track;
+        for (size_t k = 0; k < track->particle_count; k++)
+            if (track->particles[k] - body->first_particle < body->particle_count) track->particles[k] = SK_NOBODY;
+    }
     for (size_t i = 0; i < world->pins.count; i++) {
         const sk_pin pin = world->pins.data[i];
         if (pin.particle - body->first_particle >= body->particle_count) world->pins.data[kept++] = pin;
