@@ -115,7 +115,7 @@ static void the_exporter_makes_a_film_where_it_is_asked_for(void **state) {
                                   "output=[{\"type\":\"film\",\"size\":[64,36],\"samples\":1}]"));
     assert_true(with == hash_of(SKEIN("run", s, "--frames", "6", "--no-progress")));
     assert_true(exists(in_folder("out/my_scene_1.mp4")));
-    // by default there is none, and a run that fails leaves none
+    // by default there is none, and a run that fails leaves none under its name
     write_scene(in_folder("plain.json"),
                 "{ 'frames': 2, 'name': 'plain', 'bodies': [ { 'type': 'cloth', 'grid': [3, 3] } ] }");
     o = SKEIN("run", in_folder("plain.json"), "--out", in_folder("plain"), "--no-progress");
@@ -127,7 +127,8 @@ static void the_exporter_makes_a_film_where_it_is_asked_for(void **state) {
                  "--set", "output=[{\"type\":\"film\",\"size\":[64,36],\"samples\":1,\"quality\":100}]");
     assert_status(o, 1);
     assert_contains(o.err, "my_scene_1.mp4: cannot write: it grew over the limit for a file's size\n");
-    assert_false(exists(in_folder("full")));
+    assert_false(exists(in_folder("full/my_scene_1.mp4"))); // what there is has a name that says so
+    assert_true(exists(in_folder("full/my_scene_1.failed.mp4")));
     outcome_free(&o);
 }
 
