@@ -20,7 +20,7 @@
 
 /* of every body */
 #define SKEIN_BODY_NAME "name" /* a text; for paths, messages and the names of files */
-#define SKEIN_BODY_ENABLED "enabled" /* true or false; false: its constraints rest (its particles still move) */
+#define SKEIN_BODY_ENABLED "enabled" /* true or false; false: as if it were not there; it stays as it is until it is again */
 #define SKEIN_BODY_VISIBLE "visible" /* true or false; whether it is drawn */
 
 #define SKEIN_CLOTH "cloth" /* a sheet from a triangle or quad mesh, or a grid: springs along and across, bending by angle, tethers to pins */
@@ -169,6 +169,7 @@
 #define SKEIN_FORCE_NAME "name" /* a text; for paths and messages */
 #define SKEIN_FORCE_ENABLED "enabled" /* true or false; false: as if it were not there */
 #define SKEIN_FORCE_VISIBLE "visible" /* true or false; whether it is drawn */
+#define SKEIN_FORCE_ON "on" /* a text; the names of the bodies that it acts on, commas between them; empty: every particle */
 
 #define SKEIN_GRAVITY "gravity" /* weight: the same acceleration for every particle */
 #define SKEIN_GRAVITY_ACCELERATION "acceleration" /* three numbers in m/s2; the free fall's acceleration */
@@ -201,8 +202,7 @@
 #define SKEIN_FLOCKING_STRENGTH "strength" /* a number in m/s2; how strongly each neighbour counts */
 #define SKEIN_FLOCKING_VIEW "view" /* a number in degrees; the angle that each sees, round its direction of flight; 360: all round */
 #define SKEIN_FLOCKING_NEAREST "nearest" /* a whole number; of the neighbours in reach only so many count, the nearest; 0: all */
-#define SKEIN_FLOCKING_ON "on" /* a text; the name of the body that it moves; empty: every particle */
-#define SKEIN_FLOCKING_MINDS "minds" /* a text; the name of the body that it looks at; empty: the same */
+#define SKEIN_FLOCKING_MINDS "minds" /* a text; the name of the body that it looks at; empty: those that it is `on` */
 #define SKEIN_FLOCKING_FORMULA_TOWARDS "formula.towards" /* a text; the weight of a neighbour along the direction to it, as a formula of percent; where there is a formula, the zones only say how far the rule reaches */
 #define SKEIN_FLOCKING_FORMULA_ALONG "formula.along" /* a text; the weight along its direction of flight, likewise */
 
@@ -210,7 +210,6 @@
 #define SKEIN_ATTRACTION_CENTRE "centre" /* three numbers in m; where everything is drawn to */
 #define SKEIN_ATTRACTION_STRENGTH "strength" /* a number in m/s2; the acceleration, at any distance */
 #define SKEIN_ATTRACTION_FLATNESS "flatness" /* a number; how many times more the vertical counts: over 1 makes a ring, 1 is the same all round */
-#define SKEIN_ATTRACTION_ON "on" /* a text; the name of the body that it moves; empty: every particle */
 
 #define SKEIN_PREDATOR "predator" /* what is near flees from it: a place, a line of sight or a particle */
 #define SKEIN_PREDATOR_POSITION "position" /* three numbers in m; where it is, where no particle is given */
@@ -219,22 +218,18 @@
 #define SKEIN_PREDATOR_RADIUS "radius" /* a number in m; how far it is feared */
 #define SKEIN_PREDATOR_STRENGTH "strength" /* a number in m/s2; the acceleration away when it is very near */
 #define SKEIN_PREDATOR_ALARM "alarm" /* a number in m/s; how much higher the speed limit is for those who flee */
-#define SKEIN_PREDATOR_ON "on" /* a text; the name of the body that fears it; empty: every particle */
 
 #define SKEIN_LOOKOUT "lookout" /* looks ahead, and steers clear of every collider */
 #define SKEIN_LOOKOUT_AHEAD "ahead" /* a number in s; how far ahead, as a time of flight */
 #define SKEIN_LOOKOUT_CLEARANCE "clearance" /* a number in m; nearer to a collider than this is too near */
 #define SKEIN_LOOKOUT_STRENGTH "strength" /* a number in m/s2; the acceleration away where the way leads into one */
-#define SKEIN_LOOKOUT_ON "on" /* a text; the name of the body that looks out; empty: every particle */
 
 #define SKEIN_SPEED_LIMIT "speed_limit" /* nothing is faster than this */
 #define SKEIN_SPEED_LIMIT_LIMIT "limit" /* a number in m/s; the highest speed; what flees may be faster */
-#define SKEIN_SPEED_LIMIT_ON "on" /* a text; the name of the body that it slows down; empty: every particle */
 
 #define SKEIN_TURN_LIMIT "turn_limit" /* nothing turns faster or flies steeper than this */
 #define SKEIN_TURN_LIMIT_TURN "turn" /* a number in degrees/s; what steers turns nothing faster than this */
 #define SKEIN_TURN_LIMIT_CLIMB "climb" /* a number in degrees; nothing flies steeper, up or down; 90: no limit */
-#define SKEIN_TURN_LIMIT_ON "on" /* a text; the name of the body that it keeps; empty: every particle */
 
 #define SKEIN_BOUNDS "bounds" /* a box or a sphere that is not left */
 #define SKEIN_BOUNDS_SHAPE "shape" /* a word; what is not left */
@@ -246,7 +241,6 @@
 #define SKEIN_BOUNDS_CENTRE "centre" /* three numbers in m; its middle */
 #define SKEIN_BOUNDS_SIZE "size" /* three numbers in m; of the box, from side to side */
 #define SKEIN_BOUNDS_RADIUS "radius" /* a number in m; of the sphere */
-#define SKEIN_BOUNDS_ON "on" /* a text; the name of the body that it keeps; empty: every particle */
 
 #define SKEIN_FORCE_FIELD "force_field" /* any force that is a formula of place, velocity and time */
 #define SKEIN_FORCE_FIELD_FORCE "force" /* a text; a vector, as a formula of p, v and t */
@@ -266,6 +260,7 @@
 #define SKEIN_COLLIDER_NAME "name" /* a text; for paths and messages */
 #define SKEIN_COLLIDER_ENABLED "enabled" /* true or false; false: as if it were not there */
 #define SKEIN_COLLIDER_VISIBLE "visible" /* true or false; whether it is drawn */
+#define SKEIN_COLLIDER_ON "on" /* a text; the names of the bodies that it meets, commas between them; empty: every particle */
 #define SKEIN_COLLIDER_THICKNESS "thickness" /* a number in m; particles are kept so far off */
 #define SKEIN_COLLIDER_FRICTION "friction" /* a number; Coulomb's coefficient, at rest and sliding */
 #define SKEIN_COLLIDER_RESTITUTION "restitution" /* a number; speed after a bounce over speed before */
@@ -327,7 +322,7 @@
 #define SKEIN_BACKWARD_EULER_SUBSTEPS "substeps" /* a whole number; equal parts that a step is cut into */
 #define SKEIN_BACKWARD_EULER_TOLERANCE "tolerance" /* a number; a substep is solved when its residual is so small a share of its start, or all rounding */
 #define SKEIN_BACKWARD_EULER_TURNS "turns" /* a whole number; of Newton's method in a substep, at most */
-#define SKEIN_BACKWARD_EULER_ITERATIONS "iterations" /* a whole number; of conjugate gradients in a turn, at most */
+#define SKEIN_BACKWARD_EULER_CG_ITERATIONS "cg_iterations" /* a whole number; of conjugate gradients in a turn, at most */
 #define SKEIN_BACKWARD_EULER_PRECONDITIONER "preconditioner" /* a word; what shortens conjugate gradients: each particle's own block, or a sparse factor of the whole matrix */
 #define SKEIN_BACKWARD_EULER_PRECONDITIONER_BLOCKS "blocks"
 #define SKEIN_BACKWARD_EULER_PRECONDITIONER_CHOLESKY "cholesky"
