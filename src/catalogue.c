@@ -108,6 +108,8 @@ skein_status skein_collider_add(skein_world *world, const char *kind, const skei
 
 skein_status skein_motion_add(skein_world *world, const char *kind, const skein_track *track,
                               const skein_setting *settings, skein_handle *handle) {
+    SK_NEED(world, world);
+    SK_NEED(world, kind);
     const sk_motion_type *type = type_of(world, SKEIN_MOTION, kind);
     return type ? sk_world_add_motion(world, type, track, settings, handle) : SKEIN_ERROR_NAME;
 }

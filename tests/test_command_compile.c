@@ -10,7 +10,7 @@ static const char rope[] =
     "    'constraint': 'length(p0 - p1) - L * (1 + 0.2 * sin(t))', 'parameters': { 'L': 0.0417 }, 'stiffness': 900 } ],\n"
     "  'most_stretch': 10 }\n";
 
-static const char other[] = "constraints.0.constraint=length(p0 - p1) - 1.5 * L";
+static const char other[] = "constraints.0.constraint=length(p0 - p1) - 0.6 * L";
 
 /* A scene, and an empty cache that has a blank in its path. */
 static const char *scene, *cache;

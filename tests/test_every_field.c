@@ -26,7 +26,6 @@ static const struct {
     {NULL, "name", "a label"},
     {NULL, "visible", "for drawing"},
     {NULL, "mesh", "a file that scenes read; a program passes the mesh"},
-    {"flock", "enabled", "it is a body's constraints that rest, and a flock has none"},
 };
 
 static const char *idle_reason(const skein_kind *kind, const skein_field *field) {
@@ -304,7 +303,7 @@ static void make_trial(trial *t, const subject *s, size_t f, const char *method,
         const skein_field *other = s->fields[i];
         bool large = s->kind->category == SKEIN_BODY && other->type == SKEIN_FIELD_INT && other->initial[0] > 32;
         if (i == f || is_kept(other)) continue;
-        if (parameter && other->type == SKEIN_FIELD_TEXT) {
+        if (parameter && other->type == SKEIN_FIELD_TEXT && strcmp(other->name, "on") != 0) {
             t->settings[t->setting_count++] =
                 (skein_setting){other->name, skein_text(texts_of_k[number % (int)COUNT(texts_of_k)])};
             continue;
@@ -316,7 +315,8 @@ static void make_trial(trial *t, const subject *s, size_t f, const char *method,
     t->seed = seed;
 }
 
-/* A field that is set later leads to the same bits as one set at once. */
+/* A field that is set later leads to the same bits as one set at once; a collider that is set elsewhere travels there,
+ * unless it is said to have been there. */
 static void judge_later(const trial *t, const skein_value *from, const skein_value *to, uint64_t ought) {
     skein_handle handle;
     skein_error error;
@@ -334,6 +334,8 @@ static void judge_later(const trial *t, const skein_value *from, const skein_val
     OK(world, skein_velocities_set(world, 0, count, *v));
     OK(world, skein_world_time_set(world, 0));
     if (skein_set(world, handle, t->field, *to)) assert_true(skein_world_error(world)->message[0]);
+    else if (t->s->kind->category == SKEIN_COLLIDER && skein_collider_teleport(world, handle))
+        fail_msg("%s", skein_world_error(world)->message);
     else if (go(world, t->dt, &error) != ought)
         fail_msg("%s.%s under %s: set later it leads elsewhere", t->s->kind->name, t->field, t->method);
     skein_world_destroy(world);

@@ -81,16 +81,17 @@ static answer probe(const skein_world *world, double time, vec3 p) {
     answer out = {0, {0, 0, 0}, 0};
     for (int version = 0; version < 2; version++) {
         // the point in one lane, others near it
-        sk_wide3 many;
-        sk_contact contact;
+        skein_real many[3][SK_LANES];
+        sk_sixteen_contacts contact;
         int lane = version ? 11 : 0;
         for (int l = 0; l < SK_LANES; l++) {
-            many.x[l] = (skein_real)(p.x + (l - lane)), many.y[l] = (skein_real)p.y;
-            many.z[l] = (skein_real)(p.z - 0.1 * (l - lane));
+            many[0][l] = (skein_real)(p.x + (l - lane)), many[1][l] = (skein_real)p.y;
+            many[2][l] = (skein_real)(p.z - 0.1 * (l - lane));
         }
-        collider->type->probe[version ? world->isa : 0](collider->params, &pose, &many, &contact);
+        sk_probe_sixteen_of[version ? world->isa : 0](collider, &pose, many, &contact);
         answer now = {(double)contact.distance[lane],
-                      {(double)contact.normal.x[lane], (double)contact.normal.y[lane], (double)contact.normal.z[lane]},
+                      {(double)contact.normal[0][lane], (double)contact.normal[1][lane],
+                       (double)contact.normal[2][lane]},
                       0};
         if (version) assert_memory_equal(&now, &out, sizeof now); // the same bits in any lane and set
         out = now;

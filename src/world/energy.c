@@ -102,6 +102,7 @@ static bool energy_depends_on_time(skein_world *world) {
 }
 
 bool skein_world_is_driven(skein_world *world) {
+    if (!world) return false;
     const sk_rules *rules = &world->rules;
     for (size_t i = 0; i < rules->forces.count; i++) {
         const sk_force *force = rules->forces.data[i];
