@@ -51,6 +51,37 @@ typedef struct cell_copies {
     const real *x, *y, *z, *ux, *uy, *uz;
 } cell_copies;
 
+#if SK_WIDTH < 64 && defined(__SSSE3__) && !defined(SKEIN_DOUBLE)
+/* The bytes of those of four floats whose bits are set, moved up close to each other; what follows them is 0. */
+#define FLOAT(l_) 4 * (l_), 4 * (l_) + 1, 4 * (l_) + 2, 4 * (l_) + 3
+#define NONE -1, -1, -1, -1
+static const SK_VECTOR_ALIGNED int8_t moved_up[16][16] = {
+    {NONE, NONE, NONE, NONE},
+    {FLOAT(0), NONE, NONE, NONE},
+    {FLOAT(1), NONE, NONE, NONE},
+    {FLOAT(0), FLOAT(1), NONE, NONE},
+    {FLOAT(2), NONE, NONE, NONE},
+    {FLOAT(0), FLOAT(2), NONE, NONE},
+    {FLOAT(1), FLOAT(2), NONE, NONE},
+    {FLOAT(0), FLOAT(1), FLOAT(2), NONE},
+    {FLOAT(3), NONE, NONE, NONE},
+    {FLOAT(0), FLOAT(3), NONE, NONE},
+    {FLOAT(1), FLOAT(3), NONE, NONE},
+    {FLOAT(0), FLOAT(1), FLOAT(3), NONE},
+    {FLOAT(2), FLOAT(3), NONE, NONE},
+    {FLOAT(0), FLOAT(2), FLOAT(3), NONE},
+    {FLOAT(1), FLOAT(2), FLOAT(3), NONE},
+    {FLOAT(0), FLOAT(1), FLOAT(2), FLOAT(3)},
+};
+#undef FLOAT
+#undef NONE
+
+SK_INLINE void put_up(float *to, const float *from, __m128i order) {
+    __m128i all = _mm_loadu_si128((const __m128i *)(const void *)from);
+    _mm_storeu_si128((__m128i *)(void *)to, _mm_shuffle_epi8(all, order));
+}
+#endif
+
 /* Puts the candidates of bits into the list from k on, and returns where it ends then; d is where they are from the
  * particle. (In a register: kept in the list itself, where it ends waits for the store before it each time, 40 cycles a
  * bird.) */
@@ -68,6 +99,18 @@ SK_INLINE size_t keep_near(neighbours *near, size_t k, const cell_copies *copies
     _mm512_storeu_ps(near->uy + k, _mm512_permutexvar_ps(lanes, _mm512_loadu_ps(copies->uy + place)));
     _mm512_storeu_ps(near->uz + k, _mm512_permutexvar_ps(lanes, _mm512_loadu_ps(copies->uz + place)));
     return k + (size_t)__builtin_popcount(bits);
+#elif SK_WIDTH < 64 && defined(__SSSE3__) && !defined(SKEIN_DOUBLE)
+    uint32_t bits = sk_more_bits(square, squares) & some; // (the former has none over a vector's lanes)
+    if (!bits) return k;
+    const float *const from[6] = {(const float *)&d.x, (const float *)&d.y, (const float *)&d.z,
+                                  copies->ux + place,  copies->uy + place,  copies->uz + place};
+    float *const to[6] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
+    for (int first = 0; first < SK_PART; first += 4, bits >>= 4) {
+        const __m128i order = _mm_load_si128((const __m128i *)(const void *)moved_up[bits & 15]);
+        for (int i = 0; i < 6; i++) put_up(to[i] + k, from[i] + first, order);
+        k += (size_t)__builtin_popcount(bits & 15);
+    }
+    return k;
 #else
     uint32_t bits = sk_more_bits(square, squares) & some; // (the former has none over a vector's lanes)
     for (; bits; bits &= bits - 1, k++) {
