@@ -101,7 +101,7 @@ SK_INLINE size_t keep_near(neighbours *near, size_t k, const cell_copies *copies
     return k + (size_t)__builtin_popcount(bits);
 #elif SK_WIDTH < 64 && defined(__SSSE3__) && !defined(SKEIN_DOUBLE)
     uint32_t bits = sk_more_bits(square, squares) & some; // (the former has none over a vector's lanes)
-    if (!bits) return k;
+    // no way out where there are none: it is guessed wrong too often
     const float *const from[6] = {(const float *)&d.x, (const float *)&d.y, (const float *)&d.z,
                                   copies->ux + place,  copies->uy + place,  copies->uz + place};
     float *const to[6] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
