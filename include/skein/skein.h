@@ -235,7 +235,7 @@ typedef struct skein_world_desc {
 skein_world_desc skein_default_world_desc(void);
 
 /* Makes an empty world under XPBD. `desc` NULL means the defaults. NULL on failure, with SKEIN_ERROR_VALUE or
- * SKEIN_ERROR_MEMORY in `error`. The caller destroys it. */
+ * SKEIN_ERROR_MEMORY in `error`, or SKEIN_ERROR_LIMIT on an x86-64 processor without SSE 4.1. The caller destroys it. */
 skein_world *skein_world_create(const skein_world_desc *desc, skein_error *error);
 void skein_world_destroy(skein_world *world); /* NULL is allowed */
 

@@ -13,7 +13,7 @@ static int processor_has(sk_isa isa) {
         return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
     case SK_ISA_AVX2: return __builtin_cpu_supports("avx2");
-    default: return 1;
+    default: return __builtin_cpu_supports("sse4.1") != 0;
     }
 }
 #else
@@ -30,6 +30,10 @@ sk_isa sk_isa_choose(void) {
     for (int isa = SK_ISA_COUNT - 1; isa > 0; isa--)
         if (processor_has((sk_isa)isa) && (!wanted || !*wanted || !strcmp(wanted, names[isa]))) return (sk_isa)isa;
     return (sk_isa)0;
+}
+
+bool sk_isa_is_there(void) {
+    return processor_has((sk_isa)0);
 }
 
 const char *sk_isa_text(sk_isa isa) {

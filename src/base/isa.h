@@ -6,6 +6,8 @@
 #ifndef SK_BASE_ISA_H
 #define SK_BASE_ISA_H
 
+#include <stdbool.h>
+
 /* SK_ONE_ISA (SKEIN_ONE_ISA in CMake) builds the plain version alone: the others take minutes to build, with sanitizers
  * above all. */
 #if defined(__x86_64__) && !defined(SK_ONE_ISA)
@@ -26,5 +28,7 @@ enum { SK_ISA_OF_plain = SK_ISA_PLAIN };
 /* The set to use: SKEIN_SIMD's if the processor has it, else the widest that it has. */
 sk_isa sk_isa_choose(void);
 const char *sk_isa_text(sk_isa isa);
+/* Whether the processor has the least of them, SSE 4.1 on x86-64: without it no kernel runs. */
+bool sk_isa_is_there(void);
 
 #endif

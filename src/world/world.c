@@ -32,6 +32,10 @@ skein_world *skein_world_create(const skein_world_desc *desc, skein_error *error
         sk_fail(error, SKEIN_ERROR_VALUE, "allocate", "a world takes both allocate and release, or neither");
         return NULL;
     }
+    if (!sk_isa_is_there()) {
+        sk_fail(error, SKEIN_ERROR_LIMIT, "", "this processor has no SSE 4.1, which Skein needs: take a newer one");
+        return NULL;
+    }
     sk_allocator allocator = sk_default_allocator();
     if (taken.allocate) allocator = (sk_allocator){taken.allocate, taken.release, taken.memory_user, 0};
     skein_world *world = sk_allocate(&allocator, sizeof *world);
