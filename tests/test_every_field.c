@@ -26,6 +26,8 @@ static const struct {
     {NULL, "name", "a label"},
     {NULL, "visible", "for drawing"},
     {NULL, "mesh", "a file that scenes read; a program passes the mesh"},
+    {"cache", "file", "a file that scenes read; a program passes the places"},
+    {"cache", "fps", "of that file; a program says its interval"},
 };
 
 static const char *idle_reason(const skein_kind *kind, const skein_field *field) {
@@ -65,6 +67,8 @@ static const char *const texts[] = {
     "3 * p.y * p.x",
     "length(p0 - p1) - 0.3",
     "(p0.x - p1.y)^2",
+    "0 0 0 0, 0.2 1 2 3 10 20 30",
+    "0 0.1 0 0 0 9 0, 0.002 1 2 3 10 20 30",
 };
 /* The same with a parameter. */
 static const char *const texts_of_k[] = {"k * p.y - 0.1", "vec3(k, p.x, 0)", "k * (length(p0 - p1) - 0.3)",
@@ -172,11 +176,12 @@ static void add_others(skein_world *world, uint64_t *seed, skein_category catego
     }
 }
 
-/* Two bodies with names, one of loose particles and one of springs, and LOOSE particles; the index of the first one. */
+/* Two bodies with names, one of loose particles and one of springs, and LOOSE particles, two of which are held, as some of
+ * the springs' are; the index of the first one. */
 static uint32_t add_company(skein_world *world, uint64_t *seed) {
     double positions[LOOSE][3] = {{0, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}}, masses[LOOSE];
     for (int i = 0; i < LOOSE; i++) {
-        masses[i] = random_between(seed, 0.1, 1);
+        masses[i] = i < 6 ? random_between(seed, 0.1, 1) : 0;
         for (int k = 0; k < 3; k++) positions[i][k] += random_between(seed, 0, i < 4 ? 0.1 : 0.6);
     }
     uint32_t first;
@@ -187,7 +192,8 @@ static uint32_t add_company(skein_world *world, uint64_t *seed) {
                              NULL));
     OK(world, skein_body_add(
                   world, "cloth", NULL,
-                  SKEIN_SETTINGS(SKEIN_TEXT("name", "b"), SKEIN_PAIR("grid", 3, 3), SKEIN_VEC3("rotation", 30, 20, 10)),
+                  SKEIN_SETTINGS(SKEIN_TEXT("name", "b"), SKEIN_PAIR("grid", 3, 3), SKEIN_VEC3("rotation", 30, 20, 10),
+                                 SKEIN_TEXT("pins", "0 1")),
                   NULL));
     return first;
 }
@@ -208,6 +214,19 @@ static skein_status add_constraint(skein_world *world, const trial *t, uint32_t 
     return skein_constraint_add(world, t->s->kind->name, particles, count, settings, handle);
 }
 
+/* Those that are given places get some that they come past within the steps of a trial. */
+static skein_status add_motion(skein_world *world, const trial *t, uint32_t first, const skein_setting *settings,
+                               skein_handle *handle) {
+    enum { SAMPLES = 3, LED = 4 };
+    const uint32_t led[LED] = {first + 6, first + 7, first + LOOSE + 6, first + LOOSE + 7}; // and two of the cloth
+    double places[SAMPLES][LED][3];
+    uint64_t seed = 17;
+    for (int i = 0; i < SAMPLES * LED * 3; i++) (&places[0][0][0])[i] = random_between(&seed, -1, 1);
+    const skein_track track = {led, &places[0][0][0], LED, SAMPLES, 0.0007};
+    skein_status status = skein_motion_add(world, t->s->kind->name, NULL, settings, handle);
+    return status == SKEIN_ERROR_VALUE ? skein_motion_add(world, t->s->kind->name, &track, settings, handle) : status;
+}
+
 static skein_status add_subject(skein_world *world, const trial *t, uint32_t first, const skein_setting *settings,
                                 skein_handle *handle) {
     const char *name = t->s->kind->name;
@@ -216,6 +235,7 @@ static skein_status add_subject(skein_world *world, const trial *t, uint32_t fir
     case SKEIN_CONSTRAINT: return add_constraint(world, t, first, settings, handle);
     case SKEIN_FORCE: return skein_force_add(world, name, settings, handle);
     case SKEIN_COLLIDER: return skein_collider_add(world, name, settings, handle);
+    case SKEIN_MOTION: return add_motion(world, t, first, settings, handle);
     default:
         if (strcmp(name, t->method)) return SKEIN_ERROR_NAME;
         skein_status status = skein_method_set(world, name, settings);
@@ -489,6 +509,12 @@ static void fields_of_colliders(void **state) {
     judge_category(SKEIN_COLLIDER);
 }
 
+static void fields_of_motions(void **state) {
+    (void)state;
+    ONLY_IN_PLAIN_BUILDS();
+    judge_category(SKEIN_MOTION);
+}
+
 static void fields_of_methods(void **state) {
     (void)state;
     ONLY_IN_PLAIN_BUILDS();
@@ -499,7 +525,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fields_of_bodies),  cmocka_unit_test(fields_of_constraints),
         cmocka_unit_test(fields_of_forces),  cmocka_unit_test(fields_of_colliders),
-        cmocka_unit_test(fields_of_methods),
+        cmocka_unit_test(fields_of_motions), cmocka_unit_test(fields_of_methods),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -176,7 +176,7 @@ SK_INLINE void pull_span(sk_run *run, const sk_row *row, const sk_sweep *sweep, 
             if (!turned) continue;
             turn(copy[i][0], x[i], 3, o.shift[i]);
             turn(copy[i][1], v[i], 3, o.shift[i]);
-            turn(copy[i][2], f[i], 3, o.shift[i]);
+            if (gets[i]) turn(copy[i][2], f[i], 3, o.shift[i]); // the others may be another thread's
             x[i] = copy[i][0], v[i] = copy[i][1];
         }
         for (size_t p = 0; p < SK_PARTS; p++) {
