@@ -19,7 +19,8 @@ static void plot(const viewer_shown *shown, const char *title, const viewer_quan
             series[lines] = shown->sides[s].plots.value[quantities[q]];
             words[lines++] = shown->side_count > 1 ? (s ? shown->sides[1].name : shown->sides[0].name) : names[q];
         }
-    widgets_plot(title, series, words, lines, first, length, VIEWER_SAMPLES, 52 * widgets_scale());
+    widgets_plot(title, series, words, lines, first, length, VIEWER_SAMPLES, shown->side_count > 1,
+                 52 * widgets_scale());
 }
 
 static void show_energies(const viewer_shown *shown) {

@@ -6,11 +6,11 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <vector>
 
 static double scale_of_all = 1;
 
@@ -253,31 +253,35 @@ void widgets_menu_end(void) {
 static const ImU32 colours[] = {IM_COL32(110, 190, 255, 255), IM_COL32(255, 170, 80, 255), IM_COL32(150, 220, 120, 255),
                                 IM_COL32(235, 235, 235, 255)};
 
-/* What an axis spans: all values, but for those far beyond most of them. What blows up leaves the picture at its edge,
- * and what it is compared with stays to be seen. */
+/* What an axis spans: all finite values. Where two things are compared, those of the calmer one with as much again and
+ * ten times that: what blows up leaves the picture at its edge, and what it is compared with stays to be seen. */
 static void find_range(const float *const *series, int series_count, size_t first, size_t count, size_t room,
-                       float *least, float *most) {
-    std::vector<float> values;
-    for (int s = 0; s < series_count; s++)
+                       bool compared, float *least, float *most) {
+    float all_least = FLT_MAX, all_most = -FLT_MAX, calm = FLT_MAX, low = 0, high = 0;
+    for (int s = 0; s < series_count; s++) {
+        float from = FLT_MAX, to = -FLT_MAX;
         for (size_t i = 0; series[s] && i < count; i++) {
             float value = series[s][(first + i) % room];
-            if (std::isfinite(value)) values.push_back(value);
+            if (!std::isfinite(value)) continue;
+            from = std::min(from, value), to = std::max(to, value);
         }
-    if (!values.empty()) {
-        std::sort(values.begin(), values.end());
-        float low = values[values.size() / 5], high = values[values.size() - 1 - values.size() / 5];
-        float reach = 10 * (high - low);
-        *least = values.front(), *most = values.back();
-        if (reach > 0 && *most > high + reach) *most = high + reach;
-        if (reach > 0 && *least < low - reach) *least = low - reach;
+        if (from > to) continue;
+        all_least = std::min(all_least, from), all_most = std::max(all_most, to);
+        float reach = std::max(to - from, 0.1f * std::max(std::fabs(from), std::fabs(to)));
+        if (reach < calm) calm = reach, low = from, high = to;
+    }
+    *least = all_least <= all_most ? all_least : 0, *most = all_least <= all_most ? all_most : 0;
+    if (compared && calm > 0 && calm < FLT_MAX) {
+        *most = std::min(*most, high + 10 * calm);
+        *least = std::max(*least, low - 10 * calm);
     }
     if (*most - *least < 1e-6f) *least -= 0.5f, *most += 0.5f;
 }
 
 void widgets_plot(const char *title, const float *const *series, const char *const *names, int series_count,
-                  size_t first, size_t count, size_t room, double height) {
+                  size_t first, size_t count, size_t room, bool compared, double height) {
     float least = 0, most = 0;
-    find_range(series, series_count, first, count, room, &least, &most);
+    find_range(series, series_count, first, count, room, compared, &least, &most);
     ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, static_cast<float>(height));
     ImDrawList *list = ImGui::GetWindowDrawList();
     list->AddRectFilled(at, ImVec2(at.x + size.x, at.y + size.y), IM_COL32(20, 22, 26, 200), 3);

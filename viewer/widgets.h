@@ -61,9 +61,10 @@ void widgets_help(const char *text);  /* shown over the last control, while the 
 bool widgets_menu(const char *title); /* of the last control, by the right button; end it if true */
 bool widgets_menu_row(const char *title);
 void widgets_menu_end(void);
-/* Lines over each other; NULL entries are left out. `count` values from `first` on, in a ring of `room`. */
+/* Lines over each other; NULL entries are left out. `count` values from `first` on, in a ring of `room`. Where they are
+ * `compared`, one that blows up does not flatten the others. */
 void widgets_plot(const char *title, const float *const *series, const char *const *names, int series_count,
-                  size_t first, size_t count, size_t room, double height);
+                  size_t first, size_t count, size_t room, bool compared, double height);
 bool widgets_picture(unsigned texture, double width, double height); /* true: it was clicked */
 void widgets_columns(int count);
 void widgets_next_column(void);
