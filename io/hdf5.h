@@ -12,6 +12,9 @@
  *               the group, its names, other headers, contiguous sets  written once
  *               chunks and nodes of the B-trees, as they come
  *
+ * A reader beside the writer takes several looks (the first block, nodes, chunks). If the file grew between them, it may
+ * get an error, about 1 in 10,000 times, and then opens the file anew; once the writer ended or was killed, never.
+ *
  * Invariant: what the first block says is in the file. Whatever it does not yet speak of is written elsewhere, then the
  * block in one write, which a kill does not cut. Nodes that change go to places that the tree in the file does not use;
  * those are reserved ahead, so that a full disk does not keep the last whole sample from being found. */
