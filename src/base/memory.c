@@ -1,13 +1,38 @@
 #include "base/memory.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
 
 /* A block's header, before what its user sees, keeps the 64-byte alignment of what follows. */
 enum { HEADER = 64 };
 typedef struct block_header {
-    size_t whole, shift; /* bytes: the block's, and those before the header */
+    size_t whole, shift, before; /* bytes: the block's, those before the header, and calloc's before the block */
 } block_header;
+
+/* Large blocks in large pages: a fault for each 4 KiB was a fifth of the time that a world of 10^6 particles takes. */
+static void ask_for_large_pages(char *memory, size_t size) {
+#ifdef MADV_HUGEPAGE
+    enum { PAGE = 4096, LARGE = 4 << 20 };
+    if (size < LARGE) return;
+    size_t first = (PAGE - (uintptr_t)memory % PAGE) % PAGE;
+    madvise(memory + first, (size - first) / PAGE * PAGE, MADV_HUGEPAGE); // it is a hint: if it fails, all is as before
+#else
+    (void)memory, (void)size;
+#endif
+}
+
+/* Of calloc, which knows what is zero already. Tells how many bytes before the block are its own. */
+static char *zeroed(size_t size, size_t *before) {
+    char *memory = calloc(1, size + HEADER);
+    if (!memory) return NULL;
+    ask_for_large_pages(memory, size + HEADER);
+    *before = (HEADER - (uintptr_t)memory % HEADER) % HEADER;
+    return memory + *before;
+}
 
 static void *default_allocate(void *user, size_t size, size_t alignment) {
     (void)user;
@@ -27,10 +52,12 @@ sk_allocator sk_default_allocator(void) {
 void *sk_allocate_shifted(sk_allocator *allocator, size_t size, size_t shift) {
     if (size > SIZE_MAX - 2 * HEADER - shift) return NULL;
     size_t whole = (size + shift + HEADER + HEADER - 1) / HEADER * HEADER;
-    char *block = allocator->allocate(allocator->user, whole, HEADER);
+    size_t before = 0;
+    bool own = allocator->allocate == default_allocate;
+    char *block = own ? zeroed(whole, &before) : allocator->allocate(allocator->user, whole, HEADER);
     if (!block) return NULL;
-    memset(block, 0, whole);
-    memcpy(block + shift, &(block_header){whole, shift}, sizeof(block_header));
+    if (!own) memset(block, 0, whole);
+    memcpy(block + shift, &(block_header){whole, shift, before}, sizeof(block_header));
     allocator->bytes += whole;
     return block + shift + HEADER;
 }
@@ -44,7 +71,7 @@ void sk_release(sk_allocator *allocator, void *memory) {
     block_header header;
     memcpy(&header, (char *)memory - HEADER, sizeof header);
     allocator->bytes -= header.whole;
-    allocator->release(allocator->user, (char *)memory - HEADER - header.shift, header.whole);
+    allocator->release(allocator->user, (char *)memory - HEADER - header.shift - header.before, header.whole);
 }
 
 char *sk_copy_text(sk_allocator *allocator, const char *text) {

@@ -10,10 +10,12 @@
 typedef struct spring {
     uint32_t a, b; /* a < b */
     uint32_t sort;
-    double area; /* of the material it stands for; scale = area / length^2 */
+    uint32_t next; /* in its bucket, its place + 1 */
+    double area;   /* of the material it stands for; scale = area / length^2 */
 } spring;
 
-/* A hash table from pairs to springs; grows to hold every pair of the sheet. */
+/* A hash table from pairs to springs, with chains. The springs of one direction of a grid are in buckets that follow
+ * each other, so that looking through a large sheet walks through memory: spread at random it took five times as long. */
 typedef struct pair_table {
     sk_allocator *allocator;
     struct {
@@ -24,35 +26,47 @@ typedef struct pair_table {
     size_t bucket_count;
 } pair_table;
 
-static bool grow_buckets(pair_table *table) {
-    size_t count = table->bucket_count ? 2 * table->bucket_count : 1024;
-    uint32_t *bucket = sk_allocate(table->allocator, count * sizeof *bucket);
-    if (!bucket) return false;
-    for (size_t i = 0; i < table->springs.count; i++) {
-        const spring *s = &table->springs.data[i];
-        size_t at = sk_hash_mix((uint64_t)s->a << 32 | s->b) & (count - 1);
-        while (bucket[at]) at = (at + 1) & (count - 1);
-        bucket[at] = (uint32_t)i + 1;
+static size_t bucket_of(const pair_table *table, uint32_t a, uint32_t b) {
+    return (sk_hash_mix(b - a) + a) & (table->bucket_count - 1);
+}
+
+/* Room for `count` springs; those that are there find new buckets. */
+static bool make_room(pair_table *table, size_t count) {
+    size_t buckets = 1024;
+    while (buckets < count) buckets *= 2;
+    uint32_t *bucket = sk_allocate(table->allocator, buckets * sizeof *bucket);
+    if (!bucket || !SK_RESERVE(table->allocator, &table->springs, count)) {
+        sk_release(table->allocator, bucket);
+        return false;
     }
     sk_release(table->allocator, table->bucket);
     table->bucket = bucket;
-    table->bucket_count = count;
+    table->bucket_count = buckets;
+    for (size_t i = 0; i < table->springs.count; i++) {
+        spring *s = &table->springs.data[i];
+        uint32_t *first = &bucket[bucket_of(table, s->a, s->b)];
+        s->next = *first;
+        *first = (uint32_t)i + 1;
+    }
     return true;
 }
 
 /* The spring of a pair, made if there is none yet; NULL when there is no memory. */
 static spring *spring_of(pair_table *table, uint32_t p, uint32_t q, sk_spring_sort sort) {
     uint32_t a = p < q ? p : q, b = p < q ? q : p;
-    if (2 * (table->springs.count + 1) > table->bucket_count && !grow_buckets(table)) return NULL;
-    size_t mask = table->bucket_count - 1, at = sk_hash_mix((uint64_t)a << 32 | b) & mask;
-    for (; table->bucket[at]; at = (at + 1) & mask) {
-        spring *s = &table->springs.data[table->bucket[at] - 1];
+    size_t at = bucket_of(table, a, b);
+    for (uint32_t i = table->bucket[at]; i; i = table->springs.data[i - 1].next) {
+        spring *s = &table->springs.data[i - 1];
         if (s->a == a && s->b == b) return s;
     }
-    if (!SK_RESERVE(table->allocator, &table->springs, table->springs.count + 1)) return NULL;
-    table->springs.data[table->springs.count] = (spring){a, b, (uint32_t)sort, 0};
+    if (table->springs.count == table->springs.capacity) {
+        if (!make_room(table, 2 * table->springs.count)) return NULL;
+        at = bucket_of(table, a, b);
+    }
+    spring *s = &table->springs.data[table->springs.count];
+    *s = (spring){a, b, (uint32_t)sort, table->bucket[at], 0};
     table->bucket[at] = (uint32_t)++table->springs.count;
-    return &table->springs.data[table->springs.count - 1];
+    return s;
 }
 
 /* Adds area to a pair's spring if it is of this sort (a pair that has a stronger sort keeps it). */
@@ -157,8 +171,12 @@ skein_status sk_springs_find(sk_springs *springs, const sk_sheet *sheet, skein_e
     memset(springs, 0, sizeof *springs);
     springs->allocator = sheet->allocator;
     pair_table table = {.allocator = sheet->allocator};
-    bool good =
-        collect_edges(springs, &table, sheet) && collect_shear(&table, sheet) && collect_bend(springs, &table, sheet);
+    // a grid of quads has three springs for two corners, a mesh of triangles one for each
+    bool good = make_room(&table, sheet->corner_count + sheet->corner_count / 2 + 16) &&
+                sk_reserve(springs->allocator, (void **)&springs->edges, &springs->edge_capacity,
+                           sheet->corner_count / 2 + sheet->corner_count / 16, sizeof(sk_edge)) &&
+                collect_edges(springs, &table, sheet) && collect_shear(&table, sheet) &&
+                collect_bend(springs, &table, sheet);
     for (int sort = 0; sort < SK_SPRING_SORTS && good; sort++)
         good = fill_list(springs, &table, sheet, (sk_spring_sort)sort);
     sk_release(sheet->allocator, table.springs.data);
