@@ -3,6 +3,13 @@
 
 #include <stdarg.h>
 #include <string.h>
+#include <time.h>
+
+double viewer_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
 
 bool viewer_events_open(viewer_events *events, const char *path) {
     events->file = !path ? NULL : !strcmp(path, "-") ? stdout : fopen(path, "w");

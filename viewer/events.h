@@ -3,12 +3,14 @@
  *     pointer 320 180                     a line is a word and what belongs to it
  *     state paused=1 frame=12 ...
  *
- * Both threads write; a line is written whole. `skein view --events FILE` asks for it. */
+ * All threads write; a line is written whole. `skein view --events FILE` asks for it. */
 #ifndef SKEIN_VIEWER_EVENTS_H
 #define SKEIN_VIEWER_EVENTS_H
 
 #include <stdbool.h>
 #include <stdio.h>
+
+double viewer_seconds(void); /* of a clock that only goes on */
 
 typedef struct viewer_events {
     FILE *file; /* NULL: nobody listens */

@@ -64,6 +64,13 @@ void viewer_ask(viewer_exchange *exchange, const viewer_request *request) {
     pthread_mutex_unlock(&exchange->queue_lock);
 }
 
+void viewer_nudge(viewer_exchange *exchange) {
+    pthread_mutex_lock(&exchange->queue_lock);
+    exchange->nudged = true;
+    pthread_cond_signal(&exchange->asked);
+    pthread_mutex_unlock(&exchange->queue_lock);
+}
+
 const viewer_request *viewer_take(viewer_exchange *exchange, double seconds, size_t *count) {
     struct timespec until;
     clock_gettime(CLOCK_MONOTONIC, &until);
@@ -72,8 +79,9 @@ const viewer_request *viewer_take(viewer_exchange *exchange, double seconds, siz
     until.tv_nsec = (long)((whole - (double)(time_t)whole) * 1e9);
     pthread_mutex_lock(&exchange->queue_lock);
     int status = 0;
-    while (!exchange->queue_count && !status && seconds > 0)
+    while (!exchange->queue_count && !exchange->nudged && !status && seconds > 0)
         status = pthread_cond_timedwait(&exchange->asked, &exchange->queue_lock, &until);
+    exchange->nudged = false;
     viewer_request *queue = exchange->queue;
     size_t room = exchange->queue_room;
     *count = exchange->queue_count;

@@ -1,7 +1,7 @@
 /* Between the window and the stage: requests go one way, what there is to show comes back the other.
  *
  *     window --viewer_ask--> queue --viewer_take--> stage
- *     window <--viewer_shown (under the lock)-- stage, after every picture
+ *     window <--viewer_shown (under the lock)-- stage and painter, after every picture
  *
  * Invariant: `shown` is read and written only while the lock is held, and nobody waits for anything else meanwhile;
  * so the window never waits for a step. */
@@ -165,6 +165,7 @@ typedef struct viewer_exchange {
     pthread_cond_t asked;
     viewer_request *queue, *taken;
     size_t queue_count, queue_room, taken_room;
+    bool nudged; /* under queue_lock */
     viewer_shown shown;
     const viewer_events *events;
     void (*wake)(void); /* calls the window when there is something new; or NULL */
@@ -176,7 +177,9 @@ void viewer_exchange_close(viewer_exchange *exchange);
 /* Puts a request into the queue (a move replaces a move right before it, a field's new value
  * the one before). Without memory it is dropped, and said. */
 void viewer_ask(viewer_exchange *exchange, const viewer_request *request);
-/* Waits until something is asked, at most so long; returns what was asked, in order, valid until the next call. */
+/* Lets the stage look at what there is, though nothing is asked. */
+void viewer_nudge(viewer_exchange *exchange);
+/* Waits until something is asked or it is nudged, at most so long; returns what was asked, in order, valid until the next call. */
 const viewer_request *viewer_take(viewer_exchange *exchange, double seconds, size_t *count);
 
 #endif

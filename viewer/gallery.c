@@ -1,7 +1,7 @@
 /* The gallery: all scenes of a folder, each with a picture of itself in the midst of what it shows.
  *
- * Titles are read at once; pictures are drawn one by one whenever the stage has nothing else to do, from a world of
- * their own that is stepped for a fraction of a second. Called by stage.c. */
+ * Titles are read at once; pictures are made one by one whenever the painter has nothing else to do, on its thread,
+ * from a world of their own that is stepped for a fraction of a second. Called by stage.c. */
 #include "viewer/gallery.h"
 
 #include <dirent.h>
@@ -18,8 +18,9 @@
 static const double shown_part = 0.3, longest_run = 0.5;
 
 struct viewer_gallery {
-    render_target target;
+    render_target target; /* the painter's */
     size_t next; /* card whose picture is due */
+    viewer_card *card; /* whose picture is being made */
     char fault[240];
 };
 
@@ -47,7 +48,7 @@ static void read_card(viewer_stage *stage, viewer_card *card) {
     io_faults faults = {keep_fault, fault, 0};
     io_scene *scene = io_scene_read(card->path, NULL, stage->options->exporters, &faults);
     const char *slash = strrchr(card->path, '/');
-    snprintf(card->title, sizeof card->title, "%s", slash ? slash + 1 : card->path);
+    snprintf(card->title, sizeof card->title, "%.63s", slash ? slash + 1 : card->path);
     if (scene) {
         const io_scene_settings *settings = io_scene_get(scene);
         if (settings->name[0]) snprintf(card->title, sizeof card->title, "%s", settings->name);
@@ -79,15 +80,22 @@ static viewer_card *list_folder(viewer_stage *stage, size_t *count) {
     return cards;
 }
 
+static void paint_open(void *user) {
+    viewer_stage *stage = user;
+    struct viewer_gallery *gallery = stage->gallery;
+    skein_error error = {SKEIN_OK, "", ""};
+    if (render_target_create(&gallery->target, VIEWER_CARD_WIDTH, VIEWER_CARD_HEIGHT, 4, &error))
+        gallery->next = SIZE_MAX; // no pictures
+}
+
 bool viewer_gallery_open(viewer_stage *stage) {
     struct viewer_gallery *gallery = calloc(1, sizeof *gallery);
-    skein_error error = {SKEIN_OK, "", ""};
     if (!gallery) return false;
     stage->gallery = gallery;
     size_t count;
     viewer_card *cards = list_folder(stage, &count);
     for (size_t c = 0; c < count; c++) read_card(stage, &cards[c]);
-    if (render_target_create(&gallery->target, VIEWER_CARD_WIDTH, VIEWER_CARD_HEIGHT, 4, &error)) gallery->next = count;
+    viewer_painter_do(&stage->painter, paint_open, stage);
     pthread_mutex_lock(&stage->exchange->lock);
     stage->exchange->shown.cards = cards;
     stage->exchange->shown.card_count = count;
@@ -96,11 +104,16 @@ bool viewer_gallery_open(viewer_stage *stage) {
     return true;
 }
 
-void viewer_gallery_close(viewer_stage *stage) {
-    if (!stage->gallery) return;
+static void paint_close(void *user) {
+    viewer_stage *stage = user;
     render_target_destroy(&stage->gallery->target);
     for (size_t c = 0; c < stage->exchange->shown.card_count; c++)
         glDeleteTextures(1, &stage->exchange->shown.cards[c].texture);
+}
+
+void viewer_gallery_close(viewer_stage *stage) {
+    if (!stage->gallery) return;
+    viewer_painter_do(&stage->painter, paint_close, stage);
     free(stage->gallery);
     stage->gallery = NULL;
 }
@@ -124,12 +137,14 @@ static unsigned draw_card(viewer_stage *stage, viewer_player *player) {
     struct viewer_gallery *gallery = stage->gallery;
     render_image image = {0};
     skein_error error = {SKEIN_OK, "", ""};
-    skein_status status = render_world_frame_update(player->picture, player->world, &player->view, &error);
+    render_world_frame *frame = render_world_frame_create(&error);
+    skein_status status = frame ? render_world_frame_update(frame, player->world, &player->view, &error) : error.status;
     if (!status) {
         const double aspect = (double)VIEWER_CARD_WIDTH / VIEWER_CARD_HEIGHT;
-        render_world_frame_settle(player->picture);
-        render_camera camera = render_world_frame_camera(player->picture, aspect);
-        status = render_draw_frame(stage->draw, render_world_frame_get(player->picture), &camera,
+        render_world_frame_settle(frame);
+        render_camera camera = render_world_frame_camera(frame, aspect);
+        render_draw_in_parts(stage->draw, 0);
+        status = render_draw_frame(stage->draw, render_world_frame_get(frame), &camera,
                                    gallery->target.framebuffer, VIEWER_CARD_WIDTH, VIEWER_CARD_HEIGHT, &error);
     }
     if (!status) status = render_target_read(&gallery->target, &image, &error);
@@ -144,15 +159,15 @@ static unsigned draw_card(viewer_stage *stage, viewer_player *player) {
         glFinish();
     }
     render_image_release(&image);
+    render_world_frame_destroy(frame);
     return texture;
 }
 
-bool viewer_gallery_work(viewer_stage *stage) {
+/* Makes the picture of a card, on the painter's thread. */
+static void paint_card(void *user) {
+    viewer_stage *stage = user;
     struct viewer_gallery *gallery = stage->gallery;
-    viewer_shown *shown = &stage->exchange->shown;
-    while (gallery && gallery->next < shown->card_count && shown->cards[gallery->next].broken) gallery->next++;
-    if (!gallery || gallery->next >= shown->card_count) return false;
-    viewer_card *card = &shown->cards[gallery->next++]; // cards stay where they are
+    viewer_card *card = gallery->card;
     viewer_player player = {0};
     viewer_reading reading = {stage->options->exporters, stage->options->threads, NULL};
     unsigned texture = 0;
@@ -168,6 +183,14 @@ bool viewer_gallery_work(viewer_stage *stage) {
     if (!texture) memcpy(card->about, gallery->fault, sizeof card->about);
     pthread_mutex_unlock(&stage->exchange->lock);
     viewer_event(stage->events, "card %zu %s %s", gallery->next - 1, texture ? "drawn" : "broken", card->title);
-    stage->last = viewer_seconds(); // that time does not count
-    return true;
+    if (stage->exchange->wake) stage->exchange->wake();
+}
+
+void viewer_gallery_work(viewer_stage *stage) {
+    struct viewer_gallery *gallery = stage->gallery;
+    viewer_shown *shown = &stage->exchange->shown;
+    while (gallery && gallery->next < shown->card_count && shown->cards[gallery->next].broken) gallery->next++;
+    if (!gallery || gallery->next >= shown->card_count) return;
+    gallery->card = &shown->cards[gallery->next++]; // cards stay where they are
+    viewer_painter_begin(&stage->painter, paint_card, stage);
 }

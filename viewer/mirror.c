@@ -1,6 +1,6 @@
 /* Copies of what the panels show, so that the window never touches a world: objects with their fields, measures, plots.
  *
- * Called by the stage after every picture, viewer_mirror() under the exchange's lock. */
+ * Called by the stage, viewer_mirror() under the exchange's lock. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -207,10 +207,6 @@ static void mirror_time(viewer_stage *stage, viewer_shown *shown) {
 
 void viewer_mirror(viewer_stage *stage) {
     viewer_shown *shown = &stage->exchange->shown;
-    memcpy(shown->pictures, stage->pictures, sizeof shown->pictures);
-    shown->width = stage->width, shown->height = stage->height;
-    shown->generation = stage->generation;
-    shown->newest = stage->newest;
     shown->has_scene = stage->side_count > 0;
     shown->paused = stage->paused;
     shown->recording = stage->film != NULL;

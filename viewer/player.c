@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "io/advice.h"
+#include "viewer/events.h"
 
 /* ---- Opening ---- */
 
@@ -52,7 +53,6 @@ void viewer_player_advise(viewer_player *player) {
 /* Fills in scene, world and all that belongs to them; `player` has path, changes and reporter. */
 static bool load(viewer_player *player, const viewer_reading *reading) {
     io_faults faults = {report_fault, &player->reporter, 0};
-    skein_error error = {SKEIN_OK, "", ""};
     player->scene = read_scene(player, reading, &faults);
     if (!player->scene) return false;
     player->settings = *io_scene_get(player->scene);
@@ -67,15 +67,14 @@ static bool load(viewer_player *player, const viewer_reading *reading) {
     player->view = view ? *view : render_view_default();
     player->steps = io_scene_steps_per_frame(&player->settings, &player->dt);
     viewer_player_advise(player);
-    player->picture = render_world_frame_create(&error);
-    bool good = player->picture && viewer_history_begin(&player->history, player->world) && note_pins(player);
+    player->opened = viewer_seconds();
+    bool good = viewer_history_begin(&player->history, player->world) && note_pins(player);
     if (good) viewer_history_keep(&player->history, player->world, 0);
     else player->reporter.say(player->reporter.user, SKEIN_LOG_WARNING, "out of memory");
     return good;
 }
 
 void viewer_player_close(viewer_player *player) {
-    render_world_frame_destroy(player->picture);
     skein_world_destroy(player->world);
     io_scene_free(player->scene);
     viewer_history_release(&player->history);

@@ -27,7 +27,7 @@ typedef struct viewer_player {
     io_scene_settings settings;
     skein_world *world;
     render_view view; /* the scene's, as changed since; its texts are the scene's */
-    render_world_frame *picture;
+    double opened; /* s: when, which tells its world from others */
     int steps, step; /* a frame; taken of the present one */
     double dt;       /* of a step */
     uint64_t frame;

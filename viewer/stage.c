@@ -6,23 +6,12 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
-
-/* Pictures a second at most; how long steps may take before a picture is due all the same; how often the scene's file
- * is looked at, and speed is judged. */
-static const double most_rate = 60, longest_stepping = 0.08, watch_every = 0.25, judge_every = 1, profile_every = 1;
+/* Pictures a second at most; how long steps may go on before the stage looks at what is asked; how often the scene's
+ * file is looked at, and speed is judged. */
+static const double most_rate = 60, longest_stepping = 0.005, watch_every = 0.25, judge_every = 1, profile_every = 1;
 /* Under this share of real time a world is said to be slow. */
 static const double slow_speed = 0.9;
-
-double viewer_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 /* ---- Words ---- */
 
@@ -162,37 +151,49 @@ static void judge_speed(viewer_stage *stage, double now) {
     stage->told_slow |= slow;
 }
 
-/* Takes the steps that are due. What a slow machine cannot do in time is dropped, so that it never has to catch up. */
+static bool plays(const viewer_stage *stage) {
+    return stage->side_count && !stage->paused && !viewer_stage_by_key(stage);
+}
+
+/* Takes steps that are due, for a few milliseconds; the others stay due. What a slow machine cannot do in time is
+ * dropped, so that it never has to catch up. */
 static void advance(viewer_stage *stage) {
     double now = viewer_seconds(), elapsed = now - stage->last;
     stage->last = now;
-    bool plays = stage->side_count && !stage->paused && !viewer_stage_by_key(stage);
     if (viewer_camera_move(&stage->camera, fmin(elapsed, 0.1))) stage->dirty = true;
-    if (!plays) return;
-    int due = skein_pacer_feed(&stage->pacer, elapsed);
+    if (!plays(stage)) stage->due = 0;
+    if (!plays(stage)) return;
+    stage->due += skein_pacer_feed(&stage->pacer, elapsed);
+    if (stage->due > stage->pacer.most_steps) stage->due = stage->pacer.most_steps;
     bool good = true;
-    for (int i = 0; i < due && good; i++) {
+    int taken = 0;
+    while (stage->due > 0 && good && viewer_seconds() - now < longest_stepping) {
         bool new_frame;
         good = step_all(stage, &new_frame);
+        stage->due--, taken++;
         stage->simulated += good ? stage->pacer.step : 0;
         if (good && new_frame && stage->film) viewer_film_frame(stage);
-        if (viewer_seconds() - now > longest_stepping) break;
     }
     stage->real += elapsed;
-    if (due) stage->step_ms = 1e3 * (viewer_seconds() - now) / due * stage->sides[0].steps;
+    if (taken) stage->step_ms = 1e3 * (viewer_seconds() - now) / taken * stage->sides[0].steps;
     judge_speed(stage, now);
     if (!good) viewer_stage_pause(stage, true);
     else if (!is_finite(stage)) blew_up(stage);
+    if (taken) viewer_measure(stage);
     stage->dirty = true; // time goes on between steps, too
 }
 
 /* How long nothing has to happen by itself. */
-static double patience(const viewer_stage *stage) {
-    bool plays = stage->side_count && !stage->paused && !viewer_stage_by_key(stage), moves = false;
+static double patience(viewer_stage *stage) {
+    bool moves = false;
+    double now = viewer_seconds(), wait = watch_every;
     for (int m = 0; m < VIEWER_MOTION_COUNT; m++) moves |= stage->camera.down[m];
-    if (stage->dirty) return 0;
-    if (plays || moves) return fmax(stage->last + 1 / most_rate - viewer_seconds(), 0);
-    return watch_every;
+    if (plays(stage) && stage->due > 0) return 0;
+    if (plays(stage) || moves) wait = fmax(stage->last + 1 / most_rate - now, 0);
+    // a picture that the painter is busy with ends the wait
+    if (stage->dirty && !viewer_painter_busy(&stage->painter))
+        wait = fmin(wait, fmax(stage->begun + 1 / most_rate - now, 0));
+    return wait;
 }
 
 /* ---- The thread ---- */
@@ -203,7 +204,17 @@ static void publish(viewer_stage *stage) {
     pthread_mutex_lock(&exchange->lock);
     viewer_mirror(stage);
     pthread_mutex_unlock(&exchange->lock);
-    if (exchange->wake) exchange->wake();
+}
+
+/* The painter is idle: a picture of what there is now, or where nothing has changed one for the gallery. */
+static void paint_next(viewer_stage *stage) {
+    viewer_end_picture(stage);
+    if (stage->dirty && viewer_seconds() >= stage->begun + 1 / most_rate) {
+        viewer_begin_picture(stage);
+        publish(stage); // together with the picture
+    } else if (!stage->dirty && stage->panel[VIEWER_PANEL_GALLERY]) {
+        viewer_gallery_work(stage);
+    }
 }
 
 static void turn(viewer_stage *stage) {
@@ -221,19 +232,15 @@ static void turn(viewer_stage *stage) {
         stage->message[0] = 0;
         stage->dirty = true;
     }
-    if (!stage->dirty && stage->panel[VIEWER_PANEL_GALLERY]) stage->dirty = viewer_gallery_work(stage);
-    if (!stage->dirty) return;
-    stage->dirty = false;
-    viewer_draw(stage);
-    publish(stage);
+    // the panels' answer does not wait for a picture
+    if (count) publish(stage);
+    if (count && stage->exchange->wake) stage->exchange->wake();
+    if (!viewer_painter_busy(&stage->painter)) paint_next(stage);
 }
 
 static void *stage_thread(void *data) {
     viewer_stage *stage = data;
     skein_error error = {SKEIN_OK, "", ""};
-    // the window's own thread is to be served first; on Linux this is the thread's, and that of those it starts
-    if (nice(5) == -1) viewer_event(stage->events, "the stage is no nicer than the window");
-    glfwMakeContextCurrent(stage->context);
     if (viewer_pictures_open(stage, &error)) {
         stage->last = stage->spoke = viewer_seconds();
         if (stage->options->path) viewer_stage_open(stage, stage->options->path, stage->options->sets);
@@ -251,7 +258,6 @@ static void *stage_thread(void *data) {
     viewer_pictures_close(stage);
     viewer_event(stage->events, "opengl stage errors=%zu warnings=%zu %s", stage->messages.errors,
                  stage->messages.warnings, stage->messages.last);
-    glfwMakeContextCurrent(NULL);
     pthread_mutex_lock(&stage->exchange->lock);
     stage->exchange->shown.finished = true;
     pthread_mutex_unlock(&stage->exchange->lock);

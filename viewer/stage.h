@@ -1,8 +1,10 @@
-/* The stage: the thread that owns worlds, camera and pictures.
+/* The stage: the thread that owns worlds and camera, and has them drawn.
  *
- *     requests --> stage_answer.c, keys.c --> players, camera --> step --> draw --> exchange.shown
+ *     requests --> stage_answer.c, keys.c --> players, camera --> step --> frame --> painter --> exchange.shown
  *
- * Its own OpenGL context shares its pictures with the window's. Steps follow the clock through a pacer: time that was
+ * A frame is a copy of what a picture shows of a world (render/world_frame.h); the painter draws it on a thread of its
+ * own (painter.h, stage_picture.c), whose OpenGL context shares its pictures with the window's, while the worlds are
+ * stepped on. Requests are answered between two steps, so that whatever they do to a world is safe. Steps follow the clock through a pacer: time that was
  * spent loading does not count, and a machine that cannot keep up slows down and says so. Between the files of the
  * viewer only. */
 #ifndef SKEIN_VIEWER_STAGE_H
@@ -12,20 +14,32 @@
 #include "render/draw.h"
 #include "render/messages.h"
 #include "render/target.h"
+#include "render/world_frame.h"
 #include "viewer/camera.h"
 #include "viewer/exchange.h"
 #include "viewer/grab.h"
+#include "viewer/painter.h"
 #include "viewer/player.h"
 #include "viewer/viewer.h"
 
 typedef struct GLFWwindow GLFWwindow;
+
+/* What the painter is to draw, and how that went. */
+typedef struct viewer_picture {
+    size_t side_count;
+    render_camera lens;
+    int width, height; /* of the whole picture */
+    bool ready;        /* was drawn since the stage last looked */
+    double ms;         /* that it took */
+    skein_error error;
+} viewer_picture;
 
 typedef struct viewer_stage {
     skein_error failure; /* why there is no stage */
     const viewer_options *options;
     const viewer_events *events;
     viewer_exchange *exchange;
-    GLFWwindow *context; /* hidden; its context is current on the stage's thread */
+    GLFWwindow *context; /* hidden; its context is current on the painter's thread */
     pthread_t thread;
     render_messages messages;
 
@@ -43,11 +57,17 @@ typedef struct viewer_stage {
     char message[240];
 
     /* pictures */
+    viewer_painter painter;
+    int width, height; /* of a whole picture */
+    int wide, tall;    /* of the window, as it was last said */
+    /* the painter's while it is busy */
+    viewer_picture picture;
+    render_world_frame *frames[VIEWER_SIDES];
+    double framed[VIEWER_SIDES]; /* when the player was opened that the frame is of */
     render_draw *draw;
     render_target target[VIEWER_SIDES]; /* as wide as their part of the window */
     unsigned pictures[VIEWER_PICTURES], framebuffer;
-    int width, height; /* of a whole picture */
-    int wide, tall;    /* of the window, as it was last said */
+    int drawn_width, drawn_height; /* of the pictures */
     int newest;
     uint64_t generation;
 
@@ -60,6 +80,8 @@ typedef struct viewer_stage {
     double last, spoke, sampled, profiled; /* when: frames, notes, statistics, passes */
     double simulated, real, speed;         /* seconds since the last look, and their ratio */
     bool slow, told_slow;                  /* now; was said of this scene */
+    int due;                               /* steps */
+    double begun;                          /* when the last picture was */
     double step_ms, draw_ms;
     bool in_parts; /* the next picture is drawn in parts: the last took long, or nobody knows yet */
 
@@ -82,7 +104,6 @@ void viewer_stage_join(viewer_stage *stage);
 
 /* ---- between the stage's files ---- */
 
-double viewer_seconds(void);
 /* A line for the log panel, the events and the terminal. */
 void viewer_say(viewer_stage *stage, skein_log_level level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
@@ -118,8 +139,12 @@ void viewer_stage_revert(viewer_stage *stage); /* back to the file */
 /* stage_picture.c */
 bool viewer_pictures_open(viewer_stage *stage, skein_error *error);
 void viewer_pictures_close(viewer_stage *stage);
-bool viewer_pictures_size(viewer_stage *stage, int width, int height);
-bool viewer_draw(viewer_stage *stage);
+/* Copies what there is into the frames, and places the camera if it has no place yet. Waits for the painter. */
+bool viewer_take_frames(viewer_stage *stage);
+/* Has the painter draw it: the window gets it once it is done. False where nothing can be drawn. */
+bool viewer_begin_picture(viewer_stage *stage);
+/* Learns how the last picture went. */
+void viewer_end_picture(viewer_stage *stage);
 /* Brings the whole picture, without panels, into memory. */
 bool viewer_picture_read(viewer_stage *stage, render_image *image);
 
@@ -140,7 +165,7 @@ void viewer_measure(viewer_stage *stage);
 /* gallery.c */
 bool viewer_gallery_open(viewer_stage *stage);
 void viewer_gallery_close(viewer_stage *stage);
-/* Draws one more picture of a scene; false where none is missing. */
-bool viewer_gallery_work(viewer_stage *stage);
+/* Has the painter, which is idle, make one more picture of a scene, if one is missing. */
+void viewer_gallery_work(viewer_stage *stage);
 
 #endif

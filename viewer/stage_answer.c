@@ -185,7 +185,7 @@ static void focus(viewer_stage *stage, bool has_it) {
 
 static void answer_key(viewer_stage *stage, const viewer_request *r) {
     // keys may be faster than the first picture, which places the camera that they move
-    if (stage->side_count && !stage->camera.placed) viewer_draw(stage);
+    if (stage->side_count && !stage->camera.placed) viewer_take_frames(stage);
     bool meant = viewer_key_down(stage, r->code, r->mods);
     viewer_event(stage->events, "key %d %s", r->code, meant ? "done" : "without a meaning");
     viewer_tell_state(stage);

@@ -1,33 +1,53 @@
 /* The stage's pictures: one world, or two beside each other, drawn into buffers that the window shows.
  *
- *     players --> targets (several samples a pixel) --> one of four pictures --> window
+ *     worlds --viewer_take_frames--> frames --painter--> targets (several samples a pixel) --> one of four pictures
  *
- * Four pictures go round: the one that the window has, the one that it may take next, the stage's newest, and the one
- * that is being drawn. */
+ * Four pictures go round: the one that the window has, the one that it may take next, the newest, and the one that is
+ * being drawn. Functions that begin with paint run on the painter's thread. */
 #include <string.h>
 
 #include <epoxy/gl.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 
+#include "render/fail.h"
 #include "viewer/stage.h"
 
 /* A picture that takes so long is drawn in parts: of so many triangles, some milliseconds' worth without a card. */
 static const double long_ms = 25;
 enum { part_of_picture = 4096 };
 
-int viewer_side_width(const viewer_stage *stage, size_t side, int *x) {
-    size_t count = stage->side_count ? stage->side_count : 1;
-    int left = (int)((size_t)stage->width * side / count), right = (int)((size_t)stage->width * (side + 1) / count);
+/* The part of a width that a side has. */
+static int part_of_width(int width, size_t count, size_t side, int *x) {
+    int left = (int)((size_t)width * side / count), right = (int)((size_t)width * (side + 1) / count);
     *x = left;
     return right - left;
 }
 
-bool viewer_pictures_open(viewer_stage *stage, skein_error *error) {
+int viewer_side_width(const viewer_stage *stage, size_t side, int *x) {
+    return part_of_width(stage->width, stage->side_count ? stage->side_count : 1, side, x);
+}
+
+/* ---- Opening and closing ---- */
+
+static void paint_open(void *user) {
+    viewer_stage *stage = user;
+    glfwMakeContextCurrent(stage->context);
     render_messages_attach(&stage->messages);
-    stage->draw = render_draw_create(error);
-    if (!stage->draw) return false;
+    stage->draw = render_draw_create(&stage->picture.error);
+    if (!stage->draw) return;
     glCreateFramebuffers(1, &stage->framebuffer);
     stage->newest = -1;
-    return true;
+}
+
+bool viewer_pictures_open(viewer_stage *stage, skein_error *error) {
+    if (!viewer_painter_start(&stage->painter, stage->exchange)) {
+        render_fail(error, SKEIN_ERROR_MEMORY, "window", "no thread can be started");
+        return false;
+    }
+    viewer_painter_do(&stage->painter, paint_open, stage);
+    if (stage->picture.error.status) *error = stage->picture.error;
+    return stage->draw != NULL;
 }
 
 static void drop_pictures(viewer_stage *stage) {
@@ -37,19 +57,34 @@ static void drop_pictures(viewer_stage *stage) {
     stage->newest = -1;
 }
 
-void viewer_pictures_close(viewer_stage *stage) {
+static void paint_close(void *user) {
+    viewer_stage *stage = user;
     drop_pictures(stage);
     glDeleteFramebuffers(1, &stage->framebuffer);
     render_draw_destroy(stage->draw);
+    stage->draw = NULL;
+    glfwMakeContextCurrent(NULL);
 }
 
-bool viewer_pictures_size(viewer_stage *stage, int width, int height) {
-    bool same = stage->width == width && stage->height == height && stage->newest >= -1 && stage->pictures[0];
-    for (size_t s = 0; s < stage->side_count && same; s++) {
+void viewer_pictures_close(viewer_stage *stage) {
+    if (!stage->painter.exchange) return; // it never began
+    viewer_painter_do(&stage->painter, paint_close, stage);
+    viewer_painter_stop(&stage->painter);
+    for (size_t s = 0; s < VIEWER_SIDES; s++) render_world_frame_destroy(stage->frames[s]);
+}
+
+/* ---- Painting ---- */
+
+/* Makes the pictures and their targets as large as is asked. */
+static skein_status paint_size(viewer_stage *stage) {
+    viewer_picture *picture = &stage->picture;
+    int width = picture->width, height = picture->height;
+    bool same = stage->drawn_width == width && stage->drawn_height == height && stage->pictures[0];
+    for (size_t s = 0; s < picture->side_count && same; s++) {
         int left;
-        same = stage->target[s].width == viewer_side_width(stage, s, &left);
+        same = stage->target[s].width == part_of_width(width, picture->side_count, s, &left);
     }
-    if (same && (stage->side_count || !stage->target[0].framebuffer)) return true;
+    if (same && (picture->side_count || !stage->target[0].framebuffer)) return SKEIN_OK;
     viewer_exchange *exchange = stage->exchange;
     // the window lets go of the old ones first
     pthread_mutex_lock(&exchange->lock);
@@ -57,39 +92,18 @@ bool viewer_pictures_size(viewer_stage *stage, int width, int height) {
     exchange->shown.generation = ++stage->generation;
     pthread_mutex_unlock(&exchange->lock);
     drop_pictures(stage);
-    stage->width = width, stage->height = height;
-    skein_error error = {SKEIN_OK, "", ""};
-    for (size_t s = 0; s < stage->side_count; s++) {
-        int left, wide = viewer_side_width(stage, s, &left);
-        if (render_target_create(&stage->target[s], wide, height, stage->options->samples, &error)) {
-            viewer_say(stage, SKEIN_LOG_WARNING, "%s", error.message);
-            return false;
-        }
+    stage->drawn_width = width, stage->drawn_height = height;
+    for (size_t s = 0; s < picture->side_count; s++) {
+        int left, wide = part_of_width(width, picture->side_count, s, &left);
+        skein_status status =
+            render_target_create(&stage->target[s], wide, height, stage->options->samples, &picture->error);
+        if (status) return status;
     }
     glCreateRenderbuffers(VIEWER_PICTURES, stage->pictures);
     for (int p = 0; p < VIEWER_PICTURES; p++)
         glNamedRenderbufferStorage(stage->pictures[p], GL_SRGB8_ALPHA8, width, height);
     glFinish();
-    return true;
-}
-
-static bool draw_side(viewer_stage *stage, size_t side) {
-    viewer_player *player = &stage->sides[side];
-    skein_error error = {SKEIN_OK, "", ""};
-    const render_target *target = &stage->target[side];
-    bool between = !stage->paused && !viewer_stage_by_key(stage) && !stage->film;
-    render_world_frame_blend(player->picture, between ? skein_pacer_blend(&stage->pacer) : 1);
-    skein_status status = render_world_frame_update(player->picture, player->world, &player->view, &error);
-    if (!status && side == 0 && (!stage->camera.placed || (player->view.camera.orbit != 0 && !stage->camera.moved))) {
-        render_camera home = render_world_frame_camera(player->picture, (double)target->width / target->height);
-        render_bounds bounds = render_frame_bounds(render_world_frame_get(player->picture));
-        viewer_camera_place(&stage->camera, &home, render_bounds_radius(&bounds));
-    }
-    if (!status)
-        status = render_draw_frame(stage->draw, render_world_frame_get(player->picture), &stage->camera.lens,
-                                   target->framebuffer, target->width, target->height, &error);
-    if (status) viewer_say(stage, SKEIN_LOG_WARNING, "%s", error.message);
-    return !status;
+    return SKEIN_OK;
 }
 
 /* A place that the window neither has nor may take, and that is not the newest. */
@@ -102,50 +116,157 @@ static int free_place(viewer_stage *stage) {
     return place;
 }
 
-bool viewer_draw(viewer_stage *stage) {
-    if (!viewer_pictures_size(stage, stage->wide > 0 ? stage->wide : 1, stage->tall > 0 ? stage->tall : 1))
-        return false;
-    double start = viewer_seconds();
-    // where that takes long, the window's panels are drawn in between
-    render_draw_in_parts(stage->draw, stage->in_parts ? part_of_picture : 0);
-    for (size_t s = 0; s < stage->side_count; s++)
-        if (!draw_side(stage, s)) return false;
-    int place = free_place(stage), height = stage->height;
+/* The sides' targets into one picture: samples are averaged at a target's own size; then the result goes to its
+ * place. */
+static void paint_together(const viewer_stage *stage, int place) {
     static const float dark[4] = {0.02f, 0.022f, 0.026f, 1};
+    const viewer_picture *picture = &stage->picture;
+    int height = picture->height;
     glNamedFramebufferRenderbuffer(stage->framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, stage->pictures[place]);
     glEnable(GL_FRAMEBUFFER_SRGB);
-    if (!stage->side_count) glClearNamedFramebufferfv(stage->framebuffer, GL_COLOR, 0, dark);
-    for (size_t s = 0; s < stage->side_count; s++) {
-        // samples are averaged at the target's own size; then the result goes to its place
+    if (!picture->side_count) glClearNamedFramebufferfv(stage->framebuffer, GL_COLOR, 0, dark);
+    for (size_t s = 0; s < picture->side_count; s++) {
         const render_target *target = &stage->target[s];
-        int left, width = viewer_side_width(stage, s, &left);
+        int left, width = part_of_width(picture->width, picture->side_count, s, &left);
         glBlitNamedFramebuffer(target->framebuffer, target->plain_framebuffer, 0, 0, width, height, 0, 0, width, height,
                                GL_COLOR_BUFFER_BIT, GL_NEAREST);
         glBlitNamedFramebuffer(target->plain_framebuffer, stage->framebuffer, 0, 0, width, height, left, 0,
                                left + width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     }
     glFinish(); // the other context sees what is finished
-    stage->draw_ms = 1e3 * (viewer_seconds() - start);
-    stage->in_parts = stage->draw_ms > long_ms;
-    stage->newest = place;
-    return true;
 }
 
-bool viewer_picture_read(viewer_stage *stage, render_image *image) {
+/* Offers the newest picture to the window. */
+static void paint_offer(viewer_stage *stage, int place) {
+    viewer_exchange *exchange = stage->exchange;
+    stage->newest = place;
+    pthread_mutex_lock(&exchange->lock);
+    viewer_shown *shown = &exchange->shown;
+    memcpy(shown->pictures, stage->pictures, sizeof shown->pictures);
+    shown->width = stage->drawn_width, shown->height = stage->drawn_height;
+    shown->generation = stage->generation;
+    shown->newest = place;
+    pthread_mutex_unlock(&exchange->lock);
+    if (exchange->wake) exchange->wake();
+}
+
+static void paint(void *user) {
+    viewer_stage *stage = user;
+    viewer_picture *picture = &stage->picture;
+    double start = viewer_seconds();
+    skein_status status = paint_size(stage);
+    // where that takes long, the window's panels are drawn in between
+    render_draw_in_parts(stage->draw, stage->in_parts ? part_of_picture : 0);
+    for (size_t s = 0; s < picture->side_count && !status; s++) {
+        const render_target *target = &stage->target[s];
+        status = render_draw_frame(stage->draw, render_world_frame_get(stage->frames[s]), &picture->lens,
+                                   target->framebuffer, target->width, target->height, &picture->error);
+    }
+    picture->ready = true;
+    if (status) return;
+    int place = free_place(stage);
+    paint_together(stage, place);
+    picture->ms = 1e3 * (viewer_seconds() - start);
+    stage->in_parts = picture->ms > long_ms;
+    paint_offer(stage, place);
+}
+
+/* ---- What is to be painted ---- */
+
+/* The frame of a side's world: a new one for a new world. */
+static render_world_frame *frame_of(viewer_stage *stage, size_t side, skein_error *error) {
+    const viewer_player *player = &stage->sides[side];
+    if (stage->frames[side] && stage->framed[side] == player->opened) return stage->frames[side];
+    render_world_frame_destroy(stage->frames[side]);
+    stage->framed[side] = player->opened;
+    return stage->frames[side] = render_world_frame_create(error);
+}
+
+static skein_status take_frame(viewer_stage *stage, size_t side, skein_error *error) {
+    viewer_player *player = &stage->sides[side];
+    render_world_frame *frame = frame_of(stage, side, error);
+    if (!frame) return SKEIN_ERROR_MEMORY;
+    bool between = !stage->paused && !viewer_stage_by_key(stage) && !stage->film && !stage->due;
+    render_world_frame_blend(frame, between ? skein_pacer_blend(&stage->pacer) : 1);
+    skein_status status = render_world_frame_update(frame, player->world, &player->view, error);
+    if (status || side) return status;
+    if (stage->camera.placed && (player->view.camera.orbit == 0 || stage->camera.moved)) return SKEIN_OK;
+    int left, width = viewer_side_width(stage, side, &left);
+    render_camera home = render_world_frame_camera(frame, (double)width / stage->height);
+    render_bounds bounds = render_frame_bounds(render_world_frame_get(frame));
+    viewer_camera_place(&stage->camera, &home, render_bounds_radius(&bounds));
+    return SKEIN_OK;
+}
+
+bool viewer_take_frames(viewer_stage *stage) {
     skein_error error = {SKEIN_OK, "", ""};
-    if ((stage->newest < 0 || stage->dirty) && !viewer_draw(stage)) return false;
-    if (render_image_resize(image, stage->width, stage->height, &error)) {
+    viewer_painter_wait(&stage->painter);
+    viewer_end_picture(stage);
+    stage->width = stage->wide > 0 ? stage->wide : 1, stage->height = stage->tall > 0 ? stage->tall : 1;
+    for (size_t s = 0; s < stage->side_count; s++) {
+        if (!take_frame(stage, s, &error)) continue;
         viewer_say(stage, SKEIN_LOG_WARNING, "%s", error.message);
         return false;
     }
-    // one row after the other: OpenGL's begin at the bottom
+    return true;
+}
+
+bool viewer_begin_picture(viewer_stage *stage) {
+    stage->begun = viewer_seconds();
+    stage->dirty = false;
+    if (!viewer_take_frames(stage)) return false;
+    stage->picture = (viewer_picture){.side_count = stage->side_count,
+                                      .lens = stage->camera.lens,
+                                      .width = stage->width,
+                                      .height = stage->height};
+    viewer_painter_begin(&stage->painter, paint, stage);
+    return true;
+}
+
+void viewer_end_picture(viewer_stage *stage) {
+    viewer_picture *picture = &stage->picture;
+    if (!picture->ready) return;
+    picture->ready = false;
+    if (picture->error.status) viewer_say(stage, SKEIN_LOG_WARNING, "%s", picture->error.message);
+    else stage->draw_ms = picture->ms;
+}
+
+/* ---- Reading one ---- */
+
+/* Into the image: one row after the other, as OpenGL's begin at the bottom. */
+typedef struct picture_reader {
+    viewer_stage *stage;
+    render_image *image;
+} picture_reader;
+
+static void paint_read(void *user) {
+    const picture_reader *reader = user;
+    const viewer_stage *stage = reader->stage;
+    render_image *image = reader->image;
     glNamedFramebufferRenderbuffer(stage->framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
                                    stage->pictures[stage->newest]);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, stage->framebuffer);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    for (int y = 0; y < stage->height; y++)
-        glReadPixels(0, stage->height - 1 - y, stage->width, 1, GL_RGB, GL_UNSIGNED_BYTE,
-                     image->pixels + 3 * (size_t)y * (size_t)stage->width);
+    for (int y = 0; y < image->height; y++)
+        glReadPixels(0, image->height - 1 - y, image->width, 1, GL_RGB, GL_UNSIGNED_BYTE,
+                     image->pixels + 3 * (size_t)y * (size_t)image->width);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+}
+
+bool viewer_picture_read(viewer_stage *stage, render_image *image) {
+    skein_error error = {SKEIN_OK, "", ""};
+    viewer_painter_wait(&stage->painter);
+    if (stage->newest < 0 || stage->dirty) {
+        if (!viewer_begin_picture(stage)) return false;
+        viewer_painter_wait(&stage->painter);
+    }
+    viewer_end_picture(stage);
+    if (stage->newest < 0) return false;
+    if (render_image_resize(image, stage->drawn_width, stage->drawn_height, &error)) {
+        viewer_say(stage, SKEIN_LOG_WARNING, "%s", error.message);
+        return false;
+    }
+    picture_reader reader = {stage, image};
+    viewer_painter_do(&stage->painter, paint_read, &reader);
     return true;
 }

@@ -1,10 +1,12 @@
 /* The window: a scene is played, looked at, pulled, changed and measured.
  *
- *     app/view.c --viewer_run--> window.c (GLFW, panels) <--exchange.c--> stage.c (worlds, camera, pictures)
+ *     app/view.c --viewer_run--> window.c (GLFW, panels) <--exchange.c--> stage.c (worlds, camera)
+ *                                        ^---------- pictures ---------- painter.c (OpenGL)
  *
- * Two threads: the window's own, which only shows the newest picture and the panels over it, and the stage's, which
- * owns the worlds, steps them, draws them into pictures and answers what the window asks. So panels answer at once,
- * however long a step or a picture takes. Invariant: nothing of a world is touched outside the stage's thread. */
+ * Three threads: the window's own, which only shows the newest picture and the panels over it; the stage's, which owns
+ * the worlds, steps them and answers what the window asks; and the painter's, which draws copies of them into pictures.
+ * So panels answer at once, however long a step or a picture takes, and steps go on while a picture is drawn.
+ * Invariant: nothing of a world is touched outside the stage's thread. */
 #ifndef SKEIN_VIEWER_VIEWER_H
 #define SKEIN_VIEWER_VIEWER_H
 

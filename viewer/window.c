@@ -1,6 +1,6 @@
 /* The window: GLFW, its events, and the picture with the panels over it; see viewer.h.
  *
- * This thread waits for events and for the stage's pictures, and does nothing that could take long. What the pointer
+ * This thread waits for events and for pictures, and does nothing that could take long. What the pointer
  * does is sorted out after Dear ImGui has seen it: over a panel it is the panel's, else the stage's. */
 #include <errno.h>
 #include <math.h>
