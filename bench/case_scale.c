@@ -19,6 +19,31 @@ static void report_cost(const char *size, double nanoseconds, double first, doub
         &(bench_result){.name = "scale, memory", .size = size, .ours = bytes, .unit = "bytes/spring", .under = 200});
 }
 
+static void ignore(void *user, const char *line) {
+    (void)user, (void)line;
+}
+
+/* A sheet's springs, its order and its first step's preparation, from nothing to a world that can be stepped. */
+static void build_a_million(void *data) {
+    (void)data;
+    int side = bench_quick ? 100 : 1000;
+    skein_world *world = bench_cloth(&(bench_scene){.rows = side, .columns = side});
+    bench_need(world, skein_world_explain(world, 1.0 / 60, ignore, NULL)); // makes all that a step needs
+    skein_world_destroy(world);
+}
+
+static void report_build(void) {
+    bench_job job = {.run = build_a_million, .calls = 1};
+    double seconds;
+    bench_measure(&job, 1, 0, &seconds);
+    bench_report(&(bench_result){.name = "scale, build",
+                                 .size = bench_quick ? "grid 100 x 100" : "grid 1000 x 1000",
+                                 .ours = seconds,
+                                 .unit = "s",
+                                 .under = 1,
+                                 .note = "a world with one cloth, made ready for its first step, and destroyed"});
+}
+
 /* Sizes are timed in turns; a million particles take seconds for each of their blocks. */
 static void run_scale(void) {
     static const int sides[] = {100, 316, 1000};
@@ -26,6 +51,7 @@ static void run_scale(void) {
     skein_world *worlds[3];
     bench_job jobs[3];
     double seconds[3];
+    report_build();
     for (int i = 0; i < count; i++) {
         worlds[i] = bench_cloth(&(bench_scene){.rows = sides[i], .columns = sides[i], .drag = 1});
         bench_steps(worlds[i], 2);

@@ -849,6 +849,28 @@ static void tethers_to_an_edge_go_to_the_nearest_pin(void **state) {
     }
 }
 
+/* Many pins strewn over a grid of oblong cells: each particle is tied to the nearest one, found here by trying all. */
+static void tethers_of_a_grid_go_to_the_nearest_of_many(void **state) {
+    (void)state;
+    static const double sizes[][2] = {{1.3, 0.7}, {0.2, 2}, {3, 0.1}};
+    for (size_t t = 0; t < COUNT(sizes); t++) {
+        skein_world *world = new_world("xpbd", 1);
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 23, 17), SKEIN_PAIR("size", sizes[t][0], sizes[t][1]),
+                                                SKEIN_VEC3("rotation", 31, 12, -55),
+                                                SKEIN_TEXT("pins", "40 41 77 78 112 200 205 311 340")),
+                                 NULL));
+        assert_straight_tethers(world, 1);
+        const sk_limit *limit = tethers_of(world);
+        for (size_t e = 0; e < limit->count; e++)
+            for (uint32_t pin = 0; pin < 23 * 17; pin++) {
+                double way = length3(minus(position_of(world, limit->particle[2 * e]), position_of(world, pin)));
+                if (is_held(world, pin)) assert_true((double)limit->length[e] < way + 1e-6);
+            }
+        skein_world_destroy(world);
+    }
+}
+
 /* Along a fold the way is that of the sheet before it was folded, not the short cut through the air. */
 static void tethers_follow_folds(void **state) {
     (void)state;
@@ -993,6 +1015,7 @@ int main(void) {
         cmocka_unit_test(pins_of_a_mesh),
         cmocka_unit_test(tethers_of_a_flat_sheet_are_straight),
         cmocka_unit_test(tethers_to_an_edge_go_to_the_nearest_pin),
+        cmocka_unit_test(tethers_of_a_grid_go_to_the_nearest_of_many),
         cmocka_unit_test(tethers_follow_folds),
         cmocka_unit_test(tethers_go_around_corners),
         cmocka_unit_test(tethers_do_not_prefer_a_diagonal),

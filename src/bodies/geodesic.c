@@ -6,7 +6,10 @@
  *        v                 u = (0, 0), w = (e, 0), the source below the edge at (sx, -sy)
  *       / \                sx = (du^2 - dw^2 + e^2) / 2e,  sy = sqrt(du^2 - sx^2)
  *      u---w               distance of v = |v - source|
- *       \./  source                                                                       */
+ *       \./  source
+ *
+ * A grid is a flat rectangle, where every way is a straight line: there the nearest source of each particle is found
+ * column by column, then row by row (Felzenszwalb and Huttenlocher 2012), in no more time than it takes to build it. */
 #include "bodies/geodesic.h"
 
 #include <math.h>
@@ -17,9 +20,17 @@ typedef struct heap_entry {
     uint32_t particle;
 } heap_entry;
 
+/* A column's nearest source, as a row sees it: a parabola over the row. */
+typedef struct parabola {
+    double middle, height; /* where it is lowest along the row, and how high there: the squared distance across */
+    double from;           /* where along the row it is lower than all before it */
+    uint32_t source;
+} parabola;
+
 struct sk_geodesic {
     sk_allocator *allocator;
     const sk_sheet *sheet;
+    parabola *lowest; /* of a grid, which has none of the following: a row's */
     uint32_t (*triangle)[3];
     size_t triangle_count;
     size_t *start; /* of a particle's triangles in `around`; particles + 1 */
@@ -33,6 +44,7 @@ struct sk_geodesic {
 
 void sk_geodesic_release(sk_geodesic *g) {
     if (!g) return;
+    sk_release(g->allocator, g->lowest);
     sk_release(g->allocator, g->triangle);
     sk_release(g->allocator, g->start);
     sk_release(g->allocator, g->around);
@@ -59,6 +71,12 @@ sk_geodesic *sk_geodesic_create(const sk_sheet *sheet) {
     if (!g) return NULL;
     g->allocator = allocator;
     g->sheet = sheet;
+    if (sheet->grid_rows && sheet->particle_count == sheet->vertex_count) {
+        g->lowest = sk_allocate(allocator, sheet->grid_columns * sizeof *g->lowest);
+        if (g->lowest) return g;
+        sk_geodesic_release(g);
+        return NULL;
+    }
     for (size_t f = 0; f < sheet->face_count; f++)
         g->triangle_count += cut_face(NULL, sheet->face_start[f + 1] - sheet->face_start[f], NULL);
     g->triangle = sk_allocate(allocator, g->triangle_count * sizeof *g->triangle);
@@ -123,8 +141,63 @@ static double across(const double *u, const double *w, const double *v, double d
     return sqrt((vx - sx) * (vx - sx) + (vy + sy) * (vy + sy));
 }
 
+/* ---- grids ---- */
+
+/* Of each particle the nearest source in its own column: down the columns, then up. */
+static void find_in_columns(const sk_sheet *sheet, const bool *source, uint32_t *nearest) {
+    size_t columns = sheet->grid_columns, count = sheet->particle_count;
+    for (size_t i = 0; i < count; i++)
+        nearest[i] = source[i] ? (uint32_t)i : i < columns ? UINT32_MAX : nearest[i - columns];
+    for (size_t i = count - columns; i-- > 0;) {
+        uint32_t below = nearest[i + columns];
+        if (below != UINT32_MAX && (nearest[i] == UINT32_MAX || below - i < i - nearest[i])) nearest[i] = below;
+    }
+}
+
+/* The lowest parabolas of a row, from its first place to its last; returns how many. */
+static size_t find_lowest(const sk_geodesic *g, size_t row, const double step[2], const uint32_t *nearest) {
+    size_t columns = g->sheet->grid_columns, count = 0;
+    for (size_t c = 0; c < columns; c++) {
+        uint32_t source = nearest[row * columns + c];
+        if (source == UINT32_MAX) continue;
+        double across = step[0] * ((double)row - (double)(source / columns));
+        parabola p = {step[1] * (double)c, across * across, -INFINITY, source};
+        for (; count; count--) {
+            const parabola *last = &g->lowest[count - 1];
+            double sum = p.middle + last->middle, apart = p.middle - last->middle;
+            p.from = 0.5 * (sum + (p.height - last->height) / apart);
+            if (p.from > last->from) break;
+        }
+        if (!count) p.from = -INFINITY;
+        g->lowest[count++] = p;
+    }
+    return count;
+}
+
+static void from_on_grid(const sk_geodesic *g, const bool *source, double *distance, uint32_t *nearest) {
+    const sk_sheet *sheet = g->sheet;
+    size_t columns = sheet->grid_columns;
+    double step[2] = {length_between(sheet->position[0], sheet->position[columns]),
+                      length_between(sheet->position[0], sheet->position[1])};
+    find_in_columns(sheet, source, nearest);
+    for (size_t row = 0; row < sheet->grid_rows; row++) {
+        size_t count = find_lowest(g, row, step, nearest), k = 0;
+        for (size_t c = 0, i = row * columns; c < columns; c++, i++) {
+            while (k + 1 < count && g->lowest[k + 1].from < step[1] * (double)c) k++;
+            nearest[i] = count ? g->lowest[k].source : UINT32_MAX;
+            distance[i] = count ? length_between(sheet->position[i], sheet->position[nearest[i]]) : INFINITY;
+        }
+    }
+}
+
+/* ---- searches ---- */
+
 bool sk_geodesic_from(sk_geodesic *g, const bool *source, double *distance, uint32_t *nearest) {
     size_t count = g->sheet->particle_count;
+    if (g->lowest) {
+        from_on_grid(g, source, distance, nearest);
+        return true;
+    }
     memset(g->settled, 0, count * sizeof *g->settled);
     g->heap.count = 0;
     for (size_t i = 0; i < count; i++) {

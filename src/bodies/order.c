@@ -43,6 +43,84 @@ bool sk_order_find_grid(const sk_sheet *sheet, const sk_springs *springs, uint32
     return true;
 }
 
+/* ---- by direction ---- */
+
+/* A spring's direction and place, and its number. */
+typedef struct keyed {
+    uint64_t key;
+    uint32_t spring;
+} keyed;
+
+enum { DIGIT_BITS = 11, DIGITS = 6, DIGIT_VALUES = 1 << DIGIT_BITS };
+
+static size_t digit_of(uint64_t key, int d) {
+    return key >> (d * DIGIT_BITS) & (DIGIT_VALUES - 1);
+}
+
+/* Sorts by key, equal ones as they came: digit by digit, without those that are the same in all keys. Large cloths have
+ * millions of springs, and comparing them took a third of the time in which they are built. */
+static bool sort_keys(sk_allocator *allocator, keyed **keys, size_t count) {
+    keyed *from = *keys, *to = sk_allocate(allocator, count * sizeof *to);
+    uint32_t(*counts)[DIGIT_VALUES] = sk_allocate(allocator, DIGITS * sizeof *counts);
+    bool good = to && counts;
+    for (size_t i = 0; i < count && good; i++)
+        for (int d = 0; d < DIGITS; d++) counts[d][digit_of(from[i].key, d)]++;
+    for (int d = 0; d < DIGITS && good; d++) {
+        uint32_t *start = counts[d], next = 0;
+        if (!count || start[digit_of(from[0].key, d)] == count) continue;
+        for (size_t v = 0; v < DIGIT_VALUES; v++) {
+            uint32_t first = next;
+            next += start[v];
+            start[v] = first;
+        }
+        for (size_t i = 0; i < count; i++) to[start[digit_of(from[i].key, d)]++] = from[i];
+        keyed *sorted = to;
+        to = from, from = sorted;
+    }
+    sk_release(allocator, counts);
+    sk_release(allocator, to);
+    *keys = from;
+    return good;
+}
+
+/* Puts one list in the order of directions, each from lower places to higher ones. */
+static bool sort_by_direction(sk_allocator *allocator, struct sk_spring_list *list, const uint32_t *place) {
+    size_t count = list->count;
+    keyed *keys = sk_allocate(allocator, count * sizeof *keys);
+    struct sk_spring_list sorted = {.pairs = sk_allocate(allocator, 2 * count * sizeof *sorted.pairs),
+                                    .rest = sk_allocate(allocator, count * sizeof *sorted.rest),
+                                    .scale = sk_allocate(allocator, count * sizeof *sorted.scale),
+                                    .count = count};
+    bool good = keys && sorted.pairs && sorted.rest && sorted.scale;
+    for (size_t i = 0; i < count && good; i++) {
+        uint32_t a = list->pairs[2 * i], b = list->pairs[2 * i + 1], at = place ? place[a] : a, to = place ? place[b] : b;
+        uint32_t low = at < to ? at : to, step = at < to ? to - at : at - to;
+        if (low != at) list->pairs[2 * i] = b, list->pairs[2 * i + 1] = a;
+        keys[i] = (keyed){(uint64_t)step << 32 | low, (uint32_t)i};
+    }
+    good = good && sort_keys(allocator, &keys, count);
+    for (size_t i = 0; i < count && good; i++) {
+        uint32_t from = keys[i].spring;
+        sorted.pairs[2 * i] = list->pairs[2 * from], sorted.pairs[2 * i + 1] = list->pairs[2 * from + 1];
+        sorted.rest[i] = list->rest[from], sorted.scale[i] = list->scale[from];
+    }
+    struct sk_spring_list unused = good ? *list : sorted;
+    if (good) *list = sorted;
+    sk_release(allocator, unused.pairs);
+    sk_release(allocator, unused.rest);
+    sk_release(allocator, unused.scale);
+    sk_release(allocator, keys);
+    return good;
+}
+
+bool sk_order_by_direction(sk_springs *springs, const uint32_t *place) {
+    for (int sort = 0; sort < SK_SPRING_SORTS; sort++)
+        if (!sort_by_direction(springs->allocator, &springs->list[sort], place)) return false;
+    return true;
+}
+
+/* ---- outward ---- */
+
 /* A spring with what it is sorted by. */
 typedef struct sorted_spring {
     double key;
@@ -59,20 +137,14 @@ static int compare_springs(const void *p, const void *q) {
     return s->b < t->b ? -1 : s->b > t->b;
 }
 
-/* Sorts one list; `distance` NULL sorts by direction, from lower places to higher ones. */
-static bool sort_list(sk_allocator *allocator, struct sk_spring_list *list, const double *distance,
-                      const uint32_t *place) {
+static bool sort_outward(sk_allocator *allocator, struct sk_spring_list *list, const double *distance) {
     sorted_spring *sorted = sk_allocate(allocator, list->count * sizeof *sorted);
     if (!sorted) return false;
     for (size_t i = 0; i < list->count; i++) {
         uint32_t a = list->pairs[2 * i], b = list->pairs[2 * i + 1];
-        if (place && place[a] > place[b]) a = list->pairs[2 * i + 1], b = list->pairs[2 * i];
-        uint32_t step = place ? place[b] - place[a] : b - a;
-        sorted[i] = (sorted_spring){place ? place[a] : 0, step, a, b, list->rest[i], list->scale[i]};
-        if (!distance) continue;
         // radial: the ends' distances differ by more than half the length
-        sorted[i].later = !(fabs(distance[a] - distance[b]) > 0.5 * (double)list->rest[i]);
-        sorted[i].key = 0.5 * (distance[a] + distance[b]);
+        bool later = !(fabs(distance[a] - distance[b]) > 0.5 * (double)list->rest[i]);
+        sorted[i] = (sorted_spring){0.5 * (distance[a] + distance[b]), later, a, b, list->rest[i], list->scale[i]};
     }
     qsort(sorted, list->count, sizeof *sorted, compare_springs);
     for (size_t i = 0; i < list->count; i++) {
@@ -80,12 +152,6 @@ static bool sort_list(sk_allocator *allocator, struct sk_spring_list *list, cons
         list->rest[i] = sorted[i].rest, list->scale[i] = sorted[i].scale;
     }
     sk_release(allocator, sorted);
-    return true;
-}
-
-bool sk_order_by_direction(sk_springs *springs, const uint32_t *place) {
-    for (int sort = 0; sort < SK_SPRING_SORTS; sort++)
-        if (!sort_list(springs->allocator, &springs->list[sort], NULL, place)) return false;
     return true;
 }
 
@@ -133,7 +199,7 @@ bool sk_order_outward(sk_springs *springs, const sk_sheet *sheet, const bool *pi
     ranked *order = sk_allocate(allocator, count * sizeof *order);
     bool good = distance && order && find_distances(sheet, pinned, distance);
     for (int sort = 0; sort < SK_SPRING_SORTS && good; sort++)
-        good = sort_list(allocator, &springs->list[sort], distance, NULL);
+        good = sort_outward(allocator, &springs->list[sort], distance);
     // neighbours in the order of sweeps are neighbours in memory
     for (size_t i = 0; i < count && good; i++) order[i] = (ranked){distance[i], (uint32_t)i};
     if (good) qsort(order, count, sizeof *order, compare_ranked);

@@ -21,7 +21,8 @@ typedef struct element_place {
 typedef struct direction {
     element_place like; /* an element of it */
     size_t count;
-    size_t sweep; /* its place among the batch's sweeps, SIZE_MAX: goes in groups */
+    uint8_t number; /* as they were found */
+    size_t sweep;   /* its place among the batch's sweeps, SIZE_MAX: goes in groups */
 } direction;
 
 typedef struct cutter {
@@ -31,7 +32,11 @@ typedef struct cutter {
     int arity;
     direction directions[MOST_DIRECTIONS];
     size_t direction_count;
+    uint8_t *direction_of; /* of each element, the number of its direction; NO_DIRECTION: it goes in groups */
+    size_t *lane_of;       /* of each element, its lane: first from the sweep's first one */
 } cutter;
+
+enum { NO_DIRECTION = UINT8_MAX };
 
 static const sk_strips *strips_of(const sk_particles *particles, uint32_t particle) {
     for (size_t i = 0; i < particles->strips.count; i++) {
@@ -51,18 +56,39 @@ static bool meets_itself(const element_place *place, int arity) {
     return false;
 }
 
+/* The places of an element's particles. Which end of a pair comes first does not matter. Returns the lowest. */
+static uint32_t places_of(const cutter *c, const uint32_t *particle, uint32_t *at) {
+    uint32_t lowest = UINT32_MAX;
+    for (int i = 0; i < c->arity; i++) {
+        at[i] = c->particles->place[particle[i]];
+        if (at[i] < lowest) lowest = at[i];
+    }
+    if (c->arity == 2 && at[0] > at[1]) at[0] = at[1], at[1] = c->particles->place[particle[0]];
+    return lowest;
+}
+
+/* Whether an element lies as another one does, which then tells all of its place but row and column. */
+static bool lies_like(const cutter *c, size_t e, element_place *place) {
+    const uint32_t *particle = c->batch->particle + e * (size_t)c->arity;
+    const sk_strips *strips = place->strips;
+    for (int i = 0; i < c->arity; i++)
+        if (particle[i] - strips->first_particle >= strips->count) return false;
+    uint32_t at[SK_MOST_ARITY], lowest = places_of(c, particle, at), columns = strips->columns;
+    place->row = lowest / columns, place->column = lowest % columns;
+    for (int i = 0; i < c->arity; i++) {
+        uint32_t column = place->column + (uint32_t)place->column_step[i];
+        if (at[i] != (place->row + (uint32_t)place->row_step[i]) * columns + column || column >= columns) return false;
+    }
+    return true;
+}
+
 static element_place place_of_element(const cutter *c, size_t e) {
     const uint32_t *particle = c->batch->particle + e * (size_t)c->arity;
     element_place place = {.strips = strips_of(c->particles, particle[0])}, none = {.strips = NULL};
     if (!place.strips) return none;
-    uint32_t at[SK_MOST_ARITY], lowest = UINT32_MAX, columns = place.strips->columns;
-    for (int i = 0; i < c->arity; i++) {
+    for (int i = 1; i < c->arity; i++)
         if (strips_of(c->particles, particle[i]) != place.strips) return none;
-        at[i] = c->particles->place[particle[i]];
-        if (at[i] < lowest) lowest = at[i];
-    }
-    // which end of a pair comes first does not matter
-    if (c->arity == 2 && at[0] > at[1]) at[0] = at[1], at[1] = c->particles->place[particle[0]];
+    uint32_t at[SK_MOST_ARITY], lowest = places_of(c, particle, at), columns = place.strips->columns;
     place.row = lowest / columns, place.column = lowest % columns;
     for (int i = 0; i < c->arity; i++) {
         place.row_step[i] = (int32_t)(at[i] / columns) - (int32_t)place.row;
@@ -90,7 +116,7 @@ static direction *find_direction(cutter *c, const element_place *place) {
     for (size_t d = 0; d < c->direction_count; d++)
         if (!compare_places(&c->directions[d].like, place)) return &c->directions[d];
     if (c->direction_count == MOST_DIRECTIONS) return NULL;
-    c->directions[c->direction_count] = (direction){*place, 0, SIZE_MAX};
+    c->directions[c->direction_count] = (direction){*place, 0, (uint8_t)c->direction_count, SIZE_MAX};
     return &c->directions[c->direction_count++];
 }
 
@@ -123,14 +149,28 @@ static void name_sweep(sk_sweep *sweep, int arity) {
                            sweep->column_step[i]);
 }
 
-/* Counts the directions, and makes a strip sweep of each that fills enough of its places. */
+/* Finds each element's direction, which mostly is that of the element before it, and where it stands in it. */
+static void find_directions(cutter *c) {
+    direction *d = NULL;
+    for (size_t e = 0; e < c->batch->count; e++) {
+        element_place place;
+        if (d) place = d->like;
+        if (!d || !lies_like(c, e, &place)) {
+            place = place_of_element(c, e);
+            d = find_direction(c, &place);
+        }
+        c->direction_of[e] = d ? d->number : NO_DIRECTION;
+        if (!d) continue;
+        d->count++;
+        size_t width = place.strips->width;
+        c->lane_of[e] = (place.row * width + place.column % width) * SK_LANES + place.column / width;
+    }
+}
+
+/* Makes a strip sweep of each direction that fills enough of its places. */
 static bool add_strip_sweeps(cutter *c) {
     sk_batch *batch = c->batch;
-    for (size_t e = 0; e < batch->count; e++) {
-        element_place place = place_of_element(c, e);
-        direction *d = find_direction(c, &place);
-        if (d) d->count++;
-    }
+    find_directions(c);
     qsort(c->directions, c->direction_count, sizeof *c->directions, compare_directions);
     for (size_t i = 0; i < c->direction_count; i++) {
         direction *d = &c->directions[i];
@@ -163,16 +203,22 @@ static bool add_strip_sweeps(cutter *c) {
     return true;
 }
 
-/* The lane of an element in a strip sweep; SIZE_MAX if it is in none or the lane is taken. */
-static size_t strip_lane(cutter *c, size_t e, const bool *taken) {
-    if (!c->batch->sweep_count) return SIZE_MAX;
-    element_place place = place_of_element(c, e);
-    direction *d = find_direction(c, &place);
-    if (!d || d->sweep == SIZE_MAX) return SIZE_MAX;
-    size_t width = place.strips->width;
-    size_t lane = c->batch->sweeps[d->sweep].first_lane + (place.row * width + place.column % width) * SK_LANES +
-                  place.column / width;
-    return taken[lane] ? SIZE_MAX : lane;
+/* From lanes in a direction to lanes of the batch; SIZE_MAX for an element that goes in groups, or whose lane is taken. */
+static bool find_lanes(cutter *c) {
+    size_t first[UINT8_MAX + 1];
+    for (size_t d = 0; d <= UINT8_MAX; d++) first[d] = SIZE_MAX;
+    for (size_t d = 0; d < c->direction_count; d++)
+        if (c->directions[d].sweep != SIZE_MAX)
+            first[c->directions[d].number] = c->batch->sweeps[c->directions[d].sweep].first_lane;
+    bool *taken = sk_allocate(c->allocator, c->batch->lane_count);
+    if (!taken) return false;
+    for (size_t e = 0; e < c->batch->count; e++) {
+        size_t from = first[c->direction_of[e]], lane = from + c->lane_of[e];
+        c->lane_of[e] = from == SIZE_MAX || taken[lane] ? SIZE_MAX : lane;
+        if (c->lane_of[e] != SIZE_MAX) taken[lane] = true;
+    }
+    sk_release(c->allocator, taken);
+    return true;
 }
 
 /* ---- the whole cut ---- */
@@ -212,19 +258,21 @@ static bool allocate_lanes(sk_batch *batch, sk_allocator *allocator) {
 static bool cut(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles) {
     cutter *c = sk_allocate(allocator, sizeof *c);
     size_t *lane_of = sk_allocate(allocator, batch->count * sizeof *lane_of);
-    bool *taken = NULL, good = c && lane_of;
+    uint8_t *direction_of = sk_allocate(allocator, batch->count);
+    bool good = c && lane_of && direction_of;
     if (good) {
-        *c = (cutter){.batch = batch, .allocator = allocator, .particles = particles, .arity = (int)batch->arity};
-        good = !batch->type->project.strips.version[0] || add_strip_sweeps(c);
-    }
-    if (good) good = (taken = sk_allocate(allocator, batch->lane_count)) != NULL;
-    for (size_t e = 0; e < batch->count && good; e++) {
-        lane_of[e] = strip_lane(c, e, taken);
-        if (lane_of[e] != SIZE_MAX) taken[lane_of[e]] = true;
+        *c = (cutter){.batch = batch,
+                      .allocator = allocator,
+                      .particles = particles,
+                      .arity = (int)batch->arity,
+                      .direction_of = direction_of,
+                      .lane_of = lane_of};
+        memset(direction_of, NO_DIRECTION, batch->count);
+        good = (!batch->type->project.strips.version[0] || add_strip_sweeps(c)) && find_lanes(c);
     }
     good = good && sk_groups_deal(batch, allocator, particles, lane_of) && allocate_lanes(batch, allocator);
     for (size_t e = 0; e < batch->count && good; e++) batch->lane[e] = (uint32_t)lane_of[e];
-    sk_release(allocator, taken);
+    sk_release(allocator, direction_of);
     sk_release(allocator, lane_of);
     sk_release(allocator, c);
     return good;
