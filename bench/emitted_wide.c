@@ -37,6 +37,7 @@ typedef struct lanes {
     e->gradient[particle] = (sk_wide3) {                           \
         -e->gradient[of].x, -e->gradient[of].y, -e->gradient[of].z \
     }
+#define TEXT(text)
 #define UNIT_DIVISOR(x) e->divided = true, e->divisor = (x)
 #define RECIPROCAL(x) reciprocal(x)
 #define SQRT(x) sk_wide_sqrt(x)

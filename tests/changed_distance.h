@@ -1,5 +1,6 @@
 // length(p0 - p1) - 2 * rest(length(p0 - p1))
 // Parameter 0 is the value of rest(...) number 1.
+TEXT("length(p0 - p1) - 2 * rest(length(p0 - p1))")
 RESTS(rests) {
     const REAL x_1 = POSITION(0, 0) - POSITION(1, 0);
     const REAL x_2 = POSITION(0, 1) - POSITION(1, 1);

@@ -598,6 +598,53 @@ typedef struct skein_spring {
  * there are. Fails with SKEIN_ERROR_MEMORY. */
 skein_status skein_springs_copy(skein_world *world, skein_spring *out, size_t most, size_t *count);
 
+/* ---- Looking into constraints ---- */
+
+/* One constraint of an object as the state stands: a function C of a few particles that is to be 0; one-sided, at least
+ * 0. Where it is an energy, its forces are -stiffness times its gradient; else they are -stiffness C times it, without
+ * the damping. Not finite where something overflows: solves then leave it out. */
+typedef struct skein_constraint_value {
+    double value;     /* C: m for a distance, rad for angles, m2 for an area, m3 for volumes, as the text has it for a
+                         formula. An energy over its stiffness, J */
+    double by_time;   /* its derivative by t alone, 1/s: 0 where a formula does not name t */
+    double stiffness; /* with its share of the material; infinity is rigid */
+    bool is_energy, one_sided;
+    bool guarded;          /* something had no value here, and 0 or the nearest was taken (docs/formula.md) */
+    size_t particle_count; /* 2 to 8; all of its particles for a closed surface, which is one constraint */
+    const char *label;     /* of a body which part ("stretch"), of a constraint its name or kind */
+    const char *text;      /* its formula; "" for a closed surface. Both live until the object changes */
+} skein_constraint_value;
+
+/* How many constraints a constraint object has, or a body has in all its parts, one part after the other. What is not
+ * enabled counts, what is gone or on a body that is taken out does not. Fails with SKEIN_ERROR_HANDLE for other objects,
+ * and with SKEIN_ERROR_MEMORY. */
+skein_status skein_constraint_count(skein_world *world, skein_handle object, size_t *count);
+/* What constraint `index` is now, by the automatic derivatives that solves use, in double. Of its particles in their
+ * order in the formula (p0, p1 ...), up to `most` go to `particles`, and its gradient by them (1/m of the value's unit)
+ * to `gradient`, most x 3; both may be NULL if `most` is 0. A world is not changed by looking. Fails with
+ * SKEIN_ERROR_VALUE where there is no such index, and as above. */
+skein_status skein_constraint_evaluate(skein_world *world, skein_handle object, size_t index,
+                                       skein_constraint_value *value, uint32_t *particles, double *gradient,
+                                       size_t most);
+
+/* A step on the way to a constraint's value. */
+typedef struct skein_operation {
+    const char *name;    /* "input", "constant", "parameter"; "add", "sqrt" ..., as `skein formula --graph` has them */
+    char label[40];      /* of the first three what it is: "p0.x", "t", "0.5", "L", "rest 1"; else the word of the text
+                            that it comes of ("length"), or "" */
+    int operand_count;   /* 0 to 4 */
+    size_t operand[4];   /* operations before it. "less" is a < b ? c : d */
+    double value;
+} skein_operation;
+
+/* A constraint's formula, operation by operation: each after those that it reads, the last is the value. Up to `most` go
+ * to `operations`; `derivatives` (or NULL) receives those of each by all coordinates of the constraint's particles,
+ * forwards by the chain rule: most x 3 particle_count. `count` receives how many there are: 0 for a closed surface, which
+ * is a sum of many formulas. Fails as above, and with SKEIN_ERROR_LIMIT for derivatives of a formula so large that each
+ * of its operations cannot have its own. */
+skein_status skein_constraint_operations(skein_world *world, skein_handle object, size_t index,
+                                         skein_operation *operations, double *derivatives, size_t most, size_t *count);
+
 /* A particle within a collider's thickness, as the statistics count them. */
 typedef struct skein_contact {
     uint32_t particle;

@@ -30,6 +30,12 @@ typedef struct sk_sweep_kernels {
     sk_kernels strips, groups;
 } sk_sweep_kernels;
 
+/* What one constraint is at the places where its particles are. */
+typedef struct sk_constraint_answer {
+    double value, by_time; /* C, or an energy over the stiffness; its derivative by t alone */
+    bool is_energy, one_sided, guarded;
+} sk_constraint_answer;
+
 typedef struct sk_constraint_type {
     skein_kind kind; /* the parameters begin with an sk_material */
     int arity;       /* particles an element, 2 to 8 */
@@ -57,6 +63,12 @@ typedef struct sk_constraint_type {
     /* Energies over the stiffness of elements [begin, end), C^2 / 2; returns how many had to be guarded
      * (formula/graph.h). */
     size_t (*energy)(const sk_batch *batch, double time, const sk_vec4 *x, size_t begin, size_t end, double *energy);
+    /* An element's value, and up to `most` particles' gradients, in double and by the derivatives that the kernels have:
+     * for those who look in. Of a kind that encloses, of the one constraint on all elements, by its vertices. False
+     * when there is no memory. */
+    bool (*evaluate)(const sk_batch *batch, double time, const sk_vec4 *x, size_t element, size_t most,
+                     sk_constraint_answer *answer, double (*gradient)[3]);
+    const char *text;        /* its formula, where that is the kind's own; NULL: none, or each object's (`making`) */
     const sk_making *making; /* what is made from its texts; NULL: nothing */
     /* A kind whose batch is one constraint on all its elements, the triangles of a closed surface: makes the batch's
      * enclosure (enclosure.h), or says what is wrong with the surface. Its sweep kernels walk one group, apply and
@@ -128,6 +140,19 @@ void sk_batch_release(sk_batch *batch, sk_allocator *allocator);
 bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles);
 /* Releases the sweeps and all that belongs to them. */
 void sk_batch_forget_sweeps(sk_batch *batch, sk_allocator *allocator);
+/* ---- for those who look in (inspect.c); the slots are up to date ---- */
+/* How many constraints the batch is, and how many particles each has. */
+size_t sk_batch_constraint_count(const sk_batch *batch);
+size_t sk_batch_particle_count(const sk_batch *batch);
+/* Particle i of a constraint. */
+uint32_t sk_batch_particle(const sk_batch *batch, size_t element, size_t i);
+/* Its formula; "" where there is none. */
+const char *sk_batch_text(const sk_batch *batch);
+/* What skein_constraint_operations() says. */
+skein_status sk_batch_operations(const sk_batch *batch, sk_allocator *allocator, double time, const sk_vec4 *x,
+                                 size_t element, skein_operation *out, double *derivatives, size_t most,
+                                 size_t *count, skein_error *error);
+
 /* Brings the lanes' rest lengths and stiffness up to date with the parameters, where they are stale. */
 void sk_batch_refresh(sk_batch *batch);
 /* Sets the multipliers of a sweep to zero: the kernel of multiplier rows. */

@@ -2,6 +2,7 @@
  * set. The kind that includes this has defined SK_FORMULA as the file of its formula in
  * emitted/, and the macros below say what that file's words mean here. */
 
+#define TEXT(text)
 #define FORMULA(name) SK_INLINE void name(sk_element *e)
 #define RESTS(name) SK_INLINE void name(sk_element *e)
 #define REAL sk_wide
@@ -114,6 +115,7 @@ SK_INLINE void work_out(sk_element *e, const sk_element_constants *c, sk_element
     else limit(e, c, mode == SK_MODE_LIMIT_MOVING);
 }
 
+#undef TEXT
 #undef FORMULA
 #undef RESTS
 #undef REAL

@@ -1,15 +1,20 @@
-/* One element of a kind at a time, in double: its rest values, its strain and its energy. Once a kind, after
- * element.h, outside of instruction sets. */
+/* One element of a kind at a time, in double: its rest values, its strain, its energy, and its value with the gradient
+ * for those who look in. Once a kind, after element.h, outside of instruction sets. */
 #include "base/elementary.h"
 
 typedef struct one_element {
     double x[SK_ARITY][3], rest[SK_RESTS], value;
+    double gradient[SK_ARITY][3], divisor; /* the gradient is what is there over the divisor */
+    bool guarded;
 } one_element;
 
-static inline double reciprocal(double x) {
-    return x >= 2.2250738585072014e-308 || x <= -2.2250738585072014e-308 ? 1 / x : 0;
+static inline double reciprocal(one_element *e, double x) {
+    bool good = x >= 2.2250738585072014e-308 || x <= -2.2250738585072014e-308;
+    e->guarded |= !good;
+    return good ? 1 / x : 0;
 }
 
+#define TEXT(text) static const char formula_text[] = text;
 #define FORMULA(name) static void name(one_element *e)
 #define RESTS(name) static void name(one_element *e)
 #define REAL double
@@ -18,10 +23,11 @@ static inline double reciprocal(double x) {
 #define PARAMETER(index) e->rest[index]
 #define VALUE(component, x) e->value = (x)
 #define REST(index, x) e->rest[index] = (x)
-#define GRADIENT(component, particle, axis, x) (void)(x)
-#define OPPOSITE(particle, of)
-#define UNIT_DIVISOR(x) (void)(x)
-#define RECIPROCAL(x) reciprocal(x)
+#define GRADIENT(component, particle, axis, x) e->gradient[particle][axis] = (x)
+#define OPPOSITE(particle, of) \
+    for (int axis = 0; axis < 3; axis++) e->gradient[particle][axis] = 0 - e->gradient[of][axis]
+#define UNIT_DIVISOR(x) e->divisor = (x)
+#define RECIPROCAL(x) reciprocal(e, x)
 #define SQRT(x) __builtin_sqrt(x)
 #define ABS(x) __builtin_fabs(x)
 #define LESS(a, b, yes, no) ((a) < (b) ? (yes) : (no))
@@ -38,15 +44,32 @@ static bool rest_of(const void *params, const double (*x)[3], double *rest) {
     return true;
 }
 
-static double value_of(const sk_batch *batch, const sk_vec4 *x, size_t element) {
-    one_element e;
+static void evaluate_one(const sk_batch *batch, const sk_vec4 *x, size_t element, one_element *e) {
+    *e = (one_element){.divisor = 1};
     for (size_t i = 0; i < SK_ARITY; i++) {
         sk_vec4 p = x[batch->slot[SK_ARITY * element + i]];
-        e.x[i][0] = (double)p.x, e.x[i][1] = (double)p.y, e.x[i][2] = (double)p.z;
+        e->x[i][0] = (double)p.x, e->x[i][1] = (double)p.y, e->x[i][2] = (double)p.z;
     }
-    for (size_t r = 0; r < SK_RESTS; r++) e.rest[r] = (double)batch->rest[r * batch->count + element];
-    formula(&e);
+    for (size_t r = 0; r < SK_RESTS; r++) e->rest[r] = (double)batch->rest[r * batch->count + element];
+    formula(e);
+}
+
+static double value_of(const sk_batch *batch, const sk_vec4 *x, size_t element) {
+    one_element e;
+    evaluate_one(batch, x, element, &e);
     return e.value;
+}
+
+static bool evaluate(const sk_batch *batch, double time, const sk_vec4 *x, size_t element, size_t most,
+                     sk_constraint_answer *answer, double (*gradient)[3]) {
+    (void)time;
+    one_element e;
+    evaluate_one(batch, x, element, &e);
+    double over = reciprocal(&e, e.divisor);
+    *answer = (sk_constraint_answer){.value = e.value, .guarded = e.guarded};
+    for (size_t i = 0; i < SK_ARITY && i < most; i++)
+        for (int k = 0; k < 3; k++) gradient[i][k] = over * e.gradient[i][k];
+    return true;
 }
 
 #ifdef SK_WITH_LIMITS
@@ -65,6 +88,7 @@ static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_
     return 0;
 }
 
+#undef TEXT
 #undef FORMULA
 #undef RESTS
 #undef REAL
@@ -99,4 +123,5 @@ static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_
 #define SK_ELEMENT_RULES                                                                                           \
     .arity = SK_ARITY, .rest_count = SK_RESTS, .rest = rest_of, .force = SK_WALKS_OF(force),                       \
     .project = SK_WALKS_OF(project), .project_damped = SK_WALKS_OF(project_damped), .apply = {SK_EACH_ISA(apply)}, \
-    .diagonal = {SK_EACH_ISA(diagonal)}, .blocks = {SK_EACH_ISA(blocks)}, .energy = energy
+    .diagonal = {SK_EACH_ISA(diagonal)}, .blocks = {SK_EACH_ISA(blocks)}, .energy = energy, .evaluate = evaluate,     \
+    .text = formula_text

@@ -549,7 +549,8 @@ static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_
     .arity_of = sk_formula_arity_of, .rest_count_of = sk_formula_rest_count_of, .rest = sk_formula_rest,             \
     .in_blocks = true, .force.groups = {SK_EACH_ISA(force_groups)}, .project.groups = {SK_EACH_ISA(project_groups)}, \
     .project_damped.groups = {SK_EACH_ISA(project_damped_groups)}, .apply = {SK_EACH_ISA(apply)},                    \
-    .diagonal = {SK_EACH_ISA(diagonal)}, .blocks = {SK_EACH_ISA(blocks)}, .energy = energy
+    .diagonal = {SK_EACH_ISA(diagonal)}, .blocks = {SK_EACH_ISA(blocks)}, .energy = energy,                          \
+    .evaluate = sk_formula_evaluate_one
 
 const sk_constraint_type sk_formula_constraint = {
     .kind = {"formula", "any function of up to eight particles that wants to be 0, or at least 0", SKEIN_CONSTRAINT,

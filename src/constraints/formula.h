@@ -49,6 +49,8 @@ extern const sk_making sk_formula_making, sk_energy_making;
 int sk_formula_arity_of(const void *params);
 int sk_formula_rest_count_of(const void *params);
 bool sk_formula_rest(const void *params, const double (*x)[3], double *rest);
+bool sk_formula_evaluate_one(const sk_batch *batch, double time, const sk_vec4 *x, size_t element, size_t most,
+                             sk_constraint_answer *answer, double (*gradient)[3]);
 void sk_formula_run_compiled(void *params, const skein_compiled *compiled);
 
 #endif

@@ -1,6 +1,8 @@
 /* Making what runs a constraint's formula: its tapes and its rest values. */
 #include "constraints/formula.h"
 
+#include <string.h>
+
 #include "base/status.h"
 #include "formula/evaluate.h"
 
@@ -92,8 +94,12 @@ static const skein_formula *formula_of(const void *params) {
     return ((const sk_formula_params *)params)->made->formula;
 }
 
-const sk_making sk_formula_making = {make_constraint, unmake, formula_of, sk_formula_run_compiled},
-                sk_energy_making = {make_energy, unmake, formula_of, sk_formula_run_compiled};
+static const double *parameters_of(const void *params) {
+    return ((const sk_formula_params *)params)->parameter;
+}
+
+const sk_making sk_formula_making = {make_constraint, unmake, formula_of, sk_formula_run_compiled, parameters_of},
+                sk_energy_making = {make_energy, unmake, formula_of, sk_formula_run_compiled, parameters_of};
 
 /* ---- what a constraint asks of its type ---- */
 
@@ -122,4 +128,27 @@ bool sk_formula_rest(const void *data, const double (*x)[3], double *rest) {
     sk_release(allocator, values);
     sk_release(allocator, live);
     return good;
+}
+
+/* By the same nodes that the tape runs. */
+bool sk_formula_evaluate_one(const sk_batch *batch, double time, const sk_vec4 *x, size_t element, size_t most,
+                             sk_constraint_answer *answer, double (*gradient)[3]) {
+    const sk_formula_params *params = batch->params;
+    const sk_constraint_formula *made = params->made;
+    const skein_formula *f = made->formula;
+    double positions[3 * SK_MOST_ARITY], parameters[SKEIN_FORMULA_MOST_PARAMETERS + SKEIN_FORMULA_MOST_RESTS];
+    for (size_t i = 0; i < batch->arity; i++) {
+        sk_vec4 p = x[batch->slot[element * batch->arity + i]];
+        positions[3 * i] = (double)p.x, positions[3 * i + 1] = (double)p.y, positions[3 * i + 2] = (double)p.z;
+    }
+    memcpy(parameters, params->parameter, (size_t)f->parameters * sizeof *parameters);
+    for (size_t r = 0; r < batch->rest_count; r++)
+        parameters[(size_t)f->parameters + r] = (double)batch->rest[r * batch->count + element];
+    skein_formula_value value;
+    if (!sk_formula_value_at(f, positions, parameters, time, &value)) return false;
+    *answer = (sk_constraint_answer){value.number[0], value.by_time[0], made->is_energy, made->one_sided,
+                                     value.guarded};
+    for (size_t i = 0; i < batch->arity && i < most; i++)
+        memcpy(gradient[i], value.by_position[0] + 3 * i, sizeof gradient[i]);
+    return true;
 }

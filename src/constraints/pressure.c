@@ -235,6 +235,19 @@ static double whole_energy(const sk_batch *batch, const sk_vec4 *x, size_t *guar
     return ((const sk_material *)batch->params)->stiffness >= SK_UNBOUNDED ? 0 : now.energy;
 }
 
+/* A volume's C is what it has too much; gas is an energy. */
+static bool evaluate(const sk_batch *batch, double time, const sk_vec4 *x, size_t element, size_t most,
+                     sk_constraint_answer *answer, double (*gradient)[3]) {
+    (void)time, (void)element;
+    const sk_enclosure *s = batch->enclosure;
+    bool gas = batch->type == &sk_pressure;
+    law now = law_of(batch, volume_of(batch->enclosure, x));
+    *answer = (sk_constraint_answer){gas ? now.energy : -now.missing, 0, gas, false, now.guarded};
+    for (size_t v = 0; v < s->vertex_count && v < most; v++)
+        for (int k = 0; k < 3; k++) gradient[v][k] = (gas ? -now.pressure : 1) * (double)s->gradient[3 * v + (size_t)k];
+    return true;
+}
+
 static const skein_field volume_fields[] = {
     SK_REAL(enclosed_params, material.stiffness, "stiffness", "Pa/m3", 1e6, 0, SK_UNBOUNDED,
             "pressure a cubic metre of change; \"infinite\" is rigid (position methods only)"),
@@ -259,7 +272,8 @@ static const skein_field pressure_fields[] = {
 #define AROUND_A_VOLUME                                                                                              \
     .arity = SK_ARITY, .force.groups = {SK_EACH_ISA(force_groups)}, .project.groups = {SK_EACH_ISA(project_groups)}, \
     .project_damped.groups = {SK_EACH_ISA(project_damped_groups)}, .apply = {SK_EACH_ISA(apply)},                    \
-    .diagonal = {SK_EACH_ISA(diagonal)}, .enclose = enclose, .whole_energy = whole_energy
+    .diagonal = {SK_EACH_ISA(diagonal)}, .enclose = enclose, .whole_energy = whole_energy,                      \
+    .evaluate = evaluate
 
 const sk_constraint_type sk_enclosed_volume = {
     .kind = {"enclosed_volume", "keeps the volume inside a closed surface of triangles", SKEIN_CONSTRAINT,

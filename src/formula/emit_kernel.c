@@ -2,6 +2,7 @@
  * gradient, in macros that say nothing of how the numbers lie.
  *
  *     // length(p0 - p1) - rest(length(p0 - p1))
+ *     TEXT("length(p0 - p1) - rest(length(p0 - p1))")
  *     RESTS(rests) { ... REST(0, x); }
  *     FORMULA(formula) { ... GRADIENT(0, particle, axis, g); VALUE(0, c); }
  *
@@ -82,6 +83,16 @@ static bool is_opposite(const skein_formula *f, const component *y) {
     return all;
 }
 
+/* The formula as a string, for those who look into a constraint of that kind. */
+static void put_text(sk_writer *w) {
+    sk_put(w, "TEXT(\"");
+    for (const char *c = w->formula->text; *c; c++) {
+        if (*c == '\n') sk_put(w, "\\n");
+        else sk_put(w, *c == '"' || *c == '\\' ? "\\%c" : "%c", *c);
+    }
+    sk_put(w, "\")\n");
+}
+
 static void put_rests(sk_writer *w) {
     const skein_formula *f = w->formula;
     if (!f->rests) return;
@@ -107,6 +118,7 @@ void sk_put_kernel(sk_writer *w) {
     for (size_t i = 0; i < coordinates; i++) outputs[count++] = y[i].node;
     sk_put_source(w, "// ");
     sk_put_parameters(w, "// ");
+    put_text(w);
     put_rests(w);
     sk_put(w, "FORMULA(formula) {\n");
     sk_put_temporaries(w, outputs, count);

@@ -195,6 +195,37 @@ static skein_status find_answer(const skein_formula *f, const skein_formula_poin
     return SKEIN_OK;
 }
 
+static void take_value(const skein_formula *f, const answer *a, skein_formula_value *value) {
+    *value = (skein_formula_value){.guarded = a->guarded};
+    for (int k = 0; k < f->size; k++) {
+        value->number[k] = a->values[f->value[k]];
+        value->by_time[k] = a->values[f->by_time[k]];
+        for (int i = 0; i < 3 * f->particles; i++) {
+            value->by_position[k][i] = a->values[f->by_position[k][i]];
+            value->by_velocity[k][i] = a->values[f->by_velocity[k][i]];
+        }
+    }
+}
+
+bool sk_formula_value_at(const skein_formula *f, const double *positions, const double *parameters, double time,
+                         skein_formula_value *value) {
+    double inputs[SK_INPUT_COUNT] = {0};
+    sk_node outputs[SK_FORMULA_MOST_OUTPUTS];
+    answer a = {.allocator = *f->allocator};
+    a.values = sk_allocate(&a.allocator, f->graph.count * sizeof *a.values);
+    a.live = sk_allocate(&a.allocator, f->graph.count * sizeof *a.live);
+    bool good = a.values && a.live;
+    if (good) {
+        take(inputs, positions, 3 * (size_t)f->particles);
+        inputs[SK_INPUT_TIME] = time;
+        sk_graph_mark(&f->graph, outputs, outputs_of(f, outputs), a.live);
+        a.guarded = sk_evaluate_double(&f->graph, a.live, inputs, parameters, a.values);
+        take_value(f, &a, value);
+    }
+    release_answer(&a);
+    return good;
+}
+
 skein_status skein_formula_evaluate(const skein_formula *f, const skein_formula_point *point,
                                     skein_formula_value *value, skein_error *error) {
     if (!f) return sk_fail_null(error, "formula");
@@ -204,15 +235,7 @@ skein_status skein_formula_evaluate(const skein_formula *f, const skein_formula_
     answer a;
     skein_status status = find_answer(f, point, outputs, outputs_of(f, outputs), &a, error);
     if (status) return status;
-    *value = (skein_formula_value){.guarded = a.guarded};
-    for (int k = 0; k < f->size; k++) {
-        value->number[k] = a.values[f->value[k]];
-        value->by_time[k] = a.values[f->by_time[k]];
-        for (int i = 0; i < 3 * f->particles; i++) {
-            value->by_position[k][i] = a.values[f->by_position[k][i]];
-            value->by_velocity[k][i] = a.values[f->by_velocity[k][i]];
-        }
-    }
+    take_value(f, &a, value);
     release_answer(&a);
     return SKEIN_OK;
 }

@@ -46,6 +46,11 @@ struct skein_formula {
 skein_formula *sk_formula_create(const skein_formula_desc *desc, sk_allocator *allocator, skein_formula_mark *mark,
                                  skein_error *error);
 
+/* The value and its derivatives where the particles stand, with the numbers of rest(...) after the parameters. False when
+ * there is no memory. */
+bool sk_formula_value_at(const skein_formula *formula, const double *positions, const double *parameters, double time,
+                         skein_formula_value *value);
+
 /* Reads the text into the formula's value, rests and warnings. */
 skein_status sk_formula_parse(skein_formula *formula, const skein_formula_desc *desc, skein_formula_mark *mark,
                               skein_error *error);

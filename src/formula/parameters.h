@@ -22,6 +22,7 @@ typedef struct sk_making {
      * tape. */
     const skein_formula *(*formula_of)(const void *params);
     void (*run_compiled)(void *params, const skein_compiled *compiled);
+    const double *(*parameters_of)(const void *params); /* the numbers that the formula names, where there is one */
 } sk_making;
 
 /* Whether objects of the kind name parameters. */

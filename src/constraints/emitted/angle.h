@@ -1,5 +1,6 @@
 // angle(p0 - p1, p2 - p1) - rest(angle(p0 - p1, p2 - p1))
 // Parameter 0 is the value of rest(...) number 1.
+TEXT("angle(p0 - p1, p2 - p1) - rest(angle(p0 - p1, p2 - p1))")
 RESTS(rests) {
     const REAL x_1 = POSITION(0, 0) - POSITION(1, 0);
     const REAL x_2 = POSITION(0, 1) - POSITION(1, 1);

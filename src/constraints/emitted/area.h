@@ -1,5 +1,6 @@
 // length(cross(p1 - p0, p2 - p0)) / 2 - rest(length(cross(p1 - p0, p2 - p0)) / 2)
 // Parameter 0 is the value of rest(...) number 1.
+TEXT("length(cross(p1 - p0, p2 - p0)) / 2 - rest(length(cross(p1 - p0, p2 - p0)) / 2)")
 RESTS(rests) {
     const REAL x_1 = POSITION(1, 0) - POSITION(0, 0);
     const REAL x_2 = POSITION(1, 1) - POSITION(0, 1);

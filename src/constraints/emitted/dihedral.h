@@ -1,5 +1,6 @@
 // let a = dihedral(p0, p1, p2, p3) - rest(dihedral(p0, p1, p2, p3)); a - 2*pi * select(a > pi, 1, select(a < -pi, -1, 0))
 // Parameter 0 is the value of rest(...) number 1.
+TEXT("let a = dihedral(p0, p1, p2, p3) - rest(dihedral(p0, p1, p2, p3)); a - 2*pi * select(a > pi, 1, select(a < -pi, -1, 0))")
 RESTS(rests) {
     const REAL dihedral_1 = POSITION(1, 0) - POSITION(0, 0);
     const REAL dihedral_2 = POSITION(1, 1) - POSITION(0, 1);

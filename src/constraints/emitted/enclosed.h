@@ -1,4 +1,5 @@
 // dot(p0, cross(p1, p2)) / 6
+TEXT("dot(p0, cross(p1, p2)) / 6")
 FORMULA(formula) {
     const REAL cross_1 = POSITION(1, 1) * POSITION(2, 2) - POSITION(1, 2) * POSITION(2, 1);
     const REAL cross_2 = POSITION(1, 2) * POSITION(2, 0) - POSITION(1, 0) * POSITION(2, 2);

@@ -2,6 +2,7 @@
 // Parameter 0 is the value of rest(...) number 1.
 // Parameter 1 is the value of rest(...) number 2.
 // Parameter 2 is the value of rest(...) number 3.
+TEXT("let a = p1 - p0; let b = p2 - p0; let c = p3 - p0; let d = p2 - p1; let e = p3 - p1; let s = sqrt(2 / (length(cross(a, b)) + length(cross(a, c)))); let k = s * dot(a, b) / length(cross(a, b)); let l = s * dot(a, c) / length(cross(a, c)); let m = -s * dot(a, d) / length(cross(a, d)); let n = -s * dot(a, e) / length(cross(a, e)); length(rest(k + l) * a - rest(k + m) * b - rest(l + n) * c)")
 RESTS(rests) {
     const REAL a_1 = POSITION(1, 0) - POSITION(0, 0);
     const REAL a_2 = POSITION(1, 1) - POSITION(0, 1);

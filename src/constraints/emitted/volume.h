@@ -1,5 +1,6 @@
 // dot(cross(p1 - p0, p2 - p0), p3 - p0) / 6 - rest(dot(cross(p1 - p0, p2 - p0), p3 - p0) / 6)
 // Parameter 0 is the value of rest(...) number 1.
+TEXT("dot(cross(p1 - p0, p2 - p0), p3 - p0) / 6 - rest(dot(cross(p1 - p0, p2 - p0), p3 - p0) / 6)")
 RESTS(rests) {
     const REAL x_1 = POSITION(1, 0) - POSITION(0, 0);
     const REAL x_2 = POSITION(1, 1) - POSITION(0, 1);
