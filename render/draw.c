@@ -33,6 +33,7 @@ struct render_draw {
     render_solids solids;
     render_flight flight;
     size_t part;                        /* triangles that are drawn at a time; 0: all */
+    double line_scale;
     const render_shape *particle_shape; /* in this frame */
     render_mesh *meshes;                /* by the surface's place in the frame */
     size_t mesh_count;
@@ -113,6 +114,7 @@ render_draw *render_draw_create(skein_error *error) {
         render_fail_memory(error, "the renderer");
         return NULL;
     }
+    draw->line_scale = 1;
     if (make_all(draw, error) != SKEIN_OK) {
         render_draw_destroy(draw);
         return NULL;
@@ -146,6 +148,10 @@ void render_draw_destroy(render_draw *draw) {
 
 void render_draw_in_parts(render_draw *draw, size_t triangles) {
     draw->part = triangles;
+}
+
+void render_draw_line_scale(render_draw *draw, double scale) {
+    draw->line_scale = scale;
 }
 
 /* ---- Bringing a frame to the card ----------------------------------------------------------- */
@@ -414,7 +420,8 @@ static void draw_picture(const render_draw *draw, const drawing *d, unsigned fra
     draw_balls(draw, 0);
     render_flight_draw(&draw->flight, d->frame, false, draw->part);
     in_bands(draw, d, draw_still);
-    render_instances_draw_lines(&draw->lines, draw->programs[LINE], d->frame, d->width, d->height, draw->part);
+    render_instances_draw_lines(&draw->lines, draw->programs[LINE], d->frame, (double)d->width / draw->line_scale,
+                                (double)d->height / draw->line_scale, draw->part);
     in_bands(draw, d, draw_sky);
     render_solids_draw_glass(&draw->solids, d->frame);
 }

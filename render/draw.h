@@ -22,6 +22,9 @@ void render_draw_destroy(render_draw *draw); /* NULL is allowed; the context mus
  * several contexts ask for one after the other: in between, another one gets its turn. */
 void render_draw_in_parts(render_draw *draw, size_t triangles);
 
+/* Pictures that will be enlarged or made smaller: lines are so many times as wide (1, as at first). */
+void render_draw_line_scale(render_draw *draw, double scale);
+
 /* Draws a frame into a framebuffer that has sRGB colour and float depth (see target.h). */
 skein_status render_draw_frame(render_draw *draw, const render_frame *frame, const render_camera *camera,
                                unsigned framebuffer, int width, int height, skein_error *error);

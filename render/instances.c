@@ -164,7 +164,7 @@ skein_status render_instances_bring_lines(render_instances *instances, const ren
 /* ---- Drawing -------------------------------------------------------------------------------- */
 
 void render_instances_draw_lines(const render_instances *instances, unsigned program, const render_frame *frame,
-                                 int width, int height, size_t part) {
+                                 double width, double height, size_t part) {
     GLuint first = 0;
     glUseProgram(program);
     glBindVertexArray(instances->arrays);

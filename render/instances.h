@@ -34,8 +34,9 @@ skein_status render_instances_bring_points(render_instances *instances, const re
                                            const double rotation[9], skein_error *error);
 skein_status render_instances_bring_lines(render_instances *instances, const render_frame *frame, skein_error *error);
 
-/* All of a frame's lines, which were brought before, each group in its width. */
+/* All of a frame's lines, which were brought before, each group in its width: pixels of a picture so
+ * large. */
 void render_instances_draw_lines(const render_instances *instances, unsigned program, const render_frame *frame,
-                                 int width, int height, size_t part);
+                                 double width, double height, size_t part);
 
 #endif

@@ -12,6 +12,7 @@
 
 #include "skein/skein.h"
 #include "viewer/events.h"
+#include "viewer/pace.h"
 
 enum { VIEWER_TEXT = 1024, VIEWER_PICTURES = 4, VIEWER_SIDES = 2, VIEWER_SAMPLES = 240, VIEWER_LOG_LINES = 200 };
 
@@ -147,7 +148,8 @@ typedef struct viewer_shown {
     uint64_t generation;                /* changes with the pictures */
     int newest, in_use;                 /* places of pictures; -1: none. in_use is the window's */
     char title[256], message[240];
-    bool has_scene, paused, recording, flying, by_key, play_away, slow, finished /* the stage has ended */;
+    bool has_scene, paused, recording, flying, by_key, play_away, finished /* the stage has ended */;
+    viewer_slowness slow;
     bool panel[VIEWER_PANEL_COUNT];
     uint64_t frame, first_frame, last_frame; /* of the history */
     double time, speed;                      /* s; simulated over real time */

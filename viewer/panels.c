@@ -99,8 +99,9 @@ static void show_time(viewer_panels *panels, const viewer_shown *shown) {
         }
     }
     char line[160];
-    snprintf(line, sizeof line, "%.2f s, %.0f %% of real time%s", shown->time, 100 * shown->speed,
-             shown->slow ? " (slow)" : "");
+    const char *slow = viewer_slowness_word(shown->slow);
+    snprintf(line, sizeof line, "%.2f s, %.0f %% of real time%s%s", shown->time, 100 * shown->speed,
+             slow[0] ? "; slow: " : "", slow);
     widgets_text(line);
     bool away = shown->play_away;
     if (widgets_tick("play in the background", &away)) {

@@ -6,12 +6,13 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 /* Pictures a second at most; how long steps may go on before the stage looks at what is asked; how often the scene's
  * file is looked at, and speed is judged. */
 static const double most_rate = 60, longest_stepping = 0.005, watch_every = 0.25, judge_every = 1, profile_every = 1;
-/* Under this share of real time a world is said to be slow. */
-static const double slow_speed = 0.9;
+/* What was drawn with less detail is drawn with all of it once nothing has moved for so long (s). */
+static const double rest = 0.25;
 
 /* ---- Words ---- */
 
@@ -22,7 +23,7 @@ static void log_line(viewer_stage *stage, skein_log_level level, const char *tex
     line->level = level;
     snprintf(line->text, sizeof line->text, "%.799s", text);
     pthread_mutex_unlock(&stage->exchange->lock);
-    stage->dirty = true;
+    stage->news = true;
 }
 
 void viewer_say(viewer_stage *stage, skein_log_level level, const char *format, ...) {
@@ -140,15 +141,28 @@ void viewer_stage_step(viewer_stage *stage) {
 
 static void judge_speed(viewer_stage *stage, double now) {
     if (now - stage->spoke < 0) stage->spoke = now;
-    if (stage->real < judge_every) return;
-    stage->speed = stage->simulated / stage->real;
-    stage->simulated = stage->real = 0;
-    bool slow = stage->speed < slow_speed;
-    if (slow && !stage->told_slow)
-        viewer_say(stage, SKEIN_LOG_INFO, "this machine is too slow for it: it goes at %.0f %% of real time",
-                   100 * stage->speed);
+    if (stage->pace.real < judge_every) return;
+    char text[300];
+    stage->speed = stage->pace.simulated / stage->pace.real;
+    viewer_slowness slow = viewer_pace_judge(&stage->pace);
+    viewer_slowness_text(slow, &stage->pace, text, sizeof text);
+    // the first second of a scene is often slow
+    bool tell = text[0] && slow == stage->slow && !stage->told_slow;
+    if (tell) viewer_note(stage, "%s", text);
+    stage->told_slow |= tell;
     stage->slow = slow;
-    stage->told_slow |= slow;
+    viewer_event(stage->events, "pace speed=%.3f pictures=%.3g step_ms=%.4g draw_ms=%.4g level=%d slow=%s", stage->speed,
+                 (double)stage->pace.pictures / stage->pace.real,
+                 1e3 * stage->pace.worked / fmax((double)stage->pace.steps, 1), stage->draw_ms, stage->level,
+                 viewer_slowness_word(stage->slow));
+    stage->pace = (viewer_pace){0};
+}
+
+/* Seconds of processor time that this thread has had. */
+static double worked_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 static bool plays(const viewer_stage *stage) {
@@ -167,14 +181,17 @@ static void advance(viewer_stage *stage) {
     if (stage->due > stage->pacer.most_steps) stage->due = stage->pacer.most_steps;
     bool good = true;
     int taken = 0;
+    double worked = worked_seconds();
     while (stage->due > 0 && good && viewer_seconds() - now < longest_stepping) {
         bool new_frame;
         good = step_all(stage, &new_frame);
         stage->due--, taken++;
-        stage->simulated += good ? stage->pacer.step : 0;
+        stage->pace.simulated += good ? stage->pacer.step : 0;
         if (good && new_frame && stage->film) viewer_film_frame(stage);
     }
-    stage->real += elapsed;
+    stage->pace.real += elapsed;
+    stage->pace.steps += (size_t)taken;
+    stage->pace.worked += worked_seconds() - worked;
     if (taken) stage->step_ms = 1e3 * (viewer_seconds() - now) / taken * stage->sides[0].steps;
     judge_speed(stage, now);
     if (!good) viewer_stage_pause(stage, true);
@@ -183,16 +200,22 @@ static void advance(viewer_stage *stage) {
     stage->dirty = true; // time goes on between steps, too
 }
 
+/* Whether pictures follow each other: time goes on, or the camera is moved. */
+static bool moves(const viewer_stage *stage) {
+    bool moving = plays(stage) || stage->button >= 0;
+    for (int m = 0; m < VIEWER_MOTION_COUNT; m++) moving |= stage->camera.down[m];
+    return moving;
+}
+
 /* How long nothing has to happen by itself. */
 static double patience(viewer_stage *stage) {
-    bool moves = false;
     double now = viewer_seconds(), wait = watch_every;
-    for (int m = 0; m < VIEWER_MOTION_COUNT; m++) moves |= stage->camera.down[m];
     if (plays(stage) && stage->due > 0) return 0;
-    if (plays(stage) || moves) wait = fmax(stage->last + 1 / most_rate - now, 0);
+    if (moves(stage)) wait = fmax(stage->last + 1 / most_rate - now, 0);
     // a picture that the painter is busy with ends the wait
     if (stage->dirty && !viewer_painter_busy(&stage->painter))
         wait = fmin(wait, fmax(stage->begun + 1 / most_rate - now, 0));
+    if (!stage->dirty && !stage->sharp) wait = fmin(wait, fmax(stage->begun + rest - now, 0.01));
     return wait;
 }
 
@@ -204,14 +227,20 @@ static void publish(viewer_stage *stage) {
     pthread_mutex_lock(&exchange->lock);
     viewer_mirror(stage);
     pthread_mutex_unlock(&exchange->lock);
+    stage->news = false;
 }
 
 /* The painter is idle: a picture of what there is now, or where nothing has changed one for the gallery. */
 static void paint_next(viewer_stage *stage) {
     viewer_end_picture(stage);
-    if (stage->dirty && viewer_seconds() >= stage->begun + 1 / most_rate) {
-        viewer_begin_picture(stage);
+    double now = viewer_seconds();
+    if (stage->dirty && now >= stage->begun + 1 / most_rate) {
+        bool moving = moves(stage) || now - stage->stirred < rest;
+        stage->stirred = now;
+        viewer_begin_picture(stage, !moving);
         publish(stage); // together with the picture
+    } else if (!stage->dirty && !stage->sharp && now >= stage->begun + rest) {
+        viewer_begin_picture(stage, true);
     } else if (!stage->dirty && stage->panel[VIEWER_PANEL_GALLERY]) {
         viewer_gallery_work(stage);
     }
@@ -230,11 +259,13 @@ static void turn(viewer_stage *stage) {
     advance(stage);
     if (stage->message[0] && now - stage->spoke > 6) {
         stage->message[0] = 0;
-        stage->dirty = true;
+        stage->news = true;
     }
     // the panels' answer does not wait for a picture
-    if (count) publish(stage);
-    if (count && stage->exchange->wake) stage->exchange->wake();
+    if (count || stage->news) {
+        publish(stage);
+        if (stage->exchange->wake) stage->exchange->wake();
+    }
     if (!viewer_painter_busy(&stage->painter)) paint_next(stage);
 }
 

@@ -18,6 +18,7 @@
 #include "viewer/camera.h"
 #include "viewer/exchange.h"
 #include "viewer/grab.h"
+#include "viewer/pace.h"
 #include "viewer/painter.h"
 #include "viewer/player.h"
 #include "viewer/viewer.h"
@@ -29,6 +30,7 @@ typedef struct viewer_picture {
     size_t side_count;
     render_camera lens;
     int width, height; /* of the whole picture */
+    int level;         /* of detail (pace.h) */
     bool ready;        /* was drawn since the stage last looked */
     double ms;         /* that it took */
     skein_error error;
@@ -53,6 +55,7 @@ typedef struct viewer_stage {
     bool paused, paused_by_focus, play_away, closing;
     bool panel[VIEWER_PANEL_COUNT];
     bool dirty; /* what is shown is not what there is */
+    bool news;  /* there are new words, which need no picture */
     bool facts; /* objects or fields have changed: the panels want them anew */
     char message[240];
 
@@ -66,6 +69,8 @@ typedef struct viewer_stage {
     double framed[VIEWER_SIDES]; /* when the player was opened that the frame is of */
     render_draw *draw;
     render_target target[VIEWER_SIDES]; /* as wide as their part of the window */
+    render_target coarse[VIEWER_SIDES]; /* of a level of less detail */
+    int coarse_level;                   /* 0: there are none */
     unsigned pictures[VIEWER_PICTURES], framebuffer;
     int drawn_width, drawn_height; /* of the pictures */
     int newest;
@@ -78,10 +83,14 @@ typedef struct viewer_stage {
 
     /* time */
     double last, spoke, sampled, profiled; /* when: frames, notes, statistics, passes */
-    double simulated, real, speed;         /* seconds since the last look, and their ratio */
-    bool slow, told_slow;                  /* now; was said of this scene */
+    viewer_pace pace;                      /* since the last look */
+    double speed;                          /* simulated over real seconds */
+    viewer_slowness slow;                  /* now */
+    bool told_slow;                        /* was said of this scene */
     int due;                               /* steps */
-    double begun;                          /* when the last picture was */
+    double begun, stirred;                 /* when the last picture was, and the last that something had changed for */
+    int level;                             /* of detail, for what moves */
+    bool sharp;                            /* the last picture had all detail */
     double step_ms, draw_ms;
     bool in_parts; /* the next picture is drawn in parts: the last took long, or nobody knows yet */
 
@@ -141,8 +150,9 @@ bool viewer_pictures_open(viewer_stage *stage, skein_error *error);
 void viewer_pictures_close(viewer_stage *stage);
 /* Copies what there is into the frames, and places the camera if it has no place yet. Waits for the painter. */
 bool viewer_take_frames(viewer_stage *stage);
-/* Has the painter draw it: the window gets it once it is done. False where nothing can be drawn. */
-bool viewer_begin_picture(viewer_stage *stage);
+/* Has the painter draw it: the window gets it once it is done. With all detail, or as much as can be drawn often. False
+ * where nothing can be drawn. */
+bool viewer_begin_picture(viewer_stage *stage, bool sharp);
 /* Learns how the last picture went. */
 void viewer_end_picture(viewer_stage *stage);
 /* Brings the whole picture, without panels, into memory. */

@@ -3,7 +3,9 @@
  *     worlds --viewer_take_frames--> frames --painter--> targets (several samples a pixel) --> one of four pictures
  *
  * Four pictures go round: the one that the window has, the one that it may take next, the newest, and the one that is
- * being drawn. Functions that begin with paint run on the painter's thread. */
+ * being drawn. While things move and pictures take long, they are drawn smaller and enlarged (pace.h). Functions that
+ * begin with paint run on the painter's thread. */
+#include <math.h>
 #include <string.h>
 
 #include <epoxy/gl.h>
@@ -51,7 +53,11 @@ bool viewer_pictures_open(viewer_stage *stage, skein_error *error) {
 }
 
 static void drop_pictures(viewer_stage *stage) {
-    for (size_t s = 0; s < VIEWER_SIDES; s++) render_target_destroy(&stage->target[s]);
+    for (size_t s = 0; s < VIEWER_SIDES; s++) {
+        render_target_destroy(&stage->target[s]);
+        render_target_destroy(&stage->coarse[s]);
+    }
+    stage->coarse_level = 0;
     glDeleteRenderbuffers(VIEWER_PICTURES, stage->pictures);
     memset(stage->pictures, 0, sizeof stage->pictures);
     stage->newest = -1;
@@ -106,6 +112,23 @@ static skein_status paint_size(viewer_stage *stage) {
     return SKEIN_OK;
 }
 
+/* The target that a side is drawn to; NULL after a fault. */
+static const render_target *paint_target(viewer_stage *stage, size_t side) {
+    viewer_picture *picture = &stage->picture;
+    if (picture->level == 0) return &stage->target[side];
+    viewer_detail detail = viewer_detail_at(picture->level);
+    for (size_t s = 0; s < VIEWER_SIDES && stage->coarse_level != picture->level; s++)
+        render_target_destroy(&stage->coarse[s]);
+    stage->coarse_level = picture->level;
+    render_target *target = &stage->coarse[side];
+    if (target->framebuffer) return target;
+    int width = (int)fmax(detail.scale * stage->target[side].width, 1),
+        height = (int)fmax(detail.scale * stage->target[side].height, 1);
+    return render_target_create(target, width, height, detail.sampled ? stage->options->samples : 1, &picture->error)
+               ? NULL
+               : target;
+}
+
 /* A place that the window neither has nor may take, and that is not the newest. */
 static int free_place(viewer_stage *stage) {
     pthread_mutex_lock(&stage->exchange->lock);
@@ -126,12 +149,19 @@ static void paint_together(const viewer_stage *stage, int place) {
     glEnable(GL_FRAMEBUFFER_SRGB);
     if (!picture->side_count) glClearNamedFramebufferfv(stage->framebuffer, GL_COLOR, 0, dark);
     for (size_t s = 0; s < picture->side_count; s++) {
-        const render_target *target = &stage->target[s];
+        const render_target *target = picture->level ? &stage->coarse[s] : &stage->target[s];
+        unsigned from = target->framebuffer;
         int left, width = part_of_width(picture->width, picture->side_count, s, &left);
-        glBlitNamedFramebuffer(target->framebuffer, target->plain_framebuffer, 0, 0, width, height, 0, 0, width, height,
-                               GL_COLOR_BUFFER_BIT, GL_NEAREST);
-        glBlitNamedFramebuffer(target->plain_framebuffer, stage->framebuffer, 0, 0, width, height, left, 0,
-                               left + width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        bool same = target->width == width && target->height == height;
+        glEnable(GL_FRAMEBUFFER_SRGB);
+        if (target->samples > 1) {
+            glBlitNamedFramebuffer(target->framebuffer, target->plain_framebuffer, 0, 0, target->width, target->height, 0,
+                                   0, target->width, target->height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+            from = target->plain_framebuffer;
+        }
+        glDisable(GL_FRAMEBUFFER_SRGB); // what follows are bytes
+        glBlitNamedFramebuffer(from, stage->framebuffer, 0, 0, target->width, target->height, left, 0, left + width,
+                               height, GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
     }
     glFinish(); // the other context sees what is finished
 }
@@ -157,10 +187,12 @@ static void paint(void *user) {
     skein_status status = paint_size(stage);
     // where that takes long, the window's panels are drawn in between
     render_draw_in_parts(stage->draw, stage->in_parts ? part_of_picture : 0);
+    render_draw_line_scale(stage->draw, viewer_detail_at(picture->level).scale);
     for (size_t s = 0; s < picture->side_count && !status; s++) {
-        const render_target *target = &stage->target[s];
-        status = render_draw_frame(stage->draw, render_world_frame_get(stage->frames[s]), &picture->lens,
+        const render_target *target = paint_target(stage, s);
+        if (target) status = render_draw_frame(stage->draw, render_world_frame_get(stage->frames[s]), &picture->lens,
                                    target->framebuffer, target->width, target->height, &picture->error);
+        else status = picture->error.status;
     }
     picture->ready = true;
     if (status) return;
@@ -211,14 +243,16 @@ bool viewer_take_frames(viewer_stage *stage) {
     return true;
 }
 
-bool viewer_begin_picture(viewer_stage *stage) {
+bool viewer_begin_picture(viewer_stage *stage, bool sharp) {
     stage->begun = viewer_seconds();
     stage->dirty = false;
     if (!viewer_take_frames(stage)) return false;
     stage->picture = (viewer_picture){.side_count = stage->side_count,
                                       .lens = stage->camera.lens,
                                       .width = stage->width,
-                                      .height = stage->height};
+                                      .height = stage->height,
+                                      .level = sharp ? 0 : stage->level};
+    stage->sharp = stage->picture.level == 0;
     viewer_painter_begin(&stage->painter, paint, stage);
     return true;
 }
@@ -229,6 +263,11 @@ void viewer_end_picture(viewer_stage *stage) {
     picture->ready = false;
     if (picture->error.status) viewer_say(stage, SKEIN_LOG_WARNING, "%s", picture->error.message);
     else stage->draw_ms = picture->ms;
+    if (picture->error.status) return;
+    // what took long because it was to have all detail says nothing about a moving one
+    if (picture->level == stage->level) stage->level = viewer_detail_next(stage->level, picture->ms);
+    stage->pace.pictures++;
+    stage->pace.drawn += 1e-3 * picture->ms;
 }
 
 /* ---- Reading one ---- */
@@ -256,8 +295,8 @@ static void paint_read(void *user) {
 bool viewer_picture_read(viewer_stage *stage, render_image *image) {
     skein_error error = {SKEIN_OK, "", ""};
     viewer_painter_wait(&stage->painter);
-    if (stage->newest < 0 || stage->dirty) {
-        if (!viewer_begin_picture(stage)) return false;
+    if (stage->newest < 0 || stage->dirty || !stage->sharp) {
+        if (!viewer_begin_picture(stage, true)) return false;
         viewer_painter_wait(&stage->painter);
     }
     viewer_end_picture(stage);

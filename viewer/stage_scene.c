@@ -18,9 +18,10 @@ viewer_reading viewer_stage_reading(const viewer_stage *stage) {
 static void restart_clock(viewer_stage *stage) {
     const viewer_player *player = &stage->sides[0];
     stage->last = viewer_seconds();
-    stage->simulated = stage->real = 0;
+    stage->pace = (viewer_pace){0};
     stage->speed = 1;
-    stage->slow = stage->told_slow = false;
+    stage->slow = VIEWER_IN_TIME;
+    stage->told_slow = false;
     stage->sampled = 0;
     stage->grab.holding = false;
     stage->facts = stage->dirty = true;
@@ -134,7 +135,7 @@ void viewer_stage_pause(viewer_stage *stage, bool paused) {
     stage->paused = paused;
     stage->paused_by_focus = false;
     stage->last = viewer_seconds();
-    stage->simulated = stage->real = 0;
+    stage->pace = (viewer_pace){0};
     stage->dirty = true;
     viewer_event(stage->events, paused ? "paused" : "plays");
 }
