@@ -64,6 +64,7 @@ typedef struct bench_result {
     double faster;                                /* the bar: theirs / ours is at least this; 0: no such bar */
     double as_long;                               /* the bar: ours / theirs is at most this */
     double under;                                 /* the bar: ours is under this */
+    double firm;                                  /* the bar: 99 of 100 edges are stretched by no more than this */
     const bench_stretch *stretch, *other_stretch; /* NULL: not measured */
     const char *note;                             /* settings, or NULL */
 } bench_result;

@@ -127,8 +127,12 @@ static bool describe_bar(const bench_result *r, char *bar, size_t size) {
         good &= r->ours / r->theirs <= r->as_long;
     }
     if (r->under > 0) {
-        snprintf(bar + length, size - length, "%sunder %g", length ? " and " : "", r->under);
+        length += (size_t)snprintf(bar + length, size - length, "%sunder %g", length ? " and " : "", r->under);
         good &= r->ours < r->under;
+    }
+    if (r->firm > 0 && r->stretch) {
+        snprintf(bar + length, size - length, "%sp99 at most %g %%", length ? " and " : "", 100 * r->firm);
+        good &= r->stretch->p99 <= r->firm;
     }
     return good;
 }

@@ -363,6 +363,47 @@ static uint64_t hash_after(const char *method, const char *isa, int threads, int
 }
 
 /* 9 x 19 x 9 goes in groups, 14 x 24 x 14 in strips. */
+/* Rigid springs, many times as many as the block has freedoms, and one sweep a substep: it falls, comes to rest and
+ * does not shiver. (Swept direction by direction all of these gained energy: 10 % of stretch for ever, or far more.) */
+static void a_rigid_block_comes_to_rest_with_one_sweep(void **state) {
+    (void)state;
+    static const int sizes[][3] = {{12, 12, 12}, {8, 8, 8}, {5, 20, 11}};
+    for (size_t s = 0; s < COUNT(sizes); s++) {
+        skein_world *world = new_world("xpbd", 10);
+        add_lattice(world, sizes[s][0], sizes[s][1], sizes[s][2],
+                    SKEIN_SETTINGS(SKEIN_REAL("mass", 1), SKEIN_REAL("structural.stiffness", INFINITY),
+                                   SKEIN_REAL("shear.stiffness", INFINITY), SKEIN_TEXT("shear.diagonals", "faces"),
+                                   SKEIN_REAL("bending.springs", 0)));
+        OK(world, skein_force_add(world, "gravity", NULL, NULL));
+        OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 1)), NULL));
+        OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.8)), NULL));
+        steps(world, 240, 1.0 / 60);
+        skein_statistics rest = statistics_of(world);
+        assert_under(rest.p99_stretch, 0.005);
+        assert_under(rest.kinetic_energy, 1e-4);
+        skein_world_destroy(world);
+    }
+}
+
+/* Forth and back: a plan's rows of projection come as even halves, and then as odd ones in the opposite order. */
+static void halves_go_forth_and_back(void **state) {
+    (void)state;
+    skein_world *world = new_world("xpbd", 1);
+    add_lattice(world, 4, 10, 12, SKEIN_SETTINGS(SKEIN_REAL("struts", 1)));
+    steps(world, 1, 1.0 / 60);
+    size_t rows[128], count = 0;
+    for (size_t r = 0; r < world->plan.count; r++)
+        if (world->plan.data[r].kind == SK_ROW_PROJECT && world->plan.data[r].half) rows[count++] = r;
+    assert_true(count > 20 && count % 2 == 0);
+    for (size_t i = 0; i < count / 2; i++) {
+        const sk_row *forth = &world->plan.data[rows[i]], *back = &world->plan.data[rows[count - 1 - i]];
+        assert_int_equal(forth->half, SK_EVEN_HALF);
+        assert_int_equal(back->half, SK_ODD_HALF);
+        assert_ptr_equal(forth->rule, back->rule);
+    }
+    skein_world_destroy(world);
+}
+
 static void a_cube_has_the_same_bits_everywhere(void **state) {
     (void)state;
     static const char *const isas[] = {"sse", "avx2", "avx512", ""};
@@ -383,6 +424,8 @@ int main(void) {
         cmocka_unit_test(each_sort_has_its_own_stiffness),
         cmocka_unit_test(the_surface_is_closed_and_looks_outward),
         cmocka_unit_test(pins_hold_what_they_name),
+        cmocka_unit_test(a_rigid_block_comes_to_rest_with_one_sweep),
+        cmocka_unit_test(halves_go_forth_and_back),
         cmocka_unit_test(a_cube_has_the_same_bits_everywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

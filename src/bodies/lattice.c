@@ -65,7 +65,7 @@ static const skein_field fields[] = {
     SK_BOOL(lattice_params, struts, "struts", 0, "whether there are struts from face to face, a line each"),
 };
 
-/* The body's batches, in the order of sweeps: what is swept last is kept best. */
+/* The body's batches, in the order of sweeps on the way forth; on the way back it is the opposite. */
 enum { BENDING, STRUTS, BODY_DIAGONALS, FACE_DIAGONALS, STRUCTURAL, SORTS };
 
 /* ---- particles ---- */
@@ -173,6 +173,7 @@ static skein_status add_springs(sk_block *block, const lattice_params *params) {
         skein_status status =
             sk_block_add_springs(block, sorts[s].label, *sorts[s].material, s == STRUCTURAL, springs, count);
         if (status) return status;
+        sk_world_sweep_both_ways(block->body);
     }
     sk_world_add_strain_limit(block->body);
     return SKEIN_OK;

@@ -39,7 +39,8 @@ SK_KERNELS(sk_probe_sixteen, probe_sixteen);
 typedef struct encounter {
     sk_wide4 x;
     sk_contact contact;
-    sk_wide3 surface; /* the surface's velocity there */
+    bool moves;       /* the surface: most stand still, and need no arithmetic */
+    sk_wide3 surface; /* its velocity there */
     sk_mask touching; /* free particles within the thickness, and a hair beyond it */
 } encounter;
 
@@ -58,6 +59,11 @@ SK_INLINE sk_wide split(sk_wide3 u, sk_wide3 normal, sk_wide3 *tangential) {
     sk_wide along = sk_dot_wide(u, normal);
     *tangential = minus(u, times(along, normal));
     return along;
+}
+
+/* A velocity as the surface sees it. */
+SK_INLINE sk_wide3 from_surface(sk_wide3 v, const encounter *e) {
+    return e->moves ? minus(v, e->surface) : v;
 }
 
 /* The part of a vector of length `length` that friction takes, at most `most`: 1 where it takes all. */
@@ -79,8 +85,10 @@ SK_INLINE bool meet(sk_run *run, const sk_row *row, const sk_pose *pose, size_t 
     sk_wide reach = thickness + (real)1e-3 * thickness + (real)4e-6 * (size + (real)0.1);
     e->touching = sk_at_most(e->contact.distance, reach) & sk_positive(e->x.w);
     if (!sk_any(e->touching)) return false;
-    sk_wide3 arm = {p.x - pose->position.x, p.y - pose->position.y, p.z - pose->position.z};
     sk_vec3 v = pose->velocity, s = pose->spin;
+    e->moves = collider->type->deforms || v.x != 0 || v.y != 0 || v.z != 0 || s.x != 0 || s.y != 0 || s.z != 0;
+    if (!e->moves) return true;
+    sk_wide3 arm = {p.x - pose->position.x, p.y - pose->position.y, p.z - pose->position.z};
     e->surface = (sk_wide3){v.x + (s.y * arm.z - s.z * arm.y), v.y + (s.z * arm.x - s.x * arm.z),
                             v.z + (s.x * arm.y - s.y * arm.x)};
     if (collider->type->deforms) {
@@ -117,7 +125,7 @@ void SK_KERNEL(contact_force)(sk_run *run, const sk_row *row, size_t begin, size
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, slot < row->packed);
         sk_wide3 force_t, slide;
         sk_wide inward = split(three(f), e.contact.normal, &force_t);
-        sk_wide leaving = split(minus(three(v), e.surface), e.contact.normal, &slide);
+        sk_wide leaving = split(from_surface(three(v), &e), e.contact.normal, &slide);
         sk_wide mass_per_step = 1 / (e.x.w * (real)row->dt), pressing = inward;
         if (!by_mass) pressing += mass_per_step * sk_keep(sk_positive(leaving), leaving);
         // the friction that would stop the slide within this substep, cut to Coulomb's cone
@@ -138,7 +146,7 @@ void SK_KERNEL(contact_impulse)(sk_run *run, const sk_row *row, size_t begin, si
         if (!meet(run, row, &pose, slot, &e)) continue;
         sk_wide4 v = sk_load_part(run->vector[row->dst], slot, slot < row->packed);
         sk_wide3 slide;
-        sk_wide approach = split(minus(three(v), e.surface), e.contact.normal, &slide);
+        sk_wide approach = split(from_surface(three(v), &e), e.contact.normal, &slide);
         sk_wide bounce = (1 + restitution_of(collider, v.w)) * -approach;
         sk_wide speed = sk_wide_sqrt(sk_dot_wide(slide, slide));
         sk_wide share = share_of(speed, (real)collider->common->friction * bounce);
@@ -153,7 +161,8 @@ SK_INLINE sk_wide3 way_out(const sk_run *run, const sk_row *row, size_t slot, co
     sk_wide3 move = times(push, e->contact.normal);
     if (row->source[1] == SK_NONE) return move;
     sk_wide4 start = sk_load_part(run->vector[row->source[1]], slot, slot < row->packed);
-    sk_wide3 moved = minus(minus(three(e->x), three(start)), times(sk_splat((real)row->dt), e->surface));
+    sk_wide3 moved = minus(three(e->x), three(start));
+    if (e->moves) moved = minus(moved, times(sk_splat((real)row->dt), e->surface));
     sk_wide3 slide;
     split(moved, e->contact.normal, &slide);
     sk_wide length = sk_wide_sqrt(sk_dot_wide(slide, slide));
@@ -203,8 +212,8 @@ void SK_KERNEL(contact_settle)(sk_run *run, const sk_row *row, size_t begin, siz
         v.y = sk_plus_where(pushed, v.y, per_step * move.y);
         v.z = sk_plus_where(pushed, v.z, per_step * move.z);
         sk_wide3 before = three(sk_load_part(run->vector[row->source[2]], slot, packed));
-        sk_wide approach = sk_dot_wide(minus(before, e.surface), e.contact.normal);
-        sk_wide change = -sk_dot_wide(minus(three(v), e.surface), e.contact.normal);
+        sk_wide approach = sk_dot_wide(from_surface(before, &e), e.contact.normal);
+        sk_wide change = -sk_dot_wide(from_surface(three(v), &e), e.contact.normal);
         if (bounces) change += bounce_of(run, row, slot, &e, v.w, approach);
         sk_mask came = e.touching & sk_negative(approach);
         v.x = sk_plus_where(came, v.x, change * e.contact.normal.x);

@@ -40,8 +40,9 @@ static sk_pose stand(const sk_collider *collider, double time, double position[3
     collider->type->place(collider->params, position);
     for (int k = 0; k < 3; k++) position[k] += common->velocity[k] * since;
     const double *a = common->axis;
-    double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-    double spin = moving && length > 0 ? common->spin : 0;
+    double spin = moving ? common->spin : 0, length = 0; // most do not turn: this is called for every few particles
+    if (spin != 0) length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    if (!(length > 0)) spin = 0;
     for (int k = 0; k < 3 && length > 0; k++) axis[k] = a[k] / length;
 
     sk_pose pose = {.position = sk_v3_of(position), .time = time};

@@ -121,6 +121,7 @@ struct sk_batch {
     bool stale;            /* the lanes are new, or the parameters have changed: sk_batch_refresh() is due */
 
     sk_enclosure *enclosure; /* of a kind that has one, else NULL */
+    bool both_ways;          /* swept by halves: one on the way through all batches, the other on the way back */
     bool compiled;           /* something compiled runs, which wants no blocks: its groups are dealt as all others */
 };
 

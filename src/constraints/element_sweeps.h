@@ -118,25 +118,43 @@ SK_INLINE void meet_blocks(sk_run *run, const sk_sweep *sweep, const sk_element_
     }
 }
 
+/* Every how many rows, and blocks of them, a half has some, and whether it is the odd ones: it keeps chains whole, so that
+ * they pull through. */
+typedef struct stride {
+    size_t row, block;
+    bool odd;
+} stride;
+
+SK_INLINE stride stride_of(const sk_sweep *sweep, sk_half half) {
+    bool along_rows = sweep->walk.reach == 0 && sweep->walk.rows > 1;
+    return (stride){half && along_rows ? 2 : 1, half && !along_rows ? 2 : 1, half == SK_ODD_HALF};
+}
+/* The first one from `from` on. */
+SK_INLINE size_t first_of(size_t from, size_t every, bool odd) {
+    return every == 2 ? from + (from % 2 != odd) : from;
+}
+
 /* The blocks of a span in strip rows [begin, end): along a row each block waits for the one before it, so rows that
  * share no particle go side by side. */
 SK_INLINE void meet_span(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
-                         size_t end, const sk_span *span, bool turned, sk_element_mode mode) {
+                         size_t end, const sk_span *span, const offsets *o, sk_half half, bool turned,
+                         sk_element_mode mode) {
     size_t line = sweep->walk.width * SK_LANES, first_slot = sweep->walk.first_slot;
-    offsets o = offsets_of(sweep, span, turned);
+    stride n = stride_of(sweep, half);
+    size_t first = first_of(span->first, n.block, n.odd), step = n.block * SK_LANES;
     if (sweep->walk.reach) {
-        for (size_t at = begin * line + span->first * SK_LANES; at < begin * line + span->last * SK_LANES;
-             at += SK_LANES)
-            meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, &o, turned, mode);
+        for (size_t at = begin * line + first * SK_LANES; at < begin * line + span->last * SK_LANES; at += step)
+            meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, o, turned, mode);
         return;
     }
-    for (size_t k = span->first; k < span->last; k++)
-        for (size_t at = begin * line + k * SK_LANES; at < end * line; at += line)
-            meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, &o, turned, mode);
+    size_t first_row = first_of(begin, n.row, n.odd);
+    for (size_t k = first; k < span->last; k += n.block)
+        for (size_t at = first_row * line + k * SK_LANES; at < end * line; at += n.row * line)
+            meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, o, turned, mode);
 }
 
 typedef void span_walk(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
-                       size_t end, const sk_span *span);
+                       size_t end, const sk_span *span, const offsets *o, sk_half half);
 
 /* Strip rows [begin, end), one by one unless they go side by side. `turned` walks the spans that lead over a strip's
  * end: a function of its own, since few do and inlining it everywhere would be slow to compile. */
@@ -144,15 +162,17 @@ SK_INLINE void sweep_strips(sk_run *run, const sk_row *row, size_t begin, size_t
                             span_walk *turned) {
     const sk_sweep *sweep = row->rule;
     sk_element_constants constants = sk_element_prepare(sweep->batch, row);
-    size_t side_by_side = sweep->walk.reach == 0 ? SK_ROWS_SIDE_BY_SIDE : 1;
+    offsets o[SK_MOST_ARITY];
+    for (size_t i = 0; i < sweep->span_count; i++) o[i] = offsets_of(sweep, &sweep->span[i], sweep->span[i].turned);
+    size_t side_by_side = sweep->walk.reach == 0 ? SK_ROWS_SIDE_BY_SIDE * stride_of(sweep, row->half).row : 1;
     for (size_t r = begin; r < end; r += side_by_side) {
         size_t stop = r + side_by_side < end ? r + side_by_side : end;
         for (size_t i = 0; i < sweep->span_count; i++) {
             const sk_span *at = &sweep->span[i];
-            if (!at->turned) meet_span(run, sweep, &constants, r, stop, at, false, mode);
+            if (!at->turned) meet_span(run, sweep, &constants, r, stop, at, &o[i], row->half, false, mode);
             else if (mode == SK_MODE_PROJECT && SK_ARITY == 2)
-                meet_span(run, sweep, &constants, r, stop, at, true, mode);
-            else turned(run, sweep, &constants, r, stop, at);
+                meet_span(run, sweep, &constants, r, stop, at, &o[i], row->half, true, mode);
+            else turned(run, sweep, &constants, r, stop, at, &o[i], row->half);
         }
     }
 }
@@ -287,8 +307,9 @@ SK_INLINE void sweep_groups(sk_run *run, const sk_row *row, size_t begin, size_t
 #define SK_WALKS(name, mode)                                                                                 \
     static __attribute__((noinline)) void name##_turned(sk_run *run, const sk_sweep *sweep,                  \
                                                         const sk_element_constants *constants, size_t begin, \
-                                                        size_t end, const sk_span *span) {                   \
-        meet_span(run, sweep, constants, begin, end, span, true, mode);                                      \
+                                                        size_t end, const sk_span *span, const offsets *o,   \
+                                                        sk_half half) {                                      \
+        meet_span(run, sweep, constants, begin, end, span, o, half, true, mode);                             \
     }                                                                                                        \
     void SK_KERNEL(name##_strips)(sk_run * run, const sk_row *row, size_t begin, size_t end) {               \
         sweep_strips(run, row, begin, end, mode, name##_turned);                                             \

@@ -360,23 +360,27 @@ static size_t rows_of(const sk_sweep *sweep, size_t reach) {
     return sweep->strips ? sweep->walk.rows - reach : sweep->slab_start ? sweep->walk.rows : sweep->group_count;
 }
 
-/* A row for each sweep of a batch from the `first` on; projections share their stiffness among `coefficient` rows. */
+static void add_sweep(sk_writer *writer, const sk_sweep *sweep, sk_half half, sk_row_kind kind,
+                      const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second, double coefficient) {
+    const sk_kernels *walk = sweep->strips ? &kernels->strips : &kernels->groups;
+    sk_add_row(writer, (sk_row){.kind = kind,
+                                .order = SK_ORDERED,
+                                .kernel = walk->version[writer->isa],
+                                .dst = dst,
+                                .source = {SK_X, second},
+                                .coefficient = {coefficient},
+                                .rule = sweep,
+                                .label = sweep->label,
+                                .walk = sweep->walk,
+                                .half = half,
+                                .end = rows_of(sweep, sweep->walk.reach)});
+}
+
+/* A row for each sweep of a batch from the `first` on. */
 static void add_sweeps(sk_writer *writer, const sk_batch *batch, size_t first, sk_row_kind kind,
-                       const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second, double coefficient) {
-    for (size_t i = first; i < batch->sweep_count; i++) {
-        const sk_sweep *sweep = &batch->sweeps[i];
-        const sk_kernels *walk = sweep->strips ? &kernels->strips : &kernels->groups;
-        sk_add_row(writer, (sk_row){.kind = kind,
-                                    .order = SK_ORDERED,
-                                    .kernel = walk->version[writer->isa],
-                                    .dst = dst,
-                                    .source = {SK_X, second},
-                                    .coefficient = {coefficient},
-                                    .rule = sweep,
-                                    .label = sweep->label,
-                                    .walk = sweep->walk,
-                                    .end = rows_of(sweep, sweep->walk.reach)});
-    }
+                       const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second) {
+    for (size_t i = first; i < batch->sweep_count; i++)
+        add_sweep(writer, &batch->sweeps[i], SK_WHOLE, kind, kernels, dst, second, 1);
 }
 
 /* A row for all sweeps of a batch along the same strips: each strip row's force is worked out whole, so the
@@ -413,7 +417,7 @@ void sk_write_forces(sk_writer *writer) {
         size_t first = 0;
         if (!is_on(batch)) continue;
         add_strip_forces(writer, batch, &first);
-        add_sweeps(writer, batch, first, SK_ROW_FORCE, &batch->type->force, SK_F, SK_V, 1);
+        add_sweeps(writer, batch, first, SK_ROW_FORCE, &batch->type->force, SK_F, SK_V);
     }
 }
 
@@ -437,16 +441,31 @@ static void write_multipliers(sk_writer *writer, int passes) {
     }
 }
 
-/* A sweep over every batch, with an n-th of its stiffness and damping for `sharing` n. */
+/* A batch's sweeps on the way through all batches, or those halves that are left for the way back. */
+static void write_batch(sk_writer *writer, const sk_batch *batch, bool back, int passes, int sharing) {
+    bool keeps = keeps_multiplier(batch, passes);
+    for (size_t i = 0; i < batch->sweep_count; i++) {
+        const sk_sweep *sweep = &batch->sweeps[back ? batch->sweep_count - 1 - i : i];
+        sk_half half = !batch->both_ways || !sweep->strips ? SK_WHOLE : back ? SK_ODD_HALF : SK_EVEN_HALF;
+        if (back && half == SK_WHOLE) continue;
+        add_sweep(writer, sweep, half, SK_ROW_PROJECT, keeps ? &batch->type->project_damped : &batch->type->project,
+                  SK_X, keeps ? SK_X0 : SK_NONE, sharing);
+    }
+}
+
+/* A sweep over every batch, with an n-th of its stiffness and damping for `sharing` n.
+ *
+ * One projection after the other, P1 P2 ... Pn, is no symmetric matrix: what a displacement calls forth is a force
+ * that may do work round a cycle, and does. A grid's few directions bear it; a block of rigid springs, many times as
+ * many as it has freedoms, fed on it until it flew apart or shivered for ever. Half of each direction's springs forth,
+ * and the other half in the opposite order back, is nearly P1 P2 ... Pn ... P2 P1, which is symmetric, and costs no
+ * more than one sweep. */
 static void write_pass(sk_writer *writer, int passes, int sharing) {
     const sk_rules *rules = writer->rules;
-    for (size_t i = 0; i < rules->batches.count; i++) {
-        const sk_batch *batch = rules->batches.data[i];
-        if (!is_on(batch)) continue;
-        bool keeps = keeps_multiplier(batch, passes);
-        add_sweeps(writer, batch, 0, SK_ROW_PROJECT, keeps ? &batch->type->project_damped : &batch->type->project, SK_X,
-                   keeps ? SK_X0 : SK_NONE, sharing);
-    }
+    for (size_t i = 0; i < rules->batches.count; i++)
+        if (is_on(rules->batches.data[i])) write_batch(writer, rules->batches.data[i], false, passes, sharing);
+    for (size_t i = rules->batches.count; i-- > 0;)
+        if (is_on(rules->batches.data[i])) write_batch(writer, rules->batches.data[i], true, passes, sharing);
 }
 
 void sk_write_projections(sk_writer *writer, int passes) {
@@ -523,7 +542,7 @@ void sk_write_limits(sk_writer *writer, sk_vector velocity) {
         const sk_batch *batch = rules->batches.data[i];
         if (!has_bound(batch)) continue;
         add_sweeps(writer, batch, 0, SK_ROW_LIMIT,
-                   velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving, SK_X, velocity, 1);
+                   velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving, SK_X, velocity);
     }
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];

@@ -177,7 +177,8 @@ void sk_row_describe(const sk_row *row, char *text, size_t size) {
             if (row->source[i] != SK_NONE)
                 length +=
                     (size_t)snprintf(sources + length, sizeof sources - length, " %s", vector_text(row->source[i]));
-        snprintf(what, sizeof what, "%s,%s", row->label ? row->label : "", sources);
+        static const char *const halves[] = {[SK_WHOLE] = "", [SK_EVEN_HALF] = " even", [SK_ODD_HALF] = " odd"};
+        snprintf(what, sizeof what, "%s%s,%s", row->label ? row->label : "", halves[row->half], sources);
     }
     snprintf(text, size, "%-10s %-3s = %-44s %zu elements, %s", sk_row_kind_text(row->kind), vector_text(row->dst),
              what, row->end - row->begin, row->order == SK_FREE ? "free" : "ordered");

@@ -77,6 +77,10 @@ typedef struct sk_triangles {
     size_t count, capacity;
 } sk_triangles;
 
+/* Which elements of a sweep along strips a row projects. Halves are alike: those in strip rows with even numbers and in
+ * rows with odd ones, or where elements lead from row to row, in such blocks. */
+typedef enum sk_half { SK_WHOLE, SK_EVEN_HALF, SK_ODD_HALF } sk_half;
+
 /* What a kernel may touch while a plan runs. */
 typedef struct sk_run {
     sk_vec4 *vector[SK_VECTOR_COUNT];
@@ -130,6 +134,7 @@ struct sk_row {
     bool alone;            /* it looks at slots that are not its own: nor is that */
     size_t packed;         /* slots [0, packed) are in packed blocks when it runs */
     sk_walk walk;          /* of rows whose elements are strip rows */
+    sk_half half;          /* of a sweep along strips */
     size_t length;         /* a repeat: how many rows after it are repeated */
     int cell;              /* which cell it reads; a repeat that has one ends when it is not 0, and moves no time on */
 };

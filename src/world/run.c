@@ -23,12 +23,13 @@
 #include "world/world.h"
 
 enum {
-    MOST_SEGMENT = 96, /* rows of a segment */
+    MOST_SEGMENT = 192, /* rows of a segment */
     MOST_CHUNKS = 4096,
     TILE = 128,             /* slots: the vectors of a few rows stay in the nearest cache; 512 cost a substep 15 % */
     CHUNK_BYTES = 16 << 10, /* of one vector in a chunk: in the first cache with its neighbours */
     SECOND_CACHE_BYTES = 512 << 10, /* of one vector in the turns that one thread has under way */
     LEAST_TURNS = 4,                /* a thread: with fewer, threads start together on large chunks */
+    LONG_LAG = 8,                   /* rows, of a whole segment */
     LINE = 16,                      /* counts in a cache line */
     MOST_THREADS = 256,             /* in one walk */
 };
@@ -174,6 +175,8 @@ static void cut_chunks(segment_job *job, int threads) {
     }
     size_t chunk = CHUNK_BYTES / line_bytes / 4 * 4;
     if (chunk < 4) chunk = 4;
+    // a lattice's rows lag so far that all of it is under way at once, and what is called for a few rows costs
+    if (chunk < LONG_LAG && lag >= LONG_LAG) chunk = LONG_LAG;
     if (threads > 1 && job->turns < (size_t)threads * LEAST_TURNS) {
         chunk = (rows / (size_t)threads + 3) / 4 * 4;
         if (chunk < lag + 4) chunk = (lag + 7) / 4 * 4;

@@ -204,6 +204,10 @@ skein_status sk_world_add_tethers(skein_world *world, sk_body *body, size_t coun
     return SKEIN_OK;
 }
 
+void sk_world_sweep_both_ways(sk_body *body) {
+    body->batch[body->batch_count - 1]->both_ways = true;
+}
+
 void sk_world_add_strain_limit(sk_body *body) {
     body->batch[body->batch_count - 1]->bound = &body->strain_bound;
 }

@@ -204,6 +204,8 @@ skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32
                                  uint32_t count, const uint32_t *place, skein_error *error);
 /* Says in which order the body's particles should lie in memory: rank[i] is the place of its i-th one. */
 void sk_world_rank_particles(skein_world *world, const sk_body *body, const uint32_t *rank, size_t count);
+/* Sweeps the body's newest batch by halves, forth and back (methods/writer.h). */
+void sk_world_sweep_both_ways(sk_body *body);
 /* Keeps the edges of the body's newest batch under its strain bound. */
 void sk_world_add_strain_limit(sk_body *body);
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error);
