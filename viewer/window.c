@@ -18,6 +18,8 @@
 #include "viewer/panels.h"
 #include "viewer/stage.h"
 
+/* Panels that take longer than this (ms) are felt to lag: an event tells. */
+static const double late_ms = 25;
 enum { MOST_PENDING = 64, FRAMES_AFTER_EVENT = 4 };
 
 typedef struct window {
@@ -318,6 +320,7 @@ static void loop(window *w) {
         draw(w);
         double took = 1e3 * (viewer_seconds() - begin);
         if (w->turns++ > 10 && took > w->longest) w->longest = took; // the first make the driver's shaders
+        if (took > late_ms) viewer_event(&w->events, "late %.1f ms", took);
         if (!seen++) viewer_event(&w->events, "open %s", (const char *)glGetString(GL_RENDERER));
         // without vertical synchronisation (a virtual display) the due frames are not to come all at once
         if (w->frames_due > 0) usleep(4000);
