@@ -31,7 +31,7 @@ gpu
 libc='assert complex ctype errno fenv float inttypes limits locale math setjmp signal stdalign stdarg
 stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath time wchar
 dirent dlfcn fcntl pthread sched semaphore strings unistd sys/mman sys/stat sys/types sys/time
-cpuid immintrin arm_neon'
+cpuid immintrin arm_neon wasm_simd128'
 
 awk -v floors="$floors" -v libc="$libc" '
     BEGIN {

@@ -21,9 +21,27 @@ static void every_instruction_set_gives_the_same_bits(void **state) {
     }
 }
 
+static void what_settles_has_the_same_bits(void **state) {
+    (void)state;
+    for (int i = 0; i < (int)COUNT(bits_isas); i++) {
+        uint64_t hash = hash_when_settled(bits_isas[i]);
+        if (hash != golden_settled) print_message("settled, %s: %016llx\n", bits_isas[i], (unsigned long long)hash);
+        assert_true(hash == golden_settled);
+    }
+#ifdef __x86_64__
+    unsigned mode = __builtin_ia32_stmxcsr();
+    __builtin_ia32_ldmxcsr(mode | 0x8040); // a program that was built by -ffast-math
+    uint64_t hash = hash_when_settled("");
+    assert_int_equal(__builtin_ia32_stmxcsr() & 0x8040, 0x8040);
+    __builtin_ia32_ldmxcsr(mode);
+    assert_true(hash == golden_settled);
+#endif
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_instruction_set_gives_the_same_bits),
+        cmocka_unit_test(what_settles_has_the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

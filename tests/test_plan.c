@@ -80,13 +80,15 @@ static void every_row_matters(void **state) {
         for (size_t r = 0; r < count; r++) {
             bool changed = hash_without(method_names[m], r, &unheard, line, blended_without) != whole;
             if (changed) continue;
-            // the one row that no motion depends on: the last step's positions, saved for blending between frames
+            silent++;
+            // two rows that no such motion depends on: the end of what has all but come to rest (test_bits), and the
+            // last step's positions, saved for blending between frames
+            if (strstr(line, "V, 0 where at most")) continue;
             assert_int_equal(r, 0);
             assert_non_null(strstr(line, "P   = X "));
             assert_memory_not_equal(blended, blended_without, sizeof blended);
-            silent++;
         }
-        assert_int_equal(silent, 1);
+        assert_int_equal(silent, 2);
     }
 }
 

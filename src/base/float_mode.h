@@ -1,6 +1,10 @@
-/* The floating-point mode of a step: round to nearest, denormals are zero. Part of the same bits on every
- * machine, and a settled cloth would otherwise crawl through denormals. Set around a step on the caller
- * and in every task, and put back after it. */
+/* The floating-point mode of a step: IEEE 754 as it is written, to nearest, with its thin numbers (denormals), no traps.
+ * Set around a step on the caller and in every task, and put back after it: a program may have another, such as one
+ * that flushes thin numbers to zero.
+ *
+ * Part of the same bits on every machine: WebAssembly has no other mode, and processors do not flush alike (x86-64 looks
+ * at a result after it is rounded, ARM before). Where thin numbers are slow, as on many processors, a cloth that settles
+ * would crawl through them; so each step ends by calling what is slower than 1e-18 m/s at rest (sk_combine_rest). */
 #ifndef SK_BASE_FLOAT_MODE_H
 #define SK_BASE_FLOAT_MODE_H
 
@@ -13,10 +17,10 @@
 static inline uint64_t sk_float_mode_enter(void) {
 #if defined(__x86_64__)
     uint32_t old = _mm_getcsr();
-    _mm_setcsr(0x1f80 | 0x8040); // no traps, to nearest; results and operands that are denormal become zero
+    _mm_setcsr(0x1f80);
     return old;
 #elif defined(__aarch64__)
-    uint64_t old, mode = (uint64_t)1 << 24; // to nearest; flush to zero
+    uint64_t old, mode = 0;
     __asm__ volatile("mrs %0, fpcr" : "=r"(old));
     __asm__ volatile("msr fpcr, %0" : : "r"(mode));
     return old;

@@ -14,8 +14,7 @@
 
 enum {
     MOST_THREADS = 64,
-    SPINS = 4000,          /* pauses before a waiter sleeps */
-    SMALLEST_SHARE = 4096, /* elements below which the caller runs a row alone */
+    SPINS = 4000, /* pauses before a waiter sleeps */
 };
 
 typedef struct worker {
@@ -150,28 +149,4 @@ void sk_wait_for(const _Atomic uint32_t *progress, uint32_t wanted) {
         if (spins < SPINS) pause_briefly();
         else sched_yield();
     }
-}
-
-typedef struct range_job {
-    sk_range_body *body;
-    void *data;
-    size_t begin, end, share;
-} range_job;
-
-static void run_share(void *data, int index) {
-    const range_job *job = data;
-    size_t begin = job->begin + job->share * (size_t)index;
-    size_t end = begin + job->share < job->end ? begin + job->share : job->end;
-    if (begin < end) job->body(job->data, begin, end);
-}
-
-void sk_parallel_for(sk_tasks *tasks, size_t begin, size_t end, sk_range_body *body, void *data) {
-    if (end <= begin) return;
-    if (tasks->count == 1 || end - begin < SMALLEST_SHARE) {
-        body(data, begin, end);
-        return;
-    }
-    size_t share = (end - begin + (size_t)tasks->count - 1) / (size_t)tasks->count;
-    range_job job = {body, data, begin, end, (share + 15) / 16 * 16};
-    sk_tasks_run(tasks, run_share, &job);
 }

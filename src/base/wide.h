@@ -64,6 +64,14 @@ SK_INLINE sk_wide sk_wide_sqrt(sk_wide a) {
     return (sk_wide)_mm_sqrt_pd((__m128d)a);
 #elif defined(__x86_64__)
     return (sk_wide)_mm_sqrt_ps((__m128)a);
+#elif defined(__wasm_simd128__) && defined(SKEIN_DOUBLE)
+    return (sk_wide)wasm_f64x2_sqrt((v128_t)a);
+#elif defined(__wasm_simd128__)
+    return (sk_wide)wasm_f32x4_sqrt((v128_t)a);
+#elif defined(__aarch64__) && defined(SKEIN_DOUBLE)
+    return (sk_wide)vsqrtq_f64((float64x2_t)a);
+#elif defined(__aarch64__)
+    return (sk_wide)vsqrtq_f32((float32x4_t)a);
 #else
     for (int l = 0; l < SK_PART; l++) a[l] = sk_sqrt(a[l]);
     return a;
@@ -89,6 +97,10 @@ SK_INLINE uint32_t sk_more_bits(sk_wide a, sk_wide b) {
     return (uint32_t)_mm_movemask_pd((__m128d)(a > b));
 #elif defined(__x86_64__)
     return (uint32_t)_mm_movemask_ps((__m128)(a > b));
+#elif defined(__wasm_simd128__) && defined(SKEIN_DOUBLE)
+    return (uint32_t)wasm_i64x2_bitmask((v128_t)(a > b));
+#elif defined(__wasm_simd128__)
+    return (uint32_t)wasm_i32x4_bitmask((v128_t)(a > b));
 #else
     sk_mask more = a > b;
     uint32_t bits = 0;

@@ -118,7 +118,7 @@ static bool lay(walk *w, const bool *pinned, sk_quad_grid *grid) {
     uint64_t places = (uint64_t)size[0] * size[1];
     if (size[0] < 3 || size[1] < 3 || places > 2 * (uint64_t)count) return true;
     for (size_t i = 0; i < count; i++) w->at[i][0] -= least[0], w->at[i][1] -= least[1];
-    bool *taken = sk_allocate(w->allocator, places);
+    bool *taken = sk_allocate(w->allocator, (size_t)places);
     uint32_t *place = sk_allocate(w->allocator, count * sizeof *place);
     bool memory = taken && place, good = memory;
     int way = good ? best_way(w, size, pinned) : 0;

@@ -73,6 +73,10 @@ void sk_write_unpack(sk_writer *writer) {
     writer->packed = 0;
 }
 
+void sk_write_rest(sk_writer *writer) {
+    add_combine(writer, &sk_combine_rest, SK_V, SK_REST_SPEED, SK_V, 0, SK_NONE);
+}
+
 void sk_write_sum(sk_writer *writer, sk_vector dst, double a, sk_vector p, double b, sk_vector q) {
     add_combine(writer, &sk_combine_sum, dst, a, p, b, q);
 }

@@ -52,6 +52,8 @@ void sk_write_moment(sk_writer *writer, double part);
 /* X and V of the strips from quads to packed blocks, and back: around all other rows of a step. */
 void sk_write_pack(sk_writer *writer);
 void sk_write_unpack(sk_writer *writer);
+/* The end of every step: what has all but come to rest does. */
+void sk_write_rest(sk_writer *writer);
 
 /* dst = a p + b q (q may be SK_NONE); dst = 0; dst = p + a w q. */
 void sk_write_sum(sk_writer *writer, sk_vector dst, double a, sk_vector p, double b, sk_vector q);

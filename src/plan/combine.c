@@ -12,6 +12,7 @@ SK_KERNELS(sk_row_kernel, lead);
 SK_KERNELS(sk_row_kernel, predict);
 SK_KERNELS(sk_row_kernel, fall);
 SK_KERNELS(sk_row_kernel, fall_on);
+SK_KERNELS(sk_row_kernel, rest);
 SK_KERNELS(sk_row_kernel, pack);
 SK_KERNELS(sk_row_kernel, unpack);
 
@@ -178,6 +179,13 @@ void SK_KERNEL(fall_on)(sk_run *run, const sk_row *row, size_t begin, size_t end
         else set_out(run, row, slot, packed, x, pulled(&pull, x.w, v));
     }
 }
+
+/* What is slower than anything that can be seen is at rest. NaN is not, and a zero keeps its sign. */
+void SK_KERNEL(rest)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    sk_wide *dst = (sk_wide *)(void *)run->vector[row->dst];
+    const sk_wide least = sk_splat((real)row->coefficient[0]), zero = {0};
+    FOR_PARTS(sk_select(sk_at_most(sk_wide_abs(dst[at]), least) & sk_differ(dst[at], zero), zero, dst[at]))
+}
 #undef FOR_PARTS
 
 /* In place, so that a block is loaded as a whole before any of it is stored. */
@@ -208,6 +216,7 @@ const sk_kernels sk_combine_lead = {SK_EACH_ISA(lead)};
 const sk_kernels sk_combine_predict = {SK_EACH_ISA(predict)};
 const sk_kernels sk_combine_fall = {SK_EACH_ISA(fall)};
 const sk_kernels sk_combine_fall_on = {SK_EACH_ISA(fall_on)};
+const sk_kernels sk_combine_rest = {SK_EACH_ISA(rest)};
 const sk_kernels sk_pack = {SK_EACH_ISA(pack)};
 const sk_kernels sk_unpack = {SK_EACH_ISA(unpack)};
 #endif

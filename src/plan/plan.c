@@ -143,6 +143,10 @@ static void describe_combine(const sk_row *row, char *text, size_t size) {
         snprintf(text, size, "%s + %g %s where pinned", p, row->coefficient[0], q);
         return;
     }
+    if (sk_row_is(row, &sk_combine_rest)) {
+        snprintf(text, size, "%s, 0 where at most %g m/s", p, row->coefficient[0]);
+        return;
+    }
     size_t length = 0;
     text[0] = 0;
     for (int i = 0; i < 3; i++) {

@@ -153,7 +153,10 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     sk_write_sum(&writer, SK_PREVIOUS, 1, SK_X, 0, SK_NONE);
     if (!world->device) sk_write_pack(&writer);
     method->write(&writer, world->method_params, dt);
-    if (!world->device) sk_write_unpack(&writer);
+    if (!world->device) {
+        sk_write_rest(&writer); // a card would have to look at everything once more, and minds thin numbers not at all
+        sk_write_unpack(&writer);
+    }
     if (writer.no_memory || (!world->device && (!make_temporaries(world) || !make_cells(world))))
         return sk_fail_memory(error, "the plan");
     status = make_matrix(world, error);

@@ -10,7 +10,7 @@ shift 3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 # without a graphics card
-files=$(ls src/*.c src/*/*.c | grep -v '^src/gpu/')
+files=$(ls src/*.c src/*/*.c | grep -v -e '^src/gpu/' -e '/tasks_alone[.]c$')
 for precision; do
     [ "$precision" = double ] && macro=-DSKEIN_DOUBLE || macro=
     flags="${BITS_FLAGS:-} $macro -O1 -std=gnu17 -ffp-contract=off -fno-math-errno -Wno-psabi -Iinclude -Isrc"

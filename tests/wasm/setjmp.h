@@ -1,0 +1,1 @@
+/* WebAssembly has none; see cmocka.h. */
