@@ -166,6 +166,7 @@ void render_flight_draw(const render_flight *flight, const render_frame *frame, 
             render_to_light(birds->colour, 1, light);
             glProgramUniform1i(program, 4, birds->paint);
             glProgramUniform3f(program, 5, light[0], light[1], light[2]);
+            glProgramUniform2f(program, 7, birds->range > 0 ? (float)(1 / birds->range) : 0, RENDER_LITTLE_TO_MUCH);
         }
         glBindVertexArray(flight->arrays);
         size_t most = part ? 3 * part / bird_vertices + 1 : birds->count;

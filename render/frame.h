@@ -91,7 +91,12 @@ typedef struct render_points {
 } render_points;
 
 /* A flock: birds that fly along their velocities (render/birds.h). */
-typedef enum render_feathers { RENDER_OWN_FEATHERS, RENDER_BY_DIRECTION_FEATHERS, RENDER_ONE_FEATHER } render_feathers;
+typedef enum render_feathers {
+    RENDER_OWN_FEATHERS,
+    RENDER_BY_DIRECTION_FEATHERS,
+    RENDER_ONE_FEATHER,
+    RENDER_BY_SPEED_FEATHERS
+} render_feathers;
 typedef struct render_birds {
     size_t count;
     const float *positions, *velocities; /* count x 4; the fourth is not used */
@@ -102,6 +107,7 @@ typedef struct render_birds {
     double span; /* from tip to tip */
     render_feathers paint;
     float colour[3];
+    double range; /* m/s: the speed at the end of the colours */
     double least[3], most[3]; /* the box that they are in, about */
 } render_birds;
 

@@ -32,7 +32,7 @@ static const skein_field fields[] = {
     BOOL(grid, "grid", 1, "lines on the ground; a cell is 1, 2 or 5 times a power of ten metres wide"),
     BOOL(axes, "axes", 0, "x (red), y (green) and z (blue) at the origin, a cell of the grid long"),
     CHOICE(colour, "colour", "material|body|speed|strain|direction",
-           "what colours tell: the material, which body it is, its speed, how far its springs are from rest, or where birds fly"),
+           "what colours tell: the material, which body it is, its speed, how far its springs are from rest, or where birds fly: towards +z red, else blue"),
     REAL(range, "range", "", 0, 0, 1e15,
          "the speed (m/s) or strain at the end of the colours; 0: the largest in the picture"),
     CHOICE(pattern, "pattern", "suited|weave|checker|none", "on surfaces, by texture coordinates: the mesh's, a grid's, or else projected from a box; suited: cloth is woven, a lattice is jelly"),

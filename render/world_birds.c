@@ -9,9 +9,8 @@
 static const double usual_span = 0.045;
 
 bool render_are_birds(const skein_kind *kind, const render_view *view) {
-    bool told_by_balls = view->colour == RENDER_BY_SPEED || view->colour == RENDER_BY_STRAIN;
-    return kind && !strcmp(kind->name, "flock") && view->birds && !told_by_balls &&
-           view->particles != RENDER_NO_PARTICLES;
+    bool shown = !view || (view->birds && view->particles != RENDER_NO_PARTICLES);
+    return kind && !strcmp(kind->name, "flock") && shown;
 }
 
 static bool reserve(render_world_birds *all, size_t birds) {
@@ -71,7 +70,7 @@ bool render_add_birds(render_world_birds *all, const skein_world *world, const r
     return true;
 }
 
-void render_world_birds_show(render_world_birds *all, const render_view *view, render_frame *frame) {
+void render_world_birds_show(render_world_birds *all, const render_view *view, double range, render_frame *frame) {
     size_t at = 0;
     for (size_t i = 0; i < all->count; i++) {
         render_birds *birds = &all->birds[i];
@@ -82,7 +81,9 @@ void render_world_birds_show(render_world_birds *all, const render_view *view, r
         }
         render_material material = render_default_material(all->body[i]);
         memcpy(birds->colour, material.colour, sizeof birds->colour);
+        birds->range = range;
         birds->paint = view->colour == RENDER_BY_DIRECTION ? RENDER_BY_DIRECTION_FEATHERS
+                       : view->colour == RENDER_BY_SPEED   ? RENDER_BY_SPEED_FEATHERS
                        : view->colour == RENDER_BY_BODY    ? RENDER_ONE_FEATHER
                                                            : RENDER_OWN_FEATHERS;
     }

@@ -17,13 +17,13 @@ typedef struct render_world_birds {
     size_t number_room, number_count;
 } render_world_birds;
 
-/* Whether a body of this kind is drawn as birds under a view. */
+/* Whether a body of this kind is drawn as birds under a view; NULL: under any that shows birds. */
 bool render_are_birds(const skein_kind *kind, const render_view *view);
 /* Adds a flock; `index` is the body's place. False where there is no memory. */
 bool render_add_birds(render_world_birds *all, const skein_world *world, const render_world_state *state,
                       const skein_surface *surface, size_t index);
-/* All that were added go into the frame; and then get a size that suits a scene of this radius. */
-void render_world_birds_show(render_world_birds *all, const render_view *view, render_frame *frame);
+/* All that were added go into the frame, coloured up to this range of speeds if that is what tells; and then get a size that suits a scene of this radius. */
+void render_world_birds_show(render_world_birds *all, const render_view *view, double range, render_frame *frame);
 void render_world_birds_size(render_world_birds *all, const render_view *view, double radius);
 void render_world_birds_clear(render_world_birds *all);
 void render_world_birds_release(render_world_birds *all);

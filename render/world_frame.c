@@ -262,7 +262,7 @@ static skein_status take_bodies(render_world_frame *made, const skein_world *wor
     render_world_birds_clear(&made->birds);
     skein_status status = SKEIN_OK;
     for (size_t i = 0; i < count && status == SKEIN_OK; i++) status = take_body(made, world, i, error);
-    render_world_birds_show(&made->birds, &made->view, &made->frame);
+    render_world_birds_show(&made->birds, &made->view, made->state.range, &made->frame);
     return status;
 }
 

@@ -66,12 +66,15 @@ static void wings_beat_with_the_speed_and_birds_lean_into_turns(void **state) {
 
 /* ---- Pictures ----------------------------------------------------------------------------------- */
 
+static double flock_range; /* of speeds */
+
 static render_image picture_of_birds(float positions[][4], float velocities[][4], size_t count, render_feathers paint) {
     const render_birds birds = {.count = count,
                                 .positions = positions[0],
                                 .velocities = velocities[0],
                                 .span = 2,
                                 .paint = paint,
+                                .range = flock_range,
                                 .least = {-3, -1, -3},
                                 .most = {3, 1, 3}};
     render_frame frame = render_default_frame();
@@ -98,6 +101,32 @@ static void colours_tell_where_birds_fly(void **state) {
     render_image image = picture_of_birds(positions, velocities, 2, RENDER_BY_DIRECTION_FEATHERS);
     assert_true(count_tinted(&image, true, true) > 300 && count_tinted(&image, true, false) == 0);
     assert_true(count_tinted(&image, false, false) > 300 && count_tinted(&image, false, true) == 0);
+    render_image_release(&image);
+}
+
+/* Pixels that are greener than blue by far, in the half of the picture. */
+static size_t count_greener(const render_image *image, bool left) {
+    size_t count = 0;
+    for (int y = 0; y < height; y++)
+        for (int x = left ? 0 : width / 2; x < (left ? width / 2 : width); x++) {
+            const unsigned char *p = &image->pixels[3 * (size_t)(y * width + x)];
+            count += p[1] - p[2] > 60; // the end of the map is yellow, its begin is violet, the sky is blue
+        }
+    return count;
+}
+
+/* At the range's end a bird is yellow, at rest violet; another range makes the same speed a slow one. */
+static void colours_tell_how_fast_birds_fly(void **state) {
+    (void)state;
+    float positions[2][4] = {{-2, 0, 0, 0}, {2, 0, 0, 0}}, velocities[2][4] = {{0, 0, 8, 0}, {0, 0, 0.1f, 0}};
+    flock_range = 8;
+    render_image image = picture_of_birds(positions, velocities, 2, RENDER_BY_SPEED_FEATHERS);
+    assert_true(count_greener(&image, true) > 300);
+    assert_int_equal(count_greener(&image, false), 0);
+    render_image_release(&image);
+    flock_range = 800;
+    image = picture_of_birds(positions, velocities, 2, RENDER_BY_SPEED_FEATHERS);
+    assert_int_equal(count_greener(&image, true), 0);
     render_image_release(&image);
 }
 
@@ -168,6 +197,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wings_beat_with_the_speed_and_birds_lean_into_turns),
         cmocka_unit_test(colours_tell_where_birds_fly),
+        cmocka_unit_test(colours_tell_how_fast_birds_fly),
         cmocka_unit_test(odd_birds_are_drawn_or_left_out),
         cmocka_unit_test(a_cards_birds_are_drawn_from_its_buffers),
     };

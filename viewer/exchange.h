@@ -100,6 +100,8 @@ typedef enum viewer_quantity {
     VIEWER_CONTACTS,
     VIEWER_STEP_MS,
     VIEWER_DRAW_MS,
+    VIEWER_POLARIZATION, /* of a flock: gaps where there is none */
+    VIEWER_MILLING,
     VIEWER_QUANTITY_COUNT
 } viewer_quantity;
 
@@ -140,6 +142,7 @@ typedef struct viewer_side {
     viewer_plots plots;
     viewer_pass passes[VIEWER_PASSES];
     size_t pass_count;
+    bool flock; /* there is one, whose order is plotted */
 } viewer_side;
 
 typedef struct viewer_shown {

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "render/world_birds.h"
+
 /* When a key has its meaning. */
 typedef enum key_when { ALWAYS, WITH_SCENE, BY_KEY, WITH_FIELD } key_when;
 
@@ -74,13 +76,32 @@ static void save_mesh(viewer_stage *stage, const viewer_key *key) {
     viewer_save_mesh(stage);
 }
 
-/* The next of all colours that the view's field knows. */
+/* Whether colours tell something of this world. */
+static bool colours_tell(skein_world *world, int colour) {
+    size_t springs = 0, count = skein_object_count(world, SKEIN_BODY);
+    bool birds = false;
+    for (size_t i = 0; i < count; i++)
+        birds |= render_are_birds(skein_object_kind(world, skein_object_at(world, SKEIN_BODY, i)), NULL);
+    switch (colour) {
+    case RENDER_BY_BODY: return count > 1;
+    case RENDER_BY_STRAIN: return !skein_springs_copy(world, NULL, 0, &springs) && springs > 0;
+    case RENDER_BY_DIRECTION: return birds;
+    default: return true;
+    }
+}
+
+/* The next colours that tell something here. */
 static void next_colours(viewer_stage *stage, const viewer_key *key) {
+    static const int order[] = {RENDER_BY_MATERIAL, RENDER_BY_BODY, RENDER_BY_DIRECTION, RENDER_BY_SPEED,
+                                RENDER_BY_STRAIN};
+    enum { COUNT = sizeof order / sizeof *order };
     (void)key;
     const skein_field *field = skein_field_find(render_view_kind(), "colour", NULL);
-    int count = 1, next = stage->sides[0].view.colour + 1;
-    for (const char *c = field->choices; *c; c++) count += *c == '|';
-    next %= count;
+    int at = 0;
+    while (at < COUNT && order[at] != stage->sides[0].view.colour) at++;
+    do at = (at + 1) % COUNT;
+    while (!colours_tell(stage->sides[0].world, order[at]));
+    int next = order[at];
     const char *word = field->choices;
     for (int i = 0; i < next; i++) word = strchr(word, '|') + 1;
     viewer_request request = {.kind = VIEWER_SET, .category = SKEIN_VIEW, .field = field, .value = skein_number(next)};
@@ -189,7 +210,7 @@ static const viewer_key keys[] = {
     MOVE(GLFW_KEY_Q, "Q E", VIEWER_TURN_LEFT, "turn the view left and right"),
     MOVE(GLFW_KEY_E, NULL, VIEWER_TURN_RIGHT, NULL),
     SCENE(GLFW_KEY_C, "C", fly, "flight in the first person, and back to the first view"),
-    SCENE(GLFW_KEY_R, "R", next_colours, "other colours: by material, body, speed, strain, direction"),
+    SCENE(GLFW_KEY_R, "R", next_colours, "other colours, those that tell something: material, body, direction, speed, strain"),
     METHOD(0, "1 to 9", "the method: the n-th that `skein list methods` names"),
     METHOD(1, NULL, NULL),
     METHOD(2, NULL, NULL),

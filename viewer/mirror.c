@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "viewer/flock.h"
 #include "viewer/stage.h"
 
 /* Measures are taken at most so often, and for at most so large a part of the time. */
@@ -150,7 +151,8 @@ static void mirror_objects(viewer_side *side, const viewer_player *player) {
 
 /* ---- Measures ---- */
 
-static void add_sample(viewer_plots *plots, const skein_statistics *s, double step_ms, double draw_ms) {
+static void add_sample(viewer_plots *plots, const skein_statistics *s, const skein_order *flock, double step_ms,
+                       double draw_ms) {
     const double values[VIEWER_QUANTITY_COUNT] = {
         [VIEWER_KINETIC] = s->kinetic_energy,
         [VIEWER_POTENTIAL] = s->potential_energy,
@@ -160,6 +162,8 @@ static void add_sample(viewer_plots *plots, const skein_statistics *s, double st
         [VIEWER_CONTACTS] = (double)s->contacts,
         [VIEWER_STEP_MS] = step_ms,
         [VIEWER_DRAW_MS] = draw_ms,
+        [VIEWER_POLARIZATION] = flock ? flock->polarization : NAN,
+        [VIEWER_MILLING] = flock ? flock->milling : NAN,
     };
     for (int q = 0; q < VIEWER_QUANTITY_COUNT; q++) {
         bool finite = isfinite(values[q]) && fabs(values[q]) < 1e30;
@@ -174,11 +178,14 @@ void viewer_measure(viewer_stage *stage) {
     if (now < stage->sampled) return;
     for (size_t s = 0; s < stage->side_count; s++) {
         skein_statistics statistics;
+        skein_order order;
         if (skein_world_statistics(stage->sides[s].world, &statistics)) continue;
+        bool flock = viewer_flock_measure(stage->sides[s].world, &order);
         viewer_side *side = &stage->exchange->shown.sides[s];
         pthread_mutex_lock(&stage->exchange->lock);
+        side->flock = flock;
         side->statistics = statistics;
-        add_sample(&side->plots, &statistics, stage->step_ms, stage->draw_ms);
+        add_sample(&side->plots, &statistics, flock ? &order : NULL, stage->step_ms, stage->draw_ms);
         pthread_mutex_unlock(&stage->exchange->lock);
     }
     double took = viewer_seconds() - now;

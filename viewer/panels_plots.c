@@ -31,6 +31,14 @@ static void show_energies(const viewer_shown *shown) {
     else plot(shown, "energy (J)", all, names, 4);
 }
 
+/* How birds fly together, by definition from 0 to 1 (docs/methods.md). */
+static void show_order(const viewer_shown *shown) {
+    static const viewer_quantity both[] = {VIEWER_POLARIZATION, VIEWER_MILLING};
+    static const char *const names[] = {"polarization", "milling"};
+    for (int q = 0; q < 2 && shown->side_count > 1; q++) plot(shown, names[q], &both[q], names, 1);
+    if (shown->side_count < 2) plot(shown, "order of the flock (0 to 1)", both, names, 2);
+}
+
 void viewer_show_plots(viewer_panels *panels, double wide, double tall) {
     static const viewer_quantity stretch[] = {VIEWER_STRETCH}, contacts[] = {VIEWER_CONTACTS},
                                  times[] = {VIEWER_STEP_MS, VIEWER_DRAW_MS};
@@ -40,6 +48,7 @@ void viewer_show_plots(viewer_panels *panels, double wide, double tall) {
     bool open = true;
     if (height > tall - 4) height = tall - 4;
     if (widgets_panel("Plots", WIDGETS_FREE, wide - width - 4, 2, width, height, &open)) {
+        if (shown->sides[0].flock) show_order(shown);
         show_energies(shown);
         plot(shown, "largest stretch (%)", stretch, none, 1);
         plot(shown, "contacts", contacts, none, 1);

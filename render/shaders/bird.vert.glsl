@@ -6,8 +6,10 @@ layout(location = 6) uniform uint from;  // instances that are drawn already
 
 out vec3 world;
 #ifdef FINE
-layout(location = 4) uniform int paint;   // 0: a colour of its own; 1: by direction; 2: the flock's
+layout(location = 4) uniform int paint;   // 0: a colour of its own; 1: by direction; 2: the flock's; 3: by speed
 layout(location = 5) uniform vec3 colour; // the flock's
+layout(location = 7) uniform vec2 speeds; // the part of the colours' range for a metre a second, and their map
+layout(binding = 3) uniform sampler1DArray colour_maps;
 flat out vec3 feathers;
 flat out vec3 light_here; // as for balls
 #endif
@@ -40,6 +42,7 @@ void main() {
     vec3 own = hue * hue * (0.7 + 0.6 * own_number(bird, 1u));
     vec3 by_direction = mix(vec3(0.05, 0.13, 0.62), vec3(0.70, 0.05, 0.03), step(0.0, ahead.z));
     feathers = paint == 0 ? own : paint == 1 ? by_direction : colour;
+    if (paint == 3) feathers = textureLod(colour_maps, vec2(min(speed * speeds.x, 1.0), speeds.y), 0.0).rgb;
     vec3 sunny = at + 1.5 * size * scene.sun.xyz;
     light_here = vec3(sun_seen(sunny, scene.sun.xyz), balls_seen(sunny, scene.sun.xyz, -1), ground_seen(sunny, vec3(0.0)));
 #endif
