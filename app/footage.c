@@ -9,7 +9,7 @@
 #include "render/studio.h"
 #include "render/world_frame.h"
 
-/* The camera takes in so many frames at most, and nothing that makes the picture so many times wider than the
+/* The camera takes in so many frames at most, and nothing that makes the subject so many times wider than the
  * start: what falls out of the world or blows up is let go. */
 enum { MOST_AHEAD = 900, MOST_GROWTH = 4 };
 
@@ -30,20 +30,21 @@ static void ignore_fault(void *user, const skein_error *error) {
     (void)user, (void)error; // the same was built before without one
 }
 
-/* Adds what the world holds now, unless that makes the box larger than `most` (0: not known yet). */
-static void take_in(render_world_frame *frame, skein_world *world, render_bounds *held, double *most) {
-    if (render_world_frame_update(frame, world, NULL, NULL)) return;
-    render_bounds now = render_frame_bounds(render_world_frame_get(frame)), both = *held;
-    if (render_bounds_empty(&now)) return;
-    render_bounds_add(&both, now.least, 0);
-    render_bounds_add(&both, now.most, 0);
-    if (*most == 0) *most = MOST_GROWTH * render_bounds_radius(&both);
-    if (render_bounds_radius(&both) <= *most) *held = both;
+/* Adds what the world holds now, unless that makes it larger than `most` (0: not known yet). */
+static void take_in(render_world_frame *frame, skein_world *world, const render_view *view, render_subject *held,
+                    double *most) {
+    if (render_world_frame_update(frame, world, view, NULL)) return;
+    render_subject both = render_subject_of(render_world_frame_get(frame));
+    if (render_hull_empty(&both.all)) return;
+    render_subject_join(&both, held);
+    render_bounds bounds = render_hull_bounds(&both.all);
+    if (*most == 0) *most = MOST_GROWTH * render_bounds_radius(&bounds);
+    if (render_bounds_radius(&bounds) <= *most) *held = both;
 }
 
 /* All that the first frames hold, from a run of its own. */
-static render_bounds look_ahead(const app_scene *loaded, int frames, bool quiet) {
-    render_bounds held = render_bounds_nothing();
+static render_subject look_ahead(const app_scene *loaded, int frames, bool quiet) {
+    render_subject held = render_subject_nothing();
     double most = 0;
     io_faults faults = {ignore_fault, NULL, 0};
     skein_world_desc desc = skein_default_world_desc();
@@ -59,7 +60,7 @@ static render_bounds look_ahead(const app_scene *loaded, int frames, bool quiet)
     app_progress p = app_progress_start("looking ahead: frame", frames, quiet);
     p.quiet |= !p.terminal;
     for (int i = 0; world && frame && i < frames && !app_interrupted(); i++) {
-        take_in(frame, world, &held, &most);
+        take_in(frame, world, io_scene_view(loaded->scene), &held, &most);
         bool good = true;
         for (int s = 0; s < steps && good; s++) good = !skein_world_step(world, dt);
         if (!good) break; // the run itself will tell
@@ -112,8 +113,8 @@ app_footage *app_footage_begin(const app_scene *loaded, const char *path, const 
     // in the context that draws, what moves is drawn from where it is
     if (skein_world_device(loaded->world).device == SKEIN_DEVICE_GPU)
         skein_world_device_set(loaded->world, SKEIN_DEVICE_CURRENT_GL);
-    render_bounds held = look_ahead(loaded, frames, quiet);
-    if (!render_bounds_empty(&held)) render_studio_hold(f->studio, &held);
+    render_subject held = look_ahead(loaded, frames, quiet);
+    if (!render_hull_empty(&held.all)) render_studio_hold(f->studio, &held);
     return f;
 }
 

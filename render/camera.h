@@ -7,6 +7,7 @@
 #define SKEIN_RENDER_CAMERA_H
 
 #include "render/frame.h"
+#include "render/subject.h"
 #include "render/view.h"
 
 typedef struct render_camera {
@@ -19,9 +20,17 @@ typedef struct render_camera {
 /* A camera that holds the whole box in the picture: from the front right, slightly above, so that
  * the horizon shows. `aspect` is width / height. An empty box counts as a unit box at the origin. */
 render_camera render_camera_framing(const render_bounds *bounds, double aspect);
-/* The camera that a view asks for, `seconds` into the scene: at its own place, or one that holds the box. */
-render_camera render_camera_of_view(const render_view_camera *view, const render_bounds *bounds, double seconds,
+/* A camera that looks at the subject from that direction (of any length): all of its bodies are in the picture, and
+ * large; of what stands around as much as leaves them so. */
+render_camera render_camera_hold(const render_subject *subject, const double from[3], double fov, double zoom,
+                                 double aspect);
+/* The camera that a view asks for, `seconds` into the scene: at its own place, or one that holds the subject. */
+render_camera render_camera_of_view(const render_view_camera *view, const render_subject *subject, double seconds,
                                     double aspect);
+/* Goes round what it looks at, to the right of it. */
+void render_camera_turn(render_camera *camera, double degrees);
+/* The parts of the picture's width and height that a hull takes up. */
+void render_camera_share(const render_camera *camera, const render_hull *hull, double aspect, double shares[2]);
 
 /* Three unit axes of the picture: to the right, up, and back towards the viewer. */
 void render_camera_axes(const render_camera *camera, double right[3], double up[3], double back[3]);

@@ -18,6 +18,7 @@ struct render_studio {
     const render_view *view;
     render_camera camera;
     bool aimed;
+    double shot; /* the last picture, in seconds of the world */
 };
 
 render_studio *render_studio_create(const int32_t size[2], int samples, const render_view *view, skein_error *error) {
@@ -48,17 +49,20 @@ void render_studio_destroy(render_studio *studio) {
     free(studio);
 }
 
-void render_studio_hold(render_studio *studio, const render_bounds *bounds) {
-    render_world_frame_hold(studio->frame, bounds);
+void render_studio_hold(render_studio *studio, const render_subject *subject) {
+    render_world_frame_hold(studio->frame, subject);
 }
 
 skein_status render_studio_shoot(render_studio *studio, skein_world *world, skein_error *error) {
     int width = studio->target.width, height = studio->target.height;
     skein_status status = render_world_frame_update(studio->frame, world, studio->view, error);
     if (status != SKEIN_OK) return status;
-    bool moves = studio->view && studio->view->camera.orbit != 0;
-    if (!studio->aimed || moves) studio->camera = render_world_frame_camera(studio->frame, (double)width / height);
+    // aimed once: what holds the moment alone would jump as the bodies move
+    double now = skein_world_time(world), orbit = studio->view ? studio->view->camera.orbit : 0;
+    if (!studio->aimed) studio->camera = render_world_frame_camera(studio->frame, (double)width / height);
+    else if (orbit != 0) render_camera_turn(&studio->camera, orbit * (now - studio->shot));
     studio->aimed = true;
+    studio->shot = now;
     status = render_draw_frame(studio->draw, render_world_frame_get(studio->frame), &studio->camera,
                                studio->target.framebuffer, width, height, error);
     glFlush();

@@ -7,6 +7,9 @@
 
 /* From tip to tip, in radii of the scene. */
 static const double usual_span = 0.045;
+/* The part of a flock that strays, at each end of each axis; of so many birds, spread over all, that is found out. */
+static const double strays = 0.03;
+enum { MOST_LOOKED_AT = 8192 };
 
 bool render_are_birds(const skein_kind *kind, const render_view *view) {
     bool shown = !view || (view->birds && view->particles != RENDER_NO_PARTICLES);
@@ -40,6 +43,31 @@ static void copy(const skein_view *view, const skein_surface *surface, float *ou
     }
 }
 
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The box of the birds that keep together. */
+static bool find_core(render_birds *birds, const double *positions) {
+    size_t stride = birds->count / MOST_LOOKED_AT + 1;
+    double *along = malloc((birds->count / stride + 1) * sizeof *along);
+    if (!along) return false;
+    memcpy(birds->core_least, birds->least, sizeof birds->least);
+    memcpy(birds->core_most, birds->most, sizeof birds->most);
+    for (size_t k = 0; k < 3; k++) {
+        size_t count = 0;
+        for (size_t b = 0; b < birds->count; b += stride)
+            if (isfinite(positions[3 * b + k])) along[count++] = positions[3 * b + k];
+        if (!count) break;
+        qsort(along, count, sizeof *along, by_size);
+        size_t out = (size_t)(strays * (double)count);
+        birds->core_least[k] = along[out], birds->core_most[k] = along[count - 1 - out];
+    }
+    free(along);
+    return true;
+}
+
 bool render_add_birds(render_world_birds *all, const skein_world *world, const render_world_state *state,
                       const skein_surface *surface, size_t index) {
     skein_device_info device = skein_world_device(world);
@@ -67,7 +95,7 @@ bool render_add_birds(render_world_birds *all, const skein_world *world, const r
         render_bounds_add(&bounds, &state->positions[3 * (surface->first_particle + i)], 0);
     memcpy(birds->least, bounds.least, sizeof bounds.least);
     memcpy(birds->most, bounds.most, sizeof bounds.most);
-    return true;
+    return find_core(birds, &state->positions[3 * surface->first_particle]);
 }
 
 void render_world_birds_show(render_world_birds *all, const render_view *view, double range, render_frame *frame) {

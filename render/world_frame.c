@@ -46,7 +46,7 @@ struct render_world_frame {
     unsigned updates;
     bool has_floor;
     double floor_height;
-    render_bounds held; /* in the picture, whatever the frame has */
+    render_subject held; /* in the picture, whatever the frame has */
 };
 
 /* The patterns and images repeat so often along a body's longer side. */
@@ -69,7 +69,7 @@ render_world_frame *render_world_frame_create(skein_error *error) {
         return NULL;
     }
     made->frame = render_default_frame();
-    made->held = render_bounds_nothing();
+    made->held = render_subject_nothing();
     made->blend = 1;
     return made;
 }
@@ -110,10 +110,10 @@ static bool grow(void *array, size_t count, size_t size) {
 }
 
 static render_bounds bounds_to_hold(const render_world_frame *made) {
-    render_bounds bounds = render_frame_bounds(&made->frame);
-    if (render_bounds_empty(&made->held)) return bounds;
-    render_bounds_add(&bounds, made->held.least, 0);
-    render_bounds_add(&bounds, made->held.most, 0);
+    render_bounds bounds = render_frame_bounds(&made->frame), held = render_hull_bounds(&made->held.all);
+    if (render_bounds_empty(&held)) return bounds;
+    render_bounds_add(&bounds, held.least, 0);
+    render_bounds_add(&bounds, held.most, 0);
     return bounds;
 }
 
@@ -462,21 +462,39 @@ void render_world_frame_settle(render_world_frame *made) {
     made->frame.look.floor_height = made->floor_height;
 }
 
-void render_world_frame_hold(render_world_frame *made, const render_bounds *bounds) {
-    made->held = *bounds;
-    made->frame.radius = render_bounds_radius(bounds);
-    render_bounds_centre(bounds, made->frame.middle);
+void render_world_frame_hold(render_world_frame *made, const render_subject *subject) {
+    made->held = *subject;
+    render_bounds bounds = render_hull_bounds(&subject->all);
+    made->frame.radius = render_bounds_radius(&bounds);
+    render_bounds_centre(&bounds, made->frame.middle);
+}
+
+/* Where they stand above the ground, as in their shadows, belongs to what is around. */
+static void add_ground(render_hull *all, double height) {
+    const render_hull above = *all;
+    for (int i = 0; i < RENDER_HULL_DIRECTIONS; i++) {
+        const double below[3] = {above.point[i][0], height, above.point[i][2]};
+        render_hull_add(all, below, 0);
+    }
+}
+
+render_subject render_world_frame_subject(const render_world_frame *made) {
+    const render_look *look = &made->frame.look;
+    render_subject subject = render_subject_of(&made->frame);
+    render_subject_join(&subject, &made->held);
+    if (render_hull_empty(&subject.all)) return subject;
+    render_bounds bounds = render_hull_bounds(&subject.all);
+    double gap = bounds.least[1] - look->floor_height, most_gap = floor_gap * (bounds.most[1] - bounds.least[1]),
+           ground;
+    if (look->floor && gap > 0 && gap < 1.01 * most_gap) add_ground(&subject.all, look->floor_height);
+    // ground that is a collider is what things fall on to, or hang over: its shadows belong to the picture
+    bool is_there = !look->floor && render_find_ground(&made->frame, &ground);
+    if (is_there && bounds.least[1] > ground && bounds.least[1] - ground < seen_fall * render_bounds_radius(&bounds))
+        add_ground(&subject.all, ground);
+    return subject;
 }
 
 render_camera render_world_frame_camera(const render_world_frame *made, double aspect) {
-    const render_look *look = &made->frame.look;
-    render_bounds bounds = bounds_to_hold(made);
-    double gap = bounds.least[1] - look->floor_height, most_gap = floor_gap * (bounds.most[1] - bounds.least[1]),
-           ground;
-    if (look->floor && gap > 0 && gap < 1.01 * most_gap) bounds.least[1] = look->floor_height;
-    // ground that is a collider is what things fall on to, or hang over: its shadows belong to the picture
-    bool is_there = !look->floor && render_find_ground(&made->frame, &ground);
-    if (is_there && bounds.least[1] - ground < seen_fall * render_bounds_radius(&bounds))
-        bounds.least[1] = fmin(bounds.least[1], ground);
-    return render_camera_of_view(&made->view.camera, &bounds, made->time, aspect);
+    render_subject subject = render_world_frame_subject(made);
+    return render_camera_of_view(&made->view.camera, &subject, made->time, aspect);
 }

@@ -33,15 +33,16 @@ void render_world_frame_blend(render_world_frame *frame, double blend);
  * must stay where things have room to move.) */
 void render_world_frame_settle(render_world_frame *frame);
 
-/* The camera and such a ground shall have room for this box, too, and the surroundings are measured by it; before
+/* The camera and such a ground shall have room for this, too, and the surroundings are measured by it; before
  * the first update. So a film's background stands still. */
-void render_world_frame_hold(render_world_frame *frame, const render_bounds *bounds);
+void render_world_frame_hold(render_world_frame *frame, const render_subject *subject);
 
 /* The speed (m/s) or strain that the end of the colours stands for now; 0 where colours tell neither. */
 double render_world_frame_range(const render_world_frame *frame);
 
-/* The view's camera. One that frames by itself holds all of the present state; the ground shows if it is
- * near. */
+/* What the picture is of; and its surroundings, among them the ground if it is near. */
+render_subject render_world_frame_subject(const render_world_frame *frame);
+/* The view's camera. One that frames by itself holds all bodies of the present state, and makes them large. */
 render_camera render_world_frame_camera(const render_world_frame *frame, double aspect);
 
 #endif
