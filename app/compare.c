@@ -1,6 +1,7 @@
 #include "app/compare.h"
 
 #include <errno.h>
+#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,6 +41,41 @@ static void print_table(const compare_run *runs, size_t count, const compare_run
         printf("rounded: the error is rounding's, which shorter steps do not lessen%s\n",
                sizeof(skein_real) == sizeof(float) ? "; a build with -DSKEIN_DOUBLE=ON goes further" : "");
     if (reference->outcome != COMPARE_GOOD) printf("(but the reference itself %s)\n", outcomes[reference->outcome]);
+}
+
+/* A number, or null where there is none. */
+static void set_number(json_t *object, const char *name, double value) {
+    json_object_set_new(object, name, isfinite(value) ? json_real(value) : json_null());
+}
+
+static json_t *describe(const compare_run *run) {
+    json_t *json = json_object();
+    json_object_set_new(json, "method", json_string(run->method));
+    set_number(json, "step", run->step);
+    json_object_set_new(json, "outcome", json_string(outcomes[run->outcome]));
+    json_object_set_new(json, "steps", json_integer((json_int_t)run->steps));
+    bool good = run->outcome == COMPARE_GOOD;
+    set_number(json, "error", good ? run->error : NAN);
+    set_number(json, "order", good ? run->order : NAN);
+    json_object_set_new(json, "rounded", json_boolean(good && run->rounded));
+    set_number(json, "largest_stretch", good ? run->stretch : NAN);
+    set_number(json, "energy_lost", good ? run->loss : NAN);
+    set_number(json, "ms_a_step", compare_ms_per_step(run));
+    set_number(json, "cost", compare_cost(run));
+    return json;
+}
+
+/* The table for programs: metres, seconds, joules. */
+static bool print_json(const char *path, const compare_run *runs, size_t count, const compare_run *reference) {
+    json_t *root = json_object(), *list = json_array();
+    json_object_set_new(root, "scene", json_string(path));
+    json_object_set_new(root, "reference", describe(reference));
+    for (size_t r = 0; r < count; r++) json_array_append_new(list, describe(&runs[r]));
+    json_object_set_new(root, "runs", list);
+    bool good = !json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+    printf("\n");
+    json_decref(root);
+    return good;
 }
 
 static io_output *open_in(const char *folder, const char *name, skein_error *error) {
@@ -135,7 +171,7 @@ static bool make_reference(compare_scene *scene, compare_run *reference, const c
         if (!(step > 0)) continue;
         *reference = (compare_run){.step = step};
         snprintf(reference->method, sizeof reference->method, "%s", methods[m]);
-        fprintf(stderr, "reference: %s, steps of %.4g ms\n", methods[m], 1e3 * step);
+        if (!scene->quiet) fprintf(stderr, "reference: %s, steps of %.4g ms\n", methods[m], 1e3 * step);
         return compare_run_one(scene, reference, true);
     }
     return false;
@@ -145,14 +181,14 @@ static int compare_all(compare_scene *scene, compare_run *runs, size_t count, co
     compare_run reference = {.outcome = COMPARE_FAILED};
     bool good = make_reference(scene, &reference, runs, count);
     for (size_t r = 0; r < count && good; r++) {
-        fprintf(stderr, "%s, steps of %.4g ms\n", runs[r].method, 1e3 * runs[r].step);
+        if (!scene->quiet) fprintf(stderr, "%s, steps of %.4g ms\n", runs[r].method, 1e3 * runs[r].step);
         good = compare_run_one(scene, &runs[r], false);
     }
     if (good) {
         compare_orders(scene, runs, count);
-        print_table(runs, count, &reference);
-    }
-    if (!good) fprintf(stderr, "skein compare: there is no reference, or no memory\n");
+        if (scene->json) good = print_json(scene->path, runs, count, &reference);
+        else if (!scene->quiet) print_table(runs, count, &reference);
+    } else fprintf(stderr, "skein compare: there is no reference, or no memory\n");
     if (good && folder) {
         if (mkdir(folder, 0777) && errno != EEXIST) {
             fprintf(stderr, "skein compare: --out %s: cannot be made: %s\n", folder, strerror(errno));
@@ -160,7 +196,8 @@ static int compare_all(compare_scene *scene, compare_run *runs, size_t count, co
         }
         good = good && write_table(folder, runs, count) && write_series(folder, runs, count) &&
                compare_plot(folder, scene->path, runs, count);
-        if (good) printf("wrote compare.csv, series.csv, compare.gnuplot and what it draws into %s\n", folder);
+        if (good && !scene->quiet && !scene->json)
+            printf("wrote compare.csv, series.csv, compare.gnuplot and what it draws into %s\n", folder);
     }
     free(reference.samples);
     free(scene->reference);
@@ -170,7 +207,9 @@ static int compare_all(compare_scene *scene, compare_run *runs, size_t count, co
 
 static int compare(app_arguments *arguments) {
     static compare_run runs[COMPARE_MOST_RUNS];
-    compare_scene scene = {.path = app_word(arguments), .sets = app_values(arguments, "--set")};
+    compare_scene scene = {.path = app_word(arguments), .sets = app_values(arguments, "--set"),
+                           .json = app_given(arguments, "--json"),
+                           .quiet = app_given(arguments, "--quiet")};
     const char *methods = app_value(arguments, "--methods"), *steps = app_value(arguments, "--steps"),
                *frames = app_value(arguments, "--frames");
     size_t count = plan_runs(methods ? methods : "symplectic_euler,leapfrog,rk4,backward_euler,xpbd",
@@ -195,6 +234,8 @@ static const app_option options[] = {
      APP_TAKES_ANY},
     {"--frames", "N", "frames to run, instead of the scene's", false, APP_TAKES_ANY},
     {"--out", "FOLDER", "write compare.csv, series.csv, compare.png and compare.svg there", false, APP_TAKES_FOLDER},
+    {"--json", NULL, "print the table as JSON; null is what a run that blew up has no number for", false, APP_TAKES_ANY},
+    APP_QUIET_OPTION,
     APP_END_OF_OPTIONS};
 
 const app_command app_compare_command = {

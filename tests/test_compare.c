@@ -90,6 +90,18 @@ static void orders_are_found(void **state) {
         assert_float_equal(strtod(last + 1, NULL), known[i].order, 0.25);
     }
     free(table);
+    o = SKEIN("compare", path, "--methods", "midpoint,explicit_euler", "--steps", "0.004", "--json", "--quiet");
+    assert_status(o, 0);
+    assert_true(!strncmp(o.out, "{\n", 2) && !*o.err);
+    assert_contains(o.out, "\"reference\": {\n    \"method\": \"rk4\"");
+    assert_contains(o.out, "\"method\": \"explicit_euler\"");
+    assert_contains(o.out, "\"outcome\": \"good\"");
+    assert_contains(o.out, "\"order\": null"); // one step says nothing of it
+    outcome_free(&o);
+    o = SKEIN("compare", path, "--methods", "midpoint", "--steps", "0.004", "--quiet");
+    assert_status(o, 0);
+    assert_true(!*o.out && !*o.err);
+    outcome_free(&o);
     if (sizeof(skein_real) == sizeof(double)) return;
     o = SKEIN("compare", path, "--methods", "rk4", "--steps", "0.001,0.0005");
     assert_status(o, 0);
