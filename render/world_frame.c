@@ -494,6 +494,21 @@ render_subject render_world_frame_subject(const render_world_frame *made) {
     return subject;
 }
 
+bool render_world_frame_middle(const render_world_frame *made, double middle[3]) {
+    const render_world_state *state = &made->state;
+    size_t count = 0;
+    middle[0] = middle[1] = middle[2] = 0;
+    for (size_t p = 0; p < state->particle_count; p++) {
+        const double *x = &state->positions[3 * p];
+        bool hidden = state->shown[p] == RENDER_HIDDEN && !made->frame.bird_count; // birds are drawn in their own way
+        if (hidden || !isfinite(x[0]) || !isfinite(x[1]) || !isfinite(x[2])) continue;
+        for (int k = 0; k < 3; k++) middle[k] += x[k];
+        count++;
+    }
+    for (int k = 0; k < 3 && count; k++) middle[k] /= (double)count;
+    return count > 0;
+}
+
 render_camera render_world_frame_camera(const render_world_frame *made, double aspect) {
     render_subject subject = render_world_frame_subject(made);
     return render_camera_of_view(&made->view.camera, &subject, made->time, aspect);

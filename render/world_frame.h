@@ -42,6 +42,8 @@ double render_world_frame_range(const render_world_frame *frame);
 
 /* What the picture is of; and its surroundings, among them the ground if it is near. */
 render_subject render_world_frame_subject(const render_world_frame *frame);
+/* The mean place of the particles that are shown; false where there are none. */
+bool render_world_frame_middle(const render_world_frame *frame, double middle[3]);
 /* The view's camera. One that frames by itself holds all bodies of the present state, and makes them large. */
 render_camera render_world_frame_camera(const render_world_frame *frame, double aspect);
 

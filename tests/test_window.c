@@ -152,7 +152,7 @@ static void orbits_pans_and_zooms(void **state) {
 
 /* W, A, S, D, Q and E move it, as long as they are down; C begins and ends a flight. */
 static void moves_by_keys_and_flies(void **state) {
-    static const char *const keys[] = {"w", "s", "a", "d", "q", "e"};
+    static const char *const keys[] = {"w", "s", "a", "d", "q", "e", "Prior", "Next"};
     double before[3], after[3], flown[3];
     (void)state;
     ask_state();
@@ -180,6 +180,45 @@ static void moves_by_keys_and_flies(void **state) {
     assert_true(told("flying") == 0);
     eye_of(after);
     assert_true(distance(before, after) < 1e-4); // the first view
+}
+
+/* 0 is the first view, wherever one has gone; F brings all bodies into the picture; T goes along with them. */
+static void frames_returns_and_follows(void **state) {
+    double first[3], far[3], framed[3], home[3], before[3], after[3];
+    (void)state;
+    press_key("BackSpace");
+    press_key("0");
+    ask_state();
+    eye_of(first);
+    for (int i = 0; i < 12; i++) tool("mousemove 560 320 sleep 0.05 click 5"); // the wheel, away
+    pause_for(0.1);
+    ask_state();
+    eye_of(far);
+    assert_true(distance(first, far) > 2);
+    press_key("f");
+    ask_state();
+    eye_of(framed);
+    assert_true(distance(first, framed) < 0.5 * distance(first, far));
+    press_key("0");
+    ask_state();
+    eye_of(home);
+    assert_true(distance(first, home) < 1e-4);
+
+    press_key("t");
+    ask_state();
+    eye_of(before);
+    for (int i = 0; i < 12; i++) press_key("period");
+    ask_state();
+    eye_of(after);
+    assert_true(before[1] - after[1] > 2e-4); // the sheet sags
+    press_key("t");
+    ask_state();
+    eye_of(before);
+    press_key("period");
+    ask_state();
+    eye_of(after);
+    assert_true(distance(before, after) < 1e-4);
+    press_key("BackSpace");
 }
 
 /* ---- The hand ------------------------------------------------------------------------------------------- */
@@ -786,6 +825,7 @@ int main(void) {
         cmocka_unit_test(moves_by_keys_and_flies),
         cmocka_unit_test(pulls_a_corner),
         cmocka_unit_test(pins_and_frees),
+        cmocka_unit_test(frames_returns_and_follows),
         cmocka_unit_test(saves_pictures_and_meshes),
         cmocka_unit_test(records_a_film),
         cmocka_unit_test(reads_a_changed_file_again),

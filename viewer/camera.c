@@ -12,11 +12,24 @@ static const double turn_by_drag = 180, turn_by_key = 60, steepest = 0.9994;
 static const double turn_head = 60, radii_a_second = 0.8;
 static const double nearest = 1e-3; /* what is cut off, of the distance to the target */
 
-void viewer_camera_place(viewer_camera *camera, const render_camera *home, double radius) {
-    camera->lens = *home;
+void viewer_camera_place(viewer_camera *camera, const render_camera *home, double radius, double time) {
+    camera->lens = camera->home = *home;
+    camera->home_time = time;
+    camera->has_middle = false;
     camera->radius = radius > 0 ? radius : 1;
     camera->placed = true;
     camera->flying = camera->moved = false;
+}
+
+void viewer_camera_home(viewer_camera *camera) {
+    camera->lens = camera->home;
+    camera->has_middle = false;
+    camera->flying = camera->moved = false;
+}
+
+void viewer_camera_orbit(viewer_camera *camera, double degrees, double time) {
+    camera->lens = camera->home;
+    render_camera_turn(&camera->lens, degrees * (time - camera->home_time));
 }
 
 static double distance_of(const render_camera *lens) {
@@ -28,6 +41,26 @@ static double distance_of(const render_camera *lens) {
 static void touched(viewer_camera *camera) {
     camera->moved = true;
     camera->lens.near = fmin(nearest * distance_of(&camera->lens), nearest * camera->radius);
+}
+
+void viewer_camera_frame(viewer_camera *camera, const render_subject *subject, double aspect) {
+    render_camera *lens = &camera->lens;
+    double from[3];
+    for (int k = 0; k < 3; k++) from[k] = lens->eye[k] - lens->target[k];
+    *lens = render_camera_hold(subject, from, lens->fov, 1, aspect);
+    camera->flying = camera->has_middle = false;
+    touched(camera);
+}
+
+void viewer_camera_follow(viewer_camera *camera, const double middle[3]) {
+    bool knows = camera->follows && camera->has_middle;
+    for (int k = 0; k < 3; k++) {
+        double way = knows ? middle[k] - camera->middle[k] : 0;
+        camera->lens.eye[k] += way, camera->lens.target[k] += way;
+        camera->middle[k] = middle[k];
+    }
+    camera->has_middle = camera->follows;
+    camera->moved |= camera->follows;
 }
 
 /* A direction, turned by angles to the right and up (radians); not beyond the steepest. */
@@ -97,15 +130,16 @@ bool viewer_camera_move(viewer_camera *camera, double seconds) {
     double ahead = (double)down[VIEWER_FORWARD] - (double)down[VIEWER_BACK];
     double aside = (double)down[VIEWER_RIGHT] - (double)down[VIEWER_LEFT];
     double turn = (double)down[VIEWER_TURN_RIGHT] - (double)down[VIEWER_TURN_LEFT];
-    if (ahead == 0 && aside == 0 && turn == 0) return false;
+    double rise = (double)down[VIEWER_TURN_UP] - (double)down[VIEWER_TURN_DOWN];
+    if (ahead == 0 && aside == 0 && turn == 0 && rise == 0) return false;
     double right[3], up[3], back[3], by[3], way = radii_a_second * camera->radius * seconds;
     render_camera_axes(&camera->lens, right, up, back);
     for (int k = 0; k < 3; k++) by[k] = way * (aside * right[k] - ahead * back[k]);
     shift(camera, by);
-    if (turn != 0) {
+    if (turn != 0 || rise != 0) {
         // the head turns in flight; else the camera goes round, so that the scene seems to turn
         double height = (camera->flying ? turn_head : turn_by_drag) / turn_by_key;
-        viewer_camera_turn(camera, turn * seconds, 0, height);
+        viewer_camera_turn(camera, turn * seconds, (camera->flying ? -rise : rise) * seconds, height);
     }
     return true;
 }

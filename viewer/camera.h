@@ -15,6 +15,8 @@ typedef enum viewer_motion {
     VIEWER_RIGHT,
     VIEWER_TURN_LEFT,
     VIEWER_TURN_RIGHT,
+    VIEWER_TURN_UP,
+    VIEWER_TURN_DOWN,
     VIEWER_MOTION_COUNT
 } viewer_motion;
 
@@ -24,11 +26,22 @@ typedef struct viewer_camera {
     bool placed, flying, moved;
     render_camera before;           /* the flight */
     bool down[VIEWER_MOTION_COUNT]; /* keys */
-    bool orbits;                    /* the view turns it by itself, until it is moved */
+    render_camera home;             /* the first view */
+    double home_time;               /* of the world, in seconds */
+    bool follows, has_middle;       /* it goes along with the bodies; and knows where their middle was */
+    double middle[3];
 } viewer_camera;
 
-/* Takes the scene's own camera, and ends a flight. */
-void viewer_camera_place(viewer_camera *camera, const render_camera *home, double radius);
+/* Takes the scene's own camera, at a time of the world, and ends a flight. */
+void viewer_camera_place(viewer_camera *camera, const render_camera *home, double radius, double time);
+/* The first view again. */
+void viewer_camera_home(viewer_camera *camera);
+/* The first view, gone round by so many degrees a second since then. */
+void viewer_camera_orbit(viewer_camera *camera, double degrees, double time);
+/* All of the subject in the picture, from the side that the camera is on. */
+void viewer_camera_frame(viewer_camera *camera, const render_subject *subject, double aspect);
+/* Where it follows: goes along by what the middle has moved since the last call. */
+void viewer_camera_follow(viewer_camera *camera, const double middle[3]);
 /* Pixels of a picture of that height: around the target, or in flight the direction of the eye. */
 void viewer_camera_turn(viewer_camera *camera, double dx, double dy, double height);
 void viewer_camera_pan(viewer_camera *camera, double dx, double dy, double height);

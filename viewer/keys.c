@@ -61,6 +61,30 @@ static void fly(viewer_stage *stage, const viewer_key *key) {
                                             : "back to the first view");
 }
 
+static void first_view(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    viewer_camera_home(&stage->camera);
+    stage->dirty = true;
+    viewer_note(stage, "the first view");
+}
+
+static void frame_all(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    if (!viewer_take_frames(stage)) return;
+    render_subject subject = render_world_frame_subject(stage->frames[0]);
+    viewer_camera_frame(&stage->camera, &subject, viewer_aspect(stage));
+    stage->dirty = true;
+    viewer_note(stage, "all bodies are in the picture");
+}
+
+static void follow(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    stage->camera.follows = !stage->camera.follows;
+    stage->camera.has_middle = false;
+    stage->dirty = true;
+    viewer_note(stage, stage->camera.follows ? "the view goes along with the bodies; T ends it" : "the view stands still");
+}
+
 static void save_picture(viewer_stage *stage, const viewer_key *key) {
     (void)key;
     viewer_save_picture(stage);
@@ -209,6 +233,11 @@ static const viewer_key keys[] = {
     MOVE(GLFW_KEY_D, NULL, VIEWER_RIGHT, NULL),
     MOVE(GLFW_KEY_Q, "Q E", VIEWER_TURN_LEFT, "turn the view left and right"),
     MOVE(GLFW_KEY_E, NULL, VIEWER_TURN_RIGHT, NULL),
+    MOVE(GLFW_KEY_PAGE_UP, "Page Up, Down", VIEWER_TURN_UP, "turn the view up and down"),
+    MOVE(GLFW_KEY_PAGE_DOWN, NULL, VIEWER_TURN_DOWN, NULL),
+    SCENE(GLFW_KEY_F, "F", frame_all, "brings all bodies into the picture, from the side that is looked from"),
+    SCENE(GLFW_KEY_0, "0", first_view, "back to the first view"),
+    SCENE(GLFW_KEY_T, "T", follow, "the view goes along with the bodies, and stands still again"),
     SCENE(GLFW_KEY_C, "C", fly, "flight in the first person, and back to the first view"),
     SCENE(GLFW_KEY_R, "R", next_colours, "other colours, those that tell something: material, body, direction, speed, strain"),
     METHOD(0, "1 to 9", "the method: the n-th that `skein list methods` names"),

@@ -136,6 +136,7 @@ bool viewer_stage_by_key(const viewer_stage *stage); /* the scene advances by ke
 void viewer_stage_solve(viewer_stage *stage);        /* one solve of such a scene */
 /* The part of the window that a side has: x, and width. */
 int viewer_side_width(const viewer_stage *stage, size_t side, int *x);
+double viewer_aspect(const viewer_stage *stage); /* width over height of the first side */
 
 /* stage_change.c: what the user changes; each is kept, and can be undone */
 void viewer_stage_method(viewer_stage *stage, size_t side, const char *kind);

@@ -30,6 +30,11 @@ int viewer_side_width(const viewer_stage *stage, size_t side, int *x) {
     return part_of_width(stage->width, stage->side_count ? stage->side_count : 1, side, x);
 }
 
+double viewer_aspect(const viewer_stage *stage) {
+    int left, width = viewer_side_width(stage, 0, &left);
+    return (double)width / (stage->height > 0 ? stage->height : 1);
+}
+
 /* ---- Opening and closing ---- */
 
 static void paint_open(void *user) {
@@ -222,11 +227,16 @@ static skein_status take_frame(viewer_stage *stage, size_t side, skein_error *er
     render_world_frame_blend(frame, between ? skein_pacer_blend(&stage->pacer) : 1);
     skein_status status = render_world_frame_update(frame, player->world, &player->view, error);
     if (status || side) return status;
-    if (stage->camera.placed && (player->view.camera.orbit == 0 || stage->camera.moved)) return SKEIN_OK;
-    int left, width = viewer_side_width(stage, side, &left);
-    render_camera home = render_world_frame_camera(frame, (double)width / stage->height);
-    render_bounds bounds = render_frame_bounds(render_world_frame_get(frame));
-    viewer_camera_place(&stage->camera, &home, render_bounds_radius(&bounds));
+    double now = skein_world_time(player->world), middle[3];
+    viewer_camera *camera = &stage->camera;
+    if (!camera->placed) {
+        render_camera home = render_world_frame_camera(frame, viewer_aspect(stage));
+        render_bounds bounds = render_frame_bounds(render_world_frame_get(frame));
+        viewer_camera_place(camera, &home, render_bounds_radius(&bounds), now);
+    } else if (player->view.camera.orbit != 0 && !camera->moved) {
+        viewer_camera_orbit(camera, player->view.camera.orbit, now);
+    }
+    if (camera->follows && render_world_frame_middle(frame, middle)) viewer_camera_follow(camera, middle);
     return SKEIN_OK;
 }
 
