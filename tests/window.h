@@ -14,8 +14,14 @@
 
 #include "render/image.h"
 
+/* Of the virtual screen; a test may have said another before this file. */
+#ifndef SCREEN_SIZE
+#define SCREEN_SIZE "1024x768"
+#endif
+
 static struct {
     pid_t xvfb, skein;
+    FILE *hands; /* xdotool, which reads what to do line by line */
     char display[16], window[32];
     char events[512];
     long seen; /* of the events, bytes */
@@ -66,7 +72,7 @@ static inline void open_screen(void) {
         dup2(quiet, 1);
         dup2(quiet, 2);
         snprintf(descriptor, sizeof descriptor, "%d", ends[1]);
-        execlp("Xvfb", "Xvfb", "-displayfd", descriptor, "-screen", "0", "1024x768x24", "-nolisten", "tcp",
+        execlp("Xvfb", "Xvfb", "-displayfd", descriptor, "-screen", "0", SCREEN_SIZE "x24", "-nolisten", "tcp",
                (char *)NULL);
         _exit(127);
     }
@@ -98,6 +104,34 @@ static inline void tool(const char *words) {
         fprintf(stderr, "failed: %s\n", line);
         lose_patience();
     }
+}
+
+/* The same without a program of its own for each word, for those who do much: "mousemove 10 20", one a line. */
+static inline void hand(const char *format, ...) __attribute__((format(printf, 1, 2)));
+static inline void hand(const char *format, ...) {
+    char line[1024];
+    va_list arguments;
+    if (!screen.hands) screen.hands = popen("xdotool - >/dev/null", "w");
+    assert_non_null(screen.hands);
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    fprintf(screen.hands, "%s\n", line);
+    fflush(screen.hands);
+}
+
+/* Waits until all of it is done. */
+static inline void await_hands(void) {
+    double until = seconds_now() + patience_seconds;
+    const char *mark = in_folder("hands");
+    write_text(mark, "");
+    hand("exec --sync rm -f %s", mark);
+    while (exists(mark) && seconds_now() < until) pause_for(0.005);
+}
+
+static inline void drop_hands(void) {
+    if (screen.hands) pclose(screen.hands);
+    screen.hands = NULL;
 }
 
 /* ---- What the window tells ------------------------------------------------------------------------ */
@@ -161,12 +195,12 @@ static inline const char *press_key(const char *key) {
     return expect("state ");
 }
 
-/* The middle of a control, by its last place; waits until there is one. */
-static inline void place_of(const char *name, double *x, double *y) {
-    double until = seconds_now() + patience_seconds;
-    *x = *y = 0;
+/* The box of a control (x, y, width, height), by its last place among the events from `from` on; waits at most so long.
+ */
+static inline bool find_box(const char *name, long from, double box[4], double seconds) {
+    double until = seconds_now() + seconds;
     do {
-        char *all = read_text(screen.events), *line = all;
+        char *all = read_text(screen.events), *line = all + (from < (long)strlen(all) ? from : (long)strlen(all));
         bool found = false;
         for (char *next; line && *line; line = next) {
             double at[4];
@@ -175,16 +209,25 @@ static inline void place_of(const char *name, double *x, double *y) {
             if (next) *next++ = 0;
             if (sscanf(line, "control %lf %lf %lf %lf %n", &at[0], &at[1], &at[2], &at[3], &used) < 4) continue;
             if (strcmp(line + used, name) != 0) continue;
-            *x = at[0] + 0.5 * at[2];
-            *y = at[1] + 0.5 * at[3];
+            memcpy(box, at, sizeof at);
             found = true;
         }
         free(all);
-        if (found) return;
-        pause_for(0.05);
+        if (found) return true;
+        pause_for(0.02);
     } while (seconds_now() < until);
-    fprintf(stderr, "there is no control '%s'\n", name);
-    lose_patience();
+    return false;
+}
+
+/* The middle of a control, by its last place; waits until there is one. */
+static inline void place_of(const char *name, double *x, double *y) {
+    double box[4] = {0, 0, 0, 0};
+    if (!find_box(name, 0, box, patience_seconds)) {
+        fprintf(stderr, "there is no control '%s'\n", name);
+        lose_patience();
+    }
+    *x = box[0] + 0.5 * box[2];
+    *y = box[1] + 0.5 * box[3];
 }
 
 /* ---- The window ------------------------------------------------------------------------------------ */
@@ -207,7 +250,7 @@ static inline void open_window(const char *const *arguments) {
         char *words[32] = {(char *)(uintptr_t)SKEIN_COMMAND, (char *)(uintptr_t) "view"};
         int out = open(in_folder("words"), O_RDWR | O_CREAT | O_TRUNC, 0666);
         for (size_t i = 0; i < count; i++) words[i + 2] = (char *)(uintptr_t)list[i];
-        alarm(300);
+        alarm(900);
         dup2(out, 1);
         dup2(out, 2);
         if (!chdir(folder)) execv(SKEIN_COMMAND, words);

@@ -23,8 +23,7 @@ static bool reserve(void *array, size_t *room, size_t count, size_t size) {
     return true;
 }
 
-/* The value in a plain struct at the field's offset: of the view and the scene's settings. */
-static skein_value load_plain(const skein_field *field, const void *params) {
+skein_value viewer_plain_value(const skein_field *field, const void *params) {
     const char *at = (const char *)params + field->offset;
     skein_value value = {1, {0, 0, 0}, NULL};
     switch (field->type) {
@@ -122,7 +121,7 @@ static void add_objects(viewer_side *side, const skein_world *world, skein_categ
 static void add_plain(viewer_side *side, const skein_kind *kind, const void *params) {
     if (!begin_object(side, kind->category, 0, kind, kind->name)) return;
     for (size_t f = 0; f < kind->field_count; f++)
-        add_entry(side, &kind->fields[f], load_plain(&kind->fields[f], params), kind->category == SKEIN_SCENE);
+        add_entry(side, &kind->fields[f], viewer_plain_value(&kind->fields[f], params), kind->category == SKEIN_SCENE);
     side->object_count++;
 }
 

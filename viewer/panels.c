@@ -8,17 +8,21 @@
 #include "viewer/keys.h"
 
 void viewer_place_control(viewer_panels *panels, const char *name) {
-    if (!panels->exchange->events->file || !widgets_last_visible()) return;
-    double at[4];
+    double box[4];
+    widgets_last(box);
+    if (widgets_last_visible()) viewer_place_box(panels, name, box);
+}
+
+void viewer_place_box(viewer_panels *panels, const char *name, const double at[4]) {
+    if (!panels->exchange->events->file) return;
     size_t i = 0;
-    widgets_last(at);
     while (i < panels->place_count && strcmp(panels->places[i].name, name) != 0) i++;
     if (i == VIEWER_PLACES) return;
     viewer_place *place = &panels->places[i];
-    if (i < panels->place_count && !memcmp(place->at, at, sizeof at)) return;
+    if (i < panels->place_count && !memcmp(place->at, at, sizeof place->at)) return;
     if (i == panels->place_count) panels->place_count++;
     snprintf(place->name, sizeof place->name, "%s", name);
-    memcpy(place->at, at, sizeof at);
+    memcpy(place->at, at, sizeof place->at);
     viewer_event(panels->exchange->events, "control %.0f %.0f %.0f %.0f %s", at[0], at[1], at[2], at[3], name);
 }
 

@@ -7,7 +7,7 @@
 #include "viewer/exchange.h"
 #include "viewer/widgets.h"
 
-enum { VIEWER_PLACES = 400 };
+enum { VIEWER_PLACES = 1000 };
 
 /* Where controls are, for those who follow the events. */
 typedef struct viewer_place {
@@ -21,7 +21,7 @@ typedef struct viewer_panels {
     size_t place_count;
     viewer_request asked; /* the last value that was asked for: shown until the stage, in its own time, has it */
     double asked_at;
-    char compare[VIEWER_TEXT];
+    char compare[VIEWER_TEXT], search[64];
 } viewer_panels;
 
 void viewer_panels_show(viewer_panels *panels, int width, int height);
@@ -33,10 +33,14 @@ int viewer_side_panel_width(int width);
 /* The seconds after which a value that was asked for, and refused or lost, is not shown any more. */
 extern const double viewer_asked_for_long;
 
-/* Tells the events where the last control is, if that is new. */
+/* Tells the events where the last control is, if that is new; the same of any box (x, y, width, height). */
 void viewer_place_control(viewer_panels *panels, const char *name);
-/* panels_fields.c: the objects of a side, with a control for each field. */
+void viewer_place_box(viewer_panels *panels, const char *name, const double box[4]);
+/* panels_fields.c: the objects of a side, with a control for each field; one field of them. */
 void viewer_show_objects(viewer_panels *panels, int side);
+void viewer_show_entry(viewer_panels *panels, const viewer_object *object, const viewer_entry *entry, int side);
+/* panels_search.c: where fields are searched for, those that are found. False where nothing is searched for. */
+bool viewer_show_search(viewer_panels *panels, int side);
 /* panels_plots.c */
 void viewer_show_plots(viewer_panels *panels, double width, double height);
 

@@ -127,7 +127,25 @@ static bool show_menu(const viewer_entry *entry, skein_value *value) {
     return chosen;
 }
 
-static void show_entry(viewer_panels *panels, const viewer_object *object, const viewer_entry *entry, int side) {
+/* Where the control is, and the words of a choice while it is unfolded. */
+static void place_entry(viewer_panels *panels, const skein_field *field, const char *name) {
+    double box[4];
+    char word[300];
+    if (field->type == SKEIN_FIELD_BOOL) viewer_place_control(panels, name);
+    else if (widgets_last_visible()) {
+        widgets_last_frame(box);
+        viewer_place_box(panels, name, box);
+    }
+    const char *at = field->choices;
+    for (int row = 0; field->type == SKEIN_FIELD_CHOICE && at && widgets_choice_row(row, box); row++) {
+        size_t length = strcspn(at, "|");
+        snprintf(word, sizeof word, "%s=%.*s", name, (int)length, at);
+        viewer_place_box(panels, word, box);
+        at = at[length] ? at + length + 1 : NULL;
+    }
+}
+
+void viewer_show_entry(viewer_panels *panels, const viewer_object *object, const viewer_entry *entry, int side) {
     const skein_field *field = entry->field;
     viewer_request request = request_for(object, entry, side);
     request.value = value_of(panels, object, entry, side);
@@ -170,7 +188,7 @@ static void show_entry(viewer_panels *panels, const viewer_object *object, const
     changed |= held && released;
     snprintf(name, sizeof name, "%s%s.%zu.%.60s", side ? "other " : "", skein_category_text(object->category),
              object->index, field->name);
-    viewer_place_control(panels, name);
+    place_entry(panels, field, name);
     describe(entry, help, sizeof help);
     widgets_help(help);
     if (request.value.count > 0 && field->type != SKEIN_FIELD_BOOL && field->type != SKEIN_FIELD_CHOICE)
@@ -189,7 +207,8 @@ static const viewer_side *side_of(const viewer_panels *panels, int side) {
 
 static void show_fields(viewer_panels *panels, const viewer_object *object, int side) {
     const viewer_side *shown = side_of(panels, side);
-    for (size_t e = 0; e < object->count; e++) show_entry(panels, object, &shown->entries[object->first + e], side);
+    for (size_t e = 0; e < object->count; e++)
+        viewer_show_entry(panels, object, &shown->entries[object->first + e], side);
 }
 
 /* The kinds of a category as a list of words. */
@@ -234,8 +253,10 @@ static void show_list(viewer_panels *panels, skein_category category, const char
     bool rules = category == SKEIN_FORCE || category == SKEIN_COLLIDER;
     size_t count = 0;
     for (size_t o = 0; o < shown->object_count; o++) count += shown->objects[o].category == category;
-    if ((!count && !rules) || !widgets_group(title, open)) return;
+    if (!count && !rules) return;
+    bool unfolds = widgets_group(title, open);
     viewer_place_control(panels, title);
+    if (!unfolds) return;
     for (size_t o = 0; o < shown->object_count; o++) {
         const viewer_object *object = &shown->objects[o];
         if (object->category != category) continue;
@@ -262,6 +283,10 @@ static void show_list(viewer_panels *panels, skein_category category, const char
 void viewer_show_objects(viewer_panels *panels, int side) {
     const viewer_side *shown = side_of(panels, side);
     widgets_push(shown);
+    if (viewer_show_search(panels, side)) {
+        widgets_pop();
+        return;
+    }
     for (size_t o = 0; o < shown->object_count; o++)
         if (shown->objects[o].category == SKEIN_METHOD) show_method(panels, &shown->objects[o], side);
     show_list(panels, SKEIN_BODY, "Bodies", true, side);

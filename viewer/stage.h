@@ -172,6 +172,8 @@ void viewer_free_name(const char *stem, const char *ending, char *path, size_t s
 /* mirror.c: copies what the panels show; under the exchange's lock */
 void viewer_mirror(viewer_stage *stage);
 void viewer_measure(viewer_stage *stage);
+/* The value in a plain struct at the field's offset: of the view and the scene's settings. */
+skein_value viewer_plain_value(const skein_field *field, const void *params);
 
 /* gallery.c */
 bool viewer_gallery_open(viewer_stage *stage);

@@ -71,23 +71,6 @@ void viewer_stage_method(viewer_stage *stage, size_t side, const char *name) {
 /* ---- Fields ---- */
 
 /* The view's fields lie in a plain struct, at the table's offsets. */
-static skein_value get_view(const viewer_player *player, const skein_field *field) {
-    const char *at = (const char *)&player->view + field->offset;
-    skein_value value = {1, {0, 0, 0}, NULL};
-    switch (field->type) {
-    case SKEIN_FIELD_BOOL: value.number[0] = *(const bool *)at; break;
-    case SKEIN_FIELD_INT:
-    case SKEIN_FIELD_CHOICE: value.number[0] = *(const int32_t *)(const void *)at; break;
-    case SKEIN_FIELD_REAL: value.number[0] = *(const double *)(const void *)at; break;
-    case SKEIN_FIELD_VEC3:
-        value.count = 3;
-        memcpy(value.number, at, 3 * sizeof(double));
-        break;
-    default: break;
-    }
-    return value;
-}
-
 static void set_view(viewer_stage *stage, const skein_field *field, const skein_value *value) {
     for (size_t s = 0; s < stage->side_count; s++) {
         char *at = (char *)&stage->sides[s].view + field->offset;
@@ -124,26 +107,43 @@ static bool set_live(viewer_stage *stage, size_t side, const viewer_value *to) {
     return false;
 }
 
-static void change_live(viewer_stage *stage, size_t side, const viewer_value *to, const char *set) {
+static bool change_live(viewer_stage *stage, size_t side, const viewer_value *to, const char *set) {
     const viewer_player *player = &stage->sides[side];
     viewer_value before = *to;
-    if (to->category == SKEIN_VIEW) before.value = get_view(player, to->field);
+    if (to->category == SKEIN_VIEW) before.value = viewer_plain_value(to->field, &player->view);
     else if (skein_get(player->world, skein_object_at(player->world, to->category, to->index), to->field->name,
                        &before.value))
-        return;
+        return false;
     // the world's own text goes with the change
     char *text = before.value.text ? strdup(before.value.text) : NULL;
     before.value.text = text;
-    if (set_live(stage, side, to)) keep(stage, side, set, &before, to);
+    bool good = set_live(stage, side, to);
+    if (good) keep(stage, side, set, &before, to);
     free(text);
+    return good;
 }
 
-static void change_by_building(viewer_stage *stage, const char *set) {
+static bool change_by_building(viewer_stage *stage, const char *set) {
     viewer_changes changes;
-    if (!viewer_changes_copy(&changes, &stage->sides[0].changes)) return;
+    if (!viewer_changes_copy(&changes, &stage->sides[0].changes)) return false;
     bool good = viewer_changes_add(&changes, set, NULL, NULL) && viewer_stage_reopen(stage, &changes, false);
     viewer_changes_free(&changes);
     if (good) viewer_note(stage, "built anew with %s", set);
+    return good;
+}
+
+/* Tells the events what a field is now: what was asked for, or what it stays at. */
+static void tell_value(const viewer_stage *stage, size_t side, const viewer_value *at, bool changed) {
+    const viewer_player *player = &stage->sides[side];
+    skein_value value = {0, {0, 0, 0}, NULL};
+    char shown[400];
+    if (at->category == SKEIN_VIEW) value = viewer_plain_value(at->field, &player->view);
+    else if (at->category == SKEIN_SCENE) value = viewer_plain_value(at->field, &player->settings);
+    else if (skein_get(player->world, skein_object_at(player->world, at->category, at->index), at->field->name, &value))
+        return;
+    skein_value_text(at->field, &value, shown, sizeof shown);
+    viewer_event(stage->events, "%s %s %zu %s=%s", changed ? "set" : "refused", skein_category_text(at->category),
+                 at->index, at->field->name, shown);
 }
 
 void viewer_stage_set(viewer_stage *stage, const viewer_request *r) {
@@ -156,12 +156,11 @@ void viewer_stage_set(viewer_stage *stage, const viewer_request *r) {
         return;
     }
     size_t side = (size_t)r->side < stage->side_count ? (size_t)r->side : 0;
-    char *set = set_of(r->category, r->index, r->field, &to.value), shown[200];
-    if (is_live(stage, side, &to)) change_live(stage, side, &to, set);
-    else if (set) change_by_building(stage, set);
+    char *set = set_of(r->category, r->index, r->field, &to.value);
+    bool changed =
+        is_live(stage, side, &to) ? change_live(stage, side, &to, set) : set && change_by_building(stage, set);
     free(set);
-    skein_value_text(r->field, &to.value, shown, sizeof shown);
-    viewer_event(stage->events, "set %s %zu %s=%s", skein_category_text(r->category), r->index, r->field->name, shown);
+    tell_value(stage, side, &to, changed);
     stage->facts = stage->dirty = true;
 }
 

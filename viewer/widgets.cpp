@@ -184,19 +184,62 @@ bool widgets_tick(const char *title, bool *value) {
     return ImGui::Checkbox(title, value);
 }
 
+/* The box of the control that is made next, without its title. */
+static double frame[4];
+
+static void note_frame() {
+    ImVec2 at = ImGui::GetCursorScreenPos();
+    float width = ImGui::GetContentRegionAvail().x * 0.55f;
+    ImGui::SetNextItemWidth(width);
+    frame[0] = at.x, frame[1] = at.y, frame[2] = width, frame[3] = ImGui::GetFrameHeight();
+}
+
+/* Rows of the list that is unfolded. */
+static double rows[64][4];
+static int row_count;
+
 bool widgets_choice(const char *title, const char *words, int *place) {
-    char list[1024]; // as Dear ImGui wants it: a zero after each word, and one more at the end
-    size_t length = std::strlen(words) < sizeof list - 2 ? std::strlen(words) : sizeof list - 2;
-    for (size_t i = 0; i < length; i++) list[i] = words[i] == '|' ? '\0' : words[i];
-    list[length] = list[length + 1] = '\0';
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
-    return ImGui::Combo(title, place, list);
+    char word[128];
+    bool chosen = false;
+    int row = 0;
+    auto next = [&](const char *from) {
+        size_t length = std::strcspn(from, "|");
+        std::snprintf(word, sizeof word, "%.*s", static_cast<int>(length), from);
+        return from[length] ? from + length + 1 : nullptr;
+    };
+    word[0] = 0;
+    for (const char *at = words; at && row <= *place; row++) at = next(at);
+    if (*place < 0 || row <= *place) word[0] = 0;
+    note_frame();
+    row_count = 0;
+    if (!ImGui::BeginCombo(title, word, ImGuiComboFlags_HeightLarge)) return false;
+    row = 0;
+    for (const char *at = words; at; row++) {
+        at = next(at);
+        ImGui::PushID(row);
+        if (ImGui::Selectable(word, row == *place)) *place = row, chosen = true;
+        ImGui::PopID();
+        // in its first picture the list is not yet where it will be
+        if (row < 64 && !ImGui::IsWindowAppearing()) widgets_last(rows[row]), row_count = row + 1;
+    }
+    ImGui::EndCombo();
+    return chosen;
+}
+
+bool widgets_choice_row(int row, double rectangle[4]) {
+    if (row >= row_count) return false;
+    std::memcpy(rectangle, rows[row], sizeof rows[row]);
+    return true;
+}
+
+void widgets_last_frame(double rectangle[4]) {
+    std::memcpy(rectangle, frame, sizeof frame);
 }
 
 bool widgets_numbers(const char *title, double *numbers, int count, double least, double most, bool logarithmic,
                      bool whole, const char *format) {
     ImGuiSliderFlags flags = (logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_NoRoundToFormat;
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
+    note_frame();
     if (!whole) return ImGui::SliderScalarN(title, ImGuiDataType_Double, numbers, count, &least, &most, format, flags);
     int given[4], low = static_cast<int>(least), high = static_cast<int>(most);
     for (int i = 0; i < count; i++) given[i] = static_cast<int>(numbers[i]);
@@ -214,7 +257,7 @@ bool widgets_typing(void) {
 }
 
 bool widgets_input(const char *title, char *text, size_t size) {
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
+    note_frame();
     return ImGui::InputText(title, text, size, ImGuiInputTextFlags_EnterReturnsTrue);
 }
 
@@ -222,6 +265,7 @@ bool widgets_input_lines(const char *title, char *text, size_t size) {
     float lines = 2;
     for (const char *c = text; *c; c++) lines += *c == '\n';
     if (lines > 12) lines = 12;
+    note_frame();
     ImVec2 room(ImGui::GetContentRegionAvail().x * 0.55f, ImGui::GetTextLineHeight() * (lines + 0.5f));
     return ImGui::InputTextMultiline(title, text, size, room,
                                      ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CtrlEnterForNewLine);

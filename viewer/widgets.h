@@ -46,6 +46,8 @@ bool widgets_button(const char *title);
 bool widgets_tick(const char *title, bool *value);
 /* `words` with '|' between them; `place` is the chosen one's. */
 bool widgets_choice(const char *title, const char *words, int *place);
+/* Of the choice that was shown last: a word's box; false where there is none, or it is folded. */
+bool widgets_choice_row(int row, double rectangle[4]);
 /* `count` numbers as sliders from `least` to `most`; any other may be typed after Ctrl and a click. */
 bool widgets_numbers(const char *title, double *numbers, int count, double least, double most, bool logarithmic,
                      bool whole, const char *format);
@@ -70,6 +72,8 @@ void widgets_columns(int count);
 void widgets_next_column(void);
 double widgets_room(void);              /* width that is left on this line */
 void widgets_last(double rectangle[4]); /* x, y, width, height of the last control, pixels */
+/* The same of the last number, choice or text, without its title. */
+void widgets_last_frame(double rectangle[4]);
 bool widgets_last_visible(void);
 void widgets_follow(void); /* scrolls to the end, if the end was in view */
 
