@@ -110,6 +110,14 @@ char *io_scene_text(const io_scene *scene);
 /* Writes that to a file, from which the same scene can be read: where it lies in another folder than the scene, the
  * paths of files in it become absolute. */
 skein_status io_scene_write(const io_scene *scene, const char *path, skein_error *error);
+/* An object of a list ("bodies", 1) as JSON, for a set "bodies.2=..." that puts it into a scene. NULL where there is none,
+ * or no memory; free it. */
+char *io_scene_object_text(const io_scene *scene, const char *list, size_t index);
+/* The same moved aside, in metres, and under a name of its own, where it has a name. */
+char *io_scene_object_beside(const io_scene *scene, const char *list, size_t index, const double by[3]);
+/* The same with the members of a JSON object set, and without those that are null there; and without any that the kind,
+ * which `members` may name anew by "type", does not know. */
+char *io_scene_object_with(const io_scene *scene, const char *list, size_t index, const char *members);
 /* A field's value as it stands in a scene and after the equals sign of a set: JSON, to all digits. NULL when there is no
  * memory; free it. */
 char *io_value_json(const skein_field *field, const skein_value *value);

@@ -47,6 +47,7 @@ static const struct {
     const char *kind, *field, *text;
 } texts[] = {
     {NULL, "name", "c d"},
+    {"cache", "on", "c"},
     {NULL, "on", "b"},
     {NULL, "minds", "b"},
     {NULL, "pins", "0"},
@@ -69,6 +70,7 @@ static const struct {
     const char *kind, *field, *words;
 } refusals[] = {
     {"cloth", "mesh", "a cloth has a grid or a mesh, not both"},
+    {"cache", "on", "there is no body"},
 };
 
 static const char *refusal_of(const skein_kind *kind, const skein_field *field) {
@@ -156,53 +158,7 @@ static void value_here(const opened *o, const skein_kind *kind, const skein_fiel
     skein_value_text(field, &value, text, 600);
 }
 
-/* ---- Hands ---------------------------------------------------------------------------------------------- */
-
-/* Drags the k-th of n numbers' sliders to a share of its width. */
-static void drag_number(const double box[4], int k, int n, double share, double slowly) {
-    double wide = (box[2] - 4 * (n - 1)) / n, x = box[0] + k * (wide + 4), y = box[1] + 0.5 * box[3];
-    double from = share > 0.5 ? share - 0.3 : share + 0.3;
-    hand("mousemove %.0f %.0f", x + from * wide, y);
-    hand("sleep %g", slowly);
-    hand("mousedown 1");
-    hand("sleep %g", slowly);
-    hand("mousemove %.0f %.0f", x + share * wide, y);
-    hand("sleep %g", slowly);
-    hand("mouseup 1");
-    hand("sleep %g", slowly);
-}
-
-static void press(double x, double y, double slowly) {
-    hand("mousemove %.0f %.0f", x, y);
-    hand("sleep %g", slowly);
-    hand("mousedown 1");
-    hand("sleep %g", slowly);
-    hand("mouseup 1");
-    hand("sleep %g", slowly);
-}
-
-static void press_box(const double box[4], double slowly) {
-    press(box[0] + 0.3 * box[2], box[1] + 0.5 * box[3], slowly);
-}
-
-/* Dear ImGui looks at keys once a picture: one that is up again by then was never down. */
-static void hold_key(const char *key, double slowly) {
-    hand("keydown %s", key);
-    hand("sleep %g", slowly);
-    hand("keyup %s", key);
-    hand("sleep %g", slowly);
-}
-
-/* Types into a box and presses Enter, which is asked for as often as it takes. */
-static void type_into(const double box[4], const char *text, double slowly) {
-    press_box(box, slowly);
-    hand("keydown ctrl");
-    hold_key("a", slowly);
-    hand("keyup ctrl");
-    hand("type --delay 2 \"%s\"", text);
-    hand("sleep %g", slowly);
-    hold_key("Return", slowly);
-}
+/* ---- Choices ------------------------------------------------------------------------------------------- */
 
 /* The word of a choice to take: not the one that there is. */
 static void word_besides(const skein_field *field, const char *now, char word[100]) {
@@ -239,24 +195,27 @@ static bool is_whole(const skein_field *field) {
 
 /* Does to the control what a user would; `turn` numbers the tries, each slower and elsewhere. */
 static void handle(const control *c, const double box[4], int component, int turn) {
-    static const double paces[] = {0.03, 0.1, 0.3, 0.6}, shares[] = {0.7, 0.4, 0.2, 0.6};
+    static const double paces[] = {0.05, 0.1, 0.3, 0.6}, shares[] = {0.7, 0.4, 0.2, 0.6};
     double slowly = paces[turn], chosen[4];
     char word[100], row[320];
     long from = 0;
     struct stat info;
     switch (c->field->type) {
-    case SKEIN_FIELD_BOOL: press(box[0] + 8, box[1] + 0.5 * box[3], slowly); break;
-    case SKEIN_FIELD_TEXT: type_into(box, text_for(c->kind, c->field), slowly); break;
+    case SKEIN_FIELD_BOOL:
+        if (take(c->name, box[0] + 8, box[1] + 0.5 * box[3])) let_go(slowly);
+        break;
+    case SKEIN_FIELD_TEXT: type_into(c->name, box, text_for(c->kind, c->field), slowly); break;
     case SKEIN_FIELD_CHOICE:
         word_besides(c->field, c->value, word);
         snprintf(row, sizeof row, "%s=%s", c->name, word);
         if (!stat(screen.events, &info)) from = (long)info.st_size;
-        press_box(box, slowly);
+        press(box[0] + 0.3 * box[2], box[1] + 0.5 * box[3], slowly);
         // where the row was seen before, it is not told again
-        if (find_box(row, from, chosen, 1) || find_box(row, 0, chosen, 1)) press_box(chosen, slowly);
+        if (find_box(row, from, chosen, 1) || find_box(row, 0, chosen, 1))
+            press(chosen[0] + 0.3 * chosen[2], chosen[1] + 0.5 * chosen[3], slowly);
         break;
     default:
-        drag_number(box, component, number_count(c->field), is_whole(c->field) ? 0.12 + 0.06 * turn : shares[turn],
+        drag_number(c->name, box, component, number_count(c->field), is_whole(c->field) ? 0.12 + 0.06 * turn : shares[turn],
                     slowly);
     }
 }
@@ -288,9 +247,8 @@ static bool change(control *c, int component) {
         }
         listen_from_here();
         handle(c, box, component, turn);
-        await_hands();
         if (refusal_of(c->kind, c->field)) {
-            expect("warning ");
+            if (!hear("warning ", turn ? 5 : 1.5)) continue;
             return strstr(screen.line, refusal_of(c->kind, c->field)) != NULL;
         }
         if (!hear(c->said, turn ? 5 : 1.5)) continue;
@@ -409,7 +367,7 @@ static int try_kind(const skein_kind *kind) {
     ask_hash(first);
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < number_count(controls[i].field); k++) faults += !change(&controls[i], k);
-    hand("mousemove 400 2500");
+    hand("mousemove 100 2590");
     await_hands();
     ask_hash(last);
     listen_from_here();
@@ -436,9 +394,15 @@ static int try_kind(const skein_kind *kind) {
 
 static void search_for(const char *words) {
     double box[4];
-    assert_true(find_box("search", 0, box, patience_seconds));
-    type_into(box, words, 0.1);
-    await_hands();
+    char said[100];
+    snprintf(said, sizeof said, "searched %s", words);
+    for (int turn = 0; turn < 4; turn++) {
+        assert_true(find_box("search", 0, box, patience_seconds));
+        listen_from_here();
+        type_into("search", box, words, 0.05 + 0.1 * turn);
+        if (hear("searched ", 2) && !strcmp(screen.line, said)) return;
+    }
+    fail_msg("nobody searches for %s", words);
 }
 
 static void try_category(skein_category category) {

@@ -303,6 +303,82 @@ static inline void click(double x, double y) {
     tool(words);
 }
 
+/* ---- Controls ------------------------------------------------------------------------------------------ */
+
+/* Presses the button there until the window says that this control has it. Dear ImGui looks at the pointer once a picture:
+ * what is let go by then was never pressed. */
+static inline bool take(const char *name, double x, double y) {
+    char said[220];
+    snprintf(said, sizeof said, "takes %s", name);
+    for (int turn = 0; turn < 3; turn++) {
+        hand("mousemove %.0f %.0f", x, y);
+        hand("sleep 0.03");
+        hand("mousedown 1");
+        while (hear("takes ", 3))
+            if (!strcmp(screen.line, said)) return true;
+        hand("mouseup 1");
+        await_hands();
+    }
+    return false;
+}
+
+static inline void let_go(double slowly) {
+    hand("sleep %g", slowly);
+    hand("mouseup 1");
+    await_hands();
+}
+
+/* Drags the k-th of n numbers' sliders to a share of its width. */
+static inline void drag_number(const char *name, const double box[4], int k, int n, double share, double slowly) {
+    double wide = (box[2] - 4 * (n - 1)) / n, x = box[0] + k * (wide + 4), y = box[1] + 0.5 * box[3];
+    double from = share > 0.5 ? share - 0.3 : share + 0.3;
+    if (!take(name, x + from * wide, y)) return;
+    hand("mousemove %.0f %.0f", x + share * wide, y);
+    let_go(slowly);
+}
+
+static inline void press(double x, double y, double slowly) {
+    hand("mousemove %.0f %.0f", x, y);
+    hand("sleep %g", slowly);
+    hand("mousedown 1");
+    let_go(slowly);
+}
+
+static inline void hold_key(const char *key, double slowly) {
+    hand("keydown %s", key);
+    hand("sleep %g", slowly);
+    hand("keyup %s", key);
+    hand("sleep %g", slowly);
+}
+
+/* Types into a box and presses Enter. */
+static inline void type_into(const char *name, const double box[4], const char *text, double slowly) {
+    if (!take(name, box[0] + 0.3 * box[2], box[1] + 0.5 * box[3])) return;
+    let_go(slowly);
+    hand("keydown ctrl");
+    hold_key("a", slowly);
+    hand("keyup ctrl");
+    hand("type --delay 2 \"%s\"", text);
+    hand("sleep %g", slowly);
+    hold_key("Return", slowly);
+    await_hands();
+}
+
+/* Types a number into the k-th of n numbers' sliders: Ctrl and a press, then Enter. */
+static inline void type_number(const char *name, int k, int n, const char *number) {
+    double box[4];
+    assert_true(find_box(name, 0, box, patience_seconds));
+    double wide = (box[2] - 4 * (n - 1)) / n;
+    hand("keydown ctrl");
+    if (!take(name, box[0] + k * (wide + 4) + 0.4 * wide, box[1] + 0.5 * box[3])) fail_msg("%s is not taken", name);
+    let_go(0.05);
+    hand("keyup ctrl");
+    hand("type --delay 2 \"%s\"", number);
+    hand("sleep 0.1");
+    hold_key("Return", 0.05);
+    await_hands();
+}
+
 /* ---- Other programs on the screen ------------------------------------------------------------------- */
 
 /* A second window, which takes the focus; or, asked again, gives it back. */

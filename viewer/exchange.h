@@ -30,6 +30,10 @@ typedef enum viewer_request_kind {
     VIEWER_METHOD,    /* text: the kind; side */
     VIEWER_ADD,       /* category, text: the kind */
     VIEWER_REMOVE,    /* category, index */
+    VIEWER_MAKE,      /* code: a piece of the palette; text: its file, if it has one */
+    VIEWER_DUPLICATE, /* category, index */
+    VIEWER_KIND,      /* category, index, text: the kind that it becomes */
+    VIEWER_TO_MESH,   /* index: of a body */
     VIEWER_OPEN,      /* text: a scene or mesh */
     VIEWER_SCRUB,     /* x: a frame */
     VIEWER_COMPARE,   /* text: path=value for the second side; "" ends it */

@@ -8,7 +8,7 @@
 /* The spring's rate (1/s): the way left shrinks to a third in 1/rate; and the stretch at which the hand gives way. */
 static const double rate = 14, most_stretch = 0.15;
 
-static bool is_held(const skein_world *world, uint32_t particle) {
+bool viewer_is_held(const skein_world *world, uint32_t particle) {
     skein_view view = skein_position_view(world);
     return !(view.xyzw[4 * (size_t)view.slot_of[particle] + 3] > 0);
 }
@@ -46,7 +46,7 @@ void viewer_grab_take(viewer_grab *grab, skein_world *world, size_t side, uint32
     grab->holding = true;
     grab->side = side;
     grab->particle = particle;
-    grab->was_held = is_held(world, particle);
+    grab->was_held = viewer_is_held(world, particle);
     skein_positions_copy(world, particle, 1, grab->goal);
     memcpy(grab->depth, grab->goal, sizeof grab->depth);
     note_springs(grab, world);
@@ -71,7 +71,7 @@ void viewer_grab_lead(viewer_grab *grab, skein_world *world, double dt) {
     if (!grab->holding || !grab->moved) return;
     double x[3], way[3];
     if (skein_positions_copy(world, grab->particle, 1, x)) return;
-    if (!is_held(world, grab->particle)) skein_particle_hold(world, grab->particle, true);
+    if (!viewer_is_held(world, grab->particle)) skein_particle_hold(world, grab->particle, true);
     for (int k = 0; k < 3; k++) way[k] = grab->goal[k] - x[k];
     // the exact way of x' = rate (goal - x) over the step
     double share = (1 - exp(-rate * dt)) * give_way(grab, world, x, way);
@@ -92,7 +92,7 @@ void viewer_grab_release(viewer_grab *grab, skein_world *world) {
 }
 
 bool viewer_toggle_pin(skein_world *world, uint32_t particle) {
-    bool held = is_held(world, particle);
+    bool held = viewer_is_held(world, particle);
     skein_particle_hold(world, particle, !held);
-    return is_held(world, particle);
+    return viewer_is_held(world, particle);
 }

@@ -29,6 +29,7 @@ void viewer_grab_take(viewer_grab *grab, skein_world *world, size_t side, uint32
 void viewer_grab_lead(viewer_grab *grab, skein_world *world, double dt);
 /* Lets go; a particle that was held before stays where it is now. */
 void viewer_grab_release(viewer_grab *grab, skein_world *world);
+bool viewer_is_held(const skein_world *world, uint32_t particle);
 /* Pins a particle, or frees it; returns whether it is pinned now. */
 bool viewer_toggle_pin(skein_world *world, uint32_t particle);
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "viewer/keys.h"
+#include "viewer/palette.h"
 
 void viewer_place_control(viewer_panels *panels, const char *name) {
     double box[4];
@@ -162,6 +163,7 @@ static void show_side(viewer_panels *panels, const viewer_shown *shown, double w
     if (widgets_panel("Skein", WIDGETS_FIXED, 0, 0, width, height, NULL) && shown->has_scene) {
         show_time(panels, shown);
         show_facts(shown);
+        viewer_show_palette(panels);
         for (size_t s = 0; s < shown->side_count; s++) {
             if (shown->side_count > 1) widgets_wrapped(shown->sides[s].name, false);
             viewer_show_objects(panels, (int)s);

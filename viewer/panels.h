@@ -21,7 +21,7 @@ typedef struct viewer_panels {
     size_t place_count;
     viewer_request asked; /* the last value that was asked for: shown until the stage, in its own time, has it */
     double asked_at;
-    char compare[VIEWER_TEXT], search[64];
+    char compare[VIEWER_TEXT], search[64], file[VIEWER_TEXT];
 } viewer_panels;
 
 void viewer_panels_show(viewer_panels *panels, int width, int height);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "viewer/panels.h"
+#include "viewer/palette.h"
 #include "viewer/stage.h"
 
 /* A range that is wider than so many steps is no use as a slider: it is then measured by the default. */
@@ -189,6 +189,7 @@ void viewer_show_entry(viewer_panels *panels, const viewer_object *object, const
     snprintf(name, sizeof name, "%s%s.%zu.%.60s", side ? "other " : "", skein_category_text(object->category),
              object->index, field->name);
     place_entry(panels, field, name);
+    if (widgets_begun()) viewer_event(panels->exchange->events, "takes %s", name);
     describe(entry, help, sizeof help);
     widgets_help(help);
     if (request.value.count > 0 && field->type != SKEIN_FIELD_BOOL && field->type != SKEIN_FIELD_CHOICE)
@@ -256,21 +257,19 @@ static void show_list(viewer_panels *panels, skein_category category, const char
     if (!count && !rules) return;
     bool unfolds = widgets_group(title, open);
     viewer_place_control(panels, title);
+    if (widgets_begun()) viewer_event(panels->exchange->events, "takes %s", title);
     if (!unfolds) return;
     for (size_t o = 0; o < shown->object_count; o++) {
         const viewer_object *object = &shown->objects[o];
         if (object->category != category) continue;
         widgets_push((const char *)shown + o);
-        bool unfolded = widgets_tree(object->name, open && count == 1);
+        bool unfolded = widgets_tree(object->name, open && object->index == 0);
         viewer_place_control(panels, object->name);
+        if (widgets_begun()) viewer_event(panels->exchange->events, "takes %s", object->name);
         widgets_help(object->kind->help);
         if (unfolded) {
+            if (side == 0) viewer_show_deeds(panels, object);
             show_fields(panels, object, side);
-            if (rules && widgets_button("remove")) {
-                viewer_request request = {.kind = VIEWER_REMOVE, .category = category, .index = object->index};
-                snprintf(request.text, sizeof request.text, "%s", object->name);
-                viewer_ask(panels->exchange, &request);
-            }
             widgets_tree_end();
         }
         widgets_pop();

@@ -49,7 +49,9 @@ bool viewer_show_search(viewer_panels *panels, int side) {
     double box[4];
     size_t found = 0;
     if (side == 0) {
-        widgets_input("search", panels->search, sizeof panels->search);
+        if (widgets_input("search", panels->search, sizeof panels->search))
+            viewer_event(panels->exchange->events, "searched %s", panels->search);
+        if (widgets_begun()) viewer_event(panels->exchange->events, "takes search");
         if (widgets_last_visible()) {
             widgets_last_frame(box);
             viewer_place_box(panels, "search", box);

@@ -134,11 +134,15 @@ bool viewer_player_reopen(viewer_player *player, viewer_changes *changes, bool s
     return good;
 }
 
-skein_status viewer_player_write(const viewer_player *player, const char *path, const viewer_reading *reading,
-                                 skein_error *error) {
+io_scene *viewer_player_scene(const viewer_player *player, const viewer_reading *reading) {
     viewer_reporter reporter = player->reporter;
     io_faults faults = {report_fault, &reporter, 0};
-    io_scene *scene = read_scene(player, reading, &faults);
+    return read_scene(player, reading, &faults);
+}
+
+skein_status viewer_player_write(const viewer_player *player, const char *path, const viewer_reading *reading,
+                                 skein_error *error) {
+    io_scene *scene = viewer_player_scene(player, reading);
     *error = (skein_error){SKEIN_ERROR_FILE, "", "the scene's file cannot be read any more"};
     skein_status status = scene ? io_scene_write(scene, path, error) : error->status;
     io_scene_free(scene);

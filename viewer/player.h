@@ -53,6 +53,8 @@ bool viewer_player_reopen(viewer_player *player, viewer_changes *changes, bool s
 /* Writes the scene with all changes that are done, as a file that opens to the same. */
 skein_status viewer_player_write(const viewer_player *player, const char *path, const viewer_reading *reading,
                                  skein_error *error);
+/* The scene's description with all changes that are done; NULL after a reported fault. Free it. */
+io_scene *viewer_player_scene(const viewer_player *player, const viewer_reading *reading);
 void viewer_player_close(viewer_player *player); /* one that never was open is allowed */
 
 /* One step that is measured row by row: up to `most` passes go to `passes`. Else as viewer_player_step(). */

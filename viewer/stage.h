@@ -142,6 +142,10 @@ double viewer_aspect(const viewer_stage *stage); /* width over height of the fir
 void viewer_stage_method(viewer_stage *stage, size_t side, const char *kind);
 void viewer_stage_set(viewer_stage *stage, const viewer_request *request);
 void viewer_stage_add_or_remove(viewer_stage *stage, const viewer_request *request);
+/* Builds the scene anew with one more "path=value", from the start; false after a printed fault. */
+bool viewer_stage_build_with(viewer_stage *stage, const char *set);
+/* The name of such objects' list in a scene: "bodies". */
+const char *viewer_list_of(skein_category category);
 void viewer_stage_undo(viewer_stage *stage);
 void viewer_stage_redo(viewer_stage *stage);
 void viewer_stage_revert(viewer_stage *stage); /* back to the file */

@@ -6,6 +6,7 @@
 #include <GLFW/glfw3.h>
 
 #include "viewer/keys.h"
+#include "viewer/make.h"
 
 /* A press that moves less (pixels) is a click; the pointer's reach around a loose particle (pixels). */
 static const double click_pixels = 4, reach_pixels = 9;
@@ -213,6 +214,10 @@ void viewer_stage_answer(viewer_stage *stage, const viewer_request *r) {
     case VIEWER_METHOD: viewer_stage_method(stage, (size_t)r->side, r->text); break;
     case VIEWER_ADD:
     case VIEWER_REMOVE: viewer_stage_add_or_remove(stage, r); break;
+    case VIEWER_MAKE: viewer_make(stage, r); break;
+    case VIEWER_DUPLICATE: viewer_duplicate(stage, r); break;
+    case VIEWER_KIND: viewer_other_kind(stage, r); break;
+    case VIEWER_TO_MESH: viewer_to_mesh(stage, r); break;
     case VIEWER_OPEN: viewer_stage_open(stage, r->text, NULL); break;
     case VIEWER_SCRUB:
         viewer_stage_pause(stage, true);

@@ -8,7 +8,7 @@
 /* ---- Keeping changes ---- */
 
 /* Objects' lists in a scene. */
-static const char *list_of(skein_category category) {
+const char *viewer_list_of(skein_category category) {
     for (size_t i = 0; io_scene_section_at(i); i++)
         if (io_scene_section_at(i)->category == category) return io_scene_section_at(i)->name;
     return "";
@@ -21,8 +21,8 @@ static char *set_of(skein_category category, size_t index, const skein_field *fi
     if (json) set = malloc(size);
     if (set && category == SKEIN_SCENE) snprintf(set, size, "%s=%s", field->name, json);
     else if (set && (category == SKEIN_METHOD || category == SKEIN_VIEW))
-        snprintf(set, size, "%s.%s=%s", list_of(category), field->name, json);
-    else if (set) snprintf(set, size, "%s.%zu.%s=%s", list_of(category), index, field->name, json);
+        snprintf(set, size, "%s.%s=%s", viewer_list_of(category), field->name, json);
+    else if (set) snprintf(set, size, "%s.%zu.%s=%s", viewer_list_of(category), index, field->name, json);
     free(json);
     return set;
 }
@@ -102,7 +102,13 @@ static bool set_live(viewer_stage *stage, size_t side, const viewer_value *to) {
         set_view(stage, to->field, &to->value);
         return true;
     }
-    if (!skein_set(world, skein_object_at(world, to->category, to->index), to->field->name, to->value)) return true;
+    skein_handle handle = skein_object_at(world, to->category, to->index);
+    if (!skein_set(world, handle, to->field->name, to->value)) {
+        // nothing moves meanwhile: a collider stands where it was put, and does not travel there through the next step
+        if (to->category == SKEIN_COLLIDER && (stage->paused || viewer_stage_by_key(stage)))
+            skein_collider_teleport(world, handle);
+        return true;
+    }
     viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", to->field->name, skein_world_error(world)->message);
     return false;
 }
@@ -123,7 +129,7 @@ static bool change_live(viewer_stage *stage, size_t side, const viewer_value *to
     return good;
 }
 
-static bool change_by_building(viewer_stage *stage, const char *set) {
+bool viewer_stage_build_with(viewer_stage *stage, const char *set) {
     viewer_changes changes;
     if (!viewer_changes_copy(&changes, &stage->sides[0].changes)) return false;
     bool good = viewer_changes_add(&changes, set, NULL, NULL) && viewer_stage_reopen(stage, &changes, false);
@@ -158,7 +164,7 @@ void viewer_stage_set(viewer_stage *stage, const viewer_request *r) {
     size_t side = (size_t)r->side < stage->side_count ? (size_t)r->side : 0;
     char *set = set_of(r->category, r->index, r->field, &to.value);
     bool changed =
-        is_live(stage, side, &to) ? change_live(stage, side, &to, set) : set && change_by_building(stage, set);
+        is_live(stage, side, &to) ? change_live(stage, side, &to, set) : set && viewer_stage_build_with(stage, set);
     free(set);
     tell_value(stage, side, &to, changed);
     stage->facts = stage->dirty = true;
@@ -166,8 +172,20 @@ void viewer_stage_set(viewer_stage *stage, const viewer_request *r) {
 
 /* ---- Rules ---- */
 
+/* Takes one away of those that are part of what is built. */
+static void remove_by_building(viewer_stage *stage, const viewer_request *r) {
+    char set[64];
+    snprintf(set, sizeof set, "%s.%zu=null", viewer_list_of(r->category), r->index);
+    bool good = viewer_stage_build_with(stage, set);
+    viewer_event(stage->events, "%s %s", good ? "removed" : "not removed", r->text);
+}
+
 void viewer_stage_add_or_remove(viewer_stage *stage, const viewer_request *r) {
     bool adds = r->kind == VIEWER_ADD;
+    if (!adds && stage->side_count && r->category != SKEIN_FORCE && r->category != SKEIN_COLLIDER) {
+        remove_by_building(stage, r);
+        return;
+    }
     for (size_t s = 0; s < stage->side_count; s++) {
         skein_world *world = stage->sides[s].world;
         size_t place = adds ? skein_object_count(world, r->category) : r->index;
@@ -176,8 +194,8 @@ void viewer_stage_add_or_remove(viewer_stage *stage, const viewer_request *r) {
         else if (r->category == SKEIN_FORCE) status = skein_force_add(world, r->text, NULL, NULL);
         else status = skein_collider_add(world, r->text, NULL, NULL);
         char set[200];
-        if (adds) snprintf(set, sizeof set, "%s.%zu={\"type\": \"%.60s\"}", list_of(r->category), place, r->text);
-        else snprintf(set, sizeof set, "%s.%zu=null", list_of(r->category), place);
+        if (adds) snprintf(set, sizeof set, "%s.%zu={\"type\": \"%.60s\"}", viewer_list_of(r->category), place, r->text);
+        else snprintf(set, sizeof set, "%s.%zu=null", viewer_list_of(r->category), place);
         if (status) viewer_say(stage, SKEIN_LOG_WARNING, "%s", skein_world_error(world)->message);
         else keep(stage, s, set, NULL, NULL);
     }

@@ -168,6 +168,10 @@ void widgets_same_line(void) {
     ImGui::SameLine();
 }
 
+void widgets_new_line(void) {
+    ImGui::NewLine();
+}
+
 void widgets_gap(void) {
     ImGui::Spacing();
 }
@@ -246,6 +250,10 @@ bool widgets_numbers(const char *title, double *numbers, int count, double least
     bool changed = ImGui::SliderScalarN(title, ImGuiDataType_S32, given, count, &low, &high, "%d", flags);
     for (int i = 0; i < count; i++) numbers[i] = given[i];
     return changed;
+}
+
+bool widgets_begun(void) {
+    return ImGui::IsItemActivated();
 }
 
 bool widgets_released(void) {

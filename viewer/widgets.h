@@ -40,6 +40,7 @@ void widgets_pop(void);
 void widgets_text(const char *text);
 void widgets_wrapped(const char *text, bool warning);
 void widgets_same_line(void);
+void widgets_new_line(void); /* after all not the same */
 void widgets_gap(void);
 void widgets_line_across(void);
 bool widgets_button(const char *title);
@@ -51,6 +52,8 @@ bool widgets_choice_row(int row, double rectangle[4]);
 /* `count` numbers as sliders from `least` to `most`; any other may be typed after Ctrl and a click. */
 bool widgets_numbers(const char *title, double *numbers, int count, double least, double most, bool logarithmic,
                      bool whole, const char *format);
+/* The last control has just been taken: it is pressed, or typed into. */
+bool widgets_begun(void);
 /* The last control was changed and has now been let go. */
 bool widgets_released(void);
 /* Whether the last control's number is being typed: it is not what is meant before Enter. */
