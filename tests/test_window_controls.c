@@ -409,7 +409,7 @@ static void try_category(skein_category category) {
     const skein_kind *kind;
     char words[64];
     int faults = 0;
-    const char *const only = getenv("SKEIN_TEST_KIND");
+    const char *const only = getenv("SKEIN_TEST_KIND"); // to look at one alone
     snprintf(words, sizeof words, "%s 0:", skein_category_text(category));
     search_for(words);
     for (size_t k = 0; (kind = skein_kind_at(category, k)) != NULL; k++)
@@ -490,10 +490,7 @@ static int begin(void **state) {
 
 static int end(void **state) {
     drop_hands();
-    if (getenv("SKEIN_TEST_KIND")) {
-        char *all = read_text(screen.events), *words = read_text(in_folder("words"));
-        fprintf(stderr, "EVENTS\n%s\nWORDS\n%s\n", all, words);
-    }
+
     end_process(&screen.skein, SIGKILL);
     end_process(&screen.xvfb, SIGTERM);
     return remove_folder(state);

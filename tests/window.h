@@ -370,6 +370,7 @@ static inline void type_number(const char *name, int k, int n, const char *numbe
     assert_true(find_box(name, 0, box, patience_seconds));
     double wide = (box[2] - 4 * (n - 1)) / n;
     hand("keydown ctrl");
+    hand("sleep 0.2");
     if (!take(name, box[0] + k * (wide + 4) + 0.4 * wide, box[1] + 0.5 * box[3])) fail_msg("%s is not taken", name);
     let_go(0.05);
     hand("keyup ctrl");

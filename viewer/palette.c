@@ -50,8 +50,9 @@ static void show_files(viewer_panels *panels) {
 }
 
 void viewer_show_palette(viewer_panels *panels) {
-    bool unfolded = widgets_group("Make", true);
+    bool unfolded = widgets_group("Make", false);
     viewer_place_control(panels, "Make");
+    if (widgets_begun()) viewer_event(panels->exchange->events, "takes Make");
     if (!unfolded) return;
     widgets_text("a body, over what is there:");
     show_pieces(panels, false);
