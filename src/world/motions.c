@@ -1,5 +1,6 @@
 /* Motions in a world: whom each leads, and the places for the end of a step. What is led is then on its way by
  * world/pins.c, as if a program had said so. */
+#include <stdio.h>
 #include <string.h>
 
 #include "particles/selection.h"
@@ -154,6 +155,7 @@ skein_status sk_world_find_pins(skein_world *world, skein_error *error) {
     if (!world->motions_stale) return SKEIN_OK;
     for (size_t i = 0; i < world->motions.count; i++) {
         skein_status status = find_particles(world, world->motions.data[i], error);
+        if (status && !strcmp(error->where, "pins")) snprintf(error->where, sizeof error->where, "motions.%zu.pins", i);
         if (status) return status;
     }
     sk_release(&world->allocator, world->led_at);
