@@ -88,7 +88,7 @@ static void run_threads(void) {
     size_t vertices = bench_quick ? 1000 : 20000;
     bench_mesh mesh = bench_mesh_irregular(vertices, false);
     snprintf(size, sizeof size, "mesh of %zu", vertices);
-    threads_of((bench_scene){.mesh = &mesh, .drag = 1}, size, 1.1);
+    threads_of((bench_scene){.mesh = &mesh, .drag = 1}, size, 1.5);
     bench_mesh_release(&mesh);
 }
 

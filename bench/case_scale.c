@@ -69,6 +69,50 @@ static void run_scale(void) {
     }
 }
 
+/* Meshes whose vertices are numbered at random, after a second of hanging. */
+static void run_irregular(void) {
+    static const size_t vertices[] = {20164, 500000};
+    int count = bench_quick ? 1 : 2;
+    skein_world *worlds[2];
+    bench_job jobs[2];
+    double seconds[2];
+    bench_stretch stretch[2];
+    for (int i = 0; i < count; i++) {
+        bench_mesh mesh = bench_mesh_irregular(bench_quick ? 400 : vertices[i], true);
+        worlds[i] = bench_cloth(&(bench_scene){.mesh = &mesh, .drag = 1});
+        bench_mesh_release(&mesh);
+        bench_steps(worlds[i], bench_quick || i ? 2 : 60);
+        jobs[i] = (bench_job){.run = bench_step, .data = worlds[i]};
+        stretch[i] = bench_stretch_now(worlds[i]);
+    }
+    bench_measure(jobs, (size_t)count, 0.1, seconds);
+    double particle[2];
+    for (int i = 0; i < count; i++) {
+        particle[i] = 1e9 * seconds[i] / (double)skein_particle_count(worlds[i]);
+        char size[40];
+        snprintf(size, sizeof size, "%zu vertices", skein_particle_count(worlds[i]));
+        bench_report(&(bench_result){.name = "irregular",
+                                     .size = size,
+                                     .ours = 1e3 * seconds[i],
+                                     .unit = "ms/frame",
+                                     .under = i ? 0 : 2.4,
+                                     .stretch = i ? NULL : &stretch[i],
+                                     .note = "numbered at random; 10 substeps, gravity, drag"});
+        if (i)
+            bench_report(&(bench_result){.name = "irregular",
+                                         .size = size,
+                                         .ours = particle[i],
+                                         .unit = "ns/particle",
+                                         .other = "the smaller one",
+                                         .theirs = particle[0],
+                                         .as_long = 1.4});
+        skein_world_destroy(worlds[i]);
+    }
+}
+
+const bench_case bench_irregular = {"irregular", "meshes numbered at random, of 20,164 and 500,000 vertices",
+                                    run_irregular};
+
 const bench_case bench_scale = {"scale", "10,000 to 1,000,000 particles: time a step, memory", run_scale};
 
 /* ---- a short rope ---- */

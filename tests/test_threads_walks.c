@@ -1,6 +1,8 @@
 /* The same bits for any number of threads where whole repeats are walks: threads follow each other down the rows of
  * a grid, of a lattice and of an irregular mesh, several substeps at once. */
+#include "constraints/sweep.h"
 #include "helpers.h"
+#include "world/world.h"
 
 #if SANITIZED
 enum { SUBSTEPS = 9, STEPS = 1 }; // with fewer, no thread runs ahead into the next, and a race would not show
@@ -126,10 +128,89 @@ static void the_irregular_mesh_goes_in_groups(void **state) {
     skein_world_destroy(world);
 }
 
+/* What is worked out together shares no particle, and groups are full though only few are open at a time. */
+static void groups_that_go_together_share_no_particle(void **state) {
+    (void)state;
+    skein_world *world = skein_world_create(NULL, NULL);
+    add_body(world, TRIANGLES);
+    OK(world, skein_world_explain(world, 1.0 / 90, NULL, NULL));
+    size_t elements = 0, groups = 0, together = 0;
+    uint32_t *latest = calloc(world->particles.slot_count, sizeof *latest);
+    for (size_t b = 0; b < world->rules.batches.count; b++) {
+        const sk_batch *batch = world->rules.batches.data[b];
+        for (size_t s = 0; s < batch->sweep_count; s++) {
+            const sk_sweep *sweep = &batch->sweeps[s];
+            size_t lanes = batch->arity * SK_LANES;
+            for (size_t g = 0; g < sweep->group_count; g++) {
+                assert_in_range(sweep->ahead[g], 1, sweep->group_count - g);
+                memset(latest, 0, world->particles.slot_count * sizeof *latest);
+                for (size_t k = g * lanes; k < (g + sweep->ahead[g]) * lanes; k++) {
+                    uint32_t slot = sweep->slots[k];
+                    assert_true(slot == world->particles.empty_slot || !latest[slot]++);
+                }
+                together += sweep->ahead[g] > 1;
+            }
+            assert_non_null(sweep->slab_start); // it walks
+            elements += sweep->element_count, groups += sweep->group_count;
+        }
+    }
+    assert_true(elements > 10 * VERTICES / 2);
+    assert_true((double)elements > 0.5 * SK_LANES * (double)groups);
+    assert_true((double)together > 0.9 * (double)groups);
+    free(latest);
+    skein_world_destroy(world);
+}
+
+/* Groups, in whatever company they go, are the plain loop over the springs in their order, to the bit. */
+static void groups_are_the_loop(void **state) {
+    (void)state;
+    skein_world *world = new_world("xpbd", 1);
+    add_body(world, TRIANGLES);
+    OK(world, skein_set_path(world, "bodies.0.stretch.limit", skein_number(INFINITY)));
+    OK(world, skein_set_path(world, "bodies.0.stretch.tether", skein_number(INFINITY)));
+    size_t count = skein_particle_count(world);
+    double *v = malloc(3 * count * sizeof *v);
+    uint64_t seed = 3;
+    for (size_t i = 0; i < 3 * count; i++) v[i] = random_between(&seed, -0.2, 0.2);
+    OK(world, skein_velocities_set(world, 0, count, v));
+    sk_vec4 *x = malloc(count * sizeof *x);
+    real h = (real)(1.0 / 64);
+    for (size_t i = 0; i < count; i++) {
+        sk_vec4 u = world->particles.vector[SK_V][world->particles.slot_of[i]];
+        x[i] = world->particles.vector[SK_X][world->particles.slot_of[i]];
+        x[i].x += h * u.x, x[i].y += h * u.y, x[i].z += h * u.z; // pins, too, go with their velocity
+    }
+    steps(world, 1, 1.0 / 64);
+    for (size_t b = 0; b < world->rules.batches.count; b++) {
+        const sk_batch *batch = world->rules.batches.data[b];
+        for (size_t e = 0; e < batch->count; e++) {
+            sk_vec4 *p = &x[batch->particle[2 * e]], *q = &x[batch->particle[2 * e + 1]];
+            real dx = p->x - q->x, dy = p->y - q->y, dz = p->z - q->z;
+            real length = (real)sqrt((double)(dx * dx + dy * dy + dz * dz));
+            real soft = batch->lane_compliance[batch->lane[e]] * (real)(64.0 * 64.0);
+            real below = length * (p->w + q->w + soft);
+            real s = below > 0 ? -(length - batch->rest[e]) / below : 0, a = s * p->w, c = s * q->w;
+            p->x += a * dx, p->y += a * dy, p->z += a * dz;
+            q->x -= c * dx, q->y -= c * dy, q->z -= c * dz;
+        }
+    }
+    for (size_t i = 0; i < count; i++) {
+        sk_vec4 now = world->particles.vector[SK_X][world->particles.slot_of[i]];
+        if (!(x[i].x == now.x && x[i].y == now.y && x[i].z == now.z))
+            fail_msg("particle %zu: %.9g %.9g %.9g, not %.9g %.9g %.9g", i, (double)now.x, (double)now.y,
+                     (double)now.z, (double)x[i].x, (double)x[i].y, (double)x[i].z);
+    }
+    free(v);
+    free(x);
+    skein_world_destroy(world);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(walks_do_not_depend_on_threads),
         cmocka_unit_test(the_irregular_mesh_goes_in_groups),
+        cmocka_unit_test(groups_that_go_together_share_no_particle),
+        cmocka_unit_test(groups_are_the_loop),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -304,6 +304,39 @@ SK_INLINE void sk_scatter(sk_vec4 *vector, const uint32_t *slot, sk_wide4 p) {
 
 #endif
 
+/* Whole quads in a vector: each one's fourth lane, and that lane for all four. In two lanes there is no quad. */
+#if SK_WIDTH > 16 || !defined(SKEIN_DOUBLE)
+#define SK_WHOLE_QUADS
+SK_INLINE sk_mask sk_fourth_lanes(void) {
+#if SK_WIDTH == 64 && !defined(SKEIN_DOUBLE)
+    return (sk_mask){0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1};
+#elif SK_WIDTH == 64 || (SK_WIDTH == 32 && !defined(SKEIN_DOUBLE))
+    return (sk_mask){0, 0, 0, -1, 0, 0, 0, -1};
+#else
+    return (sk_mask){0, 0, 0, -1};
+#endif
+}
+SK_INLINE sk_wide sk_fourth_of_each(sk_wide q) {
+#if SK_WIDTH == 64 && !defined(SKEIN_DOUBLE)
+    return __builtin_shufflevector(q, q, 3, 3, 3, 3, 7, 7, 7, 7, 11, 11, 11, 11, 15, 15, 15, 15);
+#elif SK_WIDTH == 64 || (SK_WIDTH == 32 && !defined(SKEIN_DOUBLE))
+    return __builtin_shufflevector(q, q, 3, 3, 3, 3, 7, 7, 7, 7);
+#else
+    return __builtin_shufflevector(q, q, 3, 3, 3, 3);
+#endif
+}
+/* x, y, z, 0 in every quad. */
+SK_INLINE sk_wide sk_each_quad(real x, real y, real z) {
+#if SK_WIDTH == 64 && !defined(SKEIN_DOUBLE)
+    return (sk_wide){x, y, z, 0, x, y, z, 0, x, y, z, 0, x, y, z, 0};
+#elif SK_WIDTH == 64 || (SK_WIDTH == 32 && !defined(SKEIN_DOUBLE))
+    return (sk_wide){x, y, z, 0, x, y, z, 0};
+#else
+    return (sk_wide){x, y, z, 0};
+#endif
+}
+#endif
+
 /* As many particles as a part has, some of which may be in packed blocks: slots [0, packed). */
 SK_INLINE sk_wide4 sk_gather_any(const sk_vec4 *vector, size_t packed, const uint32_t *slot) {
     if (!packed) return sk_gather(vector, slot);

@@ -258,31 +258,61 @@ SK_INLINE void scatter_sum(const sk_element *e, const sk_wide *scale, int i, sk_
     for (int l = 0; l < SK_PART; l++) sk_store_at(vector, packed, slot[l], sk_v3(to.x[l], to.y[l], to.z[l]));
 }
 
-SK_INLINE void meet_group(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_element_constants *constants,
-                          size_t group, size_t part, size_t packed, sk_element_mode mode) {
-    const uint32_t *slots = sweep->slots + group * SK_ARITY * SK_LANES + part * SK_PART;
-    sk_vec4 *x = run->vector[SK_X], *other = run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V];
-    sk_wide4 at[SK_ARITY], other_at[SK_ARITY] = {{{0}, {0}, {0}, {0}}};
+/* A part of a group on its way: what was gathered, and what comes of it. */
+typedef struct group_part {
+    sk_wide4 at[SK_ARITY], other_at[SK_ARITY];
     sk_element e;
+    const uint32_t *slots;
+    size_t lane;
+} group_part;
+
+SK_INLINE void take_up(group_part *p, sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants,
+                       size_t group, size_t part, size_t packed, sk_element_mode mode) {
+    const sk_vec4 *x = run->vector[SK_X], *other = run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V];
+    p->slots = sweep->slots + group * SK_ARITY * SK_LANES + part * SK_PART;
+    p->lane = sweep->first_lane + group * SK_LANES + part * SK_PART;
     SK_EACH_PARTICLE (i) {
-        at[i] = sk_gather_any(x, packed, slots + i * SK_LANES);
-        e.x[i] = (sk_wide3){at[i].x, at[i].y, at[i].z};
-        e.w[i] = at[i].w;
+        p->at[i] = sk_gather_any(x, packed, p->slots + i * SK_LANES);
+        p->e.x[i] = (sk_wide3){p->at[i].x, p->at[i].y, p->at[i].z};
+        p->e.w[i] = p->at[i].w;
         if (mode == SK_MODE_PROJECT || mode == SK_MODE_LIMIT) continue;
-        other_at[i] = sk_gather_any(other, packed, slots + i * SK_LANES);
-        e.other[i] = (sk_wide3){other_at[i].x, other_at[i].y, other_at[i].z};
+        p->other_at[i] = sk_gather_any(other, packed, p->slots + i * SK_LANES);
+        p->e.other[i] = (sk_wide3){p->other_at[i].x, p->other_at[i].y, p->other_at[i].z};
     }
-    size_t lane = sweep->first_lane + group * SK_LANES + part * SK_PART;
-    set_values(&e, sweep, constants, lane, true, mode == SK_MODE_PROJECT_DAMPED);
-    work_out(&e, constants, mode);
+    set_values(&p->e, sweep, constants, p->lane, true, mode == SK_MODE_PROJECT_DAMPED);
+}
+
+SK_INLINE void put_down(const group_part *p, sk_run *run, const sk_row *row, const sk_sweep *sweep, size_t packed,
+                        sk_element_mode mode) {
+    sk_vec4 *x = run->vector[SK_X], *other = run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V];
     sk_vec4 *dst = mode == SK_MODE_FORCE ? run->vector[row->dst] : x;
     SK_EACH_PARTICLE (i) {
-        const uint32_t *slot = slots + i * SK_LANES;
-        sk_wide4 old = mode == SK_MODE_FORCE ? sk_gather_any(dst, packed, slot) : at[i];
-        scatter_sum(&e, e.scale, i, dst, packed, slot, old);
-        if (mode == SK_MODE_LIMIT_MOVING) scatter_sum(&e, e.velocity_scale, i, other, packed, slot, other_at[i]);
+        const uint32_t *slot = p->slots + i * SK_LANES;
+        sk_wide4 old = mode == SK_MODE_FORCE ? sk_gather_any(dst, packed, slot) : p->at[i];
+        scatter_sum(&p->e, p->e.scale, i, dst, packed, slot, old);
+        if (mode == SK_MODE_LIMIT_MOVING) scatter_sum(&p->e, p->e.velocity_scale, i, other, packed, slot, p->other_at[i]);
     }
-    if (mode == SK_MODE_PROJECT_DAMPED) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + lane) = e.multiplier;
+    if (mode == SK_MODE_PROJECT_DAMPED) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + p->lane) = p->e.multiplier;
+}
+
+SK_INLINE void meet_group(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_element_constants *constants,
+                          size_t group, size_t part, size_t packed, sk_element_mode mode) {
+    group_part p;
+    take_up(&p, run, sweep, constants, group, part, packed, mode);
+    work_out(&p.e, constants, mode);
+    put_down(&p, run, row, sweep, packed, mode);
+}
+
+/* Two groups that share no particle: one's roots and divisions are worked out while the other waits for its own. */
+SK_INLINE void meet_two_groups(sk_run *run, const sk_row *row, const sk_sweep *sweep,
+                               const sk_element_constants *constants, size_t group, size_t part, sk_element_mode mode) {
+    group_part p, q;
+    take_up(&p, run, sweep, constants, group, part, 0, mode);
+    take_up(&q, run, sweep, constants, group + 1, part, 0, mode);
+    work_out(&p.e, constants, mode);
+    work_out(&q.e, constants, mode);
+    put_down(&p, run, row, sweep, 0, mode);
+    put_down(&q, run, row, sweep, 0, mode);
 }
 
 /* Groups [begin, end), or those of slabs [begin, end). Groups with a particle in strips are reached one by one. */
@@ -290,7 +320,13 @@ SK_INLINE void sweep_groups(sk_run *run, const sk_row *row, size_t begin, size_t
     const sk_sweep *sweep = row->rule;
     sk_element_constants constants = sk_element_prepare(sweep->batch, row);
     if (sweep->slab_start) begin = sweep->slab_start[begin], end = sweep->slab_start[end];
+    bool pairs = SK_ARITY == 2 && SK_WIDTH > 16 && mode == SK_MODE_PROJECT && !row->packed;
     for (size_t g = begin; g < end; g++) {
+        if (pairs && g + 1 < end && sweep->ahead[g] > 1) {
+            for (size_t p = 0; p < SK_PARTS; p++) meet_two_groups(run, row, sweep, &constants, g, p, mode);
+            g++;
+            continue;
+        }
         const uint32_t *slots = sweep->slots + g * SK_ARITY * SK_LANES;
         bool strips = false;
         for (int i = 0; i < SK_ARITY * SK_LANES && row->packed; i++) strips |= slots[i] < row->packed;

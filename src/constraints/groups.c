@@ -9,6 +9,8 @@
 
 enum {
     GROUP_DISTANCE = 4, /* dependent groups stand so far apart where they can: to hide latency, and to make blocks */
+    LEAST_BEHIND = 16,  /* groups that are left open behind the newest one: a sixteenth of all, but so many, */
+    MOST_BEHIND = 128,  /* and no more than that */
     MOST_PASSES = 8,    /* sweeps that a batch is cut into */
     LEAST_SLABS = 12,   /* of a walk, */
     LEAST_SHARE = 6     /* and for each slab of its reach */
@@ -50,13 +52,18 @@ static uint32_t first_open(uint32_t *next, uint32_t group) {
 }
 
 static void deal(const dealer *d, grouping *g) {
+    size_t behind = (g->last - g->first) / SK_LANES / 16;
+    behind = behind < LEAST_BEHIND ? LEAST_BEHIND : behind > MOST_BEHIND ? MOST_BEHIND : behind;
     for (size_t e = g->first; e < g->last; e++) {
         if (!is_left(d, e)) continue;
         const uint32_t *slot = d->batch->slot + e * d->arity;
         uint32_t after = 0;
         for (size_t i = 0; i < d->arity; i++)
             if (g->latest[slot[i]] > after) after = g->latest[slot[i]];
-        uint32_t group = first_open(g->next, after ? after - 1 + GROUP_DISTANCE : 0);
+        // not far behind the others: what is in one group is near in memory, and the groups go through it once
+        uint32_t first = g->group_count > behind ? (uint32_t)(g->group_count - behind) : 0;
+        if (after && after - 1 + GROUP_DISTANCE > first) first = after - 1 + GROUP_DISTANCE;
+        uint32_t group = first_open(g->next, first);
         g->group[e - g->first] = group;
         for (size_t i = 0; i < d->arity; i++) g->latest[slot[i]] = group + 1;
         if (++g->filled[group] == SK_LANES) g->next[group] = group + 1;
@@ -221,7 +228,7 @@ static bool add_pass(const dealer *d, size_t first, size_t last) {
         deal(d, &g);
         close_up(d, &g);
         sk_sweep *sweep = add_sweep(d, &g, left);
-        good = sweep && find_walk(d, sweep) && (!d->batch->type->in_blocks || find_blocks(d, sweep, g.latest));
+        good = sweep && find_walk(d, sweep) && find_blocks(d, sweep, g.latest);
     }
     sk_release(d->allocator, g.latest);
     sk_release(d->allocator, g.next);

@@ -19,7 +19,7 @@
 #include "constraints/constraint.h"
 
 enum {
-    SK_SLAB_BLOCKS = 16, /* blocks a slab, where there are no strips */
+    SK_SLAB_BLOCKS = 4,  /* blocks a slab, where there are no strips */
     SK_BLOCK_GROUPS = 8, /* groups that are worked out together at the most */
     SK_MOST_RESTS = 4    /* rest values of an element that walks along strips */
 };

@@ -158,19 +158,62 @@ SK_INLINE sk_wide4 pulled(const uniform_pull *p, sk_wide w, sk_wide4 v) {
     return v;
 }
 
+#ifdef SK_WHOLE_QUADS
+/* The same two rows over quads [begin, end), which stay quads: turning them into x, y, z, w and back was most of the
+ * work. a (X - X0) comes to the velocity first, unless a is 0; the last turn ends with that. */
+SK_INLINE void fall_in_quads(sk_run *run, const sk_row *row, size_t begin, size_t end, real a, bool last) {
+    const uniform_pull p = pull_of(row);
+    const sk_mask fourth = sk_fourth_lanes();
+    const sk_wide acceleration = sk_each_quad(p.a.x, p.a.y, p.a.z), force = sk_each_quad(p.f.x, p.f.y, p.f.z);
+    sk_wide *x_of = (sk_wide *)(void *)run->vector[SK_X], *v_of = (sk_wide *)(void *)run->vector[SK_V],
+            *x0_of = (sk_wide *)(void *)run->vector[SK_X0], *v0_of = (sk_wide *)(void *)run->vector[SK_V0];
+    for (size_t i = begin * 4 / SK_PART; i < end * 4 / SK_PART; i++) {
+        sk_wide x = x_of[i], v = v_of[i];
+        if (a != 0) v = sk_select(fourth, v, v + a * (x - x0_of[i]));
+        if (!last) {
+            sk_wide w = sk_fourth_of_each(x), k = sk_keep(sk_positive(w), sk_splat(p.h)), pull = acceleration, drag = sk_splat(p.rate);
+            if (!p.by_mass) pull = acceleration + force * w, drag = p.rate + p.linear * w;
+            v = sk_select(fourth, v, v + k * (pull - drag * v));
+        }
+        v_of[i] = v;
+        if (last) continue;
+        sk_wide gone = sk_select(fourth, x, x + p.h * v);
+        if (row->source[2] == SK_V0) v0_of[i] = v;
+        x0_of[i] = row->source[2] == SK_X ? gone : x;
+        x_of[i] = gone;
+    }
+}
+#endif
+
+/* How many of the slots from `begin` on are packed, and so go part by part. */
+SK_INLINE size_t end_of_packed(const sk_row *row, size_t begin, size_t end) {
+#ifdef SK_WHOLE_QUADS
+    size_t packed = row->packed < begin ? begin : row->packed;
+    return packed < end ? packed : end;
+#else
+    (void)row, (void)begin;
+    return end;
+#endif
+}
+
 void SK_KERNEL(fall)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     uniform_pull pull = pull_of(row);
-    for (size_t slot = begin; slot < end; slot += SK_PART) {
+    size_t stop = end_of_packed(row, begin, end);
+    for (size_t slot = begin; slot < stop; slot += SK_PART) {
         bool packed = slot < row->packed;
         sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), v = sk_load_part(run->vector[SK_V], slot, packed);
         set_out(run, row, slot, packed, x, pulled(&pull, x.w, v));
     }
+#ifdef SK_WHOLE_QUADS
+    fall_in_quads(run, row, stop, end, 0, false);
+#endif
 }
 
 void SK_KERNEL(fall_on)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     uniform_pull pull = pull_of(row);
     real a = (real)row->coefficient[0];
-    for (size_t slot = begin; slot < end; slot += SK_PART) {
+    size_t stop = end_of_packed(row, begin, end);
+    for (size_t slot = begin; slot < stop; slot += SK_PART) {
         bool packed = slot < row->packed;
         sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), v = sk_load_part(run->vector[SK_V], slot, packed),
                  x0 = sk_load_part(run->vector[SK_X0], slot, packed);
@@ -178,6 +221,9 @@ void SK_KERNEL(fall_on)(sk_run *run, const sk_row *row, size_t begin, size_t end
         if (run->last_turn) sk_store_moved(run->vector[SK_V], slot, packed, v);
         else set_out(run, row, slot, packed, x, pulled(&pull, x.w, v));
     }
+#ifdef SK_WHOLE_QUADS
+    fall_in_quads(run, row, stop, end, a, run->last_turn);
+#endif
 }
 
 /* What is slower than anything that can be seen is at rest. NaN is not, and a zero keeps its sign. */
