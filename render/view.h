@@ -34,7 +34,7 @@ typedef struct render_view_camera {
 
 typedef struct render_view {
     int32_t shading; /* a render_shading */
-    bool surface, wireframe, springs;
+    bool surface, wireframe, springs, constraints, gradients;
     int32_t particles; /* a render_shown_particles */
     bool birds;        /* flocks, else as balls */
     bool pins, normals, velocities, contacts, fields, colliders, ground, grid, axes;
@@ -43,7 +43,7 @@ typedef struct render_view {
     int32_t pattern; /* 0: as suits the body; else woven, checker or none */
     char *image;     /* path of a picture that is laid on instead of the pattern; "" for none */
     double repeats;  /* along a body's longer side; 0: as suits the pattern */
-    double particle_radius, line_width, velocity_scale;
+    double particle_radius, line_width, velocity_scale, gradient_scale;
     double sun[3], exposure;
     render_view_camera camera;
 } render_view;

@@ -33,6 +33,7 @@ struct render_world_frame {
     double blend;     /* between the last two steps */
     render_world_state state;
     render_world_lines lines;
+    render_chosen chosen;
     render_world_points points;
     render_world_birds birds;
     body *bodies;
@@ -353,7 +354,7 @@ static skein_status take_fields(render_world_frame *made, const skein_world *wor
     return SKEIN_OK;
 }
 
-static skein_status take_lines(render_world_frame *made, const skein_world *world, skein_error *error) {
+static skein_status take_lines(render_world_frame *made, skein_world *world, skein_error *error) {
     const render_view *view = &made->view;
     if (view->springs) render_add_springs(&made->lines, &made->state);
     render_world_lines_show(&made->lines, view->line_width, &made->frame);
@@ -363,6 +364,9 @@ static skein_status take_lines(render_world_frame *made, const skein_world *worl
         render_add_normals(&made->lines, &made->surfaces[i], normal_length * radius);
     if (view->velocities) render_add_velocities(&made->lines, &made->state, view->velocity_scale);
     if (view->contacts) render_add_contacts(&made->lines, &made->state, contact_length * radius);
+    double ball = made->points.points[RENDER_PARTICLES].count ? made->points.points[RENDER_PARTICLES].radius : 0;
+    if (render_take_constraints(&made->lines, &made->state, world, view, &made->chosen, radius, ball, error))
+        return SKEIN_ERROR_MEMORY;
     if (view->fields && take_fields(made, world, &bounds, error)) return SKEIN_ERROR_MEMORY;
     if (view->axes) render_add_axes(&made->lines, render_grid_cell(radius > 0 ? radius : 1));
     render_world_lines_show(&made->lines, view->line_width, &made->frame);
@@ -448,6 +452,10 @@ skein_status render_world_frame_update(render_world_frame *made, skein_world *wo
 
 double render_world_frame_range(const render_world_frame *made) {
     return made->state.range > 0 ? made->state.range : made->state.spring_range;
+}
+
+void render_world_frame_choose(render_world_frame *made, const render_chosen *chosen) {
+    made->chosen = *chosen;
 }
 
 void render_world_frame_blend(render_world_frame *made, double blend) {

@@ -11,6 +11,7 @@
 #include "render/camera.h"
 #include "render/frame.h"
 #include "render/view.h"
+#include "render/world_constraints.h"
 #include "skein/skein.h"
 
 typedef struct render_world_frame render_world_frame;
@@ -28,6 +29,8 @@ const render_frame *render_world_frame_get(const render_world_frame *frame);
 /* From the next update on particles are drawn between the last two steps: 0 shows the state before the last step, 1
  * the present, as at first. */
 void render_world_frame_blend(render_world_frame *frame, double blend);
+/* From the next update on this constraint is drawn with its gradient, whatever the view shows. */
+void render_world_frame_choose(render_world_frame *frame, const render_chosen *chosen);
 
 /* For a picture that stands alone: brings such a ground close under the present state. (In a film it
  * must stay where things have room to move.) */

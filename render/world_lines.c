@@ -36,9 +36,8 @@ static bool is_finite(const double p[3]) {
     return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]);
 }
 
-/* What is not finite has no place in a picture. */
-static void add(render_world_lines *lines, render_line_kind kind, const double from[3], const double to[3],
-                const float colour[3]) {
+void render_add_line(render_world_lines *lines, render_line_kind kind, const double from[3], const double to[3],
+                     const float colour[3]) {
     render_line_set *set = &lines->sets[kind];
     if (!is_finite(from) || !is_finite(to) || !reserve(lines, set)) return;
     memcpy(&set->positions[6 * set->count], from, 3 * sizeof *from);
@@ -51,15 +50,15 @@ static void add_ray(render_world_lines *lines, render_line_kind kind, const doub
                     double times, const float colour[3]) {
     double to[3];
     for (int k = 0; k < 3; k++) to[k] = from[k] + times * along[k];
-    add(lines, kind, from, to, colour);
+    render_add_line(lines, kind, from, to, colour);
 }
 
 void render_add_wireframe(render_world_lines *lines, const render_body_mesh *mesh, const render_world_state *state) {
     static const float ink[3] = {0.17f, 0.15f, 0.16f};
     for (size_t i = 0; i < mesh->edge_count; i++) {
         const uint32_t *edge = &mesh->edges[2 * i];
-        add(lines, RENDER_WIREFRAME, &state->positions[3 * (size_t)edge[0]], &state->positions[3 * (size_t)edge[1]],
-            ink);
+        render_add_line(lines, RENDER_WIREFRAME, &state->positions[3 * (size_t)edge[0]],
+                        &state->positions[3 * (size_t)edge[1]], ink);
     }
 }
 
@@ -69,8 +68,8 @@ void render_add_springs(render_world_lines *lines, const render_world_state *sta
         float colour[3];
         if (state->shown[spring->particle[0]] == RENDER_HIDDEN) continue;
         render_strain_colour(state, (double)spring->strain, colour);
-        add(lines, RENDER_SPRINGS, &state->positions[3 * (size_t)spring->particle[0]],
-            &state->positions[3 * (size_t)spring->particle[1]], colour);
+        render_add_line(lines, RENDER_SPRINGS, &state->positions[3 * (size_t)spring->particle[0]],
+                        &state->positions[3 * (size_t)spring->particle[1]], colour);
     }
 }
 
@@ -112,10 +111,36 @@ void render_add_contacts(render_world_lines *lines, const render_world_state *st
     }
 }
 
+void render_add_arrow(render_world_lines *lines, render_line_kind kind, const double from[3], const double along[3],
+                      const float colour[3]) {
+    static const double barb = 0.28, slant = 0.13;
+    double tip[3], size = sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
+    for (int k = 0; k < 3; k++) tip[k] = from[k] + along[k];
+    render_add_line(lines, kind, from, tip, colour);
+    // to both sides, level, or for an arrow that stands upright along x
+    double level = hypot(along[0], along[2]);
+    bool upright = level < 1e-3 * size;
+    double side[3] = {upright ? size : size * along[2] / level, 0, upright ? 0 : -size * along[0] / level};
+    for (int sign = -1; sign <= 1; sign += 2) {
+        double back[3];
+        for (int k = 0; k < 3; k++) back[k] = -barb * along[k] + sign * slant * side[k];
+        add_ray(lines, kind, tip, back, 1, colour);
+    }
+    if (kind != RENDER_GRADIENTS || !(size > 0)) return;
+    // seen from the side, too
+    double over[3] = {side[1] * along[2] - side[2] * along[1], side[2] * along[0] - side[0] * along[2],
+                      side[0] * along[1] - side[1] * along[0]};
+    for (int sign = -1; sign <= 1; sign += 2) {
+        double back[3];
+        for (int k = 0; k < 3; k++) back[k] = -barb * along[k] + sign * slant * over[k] / size;
+        add_ray(lines, kind, tip, back, 1, colour);
+    }
+}
+
 void render_add_field(render_world_lines *lines, size_t count, const double *points, const double *forces,
                       double length) {
     static const float orange[3] = {0.80f, 0.36f, 0.05f};
-    static const double least = 0.02 /* of the strongest, to be seen */, barb = 0.28, slant = 0.13;
+    static const double least = 0.02 /* of the strongest, to be seen */;
     double strongest = 0;
     for (size_t i = 0; i < count; i++) {
         const double *f = &forces[3 * i];
@@ -124,19 +149,10 @@ void render_add_field(render_world_lines *lines, size_t count, const double *poi
     }
     for (size_t i = 0; i < count; i++) {
         const double *f = &forces[3 * i];
-        double strength = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]), along[3], tip[3];
+        double strength = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]), along[3];
         if (!(strength > least * strongest)) continue;
-        for (int k = 0; k < 3; k++) along[k] = f[k] / strongest * length, tip[k] = points[3 * i + (size_t)k] + along[k];
-        add(lines, RENDER_FIELDS, &points[3 * i], tip, orange);
-        // to both sides, level, or for an arrow that stands upright along x
-        double level = hypot(along[0], along[2]), size = length * strength / strongest;
-        bool upright = level < 1e-3 * size;
-        double side[3] = {upright ? size : size * along[2] / level, 0, upright ? 0 : -size * along[0] / level};
-        for (int sign = -1; sign <= 1; sign += 2) {
-            double back[3];
-            for (int k = 0; k < 3; k++) back[k] = -barb * along[k] + sign * slant * side[k];
-            add_ray(lines, RENDER_FIELDS, tip, back, 1, orange);
-        }
+        for (int k = 0; k < 3; k++) along[k] = f[k] / strongest * length;
+        render_add_arrow(lines, RENDER_FIELDS, &points[3 * i], along, orange);
     }
 }
 
@@ -151,10 +167,10 @@ void render_add_axes(render_world_lines *lines, double length) {
 }
 
 void render_world_lines_show(render_world_lines *lines, double width, render_frame *frame) {
-    static const double thickness[RENDER_LINE_KIND_COUNT] = {0.8, 1, 1, 1, 1.6, 1, 2.2};
+    static const double thickness[RENDER_LINE_KIND_COUNT] = {0.8, 1, 1, 1, 1.6, 1, 1, 1.6, 2.2};
     for (int i = 0; i < RENDER_LINE_KIND_COUNT; i++) {
         const render_line_set *set = &lines->sets[i];
-        bool body = i == RENDER_WIREFRAME || i == RENDER_SPRINGS;
+        bool body = i == RENDER_WIREFRAME || i == RENDER_SPRINGS || i == RENDER_CONSTRAINTS;
         lines->lines[i] = (render_lines){.positions = set->positions,
                                          .count = set->count,
                                          .width = width * thickness[i],

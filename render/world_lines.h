@@ -15,6 +15,8 @@ typedef enum render_line_kind {
     RENDER_VELOCITIES,
     RENDER_CONTACTS,
     RENDER_FIELDS,
+    RENDER_CONSTRAINTS,
+    RENDER_GRADIENTS,
     RENDER_AXES,
     RENDER_LINE_KIND_COUNT
 } render_line_kind;
@@ -37,6 +39,11 @@ typedef struct render_world_lines {
 void render_world_lines_clear(render_world_lines *lines);
 void render_world_lines_release(render_world_lines *lines);
 
+/* A line; and an arrow whose barbs are a share of its length, two of them, or four of a gradient. What is not finite has no place in a picture. */
+void render_add_line(render_world_lines *lines, render_line_kind kind, const double from[3], const double to[3],
+                     const float colour[3]);
+void render_add_arrow(render_world_lines *lines, render_line_kind kind, const double from[3], const double along[3],
+                      const float colour[3]);
 void render_add_wireframe(render_world_lines *lines, const render_body_mesh *mesh, const render_world_state *state);
 void render_add_springs(render_world_lines *lines, const render_world_state *state);
 /* `length`, here and below, in metres. */

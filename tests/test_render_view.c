@@ -104,6 +104,7 @@ static void the_view_is_described(void **state) {
         for (size_t j = 0; j < i; j++) assert_int_not_equal(kind->fields[j].offset, field->offset);
     }
     assert_true(view.surface && view.pins && view.colliders && view.ground && view.grid);
+    assert_false(view.constraints || view.gradients);
     assert_false(view.wireframe || view.springs || view.normals || view.velocities || view.contacts || view.axes);
     assert_true(view.shading == RENDER_BEAUTIFUL && view.colour == RENDER_BY_MATERIAL);
     assert_true(view.exposure == 1 && view.camera.zoom == 1 && view.image[0] == 0);
@@ -130,6 +131,61 @@ static void colour_maps_are_even(void **state) {
     assert_memory_equal(beyond, high, sizeof high);
     render_map_colour(RENDER_LESS_TO_MORE, (double)NAN, beyond);
     assert_memory_equal(beyond, low, sizeof low);
+}
+
+/* ---- Constraints ---------------------------------------------------------------------------------- */
+
+static void expect_line(const render_lines *lines, size_t i, double x0, double x1) {
+    const double *p = &lines->positions[6 * i];
+    const double ought[6] = {x0, 0, 0, x1, 0, 0};
+    for (int k = 0; k < 6; k++) assert_near(p[k], ought[k], 1e-6);
+}
+
+/* Of two loose particles under a formula: a line, and arrows as long as the gradient is; shown by the view, or because
+ * it is the one that is pointed at. */
+static void constraints_have_lines_and_gradients(void **state) {
+    (void)state;
+    skein_world *world = skein_world_create(NULL, NULL);
+    const double positions[6] = {-0.5, 0, 0, 0.5, 0, 0}, masses[2] = {1, 1};
+    const uint32_t pair[2] = {0, 1};
+    skein_handle spring;
+    OK(skein_particles_add(world, 2, positions, NULL, masses, NULL));
+    OK(skein_constraint_add(world, "formula", pair, 1,
+                            SKEIN_SETTINGS(SKEIN_TEXT("constraint", "0.5*(dot(p0-p1,p0-p1) - 0.25)")), &spring));
+    view.particle_radius = 0.1;
+    view.gradient_scale = 0.25;
+    assert_int_equal(update(world)->lines[RENDER_CONSTRAINTS].count, 0);
+    assert_int_equal(update(world)->lines[RENDER_GRADIENTS].count, 0);
+    view.constraints = true;
+    assert_int_equal(update(world)->lines[RENDER_CONSTRAINTS].count, 1);
+    expect_line(&update(world)->lines[RENDER_CONSTRAINTS], 0, -0.5, 0.5);
+    view.gradients = true;
+    assert_int_equal(update(world)->lines[RENDER_GRADIENTS].count, 10); // with four barbs each
+    expect_line(&update(world)->lines[RENDER_GRADIENTS], 0, -0.6, -0.85);
+    expect_line(&update(world)->lines[RENDER_GRADIENTS], 5, 0.6, 0.85);
+    // half the distance, half the gradient
+    const double closer[6] = {-0.25, 0, 0, 0.25, 0, 0};
+    OK(skein_positions_set(world, 0, 2, closer));
+    expect_line(&update(world)->lines[RENDER_GRADIENTS], 0, -0.35, -0.475);
+    // by the picture's size: the same in proportion, as long as a power of two is not passed
+    double length[2];
+    view.gradient_scale = 0;
+    for (int i = 0; i < 2; i++) {
+        const double at[6] = {i ? -0.26 : -0.5, 0, 0, i ? 0.26 : 0.5, 0, 0}; // gradients of 1 and 0.52
+        OK(skein_positions_set(world, 0, 2, at));
+        double radius = i ? 0.36 : 0.6; // the balls' box along x, about
+        length[i] = (-0.1 + at[0] - update(world)->lines[RENDER_GRADIENTS].positions[3]) / radius;
+        assert_true(length[i] > 0.05);
+    }
+    assert_near(length[1] / length[0], 0.52, 0.06);
+    view.constraints = view.gradients = false;
+    assert_int_equal(update(world)->lines[RENDER_CONSTRAINTS].count, 0);
+    render_world_frame_choose(made, &(render_chosen){true, spring, 0});
+    assert_int_equal(update(world)->lines[RENDER_CONSTRAINTS].count, 1);
+    assert_int_equal(update(world)->lines[RENDER_GRADIENTS].count, 10);
+    OK(skein_remove(world, spring)); // what is pointed at may go
+    assert_int_equal(update(world)->lines[RENDER_GRADIENTS].count, 0);
+    skein_world_destroy(world);
 }
 
 /* ---- What is shown ---------------------------------------------------------------------------- */
@@ -729,6 +785,7 @@ int main(void) {
         VIEW_TEST(the_view_is_described),
         VIEW_TEST(colour_maps_are_even),
         VIEW_TEST(a_surface_is_shown_or_not),
+        VIEW_TEST(constraints_have_lines_and_gradients),
         VIEW_TEST(a_wireframe_has_every_edge_once),
         VIEW_TEST(springs_are_coloured_by_strain),
         VIEW_TEST(particles_are_coloured_by_speed),
