@@ -29,6 +29,7 @@ void viewer_exchange_close(viewer_exchange *exchange) {
             free(own);
         }
     }
+    viewer_lesson_release(&exchange->shown.lesson);
     free(exchange->shown.cards);
     free(exchange->queue);
     free(exchange->taken);

@@ -12,6 +12,7 @@
 
 #include "skein/skein.h"
 #include "viewer/events.h"
+#include "viewer/lesson.h"
 #include "viewer/pace.h"
 
 enum { VIEWER_TEXT = 1024, VIEWER_PICTURES = 4, VIEWER_SIDES = 2, VIEWER_SAMPLES = 240, VIEWER_LOG_LINES = 200 };
@@ -39,6 +40,8 @@ typedef enum viewer_request_kind {
     VIEWER_COMPARE,   /* text: path=value for the second side; "" ends it */
     VIEWER_PLAY_AWAY, /* down: go on playing without the focus */
     VIEWER_PANEL,     /* code: a viewer_panel; down: open it */
+    VIEWER_LESSON,    /* code: -1, 1: another object; 0: its constraint x */
+    VIEWER_FORMULA,   /* text: another one for the lesson's constraint */
     VIEWER_SAVED,     /* text: a file that the window itself wrote */
     VIEWER_FAULT,     /* text: for the log */
     VIEWER_CLOSE
@@ -65,6 +68,7 @@ typedef enum viewer_panel {
     VIEWER_PANEL_KEYS,
     VIEWER_PANEL_PLOTS,
     VIEWER_PANEL_LOG,
+    VIEWER_PANEL_LESSON,
     VIEWER_PANEL_COUNT
 } viewer_panel;
 
@@ -161,6 +165,7 @@ typedef struct viewer_shown {
     uint64_t frame, first_frame, last_frame; /* of the history */
     double time, speed;                      /* s; simulated over real time */
     size_t changes;                          /* that are done, besides those that were given */
+    viewer_lesson lesson; /* while its panel is open */
     size_t side_count;
     viewer_side sides[VIEWER_SIDES];
     viewer_line log[VIEWER_LOG_LINES];

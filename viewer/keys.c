@@ -258,6 +258,7 @@ static const viewer_key keys[] = {
     PANEL(GLFW_KEY_F2, "F2", VIEWER_PANEL_GALLERY, "the gallery of scenes"),
     PANEL(GLFW_KEY_F3, "F3", VIEWER_PANEL_PLOTS, "plots of energy, stretch, contacts and time"),
     PANEL(GLFW_KEY_F4, "F4", VIEWER_PANEL_LOG, "the log"),
+    PANEL(GLFW_KEY_F6, "F6", VIEWER_PANEL_LESSON, "a constraint, looked into: its value, its derivatives, its formula step by step"),
     PANEL(GLFW_KEY_TAB, "Tab", VIEWER_PANEL_SIDE, "the panel at the side"),
     {.code = GLFW_KEY_ENTER,
      .name = "Enter",

@@ -224,6 +224,7 @@ void viewer_mirror(viewer_stage *stage) {
     memcpy(shown->panel, stage->panel, sizeof shown->panel);
     snprintf(shown->message, sizeof shown->message, "%s", stage->message);
     shown->side_count = stage->side_count;
+    if (stage->panel[VIEWER_PANEL_LESSON]) viewer_lesson_copy(&shown->lesson, &stage->lesson);
     if (stage->side_count) mirror_time(stage, shown);
     else snprintf(shown->title, sizeof shown->title, "Skein");
     stage->facts = false;

@@ -280,10 +280,12 @@ void viewer_panels_show(viewer_panels *panels, int width, int height) {
     bool has_side = shown->panel[VIEWER_PANEL_SIDE] && shown->has_scene;
     if (has_side) show_side(panels, shown, side, h);
     if (shown->panel[VIEWER_PANEL_PLOTS] && shown->has_scene) viewer_show_plots(panels, w, h);
+    bool lesson = shown->panel[VIEWER_PANEL_LESSON] && shown->has_scene;
+    if (lesson) viewer_show_lesson(panels, has_side ? side : 0, w, h);
     if (shown->panel[VIEWER_PANEL_LOG]) show_log(panels, shown, w, h);
     if (shown->panel[VIEWER_PANEL_GALLERY]) show_gallery(panels, shown, w, h);
     if (shown->panel[VIEWER_PANEL_KEYS]) show_keys(panels, w, h);
     // a picture without panels is a picture: no note in it
     if (shown->has_scene) show_labels(shown, has_side ? side : 0, w);
-    if (has_side || shown->recording) show_message(shown, has_side ? side : 0, w, h);
+    if (has_side || shown->recording) show_message(shown, has_side ? side : 0, w, h - (lesson ? viewer_lesson_height(h) : 0));
 }

@@ -22,6 +22,8 @@ typedef struct viewer_panels {
     viewer_request asked; /* the last value that was asked for: shown until the stage, in its own time, has it */
     double asked_at;
     char compare[VIEWER_TEXT], search[64], file[VIEWER_TEXT];
+    char lesson_text[VIEWER_TEXT], lesson_seen[VIEWER_TEXT]; /* as it is typed; and as the stage last had it */
+    size_t lesson_step;                                      /* the operation that one has come to */
 } viewer_panels;
 
 void viewer_panels_show(viewer_panels *panels, int width, int height);
@@ -41,6 +43,9 @@ void viewer_show_objects(viewer_panels *panels, int side);
 void viewer_show_entry(viewer_panels *panels, const viewer_object *object, const viewer_entry *entry, int side);
 /* panels_search.c: where fields are searched for, those that are found. False where nothing is searched for. */
 bool viewer_show_search(viewer_panels *panels, int side);
+/* panels_lesson.c: in the picture, which begins `left`; its height at the window's bottom */
+void viewer_show_lesson(viewer_panels *panels, double left, double width, double height);
+double viewer_lesson_height(double height);
 /* panels_plots.c */
 void viewer_show_plots(viewer_panels *panels, double width, double height);
 

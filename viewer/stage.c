@@ -116,7 +116,9 @@ static bool profile(viewer_stage *stage, bool *new_frame) {
 static bool step_all(viewer_stage *stage, bool *new_frame) {
     viewer_player *first = &stage->sides[0];
     if (stage->grab.side == 0) viewer_grab_lead(&stage->grab, first->world, first->dt);
+    viewer_lesson_before(stage);
     bool good = profile_is_due(stage) ? profile(stage, new_frame) : viewer_player_step(first, new_frame), ignored;
+    viewer_lesson_after(stage);
     for (size_t s = 1; s < stage->side_count; s++) {
         viewer_player *other = &stage->sides[s];
         while (good && skein_world_time(other->world) + 0.5 * other->dt <= skein_world_time(first->world)) {
@@ -224,6 +226,7 @@ static double patience(viewer_stage *stage) {
 static void publish(viewer_stage *stage) {
     viewer_exchange *exchange = stage->exchange;
     viewer_measure(stage);
+    viewer_lesson_refresh(stage);
     pthread_mutex_lock(&exchange->lock);
     viewer_mirror(stage);
     pthread_mutex_unlock(&exchange->lock);
@@ -282,6 +285,7 @@ static void *stage_thread(void *data) {
         while (!stage->closing) turn(stage);
         if (stage->film) viewer_film_toggle(stage);
         viewer_gallery_close(stage);
+        viewer_lesson_release(&stage->lesson);
         for (size_t s = 0; s < VIEWER_SIDES; s++) viewer_player_close(&stage->sides[s]);
     } else {
         stage->failure = error;

@@ -51,6 +51,7 @@ typedef struct viewer_stage {
     char wanted[VIEWER_TEXT]; /* a scene that could not be opened: tried again when its file changes */
     viewer_camera camera;
     viewer_grab grab;
+    viewer_lesson lesson;
     skein_pacer pacer;
     bool paused, paused_by_focus, play_away, closing;
     bool panel[VIEWER_PANEL_COUNT];
@@ -133,7 +134,6 @@ void viewer_stage_step(viewer_stage *stage);                  /* one frame */
 void viewer_stage_go_to(viewer_stage *stage, uint64_t frame); /* of the history */
 void viewer_stage_answer(viewer_stage *stage, const viewer_request *request);
 bool viewer_stage_by_key(const viewer_stage *stage); /* the scene advances by keys */
-void viewer_stage_solve(viewer_stage *stage);        /* one solve of such a scene */
 /* The part of the window that a side has: x, and width. */
 int viewer_side_width(const viewer_stage *stage, size_t side, int *x);
 double viewer_aspect(const viewer_stage *stage); /* width over height of the first side */

@@ -230,6 +230,8 @@ void viewer_stage_answer(viewer_stage *stage, const viewer_request *r) {
         stage->dirty = true;
         viewer_event(stage->events, "panel %d %s", r->code, r->down ? "open" : "closed");
         break;
+    case VIEWER_LESSON: viewer_lesson_choose(stage, r); break;
+    case VIEWER_FORMULA: viewer_lesson_write(stage, r->text); break;
     case VIEWER_SAVED: viewer_note(stage, "saved %s", r->text); break;
     case VIEWER_FAULT: viewer_say(stage, SKEIN_LOG_WARNING, "%s", r->text); break;
     case VIEWER_CLOSE: stage->closing = true; break;

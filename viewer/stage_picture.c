@@ -225,6 +225,8 @@ static skein_status take_frame(viewer_stage *stage, size_t side, skein_error *er
     if (!frame) return SKEIN_ERROR_MEMORY;
     bool between = !stage->paused && !viewer_stage_by_key(stage) && !stage->film && !stage->due;
     render_world_frame_blend(frame, between ? skein_pacer_blend(&stage->pacer) : 1);
+    const render_chosen chosen = viewer_lesson_chosen(stage), nothing = {.any = false};
+    render_world_frame_choose(frame, side ? &nothing : &chosen);
     skein_status status = render_world_frame_update(frame, player->world, &player->view, error);
     if (status || side) return status;
     double now = skein_world_time(player->world), middle[3];

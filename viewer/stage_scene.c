@@ -62,6 +62,7 @@ void viewer_stage_open(viewer_stage *stage, const char *path, const char *const 
     stage->in_parts = true;
     viewer_watch(stage, true);
     restart_clock(stage);
+    viewer_lesson_begin(stage);
     const char *name = stage->sides[0].settings.name;
     viewer_note(stage, "%s: %zu particles", name[0] ? name : path, skein_particle_count(stage->sides[0].world));
     note_opened(stage, "opened");
@@ -169,34 +170,4 @@ void viewer_stage_go_to(viewer_stage *stage, uint64_t frame) {
 
 bool viewer_stage_by_key(const viewer_stage *stage) {
     return stage->side_count && stage->sides[0].settings.advance == IO_BY_KEY;
-}
-
-/* Both ends of a distance and its six derivatives by their coordinates, to the log and the terminal. */
-static void print_derivatives(viewer_stage *stage, const skein_spring *spring) {
-    double a[3], b[3], off[3], length = 0;
-    const skein_world *world = stage->sides[0].world;
-    if (skein_positions_copy(world, spring->particle[0], 1, a) ||
-        skein_positions_copy(world, spring->particle[1], 1, b))
-        return;
-    for (int k = 0; k < 3; k++) off[k] = a[k] - b[k], length += off[k] * off[k];
-    length = sqrt(length);
-    for (int k = 0; k < 3; k++) off[k] = length > 0 ? off[k] / length : 0;
-    char line[300];
-    snprintf(line, sizeof line,
-             "solve %" PRIu64 ": a (%.6g, %.6g, %.6g), b (%.6g, %.6g, %.6g), distance %.6g m; "
-             "derivatives %.6g %.6g %.6g %.6g %.6g %.6g",
-             stage->sides[0].frame, a[0], a[1], a[2], b[0], b[1], b[2], length, off[0], off[1], off[2], 0 - off[0],
-             0 - off[1], 0 - off[2]);
-    viewer_note(stage, "%s", line);
-    printf("%s\n", line);
-    fflush(stdout);
-}
-
-void viewer_stage_solve(viewer_stage *stage) {
-    enum { MOST_PRINTED = 4 };
-    skein_spring springs[MOST_PRINTED];
-    size_t count = 0;
-    viewer_stage_step(stage);
-    if (skein_springs_copy(stage->sides[0].world, springs, MOST_PRINTED, &count)) return;
-    for (size_t i = 0; i < count && i < MOST_PRINTED; i++) print_derivatives(stage, &springs[i]);
 }

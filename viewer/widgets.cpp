@@ -126,6 +126,21 @@ void widgets_note(const char *id, const char *text, double x, double y, bool abo
     ImGui::End();
 }
 
+bool widgets_over(const char *id, double x, double y, double left, double right) {
+    // half of it may not pass an edge: its width is known from the frame before
+    static float width = 0;
+    float half = 0.5f * width + 4, least = static_cast<float>(left) + half, most = static_cast<float>(right) - half;
+    float at = most > least ? std::clamp(static_cast<float>(x), least, most) : static_cast<float>(0.5 * (left + right));
+    ImGui::SetNextWindowPos(ImVec2(at, static_cast<float>(y)), ImGuiCond_Always, ImVec2(0.5f, 1.0f));
+    ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(static_cast<float>(right - left) - 8, FLT_MAX));
+    ImGui::Begin(id, nullptr,
+                 ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs | ImGuiWindowFlags_NoDecoration |
+                     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus);
+    width = ImGui::GetWindowWidth();
+    return !ImGui::IsWindowAppearing();
+}
+
 void widgets_panel_end(void) {
     ImGui::End();
 }
@@ -266,6 +281,12 @@ bool widgets_typing(void) {
 
 bool widgets_input(const char *title, char *text, size_t size) {
     note_frame();
+    return ImGui::InputText(title, text, size, ImGuiInputTextFlags_EnterReturnsTrue);
+}
+
+bool widgets_input_fitting(const char *title, char *text, size_t size) {
+    float least = ImGui::GetFontSize() * 16, wide = ImGui::CalcTextSize(text).x + ImGui::GetFontSize() * 2;
+    ImGui::SetNextItemWidth(std::min(std::max(wide, least), ImGui::GetIO().DisplaySize.x * 0.6f));
     return ImGui::InputText(title, text, size, ImGuiInputTextFlags_EnterReturnsTrue);
 }
 

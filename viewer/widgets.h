@@ -30,6 +30,9 @@ typedef enum widgets_frame { WIDGETS_FIXED, WIDGETS_FREE } widgets_frame;
 bool widgets_panel(const char *title, widgets_frame frame, double x, double y, double width, double height, bool *open);
 /* Words over the picture, in lines of at most `width` pixels: from (x, y) on downwards, or `above` it. */
 void widgets_note(const char *id, const char *text, double x, double y, bool above, double width);
+/* A small panel over the picture, its bottom's middle at (x, y), as large as what is in it and between the two edges; end
+ * it as a panel. False in its first frame, which nobody sees: its size is not known yet. */
+bool widgets_over(const char *id, double x, double y, double left, double right);
 void widgets_panel_end(void);
 bool widgets_group(const char *title, bool open); /* a heading that folds */
 bool widgets_tree(const char *title, bool open);  /* a smaller one, indented; end it if true */
@@ -62,6 +65,8 @@ bool widgets_typing(void);
 bool widgets_input(const char *title, char *text, size_t size);
 /* The same in several lines: Enter says that it is done, Ctrl and Enter makes a new line. */
 bool widgets_input_lines(const char *title, char *text, size_t size);
+/* A line as wide as its text, in a small panel. */
+bool widgets_input_fitting(const char *title, char *text, size_t size);
 void widgets_help(const char *text);  /* shown over the last control, while the pointer rests on it */
 bool widgets_menu(const char *title); /* of the last control, by the right button; end it if true */
 bool widgets_menu_row(const char *title);
