@@ -34,6 +34,13 @@ static void ask_state(void) {
     press_key("Shift_L");
 }
 
+/* The scene may have been there before the window was. */
+static void await_scene(void) {
+    screen.seen = 0;
+    expect("opened ");
+    ask_state();
+}
+
 static void open_scene(const char *name, const char *text, const char *const *more) {
     char path[512];
     const char *arguments[16] = {path, "--size", "1000x700", "--samples", "1"};
@@ -43,8 +50,7 @@ static void open_scene(const char *name, const char *text, const char *const *mo
     while (more && *more) arguments[count++] = *more++;
     arguments[count] = NULL;
     open_window(arguments);
-    expect("opened ");
-    ask_state();
+    await_scene();
 }
 
 /* Where a control is once the window has come to rest. */
@@ -360,8 +366,7 @@ static void a_ball_of_the_running_spring_follows(void **state) {
     const char *const arguments[] = {
         SKEIN_SOURCE_DIR "/scenes/one_spring_live.json", "--size", "1000x700", "--no-panels", "--samples", "1", NULL};
     open_window(arguments);
-    expect("opened ");
-    ask_state();
+    await_scene();
     do ask_state();
     while (told("frame") < 3);
     left = 0;
