@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "base/status.h"
 
 /* ASCII whatever the locale. */
@@ -101,45 +102,9 @@ static void skip_blanks(sk_text *text) {
     }
 }
 
-static double scaled_by_ten(double mantissa, int exponent) {
-    static const double tens[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                  1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-    for (; exponent > 22; exponent -= 22) mantissa *= 1e22;
-    for (; exponent < -22; exponent += 22) mantissa /= 1e22;
-    return exponent < 0 ? mantissa / tens[-exponent] : mantissa * tens[exponent];
-}
-
-/* A number as C writes it, whatever the locale says: exact to the last bit for up to 15 digits and 22 places. */
 static void read_number(sk_text *text) {
-    const char *c = text->text + text->at, *begin = c;
-    uint64_t mantissa = 0;
-    int exponent = 0, digits = 0;
-    bool fraction = false;
-    for (; is_digit(*c) || (*c == '.' && !fraction); c++) {
-        if (*c == '.') {
-            fraction = true;
-            continue;
-        }
-        digits++;
-        bool counts = mantissa < UINT64_C(100000000000000000);
-        if (counts) mantissa = mantissa * 10 + (uint64_t)(*c - '0');
-        exponent += (counts ? 0 : 1) - (fraction ? 1 : 0);
-    }
-    const char *e = c;
-    bool negative = false;
-    if (digits && (*e == 'e' || *e == 'E')) {
-        e++;
-        negative = *e == '-';
-        e += *e == '-' || *e == '+';
-        int power = 0;
-        if (is_digit(*e)) {
-            for (; is_digit(*e); e++) power = power < 10000 ? power * 10 + (*e - '0') : power;
-            exponent += negative ? -power : power;
-            c = e;
-        }
-    }
-    text->at += (size_t)(c - begin);
-    text->now.number = mantissa ? scaled_by_ten((double)mantissa, exponent) : 0;
+    text->at += sk_number_read(text->text + text->at, &text->now.number);
+    const char *c = text->text + text->at;
     text->now.end = text->at;
     if (*c == '.')
         sk_text_fail(text, text->now.begin, text->at + 1, SKEIN_ERROR_SYNTAX, "a number has one point at the most");

@@ -2,9 +2,9 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "base/rotation.h"
 #include "base/status.h"
 #include "motions/motion.h"
@@ -39,11 +39,11 @@ static int read_row(const char *at, const char *end, double key[static KEY]) {
     for (;;) {
         while (at < end && isspace((unsigned char)*at)) at++;
         if (at == end) return count;
-        char *stop;
-        double x = strtod(at, &stop);
-        if (stop == at || stop > end || count == KEY || !(fabs(x) <= SK_FAR)) return -1;
+        double x = 0;
+        size_t size = sk_number_read_signed(at, &x); // it stops at the comma that ends the row
+        if (!size || count == KEY || !(fabs(x) <= SK_FAR)) return -1;
         key[count++] = x;
-        at = stop;
+        at += size;
     }
 }
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "base/status.h"
 
 typedef struct selector {
@@ -21,11 +22,11 @@ static int read_numbers(const char *text, double *numbers, int most) {
     for (;;) {
         while (isspace((unsigned char)*text)) text++;
         if (!*text) return count;
-        char *end;
-        double x = strtod(text, &end);
-        if (end == text || count == most || !isfinite(x)) return -1;
+        double x = 0;
+        size_t size = sk_number_read_signed(text, &x);
+        if (!size || count == most || !isfinite(x)) return -1;
         numbers[count++] = x;
-        text = end;
+        text += size;
     }
 }
 
