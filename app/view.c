@@ -40,6 +40,10 @@ static viewer_unfocused read_unfocused(const char *given) {
     return (viewer_unfocused)place;
 }
 
+static viewer_device read_device(const char *given) {
+    return !strcmp(given, "gpu") ? VIEWER_ON_CARD : !strcmp(given, "auto") ? VIEWER_ON_CARD_IF_ANY : VIEWER_ON_PROCESSOR;
+}
+
 static void prepare(skein_world *world) {
     app_compile(world, false);
 }
@@ -55,6 +59,7 @@ static bool read_options(const app_arguments *arguments, viewer_options *o) {
     o->events = app_value(arguments, "--events");
     if (app_given(arguments, "--compile")) o->prepare = prepare;
     if (app_given(arguments, "--scenes")) o->scenes = app_value(arguments, "--scenes");
+    if (app_given(arguments, "--device")) o->device = read_device(app_value(arguments, "--device"));
     if (app_given(arguments, "--unfocused")) o->unfocused = read_unfocused(app_value(arguments, "--unfocused"));
     bool good = read_size(app_value(arguments, "--size"), o->size) &&
                 read_number(arguments, "--scale", 0.5, 8, false, &o->scale) &&
@@ -118,6 +123,7 @@ static const app_option options[] = {
     {"--scale", "N", "of letters and controls, instead of the screen's", false, APP_TAKES_ANY},
     {"--samples", "N", "samples a pixel for smooth edges, 4 if not given", false, APP_TAKES_ANY},
     APP_THREADS_OPTION,
+    APP_DEVICE_OPTION,
     APP_COMPILE_OPTION,
     {"--events", "FILE", "write what happens, a line each, - for the terminal", false, APP_TAKES_FILE},
     APP_END_OF_OPTIONS};

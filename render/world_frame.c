@@ -415,7 +415,8 @@ static void take_look(render_world_frame *made) {
 /* Birds that a card moves are drawn where they are, and their numbers come here only now and then: so that the camera
  * knows about where. It takes a world of nothing else. */
 static bool needs_no_numbers(render_world_frame *made, const skein_world *world) {
-    if (skein_world_device(world).device != SKEIN_DEVICE_CURRENT_GL || made->view.velocities || made->view.contacts ||
+    skein_device_info device = skein_world_device(world);
+    if (device.device != SKEIN_DEVICE_CURRENT_GL || !device.position_buffer || made->view.velocities || made->view.contacts ||
         made->state.particle_count != skein_particle_count(world) || ++made->updates % updates_between_looks == 0)
         return false;
     size_t birds = 0;

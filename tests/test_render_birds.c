@@ -193,6 +193,33 @@ static void a_cards_birds_are_drawn_from_its_buffers(void **state) {
     skein_world_destroy(gpu);
 }
 
+/* What the card has not got yet, or no more, is drawn from the world's numbers. */
+static void a_card_that_is_behind_is_not_drawn_from(void **state) {
+    (void)state;
+    skein_world *world = flock();
+    if (skein_world_device_set(world, SKEIN_DEVICE_CURRENT_GL)) {
+        fprintf(stderr, "skipped: %s\n", skein_world_error(world)->message);
+        skein_world_destroy(world);
+        skip();
+    }
+    render_world_frame *made = render_world_frame_create(NULL);
+    OK(skein_world_explain(world, 1.0 / 60, NULL, NULL)); // a plan, and buffers with nothing in them
+    for (int time = 0; time < 2; time++) {
+        OK(render_world_frame_update(made, world, NULL, NULL));
+        const render_birds *birds = render_world_frame_get(made)->birds;
+        assert_int_equal(birds->position_buffer, 0);
+        double x[3];
+        OK(skein_positions_copy(world, 7, 1, x));
+        for (int k = 0; k < 3; k++) assert_float_equal(birds->positions[28 + k], x[k], 1e-6);
+        OK(skein_world_step(world, 1.0 / 60));
+        OK(render_world_frame_update(made, world, NULL, NULL));
+        assert_true(render_world_frame_get(made)->birds->position_buffer != 0);
+        skein_world_reset(world);
+    }
+    render_world_frame_destroy(made);
+    skein_world_destroy(world);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wings_beat_with_the_speed_and_birds_lean_into_turns),
@@ -200,6 +227,7 @@ int main(void) {
         cmocka_unit_test(colours_tell_how_fast_birds_fly),
         cmocka_unit_test(odd_birds_are_drawn_or_left_out),
         cmocka_unit_test(a_cards_birds_are_drawn_from_its_buffers),
+        cmocka_unit_test(a_card_that_is_behind_is_not_drawn_from),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

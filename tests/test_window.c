@@ -758,6 +758,47 @@ static void steers_a_flock(void **state) {
     close_window();
 }
 
+static bool with_card; /* a real one */
+
+/* The picture of a flock after some frames, in a file of that name. */
+static void shoot_flock(const char *device, const char *name) {
+    const char *const arguments[] = {SKEIN_SOURCE_DIR "/scenes/birds.json", "--size", "480x270", "--samples", "1", "--paused",
+                                     "--no-panels", "--device", device, NULL};
+    tool("mousemove 900 700"); // a pointer in the picture would hunt them
+    open_window(arguments);
+    expect("opened ");
+    screen.seen = 0; // it was said before
+    if (!strcmp(device, "gpu")) {
+        bool here = hear("warning there is no graphics card; the processor plays one", 2);
+        screen.seen = here ? screen.seen : 0;
+        with_card = !here && hear("log runs on ", 2);
+        assert_true(here || with_card);
+    }
+    for (int i = 0; i < 5; i++) {
+        press_key("period");
+        assert_true(told("frame") == i + 1);
+        // each is drawn, so that wings beat alike
+        listen_from_here();
+        tool("key x");
+        expect("note saved ");
+    }
+    assert_int_equal(rename(in_folder(strrchr(screen.line, ' ') + 1), in_folder(name)), 0);
+    press_key("comma"); // what is on a card is not kept frame by frame
+    assert_true(told("frame") == (strcmp(device, "gpu") ? 4 : 5));
+    close_window();
+}
+
+/* A card's birds are drawn in the window from its buffers, and where the processor has them. */
+static void a_card_steps_what_is_shown(void **state) {
+    (void)state;
+    shoot_flock("cpu", "by-processor.png");
+    shoot_flock("gpu", "by-card.png");
+    shoot_flock("auto", "by-any.png");
+    assert_true(difference(in_folder("by-processor.png"), in_folder("by-any.png")) == 0 || with_card);
+    double apart = difference_over(in_folder("by-processor.png"), in_folder("by-card.png"), 40);
+    assert_true(apart < 0.001);
+}
+
 /* ---- Without a window ------------------------------------------------------------------------------------ */
 
 static void says_what_to_do_without_a_display(void **state) {
@@ -841,6 +882,7 @@ int main(void) {
         cmocka_unit_test(waits_for_a_mended_scene),
         cmocka_unit_test(compares_and_waits_for_the_focus),
         cmocka_unit_test(steers_a_flock),
+        cmocka_unit_test(a_card_steps_what_is_shown),
     };
     int failed = cmocka_run_group_tests(alone, make_folder, remove_folder);
     if (!can_open_screen()) return failed;

@@ -464,8 +464,8 @@ static inline void ask_to_close(void) {
 
 /* ---- Pictures -------------------------------------------------------------------------------------------- */
 
-/* The share of pixels that differ by more than a little. */
-static inline double difference(const char *one, const char *other) {
+/* The share of pixels that differ by more than so much, of 255. */
+static inline double difference_over(const char *one, const char *other, int most_apart) {
     render_image a = {0}, b = {0};
     assert_int_equal(render_image_read(&a, one, NULL), SKEIN_OK);
     assert_int_equal(render_image_read(&b, other, NULL), SKEIN_OK);
@@ -474,10 +474,15 @@ static inline double difference(const char *one, const char *other) {
     size_t count = (size_t)a.width * (size_t)a.height, differ = 0;
     for (size_t i = 0; i < count; i++)
         for (size_t k = 0, most = 0; k < 3 && !most; k++)
-            if (abs((int)a.pixels[3 * i + k] - (int)b.pixels[3 * i + k]) > 3) differ++, most = 1;
+            if (abs((int)a.pixels[3 * i + k] - (int)b.pixels[3 * i + k]) > most_apart) differ++, most = 1;
     render_image_release(&a);
     render_image_release(&b);
     return (double)differ / (double)count;
+}
+
+/* By more than a little. */
+static inline double difference(const char *one, const char *other) {
+    return difference_over(one, other, 3);
 }
 
 #endif

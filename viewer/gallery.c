@@ -169,7 +169,7 @@ static void paint_card(void *user) {
     struct viewer_gallery *gallery = stage->gallery;
     viewer_card *card = gallery->card;
     viewer_player player = {0};
-    viewer_reading reading = {stage->options->exporters, stage->options->threads, NULL};
+    viewer_reading reading = {stage->options->exporters, stage->options->threads, NULL, VIEWER_ON_PROCESSOR};
     unsigned texture = 0;
     gallery->fault[0] = 0;
     if (viewer_player_open(&player, card->path, NULL, &reading, (viewer_reporter){gallery_hears, gallery})) {

@@ -197,7 +197,7 @@ static void mirror_time(viewer_stage *stage, viewer_shown *shown) {
     const viewer_player *player = &stage->sides[0];
     shown->frame = player->frame;
     shown->first_frame = player->history.first;
-    shown->last_frame = player->history.last;
+    shown->last_frame = player->history.last > player->frame ? player->history.last : player->frame;
     shown->time = skein_world_time(player->world);
     shown->changes = player->changes.done - player->changes.given;
     const char *name = player->settings.name[0] ? player->settings.name : player->path;

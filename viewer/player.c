@@ -50,6 +50,41 @@ void viewer_player_advise(viewer_player *player) {
     io_advise(player->world, player->dt, (io_warnings){say_advice, &player->reporter}, NULL);
 }
 
+/* ---- Cards ---- */
+
+bool viewer_player_on_card(const viewer_player *player) {
+    return player->world && skein_world_device(player->world).device != SKEIN_DEVICE_CPU;
+}
+
+static void say_line(const viewer_player *player, skein_log_level level, const char *words, const char *what) {
+    char line[400];
+    snprintf(line, sizeof line, "%s%.300s", words, what);
+    player->reporter.say(player->reporter.user, level, line);
+}
+
+/* The world goes to the card of the context that is current, if there is one that can run it; says what became of it. */
+static void take_to_card(const viewer_player *player, viewer_device device) {
+    skein_world *world = player->world;
+    if (device == VIEWER_ON_PROCESSOR) return;
+    if (skein_world_device_set(world, SKEIN_DEVICE_CURRENT_GL) || skein_world_explain(world, player->dt, NULL, NULL)) {
+        say_line(player, device == VIEWER_ON_CARD ? SKEIN_LOG_WARNING : SKEIN_LOG_INFO, "runs on the processor: ",
+                 skein_world_error(world)->message);
+        skein_world_device_set(world, SKEIN_DEVICE_CPU);
+        return;
+    }
+    skein_device_info info = skein_world_device(world);
+    if (info.software && device == VIEWER_ON_CARD_IF_ANY) {
+        say_line(player, SKEIN_LOG_INFO, "runs on the processor: there is no graphics card, only ", info.name);
+        skein_world_device_set(world, SKEIN_DEVICE_CPU);
+    } else if (info.software) {
+        say_line(player, SKEIN_LOG_WARNING, "there is no graphics card; the processor plays one, slowly: ", info.name);
+    } else {
+        say_line(player, SKEIN_LOG_INFO, "runs on ", info.name);
+    }
+}
+
+/* ---- Building ---- */
+
 /* Fills in scene, world and all that belongs to them; `player` has path, changes and reporter. */
 static bool load(viewer_player *player, const viewer_reading *reading) {
     io_faults faults = {report_fault, &player->reporter, 0};
@@ -67,6 +102,7 @@ static bool load(viewer_player *player, const viewer_reading *reading) {
     player->view = view ? *view : render_view_default();
     player->steps = io_scene_steps_per_frame(&player->settings, &player->dt);
     viewer_player_advise(player);
+    take_to_card(player, reading->device);
     player->opened = viewer_seconds();
     bool good = viewer_history_begin(&player->history, player->world) && note_pins(player);
     if (good) viewer_history_keep(&player->history, player->world, 0);
@@ -162,12 +198,22 @@ static bool end_step(viewer_player *player, skein_status status, bool *new_frame
     if (++player->step < player->steps) return true;
     player->step = 0;
     *new_frame = true;
-    viewer_history_keep(&player->history, player->world, ++player->frame);
+    player->frame++;
+    if (!viewer_player_on_card(player)) viewer_history_keep(&player->history, player->world, player->frame);
     return true;
 }
 
+/* A step; what has come into a world since and cannot run on its card brings it back to the processor. */
+static skein_status step(viewer_player *player) {
+    skein_status status = skein_world_step(player->world, player->dt);
+    if (!status || !viewer_player_on_card(player)) return status;
+    say_line(player, SKEIN_LOG_WARNING, "goes on on the processor: ", skein_world_error(player->world)->message);
+    status = skein_world_device_set(player->world, SKEIN_DEVICE_CPU);
+    return status ? status : skein_world_step(player->world, player->dt);
+}
+
 bool viewer_player_step(viewer_player *player, bool *new_frame) {
-    return end_step(player, skein_world_step(player->world, player->dt), new_frame);
+    return end_step(player, step(player), new_frame);
 }
 
 bool viewer_player_profile(viewer_player *player, bool *new_frame, skein_pass *passes, size_t most, size_t *count) {

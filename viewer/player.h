@@ -11,6 +11,7 @@
 #include "render/world_frame.h"
 #include "viewer/changes.h"
 #include "viewer/history.h"
+#include "viewer/viewer.h"
 
 enum { PLAYER_PATH = 1024 };
 
@@ -42,6 +43,7 @@ typedef struct viewer_reading {
     const skein_kind *const *exporters;
     int threads;                         /* 0: the scene's */
     void (*prepare)(skein_world *world); /* once it is built; or NULL */
+    viewer_device device;                /* an OpenGL context is current on this thread, if it is to be a card */
 } viewer_reading;
 
 /* Opens a scene, or a mesh as a cloth. `sets` as for io_scene_read, copied. Faults are reported; false after one. */
@@ -61,6 +63,8 @@ void viewer_player_close(viewer_player *player); /* one that never was open is a
 bool viewer_player_profile(viewer_player *player, bool *new_frame, skein_pass *passes, size_t most, size_t *count);
 /* One step; `new_frame` tells whether it completed a frame. False after a reported fault. */
 bool viewer_player_step(viewer_player *player, bool *new_frame);
+/* Whether a graphics card steps its world: then there is no history, which would bring every frame back from it. */
+bool viewer_player_on_card(const viewer_player *player);
 /* Says what the world will suffer from as it is now: a step that is not stable, rounding (io/advice.h). */
 void viewer_player_advise(viewer_player *player);
 /* As it was built. */

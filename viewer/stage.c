@@ -8,6 +8,9 @@
 #include <string.h>
 #include <time.h>
 
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
 /* Pictures a second at most; how long steps may go on before the stage looks at what is asked; how often the scene's
  * file is looked at, and speed is judged. */
 static const double most_rate = 60, longest_stepping = 0.005, watch_every = 0.25, judge_every = 1, profile_every = 1;
@@ -84,9 +87,13 @@ static bool world_is_finite(const skein_world *world) {
     return true;
 }
 
-static bool is_finite(const viewer_stage *stage) {
+static bool is_finite(viewer_stage *stage) {
+    // looking brings the state back from a card
+    double now = viewer_seconds();
+    bool look = now - stage->looked > judge_every;
+    if (look) stage->looked = now;
     for (size_t s = 0; s < stage->side_count; s++)
-        if (!world_is_finite(stage->sides[s].world)) return false;
+        if ((look || !viewer_player_on_card(&stage->sides[s])) && !world_is_finite(stage->sides[s].world)) return false;
     return true;
 }
 
@@ -275,6 +282,7 @@ static void turn(viewer_stage *stage) {
 static void *stage_thread(void *data) {
     viewer_stage *stage = data;
     skein_error error = {SKEIN_OK, "", ""};
+    if (stage->card) glfwMakeContextCurrent(stage->card);
     if (viewer_pictures_open(stage, &error)) {
         stage->last = stage->spoke = viewer_seconds();
         if (stage->options->path) viewer_stage_open(stage, stage->options->path, stage->options->sets);
@@ -291,6 +299,7 @@ static void *stage_thread(void *data) {
         stage->failure = error;
     }
     viewer_pictures_close(stage);
+    if (stage->card) glfwMakeContextCurrent(NULL);
     viewer_event(stage->events, "opengl stage errors=%zu warnings=%zu %s", stage->messages.errors,
                  stage->messages.warnings, stage->messages.last);
     pthread_mutex_lock(&stage->exchange->lock);
@@ -301,11 +310,12 @@ static void *stage_thread(void *data) {
 }
 
 bool viewer_stage_start(viewer_stage *stage, const viewer_options *options, viewer_exchange *exchange,
-                        GLFWwindow *context) {
+                        GLFWwindow *context, GLFWwindow *card) {
     stage->options = options;
     stage->exchange = exchange;
     stage->events = exchange->events;
     stage->context = context;
+    stage->card = card;
     stage->paused = options->paused;
     stage->panel[VIEWER_PANEL_SIDE] = options->panels;
     stage->button = -1;

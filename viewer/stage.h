@@ -42,6 +42,7 @@ typedef struct viewer_stage {
     const viewer_events *events;
     viewer_exchange *exchange;
     GLFWwindow *context; /* hidden; its context is current on the painter's thread */
+    GLFWwindow *card;    /* the same for the stage's own, where a graphics card steps the worlds; or NULL */
     pthread_t thread;
     render_messages messages;
 
@@ -88,6 +89,7 @@ typedef struct viewer_stage {
     double speed;                          /* simulated over real seconds */
     viewer_slowness slow;                  /* now */
     bool told_slow;                        /* was said of this scene */
+    double looked;                         /* when: at what a card has, for what is not finite */
     int due;                               /* steps */
     double begun, stirred;                 /* when the last picture was, and the last that something had changed for */
     int level;                             /* of detail, for what moves */
@@ -106,9 +108,10 @@ typedef struct viewer_stage {
     struct viewer_gallery *gallery;
 } viewer_stage;
 
-/* Starts the thread; `context` is a hidden window whose context shares with the window's own. */
+/* Starts the thread; `context` is a hidden window whose context shares with the window's own, and so is `card`, which is
+ * NULL where steps stay on the processor. */
 bool viewer_stage_start(viewer_stage *stage, const viewer_options *options, viewer_exchange *exchange,
-                        GLFWwindow *context);
+                        GLFWwindow *context, GLFWwindow *card);
 /* Asks it to end, and waits. */
 void viewer_stage_join(viewer_stage *stage);
 

@@ -265,7 +265,16 @@ bool viewer_begin_picture(viewer_stage *stage, bool sharp) {
                                       .height = stage->height,
                                       .level = sharp ? 0 : stage->level};
     stage->sharp = stage->picture.level == 0;
+    bool on_card = false;
+    double start = viewer_seconds();
+    for (size_t s = 0; s < stage->side_count; s++) {
+        on_card |= viewer_player_on_card(&stage->sides[s]);
+        if (on_card) skein_world_wait(stage->sides[s].world); // the other context sees what is finished
+    }
+    if (on_card) stage->pace.worked += viewer_seconds() - start;
     viewer_painter_begin(&stage->painter, paint, stage);
+    // it draws from the buffers that the next step writes
+    if (on_card) viewer_painter_wait(&stage->painter);
     return true;
 }
 

@@ -15,6 +15,10 @@
 /* What to do when the window is not the one being typed into. */
 typedef enum viewer_unfocused { VIEWER_BY_SCENE, VIEWER_PAUSE, VIEWER_PLAY } viewer_unfocused;
 
+/* Where steps are computed: on a graphics card (or llvmpipe, which plays one) where the scene can run there; or only where
+ * there is a real one. */
+typedef enum viewer_device { VIEWER_ON_PROCESSOR, VIEWER_ON_CARD, VIEWER_ON_CARD_IF_ANY } viewer_device;
+
 typedef struct viewer_options {
     const char *path;                   /* a scene or a mesh; NULL: the gallery */
     const char *scenes;                 /* the gallery's folder; NULL: io_scenes_folder's first */
@@ -25,6 +29,7 @@ typedef struct viewer_options {
     int32_t size[2], samples, threads;  /* threads 0: the scene's */
     double scale;                       /* of the letters; 0: as the screen has it */
     viewer_unfocused unfocused;
+    viewer_device device;
     bool paused, panels;
     void (*prepare)(skein_world *world); /* is given each world before its first step, on the stage's thread; or NULL */
 } viewer_options;

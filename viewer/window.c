@@ -28,7 +28,7 @@ typedef struct window {
     viewer_exchange exchange;
     viewer_stage stage;
     viewer_panels panels;
-    GLFWwindow *glfw, *hidden;
+    GLFWwindow *glfw, *hidden, *card; /* card: of steps on a graphics card */
     render_messages messages;
     viewer_request pending[MOST_PENDING]; /* of the pointer, until Dear ImGui has seen it */
     int pending_count;
@@ -284,6 +284,8 @@ static bool open_windows(window *w, skein_error *error) {
     w->glfw = glfwCreateWindow(w->options->size[0], w->options->size[1], "Skein", NULL, NULL);
     glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
     if (w->glfw) w->hidden = glfwCreateWindow(16, 16, "Skein's pictures", NULL, w->glfw);
+    if (w->hidden && w->options->device)
+        w->card = glfwCreateWindow(16, 16, "Skein's steps", NULL, w->glfw); // without it steps stay on the processor
     if (w->hidden) return true;
     render_fail(error, SKEIN_ERROR_VALUE, "OpenGL",
                 "no window with OpenGL 4.5: %s. Mesa's drivers have it, without a graphics card too (Debian: apt-get "
@@ -347,7 +349,7 @@ static skein_status run(window *w, skein_error *error) {
     w->stage.tall = height;
     w->picture_size[0] = w->stage.wide, w->picture_size[1] = height;
     w->exchange.wake = wake;
-    if (!viewer_stage_start(&w->stage, w->options, &w->exchange, w->hidden))
+    if (!viewer_stage_start(&w->stage, w->options, &w->exchange, w->hidden, w->card))
         return render_fail(error, SKEIN_ERROR_MEMORY, "window", "no thread can be started");
     signal(SIGINT, interrupt);
     signal(SIGTERM, interrupt);
@@ -372,6 +374,7 @@ skein_status viewer_run(const viewer_options *options, skein_error *error) {
     w->options = options;
     w->frames_due = FRAMES_AFTER_EVENT;
     skein_status status = run(w, error);
+    if (w->card) glfwDestroyWindow(w->card);
     if (w->hidden) glfwDestroyWindow(w->hidden);
     if (w->glfw) glfwDestroyWindow(w->glfw);
     // GLFW stays as it is: ending it unloads Mesa's driver, which forgets a few tables each time (as in

@@ -425,7 +425,8 @@ typedef struct skein_device_info {
     size_t bytes;      /* held on the card now */
     size_t pass_count; /* shaders that a step runs, and the loops around them */
     /* For drawing without reading back: OpenGL buffers of four floats a slot, x, y, z and the inverse mass, or velocity
-     * and mass. 0 before the first step, and changed by whatever adds particles. Particle i is in slot slot_of[i]; or,
+     * and mass. 0 where the card has not the newest state, as before the first step and after calls that change it; and
+     * changed by whatever adds particles. Particle i is in slot slot_of[i]; or,
      * where that is NULL, particle_buffer holds a whole number a slot, the particle there, and a step may change it. */
     unsigned position_buffer, velocity_buffer, particle_buffer;
     const uint32_t *slot_of;

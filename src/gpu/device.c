@@ -252,15 +252,16 @@ skein_device_info skein_world_device(const skein_world *world) {
     if (!world) return (skein_device_info){.name = ""};
     const sk_gpu_device *device = (const sk_gpu_device *)(const void *)world->device;
     if (!device) return (skein_device_info){.device = SKEIN_DEVICE_CPU, .name = "processor"};
+    bool newest = !device->base.behind; // else what lies there is of another time
     return (skein_device_info){
         .device = device->context.own ? SKEIN_DEVICE_GPU : SKEIN_DEVICE_CURRENT_GL,
         .name = device->context.name,
         .software = device->context.software,
         .bytes = device->bytes,
-        .position_buffer = device->vector[SK_X],
-        .velocity_buffer = device->vector[SK_V],
+        .position_buffer = newest ? device->vector[SK_X] : 0,
+        .velocity_buffer = newest ? device->vector[SK_V] : 0,
         .slot_of = device->arrangement.moved ? NULL : world->particles.slot_of,
-        .particle_buffer = device->arrangement.moved ? device->arrangement.home : 0,
+        .particle_buffer = newest && device->arrangement.moved ? device->arrangement.home : 0,
         .slot_count = device->slot_count,
         .pass_count = device->passes.count,
     };
