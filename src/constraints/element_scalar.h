@@ -37,7 +37,7 @@ static inline double reciprocal(one_element *e, double x) {
 
 static bool rest_of(const void *params, const double (*x)[3], double *rest) {
     (void)params;
-    one_element e;
+    one_element e = {.divisor = 1};
     memcpy(e.x, x, sizeof e.x);
     rests(&e);
     memcpy(rest, e.rest, sizeof e.rest);
