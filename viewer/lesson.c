@@ -11,39 +11,6 @@
 /* So many operations are shown at the most: a reader's formula has some tens. */
 enum { MOST_OPERATIONS = 1000 };
 
-void viewer_lesson_release(viewer_lesson *lesson) {
-    free(lesson->operations);
-    free(lesson->derivatives);
-    memset(lesson, 0, sizeof *lesson);
-}
-
-static bool reserve(viewer_lesson *lesson, size_t operations, size_t derivatives) {
-    if (operations > lesson->operation_room) {
-        skein_operation *grown = realloc(lesson->operations, operations * sizeof *grown);
-        if (!grown) return false;
-        lesson->operations = grown, lesson->operation_room = operations;
-    }
-    if (derivatives > lesson->derivative_room) {
-        double *grown = realloc(lesson->derivatives, derivatives * sizeof *grown);
-        if (!grown) return false;
-        lesson->derivatives = grown, lesson->derivative_room = derivatives;
-    }
-    return true;
-}
-
-bool viewer_lesson_copy(viewer_lesson *to, const viewer_lesson *from) {
-    size_t derivatives = 3 * from->operation_count * from->particle_count;
-    bool good = reserve(to, from->operation_count, derivatives);
-    viewer_lesson own = *to;
-    *to = *from;
-    to->operations = own.operations, to->operation_room = own.operation_room;
-    to->derivatives = own.derivatives, to->derivative_room = own.derivative_room;
-    if (!good) to->operation_count = 0;
-    if (to->operation_count) memcpy(to->operations, from->operations, from->operation_count * sizeof *to->operations);
-    if (to->operation_count) memcpy(to->derivatives, from->derivatives, derivatives * sizeof *to->derivatives);
-    return good;
-}
-
 /* ---- Which one ---- */
 
 static bool is_open(const viewer_stage *stage) {
@@ -162,7 +129,7 @@ static void take_operations(viewer_lesson *lesson, skein_world *world) {
     if (lesson->many || skein_constraint_operations(world, lesson->handle, lesson->index, NULL, NULL, 0, &count)) return;
     lesson->too_long = count > MOST_OPERATIONS;
     if (lesson->too_long) count = MOST_OPERATIONS;
-    if (!count || !reserve(lesson, count, 3 * count * lesson->particle_count)) return;
+    if (!count || !viewer_lesson_reserve(lesson, count, 3 * count * lesson->particle_count)) return;
     size_t all;
     if (!skein_constraint_operations(world, lesson->handle, lesson->index, lesson->operations, lesson->derivatives,
                                      count, &all))

@@ -45,7 +45,11 @@ typedef struct viewer_lesson {
     bool in_view;
 } viewer_lesson;
 
+/* ---- lesson_copy.c: its memory ---- */
+
 void viewer_lesson_release(viewer_lesson *lesson);
+/* Room for so many operations, and numbers of their derivatives; what was there stays. False when there is no memory. */
+bool viewer_lesson_reserve(viewer_lesson *lesson, size_t operations, size_t derivatives);
 /* A copy, into what `to` has room for. False when there is no memory. */
 bool viewer_lesson_copy(viewer_lesson *to, const viewer_lesson *from);
 

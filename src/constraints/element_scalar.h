@@ -45,7 +45,6 @@ static bool rest_of(const void *params, const double (*x)[3], double *rest) {
 }
 
 static void evaluate_one(const sk_batch *batch, const sk_vec4 *x, size_t element, one_element *e) {
-    *e = (one_element){.divisor = 1};
     for (size_t i = 0; i < SK_ARITY; i++) {
         sk_vec4 p = x[batch->slot[SK_ARITY * element + i]];
         e->x[i][0] = (double)p.x, e->x[i][1] = (double)p.y, e->x[i][2] = (double)p.z;
@@ -55,7 +54,7 @@ static void evaluate_one(const sk_batch *batch, const sk_vec4 *x, size_t element
 }
 
 static double value_of(const sk_batch *batch, const sk_vec4 *x, size_t element) {
-    one_element e;
+    one_element e = {.divisor = 1};
     evaluate_one(batch, x, element, &e);
     return e.value;
 }
@@ -63,7 +62,7 @@ static double value_of(const sk_batch *batch, const sk_vec4 *x, size_t element) 
 static bool evaluate(const sk_batch *batch, double time, const sk_vec4 *x, size_t element, size_t most,
                      sk_constraint_answer *answer, double (*gradient)[3]) {
     (void)time;
-    one_element e;
+    one_element e = {.divisor = 1};
     evaluate_one(batch, x, element, &e);
     double over = reciprocal(&e, e.divisor);
     *answer = (sk_constraint_answer){.value = e.value, .guarded = e.guarded};
