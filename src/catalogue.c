@@ -9,7 +9,7 @@
 
 static const sk_body_type *const bodies[] = {&sk_cloth, &sk_lattice, &sk_rope, &sk_tetrahedra, &sk_flock};
 static const sk_constraint_type *const constraints[] = {
-    &sk_distance,           &sk_dihedral, &sk_isometric,       &sk_area,    &sk_volume, &sk_angle,
+    &sk_distance,           &sk_dihedral, &sk_isometric,       &sk_straight, &sk_twist, &sk_area,    &sk_volume, &sk_angle,
     &sk_formula_constraint, &sk_energy,   &sk_enclosed_volume, &sk_pressure};
 static const sk_force_type *const forces[] = {
     &sk_gravity,  &sk_wind,    &sk_surface_wind, &sk_drag,       &sk_separation, &sk_flocking,    &sk_attraction,

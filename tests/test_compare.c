@@ -9,7 +9,7 @@ static const char *sheet_scene(void) {
     write_scene(path,
                 "{ 'frames': 6, 'output': [], 'method': { 'type': 'xpbd', 'substeps': 7, 'iterations': 2 },\n"
                 "  'bodies': [ { 'type': 'cloth', 'grid': [6, 6], 'pins': 'top corners',\n"
-                "    'stretch': { 'stiffness': 2000 }, 'shear': { 'stiffness': 200 }, 'bend': { 'by': 'springs', 'stiffness': 2 } } ],\n"
+                "    'stretch': { 'stiffness': 2000, 'tether': 'infinite' }, 'shear': { 'stiffness': 200 }, 'bend': { 'by': 'springs', 'stiffness': 2 } } ],\n"
                 "  'forces': [ { 'type': 'gravity' } ] }");
     return path;
 }

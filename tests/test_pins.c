@@ -54,6 +54,8 @@ static skein_world *hanging_sheet(const char *method, int substeps, sheet_kind k
                                      SKEIN_TEXT("bend.by", "springs"),
                                      SKEIN_REAL("bend.stiffness", 4),
                                      SKEIN_REAL("bend.damping", 0.01),
+                                     SKEIN_REAL("stretch.tether", 0.01),
+                                     SKEIN_REAL("stretch.limit", 0.05),
                                      {0}},
                         of_mesh[] = {SKEIN_TEXT("pins", pins),
                                      SKEIN_REAL("stretch.stiffness", 60),
@@ -61,6 +63,8 @@ static skein_world *hanging_sheet(const char *method, int substeps, sheet_kind k
                                      SKEIN_TEXT("bend.by", "springs"),
                                      SKEIN_REAL("bend.stiffness", 4),
                                      SKEIN_REAL("bend.damping", 0.01),
+                                     SKEIN_REAL("stretch.tether", 0.01),
+                                     SKEIN_REAL("stretch.limit", 0.05),
                                      {0}};
     OK(world, skein_body_add(world, "cloth", kind == A_MESH ? &mesh : NULL, kind == A_MESH ? of_mesh : of_grid, NULL));
     add_gravity(world);

@@ -186,7 +186,7 @@ static void springs_join_bodies_and_loose_particles(void **state) {
         for (int damped = 0; damped < 2; damped++) {
             skein_world *world = new_world(method_names[m], 1);
             OK(world, skein_body_add(world, "cloth", NULL,
-                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 7), SKEIN_REAL("density", 50), SKEIN_REAL("stretch.stiffness", 0),
+                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 7), SKEIN_REAL("density", 50), SKEIN_REAL("stretch.stiffness", 0), SKEIN_REAL("stretch.tether", INFINITY),
                                                     SKEIN_REAL("shear.stiffness", 0), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0)),
                                      NULL));
             vec3 knot = position_of(world, 16);

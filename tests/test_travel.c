@@ -244,6 +244,7 @@ static double stretch_at(double speed, const char *method, const char *isa) {
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 11, 11), SKEIN_PAIR("size", 0.5, 0.5),
                                             SKEIN_VEC3("position", 0, 0.206, 0), SKEIN_TEXT("pins", "top corners"),
                                             SKEIN_REAL("stretch.stiffness", 60), SKEIN_REAL("shear.stiffness", 30),
+                                            SKEIN_REAL("stretch.tether", INFINITY), SKEIN_REAL("stretch.limit", 0.05),
                                             SKEIN_REAL("stretch.damping", 0.05), SKEIN_REAL("shear.damping", 0.03),
                                             SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 4),
                                             SKEIN_REAL("bend.damping", 0.01)),

@@ -38,15 +38,17 @@
 #define SKEIN_CLOTH_STRETCH_DAMPING "stretch.damping" /* a number in N s/m; of stretching; other motion is free */
 #define SKEIN_CLOTH_SHEAR_STIFFNESS "shear.stiffness" /* a number in N/m; across the threads */
 #define SKEIN_CLOTH_SHEAR_DAMPING "shear.damping" /* a number in N s/m; of shearing */
-#define SKEIN_CLOTH_BEND_BY "bend.by" /* a word; `dihedral` angles at edges, or `isometric` curvature there: both take the rigidity; or springs over folds */
+#define SKEIN_CLOTH_BEND_BY "bend.by" /* a word; `dihedral` angles at edges, `isometric` curvature there, or `straight` lines and `twist` of a flat grid, which take the rigidity; "shape": lines where it is a flat grid, else angles; or springs over folds */
 #define SKEIN_CLOTH_BEND_BY_SPRINGS "springs"
 #define SKEIN_CLOTH_BEND_BY_ANGLE "angle"
 #define SKEIN_CLOTH_BEND_BY_CURVATURE "curvature"
+#define SKEIN_CLOTH_BEND_BY_LINES "lines"
+#define SKEIN_CLOTH_BEND_BY_SHAPE "shape"
 #define SKEIN_CLOTH_BEND_STIFFNESS "bend.stiffness" /* a number in N/m; of the springs over folds */
 #define SKEIN_CLOTH_BEND_DAMPING "bend.damping" /* a number in N s/m; of the springs over folds */
 #define SKEIN_CLOTH_BEND_RIGIDITY "bend.rigidity" /* a number in N m; of the sheet against angle or curvature, the same at any resolution (1e-5 is a cotton) */
 #define SKEIN_CLOTH_STRETCH_LIMIT "stretch.limit" /* a number; strain limit: no edge gets longer than rest times 1 + this; "infinite" is none */
-#define SKEIN_CLOTH_STRETCH_TETHER "stretch.tether" /* a number; no particle gets farther from a pin than along the cloth, times 1 + this; "infinite" is none */
+#define SKEIN_CLOTH_STRETCH_TETHER "stretch.tether" /* a number; no particle gets farther from a pin than along the cloth, nor, on a grid, from others of its row and column, times 1 + this; "infinite" is none */
 
 #define SKEIN_LATTICE "lattice" /* a block of particles with springs to its neighbours: along the axes, across, two apart, face to face */
 #define SKEIN_LATTICE_GRID "grid" /* three whole numbers; particles along x, y and z; the last runs fastest */
@@ -130,6 +132,14 @@
 #define SKEIN_ISOMETRIC "isometric" /* keeps two triangles flat over an edge: the edge's two ends, then the two corners beside it */
 #define SKEIN_ISOMETRIC_STIFFNESS "stiffness" /* a number in N m; the bending rigidity of a sheet; "infinite" is rigid (position methods only) */
 #define SKEIN_ISOMETRIC_DAMPING "damping" /* a number in N m s; the same against bending's change in time */
+
+#define SKEIN_STRAIGHT "straight" /* keeps three particles in a straight line, the second in the middle */
+#define SKEIN_STRAIGHT_STIFFNESS "stiffness" /* a number in N m; torque a radian of a small turn; "infinite" is rigid (position methods only) */
+#define SKEIN_STRAIGHT_DAMPING "damping" /* a number in N m s; torque a radian a second */
+
+#define SKEIN_TWIST "twist" /* keeps the four corners around a parallelogram in one plane */
+#define SKEIN_TWIST_STIFFNESS "stiffness" /* a number in N m; torque a radian of a small twist; "infinite" is rigid (position methods only) */
+#define SKEIN_TWIST_DAMPING "damping" /* a number in N m s; torque a radian a second */
 
 #define SKEIN_AREA "area" /* keeps the area of a triangle of particles */
 #define SKEIN_AREA_STIFFNESS "stiffness" /* a number in N/m3; force over length and square metre of change; "infinite" is rigid (position methods only) */

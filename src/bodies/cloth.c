@@ -11,6 +11,7 @@
 #include "bodies/faults.h"
 #include "bodies/geodesic.h"
 #include "bodies/hinges.h"
+#include "bodies/lines.h"
 #include "bodies/order.h"
 #include "bodies/quads.h"
 #include "bodies/sheet.h"
@@ -30,7 +31,7 @@ typedef struct cloth_params {
 } cloth_params;
 
 /* The choices of "bend.by". */
-enum { BY_SPRINGS, BY_ANGLE, BY_CURVATURE };
+enum { BY_SPRINGS, BY_ANGLE, BY_CURVATURE, BY_LINES, BY_SHAPE };
 
 static const skein_field fields[] = {
     SK_TEXT(cloth_params, mesh, "mesh", "", "file of a mesh, OBJ or OFF (in scenes; a program passes the mesh itself)"),
@@ -55,16 +56,18 @@ static const skein_field fields[] = {
     SK_REAL(cloth_params, shear.stiffness, "shear.stiffness", "N/m", 2e3, 0, SK_UNBOUNDED, "across the threads"),
     SK_REAL(cloth_params, shear.damping, "shear.damping", "N s/m", 0, 0, SK_FAR, "of shearing"),
     SK_CHOICE(
-        cloth_params, bending, "bend.by", BY_ANGLE, "springs|angle|curvature",
-        "`dihedral` angles at edges, or `isometric` curvature there: both take the rigidity; or springs over folds"),
+        cloth_params, bending, "bend.by", BY_SHAPE, "springs|angle|curvature|lines|shape",
+        "`dihedral` angles at edges, `isometric` curvature there, or `straight` lines and `twist` of a flat grid, which take "
+        "the rigidity; \"shape\": lines where it is a flat grid, else angles; or springs over folds"),
     SK_REAL(cloth_params, bend.stiffness, "bend.stiffness", "N/m", 0, 0, SK_UNBOUNDED, "of the springs over folds"),
     SK_REAL(cloth_params, bend.damping, "bend.damping", "N s/m", 0, 0, SK_FAR, "of the springs over folds"),
     SK_REAL(cloth_params, rigidity, "bend.rigidity", "N m", 1e-5, 0, SK_UNBOUNDED,
             "of the sheet against angle or curvature, the same at any resolution (1e-5 is a cotton)"),
-    SK_REAL(cloth_params, limit, "stretch.limit", "", 0.05, 0, SK_UNBOUNDED,
+    SK_REAL(cloth_params, limit, "stretch.limit", "", SK_UNBOUNDED, 0, SK_UNBOUNDED,
             "strain limit: no edge gets longer than rest times 1 + this; \"infinite\" is none"),
-    SK_REAL(cloth_params, tether, "stretch.tether", "", 0.01, 0, SK_UNBOUNDED,
-            "no particle gets farther from a pin than along the cloth, times 1 + this; \"infinite\" is none"),
+    SK_REAL(cloth_params, tether, "stretch.tether", "", 0, 0, SK_UNBOUNDED,
+            "no particle gets farther from a pin than along the cloth, nor, on a grid, from others of its row and column, times "
+            "1 + this; \"infinite\" is none"),
 };
 
 enum { MOST_SINGLE_ANCHORS = 4 };
@@ -77,6 +80,7 @@ typedef struct tailor {
     skein_error *error;
     sk_sheet sheet;
     sk_springs springs;
+    sk_lines lines; /* of what lies in strips */
     bool *pinned;
     double *mass;
 } tailor;
@@ -133,6 +137,8 @@ static skein_status put_in_order(tailor *t) {
         return sk_fail_memory(t->error, "the order of springs");
     if (grid.rows) {
         skein_status status = put_in_strips(t, &grid);
+        if (!status && !sk_lines_find(&t->lines, &t->sheet, grid.rows, grid.columns, grid.place))
+            status = sk_fail_memory(t->error, "the lines of the grid");
         sk_release(&t->world->allocator, grid.place);
         return status;
     }
@@ -148,9 +154,15 @@ static skein_status put_in_order(tailor *t) {
     return good ? SKEIN_OK : sk_fail_memory(t->error, "the order of springs");
 }
 
-/* Bending by angle or by curvature, in place of the springs over folds. */
-static skein_status add_hinges(tailor *t) {
-    const sk_constraint_type *type = t->params->bending == BY_ANGLE ? &sk_dihedral : &sk_isometric;
+/* Bending by angle, by curvature or along lines, in place of the springs over folds. */
+static skein_status add_bending(tailor *t) {
+    int32_t by = t->params->bending;
+    if (by == BY_LINES && !t->lines.flat)
+        return sk_fail(t->error, SKEIN_ERROR_VALUE, "bend.by",
+                       "this mesh is no flat grid of rectangles: set it to shape, angle or curvature");
+    if (t->lines.flat && (by == BY_LINES || by == BY_SHAPE))
+        return sk_lines_add_bending(&t->lines, t->world, t->body, t->params->rigidity, t->error);
+    const sk_constraint_type *type = by == BY_CURVATURE ? &sk_isometric : &sk_dihedral;
     sk_hinges hinges;
     skein_status status = sk_hinges_find(&hinges, &t->sheet, &t->springs, type, t->error);
     if (status) return status;
@@ -172,14 +184,14 @@ static skein_status add_springs(tailor *t) {
         struct sk_spring_list *list = &t->springs.list[sort];
         for (size_t i = 0; i < 2 * list->count; i++) list->pairs[i] += t->body->first_particle;
         bool hinges = sort == SK_BEND && t->params->bending != BY_SPRINGS;
-        skein_status status = hinges ? add_hinges(t)
+        skein_status status = hinges ? add_bending(t)
                                      : sk_world_add_body_batch(t->world, t->body, &sk_distance, labels[sort],
                                                                *materials[sort], sort == SK_STRETCH, list->count,
                                                                list->pairs, list->rest, list->scale, t->error);
         if (status) return status;
     }
     sk_world_add_strain_limit(t->body);
-    return SKEIN_OK;
+    return t->lines.area ? sk_lines_add_spans(&t->lines, t->world, t->body, t->error) : SKEIN_OK;
 }
 
 /* Triangles of the faces, as fans, for forces on areas. */
@@ -241,6 +253,7 @@ static skein_status add_tethers(tailor *t) {
     skein_status status = good
                               ? sk_world_add_tethers(t->world, t->body, tethered, anchors, particles, lengths, t->error)
                               : sk_fail_memory(t->error, "tethers");
+    if (!status && t->lines.area) sk_world_tether_seldom(t->world);
     sk_geodesic_release(geodesic);
     sk_release(allocator, distance);
     sk_release(allocator, nearest);
@@ -280,9 +293,13 @@ static bool live(const void *data, const char *field) {
 
 static void change(sk_body *body, const void *data) {
     const cloth_params *params = data;
-    *body->material[SK_STRETCH] = params->stretch;
-    *body->material[SK_SHEAR] = params->shear;
-    *body->material[SK_BEND] = params->bending == BY_SPRINGS ? params->bend : (sk_material){params->rigidity, 0};
+    sk_material bend = params->bending == BY_SPRINGS ? params->bend : (sk_material){params->rigidity, 0};
+    for (size_t i = 0; i < body->batch_count; i++) {
+        const sk_batch *batch = body->batch[i];
+        if (batch->only_bounds) continue;
+        bool shear = !strcmp(batch->label, "shear");
+        *body->material[i] = batch->measured ? params->stretch : shear ? params->shear : bend;
+    }
     body->tether_bound = params->tether;
     body->strain_bound = params->limit;
 }
@@ -313,6 +330,7 @@ static skein_status build(skein_world *world, sk_body *body, const void *params,
     }
     sk_release(&world->allocator, t.pinned);
     sk_release(&world->allocator, t.mass);
+    sk_lines_release(&t.lines);
     sk_springs_release(&t.springs);
     sk_sheet_release(&t.sheet);
     return status;

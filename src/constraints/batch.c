@@ -39,6 +39,10 @@ bool sk_batch_is_on(const sk_batch *batch) {
     return *batch->enabled && batch->count && !batch->broken && !batch->rests;
 }
 
+bool sk_batch_pulls(const sk_batch *batch) {
+    return sk_batch_is_on(batch) && !batch->only_bounds;
+}
+
 /* ---- elements that are left out ---- */
 
 static sk_presence presence_of(const sk_batch *batch, const uint32_t *particle, const sk_particles *particles) {

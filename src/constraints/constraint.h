@@ -98,6 +98,8 @@ struct sk_batch {
     const char *label;
     const bool *enabled;
     const double *bound; /* of the relative violation, kept by limit rows; NULL: none */
+    bool only_bounds;    /* it is a bound and nothing else: it does not pull, and is not counted */
+    bool seldom;         /* position methods may take it in every second substep only, with the same stiffness */
     bool measured;       /* an edge of a body: it counts in the stretch of the statistics */
     size_t count, arity, rest_count;
     uint32_t *particle; /* count x arity, user's indices */
@@ -129,8 +131,10 @@ struct sk_batch {
  * reals, `scale` (or NULL) `count`. */
 sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *type, const void *params, size_t count,
                           const uint32_t *particles, const real *rest, const real *scale);
-/* Whether it acts. */
+/* Whether it acts, */
 bool sk_batch_is_on(const sk_batch *batch);
+/* and pulls: has forces, or is projected. */
+bool sk_batch_pulls(const sk_batch *batch);
 /* Leaves out the elements of which a particle takes no part, for good where it is gone, and takes back those whose
  * particles are all there again. False when there is no memory: all as before. */
 bool sk_batch_leave_out(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles);
@@ -162,7 +166,7 @@ sk_row_kernel sk_sweep_clear_multipliers;
 /* The batch's damping over stiffness, in seconds; 0 for a rigid batch. */
 double sk_batch_damping_time(const sk_batch *batch);
 
-extern const sk_constraint_type sk_distance, sk_dihedral, sk_isometric, sk_area, sk_volume, sk_angle,
+extern const sk_constraint_type sk_distance, sk_dihedral, sk_isometric, sk_straight, sk_twist, sk_area, sk_volume, sk_angle,
     sk_formula_constraint, sk_energy, sk_enclosed_volume, sk_pressure;
 
 #endif

@@ -1,6 +1,7 @@
 /* As many constraints of one kind as the processor works on at once, on their way through its arithmetic. A kind that
  * is compiled into the library says how many particles an element has (SK_ARITY), and how many rest values (SK_RESTS),
- * before it includes this. */
+ * before it includes this. One whose value is the length of a weighted sum of positions defines SK_LINEAR, and, for
+ * element_arithmetic.h, linear(). */
 #ifndef SK_CONSTRAINTS_ELEMENT_H
 #define SK_CONSTRAINTS_ELEMENT_H
 

@@ -78,6 +78,24 @@ SK_INLINE void project(sk_element *e) {
     SK_EACH_PARTICLE (i) e->scale[i] = s * e->w[i];
 }
 
+#ifdef SK_LINEAR
+/* The same for a kind whose value is |L|, with L = sum of c x linear in the positions: its gradient is c L/|L|, so that
+ * the moves are -w c L / (sum of w c^2 + soft), without a root, and right where L is 0, too. The kind's linear() leaves
+ * c in `scale` and L in the first gradient. */
+SK_INLINE void project_linear(sk_element *e) {
+    linear(e);
+    sk_wide below = e->soft;
+    SK_EACH_PARTICLE (i) {
+        sk_wide moves = e->w[i] * e->scale[i];
+        below += moves * e->scale[i];
+        e->scale[i] = moves;
+        e->gradient[i] = e->gradient[0];
+    }
+    sk_wide s = sk_keep(sk_positive(below), -1 / below);
+    SK_EACH_PARTICLE (i) e->scale[i] = s * e->scale[i];
+}
+#endif
+
 SK_INLINE void project_damped(sk_element *e, const sk_element_constants *c) {
     sk_wide3 moved[SK_ARITY];
     SK_EACH_PARTICLE (i)
@@ -108,6 +126,12 @@ SK_INLINE void limit(sk_element *e, const sk_element_constants *c, bool moving) 
 
 SK_INLINE void work_out(sk_element *e, const sk_element_constants *c, sk_element_mode mode) {
     e->divided = e->opposite = false;
+#ifdef SK_LINEAR
+    if (mode == SK_MODE_PROJECT) {
+        project_linear(e);
+        return;
+    }
+#endif
     formula(e);
     if (mode == SK_MODE_FORCE) pull(e, c);
     else if (mode == SK_MODE_PROJECT) project(e);

@@ -6,6 +6,7 @@
 #define SK_RESTS 3
 #define SK_FORMULA "constraints/emitted/isometric.h"
 #define SK_WITH_STRIPS
+#define SK_LINEAR
 #include "base/kernels.h"
 #include "constraints/element.h"
 
@@ -13,6 +14,15 @@
 SK_ELEMENT_KERNELS
 
 #ifdef SK_ISA
+
+SK_INLINE void linear(sk_element *e) {
+    const sk_wide3 *x = e->x;
+    sk_wide a = e->rest[0], b = e->rest[1], c = e->rest[2];
+    e->gradient[0] = (sk_wide3){a * (x[1].x - x[0].x) - b * (x[2].x - x[0].x) - c * (x[3].x - x[0].x),
+                                a * (x[1].y - x[0].y) - b * (x[2].y - x[0].y) - c * (x[3].y - x[0].y),
+                                a * (x[1].z - x[0].z) - b * (x[2].z - x[0].z) - c * (x[3].z - x[0].z)};
+    e->scale[0] = b + c - a, e->scale[1] = a, e->scale[2] = -b, e->scale[3] = -c;
+}
 
 #include "constraints/element_arithmetic.h"
 #include "constraints/element_stiffness.h"

@@ -28,6 +28,7 @@ typedef struct sk_limit {
     const char *label;
     const bool *enabled;
     const double *bound; /* of the stretch: 0.05 lets it grow by 5 % */
+    bool seldom;         /* position methods may take it in every second substep only */
     size_t count;
     size_t anchors;     /* of each element */
     bool shared;        /* all elements have the same anchors */

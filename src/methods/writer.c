@@ -26,6 +26,7 @@ void sk_add_row_on(sk_writer *writer, sk_row row, const sk_only *only) {
 
 size_t sk_write_repeat(sk_writer *writer, size_t times, double h) {
     writer->h = writer->before = h;
+    writer->turns = times;
     sk_add_row(writer, (sk_row){.kind = SK_ROW_REPEAT, .end = times, .order = SK_ORDERED, .label = "repeat"});
     return writer->plan->count - 1;
 }
@@ -165,7 +166,7 @@ void sk_write_fields(sk_writer *writer) {
 }
 
 static bool is_on(const sk_batch *batch) {
-    return sk_batch_is_on(batch);
+    return sk_batch_pulls(batch);
 }
 
 /* Without damping the multiplier is zero whenever it is read in the only pass of a substep, and counts for nothing
@@ -364,8 +365,10 @@ static size_t rows_of(const sk_sweep *sweep, size_t reach) {
     return sweep->strips ? sweep->walk.rows - reach : sweep->slab_start ? sweep->walk.rows : sweep->group_count;
 }
 
+/* A sweep's row, in each `every`-th substep; projections share their stiffness among `coefficient` rows. */
 static void add_sweep(sk_writer *writer, const sk_sweep *sweep, sk_half half, sk_row_kind kind,
-                      const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second, double coefficient) {
+                      const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second, double coefficient,
+                      size_t every) {
     const sk_kernels *walk = sweep->strips ? &kernels->strips : &kernels->groups;
     sk_add_row(writer, (sk_row){.kind = kind,
                                 .order = SK_ORDERED,
@@ -377,6 +380,7 @@ static void add_sweep(sk_writer *writer, const sk_sweep *sweep, sk_half half, sk
                                 .label = sweep->label,
                                 .walk = sweep->walk,
                                 .half = half,
+                                .every = every,
                                 .end = rows_of(sweep, sweep->walk.reach)});
 }
 
@@ -384,7 +388,7 @@ static void add_sweep(sk_writer *writer, const sk_sweep *sweep, sk_half half, sk
 static void add_sweeps(sk_writer *writer, const sk_batch *batch, size_t first, sk_row_kind kind,
                        const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second) {
     for (size_t i = first; i < batch->sweep_count; i++)
-        add_sweep(writer, &batch->sweeps[i], SK_WHOLE, kind, kernels, dst, second, 1);
+        add_sweep(writer, &batch->sweeps[i], SK_WHOLE, kind, kernels, dst, second, 1, 0);
 }
 
 /* A row for all sweeps of a batch along the same strips: each strip row's force is worked out whole, so the
@@ -408,7 +412,7 @@ static void add_strip_forces(sk_writer *writer, const sk_batch *batch, size_t *f
 }
 
 static bool has_bound(const sk_batch *batch) {
-    return is_on(batch) && batch->bound && *batch->bound < SK_UNBOUNDED;
+    return sk_batch_is_on(batch) && batch->bound && *batch->bound < SK_UNBOUNDED;
 }
 
 static bool is_kept(const sk_limit *limit) {
@@ -445,15 +449,32 @@ static void write_multipliers(sk_writer *writer, int passes) {
     }
 }
 
-/* A batch's sweeps on the way through all batches, or those halves that are left for the way back. */
+/* In which substeps what may wait is taken: in every second one, if they come in pairs. */
+static size_t seldom_of(const sk_writer *writer) {
+    return writer->turns % 2 == 0 ? 2 : 0;
+}
+
+/* Batches that bound and do nothing else come before those that pull: what is swept last is kept best, which are edges. */
+static void write_spans(sk_writer *writer) {
+    for (size_t i = 0; i < writer->rules->batches.count; i++) {
+        const sk_batch *batch = writer->rules->batches.data[i];
+        if (batch->only_bounds && has_bound(batch))
+            add_sweeps(writer, batch, 0, SK_ROW_LIMIT, &batch->type->limit, SK_X, SK_NONE);
+    }
+}
+
+/* A batch's sweeps on the way through all batches, or those halves that are left for the way back. What
+ * is taken in every second substep gets twice the stiffness for it, for it stands for both. */
 static void write_batch(sk_writer *writer, const sk_batch *batch, bool back, int passes, int sharing) {
     bool keeps = keeps_multiplier(batch, passes);
+    size_t every = batch->seldom && !keeps && passes == 1 ? seldom_of(writer) : 0;
+    double coefficient = (double)sharing / (every ? (double)every : 1);
     for (size_t i = 0; i < batch->sweep_count; i++) {
         const sk_sweep *sweep = &batch->sweeps[back ? batch->sweep_count - 1 - i : i];
         sk_half half = !batch->both_ways || !sweep->strips ? SK_WHOLE : back ? SK_ODD_HALF : SK_EVEN_HALF;
         if (back && half == SK_WHOLE) continue;
         add_sweep(writer, sweep, half, SK_ROW_PROJECT, keeps ? &batch->type->project_damped : &batch->type->project,
-                  SK_X, keeps ? SK_X0 : SK_NONE, sharing);
+                  SK_X, keeps ? SK_X0 : SK_NONE, coefficient, every);
     }
 }
 
@@ -474,10 +495,12 @@ static void write_pass(sk_writer *writer, int passes, int sharing) {
 
 void sk_write_projections(sk_writer *writer, int passes) {
     write_multipliers(writer, passes);
+    write_spans(writer);
     for (int pass = 0; pass < passes; pass++) write_pass(writer, passes, 1);
 }
 
 void sk_write_shared_projections(sk_writer *writer, int passes) {
+    write_spans(writer);
     for (int pass = 0; pass < passes; pass++) {
         write_multipliers(writer, 1);
         write_pass(writer, 1, passes);
@@ -544,7 +567,7 @@ void sk_write_limits(sk_writer *writer, sk_vector velocity) {
     const sk_rules *rules = writer->rules;
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
-        if (!has_bound(batch)) continue;
+        if (!has_bound(batch) || (batch->only_bounds && velocity == SK_NONE)) continue; // they were with the projections
         add_sweeps(writer, batch, 0, SK_ROW_LIMIT,
                    velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving, SK_X, velocity);
     }
@@ -558,6 +581,7 @@ void sk_write_limits(sk_writer *writer, sk_vector velocity) {
                                     .source = {SK_X, velocity},
                                     .rule = limit,
                                     .label = limit->label,
+                                    .every = velocity == SK_NONE && limit->seldom ? seldom_of(writer) : 0,
                                     .begin = limit->first_slot,
                                     .end = limit->first_slot + limit->slot_count});
     }

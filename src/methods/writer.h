@@ -37,7 +37,8 @@ typedef struct sk_writer {
     const sk_group *everybody;
     size_t strip_slots; /* the first slots, which are in strips */
     size_t packed;      /* the first slots that are in packed blocks now */
-    double h;           /* of the present substep, s */
+    double h;           /* of the present substep, s, */
+    size_t turns;       /* and how many of them the repeat has */
     double before;      /* and how long before its end X is by now, s */
     bool no_memory;     /* the plan is incomplete */
 } sk_writer;

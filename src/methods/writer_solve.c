@@ -51,7 +51,7 @@ void sk_write_scalar(sk_writer *writer, sk_row_kernel *kernel, double a, const c
 }
 
 static bool is_elastic(const sk_batch *batch) {
-    return sk_batch_is_on(batch) && ((const sk_material *)batch->params)->stiffness < SK_UNBOUNDED;
+    return sk_batch_pulls(batch) && ((const sk_material *)batch->params)->stiffness < SK_UNBOUNDED;
 }
 
 static void add_batches(sk_writer *writer, sk_row_kind kind, const sk_kernels *(*kernels_of)(const sk_batch *batch),

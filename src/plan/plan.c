@@ -184,6 +184,8 @@ void sk_row_describe(const sk_row *row, char *text, size_t size) {
         static const char *const halves[] = {[SK_WHOLE] = "", [SK_EVEN_HALF] = " even", [SK_ODD_HALF] = " odd"};
         snprintf(what, sizeof what, "%s%s,%s", row->label ? row->label : "", halves[row->half], sources);
     }
-    snprintf(text, size, "%-10s %-3s = %-44s %zu elements, %s", sk_row_kind_text(row->kind), vector_text(row->dst),
-             what, row->end - row->begin, row->order == SK_FREE ? "free" : "ordered");
+    char turns[40] = "";
+    if (row->every > 1) snprintf(turns, sizeof turns, ", every %zu times", row->every);
+    snprintf(text, size, "%-10s %-3s = %-44s %zu elements, %s%s", sk_row_kind_text(row->kind), vector_text(row->dst),
+             what, row->end - row->begin, row->order == SK_FREE ? "free" : "ordered", turns);
 }

@@ -94,7 +94,8 @@ typedef struct sk_run {
     double time;              /* at the end of the present substep, s */
     double *cell;             /* what rows of a solve hand to each other (plan/solve.h) */
     struct sk_matrix *matrix; /* of a solve with a factor (plan/matrix.h), else NULL */
-    bool last_turn;           /* of the innermost repeat */
+    size_t turn;              /* of the innermost repeat, from 0 on, */
+    bool last_turn;           /* and whether it is the last */
     bool no_memory;           /* a growing list could not grow: the step fails and says so */
 } sk_run;
 
@@ -132,6 +133,7 @@ struct sk_row {
     bool sets;             /* a field row: F is written, not added to */
     bool by_particle;      /* its elements are the user's particles, not slots: not to be run in chunks with others */
     bool alone;            /* it looks at slots that are not its own: nor is that */
+    size_t every;          /* it runs in each so many-th turn of its repeat, and in the last of them; 0: in all */
     size_t packed;         /* slots [0, packed) are in packed blocks when it runs */
     sk_walk walk;          /* of rows whose elements are strip rows */
     sk_half half;          /* of a sweep along strips */
@@ -168,6 +170,10 @@ bool sk_plan_add(sk_plan *plan, sk_allocator *allocator, sk_row row);
 sk_row_kernel sk_run_partly;
 /* The row for these slots alone. */
 sk_row sk_row_for(sk_row row, size_t first_slot, size_t end_slot);
+/* Whether a row runs in the present turn. */
+static inline bool sk_row_is_due(const sk_run *run, const sk_row *row) {
+    return row->every < 2 || run->turn % row->every == row->every - 1;
+}
 /* One line about a row, as `skein explain` shows it. */
 void sk_row_describe(const sk_row *row, char *text, size_t size);
 const char *sk_row_kind_text(sk_row_kind kind);

@@ -62,7 +62,7 @@ void sk_world_measure_energy(const skein_world *world, skein_statistics *statist
     measure_particles(world, statistics);
     for (size_t i = 0; i < world->rules.batches.count; i++) {
         const sk_batch *batch = world->rules.batches.data[i];
-        if (!sk_batch_is_on(batch)) continue;
+        if (!sk_batch_pulls(batch)) continue;
         if (batch->type->whole_energy)
             statistics->elastic_energy +=
                 batch->type->whole_energy(batch, world->particles.vector[SK_X], &statistics->guarded);

@@ -79,7 +79,7 @@ static void run_tiled(sk_run *run, const sk_row *rows, size_t count, size_t begi
         for (size_t g = 0; g < count; g++) {
             size_t first = tile > rows[g].begin ? tile : rows[g].begin,
                    last = tile_end < rows[g].end ? tile_end : rows[g].end;
-            if (first < last) rows[g].kernel(run, &rows[g], first, last);
+            if (first < last && sk_row_is_due(run, &rows[g])) rows[g].kernel(run, &rows[g], first, last);
         }
     }
 }
@@ -99,7 +99,7 @@ static void run_part(sk_run *run, const segment_job *job, size_t g, size_t count
     last = chunk + 1 == job->chunk_count ? job->walk.rows : last > lag ? last - lag : 0;
     if (row->walk.rows) {
         if (last > row->end) last = row->end;
-        if (first < last) row->kernel(run, row, first, last);
+        if (first < last && sk_row_is_due(run, row)) row->kernel(run, row, first, last);
         return;
     }
     // slots before and after the strips go with the first and last chunk
@@ -114,6 +114,7 @@ static void run_part(sk_run *run, const segment_job *job, size_t g, size_t count
 static void set_turn(sk_run *run, const segment_job *job, size_t turn) {
     if (!(job->dt > 0)) return;
     run->time = job->start + (double)(turn + 1) * job->dt;
+    run->turn = turn;
     run->last_turn = turn + 1 == job->turns;
 }
 
@@ -226,8 +227,8 @@ typedef struct free_job {
 static void run_tiles(void *data, size_t begin, size_t end) {
     const free_job *job = data;
     uint64_t mode = sk_float_mode_enter();
-    if (job->count == 1) job->rows->kernel(job->run, job->rows, begin, end);
-    else run_tiled(job->run, job->rows, job->count, begin, end);
+    if (job->count > 1) run_tiled(job->run, job->rows, job->count, begin, end);
+    else if (sk_row_is_due(job->run, job->rows)) job->rows->kernel(job->run, job->rows, begin, end);
     sk_float_mode_leave(mode);
 }
 
@@ -252,7 +253,7 @@ static void run_segments(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_
         } else if (rows[r].order == SK_FREE) {
             run_free(run, tasks, rows + r, length = 1);
         } else {
-            rows[r].kernel(run, &rows[r], rows[r].begin, rows[r].end);
+            if (sk_row_is_due(run, &rows[r])) rows[r].kernel(run, &rows[r], rows[r].begin, rows[r].end);
             length = 1;
         }
         r += length;
@@ -263,6 +264,7 @@ static void run_segments(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_
 static bool begin_turn(sk_run *run, const sk_row *repeat, double start, size_t turn) {
     if (repeat->cell && run->cell[repeat->cell] != 0) return false;
     if (!repeat->cell) run->time = start + (double)(turn + 1) * repeat->dt;
+    run->turn = turn;
     run->last_turn = turn + 1 == repeat->end;
     return true;
 }
@@ -270,9 +272,11 @@ static bool begin_turn(sk_run *run, const sk_row *repeat, double start, size_t t
 /* The turns of a repeat, one after the other; further repeats may lie within it. */
 static void run_turns(sk_run *run, sk_tasks *tasks, const sk_row *repeat) {
     double start = run->time;
+    size_t outer_turn = run->turn;
     bool outer = run->last_turn;
     for (size_t turn = 0; turn < repeat->end && begin_turn(run, repeat, start, turn); turn++)
         sk_run_rows(run, tasks, repeat + 1, repeat->length);
+    run->turn = outer_turn;
     run->last_turn = outer;
 }
 
@@ -316,11 +320,13 @@ void sk_run_rows_timed(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t 
             seconds[r] += sk_seconds() - begin;
             continue;
         }
+        size_t outer_turn = run->turn;
         bool outer = run->last_turn;
         for (size_t turn = 0; turn < row->end; turn++) {
             if (!begin_turn(run, row, start, turn)) break;
             sk_run_rows_timed(run, tasks, row + 1, row->length, seconds + r + 1);
         }
+        run->turn = outer_turn;
         run->last_turn = outer;
         r += row->length;
     }

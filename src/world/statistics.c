@@ -58,7 +58,7 @@ static int compare_reals(const void *a, const void *b) {
 
 /* Those of a body that is not there do not count. */
 static bool is_there(const skein_world *world, const sk_batch *batch) {
-    return batch->count && !batch->rests && !batch->broken && sk_particle_is_here(&world->particles, batch->particle[0]);
+    return batch->count && !batch->only_bounds && !batch->rests && !batch->broken && sk_particle_is_here(&world->particles, batch->particle[0]);
 }
 
 static skein_status measure_stretch(skein_world *world, skein_statistics *s, skein_error *error) {

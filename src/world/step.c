@@ -89,7 +89,7 @@ static skein_status make_matrix(skein_world *world, skein_error *error) {
     bool good = parts != NULL;
     for (size_t i = 0; i < count && good; i++) {
         sk_batch *batch = world->rules.batches.data[i];
-        if (!batch->type->blocks.version[world->isa]) continue;
+        if (!batch->type->blocks.version[world->isa] || batch->only_bounds) continue;
         sk_release(allocator, batch->pair);
         batch->pair =
             sk_allocate(allocator, batch->count * batch->arity * (batch->arity - 1) / 2 * sizeof *batch->pair);

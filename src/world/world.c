@@ -208,6 +208,20 @@ void sk_world_sweep_both_ways(sk_body *body) {
     body->batch[body->batch_count - 1]->both_ways = true;
 }
 
+void sk_world_take_seldom(sk_body *body) {
+    body->batch[body->batch_count - 1]->seldom = true;
+}
+
+void sk_world_tether_seldom(skein_world *world) {
+    world->rules.limits.data[world->rules.limits.count - 1]->seldom = true;
+}
+
+void sk_world_only_bound(sk_body *body, const double *bound) {
+    sk_batch *batch = body->batch[body->batch_count - 1];
+    batch->bound = bound;
+    batch->only_bounds = true;
+}
+
 void sk_world_add_strain_limit(sk_body *body) {
     body->batch[body->batch_count - 1]->bound = &body->strain_bound;
 }

@@ -206,6 +206,12 @@ skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32
 void sk_world_rank_particles(skein_world *world, const sk_body *body, const uint32_t *rank, size_t count);
 /* Sweeps the body's newest batch by halves, forth and back (methods/writer.h). */
 void sk_world_sweep_both_ways(sk_body *body);
+/* Makes the body's newest batch a bound and nothing else (constraints/constraint.h). */
+void sk_world_only_bound(sk_body *body, const double *bound);
+/* Lets position methods take the body's newest batch in every second substep. */
+void sk_world_take_seldom(sk_body *body);
+/* The same of the newest tethers. */
+void sk_world_tether_seldom(skein_world *world);
 /* Keeps the edges of the body's newest batch under its strain bound. */
 void sk_world_add_strain_limit(sk_body *body);
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error);

@@ -1,0 +1,49 @@
+/* Straight: at p1, what the unit vectors to p0 and p2 add up to, with their lengths at rest: 2 sin(half the angle by
+ * which the way through the three turns), 0 where it is straight. Linear in the positions under the root, so that it is
+ * the cheapest bending there is, and never at a loss for an angle. As bending of a grid of rigidity B (N m) the three have
+ * the stiffness B area/l^2 (bodies/lines.c). */
+#define SK_ARITY 3
+#define SK_RESTS 2
+#define SK_FORMULA "constraints/emitted/straight.h"
+#define SK_WITH_STRIPS
+#define SK_LINEAR
+#include "base/kernels.h"
+#include "constraints/element.h"
+
+#define SK_UNIT straight
+SK_ELEMENT_KERNELS
+
+#ifdef SK_ISA
+
+SK_INLINE void linear(sk_element *e) {
+    const sk_wide3 *x = e->x;
+    sk_wide a = e->rest[0], b = e->rest[1];
+    e->gradient[0] = (sk_wide3){a * (x[0].x - x[1].x) + b * (x[2].x - x[1].x), a * (x[0].y - x[1].y) + b * (x[2].y - x[1].y),
+                                a * (x[0].z - x[1].z) + b * (x[2].z - x[1].z)};
+    e->scale[0] = a, e->scale[1] = -(a + b), e->scale[2] = b;
+}
+
+#include "constraints/element_arithmetic.h"
+#include "constraints/element_stiffness.h"
+#include "constraints/element_sweeps.h"
+
+#else
+
+typedef struct straight_params {
+    sk_material material;
+} straight_params;
+
+static const skein_field fields[] = {
+    SK_REAL(straight_params, material.stiffness, "stiffness", "N m", 0.01, 0, SK_UNBOUNDED,
+            "torque a radian of a small turn; \"infinite\" is rigid (position methods only)"),
+    SK_REAL(straight_params, material.damping, "damping", "N m s", 0, 0, SK_FAR, "torque a radian a second"),
+};
+
+#include "constraints/element_scalar.h"
+
+const sk_constraint_type sk_straight = {
+    .kind = {"straight", "keeps three particles in a straight line, the second in the middle", SKEIN_CONSTRAINT, fields,
+             sizeof fields / sizeof *fields, sizeof(straight_params)},
+    SK_ELEMENT_RULES,
+};
+#endif
