@@ -7,6 +7,9 @@
 
 /* From tip to tip, in radii of the scene. */
 static const double usual_span = 0.045;
+/* A predator is so many times as large. */
+static const double predator_size = 3;
+static const float predator_colour[3] = {0.24f, 0.15f, 0.10f};
 /* The part of a flock that strays, at each end of each axis; of so many birds, spread over all, that is found out. */
 static const double strays = 0.03;
 enum { MOST_LOOKED_AT = 8192 };
@@ -98,6 +101,25 @@ bool render_add_birds(render_world_birds *all, const skein_world *world, const r
     return find_core(birds, &state->positions[3 * surface->first_particle]);
 }
 
+bool render_add_predator_bird(render_world_birds *all, const double at[3], const double velocity[3]) {
+    if (!reserve(all, 1)) return false;
+    all->body[all->count] = SIZE_MAX;
+    render_birds *birds = &all->birds[all->count];
+    *birds = (render_birds){.count = 1};
+    // within the flock's own box, as far as the camera knows
+    bool alone = !all->count || !all->birds[0].count;
+    for (int k = 0; k < 3; k++) {
+        birds->least[k] = alone ? at[k] : all->birds[0].least[k];
+        birds->most[k] = alone ? at[k] : all->birds[0].most[k];
+        all->numbers[all->number_count + (size_t)k] = (float)at[k];
+        all->numbers[all->number_count + 4 + (size_t)k] = (float)velocity[k];
+    }
+    all->numbers[all->number_count + 3] = all->numbers[all->number_count + 7] = 1;
+    all->number_count += 8;
+    all->count++;
+    return true;
+}
+
 void render_world_birds_show(render_world_birds *all, const render_view *view, double range, render_frame *frame) {
     size_t at = 0;
     for (size_t i = 0; i < all->count; i++) {
@@ -107,10 +129,13 @@ void render_world_birds_show(render_world_birds *all, const render_view *view, d
             birds->velocities = birds->positions + 4 * birds->count;
             at += 8 * birds->count;
         }
-        render_material material = render_default_material(all->body[i]);
+        render_material material = render_default_material(all->body[i] == SIZE_MAX ? 0 : all->body[i]);
         memcpy(birds->colour, material.colour, sizeof birds->colour);
         birds->range = range;
-        birds->paint = view->colour == RENDER_BY_DIRECTION ? RENDER_BY_DIRECTION_FEATHERS
+        bool predator = all->body[i] == SIZE_MAX;
+        if (predator) memcpy(birds->colour, predator_colour, sizeof birds->colour);
+        birds->paint = predator                            ? RENDER_ONE_FEATHER
+                       : view->colour == RENDER_BY_DIRECTION ? RENDER_BY_DIRECTION_FEATHERS
                        : view->colour == RENDER_BY_SPEED   ? RENDER_BY_SPEED_FEATHERS
                        : view->colour == RENDER_BY_BODY    ? RENDER_ONE_FEATHER
                                                            : RENDER_OWN_FEATHERS;
@@ -122,7 +147,8 @@ void render_world_birds_show(render_world_birds *all, const render_view *view, d
 void render_world_birds_size(render_world_birds *all, const render_view *view, double radius) {
     double fitting = usual_span * (radius > 0 ? radius : 1);
     for (size_t i = 0; i < all->count; i++)
-        all->birds[i].span = view->particle_radius > 0 ? 4 * view->particle_radius : fitting;
+        all->birds[i].span = (view->particle_radius > 0 ? 4 * view->particle_radius : fitting) *
+                             (all->body[i] == SIZE_MAX ? predator_size : 1);
 }
 
 void render_world_birds_clear(render_world_birds *all) {

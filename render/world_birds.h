@@ -11,7 +11,7 @@
 /* Start from {0}. */
 typedef struct render_world_birds {
     render_birds *birds;
-    size_t *body; /* by flock: the place of its body */
+    size_t *body; /* by flock: the place of its body; SIZE_MAX for a predator */
     size_t count, room;
     float *numbers; /* positions, then velocities, of all that are not on the card; 4 floats each */
     size_t number_room, number_count;
@@ -22,6 +22,9 @@ bool render_are_birds(const skein_kind *kind, const render_view *view);
 /* Adds a flock; `index` is the body's place. False where there is no memory. */
 bool render_add_birds(render_world_birds *all, const skein_world *world, const render_world_state *state,
                       const skein_surface *surface, size_t index);
+/* Adds a predator: one dark bird, larger than the others. The camera makes no room for it. False where there is no
+ * memory. */
+bool render_add_predator_bird(render_world_birds *all, const double at[3], const double velocity[3]);
 /* All that were added go into the frame, coloured up to this range of speeds if that is what tells; and then get a size that suits a scene of this radius. */
 void render_world_birds_show(render_world_birds *all, const render_view *view, double range, render_frame *frame);
 void render_world_birds_size(render_world_birds *all, const render_view *view, double radius);

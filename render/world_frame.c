@@ -5,6 +5,7 @@
 #include "render/fail.h"
 #include "render/planes.h"
 #include "render/world_birds.h"
+#include "render/world_flock.h"
 #include "render/world_implicit.h"
 #include "render/world_lines.h"
 #include "render/world_points.h"
@@ -45,6 +46,7 @@ struct render_world_frame {
     char *image_path; /* of the image that is loaded */
     bool unread;      /* this time the particles' numbers stay where they are */
     unsigned updates;
+    uint32_t bird; /* that is chosen; UINT32_MAX: none */
     bool has_floor;
     double floor_height;
     render_subject held; /* in the picture, whatever the frame has */
@@ -72,6 +74,7 @@ render_world_frame *render_world_frame_create(skein_error *error) {
     made->frame = render_default_frame();
     made->held = render_subject_nothing();
     made->blend = 1;
+    made->bird = UINT32_MAX;
     return made;
 }
 
@@ -249,7 +252,7 @@ static skein_status take_body(render_world_frame *made, const skein_world *world
     return SKEIN_OK;
 }
 
-static skein_status take_bodies(render_world_frame *made, const skein_world *world, skein_error *error) {
+static skein_status take_bodies(render_world_frame *made, skein_world *world, skein_error *error) {
     size_t count = skein_object_count(world, SKEIN_BODY);
     if (!grow(&made->surfaces, count, sizeof *made->surfaces)) return render_fail_memory(error, "a frame");
     if (count > made->body_count) {
@@ -263,6 +266,11 @@ static skein_status take_bodies(render_world_frame *made, const skein_world *wor
     render_world_birds_clear(&made->birds);
     skein_status status = SKEIN_OK;
     for (size_t i = 0; i < count && status == SKEIN_OK; i++) status = take_body(made, world, i, error);
+    // predators are of a world that has birds
+    if (!status && made->birds.count && !render_add_predators(&made->birds, &made->lines, world, &made->state))
+        status = render_fail_memory(error, "a predator");
+    if (!status && made->birds.count && made->bird != UINT32_MAX)
+        render_add_zones(&made->lines, world, &made->state, made->bird);
     render_world_birds_show(&made->birds, &made->view, made->state.range, &made->frame);
     return status;
 }
@@ -416,6 +424,7 @@ static void take_look(render_world_frame *made) {
  * knows about where. It takes a world of nothing else. */
 static bool needs_no_numbers(render_world_frame *made, const skein_world *world) {
     skein_device_info device = skein_world_device(world);
+    if (made->bird != UINT32_MAX || render_has_flying_predator(world)) return false;
     if (device.device != SKEIN_DEVICE_CURRENT_GL || !device.position_buffer || made->view.velocities || made->view.contacts ||
         made->state.particle_count != skein_particle_count(world) || ++made->updates % updates_between_looks == 0)
         return false;
@@ -457,6 +466,14 @@ double render_world_frame_range(const render_world_frame *made) {
 
 void render_world_frame_choose(render_world_frame *made, const render_chosen *chosen) {
     made->chosen = *chosen;
+}
+
+void render_world_frame_choose_bird(render_world_frame *made, uint32_t particle) {
+    made->bird = particle;
+}
+
+double render_world_frame_span(const render_world_frame *made) {
+    return made->birds.count ? made->birds.birds[0].span : 0;
 }
 
 void render_world_frame_blend(render_world_frame *made, double blend) {

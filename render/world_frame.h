@@ -26,6 +26,12 @@ skein_status render_world_frame_update(render_world_frame *frame, skein_world *w
                                        skein_error *error);
 const render_frame *render_world_frame_get(const render_world_frame *frame);
 
+/* From the next update on the zones and neighbours of this bird are drawn (world_flock.h); UINT32_MAX, as at first: of
+ * none. */
+void render_world_frame_choose_bird(render_world_frame *frame, uint32_t particle);
+/* How large the first flock's birds are drawn, from tip to tip (m); 0 where there are none. */
+double render_world_frame_span(const render_world_frame *frame);
+
 /* From the next update on particles are drawn between the last two steps: 0 shows the state before the last step, 1
  * the present, as at first. */
 void render_world_frame_blend(render_world_frame *frame, double blend);

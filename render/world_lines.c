@@ -167,7 +167,7 @@ void render_add_axes(render_world_lines *lines, double length) {
 }
 
 void render_world_lines_show(render_world_lines *lines, double width, render_frame *frame) {
-    static const double thickness[RENDER_LINE_KIND_COUNT] = {0.8, 1, 1, 1, 1.6, 1, 1, 1.6, 2.2};
+    static const double thickness[RENDER_LINE_KIND_COUNT] = {0.8, 1, 1, 1, 1.6, 1, 1, 1.6, 2.2, 1};
     for (int i = 0; i < RENDER_LINE_KIND_COUNT; i++) {
         const render_line_set *set = &lines->sets[i];
         bool body = i == RENDER_WIREFRAME || i == RENDER_SPRINGS || i == RENDER_CONSTRAINTS;

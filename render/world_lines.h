@@ -18,6 +18,7 @@ typedef enum render_line_kind {
     RENDER_CONSTRAINTS,
     RENDER_GRADIENTS,
     RENDER_AXES,
+    RENDER_ZONES, /* reaches and neighbours: of predators, and of a chosen bird */
     RENDER_LINE_KIND_COUNT
 } render_line_kind;
 

@@ -744,6 +744,17 @@ static void steers_a_flock(void **state) {
         press_key("r");
         assert_true(told("colour") == colours[i]);
     }
+    // a ride on a bird, and back to where the camera was
+    double home[3], riding[3], back[3];
+    eye_of(home);
+    press_key("b");
+    press_key("period");
+    press_key("x"); // which draws it
+    eye_of(riding);
+    assert_true(distance(home, riding) > 1);
+    press_key("b");
+    eye_of(back);
+    assert_true(distance(home, back) < 1e-3);
     listen_from_here();
     tool("mousemove 450 180 sleep 0.2 mousemove 460 190");
     expect("hunts");

@@ -7,8 +7,8 @@
 #include "render/linear.h"
 #include "render/world_birds.h"
 
-/* A rider's head follows the bird's within so many seconds; he sits so many spans behind and above it. */
-static const double head_follows = 0.25, behind = 0.9, above = 0.35;
+/* Where one looks follows where the bird flies within so many seconds; its beak is so many spans ahead of it. */
+static const double head_follows = 0.25, beak = 0.3;
 
 /* The first flock; false where there is none. */
 static bool find_flock(const skein_world *world, skein_surface *flock) {
@@ -88,26 +88,36 @@ bool viewer_ride_toggle(viewer_ride *ride, const skein_world *world, viewer_came
     return true;
 }
 
-void viewer_ride_move(viewer_ride *ride, const skein_world *world, viewer_camera *camera, double span, double seconds) {
-    double x[3], v[3];
-    if (!ride->rides || skein_positions_copy(world, ride->bird, 1, x) || skein_velocities_copy(world, ride->bird, 1, v))
-        return;
-    double speed = sqrt(render_dot(v, v));
-    bool new_ride = render_dot(ride->ahead, ride->ahead) == 0;
-    double share = new_ride ? 1 : 1 - exp(-fmax(seconds, 0) / head_follows);
+/* Where it looks follows where the bird flies, as the world's time goes on; at once when that jumps. */
+static void turn_head(viewer_ride *ride, const double v[3], double time) {
+    double speed = sqrt(render_dot(v, v)), seconds = time - ride->time;
+    bool cut = render_dot(ride->ahead, ride->ahead) == 0 || seconds < 0 || seconds > 1;
+    double share = cut ? 1 : 1 - exp(-seconds / head_follows);
     for (int k = 0; k < 3 && speed > 0 && isfinite(speed); k++)
         ride->ahead[k] += share * (v[k] / speed - ride->ahead[k]);
-    if (render_dot(ride->ahead, ride->ahead) == 0) ride->ahead[2] = 1;
-    double ahead[3];
-    memcpy(ahead, ride->ahead, sizeof ahead);
+    ride->time = time;
+}
+
+void viewer_ride_move(viewer_ride *ride, const skein_world *world, viewer_camera *camera, double blend, double span) {
+    double x[3], v[3];
+    bool known = ride->rides && !skein_velocities_copy(world, ride->bird, 1, v) &&
+                 !(blend < 1 ? skein_positions_blend(world, blend, ride->bird, 1, x)
+                             : skein_positions_copy(world, ride->bird, 1, x));
+    if (!known) return;
+    turn_head(ride, v, skein_world_time(world));
+    double ahead[3] = {ride->ahead[0], ride->ahead[1], ride->ahead[2]};
+    if (render_dot(ahead, ahead) == 0) ahead[2] = 1; // it stands
     render_normalise(ahead);
     // never straight up or down, where there is no upright
-    if (fabs(ahead[1]) > 0.98) ahead[1] = copysign(0.98, ahead[1]), ahead[2] += ahead[2] < 0 ? -0.2 : 0.2;
+    double level = hypot(ahead[0], ahead[2]);
+    if (level < 0.05) ahead[2] += ahead[2] < 0 ? -0.05 : 0.05;
     render_normalise(ahead);
     for (int k = 0; k < 3; k++) {
-        camera->lens.eye[k] = x[k] - behind * span * ahead[k] + (k == 1 ? above * span : 0);
+        camera->lens.eye[k] = x[k] + beak * span * ahead[k];
         camera->lens.target[k] = camera->lens.eye[k] + 10 * span * ahead[k];
     }
-    camera->lens.near = 0.05 * span;
+    const double up[3] = {0, 1, 0};
+    memcpy(camera->lens.up, up, sizeof up);
+    camera->lens.near = 0.02 * span;
     camera->moved = true;
 }

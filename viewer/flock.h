@@ -10,8 +10,9 @@
 
 typedef struct viewer_ride {
     bool chosen, rides;
-    uint32_t bird;    /* a particle of the first side */
-    double ahead[3];  /* where it looks, smoothed */
+    uint32_t bird;     /* a particle of the first side */
+    double ahead[3];   /* where it looks, smoothed */
+    double time;       /* of the world, then */
     render_camera was; /* before the ride */
 } viewer_ride;
 
@@ -23,7 +24,8 @@ bool viewer_flock_measure(skein_world *world, skein_order *order);
 /* Begins a ride, on the chosen bird or else on the one nearest to where the camera looks; or ends it, and the camera is
  * where it was. False where there is no bird. */
 bool viewer_ride_toggle(viewer_ride *ride, const skein_world *world, viewer_camera *camera);
-/* Brings the camera along, `seconds` after the last time. */
-void viewer_ride_move(viewer_ride *ride, const skein_world *world, viewer_camera *camera, double span, double seconds);
+/* Brings the camera of a ride to the bird's beak, as it stands between the last two steps (skein_pacer_blend()); birds
+ * are so large from tip to tip (m). */
+void viewer_ride_move(viewer_ride *ride, const skein_world *world, viewer_camera *camera, double blend, double span);
 
 #endif

@@ -191,6 +191,16 @@ static void change_field(viewer_stage *stage, const viewer_key *key) {
     stage->facts = true;
 }
 
+/* First person: what the chosen bird sees. */
+static void ride(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    bool done = viewer_ride_toggle(&stage->ride, stage->sides[0].world, &stage->camera);
+    stage->dirty = true;
+    if (!done) viewer_note(stage, "there is no bird in sight to ride on");
+    else if (stage->ride.rides) viewer_note(stage, "rides on bird %u; B ends it", stage->ride.bird);
+    else viewer_note(stage, "back to the view before the ride");
+}
+
 /* ---- The table ---- */
 
 #define PANEL(code_, name_, panel_, help_) \
@@ -266,6 +276,12 @@ static const viewer_key keys[] = {
      .act = solve,
      .repeats = true,
      .help = "in a scene that advances by keys: one solve (as any key without another meaning)"},
+    {.code = GLFW_KEY_B,
+     .name = "B",
+     .when = WITH_FIELD,
+     .act = ride,
+     .field = "alignment",
+     .help = "in a flock: rides on the bird that was clicked, or the one in the middle, and ends it"},
     FIELD(GLFW_KEY_UP, "Up Down", "separation", 1, "in a flock: more and less separation"),
     FIELD(GLFW_KEY_DOWN, NULL, "separation", -1, NULL),
     FIELD(GLFW_KEY_RIGHT, "Right Left", "alignment", 1, "in a flock: more and less alignment"),

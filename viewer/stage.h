@@ -17,6 +17,7 @@
 #include "render/world_frame.h"
 #include "viewer/camera.h"
 #include "viewer/exchange.h"
+#include "viewer/flock.h"
 #include "viewer/grab.h"
 #include "viewer/pace.h"
 #include "viewer/painter.h"
@@ -52,6 +53,7 @@ typedef struct viewer_stage {
     char wanted[VIEWER_TEXT]; /* a scene that could not be opened: tried again when its file changes */
     viewer_camera camera;
     viewer_grab grab;
+    viewer_ride ride; /* the chosen bird */
     viewer_lesson lesson;
     skein_pacer pacer;
     bool paused, paused_by_focus, play_away, closing;

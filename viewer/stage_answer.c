@@ -77,6 +77,16 @@ static void press(viewer_stage *stage, const viewer_request *r) {
     if (particle != UINT32_MAX) viewer_grab_take(&stage->grab, stage->sides[side].world, side, particle);
 }
 
+/* A click on a bird chooses it, and once more lets it go. */
+static void choose_bird(viewer_stage *stage, uint32_t particle) {
+    bool same = stage->ride.chosen && stage->ride.bird == particle;
+    if (stage->ride.rides) return;
+    stage->ride.chosen = !same;
+    stage->ride.bird = particle;
+    if (same) viewer_note(stage, "bird %u is one of many again", particle);
+    else viewer_note(stage, "bird %u: its zones, and who counts as a neighbour; B rides on it", particle);
+}
+
 static void release(viewer_stage *stage) {
     if (stage->grab.holding) {
         skein_world *world = stage->sides[stage->grab.side].world;
@@ -85,6 +95,8 @@ static void release(viewer_stage *stage) {
             double x[3] = {0, 0, 0};
             skein_positions_copy(world, stage->grab.particle, 1, x);
             viewer_event(stage->events, "released %u at %.5g %.5g %.5g", stage->grab.particle, x[0], x[1], x[2]);
+        } else if (stage->grab.side == 0 && viewer_is_bird(world, stage->grab.particle)) {
+            choose_bird(stage, stage->grab.particle);
         } else {
             bool pinned = viewer_toggle_pin(world, stage->grab.particle);
             viewer_note(stage, "%s particle %u", pinned ? "pinned" : "freed", stage->grab.particle);

@@ -227,6 +227,7 @@ static skein_status take_frame(viewer_stage *stage, size_t side, skein_error *er
     render_world_frame_blend(frame, between ? skein_pacer_blend(&stage->pacer) : 1);
     const render_chosen chosen = viewer_lesson_chosen(stage), nothing = {.any = false};
     render_world_frame_choose(frame, side ? &nothing : &chosen);
+    render_world_frame_choose_bird(frame, side == 0 && stage->ride.chosen ? stage->ride.bird : UINT32_MAX);
     skein_status status = render_world_frame_update(frame, player->world, &player->view, error);
     if (status || side) return status;
     double now = skein_world_time(player->world), middle[3];
@@ -238,6 +239,8 @@ static skein_status take_frame(viewer_stage *stage, size_t side, skein_error *er
     } else if (player->view.camera.orbit != 0 && !camera->moved) {
         viewer_camera_orbit(camera, player->view.camera.orbit, now);
     }
+    double blend = between ? skein_pacer_blend(&stage->pacer) : 1;
+    viewer_ride_move(&stage->ride, player->world, camera, blend, render_world_frame_span(frame));
     if (camera->follows && render_world_frame_middle(frame, middle)) viewer_camera_follow(camera, middle);
     return SKEIN_OK;
 }

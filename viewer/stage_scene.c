@@ -25,6 +25,7 @@ static void restart_clock(viewer_stage *stage) {
     stage->told_slow = false;
     stage->sampled = 0;
     stage->grab.holding = false;
+    stage->ride = (viewer_ride){.bird = UINT32_MAX};
     stage->facts = stage->dirty = true;
     if (!stage->side_count) return;
     int most = 4 * player->steps;
