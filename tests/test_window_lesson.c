@@ -186,11 +186,11 @@ static void write_formula(const char *text) {
     char words[400];
     settled_place_of("lesson text", &x, &y);
     click(x, y);
-    tool("sleep 0.2 keydown ctrl sleep 0.1 keydown a sleep 0.2 keyup a keyup ctrl sleep 0.2");
+    tool("sleep 0.6 keydown ctrl sleep 0.3 keydown a sleep 0.4 keyup a sleep 0.2 keyup ctrl sleep 0.3");
     listen_from_here();
     snprintf(words, sizeof words, "type --delay 20 '%s'", text);
     tool(words);
-    tool("sleep 0.3 keydown Return sleep 0.3 keyup Return"); // as long as a finger takes
+    tool("sleep 0.5 keydown Return sleep 0.5 keyup Return"); // as long as a finger takes
 }
 
 static void its_text_can_be_changed(void **state) {
