@@ -34,6 +34,11 @@
         if (SANITIZED || sizeof(skein_real) == sizeof(double)) skip(); \
     while (0)
 
+/* Tests are about threads where they ask for some: all of them share every step, whether that pays or not. */
+__attribute__((constructor)) static void share_every_step(void) {
+    setenv("SKEIN_THREADS", "always", 0);
+}
+
 static const char *const method_names[] = {"symplectic_euler", "xpbd"};
 
 /* ---- Saying what went wrong ------------------------------------------------------------------- */

@@ -50,8 +50,8 @@ static void wrong_arguments_are_told(void **state) {
         {{"run", "a.json", "--fps", "0"}, "skein run: --fps 0: 0 is out of range: expected from 0.001 to 1e+06 1/s\n"},
         {{"run", "a.json", "--fps", "nan"},
          "skein run: --fps nan: nan is out of range: expected from 0.001 to 1e+06 1/s\n"},
-        {{"run", "a.json", "--threads", "0"}, "skein run: --threads 0: 0 is out of range: expected from 1 to 64\n"},
-        {{"run", "a.json", "--threads", "65"}, "skein run: --threads 65: 65 is out of range: expected from 1 to 64\n"},
+        {{"run", "a.json", "--threads", "-1"}, "skein run: --threads -1: -1 is out of range: expected from 0 to 64\n"},
+        {{"run", "a.json", "--threads", "65"}, "skein run: --threads 65: 65 is out of range: expected from 0 to 64\n"},
         {{"run", "no/such.json"}, "skein: no/such.json: cannot read: no such file or directory\n"},
         {{"list", "cats", "dogs"},
          "skein list: 'dogs' is one argument too many; "

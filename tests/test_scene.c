@@ -59,7 +59,7 @@ static void the_top_has_defaults_and_values(void **state) {
     const io_scene_settings *s = io_scene_get(scene);
     assert_int_equal(s->version, 1);
     assert_int_equal(s->frames, 240);
-    assert_int_equal(s->threads, 1);
+    assert_int_equal(s->threads, 0);
     assert_string_equal(s->name, "");
     assert_true(s->fps == 60 && s->step == 1.0 / 60);
     double dt;

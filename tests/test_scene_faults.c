@@ -188,7 +188,7 @@ static const struct {
     {"text_as_number", ": name: expected a text, not the number 5"},
     {"text_behind_the_end", ":5:1: end of file expected near '}'"},
     {"text_null", ": description: expected a text, not null"},
-    {"threads_65", ": threads: 65 is out of range: expected from 1 to 64"},
+    {"threads_65", ": threads: 65 is out of range: expected from 0 to 64"},
     {"utf16", ": the file is UTF-16: expected UTF-8"},
     {"vec3_as_number", ": bodies.0.position: expected three numbers in m, not the number 1"},
     {"vec3_as_object", ": bodies.0.position: expected three numbers in m, not an object"},

@@ -18,8 +18,8 @@
  *             that return no status 0, NULL, false or an empty view. What is passed stays the caller's and is only read
  *             during the call, unless it is said.
  *   Threads   a world belongs to one thread at a time; different worlds are independent. After fork() a child has none
- *             of the world's own threads: it may neither step nor destroy a world of more than one (both would wait for
- *             ever). Make worlds after the fork, or call exec.
+ *             of the world's own threads: it may neither step nor destroy a world that may have more than one (both
+ *             would wait for ever). Make worlds after the fork, or call exec.
  *   Bits      the same input gives the same bits, for any number of threads.
  */
 #ifndef SKEIN_H
@@ -227,8 +227,9 @@ typedef struct skein_world_desc {
      * returns when all are done. NULL uses the world's own threads. */
     void (*run_tasks)(void *user, void (*task)(void *data, int index), void *data, int task_count);
     void *tasks_user;
-    /* Threads of the world's own pool, the caller included, 1 to 64; or the tasks to cut a row
-     * into where `run_tasks` is given. The result does not depend on it. */
+    /* The most threads of the world's own pool, the caller included, 1 to 64; 0: as many as there are processors. A
+     * step takes as many of them as have proved faster. Or the tasks to cut a row into where `run_tasks` is given. The
+     * result does not depend on it. */
     int thread_count;
 } skein_world_desc;
 

@@ -1,33 +1,41 @@
 /* The default pool: workers wait for a new ticket, first spinning, then asleep.
  *
  *   caller                          worker i
- *   ticket = ticket + 1  ------->   sees a new ticket, runs task(data, i)
+ *   new ticket           ------->   sees it, and runs task(data, i) if it is for so many
  *   runs task(data, 0)              remaining = remaining - 1
  *   waits until remaining == 0 <----
  *
- * `task` and `data` are written before the ticket and read after it: the ticket publishes them. */
+ * `task` and `data` are written before the ticket and read after it: the ticket publishes them. It is a number that
+ * counts on, and below it how many threads it is for: both are read at once, for a worker that is not asked may wake
+ * long after. Workers are started when they are first asked. */
+#define _GNU_SOURCE // sched_getaffinity
 #include "base/tasks.h"
 
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
+#include <unistd.h>
 
 enum {
     MOST_THREADS = 64,
     SPINS = 4000, /* pauses before a waiter sleeps */
+    TICKET = 256, /* tickets count on by that; the rest is for whom they are */
+
 };
 
 typedef struct worker {
     sk_tasks *tasks;
     int index;
     pthread_t thread;
+    uint32_t seen; /* the newest ticket when it was started, which is not for it */
 } worker;
 
 struct sk_tasks {
     sk_allocator *allocator;
     void (*run_tasks)(void *user, void (*task)(void *data, int index), void *data, int task_count);
     void *user;
-    int count;   /* pieces a range is cut into */
+    int most;    /* threads that there may be */
+    int count;   /* of them that are in use: pieces a range is cut into */
     int started; /* workers alive */
     void (*task)(void *data, int index);
     void *data;
@@ -67,10 +75,11 @@ static uint32_t wait_for_ticket(sk_tasks *tasks, uint32_t seen) {
 static void *worker_main(void *argument) {
     worker *self = argument;
     sk_tasks *tasks = self->tasks;
-    uint32_t seen = 0;
+    uint32_t seen = self->seen;
     for (;;) {
         seen = wait_for_ticket(tasks, seen);
         if (atomic_load(&tasks->stop)) return NULL;
+        if ((uint32_t)self->index >= seen % TICKET) continue;
         tasks->task(tasks->data, self->index);
         atomic_fetch_sub_explicit(&tasks->remaining, 1, memory_order_release);
     }
@@ -78,9 +87,20 @@ static void *worker_main(void *argument) {
 
 static void publish(sk_tasks *tasks) {
     pthread_mutex_lock(&tasks->mutex);
-    atomic_fetch_add(&tasks->ticket, 1);
+    uint32_t last = atomic_load(&tasks->ticket);
+    atomic_store(&tasks->ticket, last - last % TICKET + TICKET + (uint32_t)tasks->count);
     if (tasks->sleepers) pthread_cond_broadcast(&tasks->wake);
     pthread_mutex_unlock(&tasks->mutex);
+}
+
+/* Those that this process may run on, if the system says so. */
+static int count_processors(void) {
+#ifdef __linux__
+    cpu_set_t set;
+    if (!sched_getaffinity(0, sizeof set, &set)) return CPU_COUNT(&set);
+#endif
+    long online = sysconf(_SC_NPROCESSORS_ONLN);
+    return online < 1 ? 1 : online > MOST_THREADS ? MOST_THREADS : (int)online;
 }
 
 sk_tasks *sk_tasks_create(sk_allocator *allocator, const skein_world_desc *desc) {
@@ -89,20 +109,30 @@ sk_tasks *sk_tasks_create(sk_allocator *allocator, const skein_world_desc *desc)
     tasks->allocator = allocator;
     tasks->run_tasks = desc->run_tasks;
     tasks->user = desc->tasks_user;
-    tasks->count = desc->thread_count < 1 ? 1 : desc->thread_count > MOST_THREADS ? MOST_THREADS : desc->thread_count;
+    tasks->most = desc->thread_count > 0 ? desc->thread_count : count_processors();
+    if (tasks->most > MOST_THREADS) tasks->most = MOST_THREADS;
+    tasks->count = tasks->run_tasks ? tasks->most : 1;
     pthread_mutex_init(&tasks->mutex, NULL);
     pthread_cond_init(&tasks->wake, NULL);
-    if (tasks->run_tasks) return tasks;
-    for (int i = 1; i < tasks->count; i++) {
+    return tasks;
+}
+
+/* False when the machine gives no more threads. */
+static bool start_workers(sk_tasks *tasks) {
+    while (tasks->started < tasks->count - 1) {
+        int i = tasks->started + 1;
         worker *w = &tasks->workers[i];
-        *w = (worker){tasks, i, 0};
-        if (pthread_create(&w->thread, NULL, worker_main, w)) {
-            sk_tasks_destroy(tasks);
-            return NULL;
-        }
+        *w = (worker){tasks, i, 0, atomic_load(&tasks->ticket)};
+        if (pthread_create(&w->thread, NULL, worker_main, w)) return false;
         tasks->started++;
     }
-    return tasks;
+    return true;
+}
+
+void sk_tasks_use(sk_tasks *tasks, int count) {
+    if (tasks->run_tasks) return;
+    tasks->count = count < 1 ? 1 : count > tasks->most ? tasks->most : count;
+    if (!start_workers(tasks)) tasks->count = tasks->started + 1;
 }
 
 void sk_tasks_destroy(sk_tasks *tasks) {
@@ -113,6 +143,10 @@ void sk_tasks_destroy(sk_tasks *tasks) {
     pthread_cond_destroy(&tasks->wake);
     pthread_mutex_destroy(&tasks->mutex);
     sk_release(tasks->allocator, tasks);
+}
+
+int sk_tasks_most(const sk_tasks *tasks) {
+    return tasks->most;
 }
 
 int sk_tasks_count(const sk_tasks *tasks) {

@@ -10,6 +10,11 @@ typedef struct sk_tasks sk_tasks;
 sk_tasks *sk_tasks_create(sk_allocator *allocator, const skein_world_desc *desc);
 void sk_tasks_destroy(sk_tasks *tasks); /* NULL is allowed */
 int sk_tasks_count(const sk_tasks *tasks);
+/* How many there may be: as many as were asked for, or as the machine has processors. */
+int sk_tasks_most(const sk_tasks *tasks);
+/* From now on `count` threads, and no more than the description says, share the work: fewer where the machine gives no
+ * more. A pool of the description's own keeps its number. */
+void sk_tasks_use(sk_tasks *tasks, int count);
 
 /* Runs task(data, 0) ... task(data, sk_tasks_count - 1) at once and returns when all are done. */
 void sk_tasks_run(sk_tasks *tasks, void (*task)(void *data, int index), void *data);

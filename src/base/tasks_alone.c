@@ -27,6 +27,14 @@ int sk_tasks_count(const sk_tasks *tasks) {
     return tasks->count;
 }
 
+int sk_tasks_most(const sk_tasks *tasks) {
+    return tasks->count;
+}
+
+void sk_tasks_use(sk_tasks *tasks, int count) {
+    (void)tasks, (void)count;
+}
+
 void sk_tasks_run(sk_tasks *tasks, void (*task)(void *data, int index), void *data) {
     if (tasks->count > 1) tasks->run_tasks(tasks->user, task, data, tasks->count);
     else task(data, 0);

@@ -8,9 +8,9 @@
 #include <string.h>
 
 enum {
-    GROUP_DISTANCE = 4, /* dependent groups stand so far apart where they can: to hide latency, and to make blocks */
+    GROUP_DISTANCE = 4, /* dependent groups stand so far apart where they can, at the most */
     LEAST_BEHIND = 16,  /* groups that are left open behind the newest one: a sixteenth of all, but so many, */
-    MOST_BEHIND = 128,  /* and no more than that */
+    MOST_BEHIND = 32,   /* and no more than that: what lies between goes from thread to thread in each sweep */
     MOST_PASSES = 8,    /* sweeps that a batch is cut into */
     LEAST_SLABS = 12,   /* of a walk, */
     LEAST_SHARE = 6     /* and for each slab of its reach */
@@ -51,7 +51,13 @@ static uint32_t first_open(uint32_t *next, uint32_t group) {
     return open;
 }
 
+/* Dependent groups stand so far apart where they can: those of kinds that work in blocks by four, all others in twos. */
+static uint32_t distance_of(const dealer *d) {
+    return d->batch->type->in_blocks ? GROUP_DISTANCE : 2;
+}
+
 static void deal(const dealer *d, grouping *g) {
+    uint32_t distance = distance_of(d);
     size_t behind = (g->last - g->first) / SK_LANES / 16;
     behind = behind < LEAST_BEHIND ? LEAST_BEHIND : behind > MOST_BEHIND ? MOST_BEHIND : behind;
     for (size_t e = g->first; e < g->last; e++) {
@@ -62,7 +68,7 @@ static void deal(const dealer *d, grouping *g) {
             if (g->latest[slot[i]] > after) after = g->latest[slot[i]];
         // not far behind the others: what is in one group is near in memory, and the groups go through it once
         uint32_t first = g->group_count > behind ? (uint32_t)(g->group_count - behind) : 0;
-        if (after && after - 1 + GROUP_DISTANCE > first) first = after - 1 + GROUP_DISTANCE;
+        if (after && after - 1 + distance > first) first = after - 1 + distance;
         uint32_t group = first_open(g->next, first);
         g->group[e - g->first] = group;
         for (size_t i = 0; i < d->arity; i++) g->latest[slot[i]] = group + 1;

@@ -3,6 +3,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/hash.h"
@@ -12,7 +13,7 @@ int skein_version(void) {
 }
 
 skein_world_desc skein_default_world_desc(void) {
-    return (skein_world_desc){.thread_count = 1};
+    return (skein_world_desc){.thread_count = 0};
 }
 
 /* Of all worlds that live none has the same address, which fills the upper bits; the time keeps a world that comes to
@@ -22,10 +23,18 @@ static uint64_t find_identity(const skein_world *world) {
     return (address << 16 | address >> 48) ^ (sk_hash_mix((uint64_t)(sk_seconds() * 1e9)) >> 42);
 }
 
+/* A step takes as many threads as have proved faster. SKEIN_THREADS=always, for tests and measurements: all that were
+ * asked for, and one where none were. */
+static void set_pace(skein_world *world, int asked) {
+    const char *word = getenv("SKEIN_THREADS");
+    bool always = word && !strcmp(word, "always");
+    sk_pace_start(&world->pace, world->desc.run_tasks ? 1 : always && !asked ? 1 : sk_tasks_most(world->tasks), always);
+}
+
 skein_world *skein_world_create(const skein_world_desc *desc, skein_error *error) {
     skein_world_desc taken = desc ? *desc : skein_default_world_desc();
-    if (taken.thread_count < 1 || taken.thread_count > 64) {
-        sk_fail(error, SKEIN_ERROR_VALUE, "thread_count", "%d threads: expected 1 to 64", taken.thread_count);
+    if (taken.thread_count < 0 || taken.thread_count > 64) {
+        sk_fail(error, SKEIN_ERROR_VALUE, "thread_count", "%d threads: expected 0 to 64", taken.thread_count);
         return NULL;
     }
     if (!taken.allocate != !taken.release) {
@@ -50,6 +59,7 @@ skein_world *skein_world_create(const skein_world_desc *desc, skein_error *error
     world->plan_stale = world->slots_stale = true;
     world->isa = sk_isa_choose();
     world->tasks = sk_tasks_create(&world->allocator, &world->desc);
+    if (world->tasks) set_pace(world, taken.thread_count);
     if (!world->tasks || sk_world_set_method(world, &sk_xpbd, NULL)) {
         sk_fail(error, SKEIN_ERROR_MEMORY, "", "no memory or no threads for a world of %d threads", taken.thread_count);
         skein_world_destroy(world);

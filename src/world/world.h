@@ -8,6 +8,7 @@
 #ifndef SK_WORLD_WORLD_H
 #define SK_WORLD_WORLD_H
 
+#include "base/pace.h"
 #include "base/status.h"
 #include "base/tasks.h"
 #include "formula/parameters.h"
@@ -114,6 +115,7 @@ struct skein_world {
     skein_error words; /* the last failure; reached through `error`, also where the world is constant */
     skein_error *error;
     sk_tasks *tasks;
+    sk_pace pace; /* how many of the threads a step takes */
     sk_particles particles;
     sk_triangles triangles; /* as user's indices */
     sk_triangles slots_of_triangles;

@@ -1,0 +1,94 @@
+#include "base/pace.h"
+
+#include <string.h>
+
+enum {
+    TRIAL = 2,        /* steps */
+    FIRST_TRIAL = 4,  /* steps on a level before others are tried */
+    LEAST_PAUSE = 32, /* steps between trials, twice as many after each that failed or did not last, */
+    MOST_PAUSE = 1024 /* up to so many */
+};
+static const double least_gain = 0.9, /* more threads must be so much faster */
+    least_work = 2e-4,                /* s: a step of less is over before a thread has woken */
+    hopeless = 1.5,                   /* a trial that takes so many times as long is over at once */
+    newest = 0.2;                     /* share of the newest time in the mean */
+
+void sk_pace_start(sk_pace *pace, int most, bool always) {
+    memset(pace, 0, sizeof *pace);
+    pace->most = most;
+    for (pace->levels = 1; pace->levels < SK_PACE_LEVELS && 1 << (pace->levels - 1) < most;) pace->levels++;
+    if (always) pace->level = pace->levels - 1, pace->levels = 0;
+    pace->wait = FIRST_TRIAL;
+    pace->pause = LEAST_PAUSE;
+    pace->up = true;
+}
+
+int sk_pace_threads(const sk_pace *pace) {
+    int threads = 1 << (pace->left ? pace->trying : pace->level);
+    return threads < pace->most ? threads : pace->most;
+}
+
+/* The first step of all has more to do than others: what comes second replaces what is three times as long. */
+static void keep(sk_pace *pace, int level, double seconds) {
+    double *mean = &pace->mean[level];
+    *mean = *mean > 0 && *mean < 3 * seconds ? *mean + newest * (seconds - *mean) : seconds;
+}
+
+static void pause_longer(sk_pace *pace) {
+    pace->wait = pace->pause;
+    if (pace->pause < MOST_PAUSE) pace->pause *= 2;
+}
+
+static void settle(sk_pace *pace, int level) {
+    pace->level = level;
+    pace->stayed = 0;
+}
+
+/* Tries a neighbour of the present level, upwards and downwards in turn. */
+static void begin_trial(sk_pace *pace) {
+    int next = pace->level + (pace->up ? 1 : -1);
+    pace->up = !pace->up;
+    if (next < 0 || next >= pace->levels) next = 2 * pace->level - next;
+    if (next < 0 || next >= pace->levels) return;
+    if (next > pace->level && pace->mean[pace->level] < least_work) return;
+    pace->trying = next;
+    pace->left = TRIAL;
+    pace->mean[next] = 0; // what was long ago is no measure
+}
+
+static void end_trial(sk_pace *pace) {
+    double now = pace->mean[pace->level], then = pace->mean[pace->trying];
+    bool more = pace->trying > pace->level, better = more ? then < least_gain * now : least_gain * then < now;
+    pace->left = 0;
+    if (!better) {
+        pause_longer(pace);
+        return;
+    }
+    settle(pace, pace->trying);
+    pace->up = more;
+    pace->wait = FIRST_TRIAL;
+}
+
+void sk_pace_note(sk_pace *pace, double seconds) {
+    if (pace->levels < 2) return;
+    if (pace->left) {
+        keep(pace, pace->trying, seconds);
+        pace->left--;
+        if (seconds > hopeless * pace->mean[pace->level]) pace->left = 0;
+        if (!pace->left) end_trial(pace);
+        return;
+    }
+    keep(pace, pace->level, seconds);
+    if (++pace->stayed == 2 * pace->pause) pace->pause = LEAST_PAUSE; // that has lasted
+    int fewer = pace->level - 1;
+    if (fewer >= 0 && pace->mean[fewer] > 0 && pace->mean[pace->level] > pace->mean[fewer]) {
+        // others have come for the processors: back to what was faster before
+        settle(pace, fewer);
+        pace->mean[fewer] = 0;
+        pace->up = true;
+        pause_longer(pace);
+    } else if (--pace->wait <= 0) {
+        pace->wait = LEAST_PAUSE;
+        begin_trial(pace);
+    }
+}
