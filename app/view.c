@@ -57,6 +57,8 @@ static bool read_options(const app_arguments *arguments, viewer_options *o) {
     o->panels = !app_given(arguments, "--no-panels");
     o->compare = app_value(arguments, "--compare");
     o->events = app_value(arguments, "--events");
+    const char *theme = app_value(arguments, "--theme");
+    o->theme = !theme ? viewer_theme_kept() : strcmp(theme, "light") ? VIEWER_DARK : VIEWER_LIGHT;
     if (app_given(arguments, "--compile")) o->prepare = prepare;
     if (app_given(arguments, "--scenes")) o->scenes = app_value(arguments, "--scenes");
     if (app_given(arguments, "--device")) o->device = read_device(app_value(arguments, "--device"));
@@ -120,6 +122,7 @@ static const app_option options[] = {
     {"--unfocused", "scene|pause|play", "when another window is typed into; scene pauses flocks", false, APP_TAKES_ANY},
     {"--compare", "PATH=VALUE", "the same scene beside it with another value, in step", false, APP_TAKES_ANY},
     {"--scenes", "FOLDER", "of the gallery, those that came with skein if not given", false, APP_TAKES_FOLDER},
+    {"--theme", "dark|light", "of the window, instead of the one that was chosen last; F7 changes it", false, APP_TAKES_ANY},
     {"--scale", "N", "of letters and controls, instead of the screen's", false, APP_TAKES_ANY},
     {"--samples", "N", "samples a pixel for smooth edges, 4 if not given", false, APP_TAKES_ANY},
     APP_THREADS_OPTION,

@@ -115,7 +115,7 @@ typedef enum viewer_quantity {
 
 /* The newest sample is before `next`; the oldest is at it. */
 typedef struct viewer_plots {
-    float value[VIEWER_QUANTITY_COUNT][VIEWER_SAMPLES];
+    float value[VIEWER_QUANTITY_COUNT][VIEWER_SAMPLES], time[VIEWER_SAMPLES]; /* s */
     size_t next, count;
 } viewer_plots;
 
@@ -159,6 +159,7 @@ typedef struct viewer_shown {
     uint64_t generation;                /* changes with the pictures */
     int newest, in_use;                 /* places of pictures; -1: none. in_use is the window's */
     char title[256], message[240];
+    bool light /* the theme */, alarm /* the message is a warning */;
     bool has_scene, paused, recording, flying, by_key, play_away, finished /* the stage has ended */;
     viewer_slowness slow;
     bool panel[VIEWER_PANEL_COUNT];

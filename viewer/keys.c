@@ -145,6 +145,14 @@ static void toggle_panel(viewer_stage *stage, const viewer_key *key) {
     viewer_event(stage->events, "panel %d %s", key->number, stage->panel[key->number] ? "open" : "closed");
 }
 
+static void change_theme(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    stage->light = !stage->light;
+    bool kept = viewer_theme_keep(stage->light ? VIEWER_LIGHT : VIEWER_DARK);
+    viewer_note(stage, "%s%s", stage->light ? "light" : "dark", kept ? "" : " (it cannot be kept: ~/.config is not writable)");
+    stage->dirty = true;
+}
+
 static void reload(viewer_stage *stage, const viewer_key *key) {
     (void)key;
     viewer_stage_reload(stage);
@@ -269,6 +277,7 @@ static const viewer_key keys[] = {
     PANEL(GLFW_KEY_F3, "F3", VIEWER_PANEL_PLOTS, "plots of energy, stretch, contacts and time"),
     PANEL(GLFW_KEY_F4, "F4", VIEWER_PANEL_LOG, "the log"),
     PANEL(GLFW_KEY_F6, "F6", VIEWER_PANEL_LESSON, "a constraint, looked into: its value, its derivatives, its formula step by step"),
+    {.code = GLFW_KEY_F7, .name = "F7", .when = ALWAYS, .act = change_theme, .help = "the light theme, and the dark one"},
     PANEL(GLFW_KEY_TAB, "Tab", VIEWER_PANEL_SIDE, "the panel at the side"),
     {.code = GLFW_KEY_ENTER,
      .name = "Enter",

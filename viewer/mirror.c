@@ -150,7 +150,15 @@ static void mirror_objects(viewer_side *side, const viewer_player *player) {
 
 /* ---- Measures ---- */
 
-static void add_sample(viewer_plots *plots, const skein_statistics *s, const skein_order *flock, double step_ms,
+/* A moment that is measured again takes its own place; where time goes back, curves begin anew. */
+static void make_room(viewer_plots *plots, double time) {
+    size_t last = (plots->next + VIEWER_SAMPLES - 1) % VIEWER_SAMPLES;
+    if (!plots->count || (float)time > plots->time[last]) return;
+    if ((float)time < plots->time[last]) plots->count = 0;
+    else plots->next = last, plots->count--;
+}
+
+static void add_sample(viewer_plots *plots, double time, const skein_statistics *s, const skein_order *flock, double step_ms,
                        double draw_ms) {
     const double values[VIEWER_QUANTITY_COUNT] = {
         [VIEWER_KINETIC] = s->kinetic_energy,
@@ -164,6 +172,8 @@ static void add_sample(viewer_plots *plots, const skein_statistics *s, const ske
         [VIEWER_POLARIZATION] = flock ? flock->polarization : NAN,
         [VIEWER_MILLING] = flock ? flock->milling : NAN,
     };
+    make_room(plots, time);
+    plots->time[plots->next] = (float)time;
     for (int q = 0; q < VIEWER_QUANTITY_COUNT; q++) {
         bool finite = isfinite(values[q]) && fabs(values[q]) < 1e30;
         plots->value[q][plots->next] = finite ? (float)values[q] : NAN; // a gap
@@ -184,7 +194,7 @@ void viewer_measure(viewer_stage *stage) {
         pthread_mutex_lock(&stage->exchange->lock);
         side->flock = flock;
         side->statistics = statistics;
-        add_sample(&side->plots, &statistics, flock ? &order : NULL, stage->step_ms, stage->draw_ms);
+        add_sample(&side->plots, skein_world_time(stage->sides[s].world), &statistics, flock ? &order : NULL, stage->step_ms, stage->draw_ms);
         pthread_mutex_unlock(&stage->exchange->lock);
     }
     double took = viewer_seconds() - now;
@@ -215,6 +225,8 @@ void viewer_mirror(viewer_stage *stage) {
     viewer_shown *shown = &stage->exchange->shown;
     shown->has_scene = stage->side_count > 0;
     shown->paused = stage->paused;
+    shown->light = stage->light;
+    shown->alarm = stage->alarm && stage->message[0];
     shown->recording = stage->film != NULL;
     shown->flying = stage->camera.flying;
     shown->by_key = viewer_stage_by_key(stage);

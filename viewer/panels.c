@@ -58,6 +58,7 @@ enum {
     KEY_F1 = 290,
     KEY_F2 = 291,
     KEY_F3 = 292,
+    KEY_F7 = 296,
     WITH_CONTROL = 2
 };
 
@@ -79,7 +80,11 @@ static void show_changes(viewer_panels *panels, const viewer_shown *shown) {
 }
 
 static void show_time(viewer_panels *panels, const viewer_shown *shown) {
-    if (button(panels, shown->paused ? "Play" : "Pause", "Space")) ask_key(panels, KEY_SPACE);
+    widgets_heading(shown->title[0] ? shown->title + strlen("Skein: ") : "");
+    bool turned = widgets_main_button(shown->paused ? "Play" : "Pause");
+    viewer_place_control(panels, shown->paused ? "Play" : "Pause");
+    widgets_help("Space");
+    if (turned) ask_key(panels, KEY_SPACE);
     widgets_same_line();
     if (button(panels, "<", "one frame back: comma")) ask_key(panels, KEY_COMMA);
     widgets_same_line();
@@ -91,6 +96,8 @@ static void show_time(viewer_panels *panels, const viewer_shown *shown) {
     if (button(panels, "Scenes", "the gallery: F2")) ask_key(panels, KEY_F2);
     widgets_same_line();
     if (button(panels, "Plots", "energy, stretch, contacts, time: F3")) ask_key(panels, KEY_F3);
+    widgets_same_line();
+    if (button(panels, shown->light ? "Dark" : "Light", "the other theme: F7")) ask_key(panels, KEY_F7);
     show_changes(panels, shown);
     double frame = (double)shown->frame;
     if (shown->last_frame > shown->first_frame) {
@@ -239,9 +246,9 @@ static void show_keys(viewer_panels *panels, double width, double height) {
     if (!open) close_panel(panels, VIEWER_PANEL_KEYS);
 }
 
-static void show_log(viewer_panels *panels, const viewer_shown *shown, double width, double height) {
+static void show_log(viewer_panels *panels, const viewer_shown *shown, const double at[4]) {
     bool open = true;
-    if (widgets_panel("Log", WIDGETS_FREE, 0.3 * width, 0.55 * height, 0.68 * width, 0.42 * height, &open)) {
+    if (widgets_panel("Log", WIDGETS_DOCKED, at[0], at[1], at[2], at[3], &open)) {
         size_t count = shown->log_count < VIEWER_LOG_LINES ? shown->log_count : VIEWER_LOG_LINES;
         for (size_t i = shown->log_count - count; i < shown->log_count; i++) {
             const viewer_line *line = &shown->log[i % VIEWER_LOG_LINES];
@@ -253,21 +260,33 @@ static void show_log(viewer_panels *panels, const viewer_shown *shown, double wi
     if (!open) close_panel(panels, VIEWER_PANEL_LOG);
 }
 
+/* Plots and log, beside each other where both are there. */
+static void show_dock(viewer_panels *panels, const viewer_shown *shown, double left, double width, double height) {
+    bool plots = shown->panel[VIEWER_PANEL_PLOTS] && shown->has_scene, log = shown->panel[VIEWER_PANEL_LOG];
+    double tall = viewer_dock_height(shown, (int)height), room = width - left, part = plots && log ? 0.62 * room : room;
+    const double first[4] = {left, height - tall, part, tall},
+                 second[4] = {left + part, height - tall, room - part, tall};
+    if (plots) viewer_show_plots(panels, first);
+    if (log) show_log(panels, shown, plots ? second : first);
+}
+
+int viewer_dock_height(const viewer_shown *shown, int height) {
+    bool docked = (shown->panel[VIEWER_PANEL_PLOTS] && shown->has_scene) || shown->panel[VIEWER_PANEL_LOG];
+    return docked ? (int)fmin(fmax(0.27 * height, 180 * widgets_scale()), 0.45 * height) : 0;
+}
+
 static void show_message(const viewer_shown *shown, double left, double width, double height) {
     char text[sizeof shown->message + 16];
     const char *records = shown->recording ? "recording   " : "";
     snprintf(text, sizeof text, "%s%s", records, shown->message);
-    if (text[0]) widgets_note("message", text, left + 4, height - 4, true, width - left - 8);
+    if (text[0]) widgets_note(text, left + 8, height - 8, true, width - left - 16, shown->alarm);
 }
 
 /* Which world is which, over each of two. */
 static void show_labels(const viewer_shown *shown, double left, double width) {
     double room = (width - left) / (double)shown->side_count;
-    for (size_t s = 0; s < shown->side_count && shown->side_count > 1; s++) {
-        char id[32];
-        snprintf(id, sizeof id, "label %zu", s);
-        widgets_note(id, shown->sides[s].name, left + (double)s * room + 8, 6, false, room - 16);
-    }
+    for (size_t s = 0; s < shown->side_count && shown->side_count > 1; s++)
+        widgets_note(shown->sides[s].name, left + (double)s * room + 8, 8, false, room - 16, false);
 }
 
 int viewer_side_panel_width(int width) {
@@ -278,14 +297,14 @@ void viewer_panels_show(viewer_panels *panels, int width, int height) {
     const viewer_shown *shown = &panels->exchange->shown;
     double w = width, h = height, side = viewer_side_panel_width(width);
     bool has_side = shown->panel[VIEWER_PANEL_SIDE] && shown->has_scene;
+    double left = has_side ? side : 0, above = h - viewer_dock_height(shown, height);
     if (has_side) show_side(panels, shown, side, h);
-    if (shown->panel[VIEWER_PANEL_PLOTS] && shown->has_scene) viewer_show_plots(panels, w, h);
     bool lesson = shown->panel[VIEWER_PANEL_LESSON] && shown->has_scene;
-    if (lesson) viewer_show_lesson(panels, has_side ? side : 0, w, h);
-    if (shown->panel[VIEWER_PANEL_LOG]) show_log(panels, shown, w, h);
+    if (lesson) viewer_show_lesson(panels, left, w, above);
+    show_dock(panels, shown, left, w, h);
     if (shown->panel[VIEWER_PANEL_GALLERY]) show_gallery(panels, shown, w, h);
     if (shown->panel[VIEWER_PANEL_KEYS]) show_keys(panels, w, h);
-    // a picture without panels is a picture: no note in it
-    if (shown->has_scene) show_labels(shown, has_side ? side : 0, w);
-    if (has_side || shown->recording) show_message(shown, has_side ? side : 0, w, h - (lesson ? viewer_lesson_height(h) : 0));
+    // a picture without panels is a picture: no note in it, unless something is wrong
+    if (shown->has_scene && !shown->panel[VIEWER_PANEL_GALLERY]) show_labels(shown, left, w);
+    if (has_side || shown->recording || shown->alarm) show_message(shown, left, w, above - (lesson ? viewer_lesson_height(above) : 0));
 }

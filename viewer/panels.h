@@ -27,6 +27,8 @@ typedef struct viewer_panels {
 } viewer_panels;
 
 void viewer_panels_show(viewer_panels *panels, int width, int height);
+/* The height of what is docked below: the picture lies above it. */
+int viewer_dock_height(const viewer_shown *shown, int height);
 /* The width of the panel at the side: the picture lies beside it. */
 int viewer_side_panel_width(int width);
 
@@ -47,6 +49,6 @@ bool viewer_show_search(viewer_panels *panels, int side);
 void viewer_show_lesson(viewer_panels *panels, double left, double width, double height);
 double viewer_lesson_height(double height);
 /* panels_plots.c */
-void viewer_show_plots(viewer_panels *panels, double width, double height);
+void viewer_show_plots(viewer_panels *panels, const double at[4]); /* x, y, width, height */
 
 #endif

@@ -181,7 +181,7 @@ static void show_text(viewer_panels *panels, const viewer_lesson *lesson, double
 /* ---- All of it ---- */
 
 double viewer_lesson_height(double height) {
-    return fmin(0.34 * height, 300 * widgets_scale());
+    return fmin(0.4 * height, 320 * widgets_scale());
 }
 
 void viewer_show_lesson(viewer_panels *panels, double left, double wide, double tall) {

@@ -3,6 +3,9 @@
 
 #include "viewer/panels.h"
 
+/* Of a chart, at scale 1. */
+static const double chart_width = 208, passes_width = 250;
+
 static void plot(const viewer_shown *shown, const char *title, const viewer_quantity *quantities,
                  const char *const *names, int count) {
     const float *series[8];
@@ -19,8 +22,10 @@ static void plot(const viewer_shown *shown, const char *title, const viewer_quan
             series[lines] = shown->sides[s].plots.value[quantities[q]];
             words[lines++] = shown->side_count > 1 ? (s ? shown->sides[1].name : shown->sides[0].name) : names[q];
         }
-    widgets_plot(title, series, words, lines, first, length, VIEWER_SAMPLES, shown->side_count > 1,
-                 52 * widgets_scale());
+    widgets_chart chart = {title, series, words, lines, shown->sides[0].plots.time, first, length, VIEWER_SAMPLES,
+                           shown->side_count > 1};
+    widgets_chart_show(&chart, chart_width * widgets_scale(), widgets_height());
+    widgets_same_line();
 }
 
 static void show_energies(const viewer_shown *shown) {
@@ -36,30 +41,34 @@ static void show_order(const viewer_shown *shown) {
     static const viewer_quantity both[] = {VIEWER_POLARIZATION, VIEWER_MILLING};
     static const char *const names[] = {"polarization", "milling"};
     for (int q = 0; q < 2 && shown->side_count > 1; q++) plot(shown, names[q], &both[q], names, 1);
-    if (shown->side_count < 2) plot(shown, "order of the flock (0 to 1)", both, names, 2);
+    if (shown->side_count < 2) plot(shown, "order of the flock", both, names, 2);
 }
 
-void viewer_show_plots(viewer_panels *panels, double wide, double tall) {
+/* What the passes of the plan took, below each other. */
+static void show_passes(const viewer_side *side) {
+    if (!side->pass_count || !widgets_list("passes", passes_width * widgets_scale(), widgets_height())) return;
+    widgets_heading("ms a frame, by pass");
+    for (size_t p = 0; p < side->pass_count; p++) {
+        char line[120];
+        snprintf(line, sizeof line, "%.3f  %s", side->passes[p].milliseconds, side->passes[p].label);
+        widgets_text(line);
+    }
+    widgets_list_end();
+}
+
+void viewer_show_plots(viewer_panels *panels, const double at[4]) {
     static const viewer_quantity stretch[] = {VIEWER_STRETCH}, contacts[] = {VIEWER_CONTACTS},
                                  times[] = {VIEWER_STEP_MS, VIEWER_DRAW_MS};
     static const char *const none[] = {""}, *const passes[] = {"step", "draw"};
     const viewer_shown *shown = &panels->exchange->shown;
-    double width = 260 * widgets_scale(), height = 500 * widgets_scale();
     bool open = true;
-    if (height > tall - 4) height = tall - 4;
-    if (widgets_panel("Plots", WIDGETS_FREE, wide - width - 4, 2, width, height, &open)) {
+    if (widgets_panel("Plots", WIDGETS_DOCKED, at[0], at[1], at[2], at[3], &open)) {
         if (shown->sides[0].flock) show_order(shown);
         show_energies(shown);
-        plot(shown, "largest stretch (%)", stretch, none, 1);
+        plot(shown, "stretch, largest (%)", stretch, none, 1);
         plot(shown, "contacts", contacts, none, 1);
-        plot(shown, "milliseconds a frame", times, passes, shown->side_count > 1 ? 1 : 2);
-        if (shown->sides[0].pass_count) widgets_text("by pass of the plan, a frame:");
-        for (size_t p = 0; p < shown->sides[0].pass_count; p++) {
-            char line[120];
-            snprintf(line, sizeof line, "%8.3f ms  %s", shown->sides[0].passes[p].milliseconds,
-                     shown->sides[0].passes[p].label);
-            widgets_text(line);
-        }
+        plot(shown, "time a frame (ms)", times, passes, shown->side_count > 1 ? 1 : 2);
+        show_passes(&shown->sides[0]);
     }
     widgets_panel_end();
     if (open) return;

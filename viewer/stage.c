@@ -38,7 +38,7 @@ void viewer_say(viewer_stage *stage, skein_log_level level, const char *format, 
     log_line(stage, level, text);
     viewer_event(stage->events, "%s %s", level == SKEIN_LOG_WARNING ? "warning" : "log", text);
     fprintf(stderr, "skein: %s%s\n", level == SKEIN_LOG_WARNING ? "warning: " : "", text);
-    if (level == SKEIN_LOG_WARNING) snprintf(stage->message, sizeof stage->message, "%.*s", 239, text);
+    if (level == SKEIN_LOG_WARNING) snprintf(stage->message, sizeof stage->message, "%.*s", 239, text), stage->alarm = true;
 }
 
 void viewer_note(viewer_stage *stage, const char *format, ...) {
@@ -46,6 +46,7 @@ void viewer_note(viewer_stage *stage, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(stage->message, sizeof stage->message, format, arguments);
     va_end(arguments);
+    stage->alarm = false;
     stage->spoke = viewer_seconds();
     log_line(stage, SKEIN_LOG_INFO, stage->message);
     viewer_event(stage->events, "note %s", stage->message);
@@ -318,6 +319,7 @@ bool viewer_stage_start(viewer_stage *stage, const viewer_options *options, view
     stage->card = card;
     stage->paused = options->paused;
     stage->panel[VIEWER_PANEL_SIDE] = options->panels;
+    stage->light = options->theme == VIEWER_LIGHT;
     stage->button = -1;
     stage->newest = -1;
     stage->speed = 1;

@@ -62,6 +62,8 @@ typedef struct viewer_stage {
     bool news;  /* there are new words, which need no picture */
     bool facts; /* objects or fields have changed: the panels want them anew */
     char message[240];
+    bool alarm; /* the message is a warning */
+    bool light; /* the theme */
 
     /* pictures */
     viewer_painter painter;

@@ -11,6 +11,7 @@
 #define SKEIN_VIEWER_VIEWER_H
 
 #include "skein/skein.h"
+#include "viewer/theme.h"
 
 /* What to do when the window is not the one being typed into. */
 typedef enum viewer_unfocused { VIEWER_BY_SCENE, VIEWER_PAUSE, VIEWER_PLAY } viewer_unfocused;
@@ -28,6 +29,7 @@ typedef struct viewer_options {
     const char *compare;                /* "path=value" of a second world beside the first; NULL: none */
     int32_t size[2], samples, threads;  /* threads 0: the scene's */
     double scale;                       /* of the letters; 0: as the screen has it */
+    viewer_theme theme;
     viewer_unfocused unfocused;
     viewer_device device;
     bool paused, panels;

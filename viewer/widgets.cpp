@@ -13,53 +13,144 @@
 #include <cstring>
 
 static double scale_of_all = 1;
+static const viewer_colours *colours = viewer_colours_of(VIEWER_DARK);
 
-/* Letters that most systems have; without any of them the built-in ones are scaled. */
-static const char *const letters[] = {
-    "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
-    "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
-    "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
-    "/usr/share/fonts/TTF/DejaVuSans.ttf",
-    "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
+/* ---- letters: of a family that was drawn for screens, or what most systems have ---- */
+
+static bool has_letters;
+static ImFont *plain, *strong, *small; // all the same where there is no family
+static const char *const families[][2] = {
+    {"/usr/share/fonts/opentype/inter/Inter-Regular.otf", "/usr/share/fonts/opentype/inter/Inter-SemiBold.otf"},
+    {"/usr/share/fonts/inter/Inter-Regular.otf", "/usr/share/fonts/inter/Inter-SemiBold.otf"},
+    {"/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf", "/usr/share/fonts/truetype/noto/NotoSans-Bold.ttf"},
+    {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf"},
+    {"/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
+     "/usr/share/fonts/truetype/liberation/LiberationSans-Bold.ttf"},
+    {"/usr/share/fonts/TTF/DejaVuSans.ttf", "/usr/share/fonts/TTF/DejaVuSans-Bold.ttf"},
+    {"/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf", "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans-Bold.ttf"},
 };
 
-static void take_letters(double scale) {
-    ImGuiIO &io = ImGui::GetIO();
-    for (const char *path : letters) {
-        FILE *file = std::fopen(path, "rb");
-        if (!file) continue;
-        std::fclose(file);
-        if (io.Fonts->AddFontFromFileTTF(path, static_cast<float>(13 * scale))) return;
-    }
-    io.FontGlobalScale = static_cast<float>(scale);
+static bool is_there(const char *path) {
+    FILE *file = std::fopen(path, "rb");
+    if (file) std::fclose(file);
+    return file != nullptr;
 }
 
-bool widgets_open(struct GLFWwindow *window, double scale) {
+static bool take_letters(double scale) {
+    // Latin, Greek, punctuation, raised and lowered numbers, arrows and signs of formulas
+    static const ImWchar glyphs[] = {0x20,   0x17f,  0x370,  0x3ff,  0x2000, 0x209f, 0x2190, 0x21ff,
+                                     0x2200, 0x22ff, 0x25a0, 0x25ff, 0};
+    ImGuiIO &io = ImGui::GetIO();
+    for (const char *const *family : families) {
+        if (!is_there(family[0])) continue;
+        const float size = std::round(static_cast<float>(14 * scale));
+        plain = io.Fonts->AddFontFromFileTTF(family[0], size, nullptr, glyphs);
+        if (!plain) continue;
+        small = io.Fonts->AddFontFromFileTTF(family[0], std::round(static_cast<float>(12 * scale)), nullptr, glyphs);
+        strong = is_there(family[1]) ? io.Fonts->AddFontFromFileTTF(family[1], size, nullptr, glyphs) : plain;
+        if (!strong) strong = plain;
+        if (!small) small = plain;
+        return true;
+    }
+    plain = strong = small = io.Fonts->AddFontDefault();
+    io.FontGlobalScale = static_cast<float>(scale);
+    return false;
+}
+
+/* ---- the theme ---- */
+
+static ImVec4 paint(uint32_t colour, float opacity = 1) {
+    const float part = 1.0f / 255;
+    return ImVec4(part * static_cast<float>(colour >> 16 & 255), part * static_cast<float>(colour >> 8 & 255),
+                  part * static_cast<float>(colour & 255), opacity);
+}
+
+static ImU32 ink(uint32_t colour, float opacity = 1) {
+    return ImGui::ColorConvertFloat4ToU32(paint(colour, opacity));
+}
+
+static void lay_out(ImGuiStyle &style) {
+    style.WindowRounding = 8;
+    style.ChildRounding = 8;
+    style.PopupRounding = 6;
+    style.FrameRounding = 5;
+    style.GrabRounding = 4;
+    style.ScrollbarRounding = 6;
+    style.TabRounding = 5;
+    style.WindowPadding = ImVec2(10, 8);
+    style.FramePadding = ImVec2(7, 2);
+    style.ItemSpacing = ImVec2(6, 4);
+    style.ItemInnerSpacing = ImVec2(7, 4);
+    style.IndentSpacing = 12;
+    style.ScrollbarSize = 11;
+    style.GrabMinSize = 8;
+    style.WindowTitleAlign = ImVec2(0, 0.5f);
+    style.ScaleAllSizes(static_cast<float>(scale_of_all));
+    style.WindowBorderSize = style.PopupBorderSize = 1; // a line is a line on any screen
+}
+
+void widgets_theme(const viewer_colours *theme) {
+    static const ImVec4 none(0, 0, 0, 0);
+    colours = theme;
+    ImGui::GetStyle() = ImGuiStyle();
+    ImGuiStyle &style = ImGui::GetStyle();
+    if (theme == viewer_colours_of(VIEWER_LIGHT)) ImGui::StyleColorsLight();
+    else ImGui::StyleColorsDark();
+    lay_out(style);
+    const struct {
+        ImGuiCol_ what;
+        ImVec4 colour;
+    } paints[] = {
+        {ImGuiCol_Text, paint(theme->text)},
+        {ImGuiCol_TextDisabled, paint(theme->quiet)},
+        {ImGuiCol_WindowBg, paint(theme->panel)},
+        {ImGuiCol_PopupBg, paint(theme->raised)},
+        {ImGuiCol_Border, paint(theme->line)},
+        {ImGuiCol_FrameBg, paint(theme->field)},
+        {ImGuiCol_FrameBgHovered, paint(theme->field_over)},
+        {ImGuiCol_FrameBgActive, paint(theme->field_over)},
+        {ImGuiCol_TitleBg, paint(theme->panel)},
+        {ImGuiCol_TitleBgActive, paint(theme->panel)},
+        {ImGuiCol_TitleBgCollapsed, paint(theme->panel)},
+        {ImGuiCol_ScrollbarBg, none},
+        {ImGuiCol_ScrollbarGrab, paint(theme->field_over)},
+        {ImGuiCol_ScrollbarGrabHovered, paint(theme->knob)},
+        {ImGuiCol_ScrollbarGrabActive, paint(theme->knob)},
+        {ImGuiCol_CheckMark, paint(theme->accent)},
+        // a slider's knob lies under its number, which is read through it
+        {ImGuiCol_SliderGrab, paint(theme->knob, 0.75f)},
+        {ImGuiCol_SliderGrabActive, paint(theme->accent, 0.85f)},
+        {ImGuiCol_Button, paint(theme->field)},
+        {ImGuiCol_ButtonHovered, paint(theme->field_over)},
+        {ImGuiCol_ButtonActive, paint(theme->accent, 0.6f)},
+        {ImGuiCol_Header, paint(theme->raised)},
+        {ImGuiCol_HeaderHovered, paint(theme->field)},
+        {ImGuiCol_HeaderActive, paint(theme->field_over)},
+        {ImGuiCol_Separator, paint(theme->line)},
+        {ImGuiCol_ResizeGrip, none},
+        {ImGuiCol_ResizeGripHovered, paint(theme->knob)},
+        {ImGuiCol_ResizeGripActive, paint(theme->accent)},
+        {ImGuiCol_TextSelectedBg, paint(theme->accent, 0.35f)},
+        {ImGuiCol_NavHighlight, paint(theme->accent)},
+    };
+    for (const auto &p : paints) style.Colors[p.what] = p.colour;
+}
+
+bool widgets_open(struct GLFWwindow *window, double scale, const viewer_colours *theme) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGuiIO &io = ImGui::GetIO();
     io.IniFilename = nullptr; // nothing is left behind in the working directory
     io.ConfigWindowsMoveFromTitleBarOnly = true;
     scale_of_all = scale;
-    take_letters(scale);
-    ImGui::StyleColorsDark();
-    ImGuiStyle &style = ImGui::GetStyle();
-    style.WindowRounding = 4;
-    style.FrameRounding = 3;
-    style.GrabRounding = 3;
-    style.WindowPadding = ImVec2(6, 6);
-    style.FramePadding = ImVec2(4, 2);
-    style.ItemSpacing = ImVec2(5, 3);
-    style.IndentSpacing = 10;
-    style.ScrollbarSize = 11;
-    style.Colors[ImGuiCol_WindowBg].w = 0.90f;
-    // a slider's knob lies over its number: dark, so that the number is read through it
-    style.Colors[ImGuiCol_SliderGrab] = ImVec4(0.24f, 0.42f, 0.66f, 0.75f);
-    style.Colors[ImGuiCol_SliderGrabActive] = ImVec4(0.26f, 0.50f, 0.80f, 0.85f);
-    style.GrabMinSize = 7;
-    style.ScaleAllSizes(static_cast<float>(scale));
+    has_letters = take_letters(scale);
+    widgets_theme(theme);
     return ImGui_ImplGlfw_InitForOpenGL(reinterpret_cast<GLFWwindow *>(window), true) &&
            ImGui_ImplOpenGL3_Init("#version 450 core");
+}
+
+bool widgets_has_letters(void) {
+    return has_letters;
 }
 
 void widgets_close(void) {
@@ -101,29 +192,34 @@ bool widgets_panel(const char *title, widgets_frame frame, double x, double y, d
                    bool *open) {
     ImGuiCond when = frame == WIDGETS_FREE ? ImGuiCond_Appearing : ImGuiCond_Always;
     ImGuiWindowFlags flags = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs;
-    if (frame == WIDGETS_FIXED)
-        flags |= ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar |
-                 ImGuiWindowFlags_NoBringToFrontOnFocus;
+    if (frame != WIDGETS_FREE)
+        flags |= ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                 ImGuiWindowFlags_NoCollapse;
+    if (frame == WIDGETS_FIXED) flags |= ImGuiWindowFlags_NoTitleBar;
+    if (frame == WIDGETS_DOCKED) flags |= ImGuiWindowFlags_HorizontalScrollbar;
     ImGui::SetNextWindowPos(ImVec2(static_cast<float>(x), static_cast<float>(y)), when);
     ImGui::SetNextWindowSize(ImVec2(static_cast<float>(width), static_cast<float>(height)), when);
-    return ImGui::Begin(title, frame == WIDGETS_FREE ? open : nullptr, flags);
+    // what fills its part of the window has no round corners
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, frame == WIDGETS_FREE ? ImGui::GetStyle().WindowRounding : 0);
+    bool unfolded = ImGui::Begin(title, frame == WIDGETS_FIXED ? nullptr : open, flags);
+    ImGui::PopStyleVar();
+    return unfolded;
 }
 
-void widgets_note(const char *id, const char *text, double x, double y, bool above, double width) {
-    ImGui::SetNextWindowPos(ImVec2(static_cast<float>(x), static_cast<float>(y)), ImGuiCond_Always,
-                            ImVec2(0, above ? 1.0f : 0.0f));
-    ImGuiWindowFlags flags = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs |
-                             ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
-                             ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing;
-    if (ImGui::Begin(id, nullptr, flags)) {
-        // as wide as the text, and at most as wide as there is room
-        float most = static_cast<float>(width) - 2 * ImGui::GetStyle().WindowPadding.x;
-        ImVec2 size = ImGui::CalcTextSize(text);
-        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + (size.x < most ? size.x + 1 : most));
-        ImGui::TextUnformatted(text);
-        ImGui::PopTextWrapPos();
-    }
-    ImGui::End();
+void widgets_note(const char *text, double x, double y, bool above, double width, bool warning) {
+    // before all panels, so that nothing hides an error
+    ImDrawList *list = ImGui::GetForegroundDrawList();
+    const ImVec2 pad = ImGui::GetStyle().WindowPadding;
+    const float room = static_cast<float>(width) - 2 * pad.x, bar = warning ? static_cast<float>(4 * scale_of_all) : 0;
+    const ImVec2 size = ImGui::CalcTextSize(text, nullptr, false, room);
+    const float left = static_cast<float>(x), high = size.y + 1.4f * pad.y;
+    const float top = static_cast<float>(y) - (above ? high : 0);
+    const ImVec2 from(left, top), to(left + size.x + 2 * pad.x + bar, top + high);
+    list->AddRectFilled(from, to, ink(colours->panel, 0.95f), 6);
+    list->AddRect(from, to, ink(warning ? colours->warning : colours->line), 6);
+    if (warning) list->AddRectFilled(from, ImVec2(left + bar, to.y), ink(colours->warning), 6, ImDrawFlags_RoundCornersLeft);
+    list->AddText(plain, ImGui::GetFontSize(), ImVec2(left + pad.x + bar, top + 0.7f * pad.y), ink(colours->text), text,
+                  nullptr, room);
 }
 
 bool widgets_over(const char *id, double x, double y, double left, double right) {
@@ -146,7 +242,10 @@ void widgets_panel_end(void) {
 }
 
 bool widgets_group(const char *title, bool open) {
-    return ImGui::CollapsingHeader(title, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+    ImGui::PushFont(strong);
+    bool unfolded = ImGui::CollapsingHeader(title, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+    ImGui::PopFont();
+    return unfolded;
 }
 
 bool widgets_tree(const char *title, bool open) {
@@ -171,8 +270,22 @@ void widgets_text(const char *text) {
     ImGui::TextUnformatted(text);
 }
 
+void widgets_heading(const char *text) {
+    ImGui::PushFont(strong);
+    ImGui::TextUnformatted(text);
+    ImGui::PopFont();
+}
+
+void widgets_quiet(const char *text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, paint(colours->quiet));
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+}
+
 void widgets_wrapped(const char *text, bool warning) {
-    if (warning) ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1, 0.72f, 0.35f, 1));
+    if (warning) ImGui::PushStyleColor(ImGuiCol_Text, paint(colours->warning));
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(text);
     ImGui::PopTextWrapPos();
@@ -197,6 +310,17 @@ void widgets_line_across(void) {
 
 bool widgets_button(const char *title) {
     return ImGui::Button(title);
+}
+
+bool widgets_main_button(const char *title) {
+    ImGui::PushStyleColor(ImGuiCol_Button, paint(colours->accent));
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, paint(colours->accent_over));
+    ImGui::PushStyleColor(ImGuiCol_ButtonActive, paint(colours->accent_over));
+    ImGui::PushStyleColor(ImGuiCol_Text, paint(colours->on_accent));
+    // as wide for one word as for the other, so that what follows stays where it is
+    bool pressed = ImGui::Button(title, ImVec2(ImGui::GetFontSize() * 4.2f, 0));
+    ImGui::PopStyleColor(4);
+    return pressed;
 }
 
 bool widgets_tick(const char *title, bool *value) {
@@ -323,9 +447,6 @@ void widgets_menu_end(void) {
 
 // ---- plots and pictures
 
-static const ImU32 colours[] = {IM_COL32(110, 190, 255, 255), IM_COL32(255, 170, 80, 255), IM_COL32(150, 220, 120, 255),
-                                IM_COL32(235, 235, 235, 255)};
-
 /* What an axis spans: all finite values. Where two things are compared, those of the calmer one with as much again and
  * ten times that: what blows up leaves the picture at its edge, and what it is compared with stays to be seen. */
 static void find_range(const float *const *series, int series_count, size_t first, size_t count, size_t room,
@@ -351,41 +472,103 @@ static void find_range(const float *const *series, int series_count, size_t firs
     if (*most - *least < 1e-6f) *least -= 0.5f, *most += 0.5f;
 }
 
-void widgets_plot(const char *title, const float *const *series, const char *const *names, int series_count,
-                  size_t first, size_t count, size_t room, bool compared, double height) {
-    float least = 0, most = 0;
-    find_range(series, series_count, first, count, room, compared, &least, &most);
-    ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, static_cast<float>(height));
+/* The step of 1, 2 or 5 times a power of ten that divides a span into at most so many. */
+static float step_of(float span, float most) {
+    float about = span / std::max(most, 1.0f), power = std::pow(10.0f, std::floor(std::log10(about)));
+    float times = about / power;
+    return power * (times <= 1.001f ? 1 : times <= 2.001f ? 2 : times <= 5.001f ? 5 : 10.0f);
+}
+
+static void write_tick(char *text, size_t size, float value, float step) {
+    if (std::fabs(value) < 1e-4f * step) value = 0;
+    bool whole = step >= 1 && std::fabs(value) < 1e5f;
+    int digits = std::min(std::max(static_cast<int>(std::ceil(-std::log10(step) - 1e-3f)), 0), 6);
+    if (std::fabs(value) >= 1e5f || (step < 1e-4f && value != 0)) std::snprintf(text, size, "%.3g", static_cast<double>(value));
+    else std::snprintf(text, size, "%.*f", whole ? 0 : digits, static_cast<double>(value));
+}
+
+/* Title and, after it, the names of the curves in their colours; as far as there is room. */
+static void write_legend(const widgets_chart *chart, ImVec2 at, float width) {
     ImDrawList *list = ImGui::GetWindowDrawList();
-    list->AddRectFilled(at, ImVec2(at.x + size.x, at.y + size.y), IM_COL32(20, 22, 26, 200), 3);
-    float span = static_cast<float>(count > 60 ? count - 1 : 59); // a new plot does not start with one wide step
-    list->PushClipRect(at, ImVec2(at.x + size.x, at.y + size.y), true);
-    for (int s = 0; s < series_count; s++) {
-        if (!series[s] || count < 2) continue;
-        for (size_t i = 0; i + 1 < count; i++) {
-            float a = series[s][(first + i) % room], b = series[s][(first + i + 1) % room];
-            if (!std::isfinite(a) || !std::isfinite(b)) continue;
-            float x = at.x + size.x * static_cast<float>(i) / span,
-                  next = at.x + size.x * static_cast<float>(i + 1) / span;
-            list->AddLine(ImVec2(x, at.y + size.y * (1 - (a - least) / (most - least))),
-                          ImVec2(next, at.y + size.y * (1 - (b - least) / (most - least))), colours[s % 4], 1.5f);
+    list->PushClipRect(at, ImVec2(at.x + width, at.y + 3 * ImGui::GetFontSize()), true);
+    list->AddText(strong, strong->FontSize, at, ink(colours->text), chart->title);
+    float x = at.x, y = at.y + strong->FontSize + 2;
+    for (int s = 0; s < chart->series_count; s++) {
+        if (!chart->series[s] || !chart->names[s] || !chart->names[s][0]) continue;
+        float size = small->FontSize, wide = small->CalcTextSizeA(size, FLT_MAX, 0, chart->names[s]).x;
+        list->AddRectFilled(ImVec2(x, y + 0.42f * size), ImVec2(x + 0.7f * size, y + 0.62f * size),
+                            ink(colours->series[s % VIEWER_SERIES]));
+        list->AddText(small, size, ImVec2(x + 0.9f * size, y), ink(colours->quiet), chart->names[s]);
+        x += wide + 1.6f * size;
+    }
+    list->PopClipRect();
+}
+
+/* Where a chart's curves are, and what its axes span. */
+struct frame_of_chart {
+    ImVec2 from, to;
+    float least, most, begin, end;
+    float x(float time) const { return from.x + (to.x - from.x) * (time - begin) / (end - begin); }
+    float y(float value) const { return to.y - (to.y - from.y) * (value - least) / (most - least); }
+};
+
+static void draw_axes(const frame_of_chart &f, float line) {
+    ImDrawList *list = ImGui::GetWindowDrawList();
+    char text[32];
+    list->AddRectFilled(f.from, f.to, ink(colours->chart), 3);
+    float step = step_of(f.most - f.least, (f.to.y - f.from.y) / (1.6f * line));
+    for (float v = std::ceil(f.least / step - 1e-3f) * step; v <= f.most + 1e-3f * step; v += step) {
+        write_tick(text, sizeof text, v, step);
+        float y = f.y(v), wide = small->CalcTextSizeA(line, FLT_MAX, 0, text).x;
+        list->AddLine(ImVec2(f.from.x, y), ImVec2(f.to.x, y), ink(colours->line));
+        list->AddText(small, line, ImVec2(f.from.x - wide - 4, y - 0.5f * line), ink(colours->quiet), text);
+    }
+    step = step_of(f.end - f.begin, (f.to.x - f.from.x) / (3.2f * line));
+    for (float t = std::ceil(f.begin / step - 1e-3f) * step; t <= f.end + 1e-3f * step; t += step) {
+        write_tick(text, sizeof text - 3, t, step);
+        float x = f.x(t);
+        if (t + step > f.end + 1e-3f * step) std::strcat(text, " s"); // the unit, once
+        float wide = small->CalcTextSizeA(line, FLT_MAX, 0, text).x;
+        list->AddLine(ImVec2(x, f.to.y), ImVec2(x, f.to.y + 3), ink(colours->quiet));
+        list->AddText(small, line, ImVec2(std::min(x - 0.5f * wide, f.to.x - 0.7f * wide), f.to.y + 3), ink(colours->quiet), text);
+    }
+}
+
+static void draw_curves(const widgets_chart *chart, const frame_of_chart &f) {
+    ImDrawList *list = ImGui::GetWindowDrawList();
+    list->PushClipRect(f.from, f.to, true);
+    for (int s = 0; s < chart->series_count; s++) {
+        const float *values = chart->series[s];
+        for (size_t i = 0; values && i + 1 < chart->count; i++) {
+            size_t here = (chart->first + i) % chart->room, next = (here + 1) % chart->room;
+            if (!std::isfinite(values[here]) || !std::isfinite(values[next])) continue;
+            list->AddLine(ImVec2(f.x(chart->times[here]), f.y(values[here])),
+                          ImVec2(f.x(chart->times[next]), f.y(values[next])), ink(colours->series[s % VIEWER_SERIES]), 1.6f);
         }
     }
     list->PopClipRect();
-    char range[64];
-    std::snprintf(range, sizeof range, "%.4g", static_cast<double>(most));
-    list->AddText(ImVec2(at.x + 3, at.y + 1), IM_COL32(200, 200, 200, 190), range);
-    std::snprintf(range, sizeof range, "%.4g", static_cast<double>(least));
-    list->AddText(ImVec2(at.x + 3, at.y + size.y - ImGui::GetFontSize() - 1), IM_COL32(200, 200, 200, 190), range);
-    ImGui::Dummy(size);
-    ImGui::TextUnformatted(title);
-    for (int s = 0; s < series_count; s++) {
-        if (!series[s] || !names[s]) continue;
-        ImGui::SameLine();
-        ImGui::PushStyleColor(ImGuiCol_Text, colours[s % 4]);
-        ImGui::TextUnformatted(names[s]);
-        ImGui::PopStyleColor();
+}
+
+void widgets_chart_show(const widgets_chart *chart, double width, double height) {
+    frame_of_chart f;
+    find_range(chart->series, chart->series_count, chart->first, chart->count, chart->room, chart->compared, &f.least,
+               &f.most);
+    // a little air above and below; what is never negative stands on its axis
+    float air = 0.06f * (f.most - f.least);
+    f.least = f.least >= 0 && f.least <= air * 4 ? 0 : f.least - air, f.most += air;
+    f.begin = chart->count ? chart->times[chart->first] : 0;
+    f.end = chart->count ? chart->times[(chart->first + chart->count - 1) % chart->room] : 0;
+    f.end = std::max(f.end, f.begin + 1); // a new plot does not start with one wide step
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float line = small->FontSize, wide = static_cast<float>(width), high = static_cast<float>(height);
+    f.from = ImVec2(at.x + 3.2f * line, at.y + strong->FontSize + line + 8);
+    f.to = ImVec2(at.x + wide - 4, at.y + high - line - 5);
+    if (f.to.y > f.from.y + 8 && f.to.x > f.from.x + 8) {
+        draw_axes(f, line);
+        draw_curves(chart, f);
     }
+    write_legend(chart, at, wide);
+    ImGui::Dummy(ImVec2(wide, high));
 }
 
 bool widgets_picture(unsigned texture, double width, double height) {
@@ -401,6 +584,20 @@ void widgets_columns(int count) {
 
 void widgets_next_column(void) {
     ImGui::NextColumn();
+}
+
+bool widgets_list(const char *id, double width, double height) {
+    if (ImGui::BeginChild(id, ImVec2(static_cast<float>(width), static_cast<float>(height)))) return true;
+    ImGui::EndChild();
+    return false;
+}
+
+void widgets_list_end(void) {
+    ImGui::EndChild();
+}
+
+double widgets_height(void) {
+    return std::max(ImGui::GetContentRegionAvail().y, 1.0f);
 }
 
 double widgets_room(void) {

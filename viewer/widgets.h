@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "viewer/theme.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -15,7 +17,11 @@ extern "C" {
 struct GLFWwindow;
 
 /* `scale` of letters and all sizes. After the window's own callbacks were set: these go on being called. */
-bool widgets_open(struct GLFWwindow *window, double scale);
+bool widgets_open(struct GLFWwindow *window, double scale, const viewer_colours *theme);
+/* Whether a typeface was found; else there are only the built-in letters. */
+bool widgets_has_letters(void);
+/* Between two frames. */
+void widgets_theme(const viewer_colours *theme);
 void widgets_close(void);
 void widgets_begin(void);
 void widgets_end(void); /* draws them into the window */
@@ -24,12 +30,13 @@ bool widgets_want_keys(void); /* a text is being typed */
 double widgets_scale(void);
 double widgets_line(void); /* the height of a line with a control on it */
 
-typedef enum widgets_frame { WIDGETS_FIXED, WIDGETS_FREE } widgets_frame;
+/* Docked: it stays where it is put, and can be closed. */
+typedef enum widgets_frame { WIDGETS_FIXED, WIDGETS_DOCKED, WIDGETS_FREE } widgets_frame;
 /* A panel at a place (pixels); a free one may be moved and closed (`open` turns false). True where it is unfolded; in
  * any case end it. */
 bool widgets_panel(const char *title, widgets_frame frame, double x, double y, double width, double height, bool *open);
-/* Words over the picture, in lines of at most `width` pixels: from (x, y) on downwards, or `above` it. */
-void widgets_note(const char *id, const char *text, double x, double y, bool above, double width);
+/* Words over everything, in lines of at most `width` pixels: from (x, y) on downwards, or `above` it. */
+void widgets_note(const char *text, double x, double y, bool above, double width, bool warning);
 /* A small panel over the picture, its bottom's middle at (x, y), as large as what is in it and between the two edges; end
  * it as a panel. False in its first frame, which nobody sees: its size is not known yet. */
 bool widgets_over(const char *id, double x, double y, double left, double right);
@@ -41,12 +48,15 @@ void widgets_push(const void *id);
 void widgets_pop(void);
 
 void widgets_text(const char *text);
+void widgets_heading(const char *text);
+void widgets_quiet(const char *text); /* what can wait */
 void widgets_wrapped(const char *text, bool warning);
 void widgets_same_line(void);
 void widgets_new_line(void); /* after all not the same */
 void widgets_gap(void);
 void widgets_line_across(void);
 bool widgets_button(const char *title);
+bool widgets_main_button(const char *title); /* the one that is used most */
 bool widgets_tick(const char *title, bool *value);
 /* `words` with '|' between them; `place` is the chosen one's. */
 bool widgets_choice(const char *title, const char *words, int *place);
@@ -71,13 +81,25 @@ void widgets_help(const char *text);  /* shown over the last control, while the 
 bool widgets_menu(const char *title); /* of the last control, by the right button; end it if true */
 bool widgets_menu_row(const char *title);
 void widgets_menu_end(void);
-/* Lines over each other; NULL entries are left out. `count` values from `first` on, in a ring of `room`. Where they are
- * `compared`, one that blows up does not flatten the others. */
-void widgets_plot(const char *title, const float *const *series, const char *const *names, int series_count,
-                  size_t first, size_t count, size_t room, bool compared, double height);
+/* Curves over each other, by time; NULL entries are left out. `count` values from `first` on, in rings of `room`. Where
+ * they are `compared`, one that blows up does not flatten the others. */
+typedef struct widgets_chart {
+    const char *title;          /* with the unit */
+    const float *const *series; /* series_count */
+    const char *const *names;   /* of the curves */
+    int series_count;
+    const float *times; /* s */
+    size_t first, count, room;
+    bool compared;
+} widgets_chart;
+void widgets_chart_show(const widgets_chart *chart, double width, double height);
 bool widgets_picture(unsigned texture, double width, double height); /* true: it was clicked */
 void widgets_columns(int count);
 void widgets_next_column(void);
+/* A list with a scroll bar of its own, beside what follows; end it if true. */
+bool widgets_list(const char *id, double width, double height);
+void widgets_list_end(void);
+double widgets_height(void);            /* that is left below */
 double widgets_room(void);              /* width that is left on this line */
 void widgets_last(double rectangle[4]); /* x, y, width, height of the last control, pixels */
 /* The same of the last number, choice or text, without its title. */

@@ -34,7 +34,8 @@ typedef struct window {
     int pending_count;
     double x, y;            /* of the pointer, as its events say: it may be elsewhere by now */
     int stage_buttons;      /* that went down over the picture: the stage gets their end, too */
-    int left;               /* where the picture begins, beside the panel */
+    int left, below;        /* where the picture begins, beside the panel; and what is docked below it, pixels */
+    bool light;             /* the theme that the panels have */
     double picture_size[2]; /* that was asked for */
     int frames_due;         /* to draw, since something happened */
     unsigned framebuffer;
@@ -174,21 +175,22 @@ static void pass_pointer(window *w) {
 /* Copies the newest picture into the window, byte by byte: it holds what a screen shows. */
 static void show_picture(window *w, int width, int height) {
     viewer_shown *shown = &w->exchange.shown;
-    static const float dark[4] = {0.14f, 0.15f, 0.16f, 1};
+    const uint32_t paint = viewer_colours_of(w->light ? VIEWER_LIGHT : VIEWER_DARK)->window;
+    const float behind[4] = {(float)(paint >> 16) / 255, (float)(paint >> 8 & 255) / 255, (float)(paint & 255) / 255, 1};
     glDisable(GL_FRAMEBUFFER_SRGB);
     glDisable(GL_SCISSOR_TEST);
     glViewport(0, 0, width, height);
     if (shown->generation != w->generation || shown->newest < 0) shown->in_use = -1;
     w->generation = shown->generation;
     if (shown->newest >= 0) shown->in_use = shown->newest;
-    glClearNamedFramebufferfv(0, GL_COLOR, 0, dark);
-    if (shown->in_use < 0) return;
+    glClearNamedFramebufferfv(0, GL_COLOR, 0, behind);
+    if (shown->in_use < 0 || !shown->has_scene) return;
     glNamedFramebufferRenderbuffer(w->framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
                                    shown->pictures[shown->in_use]);
     // while the window changes its size, the last picture is stretched
-    bool same = shown->width == width - w->left && shown->height == height;
-    glBlitNamedFramebuffer(w->framebuffer, 0, 0, 0, shown->width, shown->height, w->left, 0, width, height,
-                           GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
+    bool same = shown->width == width - w->left && shown->height == height - w->below;
+    glBlitNamedFramebuffer(w->framebuffer, 0, 0, 0, shown->width, shown->height, w->left, w->below, width,
+                           height,                           GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
 }
 
 /* Shows a picture of a few pixels (no power of two, which some drivers treat apart), as large and stretched: the driver
@@ -231,7 +233,8 @@ static void save_window(window *w, int width, int height) {
 static void ask_for_size(window *w, int width, int height) {
     const viewer_shown *shown = &w->exchange.shown;
     w->left = shown->panel[VIEWER_PANEL_SIDE] && shown->has_scene ? viewer_side_panel_width(width) : 0;
-    viewer_request request = {.kind = VIEWER_RESIZE, .x = width - w->left, .y = height};
+    w->below = shown->has_scene ? viewer_dock_height(shown, height) : 0;
+    viewer_request request = {.kind = VIEWER_RESIZE, .x = width - w->left, .y = height - w->below};
     bool is_new = request.x != w->picture_size[0] || request.y != w->picture_size[1];
     if (!is_new || width < 1 || height < 1) return;
     w->picture_size[0] = request.x, w->picture_size[1] = request.y;
@@ -242,6 +245,11 @@ static void draw(window *w) {
     int width, height;
     char title[256];
     glfwGetFramebufferSize(w->glfw, &width, &height);
+    pthread_mutex_lock(&w->exchange.lock);
+    bool light = w->exchange.shown.generation ? w->exchange.shown.light : w->light;
+    pthread_mutex_unlock(&w->exchange.lock);
+    if (light != w->light) widgets_theme(viewer_colours_of(light ? VIEWER_LIGHT : VIEWER_DARK));
+    w->light = light;
     widgets_begin();
     pass_pointer(w);
     pthread_mutex_lock(&w->exchange.lock);
@@ -339,9 +347,16 @@ static skein_status run(window *w, skein_error *error) {
     glCreateFramebuffers(1, &w->framebuffer);
     rehearse(w);
     set_callbacks(w);
-    if (!viewer_exchange_open(&w->exchange, &w->events) || !widgets_open(w->glfw, scale_of(w)))
+    w->light = w->options->theme == VIEWER_LIGHT;
+    if (!viewer_exchange_open(&w->exchange, &w->events) || !widgets_open(w->glfw, scale_of(w), viewer_colours_of(w->light ? VIEWER_LIGHT : VIEWER_DARK)))
         return render_fail(error, SKEIN_ERROR_MEMORY, "window", "out of memory");
     w->panels.exchange = &w->exchange;
+    if (!widgets_has_letters()) {
+        viewer_request plain = {.kind = VIEWER_FAULT};
+        snprintf(plain.text, sizeof plain.text,
+                 "no typeface was found: the built-in letters are shown (Debian: apt-get install fonts-inter)");
+        viewer_ask(&w->exchange, &plain);
+    }
     int width, height;
     glfwGetFramebufferSize(w->glfw, &width, &height);
     // as it will be once there is a scene
