@@ -9,7 +9,7 @@ enum { ALONG_ROW, ALONG_COLUMN, DIRECTIONS };
 
 /* Edges a span is long. A sweep over edges carries a correction over a few of them; spans of a few carry it over some
  * tens, and longer ones over all. Measured on the default cloth of 128 x 128 that is let go from level and swings by two
- * corners, 10 substeps, the worst moment's 99th percentile of stretch: 15 % without spans, 2.7 % with those of 5, 2.1 %
+ * corners, 10 substeps, 99th percentile of stretch, the worst of every fifth frame: 15 % without spans, 2.7 % with those of 5, 2.1 %
  * with 10, 7.5 % with 20, 1.1 % with 5 and 20, 1.5 % with 5 and 41, 1.0 % with 3, 9 and 30. */
 static const uint32_t span_edges[] = {5, 20};
 enum { SPANS = sizeof span_edges / sizeof *span_edges };
