@@ -86,6 +86,7 @@ typedef struct viewer_entry {
     skein_value value;
     double anchor; /* its largest number when it was first seen: sliders are measured by it */
     bool shapes;   /* a change builds the scene anew */
+    const skein_field *instead; /* that has taken its place, so that it counts for nothing; or NULL */
     bool cut;      /* of a longer text */
     char text[VIEWER_TEXT];
 } viewer_entry;

@@ -102,6 +102,28 @@ static void add_fields(viewer_side *side, const skein_world *world, skein_handle
     }
 }
 
+/* Whether a field's help says that it is given "instead of count", "instead of the mass". */
+static bool is_instead_of(const skein_field *field, const char *name) {
+    const char *at = strstr(field->help, "instead of ");
+    if (!at) return false;
+    at += strlen("instead of ");
+    if (!strncmp(at, "the ", 4)) at += 4;
+    size_t length = strlen(name);
+    return !strncmp(at, name, length) && !strchr("abcdefghijklmnopqrstuvwxyz_.0123456789", at[length] ? at[length] : ' ');
+}
+
+/* Fields that count for nothing, because another one is given instead of them. */
+static void mark_ignored(viewer_side *side, const viewer_object *object) {
+    viewer_entry *entries = side->entries + object->first;
+    for (size_t e = 0; e < object->count; e++)
+        for (size_t other = 0; other < object->count && !entries[e].instead; other++) {
+            const skein_value *value = &entries[other].value;
+            bool given = entries[other].text[0] || value->number[0] != 0;
+            if (given && is_instead_of(entries[other].field, entries[e].field->name))
+                entries[e].instead = entries[other].field;
+        }
+}
+
 static void add_objects(viewer_side *side, const skein_world *world, skein_category category) {
     for (size_t i = 0; i < skein_object_count(world, category); i++) {
         skein_handle handle = skein_object_at(world, category, i);
@@ -114,6 +136,7 @@ static void add_objects(viewer_side *side, const skein_world *world, skein_categ
         if (!begin_object(side, category, i, listed ? listed : kind, named ? name.text : kind->name)) return;
         add_fields(side, world, handle, kind->fields, kind->field_count);
         if (category != SKEIN_METHOD) add_fields(side, world, handle, common, common_count);
+        mark_ignored(side, &side->objects[side->object_count]);
         side->object_count++;
     }
 }

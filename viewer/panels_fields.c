@@ -190,6 +190,12 @@ void viewer_show_entry(viewer_panels *panels, const viewer_object *object, const
              object->index, field->name);
     place_entry(panels, field, name);
     if (widgets_begun()) viewer_event(panels->exchange->events, "takes %s", name);
+    if (entry->instead) {
+        snprintf(help, sizeof help, "%s counts for nothing: %s is given instead", field->name, entry->instead->name);
+        widgets_wrapped(help, true);
+        snprintf(help, sizeof help, "%s is ignored", name);
+        viewer_place_control(panels, help);
+    }
     describe(entry, help, sizeof help);
     widgets_help(help);
     if (request.value.count > 0 && field->type != SKEIN_FIELD_BOOL && field->type != SKEIN_FIELD_CHOICE)
