@@ -214,9 +214,10 @@ static void makes_each_piece(void **state) {
     drop_file(in_folder("one.json"));
     expect("opened particles=64 ");
     snprintf(type, sizeof type, "%s/meshes/ball.obj", SKEIN_SOURCE_DIR);
-    assert_true(find_box("make mesh", 0, box, patience_seconds));
-    listen_from_here();
     for (int turn = 0; turn < 3; turn++) {
+        settle();
+        assert_true(find_box("make mesh", 0, box, patience_seconds));
+        listen_from_here();
         type_into("make mesh", box, type, 0.1 + 0.2 * turn);
         if (hear("made mesh 1", 5)) break;
         assert_true(turn < 2);
@@ -290,6 +291,103 @@ static void puts_a_collider_elsewhere(void **state) {
     close_window();
 }
 
+/* ---- Stability ------------------------------------------------------------------------------------------------- */
+
+static const char stiff[] =
+    "{ 'name': 'stiff', 'method': { 'type': 'symplectic_euler', 'substeps': 1 }, 'bodies': [ { 'type': 'lattice',"
+    "  'name': 'block', 'grid': [3, 3, 3], 'size': [0.5, 0.5, 0.5], 'position': [0, 1, 0], 'mass': 1,"
+    "  'structural': { 'stiffness': 20000 } } ], 'forces': [ { 'type': 'gravity' } ],"
+    "  'colliders': [ { 'type': 'plane', 'offset': 0 } ] }";
+
+/* What blows up stops at the last good frame and says what went first; one button takes as many substeps as are needed, and
+ * then it holds. */
+static void says_what_blew_up_and_what_holds_it(void **state) {
+    char hash[32];
+    double frame;
+    (void)state;
+    write_scene(in_folder("stiff.json"), stiff);
+    open_scene(in_folder("stiff.json"));
+    listen_from_here();
+    hand("key space");
+    expect("warning it blew up: first particle ");
+    assert_non_null(strstr(screen.line, " of body 0, block"));
+    assert_non_null(strstr(screen.line, "the spring from particle "));
+    assert_non_null(strstr(screen.line, " substeps would hold it"));
+    frame = strtod(strstr(screen.line, "Back at frame ") + 14, NULL);
+    press_key("k");
+    assert_true(told("paused") == 1);
+    assert_true(told("frame") == frame);
+    press_button("take substeps", "set method 0 substeps=");
+    assert_true(strtod(strchr(screen.line, '=') + 1, NULL) > 1);
+    hash_after(60, hash);
+    close_window();
+}
+
+/* ---- What is kept between sittings ------------------------------------------------------------------------------ */
+
+static void remembers_scenes(void **state) {
+    (void)state;
+    write_scene(in_folder("one.json"), one_cube);
+    mkdir(in_folder("none"), 0777);
+    open_scene(in_folder("one.json"));
+    close_window();
+    const char *const arguments[] = {"--scenes", in_folder("none"), "--size",   "700x700", "--scale", "1",
+                                     "--samples", "1",              "--paused", NULL};
+    open_window(arguments);
+    screen.seen = 0;
+    press_button("recent one.json", "opened particles=64 ");
+    close_window();
+}
+
+/* Changes of the second world are its own: they outlast a rebuild of both, and are saved beside the first. */
+static void saves_both_of_two(void **state) {
+    (void)state;
+    char named[sizeof one_cube + 8] = "{ 'name': 'pair'";
+    strcat(named, strchr(one_cube, ','));
+    write_scene(in_folder("pair.json"), named);
+    const char *const arguments[] = {in_folder("pair.json"), "--size", "700x1500", "--scale",           "1", "--samples", "1",
+                                     "--paused",             "--compare", "method.type=pbd", NULL};
+    open_window(arguments);
+    screen.seen = 0;
+    expect("note side by side");
+    press_key("k");
+    type_value("other body.0.structural.stiffness", 0, 1, "4321", "set body 0 structural.stiffness=4321");
+    type_value("body.0.mass", 0, 1, "7", "set body 0 mass=7");
+    use_key("ctrl+s", "note saved pair-other-001.json");
+    expect("note saved pair-001.json");
+    skein_world *first = world_of(in_folder("pair-001.json")), *other = world_of(in_folder("pair-other-001.json"));
+    skein_value stiffness[2], mass;
+    assert_int_equal(skein_get_path(first, "bodies.0.structural.stiffness", &stiffness[0]), SKEIN_OK);
+    assert_int_equal(skein_get_path(other, "bodies.0.structural.stiffness", &stiffness[1]), SKEIN_OK);
+    assert_int_equal(skein_get_path(other, "bodies.0.mass", &mass), SKEIN_OK);
+    assert_true(stiffness[0].number[0] == 2000 && stiffness[1].number[0] == 4321 && mass.number[0] == 7);
+    assert_string_equal(skein_object_kind(other, skein_object_at(other, SKEIN_METHOD, 0))->name, "pbd");
+    skein_world_destroy(first);
+    skein_world_destroy(other);
+    close_window();
+}
+
+/* A field that another one is given instead of says so. */
+static void says_what_is_ignored(void **state) {
+    static const char flock[] = "{ 'name': 'flock', 'bodies': [ { 'type': 'flock', 'count': 9, 'side': 3 } ] }",
+                      block[] = "{ 'name': 'block', 'bodies': [ { 'type': 'lattice', 'density': 3 } ] }";
+    double box[4];
+    (void)state;
+    write_scene(in_folder("flock.json"), flock);
+    write_scene(in_folder("block.json"), block);
+    open_scene(in_folder("flock.json"));
+    assert_true(find_box("body.0.count is ignored", 0, box, patience_seconds));
+    type_value("body.0.side", 0, 1, "0", "set body 0 side=0");
+    settle();
+    listen_from_here();
+    long from = screen.seen;
+    drop_file(in_folder("block.json"));
+    expect("opened ");
+    assert_true(find_box("body.0.mass is ignored", from, box, patience_seconds));
+    assert_false(find_box("body.0.count is ignored", from, box, 0.1));
+    close_window();
+}
+
 static int begin(void **state) {
     if (make_folder(state)) return -1;
     open_screen();
@@ -308,8 +406,11 @@ int main(void) {
     const struct CMUnitTest sitting[] = {
         cmocka_unit_test(drops_two_cubes_into_the_bowl), cmocka_unit_test(makes_three_cubes_of_one),
         cmocka_unit_test(makes_each_piece),              cmocka_unit_test(turns_a_grid_into_a_mesh),
-        cmocka_unit_test(puts_a_collider_elsewhere),
+        cmocka_unit_test(puts_a_collider_elsewhere),     cmocka_unit_test(says_what_blew_up_and_what_holds_it),
+        cmocka_unit_test(remembers_scenes),              cmocka_unit_test(saves_both_of_two),
+        cmocka_unit_test(says_what_is_ignored),
     };
     if (!can_open_screen()) return 0;
+    if (getenv("SKEIN_TEST_ONLY")) cmocka_set_test_filter(getenv("SKEIN_TEST_ONLY"));
     return cmocka_run_group_tests(sitting, begin, end);
 }

@@ -253,6 +253,7 @@ static inline void open_window(const char *const *arguments) {
         alarm(900);
         dup2(out, 1);
         dup2(out, 2);
+        setenv("XDG_STATE_HOME", folder, 1); // nothing is left in the user's own
         if (!chdir(folder)) execv(SKEIN_COMMAND, words);
         _exit(127);
     }

@@ -15,7 +15,7 @@
 #include "viewer/lesson.h"
 #include "viewer/pace.h"
 
-enum { VIEWER_TEXT = 1024, VIEWER_PICTURES = 4, VIEWER_SIDES = 2, VIEWER_SAMPLES = 240, VIEWER_LOG_LINES = 200 };
+enum { VIEWER_TEXT = 1024, VIEWER_PICTURES = 4, VIEWER_SIDES = 2, VIEWER_SAMPLES = 240, VIEWER_LOG_LINES = 200, VIEWER_RECENTS = 8 };
 
 /* ---- requests ---- */
 
@@ -166,6 +166,9 @@ typedef struct viewer_shown {
     bool panel[VIEWER_PANEL_COUNT];
     uint64_t frame, first_frame, last_frame; /* of the history */
     double time, speed;                      /* s; simulated over real time */
+    double needed;                           /* substeps, where there are too few to be stable; else 0 */
+    char recent[VIEWER_RECENTS][VIEWER_TEXT];
+    size_t recent_count;
     size_t changes;                          /* that are done, besides those that were given */
     viewer_lesson lesson; /* while its panel is open */
     size_t side_count;

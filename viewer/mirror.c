@@ -232,6 +232,7 @@ static void mirror_time(viewer_stage *stage, viewer_shown *shown) {
     shown->first_frame = player->history.first;
     shown->last_frame = player->history.last > player->frame ? player->history.last : player->frame;
     shown->time = skein_world_time(player->world);
+    shown->needed = player->needed;
     shown->changes = player->changes.done - player->changes.given;
     const char *name = player->settings.name[0] ? player->settings.name : player->path;
     snprintf(shown->title, sizeof shown->title, "Skein: %.160s%s", name, stage->paused ? " (paused)" : "");
@@ -259,6 +260,8 @@ void viewer_mirror(viewer_stage *stage) {
     memcpy(shown->panel, stage->panel, sizeof shown->panel);
     snprintf(shown->message, sizeof shown->message, "%s", stage->message);
     shown->side_count = stage->side_count;
+    memcpy(shown->recent, stage->recent.path, sizeof shown->recent);
+    shown->recent_count = stage->recent.count;
     if (stage->panel[VIEWER_PANEL_LESSON]) viewer_lesson_copy(&shown->lesson, &stage->lesson);
     if (stage->side_count) mirror_time(stage, shown);
     else snprintf(shown->title, sizeof shown->title, "Skein");

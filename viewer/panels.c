@@ -170,6 +170,7 @@ static void show_side(viewer_panels *panels, const viewer_shown *shown, double w
     if (widgets_panel("Skein", WIDGETS_FIXED, 0, 0, width, height, NULL) && shown->has_scene) {
         show_time(panels, shown);
         show_facts(shown);
+        viewer_show_advice(panels);
         viewer_show_palette(panels);
         for (size_t s = 0; s < shown->side_count; s++) {
             if (shown->side_count > 1) widgets_wrapped(shown->sides[s].name, false);
@@ -212,6 +213,7 @@ static void show_gallery(viewer_panels *panels, const viewer_shown *shown, doubl
             widgets_wrapped("There are no scenes in the gallery's folder; `skein view --scenes FOLDER` names another. "
                             "Or drop a scene or a mesh on this window.",
                             true);
+        viewer_show_recent(panels);
         widgets_columns(columns);
         for (size_t c = 0; c < shown->card_count; c++) {
             show_card(panels, &shown->cards[c], widgets_room() - 4);

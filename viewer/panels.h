@@ -48,6 +48,9 @@ bool viewer_show_search(viewer_panels *panels, int side);
 /* panels_lesson.c: in the picture, which begins `left`; its height at the window's bottom */
 void viewer_show_lesson(viewer_panels *panels, double left, double width, double height);
 double viewer_lesson_height(double height);
+/* panels_advice.c */
+void viewer_show_advice(viewer_panels *panels);
+void viewer_show_recent(viewer_panels *panels);
 /* panels_plots.c */
 void viewer_show_plots(viewer_panels *panels, const double at[4]); /* x, y, width, height */
 

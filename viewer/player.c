@@ -1,6 +1,7 @@
 /* Playing a scene; see player.h. */
 #include "viewer/player.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,8 +47,24 @@ static void say_advice(void *user, const char *line) {
     reporter->say(reporter->user, SKEIN_LOG_WARNING, line);
 }
 
+/* As many substeps as are needed and are not there; 0 where there are enough, or no number is. */
+static double missing(const viewer_player *player, double needed) {
+    skein_value substeps = skein_number(1);
+    bool known = !skein_get_path(player->world, "method.substeps", &substeps);
+    return known && isfinite(needed) && needed > substeps.number[0] ? needed : 0;
+}
+
 void viewer_player_advise(viewer_player *player) {
-    io_advise(player->world, player->dt, (io_warnings){say_advice, &player->reporter}, NULL);
+    double needed = 0;
+    io_advise(player->world, player->dt, (io_warnings){say_advice, &player->reporter}, &needed);
+    player->needed = missing(player, needed);
+}
+
+void viewer_player_advise_anew(viewer_player *player) {
+    double needed = 0, before = player->needed;
+    io_advise(player->world, player->dt, (io_warnings){NULL, NULL}, &needed);
+    player->needed = missing(player, needed);
+    if (player->needed > 0 && player->needed != before) viewer_player_advise(player);
 }
 
 /* ---- Cards ---- */

@@ -36,6 +36,7 @@ typedef struct viewer_player {
     unsigned char *pins; /* which particles were held when it was built */
     viewer_reporter reporter;
     bool failed; /* a step failed: said once */
+    double needed; /* substeps, where there are too few to be stable; else 0 */
 } viewer_player;
 
 /* How scenes are read. */
@@ -65,8 +66,11 @@ bool viewer_player_profile(viewer_player *player, bool *new_frame, skein_pass *p
 bool viewer_player_step(viewer_player *player, bool *new_frame);
 /* Whether a graphics card steps its world: then there is no history, which would bring every frame back from it. */
 bool viewer_player_on_card(const viewer_player *player);
-/* Says what the world will suffer from as it is now: a step that is not stable, rounding (io/advice.h). */
+/* Says what the world will suffer from as it is now: a step that is not stable, rounding (io/advice.h); and keeps how many
+ * substeps it needs. */
 void viewer_player_advise(viewer_player *player);
+/* The same without a word where it needs as many as before. */
+void viewer_player_advise_anew(viewer_player *player);
 /* As it was built. */
 void viewer_player_reset(viewer_player *player);
 /* As it was in a frame that is kept. */

@@ -11,6 +11,8 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include "viewer/blow_up.h"
+
 /* Pictures a second at most; how long steps may go on before the stage looks at what is asked; how often the scene's
  * file is looked at, and speed is judged. */
 static const double most_rate = 60, longest_stepping = 0.005, watch_every = 0.25, judge_every = 1, profile_every = 1;
@@ -72,20 +74,19 @@ void viewer_tell_state(viewer_stage *stage) {
 /* ---- Time ---- */
 
 static void blew_up(viewer_stage *stage) {
+    char words[600];
     viewer_stage_pause(stage, true);
-    viewer_say(stage, SKEIN_LOG_WARNING,
-               "the state is not finite any more: paused. Backspace starts anew; smaller substeps or another method "
-               "may hold it");
-}
-
-static bool world_is_finite(const skein_world *world) {
-    // a particle that blew up takes its neighbours along: one in some tells
-    skein_view view = skein_position_view(world);
-    for (size_t i = 0; i < view.count; i += view.count / 64 + 1) {
-        const skein_real *p = view.xyzw + 4 * (size_t)view.slot_of[i];
-        if (!isfinite((double)p[0]) || !isfinite((double)p[1]) || !isfinite((double)p[2])) return false;
+    for (size_t side = 0; side < stage->side_count; side++) {
+        viewer_player *player = &stage->sides[side];
+        if (viewer_is_finite(player->world)) continue;
+        viewer_explain_blow_up(player, words, sizeof words);
+        viewer_player_advise_anew(player);
+        char help[100] = "smaller substeps or another method may hold it";
+        if (player->needed > 0) snprintf(help, sizeof help, "%.0f substeps would hold it", player->needed);
+        viewer_say(stage, SKEIN_LOG_WARNING, "%s; %s", words, help);
     }
-    return true;
+    stage->sampled = 0;
+    stage->facts = true;
 }
 
 static bool is_finite(viewer_stage *stage) {
@@ -94,7 +95,7 @@ static bool is_finite(viewer_stage *stage) {
     bool look = now - stage->looked > judge_every;
     if (look) stage->looked = now;
     for (size_t s = 0; s < stage->side_count; s++)
-        if ((look || !viewer_player_on_card(&stage->sides[s])) && !world_is_finite(stage->sides[s].world)) return false;
+        if ((look || !viewer_player_on_card(&stage->sides[s])) && !viewer_is_finite(stage->sides[s].world)) return false;
     return true;
 }
 
@@ -267,6 +268,11 @@ static void turn(viewer_stage *stage) {
         viewer_watch(stage, false);
         stage->watched = now;
     }
+    if (stage->advice_due > 0 && now >= stage->advice_due && stage->side_count) {
+        stage->advice_due = 0;
+        viewer_player_advise_anew(&stage->sides[0]);
+        stage->news = true;
+    }
     advance(stage);
     if (stage->message[0] && now - stage->spoke > 6) {
         stage->message[0] = 0;
@@ -290,6 +296,7 @@ static void *stage_thread(void *data) {
         if (stage->side_count && stage->options->compare) viewer_stage_compare(stage, stage->options->compare);
         if (!stage->side_count) stage->panel[VIEWER_PANEL_GALLERY] = true;
         viewer_gallery_open(stage);
+        viewer_recent_read(&stage->recent);
         stage->dirty = true;
         while (!stage->closing) turn(stage);
         if (stage->film) viewer_film_toggle(stage);

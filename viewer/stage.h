@@ -22,6 +22,7 @@
 #include "viewer/pace.h"
 #include "viewer/painter.h"
 #include "viewer/player.h"
+#include "viewer/recent.h"
 #include "viewer/viewer.h"
 
 typedef struct GLFWwindow GLFWwindow;
@@ -110,6 +111,8 @@ typedef struct viewer_stage {
         long long seconds, nanoseconds, size;
     } stamp;
     struct viewer_gallery *gallery;
+    viewer_recent recent;
+    double advice_due; /* when to look how many substeps are needed, after a change; 0: nothing has changed */
 } viewer_stage;
 
 /* Starts the thread; `context` is a hidden window whose context shares with the window's own, and so is `card`, which is

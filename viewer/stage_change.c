@@ -167,6 +167,8 @@ void viewer_stage_set(viewer_stage *stage, const viewer_request *r) {
         is_live(stage, side, &to) ? change_live(stage, side, &to, set) : set && viewer_stage_build_with(stage, set);
     free(set);
     tell_value(stage, side, &to, changed);
+    // a slider that is dragged asks for nothing yet
+    if (changed && r->category != SKEIN_VIEW) stage->advice_due = viewer_seconds() + 0.4;
     stage->facts = stage->dirty = true;
 }
 

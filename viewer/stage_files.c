@@ -78,15 +78,23 @@ void viewer_save_mesh(viewer_stage *stage) {
 /* ---- The scene ---- */
 
 /* As tuned: it opens to what this one would be if it were put back to its start. */
+/* Each of the worlds that are shown. */
 void viewer_save_scene(viewer_stage *stage) {
-    const viewer_player *player = &stage->sides[0];
     viewer_reading reading = viewer_stage_reading(stage);
     skein_error error = {SKEIN_OK, "", ""};
     char path[64], stem[48];
-    viewer_free_name(stem_of(stage, stem), ".json", path, sizeof path);
-    if (viewer_player_write(player, path, &reading, &error))
-        viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", path, error.message);
-    else viewer_note(stage, "saved %s: the scene as tuned", path);
+    for (size_t s = stage->side_count; s-- > 0;) {
+        stem_of(stage, stem);
+        if (s) snprintf(stem + (strlen(stem) < 30 ? strlen(stem) : 30), 8, "-other");
+        viewer_free_name(stem, ".json", path, sizeof path);
+        if (viewer_player_write(&stage->sides[s], path, &reading, &error)) {
+            viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", path, error.message);
+            continue;
+        }
+        viewer_note(stage, "saved %s: the scene as tuned", path);
+        if (s == 0 && !viewer_recent_add(&stage->recent, path, &error))
+            viewer_say(stage, SKEIN_LOG_INFO, "%s: %s", error.where, error.message);
+    }
 }
 
 /* ---- Films ---- */

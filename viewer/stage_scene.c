@@ -68,7 +68,12 @@ void viewer_stage_open(viewer_stage *stage, const char *path, const char *const 
     const char *name = stage->sides[0].settings.name;
     viewer_note(stage, "%s: %zu particles", name[0] ? name : path, skein_particle_count(stage->sides[0].world));
     note_opened(stage, "opened");
+    skein_error error = {SKEIN_OK, "", ""};
+    if (!viewer_recent_add(&stage->recent, path, &error))
+        viewer_say(stage, SKEIN_LOG_INFO, "%s: %s", error.where, error.message);
 }
+
+static void compare_with(viewer_stage *stage, const char *set, const viewer_changes *own);
 
 bool viewer_stage_reopen(viewer_stage *stage, viewer_changes *changes, bool stays) {
     viewer_reading reading = viewer_stage_reading(stage);
@@ -82,8 +87,11 @@ bool viewer_stage_reopen(viewer_stage *stage, viewer_changes *changes, bool stay
         note_opened(stage, "reopened");
         if (stage->side_count > 1) {
             char compare[VIEWER_TEXT];
+            viewer_changes own;
             memcpy(compare, stage->compare, sizeof compare);
-            viewer_stage_compare(stage, compare);
+            bool copied = viewer_changes_copy(&own, &stage->sides[1].changes);
+            compare_with(stage, compare, copied ? &own : NULL);
+            if (copied) viewer_changes_free(&own);
         }
     }
     viewer_watch(stage, true);
@@ -101,7 +109,8 @@ void viewer_stage_reload(viewer_stage *stage) {
 
 /* ---- Two side by side ---- */
 
-void viewer_stage_compare(viewer_stage *stage, const char *set) {
+/* Two worlds from the start, the second with one more set and what was changed in it, or NULL. */
+static void compare_with(viewer_stage *stage, const char *set, const viewer_changes *own) {
     viewer_reading reading = viewer_stage_reading(stage);
     char text[VIEWER_TEXT];
     snprintf(text, sizeof text, "%s", set); // it may be the stage's own
@@ -111,6 +120,9 @@ void viewer_stage_compare(viewer_stage *stage, const char *set) {
         viewer_changes changes = {NULL, 0, 0, 0, 0};
         bool good = viewer_changes_copy(&changes, &stage->sides[0].changes) &&
                     viewer_changes_add(&changes, text, NULL, NULL);
+        size_t given = changes.count;
+        for (size_t i = own ? own->given : 0; own && good && i < own->done; i++)
+            good = viewer_changes_add(&changes, own->data[i].set, NULL, NULL);
         const char **sets = good ? viewer_changes_sets(&changes) : NULL;
         good = sets && viewer_player_open(&stage->sides[1], stage->sides[0].path, sets, &reading,
                                           (viewer_reporter){player_says, stage});
@@ -118,6 +130,7 @@ void viewer_stage_compare(viewer_stage *stage, const char *set) {
         viewer_changes_free(&changes);
         if (good) {
             stage->side_count = 2;
+            stage->sides[1].changes.given = given;
             snprintf(stage->compare, sizeof stage->compare, "%s", text);
             stage->sides[1].view = stage->sides[0].view;
             viewer_stage_reset(stage); // both begin together
@@ -129,6 +142,10 @@ void viewer_stage_compare(viewer_stage *stage, const char *set) {
     stage->camera.placed = false;
     restart_clock(stage);
     viewer_tell_state(stage);
+}
+
+void viewer_stage_compare(viewer_stage *stage, const char *set) {
+    compare_with(stage, set, NULL);
 }
 
 /* ---- Time ---- */
