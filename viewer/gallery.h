@@ -4,6 +4,6 @@
 
 #include "viewer/stage.h"
 
-enum { VIEWER_CARD_WIDTH = 192, VIEWER_CARD_HEIGHT = 108 };
+enum { VIEWER_CARD_WIDTH = 288, VIEWER_CARD_HEIGHT = 162 };
 
 #endif

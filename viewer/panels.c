@@ -190,12 +190,21 @@ static void close_panel(viewer_panels *panels, viewer_panel panel) {
 
 static void show_card(viewer_panels *panels, const viewer_card *card, double width) {
     char name[100];
+    // as high as every other, so that rows stay rows: the picture, the title, and some lines of what it teaches
+    double height = width * 9 / 16 + 5.6 * widgets_line();
     widgets_push(card);
+    if (!widgets_list("card", width, height)) {
+        widgets_pop();
+        return;
+    }
     bool clicked = widgets_picture(card->broken ? 0 : card->texture, width, width * 9 / 16);
     snprintf(name, sizeof name, "card %.80s", card->title);
     viewer_place_control(panels, name);
     widgets_help(card->about);
-    widgets_wrapped(card->title, card->broken);
+    if (card->broken) widgets_wrapped(card->title, true);
+    else widgets_heading(card->title);
+    widgets_quiet(card->about);
+    widgets_list_end();
     widgets_pop();
     if (!clicked) return;
     viewer_request request = {.kind = VIEWER_OPEN};
@@ -207,7 +216,7 @@ static void show_gallery(viewer_panels *panels, const viewer_shown *shown, doubl
     bool open = true;
     double edge = 0.04 * width;
     if (widgets_panel("Scenes", WIDGETS_FREE, edge, edge, width - 2 * edge, height - 2 * edge, &open)) {
-        double wanted = 150 * widgets_scale();
+        double wanted = 250 * widgets_scale();
         int columns = (int)fmax(1, floor(widgets_room() / wanted));
         if (!shown->card_count)
             widgets_wrapped("There are no scenes in the gallery's folder; `skein view --scenes FOLDER` names another. "
