@@ -49,7 +49,7 @@ static void judge_scene(const io_scene *scene) {
     const io_scene_settings *s = io_scene_get(scene);
     double dt;
     int steps = io_scene_steps_per_frame(s, &dt);
-    require(s->version == 1 && s->frames >= 0 && s->threads >= 1 && s->threads <= 64);
+    require(s->version == 1 && s->frames >= 0 && s->threads >= 0 && s->threads <= 64);
     require(s->name && s->description && steps >= 1 && steps <= 1000000 && dt > 0 && isfinite(dt));
     io_export exports[16];
     size_t count = io_scene_exports(scene, exports, 16);

@@ -31,9 +31,9 @@ static void wrong_arguments_are_told(void **state) {
          "skein check: there is no option --frames here, only for run, render or compare; `skein check --help` shows all\n"},
         {{"run", "a.json", "--frmes", "3"},
          "skein run: there is no option --frmes; did you mean --frames? `skein run --help` shows all\n"},
-        {{"view", "a.json", "--device=gpu"},
-         "skein view: there is no option --device here, only for run, render, explain or bench; "
-         "`skein view --help` shows all\n"},
+        {{"check", "a.json", "--device=gpu"},
+         "skein check: there is no option --device here, only for run, view, render, explain or bench; "
+         "`skein check --help` shows all\n"},
         {{"run", "a.json", "--device", "card"}, "skein run: --device card: expected cpu, gpu or auto\n"},
         {{"bench", "flock", "--least=2000", "--most=1000"},
          "skein bench: --least 2000 --most 1000: the first size is more than the last\n"},
@@ -115,8 +115,8 @@ static void check_counts_what_is_there(void **state) {
     char words[600];
     const char *s = tiny_scene();
     snprintf(words, sizeof words,
-             "%s: good; 34 particles (4 held), 152 constraints, 1 force, 1 collider, xpbd; 0 warnings\n", s);
-    // 5 x 5: 40 edges, 32 diagonals, 40 hinges; 3 x 3: 12, 8 and 8; and 12 more by what is set
+             "%s: good; 34 particles (4 held), 160 constraints, 1 force, 1 collider, xpbd; 0 warnings\n", s);
+    // 5 x 5: 40 edges, 32 diagonals, 30 lines of three, 16 squares; 3 x 3: 12, 8, 6 and 4; and 12 more by what is set
     assert_says(0, words, "", "check", s, "--set",
                 "constraints=[{\"type\":\"distance\",\"particles\":"
                 "[0,25,1,26,2,27,3,28,4,29,5,30,6,31,7,32,8,33,9,25,10,26,11,27]}]");

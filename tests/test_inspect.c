@@ -93,7 +93,7 @@ static void forces_follow_from_it(void **state) {
         OK(o.world, skein_velocities_copy(o.world, 0, PARTICLES, v));
         skein_view masses = skein_velocity_view(o.world);
         for (size_t i = 0; i < COORDINATES; i++) most = fmax(most, fabs(v[i]));
-        assert_true(most > 1e-6);
+        assert_true(most > 1e-8); // an isometric one is soft, and starts nearly flat
         for (size_t p = 0; p < l.value.particle_count; p++)
             for (size_t a = 0; a < 3; a++) {
                 uint32_t i = l.particles[p];
@@ -205,7 +205,7 @@ static void a_body_has_the_constraints_of_its_parts(void **state) {
         uint32_t particles[8];
         double gradient[24];
         OK(world, skein_constraint_evaluate(world, cloth, i, &value, particles, gradient, 8));
-        if (value.particle_count == 4) folds += !strcmp(value.label, "bend");
+        folds += value.particle_count > 2 && !strncmp(value.label, "bend", 4);
         if (value.particle_count != 2) continue;
         const skein_spring *spring = &springs[seen++];
         vec3 off = minus(position_of(world, particles[0]), position_of(world, particles[1]));
