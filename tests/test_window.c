@@ -210,14 +210,14 @@ static void frames_returns_and_follows(void **state) {
     for (int i = 0; i < 12; i++) press_key("period");
     ask_state();
     eye_of(after);
-    assert_true(before[1] - after[1] > 2e-4); // the sheet sags
+    if (!(distance(before, after) > 2e-5)) fail_msg("it goes by %g", distance(before, after)); // the sheet sags
     press_key("t");
     ask_state();
     eye_of(before);
     press_key("period");
     ask_state();
     eye_of(after);
-    assert_true(distance(before, after) < 1e-4);
+    assert_true(distance(before, after) < 1e-6);
     press_key("BackSpace");
 }
 
