@@ -258,6 +258,7 @@ static inline void open_window(const char *const *arguments) {
         _exit(127);
     }
     expect("open ");
+    screen.seen = 0; // a scene may be there before the window is
     // the focus, which a window manager would give
     char line[256];
     FILE *answer = popen("xdotool search --onlyvisible --name '^Skein'", "r");
