@@ -54,7 +54,7 @@ static const skein_setting *settings_of(const char *kind) {
         {"separation", {SKEIN_REAL("radius", 0.7), SKEIN_REAL("strength", 0.5)}},
         {"speed_limit", {SKEIN_REAL("limit", 0.1)}},
         {"turn_limit", {SKEIN_REAL("turn", 60), SKEIN_REAL("climb", 20)}},
-        {"bounds", {SKEIN_VEC3("size", 0.2, 0.2, 0.2)}},
+        {"bounds", {SKEIN_VEC3("size", 0.02, 0.02, 0.02)}},
         {"predator", {SKEIN_REAL("radius", 5)}},
         {"lookout", {SKEIN_REAL("clearance", 3)}},
         {"force_field", {SKEIN_TEXT("force", "vec3(1, 2, 3)")}},

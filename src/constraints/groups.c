@@ -193,6 +193,8 @@ static bool find_walk(const dealer *d, sk_sweep *sweep) {
     if (walks && walk.reach * LEAST_SHARE <= walk.rows) {
         sweep->walk = walk;
         sweep->slab_start = start;
+        size_t lanes = start[walk.rows - 1] * d->arity * SK_LANES;
+        for (size_t i = 0; i < lanes && !sweep->alone; i++) sweep->alone = sweep->slots[i] == d->particles->empty_slot;
     } else {
         sk_release(d->allocator, start);
     }

@@ -48,6 +48,8 @@ struct sk_sweep {
     size_t group_count;
     uint8_t *ahead;       /* of each group: how many from it on share no particle; NULL where nobody asks */
     uint32_t *slab_start; /* where they walk: the groups of slab j are [slab_start[j], slab_start[j + 1]) */
+    bool alone; /* groups before the last slab have empty lanes, which all write the one slot that is nobody's: for one
+                 * thread */
     char label[48];       /* the batch's, and the direction */
 };
 

@@ -205,6 +205,8 @@ static void run_walk(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t co
     segment_job job = {
         .run = run, .rows = rows, .count = count, .turns = turns, .start = start, .dt = dt, .walk = *walk};
     int threads = sk_tasks_together(tasks) && walk->rows * walk->width * 16 >= 4096 ? sk_tasks_count(tasks) : 1;
+    for (size_t g = 0; g < count; g++)
+        if (rows[g].one_thread) threads = 1;
     cut_chunks(&job, threads);
     if (job.threads == 1) {
         run_chunks_alone(&job);
