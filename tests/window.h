@@ -11,6 +11,7 @@
 
 #include <X11/Xatom.h>
 #include <X11/Xlib.h>
+#include <ctype.h>
 
 #include "render/image.h"
 
@@ -185,13 +186,30 @@ static inline double told(const char *name) {
     return strtod(at + strlen(word), NULL);
 }
 
-/* Presses a key (xdotool's name) and returns the state after it. */
+/* GLFW's number of a key by xdotool's name, with "ctrl+" or "shift+" before it or not. */
+static inline int key_code(const char *key) {
+    static const struct {
+        const char *name;
+        int code;
+    } rows[] = {{"space", 32},  {"comma", 44}, {"period", 46},   {"Return", 257},  {"BackSpace", 259},
+                {"Right", 262}, {"Left", 263}, {"Down", 264},    {"Up", 265},      {"Prior", 266},
+                {"Next", 267},  {"Home", 268}, {"End", 269},     {"F4", 293},      {"F6", 295},
+                {"F7", 296},    {"Shift_L", 340}};
+    const char *last = strrchr(key, '+') ? strrchr(key, '+') + 1 : key;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (!strcmp(last, rows[i].name)) return rows[i].code;
+    if (strlen(last) != 1) fail_msg("the tests know no number of the key %s", key);
+    return toupper((unsigned char)*last);
+}
+
+/* Presses a key (xdotool's name) and returns the state after it. What an earlier key is still to say is not taken for it. */
 static inline const char *press_key(const char *key) {
     char words[64];
     snprintf(words, sizeof words, "key %s", key);
     listen_from_here();
     tool(words);
-    expect("key ");
+    snprintf(words, sizeof words, "key %d ", key_code(key));
+    expect(words);
     return expect("state ");
 }
 
