@@ -195,6 +195,14 @@ static bool override_field(app_arguments *arguments, const char *name, const cha
     return good && app_list_add(&arguments->given[place_of(arguments->command, "--set")], text, true);
 }
 
+bool app_set_first(app_arguments *arguments, const char *set) {
+    app_list *sets = &arguments->given[place_of(arguments->command, "--set")];
+    if (!app_list_add(sets, set, true)) return false;
+    memmove(sets->values + 1, sets->values, (sets->count - 1) * sizeof *sets->values);
+    sets->values[0] = set;
+    return true;
+}
+
 bool app_override(app_arguments *arguments, app_override_texts texts) {
     static const char *const names[] = {"--frames", "--fps", "--threads"};
     bool good = true;

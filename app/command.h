@@ -103,6 +103,10 @@ bool app_list_add(app_list *list, const char *value, bool repeats);
 typedef char app_override_texts[3][64];
 bool app_override(app_arguments *arguments, app_override_texts texts);
 
+/* One more value of --set, before all that were given; it has to live as long as the arguments. False without memory.
+ */
+bool app_set_first(app_arguments *arguments, const char *set);
+
 /* Prints "skein: where: message" to standard error. */
 void app_print_error(const skein_error *error);
 /* Keeps the same words for a report. */

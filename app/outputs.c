@@ -10,9 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "app/clips.h"
 #include "io/exporters.h"
-#include "io/mesh.h"
-#include "io/pc2.h"
 #include "io/printable.h"
 #include "io/recording.h"
 #ifdef SKEIN_RENDER
@@ -20,15 +19,7 @@
 #include "render/picture.h"
 #endif
 
-enum { MOST_EXPORTS = 16, NAME_SIZE = 128, FOLDER_SIZE = 1024, PATH_SIZE = FOLDER_SIZE + NAME_SIZE + 8 };
-
-/* One body's growing file. */
-typedef struct cache {
-    io_pc2_writer *writer;
-    char path[PATH_SIZE];
-    size_t body;
-    int every;
-} cache;
+enum { MOST_EXPORTS = 16, NAME_SIZE = APP_NAME_SIZE, FOLDER_SIZE = APP_FOLDER_SIZE, PATH_SIZE = APP_PATH_SIZE };
 
 /* One body's growing recording. */
 typedef struct record {
@@ -48,8 +39,8 @@ struct app_outputs {
     char stem[NAME_SIZE];     /* the scene's name, for pictures */
     char (*names)[NAME_SIZE]; /* the bodies' names, all different */
     io_export exports[MOST_EXPORTS];
-    size_t export_count, body_count, cache_count;
-    cache *caches;
+    size_t export_count, body_count;
+    app_clips *clips;
     record *records;
     size_t record_count;
     double *velocities; /* room for the largest body, where there are recordings */
@@ -88,6 +79,19 @@ static bool is_taken(const app_outputs *outputs, size_t body) {
     for (size_t i = 0; i < outputs->body_count; i++)
         if (i != body && !strcmp(outputs->names[i], outputs->names[body])) return true;
     return false;
+}
+
+/* Where a file was named: its stem, and behind that the body's name where there are more than one. */
+static void name_by_file(app_outputs *outputs, const char *out) {
+    const char *slash = strrchr(out, '/'), *file = slash ? slash + 1 : out;
+    int stem = (int)(strrchr(file, '.') - file);
+    for (size_t i = 0; i < outputs->body_count; i++) {
+        char body[NAME_SIZE];
+        snprintf(body, sizeof body, "%s", outputs->names[i]);
+        if (outputs->body_count == 1) snprintf(outputs->names[i], NAME_SIZE, "%.*s", stem, file);
+        else if (snprintf(outputs->names[i], NAME_SIZE, "%.*s-%s", stem, file, body) >= NAME_SIZE)
+            snprintf(outputs->names[i], NAME_SIZE, "%s", body);
+    }
 }
 
 /* Names all bodies; namesakes get their place behind the name, the first of them keeps its name. */
@@ -166,27 +170,6 @@ static void tell(app_outputs *outputs, const skein_error *error) {
 static skein_status surface_of(const app_outputs *outputs, size_t body, skein_surface *surface) {
     return skein_body_surface(outputs->loaded->world, skein_object_at(outputs->loaded->world, SKEIN_BODY, body),
                               surface);
-}
-
-/* Begins the point caches of all bodies that have a surface. */
-static bool begin_caches(app_outputs *outputs, const io_pc2_params *params) {
-    skein_surface surface;
-    for (size_t b = 0; b < outputs->body_count; b++) {
-        if (surface_of(outputs, b, &surface)) continue;
-        cache *c = &outputs->caches[outputs->cache_count];
-        snprintf(c->path, sizeof c->path, "%s/%s.pc2", outputs->folder, outputs->names[b]);
-        c->body = b;
-        c->every = params->every;
-        skein_error error = {SKEIN_OK, "", ""};
-        io_pc2_header header = {(uint32_t)surface.vertex_count, 0, (float)params->every, IO_PC2_UNKNOWN};
-        c->writer = io_pc2_create(c->path, header, &error);
-        if (!c->writer) {
-            tell(outputs, &error);
-            return false;
-        }
-        outputs->cache_count++;
-    }
-    return true;
 }
 
 /* What of a body is recorded besides its motion. The arrays are the caller's, to be freed. */
@@ -285,22 +268,28 @@ static bool reserve(app_outputs *outputs) {
     size_t most = 1;
     skein_surface surface;
     for (size_t b = 0; b < outputs->body_count; b++)
-        if (!surface_of(outputs, b, &surface) && surface.vertex_count > most) most = surface.vertex_count;
-    for (size_t b = 0; b < outputs->body_count; b++)
         if (!surface_of(outputs, b, &surface) && surface.particle_count > most) most = surface.particle_count;
     outputs->positions = malloc(3 * most * sizeof *outputs->positions);
     outputs->velocities = malloc(3 * most * sizeof *outputs->velocities);
     outputs->records = calloc(2 * outputs->body_count + 1, sizeof *outputs->records);
-    outputs->caches = calloc(outputs->body_count + 1, sizeof *outputs->caches);
     outputs->names = calloc(outputs->body_count + 1, sizeof *outputs->names);
-    return outputs->positions && outputs->velocities && outputs->records && outputs->caches && outputs->names;
+    return outputs->positions && outputs->velocities && outputs->records && outputs->names;
 }
 
-/* Begins what grows with the run. */
+static int begin_clips(app_outputs *outputs) {
+    skein_error error = {SKEIN_OK, "", ""};
+    app_clips_plan plan = {outputs->loaded, outputs->exports, outputs->export_count,
+                           outputs->folder, outputs->names,   outputs->body_count};
+    outputs->clips = app_clips_begin(&plan, &error);
+    if (outputs->clips) return EXIT_OK;
+    tell(outputs, &error);
+    return EXIT_FAILURE_RUN;
+}
+
+/* Begins what else grows with the run. */
 static bool begin_export(app_outputs *outputs, const io_export *wanted, bool quiet) {
     const char *kind = wanted->kind->name;
     (void)quiet;
-    if (!strcmp(kind, "pc2")) return begin_caches(outputs, wanted->params);
     if (io_recording_named(kind)) return begin_records(outputs, wanted);
 #ifdef SKEIN_RENDER
     if (!strcmp(kind, "film")) return begin_film(outputs, wanted, quiet);
@@ -308,7 +297,17 @@ static bool begin_export(app_outputs *outputs, const io_export *wanted, bool qui
     return true;
 }
 
-static int begin(app_outputs *outputs, const char *folder, bool quiet) {
+const char *app_outputs_file(const char *out, char folder[APP_FOLDER_SIZE]) {
+    const io_clip_format *format = io_clip_format_of(out);
+    const char *slash = strrchr(out, '/');
+    struct stat info;
+    if (!format || (!stat(out, &info) && S_ISDIR(info.st_mode))) return NULL;
+    if (slash && slash - out >= APP_FOLDER_SIZE) return NULL;
+    snprintf(folder, APP_FOLDER_SIZE, "%.*s", slash ? (int)(slash - out) + (slash == out) : 1, slash ? out : ".");
+    return format->kind.name;
+}
+
+static int begin(app_outputs *outputs, const char *out, bool quiet) {
     const app_scene *loaded = outputs->loaded;
     outputs->body_count = skein_object_count(loaded->world, SKEIN_BODY);
     outputs->export_count = io_scene_exports(loaded->scene, outputs->exports, MOST_EXPORTS);
@@ -318,34 +317,27 @@ static int begin(app_outputs *outputs, const char *folder, bool quiet) {
     }
     file_name(loaded->settings.name, "scene", outputs->stem);
     name_bodies(outputs);
-    int status = prepare_folder(outputs, folder);
+    char parent[FOLDER_SIZE];
+    if (app_outputs_file(out, parent)) name_by_file(outputs, out);
+    int status = prepare_folder(outputs, app_outputs_file(out, parent) ? parent : out);
     for (size_t e = 0; e < outputs->export_count && !status; e++)
         if (!begin_export(outputs, &outputs->exports[e], quiet)) status = EXIT_FAILURE_RUN;
-    return status;
+    return status ? status : begin_clips(outputs);
 }
 
-int app_outputs_begin(const app_scene *loaded, const char *folder, bool quiet, app_outputs **begun) {
+int app_outputs_begin(const app_scene *loaded, const char *out, bool quiet, app_outputs **begun) {
     app_outputs *outputs = calloc(1, sizeof *outputs);
     *begun = NULL;
     if (!outputs) return EXIT_FAILURE_RUN;
     outputs->loaded = loaded;
     outputs->lock = -1;
-    int status = begin(outputs, folder, quiet);
+    int status = begin(outputs, out, quiet);
     if (!status) *begun = outputs;
     else app_outputs_abandon(outputs);
     return status;
 }
 
 /* ---- writing ---- */
-
-/* A body's vertices, where welding has joined them too. */
-static void gather_vertices(const app_outputs *outputs, const skein_surface *surface) {
-    skein_view view = skein_position_view(outputs->loaded->world);
-    for (size_t v = 0; v < surface->vertex_count; v++) {
-        const skein_real *p = view.xyzw + 4 * (size_t)view.slot_of[surface->particle_of_vertex[v]];
-        for (size_t k = 0; k < 3; k++) outputs->positions[3 * v + k] = (double)p[k];
-    }
-}
 
 static bool add_records(app_outputs *outputs, int frame) {
     skein_world *world = outputs->loaded->world;
@@ -366,13 +358,8 @@ static bool add_records(app_outputs *outputs, int frame) {
 
 bool app_outputs_frame(app_outputs *outputs, int frame) {
     if (!add_records(outputs, frame)) return false;
-    for (size_t i = 0; i < outputs->cache_count; i++) {
-        cache *c = &outputs->caches[i];
-        skein_surface surface;
-        skein_error error = {SKEIN_OK, "", ""};
-        if (frame % c->every || surface_of(outputs, c->body, &surface)) continue;
-        gather_vertices(outputs, &surface);
-        if (!io_pc2_add(c->writer, outputs->positions, &error)) continue;
+    skein_error error = {SKEIN_OK, "", ""};
+    if (app_clips_frame(outputs->clips, frame, &error)) {
         tell(outputs, &error);
         return false;
     }
@@ -398,42 +385,11 @@ typedef struct notebook {
 } notebook;
 
 /* Notes a file that was written, or prints why it was not. */
-static void note(notebook *book, const char *path, skein_status status, const skein_error *error) {
+static void note(void *user, const char *path, skein_status status, const skein_error *error) {
+    notebook *book = user;
     if (!status) book->wrote(book->user, path);
     else app_print_error(error);
     book->good &= !status;
-}
-
-/* A mesh, with what its file says of its faces: that is read again, since nothing else of a run needs it. */
-static skein_status write_obj(const app_outputs *outputs, size_t body, const char *path, const skein_mesh *mesh,
-                              skein_normals normals, skein_error *error) {
-    char *read_path = io_scene_mesh_path(outputs->loaded->scene, body);
-    io_mesh read = {0};
-    bool same = read_path && !io_mesh_read(read_path, &read, (io_warnings){NULL, NULL}, NULL) &&
-                io_mesh_has_faces_of(&read, mesh);
-    if (read_path && !same && !read.tetrahedra)
-        fprintf(stderr,
-                "skein: warning: %s: it is no longer the mesh that was run: %s has no texture coordinates, objects, "
-                "groups and materials of it\n",
-                read_path, path);
-    skein_status status = io_obj_write_as(path, mesh, normals, same ? &read : NULL, same ? read_path : "", error);
-    io_mesh_free(&read);
-    free(read_path);
-    return status;
-}
-
-static void write_objs(const app_outputs *outputs, const io_obj_params *params, notebook *book) {
-    char path[PATH_SIZE];
-    for (size_t b = 0; b < outputs->body_count; b++) {
-        skein_surface s;
-        skein_error error = {SKEIN_OK, "", ""};
-        if (surface_of(outputs, b, &s)) continue;
-        gather_vertices(outputs, &s);
-        skein_mesh mesh = {outputs->positions, s.vertex_count,  s.face_sizes,
-                           s.face_count,       s.face_vertices, s.face_vertex_count};
-        snprintf(path, sizeof path, "%s/%s.obj", outputs->folder, outputs->names[b]);
-        note(book, path, write_obj(outputs, b, path, &mesh, (skein_normals)params->normals, &error), &error);
-    }
 }
 
 #ifdef SKEIN_RENDER
@@ -448,13 +404,8 @@ static void write_picture(const app_outputs *outputs, const render_picture_optio
 
 bool app_outputs_finish(app_outputs *outputs, void (*wrote)(void *user, const char *path), void *user) {
     notebook book = {wrote, user, true};
-    for (size_t i = 0; i < outputs->cache_count; i++) {
-        cache *c = &outputs->caches[i];
-        skein_error error = {SKEIN_OK, "", ""};
-        skein_status status = io_pc2_commit(c->writer, &error);
-        c->writer = NULL;
-        note(&book, c->path, status, &error);
-    }
+    app_clips_finish(outputs->clips, note, &book);
+    outputs->clips = NULL;
     for (size_t i = 0; i < outputs->record_count; i++) {
         record *r = &outputs->records[i];
         char path[PATH_SIZE + 8];
@@ -468,10 +419,8 @@ bool app_outputs_finish(app_outputs *outputs, void (*wrote)(void *user, const ch
         }
     }
     for (size_t e = 0; e < outputs->export_count; e++) {
-        const char *kind = outputs->exports[e].kind->name;
-        if (!strcmp(kind, "obj")) write_objs(outputs, outputs->exports[e].params, &book);
 #ifdef SKEIN_RENDER
-        if (!strcmp(kind, "png")) write_picture(outputs, outputs->exports[e].params, &book);
+        if (!strcmp(outputs->exports[e].kind->name, "png")) write_picture(outputs, outputs->exports[e].params, &book);
 #endif
     }
 #ifdef SKEIN_RENDER
@@ -488,18 +437,6 @@ bool app_outputs_finish(app_outputs *outputs, void (*wrote)(void *user, const ch
 }
 
 /* ---- a run that failed ---- */
-
-static void keep_caches(app_outputs *outputs, notebook *book) {
-    for (size_t i = 0; i < outputs->cache_count; i++) {
-        cache *c = &outputs->caches[i];
-        char path[PATH_SIZE + 8];
-        skein_error error = {SKEIN_OK, "", ""};
-        snprintf(path, sizeof path, "%s/%s.failed.pc2", outputs->folder, outputs->names[c->body]);
-        skein_status status = io_pc2_keep(c->writer, path, &error);
-        c->writer = NULL;
-        note(book, path, status, &error);
-    }
-}
 
 static void keep_records(app_outputs *outputs, notebook *book) {
     for (size_t i = 0; i < outputs->record_count; i++) {
@@ -535,7 +472,8 @@ static void keep_film(app_outputs *outputs, notebook *book) {
 
 void app_outputs_keep(app_outputs *outputs, void (*wrote)(void *user, const char *path), void *user) {
     notebook book = {wrote, user, true};
-    keep_caches(outputs, &book);
+    app_clips_keep(outputs->clips, note, &book);
+    outputs->clips = NULL;
     keep_records(outputs, &book);
 #ifdef SKEIN_RENDER
     keep_film(outputs, &book);
@@ -546,7 +484,7 @@ void app_outputs_keep(app_outputs *outputs, void (*wrote)(void *user, const char
 
 void app_outputs_abandon(app_outputs *outputs) {
     if (!outputs) return;
-    for (size_t i = 0; i < outputs->cache_count; i++) io_pc2_abandon(outputs->caches[i].writer);
+    app_clips_abandon(outputs->clips);
 #ifdef SKEIN_RENDER
     app_footage_abandon(outputs->footage);
 #endif
@@ -556,7 +494,6 @@ void app_outputs_abandon(app_outputs *outputs) {
     if (outputs->lock >= 0) close(outputs->lock);
     free(outputs->records);
     free(outputs->velocities);
-    free(outputs->caches);
     free(outputs->names);
     free(outputs->positions);
     free(outputs);

@@ -6,9 +6,16 @@
 
 typedef struct app_outputs app_outputs;
 
-/* Makes the folder, takes it for this run alone, and begins what grows with the run. Returns an exit status, after a
- * printed fault: EXIT_FAULT where the folder cannot be, or another run writes there. */
-int app_outputs_begin(const app_scene *loaded, const char *folder, bool quiet, app_outputs **begun);
+enum { APP_NAME_SIZE = 128, APP_FOLDER_SIZE = 1024, APP_PATH_SIZE = APP_FOLDER_SIZE + APP_NAME_SIZE + 32 };
+
+/* Whether what follows --out is one file, "a/cape.usda", and no folder: the format's name, or NULL. Its folder goes
+ * into `folder`. */
+const char *app_outputs_file(const char *out, char folder[APP_FOLDER_SIZE]);
+
+/* `out` is a folder, or a file: then each body's file has its name, with the body's behind it where there are more than
+ * one. Makes the folder, takes it for this run alone, and begins what grows with the run. Returns an exit status, after
+ * a printed fault: EXIT_FAULT where the folder cannot be, or another run writes there. */
+int app_outputs_begin(const app_scene *loaded, const char *out, bool quiet, app_outputs **begun);
 /* Adds the world's present state as a frame, 0 being the start. False after a printed fault. */
 bool app_outputs_frame(app_outputs *outputs, int frame);
 /* Writes what comes last, gives all files their names and names each to `wrote`. False after a printed

@@ -12,6 +12,7 @@ typedef struct app_report {
     app_scene *loaded;
     const app_arguments *arguments; /* as they were given */
     bool quiet, calm, json;         /* calm: without progress */
+    bool is_file;                   /* one output is wanted, as a file, and no report beside it */
     app_verdict verdict;
     int frames, steps_per_frame;
     double dt, seconds; /* seconds: spent in steps */

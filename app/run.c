@@ -91,12 +91,14 @@ static void keep_frames(app_report *r, app_outputs *outputs, const char *folder,
     skein_world_statistics(r->loaded->world, &r->statistics); // as it is, whatever that is
     app_outputs_keep(outputs, note_file, r);
     bool kept = json_array_size(r->files) > 0;
-    app_report_write(r, folder);
+    char parent[APP_FOLDER_SIZE];
+    const char *place = app_outputs_file(folder, parent) ? parent : folder;
+    if (!r->is_file) app_report_write(r, folder);
     if (!kept) return;
     if (p->failure[0])
         fprintf(stderr, "skein: the %d frame%s before that %s kept in %s/*.failed.*\n", r->frames,
-                r->frames == 1 ? "" : "s", r->frames == 1 ? "is" : "are", folder);
-    else fprintf(stderr, "skein: what was written before that is kept in %s/*.failed.*\n", folder);
+                r->frames == 1 ? "" : "s", r->frames == 1 ? "is" : "are", place);
+    else fprintf(stderr, "skein: what was written before that is kept in %s/*.failed.*\n", place);
 }
 
 /* Whether the log would get the name of a file that goes into the folder, too: the later one would replace it. */
@@ -127,7 +129,7 @@ static int conclude(app_report *r, const char *folder, bool good) {
     int signal_number = app_interrupted(); // a later one interrupts nothing that matters
     r->interrupted = signal_number != 0;
     good = app_verdict_end(&r->verdict, &r->statistics) && good;
-    if (folder) good = app_report_write(r, folder) && good;
+    if (folder && !r->is_file) good = app_report_write(r, folder) && good;
     if (r->json) good = app_report_print_json(r) && good;
     else if (!r->quiet) app_report_print(r);
     return !good ? EXIT_FAILURE_RUN : signal_number ? EXIT_SIGNAL + signal_number : EXIT_OK;
@@ -138,7 +140,9 @@ static int simulate(app_report *r, const char *folder) {
     app_catch_interrupts();
     int status = folder ? app_outputs_begin(r->loaded, folder, r->calm, &outputs) : EXIT_OK;
     if (status) return status;
-    if (r->log_path && ((folder && log_is_in_the_way(r, folder)) || !(r->log = app_log_begin(r->log_path)))) {
+    char parent[APP_FOLDER_SIZE];
+    const char *inside = folder && app_outputs_file(folder, parent) ? parent : folder;
+    if (r->log_path && ((folder && log_is_in_the_way(r, inside)) || !(r->log = app_log_begin(r->log_path)))) {
         app_outputs_abandon(outputs);
         return EXIT_FAULT;
     }
@@ -156,6 +160,35 @@ static int simulate(app_report *r, const char *folder) {
 
 /* ---- the arguments ---- */
 
+/* One file: as if the scene named that output alone, before what --set says of it. */
+static bool want_file(app_arguments *arguments, const char *format, char text[64]) {
+    if (!format) return true;
+    snprintf(text, 64, "output=[{\"type\":\"%s\"}]", format);
+    return app_set_first(arguments, text);
+}
+
+/* --up and --scale, for all outputs that know them; false after a printed fault. */
+static bool set_outputs(const app_arguments *arguments, io_scene *scene) {
+    static const char *const names[] = {"--up", "--scale"};
+    for (size_t i = 0; i < 2; i++) {
+        const char *given = app_value(arguments, names[i]);
+        if (!given) continue;
+        char *end;
+        skein_value value = i ? skein_number(strtod(given, &end)) : (skein_value){0, {0, 0, 0}, given};
+        if (i && (end == given || *end)) value.count = 4; // what no field takes: the field says what it does take
+        skein_error error = {SKEIN_OK, "", ""};
+        size_t count;
+        if (io_scene_exports_set(scene, names[i] + 2, &value, &count, &error))
+            fprintf(stderr, "skein run: %s %s: %s\n", names[i], given, error.message);
+        else if (!count)
+            fprintf(stderr, "skein run: %s %s: none of the scene's outputs has it (a glTF file is y up, always)\n",
+                    names[i], given);
+        else continue;
+        return false;
+    }
+    return true;
+}
+
 static int run(app_arguments *arguments) {
     app_override_texts texts;
     bool quiet = app_given(arguments, "--quiet"), calm = quiet || app_given(arguments, "--no-progress");
@@ -166,9 +199,13 @@ static int run(app_arguments *arguments) {
         fprintf(stderr, "skein run: --out -: a run writes many files into a folder; --json prints its report\n");
         return EXIT_FAULT;
     }
+    char parent[APP_FOLDER_SIZE], output[64];
+    const char *format = folder ? app_outputs_file(folder, parent) : NULL;
+    if (!want_file(arguments, format, output)) return EXIT_FAULT;
     int status = app_load(app_word(arguments), app_values(arguments, "--set"), &loaded);
     if (!status && app_given(arguments, "--compile")) loaded.warnings += app_compile(loaded.world, calm);
     if (!status) status = app_device(&loaded, app_value(arguments, "--device"));
+    if (!status && !set_outputs(arguments, loaded.scene)) status = EXIT_FAULT;
     if (!status) {
         app_advise(&loaded);
         app_report report = {.loaded = &loaded,
@@ -178,6 +215,7 @@ static int run(app_arguments *arguments) {
                              .json = app_given(arguments, "--json"),
                              .files = json_array(),
                              .flocks = json_array(),
+                             .is_file = format != NULL,
                              .log_path = app_value(arguments, "--log")};
         report.steps_per_frame = io_scene_steps_per_frame(&loaded.settings, &report.dt);
         status = simulate(&report, folder);
@@ -190,9 +228,13 @@ static int run(app_arguments *arguments) {
 
 static const app_option options[] = {
     APP_SET_OPTION,
-    {"--out", "FOLDER", "write the scene's outputs and report.json there (made if missing)", false, APP_TAKES_FOLDER},
+    {"--out", "FOLDER", "write the scene's outputs and report.json there (made if missing); or one FILE", false,
+     APP_TAKES_FILE},
     {"--frames", "N", "frames to run, instead of the scene's", false, APP_TAKES_ANY},
     {"--fps", "N", "frames a second of simulated time, instead of the scene's", false, APP_TAKES_ANY},
+    {"--up", "y|z", "the axis that points up in all meshes and caches that are written; y if not given", false,
+     APP_TAKES_ANY},
+    {"--scale", "S", "length of a metre in them: 100 for centimetres; 1 if not given", false, APP_TAKES_ANY},
     APP_THREADS_OPTION,
     APP_DEVICE_OPTION,
     APP_COMPILE_OPTION,
@@ -207,11 +249,13 @@ const app_command app_run_command = {
     "SCENE [--out FOLDER] [options]",
     "simulate a scene; with --out, write meshes, point caches, a picture and report.json\n\n"
     "  skein run scenes/drape.json --out out/\n"
-    "  skein run scenes/flag.json --frames 240 --fps 60 --threads 2 --set bodies.0.stretch.stiffness=2e4\n\n"
+    "  skein run scenes/flag.json --frames 240 --fps 60 --threads 2 --set bodies.0.stretch.stiffness=2e4\n"
+    "  skein run scenes/flag.json --out flag.mdd --fps 24 --up z --scale 100\n\n"
     "The outputs are the scene's: by default an OBJ of each body at the end, a PC2 point cache of the whole\n"
     "run (for Blender's Mesh Cache modifier), and a PNG of the last frame; with \"film\" among them a film, too\n"
-    "(or see skein render). All but films appear under their names only when they are complete. Interrupted\n"
-    "(Ctrl-C), a run writes what it has.\n\n"
+    "(or see skein render). `skein list exporters` has all formats and their options. A file behind --out is that\n"
+    "format alone, by its ending, without a report: as with --set 'output=[{\"type\": \"mdd\"}]'. All but films\n"
+    "appear under their names only when they are complete. Interrupted (Ctrl-C), a run writes what it has.\n\n"
     "On a graphics card (--device gpu) the same plan runs as OpenGL compute shaders, for rules that have one: loose\n"
     "particles under forces, contact and neighbours; not yet cloth, jelly and rope. Numbers agree to rounding.\n\n"
     "Exit status 0: done; 1: the run failed, or ended far beyond its bounds (an edge longer than the scene's\n"

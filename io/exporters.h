@@ -1,6 +1,6 @@
-/* The exporters and their fields, described like every other kind.
+/* The exporters of io/ and their fields, described like every other kind: clips (io/clip.h), then recordings.
  *
- * Owns: the parameters of the exporters. Called by the scene reader and by `skein list`. Invariant: a
+ * Owns: the list, and the parameters of recordings. Called by the scene reader and by `skein list`. Invariant: a
  * parameter struct has a member for each field of its table, at the table's offset; a choice is stored
  * as its place in the list.
  */
@@ -9,13 +9,7 @@
 
 #include <skein/skein.h>
 
-typedef struct io_obj_params {
-    int32_t normals; /* a skein_normals */
-} io_obj_params;
-
-typedef struct io_pc2_params {
-    int32_t every; /* frames from one sample to the next */
-} io_pc2_params;
+#include "io/clip.h"
 
 /* csv and hdf5. */
 typedef struct io_recording_params {

@@ -339,8 +339,12 @@ bool io_output_is_due(io_output *output) {
     return true;
 }
 
+void io_output_fail(io_output *output, int fault) {
+    if (output->fault == 0) output->fault = fault;
+}
+
 void io_output_fail_memory(io_output *output) {
-    if (output->fault == 0) output->fault = ENOMEM;
+    io_output_fail(output, ENOMEM);
 }
 
 skein_status io_output_status(const io_output *output, skein_error *error) {

@@ -77,8 +77,9 @@ uint64_t io_output_place(const io_output *output);
  * quarter of a second has gone by since it last said so; and writes all that was given so far. */
 bool io_output_is_due(io_output *output);
 void io_output_flush(io_output *output);
-/* Notes that the writer had no memory for what should be written. */
+/* Notes that the writer had no memory for what should be written; or another failure, an errno. */
 void io_output_fail_memory(io_output *output);
+void io_output_fail(io_output *output, int fault);
 /* The first failure so far (or SKEIN_OK), for a writer that wants to stop early. */
 skein_status io_output_status(const io_output *output, skein_error *error);
 /* Writes the rest, checks every error, gives the file its name. Frees `output` in any case; on

@@ -6,7 +6,7 @@
  *   vt u v         where the mesh that was read has them
  *   f a//a b//b c//c ..., a/t/a with texture coordinates, and before them the lines o, g, s, usemtl and mtllib as read
  */
-#include "io/mesh.h"
+#include "io/clip.h"
 
 #include <assert.h>
 #include <limits.h>
@@ -111,29 +111,12 @@ static void write_faces(io_output *output, const skein_mesh *mesh, const io_mesh
     }
 }
 
-/* No reader knows what to do with nan, so no such file is made. */
-static skein_status check_positions(const char *path, const skein_mesh *mesh, skein_error *error) {
-    for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
-        if (isfinite((float)mesh->positions[i])) continue;
-        size_t vertex = i / 3;
-        return io_error_set(error, SKEIN_ERROR_VALUE, path,
-                            "not written: vertex %zu is at (%g, %g, %g), which is not finite as a float "
-                            "(has the motion blown up?)",
-                            vertex, mesh->positions[3 * vertex], mesh->positions[3 * vertex + 1],
-                            mesh->positions[3 * vertex + 2]);
-    }
-    return SKEIN_OK;
-}
-
-skein_status io_obj_write(const char *path, const skein_mesh *mesh, skein_normals normals, skein_error *error) {
-    return io_obj_write_as(path, mesh, normals, NULL, "", error);
-}
-
-skein_status io_obj_write_as(const char *path, const skein_mesh *mesh, skein_normals normals, const io_mesh *read,
-                             const char *read_path, skein_error *error) {
+/* `note` says units and axes. */
+static skein_status write_file(const char *path, const skein_mesh *mesh, skein_normals normals, const io_mesh *read,
+                               const char *read_path, const char *note, skein_error *error) {
     skein_error unseen;
     error = error ? error : &unseen;
-    skein_status status = check_positions(path, mesh, error);
+    skein_status status = io_clip_check_positions(path, mesh->positions, mesh->vertex_count, error);
     if (status != SKEIN_OK) return status;
     double *vectors = malloc((mesh->vertex_count + 1) * 3 * sizeof *vectors);
     if (!vectors)
@@ -142,8 +125,8 @@ skein_status io_obj_write_as(const char *path, const skein_mesh *mesh, skein_nor
 
     io_output *output = status ? NULL : io_output_open(path, error);
     if (output) {
-        io_output_printf(output, "# Skein %s: metres, y up; %zu vertices, %zu faces\n", SKEIN_VERSION,
-                         mesh->vertex_count, mesh->face_count);
+        io_output_printf(output, "# Skein %s: %s; %zu vertices, %zu faces\n", SKEIN_VERSION, note, mesh->vertex_count,
+                         mesh->face_count);
         for (size_t v = 0; v < mesh->vertex_count; v++) write_vector(output, "v", mesh->positions + 3 * v);
         for (size_t v = 0; v < mesh->vertex_count; v++) write_vector(output, "vn", vectors + 3 * v);
         for (size_t t = 0; read && t < read->uv_count; t++) write_uv(output, read->uvs + 2 * t);
@@ -152,4 +135,22 @@ skein_status io_obj_write_as(const char *path, const skein_mesh *mesh, skein_nor
     } else status = error->status;
     free(vectors);
     return status;
+}
+
+skein_status io_obj_write(const char *path, const skein_mesh *mesh, skein_normals normals, skein_error *error) {
+    return write_file(path, mesh, normals, NULL, "", "metres, y up", error);
+}
+
+skein_status io_obj_write_as(const char *path, const skein_mesh *mesh, skein_normals normals, const io_mesh *read,
+                             const char *read_path, skein_error *error) {
+    return write_file(path, mesh, normals, read, read_path, "metres, y up", error);
+}
+
+skein_status io_obj_write_clip(const io_clip *clip, const char *path, skein_error *error) {
+    const io_clip_params *p = clip->params;
+    char note[64] = "metres", scale[IO_FLOAT_SIZE];
+    io_float_print((float)p->scale, scale);
+    if (p->scale != 1) snprintf(note, sizeof note, "a metre is %s", scale);
+    strcat(note, p->up == IO_UP_Z ? ", z up" : ", y up");
+    return write_file(path, &clip->mesh, (skein_normals)p->normals, clip->read, clip->read_path, note, error);
 }

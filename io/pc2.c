@@ -4,6 +4,7 @@
  */
 #include "io/pc2.h"
 
+#include "io/bytes.h"
 #include "io/file.h"
 
 #include <assert.h>
@@ -16,29 +17,6 @@
 enum { HEADER_BYTES = 32, POINT_BYTES = 12, SAMPLES_OFFSET = 28, BLOCK_POINTS = 4096 };
 
 static const char magic[12] = "POINTCACHE2";
-
-static void put_u32(unsigned char *bytes, uint32_t value) {
-    for (int k = 0; k < 4; k++) bytes[k] = (unsigned char)(value >> (8 * k));
-}
-
-static uint32_t get_u32(const unsigned char *bytes) {
-    uint32_t value = 0;
-    for (int k = 0; k < 4; k++) value |= (uint32_t)bytes[k] << (8 * k);
-    return value;
-}
-
-static void put_float(unsigned char *bytes, float value) {
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    put_u32(bytes, bits);
-}
-
-static float get_float(const unsigned char *bytes) {
-    uint32_t bits = get_u32(bytes);
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
 
 /* ---- Writing ------------------------------------------------------------------------------- */
 
@@ -80,18 +58,18 @@ io_pc2_writer *io_pc2_create(const char *path, io_pc2_header header, skein_error
     }
     unsigned char bytes[HEADER_BYTES];
     memcpy(bytes, magic, sizeof magic);
-    put_u32(bytes + 12, 1);
-    put_u32(bytes + 16, header.points);
-    put_float(bytes + 20, header.start);
-    put_float(bytes + 24, header.rate);
-    put_u32(bytes + SAMPLES_OFFSET, header.samples == IO_PC2_UNKNOWN ? 0 : header.samples);
+    io_put_u32(bytes + 12, 1);
+    io_put_u32(bytes + 16, header.points);
+    io_put_float(bytes + 20, header.start);
+    io_put_float(bytes + 24, header.rate);
+    io_put_u32(bytes + SAMPLES_OFFSET, header.samples == IO_PC2_UNKNOWN ? 0 : header.samples);
     io_output_write(writer->output, bytes, sizeof bytes);
     return writer;
 }
 
 static void count_samples(io_pc2_writer *writer, uint32_t samples) {
     unsigned char bytes[4];
-    put_u32(bytes, samples);
+    io_put_u32(bytes, samples);
     io_output_patch(writer->output, SAMPLES_OFFSET, bytes, sizeof bytes);
 }
 
@@ -101,7 +79,7 @@ skein_status io_pc2_add(io_pc2_writer *writer, const double *positions, skein_er
     size_t left = writer->header.points;
     while (left > 0) {
         size_t count = left < BLOCK_POINTS ? left : BLOCK_POINTS;
-        for (size_t i = 0; i < 3 * count; i++) put_float(writer->block + 4 * i, (float)positions[i]);
+        for (size_t i = 0; i < 3 * count; i++) io_put_float(writer->block + 4 * i, (float)positions[i]);
         io_output_write(writer->output, writer->block, count * POINT_BYTES);
         positions += 3 * count;
         left -= count;
@@ -139,8 +117,8 @@ skein_status io_pc2_keep(io_pc2_writer *writer, const char *path, skein_error *e
         return io_error_set(error, SKEIN_ERROR_VALUE, path, IO_NOTHING_KEPT);
     }
     unsigned char bytes[4];
-    put_u32(bytes, whole < writer->added ? whole : writer->added);
-    uint64_t size = HEADER_BYTES + get_u32(bytes) * sample_bytes;
+    io_put_u32(bytes, whole < writer->added ? whole : writer->added);
+    uint64_t size = HEADER_BYTES + io_get_u32(bytes) * sample_bytes;
     skein_status status =
         io_output_keep(writer->output, path, size, &(io_output_change){SAMPLES_OFFSET, bytes, 4}, error);
     writer->output = NULL;
@@ -169,13 +147,13 @@ static skein_status read_header(io_pc2_reader *reader, skein_error *error) {
     unsigned char bytes[HEADER_BYTES];
     if (fread(bytes, 1, sizeof bytes, reader->file) != sizeof bytes || memcmp(bytes, magic, sizeof magic) != 0)
         return io_error_set(error, SKEIN_ERROR_SYNTAX, reader->path, "not a PC2 file: expected POINTCACHE2");
-    if (get_u32(bytes + 12) != 1)
+    if (io_get_u32(bytes + 12) != 1)
         return io_error_set(error, SKEIN_ERROR_SYNTAX, reader->path, "PC2 version %lu: expected 1",
-                            (unsigned long)get_u32(bytes + 12));
-    reader->header = (io_pc2_header){.points = get_u32(bytes + 16),
-                                     .start = get_float(bytes + 20),
-                                     .rate = get_float(bytes + 24),
-                                     .samples = get_u32(bytes + SAMPLES_OFFSET)};
+                            (unsigned long)io_get_u32(bytes + 12));
+    reader->header = (io_pc2_header){.points = io_get_u32(bytes + 16),
+                                     .start = io_get_float(bytes + 20),
+                                     .rate = io_get_float(bytes + 24),
+                                     .samples = io_get_u32(bytes + SAMPLES_OFFSET)};
     uint64_t points = reader->header.points, samples = reader->header.samples;
     if (points == 0 || points > INT32_MAX || samples > INT32_MAX)
         return io_error_set(error, SKEIN_ERROR_SYNTAX, reader->path,
@@ -225,7 +203,7 @@ skein_status io_pc2_read(io_pc2_reader *reader, uint32_t sample, double *out, sk
     while (fine && left > 0) {
         size_t count = left < BLOCK_POINTS ? left : BLOCK_POINTS;
         fine = fread(reader->block, POINT_BYTES, count, reader->file) == count;
-        for (size_t i = 0; fine && i < 3 * count; i++) out[i] = (double)get_float(reader->block + 4 * i);
+        for (size_t i = 0; fine && i < 3 * count; i++) out[i] = (double)io_get_float(reader->block + 4 * i);
         out += 3 * count;
         left -= count;
     }

@@ -37,8 +37,9 @@ static const skein_field scene_fields[] = {
           "the longest step; a frame is cut into as many equal steps as it takes"),
     FIELD(most_stretch, "most_stretch", SKEIN_FIELD_REAL, "", 1, 0, (double)INFINITY, NULL,
           "a run that ends with an edge longer than its rest length times 1 + this fails; \"infinite\" is none"),
-    FIELD(threads, "threads", SKEIN_FIELD_INT, "", 0, 0, 64, NULL,
-          "the most threads to run on, 0: one a processor; steps take as many as are faster, and the result is the same"),
+    FIELD(
+        threads, "threads", SKEIN_FIELD_INT, "", 0, 0, 64, NULL,
+        "the most threads to run on, 0: one a processor; steps take as many as are faster, and the result is the same"),
     {"advance",
      SKEIN_FIELD_CHOICE,
      offsetof(io_scene_settings, advance),
@@ -250,6 +251,22 @@ size_t io_scene_exports(const io_scene *scene, io_export *exports, size_t most) 
     size_t count = scene->export_count < most ? scene->export_count : most;
     memcpy(exports, scene->exports, count * sizeof *exports);
     return count;
+}
+
+skein_status io_scene_exports_set(io_scene *scene, const char *name, const skein_value *value, size_t *count,
+                                  skein_error *error) {
+    *count = 0;
+    for (size_t i = 0; i < scene->export_count; i++) {
+        io_export *e = &scene->exports[i];
+        const skein_field *field = skein_field_find(e->kind, name, NULL);
+        if (!field) continue;
+        skein_status status = skein_field_check(field, value, error);
+        if (status) return status;
+        if (!store(field, (void *)(uintptr_t)e->params, value))
+            return io_error_set(error, SKEIN_ERROR_MEMORY, name, "out of memory");
+        ++*count;
+    }
+    return SKEIN_OK;
 }
 
 /* ---- reading ---- */

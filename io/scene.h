@@ -96,6 +96,10 @@ typedef struct io_export {
     bool asked; /* for by the scene; else it has no "output" */
 } io_export;
 size_t io_scene_exports(const io_scene *scene, io_export *exports, size_t most);
+/* Sets the field `name` of all exporters that have it, and counts them. Fails, with the field's words, where the value
+ * is none for it. */
+skein_status io_scene_exports_set(io_scene *scene, const char *name, const skein_value *value, size_t *count,
+                                  skein_error *error);
 
 /* The parameters of the view's kind, freed with the scene; NULL if that kind was not given in reading. A text
  * whose unit is "path" is relative to the scene's folder in the file, and made to fit in here. */

@@ -56,8 +56,9 @@ static void judge_scene(const io_scene *scene) {
     require(count <= 2);
     for (size_t i = 0; i < count; i++)
         if (exports[i].kind == io_exporter_at(0))
-            require((uint32_t)((const io_obj_params *)exports[i].params)->normals <= 2);
-        else require(((const io_pc2_params *)exports[i].params)->every >= 1);
+            require((uint32_t)((const io_clip_params *)exports[i].params)->normals <= 2);
+        else if (exports[i].kind->params_size == sizeof(io_clip_params))
+            require(((const io_clip_params *)exports[i].params)->every >= 0);
 }
 
 static void read_line(void *user, const char *line) {

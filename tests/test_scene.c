@@ -68,8 +68,8 @@ static void the_top_has_defaults_and_values(void **state) {
     io_export exports[4];
     assert_int_equal(io_scene_exports(scene, exports, 4), 2);
     assert_ptr_equal(exports[0].kind, io_exporter_at(0));
-    assert_int_equal(((const io_obj_params *)exports[0].params)->normals, SKEIN_NORMALS_AREA);
-    assert_int_equal(((const io_pc2_params *)exports[1].params)->every, 1);
+    assert_int_equal(((const io_clip_params *)exports[0].params)->normals, SKEIN_NORMALS_AREA);
+    assert_int_equal(((const io_clip_params *)exports[1].params)->every, 1);
     io_scene_free(scene);
 
     // behind a mark, in any order, with a step that does not divide the frame
@@ -84,7 +84,7 @@ static void the_top_has_defaults_and_values(void **state) {
     assert_int_equal(io_scene_steps_per_frame(s, &dt), 5);
     assert_true(fabs(dt * 5 * 24 - 1) < 1e-15);
     assert_int_equal(io_scene_exports(scene, exports, 4), 1);
-    assert_int_equal(((const io_obj_params *)exports[0].params)->normals, SKEIN_NORMALS_ANGLE);
+    assert_int_equal(((const io_clip_params *)exports[0].params)->normals, SKEIN_NORMALS_ANGLE);
     io_scene_free(scene);
 
     scene = read_scene("{ 'output': [] }", NULL);
