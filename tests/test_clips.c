@@ -65,6 +65,65 @@ static samples read_pc2(const char *path) {
     return s;
 }
 
+/* A GLB: its JSON, and its numbers. */
+typedef struct glb {
+    json_t *root;
+    io_bytes bytes;
+    const char *numbers;
+} glb;
+
+static uint32_t little(const char *at) {
+    const unsigned char *b = (const unsigned char *)at;
+    return (uint32_t)b[3] << 24 | (uint32_t)b[2] << 16 | (uint32_t)b[1] << 8 | b[0];
+}
+
+static glb read_glb(const char *path) {
+    glb g = {NULL, read_bytes(path), NULL};
+    const char *data = g.bytes.data;
+    assert_true(g.bytes.size > 28 && !memcmp(data, "glTF", 4) && little(data + 4) == 2);
+    assert_int_equal(little(data + 8), g.bytes.size);
+    uint32_t length = little(data + 12);
+    assert_true(length % 4 == 0 && !memcmp(data + 16, "JSON", 4));
+    g.root = json_loadb(data + 20, length, JSON_REJECT_DUPLICATES, NULL);
+    assert_non_null(g.root);
+    assert_memory_equal(data + 20 + length + 4, "BIN", 4);
+    assert_int_equal(little(data + 20 + length), g.bytes.size - length - 28);
+    g.numbers = data + 28 + length;
+    return g;
+}
+
+static void glb_free(glb *g) {
+    json_decref(g->root);
+    io_bytes_free(&g->bytes);
+}
+
+static json_int_t whole(const json_t *object, const char *key) {
+    return json_integer_value(json_object_get(object, key));
+}
+
+/* The numbers of an accessor: floats, or whole numbers as floats. To be freed. */
+static float *read_accessor(const glb *g, json_int_t place, size_t width, size_t *count) {
+    const json_t *a = json_array_get(json_object_get(g->root, "accessors"), (size_t)place);
+    const json_t *view = json_array_get(json_object_get(g->root, "bufferViews"), (size_t)whole(a, "bufferView"));
+    const char *type = json_string_value(json_object_get(a, "type"));
+    assert_string_equal(type, width == 1 ? "SCALAR" : width == 2 ? "VEC2" : "VEC3");
+    *count = (size_t)whole(a, "count");
+    size_t size = 4 * width * *count, offset = (size_t)whole(a, "byteOffset");
+    assert_true(offset + size <= (size_t)whole(view, "byteLength"));
+    assert_true(!json_object_get(view, "byteStride") || whole(view, "byteStride") == (json_int_t)(4 * width));
+    const char *from = g->numbers + whole(view, "byteOffset") + offset;
+    float *out = malloc(size);
+    memcpy(out, from, size); // these machines are little endian
+    const json_t *least = json_object_get(a, "min"), *most = json_object_get(a, "max");
+    for (size_t i = 0; i < width * *count; i++) {
+        if (whole(a, "componentType") == 5125) out[i] = (float)little(from + 4 * i);
+        if (!least) continue;
+        assert_true((double)out[i] >= json_number_value(json_array_get(least, i % width)));
+        assert_true((double)out[i] <= json_number_value(json_array_get(most, i % width)));
+    }
+    return out;
+}
+
 /* ---- Point caches and sequences ------------------------------------------------------------------------- */
 
 static void all_formats_hold_the_same_motion(void **state) {
@@ -156,8 +215,6 @@ static void axes_and_units_change_in_every_format(void **state) {
     assert_false(exists(in_folder("x")));
 }
 
-/* ---- What does not come to its end ------------------------------------------------------------------------ */
-
 enum { STRIP_VERTICES = 6, STRIP_FACES = 2 };
 
 /* Two squares with a wave in them; as far as `frame`. */
@@ -180,6 +237,116 @@ static io_clip strip(const double *places, uint32_t count, const io_clip_params 
 }
 
 static const io_clip_params plain_params = {.every = 1, .scale = 1};
+
+/* ---- glTF --------------------------------------------------------------------------------------------------- */
+
+static const json_t *primitive_of(const glb *g) {
+    const json_t *meshes = json_object_get(g->root, "meshes");
+    assert_int_equal(json_array_size(meshes), 1);
+    return json_array_get(json_object_get(json_array_get(meshes, 0), "primitives"), 0);
+}
+
+/* Targets are the ways from the first frame; each has all the weight at its time. */
+static void a_glb_moves_as_the_point_cache_does(void **state) {
+    (void)state;
+    const char *s = tiny_scene();
+    hash_of(SKEIN("run", s, "--out", in_folder("out"), "--fps", "24", "--set", "output=[\"pc2\", \"glb\"]"));
+    samples all = read_pc2(in_folder("out/sheet.pc2"));
+    glb g = read_glb(in_folder("out/sheet.glb"));
+    const json_t *primitive = primitive_of(&g), *targets = json_object_get(primitive, "targets");
+    const json_t *attributes = json_object_get(primitive, "attributes");
+    size_t count, numbers = 3 * (size_t)all.points;
+    float *base = read_accessor(&g, whole(attributes, "POSITION"), 3, &count);
+    assert_int_equal(count, 25);
+    assert_memory_equal(base, all.places, numbers * sizeof *base);
+    float *normals = read_accessor(&g, whole(attributes, "NORMAL"), 3, &count);
+    for (size_t v = 0; v < 25; v++)
+        assert_float_equal(normals[3 * v] * normals[3 * v] + normals[3 * v + 1] * normals[3 * v + 1] +
+                               normals[3 * v + 2] * normals[3 * v + 2],
+                           1, 1e-6);
+    assert_int_equal(json_array_size(targets), 4);
+    for (size_t t = 0; t < 4; t++) {
+        float *way = read_accessor(&g, whole(json_array_get(targets, t), "POSITION"), 3, &count);
+        assert_int_equal(count, 25);
+        for (size_t i = 0; i < numbers; i++)
+            assert_float_equal(base[i] + way[i], all.places[(t + 1) * numbers + i], 1e-6);
+        free(way);
+    }
+    const json_t *animation = json_array_get(json_object_get(g.root, "animations"), 0);
+    const json_t *sampler = json_array_get(json_object_get(animation, "samplers"), 0);
+    float *times = read_accessor(&g, whole(sampler, "input"), 1, &count);
+    assert_int_equal(count, 5);
+    float *weights = read_accessor(&g, whole(sampler, "output"), 1, &count);
+    assert_int_equal(count, 20);
+    for (size_t i = 0; i < 5; i++) {
+        assert_float_equal(times[i], (double)i / 24, 1e-7);
+        for (size_t t = 0; t < 4; t++) assert_true(weights[4 * i + t] == (i == t + 1 ? 1 : 0));
+    }
+    float *indices = read_accessor(&g, whole(primitive, "indices"), 1, &count);
+    static const float first[] = {0, 5, 6, 0, 6, 1};
+    assert_int_equal(count, 3 * 2 * 16);
+    assert_memory_equal(indices, first, sizeof first);
+    free(indices);
+    free(weights);
+    free(times);
+    free(normals);
+    free(base);
+    glb_free(&g);
+    samples_free(&all);
+}
+
+/* Two squares whose common edge has other coordinates in each: two vertices more, of the same places. */
+static void a_seam_of_a_glb_has_vertices_of_both_sides(void **state) {
+    (void)state;
+    static const float uv[] = {0, 0, 0, 1, 0.5f, 1, 0.5f, 0, 0.25f, 0, 0.25f, 1, 1, 1, 1, 0};
+    static const uint32_t corners[] = {0, 1, 3, 2, 2, 3, 5, 4};
+    double places[18];
+    skein_error error = {SKEIN_OK, "", ""};
+    strip_places(0, places);
+    io_clip clip = strip(places, 2, &plain_params);
+    clip.corner_uv = uv;
+    void *file = io_clip_glb.create(&clip, in_folder("seam.glb"), &error);
+    for (int frame = 0; frame < 2; frame++) {
+        strip_places(frame, places);
+        assert_int_equal(io_clip_glb.add(file, places, &error), SKEIN_OK);
+    }
+    assert_int_equal(io_clip_glb.commit(file, &error), SKEIN_OK);
+    strip_places(0, places);
+    glb g = read_glb(in_folder("seam.glb"));
+    const json_t *primitive = primitive_of(&g), *attributes = json_object_get(primitive, "attributes");
+    size_t count, uv_count, index_count;
+    float *at = read_accessor(&g, whole(attributes, "POSITION"), 3, &count);
+    float *st = read_accessor(&g, whole(attributes, "TEXCOORD_0"), 2, &uv_count);
+    float *indices = read_accessor(&g, whole(primitive, "indices"), 1, &index_count);
+    assert_int_equal(count, 8);
+    assert_int_equal(uv_count, 8);
+    assert_int_equal(index_count, 12);
+    static const size_t cut[] = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}; // corners of the triangles
+    for (size_t i = 0; i < 12; i++) {
+        size_t c = cut[i], v = (size_t)indices[i];
+        for (size_t k = 0; k < 3; k++) assert_true(at[3 * v + k] == (float)places[3 * corners[c] + k]);
+        assert_true(st[2 * v] == uv[2 * c] && st[2 * v + 1] == 1 - uv[2 * c + 1]);
+    }
+    for (size_t v = 0; v < 6; v++) assert_true(at[3 * v + 1] == (float)places[3 * v + 1]); // its own come first
+    free(indices);
+    free(st);
+    free(at);
+    glb_free(&g);
+}
+
+static void a_glb_that_would_be_too_large_is_refused_at_once(void **state) {
+    (void)state;
+    double places[18];
+    skein_error error = {SKEIN_OK, "", ""};
+    strip_places(0, places);
+    io_clip clip = strip(places, 100000, &plain_params);
+    assert_null(io_clip_glb.create(&clip, in_folder("large.glb"), &error));
+    assert_int_equal(error.status, SKEIN_ERROR_LIMIT);
+    assert_contains(error.message, "100000 frames of 6 vertices are 40.0 GB, and a GLB holds 4: ");
+    assert_int_equal(count_entries(folder), 0);
+}
+
+/* ---- What does not come to its end ------------------------------------------------------------------------ */
 
 /* Of each format that grows: five samples of ten are a whole file, and none at all is a failure. */
 static void a_clip_that_ends_early_is_whole(void **state) {
@@ -244,6 +411,9 @@ int main(void) {
         TEST(all_formats_hold_the_same_motion),
         TEST(a_file_can_be_asked_for_alone),
         TEST(axes_and_units_change_in_every_format),
+        TEST(a_glb_moves_as_the_point_cache_does),
+        TEST(a_seam_of_a_glb_has_vertices_of_both_sides),
+        TEST(a_glb_that_would_be_too_large_is_refused_at_once),
         TEST(a_clip_that_ends_early_is_whole),
         TEST(a_full_disk_leaves_no_clip),
     };
