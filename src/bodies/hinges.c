@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/status.h"
+#include "bodies/order.h"
 
 typedef struct hinge_list {
     sk_allocator *allocator;
@@ -74,10 +75,11 @@ static double scale_of(const double x[4][3]) {
 }
 
 skein_status sk_hinges_find(sk_hinges *hinges, const sk_sheet *sheet, const sk_springs *springs,
-                            const sk_constraint_type *type, skein_error *error) {
+                            const sk_constraint_type *type, const uint32_t *rank, skein_error *error) {
     sk_allocator *allocator = sheet->allocator;
     hinge_list list = {.allocator = allocator};
-    bool good = add_edges(&list, sheet, springs) && add_cuts(&list, sheet);
+    bool good = add_edges(&list, sheet, springs) && add_cuts(&list, sheet) &&
+                sk_order_hinges(allocator, &list.data, list.count, rank);
     *hinges = (sk_hinges){.allocator = allocator, .count = list.count, .corner = list.data};
     size_t rests = (size_t)type->rest_count;
     if (good) {

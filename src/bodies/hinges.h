@@ -20,9 +20,10 @@ typedef struct sk_hinges {
     real *scale; /* what a sheet's rigidity is to be multiplied with; NULL: nothing */
 } sk_hinges;
 
-/* Finds all hinges, and for bending of that type their rest values and scales. */
+/* Finds all hinges, and for bending of that type their rest values and scales; in the order of their particles' ranks
+ * (NULL: scattered, see order.h). */
 skein_status sk_hinges_find(sk_hinges *hinges, const sk_sheet *sheet, const sk_springs *springs,
-                            const sk_constraint_type *type, skein_error *error);
+                            const sk_constraint_type *type, const uint32_t *rank, skein_error *error);
 void sk_hinges_release(sk_hinges *hinges);
 
 #endif

@@ -1,12 +1,14 @@
 #include "bodies/order.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "bodies/geodesic.h"
 
-enum { MOST_STEP = 2 }; /* rows and columns that a grid's spring may lead over */
+enum {
+    MOST_STEP = 2, /* rows and columns that a grid's spring may lead over */
+    WINDOW = 4096  /* springs or hinges that are scattered among each other: enough to fill groups, near in memory */
+};
 
 /* The commonest difference of edges' numbers besides 1: the length of a row. False when there is no memory. */
 static bool find_commonest_step(const sk_springs *springs, const sk_sheet *sheet, uint32_t *step) {
@@ -45,10 +47,10 @@ bool sk_order_find_grid(const sk_sheet *sheet, const sk_springs *springs, uint32
 
 /* ---- by direction ---- */
 
-/* A spring's direction and place, and its number. */
+/* What a spring or hinge is sorted by (a spring's direction and place, say), and its number. */
 typedef struct keyed {
     uint64_t key;
-    uint32_t spring;
+    uint32_t number;
 } keyed;
 
 enum { DIGIT_BITS = 11, DIGITS = 6, DIGIT_VALUES = 1 << DIGIT_BITS };
@@ -83,24 +85,16 @@ static bool sort_keys(sk_allocator *allocator, keyed **keys, size_t count) {
     return good;
 }
 
-/* Puts one list in the order of directions, each from lower places to higher ones. */
-static bool sort_by_direction(sk_allocator *allocator, struct sk_spring_list *list, const uint32_t *place) {
+/* Puts a list in an order, given as its springs' numbers; false when there is no memory. */
+static bool take_in_order(sk_allocator *allocator, struct sk_spring_list *list, const uint32_t *numbers) {
     size_t count = list->count;
-    keyed *keys = sk_allocate(allocator, count * sizeof *keys);
     struct sk_spring_list sorted = {.pairs = sk_allocate(allocator, 2 * count * sizeof *sorted.pairs),
                                     .rest = sk_allocate(allocator, count * sizeof *sorted.rest),
                                     .scale = sk_allocate(allocator, count * sizeof *sorted.scale),
                                     .count = count};
-    bool good = keys && sorted.pairs && sorted.rest && sorted.scale;
+    bool good = sorted.pairs && sorted.rest && sorted.scale;
     for (size_t i = 0; i < count && good; i++) {
-        uint32_t a = list->pairs[2 * i], b = list->pairs[2 * i + 1], at = place ? place[a] : a, to = place ? place[b] : b;
-        uint32_t low = at < to ? at : to, step = at < to ? to - at : at - to;
-        if (low != at) list->pairs[2 * i] = b, list->pairs[2 * i + 1] = a;
-        keys[i] = (keyed){(uint64_t)step << 32 | low, (uint32_t)i};
-    }
-    good = good && sort_keys(allocator, &keys, count);
-    for (size_t i = 0; i < count && good; i++) {
-        uint32_t from = keys[i].spring;
+        uint32_t from = numbers[i];
         sorted.pairs[2 * i] = list->pairs[2 * from], sorted.pairs[2 * i + 1] = list->pairs[2 * from + 1];
         sorted.rest[i] = list->rest[from], sorted.scale[i] = list->scale[from];
     }
@@ -109,6 +103,28 @@ static bool sort_by_direction(sk_allocator *allocator, struct sk_spring_list *li
     sk_release(allocator, unused.pairs);
     sk_release(allocator, unused.rest);
     sk_release(allocator, unused.scale);
+    return good;
+}
+
+/* The same, as keys that have been sorted. */
+static bool take_in_order_of(sk_allocator *allocator, struct sk_spring_list *list, const keyed *keys) {
+    uint32_t *numbers = sk_allocate(allocator, list->count * sizeof *numbers);
+    for (size_t i = 0; i < list->count && numbers; i++) numbers[i] = keys[i].number;
+    bool good = numbers && take_in_order(allocator, list, numbers);
+    sk_release(allocator, numbers);
+    return good;
+}
+
+/* Puts one list in the order of directions, each from lower places to higher ones. */
+static bool sort_by_direction(sk_allocator *allocator, struct sk_spring_list *list, const uint32_t *place) {
+    keyed *keys = sk_allocate(allocator, list->count * sizeof *keys);
+    for (size_t i = 0; i < list->count && keys; i++) {
+        uint32_t a = list->pairs[2 * i], b = list->pairs[2 * i + 1], at = place ? place[a] : a, to = place ? place[b] : b;
+        uint32_t low = at < to ? at : to, step = at < to ? to - at : at - to;
+        if (low != at) list->pairs[2 * i] = b, list->pairs[2 * i + 1] = a;
+        keys[i] = (keyed){(uint64_t)step << 32 | low, (uint32_t)i};
+    }
+    bool good = keys && sort_keys(allocator, &keys, list->count) && take_in_order_of(allocator, list, keys);
     sk_release(allocator, keys);
     return good;
 }
@@ -121,38 +137,30 @@ bool sk_order_by_direction(sk_springs *springs, const uint32_t *place) {
 
 /* ---- outward ---- */
 
-/* A spring with what it is sorted by. */
-typedef struct sorted_spring {
-    double key;
-    uint32_t later; /* sorts before the key */
-    uint32_t a, b;
-    real rest, scale;
-} sorted_spring;
-
-static int compare_springs(const void *p, const void *q) {
-    const sorted_spring *s = p, *t = q;
-    if (s->later != t->later) return s->later < t->later ? -1 : 1;
-    if (s->key != t->key) return s->key < t->key ? -1 : 1;
-    if (s->a != t->a) return s->a < t->a ? -1 : 1;
-    return s->b < t->b ? -1 : s->b > t->b;
+/* A distance, which is not negative, as a number in the same order. */
+static uint64_t key_of(double distance) {
+    uint64_t key;
+    memcpy(&key, &distance, sizeof key);
+    return key;
 }
 
+/* First what leads outward, then what goes round; each by distance, and equal ones by their particles. */
 static bool sort_outward(sk_allocator *allocator, struct sk_spring_list *list, const double *distance) {
-    sorted_spring *sorted = sk_allocate(allocator, list->count * sizeof *sorted);
-    if (!sorted) return false;
-    for (size_t i = 0; i < list->count; i++) {
-        uint32_t a = list->pairs[2 * i], b = list->pairs[2 * i + 1];
-        // radial: the ends' distances differ by more than half the length
-        bool later = !(fabs(distance[a] - distance[b]) > 0.5 * (double)list->rest[i]);
-        sorted[i] = (sorted_spring){0.5 * (distance[a] + distance[b]), later, a, b, list->rest[i], list->scale[i]};
+    size_t count = list->count;
+    keyed *keys = sk_allocate(allocator, count * sizeof *keys);
+    for (size_t i = 0; i < count && keys; i++)
+        keys[i] = (keyed){(uint64_t)list->pairs[2 * i] << 32 | list->pairs[2 * i + 1], (uint32_t)i};
+    bool good = keys && sort_keys(allocator, &keys, count);
+    for (size_t i = 0; i < count && good; i++) {
+        size_t from = keys[i].number;
+        double a = distance[list->pairs[2 * from]], b = distance[list->pairs[2 * from + 1]];
+        // outward: the ends' distances differ by more than half the length
+        bool later = !(fabs(a - b) > 0.5 * (double)list->rest[from]);
+        keys[i].key = (uint64_t)later << 63 | key_of(0.5 * (a + b));
     }
-    qsort(sorted, list->count, sizeof *sorted, compare_springs);
-    for (size_t i = 0; i < list->count; i++) {
-        list->pairs[2 * i] = sorted[i].a, list->pairs[2 * i + 1] = sorted[i].b;
-        list->rest[i] = sorted[i].rest, list->scale[i] = sorted[i].scale;
-    }
-    sk_release(allocator, sorted);
-    return true;
+    good = good && sort_keys(allocator, &keys, count) && take_in_order_of(allocator, list, keys);
+    sk_release(allocator, keys);
+    return good;
 }
 
 /* Distance from the pins along the sheet, or place along the longest axis; parts that no pin reaches come last. */
@@ -181,30 +189,75 @@ static bool find_distances(const sk_sheet *sheet, const bool *pinned, double *di
     return good;
 }
 
-typedef struct ranked {
-    double key;
-    uint32_t particle;
-} ranked;
-
-static int compare_ranked(const void *p, const void *q) {
-    const ranked *a = p, *b = q;
-    if (a->key != b->key) return a->key < b->key ? -1 : 1;
-    return a->particle < b->particle ? -1 : a->particle > b->particle;
-}
-
 bool sk_order_outward(sk_springs *springs, const sk_sheet *sheet, const bool *pinned, uint32_t *rank) {
     sk_allocator *allocator = sheet->allocator;
     size_t count = sheet->particle_count;
     double *distance = sk_allocate(allocator, count * sizeof *distance);
-    ranked *order = sk_allocate(allocator, count * sizeof *order);
+    keyed *order = sk_allocate(allocator, count * sizeof *order);
     bool good = distance && order && find_distances(sheet, pinned, distance);
     for (int sort = 0; sort < SK_SPRING_SORTS && good; sort++)
         good = sort_outward(allocator, &springs->list[sort], distance);
     // neighbours in the order of sweeps are neighbours in memory
-    for (size_t i = 0; i < count && good; i++) order[i] = (ranked){distance[i], (uint32_t)i};
-    if (good) qsort(order, count, sizeof *order, compare_ranked);
-    for (size_t i = 0; i < count && good; i++) rank[order[i].particle] = (uint32_t)i;
+    for (size_t i = 0; i < count && good; i++) order[i] = (keyed){key_of(distance[i]), (uint32_t)i};
+    good = good && sort_keys(allocator, &order, count);
+    for (size_t i = 0; i < count && good; i++) rank[order[i].number] = (uint32_t)i;
     sk_release(allocator, distance);
     sk_release(allocator, order);
+    return good;
+}
+
+/* ---- scattered ---- */
+
+static size_t common_divisor(size_t a, size_t b) {
+    while (b) {
+        size_t rest = a % b;
+        a = b, b = rest;
+    }
+    return a;
+}
+
+/* Steps through each window by the golden section of its size: what is near in the file is then far apart in the order,
+ * wherever the file begins and however it goes on. */
+void sk_order_scatter(uint32_t *numbers, size_t count) {
+    size_t windows = count / WINDOW + 1;
+    for (size_t w = 0; w < windows; w++) {
+        size_t first = w * count / windows, size = (w + 1) * count / windows - first;
+        size_t step = (size_t)(0.6180339887498949 * (double)size);
+        while (common_divisor(step, size) > 1) step++;
+        for (size_t i = 0, at = 0; i < size; i++, at = (at + step) % size) numbers[first + i] = (uint32_t)(first + at);
+    }
+}
+
+bool sk_order_scattered(sk_springs *springs) {
+    bool good = true;
+    for (int sort = 0; sort < SK_SPRING_SORTS && good; sort++) {
+        struct sk_spring_list *list = &springs->list[sort];
+        uint32_t *numbers = sk_allocate(springs->allocator, list->count * sizeof *numbers);
+        if (numbers) sk_order_scatter(numbers, list->count);
+        good = numbers && take_in_order(springs->allocator, list, numbers);
+        sk_release(springs->allocator, numbers);
+    }
+    return good;
+}
+
+/* ---- hinges ---- */
+
+bool sk_order_hinges(sk_allocator *allocator, uint32_t (**corners)[4], size_t count, const uint32_t *rank) {
+    uint32_t(*from)[4] = *corners, (*to)[4] = sk_allocate(allocator, count * sizeof *to);
+    uint32_t *numbers = sk_allocate(allocator, count * sizeof *numbers);
+    keyed *keys = sk_allocate(allocator, count * sizeof *keys);
+    bool good = to && numbers && keys;
+    if (good && !rank) sk_order_scatter(numbers, count);
+    for (size_t i = 0; i < count && good && rank; i++) {
+        keys[i] = (keyed){0, (uint32_t)i};
+        for (int k = 0; k < 4; k++) keys[i].key += rank[from[i][k]];
+    }
+    if (good && rank) good = sort_keys(allocator, &keys, count);
+    for (size_t i = 0; i < count && good && rank; i++) numbers[i] = keys[i].number;
+    for (size_t i = 0; i < count && good; i++) memcpy(to[i], from[numbers[i]], sizeof *to);
+    sk_release(allocator, numbers);
+    sk_release(allocator, keys);
+    sk_release(allocator, good ? from : to);
+    if (good) *corners = to;
     return good;
 }

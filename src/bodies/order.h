@@ -2,8 +2,12 @@
  *
  * Part of the answer, and of the speed. A mesh whose vertices are numbered row by row is a grid, whatever
  * file it came from, and so is one of quads that lie like a grid's (quads.h): its springs go direction by direction and
- * its particles lie in strips. Any other mesh goes outward from its pins (along its longest axis without pins): first
- * the springs that lead outward, then those that go round, each by distance; what was pulled last holds best. */
+ * its particles lie in strips. Any other mesh goes outward from its pins: first the springs that lead outward, then those
+ * that go round, each by distance; what was pulled last holds best; and so do its hinges. A mesh without pins has no
+ * outward: its particles stay as they are in its file, and its springs and hinges are scattered.
+ *
+ * Files go from face to face, so that each spring shares a particle with the one before it; sixteen can be worked at
+ * once only where none does, and what is left over by one would be carried on by the next (docs/design.md, "Hinges"). */
 #ifndef SK_BODIES_ORDER_H
 #define SK_BODIES_ORDER_H
 
@@ -19,5 +23,12 @@ bool sk_order_by_direction(sk_springs *springs, const uint32_t *place);
 /* Sorts the springs outward from the pinned particles, and fills rank[particle] with its place. False when
  * there is no memory. */
 bool sk_order_outward(sk_springs *springs, const sk_sheet *sheet, const bool *pinned, uint32_t *rank);
+/* Fills numbers[count] with an order of 0 to count - 1 in which neighbours are far apart, within windows of thousands. */
+void sk_order_scatter(uint32_t *numbers, size_t count);
+/* Puts the springs in an order in which neighbours share no particle. False when there is no memory. */
+bool sk_order_scattered(sk_springs *springs);
+/* Puts hinges in the order of their particles' ranks, or scatters them where `rank` is NULL; the array may become
+ * another one. False when there is no memory. */
+bool sk_order_hinges(sk_allocator *allocator, uint32_t (**corners)[4], size_t count, const uint32_t *rank);
 
 #endif

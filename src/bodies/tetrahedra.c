@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "bodies/body.h"
+#include "bodies/order.h"
 #include "particles/selection.h"
 #include "bodies/sheet.h"
 
@@ -222,7 +223,7 @@ static skein_status find_edges(builder *b) {
     return SKEIN_OK;
 }
 
-/* A batch of `count` elements of so many particles; element i is `of(b, i, ...)`. */
+/* A batch of `count` elements of so many particles, scattered (order.h); element i is `of(b, i, ...)`. */
 static skein_status add_batch(builder *b, const sk_constraint_type *type, const char *label, sk_material material,
                               size_t count,
                               void (*of)(const builder *b, size_t i, uint32_t *particles, real *rest, real *scale)) {
@@ -230,9 +231,11 @@ static skein_status add_batch(builder *b, const sk_constraint_type *type, const 
     size_t arity = (size_t)type->arity;
     uint32_t *particles = sk_allocate(allocator, arity * count * sizeof *particles);
     real *rest = sk_allocate(allocator, count * sizeof *rest), *scale = sk_allocate(allocator, count * sizeof *scale);
-    skein_status status = particles && rest && scale ? SKEIN_OK : sk_fail_memory(b->error, label);
+    uint32_t *numbers = sk_allocate(allocator, count * sizeof *numbers);
+    skein_status status = particles && rest && scale && numbers ? SKEIN_OK : sk_fail_memory(b->error, label);
+    if (!status) sk_order_scatter(numbers, count);
     for (size_t i = 0; i < count && !status; i++) {
-        of(b, i, particles + arity * i, &rest[i], &scale[i]);
+        of(b, numbers[i], particles + arity * i, &rest[i], &scale[i]);
         for (size_t k = 0; k < arity; k++) particles[arity * i + k] += b->body->first_particle;
     }
     if (!status)
@@ -241,6 +244,7 @@ static skein_status add_batch(builder *b, const sk_constraint_type *type, const 
     sk_release(allocator, particles);
     sk_release(allocator, rest);
     sk_release(allocator, scale);
+    sk_release(allocator, numbers);
     return status;
 }
 
