@@ -1,7 +1,7 @@
 # The short way in: each line below runs one script of tools/, and the scripts run CMake.
 # CMake alone does as well: cmake --preset release && cmake --build --preset release
 
-.PHONY: all install demo test fuzz setup gallery emit names debug format clean help
+.PHONY: all install demo test npm fuzz setup gallery emit names debug format clean help
 
 all: ## (or plain make) build the command: build/skein
 	@tools/build release skein
@@ -17,6 +17,10 @@ demo: ## set up, build, and drop a real mesh as cloth: files, a picture and a fi
 test: ## set up, build and pass every test, in every build; says how many minutes each took
 	@tools/setup test
 	@tools/test
+
+npm: ## set up, build and test the package for JavaScript: build/skein-VERSION.tgz
+	@tools/setup web
+	@tools/npm --test
 
 fuzz: ## look for crashes with random input: 60 seconds a reader (tools/fuzz --seconds N takes longer)
 	@tools/setup test
@@ -46,7 +50,7 @@ format: ## put the C files into the house's style (needs clang-format)
 	@tools/format
 
 clean: ## remove everything that was built
-	rm -rf build build-debug build-asan build-tsan build-clang build-double build-fuzz
+	rm -rf build build-debug build-asan build-tsan build-clang build-double build-fuzz build-wasm
 
 help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | while IFS="$$(printf '\t')" read -r name words; do \

@@ -1,0 +1,383 @@
+// Skein in JavaScript: a World is opened from a scene, stepped and looked at. The same bits as the native library.
+//
+//     import {World} from 'skein';
+//     const world = await World.fromScene(sceneJson);
+//     world.step(60);
+//     console.log(world.hash(), world.positions);
+//
+// Units are SI: metres, kilograms, seconds; y is up. What fails throws a SkeinError that names the place. One module of
+// WebAssembly serves all worlds of a page or worker. skein.d.ts has every call with its words; README.md the ways to use it.
+import {STATISTICS} from './layout.js';
+import {wasi} from './wasi.js';
+
+export class SkeinError extends Error {
+    constructor(faults) {
+        super(faults.map((f) => (f.where ? `${f.where}: ` : '') + f.message).join('\n') || 'out of memory');
+        this.name = 'SkeinError';
+        this.faults = faults;
+        this.where = faults[0]?.where ?? '';
+        this.status = faults[0]?.status ?? 'out of memory';
+    }
+}
+
+const LISTS = ['bodies', 'constraints', 'forces', 'colliders', 'motions', 'method']; // in skein_category's order
+const CATEGORIES = ['body', 'constraint', 'force', 'collider', 'motion', 'method', 'scene', 'exporter', 'view'];
+const encoder = new TextEncoder(), decoder = new TextDecoder();
+
+/* ---- the module ---- */
+
+let loading = null;
+
+async function bytesOf(source) {
+    if (source instanceof ArrayBuffer || ArrayBuffer.isView(source)) return source;
+    const url = new URL(source ?? new URL('./skein.wasm', import.meta.url));
+    if (url.protocol === 'file:') {
+        const fs = 'node:fs/promises'; // (a name that bundlers leave alone)
+        return (await import(/* @vite-ignore */ fs)).readFile(url);
+    }
+    const answer = await fetch(url);
+    if (!answer.ok) throw new Error(`cannot fetch ${url}: ${answer.status}`);
+    return answer.arrayBuffer();
+}
+
+async function start(source) {
+    let exports = null;
+    const imports = {wasi_snapshot_preview1: wasi(() => exports.memory, (line) => console.warn(`skein: ${line}`))};
+    const compiled = source instanceof WebAssembly.Module ? source : await WebAssembly.compile(await bytesOf(source));
+    exports = (await WebAssembly.instantiate(compiled, imports)).exports;
+    exports._initialize();
+    return exports;
+}
+
+/* Loads skein.wasm once: from beside this file, or from an address, bytes or a compiled module. */
+export function load(source) {
+    loading ??= start(source).catch((error) => {
+        loading = null; // the next call may have better luck
+        throw error;
+    });
+    return loading;
+}
+
+/* ---- memory ---- */
+
+function put(wasm, text) {
+    const bytes = typeof text === 'string' ? encoder.encode(text) : text;
+    const at = wasm.js_take(bytes.length + 1);
+    if (!at) throw new SkeinError([]);
+    const memory = new Uint8Array(wasm.memory.buffer, at, bytes.length + 1);
+    memory.set(bytes);
+    memory[bytes.length] = 0;
+    return {at, size: bytes.length};
+}
+
+function words(wasm, at) {
+    const memory = new Uint8Array(wasm.memory.buffer);
+    return decoder.decode(memory.subarray(at, memory.indexOf(0, at)));
+}
+
+function takeJson(wasm, at) {
+    if (!at) throw new SkeinError([]);
+    const text = words(wasm, at);
+    wasm.js_give(at);
+    return JSON.parse(text);
+}
+
+/* Calls `use` with texts in the module's memory, which go afterwards. */
+function withTexts(wasm, texts, use) {
+    const places = texts.map((text) => put(wasm, text));
+    try {
+        return use(...places.map((place) => place.at));
+    } finally {
+        for (const place of places) wasm.js_give(place.at);
+    }
+}
+
+/* The tables: every kind of a category ("body", "force", ..., "scene", "view") with fields, units and help. */
+export async function kinds(category) {
+    const wasm = await load();
+    return takeJson(wasm, wasm.js_kinds(CATEGORIES.indexOf(category)));
+}
+
+/* ---- worlds ---- */
+
+const forgotten = new FinalizationRegistry(({wasm, js, scratch}) => {
+    for (const place of scratch.values()) wasm.js_give(place.at);
+    wasm.js_close(js);
+});
+
+export class World {
+    #wasm;
+    #js;
+    #scratch = new Map(); // memory by its use, for what is copied out again and again
+
+    static async fromScene(scene, {sets = [], files = {}, path = 'scene.json', wasm: source} = {}) {
+        return new World(await load(source), scene, sets, files, path);
+    }
+
+    constructor(wasm, scene, sets, files, path) {
+        this.#wasm = wasm;
+        this.#js = wasm.js_new();
+        if (!this.#js) throw new SkeinError([]);
+        try {
+            this.#open(typeof scene === 'string' ? scene : JSON.stringify(scene), sets, files, path);
+        } catch (error) {
+            wasm.js_close(this.#js);
+            this.#js = 0;
+            throw error;
+        }
+        this.settings = takeJson(wasm, wasm.js_settings(this.#js));
+        forgotten.register(this, {wasm, js: this.#js, scratch: this.#scratch}, this);
+    }
+
+    #open(text, sets, files, path) {
+        const wasm = this.#wasm, folder = path.slice(0, path.lastIndexOf('/') + 1);
+        for (const [name, content] of Object.entries(files)) {
+            const bytes = put(wasm, content instanceof ArrayBuffer ? new Uint8Array(content) : content);
+            withTexts(wasm, [name[0] === '/' ? name : folder + name], (at) => wasm.js_file_add(this.#js, at, bytes.at, bytes.size));
+        }
+        const scene = put(wasm, text);
+        const good = withTexts(wasm, [path, ...sets], (at, ...places) => {
+            const list = put(wasm, new Uint8Array(new Uint32Array([...places, 0]).buffer));
+            const opened = wasm.js_open(this.#js, scene.at, scene.size, at, places.length ? list.at : 0);
+            wasm.js_give(list.at);
+            return opened;
+        });
+        wasm.js_give(scene.at);
+        if (!good) this.#fail();
+    }
+
+    #fail() {
+        throw new SkeinError(takeJson(this.#wasm, this.#wasm.js_faults(this.#js)));
+    }
+    #check(good) {
+        if (!good) this.#fail();
+    }
+    get #world() {
+        if (!this.#js) throw new SkeinError([{status: 'value', where: '', message: 'the world was freed'}]);
+        return this.#js;
+    }
+    /* Room for `size` bytes that stays until another size is wanted. */
+    #room(use, size) {
+        let room = this.#scratch.get(use);
+        if (room?.size !== size) {
+            if (room) this.#wasm.js_give(room.at);
+            this.#scratch.delete(use);
+            room = {at: this.#wasm.js_take(size), size};
+            if (!room.at) throw new SkeinError([]);
+            this.#scratch.set(use, room);
+        }
+        return room.at;
+    }
+    #floats(at, count) {
+        return new Float32Array(this.#wasm.memory.buffer, at, count);
+    }
+    #words(at, count) {
+        return new Uint32Array(this.#wasm.memory.buffer, at, count);
+    }
+
+    free() {
+        if (!this.#js) return;
+        forgotten.unregister(this);
+        for (const place of this.#scratch.values()) this.#wasm.js_give(place.at);
+        this.#scratch.clear();
+        this.#wasm.js_close(this.#js);
+        this.#js = 0;
+    }
+
+    /* ---- stepping ---- */
+
+    step(frames = 1) {
+        this.#check(this.#wasm.js_step(this.#world, frames * this.settings.stepsPerFrame));
+    }
+    reset() {
+        this.#check(this.#wasm.js_reset(this.#world));
+    }
+    get time() {
+        return this.#wasm.js_time(this.#world);
+    }
+    get frame() {
+        return Math.round(this.time * this.settings.fps);
+    }
+    hash() {
+        return BigInt.asUintN(64, this.#wasm.js_hash(this.#world)).toString(16).padStart(16, '0');
+    }
+    statistics() {
+        const at = this.#wasm.js_statistics(this.#world);
+        if (!at) this.#fail();
+        const view = new DataView(this.#wasm.memory.buffer), found = {};
+        const read = {
+            f64: (place) => view.getFloat64(place, true),
+            u32: (place) => view.getUint32(place, true),
+            u64: (place) => Number(view.getBigUint64(place, true)),
+            'f64x3': (place) => [0, 8, 16].map((k) => view.getFloat64(place + k, true)),
+            hash: (place) => view.getBigUint64(place, true).toString(16).padStart(16, '0'),
+        };
+        for (const [name, offset, type] of STATISTICS) found[name] = read[type](at + offset);
+        return found;
+    }
+
+    /* ---- the state ---- */
+
+    get count() {
+        return this.#wasm.js_count(this.#world);
+    }
+    /* The state itself: four floats a slot, and the slot of each particle. */
+    get positionSlots() {
+        return this.#floats(this.#wasm.js_slots(this.#world, false), 4 * this.#slotCount);
+    }
+    get velocitySlots() {
+        return this.#floats(this.#wasm.js_slots(this.#world, true), 4 * this.#slotCount);
+    }
+    get #slotCount() {
+        return this.#wasm.js_slot_count(this.#world);
+    }
+    get slotOf() {
+        return this.#words(this.#wasm.js_slot_of(this.#world), this.count);
+    }
+    get positions() {
+        return this.#copied(false);
+    }
+    get velocities() {
+        return this.#copied(true);
+    }
+    #copied(velocities) {
+        const at = this.#room(velocities ? 'velocities' : 'positions', 12 * this.count);
+        this.#check(this.#wasm.js_copy(this.#world, velocities, at));
+        return this.#floats(at, 3 * this.count);
+    }
+    setPositions(xyz, first = 0) {
+        this.#put(false, xyz, first);
+    }
+    setVelocities(xyz, first = 0) {
+        this.#put(true, xyz, first);
+    }
+    #put(velocities, xyz, first) {
+        const numbers = Float64Array.from(xyz), place = put(this.#wasm, new Uint8Array(numbers.buffer));
+        const good = this.#wasm.js_state_set(this.#world, velocities, first, numbers.length / 3, place.at);
+        this.#wasm.js_give(place.at);
+        this.#check(good);
+    }
+    /* A copy to come back to: positions, velocities and the time. */
+    snapshot() {
+        return {time: this.time, positions: this.positions.slice(), velocities: this.velocities.slice()};
+    }
+    restore({time, positions, velocities}) {
+        this.setPositions(positions);
+        this.setVelocities(velocities);
+        this.#check(this.#wasm.js_time_set(this.#world, time));
+    }
+
+    /* ---- objects and fields ---- */
+
+    objects(category) {
+        return takeJson(this.#wasm, this.#wasm.js_objects(this.#world, CATEGORIES.indexOf(category)));
+    }
+    #place(path) {
+        const [list, ...rest] = path.split('.'), category = LISTS.indexOf(list);
+        let index = 0;
+        if (category < 0) throw this.#nowhere(path, `expected one of ${LISTS.join(', ')} at its beginning`);
+        if (list !== 'method') {
+            const word = rest.shift() ?? '';
+            index = /^\d+$/.test(word)
+                ? Number(word)
+                : this.objects(CATEGORIES[category]).findIndex(
+                      (o) => o.fields.find((f) => f.name === 'name')?.value === word);
+            if (index < 0) throw this.#nowhere(path, `there is none named '${word}' in ${list}`);
+        }
+        return {category, index, object: list === 'method' ? list : `${list}.${index}`, field: rest.join('.')};
+    }
+    #nowhere(path, message) {
+        return new SkeinError([{status: 'name', where: path, message}]);
+    }
+    get(path) {
+        const {category, index, field} = this.#place(path);
+        const at = withTexts(this.#wasm, [field], (name) => this.#wasm.js_get(this.#world, category, index, name));
+        if (!at) this.#fail();
+        return takeJson(this.#wasm, at);
+    }
+    set(path, value) {
+        const {category, index, object, field} = this.#place(path);
+        this.#check(
+            withTexts(this.#wasm, [object, field, JSON.stringify(value)], (place, name, json) =>
+                this.#wasm.js_set(this.#world, category, index, place, name, json)));
+    }
+    /* The scene with all that was set: opened again, it gives the same world. */
+    scene() {
+        return takeJson(this.#wasm, this.#wasm.js_document(this.#world));
+    }
+
+    /* ---- the hand ---- */
+
+    isHeld(particle) {
+        return Boolean(this.#wasm.js_is_held(this.#world, this.#particle(particle)));
+    }
+    pin(particle) {
+        this.#check(this.#wasm.js_hold(this.#world, this.#particle(particle), true));
+    }
+    release(particle) {
+        this.#check(this.#wasm.js_hold(this.#world, this.#particle(particle), false));
+    }
+    movePin(particle, [x, y, z]) {
+        this.#check(this.#wasm.js_move_pin(this.#world, this.#particle(particle), x, y, z));
+    }
+    pull(particle, [x, y, z]) {
+        this.#wasm.js_pull(this.#world, this.#particle(particle), x, y, z);
+    }
+    letGo() {
+        this.#wasm.js_let_go(this.#world);
+    }
+    #particle(particle) {
+        if (Number.isInteger(particle) && particle >= 0 && particle < this.count) return particle;
+        throw new SkeinError([
+            {status: 'value', where: 'particle', message: `expected 0 to ${this.count - 1}, not ${particle}`}]);
+    }
+    pick(origin, direction, radius = 0, slope = 0) {
+        const room = this.#room('pick', 72);
+        new Float64Array(this.#wasm.memory.buffer, room, 8).set([...origin, ...direction, radius, slope]);
+        const particle = this.#wasm.js_pick(this.#world, room, room + 64);
+        return particle < 0 ? null : {particle, t: new Float64Array(this.#wasm.memory.buffer, room + 64, 1)[0]};
+    }
+
+    /* ---- what is drawn ---- */
+
+    surface(body) {
+        const room = this.#room('surface', 40);
+        this.#check(this.#wasm.js_surface(this.#world, body, room));
+        const [particleOf, sizes, corners, uv, firstParticle, particleCount, vertexCount, faceCount, cornerCount, rows] =
+            this.#words(room, 10).slice();
+        return {
+            firstParticle, particleCount, vertexCount, gridRows: rows,
+            particleOfVertex: this.#words(particleOf, vertexCount).slice(),
+            faceSizes: this.#words(sizes, faceCount).slice(),
+            faceVertices: this.#words(corners, cornerCount).slice(),
+            uv: uv ? this.#floats(uv, 2 * cornerCount).slice() : null,
+        };
+    }
+    /* A surface's vertices and unit normals as they are now. */
+    vertices(body, vertexCount) {
+        const size = 12 * vertexCount, at = this.#room(`vertices ${body}`, 2 * size);
+        this.#check(this.#wasm.js_vertices(this.#world, body, at, at + size));
+        return {positions: this.#floats(at, 3 * vertexCount), normals: this.#floats(at + size, 3 * vertexCount)};
+    }
+    pose(collider) {
+        const room = this.#room('pose', 96);
+        this.#check(this.#wasm.js_pose(this.#world, collider, room));
+        const numbers = [...new Float64Array(this.#wasm.memory.buffer, room, 12)];
+        return {position: numbers.slice(0, 3), rotation: numbers.slice(3)};
+    }
+    springs() {
+        const count = this.#wasm.js_springs(this.#world, 0, 0);
+        if (!count) return new Uint32Array(0);
+        const at = this.#room('springs', 8 * count);
+        this.#wasm.js_springs(this.#world, at, count);
+        return this.#words(at, 2 * count).slice();
+    }
+    constraintCount(category, object) {
+        return this.#wasm.js_constraint_count(this.#world, CATEGORIES.indexOf(category), object);
+    }
+    constraint(category, object, index) {
+        const at = this.#wasm.js_constraint(this.#world, CATEGORIES.indexOf(category), object, index);
+        if (!at) this.#fail();
+        return takeJson(this.#wasm, at);
+    }
+}

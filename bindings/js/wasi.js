@@ -1,0 +1,58 @@
+// What skein.wasm asks of its surroundings, as WASI names it: a clock, and a log for what the C library writes. There are
+// no files (a scene's come by js_file_add), no arguments and no environment.
+
+const BAD_HANDLE = 8, NO_ENTRY = 44, NO_SPACE = 28;
+
+// `memory()` gives the module's memory as it is now; `log` gets whole lines.
+export function wasi(memory, log) {
+    const view = () => new DataView(memory().buffer);
+    const decoder = new TextDecoder();
+    let line = '';
+
+    function write(handle, list, count, written) {
+        if (handle !== 1 && handle !== 2) return BAD_HANDLE;
+        let size = 0;
+        for (let i = 0; i < count; i++) {
+            const at = view().getUint32(list + 8 * i, true), length = view().getUint32(list + 8 * i + 4, true);
+            line += decoder.decode(new Uint8Array(memory().buffer, at, length).slice(), {stream: true});
+            size += length;
+        }
+        const lines = line.split('\n');
+        line = lines.pop();
+        for (const whole of lines) log(whole);
+        view().setUint32(written, size, true);
+        return 0;
+    }
+
+    return {
+        environ_sizes_get(count, size) {
+            view().setUint32(count, 0, true);
+            view().setUint32(size, 0, true);
+            return 0;
+        },
+        environ_get: () => 0,
+        clock_time_get(clock, precision, out) {
+            const ms = clock === 0 ? Date.now() : performance.now();
+            view().setBigUint64(out, BigInt(Math.round(ms * 1e6)), true);
+            return 0;
+        },
+        fd_write: write,
+        fd_prestat_get: () => BAD_HANDLE, // no folder is open
+        fd_prestat_dir_name: () => BAD_HANDLE,
+        fd_fdstat_get: () => BAD_HANDLE,
+        fd_fdstat_set_flags: () => BAD_HANDLE,
+        fd_close: () => BAD_HANDLE,
+        fd_read: () => BAD_HANDLE,
+        fd_seek: () => BAD_HANDLE,
+        path_filestat_get: () => NO_ENTRY,
+        path_open: () => NO_ENTRY,
+        random_get(at, size) {
+            if (size > 65536) return NO_SPACE;
+            crypto.getRandomValues(new Uint8Array(memory().buffer, at, size));
+            return 0;
+        },
+        proc_exit(status) {
+            throw new Error(`skein.wasm ended with status ${status}`);
+        },
+    };
+}
