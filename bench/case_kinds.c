@@ -67,10 +67,10 @@ static void make_subject(subject *s, const struct measured *m, const bench_eleme
     s->rows = bench_rows_create(s->world, SK_ROW_PROJECT);
     if (!s->rows) bench_stop("kinds: no projections");
     s->batch = s->world->rules.batches.data[0];
-    s->bytes = (s->world->particles.slot_count * sizeof(sk_vec4) + 63) / 64 * 64;
+    s->bytes = (s->world->particles.slot_end * sizeof(sk_vec4) + 63) / 64 * 64;
     s->start = aligned_alloc(64, s->bytes), s->copy = aligned_alloc(64, s->bytes);
     if (!s->start || !s->copy) bench_stop("no memory");
-    memcpy(s->start, s->world->particles.vector[SK_X], s->world->particles.slot_count * sizeof(sk_vec4));
+    memcpy(s->start, s->world->particles.vector[SK_X], s->world->particles.slot_end * sizeof(sk_vec4));
     free(x);
     free(mass);
     free(corners);
@@ -85,7 +85,7 @@ static void free_subject(subject *s) {
 
 static void start_rows(void *data) {
     subject *s = data;
-    memcpy(s->world->particles.vector[SK_X], s->start, s->world->particles.slot_count * sizeof(sk_vec4));
+    memcpy(s->world->particles.vector[SK_X], s->start, s->world->particles.slot_end * sizeof(sk_vec4));
 }
 
 static void run_rows(void *data) {
@@ -94,7 +94,7 @@ static void run_rows(void *data) {
 
 static void start_by_hand(void *data) {
     subject *s = data;
-    memcpy(s->copy, s->start, s->world->particles.slot_count * sizeof(sk_vec4));
+    memcpy(s->copy, s->start, s->world->particles.slot_end * sizeof(sk_vec4));
 }
 
 static void run_by_hand(void *data) {

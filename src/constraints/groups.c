@@ -16,6 +16,8 @@ enum {
     LEAST_SHARE = 6     /* and for each slab of its reach */
 };
 
+#define FREE_LANE UINT32_MAX /* a slot, for the time being */
+
 typedef struct dealer {
     sk_batch *batch;
     sk_allocator *allocator;
@@ -91,8 +93,8 @@ static void close_up(const dealer *d, grouping *g) {
 
 /* ---- the sweep ---- */
 
-/* Gives the dealt elements their lanes, in their order within a group, and the groups their slots. Free
- * lanes point at the empty slot, which weighs nothing. */
+/* Gives the dealt elements their lanes, in their order within a group, and the groups their slots; free lanes get
+ * theirs when it is known where the group walks. */
 static sk_sweep *add_sweep(const dealer *d, grouping *g, size_t left) {
     sk_batch *batch = d->batch;
     if (!sk_reserve(d->allocator, (void **)&batch->sweeps, &batch->sweep_capacity, batch->sweep_count + 1,
@@ -108,7 +110,7 @@ static sk_sweep *add_sweep(const dealer *d, grouping *g, size_t left) {
                         .slots = slots,
                         .group_count = g->group_count};
     snprintf(sweep->label, sizeof sweep->label, "%.40s groups", batch->label);
-    for (size_t i = 0; i < count; i++) slots[i] = (uint32_t)d->particles->empty_slot;
+    for (size_t i = 0; i < count; i++) slots[i] = FREE_LANE;
     memset(g->filled, 0, g->group_count);
     for (size_t e = g->first; e < g->last; e++) {
         if (!is_left(d, e)) continue;
@@ -131,7 +133,7 @@ static bool find_blocks(const dealer *d, sk_sweep *sweep, uint32_t *latest) {
         size_t before = 0; // the newest group that shares a particle, counted from 1
         for (size_t i = 0; i < d->arity * SK_LANES; i++) {
             uint32_t slot = sweep->slots[g * d->arity * SK_LANES + i];
-            if (slot == d->particles->empty_slot) continue;
+            if (slot == FREE_LANE) continue;
             if (latest[slot] > before && latest[slot] != g + 1) before = latest[slot];
             latest[slot] = (uint32_t)g + 1;
         }
@@ -160,7 +162,7 @@ static sk_walk region_of(const sk_particles *particles, uint32_t slot) {
 static bool find_slabs(const dealer *d, const uint32_t *slots, const sk_walk *walk, size_t slab[2]) {
     slab[0] = SIZE_MAX, slab[1] = 0;
     for (size_t i = 0; i < d->arity * SK_LANES; i++) {
-        if (slots[i] == d->particles->empty_slot) continue;
+        if (slots[i] == FREE_LANE) continue;
         if (slots[i] < walk->first_slot) return false;
         size_t at = (slots[i] - walk->first_slot) / (walk->width * SK_LANES);
         if (at >= walk->rows) return false;
@@ -193,12 +195,22 @@ static bool find_walk(const dealer *d, sk_sweep *sweep) {
     if (walks && walk.reach * LEAST_SHARE <= walk.rows) {
         sweep->walk = walk;
         sweep->slab_start = start;
-        size_t lanes = start[walk.rows - 1] * d->arity * SK_LANES;
-        for (size_t i = 0; i < lanes && !sweep->alone; i++) sweep->alone = sweep->slots[i] == d->particles->empty_slot;
     } else {
         sk_release(d->allocator, start);
     }
     return true;
+}
+
+/* Free lanes read and write spare slots, which weigh nothing: their slab's, so that threads keep out of each other's way
+ * as they do with particles, and another one from group to group, so that none waits for what the last one wrote. */
+static void fill_free_lanes(const dealer *d, sk_sweep *sweep) {
+    size_t slab = 0, lanes = d->arity * SK_LANES;
+    for (size_t g = 0; g < sweep->group_count; g++) {
+        while (sweep->slab_start && g >= sweep->slab_start[slab + 1]) slab++;
+        size_t spare = d->particles->spare_slot + slab * SK_SLAB_SPARES + g % SK_SLAB_SPARES;
+        for (size_t i = g * lanes; i < (g + 1) * lanes; i++)
+            if (sweep->slots[i] == FREE_LANE) sweep->slots[i] = (uint32_t)spare;
+    }
 }
 
 /* ---- passes ---- */
@@ -237,6 +249,7 @@ static bool add_pass(const dealer *d, size_t first, size_t last) {
         close_up(d, &g);
         sk_sweep *sweep = add_sweep(d, &g, left);
         good = sweep && find_walk(d, sweep) && find_blocks(d, sweep, g.latest);
+        if (good) fill_free_lanes(d, sweep);
     }
     sk_release(d->allocator, g.latest);
     sk_release(d->allocator, g.next);

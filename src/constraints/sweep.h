@@ -19,7 +19,6 @@
 #include "constraints/constraint.h"
 
 enum {
-    SK_SLAB_BLOCKS = 4,  /* blocks a slab, where there are no strips */
     SK_BLOCK_GROUPS = 8, /* groups that are worked out together at the most */
     SK_MOST_RESTS = 4    /* rest values of an element that walks along strips */
 };
@@ -48,8 +47,6 @@ struct sk_sweep {
     size_t group_count;
     uint8_t *ahead;       /* of each group: how many from it on share no particle; NULL where nobody asks */
     uint32_t *slab_start; /* where they walk: the groups of slab j are [slab_start[j], slab_start[j + 1]) */
-    bool alone; /* groups before the last slab have empty lanes, which all write the one slot that is nobody's: for one
-                 * thread */
     char label[48];       /* the batch's, and the direction */
 };
 

@@ -379,7 +379,6 @@ static void add_sweep(sk_writer *writer, const sk_sweep *sweep, sk_half half, sk
                                 .rule = sweep,
                                 .label = sweep->label,
                                 .walk = sweep->walk,
-                                .one_thread = sweep->alone,
                                 .half = half,
                                 .every = every,
                                 .end = rows_of(sweep, sweep->walk.reach)});

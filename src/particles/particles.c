@@ -224,16 +224,19 @@ static void number_slots(sk_particles *particles, const uint32_t *by_rank, size_
 
 bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
     if (particles->arranged) return true;
-    size_t strip_slots = 0, loose = particles->count - particles->out_count;
+    size_t strip_slots = 0, loose = particles->count - particles->out_count, slabs = 0;
     for (size_t s = 0; s < particles->strips.count; s++) {
         const sk_strips *strips = &particles->strips.data[s];
         if (!takes_part(particles, strips)) continue;
         strip_slots += (size_t)strips->rows * strips->width * 16;
         loose -= strips->count;
+        if (strips->rows > slabs) slabs = strips->rows;
     }
     size_t empty_slot = strip_slots + (loose + 15) / 16 * 16, slot_count = empty_slot + 16;
     size_t behind = particles->out_count ? (particles->out_count - particles->gone_count + 1 + 15) / 16 * 16 : 0;
-    size_t slot_end = slot_count + behind;
+    size_t slab = SK_SLAB_BLOCKS * 16;
+    if ((loose + slab - 1) / slab > slabs) slabs = (loose + slab - 1) / slab;
+    size_t spares = (slabs * SK_SLAB_SPARES + 15) / 16 * 16, slot_end = slot_count + spares + behind;
     if (slot_end > UINT32_MAX) return false;
     // everything anew first, so that a failure changes nothing
     uint32_t *slot_of = sk_allocate(allocator, particles->capacity * sizeof *slot_of);
@@ -245,7 +248,7 @@ bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
     for (int v = SK_X; v < SK_T0 && good; v++)
         good = (vector[v] = sk_allocate_shifted(allocator, slot_end * sizeof(sk_vec4), apart(v))) != NULL;
     if (good) {
-        number_slots(particles, by_rank, slot_count, slot_of);
+        number_slots(particles, by_rank, slot_count + spares, slot_of);
         for (int v = SK_X; v < SK_T0; v++)
             for (size_t i = 0; i < particles->count; i++)
                 if (particles->presence[i] != SK_GONE)
@@ -265,6 +268,8 @@ bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
         particles->slot_end = particles->slot_capacity = slot_end;
         particles->strip_slots = strip_slots;
         particles->empty_slot = empty_slot;
+        particles->spare_slot = slot_count;
+        particles->spare_slabs = slabs;
         particles->arranged = true;
     }
     for (int v = SK_X; v < SK_T0; v++) sk_release(allocator, vector[v]);

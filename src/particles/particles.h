@@ -3,18 +3,24 @@
  * A slot is a place that is good for speed; the user's index is what every file and call uses, and
  * slot_of[user] leads from one to the other. Strips come first:
  *
- *   slots  | strips of a grid | strips of another | all other particles, by rank | empty | out of it | zero |
+ *   slots  | strips of a grid | strips of another | all other particles, by rank | empty | spare | out of it | zero |
  *
  * Strips: a grid of rows x columns is cut into sixteen strips of `width` columns, one a lane, so that the
  * particle at (r, c) has slot first + (r width + c mod width) 16 + c / width. A neighbour of a block of
  * sixteen slots is then one block, at a constant distance. Slots without a particle are zero and weigh
- * nothing; the sixteen empty ones stay so. Particles that are out of it (their body is disabled) lie behind them, where no
- * row of a plan comes; those that are gone (their body was removed) have no slot of their own but one that is zero. To
+ * nothing; the sixteen empty ones stay so, and so do the spare ones, where free lanes read and write (constraints/groups.c):
+ * each slab has its own, a *slab* being so many blocks, in strips a row. No row over slots comes there, nor to particles
+ * that are out of it (their body is disabled), which lie behind; those that are gone (their body was removed) have no slot of their own but one that is zero. To
  * all others it is as if they had never been. Owned by the world; only the world adds particles. */
 #ifndef SK_PARTICLES_PARTICLES_H
 #define SK_PARTICLES_PARTICLES_H
 
 #include "plan/row.h"
+
+enum {
+    SK_SLAB_BLOCKS = 4, /* blocks a slab, where there are no strips */
+    SK_SLAB_SPARES = 4  /* spare slots a slab: a cache line of floats */
+};
 
 typedef struct sk_strips {
     uint32_t first_particle, count; /* some places may stay empty */
@@ -37,6 +43,8 @@ typedef struct sk_particles {
     size_t out_count, gone_count;     /* who takes no part (those that are gone, too), and those that are gone */
     size_t strip_slots;               /* the first ones, in strips */
     size_t empty_slot;                /* the first of the sixteen */
+    size_t spare_slot;                /* the first one, and */
+    size_t spare_slabs;               /* how many slabs have some: those of the strips with most rows, or of all others */
     bool arranged;                    /* slots are as the picture shows */
     sk_vec4 *vector[SK_VECTOR_COUNT]; /* slots; SK_NONE is unused, temporaries may be NULL */
     uint32_t *slot_of;

@@ -136,7 +136,6 @@ struct sk_row {
     size_t every;          /* it runs in each so many-th turn of its repeat, and in the last of them; 0: in all */
     size_t packed;         /* slots [0, packed) are in packed blocks when it runs */
     sk_walk walk;          /* of rows whose elements are strip rows */
-    bool one_thread;       /* of such a row: its elements are not for several threads at once */
     sk_half half;          /* of a sweep along strips */
     size_t length;         /* a repeat: how many rows after it are repeated */
     int cell;              /* which cell it reads; a repeat that has one ends when it is not 0, and moves no time on */

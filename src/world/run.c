@@ -67,6 +67,7 @@ typedef struct segment_job {
     sk_walk walk;
     size_t lag[MOST_SEGMENT];
     size_t chunk_rows, chunk_count, threads;
+    size_t first_chunk[MOST_THREADS + 1]; /* of each thread, where there are several */
     size_t ahead;               /* chunks whose last turn must be over before a chunk begins the next */
     size_t turns_abreast;       /* how many turns one thread alone has under way */
     _Atomic uint32_t *progress; /* rows done, of each chunk, where there are several threads */
@@ -120,18 +121,41 @@ static void set_turn(sk_run *run, const segment_job *job, size_t turn) {
 
 /* How many rows of a chunk are done, counted over all turns. Threads' counts lie in different cache lines. */
 static _Atomic uint32_t *progress_of(const segment_job *job, size_t chunk) {
-    return &job->progress[chunk + LINE * (chunk * job->threads / job->chunk_count)];
+    size_t thread = 0;
+    while (chunk >= job->first_chunk[thread + 1]) thread++;
+    return &job->progress[chunk + LINE * thread];
 }
 
-/* The first chunk of a thread; the last thread's last one is before that of the thread after it. */
-static size_t first_chunk(const segment_job *job, size_t thread) {
-    return (thread * job->chunk_count + job->threads - 1) / job->threads;
+/* Strip rows of all of a turn's rows that are in the first `chunks` chunks: fewer in the first ones, by their lag. */
+static size_t work_before(const segment_job *job, size_t chunks) {
+    size_t sum = 0, end = chunks * job->chunk_rows;
+    if (chunks == job->chunk_count) return job->count * job->walk.rows;
+    for (size_t g = 0; g < job->count; g++) sum += end > job->lag[g] ? end - job->lag[g] : 0;
+    return sum;
+}
+
+/* Gives threads chunks of as much work each: by number, the last thread had all that lags behind, and of a mesh, whose
+ * rows lag far, twice as much as the first. */
+static void share_chunks(segment_job *job) {
+    size_t chunk = 0, all = work_before(job, job->chunk_count);
+    job->first_chunk[0] = 0;
+    for (size_t t = 1; t < job->threads; t++) {
+        size_t share = all / job->threads * t;
+        while (chunk < job->chunk_count && work_before(job, chunk) < share) chunk++;
+        // the nearer of both, and one for each thread
+        if (chunk > job->first_chunk[t - 1] + 1 && work_before(job, chunk) - share > share - work_before(job, chunk - 1))
+            chunk--;
+        if (chunk <= job->first_chunk[t - 1]) chunk = job->first_chunk[t - 1] + 1;
+        if (chunk > job->chunk_count - job->threads + t) chunk = job->chunk_count - job->threads + t;
+        job->first_chunk[t] = chunk;
+    }
+    job->first_chunk[job->threads] = job->chunk_count;
 }
 
 /* One thread of several: its chunks, turn by turn. */
 static void run_chunks(const segment_job *job, size_t thread) {
     sk_run run = *job->run; // a copy each: threads may be at different times
-    size_t first = first_chunk(job, thread), end = first_chunk(job, thread + 1);
+    size_t first = job->first_chunk[thread], end = job->first_chunk[thread + 1];
     for (size_t turn = 0; turn < job->turns; turn++) {
         set_turn(&run, job, turn);
         uint32_t before = (uint32_t)(turn * job->count);
@@ -205,13 +229,12 @@ static void run_walk(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t co
     segment_job job = {
         .run = run, .rows = rows, .count = count, .turns = turns, .start = start, .dt = dt, .walk = *walk};
     int threads = sk_tasks_together(tasks) && walk->rows * walk->width * 16 >= 4096 ? sk_tasks_count(tasks) : 1;
-    for (size_t g = 0; g < count; g++)
-        if (rows[g].one_thread) threads = 1;
     cut_chunks(&job, threads);
     if (job.threads == 1) {
         run_chunks_alone(&job);
         return;
     }
+    share_chunks(&job);
     _Atomic uint32_t progress[MOST_CHUNKS + LINE * MOST_THREADS];
     job.progress = progress;
     for (size_t k = 0; k < job.chunk_count; k++) atomic_init(progress_of(&job, k), 0);
