@@ -5,8 +5,9 @@
 set -u
 skein=$1 modules=$2
 here=$(dirname "$0")
-if ! command -v node >/dev/null || [ ! -d "$modules/node_modules/gltf-validator" ]; then
-    echo "skipped: no $modules/node_modules/gltf-validator; where node and npm are, 'tools/setup test' installs it"
+if ! command -v node >/dev/null || [ ! -d "$modules/node_modules/gltf-validator" ] ||
+    [ ! -d "$modules/node_modules/three" ]; then
+    echo "skipped: no gltf-validator and three in $modules/node_modules; where node and npm are, 'tools/setup test' installs it"
     exit 77
 fi
 folder=$(mktemp -d) || exit 1
@@ -36,4 +37,10 @@ OBJ
 "$skein" run birds --frames 2 --quiet --out "$folder/birds.glb" || exit 1
 "$skein" run meshes/ball.node --frames 3 --quiet --scale 100 --out "$folder/ball.glb" || exit 1
 "$skein" run flag --frames 10 --quiet --fps 24 --out "$folder/flag.glb" || exit 1
-node "$here/npm/check_glb.cjs" "$modules" "$folder"/*.glb
+node "$here/npm/check_glb.cjs" "$modules" "$folder"/*.glb || exit 1
+
+usda() { # SCENE NAME UP SCALE FPS
+    "$skein" run "$1" --frames 4 --quiet --up "$3" --scale "$4" --fps "$5" --out "$folder/usd" \
+        --set 'output=["pc2", "usda"]' && node "$here/npm/check_usda.mjs" "$modules" "$folder/usd" "$2" "$3" "$4" "$5"
+}
+usda "$folder/seam.obj" mesh y 1 60 && usda flag flag z 100 24 && usda rope slack z 0.01 30 && usda birds flock y 1 60

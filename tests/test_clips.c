@@ -346,6 +346,103 @@ static void a_glb_that_would_be_too_large_is_refused_at_once(void **state) {
     assert_int_equal(count_entries(folder), 0);
 }
 
+/* ---- USD ---------------------------------------------------------------------------------------------------- */
+
+/* The numbers of "NAME.timeSamples = {", three each, of all samples: strict, in the one way that it is written. */
+static samples read_usda(const char *text, const char *name) {
+    samples s = {0, 0, calloc(64, sizeof(double)), calloc(1 << 16, sizeof(float))};
+    char words[64];
+    snprintf(words, sizeof words, "    %s.timeSamples = {\n", name);
+    const char *at = strstr(text, words);
+    if (!at) fail_msg("there is no '%s'", words);
+    at += strlen(words);
+    size_t numbers = 0;
+    for (char *end; *at != ' ' || at[4] == ' '; s.count++) {
+        assert_true(!strncmp(at, "        ", 8) && s.count < 64);
+        s.times[s.count] = (double)strtoul(at + 8, &end, 10);
+        assert_memory_equal(end, ": [(", 4);
+        for (at = end + 3; *at == '('; numbers += 3) {
+            at++;
+            for (int k = 0; k < 3; k++) {
+                s.places[numbers + (size_t)k] = strtof(at, &end);
+                assert_true(end > at);
+                assert_memory_equal(end, k < 2 ? ", " : ")", k < 2 ? 2 : 1);
+                at = end + (k < 2 ? 2 : 1);
+            }
+            if (!strncmp(at, ", (", 3)) at += 2;
+        }
+        assert_memory_equal(at, "],\n", 3);
+        at += 3;
+    }
+    assert_memory_equal(at, "    }\n", 6);
+    s.points = (uint32_t)(numbers / 3 / s.count);
+    return s;
+}
+
+static void usd_text_holds_the_motion_with_axes_and_units(void **state) {
+    (void)state;
+    const char *s = tiny_scene();
+    hash_of(SKEIN("run", s, "--out", in_folder("out"), "--fps", "24", "--up", "z", "--scale", "100", "--set",
+                  "output=[\"pc2\", {\"type\": \"usda\", \"every\": 2}]"));
+    assert_int_equal(count_entries(in_folder("out")), 5);
+    char *text = read_text(in_folder("out/sheet.usda"));
+    assert_memory_equal(text, "#usda 1.0\n", 10);
+    assert_contains(text, "    endTimeCode = 4         \n    framesPerSecond = 24\n    metersPerUnit = 0.01\n"
+                          "    startTimeCode = 0\n    timeCodesPerSecond = 24\n    upAxis = \"Z\"\n)\n");
+    assert_contains(text, "\ndef Mesh \"sheet\"\n{\n");
+    assert_contains(text, "    int[] faceVertexIndices = [0, 5, 6, 1, 1, 6, 7, 2,");
+    samples all = read_pc2(in_folder("out/sheet.pc2")), usd = read_usda(text, "point3f[] points");
+    samples normals = read_usda(text, "normal3f[] normals"), boxes = read_usda(text, "float3[] extent");
+    assert_int_equal(usd.count, 3);
+    assert_int_equal(usd.points, 25);
+    assert_int_equal(normals.count, 3);
+    assert_int_equal(boxes.points, 2);
+    for (size_t i = 0; i < 3; i++) {
+        assert_true(usd.times[i] == 2 * (double)i && normals.times[i] == usd.times[i]);
+        const float *box = boxes.places + 6 * i;
+        for (size_t k = 0; k < 75; k++) {
+            float x = usd.places[75 * i + k];
+            assert_true(x == all.places[75 * 2 * i + k] && x >= box[k % 3] && x <= box[3 + k % 3]);
+        }
+        for (const float *n = normals.places + 75 * i; n < normals.places + 75 * (i + 1); n += 3)
+            assert_float_equal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-6);
+    }
+    assert_true(fabsf(normals.places[2]) == 1); // the sheet begins level, and z is up
+    size_t length = strlen(text);
+    assert_string_equal(text + length - 8, "    }\n}\n");
+    samples_free(&all);
+    samples_free(&usd);
+    samples_free(&normals);
+    samples_free(&boxes);
+    free(text);
+}
+
+/* While it grows, the part is a whole file at each moment. */
+static void usd_text_ends_well_while_it_grows(void **state) {
+    (void)state;
+    double places[18];
+    skein_error error = {SKEIN_OK, "", ""};
+    strip_places(0, places);
+    io_clip clip = strip(places, 10, &plain_params);
+    clip.name = "2 sheets.\xc3\xa4";
+    void *file = io_clip_usda.create(&clip, in_folder("strip.usda"), &error);
+    for (int frame = 0; frame < 3; frame++) {
+        strip_places(frame, places);
+        assert_int_equal(io_clip_usda.add(file, places, &error), SKEIN_OK);
+        char part[64];
+        snprintf(part, sizeof part, "strip.usda.%ld.part", (long)getpid());
+        char *text = read_text(in_folder(part));
+        samples s = read_usda(text, "point3f[] points");
+        assert_int_equal(s.count, frame + 1);
+        assert_contains(text, "def Mesh \"_2_sheets___\"\n");
+        assert_string_equal(text + strlen(text) - 8, "    }\n}\n");
+        samples_free(&s);
+        free(text);
+    }
+    io_clip_usda.abandon(file);
+    assert_int_equal(count_entries(folder), 0);
+}
+
 /* ---- What does not come to its end ------------------------------------------------------------------------ */
 
 /* Of each format that grows: five samples of ten are a whole file, and none at all is a failure. */
@@ -414,6 +511,8 @@ int main(void) {
         TEST(a_glb_moves_as_the_point_cache_does),
         TEST(a_seam_of_a_glb_has_vertices_of_both_sides),
         TEST(a_glb_that_would_be_too_large_is_refused_at_once),
+        TEST(usd_text_holds_the_motion_with_axes_and_units),
+        TEST(usd_text_ends_well_while_it_grows),
         TEST(a_clip_that_ends_early_is_whole),
         TEST(a_full_disk_leaves_no_clip),
     };

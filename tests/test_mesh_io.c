@@ -943,7 +943,7 @@ static void obj_keeps_what_is_said_of_faces(void **state) {
 
 static void exporters_describe_their_fields(void **state) {
     (void)state;
-    static const char *const names[] = {"obj", "pc2", "mdd", "glb", "csv", "hdf5", NULL};
+    static const char *const names[] = {"obj", "pc2", "mdd", "glb", "usda", "csv", "hdf5", NULL};
     for (size_t i = 0; names[i]; i++) assert_string_equal(io_exporter_at(i)->name, names[i]);
     assert_null(io_exporter_at(COUNT(names) - 1));
     const skein_kind *obj = io_exporter_at(0);
