@@ -91,11 +91,20 @@ static bool ends_with(const char *path, const char *ending) {
     return true;
 }
 
+/* A new format is its reader and a row here. */
+static const struct {
+    const char *ending;
+    mesh_reader *read;
+} formats[] = {{".obj", io_obj_read}, {".off", io_off_read},  {".ply", io_ply_read},
+               {".stl", io_stl_read}, {".glb", io_gltf_read}, {".gltf", io_gltf_read}};
+
+bool io_path_is_mesh(const char *path) {
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        if (ends_with(path, formats[i].ending)) return true;
+    return ends_with(path, ".node");
+}
+
 skein_status io_mesh_read(const char *path, io_mesh *out, io_warnings warnings, skein_error *error) {
-    static const struct {
-        const char *ending;
-        mesh_reader *read;
-    } formats[] = {{".obj", io_obj_read}, {".off", io_off_read}};
     // A text of 16 GiB holds some hundred million faces; beyond that it is a wrong file.
     const uint64_t most = (uint64_t)1 << 34;
     const size_t limit = most < SIZE_MAX / 4 ? (size_t)most : SIZE_MAX / 4;
@@ -111,7 +120,7 @@ skein_status io_mesh_read(const char *path, io_mesh *out, io_warnings warnings, 
         io_bytes_free(&text);
         return status;
     }
-    return io_error_set(error, SKEIN_ERROR_FILE, path, "not a mesh file by its ending: expected .obj, .off or .node");
+    return io_error_set(error, SKEIN_ERROR_FILE, path, "not a mesh file by its ending: expected .obj, .off, .ply, .stl, .glb, .gltf or .node");
 }
 
 /* ---- Lines and words ----------------------------------------------------------------------- */

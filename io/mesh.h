@@ -1,4 +1,4 @@
-/* Meshes as files: polygons from OBJ and OFF, tetrahedra from .node and .ele; write OBJ.
+/* Meshes as files: polygons from OBJ, OFF, PLY, STL and glTF, tetrahedra from .node and .ele; write OBJ.
  *
  * Owns: io_mesh, the mesh as it stands in a file. Called by the scene reader, the command and the
  * exporters. Invariant of a mesh that was read: at least one vertex and one face; every face has three
@@ -39,7 +39,9 @@ typedef struct io_mesh {
     size_t vertex_capacity, face_capacity, corner_capacity, corner_uv_capacity, uv_capacity; /* internal */
 } io_mesh;
 
-/* Reads a mesh by its ending, .obj or .off in any case; .node or .ele reads both files of the name. `out` is
+/* Whether the path's ending is that of a mesh. */
+bool io_path_is_mesh(const char *path);
+/* Reads a mesh by its ending in any case, .obj, .off, .ply, .stl, .glb or .gltf; .node or .ele reads both files of the name. `out` is
  * overwritten (free it afterwards) and empty on failure. Faults that leave a usable mesh are warnings, one line each.
  */
 skein_status io_mesh_read(const char *path, io_mesh *out, io_warnings warnings, skein_error *error);
@@ -62,6 +64,13 @@ skein_status io_obj_read(const char *text, size_t size, const char *path, io_mes
                          skein_error *error);
 skein_status io_off_read(const char *text, size_t size, const char *path, io_mesh *out, io_warnings warnings,
                          skein_error *error);
+/* What these read is bytes. A .gltf may name files of numbers, which are looked for in the folder of `path` alone. */
+skein_status io_ply_read(const char *text, size_t size, const char *path, io_mesh *out, io_warnings warnings,
+                         skein_error *error);
+skein_status io_stl_read(const char *text, size_t size, const char *path, io_mesh *out, io_warnings warnings,
+                         skein_error *error);
+skein_status io_gltf_read(const char *text, size_t size, const char *path, io_mesh *out, io_warnings warnings,
+                          skein_error *error);
 
 /* A text in memory; `path` serves the messages. */
 typedef struct io_text {

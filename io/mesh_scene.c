@@ -19,11 +19,6 @@ static bool is_tetrahedra(const char *path) {
     return !strcasecmp(ending_of(path), ".node");
 }
 
-bool io_path_is_mesh(const char *path) {
-    const char *ending = ending_of(path);
-    return !strcasecmp(ending, ".obj") || !strcasecmp(ending, ".off") || is_tetrahedra(path);
-}
-
 /* The corners of the box around it. */
 static void bound(const io_mesh *mesh, double least[3], double most[3]) {
     for (int k = 0; k < 3; k++) least[k] = INFINITY, most[k] = -INFINITY;

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "io/mesh.h"
 #include "io/scene_settings.h"
 
 enum { SCENE_VERSION = 1, MOST_EXPORTS = 16, MOST_STEPS_PER_FRAME = 1000000 };

@@ -54,8 +54,6 @@ void io_scene_not_found(const char *word, io_faults *faults);
 /* The names of the scenes that come with Skein, in the alphabet's order, each once. Returns how many, up to `most`. */
 enum { IO_SCENE_NAME_SIZE = 64 };
 size_t io_scene_names(char (*names)[IO_SCENE_NAME_SIZE], size_t most);
-/* Whether the path's ending is that of a mesh. */
-bool io_path_is_mesh(const char *path);
 /* Reads all of standard input; what messages call it is IO_STDIN_NAME. */
 #define IO_STDIN_NAME "standard input"
 skein_status io_stdin_read(size_t most, io_bytes *out, skein_error *error);

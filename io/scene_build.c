@@ -84,7 +84,7 @@ static bool add_body(const builder *b, io_place place, const skein_kind *kind, c
     if (has_mesh && !read_mesh(b, place, file, &mesh)) return false;
     // as polygons they would be faces without any sense
     if (mesh.tetrahedra && strcmp(kind->name, "tetrahedra") != 0) {
-        io_fault(place, "mesh", SKEIN_ERROR_MESH, "'%s' is made of tetrahedra: a %s needs faces, from .obj or .off",
+        io_fault(place, "mesh", SKEIN_ERROR_MESH, "'%s' is made of tetrahedra: a %s needs faces, from .obj, .ply, .stl, .glb or .off",
                  file, kind->name);
         io_mesh_free(&mesh);
         return false;

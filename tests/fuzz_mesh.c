@@ -1,4 +1,4 @@
-/* Feeds any bytes to the readers of OBJ and OFF, and judges what they make of them.
+/* Feeds any bytes to the readers of OBJ, OFF, PLY, STL and glTF, and judges what they make of them.
  *
  * Owns nothing. Called as fuzz/fuzz.h says.
  * Invariant: a mesh that was read keeps the promise of io/mesh.h; a refusal has a place and words.
@@ -43,16 +43,19 @@ static void ignore(void *user, const char *line) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    for (int format = 0; format < 2; format++) {
+    static const struct {
+        skein_status (*read)(const char *, size_t, const char *, io_mesh *, io_warnings, skein_error *);
+    } formats[] = {{io_obj_read}, {io_off_read}, {io_ply_read}, {io_stl_read}, {io_gltf_read}};
+    for (size_t format = 0; format < sizeof formats / sizeof *formats; format++) {
         io_mesh mesh;
         skein_error error = {SKEIN_OK, "", ""};
-        skein_status status = (format == 0 ? io_obj_read : io_off_read)(
-            (const char *)data, size, "input", &mesh, (io_warnings){ignore, NULL}, &error);
+        skein_status status = formats[format].read(
+            (const char *)data, size, "no/folder/input", &mesh, (io_warnings){ignore, NULL}, &error);
         if (status == SKEIN_OK) {
             judge_mesh(&mesh);
             judge_normals(&mesh);
         } else
-            require(error.status == status && strncmp(error.where, "input", 5) == 0 && error.message[0]);
+            require(error.status == status && strncmp(error.where, "no/folder/", 10) == 0 && error.message[0]);
         io_mesh_free(&mesh);
     }
     return 0;

@@ -43,4 +43,4 @@ usda() { # SCENE NAME UP SCALE FPS
     "$skein" run "$1" --frames 4 --quiet --up "$3" --scale "$4" --fps "$5" --out "$folder/usd" \
         --set 'output=["pc2", "usda"]' && node "$here/npm/check_usda.mjs" "$modules" "$folder/usd" "$2" "$3" "$4" "$5"
 }
-usda "$folder/seam.obj" mesh y 1 60 && usda flag flag z 100 24 && usda rope slack z 0.01 30 && usda birds flock y 1 60
+usda "$folder/seam.obj" mesh y 1 60 && usda flag flag z 100 24 && usda rope slack z 0.01 30 && usda birds birds y 1 60

@@ -108,7 +108,8 @@ static const struct {
      ": bodies.0.mesh: tests/bad/scenes/../meshes/index_out_of_range.obj:6: vertex 5 in a face, but the file has 4 "
      "vertices"},
     {"mesh_is_a_directory",
-     ": bodies.0.mesh: tests/bad/scenes/../meshes: not a mesh file by its ending: expected .obj, .off or .node"},
+     ": bodies.0.mesh: tests/bad/scenes/../meshes: not a mesh file by its ending: expected .obj, .off, .ply, .stl, .glb, .gltf "
+     "or .node"},
     {"iterations_of_backward_euler",
      ": method.iterations: backward_euler has no field 'iterations'; did you mean 'cg_iterations'?"},
     {"mesh_missing", ": bodies.0.mesh: tests/bad/scenes/no/such.obj: cannot read: no such file or directory"},

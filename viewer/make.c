@@ -21,7 +21,7 @@ static const viewer_piece pieces[] = {
      "{'type':'rope','from':[$w,$y,$z],'to':[$e,$y,$z],'pins':'first'}"},
     {"flock", "256 loose particles: they fly by rules among the forces", SKEIN_BODY, false, false,
      "{'type':'flock','count':256,'position':[$x,$y,$z],'spread':[$s,$s,$s],'speed':1}"},
-    {"mesh", "a sheet of a mesh from a file, OBJ or OFF; or a solid of tetrahedra, .node with .ele beside it", SKEIN_BODY,
+    {"mesh", "a sheet of a mesh from a file, OBJ, PLY, STL, glTF or OFF; or a solid of tetrahedra, .node with .ele beside it", SKEIN_BODY,
      false, true, NULL},
     {"plane", "flat ground, in the place of the first collider", SKEIN_COLLIDER, true, false,
      "{'type':'plane','name':'ground','offset':$g}"},

@@ -24,7 +24,7 @@
 #define SKEIN_BODY_VISIBLE "visible" /* true or false; whether it is drawn */
 
 #define SKEIN_CLOTH "cloth" /* a sheet from a triangle or quad mesh, or a grid: springs along and across, bending by angle, tethers to pins */
-#define SKEIN_CLOTH_MESH "mesh" /* a text; file of a mesh, OBJ or OFF (in scenes; a program passes the mesh itself) */
+#define SKEIN_CLOTH_MESH "mesh" /* a text; file of a mesh, OBJ, OFF, PLY, STL or glTF (in scenes; a program passes the mesh itself) */
 #define SKEIN_CLOTH_GRID "grid" /* two whole numbers; instead of a mesh: rows and columns of particles */
 #define SKEIN_CLOTH_SIZE "size" /* two numbers in m; of a grid, along x and z before it is turned */
 #define SKEIN_CLOTH_POSITION "position" /* three numbers in m; where the mesh's origin (a grid's middle) is put */

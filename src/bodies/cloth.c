@@ -34,7 +34,7 @@ typedef struct cloth_params {
 enum { BY_SPRINGS, BY_ANGLE, BY_CURVATURE, BY_LINES, BY_SHAPE };
 
 static const skein_field fields[] = {
-    SK_TEXT(cloth_params, mesh, "mesh", "", "file of a mesh, OBJ or OFF (in scenes; a program passes the mesh itself)"),
+    SK_TEXT(cloth_params, mesh, "mesh", "", "file of a mesh, OBJ, OFF, PLY, STL or glTF (in scenes; a program passes the mesh itself)"),
     SK_INT2(cloth_params, grid, "grid", "", 0, 0, 0, 65536, "instead of a mesh: rows and columns of particles"),
     SK_REAL2(cloth_params, size, "size", "m", 1, 1, 1e-6, 1e9, "of a grid, along x and z before it is turned"),
     SK_VEC3(cloth_params, position, "position", "m", 0, 0, 0, "where the mesh's origin (a grid's middle) is put"),
