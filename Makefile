@@ -1,7 +1,7 @@
 # The short way in: each line below runs one script of tools/, and the scripts run CMake.
 # CMake alone does as well: cmake --preset release && cmake --build --preset release
 
-.PHONY: all install demo test npm fuzz setup gallery emit names debug format clean help
+.PHONY: all install demo test verify-blender npm fuzz setup gallery emit names debug format clean help
 
 all: ## (or plain make) build the command: build/skein
 	@tools/build release skein
@@ -17,6 +17,11 @@ demo: ## set up, build, and drop a real mesh as cloth: files, a picture and a fi
 test: ## set up, build and pass every test, in every build; says how many minutes each took
 	@tools/setup test
 	@tools/test
+
+verify-blender: ## set up, build, and check in Blender, without its window, that caches, GLB and the add-on lie right
+	@tools/setup blender
+	@tools/build release skein
+	@tools/blender/verify build/skein
 
 npm: ## set up, build and test the package for JavaScript: build/skein-VERSION.tgz
 	@tools/setup web
@@ -53,5 +58,5 @@ clean: ## remove everything that was built
 	rm -rf build build-debug build-asan build-tsan build-clang build-double build-fuzz build-wasm
 
 help: ## this list
-	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | while IFS="$$(printf '\t')" read -r name words; do \
-	    printf '  make %-8s %s\n' "$$name" "$$words"; done
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | while IFS="$$(printf '\t')" read -r name words; do \
+	    printf '  make %-14s %s\n' "$$name" "$$words"; done
