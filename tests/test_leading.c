@@ -133,10 +133,34 @@ static void tracks_are_followed(void **state) {
     add_motion(world, "turn", SKEIN_SETTINGS(SKEIN_TEXT("on", "lime")));
     FAILS(world, SKEIN_ERROR_NAME, "no body of the name 'lime'", skein_world_step(world, dt));
     OK(world, skein_set_path(world, "motions.1.on", skein_text("line")));
-    OK(world, skein_set_path(world, "motions.1.pins", skein_text("top edge")));
-    FAILS(world, SKEIN_ERROR_NAME, "'top edge'", skein_world_step(world, dt));
-    OK(world, skein_set_path(world, "motions.1.pins", skein_text("7")));
-    FAILS(world, SKEIN_ERROR_VALUE, "out of range", skein_world_step(world, dt));
+    skein_world_destroy(world);
+}
+
+/* A living motion is not given a body or pins that are not there: what it had stays, and it goes on. */
+static void motions_are_given_what_is_there(void **state) {
+    (void)state;
+    skein_world *world = three_pins("xpbd");
+    skein_value value;
+    skein_handle motion =
+        add_motion(world, "translate", SKEIN_SETTINGS(SKEIN_TEXT("on", "line"), SKEIN_VEC3("velocity", 0, 2, 0)));
+    FAILS(world, SKEIN_ERROR_NAME, "no body of the name 'lime'", skein_set(world, motion, "on", skein_text("lime")));
+    FAILS(world, SKEIN_ERROR_NAME, "'top edge'", skein_set(world, motion, "pins", skein_text("top edge")));
+    FAILS(world, SKEIN_ERROR_VALUE, "out of range", skein_set(world, motion, "pins", skein_text("7")));
+    OK(world, skein_get(world, motion, "on", &value));
+    assert_string_equal(value.text, "line");
+    OK(world, skein_get(world, motion, "pins", &value));
+    assert_string_equal(value.text, "");
+    steps(world, 32, dt);
+    check_place(world, 0, 0, 1, 0);
+    OK(world, skein_set(world, motion, "pins", skein_text("0, 2")));
+    // where it goes to another body, its pins are to be there, too
+    OK(world, skein_body_add(world, "rope", NULL,
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", "short"), SKEIN_REAL("count", 2)), NULL));
+    FAILS(world, SKEIN_ERROR_VALUE, "out of range", skein_set(world, motion, "on", skein_text("short")));
+    OK(world, skein_set(world, motion, "on", skein_text("")));
+    OK(world, skein_set(world, motion, "name", skein_text("lift"))); // which is any
+    steps(world, 32, dt);
+    check_place(world, 0, 0, 2, 0);
     skein_world_destroy(world);
 }
 
@@ -246,7 +270,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_kind_leads_where_it_says), cmocka_unit_test(keys_turn_wait_and_repeat),
         cmocka_unit_test(tracks_are_followed),           cmocka_unit_test(scenes_lead_pins),
-        cmocka_unit_test(scenes_say_what_is_wrong),
+        cmocka_unit_test(scenes_say_what_is_wrong),      cmocka_unit_test(motions_are_given_what_is_there),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -128,11 +128,32 @@ static bool list_particles(sk_allocator *allocator, sk_motion *motion, size_t fi
     return true;
 }
 
-static skein_status find_particles(skein_world *world, sk_motion *motion, skein_error *error) {
-    const sk_body *body = NULL;
-    const char *on = motion->common->on, *pins = motion->common->pins;
-    if (on[0] && !(body = body_named(world, on)) && !sk_world_knew(world, on))
+/* The body that a motion is `on`; NULL where it is on all. */
+static skein_status find_body(const skein_world *world, const sk_motion *motion, const sk_body **body,
+                              skein_error *error) {
+    const char *on = motion->common->on;
+    *body = on[0] ? body_named(world, on) : NULL;
+    if (on[0] && !*body && !sk_world_knew(world, on))
         return sk_fail(error, SKEIN_ERROR_NAME, motion->label, "there is no body of the name '%s'", on);
+    return SKEIN_OK;
+}
+
+skein_status sk_world_check_motion(skein_world *world, const sk_motion *motion, skein_error *error) {
+    const sk_body *body;
+    const char *on = motion->common->on, *pins = motion->common->pins;
+    skein_status status = find_body(world, motion, &body, error);
+    if (status || !pins[0] || (on[0] && !body)) return status;
+    size_t first = body ? body->first_particle : 0, count = body ? body->particle_count : world->particles.count;
+    bool *chosen = sk_allocate(&world->allocator, count * sizeof *chosen);
+    status = chosen ? choose(world, body, first, count, pins, chosen, error) : sk_fail_memory(error, "the pins of a motion");
+    sk_release(&world->allocator, chosen);
+    return status;
+}
+
+static skein_status find_particles(skein_world *world, sk_motion *motion, skein_error *error) {
+    const sk_body *body;
+    const char *on = motion->common->on, *pins = motion->common->pins;
+    if (find_body(world, motion, &body, error)) return error->status;
     // one whose body was removed leads nobody, until there is another of that name
     size_t first = body ? body->first_particle : 0, count = body ? body->particle_count : on[0] ? 0 : world->particles.count;
     if (on[0] && !body) pins = "";

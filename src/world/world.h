@@ -279,6 +279,8 @@ skein_status sk_world_touch(skein_world *world);
 skein_status sk_world_check_track(const skein_world *world, const sk_motion_type *type, const skein_track *track);
 sk_motion *sk_motion_create(sk_allocator *allocator, const sk_motion_type *type, const skein_track *track);
 void sk_motion_release(sk_motion *motion, sk_allocator *allocator);
+/* Whether there is the body that a motion is `on`, and the pins in it that it names. */
+skein_status sk_world_check_motion(skein_world *world, const sk_motion *motion, skein_error *error);
 /* Finds whom motions lead, if anything has changed. */
 skein_status sk_world_find_pins(skein_world *world, skein_error *error);
 /* Lists what is to be led to its place at `time`. False when there is no memory. */
