@@ -694,6 +694,8 @@ static void pins_of_a_grid(void **state) {
     assert_pins(NULL, "5", "5 ");
     assert_pins(NULL, "  7 0   10 ", "0 7 10 ");
     assert_pins(NULL, "-1 -12", "0 11 ");
+    assert_pins(NULL, "4..6", "4 5 6 ");
+    assert_pins(NULL, "0 7..7 9..-1", "0 7 9 10 11 ");
     assert_pins(NULL, "box -2 -1 -2  -1.4 1 2", "0 4 8 ");
     assert_pins(NULL, "box -1.4 1 2  -2 -1 -2", "0 4 8 "); // corners in any order
     assert_pins(NULL, "box -0.5 0 -1  0.5 0 0", "1 2 5 6 "); // its own border is inside
@@ -707,6 +709,10 @@ static void pins_of_a_grid(void **state) {
     assert_no_pins(NULL, "0 -13", SKEIN_ERROR_VALUE, "vertex -13 is out of range");
     assert_no_pins(NULL, "99999999999999999999", SKEIN_ERROR_VALUE, "out of range");
     assert_no_pins(NULL, "1.5", SKEIN_ERROR_VALUE, "expected whole numbers");
+    assert_no_pins(NULL, "6..4", SKEIN_ERROR_VALUE, "expected a first number .. a last one");
+    assert_no_pins(NULL, "1..2..3", SKEIN_ERROR_VALUE, "expected a first number .. a last one");
+    assert_no_pins(NULL, "4..", SKEIN_ERROR_VALUE, "expected whole numbers");
+    assert_no_pins(NULL, "4..12", SKEIN_ERROR_VALUE, "vertex 12 is out of range");
     assert_no_pins(NULL, "3 four", SKEIN_ERROR_VALUE, "expected whole numbers");
     assert_no_pins(NULL, "box 1 2 3", SKEIN_ERROR_VALUE, "expected box and 6 numbers");
     assert_no_pins(NULL, "box 1 2 3 4 5 six", SKEIN_ERROR_VALUE, "expected box and 6 numbers");

@@ -61,7 +61,7 @@ bool viewer_changes_add(viewer_changes *changes, const char *set, const viewer_v
     viewer_change change;
     if (!fill(&change, set, before, after)) return false;
     viewer_change *last = changes->done > changes->given ? &changes->data[changes->done - 1] : NULL;
-    if (last && same_place(last, &change)) {
+    if (last && !last->whole && same_place(last, &change)) {
         char *text = last->text_before;
         viewer_value first = last->before;
         last->text_before = NULL;
@@ -80,6 +80,32 @@ bool viewer_changes_add(viewer_changes *changes, const char *set, const viewer_v
     return true;
 }
 
+void viewer_changes_close(viewer_changes *changes) {
+    if (changes->done > changes->given) changes->data[changes->done - 1].whole = true;
+}
+
+void viewer_changes_drop(viewer_changes *changes, const char *set) {
+    for (size_t i = changes->done; i-- > changes->given;) {
+        if (strcmp(changes->data[i].set, set) != 0) continue;
+        free_change(&changes->data[i]);
+        changes->count--, changes->done--;
+        memmove(&changes->data[i], &changes->data[i + 1], (changes->count - i) * sizeof *changes->data);
+        return;
+    }
+}
+
+size_t viewer_changes_back(const viewer_changes *changes, size_t end) {
+    if (end > changes->given) end--;
+    while (end > changes->given && changes->data[end].joined) end--;
+    return end;
+}
+
+size_t viewer_changes_on(const viewer_changes *changes, size_t from) {
+    if (from < changes->count) from++;
+    while (from < changes->count && changes->data[from].joined) from++;
+    return from;
+}
+
 const char **viewer_changes_sets(const viewer_changes *changes) {
     const char **sets = malloc((changes->done + 1) * sizeof *sets);
     for (size_t i = 0; sets && i < changes->done; i++) sets[i] = changes->data[i].set;
@@ -94,6 +120,7 @@ bool viewer_changes_copy(viewer_changes *to, const viewer_changes *from) {
         viewer_change change;
         bool live = source->before.field != NULL;
         if (!fill(&change, source->set, live ? &source->before : NULL, live ? &source->after : NULL)) break;
+        change.joined = source->joined, change.shared = source->shared, change.whole = source->whole;
         if (!append(to, &change)) {
             free_change(&change);
             break;

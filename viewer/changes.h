@@ -23,6 +23,9 @@ typedef struct viewer_change {
     char *set;                   /* "path=value" */
     viewer_value before, after;  /* `field` NULL: the scene has to be built anew */
     char *text_before, *text_after; /* of texts */
+    bool joined; /* done and undone together with the one before it */
+    bool shared; /* done in place in both of two worlds */
+    bool whole;  /* no later one of the same field joins it */
 } viewer_change;
 
 typedef struct viewer_changes {
@@ -35,6 +38,13 @@ typedef struct viewer_changes {
  * is no memory, and then nothing has changed. */
 bool viewer_changes_add(viewer_changes *changes, const char *set, const viewer_value *before,
                         const viewer_value *after);
+/* The last one is whole: what is changed next is another change. */
+void viewer_changes_close(viewer_changes *changes);
+/* Takes one out, whatever came after it; `set` as it was added. Nothing where it is not there. */
+void viewer_changes_drop(viewer_changes *changes, const char *set);
+/* The first of those that are undone together with the one before `end`; and the end of those done again with `from`. */
+size_t viewer_changes_back(const viewer_changes *changes, size_t end);
+size_t viewer_changes_on(const viewer_changes *changes, size_t from);
 /* The sets of all that is done, NULL-terminated, pointing into `changes`; free the list. NULL when there is no memory. */
 const char **viewer_changes_sets(const viewer_changes *changes);
 bool viewer_changes_copy(viewer_changes *to, const viewer_changes *from);

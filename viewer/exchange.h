@@ -12,6 +12,7 @@
 
 #include "skein/skein.h"
 #include "viewer/events.h"
+#include "viewer/gizmo.h"
 #include "viewer/lesson.h"
 #include "viewer/pace.h"
 
@@ -35,6 +36,8 @@ typedef enum viewer_request_kind {
     VIEWER_DUPLICATE, /* category, index */
     VIEWER_KIND,      /* category, index, text: the kind that it becomes */
     VIEWER_TO_MESH,   /* index: of a body */
+    VIEWER_TOOL,      /* category, index; code: a viewer_tool, handles on that object */
+    VIEWER_BRUSH,     /* x: its radius, pixels */
     VIEWER_OPEN,      /* text: a scene or mesh */
     VIEWER_SCRUB,     /* x: a frame */
     VIEWER_COMPARE,   /* text: path=value for the second side; "" ends it */
@@ -139,6 +142,12 @@ typedef struct viewer_card {
     bool broken;      /* `about` says why */
 } viewer_card;
 
+/* A part of a gizmo, for those who follow the events. */
+typedef struct viewer_handle_place {
+    char name[64];
+    double at[2];
+} viewer_handle_place;
+
 /* One of the worlds that are shown. */
 typedef struct viewer_side {
     char name[160];
@@ -152,6 +161,8 @@ typedef struct viewer_side {
     viewer_pass passes[VIEWER_PASSES];
     size_t pass_count;
     bool flock; /* there is one, whose order is plotted */
+    viewer_strokes strokes; /* over its picture */
+    viewer_handle_place handles[GIZMO_PARTS];
 } viewer_side;
 
 typedef struct viewer_shown {
@@ -170,6 +181,12 @@ typedef struct viewer_shown {
     char recent[VIEWER_RECENTS][VIEWER_TEXT];
     size_t recent_count;
     size_t changes;                          /* that are done, besides those that were given */
+    viewer_tool tool;     /* that the pointer has, and the object that it is for */
+    skein_category tool_category;
+    size_t tool_index;
+    double brush;         /* its radius, pixels */
+    char tool_words[96];  /* what it does, at tool_at */
+    double tool_at[2];
     viewer_lesson lesson; /* while its panel is open */
     size_t side_count;
     viewer_side sides[VIEWER_SIDES];

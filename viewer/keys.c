@@ -9,7 +9,7 @@
 #include "render/world_birds.h"
 
 /* When a key has its meaning. */
-typedef enum key_when { ALWAYS, WITH_SCENE, BY_KEY, WITH_FIELD } key_when;
+typedef enum key_when { ALWAYS, WITH_SCENE, BY_KEY, WITH_FIELD, WITH_TOOL } key_when;
 
 typedef struct viewer_key {
     int code, mods;   /* mods: 0, or GLFW_MOD_CONTROL, with or without GLFW_MOD_SHIFT */
@@ -209,7 +209,25 @@ static void ride(viewer_stage *stage, const viewer_key *key) {
     else viewer_note(stage, "back to the view before the ride");
 }
 
+/* Handles on what is under the pointer, or was before. */
+static void handles(viewer_stage *stage, const viewer_key *key) {
+    viewer_handles_key(stage, (viewer_tool)key->number);
+}
+
+static void next_object(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    viewer_handles_next(stage);
+}
+
+static void escape(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    viewer_handles_escape(stage);
+}
+
 /* ---- The table ---- */
+
+#define TOOL(code_, name_, tool_, help_) \
+    { .code = code_, .name = name_, .when = WITH_SCENE, .act = handles, .number = tool_, .help = help_ }
 
 #define PANEL(code_, name_, panel_, help_) \
     { .code = code_, .name = name_, .when = ALWAYS, .act = toggle_panel, .number = panel_, .help = help_ }
@@ -267,6 +285,12 @@ static const viewer_key keys[] = {
     METHOD(6, NULL, NULL),
     METHOD(7, NULL, NULL),
     METHOD(8, NULL, NULL),
+    TOOL(GLFW_KEY_G, "G", VIEWER_MOVES, "handles to move what is under the pointer: a body, a collider, a force with a place; again puts them away"),
+    TOOL(GLFW_KEY_H, "H", VIEWER_TURNS, "handles to turn it"),
+    TOOL(GLFW_KEY_L, "L", VIEWER_SIZES, "handles to make it larger and smaller"),
+    TOOL(GLFW_KEY_P, "P", VIEWER_PINS, "a brush that pins a body's particles, with Shift frees them; the wheel makes it wider"),
+    SCENE(GLFW_KEY_N, "N", next_object, "the handles go to the next object"),
+    {.code = GLFW_KEY_ESCAPE, .name = "Esc", .when = WITH_TOOL, .act = escape, .help = "with handles: lets go without a change; puts them away"},
     SCENE(GLFW_KEY_X, "X", save_picture,
           "saves the picture as a PNG in the working directory (with Shift: the window)"),
     SCENE(GLFW_KEY_V, "V", record, "records a film, and ends it"),
@@ -316,6 +340,7 @@ static bool applies(const viewer_stage *stage, const viewer_key *key) {
     case ALWAYS: return true;
     case WITH_SCENE: return stage->side_count > 0;
     case BY_KEY: return viewer_stage_by_key(stage);
+    case WITH_TOOL: return stage->side_count && stage->handles.tool != VIEWER_NO_TOOL;
     case WITH_FIELD: return some_rule_has(stage, key->field);
     }
     return false;

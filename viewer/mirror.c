@@ -233,7 +233,8 @@ static void mirror_time(viewer_stage *stage, viewer_shown *shown) {
     shown->last_frame = player->history.last > player->frame ? player->history.last : player->frame;
     shown->time = skein_world_time(player->world);
     shown->needed = player->needed;
-    shown->changes = player->changes.done - player->changes.given;
+    shown->changes = 0;
+    for (size_t i = player->changes.given; i < player->changes.done; i++) shown->changes += !player->changes.data[i].joined;
     const char *name = player->settings.name[0] ? player->settings.name : player->path;
     snprintf(shown->title, sizeof shown->title, "Skein: %.160s%s", name, stage->paused ? " (paused)" : "");
     for (size_t s = 0; s < stage->side_count; s++) {
@@ -242,6 +243,25 @@ static void mirror_time(viewer_stage *stage, viewer_shown *shown) {
                  s == 1 ? stage->compare
                         : skein_object_kind(p->world, skein_object_at(p->world, SKEIN_METHOD, 0))->name);
         if (stage->facts) mirror_objects(&shown->sides[s], p);
+    }
+}
+
+/* The handles over the pictures. */
+static void mirror_handles(const viewer_stage *stage, viewer_shown *shown) {
+    const viewer_handles *h = &stage->handles;
+    shown->tool = stage->side_count ? h->tool : VIEWER_NO_TOOL;
+    shown->tool_category = h->category, shown->tool_index = h->index;
+    shown->brush = h->brush.radius;
+    snprintf(shown->tool_words, sizeof shown->tool_words, "%s", h->words);
+    shown->tool_at[0] = stage->x, shown->tool_at[1] = stage->y;
+    for (size_t s = 0; s < VIEWER_SIDES; s++) {
+        viewer_side *side = &shown->sides[s];
+        side->strokes.count = 0;
+        if (shown->tool) viewer_handles_draw(stage, s, &side->strokes);
+        for (int part = 0; part < GIZMO_PARTS; part++) {
+            side->handles[part].name[0] = 0;
+            if (shown->tool) viewer_handles_part(stage, s, part, side->handles[part].name, side->handles[part].at);
+        }
     }
 }
 
@@ -263,6 +283,7 @@ void viewer_mirror(viewer_stage *stage) {
     memcpy(shown->recent, stage->recent.path, sizeof shown->recent);
     shown->recent_count = stage->recent.count;
     if (stage->panel[VIEWER_PANEL_LESSON]) viewer_lesson_copy(&shown->lesson, &stage->lesson);
+    mirror_handles(stage, shown);
     if (stage->side_count) mirror_time(stage, shown);
     else snprintf(shown->title, sizeof shown->title, "Skein");
     stage->facts = false;

@@ -99,6 +99,35 @@ static bool has_field(const viewer_panels *panels, const viewer_object *object, 
     return false;
 }
 
+static bool has_any(const viewer_object *object, const char *const *fields) {
+    bool has = false;
+    for (int i = 0; i < 6 && fields[i]; i++) has |= skein_field_find(object->kind, fields[i], NULL) != NULL;
+    return has;
+}
+
+/* Handles in the picture, for those that the object's fields allow. */
+static void show_tools(viewer_panels *panels, const viewer_object *object) {
+    static const struct {
+        const char *title, *fields[6], *help;
+        viewer_tool tool;
+    } rows[] = {
+        {"move", {"position", "centre", "from", "normal"}, "handles in the picture to move it: G", VIEWER_MOVES},
+        {"turn", {"rotation", "from", "normal"}, "handles in the picture to turn it: H", VIEWER_TURNS},
+        {"size", {"size", "spread", "radius", "scale", "from"}, "handles in the picture to size it: L", VIEWER_SIZES},
+        {"pins", {"pins"}, "a brush in the picture that pins its particles, with Shift frees them: P", VIEWER_PINS},
+    };
+    bool first = true, placed = has_any(object, rows[0].fields);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (!placed && rows[i].tool != VIEWER_PINS) continue; // a radius alone is no place
+        if (object->category == SKEIN_MOTION || !has_any(object, rows[i].fields)) continue;
+        if (!first) widgets_same_line();
+        first = false;
+        if (!button(panels, object, rows[i].title, rows[i].help)) continue;
+        viewer_request request = {.kind = VIEWER_TOOL, .category = object->category, .index = object->index, .code = rows[i].tool};
+        viewer_ask(panels->exchange, &request);
+    }
+}
+
 void viewer_show_deeds(viewer_panels *panels, const viewer_object *object) {
     bool rule = object->category == SKEIN_FORCE || object->category == SKEIN_COLLIDER;
     if (button(panels, object, "duplicate", "one more, beside it")) ask_about(panels, VIEWER_DUPLICATE, object, "");
@@ -111,5 +140,6 @@ void viewer_show_deeds(viewer_panels *panels, const viewer_object *object) {
         if (button(panels, object, "to mesh", "its grid becomes a mesh in a file, to be edited elsewhere"))
             ask_about(panels, VIEWER_TO_MESH, object, "");
     }
+    if (rule || object->category == SKEIN_BODY) show_tools(panels, object);
     if (rule) show_kinds(panels, object);
 }

@@ -170,6 +170,7 @@ static void show_side(viewer_panels *panels, const viewer_shown *shown, double w
     if (widgets_panel("Skein", WIDGETS_FIXED, 0, 0, width, height, NULL) && shown->has_scene) {
         show_time(panels, shown);
         show_facts(shown);
+        viewer_show_brush(panels);
         viewer_show_advice(panels);
         viewer_show_palette(panels);
         for (size_t s = 0; s < shown->side_count; s++) {
@@ -249,7 +250,8 @@ static void show_keys(viewer_panels *panels, double width, double height) {
         widgets_wrapped(
             "Mouse: drag a particle to pull it, click one to pin or free it; drag beside it to look around; "
             "Shift or the middle button moves the view, the wheel comes closer; the right button always "
-            "looks around. Drop a scene or a mesh on the window to open it. Ctrl and a click on a slider "
+            "looks around. With handles (G, H, L) drag an arrow, a square, a ring or a box; with Ctrl it goes by whole "
+            "steps. Drop a scene or a mesh on the window to open it. Ctrl and a click on a slider "
             "takes any number.",
             false);
     }
@@ -309,6 +311,7 @@ void viewer_panels_show(viewer_panels *panels, int width, int height) {
     double w = width, h = height, side = viewer_side_panel_width(width);
     bool has_side = shown->panel[VIEWER_PANEL_SIDE] && shown->has_scene;
     double left = has_side ? side : 0, above = h - viewer_dock_height(shown, height);
+    if (shown->has_scene) viewer_show_handles(panels, left, w - left, above);
     if (has_side) show_side(panels, shown, side, h);
     bool lesson = shown->panel[VIEWER_PANEL_LESSON] && shown->has_scene;
     if (lesson) viewer_show_lesson(panels, left, w, above);

@@ -51,6 +51,9 @@ double viewer_lesson_height(double height);
 /* panels_advice.c */
 void viewer_show_advice(viewer_panels *panels);
 void viewer_show_recent(viewer_panels *panels);
+/* panels_handles.c: over the picture, which begins `left`; and the brush in the panel */
+void viewer_show_handles(viewer_panels *panels, double left, double width, double height);
+void viewer_show_brush(viewer_panels *panels);
 /* panels_plots.c */
 void viewer_show_plots(viewer_panels *panels, const double at[4]); /* x, y, width, height */
 

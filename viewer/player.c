@@ -164,8 +164,13 @@ bool viewer_player_open(viewer_player *player, const char *path, const char *con
     return false;
 }
 
-/* The places, velocities, pins and clock of another world, if it has as many particles. */
-static void go_on_from(viewer_player *player, viewer_history *state) {
+/* The places, velocities, pins and clock of another world, if it has as many particles. Where the scene pins others than
+ * it did, as `before` says, it is as the scene has it. */
+static void go_on_from(viewer_player *player, viewer_history *state, const unsigned char *before) {
+    size_t place = (size_t)(state->last % state->room);
+    bool same = state->particles == skein_particle_count(player->world);
+    for (size_t i = 0; i < state->particles && before && same; i++)
+        if ((before[i] != 0) != (player->pins[i] != 0)) state->held[place * state->particles + i] = player->pins[i];
     if (!viewer_history_restore(state, player->world, state->last)) return;
     player->frame = state->last;
     viewer_history_begin(&player->history, player->world);
@@ -181,8 +186,12 @@ bool viewer_player_reopen(viewer_player *player, viewer_changes *changes, bool s
     if (!good) player->reporter.say(player->reporter.user, SKEIN_LOG_WARNING, "out of memory");
     if (good && stays && viewer_history_begin(&state, player->world))
         viewer_history_keep(&state, player->world, player->frame);
+    size_t particles = skein_particle_count(player->world);
+    unsigned char *before = malloc(particles + 1);
+    if (before) memcpy(before, player->pins, particles);
     good = good && take_over(player, &next, reading);
-    if (good && stays && state.state) go_on_from(player, &state);
+    if (good && stays && state.state) go_on_from(player, &state, before);
+    free(before);
     viewer_history_release(&state);
     return good;
 }

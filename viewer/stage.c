@@ -177,7 +177,7 @@ static double worked_seconds(void) {
 }
 
 static bool plays(const viewer_stage *stage) {
-    return stage->side_count && !stage->paused && !viewer_stage_by_key(stage);
+    return stage->side_count && !stage->paused && !viewer_stage_by_key(stage) && !viewer_handles_wait(stage);
 }
 
 /* Takes steps that are due, for a few milliseconds; the others stay due. What a slow machine cannot do in time is
@@ -302,6 +302,8 @@ static void *stage_thread(void *data) {
         if (stage->film) viewer_film_toggle(stage);
         viewer_gallery_close(stage);
         viewer_lesson_release(&stage->lesson);
+        viewer_hunt_release(&stage->hunt);
+        viewer_handles_release_memory(&stage->handles);
         for (size_t s = 0; s < VIEWER_SIDES; s++) viewer_player_close(&stage->sides[s]);
     } else {
         stage->failure = error;

@@ -19,6 +19,8 @@
 #include "viewer/exchange.h"
 #include "viewer/flock.h"
 #include "viewer/grab.h"
+#include "viewer/handles.h"
+#include "viewer/hunt.h"
 #include "viewer/pace.h"
 #include "viewer/painter.h"
 #include "viewer/player.h"
@@ -54,6 +56,8 @@ typedef struct viewer_stage {
     char wanted[VIEWER_TEXT]; /* a scene that could not be opened: tried again when its file changes */
     viewer_camera camera;
     viewer_grab grab;
+    viewer_handles handles;
+    viewer_hunt hunt;
     viewer_ride ride; /* the chosen bird */
     viewer_lesson lesson;
     skein_pacer pacer;
@@ -85,6 +89,7 @@ typedef struct viewer_stage {
 
     /* the pointer */
     double x, y, pressed_x, pressed_y;
+    bool over; /* the picture */
     int button; /* that is down; -1: none */
     int button_mods;
 
@@ -147,6 +152,9 @@ bool viewer_stage_by_key(const viewer_stage *stage); /* the scene advances by ke
 /* The part of the window that a side has: x, and width. */
 int viewer_side_width(const viewer_stage *stage, size_t side, int *x);
 double viewer_aspect(const viewer_stage *stage); /* width over height of the first side */
+/* The side under a place of the picture, and where it is in that side; the ray from the eye through it. */
+size_t viewer_side_at(const viewer_stage *stage, double x, double *inside);
+void viewer_ray_at(const viewer_stage *stage, size_t side, double x, double y, double direction[3]);
 
 /* stage_change.c: what the user changes; each is kept, and can be undone */
 void viewer_stage_method(viewer_stage *stage, size_t side, const char *kind);
@@ -154,6 +162,15 @@ void viewer_stage_set(viewer_stage *stage, const viewer_request *request);
 void viewer_stage_add_or_remove(viewer_stage *stage, const viewer_request *request);
 /* Builds the scene anew with one more "path=value", from the start; false after a printed fault. */
 bool viewer_stage_build_with(viewer_stage *stage, const char *set);
+/* The same where it stands, of one or of several that are one change. */
+bool viewer_stage_build_on(viewer_stage *stage, const char *set);
+bool viewer_stage_build_on_all(viewer_stage *stage, const char *const *sets, size_t count);
+/* Sets a live field in all worlds for a look; nothing is kept. */
+void viewer_stage_try(viewer_stage *stage, skein_category category, size_t index, const skein_field *field,
+                      const skein_value *value);
+/* Fields of one object as one change: in place in all worlds, or by building anew. */
+bool viewer_stage_change_together(viewer_stage *stage, skein_category category, size_t index,
+                                  const viewer_spot_change *changes, size_t count, bool live);
 /* The name of such objects' list in a scene: "bodies". */
 const char *viewer_list_of(skein_category category);
 void viewer_stage_undo(viewer_stage *stage);

@@ -13,8 +13,7 @@ static const double click_pixels = 4, reach_pixels = 9;
 
 /* ---- Picking ---- */
 
-/* The side under the pointer, and the pointer's place in it. */
-static size_t side_at(const viewer_stage *stage, double x, double *inside) {
+size_t viewer_side_at(const viewer_stage *stage, double x, double *inside) {
     for (size_t s = 0; s < stage->side_count; s++) {
         int left, width = viewer_side_width(stage, s, &left);
         *inside = x - left;
@@ -23,7 +22,7 @@ static size_t side_at(const viewer_stage *stage, double x, double *inside) {
     return 0;
 }
 
-static void ray_at(const viewer_stage *stage, size_t side, double x, double y, double direction[3]) {
+void viewer_ray_at(const viewer_stage *stage, size_t side, double x, double y, double direction[3]) {
     int left, width = viewer_side_width(stage, side, &left);
     viewer_camera_ray(&stage->camera, x - left, y, width, stage->height, direction);
 }
@@ -36,7 +35,7 @@ static uint32_t pick(const viewer_stage *stage, size_t side, double x, double y,
     double direction[3], near_ray, slope = 2 * tan(0.5 * stage->camera.lens.fov * 0.017453292519943295);
     uint32_t loose, picked = UINT32_MAX;
     skein_hit body, wall;
-    ray_at(stage, side, x, y, direction);
+    viewer_ray_at(stage, side, x, y, direction);
     *distance = INFINITY;
     if (skein_ray_cast(world, eye, direction, SKEIN_BODY, &body) ||
         skein_ray_cast(world, eye, direction, SKEIN_COLLIDER, &wall) ||
@@ -55,7 +54,7 @@ static uint32_t pick(const viewer_stage *stage, size_t side, double x, double y,
 /* Where the pointer has the particle that it holds: in the plane through it that faces the camera. */
 static void aim_grab(viewer_stage *stage) {
     double direction[3], right[3], up[3], back[3], t = 0, facing = 0;
-    ray_at(stage, stage->grab.side, stage->x, stage->y, direction);
+    viewer_ray_at(stage, stage->grab.side, stage->x, stage->y, direction);
     render_camera_axes(&stage->camera.lens, right, up, back);
     for (int k = 0; k < 3; k++) {
         t += (stage->grab.depth[k] - stage->camera.lens.eye[k]) * back[k];
@@ -69,9 +68,11 @@ static void press(viewer_stage *stage, const viewer_request *r) {
     stage->button = r->code;
     stage->button_mods = r->mods;
     stage->pressed_x = r->x, stage->pressed_y = r->y;
+    if (viewer_handles_press(stage, r)) return;
     if (r->code != GLFW_MOUSE_BUTTON_LEFT || r->mods & GLFW_MOD_SHIFT || stage->camera.flying) return;
+    if (stage->handles.tool == VIEWER_PINS) return; // beside a body the brush looks around
     double inside, distance;
-    size_t side = side_at(stage, r->x, &inside);
+    size_t side = viewer_side_at(stage, r->x, &inside);
     uint32_t particle = pick(stage, side, r->x, r->y, &distance);
     viewer_event(stage->events, "picked %d distance=%.5g", particle == UINT32_MAX ? -1 : (int)particle, distance);
     if (particle != UINT32_MAX) viewer_grab_take(&stage->grab, stage->sides[side].world, side, particle);
@@ -88,6 +89,7 @@ static void choose_bird(viewer_stage *stage, uint32_t particle) {
 }
 
 static void release(viewer_stage *stage) {
+    if (viewer_handles_busy(stage)) viewer_handles_let_go(stage);
     if (stage->grab.holding) {
         skein_world *world = stage->sides[stage->grab.side].world;
         viewer_grab_release(&stage->grab, world);
@@ -107,6 +109,10 @@ static void release(viewer_stage *stage) {
 }
 
 static void drag(viewer_stage *stage, double dx, double dy) {
+    if (viewer_handles_busy(stage)) {
+        viewer_handles_drag(stage);
+        return;
+    }
     if (stage->grab.holding) {
         bool far = hypot(stage->x - stage->pressed_x, stage->y - stage->pressed_y) >= click_pixels;
         stage->grab.moved |= far;
@@ -126,35 +132,14 @@ static void drag(viewer_stage *stage, double dx, double dy) {
     stage->dirty = true;
 }
 
-/* Where a rule flees from a line of sight, the pointer is that line: the mouse is the predator. It is one while it is
- * over the picture. */
-static void hunt(viewer_stage *stage, bool over_picture) {
-    for (size_t s = 0; s < stage->side_count; s++) {
-        skein_world *world = stage->sides[s].world;
-        const double *eye = stage->camera.lens.eye;
-        double along[3];
-        ray_at(stage, s, stage->x, stage->y, along);
-        for (size_t i = 0; i < skein_object_count(world, SKEIN_FORCE); i++) {
-            skein_handle handle = skein_object_at(world, SKEIN_FORCE, i);
-            const skein_kind *kind = skein_object_kind(world, handle);
-            skein_value enabled;
-            if (!skein_field_find(kind, "line", NULL) || !skein_field_find(kind, "position", NULL)) continue;
-            if (skein_get(world, handle, "enabled", &enabled)) continue;
-            skein_set(world, handle, "position", skein_vector(eye[0], eye[1], eye[2]));
-            skein_set(world, handle, "line", skein_vector(along[0], along[1], along[2]));
-            if ((enabled.number[0] != 0) == over_picture) continue;
-            skein_set(world, handle, "enabled", skein_number(over_picture));
-            viewer_event(stage->events, over_picture ? "hunts" : "rests");
-            stage->facts = true;
-        }
-    }
-}
-
 static void point(viewer_stage *stage, const viewer_request *r) {
     double dx = r->x - stage->x, dy = r->y - stage->y;
     stage->x = r->x, stage->y = r->y;
     if (!stage->side_count) return;
-    if (stage->button < 0) hunt(stage, !r->down);
+    if (stage->button < 0) stage->over = !r->down;
+    if (stage->button < 0 && stage->handles.tool) viewer_handles_hover(stage, stage->over);
+    if (stage->button < 0 && (r->down || stage->handles.tool)) viewer_hunt_rest(stage); // a hand with a tool frightens nobody
+    else if (stage->button < 0) viewer_hunt_lead(stage);
     if (stage->button >= 0) drag(stage, dx, dy);
 }
 
@@ -163,7 +148,7 @@ static void press_or_release(viewer_stage *stage, const viewer_request *r) {
     if (!stage->side_count) return;
     if (r->down && stage->button < 0) press(stage, r);
     else if (!r->down && r->code == stage->button) {
-        bool turned = !stage->grab.holding && stage->camera.moved;
+        bool turned = !stage->grab.holding && !viewer_handles_busy(stage) && stage->camera.moved;
         release(stage);
         if (turned)
             viewer_event(stage->events, "camera %.5g %.5g %.5g", stage->camera.lens.eye[0], stage->camera.lens.eye[1],
@@ -211,7 +196,7 @@ void viewer_stage_answer(viewer_stage *stage, const viewer_request *r) {
     case VIEWER_BUTTON: press_or_release(stage, r); break;
     case VIEWER_MOVE: point(stage, r); break;
     case VIEWER_SCROLL:
-        if (stage->side_count) viewer_camera_zoom(&stage->camera, r->y);
+        if (stage->side_count && !viewer_handles_scroll(stage, r->y)) viewer_camera_zoom(&stage->camera, r->y);
         stage->dirty = true;
         break;
     case VIEWER_RESIZE:
@@ -229,6 +214,8 @@ void viewer_stage_answer(viewer_stage *stage, const viewer_request *r) {
     case VIEWER_MAKE: viewer_make(stage, r); break;
     case VIEWER_DUPLICATE: viewer_duplicate(stage, r); break;
     case VIEWER_KIND: viewer_other_kind(stage, r); break;
+    case VIEWER_TOOL: viewer_handles_request(stage, r); break;
+    case VIEWER_BRUSH: stage->handles.brush.radius = r->x; break;
     case VIEWER_TO_MESH: viewer_to_mesh(stage, r); break;
     case VIEWER_OPEN: viewer_stage_open(stage, r->text, NULL); break;
     case VIEWER_SCRUB:

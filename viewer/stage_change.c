@@ -97,6 +97,7 @@ static bool is_live(const viewer_stage *stage, size_t side, const viewer_value *
 /* Sets a live field; false after a printed fault. */
 static bool set_live(viewer_stage *stage, size_t side, const viewer_value *to) {
     skein_world *world = stage->sides[side].world;
+    if (to->category == SKEIN_FORCE) viewer_hunt_leave(stage, side, to->index);
     stage->facts = stage->dirty = true;
     if (to->category == SKEIN_VIEW) {
         set_view(stage, to->field, &to->value);
@@ -116,6 +117,7 @@ static bool set_live(viewer_stage *stage, size_t side, const viewer_value *to) {
 static bool change_live(viewer_stage *stage, size_t side, const viewer_value *to, const char *set) {
     const viewer_player *player = &stage->sides[side];
     viewer_value before = *to;
+    if (to->category == SKEIN_FORCE) viewer_hunt_leave(stage, side, to->index); // what the scene has is what it was before
     if (to->category == SKEIN_VIEW) before.value = viewer_plain_value(to->field, &player->view);
     else if (skein_get(player->world, skein_object_at(player->world, to->category, to->index), to->field->name,
                        &before.value))
@@ -129,13 +131,37 @@ static bool change_live(viewer_stage *stage, size_t side, const viewer_value *to
     return good;
 }
 
-bool viewer_stage_build_with(viewer_stage *stage, const char *set) {
+/* Builds the scene anew with more sets, as one change; from the start, or where it stands. */
+static bool build_with_all(viewer_stage *stage, const char *const *sets, size_t count, bool stays) {
     viewer_changes changes;
+    char pins[4096];
     if (!viewer_changes_copy(&changes, &stage->sides[0].changes)) return false;
-    bool good = viewer_changes_add(&changes, set, NULL, NULL) && viewer_stage_reopen(stage, &changes, false);
+    viewer_changes_close(&changes);
+    bool good = true, lost = false;
+    for (size_t i = 0; i < count && good; i++) {
+        good = viewer_changes_add(&changes, sets[i], NULL, NULL);
+        if (good) changes.data[changes.done - 1].joined = i > 0;
+        lost |= good && viewer_pins_lose_meaning(stage, sets[i], pins, sizeof pins);
+    }
+    if (good && lost) good = viewer_changes_add(&changes, pins, NULL, NULL);
+    if (good && lost) changes.data[changes.done - 1].joined = true;
+    good = good && viewer_stage_reopen(stage, &changes, stays);
     viewer_changes_free(&changes);
-    if (good) viewer_note(stage, "built anew with %s", set);
+    if (good && lost) viewer_note(stage, "built anew with %.120s; the pins painted on it meant other particles: they are gone", sets[0]);
+    else if (good) viewer_note(stage, "built anew with %s", sets[0]);
     return good;
+}
+
+bool viewer_stage_build_with(viewer_stage *stage, const char *set) {
+    return build_with_all(stage, &set, 1, false);
+}
+
+bool viewer_stage_build_on(viewer_stage *stage, const char *set) {
+    return build_with_all(stage, &set, 1, true);
+}
+
+bool viewer_stage_build_on_all(viewer_stage *stage, const char *const *sets, size_t count) {
+    return build_with_all(stage, sets, count, true);
 }
 
 /* Tells the events what a field is now: what was asked for, or what it stays at. */
@@ -172,6 +198,56 @@ void viewer_stage_set(viewer_stage *stage, const viewer_request *r) {
     stage->facts = stage->dirty = true;
 }
 
+/* ---- Several fields of one object, as handles change them ---- */
+
+void viewer_stage_try(viewer_stage *stage, skein_category category, size_t index, const skein_field *field,
+                      const skein_value *value) {
+    const viewer_value to = {category, index, field, *value};
+    for (size_t s = 0; s < stage->side_count; s++) set_live(stage, s, &to);
+}
+
+/* One field in place, in all worlds, as one change or a part of it. */
+static bool change_shared(viewer_stage *stage, const viewer_value *to, const char *set, bool joined) {
+    bool good = true;
+    for (size_t s = 0; s < stage->side_count; s++) {
+        viewer_changes *changes = &stage->sides[s].changes;
+        viewer_changes_close(changes);
+        size_t before = changes->done;
+        good &= change_live(stage, s, to, set);
+        if (changes->done == before) continue;
+        viewer_change *last = &changes->data[changes->done - 1];
+        last->shared = last->whole = true;
+        last->joined = joined;
+    }
+    return good;
+}
+
+bool viewer_stage_change_together(viewer_stage *stage, skein_category category, size_t index,
+                                  const viewer_spot_change *changes, size_t count, bool live) {
+    enum { MOST = 4 };
+    char *sets[MOST] = {NULL};
+    bool good = count > 0 && count <= MOST;
+    for (size_t i = 0; i < count && good; i++) {
+        skein_error error = {SKEIN_OK, "", ""};
+        good = !skein_field_check(changes[i].field, &changes[i].value, &error);
+        if (!good) viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", changes[i].field->name, error.message);
+        sets[i] = good ? set_of(category, index, changes[i].field, &changes[i].value) : NULL;
+        good = sets[i] != NULL;
+    }
+    if (good && !live) good = build_with_all(stage, (const char *const *)sets, count, false);
+    for (size_t i = 0; i < count && good && live; i++) {
+        const viewer_value to = {category, index, changes[i].field, changes[i].value};
+        good = change_shared(stage, &to, sets[i], i > 0);
+    }
+    for (size_t i = 0; i < count && i < MOST; i++) {
+        const viewer_value at = {category, index, changes[i].field, changes[i].value};
+        free(sets[i]);
+        tell_value(stage, 0, &at, good);
+    }
+    if (good) stage->advice_due = viewer_seconds() + 0.4;
+    return good;
+}
+
 /* ---- Rules ---- */
 
 /* Takes one away of those that are part of what is built. */
@@ -188,6 +264,7 @@ void viewer_stage_add_or_remove(viewer_stage *stage, const viewer_request *r) {
         remove_by_building(stage, r);
         return;
     }
+    viewer_hunt_rest(stage); // places among the forces change
     for (size_t s = 0; s < stage->side_count; s++) {
         skein_world *world = stage->sides[s].world;
         size_t place = adds ? skein_object_count(world, r->category) : r->index;
@@ -221,6 +298,27 @@ static void say_change(char *words, size_t size, const char *what, const viewer_
     snprintf(words, size, "%s: %.180s", what, change->set);
 }
 
+/* Whether all of [from, to) can be done in place. */
+static bool are_live(const viewer_changes *changes, size_t from, size_t to) {
+    bool live = true;
+    for (size_t i = from; i < to; i++) live &= changes->data[i].before.field != NULL;
+    return live;
+}
+
+/* One change in place, back or on; the other world goes along where it was changed with it. */
+static bool put_live(viewer_stage *stage, const viewer_change *change, bool back) {
+    const viewer_value *to = back ? &change->before : &change->after;
+    bool good = set_live(stage, 0, to);
+    for (size_t s = 1; s < stage->side_count && change->shared && good; s++) {
+        viewer_changes *other = &stage->sides[s].changes;
+        set_live(stage, s, to);
+        if (back) viewer_changes_drop(other, change->set);
+        else if (viewer_changes_add(other, change->set, &change->before, &change->after))
+            other->data[other->done - 1].shared = other->data[other->done - 1].whole = true;
+    }
+    return good;
+}
+
 void viewer_stage_undo(viewer_stage *stage) {
     viewer_changes *changes = &stage->sides[0].changes;
     char words[220];
@@ -228,12 +326,14 @@ void viewer_stage_undo(viewer_stage *stage) {
         viewer_note(stage, "there is nothing to undo");
         return;
     }
-    const viewer_change *last = &changes->data[changes->done - 1];
-    say_change(words, sizeof words, "undone", last);
-    if (last->before.field) {
-        if (set_live(stage, 0, &last->before)) changes->done--, viewer_note(stage, "%s", words);
+    size_t first = viewer_changes_back(changes, changes->done);
+    say_change(words, sizeof words, "undone", &changes->data[first]);
+    if (are_live(changes, first, changes->done)) {
+        bool good = true;
+        while (changes->done > first && good && (good = put_live(stage, &changes->data[changes->done - 1], true))) changes->done--;
+        if (good) viewer_note(stage, "%s", words);
     } else {
-        go_to_change(stage, changes->done - 1, words);
+        go_to_change(stage, first, words);
     }
     viewer_tell_state(stage);
 }
@@ -245,12 +345,14 @@ void viewer_stage_redo(viewer_stage *stage) {
         viewer_note(stage, "there is nothing to do again");
         return;
     }
-    const viewer_change *next = &changes->data[changes->done];
-    say_change(words, sizeof words, "done again", next);
-    if (next->after.field) {
-        if (set_live(stage, 0, &next->after)) changes->done++, viewer_note(stage, "%s", words);
+    size_t end = viewer_changes_on(changes, changes->done);
+    say_change(words, sizeof words, "done again", &changes->data[changes->done]);
+    if (are_live(changes, changes->done, end)) {
+        bool good = true;
+        while (changes->done < end && good && (good = put_live(stage, &changes->data[changes->done], false))) changes->done++;
+        if (good) viewer_note(stage, "%s", words);
     } else {
-        go_to_change(stage, changes->done + 1, words);
+        go_to_change(stage, end, words);
     }
     viewer_tell_state(stage);
 }

@@ -64,6 +64,7 @@ void viewer_stage_open(viewer_stage *stage, const char *path, const char *const 
     stage->in_parts = true;
     viewer_watch(stage, true);
     restart_clock(stage);
+    viewer_handles_anew(stage, true);
     viewer_lesson_begin(stage);
     const char *name = stage->sides[0].settings.name;
     viewer_note(stage, "%s: %zu particles", name[0] ? name : path, skein_particle_count(stage->sides[0].world));
@@ -96,6 +97,7 @@ bool viewer_stage_reopen(viewer_stage *stage, viewer_changes *changes, bool stay
     }
     viewer_watch(stage, true);
     restart_clock(stage);
+    viewer_handles_anew(stage, false);
     return good;
 }
 
@@ -141,6 +143,7 @@ static void compare_with(viewer_stage *stage, const char *set, const viewer_chan
     }
     stage->camera.placed = false;
     restart_clock(stage);
+    viewer_handles_anew(stage, false);
     viewer_tell_state(stage);
 }
 

@@ -23,6 +23,9 @@ static const viewer_colours dark = {
     .knob = 0x5b646e,
     .warning = 0xffb35a,
     .chart = 0x1a1d20,
+    .axis = {0xe8604c, 0x7cc35a, 0x5a9df2},
+    .handle = 0xf2f3f4,
+    .held = 0xffd24a,
     .series = {0x6db7f2, 0xf4a259, 0x8fd07a, 0xe9eaec, 0xd58be0, 0xf1da63},
 };
 static const viewer_colours light = {
@@ -40,6 +43,9 @@ static const viewer_colours light = {
     .knob = 0xaaa49b,
     .warning = 0x9a4a00,
     .chart = 0xffffff,
+    .axis = {0xc8402c, 0x3f8a2c, 0x2568c0},
+    .handle = 0xfbfaf8,
+    .held = 0xf0a800,
     .series = {0x1f6fb5, 0xc46210, 0x3d8b2f, 0x2b2e32, 0x8e3fa0, 0x8a7400},
 };
 

@@ -25,6 +25,7 @@ typedef struct viewer_colours {
     uint32_t accent, accent_over;    /* what is chosen, or goes on */
     uint32_t on_accent;              /* words on it */
     uint32_t knob, warning, chart;   /* of sliders; words that warn; behind curves */
+    uint32_t axis[3], handle, held;  /* handles along x, y and z, for all of it, and the one that is taken hold of */
     uint32_t series[VIEWER_SERIES];  /* curves: told apart by lightness, too */
 } viewer_colours;
 

@@ -445,6 +445,45 @@ void widgets_menu_end(void) {
     ImGui::EndPopup();
 }
 
+// ---- over the picture
+
+void widgets_over_picture(const double box[4]) {
+    const ImVec2 from(static_cast<float>(box[0]), static_cast<float>(box[1]));
+    ImGui::GetBackgroundDrawList()->PushClipRect(
+        from, ImVec2(from.x + static_cast<float>(box[2]), from.y + static_cast<float>(box[3])));
+}
+
+void widgets_over_picture_end(void) {
+    ImGui::GetBackgroundDrawList()->PopClipRect();
+}
+
+static const float edge_opacity = 0.45f;
+
+void widgets_stroke(const float from[2], const float to[2], float width, uint32_t colour, float opacity) {
+    ImDrawList *list = ImGui::GetBackgroundDrawList();
+    const ImVec2 a(from[0], from[1]), b(to[0], to[1]);
+    if (width >= 2) list->AddLine(a, b, ink(0x000000, edge_opacity * opacity), width + 2);
+    list->AddLine(a, b, ink(colour, opacity), width);
+}
+
+void widgets_fill(float (*corners)[2], int count, uint32_t colour, float opacity) {
+    ImVec2 at[4];
+    for (int i = 0; i < count && i < 4; i++) at[i] = ImVec2(corners[i][0], corners[i][1]);
+    ImDrawList *list = ImGui::GetBackgroundDrawList();
+    // edges are smoothed only where corners go round one way
+    if (count == 3) list->AddTriangleFilled(at[0], at[1], at[2], ink(colour, opacity));
+    else list->AddQuadFilled(at[0], at[1], at[2], at[3], ink(colour, opacity));
+}
+
+void widgets_circle(const float middle[2], float radius, float width, uint32_t colour, float opacity) {
+    ImDrawList *list = ImGui::GetBackgroundDrawList();
+    const ImVec2 at(middle[0], middle[1]);
+    if (width > 0) list->AddCircle(at, radius, ink(0x000000, edge_opacity * opacity), 0, width + 1.5f);
+    else list->AddCircleFilled(at, radius + 1.2f, ink(0x000000, edge_opacity * opacity));
+    if (width > 0) list->AddCircle(at, radius, ink(colour, opacity), 0, width);
+    else list->AddCircleFilled(at, radius, ink(colour, opacity));
+}
+
 // ---- plots and pictures
 
 /* What an axis spans: all finite values. Where two things are compared, those of the calmer one with as much again and

@@ -81,6 +81,13 @@ void widgets_help(const char *text);  /* shown over the last control, while the 
 bool widgets_menu(const char *title); /* of the last control, by the right button; end it if true */
 bool widgets_menu_row(const char *title);
 void widgets_menu_end(void);
+/* Over the picture and under all panels, within a box (x, y, width, height) until its end: 0xRRGGBB; a line has a dark
+ * edge, so that it is seen on any ground. A width of 0 fills. */
+void widgets_over_picture(const double box[4]);
+void widgets_over_picture_end(void);
+void widgets_stroke(const float from[2], const float to[2], float width, uint32_t colour, float opacity);
+void widgets_fill(float (*corners)[2], int count, uint32_t colour, float opacity); /* three or four */
+void widgets_circle(const float middle[2], float radius, float width, uint32_t colour, float opacity);
 /* Curves over each other, by time; NULL entries are left out. `count` values from `first` on, in rings of `room`. Where
  * they are `compared`, one that blows up does not flatten the others. */
 typedef struct widgets_chart {

@@ -55,21 +55,35 @@ static skein_status choose_in_box_or_sphere(const selector *s, const char *part)
     return SKEIN_OK;
 }
 
-/* A list of vertex numbers of any length. */
+/* A number of the list; negative ones count from the end. */
+static skein_status read_index(const selector *s, const char *at, char **end, size_t *index) {
+    long long most = (long long)s->of->number_count, number = strtoll(at, end, 10);
+    bool ends = !**end || isspace((unsigned char)**end) || !strncmp(*end, "..", 2);
+    if (*end == at || !ends) return sk_fail(s->error, SKEIN_ERROR_VALUE, s->where, "'%.40s': expected whole numbers", at);
+    long long from_start = number < 0 ? number + most : number;
+    if (from_start < 0 || from_start >= most)
+        return sk_fail(s->error, SKEIN_ERROR_VALUE, s->where, "%s %lld is out of range: %s has %lld, 0 to %lld",
+                       s->of->number_means, number, s->of->whole, most, most - 1);
+    *index = (size_t)from_start;
+    return SKEIN_OK;
+}
+
+/* A list of vertex numbers of any length; "4..9" is six of them. */
 static skein_status choose_by_number(const selector *s, const char *part) {
-    long long most = (long long)s->of->number_count;
     for (const char *at = part;;) {
         while (isspace((unsigned char)*at)) at++;
         if (!*at) return SKEIN_OK;
         char *end;
-        long long index = strtoll(at, &end, 10);
-        if (end == at || (*end && !isspace((unsigned char)*end)))
-            return sk_fail(s->error, SKEIN_ERROR_VALUE, s->where, "'%.40s': expected whole numbers", at);
-        long long from_start = index < 0 ? index + most : index;
-        if (from_start < 0 || from_start >= most)
-            return sk_fail(s->error, SKEIN_ERROR_VALUE, s->where, "%s %lld is out of range: %s has %lld, 0 to %lld",
-                           s->of->number_means, index, s->of->whole, most, most - 1);
-        s->chosen[s->of->particle_of_number ? s->of->particle_of_number[from_start] : from_start] = true;
+        size_t first, last;
+        skein_status status = read_index(s, at, &end, &first);
+        last = first;
+        bool span = !status && !strncmp(end, "..", 2);
+        if (span) status = read_index(s, end + 2, &end, &last);
+        if (!status && ((span && last < first) || (*end && !isspace((unsigned char)*end))))
+            status = sk_fail(s->error, SKEIN_ERROR_VALUE, s->where, "'%.40s': expected a first number .. a last one", at);
+        if (status) return status;
+        for (size_t i = first; i <= last; i++)
+            s->chosen[s->of->particle_of_number ? s->of->particle_of_number[i] : i] = true;
         at = end;
     }
 }
