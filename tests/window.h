@@ -194,7 +194,7 @@ static inline int key_code(const char *key) {
     } rows[] = {{"space", 32},  {"comma", 44}, {"period", 46},   {"Return", 257},  {"BackSpace", 259},
                 {"Right", 262}, {"Left", 263}, {"Down", 264},    {"Up", 265},      {"Prior", 266},
                 {"Next", 267},  {"Home", 268}, {"End", 269},     {"F4", 293},      {"F6", 295},
-                {"F7", 296},    {"Shift_L", 340}};
+                {"F7", 296},    {"Shift_L", 340}, {"Escape", 256}};
     const char *last = strrchr(key, '+') ? strrchr(key, '+') + 1 : key;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (!strcmp(last, rows[i].name)) return rows[i].code;

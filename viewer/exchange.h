@@ -14,6 +14,7 @@
 #include "viewer/events.h"
 #include "viewer/gizmo.h"
 #include "viewer/lesson.h"
+#include "viewer/offer.h"
 #include "viewer/pace.h"
 
 enum { VIEWER_TEXT = 1024, VIEWER_PICTURES = 4, VIEWER_SIDES = 2, VIEWER_SAMPLES = 240, VIEWER_LOG_LINES = 200, VIEWER_RECENTS = 8 };
@@ -45,6 +46,7 @@ typedef enum viewer_request_kind {
     VIEWER_PANEL,     /* code: a viewer_panel; down: open it */
     VIEWER_LESSON,    /* code: -1, 1: another object; 0: its constraint x */
     VIEWER_FORMULA,   /* text: another one for the lesson's constraint */
+    VIEWER_PARAMETER, /* down: what is offered is made; else it is left */
     VIEWER_SAVED,     /* text: a file that the window itself wrote */
     VIEWER_FAULT,     /* text: for the log */
     VIEWER_CLOSE
@@ -187,6 +189,7 @@ typedef struct viewer_shown {
     double brush;         /* its radius, pixels */
     char tool_words[96];  /* what it does, at tool_at */
     double tool_at[2];
+    viewer_offer offer;   /* a text that was not taken */
     viewer_lesson lesson; /* while its panel is open */
     size_t side_count;
     viewer_side sides[VIEWER_SIDES];

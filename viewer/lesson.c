@@ -232,6 +232,7 @@ void viewer_lesson_write(viewer_stage *stage, const char *text) {
     stage->dirty = true;
     if (!is_right(lesson, stage->sides[0].world, text, &same)) {
         viewer_say(stage, SKEIN_LOG_WARNING, "%s; the old one stays", lesson->fault);
+        viewer_offer_look(stage, lesson->category, lesson->place, lesson->field, text);
         return;
     }
     if (same) {
@@ -247,6 +248,7 @@ void viewer_lesson_write(viewer_stage *stage, const char *text) {
         return;
     }
     forget_looks(lesson);
+    viewer_offer_forget(stage);
     viewer_lesson_refresh(stage);
     if (!strcmp(lesson->text, text)) viewer_note(stage, "%.60s: %.160s", lesson->name, text);
     else snprintf(lesson->fault, sizeof lesson->fault, "it was not taken: see the log");

@@ -284,6 +284,7 @@ void viewer_mirror(viewer_stage *stage) {
     shown->recent_count = stage->recent.count;
     if (stage->panel[VIEWER_PANEL_LESSON]) viewer_lesson_copy(&shown->lesson, &stage->lesson);
     mirror_handles(stage, shown);
+    shown->offer = stage->offer;
     if (stage->side_count) mirror_time(stage, shown);
     else snprintf(shown->title, sizeof shown->title, "Skein");
     stage->facts = false;

@@ -172,6 +172,7 @@ static void show_side(viewer_panels *panels, const viewer_shown *shown, double w
         show_facts(shown);
         viewer_show_brush(panels);
         viewer_show_advice(panels);
+        viewer_show_offer(panels, "side");
         viewer_show_palette(panels);
         for (size_t s = 0; s < shown->side_count; s++) {
             if (shown->side_count > 1) widgets_wrapped(shown->sides[s].name, false);

@@ -50,6 +50,7 @@ void viewer_show_lesson(viewer_panels *panels, double left, double width, double
 double viewer_lesson_height(double height);
 /* panels_advice.c */
 void viewer_show_advice(viewer_panels *panels);
+void viewer_show_offer(viewer_panels *panels, const char *place); /* in that panel */
 void viewer_show_recent(viewer_panels *panels);
 /* panels_handles.c: over the picture, which begins `left`; and the brush in the panel */
 void viewer_show_handles(viewer_panels *panels, double left, double width, double height);

@@ -25,6 +25,32 @@ void viewer_show_advice(viewer_panels *panels) {
     }
 }
 
+/* The text that was not taken, marked; and the names in it that one press makes parameters of. */
+void viewer_show_offer(viewer_panels *panels, const char *place) {
+    const viewer_offer *offer = &panels->exchange->shown.offer;
+    char title[200] = "make parameter", name[60];
+    viewer_request request = {.kind = VIEWER_PARAMETER};
+    if (!offer->any) return;
+    widgets_push(place);
+    widgets_marked(offer->line, offer->column, offer->width);
+    for (size_t i = 0; i < offer->name_count; i++) {
+        size_t length = strlen(title);
+        snprintf(title + length, sizeof title - length, "%s %.40s", i ? "," : offer->name_count > 1 ? "s" : "", offer->names[i]);
+    }
+    if (offer->name_count) {
+        request.down = widgets_button(title);
+        snprintf(name, sizeof name, "%s make parameter", place);
+        viewer_place_control(panels, name);
+        widgets_help("it begins as 1, with a slider among the object's fields; undo takes it away");
+        if (request.down) viewer_ask(panels->exchange, &request);
+        widgets_same_line();
+    }
+    request.down = false;
+    if (widgets_button("leave it")) viewer_ask(panels->exchange, &request);
+    widgets_help("the text before goes on");
+    widgets_pop();
+}
+
 void viewer_show_recent(viewer_panels *panels) {
     const viewer_shown *shown = &panels->exchange->shown;
     char name[VIEWER_TEXT + 16];

@@ -175,6 +175,7 @@ static void show_text(viewer_panels *panels, const viewer_lesson *lesson, double
     snprintf(line, sizeof line, "%s = %.6g", lesson->is_energy ? "E" : "C", plain(lesson->now.value));
     widgets_text(line);
     if (lesson->fault[0]) widgets_wrapped(lesson->fault, true);
+    if (lesson->fault[0]) viewer_show_offer(panels, "lesson");
     widgets_panel_end();
 }
 

@@ -21,6 +21,7 @@
 #include "viewer/grab.h"
 #include "viewer/handles.h"
 #include "viewer/hunt.h"
+#include "viewer/offer.h"
 #include "viewer/pace.h"
 #include "viewer/painter.h"
 #include "viewer/player.h"
@@ -60,6 +61,7 @@ typedef struct viewer_stage {
     viewer_hunt hunt;
     viewer_ride ride; /* the chosen bird */
     viewer_lesson lesson;
+    viewer_offer offer;
     skein_pacer pacer;
     bool paused, paused_by_focus, play_away, closing;
     bool panel[VIEWER_PANEL_COUNT];

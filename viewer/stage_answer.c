@@ -231,6 +231,10 @@ void viewer_stage_answer(viewer_stage *stage, const viewer_request *r) {
         break;
     case VIEWER_LESSON: viewer_lesson_choose(stage, r); break;
     case VIEWER_FORMULA: viewer_lesson_write(stage, r->text); break;
+    case VIEWER_PARAMETER:
+        if (r->down) viewer_offer_take(stage);
+        else viewer_offer_forget(stage);
+        break;
     case VIEWER_SAVED: viewer_note(stage, "saved %s", r->text); break;
     case VIEWER_FAULT: viewer_say(stage, SKEIN_LOG_WARNING, "%s", r->text); break;
     case VIEWER_CLOSE: stage->closing = true; break;

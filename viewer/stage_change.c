@@ -126,6 +126,13 @@ static bool change_live(viewer_stage *stage, size_t side, const viewer_value *to
     char *text = before.value.text ? strdup(before.value.text) : NULL;
     before.value.text = text;
     bool good = set_live(stage, side, to);
+    // a name that is not there is found by the next step alone, and a scene with it would not open
+    bool names = to->category != SKEIN_VIEW && to->field->type == SKEIN_FIELD_TEXT;
+    if (good && names && skein_world_explain(player->world, player->dt, NULL, NULL)) {
+        viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", to->field->name, skein_world_error(player->world)->message);
+        set_live(stage, side, &before);
+        good = false;
+    }
     if (good) keep(stage, side, set, &before, to);
     free(text);
     return good;
@@ -192,6 +199,8 @@ void viewer_stage_set(viewer_stage *stage, const viewer_request *r) {
     bool changed =
         is_live(stage, side, &to) ? change_live(stage, side, &to, set) : set && viewer_stage_build_with(stage, set);
     free(set);
+    if (!changed && r->field->type == SKEIN_FIELD_TEXT) viewer_offer_look(stage, r->category, r->index, r->field, to.value.text);
+    else if (r->field->type == SKEIN_FIELD_TEXT) viewer_offer_forget(stage);
     tell_value(stage, side, &to, changed);
     // a slider that is dragged asks for nothing yet
     if (changed && r->category != SKEIN_VIEW) stage->advice_due = viewer_seconds() + 0.4;

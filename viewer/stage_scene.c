@@ -65,6 +65,7 @@ void viewer_stage_open(viewer_stage *stage, const char *path, const char *const 
     viewer_watch(stage, true);
     restart_clock(stage);
     viewer_handles_anew(stage, true);
+    viewer_offer_forget(stage);
     viewer_lesson_begin(stage);
     const char *name = stage->sides[0].settings.name;
     viewer_note(stage, "%s: %zu particles", name[0] ? name : path, skein_particle_count(stage->sides[0].world));

@@ -292,6 +292,21 @@ void widgets_wrapped(const char *text, bool warning) {
     if (warning) ImGui::PopStyleColor();
 }
 
+void widgets_marked(const char *line, size_t first, size_t count) {
+    const size_t length = std::strlen(line), from = std::min(first ? first - 1 : 0, length), to = std::min(from + count, length);
+    ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::TextUnformatted(line);
+    const float high = ImGui::GetTextLineHeight(), mark = 0.35f * high;
+    const float left = at.x + ImGui::CalcTextSize(line, line + from).x, right = at.x + ImGui::CalcTextSize(line, line + to).x;
+    const float end = std::max(right, left + 0.4f * high), middle = 0.5f * (left + end);
+    ImDrawList *list = ImGui::GetWindowDrawList();
+    const ImU32 colour = ink(colours->warning);
+    list->AddLine(ImVec2(left, at.y + high + 1), ImVec2(end, at.y + high + 1), colour, 2);
+    list->AddTriangleFilled(ImVec2(middle - mark, at.y + high + 2 + mark), ImVec2(middle, at.y + high + 2),
+                            ImVec2(middle + mark, at.y + high + 2 + mark), colour);
+    ImGui::Dummy(ImVec2(end - at.x, mark + 2));
+}
+
 void widgets_same_line(void) {
     ImGui::SameLine();
 }

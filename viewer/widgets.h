@@ -51,6 +51,8 @@ void widgets_text(const char *text);
 void widgets_heading(const char *text);
 void widgets_quiet(const char *text); /* what can wait */
 void widgets_wrapped(const char *text, bool warning);
+/* A line with a mark under `count` of its bytes, from the first-th on (from 1). */
+void widgets_marked(const char *line, size_t first, size_t count);
 void widgets_same_line(void);
 void widgets_new_line(void); /* after all not the same */
 void widgets_gap(void);
