@@ -109,6 +109,8 @@ bool app_set_first(app_arguments *arguments, const char *set);
 
 /* Prints "skein: where: message" to standard error. */
 void app_print_error(const skein_error *error);
+/* The same as what scenes' faults go to; `user` is the app_scene that keeps them, or NULL. */
+void app_report_fault(void *user, const skein_error *error);
 /* Keeps the same words for a report. */
 enum { APP_FAILURE_SIZE = 1280 };
 void app_keep_error(const skein_error *error, char out[APP_FAILURE_SIZE]);

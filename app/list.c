@@ -17,6 +17,7 @@ static const struct {
     {"methods", SKEIN_METHOD}, {"exporters", SKEIN_EXPORTER}, {"view", SKEIN_VIEW},
 };
 enum { LIST_COUNT = sizeof lists / sizeof *lists };
+static const char scenes[] = "scenes"; // no list of kinds: app/list_scenes.c
 
 /* The kinds of a category, `index` from 0; NULL past the end. */
 static const skein_kind *kind_at(skein_category category, size_t index) {
@@ -115,6 +116,10 @@ static void print_heads(void) {
     print_words(column, HELP_AT, "what it is");
 }
 
+void app_print_row(const char *name, const char *words) {
+    print_words(print_cell(0, 2, name), DEFAULT_AT, words);
+}
+
 /* ---- kinds ---- */
 
 static void print_kind(const skein_kind *kind) {
@@ -178,6 +183,7 @@ static int report_unknown(const char *name) {
     const char *names[64];
     char hint[IO_HINT_SIZE];
     size_t count = 0;
+    names[count++] = scenes;
     for (size_t l = 0; l < LIST_COUNT; l++) {
         names[count++] = lists[l].word;
         for (size_t i = 0; kind_at(lists[l].category, i) && count < 60; i++)
@@ -190,6 +196,7 @@ static int report_unknown(const char *name) {
 }
 
 const char *app_list_word(size_t index) {
+    if (!index--) return scenes;
     for (size_t l = 0; l < LIST_COUNT; l++) {
         if (!index--) return lists[l].word;
         for (size_t i = 0; kind_at(lists[l].category, i); i++) {
@@ -229,6 +236,7 @@ static int print_json(const char *name) {
 
 static int list(app_arguments *arguments) {
     const char *name = app_word(arguments);
+    if (name && !strcmp(name, scenes)) return app_list_scenes(app_given(arguments, "--json"));
     if (app_given(arguments, "--json")) return print_json(name);
     if (name) return print_named(name) ? EXIT_OK : report_unknown(name);
     for (size_t l = 0; l < LIST_COUNT; l++) print_list(l);
@@ -242,10 +250,11 @@ static const app_option options[] = {{"--json", NULL,
 
 const app_command app_list_command = {
     "list",
-    "[scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]",
+    "[scenes|scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]",
     "every kind with its fields: name, default, unit, range and help\n\n"
     "In a scene, dots are groups: stretch.stiffness is { \"stretch\": { \"stiffness\": ... } }. A range to\n"
-    "infinite takes the word \"infinite\", too. A kind by its name: skein list cloth",
+    "infinite takes the word \"infinite\", too. A kind by its name: skein list cloth\n\n"
+    "skein list scenes: the scenes that come with skein, and what each shows.",
     options,
     NULL,
     false,

@@ -26,7 +26,7 @@ static void keep(struct json_t *list, const char *where, const char *words) {
     if (list) json_array_append_new(list, json_sprintf("%s%s%s", where, where[0] ? ": " : "", words));
 }
 
-static void report_fault(void *user, const skein_error *error) {
+void app_report_fault(void *user, const skein_error *error) {
     const app_scene *loaded = user;
     app_print_error(error);
     if (loaded) keep(loaded->fault_list, error->where, error->message);
@@ -83,7 +83,7 @@ static io_scene *read_scene(const char *word, const char *const *sets, io_faults
 
 int app_load(const char *word, const char *const *sets, app_scene *loaded) {
     double start = app_seconds();
-    io_faults faults = {report_fault, loaded, 0};
+    io_faults faults = {app_report_fault, loaded, 0};
     loaded->scene = read_scene(word, sets, &faults, loaded->path);
     if (loaded->scene) {
         loaded->settings = *io_scene_get(loaded->scene);
@@ -121,7 +121,7 @@ void app_advise(app_scene *loaded) {
 }
 
 void app_not_found(const char *word) {
-    io_faults faults = {report_fault, NULL, 0};
+    io_faults faults = {app_report_fault, NULL, 0};
     io_scene_not_found(word, &faults);
 }
 

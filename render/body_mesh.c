@@ -15,6 +15,7 @@ typedef struct maker {
     float *corner_uv;    /* face_vertex_count x 2 */
     uint32_t *side;      /* of each corner: a corner at the same particle, on the same side of all creases */
     uint32_t *vertex_of; /* of each corner */
+    bool round;          /* without creases */
 } maker;
 
 /* From a corner of a face to the next one. */
@@ -166,7 +167,7 @@ static bool make_edges(maker *m) {
         const way *now = &ways[i], *before = &ways[i ? i - 1 : 0];
         if (!i || now->least != before->least || now->most != before->most) {
             m->mesh->edges[2 * kept] = now->least, m->mesh->edges[2 * kept++ + 1] = now->most;
-        } else if (is_smooth(normals[now->face], normals[before->face])) {
+        } else if (m->round || is_smooth(normals[now->face], normals[before->face])) {
             join(m->side, now->at_least, before->at_least);
             join(m->side, now->at_most, before->at_most);
         }
@@ -244,8 +245,9 @@ static uint64_t hash(uint64_t so_far, const void *data, size_t words) {
     return so_far;
 }
 
-bool render_body_mesh_make(render_body_mesh *mesh, const skein_surface *surface, const double *positions) {
-    maker m = {mesh, surface, positions, NULL, NULL, NULL};
+bool render_body_mesh_make(render_body_mesh *mesh, const skein_surface *surface, const double *positions,
+                           bool round) {
+    maker m = {mesh, surface, positions, NULL, NULL, NULL, round};
     bool good = make_corner_uv(&m) && make_edges(&m) && make_vertices(&m) && make_triangles(&m);
     free(m.corner_uv);
     free(m.side);

@@ -4,7 +4,7 @@
  *
  * Called by world_frame.c, once for a body. Texture coordinates are the mesh's own; for a grid u = row / (rows - 1),
  * v = column / (columns - 1); else the body's first shape is projected on to the sides of a box.
- * Creases, too, are those of the first shape: a cube's edges. */
+ * Creases, too, are those of the first shape: the edges of a cube that is not round. */
 #ifndef SKEIN_RENDER_BODY_MESH_H
 #define SKEIN_RENDER_BODY_MESH_H
 
@@ -22,8 +22,9 @@ typedef struct render_body_mesh {
     uint64_t shape;      /* a hash of all this; never 0 */
 } render_body_mesh;
 
-/* Start from {0}. `positions` are those of all particles. False where there is no memory: what is there is released. */
-bool render_body_mesh_make(render_body_mesh *mesh, const skein_surface *surface, const double *positions);
+/* Start from {0}. `positions` are those of all particles. A `round` body has no creases. False where there is no memory: what is there is released. */
+bool render_body_mesh_make(render_body_mesh *mesh, const skein_surface *surface, const double *positions,
+                           bool round);
 void render_body_mesh_release(render_body_mesh *mesh);
 
 #endif

@@ -75,7 +75,7 @@ static skein_status make_all(render_draw *draw, skein_error *error) {
         [PLANE] = {"plane.vert", "display,light,plane.frag"},
         [SURFACE] = {"surface.vert", "display,light,surface.frag"},
         [FINE_SURFACE] = {"fine,light,surface.vert", "fine,display,surface.frag"},
-        [GLAZED_SURFACE] = {"surface.vert", "glazed,display,light,glaze,surface.frag"},
+        [GLAZED_SURFACE] = {"surface.vert", "glazed,display,light,glaze,jelly,surface.frag"},
         [BALL] = {"ball.vert", "display,light,glaze,ball.frag"},
         [FINE_BALL] = {"fine,light,ball.vert", "fine,display,glaze,ball.frag"},
         [PLANE + DEPTH_ONLY] = {"plane.vert", NULL},
@@ -305,16 +305,33 @@ static void draw_ground(const render_draw *draw, const drawing *d) {
     draw_plane(draw, 0, &draw->disc, vectors, render_grid_cell(d->radius), true);
 }
 
+/* How thick a body is, and a little more, so that few corners are left outside: for light that goes through. */
+static void set_body(GLuint program, const render_mesh *mesh) {
+    const double corners = 1.2, largest = fmax(fmax(mesh->spread[0], mesh->spread[1]), mesh->spread[2]);
+    double thin = INFINITY;
+    float middle[3], curve[3];
+    for (int k = 0; k < 3; k++) {
+        double half = fmax(fmax(corners * mesh->spread[k], 0.02 * largest), 1e-9);
+        thin = fmin(thin, half);
+        middle[k] = (float)mesh->middle[k];
+        curve[k] = (float)(1 / half);
+    }
+    glProgramUniform3fv(program, 9, 1, middle);
+    glProgramUniform3fv(program, 10, 1, curve);
+    glProgramUniform1f(program, 11, (float)thin);
+}
+
 static void draw_surfaces(const render_draw *draw, const drawing *d, int twin) {
     for (size_t i = 0; i < d->frame->surface_count; i++) {
         const render_mesh *mesh = &draw->meshes[i];
-        bool fine = !twin && render_mesh_edge_pixels(mesh, d->camera, d->height) < fine_edge;
         bool glazed = !twin && d->frame->surfaces[i].material.glazed;
+        bool fine = !twin && !glazed && render_mesh_edge_pixels(mesh, d->camera, d->height) < fine_edge;
         GLuint program = draw->programs[fine ? FINE_SURFACE : glazed ? GLAZED_SURFACE : SURFACE + twin];
         glUseProgram(program);
         if (!twin) {
             glProgramUniform1f(program, 0, lift);
             render_set_material(program, &d->frame->surfaces[i]);
+            if (glazed) set_body(program, mesh);
         }
         glBindVertexArray(mesh->arrays);
         size_t part = draw->part ? draw->part : mesh->triangle_count;

@@ -64,14 +64,9 @@ render_material render_plain_material(size_t index) {
 
 render_material render_jelly_material(size_t index) {
     render_material material = render_default_material(index);
-    material.pattern = RENDER_CHECKER;
-    material.repeats[0] = material.repeats[1] = 3.0f;
-    material.translucency = 0.45f;
+    material.pattern = RENDER_PLAIN;
     material.glazed = true;
-    for (int i = 0; i < 3; i++) {
-        material.accent[i] = material.colour[i] + 0.13f * (1.0f - material.colour[i]);
-        material.lining[i] = material.colour[i];
-    }
+    for (int i = 0; i < 3; i++) material.lining[i] = material.colour[i];
     return material;
 }
 

@@ -30,7 +30,7 @@ typedef struct render_material {
     render_pattern pattern;
     float repeats[2];   /* how often the pattern repeats along u and v */
     float translucency; /* light that passes through from behind, 0 to 1 */
-    bool glazed;        /* smooth and wet, as jelly is: it mirrors the sky; else cloth */
+    bool glazed;        /* smooth and lit through, as jelly is: it mirrors the sky; else cloth */
 } render_material;
 
 /* A triangle mesh, drawn with smooth normals that the renderer computes. */
@@ -173,7 +173,7 @@ render_look render_default_look(void);
 /* Gingham in a warm colour, another one for each `index`; and the same in one softer colour. */
 render_material render_default_material(size_t index);
 render_material render_plain_material(size_t index);
-/* Jelly of that colour, with a faint checker. */
+/* Jelly of that colour. */
 render_material render_jelly_material(size_t index);
 /* A painted ball at the origin: radius 1, not turned. In the same paint: a cube with a side of 2, a bowl. */
 render_sphere render_default_sphere(void);

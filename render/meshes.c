@@ -113,12 +113,17 @@ skein_status render_mesh_update(render_mesh *mesh, const render_surface *surface
 
     size_t numbers = 3 * mesh->vertex_count;
     float *positions = mesh->staged, *normals = mesh->staged + numbers;
-    double sum[3] = {0, 0, 0};
+    double sum[3] = {0, 0, 0}, squares[3] = {0, 0, 0}, count = (double)mesh->vertex_count;
     for (size_t i = 0; i < numbers; i++) {
+        double off = surface->positions[i] - mesh->middle[i % 3]; // from where it was: sums of small numbers are exact
         positions[i] = (float)surface->positions[i];
-        sum[i % 3] += surface->positions[i];
+        sum[i % 3] += off;
+        squares[i % 3] += off * off;
     }
-    for (int k = 0; k < 3; k++) mesh->middle[k] = sum[k] / (double)mesh->vertex_count;
+    for (int k = 0; k < 3; k++) { // of a ball's surface, the mean square along an axis is a third of its radius's
+        mesh->middle[k] += sum[k] / count;
+        mesh->spread[k] = sqrt(fmax(3 * (squares[k] - sum[k] * sum[k] / count) / count, 0));
+    }
     // a triangle of two equal short sides at a right angle, as in a grid
     double area = render_surface_normals(surface, normals);
     mesh->edge = sqrt(2 * area / (double)(mesh->triangle_count ? mesh->triangle_count : 1));

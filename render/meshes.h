@@ -14,6 +14,7 @@ typedef struct render_mesh {
     unsigned arrays, positions, normals, uv, values, triangles;
     size_t vertex_count, triangle_count;
     double middle[3], edge; /* of the surface now: its vertices' mean, and the mean length of an edge */
+    double spread[3];       /* half the axes of an ellipsoid like it, along x, y and z, metres */
     uint64_t shape;         /* of the surface whose triangles are there */
     float *staged;          /* vertex_count x 3, twice: what goes to the card next */
 } render_mesh;

@@ -37,7 +37,7 @@ static const skein_field fields[] = {
            "what colours tell: the material, which body it is, its speed, how far its springs are from rest, or where birds fly: towards +z red, else blue"),
     REAL(range, "range", "", 0, 0, 1e15,
          "the speed (m/s) or strain at the end of the colours; 0: the largest in the picture"),
-    CHOICE(pattern, "pattern", "suited|weave|checker|none", "on surfaces, by texture coordinates: the mesh's, a grid's, or else projected from a box; suited: cloth is woven, a lattice is jelly"),
+    CHOICE(pattern, "pattern", "suited|weave|checker|none", "on surfaces, by texture coordinates: the mesh's, a grid's, or else projected from a box; suited: as each body's `look` says"),
     {"image", SKEIN_FIELD_TEXT, offsetof(render_view, image), "path", {0, 0, 0}, 0, 0, NULL, "",
      "a PNG or JPEG laid on surfaces instead of the pattern"},
     REAL(repeats, "repeats", "", 0, 0, 1e4, "how often the pattern or image repeats along the longer side; 0: as suits"),

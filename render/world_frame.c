@@ -19,7 +19,8 @@
 /* What is kept for a body, by its place among the world's bodies. */
 typedef struct body {
     skein_handle handle;
-    enum { CLOTH, JELLY, ROPE } kind; /* what it looks like */
+    bool rope;
+    skein_look look;
     skein_surface source;             /* that it was made from */
     bool made;
     render_body_mesh mesh;
@@ -152,16 +153,24 @@ static skein_status take_image(render_world_frame *made, skein_error *error) {
 
 /* ---- Bodies --------------------------------------------------------------------------------- */
 
+/* What a body is drawn as; one that has nothing to say about that has no surface, or is cloth. */
+static skein_look look_of(const skein_world *world, skein_handle handle) {
+    const skein_kind *kind = skein_object_kind(world, handle);
+    skein_value value;
+    if (!kind || !skein_field_find(kind, "look", NULL) || skein_get(world, handle, "look", &value))
+        return SKEIN_LOOK_CLOTH;
+    return (skein_look)value.number[0];
+}
+
 static bool make_body(body *b, const skein_world *world, const skein_surface *surface, skein_handle handle,
                       const double *positions) {
+    skein_look look = look_of(world, handle);
     const skein_kind *kind = skein_object_kind(world, handle);
     release_body(b);
-    if (!render_body_mesh_make(&b->mesh, surface, positions)) return false;
+    if (!render_body_mesh_make(&b->mesh, surface, positions, look == SKEIN_LOOK_JELLY)) return false;
     b->handle = handle;
-    b->kind = !kind                                                                 ? CLOTH
-              : !strcmp(kind->name, "rope")                                         ? ROPE
-              : !strcmp(kind->name, "lattice") || !strcmp(kind->name, "tetrahedra") ? JELLY
-                                                                                    : CLOTH;
+    b->rope = kind && !strcmp(kind->name, "rope");
+    b->look = look;
     b->source = *surface;
     b->made = grow(&b->positions, 3 * b->mesh.vertex_count, sizeof *b->positions) &&
               grow(&b->values, b->mesh.vertex_count, sizeof *b->values);
@@ -186,8 +195,8 @@ static render_pattern pattern_of(const render_world_frame *made) {
 }
 
 static void dress(const render_world_frame *made, const body *b, size_t index, render_material *material) {
-    render_pattern pattern = pattern_of(made);
-    bool jelly = b->kind == JELLY && pattern == RENDER_WEAVE && made->view.pattern == 0;
+    bool suited = made->view.pattern == 0 && pattern_of(made) == RENDER_WEAVE, jelly = suited && b->look == SKEIN_LOOK_JELLY;
+    render_pattern pattern = suited && b->look == SKEIN_LOOK_PLAIN ? RENDER_PLAIN : pattern_of(made);
     *material = jelly                     ? render_jelly_material(index)
                 : pattern == RENDER_PLAIN ? render_plain_material(index)
                                           : render_default_material(index);
@@ -229,14 +238,14 @@ static skein_status take_body(render_world_frame *made, const skein_world *world
     body *b = &made->bodies[index];
     bool same = b->made && b->handle.index == handle.index && b->handle.generation == handle.generation &&
                 b->source.face_vertices == surface.face_vertices && b->source.corner_uv == surface.corner_uv &&
-                b->source.vertex_count == surface.vertex_count;
+                b->source.vertex_count == surface.vertex_count && b->look == look_of(world, handle);
     if (!same && !make_body(b, world, &surface, handle, made->state.positions))
         return render_fail_memory(error, "a body's surface");
     gather(b, &made->state);
 
     // a body without faces shows its particles; a hidden one shows nothing
     bool visible = is_visible(world, handle) && says(world, handle, "enabled"), faces = b->mesh.triangle_count > 0;
-    bool rope = b->kind == ROPE && made->view.surface;
+    bool rope = b->rope && made->view.surface;
     if (visible && render_are_birds(skein_object_kind(world, handle), &made->view)) {
         mark(&made->state, &surface, RENDER_HIDDEN, index);
         return render_add_birds(&made->birds, world, &made->state, &surface, index)

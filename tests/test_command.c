@@ -4,6 +4,9 @@
 #include "io/exporters.h"
 #include "io/scene.h"
 
+#include <dirent.h>
+#include <jansson.h>
+
 /* ---- Arguments ------------------------------------------------------------------------------------ */
 
 #define RUN_USAGE "usage: skein run SCENE [--out FOLDER] [options]\n"
@@ -55,13 +58,13 @@ static void wrong_arguments_are_told(void **state) {
         {{"run", "no/such.json"}, "skein: no/such.json: cannot read: no such file or directory\n"},
         {{"list", "cats", "dogs"},
          "skein list: 'dogs' is one argument too many; "
-         "usage: skein list [scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]\n"},
+         "usage: skein list [scenes|scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]\n"},
         {{"list", "bodys"},
          "skein list: there is no list or kind 'bodys'; did you mean 'bodies'? "
-         "usage: skein list [scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]\n"},
+         "usage: skein list [scenes|scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]\n"},
         {{"list", "spere"},
          "skein list: there is no list or kind 'spere'; did you mean 'sphere'? "
-         "usage: skein list [scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]\n"},
+         "usage: skein list [scenes|scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]\n"},
     };
     for (size_t i = 0; i < COUNT(wrong); i++) {
         const char *const *a = wrong[i].arguments;
@@ -394,6 +397,42 @@ static void list_shows_every_kind_and_field(void **state) {
     outcome_free(&all);
 }
 
+/* Each scene of the folder is there, with all of its own words. */
+static void list_tells_of_scenes(void **state) {
+    (void)state;
+    outcome o = SKEIN("list", "scenes"), json = SKEIN("list", "scenes", "--json");
+    assert_status(o, 0);
+    assert_status(json, 0);
+    assert_true(longest_line(o.out) <= 120);
+    json_t *root = json_loads(json.out, 0, NULL), *list = json_object_get(root, "scenes"), *one;
+    size_t i, files = 0;
+    DIR *scenes = opendir(SKEIN_SOURCE_DIR "/scenes");
+    assert_non_null(scenes);
+    for (struct dirent *entry; (entry = readdir(scenes)) != NULL;) files += strstr(entry->d_name, ".json") != NULL;
+    closedir(scenes);
+    assert_int_equal(json_array_size(list), files);
+    json_array_foreach(list, i, one) {
+        char head[80];
+        const char *words = json_string_value(json_object_get(one, "description"));
+        json_t *file = json_load_file(json_string_value(json_object_get(one, "file")), 0, NULL);
+        assert_string_equal(words, json_string_value(json_object_get(file, "description")));
+        json_decref(file);
+        snprintf(head, sizeof head, "\n  %s ", json_string_value(json_object_get(one, "name")));
+        const char *row = strstr(o.out, head);
+        assert_non_null(row);
+        // word by word, however the lines are broken
+        for (row += strlen(head); *words; words += strcspn(words, " "), words += strspn(words, " ")) {
+            size_t length = strcspn(words, " ");
+            row += strspn(row, " \n");
+            assert_int_equal(strncmp(row, words, length), 0);
+            row += length;
+        }
+    }
+    json_decref(root);
+    outcome_free(&o);
+    outcome_free(&json);
+}
+
 /* ---- Progress ------------------------------------------------------------------------------------------ */
 
 static int count_words(const char *text, const char *words) {
@@ -446,7 +485,7 @@ int main(void) {
         TEST(check_takes_many_scenes), TEST(scenes_have_names), TEST(meshes_are_scenes),
         TEST(scenes_come_from_standard_input), TEST(shells_complete_every_option),
         TEST(tables_are_there_for_programs),
-        TEST(explain_shows_every_kind_of_row), TEST(list_shows_every_kind_and_field), TEST(progress_is_shown),
+        TEST(explain_shows_every_kind_of_row), TEST(list_shows_every_kind_and_field), TEST(list_tells_of_scenes), TEST(progress_is_shown),
     };
     return cmocka_run_group_tests_name("command", tests, NULL, NULL);
 }

@@ -25,6 +25,7 @@ static const struct {
 } idle[] = {
     {NULL, "name", "a label"},
     {NULL, "visible", "for drawing"},
+    {NULL, "look", "for drawing"},
     {NULL, "mesh", "a file that scenes read; a program passes the mesh"},
     {"cache", "file", "a file that scenes read; a program passes the places"},
     {"cache", "fps", "of that file; a program says its interval"},

@@ -295,9 +295,11 @@ static void a_cube_has_edges_and_a_cloth_has_none(void **state) {
     (void)state;
     float normals[3 * 100];
     skein_world *world = skein_world_create(NULL, NULL);
-    OK(skein_body_add(world, "lattice", NULL, SKEIN_SETTINGS(SKEIN_VEC3("grid", 3, 3, 3), SKEIN_VEC3("size", 1, 1, 1)),
-                      NULL));
-    OK(skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 7)), NULL));
+    skein_handle block, sheet;
+    OK(skein_body_add(world, "lattice", NULL,
+                      SKEIN_SETTINGS(SKEIN_VEC3("grid", 3, 3, 3), SKEIN_VEC3("size", 1, 1, 1), SKEIN_TEXT("look", "plain")),
+                      &block));
+    OK(skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 7)), &sheet));
     const render_frame *frame = update(world);
     assert_int_equal(frame->surface_count, 2);
     // nine vertices for each side of the cube, each with that side's normal
@@ -309,12 +311,27 @@ static void a_cube_has_edges_and_a_cloth_has_none(void **state) {
         for (size_t k = 0; k < 3; k++) axes += fabsf(normals[3 * v + k]) > 0.9999f;
         assert_int_equal(axes, 1);
     }
-    assert_true(cube->material.glazed);
+    assert_false(cube->material.glazed);
+    assert_int_equal(cube->material.pattern, RENDER_PLAIN);
     assert_int_equal(frame->surfaces[1].vertex_count, 35);
     assert_false(frame->surfaces[1].material.glazed);
+    assert_int_equal(frame->surfaces[1].material.pattern, RENDER_WEAVE);
+
+    // jelly is smooth and has round edges: each of its corners has one normal; and so has cloth that is to look so
+    OK(skein_set(world, block, "look", skein_text("jelly")));
+    OK(skein_set(world, sheet, "look", skein_text("jelly")));
+    frame = update(world);
+    cube = &frame->surfaces[0];
+    assert_true(cube->material.glazed && frame->surfaces[1].material.glazed);
+    render_surface_normals(cube, normals);
+    for (size_t v = 0; v < cube->vertex_count; v++)
+        for (size_t w = 0; w < cube->vertex_count; w++)
+            if (!memcmp(&cube->positions[3 * v], &cube->positions[3 * w], 3 * sizeof(double)))
+                assert_memory_equal(&normals[3 * v], &normals[3 * w], 3 * sizeof(float));
     // woven only if asked for
     view.pattern = 1;
     assert_false(update(world)->surfaces[0].material.glazed);
+    view.pattern = 0;
     skein_world_destroy(world);
 }
 
@@ -336,7 +353,7 @@ static void creases_are_steep(void **state) {
                                  .face_vertex_count = 8,
                                  .corner_uv = uv};
         render_body_mesh mesh = {0};
-        assert_true(render_body_mesh_make(&mesh, &surface, &x[0][0]));
+        assert_true(render_body_mesh_make(&mesh, &surface, &x[0][0], false));
         assert_int_equal(mesh.vertex_count, 8);
         assert_int_equal(mesh.edge_count, 7);
         int alone = 0;

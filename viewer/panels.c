@@ -289,6 +289,11 @@ int viewer_dock_height(const viewer_shown *shown, int height) {
     return docked ? (int)fmin(fmax(0.27 * height, 180 * widgets_scale()), 0.45 * height) : 0;
 }
 
+int viewer_docked_height(const viewer_shown *shown, int height) {
+    int dock = viewer_dock_height(shown, height);
+    return dock + (int)viewer_lesson_height(shown, height - dock);
+}
+
 static void show_message(const viewer_shown *shown, double left, double width, double height) {
     char text[sizeof shown->message + 16];
     const char *records = shown->recording ? "recording   " : "";
@@ -314,12 +319,11 @@ void viewer_panels_show(viewer_panels *panels, int width, int height) {
     double left = has_side ? side : 0, above = h - viewer_dock_height(shown, height);
     if (shown->has_scene) viewer_show_handles(panels, left, w - left, above);
     if (has_side) show_side(panels, shown, side, h);
-    bool lesson = shown->panel[VIEWER_PANEL_LESSON] && shown->has_scene;
-    if (lesson) viewer_show_lesson(panels, left, w, above);
+    if (shown->panel[VIEWER_PANEL_LESSON] && shown->has_scene) viewer_show_lesson(panels, left, w, above);
     show_dock(panels, shown, left, w, h);
     if (shown->panel[VIEWER_PANEL_GALLERY]) show_gallery(panels, shown, w, h);
     if (shown->panel[VIEWER_PANEL_KEYS]) show_keys(panels, w, h);
     // a picture without panels is a picture: no note in it, unless something is wrong
     if (shown->has_scene && !shown->panel[VIEWER_PANEL_GALLERY]) show_labels(shown, left, w);
-    if (has_side || shown->recording || shown->alarm) show_message(shown, left, w, above - (lesson ? viewer_lesson_height(above) : 0));
+    if (has_side || shown->recording || shown->alarm) show_message(shown, left, w, above - viewer_lesson_height(shown, above));
 }

@@ -27,8 +27,9 @@ typedef struct viewer_panels {
 } viewer_panels;
 
 void viewer_panels_show(viewer_panels *panels, int width, int height);
-/* The height of what is docked below: the picture lies above it. */
+/* The height of what is docked below: the plots and the log; and with the lesson, too: the picture lies above it. */
 int viewer_dock_height(const viewer_shown *shown, int height);
+int viewer_docked_height(const viewer_shown *shown, int height);
 /* The width of the panel at the side: the picture lies beside it. */
 int viewer_side_panel_width(int width);
 
@@ -45,9 +46,9 @@ void viewer_show_objects(viewer_panels *panels, int side);
 void viewer_show_entry(viewer_panels *panels, const viewer_object *object, const viewer_entry *entry, int side);
 /* panels_search.c: where fields are searched for, those that are found. False where nothing is searched for. */
 bool viewer_show_search(viewer_panels *panels, int side);
-/* panels_lesson.c: in the picture, which begins `left`; its height at the window's bottom */
+/* panels_lesson.c: docked above whatever else is, which leaves `height`; its own height there, 0 while it is closed */
 void viewer_show_lesson(viewer_panels *panels, double left, double width, double height);
-double viewer_lesson_height(double height);
+double viewer_lesson_height(const viewer_shown *shown, double height);
 /* panels_advice.c */
 void viewer_show_advice(viewer_panels *panels);
 void viewer_show_offer(viewer_panels *panels, const char *place); /* in that panel */

@@ -162,7 +162,7 @@ static void show_text(viewer_panels *panels, const viewer_lesson *lesson, double
         memcpy(panels->lesson_text, lesson->text, sizeof panels->lesson_text);
     }
     double x = left + (lesson->in_view ? fmin(fmax(lesson->x, 0.1), 0.9) : 0.5) * width;
-    double y = (lesson->in_view ? fmin(fmax(lesson->y, 0.12), 0.6) : 0.12) * height;
+    double y = (lesson->in_view ? fmin(fmax(lesson->y, 0.12), 0.95) : 0.12) * height;
     bool seen = widgets_over("lesson text", x, y, left, left + width);
     if (lesson->field) {
         if (widgets_input_fitting("##formula", panels->lesson_text, sizeof panels->lesson_text))
@@ -181,16 +181,17 @@ static void show_text(viewer_panels *panels, const viewer_lesson *lesson, double
 
 /* ---- All of it ---- */
 
-double viewer_lesson_height(double height) {
-    return fmin(0.4 * height, 320 * widgets_scale());
+double viewer_lesson_height(const viewer_shown *shown, double height) {
+    bool there = shown->panel[VIEWER_PANEL_LESSON] && shown->has_scene;
+    return there ? round(fmin(0.4 * height, 300 * widgets_scale())) : 0;
 }
 
 void viewer_show_lesson(viewer_panels *panels, double left, double wide, double tall) {
     const viewer_shown *shown = &panels->exchange->shown;
     const viewer_lesson *lesson = &shown->lesson;
-    double height = viewer_lesson_height(tall), room = (wide - left) / (shown->side_count > 1 ? 2 : 1);
+    double height = viewer_lesson_height(shown, tall), room = (wide - left) / (shown->side_count > 1 ? 2 : 1);
     bool open = true;
-    if (widgets_panel("Lesson", WIDGETS_FREE, left + 2, tall - height - 2, wide - left - 4, height, &open)) {
+    if (widgets_panel("Lesson", WIDGETS_DOCKED, left, tall - height, wide - left, height, &open)) {
         if (!lesson->any) {
             widgets_wrapped("There is no constraint here: no formula, no spring, no part of a body that has one.", false);
         } else {
@@ -200,7 +201,7 @@ void viewer_show_lesson(viewer_panels *panels, double left, double wide, double 
         }
     }
     widgets_panel_end();
-    if (lesson->any) show_text(panels, lesson, left, room, tall);
+    if (lesson->any) show_text(panels, lesson, left, room, tall - height);
     if (open) return;
     viewer_request request = {.kind = VIEWER_PANEL, .code = VIEWER_PANEL_LESSON, .down = false};
     viewer_ask(panels->exchange, &request);

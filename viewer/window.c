@@ -233,7 +233,7 @@ static void save_window(window *w, int width, int height) {
 static void ask_for_size(window *w, int width, int height) {
     const viewer_shown *shown = &w->exchange.shown;
     w->left = shown->panel[VIEWER_PANEL_SIDE] && shown->has_scene ? viewer_side_panel_width(width) : 0;
-    w->below = shown->has_scene ? viewer_dock_height(shown, height) : 0;
+    w->below = shown->has_scene ? viewer_docked_height(shown, height) : 0;
     viewer_request request = {.kind = VIEWER_RESIZE, .x = width - w->left, .y = height - w->below};
     bool is_new = request.x != w->picture_size[0] || request.y != w->picture_size[1];
     if (!is_new || width < 1 || height < 1) return;

@@ -49,6 +49,10 @@
 #define SKEIN_CLOTH_BEND_RIGIDITY "bend.rigidity" /* a number in N m; of the sheet against angle or curvature, the same at any resolution (1e-5 is a cotton) */
 #define SKEIN_CLOTH_STRETCH_LIMIT "stretch.limit" /* a number; strain limit: no edge gets longer than rest times 1 + this; "infinite" is none */
 #define SKEIN_CLOTH_STRETCH_TETHER "stretch.tether" /* a number; no particle gets farther from a pin than along the cloth, nor, on a grid, from others of its row and column, times 1 + this; "infinite" is none */
+#define SKEIN_CLOTH_LOOK "look" /* a word; what its surface is drawn as: woven; smooth and lit through, with round edges; or of one colour */
+#define SKEIN_CLOTH_LOOK_CLOTH "cloth"
+#define SKEIN_CLOTH_LOOK_JELLY "jelly"
+#define SKEIN_CLOTH_LOOK_PLAIN "plain"
 
 #define SKEIN_LATTICE "lattice" /* a block of particles with springs to its neighbours: along the axes, across, two apart, face to face */
 #define SKEIN_LATTICE_GRID "grid" /* three whole numbers; particles along x, y and z; the last runs fastest */
@@ -73,6 +77,10 @@
 #define SKEIN_LATTICE_BENDING_DAMPING "bending.damping" /* a number in N s/m; of each */
 #define SKEIN_LATTICE_BENDING_SPRINGS "bending.springs" /* true or false; whether there are springs between particles 2 apart */
 #define SKEIN_LATTICE_STRUTS "struts" /* true or false; whether there are struts from face to face, a line each */
+#define SKEIN_LATTICE_LOOK "look" /* a word; what its surface is drawn as: woven; smooth and lit through, with round edges; or of one colour */
+#define SKEIN_LATTICE_LOOK_CLOTH "cloth"
+#define SKEIN_LATTICE_LOOK_JELLY "jelly"
+#define SKEIN_LATTICE_LOOK_PLAIN "plain"
 
 #define SKEIN_ROPE "rope" /* a line of particles, straight or hanging between its ends */
 #define SKEIN_ROPE_COUNT "count" /* a whole number; particles from end to end */
@@ -102,6 +110,10 @@
 #define SKEIN_TETRAHEDRA_VOLUME_STIFFNESS "volume.stiffness" /* a number in Pa; bulk modulus: against a change of each tetrahedron's volume, besides the springs' own */
 #define SKEIN_TETRAHEDRA_VOLUME_DAMPING "volume.damping" /* a number in Pa s; of the same */
 #define SKEIN_TETRAHEDRA_LIMIT "limit" /* a number; strain limit: no edge gets longer than rest times 1 + this; "infinite" is none */
+#define SKEIN_TETRAHEDRA_LOOK "look" /* a word; what its surface is drawn as: woven; smooth and lit through, with round edges; or of one colour */
+#define SKEIN_TETRAHEDRA_LOOK_CLOTH "cloth"
+#define SKEIN_TETRAHEDRA_LOOK_JELLY "jelly"
+#define SKEIN_TETRAHEDRA_LOOK_PLAIN "plain"
 
 #define SKEIN_FLOCK "flock" /* loose particles, each flying its own way, for rules that steer */
 #define SKEIN_FLOCK_COUNT "count" /* a whole number; of particles */

@@ -537,6 +537,13 @@ skein_status skein_particle_hold(skein_world *world, size_t particle, bool held)
  */
 skein_status skein_pins_move(skein_world *world, const uint32_t *particles, size_t count, const double *xyz);
 
+/* What a body's surface is drawn as by whoever draws: its field "look", whose places these are. */
+typedef enum skein_look {
+    SKEIN_LOOK_CLOTH, /* woven */
+    SKEIN_LOOK_JELLY, /* smooth, lit through, with round edges */
+    SKEIN_LOOK_PLAIN  /* of one colour */
+} skein_look;
+
 /* What a body drew and its particles. Pointers live as long as the body. */
 typedef struct skein_surface {
     uint32_t first_particle, particle_count;

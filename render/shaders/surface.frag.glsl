@@ -58,23 +58,20 @@ void main() {
 #else
     float seen = sun_seen(world, n), open = balls_seen(world, n, -1), below = ground_seen(world, n);
 #endif
+#ifdef GLAZED
+    vec3 inner = jelly_light(world, albedo, n, view, cosine, seen, open, below);
+    vec3 light = inner + glaze(n, view) * open * below + 0.8 * sun_spot(n, view, seen);
+#else
     vec3 sun = scene.sun_light.rgb * seen * max(cosine, 0.0);
     vec3 through = scene.sun_light.rgb * seen * max(-cosine, 0.0) * translucency;
-
     vec3 ambient = ambient_light(n, below) * open;
 
-#ifdef GLAZED
-    // light goes in and about: the sides that look away from the sun are not dark
-    vec3 within = albedo * scene.sun_light.rgb * (0.10 + 0.10 * cosine) * open;
-    vec3 sheen = within + glaze(n, view) * open * below, gloss = 0.6 * sun_spot(n, view, seen);
-#else
     // fibres that stand up catch light at grazing angles
     float rim = pow(1.0 - clamp(dot(n, view), 0.0, 1.0), 4.0);
     vec3 sheen = (0.10 * sun + 0.16 * ambient) * rim;
     vec3 half_way = normalize(scene.sun.xyz + view);
     vec3 gloss = sun * 0.05 * pow(max(dot(n, half_way), 0.0), 18.0);
-#endif
-
     vec3 light = albedo * (sun + ambient) + albedo * albedo * through + sheen + gloss;
+#endif
     colour = vec4(display(scene.modes.x == 1 ? blinn_phong(albedo, n, view) : light), 1.0);
 }

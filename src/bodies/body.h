@@ -4,6 +4,11 @@
 
 #include "world/world.h"
 
+/* What a body's surface is drawn as: an enum skein_look, stored as int32_t. It moves nothing. */
+#define SK_LOOK(s, member, initial_)                                                                          \
+    SK_CHOICE(s, member, "look", initial_, "cloth|jelly|plain",                                               \
+              "what its surface is drawn as: woven; smooth and lit through, with round edges; or of one colour")
+
 extern const sk_body_type sk_cloth, sk_lattice, sk_rope, sk_tetrahedra, sk_flock;
 
 #endif

@@ -28,6 +28,7 @@ typedef struct cloth_params {
     int32_t bending;
     double rigidity;
     double tether, limit;
+    int32_t look;
 } cloth_params;
 
 /* The choices of "bend.by". */
@@ -68,6 +69,7 @@ static const skein_field fields[] = {
     SK_REAL(cloth_params, tether, "stretch.tether", "", 0, 0, SK_UNBOUNDED,
             "no particle gets farther from a pin than along the cloth, nor, on a grid, from others of its row and column, times "
             "1 + this; \"infinite\" is none"),
+    SK_LOOK(cloth_params, look, SKEIN_LOOK_CLOTH),
 };
 
 enum { MOST_SINGLE_ANCHORS = 4 };
@@ -286,7 +288,7 @@ static bool live(const void *data, const char *field) {
     if (!strcmp(field, "bend.stiffness") || !strcmp(field, "bend.damping")) return params->bending == BY_SPRINGS;
     if (!strcmp(field, "bend.rigidity")) return params->bending != BY_SPRINGS;
     static const char *const names[] = {"stretch.stiffness", "stretch.damping", "shear.stiffness",
-                                        "shear.damping",     "stretch.limit",   "stretch.tether"};
+                                        "shear.damping",     "stretch.limit",   "stretch.tether", "look"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (!strcmp(field, names[i])) return true;
     return false;

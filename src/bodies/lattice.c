@@ -24,6 +24,7 @@ typedef struct lattice_params {
     int32_t diagonals;
     bool bends, struts;
     double limit;
+    int32_t look;
 } lattice_params;
 
 /* In the order of `shear.diagonals`. */
@@ -63,6 +64,7 @@ static const skein_field fields[] = {
     SK_REAL(lattice_params, bending.damping, "bending.damping", "N s/m", 0, 0, SK_FAR, "of each"),
     SK_BOOL(lattice_params, bends, "bending.springs", 1, "whether there are springs between particles 2 apart"),
     SK_BOOL(lattice_params, struts, "struts", 0, "whether there are struts from face to face, a line each"),
+    SK_LOOK(lattice_params, look, SKEIN_LOOK_JELLY),
 };
 
 /* The body's batches, in the order of sweeps on the way forth; on the way back it is the opposite. */
@@ -185,7 +187,7 @@ static bool live(const void *params, const char *field) {
     (void)params;
     static const char *const names[] = {"structural.stiffness", "structural.damping", "structural.limit",
                                         "shear.stiffness",      "shear.damping",      "bending.stiffness",
-                                        "bending.damping"};
+                                        "bending.damping",      "look"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (!strcmp(field, names[i])) return true;
     return false;

@@ -20,6 +20,7 @@ typedef struct tetrahedra_params {
     char *pins;
     sk_material edges, volume;
     double limit;
+    int32_t look;
 } tetrahedra_params;
 
 static const skein_field fields[] = {
@@ -42,6 +43,7 @@ static const skein_field fields[] = {
     SK_REAL(tetrahedra_params, volume.damping, "volume.damping", "Pa s", 0, 0, SK_FAR, "of the same"),
     SK_REAL(tetrahedra_params, limit, "limit", "", SK_UNBOUNDED, 0, SK_UNBOUNDED,
             "strain limit: no edge gets longer than rest times 1 + this; \"infinite\" is none"),
+    SK_LOOK(tetrahedra_params, look, SKEIN_LOOK_JELLY),
 };
 
 /* The body's batches, in the order of sweeps: what is swept last is kept best. */
@@ -338,7 +340,7 @@ static skein_status add_surface(builder *b) {
 
 static bool live(const void *params, const char *field) {
     (void)params;
-    static const char *const names[] = {"stiffness", "damping", "volume.stiffness", "volume.damping", "limit"};
+    static const char *const names[] = {"stiffness", "damping", "volume.stiffness", "volume.damping", "limit", "look"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (!strcmp(field, names[i])) return true;
     return false;
