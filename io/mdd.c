@@ -3,15 +3,18 @@
  *   int32 samples, int32 points, samples x float seconds, samples x points x (float x, y, z), all big endian
  *
  * The times stand before the positions, so that their number has to be known first: room is made for the samples that
- * the run is going to have, and a run that ends early is copied into a file with room for those that there are.
+ * the run is going to have, and if it ends early those that there are move up, within the file.
  *
  * Owns: the file's layout. Invariant: a file under its final name holds exactly the samples that it counts.
  */
 #include "io/bytes.h"
 #include "io/clip.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { BLOCK_POINTS = 4096, POINT_BYTES = 12, COUNTS_BYTES = 8 };
 
@@ -85,26 +88,43 @@ static skein_status add(void *file, const double *positions, skein_error *error)
     return status;
 }
 
-/* A file of the samples that there are. */
-static skein_status write_shorter(mdd *m, const char *path, skein_error *error) {
+/* Moves the samples that there are to where they stand behind as many times, within the file: a full disk has no room
+ * for another one. Returns the file's size, or 0 where it cannot. */
+static uint64_t shorten(mdd *m) {
+    uint64_t from = COUNTS_BYTES + 4 * (uint64_t)m->room, to = COUNTS_BYTES + 4 * (uint64_t)m->added;
+    uint64_t left = (uint64_t)m->added * m->points * POINT_BYTES, size = to + left;
     const char *part = io_output_part(m->output);
-    if (!part)
-        return io_error_set(error, SKEIN_ERROR_FILE, path,
-                            "%lu of the %lu samples that its header counts: a pipe cannot be corrected",
-                            (unsigned long)m->added, (unsigned long)m->room);
-    io_output *output = io_output_open(path, error);
-    if (!output) return SKEIN_ERROR_FILE;
-    write_head(m, output, m->added);
-    io_clip_append_part(output, part, COUNTS_BYTES + 4 * (uint64_t)m->room,
-                        (uint64_t)m->added * m->points * POINT_BYTES);
-    return io_output_commit(output, error);
+    int fd = part ? open(part, O_RDONLY | O_CLOEXEC | O_NOFOLLOW) : -1;
+    io_output_flush(m->output);
+    io_output_cut(m->output, from + left); // what there is of a sample that did not fit
+    while (left > 0 && fd >= 0) {
+        ssize_t got = pread(fd, m->block, left < sizeof m->block ? (size_t)left : sizeof m->block, (off_t)from);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) break;
+        io_output_patch(m->output, to, m->block, (size_t)got);
+        from += (uint64_t)got;
+        to += (uint64_t)got;
+        left -= (uint64_t)got;
+    }
+    if (fd >= 0) close(fd);
+    unsigned char count[4];
+    io_put_u32_big(count, m->added);
+    io_output_patch(m->output, 0, count, sizeof count);
+    return left > 0 || fd < 0 || io_output_status(m->output, NULL) ? 0 : size;
 }
 
 static skein_status commit(void *file, skein_error *error) {
     mdd *m = file;
     skein_status status = io_output_status(m->output, error);
-    if (!status && m->added < m->room) status = write_shorter(m, m->path, error);
-    else if (!status) {
+    if (!status && m->added < m->room) {
+        uint64_t size = shorten(m);
+        if (size) io_output_cut(m->output, size);
+        else
+            status = io_error_set(error, SKEIN_ERROR_FILE, m->path,
+                                  "cannot write: its times cannot be put right, now that there are %lu samples of %lu",
+                                  (unsigned long)m->added, (unsigned long)m->room);
+    }
+    if (!status) {
         status = io_output_commit(m->output, error);
         m->output = NULL;
     }
@@ -114,8 +134,13 @@ static skein_status commit(void *file, skein_error *error) {
 
 static skein_status keep(void *file, const char *path, skein_error *error) {
     mdd *m = file;
-    skein_status status =
-        m->added ? write_shorter(m, path, error) : io_error_set(error, SKEIN_ERROR_VALUE, path, IO_NOTHING_KEPT);
+    uint64_t size = m->added ? shorten(m) : 0;
+    skein_status status = SKEIN_OK;
+    if (!size) status = io_error_set(error, SKEIN_ERROR_VALUE, path, IO_NOTHING_KEPT);
+    else {
+        status = io_output_keep(m->output, path, size, NULL, error);
+        m->output = NULL;
+    }
     mdd_free(m);
     return status;
 }

@@ -502,6 +502,39 @@ static void a_full_disk_leaves_no_clip(void **state) {
     }
 }
 
+/* On a disk that gets full what was finished is kept, as a whole file. */
+static void a_disk_that_gets_full_keeps_whole_samples(void **state) {
+    (void)state;
+    const char *s = tiny_scene();
+    static const char *const kinds[] = {"pc2", "mdd", "usda"};
+    for (size_t i = 0; i < COUNT(kinds); i++) {
+        char set[64], out[32], kept[64];
+        snprintf(set, sizeof set, "output=[\"%s\"]", kinds[i]);
+        snprintf(out, sizeof out, "out-%s", kinds[i]);
+        snprintf(kept, sizeof kept, "%s/sheet.failed.%s", out, kinds[i]);
+        outcome o = SKEIN_IN(((surroundings){.file_limit = 30000}), "run", s, "--frames", "600", "--out",
+                             in_folder(out), "--set", set);
+        assert_status(o, 1);
+        assert_contains(o.err, "cannot write: ");
+        outcome_free(&o);
+        samples all = {0, 0, NULL, NULL};
+        if (i == 0) all = read_pc2(in_folder(kept));
+        if (i == 1) all = read_mdd(in_folder(kept));
+        if (i == 2) {
+            char *text = read_text(in_folder(kept));
+            all = read_usda(text, "point3f[] points");
+            assert_string_equal(text + strlen(text) - 8, "    }\n}\n");
+            free(text);
+        }
+        assert_int_equal(all.points, 25);
+        assert_true(all.count >= 5 && all.count < 600);
+        size_t sample = 75;
+        assert_true(all.places[(all.count - 1) * sample + 37] < all.places[37]); // it fell
+        for (uint32_t k = 0; i == 1 && k < all.count; k++) assert_float_equal(all.times[k], k / 60.0, 1e-6);
+        samples_free(&all);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
 #define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
@@ -515,6 +548,7 @@ int main(void) {
         TEST(usd_text_ends_well_while_it_grows),
         TEST(a_clip_that_ends_early_is_whole),
         TEST(a_full_disk_leaves_no_clip),
+        TEST(a_disk_that_gets_full_keeps_whole_samples),
     };
     return cmocka_run_group_tests_name("clips", tests, NULL, NULL);
 }
