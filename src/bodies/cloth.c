@@ -16,6 +16,7 @@
 #include "bodies/quads.h"
 #include "bodies/sheet.h"
 #include "bodies/sheet_selection.h"
+#include "bodies/spans.h"
 #include "bodies/springs.h"
 
 typedef struct cloth_params {
@@ -178,6 +179,14 @@ static skein_status add_bending(tailor *t) {
     return status;
 }
 
+/* Bounds over many edges: a grid's along its rows and columns, those of other meshes along the mesh's own x and z. */
+static skein_status add_spans(tailor *t) {
+    if (t->lines.area) return sk_lines_add_spans(&t->lines, t->world, t->body, t->error);
+    double axes[2][3] = {{1, 0, 0}, {0, 0, 1}};
+    sk_points_transform(axes, 2, 1, t->params->rotation, (const double[3]){0, 0, 0});
+    return sk_spans_add(&t->sheet, (const double(*)[3])axes, t->rank, t->world, t->body, t->error);
+}
+
 /* Sweeps take batches in the order of their making, and what is swept last is kept best: edges. Measured on
  * a draped grid, 12 substeps: 5.7 % of stretch at most, against 15.8 % with the edges first. */
 static skein_status add_springs(tailor *t) {
@@ -194,7 +203,7 @@ static skein_status add_springs(tailor *t) {
         if (status) return status;
     }
     sk_world_add_strain_limit(t->body);
-    return t->lines.area ? sk_lines_add_spans(&t->lines, t->world, t->body, t->error) : SKEIN_OK;
+    return add_spans(t);
 }
 
 /* Triangles of the faces, as fans, for forces on areas. */
