@@ -978,6 +978,93 @@ static void tethers_need_a_way(void **state) {
     free(d);
 }
 
+/* ---- Spans ---- */
+
+/* A disc of a metre across in the xz-plane: a vertex in the middle and rings of 6, 12, 18 ... around it. No grid. */
+static draft *disc(uint32_t rings) {
+    draft *d = calloc(1, sizeof *d);
+    vertex(d, 0, 0, 0);
+    for (uint32_t r = 1, inner = 0, first = 1; r <= rings; r++) {
+        uint32_t count = 6 * r, inner_count = r > 1 ? count - 6 : 1;
+        for (uint32_t k = 0; k < count; k++) {
+            double turn = 2 * acos(-1) * k / count;
+            vertex(d, 0.5 * r / rings * cos(turn), 0, 0.5 * r / rings * sin(turn));
+        }
+        for (uint32_t side = 0, i = 0, o = 0; side < 6; side++)
+            for (uint32_t k = 0; k < r; k++) {
+                FACE(d, inner + i % inner_count, first + (o + 1) % count, first + o);
+                o++;
+                if (k + 1 == r) break;
+                FACE(d, inner + i % inner_count, inner + (i + 1) % inner_count, first + o % count);
+                i++;
+            }
+        inner = first, first += count;
+    }
+    return d;
+}
+
+/* Calls for every span: on a flat mesh it is as long as it looks, on a rolled one as it was before, not as the chord. */
+static void check_spans(const skein_world *world, const draft *flat, double edge, double nearly) {
+    size_t count = 0, of_particle[2000] = {0};
+    for (size_t b = 0; b < world->rules.batches.count; b++) {
+        const sk_batch *batch = world->rules.batches.data[b];
+        if (strcmp(batch->label, "span")) continue;
+        for (size_t e = 0; e < batch->count; e++, count++) {
+            uint32_t i = batch->particle[2 * e], j = batch->particle[2 * e + 1];
+            const double *p = flat->positions + 3 * i, *q = flat->positions + 3 * j;
+            double apart = hypot(p[0] - q[0], p[2] - q[2]);
+            assert_near((double)batch->rest[e], apart, nearly * apart);
+            assert_true(apart > 3 * edge && apart < 26 * edge);
+            of_particle[i]++, of_particle[j]++;
+        }
+    }
+    assert_true(count > flat->vertices * 3); // two walks of 5 edges from each, and most of those of 20
+    for (size_t i = 0; i < flat->vertices; i++) assert_true(of_particle[i] > 0);
+}
+
+static void spans_of_a_mesh_are_as_long_as_the_way(void **state) {
+    (void)state;
+    enum { RINGS = 18 };
+    draft *flat = disc(RINGS), *rolled = disc(RINGS);
+    skein_world *world = new_world("xpbd", 1);
+    build(world, flat, SKEIN_SETTINGS(SKEIN_TEXT("pins", "0"))); // as it lies
+    check_spans(world, flat, 0.5 / RINGS, 1e-5);
+    skein_world_destroy(world);
+    for (size_t v = 0; v < rolled->vertices; v++) { // half around a roll
+        double *p = rolled->positions + 3 * v, turn = acos(-1) * p[0];
+        p[0] = sin(turn) / acos(-1), p[1] = cos(turn) / acos(-1);
+    }
+    world = new_world("xpbd", 1);
+    build(world, rolled, SKEIN_SETTINGS(SKEIN_REAL("scale", 2), SKEIN_VEC3("rotation", 30, 40, 50)));
+    for (size_t k = 0; k < 3 * flat->vertices; k++) flat->positions[k] *= 2;
+    check_spans(world, flat, 1.0 / RINGS, 0.01);
+    skein_world_destroy(world);
+    free(flat);
+    free(rolled);
+}
+
+/* Let go from level by two points of its rim. With few substeps single edges get a third longer without spans. */
+static void spans_hold_a_mesh_that_swings(void **state) {
+    (void)state;
+    ONLY_IN_PLAIN_BUILDS();
+    enum { RINGS = 18 };
+    draft *d = disc(RINGS);
+    char pins[40];
+    snprintf(pins, sizeof pins, "%d %d", 1 + 3 * RINGS * (RINGS - 1), 1 + 3 * RINGS * (RINGS - 1) + 3 * RINGS);
+    skein_world *world = new_world("xpbd", 3);
+    build(world, d, SKEIN_SETTINGS(SKEIN_TEXT("pins", pins)));
+    add_gravity(world);
+    double most = 0, p99 = 0;
+    for (int n = 0; n < 150; n++) {
+        steps(world, 1, 1.0 / 60);
+        most = fmax(most, statistics_of(world).max_stretch), p99 = fmax(p99, statistics_of(world).p99_stretch);
+    }
+    assert_under(most, 0.2);
+    assert_under(p99, 0.11);
+    skein_world_destroy(world);
+    free(d);
+}
+
 /* Stretch bounds hold, whatever the springs: a sheet like rubber, under either method. */
 static void stretch_bounds_are_kept(void **state) {
     (void)state;
@@ -1026,6 +1113,8 @@ int main(void) {
         cmocka_unit_test(tethers_go_around_corners),
         cmocka_unit_test(tethers_do_not_prefer_a_diagonal),
         cmocka_unit_test(tethers_need_a_way),
+        cmocka_unit_test(spans_of_a_mesh_are_as_long_as_the_way),
+        cmocka_unit_test(spans_hold_a_mesh_that_swings),
         cmocka_unit_test(stretch_bounds_are_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

