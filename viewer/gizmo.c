@@ -285,7 +285,9 @@ bool viewer_gizmo_place(const viewer_gizmo *gizmo, const viewer_sight *sight, in
             if (render_dot(off, eye) > best) best = render_dot(off, eye), memcpy(place, point, sizeof place);
         }
     }
-    return viewer_sight_project(sight, place, at) && viewer_gizmo_pick(gizmo, sight, at[0], at[1]) == part;
+    bool seen = viewer_sight_project(sight, place, at) && at[0] >= sight->left && at[0] < sight->left + sight->width &&
+                at[1] >= 0 && at[1] < sight->height;
+    return seen && viewer_gizmo_pick(gizmo, sight, at[0], at[1]) == part;
 }
 
 /* ---- Following the pointer ---- */

@@ -307,7 +307,7 @@ bool viewer_handles_press(viewer_stage *stage, const viewer_request *r) {
     h->side = side, h->part = part;
     h->from[0] = r->x, h->from[1] = r->y;
     for (int k = 0; k < 3; k++) h->by[k] = h->tool == VIEWER_SIZES ? 1 : 0;
-    viewer_event(stage->events, "takes handle %s %s", words_of_tool[h->tool], viewer_gizmo_part(part));
+    viewer_event(stage->events, "takes %shandle %s %s", side ? "other " : "", words_of_tool[h->tool], viewer_gizmo_part(part));
     stage->dirty = true;
     return true;
 }
@@ -408,6 +408,7 @@ void viewer_handles_drag(viewer_stage *stage) {
     if (h->steps) take_steps(h, viewer_sight_metres(&sight, h->gizmo.origin));
     describe(h);
     show_where(stage);
+    viewer_event(stage->events, "holds %s", h->words);
 }
 
 /* As if it had never been moved. */

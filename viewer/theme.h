@@ -16,6 +16,10 @@ typedef enum viewer_theme { VIEWER_KEPT_THEME, VIEWER_DARK, VIEWER_LIGHT } viewe
 
 enum { VIEWER_SERIES = 6 };
 
+/* Of a slider's knob, which lies under its number, and of one that is held: the number is read through it. */
+#define VIEWER_KNOB_OPACITY 0.75
+#define VIEWER_HELD_OPACITY 0.6
+
 /* 0xRRGGBB, as a screen shows them. */
 typedef struct viewer_colours {
     uint32_t window, panel, raised;  /* behind everything; of panels; of cards and lists that lie on them */

@@ -12,6 +12,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "viewer/chart.h"
+
 static double scale_of_all = 1;
 static const viewer_colours *colours = viewer_colours_of(VIEWER_DARK);
 
@@ -118,8 +120,8 @@ void widgets_theme(const viewer_colours *theme) {
         {ImGuiCol_ScrollbarGrabActive, paint(theme->knob)},
         {ImGuiCol_CheckMark, paint(theme->accent)},
         // a slider's knob lies under its number, which is read through it
-        {ImGuiCol_SliderGrab, paint(theme->knob, 0.75f)},
-        {ImGuiCol_SliderGrabActive, paint(theme->accent, 0.85f)},
+        {ImGuiCol_SliderGrab, paint(theme->knob, static_cast<float>(VIEWER_KNOB_OPACITY))},
+        {ImGuiCol_SliderGrabActive, paint(theme->accent, static_cast<float>(VIEWER_HELD_OPACITY))},
         {ImGuiCol_Button, paint(theme->field)},
         {ImGuiCol_ButtonHovered, paint(theme->field_over)},
         {ImGuiCol_ButtonActive, paint(theme->accent, 0.6f)},
@@ -501,31 +503,6 @@ void widgets_circle(const float middle[2], float radius, float width, uint32_t c
 
 // ---- plots and pictures
 
-/* What an axis spans: all finite values. Where two things are compared, those of the calmer one with as much again and
- * ten times that: what blows up leaves the picture at its edge, and what it is compared with stays to be seen. */
-static void find_range(const float *const *series, int series_count, size_t first, size_t count, size_t room,
-                       bool compared, float *least, float *most) {
-    float all_least = FLT_MAX, all_most = -FLT_MAX, calm = FLT_MAX, low = 0, high = 0;
-    for (int s = 0; s < series_count; s++) {
-        float from = FLT_MAX, to = -FLT_MAX;
-        for (size_t i = 0; series[s] && i < count; i++) {
-            float value = series[s][(first + i) % room];
-            if (!std::isfinite(value)) continue;
-            from = std::min(from, value), to = std::max(to, value);
-        }
-        if (from > to) continue;
-        all_least = std::min(all_least, from), all_most = std::max(all_most, to);
-        float reach = std::max(to - from, 0.1f * std::max(std::fabs(from), std::fabs(to)));
-        if (reach < calm) calm = reach, low = from, high = to;
-    }
-    *least = all_least <= all_most ? all_least : 0, *most = all_least <= all_most ? all_most : 0;
-    if (compared && calm > 0 && calm < FLT_MAX) {
-        *most = std::min(*most, high + 10 * calm);
-        *least = std::max(*least, low - 10 * calm);
-    }
-    if (*most - *least < 1e-6f) *least -= 0.5f, *most += 0.5f;
-}
-
 /* The step of 1, 2 or 5 times a power of ten that divides a span into at most so many. */
 static float step_of(float span, float most) {
     float about = span / std::max(most, 1.0f), power = std::pow(10.0f, std::floor(std::log10(about)));
@@ -605,8 +582,8 @@ static void draw_curves(const widgets_chart *chart, const frame_of_chart &f) {
 
 void widgets_chart_show(const widgets_chart *chart, double width, double height) {
     frame_of_chart f;
-    find_range(chart->series, chart->series_count, chart->first, chart->count, chart->room, chart->compared, &f.least,
-               &f.most);
+    viewer_chart_range(chart->series, chart->series_count, chart->first, chart->count, chart->room, chart->compared,
+                       &f.least, &f.most);
     // a little air above and below; what is never negative stands on its axis
     float air = 0.06f * (f.most - f.least);
     f.least = f.least >= 0 && f.least <= air * 4 ? 0 : f.least - air, f.most += air;
