@@ -1,7 +1,7 @@
 /* Forces: what pushes particles besides constraints and contact. Each type is one file.
  *
  * A force's kernel adds newtons to F over its domain: particles (slots), triangles of the bodies'
- * surfaces, or particles with their neighbours in the grid. */
+ * surfaces (particles/surface.h), or particles with their neighbours in the grid. */
 #ifndef SK_FORCES_FORCE_H
 #define SK_FORCES_FORCE_H
 
@@ -29,6 +29,9 @@ typedef struct sk_force_type {
     bool on_velocity; /* it depends on velocities, */
     bool (*uses_velocity)(const void *params); /* or does so with these parameters; NULL: what on_velocity says */
     sk_kernels kernel;
+    /* Over triangles: the same for those of a patch, whose elements are the strip rows of cells, [0, rows - 1): that of
+     * row r adds to F of strip rows r and r + 1. `kernel` has the rest. */
+    sk_kernels over_patch;
     /* Adds the force to the sum if it is plain with these parameters, else returns false; NULL: it never is. */
     bool (*plain)(const void *params, sk_plain_force *sum);
     /* For implicit methods, with the row's coefficient a: dst += a d, where -d is how the force grows with the

@@ -3,12 +3,144 @@
  *   u  the air's velocity past the triangle        n  the unit normal, turned to u.n >= 0
  *   F = 1/2 rho A ((drag - lift) (u.n) u + lift |u|^2 n (u.n)/|u|),   a third to each corner
  *
- * A triangle edge-on to the wind feels nothing; one square to it feels drag alone. */
+ * A triangle edge-on to the wind feels nothing; one square to it feels drag alone. With N = 2 A n, whichever way it
+ * points, a corner's share is
+ *
+ *   rho/12 ((drag - lift) |u.N| u + lift (u.N) |u|/|N| N)
+ *
+ * which takes one division and one root. Triangles of a grid are walked cell by cell along its strips, sixteen cells at
+ * once: their corners are blocks, and no index is read. A cell's four corners get one sum each, and what goes to the
+ * next cell's first corners waits for that in a register. */
+#include "base/kernels.h"
 #include "forces/force.h"
 
 typedef struct surface_wind_params {
     double velocity[3], drag, lift, density;
 } surface_wind_params;
+
+/* Squared length of N, m4, under which a triangle is nothing but rounding: |u|/|N| can then be worked out as a root. */
+#define LEAST_SQUARE ((real)1e-30)
+
+#define SK_UNIT surface_wind
+SK_KERNELS(sk_row_kernel, over_patch);
+
+#ifdef SK_ISA
+
+typedef struct blow {
+    sk_vec3 wind;
+    real along, lifting;
+} blow;
+
+/* The bits of a part's lanes in a word with one for each lane of a block. */
+SK_INLINE sk_mask lanes_in(uint16_t word, size_t part) {
+    static const SK_VECTOR_ALIGNED sk_lane_int bit[SK_LANES] = {1,      1 << 1, 1 << 2,  1 << 3,  1 << 4,  1 << 5,
+                                                                1 << 6, 1 << 7, 1 << 8,  1 << 9,  1 << 10, 1 << 11,
+                                                                1 << 12, 1 << 13, 1 << 14, 1 << 15};
+    sk_mask at = ((const sk_mask *)(const void *)bit)[part];
+    return ((at & (sk_lane_int)word) != 0);
+}
+
+SK_INLINE sk_wide3 load3(const sk_wide *part) {
+    return (sk_wide3){part[0], part[SK_PARTS], part[2 * SK_PARTS]};
+}
+SK_INLINE sk_wide3 plus3(sk_wide3 a, sk_wide3 b) {
+    return (sk_wide3){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+SK_INLINE sk_wide3 minus3(sk_wide3 a, sk_wide3 b) {
+    return (sk_wide3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+SK_INLINE void add3(sk_wide *part, sk_wide3 a) {
+    part[0] += a.x, part[SK_PARTS] += a.y, part[2 * SK_PARTS] += a.z;
+}
+
+/* A corner's share of the triangle with this edge and tip. `moving`: its corners' velocities, added up. */
+SK_INLINE sk_wide3 share_of(const blow *air, sk_wide3 edge, sk_wide3 to_tip, sk_wide3 moving, sk_mask there) {
+    const real third = (real)1 / 3;
+    sk_wide3 flow = {air->wind.x - third * moving.x, air->wind.y - third * moving.y, air->wind.z - third * moving.z};
+    sk_wide3 normal = {edge.y * to_tip.z - edge.z * to_tip.y, edge.z * to_tip.x - edge.x * to_tip.z,
+                       edge.x * to_tip.y - edge.y * to_tip.x};
+    sk_wide square = sk_dot_wide(normal, normal), across = sk_dot_wide(normal, flow);
+    there &= sk_more(square, sk_splat(LEAST_SQUARE));
+    sk_wide a = air->along * sk_wide_abs(across);
+    sk_wide b = air->lifting * across * sk_wide_sqrt(sk_dot_wide(flow, flow) / square);
+    return (sk_wide3){sk_keep(there, a * flow.x + b * normal.x), sk_keep(there, a * flow.y + b * normal.y),
+                      sk_keep(there, a * flow.z + b * normal.z)};
+}
+
+/* The two triangles beside the diagonal from `base` to `far`: what they bring to its ends, and to their tips. */
+SK_INLINE void add_two(const blow *air, const sk_wide3 *x, const sk_wide3 *v, sk_wide3 *sum, int base, int far, int tip,
+                       int other, const uint16_t *has, size_t part) {
+    sk_wide3 edge = minus3(x[far], x[base]), moving = plus3(v[base], v[far]);
+    sk_wide3 one = share_of(air, edge, minus3(x[tip], x[base]), plus3(moving, v[tip]), lanes_in(has[tip], part));
+    sk_wide3 two = share_of(air, edge, minus3(x[other], x[base]), plus3(moving, v[other]), lanes_in(has[other], part));
+    sk_wide3 both = plus3(one, two);
+    sum[tip] = plus3(sum[tip], one), sum[other] = plus3(sum[other], two);
+    sum[base] = plus3(sum[base], both), sum[far] = plus3(sum[far], both);
+}
+
+/* The blocks at the corners of sixteen cells. */
+typedef struct corners {
+    const sk_wide *x[4], *v[4];
+} corners;
+
+SK_INLINE void blow_on_cells(const blow *air, const corners *at, const uint16_t *has, size_t part, sk_wide3 *sum) {
+    sk_wide3 x[4], v[4];
+    for (int i = 0; i < 4; i++) {
+        x[i] = load3(at->x[i] + part), v[i] = load3(at->v[i] + part);
+        sum[i] = (sk_wide3){{0}, {0}, {0}};
+    }
+    if (has[1] | has[2]) add_two(air, x, v, sum, 0, 3, 1, 2, has, part);
+    if (has[0] | has[3]) add_two(air, x, v, sum, 1, 2, 0, 3, has, part);
+}
+
+/* x, y and z of a block, each lane that of the next strip: what the last cells of a row have on their right. */
+SK_INLINE void turn3(sk_wide *to, const sk_wide *block, int shift) {
+    for (int r = 0; r < 3 * SK_PARTS; r += SK_PARTS)
+        for (int p = 0; p < SK_PARTS; p++) to[r + p] = sk_turned(block + r, p, shift);
+}
+
+/* Cells of strip rows [begin, end): each row's add to its own particles, and to those of the next row. */
+void SK_KERNEL(over_patch)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const surface_wind_params *params = ((const sk_force *)row->rule)->params;
+    const sk_patch *patch = row->patch;
+    const blow air = {sk_v3_of(params->velocity), (real)(params->density * (params->drag - params->lift) / 12),
+                     (real)(params->density * params->lift / 12)};
+    size_t width = patch->walk.width, line = width * 4 * SK_PARTS; // vectors a strip row
+    for (size_t r = begin; r < end; r++) {
+        size_t first = patch->walk.first_slot * 4 / SK_PART + r * line;
+        const sk_wide *x = (const sk_wide *)(const void *)run->vector[SK_X] + first;
+        const sk_wide *v = (const sk_wide *)(const void *)run->vector[SK_V] + first;
+        sk_wide *f = (sk_wide *)(void *)run->vector[row->dst] + first;
+        sk_wide turned[4][3 * SK_PARTS], over[2][3 * SK_PARTS];
+        turn3(turned[0], x, 1), turn3(turned[1], x + line, 1);
+        turn3(turned[2], v, 1), turn3(turned[3], v + line, 1);
+        for (size_t p = 0; p < SK_PARTS; p++) {
+            sk_wide3 upper = {{0}, {0}, {0}}, lower = upper;
+            for (size_t k = 0; k < width; k++) {
+                size_t here = k * 4 * SK_PARTS, next = here + 4 * SK_PARTS;
+                bool last = k + 1 == width;
+                corners at = {{x + here, last ? turned[0] : x + next, x + line + here,
+                               last ? turned[1] : x + line + next},
+                              {v + here, last ? turned[2] : v + next, v + line + here,
+                               last ? turned[3] : v + line + next}};
+                sk_wide3 sum[4];
+                blow_on_cells(&air, &at, patch->has[r * width + k], p, sum);
+                add3(f + here + p, plus3(upper, sum[0]));
+                add3(f + line + here + p, plus3(lower, sum[2]));
+                upper = sum[1], lower = sum[3];
+            }
+            over[0][p] = upper.x, over[0][SK_PARTS + p] = upper.y, over[0][2 * SK_PARTS + p] = upper.z;
+            over[1][p] = lower.x, over[1][SK_PARTS + p] = lower.y, over[1][2 * SK_PARTS + p] = lower.z;
+        }
+        for (size_t i = 0; i < 2; i++) {
+            sk_wide back[3 * SK_PARTS];
+            turn3(back, over[i], -1); // to the lane that is one on
+            for (size_t n = 0; n < 3 * SK_PARTS; n++) f[i * line + n] += back[n];
+        }
+    }
+}
+
+#else
 
 static const skein_field fields[] = {
     SK_VEC3(surface_wind_params, velocity, "velocity", "m/s", 0, 0, 0, "the air's velocity; 0 is still air"),
@@ -17,30 +149,27 @@ static const skein_field fields[] = {
     SK_REAL(surface_wind_params, density, "density", "kg/m3", 1.2, 0, 1e4, "of the air"),
 };
 
+/* Triangles that lie in no grid, one by one. */
 static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const surface_wind_params *params = ((const sk_force *)row->rule)->params;
     const sk_vec4 *x = run->vector[SK_X], *v = run->vector[SK_V];
     sk_vec4 *f = run->vector[row->dst];
     sk_vec3 wind = sk_v3_of(params->velocity);
-    real drag = (real)params->drag, lift = (real)params->lift, third = (real)1 / 3;
-    real half_density = (real)(0.5 * params->density);
+    real third = (real)1 / 3, along = (real)(params->density * (params->drag - params->lift) / 12),
+         lifting = (real)(params->density * params->lift / 12);
     for (size_t t = begin; t < end; t++) {
-        const uint32_t *c = run->triangles->corner[t];
+        const uint32_t *c = run->surface->rest.corner[t];
         sk_vec3 p[3], moving = {0, 0, 0};
         for (int k = 0; k < 3; k++) {
             p[k] = sk_xyz(sk_load(x, row->packed, c[k]));
             moving = sk_add(moving, sk_xyz(sk_load(v, row->packed, c[k])));
         }
         sk_vec3 flow = sk_sub(wind, sk_scale(third, moving));
-        // twice the area along the normal; |across| = |u| 2 A cos(angle)
         sk_vec3 normal = sk_cross(sk_sub(p[1], p[0]), sk_sub(p[2], p[0]));
-        real twice_area = sk_length(normal), speed = sk_length(flow);
-        if (!(twice_area > 0) || !(speed > 0)) continue;
-        real across = sk_dot(normal, flow);
-        real sign = across < 0 ? (real)-1 : (real)1;
-        real along = half_density * (drag - lift) * (sign * across) * (real)0.5;
-        real lifting = half_density * lift * speed * across * (real)0.5 / twice_area;
-        sk_vec3 share = sk_scale(third, sk_add(sk_scale(along, flow), sk_scale(lifting, normal)));
+        real square = sk_dot(normal, normal), across = sk_dot(normal, flow);
+        if (!(square > LEAST_SQUARE)) continue;
+        real a = along * sk_abs(across), b = lifting * across * sk_sqrt(sk_dot(flow, flow) / square);
+        sk_vec3 share = sk_add(sk_scale(a, flow), sk_scale(b, normal));
         for (int k = 0; k < 3; k++) sk_add_at(f, row->packed, c[k], share);
     }
 }
@@ -51,4 +180,6 @@ const sk_force_type sk_surface_wind = {
     .domain = SK_OVER_TRIANGLES,
     .on_velocity = true,
     .kernel = {SK_ANY_ISA(kernel)},
+    .over_patch = {SK_EACH_ISA(over_patch)},
 };
+#endif

@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "constraints/sweep.h"
 #include "methods/method.h"
+#include "particles/surface.h"
 
 void sk_add_row(sk_writer *writer, sk_row row) {
     row.dt = writer->h;
@@ -110,14 +111,42 @@ static double widest_radius(const sk_rules *rules) {
     return widest;
 }
 
+/* Whether a rule acts on the body whose strips these are; nobody else has slots there. */
+static bool acts_on_strips(const sk_only *only, const sk_walk *walk) {
+    size_t end = walk->first_slot + walk->rows * walk->width * SK_LANES;
+    for (size_t i = 0; i < only->count; i++)
+        if (only->data[i].first_slot < end && only->data[i].end_slot > walk->first_slot) return true;
+    return !only->some;
+}
+
+/* A row for the triangles of each patch, and one for the rest, of all bodies or of those that are named. Neighbouring
+ * triangles add to the same corners, so the rows are ordered. */
+static void add_surface(sk_writer *writer, sk_row row, const sk_force *force) {
+    const sk_surface *surface = writer->surface;
+    const sk_only *only = &force->only;
+    sk_row along = row;
+    row.order = along.order = SK_ORDERED;
+    along.kernel = force->type->over_patch.version[writer->isa];
+    for (size_t i = 0; i < surface->patch_count; i++) {
+        const sk_patch *patch = &surface->patches[i];
+        if (!patch->has || !acts_on_strips(only, &patch->walk)) continue;
+        along.patch = patch;
+        along.walk = patch->walk;
+        along.end = patch->walk.rows - patch->walk.reach;
+        sk_add_row(writer, along);
+    }
+    for (size_t i = 0; i < (only->some ? only->count : 1); i++) {
+        row.begin = only->some ? sk_surface_rest_from(surface, only->data[i].first_triangle) : 0;
+        row.end = only->some ? sk_surface_rest_from(surface, only->data[i].end_triangle) : surface->rest.count;
+        if (row.begin < row.end) sk_add_row(writer, row);
+    }
+}
+
 /* A force's row, or those of the bodies that it names. */
 static void add_field(sk_writer *writer, sk_row row, const sk_force *force) {
     const sk_only *only = &force->only;
-    if (only->some && force->type->domain == SK_OVER_TRIANGLES) {
-        for (size_t i = 0; i < only->count; i++) {
-            row.begin = only->data[i].first_triangle, row.end = only->data[i].end_triangle;
-            if (row.begin < row.end) sk_add_row(writer, row);
-        }
+    if (force->type->domain == SK_OVER_TRIANGLES) {
+        add_surface(writer, row, force);
     } else if (only->some && force->type->domain == SK_OVER_NEIGHBOURS) {
         // cells of its own, so that what others add up does not depend on its radius; the kernel passes over strangers
         if (only->count) sk_write_cells(writer, writer->everybody, force->type->radius(force->params));
@@ -151,10 +180,7 @@ void sk_write_fields(sk_writer *writer) {
                       .rule = force,
                       .label = force->label,
                       .end = writer->slot_count};
-        if (force->type->domain == SK_OVER_TRIANGLES) {
-            row.order = SK_ORDERED; // neighbouring triangles write the same corners
-            row.end = writer->triangle_count;
-        } else if (force->type->domain == SK_OVER_NEIGHBOURS) {
+        if (force->type->domain == SK_OVER_NEIGHBOURS) {
             row.kind = SK_ROW_NEIGHBOUR;
             row.by_particle = true;
             row.end = writer->particle_count;

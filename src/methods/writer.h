@@ -33,7 +33,8 @@ typedef struct sk_writer {
     sk_allocator *allocator;
     const sk_rules *rules;
     sk_isa isa;
-    size_t slot_count, particle_count, triangle_count;
+    size_t slot_count, particle_count;
+    const sk_surface *surface;
     const sk_group *everybody;
     size_t strip_slots; /* the first slots, which are in strips */
     size_t packed;      /* the first slots that are in packed blocks now */

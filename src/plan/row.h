@@ -71,7 +71,7 @@ typedef enum sk_row_kind {
  * Ordered: the sequential order is the answer. */
 typedef enum sk_order { SK_FREE, SK_ORDERED } sk_order;
 
-/* Triangles of all bodies' surfaces, as slots, for forces that act on areas. */
+/* Triangles of all bodies' surfaces, by their corners. */
 typedef struct sk_triangles {
     uint32_t (*corner)[3];
     size_t count, capacity;
@@ -81,6 +81,34 @@ typedef struct sk_triangles {
  * rows with odd ones, or where elements lead from row to row, in such blocks. */
 typedef enum sk_half { SK_WHOLE, SK_EVEN_HALF, SK_ODD_HALF } sk_half;
 
+/* Which strips of particles a row walks along, so that threads can follow each other down the rows of a
+ * grid; all zero where it does not. An element of an ordered row's strip row j also writes row j + reach;
+ * one of a free row writes row j alone, and reads rows j - reach to j + reach. */
+typedef struct sk_walk {
+    size_t first_slot;  /* of the strips */
+    size_t rows, width; /* strip rows; blocks a row */
+    size_t reach;
+} sk_walk;
+
+/* The triangles in the cells of a grid whose particles lie in strips. A cell is known by its first corner:
+ *
+ *     0 . 1      (r, c)      (r, c + 1)       its triangle with tip t has corner t and the two beside it,
+ *     . \ .                                   3 - t is the corner that it has not
+ *     2 . 3      (r + 1, c)  (r + 1, c + 1) */
+typedef struct sk_patch {
+    sk_walk walk;
+    uint16_t (*has)[4]; /* of each block: bit l of [t] says whether lane l's cell has the triangle with tip t */
+} sk_patch;
+
+/* All triangles, as slots, for forces that act on areas: those in patches, and the rest. */
+typedef struct sk_surface {
+    sk_patch *patches;
+    size_t patch_count;
+    sk_triangles rest;
+    uint32_t *number; /* of each of the rest, which it is among all that take part */
+    size_t number_capacity;
+} sk_surface;
+
 /* What a kernel may touch while a plan runs. */
 typedef struct sk_run {
     sk_vec4 *vector[SK_VECTOR_COUNT];
@@ -88,7 +116,7 @@ typedef struct sk_run {
     const uint32_t *slot_of;     /* of the user's particles */
     const uint32_t *particle_of; /* of slots: the user's index, or SK_NOBODY */
     size_t particle_count;
-    const sk_triangles *triangles;
+    const sk_surface *surface;
     sk_cells *cells;
     sk_allocator *allocator;
     double time;              /* at the end of the present substep, s */
@@ -107,15 +135,6 @@ typedef struct sk_kernels {
     sk_row_kernel *version[SK_ISA_COUNT];
 } sk_kernels;
 
-/* Which strips of particles a row walks along, so that threads can follow each other down the rows of a
- * grid; all zero where it does not. An element of an ordered row's strip row j also writes row j + reach;
- * one of a free row writes row j alone, and reads rows j - reach to j + reach. */
-typedef struct sk_walk {
-    size_t first_slot;  /* of the strips */
-    size_t rows, width; /* strip rows; blocks a row */
-    size_t reach;
-} sk_walk;
-
 struct sk_row {
     sk_row_kind kind;
     sk_order order;
@@ -125,6 +144,7 @@ struct sk_row {
     double dt;             /* of the substep, s */
     double before;         /* how long before the end of the substep the state is that it looks at, s */
     const void *rule;      /* a force, a collider, a batch */
+    const sk_patch *patch; /* of triangles in strips, else NULL */
     const sk_group *group; /* whom it moves or sorts, where the rule does not say; NULL: everybody */
     const char *label;     /* its name in `skein explain` */
     sk_row_kernel *inner;  /* of a row over some slots only: `kernel` is sk_run_partly then */

@@ -303,7 +303,7 @@ static void undo_body(skein_world *world, sk_object *object, size_t particles, s
     while (rules->batches.count > batches) sk_batch_release(rules->batches.data[--rules->batches.count], allocator);
     while (rules->limits.count > limits) sk_limit_release(rules->limits.data[--rules->limits.count], allocator);
     sk_particles_truncate(&world->particles, particles);
-    world->triangles.count = world->slots_of_triangles.count = triangles;
+    world->triangles.count = triangles;
     sk_body_release(world, body);
     unmake_object(world, object);
 }

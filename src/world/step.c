@@ -18,14 +18,8 @@ skein_status sk_world_arrange(skein_world *world, skein_error *error) {
     for (size_t i = 0; i < world->rules.limits.count && good; i++)
         if (*world->rules.limits.data[i]->enabled) good = sk_limit_arrange(world->rules.limits.data[i], allocator, &world->particles);
     if (!good) return sk_fail_memory(error, "the order of sweeps");
-    sk_triangles *slots = &world->slots_of_triangles;
-    slots->count = 0; // of those that are there
-    for (size_t t = 0; t < world->triangles.count; t++) {
-        const uint32_t *corner = world->triangles.corner[t];
-        if (!sk_particle_is_here(&world->particles, corner[0])) continue;
-        for (int k = 0; k < 3; k++) slots->corner[slots->count][k] = world->particles.slot_of[corner[k]];
-        slots->count++;
-    }
+    if (!sk_surface_arrange(&world->surface, allocator, &world->particles, &world->triangles))
+        return sk_fail_memory(error, "triangles");
     world->slots_stale = false;
     world->plan_stale = true;
     world->matrix.shaped = false;
@@ -147,7 +141,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         .strip_slots = world->particles.strip_slots,
         .particle_count = world->particles.count,
         .everybody = &world->everybody,
-        .triangle_count = world->slots_of_triangles.count,
+        .surface = &world->surface,
         .h = dt,
     };
     sk_write_sum(&writer, SK_PREVIOUS, 1, SK_X, 0, SK_NONE);
@@ -173,7 +167,7 @@ sk_run sk_world_run_context(skein_world *world) {
         .slot_of = world->particles.slot_of,
         .particle_of = world->particles.particle_of,
         .particle_count = world->particles.count,
-        .triangles = &world->slots_of_triangles,
+        .surface = &world->surface,
         .cells = &world->cells,
         .allocator = &world->allocator,
         .time = world->time,

@@ -115,7 +115,7 @@ void skein_world_destroy(skein_world *world) {
         sk_fields_clear(allocator, world->method->kind.fields, world->method->kind.field_count, world->method_params);
     sk_release(allocator, world->method_params);
     sk_release(allocator, world->triangles.corner);
-    sk_release(allocator, world->slots_of_triangles.corner);
+    sk_surface_release(&world->surface, allocator);
     sk_release(allocator, world->plan.data);
     sk_release(allocator, world->plan.parts.data);
     skein_sparse_solver_set(world, NULL);
@@ -252,13 +252,12 @@ void sk_world_rank_particles(skein_world *world, const sk_body *body, const uint
 
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3],
                                     skein_error *error) {
-    sk_triangles *all = &world->triangles, *slots = &world->slots_of_triangles;
+    sk_triangles *all = &world->triangles;
     size_t need = all->count + count;
-    if (!sk_reserve(&world->allocator, (void **)&all->corner, &all->capacity, need, sizeof *all->corner) ||
-        !sk_reserve(&world->allocator, (void **)&slots->corner, &slots->capacity, need, sizeof *slots->corner))
+    if (!sk_reserve(&world->allocator, (void **)&all->corner, &all->capacity, need, sizeof *all->corner))
         return sk_fail_memory(error, "triangles");
     if (count) memcpy(all->corner + all->count, corners, count * sizeof *corners);
-    all->count = slots->count = need;
+    all->count = need;
     world->plan_stale = world->slots_stale = true;
     return SKEIN_OK;
 }

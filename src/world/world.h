@@ -14,7 +14,7 @@
 #include "formula/parameters.h"
 #include "methods/method.h"
 #include "motions/motion.h"
-#include "particles/particles.h"
+#include "particles/surface.h"
 #include "plan/matrix.h"
 #include "plan/solve.h"
 
@@ -118,7 +118,7 @@ struct skein_world {
     sk_pace pace; /* how many of the threads a step takes */
     sk_particles particles;
     sk_triangles triangles; /* as user's indices */
-    sk_triangles slots_of_triangles;
+    sk_surface surface;     /* the same as slots */
     sk_rules rules;
     struct {
         sk_object **data;
