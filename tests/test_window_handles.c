@@ -22,6 +22,7 @@ static void settle(void) {
 }
 
 static void close_window(void) {
+    settle(); // what was typed is done, and keys are the window's
     listen_from_here();
     tool("key ctrl+q");
     expect("closed");

@@ -69,6 +69,7 @@ static void hash_after(int frames, char hash[32]) {
 }
 
 static void close_window(void) {
+    settle(); // what was typed is done, and keys are the window's
     listen_from_here();
     tool("key ctrl+q");
     expect("closed");
