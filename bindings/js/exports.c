@@ -11,7 +11,6 @@
 
 #include "app/list.h"
 #include "bindings/js/files.h"
-#include "io/exporters.h"
 #include "io/scene_settings.h"
 #include "render/view.h"
 #include "viewer/grab.h"
@@ -83,15 +82,6 @@ bool EXPORT(js_file_add)(js_scene *js, const char *path, char *bytes, size_t siz
     return true;
 }
 
-/* The kinds that a scene may name besides the library's: exporters, which nobody runs here, and the view. */
-enum { MOST_KINDS = 16 };
-static void kinds_of(const skein_kind *kinds[MOST_KINDS]) {
-    size_t count = 0;
-    for (size_t i = 0; io_exporter_at(i) && count < MOST_KINDS - 2; i++) kinds[count++] = io_exporter_at(i);
-    kinds[count++] = render_view_kind();
-    kinds[count] = NULL;
-}
-
 /* The sets, and before them one that takes away what a scene wants to be written: a film, say, of which nothing is known
  * here. NULL when there is no memory; free it. */
 static const char **without_output(const char *text, size_t size, const char *const *sets) {
@@ -110,8 +100,7 @@ static const char **without_output(const char *text, size_t size, const char *co
 
 /* Reads a scene and builds its world. `sets` are "path=value", NULL-terminated, or NULL. False: js_faults() tells. */
 bool EXPORT(js_open)(js_scene *js, const char *text, size_t size, const char *path, const char *const *sets) {
-    const skein_kind *kinds[MOST_KINDS];
-    kinds_of(kinds);
+    const skein_kind *const kinds[] = {render_view_kind(), NULL}; // besides the library's; nothing is exported here
     io_faults faults = {note_fault, js, 0};
     const js_files *before = js_files_use(&js->files);
     const char **all = without_output(text, size, sets);
@@ -218,8 +207,7 @@ int EXPORT(js_version)(void) {
 
 /* Notes in the document what a living object was given, so that it can be opened again with it. */
 static void note_set(js_scene *js, const char *path, const char *field, const char *value, io_faults *faults) {
-    const skein_kind *kinds[MOST_KINDS];
-    kinds_of(kinds);
+    const skein_kind *const kinds[] = {render_view_kind(), NULL}; // besides the library's; nothing is exported here
     size_t size = strlen(path) + strlen(field) + strlen(value) + 3;
     char *set = malloc(size);
     json_t *notes = json_array();

@@ -1,0 +1,367 @@
+// Draws a world: surfaces lit on both sides, balls and rods for what has none, birds, colliders, a sun with soft shadows.
+// Owns what lies on the graphics card; `describe` gives it a world, `show` a state of it.
+import * as THREE from 'three';
+import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+
+import {beatWings, birdGeometry, colliderGeometry, triangles} from './shapes.js';
+
+const FRONT = ['#b8432f', '#2f6f8f', '#7a8f3a', '#9a6b3f', '#6b4f8f', '#3f8f7a'];
+const BACK = ['#d8b48c', '#cfdbe2', '#e3dfb8', '#e6d3bd', '#d6cbe3', '#c9e3da'];
+const LOOKS = {
+    light: {sky: '#dfe6ea', ground: '#cfcbc0', grid: '#b4afa2', collider: '#9aa3a8', bird: '#2c3238'},
+    dark: {sky: '#1c2126', ground: '#2b2f33', grid: '#454a50', collider: '#6d767d', bird: '#d9dde0'},
+};
+
+export class Picture {
+    #holder;
+    #renderer;
+    #scene = new THREE.Scene();
+    #camera = new THREE.PerspectiveCamera(34, 1, 0.01, 2000);
+    #sun = new THREE.DirectionalLight('#fff4e2', 2.6);
+    #ground;
+    #grid;
+    #look = LOOKS.light;
+    #parts = null; // of the world that is drawn
+    #state = null;
+    #beat = {value: 0};
+    #wanted = false;
+
+    constructor(holder) {
+        this.#holder = holder;
+        this.#renderer = new THREE.WebGLRenderer({antialias: true}); // throws where there is no WebGL2
+        this.#renderer.shadowMap.enabled = true;
+        this.#renderer.shadowMap.type = THREE.VSMShadowMap;
+        this.#renderer.toneMapping = THREE.ACESFilmicToneMapping;
+        this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+        holder.append(this.#renderer.domElement);
+        this.controls = new OrbitControls(this.#camera, this.#renderer.domElement);
+        this.controls.addEventListener('change', () => this.draw());
+        this.#scene.add(this.#sun, this.#sun.target, new THREE.HemisphereLight('#dfeaf5', '#8c8272', 1.5));
+        this.#sun.castShadow = true;
+        this.#sun.shadow.mapSize.set(2048, 2048);
+        this.#sun.shadow.radius = 5;
+        this.#sun.shadow.blurSamples = 12;
+        this.#sun.shadow.bias = -0.0005;
+        this.#sun.shadow.normalBias = 0.01;
+        new ResizeObserver(() => this.#resize()).observe(holder);
+        this.#resize();
+    }
+
+    get canvas() {
+        return this.#renderer.domElement;
+    }
+    get camera() {
+        return [...this.#camera.position.toArray(), ...this.controls.target.toArray()];
+    }
+    set camera([x, y, z, ...at]) {
+        this.#camera.position.set(x, y, z);
+        this.controls.target.set(...at);
+        this.controls.update();
+        this.draw();
+    }
+    set dark(on) {
+        this.#look = on ? LOOKS.dark : LOOKS.light;
+        this.#scene.background = new THREE.Color(this.#look.sky);
+        if (this.#scene.fog) this.#scene.fog.color.set(this.#look.sky);
+        if (this.#parts) this.#paint();
+        this.draw();
+    }
+
+    #resize() {
+        const {clientWidth: width, clientHeight: height} = this.#holder;
+        if (!width || !height) return;
+        this.#renderer.setSize(width, height);
+        this.#camera.aspect = width / height;
+        this.#camera.updateProjectionMatrix();
+        this.draw();
+    }
+
+    /* Soon, once, however often it is asked for. */
+    draw() {
+        if (this.#wanted) return;
+        this.#wanted = true;
+        requestAnimationFrame(() => {
+            this.#wanted = false;
+            this.#renderer.render(this.#scene, this.#camera);
+        });
+    }
+
+    /* ---- a world ---- */
+
+    describe(world) {
+        if (this.#parts) {
+            this.#scene.remove(this.#parts.all);
+            this.#parts.all.traverse((thing) => {
+                thing.geometry?.dispose();
+                thing.material?.dispose();
+                thing.dispose?.();
+            });
+        }
+        const all = new THREE.Group();
+        this.#parts = {
+            all, world, framed: false,
+            surfaces: world.bodies.map((body, i) => (body.faceSizes.length ? this.#surface(body, i, all) : null)),
+            colliders: world.colliders.map((collider) => this.#collider(collider, all)),
+            ...this.#loose(world, all),
+        };
+        this.#scene.add(all);
+        this.#paint();
+    }
+
+    #surface(body, number, all) {
+        const shape = new THREE.BufferGeometry();
+        shape.setIndex(new THREE.BufferAttribute(triangles(body), 1));
+        for (const name of ['position', 'normal'])
+            shape.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * body.vertexCount), 3).setUsage(THREE.DynamicDrawUsage));
+        for (const [side, colours] of [[THREE.FrontSide, FRONT], [THREE.BackSide, BACK]]) {
+            const cloth = new THREE.MeshStandardMaterial({color: colours[number % colours.length], side, roughness: 0.85});
+            const mesh = new THREE.Mesh(shape, cloth);
+            mesh.frustumCulled = false;
+            mesh.receiveShadow = true;
+            mesh.castShadow = side === THREE.FrontSide;
+            cloth.shadowSide = THREE.DoubleSide;
+            all.add(mesh);
+        }
+        return shape;
+    }
+
+    #collider({kind, fields}, all) {
+        const shape = fields.visible ? colliderGeometry(kind, fields) : null;
+        if (!shape) return null;
+        const material = new THREE.MeshStandardMaterial({
+            roughness: 0.6, side: kind === 'bowl' ? THREE.DoubleSide : THREE.FrontSide,
+            transparent: kind === 'bowl', opacity: kind === 'bowl' ? 0.45 : 1});
+        const mesh = new THREE.Mesh(shape, material);
+        mesh.castShadow = kind !== 'plane' && kind !== 'bowl';
+        mesh.receiveShadow = true;
+        mesh.userData.kind = kind;
+        all.add(mesh);
+        return mesh;
+    }
+
+    /* Particles without a surface: birds of a flock, balls for others, rods along the springs between them. */
+    #loose(world, all) {
+        const birds = [], balls = [], inSurface = new Uint8Array(world.count);
+        for (const body of world.bodies) {
+            const list = body.kind === 'flock' ? birds : body.faceSizes.length ? null : balls;
+            for (let i = 0; i < body.particleCount; i++) {
+                inSurface[body.firstParticle + i] = list !== balls;
+                list?.push(body.firstParticle + i);
+            }
+        }
+        const rods = [];
+        for (let i = 0; i < world.springs.length; i += 2)
+            if (!inSurface[world.springs[i]] && !inSurface[world.springs[i + 1]]) rods.push(world.springs[i], world.springs[i + 1]);
+        const many = (count, shape, material) => {
+            const mesh = new THREE.InstancedMesh(shape, material, count);
+            mesh.frustumCulled = false;
+            mesh.castShadow = mesh.receiveShadow = true;
+            mesh.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
+            if (count) all.add(mesh);
+            return mesh;
+        };
+        const matter = () => new THREE.MeshStandardMaterial({color: FRONT[1], roughness: 0.6});
+        const feathers = beatWings(new THREE.MeshStandardMaterial({roughness: 0.8, side: THREE.DoubleSide}), this.#beat);
+        return {
+            birds, balls, rods,
+            birdMesh: many(birds.length, birdGeometry(), feathers),
+            ballMesh: many(balls.length, new THREE.SphereGeometry(1, 20, 14), matter()),
+            rodMesh: many(rods.length / 2, new THREE.CylinderGeometry(1, 1, 1, 12, 1, true), matter()),
+        };
+    }
+
+    #paint() {
+        for (const mesh of this.#parts.colliders) mesh?.material.color.set(mesh.userData.kind === 'plane' ? this.#look.ground : this.#look.collider);
+        this.#parts.birdMesh.material.color.set(this.#look.bird);
+        if (this.#grid) this.#setGrid(this.#grid.userData.size, this.#grid.userData.height);
+    }
+
+    /* ---- a state ---- */
+
+    show(state) {
+        if (!this.#parts) return;
+        this.#state = state;
+        state.surfaces.forEach((surface, i) => {
+            const shape = this.#parts.surfaces[i];
+            if (!surface || !shape) return;
+            shape.attributes.position.array.set(surface.positions);
+            shape.attributes.normal.array.set(surface.normals);
+            shape.attributes.position.needsUpdate = shape.attributes.normal.needsUpdate = true;
+        });
+        state.poses.forEach(({position, rotation: r}, i) => {
+            const mesh = this.#parts.colliders[i];
+            if (!mesh) return;
+            mesh.matrixAutoUpdate = false;
+            mesh.matrix.set(r[0], r[1], r[2], position[0], r[3], r[4], r[5], position[1], r[6], r[7], r[8], position[2], 0, 0, 0, 1);
+        });
+        this.#beat.value = state.time;
+        this.#placeLoose(state);
+        if (!this.#parts.framed) this.frame();
+        this.draw();
+    }
+
+    #radius(state) {
+        const given = this.#parts.world.settings.particleRadius;
+        return given || 0.012 * (this.#parts.size ?? 1);
+    }
+
+    #placeLoose({positions, velocities}) {
+        const {birds, balls, rods, birdMesh, ballMesh, rodMesh} = this.#parts, radius = this.#radius();
+        const matrix = new THREE.Matrix4(), at = new THREE.Vector3(), to = new THREE.Vector3(), turn = new THREE.Quaternion();
+        const x = new THREE.Vector3(), y = new THREE.Vector3(), z = new THREE.Vector3();
+        balls.forEach((p, i) => {
+            matrix.makeScale(radius, radius, radius).setPosition(positions[3 * p], positions[3 * p + 1], positions[3 * p + 2]);
+            ballMesh.setMatrixAt(i, matrix);
+        });
+        for (let i = 0; i < rods.length; i += 2) {
+            at.fromArray(positions, 3 * rods[i]);
+            to.fromArray(positions, 3 * rods[i + 1]).sub(at);
+            const length = to.length() || 1e-9;
+            turn.setFromUnitVectors(y.set(0, 1, 0), z.copy(to).divideScalar(length));
+            matrix.compose(at.addScaledVector(to, 0.5), turn, x.set(0.7 * radius, length, 0.7 * radius));
+            rodMesh.setMatrixAt(i / 2, matrix);
+        }
+        birds.forEach((p, i) => {
+            z.fromArray(velocities, 3 * p);
+            if (z.lengthSq() < 1e-12) z.set(0, 0, 1);
+            z.normalize();
+            x.set(0, 1, 0).cross(z);
+            if (x.lengthSq() < 1e-9) x.set(1, 0, 0);
+            x.normalize();
+            y.crossVectors(z, x);
+            // a bird leans into its turn: by the share of sideways change since the last state
+            const old = this.#parts.headings?.[i];
+            if (old) {
+                const lean = THREE.MathUtils.clamp(-12 * x.dot(to.subVectors(z, old)), -0.9, 0.9);
+                const smooth = (this.#parts.leans[i] = 0.85 * (this.#parts.leans[i] ?? 0) + 0.15 * lean);
+                x.applyAxisAngle(z, smooth);
+                y.crossVectors(z, x);
+            }
+            ((this.#parts.headings ??= [])[i] ??= new THREE.Vector3()).copy(z);
+            this.#parts.leans ??= [];
+            const size = 3 * radius;
+            matrix.makeBasis(x.multiplyScalar(size), y.multiplyScalar(size), z.multiplyScalar(size));
+            matrix.setPosition(positions[3 * p], positions[3 * p + 1], positions[3 * p + 2]);
+            birdMesh.setMatrixAt(i, matrix);
+        });
+        for (const mesh of [birdMesh, ballMesh, rodMesh]) mesh.instanceMatrix.needsUpdate = true;
+    }
+
+    /* Turns the camera so that all is in the picture, from where the scene's view says; sun and ground follow. */
+    frame() {
+        const {positions} = this.#state, box = new THREE.Box3(), point = new THREE.Vector3();
+        for (let i = 0; i < positions.length; i += 3) box.expandByPoint(point.fromArray(positions, i));
+        const {world, colliders} = this.#parts, view = world.settings.view, camera = view.camera ?? {};
+        for (const mesh of colliders)
+            if (mesh && mesh.userData.kind !== 'plane') {
+                mesh.geometry.computeBoundingBox();
+                box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix));
+            }
+        const plane = world.colliders.find((c) => c.kind === 'plane' && c.fields.normal[1] > 0.999);
+        if (plane) box.expandByPoint(box.getCenter(point).setY(plane.fields.offset));
+        const centre = box.getCenter(new THREE.Vector3()), size = Math.max(box.getSize(point).length(), 1e-3);
+        const turn = THREE.MathUtils.degToRad(camera.azimuth ?? 27), height = THREE.MathUtils.degToRad(camera.elevation ?? 14);
+        const wide = Math.min(this.#camera.aspect, 1.3) / 1.3;
+        const far = (0.58 * size) / Math.tan(THREE.MathUtils.degToRad(17)) / (camera.zoom ?? 1) / wide;
+        this.#parts.framed = true;
+        this.#parts.size = size;
+        this.#camera.near = far / 200;
+        this.#camera.far = far * 60;
+        this.#camera.updateProjectionMatrix();
+        this.controls.target.copy(centre);
+        this.#camera.position.set(Math.sin(turn) * Math.cos(height), Math.sin(height), Math.cos(turn) * Math.cos(height)).multiplyScalar(far).add(centre);
+        this.controls.update();
+        this.#lightAndGround(centre, size, box.min.y, plane);
+        this.#placeLoose(this.#state);
+    }
+
+    #lightAndGround(centre, size, lowest, plane) {
+        const height = plane ? plane.fields.offset : lowest - 0.04 * size;
+        this.#sun.position.set(-0.62, 0.86, 0.42).normalize().multiplyScalar(2 * size).add(centre);
+        this.#sun.target.position.copy(centre);
+        Object.assign(this.#sun.shadow.camera, {left: -size, right: size, top: size, bottom: -size, near: 0.01 * size, far: 5 * size});
+        this.#sun.shadow.camera.updateProjectionMatrix();
+        this.#setGrid(size, height);
+    }
+
+    #setGrid(size, height) {
+        for (const old of [this.#ground, this.#grid]) {
+            if (!old) continue;
+            this.#scene.remove(old);
+            old.geometry.dispose();
+            old.material.dispose();
+        }
+        const cell = 10 ** Math.floor(Math.log10(size / 2));
+        this.#ground = new THREE.Mesh(new THREE.CircleGeometry(30 * size, 64).rotateX(-Math.PI / 2), new THREE.MeshStandardMaterial({color: this.#look.ground, roughness: 1}));
+        this.#ground.position.y = height - 0.001 * size;
+        this.#ground.receiveShadow = true;
+        this.#grid = new THREE.GridHelper(60 * cell, 60, this.#look.grid, this.#look.grid);
+        this.#grid.position.y = height + 0.0006 * size;
+        this.#grid.material.transparent = true;
+        this.#grid.material.opacity = 0.5;
+        this.#grid.userData = {size, height};
+        this.#scene.add(this.#ground, this.#grid);
+        this.#scene.fog = new THREE.Fog(this.#look.sky, 5 * size, 26 * size); // the ground has no edge
+        this.#ground.visible = this.#grid.visible = this.#parts.world.settings.view.ground !== false;
+        // a level plane is drawn as the ground
+        this.#parts.world.colliders.forEach(({kind, fields}, i) => {
+            const mesh = this.#parts.colliders[i];
+            if (mesh && kind === 'plane' && fields.normal[1] > 0.999) mesh.visible = false;
+        });
+    }
+
+    /* ---- the hand ---- */
+
+    #pointer(event) {
+        const box = this.canvas.getBoundingClientRect();
+        return new THREE.Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height);
+    }
+    #ray(event) {
+        const caster = new THREE.Raycaster();
+        caster.setFromCamera(this.#pointer(event), this.#camera);
+        return caster;
+    }
+
+    /* The particle under a pointer: a surface's corner, or a ball or bird within some pixels; null where none is. */
+    pick(event) {
+        if (!this.#parts || !this.#state) return null;
+        const caster = this.#ray(event), {surfaces, balls, birds, world, colliders} = this.#parts, {positions} = this.#state;
+        let best = {distance: Infinity, particle: -1};
+        surfaces.forEach((shape, i) => {
+            if (!shape) return;
+            shape.computeBoundingSphere();
+            const hit = caster.intersectObject(new THREE.Mesh(shape, new THREE.MeshBasicMaterial({side: THREE.DoubleSide})), false)[0];
+            if (!hit || hit.distance >= best.distance) return;
+            const point = new THREE.Vector3(), away = (v) => point.fromArray(shape.attributes.position.array, 3 * v).distanceTo(hit.point);
+            const vertex = [hit.face.a, hit.face.b, hit.face.c].reduce((a, b) => (away(b) < away(a) ? b : a));
+            best = {distance: hit.distance, particle: world.bodies[i].particleOfVertex[vertex]};
+        });
+        const box = this.canvas.getBoundingClientRect(), here = this.#pointer(event), point = new THREE.Vector3();
+        let nearest = event.pointerType === 'touch' ? 28 : 14;
+        for (const p of [...balls, ...birds]) {
+            const distance = point.fromArray(positions, 3 * p).distanceTo(this.#camera.position);
+            point.project(this.#camera);
+            const pixels = Math.hypot((point.x - here.x) * box.width, (point.y - here.y) * box.height) / 2;
+            if (pixels < nearest && point.z < 1) {
+                nearest = pixels;
+                best = {distance, particle: p};
+            }
+        }
+        const wall = caster.intersectObjects(colliders.filter((c) => c && !['plane', 'bowl'].includes(c.userData.kind)), false)[0];
+        if (best.particle < 0 || (wall && wall.distance < best.distance - 0.02)) return null;
+        return best.particle;
+    }
+    place(particle) {
+        return new THREE.Vector3().fromArray(this.#state.positions, 3 * particle);
+    }
+    /* Where the pointer is in the plane through a point that faces the camera. */
+    inPlane(event, through) {
+        const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(this.#camera.getWorldDirection(new THREE.Vector3()), through);
+        return this.#ray(event).ray.intersectPlane(plane, new THREE.Vector3())?.toArray() ?? null;
+    }
+    /* Where on the page a particle is, for tests and for help. */
+    onPage(particle) {
+        const box = this.canvas.getBoundingClientRect(), point = this.place(particle).project(this.#camera);
+        return [box.left + ((point.x + 1) / 2) * box.width, box.top + ((1 - point.y) / 2) * box.height];
+    }
+}
