@@ -96,8 +96,8 @@ static skein_status read_beside(const gltf_reader *r, const char *uri, size_t mo
         path[at++] = (char)value;
     }
     path[at] = 0;
-    bool here = !strchr(path + folder, '/') && !strchr(path + folder, '\\') && path[folder] && path[folder] != '.' &&
-                strlen(path) == at;
+    bool here = at - folder < 256 && !strchr(path + folder, '/') && !strchr(path + folder, '\\') && path[folder] &&
+                path[folder] != '.' && strlen(path) == at;
     char quote[IO_QUOTE_SIZE];
     skein_status status = here ? io_file_read(path, most, out, r->error)
                                : FAIL(r, "the buffer %s is not read: put it into the folder of the file",
@@ -123,6 +123,8 @@ static skein_status find_buffer(gltf_reader *r, json_int_t place, const unsigned
         const char *data = uri && !strncmp(uri, "data:", 5) ? strstr(uri, ";base64,") : NULL;
         skein_status status = SKEIN_OK;
         if (!uri) status = FAIL(r, "buffer %lld has no bytes", (long long)place);
+        else if (!data && !strncmp(uri, "data:", 5))
+            status = FAIL(r, "buffer %lld in the file is no base64", (long long)place);
         else if (!own->data && data) status = read_base64(r, data + 8, own);
         else if (!own->data) status = read_beside(r, uri, (size_t)1 << 34, own);
         if (status) return status;
