@@ -146,10 +146,10 @@ static skein_status put_in_order(tailor *t) {
         sk_release(&t->world->allocator, grid.place);
         return status;
     }
-    // without pins there is no outward, and the file's own order is as good as its axis, measured on an elephant
+    // without pins there is no outward; where a mesh is thin, its axis leaves too few springs independent of each other
     bool pinned = false;
     for (size_t i = 0; i < t->sheet.particle_count; i++) pinned |= t->pinned[i];
-    if (!pinned)
+    if (!pinned && !sk_order_is_broad(&t->springs, &t->sheet))
         return sk_order_scattered(&t->springs) ? SKEIN_OK : sk_fail_memory(t->error, "the order of springs");
     t->rank = sk_allocate(&t->world->allocator, t->sheet.particle_count * sizeof *t->rank);
     if (!t->rank || !sk_order_outward(&t->springs, &t->sheet, t->pinned, t->rank))

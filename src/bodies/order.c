@@ -7,6 +7,7 @@
 
 enum {
     MOST_STEP = 2, /* rows and columns that a grid's spring may lead over */
+    BROAD = 128,   /* particles in a layer of a mesh as thick as an edge is long */
     WINDOW = 4096  /* springs or hinges that are scattered among each other: enough to fill groups, near in memory */
 };
 
@@ -163,19 +164,37 @@ static bool sort_outward(sk_allocator *allocator, struct sk_spring_list *list, c
     return good;
 }
 
+typedef struct axis {
+    int number;
+    double low, length;
+} axis;
+
+static axis longest_axis(const sk_sheet *sheet) {
+    axis longest = {0, 0, -INFINITY};
+    for (int k = 0; k < 3; k++) {
+        double low = INFINITY, high = -INFINITY;
+        for (size_t i = 0; i < sheet->particle_count; i++) {
+            low = fmin(low, sheet->position[i][k]);
+            high = fmax(high, sheet->position[i][k]);
+        }
+        if (high - low > longest.length) longest = (axis){k, low, high - low};
+    }
+    return longest;
+}
+
+bool sk_order_is_broad(const sk_springs *springs, const sk_sheet *sheet) {
+    const struct sk_spring_list *edges = &springs->list[SK_STRETCH];
+    double sum = 0;
+    for (size_t i = 0; i < edges->count; i++) sum += (double)edges->rest[i];
+    double edge = edges->count ? sum / (double)edges->count : 0, length = longest_axis(sheet).length;
+    return length > 0 && (double)sheet->particle_count * edge >= BROAD * length;
+}
+
 /* Distance from the pins along the sheet, or place along the longest axis; parts that no pin reaches come last. */
 static bool find_distances(const sk_sheet *sheet, const bool *pinned, double *distance) {
     size_t count = sheet->particle_count, pins = 0;
     for (size_t i = 0; i < count; i++) pins += pinned[i];
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (size_t i = 0; i < count; i++)
-        for (int k = 0; k < 3; k++) {
-            low[k] = fmin(low[k], sheet->position[i][k]);
-            high[k] = fmax(high[k], sheet->position[i][k]);
-        }
-    int axis = 0;
-    for (int k = 1; k < 3; k++)
-        if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+    axis along = longest_axis(sheet);
     bool good = true;
     if (pins) {
         sk_geodesic *geodesic = sk_geodesic_create(sheet);
@@ -185,7 +204,7 @@ static bool find_distances(const sk_sheet *sheet, const bool *pinned, double *di
         sk_release(sheet->allocator, nearest);
     }
     for (size_t i = 0; i < count && good; i++)
-        if (!pins || !(distance[i] < INFINITY)) distance[i] = (pins ? 1e12 : 0) + sheet->position[i][axis] - low[axis];
+        if (!pins || !(distance[i] < INFINITY)) distance[i] = (pins ? 1e12 : 0) + sheet->position[i][along.number] - along.low;
     return good;
 }
 

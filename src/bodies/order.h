@@ -4,7 +4,9 @@
  * file it came from, and so is one of quads that lie like a grid's (quads.h): its springs go direction by direction and
  * its particles lie in strips. Any other mesh goes outward from its pins: first the springs that lead outward, then those
  * that go round, each by distance; what was pulled last holds best; and so do its hinges. A mesh without pins has no
- * outward: its particles stay as they are in its file, and its springs and hinges are scattered.
+ * outward: a broad one goes along its longest axis instead, so that what is swept together lies together in memory and
+ * threads can follow each other; the particles of any other stay as they are in its file, and its springs and hinges are
+ * scattered.
  *
  * Files go from face to face, so that each spring shares a particle with the one before it; sixteen can be worked at
  * once only where none does, and what is left over by one would be carried on by the next (docs/design.md, "Hinges"). */
@@ -20,8 +22,10 @@ bool sk_order_find_grid(const sk_sheet *sheet, const sk_springs *springs, uint32
 /* Sorts the springs of a grid by direction; place[particle] is its place in the grid, NULL: its own number. False
  * when there is no memory. */
 bool sk_order_by_direction(sk_springs *springs, const uint32_t *place);
-/* Sorts the springs outward from the pinned particles, and fills rank[particle] with its place. False when
- * there is no memory. */
+/* Whether a layer across the longest axis, as thick as an edge is long, has particles enough for groups to be full. */
+bool sk_order_is_broad(const sk_springs *springs, const sk_sheet *sheet);
+/* Sorts the springs outward from the pinned particles, or along the longest axis where there are none, and fills
+ * rank[particle] with its place. False when there is no memory. */
 bool sk_order_outward(sk_springs *springs, const sk_sheet *sheet, const bool *pinned, uint32_t *rank);
 /* Fills numbers[count] with an order of 0 to count - 1 in which neighbours are far apart, within windows of thousands. */
 void sk_order_scatter(uint32_t *numbers, size_t count);

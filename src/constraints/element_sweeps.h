@@ -315,6 +315,19 @@ SK_INLINE void meet_two_groups(sk_run *run, const sk_row *row, const sk_sweep *s
     put_down(&q, run, row, sweep, 0, mode);
 }
 
+enum { GROUPS_AHEAD = 12 };
+
+/* Asks for what a group reads in order, long before it is its turn: of large meshes it comes from far away, and in pieces
+ * that are too short for a processor to guess. There need be no such group. */
+SK_INLINE void fetch_group(const sk_sweep *sweep, size_t group) {
+    const sk_batch *batch = sweep->batch;
+    const uint32_t *slots = sweep->slots + group * SK_ARITY * SK_LANES;
+    size_t lane = sweep->first_lane + group * SK_LANES;
+    SK_EACH_PARTICLE (i) __builtin_prefetch(slots + i * SK_LANES);
+    for (int r = 0; r < SK_RESTS; r++) __builtin_prefetch(batch->lane_rest + (size_t)r * batch->lane_count + lane);
+    __builtin_prefetch(batch->lane_compliance + lane);
+}
+
 /* Groups [begin, end), or those of slabs [begin, end). Groups with a particle in strips are reached one by one. */
 SK_INLINE void sweep_groups(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_element_mode mode) {
     const sk_sweep *sweep = row->rule;
@@ -322,7 +335,9 @@ SK_INLINE void sweep_groups(sk_run *run, const sk_row *row, size_t begin, size_t
     if (sweep->slab_start) begin = sweep->slab_start[begin], end = sweep->slab_start[end];
     bool pairs = SK_ARITY == 2 && SK_WIDTH > 16 && mode == SK_MODE_PROJECT && !row->packed;
     for (size_t g = begin; g < end; g++) {
+        fetch_group(sweep, g + GROUPS_AHEAD);
         if (pairs && g + 1 < end && sweep->ahead[g] > 1) {
+            fetch_group(sweep, g + 1 + GROUPS_AHEAD);
             for (size_t p = 0; p < SK_PARTS; p++) meet_two_groups(run, row, sweep, &constants, g, p, mode);
             g++;
             continue;

@@ -29,7 +29,9 @@ enum {
     CHUNK_BYTES = 16 << 10, /* of one vector in a chunk: in the first cache with its neighbours */
     SECOND_CACHE_BYTES = 512 << 10, /* of one vector in the turns that one thread has under way */
     LEAST_TURNS = 4,                /* a thread: with fewer, threads start together on large chunks */
-    LONG_LAG = 8,                   /* rows, of a whole segment */
+    LONG_LAG = 8,                   /* rows, of a whole segment, */
+    FAR_LAG = 20,                   /* as a mesh's has; */
+    LEAST_CHUNKS = 4,               /* a thread, where they are made longer than the cache asks for */
     LINE = 16,                      /* counts in a cache line */
     MOST_THREADS = 256,             /* in one walk */
 };
@@ -206,6 +208,11 @@ static void cut_chunks(segment_job *job, int threads) {
         chunk = (rows / (size_t)threads + 3) / 4 * 4;
         if (chunk < lag + 4) chunk = (lag + 7) / 4 * 4;
     }
+    // as much is under way if a chunk is as long as the lag, and slots, rest values and the like are read in longer pieces;
+    // packed strips read none
+    size_t longer = lag / 4 * 4 + 4;
+    bool packed = job->walk.first_slot < job->rows[0].packed;
+    if (!packed && lag >= FAR_LAG && chunk < longer && rows >= longer * (size_t)threads * LEAST_CHUNKS) chunk = longer;
     if (rows / chunk > MOST_CHUNKS) chunk = rows / MOST_CHUNKS + 1;
     job->chunk_rows = chunk;
     job->chunk_count = rows / chunk ? rows / chunk : 1;
