@@ -48,7 +48,7 @@
 #define SKEIN_CLOTH_BEND_DAMPING "bend.damping" /* a number in N s/m; of the springs over folds */
 #define SKEIN_CLOTH_BEND_RIGIDITY "bend.rigidity" /* a number in N m; of the sheet against angle or curvature, the same at any resolution (1e-5 is a cotton) */
 #define SKEIN_CLOTH_STRETCH_LIMIT "stretch.limit" /* a number; strain limit: no edge gets longer than rest times 1 + this; "infinite" is none */
-#define SKEIN_CLOTH_STRETCH_TETHER "stretch.tether" /* a number; no particle gets farther from a pin than along the cloth, nor, on a grid, from others of its row and column, times 1 + this; "infinite" is none */
+#define SKEIN_CLOTH_STRETCH_TETHER "stretch.tether" /* a number; no particle gets farther from a pin, or from any 5 or 20 edges away, than along the cloth, times 1 + this; "infinite" is none */
 #define SKEIN_CLOTH_LOOK "look" /* a word; what its surface is drawn as: woven; smooth and lit through, with round edges; or of one colour */
 #define SKEIN_CLOTH_LOOK_CLOTH "cloth"
 #define SKEIN_CLOTH_LOOK_JELLY "jelly"

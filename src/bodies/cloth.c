@@ -68,8 +68,8 @@ static const skein_field fields[] = {
     SK_REAL(cloth_params, limit, "stretch.limit", "", SK_UNBOUNDED, 0, SK_UNBOUNDED,
             "strain limit: no edge gets longer than rest times 1 + this; \"infinite\" is none"),
     SK_REAL(cloth_params, tether, "stretch.tether", "", 0, 0, SK_UNBOUNDED,
-            "no particle gets farther from a pin than along the cloth, nor, on a grid, from others of its row and column, times "
-            "1 + this; \"infinite\" is none"),
+            "no particle gets farther from a pin, or from any 5 or 20 edges away, than along the cloth, times 1 + this; "
+            "\"infinite\" is none"),
     SK_LOOK(cloth_params, look, SKEIN_LOOK_CLOTH),
 };
 
@@ -179,9 +179,11 @@ static skein_status add_bending(tailor *t) {
     return status;
 }
 
-/* Bounds over many edges: a grid's along its rows and columns, those of other meshes along the mesh's own x and z. */
+/* Bounds over many edges: a grid's along its rows and columns, those of other meshes along the mesh's own x and z. A mesh
+ * without pins hangs on nothing: it may be a balloon, which is to grow. */
 static skein_status add_spans(tailor *t) {
     if (t->lines.area) return sk_lines_add_spans(&t->lines, t->world, t->body, t->error);
+    if (!t->rank) return SKEIN_OK;
     double axes[2][3] = {{1, 0, 0}, {0, 0, 1}};
     sk_points_transform(axes, 2, 1, t->params->rotation, (const double[3]){0, 0, 0});
     return sk_spans_add(&t->sheet, (const double(*)[3])axes, t->rank, t->world, t->body, t->error);

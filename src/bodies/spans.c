@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/status.h"
-#include "bodies/order.h"
 
 /* Edges a span is long, as on grids (lines.c), and how many a straight walk crosses for each of its length. Measured on
  * irregular meshes that are let go from level and swing by two corners, 10 substeps, the worst of all frames: 4,096 vertices, 99th
@@ -270,31 +269,17 @@ static skein_status add_batch(const faces *f, skein_world *world, sk_body *body,
     return status;
 }
 
-/* Ranks where there is no outward (order.h). */
-static bool scatter_ranks(sk_allocator *allocator, size_t count, uint32_t **rank) {
-    uint32_t *numbers = sk_allocate(allocator, count * sizeof *numbers);
-    *rank = sk_allocate(allocator, count * sizeof **rank);
-    bool good = numbers && *rank;
-    if (good) sk_order_scatter(numbers, count);
-    for (size_t i = 0; i < count && good; i++) (*rank)[numbers[i]] = (uint32_t)i;
-    sk_release(allocator, numbers);
-    return good;
-}
-
 skein_status sk_spans_add(const sk_sheet *sheet, const double (*axes)[3], const uint32_t *rank, skein_world *world,
                           sk_body *body, skein_error *error) {
     faces f;
     span *spans = sk_allocate(sheet->allocator, DIRECTIONS * sheet->particle_count * sizeof *spans);
-    uint32_t *scattered = NULL;
-    bool good = find_faces(&f, sheet) && spans && (rank || scatter_ranks(sheet->allocator, sheet->particle_count, &scattered));
-    skein_status status = good ? SKEIN_OK : sk_fail_memory(error, "span");
+    skein_status status = find_faces(&f, sheet) && spans ? SKEIN_OK : sk_fail_memory(error, "span");
     for (int i = SPANS; i-- > 0 && !status;) { // long ones first
         if ((size_t)span_edges[i] * span_edges[i] >= sheet->particle_count) continue; // it would lead all around
-        size_t count = find_spans(&f, axes, rank ? rank : scattered, span_edges[i], spans);
+        size_t count = find_spans(&f, axes, rank, span_edges[i], spans);
         if (count) status = add_batch(&f, world, body, spans, count, error);
     }
     sk_release(sheet->allocator, spans);
-    sk_release(sheet->allocator, scattered);
     release(&f);
     return status;
 }

@@ -11,7 +11,7 @@
 #include "bodies/sheet.h"
 
 /* Bounds that the body's tether bound holds. `axes`: two directions in space that walks follow where the sheet lets
- * them; rank[particle]: its place in memory, in whose order spans come; NULL: scattered (order.h). */
+ * them; rank[particle]: its place in memory, in whose order spans come. */
 skein_status sk_spans_add(const sk_sheet *sheet, const double (*axes)[3], const uint32_t *rank, skein_world *world,
                           sk_body *body, skein_error *error);
 
