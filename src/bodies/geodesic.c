@@ -27,15 +27,20 @@ typedef struct parabola {
     uint32_t source;
 } parabola;
 
+/* All that a search asks of a particle, in one cache line or two: meshes are numbered in any order. */
+typedef struct place {
+    double at[3], distance;
+    uint32_t nearest;
+    bool settled;
+} place;
+
 struct sk_geodesic {
     sk_allocator *allocator;
     const sk_sheet *sheet;
-    parabola *lowest; /* of a grid, which has none of the following: a row's */
-    uint32_t (*triangle)[3];
-    size_t triangle_count;
-    size_t *start; /* of a particle's triangles in `around`; particles + 1 */
-    uint32_t *around;
-    bool *settled;
+    parabola *lowest;       /* of a grid, which has none of the following: a row's */
+    size_t *start;          /* of a particle's triangles in `around`; particles + 1 */
+    uint32_t (*around)[2];  /* the other two corners */
+    place *places;
     struct {
         heap_entry *data;
         size_t count, capacity;
@@ -45,10 +50,9 @@ struct sk_geodesic {
 void sk_geodesic_release(sk_geodesic *g) {
     if (!g) return;
     sk_release(g->allocator, g->lowest);
-    sk_release(g->allocator, g->triangle);
     sk_release(g->allocator, g->start);
     sk_release(g->allocator, g->around);
-    sk_release(g->allocator, g->settled);
+    sk_release(g->allocator, g->places);
     sk_release(g->allocator, g->heap.data);
     sk_release(g->allocator, g);
 }
@@ -77,26 +81,32 @@ sk_geodesic *sk_geodesic_create(const sk_sheet *sheet) {
         sk_geodesic_release(g);
         return NULL;
     }
+    size_t count = 0;
     for (size_t f = 0; f < sheet->face_count; f++)
-        g->triangle_count += cut_face(NULL, sheet->face_start[f + 1] - sheet->face_start[f], NULL);
-    g->triangle = sk_allocate(allocator, g->triangle_count * sizeof *g->triangle);
+        count += cut_face(NULL, sheet->face_start[f + 1] - sheet->face_start[f], NULL);
+    uint32_t(*triangle)[3] = sk_allocate(allocator, count * sizeof *triangle);
     g->start = sk_allocate(allocator, (sheet->particle_count + 2) * sizeof *g->start);
-    g->around = sk_allocate(allocator, 3 * g->triangle_count * sizeof *g->around);
-    g->settled = sk_allocate(allocator, sheet->particle_count * sizeof *g->settled);
-    if (!g->triangle || !g->start || !g->around || !g->settled) {
+    g->around = sk_allocate(allocator, 3 * count * sizeof *g->around);
+    g->places = sk_allocate(allocator, sheet->particle_count * sizeof *g->places);
+    if (!triangle || !g->start || !g->around || !g->places) {
+        sk_release(allocator, triangle);
         sk_geodesic_release(g);
         return NULL;
     }
     size_t filled = 0;
     for (size_t f = 0; f < sheet->face_count; f++)
         filled += cut_face(sheet->corners + sheet->face_start[f], sheet->face_start[f + 1] - sheet->face_start[f],
-                           g->triangle + filled);
+                           triangle + filled);
     // the triangles around each particle: count, sum up, scatter
-    for (size_t t = 0; t < g->triangle_count; t++)
-        for (int k = 0; k < 3; k++) g->start[g->triangle[t][k] + 2]++;
+    for (size_t t = 0; t < count; t++)
+        for (int k = 0; k < 3; k++) g->start[triangle[t][k] + 2]++;
     for (size_t i = 2; i < sheet->particle_count + 2; i++) g->start[i] += g->start[i - 1];
-    for (size_t t = 0; t < g->triangle_count; t++)
-        for (int k = 0; k < 3; k++) g->around[g->start[g->triangle[t][k] + 1]++] = (uint32_t)t;
+    for (size_t t = 0; t < count; t++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t *others = g->around[g->start[triangle[t][k] + 1]++];
+            others[0] = triangle[t][k == 0], others[1] = triangle[t][k == 2 ? 1 : 2];
+        }
+    sk_release(allocator, triangle);
     return g;
 }
 
@@ -192,42 +202,48 @@ static void from_on_grid(const sk_geodesic *g, const bool *source, double *dista
 
 /* ---- searches ---- */
 
+/* A particle's distance stands; its neighbours may be nearer by it. False when there is no memory. */
+static bool settle(sk_geodesic *g, uint32_t top) {
+    place *u = &g->places[top];
+    u->settled = true;
+    for (size_t k = g->start[top]; k < g->start[top + 1]; k++)
+        for (int c = 0; c < 2; c++) {
+            uint32_t number = g->around[k][c];
+            place *v = &g->places[number];
+            const place *w = &g->places[g->around[k][1 - c]];
+            if (v->settled) continue;
+            double best = u->distance + length_between(u->at, v->at);
+            if (w->settled && w->nearest == u->nearest) {
+                double straight = across(u->at, w->at, v->at, u->distance, w->distance);
+                if (straight < best) best = straight;
+            }
+            if (!(best < v->distance)) continue;
+            v->distance = best;
+            v->nearest = u->nearest;
+            if (!heap_push(g, (heap_entry){best, number})) return false;
+        }
+    return true;
+}
+
 bool sk_geodesic_from(sk_geodesic *g, const bool *source, double *distance, uint32_t *nearest) {
     size_t count = g->sheet->particle_count;
     if (g->lowest) {
         from_on_grid(g, source, distance, nearest);
         return true;
     }
-    memset(g->settled, 0, count * sizeof *g->settled);
     g->heap.count = 0;
     for (size_t i = 0; i < count; i++) {
-        distance[i] = source[i] ? 0 : INFINITY;
-        nearest[i] = source[i] ? (uint32_t)i : UINT32_MAX;
+        place *p = &g->places[i];
+        memcpy(p->at, g->sheet->position[i], sizeof p->at);
+        p->distance = source[i] ? 0 : INFINITY;
+        p->nearest = source[i] ? (uint32_t)i : UINT32_MAX;
+        p->settled = false;
         if (source[i] && !heap_push(g, (heap_entry){0, (uint32_t)i})) return false;
     }
     while (g->heap.count) {
-        heap_entry top = heap_pop(g);
-        uint32_t u = top.particle;
-        if (g->settled[u]) continue;
-        g->settled[u] = true;
-        const double *pu = g->sheet->position[u];
-        for (size_t k = g->start[u]; k < g->start[u + 1]; k++) {
-            const uint32_t *t = g->triangle[g->around[k]];
-            for (int c = 0; c < 3; c++) {
-                uint32_t v = t[c], w = t[(c + 1) % 3] == u ? t[(c + 2) % 3] : t[(c + 1) % 3];
-                if (v == u || g->settled[v]) continue;
-                const double *pv = g->sheet->position[v];
-                double best = distance[u] + length_between(pu, pv);
-                if (g->settled[w] && nearest[w] == nearest[u]) {
-                    double straight = across(pu, g->sheet->position[w], pv, distance[u], distance[w]);
-                    if (straight < best) best = straight;
-                }
-                if (!(best < distance[v])) continue;
-                distance[v] = best;
-                nearest[v] = nearest[u];
-                if (!heap_push(g, (heap_entry){best, v})) return false;
-            }
-        }
+        uint32_t top = heap_pop(g).particle;
+        if (!g->places[top].settled && !settle(g, top)) return false;
     }
+    for (size_t i = 0; i < count; i++) distance[i] = g->places[i].distance, nearest[i] = g->places[i].nearest;
     return true;
 }
