@@ -183,7 +183,9 @@ static skein_status add_bending(tailor *t) {
  * without pins hangs on nothing: it may be a balloon, which is to grow. */
 static skein_status add_spans(tailor *t) {
     if (t->lines.area) return sk_lines_add_spans(&t->lines, t->world, t->body, t->error);
-    if (!t->rank) return SKEIN_OK;
+    bool pinned = false;
+    for (size_t i = 0; i < t->sheet.particle_count; i++) pinned |= t->pinned[i];
+    if (!t->rank || !pinned) return SKEIN_OK;
     double axes[2][3] = {{1, 0, 0}, {0, 0, 1}};
     sk_points_transform(axes, 2, 1, t->params->rotation, (const double[3]){0, 0, 0});
     return sk_spans_add(&t->sheet, (const double(*)[3])axes, t->rank, t->world, t->body, t->error);
