@@ -51,9 +51,11 @@ typedef struct sk_constraint_type {
     sk_sweep_kernels project_damped; /* with damping or several passes */
     sk_sweep_kernels limit;          /* keeps C under the batch's bound; positions. Not every kind has one */
     sk_sweep_kernels limit_moving;   /* the same, and velocities: where they are not taken from positions */
-    /* For implicit solves, over a batch's elements, with the row's coefficients a and b: dst += (a k + b c) p for the
-     * direction p, its second source, k and c being the stiffness and damping at X (positive definite); and that
-     * matrix's diagonal 3 x 3 blocks, xx yy zz into dst, xy xz yz into its second source. */
+    /* For implicit solves, with the row's coefficients a and b: dst += (a k + b c) p for the direction p, its second
+     * source, k and c being the stiffness and damping at X (positive definite), over a sweep like forces, or, of a kind
+     * without that, over a batch's elements; and that matrix's diagonal 3 x 3 blocks, xx yy zz into dst, xy xz yz into
+     * its second source. */
+    sk_sweep_kernels apply_sweep;
     sk_kernels apply, diagonal;
     /* The same matrix's blocks, all of them, added to the run's (plan/matrix.h). NULL: each element takes in too many
      * particles for that, and a factor does without them. */

@@ -20,6 +20,7 @@ enum { SK_ROWS_SIDE_BY_SIDE = 8 }; /* strip rows whose chains of elements hide e
 
 typedef enum sk_element_mode {
     SK_MODE_FORCE,
+    SK_MODE_APPLY, /* the matrix of an implicit solve times a direction */
     SK_MODE_PROJECT,
     SK_MODE_PROJECT_DAMPED,
     SK_MODE_LIMIT,
@@ -31,7 +32,7 @@ typedef enum sk_element_mode {
 typedef struct sk_element {
     sk_wide3 x[SK_ARITY];
     sk_wide w[SK_ARITY];      /* inverse masses */
-    sk_wide3 other[SK_ARITY]; /* velocities; of damped projection the positions at the substep's start */
+    sk_wide3 other[SK_ARITY]; /* velocities; of damped projection the positions at the substep's start; a direction */
     sk_wide rest[SK_RESTS], stiffness, multiplier;
     sk_wide soft; /* 1/(k h^2) */
     sk_wide value, divisor;
@@ -40,6 +41,7 @@ typedef struct sk_element {
                                          first's. Constants, once all is inlined. */
     sk_wide scale[SK_ARITY];          /* what comes out, a force or a move, is scale G */
     sk_wide velocity_scale[SK_ARITY]; /* likewise of velocity, from a limit that moves */
+    sk_wide3 across;                  /* of a kind with SK_ACROSS: what is applied besides, to the first */
 } sk_element;
 
 /* What is the same for all elements of a row. */
@@ -48,12 +50,15 @@ typedef struct sk_element_constants {
     real per_step;     /* 1/h^2, times the projections that share the stiffness */
     real gamma;        /* c/(k h) */
     real bound;        /* of the relative violation */
+    real elastic, both; /* of an implicit solve: the stiffness counts so many times, alone and with its damping */
 } sk_element_constants;
 
 static inline sk_element_constants sk_element_prepare(const sk_batch *batch, const sk_row *row) {
     double damping_time = sk_batch_damping_time(batch);
     return (sk_element_constants){(real)damping_time, (real)(row->coefficient[0] / (row->dt * row->dt)),
-                                  (real)(damping_time / row->dt), (real)(batch->bound ? *batch->bound : 0)};
+                                  (real)(damping_time / row->dt), (real)(batch->bound ? *batch->bound : 0),
+                                  (real)row->coefficient[0],
+                                  (real)row->coefficient[0] + (real)(row->coefficient[1] * damping_time)};
 }
 
 /* Declares the kernels that element_sweeps.h and element_stiffness.h define. */
@@ -71,7 +76,8 @@ static inline sk_element_constants sk_element_prepare(const sk_batch *batch, con
 #endif
 #define SK_ELEMENT_KERNELS                                                                                      \
     SK_WALK_KERNELS(force)                                                                                      \
-    SK_WALK_KERNELS(project) SK_WALK_KERNELS(project_damped) SK_LIMIT_KERNELS SK_KERNELS(sk_row_kernel, apply); \
+    SK_WALK_KERNELS(apply)                                                                                      \
+    SK_WALK_KERNELS(project) SK_WALK_KERNELS(project_damped) SK_LIMIT_KERNELS                                   \
     SK_KERNELS(sk_row_kernel, diagonal);                                                                        \
     SK_KERNELS(sk_row_kernel, blocks);
 

@@ -60,6 +60,26 @@ SK_INLINE sk_wide weight_of(const sk_element *e) {
     return sum;
 }
 
+/* The matrix a k + b c of an element at its place, times a direction. It is k (grad C)(grad C)^T, which is positive
+ * definite whatever C is (Gauss and Newton's). A kind with SK_ACROSS adds what turns the gradient, the tension across
+ * it, where that is positive, too. */
+SK_INLINE void apply(sk_element *e, const sk_element_constants *c) {
+    sk_wide push = c->both * e->stiffness, along = sum_along(e, e->other);
+    e->across = (sk_wide3){{0}, {0}, {0}};
+    if (e->divided) {
+        sk_wide inverse = inverse_divisor(e);
+#ifdef SK_ACROSS
+        sk_wide across = c->elastic * sk_keep(sk_positive(e->value), e->stiffness * e->value * inverse);
+        push -= across;
+        e->across = (sk_wide3){across * (e->other[0].x - e->other[1].x), across * (e->other[0].y - e->other[1].y),
+                               across * (e->other[0].z - e->other[1].z)};
+#endif
+        push = push * inverse * inverse;
+    }
+    push *= along;
+    SK_EACH_PARTICLE (i) e->scale[i] = push;
+}
+
 SK_INLINE void pull(sk_element *e, const sk_element_constants *c) {
     sk_wide rate = sum_along(e, e->other), push;
     if (e->divided) {
@@ -134,6 +154,7 @@ SK_INLINE void work_out(sk_element *e, const sk_element_constants *c, sk_element
 #endif
     formula(e);
     if (mode == SK_MODE_FORCE) pull(e, c);
+    else if (mode == SK_MODE_APPLY) apply(e, c);
     else if (mode == SK_MODE_PROJECT) project(e);
     else if (mode == SK_MODE_PROJECT_DAMPED) project_damped(e, c);
     else limit(e, c, mode == SK_MODE_LIMIT_MOVING);

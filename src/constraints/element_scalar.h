@@ -121,6 +121,6 @@ static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_
 #endif
 #define SK_ELEMENT_RULES                                                                                           \
     .arity = SK_ARITY, .rest_count = SK_RESTS, .rest = rest_of, .force = SK_WALKS_OF(force),                       \
-    .project = SK_WALKS_OF(project), .project_damped = SK_WALKS_OF(project_damped), .apply = {SK_EACH_ISA(apply)}, \
+    .project = SK_WALKS_OF(project), .project_damped = SK_WALKS_OF(project_damped), .apply_sweep = SK_WALKS_OF(apply),  \
     .diagonal = {SK_EACH_ISA(diagonal)}, .blocks = {SK_EACH_ISA(blocks)}, .energy = energy, .evaluate = evaluate,     \
     .text = formula_text

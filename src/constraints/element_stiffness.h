@@ -1,10 +1,7 @@
-/* What an implicit solve asks of a kind's elements, once for each instruction set, after
- * element_arithmetic.h: the matrix h^2 k + h c of each element times a direction, and its diagonal blocks.
- *
- * The matrix is k (grad C)(grad C)^T, which is positive definite whatever C is (Gauss and Newton's). A kind with
- * SK_ACROSS adds what turns the gradient, the tension across it, where that is positive, too. An element of the row is
- * an element of the batch. They may share particles, so what is worked out is added one after the other: of sixteen
- * elements first what their first particles get, in the order of the elements, and so on. */
+/* The rest of what an implicit solve asks of a kind's elements, once for each instruction set, after
+ * element_arithmetic.h, which has the matrix h^2 k + h c of each element times a direction (`apply`): that matrix's
+ * blocks. An element of the row is an element of the batch. They may share particles, so what is worked out is added one
+ * after the other: of sixteen elements first what their first particles get, in the order of the elements, and so on. */
 
 /* A part of sixteen elements: the unit of their gradient (or the gradient itself), their stiffness times h^2 and
  * damping times h. */
@@ -66,36 +63,6 @@ SK_INLINE void note(additions *a, const stiff_elements *s, size_t first, int i, 
 SK_INLINE void add(sk_vec4 *vector, size_t packed, const additions *a, size_t count) {
     SK_EACH_PARTICLE (i)
         for (size_t l = 0; l < count; l++) sk_add_at(vector, packed, a->slot[i][l], a->value[i][l]);
-}
-
-void SK_KERNEL(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_vec4 *q = run->vector[row->source[1]];
-    stiff_elements s;
-    additions out;
-    for (size_t at = begin; at < end; at += SK_LANES) {
-        size_t count = end - at < SK_LANES ? end - at : SK_LANES;
-        for (size_t first = 0; first < count; first += SK_PART) {
-            stiffen(&s, run, row, at + first, at + count);
-            sk_wide3 u[SK_ARITY] = {{{0}, {0}, {0}}};
-            for (size_t l = 0; l < s.count; l++)
-                SK_EACH_PARTICLE (i) {
-                    sk_vec4 p = sk_load(q, row->packed, s.slot[i][l]);
-                    u[i].x[l] = p.x, u[i].y[l] = p.y, u[i].z[l] = p.z;
-                }
-            sk_wide along = sum_along(&s.e, u);
-            sk_wide push = (s.along - s.across) * along;
-            SK_EACH_PARTICLE (i) {
-                sk_wide3 g = s.e.gradient[i], f = {push * g.x, push * g.y, push * g.z};
-#ifdef SK_ACROSS
-                int j = 1 - i;
-                f.x += s.across * (u[i].x - u[j].x), f.y += s.across * (u[i].y - u[j].y);
-                f.z += s.across * (u[i].z - u[j].z);
-#endif
-                note(&out, &s, first, i, f);
-            }
-        }
-        add(run->vector[row->dst], row->packed, &out, count);
-    }
 }
 
 /* The blocks' xx yy zz go to dst, xy xz yz to the second source. */

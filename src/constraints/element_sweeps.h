@@ -20,6 +20,16 @@ SK_INLINE sk_wide3 with_sign(const sk_element *e, int i, sk_wide3 a, sk_wide3 d)
     return (sk_wide3){a.x + d.x, a.y + d.y, a.z + d.z};
 }
 
+/* What a sum gets: the second of two opposite gradients has the sign in `with_sign`. */
+SK_INLINE sk_wide3 given(const sk_element *e, int i, sk_element_mode mode) {
+    sk_wide3 d = moved(e, e->scale, i);
+#ifdef SK_ACROSS
+    if (mode == SK_MODE_APPLY) d = (sk_wide3){d.x + e->across.x, d.y + e->across.y, d.z + e->across.z};
+#endif
+    (void)mode;
+    return d;
+}
+
 /* Reads what a mode needs of a part of sixteen elements besides positions. */
 SK_INLINE void set_values(sk_element *e, const sk_sweep *sweep, const sk_element_constants *constants, size_t lane,
                           bool special, bool multiplier) {
@@ -177,11 +187,11 @@ SK_INLINE void sweep_strips(sk_run *run, const sk_row *row, size_t begin, size_t
     }
 }
 
-/* ---- strips: forces ---- */
+/* ---- strips: forces, and products with a direction ---- */
 
 /* The blocks of a span in strip row r pull; `gets` says which of their particles lie in the rows that are asked for. */
 SK_INLINE void pull_span(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_element_constants *constants,
-                         size_t r, const sk_span *span, bool turned, const bool *gets) {
+                         size_t r, const sk_span *span, bool turned, const bool *gets, sk_element_mode mode) {
     size_t line = sweep->walk.width * SK_LANES;
     offsets o = offsets_of(sweep, span, turned);
     for (size_t at = r * line + span->first * SK_LANES; at < r * line + span->last * SK_LANES; at += SK_LANES) {
@@ -191,7 +201,7 @@ SK_INLINE void pull_span(sk_run *run, const sk_row *row, const sk_sweep *sweep, 
         const sk_wide *x[SK_ARITY], *v[SK_ARITY];
         SK_EACH_PARTICLE (i) {
             x[i] = (const sk_wide *)(const void *)(run->vector[SK_X] + slot + o.slots[i]);
-            v[i] = (const sk_wide *)(const void *)(run->vector[SK_V] + slot + o.slots[i]);
+            v[i] = (const sk_wide *)(const void *)(run->vector[row->source[1]] + slot + o.slots[i]);
             f[i] = (sk_wide *)(void *)(run->vector[row->dst] + slot + o.slots[i]);
             if (!turned) continue;
             turn(copy[i][0], x[i], 3, o.shift[i]);
@@ -203,10 +213,10 @@ SK_INLINE void pull_span(sk_run *run, const sk_row *row, const sk_sweep *sweep, 
             sk_element e;
             SK_EACH_PARTICLE (i) e.x[i] = load3(x[i] + p), e.other[i] = load3(v[i] + p);
             set_values(&e, sweep, constants, lane + p * SK_PART, special, false);
-            work_out(&e, constants, SK_MODE_FORCE);
+            work_out(&e, constants, mode);
             SK_EACH_PARTICLE (i) {
                 sk_wide *to = (turned ? copy[i][2] : f[i]) + p;
-                if (gets[i]) store3(to, with_sign(&e, i, load3(to), moved(&e, e.scale, i)));
+                if (gets[i]) store3(to, with_sign(&e, i, load3(to), given(&e, i, mode)));
             }
         }
         SK_EACH_PARTICLE (i)
@@ -214,16 +224,13 @@ SK_INLINE void pull_span(sk_run *run, const sk_row *row, const sk_sweep *sweep, 
     }
 }
 
-/* The same over the end of a strip, as a function of its own. */
-static __attribute__((noinline)) void pull_turned(sk_run *run, const sk_row *row, const sk_sweep *sweep,
-                                                  const sk_element_constants *constants, size_t r, const sk_span *span,
-                                                  const bool *gets) {
-    pull_span(run, row, sweep, constants, r, span, true, gets);
-}
+typedef void pull_walk(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_element_constants *constants,
+                       size_t r, const sk_span *span, const bool *gets);
 
-/* All directions of a batch at once, for the forces on strip rows [begin, end): what they get from rows before
+/* All directions of a batch at once, for the sums on strip rows [begin, end): what they get from rows before
  * is worked out again rather than waited for, so that every cut of the rows gives the same sums. */
-void SK_KERNEL(force_strips)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+SK_INLINE void pull_strips(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_element_mode mode,
+                           pull_walk *turned) {
     const sk_sweep *sweeps = row->rule;
     sk_element_constants constants = sk_element_prepare(sweeps->batch, row);
     size_t reach = row->walk.reach;
@@ -238,19 +245,34 @@ void SK_KERNEL(force_strips)(sk_run *run, const sk_row *row, size_t begin, size_
             }
             for (size_t i = 0; i < sweep->span_count && any; i++) {
                 const sk_span *at = &sweep->span[i];
-                if (!at->turned) pull_span(run, row, sweep, &constants, r, at, false, gets);
-                else pull_turned(run, row, sweep, &constants, r, at, gets);
+                if (!at->turned) pull_span(run, row, sweep, &constants, r, at, false, gets, mode);
+                else turned(run, row, sweep, &constants, r, at, gets);
             }
         }
 }
+
+/* The walk, and the same over the end of a strip, as a function of its own. */
+#define SK_PULLS(name, mode)                                                                             \
+    static __attribute__((noinline)) void name##_turned(sk_run *run, const sk_row *row,                  \
+                                                        const sk_sweep *sweep,                           \
+                                                        const sk_element_constants *constants, size_t r, \
+                                                        const sk_span *span, const bool *gets) {         \
+        pull_span(run, row, sweep, constants, r, span, true, gets, mode);                                \
+    }                                                                                                    \
+    void SK_KERNEL(name##_strips)(sk_run * run, const sk_row *row, size_t begin, size_t end) {           \
+        pull_strips(run, row, begin, end, mode, name##_turned);                                          \
+    }
+SK_PULLS(force, SK_MODE_FORCE)
+SK_PULLS(apply, SK_MODE_APPLY)
+#undef SK_PULLS
 #endif
 
 /* ---- groups ---- */
 
-/* Puts a part's particles back, which are all different, with scale G added to what was gathered. */
-SK_INLINE void scatter_sum(const sk_element *e, const sk_wide *scale, int i, sk_vec4 *vector, size_t packed,
+/* Puts a part's particles back, which are all different, with `d` added to what was gathered. */
+SK_INLINE void scatter_sum(const sk_element *e, sk_wide3 d, int i, sk_vec4 *vector, size_t packed,
                            const uint32_t *slot, sk_wide4 old) {
-    sk_wide3 to = with_sign(e, i, (sk_wide3){old.x, old.y, old.z}, moved(e, scale, i));
+    sk_wide3 to = with_sign(e, i, (sk_wide3){old.x, old.y, old.z}, d);
     if (!packed) {
         sk_scatter(vector, slot, (sk_wide4){to.x, to.y, to.z, old.w});
         return;
@@ -267,8 +289,9 @@ typedef struct group_part {
 } group_part;
 
 SK_INLINE void take_up(group_part *p, sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants,
-                       size_t group, size_t part, size_t packed, sk_element_mode mode) {
-    const sk_vec4 *x = run->vector[SK_X], *other = run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V];
+                       size_t group, size_t part, size_t packed, sk_element_mode mode, sk_vector second) {
+    const sk_vec4 *x = run->vector[SK_X];
+    const sk_vec4 *other = run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : mode == SK_MODE_APPLY ? second : SK_V];
     p->slots = sweep->slots + group * SK_ARITY * SK_LANES + part * SK_PART;
     p->lane = sweep->first_lane + group * SK_LANES + part * SK_PART;
     SK_EACH_PARTICLE (i) {
@@ -285,12 +308,14 @@ SK_INLINE void take_up(group_part *p, sk_run *run, const sk_sweep *sweep, const 
 SK_INLINE void put_down(const group_part *p, sk_run *run, const sk_row *row, const sk_sweep *sweep, size_t packed,
                         sk_element_mode mode) {
     sk_vec4 *x = run->vector[SK_X], *other = run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V];
-    sk_vec4 *dst = mode == SK_MODE_FORCE ? run->vector[row->dst] : x;
+    bool sums = mode == SK_MODE_FORCE || mode == SK_MODE_APPLY;
+    sk_vec4 *dst = sums ? run->vector[row->dst] : x;
     SK_EACH_PARTICLE (i) {
         const uint32_t *slot = p->slots + i * SK_LANES;
-        sk_wide4 old = mode == SK_MODE_FORCE ? sk_gather_any(dst, packed, slot) : p->at[i];
-        scatter_sum(&p->e, p->e.scale, i, dst, packed, slot, old);
-        if (mode == SK_MODE_LIMIT_MOVING) scatter_sum(&p->e, p->e.velocity_scale, i, other, packed, slot, p->other_at[i]);
+        sk_wide4 old = sums ? sk_gather_any(dst, packed, slot) : p->at[i];
+        scatter_sum(&p->e, given(&p->e, i, mode), i, dst, packed, slot, old);
+        if (mode == SK_MODE_LIMIT_MOVING) 
+            scatter_sum(&p->e, moved(&p->e, p->e.velocity_scale, i), i, other, packed, slot, p->other_at[i]);
     }
     if (mode == SK_MODE_PROJECT_DAMPED) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + p->lane) = p->e.multiplier;
 }
@@ -298,7 +323,7 @@ SK_INLINE void put_down(const group_part *p, sk_run *run, const sk_row *row, con
 SK_INLINE void meet_group(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_element_constants *constants,
                           size_t group, size_t part, size_t packed, sk_element_mode mode) {
     group_part p;
-    take_up(&p, run, sweep, constants, group, part, packed, mode);
+    take_up(&p, run, sweep, constants, group, part, packed, mode, row->source[1]);
     work_out(&p.e, constants, mode);
     put_down(&p, run, row, sweep, packed, mode);
 }
@@ -307,8 +332,8 @@ SK_INLINE void meet_group(sk_run *run, const sk_row *row, const sk_sweep *sweep,
 SK_INLINE void meet_two_groups(sk_run *run, const sk_row *row, const sk_sweep *sweep,
                                const sk_element_constants *constants, size_t group, size_t part, sk_element_mode mode) {
     group_part p, q;
-    take_up(&p, run, sweep, constants, group, part, 0, mode);
-    take_up(&q, run, sweep, constants, group + 1, part, 0, mode);
+    take_up(&p, run, sweep, constants, group, part, 0, mode, SK_NONE);
+    take_up(&q, run, sweep, constants, group + 1, part, 0, mode, SK_NONE);
     work_out(&p.e, constants, mode);
     work_out(&q.e, constants, mode);
     put_down(&p, run, row, sweep, 0, mode);
@@ -370,6 +395,7 @@ SK_INLINE void sweep_groups(sk_run *run, const sk_row *row, size_t begin, size_t
 #define SK_WALKS SK_GROUP_WALK
 #endif
 SK_GROUP_WALK(force, SK_MODE_FORCE)
+SK_GROUP_WALK(apply, SK_MODE_APPLY)
 SK_WALKS(project, SK_MODE_PROJECT)
 SK_WALKS(project_damped, SK_MODE_PROJECT_DAMPED)
 #ifdef SK_WITH_LIMITS

@@ -417,22 +417,36 @@ static void add_sweeps(sk_writer *writer, const sk_batch *batch, size_t first, s
         add_sweep(writer, &batch->sweeps[i], SK_WHOLE, kind, kernels, dst, second, 1, 0);
 }
 
-/* A row for all sweeps of a batch along the same strips: each strip row's force is worked out whole, so the
+/* A row for all sweeps of a batch along the same strips: each strip row's sum is worked out whole, so the
  * row is free. `first` is left at the first sweep that is not in strips. */
-static void add_strip_forces(sk_writer *writer, const sk_batch *batch, size_t *first) {
+static void add_strip_sums(sk_writer *writer, const sk_batch *batch, size_t *first, const sk_row *model,
+                           const sk_sweep_kernels *kernels) {
     for (; *first < batch->sweep_count && batch->sweeps[*first].strips; *first += batch->sweeps[*first].together) {
         const sk_sweep *sweep = &batch->sweeps[*first];
-        sk_row row = {.kind = SK_ROW_FORCE,
-                      .order = SK_FREE,
-                      .kernel = batch->type->force.strips.version[writer->isa],
-                      .dst = SK_F,
-                      .source = {SK_X, SK_V},
-                      .rule = sweep,
-                      .label = batch->label,
-                      .walk = sweep->walk,
-                      .end = sweep->walk.rows};
+        sk_row row = *model;
+        row.order = SK_FREE;
+        row.kernel = kernels->strips.version[writer->isa];
+        row.rule = sweep;
+        row.label = batch->label;
+        row.walk = sweep->walk;
+        row.end = sweep->walk.rows;
         for (size_t i = 1; i < sweep->together; i++)
             if (sweep[i].walk.reach > row.walk.reach) row.walk.reach = sweep[i].walk.reach;
+        sk_add_row(writer, row);
+    }
+}
+
+void sk_add_sums(sk_writer *writer, const sk_batch *batch, sk_row row, const sk_sweep_kernels *kernels) {
+    size_t first = 0;
+    add_strip_sums(writer, batch, &first, &row, kernels);
+    row.order = SK_ORDERED;
+    row.kernel = kernels->groups.version[writer->isa];
+    for (; first < batch->sweep_count; first++) {
+        const sk_sweep *sweep = &batch->sweeps[first];
+        row.rule = sweep;
+        row.label = sweep->label;
+        row.walk = sweep->walk;
+        row.end = rows_of(sweep, sweep->walk.reach);
         sk_add_row(writer, row);
     }
 }
@@ -448,10 +462,8 @@ static bool is_kept(const sk_limit *limit) {
 void sk_write_forces(sk_writer *writer) {
     for (size_t i = 0; i < writer->rules->batches.count; i++) {
         const sk_batch *batch = writer->rules->batches.data[i];
-        size_t first = 0;
-        if (!is_on(batch)) continue;
-        add_strip_forces(writer, batch, &first);
-        add_sweeps(writer, batch, first, SK_ROW_FORCE, &batch->type->force, SK_F, SK_V);
+        sk_row row = {.kind = SK_ROW_FORCE, .dst = SK_F, .source = {SK_X, SK_V}, .coefficient = {1}};
+        if (is_on(batch)) sk_add_sums(writer, batch, row, &batch->type->force);
     }
 }
 

@@ -108,6 +108,8 @@ void sk_write_limits(sk_writer *writer, sk_vector velocity);
 
 /* For the writers' own files: adds a row, with the present substep and layout. */
 void sk_add_row(sk_writer *writer, sk_row row);
+/* The same row for all sweeps of a batch: a sum over their elements, of which those along the same strips make one row. */
+void sk_add_sums(sk_writer *writer, const sk_batch *batch, sk_row row, const sk_sweep_kernels *kernels);
 /* The same for a row over slots, on those alone that a rule acts on: a row for each body where it names some. */
 void sk_add_row_on(sk_writer *writer, sk_row row, const sk_only *only);
 

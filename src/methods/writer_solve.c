@@ -89,8 +89,10 @@ static void add_forces(sk_writer *writer, sk_row_kind kind, sk_vector dst, sk_ve
     }
 }
 
+/* Of a kind that has no walk for it. */
 static const sk_kernels *apply_of(const sk_batch *batch) {
-    return &batch->type->apply;
+    static const sk_kernels none;
+    return batch->type->apply_sweep.groups.version[0] ? &none : &batch->type->apply;
 }
 static const sk_kernels *diagonal_of(const sk_batch *batch) {
     return &batch->type->diagonal;
@@ -100,6 +102,12 @@ static const sk_kernels *blocks_of(const sk_batch *batch) {
 }
 
 void sk_write_apply(sk_writer *writer, sk_vector dst, sk_vector p, double a, double b) {
+    for (size_t i = 0; i < writer->rules->batches.count; i++) {
+        const sk_batch *batch = writer->rules->batches.data[i];
+        const sk_sweep_kernels *kernels = &batch->type->apply_sweep;
+        sk_row row = {.kind = SK_ROW_APPLY, .dst = dst, .source = {SK_X, p, SK_NONE}, .coefficient = {a, b}};
+        if (is_elastic(batch) && kernels->groups.version[writer->isa]) sk_add_sums(writer, batch, row, kernels);
+    }
     add_batches(writer, SK_ROW_APPLY, apply_of, dst, p, a, b);
     add_forces(writer, SK_ROW_APPLY, dst, p, a, b);
 }
