@@ -126,7 +126,7 @@ static skein_status find_buffer(gltf_reader *r, json_int_t place, const unsigned
         else if (!data && !strncmp(uri, "data:", 5))
             status = FAIL(r, "buffer %lld in the file is no base64", (long long)place);
         else if (!own->data && data) status = read_base64(r, data + 8, own);
-        else if (!own->data) status = read_beside(r, uri, (size_t)1 << 34, own);
+        else if (!own->data) status = read_beside(r, uri, SIZE_MAX / 2, own);
         if (status) return status;
         *bytes = (const unsigned char *)own->data;
         *size = own->size;

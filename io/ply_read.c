@@ -36,10 +36,12 @@ typedef struct ply_element {
     size_t property_count;
 } ply_element;
 
+enum { PLY_ASCII, PLY_LITTLE, PLY_BIG };
+
 typedef struct ply_reader {
     io_scan scan;
     io_mesh *mesh;
-    enum { PLY_ASCII, PLY_LITTLE, PLY_BIG } format;
+    int format; /* PLY_ASCII, PLY_LITTLE or PLY_BIG */
     ply_element elements[MOST_ELEMENTS];
     size_t element_count;
     uint64_t vertices; /* as the header promises */

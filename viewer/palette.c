@@ -123,7 +123,7 @@ static void show_tools(viewer_panels *panels, const viewer_object *object) {
         if (!first) widgets_same_line();
         first = false;
         if (!button(panels, object, rows[i].title, rows[i].help)) continue;
-        viewer_request request = {.kind = VIEWER_TOOL, .category = object->category, .index = object->index, .code = rows[i].tool};
+        viewer_request request = {.kind = VIEWER_TOOL, .category = object->category, .index = object->index, .code = (int)rows[i].tool};
         viewer_ask(panels->exchange, &request);
     }
 }

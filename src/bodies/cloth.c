@@ -86,7 +86,7 @@ typedef struct tailor {
     sk_lines lines; /* of what lies in strips */
     bool *pinned;
     double *mass;
-    uint32_t *rank; /* of each particle, outward; NULL where it is a grid or has no pins */
+    uint32_t *rank; /* of each particle, outward; NULL where it is a grid, or a narrow mesh without pins */
 } tailor;
 
 static skein_status make_sheet(tailor *t, const skein_mesh *mesh) {

@@ -2,10 +2,9 @@
 
 #include <string.h>
 
-enum {
-    LEAST_SHARE = 5, /* a grid becomes a patch if a fifth of its cells' triangles are there */
-    NOWHERE = UINT32_MAX
-};
+enum { LEAST_SHARE = 5 }; /* a grid becomes a patch if a fifth of its cells' triangles are there */
+
+#define NOWHERE UINT32_MAX /* wider than an enumerator may be */
 
 /* Where a triangle lies: in which patch, block and lane, and its tip. */
 typedef struct triangle_place {
