@@ -113,6 +113,7 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
     if (!status) sk_world_find_groups(world, &ignored);
     if (!status) status = sk_world_fetch(world);
     if (status) return status;
+    for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);
     uint32_t wanted = 1u << mode_at | 1u << image | 1u << zero | 1u << resistance | 1u << SK_SUMS;
     world->plan_stale = true; // its temporaries go
     if (!sk_particles_want(&world->particles, &world->allocator, wanted)) return sk_fail_memory(error, "stability");
@@ -124,9 +125,16 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
                            .rules = &world->rules,
                            .isa = world->isa,
                            .slot_count = world->particles.slot_count,
+                           .strip_slots = world->particles.strip_slots,
                            .particle_count = world->particles.count,
                            .h = 1};
-    find_modes(&f, stability);
+    sk_write_pack(&f.writer); // products go along strips
+    if (!f.writer.no_memory) {
+        run_plan(&f);
+        find_modes(&f, stability);
+        sk_write_unpack(&f.writer); // there is room for as many rows as packing has
+        run_plan(&f);
+    }
     sk_release(&world->allocator, f.plan.data);
     sk_release(&world->allocator, f.plan.parts.data);
     return f.writer.no_memory ? sk_fail_memory(error, "stability") : SKEIN_OK;
