@@ -54,8 +54,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         if (status == SKEIN_OK) {
             judge_mesh(&mesh);
             judge_normals(&mesh);
-        } else
-            require(error.status == status && strncmp(error.where, "no/folder/", 10) == 0 && error.message[0]);
+        } else {
+            // a long path, of a buffer beside the file, keeps its end
+            require(!strncmp(error.where, "no/folder/", 10) || !strncmp(error.where, "...", 3));
+            require(error.status == status && error.message[0]);
+        }
         io_mesh_free(&mesh);
     }
     return 0;

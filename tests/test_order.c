@@ -58,7 +58,7 @@ static void assert_full_groups(skein_world *world, size_t batches) {
         size_t groups = 0;
         if (!batch->count) continue; // the shear of triangles
         for (size_t s = 0; s < batch->sweep_count; s++) {
-            assert_null(batch->sweeps[s].strips);
+            assert_false(batch->sweeps[s].strips);
             groups += batch->sweeps[s].group_count;
         }
         double share = batch->only_bounds ? 0.3 : 0.4; // spans are long: fewer share no particle
