@@ -314,7 +314,7 @@ SK_INLINE void put_down(const group_part *p, sk_run *run, const sk_row *row, con
         const uint32_t *slot = p->slots + i * SK_LANES;
         sk_wide4 old = sums ? sk_gather_any(dst, packed, slot) : p->at[i];
         scatter_sum(&p->e, given(&p->e, i, mode), i, dst, packed, slot, old);
-        if (mode == SK_MODE_LIMIT_MOVING) 
+        if (mode == SK_MODE_LIMIT_MOVING)
             scatter_sum(&p->e, moved(&p->e, p->e.velocity_scale, i), i, other, packed, slot, p->other_at[i]);
     }
     if (mode == SK_MODE_PROJECT_DAMPED) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + p->lane) = p->e.multiplier;
