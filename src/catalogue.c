@@ -1,31 +1,19 @@
 /* The catalogue: every kind that ships with the library, by category, and the public calls that take a
- * kind by its name. A new kind is its own file and one row here. The roof of the house: it sees all
- * floors, and nothing sees it. */
+ * kind by its name. The build finds them (cmake/kinds.cmake): a new kind is its own file. The roof of the house: it sees
+ * all floors, and nothing sees it. */
 #include <math.h>
 #include <string.h>
 
 #include "bodies/body.h"
+#include "catalogue_kinds.h" // made by the build
 #include "space/normals.h"
 
-static const sk_body_type *const bodies[] = {&sk_cloth, &sk_lattice, &sk_rope, &sk_tetrahedra, &sk_flock};
-static const sk_constraint_type *const constraints[] = {
-    &sk_distance,           &sk_dihedral, &sk_isometric,       &sk_straight, &sk_twist, &sk_area,    &sk_volume, &sk_angle,
-    &sk_formula_constraint, &sk_energy,   &sk_enclosed_volume, &sk_pressure};
-static const sk_force_type *const forces[] = {
-    &sk_gravity,  &sk_wind,    &sk_surface_wind, &sk_drag,       &sk_separation, &sk_flocking,    &sk_attraction,
-    &sk_predator, &sk_lookout, &sk_speed_limit,  &sk_turn_limit, &sk_bounds,     &sk_force_field, &sk_potential};
-static const sk_collider_type *const colliders[] = {&sk_plane,   &sk_sphere, &sk_bowl,
-                                                    &sk_capsule, &sk_box,    &sk_formula_surface};
-static const sk_motion_type *const motions[] = {&sk_translate, &sk_turn, &sk_keys, &sk_cache};
-static const sk_method_type *const methods[] = {&sk_explicit_euler,
-                                                &sk_symplectic_euler,
-                                                &sk_lookahead_euler,
-                                                &sk_midpoint,
-                                                &sk_leapfrog,
-                                                &sk_rk4,
-                                                &sk_backward_euler,
-                                                &sk_xpbd,
-                                                &sk_pbd};
+static const sk_body_type *const bodies[] = {SK_BODY_KINDS};
+static const sk_constraint_type *const constraints[] = {SK_CONSTRAINT_KINDS};
+static const sk_force_type *const forces[] = {SK_FORCE_KINDS};
+static const sk_collider_type *const colliders[] = {SK_COLLIDER_KINDS};
+static const sk_motion_type *const motions[] = {SK_MOTION_KINDS};
+static const sk_method_type *const methods[] = {SK_METHOD_KINDS};
 
 #define COUNT(list) (sizeof(list) / sizeof *(list))
 

@@ -4,7 +4,7 @@
 #include "helpers.h"
 #include "world/world.h"
 
-extern const sk_constraint_type sk_changed_distance; // changed_distance.c
+extern const sk_constraint_type sk_distance, sk_changed_distance; // changed_distance.c
 
 static double length_after(const sk_constraint_type *type, const char *method, double stiffness) {
     skein_world *world = new_world(method, 20);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bodies/body.h"
 #include "particles/selection.h"
 
 enum { LEAST_COLUMNS = 96 }; /* of a row of strips: six a lane */

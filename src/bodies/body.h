@@ -9,6 +9,7 @@
     SK_CHOICE(s, member, "look", initial_, "cloth|jelly|plain",                                               \
               "what its surface is drawn as: woven; smooth and lit through, with round edges; or of one colour")
 
-extern const sk_body_type sk_cloth, sk_lattice, sk_rope, sk_tetrahedra, sk_flock;
+/* The constraints that bodies are made of. */
+extern const sk_constraint_type sk_distance, sk_dihedral, sk_isometric, sk_straight, sk_twist, sk_volume;
 
 #endif

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/status.h"
+#include "bodies/body.h"
 #include "bodies/order.h"
 
 typedef struct hinge_list {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/status.h"
+#include "bodies/body.h"
 
 enum { ALONG_ROW, ALONG_COLUMN, DIRECTIONS };
 

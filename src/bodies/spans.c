@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/status.h"
+#include "bodies/body.h"
 
 /* Edges a span is long, as on grids (lines.c), and how many a straight walk crosses for each of its length. Measured on
  * irregular meshes that are let go from level and swing by two corners, 10 substeps, the worst of all frames: 4,096 vertices, 99th

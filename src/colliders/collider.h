@@ -151,6 +151,4 @@ void sk_collider_visit(const sk_collider *collider, double time, const sk_vec4 *
 double sk_collider_cast(const sk_collider *collider, double time, const double origin[3], const double along[3],
                         double most, double normal[3]);
 
-extern const sk_collider_type sk_plane, sk_sphere, sk_bowl, sk_capsule, sk_box, sk_formula_surface;
-
 #endif

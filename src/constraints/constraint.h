@@ -168,7 +168,4 @@ sk_row_kernel sk_sweep_clear_multipliers;
 /* The batch's damping over stiffness, in seconds; 0 for a rigid batch. */
 double sk_batch_damping_time(const sk_batch *batch);
 
-extern const sk_constraint_type sk_distance, sk_dihedral, sk_isometric, sk_straight, sk_twist, sk_area, sk_volume, sk_angle,
-    sk_formula_constraint, sk_energy, sk_enclosed_volume, sk_pressure;
-
 #endif

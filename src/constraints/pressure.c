@@ -54,6 +54,8 @@ static law law_of_gas(const enclosed_params *params, double rest, double volume)
     return now;
 }
 
+extern const sk_constraint_type sk_pressure; // below
+
 static law law_of(const sk_batch *batch, double volume) {
     const enclosed_params *params = batch->params;
     double rest = batch->enclosure->rest_volume, k = params->material.stiffness;

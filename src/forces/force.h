@@ -92,7 +92,4 @@ bool sk_force_on_velocity(const sk_force *force);
 /* The particle that it looks at, or -1. */
 int32_t sk_force_particle(const sk_force *force);
 
-extern const sk_force_type sk_gravity, sk_wind, sk_surface_wind, sk_drag, sk_separation, sk_flocking, sk_attraction,
-    sk_predator, sk_lookout, sk_speed_limit, sk_turn_limit, sk_bounds, sk_force_field, sk_potential;
-
 #endif

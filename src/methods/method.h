@@ -34,7 +34,7 @@ skein_status sk_refuse_rigid(const sk_rules *rules, const char *method, skein_er
 /* The matrix 1 + c1 zA + c2 (zA)^2 + c3 (zA)^3 + c4 (zA)^4 of a Runge-Kutta method, A being the oscillator's. */
 void sk_amplify_polynomial(double z, double zeta, const double c[4], double matrix[4]);
 
-extern const sk_method_type sk_explicit_euler, sk_symplectic_euler, sk_lookahead_euler, sk_midpoint, sk_leapfrog,
-    sk_rk4, sk_backward_euler, sk_pbd, sk_xpbd;
+/* The one that a world begins with. */
+extern const sk_method_type sk_xpbd;
 
 #endif

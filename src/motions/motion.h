@@ -53,6 +53,4 @@ struct sk_motion {
 extern const skein_field sk_motion_fields[];
 extern const size_t sk_motion_field_count;
 
-extern const sk_motion_type sk_translate, sk_turn, sk_keys, sk_cache;
-
 #endif
