@@ -1,5 +1,6 @@
 // A box or a sphere: what would be outside after this substep has its velocity turned inwards, as by a mirror.
-vec3 bound@(vec3 v, vec3 x, vec4 steering, float dt) {
+vec3 bound@(vec4 at, vec3 v, vec4 steering, float dt) {
+    vec3 x = at.xyz;
     vec3 centre = rule@[0].xyz, d = x + dt * v - centre;
     float radius = rule@[0].w; // of a sphere; 0: a box
     if (radius > 0) {

@@ -1,3 +1,4 @@
+/* What can be said of a force without knowing its kind. */
 #include "forces/force.h"
 
 bool sk_force_on_velocity(const sk_force *force) {
@@ -7,4 +8,36 @@ bool sk_force_on_velocity(const sk_force *force) {
 
 int32_t sk_force_particle(const sk_force *force) {
     return force->type->particle ? force->type->particle(force->params) : -1;
+}
+
+/* Whether the force at a velocity is what the sum says, as near as sums of doubles are. */
+static bool agrees(const sk_force *force, const sk_plain_force *sum, const double v[3], double mass) {
+    double f[3];
+    force->type->at_velocity(force->params, v, mass, f);
+    for (int k = 0; k < 3; k++) {
+        double own = mass * sum->acceleration[k] + sum->force[k], drag = (sum->linear + sum->rate * mass) * v[k];
+        if (!(fabs(f[k] - (own - drag)) <= 1e-12 * (fabs(own) + fabs(drag)))) return false;
+    }
+    return true;
+}
+
+/* The sum is read off at rest and at 1 m/s, with and without a mass, which is exact where it is right. Then it is held
+ * against the force from creeping to flying, in changing directions and with changing masses. */
+bool sk_force_add_plain(const sk_force *force, sk_plain_force *sum) {
+    static const double velocities[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 0, 0}};
+    static const double directions[3][3] = {{1, 2, -3}, {-2, 1, 0}, {0.1, -7, 5}}, masses[4] = {1, 1e-3, 30, 0};
+    if (!force->type->at_velocity) return false;
+    double f[4][3];
+    for (int i = 0; i < 4; i++) force->type->at_velocity(force->params, velocities[i], i / 2, f[i]);
+    sk_plain_force own = {.linear = f[0][0] - f[1][0]};
+    own.rate = f[2][0] - f[3][0] - own.linear;
+    for (int k = 0; k < 3; k++) own.force[k] = f[0][k], own.acceleration[k] = f[2][k] - f[0][k];
+    int number = 0;
+    for (double speed = 1e-6; speed < 1e9; speed *= 4, number++) {
+        const double *d = directions[number % 3], v[3] = {speed * d[0], speed * d[1], speed * d[2]};
+        if (!agrees(force, &own, v, masses[number % 4])) return false;
+    }
+    for (int k = 0; k < 3; k++) sum->force[k] += own.force[k], sum->acceleration[k] += own.acceleration[k];
+    sum->linear += own.linear, sum->rate += own.rate;
+    return true;
 }

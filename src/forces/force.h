@@ -32,8 +32,8 @@ typedef struct sk_force_type {
     /* Over triangles: the same for those of a patch, whose elements are the strip rows of cells, [0, rows - 1): that of
      * row r adds to F of strip rows r and r + 1. `kernel` has the rest. */
     sk_kernels over_patch;
-    /* Adds the force to the sum if it is plain with these parameters, else returns false; NULL: it never is. */
-    bool (*plain)(const void *params, sk_plain_force *sum);
+    /* Of a force that is the same everywhere: what it is at a velocity. NULL: it is not. */
+    void (*at_velocity)(const void *params, const double v[3], double mass, double force[3]);
     /* For implicit methods, with the row's coefficient a: dst += a d, where -d is how the force grows with the
      * particle's own velocity; the same in x, y and z. NULL: it does not, or too little to matter. */
     sk_kernels resistance;
@@ -59,10 +59,13 @@ typedef struct sk_force_type {
     skein_status (*check)(const void *params, size_t particle_count, skein_error *error);
     /* The name of the body that it looks at; "", or NULL: those that it acts on. */
     const char *(*minds)(const void *params);
-    /* Over particles it defines, for a rule that pushes, steers (w: how much more speed is allowed) or bounds
+    /* Of arithmetic (base/arithmetic.h) whose names begin with KIND_: what each_particle.h says for a kind that pushes
+     * (KIND_force), steers (KIND_steer) or bounds (KIND_bound), or moves particles (vec3 KIND_shift(params, vec3 x));
+     * over neighbours what each adds, vec3 KIND_push(params, vec3 apart, num distance).
+     * A .glsl file over particles defines, for a rule that pushes, steers (w: how much more speed is allowed) or bounds
      * (`steering` is what has been added to v in this substep):
      *     vec3 force@(vec3 x, vec3 v, float mass),   vec4 steer@(vec3 x, float dt),
-     *     vec3 bound@(vec3 v, vec3 x, vec4 steering, float dt)   or, where it moves particles, vec3 shift@(vec3 x),
+     *     vec3 bound@(vec4 x, vec3 v, vec4 steering, float dt)   or, where it moves particles, vec3 shift@(vec3 x),
      * and over neighbours a sum of its own type, what each neighbour adds, and the newtons or metres a second that
      * come of it:
      *     sum@ start@(vec3 heading),   void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction),
@@ -91,5 +94,7 @@ typedef struct sk_force {
 bool sk_force_on_velocity(const sk_force *force);
 /* The particle that it looks at, or -1. */
 int32_t sk_force_particle(const sk_force *force);
+/* Adds the force to the sum if with its parameters it is m g + f - (linear + rate m) v, else returns false. */
+bool sk_force_add_plain(const sk_force *force, sk_plain_force *sum);
 
 #endif

@@ -1,50 +1,36 @@
 /* Gravity: F = m g on every particle. */
-#include "base/kernels.h"
+#define SK_ARITHMETIC_OF double
+#include "base/arithmetic.h"
 #include "forces/force.h"
 
 typedef struct gravity_params {
     double acceleration[3];
 } gravity_params;
 
+// ---- arithmetic ----
+SK_INLINE vec3 gravity_force(gravity_params p, vec3 v, num mass) {
+    return times(mass, PARAM3(p.acceleration));
+}
+// ---- end of arithmetic ----
+
 #define SK_UNIT gravity
 SK_KERNELS(sk_row_kernel, kernel);
+#define PARAMS gravity_params
+#define PUSH gravity_force
+#include "forces/each_particle.h"
 
-#ifdef SK_ISA
-
-void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const gravity_params *params = ((const sk_force *)row->rule)->params;
-    sk_vec3 g = sk_v3_of(params->acceleration);
-    for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
-        sk_wide mass = sk_load_part(run->vector[SK_V], slot, packed).w;
-        sk_wide4 f = {0};
-        if (!row->sets) f = sk_load_part(run->vector[row->dst], slot, packed);
-        f.x += mass * g.x;
-        f.y += mass * g.y;
-        f.z += mass * g.z;
-        sk_store_part(run->vector[row->dst], slot, packed, f);
-    }
-}
-
-#else
+#ifndef SK_ISA
 
 static const skein_field fields[] = {
     SK_VEC3(gravity_params, acceleration, "acceleration", "m/s2", 0, -9.81, 0, "the free fall's acceleration"),
 };
 
-static bool plain(const void *params, sk_plain_force *sum) {
-    for (int k = 0; k < 3; k++) sum->acceleration[k] += ((const gravity_params *)params)->acceleration[k];
-    return true;
-}
-
-static double potential(const void *data, const double x[3], double mass, double time) {
+static double potential(const void *params, const double x[3], double mass, double time) {
+    static const double rests[3];
+    double f[3];
     (void)time;
-    const double *g = ((const gravity_params *)data)->acceleration;
-    return -mass * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
-}
-
-static void pack(const void *params, float (*block)[4]) {
-    sk_shader_vector(block[0], ((const gravity_params *)params)->acceleration);
+    at(params, rests, mass, f);
+    return -(f[0] * x[0] + f[1] * x[1] + f[2] * x[2]);
 }
 
 const sk_force_type sk_gravity = {
@@ -53,8 +39,8 @@ const sk_force_type sk_gravity = {
     .domain = SK_OVER_PARTICLES,
     .sets = true,
     .kernel = {SK_EACH_ISA(kernel)},
-    .plain = plain,
+    .at_velocity = at,
     .potential = potential,
-    .shader = {.file = "forces/gravity", .size = 1, .pack = pack},
+    .shader = {.arithmetic = "forces/gravity"},
 };
 #endif

@@ -1,5 +1,6 @@
 // Nothing turns faster or flies steeper than this; see turn_limit.c.
-vec3 bound@(vec3 v, vec3 x, vec4 steering, float dt) {
+vec3 bound@(vec4 at, vec3 v, vec4 steering, float dt) {
+    vec3 x = at.xyz;
     float angle = rule@[0].x * dt, climb_cosine = rule@[0].y, climb_sine = rule@[0].z;
     vec3 before = v - steering.xyz;
     float square = dot(v, v), old = dot(before, before), speed = sqrt(square);

@@ -265,11 +265,12 @@ static skein_status make_pass(sk_gpu_passes *passes, sk_gpu_pass *pass, sk_gpu_p
     sk_gpu_text text = {.allocator = &world->allocator};
     put_head(&text, pass, rows);
     put_buffers(&text, pass, t.loads, stores);
+    sk_gpu_put_file(&text, "base/arithmetic", 0);
     if (pass->kind == SK_GPU_NEIGHBOURS) {
         sk_gpu_put(&text, "#define IDENTITY %d\n#define BY_PLACE %d\n", identity, pass->by_place);
         sk_gpu_put_file(&text, "gpu/neighbours", 0);
     }
-    for (size_t r = 0; r < pass->count; r++) sk_gpu_put_functions(&text, rows[r], r);
+    for (size_t r = 0; r < pass->count; r++) sk_gpu_put_functions(&text, rows, r);
     put_main(&text, pass, rows, &t, stores, world->particles.count);
     const char *what = rows[0]->label ? rows[0]->label : sk_row_kind_text(rows[0]->kind);
     skein_status status = sk_gpu_program(programs, &world->allocator, &text, what, &pass->program, error);

@@ -32,7 +32,7 @@ void sk_gpu_put(sk_gpu_text *text, const char *format, ...) {
 static const char *file_text(const char *name) {
     for (const sk_gpu_file *file = sk_gpu_files; file->name; file++)
         if (!strcmp(file->name, name)) return file->text;
-    fprintf(stderr, "skein: src/%s.glsl is not in this build\n", name);
+    fprintf(stderr, "skein: src/%s is not among the shaders in this build\n", name);
     abort();
 }
 

@@ -1,6 +1,7 @@
 #include "gpu/rows.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #define BIT(vector) (1u << (vector))
 
@@ -41,6 +42,14 @@ static const sk_shader *shader_of(const sk_row *row) {
     return NULL;
 }
 
+static bool has_text(const sk_shader *shader) {
+    return shader && (shader->arithmetic || shader->file);
+}
+
+static const skein_kind *kind_of(const sk_row *row) {
+    return force_of(row) ? &force_of(row)->type->kind : &((const sk_collider *)row->rule)->type->kind;
+}
+
 static const void *params_of(const sk_row *row) {
     if (force_of(row)) return force_of(row)->params;
     return has_pose(row) ? ((const sk_collider *)row->rule)->params : NULL;
@@ -57,7 +66,7 @@ static bool is_combine(const sk_row *row) {
 
 bool sk_gpu_row_can(const sk_row *row, const char **why) {
     const sk_shader *shader = shader_of(row);
-    if (shader && shader->file && shader->refuse && (*why = shader->refuse(params_of(row)))) return false;
+    if (has_text(shader) && shader->refuse && (*why = shader->refuse(params_of(row)))) return false;
     if (row->kind == SK_ROW_NEIGHBOUR && force_of(row)->type->deed == SK_PUSHES && force_of(row)->only.some) {
         *why = "where it is 'on' some bodies only";
         return false;
@@ -71,8 +80,8 @@ bool sk_gpu_row_can(const sk_row *row, const char **why) {
     case SK_ROW_LIMIT:
     case SK_ROW_CONTACT_FORCE:
     case SK_ROW_CONTACT_VELOCITY:
-    case SK_ROW_CONTACT_SETTLE: return shader && shader->file;
-    case SK_ROW_CONTACT_POSITION: return shader->file && row->source[1] == SK_NONE;
+    case SK_ROW_CONTACT_SETTLE: return has_text(shader);
+    case SK_ROW_CONTACT_POSITION: return has_text(shader) && row->source[1] == SK_NONE;
     default: return false;
     }
 }
@@ -166,8 +175,20 @@ sk_gpu_use sk_gpu_row_use(const sk_row *row) {
 
 /* ---- the block ---- */
 
+/* How many numbers of a block a field is; 0: none, it is a text. */
+static size_t numbers_of(const skein_field *field) {
+    if (field->type == SKEIN_FIELD_TEXT || strpbrk(field->name, ".*")) return 0;
+    return field->type == SKEIN_FIELD_VEC3 ? 3 : 1;
+}
+
 static size_t rule_size(const sk_row *row) {
     const sk_shader *shader = shader_of(row);
+    if (shader && shader->arithmetic) {
+        const skein_kind *kind = kind_of(row);
+        size_t count = 0;
+        for (size_t i = 0; i < kind->field_count; i++) count += numbers_of(&kind->fields[i]);
+        return (count + 3) / 4;
+    }
     return shader ? shader->size : row->kind == SK_ROW_COMBINE && is_fall(row) ? 3 : 0;
 }
 
@@ -186,6 +207,18 @@ static void pack_pose(const sk_collider *collider, double time, float (*block)[4
     }
     for (int i = 0; i < 9; i++) block[4 + i / 3][i % 3] = (float)pose.rotation[i];
     block[4][3] = (float)pose.time;
+}
+
+/* A rule's parameters: of arithmetic the fields, number after number. */
+static void pack_rule(const sk_row *row, const sk_shader *shader, float (*block)[4]) {
+    const void *params = params_of(row);
+    if (shader->pack) shader->pack(params, block);
+    if (!shader->arithmetic) return;
+    const skein_kind *kind = kind_of(row);
+    for (size_t i = 0, at = 0; i < kind->field_count; i++) {
+        skein_value value = sk_field_load(&kind->fields[i], params);
+        for (size_t k = 0; k < numbers_of(&kind->fields[i]); k++, at++) block[at / 4][at % 4] = (float)value.number[k];
+    }
 }
 
 void sk_gpu_row_pack(const sk_row *row, const sk_run *run, float (*block)[4]) {
@@ -208,9 +241,9 @@ void sk_gpu_row_pack(const sk_row *row, const sk_run *run, float (*block)[4]) {
     if (has_pose(row)) {
         const sk_collider *collider = row->rule;
         pack_pose(collider, is_avoid(row) ? time : time - row->before, block);
-        if (shader->pack) shader->pack(collider->params, block + SK_GPU_POSE);
+        pack_rule(row, shader, block + SK_GPU_POSE);
     } else if (shader) {
-        if (shader->pack) shader->pack(((const sk_force *)row->rule)->params, block);
+        pack_rule(row, shader, block);
     } else if (rule_size(row)) {
         const sk_plain_force *plain = row->rule;
         sk_shader_vector(block[0], plain->acceleration);
@@ -251,11 +284,77 @@ static void put_written(sk_gpu_text *text, const sk_row *row, size_t number) {
     if (shader->write && !shader->write(params_of(row), put_numbered, &to)) text->no_memory = true;
 }
 
-void sk_gpu_put_functions(sk_gpu_text *text, const sk_row *row, size_t number) {
+/* "gravity" of "forces/gravity": what the names in its arithmetic begin with. */
+static const char *stem_of(const sk_shader *shader) {
+    return strrchr(shader->arithmetic, '/') + 1;
+}
+
+/* The struct of a kind's parameters, as its own file has it, and its arithmetic. */
+static void put_arithmetic(sk_gpu_text *text, const sk_row *row, const sk_shader *shader) {
+    const skein_kind *kind = kind_of(row);
+    sk_gpu_put(text, "struct %s_params {\n", stem_of(shader));
+    for (size_t i = 0; i < kind->field_count; i++) {
+        size_t numbers = numbers_of(&kind->fields[i]);
+        if (numbers) sk_gpu_put(text, "    %s %s;\n", numbers == 3 ? "vec3" : "float", kind->fields[i].name);
+    }
+    sk_gpu_put(text, "};\n");
+    sk_gpu_put_file(text, shader->arithmetic, 0);
+}
+
+/* params@(): the parameters of one rule, from its block. */
+static void put_params(sk_gpu_text *text, const sk_row *row, const sk_shader *shader, size_t n) {
+    const skein_kind *kind = kind_of(row);
+    const char *stem = stem_of(shader), *comma = "";
+    sk_gpu_put(text, "%s_params params%zu() {\n    return %s_params(", stem, n, stem);
+    for (size_t i = 0, at = 0; i < kind->field_count; i++) {
+        size_t numbers = numbers_of(&kind->fields[i]);
+        if (!numbers) continue;
+        sk_gpu_put(text, numbers == 3 ? "%svec3(" : "%s(", comma);
+        for (size_t k = 0; k < numbers; k++, at++)
+            sk_gpu_put(text, "%srule%zu[%zu][%zu]", k ? ", " : "", n, at / 4, at % 4);
+        sk_gpu_put(text, ")");
+        comma = ", ";
+    }
+    sk_gpu_put(text, ");\n}\n");
+}
+
+/* What walks and statements call, from what the kind's arithmetic defines. */
+static void put_calls(sk_gpu_text *text, const sk_row *row, const sk_shader *shader, size_t n) {
+    const char *stem = stem_of(shader);
+    const sk_force *force = force_of(row);
+    put_params(text, row, shader, n);
+    if (row->kind == SK_ROW_NEIGHBOUR)
+        sk_gpu_put(text, "#define sum%zu vec3\n"
+                         "vec3 start%zu(vec3 heading) { return vec3(0); }\n"
+                         "void meet%zu(inout vec3 sum, vec3 apart, float square, vec3 direction) {\n"
+                         "    if (square > 0) sum += %s_push(params%zu(), apart, sqrt(square));\n"
+                         "}\n"
+                         "vec3 finish%zu(vec3 sum, float dt) { return sum; }\n", n, n, n, stem, n, n);
+    else if (shader->shifts && shader->shifts(force->params))
+        sk_gpu_put(text, "vec3 shift%zu(vec3 x) { return %s_shift(params%zu(), x); }\n", n, stem, n);
+    else if (row->kind == SK_ROW_LIMIT)
+        sk_gpu_put(text, "vec3 bound%zu(vec4 x, vec3 v, vec4 steering, float dt) {\n"
+                         "    return %s_bound(params%zu(), x, v, steering, dt);\n}\n", n, stem, n);
+    else if (force && force->type->deed == SK_STEERS)
+        sk_gpu_put(text, "vec4 steer%zu(vec3 x, float dt) { return %s_steer(params%zu(), x, dt); }\n", n, stem, n);
+    else if (force)
+        sk_gpu_put(text, "vec3 force%zu(vec3 x, vec3 v, float mass) { return %s_force(params%zu(), v, mass); }\n", n,
+                   stem, n);
+}
+
+void sk_gpu_put_functions(sk_gpu_text *text, const sk_row *const *rows, size_t number) {
+    const sk_row *row = rows[number];
     if (row->kind == SK_ROW_COMBINE && is_fall(row)) sk_gpu_put_file(text, "gpu/pull", number);
     if (has_pose(row)) sk_gpu_put_file(text, "colliders/pose", number);
     if (shader_of(row)) put_written(text, row, number);
-    if (shader_of(row)) sk_gpu_put_file(text, shader_of(row)->file, number);
+    const sk_shader *shader = shader_of(row);
+    if (shader && shader->file) sk_gpu_put_file(text, shader->file, number);
+    if (shader && shader->arithmetic) {
+        bool there = false; // rules of one kind share it
+        for (size_t i = 0; i < number; i++) there |= shader_of(rows[i]) == shader;
+        if (!there) put_arithmetic(text, row, shader);
+        put_calls(text, row, shader, number);
+    }
     if (is_contact(row)) sk_gpu_put_file(text, "colliders/contact", number);
     if (is_avoid(row)) sk_gpu_put_file(text, "colliders/avoid", number);
     if (row->kind == SK_ROW_NEIGHBOUR) sk_gpu_put_file(text, "gpu/walk", number);
@@ -328,7 +427,7 @@ static void put_force(sk_gpu_text *text, const sk_row *row, size_t n, size_t par
     else if (shifts(row))
         sk_gpu_put(text, "    if (X.w > 0) { vec3 shift = shift%zu(X.xyz); X.xyz += shift; P.xyz += shift; }\n", n);
     else if (row->kind == SK_ROW_LIMIT)
-        sk_gpu_put(text, "    V.xyz = bound%zu(V.xyz, X.xyz, %s, row%zu[0].w);\n", n,
+        sk_gpu_put(text, "    V.xyz = bound%zu(X, V.xyz, %s, row%zu[0].w);\n", n,
                    row->source[2] == SK_NONE ? "vec4(0)" : "S", n);
     else if (force_of(row)->type->deed == SK_STEERS)
         sk_gpu_put(text, "    %s += steer%zu(X.xyz, row%zu[0].w);\n", dst, n, n);

@@ -30,7 +30,7 @@ size_t sk_gpu_row_looks_from(const float (*block)[4]);
 
 /* Its members of the block; what stands before main; what stands in main. `number` is its place in the shader. */
 void sk_gpu_put_members(sk_gpu_text *text, const sk_row *row, size_t number);
-void sk_gpu_put_functions(sk_gpu_text *text, const sk_row *row, size_t number);
+void sk_gpu_put_functions(sk_gpu_text *text, const sk_row *const *rows, size_t number);
 void sk_gpu_put_statements(sk_gpu_text *text, const sk_row *row, size_t number, size_t particle_count);
 const char *sk_gpu_vector_name(sk_vector vector);
 

@@ -228,7 +228,7 @@ static bool add_up_plain_forces(const sk_rules *rules, sk_plan_part *part) {
     for (size_t i = 0; i < rules->forces.count; i++) {
         const sk_force *force = rules->forces.data[i];
         if (!pushes(force) || !acts_on(&force->only, slot)) continue;
-        if (!force->type->plain || !force->type->plain(force->params, &part->plain)) return false;
+        if (!sk_force_add_plain(force, &part->plain)) return false;
         char *label = part->plain.label;
         size_t room = sizeof part->plain.label - length;
         int added = snprintf(label + length, room, "%s%s", length ? ", " : "", force->label);

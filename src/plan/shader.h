@@ -1,10 +1,11 @@
-/* What a rule is on a graphics card: GLSL beside its C file, and its parameters as the shader sees them.
+/* What a rule is on a graphics card: its arithmetic in GLSL, and its parameters as the shader sees them.
  *
- * A type of rule that has one says so in its constant struct; gpu/ puts the texts of a row's rule and of its
- * neighbours in the plan together to one compute shader. In the text, '@' stands for the row's number in that
- * shader, so that rules of one kind do not meet: `rule@[k]` is the k-th vector of the rule's block. What a text
- * must define is in the header of its floor (force.h, collider.h). * What of a text depends on parameters, a formula
- * say, the type writes itself; it stands before the file.
+ * A kind that says its arithmetic (base/arithmetic.h) names its file; that arithmetic is GLSL as it is, and gpu/rows.c
+ * makes the struct of parameters and the calls from the kind's fields. A kind of which that cannot be said has a .glsl
+ * file of its own. gpu/ puts the texts of a row's rule and of its neighbours in the plan together to one compute
+ * shader. In a .glsl file '@' stands for the row's number in that shader, so that rules of one kind do not meet:
+ * `rule@[k]` is the k-th vector of the rule's block. What it must define is in the header of its floor (force.h,
+ * collider.h). What of a text depends on parameters, a formula say, the type writes itself; it stands before the file.
  */
 #ifndef SK_PLAN_SHADER_H
 #define SK_PLAN_SHADER_H
@@ -13,9 +14,10 @@
 #include <stddef.h>
 
 typedef struct sk_shader {
-    const char *file; /* "forces/gravity": src/forces/gravity.glsl; NULL: it cannot run on a card */
-    size_t size;      /* of its block, in vectors of four floats */
-    /* Fills the block, which is zero before. */
+    const char *arithmetic; /* "forces/gravity": of src/forces/gravity.c, whose names begin with "gravity_"; */
+    const char *file;       /* or "forces/flocking": src/forces/flocking.glsl; neither: it cannot run on a card */
+    size_t size;            /* of a file's block, in vectors of four floats */
+    /* Fills a file's block, which is zero before. */
     void (*pack)(const void *params, float (*block)[4]);
     /* NULL if it can run on a card with these parameters, else why not, as the end of a sentence. Itself NULL: always.
      */

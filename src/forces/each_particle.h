@@ -1,0 +1,76 @@
+/* The loops over particles of forces that say their arithmetic (base/arithmetic.h). A kind's file defines PARAMS, its
+ * struct, and its function as one of these before it includes this, which makes `kernel` of it:
+ *
+ *     PUSH    vec3 (PARAMS p, vec3 v, num mass): newtons of a force that is the same everywhere; what of it
+ *             is uniform, methods that predict find by `at` (force.h)
+ *     STEER   vec4 (PARAMS p, vec3 x, exact dt): a change of velocity, and of the allowed speed in w. A kind that looks
+ *             from one particle says the field that is then its place: LOOKS_FROM
+ *     BOUND   vec3 (PARAMS p, vec4 x, vec3 v, vec4 steering, exact dt): the velocity that is allowed; x.w is the inverse
+ *             mass */
+#ifdef SK_ISA
+
+#ifdef PUSH
+void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const PARAMS p = *(const PARAMS *)((const sk_force *)row->rule)->params;
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
+        bool packed = slot < row->packed;
+        vec4 v = sk_load_part(run->vector[SK_V], slot, packed), f = {0};
+        if (!row->sets) f = sk_load_part(run->vector[row->dst], slot, packed);
+        vec3 push = PUSH(p, xyz(v), v.w);
+        f.x += push.x, f.y += push.y, f.z += push.z;
+        sk_store_part(run->vector[row->dst], slot, packed, f);
+    }
+}
+#endif
+
+#ifdef STEER
+void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_force *force = row->rule;
+    PARAMS p = *(const PARAMS *)force->params;
+    size_t own = SIZE_MAX; // the slot that it looks from, checked when the plan was written
+#ifdef LOOKS_FROM
+    if (sk_force_particle(force) >= 0) {
+        own = run->slot_of[sk_force_particle(force)];
+        sk_vec4 at = sk_load(run->vector[SK_X], row->packed, own);
+        p.LOOKS_FROM[0] = (double)at.x, p.LOOKS_FROM[1] = (double)at.y, p.LOOKS_FROM[2] = (double)at.z;
+    }
+#endif
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
+        bool packed = slot < row->packed;
+        vec4 x = sk_load_part(run->vector[SK_X], slot, packed);
+        vec4 s = sk_load_part(run->vector[row->dst], slot, packed);
+        flag moved = sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot);
+        if (own - slot < SK_PART) moved[own - slot] = 0;
+        vec4 change = STEER(p, xyz(x), row->dt);
+        s.x = sk_plus_where(moved, s.x, change.x), s.y = sk_plus_where(moved, s.y, change.y);
+        s.z = sk_plus_where(moved, s.z, change.z), s.w = sk_plus_where(moved, s.w, change.w);
+        sk_store_part(run->vector[row->dst], slot, packed, s);
+    }
+}
+#endif
+
+#ifdef BOUND
+void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_force *force = row->rule;
+    const PARAMS p = *(const PARAMS *)force->params;
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
+        bool packed = slot < row->packed;
+        vec4 x = sk_load_part(run->vector[SK_X], slot, packed);
+        vec4 v = sk_load_part(run->vector[SK_V], slot, packed), steering = {0};
+        if (row->source[2] != SK_NONE) steering = sk_load_part(run->vector[row->source[2]], slot, packed);
+        flag moved = sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot);
+        vec3 bound = pick3(moved, BOUND(p, x, xyz(v), steering, row->dt), xyz(v));
+        sk_store_moved(run->vector[SK_V], slot, packed, vec4_of(bound, v.w));
+    }
+}
+#endif
+
+#elif defined(PUSH)
+
+/* The force on one particle. */
+static void at(const void *params, const double v[3], double mass, double force[3]) {
+    vec3 f = PUSH(*(const PARAMS *)params, (vec3){v[0], v[1], v[2]}, mass);
+    force[0] = f.x, force[1] = f.y, force[2] = f.z;
+}
+
+#endif
