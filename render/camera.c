@@ -14,7 +14,9 @@ static const double house_fill = 0.79, house_drop = 0.07;
 /* The bodies fill so much of the picture's width and height, or, where they are long and thin, of one of them: what
  * stands around them is cut off where they would not. */
 static const double wanted_share = 0.31, wanted_length = 0.68;
-enum { SEARCH_STEPS = 20, TURNS = 12 };
+/* A level sheet is seen from so many degrees above at least. */
+static const double seen_sheet = 7;
+enum { SEARCH_STEPS = 20, TURNS = 12, SHEET_STEPS = 6 };
 
 /* A hull along the picture's axes: right, up and back, from its own middle. */
 typedef struct seen_hull {
@@ -143,17 +145,39 @@ static void revolve(render_hull *hull) {
     }
 }
 
-/* The camera that holds the subject, from a side and a height in degrees. */
+static render_camera hold_from(const render_view_camera *view, const render_subject *subject, double azimuth,
+                               double elevation, double aspect) {
+    double side = azimuth * degree, rise = elevation * degree;
+    const double back[3] = {sin(side) * cos(rise), sin(rise), cos(side) * cos(rise)};
+    return render_camera_hold(subject, back, view->fov, view->zoom, aspect);
+}
+
+/* How far above a level sheet the eye stands, as its middle sees it: degrees. */
+static double height_over(const render_camera *camera, const double sheet[3]) {
+    double off[3];
+    for (int k = 0; k < 3; k++) off[k] = camera->eye[k] - sheet[k];
+    return atan2(off[1], hypot(off[0], off[2])) / degree;
+}
+
+/* The camera that holds the subject, from a side and a height in degrees. A level sheet above the picture's middle
+ * would be seen on its edge: the eye goes up until it is seen, unless the view asks for a height of its own. */
 static render_camera frame_subject(const render_view_camera *view, const render_subject *subject, double azimuth,
                                    double aspect) {
-    double side = azimuth * degree, rise = view->elevation * degree;
-    const double back[3] = {sin(side) * cos(rise), sin(rise), cos(side) * cos(rise)};
-    if (view->orbit == 0 || render_hull_empty(&subject->all))
-        return render_camera_hold(subject, back, view->fov, view->zoom, aspect);
     render_subject round = *subject;
-    revolve(&round.bodies);
-    revolve(&round.all);
-    return render_camera_hold(&round, back, view->fov, view->zoom, aspect);
+    if (view->orbit != 0 && !render_hull_empty(&subject->all)) {
+        revolve(&round.bodies);
+        revolve(&round.all);
+    }
+    double elevation = view->elevation;
+    render_camera camera = hold_from(view, &round, azimuth, elevation, aspect);
+    bool free = elevation == render_view_default().camera.elevation;
+    for (int i = 0; i < SHEET_STEPS && free && round.has_sheet; i++) {
+        double lack = seen_sheet - height_over(&camera, round.sheet);
+        if (lack <= 0) break;
+        elevation = fmin(elevation + lack, 89);
+        camera = hold_from(view, &round, azimuth, elevation, aspect);
+    }
+    return camera;
 }
 
 render_camera render_camera_framing(const render_bounds *bounds, double aspect) {

@@ -81,8 +81,26 @@ static void add_surface(render_hull *hull, const render_surface *surface) {
 
 static void add_points(render_hull *hull, const render_points *points) {
     size_t stride = stride_of(points->count);
-    for (size_t p = 0; p < points->count; p += stride)
-        render_hull_add(hull, &points->positions[3 * p], points->radius);
+    for (size_t p = 0; p < points->count; p += stride) render_hull_add(hull, &points->positions[3 * p], points->radius);
+}
+
+/* A cloth that was laid out and not let go yet: its height is less than this part of its width. */
+static const double sheet_height = 0.03;
+
+static void keep_sheet(render_subject *subject, const double sheet[3]) {
+    if (subject->has_sheet && subject->sheet[1] >= sheet[1]) return;
+    subject->has_sheet = true;
+    memcpy(subject->sheet, sheet, sizeof subject->sheet);
+}
+
+static void find_sheet(render_subject *subject, const render_surface *surface) {
+    render_bounds box = render_bounds_nothing();
+    double middle[3];
+    for (size_t v = 0; v < surface->vertex_count; v++) render_bounds_add(&box, &surface->positions[3 * v], 0);
+    if (render_bounds_empty(&box)) return;
+    double wide = fmax(box.most[0] - box.least[0], box.most[2] - box.least[2]);
+    render_bounds_centre(&box, middle);
+    if (box.most[1] - box.least[1] < sheet_height * wide) keep_sheet(subject, middle);
 }
 
 /* The middles of its box's edges: a flock has no corners. */
@@ -128,14 +146,17 @@ static void add_bowl(render_hull *hull, const render_bowl *bowl) {
 /* ---- Both ----------------------------------------------------------------------------------- */
 
 render_subject render_subject_nothing(void) {
-    return (render_subject){render_hull_nothing(), render_hull_nothing()};
+    return (render_subject){.bodies = render_hull_nothing(), .all = render_hull_nothing()};
 }
 
 render_subject render_subject_of(const render_frame *frame) {
     render_subject subject = render_subject_nothing();
     for (size_t i = 0; i < frame->bird_count; i++) add_birds(&subject.bodies, &frame->birds[i]);
-    for (size_t i = 0; i < frame->surface_count; i++)
-        if (!frame->surfaces[i].scenery) add_surface(&subject.bodies, &frame->surfaces[i]);
+    for (size_t i = 0; i < frame->surface_count; i++) {
+        if (frame->surfaces[i].scenery) continue;
+        add_surface(&subject.bodies, &frame->surfaces[i]);
+        find_sheet(&subject, &frame->surfaces[i]);
+    }
     for (size_t i = 0; i < frame->rod_count; i++) add_solid(&subject.bodies, &frame->rods[i]);
     for (size_t i = 0; i < frame->points_count; i++) add_points(&subject.bodies, &frame->points[i]);
 
@@ -158,4 +179,5 @@ render_subject render_subject_of(const render_frame *frame) {
 void render_subject_join(render_subject *subject, const render_subject *other) {
     render_hull_join(&subject->bodies, &other->bodies);
     render_hull_join(&subject->all, &other->all);
+    if (other->has_sheet) keep_sheet(subject, other->sheet);
 }

@@ -22,6 +22,8 @@ typedef struct render_hull {
 typedef struct render_subject {
     render_hull bodies; /* what the picture is about */
     render_hull all;    /* with the colliders that stand around; planes and terrain do not count */
+    bool has_sheet;     /* among the bodies is a level sheet, which is seen from above or not at all */
+    double sheet[3];    /* the middle of the highest of them */
 } render_subject;
 
 render_hull render_hull_nothing(void);

@@ -53,7 +53,7 @@ static const skein_field fields[] = {
     REAL(camera.fov, "camera.fov", "degrees", 34, 1, 150, "from the picture's bottom to its top"),
     REAL(camera.azimuth, "camera.azimuth", "degrees", 27, -1e4, 1e4,
          "which side a camera that frames by itself looks from: 0 is +z, 90 is +x"),
-    REAL(camera.elevation, "camera.elevation", "degrees", 14, -89, 89, "and how high above the level"),
+    REAL(camera.elevation, "camera.elevation", "degrees", 14, -89, 89, "and how high above the level; at 14 higher where a level sheet, which lies high, would be seen on its edge"),
     REAL(camera.orbit, "camera.orbit", "degrees/s", 0, -1e4, 1e4, "turns the camera about what it looks at, with the scene's time"),
     REAL(camera.zoom, "camera.zoom", "", 1, 0.01, 100, "how large things are in a picture that frames itself"),
 };
