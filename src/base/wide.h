@@ -169,37 +169,37 @@ SK_INLINE sk_wide sk_dot_wide(sk_wide3 a, sk_wide3 b) {
 
 /* ---- turned lanes ---- */
 
-/* Lanes `first`, `first` + 1 ... of two parts in a row; 0 <= first < SK_PART. */
-SK_INLINE sk_wide sk_lanes_from(sk_wide low, sk_wide high, int first) {
+/* A row of sixteen reals, turned: lane l of it is lane (l + shift) mod 16 of what it was. (From whole parts, for loads
+ * across what has just been stored would wait.) */
+SK_INLINE void sk_turn_row(sk_wide *to, const sk_wide *row, int shift) {
+    int from = (shift & (SK_LANES - 1)) / SK_PART, first = shift & (SK_PART - 1);
+    sk_wide part[SK_PARTS + 1];
+    for (int p = 0; p <= SK_PARTS; p++) part[p] = row[(p + from) & (SK_PARTS - 1)];
 #if SK_WIDTH == 64 && defined(SKEIN_DOUBLE)
     const sk_mask lanes = {0, 1, 2, 3, 4, 5, 6, 7};
-    return (sk_wide)_mm512_permutex2var_pd((__m512d)low, (__m512i)(lanes + first), (__m512d)high);
+    for (int p = 0; p < SK_PARTS; p++)
+        to[p] = (sk_wide)_mm512_permutex2var_pd((__m512d)part[p], (__m512i)(lanes + first), (__m512d)part[p + 1]);
 #elif SK_WIDTH == 64
     const sk_mask lanes = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    (void)high; // there is one part, which comes round
-    return (sk_wide)_mm512_permutexvar_ps((__m512i)(lanes + first), (__m512)low);
+    to[0] = (sk_wide)_mm512_permutexvar_ps((__m512i)(lanes + first), (__m512)part[0]);
 #elif SK_WIDTH == 32 && !defined(SKEIN_DOUBLE)
+    // each part by itself first: indices count mod 8
     const sk_mask lanes = {0, 1, 2, 3, 4, 5, 6, 7};
-    __m256i at = (__m256i)(lanes + first); // indices mod 8
-    __m256 a = _mm256_permutevar8x32_ps((__m256)low, at), b = _mm256_permutevar8x32_ps((__m256)high, at);
-    return (sk_wide)_mm256_blendv_ps(a, b, (__m256)(lanes + first > 7));
+    __m256 low = _mm256_permutevar8x32_ps((__m256)part[0], (__m256i)(lanes + first));
+    __m256 high = _mm256_permutevar8x32_ps((__m256)part[1], (__m256i)(lanes + first));
+    __m256 of_next = (__m256)(lanes + first > 7);
+    to[0] = (sk_wide)_mm256_blendv_ps(low, high, of_next), to[1] = (sk_wide)_mm256_blendv_ps(high, low, of_next);
 #elif SK_WIDTH == 32 || !defined(SKEIN_DOUBLE)
-    switch (first) {
-    case 1: return __builtin_shufflevector(low, high, 1, 2, 3, 4);
-    case 2: return __builtin_shufflevector(low, high, 2, 3, 4, 5);
-    case 3: return __builtin_shufflevector(low, high, 3, 4, 5, 6);
-    default: return low;
-    }
+#define FROM(...) \
+    for (int p = 0; p < SK_PARTS; p++) to[p] = __builtin_shufflevector(part[p], part[p + 1], __VA_ARGS__)
+    if (first == 1) FROM(1, 2, 3, 4);
+    else if (first == 2) FROM(2, 3, 4, 5);
+    else if (first == 3) FROM(3, 4, 5, 6);
+    else FROM(0, 1, 2, 3);
+#undef FROM
 #else
-    return first ? __builtin_shufflevector(low, high, 1, 2) : low;
+    for (int p = 0; p < SK_PARTS; p++) to[p] = first ? __builtin_shufflevector(part[p], part[p + 1], 1, 2) : part[p];
 #endif
-}
-
-/* A part of a row of sixteen reals, turned: lane l of the row is lane (l + shift) mod 16. (From whole parts, for loads
- * across what has just been stored would wait.) */
-SK_INLINE sk_wide sk_turned(const sk_wide *row, int part, int shift) {
-    int from = part + (shift & (SK_LANES - 1)) / SK_PART;
-    return sk_lanes_from(row[from & (SK_PARTS - 1)], row[(from + 1) & (SK_PARTS - 1)], shift & (SK_PART - 1));
 }
 
 /* ---- quads and packed ---- */

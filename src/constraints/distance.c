@@ -4,6 +4,7 @@
 #ifndef SK_FORMULA // a test has another one, and a unit of its own
 #define SK_FORMULA "constraints/emitted/distance.h"
 #define SK_UNIT distance
+#define SK_BEYOND beyond
 #endif
 #define SK_WITH_STRIPS
 #define SK_WITH_LIMITS
@@ -14,6 +15,16 @@
 SK_ELEMENT_KERNELS
 
 #ifdef SK_ISA
+
+#ifdef SK_BEYOND
+/* By squares, for most spans are slack, and a root takes as long as all else; with a margin for what is rounded. */
+SK_INLINE sk_mask beyond(const sk_element *e, sk_wide most) {
+    const real nearly = (real)0.99999;
+    sk_wide x = e->x[0].x - e->x[1].x, y = e->x[0].y - e->x[1].y, z = e->x[0].z - e->x[1].z;
+    sk_wide reach = nearly * (e->rest[0] + most);
+    return sk_more(z * z + (x * x + y * y), reach * reach);
+}
+#endif
 
 #include "constraints/element_arithmetic.h"
 #include "constraints/element_stiffness.h"

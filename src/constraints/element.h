@@ -1,7 +1,8 @@
 /* As many constraints of one kind as the processor works on at once, on their way through its arithmetic. A kind that
  * is compiled into the library says how many particles an element has (SK_ARITY), and how many rest values (SK_RESTS),
  * before it includes this. One whose value is the length of a weighted sum of positions defines SK_LINEAR, and, for
- * element_arithmetic.h, linear(). */
+ * element_arithmetic.h, linear(). One with limits may define SK_BEYOND(element, most): lanes whose value is over `most`
+ * are among those that it gives, cheaply. */
 #ifndef SK_CONSTRAINTS_ELEMENT_H
 #define SK_CONSTRAINTS_ELEMENT_H
 
@@ -41,6 +42,7 @@ typedef struct sk_element {
                                          first's. Constants, once all is inlined. */
     sk_wide scale[SK_ARITY];          /* what comes out, a force or a move, is scale G */
     sk_wide velocity_scale[SK_ARITY]; /* likewise of velocity, from a limit that moves */
+    sk_mask over;                     /* a limit: the lanes that are over it, which alone move */
     sk_wide3 across;                  /* of a kind with SK_ACROSS: what is applied besides, to the first */
 } sk_element;
 

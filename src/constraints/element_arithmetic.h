@@ -131,33 +131,43 @@ SK_INLINE void project_damped(sk_element *e, const sk_element_constants *c) {
     SK_EACH_PARTICLE (i) e->scale[i] = s * e->w[i];
 }
 
-/* Back to the bound, as if rigid there. Lanes without an element have a rest value of 0: for them any is right. */
-SK_INLINE void limit(sk_element *e, const sk_element_constants *c, bool moving) {
-    sk_wide weight = weight_of(e), most = c->bound * e->rest[0], below = weight;
+/* Back to the bound, as if rigid there. Lanes without an element have a rest value of 0: for them any is right. False
+ * where all are within. */
+SK_INLINE bool limit(sk_element *e, const sk_element_constants *c, bool moving) {
+    sk_wide most = c->bound * e->rest[0];
+#ifdef SK_BEYOND
+    if (!sk_any(SK_BEYOND(e, most) & sk_positive(e->rest[0]))) return false;
+#endif
+    formula(e);
+    sk_wide weight = weight_of(e), below = weight;
     if (e->divided) below = e->divisor * weight;
-    sk_mask over = sk_more(e->value, most) & sk_positive(below) & sk_positive(e->rest[0]);
-    sk_wide s = sk_keep(over, (most - e->value) / below);
+    e->over = sk_more(e->value, most) & sk_positive(below) & sk_positive(e->rest[0]);
+    if (!sk_any(e->over)) return false;
+    sk_wide s = (most - e->value) / below;
     SK_EACH_PARTICLE (i) e->scale[i] = s * e->w[i];
-    if (!moving) return;
+    if (!moving) return true;
     sk_wide parting = sum_along(e, e->other), square = e->divided ? e->divisor * below : weight;
-    sk_wide stop = sk_keep(over & sk_positive(parting), -parting / square);
+    sk_wide stop = sk_keep(sk_positive(parting), -parting / square);
     SK_EACH_PARTICLE (i) e->velocity_scale[i] = stop * e->w[i];
+    return true;
 }
 
-SK_INLINE void work_out(sk_element *e, const sk_element_constants *c, sk_element_mode mode) {
+/* False where nothing moves. */
+SK_INLINE bool work_out(sk_element *e, const sk_element_constants *c, sk_element_mode mode) {
     e->divided = e->opposite = false;
 #ifdef SK_LINEAR
     if (mode == SK_MODE_PROJECT) {
         project_linear(e);
-        return;
+        return true;
     }
 #endif
+    if (mode == SK_MODE_LIMIT || mode == SK_MODE_LIMIT_MOVING) return limit(e, c, mode == SK_MODE_LIMIT_MOVING);
     formula(e);
     if (mode == SK_MODE_FORCE) pull(e, c);
     else if (mode == SK_MODE_APPLY) apply(e, c);
     else if (mode == SK_MODE_PROJECT) project(e);
-    else if (mode == SK_MODE_PROJECT_DAMPED) project_damped(e, c);
-    else limit(e, c, mode == SK_MODE_LIMIT_MOVING);
+    else project_damped(e, c);
+    return true;
 }
 
 #undef TEXT

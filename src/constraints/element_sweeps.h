@@ -20,6 +20,13 @@ SK_INLINE sk_wide3 with_sign(const sk_element *e, int i, sk_wide3 a, sk_wide3 d)
     return (sk_wide3){a.x + d.x, a.y + d.y, a.z + d.z};
 }
 
+/* Where a particle comes to, from a. Limits leave lanes as they are that are within, as if nobody had asked. */
+SK_INLINE sk_wide3 put(const sk_element *e, int i, sk_wide3 a, const sk_wide *scale, sk_element_mode mode) {
+    sk_wide3 to = with_sign(e, i, a, moved(e, scale, i));
+    if (mode != SK_MODE_LIMIT && mode != SK_MODE_LIMIT_MOVING) return to;
+    return (sk_wide3){sk_select(e->over, to.x, a.x), sk_select(e->over, to.y, a.y), sk_select(e->over, to.z, a.z)};
+}
+
 /* What a sum gets: the second of two opposite gradients has the sign in `with_sign`. */
 SK_INLINE sk_wide3 given(const sk_element *e, int i, sk_element_mode mode) {
     sk_wide3 d = moved(e, e->scale, i);
@@ -51,8 +58,7 @@ SK_INLINE void set_values(sk_element *e, const sk_sweep *sweep, const sk_element
 /* Blocks meet over the end of a strip with their lanes turned by `shift`: a copy of `rows` rows, and x, y and z back.
  */
 SK_INLINE void turn(sk_wide *to, const sk_wide *block, int rows, int shift) {
-    for (int r = 0; r < rows * SK_PARTS; r += SK_PARTS)
-        for (int p = 0; p < SK_PARTS; p++) to[r + p] = shift ? sk_turned(block + r, p, shift) : block[r + p];
+    for (int r = 0; r < rows * SK_PARTS; r += SK_PARTS) sk_turn_row(to + r, block + r, shift);
 }
 SK_INLINE void turn_back(sk_wide *block, const sk_wide *from, int shift) {
     turn(block, from, 3, -shift);
@@ -63,6 +69,12 @@ typedef struct offsets {
     ptrdiff_t slots[SK_ARITY];
     int shift[SK_ARITY];
 } offsets;
+
+/* Whether the block of particle i is to be turned. Of a pair the first never is, for its place is the pair's: known
+ * while this is compiled. */
+SK_INLINE bool turns(const offsets *o, int i, bool turned) {
+    return turned && (SK_ARITY == 2 ? i == 1 : o->shift[i] != 0);
+}
 
 SK_INLINE offsets offsets_of(const sk_sweep *sweep, const sk_span *span, bool turned) {
     offsets o;
@@ -77,8 +89,8 @@ SK_INLINE offsets offsets_of(const sk_sweep *sweep, const sk_span *span, bool tu
 
 /* ---- strips: projections and limits ---- */
 
-/* A part of sixteen elements whose blocks meet: x and other are those of their particles. */
-SK_INLINE void meet_part(const sk_sweep *sweep, const sk_element_constants *constants, size_t lane, bool special,
+/* A part of sixteen elements whose blocks meet: x and other are those of their particles. False where nothing moves. */
+SK_INLINE bool meet_part(const sk_sweep *sweep, const sk_element_constants *constants, size_t lane, bool special,
                          sk_element_mode mode, sk_wide *const *x, sk_wide *const *other) {
     sk_element e;
     SK_EACH_PARTICLE (i) {
@@ -87,14 +99,14 @@ SK_INLINE void meet_part(const sk_sweep *sweep, const sk_element_constants *cons
         if (mode != SK_MODE_PROJECT && mode != SK_MODE_LIMIT) e.other[i] = load3(other[i]);
     }
     set_values(&e, sweep, constants, lane, special, mode == SK_MODE_PROJECT_DAMPED);
-    work_out(&e, constants, mode);
+    if (!work_out(&e, constants, mode)) return false;
     // from what was loaded: reading again would wait for the stores
     SK_EACH_PARTICLE (i) {
-        store3(x[i], with_sign(&e, i, e.x[i], moved(&e, e.scale, i)));
-        if (mode == SK_MODE_LIMIT_MOVING)
-            store3(other[i], with_sign(&e, i, e.other[i], moved(&e, e.velocity_scale, i)));
+        store3(x[i], put(&e, i, e.x[i], e.scale, mode));
+        if (mode == SK_MODE_LIMIT_MOVING) store3(other[i], put(&e, i, e.other[i], e.velocity_scale, mode));
     }
     if (mode == SK_MODE_PROJECT_DAMPED) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + lane) = e.multiplier;
+    return true;
 }
 
 /* The blocks of sixteen elements meet. `mode` is a constant where this is inlined, and so is `turned`: whether some
@@ -109,22 +121,25 @@ SK_INLINE void meet_blocks(sk_run *run, const sk_sweep *sweep, const sk_element_
     SK_EACH_PARTICLE (i) {
         size_t block = slot + (size_t)o->slots[i];
         at[i] = x[i] = (sk_wide *)(void *)(run->vector[SK_X] + block);
-        if (turned) turn(at[i] = copy[i], x[i], 4, o->shift[i]);
+        if (turns(o, i, turned)) turn(at[i] = copy[i], x[i], 4, o->shift[i]);
         if (!reads_other) continue;
         other_at[i] = other[i] = (sk_wide *)(void *)(from + block);
-        if (turned) turn(other_at[i] = other_copy[i], other[i], 3, o->shift[i]);
+        if (turns(o, i, turned)) turn(other_at[i] = other_copy[i], other[i], 3, o->shift[i]);
     }
+    bool moves = false;
     for (size_t p = 0; p < SK_PARTS; p++) {
         sk_wide *part[SK_ARITY], *other_part[SK_ARITY] = {NULL};
         SK_EACH_PARTICLE (i) {
             part[i] = at[i] + p;
             if (reads_other) other_part[i] = other_at[i] + p;
         }
-        meet_part(sweep, constants, lane + p * SK_PART, special, mode, part, other_part);
+        moves |= meet_part(sweep, constants, lane + p * SK_PART, special, mode, part, other_part);
     }
+    if (!moves) return;
     SK_EACH_PARTICLE (i) {
-        if (turned) turn_back(x[i], at[i], o->shift[i]);
-        if (turned && mode == SK_MODE_LIMIT_MOVING) turn_back(other[i], other_at[i], o->shift[i]);
+        if (!turns(o, i, turned)) continue;
+        turn_back(x[i], at[i], o->shift[i]);
+        if (mode == SK_MODE_LIMIT_MOVING) turn_back(other[i], other_at[i], o->shift[i]);
     }
 }
 
@@ -197,7 +212,7 @@ SK_INLINE void pull_span(sk_run *run, const sk_row *row, const sk_sweep *sweep, 
     for (size_t at = r * line + span->first * SK_LANES; at < r * line + span->last * SK_LANES; at += SK_LANES) {
         size_t lane = sweep->first_lane + at, slot = sweep->walk.first_slot + at;
         bool special = turned || sweep->batch->special[lane / SK_LANES];
-        sk_wide *f[SK_ARITY], copy[SK_ARITY][3][3 * SK_PARTS];
+        sk_wide *f[SK_ARITY], copy[SK_ARITY][2][3 * SK_PARTS], sum[SK_ARITY][3 * SK_PARTS] = {{{0}}};
         const sk_wide *x[SK_ARITY], *v[SK_ARITY];
         SK_EACH_PARTICLE (i) {
             x[i] = (const sk_wide *)(const void *)(run->vector[SK_X] + slot + o.slots[i]);
@@ -206,7 +221,7 @@ SK_INLINE void pull_span(sk_run *run, const sk_row *row, const sk_sweep *sweep, 
             if (!turned) continue;
             turn(copy[i][0], x[i], 3, o.shift[i]);
             turn(copy[i][1], v[i], 3, o.shift[i]);
-            if (gets[i]) turn(copy[i][2], f[i], 3, o.shift[i]); // the others may be another thread's
+            if (gets[i]) turn(sum[i], f[i], 3, o.shift[i]); // the others may be another thread's
             x[i] = copy[i][0], v[i] = copy[i][1];
         }
         for (size_t p = 0; p < SK_PARTS; p++) {
@@ -215,12 +230,12 @@ SK_INLINE void pull_span(sk_run *run, const sk_row *row, const sk_sweep *sweep, 
             set_values(&e, sweep, constants, lane + p * SK_PART, special, false);
             work_out(&e, constants, mode);
             SK_EACH_PARTICLE (i) {
-                sk_wide *to = (turned ? copy[i][2] : f[i]) + p;
+                sk_wide *to = (turned ? sum[i] : f[i]) + p;
                 if (gets[i]) store3(to, with_sign(&e, i, load3(to), given(&e, i, mode)));
             }
         }
         SK_EACH_PARTICLE (i)
-            if (turned && gets[i]) turn_back(f[i], copy[i][2], o.shift[i]);
+            if (turned && gets[i]) turn_back(f[i], sum[i], o.shift[i]);
     }
 }
 
@@ -269,10 +284,8 @@ SK_PULLS(apply, SK_MODE_APPLY)
 
 /* ---- groups ---- */
 
-/* Puts a part's particles back, which are all different, with `d` added to what was gathered. */
-SK_INLINE void scatter_sum(const sk_element *e, sk_wide3 d, int i, sk_vec4 *vector, size_t packed,
-                           const uint32_t *slot, sk_wide4 old) {
-    sk_wide3 to = with_sign(e, i, (sk_wide3){old.x, old.y, old.z}, d);
+/* Puts a part's particles, which are all different, to where they come. */
+SK_INLINE void scatter_to(sk_wide3 to, sk_vec4 *vector, size_t packed, const uint32_t *slot, sk_wide4 old) {
     if (!packed) {
         sk_scatter(vector, slot, (sk_wide4){to.x, to.y, to.z, old.w});
         return;
@@ -312,10 +325,12 @@ SK_INLINE void put_down(const group_part *p, sk_run *run, const sk_row *row, con
     sk_vec4 *dst = sums ? run->vector[row->dst] : x;
     SK_EACH_PARTICLE (i) {
         const uint32_t *slot = p->slots + i * SK_LANES;
-        sk_wide4 old = sums ? sk_gather_any(dst, packed, slot) : p->at[i];
-        scatter_sum(&p->e, given(&p->e, i, mode), i, dst, packed, slot, old);
+        sk_wide4 old = sums ? sk_gather_any(dst, packed, slot) : p->at[i], other_old = p->other_at[i];
+        sk_wide3 from = {old.x, old.y, old.z}, other_from = {other_old.x, other_old.y, other_old.z};
+        scatter_to(sums ? with_sign(&p->e, i, from, given(&p->e, i, mode)) : put(&p->e, i, from, p->e.scale, mode), dst, packed,
+                   slot, old);
         if (mode == SK_MODE_LIMIT_MOVING)
-            scatter_sum(&p->e, moved(&p->e, p->e.velocity_scale, i), i, other, packed, slot, p->other_at[i]);
+            scatter_to(put(&p->e, i, other_from, p->e.velocity_scale, mode), other, packed, slot, other_old);
     }
     if (mode == SK_MODE_PROJECT_DAMPED) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + p->lane) = p->e.multiplier;
 }
@@ -324,8 +339,7 @@ SK_INLINE void meet_group(sk_run *run, const sk_row *row, const sk_sweep *sweep,
                           size_t group, size_t part, size_t packed, sk_element_mode mode) {
     group_part p;
     take_up(&p, run, sweep, constants, group, part, packed, mode, row->source[1]);
-    work_out(&p.e, constants, mode);
-    put_down(&p, run, row, sweep, packed, mode);
+    if (work_out(&p.e, constants, mode)) put_down(&p, run, row, sweep, packed, mode);
 }
 
 /* Two groups that share no particle: one's roots and divisions are worked out while the other waits for its own. */

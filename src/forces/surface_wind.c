@@ -23,6 +23,7 @@ typedef struct surface_wind_params {
 
 #define SK_UNIT surface_wind
 SK_KERNELS(sk_row_kernel, over_patch);
+SK_KERNELS(sk_row_kernel, over_rest);
 
 #ifdef SK_ISA
 
@@ -36,6 +37,7 @@ SK_INLINE sk_mask lanes_in(uint16_t word, size_t part) {
     static const SK_VECTOR_ALIGNED sk_lane_int bit[SK_LANES] = {1,      1 << 1, 1 << 2,  1 << 3,  1 << 4,  1 << 5,
                                                                 1 << 6, 1 << 7, 1 << 8,  1 << 9,  1 << 10, 1 << 11,
                                                                 1 << 12, 1 << 13, 1 << 14, 1 << 15};
+    if (word == UINT16_MAX) return (sk_mask){0} == 0;
     sk_mask at = ((const sk_mask *)(const void *)bit)[part];
     return ((at & (sk_lane_int)word) != 0);
 }
@@ -53,6 +55,11 @@ SK_INLINE void add3(sk_wide *part, sk_wide3 a) {
     part[0] += a.x, part[SK_PARTS] += a.y, part[2 * SK_PARTS] += a.z;
 }
 
+SK_INLINE blow blow_of(const surface_wind_params *params) {
+    return (blow){sk_v3_of(params->velocity), (real)(params->density * (params->drag - params->lift) / 12),
+                  (real)(params->density * params->lift / 12)};
+}
+
 /* A corner's share of the triangle with this edge and tip. `moving`: its corners' velocities, added up. */
 SK_INLINE sk_wide3 share_of(const blow *air, sk_wide3 edge, sk_wide3 to_tip, sk_wide3 moving, sk_mask there) {
     const real third = (real)1 / 3;
@@ -61,19 +68,23 @@ SK_INLINE sk_wide3 share_of(const blow *air, sk_wide3 edge, sk_wide3 to_tip, sk_
                        edge.x * to_tip.y - edge.y * to_tip.x};
     sk_wide square = sk_dot_wide(normal, normal), across = sk_dot_wide(normal, flow);
     there &= sk_more(square, sk_splat(LEAST_SQUARE));
-    sk_wide a = air->along * sk_wide_abs(across);
-    sk_wide b = air->lifting * across * sk_wide_sqrt(sk_dot_wide(flow, flow) / square);
-    return (sk_wide3){sk_keep(there, a * flow.x + b * normal.x), sk_keep(there, a * flow.y + b * normal.y),
-                      sk_keep(there, a * flow.z + b * normal.z)};
+    sk_wide a = sk_keep(there, air->along * sk_wide_abs(across));
+    sk_wide b = sk_keep(there, air->lifting * across * sk_wide_sqrt(sk_dot_wide(flow, flow) / square));
+    return (sk_wide3){a * flow.x + b * normal.x, a * flow.y + b * normal.y, a * flow.z + b * normal.z};
 }
 
-/* The two triangles beside the diagonal from `base` to `far`: what they bring to its ends, and to their tips. */
-SK_INLINE void add_two(const blow *air, const sk_wide3 *x, const sk_wide3 *v, sk_wide3 *sum, int base, int far, int tip,
-                       int other, const uint16_t *has, size_t part) {
+/* The two triangles beside the diagonal from `base` to `far`: what they bring to its ends, and to their tips, alone or
+ * besides what is there. */
+SK_INLINE void add_two(const blow *air, const sk_wide3 *x, const sk_wide3 *v, sk_wide3 *sum, bool alone, int base, int far,
+                       int tip, int other, const uint16_t *has, size_t part) {
     sk_wide3 edge = minus3(x[far], x[base]), moving = plus3(v[base], v[far]);
     sk_wide3 one = share_of(air, edge, minus3(x[tip], x[base]), plus3(moving, v[tip]), lanes_in(has[tip], part));
     sk_wide3 two = share_of(air, edge, minus3(x[other], x[base]), plus3(moving, v[other]), lanes_in(has[other], part));
     sk_wide3 both = plus3(one, two);
+    if (alone) {
+        sum[tip] = one, sum[other] = two, sum[base] = sum[far] = both;
+        return;
+    }
     sum[tip] = plus3(sum[tip], one), sum[other] = plus3(sum[other], two);
     sum[base] = plus3(sum[base], both), sum[far] = plus3(sum[far], both);
 }
@@ -85,26 +96,24 @@ typedef struct corners {
 
 SK_INLINE void blow_on_cells(const blow *air, const corners *at, const uint16_t *has, size_t part, sk_wide3 *sum) {
     sk_wide3 x[4], v[4];
-    for (int i = 0; i < 4; i++) {
-        x[i] = load3(at->x[i] + part), v[i] = load3(at->v[i] + part);
-        sum[i] = (sk_wide3){{0}, {0}, {0}};
-    }
-    if (has[1] | has[2]) add_two(air, x, v, sum, 0, 3, 1, 2, has, part);
-    if (has[0] | has[3]) add_two(air, x, v, sum, 1, 2, 0, 3, has, part);
+    for (int i = 0; i < 4; i++) x[i] = load3(at->x[i] + part), v[i] = load3(at->v[i] + part);
+    bool falling = has[1] | has[2], rising = has[0] | has[3];
+    if (falling) add_two(air, x, v, sum, true, 0, 3, 1, 2, has, part);
+    if (rising && !falling) add_two(air, x, v, sum, true, 1, 2, 0, 3, has, part);
+    else if (rising) add_two(air, x, v, sum, false, 1, 2, 0, 3, has, part);
+    else if (!falling) for (int i = 0; i < 4; i++) sum[i] = (sk_wide3){{0}, {0}, {0}};
 }
 
 /* x, y and z of a block, each lane that of the next strip: what the last cells of a row have on their right. */
 SK_INLINE void turn3(sk_wide *to, const sk_wide *block, int shift) {
-    for (int r = 0; r < 3 * SK_PARTS; r += SK_PARTS)
-        for (int p = 0; p < SK_PARTS; p++) to[r + p] = sk_turned(block + r, p, shift);
+    for (int r = 0; r < 3 * SK_PARTS; r += SK_PARTS) sk_turn_row(to + r, block + r, shift);
 }
 
 /* Cells of strip rows [begin, end): each row's add to its own particles, and to those of the next row. */
 void SK_KERNEL(over_patch)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const surface_wind_params *params = ((const sk_force *)row->rule)->params;
     const sk_patch *patch = row->patch;
-    const blow air = {sk_v3_of(params->velocity), (real)(params->density * (params->drag - params->lift) / 12),
-                     (real)(params->density * params->lift / 12)};
+    const blow air = blow_of(params);
     size_t width = patch->walk.width, line = width * 4 * SK_PARTS; // vectors a strip row
     for (size_t r = begin; r < end; r++) {
         size_t first = patch->walk.first_slot * 4 / SK_PART + r * line;
@@ -140,6 +149,38 @@ void SK_KERNEL(over_patch)(sk_run *run, const sk_row *row, size_t begin, size_t 
     }
 }
 
+/* Triangles that lie in no grid: a part of them is worked out at once, for they read nothing that they write, and then
+ * their corners get their shares, triangle by triangle. */
+SK_INLINE void blow_on_part(sk_run *run, const sk_row *row, const blow *air, size_t begin, size_t count) {
+    uint32_t corner[3][SK_PART];
+    bool strips = false;
+    for (size_t l = 0; l < SK_PART; l++)
+        for (int k = 0; k < 3; k++) {
+            corner[k][l] = run->surface->rest.corner[begin + (l < count ? l : 0)][k];
+            strips |= corner[k][l] < row->packed;
+        }
+    size_t packed = strips ? row->packed : 0;
+    sk_wide3 x[3], moving = {{0}, {0}, {0}};
+    for (int k = 0; k < 3; k++) {
+        sk_wide4 at = sk_gather_any(run->vector[SK_X], packed, corner[k]), v = sk_gather_any(run->vector[SK_V], packed, corner[k]);
+        x[k] = (sk_wide3){at.x, at.y, at.z};
+        moving = plus3(moving, (sk_wide3){v.x, v.y, v.z});
+    }
+    sk_wide3 share = share_of(air, minus3(x[1], x[0]), minus3(x[2], x[0]), moving, (sk_mask){0} == 0);
+    SK_VECTOR_ALIGNED real lane[3][SK_PART];
+    memcpy(lane[0], &share.x, sizeof lane[0]), memcpy(lane[1], &share.y, sizeof lane[1]);
+    memcpy(lane[2], &share.z, sizeof lane[2]);
+    for (size_t l = 0; l < count; l++)
+        for (int k = 0; k < 3; k++)
+            sk_add_at(run->vector[row->dst], packed, corner[k][l], sk_v3(lane[0][l], lane[1][l], lane[2][l]));
+}
+
+void SK_KERNEL(over_rest)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const blow air = blow_of(((const sk_force *)row->rule)->params);
+    for (size_t t = begin; t < end; t += SK_PART)
+        blow_on_part(run, row, &air, t, end - t < SK_PART ? end - t : SK_PART);
+}
+
 #else
 
 static const skein_field fields[] = {
@@ -149,37 +190,12 @@ static const skein_field fields[] = {
     SK_REAL(surface_wind_params, density, "density", "kg/m3", 1.2, 0, 1e4, "of the air"),
 };
 
-/* Triangles that lie in no grid, one by one. */
-static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const surface_wind_params *params = ((const sk_force *)row->rule)->params;
-    const sk_vec4 *x = run->vector[SK_X], *v = run->vector[SK_V];
-    sk_vec4 *f = run->vector[row->dst];
-    sk_vec3 wind = sk_v3_of(params->velocity);
-    real third = (real)1 / 3, along = (real)(params->density * (params->drag - params->lift) / 12),
-         lifting = (real)(params->density * params->lift / 12);
-    for (size_t t = begin; t < end; t++) {
-        const uint32_t *c = run->surface->rest.corner[t];
-        sk_vec3 p[3], moving = {0, 0, 0};
-        for (int k = 0; k < 3; k++) {
-            p[k] = sk_xyz(sk_load(x, row->packed, c[k]));
-            moving = sk_add(moving, sk_xyz(sk_load(v, row->packed, c[k])));
-        }
-        sk_vec3 flow = sk_sub(wind, sk_scale(third, moving));
-        sk_vec3 normal = sk_cross(sk_sub(p[1], p[0]), sk_sub(p[2], p[0]));
-        real square = sk_dot(normal, normal), across = sk_dot(normal, flow);
-        if (!(square > LEAST_SQUARE)) continue;
-        real a = along * sk_abs(across), b = lifting * across * sk_sqrt(sk_dot(flow, flow) / square);
-        sk_vec3 share = sk_add(sk_scale(a, flow), sk_scale(b, normal));
-        for (int k = 0; k < 3; k++) sk_add_at(f, row->packed, c[k], share);
-    }
-}
-
 const sk_force_type sk_surface_wind = {
     .kind = {"surface_wind", "wind by triangle: lift and drag from its normal and its velocity through the air",
              SKEIN_FORCE, fields, sizeof fields / sizeof *fields, sizeof(surface_wind_params)},
     .domain = SK_OVER_TRIANGLES,
     .on_velocity = true,
-    .kernel = {SK_ANY_ISA(kernel)},
+    .kernel = {SK_EACH_ISA(over_rest)},
     .over_patch = {SK_EACH_ISA(over_patch)},
 };
 #endif

@@ -27,34 +27,46 @@ SK_INLINE size_t place_of(const sk_limit *limit, size_t at, size_t k) {
     return (at / SK_LANES * limit->anchors + k) * SK_LANES + at % SK_LANES;
 }
 
-/* One number of anchor k of a part, lane by lane; `offset` is its place in an sk_anchor. */
-SK_INLINE sk_wide of_anchor(const sk_limit *limit, size_t at, size_t k, size_t offset) {
-    const uint32_t *pin = limit->pin_of + (limit->shared ? k : place_of(limit, at, k));
+/* The places in `pins` of anchor k of a part's lanes, and whether they are one and the same. */
+typedef struct part_pins {
+    const uint32_t *pin;
+    bool same;
+} part_pins;
+
+SK_INLINE part_pins pins_of(const sk_limit *limit, size_t at, size_t k) {
+    if (limit->shared) return (part_pins){limit->pin_of + k, true};
+    part_pins pins = {limit->pin_of + place_of(limit, at, k), true};
+    for (int l = 1; l < SK_PART; l++) pins.same &= pins.pin[l] == pins.pin[0];
+    return pins;
+}
+
+/* One number of a part's anchors; `offset` is its place in an sk_anchor. */
+SK_INLINE sk_wide of_anchor(const sk_limit *limit, const part_pins *pins, size_t offset) {
     const real *number = (const real *)(const void *)limit->pins + offset;
     enum { STRIDE = sizeof(sk_anchor) / sizeof(real) };
-    if (limit->shared) return sk_splat(number[pin[0] * STRIDE]);
+    if (pins->same) return sk_splat(number[pins->pin[0] * STRIDE]);
     sk_wide all;
-    for (int l = 0; l < SK_PART; l++) all[l] = number[pin[l] * STRIDE];
+    for (int l = 0; l < SK_PART; l++) all[l] = number[pins->pin[l] * STRIDE];
     return all;
 }
 
 #define NUMBER_OF(member) (offsetof(sk_anchor, member) / sizeof(real))
 
-SK_INLINE sk_wide3 velocity_of(const sk_limit *limit, size_t at, size_t k) {
-    return (sk_wide3){of_anchor(limit, at, k, NUMBER_OF(velocity.x)), of_anchor(limit, at, k, NUMBER_OF(velocity.y)),
-                      of_anchor(limit, at, k, NUMBER_OF(velocity.z))};
+SK_INLINE sk_wide3 velocity_of(const sk_limit *limit, const part_pins *pins) {
+    return (sk_wide3){of_anchor(limit, pins, NUMBER_OF(velocity.x)), of_anchor(limit, pins, NUMBER_OF(velocity.y)),
+                      of_anchor(limit, pins, NUMBER_OF(velocity.z))};
 }
 
-/* Anchor k of a part, `since` seconds after the start of the step. One that is not held any more lets go. */
-SK_INLINE sk_wide3 anchor_of(const sk_limit *limit, size_t at, size_t k, real since, sk_wide *most) {
-    sk_wide3 from = {of_anchor(limit, at, k, NUMBER_OF(start.x)), of_anchor(limit, at, k, NUMBER_OF(start.y)),
-                     of_anchor(limit, at, k, NUMBER_OF(start.z))};
+/* The anchors of a part, `since` seconds after the start of the step. One that is not held any more lets go. */
+SK_INLINE sk_wide3 anchor_of(const sk_limit *limit, const part_pins *pins, real since, sk_wide *most) {
+    sk_wide3 from = {of_anchor(limit, pins, NUMBER_OF(start.x)), of_anchor(limit, pins, NUMBER_OF(start.y)),
+                     of_anchor(limit, pins, NUMBER_OF(start.z))};
     if (limit->lets_go) {
-        sk_mask free = sk_positive(of_anchor(limit, at, k, NUMBER_OF(free)));
+        sk_mask free = sk_positive(of_anchor(limit, pins, NUMBER_OF(free)));
         *most = sk_select(free, sk_splat((real)SK_FAR), *most);
     }
     if (!limit->moves) return from;
-    sk_wide3 v = velocity_of(limit, at, k);
+    sk_wide3 v = velocity_of(limit, pins);
     return (sk_wide3){from.x + since * v.x, from.y + since * v.y, from.z + since * v.z};
 }
 
@@ -67,10 +79,11 @@ typedef struct pullers {
 /* Pulls the lanes of p in by anchor k. */
 SK_INLINE void pull_by(const sk_limit *limit, size_t at, size_t k, real factor, real since, sk_wide3 *p, pullers *by) {
     sk_wide most = factor * *(const sk_wide *)(const void *)(limit->slot_length + place_of(limit, at, k));
-    sk_wide3 anchor = anchor_of(limit, at, k, since, &most);
+    part_pins pins = pins_of(limit, at, k);
+    sk_wide3 anchor = anchor_of(limit, &pins, since, &most);
     sk_mask out = pull_in(p, anchor, most);
     if (!limit->moves || !sk_any(out)) return;
-    sk_wide3 v = velocity_of(limit, at, k);
+    sk_wide3 v = velocity_of(limit, &pins);
     by->velocity.x += sk_keep(out, v.x);
     by->velocity.y += sk_keep(out, v.y);
     by->velocity.z += sk_keep(out, v.z);
@@ -185,6 +198,16 @@ static bool list_pins(sk_limit *limit, sk_allocator *allocator, const sk_particl
     return true;
 }
 
+/* Lanes that are not tethered get the anchor of one beside them, which they never feel: one number then does for a part. */
+static void fill_gaps(sk_limit *limit) {
+    for (size_t i = 0; i < limit->slot_count * limit->anchors; i += SK_LANES) {
+        uint32_t pin = 0;
+        for (size_t l = i; l < i + SK_LANES && !pin; l++) pin = limit->pin_of[l];
+        for (size_t l = i; l < i + SK_LANES; l++)
+            if (!limit->pin_of[l]) limit->pin_of[l] = pin;
+    }
+}
+
 /* Everything by slot, from the first to the last one that is tethered. */
 static void fill_blocks(sk_limit *limit, const sk_particles *particles, const uint32_t *place_of) {
     size_t anchors = limit->anchors;
@@ -201,6 +224,7 @@ static void fill_blocks(sk_limit *limit, const sk_particles *particles, const ui
             limit->pin_of[limit->shared ? k : place] = place_of[element[1 + k]];
         }
     }
+    if (!limit->shared) fill_gaps(limit);
 }
 
 bool sk_limit_arrange(sk_limit *limit, sk_allocator *allocator, const sk_particles *particles) {
