@@ -76,6 +76,7 @@ static json_t *make_document(const app_report *r) {
         {"held_particles", count(s->held_particles)},
         {"constraints", count(s->constraints)},
         {"contacts", count(s->contacts)},
+        {"crossings", count(s->crossings)},
         {"kinetic_energy", number(s->kinetic_energy)},
         {"potential_energy", number(s->potential_energy)},
         {"elastic_energy", number(s->elastic_energy)},

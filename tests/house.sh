@@ -23,6 +23,7 @@ space
 plan
 particles
 constraints forces colliders limits motions
+contact
 methods
 world
 bodies

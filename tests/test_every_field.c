@@ -177,9 +177,9 @@ static void add_others(skein_world *world, uint64_t *seed, skein_category catego
     }
 }
 
-/* Two bodies with names, one of loose particles and one of springs, and LOOSE particles, two of which are held, as some of
+/* Two bodies with names, one of loose particles and one of springs, on which another may lie, and LOOSE particles, two of which are held, as some of
  * the springs' are; the index of the first one. */
-static uint32_t add_company(skein_world *world, uint64_t *seed) {
+static uint32_t add_company(skein_world *world, uint64_t *seed, bool layers) {
     double positions[LOOSE][3] = {{0, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}}, masses[LOOSE];
     for (int i = 0; i < LOOSE; i++) {
         masses[i] = i < 6 ? random_between(seed, 0.1, 1) : 0;
@@ -196,6 +196,11 @@ static uint32_t add_company(skein_world *world, uint64_t *seed) {
                   SKEIN_SETTINGS(SKEIN_TEXT("name", "b"), SKEIN_PAIR("grid", 3, 3), SKEIN_VEC3("rotation", 30, 20, 10),
                                  SKEIN_TEXT("pins", "0 1")),
                   NULL));
+    if (!layers) return first;
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 2, 2), SKEIN_PAIR("size", 0.5, 0.5),
+                                            SKEIN_VEC3("rotation", 30, 20, 10), SKEIN_VEC3("position", 0, 0.004, 0)),
+                             NULL));
     return first;
 }
 
@@ -277,7 +282,7 @@ static skein_world *build(const trial *t, const skein_value *value, skein_handle
     if (value) settings[count++] = (skein_setting){t->field, *value};
     settings[count].name = NULL;
     skein_category category = t->s->kind->category;
-    uint32_t first = category == SKEIN_BODY ? 0 : add_company(world, &seed);
+    uint32_t first = category == SKEIN_BODY ? 0 : add_company(world, &seed, category == SKEIN_FORCE);
     skein_status status = SKEIN_OK;
     if (category != SKEIN_METHOD)
         status = skein_method_set(world, t->method, SKEIN_SETTINGS(SKEIN_REAL("substeps", 2)));

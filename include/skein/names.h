@@ -276,6 +276,10 @@
 #define SKEIN_POTENTIAL_PER_MASS "mass"
 #define SKEIN_POTENTIAL_PER_PARTICLE "particle"
 
+#define SKEIN_CONTACT "contact" /* surfaces and ropes neither pass through each other nor through themselves */
+#define SKEIN_CONTACT_THICKNESS "thickness" /* a number in m; how near surfaces come to each other; less where a body's own vertices are nearer as it was built */
+#define SKEIN_CONTACT_FRICTION "friction" /* a number; coefficient of friction between them */
+
 /* ---- colliders ---- */
 
 /* of every collider */

@@ -729,6 +729,7 @@ typedef struct skein_statistics {
     uint64_t all_unsolved, all_solver_failures;
     double max_penetration;   /* m, below a collider's thickness */
     size_t contacts;          /* pairs of a particle and a collider that touch */
+    size_t crossings;         /* of an edge and a triangle that contact keeps apart (the force "contact"); else 0 */
     size_t particles, held_particles, constraints;
     size_t nonfinite;    /* particles with a position or velocity that is not finite */
     size_t guarded;      /* values of formulas that have none at the present state, where 0 or the nearest was taken:

@@ -7,6 +7,7 @@
 
 #include "base/fields.h"
 #include "formula/parameters.h"
+#include "particles/particles.h"
 #include "plan/row.h"
 #include "plan/shader.h"
 
@@ -16,8 +17,33 @@ typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOUR
  *   pushes   adds newtons to F, in every stage of a method
  *   steers   adds a change of velocity to S, once a substep, with the row's dt: all of these read the same state
  *   bounds   puts V right once all have steered, and may add to S what later ones are to know; in the order of making
+ *   meets    surfaces meet surfaces: it has rows of its own in every substep (sk_meeting)
  */
-typedef enum sk_deed { SK_PUSHES, SK_STEERS, SK_BOUNDS } sk_deed;
+typedef enum sk_deed { SK_PUSHES, SK_STEERS, SK_BOUNDS, SK_MEETS } sk_deed;
+
+/* What can meet: triangles, and edges that are in none, of all bodies, by the user's indices of their particles. */
+typedef struct sk_meeting_parts {
+    const uint32_t (*triangle)[3], (*edge)[2];
+    size_t triangle_count, edge_count;
+    uint64_t arrangement; /* another number where any of it, or who takes part, may have changed */
+} sk_meeting_parts;
+
+typedef struct sk_force sk_force;
+
+/* How a rule meets: rows that are run in every substep of any method, with the force as their rule.
+ *   begin   before all else: X is where the substep starts
+ *   push    with the limits: moves X, and V by as much where its second source is V
+ *   bound   last of all: no vertex goes where it would have passed a surface; V is told
+ * They do not declare what they reach, and one thread runs them. */
+typedef struct sk_meeting {
+    sk_kernels begin, push, bound;
+    /* Makes what the rows keep (state of the force), if it is not there or not of these parts. False: no memory. */
+    bool (*prepare)(sk_force *force, sk_allocator *allocator, const sk_particles *particles,
+                    const sk_meeting_parts *parts, sk_isa isa);
+    void (*release)(sk_force *force, sk_allocator *allocator);
+    /* How many edges go through a triangle, of the places x of slots. False: no memory. */
+    bool (*crossings)(sk_force *force, sk_allocator *allocator, const sk_vec4 *x, const uint32_t *slot_of, size_t *count);
+} sk_meeting;
 
 typedef struct sk_force_type {
     skein_kind kind;
@@ -76,12 +102,13 @@ typedef struct sk_force_type {
      *     bool sees@(sum@ sum, vec3 apart, float square)
      * is true of. */
     sk_shader shader;
+    const sk_meeting *meeting; /* of a rule that meets */
     /* Over colliders: the time ahead (s), the clearance (m) and the strength (m/s2) of steering clear. */
     void (*look)(const void *params, double look[3]);
 } sk_force_type;
 
 /* A force as methods see it: a type with its parameters. A row's rule is one of these. */
-typedef struct sk_force {
+struct sk_force {
     const sk_force_type *type;
     const void *params;
     const char *label;
@@ -89,7 +116,8 @@ typedef struct sk_force {
     char *const *on;      /* the names of the bodies that it acts on; "": every particle */
     sk_only only;         /* those, found when a plan is written; */
     sk_group moved, seen; /* and of a rule that steers or bounds, whom it moves and looks at */
-} sk_force;
+    void *state;          /* of a rule that meets: what its rows keep */
+};
 
 bool sk_force_on_velocity(const sk_force *force);
 /* The particle that it looks at, or -1. */

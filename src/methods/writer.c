@@ -29,10 +29,13 @@ size_t sk_write_repeat(sk_writer *writer, size_t times, double h) {
     writer->h = writer->before = h;
     writer->turns = times;
     sk_add_row(writer, (sk_row){.kind = SK_ROW_REPEAT, .end = times, .order = SK_ORDERED, .label = "repeat"});
-    return writer->plan->count - 1;
+    size_t repeat = writer->substep = writer->plan->count - 1;
+    sk_write_meetings(writer, SK_MEETING_BEGIN, SK_NONE);
+    return repeat;
 }
 
 void sk_write_end(sk_writer *writer, size_t repeat) {
+    if (repeat == writer->substep) sk_write_meetings(writer, SK_MEETING_BOUND, SK_V);
     if (!writer->no_memory) writer->plan->data[repeat].length = writer->plan->count - repeat - 1;
 }
 
@@ -315,7 +318,7 @@ static sk_row prediction(sk_writer *writer, const sk_kernels *kernels, sk_vector
 
 /* Where nobody else looks at X0 and F, the end of a substep and the start of the next are one row. */
 static bool falls_on(sk_writer *writer, int passes) {
-    bool falls = only_follows(writer->rules, passes) && !sk_writes_steering(writer->rules);
+    bool falls = only_follows(writer->rules, passes) && !sk_writes_steering(writer->rules) && !sk_writes_meetings(writer);
     for (size_t i = 0; i < writer->plan->parts.count; i++) falls &= writer->plan->parts.data[i].is_plain;
     return falls;
 }
@@ -565,6 +568,7 @@ bool sk_writes_velocity_forces(const sk_writer *writer) {
 
 bool sk_writes_corrections(const sk_writer *writer) {
     const sk_rules *rules = writer->rules;
+    if (sk_writes_meetings(writer)) return true;
     for (size_t i = 0; i < rules->colliders.count; i++)
         if (rules->colliders.data[i]->common->enabled) return true;
     for (size_t i = 0; i < rules->batches.count; i++)
@@ -623,6 +627,7 @@ void sk_write_limits(sk_writer *writer, sk_vector velocity) {
                                     .begin = limit->first_slot,
                                     .end = limit->first_slot + limit->slot_count});
     }
+    sk_write_meetings(writer, SK_MEETING_PUSH, velocity);
 }
 
 skein_status sk_refuse_rigid(const sk_rules *rules, const char *method, skein_error *error) {

@@ -41,6 +41,7 @@ typedef struct sk_writer {
     double h;           /* of the present substep, s, */
     size_t turns;       /* and how many of them the repeat has */
     double before;      /* and how long before its end X is by now, s */
+    size_t substep;     /* the place of its repeat */
     bool no_memory;     /* the plan is incomplete */
 } sk_writer;
 
@@ -103,6 +104,11 @@ typedef enum sk_contact_sort {
 } sk_contact_sort;
 /* A row for each collider. Settling looks at X0 and V0, the state before the substep's corrections. */
 void sk_write_contacts(sk_writer *writer, sk_contact_sort sort);
+typedef enum sk_meeting_sort { SK_MEETING_BEGIN, SK_MEETING_PUSH, SK_MEETING_BOUND } sk_meeting_sort;
+/* A row for each rule that meets. The other functions here call it: a repeat of substeps begins and ends with such rows,
+ * and they push with the limits. */
+void sk_write_meetings(sk_writer *writer, sk_meeting_sort sort, sk_vector velocity);
+bool sk_writes_meetings(const sk_writer *writer);
 /* Limits move X; `velocity` is SK_V where the method does not take velocities from positions, else SK_NONE. */
 void sk_write_limits(sk_writer *writer, sk_vector velocity);
 

@@ -30,6 +30,7 @@ const char *sk_row_kind_text(sk_row_kind kind) {
         [SK_ROW_CONTACT_FILTER] = "contact S",
         [SK_ROW_DOT] = "dot",
         [SK_ROW_SCALAR] = "scalar",
+        [SK_ROW_MEET] = "meet",
         [SK_ROW_CALL] = "call",
         [SK_ROW_REPEAT] = "repeat",
     };

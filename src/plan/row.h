@@ -62,6 +62,7 @@ typedef enum sk_row_kind {
     SK_ROW_CONTACT_FILTER,
     SK_ROW_DOT,
     SK_ROW_SCALAR,
+    SK_ROW_MEET,
     SK_ROW_CALL, /* what is no loop over elements: a solver from outside */
     SK_ROW_REPEAT,
     SK_ROW_KIND_COUNT

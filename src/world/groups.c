@@ -145,7 +145,7 @@ static skein_status join(const skein_world *world, const char *label, const sk_o
 
 static skein_status find_force(skein_world *world, sk_force *force, skein_error *error) {
     skein_status status = find_only(world, force->label, *force->on, &force->only, error);
-    if (status || force->type->deed == SK_PUSHES) return status;
+    if (status || force->type->deed == SK_PUSHES || force->type->deed == SK_MEETS) return status;
     status = join(world, force->label, &force->only, &force->moved, error);
     const char *minds = force->type->minds ? force->type->minds(force->params) : "";
     force->seen = force->moved;

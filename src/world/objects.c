@@ -397,6 +397,7 @@ skein_status skein_remove(skein_world *world, skein_handle handle) {
         break;
     case SKEIN_FORCE:
         drop_pointer((void **)rules->forces.data, &rules->forces.count, object->as.force);
+        sk_world_end_meeting(world, object->as.force);
         sk_release(&world->allocator, object->as.force->only.data);
         sk_release(&world->allocator, object->as.force);
         break;

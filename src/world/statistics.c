@@ -132,6 +132,7 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     for (size_t i = 0; i < world->rules.forces.count; i++)
         statistics->guarded += count_guarded(world, world->rules.forces.data[i]);
     status = measure_stretch(world, statistics, error);
+    if (!status) status = sk_world_count_crossings(world, &statistics->crossings, error);
     statistics->state_hash = skein_world_hash(world);
     return status;
 }

@@ -22,6 +22,7 @@ skein_status sk_world_arrange(skein_world *world, skein_error *error) {
         return sk_fail_memory(error, "triangles");
     world->slots_stale = false;
     world->plan_stale = true;
+    world->arrangement++;
     world->matrix.shaped = false;
     return SKEIN_OK;
 }
@@ -127,6 +128,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         if (status) return status;
     }
     status = sk_world_find_groups(world, error);
+    if (!status) status = sk_world_prepare_meetings(world, error);
     if (status) return status;
     for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);
     warn_of_light_colliders(world);

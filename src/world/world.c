@@ -91,6 +91,7 @@ void skein_world_destroy(skein_world *world) {
     if (world->device) world->device->release(world->device, world);
     sk_tasks_destroy(world->tasks);
     for (size_t i = 0; i < rules->batches.count; i++) sk_batch_release(rules->batches.data[i], allocator);
+    for (size_t i = 0; i < rules->forces.count; i++) sk_world_end_meeting(world, rules->forces.data[i]);
     for (size_t i = 0; i < rules->forces.count; i++) sk_release(allocator, rules->forces.data[i]->only.data);
     for (size_t i = 0; i < rules->colliders.count; i++) sk_release(allocator, rules->colliders.data[i]->only.data);
     for (size_t i = 0; i < rules->forces.count; i++) sk_release(allocator, rules->forces.data[i]);

@@ -138,6 +138,7 @@ struct skein_world {
     double plan_dt;   /* the step that the plan was written for */
     bool plan_stale;  /* rules, settings or the method have changed */
     bool slots_stale; /* particles, batches or limits were added: slots and sweeps are to be found anew */
+    uint64_t arrangement; /* how often slots were found */
     bool presence_stale; /* bodies were taken out or back: constraints on their particles are to be looked through */
     sk_isa isa;
     sk_cells cells;
@@ -254,6 +255,12 @@ skein_status sk_world_settle_presence(skein_world *world, skein_error *error);
 /* ---- whom rules act on (world/groups.c) ---- */
 /* Finds the bodies that rules name; an unknown name is an error. The slots are up to date. */
 skein_status sk_world_find_groups(skein_world *world, skein_error *error);
+/* Shows what can meet to the rules that meet. The groups are found. */
+skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error);
+/* How many edges go through triangles that they are not to pass. */
+skein_status sk_world_count_crossings(skein_world *world, size_t *count, skein_error *error);
+/* Before a force is released: what it keeps. */
+void sk_world_end_meeting(skein_world *world, sk_force *force);
 /* Whether a list of names has this one: it is the name, or is in it between commas. */
 bool sk_names_have(const char *names, const char *name);
 /* The next run of particles that take part and that a rule `on` these bodies acts on, from *cursor = 0 on: in the order

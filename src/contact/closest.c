@@ -1,0 +1,85 @@
+/* Nearest points of pairs, a vector of them at a time: a vertex and a triangle, two edges (Ericson, Real-Time Collision
+ * Detection, 5.1). All branches are worked out, and the right one is chosen. Where features touch, the normal is 0. */
+#include "base/kernels.h"
+#include "contact/touch.h"
+#define SK_UNIT closest
+SK_KERNELS(sk_closest_kernel, corners);
+SK_KERNELS(sk_closest_kernel, edges);
+
+#ifdef SK_ISA
+#define LEAST_SQUARE ((real)1e-20) /* m2: what is nearer has no direction */
+#define LEAST_AREA ((real)1e-30)
+#define PARALLEL ((real)1e-6)
+
+SK_INLINE sk_wide3 between(sk_wide4 a, sk_wide4 b) {
+    return (sk_wide3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+SK_INLINE sk_wide at_least(sk_wide a, real least) {
+    return sk_select(sk_more(sk_splat(least), a), sk_splat(least), a);
+}
+
+/* From 0 to 1. */
+SK_INLINE sk_wide clamped(sk_wide a) {
+    a = at_least(a, 0);
+    return sk_select(sk_more(a, sk_splat(1)), sk_splat(1), a);
+}
+
+SK_INLINE sk_wide *part_of(real *reals, size_t k) {
+    return (sk_wide *)(void *)(reals + k);
+}
+
+SK_INLINE void note(sk_pairs *pairs, size_t k, sk_wide3 r, sk_wide u, sk_wide v) {
+    sk_wide square = sk_dot_wide(r, r), length = sk_wide_sqrt(square);
+    sk_wide scale = sk_keep(sk_more(square, sk_splat(LEAST_SQUARE)), sk_splat(1) / at_least(length, (real)1e-10));
+    *part_of(pairs->distance, k) = length;
+    *part_of(pairs->normal[0], k) = r.x * scale;
+    *part_of(pairs->normal[1], k) = r.y * scale;
+    *part_of(pairs->normal[2], k) = r.z * scale;
+    *part_of(pairs->share[0], k) = u;
+    *part_of(pairs->share[1], k) = v;
+}
+
+void SK_KERNEL(corners)(const sk_vec4 *x, sk_pairs *pairs) {
+    const sk_wide one = sk_splat(1);
+    for (size_t k = 0; k < pairs->count; k += SK_PART) {
+        sk_wide4 p = sk_gather(x, pairs->corner[0] + k), a = sk_gather(x, pairs->corner[1] + k);
+        sk_wide3 ab = between(sk_gather(x, pairs->corner[2] + k), a), ac = between(sk_gather(x, pairs->corner[3] + k), a);
+        sk_wide3 ap = between(p, a);
+        sk_wide bb = sk_dot_wide(ab, ab), bc = sk_dot_wide(ab, ac), cc = sk_dot_wide(ac, ac);
+        sk_wide bp = sk_dot_wide(ab, ap), cp = sk_dot_wide(ac, ap), area = bb * cc - bc * bc;
+        sk_wide inverse = one / at_least(area, LEAST_AREA);
+        sk_wide u = (cc * bp - bc * cp) * inverse, v = (bb * cp - bc * bp) * inverse;
+        // on the edges: a b at t1, a c at t2, b c at t3
+        sk_wide t1 = clamped(bp / at_least(bb, LEAST_AREA)), t2 = clamped(cp / at_least(cc, LEAST_AREA));
+        sk_wide t3 = clamped((cp - bp - bc + bb) / at_least(bb - bc - bc + cc, LEAST_AREA)), u3 = one - t3;
+        sk_wide q1 = t1 * (t1 * bb - bp - bp), q2 = t2 * (t2 * cc - cp - cp);
+        sk_wide q3 = u3 * (u3 * bb - bp - bp) + t3 * (t3 * cc - cp - cp) + (u3 + u3) * t3 * bc;
+        sk_mask first = sk_at_most(q1, q2), third = sk_more(sk_select(first, q1, q2), q3);
+        sk_wide edge_u = sk_select(third, u3, sk_keep(first, t1)), edge_v = sk_select(third, t3, sk_keep(~first, t2));
+        sk_mask inside = ~sk_negative(u) & ~sk_negative(v) & sk_at_most(u + v, one) & sk_more(area, sk_splat(LEAST_AREA));
+        u = sk_select(inside, u, edge_u), v = sk_select(inside, v, edge_v);
+        sk_wide3 r = {ap.x - u * ab.x - v * ac.x, ap.y - u * ab.y - v * ac.y, ap.z - u * ab.z - v * ac.z};
+        note(pairs, k, r, u, v);
+    }
+}
+
+void SK_KERNEL(edges)(const sk_vec4 *x, sk_pairs *pairs) {
+    for (size_t k = 0; k < pairs->count; k += SK_PART) {
+        sk_wide4 p = sk_gather(x, pairs->corner[0] + k), q = sk_gather(x, pairs->corner[2] + k);
+        sk_wide3 a = between(sk_gather(x, pairs->corner[1] + k), p), b = between(sk_gather(x, pairs->corner[3] + k), q);
+        sk_wide3 r = between(p, q);
+        sk_wide aa = sk_dot_wide(a, a), bb = sk_dot_wide(b, b), ab = sk_dot_wide(a, b);
+        sk_wide ar = sk_dot_wide(a, r), br = sk_dot_wide(b, r), apart = aa * bb - ab * ab;
+        sk_wide inverse_a = sk_splat(1) / at_least(aa, LEAST_AREA), inverse_b = sk_splat(1) / at_least(bb, LEAST_AREA);
+        sk_wide s = clamped((ab * br - ar * bb) / at_least(apart, LEAST_AREA));
+        s = sk_select(sk_more(apart, sk_splat(PARALLEL) * aa * bb), s, sk_splat((real)0.5));
+        sk_wide free = (ab * s + br) * inverse_b, t = clamped(free);
+        s = sk_select(sk_differ(free, t), clamped((ab * t - ar) * inverse_a), s);
+        sk_wide3 d = {r.x + s * a.x - t * b.x, r.y + s * a.y - t * b.y, r.z + s * a.z - t * b.z};
+        note(pairs, k, d, s, t);
+    }
+}
+#else
+sk_closest_kernel *const sk_closest[SK_PAIR_SORTS][SK_ISA_COUNT] = {SK_EACH_ISA(corners), SK_EACH_ISA(edges)};
+#endif

@@ -1,0 +1,58 @@
+/* How many edges go through triangles now: what contact is there to prevent, and what a bad start has. */
+#include "contact/touch.h"
+
+typedef struct tally {
+    sk_touch *touch;
+    size_t count;
+} tally;
+
+/* Six times the volume of a tetrahedron, in double: places are differences of reals, so its sign is right but for what
+ * is all but flat. */
+static double volume(const sk_vec4 *a, const sk_vec4 *b, const sk_vec4 *c, const sk_vec4 *d) {
+    double u[3] = {(double)b->x - (double)a->x, (double)b->y - (double)a->y, (double)b->z - (double)a->z};
+    double v[3] = {(double)c->x - (double)a->x, (double)c->y - (double)a->y, (double)c->z - (double)a->z};
+    double w[3] = {(double)d->x - (double)a->x, (double)d->y - (double)a->y, (double)d->z - (double)a->z};
+    return (u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] + (u[0] * v[1] - u[1] * v[0]) * w[2];
+}
+
+static bool crosses(const sk_vec4 *x, const uint32_t edge[2], const uint32_t t[3]) {
+    for (int i = 0; i < 3; i++)
+        if (edge[0] == t[i] || edge[1] == t[i]) return false;
+    const sk_vec4 *p = &x[edge[0]], *q = &x[edge[1]], *a = &x[t[0]], *b = &x[t[1]], *c = &x[t[2]];
+    double one = volume(a, b, c, p), two = volume(a, b, c, q);
+    if (!((one > 0 && two < 0) || (one < 0 && two > 0))) return false;
+    double ab = volume(p, q, a, b), bc = volume(p, q, b, c), ca = volume(p, q, c, a);
+    return (ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0);
+}
+
+static void count_of(tally *counting, size_t a, size_t b) {
+    const sk_skin *skin = &counting->touch->skin;
+    const sk_leaf *edges = &skin->leaf[a], *triangles = &skin->leaf[b];
+    for (uint32_t e = 0; e < edges->edges; e++)
+        for (uint32_t t = 0; t < triangles->triangles; t++)
+            counting->count += crosses(counting->touch->p, skin->edge[edges->first_edge + e],
+                                       skin->triangle[triangles->first_triangle + t]);
+}
+
+static bool count_pair(void *data, size_t a, size_t b) {
+    count_of(data, a, b);
+    if (a != b) count_of(data, b, a);
+    return true;
+}
+
+bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 *x, const uint32_t *slot_of,
+                        size_t *count) {
+    sk_touch *touch = force->state;
+    *count = 0;
+    if (!touch || !touch->skin.leaf_count) return true;
+    touch->found = false; // the next step searches again
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        touch->p[v] = x[slot_of[touch->skin.particle[v]]];
+        touch->reach[v] = 0;
+    }
+    tally counting = {touch, 0};
+    sk_touch_boxes(touch, 0);
+    if (!sk_touch_meet(touch, allocator, count_pair, &counting)) return false;
+    *count = counting.count;
+    return true;
+}

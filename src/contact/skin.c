@@ -1,0 +1,150 @@
+/* The skin: vertices, edges and triangles of all that a rule acts on, dealt to leaves. Two triangles that follow each other
+ * and have an edge in common are one leaf, as those of a grid's cell do; each vertex and each edge belongs to the first
+ * leaf that has it, and they are numbered in the order of the leaves. */
+#include <string.h>
+
+#include "contact/touch.h"
+
+#define NOBODY UINT32_MAX
+
+/* What is needed while a skin is made. */
+typedef struct making {
+    sk_skin *skin;
+    const sk_particles *particles;
+    uint32_t *vertex_of; /* of the user's particles */
+    uint32_t *table;     /* of edges, by their ends: open addressing */
+    size_t mask;
+} making;
+
+static uint32_t vertex_of(making *m, uint32_t particle) {
+    sk_skin *skin = m->skin;
+    if (m->vertex_of[particle] != NOBODY) return m->vertex_of[particle];
+    uint32_t v = (uint32_t)skin->vertex_count++;
+    sk_vec3 built = m->particles->built[particle];
+    skin->particle[v] = particle;
+    skin->built[v] = (sk_vec4){built.x, built.y, built.z, 0};
+    return m->vertex_of[particle] = v;
+}
+
+/* Adds an edge, unless it is there. */
+static void add_edge(making *m, uint32_t a, uint32_t b) {
+    sk_skin *skin = m->skin;
+    if (a > b) {
+        uint32_t other = a;
+        a = b, b = other;
+    }
+    size_t at = ((uint64_t)a * 0x9e3779b97f4a7c15u ^ (uint64_t)b * 0xc2b2ae3d27d4eb4fu) >> 20 & m->mask;
+    for (; m->table[at] != NOBODY; at = (at + 1) & m->mask) {
+        const uint32_t *edge = skin->edge[m->table[at]];
+        if (edge[0] == a && edge[1] == b) return;
+    }
+    m->table[at] = (uint32_t)skin->edge_count;
+    skin->edge[skin->edge_count][0] = a, skin->edge[skin->edge_count++][1] = b;
+}
+
+static void open_leaf(sk_skin *skin) {
+    skin->leaf[skin->leaf_count++] = (sk_leaf){.first_vertex = (uint32_t)skin->vertex_count,
+                                               .first_edge = (uint32_t)skin->edge_count,
+                                               .first_triangle = (uint32_t)skin->triangle_count};
+}
+
+static void close_leaf(sk_skin *skin) {
+    sk_leaf *leaf = &skin->leaf[skin->leaf_count - 1];
+    leaf->vertices = (uint8_t)(skin->vertex_count - leaf->first_vertex);
+    leaf->edges = (uint8_t)(skin->edge_count - leaf->first_edge);
+    leaf->triangles = (uint8_t)(skin->triangle_count - leaf->first_triangle);
+}
+
+static int in_common(const uint32_t a[3], const uint32_t b[3]) {
+    int count = 0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) count += a[i] == b[j];
+    return count;
+}
+
+static void add_triangle(making *m, const uint32_t corner[3]) {
+    sk_skin *skin = m->skin;
+    uint32_t v[3];
+    for (int k = 0; k < 3; k++) v[k] = vertex_of(m, corner[k]);
+    for (int k = 0; k < 3; k++) add_edge(m, v[k], v[(k + 1) % 3]);
+    memcpy(skin->triangle[skin->triangle_count++], v, sizeof v);
+}
+
+static bool takes_part(const making *m, const sk_only *only, uint32_t particle) {
+    return sk_particle_is_here(m->particles, particle) && sk_only_has(only, particle);
+}
+
+static void add_all(making *m, const sk_only *only, const sk_meeting_parts *parts) {
+    sk_skin *skin = m->skin;
+    const uint32_t *last = NULL; // the first triangle of a leaf that may take another
+    for (size_t t = 0; t < parts->triangle_count; t++) {
+        const uint32_t *corner = parts->triangle[t];
+        if (!takes_part(m, only, corner[0]) || in_common(corner, corner) > 3) continue;
+        bool joins = last && in_common(last, corner) == 2;
+        if (!joins) open_leaf(skin);
+        add_triangle(m, corner);
+        close_leaf(skin);
+        last = joins ? NULL : corner;
+    }
+    for (size_t e = 0; e < parts->edge_count; e++) {
+        const uint32_t *end = parts->edge[e];
+        if (!takes_part(m, only, end[0]) || end[0] == end[1]) continue;
+        open_leaf(skin);
+        uint32_t a = vertex_of(m, end[0]), b = vertex_of(m, end[1]);
+        add_edge(m, a, b);
+        close_leaf(skin);
+    }
+}
+
+/* The first of those that hang together with v. */
+static uint32_t root_of(uint32_t *piece, uint32_t v) {
+    while (piece[v] != v) v = piece[v] = piece[piece[v]];
+    return v;
+}
+
+static void find_pieces(sk_skin *skin) {
+    for (uint32_t v = 0; v < skin->vertex_count; v++) skin->piece[v] = v;
+    for (size_t e = 0; e < skin->edge_count; e++) {
+        uint32_t a = root_of(skin->piece, skin->edge[e][0]), b = root_of(skin->piece, skin->edge[e][1]);
+        if (a != b) skin->piece[a > b ? a : b] = a > b ? b : a;
+    }
+    for (uint32_t v = 0; v < skin->vertex_count; v++) skin->piece[v] = root_of(skin->piece, v);
+}
+
+bool sk_skin_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *particles, const sk_only *only,
+                  const sk_meeting_parts *parts) {
+    sk_skin_release(skin, allocator);
+    size_t triangles = parts->triangle_count, edges = 3 * triangles + parts->edge_count, size = 16;
+    while (size < 2 * edges) size *= 2;
+    making m = {.skin = skin, .particles = particles, .mask = size - 1};
+    skin->particle = sk_allocate(allocator, (particles->count + 1) * sizeof *skin->particle);
+    skin->piece = sk_allocate(allocator, (particles->count + 1) * sizeof *skin->piece);
+    skin->built = sk_allocate(allocator, (particles->count + 1) * sizeof *skin->built);
+    skin->edge = sk_allocate(allocator, (edges + 1) * sizeof *skin->edge);
+    skin->triangle = sk_allocate(allocator, (triangles + 1) * sizeof *skin->triangle);
+    skin->leaf = sk_allocate(allocator, (triangles + parts->edge_count + 1) * sizeof *skin->leaf);
+    m.vertex_of = sk_allocate(allocator, (particles->count + 1) * sizeof *m.vertex_of);
+    m.table = sk_allocate(allocator, size * sizeof *m.table);
+    bool good = skin->particle && skin->piece && skin->built && skin->edge && skin->triangle && skin->leaf &&
+                m.vertex_of && m.table;
+    if (good) {
+        memset(m.vertex_of, 0xff, particles->count * sizeof *m.vertex_of);
+        memset(m.table, 0xff, size * sizeof *m.table);
+        add_all(&m, only, parts);
+        find_pieces(skin);
+    }
+    sk_release(allocator, m.vertex_of);
+    sk_release(allocator, m.table);
+    if (!good) sk_skin_release(skin, allocator);
+    return good;
+}
+
+void sk_skin_release(sk_skin *skin, sk_allocator *allocator) {
+    sk_release(allocator, skin->particle);
+    sk_release(allocator, skin->piece);
+    sk_release(allocator, skin->built);
+    sk_release(allocator, skin->edge);
+    sk_release(allocator, skin->triangle);
+    sk_release(allocator, skin->leaf);
+    *skin = (sk_skin){.vertex_count = 0};
+}
