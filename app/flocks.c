@@ -15,12 +15,13 @@ static const struct {
     size_t offset;
 } lists[] = {LIST(polarization), LIST(milling), LIST(nearest), LIST(radius), LIST(farthest), LIST(speed)};
 
-/* The first enabled force of a kind. */
-static bool find_force(skein_world *world, const char *kind, skein_handle *force) {
+/* The first enabled force that has fields of both names: whatever draws to a centre, or keeps to neighbours. */
+static bool find_force(skein_world *world, const char *one, const char *two, skein_handle *force) {
     for (size_t i = 0; i < skein_object_count(world, SKEIN_FORCE); i++) {
         skein_value enabled;
         *force = skein_object_at(world, SKEIN_FORCE, i);
-        if (strcmp(skein_object_kind(world, *force)->name, kind)) continue;
+        const skein_kind *kind = skein_object_kind(world, *force);
+        if (!skein_field_find(kind, one, NULL) || !skein_field_find(kind, two, NULL)) continue;
         if (!skein_get(world, *force, "enabled", &enabled) && enabled.number[0] != 0) return true;
     }
     return false;
@@ -29,7 +30,7 @@ static bool find_force(skein_world *world, const char *kind, skein_handle *force
 static void find_centre(skein_world *world, double centre[3]) {
     skein_handle force;
     skein_value value = {3, {0, 0, 0}, NULL};
-    if (find_force(world, "attraction", &force)) skein_get(world, force, "centre", &value);
+    if (find_force(world, "centre", "strength", &force)) skein_get(world, force, "centre", &value);
     memcpy(centre, value.number, sizeof value.number);
 }
 
@@ -37,7 +38,7 @@ static double find_reach(skein_world *world) {
     static const char *const zones[] = {"separation", "alignment", "cohesion"};
     double reach = 0;
     skein_handle force;
-    if (!find_force(world, "flocking", &force)) return 0;
+    if (!find_force(world, zones[0], zones[2], &force)) return 0;
     for (int i = 0; i < 3; i++) {
         skein_value value;
         if (!skein_get(world, force, zones[i], &value)) reach += value.number[0];
@@ -82,7 +83,8 @@ bool app_flocks_note(json_t *flocks, skein_world *world) {
     size_t place = 0;
     for (size_t i = 0; i < skein_object_count(world, SKEIN_BODY); i++) {
         skein_handle body = skein_object_at(world, SKEIN_BODY, i);
-        if (strcmp(skein_object_kind(world, body)->name, "flock")) continue;
+        skein_shape shape;
+        if (skein_shape_of(world, body, &shape) || shape.sort != SKEIN_SHAPE_BIRDS) continue;
         if (place == json_array_size(flocks)) json_array_append_new(flocks, new_flock(world, body));
         if (!note(json_array_get(flocks, place++), world, body)) return false;
     }

@@ -14,9 +14,10 @@ static const float predator_colour[3] = {0.24f, 0.15f, 0.10f};
 static const double strays = 0.03;
 enum { MOST_LOOKED_AT = 8192 };
 
-bool render_are_birds(const skein_kind *kind, const render_view *view) {
+bool render_are_birds(const skein_world *world, skein_handle body, const render_view *view) {
+    skein_shape shape;
     bool shown = !view || (view->birds && view->particles != RENDER_NO_PARTICLES);
-    return kind && !strcmp(kind->name, "flock") && shown;
+    return shown && skein_shape_of(world, body, &shape) == SKEIN_OK && shape.sort == SKEIN_SHAPE_BIRDS;
 }
 
 static bool reserve(render_world_birds *all, size_t birds) {

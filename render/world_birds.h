@@ -17,8 +17,8 @@ typedef struct render_world_birds {
     size_t number_room, number_count;
 } render_world_birds;
 
-/* Whether a body of this kind is drawn as birds under a view; NULL: under any that shows birds. */
-bool render_are_birds(const skein_kind *kind, const render_view *view);
+/* Whether a body is drawn as birds under a view; NULL: under any that shows birds. */
+bool render_are_birds(const skein_world *world, skein_handle body, const render_view *view);
 /* Adds a flock; `index` is the body's place. False where there is no memory. */
 bool render_add_birds(render_world_birds *all, const skein_world *world, const render_world_state *state,
                       const skein_surface *surface, size_t index);

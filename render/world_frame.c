@@ -165,11 +165,11 @@ static skein_look look_of(const skein_world *world, skein_handle handle) {
 static bool make_body(body *b, const skein_world *world, const skein_surface *surface, skein_handle handle,
                       const double *positions) {
     skein_look look = look_of(world, handle);
-    const skein_kind *kind = skein_object_kind(world, handle);
+    skein_shape shape;
     release_body(b);
     if (!render_body_mesh_make(&b->mesh, surface, positions, look == SKEIN_LOOK_JELLY)) return false;
     b->handle = handle;
-    b->rope = kind && !strcmp(kind->name, "rope");
+    b->rope = skein_shape_of(world, handle, &shape) == SKEIN_OK && shape.sort == SKEIN_SHAPE_CHAIN;
     b->look = look;
     b->source = *surface;
     b->made = grow(&b->positions, 3 * b->mesh.vertex_count, sizeof *b->positions) &&
@@ -246,7 +246,7 @@ static skein_status take_body(render_world_frame *made, const skein_world *world
     // a body without faces shows its particles; a hidden one shows nothing
     bool visible = is_visible(world, handle) && says(world, handle, "enabled"), faces = b->mesh.triangle_count > 0;
     bool rope = b->rope && made->view.surface;
-    if (visible && render_are_birds(skein_object_kind(world, handle), &made->view)) {
+    if (visible && render_are_birds(world, handle, &made->view)) {
         mark(&made->state, &surface, RENDER_HIDDEN, index);
         return render_add_birds(&made->birds, world, &made->state, &surface, index)
                    ? SKEIN_OK
@@ -359,11 +359,9 @@ static skein_status take_fields(render_world_frame *made, const skein_world *wor
     }
     for (size_t f = 0; f < skein_object_count(world, SKEIN_FORCE); f++) {
         skein_handle handle = skein_object_at(world, SKEIN_FORCE, f);
-        const char *kind = skein_object_kind(world, handle)->name;
         skein_value enabled;
-        if ((strcmp(kind, "force_field") && strcmp(kind, "potential")) || !is_visible(world, handle) ||
-            skein_get(world, handle, "enabled", &enabled) || enabled.number[0] == 0 ||
-            skein_force_probe(world, handle, count, points, forces))
+        if (!is_visible(world, handle) || skein_get(world, handle, "enabled", &enabled) || enabled.number[0] == 0 ||
+            skein_force_probe(world, handle, count, points, forces)) // most are no fields
             continue;
         render_add_field(&made->lines, count, points, forces, 0.8 * spacing);
     }
@@ -441,7 +439,7 @@ static bool needs_no_numbers(render_world_frame *made, const skein_world *world)
     for (size_t i = 0; i < skein_object_count(world, SKEIN_BODY); i++) {
         skein_handle handle = skein_object_at(world, SKEIN_BODY, i);
         skein_surface surface;
-        if (!render_are_birds(skein_object_kind(world, handle), &made->view) ||
+        if (!render_are_birds(world, handle, &made->view) ||
             skein_body_surface(world, handle, &surface) != SKEIN_OK)
             return false;
         birds += surface.particle_count;

@@ -271,13 +271,13 @@ skein_status render_take_implicit(render_world_implicit *all, const skein_world 
     for (size_t i = 0; i < all->count; i++) all->data[i].used = false;
     for (size_t i = 0; i < skein_object_count(world, SKEIN_COLLIDER); i++) {
         skein_handle handle = skein_object_at(world, SKEIN_COLLIDER, i);
-        const skein_kind *kind = skein_object_kind(world, handle);
+        skein_shape shape;
         skein_value visible;
-        if (!kind || strcmp(kind->name, "formula") != 0) continue;
+        if (skein_shape_of(world, handle, &shape) != SKEIN_OK || shape.sort != SKEIN_SHAPE_SURFACE) continue;
         if (skein_get(world, handle, "visible", &visible) == SKEIN_OK && visible.number[0] == 0) continue;
         render_implicit *it = find(all, handle);
         if (it) it->used = true;
-        if (!it || !bring(world, it, things)) return render_fail_memory(error, "a formula's surface");
+        if (!it || !bring(world, it, things)) return render_fail_memory(error, "a collider's surface");
     }
     drop_unused(all);
     return SKEIN_OK;

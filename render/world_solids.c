@@ -84,19 +84,13 @@ void render_world_solids_size(render_world_solids *s, const render_view *view, d
 
 /* ---- Colliders -------------------------------------------------------------------------------- */
 
-/* Of one collider: where it stands, and its numbers. */
+/* Of one collider: where it stands, and what it looks like. */
 typedef struct collider {
     const skein_world *world;
     skein_handle handle;
     skein_pose pose;
+    skein_shape shape;
 } collider;
-
-static bool read_numbers(const collider *c, const char *field, int count, double *out) {
-    skein_value value;
-    if (skein_get(c->world, c->handle, field, &value) != SKEIN_OK) return false;
-    for (int k = 0; k < count; k++) out[k] = value.number[k];
-    return true;
-}
 
 static void turn(const double rotation[9], const double v[3], double out[3]) {
     for (int r = 0; r < 3; r++) out[r] = render_dot(&rotation[3 * r], v);
@@ -104,18 +98,16 @@ static void turn(const double rotation[9], const double v[3], double out[3]) {
 
 /* A level plane is ground, and shown with it; others are colliders like spheres. */
 static void add_plane(render_world_solids *s, const collider *c, const render_view *view) {
-    double normal[3];
-    if (!read_numbers(c, "normal", 3, normal)) return;
     render_plane *plane = &s->planes[s->plane_count];
     memcpy(plane->point, c->pose.position, sizeof plane->point);
-    turn(c->pose.rotation, normal, plane->normal);
+    turn(c->pose.rotation, c->shape.axis, plane->normal);
     if (render_plane_level(plane) ? view->ground : view->colliders) s->plane_count++;
 }
 
 static void add_sphere(render_world_solids *s, const collider *c) {
     render_sphere *sphere = &s->spheres[s->sphere_count];
     *sphere = render_default_sphere();
-    if (!read_numbers(c, "radius", 1, &sphere->radius)) return;
+    sphere->radius = c->shape.radius;
     memcpy(sphere->centre, c->pose.position, sizeof sphere->centre);
     memcpy(sphere->rotation, c->pose.rotation, sizeof sphere->rotation);
     s->sphere_count++;
@@ -124,26 +116,25 @@ static void add_sphere(render_world_solids *s, const collider *c) {
 static void add_bowl(render_world_solids *s, const collider *c) {
     render_bowl *bowl = &s->bowls[s->bowl_count];
     *bowl = render_default_bowl();
-    if (!read_numbers(c, "radius", 1, &bowl->radius)) return;
+    bowl->radius = c->shape.radius;
     memcpy(bowl->centre, c->pose.position, sizeof bowl->centre);
     memcpy(bowl->rotation, c->pose.rotation, sizeof bowl->rotation);
     s->bowl_count++;
 }
 
-/* Its line goes from the middle by half of to - from, turned. The rod's other axes turn with it. */
+/* Its line goes from the middle both ways along its axis, turned. The rod's other axes turn with it. */
 static void add_capsule(render_world_solids *s, const collider *c) {
-    double from[3], to[3], own[9];
+    const double *axis = c->shape.axis, from[3] = {-axis[0], -axis[1], -axis[2]};
+    double own[9];
     render_solid *rod = &s->solids[s->solid_count];
     *rod = render_default_solid();
-    if (!read_numbers(c, "from", 3, from) || !read_numbers(c, "to", 3, to) ||
-        !read_numbers(c, "radius", 1, &rod->radius))
-        return;
-    lay_rod(rod, from, to);
+    rod->radius = c->shape.radius;
+    lay_rod(rod, from, axis);
     memcpy(own, rod->rotation, sizeof own);
     for (int k = 0; k < 3; k++) {
-        const double axis[3] = {own[k], own[3 + k], own[6 + k]};
+        const double side[3] = {own[k], own[3 + k], own[6 + k]};
         double turned[3];
-        turn(c->pose.rotation, axis, turned);
+        turn(c->pose.rotation, side, turned);
         for (int r = 0; r < 3; r++) rod->rotation[3 * r + k] = turned[r];
     }
     memcpy(rod->centre, c->pose.position, sizeof rod->centre);
@@ -151,10 +142,9 @@ static void add_capsule(render_world_solids *s, const collider *c) {
 }
 
 static void add_box(render_world_solids *s, const collider *c) {
-    double size[3];
+    const double *size = c->shape.size;
     render_solid *box = &s->solids[s->solid_count];
     *box = render_default_solid();
-    if (!read_numbers(c, "size", 3, size)) return;
     box->radius = 0.5 * roundness * fmin(fmin(size[0], size[1]), size[2]);
     for (int k = 0; k < 3; k++) box->extent[k] = 0.5 * size[k] - box->radius;
     memcpy(box->centre, c->pose.position, sizeof box->centre);
@@ -183,15 +173,19 @@ skein_status render_take_colliders(render_world_solids *s, const skein_world *wo
         return render_fail_memory(error, "the colliders");
     }
     for (size_t i = 0; i < count; i++) {
-        collider c = {world, skein_object_at(world, SKEIN_COLLIDER, i), {{0}, {0}}};
-        const skein_kind *kind = skein_object_kind(world, c.handle);
-        if (!kind || !is_visible(&c) || skein_collider_pose(world, c.handle, &c.pose) != SKEIN_OK) continue;
-        if (strcmp(kind->name, "plane") == 0) add_plane(s, &c, view);
+        collider c = {.world = world, .handle = skein_object_at(world, SKEIN_COLLIDER, i)};
+        if (!is_visible(&c) || skein_collider_pose(world, c.handle, &c.pose) != SKEIN_OK ||
+            skein_shape_of(world, c.handle, &c.shape) != SKEIN_OK)
+            continue;
+        if (c.shape.sort == SKEIN_SHAPE_PLANE) add_plane(s, &c, view);
         if (!view->colliders) continue;
-        if (strcmp(kind->name, "sphere") == 0) add_sphere(s, &c);
-        if (strcmp(kind->name, "bowl") == 0) add_bowl(s, &c);
-        if (strcmp(kind->name, "capsule") == 0) add_capsule(s, &c);
-        if (strcmp(kind->name, "box") == 0) add_box(s, &c);
+        switch (c.shape.sort) {
+        case SKEIN_SHAPE_BALL: add_sphere(s, &c); break;
+        case SKEIN_SHAPE_BOWL: add_bowl(s, &c); break;
+        case SKEIN_SHAPE_CAPSULE: add_capsule(s, &c); break;
+        case SKEIN_SHAPE_BOX: add_box(s, &c); break;
+        default: break; // what has no simpler shape is meshed: world_implicit.c
+        }
     }
     return SKEIN_OK;
 }

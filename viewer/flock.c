@@ -14,7 +14,7 @@ static const double head_follows = 0.25, beak = 0.3;
 static bool find_flock(const skein_world *world, skein_surface *flock) {
     for (size_t i = 0; i < skein_object_count(world, SKEIN_BODY); i++) {
         skein_handle body = skein_object_at(world, SKEIN_BODY, i);
-        if (render_are_birds(skein_object_kind(world, body), NULL) && !skein_body_surface(world, body, flock)) return true;
+        if (render_are_birds(world, body, NULL) && !skein_body_surface(world, body, flock)) return true;
     }
     return false;
 }
@@ -23,7 +23,7 @@ bool viewer_is_bird(const skein_world *world, uint32_t particle) {
     for (size_t i = 0; i < skein_object_count(world, SKEIN_BODY); i++) {
         skein_handle body = skein_object_at(world, SKEIN_BODY, i);
         skein_surface flock;
-        if (render_are_birds(skein_object_kind(world, body), NULL) && !skein_body_surface(world, body, &flock) &&
+        if (render_are_birds(world, body, NULL) && !skein_body_surface(world, body, &flock) &&
             particle >= flock.first_particle && particle - flock.first_particle < flock.particle_count)
             return true;
     }

@@ -105,7 +105,7 @@ static bool colours_tell(skein_world *world, int colour) {
     size_t springs = 0, count = skein_object_count(world, SKEIN_BODY);
     bool birds = false;
     for (size_t i = 0; i < count; i++)
-        birds |= render_are_birds(skein_object_kind(world, skein_object_at(world, SKEIN_BODY, i)), NULL);
+        birds |= render_are_birds(world, skein_object_at(world, SKEIN_BODY, i), NULL);
     switch (colour) {
     case RENDER_BY_BODY: return count > 1;
     case RENDER_BY_STRAIN: return !skein_springs_copy(world, NULL, 0, &springs) && springs > 0;

@@ -584,6 +584,25 @@ typedef struct skein_pose {
     double rotation[9]; /* rows of a rotation matrix: the motion's, after a box's own */
 } skein_pose;
 skein_status skein_collider_pose(const skein_world *world, skein_handle collider, skein_pose *pose);
+
+/* What a collider or body looks like to whoever draws it, whatever its kind is. A new kind needs to say nothing: what is
+ * solid is seen by its distances, a body by its faces. */
+typedef enum skein_shape_sort {
+    SKEIN_SHAPE_SURFACE, /* a collider: where skein_collider_probe() finds 0; a body: its faces, or loose particles */
+    SKEIN_SHAPE_PLANE,   /* `axis` is its unit normal */
+    SKEIN_SHAPE_BALL,    /* of `radius` */
+    SKEIN_SHAPE_BOWL,    /* the inside of a ball of `radius` */
+    SKEIN_SHAPE_CAPSULE, /* a ball of `radius` drawn from -`axis` to `axis` */
+    SKEIN_SHAPE_BOX,     /* of `size` */
+    SKEIN_SHAPE_CHAIN,   /* a body: rods from each particle to the next */
+    SKEIN_SHAPE_BIRDS    /* a body: each particle flies by itself, where its velocity leads */
+} skein_shape_sort;
+typedef struct skein_shape {
+    skein_shape_sort sort;
+    double radius, axis[3], size[3]; /* m, about its skein_pose.position, before its rotation; 0 where it has none */
+} skein_shape;
+skein_status skein_shape_of(const skein_world *world, skein_handle object, skein_shape *shape);
+
 /* A collider whose place was set since the last step (its centre, ends, rotation, normal or offset, by skein_set() or
  * skein_set_path()) travels there through the next step, in a straight line and turning the shorter way round, evenly:
  * friction and impacts see that velocity, and what is in its way is met in every substep. Set before each step, it

@@ -86,4 +86,5 @@ const sk_body_type sk_flock = {
     .build = build,
     .live = live,
     .change = change,
+    .shape = SKEIN_SHAPE_BIRDS,
 };

@@ -226,4 +226,5 @@ const sk_body_type sk_rope = {
     .build = build,
     .live = live,
     .change = change,
+    .shape = SKEIN_SHAPE_CHAIN,
 };

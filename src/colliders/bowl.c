@@ -44,12 +44,17 @@ static void pack(const void *params, float (*block)[4]) {
     block[0][0] = (float)((const bowl_params *)params)->radius;
 }
 
+static void tell_shape(const void *data, skein_shape *shape) {
+    *shape = (skein_shape){.sort = SKEIN_SHAPE_BOWL, .radius = ((const bowl_params *)data)->radius};
+}
+
 const sk_collider_type sk_bowl = {
     .kind = {"bowl", "the inside of a ball: what is in it stays in it", SKEIN_COLLIDER, fields,
              sizeof fields / sizeof *fields, sizeof(bowl_params)},
     .place = place,
     .mass = mass_of,
     .probe = SK_EACH_ISA(probe),
+    .shape = tell_shape,
     .shader = {.file = "colliders/bowl", .size = 1, .pack = pack},
 };
 #endif

@@ -69,12 +69,18 @@ static void pack(const void *params, float (*block)[4]) {
     for (int k = 0; k < 3; k++) block[0][k] = (float)(0.5 * ((const box_params *)params)->size[k]);
 }
 
+static void tell_shape(const void *data, skein_shape *shape) {
+    shape->sort = SKEIN_SHAPE_BOX;
+    for (int k = 0; k < 3; k++) shape->size[k] = ((const box_params *)data)->size[k];
+}
+
 const sk_collider_type sk_box = {
     .kind = {"box", "a box of any size, turned as one likes", SKEIN_COLLIDER, fields, sizeof fields / sizeof *fields,
              sizeof(box_params)},
     .place = place,
     .turn = turn,
     .probe = SK_EACH_ISA(probe),
+    .shape = tell_shape,
     .shader = {.file = "colliders/box", .size = 1, .pack = pack},
 };
 #endif

@@ -79,12 +79,19 @@ static void pack(const void *data, float (*block)[4]) {
     block[0][3] = (float)params->radius;
 }
 
+static void tell_shape(const void *data, skein_shape *shape) {
+    const capsule_params *params = data;
+    *shape = (skein_shape){.sort = SKEIN_SHAPE_CAPSULE, .radius = params->radius};
+    for (int k = 0; k < 3; k++) shape->axis[k] = 0.5 * (params->to[k] - params->from[k]);
+}
+
 const sk_collider_type sk_capsule = {
     .kind = {"capsule", "a rod with round ends: a ball drawn along a line", SKEIN_COLLIDER, fields,
              sizeof fields / sizeof *fields, sizeof(capsule_params)},
     .place = place,
     .axis = axis,
     .probe = SK_EACH_ISA(probe),
+    .shape = tell_shape,
     .shader = {.file = "colliders/capsule", .size = 1, .pack = pack},
 };
 #endif

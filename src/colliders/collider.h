@@ -54,6 +54,8 @@ typedef struct sk_collider_type {
     /* Distance and normal of a vector of particles; a version for each instruction set, which its own kernels call. */
     sk_probe *probe[SK_ISA_COUNT];
     bool deforms; /* its surface moves by itself, too */
+    /* What it looks like, into a shape that is zero before; NULL: its surface is found by `probe`. */
+    void (*shape)(const void *params, skein_shape *shape);
     /* Whether a value at x had to be guarded (formula/graph.h): for the statistics; NULL: there is nothing to guard. */
     bool (*guarded)(const void *params, const sk_pose *pose, const double x[3]);
     const sk_making *making; /* what is made from its texts; NULL: nothing */

@@ -48,6 +48,11 @@ static void axis(const void *data, double unit[3]) {
     for (int k = 0; k < 3; k++) unit[k] = params->normal[k] / length;
 }
 
+static void tell_shape(const void *data, skein_shape *shape) {
+    shape->sort = SKEIN_SHAPE_PLANE;
+    axis(data, shape->axis);
+}
+
 const sk_collider_type sk_plane = {
     .kind = {"plane", "everything below a plane of any normal and offset", SKEIN_COLLIDER, fields,
              sizeof fields / sizeof *fields, sizeof(plane_params)},
@@ -55,6 +60,7 @@ const sk_collider_type sk_plane = {
     .place = place,
     .axis = axis,
     .probe = SK_EACH_ISA(probe),
+    .shape = tell_shape,
     .shader = {.file = "colliders/plane"},
 };
 #endif

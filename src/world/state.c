@@ -189,6 +189,22 @@ skein_status skein_collider_pose(const skein_world *world, skein_handle handle, 
     return SKEIN_OK;
 }
 
+skein_status skein_shape_of(const skein_world *world, skein_handle handle, skein_shape *shape) {
+    SK_NEED(world, world);
+    SK_NEED(world, shape);
+    const sk_object *object = sk_object_of(world, handle);
+    if (!object || (object->category != SKEIN_BODY && object->category != SKEIN_COLLIDER))
+        return sk_fail_handle(world, handle, "body or collider", "");
+    *shape = (skein_shape){.sort = SKEIN_SHAPE_SURFACE};
+    if (object->category == SKEIN_BODY) {
+        shape->sort = object->body_type->shape;
+    } else {
+        const sk_collider *collider = object->as.collider;
+        if (collider->type->shape) collider->type->shape(collider->params, shape);
+    }
+    return SKEIN_OK;
+}
+
 skein_status skein_collider_teleport(skein_world *world, skein_handle handle) {
     SK_NEED(world, world);
     sk_object *object = sk_object_find(world, handle, SKEIN_COLLIDER);

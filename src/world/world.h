@@ -30,6 +30,7 @@ typedef struct sk_body_type {
     bool (*live)(const void *params, const char *field);
     /* Passes changed parameters on to the body's rules. */
     void (*change)(sk_body *body, const void *params);
+    skein_shape_sort shape; /* what it looks like: its faces, if nothing is said */
 } sk_body_type;
 
 enum { SK_MOST_BODY_BATCHES = 8 };
