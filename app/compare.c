@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "io/file.h"
+#include "io/kinds.h"
 
 /* ---- what is written ---- */
 
@@ -137,7 +138,7 @@ static size_t plan_runs(const char *methods, const char *steps, compare_run runs
     char method[COMPARE_NAME], step[COMPARE_NAME];
     while (next_part(&methods, method, sizeof method)) {
         skein_error error = {SKEIN_OK, "", ""};
-        if (!skein_kind_find(SKEIN_METHOD, method, &error)) {
+        if (!io_kind_find(SKEIN_METHOD, method, &error)) {
             fprintf(stderr, "skein compare: --methods: %s\n", error.message);
             return 0;
         }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "app/compare.h"
+#include "io/kinds.h"
 
 /* Beyond these a run counts as blown up even where its numbers are still finite (limits can hold together what no
  * longer has to do with the scene): m; stretch; times the energy that moves about in the reference. */
@@ -154,7 +155,7 @@ double compare_reference_step(const compare_scene *scene, const char *method, do
     if (load(scene, method, least, &loaded)) return 0;
     double step = least / 8;
     if (skein_world_stability(loaded.world, &s)) app_print_error(skein_world_error(loaded.world));
-    else step = fmin(step, 0.5 * skein_stable_substep(method, &s));
+    else step = fmin(step, 0.5 * skein_kinds_stable_substep(io_kinds(), method, &s));
     app_unload(&loaded);
     return step;
 }

@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/kinds.h"
+
 #include "app/list.h"
 
 /* "    name               default and unit range              help"; what is too long pushes the rest on. */
@@ -22,7 +24,7 @@ static const char scenes[] = "scenes"; // no list of kinds: app/list_scenes.c
 /* The kinds of a category, `index` from 0; NULL past the end. */
 static const skein_kind *kind_at(skein_category category, size_t index) {
     if (category == SKEIN_SCENE) return index ? NULL : io_scene_kind();
-    if (category != SKEIN_EXPORTER && category != SKEIN_VIEW) return skein_kind_at(category, index);
+    if (category != SKEIN_EXPORTER && category != SKEIN_VIEW) return io_kind_at(category, index);
     const skein_kind *const *kind = app_exporters();
     for (; *kind; kind++)
         if ((*kind)->category == category && !index--) return *kind;

@@ -3,11 +3,13 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "app/command.h"
 #include "app/terminal.h"
+#include "io/kinds.h"
 
 static const app_command *const commands[] = {&app_run_command,     &app_view_command,       &app_render_command,
                                               &app_check_command,   &app_compare_command,    &app_stability_command,
@@ -67,6 +69,14 @@ static int dispatch(int argc, char **argv) {
     return EXIT_OK;
 }
 
+/* Kinds of other programs', before anybody asks for one. */
+static bool load_kinds(void) {
+    skein_error error = {SKEIN_OK, "", ""};
+    if (!io_kinds_load(getenv("SKEIN_KINDS"), &error)) return true;
+    app_print_error(&error);
+    return false;
+}
+
 int main(int argc, char **argv) {
     // a standard stream that is closed must not become the first file that is opened
     for (int fd = 0; fd < 3; fd++)
@@ -75,6 +85,7 @@ int main(int argc, char **argv) {
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
     app_terminal_guard();
+    if (!load_kinds()) return EXIT_FAULT;
     int status = dispatch(argc, argv);
     if (!fflush(stdout) && !ferror(stdout)) return status;
     fprintf(stderr, "skein: cannot write to standard output: %s\n", strerror(errno));

@@ -2,6 +2,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "io/kinds.h"
+
 #include "app/command.h"
 
 /* The substep that the scene asks for. */
@@ -33,15 +35,15 @@ static void print_modes(const app_scene *loaded, const skein_stability *s) {
 static void print_methods(const app_scene *loaded, const skein_stability *s) {
     double dt, substep = substep_of(loaded, &dt);
     printf("\n%-18s %-22s %s %.4g ms\n", "method", "largest stable substep", "substeps for a step of", 1e3 * dt);
-    for (size_t i = 0; skein_kind_at(SKEIN_METHOD, i); i++) {
-        const char *name = skein_kind_at(SKEIN_METHOD, i)->name;
-        double most = skein_stable_substep(name, s);
+    for (size_t i = 0; io_kind_at(SKEIN_METHOD, i); i++) {
+        const char *name = io_kind_at(SKEIN_METHOD, i)->name;
+        double most = skein_kinds_stable_substep(io_kinds(), name, s);
         if (isinf(most)) printf("%-18s %-22s 1\n", name, "any");
         else if (most <= 0) printf("%-18s %-22s none is enough: it grows at any step\n", name, "none");
         else printf("%-18s %-6.4g %-15s %.0f\n", name, 1e3 * most, "ms", ceil(dt / most));
     }
     printf("\nThe scene runs %s with substeps of %.4g ms: %s.\n", app_method(loaded), 1e3 * substep,
-           substep <= skein_stable_substep(app_method(loaded), s) ? "stable" : "UNSTABLE");
+           substep <= skein_kinds_stable_substep(io_kinds(), app_method(loaded), s) ? "stable" : "UNSTABLE");
     if (s->swinging_is_free)
         printf("Damping along constraints does not damp swinging: under explicit_euler and midpoint that grows,\n"
                "slowly, at any step. The force \"drag\" damps it.\n");

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "io/kinds.h"
+
 static double substeps_of(const skein_world *world) {
     skein_value substeps = skein_number(1);
     skein_get_path(world, "method.substeps", &substeps);
@@ -21,8 +23,8 @@ static double stable_substep(skein_world *world, double dt) {
     skein_stability s;
     // most methods have no limit, which no search is needed to know
     const skein_stability stiff = {.modes = {{1e3 * substeps_of(world) / dt, 0}}, .mode_count = 1};
-    if (isinf(skein_stable_substep(method_of(world), &stiff))) return INFINITY;
-    return skein_world_stability(world, &s) ? -1 : skein_stable_substep(method_of(world), &s);
+    if (isinf(skein_kinds_stable_substep(io_kinds(), method_of(world), &stiff))) return INFINITY;
+    return skein_world_stability(world, &s) ? -1 : skein_kinds_stable_substep(io_kinds(), method_of(world), &s);
 }
 
 /* The limit is that of the world as it stands, and what moves is stiffer now and then: a sheet that needed 134 substeps

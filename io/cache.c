@@ -4,13 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/kinds.h"
 #include "io/pc2.h"
 
 /* A motion's numbers take the place of its kind's default. */
 static double number_of(const io_settings *settings, const char *name) {
     for (size_t i = 0; i < settings->count; i++)
         if (!strcmp(settings->data[i].name, name)) return settings->data[i].value.number[0];
-    const skein_kind *kind = skein_kind_find(SKEIN_MOTION, "cache", NULL);
+    const skein_kind *kind = io_kind_find(SKEIN_MOTION, "cache", NULL);
     const skein_field *field = kind ? skein_field_find(kind, name, NULL) : NULL;
     return field ? field->initial[0] : 0;
 }

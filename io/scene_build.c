@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "io/cache.h"
+#include "io/kinds.h"
 #include "io/mesh.h"
 #include "io/scene_settings.h"
 #include "solvers/cholmod.h"
@@ -165,7 +166,8 @@ static bool only_body_and_over(io_place place, const json_t *json) {
 
 /* {"body": "flag", "over": "hinges"}: the body by its name or number. */
 static bool find_elements(const builder *b, io_place place, index_list *list, const json_t *json, size_t arity) {
-    static const char *const words[] = {"edges", "triangles", "hinges"};
+    static const char *const words[] = {"edges", "triangles", "hinges", "tetrahedra"};
+    static const size_t arities[] = {2, 3, 4, 4};
     char shown[IO_JSON_WORDS_SIZE], path[128];
     const json_t *body = json_object_get(json, "body"), *over = json_object_get(json, "over");
     skein_handle handle = {UINT32_MAX, 0, 0};
@@ -184,11 +186,11 @@ static bool find_elements(const builder *b, io_place place, index_list *list, co
         return false;
     }
     size_t what = 0, count;
-    while (what < 3 && !(json_is_string(over) && !strcmp(json_string_value(over), words[what]))) what++;
-    if (what == 3 || what + 2 != arity) {
+    while (what < 4 && !(json_is_string(over) && !strcmp(json_string_value(over), words[what]))) what++;
+    if (what == 4 || arities[what] != arity) {
         io_fault(place, "particles.over", SKEIN_ERROR_VALUE,
-                 "expected \"edges\" (of 2 particles), \"triangles\" (3) or \"hinges\" (4) for a constraint on %zu "
-                 "particles%s",
+                 "expected \"edges\" (of 2 particles), \"triangles\" (3), \"hinges\" or \"tetrahedra\" (4) for a constraint on "
+                 "%zu particles%s",
                  arity, io_json_instead(over, shown));
         return false;
     }
@@ -250,7 +252,7 @@ static const skein_kind *kind_of(io_place place, const json_t *object, skein_cat
         return NULL;
     }
     skein_error error = {SKEIN_OK, "", ""};
-    const skein_kind *kind = skein_kind_find(category, json_string_value(type), &error);
+    const skein_kind *kind = io_kind_find(category, json_string_value(type), &error);
     if (!kind) io_fault(place, "type", error.status, "%s", error.message);
     return kind;
 }
@@ -307,7 +309,9 @@ static void add_section(builder *b, const json_t *root, const io_scene_section *
 skein_world *io_world_from_document(const json_t *root, const char *file, double dt, const skein_world_desc *desc,
                                     io_faults *faults) {
     skein_error error = {SKEIN_OK, "", ""};
-    builder b = {skein_world_create(desc, &error), file, desc, faults, false};
+    skein_world_desc known = desc ? *desc : skein_default_world_desc();
+    if (!known.kinds) known.kinds = io_kinds();
+    builder b = {skein_world_create(&known, &error), file, desc, faults, false};
     io_place top = {file, "", faults};
     if (!b.world) {
         io_fault(top, error.where, error.status, "%s", error.message);

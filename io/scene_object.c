@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/kinds.h"
+
 #include "io/scene_settings.h"
 
 /* The object at a place of a list; a copy of it. NULL where there is none, or no memory. */
@@ -19,7 +21,7 @@ static skein_category category_of(const char *list) {
 
 static const skein_kind *kind_of(const json_t *object, const char *list) {
     const char *type = json_string_value(json_object_get(object, "type"));
-    return type ? skein_kind_find(category_of(list), type, NULL) : NULL;
+    return type ? io_kind_find(category_of(list), type, NULL) : NULL;
 }
 
 static char *text_of(json_t *object) {

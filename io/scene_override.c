@@ -14,6 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/kinds.h"
+
 #include "io/scene_settings.h"
 
 /* The place in a list of its member `key`: a number, or the "name" of an object in it. The list's size if
@@ -78,7 +80,7 @@ static void report_dead_end(io_place place, const char *path, const json_t *at, 
 /* Another kind of method takes over: what it does not know is left out, and said. A kind that does not exist is
  * for the reader to find. */
 static void leave_out_strangers(json_t *method, const char *type, json_t *notes) {
-    const skein_kind *kind = type ? skein_kind_find(SKEIN_METHOD, type, NULL) : NULL;
+    const skein_kind *kind = type ? io_kind_find(SKEIN_METHOD, type, NULL) : NULL;
     const char *name, *old = json_string_value(json_object_get(method, "type"));
     json_t *value;
     void *next;
@@ -98,7 +100,7 @@ static void leave_out_strangers(json_t *method, const char *type, json_t *notes)
 static const skein_kind *kind_of_item(const json_t *item, skein_category category, const skein_kind *const *kinds) {
     const char *type = json_string_value(json_object_get(item, "type"));
     if (category != SKEIN_EXPORTER && category != SKEIN_VIEW)
-        return type ? skein_kind_find(category, type, NULL) : NULL;
+        return type ? io_kind_find(category, type, NULL) : NULL;
     for (; kinds && *kinds; kinds++)
         if ((*kinds)->category == category && (category == SKEIN_VIEW || (type && !strcmp((*kinds)->name, type))))
             return *kinds;

@@ -6,6 +6,7 @@
 
 #include "bodies/body.h"
 #include "catalogue_kinds.h" // made by the build
+#include "outside/outside.h"
 #include "space/normals.h"
 
 static const sk_body_type *const bodies[] = {SK_BODY_KINDS};
@@ -30,13 +31,28 @@ const skein_kind *skein_kind_at(skein_category category, size_t index) {
 }
 
 const skein_kind *skein_kind_find(skein_category category, const char *name, skein_error *error) {
+    return skein_kinds_find(NULL, category, name, error);
+}
+
+/* ---- with those of a registry ---- */
+
+const skein_kind *skein_kinds_at(const skein_kinds *kinds, skein_category category, size_t index) {
+    const skein_kind *kind = skein_kind_at(category, index);
+    size_t own = 0;
+    if (kind || !kinds) return kind;
+    while (skein_kind_at(category, own)) own++;
+    return sk_outside_at(kinds, category, index - own);
+}
+
+const skein_kind *skein_kinds_find(const skein_kinds *kinds, skein_category category, const char *name,
+                                   skein_error *error) {
     if (!name) {
         sk_fail_null(error, "name");
         return NULL;
     }
-    const char *names[64];
+    const char *names[128];
     size_t count = 0;
-    for (const skein_kind *kind; count < 64 && (kind = skein_kind_at(category, count)); count++) {
+    for (const skein_kind *kind; (kind = skein_kinds_at(kinds, category, count)) && count < COUNT(names); count++) {
         if (!strcmp(kind->name, name)) return kind;
         names[count] = kind->name;
     }
@@ -48,7 +64,15 @@ const skein_kind *skein_kind_find(skein_category category, const char *name, ske
 
 /* Every type begins with its kind, so the kind's address is the type's. */
 static const void *type_of(const skein_world *world, skein_category category, const char *name) {
-    return skein_kind_find(category, name, sk_world_error(world));
+    return skein_kinds_find(world->desc.kinds, category, name, sk_world_error(world));
+}
+
+static const void *library_type(skein_category category, const char *name) {
+    return skein_kind_find(category, name, NULL);
+}
+
+skein_status skein_kind_register(skein_kinds *kinds, const skein_kind *kind, skein_error *error) {
+    return sk_outside_register(kinds, kind, library_type, error);
 }
 
 skein_status skein_body_add(skein_world *world, const char *kind, const skein_mesh *mesh, const skein_setting *settings,
@@ -102,10 +126,14 @@ skein_status skein_motion_add(skein_world *world, const char *kind, const skein_
     return type ? sk_world_add_motion(world, type, track, settings, handle) : SKEIN_ERROR_NAME;
 }
 
-double skein_stable_substep(const char *method, const skein_stability *stability) {
+double skein_kinds_stable_substep(const skein_kinds *kinds, const char *method, const skein_stability *stability) {
     if (!method || !stability) return (double)NAN;
-    const sk_method_type *type = (const void *)skein_kind_find(SKEIN_METHOD, method, NULL);
+    const sk_method_type *type = (const void *)skein_kinds_find(kinds, SKEIN_METHOD, method, NULL);
     return type ? sk_stable_substep(type, stability) : (double)NAN;
+}
+
+double skein_stable_substep(const char *method, const skein_stability *stability) {
+    return skein_kinds_stable_substep(NULL, method, stability);
 }
 
 skein_status skein_method_set(skein_world *world, const char *kind, const skein_setting *settings) {

@@ -27,6 +27,7 @@ contact
 methods
 world
 bodies
+outside
 gpu
 '
 libc='assert complex ctype errno fenv float inttypes limits locale math setjmp signal stdalign stdarg

@@ -4,6 +4,7 @@
 
 #include <skein/compiled.h>
 #include <skein/formula.h>
+#include <skein/kinds.h>
 
 #include "helpers.h"
 
@@ -364,6 +365,38 @@ static bool is_called(const char *text, const char *name) {
     return false;
 }
 
+/* Kinds of a program's own; writing and building are calls from within a step and a body, which have their writer. */
+static void kinds_of_its_own(void **state) {
+    (void)state;
+    scene s = make_scene();
+    skein_error error = {0};
+    skein_stability stability = {.mode_count = 0};
+    skein_shape shape;
+    skein_kinds *kinds = skein_kinds_create(NULL);
+    skein_kinds_destroy(NULL);
+    SAYS("kinds", skein_kind_register(NULL, skein_kind_at(SKEIN_FORCE, 0), &error));
+    SAYS("kind", skein_kind_register(kinds, NULL, &error));
+    assert_non_null(skein_kinds_at(NULL, SKEIN_FORCE, 0));
+    assert_null(skein_kinds_find(kinds, SKEIN_FORCE, NULL, &error));
+    assert_string_equal(error.where, "name");
+    assert_non_null(skein_kinds_find(NULL, SKEIN_FORCE, "gravity", NULL));
+    assert_true(isnan(skein_kinds_stable_substep(kinds, NULL, &stability)));
+    assert_true(isnan(skein_kinds_stable_substep(kinds, "rk4", NULL)));
+    assert_false(isnan(skein_kinds_stable_substep(NULL, "rk4", &stability)));
+    REFUSES("shape", skein_shape_of(s.world, s.ball, NULL));
+    REFUSES_ALL(skein_shape_of(NULL, s.ball, &shape));
+    assert_int_equal(skein_write_repeat(NULL, 1, 1), 0);
+    skein_write_end(NULL, 0), skein_write_moment(NULL, 1), skein_write_forces(NULL), skein_write_steering(NULL);
+    skein_write_sum(NULL, SKEIN_X, 1, SKEIN_X, 1, SKEIN_V), skein_write_kick(NULL, SKEIN_V, SKEIN_V, 1, SKEIN_F);
+    skein_write_bounds(NULL), skein_write_projections(NULL, 1), skein_write_contacts(NULL);
+    REFUSES_ALL(skein_build_particles(NULL, 1, xyz, NULL, xyz));
+    REFUSES_ALL(skein_build_springs(NULL, "x", 1, pair, 1, 1));
+    REFUSES_ALL(skein_build_triangles(NULL, 1, pair));
+    REFUSES_ALL(skein_build_fail(NULL, "", ""));
+    skein_world_destroy(s.world);
+    skein_kinds_destroy(kinds);
+}
+
 static void every_function_was_called(void **state) {
     (void)state;
     static const char *const without_pointers[] = {
@@ -371,7 +404,8 @@ static void every_function_was_called(void **state) {
         "skein_number",      "skein_vector",         "skein_handle_equal",  "skein_default_pacer", "skein_settings_of",
         "skein_world_create", // whose pointers may both be NULL
     };
-    static const char *const headers[] = {"include/skein/skein.h", "include/skein/formula.h"};
+    static const char *const headers[] = {"include/skein/skein.h", "include/skein/formula.h",
+                                          "include/skein/kinds.h"};
     char *own = read_text("tests/test_nulls.c");
     blank_comments(own);
     size_t found = 0, missing = 0;
@@ -406,6 +440,7 @@ int main(void) {
         cmocka_unit_test(lists_and_questions),
         cmocka_unit_test(measures),
         cmocka_unit_test(formulas),
+        cmocka_unit_test(kinds_of_its_own),
         cmocka_unit_test(every_function_was_called),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

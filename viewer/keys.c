@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "io/kinds.h"
 #include "render/world_birds.h"
 
 /* When a key has its meaning. */
@@ -134,7 +135,7 @@ static void next_colours(viewer_stage *stage, const viewer_key *key) {
 }
 
 static void choose_method(viewer_stage *stage, const viewer_key *key) {
-    const skein_kind *kind = skein_kind_at(SKEIN_METHOD, (size_t)key->number);
+    const skein_kind *kind = io_kind_at(SKEIN_METHOD, (size_t)key->number);
     for (size_t s = 0; kind && s < stage->side_count; s++)
         if (!stage->compare[0] || s == 0) viewer_stage_method(stage, s, kind->name);
 }

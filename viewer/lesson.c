@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/kinds.h"
 #include "skein/formula.h"
 #include "viewer/stage.h"
 
@@ -106,7 +107,7 @@ static const skein_field *field_of(const viewer_lesson *lesson, const skein_worl
         const skein_field *field = &kind->fields[f];
         if (field->type != SKEIN_FIELD_TEXT || skein_get(world, lesson->handle, field->name, &value)) continue;
         // that of the table, which lasts
-        const skein_kind *listed = skein_kind_find(SKEIN_CONSTRAINT, kind->name, NULL);
+        const skein_kind *listed = io_kind_find(SKEIN_CONSTRAINT, kind->name, NULL);
         if (value.text && !strcmp(value.text, text)) return listed ? skein_field_find(listed, field->name, NULL) : NULL;
     }
     return NULL;

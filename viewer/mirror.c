@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "viewer/flock.h"
+#include "io/kinds.h"
 #include "viewer/stage.h"
 
 /* Measures are taken at most so often, and for at most so large a part of the time. */
@@ -128,7 +129,7 @@ static void add_objects(viewer_side *side, const skein_world *world, skein_categ
     for (size_t i = 0; i < skein_object_count(world, category); i++) {
         skein_handle handle = skein_object_at(world, category, i);
         const skein_kind *kind = skein_object_kind(world, handle),
-                         *listed = skein_kind_find(category, kind->name, NULL);
+                         *listed = io_kind_find(category, kind->name, NULL);
         skein_value name = {0, {0, 0, 0}, NULL};
         size_t common_count;
         const skein_field *common = skein_common_fields(category, &common_count);

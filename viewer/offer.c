@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/kinds.h"
 #include "skein/formula.h"
 #include "viewer/stage.h"
 
@@ -72,7 +73,7 @@ void viewer_offer_look(viewer_stage *stage, skein_category category, size_t inde
     viewer_offer *offer = &stage->offer;
     const skein_world *world = stage->side_count ? stage->sides[0].world : NULL;
     const skein_kind *kind = world ? skein_object_kind(world, skein_object_at(world, category, index)) : NULL;
-    const skein_kind *listed = kind ? skein_kind_find(category, kind->name, NULL) : NULL;
+    const skein_kind *listed = kind ? io_kind_find(category, kind->name, NULL) : NULL;
     viewer_offer_forget(stage);
     bool takes = listed && skein_field_find(listed, "parameters.*", NULL) && skein_field_find(listed, field->name, NULL);
     if (!takes || strlen(text) >= sizeof offer->text) return;

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "io/kinds.h"
 #include "viewer/make.h"
 
 static void ask_piece(viewer_panels *panels, int code, const char *text) {
@@ -82,13 +83,13 @@ static bool button(viewer_panels *panels, const viewer_object *object, const cha
 static void show_kinds(viewer_panels *panels, const viewer_object *object) {
     char words[512] = "";
     int place = -1;
-    for (size_t k = 0; skein_kind_at(object->category, k); k++) {
+    for (size_t k = 0; io_kind_at(object->category, k); k++) {
         size_t length = strlen(words);
-        snprintf(words + length, sizeof words - length, "%s%s", k ? "|" : "", skein_kind_at(object->category, k)->name);
-        if (skein_kind_at(object->category, k) == object->kind) place = (int)k;
+        snprintf(words + length, sizeof words - length, "%s%s", k ? "|" : "", io_kind_at(object->category, k)->name);
+        if (io_kind_at(object->category, k) == object->kind) place = (int)k;
     }
     if (widgets_choice("kind", words, &place) && place >= 0)
-        ask_about(panels, VIEWER_KIND, object, skein_kind_at(object->category, (size_t)place)->name);
+        ask_about(panels, VIEWER_KIND, object, io_kind_at(object->category, (size_t)place)->name);
     widgets_help("another kind: what both have stays as it is");
 }
 

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "io/kinds.h"
 #include "viewer/keys.h"
 #include "viewer/palette.h"
 
@@ -131,13 +132,13 @@ static void show_compare(viewer_panels *panels, const viewer_shown *shown) {
     widgets_wrapped("The same scene beside itself, with another method or value, in step from the start:", false);
     char words[512] = "", path[64];
     int chosen = -1;
-    for (size_t k = 0; skein_kind_at(SKEIN_METHOD, k); k++) {
+    for (size_t k = 0; io_kind_at(SKEIN_METHOD, k); k++) {
         size_t length = strlen(words);
-        snprintf(words + length, sizeof words - length, "%s%s", k ? "|" : "", skein_kind_at(SKEIN_METHOD, k)->name);
+        snprintf(words + length, sizeof words - length, "%s%s", k ? "|" : "", io_kind_at(SKEIN_METHOD, k)->name);
     }
     if (widgets_choice("other method", words, &chosen) && chosen >= 0) {
         snprintf(request.text, sizeof request.text, "method.type=%s",
-                 skein_kind_at(SKEIN_METHOD, (size_t)chosen)->name);
+                 io_kind_at(SKEIN_METHOD, (size_t)chosen)->name);
         viewer_ask(panels->exchange, &request);
     }
     viewer_place_control(panels, "other method");

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "viewer/palette.h"
+#include "io/kinds.h"
 #include "viewer/stage.h"
 
 /* A range that is wider than so many steps is no use as a slider: it is then measured by the default. */
@@ -221,9 +222,9 @@ static void show_fields(viewer_panels *panels, const viewer_object *object, int 
 /* The kinds of a category as a list of words. */
 static void list_kinds(skein_category category, char *words, size_t size) {
     words[0] = 0;
-    for (size_t k = 0; skein_kind_at(category, k); k++) {
+    for (size_t k = 0; io_kind_at(category, k); k++) {
         size_t length = strlen(words);
-        snprintf(words + length, size - length, "%s%s", k ? "|" : "", skein_kind_at(category, k)->name);
+        snprintf(words + length, size - length, "%s%s", k ? "|" : "", io_kind_at(category, k)->name);
     }
 }
 
@@ -232,11 +233,11 @@ static void show_method(viewer_panels *panels, const viewer_object *object, int 
     int place = -1;
     if (!widgets_group("Method", true)) return;
     list_kinds(SKEIN_METHOD, words, sizeof words);
-    for (size_t k = 0; skein_kind_at(SKEIN_METHOD, k); k++)
-        if (skein_kind_at(SKEIN_METHOD, k) == object->kind) place = (int)k;
+    for (size_t k = 0; io_kind_at(SKEIN_METHOD, k); k++)
+        if (io_kind_at(SKEIN_METHOD, k) == object->kind) place = (int)k;
     if (widgets_choice("method", words, &place) && place >= 0) {
         viewer_request request = {.kind = VIEWER_METHOD, .side = side};
-        snprintf(request.text, sizeof request.text, "%s", skein_kind_at(SKEIN_METHOD, (size_t)place)->name);
+        snprintf(request.text, sizeof request.text, "%s", io_kind_at(SKEIN_METHOD, (size_t)place)->name);
         viewer_ask(panels->exchange, &request);
     }
     viewer_place_control(panels, side ? "other method.type" : "method.type");
@@ -251,7 +252,7 @@ static void show_add(viewer_panels *panels, skein_category category) {
     list_kinds(category, words, sizeof words);
     if (!widgets_choice("add", words, &place) || place < 0) return;
     viewer_request request = {.kind = VIEWER_ADD, .category = category};
-    snprintf(request.text, sizeof request.text, "%s", skein_kind_at(category, (size_t)place)->name);
+    snprintf(request.text, sizeof request.text, "%s", io_kind_at(category, (size_t)place)->name);
     viewer_ask(panels->exchange, &request);
 }
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "io/kinds.h"
 #include "render/linear.h"
 
 static const double degree = 0.017453292519943295;
@@ -74,7 +75,7 @@ bool viewer_spot_find(viewer_spot *spot, const skein_world *world, skein_categor
     *spot = (viewer_spot){.factor = 1};
     if (!world || index >= skein_object_count(world, category)) return false;
     skein_handle handle = skein_object_at(world, category, index);
-    const skein_kind *own = skein_object_kind(world, handle), *kind = own ? skein_kind_find(category, own->name, NULL) : NULL;
+    const skein_kind *own = skein_object_kind(world, handle), *kind = own ? io_kind_find(category, own->name, NULL) : NULL;
     if (!kind) kind = own; // a program's own
     if (!kind) return false;
     if (!take(world, handle, kind, "position", SKEIN_FIELD_VEC3, &spot->point, spot->at, 3))

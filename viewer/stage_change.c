@@ -3,6 +3,8 @@
 #include <string.h>
 #include <stdlib.h>
 
+#include "io/kinds.h"
+
 #include "viewer/stage.h"
 
 /* ---- Keeping changes ---- */
@@ -40,7 +42,7 @@ static void keep(viewer_stage *stage, size_t side, const char *set, const viewer
 void viewer_stage_method(viewer_stage *stage, size_t side, const char *name) {
     enum { MOST = 32 };
     skein_world *world = side < stage->side_count ? stage->sides[side].world : NULL;
-    const skein_kind *kind = skein_kind_find(SKEIN_METHOD, name, NULL);
+    const skein_kind *kind = io_kind_find(SKEIN_METHOD, name, NULL);
     if (!world || !kind) return;
     skein_handle method = skein_object_at(world, SKEIN_METHOD, 0);
     const skein_kind *old = skein_object_kind(world, method);

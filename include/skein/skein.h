@@ -215,6 +215,7 @@ static inline bool skein_handle_equal(skein_handle a, skein_handle b) {
 typedef enum skein_log_level { SKEIN_LOG_INFO, SKEIN_LOG_WARNING } skein_log_level;
 
 /* What a world takes from its surroundings. Fill with skein_default_world_desc(), then change. */
+typedef struct skein_kinds skein_kinds; /* kinds of a program's own: kinds.h */
 typedef struct skein_world_desc {
     /* Memory: returns NULL when there is none; `alignment` is a power of two. Both or neither. */
     void *(*allocate)(void *user, size_t size, size_t alignment);
@@ -231,6 +232,8 @@ typedef struct skein_world_desc {
      * step takes as many of them as have proved faster. Or the tasks to cut a row into where `run_tasks` is given. The
      * result does not depend on it. */
     int thread_count;
+    /* Kinds besides the library's own, which the world can make objects of, and which outlive it; NULL: none. */
+    const skein_kinds *kinds;
 } skein_world_desc;
 
 skein_world_desc skein_default_world_desc(void);
@@ -567,7 +570,8 @@ skein_status skein_body_vertices_copy(skein_world *world, skein_handle body, dou
 typedef enum skein_elements {
     SKEIN_EDGES,     /* 2: whatever the body's stretch is measured along */
     SKEIN_TRIANGLES, /* 3 */
-    SKEIN_HINGES     /* 4: the ends of a side that two triangles share, and the corners across from it */
+    SKEIN_HINGES,    /* 4: the ends of a side that two triangles share, and the corners across from it */
+    SKEIN_TETRAHEDRA /* 4: of a body that is made of them */
 } skein_elements;
 /* Copies up to `most` of them, with so many particles each; `count` receives how many there are. `out` may be NULL: only
  * the count is wanted. Fails with SKEIN_ERROR_MEMORY. */

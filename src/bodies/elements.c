@@ -1,4 +1,4 @@
-/* Sets of a body's particles that constraints can be made on: its edges, triangles and hinges. */
+/* Sets of a body's particles that constraints can be made on: its edges, triangles, hinges and tetrahedra. */
 #include <stdlib.h>
 
 #include "bodies/body.h"
@@ -28,6 +28,16 @@ static void list_edges(list *l, const sk_body *body) {
         const sk_batch *batch = body->batch[b];
         if (!batch->measured || batch->arity != 2) continue;
         for (size_t e = 0; e < batch->count; e++) add(l, batch->particle[2 * e], batch->particle[2 * e + 1], 0, 0);
+    }
+}
+
+/* A body that is made of tetrahedra keeps the volume of each, however soft. */
+static void list_tetrahedra(list *l, const sk_body *body) {
+    for (size_t b = 0; b < body->batch_count; b++) {
+        const sk_batch *batch = body->batch[b];
+        const uint32_t *p = batch->particle;
+        if (batch->type != &sk_volume) continue;
+        for (size_t e = 0; e < batch->count; e++, p += 4) add(l, p[0], p[1], p[2], p[3]);
     }
 }
 
@@ -93,15 +103,16 @@ skein_status skein_body_elements(skein_world *world, skein_handle handle, skein_
                                  size_t most, size_t *count) {
     SK_NEED(world, world);
     SK_NEED(world, count);
-    static const size_t arity[] = {[SKEIN_EDGES] = 2, [SKEIN_TRIANGLES] = 3, [SKEIN_HINGES] = 4};
+    static const size_t arity[] = {[SKEIN_EDGES] = 2, [SKEIN_TRIANGLES] = 3, [SKEIN_HINGES] = 4, [SKEIN_TETRAHEDRA] = 4};
     skein_error *error = sk_world_error(world);
     const sk_object *object = sk_object_find(world, handle, SKEIN_BODY);
     if (!object) return SKEIN_ERROR_HANDLE;
-    if (what > SKEIN_HINGES) return sk_fail(error, SKEIN_ERROR_VALUE, "", "a body has no elements of that sort");
+    if (what > SKEIN_TETRAHEDRA) return sk_fail(error, SKEIN_ERROR_VALUE, "", "a body has no elements of that sort");
     list l = {out, arity[what], most, 0};
     bool good = true;
     if (what == SKEIN_EDGES) list_edges(&l, object->as.body);
     else if (what == SKEIN_TRIANGLES) visit_triangles(object->as.body, add_triangle, &l);
+    else if (what == SKEIN_TETRAHEDRA) list_tetrahedra(&l, object->as.body);
     else good = list_hinges(&l, object->as.body, &world->allocator);
     *count = l.count;
     return good ? SKEIN_OK : sk_fail_memory(error, "hinges");

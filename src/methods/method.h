@@ -16,6 +16,8 @@ typedef struct sk_method_type {
     /* One substep of the oscillator x'' = -x - 2 zeta x' as a matrix on (x, v), by rows; `z` is the substep
      * (of any oscillator: times its angular frequency). It says which substeps are stable. NULL: all are. */
     void (*amplify)(double z, double zeta, double matrix[4]);
+    /* Fills in what of its parameters is no field; NULL: nothing. */
+    void (*begin)(void *params, const struct sk_method_type *type);
 } sk_method_type;
 
 /* The parameters of a method that has nothing to choose but its substeps; others begin with the same. */

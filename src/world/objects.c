@@ -313,7 +313,7 @@ skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, con
     skein_error *error = sk_world_error(world);
     sk_object *object;
     skein_status status = sk_world_settle_presence(world, error); // before indices are used again
-    if (!status) status = make_object(world, &type->kind, NULL, settings, &object, error);
+    if (!status) status = make_object(world, &type->kind, type->making, settings, &object, error);
     if (status) return status;
     sk_body *body = sk_allocate(&world->allocator, sizeof *body);
     if (!body) {
@@ -349,6 +349,7 @@ skein_status sk_world_set_method(skein_world *world, const sk_method_type *type,
         sk_release(&world->allocator, params);
         return status;
     }
+    if (type->begin) type->begin(params, type);
     if (world->method)
         sk_fields_clear(&world->allocator, world->method->kind.fields, world->method->kind.field_count,
                         world->method_params);

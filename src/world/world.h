@@ -31,6 +31,7 @@ typedef struct sk_body_type {
     /* Passes changed parameters on to the body's rules. */
     void (*change)(sk_body *body, const void *params);
     skein_shape_sort shape; /* what it looks like: its faces, if nothing is said */
+    const sk_making *making; /* what is made from its parameters; NULL: nothing */
 } sk_body_type;
 
 enum { SK_MOST_BODY_BATCHES = 8 };
