@@ -14,7 +14,7 @@ const skein_kinds *io_kinds(void) {
 }
 
 static skein_status load(const char *path, skein_error *error) {
-    void *object = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    void *object = dlopen(path, RTLD_LAZY | RTLD_LOCAL); // a program's main() may be in it, too, with all that it calls
     if (!object) return io_error_set(error, SKEIN_ERROR_FILE, "SKEIN_KINDS", "%s", dlerror());
     const skein_kind *const *kinds = dlsym(object, "skein_module_kinds");
     if (!kinds)

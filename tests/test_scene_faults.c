@@ -141,12 +141,12 @@ static const struct {
     {"particles_of_nobody",
      ": constraints.0.particles.body: expected the name or number of a body, not null"},
     {"particles_with_null_over",
-     ": constraints.0.particles.over: expected \"edges\" (of 2 particles), \"triangles\" (3) or \"hinges\" (4) for a "
+     ": constraints.0.particles.over: expected \"edges\" (of 2 particles), \"triangles\" (3), \"hinges\" or \"tetrahedra\" (4) for a "
      "constraint on 2 particles, not null"},
     {"particles_without_body",
      ": constraints.0.particles.body: expected the name or number of a body: it is missing"},
     {"particles_without_over",
-     ": constraints.0.particles.over: expected \"edges\" (of 2 particles), \"triangles\" (3) or \"hinges\" (4) for a "
+     ": constraints.0.particles.over: expected \"edges\" (of 2 particles), \"triangles\" (3), \"hinges\" or \"tetrahedra\" (4) for a "
      "constraint on 2 particles: it is missing"},
     {"pins_as_bool",
      ": bodies.0.pins: expected a text, a list of numbers and words, {\"box\": [...]} or {\"sphere\": [...]}, not "
