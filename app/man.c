@@ -70,6 +70,8 @@ static int man(app_arguments *arguments) {
     for (size_t c = 0; app_command_at(c); c++) print_command(app_command_at(c));
     printf(".SH ENVIRONMENT\n"
            ".TP\n.B SKEIN_SCENES\nthe folder of the scenes that have names, instead of those that came with skein\n"
+           ".TP\n.B SKEIN_KINDS\nshared objects with kinds of one's own, separated by colons: they are listed and scenes name "
+           "them as any other\n"
            ".TP\n.B SKEIN_CACHE\nthe folder where compiled formulas are kept\n"
            ".TP\n.B SKEIN_SIMD\nthe widest instruction set to use: sse, avx2 or avx512; the result is the same\n"
            ".SH EXIT STATUS\n"
