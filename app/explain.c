@@ -8,12 +8,13 @@ static void print_line(void *user, const char *line) {
     puts(line);
 }
 
-static int print_plan(const app_scene *loaded) {
+static int print_plan(const app_scene *loaded, bool fuse) {
     double dt;
     skein_device_info info = skein_world_device(loaded->world);
     int steps = io_scene_steps_per_frame(&loaded->settings, &dt);
     printf("# %s: %s, a step of %g s, %d a frame\n", loaded->path, app_method(loaded), dt, steps);
     if (info.device != SKEIN_DEVICE_CPU) printf("# on %s: %zu passes\n", info.name, info.pass_count);
+    skein_world_fuse(loaded->world, fuse);
     if (!skein_world_explain(loaded->world, dt, print_line, NULL)) return EXIT_OK;
     app_print_error(skein_world_error(loaded->world));
     return EXIT_FAILURE_RUN;
@@ -23,16 +24,22 @@ static int explain(app_arguments *arguments) {
     app_scene loaded = {.quiet = false};
     int status = app_load(app_word(arguments), app_values(arguments, "--set"), &loaded);
     if (!status) status = app_device(&loaded, app_value(arguments, "--device"));
-    if (!status) status = print_plan(&loaded);
+    if (!status) status = print_plan(&loaded, !app_given(arguments, "--unfused"));
     app_unload(&loaded);
     return status;
 }
 
-static const app_option options[] = {APP_SET_OPTION, APP_DEVICE_OPTION, APP_END_OF_OPTIONS};
+static const app_option options[] = {
+    APP_SET_OPTION,
+    APP_DEVICE_OPTION,
+    {"--unfused", NULL, "the rows as the method writes them, before several are made one (on the processor only)", false,
+     APP_TAKES_ANY},
+    APP_END_OF_OPTIONS,
+};
 
 const app_command app_explain_command = {
     "explain",
-    "SCENE [--set PATH=VALUE]... [--device WHERE]",
+    "SCENE [--set PATH=VALUE]... [--device WHERE] [--unfused]",
     "print the plan of a scene: what one step does, row by row\n\n"
     "A row names its kind, the vector it writes, what it reads, how many elements it runs over, and whether\n"
     "their order is part of the answer. Vectors: X positions, V velocities, F forces, X0 and V0 the state\n"

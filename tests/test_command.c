@@ -22,7 +22,7 @@ static void wrong_arguments_are_told(void **state) {
         {{"--frames"}, "skein: there is no command '--frames'; `skein --help` shows all\n"},
         {{"run"}, "skein run: which scene? " RUN_USAGE},
         {{"check"}, "skein check: which scene? usage: skein check SCENE... [--set PATH=VALUE]... [--json]\n"},
-        {{"explain", "--set", "a=b"}, "skein explain: which scene? usage: skein explain SCENE [--set PATH=VALUE]... [--device WHERE]\n"},
+        {{"explain", "--set", "a=b"}, "skein explain: which scene? usage: skein explain SCENE [--set PATH=VALUE]... [--device WHERE] [--unfused]\n"},
         {{"run", "a.json", "b.json"}, "skein run: 'b.json' is one argument too many; " RUN_USAGE},
         {{"run", "a.json", "--", "--no-progress"}, "skein run: '--no-progress' is one argument too many; " RUN_USAGE},
         {{"run", "a.json", "--frame", "3"},

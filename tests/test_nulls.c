@@ -147,6 +147,7 @@ static void stepping(void **state) {
     REFUSES_ALL(skein_world_time_set(NULL, 1));
     assert_true(skein_world_time(NULL) == 0);
     REFUSES_ALL(skein_world_explain(NULL, 0.01, NULL, NULL));
+    skein_world_fuse(NULL, false);
     REFUSES_ALL(skein_world_profile(NULL, 0.01, &pass, 1, &count));
     REFUSES("out", skein_world_profile(s.world, 0.01, NULL, 1, &count));
     REFUSES("count", skein_world_profile(s.world, 0.01, &pass, 1, NULL));

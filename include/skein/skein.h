@@ -833,6 +833,10 @@ skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out,
 skein_status skein_world_explain(skein_world *world, double dt, void (*write)(void *user, const char *line),
                                  void *user);
 
+/* Whether rows of the plan are fused, as they are in a new world: what predicts, saves and corrects is one row then
+ * instead of several, the bits are the same, and steps are quicker. Plans for a card always are. */
+void skein_world_fuse(skein_world *world, bool fuse);
+
 #if defined(__GNUC__)
 #pragma GCC visibility pop
 #endif

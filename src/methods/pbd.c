@@ -44,11 +44,11 @@ static void write(sk_writer *writer, const void *data, double dt) {
         write_projections_only(writer, params, h);
         return;
     }
-    // told of one pass: none keeps a multiplier for the next
-    size_t repeat = sk_write_predicted_repeat(writer, (size_t)params->substeps, h, 1);
+    size_t repeat = sk_write_repeat(writer, (size_t)params->substeps, h);
+    sk_write_prediction(writer);
     sk_write_shared_projections(writer, params->iterations);
     sk_write_limits(writer, SK_NONE);
-    sk_write_following(writer, 1);
+    sk_write_correction(writer);
     sk_write_contacts(writer, SK_CONTACT_SETTLE);
     sk_write_end(writer, repeat);
 }

@@ -205,20 +205,11 @@ static bool keeps_multiplier(const sk_batch *batch, int passes) {
     return (passes > 1 && !rigid) || sk_batch_damping_time(batch) > 0;
 }
 
-/* Whether nobody but the correction looks back at the start of the substep. */
-static bool only_follows(const sk_rules *rules, int passes) {
-    bool only = rules->colliders.count == 0;
-    for (size_t i = 0; i < rules->batches.count; i++) {
-        const sk_batch *batch = rules->batches.data[i];
-        only &= !is_on(batch) || !keeps_multiplier(batch, passes);
-    }
-    return only;
-}
-
 /* ---- predicting ----
  *
  * Slots are cut into parts that the same rules act on. In a part where all forces are plain, and F is not wanted later
- * on, the prediction takes them in at once, whatever acts on others: they move to the bit as without it. */
+ * on, they change V without it, whatever acts on others: they move to the bit as without it. plan/fuse.c makes one row
+ * of a prediction's. */
 
 static bool acts_on(const sk_only *only, size_t slot) {
     return sk_only_has_slot(only, slot);
@@ -304,89 +295,70 @@ static void add_row_of_part(sk_writer *writer, sk_row row, const sk_plan_part *p
     sk_add_row(writer, whole ? row : sk_row_for(row, part->first_slot, part->end_slot));
 }
 
-/* A row that predicts: X, V and whatever else `kept` says. */
-static sk_row prediction(sk_writer *writer, const sk_kernels *kernels, sk_vector force, sk_vector kept,
-                         const sk_plan_part *part) {
-    return (sk_row){.kind = SK_ROW_COMBINE,
-                    .order = SK_FREE,
-                    .kernel = kernels->version[writer->isa],
-                    .dst = SK_X,
-                    .source = {SK_V, force, kept},
-                    .rule = &part->plain,
-                    .end = writer->slot_count};
+/* V += h w F, on a part. */
+static void write_kick_of_part(sk_writer *writer, const sk_plan_part *part) {
+    add_row_of_part(writer,
+                    (sk_row){.kind = SK_ROW_COMBINE,
+                             .order = SK_FREE,
+                             .kernel = sk_combine_kick.version[writer->isa],
+                             .dst = SK_V,
+                             .source = {SK_V, SK_F, SK_NONE},
+                             .coefficient = {writer->h},
+                             .end = writer->slot_count},
+                    part);
 }
 
-/* Where nobody else looks at X0 and F, the end of a substep and the start of the next are one row. */
-static bool falls_on(sk_writer *writer, int passes) {
-    bool falls = only_follows(writer->rules, passes) && !sk_writes_steering(writer->rules) && !sk_writes_meetings(writer);
-    for (size_t i = 0; i < writer->plan->parts.count; i++) falls &= writer->plan->parts.data[i].is_plain;
-    return falls;
+/* V += h (the plain forces on a part). */
+static void write_pull_of_part(sk_writer *writer, const sk_plan_part *part) {
+    add_row_of_part(writer,
+                    (sk_row){.kind = SK_ROW_COMBINE,
+                             .order = SK_FREE,
+                             .kernel = sk_combine_pull.version[writer->isa],
+                             .dst = SK_V,
+                             .source = {SK_V, SK_NONE, SK_NONE},
+                             .rule = &part->plain,
+                             .end = writer->slot_count},
+                    part);
 }
 
-/* Where rules steer, or bound the velocity, they come between kick and drift: these are rows of their own then, and
- * the prediction has nothing left to add. */
+/* Where rules steer, or bound the velocity, they come between kick and drift; what is steered has nothing left to be
+ * added then. */
 static void write_steered_kicks(sk_writer *writer) {
     sk_plan *plan = writer->plan;
-    for (size_t i = 0; i < plan->parts.count && sk_writes_forces(writer); i++) {
-        if (!plan->parts.data[i].steered) continue;
-        sk_row kick = {.kind = SK_ROW_COMBINE,
-                       .order = SK_FREE,
-                       .kernel = sk_combine_kick.version[writer->isa],
-                       .dst = SK_V,
-                       .source = {SK_V, SK_F, SK_NONE},
-                       .coefficient = {writer->h},
-                       .end = writer->slot_count};
-        add_row_of_part(writer, kick, &plan->parts.data[i]);
-    }
+    for (size_t i = 0; i < plan->parts.count && sk_writes_forces(writer); i++)
+        if (plan->parts.data[i].steered) write_kick_of_part(writer, &plan->parts.data[i]);
     for (size_t i = 0; i < plan->parts.count; i++)
         if (plan->parts.data[i].steered) plan->parts.data[i].plain = (sk_plain_force){.label = ""};
     sk_write_steering(writer);
 }
 
-static void write_prediction(sk_writer *writer, int passes) {
-    const sk_rules *rules = writer->rules;
+static bool any_collider(const sk_rules *rules) {
+    for (size_t i = 0; i < rules->colliders.count; i++)
+        if (rules->colliders.data[i]->common->enabled) return true;
+    return false;
+}
+
+void sk_write_prediction(sk_writer *writer) {
+    find_parts(writer);
     const sk_plan *plan = writer->plan;
-    bool wants_force = false, steers = sk_writes_steering(rules);
+    bool wants_force = false;
     for (size_t i = 0; i < plan->parts.count; i++)
         wants_force |= plan->parts.data[i].steered ? sk_writes_forces(writer) : !plan->parts.data[i].is_plain;
     if (wants_force) sk_write_fields(writer);
-    if (steers) write_steered_kicks(writer);
-    sk_vector kept = only_follows(rules, passes) ? SK_X : rules->colliders.count ? SK_V0 : SK_NONE;
+    if (sk_writes_steering(writer->rules)) write_steered_kicks(writer);
     for (size_t i = 0; i < plan->parts.count; i++) {
         const sk_plan_part *part = &plan->parts.data[i];
-        bool falls = part->steered || part->is_plain;
-        const sk_kernels *kernels = falls ? &sk_combine_fall : &sk_combine_predict;
-        add_row_of_part(writer, prediction(writer, kernels, falls ? SK_NONE : SK_F, kept, part), part);
+        if (part->steered || part->is_plain) write_pull_of_part(writer, part);
+        else write_kick_of_part(writer, part);
     }
+    sk_write_sum(writer, SK_X0, 1, SK_X, 0, SK_NONE);
+    if (any_collider(writer->rules)) sk_write_sum(writer, SK_V0, 1, SK_V, 0, SK_NONE);
+    sk_write_sum(writer, SK_X, 1, SK_X, writer->h, SK_V);
     sk_write_moment(writer, 1);
 }
 
-size_t sk_write_predicted_repeat(sk_writer *writer, size_t times, double h, int passes) {
-    writer->h = h;
-    find_parts(writer);
-    if (falls_on(writer, passes)) {
-        write_prediction(writer, passes);
-        size_t repeat = sk_write_repeat(writer, times, h);
-        sk_write_moment(writer, 1); // each turn begins with what was predicted before it
-        return repeat;
-    }
-    size_t repeat = sk_write_repeat(writer, times, h);
-    write_prediction(writer, passes);
-    return repeat;
-}
-
-void sk_write_following(sk_writer *writer, int passes) {
-    if (falls_on(writer, passes)) {
-        for (size_t i = 0; i < writer->plan->parts.count; i++) {
-            const sk_plan_part *part = &writer->plan->parts.data[i];
-            sk_row row = prediction(writer, &sk_combine_fall_on, SK_NONE, SK_X, part);
-            row.coefficient[0] = 1 / writer->h;
-            add_row_of_part(writer, row, part);
-        }
-        return;
-    }
-    double h = only_follows(writer->rules, passes) ? 0 : writer->h; // X0 is where X was going, or where it was
-    add_combine(writer, &sk_combine_correction, SK_V, 1 / writer->h, SK_X, h, SK_X0);
+void sk_write_correction(sk_writer *writer) {
+    add_combine(writer, &sk_combine_correction, SK_V, 1 / writer->h, SK_X, writer->h, SK_X0);
 }
 
 /* The elements of a sweep's row: strip rows that have a partner, slabs or groups. */
@@ -553,8 +525,7 @@ bool sk_writes_forces(const sk_writer *writer) {
     bool any = !sk_writes_steering(rules);
     for (size_t i = 0; i < rules->forces.count; i++) any |= pushes(rules->forces.data[i]);
     for (size_t i = 0; i < rules->batches.count; i++) any |= is_on(rules->batches.data[i]);
-    for (size_t i = 0; i < rules->colliders.count; i++) any |= rules->colliders.data[i]->common->enabled;
-    return any;
+    return any || any_collider(rules);
 }
 
 bool sk_writes_velocity_forces(const sk_writer *writer) {
@@ -568,9 +539,7 @@ bool sk_writes_velocity_forces(const sk_writer *writer) {
 
 bool sk_writes_corrections(const sk_writer *writer) {
     const sk_rules *rules = writer->rules;
-    if (sk_writes_meetings(writer)) return true;
-    for (size_t i = 0; i < rules->colliders.count; i++)
-        if (rules->colliders.data[i]->common->enabled) return true;
+    if (sk_writes_meetings(writer) || any_collider(rules)) return true;
     for (size_t i = 0; i < rules->batches.count; i++)
         if (has_bound(rules->batches.data[i])) return true;
     for (size_t i = 0; i < rules->limits.count; i++)

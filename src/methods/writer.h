@@ -65,12 +65,11 @@ void sk_write_kick(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_v
 /* X += h V of held particles alone, for methods that move nothing else by its velocity. */
 void sk_write_lead(sk_writer *writer, double h);
 
-/* Begins a repeat whose turns predict: the fields, then V += h w F, V0 = V (where there are colliders), X0 = X,
- * X += h V; in one row where all forces are plain. `passes` is what the projections will be told. */
-size_t sk_write_predicted_repeat(sk_writer *writer, size_t times, double h, int passes);
-/* V += (X - where X was going)/h: V learns what the projections did. Where nothing else looks at the start of a
- * substep, the same row predicts for the next one. */
-void sk_write_following(sk_writer *writer, int passes);
+/* How a position method's substep begins: the fields, V += h w F (without F where all forces are plain), what steers,
+ * X0 = X, V0 = V where there are colliders, X += h V. Once a plan. */
+void sk_write_prediction(sk_writer *writer);
+/* V += (X - X0 - h V)/h: V learns what moved X since it was predicted. */
+void sk_write_correction(sk_writer *writer);
 
 /* The rows that sort a group into cells of at least `radius`; the group stays where it is while the plan does. */
 void sk_write_cells(sk_writer *writer, const sk_group *group, double radius);

@@ -18,13 +18,14 @@ static const skein_field fields[] = {
 static void write(sk_writer *writer, const void *data, double dt) {
     const xpbd_params *params = data;
     double h = dt / params->substeps;
-    size_t repeat = sk_write_predicted_repeat(writer, (size_t)params->substeps, h, params->iterations);
+    size_t repeat = sk_write_repeat(writer, (size_t)params->substeps, h);
+    sk_write_prediction(writer);
     // correct what was predicted
     sk_write_projections(writer, params->iterations);
     sk_write_limits(writer, SK_NONE);
     // learn the velocity. (X - X0)/h says the same but for the rounding of X, which would stay in V: measured in
     // float at 64 m, 1440 substeps a second fell 20 % too slowly and 2880 not at all
-    sk_write_following(writer, params->iterations);
+    sk_write_correction(writer);
     sk_write_contacts(writer, SK_CONTACT_SETTLE);
     sk_write_end(writer, repeat);
 }

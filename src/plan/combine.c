@@ -10,6 +10,7 @@ SK_KERNELS(sk_row_kernel, wipe);
 SK_KERNELS(sk_row_kernel, steer);
 SK_KERNELS(sk_row_kernel, lead);
 SK_KERNELS(sk_row_kernel, predict);
+SK_KERNELS(sk_row_kernel, pull);
 SK_KERNELS(sk_row_kernel, fall);
 SK_KERNELS(sk_row_kernel, fall_on);
 SK_KERNELS(sk_row_kernel, rest);
@@ -158,8 +159,17 @@ SK_INLINE sk_wide4 pulled(const uniform_pull *p, sk_wide w, sk_wide4 v) {
     return v;
 }
 
+void SK_KERNEL(pull)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    uniform_pull pull = pull_of(row);
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
+        bool packed = slot < row->packed;
+        sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
+        sk_store_moved(run->vector[SK_V], slot, packed, pulled(&pull, sk_load_part(run->vector[SK_X], slot, packed).w, v));
+    }
+}
+
 #ifdef SK_WHOLE_QUADS
-/* The same two rows over quads [begin, end), which stay quads: turning them into x, y, z, w and back was most of the
+/* `fall` and `fall_on` over quads [begin, end), which stay quads: turning them into x, y, z, w and back was most of the
  * work. a (X - X0) comes to the velocity first, unless a is 0; the last turn ends with that. */
 SK_INLINE void fall_in_quads(sk_run *run, const sk_row *row, size_t begin, size_t end, real a, bool last) {
     const uniform_pull p = pull_of(row);
@@ -260,6 +270,7 @@ const sk_kernels sk_combine_wipe = {SK_EACH_ISA(wipe)};
 const sk_kernels sk_combine_steer = {SK_EACH_ISA(steer)};
 const sk_kernels sk_combine_lead = {SK_EACH_ISA(lead)};
 const sk_kernels sk_combine_predict = {SK_EACH_ISA(predict)};
+const sk_kernels sk_combine_pull = {SK_EACH_ISA(pull)};
 const sk_kernels sk_combine_fall = {SK_EACH_ISA(fall)};
 const sk_kernels sk_combine_fall_on = {SK_EACH_ISA(fall_on)};
 const sk_kernels sk_combine_rest = {SK_EACH_ISA(rest)};

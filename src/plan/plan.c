@@ -118,6 +118,11 @@ static void describe_combine(const sk_row *row, char *text, size_t size) {
         snprintf(text, size, "X + h V, V + h w F; %s", kept);
         return;
     }
+    if (sk_row_is(row, &sk_combine_pull)) {
+        const char *label = ((const sk_plain_force *)row->rule)->label;
+        snprintf(text, size, "V + h (%s)", label[0] ? label : "0");
+        return;
+    }
     if (sk_row_is(row, &sk_combine_fall)) {
         const char *label = ((const sk_plain_force *)row->rule)->label;
         snprintf(text, size, "X + h V, V + h (%s); %s", label[0] ? label : "0", kept);

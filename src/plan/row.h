@@ -208,15 +208,16 @@ bool sk_row_is(const sk_row *row, const sk_kernels *kernels);
  *   wipe                         dst = 0, w too
  *   steer                        dst += q, where the inverse mass is not 0
  *   lead                         dst += a q, where the inverse mass is 0; dst is X
+ *   pull                         dst += h (the plan's plain force), where the inverse mass is not 0; dst is V
  *   predict                      V += h w F; V0 = V where the third source is V0; X0 = X, or what X is going to
  *                                be where the third source is X; X += h V: one row
- *                                for what would be four, since each block is read and written once
+ *                                for what would be four (plan/fuse.h)
  *   fall                         the same, with the plan's plain force in place of F
  *   fall_on                      V += a (X - X0), and but for the last turn of its repeat a fall: the end of one
  *                                substep and the start of the next
  *   rest                         dst = 0 where it is at most a: the end of a step, a being SK_REST_SPEED */
 extern const sk_kernels sk_combine_sum, sk_combine_correction, sk_combine_kick, sk_combine_wipe, sk_combine_steer,
-    sk_combine_lead, sk_combine_predict, sk_combine_fall, sk_combine_fall_on, sk_combine_rest;
+    sk_combine_lead, sk_combine_pull, sk_combine_predict, sk_combine_fall, sk_combine_fall_on, sk_combine_rest;
 /* m/s: what is slower has come to rest (base/float_mode.h). The square of such a number is not
  * thin yet. */
 #define SK_REST_SPEED ((real)(sizeof(real) == sizeof(double) ? 1e-140 : 1e-18))

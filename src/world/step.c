@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/float_mode.h"
+#include "plan/fuse.h"
 #include "world/world.h"
 
 skein_status sk_world_arrange(skein_world *world, skein_error *error) {
@@ -153,6 +154,8 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         sk_write_rest(&writer); // a card would have to look at everything once more, and minds thin numbers not at all
         sk_write_unpack(&writer);
     }
+    if (!world->unfused || world->device)
+        writer.no_memory |= !sk_plan_fuse(&world->plan, &world->allocator, world->isa);
     if (writer.no_memory || (!world->device && (!make_temporaries(world) || !make_cells(world))))
         return sk_fail_memory(error, "the plan");
     status = make_matrix(world, error);
@@ -317,6 +320,12 @@ skein_status skein_world_explain(skein_world *world, double dt, void (*write)(vo
         if (row->kind == SK_ROW_REPEAT && depth < MOST_DEPTH) open_until[depth++] = r + row->length + 1;
     }
     return SKEIN_OK;
+}
+
+void skein_world_fuse(skein_world *world, bool fuse) {
+    if (!world || world->unfused == !fuse) return;
+    world->unfused = !fuse;
+    world->plan_stale = true;
 }
 
 /* ---- a fixed step for loops with uneven frames ---- */

@@ -139,6 +139,7 @@ struct skein_world {
     sk_plan plan;
     double plan_dt;   /* the step that the plan was written for */
     bool plan_stale;  /* rules, settings or the method have changed */
+    bool unfused;     /* the plan stays as the method writes it (plan/fuse.h) */
     bool slots_stale; /* particles, batches or limits were added: slots and sweeps are to be found anew */
     uint64_t arrangement; /* how often slots were found */
     bool presence_stale; /* bodies were taken out or back: constraints on their particles are to be looked through */
