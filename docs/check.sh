@@ -4,7 +4,7 @@
 #   2  a block ```json or ```json NEW-FILE passes `skein check`; one ```json SCENE is in that file word for word
 #   3  a block ```text skein explain SCENE is what that prints
 #   4  reference.md is what make-reference.sh makes
-#   5  links to files of this repository lead somewhere
+#   5  links to files of this repository lead somewhere, and so do the files that CONTRIBUTING.md names
 #   6  methods.md names every method, constraint, force, collider and limit there is, and its formulas are those that the
 #      kernels are made of (a block ```formula NAME)
 # What the documents tell readers to type is run by run-commands.sh.
@@ -90,11 +90,15 @@ SKEIN=$skein docs/make-reference.sh >"$work/reference.md"
 cmp -s "$work/reference.md" docs/reference.md ||
     fault "docs/reference.md is out of date: docs/make-reference.sh >docs/reference.md"
 
-for document in README.md docs/*.md; do
+for document in README.md CONTRIBUTING.md docs/*.md; do
     grep -o '](\([^)#]*\)' "$document" | sed 's/](//' | grep -v '^http' | sort -u | while read -r link; do
         [ -z "$link" ] || [ -e "$(dirname "$document")/$link" ] || echo "$document: the link $link leads nowhere"
     done
 done >"$work/links"
+# the files that contributors are sent to
+grep -o '`[a-z]*/[a-z/_.]*[.][ch]`' CONTRIBUTING.md | tr -d '`' | sort -u | while read -r file; do
+    [ -e "$file" ] || echo "CONTRIBUTING.md: there is no $file"
+done >>"$work/links"
 [ ! -s "$work/links" ] || fault "$(cat "$work/links")"
 
 echo "documents: $blocks blocks tried, $faults faults"
