@@ -1091,6 +1091,27 @@ static void stretch_bounds_are_kept(void **state) {
         }
 }
 
+/* Bending that is taken in every second substep comes to rest as that of every one does, however stiff it is: moves that
+ * were too long for two substeps once tore such a sheet. */
+static void stiff_sheets_come_to_rest(void **state) {
+    (void)state;
+    for (int substeps = 8; substeps < 10; substeps++)
+        for (double rigidity = 0.01; rigidity < 200; rigidity *= 100) {
+            skein_world *world = new_world("xpbd", substeps);
+            OK(world, skein_body_add(world, "cloth", NULL,
+                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", 17, 17), SKEIN_TEXT("pins", "top corners"),
+                                                    SKEIN_REAL("bend.rigidity", rigidity)),
+                                     NULL));
+            OK(world, skein_force_add(world, "gravity", NULL, NULL));
+            OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 2)), NULL));
+            steps(world, 180, 1.0 / 60);
+            skein_statistics s = statistics_of(world);
+            assert_under(s.kinetic_energy, 0.05);
+            assert_under(s.max_stretch, 0.005);
+            skein_world_destroy(world);
+        }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(triangles_have_edges_and_bending_pairs),
@@ -1116,6 +1137,7 @@ int main(void) {
         cmocka_unit_test(spans_of_a_mesh_are_as_long_as_the_way),
         cmocka_unit_test(spans_hold_a_mesh_that_swings),
         cmocka_unit_test(stretch_bounds_are_kept),
+        cmocka_unit_test(stiff_sheets_come_to_rest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

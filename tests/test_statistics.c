@@ -127,6 +127,11 @@ static void what_does_work_is_known(void **state) {
     assert_true(skein_world_is_driven(world));
     OK(world, skein_set_path(world, "colliders.0.enabled", skein_number(0)));
     assert_false(skein_world_is_driven(world));
+    // one with a mass cancels what would pull back what leaves it
+    OK(world, skein_collider_add(world, "bowl", SKEIN_SETTINGS(SKEIN_REAL("radius", 20), SKEIN_REAL("mass", 5)), NULL));
+    assert_true(skein_world_is_driven(world));
+    OK(world, skein_set_path(world, "colliders.1.mass", skein_number(0)));
+    assert_false(skein_world_is_driven(world));
     OK(world, skein_force_add(world, "wind", SKEIN_SETTINGS(SKEIN_VEC3("force", 1, 0, 0)), NULL));
     assert_true(skein_world_is_driven(world));
     OK(world, skein_set_path(world, "forces.3.enabled", skein_number(0)));

@@ -110,7 +110,9 @@ bool skein_world_is_driven(skein_world *world) {
     }
     for (size_t i = 0; i < rules->colliders.count; i++) {
         const sk_collider *collider = rules->colliders.data[i];
-        if (collider->common->enabled && collider_moves(collider->common, collider->type->deforms)) return true;
+        if (!collider->common->enabled) continue;
+        if (collider_moves(collider->common, collider->type->deforms)) return true;
+        if (sk_collider_mass(collider) > 0) return true; // it cancels what pulls back what leaves (contact.c)
     }
     if (sk_world_fetch(world) || sk_world_arrange(world, NULL)) return true; // it cannot be said
     return held_particle_moves(world) || energy_depends_on_time(world);
