@@ -1,6 +1,7 @@
 /* Options: a command's table of them, and what was given. */
 #include "app/command.h"
 
+#include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -211,4 +212,16 @@ bool app_override(app_arguments *arguments, app_override_texts texts) {
         good = !given || override_field(arguments, names[i], given, texts[i]);
     }
     return good;
+}
+
+bool app_follow(app_arguments *arguments, app_follow_text text) {
+    const char *given = app_value(arguments, "--follow");
+    json_t *name = given ? json_string(given) : NULL;
+    char *json = name ? json_dumps(name, JSON_ENCODE_ANY) : NULL;
+    int length = snprintf(text, sizeof(app_follow_text), "view.camera.follow=%s", json ? json : "");
+    bool good = !given || (json && length < (int)sizeof(app_follow_text));
+    if (!good) fprintf(stderr, "skein %s: --follow: no body's name is as long\n", arguments->command->name);
+    json_decref(name);
+    free(json);
+    return good && (!given || app_list_add(&arguments->given[place_of(arguments->command, "--set")], text, true));
 }

@@ -103,6 +103,13 @@ bool app_list_add(app_list *list, const char *value, bool repeats);
 typedef char app_override_texts[3][64];
 bool app_override(app_arguments *arguments, app_override_texts texts);
 
+/* The same of --follow BODY, for the view's camera. */
+typedef char app_follow_text[600];
+bool app_follow(app_arguments *arguments, app_follow_text text);
+#define APP_FOLLOW_OPTION \
+    {"--follow", "BODY", "a body that the camera goes along with: its name, its number from 0, or all", false,  \
+     APP_TAKES_ANY}
+
 /* One more value of --set, before all that were given; it has to live as long as the arguments. False without memory.
  */
 bool app_set_first(app_arguments *arguments, const char *set);

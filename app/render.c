@@ -185,8 +185,10 @@ static bool read_request(const app_arguments *arguments, request *r) {
 
 static int render(app_arguments *arguments) {
     app_override_texts texts;
+    app_follow_text follow;
     request asked;
-    if (!read_request(arguments, &asked) || !app_override(arguments, texts)) return EXIT_FAULT;
+    if (!read_request(arguments, &asked) || !app_override(arguments, texts) || !app_follow(arguments, follow))
+        return EXIT_FAULT;
     app_scene loaded = {.quiet = asked.quiet};
     int status = app_load(app_word(arguments), app_values(arguments, "--set"), &loaded);
     if (!status && app_given(arguments, "--compile")) loaded.warnings += app_compile(loaded.world, asked.calm);
@@ -218,6 +220,7 @@ static const app_option options[] = {
     {"--size", "WxH", "width and height in pixels; 1280x720 if not given", false, APP_TAKES_ANY},
     {"--samples", "N", "samples a pixel for smooth edges, 4 if not given", false, APP_TAKES_ANY},
     {"--quality", "N", "of a film, 1 (small) to 100 (faithful), 75 if not given", false, APP_TAKES_ANY},
+    APP_FOLLOW_OPTION,
     APP_THREADS_OPTION,
     APP_DEVICE_OPTION,
     APP_COMPILE_OPTION,
@@ -235,10 +238,10 @@ const app_command app_render_command = {
     "  skein render scenes/drape.json -o drape.png --frame 90 --size 1920x1080 --samples 8\n"
     "  skein render scenes/drape.json -o 'drape-%04d.png' --frames 60      (or drape-####.png)\n\n"
     "Picture k of a film shows the world after k frames, from 0 on: 240 frames at 60 a second last 4 s. The\n"
-    "camera stands where it sees all that will happen. What was under that name is replaced: a PNG when the\n"
-    "new one is complete, a film at once. MP4 and WebM grow on the disk second by second, so that even of a\n"
-    "process that was killed a film is left that plays; a GIF is there at the end. Interrupted (Ctrl-C), a\n"
-    "film ends early, as it should.\n\n"
+    "camera stands where it sees all that will happen, or goes along with a body. What was under that name is\n"
+    "replaced: a PNG when the new one is complete, a film at once. MP4 and WebM grow on the disk second by\n"
+    "second, so that even of a process that was killed a film is left that plays; a GIF is there at the end.\n"
+    "Interrupted (Ctrl-C), a film ends early, as it should.\n\n"
     "Exit status 0: done; 1: the run failed, or the file could not be written; 2: a fault in the scene or the\n"
     "arguments; 130: interrupted.",
     options,

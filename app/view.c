@@ -80,10 +80,11 @@ static void print_keys(void) {
 
 static int view(app_arguments *arguments) {
     static char path[IO_PLACE_SIZE];
+    app_follow_text follow;
     const char *word = app_word(arguments);
     viewer_options asked = viewer_default_options();
     skein_error error = {SKEIN_OK, "", ""};
-    if (!read_options(arguments, &asked)) return EXIT_FAULT;
+    if (!app_follow(arguments, follow) || !read_options(arguments, &asked)) return EXIT_FAULT;
     if (word && !strcmp(word, "-")) {
         fprintf(stderr, "skein view: -: a window reads its scene again when it changes, and so needs a file\n");
         return EXIT_FAULT;
@@ -125,6 +126,7 @@ static const app_option options[] = {
     {"--theme", "dark|light", "of the window, instead of the one that was chosen last; F7 changes it", false, APP_TAKES_ANY},
     {"--scale", "N", "of letters and controls, instead of the screen's", false, APP_TAKES_ANY},
     {"--samples", "N", "samples a pixel for smooth edges, 4 if not given", false, APP_TAKES_ANY},
+    APP_FOLLOW_OPTION,
     APP_THREADS_OPTION,
     APP_DEVICE_OPTION,
     APP_COMPILE_OPTION,

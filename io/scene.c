@@ -412,10 +412,31 @@ const io_scene_settings *io_scene_get(const io_scene *scene) {
     return &scene->settings;
 }
 
+/* Whether the bodies are there that the view names. */
+static bool has_its_bodies(const io_scene *scene, const skein_world *world, io_faults *faults) {
+    const io_place place = {scene->path, "view", faults};
+    for (size_t i = 0; scene->view && i < scene->view_kind->field_count; i++) {
+        const skein_field *field = &scene->view_kind->fields[i];
+        char path[300];
+        skein_value value;
+        if (field->type != SKEIN_FIELD_TEXT || strcmp(field->unit, "body")) continue;
+        const char *name = *(char *const *)(const void *)((const char *)scene->view + field->offset);
+        snprintf(path, sizeof path, "bodies.%.250s.name", name);
+        if (!name[0] || !strcmp(name, "all") || !skein_get_path(world, path, &value)) continue;
+        io_fault(place, field->name, SKEIN_ERROR_NAME,
+                 "there is no body '%.100s': expected a body's name, its number from 0, or \"all\"", name);
+        return false;
+    }
+    return true;
+}
+
 skein_world *io_scene_build(const io_scene *scene, const skein_world_desc *desc, io_faults *faults) {
     double dt;
     io_scene_steps_per_frame(&scene->settings, &dt);
     for (size_t i = 0; desc && desc->log && i < json_array_size(scene->notes); i++)
         desc->log(desc->log_user, SKEIN_LOG_INFO, json_string_value(json_array_get(scene->notes, i)));
-    return io_world_from_document(scene->root, scene->path, dt, desc, faults);
+    skein_world *world = io_world_from_document(scene->root, scene->path, dt, desc, faults);
+    if (!world || has_its_bodies(scene, world, faults)) return world;
+    skein_world_destroy(world);
+    return NULL;
 }

@@ -96,6 +96,11 @@ static bool takes_lists(const skein_kind *kind, const skein_field *field) {
     return field->type == SKEIN_FIELD_TEXT && selects;
 }
 
+/* A body by its name or its number. */
+static bool takes_body(const skein_field *field) {
+    return field->type == SKEIN_FIELD_TEXT && !strcmp(field->unit, "body");
+}
+
 static bool may_be_infinite(const skein_field *field) {
     return field->type == SKEIN_FIELD_REAL && isinf(field->most);
 }
@@ -108,6 +113,8 @@ static bool convert(io_settings *settings, const skein_kind *kind, const skein_f
     if (count == 0) {
         if (json_is_string(json)) value->text = keep_text(settings, strdup(json_string_value(json)));
         else if (takes_names(kind, field)) value->text = keep_text(settings, join_names(json));
+        else if (takes_body(field) && json_is_integer(json))
+            value->text = keep_text(settings, json_dumps(json, JSON_ENCODE_ANY));
         else if (takes_lists(kind, field)) value->text = keep_text(settings, io_json_join(json));
         else if (takes_rows(kind, field)) value->text = keep_text(settings, io_json_join_rows(json));
         return value->text != NULL;
@@ -161,6 +168,7 @@ static void report_type(io_place place, const char *name, const skein_kind *kind
     io_fault(place, name, SKEIN_ERROR_VALUE, "%s%s, not %s", error.message,
              takes_lists(kind, field)  ? ", a list of numbers and words, {\"box\": [...]} or {\"sphere\": [...]}"
              : takes_rows(kind, field) ? " or a list of rows, [[0, 0, 0, 0], [1, 0, 0.5, 0]], say"
+             : takes_body(field)       ? " or its number"
              : may_be_infinite(field)  ? " or \"infinite\""
                                        : "",
              io_json_words(json, words));

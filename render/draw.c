@@ -274,8 +274,9 @@ static void draw_shape(const render_shape *shape, GLuint arrays, size_t instance
     glDrawElementsInstanced(GL_TRIANGLES, shape->index_count, GL_UNSIGNED_SHORT, NULL, (GLsizei)instance_count);
 }
 
+/* The ground, or a slab whose grid is shifted. */
 static void draw_plane(const render_draw *draw, int twin, const render_shape *shape, const double vectors[4][3],
-                       double cell, bool ground) {
+                       double cell, const float *shift) {
     GLuint program = draw->programs[PLANE + twin];
     glUseProgram(program);
     for (GLint i = 0; i < (twin ? 3 : 4); i++) {
@@ -283,9 +284,20 @@ static void draw_plane(const render_draw *draw, int twin, const render_shape *sh
     }
     if (!twin) {
         glProgramUniform1f(program, 4, (float)cell);
-        glProgramUniform1i(program, 5, ground);
+        glProgramUniform1i(program, 5, !shift);
+        if (shift) glProgramUniform2fv(program, 6, 1, shift);
     }
     draw_shape(shape, shape->arrays, 1);
+}
+
+/* How far a slab's middle is from where its grid was laid, within five cells: then its lines come again. */
+static void shift_of(const drawing *d, const double vectors[4][3], double cell, float shift[2]) {
+    double off[3] = {0, 0, 0};
+    for (int k = 0; k < 3 && d->frame->radius > 0; k++) off[k] = d->middle[k] - d->frame->anchor[k];
+    for (int a = 0; a < 2; a++) {
+        const double *side = vectors[1 + a];
+        shift[a] = (float)fmod(render_dot(off, side) / sqrt(render_dot(side, side)), 5 * cell);
+    }
 }
 
 static void draw_slabs(const render_draw *draw, const drawing *d, int twin) {
@@ -293,7 +305,10 @@ static void draw_slabs(const render_draw *draw, const drawing *d, int twin) {
         double vectors[4][3];
         if (render_plane_level(&d->frame->planes[i])) continue;
         render_place_slab(&d->frame->planes[i], d->middle, d->radius, vectors);
-        draw_plane(draw, twin, &draw->square, (const double(*)[3])vectors, render_grid_cell(d->radius), false);
+        double cell = render_grid_cell(d->radius);
+        float shift[2];
+        shift_of(d, (const double(*)[3])vectors, cell, shift);
+        draw_plane(draw, twin, &draw->square, (const double(*)[3])vectors, cell, shift);
     }
 }
 
@@ -302,7 +317,7 @@ static void draw_ground(const render_draw *draw, const drawing *d) {
     if (!d->has_ground || d->camera->eye[1] <= d->ground) return;
     double size = ground_size * d->radius;
     const double vectors[4][3] = {{d->middle[0], d->ground, d->middle[2]}, {size, 0, 0}, {0, 0, -size}, {0, 1, 0}};
-    draw_plane(draw, 0, &draw->disc, vectors, render_grid_cell(d->radius), true);
+    draw_plane(draw, 0, &draw->disc, vectors, render_grid_cell(d->radius), NULL);
 }
 
 /* How thick a body is, and a little more, so that few corners are left outside: for light that goes through. */

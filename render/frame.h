@@ -160,6 +160,7 @@ typedef struct render_frame {
     render_look look;
     double time;              /* s: what moves by itself in a picture, as wings do, stands as it would then */
     double middle[3], radius; /* what haze and grid are measured by; radius 0: by what is in the frame */
+    double anchor[3];         /* where the middle was at first: slabs go along with it, their grids do not */
 } render_frame;
 
 /* A box along the axes; empty while least > most. */

@@ -18,7 +18,8 @@ struct render_studio {
     const render_view *view;
     render_camera camera;
     bool aimed;
-    double shot; /* the last picture, in seconds of the world */
+    double shot;      /* the last picture, in seconds of the world */
+    double middle[3]; /* of the body that the camera goes along with, then */
 };
 
 render_studio *render_studio_create(const int32_t size[2], int samples, const render_view *view, skein_error *error) {
@@ -53,6 +54,17 @@ void render_studio_hold(render_studio *studio, const render_subject *subject) {
     render_world_frame_hold(studio->frame, subject);
 }
 
+/* The camera moves as the body does that it follows. */
+static void go_along(render_studio *studio) {
+    double middle[3];
+    if (!render_world_frame_followed(studio->frame, middle)) return;
+    for (int k = 0; k < 3; k++) {
+        double way = studio->aimed ? middle[k] - studio->middle[k] : 0;
+        studio->camera.eye[k] += way, studio->camera.target[k] += way;
+        studio->middle[k] = middle[k];
+    }
+}
+
 skein_status render_studio_shoot(render_studio *studio, skein_world *world, skein_error *error) {
     int width = studio->target.width, height = studio->target.height;
     skein_status status = render_world_frame_update(studio->frame, world, studio->view, error);
@@ -61,6 +73,7 @@ skein_status render_studio_shoot(render_studio *studio, skein_world *world, skei
     double now = skein_world_time(world), orbit = studio->view ? studio->view->camera.orbit : 0;
     if (!studio->aimed) studio->camera = render_world_frame_camera(studio->frame, (double)width / height);
     else if (orbit != 0) render_camera_turn(&studio->camera, orbit * (now - studio->shot));
+    go_along(studio);
     studio->aimed = true;
     studio->shot = now;
     status = render_draw_frame(studio->draw, render_world_frame_get(studio->frame), &studio->camera,

@@ -56,6 +56,8 @@ static const skein_field fields[] = {
     REAL(camera.elevation, "camera.elevation", "degrees", 14, -89, 89, "and how high above the level; at 14 higher where a level sheet, which lies high, would be seen on its edge"),
     REAL(camera.orbit, "camera.orbit", "degrees/s", 0, -1e4, 1e4, "turns the camera about what it looks at, with the scene's time"),
     REAL(camera.zoom, "camera.zoom", "", 1, 0.01, 100, "how large things are in a picture that frames itself"),
+    {"camera.follow", SKEIN_FIELD_TEXT, offsetof(render_view, camera.follow), "body", {0, 0, 0}, 0, 0, NULL, "",
+     "the body that the camera goes along with: its name, or its number from 0; \"all\": the middle of all bodies"},
 };
 // clang-format on
 

@@ -30,6 +30,7 @@ typedef enum render_shown_particles {
 typedef struct render_view_camera {
     double from[3], at[3]; /* the same: the camera frames the scene by itself */
     double fov, azimuth, elevation, orbit, zoom;
+    char *follow; /* the body that it goes along with (world_follow.h); "" for none */
 } render_view_camera;
 
 typedef struct render_view {

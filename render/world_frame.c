@@ -6,6 +6,7 @@
 #include "render/planes.h"
 #include "render/world_birds.h"
 #include "render/world_flock.h"
+#include "render/world_follow.h"
 #include "render/world_implicit.h"
 #include "render/world_lines.h"
 #include "render/world_points.h"
@@ -51,6 +52,7 @@ struct render_world_frame {
     bool has_floor;
     double floor_height;
     render_subject held; /* in the picture, whatever the frame has */
+    render_followed followed;
 };
 
 /* The patterns and images repeat so often along a body's longer side. */
@@ -415,7 +417,10 @@ static void place_floor(render_world_frame *made) {
         made->floor_height = fmin(lowest >= 0 && lowest <= size ? 0 : lowest - 0.1 * size, lowest_slab(made));
         made->has_floor = true;
     }
-    made->frame.look.floor = made->has_floor && !level && made->view.ground;
+    // down a slope a body that is followed gets below any ground
+    const char *follows = made->view.camera.follow;
+    bool slides = follows && follows[0] && made->frame.plane_count > 0;
+    made->frame.look.floor = made->has_floor && !level && made->view.ground && !slides;
     made->frame.look.floor_height = made->floor_height;
 }
 
@@ -447,6 +452,19 @@ static bool needs_no_numbers(render_world_frame *made, const skein_world *world)
     return birds == made->state.particle_count;
 }
 
+/* What surrounds the body that is followed goes along with it, as wide as it was at first. */
+static void follow(render_world_frame *made, const skein_world *world) {
+    bool did = made->followed.any, held = !render_hull_empty(&made->held.all);
+    made->followed = render_follow(world, made->view.camera.follow, &made->state);
+    if (made->followed.any && !did && !held) {
+        render_bounds bounds = render_frame_bounds(&made->frame);
+        made->frame.radius = render_bounds_radius(&bounds);
+        memcpy(made->frame.anchor, made->followed.middle, sizeof made->frame.anchor);
+    }
+    if (made->followed.any) memcpy(made->frame.middle, made->followed.middle, sizeof made->frame.middle);
+    else if (did && !held) made->frame.radius = 0;
+}
+
 skein_status render_world_frame_update(render_world_frame *made, skein_world *world, const render_view *view,
                                        skein_error *error) {
     made->view = view ? *view : render_view_default();
@@ -464,6 +482,7 @@ skein_status render_world_frame_update(render_world_frame *made, skein_world *wo
     if (status == SKEIN_OK) status = take_particles(made, world, error);
     if (status == SKEIN_OK) status = take_lines(made, world, error);
     if (status == SKEIN_OK) place_floor(made);
+    if (status == SKEIN_OK) follow(made, world);
     return status;
 }
 
@@ -500,6 +519,7 @@ void render_world_frame_hold(render_world_frame *made, const render_subject *sub
     render_bounds bounds = render_hull_bounds(&subject->all);
     made->frame.radius = render_bounds_radius(&bounds);
     render_bounds_centre(&bounds, made->frame.middle);
+    memcpy(made->frame.anchor, made->frame.middle, sizeof made->frame.anchor);
 }
 
 /* Where they stand above the ground, as in their shadows, belongs to what is around. */
@@ -527,7 +547,13 @@ render_subject render_world_frame_subject(const render_world_frame *made) {
     return subject;
 }
 
+bool render_world_frame_followed(const render_world_frame *made, double middle[3]) {
+    memcpy(middle, made->followed.middle, sizeof made->followed.middle);
+    return made->followed.any;
+}
+
 bool render_world_frame_middle(const render_world_frame *made, double middle[3]) {
+    if (render_world_frame_followed(made, middle)) return true;
     const render_world_state *state = &made->state;
     size_t count = 0;
     middle[0] = middle[1] = middle[2] = 0;
@@ -543,6 +569,15 @@ bool render_world_frame_middle(const render_world_frame *made, double middle[3])
 }
 
 render_camera render_world_frame_camera(const render_world_frame *made, double aspect) {
-    render_subject subject = render_world_frame_subject(made);
-    return render_camera_of_view(&made->view.camera, &subject, made->time, aspect);
+    const render_view_camera *view = &made->view.camera;
+    const render_followed *followed = &made->followed;
+    render_subject subject = followed->any ? render_followed_subject(followed) : render_world_frame_subject(made);
+    render_camera camera = render_camera_of_view(view, &subject, made->time, aspect);
+    // a place that is given says from which side and how far
+    if (followed->any && memcmp(view->from, view->at, sizeof view->from) != 0)
+        for (int k = 0; k < 3; k++) {
+            double way = followed->middle[k] - camera.target[k];
+            camera.eye[k] += way, camera.target[k] += way;
+        }
+    return camera;
 }

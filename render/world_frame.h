@@ -51,9 +51,12 @@ double render_world_frame_range(const render_world_frame *frame);
 
 /* What the picture is of; and its surroundings, among them the ground if it is near. */
 render_subject render_world_frame_subject(const render_world_frame *frame);
-/* The mean place of the particles that are shown; false where there are none. */
+/* The middle of the body that the view's camera follows; false where it follows none. */
+bool render_world_frame_followed(const render_world_frame *frame, double middle[3]);
+/* The same, or where it follows none the mean place of the particles that are shown; false where there are none. */
 bool render_world_frame_middle(const render_world_frame *frame, double middle[3]);
-/* The view's camera. One that frames by itself holds all bodies of the present state, and makes them large. */
+/* The view's camera. One that frames by itself holds all bodies of the present state, and makes them large; one that
+ * follows a body is where it sees that one now. */
 render_camera render_world_frame_camera(const render_world_frame *frame, double aspect);
 
 #endif

@@ -1,6 +1,8 @@
 /* Tests of `skein render` but for films: pictures, arguments, and what is said where it cannot draw. */
 #include "test_command.h"
 
+#include <math.h>
+
 #include "render/image.h"
 
 static render_image read_png(const char *path) {
@@ -108,6 +110,74 @@ static void numbered_pictures_show_frame_by_frame(void **state) {
 }
 
 /* ---- Arguments ---------------------------------------------------------------------------------------- */
+
+/* The middle of what is red, in shares of the picture; and whether any of it touches the picture's edge. */
+static bool find_red(const char *path, double middle[2]) {
+    render_image image = read_png(path);
+    size_t count = 0;
+    bool at_edge = false;
+    middle[0] = middle[1] = 0;
+    for (int y = 0; y < image.height; y++)
+        for (int x = 0; x < image.width; x++) {
+            const unsigned char *p = image.pixels + 3 * ((size_t)y * (size_t)image.width + (size_t)x);
+            if (p[0] < p[2] + 40 || p[0] < p[1] + 40) continue;
+            middle[0] += (x + 0.5) / image.width, middle[1] += (y + 0.5) / image.height;
+            at_edge |= x == 0 || y == 0 || x == image.width - 1 || y == image.height - 1;
+            count++;
+        }
+    for (int k = 0; k < 2 && count; k++) middle[k] /= (double)count;
+    bool whole = count > 30 && !at_edge;
+    render_image_release(&image);
+    return whole;
+}
+
+/* A cube rolls 20 m down a slope: the camera goes along with it if that is asked, by the scene or here. */
+static void a_rolling_cube_stays_in_the_picture(void **state) {
+    (void)state;
+    const char *s = in_folder("roll.json"), *const follows[] = {"--follow=cube", "--follow=0",
+                                                                "--set=view.camera.follow=cube"};
+    write_scene(s, "{ 'name': 'roll', 'frames': 36, 'fps': 12, 'method': { 'type': 'xpbd', 'substeps': 20 },"
+                   "  'bodies': [ { 'type': 'lattice', 'name': 'cube', 'grid': [3, 3, 3], 'size': [0.5, 0.5, 0.5],"
+                   "                'position': [0, 0.6, 0], 'velocity': [4, 0, 0], 'visible': true } ],"
+                   "  'forces': [ { 'type': 'gravity' } ],"
+                   "  'colliders': [ { 'type': 'plane', 'normal': [0.6, 1, 0], 'friction': 0.4 } ] }");
+    double first[2], middle[2];
+    char path[600];
+    for (size_t i = 0; i < sizeof follows / sizeof *follows; i++) {
+        outcome o = SKEIN("render", s, "-o", in_folder("roll-%03d.png"), "--size", "160x90", "--samples", "1",
+                          "--no-progress", follows[i]);
+        assert_status(o, 0);
+        outcome_free(&o);
+        for (int k = 0; k < 36; k += i ? 35 : 5) {
+            snprintf(path, sizeof path, "%s/roll-%03d.png", folder, k);
+            if (!find_red(path, middle)) fail_msg("%s: the cube is not whole in picture %d", follows[i], k);
+            if (!k) memcpy(first, middle, sizeof first);
+            assert_true(hypot(middle[0] - first[0], middle[1] - first[1]) < 0.05);
+        }
+    }
+    // a picture that stands alone is of where it is by then
+    outcome o = SKEIN("render", s, "-o", in_folder("one.png"), "--frame", "30", "--follow", "all", "--size", "160x90",
+                      "--samples", "1", "--no-progress", "--set", "view.camera.from=[0, 1, 3]");
+    assert_status(o, 0);
+    outcome_free(&o);
+    assert_true(find_red(in_folder("one.png"), middle));
+    // else it stands where it sees all of the way, and the cube goes through the picture
+    o = SKEIN("render", s, "-o", in_folder("roll-%03d.png"), "--size", "160x90", "--samples", "1", "--no-progress");
+    assert_status(o, 0);
+    outcome_free(&o);
+    find_red(in_folder("roll-000.png"), first);
+    find_red(in_folder("roll-012.png"), middle);
+    assert_true(hypot(middle[0] - first[0], middle[1] - first[1]) > 0.2);
+
+    o = SKEIN("check", s, "--set", "view.camera.follow=ball");
+    assert_status(o, 2);
+    assert_contains(o.err, "view.camera.follow: there is no body 'ball': expected a body's name, its number from 0, or \"all\"");
+    outcome_free(&o);
+    o = SKEIN("check", s, "--set", "view.camera.follow=true");
+    assert_status(o, 2);
+    assert_contains(o.err, "view.camera.follow: expected a text or its number, not true");
+    outcome_free(&o);
+}
 
 static void wrong_arguments_are_told(void **state) {
     static const struct {
@@ -277,7 +347,7 @@ int main(void) {
 #define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
         TEST(a_picture_shows_the_frame_that_was_asked_for),
         TEST(sets_reach_the_picture),
-        TEST(numbered_pictures_show_frame_by_frame),
+        TEST(numbered_pictures_show_frame_by_frame), TEST(a_rolling_cube_stays_in_the_picture),
         TEST(wrong_arguments_are_told),
         TEST(help_teaches),
         TEST(a_place_that_cannot_be_written_is_told_at_once),

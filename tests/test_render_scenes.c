@@ -50,7 +50,8 @@ static void a_scene_has_a_view(void **state) {
     render_view standard = render_view_default();
     assert_string_equal(view->image, "");
     render_view same = *view;
-    same.image = standard.image;
+    assert_string_equal(view->camera.follow, "");
+    same.camera.follow = standard.camera.follow;
     assert_memory_equal(&same.camera, &standard.camera, sizeof same.camera);
     assert_true(same.line_width == standard.line_width && same.surface == standard.surface);
     io_scene_free(scene);

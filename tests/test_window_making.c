@@ -226,6 +226,100 @@ static void makes_each_piece(void **state) {
     close_window();
 }
 
+/* Two numbers that are entered one after the other are two changes, though of one field. */
+static void undoes_each_entry(void **state) {
+    skein_value stiffness;
+    (void)state;
+    write_scene(in_folder("one.json"), one_cube);
+    open_scene(in_folder("one.json"));
+    type_value("body.0.structural.stiffness", 0, 1, "3000", "set body 0 structural.stiffness=3000");
+    type_value("body.0.structural.stiffness", 0, 1, "4000", "set body 0 structural.stiffness=4000");
+    use_key("ctrl+z", "note undone: bodies.0.structural.stiffness=4000");
+    use_key("ctrl+s", "note saved one-");
+    char name[128];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(screen.line + 11, ":"), screen.line + 11);
+    use_key("ctrl+z", "note undone: bodies.0.structural.stiffness=3000");
+    use_key("ctrl+z", "note there is nothing to undo");
+    close_window();
+    skein_world *world = world_of(in_folder(name));
+    assert_int_equal(skein_get(world, skein_object_at(world, SKEIN_BODY, 0), "structural.stiffness", &stiffness), SKEIN_OK);
+    assert_true(stiffness.number[0] == 3000);
+    skein_world_destroy(world);
+}
+
+/* ---- A camera that goes along ------------------------------------------------------------------------------ */
+
+static const char rolling[] =
+    "{ 'name': 'roll', 'method': { 'type': 'xpbd', 'substeps': 10 }, 'forces': [ { 'type': 'gravity' } ],"
+    "  'bodies': [ { 'type': 'lattice', 'name': 'cube', 'grid': [3, 3, 3], 'size': [0.5, 0.5, 0.5], 'position': [0, 0.6, 0],"
+    "                'velocity': [3, 0, 0] },"
+    "              { 'type': 'cloth', 'grid': [3, 3], 'position': [0, 2, -1] } ],"
+    "  'colliders': [ { 'type': 'plane', 'normal': [0.6, 1, 0], 'friction': 0.4 } ] }";
+
+/* Where it looks once a picture was made of what there is. */
+static void ask_target(double target[3]) {
+    settle();
+    press_key("Shift_L");
+    const char *at = strstr(screen.line, " target=");
+    assert_non_null(at);
+    assert_int_equal(sscanf(at, " target=%lf,%lf,%lf", &target[0], &target[1], &target[2]), 3);
+}
+
+/* The middle of a body, which is first in its world, after some frames. */
+static void middle_after(int frames, size_t count, double middle[3]) {
+    skein_world *world = world_of(in_folder("roll.json"));
+    for (int i = 0; i < frames; i++) assert_int_equal(skein_world_step(world, 1.0 / 60), SKEIN_OK);
+    middle[0] = middle[1] = middle[2] = 0;
+    for (size_t p = 0; p < count; p++) {
+        double x[3];
+        assert_int_equal(skein_positions_copy(world, p, 1, x), SKEIN_OK);
+        for (int k = 0; k < 3; k++) middle[k] += x[k] / (double)count;
+    }
+    skein_world_destroy(world);
+}
+
+/* What is looked at goes as far as the cube does, from where it was at the start, also by "0"; T ends that, undo takes the
+ * wish back, and a saved scene has it. */
+static void follows_a_rolling_cube(void **state) {
+    enum { FRAMES = 30, PARTICLES = 27 };
+    double from[3], to[3], before[3], after[3], home[3];
+    char hash[32], again[32];
+    (void)state;
+    write_scene(in_folder("roll.json"), rolling);
+    middle_after(0, PARTICLES, from);
+    middle_after(FRAMES, PARTICLES, to);
+    assert_true(to[0] - from[0] > 1 && to[1] - from[1] < -0.5);
+    open_scene(in_folder("roll.json"));
+    press_button("follow body.0", "set view 0 camera.follow=cube");
+    press_key("BackSpace");
+    ask_target(before);
+    for (int i = 0; i < FRAMES; i++) press_key("period");
+    ask_target(after);
+    press_key("0");
+    ask_target(home);
+    for (int k = 0; k < 3; k++) {
+        assert_true(fabs(after[k] - before[k] - (to[k] - from[k])) < 1e-3);
+        assert_true(fabs(home[k] - after[k]) < 1e-3);
+    }
+    use_key("ctrl+s", "note saved roll-001.json");
+    use_key("t", "note the view stands still");
+    use_key("t", "note the view goes along with cube");
+    press_button("follow body.0", "note the view stands still");
+    use_key("ctrl+z", "note undone: view.camera.follow");
+    use_key("ctrl+z", "note undone: view.camera.follow");
+    hash_after(FRAMES, again);
+    close_window();
+    // back at its start it rolls as from the file: what moved then moves again
+    skein_world *world = world_of(in_folder("roll.json"));
+    for (int i = 0; i < FRAMES; i++) assert_int_equal(skein_world_step(world, 1.0 / 60), SKEIN_OK);
+    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)skein_world_hash(world));
+    assert_string_equal(hash, again);
+    skein_world_destroy(world);
+    char *saved = read_text(in_folder("roll-001.json"));
+    assert_non_null(strstr(saved, "\"follow\": \"cube\""));
+    free(saved);
+}
+
 /* ---- A grid becomes a mesh --------------------------------------------------------------------------------- */
 
 static const char sheet[] =
@@ -409,7 +503,8 @@ int main(void) {
         cmocka_unit_test(makes_each_piece),              cmocka_unit_test(turns_a_grid_into_a_mesh),
         cmocka_unit_test(puts_a_collider_elsewhere),     cmocka_unit_test(says_what_blew_up_and_what_holds_it),
         cmocka_unit_test(remembers_scenes),              cmocka_unit_test(saves_both_of_two),
-        cmocka_unit_test(says_what_is_ignored),
+        cmocka_unit_test(says_what_is_ignored),          cmocka_unit_test(follows_a_rolling_cube),
+        cmocka_unit_test(undoes_each_entry),
     };
     if (!can_open_screen()) return 0;
     if (getenv("SKEIN_TEST_ONLY")) cmocka_set_test_filter(getenv("SKEIN_TEST_ONLY"));

@@ -12,8 +12,10 @@ static const double turn_by_drag = 180, turn_by_key = 60, steepest = 0.9994;
 static const double turn_head = 60, radii_a_second = 0.8;
 static const double nearest = 1e-3; /* what is cut off, of the distance to the target */
 
-void viewer_camera_place(viewer_camera *camera, const render_camera *home, double radius, double time) {
+void viewer_camera_place(viewer_camera *camera, const render_camera *home, double radius, double time,
+                         const double middle[3]) {
     camera->lens = camera->home = *home;
+    memcpy(camera->home_middle, middle, sizeof camera->home_middle);
     camera->home_time = time;
     camera->has_middle = false;
     camera->radius = radius > 0 ? radius : 1;
@@ -21,14 +23,22 @@ void viewer_camera_place(viewer_camera *camera, const render_camera *home, doubl
     camera->flying = camera->moved = false;
 }
 
-void viewer_camera_home(viewer_camera *camera) {
+/* To the first view, as far along as what it follows. */
+static void go_home(viewer_camera *camera) {
     camera->lens = camera->home;
-    camera->has_middle = false;
+    for (int k = 0; k < 3 && camera->follows && camera->has_middle; k++) {
+        double way = camera->middle[k] - camera->home_middle[k];
+        camera->lens.eye[k] += way, camera->lens.target[k] += way;
+    }
+}
+
+void viewer_camera_home(viewer_camera *camera) {
+    go_home(camera);
     camera->flying = camera->moved = false;
 }
 
 void viewer_camera_orbit(viewer_camera *camera, double degrees, double time) {
-    camera->lens = camera->home;
+    go_home(camera);
     render_camera_turn(&camera->lens, degrees * (time - camera->home_time));
 }
 
@@ -60,7 +70,6 @@ void viewer_camera_follow(viewer_camera *camera, const double middle[3]) {
         camera->middle[k] = middle[k];
     }
     camera->has_middle = camera->follows;
-    camera->moved |= camera->follows;
 }
 
 /* A direction, turned by angles to the right and up (radians); not beyond the steepest. */

@@ -28,13 +28,14 @@ typedef struct viewer_camera {
     bool down[VIEWER_MOTION_COUNT]; /* keys */
     render_camera home;             /* the first view */
     double home_time;               /* of the world, in seconds */
-    bool follows, has_middle;       /* it goes along with the bodies; and knows where their middle was */
-    double middle[3];
+    bool follows, has_middle;       /* it goes along with a body, or with all; and knows where their middle was */
+    double middle[3], home_middle[3];
 } viewer_camera;
 
-/* Takes the scene's own camera, at a time of the world, and ends a flight. */
-void viewer_camera_place(viewer_camera *camera, const render_camera *home, double radius, double time);
-/* The first view again. */
+/* Takes the scene's own camera, at a time of the world, with what it would follow where it is then; ends a flight. */
+void viewer_camera_place(viewer_camera *camera, const render_camera *home, double radius, double time,
+                         const double middle[3]);
+/* The first view again; of what has moved since, where it follows that. */
 void viewer_camera_home(viewer_camera *camera);
 /* The first view, gone round by so many degrees a second since then. */
 void viewer_camera_orbit(viewer_camera *camera, double degrees, double time);

@@ -29,7 +29,8 @@ typedef enum viewer_request_kind {
     VIEWER_SCROLL,    /* y: clicks of the wheel, forward is closer */
     VIEWER_RESIZE,    /* x, y: pixels */
     VIEWER_FOCUS,     /* down: has it now */
-    VIEWER_SET,       /* category, index, field, value: of an object, the method, the view or the scene; side */
+    VIEWER_SET,       /* category, index, field, value: of an object, the method, the view or the scene; side; down: its
+                         control is still held, and what it says next belongs to the same change */
     VIEWER_METHOD,    /* text: the kind; side */
     VIEWER_ADD,       /* category, text: the kind */
     VIEWER_REMOVE,    /* category, index */
@@ -37,6 +38,7 @@ typedef enum viewer_request_kind {
     VIEWER_DUPLICATE, /* category, index */
     VIEWER_KIND,      /* category, index, text: the kind that it becomes */
     VIEWER_TO_MESH,   /* index: of a body */
+    VIEWER_FOLLOW,    /* index: of a body that the camera goes along with, or no longer */
     VIEWER_TOOL,      /* category, index; code: a viewer_tool, handles on that object */
     VIEWER_BRUSH,     /* x: its radius, pixels */
     VIEWER_OPEN,      /* text: a scene or mesh */

@@ -80,10 +80,12 @@ static void frame_all(viewer_stage *stage, const viewer_key *key) {
 
 static void follow(viewer_stage *stage, const viewer_key *key) {
     (void)key;
+    const char *body = stage->sides[0].view.camera.follow;
     stage->camera.follows = !stage->camera.follows;
     stage->camera.has_middle = false;
     stage->dirty = true;
-    viewer_note(stage, stage->camera.follows ? "the view goes along with the bodies; T ends it" : "the view stands still");
+    if (stage->camera.follows) viewer_note(stage, "the view goes along with %.100s; T ends it", body[0] ? body : "the bodies");
+    else viewer_note(stage, "the view stands still");
 }
 
 static void save_picture(viewer_stage *stage, const viewer_key *key) {
@@ -192,7 +194,7 @@ static void change_field(viewer_stage *stage, const viewer_key *key) {
             double changed = value.number[0] + key->number * step_size;
             changed = fmin(fmax(changed, field->least), field->most);
             viewer_request request = {.kind = VIEWER_SET, .category = SKEIN_FORCE, .index = i, .field = field,
-                                      .side = (int)s, .value = skein_number(changed)};
+                                      .side = (int)s, .value = skein_number(changed), .down = true};
             viewer_stage_set(stage, &request);
             if (s == 0) viewer_note(stage, "%s %.4g %s", key->field, changed, field->unit);
         }
@@ -274,7 +276,7 @@ static const viewer_key keys[] = {
     MOVE(GLFW_KEY_PAGE_DOWN, NULL, VIEWER_TURN_DOWN, NULL),
     SCENE(GLFW_KEY_F, "F", frame_all, "brings all bodies into the picture, from the side that is looked from"),
     SCENE(GLFW_KEY_0, "0", first_view, "back to the first view"),
-    SCENE(GLFW_KEY_T, "T", follow, "the view goes along with the bodies, and stands still again"),
+    SCENE(GLFW_KEY_T, "T", follow, "the view goes along with the bodies (or the one that camera.follow names), and stands still again"),
     SCENE(GLFW_KEY_C, "C", fly, "flight in the first person, and back to the first view"),
     SCENE(GLFW_KEY_R, "R", next_colours, "other colours, those that tell something: material, body, direction, speed, strain"),
     METHOD(0, "1 to 9", "the method: the n-th that `skein list methods` names"),

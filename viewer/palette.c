@@ -141,6 +141,11 @@ void viewer_show_deeds(viewer_panels *panels, const viewer_object *object) {
         if (button(panels, object, "to mesh", "its grid becomes a mesh in a file, to be edited elsewhere"))
             ask_about(panels, VIEWER_TO_MESH, object, "");
     }
+    if (object->category == SKEIN_BODY) {
+        widgets_same_line();
+        if (button(panels, object, "follow", "the camera goes along with it, or stands still again; T for all bodies"))
+            ask_about(panels, VIEWER_FOLLOW, object, "");
+    }
     if (rule || object->category == SKEIN_BODY) show_tools(panels, object);
     if (rule) show_kinds(panels, object);
 }

@@ -179,14 +179,14 @@ void viewer_show_entry(viewer_panels *panels, const viewer_object *object, const
     // what builds the scene anew waits until the slider is let go, and what is typed until it is entered
     bool slider =
         field->type != SKEIN_FIELD_BOOL && field->type != SKEIN_FIELD_CHOICE && field->type != SKEIN_FIELD_TEXT;
-    bool held = panels->asked.down && panels->asked.field == field && panels->asked.category == object->category &&
-                panels->asked.index == object->index && panels->asked.side == side;
     bool released = slider && widgets_released();
     if (changed && slider && (entry->shapes || widgets_typing()) && !released) {
         keep_asked(panels, &request, true);
         changed = false;
     }
-    changed |= held && released;
+    // let go, it is said once more: what comes after that is another change
+    changed |= slider && released;
+    request.down = slider && !released;
     snprintf(name, sizeof name, "%s%s.%zu.%.60s", side ? "other " : "", skein_category_text(object->category),
              object->index, field->name);
     place_entry(panels, field, name);
@@ -199,8 +199,10 @@ void viewer_show_entry(viewer_panels *panels, const viewer_object *object, const
     }
     describe(entry, help, sizeof help);
     widgets_help(help);
-    if (request.value.count > 0 && field->type != SKEIN_FIELD_BOOL && field->type != SKEIN_FIELD_CHOICE)
-        changed |= show_menu(entry, &request.value);
+    if (slider && show_menu(entry, &request.value)) {
+        changed = true;
+        request.down = false;
+    }
     widgets_pop();
     if (!changed) return;
     keep_asked(panels, &request, false);

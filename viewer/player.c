@@ -35,11 +35,12 @@ static bool is_held(const skein_world *world, size_t particle) {
     return !(view.xyzw[4 * (size_t)view.slot_of[particle] + 3] > 0);
 }
 
-static bool note_pins(viewer_player *player) {
+static bool note_start(viewer_player *player) {
     size_t count = skein_particle_count(player->world);
     player->pins = malloc(count + 1);
+    player->velocities = malloc((3 * count + 1) * sizeof *player->velocities);
     for (size_t i = 0; player->pins && i < count; i++) player->pins[i] = is_held(player->world, i);
-    return player->pins != NULL;
+    return player->pins && player->velocities && !skein_velocities_copy(player->world, 0, count, player->velocities);
 }
 
 static void say_advice(void *user, const char *line) {
@@ -121,7 +122,7 @@ static bool load(viewer_player *player, const viewer_reading *reading) {
     viewer_player_advise(player);
     take_to_card(player, reading->device);
     player->opened = viewer_seconds();
-    bool good = viewer_history_begin(&player->history, player->world) && note_pins(player);
+    bool good = viewer_history_begin(&player->history, player->world) && note_start(player);
     if (good) viewer_history_keep(&player->history, player->world, 0);
     else player->reporter.say(player->reporter.user, SKEIN_LOG_WARNING, "out of memory");
     return good;
@@ -132,6 +133,7 @@ void viewer_player_close(viewer_player *player) {
     io_scene_free(player->scene);
     viewer_history_release(&player->history);
     free(player->pins);
+    free(player->velocities);
     viewer_changes_free(&player->changes);
     memset(player, 0, sizeof *player);
 }
@@ -251,6 +253,7 @@ void viewer_player_reset(viewer_player *player) {
     for (size_t i = 0; i < skein_particle_count(player->world); i++)
         if (is_held(player->world, i) != (player->pins[i] != 0)) skein_particle_hold(player->world, i, player->pins[i]);
     skein_world_reset(player->world);
+    skein_velocities_set(player->world, 0, skein_particle_count(player->world), player->velocities);
     player->frame = 0;
     player->step = 0;
     player->failed = false;

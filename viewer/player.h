@@ -13,7 +13,7 @@
 #include "viewer/history.h"
 #include "viewer/viewer.h"
 
-enum { PLAYER_PATH = 1024 };
+enum { PLAYER_PATH = 1024, PLAYER_NAME = 256 };
 
 /* Where messages go. */
 typedef struct viewer_reporter {
@@ -27,13 +27,15 @@ typedef struct viewer_player {
     io_scene *scene;
     io_scene_settings settings;
     skein_world *world;
-    render_view view; /* the scene's, as changed since; its texts are the scene's */
+    render_view view; /* the scene's, as changed since; its texts are the scene's, but for the followed body's */
+    char follow[PLAYER_NAME]; /* that body's name, once it was changed */
     double opened; /* s: when, which tells its world from others */
     int steps, step; /* a frame; taken of the present one */
     double dt;       /* of a step */
     uint64_t frame;
     viewer_history history;
     unsigned char *pins; /* which particles were held when it was built */
+    double *velocities;  /* and what they had then, which the library's reset takes from them; m/s, three each */
     viewer_reporter reporter;
     bool failed; /* a step failed: said once */
     double needed; /* substeps, where there are too few to be stable; else 0 */

@@ -145,6 +145,8 @@ bool viewer_stage_reopen(viewer_stage *stage, viewer_changes *changes, bool stay
 void viewer_stage_reload(viewer_stage *stage); /* its file has changed; what was changed here stays on top */
 viewer_reading viewer_stage_reading(const viewer_stage *stage);
 void viewer_stage_compare(viewer_stage *stage, const char *set);
+/* The camera goes along with a body if the view says so, and says what it does. */
+void viewer_stage_follow(viewer_stage *stage);
 void viewer_stage_pause(viewer_stage *stage, bool paused);
 void viewer_stage_reset(viewer_stage *stage);
 void viewer_stage_step(viewer_stage *stage);                  /* one frame */
@@ -178,6 +180,8 @@ const char *viewer_list_of(skein_category category);
 void viewer_stage_undo(viewer_stage *stage);
 void viewer_stage_redo(viewer_stage *stage);
 void viewer_stage_revert(viewer_stage *stage); /* back to the file */
+/* The camera goes along with this body, or stands still where it did so already: a change of the view. */
+void viewer_stage_follow_body(viewer_stage *stage, size_t body);
 
 /* stage_picture.c */
 bool viewer_pictures_open(viewer_stage *stage, skein_error *error);

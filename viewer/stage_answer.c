@@ -217,6 +217,7 @@ void viewer_stage_answer(viewer_stage *stage, const viewer_request *r) {
     case VIEWER_TOOL: viewer_handles_request(stage, r); break;
     case VIEWER_BRUSH: stage->handles.brush.radius = r->x; break;
     case VIEWER_TO_MESH: viewer_to_mesh(stage, r); break;
+    case VIEWER_FOLLOW: viewer_stage_follow_body(stage, r->index); break;
     case VIEWER_OPEN: viewer_stage_open(stage, r->text, NULL); break;
     case VIEWER_SCRUB:
         viewer_stage_pause(stage, true);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "io/kinds.h"
-
+#include "render/world_follow.h"
 #include "viewer/stage.h"
 
 /* ---- Keeping changes ---- */
@@ -36,6 +36,11 @@ static void keep(viewer_stage *stage, size_t side, const char *set, const viewer
         viewer_say(stage, SKEIN_LOG_WARNING, "out of memory: this change cannot be undone or saved");
 }
 
+/* Whether there is a plan for the next step. */
+static bool runs(const viewer_player *player) {
+    return !skein_world_explain(player->world, player->dt, NULL, NULL);
+}
+
 /* ---- Methods ---- */
 
 /* The settings that two kinds of method share stay. A method that cannot run the rules is refused. */
@@ -49,6 +54,7 @@ void viewer_stage_method(viewer_stage *stage, size_t side, const char *name) {
     skein_setting all[MOST + 1] = {{NULL, {0, {0, 0, 0}, NULL}}}, shared[MOST + 1] = {{NULL, {0, {0, 0, 0}, NULL}}};
     size_t all_count = 0, shared_count = 0;
     if (kind == old) return;
+    bool ran = runs(&stage->sides[side]); // else the method is not to blame
     for (size_t i = 0; i < old->field_count && i < MOST; i++) {
         skein_value value;
         const skein_field *field = &old->fields[i], *same = skein_field_find(kind, field->name, NULL);
@@ -57,7 +63,7 @@ void viewer_stage_method(viewer_stage *stage, size_t side, const char *name) {
         if (same && same->type == field->type && !skein_field_check(same, &value, NULL))
             shared[shared_count++] = (skein_setting){field->name, value};
     }
-    if (skein_method_set(world, kind->name, shared) || skein_world_explain(world, stage->sides[side].dt, NULL, NULL)) {
+    if (skein_method_set(world, kind->name, shared) || (ran && !runs(&stage->sides[side]))) {
         viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", kind->name, skein_world_error(world)->message);
         skein_method_set(world, old->name, all);
     } else {
@@ -88,10 +94,32 @@ static void set_view(viewer_stage *stage, const skein_field *field, const skein_
     if (!strncmp(field->name, "camera.", 7)) stage->camera.placed = false;
 }
 
+/* The body that the camera goes along with from now on, and is placed anew for; false after a printed fault. */
+static bool set_followed(viewer_stage *stage, const char *name) {
+    size_t body;
+    if (name[0] && !render_body_find(stage->sides[0].world, name, &body)) {
+        viewer_say(stage, SKEIN_LOG_WARNING,
+                   "camera.follow: there is no body '%.100s': a body's name, its number from 0, or \"all\"", name);
+        return false;
+    }
+    for (size_t s = 0; s < stage->side_count; s++) {
+        viewer_player *player = &stage->sides[s];
+        snprintf(player->follow, sizeof player->follow, "%s", name);
+        player->view.camera.follow = player->follow;
+    }
+    viewer_stage_follow(stage);
+    return true;
+}
+
+/* Of the view's texts the one that takes no new scene. */
+static bool is_body(const skein_field *field) {
+    return !strcmp(field->unit, "body");
+}
+
 /* Whether a field changes at once; else the scene is built anew with it. */
 static bool is_live(const viewer_stage *stage, size_t side, const viewer_value *at) {
     const skein_world *world = stage->sides[side].world;
-    if (at->category == SKEIN_VIEW) return at->field->type != SKEIN_FIELD_TEXT;
+    if (at->category == SKEIN_VIEW) return at->field->type != SKEIN_FIELD_TEXT || is_body(at->field);
     return at->category != SKEIN_SCENE &&
            skein_field_is_live(world, skein_object_at(world, at->category, at->index), at->field->name);
 }
@@ -101,6 +129,7 @@ static bool set_live(viewer_stage *stage, size_t side, const viewer_value *to) {
     skein_world *world = stage->sides[side].world;
     if (to->category == SKEIN_FORCE) viewer_hunt_leave(stage, side, to->index);
     stage->facts = stage->dirty = true;
+    if (to->category == SKEIN_VIEW && is_body(to->field)) return set_followed(stage, to->value.text);
     if (to->category == SKEIN_VIEW) {
         set_view(stage, to->field, &to->value);
         return true;
@@ -127,10 +156,12 @@ static bool change_live(viewer_stage *stage, size_t side, const viewer_value *to
     // the world's own text goes with the change
     char *text = before.value.text ? strdup(before.value.text) : NULL;
     before.value.text = text;
-    bool good = set_live(stage, side, to);
-    // a name that is not there is found by the next step alone, and a scene with it would not open
+    // a name that is not there is found by the next step alone, and a scene with it would not open; what could not run
+    // before is no fault of the name
     bool names = to->category != SKEIN_VIEW && to->field->type == SKEIN_FIELD_TEXT;
-    if (good && names && skein_world_explain(player->world, player->dt, NULL, NULL)) {
+    bool ran = names && runs(player);
+    bool good = set_live(stage, side, to);
+    if (good && ran && !runs(player)) {
         viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", to->field->name, skein_world_error(player->world)->message);
         set_live(stage, side, &before);
         good = false;
@@ -198,11 +229,14 @@ void viewer_stage_set(viewer_stage *stage, const viewer_request *r) {
     }
     size_t side = (size_t)r->side < stage->side_count ? (size_t)r->side : 0;
     char *set = set_of(r->category, r->index, r->field, &to.value);
+    const char *one = set;
+    bool stays = r->category == SKEIN_VIEW; // what is seen takes nothing back
     bool changed =
-        is_live(stage, side, &to) ? change_live(stage, side, &to, set) : set && viewer_stage_build_with(stage, set);
+        is_live(stage, side, &to) ? change_live(stage, side, &to, set) : set && build_with_all(stage, &one, 1, stays);
     free(set);
     if (!changed && r->field->type == SKEIN_FIELD_TEXT) viewer_offer_look(stage, r->category, r->index, r->field, to.value.text);
     else if (r->field->type == SKEIN_FIELD_TEXT) viewer_offer_forget(stage);
+    if (changed && !r->down) viewer_changes_close(&stage->sides[side].changes);
     tell_value(stage, side, &to, changed);
     // a slider that is dragged asks for nothing yet
     if (changed && r->category != SKEIN_VIEW) stage->advice_due = viewer_seconds() + 0.4;
@@ -257,6 +291,22 @@ bool viewer_stage_change_together(viewer_stage *stage, skein_category category, 
     }
     if (good) stage->advice_due = viewer_seconds() + 0.4;
     return good;
+}
+
+void viewer_stage_follow_body(viewer_stage *stage, size_t body) {
+    const skein_field *field = skein_field_find(render_view_kind(), "camera.follow", NULL);
+    const viewer_player *player = &stage->sides[0];
+    size_t found, followed;
+    skein_value name;
+    viewer_request request = {.kind = VIEWER_SET, .category = SKEIN_VIEW, .field = field, .value = skein_text(NULL)};
+    if (!stage->side_count || body >= skein_object_count(player->world, SKEIN_BODY)) return;
+    bool already = stage->camera.follows && render_body_find(player->world, player->view.camera.follow, &followed);
+    bool named = !skein_get(player->world, skein_object_at(player->world, SKEIN_BODY, body), "name", &name) && name.text &&
+                 render_body_find(player->world, name.text, &found) && found == body;
+    if (already && followed == body) request.text[0] = 0;
+    else if (named) snprintf(request.text, sizeof request.text, "%s", name.text);
+    else snprintf(request.text, sizeof request.text, "%zu", body);
+    viewer_stage_set(stage, &request);
 }
 
 /* ---- Rules ---- */

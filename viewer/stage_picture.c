@@ -235,7 +235,8 @@ static skein_status take_frame(viewer_stage *stage, size_t side, skein_error *er
     if (!camera->placed) {
         render_camera home = render_world_frame_camera(frame, viewer_aspect(stage));
         render_bounds bounds = render_frame_bounds(render_world_frame_get(frame));
-        viewer_camera_place(camera, &home, render_bounds_radius(&bounds), now);
+        render_world_frame_middle(frame, middle);
+        viewer_camera_place(camera, &home, render_bounds_radius(&bounds), now, middle);
     } else if (player->view.camera.orbit != 0 && !camera->moved) {
         viewer_camera_orbit(camera, player->view.camera.orbit, now);
     }

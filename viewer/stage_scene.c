@@ -61,6 +61,7 @@ void viewer_stage_open(viewer_stage *stage, const char *path, const char *const 
     end_compare(stage);
     stage->panel[VIEWER_PANEL_GALLERY] = false;
     stage->camera.placed = false;
+    viewer_stage_follow(stage);
     stage->in_parts = true;
     viewer_watch(stage, true);
     restart_clock(stage);
@@ -75,12 +76,26 @@ void viewer_stage_open(viewer_stage *stage, const char *path, const char *const 
         viewer_say(stage, SKEIN_LOG_INFO, "%s: %s", error.where, error.message);
 }
 
+void viewer_stage_follow(viewer_stage *stage) {
+    viewer_camera *camera = &stage->camera;
+    const char *body = stage->sides[0].view.camera.follow;
+    bool did = camera->follows;
+    camera->follows = body[0] != 0;
+    camera->has_middle = camera->placed = false;
+    stage->dirty = true;
+    if (camera->follows) viewer_note(stage, "the view goes along with %.100s; T ends it", body);
+    else if (did) viewer_note(stage, "the view stands still");
+}
+
 static void compare_with(viewer_stage *stage, const char *set, const viewer_changes *own);
 
 bool viewer_stage_reopen(viewer_stage *stage, viewer_changes *changes, bool stays) {
     viewer_reading reading = viewer_stage_reading(stage);
     if (stage->film) viewer_film_toggle(stage);
+    char followed[PLAYER_NAME];
+    snprintf(followed, sizeof followed, "%s", stage->sides[0].view.camera.follow);
     bool good = viewer_player_reopen(&stage->sides[0], changes, stays, &reading);
+    if (good && strcmp(followed, stage->sides[0].view.camera.follow) != 0) viewer_stage_follow(stage);
     if (!good) {
         viewer_note(stage, "the scene has a fault (see the log): the last good one goes on");
         stage->panel[VIEWER_PANEL_LOG] = true;

@@ -8,6 +8,7 @@ layout(location = 2) uniform vec3 across;
 layout(location = 3) uniform vec3 normal;
 layout(location = 4) uniform float cell; // side of the grid's cells, metres
 layout(location = 5) uniform int ground; // 1: fades into the horizon
+layout(location = 6) uniform vec2 shift; // of the square's middle from where its grid was laid, metres
 
 // Lines of a grid with cells of 1, `half_width` to either side, averaged over a pixel.
 float lines(vec2 x, float half_width) {
@@ -31,7 +32,7 @@ void main() {
     vec3 world = ground == 1 ? point_on_ground() : interpolated;
     vec3 ray = world - scene.eye.xyz;
     float distance = length(ray);
-    vec2 on_plane = ground == 1 ? world.xz : place * vec2(length(along), length(across));
+    vec2 on_plane = ground == 1 ? world.xz : shift + place * vec2(length(along), length(across));
 
     float fine = lines(on_plane / cell, 0.006), coarse = lines(on_plane / (5.0 * cell), 0.0022);
     float out_there = length(world - scene.middle.xyz) / scene.middle.w;
