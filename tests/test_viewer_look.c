@@ -85,10 +85,30 @@ static void axes_survive_infinities(void **state) {
     assert_true(most - least <= 20 && least <= 1 && most >= 2);
 }
 
+/* One world that swings, and grows to 1e20 J at its end: what it did before is still to be read. A swing alone, and a
+ * single peak that is not that high, have all of the axis. */
+static void a_blow_up_leaves_the_axis(void **state) {
+    (void)state;
+    float values[ROOM], least, most;
+    for (int i = 0; i < ROOM; i++) values[(i + 5) % ROOM] = 10 + 2 * sinf((float)i);
+    range_of(values, NULL, false, &least, &most);
+    assert_true(least > 7.9f && least < 8.2f && most > 11.8f && most < 12.1f);
+    values[2] = 1e4f, values[3] = 1e12f, values[4] = 1e20f; // the last ones
+    range_of(values, NULL, false, &least, &most);
+    assert_true(most - least < 100 && least < 8.2f && most > 12);
+    values[3] = -1e12f; // and down
+    range_of(values, NULL, false, &least, &most);
+    assert_true(most - least < 200 && least < 8.2f && most > 12);
+    values[2] = values[3] = 9, values[4] = 900;
+    range_of(values, NULL, false, &least, &most);
+    assert_true(most == 900);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sliders_do_not_hide_their_numbers),
         cmocka_unit_test(axes_survive_infinities),
+        cmocka_unit_test(a_blow_up_leaves_the_axis),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
