@@ -131,6 +131,32 @@ static const expectation expectations[] = {
     {"whirl", 200, 0.005, 0, 0, 0, NOT_SYMMETRIC},
 };
 
+/* One spring that lives: two balls and a line, as the one that is stepped; it was one thick rod. */
+static void one_spring_is_two_balls_and_a_line(void **state) {
+    static const char *const names[] = {"scenes/one_spring.json", "scenes/one_spring_live.json"};
+    (void)state;
+    for (size_t i = 0; i < 2; i++) {
+        io_faults faults = {note_fault, NULL, 0};
+        kinds[0] = render_view_kind();
+        io_scene *scene = io_scene_read(names[i], NULL, kinds, &faults);
+        skein_world *world = io_scene_build(scene, NULL, &faults);
+        skein_error error = {SKEIN_OK, "", ""};
+        render_world_frame *made = render_world_frame_create(&error);
+        assert_non_null(world);
+        assert_int_equal(render_world_frame_update(made, world, io_scene_view(scene), &error), SKEIN_OK);
+        const render_frame *frame = render_world_frame_get(made);
+        size_t balls = 0, lines = 0;
+        for (size_t p = 0; p < frame->points_count; p++) balls += frame->points[p].count;
+        for (size_t l = 0; l < frame->lines_count; l++) lines += frame->lines[l].count;
+        assert_int_equal(balls, 2);
+        assert_int_equal(frame->rod_count, 0);
+        assert_true(lines >= 1);
+        render_world_frame_destroy(made);
+        skein_world_destroy(world);
+        io_scene_free(scene);
+    }
+}
+
 static bool is_warm(const uint8_t *p) {
     return p[0] > p[2] + 60 && p[0] > p[1] + 30;
 }
@@ -335,6 +361,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_scene_has_a_view),
         cmocka_unit_test(faults_of_a_view_are_told),
+        cmocka_unit_test(one_spring_is_two_balls_and_a_line),
         cmocka_unit_test(every_scene_has_what_it_must),
         cmocka_unit_test(the_driver_had_nothing_to_say),
     };

@@ -721,6 +721,11 @@ static void compares_and_waits_for_the_focus(void **state) {
     expect("note side by side");
     ask_state();
     assert_true(told("sides") == 2);
+    // each has its name over it, in its half of the picture
+    double first[4], second[4], middle = 0.5 * (left + 640);
+    assert_true(find_box("label 0 xpbd", 0, first, patience_seconds));
+    assert_true(find_box("label 1 method.type=pbd", 0, second, patience_seconds));
+    assert_true(first[0] >= left && first[0] + first[2] < middle && second[0] > middle && second[0] + second[2] < 640);
     listen_from_here();
     focus_elsewhere(true);
     expect("paused");

@@ -147,6 +147,22 @@ static void the_formula_is_what_is_told(void **state) {
     free(all);
 }
 
+/* A note that is longer than the picture is wide goes on in another line, and not beyond the window's edge. */
+static void a_long_note_wraps(void **state) {
+    double box[4], x, y;
+    (void)state;
+    open_scene("squares.json", squares, (const char *const[]){"--size", "520x420", "--scale", "1", NULL});
+    listen_from_here();
+    tool("key Return");
+    expect("note solve 1 spring: ");
+    assert_true(strlen(screen.line) > 70); // of letters that are 5 pixels wide or more, beside a panel of 230
+    settled_place_of("note", &x, &y);
+    assert_true(find_box("note", 0, box, patience_seconds));
+    if (!(box[0] > 0 && box[0] + box[2] <= 520 && box[3] > 36 && box[1] + box[3] <= 420))
+        fail_msg("it is at %g %g, %g x %g", box[0], box[1], box[2], box[3]);
+    close_window();
+}
+
 /* findings/formula_loose.json, and a constraint of four: however it was made. */
 static void any_constraint_is_told(void **state) {
     (void)state;
@@ -416,6 +432,7 @@ static void a_ball_follows_under_every_method(void **state) {
 int main(void) {
     const struct CMUnitTest sitting[] = {
         cmocka_unit_test(the_formula_is_what_is_told),
+        cmocka_unit_test(a_long_note_wraps),
         cmocka_unit_test(any_constraint_is_told),
         cmocka_unit_test(its_text_can_be_changed),
         cmocka_unit_test(the_tape_is_gone_through),
@@ -424,5 +441,6 @@ int main(void) {
         cmocka_unit_test(a_ball_follows_under_every_method),
     };
     if (!can_open_screen()) return 0;
+    if (getenv("SKEIN_TEST_ONLY")) cmocka_set_test_filter(getenv("SKEIN_TEST_ONLY"));
     return cmocka_run_group_tests(sitting, begin, end);
 }

@@ -295,18 +295,28 @@ int viewer_docked_height(const viewer_shown *shown, int height) {
     return dock + (int)viewer_lesson_height(shown, height - dock);
 }
 
-static void show_message(const viewer_shown *shown, double left, double width, double height) {
+static void show_message(viewer_panels *panels, double left, double width, double height) {
+    const viewer_shown *shown = &panels->exchange->shown;
     char text[sizeof shown->message + 16];
+    double box[4];
     const char *records = shown->recording ? "recording   " : "";
     snprintf(text, sizeof text, "%s%s", records, shown->message);
-    if (text[0]) widgets_note(text, left + 8, height - 8, true, width - left - 16, shown->alarm);
+    if (!text[0]) return;
+    widgets_note(text, left + 8, height - 8, true, width - left - 16, shown->alarm, box);
+    viewer_place_box(panels, "note", box);
 }
 
 /* Which world is which, over each of two. */
-static void show_labels(const viewer_shown *shown, double left, double width) {
+static void show_labels(viewer_panels *panels, double left, double width) {
+    const viewer_shown *shown = &panels->exchange->shown;
+    char name[200];
+    double box[4];
     double room = (width - left) / (double)shown->side_count;
-    for (size_t s = 0; s < shown->side_count && shown->side_count > 1; s++)
-        widgets_note(shown->sides[s].name, left + (double)s * room + 8, 8, false, room - 16, false);
+    for (size_t s = 0; s < shown->side_count && shown->side_count > 1; s++) {
+        widgets_note(shown->sides[s].name, left + (double)s * room + 8, 8, false, room - 16, false, box);
+        snprintf(name, sizeof name, "label %zu %s", s, shown->sides[s].name);
+        viewer_place_box(panels, name, box);
+    }
 }
 
 int viewer_side_panel_width(int width) {
@@ -325,6 +335,6 @@ void viewer_panels_show(viewer_panels *panels, int width, int height) {
     if (shown->panel[VIEWER_PANEL_GALLERY]) show_gallery(panels, shown, w, h);
     if (shown->panel[VIEWER_PANEL_KEYS]) show_keys(panels, w, h);
     // a picture without panels is a picture: no note in it, unless something is wrong
-    if (shown->has_scene && !shown->panel[VIEWER_PANEL_GALLERY]) show_labels(shown, left, w);
-    if (has_side || shown->recording || shown->alarm) show_message(shown, left, w, above - viewer_lesson_height(shown, above));
+    if (shown->has_scene && !shown->panel[VIEWER_PANEL_GALLERY]) show_labels(panels, left, w);
+    if (has_side || shown->recording || shown->alarm) show_message(panels, left, w, above - viewer_lesson_height(shown, above));
 }

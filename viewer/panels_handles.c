@@ -39,8 +39,9 @@ void viewer_show_handles(viewer_panels *panels, double left, double width, doubl
             if (place->name[0]) viewer_place_box(panels, place->name, at);
         }
     }
+    double box[4];
     if (shown->tool && shown->tool_words[0])
-        widgets_note(shown->tool_words, left + shown->tool_at[0] + 18, shown->tool_at[1] + 18, false, 400, false);
+        widgets_note(shown->tool_words, left + shown->tool_at[0] + 18, shown->tool_at[1] + 18, false, 400, false, box);
 }
 
 void viewer_show_brush(viewer_panels *panels) {

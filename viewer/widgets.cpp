@@ -208,11 +208,12 @@ bool widgets_panel(const char *title, widgets_frame frame, double x, double y, d
     return unfolded;
 }
 
-void widgets_note(const char *text, double x, double y, bool above, double width, bool warning) {
+void widgets_note(const char *text, double x, double y, bool above, double width, bool warning, double box[4]) {
     // before all panels, so that nothing hides an error
     ImDrawList *list = ImGui::GetForegroundDrawList();
     const ImVec2 pad = ImGui::GetStyle().WindowPadding;
-    const float room = static_cast<float>(width) - 2 * pad.x, bar = warning ? static_cast<float>(4 * scale_of_all) : 0;
+    const float bar = warning ? static_cast<float>(4 * scale_of_all) : 0;
+    const float room = static_cast<float>(width) - 2 * pad.x - bar;
     const ImVec2 size = ImGui::CalcTextSize(text, nullptr, false, room);
     const float left = static_cast<float>(x), high = size.y + 1.4f * pad.y;
     const float top = static_cast<float>(y) - (above ? high : 0);
@@ -222,6 +223,7 @@ void widgets_note(const char *text, double x, double y, bool above, double width
     if (warning) list->AddRectFilled(from, ImVec2(left + bar, to.y), ink(colours->warning), 6, ImDrawFlags_RoundCornersLeft);
     list->AddText(plain, ImGui::GetFontSize(), ImVec2(left + pad.x + bar, top + 0.7f * pad.y), ink(colours->text), text,
                   nullptr, room);
+    box[0] = from.x, box[1] = from.y, box[2] = to.x - from.x, box[3] = to.y - from.y;
 }
 
 bool widgets_over(const char *id, double x, double y, double left, double right) {

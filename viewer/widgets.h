@@ -35,8 +35,9 @@ typedef enum widgets_frame { WIDGETS_FIXED, WIDGETS_DOCKED, WIDGETS_FREE } widge
 /* A panel at a place (pixels); a free one may be moved and closed (`open` turns false). True where it is unfolded; in
  * any case end it. */
 bool widgets_panel(const char *title, widgets_frame frame, double x, double y, double width, double height, bool *open);
-/* Words over everything, in lines of at most `width` pixels: from (x, y) on downwards, or `above` it. */
-void widgets_note(const char *text, double x, double y, bool above, double width, bool warning);
+/* Words over everything, in lines of at most `width` pixels: from (x, y) on downwards, or `above` it. `box` gets where
+ * they are: x, y, width, height. */
+void widgets_note(const char *text, double x, double y, bool above, double width, bool warning, double box[4]);
 /* A small panel over the picture, its bottom's middle at (x, y), as large as what is in it and between the two edges; end
  * it as a panel. False in its first frame, which nobody sees: its size is not known yet. */
 bool widgets_over(const char *id, double x, double y, double left, double right);
