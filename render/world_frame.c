@@ -65,6 +65,8 @@ enum { updates_between_looks = 30 };
 static const double floor_gap = 0.25;
 /* The ground lies so far below terrain, in radii of the things on it: less would meet where waves go down. */
 static const double ground_gap = 0.02;
+/* The surroundings of a body that is followed, in its radii. */
+static const double around = 6;
 /* A level plane is in the picture when it is no farther below things than so many of their radii. */
 static const double seen_fall = 2;
 
@@ -452,14 +454,15 @@ static bool needs_no_numbers(render_world_frame *made, const skein_world *world)
     return birds == made->state.particle_count;
 }
 
-/* What surrounds the body that is followed goes along with it, as wide as it was at first. */
+/* What surrounds the body that is followed goes along with it, as wide as it was at first, and wide enough that a slope
+ * reaches out of the picture. */
 static void follow(render_world_frame *made, const skein_world *world) {
     bool did = made->followed.any, held = !render_hull_empty(&made->held.all);
     made->followed = render_follow(world, made->view.camera.follow, &made->state);
-    if (made->followed.any && !did && !held) {
-        render_bounds bounds = render_frame_bounds(&made->frame);
-        made->frame.radius = render_bounds_radius(&bounds);
-        memcpy(made->frame.anchor, made->followed.middle, sizeof made->frame.anchor);
+    if (made->followed.any && !did) {
+        render_bounds bounds = bounds_to_hold(made);
+        made->frame.radius = fmax(render_bounds_radius(&bounds), around * made->followed.radius);
+        if (!held) memcpy(made->frame.anchor, made->followed.middle, sizeof made->frame.anchor);
     }
     if (made->followed.any) memcpy(made->frame.middle, made->followed.middle, sizeof made->frame.middle);
     else if (did && !held) made->frame.radius = 0;
