@@ -2,7 +2,8 @@
 # Checks the rules of the house, which no compiler checks: house.sh ROOT [C-COMPILER [C++-COMPILER]]
 #   1  src/ includes only the C library, <skein/...> and floors below or beside it in its own folder
 #   2  no method has a loop: src/methods/ writes rows, and only the writer's own files walk over rules
-#   3  src/world/ names no kind: what the catalogue lists is unknown to the step; nor does src/gpu/
+#   3  src/world/ names no kind: what the catalogue lists is unknown to the step; nor does src/gpu/; and render/,
+#      viewer/ and app/ compare no kind's name
 #   4  each public header compiles alone, as C17 and as C++17
 # Prints each fault as FILE:LINE: words, and fails if there is one.
 set -u
@@ -152,6 +153,21 @@ code 2 "$(find src/world src/gpu -name '*.[ch]' | sort)" | awk -v kinds="$kinds"
             rest = substr(rest, RSTART + RLENGTH)
             for (i = 1; i <= count; i++)
                 if (index(symbol, "sk_" kind[i] "_") == 1) fault(kind[i])
+        }
+    }' >>"$faults"
+
+# Nor does whoever draws or shows: what a thing looks like is asked for (skein_shape_of).
+code 2 "$(find render viewer app -name '*.[ch]' | sort)" | awk -v names="$names" '
+    BEGIN {
+        n = split(names, list, /[ \n]+/)
+        for (i = 1; i <= n; i++) name[list[i]] = 1
+    }
+    /cmp\(.*kind/ {
+        rest = $0
+        while (match(rest, /"[^"]*"/)) {
+            text = substr(rest, RSTART + 1, RLENGTH - 2)
+            rest = substr(rest, RSTART + RLENGTH)
+            if (text in name) print $1 " compares the name of the kind \"" text "\": a kind says what it looks like"
         }
     }' >>"$faults"
 
