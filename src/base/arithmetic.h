@@ -75,8 +75,8 @@ typedef struct vec4 {
 #define both(a, b) ((a) && (b))
 #define either(a, b) ((a) || (b))
 #define none(flag_) (!(flag_))
-#define root(a) ((num)__builtin_sqrt((double)(a))) /* of a float the root in double, rounded, is the float's own */
-#define absolute(a) ((num)__builtin_fabs((double)(a)))
+#define root(a) _Generic((a), float: __builtin_sqrtf, default: __builtin_sqrt)(a)
+#define absolute(a) _Generic((a), float: __builtin_fabsf, default: __builtin_fabs)(a)
 
 #endif
 

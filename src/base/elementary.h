@@ -31,8 +31,8 @@
 #include <stdint.h>
 
 /* Angles in radians. One reduction up to |x| = 2^30 (float: 2^25), a slower one beyond. */
-double sk_sin(double x);
-double sk_cos(double x);
+double sk_sin(double x) __attribute__((const)); /* so that loops ask once */
+double sk_cos(double x) __attribute__((const));
 double sk_tan(double x);
 void sk_sincos(double x, double *sine, double *cosine); /* the bits of sk_sin and sk_cos */
 float sk_sinf(float x);

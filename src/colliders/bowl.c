@@ -1,6 +1,5 @@
 /* A ball from inside: everything outside of it is solid. */
-#include "base/kernels.h"
-#include "colliders/collider.h"
+#include "colliders/shape.h"
 
 typedef struct bowl_params {
     double centre[3], radius, mass;
@@ -11,16 +10,19 @@ SK_KERNELS(sk_probe, probe);
 
 #ifdef SK_ISA
 
-void SK_KERNEL(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
-    real radius = (real)((const bowl_params *)data)->radius;
-    sk_wide3 d = {pose->position.x - p->x, pose->position.y - p->y, pose->position.z - p->z};
-    sk_wide length = sk_wide_sqrt(sk_dot_wide(d, d));
+// ---- arithmetic ----
+SK_INLINE sk_contact bowl_probe(bowl_params p, sk_pose where, vec3 x) {
+    vec3 d = minus(position_of(where), x);
+    num away = root(dot(d, d));
     // in the very middle no way leads to the wall: there is no contact
-    sk_mask apart = sk_positive(length);
-    sk_wide below = sk_select(apart, length, sk_splat(1));
-    contact->normal = (sk_wide3){d.x / below, sk_select(apart, d.y / below, sk_splat(1)), d.z / below};
-    contact->distance = sk_select(apart, radius - length, sk_splat((real)SK_FAR));
+    flag apart = away > 0;
+    num below = pick(apart, away, 1);
+    return contact_of(vec3_of(d.x / below, pick(apart, d.y / below, 1), d.z / below),
+                      pick(apart, PARAM(p.radius) - away, PARAM(1e15)));
 }
+// ---- end of arithmetic ----
+
+SK_PROBE(bowl)
 
 #else
 
@@ -40,10 +42,6 @@ static double mass_of(const void *params) {
     return ((const bowl_params *)params)->mass;
 }
 
-static void pack(const void *params, float (*block)[4]) {
-    block[0][0] = (float)((const bowl_params *)params)->radius;
-}
-
 static void tell_shape(const void *data, skein_shape *shape) {
     *shape = (skein_shape){.sort = SKEIN_SHAPE_BOWL, .radius = ((const bowl_params *)data)->radius};
 }
@@ -55,6 +53,6 @@ const sk_collider_type sk_bowl = {
     .mass = mass_of,
     .probe = SK_EACH_ISA(probe),
     .shape = tell_shape,
-    .shader = {.file = "colliders/bowl", .size = 1, .pack = pack},
+    .shader = {.arithmetic = "colliders/bowl"},
 };
 #endif

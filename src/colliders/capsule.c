@@ -1,57 +1,37 @@
 /* All that is within a radius of a line between two points: a rod with round ends. */
-#include "base/kernels.h"
-#include "colliders/collider.h"
+#include "colliders/shape.h"
 
 typedef struct capsule_params {
     double from[3], to[3], radius;
 } capsule_params;
-
-/* The line as it is turned now. */
-typedef struct capsule_axis {
-    sk_vec3 half;    /* from the middle to `to` */
-    sk_vec3 aside;   /* a unit vector across */
-    real per_square; /* 1/|half|^2; 0 where both ends are in one place */
-} capsule_axis;
 
 #define SK_UNIT capsule
 SK_KERNELS(sk_probe, probe);
 
 #ifdef SK_ISA
 
-static capsule_axis axis_now(const capsule_params *params, const sk_pose *pose) {
-    const real *r = pose->rotation;
-    sk_vec3 h = {(real)(0.5 * (params->to[0] - params->from[0])), (real)(0.5 * (params->to[1] - params->from[1])),
-                 (real)(0.5 * (params->to[2] - params->from[2]))};
-    sk_vec3 half = {r[0] * h.x + r[1] * h.y + r[2] * h.z, r[3] * h.x + r[4] * h.y + r[5] * h.z,
-                    r[6] * h.x + r[7] * h.y + r[8] * h.z};
-    real square = sk_dot(half, half);
-    if (!(square > 0)) return (capsule_axis){{0, 0, 0}, {0, 1, 0}, 0};
-    // up, as far as that is across; of an upright one, along x
-    real along = half.y / square;
-    sk_vec3 up = {-along * half.x, 1 - along * half.y, -along * half.z};
-    real rise = sk_length(up);
-    sk_vec3 aside = rise > (real)1e-3 ? sk_scale(1 / rise, up) : sk_v3(1, 0, 0);
-    return (capsule_axis){half, aside, 1 / square};
-}
-void SK_KERNEL(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
-    real radius = (real)((const capsule_params *)data)->radius;
-    capsule_axis axis = axis_now(data, pose);
-    sk_vec3 half = axis.half, aside = axis.aside;
-    sk_wide3 d = {p->x - pose->position.x, p->y - pose->position.y, p->z - pose->position.z};
+// ---- arithmetic ----
+SK_INLINE sk_contact capsule_probe(capsule_params p, sk_pose where, vec3 x) {
+    vec3 half_line = turned(where, vec3_of(PARAM(0.5 * (p.to[0] - p.from[0])), PARAM(0.5 * (p.to[1] - p.from[1])),
+                                           PARAM(0.5 * (p.to[2] - p.from[2])))); // from the middle to `to`
+    num square = dot(half_line, half_line);
+    flag is_line = square > 0;
     // the nearest point of the line is at the middle plus t halves of it
-    sk_wide t = (d.x * half.x + d.y * half.y + d.z * half.z) * axis.per_square, one = sk_splat(1);
-    t = sk_select(sk_more(t, one), one, t);
-    t = sk_select(sk_more(-one, t), -one, t);
-    d = (sk_wide3){d.x - t * half.x, d.y - t * half.y, d.z - t * half.z};
-    sk_wide length = sk_wide_sqrt(sk_dot_wide(d, d));
-    // on the line itself every way aside is as good
-    sk_mask apart = sk_positive(length);
-    sk_wide below = sk_select(apart, length, one);
-    contact->normal =
-        (sk_wide3){sk_select(apart, d.x / below, sk_splat(aside.x)), sk_select(apart, d.y / below, sk_splat(aside.y)),
-                   sk_select(apart, d.z / below, sk_splat(aside.z))};
-    contact->distance = length - radius;
+    vec3 d = minus(x, position_of(where));
+    num t = dot(d, half_line) * pick(is_line, 1 / square, 0);
+    t = pick(t > 1, 1, pick(t < -1, -1, t));
+    d = minus(d, times(t, half_line));
+    num away = root(dot(d, d)), below = pick(away > 0, away, 1);
+    if (none(away <= 0)) return contact_of(vec3_of(d.x / below, d.y / below, d.z / below), away - PARAM(p.radius));
+    // on the line itself every way aside is as good: up, as far as that is across; of an upright one, along x
+    vec3 up = minus(vec3_of(0, 1, 0), times(pick(is_line, half_line.y / square, 0), half_line));
+    num rise = root(dot(up, up));
+    vec3 aside = pick3(rise > PARAM(1e-3), times(1 / rise, up), vec3_of(1, 0, 0));
+    return contact_of(pick3(away > 0, vec3_of(d.x / below, d.y / below, d.z / below), aside), away - PARAM(p.radius));
 }
+// ---- end of arithmetic ----
+
+SK_PROBE(capsule)
 
 #else
 
@@ -73,12 +53,6 @@ static void axis(const void *data, double unit[3]) {
     for (int k = 0; k < 3; k++) unit[k] = square > 0 ? d[k] / __builtin_sqrt(square) : k == 1;
 }
 
-static void pack(const void *data, float (*block)[4]) {
-    const capsule_params *params = data;
-    for (int k = 0; k < 3; k++) block[0][k] = (float)(0.5 * (params->to[k] - params->from[k]));
-    block[0][3] = (float)params->radius;
-}
-
 static void tell_shape(const void *data, skein_shape *shape) {
     const capsule_params *params = data;
     *shape = (skein_shape){.sort = SKEIN_SHAPE_CAPSULE, .radius = params->radius};
@@ -92,6 +66,6 @@ const sk_collider_type sk_capsule = {
     .axis = axis,
     .probe = SK_EACH_ISA(probe),
     .shape = tell_shape,
-    .shader = {.file = "colliders/capsule", .size = 1, .pack = pack},
+    .shader = {.arithmetic = "colliders/capsule"},
 };
 #endif

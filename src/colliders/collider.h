@@ -59,7 +59,7 @@ typedef struct sk_collider_type {
     /* Whether a value at x had to be guarded (formula/graph.h): for the statistics; NULL: there is nothing to guard. */
     bool (*guarded)(const void *params, const sk_pose *pose, const double x[3]);
     const sk_making *making; /* what is made from its texts; NULL: nothing */
-    /* Defines vec4 probe@(vec3 p): the unit normal out of the solid, and the distance in w; and, where the surface
+    /* Of arithmetic: see colliders/shape.h. A file defines vec4 probe@(vec3 p): the unit normal out of the solid, and the distance in w; and, where the surface
      * moves by itself, DEFORMS@ and float speed@, what it has along the normal then. What every collider has is pose@
      * (colliders/pose.glsl). */
     sk_shader shader;

@@ -1,7 +1,6 @@
 /* A half space: solid below the plane normal . p = offset. */
-#include "base/kernels.h"
 #include "base/status.h"
-#include "colliders/collider.h"
+#include "colliders/shape.h"
 
 typedef struct plane_params {
     double normal[3], offset;
@@ -12,12 +11,13 @@ SK_KERNELS(sk_probe, probe);
 
 #ifdef SK_ISA
 
-void SK_KERNEL(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
-    (void)data;
-    sk_vec3 n = pose->axis, o = pose->position;
-    contact->normal = (sk_wide3){sk_splat(n.x), sk_splat(n.y), sk_splat(n.z)};
-    contact->distance = n.x * (p->x - o.x) + n.y * (p->y - o.y) + n.z * (p->z - o.z);
+// ---- arithmetic ----
+SK_INLINE sk_contact plane_probe(plane_params p, sk_pose where, vec3 x) {
+    return contact_of(axis_of(where), dot(axis_of(where), minus(x, position_of(where))));
 }
+// ---- end of arithmetic ----
+
+SK_PROBE(plane)
 
 #else
 
@@ -61,6 +61,6 @@ const sk_collider_type sk_plane = {
     .axis = axis,
     .probe = SK_EACH_ISA(probe),
     .shape = tell_shape,
-    .shader = {.file = "colliders/plane"},
+    .shader = {.arithmetic = "colliders/plane"},
 };
 #endif

@@ -1,6 +1,5 @@
 /* A solid ball. */
-#include "base/kernels.h"
-#include "colliders/collider.h"
+#include "colliders/shape.h"
 
 typedef struct sphere_params {
     double centre[3], radius, mass;
@@ -11,16 +10,18 @@ SK_KERNELS(sk_probe, probe);
 
 #ifdef SK_ISA
 
-void SK_KERNEL(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
-    real radius = (real)((const sphere_params *)data)->radius;
-    sk_wide3 d = {p->x - pose->position.x, p->y - pose->position.y, p->z - pose->position.z};
-    sk_wide length = sk_wide_sqrt(sk_dot_wide(d, d));
+// ---- arithmetic ----
+SK_INLINE sk_contact sphere_probe(sphere_params p, sk_pose where, vec3 x) {
+    vec3 d = minus(x, position_of(where));
+    num away = root(dot(d, d));
     // at the very centre every way out is as good: take up
-    sk_mask apart = sk_positive(length);
-    sk_wide inverse = 1 / sk_select(apart, length, sk_splat(1));
-    contact->normal = (sk_wide3){d.x * inverse, sk_select(apart, d.y * inverse, sk_splat(1)), d.z * inverse};
-    contact->distance = length - radius;
+    flag apart = away > 0;
+    num per = 1 / pick(apart, away, 1);
+    return contact_of(vec3_of(per * d.x, pick(apart, per * d.y, 1), per * d.z), away - PARAM(p.radius));
 }
+// ---- end of arithmetic ----
+
+SK_PROBE(sphere)
 
 #else
 
@@ -40,10 +41,6 @@ static double mass_of(const void *params) {
     return ((const sphere_params *)params)->mass;
 }
 
-static void pack(const void *params, float (*block)[4]) {
-    block[0][0] = (float)((const sphere_params *)params)->radius;
-}
-
 static void tell_shape(const void *data, skein_shape *shape) {
     *shape = (skein_shape){.sort = SKEIN_SHAPE_BALL, .radius = ((const sphere_params *)data)->radius};
 }
@@ -55,6 +52,6 @@ const sk_collider_type sk_sphere = {
     .mass = mass_of,
     .probe = SK_EACH_ISA(probe),
     .shape = tell_shape,
-    .shader = {.file = "colliders/sphere", .size = 1, .pack = pack},
+    .shader = {.arithmetic = "colliders/sphere"},
 };
 #endif

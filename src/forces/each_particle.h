@@ -6,7 +6,7 @@
  *     STEER   vec4 (PARAMS p, vec3 x, exact dt): a change of velocity, and of the allowed speed in w. A kind that looks
  *             from one particle says the field that is then its place: LOOKS_FROM
  *     BOUND   vec3 (PARAMS p, vec4 x, vec3 v, vec4 steering, exact dt): the velocity that is allowed; x.w is the inverse
- *             mass */
+ *             mass. Where it moves particles instead, by its shader's `shifts`: SHIFT, vec3 (PARAMS p, vec3 x), by how much */
 #ifdef SK_ISA
 
 #ifdef PUSH
@@ -49,6 +49,18 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end)
 }
 #endif
 
+#ifdef SHIFT
+/* In all vectors that say where a particle is or was. */
+SK_INLINE void shift(sk_run *run, const sk_row *row, size_t slot, flag moved, vec4 x, vec3 by) {
+    moved &= (by.x != 0) | (by.y != 0) | (by.z != 0);
+    if (none(moved)) return;
+    vec4 before = sk_load_part(run->vector[SK_PREVIOUS], slot, false); // always quads
+    sk_store_part(run->vector[SK_X], slot, slot < row->packed, vec4_of(pick3(moved, plus(xyz(x), by), xyz(x)), x.w));
+    before = vec4_of(pick3(moved, plus(xyz(before), by), xyz(before)), before.w);
+    sk_store_part(run->vector[SK_PREVIOUS], slot, false, before);
+}
+#endif
+
 #ifdef BOUND
 void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_force *force = row->rule;
@@ -59,6 +71,12 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end)
         vec4 v = sk_load_part(run->vector[SK_V], slot, packed), steering = {0};
         if (row->source[2] != SK_NONE) steering = sk_load_part(run->vector[row->source[2]], slot, packed);
         flag moved = sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot);
+#ifdef SHIFT
+        if (force->type->shader.shifts(&p)) {
+            shift(run, row, slot, moved & (x.w > 0), x, SHIFT(p, xyz(x)));
+            continue;
+        }
+#endif
         vec3 bound = pick3(moved, BOUND(p, x, xyz(v), steering, row->dt), xyz(v));
         sk_store_moved(run->vector[SK_V], slot, packed, vec4_of(bound, v.w));
     }

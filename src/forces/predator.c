@@ -7,7 +7,7 @@
  * line, or one of the particles. */
 #include "forces/force.h"
 
-#include "base/kernels.h"
+#include "base/arithmetic.h"
 #include "base/status.h"
 
 typedef struct predator_params {
@@ -15,42 +15,30 @@ typedef struct predator_params {
     int32_t particle;
 } predator_params;
 
+// ---- arithmetic ----
+SK_INLINE vec4 predator_steer(predator_params p, vec3 x, exact dt) {
+    vec3 d = minus(PARAM3(p.position), x), line = PARAM3(p.line), none_at_all = vec3_of(0, 0, 0);
+    if (p.particle >= 0) line = none_at_all;
+    num along = root(dot(line, line));
+    line = times(pick(along > 0, 1 / along, 0), line);
+    d = minus(d, times(dot(d, line), line));
+    num square = dot(d, d);
+    flag near = square < PARAM(p.radius * p.radius);
+    if (none(near)) return vec4_of(none_at_all, 0);
+    // right on it there is no way to flee
+    num k = PARAM(dt * p.strength) * (square / PARAM(p.radius * p.radius) - 1) / root(square);
+    return vec4_of(times(pick(both(near, square > 0), k, 0), d), pick(near, PARAM(p.alarm), 0));
+}
+// ---- end of arithmetic ----
+
 #define SK_UNIT predator
 SK_KERNELS(sk_row_kernel, kernel);
+#define PARAMS predator_params
+#define STEER predator_steer
+#define LOOKS_FROM position
+#include "forces/each_particle.h"
 
-#ifdef SK_ISA
-
-void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_force *force = row->rule;
-    const predator_params *params = force->params;
-    bool flies = params->particle >= 0; // checked when the plan was written
-    uint32_t own = flies ? run->slot_of[params->particle] : 0;
-    sk_vec3 at = flies ? sk_xyz(sk_load(run->vector[SK_X], row->packed, own)) : sk_v3_of(params->position);
-    sk_vec3 line = sk_v3_of(params->line);
-    real along = sk_length(line), square_reach = (real)(params->radius * params->radius);
-    line = along > 0 && !flies ? sk_scale(1 / along, line) : sk_v3(0, 0, 0);
-    real dv = (real)(row->dt * params->strength), alarm = (real)params->alarm;
-    for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
-        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
-        sk_wide4 s = sk_load_part(run->vector[row->dst], slot, packed);
-        sk_wide3 d = {at.x - x.x, at.y - x.y, at.z - x.z};
-        sk_wide depth = d.x * line.x + d.y * line.y + d.z * line.z;
-        d.x -= depth * line.x, d.y -= depth * line.y, d.z -= depth * line.z;
-        sk_wide square = sk_dot_wide(d, d);
-        sk_mask near = sk_more(sk_splat(square_reach), square) &
-                       sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot);
-        if (flies && own - slot < SK_PART) near[own - slot] = 0;
-        if (!sk_any(near)) continue;
-        sk_mask apart = near & sk_positive(square); // right on it there is no way to flee
-        sk_wide k = dv * (square / square_reach - (real)1) / sk_wide_sqrt(square);
-        s.x = sk_plus_where(apart, s.x, k * d.x), s.y = sk_plus_where(apart, s.y, k * d.y);
-        s.z = sk_plus_where(apart, s.z, k * d.z), s.w = sk_plus_where(near, s.w, sk_splat(alarm));
-        sk_store_part(run->vector[row->dst], slot, packed, s);
-    }
-}
-
-#else
+#ifndef SK_ISA
 
 static const skein_field fields[] = {
     SK_VEC3(predator_params, position, "position", "m", 0, 0, 0, "where it is, where no particle is given"),
@@ -72,15 +60,6 @@ static skein_status check(const void *data, size_t particle_count, skein_error *
     return SKEIN_OK;
 }
 
-static void pack(const void *data, float (*block)[4]) {
-    const predator_params *params = data;
-    const double *line = params->line;
-    double length = sqrt(line[0] * line[0] + line[1] * line[1] + line[2] * line[2]);
-    sk_shader_vector(block[0], params->position);
-    for (int k = 0; k < 3 && length > 0 && params->particle < 0; k++) block[1][k] = (float)(line[k] / length);
-    block[0][3] = (float)params->radius, block[1][3] = (float)params->strength, block[2][0] = (float)params->alarm;
-}
-
 static int32_t particle(const void *params) {
     return ((const predator_params *)params)->particle;
 }
@@ -93,6 +72,6 @@ const sk_force_type sk_predator = {
     .kernel = {SK_EACH_ISA(kernel)},
     .check = check,
     .particle = particle,
-    .shader = {.file = "forces/predator", .size = 3, .pack = pack},
+    .shader = {.arithmetic = "forces/predator"},
 };
 #endif

@@ -330,14 +330,19 @@ static void put_calls(sk_gpu_text *text, const sk_row *row, const sk_shader *sha
                          "    if (square > 0) sum += %s_push(params%zu(), apart, sqrt(square));\n"
                          "}\n"
                          "vec3 finish%zu(vec3 sum, float dt) { return sum; }\n", n, n, n, stem, n, n);
-    else if (shader->shifts && shader->shifts(force->params))
+    else if (force && shader->shifts && shader->shifts(force->params))
         sk_gpu_put(text, "vec3 shift%zu(vec3 x) { return %s_shift(params%zu(), x); }\n", n, stem, n);
-    else if (row->kind == SK_ROW_LIMIT)
+    else if (force && row->kind == SK_ROW_LIMIT)
         sk_gpu_put(text, "vec3 bound%zu(vec4 x, vec3 v, vec4 steering, float dt) {\n"
                          "    return %s_bound(params%zu(), x, v, steering, dt);\n}\n", n, stem, n);
-    else if (force && force->type->deed == SK_STEERS)
+    else if (!force)
+        sk_gpu_put(text, "vec4 probe%zu(vec3 x) {\n"
+                         "    sk_pose where = sk_pose(pose%zu[0].xyz, pose%zu[3].xyz, pose%zu[4].xyz, pose%zu[5].xyz, pose%zu[6].xyz);\n"
+                         "    sk_contact contact = %s_probe(params%zu(), where, x);\n"
+                         "    return vec4(contact.normal, contact.distance);\n}\n", n, n, n, n, n, n, stem, n);
+    else if (force->type->deed == SK_STEERS)
         sk_gpu_put(text, "vec4 steer%zu(vec3 x, float dt) { return %s_steer(params%zu(), x, dt); }\n", n, stem, n);
-    else if (force)
+    else
         sk_gpu_put(text, "vec3 force%zu(vec3 x, vec3 v, float mass) { return %s_force(params%zu(), v, mass); }\n", n,
                    stem, n);
 }
@@ -350,8 +355,12 @@ void sk_gpu_put_functions(sk_gpu_text *text, const sk_row *const *rows, size_t n
     const sk_shader *shader = shader_of(row);
     if (shader && shader->file) sk_gpu_put_file(text, shader->file, number);
     if (shader && shader->arithmetic) {
-        bool there = false; // rules of one kind share it
-        for (size_t i = 0; i < number; i++) there |= shader_of(rows[i]) == shader;
+        bool there = false, shapes = false; // rules of one kind share it, and shapes their words
+        for (size_t i = 0; i < number; i++) {
+            there |= shader_of(rows[i]) == shader;
+            shapes |= has_pose(rows[i]) && shader_of(rows[i])->arithmetic;
+        }
+        if (has_pose(row) && !shapes) sk_gpu_put_file(text, "colliders/shape", 0);
         if (!there) put_arithmetic(text, row, shader);
         put_calls(text, row, shader, number);
     }
