@@ -10,7 +10,8 @@
  *   3  the same, its other fields at random
  *
  * At the first level where a field matters under one method, it has to matter, or be refused, under each: a kernel that
- * only some of the methods run is found so. And where a field can be set on a living object, that has to lead to the
+ * only some of the methods run is found so. What of it a graphics card runs has to go there as on the processor, with
+ * every field of forces and colliders. And where a field can be set on a living object, that has to lead to the
  * same bits as having built the object with it. */
 #include "helpers.h"
 
@@ -251,12 +252,13 @@ static skein_status add_subject(skein_world *world, const trial *t, uint32_t fir
 }
 
 /* So that nothing is at rest; and everything is now here, now at some distance, for what is only felt there. */
-static void stir(skein_world *world, uint64_t *seed) {
-    static const double shifts[] = {0, 0, 2, 80};
+enum { NEAR = 3, FAR = 4 };
+static void stir(skein_world *world, uint64_t *seed, int reaches) {
+    static const double shifts[FAR] = {0, 0, 2, 80};
     size_t count = skein_particle_count(world);
     double(*x)[3] = malloc(count * sizeof *x), (*v)[3] = malloc(count * sizeof *v);
     double far = random_between(seed, 0, 0.05), fast = pow(10, random_between(seed, -1, 1)), shift[3];
-    int reach = random_whole(seed, (int)COUNT(shifts));
+    int reach = random_whole(seed, reaches);
     for (int k = 0; k < 3; k++) shift[k] = random_between(seed, -shifts[reach], shifts[reach]);
     OK(world, skein_positions_copy(world, 0, count, *x));
     OK(world, skein_velocities_copy(world, 0, count, *v));
@@ -292,7 +294,7 @@ static skein_world *build(const trial *t, const skein_value *value, skein_handle
         add_others(world, &seed, SKEIN_COLLIDER, t->s->kind->name);
     }
     if (!status) {
-        stir(world, &seed);
+        stir(world, &seed, FAR);
         status = skein_world_explain(world, t->dt, NULL, NULL);
     }
     if (!status) return world;
@@ -527,11 +529,123 @@ static void fields_of_methods(void **state) {
     judge_category(SKEIN_METHOD);
 }
 
+/* ---- On a card -------------------------------------------------------------------------------------- */
+
+/* A trial's scene of loose particles, which is what cards know; NULL where it is refused. */
+static skein_world *build_loose(const trial *t, const skein_value *value) {
+    skein_world *world = skein_world_create(NULL, NULL);
+    uint64_t seed = t->seed;
+    skein_setting settings[MOST_FIELDS + 3];
+    skein_handle handle;
+    memcpy(settings, t->settings, t->setting_count * sizeof *settings);
+    settings[t->setting_count] = (skein_setting){t->field, *value};
+    settings[t->setting_count + 1].name = NULL;
+    for (int i = 0; i < 2; i++)
+        OK(world, skein_body_add(world, "flock", NULL,
+                                 SKEIN_SETTINGS(SKEIN_TEXT("name", i ? "b" : "a"), SKEIN_REAL("count", 12),
+                                                SKEIN_VEC3("spread", 1, 1, 1), SKEIN_REAL("speed", 2)),
+                                 NULL));
+    skein_status status = skein_method_set(world, t->method, SKEIN_SETTINGS(SKEIN_REAL("substeps", 2)));
+    if (!status) status = add_subject(world, t, 0, settings, &handle);
+    if (!status && t->s->kind->category == SKEIN_FORCE)
+        OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.3)), NULL));
+    else if (!status) OK(world, skein_force_add(world, "gravity", NULL, NULL));
+    stir(world, &seed, NEAR); // far off, floats of a card tell little
+    if (!status) return world;
+    skein_world_destroy(world);
+    return NULL;
+}
+
+/* How far any position or velocity is off, as a part of the largest of them, or of 1. */
+static double farthest(const skein_world *one, const skein_world *other) {
+    size_t count = 6 * skein_particle_count(one);
+    double *a = malloc(2 * count * sizeof *a), *b = a + count, worst = 0, size = 1;
+    OK(one, skein_positions_copy(one, 0, count / 6, a));
+    OK(one, skein_velocities_copy(one, 0, count / 6, a + count / 2));
+    OK(other, skein_positions_copy(other, 0, count / 6, b));
+    OK(other, skein_velocities_copy(other, 0, count / 6, b + count / 2));
+    for (size_t i = 0; i < count; i++) {
+        size = fmax(size, fabs(a[i]));
+        if (!(fabs(a[i] - b[i]) <= worst)) worst = fabs(a[i] - b[i]);
+    }
+    free(a);
+    return worst / size;
+}
+
+typedef enum on_card { NOTHING_TO_SEE, CANNOT, AGREES, IS_OFF } on_card;
+
+/* Changes the field on the processor, and holds the card against it. */
+static on_card try_on_card(const trial *t, size_t f) {
+    const double tolerance = 1e-4;
+    uint64_t seed = t->seed ^ 0x5bd1e995;
+    skein_value from = random_value_of(&seed, t->s, f), to = random_value_of(&seed, t->s, f);
+    for (int i = 0; same_value(&from, &to) && i < 20; i++) to = random_value_of(&seed, t->s, f);
+    skein_world *before = build_loose(t, &from), *after = build_loose(t, &to), *card = build_loose(t, &to);
+    on_card result = NOTHING_TO_SEE;
+    bool ran = before && after && card && !skein_world_step(before, t->dt) && !skein_world_step(after, t->dt);
+    double effect = ran ? farthest(before, after) : 0;
+    if (effect > 20 * tolerance) {
+        OK(card, skein_world_device_set(card, SKEIN_DEVICE_GPU));
+        if (skein_world_step(card, t->dt)) {
+            assert_non_null(strstr(skein_world_error(card)->message, "graphics card"));
+            result = CANNOT;
+        } else {
+            result = farthest(after, card) <= fmax(tolerance, 0.01 * effect) ? AGREES : IS_OFF;
+        }
+    }
+    skein_world_destroy(before);
+    skein_world_destroy(after);
+    skein_world_destroy(card);
+    return result;
+}
+
+/* Particles may be just about to touch, and do so on one side only, or slide so little that the way of it is rounding:
+ * then other scenes agree. */
+static int judge_on_card(const subject *s, size_t f, const char *method) {
+    enum { ENOUGH = 2 };
+    int agreed = 0, off = 0;
+    for (int number = 0; number < TRIALS && agreed < ENOUGH; number++) {
+        trial t;
+        make_trial(&t, s, f, method, number % 2, number);
+        on_card result = try_on_card(&t, f);
+        if (result == CANNOT) return 0;
+        agreed += result == AGREES;
+        off += result == IS_OFF;
+    }
+    if (agreed || !off) return 0;
+    fprintf(stderr, "%s.%s under %s: the card goes elsewhere\n", s->kind->name, s->fields[f]->name, method);
+    return 1;
+}
+
+static void fields_on_a_card(void **state) {
+    (void)state;
+    ONLY_IN_PLAIN_BUILDS();
+    static const skein_category categories[] = {SKEIN_FORCE, SKEIN_COLLIDER};
+    static const char *const methods[] = {"xpbd", "symplectic_euler"};
+    skein_world *world = skein_world_create(NULL, NULL);
+    bool none = skein_world_device_set(world, SKEIN_DEVICE_GPU);
+    if (none) fprintf(stderr, "skipped: %s\n", skein_world_error(world)->message);
+    skein_world_destroy(world);
+    if (none) skip();
+    int faults = 0;
+    const skein_kind *kind;
+    for (size_t c = 0; c < COUNT(categories); c++)
+        for (size_t i = 0; (kind = skein_kind_at(categories[c], i)); i++) {
+            subject s;
+            make_subject(&s, kind);
+            for (size_t f = 0; f < s.count; f++)
+                for (size_t m = 0; m < COUNT(methods) && !idle_reason(kind, s.fields[f]); m++)
+                    faults += judge_on_card(&s, f, methods[m]);
+        }
+    assert_int_equal(faults, 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fields_of_bodies),  cmocka_unit_test(fields_of_constraints),
         cmocka_unit_test(fields_of_forces),  cmocka_unit_test(fields_of_colliders),
         cmocka_unit_test(fields_of_motions), cmocka_unit_test(fields_of_methods),
+        cmocka_unit_test(fields_on_a_card),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

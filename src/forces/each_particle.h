@@ -3,6 +3,7 @@
  *
  *     PUSH    vec3 (PARAMS p, vec3 v, num mass): newtons of a force that is the same everywhere; what of it
  *             is uniform, methods that predict find by `at` (force.h)
+ *     PUSH_AT vec3 (PARAMS p, vec3 x, vec3 v, num mass): newtons that depend on the place
  *     STEER   vec4 (PARAMS p, vec3 x, exact dt): a change of velocity, and of the allowed speed in w. A kind that looks
  *             from one particle says the field that is then its place: LOOKS_FROM
  *     BOUND   vec3 (PARAMS p, vec4 x, vec3 v, vec4 steering, exact dt): the velocity that is allowed; x.w is the inverse
@@ -10,13 +11,17 @@
 #ifdef SK_ISA
 
 #ifdef PUSH
+#define PUSH_AT(p, x, v, mass) PUSH(p, v, mass)
+#endif
+
+#ifdef PUSH_AT
 void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const PARAMS p = *(const PARAMS *)((const sk_force *)row->rule)->params;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
         vec4 v = sk_load_part(run->vector[SK_V], slot, packed), f = {0};
         if (!row->sets) f = sk_load_part(run->vector[row->dst], slot, packed);
-        vec3 push = PUSH(p, xyz(v), v.w);
+        vec3 push = PUSH_AT(p, xyz(sk_load_part(run->vector[SK_X], slot, packed)), xyz(v), v.w);
         f.x += push.x, f.y += push.y, f.z += push.z;
         sk_store_part(run->vector[row->dst], slot, packed, f);
     }

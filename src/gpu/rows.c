@@ -343,8 +343,8 @@ static void put_calls(sk_gpu_text *text, const sk_row *row, const sk_shader *sha
     else if (force->type->deed == SK_STEERS)
         sk_gpu_put(text, "vec4 steer%zu(vec3 x, float dt) { return %s_steer(params%zu(), x, dt); }\n", n, stem, n);
     else
-        sk_gpu_put(text, "vec3 force%zu(vec3 x, vec3 v, float mass) { return %s_force(params%zu(), v, mass); }\n", n,
-                   stem, n);
+        sk_gpu_put(text, "vec3 force%zu(vec3 x, vec3 v, float mass) { return %s_force(params%zu(), %sv, mass); }\n", n,
+                   stem, n, force->type->at_velocity ? "" : "x, ");
 }
 
 void sk_gpu_put_functions(sk_gpu_text *text, const sk_row *const *rows, size_t number) {
