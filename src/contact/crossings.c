@@ -45,13 +45,9 @@ bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 
     sk_touch *touch = force->state;
     *count = 0;
     if (!touch || !touch->skin.leaf_count) return true;
-    touch->found = false; // the next step searches again
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        touch->p[v] = x[slot_of[touch->skin.particle[v]]];
-        touch->reach[v] = 0;
-    }
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->p[v] = x[slot_of[touch->skin.particle[v]]];
     tally counting = {touch, 0};
-    sk_touch_boxes(touch, 0);
+    sk_touch_boxes(touch, NULL, 0);
     if (!sk_touch_meet(touch, allocator, count_pair, &counting)) return false;
     *count = counting.count;
     return true;

@@ -27,11 +27,11 @@ static sk_box box_of(const sk_box *vertex_box, const uint32_t *vertex, int count
     return box;
 }
 
-void sk_touch_boxes(sk_touch *touch, real limit) {
+void sk_touch_boxes(sk_touch *touch, const real *reach, real limit) {
     const sk_skin *skin = &touch->skin;
     for (size_t v = 0; v < skin->vertex_count; v++) {
         sk_vec4 p = touch->p[v];
-        real r = touch->reach[v] + (real)0.5 * limit;
+        real r = (reach ? reach[v] : 0) + (real)0.5 * limit;
         touch->vertex_box[v] = (sk_box){{p.x - r, p.y - r, p.z - r}, {p.x + r, p.y + r, p.z + r}};
     }
     for (size_t e = 0; e < skin->edge_count; e++) touch->edge_box[e] = box_of(touch->vertex_box, skin->edge[e], 2);
@@ -249,7 +249,7 @@ static void set_thickness(sk_touch *touch, int sort, real thickness) {
 
 bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, real thickness, real limit) {
     search s = {touch, allocator};
-    sk_touch_boxes(touch, limit);
+    sk_touch_boxes(touch, touch->reach, limit);
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->kept[sort].count = 0;
     touch->found = false;
     touch->searches++;

@@ -116,8 +116,8 @@ extern sk_closest_kernel *const sk_closest[SK_PAIR_SORTS][SK_ISA_COUNT];
 /* Finds all pairs that may come nearer than `limit` while vertices stay within their reach of p; s becomes p. False when
  * there is no memory. */
 bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, real thickness, real limit);
-/* The boxes of all features: what lies within its reach, and half the limit around it. */
-void sk_touch_boxes(sk_touch *touch, real limit);
+/* The boxes of all features: what lies within the reach of its vertices (NULL: none has any), and half the limit around. */
+void sk_touch_boxes(sk_touch *touch, const real *reach, real limit);
 /* Calls `meet` for all leaves whose boxes overlap, in the order of (a, b). */
 bool sk_touch_meet(sk_touch *touch, sk_allocator *allocator, bool (*meet)(void *data, size_t a, size_t b), void *data);
 

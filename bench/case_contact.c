@@ -1,0 +1,94 @@
+/* Contact: a sheet that falls in a heap, by the worst frame and the mean, and what contact costs where nothing touches. */
+#include <stdio.h>
+#include <time.h>
+
+#include "bench/worlds.h"
+
+static void report(const char *name, const char *size, double ours, const char *unit, double under) {
+    bench_report(&(bench_result){.name = name,
+                                 .size = size,
+                                 .ours = ours,
+                                 .unit = unit,
+                                 .under = under,
+                                 .note = "a sheet of 1 m on its edge, 10 substeps, 4 mm thick; 10 s"});
+}
+
+static double seconds_now(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static skein_world *sheet(int side, bool touching, double tilt, const char *pins) {
+    skein_world *world = bench_world(1);
+    bench_need(world, skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 10))));
+    bench_need(world, skein_force_add(world, "gravity", NULL, NULL));
+    bench_need(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.3)), NULL));
+    bench_need(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.5)), NULL));
+    bench_need(world, skein_body_add(world, "cloth", NULL,
+                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_TEXT("pins", pins),
+                                                    SKEIN_VEC3("position", 0, pins[0] ? 2 : 0.55, 0),
+                                                    SKEIN_VEC3("rotation", 90 - tilt, 10, 0)),
+                                     NULL));
+    if (touching)
+        bench_need(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.004)), NULL));
+    return world;
+}
+
+/* Each frame is timed alone: the worst one is the impact. */
+static void heap(int side, double tilt) {
+    char size[40];
+    snprintf(size, sizeof size, "%d x %d, %g deg", side, side, tilt);
+    int frames = bench_quick ? 10 : 600;
+    skein_world *world = sheet(side, true, tilt, "");
+    double sum = 0, worst = 0;
+    uint64_t crossings = 0;
+    for (int i = 0; i < frames; i++) {
+        skein_statistics s;
+        double start = seconds_now();
+        bench_step(world);
+        double seconds = seconds_now() - start;
+        sum += seconds;
+        if (seconds > worst) worst = seconds;
+        bench_need(world, skein_world_statistics(world, &s));
+        crossings += s.crossings;
+    }
+    bench_job job = {.run = bench_step, .data = world};
+    double rest;
+    bench_measure(&job, 1, 0.2, &rest);
+    report("heap, crossings", size, (double)crossings, "in all", 1);
+    report("heap, mean", size, 1e3 * sum / frames, "ms/frame", 25);
+    report("heap, worst", size, 1e3 * worst, "ms/frame", 100);
+    report("heap, at rest", size, 1e3 * rest, "ms/frame", 16.7);
+    skein_world_destroy(world);
+}
+
+/* A sheet that hangs still: pairs are kept, and each substep looks whether they may be. */
+static void nothing_touches(int side) {
+    char size[40];
+    snprintf(size, sizeof size, "%d x %d", side, side);
+    skein_world *touching = sheet(side, true, 0, "top edge"), *free = sheet(side, false, 0, "top edge");
+    for (int i = 0; i < (bench_quick ? 5 : 300); i++) bench_step(touching), bench_step(free);
+    bench_job jobs[] = {{.run = bench_step, .data = touching}, {.run = bench_step, .data = free}};
+    double seconds[2];
+    bench_measure(jobs, 2, 0.2, seconds);
+    bench_report(&(bench_result){.name = "nothing touches",
+                                 .size = size,
+                                 .ours = 1e3 * seconds[0],
+                                 .unit = "ms/frame",
+                                 .other = "without contact",
+                                 .theirs = 1e3 * seconds[1],
+                                 .as_long = 1.1,
+                                 .note = "hanging still by its top edge"});
+    skein_world_destroy(touching);
+    skein_world_destroy(free);
+}
+
+static void run_contact(void) {
+    nothing_touches(bench_quick ? 12 : 100);
+    static const double tilts[] = {1, 3, 7, 12, 20};
+    for (int i = 0; i < (bench_quick ? 1 : 5); i++) heap(bench_quick ? 12 : 100, tilts[i]);
+}
+
+const bench_case bench_contact = {"contact", "a sheet in a heap, and the cost of contact where nothing touches",
+                                  run_contact};
