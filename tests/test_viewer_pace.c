@@ -70,6 +70,10 @@ static void says_which_of_both_is_slow(void **state) {
     assert_int_equal(viewer_pace_judge(&busy), VIEWER_SLOW_ELSEWHERE);
     viewer_pace fine = {.real = 1, .simulated = 1, .worked = 0.3, .drawn = 0.5, .steps = 400, .pictures = 30};
     assert_int_equal(viewer_pace_judge(&fine), VIEWER_IN_TIME);
+    drawing.pictures = 0; // none yet: no advice by numbers that are none
+    viewer_slowness_text(VIEWER_SLOW_DRAWING, &drawing, text, sizeof text);
+    assert_string_equal(text, "");
+
     viewer_slowness_text(VIEWER_IN_TIME, &fine, text, sizeof text);
     assert_string_equal(text, "");
     assert_string_equal(viewer_slowness_word(VIEWER_IN_TIME), "");

@@ -141,7 +141,7 @@ typedef struct viewer_line {
 
 /* A scene of the gallery. */
 typedef struct viewer_card {
-    char path[VIEWER_TEXT], title[64], about[240];
+    char path[VIEWER_TEXT], title[64], about[480];
     unsigned texture; /* 0: none yet */
     bool broken;      /* `about` says why */
 } viewer_card;
@@ -175,6 +175,7 @@ typedef struct viewer_shown {
     uint64_t generation;                /* changes with the pictures */
     int newest, in_use;                 /* places of pictures; -1: none. in_use is the window's */
     char title[256], message[240];
+    char about[480]; /* what the scene shows, in its own words */
     bool light /* the theme */, alarm /* the message is a warning */;
     bool has_scene, paused, recording, flying, by_key, play_away, finished /* the stage has ended */;
     viewer_slowness slow;

@@ -238,6 +238,7 @@ static void mirror_time(viewer_stage *stage, viewer_shown *shown) {
     for (size_t i = player->changes.given; i < player->changes.done; i++) shown->changes += !player->changes.data[i].joined;
     const char *name = player->settings.name[0] ? player->settings.name : player->path;
     snprintf(shown->title, sizeof shown->title, "Skein: %.160s%s", name, stage->paused ? " (paused)" : "");
+    snprintf(shown->about, sizeof shown->about, "%s", player->settings.description);
     for (size_t s = 0; s < stage->side_count; s++) {
         const viewer_player *p = &stage->sides[s];
         snprintf(shown->sides[s].name, sizeof shown->sides[s].name, "%.150s",

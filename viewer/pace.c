@@ -59,6 +59,8 @@ void viewer_slowness_text(viewer_slowness slowness, const viewer_pace *pace, cha
     double draw_ms = pace->pictures ? 1e3 * pace->drawn / (double)pace->pictures : 0;
     double rate = pace->real > 0 ? (double)pace->pictures / pace->real : 0;
     text[0] = 0;
+    // the first picture takes its time: there are no numbers to tell yet
+    if (slowness != VIEWER_SLOW_STEPS && !pace->pictures) return;
     if (slowness == VIEWER_SLOW_STEPS)
         snprintf(text, size,
                  "the steps are slow: it goes at %.0f %% of real time; a step takes %.3g ms and may take %.3g. A coarser "

@@ -9,6 +9,8 @@
 #include "viewer/keys.h"
 #include "viewer/palette.h"
 
+static const double about_seconds = 3;
+
 void viewer_place_control(viewer_panels *panels, const char *name) {
     double box[4];
     widgets_last(box);
@@ -59,6 +61,8 @@ enum {
     KEY_F1 = 290,
     KEY_F2 = 291,
     KEY_F3 = 292,
+    KEY_F4 = 293,
+    KEY_F6 = 295,
     KEY_F7 = 296,
     WITH_CONTROL = 2
 };
@@ -97,6 +101,11 @@ static void show_time(viewer_panels *panels, const viewer_shown *shown) {
     if (button(panels, "Scenes", "the gallery: F2")) ask_key(panels, KEY_F2);
     widgets_same_line();
     if (button(panels, "Plots", "energy, stretch, contacts, time: F3")) ask_key(panels, KEY_F3);
+    widgets_same_line();
+    if (button(panels, "Formulas", "a constraint, looked into: its value, its derivatives, its text step by step: F6"))
+        ask_key(panels, KEY_F6);
+    widgets_same_line();
+    if (button(panels, "Log", "what was said: F4")) ask_key(panels, KEY_F4);
     widgets_same_line();
     if (button(panels, shown->light ? "Dark" : "Light", "the other theme: F7")) ask_key(panels, KEY_F7);
     show_changes(panels, shown);
@@ -300,7 +309,8 @@ static void show_message(viewer_panels *panels, double left, double width, doubl
     char text[sizeof shown->message + 16];
     double box[4];
     const char *records = shown->recording ? "recording   " : "";
-    snprintf(text, sizeof text, "%s%s", records, shown->message);
+    bool waits = shown->newest < 0 && !shown->message[0]; // the first picture of a scene takes seconds in software
+    snprintf(text, sizeof text, "%s%s", records, waits ? "drawing the picture" : shown->message);
     if (!text[0]) return;
     widgets_note(text, left + 8, height - 8, true, width - left - 16, shown->alarm, box);
     viewer_place_box(panels, "note", box);
@@ -317,6 +327,14 @@ static void show_labels(viewer_panels *panels, double left, double width) {
         snprintf(name, sizeof name, "label %zu %s", s, shown->sides[s].name);
         viewer_place_box(panels, name, box);
     }
+}
+
+/* What the scene shows, in its own words, while it begins: over the picture's top, where mostly sky is. */
+static void show_about(const viewer_shown *shown, double left, double width) {
+    double box[4];
+    bool begins = shown->newest < 0 || shown->time < about_seconds;
+    if (begins && shown->about[0] && shown->side_count == 1)
+        widgets_note(shown->about, left + 8, 8, false, fmin(width - left - 16, 520 * widgets_scale()), false, box);
 }
 
 int viewer_side_panel_width(int width) {
@@ -336,5 +354,6 @@ void viewer_panels_show(viewer_panels *panels, int width, int height) {
     if (shown->panel[VIEWER_PANEL_KEYS]) show_keys(panels, w, h);
     // a picture without panels is a picture: no note in it, unless something is wrong
     if (shown->has_scene && !shown->panel[VIEWER_PANEL_GALLERY]) show_labels(panels, left, w);
+    if (has_side && !shown->panel[VIEWER_PANEL_GALLERY] && !shown->panel[VIEWER_PANEL_LESSON]) show_about(shown, left, w);
     if (has_side || shown->recording || shown->alarm) show_message(panels, left, w, above - viewer_lesson_height(shown, above));
 }
