@@ -16,6 +16,7 @@ cat <<'HEAD'
 
 Made by `docs/make-gallery.sh >docs/gallery.md` from the scenes' own words; do not edit it by hand. `skein list scenes`
 prints the same list, `skein view NAME` opens a scene in a window, and `skein view` shows all of them there.
+[One sheet](images/framing.jpg) has the stills of most of them twice: as commit 39fcedf framed them, and as they are today.
 
 | | scene | what it shows |
 |---|---|---|
