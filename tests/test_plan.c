@@ -44,7 +44,7 @@ static skein_world *busy_world(const char *method) {
 /* Takes a row out; a repeat around it has one less to repeat. */
 static void drop_row(sk_plan *plan, size_t dropped) {
     for (size_t r = 0; r < dropped; r++)
-        if (plan->data[r].kind == SK_ROW_REPEAT && r + plan->data[r].length >= dropped) plan->data[r].length--;
+        if (plan->data[r].length && r + plan->data[r].length >= dropped) plan->data[r].length--;
     memmove(plan->data + dropped, plan->data + dropped + 1, (plan->count - dropped - 1) * sizeof *plan->data);
     plan->count--;
 }

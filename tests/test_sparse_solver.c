@@ -159,13 +159,13 @@ static void the_matrix_is_what_conjugate_gradients_multiply_by(void **state) {
         sk_writer writer = {.plan = &plan, .allocator = &world->allocator, .rules = &world->rules, .isa = world->isa};
         writer.slot_count = world->particles.slot_count, writer.particle_count = particles, writer.h = 0.01;
         sk_run run = sk_world_run_context(world);
-        double cell[SK_CELL_COUNT] = {0};
-        run.cell = cell;
+        sk_solve solve = {.scale = 0};
+        run.solve = &solve;
         uint64_t seed = 1;
         sk_write_clear(&writer, none);
         sk_write_clear(&writer, (sk_vector)SK_BLOCK1);
         sk_write_clear(&writer, product);
-        sk_write_solve(&writer, &sk_solve_open, (sk_vector)SK_FILTER0, SK_X, (sk_vector)SK_FILTER1, "");
+        sk_write_pass(&writer, &sk_solve_open, (sk_vector)SK_FILTER0, SK_X, (sk_vector)SK_FILTER1, "");
         run_rows(world, &plan, &run);
         for (size_t i = 0; i < particles; i++) {
             sk_vec4 *at = &run.vector[p][run.slot_of[i]];

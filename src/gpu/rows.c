@@ -73,7 +73,7 @@ bool sk_gpu_row_can(const sk_row *row, const char **why) {
     }
     switch (row->kind) {
     case SK_ROW_GRID: return true;
-    case SK_ROW_REPEAT: return !row->cell;
+    case SK_ROW_REPEAT: return true;
     case SK_ROW_COMBINE: return is_combine(row);
     case SK_ROW_FIELD:
     case SK_ROW_NEIGHBOUR:

@@ -1,13 +1,22 @@
 #include "methods/writer_solve.h"
 
-size_t sk_write_until(sk_writer *writer, size_t times, sk_cell cell, const char *label) {
-    sk_add_row(writer,
-               (sk_row){.kind = SK_ROW_REPEAT, .order = SK_ORDERED, .end = times, .cell = (int)cell, .label = label});
+size_t sk_write_solve(sk_writer *writer, sk_row_kernel *kernel, const void *params, const char *label) {
+    sk_add_row(writer, (sk_row){.kind = SK_ROW_SOLVE,
+                                .order = SK_ORDERED,
+                                .kernel = kernel,
+                                .rule = params,
+                                .label = label,
+                                .end = 1});
     return writer->plan->count - 1;
 }
 
-void sk_write_solve(sk_writer *writer, const sk_kernels *kernels, sk_vector dst, sk_vector p, sk_vector q,
-                    const char *label) {
+size_t sk_write_part(sk_writer *writer, int part, const char *label) {
+    sk_add_row(writer, (sk_row){.kind = SK_ROW_PART, .order = SK_ORDERED, .part = part, .label = label});
+    return writer->plan->count - 1;
+}
+
+void sk_write_pass(sk_writer *writer, const sk_kernels *kernels, sk_vector dst, sk_vector p, sk_vector q,
+                   const char *label) {
     sk_add_row(writer, (sk_row){.kind = SK_ROW_COMBINE,
                                 .order = SK_FREE,
                                 .kernel = kernels->version[writer->isa],
@@ -15,39 +24,6 @@ void sk_write_solve(sk_writer *writer, const sk_kernels *kernels, sk_vector dst,
                                 .source = {p, q, SK_NONE},
                                 .label = label,
                                 .end = writer->slot_count});
-}
-
-void sk_write_cell_sum(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_cell cell, sk_vector q,
-                       const char *label) {
-    sk_add_row(writer, (sk_row){.kind = SK_ROW_COMBINE,
-                                .order = SK_FREE,
-                                .kernel = sk_solve_cell_sum.version[writer->isa],
-                                .dst = dst,
-                                .source = {p, q, SK_NONE},
-                                .coefficient = {a},
-                                .cell = (int)cell,
-                                .label = label,
-                                .end = writer->slot_count});
-}
-
-void sk_write_dot(sk_writer *writer, const sk_kernels *kernels, sk_vector p, sk_vector q, double a, const char *label) {
-    sk_add_row(writer, (sk_row){.kind = SK_ROW_DOT,
-                                .order = SK_FREE,
-                                .kernel = kernels->version[writer->isa],
-                                .dst = (sk_vector)SK_SUMS,
-                                .source = {p, q, SK_NONE},
-                                .coefficient = {a},
-                                .label = label,
-                                .end = writer->slot_count});
-}
-
-void sk_write_scalar(sk_writer *writer, sk_row_kernel *kernel, double a, const char *label) {
-    sk_add_row(writer, (sk_row){.kind = SK_ROW_SCALAR,
-                                .order = SK_ORDERED,
-                                .kernel = kernel,
-                                .coefficient = {a},
-                                .label = label,
-                                .end = 1});
 }
 
 static bool is_elastic(const sk_batch *batch) {
@@ -72,20 +48,27 @@ static void add_batches(sk_writer *writer, sk_row_kind kind, const sk_kernels *(
     }
 }
 
-static void add_forces(sk_writer *writer, sk_row_kind kind, sk_vector dst, sk_vector second, double a, double b) {
+typedef const sk_kernels *force_kernels(const sk_force_type *type);
+
+static const sk_kernels *force_apply(const sk_force_type *type) {
+    return &type->apply;
+}
+static const sk_kernels *force_diagonal(const sk_force_type *type) {
+    return &type->diagonal;
+}
+static const sk_kernels *force_resistance(const sk_force_type *type) {
+    return &type->resistance;
+}
+
+static void add_forces(sk_writer *writer, sk_row row, force_kernels *kernels_of) {
     for (size_t i = 0; i < writer->rules->forces.count; i++) {
         const sk_force *force = writer->rules->forces.data[i];
-        const sk_kernels *kernels = kind == SK_ROW_APPLY ? &force->type->apply : &force->type->diagonal;
-        if (!*force->enabled || !kernels->version[writer->isa]) continue;
-        sk_add_row_on(writer, (sk_row){.kind = kind,
-                                    .order = SK_FREE,
-                                    .kernel = kernels->version[writer->isa],
-                                    .dst = dst,
-                                    .source = {SK_X, second, SK_NONE},
-                                    .coefficient = {a, b},
-                                    .rule = force,
-                                    .label = force->label,
-                                    .end = writer->slot_count}, &force->only);
+        row.order = SK_FREE;
+        row.kernel = kernels_of(force->type)->version[writer->isa];
+        row.rule = force;
+        row.label = force->label;
+        row.end = writer->slot_count;
+        if (*force->enabled && row.kernel) sk_add_row_on(writer, row, &force->only);
     }
 }
 
@@ -102,14 +85,22 @@ static const sk_kernels *blocks_of(const sk_batch *batch) {
 }
 
 void sk_write_apply(sk_writer *writer, sk_vector dst, sk_vector p, double a, double b) {
+    sk_row row = {.kind = SK_ROW_APPLY, .dst = dst, .source = {SK_X, p, SK_NONE}, .coefficient = {a, b}};
     for (size_t i = 0; i < writer->rules->batches.count; i++) {
         const sk_batch *batch = writer->rules->batches.data[i];
         const sk_sweep_kernels *kernels = &batch->type->apply_sweep;
-        sk_row row = {.kind = SK_ROW_APPLY, .dst = dst, .source = {SK_X, p, SK_NONE}, .coefficient = {a, b}};
         if (is_elastic(batch) && kernels->groups.version[writer->isa]) sk_add_sums(writer, batch, row, kernels);
     }
     add_batches(writer, SK_ROW_APPLY, apply_of, dst, p, a, b);
-    add_forces(writer, SK_ROW_APPLY, dst, p, a, b);
+    add_forces(writer, row, force_apply);
+}
+
+void sk_write_multiply(sk_writer *writer, double a, double b) {
+    sk_vector direction = (sk_vector)SK_DIRECTION, product = (sk_vector)SK_PRODUCT;
+    sk_write_pass(writer, &sk_solve_direction, direction, product, (sk_vector)SK_INERTIA,
+                  "T8 + beta T7; T8 = inertia T7");
+    sk_write_apply(writer, product, direction, a, b);
+    sk_write_pass(writer, &sk_solve_curvature, product, direction, SK_NONE, "S T8; sum T7 T8");
 }
 
 void sk_write_diagonal(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b) {
@@ -117,7 +108,8 @@ void sk_write_diagonal(sk_writer *writer, sk_vector diagonal, sk_vector off, dou
 }
 
 void sk_write_diagonal_of_forces(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b) {
-    add_forces(writer, SK_ROW_LINEARISE, diagonal, off, a, b);
+    sk_row row = {.kind = SK_ROW_LINEARISE, .dst = diagonal, .source = {SK_X, off}, .coefficient = {a, b}};
+    add_forces(writer, row, force_diagonal);
 }
 
 static void add_call(sk_writer *writer, sk_row_kernel *kernel, sk_vector dst, sk_vector p, sk_vector q,
@@ -142,38 +134,29 @@ void sk_write_factor_solve(sk_writer *writer, sk_vector dst, sk_vector p) {
 }
 
 void sk_write_resistance(sk_writer *writer, sk_vector dst, double a) {
-    for (size_t i = 0; i < writer->rules->forces.count; i++) {
-        const sk_force *force = writer->rules->forces.data[i];
-        if (!*force->enabled || !force->type->resistance.version[writer->isa]) continue;
-        sk_add_row_on(writer, (sk_row){.kind = SK_ROW_LINEARISE,
-                                    .order = SK_FREE,
-                                    .kernel = force->type->resistance.version[writer->isa],
-                                    .dst = dst,
-                                    .source = {SK_V, SK_NONE, SK_NONE},
-                                    .coefficient = {a},
-                                    .rule = force,
-                                    .label = force->label,
-                                    .end = writer->slot_count}, &force->only);
-    }
+    sk_row row = {.kind = SK_ROW_LINEARISE, .dst = dst, .source = {SK_V}, .coefficient = {a}};
+    add_forces(writer, row, force_resistance);
 }
 
 static void add_filters(sk_writer *writer, const sk_kernels *kernels, sk_vector friction) {
     for (size_t i = 0; i < writer->rules->colliders.count; i++) {
         const sk_collider *collider = writer->rules->colliders.data[i];
         if (!collider->common->enabled) continue;
-        sk_add_row_on(writer, (sk_row){.kind = SK_ROW_CONTACT_FILTER,
-                                    .order = SK_FREE,
-                                    .kernel = kernels->version[writer->isa],
-                                    .dst = (sk_vector)SK_FILTER0,
-                                    .source = {SK_X, (sk_vector)SK_FILTER1, friction},
-                                    .rule = collider,
-                                    .label = collider->label,
-                                    .end = writer->slot_count}, &collider->only);
+        sk_add_row_on(writer,
+                      (sk_row){.kind = SK_ROW_CONTACT_FILTER,
+                               .order = SK_FREE,
+                               .kernel = kernels->version[writer->isa],
+                               .dst = (sk_vector)SK_FILTER0,
+                               .source = {SK_X, (sk_vector)SK_FILTER1, friction},
+                               .rule = collider,
+                               .label = collider->label,
+                               .end = writer->slot_count},
+                      &collider->only);
     }
 }
 
 void sk_write_filters(sk_writer *writer) {
-    sk_write_solve(writer, &sk_solve_open, (sk_vector)SK_FILTER0, SK_X, (sk_vector)SK_FILTER1, "S = 1 (0 if held)");
+    sk_write_pass(writer, &sk_solve_open, (sk_vector)SK_FILTER0, SK_X, (sk_vector)SK_FILTER1, "S = 1 (0 if held)");
     sk_write_clear(writer, (sk_vector)SK_FRICTION);
     add_filters(writer, &sk_contact_filter, (sk_vector)SK_FRICTION);
 }

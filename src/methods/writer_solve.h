@@ -1,4 +1,4 @@
-/* The pen's second set of nibs: the rows of an implicit solve (plan/solve.h says what they mean). */
+/* The pen's second set of nibs: what rules bring to an implicit solve (plan/solve.h says what the letters mean). */
 #ifndef SK_METHODS_WRITER_SOLVE_H
 #define SK_METHODS_WRITER_SOLVE_H
 
@@ -6,21 +6,20 @@
 #include "plan/matrix.h"
 #include "plan/solve.h"
 
-/* Opens a repeat of at most `times` turns that ends when the cell is not 0; sk_write_end closes it. */
-size_t sk_write_until(sk_writer *writer, size_t times, sk_cell cell, const char *label);
+/* Opens a solve: `kernel` is the algorithm, and has the parts run that are opened next, each by its number. sk_write_end
+ * closes both. */
+size_t sk_write_solve(sk_writer *writer, sk_row_kernel *kernel, const void *params, const char *label);
+size_t sk_write_part(sk_writer *writer, int part, const char *label);
 
-/* A combine row of plan/solve.h, as `label` says it. */
-void sk_write_solve(sk_writer *writer, const sk_kernels *kernels, sk_vector dst, sk_vector p, sk_vector q,
-                    const char *label);
-/* dst = p + a cell q */
-void sk_write_cell_sum(sk_writer *writer, sk_vector dst, sk_vector p, double a, sk_cell cell, sk_vector q,
-                       const char *label);
-/* Partial sums, and the scalar row that takes them; `a` is the coefficient of whichever needs one. */
-void sk_write_dot(sk_writer *writer, const sk_kernels *kernels, sk_vector p, sk_vector q, double a, const char *label);
-void sk_write_scalar(sk_writer *writer, sk_row_kernel *kernel, double a, const char *label);
+/* A row of plan/solve.h, as `label` says it; dst and p, q only name what it makes and reads. */
+void sk_write_pass(sk_writer *writer, const sk_kernels *kernels, sk_vector dst, sk_vector p, sk_vector q,
+                   const char *label);
 
 /* dst += (a k + b c) p, over every batch: k stiffness and c damping of its springs as they lie at X. */
 void sk_write_apply(sk_writer *writer, sk_vector dst, sk_vector p, double a, double b);
+/* The product of conjugate gradients: DIRECTION = PRODUCT + scale DIRECTION, PRODUCT = S A DIRECTION, and the sum of
+ * both with each other; A is the inertia and what sk_write_apply says. */
+void sk_write_multiply(sk_writer *writer, double a, double b);
 /* The same matrix's diagonal blocks, added to two vectors: those of batches, and those of forces. */
 void sk_write_diagonal(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b);
 void sk_write_diagonal_of_forces(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b);

@@ -189,9 +189,9 @@ void sk_matrix_factor(sk_run *run, const sk_row *row, size_t begin, size_t end) 
     (void)begin, (void)end;
     bool finite = filter_matrix(run, m, row->packed);
     skein_sparse_matrix matrix = sk_matrix_view(m, true);
-    run->cell[SK_CELL_FACTORS]++;
-    run->cell[SK_CELL_FACTORED] = finite && m->solver.factor(m->solver.user, &matrix);
-    if (run->cell[SK_CELL_FACTORED] == 0) run->cell[SK_CELL_FAILURES]++;
+    run->solve->factors++;
+    run->solve->factored = finite && m->solver.factor(m->solver.user, &matrix);
+    run->solve->failures += !run->solve->factored;
 }
 
 void sk_matrix_solve(sk_run *run, const sk_row *row, size_t begin, size_t end) {
@@ -199,7 +199,7 @@ void sk_matrix_solve(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     const sk_vec4 *from = run->vector[row->source[0]];
     sk_vec4 *to = run->vector[row->dst];
     (void)begin, (void)end;
-    if (run->cell[SK_CELL_FACTORED] == 0) return;
+    if (!run->solve->factored) return;
     for (size_t i = 0; i < m->particles; i++) {
         sk_vec4 b = sk_load(from, row->packed, run->slot_of[i]);
         m->given[3 * i] = (double)b.x, m->given[3 * i + 1] = (double)b.y, m->given[3 * i + 2] = (double)b.z;
@@ -208,8 +208,8 @@ void sk_matrix_solve(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     bool good = m->solver.solve(m->solver.user, m->given, m->found);
     for (size_t i = 0; i < 3 * m->particles && good; i++) sum += m->found[i] * 0;
     if (!good || sum != 0) {
-        run->cell[SK_CELL_FACTORED] = 0;
-        run->cell[SK_CELL_FAILURES]++;
+        run->solve->factored = false;
+        run->solve->failures++;
         return;
     }
     memset(to, 0, run->slot_count * sizeof *to); // slots without a particle, too

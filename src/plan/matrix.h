@@ -49,7 +49,7 @@ skein_sparse_matrix sk_matrix_view(const sk_matrix *matrix, bool with_values);
 
 /* Calls. `source[0]` and dst are vectors of slots.
  *   clear   A = blocks of particles: xx yy zz from source[0], xy xz yz from source[1]; nothing between them
- *   factor  S A S + (1 - S) goes to the solver; the cell SK_CELL_FACTORED says whether there is a factor then
+ *   factor  S A S + (1 - S) goes to the solver; the solve's `factored` says whether there is a factor then
  *   solve   dst = that^-1 source[0], where there is a factor */
 extern sk_row_kernel sk_matrix_clear, sk_matrix_factor, sk_matrix_solve;
 

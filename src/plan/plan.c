@@ -28,10 +28,10 @@ const char *sk_row_kind_text(sk_row_kind kind) {
         [SK_ROW_APPLY] = "apply",
         [SK_ROW_LINEARISE] = "linearise",
         [SK_ROW_CONTACT_FILTER] = "contact S",
-        [SK_ROW_DOT] = "dot",
-        [SK_ROW_SCALAR] = "scalar",
         [SK_ROW_MEET] = "meet",
         [SK_ROW_CALL] = "call",
+        [SK_ROW_SOLVE] = "solve",
+        [SK_ROW_PART] = "part",
         [SK_ROW_REPEAT] = "repeat",
     };
     return names[kind];
@@ -166,9 +166,8 @@ static void describe_combine(const sk_row *row, char *text, size_t size) {
 }
 
 void sk_row_describe(const sk_row *row, char *text, size_t size) {
-    if (row->kind == SK_ROW_REPEAT && row->cell) {
-        snprintf(text, size, "%-10s %zu times at most the next %zu rows: %s", "repeat", row->end, row->length,
-                 row->label);
+    if (row->kind == SK_ROW_SOLVE || row->kind == SK_ROW_PART) {
+        snprintf(text, size, "%-10s %s: the next %zu rows", sk_row_kind_text(row->kind), row->label, row->length);
         return;
     }
     if (row->kind == SK_ROW_REPEAT) {
@@ -176,7 +175,7 @@ void sk_row_describe(const sk_row *row, char *text, size_t size) {
         return;
     }
     char what[160];
-    if (row->label && (row->kind == SK_ROW_COMBINE || row->kind == SK_ROW_SCALAR)) {
+    if (row->label && row->kind == SK_ROW_COMBINE) {
         snprintf(what, sizeof what, "%s", row->label);
     } else if (row->kind == SK_ROW_COMBINE) {
         describe_combine(row, what, sizeof what);

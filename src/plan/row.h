@@ -60,10 +60,10 @@ typedef enum sk_row_kind {
     SK_ROW_APPLY,
     SK_ROW_LINEARISE,
     SK_ROW_CONTACT_FILTER,
-    SK_ROW_DOT,
-    SK_ROW_SCALAR,
     SK_ROW_MEET,
     SK_ROW_CALL, /* what is no loop over elements: a solver from outside */
+    SK_ROW_SOLVE, /* an algorithm in C that has the rows behind it run, part by part, until it is content */
+    SK_ROW_PART,  /* of a solve: heads rows that run when it asks for them, and are passed over else */
     SK_ROW_REPEAT,
     SK_ROW_KIND_COUNT
 } sk_row_kind;
@@ -110,8 +110,11 @@ typedef struct sk_surface {
     size_t number_capacity;
 } sk_surface;
 
+typedef struct sk_row sk_row;
+
 /* What a kernel may touch while a plan runs. */
-typedef struct sk_run {
+typedef struct sk_run sk_run;
+struct sk_run {
     sk_vec4 *vector[SK_VECTOR_COUNT];
     size_t slot_count;           /* a multiple of 16; slots without a particle are zero and weigh nothing */
     const uint32_t *slot_of;     /* of the user's particles */
@@ -121,14 +124,17 @@ typedef struct sk_run {
     sk_cells *cells;
     sk_allocator *allocator;
     double time;              /* at the end of the present substep, s */
-    double *cell;             /* what rows of a solve hand to each other (plan/solve.h) */
+    struct sk_solve *solve;   /* what a solve and its rows tell each other (plan/solve.h) */
     struct sk_matrix *matrix; /* of a solve with a factor (plan/matrix.h), else NULL */
+    void (*rows)(sk_run *run, const sk_row *rows, size_t count); /* for solves: runs these, of the same plan, */
+    struct sk_tasks *tasks;                                      /* on these threads */
+    double *seconds;          /* of each row from `timed` on what it takes is added to; NULL: nobody asks */
+    const sk_row *timed;
     size_t turn;              /* of the innermost repeat, from 0 on, */
     bool last_turn;           /* and whether it is the last */
     bool no_memory;           /* a growing list could not grow: the step fails and says so */
-} sk_run;
+};
 
-typedef struct sk_row sk_row;
 typedef void sk_row_kernel(sk_run *run, const sk_row *row, size_t begin, size_t end);
 
 /* A kernel in a version for each instruction set. */
@@ -139,7 +145,7 @@ typedef struct sk_kernels {
 struct sk_row {
     sk_row_kind kind;
     sk_order order;
-    sk_row_kernel *kernel; /* NULL for a repeat */
+    sk_row_kernel *kernel; /* NULL for a repeat or a part; a solve: all of it, on the thread that runs the plan */
     sk_vector dst, source[3];
     double coefficient[3];
     double dt;             /* of the substep, s */
@@ -158,8 +164,8 @@ struct sk_row {
     size_t packed;         /* slots [0, packed) are in packed blocks when it runs */
     sk_walk walk;          /* of rows whose elements are strip rows */
     sk_half half;          /* of a sweep along strips */
-    size_t length;         /* a repeat: how many rows after it are repeated */
-    int cell;              /* which cell it reads; a repeat that has one ends when it is not 0, and moves no time on */
+    size_t length;         /* a repeat, a solve or a part of one: how many rows after it are its own */
+    int part;              /* a part: which */
 };
 
 /* m g + f - (linear + rate m) v on every particle: gravity, plain wind and air drag together. Methods that

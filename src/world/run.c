@@ -38,6 +38,11 @@ enum {
 
 /* ---- segments ---- */
 
+/* Whether the rows behind it are its own. */
+static bool leads(const sk_row *row) {
+    return row->kind == SK_ROW_REPEAT || row->kind == SK_ROW_SOLVE || row->kind == SK_ROW_PART;
+}
+
 static bool same_strips(const sk_walk *a, const sk_walk *b) {
     return a->first_slot == b->first_slot && a->rows == b->rows && a->width == b->width;
 }
@@ -48,7 +53,7 @@ static size_t segment_length(const sk_row *rows, size_t count, sk_walk *walk) {
     size_t length = 0;
     for (; length < count && length < MOST_SEGMENT; length++) {
         const sk_row *row = &rows[length];
-        if (row->kind == SK_ROW_REPEAT) break;
+        if (leads(row)) break;
         if (row->walk.rows) {
             if (walk->rows && !same_strips(walk, &row->walk)) break;
             *walk = row->walk;
@@ -292,50 +297,7 @@ static void run_segments(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_
     }
 }
 
-/* Whether a repeat that began at `start` has this turn, too; sets its time. */
-static bool begin_turn(sk_run *run, const sk_row *repeat, double start, size_t turn) {
-    if (repeat->cell && run->cell[repeat->cell] != 0) return false;
-    if (!repeat->cell) run->time = start + (double)(turn + 1) * repeat->dt;
-    run->turn = turn;
-    run->last_turn = turn + 1 == repeat->end;
-    return true;
-}
-
-/* The turns of a repeat, one after the other; further repeats may lie within it. */
-static void run_turns(sk_run *run, sk_tasks *tasks, const sk_row *repeat) {
-    double start = run->time;
-    size_t outer_turn = run->turn;
-    bool outer = run->last_turn;
-    for (size_t turn = 0; turn < repeat->end && begin_turn(run, repeat, start, turn); turn++)
-        sk_run_rows(run, tasks, repeat + 1, repeat->length);
-    run->turn = outer_turn;
-    run->last_turn = outer;
-}
-
-void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count) {
-    double start = run->time;
-    for (size_t r = 0; r < count;) {
-        const sk_row *row = &rows[r];
-        if (row->kind != SK_ROW_REPEAT) {
-            size_t length = 1;
-            while (r + length < count && rows[r + length].kind != SK_ROW_REPEAT) length++;
-            run_segments(run, tasks, row, length);
-            r += length;
-            continue;
-        }
-        sk_walk walk;
-        if (!row->cell && segment_length(row + 1, row->length, &walk) == row->length && walk.rows) {
-            // the whole repeat is one walk: threads need not meet between turns
-            run_walk(run, tasks, row + 1, row->length, &walk, row->end, start, row->dt);
-            run->time = start + (double)row->end * row->dt;
-        } else {
-            run_turns(run, tasks, row);
-        }
-        r += 1 + row->length;
-    }
-}
-
-/* ---- row after row, with a clock ---- */
+/* ---- rows that lead others: repeats, solves and their parts ---- */
 
 double sk_seconds(void) {
     struct timespec time;
@@ -343,23 +305,72 @@ double sk_seconds(void) {
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-void sk_run_rows_timed(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count, double *seconds) {
-    for (size_t r = 0; r < count; r++) {
-        const sk_row *row = &rows[r];
-        double start = run->time, begin = sk_seconds();
-        if (row->kind != SK_ROW_REPEAT) {
-            run_segments(run, tasks, row, 1);
-            seconds[r] += sk_seconds() - begin;
-            continue;
-        }
-        size_t outer_turn = run->turn;
-        bool outer = run->last_turn;
-        for (size_t turn = 0; turn < row->end; turn++) {
-            if (!begin_turn(run, row, start, turn)) break;
-            sk_run_rows_timed(run, tasks, row + 1, row->length, seconds + r + 1);
-        }
-        run->turn = outer_turn;
-        run->last_turn = outer;
-        r += row->length;
+static void run_rows(sk_run *run, const sk_row *rows, size_t count);
+
+/* The turns of a repeat, one after the other; further repeats may lie within it. */
+static void run_turns(sk_run *run, const sk_row *repeat) {
+    double start = run->time;
+    size_t outer_turn = run->turn;
+    bool outer = run->last_turn;
+    for (size_t turn = 0; turn < repeat->end; turn++) {
+        run->time = start + (double)(turn + 1) * repeat->dt;
+        run->turn = turn;
+        run->last_turn = turn + 1 == repeat->end;
+        run_rows(run, repeat + 1, repeat->length);
     }
+    run->turn = outer_turn;
+    run->last_turn = outer;
+}
+
+static void run_repeat(sk_run *run, const sk_row *repeat) {
+    sk_walk walk;
+    if (run->seconds || segment_length(repeat + 1, repeat->length, &walk) != repeat->length || !walk.rows) {
+        run_turns(run, repeat);
+        return;
+    }
+    // the whole repeat is one walk: threads need not meet between turns
+    double start = run->time;
+    run_walk(run, run->tasks, repeat + 1, repeat->length, &walk, repeat->end, start, repeat->dt);
+    run->time = start + (double)repeat->end * repeat->dt;
+}
+
+/* A solve that is timed: less what the rows have taken that it had run. */
+static void run_solve(sk_run *run, const sk_row *row) {
+    const double *seconds = run->seconds ? run->seconds + (row - run->timed) : NULL;
+    double rows_before = 0, rows_after = 0, begin = seconds ? sk_seconds() : 0;
+    for (size_t r = 1; seconds && r <= row->length; r++) rows_before += seconds[r];
+    row->kernel(run, row, row->begin, row->end);
+    for (size_t r = 1; seconds && r <= row->length; r++) rows_after += seconds[r];
+    if (seconds) run->seconds[row - run->timed] += sk_seconds() - begin - (rows_after - rows_before);
+}
+
+/* As many rows as go together: those that lead none up to the next that does, or, with a clock, one. */
+static size_t run_plain(sk_run *run, const sk_row *rows, size_t count) {
+    size_t length = 1;
+    while (!run->seconds && length < count && !leads(&rows[length])) length++;
+    double begin = run->seconds ? sk_seconds() : 0;
+    run_segments(run, run->tasks, rows, length);
+    if (run->seconds) run->seconds[rows - run->timed] += sk_seconds() - begin;
+    return length;
+}
+
+static void run_rows(sk_run *run, const sk_row *rows, size_t count) {
+    for (size_t r = 0; r < count;) {
+        const sk_row *row = &rows[r];
+        if (row->kind == SK_ROW_REPEAT) run_repeat(run, row);
+        else if (row->kind == SK_ROW_SOLVE) run_solve(run, row);
+        r += leads(row) ? 1 + row->length : run_plain(run, row, count - r);
+    }
+}
+
+void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count) {
+    sk_run_rows_timed(run, tasks, rows, count, NULL);
+}
+
+void sk_run_rows_timed(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count, double *seconds) {
+    run->tasks = tasks;
+    run->rows = run_rows;
+    run->seconds = seconds;
+    run->timed = rows;
+    run_rows(run, rows, count);
 }

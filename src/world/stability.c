@@ -12,13 +12,14 @@ enum { MOST_TURNS = 2000, SETTLED_TURNS = 30 };
 
 /* Where power iteration keeps its vectors. */
 static const sk_vector mode_at = (sk_vector)SK_DIRECTION, image = (sk_vector)SK_PRODUCT;
-static const sk_vector zero = (sk_vector)SK_BLOCK0, resistance = (sk_vector)SK_INERTIA;
+static const sk_vector zero = (sk_vector)SK_BLOCK0, resistance = (sk_vector)SK_INERTIA, sums = (sk_vector)SK_SUMS;
 
 typedef struct finder {
     skein_world *world;
     sk_writer writer;
     sk_plan plan;
     sk_run run;
+    sk_solve solve;
 } finder;
 
 static void run_plan(finder *f) {
@@ -26,20 +27,14 @@ static void run_plan(finder *f) {
     f->plan.count = 0;
 }
 
-/* Writes: image = (a K + b C) mode, and the partial sums of mode image. */
-static void write_product(finder *f, double a, double b) {
+/* image = (a K + b C) mode, by the product of conjugate gradients with no mass; returns mode image. */
+static double measure(finder *f, double a, double b) {
     sk_write_clear(&f->writer, resistance);
     sk_write_resistance(&f->writer, resistance, b);
-    sk_write_solve(&f->writer, &sk_solve_product, image, resistance, mode_at, "air");
-    sk_write_apply(&f->writer, image, mode_at, a, b);
-    sk_write_dot(&f->writer, &sk_solve_dot, mode_at, image, 0, "mode image");
-}
-
-/* mode (a K + b C) mode. */
-static double measure(finder *f, double a, double b) {
-    write_product(f, a, b);
+    sk_write_sum(&f->writer, image, 1, mode_at, 0, SK_NONE); // with a scale of 0 this is the direction
+    sk_write_multiply(&f->writer, a, b);
     run_plan(f);
-    return sk_solve_sum(&f->run);
+    return sk_solve_sum(&f->run, 0);
 }
 
 /* Any vector will do to begin with, if it has something of every mode. */
@@ -60,13 +55,11 @@ static bool iterate(finder *f, double a, double b) {
         double now = measure(f, a, b);
         settled = fabs(now - value) <= 1e-4 * now ? settled + 1 : 0;
         value = now;
-        sk_write_dot(&f->writer, &sk_solve_norm, image, SK_X, 0, "image w image");
+        sk_write_pass(&f->writer, &sk_solve_norm, sums, image, SK_X, "image w image");
         run_plan(f);
-        double square = sk_solve_sum(&f->run);
+        double square = sk_solve_sum(&f->run, 1);
         if (!(square > 0) || isinf(square)) return false;
-        f->run.cell[SK_CELL_ALPHA] = 1 / sqrt(square);
-        sk_write_kick(&f->writer, mode_at, zero, 1, image);
-        sk_write_cell_sum(&f->writer, mode_at, zero, 1, SK_CELL_ALPHA, mode_at, "mode");
+        sk_write_kick(&f->writer, mode_at, zero, 1 / sqrt(square), image);
         run_plan(f);
     }
     return true;
@@ -114,12 +107,12 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
     if (!status) status = sk_world_fetch(world);
     if (status) return status;
     for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);
-    uint32_t wanted = 1u << mode_at | 1u << image | 1u << zero | 1u << resistance | 1u << SK_SUMS;
+    uint32_t wanted = 1u << mode_at | 1u << image | 1u << zero | 1u << resistance | 1u << sums | 1u << SK_FILTER0 |
+                      1u << SK_FILTER1;
     world->plan_stale = true; // its temporaries go
     if (!sk_particles_want(&world->particles, &world->allocator, wanted)) return sk_fail_memory(error, "stability");
     finder f = {.world = world, .run = sk_world_run_context(world)};
-    double cell[SK_CELL_COUNT] = {0};
-    f.run.cell = cell;
+    f.run.solve = &f.solve;
     f.writer = (sk_writer){.plan = &f.plan,
                            .allocator = &world->allocator,
                            .rules = &world->rules,
@@ -130,6 +123,7 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
                            .h = 1};
     sk_write_pack(&f.writer); // products go along strips
     if (!f.writer.no_memory) {
+        sk_write_pass(&f.writer, &sk_solve_open, (sk_vector)SK_FILTER0, SK_X, (sk_vector)SK_FILTER1, "S");
         run_plan(&f);
         find_modes(&f, stability);
         sk_write_unpack(&f.writer); // there is room for as many rows as packing has

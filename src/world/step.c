@@ -176,7 +176,7 @@ sk_run sk_world_run_context(skein_world *world) {
         .cells = &world->cells,
         .allocator = &world->allocator,
         .time = world->time,
-        .cell = world->cell,
+        .solve = &world->solve,
         .matrix = &world->matrix,
     };
     memcpy(run.vector, world->particles.vector, sizeof run.vector);
@@ -190,7 +190,7 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
         sk_world_measure_energy(world, &start);
         world->first_energy = start.kinetic_energy + start.potential_energy + start.elastic_energy;
     }
-    memset(world->cell, 0, sizeof world->cell);
+    world->solve = (sk_solve){.scale = 0};
     skein_status status = sk_world_set_out(world, dt, error);
     if (status) return status;
     sk_run run = sk_world_run_context(world);
@@ -210,8 +210,8 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
     if (status || arrived) return status ? status : arrived;
     world->time += dt;
     world->steps++;
-    world->unsolved += (uint64_t)world->cell[SK_CELL_UNSOLVED];
-    world->solver_failures += (uint64_t)world->cell[SK_CELL_FAILURES];
+    world->unsolved += world->solve.unsolved;
+    world->solver_failures += world->solve.failures;
     world->substeps += (uint64_t)world->method->substeps(world->method_params);
     if (!world->device) sk_world_tidy(world);
     return SKEIN_OK;
@@ -265,7 +265,7 @@ skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out,
     memset(seconds, 0, world->plan.count * sizeof *seconds);
     status = take_step(world, dt, seconds, error);
     for (size_t r = 0; r < world->plan.count && !status; r++)
-        if (world->plan.data[r].kind != SK_ROW_REPEAT)
+        if (world->plan.data[r].kind != SK_ROW_REPEAT && world->plan.data[r].kind != SK_ROW_PART)
             add_to_passes(&world->plan.data[r], seconds[r], out, most, count);
     sk_release(&world->allocator, seconds);
     return status;
@@ -280,7 +280,7 @@ skein_status skein_world_reset(skein_world *world) {
     SK_NEED(world, world);
     skein_status status = sk_world_touch(world); // masses may have changed, and where particles are held
     if (status) return status;
-    memset(world->cell, 0, sizeof world->cell);
+    world->solve = (sk_solve){.scale = 0};
     sk_particles_reset(&world->particles);
     world->pins.count = 0;
     stop_colliders(world);
@@ -310,14 +310,14 @@ skein_status skein_world_explain(skein_world *world, double dt, void (*write)(vo
     if (status) return status;
     if (!write) return SKEIN_OK;
     enum { MOST_DEPTH = 8 };
-    size_t open_until[MOST_DEPTH], depth = 0; // of the repeats around a row
+    size_t open_until[MOST_DEPTH], depth = 0; // of the rows that lead others, around a row
     for (size_t r = 0; r < world->plan.count; r++) {
         const sk_row *row = &world->plan.data[r];
         while (depth && r >= open_until[depth - 1]) depth--;
         char line[384] = "                                ";
         sk_row_describe(row, line + 4 * depth, sizeof line - 4 * depth);
         write(user, line);
-        if (row->kind == SK_ROW_REPEAT && depth < MOST_DEPTH) open_until[depth++] = r + row->length + 1;
+        if (row->length && depth < MOST_DEPTH) open_until[depth++] = r + row->length + 1;
     }
     return SKEIN_OK;
 }

@@ -20,7 +20,7 @@ static bool may_move(const skein_world *world) {
     if (world->particles.strips.count || world->triangles.count) return false;
     if (rules->batches.count || rules->limits.count) return false;
     for (size_t r = 0; r < world->plan.count; r++)
-        if (world->plan.data[r].kind == SK_ROW_DOT) return false;
+        if (world->plan.data[r].kind == SK_ROW_SOLVE) return false;
     return true;
 }
 

@@ -161,7 +161,7 @@ struct skein_world {
     uint64_t steps, substeps;
     uint64_t unsolved, solver_failures; /* of all steps, where a method solves */
     double first_energy;        /* J, when the first step began */
-    double cell[SK_CELL_COUNT]; /* of the last step */
+    sk_solve solve;             /* of the last step */
     sk_matrix matrix;           /* where a plan factors one, and the solver */
     sk_device *device;          /* NULL: the processor */
     struct {
@@ -310,8 +310,8 @@ void sk_world_tidy(skein_world *world);
 double sk_stable_substep(const sk_method_type *method, const skein_stability *stability);
 /* Fills in the kinetic, potential and elastic energies, and the momenta. The slots are to be up to date. */
 void sk_world_measure_energy(const skein_world *world, skein_statistics *statistics);
-/* Runs rows in their order; the plan's are a whole step. `seconds`: of each row, what it takes is added to. */
 double sk_seconds(void); /* of a clock that only goes forward */
+/* Runs rows in their order; the plan's are a whole step. `seconds`: of each row, what it takes is added to. */
 void sk_run_rows_timed(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count, double *seconds);
 /* The same without looking at the clock, and as fast as it can be. */
 void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count);
