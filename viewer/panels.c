@@ -174,6 +174,9 @@ static void show_facts(const viewer_shown *shown) {
     snprintf(line, sizeof line, "energy %.4g J, stretch %.2f %%",
              s->kinetic_energy + s->potential_energy + s->elastic_energy, 100 * s->max_stretch);
     widgets_text(line);
+    if (!s->all_unsolved) return;
+    snprintf(line, sizeof line, "%" PRIu64 " of %" PRIu64 " substeps left unsolved", s->all_unsolved, s->substeps);
+    widgets_text(line);
 }
 
 static void show_side(viewer_panels *panels, const viewer_shown *shown, double width, double height) {

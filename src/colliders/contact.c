@@ -35,66 +35,13 @@ SK_KERNELS(sk_probe_sixteen, probe_sixteen);
 
 #ifdef SK_ISA
 
-/* A part's particles near a collider. */
-typedef struct encounter {
-    sk_wide4 x;
-    sk_contact contact;
-    bool moves;       /* the surface: most stand still, and need no arithmetic */
-    sk_wide3 surface; /* its velocity there */
-    sk_mask touching; /* free particles within the thickness, and a hair beyond it */
-} encounter;
-
-SK_INLINE sk_wide3 minus(sk_wide3 a, sk_wide3 b) {
-    return (sk_wide3){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-SK_INLINE sk_wide3 times(sk_wide s, sk_wide3 a) {
-    return (sk_wide3){s * a.x, s * a.y, s * a.z};
-}
-SK_INLINE sk_wide3 three(sk_wide4 a) {
-    return (sk_wide3){a.x, a.y, a.z};
-}
-
-/* Splits u into its part along the unit normal (returned) and the rest. */
-SK_INLINE sk_wide split(sk_wide3 u, sk_wide3 normal, sk_wide3 *tangential) {
-    sk_wide along = sk_dot_wide(u, normal);
-    *tangential = minus(u, times(along, normal));
-    return along;
-}
-
-/* A velocity as the surface sees it. */
-SK_INLINE sk_wide3 from_surface(sk_wide3 v, const encounter *e) {
-    return e->moves ? minus(v, e->surface) : v;
-}
-
-/* The part of a vector of length `length` that friction takes, at most `most`: 1 where it takes all. */
-SK_INLINE sk_wide share_of(sk_wide length, sk_wide most) {
-    return sk_select(sk_more(length, most), most / length, sk_splat(1));
-}
+#include "colliders/response.h"
 
 /* Probes a part of a block; false where nobody touches. */
 SK_INLINE bool meet(sk_run *run, const sk_row *row, const sk_pose *pose, size_t slot, encounter *e) {
-    const sk_collider *collider = row->rule;
-    e->x = sk_load_part(run->vector[SK_X], slot, slot < row->packed);
-    sk_wide3 p = three(e->x);
-    collider->type->probe[SK_THIS_ISA](collider->params, pose, &p, &e->contact);
-    // rounding must not break a resting contact: forces and velocities look a little beyond the thickness
-    sk_wide size = sk_wide_abs(p.x), ay = sk_wide_abs(p.y), az = sk_wide_abs(p.z);
-    size = sk_select(sk_more(ay, size), ay, size);
-    size = sk_select(sk_more(az, size), az, size);
-    real thickness = (real)collider->common->thickness;
-    sk_wide reach = thickness + (real)1e-3 * thickness + (real)4e-6 * (size + (real)0.1);
-    e->touching = sk_at_most(e->contact.distance, reach) & sk_positive(e->x.w);
+    probe(row->rule, pose, sk_load_part(run->vector[SK_X], slot, slot < row->packed), e);
     if (!sk_any(e->touching)) return false;
-    sk_vec3 v = pose->velocity, s = pose->spin;
-    e->moves = collider->type->deforms || v.x != 0 || v.y != 0 || v.z != 0 || s.x != 0 || s.y != 0 || s.z != 0;
-    if (!e->moves) return true;
-    sk_wide3 arm = {p.x - pose->position.x, p.y - pose->position.y, p.z - pose->position.z};
-    e->surface = (sk_wide3){v.x + (s.y * arm.z - s.z * arm.y), v.y + (s.z * arm.x - s.x * arm.z),
-                            v.z + (s.x * arm.y - s.y * arm.x)};
-    if (collider->type->deforms) {
-        sk_wide3 own = times(e->contact.speed, e->contact.normal);
-        e->surface = (sk_wide3){e->surface.x + own.x, e->surface.y + own.y, e->surface.z + own.z};
-    }
+    find_motion(row->rule, pose, e);
     return true;
 }
 
@@ -128,8 +75,8 @@ void SK_KERNEL(contact_force)(sk_run *run, const sk_row *row, size_t begin, size
         sk_wide leaving = split(from_surface(three(v), &e), e.contact.normal, &slide);
         sk_wide mass_per_step = 1 / (e.x.w * (real)row->dt), pressing = inward;
         if (!by_mass) pressing += mass_per_step * sk_keep(sk_positive(leaving), leaving);
-        // the friction that would stop the slide within this substep, cut to Coulomb's cone
-        sk_wide3 stop = minus(times(-mass_per_step, slide), force_t);
+        // cut to Coulomb's cone
+        sk_wide3 stop = stopping(mass_per_step, slide, force_t);
         sk_wide needed = sk_wide_sqrt(sk_dot_wide(stop, stop)), most = (real)collider->common->friction * -pressing;
         sk_wide share = share_of(needed, most);
         sk_wide3 push = times(-pressing, e.contact.normal), rub = times(share, stop);
@@ -186,9 +133,7 @@ void SK_KERNEL(contact_push)(sk_run *run, const sk_row *row, size_t begin, size_
 SK_INLINE sk_wide bounce_of(const sk_run *run, const sk_row *row, size_t slot, const encounter *e, sk_wide mass,
                             sk_wide approach) {
     const sk_collider *collider = row->rule;
-    // what a substep's force alone brings is no impact; bouncing it would make resting things jitter
-    sk_wide3 f = three(sk_load_part(run->vector[SK_F], slot, slot < row->packed));
-    sk_wide resting = (2 * (real)row->dt) * e->x.w * sk_wide_sqrt(sk_dot_wide(f, f));
+    sk_wide resting = resting_speed(e, sk_load_part(run->vector[SK_F], slot, slot < row->packed), (real)row->dt);
     return sk_keep(sk_more(-approach, resting), restitution_of(collider, mass) * -approach);
 }
 

@@ -6,6 +6,8 @@
  *   arrives    it would be inside by the end: it may come as far as the surface, S loses the normal
  *              (not where it bounces: then it has to arrive with its own velocity)
  *
+ * Who touches, how fast, and what friction takes is as in all contact (response.h).
+ *
  * Whether a particle is held follows from its force at the start of the substep, contact's own left out:
  * where that pulls it off, it is free. */
 #include "base/kernels.h"
@@ -16,6 +18,7 @@ SK_KERNELS(sk_row_kernel, contact_filter);
 SK_KERNELS(sk_row_kernel, contact_filter_more);
 
 #ifdef SK_ISA
+#include "colliders/response.h"
 
 typedef struct filtering {
     sk_wide4 d, o; /* S: xx yy zz and xy xz yz */
@@ -43,57 +46,31 @@ SK_INLINE void hold_normal(filtering *f, sk_mask mask, sk_wide3 n, sk_wide chang
     }
 }
 
-/* Rounding must not break a resting contact: a little beyond the thickness counts as touching. */
-SK_INLINE sk_mask touches(const sk_collider *collider, sk_wide3 p, sk_wide gap) {
-    sk_wide size = sk_wide_abs(p.x) + sk_wide_abs(p.y) + sk_wide_abs(p.z);
-    real thickness = (real)collider->common->thickness;
-    return sk_at_most(gap, (real)1e-3 * thickness + (real)4e-6 * (size + (real)0.1));
-}
-
-/* The velocity relative to the surface at p. */
-SK_INLINE sk_wide3 against(const sk_collider *collider, const sk_pose *pose, sk_wide3 p, const sk_contact *contact,
-                           sk_wide4 v) {
-    sk_vec3 u = pose->velocity, spin = pose->spin;
-    sk_wide3 arm = {p.x - pose->position.x, p.y - pose->position.y, p.z - pose->position.z};
-    sk_wide3 out = {v.x - (u.x + (spin.y * arm.z - spin.z * arm.y)), v.y - (u.y + (spin.z * arm.x - spin.x * arm.z)),
-                    v.z - (u.z + (spin.x * arm.y - spin.y * arm.x))};
-    if (!collider->type->deforms) return out;
-    sk_wide3 n = contact->normal;
-    return (sk_wide3){out.x - contact->speed * n.x, out.y - contact->speed * n.y, out.z - contact->speed * n.z};
-}
-
 /* What comes faster than a substep's force alone would bring it is to bounce, if the collider lets it. */
-SK_INLINE sk_mask bounces(const sk_collider *collider, sk_wide speed, sk_wide hw, sk_wide4 force) {
-    sk_wide3 f = {force.x, force.y, force.z};
-    sk_wide resting = 2 * hw * sk_wide_sqrt(sk_dot_wide(f, f));
-    sk_mask fast = sk_more(-speed, resting);
+SK_INLINE sk_mask bounces(const sk_collider *collider, const encounter *e, sk_wide speed, sk_wide4 force, real h) {
+    sk_mask fast = sk_more(-speed, resting_speed(e, force, h));
     return sk_contact_reads_force(collider) ? fast : fast & ~fast;
 }
 
 SK_INLINE void hold(const sk_collider *collider, const sk_pose *pose, sk_wide4 x, sk_wide4 force, real h,
                     filtering *f) {
-    sk_contact contact;
-    sk_wide3 p = {x.x, x.y, x.z}, n;
-    collider->type->probe[SK_THIS_ISA](collider->params, pose, &p, &contact);
-    n = contact.normal;
-    sk_wide3 slide = against(collider, pose, p, &contact, f->v);
-    sk_wide speed = sk_dot_wide(slide, n), hw = h * x.w;
-    slide = (sk_wide3){slide.x - speed * n.x, slide.y - speed * n.y, slide.z - speed * n.z};
-    sk_wide3 f3 = {force.x, force.y, force.z};
-    sk_wide normal_force = sk_dot_wide(f3, n), coming = speed + hw * normal_force;
+    encounter e;
+    probe(collider, pose, x, &e);
+    find_motion(collider, pose, &e);
+    sk_wide3 n = e.contact.normal, slide, force_t;
+    sk_wide speed = split(from_surface(three(f->v), &e), n, &slide), hw = h * x.w;
+    sk_wide normal_force = split(three(force), n, &force_t), coming = speed + hw * normal_force;
 
-    sk_wide gap = contact.distance - (real)collider->common->thickness;
-    sk_mask is_free = sk_positive(x.w), touching = touches(collider, p, gap) & is_free;
-    sk_mask held = touching & sk_negative(coming) & ~bounces(collider, speed, hw, force);
+    sk_wide gap = e.contact.distance - (real)collider->common->thickness;
+    sk_mask is_free = sk_positive(x.w), held = e.touching & sk_negative(coming) & ~bounces(collider, &e, speed, force, h);
     // by its velocity alone: what a stiff spring would do to it over a whole substep it does not get to do
-    sk_mask arriving = is_free & ~touching & sk_negative(gap + h * speed);
+    sk_mask arriving = is_free & ~e.touching & sk_negative(gap + h * speed);
     if (sk_contact_reads_force(collider)) arriving &= ~arriving;
     if (!sk_any(held | arriving)) return;
 
-    // the friction that would stop it in this substep, against Coulomb's cone
+    // against Coulomb's cone
     sk_wide mass = sk_keep(is_free, 1 / hw);
-    sk_wide3 stop = {-mass * slide.x - (f3.x - normal_force * n.x), -mass * slide.y - (f3.y - normal_force * n.y),
-                     -mass * slide.z - (f3.z - normal_force * n.z)};
+    sk_wide3 stop = stopping(mass, slide, force_t);
     sk_wide needed = sk_wide_sqrt(sk_dot_wide(stop, stop));
     sk_wide most = (real)collider->common->friction * -(mass * coming);
     sk_mask sticks = held & sk_at_most(needed, most);
@@ -136,27 +113,26 @@ void SK_KERNEL(contact_filter)(sk_run *run, const sk_row *row, size_t begin, siz
  * bounce), and of what lay on the surface only what presses. The rest is inside because its tangent leads there, in
  * a hollow, and the solve may take it off: holding that would glue it on, with more weight and friction for the rest.
  */
-SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_row *row, const sk_pose *start, size_t slot, sk_wide4 x,
-                               sk_wide4 v, const sk_contact *contact) {
+SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_row *row, const sk_pose *start, size_t slot, sk_wide4 v,
+                               const encounter *e) {
     const sk_collider *collider = row->rule;
     bool packed = slot < row->packed;
-    real thickness = (real)collider->common->thickness;
-    sk_wide4 x0 = sk_load_part(run->vector[SK_X0], slot, packed);
     sk_wide4 v0 = sk_load_part(run->vector[SK_V0], slot, packed);
     sk_wide4 force = sk_load_part(run->vector[SK_F], slot, packed);
-    sk_mask inside = sk_negative(contact->distance - thickness) & sk_positive(x.w);
+    sk_mask inside = sk_negative(e->contact.distance - (real)collider->common->thickness) & sk_positive(e->x.w);
     if (!sk_any(inside)) return inside;
-    sk_wide3 p0 = {x0.x, x0.y, x0.z}, n = contact->normal;
-    sk_contact before;
-    collider->type->probe[SK_THIS_ISA](collider->params, start, &p0, &before);
-    sk_mask lay = touches(collider, p0, before.distance - thickness);
+    sk_wide4 x0 = sk_load_part(run->vector[SK_X0], slot, packed);
+    encounter before;
+    x0.w = e->x.w;
+    probe(collider, start, x0, &before);
     // the balance of momentum along the normal, without what contact does to it
-    sk_wide hw = (real)row->dt * x.w;
-    sk_wide3 short_of = {hw * force.x - (v.x - v0.x), hw * force.y - (v.y - v0.y), hw * force.z - (v.z - v0.z)};
-    sk_mask presses = sk_negative(sk_dot_wide(short_of, n));
+    sk_wide hw = (real)row->dt * e->x.w;
+    sk_wide3 short_of = minus(times(hw, three(force)), minus(three(v), three(v0)));
+    sk_mask lay = before.touching, presses = sk_negative(sk_dot_wide(short_of, e->contact.normal));
     if (!sk_contact_reads_force(collider)) return inside & (presses | ~lay);
-    sk_wide speed = sk_dot_wide(against(collider, start, p0, &before, v0), before.normal);
-    return inside & lay & presses & ~bounces(collider, speed, hw, force);
+    find_motion(collider, start, &before);
+    sk_wide speed = sk_dot_wide(from_surface(three(v0), &before), before.contact.normal);
+    return inside & lay & presses & ~bounces(collider, e, speed, force, (real)row->dt);
 }
 
 /* Within the solve: what has come inside is held too, and taken back to the surface. What is held already goes on
@@ -171,14 +147,13 @@ void SK_KERNEL(contact_filter_more)(sk_run *run, const sk_row *row, size_t begin
         bool packed = slot < row->packed;
         sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
-        sk_wide3 p = {x.x, x.y, x.z};
-        sk_contact contact;
-        collider->type->probe[SK_THIS_ISA](collider->params, &pose, &p, &contact);
-        sk_mask inside = comes_inside(run, row, &start, slot, x, v, &contact);
+        encounter e;
+        probe(collider, &pose, x, &e);
+        sk_mask inside = comes_inside(run, row, &start, slot, v, &e);
         if (!sk_any(inside)) continue;
-        sk_wide gap = contact.distance - thickness;
+        sk_wide gap = e.contact.distance - thickness;
         filtering f = {sk_load_part(diagonal, slot, packed), sk_load_part(off, slot, packed), v, {{0}, {0}, {0}, {0}}};
-        hold_normal(&f, inside, contact.normal, -gap / (real)row->dt, (real)0.5);
+        hold_normal(&f, inside, e.contact.normal, -gap / (real)row->dt, (real)0.5);
         sk_store_part(diagonal, slot, packed, f.d);
         sk_store_part(off, slot, packed, f.o);
         sk_store_part(run->vector[SK_V], slot, packed, f.v);

@@ -74,6 +74,7 @@ typedef struct segment_job {
     sk_walk walk;
     size_t lag[MOST_SEGMENT];
     size_t chunk_rows, chunk_count, threads;
+    size_t head; /* rows that the first chunk has more, for those by which its rows lag and which it leaves to others */
     size_t first_chunk[MOST_THREADS + 1]; /* of each thread, where there are several */
     size_t ahead;               /* chunks whose last turn must be over before a chunk begins the next */
     size_t turns_abreast;       /* how many turns one thread alone has under way */
@@ -99,10 +100,15 @@ static size_t together(const segment_job *job, size_t g) {
     return count ? count : 1;
 }
 
+/* Where a chunk begins, but for the lag. */
+static size_t start_of(const segment_job *job, size_t chunk) {
+    return chunk ? job->head + chunk * job->chunk_rows : 0;
+}
+
 /* The part of rows [g, g + count) that belongs to a chunk: strip rows, or the slots of them. */
 static void run_part(sk_run *run, const segment_job *job, size_t g, size_t count, size_t chunk) {
     const sk_row *row = &job->rows[g];
-    size_t first = chunk * job->chunk_rows, last = first + job->chunk_rows, lag = job->lag[g];
+    size_t first = start_of(job, chunk), last = start_of(job, chunk + 1), lag = job->lag[g];
     first = first > lag ? first - lag : 0;
     last = chunk + 1 == job->chunk_count ? job->walk.rows : last > lag ? last - lag : 0;
     if (row->walk.rows) {
@@ -135,7 +141,7 @@ static _Atomic uint32_t *progress_of(const segment_job *job, size_t chunk) {
 
 /* Strip rows of all of a turn's rows that are in the first `chunks` chunks: fewer in the first ones, by their lag. */
 static size_t work_before(const segment_job *job, size_t chunks) {
-    size_t sum = 0, end = chunks * job->chunk_rows;
+    size_t sum = 0, end = start_of(job, chunks);
     if (chunks == job->chunk_count) return job->count * job->walk.rows;
     for (size_t g = 0; g < job->count; g++) sum += end > job->lag[g] ? end - job->lag[g] : 0;
     return sum;
@@ -200,9 +206,9 @@ static void run_chunks_alone(const segment_job *job) {
 
 /* Chooses the size of chunks: small enough for the cache, and large enough for threads to keep pace. */
 static void cut_chunks(segment_job *job, int threads) {
-    size_t lag = 0, line_bytes = job->walk.width * 16 * sizeof(sk_vec4), rows = job->walk.rows;
+    size_t lag = 0, lags = 0, line_bytes = job->walk.width * 16 * sizeof(sk_vec4), rows = job->walk.rows;
     for (size_t g = 0; g < job->count; g++) {
-        job->lag[g] = lag += job->rows[g].walk.reach;
+        lags += job->lag[g] = lag += job->rows[g].walk.reach;
         if (job->rows[g].order == SK_FREE) lag += job->rows[g].walk.reach;
     }
     size_t chunk = CHUNK_BYTES / line_bytes / 4 * 4;
@@ -212,6 +218,7 @@ static void cut_chunks(segment_job *job, int threads) {
     if (threads > 1 && job->turns < (size_t)threads * LEAST_TURNS) {
         chunk = (rows / (size_t)threads + 3) / 4 * 4;
         if (chunk < lag + 4) chunk = (lag + 7) / 4 * 4;
+        job->head = lags / job->count;
     }
     // as much is under way if a chunk is as long as the lag, and slots, rest values and the like are read in longer pieces;
     // packed strips read none
