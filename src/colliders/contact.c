@@ -47,9 +47,7 @@ SK_INLINE bool meet(sk_run *run, const sk_row *row, const sk_pose *pose, size_t 
 
 /* Adds `change` to a part of dst in the lanes of the mask. */
 SK_INLINE void apply(sk_run *run, const sk_row *row, size_t slot, sk_wide4 old, sk_mask mask, sk_wide3 change) {
-    old.x = sk_plus_where(mask, old.x, change.x);
-    old.y = sk_plus_where(mask, old.y, change.y);
-    old.z = sk_plus_where(mask, old.z, change.z);
+    add_where(mask, &old, change);
     sk_store_part(run->vector[row->dst], slot, slot < row->packed, old);
 }
 
@@ -153,17 +151,12 @@ void SK_KERNEL(contact_settle)(sk_run *run, const sk_row *row, size_t begin, siz
 
         // the move is velocity, too; but along the normal what counts is how the particle came
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
-        v.x = sk_plus_where(pushed, v.x, per_step * move.x);
-        v.y = sk_plus_where(pushed, v.y, per_step * move.y);
-        v.z = sk_plus_where(pushed, v.z, per_step * move.z);
+        add_where(pushed, &v, times(per_step, move));
         sk_wide3 before = three(sk_load_part(run->vector[row->source[2]], slot, packed));
         sk_wide approach = sk_dot_wide(from_surface(before, &e), e.contact.normal);
         sk_wide change = -sk_dot_wide(from_surface(three(v), &e), e.contact.normal);
         if (bounces) change += bounce_of(run, row, slot, &e, v.w, approach);
-        sk_mask came = e.touching & sk_negative(approach);
-        v.x = sk_plus_where(came, v.x, change * e.contact.normal.x);
-        v.y = sk_plus_where(came, v.y, change * e.contact.normal.y);
-        v.z = sk_plus_where(came, v.z, change * e.contact.normal.z);
+        add_where(e.touching & sk_negative(approach), &v, times(change, e.contact.normal));
         sk_store_moved(run->vector[SK_V], slot, packed, v);
     }
 }

@@ -36,14 +36,10 @@ SK_INLINE void hold_normal(filtering *f, sk_mask mask, sk_wide3 n, sk_wide chang
     sk_wide3 m = through(f, n);
     sk_wide square = sk_dot_wide(m, m);
     mask &= sk_more(square, sk_splat(least));
-    sk_wide s = sk_keep(mask, 1 / square), t = s * change, *const v[3] = {&f->v.x, &f->v.y, &f->v.z};
-    sk_wide *const d[3] = {&f->d.x, &f->d.y, &f->d.z}, *const o[3] = {&f->o.x, &f->o.y, &f->o.z};
-    const sk_wide along[3] = {m.x, m.y, m.z}, first[3] = {m.x, m.x, m.y}, second[3] = {m.y, m.z, m.z};
-    for (int k = 0; k < 3; k++) {
-        *v[k] = sk_plus_where(mask, *v[k], t * along[k]);
-        *d[k] = sk_plus_where(mask, *d[k], -(s * along[k] * along[k]));
-        *o[k] = sk_plus_where(mask, *o[k], -(s * first[k] * second[k]));
-    }
+    sk_wide s = sk_keep(mask, 1 / square);
+    add_where(mask, &f->v, times(s * change, m));
+    add_where(mask, &f->d, (sk_wide3){-(s * m.x * m.x), -(s * m.y * m.y), -(s * m.z * m.z)});
+    add_where(mask, &f->o, (sk_wide3){-(s * m.x * m.y), -(s * m.x * m.z), -(s * m.y * m.z)});
 }
 
 /* What comes faster than a substep's force alone would bring it is to bounce, if the collider lets it. */
@@ -78,17 +74,12 @@ SK_INLINE void hold(const sk_collider *collider, const sk_pose *pose, sk_wide4 x
     sk_wide target = sk_keep(arriving, -gap / h);
     hold_normal(f, held | arriving, n, target - speed, (real)1e-3);
     sk_wide none = {0};
-    sk_wide3 along = through(f, slide);
-    f->v.x = sk_plus_where(sticks, f->v.x, -along.x);
-    f->v.y = sk_plus_where(sticks, f->v.y, -along.y);
-    f->v.z = sk_plus_where(sticks, f->v.z, -along.z);
+    add_where(sticks, &f->v, times(sk_splat(-1), through(f, slide)));
     f->d = (sk_wide4){sk_select(sticks, none, f->d.x), sk_select(sticks, none, f->d.y), sk_select(sticks, none, f->d.z),
                       f->d.w};
     f->o = (sk_wide4){sk_select(sticks, none, f->o.x), sk_select(sticks, none, f->o.y), sk_select(sticks, none, f->o.z),
                       f->o.w};
-    f->friction.x = sk_plus_where(held, f->friction.x, share * stop.x);
-    f->friction.y = sk_plus_where(held, f->friction.y, share * stop.y);
-    f->friction.z = sk_plus_where(held, f->friction.z, share * stop.z);
+    add_where(held, &f->friction, times(share, stop));
 }
 
 void SK_KERNEL(contact_filter)(sk_run *run, const sk_row *row, size_t begin, size_t end) {

@@ -20,6 +20,10 @@ SK_INLINE sk_wide3 three(sk_wide4 a) {
     return (sk_wide3){a.x, a.y, a.z};
 }
 
+SK_INLINE void add_where(sk_mask mask, sk_wide4 *a, sk_wide3 b) {
+    a->x = sk_plus_where(mask, a->x, b.x), a->y = sk_plus_where(mask, a->y, b.y), a->z = sk_plus_where(mask, a->z, b.z);
+}
+
 /* Splits u into its part along the unit normal (returned) and the rest. */
 SK_INLINE sk_wide split(sk_wide3 u, sk_wide3 normal, sk_wide3 *tangential) {
     sk_wide along = sk_dot_wide(u, normal);

@@ -1,5 +1,7 @@
 #include "methods/writer_solve.h"
 
+#include <stddef.h>
+
 size_t sk_write_solve(sk_writer *writer, sk_row_kernel *kernel, const void *params, const char *label) {
     sk_add_row(writer, (sk_row){.kind = SK_ROW_SOLVE,
                                 .order = SK_ORDERED,
@@ -30,58 +32,37 @@ static bool is_elastic(const sk_batch *batch) {
     return sk_batch_pulls(batch) && ((const sk_material *)batch->params)->stiffness < SK_UNBOUNDED;
 }
 
-static void add_batches(sk_writer *writer, sk_row_kind kind, const sk_kernels *(*kernels_of)(const sk_batch *batch),
-                        sk_vector dst, sk_vector second, double a, double b) {
+/* The kernel that lies so far behind the start of a type: what a kind has for an implicit solve. */
+static sk_row_kernel *kernel_at(const sk_writer *writer, const void *type, size_t offset) {
+    return ((const sk_kernels *)(const void *)((const char *)type + offset))->version[writer->isa];
+}
+#define OF_BATCH(name) offsetof(sk_constraint_type, name)
+#define OF_FORCE(name) offsetof(sk_force_type, name)
+
+/* A row for each batch whose kind has such a kernel; those that walk for a product have been written before. */
+static void add_batches(sk_writer *writer, sk_row row, size_t kernel) {
+    row.order = SK_ORDERED; // elements that share a particle add to it in their order
     for (size_t i = 0; i < writer->rules->batches.count; i++) {
         const sk_batch *batch = writer->rules->batches.data[i];
-        sk_row_kernel *kernel = kernels_of(batch)->version[writer->isa];
-        if (!is_elastic(batch) || !kernel) continue;
-        sk_add_row(writer, (sk_row){.kind = kind,
-                                    .order = SK_ORDERED, // elements that share a particle add to it in their order
-                                    .kernel = kernel,
-                                    .dst = dst,
-                                    .source = {SK_X, second, SK_NONE},
-                                    .coefficient = {a, b},
-                                    .rule = batch,
-                                    .label = batch->label,
-                                    .end = batch->count});
+        row.kernel = kernel_at(writer, batch->type, kernel);
+        row.rule = batch;
+        row.label = batch->label;
+        row.end = batch->count;
+        bool walks = kernel == OF_BATCH(apply) && batch->type->apply_sweep.groups.version[writer->isa];
+        if (is_elastic(batch) && row.kernel && !walks) sk_add_row(writer, row);
     }
 }
 
-typedef const sk_kernels *force_kernels(const sk_force_type *type);
-
-static const sk_kernels *force_apply(const sk_force_type *type) {
-    return &type->apply;
-}
-static const sk_kernels *force_diagonal(const sk_force_type *type) {
-    return &type->diagonal;
-}
-static const sk_kernels *force_resistance(const sk_force_type *type) {
-    return &type->resistance;
-}
-
-static void add_forces(sk_writer *writer, sk_row row, force_kernels *kernels_of) {
+static void add_forces(sk_writer *writer, sk_row row, size_t kernel) {
+    row.order = SK_FREE;
+    row.end = writer->slot_count;
     for (size_t i = 0; i < writer->rules->forces.count; i++) {
         const sk_force *force = writer->rules->forces.data[i];
-        row.order = SK_FREE;
-        row.kernel = kernels_of(force->type)->version[writer->isa];
+        row.kernel = kernel_at(writer, force->type, kernel);
         row.rule = force;
         row.label = force->label;
-        row.end = writer->slot_count;
         if (*force->enabled && row.kernel) sk_add_row_on(writer, row, &force->only);
     }
-}
-
-/* Of a kind that has no walk for it. */
-static const sk_kernels *apply_of(const sk_batch *batch) {
-    static const sk_kernels none;
-    return batch->type->apply_sweep.groups.version[0] ? &none : &batch->type->apply;
-}
-static const sk_kernels *diagonal_of(const sk_batch *batch) {
-    return &batch->type->diagonal;
-}
-static const sk_kernels *blocks_of(const sk_batch *batch) {
-    return &batch->type->blocks;
 }
 
 void sk_write_apply(sk_writer *writer, sk_vector dst, sk_vector p, double a, double b) {
@@ -91,8 +72,8 @@ void sk_write_apply(sk_writer *writer, sk_vector dst, sk_vector p, double a, dou
         const sk_sweep_kernels *kernels = &batch->type->apply_sweep;
         if (is_elastic(batch) && kernels->groups.version[writer->isa]) sk_add_sums(writer, batch, row, kernels);
     }
-    add_batches(writer, SK_ROW_APPLY, apply_of, dst, p, a, b);
-    add_forces(writer, row, force_apply);
+    add_batches(writer, row, OF_BATCH(apply));
+    add_forces(writer, row, OF_FORCE(apply));
 }
 
 void sk_write_multiply(sk_writer *writer, double a, double b) {
@@ -104,12 +85,13 @@ void sk_write_multiply(sk_writer *writer, double a, double b) {
 }
 
 void sk_write_diagonal(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b) {
-    add_batches(writer, SK_ROW_LINEARISE, diagonal_of, diagonal, off, a, b);
+    sk_row row = {.kind = SK_ROW_LINEARISE, .dst = diagonal, .source = {SK_X, off}, .coefficient = {a, b}};
+    add_batches(writer, row, OF_BATCH(diagonal));
 }
 
 void sk_write_diagonal_of_forces(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b) {
     sk_row row = {.kind = SK_ROW_LINEARISE, .dst = diagonal, .source = {SK_X, off}, .coefficient = {a, b}};
-    add_forces(writer, row, force_diagonal);
+    add_forces(writer, row, OF_FORCE(diagonal));
 }
 
 static void add_call(sk_writer *writer, sk_row_kernel *kernel, sk_vector dst, sk_vector p, sk_vector q,
@@ -125,7 +107,7 @@ static void add_call(sk_writer *writer, sk_row_kernel *kernel, sk_vector dst, sk
 
 void sk_write_factor(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b) {
     add_call(writer, sk_matrix_clear, SK_NONE, diagonal, off, "A: particles");
-    add_batches(writer, SK_ROW_LINEARISE, blocks_of, SK_NONE, SK_NONE, a, b);
+    add_batches(writer, (sk_row){.kind = SK_ROW_LINEARISE, .source = {SK_X}, .coefficient = {a, b}}, OF_BATCH(blocks));
     add_call(writer, sk_matrix_factor, SK_NONE, (sk_vector)SK_FILTER0, (sk_vector)SK_FILTER1, "L L^T of S A S + 1 - S");
 }
 
@@ -135,7 +117,7 @@ void sk_write_factor_solve(sk_writer *writer, sk_vector dst, sk_vector p) {
 
 void sk_write_resistance(sk_writer *writer, sk_vector dst, double a) {
     sk_row row = {.kind = SK_ROW_LINEARISE, .dst = dst, .source = {SK_V}, .coefficient = {a}};
-    add_forces(writer, row, force_resistance);
+    add_forces(writer, row, OF_FORCE(resistance));
 }
 
 static void add_filters(sk_writer *writer, const sk_kernels *kernels, sk_vector friction) {

@@ -341,43 +341,42 @@ static void run_repeat(sk_run *run, const sk_row *repeat) {
     run->time = start + (double)repeat->end * repeat->dt;
 }
 
-/* A solve that is timed: less what the rows have taken that it had run. */
-static void run_solve(sk_run *run, const sk_row *row) {
-    const double *seconds = run->seconds ? run->seconds + (row - run->timed) : NULL;
-    double rows_before = 0, rows_after = 0, begin = seconds ? sk_seconds() : 0;
-    for (size_t r = 1; seconds && r <= row->length; r++) rows_before += seconds[r];
-    row->kernel(run, row, row->begin, row->end);
-    for (size_t r = 1; seconds && r <= row->length; r++) rows_after += seconds[r];
-    if (seconds) run->seconds[row - run->timed] += sk_seconds() - begin - (rows_after - rows_before);
+static double clock_of(const sk_run *run) {
+    return run->seconds ? sk_seconds() : 0;
 }
 
-/* As many rows as go together: those that lead none up to the next that does, or, with a clock, one. */
-static size_t run_plain(sk_run *run, const sk_row *rows, size_t count) {
+/* What the rows behind a row have taken, so far. */
+static double taken_behind(const sk_run *run, const sk_row *row) {
+    double sum = 0;
+    for (size_t r = 1; run->seconds && r <= row->length; r++) sum += run->seconds[row - run->timed + (ptrdiff_t)r];
+    return sum;
+}
+
+/* As many rows as go together, a solve with those that it leads: rows that lead none, up to the next that does; with a
+ * clock, one. */
+static size_t run_some(sk_run *run, const sk_row *rows, size_t count) {
     size_t length = 1;
-    while (!run->seconds && length < count && !leads(&rows[length])) length++;
-    double begin = run->seconds ? sk_seconds() : 0;
-    run_segments(run, run->tasks, rows, length);
-    if (run->seconds) run->seconds[rows - run->timed] += sk_seconds() - begin;
-    return length;
+    bool solves = rows->kind == SK_ROW_SOLVE;
+    while (!run->seconds && !solves && length < count && !leads(&rows[length])) length++;
+    double begin = clock_of(run), behind = taken_behind(run, rows);
+    if (solves) rows->kernel(run, rows, rows->begin, rows->end);
+    else run_segments(run, run->tasks, rows, length);
+    if (run->seconds) run->seconds[rows - run->timed] += clock_of(run) - begin - (taken_behind(run, rows) - behind);
+    return solves ? 1 + rows->length : length;
 }
 
 static void run_rows(sk_run *run, const sk_row *rows, size_t count) {
     for (size_t r = 0; r < count;) {
         const sk_row *row = &rows[r];
+        bool led = row->kind == SK_ROW_REPEAT || row->kind == SK_ROW_PART; // (a part waits for its solve)
         if (row->kind == SK_ROW_REPEAT) run_repeat(run, row);
-        else if (row->kind == SK_ROW_SOLVE) run_solve(run, row);
-        r += leads(row) ? 1 + row->length : run_plain(run, row, count - r);
+        r += led ? 1 + row->length : run_some(run, row, count - r);
     }
 }
 
 void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count) {
-    sk_run_rows_timed(run, tasks, rows, count, NULL);
-}
-
-void sk_run_rows_timed(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count, double *seconds) {
     run->tasks = tasks;
     run->rows = run_rows;
-    run->seconds = seconds;
     run->timed = rows;
     run_rows(run, rows, count);
 }

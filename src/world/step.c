@@ -200,8 +200,8 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
         sk_tasks_use(world->tasks, sk_pace_threads(&world->pace));
         double start = world->pace.levels > 1 ? sk_seconds() : 0;
         uint64_t mode = sk_float_mode_enter();
-        if (seconds) sk_run_rows_timed(&run, world->tasks, world->plan.data, world->plan.count, seconds);
-        else sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
+        run.seconds = seconds;
+        sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
         sk_float_mode_leave(mode);
         if (world->pace.levels > 1 && !seconds) sk_pace_note(&world->pace, sk_seconds() - start);
         if (run.no_memory) status = sk_fail_memory(error, "the neighbour grid; the step was not finished");

@@ -311,9 +311,8 @@ double sk_stable_substep(const sk_method_type *method, const skein_stability *st
 /* Fills in the kinetic, potential and elastic energies, and the momenta. The slots are to be up to date. */
 void sk_world_measure_energy(const skein_world *world, skein_statistics *statistics);
 double sk_seconds(void); /* of a clock that only goes forward */
-/* Runs rows in their order; the plan's are a whole step. `seconds`: of each row, what it takes is added to. */
-void sk_run_rows_timed(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count, double *seconds);
-/* The same without looking at the clock, and as fast as it can be. */
+/* Runs rows in their order; the plan's are a whole step. Where the run has `seconds`, by the clock and one by one, else
+ * as fast as it can be. */
 void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count);
 
 #endif
