@@ -42,6 +42,14 @@ SK_INLINE void hold_normal(filtering *f, sk_mask mask, sk_wide3 n, sk_wide chang
     add_where(mask, &f->o, (sk_wide3){-(s * m.x * m.y), -(s * m.x * m.z), -(s * m.y * m.z)});
 }
 
+/* Touching: by the sum of the coordinates, a hair further than in other contact, which measures by the largest. (Taking
+ * that changed what stands on spheres in its last digits.) */
+SK_INLINE sk_mask touches(const sk_collider *collider, const encounter *e) {
+    sk_wide size = sk_wide_abs(e->x.x) + sk_wide_abs(e->x.y) + sk_wide_abs(e->x.z);
+    real thickness = (real)collider->common->thickness;
+    return sk_at_most(e->contact.distance - thickness, (real)1e-3 * thickness + (real)4e-6 * (size + (real)0.1));
+}
+
 /* What comes faster than a substep's force alone would bring it is to bounce, if the collider lets it. */
 SK_INLINE sk_mask bounces(const sk_collider *collider, const encounter *e, sk_wide speed, sk_wide4 force, real h) {
     sk_mask fast = sk_more(-speed, resting_speed(e, force, h));
@@ -58,9 +66,10 @@ SK_INLINE void hold(const sk_collider *collider, const sk_pose *pose, sk_wide4 x
     sk_wide normal_force = split(three(force), n, &force_t), coming = speed + hw * normal_force;
 
     sk_wide gap = e.contact.distance - (real)collider->common->thickness;
-    sk_mask is_free = sk_positive(x.w), held = e.touching & sk_negative(coming) & ~bounces(collider, &e, speed, force, h);
+    sk_mask is_free = sk_positive(x.w), touching = touches(collider, &e) & is_free;
+    sk_mask held = touching & sk_negative(coming) & ~bounces(collider, &e, speed, force, h);
     // by its velocity alone: what a stiff spring would do to it over a whole substep it does not get to do
-    sk_mask arriving = is_free & ~e.touching & sk_negative(gap + h * speed);
+    sk_mask arriving = is_free & ~touching & sk_negative(gap + h * speed);
     if (sk_contact_reads_force(collider)) arriving &= ~arriving;
     if (!sk_any(held | arriving)) return;
 
@@ -112,14 +121,12 @@ SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_row *row, const sk_po
     sk_wide4 force = sk_load_part(run->vector[SK_F], slot, packed);
     sk_mask inside = sk_negative(e->contact.distance - (real)collider->common->thickness) & sk_positive(e->x.w);
     if (!sk_any(inside)) return inside;
-    sk_wide4 x0 = sk_load_part(run->vector[SK_X0], slot, packed);
     encounter before;
-    x0.w = e->x.w;
-    probe(collider, start, x0, &before);
+    probe(collider, start, sk_load_part(run->vector[SK_X0], slot, packed), &before);
     // the balance of momentum along the normal, without what contact does to it
     sk_wide hw = (real)row->dt * e->x.w;
     sk_wide3 short_of = minus(times(hw, three(force)), minus(three(v), three(v0)));
-    sk_mask lay = before.touching, presses = sk_negative(sk_dot_wide(short_of, e->contact.normal));
+    sk_mask lay = touches(collider, &before), presses = sk_negative(sk_dot_wide(short_of, e->contact.normal));
     if (!sk_contact_reads_force(collider)) return inside & (presses | ~lay);
     find_motion(collider, start, &before);
     sk_wide speed = sk_dot_wide(from_surface(three(v0), &before), before.contact.normal);
