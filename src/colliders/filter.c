@@ -82,12 +82,9 @@ SK_INLINE void hold(const sk_collider *collider, const sk_pose *pose, sk_wide4 x
     sk_wide share = sk_keep(held & ~sticks & sk_positive(needed), most / needed);
     sk_wide target = sk_keep(arriving, -gap / h);
     hold_normal(f, held | arriving, n, target - speed, (real)1e-3);
-    sk_wide none = {0};
     add_where(sticks, &f->v, times(sk_splat(-1), through(f, slide)));
-    f->d = (sk_wide4){sk_select(sticks, none, f->d.x), sk_select(sticks, none, f->d.y), sk_select(sticks, none, f->d.z),
-                      f->d.w};
-    f->o = (sk_wide4){sk_select(sticks, none, f->o.x), sk_select(sticks, none, f->o.y), sk_select(sticks, none, f->o.z),
-                      f->o.w};
+    f->d = (sk_wide4){sk_keep(~sticks, f->d.x), sk_keep(~sticks, f->d.y), sk_keep(~sticks, f->d.z), f->d.w};
+    f->o = (sk_wide4){sk_keep(~sticks, f->o.x), sk_keep(~sticks, f->o.y), sk_keep(~sticks, f->o.z), f->o.w};
     add_where(held, &f->friction, times(share, stop));
 }
 

@@ -36,8 +36,6 @@ static bool is_elastic(const sk_batch *batch) {
 static sk_row_kernel *kernel_at(const sk_writer *writer, const void *type, size_t offset) {
     return ((const sk_kernels *)(const void *)((const char *)type + offset))->version[writer->isa];
 }
-#define OF_BATCH(name) offsetof(sk_constraint_type, name)
-#define OF_FORCE(name) offsetof(sk_force_type, name)
 
 /* A row for each batch whose kind has such a kernel; those that walk for a product have been written before. */
 static void add_batches(sk_writer *writer, sk_row row, size_t kernel) {
@@ -48,7 +46,7 @@ static void add_batches(sk_writer *writer, sk_row row, size_t kernel) {
         row.rule = batch;
         row.label = batch->label;
         row.end = batch->count;
-        bool walks = kernel == OF_BATCH(apply) && batch->type->apply_sweep.groups.version[writer->isa];
+        bool walks = kernel == offsetof(sk_constraint_type, apply) && batch->type->apply_sweep.groups.version[writer->isa];
         if (is_elastic(batch) && row.kernel && !walks) sk_add_row(writer, row);
     }
 }
@@ -72,8 +70,8 @@ void sk_write_apply(sk_writer *writer, sk_vector dst, sk_vector p, double a, dou
         const sk_sweep_kernels *kernels = &batch->type->apply_sweep;
         if (is_elastic(batch) && kernels->groups.version[writer->isa]) sk_add_sums(writer, batch, row, kernels);
     }
-    add_batches(writer, row, OF_BATCH(apply));
-    add_forces(writer, row, OF_FORCE(apply));
+    add_batches(writer, row, offsetof(sk_constraint_type, apply));
+    add_forces(writer, row, offsetof(sk_force_type, apply));
 }
 
 void sk_write_multiply(sk_writer *writer, double a, double b) {
@@ -86,12 +84,12 @@ void sk_write_multiply(sk_writer *writer, double a, double b) {
 
 void sk_write_diagonal(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b) {
     sk_row row = {.kind = SK_ROW_LINEARISE, .dst = diagonal, .source = {SK_X, off}, .coefficient = {a, b}};
-    add_batches(writer, row, OF_BATCH(diagonal));
+    add_batches(writer, row, offsetof(sk_constraint_type, diagonal));
 }
 
 void sk_write_diagonal_of_forces(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b) {
     sk_row row = {.kind = SK_ROW_LINEARISE, .dst = diagonal, .source = {SK_X, off}, .coefficient = {a, b}};
-    add_forces(writer, row, OF_FORCE(diagonal));
+    add_forces(writer, row, offsetof(sk_force_type, diagonal));
 }
 
 static void add_call(sk_writer *writer, sk_row_kernel *kernel, sk_vector dst, sk_vector p, sk_vector q,
@@ -107,7 +105,7 @@ static void add_call(sk_writer *writer, sk_row_kernel *kernel, sk_vector dst, sk
 
 void sk_write_factor(sk_writer *writer, sk_vector diagonal, sk_vector off, double a, double b) {
     add_call(writer, sk_matrix_clear, SK_NONE, diagonal, off, "A: particles");
-    add_batches(writer, (sk_row){.kind = SK_ROW_LINEARISE, .source = {SK_X}, .coefficient = {a, b}}, OF_BATCH(blocks));
+    add_batches(writer, (sk_row){.kind = SK_ROW_LINEARISE, .source = {SK_X}, .coefficient = {a, b}}, offsetof(sk_constraint_type, blocks));
     add_call(writer, sk_matrix_factor, SK_NONE, (sk_vector)SK_FILTER0, (sk_vector)SK_FILTER1, "L L^T of S A S + 1 - S");
 }
 
@@ -117,7 +115,7 @@ void sk_write_factor_solve(sk_writer *writer, sk_vector dst, sk_vector p) {
 
 void sk_write_resistance(sk_writer *writer, sk_vector dst, double a) {
     sk_row row = {.kind = SK_ROW_LINEARISE, .dst = dst, .source = {SK_V}, .coefficient = {a}};
-    add_forces(writer, row, OF_FORCE(resistance));
+    add_forces(writer, row, offsetof(sk_force_type, resistance));
 }
 
 static void add_filters(sk_writer *writer, const sk_kernels *kernels, sk_vector friction) {

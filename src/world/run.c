@@ -341,10 +341,6 @@ static void run_repeat(sk_run *run, const sk_row *repeat) {
     run->time = start + (double)repeat->end * repeat->dt;
 }
 
-static double clock_of(const sk_run *run) {
-    return run->seconds ? sk_seconds() : 0;
-}
-
 /* What the rows behind a row have taken, so far. */
 static double taken_behind(const sk_run *run, const sk_row *row) {
     double sum = 0;
@@ -358,10 +354,10 @@ static size_t run_some(sk_run *run, const sk_row *rows, size_t count) {
     size_t length = 1;
     bool solves = rows->kind == SK_ROW_SOLVE;
     while (!run->seconds && !solves && length < count && !leads(&rows[length])) length++;
-    double begin = clock_of(run), behind = taken_behind(run, rows);
+    double begin = run->seconds ? sk_seconds() : 0, behind = taken_behind(run, rows);
     if (solves) rows->kernel(run, rows, rows->begin, rows->end);
     else run_segments(run, run->tasks, rows, length);
-    if (run->seconds) run->seconds[rows - run->timed] += clock_of(run) - begin - (taken_behind(run, rows) - behind);
+    if (run->seconds) run->seconds[rows - run->timed] += sk_seconds() - begin - (taken_behind(run, rows) - behind);
     return solves ? 1 + rows->length : length;
 }
 
