@@ -171,7 +171,7 @@ bool sk_plan_fuse(sk_plan *plan, sk_allocator *allocator, sk_isa isa) {
     sk_plan fused = {.parts = plan->parts};
     fuser f = {&fused, allocator, isa, false};
     for (size_t r = 0; r < plan->count; r++) {
-        if (plan->data[r].kind == SK_ROW_REPEAT && !plan->data[r].cell) {
+        if (plan->data[r].kind == SK_ROW_REPEAT) {
             fuse_repeat(&f, &plan->data[r]);
             r += plan->data[r].length;
         } else {
