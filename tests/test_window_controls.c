@@ -278,8 +278,18 @@ static bool is_left_out(const skein_kind *kind, const skein_field *field) {
 
 enum { MOST_CONTROLS = 64, FRAMES = 2 };
 
+/* Right after Enter a text box has the keys for one more picture: waits until they are the window's. */
+static void await_keys(void) {
+    for (int turn = 0; turn < 20; turn++) {
+        listen_from_here();
+        tool("key Shift_L");
+        if (hear("key 340 ", 1)) return;
+    }
+}
+
 /* Some frames after the start. */
 static void ask_hash(char hash[32]) {
+    await_keys();
     press_key("BackSpace");
     for (int i = 0; i < FRAMES; i++) press_key("period");
     const char *at = strstr(screen.line, " hash=");
