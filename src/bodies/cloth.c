@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "bodies/body.h"
+#include "bodies/coarse.h"
 #include "bodies/faults.h"
 #include "bodies/geodesic.h"
 #include "bodies/hinges.h"
@@ -84,6 +85,7 @@ typedef struct tailor {
     sk_sheet sheet;
     sk_springs springs;
     sk_lines lines; /* of what lies in strips */
+    sk_coarse_grid coarsest; /* of its coarse grids; none where row_step is 0 */
     bool *pinned;
     double *mass;
     uint32_t *rank; /* of each particle, outward; NULL where it is a grid, or a narrow mesh without pins */
@@ -180,9 +182,11 @@ static skein_status add_bending(tailor *t) {
     return status;
 }
 
-/* Bounds over many edges: a grid's along its rows and columns, those of other meshes along the mesh's own x and z. A mesh
+/* Bounds over many edges: by coarse grids where it is a whole grid, else along its rows and columns, those of other meshes along the mesh's own x and z. A mesh
  * without pins hangs on nothing: it may be a balloon, which is to grow. */
 static skein_status add_spans(tailor *t) {
+    if (t->lines.area && sk_coarse_fits(&t->lines))
+        return sk_coarse_add(&t->lines, t->mass, t->world, t->body, &t->coarsest, t->error);
     if (t->lines.area) return sk_lines_add_spans(&t->lines, t->world, t->body, t->error);
     bool pinned = false;
     for (size_t i = 0; i < t->sheet.particle_count; i++) pinned |= t->pinned[i];
@@ -243,6 +247,20 @@ static bool measure_tethers(tailor *t, sk_geodesic *geodesic, const bool *source
     return true;
 }
 
+/* The tethers of the coarsest grid once more, for each substep's start. Moves them to the front of the lists. */
+static skein_status add_coarse_tethers(tailor *t, size_t count, size_t anchors, uint32_t *particles, real *lengths) {
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t particle = particles[i * (1 + anchors)];
+        if (!sk_coarse_has(&t->coarsest, &t->lines, particle - t->body->first_particle)) continue;
+        memmove(particles + kept * (1 + anchors), particles + i * (1 + anchors), (1 + anchors) * sizeof *particles);
+        memmove(lengths + kept++ * anchors, lengths + i * anchors, anchors * sizeof *lengths);
+    }
+    skein_status status = sk_world_add_tethers(t->world, t->body, kept, anchors, particles, lengths, t->error);
+    if (!status) sk_world_tether_early(t->world);
+    return status;
+}
+
 /* A few pins hold every particle each on its own; many (an edge) hold it by the nearest one. */
 static skein_status add_tethers(tailor *t) {
     sk_allocator *allocator = &t->world->allocator;
@@ -271,6 +289,7 @@ static skein_status add_tethers(tailor *t) {
                               ? sk_world_add_tethers(t->world, t->body, tethered, anchors, particles, lengths, t->error)
                               : sk_fail_memory(t->error, "tethers");
     if (!status && t->lines.area) sk_world_tether_seldom(t->world);
+    if (!status && t->coarsest.row_step) status = add_coarse_tethers(t, tethered, anchors, particles, lengths);
     sk_geodesic_release(geodesic);
     sk_release(allocator, distance);
     sk_release(allocator, nearest);

@@ -225,6 +225,10 @@ static double edge_length(const sk_lines *lines, size_t row, size_t column, int 
     return distance(position_at(lines, place), position_at(lines, next));
 }
 
+double sk_lines_edge(const sk_lines *lines, size_t row, size_t column, bool along_column) {
+    return edge_length(lines, row, column, along_column ? ALONG_COLUMN : ALONG_ROW);
+}
+
 /* All spans of so many edges along one row or column. */
 static void add_spans_along(maker *m, size_t line, uint32_t edges, int direction, double *length) {
     const sk_lines *lines = m->lines;

@@ -27,6 +27,8 @@ void sk_lines_release(sk_lines *lines);
  * rows and columns and c its twist, which is B kappa^2/2 whichever way it is rolled up. */
 skein_status sk_lines_add_bending(const sk_lines *lines, skein_world *world, sk_body *body, double rigidity,
                                   skein_error *error);
+/* Length of the edge from a place to the next one along its row or column; 0 where no cell is beside it. */
+double sk_lines_edge(const sk_lines *lines, size_t row, size_t column, bool along_column);
 /* Bounds on how far particles get from others of their row and column, which the body's tether bound holds. */
 skein_status sk_lines_add_spans(const sk_lines *lines, skein_world *world, sk_body *body, skein_error *error);
 

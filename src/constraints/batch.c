@@ -126,7 +126,7 @@ void sk_batch_release(sk_batch *batch, sk_allocator *allocator) {
     sk_batch_forget_sweeps(batch, allocator);
     sk_enclosure_release(batch->enclosure, allocator);
     release_elements(&batch->whole, allocator);
-    void *arrays[] = {batch->particle,        batch->slot,           batch->rest,
+    void *arrays[] = {batch->coarse,          batch->particle,        batch->slot,           batch->rest,
                       batch->scale,           batch->sweeps,         batch->lane,
                       batch->lane_rest,       batch->lane_stiffness, batch->lane_compliance,
                       batch->lane_multiplier, batch->special,        batch->pair};

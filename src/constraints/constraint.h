@@ -16,6 +16,7 @@
 
 #include "base/fields.h"
 #include "formula/parameters.h"
+#include "constraints/coarse.h"
 #include "particles/particles.h"
 #include "plan/row.h"
 
@@ -102,6 +103,7 @@ struct sk_batch {
     const double *bound; /* of the relative violation, kept by limit rows; NULL: none */
     bool only_bounds;    /* it is a bound and nothing else: it does not pull, and is not counted */
     bool seldom;         /* position methods may take it in every second substep only, with the same stiffness */
+    sk_coarse *coarse;   /* its particles are those of a coarse grid (constraints/coarse.h), and only bounded; NULL: not */
     bool measured;       /* an edge of a body: it counts in the stretch of the statistics */
     size_t count, arity, rest_count;
     uint32_t *particle; /* count x arity, user's indices */
@@ -167,5 +169,7 @@ sk_row_kernel sk_sweep_clear_multipliers;
 
 /* The batch's damping over stiffness, in seconds; 0 for a rigid batch. */
 double sk_batch_damping_time(const sk_batch *batch);
+
+extern const struct sk_constraint_type sk_coarse_distance; /* no user's kind */
 
 #endif

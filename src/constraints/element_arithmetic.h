@@ -135,6 +135,9 @@ SK_INLINE void project_damped(sk_element *e, const sk_element_constants *c) {
 /* Back to the bound, as if rigid there. Lanes without an element have a rest value of 0: for them any is right. False
  * where all are within. */
 SK_INLINE bool limit(sk_element *e, const sk_element_constants *c, bool moving) {
+#ifdef SK_SHARES
+    SK_EACH_PARTICLE (i) e->w[i] *= e->rest[1 + i];
+#endif
     sk_wide most = c->bound * e->rest[0];
 #ifdef SK_BEYOND
     if (!sk_any(SK_BEYOND(e, most) & sk_positive(e->rest[0]))) return false;

@@ -178,6 +178,21 @@ SK_INLINE void meet_span(sk_run *run, const sk_sweep *sweep, const sk_element_co
             meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, o, turned, mode);
 }
 
+/* The same of a coarse grid, which has lanes of its own. */
+SK_INLINE void meet_coarse(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
+                           size_t end, const sk_span *span, const offsets *o, bool turned, sk_element_mode mode) {
+    const sk_coarse_grid *grid = &sweep->batch->coarse->grid;
+    size_t width = sweep->walk.width, count = sk_coarse_columns(grid, width);
+    size_t row = begin > grid->row_first ? (begin - grid->row_first + grid->row_step - 1) / grid->row_step : 0;
+    for (size_t b = 0; b < count; b++) {
+        size_t k = grid->first + b * grid->step;
+        if (k < span->first || k >= span->last) continue;
+        for (size_t r = row, at; (at = grid->row_first + r * grid->row_step) < end; r++)
+            meet_blocks(run, sweep, constants, sweep->first_lane + (r * count + b) * SK_LANES,
+                        sweep->walk.first_slot + (at * width + k) * SK_LANES, o, turned, mode);
+    }
+}
+
 typedef void span_walk(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
                        size_t end, const sk_span *span, const offsets *o, sk_half half);
 
@@ -190,11 +205,14 @@ SK_INLINE void sweep_strips(sk_run *run, const sk_row *row, size_t begin, size_t
     offsets o[SK_MOST_ARITY];
     for (size_t i = 0; i < sweep->span_count; i++) o[i] = offsets_of(sweep, &sweep->span[i], sweep->span[i].turned);
     size_t side_by_side = sweep->walk.reach == 0 ? SK_ROWS_SIDE_BY_SIDE * stride_of(sweep, row->half).row : 1;
+    const sk_coarse *coarse = mode == SK_MODE_LIMIT ? sweep->batch->coarse : NULL;
+    if (coarse && sweep->walk.reach == 0) side_by_side = SK_ROWS_SIDE_BY_SIDE * coarse->grid.row_step;
     for (size_t r = begin; r < end; r += side_by_side) {
         size_t stop = r + side_by_side < end ? r + side_by_side : end;
         for (size_t i = 0; i < sweep->span_count; i++) {
             const sk_span *at = &sweep->span[i];
-            if (!at->turned) meet_span(run, sweep, &constants, r, stop, at, &o[i], row->half, false, mode);
+            if (coarse && !at->turned) meet_coarse(run, sweep, &constants, r, stop, at, &o[i], false, mode);
+            else if (!at->turned) meet_span(run, sweep, &constants, r, stop, at, &o[i], row->half, false, mode);
             else if (mode == SK_MODE_PROJECT && SK_ARITY == 2)
                 meet_span(run, sweep, &constants, r, stop, at, &o[i], row->half, true, mode);
             else turned(run, sweep, &constants, r, stop, at, &o[i], row->half);
@@ -399,7 +417,9 @@ SK_INLINE void sweep_groups(sk_run *run, const sk_row *row, size_t begin, size_t
                                                         const sk_element_constants *constants, size_t begin, \
                                                         size_t end, const sk_span *span, const offsets *o,   \
                                                         sk_half half) {                                      \
-        meet_span(run, sweep, constants, begin, end, span, o, half, true, mode);                             \
+        if (mode == SK_MODE_LIMIT && sweep->batch->coarse)                                                   \
+            meet_coarse(run, sweep, constants, begin, end, span, o, true, mode);                             \
+        else meet_span(run, sweep, constants, begin, end, span, o, half, true, mode);                        \
     }                                                                                                        \
     void SK_KERNEL(name##_strips)(sk_run * run, const sk_row *row, size_t begin, size_t end) {               \
         sweep_strips(run, row, begin, end, mode, name##_turned);                                             \

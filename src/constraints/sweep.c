@@ -149,6 +149,22 @@ static void name_sweep(sk_sweep *sweep, int arity) {
                            sweep->column_step[i]);
 }
 
+/* Of a place in strips, its lane among all of its sweep's: a block of sixteen for each column of a strip row; of a coarse
+ * grid, of those that are in it. */
+static size_t lane_of_place(const sk_batch *batch, size_t width, size_t row, size_t column) {
+    size_t block = column % width, strip = column / width;
+    if (!batch->coarse) return (row * width + block) * SK_LANES + strip;
+    const sk_coarse_grid *grid = &batch->coarse->grid;
+    row = (row - grid->row_first) / grid->row_step, block = (block - grid->first) / grid->step;
+    return (row * sk_coarse_columns(grid, width) + block) * SK_LANES + strip;
+}
+
+/* How many blocks of lanes a sweep along strips has. */
+static size_t block_count(const sk_batch *batch, size_t rows, size_t width) {
+    if (!batch->coarse) return rows * width;
+    return sk_coarse_rows(&batch->coarse->grid, rows) * sk_coarse_columns(&batch->coarse->grid, width);
+}
+
 /* Finds each element's direction, which mostly is that of the element before it, and where it stands in it. */
 static void find_directions(cutter *c) {
     direction *d = NULL;
@@ -162,8 +178,7 @@ static void find_directions(cutter *c) {
         c->direction_of[e] = d ? d->number : NO_DIRECTION;
         if (!d) continue;
         d->count++;
-        size_t width = place.strips->width;
-        c->lane_of[e] = (place.row * width + place.column % width) * SK_LANES + place.column / width;
+        c->lane_of[e] = lane_of_place(c->batch, place.strips->width, place.row, place.column);
     }
 }
 
@@ -176,7 +191,7 @@ static bool add_strip_sweeps(cutter *c) {
         direction *d = &c->directions[i];
         const sk_strips *strips = d->like.strips;
         size_t places = (size_t)strips->rows * strips->columns, reach = 0;
-        if (d->count * LEAST_SHARE < places) continue;
+        if (!batch->coarse && d->count * LEAST_SHARE < places) continue;
         if (!sk_reserve(c->allocator, (void **)&batch->sweeps, &batch->sweep_capacity, batch->sweep_count + 1,
                         sizeof(sk_sweep)))
             return false;
@@ -193,7 +208,7 @@ static bool add_strip_sweeps(cutter *c) {
         memcpy(sweep->column_step, d->like.column_step, sizeof sweep->column_step);
         find_spans(sweep, c->arity);
         name_sweep(sweep, c->arity);
-        batch->lane_count += (size_t)strips->rows * strips->width * SK_LANES;
+        batch->lane_count += block_count(batch, strips->rows, strips->width) * SK_LANES;
     }
     for (size_t i = batch->sweep_count; i-- > 0;) {
         bool goes_on =
@@ -290,7 +305,7 @@ bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particl
 
 /* The values of a strip sweep's middle element stand for all; blocks that differ are marked. */
 static void mark_special(sk_batch *batch, sk_sweep *sweep) {
-    size_t blocks = sweep->walk.rows * sweep->walk.width;
+    size_t blocks = block_count(batch, sweep->walk.rows, sweep->walk.width);
     size_t middle = sweep->first_lane + (blocks / 2) * SK_LANES + SK_LANES / 2;
     for (size_t r = 0; r < batch->rest_count; r++) sweep->rest[r] = batch->lane_rest[r * batch->lane_count + middle];
     sweep->stiffness = batch->lane_stiffness[middle];

@@ -29,6 +29,7 @@ typedef struct sk_limit {
     const bool *enabled;
     const double *bound; /* of the stretch: 0.05 lets it grow by 5 % */
     bool seldom;         /* position methods may take it in every second substep only */
+    bool early;          /* position methods take it before their projections, for a coarse grid; others leave it out */
     size_t count;
     size_t anchors;     /* of each element */
     bool shared;        /* all elements have the same anchors */
@@ -37,6 +38,7 @@ typedef struct sk_limit {
     /* by slot, from first_slot on (a multiple of 16) */
     size_t first_slot, slot_count;
     real *slot_length; /* slot_count x anchors, in blocks */
+    bool *empty; /* of each block: nobody in it is tethered */
     uint32_t
         *pin_of; /* places in `pins`: anchors of them where they are shared, else slot_count x anchors, in blocks */
     /* of the present step */

@@ -105,6 +105,7 @@ void SK_KERNEL(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, size_
     size_t anchors = limit->anchors;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         size_t at = slot - limit->first_slot;
+        if (limit->empty[at / SK_LANES]) continue;
         sk_wide4 x = sk_load_part(run->vector[row->dst], slot, slot < row->packed);
         sk_wide3 forth = {x.x, x.y, x.z}, back = forth;
         pullers by = {{{0}, {0}, {0}}, {0}};
@@ -175,6 +176,7 @@ void sk_limit_release(sk_limit *limit, sk_allocator *allocator) {
     sk_release(allocator, limit->particle);
     sk_release(allocator, limit->length);
     sk_release(allocator, limit->slot_length);
+    sk_release(allocator, limit->empty);
     sk_release(allocator, limit->pin_of);
     sk_release(allocator, limit->pins);
     sk_release(allocator, limit);
@@ -215,9 +217,11 @@ static void fill_blocks(sk_limit *limit, const sk_particles *particles, const ui
         limit->slot_length[i] = (real)SK_FAR;
         if (!limit->shared) limit->pin_of[i] = 0;
     }
+    for (size_t block = 0; block < limit->slot_count / SK_LANES; block++) limit->empty[block] = true;
     for (size_t e = 0; e < limit->count; e++) {
         const uint32_t *element = limit->particle + e * (1 + anchors);
         size_t at = particles->slot_of[element[0]] - limit->first_slot, block = at / SK_LANES, lane = at % SK_LANES;
+        limit->empty[block] = false;
         for (size_t k = 0; k < anchors; k++) {
             size_t place = (block * anchors + k) * SK_LANES + lane;
             limit->slot_length[place] = limit->length[e * anchors + k];
@@ -230,9 +234,11 @@ static void fill_blocks(sk_limit *limit, const sk_particles *particles, const ui
 bool sk_limit_arrange(sk_limit *limit, sk_allocator *allocator, const sk_particles *particles) {
     size_t anchors = limit->anchors, low = SIZE_MAX, high = 0;
     sk_release(allocator, limit->slot_length);
+    sk_release(allocator, limit->empty);
     sk_release(allocator, limit->pin_of);
     sk_release(allocator, limit->pins);
     limit->slot_length = NULL;
+    limit->empty = NULL;
     limit->pin_of = NULL;
     limit->pins = NULL;
     for (size_t e = 0; e < limit->count; e++) {
@@ -245,8 +251,9 @@ bool sk_limit_arrange(sk_limit *limit, sk_allocator *allocator, const sk_particl
     limit->slot_length = sk_allocate(allocator, limit->slot_count * anchors * sizeof *limit->slot_length);
     limit->pin_of =
         sk_allocate(allocator, (limit->shared ? anchors : limit->slot_count * anchors) * sizeof *limit->pin_of);
+    limit->empty = sk_allocate(allocator, limit->slot_count / SK_LANES * sizeof *limit->empty);
     uint32_t *place_of = sk_allocate(allocator, particles->count * sizeof *place_of);
-    bool good = limit->slot_length && limit->pin_of && place_of && list_pins(limit, allocator, particles, place_of);
+    bool good = limit->slot_length && limit->empty && limit->pin_of && place_of && list_pins(limit, allocator, particles, place_of);
     if (good) fill_blocks(limit, particles, place_of);
     sk_release(allocator, place_of);
     return good;

@@ -354,6 +354,7 @@ void sk_write_prediction(sk_writer *writer) {
     sk_write_sum(writer, SK_X0, 1, SK_X, 0, SK_NONE);
     if (any_collider(writer->rules)) sk_write_sum(writer, SK_V0, 1, SK_V, 0, SK_NONE);
     sk_write_sum(writer, SK_X, 1, SK_X, writer->h, SK_V);
+    writer->predicted = true;
     sk_write_moment(writer, 1);
 }
 
@@ -467,12 +468,56 @@ static size_t seldom_of(const sk_writer *writer) {
     return writer->turns % 2 == 0 ? 2 : 0;
 }
 
+static sk_row limit_row(const sk_writer *writer, const sk_limit *limit, sk_vector velocity, size_t every) {
+    return (sk_row){.kind = SK_ROW_LIMIT,
+                    .order = SK_FREE,
+                    .kernel = limit->kernel.version[writer->isa],
+                    .dst = SK_X,
+                    .source = {SK_X, velocity},
+                    .rule = limit,
+                    .label = limit->label,
+                    .every = every,
+                    .begin = limit->first_slot,
+                    .end = limit->first_slot + limit->slot_count};
+}
+
+/* The distances of a coarse grid, forth and back, and what they moved is carried to all between. Only what was
+ * predicted says from where they moved. */
+static void write_coarse(sk_writer *writer, const sk_batch *batch) {
+    const sk_coarse *coarse = batch->coarse;
+    if (!writer->predicted || !batch->sweep_count || !batch->sweeps[0].strips) return;
+    for (int time = 0; time < coarse->times; time++)
+        for (size_t i = 0; i < batch->sweep_count; i++)
+            add_sweep(writer, &batch->sweeps[time % 2 ? batch->sweep_count - 1 - i : i], SK_WHOLE, SK_ROW_LIMIT,
+                      &batch->type->limit, SK_X, SK_NONE, 1, 0);
+    if (!coarse->carries) return;
+    sk_walk walk = batch->sweeps[0].walk;
+    walk.reach = sk_coarse_reach(coarse);
+    sk_add_row(writer, (sk_row){.kind = SK_ROW_LIMIT,
+                                .order = SK_ORDERED,
+                                .kernel = sk_coarse_carry.version[writer->isa],
+                                .dst = SK_X,
+                                .source = {SK_X, SK_X0, SK_V},
+                                .coefficient = {0, writer->h},
+                                .from_prediction = true,
+                                .rule = coarse,
+                                .label = "carried along",
+                                .walk = walk,
+                                .end = walk.rows});
+}
+
 /* Batches that bound and do nothing else come before those that pull: what is swept last is kept best, which are edges. */
 static void write_spans(sk_writer *writer) {
-    for (size_t i = 0; i < writer->rules->batches.count; i++) {
-        const sk_batch *batch = writer->rules->batches.data[i];
-        if (batch->only_bounds && has_bound(batch))
-            add_sweeps(writer, batch, 0, SK_ROW_LIMIT, &batch->type->limit, SK_X, SK_NONE);
+    const sk_rules *rules = writer->rules;
+    for (size_t i = 0; i < rules->limits.count; i++) {
+        const sk_limit *limit = rules->limits.data[i];
+        if (is_kept(limit) && limit->early && writer->predicted) sk_add_row(writer, limit_row(writer, limit, SK_NONE, 0));
+    }
+    for (size_t i = 0; i < rules->batches.count; i++) {
+        const sk_batch *batch = rules->batches.data[i];
+        if (!batch->only_bounds || !has_bound(batch)) continue;
+        if (batch->coarse) write_coarse(writer, batch);
+        else add_sweeps(writer, batch, 0, SK_ROW_LIMIT, &batch->type->limit, SK_X, SK_NONE);
     }
 }
 
@@ -581,23 +626,16 @@ void sk_write_limits(sk_writer *writer, sk_vector velocity) {
     const sk_rules *rules = writer->rules;
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
-        if (!has_bound(batch) || (batch->only_bounds && velocity == SK_NONE)) continue; // they were with the projections
+        if (!has_bound(batch) || batch->coarse) continue;
+        if (batch->only_bounds && velocity == SK_NONE) continue; // they were with the projections
         add_sweeps(writer, batch, 0, SK_ROW_LIMIT,
                    velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving, SK_X, velocity);
     }
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
-        if (!is_kept(limit)) continue;
-        sk_add_row(writer, (sk_row){.kind = SK_ROW_LIMIT,
-                                    .order = SK_FREE,
-                                    .kernel = limit->kernel.version[writer->isa],
-                                    .dst = SK_X,
-                                    .source = {SK_X, velocity},
-                                    .rule = limit,
-                                    .label = limit->label,
-                                    .every = velocity == SK_NONE && limit->seldom ? seldom_of(writer) : 0,
-                                    .begin = limit->first_slot,
-                                    .end = limit->first_slot + limit->slot_count});
+        if (!is_kept(limit) || limit->early) continue;
+        size_t every = velocity == SK_NONE && limit->seldom ? seldom_of(writer) : 0;
+        sk_add_row(writer, limit_row(writer, limit, velocity, every));
     }
     sk_write_meetings(writer, SK_MEETING_PUSH, velocity);
 }

@@ -40,6 +40,7 @@ typedef struct sk_writer {
     size_t packed;      /* the first slots that are in packed blocks now */
     double h;           /* of the present substep, s, */
     size_t turns;       /* and how many of them the repeat has */
+    bool predicted;     /* X began the substep at X0 + h V */
     double before;      /* and how long before its end X is by now, s */
     size_t substep;     /* the place of its repeat */
     bool no_memory;     /* the plan is incomplete */

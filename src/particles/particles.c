@@ -96,11 +96,15 @@ bool sk_particles_add(sk_particles *particles, sk_allocator *allocator, size_t c
     return true;
 }
 
+uint32_t sk_strip_width(uint32_t columns) {
+    uint32_t width = (columns + 15) / 16;
+    return width < LEAST_WIDTH ? LEAST_WIDTH : width;
+}
+
 bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, sk_strips strips,
                              const uint32_t *place) {
     if (!SK_RESERVE(allocator, &particles->strips, particles->strips.count + 1)) return false;
-    strips.width = (strips.columns + 15) / 16;
-    if (strips.width < LEAST_WIDTH) strips.width = LEAST_WIDTH;
+    strips.width = sk_strip_width(strips.columns);
     for (uint32_t i = 0; i < strips.count; i++) particles->place[strips.first_particle + i] = place ? place[i] : i;
     particles->strips.data[particles->strips.count++] = strips;
     particles->arranged = false;

@@ -64,6 +64,8 @@ typedef struct sk_particles {
 /* Adds particles at the end. False when there is no memory: the particles are then as they were. */
 bool sk_particles_add(sk_particles *particles, sk_allocator *allocator, size_t count, const double *positions,
                       const double *velocities, const double *masses);
+/* How many columns a strip has, where the grid has so many. */
+uint32_t sk_strip_width(uint32_t columns);
 /* Says that particles are a grid, at these places of it (NULL: in row order); width and first slot are found here. */
 bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, sk_strips strips, const uint32_t *place);
 /* Takes particles out, or back in; whole bodies only. They are as they were: slots are to be arranged. */

@@ -70,12 +70,14 @@ static bool is_correction(const sk_row *row) {
            row->source[1] == SK_X0 && row->coefficient[1] == row->dt;
 }
 
-/* The one row behind the prediction that looks at X0 or V0, if it is a correction; else SIZE_MAX. */
+/* The one row behind the prediction that looks at X0 or V0, if it is a correction; else SIZE_MAX. Rows that only want to
+ * know what was predicted do not count: they are as well served where X0 is that. */
 static size_t find_only_correction(const sk_row *rows, size_t count, const prediction *found) {
     size_t only = SIZE_MAX;
     for (size_t r = 0; r < count; r++) {
         if ((r >= found->first && r <= found->drift) || !(mentions(&rows[r], SK_X0) || mentions(&rows[r], SK_V0)))
             continue;
+        if (r > found->drift && rows[r].from_prediction) continue;
         if (only != SIZE_MAX || r < found->drift || !is_correction(&rows[r])) return SIZE_MAX;
         only = r;
     }
@@ -97,6 +99,12 @@ static void add(fuser *f, sk_row row) {
 
 static void add_rows(fuser *f, const sk_row *rows, size_t begin, size_t end) {
     for (size_t r = begin; r < end; r++) add(f, rows[r]);
+}
+
+/* A row that looks at X0, where that is where X is going. */
+static sk_row by_goal(sk_row row) {
+    if (row.from_prediction) row.coefficient[1] = 0;
+    return row;
 }
 
 /* The row that does what a kick, the saves and the drift did; `kept` says what is saved besides X0, see row.h. */
@@ -133,7 +141,7 @@ static void fuse_across_turns(fuser *f, const sk_row *repeat, const prediction *
     sk_row head = *repeat;
     head.length = repeat->length - (found->drift + 1) - 1 + found->first_save;
     add(f, head);
-    add_rows(f, rows, found->drift + 1, repeat->length - 1);
+    for (size_t r = found->drift + 1; r + 1 < repeat->length; r++) add(f, by_goal(rows[r]));
     for (size_t r = 0; r < found->first_save; r++) add(f, following(f, &rows[r], &rows[repeat->length - 1]));
 }
 
@@ -148,7 +156,7 @@ static void fuse_prediction(fuser *f, const sk_row *repeat, const prediction *fo
     add_rows(f, rows, 0, found->first);
     for (size_t r = found->first; r < found->first_save; r++) add(f, predicting(f, &rows[r], kept));
     for (size_t r = found->drift + 1; r < repeat->length; r++) {
-        sk_row row = rows[r];
+        sk_row row = goal ? by_goal(rows[r]) : rows[r];
         if (r == correction) row.coefficient[1] = 0;
         add(f, row);
     }

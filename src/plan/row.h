@@ -160,6 +160,7 @@ struct sk_row {
     bool sets;             /* a field row: F is written, not added to */
     bool by_particle;      /* its elements are the user's particles, not slots: not to be run in chunks with others */
     bool alone;            /* it looks at slots that are not its own: nor is that */
+    bool from_prediction; /* it looks at X0 only to know X0 + b V, b being its second coefficient, 0 where X0 is that */
     size_t every;          /* it runs in each so many-th turn of its repeat, and in the last of them; 0: in all */
     size_t packed;         /* slots [0, packed) are in packed blocks when it runs */
     sk_walk walk;          /* of rows whose elements are strip rows */

@@ -227,6 +227,18 @@ void sk_world_tether_seldom(skein_world *world) {
     world->rules.limits.data[world->rules.limits.count - 1]->seldom = true;
 }
 
+void sk_world_tether_early(skein_world *world) {
+    world->rules.limits.data[world->rules.limits.count - 1]->early = true;
+}
+
+bool sk_world_bound_coarse(skein_world *world, sk_body *body, const double *bound, const sk_coarse *coarse) {
+    sk_batch *batch = body->batch[body->batch_count - 1];
+    sk_world_only_bound(body, bound);
+    batch->coarse = sk_allocate(&world->allocator, sizeof *batch->coarse);
+    if (batch->coarse) *batch->coarse = *coarse;
+    return batch->coarse;
+}
+
 void sk_world_only_bound(sk_body *body, const double *bound) {
     sk_batch *batch = body->batch[body->batch_count - 1];
     batch->bound = bound;

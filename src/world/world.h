@@ -34,7 +34,7 @@ typedef struct sk_body_type {
     const sk_making *making; /* what is made from its parameters; NULL: nothing */
 } sk_body_type;
 
-enum { SK_MOST_BODY_BATCHES = 8 };
+enum { SK_MOST_BODY_BATCHES = 16 };
 
 /* What a body added to the world. */
 struct sk_body {
@@ -214,10 +214,14 @@ void sk_world_rank_particles(skein_world *world, const sk_body *body, const uint
 void sk_world_sweep_both_ways(sk_body *body);
 /* Makes the body's newest batch a bound and nothing else (constraints/constraint.h). */
 void sk_world_only_bound(sk_body *body, const double *bound);
+/* Makes it one on the distances of a coarse grid (constraints/coarse.h); false when there is no memory. */
+bool sk_world_bound_coarse(skein_world *world, sk_body *body, const double *bound, const sk_coarse *coarse);
 /* Lets position methods take the body's newest batch in every second substep. */
 void sk_world_take_seldom(sk_body *body);
 /* The same of the newest tethers. */
 void sk_world_tether_seldom(skein_world *world);
+/* Says that the newest tethers are those of a coarse grid. */
+void sk_world_tether_early(skein_world *world);
 /* Keeps the edges of the body's newest batch under its strain bound. */
 void sk_world_add_strain_limit(sk_body *body);
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error);

@@ -1,0 +1,18 @@
+/* The coarse grids of a cloth that is a whole grid (constraints/coarse.h says what they do): each has half the rows and
+ * columns of the one before it, and holds the distances to the neighbours along both; the coarsest one, which reaches across
+ * the sheet, those to the fifth one besides, and its own tethers. */
+#ifndef SK_BODIES_COARSE_H
+#define SK_BODIES_COARSE_H
+
+#include "bodies/body.h"
+#include "bodies/lines.h"
+
+/* Whether there are particles at all places, with cells between all of them, and enough for a coarse grid. */
+bool sk_coarse_fits(const sk_lines *lines);
+/* Bounds that the body's tether bound holds. `mass` of each particle; *coarsest receives the coarsest grid. */
+skein_status sk_coarse_add(const sk_lines *lines, const double *mass, skein_world *world, sk_body *body,
+                           sk_coarse_grid *coarsest, skein_error *error);
+/* Whether a particle, the body's first being 0, is in the grid. */
+bool sk_coarse_has(const sk_coarse_grid *grid, const sk_lines *lines, uint32_t particle);
+
+#endif
