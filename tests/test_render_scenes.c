@@ -123,6 +123,7 @@ static const expectation expectations[] = {
     {"elephant", 20, 0.006, 0.03, 0, 0, NOT_SYMMETRIC},
     {"flag", 60, 0.06, 0, 0, 0, NOT_SYMMETRIC},
     {"hanging", 60, 0.02, 0, 0, 0, 0},
+    {"heap", 4, 0.05, 0, 0, 0, NOT_SYMMETRIC}, // later it lies on its own shadow
     {"orbits", 60, 0.03, 0, 0, 0, NOT_SYMMETRIC},
     {"rope", 45, 0.003, 0.001, 0, 0, NOT_SYMMETRIC},
     {"torus", 90, 0.04, 0.03, 0.3, 0, NOT_SYMMETRIC},

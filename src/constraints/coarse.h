@@ -25,9 +25,9 @@ typedef struct sk_coarse {
     int times; /* its distances are swept, forth and back in turn */
 } sk_coarse;
 
-/* How many of a strip's `width` columns are in the grid, and how many of all rows. */
-static inline size_t sk_coarse_columns(const sk_coarse_grid *grid, size_t width) {
-    return (width - grid->first + grid->step - 1) / grid->step;
+/* How many of a strip's `across` columns are in the grid, and how many of all rows. */
+static inline size_t sk_coarse_columns(const sk_coarse_grid *grid, size_t across) {
+    return (across - grid->first + grid->step - 1) / grid->step;
 }
 static inline size_t sk_coarse_rows(const sk_coarse_grid *grid, size_t rows) {
     return (rows - grid->row_first + grid->row_step - 1) / grid->row_step;
