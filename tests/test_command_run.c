@@ -36,6 +36,7 @@ static void judge_report(const json_t *report, int frames) {
         {"threads", 0, 64},
         {"steps", 0, 1e5},
         {"substeps", 0, 1e7},
+        {"crossings", 0, 0},
         {"unsolved", 0, 0},
         {"solver_failures", 0, 0},
         {"nonfinite_particles", 0, 0},

@@ -11,9 +11,11 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 # without a graphics card
 files=$(ls src/*.c src/*/*.c | grep -v -e '^src/gpu/' -e '/tasks_alone[.]c$')
+# the list of kinds, as the build makes it
+cmake -DOUTPUT="$work/catalogue_kinds.h" "-DFILES=$(echo "$files" | sed "s|^|$PWD/|" | paste -sd ';')" -P cmake/kinds.cmake
 for precision; do
     [ "$precision" = double ] && macro=-DSKEIN_DOUBLE || macro=
-    flags="${BITS_FLAGS:-} $macro -O1 -std=gnu17 -ffp-contract=off -fno-math-errno -Wno-psabi -Iinclude -Isrc"
+    flags="${BITS_FLAGS:-} $macro -O1 -std=gnu17 -ffp-contract=off -fno-math-errno -Wno-psabi -Iinclude -Isrc -I$work"
     # files of kernels once more for each instruction set, as CMakeLists.txt has them
     sets=plain
     printf '#include "base/isa.h"\n#ifdef SK_X86_ISAS\nseveral\n#endif\n' | "$compiler" $flags -E - | grep -q several &&
@@ -26,7 +28,7 @@ for precision; do
         avx2) own='-DSK_WIDTH=32 -mavx2' ;;
         avx512) own='-DSK_WIDTH=64 -mavx2 -mavx512f -mavx512dq -mavx512bw -mavx512vl' ;;
         esac
-        for file in $(grep -l '^#ifdef SK_ISA$' $files); do
+        for file in $(grep -lE '^#ifn?def SK_ISA$' $files); do
             object=$work/$set-$(echo "$file" | tr / -).o
             "$compiler" $flags $own -DSK_ISA=$set -c "$file" -o "$object"
             objects="$objects $object"
