@@ -177,7 +177,6 @@ static skein_status add_bending(tailor *t) {
     status =
         sk_world_add_body_batch(t->world, t->body, type, "bend", (sk_material){t->params->rigidity, 0}, false,
                                 hinges.count, (const uint32_t *)hinges.corner, hinges.rest, hinges.scale, t->error);
-    if (!status && hinges.count) sk_world_take_seldom(t->body);
     sk_hinges_release(&hinges);
     return status;
 }

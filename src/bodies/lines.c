@@ -136,6 +136,23 @@ static void add(maker *m, const size_t *places, const double *rest, double scale
     made->scale[made->count++] = (real)scale;
 }
 
+/* How quick the stiffest of the elements is, for a stiffness of 1: the sum of w c^2 times its scale, c being what its
+ * particles count in the sum under the root: (a, -a - b, b) where three are straight, a and -a around a cell. */
+static double quickness_of(const maker *m, const skein_world *world) {
+    const sk_elements *made = &m->made;
+    double most = 0;
+    for (size_t e = 0; e < made->count; e++) {
+        double a = made->rest[e], b = m->rests > 1 ? made->rest[made->count + e] : 0, sum = 0;
+        const double counts[2][4] = {{a, -a - b, b, 0}, {a, -a, a, -a}};
+        for (size_t i = 0; i < m->arity; i++) {
+            double mass = world->particles.mass[made->particle[e * m->arity + i]], c = counts[m->arity == 4][i];
+            if (mass > 0) sum += c * c / mass;
+        }
+        most = fmax(most, sum * made->scale[e]);
+    }
+    return most;
+}
+
 static skein_status finish(maker *m, skein_world *world, const sk_constraint_type *type, const char *label,
                            double stiffness, bool good, skein_error *error) {
     sk_elements *made = &m->made;
@@ -145,7 +162,7 @@ static skein_status finish(maker *m, skein_world *world, const sk_constraint_typ
         good ? sk_world_add_body_batch(world, m->body, type, label, (sk_material){stiffness, 0}, false, made->count,
                                        made->particle, made->rest, made->scale, error)
              : sk_fail_memory(error, label);
-    if (!status && type != &sk_distance) sk_world_take_seldom(m->body); // soft beside what stretches
+    if (!status && type != &sk_distance) sk_world_take_seldom(m->body, quickness_of(m, world));
     sk_release(m->lines->allocator, made->particle);
     sk_release(m->lines->allocator, made->rest);
     sk_release(m->lines->allocator, made->scale);

@@ -102,7 +102,9 @@ struct sk_batch {
     const bool *enabled;
     const double *bound; /* of the relative violation, kept by limit rows; NULL: none */
     bool only_bounds;    /* it is a bound and nothing else: it does not pull, and is not counted */
-    bool seldom;         /* position methods may take it in every second substep only, with the same stiffness */
+    double quickness;    /* 1/s2 for a stiffness of 1: the largest sum of w |grad C|^2 of an element, times its scale. Where it
+                            is known, and small against the substep, position methods may take the batch in every second
+                            one only, with the same stiffness; 0: in every one */
     sk_coarse *coarse;   /* its particles are those of a coarse grid (constraints/coarse.h), and only bounded; NULL: not */
     bool measured;       /* an edge of a body: it counts in the stretch of the statistics */
     size_t count, arity, rest_count;

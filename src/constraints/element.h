@@ -52,7 +52,6 @@ typedef struct sk_element_constants {
     real per_step;     /* 1/h^2, times the projections that share the stiffness */
     real gamma;        /* c/(k h) */
     real bound;        /* of the relative violation */
-    real share;         /* of a projection, which is made: all, or what leads to rest over the turns that it stands for */
     real elastic, both; /* of an implicit solve: the stiffness counts so many times, alone and with its damping */
 } sk_element_constants;
 
@@ -60,7 +59,6 @@ static inline sk_element_constants sk_element_prepare(const sk_batch *batch, con
     double damping_time = sk_batch_damping_time(batch);
     return (sk_element_constants){(real)damping_time, (real)(row->coefficient[0] / (row->dt * row->dt)),
                                   (real)(damping_time / row->dt), (real)(batch->bound ? *batch->bound : 0),
-                                  (real)(row->every > 1 ? 1 / (double)row->every : 1),
                                   (real)row->coefficient[0],
                                   (real)row->coefficient[0] + (real)(row->coefficient[1] * damping_time)};
 }

@@ -91,11 +91,10 @@ SK_INLINE void pull(sk_element *e, const sk_element_constants *c) {
     SK_EACH_PARTICLE (i) e->scale[i] = push;
 }
 
-SK_INLINE void project(sk_element *e, const sk_element_constants *c) {
-    sk_wide below = weight_of(e) + e->soft, above = -e->value;
+SK_INLINE void project(sk_element *e) {
+    sk_wide below = weight_of(e) + e->soft;
     if (e->divided) below = e->divisor * below;
-    if (SK_ARITY > 2) above = c->share * above; // edges are taken in every turn
-    sk_wide s = sk_keep(sk_positive(below), above / below);
+    sk_wide s = sk_keep(sk_positive(below), -e->value / below);
     SK_EACH_PARTICLE (i) e->scale[i] = s * e->w[i];
 }
 
@@ -103,7 +102,7 @@ SK_INLINE void project(sk_element *e, const sk_element_constants *c) {
 /* The same for a kind whose value is |L|, with L = sum of c x linear in the positions: its gradient is c L/|L|, so that
  * the moves are -w c L / (sum of w c^2 + soft), without a root, and right where L is 0, too. The kind's linear() leaves
  * c in `scale` and L in the first gradient. */
-SK_INLINE void project_linear(sk_element *e, const sk_element_constants *c) {
+SK_INLINE void project_linear(sk_element *e) {
     linear(e);
     sk_wide below = e->soft;
     SK_EACH_PARTICLE (i) {
@@ -112,7 +111,7 @@ SK_INLINE void project_linear(sk_element *e, const sk_element_constants *c) {
         e->scale[i] = moves;
         e->gradient[i] = e->gradient[0];
     }
-    sk_wide s = sk_keep(sk_positive(below), -c->share / below);
+    sk_wide s = sk_keep(sk_positive(below), -1 / below);
     SK_EACH_PARTICLE (i) e->scale[i] = s * e->scale[i];
 }
 #endif
@@ -161,7 +160,7 @@ SK_INLINE bool work_out(sk_element *e, const sk_element_constants *c, sk_element
     e->divided = e->opposite = false;
 #ifdef SK_LINEAR
     if (mode == SK_MODE_PROJECT) {
-        project_linear(e, c);
+        project_linear(e);
         return true;
     }
 #endif
@@ -169,7 +168,7 @@ SK_INLINE bool work_out(sk_element *e, const sk_element_constants *c, sk_element
     formula(e);
     if (mode == SK_MODE_FORCE) pull(e, c);
     else if (mode == SK_MODE_APPLY) apply(e, c);
-    else if (mode == SK_MODE_PROJECT) project(e, c);
+    else if (mode == SK_MODE_PROJECT) project(e);
     else project_damped(e, c);
     return true;
 }

@@ -27,6 +27,31 @@ static sk_box box_of(const sk_box *vertex_box, const uint32_t *vertex, int count
     return box;
 }
 
+static real square_between(const sk_vec4 *p, uint32_t a, uint32_t b) {
+    real x = p[a].x - p[b].x, y = p[a].y - p[b].y, z = p[a].z - p[b].z;
+    return x * x + y * y + z * z;
+}
+
+/* Whether the longest side is four times as long as it was built. */
+static bool is_torn(const sk_touch *touch, const uint32_t *vertex, int count) {
+    const real most = 4 * 4;
+    real now = 0, built = 0;
+    for (int k = 0; k < count; k++) {
+        uint32_t a = vertex[k], b = vertex[(k + 1) % count];
+        now = sk_max(now, square_between(touch->p, a, b));
+        built = sk_max(built, square_between(touch->skin.built, a, b));
+    }
+    return built > 0 && now > most * built;
+}
+
+/* What has blown up meets nobody: its boxes overlap with all others, and a step would take minutes. */
+static bool has_blown_up(const sk_touch *touch, const sk_leaf *leaf) {
+    bool torn = !leaf->triangles && is_torn(touch, touch->skin.edge[leaf->first_edge], 2);
+    for (size_t k = 0; k < leaf->triangles; k++)
+        torn |= is_torn(touch, touch->skin.triangle[leaf->first_triangle + k], 3);
+    return torn;
+}
+
 void sk_touch_boxes(sk_touch *touch, const real *reach, real limit) {
     const sk_skin *skin = &touch->skin;
     for (size_t v = 0; v < skin->vertex_count; v++) {
@@ -42,6 +67,7 @@ void sk_touch_boxes(sk_touch *touch, const real *reach, real limit) {
         sk_box *box = &touch->leaf_box[i];
         *box = leaf->triangles ? touch->triangle_box[leaf->first_triangle] : touch->edge_box[leaf->first_edge];
         for (size_t k = 1; k < leaf->triangles; k++) widen(box, &touch->triangle_box[leaf->first_triangle + k]);
+        if (has_blown_up(touch, leaf)) box->high[0] = INFINITY;
     }
 }
 
@@ -57,7 +83,7 @@ static long cell_along(const frame *cells, int k, double x) {
     return at < 0 ? 0 : at >= (double)cells->count[k] ? cells->count[k] - 1 : (long)at;
 }
 
-/* Whether a box is one: what has blown up meets nobody. */
+/* Whether a box is one. */
 static bool is_sound(const sk_box *box) {
     bool sound = true;
     for (int k = 0; k < 3; k++) sound &= box->low[k] >= (real)-1e15 && box->high[k] <= (real)1e15;
@@ -205,7 +231,12 @@ static bool add_pairs(void *data, size_t a, size_t b) {
     const search *s = data;
     sk_touch *touch = s->touch;
     const sk_skin *skin = &touch->skin;
-    enum { MOST = 64 }; // of two leaves: 2 x 4 x 2 corners, 5 x 5 edges
+    enum { MOST = 64, MOST_A_VERTEX = 1000 }; // of two leaves: 2 x 4 x 2 corners, 5 x 5 edges
+    // what has blown up is everywhere at once: gigabytes of pairs, and minutes a step
+    if (touch->kept[SK_CORNERS].count + touch->kept[SK_EDGES].count > MOST_A_VERTEX * (skin->vertex_count + MOST)) {
+        touch->gave_up = true;
+        return false;
+    }
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
         if (!sk_pairs_reserve(&touch->kept[sort], s->allocator, touch->kept[sort].count + MOST)) return false;
     put_corners(touch, &skin->leaf[a], b);
@@ -253,7 +284,11 @@ bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, real thickness, r
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->kept[sort].count = 0;
     touch->found = false;
     touch->searches++;
-    if (!sk_touch_meet(touch, allocator, add_pairs, &s)) return false;
+    touch->gave_up = false;
+    if (!sk_touch_meet(touch, allocator, add_pairs, &s)) {
+        for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->kept[sort].count = 0;
+        return touch->gave_up;
+    }
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
         keep_near(touch, sort, limit);
         if (!sk_pairs_reserve(&touch->rest, allocator, touch->kept[sort].count)) return false;

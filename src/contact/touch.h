@@ -58,7 +58,8 @@ typedef struct sk_touch {
     sk_skin skin;
     uint64_t shape; /* of the world that the skin was made from */
     sk_isa isa;
-    bool found;     /* whether the pairs are of this skin */
+    bool found;   /* whether the pairs are of this skin */
+    bool gave_up; /* the last search did, at a thousand pairs a vertex: nothing meets until one does not */
     real thickness; /* and of this thickness, m */
     /* by vertex */
     sk_vec4 *p;    /* the place before the substep; w: how far it is from s */

@@ -219,8 +219,8 @@ void sk_world_sweep_both_ways(sk_body *body) {
     body->batch[body->batch_count - 1]->both_ways = true;
 }
 
-void sk_world_take_seldom(sk_body *body) {
-    body->batch[body->batch_count - 1]->seldom = true;
+void sk_world_take_seldom(sk_body *body, double quickness) {
+    body->batch[body->batch_count - 1]->quickness = quickness;
 }
 
 void sk_world_tether_seldom(skein_world *world) {

@@ -216,8 +216,9 @@ void sk_world_sweep_both_ways(sk_body *body);
 void sk_world_only_bound(sk_body *body, const double *bound);
 /* Makes it one on the distances of a coarse grid (constraints/coarse.h); false when there is no memory. */
 bool sk_world_bound_coarse(skein_world *world, sk_body *body, const double *bound, const sk_coarse *coarse);
-/* Lets position methods take the body's newest batch in every second substep. */
-void sk_world_take_seldom(sk_body *body);
+/* Lets position methods take the body's newest batch in every second substep, where it is soft for that: `quickness` is as
+ * in constraints/constraint.h. */
+void sk_world_take_seldom(sk_body *body, double quickness);
 /* The same of the newest tethers. */
 void sk_world_tether_seldom(skein_world *world);
 /* Says that the newest tethers are those of a coarse grid. */
