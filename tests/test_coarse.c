@@ -35,6 +35,33 @@ static void a_cloth_that_swings_is_firm(void **state) {
     skein_world_destroy(world);
 }
 
+/* Sheets whose cells are longer one way, with coarse grids and (45 x 45) without. With the shear springs swept in one
+ * direction only they shiver: 5.6 to 14 % at the 99th percentile, 15 to 43 % at most. */
+static void longer_cells_are_as_firm(void **state) {
+    (void)state;
+    ONLY_IN_PLAIN_BUILDS();
+    static const struct {
+        int rows, columns;
+        double x, z, p99, most;
+    } sheets[] = {{61, 53, 1.2, 1, 0.01, 0.03}, {53, 61, 1, 1.2, 0.01, 0.03}, {64, 64, 2, 1, 0.01, 0.03},
+                  {64, 64, 1, 1.5, 0.01, 0.03}, {45, 45, 1.5, 1, 0.02, 0.04}};
+    for (size_t i = 0; i < COUNT(sheets); i++) {
+        skein_world *world = new_world("xpbd", 10);
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", sheets[i].rows, sheets[i].columns),
+                                                SKEIN_PAIR("size", sheets[i].x, sheets[i].z),
+                                                SKEIN_TEXT("pins", "top corners")), NULL));
+        add_gravity(world);
+        OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 1)), NULL));
+        for (int n = 0; n < 45; n++) {
+            steps(world, 1, 1.0 / 60);
+            assert_under(statistics_of(world).p99_stretch, sheets[i].p99);
+            assert_under(statistics_of(world).max_stretch, sheets[i].most);
+        }
+        skein_world_destroy(world);
+    }
+}
+
 /* When the middle of the cloth swings through below the pins, the second time. */
 static double time_of_swing(int substeps) {
     skein_world *world = swinging(substeps, 0);
@@ -111,6 +138,7 @@ static void seldom_bending_gains_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cloth_that_swings_is_firm),
+        cmocka_unit_test(longer_cells_are_as_firm),
         cmocka_unit_test(a_swing_keeps_its_time),
         cmocka_unit_test(nothing_gains_momentum),
         cmocka_unit_test(seldom_bending_gains_nothing),

@@ -246,6 +246,22 @@ double sk_lines_edge(const sk_lines *lines, size_t row, size_t column, bool alon
     return edge_length(lines, row, column, along_column ? ALONG_COLUMN : ALONG_ROW);
 }
 
+static double mean_edge(const sk_lines *lines, int direction) {
+    double sum = 0;
+    size_t count = 0;
+    for (size_t place = 0; place < (size_t)lines->rows * lines->columns; place++) {
+        double length = edge_length(lines, place / lines->columns, place % lines->columns, direction);
+        sum += length, count += length > 0;
+    }
+    return count ? sum / (double)count : 0;
+}
+
+bool sk_lines_square(const sk_lines *lines) {
+    static const double most = 1.1;
+    double a = mean_edge(lines, ALONG_ROW), b = mean_edge(lines, ALONG_COLUMN);
+    return a <= most * b && b <= most * a;
+}
+
 /* All spans of so many edges along one row or column. */
 static void add_spans_along(maker *m, size_t line, uint32_t edges, int direction, double *length) {
     const sk_lines *lines = m->lines;

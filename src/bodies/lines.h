@@ -29,6 +29,8 @@ skein_status sk_lines_add_bending(const sk_lines *lines, skein_world *world, sk_
                                   skein_error *error);
 /* Length of the edge from a place to the next one along its row or column; 0 where no cell is beside it. */
 double sk_lines_edge(const sk_lines *lines, size_t row, size_t column, bool along_column);
+/* Whether edges along rows are, in the mean, about as long as those along columns. */
+bool sk_lines_square(const sk_lines *lines);
 /* Bounds on how far particles get from others of their row and column, which the body's tether bound holds. */
 skein_status sk_lines_add_spans(const sk_lines *lines, skein_world *world, sk_body *body, skein_error *error);
 
