@@ -1,6 +1,6 @@
 /* The catalogue: every kind that ships with the library, by category, and the public calls that take a
- * kind by its name. The build finds them (cmake/kinds.cmake): a new kind is its own file. The roof of the house: it sees
- * all floors, and nothing sees it. */
+ * kind by its name. The build finds them (cmake/kinds.cmake): a new kind is its own file. The roof of the house: it
+ * sees all floors, and nothing sees it. */
 #include <math.h>
 #include <string.h>
 
@@ -9,25 +9,21 @@
 #include "outside/outside.h"
 #include "space/normals.h"
 
-static const sk_body_type *const bodies[] = {SK_BODY_KINDS};
-static const sk_constraint_type *const constraints[] = {SK_CONSTRAINT_KINDS};
-static const sk_force_type *const forces[] = {SK_FORCE_KINDS};
-static const sk_collider_type *const colliders[] = {SK_COLLIDER_KINDS};
-static const sk_motion_type *const motions[] = {SK_MOTION_KINDS};
-static const sk_method_type *const methods[] = {SK_METHOD_KINDS};
+/* Every type begins with its kind, so the kind's address is the type's. */
+static const void *const bodies[] = {SK_BODY_KINDS}, *const constraints[] = {SK_CONSTRAINT_KINDS},
+                         *const forces[] = {SK_FORCE_KINDS}, *const colliders[] = {SK_COLLIDER_KINDS},
+                         *const motions[] = {SK_MOTION_KINDS}, *const methods[] = {SK_METHOD_KINDS};
 
 #define COUNT(list) (sizeof(list) / sizeof *(list))
 
+static const sk_kind_list kinds_of[SKEIN_CATEGORY_COUNT] = {
+    [SKEIN_BODY] = {bodies, COUNT(bodies)},     [SKEIN_CONSTRAINT] = {constraints, COUNT(constraints)},
+    [SKEIN_FORCE] = {forces, COUNT(forces)},    [SKEIN_COLLIDER] = {colliders, COUNT(colliders)},
+    [SKEIN_MOTION] = {motions, COUNT(motions)}, [SKEIN_METHOD] = {methods, COUNT(methods)},
+};
+
 const skein_kind *skein_kind_at(skein_category category, size_t index) {
-    switch (category) {
-    case SKEIN_BODY: return index < COUNT(bodies) ? &bodies[index]->kind : NULL;
-    case SKEIN_CONSTRAINT: return index < COUNT(constraints) ? &constraints[index]->kind : NULL;
-    case SKEIN_FORCE: return index < COUNT(forces) ? &forces[index]->kind : NULL;
-    case SKEIN_COLLIDER: return index < COUNT(colliders) ? &colliders[index]->kind : NULL;
-    case SKEIN_MOTION: return index < COUNT(motions) ? &motions[index]->kind : NULL;
-    case SKEIN_METHOD: return index < COUNT(methods) ? &methods[index]->kind : NULL;
-    default: return NULL;
-    }
+    return category < SKEIN_CATEGORY_COUNT && index < kinds_of[category].count ? kinds_of[category].data[index] : NULL;
 }
 
 const skein_kind *skein_kind_find(skein_category category, const char *name, skein_error *error) {
@@ -62,17 +58,12 @@ const skein_kind *skein_kinds_find(const skein_kinds *kinds, skein_category cate
     return NULL;
 }
 
-/* Every type begins with its kind, so the kind's address is the type's. */
 static const void *type_of(const skein_world *world, skein_category category, const char *name) {
     return skein_kinds_find(world->desc.kinds, category, name, sk_world_error(world));
 }
 
-static const void *library_type(skein_category category, const char *name) {
-    return skein_kind_find(category, name, NULL);
-}
-
 skein_status skein_kind_register(skein_kinds *kinds, const skein_kind *kind, skein_error *error) {
-    return sk_outside_register(kinds, kind, library_type, error);
+    return sk_outside_register(kinds, kind, kinds_of, error);
 }
 
 skein_status skein_body_add(skein_world *world, const char *kind, const skein_mesh *mesh, const skein_setting *settings,

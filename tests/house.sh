@@ -1,6 +1,7 @@
 #!/bin/sh
 # Checks the rules of the house, which no compiler checks: house.sh ROOT [C-COMPILER [C++-COMPILER]]
-#   1  src/ includes only the C library, <skein/...> and floors below or beside it in its own folder
+#   1  src/ includes only the C library, <skein/...> and floors below or beside it in its own folder; it calls
+#      nothing of src/catalogue.c, the roof
 #   2  no method has a loop: src/methods/ writes rows, and only the writer's own files walk over rules
 #   3  src/world/ names no kind: what the catalogue lists is unknown to the step; nor does src/gpu/; and render/,
 #      viewer/ and app/ compare no kind's name
@@ -110,6 +111,19 @@ code() {
             print FILENAME ":" FNR ": " out
         }' $2
 }
+
+# The roof is seen by nobody: what it defines is called by no floor (a circle without an include is one, too).
+roof=$(sed -n 's/^[a-z][^=;]*[ *]\(skein_[a-z_]*\)(.*/\1/p' src/catalogue.c)
+[ -n "$roof" ] || echo "src/catalogue.c:1: tests/house.sh finds no function in it" >>"$faults"
+code 0 "$(echo "$files" | grep -v '^src/catalogue[.]c$')" | awk -v roof="$roof" '
+    BEGIN { count = split(roof, name, /[ \n]+/) }
+    {
+        place = $1
+        sub(/^[^ ]*/, "")
+        for (i = 1; i <= count; i++)
+            if (index($0, name[i] "(") && match($0, "(^|[^A-Za-z0-9_])" name[i] "[(]"))
+                print place " calls " name[i] "() of src/catalogue.c, which is above all floors"
+    }' >>"$faults"
 
 # ---- 2: no loops in methods ----
 methods=$(find src/methods -name '*.[ch]' ! -name 'writer*.c' | sort)

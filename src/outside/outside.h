@@ -3,8 +3,8 @@
  *
  *   by formula    a copy of the library's type for such texts, with the text fixed, and a table in which the kind's own
  *                 fields lie where that type keeps its parameters (by_formula.c)
- *   by functions  a type whose functions call the program's. Parameters begin with a line that leads to the type, and then
- *                 the program's own struct (force.c, collider.c, ...)
+ *   by functions  a type whose functions call the program's. Parameters begin with a line that leads to the type, and
+ * then the program's own struct (force.c, collider.c, ...)
  *
  * Owns the registries. A kind's address is its type's, and that is its sk_outside's. */
 #ifndef SK_OUTSIDE_OUTSIDE_H
@@ -30,7 +30,7 @@ struct sk_outside {
     skein_field *fields; /* of `type` */
     sk_making making;    /* the type's, if it has one */
     /* by formula: */
-    skein_kind inner;    /* as the copied type's making has it: its fields are "parameters.NAME" */
+    skein_kind inner; /* as the copied type's making has it: its fields are "parameters.NAME" */
     char *names;
     const sk_making *copied;
     const char *text;
@@ -58,8 +58,11 @@ static inline const void *sk_given_params(const void *params) {
     return (const char *)params + sizeof(sk_outside_params);
 }
 
-/* The library's type of a category and name, for formulas: found in the catalogue above. */
-typedef const void *sk_find_type(skein_category category, const char *name);
+/* The library's own types of a category, handed down by the catalogue above. */
+typedef struct sk_kind_list {
+    const void *const *data;
+    size_t count;
+} sk_kind_list;
 
 /* Fill in the type, the given one being known. */
 skein_status sk_outside_by_formula(sk_outside *outside, sk_allocator *allocator, const void *base, size_t base_size,
@@ -72,8 +75,9 @@ void sk_outside_motion(sk_outside *outside, const skein_motion_type *given);
 void sk_outside_body(sk_outside *outside, const skein_body_type *given);
 void sk_outside_method(sk_outside *outside, const skein_method_type *given);
 
-/* Registers, with the library's types for formulas from `find`. */
-skein_status sk_outside_register(skein_kinds *kinds, const skein_kind *kind, sk_find_type *find, skein_error *error);
+/* Registers; `library` are the library's own, a list a category. */
+skein_status sk_outside_register(skein_kinds *kinds, const skein_kind *kind, const sk_kind_list *library,
+                                 skein_error *error);
 /* The registered kind at a place of its category, or of a name; NULL: there is none. */
 const skein_kind *sk_outside_at(const skein_kinds *kinds, skein_category category, size_t index);
 

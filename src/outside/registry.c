@@ -37,10 +37,10 @@ const skein_kind *sk_outside_at(const skein_kinds *kinds, skein_category categor
 
 static bool lies_in(const skein_field *field, size_t size) {
     static const size_t sizes[] = {
-        [SKEIN_FIELD_BOOL] = sizeof(bool),         [SKEIN_FIELD_INT] = sizeof(int32_t),
-        [SKEIN_FIELD_INT2] = 2 * sizeof(int32_t),  [SKEIN_FIELD_INT3] = 3 * sizeof(int32_t),
-        [SKEIN_FIELD_REAL] = sizeof(double),       [SKEIN_FIELD_REAL2] = 2 * sizeof(double),
-        [SKEIN_FIELD_VEC3] = 3 * sizeof(double),   [SKEIN_FIELD_CHOICE] = sizeof(int32_t),
+        [SKEIN_FIELD_BOOL] = sizeof(bool),        [SKEIN_FIELD_INT] = sizeof(int32_t),
+        [SKEIN_FIELD_INT2] = 2 * sizeof(int32_t), [SKEIN_FIELD_INT3] = 3 * sizeof(int32_t),
+        [SKEIN_FIELD_REAL] = sizeof(double),      [SKEIN_FIELD_REAL2] = 2 * sizeof(double),
+        [SKEIN_FIELD_VEC3] = 3 * sizeof(double),  [SKEIN_FIELD_CHOICE] = sizeof(int32_t),
         [SKEIN_FIELD_TEXT] = sizeof(char *),
     };
     return field->type <= SKEIN_FIELD_TEXT && field->offset <= size && sizes[field->type] <= size - field->offset;
@@ -101,8 +101,9 @@ skein_status sk_outside_by_functions(sk_outside *outside, sk_allocator *allocato
         outside->fields[f].offset += sizeof(sk_outside_params);
     }
     outside->making = (sk_making){.make = make, .unmake = unmake};
-    outside->type.kind = (skein_kind){kind->name,      kind->help,        kind->category,
-                                      outside->fields, kind->field_count, sizeof(sk_outside_params) + kind->params_size};
+    outside->type.kind =
+        (skein_kind){kind->name,      kind->help,        kind->category,
+                     outside->fields, kind->field_count, sizeof(sk_outside_params) + kind->params_size};
     return SKEIN_OK;
 }
 
@@ -134,13 +135,26 @@ static bool acts(const skein_kind *kind) {
     }
 }
 
+static const void *library_type(const sk_kind_list *library, skein_category category, const char *name) {
+    for (size_t i = 0; i < library[category].count; i++)
+        if (!strcmp(((const skein_kind *)library[category].data[i])->name, name)) return library[category].data[i];
+    return NULL;
+}
+
+static bool is_taken(const skein_kinds *kinds, const sk_kind_list *library, skein_category category, const char *name) {
+    const skein_kind *kind;
+    for (size_t i = 0; (kind = sk_outside_at(kinds, category, i)); i++)
+        if (!strcmp(kind->name, name)) return true;
+    return library_type(library, category, name) != NULL;
+}
+
 static skein_status fill_by_formula(sk_outside *outside, sk_allocator *allocator, const skein_kind *kind,
-                                    sk_find_type *find, skein_error *error) {
+                                    const sk_kind_list *library, skein_error *error) {
     const void *given = kind;
     const char *text = formula_of(kind);
     if (kind->category == SKEIN_FORCE) {
         const skein_force_type *force = given;
-        const sk_force_type *base = find(SKEIN_FORCE, force->formula ? "force_field" : "potential");
+        const sk_force_type *base = library_type(library, SKEIN_FORCE, force->formula ? "force_field" : "potential");
         outside->per = sk_field_named(base->kind.fields, base->kind.field_count, "per");
         outside->per_place = force->per_particle;
         return sk_outside_by_formula(outside, allocator, base, sizeof *base, force->formula ? "force" : "energy", text,
@@ -148,22 +162,24 @@ static skein_status fill_by_formula(sk_outside *outside, sk_allocator *allocator
     }
     if (kind->category == SKEIN_CONSTRAINT) {
         const char *name = ((const skein_constraint_type *)given)->formula ? "formula" : "energy";
-        return sk_outside_by_formula(outside, allocator, find(SKEIN_CONSTRAINT, name), sizeof(sk_constraint_type),
-                                     strcmp(name, "energy") ? "constraint" : name, text, error);
+        return sk_outside_by_formula(outside, allocator, library_type(library, SKEIN_CONSTRAINT, name),
+                                     sizeof(sk_constraint_type), strcmp(name, "energy") ? "constraint" : name, text,
+                                     error);
     }
-    return sk_outside_by_formula(outside, allocator, find(SKEIN_COLLIDER, "formula"), sizeof(sk_collider_type), "surface",
-                                 text, error);
+    return sk_outside_by_formula(outside, allocator, library_type(library, SKEIN_COLLIDER, "formula"),
+                                 sizeof(sk_collider_type), "surface", text, error);
 }
 
-static skein_status fill(sk_outside *outside, sk_allocator *allocator, const skein_kind *kind, sk_find_type *find,
-                         skein_error *error) {
+static skein_status fill(sk_outside *outside, sk_allocator *allocator, const skein_kind *kind,
+                         const sk_kind_list *library, skein_error *error) {
     const char *text = formula_of(kind);
     skein_status status = check_kind(kind, text != NULL, error);
     if (status) return status;
     outside->given = kind;
-    if (text) return fill_by_formula(outside, allocator, kind, find, error);
+    if (text) return fill_by_formula(outside, allocator, kind, library, error);
     if (!acts(kind))
-        return sk_fail(error, SKEIN_ERROR_VALUE, kind->name, "a %s needs a formula, or the function that says how it acts",
+        return sk_fail(error, SKEIN_ERROR_VALUE, kind->name,
+                       "a %s needs a formula, or the function that says how it acts",
                        skein_category_text(kind->category));
     status = sk_outside_by_functions(outside, allocator, kind, error);
     if (status) return status;
@@ -177,21 +193,22 @@ static skein_status fill(sk_outside *outside, sk_allocator *allocator, const ske
     return SKEIN_OK;
 }
 
-skein_status sk_outside_register(skein_kinds *kinds, const skein_kind *kind, sk_find_type *find, skein_error *error) {
+skein_status sk_outside_register(skein_kinds *kinds, const skein_kind *kind, const sk_kind_list *library,
+                                 skein_error *error) {
     if (!kinds) return sk_fail_null(error, "kinds");
     if (!kind) return sk_fail_null(error, "kind");
     if (kind->category > SKEIN_METHOD)
         return sk_fail(error, SKEIN_ERROR_VALUE, "category", "kinds of a %s are not registered",
                        skein_category_text(kind->category));
-    if (kind->name && skein_kinds_find(kinds, kind->category, kind->name, NULL))
-        return sk_fail(error, SKEIN_ERROR_NAME, "name", "there is a %s '%s' already", skein_category_text(kind->category),
-                       kind->name);
+    if (kind->name && is_taken(kinds, library, kind->category, kind->name))
+        return sk_fail(error, SKEIN_ERROR_NAME, "name", "there is a %s '%s' already",
+                       skein_category_text(kind->category), kind->name);
     sk_outside *outside = NULL;
     if (sk_reserve(&kinds->allocator, (void **)&kinds->data, &kinds->capacity, kinds->count + 1, sizeof(sk_outside *)))
         outside = sk_allocate(&kinds->allocator, sizeof *outside);
     if (!outside) return sk_fail_memory(error, "a kind");
     skein_error words = {SKEIN_OK, "", ""};
-    skein_status status = fill(outside, &kinds->allocator, kind, find, &words);
+    skein_status status = fill(outside, &kinds->allocator, kind, library, &words);
     if (status) {
         if (error) *error = words;
         release(outside, &kinds->allocator);
