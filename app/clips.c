@@ -1,3 +1,4 @@
+/* The clips of a run: which files a body and a format make, their names, and what each frame puts in. */
 #include "app/clips.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* `skein compare`: its arguments become runs, the runs a table, CSV files and a plot. */
 #include "app/compare.h"
 
 #include <errno.h>

@@ -1,3 +1,4 @@
+/* The plot of a comparison: a script for gnuplot with its data, written beside the tables. */
 #include <errno.h>
 #include <math.h>
 #include <spawn.h>

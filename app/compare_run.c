@@ -1,3 +1,4 @@
+/* One run of a comparison: loaded, stepped frame by frame, sampled against the reference, and its errors and orders. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>

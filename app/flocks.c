@@ -1,3 +1,4 @@
+/* Order parameters of flocks: the force that they are measured by is found, and each note is a number in a list. */
 #include "app/flocks.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* A film while a world is stepped: the camera placed by a run ahead, the picture drawn, the encoder fed. */
 #include "app/footage.h"
 
 #ifdef SKEIN_RENDER

@@ -1,3 +1,4 @@
+/* run.csv written as a run goes on: its head, a line a step, and a file that is whole or not there (io/commit.h). */
 #include "app/log.h"
 
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* A run's folder and its files: free names, folders that are made and undone, each exporter begun and ended. */
 #include "app/outputs.h"
 
 #include <ctype.h>

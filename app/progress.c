@@ -1,3 +1,4 @@
+/* A progress bar, Ctrl-C as a flag that loops ask for, and one frame's steps, which say what went wrong in them. */
 #include "app/progress.h"
 
 #include "app/terminal.h"

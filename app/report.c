@@ -1,3 +1,4 @@
+/* The report of a run: put together once as a JSON document, written as report.json, and said in lines. */
 #include "app/report.h"
 
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* The guard between the program and a terminal: streams that let through what is text and steer nothing. */
 #define _GNU_SOURCE // fopencookie()
 #include "app/terminal.h"
 

@@ -1,3 +1,4 @@
+/* The judgement of a run: its energy, stretch and speed at the end, against what they were as it went on. */
 #include "app/verdict.h"
 
 #include <math.h>

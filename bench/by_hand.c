@@ -1,3 +1,4 @@
+/* Values, gradients and second derivatives as one would write them by hand in C. */
 #include "bench/by_hand.h"
 
 #include <math.h>

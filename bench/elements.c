@@ -1,3 +1,4 @@
+/* A mesh's elements, in blocks for tapes and in arrays for C by hand, and the check that both give the same. */
 #include "bench/elements.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* The texts of the measured formulas, and no more, so that the program that emits their C needs nothing else. */
 #include "bench/texts.h"
 
 #include <stddef.h>

@@ -1,3 +1,4 @@
+/* Warnings before a run: stable steps by the library's own estimate, and rounding by extent and gravity. */
 #include "io/advice.h"
 
 #include <float.h>

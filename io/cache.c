@@ -1,3 +1,4 @@
+/* A PC2 file as a track of places for pins: read, checked against its body, and let go. */
 #include "io/cache.h"
 
 #include <stdio.h>

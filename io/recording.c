@@ -1,3 +1,4 @@
+/* Recordings as CSV, and the list of formats that there are; HDF5 is in recording_hdf5.c, where it is built. */
 #include "io/recording.h"
 
 #include <stdlib.h>

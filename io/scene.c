@@ -1,3 +1,4 @@
+/* The reader of scenes' own part: the document, its view, exporters and paths. Objects are built in scene_build.c. */
 #include "io/scene.h"
 
 #include <errno.h>

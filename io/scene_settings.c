@@ -1,3 +1,4 @@
+/* JSON values as settings: each member is looked up among a kind's fields, converted, and refused with its place. */
 #include "io/scene_settings.h"
 
 #include <math.h>

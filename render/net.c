@@ -1,3 +1,4 @@
+/* Surface nets: cells with a change of sign get a vertex, and edges with one get two triangles. */
 #include "render/net.h"
 
 #include <math.h>

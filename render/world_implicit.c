@@ -1,3 +1,5 @@
+/* Meshes of colliders that have a distance alone: a box for the net, its sampling, and a key that says when it is
+ * old. */
 #include "render/world_implicit.h"
 
 #include "render/fail.h"

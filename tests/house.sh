@@ -6,6 +6,7 @@
 #   3  src/world/ names no kind: what the catalogue lists is unknown to the step; nor does src/gpu/; and render/,
 #      viewer/ and app/ compare no kind's name
 #   4  each public header compiles alone, as C17 and as C++17
+#   5  each file of C and GLSL opens with a comment: what it owns
 # Prints each fault as FILE:LINE: words, and fails if there is one.
 set -u
 cd "$1" || exit 2
@@ -142,10 +143,15 @@ names=$(code 2 "$(find src/bodies src/constraints src/forces src/colliders -name
     /[.]kind =/ { begun = 1 }
     begun && match($0, /"[a-z0-9_]+"/) { print substr($0, RSTART + 1, RLENGTH - 2); begun = 0 }')
 [ -n "$kinds" ] && [ -n "$names" ] || echo "src:1: tests/house.sh finds no kind in it" >>"$faults"
-# A symbol is a kind's if it is sk_KIND or begins so; a text if it is the kind's name, or its file's, as a whole. Words
-# inside of others are anybody's: a kind may be called `line`.
-code 2 "$(find src/world src/gpu -name '*.[ch]' | sort)" | awk -v kinds="$kinds" -v names="$names" '
+# A symbol is a kind's if it is sk_KIND, or begins so and no header of a floor without kinds has it: a kind may be called
+# `op` although there is an sk_op_kernel. A text is a kind's if it is its name, or its file's, as a whole: a kind may be
+# called `line`. What is declared by hand, with extern, is no excuse.
+shared=$(find src/base src/formula src/space src/plan src/particles src/methods src/world src/gpu -name '*.h')
+common=$(grep -hv '^ *extern' $shared | grep -o 'sk_[A-Za-z0-9_]*' | sort -u)
+code 2 "$(find src/world src/gpu -name '*.[ch]' | sort)" | awk -v kinds="$kinds" -v names="$names" -v common="$common" '
     BEGIN {
+        n = split(common, list, /[ \n]+/)
+        for (i = 1; i <= n; i++) known[list[i]] = 1
         count = split(kinds, kind, /[ \n]+/)
         n = split(names, list, /[ \n]+/)
         for (i = 1; i <= n; i++) name[list[i]] = 1
@@ -163,10 +169,10 @@ code 2 "$(find src/world src/gpu -name '*.[ch]' | sort)" | awk -v kinds="$kinds"
             rest = substr(rest, 1, RSTART - 1) " " substr(rest, RSTART + RLENGTH)
         }
         while (match(rest, /[A-Za-z_][A-Za-z0-9_]*/)) {
-            symbol = tolower(substr(rest, RSTART, RLENGTH)) "_"
+            symbol = tolower(substr(rest, RSTART, RLENGTH))
             rest = substr(rest, RSTART + RLENGTH)
             for (i = 1; i <= count; i++)
-                if (index(symbol, "sk_" kind[i] "_") == 1) fault(kind[i])
+                if (symbol == "sk_" kind[i] || (!(symbol in known) && index(symbol, "sk_" kind[i] "_") == 1)) fault(kind[i])
         }
     }' >>"$faults"
 
@@ -201,6 +207,17 @@ for header in include/skein/*.h; do
     [ -z "$cxx" ] || compile_alone "$header" c++ c++17 "$cxx"
 done
 [ -n "$cxx" ] || echo "house: no C++ compiler, so the headers were not tried as C++"
+
+# ---- 5: files that say what they are ----
+find $(ls -d src include io render viewer app film bench solvers bindings examples fuzz tests 2>/dev/null) \
+    \( -path '*/node_modules' -o -path '*/build*' \) -prune -o -name '*.[ch]' -print -o -name '*.glsl' -print -o -name '*.cpp' -print |
+    xargs awk '
+        FNR == 1 { silent = 0 }
+        !silent && NF && !/^#version/ { # which GLSL wants first
+            silent = 1
+            if ($1 !~ /^(\/\*|\/\/)/) print FILENAME ":1: does not open with a comment: what it owns"
+            nextfile
+        }' >>"$faults"
 
 cat "$faults"
 echo "house: $(echo "$files" | wc -l) files, $(echo "$kinds" | wc -l) kinds, $(grep -c '^[^ ]' "$faults") faults"

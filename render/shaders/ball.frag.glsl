@@ -1,3 +1,4 @@
+// Particles as balls.
 centroid in vec3 facing;
 centroid in vec3 own;
 flat in vec4 ball;

@@ -1,3 +1,4 @@
+// Birds: feathers lit from the sky, from each vertex.
 in vec3 world;
 flat in vec3 feathers;
 flat in vec3 light_here;

@@ -1,3 +1,4 @@
+// Lines of one colour.
 flat in vec3 paint;
 out vec4 colour;
 

@@ -1,3 +1,4 @@
+// The floor and other planes: grid lines that fade into the distance, shadow and haze.
 in vec3 interpolated;
 in vec2 place;
 out vec4 colour;

@@ -1,3 +1,4 @@
+// The sky behind everything: the light that comes along a pixel's ray.
 in vec2 place;
 out vec4 colour;
 

@@ -1,3 +1,4 @@
+// Solids: colliders and rods.
 centroid in vec3 world;
 centroid in vec3 facing;
 centroid in vec3 own;

@@ -1,3 +1,4 @@
+// Surfaces of bodies: cloth, jelly, plain.
 centroid in vec3 world;
 centroid in vec3 facing;
 in vec3 place;

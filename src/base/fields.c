@@ -1,3 +1,4 @@
+/* What a table of fields is good for: defaults, ranges, checks with their messages, values to texts and back. */
 #include "base/fields.h"
 
 #include <math.h>

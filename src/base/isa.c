@@ -1,3 +1,4 @@
+/* Asking the processor, and the environment, for the widest instruction set that may run. */
 #include "base/isa.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* Blocks with a hidden head before them; large ones ask for large pages. The default allocator is the C library's. */
 #include "base/memory.h"
 
 #include <stdint.h>

@@ -1,3 +1,5 @@
+/* Reading numbers without the locale: by a table of exact powers of ten where that is enough, else by strtod from
+ * digits. */
 #include "base/number.h"
 
 #include <ctype.h>

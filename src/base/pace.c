@@ -1,3 +1,4 @@
+/* Trials with more and with fewer threads, and the times that they are judged by. */
 #include "base/pace.h"
 
 #include <string.h>

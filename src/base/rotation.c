@@ -1,3 +1,4 @@
+/* Rotations as matrices and as degrees, and the way from one to the other; right angles are exact. */
 #include "base/rotation.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* The words of errors, labels cut to size, and the name that is nearest to one that is not there. */
 #include "base/status.h"
 
 #include <stdarg.h>

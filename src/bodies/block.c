@@ -1,3 +1,4 @@
+/* A block's particles, strips, springs by direction and surface, for a given size. */
 #include "bodies/block.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* The making of a cloth's coarse grids, each out of the one before it, down to the coarsest with its tethers. */
 #include "bodies/coarse.h"
 
 #include <math.h>

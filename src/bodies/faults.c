@@ -1,3 +1,4 @@
+/* Counting a mesh's faults, each with its first example, and saying them. */
 #include "bodies/faults.h"
 
 #include <math.h>

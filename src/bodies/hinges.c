@@ -1,3 +1,4 @@
+/* Finding hinges: edges between two faces, and the cuts through faces of more than three corners. */
 #include "bodies/hinges.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* A grid's rows and columns: found in a sheet, measured, and turned into elements of bending, shear and spans. */
 #include "bodies/lines.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Finding whether a mesh is a grid, and else the way outward from its pins, in which springs are sorted. */
 #include "bodies/order.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* A sheet's steps from a mesh to particles: copying, placing, welding by cells, areas and faces of particles. */
 #include "bodies/sheet.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Words that name parts of a sheet: by row and column on a grid, by its border and corners on a mesh. */
 #include "bodies/sheet_selection.h"
 
 #include <math.h>

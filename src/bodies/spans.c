@@ -1,3 +1,4 @@
+/* The walks over a mesh's faces, unfolded one by one, that end in spans. */
 #include "bodies/spans.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Finding springs: pairs in a table by hashing, each met by faces, edges and the edges' neighbours. */
 #include "bodies/springs.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Batches: their arrays, what is left out while bodies are absent, multipliers, and which batches pull. */
 #include <string.h>
 
 #include "constraints/enclosure.h"

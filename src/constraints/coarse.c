@@ -1,3 +1,4 @@
+/* The kernels that hold a coarse grid's distances, and carry what they moved to the particles in between. */
 #include "constraints/coarse.h"
 
 #include "base/kernels.h"

@@ -1,3 +1,4 @@
+/* The memory of pairs: arrays that grow by whole blocks, and the padding of the last one. */
 #include "contact/touch.h"
 
 enum { BLOCK = 16 };

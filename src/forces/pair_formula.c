@@ -1,3 +1,4 @@
+/* The two texts of a pair rule: parsed and judged, put on tapes, and written as GLSL. */
 #include "forces/pair_formula.h"
 
 #include "base/status.h"

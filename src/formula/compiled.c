@@ -1,3 +1,4 @@
+/* The hash that makes two formulas the same, and the check that compiled code is the text's and may run here. */
 #include "formula/compiled.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* An object's own kind: its type's table, and a field more for each parameter that its texts name. */
 #include "formula/parameters.h"
 
 #include <stdio.h>

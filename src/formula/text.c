@@ -1,3 +1,4 @@
+/* The tokens of a formula, one at a time, and the place of the first fault. */
 #include "formula/text.h"
 
 #include <math.h>

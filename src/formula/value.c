@@ -1,3 +1,4 @@
+/* The functions of the formula language, each made of nodes: vectors by components, truths by 0 and 1. */
 #include "formula/value.h"
 
 #include <string.h>

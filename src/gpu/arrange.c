@@ -1,3 +1,4 @@
+/* When particles are laid out anew on the card, and the programs that move them there and back. */
 #include "gpu/arrange.h"
 
 #include <epoxy/gl.h>

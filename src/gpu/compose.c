@@ -1,3 +1,4 @@
+/* Cutting a plan into passes, and writing a pass as one shader: loads, the rows' texts, stores. */
 #include "gpu/compose.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* Making a context through EGL without a window, and entering and leaving it. */
 #include "gpu/context.h"
 
 #include <dlfcn.h>

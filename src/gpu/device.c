@@ -1,3 +1,4 @@
+/* Buffers and passes of a world on a card: made, filled, run for a step, read back, let go. */
 #include "gpu/device.h"
 
 #include <epoxy/gl.h>

@@ -1,3 +1,4 @@
+/* The buffers and programs of the grid, in the order in which a build of it runs them. */
 #include "gpu/grid.h"
 
 #include <epoxy/gl.h>

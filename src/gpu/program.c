@@ -1,3 +1,4 @@
+/* Texts put together, compiled, and kept by their text, so that the same one is never compiled twice. */
 #include "gpu/program.h"
 
 #include <epoxy/gl.h>

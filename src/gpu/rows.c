@@ -1,3 +1,4 @@
+/* Each sort of row as the card has it: what it reads, what it writes, its text and numbers, or why it cannot. */
 #include "gpu/rows.h"
 
 #include <stdio.h>

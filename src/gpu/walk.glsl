@@ -1,3 +1,4 @@
+// A walk over a particle's neighbours in the grid.
 #ifdef MOST@
 // The nearest so far, nearest first; those that came first of equals.
 float near_square@[MOST@];
@@ -16,8 +17,9 @@ void keep@(float square, uint other) {
 }
 #endif
 
-// All neighbours of the particle at p, which is at a place of the grid, or the nearest. Two phases for each 32 of a row of cells: distances become a mask of
-// hits, then the hits are met one by one, so that invocations side by side part as little as can be.
+// All neighbours of the particle at p, which is at a place of the grid, or the nearest. Two phases for each 32 of a row of
+// cells: distances become a mask of hits, then the hits are met one by one, so that invocations side by side part as
+// little as can be.
 vec3 walk@(uint place, vec3 p, vec3 v) {
     float speed = dot(v, v);
     sum@ sum = start@(speed > 0 ? v * inversesqrt(speed) : vec3(0));

@@ -1,3 +1,4 @@
+/* Tethers: each particle is pulled to its anchors, forth and back, and what both ways leave is averaged. */
 #include "base/kernels.h"
 #include "limits/limit.h"
 

@@ -1,3 +1,4 @@
+/* Rows for a method, one call each: vectors' arithmetic, then what every enabled rule of a sort brings. */
 #include "methods/writer.h"
 
 #include <stdio.h>

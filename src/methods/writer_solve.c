@@ -1,3 +1,4 @@
+/* Rows for an implicit solve: residual, product, diagonal and factor, from the stiffness that each rule brings. */
 #include "methods/writer_solve.h"
 
 #include <stddef.h>

@@ -1,3 +1,4 @@
+/* The fields that motions of all types have: name, whom they lead, and from when on. */
 #include "motions/motion.h"
 
 const skein_field sk_motion_fields[] = {

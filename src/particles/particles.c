@@ -1,3 +1,4 @@
+/* The state's memory: slots for new particles and strips, vectors made when they are wanted, numbers made anew. */
 #include "particles/particles.h"
 
 #include <string.h>

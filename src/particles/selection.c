@@ -1,3 +1,5 @@
+/* Selections by number, box and sphere. Words that only a sheet knows come from its builder
+ * (bodies/sheet_selection.c). */
 #include "particles/selection.h"
 
 #include <ctype.h>

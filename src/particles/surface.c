@@ -1,3 +1,4 @@
+/* The making of a surface's patches: which cells of a grid have which triangles, and what is left over. */
 #include "particles/surface.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* The one pass over a finished plan that fuses: patterns of neighbouring rows, each with what takes their place. */
 #include "plan/fuse.h"
 
 #include <string.h>

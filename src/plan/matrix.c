@@ -1,3 +1,5 @@
+/* The matrix of a solve: which blocks there are, found once a plan, and their numbers, filled in by the rules'
+ * kernels. */
 #include "plan/matrix.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* A plan as a list that grows, rows over some slots alone, and the words that `skein explain` shows of a row. */
 #include "plan/row.h"
 
 #include <stdio.h>

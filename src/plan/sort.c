@@ -1,3 +1,4 @@
+/* The kernels that sort particles into cells: thin ones, around the functions of space/cells.h. */
 #include "plan/sort.h"
 #include "base/kernels.h"
 

@@ -1,3 +1,4 @@
+/* Cells by counting: bounds and size, each particle's cell, its place in the order, and what is copied by it. */
 #include "space/cells.h"
 
 #include <string.h>
