@@ -78,9 +78,12 @@ static bool begin_object(viewer_side *side, skein_category category, size_t inde
     return true;
 }
 
-/* The field itself, or one that stays where it is an object's own. NULL when there is no memory. */
-static const skein_field *field_to_keep(viewer_side *side, const skein_field *field) {
-    if (strncmp(field->name, "parameters.", 11) != 0) return field;
+/* A field that stays where it is, whatever becomes of the object: an object with a formula has a table of its own, which
+ * goes with it, while panels on another thread still look at it. So the listed kind's field of that name, or, of a formula's
+ * own parameters, a copy. NULL when there is no memory. */
+static const skein_field *field_to_keep(viewer_side *side, const skein_kind *listed, const skein_field *field) {
+    for (size_t f = 0; listed && f < listed->field_count; f++)
+        if (!strcmp(listed->fields[f].name, field->name)) return &listed->fields[f];
     for (viewer_own_field *own = side->own_fields; own; own = own->next)
         if (!strcmp(own->name, field->name)) return &own->field;
     viewer_own_field *own = calloc(1, sizeof *own);
@@ -93,12 +96,13 @@ static const skein_field *field_to_keep(viewer_side *side, const skein_field *fi
     return &own->field;
 }
 
-static void add_fields(viewer_side *side, const skein_world *world, skein_handle handle, const skein_field *fields,
-                       size_t count) {
+/* `listed` has these very fields, or is NULL: they are nobody's but the category's, and stay. */
+static void add_fields(viewer_side *side, const skein_world *world, skein_handle handle, const skein_kind *listed,
+                       const skein_field *fields, size_t count) {
     for (size_t f = 0; f < count; f++) {
         skein_value value;
         if (skein_get(world, handle, fields[f].name, &value)) continue;
-        const skein_field *field = field_to_keep(side, &fields[f]);
+        const skein_field *field = listed ? field_to_keep(side, listed, &fields[f]) : &fields[f];
         if (field) add_entry(side, field, value, !skein_field_is_live(world, handle, field->name));
     }
 }
@@ -135,8 +139,8 @@ static void add_objects(viewer_side *side, const skein_world *world, skein_categ
         const skein_field *common = skein_common_fields(category, &common_count);
         bool named = category != SKEIN_METHOD && !skein_get(world, handle, "name", &name) && name.text && name.text[0];
         if (!begin_object(side, category, i, listed ? listed : kind, named ? name.text : kind->name)) return;
-        add_fields(side, world, handle, kind->fields, kind->field_count);
-        if (category != SKEIN_METHOD) add_fields(side, world, handle, common, common_count);
+        add_fields(side, world, handle, listed ? listed : kind, kind->fields, kind->field_count);
+        if (category != SKEIN_METHOD) add_fields(side, world, handle, NULL, common, common_count);
         mark_ignored(side, &side->objects[side->object_count]);
         side->object_count++;
     }

@@ -131,8 +131,6 @@ static bool load(viewer_player *player, const viewer_reading *reading) {
 void viewer_player_close(viewer_player *player) {
     skein_world_destroy(player->world);
     io_scene_free(player->scene);
-    skein_world_destroy(player->gone_world);
-    io_scene_free(player->gone_scene);
     viewer_history_release(&player->history);
     free(player->pins);
     free(player->velocities);
@@ -147,8 +145,6 @@ static bool take_over(viewer_player *player, viewer_player *next, const viewer_r
     viewer_player given = *next;
     *player = given;
     if (load(player, reading)) {
-        player->gone_world = old.world, player->gone_scene = old.scene;
-        old.world = NULL, old.scene = NULL;
         viewer_player_close(&old);
         return true;
     }

@@ -27,8 +27,6 @@ typedef struct viewer_player {
     io_scene *scene;
     io_scene_settings settings;
     skein_world *world;
-    skein_world *gone_world; /* the one before: panels read its fields' tables until they have seen the new one, or NULL */
-    io_scene *gone_scene;
     render_view view; /* the scene's, as changed since; its texts are the scene's, but for the followed body's */
     char follow[PLAYER_NAME]; /* that body's name, once it was changed */
     double opened; /* s: when, which tells its world from others */
