@@ -31,6 +31,15 @@
 #define SKEIN_CLOTH_ROTATION "rotation" /* three numbers in deg; turned about x, then y, then z, before it is put there */
 #define SKEIN_CLOTH_SCALE "scale" /* a number; factor on the mesh's coordinates */
 #define SKEIN_CLOTH_VELOCITY "velocity" /* three numbers in m/s; at the start */
+#define SKEIN_CLOTH_FABRIC "fabric" /* a word; a real one's density, stretch, shear and bend.rigidity, where they are not given themselves */
+#define SKEIN_CLOTH_FABRIC_NONE "none"
+#define SKEIN_CLOTH_FABRIC_COTTON "cotton"
+#define SKEIN_CLOTH_FABRIC_SILK "silk"
+#define SKEIN_CLOTH_FABRIC_DENIM "denim"
+#define SKEIN_CLOTH_FABRIC_WOOL "wool"
+#define SKEIN_CLOTH_FABRIC_FELT "felt"
+#define SKEIN_CLOTH_FABRIC_RUBBER "rubber"
+#define SKEIN_CLOTH_FABRIC_PAPER "paper"
 #define SKEIN_CLOTH_DENSITY "density" /* a number in kg/m2; mass of a square metre, shared out to the corners */
 #define SKEIN_CLOTH_WELD "weld" /* a number in m; vertices nearer than this become one particle; 0 joins none */
 #define SKEIN_CLOTH_PINS "pins" /* a text; held particles: "corners", "top corners", "top edge", numbers, "box x y z x y z", "sphere x y z r" */

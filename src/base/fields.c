@@ -133,6 +133,19 @@ skein_status sk_field_store(sk_allocator *allocator, const skein_field *field, v
     return SKEIN_OK;
 }
 
+skein_status sk_presets_apply(sk_allocator *allocator, const sk_presets *presets, const skein_field *fields, size_t count,
+                              void *params, skein_error *error) {
+    const skein_field *choice = sk_field_named(fields, count, presets->field);
+    int32_t word = *(const int32_t *)(const void *)((const char *)params + choice->offset);
+    skein_status status = SKEIN_OK;
+    for (size_t i = 0; i < presets->count && word && !status; i++) {
+        skein_value value = skein_number(presets->values[(size_t)(word - 1) * presets->count + i]);
+        if (!isnan(value.number[0]))
+            status = sk_field_store(allocator, sk_field_named(fields, count, presets->names[i]), params, &value, error);
+    }
+    return status;
+}
+
 skein_value sk_field_load(const skein_field *field, const void *params) {
     const char *at = (const char *)params + field->offset;
     skein_value value = {number_count(field->type), {0, 0, 0}, NULL};

@@ -40,6 +40,15 @@
 /* "Infinite" where a kind allows it, such as the stiffness of a rigid distance. */
 #define SK_UNBOUNDED __builtin_inf()
 
+/* A choice whose words stand for values of other fields (a fabric, for a density, a stiffness ...). Its first word stands
+ * for none. */
+typedef struct sk_presets {
+    const char *field;         /* the choice */
+    const char *const *names;  /* of fields that take one number */
+    size_t count;
+    const double *values;      /* `count` for each word but the first; NaN: the field's own default */
+} sk_presets;
+
 /* Fills `params` with the table's defaults. Text fields are copied; false when there is no memory. */
 bool sk_fields_default(sk_allocator *allocator, const skein_field *fields, size_t count, void *params);
 /* Releases the text fields. */
@@ -48,6 +57,9 @@ void sk_fields_clear(sk_allocator *allocator, const skein_field *fields, size_t 
 skein_status sk_field_store(sk_allocator *allocator, const skein_field *field, void *params, const skein_value *value,
                             skein_error *error);
 skein_value sk_field_load(const skein_field *field, const void *params);
+/* Stores what the word that `params` has for the choice stands for. */
+skein_status sk_presets_apply(sk_allocator *allocator, const sk_presets *presets, const skein_field *fields, size_t count,
+                              void *params, skein_error *error);
 /* The field of that name, or NULL. */
 const skein_field *sk_field_named(const skein_field *fields, size_t count, const char *name);
 

@@ -9,6 +9,7 @@
 
 #include "bodies/body.h"
 #include "bodies/coarse.h"
+#include "bodies/fabrics.h"
 #include "bodies/faults.h"
 #include "bodies/geodesic.h"
 #include "bodies/hinges.h"
@@ -24,6 +25,7 @@ typedef struct cloth_params {
     char *mesh;
     int32_t grid[2];
     double size[2], position[3], rotation[3], scale, velocity[3];
+    int32_t fabric;
     double density, weld;
     char *pins;
     sk_material stretch, shear, bend;
@@ -45,6 +47,8 @@ static const skein_field fields[] = {
             "turned about x, then y, then z, before it is put there"),
     SK_REAL(cloth_params, scale, "scale", "", 1, 1e-9, 1e9, "factor on the mesh's coordinates"),
     SK_VEC3(cloth_params, velocity, "velocity", "m/s", 0, 0, 0, "at the start"),
+    SK_CHOICE(cloth_params, fabric, SK_FABRIC_FIELD, 0, SK_FABRICS,
+              "a real one's density, stretch, shear and bend.rigidity, where they are not given themselves"),
     SK_REAL(cloth_params, density, "density", "kg/m2", 0.2, 1e-9, 1e9,
             "mass of a square metre, shared out to the corners"),
     SK_REAL(cloth_params, weld, "weld", "m", 0, 0, SK_FAR,
@@ -386,4 +390,5 @@ const sk_body_type sk_cloth = {
     .build = build,
     .live = live,
     .change = change,
+    .presets = &sk_fabrics,
 };

@@ -68,8 +68,8 @@ void sk_object_release(sk_allocator *allocator, sk_object *object) {
 }
 
 /* Its kind, its parameters, and what its type makes from them. */
-static skein_status fill_object(sk_allocator *allocator, sk_object *object, const skein_setting *settings,
-                                skein_error *error) {
+static skein_status fill_object(sk_allocator *allocator, sk_object *object, const sk_presets *presets,
+                                const skein_setting *settings, skein_error *error) {
     skein_status status = SKEIN_OK;
     if (sk_takes_parameters(object->kind)) {
         status = sk_own_kind_create(allocator, object->kind, settings, &object->own_kind, error);
@@ -80,15 +80,16 @@ static skein_status fill_object(sk_allocator *allocator, sk_object *object, cons
     const skein_field *common = sk_common_fields(object->category, &common_count);
     object->params = sk_allocate(allocator, object->kind->params_size);
     if (!object->params) return sk_fail_memory(error, object->kind->name);
-    status = sk_settings_apply(allocator, object->kind, object->params, common, common_count, sk_common_of(object),
-                               settings, error);
+    status = sk_settings_apply(allocator, object->kind, presets, object->params, common, common_count,
+                               sk_common_of(object), settings, error);
     if (!status && object->making) status = object->making->make(object->params, object->kind, allocator, error);
     return status;
 }
 
 /* A new object with its parameters set; it lives (its generation turns odd) once its rule is made. */
-static skein_status make_object(skein_world *world, const skein_kind *kind, const sk_making *making,
-                                const skein_setting *settings, sk_object **made, skein_error *error) {
+static skein_status make_with_presets(skein_world *world, const skein_kind *kind, const sk_making *making,
+                                      const sk_presets *presets, const skein_setting *settings, sk_object **made,
+                                      skein_error *error) {
     sk_allocator *allocator = &world->allocator;
     if (!SK_RESERVE(allocator, &world->objects, world->objects.count + 1) ||
         !SK_RESERVE(allocator, &world->places, world->places.count + 1))
@@ -98,7 +99,7 @@ static skein_status make_object(skein_world *world, const skein_kind *kind, cons
     object->category = kind->category;
     object->kind = kind;
     object->making = making;
-    skein_status status = fill_object(allocator, object, settings, error);
+    skein_status status = fill_object(allocator, object, presets, settings, error);
     if (status) {
         sk_object_release(allocator, object);
         return status;
@@ -110,6 +111,11 @@ static skein_status make_object(skein_world *world, const skein_kind *kind, cons
     world->objects.data[world->objects.count++] = object;
     *made = object;
     return SKEIN_OK;
+}
+
+static skein_status make_object(skein_world *world, const skein_kind *kind, const sk_making *making,
+                                const skein_setting *settings, sk_object **made, skein_error *error) {
+    return make_with_presets(world, kind, making, NULL, settings, made, error);
 }
 
 /* Takes the newest object back. */
@@ -313,7 +319,8 @@ skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, con
     skein_error *error = sk_world_error(world);
     sk_object *object;
     skein_status status = sk_world_settle_presence(world, error); // before indices are used again
-    if (!status) status = make_object(world, &type->kind, type->making, settings, &object, error);
+    if (!status)
+        status = make_with_presets(world, &type->kind, type->making, type->presets, settings, &object, error);
     if (status) return status;
     sk_body *body = sk_allocate(&world->allocator, sizeof *body);
     if (!body) {
@@ -344,7 +351,7 @@ skein_status sk_world_set_method(skein_world *world, const sk_method_type *type,
     skein_error *error = sk_world_error(world);
     void *params = sk_allocate(&world->allocator, type->kind.params_size);
     if (!params) return sk_fail_memory(error, type->kind.name);
-    skein_status status = sk_settings_apply(&world->allocator, &type->kind, params, NULL, 0, NULL, settings, error);
+    skein_status status = sk_settings_apply(&world->allocator, &type->kind, NULL, params, NULL, 0, NULL, settings, error);
     if (status) {
         sk_release(&world->allocator, params);
         return status;

@@ -71,13 +71,25 @@ const skein_field *skein_field_find(const skein_kind *kind, const char *name, sk
     return sk_kind_field(kind, name, error);
 }
 
-skein_status sk_settings_apply(sk_allocator *allocator, const skein_kind *kind, void *params, const skein_field *common,
-                               size_t common_count, void *common_params, const skein_setting *settings,
-                               skein_error *error) {
+/* What a choice of the settings stands for comes before all that they say themselves, wherever it is among them. */
+static skein_status apply_presets(sk_allocator *allocator, const skein_kind *kind, const sk_presets *presets, void *params,
+                                  const skein_setting *settings, skein_error *error) {
+    const skein_field *choice = sk_field_named(kind->fields, kind->field_count, presets->field);
+    skein_status status = SKEIN_OK;
+    for (; !status && settings && settings->name; settings++)
+        if (!strcmp(settings->name, presets->field))
+            status = sk_field_store(allocator, choice, params, &settings->value, error);
+    return status ? status : sk_presets_apply(allocator, presets, kind->fields, kind->field_count, params, error);
+}
+
+skein_status sk_settings_apply(sk_allocator *allocator, const skein_kind *kind, const sk_presets *presets, void *params,
+                               const skein_field *common, size_t common_count, void *common_params,
+                               const skein_setting *settings, skein_error *error) {
     skein_status status = SKEIN_OK;
     if (!sk_fields_default(allocator, kind->fields, kind->field_count, params) ||
         !sk_fields_default(allocator, common, common_count, common_params))
         status = sk_fail_memory(error, kind->name);
+    if (!status && presets) status = apply_presets(allocator, kind, presets, params, settings, error);
     for (; !status && settings && settings->name; settings++) {
         const skein_field *field = sk_kind_field(kind, settings->name, error);
         if (!field) {

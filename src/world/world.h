@@ -32,6 +32,7 @@ typedef struct sk_body_type {
     void (*change)(sk_body *body, const void *params);
     skein_shape_sort shape; /* what it looks like: its faces, if nothing is said */
     const sk_making *making; /* what is made from its parameters; NULL: nothing */
+    const sk_presets *presets; /* a choice that stands for other fields; NULL: none does */
 } sk_body_type;
 
 enum { SK_MOST_BODY_BATCHES = 16 };
@@ -244,10 +245,11 @@ void sk_object_release(sk_allocator *allocator, sk_object *object);
 /* Fields that objects of a category share, and where they are stored. */
 const skein_field *sk_common_fields(skein_category category, size_t *count);
 void *sk_common_of(sk_object *object);
-/* Defaults, then settings, each checked. On failure nothing is left in `params`. */
-skein_status sk_settings_apply(sk_allocator *allocator, const skein_kind *kind, void *params, const skein_field *common,
-                               size_t common_count, void *common_params, const skein_setting *settings,
-                               skein_error *error);
+/* Defaults, then what presets stand for (NULL: there are none), then settings, each checked. On failure nothing is left
+ * in `params`. */
+skein_status sk_settings_apply(sk_allocator *allocator, const skein_kind *kind, const sk_presets *presets, void *params,
+                               const skein_field *common, size_t common_count, void *common_params,
+                               const skein_setting *settings, skein_error *error);
 const skein_field *sk_kind_field(const skein_kind *kind, const char *name, skein_error *error);
 void sk_body_release(skein_world *world, sk_body *body);
 /* ---- bodies that come and go (world/presence.c) ---- */
