@@ -1,0 +1,256 @@
+"""The library by ctypes: where it is found, its structs and the calls of its header.
+
+Each function has the types of include/skein/skein.h. ctypes lets go of the interpreter's lock during every call. The
+library lies beside this file; SKEIN_LIBRARY names another (a folder or a file), a build in double precision, say.
+"""
+import ctypes as c
+import os
+
+import numpy as np
+
+# ---- structs ----
+
+
+class Error(c.Structure):
+    _fields_ = [("status", c.c_int), ("where", c.c_char * 256), ("message", c.c_char * 512)]
+
+
+class Field(c.Structure):
+    _fields_ = [("name", c.c_char_p), ("type", c.c_int), ("offset", c.c_size_t), ("unit", c.c_char_p),
+                ("initial", c.c_double * 3), ("least", c.c_double), ("most", c.c_double), ("choices", c.c_char_p),
+                ("text", c.c_char_p), ("help", c.c_char_p)]
+
+
+class Kind(c.Structure):
+    _fields_ = [("name", c.c_char_p), ("help", c.c_char_p), ("category", c.c_int), ("fields", c.POINTER(Field)),
+                ("field_count", c.c_size_t), ("params_size", c.c_size_t)]
+
+
+class Value(c.Structure):
+    _fields_ = [("count", c.c_int), ("number", c.c_double * 3), ("text", c.c_char_p)]
+
+
+class Setting(c.Structure):
+    _fields_ = [("name", c.c_char_p), ("value", Value)]
+
+
+class Handle(c.Structure):
+    _fields_ = [("index", c.c_uint32), ("generation", c.c_uint32), ("world", c.c_uint64)]
+
+    def key(self):
+        return self.index, self.generation, self.world
+
+
+LOG = c.CFUNCTYPE(None, c.c_void_p, c.c_int, c.c_char_p)
+REPORT = c.CFUNCTYPE(None, c.c_void_p, c.c_int, c.c_char_p, c.c_char_p)
+WRITE = c.CFUNCTYPE(None, c.c_void_p, c.c_char_p)
+
+
+class WorldDesc(c.Structure):
+    _fields_ = [("allocate", c.c_void_p), ("release", c.c_void_p), ("memory_user", c.c_void_p), ("log", LOG),
+                ("log_user", c.c_void_p), ("run_tasks", c.c_void_p), ("tasks_user", c.c_void_p),
+                ("thread_count", c.c_int), ("kinds", c.c_void_p)]
+
+
+class Mesh(c.Structure):
+    _fields_ = [("positions", c.POINTER(c.c_double)), ("vertex_count", c.c_size_t),
+                ("face_sizes", c.POINTER(c.c_uint32)), ("face_count", c.c_size_t),
+                ("face_vertices", c.POINTER(c.c_uint32)), ("face_vertex_count", c.c_size_t)]
+
+
+class Track(c.Structure):
+    _fields_ = [("particles", c.POINTER(c.c_uint32)), ("places", c.POINTER(c.c_double)), ("particle_count", c.c_size_t),
+                ("sample_count", c.c_size_t), ("interval", c.c_double)]
+
+
+class View(c.Structure):
+    _fields_ = [("xyzw", c.c_void_p), ("slot_of", c.c_void_p), ("count", c.c_size_t)]
+
+
+class Buffer(c.Structure):
+    _fields_ = [("data", c.c_void_p), ("stride", c.c_size_t), ("type", c.c_int)]
+
+
+class Surface(c.Structure):
+    _fields_ = [("first_particle", c.c_uint32), ("particle_count", c.c_uint32),
+                ("particle_of_vertex", c.POINTER(c.c_uint32)), ("vertex_count", c.c_size_t),
+                ("face_sizes", c.POINTER(c.c_uint32)), ("face_count", c.c_size_t),
+                ("face_vertices", c.POINTER(c.c_uint32)), ("face_vertex_count", c.c_size_t),
+                ("grid_rows", c.c_uint32), ("grid_columns", c.c_uint32), ("corner_uv", c.POINTER(c.c_float))]
+
+
+class Pose(c.Structure):
+    _fields_ = [("position", c.c_double * 3), ("rotation", c.c_double * 9)]
+
+
+class Contact(c.Structure):
+    _fields_ = [("particle", c.c_uint32), ("collider", Handle), ("normal", c.c_double * 3), ("gap", c.c_double)]
+
+
+class Hit(c.Structure):
+    _fields_ = [("t", c.c_double), ("point", c.c_double * 3), ("normal", c.c_double * 3), ("object", Handle),
+                ("face", c.c_size_t), ("particle", c.c_uint32)]
+
+
+class Statistics(c.Structure):
+    _fields_ = [("steps", c.c_uint64), ("substeps", c.c_uint64), ("time", c.c_double), ("kinetic_energy", c.c_double),
+                ("potential_energy", c.c_double), ("elastic_energy", c.c_double), ("dissipated_energy", c.c_double),
+                ("momentum", c.c_double * 3), ("angular_momentum", c.c_double * 3), ("max_stretch", c.c_double),
+                ("p99_stretch", c.c_double), ("residual", c.c_double), ("unsolved", c.c_size_t),
+                ("solver_turns", c.c_size_t), ("solver_iterations", c.c_size_t), ("solver_factors", c.c_size_t),
+                ("solver_failures", c.c_size_t), ("all_unsolved", c.c_uint64), ("all_solver_failures", c.c_uint64),
+                ("max_penetration", c.c_double), ("contacts", c.c_size_t), ("crossings", c.c_size_t),
+                ("particles", c.c_size_t), ("held_particles", c.c_size_t), ("constraints", c.c_size_t),
+                ("nonfinite", c.c_size_t), ("guarded", c.c_size_t), ("memory_bytes", c.c_size_t),
+                ("state_hash", c.c_uint64)]
+
+
+class Order(c.Structure):
+    _fields_ = [("count", c.c_size_t), ("polarization", c.c_double), ("milling", c.c_double), ("nearest", c.c_double),
+                ("groups", c.c_size_t), ("radius", c.c_double), ("farthest", c.c_double), ("speed", c.c_double)]
+
+
+class ConstraintValue(c.Structure):
+    _fields_ = [("value", c.c_double), ("by_time", c.c_double), ("stiffness", c.c_double), ("is_energy", c.c_bool),
+                ("one_sided", c.c_bool), ("guarded", c.c_bool), ("particle_count", c.c_size_t), ("label", c.c_char_p),
+                ("text", c.c_char_p)]
+
+
+STRUCTS = {"error": Error, "field": Field, "kind": Kind, "value": Value, "setting": Setting, "handle": Handle,
+           "world_desc": WorldDesc, "mesh": Mesh, "track": Track, "view": View, "buffer": Buffer, "surface": Surface,
+           "pose": Pose, "contact": Contact, "hit": Hit, "statistics": Statistics, "order": Order,
+           "constraint_value": ConstraintValue}
+
+# ---- calls ----
+
+world, size, text, status = c.c_void_p, c.c_size_t, c.c_char_p, c.c_int
+array, error, settings, handle = c.c_void_p, c.POINTER(Error), c.POINTER(Setting), c.POINTER(Handle)
+
+CALLS = {
+    "skein_status_text": (text, [status]),
+    "skein_version": (c.c_int, []),
+    "skein_kind_at": (c.POINTER(Kind), [c.c_int, size]),
+    "skein_kind_find": (c.POINTER(Kind), [c.c_int, text, error]),
+    "skein_category_text": (text, [c.c_int]),
+    "skein_common_fields": (c.POINTER(Field), [c.c_int, c.POINTER(size)]),
+    "skein_field_find": (c.POINTER(Field), [c.POINTER(Kind), text, error]),
+    "skein_default_world_desc": (WorldDesc, []),
+    "skein_world_destroy": (None, [world]),
+    "skein_world_error": (c.POINTER(Error), [world]),
+    "skein_particles_add": (status, [world, size, array, array, array, c.POINTER(c.c_uint32)]),
+    "skein_body_add": (status, [world, text, c.POINTER(Mesh), settings, handle]),
+    "skein_constraint_add": (status, [world, text, array, size, settings, handle]),
+    "skein_constraint_arity": (status, [world, text, settings, c.POINTER(size)]),
+    "skein_force_add": (status, [world, text, settings, handle]),
+    "skein_collider_add": (status, [world, text, settings, handle]),
+    "skein_motion_add": (status, [world, text, c.POINTER(Track), settings, handle]),
+    "skein_method_set": (status, [world, text, settings]),
+    "skein_remove": (status, [world, Handle]),
+    "skein_set": (status, [world, Handle, text, Value]),
+    "skein_get": (status, [world, Handle, text, c.POINTER(Value)]),
+    "skein_field_is_live": (c.c_bool, [world, Handle, text]),
+    "skein_object_count": (size, [world, c.c_int]),
+    "skein_object_at": (Handle, [world, c.c_int, size]),
+    "skein_object_kind": (c.POINTER(Kind), [world, Handle]),
+    "skein_handle_valid": (c.c_bool, [world, Handle]),
+    "skein_world_reset": (status, [world]),
+    "skein_world_time": (c.c_double, [world]),
+    "skein_world_time_set": (status, [world, c.c_double]),
+    "skein_particle_count": (size, [world]),
+    "skein_particle_present": (c.c_bool, [world, size]),
+    "skein_positions_copy": (status, [world, size, size, array]),
+    "skein_velocities_copy": (status, [world, size, size, array]),
+    "skein_positions_copy_to": (status, [world, size, size, Buffer]),
+    "skein_velocities_copy_to": (status, [world, size, size, Buffer]),
+    "skein_positions_set": (status, [world, size, size, array]),
+    "skein_velocities_set": (status, [world, size, size, array]),
+    "skein_particle_hold": (status, [world, size, c.c_bool]),
+    "skein_pins_move": (status, [world, array, size, array]),
+    "skein_body_surface": (status, [world, Handle, c.POINTER(Surface)]),
+    "skein_body_vertices_copy": (status, [world, Handle, c.c_double, Buffer, Buffer]),
+    "skein_body_elements": (status, [world, Handle, c.c_int, array, size, c.POINTER(size)]),
+    "skein_collider_pose": (status, [world, Handle, c.POINTER(Pose)]),
+    "skein_collider_probe": (status, [world, Handle, size, array, array, array]),
+    "skein_collider_teleport": (status, [world, Handle]),
+    "skein_constraint_count": (status, [world, Handle, c.POINTER(size)]),
+    "skein_constraint_evaluate": (status, [world, Handle, size, c.POINTER(ConstraintValue), array, array, size]),
+    "skein_contacts_copy": (status, [world, c.POINTER(Contact), size, c.POINTER(size)]),
+    "skein_ray_cast": (status, [world, array, array, c.c_int, c.POINTER(Hit)]),
+    "skein_world_statistics": (status, [world, c.POINTER(Statistics)]),
+    "skein_world_hash": (c.c_uint64, [world]),
+    "skein_order_measure": (status, [world, size, size, array, c.c_double, c.POINTER(Order)]),
+    "skein_stable_substep": (c.c_double, [text, c.c_void_p]),
+    "skein_world_explain": (status, [world, c.c_double, WRITE, c.c_void_p]),
+    "py_scene_open": (c.c_void_p, [text, size, text, c.POINTER(text), REPORT, c.c_void_p]),
+    "py_scene_build": (world, [c.c_void_p, c.POINTER(WorldDesc), REPORT, c.c_void_p]),
+    "py_scene_settings": (c.c_void_p, [c.c_void_p]),
+    "py_scene_text": (c.c_void_p, [c.c_void_p]),
+    "py_scene_view": (c.c_void_p, [c.c_void_p]),
+    "py_scene_free": (None, [c.c_void_p]),
+    "py_free": (None, [c.c_void_p]),
+    "py_steps": (status, [world, c.c_double, size]),
+    "py_steps_of_all": (size, [c.POINTER(world), size, c.c_double, size]),
+    "py_struct_size": (size, [text]),
+}
+
+
+def folder():
+    """Where the libraries lie."""
+    given = os.environ.get("SKEIN_LIBRARY")
+    if given:
+        return given if os.path.isdir(given) else os.path.dirname(os.path.abspath(given))
+    return os.path.dirname(os.path.abspath(__file__))
+
+
+def _load():
+    given = os.environ.get("SKEIN_LIBRARY", "")
+    path = given if os.path.isfile(given) else os.path.join(folder(), "libskein.so")
+    if not os.path.exists(path):
+        raise ImportError(f"{path} is missing: the package is installed from its wheel ('make wheel' makes it), or "
+                          "SKEIN_LIBRARY names the folder of a build's libskein.so (build/python)")
+    loaded = c.CDLL(path)
+    try:
+        for name, (result, arguments) in CALLS.items():
+            function = getattr(loaded, name)
+            function.restype, function.argtypes = result, arguments
+    except AttributeError as missing:
+        raise ImportError(f"{path}: {missing}: it is no libskein.so of this package's version") from None
+    for name, struct in STRUCTS.items():
+        if loaded.py_struct_size(name.encode()) != c.sizeof(struct):
+            raise ImportError(f"{path}: skein_{name} is laid out otherwise there: another version of the library")
+    return loaded
+
+
+lib = _load()
+
+# The one that is there says how wide numbers in views are.
+try:
+    world_create, real, precision = lib.skein_world_create_float, np.dtype(np.float32), "float"
+except AttributeError:
+    world_create, real, precision = lib.skein_world_create_double, np.dtype(np.float64), "double"
+world_create.restype, world_create.argtypes = world, [c.POINTER(WorldDesc), error]
+position_view = getattr(lib, f"skein_position_view_{precision}")
+velocity_view = getattr(lib, f"skein_velocity_view_{precision}")
+for _view in position_view, velocity_view:
+    _view.restype, _view.argtypes = View, [world]
+
+OK, ERROR_MEMORY, ERROR_VALUE, ERROR_NAME, ERROR_HANDLE, ERROR_MESH, ERROR_FILE, ERROR_SYNTAX, ERROR_LIMIT = range(9)
+BOOL, INT, INT2, INT3, REAL, REAL2, VEC3, CHOICE, TEXT = range(9)
+BODY, CONSTRAINT, FORCE, COLLIDER, MOTION, METHOD = range(6)
+CATEGORIES = ["body", "constraint", "force", "collider", "motion", "method"]
+LISTS = ["bodies", "constraints", "forces", "colliders", "motions", "method"]  # as scenes call them
+
+
+def take_text(pointer):
+    """A text that C made for us, which goes; None where there was no memory."""
+    if not pointer:
+        raise MemoryError("out of memory")
+    try:
+        return c.string_at(pointer).decode()
+    finally:
+        lib.py_free(pointer)
+
+
+def pointer_to(array):
+    """The numbers of an array, or NULL."""
+    return None if array is None else array.ctypes.data

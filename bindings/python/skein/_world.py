@@ -1,0 +1,424 @@
+"""World: particles under rules, and a method that turns rules into motion.
+
+What it owns: the C world (an Owner, which views hold, too), the document of its scene if it has one, and the lock that
+lets one thread in at a time. Units are SI, y is up.
+"""
+import ctypes
+import logging
+import os
+import threading
+import types
+import weakref
+
+import numpy as np
+
+from . import _library as L, _objects
+from ._errors import fault, of
+from ._fields import settings
+from ._library import lib
+from ._views import Views
+
+DEFAULT_STEP = 1 / 90  # s, SKEIN_DEFAULT_STEP
+_log = logging.getLogger("skein")
+_after_fork = [0]  # how many forks this process is away from the first one
+os.register_at_fork(after_in_child=lambda: _after_fork.__setitem__(0, _after_fork[0] + 1))
+
+
+class Owner:
+    """The C world, destroyed when nobody holds it."""
+
+    __slots__ = ("pointer", "scene", "log", "forks", "__weakref__")
+
+    def __init__(self, pointer, scene, log):
+        self.pointer, self.scene, self.log, self.forks = pointer, scene, log, _after_fork[0]
+
+    def destroy(self):
+        pointer, self.pointer = self.pointer, None
+        scene, self.scene = self.scene, None
+        if pointer and self.forks == _after_fork[0]:  # a child of fork() has not the threads that this would wait for
+            lib.skein_world_destroy(pointer)
+        if scene:
+            lib.py_scene_free(scene)
+
+    def __del__(self):
+        self.destroy()
+
+
+def described(threads, log):
+    """A world's description, and the callback that must live as long as the world."""
+
+    def hear(_, level, message):
+        words = message.decode(errors="replace")
+        if log:
+            log(words)
+        else:
+            _log.log(logging.WARNING if level else logging.INFO, "%s", words)
+
+    desc = lib.skein_default_world_desc()
+    callback = desc.log = L.LOG(hear)
+    desc.thread_count = threads
+    return desc, callback
+
+
+class State:
+    """A copy of a world's state to come back to: time (s), positions (m) and velocities (m/s), exact."""
+
+    __slots__ = ("time", "positions", "velocities")
+
+    def __init__(self, time, positions, velocities):
+        self.time, self.positions, self.velocities = time, positions, velocities
+
+    def __repr__(self):
+        return f"<State of {len(self.positions)} particles at {self.time:g} s>"
+
+
+class World:
+    """A world, empty and under XPBD, or of a scene: World.from_scene().
+
+    threads: the most threads of its own; 0, as many as there are processors. log: hears warnings, a line each, instead of
+    logging.getLogger("skein")."""
+
+    def __init__(self, threads=0, *, dt=DEFAULT_STEP, log=None):
+        error = L.Error()
+        desc, callback = described(threads, log)
+        pointer = L.world_create(ctypes.byref(desc), ctypes.byref(error))
+        if not pointer:
+            raise of(error)
+        self._begin(Owner(pointer, None, callback), dt)
+
+    def _begin(self, owner, dt):
+        self._owner, self._lock, self._views, self._known = owner, threading.RLock(), Views(), weakref.WeakValueDictionary()
+        self._settled = False
+        self.dt = dt  # s, of a step
+        self.steps_per_frame = 1
+        self.fps = 1 / dt
+        self.name = self.description = ""
+        self.frames = 0
+        self._lists = {name: _objects.ObjectList(self, i) for i, name in enumerate(L.LISTS[:-1])}
+
+    @classmethod
+    def from_scene(cls, scene, sets=(), *, threads=0, log=None):
+        """Opens a scene: a dict, JSON text, a file's path, a mesh's, or the name of one that comes along
+        (skein.scenes()). `sets` are changes before it is built, as --set has them: {"method.substeps": 20}."""
+        from ._scene import open_scene
+        world = cls.__new__(cls)
+        owner, facts = open_scene(scene, sets, threads, log)
+        world._begin(owner, facts["dt"])
+        world.steps_per_frame, world.fps, world.frames = facts["steps_per_frame"], facts["fps"], facts["frames"]
+        world.name, world.description = facts["name"], facts["description"]
+        return world
+
+    # ---- the world's life ----
+
+    @property
+    def closed(self):
+        return self._owner.pointer is None
+
+    @property
+    def _pointer(self):
+        pointer = self._owner.pointer
+        if pointer is None:
+            raise ValueError("the world is closed")
+        return pointer
+
+    def close(self):
+        """Gives the memory back. BufferError while views of the state are held."""
+        with self._lock:
+            self._views.refuse("closing the world")
+            self._owner.destroy()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def _call(self, function, *arguments, place=""):
+        with self._lock:
+            pointer = self._pointer
+            if function(pointer, *arguments):
+                raise of(lib.skein_world_error(pointer).contents, place)
+
+    def _resize(self):
+        """Before the state's memory may move."""
+        self._views.refuse("adding, removing or disabling a body")
+        self._settled = False
+
+    def _change(self, thing, full):
+        if full == "enabled" and thing._category == L.BODY:
+            self._resize()
+
+    # ---- objects ----
+
+    bodies = property(lambda self: self._lists["bodies"], doc="its bodies: world.bodies.cloth(...), world.bodies[0]")
+    constraints = property(lambda self: self._lists["constraints"], doc="constraints added by themselves")
+    forces = property(lambda self: self._lists["forces"], doc="its forces: world.forces.gravity()")
+    colliders = property(lambda self: self._lists["colliders"], doc="its colliders: world.colliders.sphere(radius=0.3)")
+    motions = property(lambda self: self._lists["motions"], doc="what leads pins")
+
+    @property
+    def method(self):
+        """The method, with its fields: world.method.substeps = 20; or another: world.method = "rk4"."""
+        return self._object(L.METHOD, lib.skein_object_at(self._pointer, L.METHOD, 0))
+
+    @method.setter
+    def method(self, kind):
+        self.set_method(kind)
+
+    def set_method(self, kind, **fields):
+        """Another method; what the former one was set to is gone."""
+        place = "method"
+        found = _objects.CLASSES.get((L.METHOD, kind))
+        if not found:
+            raise _objects.ObjectList(self, L.METHOD)._no_kind(kind)
+        self._call(lib.skein_method_set, kind.encode(), settings(found._table, fields, place), place=place)
+        return self.method
+
+    def _object(self, category, handle):
+        key = handle.key()
+        found = self._known.get(key)
+        kind = lib.skein_object_kind(self._pointer, handle)
+        if not kind:
+            raise fault(L.ERROR_HANDLE, L.LISTS[category], "there is no such object any more")
+        name = kind.contents.name.decode()
+        if found is None or found.kind != name:  # (the method's handle stays as its kind changes)
+            found = _objects.CLASSES[category, name](self, handle)
+        return found
+
+    def _add(self, category, kind, fields):
+        from . import _adding
+        place = f"{L.LISTS[category]}: {kind}"
+        handle = _adding.add(self, category, kind, _objects.CLASSES[category, kind]._table, fields, place)
+        return self._object(category, handle)
+
+    def _at_path(self, path):
+        first, *rest = path.split(".")
+        if first == "method":
+            return self.method, ".".join(rest)
+        if first not in self._lists or len(rest) < 2:
+            raise fault(L.ERROR_NAME, path, f"expected one of {', '.join(L.LISTS)} at its beginning, then a number or a "
+                                            "name, then a field")
+        key = int(rest[0]) if rest[0].isdigit() else rest[0]
+        return self._lists[first][key], ".".join(rest[1:])
+
+    def get(self, path):
+        """A field by its path: world.get("colliders.ball.radius")."""
+        thing, full = self._at_path(path)
+        return thing[full]
+
+    def set(self, path, value):
+        """Sets a field by its path, as --set has it."""
+        thing, full = self._at_path(path)
+        thing[full] = value
+
+    # ---- stepping ----
+
+    def step(self, dt=None, count=1):
+        """Goes on by `count` steps of dt seconds (World.dt if it is left out). Other threads of Python run meanwhile."""
+        owner = self._owner
+        if owner.forks != _after_fork[0]:
+            raise RuntimeError("this world was made before fork(): its threads are not in this process. Make worlds after "
+                               "the fork")
+        with self._lock:
+            pointer = owner.pointer
+            if pointer is None:
+                raise ValueError("the world is closed")
+            if lib.py_steps(pointer, self.dt if dt is None else dt, count):
+                raise of(lib.skein_world_error(pointer).contents)
+            self._settled = True
+
+    def frame(self, count=1):
+        """Goes on by `count` frames of its scene."""
+        self.step(count=count * self.steps_per_frame)
+
+    def reset(self):
+        """Positions as they were built; velocities, time and counters zero. Fields stay as they are now."""
+        self._call(lib.skein_world_reset)
+
+    @property
+    def time(self):
+        """Simulated time, s. Setting it sets the clock alone."""
+        return lib.skein_world_time(self._pointer)
+
+    @time.setter
+    def time(self, seconds):
+        self._call(lib.skein_world_time_set, seconds)
+
+    def snapshot(self):
+        """A copy of the state; restore() goes back to it, to the last bit."""
+        count = len(self)
+        positions, velocities = np.empty((count, 3)), np.empty((count, 3))
+        with self._lock:
+            self._call(lib.skein_positions_copy, 0, count, positions.ctypes.data)
+            self._call(lib.skein_velocities_copy, 0, count, velocities.ctypes.data)
+            return State(self.time, positions, velocities)
+
+    def restore(self, state):
+        with self._lock:
+            self.positions, self.velocities, self.time = state.positions, state.velocities, state.time
+
+    # ---- the state ----
+
+    def __len__(self):
+        """How many particles there are."""
+        return lib.skein_particle_count(self._pointer)
+
+    def __bool__(self):
+        return True
+
+    def _copy(self, function, particles):
+        out = np.empty((len(particles), 3), L.real)
+        self._call(function, particles.start, len(particles), L.Buffer(out.ctypes.data, 0, int(L.real.itemsize == 8)))
+        return out
+
+    def _write(self, function, xyz, particles):
+        xyz = np.ascontiguousarray(np.broadcast_to(np.asarray(xyz, np.float64), (len(particles), 3)))
+        self._call(function, particles.start, len(particles), xyz.ctypes.data)
+
+    @property
+    def positions(self):
+        """A copy in the order of particles, n x 3, m; what is assigned is written. position_view copies nothing."""
+        return self._copy(lib.skein_positions_copy_to, range(len(self)))
+
+    @positions.setter
+    def positions(self, xyz):
+        self._write(lib.skein_positions_set, xyz, range(len(self)))
+
+    @property
+    def velocities(self):
+        """A copy in the order of particles, n x 3, m/s; what is assigned is written."""
+        return self._copy(lib.skein_velocities_copy_to, range(len(self)))
+
+    @velocities.setter
+    def velocities(self, xyz):
+        self._write(lib.skein_velocities_set, xyz, range(len(self)))
+
+    def _view(self, function):
+        with self._lock:
+            if not self._settled:  # particles get their slots now, and not in a step that would move them under a view
+                self._call(lib.skein_world_explain, self.dt, L.WRITE(), None)
+                self._settled = True
+            view = function(self._pointer)
+            slot_of = self._views.give(self._owner, view.slot_of, (view.count,), np.uint32)
+            return view, slot_of
+
+    def _slots(self, function):
+        view, slot_of = self._view(function)
+        slots = int(slot_of.max()) + 1 if view.count else 0
+        return self._views.give(self._owner, view.xyzw, (slots, 4), L.real)
+
+    @property
+    def position_view(self):
+        """The state itself, no copy: x, y, z (m) and the inverse mass (1/kg) of each slot. Read-only. It shows every
+        step's result; particle i is in row slot_of[i]: position_view[slot_of] is a copy in the order of particles."""
+        return self._slots(L.position_view)
+
+    @property
+    def velocity_view(self):
+        """The same of velocities: x, y, z (m/s) and the mass (kg) of each slot."""
+        return self._slots(L.velocity_view)
+
+    @property
+    def slot_of(self):
+        """The row of each particle in position_view and velocity_view, no copy. Steps of large flocks change it."""
+        return self._view(L.position_view)[1]
+
+    def add_particles(self, positions, velocities=None, masses=1.0):
+        """Adds loose particles; masses in kg, 0 holds one where it is. Returns their indices as a range."""
+        self._resize()
+        positions = np.ascontiguousarray(np.asarray(positions, np.float64).reshape(-1, 3))
+        count, first = len(positions), ctypes.c_uint32()
+        if velocities is not None:
+            velocities = np.ascontiguousarray(np.broadcast_to(np.asarray(velocities, np.float64), (count, 3)))
+        masses = np.ascontiguousarray(np.broadcast_to(np.asarray(masses, np.float64), (count,)))
+        self._call(lib.skein_particles_add, count, positions.ctypes.data, L.pointer_to(velocities), masses.ctypes.data,
+                   ctypes.byref(first))
+        return range(first.value, first.value + count)
+
+    def hold(self, particle, held=True):
+        """Holds a particle where it is, or lets it go."""
+        self._call(lib.skein_particle_hold, self._index(particle), bool(held))
+
+    def _index(self, particle):
+        if not 0 <= particle < len(self):
+            raise fault(L.ERROR_VALUE, "particle", f"expected 0 to {len(self) - 1}, not {particle}")
+        return particle
+
+    def move_pins(self, particles, places):
+        """Says where held particles are at the end of the next step: they go there in straight lines."""
+        particles = np.ascontiguousarray(np.atleast_1d(particles), np.uint32)
+        places = np.ascontiguousarray(np.broadcast_to(np.asarray(places, np.float64), (len(particles), 3)))
+        self._call(lib.skein_pins_move, particles.ctypes.data, len(particles), places.ctypes.data)
+
+    # ---- measures ----
+
+    def hash(self):
+        """The state's fingerprint, 16 hexadecimal digits: what `skein run` prints of the same scene."""
+        with self._lock:
+            return f"{lib.skein_world_hash(self._pointer):016x}"
+
+    def statistics(self):
+        """Measures the present state: energies, stretch, contacts ...; costs about a step."""
+        found = L.Statistics()
+        self._call(lib.skein_world_statistics, ctypes.byref(found))
+        values = {name: getattr(found, name) for name, _ in L.Statistics._fields_}
+        values.update(momentum=np.array(found.momentum), angular_momentum=np.array(found.angular_momentum),
+                      state_hash=f"{found.state_hash:016x}")
+        return types.SimpleNamespace(**values)
+
+    def order(self, body=None, centre=(0, 0, 0), group_distance=0.0):
+        """How particles fly together (polarization, milling, nearest ...): of a body, or of all."""
+        particles = body.particles if body is not None else range(len(self))
+        found, centre = L.Order(), np.array(centre, np.float64)
+        self._call(lib.skein_order_measure, particles.start, len(particles), centre.ctypes.data, group_distance,
+                   ctypes.byref(found))
+        return types.SimpleNamespace(**{name: getattr(found, name) for name, _ in L.Order._fields_})
+
+    def contacts(self):
+        """The particles within a collider's thickness: a list with particle, collider, normal and gap (m)."""
+        count = ctypes.c_size_t()
+        with self._lock:
+            self._call(lib.skein_contacts_copy, None, 0, ctypes.byref(count))
+            array = (L.Contact * max(count.value, 1))()
+            self._call(lib.skein_contacts_copy, array, count.value, ctypes.byref(count))
+        return [types.SimpleNamespace(particle=x.particle, collider=self._object(L.COLLIDER, L.Handle(*x.collider.key())),
+                                      normal=np.array(x.normal), gap=x.gap) for x in array[:count.value]]
+
+    def ray_cast(self, origin, direction, of="body"):
+        """What a ray meets first among "body" or "collider": object, t (m), point, normal; None where it meets nothing."""
+        hit, category = L.Hit(), L.CATEGORIES.index(of)
+        origin, direction = np.array(origin, np.float64), np.array(direction, np.float64)
+        self._call(lib.skein_ray_cast, origin.ctypes.data, direction.ctypes.data, category, ctypes.byref(hit))
+        if not np.isfinite(hit.t):
+            return None
+        return types.SimpleNamespace(t=hit.t, point=np.array(hit.point), normal=np.array(hit.normal), face=hit.face,
+                                     particle=hit.particle, object=self._object(category, L.Handle(*hit.object.key())))
+
+    def explain(self, dt=None):
+        """The plan of a step, as lines."""
+        lines = []
+        self._call(lib.skein_world_explain, self.dt if dt is None else dt,
+                   L.WRITE(lambda _, line: lines.append(line.decode())), None)
+        self._settled = True
+        return lines
+
+    # ---- scenes and pictures ----
+
+    def scene(self):
+        """The scene that it was opened from, with its sets, as a dict; None if it was made by hand. What was set or added
+        since is not in it."""
+        import json
+        self._pointer
+        return json.loads(L.take_text(lib.py_scene_text(self._owner.scene))) if self._owner.scene else None
+
+    def render(self, size=(640, 360), samples=4, view=None):
+        """A picture as it stands: an array of height x width x 3 bytes (sRGB). `view` are fields of a scene's "view"."""
+        from ._pictures import render
+        return render(self, size, samples, view)
+
+    def __repr__(self):
+        if self.closed:
+            return "<World, closed>"
+        title = f" {self.name!r}" if self.name else ""
+        return (f"<World{title}: {len(self)} particles, {len(self.bodies)} bodies, {len(self.forces)} forces, "
+                f"{len(self.colliders)} colliders, {self.method.kind}, {self.time:g} s>")

@@ -1,0 +1,298 @@
+"""Worlds against closed forms, against the command, and what views and errors promise."""
+import gc
+import json
+import math
+import multiprocessing
+import os
+import subprocess
+import threading
+import unittest
+import weakref
+
+import numpy as np
+
+import skein
+from skein import _library as L
+
+COMMAND = os.environ.get("SKEIN_COMMAND", "skein")
+ROOT = os.environ.get("SKEIN_SOURCE_DIR", ".")
+
+
+def command(*arguments):
+    return subprocess.run([COMMAND, *arguments], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+
+
+class ClosedForms(unittest.TestCase):
+    def test_free_fall(self):
+        world = skein.World(threads=1)
+        world.set_method("leapfrog", substeps=1)
+        world.forces.gravity(acceleration=(0, -9.81, 0))
+        world.add_particles([[0, 10, 0]], [[1, 0, 0]], masses=2)
+        world.step(0.01, 100)
+        self.assertAlmostEqual(world.time, 1.0, places=12)
+        np.testing.assert_allclose(world.positions[0], [1, 10 - 9.81 / 2, 0], atol=2e-5)  # exact but for rounding
+        np.testing.assert_allclose(world.velocities[0], [1, -9.81, 0], atol=2e-5)
+        self.assertAlmostEqual(world.statistics().kinetic_energy, (1 + 9.81**2), delta=1e-3)
+
+    def test_pendulum(self):
+        """The period of a rigid pendulum of 1 m that swings by 30 degrees, by the arithmetic-geometric mean."""
+        world, angle, g, dt = skein.World(threads=1), math.radians(30), 9.81, 1 / 240
+        world.set_method("xpbd", substeps=10)
+        world.forces.gravity(acceleration=(0, -g, 0))
+        world.add_particles([[0, 0, 0], [math.sin(angle), -math.cos(angle), 0]], masses=[0, 1])
+        world.constraints.distance(particles=[[0, 1]], stiffness=math.inf)
+        crossings, before = [], world.positions[1, 0]
+        while len(crossings) < 5:
+            world.step(dt)
+            x = world.positions[1, 0]
+            if before * x < 0:
+                crossings.append(world.time - dt * x / (x - before))
+            before = x
+        a, b = 1.0, math.cos(angle / 2)
+        while a - b > 1e-15:
+            a, b = (a + b) / 2, math.sqrt(a * b)
+        period = 2 * math.pi / a * math.sqrt(1 / g)
+        self.assertAlmostEqual((crossings[4] - crossings[0]) / 2, period, delta=2e-3 * period)
+
+    def test_formula_spring_is_the_built_in_one(self):
+        """A traced spring swings as k/m says."""
+        world, k, mass = skein.World(threads=1), 40.0, 0.5
+        world.set_method("leapfrog", substeps=4)
+        world.add_particles([[0, 0, 0], [1.1, 0, 0]], masses=[0, mass])
+        length = skein.functions.length
+        spring = world.constraints.formula(constraint=lambda p0, p1, L=1.0: length(p0 - p1) - L, particles=[0, 1], stiffness=k)
+        self.assertEqual(spring.constraint, "length(p0 - p1) - L")
+        self.assertEqual(spring.parameters.L, 1)
+        world.step(1e-3, 1000)
+        self.assertAlmostEqual(world.positions[1, 0], 1 + 0.1 * math.cos(math.sqrt(k / mass) * world.time), delta=1e-4)
+
+
+class Scenes(unittest.TestCase):
+    def test_hashes_are_the_command_s(self):
+        for name, frames in ("hanging", 30), ("birds", 20), ("jelly_ball", 10), ("torus", 20), ("breathing_rope", 60):
+            with self.subTest(name):
+                report = json.loads(command("run", f"scenes/{name}.json", "--frames", str(frames), "--quiet", "--json"))
+                world = skein.World.from_scene(f"{ROOT}/scenes/{name}.json")
+                world.frame(frames)
+                self.assertEqual(world.hash(), report["state_hash"])
+                self.assertEqual(world.statistics().state_hash, report["state_hash"])
+
+    def test_changes_before_and_while_it_lives(self):
+        path = f"{ROOT}/scenes/flag.json"
+        before = skein.World.from_scene(path, {"forces.1.velocity": [2, 0, 3], "method.substeps": 5})
+        live = skein.World.from_scene(path)
+        live.set("forces.1.velocity", (2, 0, 3))
+        live.method.substeps = 5
+        self.assertEqual(live.get("forces.1.velocity"), (2, 0, 3))
+        other = skein.World.from_scene(before.scene() | {"output": ["film"]})
+        for world in before, live, other:
+            world.frame(20)
+        self.assertEqual(before.hash(), live.hash())
+        self.assertEqual(before.hash(), other.hash())
+        self.assertEqual(before.scene()["method"]["substeps"], 5)
+        plain = skein.World.from_scene(path)
+        plain.frame(20)
+        self.assertNotEqual(plain.hash(), live.hash())
+
+    def test_by_hand_is_by_scene(self):
+        scene = skein.World.from_scene({"bodies": [{"type": "cloth", "grid": [9, 12], "pins": "corners"}],
+                                        "forces": [{"type": "gravity"}, {"type": "drag", "rate": 0.5}]})
+        hand = skein.World()
+        hand.bodies.cloth(grid=(9, 12), pins="corners")
+        hand.forces.gravity()
+        hand.forces.drag(rate=0.5)
+        scene.step(1 / 60, 30)
+        hand.step(1 / 60, 30)
+        self.assertEqual(scene.hash(), hand.hash())
+
+    def test_meshes_by_file_and_from_arrays(self):
+        world = skein.World.from_scene(f"{ROOT}/meshes/ball.obj")
+        self.assertGreater(len(world), 100)
+        triangle = skein.World()
+        body = triangle.bodies.cloth(vertices=[[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 1]], faces=[[0, 1, 2], [1, 3, 2]])
+        self.assertEqual(len(body.particles), 4)
+        self.assertEqual([list(face) for face in body.faces], [[0, 1, 2], [1, 3, 2]])
+        self.assertEqual(body.elements("triangles").shape, (2, 3))
+        np.testing.assert_array_equal(body.vertices, body.positions.astype(np.float32))
+
+
+class Views(unittest.TestCase):
+    def setUp(self):
+        self.world = skein.World(threads=1)
+        self.cloth = self.world.bodies.cloth(grid=(20, 33), pins="top edge")
+        self.world.forces.gravity()
+
+    def test_they_show_the_step_with_no_copy(self):
+        positions, velocities, slot_of = self.world.position_view, self.world.velocity_view, self.world.slot_of
+        first = positions.copy()
+        for count in 1, 7:
+            self.world.step(1 / 60, count)
+            np.testing.assert_array_equal(positions[slot_of][:, :3], self.world.positions)
+            np.testing.assert_array_equal(velocities[slot_of][:, :3], self.world.velocities)
+        self.assertFalse(np.array_equal(first, positions))
+        view = L.position_view(self.world._pointer)
+        self.assertEqual(positions.ctypes.data, view.xyzw)  # it is the world's memory itself
+        self.assertEqual(slot_of.ctypes.data, view.slot_of)
+        self.assertFalse(positions.flags.writeable)
+        self.assertEqual((positions[slot_of][:, 3] == 0).sum(), self.world.statistics().held_particles)
+        np.testing.assert_allclose(velocities[slot_of][:, 3].sum(), 0.2, rtol=1e-5)  # kg: 0.2 kg/m2, and 1 m2
+
+    def test_nothing_takes_their_memory_away(self):
+        view = self.world.position_view
+        part = view[3:, 1]
+        del view
+        for act in (self.world.close, lambda: self.world.bodies.rope(), self.cloth.remove,
+                    lambda: setattr(self.cloth, "enabled", False), lambda: self.world.add_particles([[0, 0, 0]])):
+            self.assertRaisesRegex(BufferError, "still held", act)
+        self.world.step()
+        self.world.method = "pbd"  # what moves nothing is allowed
+        self.world.step(1 / 30)
+        self.assertTrue(np.isfinite(part).all())
+        del part
+        self.cloth.enabled = False
+        self.world.bodies.rope()
+        self.world.close()
+        self.assertRaisesRegex(ValueError, "closed", self.world.step)
+        self.assertRaisesRegex(ValueError, "closed", lambda: self.world.positions)
+
+    def test_a_view_keeps_its_world(self):
+        owner = weakref.ref(self.world._owner)
+        self.world.step()
+        view, slot_of, want = self.world.position_view, self.world.slot_of, self.world.positions
+        self.world = self.cloth = None
+        gc.collect()
+        self.assertIsNotNone(owner())
+        np.testing.assert_array_equal(view[slot_of][:, :3], want)
+        del view, slot_of
+        gc.collect()
+        self.assertIsNone(owner())
+
+    def test_rows_that_move_in_large_flocks(self):
+        world = skein.World()
+        world.set_method("symplectic_euler", substeps=1)
+        world.bodies.flock(count=40000, spread=(40, 40, 40), speed=2)
+        world.forces.flocking(separation=1, alignment=1, cohesion=1)
+        view, slot_of = world.position_view, world.slot_of
+        before = slot_of.copy()
+        world.step(0.1, 2)
+        self.assertFalse(np.array_equal(before, slot_of))  # or this test shows nothing
+        np.testing.assert_array_equal(view[slot_of][:, :3], world.positions)
+
+    def test_an_empty_world_has_empty_views(self):
+        world = skein.World()
+        self.assertEqual(world.position_view.shape, (0, 4))
+        self.assertEqual(world.positions.shape, (0, 3))
+        world.bodies.rope()
+
+
+class State(unittest.TestCase):
+    def test_snapshots_are_exact(self):
+        world = skein.World.from_scene(f"{ROOT}/scenes/drape.json")
+        world.frame(20)
+        state, start = world.snapshot(), world.hash()
+        world.frame(20)
+        end = world.hash()
+        self.assertNotEqual(start, end)
+        world.restore(state)
+        self.assertEqual(world.hash(), start)
+        self.assertEqual(world.time, state.time)
+        world.frame(20)
+        self.assertEqual(world.hash(), end)
+        world.reset()
+        world.frame(40)
+        self.assertEqual(world.hash(), end)
+
+    def test_writing_holding_leading(self):
+        world = skein.World(threads=1)
+        rope = world.bodies.rope(count=5, from_=(0, 0, 0), to=(1, 0, 0), pins="first")
+        world.forces.gravity()
+        rope.positions = rope.positions + [0, 2, 0]
+        rope.velocities = [0, 0, 1]
+        np.testing.assert_allclose(world.positions[:, 1], 2)
+        np.testing.assert_allclose(world.velocities[1:], [[0, 0, 1]] * 4)
+        rope.velocities = 0
+        world.hold(4)
+        world.move_pins([0, 4], [[0, 3, 0], [1, 3, 0]])
+        world.step()
+        np.testing.assert_allclose(world.positions[[0, 4]], [[0, 3, 0], [1, 3, 0]])
+        world.hold(4, False)
+        world.step(count=20)
+        self.assertLess(world.positions[4, 1], 2.9)
+        self.assertRaisesRegex(skein.SkeinError, "0 to 4", world.hold, 5)
+        self.assertRaises(skein.ValueFault, setattr, world, "positions", np.nan)
+        self.assertRaises(ValueError, setattr, world, "positions", np.zeros((4, 3)))
+
+    def test_measures(self):
+        world = skein.World.from_scene(f"{ROOT}/scenes/birds.json")
+        order = world.order(world.bodies["birds"])
+        self.assertEqual(order.count, 1024)
+        self.assertAlmostEqual(order.farthest, np.linalg.norm(world.positions, axis=1).max(), places=3)
+        ball = skein.World()
+        sphere = ball.colliders.sphere(radius=0.5, name="ball")
+        ball.add_particles([[0, 0.4, 0], [0, 3, 0]])
+        (contact,) = ball.contacts()
+        self.assertEqual((contact.particle, contact.collider), (0, sphere))
+        np.testing.assert_allclose(contact.normal, [0, 1, 0], atol=1e-6)
+        hit = ball.ray_cast([0, 5, 0], [0, -2, 0], of="collider")
+        self.assertAlmostEqual(hit.t, 4.5, places=5)
+        self.assertEqual(hit.object, sphere)
+        self.assertIsNone(ball.ray_cast([0, 5, 0], [0, 1, 0], of="collider"))
+        np.testing.assert_allclose(sphere.probe([[2, 0, 0], [0, 0, 0.25]])[0], [1.5, -0.25], atol=1e-6)
+        self.assertTrue(len(world.explain()) > 3)
+
+
+class Threads(unittest.TestCase):
+    def test_others_run_while_a_step_does(self):
+        """The interpreter's lock is free during steps: a counter goes on."""
+        world = skein.World.from_scene(f"{ROOT}/scenes/hanging.json", threads=1)
+        counted, stop = [0], threading.Event()
+
+        def count():
+            while not stop.is_set():
+                counted[0] += 1
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        try:
+            before = counted[0]
+            world.step(count=200)  # one call
+            during = counted[0] - before
+        finally:
+            stop.set()
+            thread.join()
+        self.assertGreater(during, 100)
+
+    def test_one_world_is_for_one_thread_at_a_time(self):
+        world = skein.World.from_scene(f"{ROOT}/scenes/hanging.json")
+        threads = [threading.Thread(target=lambda: [world.step() or world.positions for _ in range(20)]) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        alone = skein.World.from_scene(f"{ROOT}/scenes/hanging.json")
+        alone.step(count=80)
+        self.assertEqual(world.hash(), alone.hash())
+
+    def test_after_fork(self):
+        world = skein.World.from_scene(f"{ROOT}/scenes/hanging.json")
+        world.step(count=3)
+        child = multiprocessing.get_context("fork").Process(target=_in_child, args=(world,))
+        child.start()
+        child.join(120)
+        self.assertEqual(child.exitcode, 0)
+
+
+def _in_child(world):
+    try:
+        world.step()
+        os._exit(1)
+    except RuntimeError:
+        del world
+        gc.collect()
+        made = skein.World.from_scene(f"{ROOT}/scenes/hanging.json")
+        made.step()
+        os._exit(0)
+
+
+if __name__ == "__main__":
+    unittest.main()
