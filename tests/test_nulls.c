@@ -175,6 +175,13 @@ static void reading_and_writing(void **state) {
     assert_true(!skein_velocity_view(NULL).xyzw && !skein_velocity_view(NULL).count);
     REFUSES("out", skein_positions_copy(s.world, 0, 1, NULL));
     REFUSES("out", skein_velocities_copy(s.world, 0, 1, NULL));
+    REFUSES("out", skein_snapshot_write(s.world, NULL, 1, NULL));
+    REFUSES("bytes", skein_snapshot_read(s.world, NULL, 1));
+    REFUSES_ALL(skein_snapshot_write(NULL, xyz, 1, NULL));
+    REFUSES_ALL(skein_snapshot_read(NULL, xyz, 1));
+    REFUSES_ALL(skein_snapshot_look(NULL, 1, &(skein_snapshot_info){0}, NULL));
+    REFUSES_ALL(skein_snapshot_look(xyz, 1, NULL, NULL));
+    assert_int_equal(skein_snapshot_size(NULL), 0);
     REFUSES("to", skein_positions_copy_to(s.world, 0, 1, skein_floats(NULL, 0)));
     REFUSES("to", skein_velocities_copy_to(s.world, 0, 1, skein_doubles(NULL, 0)));
     REFUSES("out", skein_positions_blend(s.world, 1, 0, 1, NULL));

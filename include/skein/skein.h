@@ -540,6 +540,33 @@ skein_status skein_particle_hold(skein_world *world, size_t particle, bool held)
  */
 skein_status skein_pins_move(skein_world *world, const uint32_t *particles, size_t count, const double *xyz);
 
+/* ---- Snapshots ---- */
+
+/* All that steps and calls have changed since the world was built, as bytes: positions, velocities, who is held, the
+ * clock and its counts, every live field of the method and of all objects, ways that colliders are on, places that wait
+ * for pins. A world that reads it goes on with the same bits as the one that it was taken of, on any machine: the world
+ * itself, or one that was built by the same calls. What was built (meshes, constraints, masses) is not in it, and is
+ * compared. The bytes can be kept in memory, or in a file; docs/recording.md has their layout. */
+/* How many bytes a snapshot takes now: about 36 a particle in float, 72 in double. */
+size_t skein_snapshot_size(const skein_world *world);
+/* Writes it to `out`, of `size` bytes; `written` (or NULL) receives how many it took. Fails with SKEIN_ERROR_LIMIT where
+ * that is too little room. */
+skein_status skein_snapshot_write(const skein_world *world, void *out, size_t size, size_t *written);
+/* Takes the world to where it was. Nothing of `bytes` is trusted, and nothing is allocated by what they say: fails with
+ * SKEIN_ERROR_SYNTAX for what is no snapshot or a damaged one, SKEIN_ERROR_LIMIT for one of a newer version,
+ * SKEIN_ERROR_VALUE and SKEIN_ERROR_NAME for one of another precision or of a world that was built otherwise, and
+ * SKEIN_ERROR_MEMORY, after which some fields may be set and others not. */
+skein_status skein_snapshot_read(skein_world *world, const void *bytes, size_t size);
+
+typedef struct skein_snapshot_info {
+    uint32_t version;
+    uint32_t real_size;  /* bytes of a number: 4 in float, 8 in double */
+    double time;         /* s */
+    uint64_t steps, particles, objects;
+} skein_snapshot_info;
+/* Looks at a snapshot without a world: whether it is whole, and of what. Fails as above. */
+skein_status skein_snapshot_look(const void *bytes, size_t size, skein_snapshot_info *info, skein_error *error);
+
 /* What a body's surface is drawn as by whoever draws: its field "look", whose places these are. */
 typedef enum skein_look {
     SKEIN_LOOK_CLOTH, /* woven */

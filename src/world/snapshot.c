@@ -1,0 +1,462 @@
+/* Snapshots: all that steps and calls have changed in a world since it was built, as bytes.
+ *
+ *   head       "skeinsnp", version, bytes of a real, size of all, sum of what follows
+ *   clock      time, steps and what they have counted
+ *   method     its kind and fields
+ *   objects    each one's kind, fields and what it was built of (a hash); of a collider the way that it is on
+ *   particles  held or not, position, velocity, and the position before the last step, in the user's order
+ *   pins       places that wait for the next step
+ *
+ * What was built stays the world's: meshes, constraints and masses are compared by their hashes, and a world that is
+ * built otherwise refuses the snapshot. A reader looks through all of it before it changes anything, and allocates
+ * nothing by what it says. Everything else that a world has is made from these (the plan, slots, sweeps, contact's
+ * pairs): no bit of a step depends on how long it has been there. */
+#include "world/snapshot.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+static const char magic[8] = {'s', 'k', 'e', 'i', 'n', 's', 'n', 'p'};
+enum { AT_SIZE = 16, AT_SUM = 24 };
+
+/* ---- values ---- */
+
+void sk_put_value(sk_byte_writer *w, const skein_value *value) {
+    sk_put_u8(w, (unsigned)value->count);
+    for (int k = 0; k < value->count && k < 3; k++) sk_put_f64(w, value->number[k]);
+    if (!value->count) sk_put_text(w, value->text ? value->text : "");
+}
+
+skein_value sk_take_value(sk_byte_reader *r) {
+    skein_value value = {.count = (int)sk_take_u8(r)};
+    if (value.count > 3) r->short_ = true, value.count = 0;
+    for (int k = 0; k < value.count; k++) value.number[k] = sk_take_f64(r);
+    if (!value.count) value.text = sk_take_text(r);
+    return value;
+}
+
+static bool is_same(const skein_value *a, const skein_value *b) {
+    if (a->count != b->count) return false;
+    if (!a->count) return !strcmp(a->text ? a->text : "", b->text ? b->text : "");
+    for (int k = 0; k < a->count; k++)
+        if (a->number[k] < b->number[k] || a->number[k] > b->number[k]) return false;
+    return true;
+}
+
+/* ---- what an object was built of ---- */
+
+static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size) {
+    return sk_hash_word(hash, bytes && size ? sk_byte_sum(bytes, size) : 0);
+}
+
+static uint64_t hash_batch(uint64_t hash, const sk_batch *batch) {
+    const bool all = batch->whole.count != 0;
+    size_t count = all ? batch->whole.count : batch->count;
+    const real *scale = all ? batch->whole.scale : batch->scale;
+    hash = hash_bytes(hash, batch->type->kind.name, strlen(batch->type->kind.name));
+    hash = hash_bytes(hash, all ? batch->whole.particle : batch->particle, count * batch->arity * sizeof(uint32_t));
+    hash = hash_bytes(hash, all ? batch->whole.rest : batch->rest, count * batch->rest_count * sizeof(real));
+    return scale ? hash_bytes(hash, scale, count * sizeof *scale) : hash;
+}
+
+static uint64_t hash_object(const skein_world *world, const sk_object *object) {
+    const sk_particles *all = &world->particles;
+    uint64_t hash = SK_HASH_START;
+    if (object->category == SKEIN_CONSTRAINT) return hash_batch(hash, object->as.batch);
+    if (object->category == SKEIN_MOTION) {
+        const sk_track *t = &object->as.motion->track;
+        hash = hash_bytes(hash, t->particles, t->particle_count * sizeof *t->particles);
+        return hash_bytes(hash, t->places, t->particle_count * t->sample_count * sizeof *t->places);
+    }
+    if (object->category != SKEIN_BODY) return hash;
+    const sk_body *body = object->as.body;
+    size_t first = body->first_particle, count = body->particle_count;
+    hash = sk_hash_word(sk_hash_word(hash, first), count);
+    hash = hash_bytes(hash, all->mass + first, count * sizeof *all->mass);
+    hash = hash_bytes(hash, all->built + first, count * sizeof *all->built);
+    hash = hash_bytes(hash, world->triangles.corner + body->first_triangle,
+                      body->triangle_count * sizeof *world->triangles.corner);
+    for (size_t i = 0; i < body->batch_count; i++) hash = hash_batch(hash, body->batch[i]);
+    return hash;
+}
+
+/* What is no object's: loose particles, and tethers. */
+static uint64_t hash_rest(const skein_world *world) {
+    const sk_particles *all = &world->particles;
+    uint64_t hash = hash_bytes(SK_HASH_START, all->mass, all->count * sizeof *all->mass);
+    for (size_t i = 0; i < world->rules.limits.count; i++) {
+        const sk_limit *limit = world->rules.limits.data[i];
+        hash = hash_bytes(hash, limit->particle, limit->count * (1 + limit->anchors) * sizeof *limit->particle);
+        hash = hash_bytes(hash, limit->length, limit->count * limit->anchors * sizeof *limit->length);
+    }
+    return hash;
+}
+
+/* ---- writing ---- */
+
+/* The fields of an object (NULL: the method), one after the other: its kind's own, then those that its category shares.
+ * NULL past the end. What stands for an object's own parameters is none of its own. */
+static const skein_field *field_at(const skein_world *world, const sk_object *object, size_t index,
+                                   const void **params) {
+    const skein_kind *kind = object ? object->kind : &world->method->kind;
+    size_t common_count;
+    const skein_field *common = sk_common_fields(kind->category, &common_count);
+    *params = object ? object->params : world->method_params;
+    if (index < kind->field_count) return &kind->fields[index];
+    if (!object || index - kind->field_count >= common_count) return NULL;
+    *params = &object->common;
+    return &common[index - kind->field_count];
+}
+
+static bool is_pattern(const skein_field *field) {
+    size_t length = strlen(field->name);
+    return length > 1 && field->name[length - 1] == '*';
+}
+
+static void put_fields(sk_byte_writer *w, const skein_world *world, const sk_object *object) {
+    const void *params;
+    const skein_field *field;
+    for (size_t i = 0; (field = field_at(world, object, i, &params)); i++) {
+        if (is_pattern(field)) continue;
+        skein_value value = sk_field_load(field, params);
+        sk_put_text(w, field->name);
+        sk_put_value(w, &value);
+    }
+    sk_put_text(w, "");
+}
+
+/* The numbers of a way, for writing and for reading. */
+enum { TRAVEL_NUMBERS = 3 + 9 + 3 + 15 + 3 + 3 + 3 };
+static void travel_numbers(sk_travel *t, double *number[TRAVEL_NUMBERS]) {
+    size_t n = 0;
+    for (int k = 0; k < 3; k++) number[n++] = &t->position[k];
+    for (int k = 0; k < 9; k++) number[n++] = &t->rotation[k];
+    for (int k = 0; k < 3; k++) number[n++] = &t->direction[k];
+    for (int k = 0; k < 15; k++) number[n++] = &t->own[k];
+    for (int k = 0; k < 3; k++) number[n++] = &t->way[k];
+    for (int k = 0; k < 3; k++) number[n++] = &t->axis[k];
+    number[n++] = &t->angle, number[n++] = &t->start, number[n] = &t->dt;
+}
+
+static void put_travel(sk_byte_writer *w, const sk_travel *travel) {
+    sk_travel copy = *travel;
+    double *number[TRAVEL_NUMBERS];
+    travel_numbers(&copy, number);
+    sk_put_u8(w, (copy.noted ? 1u : 0u) | (copy.changed ? 2u : 0u) | (copy.ever ? 4u : 0u) | (copy.moving ? 8u : 0u));
+    for (size_t i = 0; i < TRAVEL_NUMBERS; i++) sk_put_f64(w, *number[i]);
+}
+
+static void put_clock(sk_byte_writer *w, const skein_world *world) {
+    const sk_solve *solve = &world->solve;
+    sk_put_f64(w, world->time);
+    sk_put_u64(w, world->steps);
+    sk_put_u64(w, world->particles.count);
+    sk_put_u64(w, world->objects.count);
+    sk_put_u64(w, world->substeps);
+    sk_put_u64(w, world->unsolved);
+    sk_put_u64(w, world->solver_failures);
+    sk_put_f64(w, world->first_energy);
+    sk_put_f64(w, solve->residual);
+    const uint64_t counts[] = {solve->unsolved, solve->turns, solve->iterations, solve->factors, solve->failures};
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) sk_put_u64(w, counts[i]);
+}
+
+static void put_vector(sk_byte_writer *w, const skein_world *world, sk_vector vector) {
+    const sk_particles *all = &world->particles;
+    for (size_t i = 0; i < all->count; i++) {
+        const sk_vec4 *p = &all->vector[vector][all->slot_of[i]];
+        sk_put_real(w, p->x), sk_put_real(w, p->y), sk_put_real(w, p->z);
+    }
+}
+
+static void put_all(sk_byte_writer *w, const skein_world *world) {
+    sk_put(w, magic, sizeof magic);
+    sk_put_u32(w, SK_SNAPSHOT_VERSION);
+    sk_put_u32(w, sizeof(real));
+    sk_put_u64(w, 0), sk_put_u64(w, 0), sk_put_u32(w, 0); // what is not known yet, and room
+    put_clock(w, world);
+    sk_put_text(w, world->method->kind.name);
+    put_fields(w, world, NULL);
+    for (size_t i = 0; i < world->objects.count; i++) {
+        const sk_object *object = world->objects.data[i];
+        sk_put_text(w, object->kind->name);
+        sk_put_u8(w, (unsigned)object->category);
+        sk_put_u64(w, hash_object(world, object));
+        put_fields(w, world, object);
+        if (object->category == SKEIN_COLLIDER) put_travel(w, &object->as.collider->travel);
+    }
+    sk_put_u64(w, hash_rest(world));
+    for (size_t i = 0; i < world->particles.count; i++)
+        sk_put_u8(w, (world->particles.held[i] ? 1u : 0u) | (unsigned)world->particles.presence[i] << 1);
+    static const sk_vector vectors[] = {SK_X, SK_V, SK_PREVIOUS};
+    for (size_t v = 0; v < 3; v++) put_vector(w, world, vectors[v]);
+    sk_put_u64(w, world->pins.count);
+    for (size_t i = 0; i < world->pins.count; i++) {
+        sk_put_u32(w, world->pins.data[i].particle);
+        for (int k = 0; k < 3; k++) sk_put_f64(w, world->pins.data[i].place[k]);
+    }
+}
+
+void sk_snapshot_seal(unsigned char *bytes, size_t size) {
+    sk_byte_writer w = {bytes, size, AT_SUM};
+    sk_put_u64(&w, sk_byte_sum(bytes + SK_SNAPSHOT_HEAD, size - SK_SNAPSHOT_HEAD));
+}
+
+size_t skein_snapshot_size(const skein_world *world) {
+    if (!world) return 0;
+    sk_byte_writer w = {NULL, 0, 0};
+    put_all(&w, world);
+    return w.at;
+}
+
+skein_status skein_snapshot_write(const skein_world *world, void *out, size_t size, size_t *written) {
+    SK_NEED(world, world);
+    SK_NEED(world, out);
+    skein_status status = sk_world_fetch(world);
+    if (status) return status;
+    sk_byte_writer w = {out, size, 0};
+    put_all(&w, world);
+    if (w.at > size)
+        return sk_fail(sk_world_error(world), SKEIN_ERROR_LIMIT, "size",
+                       "a snapshot of %zu bytes into room for %zu: skein_snapshot_size() says how many it takes", w.at,
+                       size);
+    sk_byte_writer head = {out, size, AT_SIZE};
+    sk_put_u64(&head, w.at);
+    sk_snapshot_seal(out, w.at);
+    if (written) *written = w.at;
+    return SKEIN_OK;
+}
+
+/* ---- reading ---- */
+
+#define OTHER_WORLD "; read it into the world that it was taken of, or into one that is built in the same way"
+
+static skein_status fail_short(skein_error *error) {
+    return sk_fail(error, SKEIN_ERROR_SYNTAX, "",
+                   "the snapshot is damaged: it ends before it should, or its parts do not fit");
+}
+
+static skein_status look(const void *bytes, size_t size, skein_snapshot_info *info, skein_error *error) {
+    sk_byte_reader r = {bytes, size, 0, false};
+    const unsigned char *word = sk_take(&r, sizeof magic);
+    if (!word || memcmp(word, magic, sizeof magic))
+        return sk_fail(error, SKEIN_ERROR_SYNTAX, "", "it is no snapshot of Skein's");
+    *info = (skein_snapshot_info){.version = sk_take_u32(&r), .real_size = sk_take_u32(&r)};
+    uint64_t whole = sk_take_u64(&r), sum = sk_take_u64(&r);
+    sk_take_u32(&r);
+    if (r.short_) return fail_short(error);
+    if (info->version > SK_SNAPSHOT_VERSION)
+        return sk_fail(error, SKEIN_ERROR_LIMIT, "",
+                       "a snapshot of version %" PRIu32 ", and Skein " SKEIN_VERSION
+                       " reads version %d: take the Skein that wrote it, or a newer one",
+                       info->version, SK_SNAPSHOT_VERSION);
+    if (info->version < 1) return fail_short(error);
+    if (whole != size)
+        return sk_fail(error, SKEIN_ERROR_SYNTAX, "", "the snapshot is damaged: it has %zu bytes of %" PRIu64, size,
+                       whole);
+    if (sk_byte_sum(r.in + SK_SNAPSHOT_HEAD, size - SK_SNAPSHOT_HEAD) != sum)
+        return sk_fail(error, SKEIN_ERROR_SYNTAX, "", "the snapshot is damaged: its sum is another");
+    info->time = sk_take_f64(&r);
+    info->steps = sk_take_u64(&r);
+    info->particles = sk_take_u64(&r);
+    info->objects = sk_take_u64(&r);
+    return r.short_ ? fail_short(error) : SKEIN_OK;
+}
+
+skein_status skein_snapshot_look(const void *bytes, size_t size, skein_snapshot_info *info, skein_error *error) {
+    if (!bytes) return sk_fail_null(error, "bytes");
+    if (!info) return sk_fail_null(error, "info");
+    return look(bytes, size, info, error);
+}
+
+/* The fields of one object: compares those that are built in, and where `apply` is set sets the others. `failed` is the
+ * first that could not be; a second turn may, when those beside it are set. */
+static skein_status take_fields(sk_byte_reader *r, skein_world *world, sk_object *object, skein_handle handle,
+                                bool apply, skein_error *error) {
+    const char *label = object ? object->label : world->method->kind.name, *name;
+    const void *params;
+    const skein_field *field;
+    size_t i = 0;
+    skein_status status = SKEIN_OK;
+    while ((name = sk_take_text(r)) && name[0]) {
+        skein_value value = sk_take_value(r);
+        if (r->short_) return fail_short(error);
+        while ((field = field_at(world, object, i++, &params)) && is_pattern(field)) {}
+        if (!field || strcmp(field->name, name) != 0)
+            return sk_fail(error, SKEIN_ERROR_NAME, label,
+                           "the snapshot has a field '%.60s' of it where this world has %s%s" OTHER_WORLD, name,
+                           field ? "" : "none", field ? field->name : "");
+        skein_value now = sk_field_load(field, params);
+        bool track = object && object->category == SKEIN_MOTION && object->as.motion->type->given &&
+                     !strcmp(object->as.motion->type->given, name); // a file: what was in it is compared
+        if (track || is_same(&value, &now)) continue;
+        if (!apply) {
+            char there[48], here[48];
+            if ((status = skein_field_check(field, &value, error))) return status;
+            if (skein_field_is_live(world, handle, name)) continue;
+            skein_value_text(field, &value, there, sizeof there);
+            skein_value_text(field, &now, here, sizeof here);
+            return sk_fail(error, SKEIN_ERROR_VALUE, label, "its %s is %s in the snapshot, and %s here" OTHER_WORLD,
+                           name, there, here);
+        }
+        skein_status set = skein_set(world, handle, name, value);
+        if (set && !status) status = set;
+    }
+    if (r->short_ || !name) return fail_short(error);
+    while ((field = field_at(world, object, i++, &params)))
+        if (!is_pattern(field))
+            return sk_fail(error, SKEIN_ERROR_NAME, label, "the snapshot knows no field '%s' of it" OTHER_WORLD,
+                           field->name);
+    return status;
+}
+
+/* Again while that helps: what one field may be can depend on another. */
+static skein_status apply_fields(sk_byte_reader *r, skein_world *world, sk_object *object, skein_handle handle,
+                                 bool apply, skein_error *error) {
+    size_t at = r->at;
+    skein_status status = take_fields(r, world, object, handle, apply, error);
+    for (int turn = 0; apply && status && turn < 3; turn++) {
+        r->at = at;
+        status = take_fields(r, world, object, handle, true, error);
+    }
+    return status;
+}
+
+static skein_status take_travel(sk_byte_reader *r, sk_travel *travel, bool apply, skein_error *error) {
+    sk_travel read = {0};
+    double *number[TRAVEL_NUMBERS];
+    unsigned flags = sk_take_u8(r);
+    travel_numbers(&read, number);
+    bool good = true;
+    for (size_t i = 0; i < TRAVEL_NUMBERS; i++) {
+        *number[i] = sk_take_f64(r);
+        good = good && fabs(*number[i]) <= 1e16;
+    }
+    read.noted = flags & 1, read.changed = flags & 2, read.ever = flags & 4, read.moving = flags & 8;
+    if (r->short_ || !good || flags > 15 || (read.moving && !(read.dt > 0))) return fail_short(error);
+    if (apply) *travel = read;
+    return SKEIN_OK;
+}
+
+static skein_status take_method(sk_byte_reader *r, skein_world *world, bool apply, skein_error *error) {
+    const char *name = sk_take_text(r);
+    if (!name) return fail_short(error);
+    if (strcmp(name, world->method->kind.name) != 0) {
+        if (!apply) { // its fields are those of another kind: they are looked at once it is set
+            while ((name = sk_take_text(r)) && name[0]) sk_take_value(r);
+            return r->short_ ? fail_short(error) : SKEIN_OK;
+        }
+        skein_status status = skein_method_set(world, name, NULL);
+        if (status) return status;
+    }
+    return apply_fields(r, world, NULL, skein_object_at(world, SKEIN_METHOD, 0), apply, error);
+}
+
+static skein_status take_object(sk_byte_reader *r, skein_world *world, size_t index, bool apply, skein_error *error) {
+    sk_object *object = world->objects.data[index];
+    const char *name = sk_take_text(r);
+    unsigned category = sk_take_u8(r);
+    uint64_t hash = sk_take_u64(r);
+    if (r->short_ || !name) return fail_short(error);
+    if (category != object->category || strcmp(name, object->kind->name) != 0)
+        return sk_fail(error, SKEIN_ERROR_VALUE, object->label,
+                       "object %zu is a %.60s in the snapshot, and a %s here" OTHER_WORLD, index, name,
+                       object->kind->name);
+    skein_status status = apply_fields(r, world, object, sk_handle_at(world, index), apply, error);
+    if (!status && hash != hash_object(world, object))
+        status = sk_fail(error, SKEIN_ERROR_VALUE, object->label,
+                         "it has other particles, masses or constraints than in the snapshot" OTHER_WORLD);
+    if (!status && object->category == SKEIN_COLLIDER)
+        status = take_travel(r, &object->as.collider->travel, apply, error);
+    return status;
+}
+
+static skein_status take_clock(sk_byte_reader *r, skein_world *world, bool apply, skein_error *error) {
+    double time = sk_take_f64(r);
+    uint64_t steps = sk_take_u64(r), particles = sk_take_u64(r), objects = sk_take_u64(r), substeps = sk_take_u64(r);
+    uint64_t unsolved = sk_take_u64(r), failures = sk_take_u64(r);
+    double first = sk_take_f64(r);
+    sk_solve solve = {.residual = sk_take_f64(r)};
+    size_t *const counts[] = {&solve.unsolved, &solve.turns, &solve.iterations, &solve.factors, &solve.failures};
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) *counts[i] = (size_t)sk_take_u64(r);
+    if (r->short_ || !(time >= 0 && time <= SK_FAR)) return fail_short(error);
+    if (particles != world->particles.count || objects != world->objects.count)
+        return sk_fail(error, SKEIN_ERROR_VALUE, "",
+                       "the snapshot has %" PRIu64 " particles and %" PRIu64
+                       " objects, this world %zu and %zu" OTHER_WORLD,
+                       particles, objects, world->particles.count, world->objects.count);
+    if (!apply) return SKEIN_OK;
+    world->time = time, world->steps = steps, world->substeps = substeps;
+    world->unsolved = unsolved, world->solver_failures = failures, world->first_energy = first;
+    world->solve = solve;
+    return SKEIN_OK;
+}
+
+static skein_status take_particles(sk_byte_reader *r, skein_world *world, bool apply, skein_error *error) {
+    sk_particles *all = &world->particles;
+    if (sk_take_u64(r) != hash_rest(world))
+        return sk_fail(error, SKEIN_ERROR_VALUE, "",
+                       "the particles have other masses or tethers than in the snapshot" OTHER_WORLD);
+    const unsigned char *flags = sk_take(r, all->count);
+    static const sk_vector vectors[] = {SK_X, SK_V, SK_PREVIOUS};
+    for (size_t i = 0; flags && i < all->count; i++) {
+        if (flags[i] >> 1 > SK_GONE || (flags[i] >> 1 == SK_GONE) != (all->presence[i] == SK_GONE))
+            return sk_fail(error, SKEIN_ERROR_VALUE, "", "particle %zu: whether its body is there differs" OTHER_WORLD,
+                           i);
+        if (apply) sk_particle_hold(all, i, flags[i] & 1);
+    }
+    for (size_t v = 0; v < 3; v++)
+        for (size_t i = 0; i < all->count && !r->short_; i++) {
+            real x = sk_take_real(r), y = sk_take_real(r), z = sk_take_real(r);
+            if (!apply || all->presence[i] == SK_GONE) continue; // it has no place of its own
+            sk_vec4 *p = &all->vector[vectors[v]][all->slot_of[i]];
+            *p = (sk_vec4){x, y, z, p->w};
+        }
+    return r->short_ ? fail_short(error) : SKEIN_OK;
+}
+
+static skein_status take_pins(sk_byte_reader *r, skein_world *world, bool apply, skein_error *error) {
+    uint64_t count = sk_take_u64(r);
+    if (r->short_ || count > sk_left(r) / 28 || count * 28 != sk_left(r)) return fail_short(error);
+    if (apply && !SK_RESERVE(&world->allocator, &world->pins, (size_t)count))
+        return sk_fail_memory(error, "places for pins");
+    if (apply) world->pins.count = (size_t)count;
+    for (size_t i = 0; i < count; i++) {
+        sk_pin pin = {.particle = sk_take_u32(r)};
+        bool good = pin.particle < world->particles.count;
+        for (int k = 0; k < 3; k++) {
+            pin.place[k] = sk_take_f64(r);
+            good = good && fabs(pin.place[k]) <= SK_FAR;
+        }
+        if (!good) return fail_short(error);
+        if (apply) world->pins.data[i] = pin;
+    }
+    return SKEIN_OK;
+}
+
+/* Once to look whether all of it fits, once to take it. */
+static skein_status walk(skein_world *world, const void *bytes, size_t size, bool apply, skein_error *error) {
+    sk_byte_reader r = {bytes, size, SK_SNAPSHOT_HEAD, false};
+    skein_status status = take_clock(&r, world, apply, error);
+    if (!status) status = take_method(&r, world, apply, error);
+    for (size_t i = 0; i < world->objects.count && !status; i++) status = take_object(&r, world, i, apply, error);
+    if (!status) status = take_particles(&r, world, apply, error);
+    return status ? status : take_pins(&r, world, apply, error);
+}
+
+skein_status skein_snapshot_read(skein_world *world, const void *bytes, size_t size) {
+    SK_NEED(world, world);
+    SK_NEED(world, bytes);
+    skein_error *error = sk_world_error(world);
+    skein_snapshot_info info;
+    skein_status status = look(bytes, size, &info, error);
+    if (status) return status;
+    if (info.real_size != sizeof(real))
+        return sk_fail(error, SKEIN_ERROR_VALUE, "",
+                       "the snapshot is of a library built in %s, and this one is in %s: take the other build",
+                       info.real_size == 8 ? "double" : "float", sizeof(real) == 8 ? "double" : "float");
+    status = walk(world, bytes, size, false, error);
+    if (!status) status = sk_world_touch(world);
+    return status ? status : walk(world, bytes, size, true, error);
+}
