@@ -3,13 +3,15 @@
  *
  *     world, view --py_draw--> width x height x 3 bytes
  *
- * It knows worlds by the public header alone, whose calls are those of the package's libskein.so. Each call makes a
- * context of its own and leaves nothing behind, so any thread may ask for pictures. */
+ * It knows worlds by the public header alone, whose calls are those of the package's libskein.so. py_draw() makes a
+ * context of its own and leaves nothing behind, so any thread may ask for pictures. A film's pictures are a studio's,
+ * whose context is current on the thread that made it, where all its calls belong. */
 #include <string.h>
 
 #include "render/context.h"
 #include "render/draw.h"
 #include "render/fail.h"
+#include "render/studio.h"
 #include "render/target.h"
 #include "render/view.h"
 #include "render/world_frame.h"
@@ -56,4 +58,31 @@ skein_status py_draw(skein_world *world, const void *view, const int32_t size[2]
     render_context_destroy(context);
     render_image_release(&image);
     return status;
+}
+
+/* ---- films ---- */
+
+EXPORT render_studio *py_studio_create(const int32_t size[2], int samples, const void *view, skein_error *error);
+EXPORT skein_status py_studio_draw(render_studio *studio, skein_world *world, uint8_t *pixels, size_t pixel_count,
+                                   skein_error *error);
+EXPORT void py_studio_destroy(render_studio *studio);
+
+/* What makes many pictures, with a camera that stays where it is at the first. The view outlives it. */
+render_studio *py_studio_create(const int32_t size[2], int samples, const void *view, skein_error *error) {
+    return render_studio_create(size, samples, view, error);
+}
+
+/* The next picture, as py_draw() has it. */
+skein_status py_studio_draw(render_studio *studio, skein_world *world, uint8_t *pixels, size_t pixel_count,
+                            skein_error *error) {
+    render_image image = {0};
+    skein_status status = render_studio_shoot(studio, world, error);
+    if (!status) status = render_studio_develop(studio, &image, error);
+    if (!status) memcpy(pixels, image.pixels, 3 * pixel_count);
+    render_image_release(&image);
+    return status;
+}
+
+void py_studio_destroy(render_studio *studio) {
+    render_studio_destroy(studio);
 }

@@ -17,15 +17,18 @@ from ._errors import (FileFault, HandleFault, LimitFault, MemoryFault, MeshFault
                       ValueFault)
 from ._formula import Formula, formula
 from ._objects import Body, Collider, Constraint, Force, Method, Motion, Object, ObjectList
+from ._pictures import Film, Image, film
 from ._scene import scenes
 from ._world import DEFAULT_STEP, State, World
+from ._worlds import Environment, Environments, Worlds
 
 _number = _library.lib.skein_version()
 __version__ = f"{_number // 1000000}.{_number // 1000 % 1000}.{_number % 1000}"
 precision = _library.precision
 
 __all__ = [
-    "Body", "Collider", "Constraint", "DEFAULT_STEP", "FileFault", "Force", "Formula", "HandleFault", "LimitFault",
-    "MemoryFault", "MeshFault", "Method", "Motion", "NameFault", "Object", "ObjectList", "SkeinError", "State",
-    "SyntaxFault", "ValueFault", "World", "formula", "functions", "kinds", "precision", "scenes",
+    "Body", "Collider", "Constraint", "DEFAULT_STEP", "Environment", "Environments", "FileFault", "Film", "Force",
+    "Formula", "HandleFault", "Image", "LimitFault", "MemoryFault", "MeshFault", "Method", "Motion", "NameFault", "Object",
+    "ObjectList", "SkeinError", "State", "SyntaxFault", "ValueFault", "World", "Worlds", "film", "formula", "functions",
+    "kinds", "precision", "scenes",
 ]
