@@ -1,7 +1,7 @@
 # The short way in: each line below runs one script of tools/, and the scripts run CMake.
 # CMake alone does as well: cmake --preset release && cmake --build --preset release
 
-.PHONY: all install demo test verify-blender npm playground test-web fuzz setup gallery emit names debug format clean help
+.PHONY: all install demo test verify-blender npm wheel playground test-web fuzz setup gallery emit names debug format clean help
 
 all: ## (or plain make) build the command: build/skein
 	@tools/build release skein
@@ -26,6 +26,10 @@ verify-blender: ## set up, build, and check in Blender, without its window, that
 npm: ## set up, build and test the package for JavaScript: build/skein-VERSION.tgz
 	@tools/setup web
 	@tools/npm --test
+
+wheel: ## set up, build and test the package for Python: build/skein-VERSION-py3-none-PLATFORM.whl, and its source
+	@tools/setup python
+	@tools/wheel --test
 
 playground: ## set up, and build the page for browsers: build/playground, for any server of files
 	@tools/setup web

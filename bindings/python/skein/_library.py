@@ -166,6 +166,9 @@ CALLS = {
     "skein_velocities_set": (status, [world, size, size, array]),
     "skein_particle_hold": (status, [world, size, c.c_bool]),
     "skein_pins_move": (status, [world, array, size, array]),
+    "skein_snapshot_size": (size, [world]),
+    "skein_snapshot_write": (status, [world, array, size, c.POINTER(size)]),
+    "skein_snapshot_read": (status, [world, text, size]),
     "skein_body_surface": (status, [world, Handle, c.POINTER(Surface)]),
     "skein_body_vertices_copy": (status, [world, Handle, c.c_double, Buffer, Buffer]),
     "skein_body_elements": (status, [world, Handle, c.c_int, array, size, c.POINTER(size)]),
@@ -194,17 +197,17 @@ CALLS = {
 }
 
 
-def folder():
-    """Where the libraries lie."""
-    given = os.environ.get("SKEIN_LIBRARY")
-    if given:
-        return given if os.path.isdir(given) else os.path.dirname(os.path.abspath(given))
-    return os.path.dirname(os.path.abspath(__file__))
+def _place():
+    """Where libskein.so lies, in full, whatever folder the program goes to later."""
+    given = os.path.abspath(os.environ.get("SKEIN_LIBRARY") or os.path.dirname(__file__))
+    return os.path.join(given, "libskein.so") if os.path.isdir(given) else given
+
+
+path = _place()
+folder = os.path.dirname(path)
 
 
 def _load():
-    given = os.environ.get("SKEIN_LIBRARY", "")
-    path = given if os.path.isfile(given) else os.path.join(folder(), "libskein.so")
     if not os.path.exists(path):
         raise ImportError(f"{path} is missing: the package is installed from its wheel ('make wheel' makes it), or "
                           "SKEIN_LIBRARY names the folder of a build's libskein.so (build/python)")

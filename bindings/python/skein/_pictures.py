@@ -26,7 +26,7 @@ _loaded = []
 
 def _draw():
     if not _loaded:
-        path = os.path.join(L.folder(), "libskein_draw.so")
+        path = os.path.join(L.folder, "libskein_draw.so")
         try:
             loaded = ctypes.CDLL(path)
         except OSError as missing:

@@ -60,16 +60,20 @@ def described(threads, log):
     return desc, callback
 
 
-class State:
-    """A copy of a world's state to come back to: time (s), positions (m) and velocities (m/s), exact."""
+class State(bytes):
+    """A world's state as bytes, in memory or in a file: World.restore() goes on from it with the same bits.
 
-    __slots__ = ("time", "positions", "velocities")
+    `enabled` says which bodies took part; bytes that come from a file have no such note."""
 
-    def __init__(self, time, positions, velocities):
-        self.time, self.positions, self.velocities = time, positions, velocities
+    enabled = None
+
+    def __new__(cls, data, enabled=None):
+        made = super().__new__(cls, data)
+        made.enabled = enabled
+        return made
 
     def __repr__(self):
-        return f"<State of {len(self.positions)} particles at {self.time:g} s>"
+        return f"<State of {len(self)} bytes>"
 
 
 class World:
@@ -174,6 +178,11 @@ class World:
         self._call(lib.skein_method_set, kind.encode(), settings(found._table, fields, place), place=place)
         return self.method
 
+    @staticmethod
+    def methods():
+        """The names of all methods."""
+        return [name for category, name in _objects.CLASSES if category == L.METHOD]
+
     def _object(self, category, handle):
         key = handle.key()
         found = self._known.get(key)
@@ -245,17 +254,23 @@ class World:
         self._call(lib.skein_world_time_set, seconds)
 
     def snapshot(self):
-        """A copy of the state; restore() goes back to it, to the last bit."""
-        count = len(self)
-        positions, velocities = np.empty((count, 3)), np.empty((count, 3))
+        """All that steps and calls have changed since the world was built, as bytes (a State)."""
         with self._lock:
-            self._call(lib.skein_positions_copy, 0, count, positions.ctypes.data)
-            self._call(lib.skein_velocities_copy, 0, count, velocities.ctypes.data)
-            return State(self.time, positions, velocities)
+            size, written = lib.skein_snapshot_size(self._pointer), ctypes.c_size_t()
+            out = ctypes.create_string_buffer(size)
+            self._call(lib.skein_snapshot_write, out, size, ctypes.byref(written))
+            return State(out.raw[:written.value], self._enabled())
 
     def restore(self, state):
+        """Goes back to a snapshot of this world, or of one that was built by the same calls: positions, velocities, time,
+        pins and live fields. Fails, changing nothing, for what does not fit."""
         with self._lock:
-            self.positions, self.velocities, self.time = state.positions, state.velocities, state.time
+            if getattr(state, "enabled", None) != self._enabled():
+                self._resize()
+            self._call(lib.skein_snapshot_read, bytes(state), len(state))
+
+    def _enabled(self):
+        return tuple(body.enabled for body in self.bodies)
 
     # ---- the state ----
 

@@ -4,6 +4,7 @@ import json
 import math
 import multiprocessing
 import os
+import pickle
 import subprocess
 import threading
 import unittest
@@ -193,14 +194,38 @@ class State(unittest.TestCase):
         world.frame(20)
         end = world.hash()
         self.assertNotEqual(start, end)
+        world.colliders[0].friction = 0.9
+        view = world.position_view  # which no snapshot of the same bodies moves
         world.restore(state)
         self.assertEqual(world.hash(), start)
-        self.assertEqual(world.time, state.time)
+        self.assertNotEqual(world.colliders[0].friction, 0.9)
+        np.testing.assert_array_equal(view[world.slot_of][:, :3], world.positions)
+        self.assertRaisesRegex(BufferError, "still held", world.restore, bytes(state))
+        del view
         world.frame(20)
         self.assertEqual(world.hash(), end)
+        twin = skein.World.from_scene(f"{ROOT}/scenes/drape.json")
+        twin.restore(pickle.loads(pickle.dumps(state)))
+        twin.frame(20)
+        self.assertEqual(twin.hash(), end)
+        self.assertRaises(skein.SyntaxFault, twin.restore, b"nothing of the kind")
+        self.assertRaises(skein.SkeinError, skein.World().restore, state)
+        self.assertEqual(twin.hash(), end)
         world.reset()
         world.frame(40)
         self.assertEqual(world.hash(), end)
+
+    def test_snapshots_and_bodies_that_come_and_go(self):
+        world = skein.World()
+        cloth, _ = world.bodies.cloth(grid=(5, 5)), world.bodies.rope()
+        world.step()
+        state = world.snapshot()
+        cloth.enabled = False
+        view = world.position_view
+        self.assertRaisesRegex(BufferError, "still held", world.restore, state)
+        del view
+        world.restore(state)
+        self.assertTrue(cloth.enabled)
 
     def test_writing_holding_leading(self):
         world = skein.World(threads=1)

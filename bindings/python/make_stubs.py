@@ -1,0 +1,181 @@
+"""Makes skein/__init__.pyi, the types that editors and checkers read, from the package and its tables of fields:
+
+    make_stubs.py >skein/__init__.pyi      (PYTHONPATH and SKEIN_LIBRARY lead to the package and its library)
+
+Public classes are those of skein.__all__, with their signatures and the first lines of their words; kinds have their fields
+as attributes, with types, units and help. A test compares the file with what this prints.
+"""
+import inspect
+import re
+import sys
+
+import skein
+from skein import _fields, _library as L, _objects
+
+TYPES = {L.BOOL: "bool", L.INT: "int", L.INT2: "tuple[int, int]", L.INT3: "tuple[int, int, int]", L.REAL: "float",
+         L.REAL2: "tuple[float, float]", L.VEC3: "tuple[float, float, float]", L.TEXT: "str"}
+RETURNS = {  # what no signature says; anything else is Any
+    "positions": "np.ndarray", "velocities": "np.ndarray", "position_view": "np.ndarray", "velocity_view": "np.ndarray",
+    "slot_of": "np.ndarray", "vertices": "np.ndarray", "faces": "list[np.ndarray]", "elements": "np.ndarray", "time": "float",
+    "closed": "bool", "hash": "str", "render": "Image", "snapshot": "State", "particles": "range", "kind": "str", "valid": "bool",
+    "remove": "None", "reset": "None", "step": "None", "frame": "None", "close": "None", "restore": "None", "hold": "None",
+    "move_pins": "None", "add_particles": "range", "explain": "list[str]", "hashes": "list[str]", "method": "Method",
+    "set_method": "Method", "save": "None", "contacts": "list[Any]", "set": "None", "fields": "dict[str, Any]",
+    "constraint_count": "int", "evaluate": "dict[str, Any]", "teleport": "None", "is_live": "bool", "kinds": "list[str]", "methods": "list[str]",
+    "scene": "dict[str, Any] | None", "from_scene": "World", "film": "Film", "formula": "Formula", "scenes": "list[str]",
+}
+OF_ENVIRONMENTS = {"reset": "tuple[Any, dict[str, Any]]", "step": "tuple[Any, Any, Any, Any, dict[str, Any]]",
+                   "build": "World", "start": "None", "act": "None", "reward": "float", "terminated": "bool"}
+LISTS = {"bodies": "Bodies", "constraints": "Constraints", "forces": "Forces", "colliders": "Colliders", "motions": "Motions"}
+OPERATORS = ["__len__", "__getitem__", "__iter__", "__enter__", "__exit__", "__contains__", "__eq__", "__hash__"]
+
+
+def words(text, indent):
+    first = (text or "").strip().split("\n\n")[0]
+    line = re.sub(r"\s+", " ", first).replace("\\", "\\\\")
+    line += " " * line.endswith('"')
+    return f'{indent}"""{line}"""\n' if line else ""
+
+
+def field_type(field, write=False):
+    if field.choices:
+        return "Literal[" + ", ".join(f'"{word}"' for word in field.choices) + "]"
+    kind = TYPES[field.type]
+    if write and field.type == L.TEXT:
+        return "str | Callable[..., Any] | Sequence[Any]"
+    return kind
+
+
+def signature(function, drop_self=False):
+    def plain(parameter):
+        shown = parameter.name
+        if parameter.kind == parameter.VAR_KEYWORD:
+            return f"**{shown}: Any"
+        if parameter.kind == parameter.VAR_POSITIONAL:
+            return f"*{shown}: Any"
+        if shown in ("self", "cls"):
+            return shown
+        return f"{shown}: Any" + ("" if parameter.default is parameter.empty else " = ...")
+
+    parts, starred = [], False
+    parameters = list(inspect.signature(function).parameters.values())
+    for i, parameter in enumerate(parameters):
+        if parameter.kind == parameter.KEYWORD_ONLY and not starred:
+            parts.append("*")
+            starred = True
+        starred |= parameter.kind == parameter.VAR_POSITIONAL
+        parts.append(plain(parameter))
+        if parameter.kind == parameter.POSITIONAL_ONLY and (
+                i + 1 == len(parameters) or parameters[i + 1].kind != parameter.POSITIONAL_ONLY):
+            parts.append("/")
+    return ", ".join(parts)
+
+
+def member(name, value, out, returns):
+    if isinstance(value, property):
+        kind = LISTS.get(name, returns.get(name, "Any"))
+        out.append(f"    @property\n    def {name}(self) -> {kind}:\n{words(value.__doc__, ' ' * 8)}        ...\n")
+        if value.fset:
+            out.append(f"    @{name}.setter\n    def {name}(self, value: Any) -> None: ...\n")
+    elif isinstance(value, (classmethod, staticmethod)) or inspect.isfunction(value):
+        function = value.__func__ if isinstance(value, (classmethod, staticmethod)) else value
+        decorator = f"    @{type(value).__name__}\n" if not inspect.isfunction(value) else ""
+        out.append(f"{decorator}    def {name}({signature(function)}) -> {returns.get(name, 'Any')}:\n"
+                   f"{words(function.__doc__, ' ' * 8)}        ...\n")
+    elif not callable(value):
+        out.append(f"    {name}: Any\n")
+
+
+def public_class(cls):
+    bases = ", ".join(base.__name__ for base in cls.__bases__ if base is not object and not base.__name__.startswith("_"))
+    bases = bases.replace("ndarray", "np.ndarray").replace("Fields", "")
+    out = [f"class {cls.__name__}{f'({bases})' if bases else ''}:\n{words(cls.__doc__, '    ')}"]
+    slots = [slot for slot in cls.__dict__.get("__slots__", ()) if not slot.startswith("_")]
+    for slot in slots:
+        out.append(f"    {slot}: Any\n")
+    if "__init__" in cls.__dict__:
+        out.append(f"    def __init__({signature(cls.__init__)}) -> None: ...\n")
+    for name, value in cls.__dict__.items():
+        if name in slots or name.startswith("_") and name not in OPERATORS:
+            continue
+        if name == "__hash__":
+            out.append("    def __hash__(self) -> int: ...\n")
+        elif name in OPERATORS:
+            out.append(f"    def {name}({signature(value)}) -> Any: ...\n")
+        else:
+            member(name, value, out, {**RETURNS, **OF_ENVIRONMENTS} if "Environment" in cls.__name__ else RETURNS)
+    if cls is skein.World:
+        out.append("    dt: float\n    fps: float\n    frames: int\n    steps_per_frame: int\n    name: str\n    description: str\n")
+    return "".join(out + (["    ...\n"] if len(out) == 1 else []))
+
+
+def attribute(name, field, indent):
+    kind, given = field_type(field), field_type(field, write=True)
+    line = f"{field.help} ({field.words()})".replace("\\", "\\\\").replace('"""', "'''")
+    quote = line + " " if line.endswith('"') else line
+    out = f"{indent}@property\n{indent}def {name}(self) -> {kind}:\n{indent}    \"\"\"{quote}\"\"\"\n{indent}    ...\n"
+    return out + f"{indent}@{name}.setter\n{indent}def {name}(self, value: {given}) -> None: ...\n"
+
+
+def kind_class(cls):
+    table, groups, own = cls._table, {}, ""
+    for full, field in table.fields.items():
+        *prefix, last = full.split(".")
+        if last == "*":
+            own += "    @property\n    def parameters(self) -> Any: ...\n"
+        elif prefix:
+            groups.setdefault(prefix[0], []).append(attribute(_fields.attribute(last), field, "    "))
+        else:
+            own += attribute(_fields.attribute(last), field, "    ")
+    text = ""
+    for group, members in groups.items():
+        name = f"{_fields.camel(group)}Of{cls.__name__}"
+        text += f"class {name}:\n{''.join(members)}\n"
+        own += f"    @property\n    def {group}(self) -> {name}: ...\n    @{group}.setter\n"
+        own += f"    def {group}(self, value: dict[str, Any]) -> None: ...\n"
+    return text + f"class {cls.__name__}({cls.__bases__[0].__name__}):\n{words(table.help, '    ')}{own or '    ...'}\n"
+
+
+def adders(category, name, title):
+    """The list of a category: a call for each kind, whose keywords are its fields and groups."""
+    out = [f"class {name}(ObjectList):\n"]
+    extra = {L.BODY: ["vertices: Any", "faces: Any"], L.CONSTRAINT: ["particles: Any"],
+             L.MOTION: ["places: Any", "particles: Any", "interval: float"]}.get(category, [])
+    for (at, kind), cls in _objects.CLASSES.items():
+        if at != category:
+            continue
+        keywords, seen = [f"{part} = ..." for part in extra], set()
+        for full, field in cls._table.fields.items():
+            first = _fields.attribute(full.split(".")[0])
+            if first in seen:
+                continue
+            seen.add(first)
+            kind_of = "dict[str, Any]" if "." in full else f"{field_type(field, write=True)}"
+            keywords.append(f"{first}: {kind_of} = ...")
+        out.append(f"    def {kind}(self, *, {', '.join(keywords)}) -> {cls.__name__}:\n{words(cls._table.help, ' ' * 8)}"
+                   "        ...\n")
+    out.append(f"    def __getitem__(self, key: Any) -> {title}: ...\n    def __iter__(self) -> Iterator[{title}]: ...\n")
+    return "".join(out) + "\n"
+
+
+def main():
+    text = ('# Made by bindings/python/make_stubs.py from the package and its tables of fields; do not edit.\n'
+            "from collections.abc import Callable, Iterator, Sequence\nfrom typing import Any, Literal\n\nimport numpy as np\n\n"
+            "from . import functions as functions, kinds as kinds\n\n__version__: str\nprecision: str\nDEFAULT_STEP: float\n\n")
+    classes = [getattr(skein, name) for name in skein.__all__ if inspect.isclass(getattr(skein, name))]
+    classes.sort(key=lambda cls: len(cls.__mro__))
+    for cls in classes:
+        text += public_class(cls) + "\n"
+    for name in skein.__all__:
+        value = getattr(skein, name)
+        if inspect.isfunction(value):
+            text += f"def {name}({signature(value)}) -> {RETURNS.get(name, 'Any')}:\n{words(value.__doc__, '    ')}    ...\n\n"
+    for cls in _objects.CLASSES.values():
+        text += kind_class(cls)
+    for category, (_, name) in enumerate(LISTS.items()):
+        text += adders(category, name, _objects.BASES[category].__name__)
+    return text
+
+
+if __name__ == "__main__":
+    sys.stdout.write(main())
