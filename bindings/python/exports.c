@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/scene.h"
+#include "io/scene_settings.h"
 #include "render/view.h"
 
 #define EXPORT __attribute__((visibility("default")))
@@ -35,6 +35,7 @@ EXPORT py_scene *py_scene_open(const char *text, size_t size, const char *path, 
 EXPORT skein_world *py_scene_build(py_scene *scene, const skein_world_desc *desc, py_report report, void *user);
 EXPORT char *py_scene_settings(const py_scene *scene);
 EXPORT char *py_scene_text(const py_scene *scene);
+EXPORT bool py_scene_note(py_scene *scene, const char *set, py_report report, void *user);
 EXPORT const void *py_scene_view(const py_scene *scene);
 EXPORT void py_scene_free(py_scene *scene);
 EXPORT void py_free(void *memory);
@@ -79,6 +80,17 @@ char *py_scene_settings(const py_scene *scene) {
 /* The whole document with what was set in it, to be freed. */
 char *py_scene_text(const py_scene *scene) {
     return io_scene_text(scene->scene);
+}
+
+/* Notes "path=value" in the document, so that it can be opened again as its world is now. */
+bool py_scene_note(py_scene *scene, const char *set, py_report report, void *user) {
+    const skein_kind *const kinds[] = {render_view_kind(), NULL};
+    hearer to = {report, user};
+    io_faults faults = {pass_fault, &to, 0};
+    json_t *notes = json_array();
+    bool good = notes && io_scene_override(io_scene_document(scene->scene), set, kinds, &faults, notes);
+    json_decref(notes);
+    return good;
 }
 
 /* How it wants to be seen, for draw.c: a render_view, which lives as long as the scene. */

@@ -188,6 +188,7 @@ CALLS = {
     "py_scene_build": (world, [c.c_void_p, c.POINTER(WorldDesc), REPORT, c.c_void_p]),
     "py_scene_settings": (c.c_void_p, [c.c_void_p]),
     "py_scene_text": (c.c_void_p, [c.c_void_p]),
+    "py_scene_note": (c.c_bool, [c.c_void_p, text, REPORT, c.c_void_p]),
     "py_scene_view": (c.c_void_p, [c.c_void_p]),
     "py_scene_free": (None, [c.c_void_p]),
     "py_free": (None, [c.c_void_p]),

@@ -51,6 +51,8 @@ class Object(_fields.Fields):
         self._world._change(self, full)
         value = self._field(full).write(given, f"{self._place()}: {full}")
         self._world._call(lib.skein_set, self._handle, full.encode(), value, place=self._place())
+        key = self._handle.key()
+        self._world._noted[key, full] = self._category, key, full
 
     def __getitem__(self, full):
         return self._get(full)
@@ -94,7 +96,9 @@ class Object(_fields.Fields):
 
     def remove(self):
         """Takes it out of its world, a body with all that it has."""
-        self._world._resize()
+        if self._category == L.BODY:
+            self._world._resize()
+        self._world._as_opened = False
         self._world._call(lib.skein_remove, self._handle, place=self._place())
 
     def __eq__(self, other):

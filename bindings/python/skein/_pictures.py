@@ -99,7 +99,8 @@ class _View:
         if fields is None:
             self.pointer = lib.py_scene_view(world._owner.scene) if world._owner.scene else None
         else:
-            self.opened = open_view({**((world.scene() or {}).get("view") or {}), **fields})
+            scene = json.loads(L.take_text(lib.py_scene_text(world._owner.scene))) if world._owner.scene else {}
+            self.opened = open_view({**(scene.get("view") or {}), **fields})
             self.pointer = lib.py_scene_view(self.opened)
 
     def __enter__(self):

@@ -1,6 +1,7 @@
 """Scenes: the files of the command, read by the same code, so that faults have the same words."""
 import ctypes
 import json
+import math
 import os
 
 from . import _library as L
@@ -83,6 +84,31 @@ def open_scene(scene, sets, threads, log):
     if not world or found:
         raise faults(found)
     return owner, json.loads(L.take_text(lib.py_scene_settings(opened)))
+
+
+def note(opened, sets):
+    """Notes in a scene's document what was set in its world."""
+    found = []
+    report = L.REPORT(lambda _, status, where, message: found.append(
+        (status, where.decode(errors="replace"), message.decode(errors="replace"))))
+    for path, value in sets:
+        text = json.dumps(_finite(value))
+        if not lib.py_scene_note(opened, f"{path}={text}".encode(), report, None):
+            raise faults(found)
+
+
+def _finite(value):
+    """As JSON has it: groups of dots are objects."""
+    if isinstance(value, dict):
+        tree = {}
+        for full, inner in value.items():
+            *prefix, last = full.split(".")
+            at = tree
+            for part in prefix:
+                at = at.setdefault(part, {})
+            at[last] = _finite(inner)
+        return tree
+    return "infinite" if isinstance(value, float) and math.isinf(value) else value
 
 
 def open_view(fields):

@@ -4,11 +4,11 @@ What it owns: the C world (an Owner, which views hold, too), the document of its
 lets one thread in at a time. Units are SI, y is up.
 """
 import ctypes
+import json
 import logging
 import os
 import threading
 import types
-import weakref
 
 import numpy as np
 
@@ -91,8 +91,8 @@ class World:
         self._begin(Owner(pointer, None, callback), dt)
 
     def _begin(self, owner, dt):
-        self._owner, self._lock, self._views, self._known = owner, threading.RLock(), Views(), weakref.WeakValueDictionary()
-        self._settled = False
+        self._owner, self._lock, self._views, self._noted = owner, threading.RLock(), Views(), {}
+        self._settled, self._as_opened = False, True
         self.dt = dt  # s, of a step
         self.steps_per_frame = 1
         self.fps = 1 / dt
@@ -145,10 +145,11 @@ class World:
 
     def _resize(self):
         """Before the state's memory may move."""
-        self._views.refuse("adding, removing or disabling a body")
+        self._views.refuse("adding, removing or disabling a body or particles")
         self._settled = False
 
     def _change(self, thing, full):
+        """Before a field is set."""
         if full == "enabled" and thing._category == L.BODY:
             self._resize()
 
@@ -176,6 +177,8 @@ class World:
         if not found:
             raise _objects.ObjectList(self, L.METHOD)._no_kind(kind)
         self._call(lib.skein_method_set, kind.encode(), settings(found._table, fields, place), place=place)
+        self._noted = {key: thing for key, thing in self._noted.items() if thing[0] != L.METHOD}
+        self._noted["method"] = L.METHOD, None, None
         return self.method
 
     @staticmethod
@@ -184,19 +187,15 @@ class World:
         return [name for category, name in _objects.CLASSES if category == L.METHOD]
 
     def _object(self, category, handle):
-        key = handle.key()
-        found = self._known.get(key)
         kind = lib.skein_object_kind(self._pointer, handle)
         if not kind:
             raise fault(L.ERROR_HANDLE, L.LISTS[category], "there is no such object any more")
-        name = kind.contents.name.decode()
-        if found is None or found.kind != name:  # (the method's handle stays as its kind changes)
-            found = _objects.CLASSES[category, name](self, handle)
-        return found
+        return _objects.CLASSES[category, kind.contents.name.decode()](self, handle)
 
     def _add(self, category, kind, fields):
         from . import _adding
         place = f"{L.LISTS[category]}: {kind}"
+        self._as_opened = False
         handle = _adding.add(self, category, kind, _objects.CLASSES[category, kind]._table, fields, place)
         return self._object(category, handle)
 
@@ -281,6 +280,9 @@ class World:
     def __bool__(self):
         return True
 
+    def __reduce_ex__(self, _):
+        raise TypeError("a world is not copied or pickled: take snapshot(), and restore() in one that was built alike")
+
     def _copy(self, function, particles):
         out = np.empty((len(particles), 3), L.real)
         self._call(function, particles.start, len(particles), L.Buffer(out.ctypes.data, 0, int(L.real.itemsize == 8)))
@@ -341,6 +343,7 @@ class World:
     def add_particles(self, positions, velocities=None, masses=1.0):
         """Adds loose particles; masses in kg, 0 holds one where it is. Returns their indices as a range."""
         self._resize()
+        self._as_opened = False
         positions = np.ascontiguousarray(np.asarray(positions, np.float64).reshape(-1, 3))
         count, first = len(positions), ctypes.c_uint32()
         if velocities is not None:
@@ -420,11 +423,27 @@ class World:
     # ---- scenes and pictures ----
 
     def scene(self):
-        """The scene that it was opened from, with its sets, as a dict; None if it was made by hand. What was set or added
-        since is not in it."""
-        import json
-        self._pointer
-        return json.loads(L.take_text(lib.py_scene_text(self._owner.scene))) if self._owner.scene else None
+        """The scene that it was opened from, with all fields that were set since, as a dict: opened again, it gives the
+        same world. None if the world was made by hand; fails where objects were added or removed since."""
+        from ._scene import note
+        if not self._owner.scene:
+            self._pointer
+            return None
+        if not self._as_opened:
+            raise fault(L.ERROR_VALUE, "scene", "objects were added or removed since it was opened: no scene says so")
+        note(self._owner.scene, self._noted_sets())
+        return json.loads(L.take_text(lib.py_scene_text(self._owner.scene)))
+
+    def _noted_sets(self):
+        """What was set since it was opened, as --set has it."""
+        for category, key, full in self._noted.values():
+            if full is None:
+                method = self.method
+                yield "method", {"type": method.kind, **method.fields()}
+            else:
+                handles = [thing._handle.key() for thing in (self._lists[L.LISTS[category]] if category != L.METHOD else [])]
+                thing = self.method if category == L.METHOD else self._lists[L.LISTS[category]][handles.index(key)]
+                yield f"{L.LISTS[category]}" + (f".{handles.index(key)}" if handles else "") + f".{full}", thing[full]
 
     def render(self, size=(640, 360), samples=4, view=None):
         """A picture as it stands: an array of height x width x 3 bytes (sRGB). `view` are fields of a scene's "view"."""

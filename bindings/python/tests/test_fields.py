@@ -166,7 +166,7 @@ class Formulas(unittest.TestCase):
         world, (x, y, z) = skein.World(), (0.3, -0.7, 1.9)
         cases = [
             lambda x, y, z: x - (y - z) - -x * -y / (z / x) ** 2 ** 0.5,
-            lambda x, y, z: -(x**2) + (-x) ** 2 * 3 - (x - y) / (y + z) - 2 / (z - x) * y,
+            lambda x, y, z: -(x - y) * z - (x**2) + (-x) ** 2 * 3 - (x - y) / (y + z) - 2 / (z - x) * y,
             lambda x, y, z: abs(y) ** x + (x + y) ** 2 - (x * y) ** 2 / -z + min(x, y) * max(y, z) - atan2(y, x),  # noqa: F405
             lambda x, y, z: 1e-3 * x + 1.5e7 * y - 0.1 * z + exp(sin(x) * cos(y)) * sqrt(z),  # noqa: F405
         ]

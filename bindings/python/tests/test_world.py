@@ -1,4 +1,5 @@
 """Worlds against closed forms, against the command, and what views and errors promise."""
+import copy
 import gc
 import json
 import math
@@ -91,6 +92,23 @@ class Scenes(unittest.TestCase):
         self.assertEqual(before.hash(), live.hash())
         self.assertEqual(before.hash(), other.hash())
         self.assertEqual(before.scene()["method"]["substeps"], 5)
+        live.bodies[0].stretch.limit = math.inf
+        live.colliders.add  # looking at it adds nothing
+        again = skein.World.from_scene(live.scene() | {"output": []})  # what was set while it lived is in it
+        live.reset()
+        for world in live, again:
+            world.set_method("pbd", substeps=7)
+            world.frame(5)
+        self.assertEqual(again.hash(), live.hash())
+        self.assertEqual(again.get("forces.1.velocity"), (2, 0, 3))
+        self.assertEqual(live.scene()["bodies"][0]["stretch"]["limit"], "infinite")
+        self.assertEqual((live.scene()["method"]["type"], live.scene()["method"]["substeps"]), ("pbd", 7))
+        live.method.iterations = 2
+        self.assertEqual(live.scene()["method"]["iterations"], 2)
+        live.forces[1].remove()
+        self.assertRaisesRegex(skein.ValueFault, "added or removed", live.scene)
+        self.assertIsNone(skein.World().scene())
+        self.assertRaisesRegex(TypeError, "snapshot", copy.deepcopy, live)
         plain = skein.World.from_scene(path)
         plain.frame(20)
         self.assertNotEqual(plain.hash(), live.hash())
