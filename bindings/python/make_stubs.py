@@ -1,16 +1,16 @@
-"""Makes skein/__init__.pyi, the types that editors and checkers read, from the package and its tables of fields:
+"""Makes the types that editors and checkers read (__init__.pyi, kinds.pyi, functions.pyi) from the package and its tables:
 
-    make_stubs.py >skein/__init__.pyi      (PYTHONPATH and SKEIN_LIBRARY lead to the package and its library)
+    make_stubs.py FOLDER      (PYTHONPATH and SKEIN_LIBRARY lead to the package and its library)
 
 Public classes are those of skein.__all__, with their signatures and the first lines of their words; kinds have their fields
-as attributes, with types, units and help. A test compares the file with what this prints.
+as attributes, with types, units and help. tools/wheel makes them, so that they are the tables' of that day; a test asks whether anything is missing in them.
 """
 import inspect
 import re
 import sys
 
 import skein
-from skein import _fields, _library as L, _objects
+from skein import _fields, _formula, _library as L, _objects
 
 TYPES = {L.BOOL: "bool", L.INT: "int", L.INT2: "tuple[int, int]", L.INT3: "tuple[int, int, int]", L.REAL: "float",
          L.REAL2: "tuple[float, float]", L.VEC3: "tuple[float, float, float]", L.TEXT: "str"}
@@ -177,5 +177,16 @@ def main():
     return text
 
 
+def kinds_and_functions():
+    names = [cls.__name__ for cls in _objects.CLASSES.values()]
+    kinds = "# Made by make_stubs.py.\n" + "".join(f"from . import {name} as {name}\n" for name in names)
+    functions = "# Made by make_stubs.py.\nfrom typing import Any\n\npi: Any\n"
+    for name, count in _formula.NAMES.items():
+        functions += f"def {name}({', '.join(f'{letter}: Any' for letter in 'abcd'[:count])}, /) -> Any: ...\n"
+    return kinds, functions
+
+
 if __name__ == "__main__":
-    sys.stdout.write(main())
+    for file_name, stub in zip(("__init__", "kinds", "functions"), (main(), *kinds_and_functions())):
+        with open(f"{sys.argv[1]}/{file_name}.pyi", "w", encoding="utf-8") as file:
+            file.write(stub)

@@ -54,6 +54,10 @@ class Documents(unittest.TestCase):
                     continue
                 where = classes[cls.__name__] if not group else classes[f"{group.capitalize()}Of{cls.__name__}"]
                 self.assertIn({"from": "from_"}.get(last, last), where, (cls.__name__, full))
+        kinds, functions = map(ast.parse, make_stubs.kinds_and_functions())
+        self.assertEqual([node.names[0].asname for node in kinds.body], skein.kinds.__all__)
+        self.assertEqual({node.name for node in functions.body if isinstance(node, ast.FunctionDef)} | {"pi"},
+                         set(skein.functions.__all__))
         world = skein.World()
         for name in dir(world):
             if not name.startswith("_"):
