@@ -204,6 +204,10 @@ bool app_set_first(app_arguments *arguments, const char *set) {
     return true;
 }
 
+bool app_give(app_arguments *arguments, const char *name, const char *value) {
+    return app_list_add(&arguments->given[place_of(arguments->command, name)], value, false);
+}
+
 bool app_override(app_arguments *arguments, app_override_texts texts) {
     static const char *const names[] = {"--frames", "--fps", "--threads"};
     bool good = true;

@@ -114,6 +114,9 @@ bool app_follow(app_arguments *arguments, app_follow_text text);
  */
 bool app_set_first(app_arguments *arguments, const char *set);
 
+/* An option as if it had been given; the value has to live as long as the arguments. False without memory. */
+bool app_give(app_arguments *arguments, const char *name, const char *value);
+
 /* Prints "skein: where: message" to standard error. */
 void app_print_error(const skein_error *error);
 /* The same as what scenes' faults go to; `user` is the app_scene that keeps them, or NULL. */

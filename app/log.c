@@ -2,13 +2,16 @@
 #include "app/log.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "app/command.h"
 #include "io/file.h"
 
 struct app_log {
     io_output *output;
+    char line[1024];
 };
 
 /* The columns that are plain numbers: their names, with units, and where in the statistics they are. */
@@ -51,12 +54,22 @@ app_log *app_log_begin(const char *path) {
 }
 
 void app_log_line(app_log *log, const skein_statistics *statistics) {
-    io_output_printf(log->output, "%" PRIu64, statistics->steps);
+    size_t size = sizeof log->line;
+    size_t at = (size_t)snprintf(log->line, size, "%" PRIu64, statistics->steps);
     for (size_t i = 0; i < COLUMN_COUNT; i++)
-        io_output_printf(log->output, ",%.9g",
-                         *(const double *)(const void *)((const char *)statistics + columns[i].offset));
-    io_output_printf(log->output, ",%zu,%zu,%zu,%zu\n", statistics->contacts, statistics->solver_turns,
-                     statistics->solver_iterations, statistics->unsolved);
+        at += (size_t)snprintf(log->line + at, size - at, ",%.9g",
+                               *(const double *)(const void *)((const char *)statistics + columns[i].offset));
+    snprintf(log->line + at, size - at, ",%zu,%zu,%zu,%zu\n", statistics->contacts, statistics->solver_turns,
+             statistics->solver_iterations, statistics->unsolved);
+    app_log_text(log, log->line);
+}
+
+const char *app_log_last(const app_log *log) {
+    return log->line;
+}
+
+void app_log_text(app_log *log, const char *line) {
+    io_output_write(log->output, line, strlen(line));
 }
 
 bool app_log_finish(app_log *log) {

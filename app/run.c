@@ -1,10 +1,12 @@
 /* skein run SCENE: simulate, with progress, files and a report. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "app/compile.h"
 #include "app/flocks.h"
+#include "app/keep.h"
 #include "app/outputs.h"
 #include "app/progress.h"
 #include "app/report.h"
@@ -37,7 +39,7 @@ static bool note_step(app_report *r) {
     if (!r->log) return true;
     if (!measure(r)) return false;
     app_log_line(r->log, &r->statistics);
-    return true;
+    return !r->keep || app_keep_line(r->keep, app_log_last(r->log));
 }
 
 /* Notes where it runs; a film's context is gone at the end of the run. */
@@ -64,14 +66,25 @@ static bool run_frame(app_report *r, app_progress *p) {
     return !here || r->frames % 16 || measure(r); // from a card the state would have to come for it
 }
 
-static bool run_frames(app_report *r, app_outputs *outputs, app_progress *p) {
+/* The first frame, or all those before the snapshot that the run goes on from. */
+static bool begin_frames(app_report *r, app_outputs *outputs, const app_kept *kept) {
     note_device(r);
-    bool good = measure(r) && note_step(r) && (!outputs || app_outputs_frame(outputs, 0));
+    if (kept && !app_kept_go_on(kept, r, outputs, &r->keep)) return false;
+    if (r->frames) return true;
+    return measure(r) && note_step(r) && (!outputs || app_outputs_frame(outputs, 0)) &&
+           app_keep_frame(r->keep, r, false);
+}
+
+static bool run_frames(app_report *r, app_outputs *outputs, app_progress *p, const app_kept *kept) {
+    bool good = begin_frames(r, outputs, kept);
+    int begun = r->frames;
     while (good && r->frames < p->frames && !app_interrupted()) {
-        good = run_frame(r, p) && (!outputs || app_outputs_frame(outputs, r->frames));
+        good =
+            run_frame(r, p) && (!outputs || app_outputs_frame(outputs, r->frames)) && app_keep_frame(r->keep, r, false);
         if (good) app_progress_show(p, r->frames);
     }
     app_progress_end(p);
+    if (good && r->keep && r->frames > begun) good = app_keep_frame(r->keep, r, true);
     return good && measure(r);
 }
 
@@ -86,7 +99,9 @@ static void keep_frames(app_report *r, app_outputs *outputs, const char *folder,
         app_outputs_abandon(outputs);
         return;
     }
-    const char *why = p->failure[0] ? p->failure : app_outputs_failure(outputs);
+    const char *why = p->failure[0]                  ? p->failure
+                      : app_keep_failure(r->keep)[0] ? app_keep_failure(r->keep)
+                                                     : app_outputs_failure(outputs);
     snprintf(r->failure, sizeof r->failure, "%s", why[0] ? why : "the state could not be measured");
     skein_world_statistics(r->loaded->world, &r->statistics); // as it is, whatever that is
     app_outputs_keep(outputs, note_file, r);
@@ -135,7 +150,7 @@ static int conclude(app_report *r, const char *folder, bool good) {
     return !good ? EXIT_FAILURE_RUN : signal_number ? EXIT_SIGNAL + signal_number : EXIT_OK;
 }
 
-static int simulate(app_report *r, const char *folder) {
+static int simulate(app_report *r, const char *folder, const app_kept *kept, int every) {
     app_outputs *outputs = NULL;
     app_catch_interrupts();
     int status = folder ? app_outputs_begin(r->loaded, folder, r->calm, &outputs) : EXIT_OK;
@@ -146,15 +161,22 @@ static int simulate(app_report *r, const char *folder) {
         app_outputs_abandon(outputs);
         return EXIT_FAULT;
     }
+    if (every && !kept && !(r->keep = app_keep_begin(r, folder, every))) {
+        app_outputs_abandon(outputs);
+        app_log_finish(r->log);
+        return EXIT_FAILURE_RUN;
+    }
     app_progress p = app_progress_start("frame", r->loaded->settings.frames, r->calm);
-    bool ran = run_frames(r, outputs, &p);
+    bool ran = run_frames(r, outputs, &p, kept);
     bool logged = app_log_finish(r->log); // of a run that failed, too: it may say why
     if (!ran) {
         keep_frames(r, outputs, folder, &p);
+        app_keep_end(r->keep, false);
         return EXIT_FAILURE_RUN;
     }
     if (r->log && logged) note_file(r, r->log_path);
     bool good = (!outputs || app_outputs_finish(outputs, note_file, r)) && logged;
+    app_keep_end(r->keep, good);
     return conclude(r, folder, good);
 }
 
@@ -189,22 +211,47 @@ static bool set_outputs(const app_arguments *arguments, io_scene *scene) {
     return true;
 }
 
-static int run(app_arguments *arguments) {
-    app_override_texts texts;
+/* --snapshots N: frames from one to the next; 0 where it is not given, -1 after a printed fault. */
+static int snapshots_of(const app_arguments *arguments) {
+    const char *given = app_value(arguments, "--snapshots");
+    char *end;
+    if (!given) return 0;
+    long every = strtol(given, &end, 10);
+    if (end != given && !*end && every >= 1 && every <= 1000000) return (int)every;
+    fprintf(stderr, "skein run: --snapshots %s: expected a number of frames, 1 to 1000000\n", given);
+    return -1;
+}
+
+/* What a run that goes on has already said. */
+static bool check_resumed(const app_arguments *arguments) {
+    static const char *const said[] = {"--out", "--set", "--fps", "--up", "--scale", "--log"};
+    for (size_t i = 0; i < sizeof said / sizeof *said; i++)
+        if (app_given(arguments, said[i])) {
+            fprintf(stderr,
+                    "skein run: %s: a run that goes on (--resume) keeps what it was begun with; --frames, --threads "
+                    "and --device may be given\n",
+                    said[i]);
+            return false;
+        }
+    if (!app_word(arguments)) return true;
+    fprintf(stderr, "skein run: '%s' and --resume: a run that goes on has its scene; name one of the two\n",
+            app_word(arguments));
+    return false;
+}
+
+/* Loads and runs; `kept` is NULL for a run that begins. */
+static int run_scene(app_arguments *arguments, const char *folder, const app_kept *kept) {
     bool quiet = app_given(arguments, "--quiet"), calm = quiet || app_given(arguments, "--no-progress");
-    const char *folder = app_value(arguments, "--out");
     app_scene loaded = {.quiet = quiet};
-    if (!app_override(arguments, texts)) return EXIT_FAULT;
-    if (folder && !strcmp(folder, "-")) {
-        fprintf(stderr, "skein run: --out -: a run writes many files into a folder; --json prints its report\n");
-        return EXIT_FAULT;
-    }
     char parent[APP_FOLDER_SIZE], output[64];
     const char *format = folder ? app_outputs_file(folder, parent) : NULL;
-    if (!want_file(arguments, format, output)) return EXIT_FAULT;
-    int status = app_load(app_word(arguments), app_values(arguments, "--set"), &loaded);
+    const char *device = app_value(arguments, "--device"), *log = kept ? kept->log : app_value(arguments, "--log");
+    int every = snapshots_of(arguments);
+    if (every < 0 || (!kept && !want_file(arguments, format, output))) return EXIT_FAULT;
+    if (kept && kept->device[0] && !device) device = kept->device;
+    int status = app_load(kept ? kept->scene : app_word(arguments), app_values(arguments, "--set"), &loaded);
     if (!status && app_given(arguments, "--compile")) loaded.warnings += app_compile(loaded.world, calm);
-    if (!status) status = app_device(&loaded, app_value(arguments, "--device"));
+    if (!status) status = app_device(&loaded, device);
     if (!status && !set_outputs(arguments, loaded.scene)) status = EXIT_FAULT;
     if (!status) {
         app_advise(&loaded);
@@ -216,14 +263,48 @@ static int run(app_arguments *arguments) {
                              .files = json_array(),
                              .flocks = json_array(),
                              .is_file = format != NULL,
-                             .log_path = app_value(arguments, "--log")};
+                             .log_path = log && log[0] ? log : NULL};
         report.steps_per_frame = io_scene_steps_per_frame(&loaded.settings, &report.dt);
-        status = simulate(&report, folder);
+        status = simulate(&report, folder, kept, every);
         json_decref(report.files);
         json_decref(report.flocks);
     }
     app_unload(&loaded);
     return status;
+}
+
+/* A run that goes on is called as it was. */
+static int resume(app_arguments *arguments, const char *where) {
+    app_kept kept;
+    int status = app_kept_read(where, &kept);
+    if (status) return status;
+    int every = snapshots_of(arguments);
+    if (every > 0) kept.every = every;
+    bool good = (!kept.up[0] || app_give(arguments, "--up", kept.up)) &&
+                (!kept.scale[0] || app_give(arguments, "--scale", kept.scale));
+    status = good ? run_scene(arguments, kept.out[0] ? kept.out : NULL, &kept) : EXIT_FAILURE_RUN;
+    app_kept_free(&kept);
+    return status;
+}
+
+static int run(app_arguments *arguments) {
+    app_override_texts texts;
+    const char *folder = app_value(arguments, "--out"), *where = app_value(arguments, "--resume");
+    if (!where && !app_word(arguments)) {
+        fprintf(stderr, "skein run: which scene? usage: skein run %s\n", app_run_command.usage);
+        return EXIT_FAULT;
+    }
+    if (folder && !strcmp(folder, "-")) {
+        fprintf(stderr, "skein run: --out -: a run writes many files into a folder; --json prints its report\n");
+        return EXIT_FAULT;
+    }
+    if (app_given(arguments, "--snapshots") && !folder && !where) {
+        fprintf(stderr, "skein run: --snapshots: they are kept beside what a run writes: name a folder with --out\n");
+        return EXIT_FAULT;
+    }
+    if (where && !check_resumed(arguments)) return EXIT_FAULT;
+    if (!app_override(arguments, texts)) return EXIT_FAULT;
+    return where ? resume(arguments, where) : run_scene(arguments, folder, NULL);
 }
 
 static const app_option options[] = {
@@ -239,6 +320,9 @@ static const app_option options[] = {
     APP_DEVICE_OPTION,
     APP_COMPILE_OPTION,
     {"--log", "FILE", "write a line a step there, as CSV: energies, momenta, stretch, contacts", false, APP_TAKES_FILE},
+    {"--snapshots", "N", "every N frames keep what --resume can go on from, in FOLDER/resume", false, APP_TAKES_ANY},
+    {"--resume", "FOLDER", "go on from the last snapshot with the run that wrote into FOLDER, as if never broken off",
+     false, APP_TAKES_FOLDER},
     {"--json", NULL, "print the report as JSON instead of a summary", false, APP_TAKES_ANY},
     APP_NO_PROGRESS_OPTION,
     APP_QUIET_OPTION,
@@ -246,7 +330,7 @@ static const app_option options[] = {
 
 const app_command app_run_command = {
     "run",
-    "SCENE [--out FOLDER] [options]",
+    "SCENE [--out FOLDER] [options] | --resume FOLDER",
     "simulate a scene; with --out, write meshes, point caches, a picture and report.json\n\n"
     "  skein run scenes/drape.json --out out/\n"
     "  skein run scenes/flag.json --frames 240 --fps 60 --threads 2 --set bodies.0.stretch.stiffness=2e4\n"
@@ -256,13 +340,15 @@ const app_command app_run_command = {
     "(or see skein render). `skein list exporters` has all formats and their options. A file behind --out is that\n"
     "format alone, by its ending, without a report: as with --set 'output=[{\"type\": \"mdd\"}]'. All but films\n"
     "appear under their names only when they are complete. Interrupted (Ctrl-C), a run writes what it has.\n\n"
+    "Killed, a run with --snapshots goes on: `skein run --resume out/` reaches the state hash of an unbroken run, and\n"
+    "all files come out equal (docs/recording.md).\n\n"
     "On a graphics card (--device gpu) the same plan runs as OpenGL compute shaders, for rules that have one: loose\n"
     "particles under forces, contact and neighbours; not yet cloth, jelly and rope. Numbers agree to rounding.\n\n"
     "Exit status 0: done; 1: the run failed, or ended far beyond its bounds (an edge longer than the scene's\n"
     "most_stretch allows, energy that came from nowhere), or a file could not be written; 2: a fault in the scene\n"
     "or the arguments; 130: interrupted.",
     options,
-    "scene",
+    NULL, // or a folder: run() says which
     false,
     APP_TAKES_SCENE,
     run,

@@ -1,7 +1,8 @@
 /* Files in and out: see file.h for the contract.
  *
  * Output is not synced to the disk before the rename: a series of frames would wait for the disk at
- * each one, and what is guarded against is a program that stops or a full disk, not a power cut.
+ * each one, and what is guarded against is a program that stops or a full disk, not a power cut. A writer that wants
+ * more asks for it (io_output_sync).
  */
 #include "io/file.h"
 
@@ -261,6 +262,13 @@ bool io_output_is_due(io_output *output) {
     if (now - output->looked < 0.25) return false;
     output->looked = now;
     return true;
+}
+
+void io_output_sync(io_output *output) {
+    io_output_flush(output);
+    // a pipe, or a file system without it: there is no disk to wait for
+    if (output->fault == 0 && output->part_path && fsync(output->fd) != 0 && errno != EINVAL && errno != ENOTSUP)
+        output->fault = errno;
 }
 
 void io_output_fail(io_output *output, int fault) {

@@ -77,6 +77,9 @@ uint64_t io_output_place(const io_output *output);
  * quarter of a second has gone by since it last said so; and writes all that was given so far. */
 bool io_output_is_due(io_output *output);
 void io_output_flush(io_output *output);
+/* Brings all that was given so far to the disk itself, and the commit its name, so that a power cut does not take it:
+ * for what a run is to go on from. Costs some milliseconds, or many. */
+void io_output_sync(io_output *output);
 /* Notes that the writer had no memory for what should be written; or another failure, an errno. */
 void io_output_fail_memory(io_output *output);
 void io_output_fail(io_output *output, int fault);

@@ -8,6 +8,7 @@
 #include "catalogue_kinds.h" // made by the build
 #include "outside/outside.h"
 #include "space/normals.h"
+#include "world/snapshot.h"
 
 /* Every type begins with its kind, so the kind's address is the type's. */
 static const void *const bodies[] = {SK_BODY_KINDS}, *const constraints[] = {SK_CONSTRAINT_KINDS},
@@ -132,4 +133,11 @@ skein_status skein_method_set(skein_world *world, const char *kind, const skein_
     SK_NEED(world, kind);
     const sk_method_type *type = type_of(world, SKEIN_METHOD, kind);
     return type ? sk_world_set_method(world, type, settings) : SKEIN_ERROR_NAME;
+}
+
+/* (A snapshot names its method.) */
+skein_status skein_snapshot_read(skein_world *world, const void *bytes, size_t size) {
+    SK_NEED(world, world);
+    SK_NEED(world, bytes);
+    return sk_snapshot_read(world, bytes, size, skein_method_set);
 }

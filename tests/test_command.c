@@ -9,7 +9,7 @@
 
 /* ---- Arguments ------------------------------------------------------------------------------------ */
 
-#define RUN_USAGE "usage: skein run SCENE [--out FOLDER] [options]\n"
+#define RUN_USAGE "usage: skein run SCENE [--out FOLDER] [options] | --resume FOLDER\n"
 
 static void wrong_arguments_are_told(void **state) {
     (void)state;

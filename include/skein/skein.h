@@ -563,6 +563,7 @@ typedef struct skein_snapshot_info {
     uint32_t real_size;  /* bytes of a number: 4 in float, 8 in double */
     double time;         /* s */
     uint64_t steps, particles, objects;
+    size_t size;         /* bytes of the snapshot; what follows them is the caller's own */
 } skein_snapshot_info;
 /* Looks at a snapshot without a world: whether it is whole, and of what. Fails as above. */
 skein_status skein_snapshot_look(const void *bytes, size_t size, skein_snapshot_info *info, skein_error *error);

@@ -252,10 +252,11 @@ static skein_status look(const void *bytes, size_t size, skein_snapshot_info *in
                        " reads version %d: take the Skein that wrote it, or a newer one",
                        info->version, SK_SNAPSHOT_VERSION);
     if (info->version < 1) return fail_short(error);
-    if (whole != size)
+    if (whole > size || whole < SK_SNAPSHOT_HEAD)
         return sk_fail(error, SKEIN_ERROR_SYNTAX, "", "the snapshot is damaged: it has %zu bytes of %" PRIu64, size,
                        whole);
-    if (sk_byte_sum(r.in + SK_SNAPSHOT_HEAD, size - SK_SNAPSHOT_HEAD) != sum)
+    info->size = (size_t)whole;
+    if (sk_byte_sum(r.in + SK_SNAPSHOT_HEAD, info->size - SK_SNAPSHOT_HEAD) != sum)
         return sk_fail(error, SKEIN_ERROR_SYNTAX, "", "the snapshot is damaged: its sum is another");
     info->time = sk_take_f64(&r);
     info->steps = sk_take_u64(&r);
@@ -339,7 +340,8 @@ static skein_status take_travel(sk_byte_reader *r, sk_travel *travel, bool apply
     return SKEIN_OK;
 }
 
-static skein_status take_method(sk_byte_reader *r, skein_world *world, bool apply, skein_error *error) {
+static skein_status take_method(sk_byte_reader *r, skein_world *world, sk_set_method *set, bool apply,
+                                skein_error *error) {
     const char *name = sk_take_text(r);
     if (!name) return fail_short(error);
     if (strcmp(name, world->method->kind.name) != 0) {
@@ -347,7 +349,7 @@ static skein_status take_method(sk_byte_reader *r, skein_world *world, bool appl
             while ((name = sk_take_text(r)) && name[0]) sk_take_value(r);
             return r->short_ ? fail_short(error) : SKEIN_OK;
         }
-        skein_status status = skein_method_set(world, name, NULL);
+        skein_status status = set(world, name, NULL);
         if (status) return status;
     }
     return apply_fields(r, world, NULL, skein_object_at(world, SKEIN_METHOD, 0), apply, error);
@@ -436,18 +438,17 @@ static skein_status take_pins(sk_byte_reader *r, skein_world *world, bool apply,
 }
 
 /* Once to look whether all of it fits, once to take it. */
-static skein_status walk(skein_world *world, const void *bytes, size_t size, bool apply, skein_error *error) {
+static skein_status walk(skein_world *world, const void *bytes, size_t size, sk_set_method *set, bool apply,
+                         skein_error *error) {
     sk_byte_reader r = {bytes, size, SK_SNAPSHOT_HEAD, false};
     skein_status status = take_clock(&r, world, apply, error);
-    if (!status) status = take_method(&r, world, apply, error);
+    if (!status) status = take_method(&r, world, set, apply, error);
     for (size_t i = 0; i < world->objects.count && !status; i++) status = take_object(&r, world, i, apply, error);
     if (!status) status = take_particles(&r, world, apply, error);
     return status ? status : take_pins(&r, world, apply, error);
 }
 
-skein_status skein_snapshot_read(skein_world *world, const void *bytes, size_t size) {
-    SK_NEED(world, world);
-    SK_NEED(world, bytes);
+skein_status sk_snapshot_read(skein_world *world, const void *bytes, size_t size, sk_set_method *set) {
     skein_error *error = sk_world_error(world);
     skein_snapshot_info info;
     skein_status status = look(bytes, size, &info, error);
@@ -456,7 +457,7 @@ skein_status skein_snapshot_read(skein_world *world, const void *bytes, size_t s
         return sk_fail(error, SKEIN_ERROR_VALUE, "",
                        "the snapshot is of a library built in %s, and this one is in %s: take the other build",
                        info.real_size == 8 ? "double" : "float", sizeof(real) == 8 ? "double" : "float");
-    status = walk(world, bytes, size, false, error);
+    status = walk(world, bytes, info.size, set, false, error);
     if (!status) status = sk_world_touch(world);
-    return status ? status : walk(world, bytes, size, true, error);
+    return status ? status : walk(world, bytes, info.size, set, true, error);
 }
