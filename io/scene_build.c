@@ -99,6 +99,25 @@ static bool add_body(const builder *b, io_place place, const skein_kind *kind, c
     return good;
 }
 
+/* A collider may be made from a mesh, too. */
+static bool add_collider(const builder *b, io_place place, const skein_kind *kind, const io_settings *settings) {
+    const char *file = skein_field_find(kind, "mesh", NULL) ? io_settings_text(settings, "mesh") : NULL;
+    bool has_mesh = file && file[0];
+    io_mesh mesh = {0};
+    if (has_mesh && !read_mesh(b, place, file, &mesh)) return false;
+    if (mesh.tetrahedra) {
+        io_fault(place, "mesh", SKEIN_ERROR_MESH, "'%s' is made of tetrahedra: a %s needs faces, from .obj, .ply, .stl, .glb or .off",
+                 file, kind->name);
+        io_mesh_free(&mesh);
+        return false;
+    }
+    skein_mesh view = io_mesh_view(&mesh);
+    bool good = !skein_collider_add_mesh(b->world, kind->name, has_mesh ? &view : NULL, settings->data, NULL);
+    if (!good) report_object_fault(b, place, kind, "");
+    io_mesh_free(&mesh);
+    return good;
+}
+
 /* ---- constraints: the particles are read here ---- */
 
 typedef struct index_list {
@@ -264,7 +283,7 @@ static bool add_of_kind(const builder *b, io_place place, const json_t *object, 
     case SKEIN_BODY: return add_body(b, place, kind, settings);
     case SKEIN_CONSTRAINT: add_constraint(b, place, kind, object, settings); break;
     case SKEIN_FORCE: status = skein_force_add(b->world, kind->name, settings->data, NULL); break;
-    case SKEIN_COLLIDER: status = skein_collider_add(b->world, kind->name, settings->data, NULL); break;
+    case SKEIN_COLLIDER: return add_collider(b, place, kind, settings);
     case SKEIN_MOTION: return add_motion(b, place, kind, settings);
     default: status = skein_method_set(b->world, kind->name, settings->data); break;
     }

@@ -107,7 +107,15 @@ skein_status skein_collider_add(skein_world *world, const char *kind, const skei
     SK_NEED(world, world);
     SK_NEED(world, kind);
     const sk_collider_type *type = type_of(world, SKEIN_COLLIDER, kind);
-    return type ? sk_world_add_collider(world, type, settings, handle) : SKEIN_ERROR_NAME;
+    return type ? sk_world_add_collider(world, type, NULL, settings, handle) : SKEIN_ERROR_NAME;
+}
+
+skein_status skein_collider_add_mesh(skein_world *world, const char *kind, const skein_mesh *mesh,
+                                     const skein_setting *settings, skein_handle *handle) {
+    SK_NEED(world, world);
+    SK_NEED(world, kind);
+    const sk_collider_type *type = type_of(world, SKEIN_COLLIDER, kind);
+    return type ? sk_world_add_collider(world, type, mesh, settings, handle) : SKEIN_ERROR_NAME;
 }
 
 skein_status skein_motion_add(skein_world *world, const char *kind, const skein_track *track,

@@ -161,6 +161,13 @@ static const skein_mesh meshes[] = {{NULL, 0, NULL, 0, NULL, 0},
                                     {&sheet_points[0][0], 12, fours, 4, sheet_corners, 16},
                                     {&solid_points[0][0], 5, fours, 2, solid_corners, 8}};
 
+/* Of colliders that are made from one. */
+static const skein_mesh *mesh_of(const skein_kind *kind) {
+    static const uint32_t corners[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 4, 2, 3, 4, 1, 4, 3}, sizes[] = {3, 3, 3, 3, 3, 3};
+    static const skein_mesh solid = {&solid_points[0][0], 5, sizes, 6, corners, 18};
+    return skein_field_find(kind, "mesh", NULL) ? &solid : NULL;
+}
+
 /* Some kinds of a category, some of their fields at random. */
 static void add_others(skein_world *world, uint64_t *seed, skein_category category, const char *but) {
     const skein_kind *kind;
@@ -174,7 +181,7 @@ static void add_others(skein_world *world, uint64_t *seed, skein_category catego
         settings[count].name = NULL;
         if (random_whole(seed, 3) || !strcmp(kind->name, but)) continue;
         if (category == SKEIN_FORCE) (void)skein_force_add(world, kind->name, settings, NULL);
-        else (void)skein_collider_add(world, kind->name, settings, NULL);
+        else (void)skein_collider_add_mesh(world, kind->name, mesh_of(kind), settings, NULL);
     }
 }
 
@@ -241,7 +248,7 @@ static skein_status add_subject(skein_world *world, const trial *t, uint32_t fir
     case SKEIN_BODY: return skein_body_add(world, name, t->mesh ? &meshes[t->mesh] : NULL, settings, handle);
     case SKEIN_CONSTRAINT: return add_constraint(world, t, first, settings, handle);
     case SKEIN_FORCE: return skein_force_add(world, name, settings, handle);
-    case SKEIN_COLLIDER: return skein_collider_add(world, name, settings, handle);
+    case SKEIN_COLLIDER: return skein_collider_add_mesh(world, name, mesh_of(t->s->kind), settings, handle);
     case SKEIN_MOTION: return add_motion(world, t, first, settings, handle);
     default:
         if (strcmp(name, t->method)) return SKEIN_ERROR_NAME;

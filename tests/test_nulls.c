@@ -57,6 +57,7 @@ static void building(void **state) {
     REFUSES("arity", skein_constraint_arity(s.world, "distance", NULL, NULL));
     REFUSES("kind", skein_force_add(s.world, NULL, NULL, NULL));
     REFUSES("kind", skein_collider_add(s.world, NULL, NULL, NULL));
+    REFUSES("kind", skein_collider_add_mesh(s.world, NULL, NULL, NULL, NULL));
     REFUSES("kind", skein_method_set(s.world, NULL, NULL));
     const uint32_t sizes[1] = {3}, corners[3] = {0, 1, 2};
     skein_mesh mesh = {NULL, 3, sizes, 1, corners, 3};
@@ -81,6 +82,7 @@ static void building(void **state) {
     REFUSES_ALL(skein_constraint_arity(NULL, "distance", NULL, &count));
     REFUSES_ALL(skein_force_add(NULL, "gravity", NULL, NULL));
     REFUSES_ALL(skein_collider_add(NULL, "sphere", NULL, NULL));
+    REFUSES_ALL(skein_collider_add_mesh(NULL, "sphere", NULL, NULL, NULL));
     REFUSES_ALL(skein_motion_add(NULL, "translate", NULL, NULL, NULL));
     REFUSES_ALL(skein_method_set(NULL, "xpbd", NULL));
     REFUSES_ALL(skein_remove(NULL, s.ball));
@@ -216,6 +218,8 @@ static void reading_and_writing(void **state) {
     REFUSES_ALL(skein_body_vertices_copy(NULL, s.cloth, 1, skein_doubles(xyz, 0), skein_doubles(NULL, 0)));
     REFUSES_ALL(skein_collider_pose(NULL, s.ball, &pose));
     REFUSES_ALL(skein_collider_teleport(NULL, s.ball));
+    REFUSES_ALL(skein_collider_vertices_set(NULL, s.ball, NULL, 0));
+    REFUSES("positions", skein_collider_vertices_set(s.world, s.ball, NULL, 0));
     skein_world_destroy(s.world);
 }
 

@@ -328,6 +328,12 @@
 #define SKEIN_BOX_SIZE "size" /* three numbers in m; along x, y and z before it is turned */
 #define SKEIN_BOX_ROTATION "rotation" /* three numbers in deg; turned about x, then y, then z, before any motion */
 
+#define SKEIN_MESH "mesh" /* what a mesh encloses, or an open one from both sides; moved as a whole, or by a program */
+#define SKEIN_MESH_MESH "mesh" /* a text; file of the mesh, OBJ, OFF, PLY, STL or glTF (in scenes; a program passes the mesh itself) */
+#define SKEIN_MESH_POSITION "position" /* three numbers in m; where the mesh's origin is put, before any motion */
+#define SKEIN_MESH_ROTATION "rotation" /* three numbers in deg; turned about x, then y, then z, before any motion */
+#define SKEIN_MESH_SCALE "scale" /* a number; factor on the mesh's coordinates */
+
 #define SKEIN_FORMULA "formula" /* any surface that a formula describes, also one that moves and changes */
 #define SKEIN_FORMULA_SURFACE "surface" /* a text; a formula of p and t: over 0 where particles may be, under 0 in the solid; best a distance */
 #define SKEIN_FORMULA_CENTRE "centre" /* three numbers in m; where the formula's p is 0, before any motion */

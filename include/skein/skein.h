@@ -294,6 +294,19 @@ skein_status skein_constraint_arity(skein_world *world, const char *kind, const 
 skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings, skein_handle *handle);
 skein_status skein_collider_add(skein_world *world, const char *kind, const skein_setting *settings,
                                 skein_handle *handle);
+/* Adds a collider of a kind that is made from a mesh ("mesh", "field"), which is copied; of others with `mesh` NULL, as
+ * skein_collider_add() does. Vertices at the same place are one, and faces are cut into triangles from their first corner. What
+ * is wrong with the mesh and does not matter much (open edges, faces that disagree) is told to the world's log. Fails
+ * with SKEIN_ERROR_MESH, too. */
+skein_status skein_collider_add_mesh(skein_world *world, const char *kind, const skein_mesh *mesh,
+                                     const skein_setting *settings, skein_handle *handle);
+/* Where the vertices of a "mesh" collider are from now on, m, in the mesh's own coordinates: vertex_count x 3, in the order
+ * in which the mesh was given (of vertices that were at one place the first counts). They come there in the next step, so
+ * that the surface has a velocity for friction and impacts; set before each step, it may deform in any way. Fails
+ * with SKEIN_ERROR_VALUE for another number of vertices, for what is not finite and under 1e12, and for other kinds;
+ * with SKEIN_ERROR_MEMORY. */
+skein_status skein_collider_vertices_set(skein_world *world, skein_handle collider, const double *positions,
+                                         size_t vertex_count);
 /* Places that particles go through, only read during the call they are given to: `sample_count` times, from the motion's
  * start on, `interval` seconds apart, those of all `particle_count` particles. */
 typedef struct skein_track {
@@ -911,6 +924,11 @@ template <size_t count_>
 skein_status skein_collider_add(skein_world *world, const char *kind, const skein_settings<count_> &settings,
                                 skein_handle *handle) {
     return skein_collider_add(world, kind, settings.list, handle);
+}
+template <size_t count_>
+skein_status skein_collider_add_mesh(skein_world *world, const char *kind, const skein_mesh *mesh,
+                                     const skein_settings<count_> &settings, skein_handle *handle) {
+    return skein_collider_add_mesh(world, kind, mesh, settings.list, handle);
 }
 template <size_t count_>
 skein_status skein_method_set(skein_world *world, const char *kind, const skein_settings<count_> &settings) {

@@ -30,6 +30,15 @@ typedef struct sk_contact {
 } sk_contact;
 
 typedef void sk_probe(const void *params, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact);
+/* The same where only what is within `reach` (m; below 0: nothing is) or inside counts: else the distance may be anything
+ * beyond it. */
+typedef void sk_probe_near(const void *params, const sk_pose *pose, const sk_wide3 *p, const sk_wide *reach,
+                           sk_contact *contact);
+
+/* What is wrong with a mesh that is taken all the same, in words; "": nothing. */
+typedef struct sk_faults_text {
+    char text[320];
+} sk_faults_text;
 
 /* What every collider has besides its shape. */
 typedef struct sk_collider_common {
@@ -53,12 +62,23 @@ typedef struct sk_collider_type {
     double (*mass)(const void *params);
     /* Distance and normal of a vector of particles; a version for each instruction set, which its own kernels call. */
     sk_probe *probe[SK_ISA_COUNT];
+    sk_probe_near *near[SK_ISA_COUNT]; /* NULL where `probe` costs little anyway */
     bool deforms; /* its surface moves by itself, too */
     /* What it looks like, into a shape that is zero before; NULL: its surface is found by `probe`. */
     void (*shape)(const void *params, skein_shape *shape);
     /* Whether a value at x had to be guarded (formula/graph.h): for the statistics; NULL: there is nothing to guard. */
     bool (*guarded)(const void *params, const sk_pose *pose, const double x[3]);
     const sk_making *making; /* what is made from its texts; NULL: nothing */
+    /* Of types that are made from a mesh, with `making` to unmake it, else NULL: makes it from the mesh, or fails where that is NULL. */
+    skein_status (*take)(void *params, const skein_mesh *mesh, sk_allocator *allocator, sk_faults_text *faults,
+                         skein_error *error);
+    /* Of types whose surface a program may lead somewhere, else NULL: a step begins; whether it ever did, so that each substep has to
+     * ask, and where it is then. */
+    void (*begin)(const void *params, double time, double dt);
+    bool (*changes)(const void *params);
+    void (*follow)(const void *params, double time);
+    bool (*is_shaped_by)(const char *field); /* whether a field counts only then; NULL: none does */
+    struct sk_trimesh *(*surface)(const void *params); /* its triangles, for whoever draws or moves them; NULL: it has none */
     /* Of arithmetic: see colliders/shape.h. A file defines vec4 probe@(vec3 p): the unit normal out of the solid, and the distance in w; and, where the surface
      * moves by itself, DEFORMS@ and float speed@, what it has along the normal then. What every collider has is pose@
      * (colliders/pose.glsl). */
@@ -116,6 +136,9 @@ extern const sk_kernels sk_contact_settle;
 extern const sk_kernels sk_contact_filter;
 /* The same for what has come inside since, X being where V leads from X0. */
 extern const sk_kernels sk_contact_filter_more;
+
+/* Once a substep, by one thread: the surface of a collider that changes is where it is at the end. */
+extern sk_row_kernel sk_contact_follow;
 
 /* Rules that look out: adds to S, for the row's group. */
 extern const sk_kernels sk_avoid;

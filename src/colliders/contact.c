@@ -39,7 +39,7 @@ SK_KERNELS(sk_probe_sixteen, probe_sixteen);
 
 /* Probes a part of a block; false where nobody touches. */
 SK_INLINE bool meet(sk_run *run, const sk_row *row, const sk_pose *pose, size_t slot, encounter *e) {
-    probe(row->rule, pose, sk_load_part(run->vector[SK_X], slot, slot < row->packed), e);
+    probe(row->rule, pose, sk_load_part(run->vector[SK_X], slot, slot < row->packed), (sk_wide){0}, e);
     if (!sk_any(e->touching)) return false;
     find_motion(row->rule, pose, e);
     return true;
@@ -199,6 +199,12 @@ const skein_field sk_collider_fields[] = {
     SK_REAL(sk_collider_common, start, "motion.start", "s", 0, 0, SK_FAR, "when the motion begins"),
 };
 const size_t sk_collider_field_count = sizeof sk_collider_fields / sizeof *sk_collider_fields;
+
+void sk_contact_follow(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_collider *collider = row->rule;
+    (void)begin, (void)end;
+    collider->type->follow(collider->params, run->time - row->before);
+}
 
 double sk_collider_mass(const sk_collider *collider) {
     return collider->type->mass ? collider->type->mass(collider->params) : 0;

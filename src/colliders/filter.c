@@ -59,7 +59,10 @@ SK_INLINE sk_mask bounces(const sk_collider *collider, const encounter *e, sk_wi
 SK_INLINE void hold(const sk_collider *collider, const sk_pose *pose, sk_wide4 x, sk_wide4 force, real h,
                     filtering *f) {
     encounter e;
-    probe(collider, pose, x, &e);
+    // as far as its velocity, and its force, lead within the substep; and `touches` looks a hair further
+    sk_wide3 v = three(f->v), by_force = three(force);
+    sk_wide ahead = h * (sk_wide_sqrt(sk_dot_wide(v, v)) + h * x.w * sk_wide_sqrt(sk_dot_wide(by_force, by_force)));
+    probe(collider, pose, x, ahead + (real)1e-5 * (sk_wide_abs(x.x) + sk_wide_abs(x.y) + sk_wide_abs(x.z) + 1), &e);
     find_motion(collider, pose, &e);
     sk_wide3 n = e.contact.normal, slide, force_t;
     sk_wide speed = split(from_surface(three(f->v), &e), n, &slide), hw = h * x.w;
@@ -119,7 +122,7 @@ SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_row *row, const sk_po
     sk_mask inside = sk_negative(e->contact.distance - (real)collider->common->thickness) & sk_positive(e->x.w);
     if (!sk_any(inside)) return inside;
     encounter before;
-    probe(collider, start, sk_load_part(run->vector[SK_X0], slot, packed), &before);
+    probe(collider, start, sk_load_part(run->vector[SK_X0], slot, packed), sk_splat((real)1e-3), &before);
     // the balance of momentum along the normal, without what contact does to it
     sk_wide hw = (real)row->dt * e->x.w;
     sk_wide3 short_of = minus(times(hw, three(force)), minus(three(v), three(v0)));
@@ -143,7 +146,7 @@ void SK_KERNEL(contact_filter_more)(sk_run *run, const sk_row *row, size_t begin
         sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         encounter e;
-        probe(collider, &pose, x, &e);
+        probe(collider, &pose, x, (sk_wide){0}, &e);
         sk_mask inside = comes_inside(run, row, &start, slot, v, &e);
         if (!sk_any(inside)) continue;
         sk_wide gap = e.contact.distance - thickness;

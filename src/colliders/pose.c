@@ -126,6 +126,7 @@ bool sk_collider_changed(sk_collider *collider) {
 
 void sk_collider_begin(sk_collider *collider, double time, double dt) {
     sk_travel *travel = &collider->travel;
+    if (collider->type->begin) collider->type->begin(collider->params, time, dt);
     bool changed = travel->changed;
     travel->moving = travel->noted = travel->changed = false;
     if (!changed) return;

@@ -31,17 +31,23 @@ SK_INLINE sk_wide split(sk_wide3 u, sk_wide3 normal, sk_wide3 *tangential) {
     return along;
 }
 
-/* Probes a part of a block at x: who touches. */
-SK_INLINE void probe(const sk_collider *collider, const sk_pose *pose, sk_wide4 x, encounter *e) {
+/* Probes a part of a block at x: who touches. What is farther off than that, and by more than `ahead`, need not be known. */
+SK_INLINE void probe(const sk_collider *collider, const sk_pose *pose, sk_wide4 x, sk_wide ahead, encounter *e) {
     sk_wide3 p = three(x);
     e->x = x;
-    collider->type->probe[SK_THIS_ISA](collider->params, pose, &p, &e->contact);
     // rounding must not break a resting contact: forces and velocities look a little beyond the thickness
     sk_wide size = sk_wide_abs(p.x), ay = sk_wide_abs(p.y), az = sk_wide_abs(p.z);
     size = sk_select(sk_more(ay, size), ay, size);
     size = sk_select(sk_more(az, size), az, size);
     real thickness = (real)collider->common->thickness;
     sk_wide reach = thickness + (real)1e-3 * thickness + (real)4e-6 * (size + (real)0.1);
+    sk_probe_near *near = collider->type->near[SK_THIS_ISA];
+    if (near) {
+        sk_wide far = sk_select(sk_positive(x.w), (real)1.01 * reach + ahead, sk_splat(-1)); // who is held meets nothing
+        near(collider->params, pose, &p, &far, &e->contact);
+    } else {
+        collider->type->probe[SK_THIS_ISA](collider->params, pose, &p, &e->contact);
+    }
     e->touching = sk_at_most(e->contact.distance, reach) & sk_positive(x.w);
 }
 

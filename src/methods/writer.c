@@ -616,6 +616,13 @@ void sk_write_contacts(sk_writer *writer, sk_contact_sort sort) {
     for (size_t i = 0; i < writer->rules->colliders.count; i++) {
         const sk_collider *collider = writer->rules->colliders.data[i];
         if (!collider->common->enabled) continue;
+        if (sort != SK_CONTACT_FORCE && collider->type->changes && collider->type->changes(collider->params))
+            sk_add_row(writer, (sk_row){.kind = SK_ROW_MEET,
+                                        .order = SK_ORDERED,
+                                        .kernel = sk_contact_follow,
+                                        .rule = collider,
+                                        .label = collider->label,
+                                        .end = 1});
         sk_row row = {.kind = sorts[sort].kind,
                                     .order = SK_FREE,
                                     .kernel = sorts[sort].kernels->version[writer->isa],

@@ -163,13 +163,27 @@ skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, c
     return finish_object(world, object, handle);
 }
 
-skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *type, const skein_setting *settings,
-                                   skein_handle *handle) {
+/* Its mesh, and what is wrong with that. */
+static skein_status take_mesh(skein_world *world, const sk_collider_type *type, sk_object *object, const skein_mesh *mesh,
+                              skein_error *error) {
+    if (!type->take && mesh)
+        return sk_fail(error, SKEIN_ERROR_MESH, "", "a %s is made without a mesh", type->kind.name);
+    sk_faults_text faults = {""};
+    skein_status status = type->take ? type->take(object->params, mesh, &world->allocator, &faults, error) : SKEIN_OK;
+    if (status || !faults.text[0]) return status;
+    sk_world_log(world, SKEIN_LOG_WARNING, "%s: %s", object->label, faults.text);
+    return status;
+}
+
+skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *type, const skein_mesh *mesh,
+                                   const skein_setting *settings, skein_handle *handle) {
     skein_error *error = sk_world_error(world);
     sk_object *object;
     skein_status status = make_object(world, &type->kind, type->making, settings, &object, error);
     if (status) return status;
-    if (type->check && (status = type->check(object->params, error))) {
+    status = take_mesh(world, type, object, mesh, error);
+    if (!status && type->check) status = type->check(object->params, error);
+    if (status) {
         unmake_object(world, object);
         return status;
     }

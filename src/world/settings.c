@@ -164,6 +164,8 @@ static skein_status replace(skein_world *world, sk_object *object, const skein_f
 static bool shapes(const sk_object *object, const void *params, const char *name) {
     if (object && object->category == SKEIN_MOTION && object->as.motion->type->given)
         return !strcmp(name, object->as.motion->type->given);
+    if (object && object->category == SKEIN_COLLIDER && params == object->params)
+        return object->as.collider->type->is_shaped_by && object->as.collider->type->is_shaped_by(name);
     bool body = object && object->category == SKEIN_BODY && params == object->params;
     return body && !object->body_type->live(params, name);
 }

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "colliders/trimesh.h"
 #include "world/world.h"
 
 /* ---- where the state stands: in the world's vectors, or on a device ---- */
@@ -203,6 +204,26 @@ skein_status skein_shape_of(const skein_world *world, skein_handle handle, skein
         if (collider->type->shape) collider->type->shape(collider->params, shape);
     }
     return SKEIN_OK;
+}
+
+skein_status skein_collider_vertices_set(skein_world *world, skein_handle handle, const double *positions,
+                                         size_t vertex_count) {
+    SK_NEED(world, world);
+    SK_NEED(world, positions);
+    skein_error *error = sk_world_error(world);
+    sk_object *object = sk_object_find(world, handle, SKEIN_COLLIDER);
+    if (!object) return SKEIN_ERROR_HANDLE;
+    const sk_collider *collider = object->as.collider;
+    if (!collider->type->surface || !collider->type->begin)
+        return sk_fail(error, SKEIN_ERROR_VALUE, "", "a %s has no vertices to be set", object->kind->name);
+    sk_trimesh *m = collider->type->surface(collider->params);
+    if (vertex_count != m->given_count)
+        return sk_fail(error, SKEIN_ERROR_VALUE, "", "%zu places for %zu vertices", vertex_count, m->given_count);
+    for (size_t i = 0; i < 3 * vertex_count; i++)
+        if (!(fabs(positions[i]) <= 1e12))
+            return sk_fail(error, SKEIN_ERROR_VALUE, "", "vertex %zu: coordinates must be finite, under 1e12", i / 3);
+    if (!m->led) world->plan_stale = true; // from now on each substep asks where it is
+    return sk_trimesh_lead(m, positions) ? SKEIN_OK : sk_fail_memory(error, "the vertices");
 }
 
 skein_status skein_collider_teleport(skein_world *world, skein_handle handle) {

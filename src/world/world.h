@@ -181,7 +181,8 @@ skein_status sk_world_find_arity(skein_world *world, const sk_constraint_type *t
                                  size_t *arity);
 skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, const skein_setting *settings,
                                 skein_handle *handle);
-skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *type, const skein_setting *settings,
+skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *type, const skein_mesh *mesh,
+                                   const skein_setting *settings,
                                    skein_handle *handle);
 skein_status sk_world_add_motion(skein_world *world, const sk_motion_type *type, const skein_track *track,
                                  const skein_setting *settings, skein_handle *handle);

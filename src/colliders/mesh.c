@@ -1,0 +1,158 @@
+/* A solid whose surface is a mesh: any triangles, moved and turned as a whole, or by a program.
+ *
+ * Points are taken into the mesh's own frame, and their nearest triangles found there (trimesh_near.h); distance and
+ * normal are then worked out from the one that was found, in double. Contact asks only within its reach: what is
+ * farther off, but for what is deep inside, costs a look at a few boxes. */
+#include "base/kernels.h"
+#include "base/rotation.h"
+#include "base/status.h"
+#include "colliders/collider.h"
+#include "colliders/trimesh.h"
+
+typedef struct mesh_params {
+    double position[3], rotation[3], scale;
+    char *mesh;
+    sk_trimesh *made;
+} mesh_params;
+
+#define SK_UNIT mesh
+SK_KERNELS(sk_probe, probe);
+SK_KERNELS(sk_probe_near, near);
+
+#ifdef SK_ISA
+#include "colliders/trimesh_near.h"
+
+/* Those of the lanes beyond `reach` that may be inside all the same. */
+static uint32_t deep(const sk_trimesh *m, sk_wide3 p, sk_mask looked, sk_mask found) {
+    sk_mask lost = looked & (found < 0) & (trimesh_box(&m->node[0], p) == (sk_wide){0});
+    if (!sk_any(lost)) return 0;
+    uint32_t bits = trimesh_bits(lost), inside = 0;
+    for (int l = 0; l < SK_PART; l++)
+        if (bits >> l & 1) inside |= (uint32_t)!sk_trimesh_is_out(m, (const real[3]){p.x[l], p.y[l], p.z[l]}) << l;
+    return inside;
+}
+
+SK_INLINE void ask(const void *data, const sk_pose *pose, const sk_wide3 *p, const sk_wide *reach, sk_contact *contact) {
+    const mesh_params *params = data;
+    const sk_trimesh *m = params->made;
+    const real *r = pose->rotation, scale = (real)params->scale, per = (real)(1 / params->scale);
+    sk_wide3 d = {p->x - pose->position.x, p->y - pose->position.y, p->z - pose->position.z};
+    sk_wide3 own = {per * (r[0] * d.x + r[3] * d.y + r[6] * d.z), per * (r[1] * d.x + r[4] * d.y + r[7] * d.z),
+                    per * (r[2] * d.x + r[5] * d.y + r[8] * d.z)};
+    sk_wide best = sk_splat((real)1e30);
+    sk_mask all = (sk_mask){0} - 1, found;
+    if (reach) {
+        best = *reach * per;
+        best = sk_select(sk_negative(best), best, best * best);
+    }
+    sk_mask looked = reach ? ~sk_negative(best) : all;
+    trimesh_near(m, own, &best, &found);
+    if (reach && sk_any(looked & (found < 0))) {
+        uint32_t bits = deep(m, own, looked, found);
+        if (bits) {
+            sk_mask more, wanted = {0};
+            for (int l = 0; l < SK_PART; l++) wanted[l] = bits >> l & 1 ? -1 : 0;
+            best = sk_select(wanted, sk_splat((real)1e30), sk_splat(-1));
+            trimesh_near(m, own, &best, &more);
+            found = (wanted & more) | (~wanted & found);
+        }
+    }
+    contact->normal = (sk_wide3){{0}, sk_splat(1), {0}};
+    contact->distance = sk_splat((real)SK_FAR), contact->speed = sk_splat(0);
+    sk_wide3 n = contact->normal;
+    for (int l = 0; l < SK_PART; l++) {
+        if (found[l] < 0) continue;
+        const real at[3] = {own.x[l], own.y[l], own.z[l]};
+        sk_trimesh_spot spot;
+        sk_trimesh_look(m, (uint32_t)found[l], at, &spot);
+        n.x[l] = (real)spot.normal[0], n.y[l] = (real)spot.normal[1], n.z[l] = (real)spot.normal[2];
+        contact->distance[l] = (real)spot.distance * scale, contact->speed[l] = (real)spot.speed * scale;
+    }
+    contact->normal = (sk_wide3){r[0] * n.x + r[1] * n.y + r[2] * n.z, r[3] * n.x + r[4] * n.y + r[5] * n.z,
+                                 r[6] * n.x + r[7] * n.y + r[8] * n.z};
+}
+
+void SK_KERNEL(probe)(const void *params, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
+    ask(params, pose, p, NULL, contact);
+}
+
+void SK_KERNEL(near)(const void *params, const sk_pose *pose, const sk_wide3 *p, const sk_wide *reach, sk_contact *contact) {
+    ask(params, pose, p, reach, contact);
+}
+
+#else
+
+static const skein_field fields[] = {
+    SK_TEXT(mesh_params, mesh, "mesh", "",
+            "file of the mesh, OBJ, OFF, PLY, STL or glTF (in scenes; a program passes the mesh itself)"),
+    SK_VEC3(mesh_params, position, "position", "m", 0, 0, 0, "where the mesh's origin is put, before any motion"),
+    SK_VEC3(mesh_params, rotation, "rotation", "deg", 0, 0, 0, "turned about x, then y, then z, before any motion"),
+    SK_REAL(mesh_params, scale, "scale", "", 1, 1e-9, 1e9, "factor on the mesh's coordinates"),
+};
+
+static void place(const void *data, double position[3]) {
+    for (int k = 0; k < 3; k++) position[k] = ((const mesh_params *)data)->position[k];
+}
+
+static void turn(const void *data, double rotation[9]) {
+    sk_rotation_of_degrees(((const mesh_params *)data)->rotation, rotation);
+}
+
+/* The mesh comes when the collider is added, and by no text. */
+static skein_status make(void *data, const skein_kind *kind, sk_allocator *allocator, skein_error *error) {
+    (void)kind, (void)allocator;
+    if (!((const mesh_params *)data)->made) return SKEIN_OK;
+    return sk_fail(error, SKEIN_ERROR_VALUE, "mesh", "the mesh shapes what is already built: set it when the collider is added");
+}
+
+static void unmake(void *data, sk_allocator *allocator) {
+    (void)allocator;
+    sk_trimesh_destroy(((mesh_params *)data)->made);
+}
+
+static skein_status take(void *data, const skein_mesh *mesh, sk_allocator *allocator, sk_faults_text *faults,
+                         skein_error *error) {
+    mesh_params *params = data;
+    skein_status status = sk_trimesh_create(mesh, allocator, &params->made, error);
+    if (!status) sk_trimesh_faults(params->made, params->mesh, faults->text, sizeof faults->text);
+    return status;
+}
+
+static bool is_shaped_by(const char *field) {
+    return !__builtin_strcmp(field, "mesh");
+}
+
+static sk_trimesh *surface_of(const void *data) {
+    return ((const mesh_params *)data)->made;
+}
+
+static void begin(const void *data, double time, double dt) {
+    sk_trimesh_begin(((const mesh_params *)data)->made, time, dt);
+}
+
+static bool changes(const void *data) {
+    return ((const mesh_params *)data)->made->led != NULL;
+}
+
+static void follow(const void *data, double time) {
+    sk_trimesh_follow(((const mesh_params *)data)->made, time);
+}
+
+static const sk_making making = {.make = make, .unmake = unmake};
+const sk_collider_type sk_solid_mesh = {
+    .kind = {"mesh", "what a mesh encloses, or an open one from both sides; moved as a whole, or by a program", SKEIN_COLLIDER,
+             fields, sizeof fields / sizeof *fields, sizeof(mesh_params)},
+    .place = place,
+    .turn = turn,
+    .probe = SK_EACH_ISA(probe),
+    .near = SK_EACH_ISA(near),
+    .deforms = true,
+    .making = &making,
+    .take = take,
+    .is_shaped_by = is_shaped_by,
+    .surface = surface_of,
+    .begin = begin,
+    .changes = changes,
+    .follow = follow,
+};
+#endif
