@@ -98,7 +98,6 @@ class World:
         self.fps = 1 / dt
         self.name = self.description = ""
         self.frames = 0
-        self._lists = {name: _objects.ObjectList(self, i) for i, name in enumerate(L.LISTS[:-1])}
 
     @classmethod
     def from_scene(cls, scene, sets=(), *, threads=0, log=None):
@@ -155,11 +154,11 @@ class World:
 
     # ---- objects ----
 
-    bodies = property(lambda self: self._lists["bodies"], doc="its bodies: world.bodies.cloth(...), world.bodies[0]")
-    constraints = property(lambda self: self._lists["constraints"], doc="constraints added by themselves")
-    forces = property(lambda self: self._lists["forces"], doc="its forces: world.forces.gravity()")
-    colliders = property(lambda self: self._lists["colliders"], doc="its colliders: world.colliders.sphere(radius=0.3)")
-    motions = property(lambda self: self._lists["motions"], doc="what leads pins")
+    bodies = property(lambda self: _objects.ObjectList(self, L.BODY), doc="its bodies: world.bodies.cloth(...), world.bodies[0]")
+    constraints = property(lambda self: _objects.ObjectList(self, L.CONSTRAINT), doc="constraints added by themselves")
+    forces = property(lambda self: _objects.ObjectList(self, L.FORCE), doc="its forces: world.forces.gravity()")
+    colliders = property(lambda self: _objects.ObjectList(self, L.COLLIDER), doc="its colliders: world.colliders.sphere(radius=0.3)")
+    motions = property(lambda self: _objects.ObjectList(self, L.MOTION), doc="what leads pins")
 
     @property
     def method(self):
@@ -203,11 +202,11 @@ class World:
         first, *rest = path.split(".")
         if first == "method":
             return self.method, ".".join(rest)
-        if first not in self._lists or len(rest) < 2:
+        if first not in L.LISTS or len(rest) < 2:
             raise fault(L.ERROR_NAME, path, f"expected one of {', '.join(L.LISTS)} at its beginning, then a number or a "
                                             "name, then a field")
         key = int(rest[0]) if rest[0].isdigit() else rest[0]
-        return self._lists[first][key], ".".join(rest[1:])
+        return getattr(self, first)[key], ".".join(rest[1:])
 
     def get(self, path):
         """A field by its path: world.get("colliders.ball.radius")."""
@@ -441,9 +440,12 @@ class World:
                 method = self.method
                 yield "method", {"type": method.kind, **method.fields()}
             else:
-                handles = [thing._handle.key() for thing in (self._lists[L.LISTS[category]] if category != L.METHOD else [])]
-                thing = self.method if category == L.METHOD else self._lists[L.LISTS[category]][handles.index(key)]
-                yield f"{L.LISTS[category]}" + (f".{handles.index(key)}" if handles else "") + f".{full}", thing[full]
+                path, thing = L.LISTS[category], self.method
+                if category != L.METHOD:
+                    things = getattr(self, path)[:]
+                    at = [one._handle.key() for one in things].index(key)
+                    path, thing = f"{path}.{at}", things[at]
+                yield f"{path}.{full}", thing[full]
 
     def render(self, size=(640, 360), samples=4, view=None):
         """A picture as it stands: an array of height x width x 3 bytes (sRGB). `view` are fields of a scene's "view"."""
