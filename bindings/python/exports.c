@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/mesh.h"
 #include "io/scene_settings.h"
 #include "render/view.h"
 
@@ -30,6 +31,7 @@ static void pass_fault(void *user, const skein_error *error) {
 
 /* ---- scenes ---- */
 
+EXPORT bool py_path_is_mesh(const char *path);
 EXPORT py_scene *py_scene_open(const char *text, size_t size, const char *path, const char *const *sets,
                                py_report report, void *user);
 EXPORT skein_world *py_scene_build(py_scene *scene, const skein_world_desc *desc, py_report report, void *user);
@@ -40,7 +42,13 @@ EXPORT const void *py_scene_view(const py_scene *scene);
 EXPORT void py_scene_free(py_scene *scene);
 EXPORT void py_free(void *memory);
 
-/* Reads a scene; `path` serves messages and finds what it names, `sets` are "path=value", NULL-terminated, or NULL. NULL
+/* Whether a path's ending is a mesh's: then py_scene_open() takes it without a text. */
+bool py_path_is_mesh(const char *path) {
+    return io_path_is_mesh(path);
+}
+
+/* Reads a scene; `path` serves messages and finds what it names; without a text it is a mesh, which falls on a ball.
+ * `sets` are "path=value", NULL-terminated, or NULL. NULL
  * after a fault that leaves nothing to build. What a scene wants to be written is passed over: a run writes, not this. */
 py_scene *py_scene_open(const char *text, size_t size, const char *path, const char *const *sets, py_report report,
                         void *user) {
@@ -49,7 +57,8 @@ py_scene *py_scene_open(const char *text, size_t size, const char *path, const c
     io_faults faults = {pass_fault, &to, 0};
     py_scene *scene = calloc(1, sizeof *scene);
     if (!scene) return NULL;
-    scene->scene = io_scene_read_text(text, size, path, sets, kinds, &faults);
+    scene->scene = text ? io_scene_read_text(text, size, path, sets, kinds, &faults)
+                        : io_scene_of_mesh(path, sets, kinds, &faults);
     if (scene->scene) return scene;
     free(scene);
     return NULL;

@@ -184,6 +184,7 @@ CALLS = {
     "skein_order_measure": (status, [world, size, size, array, c.c_double, c.POINTER(Order)]),
     "skein_stable_substep": (c.c_double, [text, c.c_void_p]),
     "skein_world_explain": (status, [world, c.c_double, WRITE, c.c_void_p]),
+    "py_path_is_mesh": (c.c_bool, [text]),
     "py_scene_open": (c.c_void_p, [text, size, text, c.POINTER(text), REPORT, c.c_void_p]),
     "py_scene_build": (world, [c.c_void_p, c.POINTER(WorldDesc), REPORT, c.c_void_p]),
     "py_scene_settings": (c.c_void_p, [c.c_void_p]),

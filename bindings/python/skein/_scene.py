@@ -8,8 +8,6 @@ from . import _library as L
 from ._errors import FileFault, faults
 from ._library import lib
 
-_ENDINGS = (".json", ".obj", ".off", ".ply", ".stl", ".glb", ".gltf")
-
 
 def _folders():
     """Where scenes lie: what SKEIN_SCENES names, and no other; else ./scenes, and those that came with the package."""
@@ -41,7 +39,7 @@ def scene_path(word):
 
 
 def _text(scene):
-    """A scene's JSON and the path that its files lie beside."""
+    """A scene's JSON and the path that its files lie beside; None for a mesh."""
     if isinstance(scene, dict):
         return json.dumps(scene).encode(), "scene.json"
     if isinstance(scene, str) and scene.lstrip().startswith("{"):
@@ -50,10 +48,8 @@ def _text(scene):
     if path is None:
         raise FileFault([("file", os.fspath(scene), "there is no such file, and no scene of that name; there are: "
                           + ", ".join(scenes()))])
-    if not path.endswith(".json") and path.lower().endswith(_ENDINGS):  # a mesh falls on a ball
-        made = {"bodies": [{"type": "cloth", "name": "cloth", "mesh": os.path.abspath(path)}],
-                "forces": [{"type": "gravity"}]}
-        return json.dumps(made).encode(), path
+    if lib.py_path_is_mesh(path.encode()):
+        return None, path
     with open(path, "rb") as file:
         return file.read(), path
 
@@ -64,7 +60,7 @@ def _sets(sets, text):
         sets = [f"{path}={value if isinstance(value, str) else json.dumps(value)}" for path, value in sets.items()]
     elif isinstance(sets, str):
         sets = [sets]
-    all_sets = [s.encode() for s in (["output=[]"] if b'"output"' in text else []) + list(sets)]
+    all_sets = [s.encode() for s in (["output=[]"] if text and b'"output"' in text else []) + list(sets)]
     return (ctypes.c_char_p * (len(all_sets) + 1))(*all_sets, None)
 
 
@@ -75,7 +71,7 @@ def open_scene(scene, sets, threads, log):
     found = []
     report = L.REPORT(lambda _, status, where, message: found.append(
         (status, where.decode(errors="replace"), message.decode(errors="replace"))))
-    opened = lib.py_scene_open(text, len(text), path.encode(), _sets(sets, text), report, None)
+    opened = lib.py_scene_open(text, len(text or b""), path.encode(), _sets(sets, text), report, None)
     if not opened:
         raise faults(found)
     desc, callback = described(threads, log)

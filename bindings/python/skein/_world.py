@@ -19,6 +19,7 @@ from ._library import lib
 from ._views import Views
 
 DEFAULT_STEP = 1 / 90  # s, SKEIN_DEFAULT_STEP
+_AT_ONCE = 16  # steps in one call of C
 _log = logging.getLogger("skein")
 _after_fork = [0]  # how many forks this process is away from the first one
 os.register_at_fork(after_in_child=lambda: _after_fork.__setitem__(0, _after_fork[0] + 1))
@@ -230,7 +231,14 @@ class World:
             pointer = owner.pointer
             if pointer is None:
                 raise ValueError("the world is closed")
-            if lib.py_steps(pointer, self.dt if dt is None else dt, count):
+            dt = self.dt if dt is None else dt
+            if count < 0:
+                raise fault(L.ERROR_VALUE, "step", f"expected a count of steps, not {count}")
+            while count > _AT_ONCE:  # Ctrl-C is heard in between
+                if lib.py_steps(pointer, dt, _AT_ONCE):
+                    raise of(lib.skein_world_error(pointer).contents)
+                count -= _AT_ONCE
+            if lib.py_steps(pointer, dt, count):
                 raise of(lib.skein_world_error(pointer).contents)
             self._settled = True
 

@@ -10,8 +10,8 @@ import os
 
 import numpy as np
 
-from ._errors import of
-from ._library import lib, world as world_pointer
+from ._errors import fault, of
+from ._library import ERROR_VALUE, lib, world as world_pointer
 from ._world import World
 
 
@@ -55,6 +55,8 @@ class Worlds:
     def step(self, dt=None, count=1):
         """Each goes on by `count` steps of dt seconds (the first one's World.dt). The first fault is raised, once all
         that could be done is done."""
+        if count < 0:
+            raise fault(ERROR_VALUE, "step", f"expected a count of steps, not {count}")
         if not self._worlds:
             return
         dt = self._worlds[0].dt if dt is None else dt

@@ -48,6 +48,7 @@ class Together(unittest.TestCase):
         self.assertRaisesRegex(skein.NameFault, r"worlds\.5.*nobody", worlds.step)
         self.assertEqual(worlds[7].statistics().steps, 1)  # the others went on
         self.assertRaisesRegex(skein.ValueFault, r"worlds\.", worlds.step, -1)
+        self.assertRaisesRegex(skein.ValueFault, "count of steps", worlds.step, count=-1)
 
 
 class Push(skein.Environment):
