@@ -85,6 +85,10 @@ static json_t *make_document(const app_report *r) {
         {"max_stretch", number(s->max_stretch)},
         {"p99_stretch", number(s->p99_stretch)},
         {"worst_stretch_of_run", number(r->worst_stretch)},
+        {"limited_edges", count(s->limited)},
+        {"edges_over_limit", count(s->over_limit)},
+        {"most_over_limit", number(s->most_over_limit)},
+        {"worst_over_limit_of_run", number(r->worst_over_limit)},
         {"max_penetration", number(s->max_penetration)},
         {"unsolved", count(s->all_unsolved)},
         {"solver_failures", count(s->all_solver_failures)},
@@ -141,6 +145,19 @@ static const char *plural(uint64_t n) {
     return n == 1 ? "" : "s";
 }
 
+/* Whether the edges keep the limit that they were given. */
+static void print_limit(const app_report *r) {
+    const skein_statistics *s = &r->statistics;
+    if (!s->limited) return;
+    if (s->over_limit)
+        printf("stretch limit not kept: %zu of %zu edges are over it, by up to %.3g %% of their length (%.3g %% during the "
+               "run): more substeps help\n",
+               s->over_limit, s->limited, 100 * s->most_over_limit, 100 * r->worst_over_limit);
+    else
+        printf("stretch limit kept by all %zu edges (over it by up to %.3g %% of their length during the run)\n", s->limited,
+               100 * r->worst_over_limit);
+}
+
 void app_report_print(const app_report *r) {
     const skein_statistics *s = &r->statistics;
     printf("%zu particles, %zu constraints; %d frame%s, %" PRIu64 " step%s of %.4g ms%s\n", s->particles,
@@ -150,6 +167,7 @@ void app_report_print(const app_report *r) {
     printf(
         "kinetic energy %.3g J, stretch at most %.2f %% (99 %% of edges under %.2f %%), penetration at most %.2g mm\n",
         s->kinetic_energy, 100 * s->max_stretch, 100 * s->p99_stretch, 1e3 * s->max_penetration);
+    print_limit(r);
     if (s->all_unsolved)
         printf("%" PRIu64 " of %" PRIu64 " substeps were left unsolved: more substeps, turns or cg_iterations help\n",
                s->all_unsolved, s->substeps);

@@ -19,6 +19,7 @@ typedef struct app_report {
     bool interrupted;
     skein_statistics statistics; /* of the end */
     double worst_stretch;        /* over the whole run, sampled now and then */
+    double worst_over_limit;     /* the same of what edges stretch beyond their limit */
     char device[256];            /* where it was stepped */
     size_t device_bytes;         /* held there, where that is a graphics card */
     json_t *files;               /* their paths */

@@ -31,6 +31,7 @@ static bool measure(app_report *r) {
     if (r->frames == 0 && !r->statistics.steps) r->verdict = app_verdict_begin(r->loaded, &r->statistics);
     app_verdict_note(&r->verdict, &r->statistics);
     if (r->statistics.max_stretch > r->worst_stretch) r->worst_stretch = r->statistics.max_stretch;
+    if (r->statistics.most_over_limit > r->worst_over_limit) r->worst_over_limit = r->statistics.most_over_limit;
     return true;
 }
 

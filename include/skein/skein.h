@@ -781,6 +781,9 @@ typedef struct skein_statistics {
     double angular_momentum[3]; /* kg m2/s, about the origin */
     double max_stretch;         /* largest (length - rest)/rest of the edges; 0.01 is one per cent */
     double p99_stretch;         /* 99 % of the edges stretch at most so much */
+    size_t limited;             /* edges that have a strain limit, "stretch.limit" of a cloth */
+    size_t over_limit;          /* of these, stretched by more than 1.1 times that */
+    double most_over_limit;     /* the most that an edge stretches beyond its limit: 0.002 if one of 0.01 stretches by 0.012 */
     /* of the last step of a method that solves for it (backward_euler), else 0 */
     double residual;          /* what was left of the balance of momentum, as a share of its start: the worst
                                  substep's */

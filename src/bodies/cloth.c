@@ -345,7 +345,7 @@ static void change(sk_body *body, const void *data) {
         bool shear = !strcmp(batch->label, "shear");
         *body->material[i] = batch->measured ? params->stretch : shear ? params->shear : bend;
     }
-    body->tether_bound = params->tether;
+    body->tether_bound = fmin(params->tether, params->limit); // what no edge may do, none of their chains may
     body->strain_bound = params->limit;
 }
 

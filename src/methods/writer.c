@@ -635,21 +635,38 @@ void sk_write_contacts(sk_writer *writer, sk_contact_sort sort) {
     }
 }
 
-void sk_write_limits(sk_writer *writer, sk_vector velocity) {
+/* A sweep hands what is too long on by a few edges. Measured on irregular meshes of 64 x 64 that hang, with a limit of 1 %,
+ * largest stretch at rest by sweeps: 1.56 (1), 1.13 (2), 1.02 (4), 1.00 (8). Where all is within, one costs next to nothing. */
+enum { LIMIT_SWEEPS = 4 };
+
+/* The limits of edges that go along strips, and bounds that are nothing else; or those of all others. */
+static void write_strain_limits(sk_writer *writer, sk_vector velocity, bool first) {
     const sk_rules *rules = writer->rules;
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
         if (!has_bound(batch) || batch->coarse) continue;
         if (batch->only_bounds && velocity == SK_NONE) continue; // they were with the projections
-        add_sweeps(writer, batch, 0, SK_ROW_LIMIT,
-                   velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving, SK_X, velocity);
+        const sk_sweep_kernels *kernels = velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving;
+        for (int turn = 0; turn < (first ? 1 : LIMIT_SWEEPS); turn++)
+            for (size_t w = 0; w < batch->sweep_count; w++)
+                if ((batch->only_bounds || batch->sweeps[w].strips) == first)
+                    add_sweep(writer, &batch->sweeps[w], SK_WHOLE, SK_ROW_LIMIT, kernels, SK_X, velocity, 1, 0);
     }
+}
+
+/* Tethers pull each particle on its own, and leave its neighbours behind. On a grid, whose ways are straight, nothing comes
+ * of that, and its edges come before; a mesh of 64 x 64 with a limit of 1 % kept edges of 3 % beside its pins, however often
+ * they were swept before its tethers. */
+void sk_write_limits(sk_writer *writer, sk_vector velocity) {
+    const sk_rules *rules = writer->rules;
+    write_strain_limits(writer, velocity, true);
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
         if (!is_kept(limit) || limit->early) continue;
         size_t every = velocity == SK_NONE && limit->seldom ? seldom_of(writer) : 0;
         sk_add_row(writer, limit_row(writer, limit, velocity, every));
     }
+    write_strain_limits(writer, velocity, false);
     sk_write_meetings(writer, SK_MEETING_PUSH, velocity);
 }
 

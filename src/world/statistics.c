@@ -61,6 +61,19 @@ static bool is_there(const skein_world *world, const sk_batch *batch) {
     return batch->count && !batch->only_bounds && !batch->rests && !batch->broken && sk_particle_is_here(&world->particles, batch->particle[0]);
 }
 
+/* A limit is kept to a tenth of itself, and to rounding. */
+static void count_over_limit(const sk_batch *batch, const real *strain, skein_statistics *s) {
+    static const double share = 0.1, rounding = 1e-5;
+    if (!batch->bound || !(*batch->bound < SK_UNBOUNDED)) return;
+    double bound = *batch->bound;
+    s->limited += batch->count;
+    for (size_t i = 0; i < batch->count; i++) {
+        double over = (double)strain[i] - bound;
+        s->over_limit += !(over <= share * bound + rounding);
+        if (over > s->most_over_limit) s->most_over_limit = over;
+    }
+}
+
 static skein_status measure_stretch(skein_world *world, skein_statistics *s, skein_error *error) {
     const sk_rules *rules = &world->rules;
     size_t edges = 0;
@@ -77,6 +90,7 @@ static skein_status measure_stretch(skein_world *world, skein_statistics *s, ske
         const sk_batch *batch = rules->batches.data[i];
         if (!batch->measured || !is_there(world, batch)) continue;
         batch->type->strain(batch, world->particles.vector[SK_X], 0, batch->count, strain + filled);
+        count_over_limit(batch, strain + filled, s);
         filled += batch->count;
     }
     // NaN would confuse the sort; it is counted as nonfinite anyway
