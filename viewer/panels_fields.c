@@ -102,12 +102,15 @@ static bool show_number(const viewer_entry *entry, const char *title, skein_valu
     const skein_field *field = entry->field;
     range r = range_of(entry);
     bool whole = field->type == SKEIN_FIELD_INT || field->type == SKEIN_FIELD_INT2 || field->type == SKEIN_FIELD_INT3;
-    char format[40] = "%.4g";
+    char format[40] = "%.4g", named[120];
     double given[3];
     memcpy(given, value->number, sizeof given);
     if (field->unit[0] && value->count == 1 && !strchr(field->unit, '%'))
         snprintf(format, sizeof format, "%%.4g %.20s", field->unit);
-    if (!widgets_numbers(title, given, value->count, r.least, r.most, r.logarithmic, whole, format)) return false;
+    // several numbers beside each other have no room for it
+    bool tells = field->unit[0] && value->count > 1;
+    snprintf(named, sizeof named, "%.60s%s%.20s%s", title, tells ? " (" : "", tells ? field->unit : "", tells ? ")" : "");
+    if (!widgets_numbers(named, given, value->count, r.least, r.most, r.logarithmic, whole, format)) return false;
     memcpy(value->number, given, sizeof given);
     return true;
 }

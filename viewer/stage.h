@@ -107,6 +107,7 @@ typedef struct viewer_stage {
     int level;                             /* of detail, for what moves */
     bool sharp;                            /* the last picture had all detail */
     double step_ms, draw_ms;
+    bool has_drawn; /* a first picture, whose time is not counted */
     bool in_parts; /* the next picture is drawn in parts: the last took long, or nobody knows yet */
 
     /* files */

@@ -289,6 +289,11 @@ void viewer_end_picture(viewer_stage *stage) {
     if (picture->error.status) viewer_say(stage, SKEIN_LOG_WARNING, "%s", picture->error.message);
     else stage->draw_ms = picture->ms;
     if (picture->error.status) return;
+    // while the first one is drawn the driver makes its shaders, which says nothing about the others
+    if (!stage->has_drawn) {
+        stage->has_drawn = true, stage->draw_ms = 0;
+        return;
+    }
     // what took long because it was to have all detail says nothing about a moving one
     if (picture->level == stage->level) stage->level = viewer_detail_next(stage->level, picture->ms);
     stage->pace.pictures++;

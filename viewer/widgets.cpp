@@ -525,10 +525,14 @@ static void write_legend(const widgets_chart *chart, ImVec2 at, float width) {
     ImDrawList *list = ImGui::GetWindowDrawList();
     list->PushClipRect(at, ImVec2(at.x + width, at.y + 3 * ImGui::GetFontSize()), true);
     list->AddText(strong, strong->FontSize, at, ink(colours->text), chart->title);
-    float x = at.x, y = at.y + strong->FontSize + 2;
+    float x = at.x, y = at.y + strong->FontSize + 2, size = small->FontSize, all = 0;
+    for (int s = 0; s < chart->series_count; s++)
+        if (chart->series[s] && chart->names[s] && chart->names[s][0])
+            all += small->CalcTextSizeA(size, FLT_MAX, 0, chart->names[s]).x + 1.6f * size;
+    if (all > width) size *= std::max(width / all, 0.7f); // names that have no room are written smaller
     for (int s = 0; s < chart->series_count; s++) {
         if (!chart->series[s] || !chart->names[s] || !chart->names[s][0]) continue;
-        float size = small->FontSize, wide = small->CalcTextSizeA(size, FLT_MAX, 0, chart->names[s]).x;
+        float wide = small->CalcTextSizeA(size, FLT_MAX, 0, chart->names[s]).x;
         list->AddRectFilled(ImVec2(x, y + 0.42f * size), ImVec2(x + 0.7f * size, y + 0.62f * size),
                             ink(colours->series[s % VIEWER_SERIES]));
         list->AddText(small, size, ImVec2(x + 0.9f * size, y), ink(colours->quiet), chart->names[s]);
