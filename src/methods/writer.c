@@ -526,7 +526,7 @@ static void write_spans(sk_writer *writer) {
  * be thrown as far beyond its place as it had been before, and shiver for ever. A multiplier -C/(2 w + 1/(2 k h^2)) would
  * come to rest at any stiffness, but not where it ought to: what is stiff hung 15 % too low by it. */
 static bool may_wait(const sk_batch *batch, double h) {
-    static const double most = 0.5;
+    static const double most = 0.55;
     return batch->quickness > 0 && ((const sk_material *)batch->params)->stiffness * h * h * batch->quickness <= most;
 }
 
