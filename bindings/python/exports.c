@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/advice.h"
 #include "io/mesh.h"
 #include "io/scene_settings.h"
 #include "render/view.h"
@@ -134,6 +135,18 @@ size_t py_steps_of_all(skein_world *const *worlds, size_t world_count, double dt
     size_t done = 0;
     while (done < world_count && !py_steps(worlds[done], dt, count)) done++;
     return done;
+}
+
+/* ---- what will go wrong ---- */
+
+EXPORT double py_advise(skein_world *world, double dt, void (*write)(void *user, const char *line), void *user);
+
+/* Foretells what steps of `dt` will suffer from, a line each, as the command does; returns the substeps that a step takes
+ * to be stable, infinity where none is enough, 0 where that could not be found. */
+double py_advise(skein_world *world, double dt, void (*write)(void *user, const char *line), void *user) {
+    double needed = 0;
+    io_advise(world, dt, (io_warnings){write, user}, &needed);
+    return needed;
 }
 
 /* ---- how structs are laid out, so that a binding of another version says so ---- */

@@ -195,6 +195,7 @@ CALLS = {
     "py_free": (None, [c.c_void_p]),
     "py_steps": (status, [world, c.c_double, size]),
     "py_steps_of_all": (size, [c.POINTER(world), size, c.c_double, size]),
+    "py_advise": (c.c_double, [world, c.c_double, WRITE, c.c_void_p]),
     "py_struct_size": (size, [text]),
 }
 

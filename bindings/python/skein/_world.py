@@ -427,6 +427,20 @@ class World:
         self._settled = True
         return lines
 
+    def advice(self, dt=None):
+        """What steps of dt will suffer from, in the words of `skein check`: a list of lines, empty where all is well. Costs
+        as much as some steps."""
+        lines = []
+        with self._lock:
+            lib.py_advise(self._pointer, self.dt if dt is None else dt,
+                          L.WRITE(lambda _, line: lines.append(line.decode(errors="replace"))), None)
+        return lines
+
+    def substeps_needed(self, dt=None):
+        """How many substeps a step of dt takes to be stable under the method: inf where none is enough."""
+        with self._lock:
+            return lib.py_advise(self._pointer, self.dt if dt is None else dt, L.WRITE(lambda *_: None), None)
+
     # ---- scenes and pictures ----
 
     def scene(self):

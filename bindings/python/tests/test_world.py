@@ -7,6 +7,7 @@ import multiprocessing
 import os
 import pickle
 import subprocess
+import tempfile
 import threading
 import unittest
 import weakref
@@ -287,6 +288,34 @@ class State(unittest.TestCase):
         self.assertIsNone(ball.ray_cast([0, 5, 0], [0, 1, 0], of="collider"))
         np.testing.assert_allclose(sphere.probe([[2, 0, 0], [0, 0, 0.25]])[0], [1.5, -0.25], atol=1e-6)
         self.assertTrue(len(world.explain()) > 3)
+
+
+class Words(unittest.TestCase):
+    def test_advice(self):
+        world = skein.World.from_scene(f"{ROOT}/scenes/hanging.json")
+        self.assertEqual(world.advice(), [])
+        world.set_method("symplectic_euler", substeps=10)
+        (line,) = world.advice()
+        needed = world.substeps_needed()
+        self.assertIn(f"{needed:.0f}", line)
+        world.method.substeps = int(needed)
+        self.assertEqual(world.advice(), [])
+        spring = skein.World()  # 2/omega, omega^2 = k (1/m + 1/m)
+        spring.set_method("symplectic_euler", substeps=1)
+        spring.constraints.distance(particles=[spring.add_particles([[0, 0, 0], [1, 0, 0]])], stiffness=5e5)
+        least = 0.1 / (2 / 1e3)
+        self.assertTrue(least <= spring.substeps_needed(0.1) <= 1.25 * least)  # there is some room in it
+
+    def test_warnings_are_heard(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(f"{folder}/odd.obj", "w", encoding="utf-8") as file:
+                file.write("v 0 0 0\nv 1 0 0\nv 0 0 1\nodd 1\nf 1 2 3\n")
+            scene, heard = {"bodies": [{"type": "cloth", "mesh": f"{folder}/odd.obj"}]}, []
+            skein.World.from_scene(scene, log=heard.append)
+            self.assertRegex(heard[0], r"odd\.obj:4: .*passed over")
+            with self.assertLogs("skein", "WARNING") as logged:
+                skein.World.from_scene(scene)
+            self.assertIn(heard[0], logged.output[0])
 
 
 class Threads(unittest.TestCase):
