@@ -122,7 +122,8 @@ static const skein_compiled *compile_in_folder(const app_compiler *compiler, con
         return NULL;
     }
     snprintf(made, sizeof made, "%s/formula.so", folder);
-    bool good = write_file(folder, "formula.c", NULL, f) && make_folder(folder, "skein");
+    bool good = write_file(folder, "formula.c", NULL, f) && make_folder(folder, "skein") &&
+                make_folder(folder, "skein/inside");
     for (const app_header *h = app_headers; h->name && good; h++) good = write_file(folder, h->name, h->text, NULL);
     if (!good) snprintf(words, size, "no file can be written in %.300s", folder);
     if (good && app_compiler_run(compiler, folder, words, size)) {
@@ -132,6 +133,7 @@ static const skein_compiled *compile_in_folder(const app_compiler *compiler, con
     static const char *const names[] = {"formula.c", "formula.so", "formula.log"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) remove_file(folder, names[i]);
     for (const app_header *h = app_headers; h->name; h++) remove_file(folder, h->name);
+    remove_file(folder, "skein/inside");
     remove_file(folder, "skein");
     rmdir(folder);
     return compiled;

@@ -65,7 +65,7 @@ for cxx in "$@"; do
 done
 
 # ---- 3: names.h ----
-others='skein formula compiled compiled_lanes compiled_walk'
+others='skein formula compiled compiled_formula'
 for order in "names $others" "$others names"; do
     for header in $order; do echo "#include <skein/$header.h>"; done >"$work/all.c"
     echo 'extern const char *const names[3];

@@ -240,7 +240,7 @@ static void what_does_not_fit_is_refused(void **state) {
     c = compiled_spring, c.energy = true;
     FAILS(world, SKEIN_ERROR_VALUE, "emit and compile it again", skein_formula_register(world, &c));
     c = compiled_spring, c.abi++;
-    FAILS(world, SKEIN_ERROR_VALUE, "has ABI 2, and this library 1", skein_formula_register(world, &c));
+    FAILS(world, SKEIN_ERROR_VALUE, "has ABI 3, and this library 2", skein_formula_register(world, &c));
     c = compiled_spring, c.real_size = 12 - c.real_size;
     FAILS(world, SKEIN_ERROR_VALUE, "-DSKEIN_DOUBLE", skein_formula_register(world, &c));
     assert_false(skein_formula_is_compiled(world, skein_object_at(world, SKEIN_CONSTRAINT, 0)));

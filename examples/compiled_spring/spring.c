@@ -10,7 +10,7 @@
 #define SKEIN_SHARED 2
 #define SKEIN_ENERGY 0
 #define SKEIN_ONE_SIDED 0
-#include <skein/compiled_walk.h>
+#include <skein/compiled_formula.h>
 
 SHARED_BY_ALL(shared) {
     const REAL x_1 = PARAMETER(0) * (NUMBER(1.0) + NUMBER(0.20000000000000001) * SIN(TIME));

@@ -8,7 +8,8 @@
  *
  * From then on every constraint of that formula in the world runs this code in place of the tape, with the tape's bits.
  * Here are the plain structs between both sides. An emitted file is the formula alone, in macros (FORMULA, POSITION,
- * GRADIENT ...), and compiled_walk.h says what they mean. */
+ * GRADIENT ...), and compiled_formula.h says what they mean; the walk and what is made of value and
+ * gradient are the library's own (inside/). */
 #ifndef SKEIN_COMPILED_H
 #define SKEIN_COMPILED_H
 
@@ -26,7 +27,7 @@ typedef double skein_real;
 typedef float skein_real;
 #endif
 
-#define SKEIN_COMPILED_ABI 1
+#define SKEIN_COMPILED_ABI 2
 #define SKEIN_GROUP 16 /* elements a group, which share no particle */
 
 /* What the code was compiled for: the library takes it only where the processor has that. */
@@ -55,32 +56,33 @@ typedef struct skein_groups {
     const uint8_t *ahead;  /* of each group: how many from it on, itself among them, share no particle */
     size_t packed;
     skein_real *positions;
-    const skein_real *other; /* of forces the velocities, or NULL without damping; of damped projection the positions at
-                                the substep's start */
-    skein_real *forces;      /* of forces: added to */
+    skein_real *other; /* of forces the velocities; of damped projection the positions at the substep's start */
+    skein_real *sums;  /* of forces: added to */
     const skein_real *rest;  /* rest value r of lane l: rest[r * rest_stride + l] */
     size_t rest_stride;
     const skein_real *stiffness, *compliance;
     skein_real *multiplier;       /* of damped projection */
     const skein_real *parameters; /* in the formula's order */
-    skein_real time, substep;     /* s */
+    skein_real time, step;        /* s; the substep */
     skein_real damping_time;      /* c/k, s */
     skein_real per_step;          /* 1/h^2, times the projections that share the stiffness */
     skein_real gamma;             /* c/(k h) */
     const skein_elementary *elementary;
 } skein_groups;
 
-/* SKEIN_GROUP elements, for implicit solves: numbers in, numbers out, SKEIN_GROUP of each in a row, 64-byte aligned. */
-typedef struct skein_group_values {
-    const skein_real *positions; /* of each particle x, y, z and the inverse mass */
-    const skein_real *rest;      /* rest value r: rest + SKEIN_GROUP r */
-    const skein_real *parameters;
-    skein_real time;
+/* Elements for implicit solves, in numbers and out: of each number `count` in a row, a multiple of SKEIN_GROUP, 64-byte aligned. Outputs may be
+ * in an input's place: each SKEIN_GROUP is read before it is written, or what is written there is what was read. */
+typedef struct skein_element_values {
+    size_t count;
+    const skein_real *const *positions; /* of each particle its x; y and z are `stride` further, and twice that */
+    size_t stride;
+    const skein_real *const *rest;
+    const skein_real *parameters; /* in the formula's order; the same for all, as is time */
+    skein_real time;              /* s */
     const skein_elementary *elementary;
     skein_real *const *outputs; /* the value, its gradient by particle and axis, and its derivative by t; or the lower
                                    triangle of the second derivatives, row by row */
-    skein_real *finite;         /* 1 where the sum of all outputs is finite, else 0 */
-} skein_group_values;
+} skein_element_values;
 
 /* What an emitted file defines; all that it points to lasts as long. */
 struct skein_compiled {
@@ -95,8 +97,8 @@ struct skein_compiled {
     void (*project)(const skein_groups *groups);
     void (*project_damped)(const skein_groups *groups); /* and wherever multipliers are kept */
     void (*force)(const skein_groups *groups);
-    void (*evaluate)(const skein_group_values *elements);
-    void (*second)(const skein_group_values *elements); /* of an energy, else NULL */
+    void (*evaluate)(const skein_element_values *elements);
+    void (*second)(const skein_element_values *elements); /* of an energy, else NULL */
 };
 
 #ifdef __cplusplus

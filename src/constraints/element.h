@@ -2,66 +2,59 @@
  * is compiled into the library says how many particles an element has (SK_ARITY), and how many rest values (SK_RESTS),
  * before it includes this. One whose value is the length of a weighted sum of positions defines SK_LINEAR, and, for
  * element_arithmetic.h, linear(). One with limits may define SK_BEYOND(element, most): lanes whose value is over `most`
- * are among those that it gives, cheaply. */
+ * are among those that it gives, cheaply. Texts, whose elements have any number of particles, say SK_ARITY as the most that
+ * there may be, and more (projection.h). */
 #ifndef SK_CONSTRAINTS_ELEMENT_H
 #define SK_CONSTRAINTS_ELEMENT_H
+
+#include <math.h>
+#include <skein/compiled.h>
 
 #include "base/kernels.h"
 #include "constraints/sweep.h"
 #include "plan/matrix.h"
 
-/* A loop over an element's particles; unrolled, so that what it fills stays in registers. */
-#ifdef __clang__
-#define SK_EACH_PARTICLE(i) for (int i = 0; i < SK_ARITY; i++)
-#else
-#define SK_EACH_PARTICLE(i) _Pragma("GCC unroll 8") for (int i = 0; i < SK_ARITY; i++)
-#endif
+#ifdef SK_ISA
+
+#include <skein/inside/projection.h>
 
 enum { SK_ROWS_SIDE_BY_SIDE = 8 }; /* strip rows whose chains of elements hide each other's latency */
 
-typedef enum sk_element_mode {
-    SK_MODE_FORCE,
-    SK_MODE_APPLY, /* the matrix of an implicit solve times a direction */
-    SK_MODE_PROJECT,
-    SK_MODE_PROJECT_DAMPED,
-    SK_MODE_LIMIT,
-    SK_MODE_LIMIT_MOVING
-} sk_element_mode;
-
-/* What the formula leaves is its value, and its gradient G / divisor. Most kinds have no divisor; that of a distance
- * is its length, so that one division serves the direction and the multiplier. */
-typedef struct sk_element {
-    sk_wide3 x[SK_ARITY];
-    sk_wide w[SK_ARITY];      /* inverse masses */
-    sk_wide3 other[SK_ARITY]; /* velocities; of damped projection the positions at the substep's start; a direction */
-    sk_wide rest[SK_RESTS], stiffness, multiplier;
-    sk_wide soft; /* 1/(k h^2) */
-    sk_wide value, divisor;
-    sk_wide3 gradient[SK_ARITY];      /* G */
-    bool divided, opposite;           /* there is a divisor, and G / divisor has length 1; G of the second is minus the
-                                         first's. Constants, once all is inlined. */
-    sk_wide scale[SK_ARITY];          /* what comes out, a force or a move, is scale G */
-    sk_wide velocity_scale[SK_ARITY]; /* likewise of velocity, from a limit that moves */
-    sk_mask over;                     /* a limit: the lanes that are over it, which alone move */
-    sk_wide3 across;                  /* of a kind with SK_ACROSS: what is applied besides, to the first */
-} sk_element;
-
-/* What is the same for all elements of a row. */
-typedef struct sk_element_constants {
-    real damping_time; /* c/k, s */
-    real per_step;     /* 1/h^2, times the projections that share the stiffness */
-    real gamma;        /* c/(k h) */
-    real bound;        /* of the relative violation */
-    real elastic, both; /* of an implicit solve: the stiffness counts so many times, alone and with its damping */
-} sk_element_constants;
-
 static inline sk_element_constants sk_element_prepare(const sk_batch *batch, const sk_row *row) {
     double damping_time = sk_batch_damping_time(batch);
-    return (sk_element_constants){(real)damping_time, (real)(row->coefficient[0] / (row->dt * row->dt)),
-                                  (real)(damping_time / row->dt), (real)(batch->bound ? *batch->bound : 0),
+    double dt = row->dt > 0 ? row->dt : (double)INFINITY; // a force knows no step
+    return (sk_element_constants){(real)damping_time, (real)(row->coefficient[0] / (dt * dt)),
+                                  (real)(damping_time / dt), (real)row->dt, (real)(batch->bound ? *batch->bound : 0),
                                   (real)row->coefficient[0],
                                   (real)row->coefficient[0] + (real)(row->coefficient[1] * damping_time)};
 }
+
+/* Groups [begin, end) of a row, or those of slabs [begin, end). */
+static inline skein_groups sk_groups_of(sk_run *run, const sk_row *row, size_t begin, size_t end,
+                                        sk_element_mode mode) {
+    const sk_sweep *sweep = row->rule;
+    const sk_batch *batch = sweep->batch;
+    if (sweep->slab_start) begin = sweep->slab_start[begin], end = sweep->slab_start[end];
+    size_t lane = sweep->first_lane + begin * SK_LANES;
+    bool sums = mode == SK_MODE_FORCE || mode == SK_MODE_APPLY;
+    sk_vector other = mode == SK_MODE_APPLY ? row->source[1] : mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V;
+    return (skein_groups){
+        .count = end - begin,
+        .slots = sweep->slots + begin * batch->arity * SK_LANES,
+        .ahead = sweep->ahead ? sweep->ahead + begin : NULL,
+        .packed = row->packed,
+        .positions = &run->vector[SK_X]->x,
+        .other = &run->vector[other]->x,
+        .sums = sums ? &run->vector[row->dst]->x : NULL,
+        .rest = batch->lane_rest + lane,
+        .rest_stride = batch->lane_count,
+        .stiffness = batch->lane_stiffness + lane,
+        .compliance = batch->lane_compliance + lane,
+        .multiplier = batch->lane_multiplier + lane,
+    };
+}
+
+#endif
 
 /* Declares the kernels that element_sweeps.h and element_stiffness.h define. */
 #ifdef SK_WITH_STRIPS

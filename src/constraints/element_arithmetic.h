@@ -1,5 +1,5 @@
-/* From a formula's value and gradient to forces, moves and limits: the same for every kind, once for each instruction
- * set. The kind that includes this has defined SK_FORMULA as the file of its formula in
+/* What else the library's own kinds make of value and gradient besides forces and projections (projection.h): the matrix
+ * of an implicit solve, and limits; once for each instruction set. The kind that includes this has defined SK_FORMULA as the file of its formula in
  * emitted/, and the macros below say what that file's words mean here. */
 
 #define TEXT(text)
@@ -34,32 +34,6 @@ SK_INLINE sk_wide reciprocal(sk_wide x) {
 
 #include SK_FORMULA
 
-/* G . u of all particles. */
-SK_INLINE sk_wide sum_along(const sk_element *e, const sk_wide3 *u) {
-    if (e->opposite) {
-        sk_wide3 d = {u[0].x - u[1].x, u[0].y - u[1].y, u[0].z - u[1].z};
-        return sk_dot_wide(e->gradient[0], d);
-    }
-    sk_wide sum = sk_dot_wide(e->gradient[0], u[0]);
-    SK_EACH_PARTICLE (i) sum = i ? sum + sk_dot_wide(e->gradient[i], u[i]) : sum;
-    return sum;
-}
-
-/* 1/divisor. Where it is 0 the gradient has no direction: there is no force, and no NaN. */
-SK_INLINE sk_wide inverse_divisor(const sk_element *e) {
-    return sk_keep(sk_positive(e->divisor), 1 / e->divisor);
-}
-
-/* The sum of w |gradient|^2. */
-SK_INLINE sk_wide weight_of(const sk_element *e) {
-    sk_wide sum = {0};
-    SK_EACH_PARTICLE (i) {
-        sk_wide one = e->divided ? e->w[i] : e->w[i] * sk_dot_wide(e->gradient[i], e->gradient[i]);
-        sum = i ? sum + one : one;
-    }
-    return sum;
-}
-
 /* The matrix a k + b c of an element at its place, times a direction. It is k (grad C)(grad C)^T, which is positive
  * definite whatever C is (Gauss and Newton's). A kind with SK_ACROSS adds what turns the gradient, the tension across
  * it, where that is positive, too. */
@@ -80,26 +54,8 @@ SK_INLINE void apply(sk_element *e, const sk_element_constants *c) {
     SK_EACH_PARTICLE (i) e->scale[i] = push;
 }
 
-SK_INLINE void pull(sk_element *e, const sk_element_constants *c) {
-    sk_wide rate = sum_along(e, e->other), push;
-    if (e->divided) {
-        sk_wide inverse = inverse_divisor(e);
-        push = (e->stiffness * (-e->value - c->damping_time * (rate * inverse))) * inverse;
-    } else {
-        push = e->stiffness * (-e->value - c->damping_time * rate);
-    }
-    SK_EACH_PARTICLE (i) e->scale[i] = push;
-}
-
-SK_INLINE void project(sk_element *e) {
-    sk_wide below = weight_of(e) + e->soft;
-    if (e->divided) below = e->divisor * below;
-    sk_wide s = sk_keep(sk_positive(below), -e->value / below);
-    SK_EACH_PARTICLE (i) e->scale[i] = s * e->w[i];
-}
-
 #ifdef SK_LINEAR
-/* The same for a kind whose value is |L|, with L = sum of c x linear in the positions: its gradient is c L/|L|, so that
+/* Projection for a kind whose value is |L|, with L = sum of c x linear in the positions: its gradient is c L/|L|, so that
  * the moves are -w c L / (sum of w c^2 + soft), without a root, and right where L is 0, too. The kind's linear() leaves
  * c in `scale` and L in the first gradient. */
 SK_INLINE void project_linear(sk_element *e) {
@@ -115,21 +71,6 @@ SK_INLINE void project_linear(sk_element *e) {
     SK_EACH_PARTICLE (i) e->scale[i] = s * e->scale[i];
 }
 #endif
-
-SK_INLINE void project_damped(sk_element *e, const sk_element_constants *c) {
-    sk_wide3 moved[SK_ARITY];
-    SK_EACH_PARTICLE (i)
-        moved[i] = (sk_wide3){e->x[i].x - e->other[i].x, e->x[i].y - e->other[i].y, e->x[i].z - e->other[i].z};
-    sk_wide inverse = e->divided ? inverse_divisor(e) : sk_splat(1);
-    sk_wide below = (1 + c->gamma) * weight_of(e) + e->soft;
-    // a multiplier of 0 against an infinite compliance is nothing
-    sk_wide held = sk_keep(sk_differ(e->multiplier, (sk_wide){0}), e->soft * e->multiplier);
-    sk_wide above = -e->value - held - c->gamma * (sum_along(e, moved) * inverse);
-    sk_wide change = sk_keep(sk_positive(below), above / below);
-    e->multiplier += change;
-    sk_wide s = e->divided ? change * inverse : change;
-    SK_EACH_PARTICLE (i) e->scale[i] = s * e->w[i];
-}
 
 /* Back to the bound, as if rigid there. Lanes without an element have a rest value of 0: for them any is right. False
  * where all are within. */
@@ -157,7 +98,7 @@ SK_INLINE bool limit(sk_element *e, const sk_element_constants *c, bool moving) 
 
 /* False where nothing moves. */
 SK_INLINE bool work_out(sk_element *e, const sk_element_constants *c, sk_element_mode mode) {
-    e->divided = e->opposite = false;
+    e->divided = e->opposite = e->judged = e->timed = e->is_energy = e->one_sided = false;
 #ifdef SK_LINEAR
     if (mode == SK_MODE_PROJECT) {
         project_linear(e);
@@ -166,10 +107,8 @@ SK_INLINE bool work_out(sk_element *e, const sk_element_constants *c, sk_element
 #endif
     if (mode == SK_MODE_LIMIT || mode == SK_MODE_LIMIT_MOVING) return limit(e, c, mode == SK_MODE_LIMIT_MOVING);
     formula(e);
-    if (mode == SK_MODE_FORCE) pull(e, c);
-    else if (mode == SK_MODE_APPLY) apply(e, c);
-    else if (mode == SK_MODE_PROJECT) project(e);
-    else project_damped(e, c);
+    if (mode == SK_MODE_APPLY) apply(e, c);
+    else answer(e, c, mode);
     return true;
 }
 

@@ -1,6 +1,9 @@
 /* The walks of a kind's elements, once for each instruction set: after element_arithmetic.h, whose
- * work_out() they call. How particles come in and go out is here alone, so that the arithmetic does not know the
- * layout. SK_WITH_STRIPS asks for walks along strips, SK_WITH_LIMITS for limits. */
+ * work_out() they call. How particles come in and go out is here and in <skein/inside/group_walk.h> alone, so that the arithmetic does not
+ * know the layout. SK_WITH_STRIPS asks for walks along strips, SK_WITH_LIMITS for limits. */
+
+#define WORK_OUT(e, c, mode, data) work_out(e, c, mode)
+#include <skein/inside/group_walk.h>
 
 /* A part of a packed block. */
 SK_INLINE sk_wide3 load3(const sk_wide *part) {
@@ -9,34 +12,6 @@ SK_INLINE sk_wide3 load3(const sk_wide *part) {
 SK_INLINE void store3(sk_wide *part, sk_wide3 a) {
     part[0] = a.x, part[SK_PARTS] = a.y, part[2 * SK_PARTS] = a.z;
 }
-/* scale G, without the sign that the second of two opposite gradients has; that is in `with_sign`. */
-SK_INLINE sk_wide3 moved(const sk_element *e, const sk_wide *scale, int i) {
-    sk_wide3 g = e->gradient[i];
-    if (e->opposite) g = e->gradient[0]; // (by its address clang would keep the element in memory)
-    return (sk_wide3){scale[i] * g.x, scale[i] * g.y, scale[i] * g.z};
-}
-SK_INLINE sk_wide3 with_sign(const sk_element *e, int i, sk_wide3 a, sk_wide3 d) {
-    if (e->opposite && i) return (sk_wide3){a.x - d.x, a.y - d.y, a.z - d.z};
-    return (sk_wide3){a.x + d.x, a.y + d.y, a.z + d.z};
-}
-
-/* Where a particle comes to, from a. Limits leave lanes as they are that are within, as if nobody had asked. */
-SK_INLINE sk_wide3 put(const sk_element *e, int i, sk_wide3 a, const sk_wide *scale, sk_element_mode mode) {
-    sk_wide3 to = with_sign(e, i, a, moved(e, scale, i));
-    if (mode != SK_MODE_LIMIT && mode != SK_MODE_LIMIT_MOVING) return to;
-    return (sk_wide3){sk_select(e->over, to.x, a.x), sk_select(e->over, to.y, a.y), sk_select(e->over, to.z, a.z)};
-}
-
-/* What a sum gets: the second of two opposite gradients has the sign in `with_sign`. */
-SK_INLINE sk_wide3 given(const sk_element *e, int i, sk_element_mode mode) {
-    sk_wide3 d = moved(e, e->scale, i);
-#ifdef SK_ACROSS
-    if (mode == SK_MODE_APPLY) d = (sk_wide3){d.x + e->across.x, d.y + e->across.y, d.z + e->across.z};
-#endif
-    (void)mode;
-    return d;
-}
-
 /* Reads what a mode needs of a part of sixteen elements besides positions. */
 SK_INLINE void set_values(sk_element *e, const sk_sweep *sweep, const sk_element_constants *constants, size_t lane,
                           bool special, bool multiplier) {
@@ -302,109 +277,10 @@ SK_PULLS(apply, SK_MODE_APPLY)
 
 /* ---- groups ---- */
 
-/* Puts a part's particles, which are all different, to where they come. */
-SK_INLINE void scatter_to(sk_wide3 to, sk_vec4 *vector, size_t packed, const uint32_t *slot, sk_wide4 old) {
-    if (!packed) {
-        sk_scatter(vector, slot, (sk_wide4){to.x, to.y, to.z, old.w});
-        return;
-    }
-    for (int l = 0; l < SK_PART; l++) sk_store_at(vector, packed, slot[l], sk_v3(to.x[l], to.y[l], to.z[l]));
-}
-
-/* A part of a group on its way: what was gathered, and what comes of it. */
-typedef struct group_part {
-    sk_wide4 at[SK_ARITY], other_at[SK_ARITY];
-    sk_element e;
-    const uint32_t *slots;
-    size_t lane;
-} group_part;
-
-SK_INLINE void take_up(group_part *p, sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants,
-                       size_t group, size_t part, size_t packed, sk_element_mode mode, sk_vector second) {
-    const sk_vec4 *x = run->vector[SK_X];
-    const sk_vec4 *other = run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : mode == SK_MODE_APPLY ? second : SK_V];
-    p->slots = sweep->slots + group * SK_ARITY * SK_LANES + part * SK_PART;
-    p->lane = sweep->first_lane + group * SK_LANES + part * SK_PART;
-    SK_EACH_PARTICLE (i) {
-        p->at[i] = sk_gather_any(x, packed, p->slots + i * SK_LANES);
-        p->e.x[i] = (sk_wide3){p->at[i].x, p->at[i].y, p->at[i].z};
-        p->e.w[i] = p->at[i].w;
-        if (mode == SK_MODE_PROJECT || mode == SK_MODE_LIMIT) continue;
-        p->other_at[i] = sk_gather_any(other, packed, p->slots + i * SK_LANES);
-        p->e.other[i] = (sk_wide3){p->other_at[i].x, p->other_at[i].y, p->other_at[i].z};
-    }
-    set_values(&p->e, sweep, constants, p->lane, true, mode == SK_MODE_PROJECT_DAMPED);
-}
-
-SK_INLINE void put_down(const group_part *p, sk_run *run, const sk_row *row, const sk_sweep *sweep, size_t packed,
-                        sk_element_mode mode) {
-    sk_vec4 *x = run->vector[SK_X], *other = run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V];
-    bool sums = mode == SK_MODE_FORCE || mode == SK_MODE_APPLY;
-    sk_vec4 *dst = sums ? run->vector[row->dst] : x;
-    SK_EACH_PARTICLE (i) {
-        const uint32_t *slot = p->slots + i * SK_LANES;
-        sk_wide4 old = sums ? sk_gather_any(dst, packed, slot) : p->at[i], other_old = p->other_at[i];
-        sk_wide3 from = {old.x, old.y, old.z}, other_from = {other_old.x, other_old.y, other_old.z};
-        scatter_to(sums ? with_sign(&p->e, i, from, given(&p->e, i, mode)) : put(&p->e, i, from, p->e.scale, mode), dst, packed,
-                   slot, old);
-        if (mode == SK_MODE_LIMIT_MOVING)
-            scatter_to(put(&p->e, i, other_from, p->e.velocity_scale, mode), other, packed, slot, other_old);
-    }
-    if (mode == SK_MODE_PROJECT_DAMPED) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + p->lane) = p->e.multiplier;
-}
-
-SK_INLINE void meet_group(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_element_constants *constants,
-                          size_t group, size_t part, size_t packed, sk_element_mode mode) {
-    group_part p;
-    take_up(&p, run, sweep, constants, group, part, packed, mode, row->source[1]);
-    if (work_out(&p.e, constants, mode)) put_down(&p, run, row, sweep, packed, mode);
-}
-
-/* Two groups that share no particle: one's roots and divisions are worked out while the other waits for its own. */
-SK_INLINE void meet_two_groups(sk_run *run, const sk_row *row, const sk_sweep *sweep,
-                               const sk_element_constants *constants, size_t group, size_t part, sk_element_mode mode) {
-    group_part p, q;
-    take_up(&p, run, sweep, constants, group, part, 0, mode, SK_NONE);
-    take_up(&q, run, sweep, constants, group + 1, part, 0, mode, SK_NONE);
-    work_out(&p.e, constants, mode);
-    work_out(&q.e, constants, mode);
-    put_down(&p, run, row, sweep, 0, mode);
-    put_down(&q, run, row, sweep, 0, mode);
-}
-
-enum { GROUPS_AHEAD = 12 };
-
-/* Asks for what a group reads in order, long before it is its turn: of large meshes it comes from far away, and in pieces
- * that are too short for a processor to guess. There need be no such group. */
-SK_INLINE void fetch_group(const sk_sweep *sweep, size_t group) {
-    const sk_batch *batch = sweep->batch;
-    const uint32_t *slots = sweep->slots + group * SK_ARITY * SK_LANES;
-    size_t lane = sweep->first_lane + group * SK_LANES;
-    SK_EACH_PARTICLE (i) __builtin_prefetch(slots + i * SK_LANES);
-    for (int r = 0; r < SK_RESTS; r++) __builtin_prefetch(batch->lane_rest + (size_t)r * batch->lane_count + lane);
-    __builtin_prefetch(batch->lane_compliance + lane);
-}
-
-/* Groups [begin, end), or those of slabs [begin, end). Groups with a particle in strips are reached one by one. */
 SK_INLINE void sweep_groups(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_element_mode mode) {
-    const sk_sweep *sweep = row->rule;
-    sk_element_constants constants = sk_element_prepare(sweep->batch, row);
-    if (sweep->slab_start) begin = sweep->slab_start[begin], end = sweep->slab_start[end];
-    bool pairs = SK_ARITY == 2 && SK_WIDTH > 16 && mode == SK_MODE_PROJECT && !row->packed;
-    for (size_t g = begin; g < end; g++) {
-        fetch_group(sweep, g + GROUPS_AHEAD);
-        if (pairs && g + 1 < end && sweep->ahead[g] > 1) {
-            fetch_group(sweep, g + 1 + GROUPS_AHEAD);
-            for (size_t p = 0; p < SK_PARTS; p++) meet_two_groups(run, row, sweep, &constants, g, p, mode);
-            g++;
-            continue;
-        }
-        const uint32_t *slots = sweep->slots + g * SK_ARITY * SK_LANES;
-        bool strips = false;
-        for (int i = 0; i < SK_ARITY * SK_LANES && row->packed; i++) strips |= slots[i] < row->packed;
-        for (size_t p = 0; p < SK_PARTS; p++)
-            meet_group(run, row, sweep, &constants, g, p, strips ? row->packed : 0, mode);
-    }
+    sk_element_constants constants = sk_element_prepare(((const sk_sweep *)row->rule)->batch, row);
+    const skein_groups groups = sk_groups_of(run, row, begin, end, mode);
+    walk_elements(&groups, &constants, mode, NULL);
 }
 
 #define SK_GROUP_WALK(name, mode)                                                              \

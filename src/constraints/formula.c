@@ -2,17 +2,21 @@
  *
  * A constraint C wants to be 0, or, written `a >= b`, at least 0. An energy E is what its forces come from; under
  * position methods it is the constraint C = sqrt(2 E), without ever dividing by the root: where E and its gradient are
- * 0, so is the correction. Both run on a tape: up to four groups of sixteen elements that share no particle are one
- * block, gathered, run through the tape, solved and put back group by group, in their order. */
+ * 0, so is the correction (<skein/inside/projection.h>). Both run on a tape, or by what a C compiler made of the text
+ * (include/skein/compiled.h): up to four groups of sixteen elements that share no particle are one block, gathered, run,
+ * worked out and put back group by group, in their order. */
 #include "constraints/formula.h"
-#include "base/kernels.h"
 
-/* Loops over an element's particles. */
-#ifdef __clang__
-#define UNROLLED
-#else
-#define UNROLLED _Pragma("GCC unroll 4")
+#ifndef __clang__ // that all loops over an element's particles have one length, gcc does not see
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
+
+#define SK_ARITY SK_MOST_ARITY
+#define SK_ARITY_OF(e) ((e)->arity)
+#define SK_READS(e, i) ((e)->reads[i])
+#define SK_RESTS 0
+#include "constraints/element.h"
+#include "formula/compiled.h"
 
 enum { NOWHERE = 0xffff };
 
@@ -49,281 +53,233 @@ static places find_places(const sk_batch *batch, const sk_tape *tape) {
 
 /* ---- in and out ---- */
 
-/* Groups [first, first + count) of a sweep, or sixteen elements of a batch, on their way. */
+/* Groups of a sweep, or sixteen elements of a batch, on their way. Compiled code has its numbers in the tape's registers,
+ * too. */
 typedef struct block {
     SK_VECTOR_ALIGNED sk_wide registers[SK_TAPE_MEMORY / sizeof(sk_wide)]; /* positions stay where the tape has them */
     size_t vectors;                                                        /* of each register */
     sk_wide w[SK_FORMULA_GROUPS * SK_PARTS][SK_MOST_ARITY];
     sk_tape_verdict verdict;
+    const sk_constraint_formula *made;
+    const sk_tape *tape;
+    places to;
+    size_t arity, rests;
+    const skein_compiled *compiled; /* what runs in place of the tape; NULL: nothing does */
+    skein_element_values elements;        /* and on what: */
+    const real *position[SK_MOST_ARITY], *rest[SKEIN_FORMULA_MOST_RESTS];
+    real *output[3 * SK_MOST_ARITY * (3 * SK_MOST_ARITY + 1) / 2];
+    real parameter[SKEIN_FORMULA_MOST_PARAMETERS];
 } block;
 
-/* Once before the blocks of a row: what is the same for all elements. */
-static void begin_tape(block *b, const sk_batch *batch, const sk_tape *tape, double time) {
+static real *register_of(block *b, uint16_t number) {
+    return (real *)(b->registers + (number == NOWHERE ? 0 : number) * b->vectors);
+}
+
+static void find_compiled_parameters(const sk_formula_params *params, real value[SKEIN_FORMULA_MOST_PARAMETERS]) {
+    const sk_constraint_formula *made = params->made;
+    for (size_t i = 0; made->compiled->parameters[i]; i++) value[i] = (real)params->parameter[made->parameter_of[i]];
+}
+
+static void begin_compiled(block *b, const sk_batch *batch, double time) {
     const sk_formula_params *params = batch->params;
-    int count = params->made->formula->parameters;
-    real value[SKEIN_FORMULA_MOST_PARAMETERS];
-    const real *parameter[SKEIN_FORMULA_MOST_PARAMETERS];
-    for (int i = 0; i < count; i++) value[i] = (real)params->parameter[i], parameter[i] = &value[i];
-    sk_tape_input input = {.parameter = parameter, .uniform = ((uint64_t)1 << count) - 1, .time = (real)time};
+    find_compiled_parameters(params, b->parameter);
+    for (size_t p = 0; p < batch->arity; p++) b->position[p] = register_of(b, b->to.position[p]);
+    for (size_t r = 0; r < batch->rest_count; r++) b->rest[r] = register_of(b, b->to.rest[r]);
+    for (size_t k = 0; k < b->tape->outputs; k++) b->output[k] = register_of(b, b->tape->output[k]);
+    b->elements = (skein_element_values){.positions = b->position,
+                                   .stride = b->vectors * SK_PART,
+                                   .rest = b->rest,
+                                   .parameters = b->parameter,
+                                   .time = (real)time,
+                                   .elementary = sk_compiled_elementary(b->compiled->lanes),
+                                   .outputs = b->output};
+}
+
+/* Once before the blocks of a row: what is the same for all elements. */
+static void begin_block(block *b, const sk_batch *batch, const sk_tape *tape, const skein_compiled *compiled,
+                        double time) {
+    const sk_formula_params *params = batch->params;
+    b->made = params->made, b->tape = tape, b->compiled = compiled;
+    b->to = find_places(batch, tape);
+    b->arity = batch->arity, b->rests = batch->rest_count;
     b->vectors = tape->wides * SK_PARTS;
+    if (compiled) {
+        begin_compiled(b, batch, time);
+        return;
+    }
+    int count = params->made->formula->parameters;
+    const real *parameter[SKEIN_FORMULA_MOST_PARAMETERS];
+    for (int i = 0; i < count; i++) b->parameter[i] = (real)params->parameter[i], parameter[i] = &b->parameter[i];
+    sk_tape_input input = {.parameter = parameter, .uniform = ((uint64_t)1 << count) - 1, .time = (real)time};
     sk_tape_kernels_of[SK_THIS_ISA]->begin(tape, &input, b->registers, b->vectors);
+    // a tape runs on more than a block may have: let it be numbers
+    for (size_t p = 0; p < batch->arity; p++)
+        if (b->to.position[p] != NOWHERE) memset(register_of(b, b->to.position[p]), 0, 3 * b->vectors * sizeof(sk_wide));
+    for (size_t r = 0; r < batch->rest_count; r++)
+        if (b->to.rest[r] != NOWHERE) memset(register_of(b, b->to.rest[r]), 0, b->vectors * sizeof(sk_wide));
+}
+
+/* The first `count` vectors of each register. */
+static void run_block(block *b, size_t count) {
+    const sk_tape_kernels *kernels = sk_tape_kernels_of[SK_THIS_ISA];
+    if (!b->compiled) {
+        kernels->run(b->tape, b->registers, b->vectors, count, &b->verdict);
+        return;
+    }
+    b->elements.count = count * SK_PART;
+    if (b->tape == &b->made->hessian) b->compiled->second(&b->elements);
+    else b->compiled->evaluate(&b->elements);
+    if (!b->tape->unjudged) kernels->judge(b->tape, b->registers, b->vectors, count, b->verdict.finite);
 }
 
 /* Puts a part of sixteen elements into the tape's registers, as vector i of each: the particles that it reads, and rest
  * values, which are `stride` reals from one to the next. */
-SK_INLINE void fill(block *b, const places *to, size_t i, size_t arity, size_t rests, const sk_vec4 *x, size_t packed,
+SK_INLINE void fill(block *b, size_t i, size_t arity, size_t rests, const sk_vec4 *x, size_t packed,
                     const uint32_t *slots, const real *rest, size_t stride) {
-    size_t vectors = b->vectors;
-    UNROLLED
+    const size_t vectors = b->vectors;
+    SK_UNROLLED
     for (size_t p = 0; p < arity; p++) {
-        if (to->position[p] == NOWHERE) continue;
-        sk_wide *at = b->registers + to->position[p] * vectors + i;
+        if (b->to.position[p] == NOWHERE) continue;
+        sk_wide *at = b->registers + b->to.position[p] * vectors + i;
         sk_wide4 q = sk_gather_any(x, packed, slots + p * SK_LANES);
         at[0] = q.x, at[vectors] = q.y, at[2 * vectors] = q.z, b->w[i][p] = q.w;
     }
     for (size_t r = 0; r < rests; r++)
-        if (to->rest[r] != NOWHERE)
-            memcpy(b->registers + to->rest[r] * vectors + i, rest + r * stride, sizeof(sk_wide));
+        if (b->to.rest[r] != NOWHERE)
+            memcpy(b->registers + b->to.rest[r] * vectors + i, rest + r * stride, sizeof(sk_wide));
 }
 
-/* What came out of the tape for a part of sixteen elements. */
-typedef struct answer {
-    sk_wide value, by_time;
-    sk_wide3 gradient[SK_MOST_ARITY];
-    sk_mask active; /* finite, and not on the free side */
-} answer;
-
-SK_INLINE void take_answer(answer *a, const block *b, const sk_tape *tape, size_t arity, size_t i, bool one_sided) {
-    const uint16_t *output = tape->output;
+/* What came out for vector i of a block, a part of sixteen elements. */
+SK_INLINE void take_answer(sk_element *e, const block *b, size_t arity, size_t i, bool weighed) {
+    const uint16_t *output = b->tape->output;
     const sk_wide *registers = b->registers + i;
+    e->judged = e->timed = true, e->divided = e->opposite = false;
+    e->is_energy = b->made->is_energy, e->one_sided = b->made->one_sided;
+    e->arity = (int)arity;
 #define OUTPUT(k_) registers[output[k_] * b->vectors]
-    sk_wide sum = a->value = OUTPUT(0);
-    UNROLLED
-    for (size_t p = 0; p < arity; p++) {
-        sk_wide3 g = a->gradient[p] = (sk_wide3){OUTPUT(3 * p + 1), OUTPUT(3 * p + 2), OUTPUT(3 * p + 3)};
-        sum += g.x, sum += g.y, sum += g.z;
-    }
-    sum += a->by_time = OUTPUT(3 * arity + 1);
+    e->value = OUTPUT(0);
+    SK_EACH_PARTICLE_OF (e, p)
+        e->gradient[p] = (sk_wide3){OUTPUT(3 * p + 1), OUTPUT(3 * p + 2), OUTPUT(3 * p + 3)};
+    e->by_time = OUTPUT(3 * arity + 1);
 #undef OUTPUT
-    // as tapes are judged, which may have been done
-    sk_mask finite = ~sk_differ(sum - sum, (sk_wide){0});
-    if (!tape->unjudged) finite &= b->verdict.finite[i];
-    a->active = one_sided ? finite & sk_negative(a->value) : finite;
-    if (!sk_any(~finite)) return;
-    a->value = sk_keep(finite, a->value), a->by_time = sk_keep(finite, a->by_time);
-    for (size_t p = 0; p < arity; p++) {
-        sk_wide3 g = a->gradient[p];
-        a->gradient[p] = (sk_wide3){sk_keep(finite, g.x), sk_keep(finite, g.y), sk_keep(finite, g.z)};
-    }
-}
-
-SK_INLINE sk_wide sum_along(const answer *a, const sk_wide3 *u, size_t arity) {
-    sk_wide sum = sk_dot_wide(a->gradient[0], u[0]);
-    for (size_t p = 1; p < arity; p++) sum += sk_dot_wide(a->gradient[p], u[p]);
-    return sum;
-}
-
-/* ---- from value and gradient to a factor of the gradient ---- */
-
-SK_INLINE sk_wide pull(const answer *a, const sk_wide3 *v, size_t arity, bool is_energy, sk_wide stiffness,
-                       real damping_time) {
-    if (is_energy) return sk_keep(a->active, -stiffness);
-    sk_wide rate = sum_along(a, v, arity) + a->by_time;
-    return sk_keep(a->active, stiffness * (-a->value - damping_time * rate));
-}
-
-/* The sum of w |gradient|^2. */
-SK_INLINE sk_wide weight_of(const answer *a, const sk_wide *w, size_t arity) {
-    sk_wide weight = w[0] * sk_dot_wide(a->gradient[0], a->gradient[0]);
-    UNROLLED
-    for (size_t p = 1; p < arity; p++) weight += w[p] * sk_dot_wide(a->gradient[p], a->gradient[p]);
-    return weight;
-}
-
-/* Of an energy C^2 = 2 E takes part in place of C = sqrt(2 E), whose gradient has no value where E is 0. */
-SK_INLINE sk_wide project(const answer *a, const sk_wide *w, size_t arity, bool is_energy, sk_wide soft) {
-    sk_wide weight = weight_of(a, w, arity), above = -a->value, below = weight + soft;
-    if (is_energy) {
-        sk_wide square = sk_keep(sk_positive(a->value), 2 * a->value);
-        // an infinite compliance times 0 is nothing
-        above = -square, below = weight + sk_keep(sk_positive(square), soft * square);
-    }
-    return sk_keep(a->active & sk_positive(below), above / below);
-}
-
-/* `moved` from the substep's start on; `multiplier` is kept up to date. A one-sided one only ever pushes. */
-SK_INLINE sk_wide project_damped(const answer *a, const sk_wide *w, const sk_wide3 *moved, size_t arity,
-                                 const sk_constraint_formula *made, sk_wide soft, real gamma, real h,
-                                 sk_wide *multiplier) {
-    sk_wide weight = weight_of(a, w, arity);
-    sk_wide held = sk_keep(sk_differ(*multiplier, (sk_wide){0}), soft * *multiplier), change, s;
-    if (made->is_energy) {
-        sk_wide square = sk_keep(sk_positive(a->value), 2 * a->value);
-        sk_wide root = sk_wide_sqrt(square);
-        sk_wide below = weight + sk_keep(sk_positive(square), soft * square);
-        s = sk_keep(a->active & sk_positive(below), root * (-root - held) / below);
-        *multiplier += root * s;
-        return s;
-    }
-    sk_wide rate = sum_along(a, moved, arity) + h * a->by_time;
-    sk_wide below = (1 + gamma) * weight + soft;
-    sk_mask on = sk_positive(below) & (made->one_sided ? a->active | sk_positive(*multiplier) : a->active);
-    change = sk_keep(on, (-a->value - held - gamma * rate) / below);
-    if (made->one_sided) change = sk_select(sk_negative(*multiplier + change), -*multiplier, change);
-    *multiplier += change;
-    return change;
+    judge(e, weighed);
 }
 
 /* ---- the walk ---- */
 
-SK_INLINE void put_back(sk_vec4 *vector, size_t packed, const uint32_t *slot, sk_wide4 old, sk_wide s, sk_wide3 g) {
-    old.x += s * g.x, old.y += s * g.y, old.z += s * g.z;
-    if (!packed) {
-        sk_scatter(vector, slot, old);
-        return;
+#include <skein/inside/group_walk.h>
+
+/* Vector i of a block that has run. Particles that the formula does not read stay where they are. */
+SK_INLINE void settle_part(group_part *p, const skein_groups *g, const sk_element_constants *c, const block *b,
+                           size_t arity, size_t i, size_t packed, sk_element_mode mode) {
+    const size_t vectors = b->vectors;
+    sk_element *e = &p->e;
+    bool others = mode == SK_MODE_PROJECT_DAMPED || (mode == SK_MODE_FORCE && c->damping_time > 0);
+    e->arity = (int)arity;
+    SK_EACH_PARTICLE_OF (e, q) {
+        e->reads[q] = b->to.position[q] != NOWHERE;
+        e->x[q] = e->other[q] = (sk_wide3){{0}, {0}, {0}}; // what no damping is multiplied by must be a number
+        e->w[q] = (sk_wide){0};
+        if (!e->reads[q]) continue;
+        const sk_wide *x = b->registers + b->to.position[q] * vectors + i;
+        e->x[q] = (sk_wide3){x[0], x[vectors], x[2 * vectors]}, e->w[q] = b->w[i][q];
+        p->at[q] = (sk_wide4){x[0], x[vectors], x[2 * vectors], e->w[q]};
+        if (others) take_other(p, q, g, packed);
     }
-    for (int l = 0; l < SK_PART; l++) sk_store_at(vector, packed, slot[l], sk_v3(old.x[l], old.y[l], old.z[l]));
+    take_values(p, g, c, mode);
+    take_answer(e, b, arity, i, mode != SK_MODE_FORCE);
+    answer(e, c, mode);
+    put_down(p, g, packed, mode);
 }
 
-/* Vector `i` of a block whose tape has run: some part of sixteen elements, their first one at `lane`, with their
- * particles' slots. Particles that the formula does not read stay where they are. */
-SK_INLINE void settle_part(sk_run *run, const sk_row *row, const sk_sweep *sweep, const block *b,
-                           const sk_formula_factors *f, const places *to, size_t arity, size_t i, size_t lane,
-                           const uint32_t *slots, size_t packed, sk_row_kind kind, bool damped) {
-    const sk_batch *batch = sweep->batch;
-    const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
-    size_t vectors = b->vectors;
-    answer a;
-    sk_wide w[SK_MOST_ARITY] = {{0}}, s;
-    sk_wide3 other[SK_MOST_ARITY];
-    take_answer(&a, b, &made->tape, arity, i, made->one_sided);
-    UNROLLED
-    for (size_t p = 0; p < arity; p++) {
-        other[p] = (sk_wide3){{0}, {0}, {0}}; // what no damping is multiplied by must be a number
-        if (to->position[p] == NOWHERE) continue;
-        const sk_wide *x = b->registers + to->position[p] * vectors + i;
-        w[p] = b->w[i][p];
-        if (!damped) continue;
-        sk_wide4 o = sk_gather_any(run->vector[row->source[1]], packed, slots + p * SK_LANES);
-        other[p] = (sk_wide3){o.x, o.y, o.z};
-        if (kind == SK_ROW_PROJECT) other[p] = (sk_wide3){x[0] - o.x, x[vectors] - o.y, x[2 * vectors] - o.z};
+/* `count` groups are a block. `arity` is the batch's, a constant where it pays: then what belongs to an element's
+ * particles stays in registers. */
+SK_INLINE void meet_block(const skein_groups *g, const sk_element_constants *c, size_t first, size_t count,
+                          size_t packed, sk_element_mode mode, block *b, size_t arity) {
+    for (size_t i = 0; i < count * SK_PARTS; i++) {
+        size_t group = first + i / SK_PARTS, part = i % SK_PARTS * SK_PART;
+        fill(b, i, arity, b->rests, (const sk_vec4 *)(const void *)g->positions, packed,
+             g->slots + group * arity * SK_LANES + part, g->rest + group * SK_LANES + part, g->rest_stride);
     }
-    sk_vec4 *dst = run->vector[row->dst];
-    if (kind == SK_ROW_FORCE) {
-        sk_wide stiffness = *(const sk_wide *)(const void *)(batch->lane_stiffness + lane);
-        s = pull(&a, other, arity, made->is_energy, stiffness, f->damping_time);
-    } else {
-        sk_wide soft = *(const sk_wide *)(const void *)(batch->lane_compliance + lane) * f->per_step;
-        sk_wide *multiplier = (sk_wide *)(void *)(batch->lane_multiplier + lane);
-        s = damped ? project_damped(&a, w, other, arity, made, soft, f->gamma, (real)row->dt, multiplier)
-                   : project(&a, w, arity, made->is_energy, soft);
-    }
-    UNROLLED
-    for (size_t p = 0; p < arity; p++) {
-        if (to->position[p] == NOWHERE) continue;
-        const sk_wide *x = b->registers + to->position[p] * vectors + i;
-        const uint32_t *slot = slots + p * SK_LANES;
-        sk_wide4 old;
-        if (kind == SK_ROW_FORCE) old = sk_gather_any(dst, packed, slot);
-        else old = (sk_wide4){x[0], x[vectors], x[2 * vectors], w[p]};
-        put_back(dst, packed, slot, old, kind == SK_ROW_FORCE ? s : s * w[p], a.gradient[p]);
+    run_block(b, count * SK_PARTS);
+    for (size_t i = 0; i < count * SK_PARTS; i++) {
+        group_part p;
+        begin_part(&p, g, arity, first + i / SK_PARTS, i % SK_PARTS * SK_PART);
+        settle_part(&p, g, c, b, arity, i, packed, mode);
     }
 }
 
-/* Groups [begin, end), or those of slabs [begin, end), block after block. `arity` is the batch's, a constant where it
- * pays: then what belongs to an element's particles stays in registers. */
-SK_INLINE void walk(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_row_kind kind, bool damped,
-                    size_t arity) {
-    const sk_sweep *sweep = row->rule;
-    const sk_batch *batch = sweep->batch;
+#define MEETING(name_, arity_)                                                                                     \
+    SK_INLINE void name_(const skein_groups *g, const sk_element_constants *c, size_t first, size_t count,         \
+                         size_t packed, sk_element_mode mode, void *data) {                                        \
+        block *b = data;                                                                                           \
+        meet_block(g, c, first, count, packed, mode, b, (arity_));                                                 \
+    }
+MEETING(meet_2, 2)
+MEETING(meet_3, 3)
+MEETING(meet_4, 4)
+MEETING(meet_any, b->arity)
+#undef MEETING
+
+/* The same groups as compiled code takes them. */
+static void run_compiled(skein_groups *g, const sk_element_constants *c, const sk_batch *batch, double time,
+                         sk_element_mode mode) {
+    const sk_formula_params *params = batch->params;
+    const skein_compiled *compiled = params->made->compiled;
+    real parameter[SKEIN_FORMULA_MOST_PARAMETERS];
+    find_compiled_parameters(params, parameter);
+    g->parameters = parameter, g->time = (real)time, g->elementary = sk_compiled_elementary(compiled->lanes);
+    g->step = c->step, g->damping_time = c->damping_time, g->per_step = c->per_step, g->gamma = c->gamma;
+    if (mode == SK_MODE_FORCE) compiled->force(g);
+    else if (mode == SK_MODE_PROJECT) compiled->project(g);
+    else compiled->project_damped(g);
+}
+
+SK_INLINE void walk(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_element_mode mode,
+                    group_meeting *meeting) {
+    const sk_batch *batch = ((const sk_sweep *)row->rule)->batch;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
+    const sk_element_constants constants = sk_element_prepare(batch, row);
+    skein_groups groups = sk_groups_of(run, row, begin, end, mode);
     if (made->compiled) {
-        sk_compiled_walk(run, row, begin, end, kind, damped);
+        run_compiled(&groups, &constants, batch, run->time - row->before, mode);
         return;
     }
-    const sk_tape *tape = &made->tape;
-    places to = find_places(batch, tape);
-    sk_formula_factors f = sk_formula_find_factors(batch, row);
     block b;
-    if (sweep->slab_start) begin = sweep->slab_start[begin], end = sweep->slab_start[end];
-    begin_tape(&b, batch, tape, run->time - row->before);
-    for (size_t first = begin, count; first < end; first += count) {
-        size_t packed[SK_FORMULA_GROUPS];
-        count = sweep->ahead[first] < tape->wides ? sweep->ahead[first] : tape->wides;
-        if (count > end - first) count = end - first;
-        // what is beyond repeats the last, and later whatever an earlier block left there: nobody reads it
-        for (size_t i = 0; i < (first == begin ? tape->wides : count); i++) {
-            size_t group = first + (i < count ? i : count - 1);
-            const uint32_t *slots = sweep->slots + group * arity * SK_LANES;
-            bool strips = false;
-            for (size_t l = 0; l < arity * SK_LANES && row->packed; l++) strips |= slots[l] < row->packed;
-            packed[i] = strips ? row->packed : 0;
-            const real *rest = batch->lane_rest + sweep->first_lane + group * SK_LANES;
-            for (size_t part = 0; part < SK_PARTS; part++)
-                fill(&b, &to, i * SK_PARTS + part, arity, batch->rest_count, run->vector[SK_X], packed[i],
-                     slots + part * SK_PART, rest + part * SK_PART, batch->lane_count);
-        }
-        sk_tape_kernels_of[SK_THIS_ISA]->run(tape, b.registers, b.vectors, count * SK_PARTS, &b.verdict);
-        for (size_t i = 0; i < count; i++)
-            for (size_t part = 0; part < SK_PARTS; part++)
-                settle_part(run, row, sweep, &b, &f, &to, arity, i * SK_PARTS + part,
-                            sweep->first_lane + (first + i) * SK_LANES + part * SK_PART,
-                            sweep->slots + (first + i) * arity * SK_LANES + part * SK_PART, packed[i], kind, damped);
-    }
+    begin_block(&b, batch, &made->tape, NULL, run->time - row->before);
+    walk_groups(&groups, &constants, batch->arity, batch->rest_count, made->tape.wides, mode, meeting, &b);
 }
 
-static size_t arity_of(const sk_row *row) {
-    return ((const sk_sweep *)row->rule)->batch->arity;
-}
 void SK_KERNEL(force_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_sweep *sweep = row->rule;
-    bool damped = sk_batch_damping_time(sweep->batch) > 0;
-    walk(run, row, begin, end, SK_ROW_FORCE, damped, arity_of(row));
+    walk(run, row, begin, end, SK_MODE_FORCE, meet_any);
 }
 void SK_KERNEL(project_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    switch (arity_of(row)) {
-    case 2: walk(run, row, begin, end, SK_ROW_PROJECT, false, 2); break;
-    case 3: walk(run, row, begin, end, SK_ROW_PROJECT, false, 3); break;
-    case 4: walk(run, row, begin, end, SK_ROW_PROJECT, false, 4); break;
-    default: walk(run, row, begin, end, SK_ROW_PROJECT, false, arity_of(row));
+    switch (((const sk_sweep *)row->rule)->batch->arity) {
+    case 2: walk(run, row, begin, end, SK_MODE_PROJECT, meet_2); break;
+    case 3: walk(run, row, begin, end, SK_MODE_PROJECT, meet_3); break;
+    case 4: walk(run, row, begin, end, SK_MODE_PROJECT, meet_4); break;
+    default: walk(run, row, begin, end, SK_MODE_PROJECT, meet_any);
     }
 }
 void SK_KERNEL(project_damped_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    walk(run, row, begin, end, SK_ROW_PROJECT, true, arity_of(row));
+    walk(run, row, begin, end, SK_MODE_PROJECT_DAMPED, meet_any);
 }
 
 /* ---- implicit solves: elements, not groups ---- */
 
-/* Runs a tape of one sixteen that has begun, or what is compiled for it, on elements [begin, begin + count), at most
- * sixteen; lanes past them repeat the last. */
-static void run_elements(block *b, const sk_batch *batch, const sk_tape *tape, bool compiled, double time,
-                         const sk_vec4 *x, size_t packed, size_t begin, size_t count) {
+/* Runs a block of sixteen on elements [begin, begin + count), at most so many; lanes past them repeat the last. */
+static void run_elements(block *b, const sk_batch *batch, const sk_vec4 *x, size_t packed, size_t begin, size_t count) {
     uint32_t slot[SK_MOST_ARITY][SK_LANES];
-    SK_VECTOR_ALIGNED real rest[SKEIN_FORMULA_MOST_RESTS][SK_LANES]; // as compiled code takes them
-    places to = find_places(batch, tape);
+    SK_VECTOR_ALIGNED real rest[SKEIN_FORMULA_MOST_RESTS][SK_LANES];
     for (size_t l = 0; l < SK_LANES; l++) {
         size_t e = begin + (l < count ? l : count - 1);
         for (size_t p = 0; p < batch->arity; p++) slot[p][l] = batch->slot[e * batch->arity + p];
         for (size_t r = 0; r < batch->rest_count; r++) rest[r][l] = batch->rest[r * batch->count + e];
     }
-    if (compiled) {
-        const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
-        real *outputs[3 * SK_MOST_ARITY * (3 * SK_MOST_ARITY + 1) / 2];
-        SK_VECTOR_ALIGNED sk_wide at[SK_MOST_ARITY][4][SK_PARTS], finite[SK_PARTS];
-        for (size_t p = 0; p < batch->arity; p++)
-            for (size_t part = 0; part < SK_PARTS; part++) {
-                sk_wide4 q = sk_gather_any(x, packed, slot[p] + part * SK_PART);
-                at[p][0][part] = q.x, at[p][1][part] = q.y, at[p][2][part] = q.z, at[p][3][part] = q.w;
-            }
-        for (size_t k = 0; k < tape->outputs; k++) outputs[k] = (real *)(b->registers + tape->output[k] * SK_PARTS);
-        sk_compiled_evaluate(batch, time, tape == &made->hessian, (const real *)at, rest[0], outputs, (real *)finite);
-        for (size_t part = 0; part < SK_PARTS; part++) b->verdict.finite[part] = sk_positive(finite[part]);
-        return;
-    }
     for (size_t part = 0; part < SK_PARTS; part++)
-        fill(b, &to, part, batch->arity, batch->rest_count, x, packed, slot[0] + part * SK_PART,
-             rest[0] + part * SK_PART, SK_LANES);
-    sk_tape_kernels_of[SK_THIS_ISA]->run(tape, b->registers, SK_PARTS, SK_PARTS, &b->verdict);
+        fill(b, part, batch->arity, batch->rest_count, x, packed, slot[0] + part * SK_PART, rest[0] + part * SK_PART,
+             SK_LANES);
+    run_block(b, SK_PARTS);
 }
 
 /* The matrix of a part of sixteen elements: a lower triangle of 3 arity rows, positive definite. */
@@ -333,7 +289,7 @@ typedef struct matrix {
 #define ENTRY(m_, i_, j_) (m_)->entry[(i_) * ((i_) + 1) / 2 + (j_)]
 
 /* A constraint's k grad C grad C^T. */
-static void square_gradient(matrix *m, const answer *a, size_t arity) {
+static void square_gradient(matrix *m, const sk_element *a, size_t arity) {
     sk_wide g[3 * SK_MOST_ARITY];
     for (size_t p = 0; p < arity; p++) {
         g[3 * p] = sk_keep(a->active, a->gradient[p].x);
@@ -379,7 +335,6 @@ static void make_definite(matrix *m, size_t size) {
 typedef struct stiff_walk {
     const sk_run *run;
     const sk_row *row;
-    const sk_tape *tape;
     block b; /* of sixteen elements */
     size_t part, next, at, count, end;
     matrix m;
@@ -389,8 +344,7 @@ static void start_walk(stiff_walk *w, const sk_run *run, const sk_row *row, size
     const sk_batch *batch = row->rule;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
     w->run = run, w->row = row, w->next = begin, w->end = end, w->part = 0;
-    w->tape = made->is_energy ? &made->hessian : &made->single;
-    begin_tape(&w->b, batch, w->tape, run->time - row->before);
+    begin_block(&w->b, batch, made->is_energy ? &made->hessian : &made->single, made->compiled, run->time - row->before);
 }
 
 /* The stiffness over k of the part that the walk has come to, elastic and both with damping. */
@@ -398,13 +352,13 @@ static void find_stiffness(stiff_walk *w) {
     const sk_batch *batch = w->row->rule;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
     if (made->is_energy) {
-        for (size_t k = 0; k < w->tape->outputs; k++)
+        for (size_t k = 0; k < w->b.tape->outputs; k++)
             w->m.entry[k] =
-                sk_keep(w->b.verdict.finite[w->part], w->b.registers[w->tape->output[k] * SK_PARTS + w->part]);
+                sk_keep(w->b.verdict.finite[w->part], w->b.registers[w->b.tape->output[k] * SK_PARTS + w->part]);
         make_definite(&w->m, 3 * batch->arity);
     } else {
-        answer a;
-        take_answer(&a, &w->b, w->tape, batch->arity, w->part, made->one_sided);
+        sk_element a;
+        take_answer(&a, &w->b, batch->arity, w->part, false);
         square_gradient(&w->m, &a, batch->arity);
     }
     const sk_material *material = batch->params;
@@ -419,9 +373,7 @@ static bool walk_on(stiff_walk *w) {
     const sk_batch *batch = w->row->rule;
     size_t left = w->end - w->next;
     if (w->part == 0)
-        run_elements(&w->b, batch, w->tape, ((const sk_formula_params *)batch->params)->made->compiled,
-                     w->run->time - w->row->before, w->run->vector[SK_X], w->row->packed, w->next,
-                     left < SK_LANES ? left : SK_LANES);
+        run_elements(&w->b, batch, w->run->vector[SK_X], w->row->packed, w->next, left < SK_LANES ? left : SK_LANES);
     find_stiffness(w);
     w->at = w->next, w->count = left < SK_PART ? left : SK_PART;
     w->next += w->count, w->part = (w->part + 1) % SK_PARTS;
@@ -501,13 +453,13 @@ size_t SK_KERNEL(energy)(const sk_batch *batch, double time, const sk_vec4 *x, s
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
     size_t guarded = 0;
     block b;
-    begin_tape(&b, batch, &made->single, time);
+    begin_block(&b, batch, &made->single, NULL, time); // a tape counts its guards
     for (size_t at = begin; at < end; at += SK_LANES) {
         size_t count = end - at < SK_LANES ? end - at : SK_LANES;
-        run_elements(&b, batch, &made->single, false, time, x, 0, at, count); // a tape counts its guards
+        run_elements(&b, batch, x, 0, at, count);
         for (size_t part = 0; part * SK_PART < count; part++) {
-            answer a;
-            take_answer(&a, &b, &made->single, batch->arity, part, made->one_sided);
+            sk_element a;
+            take_answer(&a, &b, batch->arity, part, false);
             sk_mask odd = b.verdict.guarded[part] | ~b.verdict.finite[part];
             for (size_t l = 0; l < SK_PART && part * SK_PART + l < count; l++) {
                 double c = (double)a.value[l];

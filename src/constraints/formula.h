@@ -29,21 +29,6 @@ typedef struct sk_formula_params {
     sk_constraint_formula *made;
 } sk_formula_params;
 
-/* What is the same for all elements of a row. */
-typedef struct sk_formula_factors {
-    real damping_time; /* c/k, s */
-    real per_step;     /* 1/h^2, times the projections that share the stiffness */
-    real gamma;        /* c/(k h) */
-} sk_formula_factors;
-sk_formula_factors sk_formula_find_factors(const sk_batch *batch, const sk_row *row);
-
-/* Compiled code (compiled.c): groups [begin, end) of a row, as walk() in formula.c goes through them; and sixteen
- * elements' outputs into `outputs`, which are as a tape's. `positions` has four wides a particle; `finite` is 1 or 0.
- */
-void sk_compiled_walk(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_row_kind kind, bool damped);
-void sk_compiled_evaluate(const sk_batch *batch, double time, bool second, const real *positions, const real *rest,
-                          real *const *outputs, real *finite);
-
 /* As in sk_constraint_type; for `formula` and for `energy`. */
 extern const sk_making sk_formula_making, sk_energy_making;
 int sk_formula_arity_of(const void *params);
@@ -51,6 +36,5 @@ int sk_formula_rest_count_of(const void *params);
 bool sk_formula_rest(const void *params, const double (*x)[3], double *rest);
 bool sk_formula_evaluate_one(const sk_batch *batch, double time, const sk_vec4 *x, size_t element, size_t most,
                              sk_constraint_answer *answer, double (*gradient)[3]);
-void sk_formula_run_compiled(void *params, const skein_compiled *compiled);
 
 #endif

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/status.h"
+#include "formula/compiled.h"
 #include "formula/evaluate.h"
 
 /* ---- making ---- */
@@ -90,6 +91,18 @@ static void unmake(void *params, sk_allocator *allocator) {
     release(((sk_formula_params *)params)->made, allocator);
 }
 
+static void run_compiled(void *params, const skein_compiled *compiled) {
+    sk_constraint_formula *made = ((sk_formula_params *)params)->made;
+    const skein_formula *f = made->formula;
+    made->compiled = compiled;
+    // its formula names the same parameters, perhaps in another order, and perhaps some that nothing depends on
+    for (size_t i = 0; compiled && compiled->parameters[i]; i++) {
+        made->parameter_of[i] = 0;
+        for (int k = 0; k < f->parameters; k++)
+            if (!strcmp(compiled->parameters[i], f->parameter_name[k])) made->parameter_of[i] = (uint8_t)k;
+    }
+}
+
 static const skein_formula *formula_of(const void *params) {
     return ((const sk_formula_params *)params)->made->formula;
 }
@@ -98,8 +111,8 @@ static const double *parameters_of(const void *params) {
     return ((const sk_formula_params *)params)->parameter;
 }
 
-const sk_making sk_formula_making = {make_constraint, unmake, formula_of, sk_formula_run_compiled, parameters_of},
-                sk_energy_making = {make_energy, unmake, formula_of, sk_formula_run_compiled, parameters_of};
+const sk_making sk_formula_making = {make_constraint, unmake, formula_of, run_compiled, parameters_of},
+                sk_energy_making = {make_energy, unmake, formula_of, run_compiled, parameters_of};
 
 /* ---- what a constraint asks of its type ---- */
 

@@ -1,5 +1,5 @@
 /* A constraint's formula as a file of C to be compiled and registered: its value, gradient and, of an energy, second
- * derivatives, in the macros of include/skein/compiled_walk.h. The operations are the graph's, one by one, so that the
+ * derivatives, in the macros of include/skein/compiled_formula.h. The operations are the graph's, one by one, so that the
  * bits are those of tapes. */
 #include <inttypes.h>
 #include <string.h>
@@ -38,7 +38,7 @@ static void put_sizes(sk_writer *w, size_t operations, size_t shared) {
     sk_put(w, "#define SKEIN_SHARED %zu\n#define SKEIN_ENERGY %d\n#define SKEIN_ONE_SIDED %d\n", shared,
            f->hessian != NULL, f->at_least_zero);
     if (operations > LONG) sk_put(w, "#define SKEIN_LONG\n");
-    sk_put(w, "#include <skein/compiled_walk.h>\n\n");
+    sk_put(w, "#include <skein/compiled_formula.h>\n\n");
 }
 
 /* What is the same for all elements, since it depends on parameters and time alone, and is read by what is not. Returns

@@ -96,6 +96,8 @@ typedef struct sk_tape_kernels {
     void (*begin)(const sk_tape *tape, const sk_tape_input *input, sk_wide *registers, size_t vectors);
     /* The first `count` vectors of each register, and perhaps more; the verdict is on these. */
     void (*run)(const sk_tape *tape, sk_wide *registers, size_t vectors, size_t count, sk_tape_verdict *verdict);
+    /* The verdict on what is finite alone, for registers that something else has filled. */
+    void (*judge)(const sk_tape *tape, const sk_wide *registers, size_t vectors, size_t count, sk_mask *finite);
     /* Everything, for elements [begin, end): output k of element e into outputs[k][e]. Elements that are not finite
      * give 0s. Returns how many elements were guarded or not finite. */
     size_t (*evaluate)(const sk_tape *tape, const sk_tape_input *input, size_t begin, size_t end, real *const *outputs);

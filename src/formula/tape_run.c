@@ -198,6 +198,10 @@ static void run(const sk_tape *tape, sk_wide *registers, size_t vectors, size_t 
     else run_and_judge(tape, registers, verdict, vectors, count);
 }
 
+static void judge_outputs(const sk_tape *tape, const sk_wide *registers, size_t vectors, size_t count, sk_mask *finite) {
+    judge(tape, registers, finite, vectors, count);
+}
+
 /* ---- in and out ---- */
 
 static void begin_block(const sk_tape *tape, const sk_tape_input *input, sk_wide *registers, size_t vectors) {
@@ -295,7 +299,7 @@ static void work(const sk_tape *tape, const sk_tape_input *input, size_t begin, 
     go_through(tape, input, begin, end, NULL);
 }
 
-const sk_tape_kernels SK_KERNEL(kernels) = {begin_block, run, evaluate, work};
+const sk_tape_kernels SK_KERNEL(kernels) = {begin_block, run, judge_outputs, evaluate, work};
 
 #else
 
