@@ -230,6 +230,7 @@ static void run_compiled(skein_groups *g, const sk_element_constants *c, const s
     find_compiled_parameters(params, parameter);
     g->parameters = parameter, g->time = (real)time, g->elementary = sk_compiled_elementary(compiled->lanes);
     g->step = c->step, g->damping_time = c->damping_time, g->per_step = c->per_step, g->gamma = c->gamma;
+    if (mode == SK_MODE_FORCE && !(c->damping_time > 0)) g->other = NULL;
     if (mode == SK_MODE_FORCE) compiled->force(g);
     else if (mode == SK_MODE_PROJECT) compiled->project(g);
     else compiled->project_damped(g);

@@ -121,8 +121,7 @@ skein_status sk_compiled_check(const skein_compiled *c, sk_allocator *allocator,
         return sk_fail(error, SKEIN_ERROR_VALUE, "",
                        "the compiled formula needs %s, which this processor has not: compile it here",
                        c->needs == SKEIN_INSTRUCTIONS_AVX2 ? "AVX2" : "AVX-512");
-    if (!c->text || !c->parameters || !c->project || !c->project_damped || !c->force || !c->evaluate ||
-        (c->energy && !c->second))
+    if (!c->text || !c->parameters || !c->project || !c->project_damped || !c->force || !c->evaluate)
         return sk_fail(error, SKEIN_ERROR_VALUE, "",
                        "the compiled formula is not whole: one of its pointers is NULL where the emitter writes none");
     return check_hash(c, allocator, error);

@@ -107,7 +107,9 @@ SK_INLINE void take_part(group_part *p, const skein_groups *g, const sk_element_
     begin_part(p, g, SK_ARITY, group, part);
     SK_EACH_PARTICLE (i) {
         take_particle(p, i, g, packed);
-        if (mode != SK_MODE_PROJECT && mode != SK_MODE_LIMIT) take_other(p, i, g, packed);
+        if (mode == SK_MODE_PROJECT || mode == SK_MODE_LIMIT) continue;
+        if (mode != SK_MODE_FORCE || g->other) take_other(p, i, g, packed);
+        else p->e.other[i] = (sk_wide3){{0}, {0}, {0}}; // what no damping is multiplied by must be a number
     }
     take_values(p, g, c, mode);
 }
