@@ -5,7 +5,8 @@
  *             is uniform, methods that predict find by `at` (force.h)
  *     PUSH_AT vec3 (PARAMS p, vec3 x, vec3 v, num mass): newtons that depend on the place
  *     STEER   vec4 (PARAMS p, vec3 x, exact dt): a change of velocity, and of the allowed speed in w. A kind that looks
- *             from one particle says the field that is then its place: LOOKS_FROM
+ *             from one particle says the field that is then its place: LOOKS_FROM; one that most particles get nothing
+ *             from says so: SELDOM
  *     BOUND   vec3 (PARAMS p, vec4 x, vec3 v, vec4 steering, exact dt): the velocity that is allowed; x.w is the inverse
  *             mass. Where it moves particles instead, by its shader's `shifts`: SHIFT, vec3 (PARAMS p, vec3 x), by how much */
 #ifdef SK_ISA
@@ -43,10 +44,14 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end)
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < row->packed;
         vec4 x = sk_load_part(run->vector[SK_X], slot, packed);
-        vec4 s = sk_load_part(run->vector[row->dst], slot, packed);
         flag moved = sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot);
         if (own - slot < SK_PART) moved[own - slot] = 0;
         vec4 change = STEER(p, xyz(x), row->dt);
+#ifdef SELDOM // lane by lane, so that it is the same for all widths
+        moved &= (change.x != 0) | (change.y != 0) | (change.z != 0) | (change.w != 0);
+        if (none(moved)) continue;
+#endif
+        vec4 s = sk_load_part(run->vector[row->dst], slot, packed);
         s.x = sk_plus_where(moved, s.x, change.x), s.y = sk_plus_where(moved, s.y, change.y);
         s.z = sk_plus_where(moved, s.z, change.z), s.w = sk_plus_where(moved, s.w, change.w);
         sk_store_part(run->vector[row->dst], slot, packed, s);
@@ -82,8 +87,10 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end)
             continue;
         }
 #endif
-        vec3 bound = pick3(moved, BOUND(p, x, xyz(v), steering, row->dt), xyz(v));
-        sk_store_moved(run->vector[SK_V], slot, packed, vec4_of(bound, v.w));
+        vec3 bound = BOUND(p, x, xyz(v), steering, row->dt);
+        moved &= (bound.x != v.x) | (bound.y != v.y) | (bound.z != v.z);
+        if (none(moved)) continue; // most are within most of the time, and stores of quads are long
+        sk_store_moved(run->vector[SK_V], slot, packed, vec4_of(pick3(moved, bound, xyz(v)), v.w));
     }
 }
 #endif

@@ -36,6 +36,7 @@ SK_KERNELS(sk_row_kernel, kernel);
 #define PARAMS predator_params
 #define STEER predator_steer
 #define LOOKS_FROM position
+#define SELDOM
 #include "forces/each_particle.h"
 
 #ifndef SK_ISA
