@@ -77,6 +77,10 @@ typedef struct sk_collider_type {
     void (*begin)(const void *params, double time, double dt);
     bool (*changes)(const void *params);
     void (*follow)(const void *params, double time);
+    /* Of types that fast particles are stopped by, too (swept.c), else NULL: where the way from a to b first crosses the surface, as
+     * a part of it, over 1 where it does not, and the unit normal on the side of a; and a ball that the surface is in. */
+    double (*cross)(const void *params, const sk_pose *pose, const double a[3], const double b[3], double normal[3]);
+    void (*ball)(const void *params, const sk_pose *pose, sk_vec3 *middle, real *radius);
     bool (*is_shaped_by)(const char *field); /* whether a field counts only then; NULL: none does */
     struct sk_trimesh *(*surface)(const void *params); /* its triangles, for whoever draws or moves them; NULL: it has none */
     /* Of arithmetic: see colliders/shape.h. A file defines vec4 probe@(vec3 p): the unit normal out of the solid, and the distance in w; and, where the surface
@@ -136,6 +140,22 @@ extern const sk_kernels sk_contact_settle;
 extern const sk_kernels sk_contact_filter;
 /* The same for what has come inside since, X being where V leads from X0. */
 extern const sk_kernels sk_contact_filter_more;
+
+/* All methods, before those that answer at the end of a substep: stops X where its way from X0, the second source, crosses the
+ * surface. With a first coefficient of 1 friction takes its share, and V gets the same move. */
+extern const sk_kernels sk_contact_sweep;
+typedef struct sk_swept {
+    const sk_collider *collider;
+    sk_pose pose;                        /* at the end */
+    real turn[9];                        /* what the collider did to points that go along with it, */
+    sk_vec3 shift;                       /* and then this */
+    bool moves, rubs;
+    sk_vec3 middle;                      /* of the ball that its surface is in, */
+    real radius;                         /* and the thickness */
+} sk_swept;
+sk_swept sk_swept_begin(const sk_collider *collider, double from, double to, bool rubs);
+/* Whether the way from `start` to x crosses the surface; x is then where it ends. */
+bool sk_swept_stop(const sk_swept *sweep, const double start[3], double x[3]);
 
 /* Once a substep, by one thread: the surface of a collider that changes is where it is at the end. */
 extern sk_row_kernel sk_contact_follow;

@@ -130,6 +130,35 @@ static void begin(const void *data, double time, double dt) {
     sk_trimesh_begin(((const mesh_params *)data)->made, time, dt);
 }
 
+static double cross(const void *data, const sk_pose *pose, const double a[3], const double b[3], double normal[3]) {
+    const mesh_params *params = data;
+    const real *r = pose->rotation;
+    const double place[3] = {(double)pose->position.x, (double)pose->position.y, (double)pose->position.z};
+    double own[2][3], n[3];
+    for (int k = 0; k < 3; k++) {
+        own[0][k] = own[1][k] = 0;
+        for (int i = 0; i < 3; i++) {
+            own[0][k] += (double)r[3 * i + k] * (a[i] - place[i]) / params->scale;
+            own[1][k] += (double)r[3 * i + k] * (b[i] - place[i]) / params->scale;
+        }
+    }
+    double part = sk_trimesh_cross(params->made, own[0], own[1], n);
+    for (int k = 0; k < 3 && part <= 1; k++)
+        normal[k] = (double)r[3 * k] * n[0] + (double)r[3 * k + 1] * n[1] + (double)r[3 * k + 2] * n[2];
+    return part;
+}
+
+static void ball(const void *data, const sk_pose *pose, sk_vec3 *middle, real *radius) {
+    const mesh_params *params = data;
+    const sk_tree_node *box = &params->made->node[0];
+    const real *r = pose->rotation, half = (real)(0.5 * params->scale);
+    sk_vec3 m = {half * (box->low[0] + box->high[0]), half * (box->low[1] + box->high[1]), half * (box->low[2] + box->high[2])};
+    sk_vec3 reach = {half * (box->high[0] - box->low[0]), half * (box->high[1] - box->low[1]), half * (box->high[2] - box->low[2])};
+    *middle = sk_add(pose->position, sk_v3(r[0] * m.x + r[1] * m.y + r[2] * m.z, r[3] * m.x + r[4] * m.y + r[5] * m.z,
+                                           r[6] * m.x + r[7] * m.y + r[8] * m.z));
+    *radius = (real)1.0001 * sk_length(reach);
+}
+
 static bool changes(const void *data) {
     return ((const mesh_params *)data)->made->led != NULL;
 }
@@ -152,6 +181,8 @@ const sk_collider_type sk_solid_mesh = {
     .is_shaped_by = is_shaped_by,
     .surface = surface_of,
     .begin = begin,
+    .cross = cross,
+    .ball = ball,
     .changes = changes,
     .follow = follow,
 };

@@ -26,12 +26,20 @@ void sk_add_row_on(sk_writer *writer, sk_row row, const sk_only *only) {
     }
 }
 
+/* Whether contact asks where the substep began. */
+static bool any_sweeps(const sk_rules *rules) {
+    for (size_t i = 0; i < rules->colliders.count; i++)
+        if (rules->colliders.data[i]->common->enabled && rules->colliders.data[i]->type->cross) return true;
+    return false;
+}
+
 size_t sk_write_repeat(sk_writer *writer, size_t times, double h) {
     writer->h = writer->before = h;
     writer->turns = times;
     sk_add_row(writer, (sk_row){.kind = SK_ROW_REPEAT, .end = times, .order = SK_ORDERED, .label = "repeat"});
     size_t repeat = writer->substep = writer->plan->count - 1;
     sk_write_meetings(writer, SK_MEETING_BEGIN, SK_NONE);
+    if (any_sweeps(writer->rules)) sk_write_sum(writer, SK_X0, 1, SK_X, 0, SK_NONE); // for methods that do not
     return repeat;
 }
 
@@ -623,6 +631,18 @@ void sk_write_contacts(sk_writer *writer, sk_contact_sort sort) {
                                         .rule = collider,
                                         .label = collider->label,
                                         .end = 1});
+        if (sort != SK_CONTACT_FORCE && collider->type->cross) {
+            sk_row sweep = {.kind = SK_ROW_CONTACT_POSITION,
+                            .order = SK_FREE,
+                            .kernel = sk_contact_sweep.version[writer->isa],
+                            .dst = SK_X,
+                            .source = {SK_X, SK_X0, settles ? SK_V0 : SK_NONE},
+                            .coefficient = {settles},
+                            .rule = collider,
+                            .label = collider->label,
+                            .end = writer->slot_count};
+            sk_add_row_on(writer, sweep, &collider->only);
+        }
         sk_row row = {.kind = sorts[sort].kind,
                                     .order = SK_FREE,
                                     .kernel = sorts[sort].kernels->version[writer->isa],

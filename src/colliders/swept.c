@@ -1,0 +1,112 @@
+/* Swept contact: a particle whose way in the substep leads through a surface stops at the surface, on the side that it came from.
+ *
+ *     x0 o                      The way from x0 to x, as the collider sees it, first crosses the surface at c. What is
+ *         \                     left of it there goes on along the surface, up to three times more; friction takes
+ *     =====c---o x'===          from it what it takes of a push as long as what is lost of it. Ordinary contact, which
+ *           \                   comes next, then finds the particle in touch.
+ *            o x
+ *
+ * For types that say where a way crosses them (`cross`): ordinary contact keeps particles at the thickness, so that ways up
+ * to half of it need no look. Position methods give the velocity the same move. */
+#include "base/kernels.h"
+#include "colliders/collider.h"
+
+#define SK_UNIT contact_sweep
+SK_KERNELS(sk_row_kernel, sweep);
+
+#ifdef SK_ISA
+
+void SK_KERNEL(sweep)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+    const sk_collider *collider = row->rule;
+    sk_swept sweep = sk_swept_begin(collider, run->time - row->dt, run->time - row->before, row->coefficient[0] > 0);
+    real half = (real)(0.5 * collider->common->thickness), per_step = (real)(row->coefficient[0] / row->dt);
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
+        bool packed = slot < row->packed;
+        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), x0 = sk_load_part(run->vector[row->source[1]], slot, packed);
+        const real *r = sweep.turn;
+        sk_wide3 from = {x0.x, x0.y, x0.z};
+        if (sweep.moves)
+            from = (sk_wide3){r[0] * x0.x + r[1] * x0.y + r[2] * x0.z + sweep.shift.x,
+                              r[3] * x0.x + r[4] * x0.y + r[5] * x0.z + sweep.shift.y,
+                              r[6] * x0.x + r[7] * x0.y + r[8] * x0.z + sweep.shift.z};
+        sk_wide3 way = {x.x - from.x, x.y - from.y, x.z - from.z};
+        sk_wide3 off = {x.x - sweep.middle.x, x.y - sweep.middle.y, x.z - sweep.middle.z};
+        sk_wide length = sk_wide_sqrt(sk_dot_wide(way, way)), near = length + sweep.radius;
+        sk_mask looked = sk_positive(x.w) & sk_more(length, sk_splat(half)) & sk_at_most(sk_dot_wide(off, off), near * near);
+        if (!sk_any(looked)) continue;
+        sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
+        bool any = false;
+        for (int l = 0; l < SK_PART; l++) {
+            if (!looked[l]) continue;
+            const double a[3] = {(double)from.x[l], (double)from.y[l], (double)from.z[l]};
+            double to[3] = {(double)x.x[l], (double)x.y[l], (double)x.z[l]};
+            if (!sk_swept_stop(&sweep, a, to)) continue;
+            any = true;
+            real moved[3] = {(real)to[0], (real)to[1], (real)to[2]};
+            v.x[l] += per_step * (moved[0] - x.x[l]), v.y[l] += per_step * (moved[1] - x.y[l]),
+                v.z[l] += per_step * (moved[2] - x.z[l]);
+            x.x[l] = moved[0], x.y[l] = moved[1], x.z[l] = moved[2];
+        }
+        if (!any) continue;
+        sk_store_part(run->vector[row->dst], slot, packed, x);
+        if (per_step > 0) sk_store_moved(run->vector[SK_V], slot, packed, v);
+    }
+}
+
+#else
+
+#include <math.h>
+
+enum { MOST_CROSSINGS = 4 };
+
+const sk_kernels sk_contact_sweep = {SK_EACH_ISA(sweep)};
+
+sk_swept sk_swept_begin(const sk_collider *collider, double from, double to, bool rubs) {
+    sk_pose start = sk_collider_pose_at(collider, from);
+    sk_swept sweep = {.collider = collider, .pose = sk_collider_pose_at(collider, to), .rubs = rubs};
+    const real *a = start.rotation, *b = sweep.pose.rotation;
+    const real p[3] = {start.position.x, start.position.y, start.position.z};
+    const real q[3] = {sweep.pose.position.x, sweep.pose.position.y, sweep.pose.position.z};
+    real shift[3];
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++)
+            sweep.turn[3 * r + c] = b[3 * r] * a[3 * c] + b[3 * r + 1] * a[3 * c + 1] + b[3 * r + 2] * a[3 * c + 2];
+        shift[r] = q[r] - (sweep.turn[3 * r] * p[0] + sweep.turn[3 * r + 1] * p[1] + sweep.turn[3 * r + 2] * p[2]);
+    }
+    for (int i = 0; i < 9; i++) sweep.moves |= a[i] != b[i];
+    for (int k = 0; k < 3; k++) sweep.moves |= p[k] != q[k];
+    sweep.shift = sk_v3(shift[0], shift[1], shift[2]);
+    collider->type->ball(collider->params, &sweep.pose, &sweep.middle, &sweep.radius);
+    sweep.radius += (real)collider->common->thickness;
+    return sweep;
+}
+
+bool sk_swept_stop(const sk_swept *sweep, const double start[3], double x[3]) {
+    const sk_collider *collider = sweep->collider;
+    double from[3] = {start[0], start[1], start[2]}, normal[3];
+    double size = fabs(x[0]) + fabs(x[1]) + fabs(x[2]) + 0.1;
+    double off = fmax(0.5 * collider->common->thickness, (sizeof(real) == 4 ? 2e-6 : 1e-13) * size);
+    for (int turn = 0; turn < MOST_CROSSINGS; turn++) {
+        double part = collider->type->cross(collider->params, &sweep->pose, from, x, normal);
+        if (part > 1) return turn > 0;
+        double closing = 0, length = 0, rest[3];
+        for (int k = 0; k < 3; k++) closing -= normal[k] * (x[k] - from[k]);
+        part = closing > 0 ? fmax(0, part - off / closing) : 0;
+        double lost = (1 - part) * closing;
+        for (int k = 0; k < 3; k++) {
+            double way = x[k] - from[k];
+            rest[k] = (1 - part) * way + lost * normal[k];
+            from[k] += part * way;
+            length += rest[k] * rest[k];
+        }
+        length = sqrt(length);
+        double rub = sweep->rubs ? collider->common->friction * lost : 0;
+        double keep = length > rub ? 1 - rub / length : 0;
+        for (int k = 0; k < 3; k++) x[k] = from[k] + keep * rest[k];
+    }
+    // in a corner with walls all round it stays where it came to
+    if (collider->type->cross(collider->params, &sweep->pose, from, x, normal) <= 1)
+        for (int k = 0; k < 3; k++) x[k] = from[k];
+    return true;
+}
+#endif
