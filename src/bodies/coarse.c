@@ -43,6 +43,10 @@ bool sk_coarse_fits(const sk_lines *lines) {
     return lines->rows >= 2 * LEAST_ROWS && sk_strip_width(lines->columns) >= LEAST_WIDTH;
 }
 
+bool sk_coarse_fits_across(uint32_t rows, uint32_t columns) {
+    return columns >= 2 * LEAST_ROWS && sk_strip_width(columns) < LEAST_WIDTH && sk_strip_width(rows) >= LEAST_WIDTH;
+}
+
 static bool in_grid(const sk_coarse_grid *grid, size_t width, size_t row, size_t column) {
     size_t block = column % width;
     return row >= grid->row_first && (row - grid->row_first) % grid->row_step == 0 && block >= grid->first &&

@@ -7,6 +7,8 @@
 #include "bodies/body.h"
 #include "bodies/lines.h"
 
+/* Whether a grid would have coarse ones if its rows were columns, and has none as it is. */
+bool sk_coarse_fits_across(uint32_t rows, uint32_t columns);
 /* Whether there are particles at all places, with cells between all of them, and enough for a coarse grid. */
 bool sk_coarse_fits(const sk_lines *lines);
 /* Bounds that the body's tether bound holds. `mass` of each particle; *coarsest receives the coarsest grid. */
