@@ -5,10 +5,9 @@
  * none is left, a plane between the features is what neither may pass, and corners go but a share of their ways. Such
  * planes stand still in the frame of what all go together, and hold for any smaller share, too; other pairs are looked
  * at again with these shares, until no more planes are needed. */
-#include "contact/touch.h"
+#include <string.h>
 
-/* Of a gap, a tenth is left in a substep; what is less than a four hundredth of the thickness does not close at all. */
-static const real left_over = (real)0.1, least_gap = (real)0.0025;
+#include "contact/touch.h"
 
 /* ---- ways ---- */
 
@@ -26,46 +25,28 @@ static sk_vec3 common_way(const sk_touch *touch) {
     return (sk_vec3){(real)(share * sum[0]), (real)(share * sum[1]), (real)(share * sum[2])};
 }
 
-/* Loads the places after the substep and what ways lead there; returns whether one may leave its vertex' reach. */
+/* Loads the places after the substep and what ways lead there; returns whether a vertex is lost on its way. */
 static bool load_ways(sk_touch *touch, const sk_run *run, const sk_row *row, sk_vec3 *common) {
     size_t count = touch->skin.vertex_count;
     for (size_t v = 0; v < count; v++)
         touch->q[v] = sk_load(run->vector[SK_X], row->packed, run->slot_of[touch->skin.particle[v]]);
-    *common = common_way(touch);
-    bool leaves = false;
-    touch->most_way = 0;
+    *common = touch->common = common_way(touch);
+    bool any = false;
     for (size_t v = 0; v < count; v++) {
         sk_vec3 way = sk_sub(sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v])), *common);
         real length = sk_length(way);
         if (!(length < (real)1e6)) way = (sk_vec3){0, 0, 0}, length = 0; // blown up: it meets nobody
-        touch->way[v] = (sk_vec4){way.x, way.y, way.z, length};
-        leaves |= touch->p[v].w + length > touch->reach[v];
-        touch->most_way = sk_max(touch->most_way, length);
+        touch->way[v] = touch->step[v] = (sk_vec4){way.x, way.y, way.z, length};
+        touch->share[v] = touch->next_share[v] = 1;
+        any |= touch->lost[v] = sk_is_lost(&touch->course[v], touch->now + 1, sk_xyz(touch->q[v]));
     }
-    return leaves;
+    return any;
 }
 
-/* ---- pairs that may close ---- */
-
-/* Those that could lose their gap, were all of both ways along the normal. */
-static bool find_closing(sk_touch *touch, sk_allocator *allocator, int sort, real least) {
-    const sk_pairs *kept = &touch->kept[sort];
-    sk_pairs *closing = &touch->closing[sort];
-    closing->count = 0;
-    if (!sk_pairs_reserve(closing, allocator, kept->count)) return false;
-    for (size_t k = 0; k < kept->count; k++) {
-        real moved[2], way[2];
-        if ((1 - left_over) * (kept->distance[k] - 2 * touch->most_moved - least) >= 2 * touch->most_way) continue;
-        sk_most_of_features(kept, sort, k, touch->way, way);
-        if (way[0] + way[1] <= 0) continue;
-        sk_most_of_features(kept, sort, k, touch->p, moved);
-        real gap = kept->distance[k] - moved[0] - moved[1];
-        if ((1 - left_over) * (gap - least) < way[0] + way[1]) sk_pairs_copy(closing, kept, k);
-    }
-    sk_pairs_pad(closing);
-    sk_closest[sort][touch->isa](touch->p, closing);
-    for (size_t k = 0; k < closing->count; k++) closing->settled[k] = 0;
-    return true;
+/* Looks for those that are lost, for this substep alone. */
+static bool renew(sk_touch *touch, sk_allocator *allocator) {
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->astray[v] |= touch->lost[v];
+    return sk_touch_renew(touch, allocator, SK_SEARCH_WAYS);
 }
 
 /* ---- planes ---- */
@@ -142,7 +123,7 @@ static bool settle_pair(sk_touch *touch, sk_pairs *pairs, int sort, size_t k, re
     line l = line_of(touch, pairs, sort, k);
     gap g = gap_of(touch, &l);
     real before = g.low - g.high, after = g.low_after - g.high_after;
-    real room = sk_max(0, (1 - left_over) * (before - least));
+    real room = sk_max(0, (1 - SK_LEFT_OVER) * (before - least));
     if (after >= before || after >= before - room) return false;
     pairs->settled[k] = 1;
     real upper, lower;
@@ -150,16 +131,45 @@ static bool settle_pair(sk_touch *touch, sk_pairs *pairs, int sort, size_t k, re
     return lower_shares(touch, &l, &g, upper, lower);
 }
 
-/* Each round looks at all shares as the round before left them, so no order counts. */
-static void find_shares(sk_touch *touch, real least) {
-    size_t count = touch->skin.vertex_count;
-    for (size_t v = 0; v < count; v++) touch->share[v] = touch->next_share[v] = 1;
-    for (bool lowered = true; lowered;) {
-        lowered = false;
-        for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
-            for (size_t k = 0; k < touch->closing[sort].count; k++)
-                if (!touch->closing[sort].settled[k]) lowered |= settle_pair(touch, &touch->closing[sort], sort, k, least);
-        for (size_t v = 0; v < count; v++) touch->share[v] = touch->next_share[v];
+/* Takes the shares that a round has found; returns whether a vertex is lost where it goes now. */
+static bool take_shares(sk_touch *touch, sk_vec3 common) {
+    bool any = false;
+    memset(touch->lost, 0, touch->skin.vertex_count);
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        touch->lowered[v] = touch->next_share[v] < touch->share[v];
+        if (!touch->lowered[v]) continue;
+        real share = touch->share[v] = touch->next_share[v];
+        sk_vec3 step = sk_scale(share, sk_xyz(touch->way[v])), to = sk_add(sk_add(sk_xyz(touch->p[v]), common), step);
+        touch->step[v] = (sk_vec4){step.x, step.y, step.z, 0};
+        any |= touch->lost[v] = !touch->astray[v] && sk_is_lost(&touch->course[v], touch->now + 1, to);
+    }
+    return any;
+}
+
+/* The first round looks at all pairs, the others at those with a corner whose share the round before has lowered. */
+static bool settle_pairs(sk_touch *touch, int sort, bool first, real least) {
+    sk_pairs *pairs = &touch->kept[sort];
+    const uint8_t *lowered = touch->lowered;
+    bool any = false;
+    if (first) sk_closing[sort][touch->isa](touch->p, touch->step, least, pairs);
+    for (size_t k = 0; k < pairs->count; k++) {
+        bool looks = first ? pairs->closes[k]
+                           : !pairs->settled[k] && (lowered[pairs->corner[0][k]] | lowered[pairs->corner[1][k]] |
+                                                    lowered[pairs->corner[2][k]] | lowered[pairs->corner[3][k]]);
+        if (looks) any |= settle_pair(touch, pairs, sort, k, least);
+    }
+    return any;
+}
+
+/* Each round looks at shares as the round before left them, so no order counts. */
+static bool find_shares(sk_touch *touch, sk_allocator *allocator, real least, sk_vec3 common) {
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
+        memset(touch->kept[sort].settled, 0, touch->kept[sort].count);
+    for (bool first = true;; first = false) {
+        bool lowered = false;
+        for (int sort = 0; sort < SK_PAIR_SORTS; sort++) lowered |= settle_pairs(touch, sort, first, least);
+        if (!lowered) return true;
+        if (take_shares(touch, common) && !renew(touch, allocator)) return false;
     }
 }
 
@@ -181,21 +191,13 @@ void sk_touch_bound(sk_run *run, const sk_row *row, size_t from, size_t end) {
     const sk_force *force = row->rule;
     sk_touch *touch = force->state;
     if (!touch || !touch->skin.vertex_count) return;
-    real thickness = (real)((const sk_contact_params *)force->params)->thickness, least = least_gap * thickness;
+    real thickness = (real)((const sk_contact_params *)force->params)->thickness, least = SK_LEAST_GAP * thickness;
     sk_vec3 common;
     bool good = true;
-    if (load_ways(touch, run, row, &common)) good = sk_touch_renew(touch, run->allocator, thickness);
-    for (int sort = 0; sort < SK_PAIR_SORTS && good; sort++) good = find_closing(touch, run->allocator, sort, least);
-    if (!good) {
-        run->no_memory = true;
-        return;
-    }
-    if (touch->closing[SK_CORNERS].count + touch->closing[SK_EDGES].count) {
-        find_shares(touch, least);
+    if (load_ways(touch, run, row, &common)) good = renew(touch, run->allocator);
+    if (good && touch->kept[SK_CORNERS].count + touch->kept[SK_EDGES].count) {
+        good = find_shares(touch, run->allocator, least, common);
         store_ways(touch, run, row, common);
     }
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        sk_vec4 *s = &touch->s[v];
-        s->x += common.x, s->y += common.y, s->z += common.z;
-    }
+    run->no_memory |= !good;
 }

@@ -40,6 +40,18 @@ SK_INLINE void note(sk_pairs *pairs, size_t k, sk_wide3 r, sk_wide u, sk_wide v)
     *part_of(pairs->share[1], k) = v;
 }
 
+/* Where features are nearest within themselves, some normal n of both is the pair's: r leads from one to the other. */
+SK_INLINE void note_within(sk_pairs *pairs, size_t k, sk_mask within, sk_wide3 n, sk_wide3 r) {
+    sk_wide square = sk_dot_wide(n, n), along = sk_dot_wide(n, r);
+    within &= sk_more(square, sk_splat(LEAST_AREA));
+    sk_wide scale = sk_splat(1) / sk_wide_sqrt(at_least(square, LEAST_AREA));
+    scale = sk_select(sk_negative(along), -scale, scale);
+    *part_of(pairs->distance, k) = sk_select(within, along * scale, *part_of(pairs->distance, k));
+    *part_of(pairs->normal[0], k) = sk_select(within, n.x * scale, *part_of(pairs->normal[0], k));
+    *part_of(pairs->normal[1], k) = sk_select(within, n.y * scale, *part_of(pairs->normal[1], k));
+    *part_of(pairs->normal[2], k) = sk_select(within, n.z * scale, *part_of(pairs->normal[2], k));
+}
+
 void SK_KERNEL(corners)(const sk_vec4 *x, sk_pairs *pairs) {
     const sk_wide one = sk_splat(1);
     for (size_t k = 0; k < pairs->count; k += SK_PART) {
@@ -61,6 +73,8 @@ void SK_KERNEL(corners)(const sk_vec4 *x, sk_pairs *pairs) {
         u = sk_select(inside, u, edge_u), v = sk_select(inside, v, edge_v);
         sk_wide3 r = {ap.x - u * ab.x - v * ac.x, ap.y - u * ab.y - v * ac.y, ap.z - u * ab.z - v * ac.z};
         note(pairs, k, r, u, v);
+        sk_wide3 n = {ab.y * ac.z - ab.z * ac.y, ab.z * ac.x - ab.x * ac.z, ab.x * ac.y - ab.y * ac.x};
+        note_within(pairs, k, inside, n, ap);
     }
 }
 
@@ -78,6 +92,11 @@ void SK_KERNEL(edges)(const sk_vec4 *x, sk_pairs *pairs) {
         s = sk_select(sk_differ(free, t), clamped((ab * t - ar) * inverse_a), s);
         sk_wide3 d = {r.x + s * a.x - t * b.x, r.y + s * a.y - t * b.y, r.z + s * a.z - t * b.z};
         note(pairs, k, d, s, t);
+        // within both edges, they lie across each other: their directions know the normal better than a distance of nothing
+        sk_wide3 n = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+        sk_mask within = sk_positive(s) & sk_more(sk_splat(1), s) & sk_positive(t) & sk_more(sk_splat(1), t) &
+                         sk_more(apart, sk_splat(PARALLEL) * aa * bb);
+        note_within(pairs, k, within, n, r);
     }
 }
 #else

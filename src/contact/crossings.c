@@ -1,4 +1,7 @@
 /* How many edges go through triangles now: what contact is there to prevent, and what a bad start has. */
+#include <math.h>
+#include <string.h>
+
 #include "contact/touch.h"
 
 typedef struct tally {
@@ -15,12 +18,23 @@ static double volume(const sk_vec4 *a, const sk_vec4 *b, const sk_vec4 *c, const
     return (u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] + (u[0] * v[1] - u[1] * v[0]) * w[2];
 }
 
+/* What is no more than this may be 0: places are no better known than reals are, and a flat sheet's own edges lie in the
+ * planes of its triangles. */
+static double flat(const sk_vec4 *a, const sk_vec4 *b, const sk_vec4 *c) {
+    const double share = sizeof(real) == 8 ? 1e-15 : 2.5e-7;
+    double u[3] = {(double)b->x - (double)a->x, (double)b->y - (double)a->y, (double)b->z - (double)a->z};
+    double v[3] = {(double)c->x - (double)a->x, (double)c->y - (double)a->y, (double)c->z - (double)a->z};
+    double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
+    double far = fabs((double)a->x) + fabs((double)a->y) + fabs((double)a->z);
+    return share * far * sqrt(x * x + y * y + z * z);
+}
+
 static bool crosses(const sk_vec4 *x, const uint32_t edge[2], const uint32_t t[3]) {
     for (int i = 0; i < 3; i++)
         if (edge[0] == t[i] || edge[1] == t[i]) return false;
     const sk_vec4 *p = &x[edge[0]], *q = &x[edge[1]], *a = &x[t[0]], *b = &x[t[1]], *c = &x[t[2]];
-    double one = volume(a, b, c, p), two = volume(a, b, c, q);
-    if (!((one > 0 && two < 0) || (one < 0 && two > 0))) return false;
+    double one = volume(a, b, c, p), two = volume(a, b, c, q), least = flat(a, b, c);
+    if (!((one > least && two < -least) || (one < -least && two > least))) return false;
     double ab = volume(p, q, a, b), bc = volume(p, q, b, c), ca = volume(p, q, c, a);
     return (ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0);
 }
@@ -34,10 +48,17 @@ static void count_of(tally *counting, size_t a, size_t b) {
                                        skin->triangle[triangles->first_triangle + t]);
 }
 
-static bool count_pair(void *data, size_t a, size_t b) {
-    count_of(data, a, b);
-    if (a != b) count_of(data, b, a);
-    return true;
+/* Boxes of what is there now, for nothing goes on. */
+static void put_boxes(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_of) {
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        sk_vec4 p = touch->p[v] = x[slot_of[touch->skin.particle[v]]];
+        sk_quad at = {p.x, p.y, p.z, 0};
+        touch->corner_box[v] = (sk_box){{at, at}, {at, at}};
+    }
+    memset(touch->anew, 1, touch->skin.leaf_count);
+    for (size_t i = 0; i < touch->skin.leaf_count; i++) sk_touch_leaf_box(touch, i);
+    touch->boxed = false;
+    touch->refit = true;
 }
 
 bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 *x, const uint32_t *slot_of,
@@ -45,10 +66,15 @@ bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 
     sk_touch *touch = force->state;
     *count = 0;
     if (!touch || !touch->skin.leaf_count) return true;
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->p[v] = x[slot_of[touch->skin.particle[v]]];
     tally counting = {touch, 0};
-    sk_touch_boxes(touch, NULL, 0);
-    if (!sk_touch_meet(touch, allocator, count_pair, &counting)) return false;
+    put_boxes(touch, x, slot_of);
+    if (!sk_touch_partners(touch, allocator, SIZE_MAX / 2)) return false;
+    for (size_t a = 0; a < touch->skin.leaf_count; a++)
+        for (uint32_t i = touch->start[a]; i < touch->start[a + 1]; i++) {
+            size_t b = touch->partner.data[i];
+            count_of(&counting, a, b);
+            if (a != b) count_of(&counting, b, a);
+        }
     *count = counting.count;
     return true;
 }

@@ -1,30 +1,73 @@
-/* The search for pairs: leaves are sorted into cells by their boxes' centres (a counting sort); of each two whose boxes
- * overlap, features whose boxes overlap; of these, those that are near enough. Boxes are widened by the reach of their
- * vertices and half the limit, so that boxes apart are features apart. Pairs come out in the order of leaves, which is
+/* The search for pairs: of vertices that are lost, or of all. Each vertex is expected on a straight course, and boxes go
+ * on with it: two that are apart, along one axis and on one side, both when the time begins and when it ends, do not meet
+ * in between. So what goes along with its neighbours, however fast, is as far from others as if it stood. Boxes are wider
+ * than their features by the reach of vertices and half of how near a pair has to be; of leaves whose boxes may meet,
+ * features whose boxes may; of these, those that no plane keeps apart. Pairs are kept in the order of leaves, which is
  * always the same. */
 #include <math.h>
 #include <string.h>
 
 #include "contact/touch.h"
 
+/* What is nearer than this share of its way may close in a substep: a little more than 1 / (1 - SK_LEFT_OVER). */
+static const real closing_share = (real)1.13;
+/* Thicknesses: nearest points of edges that are all but parallel are no better known. */
+static const real rounding = (real)0.002;
+
+/* ---- how near a pair has to be ---- */
+
+/* A vertex' part of it: a pair is near, or may close, below the sum of both features' parts, at places expected. */
+static real part_of(const sk_touch *touch, const sk_course *course) {
+    real relative = sk_length(sk_sub(course->step, touch->drift));
+    real closing = closing_share * (relative + 2 * course->reach);
+    return course->reach + sk_max((real)0.5 * SK_NEAR_THICKNESSES * touch->thickness, closing) + rounding * touch->thickness;
+}
+
 /* ---- boxes ---- */
 
-static inline bool overlap(const sk_box *a, const sk_box *b) {
-    return (a->low[0] <= b->high[0]) & (b->low[0] <= a->high[0]) & (a->low[1] <= b->high[1]) &
-           (b->low[1] <= a->high[1]) & (a->low[2] <= b->high[2]) & (b->low[2] <= a->high[2]);
+static inline sk_quad least_of(sk_quad a, sk_quad b) {
+    for (int k = 0; k < 4; k++) a[k] = a[k] < b[k] ? a[k] : b[k];
+    return a;
+}
+
+static inline sk_quad most_of(sk_quad a, sk_quad b) {
+    for (int k = 0; k < 4; k++) a[k] = a[k] > b[k] ? a[k] : b[k];
+    return a;
 }
 
 static inline void widen(sk_box *box, const sk_box *by) {
-    for (int k = 0; k < 3; k++) {
-        box->low[k] = sk_min(box->low[k], by->low[k]);
-        box->high[k] = sk_max(box->high[k], by->high[k]);
+    for (int end = 0; end < 2; end++) {
+        box->low[end] = least_of(box->low[end], by->low[end]);
+        box->high[end] = most_of(box->high[end], by->high[end]);
     }
 }
 
-static sk_box box_of(const sk_box *vertex_box, const uint32_t *vertex, int count) {
-    sk_box box = vertex_box[vertex[0]];
-    for (int k = 1; k < count; k++) widen(&box, &vertex_box[vertex[k]]);
-    return box;
+/* A feature's box: around its corners, and wider by the most that one of them asks for, which is its fourth number. */
+static void box_of(const sk_box *corner_box, const uint32_t *vertex, int count, sk_box *box) {
+    *box = corner_box[vertex[0]];
+    for (int k = 1; k < count; k++) widen(box, &corner_box[vertex[k]]);
+    for (int end = 0; end < 2; end++) {
+        real part = box->high[end][3];
+        box->low[end] -= (sk_quad){part, part, part, 0};
+        box->high[end] += (sk_quad){part, part, part, 0};
+    }
+}
+
+/* What is near enough to close in a substep, whatever shares of their ways both go. */
+static real part_of_way(const sk_touch *touch, size_t v) {
+    // partners that keep to their courses have theirs in the frame of the drift
+    real apart = sk_length(sk_sub(touch->common, touch->drift));
+    return closing_share * (touch->way[v].w + apart) + (SK_LEAST_GAP + rounding) * touch->thickness;
+}
+
+static void make_vertex_box(sk_touch *touch, size_t v, sk_touch_search_sort sort) {
+    const sk_course *course = &touch->course[v];
+    real part = sort == SK_SEARCH_WAYS ? part_of_way(touch, v) : part_of(touch, course);
+    for (int end = 0; end < 2; end++) {
+        sk_vec3 x = sort == SK_SEARCH_WAYS ? sk_xyz(touch->p[v]) : sk_expected(course, end ? touch->until : 0);
+        touch->corner_box[v].low[end] = (sk_quad){x.x, x.y, x.z, 0};
+        touch->corner_box[v].high[end] = (sk_quad){x.x, x.y, x.z, part};
+    }
 }
 
 static real square_between(const sk_vec4 *p, uint32_t a, uint32_t b) {
@@ -45,260 +88,278 @@ static bool is_torn(const sk_touch *touch, const uint32_t *vertex, int count) {
 }
 
 /* What has blown up meets nobody: its boxes overlap with all others, and a step would take minutes. */
-static bool has_blown_up(const sk_touch *touch, const sk_leaf *leaf) {
+static bool has_blown_up(const sk_touch *touch, const sk_leaf *leaf, const sk_box *box) {
     bool torn = !leaf->triangles && is_torn(touch, touch->skin.edge[leaf->first_edge], 2);
     for (size_t k = 0; k < leaf->triangles; k++)
         torn |= is_torn(touch, touch->skin.triangle[leaf->first_triangle + k], 3);
+    for (int end = 0; end < 2; end++)
+        for (int k = 0; k < 3; k++) torn |= !(box->low[end][k] >= (real)-1e15 && box->high[end][k] <= (real)1e15);
     return torn;
 }
 
-void sk_touch_boxes(sk_touch *touch, const real *reach, real limit) {
+void sk_touch_leaf_box(sk_touch *touch, size_t i) {
     const sk_skin *skin = &touch->skin;
-    for (size_t v = 0; v < skin->vertex_count; v++) {
-        sk_vec4 p = touch->p[v];
-        real r = (reach ? reach[v] : 0) + (real)0.5 * limit;
-        touch->vertex_box[v] = (sk_box){{p.x - r, p.y - r, p.z - r}, {p.x + r, p.y + r, p.z + r}};
-    }
-    for (size_t e = 0; e < skin->edge_count; e++) touch->edge_box[e] = box_of(touch->vertex_box, skin->edge[e], 2);
-    for (size_t t = 0; t < skin->triangle_count; t++)
-        touch->triangle_box[t] = box_of(touch->vertex_box, skin->triangle[t], 3);
+    const sk_leaf *leaf = &skin->leaf[i];
+    sk_box *box = &touch->leaf_box[i];
+    for (uint32_t k = 0, v = leaf->first_vertex; k < leaf->vertices; k++, v++)
+        box_of(touch->corner_box, &v, 1, &touch->vertex_box[v]);
+    for (size_t k = 0, e = leaf->first_edge; k < leaf->edges; k++, e++)
+        box_of(touch->corner_box, skin->edge[e], 2, &touch->edge_box[e]);
+    for (size_t k = 0, t = leaf->first_triangle; k < leaf->triangles; k++, t++)
+        box_of(touch->corner_box, skin->triangle[t], 3, &touch->triangle_box[t]);
+    *box = leaf->triangles ? touch->triangle_box[leaf->first_triangle] : touch->edge_box[leaf->first_edge];
+    for (size_t k = 1; k < leaf->triangles; k++) widen(box, &touch->triangle_box[leaf->first_triangle + k]);
+    if (!has_blown_up(touch, leaf, box)) return;
+    const sk_quad most = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX, 0};
+    *box = (sk_box){{most, most}, {-most, -most}};
+}
+
+static void make_boxes(sk_touch *touch, sk_touch_search_sort sort) {
+    bool all = sort == SK_SEARCH_ALL || !touch->boxed || touch->still;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++)
+        if (all || touch->lost[v]) make_vertex_box(touch, v, touch->lost[v] || touch->still ? sort : SK_SEARCH_LOST);
+    for (size_t i = 0; i < touch->skin.leaf_count; i++)
+        if (all || touch->anew[i]) sk_touch_leaf_box(touch, i);
+}
+
+/* ---- who is looked for ---- */
+
+/* Marks leaves that have a lost vertex. */
+static void mark_leaves(sk_touch *touch, bool all) {
+    const sk_skin *skin = &touch->skin;
     for (size_t i = 0; i < skin->leaf_count; i++) {
         const sk_leaf *leaf = &skin->leaf[i];
-        sk_box *box = &touch->leaf_box[i];
-        *box = leaf->triangles ? touch->triangle_box[leaf->first_triangle] : touch->edge_box[leaf->first_edge];
-        for (size_t k = 1; k < leaf->triangles; k++) widen(box, &touch->triangle_box[leaf->first_triangle + k]);
-        if (has_blown_up(touch, leaf)) box->high[0] = INFINITY;
+        bool anew = all;
+        for (size_t k = 0; k < leaf->triangles && !anew; k++)
+            for (int c = 0; c < 3; c++) anew |= touch->lost[skin->triangle[leaf->first_triangle + k][c]];
+        if (!leaf->triangles && !anew)
+            for (int c = 0; c < 2; c++) anew |= touch->lost[skin->edge[leaf->first_edge][c]];
+        touch->anew[i] = anew;
     }
-}
-
-/* ---- cells ---- */
-
-typedef struct frame {
-    double low[3], half, per; /* half the size of the largest box; cells a metre */
-    long count[3];
-} frame;
-
-static long cell_along(const frame *cells, int k, double x) {
-    double at = (x - cells->low[k]) * cells->per;
-    return at < 0 ? 0 : at >= (double)cells->count[k] ? cells->count[k] - 1 : (long)at;
-}
-
-/* Whether a box is one. */
-static bool is_sound(const sk_box *box) {
-    bool sound = true;
-    for (int k = 0; k < 3; k++) sound &= box->low[k] >= (real)-1e15 && box->high[k] <= (real)1e15;
-    return sound;
-}
-
-static double middle(const sk_box *box, int k) {
-    return 0.5 * ((double)box->low[k] + (double)box->high[k]);
-}
-
-/* Cells of half the largest box, fewer than four a leaf. */
-static frame frame_of(const sk_touch *touch) {
-    frame c = {.half = 0};
-    double high[3], size;
-    for (int k = 0; k < 3; k++) c.low[k] = INFINITY, high[k] = -INFINITY;
-    for (size_t i = 0; i < touch->skin.leaf_count; i++) {
-        const sk_box *box = &touch->leaf_box[i];
-        if (!is_sound(box)) continue;
-        for (int k = 0; k < 3; k++) {
-            double at = middle(box, k), extent = (double)box->high[k] - (double)box->low[k];
-            c.half = extent > 2 * c.half ? 0.5 * extent : c.half;
-            c.low[k] = at < c.low[k] ? at : c.low[k];
-            high[k] = at > high[k] ? at : high[k];
-        }
-    }
-    if (!(c.half > 0)) return c;
-    c.half *= 1.0001;
-    for (size = c.half;; size *= 1.3) {
-        double all = 1;
-        c.per = 1 / size;
-        for (int k = 0; k < 3; k++) all *= floor((high[k] - c.low[k]) * c.per) + 1;
-        if (all <= 4.0 * (double)touch->skin.leaf_count + 64) break;
-    }
-    for (int k = 0; k < 3; k++) c.count[k] = (long)((high[k] - c.low[k]) * c.per) + 1;
-    return c;
-}
-
-/* Sorts leaves by cell; within one they keep their order. */
-static bool sort_leaves(sk_touch *touch, sk_allocator *allocator, const frame *c) {
-    size_t count = touch->skin.leaf_count, all = (size_t)(c->count[0] * c->count[1] * c->count[2]);
-    if (!sk_reserve(allocator, (void **)&touch->start, &touch->start_capacity, all + 2, sizeof *touch->start))
-        return false;
-    uint32_t *start = touch->start;
-    memset(start, 0, (all + 2) * sizeof *start);
-    for (size_t i = 0; i < count; i++) {
-        const sk_box *box = &touch->leaf_box[i];
-        touch->cell[i] = UINT32_MAX;
-        if (!is_sound(box)) continue;
-        long at[3];
-        for (int k = 0; k < 3; k++) at[k] = cell_along(c, k, middle(box, k));
-        touch->cell[i] = (uint32_t)((at[2] * c->count[1] + at[1]) * c->count[0] + at[0]);
-        start[touch->cell[i] + 2]++;
-    }
-    for (size_t i = 2; i < all + 2; i++) start[i] += start[i - 1];
-    for (size_t i = 0; i < count; i++) {
-        if (touch->cell[i] == UINT32_MAX) continue;
-        uint32_t place = start[touch->cell[i] + 1]++;
-        touch->item[place] = (uint32_t)i;
-        touch->sorted_box[place] = touch->leaf_box[i];
-    }
-    return true;
-}
-
-/* Lists the later leaves whose boxes overlap that of a, in order. */
-static bool list_partners(sk_touch *touch, sk_allocator *allocator, const frame *c, size_t a) {
-    const sk_box *box = &touch->leaf_box[a];
-    long low[3], high[3];
-    for (int k = 0; k < 3; k++) {
-        low[k] = cell_along(c, k, (double)box->low[k] - c->half);
-        high[k] = cell_along(c, k, (double)box->high[k] + c->half);
-    }
-    touch->list.count = 0;
-    for (long z = low[2]; z <= high[2]; z++)
-        for (long y = low[1]; y <= high[1]; y++) {
-            size_t line = (size_t)((z * c->count[1] + y) * c->count[0]);
-            uint32_t end = touch->start[line + (size_t)high[0] + 1];
-            for (uint32_t i = touch->start[line + (size_t)low[0]]; i < end; i++) {
-                if (touch->item[i] <= a || !overlap(box, &touch->sorted_box[i])) continue;
-                if (!SK_RESERVE(allocator, &touch->list, touch->list.count + 1)) return false;
-                uint32_t *list = touch->list.data, b = touch->item[i];
-                size_t j = touch->list.count++;
-                for (; j && list[j - 1] > b; j--) list[j] = list[j - 1];
-                list[j] = b;
-            }
-        }
-    return true;
-}
-
-bool sk_touch_meet(sk_touch *touch, sk_allocator *allocator, bool (*meet)(void *data, size_t a, size_t b), void *data) {
-    frame c = frame_of(touch);
-    if (!(c.half > 0)) return true;
-    if (!sort_leaves(touch, allocator, &c)) return false;
-    for (size_t a = 0; a < touch->skin.leaf_count; a++) {
-        if (touch->cell[a] == UINT32_MAX) continue;
-        if (!list_partners(touch, allocator, &c, a) || !meet(data, a, a)) return false;
-        for (size_t i = 0; i < touch->list.count; i++)
-            if (!meet(data, a, touch->list.data[i])) return false;
-    }
-    return true;
 }
 
 /* ---- pairs ---- */
 
-typedef struct search {
-    sk_touch *touch;
-    sk_allocator *allocator;
-} search;
+typedef struct place {
+    uint32_t leaf[2];
+} place;
 
-static inline void put(sk_pairs *pairs, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+static inline void put(sk_pairs *pairs, const place *at, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
     size_t k = pairs->count++;
     pairs->corner[0][k] = a, pairs->corner[1][k] = b, pairs->corner[2][k] = c, pairs->corner[3][k] = d;
+    pairs->leaf[0][k] = at->leaf[0], pairs->leaf[1][k] = at->leaf[1];
 }
 
 /* Vertices of leaf a with triangles of leaf b. */
-static void put_corners(sk_touch *touch, const sk_leaf *a, size_t b_number) {
+static void put_corners(const sk_touch *touch, sk_pairs *fresh, const place *at, const sk_leaf *a, uint32_t b_number) {
     const sk_skin *skin = &touch->skin;
     const sk_leaf *b = &skin->leaf[b_number];
     for (uint32_t v = a->first_vertex; v < a->first_vertex + a->vertices; v++) {
-        if (!overlap(&touch->vertex_box[v], &touch->leaf_box[b_number])) continue;
+        const sk_box box = touch->vertex_box[v];
+        if (!sk_boxes_meet(&box, &touch->leaf_box[b_number])) continue;
         for (uint32_t t = b->first_triangle; t < b->first_triangle + b->triangles; t++) {
             const uint32_t *corner = skin->triangle[t];
-            if (v != corner[0] && v != corner[1] && v != corner[2] &&
-                overlap(&touch->vertex_box[v], &touch->triangle_box[t]))
-                put(&touch->kept[SK_CORNERS], v, corner[0], corner[1], corner[2]);
+            if (sk_boxes_meet(&box, &touch->triangle_box[t]) && v != corner[0] && v != corner[1] && v != corner[2])
+                put(fresh, at, v, corner[0], corner[1], corner[2]);
         }
     }
 }
 
-static void put_edges(sk_touch *touch, size_t a_number, size_t b_number) {
+static void put_edges(const sk_touch *touch, sk_pairs *fresh, const place *at) {
     const sk_skin *skin = &touch->skin;
-    const sk_leaf *a = &skin->leaf[a_number], *b = &skin->leaf[b_number];
+    const sk_leaf *a = &skin->leaf[at->leaf[0]], *b = &skin->leaf[at->leaf[1]];
     for (uint32_t e = a->first_edge; e < a->first_edge + a->edges; e++) {
-        if (!overlap(&touch->edge_box[e], &touch->leaf_box[b_number])) continue;
+        const sk_box box = touch->edge_box[e];
+        if (!sk_boxes_meet(&box, &touch->leaf_box[at->leaf[1]])) continue;
         const uint32_t *one = skin->edge[e];
-        for (uint32_t f = a_number == b_number ? e + 1 : b->first_edge; f < b->first_edge + b->edges; f++) {
+        for (uint32_t f = a == b ? e + 1 : b->first_edge; f < b->first_edge + b->edges; f++) {
             const uint32_t *two = skin->edge[f];
-            if (overlap(&touch->edge_box[e], &touch->edge_box[f]) && one[0] != two[0] && one[0] != two[1] &&
-                one[1] != two[0] && one[1] != two[1])
-                put(&touch->kept[SK_EDGES], one[0], one[1], two[0], two[1]);
+            if (sk_boxes_meet(&box, &touch->edge_box[f]) && one[0] != two[0] && one[0] != two[1] && one[1] != two[0] &&
+                one[1] != two[1])
+                put(fresh, at, one[0], one[1], two[0], two[1]);
         }
     }
 }
 
-static bool add_pairs(void *data, size_t a, size_t b) {
-    const search *s = data;
-    sk_touch *touch = s->touch;
+/* Lists the pairs of features of leaves that may meet. */
+static bool list_fresh(sk_touch *touch, sk_allocator *allocator, int sort) {
     const sk_skin *skin = &touch->skin;
-    enum { MOST = 64, MOST_A_VERTEX = 1000 }; // of two leaves: 2 x 4 x 2 corners, 5 x 5 edges
-    // what has blown up is everywhere at once: gigabytes of pairs, and minutes a step
-    if (touch->kept[SK_CORNERS].count + touch->kept[SK_EDGES].count > MOST_A_VERTEX * (skin->vertex_count + MOST)) {
-        touch->gave_up = true;
-        return false;
-    }
-    for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
-        if (!sk_pairs_reserve(&touch->kept[sort], s->allocator, touch->kept[sort].count + MOST)) return false;
-    put_corners(touch, &skin->leaf[a], b);
-    if (a != b) put_corners(touch, &skin->leaf[b], a);
-    put_edges(touch, a, b);
-    return true;
+    enum { MOST = 64 }; // of two leaves: 2 x 4 x 2 corners, 5 x 5 edges
+    sk_pairs fresh = touch->fresh; // so that its arrays stay in registers
+    fresh.count = 0;
+    bool good = true;
+    for (uint32_t a = 0; a < skin->leaf_count && good; a++)
+        for (uint32_t i = touch->start[a]; i < touch->start[a + 1] && good; i++) {
+            place at = {{a, touch->partner.data[i]}};
+            if (!(good = sk_pairs_reserve(&fresh, allocator, fresh.count + MOST))) break;
+            if (sort == SK_EDGES) {
+                put_edges(touch, &fresh, &at);
+                continue;
+            }
+            put_corners(touch, &fresh, &at, &skin->leaf[a], at.leaf[1]);
+            if (at.leaf[1] != a) put_corners(touch, &fresh, &at, &skin->leaf[at.leaf[1]], a);
+        }
+    touch->fresh = fresh;
+    sk_pairs_pad(&touch->fresh);
+    return good;
 }
 
-/* Leaves those that are near enough. */
-static void keep_near(sk_touch *touch, int sort, real limit) {
-    sk_pairs *pairs = &touch->kept[sort];
-    const real *reach = touch->reach;
-    sk_pairs_pad(pairs);
-    sk_closest[sort][touch->isa](touch->p, pairs);
+/* Leaves those that may come near. */
+static void keep_near(sk_touch *touch, int sort, sk_touch_search_sort search) {
+    sk_pairs *pairs = &touch->fresh;
+    bool ways = search == SK_SEARCH_WAYS;
+    sk_nearing_values values = {.near = SK_NEAR_THICKNESSES * touch->thickness,
+                                .rounding = 2 * rounding * touch->thickness,
+                                .closing = closing_share,
+                                .per = 1 / (touch->until - touch->now)};
+    if (ways)
+        values = (sk_nearing_values){.near = (SK_LEAST_GAP + rounding) * touch->thickness, .shares = 1 - 1 / closing_share};
+    sk_closest[sort][touch->isa](touch->at, pairs);
+    sk_nearing[sort][touch->isa](touch->at, touch->in_the_end, &values, pairs);
     size_t count = pairs->count;
     pairs->count = 0;
     for (size_t k = 0; k < count; k++) {
-        real r[4];
-        for (int c = 0; c < 4; c++) r[c] = reach[pairs->corner[c][k]];
-        real one = sort == SK_EDGES ? sk_max(r[0], r[1]) : r[0];
-        real two = sort == SK_EDGES ? sk_max(r[2], r[3]) : sk_max(r[1], sk_max(r[2], r[3]));
-        if (pairs->distance[k] < limit + one + two) sk_pairs_copy(pairs, pairs, k);
+        pairs->settled[k] = 0;
+        if (pairs->closes[k]) sk_pairs_copy(pairs, pairs, k);
     }
     sk_pairs_pad(pairs);
 }
 
 /* A surface as it was built is not pushed apart: features of one piece are as thick as their distance then allows. */
-static void set_thickness(sk_touch *touch, int sort, real thickness) {
+static void set_thickness(sk_touch *touch, int sort) {
     const real share = (real)0.9;
-    sk_pairs *pairs = &touch->kept[sort], rest = *pairs;
-    rest.distance = touch->rest.distance;
-    for (int c = 0; c < 3; c++) rest.normal[c] = touch->rest.normal[c];
-    for (int c = 0; c < 2; c++) rest.share[c] = touch->rest.share[c];
-    sk_closest[sort][touch->isa](touch->skin.built, &rest);
+    sk_pairs *pairs = &touch->fresh;
+    sk_closest[sort][touch->isa](touch->skin.built, pairs);
     const uint32_t *piece = touch->skin.piece;
     for (size_t k = 0; k < pairs->count; k++) {
         bool same = piece[pairs->corner[0][k]] == piece[pairs->corner[2][k]];
-        pairs->thickness[k] = same ? sk_min(thickness, share * rest.distance[k]) : thickness;
+        pairs->thickness[k] = same ? sk_min(touch->thickness, share * pairs->distance[k]) : touch->thickness;
     }
 }
 
-bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, real thickness, real limit) {
-    search s = {touch, allocator};
-    sk_touch_boxes(touch, touch->reach, limit);
-    for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->kept[sort].count = 0;
-    touch->found = false;
-    touch->searches++;
-    touch->gave_up = false;
-    if (!sk_touch_meet(touch, allocator, add_pairs, &s)) {
-        for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->kept[sort].count = 0;
-        return touch->gave_up;
+/* ---- fresh pairs go among those that are kept ---- */
+
+static inline uint64_t place_of(const sk_pairs *pairs, size_t k) {
+    return k < pairs->count ? (uint64_t)pairs->leaf[0][k] << 32 | pairs->leaf[1][k] : UINT64_MAX;
+}
+
+/* What a bound has settled stays so, although it was looked for anew. */
+static void stay_settled(sk_pairs *fresh, size_t from, const sk_pairs *kept, size_t old) {
+    uint64_t at = place_of(kept, old);
+    for (size_t k = from; kept->settled[old] && place_of(fresh, k) == at; k++) {
+        bool same = true;
+        for (int c = 0; c < 4; c++) same &= fresh->corner[c][k] == kept->corner[c][old];
+        fresh->settled[k] |= same;
     }
-    for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
-        keep_near(touch, sort, limit);
-        if (!sk_pairs_reserve(&touch->rest, allocator, touch->kept[sort].count)) return false;
-        set_thickness(touch, sort, thickness);
+}
+
+/* Those of leaves that were looked for go, and fresh ones come. */
+static bool merge(sk_touch *touch, sk_allocator *allocator, int sort) {
+    sk_pairs *fresh = &touch->fresh, *kept = &touch->kept[sort], *merged = &touch->merged;
+    if (!sk_pairs_reserve(merged, allocator, kept->count + fresh->count)) return false;
+    merged->count = 0;
+    const uint8_t *anew = touch->anew;
+    size_t first = 0, k = 0; // of those that have not been taken over yet
+    for (size_t i = 0; i <= kept->count; i++) {
+        uint64_t at = place_of(kept, i);
+        bool goes = i < kept->count && (anew[kept->leaf[0][i]] | anew[kept->leaf[1][i]]);
+        if (!goes && i < kept->count && at <= place_of(fresh, k)) continue;
+        if (at <= place_of(fresh, k) && i < kept->count) {
+            stay_settled(fresh, k, kept, i);
+            sk_pairs_take(merged, kept, first, i);
+            first = i + 1;
+            continue;
+        }
+        sk_pairs_take(merged, kept, first, i);
+        first = i;
+        size_t run = k;
+        while (k < fresh->count && place_of(fresh, k) < at) k++;
+        sk_pairs_take(merged, fresh, run, k);
+        if (i == kept->count) break;
+        i--; // it is looked at once more, after those that come before it
     }
+    sk_pairs_pad(merged);
+    sk_pairs other = *kept;
+    *kept = *merged, *merged = other;
+    return true;
+}
+
+/* ---- the search ---- */
+
+/* A horizon at which what goes its own way has gone some thicknesses. */
+static void look_ahead(sk_touch *touch) {
+    const real least = 2, most = 10, longest = 640;
+    // where all have kept to their courses, they will for longer
+    real last = touch->now, longer = touch->kept_course ? sk_min(2 * last, longest) : 0;
+    touch->kept_course = true;
+    size_t count = touch->skin.vertex_count;
+    double drift[3] = {0, 0, 0}, sum = 0;
+    for (size_t v = 0; v < count; v++) {
+        sk_vec3 step = touch->course[v].step;
+        drift[0] += (double)step.x, drift[1] += (double)step.y, drift[2] += (double)step.z;
+    }
+    double share = 1 / (double)count;
+    touch->drift = (sk_vec3){(real)(share * drift[0]), (real)(share * drift[1]), (real)(share * drift[2])};
+    for (size_t v = 0; v < count; v++) sum += (double)sk_length(sk_sub(touch->course[v].step, touch->drift));
+    real ahead = touch->thickness / (real)(share * sum + 1e-9);
+    touch->until = ahead < least ? least : ahead < most ? ahead : most; // of what is no number, too
+    if (longer > touch->until) touch->until = longer;
+    touch->now = 0;
+}
+
+/* Where vertices are expected now, with how far off they may be, and in the end. */
+static void expect(sk_touch *touch, sk_touch_search_sort sort) {
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        touch->s[v] = touch->p[v];
-        touch->p[v].w = 0;
+        const sk_course *course = &touch->course[v];
+        if (sort == SK_SEARCH_WAYS) {
+            sk_vec3 end = sk_add(sk_xyz(touch->p[v]), sk_xyz(touch->way[v]));
+            touch->at[v] = touch->p[v];
+            touch->in_the_end[v] = (sk_vec4){end.x, end.y, end.z, 0};
+            continue;
+        }
+        sk_vec3 at = sk_expected(course, touch->now), end = sk_expected(course, touch->until);
+        touch->at[v] = (sk_vec4){at.x, at.y, at.z, course->reach};
+        touch->in_the_end[v] = (sk_vec4){end.x, end.y, end.z, 0};
     }
-    touch->most_moved = 0;
+}
+
+/* Whether more than one vertex in thirty is lost. */
+static bool is_many(const sk_touch *touch) {
+    size_t count = touch->skin.vertex_count, lost = 0;
+    for (size_t v = 0; v < count; v++) lost += touch->lost[v];
+    return 30 * lost > count;
+}
+
+bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_sort search) {
+    const size_t most_a_vertex = 1000; // what is everywhere at once: gigabytes of pairs, and minutes a step
+    size_t count = touch->skin.vertex_count, most = most_a_vertex * (count + 64) / 13;
+    bool all = search == SK_SEARCH_ALL;
+    touch->searches++;
+    if (all) look_ahead(touch);
+    else touch->kept_course = false;
+    mark_leaves(touch, all);
+    // for a whole substep and many vertices, smaller boxes that stand are worth making all anew
+    touch->still = search == SK_SEARCH_WAYS && is_many(touch);
+    make_boxes(touch, search);
+    touch->refit |= all || touch->still || !touch->boxed;
+    touch->boxed = !touch->still;
+    touch->found = touch->gave_up = false;
+    for (int sort = 0; sort < SK_PAIR_SORTS && all; sort++) touch->kept[sort].count = 0;
+    if (!sk_touch_partners(touch, allocator, most)) return false;
+    if (touch->first.count > most) {
+        touch->gave_up = true;
+        touch->given_up++;
+        for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->kept[sort].count = 0;
+        return true;
+    }
+    expect(touch, search);
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
+        if (!list_fresh(touch, allocator, sort)) return false;
+        keep_near(touch, sort, search);
+        set_thickness(touch, sort);
+        if (search == SK_SEARCH_WAYS) sk_closest[sort][touch->isa](touch->p, &touch->fresh);
+        if (!merge(touch, allocator, sort)) return false;
+    }
     touch->found = true;
     return true;
 }

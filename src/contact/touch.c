@@ -19,67 +19,63 @@ static sk_touch *touch_of(const sk_row *row) {
     return ((const sk_force *)row->rule)->state;
 }
 
-bool sk_touch_renew(sk_touch *touch, sk_allocator *allocator, real thickness) {
-    const real least = (real)0.25 * thickness, ahead = (real)2.5; // substeps that a reach is to last
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->reach[v] = sk_max(least, ahead * touch->way[v].w);
-    touch->thickness = thickness;
-    return sk_touch_search(touch, allocator, thickness, SK_NEAR_THICKNESSES * thickness);
+/* A vertex goes on as it does now; what is fast is seldom as steady. */
+static sk_course course_from(const sk_touch *touch, sk_vec3 at, sk_vec3 step, real since, real wanted) {
+    const real share = (real)0.25;
+    real reach = share * sk_max(touch->thickness, sk_length(sk_sub(step, touch->drift)));
+    reach = sk_max(reach, sk_min(wanted, touch->thickness));
+    return (sk_course){at, step, since, reach};
 }
 
-/* How far vertices will go in a substep, beside what all do together. */
-static void guess_ways(sk_touch *touch, const sk_run *run, const sk_row *row) {
-    const sk_skin *skin = &touch->skin;
-    double sum[3] = {0, 0, 0};
-    for (size_t v = 0; v < skin->vertex_count; v++) {
-        sk_vec4 velocity = sk_load(run->vector[SK_V], row->packed, run->slot_of[skin->particle[v]]);
-        touch->way[v] = velocity;
-        sum[0] += (double)velocity.x, sum[1] += (double)velocity.y, sum[2] += (double)velocity.z;
-    }
-    double share = 1 / (double)skin->vertex_count;
-    sk_vec3 mean = {(real)(share * sum[0]), (real)(share * sum[1]), (real)(share * sum[2])};
-    for (size_t v = 0; v < skin->vertex_count; v++) {
-        real way = (real)row->dt * sk_length(sk_sub(sk_xyz(touch->way[v]), mean));
-        touch->way[v].w = way < (real)1e3 ? way : 0;
-    }
+bool sk_touch_renew(sk_touch *touch, sk_allocator *allocator, sk_touch_search_sort search) {
+    if (!sk_touch_search(touch, allocator, search)) return false;
+    for (int sort = 0; sort < SK_PAIR_SORTS && search != SK_SEARCH_WAYS; sort++)
+        sk_closest[sort][touch->isa](touch->p, &touch->kept[sort]);
+    return true;
 }
 
-/* The places before the substep; returns whether a vertex has left its reach. */
+/* The places before the substep; returns whether a vertex is lost. */
 static bool load_places(sk_touch *touch, const sk_run *run, const sk_row *row) {
-    bool left = false;
-    touch->most_moved = 0;
+    bool any = false;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         sk_vec4 x = sk_load(run->vector[SK_X], row->packed, run->slot_of[touch->skin.particle[v]]);
         touch->inverse[v] = x.w;
-        x.w = sk_length(sk_sub(sk_xyz(x), sk_xyz(touch->s[v])));
-        left |= x.w > touch->reach[v];
-        touch->most_moved = sk_max(touch->most_moved, x.w);
         touch->p[v] = x;
+        any |= touch->lost[v] = touch->astray[v] | sk_is_lost(&touch->course[v], touch->now, sk_xyz(x));
+        touch->astray[v] = 0;
     }
-    return left;
+    return any;
 }
 
-/* Looks closely at pairs that may be near, and keeps those that are. */
+enum { FEW = 50 }; /* one in so many */
+
+/* Courses of lost vertices, or of all: as their velocities are. */
+static void set_courses(sk_touch *touch, const sk_run *run, const sk_row *row, bool all) {
+    // where few are lost, these are what shivers: wider reaches for them cost less than a search in each substep
+    size_t count = touch->skin.vertex_count, lost = 0;
+    for (size_t v = 0; v < count; v++) lost += touch->lost[v];
+    bool few = !all && FEW * lost < count;
+    for (size_t v = 0; v < count; v++) {
+        if (!all && !touch->lost[v]) continue;
+        sk_vec4 velocity = sk_load(run->vector[SK_V], row->packed, run->slot_of[touch->skin.particle[v]]);
+        sk_vec3 step = sk_scale((real)row->dt, sk_xyz(velocity));
+        if (!(sk_dot(step, step) < (real)1e12)) step = (sk_vec3){0, 0, 0}; // blown up
+        touch->course[v] = course_from(touch, sk_xyz(touch->p[v]), step, all ? 0 : touch->now, few ? 2 * touch->course[v].reach : 0);
+    }
+}
+
+/* Keeps those that are near. */
 static bool find_near(sk_touch *touch, sk_allocator *allocator, int sort) {
     const sk_pairs *kept = &touch->kept[sort];
     sk_pairs *near = &touch->near[sort];
     near->count = 0;
     if (!sk_pairs_reserve(near, allocator, kept->count)) return false;
     for (size_t k = 0; k < kept->count; k++) {
-        real most[2], limit = SK_NEAR_THICKNESSES * kept->thickness[k];
-        if (kept->distance[k] - 2 * touch->most_moved >= limit) continue;
-        sk_most_of_features(kept, sort, k, touch->p, most);
-        if (kept->distance[k] - most[0] - most[1] < limit) sk_pairs_copy(near, kept, k);
-    }
-    sk_pairs_pad(near);
-    sk_closest[sort][touch->isa](touch->p, near);
-    size_t count = near->count;
-    near->count = 0;
-    for (size_t k = 0; k < count; k++) {
-        if (!(near->distance[k] < SK_NEAR_THICKNESSES * near->thickness[k])) continue;
+        if (!(kept->distance[k] < SK_NEAR_THICKNESSES * kept->thickness[k])) continue;
         size_t to = near->count;
-        sk_pairs_copy(near, near, k);
-        for (int c = 0; c < 3; c++) near->normal[c][to] = near->normal[c][k];
-        for (int c = 0; c < 2; c++) near->share[c][to] = near->share[c][k];
+        sk_pairs_copy(near, kept, k);
+        for (int c = 0; c < 3; c++) near->normal[c][to] = kept->normal[c][k];
+        for (int c = 0; c < 2; c++) near->share[c][to] = kept->share[c][k];
     }
     return true;
 }
@@ -89,10 +85,16 @@ static void begin(sk_run *run, const sk_row *row, size_t from, size_t end) {
     sk_touch *touch = touch_of(row);
     real thickness = (real)params_of(row)->thickness;
     if (!touch || !touch->skin.vertex_count) return;
-    bool left = load_places(touch, run, row), good = true;
-    if (left || !touch->found || touch->thickness < thickness || touch->thickness > thickness) {
-        guess_ways(touch, run, row);
-        good = sk_touch_renew(touch, run->allocator, thickness);
+    touch->now += 1;
+    bool all = !touch->found || touch->thickness < thickness || touch->thickness > thickness ||
+               touch->now + 1 > touch->until;
+    touch->thickness = thickness;
+    bool lost = load_places(touch, run, row), good = true;
+    if (lost || all) {
+        set_courses(touch, run, row, all);
+        good = sk_touch_renew(touch, run->allocator, all ? SK_SEARCH_ALL : SK_SEARCH_LOST);
+    } else {
+        for (int sort = 0; sort < SK_PAIR_SORTS; sort++) sk_closest[sort][touch->isa](touch->p, &touch->kept[sort]);
     }
     for (int sort = 0; sort < SK_PAIR_SORTS && good; sort++) good = find_near(touch, run->allocator, sort);
     run->no_memory |= !good;
@@ -157,37 +159,48 @@ static void push(sk_run *run, const sk_row *row, size_t from, size_t end) {
 /* ---- the kind ---- */
 
 static void release_vertices(sk_touch *touch, sk_allocator *allocator) {
-    void *arrays[] = {touch->p,        touch->q,          touch->way,      touch->s,    touch->reach,
-                      touch->inverse,  touch->share,      touch->next_share, touch->vertex_box, touch->edge_box,
-                      touch->triangle_box, touch->leaf_box, touch->sorted_box, touch->cell, touch->item};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
-    touch->p = touch->q = touch->way = touch->s = NULL;
-    touch->reach = touch->inverse = touch->share = touch->next_share = NULL;
-    touch->vertex_box = touch->edge_box = touch->triangle_box = touch->leaf_box = touch->sorted_box = NULL;
-    touch->cell = touch->item = NULL;
+    void **arrays[] = {(void **)&touch->p,          (void **)&touch->q,          (void **)&touch->way,
+                       (void **)&touch->step,       (void **)&touch->at,         (void **)&touch->in_the_end,
+                       (void **)&touch->course,     (void **)&touch->inverse,    (void **)&touch->share,
+                       (void **)&touch->next_share, (void **)&touch->lost,       (void **)&touch->astray,      (void **)&touch->vertex_box, (void **)&touch->corner_box, (void **)&touch->lowered,
+                       (void **)&touch->edge_box,   (void **)&touch->triangle_box, (void **)&touch->leaf_box,
+                       (void **)&touch->anew,       (void **)&touch->changed,      (void **)&touch->start,      (void **)&touch->hit};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        sk_release(allocator, *arrays[i]);
+        *arrays[i] = NULL;
+    }
+    sk_tree_release(&touch->tree, allocator);
 }
 
 static bool make_vertices(sk_touch *touch, sk_allocator *allocator) {
     const sk_skin *skin = &touch->skin;
-    size_t count = skin->vertex_count + 1, leaves = skin->leaf_count + 1;
+    size_t count = skin->vertex_count + 1, leaves = skin->leaf_count + SK_TREE_WIDTH;
     touch->p = sk_allocate(allocator, count * sizeof *touch->p);
     touch->q = sk_allocate(allocator, count * sizeof *touch->q);
     touch->way = sk_allocate(allocator, count * sizeof *touch->way);
-    touch->s = sk_allocate(allocator, count * sizeof *touch->s);
-    touch->reach = sk_allocate(allocator, count * sizeof *touch->reach);
+    touch->step = sk_allocate(allocator, count * sizeof *touch->step);
+    touch->at = sk_allocate(allocator, count * sizeof *touch->at);
+    touch->in_the_end = sk_allocate(allocator, count * sizeof *touch->in_the_end);
+    touch->course = sk_allocate(allocator, count * sizeof *touch->course);
     touch->inverse = sk_allocate(allocator, count * sizeof *touch->inverse);
     touch->share = sk_allocate(allocator, count * sizeof *touch->share);
     touch->next_share = sk_allocate(allocator, count * sizeof *touch->next_share);
+    touch->lost = sk_allocate(allocator, count * sizeof *touch->lost);
+    touch->astray = sk_allocate(allocator, count * sizeof *touch->astray);
+    touch->lowered = sk_allocate(allocator, count * sizeof *touch->lowered);
+    touch->corner_box = sk_allocate(allocator, count * sizeof *touch->corner_box);
     touch->vertex_box = sk_allocate(allocator, count * sizeof *touch->vertex_box);
     touch->edge_box = sk_allocate(allocator, (skin->edge_count + 1) * sizeof *touch->edge_box);
     touch->triangle_box = sk_allocate(allocator, (skin->triangle_count + 1) * sizeof *touch->triangle_box);
     touch->leaf_box = sk_allocate(allocator, leaves * sizeof *touch->leaf_box);
-    touch->sorted_box = sk_allocate(allocator, leaves * sizeof *touch->sorted_box);
-    touch->cell = sk_allocate(allocator, leaves * sizeof *touch->cell);
-    touch->item = sk_allocate(allocator, leaves * sizeof *touch->item);
-    return touch->p && touch->q && touch->way && touch->s && touch->reach && touch->inverse && touch->share &&
-           touch->next_share && touch->vertex_box && touch->edge_box && touch->triangle_box && touch->leaf_box &&
-           touch->sorted_box && touch->cell && touch->item;
+    touch->anew = sk_allocate(allocator, leaves * sizeof *touch->anew);
+    touch->changed = sk_allocate(allocator, leaves * sizeof *touch->changed);
+    touch->start = sk_allocate(allocator, leaves * sizeof *touch->start);
+    touch->hit = sk_allocate(allocator, leaves * sizeof *touch->hit);
+    return touch->p && touch->q && touch->way && touch->step && touch->at && touch->in_the_end && touch->course &&
+           touch->inverse && touch->share && touch->next_share && touch->lost && touch->astray && touch->lowered && touch->corner_box && touch->vertex_box &&
+           touch->edge_box && touch->triangle_box && touch->leaf_box && touch->anew && touch->changed && touch->start && touch->hit &&
+           sk_tree_make(&touch->tree, allocator, skin);
 }
 
 static void release(sk_force *force, sk_allocator *allocator) {
@@ -198,11 +211,12 @@ static void release(sk_force *force, sk_allocator *allocator) {
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
         sk_pairs_release(&touch->kept[sort], allocator);
         sk_pairs_release(&touch->near[sort], allocator);
-        sk_pairs_release(&touch->closing[sort], allocator);
     }
-    sk_pairs_release(&touch->rest, allocator);
-    sk_release(allocator, touch->start);
-    sk_release(allocator, touch->list.data);
+    sk_pairs_release(&touch->fresh, allocator);
+    sk_pairs_release(&touch->merged, allocator);
+    sk_release(allocator, touch->first.data);
+    sk_release(allocator, touch->second.data);
+    sk_release(allocator, touch->partner.data);
     sk_release(allocator, touch);
     force->state = NULL;
 }
@@ -224,7 +238,7 @@ static bool prepare(sk_force *force, sk_allocator *allocator, const sk_particles
     if (touch->p && touch->shape == shape) return true;
     release_vertices(touch, allocator);
     touch->shape = shape;
-    touch->found = false;
+    touch->found = touch->boxed = false;
     if (sk_skin_make(&touch->skin, allocator, particles, &force->only, parts) && make_vertices(touch, allocator))
         return true;
     release(force, allocator);

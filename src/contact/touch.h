@@ -1,20 +1,22 @@
 /* Contact of surfaces with themselves and each other: what a rule that meets (forces/force.h) keeps between its rows.
  *
- *   begin   P = X; pairs of features that may come near are found anew if a vertex has left its reach;
- *           those nearer than thickness and a quarter are looked at closely: distance, normal, places of contact
- *   push    each of them, in a fixed order, is brought to its thickness, with friction
+ *   begin   P = X; pairs of features that may come near are found anew where a vertex has left its way; all that are
+ *           kept are looked at: distance, normal, places of contact; those nearer than thickness and a quarter are near
+ *   push    each of these, in a fixed order, is brought to its thickness, with friction
  *   bound   no vertex goes further than its pairs allow, so that nothing passes
  *
  * A pair is a vertex and a triangle, or two edges; they have no corner in common. Which pairs are kept is decided by
- * distances at some earlier state S and by how far each vertex may go from there, its reach; what is done with a pair
- * depends on the state before and after the substep alone. So a search too many changes no bit, and a state that was
- * saved and loaded goes on as it would have.
+ * what is expected: each vertex goes on at some velocity, from where it was when it was last looked for, and is never
+ * farther from there than its reach. What goes otherwise is looked for anew, with its neighbours, and nobody else. What is
+ * done with a pair depends on the state before and after the substep alone. So a search too many changes no bit, and a
+ * state that was saved and loaded goes on as it would have.
  *
  * The bound is a division of space by planes for each pair (planar division: arXiv 2604.15513), where it is needed: a
  * vertex goes the least share of its way that any of its pairs allows, and a minimum knows no order. */
 #ifndef SK_CONTACT_TOUCH_H
 #define SK_CONTACT_TOUCH_H
 
+#include "base/wide_types.h"
 #include "forces/force.h"
 #include "particles/particles.h"
 
@@ -39,47 +41,95 @@ typedef struct sk_skin {
  * and another's two. The normal leads from the second feature to the first; `share` says where on them they are nearest:
  * u, v of a triangle's second and third corner, or how far along each edge. */
 typedef struct sk_pairs {
-    uint32_t *corner[4];
+    uint32_t *corner[4], *leaf[2];
     real *distance, *thickness, *normal[3], *share[2];
-    uint8_t *settled; /* of a bound: planes divide it */
+    uint8_t *settled; /* of a bound: planes divide it, */
+    uint8_t *closes;  /* or have to */
     size_t count, capacity;
 } sk_pairs;
 
 /* Nearest points of all pairs, from the places x of their corners. */
 typedef void sk_closest_kernel(const sk_vec4 *x, sk_pairs *pairs);
 
+/* Finds out which pairs, of places x before a substep, lose their gap by these steps: `closes`. */
+typedef void sk_closing_kernel(const sk_vec4 *x, const sk_vec4 *step, real least, sk_pairs *pairs);
+
+/* Finds out which pairs may come near or close on their vertices' ways, from x (w: their reach) to `end`: `closes`. */
+typedef struct sk_nearing_values {
+    real near, rounding, closing, per; /* m; m; share of a step; steps that the way has, inverse */
+    real shares; /* of any shares of the way: what is left of a gap that counts as closed; 0: all of the way */
+} sk_nearing_values;
+typedef void sk_nearing_kernel(const sk_vec4 *x, const sk_vec4 *end, const sk_nearing_values *values, sk_pairs *pairs);
+
+/* A box that goes on: where it is when it begins, and when it ends. In between its sides are no farther out than on a
+ * straight way. */
+typedef real sk_quad __attribute__((vector_size(4 * sizeof(real))));
 typedef struct sk_box {
-    real low[3], high[3];
+    sk_quad low[2], high[2];
 } sk_box;
 
+/* Boxes of leaves, and of sixteen of those below, up to one: by slots, in which leaves that were built near each other
+ * are near. Sixteen slots are a block. */
+enum { SK_TREE_LEVELS = 9, SK_TREE_WIDTH = 16 };
+typedef struct sk_tree_block {
+    _Alignas(64) real low[2][3][SK_TREE_WIDTH], high[2][3][SK_TREE_WIDTH];
+} sk_tree_block;
+typedef struct sk_tree {
+    sk_tree_block *block[SK_TREE_LEVELS];
+    size_t blocks[SK_TREE_LEVELS]; /* of each level; the last one has one */
+    int levels;
+    uint32_t *leaf_at; /* of slots */
+} sk_tree;
+/* Lists the slots of the lowest level whose boxes may meet this one at some time. */
+typedef size_t sk_tree_kernel(const sk_tree *tree, const sk_box *box, uint32_t *slot);
+
 enum { SK_CORNERS, SK_EDGES, SK_PAIR_SORTS }; /* vertex and triangle, edge and edge: the order of pairs */
+
+/* Where a vertex is expected: at `from` at the time `since`, and on by `step` a substep. */
+typedef struct sk_course {
+    sk_vec3 from, step;
+    real since, reach; /* substeps; how far from there it may be, m */
+} sk_course;
 
 typedef struct sk_touch {
     sk_skin skin;
     uint64_t shape; /* of the world that the skin was made from */
     sk_isa isa;
-    bool found;   /* whether the pairs are of this skin */
-    bool gave_up; /* the last search did, at a thousand pairs a vertex: nothing meets until one does not */
-    real thickness; /* and of this thickness, m */
+    bool found;      /* whether the pairs are of this skin */
+    bool boxed;      /* whether boxes are those of the courses; */
+    bool still;      /* they are those of a substep's ways, all of them */
+    bool gave_up;    /* the last search did, at a thousand pairs a vertex: nothing meets until one does not */
+    real thickness;  /* and of this thickness, m */
+    real now, until; /* substeps since the last search for all, and how long that holds */
+    bool kept_course; /* nobody has been lost since then */
+    sk_vec3 drift;   /* how far all went in a substep then, in the mean; */
+    sk_vec3 common;  /* and in this one */
     /* by vertex */
-    sk_vec4 *p;    /* the place before the substep; w: how far it is from s */
+    sk_vec4 *p;    /* the place before the substep */
     sk_vec4 *q;    /* after it */
     sk_vec4 *way;  /* from p to q, less what all go together; w: its length */
-    sk_vec4 *s;    /* at the last search, going along with all */
-    real *reach;   /* how far from s it may be */
+    sk_vec4 *step; /* from p to where it may go */
+    sk_vec4 *at, *in_the_end; /* of a search: where it is expected now, and when that ends */
+    sk_course *course;
     real *inverse; /* mass, 1/kg */
     real *share, *next_share; /* of its way that it may go */
-    real most_moved, most_way; /* the largest w of p and way */
+    uint8_t *lowered; /* its share was, in the last round */
+    uint8_t *lost;   /* it has left its reach, */
+    uint8_t *astray; /* or would have in this substep, and needs a new course in the next */
     /* of the search */
-    sk_box *vertex_box, *edge_box, *triangle_box, *leaf_box, *sorted_box;
-    uint32_t *cell, *item, *start;
-    size_t start_capacity;
+    sk_box *corner_box; /* of vertices: where they are, and in its fourth number how much wider a box has to be */
+    sk_box *vertex_box, *edge_box, *triangle_box, *leaf_box;
+    sk_tree tree;
+    uint8_t *anew;                /* leaves that are looked for */
+    uint8_t *changed;             /* slots of a level of the tree */
+    bool refit;                   /* all of the tree is old */
+    uint32_t *start, *hit;        /* of leaves: where their partners start; slots */
     struct {
         uint32_t *data;
         size_t count, capacity;
-    } list;
-    sk_pairs kept[SK_PAIR_SORTS], near[SK_PAIR_SORTS], closing[SK_PAIR_SORTS], rest;
-    uint64_t searches;
+    } first, second, partner;     /* leaves whose boxes meet; those by the first */
+    sk_pairs kept[SK_PAIR_SORTS], near[SK_PAIR_SORTS], fresh, merged;
+    uint64_t searches, given_up;
 } sk_touch;
 
 typedef struct sk_contact_params {
@@ -100,9 +150,13 @@ void sk_skin_release(sk_skin *skin, sk_allocator *allocator);
 bool sk_pairs_reserve(sk_pairs *pairs, sk_allocator *allocator, size_t need);
 /* Fills the last block up with pairs of nobody. */
 void sk_pairs_pad(sk_pairs *pairs);
+/* Adds all of pairs [first, end) of others; there is room. */
+void sk_pairs_take(sk_pairs *pairs, const sk_pairs *others, size_t first, size_t end);
 void sk_pairs_release(sk_pairs *pairs, sk_allocator *allocator);
 static inline void sk_pairs_copy(sk_pairs *to, const sk_pairs *from, size_t k) {
     for (int c = 0; c < 4; c++) to->corner[c][to->count] = from->corner[c][k];
+    for (int c = 0; c < 2; c++) to->leaf[c][to->count] = from->leaf[c][k];
+    to->settled[to->count] = from->settled[k];
     to->thickness[to->count] = from->thickness[k];
     to->distance[to->count++] = from->distance[k];
 }
@@ -111,16 +165,38 @@ static inline void sk_pairs_copy(sk_pairs *to, const sk_pairs *from, size_t k) {
 
 /* By sort of pairs. */
 extern sk_closest_kernel *const sk_closest[SK_PAIR_SORTS][SK_ISA_COUNT];
+/* nearing.c */
+extern sk_closing_kernel *const sk_closing[SK_PAIR_SORTS][SK_ISA_COUNT];
+extern sk_nearing_kernel *const sk_nearing[SK_PAIR_SORTS][SK_ISA_COUNT];
+
+/* ---- tree.c ---- */
+
+extern sk_tree_kernel *const sk_tree_hits[SK_ISA_COUNT];
+
+/* ---- partners.c ---- */
+
+bool sk_tree_make(sk_tree *tree, sk_allocator *allocator, const sk_skin *skin);
+void sk_tree_release(sk_tree *tree, sk_allocator *allocator);
+/* Lists leaves whose boxes may meet, each once, of which one at least is looked for `anew`: those of leaf a with itself
+ * and later ones are partner[start[a]] to partner[start[a + 1]], in order. */
+bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most);
+/* Whether two boxes may meet at some time. */
+static inline bool sk_boxes_meet(const sk_box *a, const sk_box *b) {
+    typedef sk_lane_int lanes __attribute__((vector_size(4 * sizeof(real))));
+    lanes apart = ((lanes)(a->low[0] > b->high[0]) & (lanes)(a->low[1] > b->high[1])) |
+                  ((lanes)(b->low[0] > a->high[0]) & (lanes)(b->low[1] > a->high[1]));
+    return !(apart[0] | apart[1] | apart[2]);
+}
 
 /* ---- search.c ---- */
 
-/* Finds all pairs that may come nearer than `limit` while vertices stay within their reach of p; s becomes p. False when
- * there is no memory. */
-bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, real thickness, real limit);
-/* The boxes of all features: what lies within the reach of its vertices (NULL: none has any), and half the limit around. */
-void sk_touch_boxes(sk_touch *touch, const real *reach, real limit);
-/* Calls `meet` for all leaves whose boxes overlap, in the order of (a, b). */
-bool sk_touch_meet(sk_touch *touch, sk_allocator *allocator, bool (*meet)(void *data, size_t a, size_t b), void *data);
+/* What is looked for: pairs of all vertices, or of those that are lost, for as long as all keep to their courses; or of
+ * those that are lost for this one substep, on all shares of the ways that all go. */
+typedef enum sk_touch_search_sort { SK_SEARCH_ALL, SK_SEARCH_LOST, SK_SEARCH_WAYS } sk_touch_search_sort;
+/* False when there is no memory. */
+bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_sort search);
+/* The boxes of a leaf and of its features, from those of vertices. */
+void sk_touch_leaf_box(sk_touch *touch, size_t leaf);
 
 /* ---- bound.c ---- */
 
@@ -136,15 +212,21 @@ bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 
 
 /* Pairs that are looked at closely are nearer than so many thicknesses. */
 #define SK_NEAR_THICKNESSES ((real)1.25)
+/* Of a gap, so much is left in a substep. */
+#define SK_LEFT_OVER ((real)0.1)
+/* What is less than this share of the thickness does not close at all. */
+#define SK_LEAST_GAP ((real)0.0025)
 
-/* Finds pairs anew, with reaches for vertices that go on by way[v].w a substep. */
-bool sk_touch_renew(sk_touch *touch, sk_allocator *allocator, real thickness);
-/* The most that corners of a pair's two features have of w. */
-static inline void sk_most_of_features(const sk_pairs *pairs, int sort, size_t k, const sk_vec4 *x, real most[2]) {
-    real w[4];
-    for (int c = 0; c < 4; c++) w[c] = x[pairs->corner[c][k]].w;
-    most[0] = sort == SK_EDGES ? sk_max(w[0], w[1]) : w[0];
-    most[1] = sort == SK_EDGES ? sk_max(w[2], w[3]) : sk_max(w[1], sk_max(w[2], w[3]));
+/* Looks for lost vertices, whose courses are new, or for all; then looks at all pairs that are kept, at p. */
+bool sk_touch_renew(sk_touch *touch, sk_allocator *allocator, sk_touch_search_sort search);
+/* Where a vertex is expected at a time. */
+static inline sk_vec3 sk_expected(const sk_course *course, real time) {
+    return sk_add(course->from, sk_scale(time - course->since, course->step));
+}
+/* Whether a vertex at x has left its reach; what has blown up has not. */
+static inline bool sk_is_lost(const sk_course *course, real time, sk_vec3 x) {
+    sk_vec3 off = sk_sub(x, sk_expected(course, time));
+    return sk_dot(off, off) > course->reach * course->reach;
 }
 /* The weights of a pair's corners at its nearest points: those of the second feature are negative. */
 static inline void sk_weights_of(const sk_pairs *pairs, int sort, size_t k, real weight[4]) {
