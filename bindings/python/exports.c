@@ -166,3 +166,30 @@ size_t py_struct_size(const char *name) {
         if (!strcmp(sizes[i].name, name)) return sizes[i].size;
     return 0;
 }
+
+EXPORT const char *py_statistics_member(size_t index, size_t *offset, size_t *size, bool *whole);
+
+/* What skein_statistics has: a member's name by its index, NULL past the end, with where it is, how many bytes it takes,
+ * and whether it is a whole number or, of eight bytes each, real ones. */
+const char *py_statistics_member(size_t index, size_t *offset, size_t *size, bool *whole) {
+    static const skein_statistics s;
+    (void)s;
+#define MEMBER(name_)                                                                                         \
+    {#name_, offsetof(skein_statistics, name_), sizeof s.name_, _Generic(s.name_, uint64_t: true, default: false)}
+    static const struct {
+        const char *name;
+        size_t offset, size;
+        bool whole;
+    } members[] = {
+        MEMBER(steps), MEMBER(substeps), MEMBER(time), MEMBER(kinetic_energy), MEMBER(potential_energy),
+        MEMBER(elastic_energy), MEMBER(dissipated_energy), MEMBER(momentum), MEMBER(angular_momentum),
+        MEMBER(max_stretch), MEMBER(p99_stretch), MEMBER(limited), MEMBER(over_limit), MEMBER(most_over_limit),
+        MEMBER(residual), MEMBER(unsolved), MEMBER(solver_turns), MEMBER(solver_iterations), MEMBER(solver_factors),
+        MEMBER(solver_failures), MEMBER(all_unsolved), MEMBER(all_solver_failures), MEMBER(max_penetration),
+        MEMBER(contacts), MEMBER(crossings), MEMBER(particles), MEMBER(held_particles), MEMBER(constraints),
+        MEMBER(nonfinite), MEMBER(guarded), MEMBER(memory_bytes), MEMBER(state_hash)
+    };
+    if (index >= sizeof members / sizeof *members) return NULL;
+    *offset = members[index].offset, *size = members[index].size, *whole = members[index].whole;
+    return members[index].name;
+}

@@ -92,20 +92,6 @@ class Hit(c.Structure):
                 ("face", c.c_size_t), ("particle", c.c_uint32)]
 
 
-class Statistics(c.Structure):
-    _fields_ = [("steps", c.c_uint64), ("substeps", c.c_uint64), ("time", c.c_double), ("kinetic_energy", c.c_double),
-                ("potential_energy", c.c_double), ("elastic_energy", c.c_double), ("dissipated_energy", c.c_double),
-                ("momentum", c.c_double * 3), ("angular_momentum", c.c_double * 3), ("max_stretch", c.c_double),
-                ("p99_stretch", c.c_double), ("limited", c.c_size_t), ("over_limit", c.c_size_t),
-                ("most_over_limit", c.c_double), ("residual", c.c_double), ("unsolved", c.c_size_t),
-                ("solver_turns", c.c_size_t), ("solver_iterations", c.c_size_t), ("solver_factors", c.c_size_t),
-                ("solver_failures", c.c_size_t), ("all_unsolved", c.c_uint64), ("all_solver_failures", c.c_uint64),
-                ("max_penetration", c.c_double), ("contacts", c.c_size_t), ("crossings", c.c_size_t),
-                ("particles", c.c_size_t), ("held_particles", c.c_size_t), ("constraints", c.c_size_t),
-                ("nonfinite", c.c_size_t), ("guarded", c.c_size_t), ("memory_bytes", c.c_size_t),
-                ("state_hash", c.c_uint64)]
-
-
 class Order(c.Structure):
     _fields_ = [("count", c.c_size_t), ("polarization", c.c_double), ("milling", c.c_double), ("nearest", c.c_double),
                 ("groups", c.c_size_t), ("radius", c.c_double), ("farthest", c.c_double), ("speed", c.c_double)]
@@ -119,7 +105,7 @@ class ConstraintValue(c.Structure):
 
 STRUCTS = {"error": Error, "field": Field, "kind": Kind, "value": Value, "setting": Setting, "handle": Handle,
            "world_desc": WorldDesc, "mesh": Mesh, "track": Track, "view": View, "buffer": Buffer, "surface": Surface,
-           "pose": Pose, "contact": Contact, "hit": Hit, "statistics": Statistics, "order": Order,
+           "pose": Pose, "contact": Contact, "hit": Hit, "order": Order,
            "constraint_value": ConstraintValue}
 
 # ---- calls ----
@@ -180,7 +166,7 @@ CALLS = {
     "skein_constraint_evaluate": (status, [world, Handle, size, c.POINTER(ConstraintValue), array, array, size]),
     "skein_contacts_copy": (status, [world, c.POINTER(Contact), size, c.POINTER(size)]),
     "skein_ray_cast": (status, [world, array, array, c.c_int, c.POINTER(Hit)]),
-    "skein_world_statistics": (status, [world, c.POINTER(Statistics)]),
+    "skein_world_statistics": (status, [world, array]),
     "skein_world_hash": (c.c_uint64, [world]),
     "skein_order_measure": (status, [world, size, size, array, c.c_double, c.POINTER(Order)]),
     "skein_stable_substep": (c.c_double, [text, c.c_void_p]),
@@ -198,6 +184,7 @@ CALLS = {
     "py_steps_of_all": (size, [c.POINTER(world), size, c.c_double, size]),
     "py_advise": (c.c_double, [world, c.c_double, WRITE, c.c_void_p]),
     "py_struct_size": (size, [text]),
+    "py_statistics_member": (text, [size, c.POINTER(size), c.POINTER(size), c.POINTER(c.c_bool)]),
 }
 
 
@@ -241,6 +228,16 @@ velocity_view = getattr(lib, f"skein_velocity_view_{precision}")
 for _view in position_view, velocity_view:
     _view.restype, _view.argtypes = View, [world]
 
+
+def _statistics_members():
+    """What skein_statistics has, as the library says: name, offset, count and sort of numbers."""
+    offset, bytes_, whole, found = c.c_size_t(), c.c_size_t(), c.c_bool(), []
+    while name := lib.py_statistics_member(len(found), c.byref(offset), c.byref(bytes_), c.byref(whole)):
+        found.append((name.decode(), offset.value, bytes_.value // 8, "Q" if whole.value else "d"))
+    return found
+
+
+statistics_members, statistics_size = _statistics_members(), lib.py_struct_size(b"statistics")
 OK, ERROR_MEMORY, ERROR_VALUE, ERROR_NAME, ERROR_HANDLE, ERROR_MESH, ERROR_FILE, ERROR_SYNTAX, ERROR_LIMIT = range(9)
 BOOL, INT, INT2, INT3, REAL, REAL2, VEC3, CHOICE, TEXT = range(9)
 BODY, CONSTRAINT, FORCE, COLLIDER, MOTION, METHOD = range(6)

@@ -7,6 +7,7 @@ import ctypes
 import json
 import logging
 import os
+import struct
 import threading
 import types
 
@@ -384,11 +385,12 @@ class World:
 
     def statistics(self):
         """Measures the present state: energies, stretch, contacts ...; costs about a step."""
-        found = L.Statistics()
-        self._call(lib.skein_world_statistics, ctypes.byref(found))
-        values = {name: getattr(found, name) for name, _ in L.Statistics._fields_}
-        values.update(momentum=np.array(found.momentum), angular_momentum=np.array(found.angular_momentum),
-                      state_hash=f"{found.state_hash:016x}")
+        data, values = ctypes.create_string_buffer(L.statistics_size), {}
+        self._call(lib.skein_world_statistics, data)
+        for name, offset, count, sort in L.statistics_members:
+            numbers = struct.unpack_from(f"={count}{sort}", data, offset)
+            values[name] = numbers[0] if count == 1 else np.array(numbers)
+        values["state_hash"] = f"{values['state_hash']:016x}"
         return types.SimpleNamespace(**values)
 
     def order(self, body=None, centre=(0, 0, 0), group_distance=0.0):
