@@ -379,6 +379,38 @@ static void it_acts_on_whom_it_names(void **state) {
     }
 }
 
+typedef struct heard {
+    int warnings;
+    char last[300];
+} heard;
+
+static void hear(void *user, skein_log_level level, const char *message) {
+    heard *all = user;
+    if (level != SKEIN_LOG_WARNING) return;
+    all->warnings++;
+    snprintf(all->last, sizeof all->last, "%s", message);
+}
+
+/* Contact that has more pairs than there is room for says so, once, and the step goes on. */
+static void giving_up_is_told(void **state) {
+    (void)state;
+    heard all = {0, ""};
+    skein_world_desc desc = skein_default_world_desc();
+    desc.log = hear;
+    desc.log_user = &all;
+    skein_world *world = skein_world_create(&desc, NULL);
+    add_gravity(world);
+    add_sheet(world, 40, 1, (vec3){0, 0, 0}, (vec3){0, 0, 0});
+    add_touching(world, 0.01, 0.3);
+    steps(world, 1, step_length);
+    assert_int_equal(all.warnings, 0);
+    OK(world, skein_set(world, skein_object_at(world, SKEIN_FORCE, 1), "thickness", skein_number(5)));
+    steps(world, 3, step_length);
+    assert_int_equal(all.warnings, 1);
+    assert_non_null(strstr(all.last, "nothing touched"));
+    skein_world_destroy(world);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(crossings_are_counted),        cmocka_unit_test(a_heap_has_no_crossings),
@@ -387,7 +419,7 @@ int main(void) {
         cmocka_unit_test(a_rope_lies_on_a_cloth),       cmocka_unit_test(bits_are_the_same),
         cmocka_unit_test(it_remembers_nothing),         cmocka_unit_test(what_touches_nothing_is_free),
         cmocka_unit_test(a_moving_frame_changes_nothing), cmocka_unit_test(fast_things_do_not_pass),
-        cmocka_unit_test(it_acts_on_whom_it_names),
+        cmocka_unit_test(it_acts_on_whom_it_names),       cmocka_unit_test(giving_up_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

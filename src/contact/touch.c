@@ -245,6 +245,13 @@ static bool prepare(sk_force *force, sk_allocator *allocator, const sk_particles
     return false;
 }
 
+static bool gave_up(sk_force *force) {
+    sk_touch *touch = force->state;
+    bool tells = touch && touch->given_up && !touch->told;
+    if (tells) touch->told = true;
+    return tells;
+}
+
 static const sk_meeting meeting = {
     .begin = {SK_ANY_ISA(begin)},
     .push = {SK_ANY_ISA(push)},
@@ -252,6 +259,7 @@ static const sk_meeting meeting = {
     .prepare = prepare,
     .release = release,
     .crossings = sk_touch_crossings,
+    .gave_up = gave_up,
 };
 
 const sk_force_type sk_surface_contact = {

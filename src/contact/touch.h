@@ -129,7 +129,8 @@ typedef struct sk_touch {
         size_t count, capacity;
     } first, second, partner;     /* leaves whose boxes meet; those by the first */
     sk_pairs kept[SK_PAIR_SORTS], near[SK_PAIR_SORTS], fresh, merged;
-    uint64_t searches, given_up;
+    uint64_t searches, given_up; /* how often it searched, and gave up: */
+    bool told;                   /* the world was told so */
 } sk_touch;
 
 typedef struct sk_contact_params {

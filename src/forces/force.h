@@ -43,6 +43,8 @@ typedef struct sk_meeting {
     void (*release)(sk_force *force, sk_allocator *allocator);
     /* How many edges go through a triangle, of the places x of slots. False: no memory. */
     bool (*crossings)(sk_force *force, sk_allocator *allocator, const sk_vec4 *x, const uint32_t *slot_of, size_t *count);
+    /* Whether there was so much to meet in some substep that it let all of it be. True once: what the world tells. */
+    bool (*gave_up)(sk_force *force);
 } sk_meeting;
 
 typedef struct sk_force_type {

@@ -64,6 +64,17 @@ skein_status sk_world_count_crossings(skein_world *world, size_t *count, skein_e
     return status;
 }
 
+void sk_world_tell_of_meetings(skein_world *world) {
+    for (size_t i = 0; i < world->rules.forces.count; i++) {
+        sk_force *force = world->rules.forces.data[i];
+        if (*force->enabled && force->type->meeting && force->type->meeting->gave_up(force))
+            sk_world_log(world, SKEIN_LOG_WARNING,
+                         "%s: more pairs were near each other than there is room for, and nothing touched for a substep "
+                         "or more: the thickness is too large for the bodies, or they have blown up",
+                         force->label);
+    }
+}
+
 void sk_world_end_meeting(skein_world *world, sk_force *force) {
     if (force->type->meeting) force->type->meeting->release(force, &world->allocator);
 }

@@ -213,6 +213,7 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
     world->unsolved += world->solve.unsolved;
     world->solver_failures += world->solve.failures;
     world->substeps += (uint64_t)world->method->substeps(world->method_params);
+    sk_world_tell_of_meetings(world);
     if (!world->device) sk_world_tidy(world);
     return SKEIN_OK;
 }

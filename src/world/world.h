@@ -270,6 +270,8 @@ skein_status sk_world_find_groups(skein_world *world, skein_error *error);
 skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error);
 /* How many edges go through triangles that they are not to pass. */
 skein_status sk_world_count_crossings(skein_world *world, size_t *count, skein_error *error);
+/* Warns of contact that gave up in a step, once for each rule. */
+void sk_world_tell_of_meetings(skein_world *world);
 /* Before a force is released: what it keeps. */
 void sk_world_end_meeting(skein_world *world, sk_force *force);
 /* Whether a list of names has this one: it is the name, or is in it between commas. */
