@@ -126,7 +126,6 @@ static const expectation expectations[] = {
     {"heap", 4, 0.05, 0, 0, 0, NOT_SYMMETRIC}, // later it lies on its own shadow
     {"orbits", 60, 0.03, 0, 0, 0, NOT_SYMMETRIC},
     {"rope", 45, 0.003, 0.001, 0, 0, NOT_SYMMETRIC},
-    {"knot", 90, 0.04, 0.03, 0.3, 0, NOT_SYMMETRIC},
     {"torus", 90, 0.04, 0.03, 0.3, 0, NOT_SYMMETRIC},
     {"turntable", 60, 0.02, 0.03, 0.15, 0, NOT_SYMMETRIC}, // its folds grow from rounding: in double they differ
     {"wave", 60, 0.01, 0, 0, 0.03, NOT_SYMMETRIC},
