@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "app/blow_up.h"
 #include "app/compile.h"
 #include "app/flocks.h"
 #include "app/keep.h"
@@ -79,9 +80,11 @@ static bool begin_frames(app_report *r, app_outputs *outputs, const app_kept *ke
 static bool run_frames(app_report *r, app_outputs *outputs, app_progress *p, const app_kept *kept) {
     bool good = begin_frames(r, outputs, kept);
     int begun = r->frames;
+    if (good && r->good) app_good_note(r->good, r);
     while (good && r->frames < p->frames && !app_interrupted()) {
         good =
             run_frame(r, p) && (!outputs || app_outputs_frame(outputs, r->frames)) && app_keep_frame(r->keep, r, false);
+        if (good && r->good) app_good_note(r->good, r);
         if (good) app_progress_show(p, r->frames);
     }
     app_progress_end(p);
@@ -172,6 +175,7 @@ static int simulate(app_report *r, const char *folder, const app_kept *kept, int
     bool logged = app_log_finish(r->log); // of a run that failed, too: it may say why
     if (!ran) {
         keep_frames(r, outputs, folder, &p);
+        if (r->good && p.failure[0]) app_blow_up_leave(r->good, r, inside);
         app_keep_end(r->keep, false);
         return EXIT_FAILURE_RUN;
     }
@@ -266,7 +270,10 @@ static int run_scene(app_arguments *arguments, const char *folder, const app_kep
                              .is_file = format != NULL,
                              .log_path = log && log[0] ? log : NULL};
         report.steps_per_frame = io_scene_steps_per_frame(&loaded.settings, &report.dt);
+        app_good good = {NULL, 0, 0, 0};
+        if (folder) report.good = &good;
         status = simulate(&report, folder, kept, every);
+        app_good_free(&good);
         json_decref(report.files);
         json_decref(report.flocks);
     }

@@ -8,7 +8,7 @@
 #include "catalogue_kinds.h" // made by the build
 #include "outside/outside.h"
 #include "space/normals.h"
-#include "world/snapshot.h"
+#include "world/record.h"
 
 /* Every type begins with its kind, so the kind's address is the type's. */
 static const void *const bodies[] = {SK_BODY_KINDS}, *const constraints[] = {SK_CONSTRAINT_KINDS},
@@ -148,4 +148,11 @@ skein_status skein_snapshot_read(skein_world *world, const void *bytes, size_t s
     SK_NEED(world, world);
     SK_NEED(world, bytes);
     return sk_snapshot_read(world, bytes, size, skein_method_set);
+}
+
+skein_status skein_replay(skein_world *world, const void *bytes, size_t size, skein_difference *difference) {
+    SK_NEED(world, world);
+    SK_NEED(world, bytes);
+    SK_NEED(world, difference);
+    return sk_replay(world, bytes, size, difference, skein_method_set);
 }

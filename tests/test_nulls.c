@@ -5,6 +5,7 @@
 #include <skein/compiled.h>
 #include <skein/formula.h>
 #include <skein/kinds.h>
+#include <skein/record.h>
 
 #include "helpers.h"
 
@@ -23,19 +24,19 @@ static scene make_scene(void) {
 }
 
 /* The call returns SKEIN_ERROR_VALUE, and the world's error names the argument. */
-#define REFUSES(argument_, call_)                                                      \
-    do {                                                                               \
-        FAILS(s.world, SKEIN_ERROR_VALUE, argument_ " is NULL", call_);                \
-        assert_string_equal(skein_world_error(s.world)->where, argument_);             \
+#define REFUSES(argument_, call_)                                          \
+    do {                                                                   \
+        FAILS(s.world, SKEIN_ERROR_VALUE, argument_ " is NULL", call_);    \
+        assert_string_equal(skein_world_error(s.world)->where, argument_); \
     } while (0)
 /* The same where there is no world to say it, or where the words are in an error of the caller's. */
 #define REFUSES_ALL(call_) assert_int_equal((call_), SKEIN_ERROR_VALUE)
-#define SAYS(argument_, call_)                                      \
-    do {                                                            \
-        error = (skein_error){0};                                   \
-        assert_int_equal((call_), SKEIN_ERROR_VALUE);               \
-        assert_int_equal(error.status, SKEIN_ERROR_VALUE);          \
-        assert_string_equal(error.where, argument_);                \
+#define SAYS(argument_, call_)                             \
+    do {                                                   \
+        error = (skein_error){0};                          \
+        assert_int_equal((call_), SKEIN_ERROR_VALUE);      \
+        assert_int_equal(error.status, SKEIN_ERROR_VALUE); \
+        assert_string_equal(error.where, argument_);       \
     } while (0)
 
 static double xyz[27];
@@ -184,6 +185,16 @@ static void reading_and_writing(void **state) {
     REFUSES_ALL(skein_snapshot_look(NULL, 1, &(skein_snapshot_info){0}, NULL));
     REFUSES_ALL(skein_snapshot_look(xyz, 1, NULL, NULL));
     assert_int_equal(skein_snapshot_size(NULL), 0);
+    skein_recorder nowhere = {NULL, NULL, NULL};
+    REFUSES("recorder", skein_record_begin(s.world, NULL));
+    REFUSES("write", skein_record_begin(s.world, &nowhere));
+    REFUSES("bytes", skein_replay(s.world, NULL, 1, &(skein_difference){0}));
+    REFUSES("difference", skein_replay(s.world, xyz, 1, NULL));
+    REFUSES_ALL(skein_record_begin(NULL, &nowhere));
+    REFUSES_ALL(skein_record_end(NULL));
+    REFUSES_ALL(skein_replay(NULL, xyz, 1, &(skein_difference){0}));
+    REFUSES_ALL(skein_recording_look(NULL, 1, &(skein_recording_info){0}, NULL));
+    REFUSES_ALL(skein_recording_look(xyz, 1, NULL, NULL));
     REFUSES("to", skein_positions_copy_to(s.world, 0, 1, skein_floats(NULL, 0)));
     REFUSES("to", skein_velocities_copy_to(s.world, 0, 1, skein_doubles(NULL, 0)));
     REFUSES("out", skein_positions_blend(s.world, 1, 0, 1, NULL));
@@ -412,11 +423,11 @@ static void kinds_of_its_own(void **state) {
 static void every_function_was_called(void **state) {
     (void)state;
     static const char *const without_pointers[] = {
-        "skein_status_text", "skein_version",        "skein_category_text", "skein_kind_at",       "skein_default_world_desc",
-        "skein_number",      "skein_vector",         "skein_handle_equal",  "skein_default_pacer", "skein_settings_of",
+        "skein_status_text",  "skein_version", "skein_category_text", "skein_kind_at",       "skein_default_world_desc",
+        "skein_number",       "skein_vector",  "skein_handle_equal",  "skein_default_pacer", "skein_settings_of",
         "skein_world_create", // whose pointers may both be NULL
     };
-    static const char *const headers[] = {"include/skein/skein.h", "include/skein/formula.h",
+    static const char *const headers[] = {"include/skein/skein.h", "include/skein/record.h", "include/skein/formula.h",
                                           "include/skein/kinds.h"};
     char *own = read_text("tests/test_nulls.c");
     blank_comments(own);
@@ -434,7 +445,8 @@ static void every_function_was_called(void **state) {
             found++;
             bool known = is_called(own, name);
             for (size_t i = 0; i < COUNT(without_pointers); i++) known |= !strcmp(name, without_pointers[i]);
-            if (!known) fprintf(stderr, "%s declares %s, which is not called with NULL here\n", headers[h], name), missing++;
+            if (!known)
+                fprintf(stderr, "%s declares %s, which is not called with NULL here\n", headers[h], name), missing++;
         }
         free(text);
     }

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "world/record.h"
 #include "world/world.h"
 
 /* ---- handles ---- */
@@ -134,6 +135,7 @@ static skein_status finish_object(skein_world *world, sk_object *object, skein_h
     entry->object = object;
     object->index = (uint32_t)index;
     object->generation = ++entry->generation;
+    sk_record_stop(world, "an object was added, which a recording cannot hold");
     world->plan_stale = world->motions_stale = true;
     if (object->category == SKEIN_CONSTRAINT || object->category == SKEIN_BODY) world->slots_stale = true;
     if (handle) *handle = (skein_handle){object->index, object->generation, world->identity};
@@ -378,6 +380,7 @@ skein_status sk_world_set_method(skein_world *world, const sk_method_type *type,
     world->method = type;
     world->method_params = params;
     world->plan_stale = true;
+    sk_record_state(world);
     return SKEIN_OK;
 }
 
@@ -394,6 +397,7 @@ static void drop_pointer(void **data, size_t *count, const void *pointer) {
 
 /* The object goes; its handle is stale, and its place free. */
 static void drop_object(skein_world *world, sk_object *object) {
+    sk_record_stop(world, "an object was removed, which a recording cannot hold");
     sk_entry *entry = &world->places.data[object->index];
     entry->object = NULL;
     entry->generation++;

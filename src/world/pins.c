@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "world/record.h"
 #include "world/world.h"
 
 /* Drops what a later place has overridden, where the list holds more than there are particles. */
@@ -59,6 +60,7 @@ skein_status skein_pins_move(skein_world *world, const uint32_t *particles, size
     for (size_t i = 0; i < count; i++)
         world->pins.data[world->pins.count++] =
             (sk_pin){particles ? particles[i] : (uint32_t)i, {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]}};
+    sk_record_pins(world, particles, count, xyz);
     return SKEIN_OK;
 }
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "world/record.h"
 #include "world/world.h"
 
 static const skein_field body_fields[] = {
@@ -215,6 +216,7 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
     }
     world->plan_stale = true;
     world->motions_stale = true;
+    sk_record_field(world, object, name, &value);
     return SKEIN_OK;
 }
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "colliders/trimesh.h"
+#include "world/record.h"
 #include "world/world.h"
 
 /* ---- where the state stands: in the world's vectors, or on a device ---- */
@@ -126,21 +127,27 @@ skein_status skein_positions_set(skein_world *world, size_t first, size_t count,
     if (count) SK_NEED(world, xyz);
     skein_status status = copy_in(world, SK_X, first, count, xyz);
     // a particle that was moved by hand did not travel: there is nothing to blend
-    return status ? status : copy_in(world, SK_PREVIOUS, first, count, xyz);
+    if (!status) status = copy_in(world, SK_PREVIOUS, first, count, xyz);
+    if (!status) sk_record_numbers(world, SK_X, first, count, xyz);
+    return status;
 }
 
 skein_status skein_velocities_set(skein_world *world, size_t first, size_t count, const double *xyz) {
     SK_NEED(world, world);
     if (count) SK_NEED(world, xyz);
-    return copy_in(world, SK_V, first, count, xyz);
+    skein_status status = copy_in(world, SK_V, first, count, xyz);
+    if (!status) sk_record_numbers(world, SK_V, first, count, xyz);
+    return status;
 }
 
 skein_status skein_particle_hold(skein_world *world, size_t particle, bool held) {
     SK_NEED(world, world);
     skein_status status = sk_world_check_range(world, particle, 1);
     if (!status) status = sk_world_touch(world);
-    if (!status) sk_particle_hold(&world->particles, particle, held);
-    return status;
+    if (status) return status;
+    sk_particle_hold(&world->particles, particle, held);
+    sk_record_hold(world, particle, held);
+    return SKEIN_OK;
 }
 
 skein_status skein_body_surface(const skein_world *world, skein_handle handle, skein_surface *surface) {
@@ -231,5 +238,6 @@ skein_status skein_collider_teleport(skein_world *world, skein_handle handle) {
     sk_object *object = sk_object_find(world, handle, SKEIN_COLLIDER);
     if (!object) return SKEIN_ERROR_HANDLE;
     sk_collider_stop(object->as.collider);
+    sk_record_teleport(world, object);
     return SKEIN_OK;
 }

@@ -5,6 +5,7 @@
 
 #include "base/float_mode.h"
 #include "plan/fuse.h"
+#include "world/record.h"
 #include "world/world.h"
 
 skein_status sk_world_arrange(skein_world *world, skein_error *error) {
@@ -222,6 +223,7 @@ skein_status skein_world_step(skein_world *world, double dt) {
     SK_NEED(world, world);
     skein_error *error = sk_world_error(world);
     skein_status status = sk_world_compile(world, dt, error);
+    if (!status && world->recording) sk_record_step(world, dt);
     return status ? status : take_step(world, dt, NULL, error);
 }
 
@@ -253,6 +255,7 @@ skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out,
     *count = 0;
     skein_status status = sk_world_compile(world, dt, error);
     if (status) return status;
+    if (world->recording) sk_record_step(world, dt);
     if (world->device) { // whose rows run together
         double start = sk_seconds();
         status = take_step(world, dt, NULL, error);
@@ -287,6 +290,7 @@ skein_status skein_world_reset(skein_world *world) {
     stop_colliders(world);
     world->time = 0;
     world->steps = world->substeps = world->unsolved = world->solver_failures = 0;
+    sk_record_reset(world);
     return SKEIN_OK;
 }
 
@@ -301,6 +305,7 @@ skein_status skein_world_time_set(skein_world *world, double seconds) {
                        seconds);
     stop_colliders(world);
     world->time = seconds;
+    sk_record_clock(world, seconds);
     return SKEIN_OK;
 }
 

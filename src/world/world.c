@@ -1,4 +1,5 @@
 /* The world's life: made, filled by builders, destroyed. */
+#include "world/record.h"
 #include "world/world.h"
 
 #include <stdarg.h>
@@ -88,6 +89,7 @@ void skein_world_destroy(skein_world *world) {
     if (!world) return;
     sk_allocator *allocator = &world->allocator;
     sk_rules *rules = &world->rules;
+    if (world->recording) skein_record_end(world);
     if (world->device) world->device->release(world->device, world);
     sk_tasks_destroy(world->tasks);
     for (size_t i = 0; i < rules->batches.count; i++) sk_batch_release(rules->batches.data[i], allocator);
@@ -282,6 +284,7 @@ skein_status skein_particles_add(skein_world *world, size_t count, const double 
     if (count) SK_NEED(world, masses);
     uint32_t place = (uint32_t)skein_particle_count(world);
     skein_status status = sk_world_add_particles(world, count, positions, velocities, masses, sk_world_error(world));
+    if (!status && count) sk_record_stop(world, "particles were added, which a recording cannot hold");
     if (!status && first) *first = place;
     return status;
 }

@@ -169,6 +169,7 @@ struct skein_world {
         const skein_compiled **data;
         size_t count, capacity;
     } compiled; /* what was registered; the newest is asked first */
+    struct sk_recording *recording; /* NULL: nobody records */
 };
 
 /* ---- for the catalogue: adding objects of a known type ---- */
