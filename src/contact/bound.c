@@ -164,7 +164,7 @@ static bool settle_pairs(sk_touch *touch, int sort, bool first, real least) {
 /* Each round looks at shares as the round before left them, so no order counts. */
 static bool find_shares(sk_touch *touch, sk_allocator *allocator, real least, sk_vec3 common) {
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
-        memset(touch->kept[sort].settled, 0, touch->kept[sort].count);
+        if (touch->kept[sort].count) memset(touch->kept[sort].settled, 0, touch->kept[sort].count);
     for (bool first = true;; first = false) {
         bool lowered = false;
         for (int sort = 0; sort < SK_PAIR_SORTS; sort++) lowered |= settle_pairs(touch, sort, first, least);
