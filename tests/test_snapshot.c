@@ -149,6 +149,33 @@ static void before_the_next_step(void **state) {
     skein_world_destroy(other);
 }
 
+/* A state that is not finite any more leaves nothing behind when the world is taken back. */
+static void back_from_a_blow_up(void **state) {
+    (void)state;
+    skein_world *world = new_world("symplectic_euler", 4);
+    const skein_setting rope[] = {SKEIN_REAL("count", 5),
+                                  SKEIN_TEXT("pins", "0"),
+                                  SKEIN_REAL("stretch.stiffness", 10),
+                                  SKEIN_REAL("stretch.limit", INFINITY),
+                                  SKEIN_REAL("stretch.tether", INFINITY),
+                                  SKEIN_END};
+    OK(world, skein_body_add(world, "rope", NULL, rope, NULL));
+    add_gravity(world);
+    snapshot s = take(world);
+    uint64_t good = hash_after(world, 4);
+    OK(world, skein_velocities_set(world, 2, 1, (const double[]){1e15, 1e15, 0}));
+    for (int i = 0; i < 2; i++) OK(world, skein_velocities_set(world, 3, 1, (const double[]){-1e15, 0, 0}));
+    OK(world, skein_set_path(world, "bodies.0.stretch.stiffness", skein_number(1e14)));
+    steps(world, 9, dt);
+    skein_statistics now;
+    OK(world, skein_world_statistics(world, &now));
+    assert_true(now.nonfinite > 0);
+    go_back(world, s);
+    assert_true(hash_after(world, 4) == good);
+    free(s.bytes);
+    skein_world_destroy(world);
+}
+
 static void report(void *user, const skein_error *error) {
     (void)user;
     fprintf(stderr, "%s: %s\n", error->where, error->message);
@@ -304,9 +331,13 @@ static void claims(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_of_the_state), cmocka_unit_test(before_the_next_step),
-        cmocka_unit_test(every_scene),      cmocka_unit_test(heads),
-        cmocka_unit_test(other_worlds),     cmocka_unit_test(claims),
+        cmocka_unit_test(all_of_the_state),
+        cmocka_unit_test(before_the_next_step),
+        cmocka_unit_test(back_from_a_blow_up),
+        cmocka_unit_test(every_scene),
+        cmocka_unit_test(heads),
+        cmocka_unit_test(other_worlds),
+        cmocka_unit_test(claims),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
