@@ -92,7 +92,7 @@ static bool is_fine_without(const app_report *r, const app_good *good, skein_han
 
 /* The rule without which those steps stay finite; where no single one is, that. */
 static void describe_rule(const app_report *r, const app_good *good, long steps, char *out, size_t size) {
-    static const skein_category categories[] = {SKEIN_FORCE, SKEIN_COLLIDER, SKEIN_CONSTRAINT};
+    static const skein_category categories[] = {SKEIN_CONSTRAINT, SKEIN_COLLIDER, SKEIN_FORCE}; // gravity moves all
     const skein_world *world = r->loaded->world;
     snprintf(
         out, size,
