@@ -85,7 +85,7 @@ bool sk_swept_stop(const sk_swept *sweep, const double start[3], double x[3]) {
     const sk_collider *collider = sweep->collider;
     double from[3] = {start[0], start[1], start[2]}, normal[3];
     double size = fabs(x[0]) + fabs(x[1]) + fabs(x[2]) + 0.1;
-    double off = fmax(0.5 * collider->common->thickness, (sizeof(real) == 4 ? 2e-6 : 1e-13) * size);
+    double off = fmax(0.5 * collider->common->thickness, (sizeof(real) == 4 ? 2e-6 : 1e-9) * size);
     for (int turn = 0; turn < MOST_CROSSINGS; turn++) {
         double part = collider->type->cross(collider->params, &sweep->pose, from, x, normal);
         if (part > 1) return turn > 0;
