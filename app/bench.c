@@ -35,7 +35,7 @@ static bool fill(skein_world *world, const bench_case *c, const char *on) {
     const skein_setting *scout = SKEIN_SETTINGS(SKEIN_TEXT("name", "scout"), SKEIN_REAL("count", 1));
     const skein_setting *flocking = SKEIN_SETTINGS(
         SKEIN_REAL("separation", reach * 0.45), SKEIN_REAL("alignment", reach * 0.2),
-        SKEIN_REAL("cohesion", reach * 0.35), SKEIN_TEXT("on", on), SKEIN_TEXT("minds", on[0] ? "birds" : ""));
+        SKEIN_REAL("cohesion", reach * 0.35), SKEIN_TEXT("on", on), SKEIN_TEXT("neighbours", on[0] ? "birds" : ""));
     return !failed(world, skein_method_set(world, "symplectic_euler", SKEIN_SETTINGS(SKEIN_REAL("substeps", 1)))) &&
            !failed(world, skein_body_add(world, "flock", NULL, birds, NULL)) &&
            (!on[0] || !failed(world, skein_body_add(world, "flock", NULL, scout, NULL))) &&

@@ -12,8 +12,8 @@ static int print_summary(const app_scene *loaded) {
     }
     size_t forces = skein_object_count(loaded->world, SKEIN_FORCE),
            colliders = skein_object_count(loaded->world, SKEIN_COLLIDER);
-    printf("%s: good; %zu particles (%zu held), %zu constraints, %zu force%s, %zu collider%s, %s; %zu warning%s\n",
-           loaded->path, s.particles, s.held_particles, s.constraints, forces, forces == 1 ? "" : "s", colliders,
+    printf("%s: good; %zu particles (%zu pinned), %zu constraints, %zu force%s, %zu collider%s, %s; %zu warning%s\n",
+           loaded->path, s.particles, s.pinned_particles, s.constraints, forces, forces == 1 ? "" : "s", colliders,
            colliders == 1 ? "" : "s", app_method(loaded), loaded->warnings, loaded->warnings == 1 ? "" : "s");
     return EXIT_OK;
 }
@@ -31,7 +31,7 @@ static json_t *describe(const app_scene *loaded, int status, json_t *faults, jso
         const char *key;
         size_t count;
     } counts[] = {{"particles", s.particles},
-                  {"held_particles", s.held_particles},
+                  {"pinned_particles", s.pinned_particles},
                   {"constraints", s.constraints},
                   {"forces", skein_object_count(loaded->world, SKEIN_FORCE)},
                   {"colliders", skein_object_count(loaded->world, SKEIN_COLLIDER)}};

@@ -32,7 +32,7 @@ static int explain(app_arguments *arguments) {
 static const app_option options[] = {
     APP_SET_OPTION,
     APP_DEVICE_OPTION,
-    {"--unfused", NULL, "the rows as the method writes them, before several are made one (on the processor only)", false,
+    {"--unfused", NULL, "the ops as the method writes them, before several are made one (on the processor only)", false,
      APP_TAKES_ANY},
     APP_END_OF_OPTIONS,
 };
@@ -41,10 +41,10 @@ const app_command app_explain_command = {
     "explain",
     "SCENE [--set PATH=VALUE]... [--device WHERE] [--unfused]",
     "print the plan of a scene: what one step does, row by row\n\n"
-    "A row names its kind, the vector it writes, what it reads, how many elements it runs over, and whether\n"
+    "An op names its kind, the vector it writes, what it reads, how many elements it runs over, and whether\n"
     "their order is part of the answer. Vectors: X positions, V velocities, F forces, X0 and V0 the state\n"
     "at the start of a substep, P the positions at the start of the step; w is the inverse mass.\n\n"
-    "On a graphics card the rows are the same; those that look at nothing but their own particle run together, a pass\n"
+    "On a graphics card the ops are the same; those that look at nothing but their own particle run together, a pass\n"
     "each, with their vectors in registers.\n\n"
     "  skein explain scenes/flag.json --set method.type=symplectic_euler",
     options,

@@ -49,7 +49,7 @@ app_log *app_log_begin(const char *path) {
     }
     io_output_printf(log->output, "step");
     for (size_t i = 0; i < COLUMN_COUNT; i++) io_output_printf(log->output, ",%s", columns[i].name);
-    io_output_printf(log->output, ",contacts,solver turns,solver iterations,unsolved\n");
+    io_output_printf(log->output, ",contacts,Newton iterations,CG iterations,unsolved\n");
     return log;
 }
 
@@ -59,8 +59,8 @@ void app_log_line(app_log *log, const skein_statistics *statistics) {
     for (size_t i = 0; i < COLUMN_COUNT; i++)
         at += (size_t)snprintf(log->line + at, size - at, ",%.9g",
                                *(const double *)(const void *)((const char *)statistics + columns[i].offset));
-    snprintf(log->line + at, size - at, ",%zu,%zu,%zu,%zu\n", statistics->contacts, statistics->solver_turns,
-             statistics->solver_iterations, statistics->unsolved);
+    snprintf(log->line + at, size - at, ",%zu,%zu,%zu,%zu\n", statistics->contacts, statistics->newton_iterations,
+             statistics->cg_iterations, statistics->unsolved);
     app_log_text(log, log->line);
 }
 

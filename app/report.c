@@ -74,7 +74,7 @@ static json_t *make_document(const app_report *r) {
         {"device_bytes", count(r->device_bytes)},
         // the state at the end
         {"particles", count(s->particles)},
-        {"held_particles", count(s->held_particles)},
+        {"pinned_particles", count(s->pinned_particles)},
         {"constraints", count(s->constraints)},
         {"contacts", count(s->contacts)},
         {"crossings", count(s->crossings)},
@@ -169,7 +169,8 @@ void app_report_print(const app_report *r) {
         s->kinetic_energy, 100 * s->max_stretch, 100 * s->p99_stretch, 1e3 * s->max_penetration);
     print_limit(r);
     if (s->all_unsolved)
-        printf("%" PRIu64 " of %" PRIu64 " substeps were left unsolved: more substeps, turns or cg_iterations help\n",
+        printf("%" PRIu64 " of %" PRIu64
+               " substeps were left unsolved: more substeps, iterations or cg_iterations help\n",
                s->all_unsolved, s->substeps);
     if (s->all_solver_failures)
         printf("%" PRIu64 " times a factor failed, and each particle's own block took its place\n",

@@ -2,7 +2,7 @@
  *
  *   bench.c        the program: options, timing
  *   report.c       the table, the comma separated values, and the kept file
- *   worlds.c       worlds to measure, and rows of their plans run alone
+ *   worlds.c       worlds to measure, and ops of their plans run alone
  *   meshes.c       meshes made in code
  *   plain.c        the student's loops
  *   plain_flock.c  the student's flock

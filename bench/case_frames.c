@@ -14,9 +14,9 @@ static void substep_of(const bench_scene *scene, const char *size, double bar) {
     skein_world *world = bench_cloth(scene), *swept = bench_cloth(scene);
     bench_steps(world, 20);
     bench_steps(swept, 20);
-    bench_rows *rows = bench_rows_create(swept, SK_ROW_PROJECT);
-    if (rows) {
-        bench_job jobs[] = {{.run = bench_step, .data = world}, {.run = bench_rows_run, .data = rows}};
+    bench_ops *ops = bench_ops_create(swept, SK_OP_PROJECT);
+    if (ops) {
+        bench_job jobs[] = {{.run = bench_step, .data = world}, {.run = bench_ops_run, .data = ops}};
         double seconds[2];
         bench_measure(jobs, 2, 0.1, seconds);
         bench_report(&(bench_result){.name = "substep",
@@ -28,7 +28,7 @@ static void substep_of(const bench_scene *scene, const char *size, double bar) {
                                      .as_long = bar,
                                      .note = "10 substeps, gravity, drag"});
     }
-    bench_rows_destroy(rows);
+    bench_ops_destroy(ops);
     skein_world_destroy(world);
     skein_world_destroy(swept);
 }
@@ -58,14 +58,14 @@ static void threads_of(bench_scene scene, const char *size, double bar) {
         worlds[i] = bench_cloth(&scene);
         bench_steps(worlds[i], 20);
     }
-    bench_rows *rows[] = {bench_rows_create(worlds[2], SK_ROW_PROJECT), bench_rows_create(worlds[3], SK_ROW_PROJECT)};
+    bench_ops *ops[] = {bench_ops_create(worlds[2], SK_OP_PROJECT), bench_ops_create(worlds[3], SK_OP_PROJECT)};
     bench_job jobs[] = {{.run = bench_step, .data = worlds[0]},
                         {.run = bench_step, .data = worlds[1]},
-                        {.run = bench_rows_run, .data = rows[0]},
-                        {.run = bench_rows_run, .data = rows[1]}};
+                        {.run = bench_ops_run, .data = ops[0]},
+                        {.run = bench_ops_run, .data = ops[1]}};
     double seconds[4];
-    bench_measure(jobs, rows[0] && rows[1] ? 4 : 2, 0.1, seconds);
-    for (int i = 0; i < (rows[0] && rows[1] ? 4 : 2); i += 2)
+    bench_measure(jobs, ops[0] && ops[1] ? 4 : 2, 0.1, seconds);
+    for (int i = 0; i < (ops[0] && ops[1] ? 4 : 2); i += 2)
         bench_report(&(bench_result){.name = i ? "threads, sweeps" : "threads, frames",
                                      .size = size,
                                      .ours = 1e3 * seconds[i + 1],
@@ -74,7 +74,7 @@ static void threads_of(bench_scene scene, const char *size, double bar) {
                                      .theirs = 1e3 * seconds[i],
                                      .faster = bar,
                                      .note = "two threads"});
-    for (int i = 0; i < 2; i++) bench_rows_destroy(rows[i]);
+    for (int i = 0; i < 2; i++) bench_ops_destroy(ops[i]);
     for (int i = 0; i < 4; i++) skein_world_destroy(worlds[i]);
 }
 

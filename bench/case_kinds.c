@@ -14,7 +14,7 @@
 #include "constraints/sweep.h"
 #include "world/world.h"
 
-#define SUBSTEP (1.0 / 60) // one a frame, so that a run of the rows is a sweep
+#define SUBSTEP (1.0 / 60) // one a frame, so that a run of the ops is a sweep
 
 /* Made by bench_emit --compiled, and built as a user's are. */
 extern const skein_compiled compiled_distance, compiled_dihedral, compiled_volume, compiled_area;
@@ -36,10 +36,10 @@ static const struct measured {
 enum { EMITTED, COMPILED, TAPE, WAYS };
 static const char *const way_names[WAYS] = {"emitted", "compiled", "tape"};
 
-/* A world of loose particles with constraints of one kind, its rows, and the state that every block starts from. */
+/* A world of loose particles with constraints of one kind, its ops, and the state that every block starts from. */
 typedef struct subject {
     skein_world *world;
-    bench_rows *rows;
+    bench_ops *ops;
     const sk_batch *batch;
     by_hand_projection *by_hand;
     sk_vec4 *start, *copy; /* of all slots; by hand it is the copy that is projected */
@@ -64,8 +64,8 @@ static void make_subject(subject *s, const struct measured *m, const bench_eleme
     if (way == COMPILED) bench_need(s->world, skein_formula_register(s->world, m->compiled));
     bench_need(s->world, skein_method_set(s->world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 1))));
     bench_shake(s->world, 0.2, 0);
-    s->rows = bench_rows_create(s->world, SK_ROW_PROJECT);
-    if (!s->rows) bench_stop("kinds: no projections");
+    s->ops = bench_ops_create(s->world, SK_OP_PROJECT);
+    if (!s->ops) bench_stop("kinds: no projections");
     s->batch = s->world->rules.batches.data[0];
     s->bytes = (s->world->particles.slot_end * sizeof(sk_vec4) + 63) / 64 * 64;
     s->start = aligned_alloc(64, s->bytes), s->copy = aligned_alloc(64, s->bytes);
@@ -77,7 +77,7 @@ static void make_subject(subject *s, const struct measured *m, const bench_eleme
 }
 
 static void free_subject(subject *s) {
-    bench_rows_destroy(s->rows);
+    bench_ops_destroy(s->ops);
     skein_world_destroy(s->world);
     free(s->start);
     free(s->copy);
@@ -89,7 +89,7 @@ static void start_rows(void *data) {
 }
 
 static void run_rows(void *data) {
-    bench_rows_run(((subject *)data)->rows);
+    bench_ops_run(((subject *)data)->ops);
 }
 
 static void start_by_hand(void *data) {
@@ -127,7 +127,8 @@ static void check(subject *s, const char *name) {
         far = fmax(far, fabs((double)(x[at].x - s->start[at].x)));
     }
     if (!(off <= 1e-3 * far)) bench_fault("kinds, %s: by hand it differs by %g of %g", name, off, far);
-    if (bench_rows_turns(s->rows) != 1) bench_fault("kinds, %s: %zu sweeps in a run", name, bench_rows_turns(s->rows));
+    if (bench_ops_iterations(s->ops) != 1)
+        bench_fault("kinds, %s: %zu sweeps in a run", name, bench_ops_iterations(s->ops));
 }
 
 /* How many groups a tape runs at once, on the average. */

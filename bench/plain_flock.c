@@ -74,11 +74,12 @@ static inline void add_range(const plain_flock *f, size_t i, int begin, int end,
     for (int j = begin; j < end; j++) {
         float dx = x[j] - px, dy = y[j] - py, dz = z[j] - pz, square = dx * dx + dy * dy + dz * dz;
         float inside = square < reach * reach ? 1.f : 0.f, distance = sqrtf(square < 1e-8f ? 1e-8f : square);
-        float percent = distance * per, inverse = 1 / distance;
-        float a = percent < along ? (percent - away) * per_along : (percent - along) * per_towards;
+        float relative_distance = distance * per, inverse = 1 / distance;
+        float a = relative_distance < along ? (relative_distance - away) * per_along
+                                            : (relative_distance - along) * per_towards;
         float c = 0.5f * cosine((a - 0.5f) * (a - 0.5f));
-        float towards = percent < away ? 1 - away / percent : percent < along ? 0.f : c;
-        float with = percent < away ? 0.f : percent < along ? 1 - c : 0.f;
+        float towards = relative_distance < away ? 1 - away / relative_distance : relative_distance < along ? 0.f : c;
+        float with = relative_distance < away ? 0.f : relative_distance < along ? 1 - c : 0.f;
         towards *= inside * inverse, with *= inside;
         sx += towards * dx + with * ux[j], sy += towards * dy + with * uy[j], sz += towards * dz + with * uz[j];
     }

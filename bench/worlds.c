@@ -1,4 +1,4 @@
-/* Worlds to measure. Built through the public header; only the springs' order and the plan's rows are read from
+/* Worlds to measure. Built through the public header; only the springs' order and the plan's ops are read from
  * within, since that is what is measured. */
 #include "bench/worlds.h"
 

@@ -5,7 +5,7 @@
 #include "bench/bench.h"
 #include "bench/meshes.h"
 #include "bench/plain.h"
-#include "plan/row.h"
+#include "plan/op.h"
 
 #define BENCH_RIGID ((double)__builtin_inf()) // a stiffness
 
@@ -53,17 +53,17 @@ plain_system *bench_plain(const skein_world *world, bench_order order, bool as_t
 /* Springs as another world lists them, of the same particles in the state of `world`. */
 plain_system *bench_plain_listed_by(const skein_world *world, const skein_world *listing, double h);
 
-/* ---- rows of a plan alone ---- */
+/* ---- ops of a plan alone ---- */
 
 /* All rows of a kind of the world's plan, which repeats them as often as a frame would. Until it is destroyed, the
- * world must not be stepped. NULL if the plan has no such rows. */
-typedef struct bench_rows bench_rows;
-bench_rows *bench_rows_create(skein_world *world, sk_row_kind kind);
-void bench_rows_destroy(bench_rows *rows);
-void bench_rows_run(void *rows);      /* timed: all turns */
-void bench_rows_run_once(void *rows); /* one turn */
-size_t bench_rows_turns(const bench_rows *rows);
-/* The forces that one turn adds up, in the user's order. */
-void bench_rows_forces(bench_rows *rows, double *out);
+ * world must not be stepped. NULL if the plan has no such ops. */
+typedef struct bench_ops bench_ops;
+bench_ops *bench_ops_create(skein_world *world, sk_op_kind kind);
+void bench_ops_destroy(bench_ops *ops);
+void bench_ops_run(void *ops);      /* timed: all iterations */
+void bench_ops_run_once(void *ops); /* one iteration */
+size_t bench_ops_iterations(const bench_ops *ops);
+/* The forces that one iteration adds up, in the user's order. */
+void bench_ops_forces(bench_ops *ops, double *out);
 
 #endif

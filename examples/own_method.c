@@ -13,7 +13,7 @@ static const skein_field fields[] = {
     SKEIN_FIELD_OF_INT(heun_params, substeps, "substeps", "", 20, 1, 100000, "equal parts that a step is cut into"),
 };
 
-static void write_heun(skein_writer *w, const void *data, double dt) {
+static void write_heun(skein_plan_builder *w, const void *data, double dt) {
     const heun_params *params = data;
     double h = dt / params->substeps;
     size_t repeat = skein_write_repeat(w, (size_t)params->substeps, h);
@@ -25,7 +25,7 @@ static void write_heun(skein_writer *w, const void *data, double dt) {
     skein_write_kick(w, SKEIN_T1, SKEIN_V, h / 2, SKEIN_F);
     skein_write_sum(w, SKEIN_X, 1, SKEIN_X, h, SKEIN_V);
     skein_write_kick(w, SKEIN_V, SKEIN_V, h, SKEIN_F);
-    skein_write_moment(w, 1);
+    skein_write_stage_time(w, 1);
     // the second slope, from there
     skein_write_forces(w);
     skein_write_sum(w, SKEIN_X, 1, SKEIN_T0, h / 2, SKEIN_V);

@@ -24,7 +24,7 @@ static const skein_field fields[] = {
     BOOL(gradients, "gradients", 0, "of the same, at each particle an arrow: where the constraint's value grows, and by how much"),
     CHOICE(particles, "particles", "loose|all|none", "as balls: those in no surface or rope, all of them, or none"),
     BOOL(birds, "birds", 1, "flocks as birds, whose wings beat; else as balls"),
-    BOOL(pins, "pins", 1, "held particles of a surface, as small dark balls"),
+    BOOL(pins, "pins", 1, "pinned particles of a surface, as small dark balls"),
     BOOL(normals, "normals", 0, "the surfaces' normals, as lines"),
     BOOL(velocities, "velocities", 0, "the particles' velocities, as lines"),
     BOOL(contacts, "contacts", 0, "where particles touch colliders, as lines along the collider's normal"),

@@ -43,7 +43,7 @@ static void add(render_world_points *points, render_point_kind kind, const doubl
     memcpy(&points->positions[kind][3 * points->points[kind].count++], position, 3 * sizeof *position);
 }
 
-/* Pins are held particles of a surface, unless most of it is held. */
+/* Pins are pinned particles of a surface, unless most of it is held. */
 bool render_world_points_take(render_world_points *points, const render_world_state *state, const skein_view *where,
                               const render_view *view) {
     bool all = view->particles == RENDER_ALL_PARTICLES, none = view->particles == RENDER_NO_PARTICLES;

@@ -510,8 +510,8 @@ static void views_and_copies_agree(void **state) {
     skein_statistics st = statistics_of(s.world);
     assert_share(st.kinetic_energy, energy, 1e-9);
     assert_share(st.momentum[1], momentum, 1e-9);
-    assert_true(st.particles == 51 && st.held_particles == 2 && st.nonfinite == 0);
-    // held particles have no share in energy and momentum, whatever velocity they were given; the hash sees all
+    assert_true(st.particles == 51 && st.pinned_particles == 2 && st.nonfinite == 0);
+    // pinned particles have no share in energy and momentum, whatever velocity they were given; the hash sees all
     throw_particle(s.world, 0, 100, 100, 100);
     skein_statistics thrown = statistics_of(s.world);
     assert_true(thrown.kinetic_energy == st.kinetic_energy && thrown.momentum[1] == st.momentum[1]);
@@ -537,25 +537,25 @@ static void positions_can_be_set_and_held(void **state) {
         steps(world, 9, dt);
         assert_near(position_of(world, 0).x, 0.1, 1e-6);
         // held: it stays where it is, at rest; let go, it falls with its own mass
-        OK(world, skein_particle_hold(world, 0, true));
+        OK(world, skein_particle_pin(world, 0, true));
         vec3 there = position_of(world, 0);
         steps(world, 9, dt);
         assert_under(length3(minus(position_of(world, 0), there)), 0);
         assert_under(length3(velocity_of(world, 0)), 0);
-        assert_int_equal(statistics_of(world).held_particles, 2);
-        OK(world, skein_particle_hold(world, 0, false));
-        OK(world, skein_particle_hold(world, 1, false)); // built as held: it has no mass to go with
+        assert_int_equal(statistics_of(world).pinned_particles, 2);
+        OK(world, skein_particle_pin(world, 0, false));
+        OK(world, skein_particle_pin(world, 1, false)); // built as held: it has no mass to go with
         steps(world, 90, dt);
         assert_share(velocity_of(world, 0).y, -9.81, 1e-4);
         assert_under(length3(minus(position_of(world, 1), (vec3){1, 0, 0})), 0);
         assert_share(statistics_of(world).momentum[1], -2 * 9.81, 1e-4);
-        assert_int_equal(statistics_of(world).held_particles, 1);
+        assert_int_equal(statistics_of(world).pinned_particles, 1);
         // a held one can still be placed
-        OK(world, skein_particle_hold(world, 0, true));
+        OK(world, skein_particle_pin(world, 0, true));
         place_particle(world, 0, 7, 8, 9);
         steps(world, 1, dt);
         assert_under(length3(minus(position_of(world, 0), (vec3){7, 8, 9})), 0);
-        FAILS(world, SKEIN_ERROR_VALUE, "the world has 2", skein_particle_hold(world, 2, true));
+        FAILS(world, SKEIN_ERROR_VALUE, "the world has 2", skein_particle_pin(world, 2, true));
         skein_world_destroy(world);
     }
 }

@@ -58,7 +58,7 @@ static void a_stiff_cube_stands_at_large_steps(void **state) {
         assert_int_equal(s.unsolved, 0);
         // at rest there is nothing to solve but rounding
         if (is_double && s.kinetic_energy > 1e-12) assert_true(s.residual <= 1e-5);
-        assert_true(s.solver_turns > 0 && s.solver_iterations > 0);
+        assert_true(s.newton_iterations > 0 && s.cg_iterations > 0);
         assert_true(s.max_stretch < 0.02);
         if (n > 15) highest = fmax(highest, centre_of(world).y);
     }
@@ -170,8 +170,8 @@ static void corners_hold_both_ways(void **state) {
     skein_world_destroy(world);
 }
 
-/* Newton's method takes few turns: for a stretched spring that turns, and for one that is thrown at its own end, which
- * takes the first guess and the line search to solve. */
+/* Newton's method takes few iterations: for a stretched spring that turns, and for one that is thrown at its own end,
+ * which takes the first guess and the line search to solve. */
 static void few_turns_solve_one_spring(void **state) {
     (void)state;
     static const struct { double x, vx, vy; } rows[] = {{2, 0, 8}, {1, -30, 0}, {0.3, 5, -20}, {4, -100, 3}};
@@ -185,7 +185,7 @@ static void few_turns_solve_one_spring(void **state) {
         steps(world, 1, 0.1);
         skein_statistics s = statistics_of(world);
         assert_int_equal(s.unsolved, 0);
-        assert_true(s.solver_turns <= 8);
+        assert_true(s.newton_iterations <= 8);
         assert_true(s.elastic_energy + s.kinetic_energy <= before);
         skein_world_destroy(world);
     }

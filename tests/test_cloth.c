@@ -616,7 +616,7 @@ static void impossible_meshes_are_refused(void **state) {
 
 /* ---- Pins --------------------------------------------------------------------------------------- */
 
-/* The held particles, as a line of numbers. */
+/* The pinned particles, as a line of numbers. */
 static void list_held(const skein_world *world, char *text, size_t size) {
     text[0] = 0;
     for (size_t i = 0; i < skein_particle_count(world); i++)
@@ -778,7 +778,7 @@ static void pins_of_a_mesh(void **state) {
     OK(world, skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("weld", 1e-6), SKEIN_TEXT("pins", "23 22")), NULL));
     skein_surface surface;
     OK(world, skein_body_surface(world, skein_object_at(world, SKEIN_BODY, 0), &surface));
-    assert_int_equal(statistics_of(world).held_particles, 2);
+    assert_int_equal(statistics_of(world).pinned_particles, 2);
     assert_true(is_held(world, surface.particle_of_vertex[23]) && is_held(world, surface.particle_of_vertex[22]));
     skein_world_destroy(world);
     free(d);
@@ -797,7 +797,7 @@ static void assert_straight_tethers(const skein_world *world, size_t anchors) {
     const sk_limit *limit = tethers_of(world);
     assert_non_null(limit);
     assert_int_equal(limit->anchors, anchors);
-    assert_int_equal(limit->count, skein_particle_count(world) - statistics_of((skein_world *)(uintptr_t)world).held_particles);
+    assert_int_equal(limit->count, skein_particle_count(world) - statistics_of((skein_world *)(uintptr_t)world).pinned_particles);
     for (size_t e = 0; e < limit->count; e++) {
         const uint32_t *particle = limit->particle + e * (1 + anchors);
         for (size_t k = 1; k <= anchors; k++) {

@@ -118,7 +118,7 @@ static void check_counts_what_is_there(void **state) {
     char words[600];
     const char *s = tiny_scene();
     snprintf(words, sizeof words,
-             "%s: good; 34 particles (4 held), 160 constraints, 1 force, 1 collider, xpbd; 0 warnings\n", s);
+             "%s: good; 34 particles (4 pinned), 160 constraints, 1 force, 1 collider, xpbd; 0 warnings\n", s);
     // 5 x 5: 40 edges, 32 diagonals, 30 lines of three, 16 squares; 3 x 3: 12, 8, 6 and 4; and 12 more by what is set
     assert_says(0, words, "", "check", s, "--set",
                 "constraints=[{\"type\":\"distance\",\"particles\":"
@@ -181,7 +181,7 @@ static void meshes_are_scenes(void **state) {
     outcome_free(&o);
     o = SKEIN("check", in_folder("one.node"));
     assert_status(o, 0);
-    assert_contains(o.out, ": good; 4 particles (0 held), ");
+    assert_contains(o.out, ": good; 4 particles (0 pinned), ");
     outcome_free(&o);
     o = SKEIN("check", in_folder("tent.obj"), "--set", "bodies.mesh.density=0.1 kg/m2", "--set",
               "colliders.ball.radius=-1");
@@ -325,7 +325,7 @@ static void explain_shows_every_kind_of_row(void **state) {
         outcome_free(&o);
     }
     for (size_t k = 0; k < COUNT(kinds); k++)
-        if (!seen[k]) fail_msg("no plan has a row '%s'", kinds[k]);
+        if (!seen[k]) fail_msg("no plan has an op '%s'", kinds[k]);
 }
 
 /* The field has a line of its own behind `at`, with its help's first word. */

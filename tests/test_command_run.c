@@ -16,7 +16,7 @@ static void judge_report(const json_t *report, int frames) {
         {"step", 1e-4, 1}, // a scene that goes on by keys may take a whole second
         {"time", 0, 1e3},
         {"particles", 2, 1e6},
-        {"held_particles", 0, 1e3},
+        {"pinned_particles", 0, 1e3},
         {"constraints", 0, 1e6},
         {"contacts", 0, 1e6},
         {"load_seconds", 0, 100},
@@ -309,7 +309,7 @@ static void seams_are_welded_and_exported_as_they_came(void **state) {
     assert_status(o, 0);
     assert_contains(o.err, "skein: warning: cloth: ");
     assert_contains(o.err, "border vertices lie on another one");
-    assert_contains(o.out, "seam.json: good; 8 particles (1 held), ");
+    assert_contains(o.out, "seam.json: good; 8 particles (1 pinned), ");
     assert_contains(o.out, ", 1 force, 0 colliders, xpbd; 2 warnings\n");
     outcome_free(&o);
 }
@@ -435,7 +435,7 @@ static void what_was_not_solved_is_told(void **state) {
                                "--set",
                                "method.cg_iterations=1",
                                "--set",
-                               "method.turns=1",
+                               "method.iterations=1",
                                "--json",
                                NULL};
     outcome o = finish_skein(start_skein((surroundings){0}, arguments));

@@ -24,18 +24,18 @@ static vec3 unit(vec3 a) {
 static vec3 part_of(const zones *z, vec3 d, vec3 v, double *sum) {
     double r = z->separation + z->alignment + z->cohesion, distance = length3(d);
     if (!(distance > 0) || !(distance < r)) return (vec3){0, 0, 0};
-    double percent = distance / r, near = z->separation / r, along = (z->separation + z->alignment) / r;
-    if (z->squared) percent *= percent;
-    if (percent < near) {
-        *sum += near / percent - 1;
-        return plus((vec3){0, 0, 0}, -(near / percent - 1), unit(d));
+    double relative_distance = distance / r, near = z->separation / r, along = (z->separation + z->alignment) / r;
+    if (z->squared) relative_distance *= relative_distance;
+    if (relative_distance < near) {
+        *sum += near / relative_distance - 1;
+        return plus((vec3){0, 0, 0}, -(near / relative_distance - 1), unit(d));
     }
-    if (percent < along) {
-        double a = (percent - near) / (along - near);
+    if (relative_distance < along) {
+        double a = (relative_distance - near) / (along - near);
         *sum += 1.5;
         return plus((vec3){0, 0, 0}, 0.5 - cos(a * 2 * PI) * 0.5 + 0.5, unit(v));
     }
-    double a = (percent - along) / (1 - along);
+    double a = (relative_distance - along) / (1 - along);
     *sum += 0.5;
     return plus((vec3){0, 0, 0}, 0.5 - (cos(a * 2 * PI) * -0.5 + 0.5), unit(d));
 }
@@ -69,14 +69,15 @@ static vec3 change_of_two(const zones *z, double distance, double flies) {
 static void each_zone_by_hand(void **state) {
     (void)state;
     static const struct {
-        double percent, along, towards;
+        double relative_distance, along, towards;
     } cases[] = {{0.225, 0, -1}, {0.1, 0, -3.5},   {0.45, 0.5, 0}, {0.55, 1.5, 0}, {0.5, 1, 0}, {0.65, 0, 0.5},
                  {0.7375, 0, 0}, {0.825, 0, -0.5}, {0.9125, 0, 0}, {1, 0, 0},      {1.2, 0, 0}};
     for (int squared = 0; squared < 2; squared++)
         for (size_t i = 0; i < COUNT(cases); i++) {
-            double share = squared ? sqrt(cases[i].percent) : cases[i].percent;
+            double share = squared ? sqrt(cases[i].relative_distance) : cases[i].relative_distance;
             // squares cannot be right on the edge of a zone
-            bool edge = squared && (cases[i].along == 0.5 || cases[i].towards == 0.5 || cases[i].percent == 1);
+            bool edge =
+                squared && (cases[i].along == 0.5 || cases[i].towards == 0.5 || cases[i].relative_distance == 1);
             vec3 c = change_of_two(squared ? &usual_squared : &usual, 100 * share * (edge ? 1.0000002 : 1), 3);
             assert_near(c.x, cases[i].along, 1e-6 + (edge ? 1e-5 : 0));
             assert_near(c.z, cases[i].towards, 1e-6 + (edge ? 1e-5 : 0) + 20 * EPSILON);
@@ -260,7 +261,7 @@ static void the_grid_is_all_pairs(void **state) {
 /* Two flocks in one world: a rule moves the body it names, and looks at the one it minds. */
 static void flocks_mind_whom_they_are_told_to(void **state) {
     (void)state;
-    static const char *const on[] = {"", "a", "a", "b"}, *const minds[] = {"", "", "b", "a"};
+    static const char *const on[] = {"", "a", "a", "b"}, *const neighbours[] = {"", "", "b", "a"};
     for (size_t c = 0; c < COUNT(on); c++) {
         skein_world *world = new_world("symplectic_euler", 1);
         // a cloth in strips before them, so that slots are not the user's order
@@ -273,8 +274,9 @@ static void flocks_mind_whom_they_are_told_to(void **state) {
                                                     SKEIN_REAL("seed", k), SKEIN_REAL("speed", 1e-3),
                                                     SKEIN_VEC3("spread", 150, 150, 150)),
                                      NULL));
-        OK(world, skein_force_add(world, "flocking",
-                                  SKEIN_SETTINGS(SKEIN_TEXT("on", on[c]), SKEIN_TEXT("minds", minds[c])), NULL));
+        OK(world,
+           skein_force_add(world, "flocking",
+                           SKEIN_SETTINGS(SKEIN_TEXT("on", on[c]), SKEIN_TEXT("neighbours", neighbours[c])), NULL));
         if (c)
             OK(world, skein_force_add(world, "attraction",
                                       SKEIN_SETTINGS(SKEIN_TEXT("on", on[c]), SKEIN_REAL("strength", 7)), NULL));
@@ -288,7 +290,7 @@ static void flocks_mind_whom_they_are_told_to(void **state) {
             vec3 ought = {0, 0, 0};
             double weight = 0;
             for (size_t j = 0; j < 74 && moved; j++) {
-                const char *whom = minds[c][0] ? minds[c] : on[c];
+                const char *whom = neighbours[c][0] ? neighbours[c] : on[c];
                 if (whom[0] && strcmp(whom, j < 37 ? "a" : "b")) continue;
                 ought = plus(ought, 1, part_of(&usual, minus(x[j], x[i]), v[j], &weight));
             }
@@ -388,9 +390,9 @@ static void faults_are_named(void **state) {
     OK(world, skein_force_add(world, "flocking", SKEIN_SETTINGS(SKEIN_TEXT("on", "guls")), &rule));
     FAILS(world, SKEIN_ERROR_NAME, "guls", skein_world_step(world, dt));
     OK(world, skein_set(world, rule, "on", skein_text("gulls")));
-    OK(world, skein_set(world, rule, "minds", skein_text("hawks")));
+    OK(world, skein_set(world, rule, "neighbours", skein_text("hawks")));
     FAILS(world, SKEIN_ERROR_NAME, "hawks", skein_world_step(world, dt));
-    OK(world, skein_set(world, rule, "minds", skein_text("")));
+    OK(world, skein_set(world, rule, "neighbours", skein_text("")));
     OK(world, skein_world_step(world, dt));
     OK(world, skein_force_add(world, "predator", SKEIN_SETTINGS(SKEIN_REAL("particle", 9)), &rule));
     FAILS(world, SKEIN_ERROR_VALUE, "no particle 9", skein_world_step(world, dt));

@@ -129,10 +129,11 @@ static void weights_may_be_formulas(void **state) {
     (void)state;
     enum { COUNT_ = 600 };
     static vec3 plain[COUNT_], is[COUNT_], first[COUNT_], second[COUNT_], start[COUNT_];
-    const char *towards = "select(percent < 0.45, 1 - 0.45/percent, select(percent < 0.65, 0, "
-                          "0.5*cos(2*pi*(percent - 0.65)/0.35)))",
-               *along =
-                   "let a = (percent - 0.45)/0.2; select(percent >= 0.45 && percent < 0.65, 1 - 0.5*cos(2*pi*a), 0)";
+    const char *
+        towards = "select(relative_distance < 0.45, 1 - 0.45/relative_distance, select(relative_distance < 0.65, 0, "
+                  "0.5*cos(2*pi*(relative_distance - 0.65)/0.35)))",
+       *along =
+           "let a = (relative_distance - 0.45)/0.2; select(relative_distance >= 0.45 && relative_distance < 0.65, 1 - 0.5*cos(2*pi*a), 0)";
     skein_world *world = flock_of(COUNT_, 220, 1e-3);
     OK(world, skein_velocities_copy(world, 0, COUNT_, &start[0].x));
     skein_world_destroy(world);
@@ -153,14 +154,14 @@ static void weights_may_be_formulas(void **state) {
     world = new_world("symplectic_euler", 1);
     add_particle(world, 1, 0, 0, 0), add_moving(world, 1, 0, 50, 0, 0, 0, 3);
     skein_handle rule;
-    OK(world, skein_force_add(
-                  world, "flocking",
-                  SKEIN_SETTINGS(SKEIN_TEXT("formula.towards", "3 - 2*percent"), SKEIN_TEXT("formula.along", "100*t")),
-                  &rule));
+    OK(world, skein_force_add(world, "flocking",
+                              SKEIN_SETTINGS(SKEIN_TEXT("formula.towards", "3 - 2*relative_distance"),
+                                             SKEIN_TEXT("formula.along", "100*t")),
+                              &rule));
     steps(world, 1, 0.01);
     assert_near(velocity_of(world, 0).y, 0.02, 1e-7);
     assert_near(velocity_of(world, 0).z, 0.01, 1e-7); // t is the end of the substep
-    OK(world, skein_set(world, rule, "formula.towards", skein_text("exp(1e3*percent)^9")));
+    OK(world, skein_set(world, rule, "formula.towards", skein_text("exp(1e3*relative_distance)^9")));
     OK(world, skein_set(world, rule, "formula.along", skein_text("")));
     vec3 v = velocity_of(world, 0);
     steps(world, 1, 0.01);
@@ -168,7 +169,7 @@ static void weights_may_be_formulas(void **state) {
     // faults are told with the field and the place
     static const struct {
         const char *text, *words;
-    } faults[] = {{"percent +", "formula.towards"},
+    } faults[] = {{"relative_distance +", "formula.towards"},
                   {"distance*2", "formula.towards"},
                   {"length(p0)", "depends on particles"},
                   {"vec3(1, 2, 3)", "formula.towards"}};
@@ -346,7 +347,7 @@ static void birds_and_cloth_mind_each_other(void **state) {
     static const char *const methods[] = {"symplectic_euler", "xpbd"};
     for (size_t m = 0; m < COUNT(methods); m++) {
         double nearest[2], moved[2];
-        for (int minds = 0; minds < 2; minds++) {
+        for (int neighbours = 0; neighbours < 2; neighbours++) {
             skein_world *world = new_world(methods[m], 10);
             OK(world,
                skein_body_add(world, "cloth", NULL,
@@ -361,27 +362,27 @@ static void birds_and_cloth_mind_each_other(void **state) {
                                                     SKEIN_VEC3("position", 0, 0, 12), SKEIN_VEC3("spread", 4, 4, 4),
                                                     SKEIN_REAL("speed", 0), SKEIN_VEC3("velocity", 0, 0, -6)),
                                      NULL));
-            if (minds) {
+            if (neighbours) {
                 OK(world, skein_force_add(world, "flocking",
-                                          SKEIN_SETTINGS(SKEIN_TEXT("on", "birds"), SKEIN_TEXT("minds", "flag"),
+                                          SKEIN_SETTINGS(SKEIN_TEXT("on", "birds"), SKEIN_TEXT("neighbours", "flag"),
                                                          SKEIN_REAL("separation", 2), SKEIN_REAL("alignment", 0),
                                                          SKEIN_REAL("cohesion", 0), SKEIN_REAL("strength", 10)),
                                           NULL));
                 OK(world, skein_force_add(world, "flocking",
-                                          SKEIN_SETTINGS(SKEIN_TEXT("on", "flag"), SKEIN_TEXT("minds", "birds"),
+                                          SKEIN_SETTINGS(SKEIN_TEXT("on", "flag"), SKEIN_TEXT("neighbours", "birds"),
                                                          SKEIN_REAL("separation", 3), SKEIN_REAL("alignment", 0),
                                                          SKEIN_REAL("cohesion", 0), SKEIN_REAL("strength", 0.5)),
                                           NULL));
             }
             OK(world, skein_force_add(world, "speed_limit", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL));
-            nearest[minds] = INFINITY, moved[minds] = 0;
+            nearest[neighbours] = INFINITY, moved[neighbours] = 0;
             for (int s = 0; s < 240; s++) {
                 steps(world, 1, dt);
                 for (size_t c = 0; c < cloth; c++) {
-                    moved[minds] = fmax(moved[minds], fabs(position_of(world, c).z));
+                    moved[neighbours] = fmax(moved[neighbours], fabs(position_of(world, c).z));
                     for (size_t b = cloth; b < cloth + 50; b += 7)
-                        nearest[minds] =
-                            fmin(nearest[minds], length3(minus(position_of(world, c), position_of(world, b))));
+                        nearest[neighbours] =
+                            fmin(nearest[neighbours], length3(minus(position_of(world, c), position_of(world, b))));
                 }
             }
             assert_int_equal(statistics_of(world).nonfinite, 0);

@@ -1,4 +1,4 @@
-/* Fusing looks at rows and at nothing else, and changes no bit: each scene steps the same with and without. */
+/* Fusing looks at ops and at nothing else, and changes no bit: each scene steps the same with and without. */
 #include <dirent.h>
 
 #include "helpers.h"
@@ -6,29 +6,29 @@
 #include "plan/fuse.h"
 #include "world/world.h"
 
-/* ---- rows by hand ---- */
+/* ---- ops by hand ---- */
 
 enum { SLOTS = 64 };
 static const double h = 0.01;
 
-static sk_row combine(const sk_kernels *kernels, sk_vector dst, double a, sk_vector p, double b, sk_vector q) {
-    return (sk_row){.kind = SK_ROW_COMBINE, .order = SK_FREE, .kernel = kernels->version[0], .dst = dst,
+static sk_op combine(const sk_kernels *kernels, sk_vector dst, double a, sk_vector p, double b, sk_vector q) {
+    return (sk_op){.kind = SK_OP_COMBINE, .order = SK_FREE, .kernel = kernels->version[0], .dst = dst,
                     .source = {p, q, SK_NONE}, .coefficient = {a, b, 0}, .dt = h, .end = SLOTS};
 }
 
-static const sk_plain_force falling = {.acceleration = {0, -9.81, 0}, .label = "gravity"};
+static const sk_uniform_force falling = {.acceleration = {0, -9.81, 0}, .label = "gravity"};
 
 /* A whole substep: a pull or a kick, the saves, the drift, something that moves X, and what V learns of it. */
 typedef struct substep {
-    sk_row rows[8];
+    sk_op ops[8];
     size_t count;
 } substep;
 
 static substep usual(bool pulls, sk_vector looks) {
-    sk_row pull = combine(&sk_combine_pull, SK_V, 0, SK_V, 0, SK_NONE);
+    sk_op pull = combine(&sk_combine_pull, SK_V, 0, SK_V, 0, SK_NONE);
     pull.rule = &falling;
-    sk_row project = {.kind = SK_ROW_PROJECT, .order = SK_ORDERED, .dst = SK_X, .source = {SK_X, looks}, .dt = h, .end = 3};
-    substep s = {{{.kind = SK_ROW_REPEAT, .end = 10, .dt = h},
+    sk_op project = {.kind = SK_OP_PROJECT, .order = SK_ORDERED, .dst = SK_X, .source = {SK_X, looks}, .dt = h, .end = 3};
+    substep s = {{{.kind = SK_OP_REPEAT, .end = 10, .dt = h},
                   pulls ? pull : combine(&sk_combine_kick, SK_V, h, SK_V, 0, SK_F),
                   combine(&sk_combine_sum, SK_X0, 1, SK_X, 0, SK_NONE),
                   combine(&sk_combine_sum, SK_V0, 1, SK_V, 0, SK_NONE),
@@ -36,29 +36,29 @@ static substep usual(bool pulls, sk_vector looks) {
                   project,
                   combine(&sk_combine_correction, SK_V, 1 / h, SK_X, h, SK_X0)},
                  7};
-    s.rows[0].length = s.count - 1;
+    s.ops[0].length = s.count - 1;
     return s;
 }
 
-/* The plan's rows after fusing, a word each. */
+/* The plan's ops after fusing, a word each. */
 static const char *fused(const substep *s) {
     static const struct {
         const sk_kernels *kernels;
         const char *word;
     } words[] = {{&sk_combine_pull, "pull "},   {&sk_combine_kick, "kick "},       {&sk_combine_sum, "sum "},
-                 {&sk_combine_fall, "fall "},   {&sk_combine_fall_on, "fall_on "}, {&sk_combine_predict, "predict "},
+                 {&sk_combine_predict_uniform, "fall "},   {&sk_combine_correct_and_predict, "fall_on "}, {&sk_combine_predict, "predict "},
                  {&sk_combine_correction, "correct "}};
     static char text[256];
     skein_world *world = new_world("xpbd", 1); // its allocator
     sk_plan plan = {.data = NULL};
-    for (size_t r = 0; r < s->count; r++) assert_true(sk_plan_add(&plan, &world->allocator, s->rows[r]));
+    for (size_t r = 0; r < s->count; r++) assert_true(sk_plan_add(&plan, &world->allocator, s->ops[r]));
     assert_true(sk_plan_fuse(&plan, &world->allocator, 0));
     text[0] = 0;
     for (size_t r = 0; r < plan.count; r++) {
         char word[32] = "project ";
-        if (plan.data[r].kind == SK_ROW_REPEAT) snprintf(word, sizeof word, "repeat%zu ", plan.data[r].length);
+        if (plan.data[r].kind == SK_OP_REPEAT) snprintf(word, sizeof word, "repeat%zu ", plan.data[r].length);
         for (size_t w = 0; w < COUNT(words); w++)
-            if (plan.data[r].kind == SK_ROW_COMBINE && sk_row_is(&plan.data[r], words[w].kernels))
+            if (plan.data[r].kind == SK_OP_COMBINE && sk_op_is(&plan.data[r], words[w].kernels))
                 snprintf(word, sizeof word, "%s", words[w].word);
         strcat(text, word);
     }
@@ -84,33 +84,33 @@ static void what_is_no_prediction_stays(void **state) {
     (void)state;
     static const char same[] = "repeat6 pull sum sum sum project correct ";
     substep s = usual(true, SK_NONE);
-    s.rows[4].coefficient[1] = 2 * h; // it drifts for longer
+    s.ops[4].coefficient[1] = 2 * h; // it drifts for longer
     assert_string_equal(fused(&s), same);
     s = usual(true, SK_NONE);
-    s.rows[2].source[0] = SK_V; // saves something else
+    s.ops[2].source[0] = SK_V; // saves something else
     assert_string_equal(fused(&s), same);
     s = usual(true, SK_NONE);
-    s.rows[1].inner = s.rows[1].kernel, s.rows[1].end_slot = 30; // pulls a part only
-    s.rows[1].kernel = sk_run_partly;
+    s.ops[1].inner = s.ops[1].kernel, s.ops[1].end_slot = 30; // pulls a part only
+    s.ops[1].kernel = sk_run_partly;
     assert_true(strstr(fused(&s), "fall") == NULL);
     s = usual(false, SK_NONE);
-    s.rows[1].coefficient[0] = h / 2; // kicks by half
+    s.ops[1].coefficient[0] = h / 2; // kicks by half
     assert_true(strstr(fused(&s), "predict") == NULL);
     s = usual(true, SK_NONE);
-    s.rows[6].coefficient[1] = 0; // learns from where X stood
+    s.ops[6].coefficient[1] = 0; // learns from where X stood
     assert_string_equal(fused(&s), "repeat3 fall project correct ");
     s = usual(true, SK_NONE);
-    s.rows[0].kind = SK_ROW_PART; // what a solve has run is not looked at
+    s.ops[0].kind = SK_OP_PART; // what a solve has run is not looked at
     assert_true(strstr(fused(&s), "fall") == NULL);
 }
 
 /* ---- scenes ---- */
 
-static size_t row_count;
+static size_t op_count;
 
 static void count_row(void *user, const char *line) {
     (void)user, (void)line;
-    row_count++;
+    op_count++;
 }
 
 static void report(void *user, const skein_error *error) {
@@ -118,7 +118,7 @@ static void report(void *user, const skein_error *error) {
     fprintf(stderr, "%s: %s\n", error->where, error->message);
 }
 
-/* The hash after some steps, and the rows of the plan. */
+/* The hash after some steps, and the ops of the plan. */
 static uint64_t hash_of(const char *path, const char *method, bool fuse, size_t *rows) {
     static const skein_kind *const none[] = {NULL};
     io_faults faults = {report, NULL, 0};
@@ -130,9 +130,9 @@ static uint64_t hash_of(const char *path, const char *method, bool fuse, size_t 
     skein_world_fuse(world, fuse);
     double dt;
     io_scene_steps_per_frame(io_scene_get(scene), &dt);
-    row_count = 0;
+    op_count = 0;
     OK(world, skein_world_explain(world, dt, count_row, NULL));
-    *rows = row_count;
+    *rows = op_count;
     steps(world, 12, dt);
     uint64_t hash = skein_world_hash(world);
     skein_world_destroy(world);

@@ -222,7 +222,7 @@ static void small_bindings_and_short_axes_do(void **state) {
 static void change_by_hand(skein_world *world) {
     OK(world, skein_positions_set(world, 4, 1, (const double[]){0.1, 0.2, 0.3}));
     OK(world, skein_velocities_set(world, 5, 2, (const double[]){1, 2, 3, 4, 5, 6}));
-    OK(world, skein_particle_hold(world, 6, true));
+    OK(world, skein_particle_pin(world, 6, true));
 }
 
 static void changes_by_hand_arrive(void **state) {

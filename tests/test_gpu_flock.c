@@ -196,10 +196,14 @@ static void periodic_edges_agree(void **state) {
 /* Weights by formula, one that minds the time, of all or of the nearest; or only one of the two. */
 static skein_world *by_formula(const char *method, int which) {
     skein_world *world = flying(method, 400, which == 1);
-    OK(world, skein_set_path(world, "forces.0.formula.towards",
-                             skein_text(which == 2 ? "" : "1.5*percent - 0.2/(percent + 0.01) + sin(40*t)")));
-    OK(world, skein_set_path(world, "forces.0.formula.along",
-                             skein_text(which == 0 ? "" : "sqrt(percent)*exp(-percent^2) + min(percent, 0.5)")));
+    OK(world, skein_set_path(
+                  world, "forces.0.formula.towards",
+                  skein_text(which == 2 ? "" : "1.5*relative_distance - 0.2/(relative_distance + 0.01) + sin(40*t)")));
+    OK(world,
+       skein_set_path(
+           world, "forces.0.formula.along",
+           skein_text(which == 0 ? ""
+                                 : "sqrt(relative_distance)*exp(-relative_distance^2) + min(relative_distance, 0.5)")));
     OK(world, skein_set_path(world, "forces.0.nearest", skein_number(which == 1 ? 7 : 0)));
     OK(world, skein_set_path(world, "forces.0.strength", skein_number(3)));
     return world;
@@ -215,7 +219,7 @@ static void weights_by_formula_agree(void **state) {
     // where there is no number the weight is 0
     skein_world *world = by_formula("xpbd", 0);
     to_card(world);
-    OK(world, skein_set_path(world, "forces.0.formula.towards", skein_text("exp(1e3*percent)^9")));
+    OK(world, skein_set_path(world, "forces.0.formula.towards", skein_text("exp(1e3*relative_distance)^9")));
     OK(world, skein_world_step(world, dt));
     skein_statistics statistics;
     OK(world, skein_world_statistics(world, &statistics));
@@ -285,12 +289,12 @@ static void add_steering(const double *x, const double *v, size_t count, size_t 
             square += d[k] * d[k];
             speed += v[3 * j + (size_t)k] * v[3 * j + (size_t)k];
         }
-        double distance = sqrt(square), percent = distance / 2;
-        if (!(distance > 0) || !(percent < 1)) continue;
+        double distance = sqrt(square), relative_distance = distance / 2;
+        if (!(distance > 0) || !(relative_distance < 1)) continue;
         double towards = 0, with = 0;
-        if (percent < 0.4) towards = 1 - 0.4 / percent;
-        else if (percent < 0.7) with = 1 - 0.5 * cos(2 * PI * (percent - 0.4) / 0.3);
-        else towards = 0.5 * cos(2 * PI * (percent - 0.7) / 0.3);
+        if (relative_distance < 0.4) towards = 1 - 0.4 / relative_distance;
+        else if (relative_distance < 0.7) with = 1 - 0.5 * cos(2 * PI * (relative_distance - 0.4) / 0.3);
+        else towards = 0.5 * cos(2 * PI * (relative_distance - 0.7) / 0.3);
         for (int k = 0; k < 3; k++)
             out[k] += dt * (towards * d[k] / distance + with * v[3 * j + (size_t)k] / sqrt(speed));
     }
@@ -336,7 +340,7 @@ static skein_world *two_flocks(const char *method) {
         OK(world, skein_force_add(world, "flocking",
                                   SKEIN_SETTINGS(SKEIN_REAL("separation", 0.5), SKEIN_REAL("alignment", 0.3 + 0.2 * f),
                                                  SKEIN_REAL("cohesion", 0.2), SKEIN_TEXT("on", names[f]),
-                                                 SKEIN_TEXT("minds", "jays"), SKEIN_TEXT("measure", "distance^2")),
+                                                 SKEIN_TEXT("neighbours", "jays"), SKEIN_TEXT("measure", "distance^2")),
                                   NULL));
     }
     OK(world,

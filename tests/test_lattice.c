@@ -318,7 +318,7 @@ static void pins_hold_what_they_name(void **state) {
     for (size_t i = 0; i < COUNT(pins); i++) {
         skein_world *world = skein_world_create(NULL, NULL);
         add_lattice(world, 3, 4, 5, SKEIN_SETTINGS(SKEIN_TEXT("pins", pins[i].text), SKEIN_VEC3("size", 2, 2, 2)));
-        assert_int_equal(statistics_of(world).held_particles, pins[i].held);
+        assert_int_equal(statistics_of(world).pinned_particles, pins[i].held);
         skein_view view = skein_position_view(world);
         if (pins[i].held) assert_true(view.xyzw[4 * view.slot_of[pins[i].example] + 3] == 0);
         skein_world_destroy(world);
@@ -393,10 +393,10 @@ static void halves_go_forth_and_back(void **state) {
     steps(world, 1, 1.0 / 60);
     size_t rows[128], count = 0;
     for (size_t r = 0; r < world->plan.count; r++)
-        if (world->plan.data[r].kind == SK_ROW_PROJECT && world->plan.data[r].half) rows[count++] = r;
+        if (world->plan.data[r].kind == SK_OP_PROJECT && world->plan.data[r].half) rows[count++] = r;
     assert_true(count > 20 && count % 2 == 0);
     for (size_t i = 0; i < count / 2; i++) {
-        const sk_row *forth = &world->plan.data[rows[i]], *back = &world->plan.data[rows[count - 1 - i]];
+        const sk_op *forth = &world->plan.data[rows[i]], *back = &world->plan.data[rows[count - 1 - i]];
         assert_int_equal(forth->half, SK_EVEN_HALF);
         assert_int_equal(back->half, SK_ODD_HALF);
         assert_ptr_equal(forth->rule, back->rule);

@@ -60,7 +60,7 @@ static void each_kind_leads_where_it_says(void **state) {
         steps(world, 32, dt);
         check_place(world, 0, 2 - 2 * cos(3 * PI / 8), 1, 2 * sin(3 * PI / 8));
         // what is let go is led no more; what a program says counts; what is removed leads nobody
-        OK(world, skein_particle_hold(world, 2, false));
+        OK(world, skein_particle_pin(world, 2, false));
         OK(world, skein_pins_move(world, (uint32_t[]){4}, 1, (double[]){7, 8, 9}));
         steps(world, 1, dt);
         check_place(world, 4, 7, 8, 9);

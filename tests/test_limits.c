@@ -104,14 +104,14 @@ static void tethers_follow_what_is_held(void **state) {
     for (size_t m = 0; m < COUNT(method_names); m++) {
         skein_world *world = limp_sheet(method_names[m], 3, "0", INFINITY, 0, NULL);
         place_particle(world, 8, 7, 0, 0);
-        OK(world, skein_particle_hold(world, 8, true));
+        OK(world, skein_particle_pin(world, 8, true));
         steps(world, 1, dt);
         assert_under(length3(minus(position_of(world, 8), (vec3){7, 0, 0})), 0);
-        OK(world, skein_particle_hold(world, 8, false));
-        OK(world, skein_particle_hold(world, 0, false));
+        OK(world, skein_particle_pin(world, 8, false));
+        OK(world, skein_particle_pin(world, 0, false));
         steps(world, 1, dt);
         assert_under(length3(minus(position_of(world, 8), (vec3){7, 0, 0})), 10 * EPSILON);
-        OK(world, skein_particle_hold(world, 0, true));
+        OK(world, skein_particle_pin(world, 0, true));
         steps(world, 1, dt);
         assert_near(length3(minus(position_of(world, 8), position_of(world, 0))), sqrt(2), 10 * EPSILON);
         skein_world_destroy(world);
@@ -127,7 +127,7 @@ static void tethers_to_an_edge_follow_what_is_held(void **state) {
             vec3 p = position_of(world, i);
             place_particle(world, i, p.x, -3, p.z);
         }
-        OK(world, skein_particle_hold(world, 2, false));
+        OK(world, skein_particle_pin(world, 2, false));
         steps(world, 1, dt);
         for (size_t i = 20; i < 25; i++) {
             double length = length3(minus(position_of(world, i), position_of(world, i - 20)));

@@ -24,32 +24,32 @@ static void leave(sk_run *run, double first, double second) {
     sums[0] = first, sums[1] = second;
 }
 
-static problem *problem_of(const sk_row *row) {
-    return (problem *)(uintptr_t)row->rule;
+static problem *problem_of(const sk_op *op) {
+    return (problem *)(uintptr_t)op->rule;
 }
 
-static void guess(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    problem *o = problem_of(row);
+static void guess(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    problem *o = problem_of(op);
     (void)run, (void)begin, (void)end;
     for (int i = 0; i < N; i++) o->change[i] = o->v[i], o->guess[i] = o->v[i] = 0;
 }
 
-static void along(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    problem *o = problem_of(row);
+static void along(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    problem *o = problem_of(op);
     (void)begin, (void)end;
     o->along++;
     for (int i = 0; i < N; i++) o->v[i] = o->guess[i] + run->solve->scale * o->change[i];
 }
 
-static void residual(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    problem *o = problem_of(row);
+static void residual(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    problem *o = problem_of(op);
     (void)begin, (void)end;
     for (int i = 0; i < N; i++) o->r[i] = o->b[i] - dot(o->a[i], o->v) - o->c * o->v[i] * o->v[i] * o->v[i];
     leave(run, dot(o->r, o->change), dot(o->r, o->r));
 }
 
-static void linearise(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    problem *o = problem_of(row);
+static void linearise(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    problem *o = problem_of(op);
     (void)begin, (void)end;
     memcpy(o->jacobian, o->a, sizeof o->a);
     for (int i = 0; i < N; i++) {
@@ -59,15 +59,15 @@ static void linearise(sk_run *run, const sk_row *row, size_t begin, size_t end) 
     leave(run, 0, 0);
 }
 
-static void precondition(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    problem *o = problem_of(row);
+static void precondition(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    problem *o = problem_of(op);
     (void)begin, (void)end;
     memcpy(o->z, o->r, sizeof o->z);
     leave(run, dot(o->r, o->z), 0);
 }
 
-static void multiply(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    problem *o = problem_of(row);
+static void multiply(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    problem *o = problem_of(op);
     double s = run->solve->scale;
     (void)begin, (void)end;
     for (int i = 0; i < N; i++) o->p[i] = o->z[i] + s * o->p[i];
@@ -75,37 +75,37 @@ static void multiply(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     leave(run, dot(o->p, o->q), 0);
 }
 
-static void step(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    problem *o = problem_of(row);
+static void step(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    problem *o = problem_of(op);
     double s = run->solve->scale;
     for (int i = 0; i < N; i++) o->change[i] += s * o->p[i], o->r[i] -= s * o->q[i];
-    precondition(run, row, begin, end);
+    precondition(run, op, begin, end);
 }
 
-static void run_kernels(sk_run *run, const sk_row *rows, size_t count) {
-    for (size_t r = 0; r < count; r++) rows[r].kernel(run, &rows[r], 0, 0);
+static void run_kernels(sk_run *run, const sk_op *ops, size_t count) {
+    for (size_t r = 0; r < count; r++) ops[r].kernel(run, &ops[r], 0, 0);
 }
 
 /* The account of a solve from v as it is. */
 static sk_solve solve(problem *o) {
-    static sk_row_kernel *const kernels[SK_NEWTON_PARTS] = {
+    static sk_op_kernel *const kernels[SK_NEWTON_PARTS] = {
         [SK_NEWTON_GUESS] = guess,         [SK_NEWTON_ALONG] = along,
         [SK_NEWTON_HOLD] = NULL,           [SK_NEWTON_RESIDUAL] = residual,
         [SK_NEWTON_LINEARISE] = linearise, [SK_NEWTON_PRECONDITION] = precondition,
         [SK_NEWTON_MULTIPLY] = multiply,   [SK_NEWTON_STEP] = step,
     };
-    sk_row rows[ROWS] = {{.kind = SK_ROW_SOLVE, .kernel = sk_newton_solve, .rule = &o->params}};
+    sk_op ops[ROWS] = {{.kind = SK_OP_SOLVE, .kernel = sk_newton_solve, .rule = &o->params}};
     size_t count = 1;
     for (int part = SK_NEWTON_PARTS; part-- > 0;) { // in any order
-        rows[count++] = (sk_row){.kind = SK_ROW_PART, .part = part, .length = kernels[part] != NULL};
-        if (kernels[part]) rows[count++] = (sk_row){.kind = SK_ROW_CALL, .kernel = kernels[part], .rule = o};
+        ops[count++] = (sk_op){.kind = SK_OP_PART, .part = part, .length = kernels[part] != NULL};
+        if (kernels[part]) ops[count++] = (sk_op){.kind = SK_OP_CALL, .kernel = kernels[part], .rule = o};
     }
-    rows[0].length = count - 1;
+    ops[0].length = count - 1;
     sk_vec4 sums[16] = {{0}};
     sk_solve state = {.scale = 0};
-    sk_run run = {.slot_count = 16, .solve = &state, .rows = run_kernels};
+    sk_run run = {.slot_count = 16, .solve = &state, .ops = run_kernels};
     run.vector[SK_SUMS] = sums;
-    rows[0].kernel(&run, &rows[0], 0, 1);
+    ops[0].kernel(&run, &ops[0], 0, 1);
     return state;
 }
 
@@ -123,7 +123,7 @@ static void a_linear_system_takes_one_turn(void **state) {
     (void)state;
     problem o = chain(0);
     sk_solve s = solve(&o);
-    assert_int_equal(s.turns, 1);
+    assert_int_equal(s.newton_iterations, 1);
     assert_true(s.iterations <= N); // in exact arithmetic there are no more directions
     assert_int_equal(s.unsolved, 0);
     for (int i = 0; i < N; i++) { // second differences of k^3/6 are k
@@ -140,7 +140,7 @@ static void a_curved_one_is_solved_from_anywhere(void **state) {
         for (int i = 0; i < N; i++) o.v[i] = starts[k];
         sk_solve s = solve(&o);
         assert_int_equal(s.unsolved, 0);
-        assert_true(s.turns <= 12 && s.residual <= 1e-9);
+        assert_true(s.newton_iterations <= 12 && s.residual <= 1e-9);
         for (int i = 0; i < N; i++) assert_near(dot(o.a[i], o.v) + 3 * o.v[i] * o.v[i] * o.v[i], o.b[i], 1e-6);
     }
 }
@@ -150,7 +150,7 @@ static void a_long_guess_is_shortened(void **state) {
     (void)state;
     problem near = chain(3), far = chain(3);
     for (int i = 0; i < N; i++) far.v[i] = 1e4;
-    near.params.turns = far.params.turns = 0; // the first guess and nothing more
+    near.params.iterations = far.params.iterations = 0; // the first guess and nothing more
     solve(&near), solve(&far);
     assert_int_equal(near.along, 1);
     assert_true(far.along > 2 && fabs(far.v[0]) < 10);
@@ -159,23 +159,23 @@ static void a_long_guess_is_shortened(void **state) {
 static void what_is_left_is_told(void **state) {
     (void)state;
     problem o = chain(3);
-    o.params.turns = 1;
+    o.params.iterations = 1;
     sk_solve s = solve(&o);
-    assert_true(s.unsolved == 1 && s.turns == 1 && s.residual > 1e-9);
+    assert_true(s.unsolved == 1 && s.newton_iterations == 1 && s.residual > 1e-9);
     o = chain(0);
-    o.params.turns = 1, o.params.cg_iterations = 2;
+    o.params.iterations = 1, o.params.cg_iterations = 2;
     s = solve(&o);
     assert_true(s.unsolved == 1 && s.iterations == 2);
     // a residual that is no number is not gone on with
     o = chain(0);
     o.b[2] = NAN;
     s = solve(&o);
-    assert_true(s.unsolved == 1 && s.turns == 0);
+    assert_true(s.unsolved == 1 && s.newton_iterations == 0);
     // where there is nothing to do nothing is done
     o = chain(0);
     memset(o.b, 0, sizeof o.b);
     s = solve(&o);
-    assert_true(s.unsolved == 0 && s.turns == 0);
+    assert_true(s.unsolved == 0 && s.newton_iterations == 0);
 }
 
 int main(void) {

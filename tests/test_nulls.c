@@ -217,8 +217,8 @@ static void reading_and_writing(void **state) {
     REFUSES_ALL(skein_positions_blend(NULL, 1, 0, 1, xyz));
     REFUSES_ALL(skein_positions_set(NULL, 0, 1, xyz));
     REFUSES_ALL(skein_velocities_set(NULL, 0, 1, xyz));
-    REFUSES_ALL(skein_particle_hold(NULL, 0, true));
-    OK(s.world, skein_particle_hold(s.world, 0, true));
+    REFUSES_ALL(skein_particle_pin(NULL, 0, true));
+    OK(s.world, skein_particle_pin(s.world, 0, true));
     REFUSES("xyz", skein_pins_move(s.world, &index_of, 1, NULL));
     OK(s.world, skein_pins_move(s.world, NULL, 1, xyz));
     OK(s.world, skein_pins_move(s.world, NULL, 0, NULL));
@@ -409,7 +409,7 @@ static void kinds_of_its_own(void **state) {
     REFUSES("shape", skein_shape_of(s.world, s.ball, NULL));
     REFUSES_ALL(skein_shape_of(NULL, s.ball, &shape));
     assert_int_equal(skein_write_repeat(NULL, 1, 1), 0);
-    skein_write_end(NULL, 0), skein_write_moment(NULL, 1), skein_write_forces(NULL), skein_write_steering(NULL);
+    skein_write_end(NULL, 0), skein_write_stage_time(NULL, 1), skein_write_forces(NULL), skein_write_steering(NULL);
     skein_write_sum(NULL, SKEIN_X, 1, SKEIN_X, 1, SKEIN_V), skein_write_kick(NULL, SKEIN_V, SKEIN_V, 1, SKEIN_F);
     skein_write_bounds(NULL), skein_write_projections(NULL, 1), skein_write_contacts(NULL);
     REFUSES_ALL(skein_build_particles(NULL, 1, xyz, NULL, xyz));

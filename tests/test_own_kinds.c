@@ -144,7 +144,7 @@ typedef struct own_euler_params {
 static const skein_field euler_fields[] = {
     SKEIN_FIELD_OF_INT(own_euler_params, substeps, "substeps", "", 20, 1, 1000, "parts of a step"),
 };
-static void write_euler(skein_writer *w, const void *data, double step) {
+static void write_euler(skein_plan_builder *w, const void *data, double step) {
     const own_euler_params *params = data;
     double h = step / params->substeps;
     size_t repeat = skein_write_repeat(w, (size_t)params->substeps, h);
@@ -152,7 +152,7 @@ static void write_euler(skein_writer *w, const void *data, double step) {
     skein_write_kick(w, SKEIN_V, SKEIN_V, h, SKEIN_F);
     skein_write_steering(w);
     skein_write_sum(w, SKEIN_X, 1, SKEIN_X, h, SKEIN_V);
-    skein_write_moment(w, 1);
+    skein_write_stage_time(w, 1);
     skein_write_contacts(w);
     skein_write_end(w, repeat);
 }

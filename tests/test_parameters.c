@@ -43,8 +43,8 @@ static void unmake(void *params, sk_allocator *allocator) {
     skein_formula_destroy(((pull_params *)params)->formula);
 }
 
-static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    (void)run, (void)row, (void)begin, (void)end;
+static void kernel(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    (void)run, (void)op, (void)begin, (void)end;
 }
 
 static const sk_making making = {.make = make, .unmake = unmake};

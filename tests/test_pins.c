@@ -160,7 +160,7 @@ static void pins_say_what_is_wrong(void **state) {
     skein_world *world = new_world("xpbd", 4);
     uint32_t pin = add_particle(world, 0, 0, 0, 0), loose = add_particle(world, 1, 1, 0, 0);
     const double there[] = {1, 1, 1, 2, 2, 2}, nowhere[] = {1, 1, 1, 0, NAN, 0}, far[] = {0, 1e16, 0};
-    FAILS(world, SKEIN_ERROR_VALUE, "particle 1 is not held",
+    FAILS(world, SKEIN_ERROR_VALUE, "particle 1 is not pinned",
           skein_pins_move(world, (uint32_t[]){pin, loose}, 2, there));
     FAILS(world, SKEIN_ERROR_VALUE, "no particle 7", skein_pins_move(world, (uint32_t[]){pin, 7}, 2, there));
     FAILS(world, SKEIN_ERROR_VALUE, "no particle 2", skein_pins_move(world, (uint32_t[]){pin, 2}, 2, there));
@@ -182,10 +182,10 @@ static void places_are_forgotten_with_their_pins(void **state) {
     (void)state;
     skein_world *world = new_world("symplectic_euler", 4);
     uint32_t pin = add_particle(world, 1, 0, 0, 0), other = add_particle(world, 0, 3, 0, 0);
-    OK(world, skein_particle_hold(world, pin, true));
+    OK(world, skein_particle_pin(world, pin, true));
     for (int k = 0; k < 100; k++) // far more than there are particles: the list does not grow
         OK(world, skein_pins_move(world, (uint32_t[]){pin, other}, 2, (double[]){1, 0, 0, 4, 0.01 * k, 0}));
-    OK(world, skein_particle_hold(world, pin, false));
+    OK(world, skein_particle_pin(world, pin, false));
     steps(world, 1, dt);
     assert_true(position_of(world, pin).x == 0 && velocity_of(world, pin).x == 0);
     assert_true(position_of(world, other).y == (double)(skein_real)0.99);

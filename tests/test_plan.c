@@ -1,4 +1,4 @@
-/* The plan is what runs: a row taken out of it changes the state, and `explain` prints a line a row. */
+/* The plan is what runs: an op taken out of it changes the state, and `explain` prints a line an op. */
 #include "helpers.h"
 #include "world/world.h"
 
@@ -41,7 +41,7 @@ static skein_world *busy_world(const char *method) {
     return world;
 }
 
-/* Takes a row out; a repeat around it has one less to repeat. */
+/* Takes an op out; a repeat around it has one less to repeat. */
 static void drop_row(sk_plan *plan, size_t dropped) {
     for (size_t r = 0; r < dropped; r++)
         if (plan->data[r].length && r + plan->data[r].length >= dropped) plan->data[r].length--;
@@ -49,13 +49,13 @@ static void drop_row(sk_plan *plan, size_t dropped) {
     plan->count--;
 }
 
-/* The hash after two whole steps and 40 without that row (SIZE_MAX: with all). */
+/* The hash after two whole steps and 40 without that op (SIZE_MAX: with all). */
 static uint64_t hash_without(const char *method, size_t dropped, size_t *count, char *line, double *blended) {
     skein_world *world = busy_world(method);
     steps(world, 2, dt);
     *count = world->plan.count;
     if (dropped < *count) {
-        sk_row_describe(&world->plan.data[dropped], line, 256);
+        sk_op_describe(&world->plan.data[dropped], line, 256);
         drop_row(&world->plan, dropped);
     }
     assert_false(world->plan_stale);
@@ -81,7 +81,7 @@ static void every_row_matters(void **state) {
             bool changed = hash_without(method_names[m], r, &unheard, line, blended_without) != whole;
             if (changed) continue;
             silent++;
-            // two rows that no such motion depends on: the end of what has all but come to rest (test_bits), and the
+            // two ops that no such motion depends on: the end of what has all but come to rest (test_bits), and the
             // last step's positions, saved for blending between frames
             if (strstr(line, "V, 0 where at most")) continue;
             assert_int_equal(r, 0);
@@ -121,10 +121,10 @@ static void explain_prints_a_line_a_row(void **state) {
         assert_int_equal(p.count, world->plan.count);
         assert_true(skein_world_hash(world) == before); // looking is not running
         for (size_t i = 0; i < p.count; i++) {
-            const sk_row *row = &world->plan.data[i];
-            assert_non_null(strstr(p.lines[i], sk_row_kind_text(row->kind)));
+            const sk_op *op = &world->plan.data[i];
+            assert_non_null(strstr(p.lines[i], sk_op_kind_text(op->kind)));
             assert_null(strchr(p.lines[i], '\n'));
-            if (row->label && row->kind != SK_ROW_REPEAT) assert_non_null(strstr(p.lines[i], row->label));
+            if (op->label && op->kind != SK_OP_REPEAT) assert_non_null(strstr(p.lines[i], op->label));
         }
         // the repeat says how often and how much, and what it repeats is indented
         assert_int_equal(lines_with(&p, "3 times"), 1);
@@ -133,17 +133,17 @@ static void explain_prints_a_line_a_row(void **state) {
         assert_true(lines_with(&p, "ball") == lines_with(&p, "ground") && lines_with(&p, "ball") >= 1);
         assert_int_equal(lines_with(&p, "    "), p.count);
         size_t repeat = 0;
-        while (world->plan.data[repeat].kind != SK_ROW_REPEAT) repeat++;
+        while (world->plan.data[repeat].kind != SK_OP_REPEAT) repeat++;
         for (size_t i = repeat + 1; i <= repeat + world->plan.data[repeat].length; i++)
             assert_memory_equal(p.lines[i], "    ", 4);
 
-        // rows bear the names that rules have now
+        // ops bear the names that rules have now
         OK(world, skein_set_path(world, "forces.0.name", skein_text("weight")));
         p.count = 0;
         OK(world, skein_world_explain(world, dt, write_line, &p));
         assert_true(lines_with(&p, "gravity") == 0 && lines_with(&p, "weight") == 1);
 
-        // a rule that is switched off has no rows
+        // a rule that is switched off has no ops
         OK(world, skein_set_path(world, "colliders.ball.enabled", skein_number(0)));
         OK(world, skein_set_path(world, "forces.0.enabled", skein_number(0)));
         p.count = 0;
@@ -159,7 +159,7 @@ static void explain_prints_a_line_a_row(void **state) {
     }
 }
 
-/* Rows that would do nothing are not written: no multipliers without damping and with one pass, no limits that
+/* Ops that would do nothing are not written: no multipliers without damping and with one pass, no limits that
  * are infinite, no grid where no rule wants neighbours. */
 static void needless_rows_are_left_out(void **state) {
     (void)state;

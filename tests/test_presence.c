@@ -212,7 +212,7 @@ static void indices_of_others_stay(void **state) {
     size_t nobody = e.first[LATTICE] + 1;
     place_particle(e.world, nobody, 1, 2, 3);
     throw_particle(e.world, nobody, 1, 2, 3);
-    OK(e.world, skein_particle_hold(e.world, nobody, false));
+    OK(e.world, skein_particle_pin(e.world, nobody, false));
     skein_view view = skein_position_view(e.world);
     for (int k = 0; k < 4; k++) assert_true(view.xyzw[4 * view.slot_of[nobody] + (size_t)k] == 0);
     assert_true(length3(position_of(e.world, nobody)) == 0 && length3(velocity_of(e.world, nobody)) == 0);
@@ -329,7 +329,7 @@ static void rules_wait_for_the_next_of_a_name(void **state) {
     const skein_setting named[] = {SKEIN_TEXT("name", "birds"), SKEIN_REAL("count", 9), {NULL, {0, {0, 0, 0}, NULL}}};
     OK(world, skein_body_add(world, "flock", NULL, named, &birds));
     OK(world, skein_force_add(world, "attraction", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), &rule));
-    OK(world, skein_force_add(world, "flocking", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds"), SKEIN_TEXT("minds", "birds")), NULL));
+    OK(world, skein_force_add(world, "flocking", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds"), SKEIN_TEXT("neighbours", "birds")), NULL));
     OK(world, skein_force_add(world, "predator", SKEIN_SETTINGS(SKEIN_REAL("particle", 3)), NULL));
     steps(world, 2, 0.01);
     OK(world, skein_remove(world, birds));

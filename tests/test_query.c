@@ -1,5 +1,5 @@
 /* Where things are: rays against surfaces and colliders, the nearest particles; against closed forms. And what a hand
- * that leads particles relies on: held particles that move, and a clock that is set. */
+ * that leads particles relies on: pinned particles that move, and a clock that is set. */
 #include "all_methods.h"
 #include "helpers.h"
 
@@ -233,7 +233,7 @@ static void refuses_bad_rays(void **state) {
 
 /* ---- What a hand relies on ------------------------------------------------------------------------------ */
 
-/* Under every method a held particle moves with its velocity, whatever pulls at it, and the spring on it follows. */
+/* Under every method a pinned particle moves with its velocity, whatever pulls at it, and the spring on it follows. */
 static void held_particles_move_with_their_velocity(void **state) {
     (void)state;
     for (size_t m = 0; m < COUNT(all_methods); m++) {
@@ -241,7 +241,7 @@ static void held_particles_move_with_their_velocity(void **state) {
         uint32_t hand = add_particle(world, 0.1, 0, 0, 0), load = add_particle(world, 0.1, 0, -1, 0);
         add_gravity(world);
         add_spring(world, hand, load, 50, 0.5);
-        OK(world, skein_particle_hold(world, hand, true));
+        OK(world, skein_particle_pin(world, hand, true));
         throw_particle(world, hand, 0.5, 0.25, -0.125);
         steps(world, 60, 1.0 / 60);
         vec3 at = position_of(world, hand), follows = position_of(world, load);
@@ -250,7 +250,7 @@ static void held_particles_move_with_their_velocity(void **state) {
         assert_near(at.z, -0.125, 1e-4);
         assert_true(follows.x > 0.1);
         // let go it flies on
-        OK(world, skein_particle_hold(world, hand, false));
+        OK(world, skein_particle_pin(world, hand, false));
         assert_near(velocity_of(world, hand).x, 0.5, 1e-6);
         skein_world_destroy(world);
     }

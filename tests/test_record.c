@@ -62,10 +62,10 @@ static void all_that_is_done(void **state) {
     OK(world, skein_set_path(world, "method.substeps", skein_number(5)));
     OK(world, skein_set_path(world, "bodies.line.name", skein_text("cord")));
     steps(world, 2, dt);
-    OK(world, skein_particle_hold(world, 5, true));
+    OK(world, skein_particle_pin(world, 5, true));
     OK(world, skein_pins_move(world, (const uint32_t[]){5}, 1, (const double[]){0, 1, 2}));
     steps(world, 2, dt);
-    OK(world, skein_particle_hold(world, 5, false));
+    OK(world, skein_particle_pin(world, 5, false));
     OK(world, skein_velocities_set(world, 100, 1, (const double[]){1, 2, 3}));
     OK(world, skein_positions_set(world, 1, 1, (const double[]){0, 0, 0.1}));
     OK(world, skein_set_path(world, "colliders.0.centre", skein_vector(0, 0.2, 0)));

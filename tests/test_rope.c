@@ -20,7 +20,7 @@ static void a_rope_lies_between_its_ends(void **state) {
         assert_under(length3(minus(position_of(world, i), (vec3){1 + (double)i, 2, 3})), 1e-6);
     assert_near((double)skein_velocity_view(world).xyzw[3], 0.4, 1e-7); // 2 kg on 5
     assert_int_equal(statistics_of(world).constraints, 4 + 3);
-    assert_int_equal(statistics_of(world).held_particles, 2);
+    assert_int_equal(statistics_of(world).pinned_particles, 2);
     skein_world_destroy(world);
     // a shorter one goes that way, and a longer one hangs
     world = skein_world_create(NULL, NULL);
@@ -161,7 +161,7 @@ static void the_longest_rope_is_built_soon(void **state) {
                                             SKEIN_TEXT("pins", "first, last")),
                              &rope));
     skein_statistics now = statistics_of(world);
-    assert_true(now.particles == 1000000 && now.held_particles == 2);
+    assert_true(now.particles == 1000000 && now.pinned_particles == 2);
     skein_world_destroy(world);
 }
 

@@ -118,7 +118,7 @@ static void every_type_of_field_arrives(void **state) {
     assert_true(corner[0] == 0 && corner[1] == 2 && corner[2] == 2.25);
     skein_statistics s = statistics_of(world);
     assert_int_equal(s.particles, 15);
-    assert_int_equal(s.held_particles, 2);
+    assert_int_equal(s.pinned_particles, 2);
     skein_world_destroy(world);
 }
 
@@ -146,8 +146,8 @@ static void pins_have_short_forms(void **state) {
         char text[256];
         snprintf(text, sizeof text, "{ 'bodies': [ { 'type': 'cloth', 'grid': [3, 3], 'pins': %s } ] }", forms[i].pins);
         skein_world *world = build_scene(text, NULL);
-        if (statistics_of(world).held_particles != forms[i].held)
-            fail_msg("%s holds %zu", forms[i].pins, statistics_of(world).held_particles);
+        if (statistics_of(world).pinned_particles != forms[i].held)
+            fail_msg("%s holds %zu", forms[i].pins, statistics_of(world).pinned_particles);
         skein_world_destroy(world);
     }
 }
@@ -187,7 +187,7 @@ static void sets_change_the_scene(void **state) {
     assert_true(number_at(world, "bodies.a=b.enabled") == 1);
     assert_true(number_at(world, "method.substeps") == 3);
     assert_true(number_at(world, "colliders.1.radius") == 0.5);
-    assert_int_equal(statistics_of(world).held_particles, 3);
+    assert_int_equal(statistics_of(world).pinned_particles, 3);
     assert_int_equal(skein_object_count(world, SKEIN_FORCE), 1);
     skein_value value;
     assert_int_equal(skein_get_path(world, "colliders.ball.centre", &value), SKEIN_OK);

@@ -59,14 +59,14 @@ static void set_number(skein_world *world, const char *path, double x) {
 
 static void wait_for_pin(skein_world *world) {
     uint32_t pin = 0;
-    OK(world, skein_particle_hold(world, pin, true));
+    OK(world, skein_particle_pin(world, pin, true));
     OK(world, skein_pins_move(world, &pin, 1, (const double[]){0.1, 0.6, 0.1}));
 }
 
 static void hold_on_the_way(skein_world *world) {
-    OK(world, skein_particle_hold(world, 30, true));
+    OK(world, skein_particle_pin(world, 30, true));
     OK(world, skein_velocities_set(world, 30, 1, (const double[]){0.3, 0, -0.2}));
-    OK(world, skein_particle_hold(world, 0, false));
+    OK(world, skein_particle_pin(world, 0, false));
 }
 
 static void move_ball(skein_world *world) {

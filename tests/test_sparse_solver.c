@@ -1,7 +1,7 @@
 /* Backward Euler with a factor of its whole matrix: the matrix is the one that conjugate gradients multiply by, the
  * motion is the one that they find alone, and a solver that fails costs no more than time. */
 #include "helpers.h"
-#include "methods/writer_solve.h"
+#include "methods/plan_builder_solve.h"
 #include "solvers/cholmod.h"
 #include "world/world.h"
 
@@ -129,7 +129,7 @@ static skein_world *tangle(const char *kind, const char *field, const char *text
 }
 
 static void run_rows(skein_world *world, sk_plan *plan, sk_run *run) {
-    sk_run_rows(run, world->tasks, plan->data, plan->count);
+    sk_run_ops(run, world->tasks, plan->data, plan->count);
     plan->count = 0;
 }
 
@@ -156,16 +156,17 @@ static void the_matrix_is_what_conjugate_gradients_multiply_by(void **state) {
         size_t particles = skein_particle_count(world), n = 3 * particles;
         const sk_vector none = (sk_vector)SK_BLOCK0, p = (sk_vector)SK_DIRECTION, product = (sk_vector)SK_PRODUCT;
         sk_plan plan = {0};
-        sk_writer writer = {.plan = &plan, .allocator = &world->allocator, .rules = &world->rules, .isa = world->isa};
-        writer.slot_count = world->particles.slot_count, writer.particle_count = particles, writer.h = 0.01;
+        sk_plan_builder builder = {
+            .plan = &plan, .allocator = &world->allocator, .rules = &world->rules, .isa = world->isa};
+        builder.slot_count = world->particles.slot_count, builder.particle_count = particles, builder.h = 0.01;
         sk_run run = sk_world_run_context(world);
         sk_solve solve = {.scale = 0};
         run.solve = &solve;
         uint64_t seed = 1;
-        sk_write_clear(&writer, none);
-        sk_write_clear(&writer, (sk_vector)SK_BLOCK1);
-        sk_write_clear(&writer, product);
-        sk_write_pass(&writer, &sk_solve_open, (sk_vector)SK_FILTER0, SK_X, (sk_vector)SK_FILTER1, "");
+        sk_write_clear(&builder, none);
+        sk_write_clear(&builder, (sk_vector)SK_BLOCK1);
+        sk_write_clear(&builder, product);
+        sk_write_pass(&builder, &sk_solve_open, (sk_vector)SK_FILTER0, SK_X, (sk_vector)SK_FILTER1, "");
         run_rows(world, &plan, &run);
         for (size_t i = 0; i < particles; i++) {
             sk_vec4 *at = &run.vector[p][run.slot_of[i]];
@@ -173,8 +174,8 @@ static void the_matrix_is_what_conjugate_gradients_multiply_by(void **state) {
             at->z = (real)random_between(&seed, -1, 1);
         }
         d.keep = true;
-        sk_write_apply(&writer, product, p, 0.5, 0.25);
-        sk_write_factor(&writer, none, (sk_vector)SK_BLOCK1, 0.5, 0.25);
+        sk_write_apply(&builder, product, p, 0.5, 0.25);
+        sk_write_factor(&builder, none, (sk_vector)SK_BLOCK1, 0.5, 0.25);
         run_rows(world, &plan, &run);
         assert_int_equal(d.factored, 1);
         double off = 0, largest = 0;
@@ -241,14 +242,15 @@ static void the_motion_is_that_of_conjugate_gradients_alone(void **state) {
         assert_int_equal(b.unsolved, 0);
         assert_int_equal(b.solver_failures, 0);
         assert_int_equal(a.solver_factors, 0);
-        assert_int_equal(b.solver_factors, b.solver_turns);
+        assert_int_equal(b.solver_factors, b.newton_iterations);
         contacts += b.contacts;
-        iterations[0] += a.solver_iterations, iterations[1] += b.solver_iterations;
-        turns += b.solver_turns;
+        iterations[0] += a.cg_iterations, iterations[1] += b.cg_iterations;
+        turns += b.newton_iterations;
         off = fmax(off, farthest(alone, world));
     }
-    printf("%zu contacts, %zu turns, %zu iterations instead of %zu, off by %.2g m\n", contacts, turns, iterations[1],
-           iterations[0], off);
+    printf(
+        "%zu contacts, %zu iterations of Newton's method, %zu of conjugate gradients instead of %zu, off by %.2g m\n",
+        contacts, turns, iterations[1], iterations[0], off);
     assert_under(off, far_enough);
     assert_true(contacts > 50);
     assert_true(6 * iterations[1] < iterations[0]);
@@ -336,7 +338,7 @@ static skein_world *stiff_cloth(int side, int threads, bool cholesky, int turns)
     skein_error error;
     if (cholesky) assert_int_equal(skein_cholmod_attach(world, &error), SKEIN_OK);
     OK(world, skein_method_set(world, "backward_euler",
-                               SKEIN_SETTINGS(SKEIN_REAL("substeps", 1), SKEIN_REAL("turns", turns),
+                               SKEIN_SETTINGS(SKEIN_REAL("substeps", 1), SKEIN_REAL("iterations", turns),
                                               SKEIN_REAL("cg_iterations", 15),
                                               SKEIN_TEXT("preconditioner", cholesky ? "cholesky" : "blocks"))));
     OK(world, skein_body_add(world, "cloth", NULL,
@@ -360,9 +362,9 @@ static void cholmod_solves_what_blocks_leave(void **state) {
         for (int n = 0; n < STEPS; n++) {
             steps(world, 1, 1.0 / 30);
             skein_statistics s = statistics_of(world);
-            left[cholesky] += s.unsolved, iterations[cholesky] += s.solver_iterations;
+            left[cholesky] += s.unsolved, iterations[cholesky] += s.cg_iterations;
             assert_int_equal(s.solver_failures, 0);
-            assert_int_equal(s.solver_factors, cholesky ? s.solver_turns : 0);
+            assert_int_equal(s.solver_factors, cholesky ? s.newton_iterations : 0);
         }
         skein_world_destroy(world);
     }

@@ -304,8 +304,8 @@ static void meshes_that_are_none_are_refused(void **state) {
     assert_int_equal(skein_particle_count(world), 0);
     OK(world, skein_body_add(world, "tetrahedra", &lonely, SKEIN_SETTINGS(SKEIN_TEXT("pins", "0, box 0.9 -1 -1 2 1 1")),
                              NULL));
-    assert_non_null(strstr(heard, "2 points are in no tetrahedron, and held"));
-    assert_int_equal(statistics_of(world).held_particles, 4);
+    assert_non_null(strstr(heard, "2 points are in no tetrahedron, and pinned"));
+    assert_int_equal(statistics_of(world).pinned_particles, 4);
     skein_world_destroy(world);
 }
 

@@ -21,7 +21,7 @@ static void release(void *user, void *memory, size_t size) {
     free(memory);
 }
 
-/* Two flocks, the rules over all or over one and the other; two held particles far away, tied to each other or not:
+/* Two flocks, the rules over all or over one and the other; two pinned particles far away, tied to each other or not:
  * what is tied stays where it is. */
 static skein_world *flocks(int threads, bool overlapping, bool tied, allocations *a) {
     skein_world_desc desc = skein_default_world_desc();
@@ -156,7 +156,7 @@ static void under_every_method_the_bits_stay(void **state) {
         for (int w = 0; w < 2; w++) {
             OK(world[w], skein_method_set(world[w], method->name, SKEIN_SETTINGS(SKEIN_REAL("substeps", 1))));
             OK(world[w], skein_force_add(world[w], "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.3)), NULL));
-            OK(world[w], skein_particle_hold(world[w], 700, true));
+            OK(world[w], skein_particle_pin(world[w], 700, true));
             world[w]->particles.vector[SK_X][world[w]->particles.slot_of[700]].x = SK_REAL_MAX / 2; // in no cell
             for (int n = 0; n < 3; n++) {
                 if (n == 1) world[w]->steps = 64;

@@ -52,7 +52,7 @@ static const struct {
 } texts[] = {
     {NULL, "name", "c d"},
     {NULL, "on", "b"},
-    {NULL, "minds", "b"},
+    {NULL, "neighbours", "b"},
     {NULL, "pins", "0"},
     {"cloth", "mesh", SKEIN_SOURCE_DIR "/meshes/ball.obj"},
     {"tetrahedra", "mesh", SKEIN_SOURCE_DIR "/tests/../meshes/ball.node"},

@@ -47,7 +47,7 @@ static void paint(viewer_stage *stage, size_t i) {
     if (i >= brush->count || (brush->held[i] != 0) == brush->pins) return;
     brush->held[i] = brush->pins;
     brush->changed++;
-    skein_particle_hold(stage->sides[brush->side].world, brush->first + i, brush->pins);
+    skein_particle_pin(stage->sides[brush->side].world, brush->first + i, brush->pins);
 }
 
 /* All that lie in the ball around a place of the picture. */

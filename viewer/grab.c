@@ -71,7 +71,7 @@ void viewer_grab_lead(viewer_grab *grab, skein_world *world, double dt) {
     if (!grab->holding || !grab->moved) return;
     double x[3], way[3];
     if (skein_positions_copy(world, grab->particle, 1, x)) return;
-    if (!viewer_is_held(world, grab->particle)) skein_particle_hold(world, grab->particle, true);
+    if (!viewer_is_held(world, grab->particle)) skein_particle_pin(world, grab->particle, true);
     for (int k = 0; k < 3; k++) way[k] = grab->goal[k] - x[k];
     // the exact way of x' = rate (goal - x) over the step
     double share = (1 - exp(-rate * dt)) * give_way(grab, world, x, way);
@@ -86,13 +86,13 @@ void viewer_grab_release(viewer_grab *grab, skein_world *world) {
     if (!grab->holding) return;
     grab->holding = false;
     if (!grab->moved) return;
-    skein_particle_hold(world, grab->particle, grab->was_held);
+    skein_particle_pin(world, grab->particle, grab->was_held);
     // let go, it flies on as it was led
     if (!grab->was_held) skein_velocities_set(world, grab->particle, 1, grab->led);
 }
 
 bool viewer_toggle_pin(skein_world *world, uint32_t particle) {
     bool held = viewer_is_held(world, particle);
-    skein_particle_hold(world, particle, !held);
+    skein_particle_pin(world, particle, !held);
     return viewer_is_held(world, particle);
 }

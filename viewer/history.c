@@ -66,7 +66,7 @@ bool viewer_history_restore(viewer_history *history, skein_world *world, uint64_
     // holding stops a particle, so velocities come last
     for (size_t i = 0; i < count; i++) {
         bool now = !(where.xyzw[4 * (size_t)where.slot_of[i] + 3] > 0);
-        if (now != (held[i] != 0)) skein_particle_hold(world, i, held[i] != 0);
+        if (now != (held[i] != 0)) skein_particle_pin(world, i, held[i] != 0);
     }
     for (size_t i = 0; i < 3 * count; i++) history->scratch[i] = (double)state[i];
     bool good = !skein_positions_set(world, 0, count, history->scratch);

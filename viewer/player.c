@@ -251,7 +251,7 @@ bool viewer_player_profile(viewer_player *player, bool *new_frame, skein_pass *p
 void viewer_player_reset(viewer_player *player) {
     // pins that were set by hand go, too
     for (size_t i = 0; i < skein_particle_count(player->world); i++)
-        if (is_held(player->world, i) != (player->pins[i] != 0)) skein_particle_hold(player->world, i, player->pins[i]);
+        if (is_held(player->world, i) != (player->pins[i] != 0)) skein_particle_pin(player->world, i, player->pins[i]);
     skein_world_reset(player->world);
     skein_velocities_set(player->world, 0, skein_particle_count(player->world), player->velocities);
     player->frame = 0;

@@ -343,7 +343,7 @@ bool EXPORT(js_is_held)(const js_scene *js, uint32_t particle) {
 }
 
 bool EXPORT(js_hold)(js_scene *js, size_t particle, bool held) {
-    return !failed(js, skein_particle_hold(js->world, particle, held));
+    return !failed(js, skein_particle_pin(js->world, particle, held));
 }
 
 bool EXPORT(js_move_pin)(js_scene *js, uint32_t particle, double x, double y, double z) {

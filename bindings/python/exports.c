@@ -184,9 +184,9 @@ const char *py_statistics_member(size_t index, size_t *offset, size_t *size, boo
         MEMBER(steps), MEMBER(substeps), MEMBER(time), MEMBER(kinetic_energy), MEMBER(potential_energy),
         MEMBER(elastic_energy), MEMBER(dissipated_energy), MEMBER(momentum), MEMBER(angular_momentum),
         MEMBER(max_stretch), MEMBER(p99_stretch), MEMBER(limited), MEMBER(over_limit), MEMBER(most_over_limit),
-        MEMBER(residual), MEMBER(unsolved), MEMBER(solver_turns), MEMBER(solver_iterations), MEMBER(solver_factors),
+        MEMBER(residual), MEMBER(unsolved), MEMBER(newton_iterations), MEMBER(cg_iterations), MEMBER(solver_factors),
         MEMBER(solver_failures), MEMBER(all_unsolved), MEMBER(all_solver_failures), MEMBER(max_penetration),
-        MEMBER(contacts), MEMBER(crossings), MEMBER(particles), MEMBER(held_particles), MEMBER(constraints),
+        MEMBER(contacts), MEMBER(crossings), MEMBER(particles), MEMBER(pinned_particles), MEMBER(constraints),
         MEMBER(nonfinite), MEMBER(guarded), MEMBER(memory_bytes), MEMBER(state_hash)
     };
     if (index >= sizeof members / sizeof *members) return NULL;

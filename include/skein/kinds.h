@@ -146,23 +146,27 @@ skein_status skein_build_fail(skein_builder *builder, const char *field, const c
 
 /* ---- Methods ---- */
 
-/* What a method writes its step with: rows of a plan (docs/design.md), not arithmetic. */
-typedef struct skein_writer skein_writer;
+/* What a method writes its step with: ops of a plan (docs/design.md), not arithmetic. */
+typedef struct skein_plan_builder skein_plan_builder;
 
 /* Vectors of all particles. */
-typedef enum skein_row_vector {
+typedef enum skein_plan_vector {
     SKEIN_NO_VECTOR,
     SKEIN_X, /* position */
     SKEIN_V, /* velocity */
     SKEIN_F, /* force, N */
-    SKEIN_SAVED_X, SKEIN_SAVED_V, /* for a method's own use */
-    SKEIN_T0, SKEIN_T1, SKEIN_T2, SKEIN_T3
-} skein_row_vector;
+    SKEIN_SAVED_X,
+    SKEIN_SAVED_V, /* for a method's own use */
+    SKEIN_T0,
+    SKEIN_T1,
+    SKEIN_T2,
+    SKEIN_T3
+} skein_plan_vector;
 
 typedef struct skein_method_type {
     skein_kind kind; /* of SKEIN_METHOD; the field "substeps", if it has one, an INT, is what steps are counted by */
     /* Writes one step of `dt` seconds. */
-    void (*write)(skein_writer *writer, const void *params, double dt);
+    void (*write)(skein_plan_builder *builder, const void *params, double dt);
     bool takes_rigid; /* it projects positions, and can keep what has infinite stiffness; else such a world is refused */
     /* One substep of the oscillator x'' = -x - 2 zeta x' as a matrix on (x, v), by rows, `z` being the substep; it says
      * which substeps are stable. NULL: all are. */
@@ -173,22 +177,22 @@ typedef struct skein_method_type {
 double skein_kinds_stable_substep(const skein_kinds *kinds, const char *method, const skein_stability *stability);
 
 /* Opens a repeat of `times` substeps of `h` seconds, that ends with skein_write_end() of what it returns. */
-size_t skein_write_repeat(skein_writer *writer, size_t times, double h);
-void skein_write_end(skein_writer *writer, size_t repeat);
+size_t skein_write_repeat(skein_plan_builder *builder, size_t times, double h);
+void skein_write_end(skein_plan_builder *builder, size_t repeat);
 /* X stands at this part of the substep from here on: 0 its start, 1 its end. */
-void skein_write_moment(skein_writer *writer, double part);
+void skein_write_stage_time(skein_plan_builder *builder, double part);
 /* dst = a p + b q; dst = p + a q/m, q being a force. SKEIN_NO_VECTOR is left out. */
-void skein_write_sum(skein_writer *writer, skein_row_vector dst, double a, skein_row_vector p, double b, skein_row_vector q);
-void skein_write_kick(skein_writer *writer, skein_row_vector dst, skein_row_vector p, double a, skein_row_vector q);
+void skein_write_sum(skein_plan_builder *builder, skein_plan_vector dst, double a, skein_plan_vector p, double b, skein_plan_vector q);
+void skein_write_kick(skein_plan_builder *builder, skein_plan_vector dst, skein_plan_vector p, double a, skein_plan_vector q);
 /* F = all forces, then the springs of every constraint; what contact does not let through. */
-void skein_write_forces(skein_writer *writer);
+void skein_write_forces(skein_plan_builder *builder);
 /* V += what steers, once a substep; then bounds on V, which skein_write_bounds() puts right once more. */
-void skein_write_steering(skein_writer *writer);
-void skein_write_bounds(skein_writer *writer);
+void skein_write_steering(skein_plan_builder *builder);
+void skein_write_bounds(skein_plan_builder *builder);
 /* X projected on all constraints, `passes` times; SKEIN_SAVED_X is where the substep began. */
-void skein_write_projections(skein_writer *writer, int passes);
+void skein_write_projections(skein_plan_builder *builder, int passes);
 /* The end of a substep once X and V stand there: impacts, limits, and out of colliders. */
-void skein_write_contacts(skein_writer *writer);
+void skein_write_contacts(skein_plan_builder *builder);
 
 /* ---- Modules ---- */
 

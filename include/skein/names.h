@@ -42,7 +42,7 @@
 #define SKEIN_CLOTH_FABRIC_PAPER "paper"
 #define SKEIN_CLOTH_DENSITY "density" /* a number in kg/m2; mass of a square metre, shared out to the corners */
 #define SKEIN_CLOTH_WELD "weld" /* a number in m; vertices nearer than this become one particle; 0 joins none */
-#define SKEIN_CLOTH_PINS "pins" /* a text; held particles: "corners", "top corners", "top edge", numbers, "box x y z x y z", "sphere x y z r" */
+#define SKEIN_CLOTH_PINS "pins" /* a text; pinned particles: "corners", "top corners", "top edge", numbers, "box x y z x y z", "sphere x y z r" */
 #define SKEIN_CLOTH_STRETCH_STIFFNESS "stretch.stiffness" /* a number in N/m; of the sheet along its threads (1e4 is a firm cotton) */
 #define SKEIN_CLOTH_STRETCH_DAMPING "stretch.damping" /* a number in N s/m; of stretching; other motion is free */
 #define SKEIN_CLOTH_SHEAR_STIFFNESS "shear.stiffness" /* a number in N/m; across the threads */
@@ -71,7 +71,7 @@
 #define SKEIN_LATTICE_VELOCITY "velocity" /* three numbers in m/s; at the start */
 #define SKEIN_LATTICE_MASS "mass" /* a number in kg; of all of it, shared out equally to the particles */
 #define SKEIN_LATTICE_DENSITY "density" /* a number in kg/m3; instead of the mass, where it is over 0 */
-#define SKEIN_LATTICE_PINS "pins" /* a text; held particles: "left face" (right, bottom, top, back, front), "corners", numbers, "box x y z x y z", "sphere x y z r" */
+#define SKEIN_LATTICE_PINS "pins" /* a text; pinned particles: "left face" (right, bottom, top, back, front), "corners", numbers, "box x y z x y z", "sphere x y z r" */
 #define SKEIN_LATTICE_STRUCTURAL_STIFFNESS "structural.stiffness" /* a number in N/m; of each spring along the axes */
 #define SKEIN_LATTICE_STRUCTURAL_DAMPING "structural.damping" /* a number in N s/m; of each */
 #define SKEIN_LATTICE_STRUCTURAL_LIMIT "structural.limit" /* a number; strain limit: none gets longer than rest times 1 + this; "infinite" is none */
@@ -98,7 +98,7 @@
 #define SKEIN_ROPE_LENGTH "length" /* a number in m; 0: from one end to the other; a longer one hangs between them, a shorter one ends before */
 #define SKEIN_ROPE_VELOCITY "velocity" /* three numbers in m/s; at the start */
 #define SKEIN_ROPE_DENSITY "density" /* a number in kg/m; mass of a metre, shared out equally */
-#define SKEIN_ROPE_PINS "pins" /* a text; held particles: "first", "last", numbers, "box x y z x y z", "sphere x y z r" */
+#define SKEIN_ROPE_PINS "pins" /* a text; pinned particles: "first", "last", numbers, "box x y z x y z", "sphere x y z r" */
 #define SKEIN_ROPE_STRETCH_STIFFNESS "stretch.stiffness" /* a number in N; the force that would make it twice as long */
 #define SKEIN_ROPE_STRETCH_DAMPING "stretch.damping" /* a number in N s; of stretching */
 #define SKEIN_ROPE_BEND_STIFFNESS "bend.stiffness" /* a number in N; the same of springs between particles 2 apart; 0 is a chain */
@@ -113,7 +113,7 @@
 #define SKEIN_TETRAHEDRA_SCALE "scale" /* a number; factor on the mesh's coordinates */
 #define SKEIN_TETRAHEDRA_VELOCITY "velocity" /* three numbers in m/s; at the start */
 #define SKEIN_TETRAHEDRA_DENSITY "density" /* a number in kg/m3; mass of a cubic metre, shared out to the corners */
-#define SKEIN_TETRAHEDRA_PINS "pins" /* a text; held particles: "all", numbers, "box x y z x y z", "sphere x y z r" */
+#define SKEIN_TETRAHEDRA_PINS "pins" /* a text; pinned particles: "all", numbers, "box x y z x y z", "sphere x y z r" */
 #define SKEIN_TETRAHEDRA_STIFFNESS "stiffness" /* a number in Pa; Young's modulus of the springs along the edges (1e4 is a jelly, 1e6 a rubber) */
 #define SKEIN_TETRAHEDRA_DAMPING "damping" /* a number in Pa s; of the same */
 #define SKEIN_TETRAHEDRA_VOLUME_STIFFNESS "volume.stiffness" /* a number in Pa; bulk modulus: against a change of each tetrahedron's volume, besides the springs' own */
@@ -233,8 +233,8 @@
 #define SKEIN_FLOCKING_STRENGTH "strength" /* a number in m/s2; how strongly each neighbour counts */
 #define SKEIN_FLOCKING_VIEW "view" /* a number in degrees; the angle that each sees, round its direction of flight; 360: all round */
 #define SKEIN_FLOCKING_NEAREST "nearest" /* a whole number; of the neighbours in reach only so many count, the nearest; 0: all */
-#define SKEIN_FLOCKING_MINDS "minds" /* a text; the name of the body that it looks at; empty: those that it is `on` */
-#define SKEIN_FLOCKING_FORMULA_TOWARDS "formula.towards" /* a text; the weight of a neighbour along the direction to it, as a formula of percent; where there is a formula, the zones only say how far the rule reaches */
+#define SKEIN_FLOCKING_NEIGHBOURS "neighbours" /* a text; the name of the body that it looks at; empty: those that it is `on` */
+#define SKEIN_FLOCKING_FORMULA_TOWARDS "formula.towards" /* a text; the weight of a neighbour along the direction to it, as a formula of `relative_distance` (0 beside it, 1 at the reach); where there is a formula, the zones only say how far the rule reaches */
 #define SKEIN_FLOCKING_FORMULA_ALONG "formula.along" /* a text; the weight along its direction of flight, likewise */
 
 #define SKEIN_ATTRACTION "attraction" /* draws everything to a centre, equally at any distance; flatter in the vertical */
@@ -362,8 +362,8 @@
 #define SKEIN_BACKWARD_EULER "backward_euler" /* implicit: solves for the velocity whose forces lead to it; stable at any stiffness */
 #define SKEIN_BACKWARD_EULER_SUBSTEPS "substeps" /* a whole number; equal parts that a step is cut into */
 #define SKEIN_BACKWARD_EULER_TOLERANCE "tolerance" /* a number; a substep is solved when its residual is so small a share of its start, or all rounding */
-#define SKEIN_BACKWARD_EULER_TURNS "turns" /* a whole number; of Newton's method in a substep, at most */
-#define SKEIN_BACKWARD_EULER_CG_ITERATIONS "cg_iterations" /* a whole number; of conjugate gradients in a turn, at most */
+#define SKEIN_BACKWARD_EULER_ITERATIONS "iterations" /* a whole number; of Newton's method in a substep, at most */
+#define SKEIN_BACKWARD_EULER_CG_ITERATIONS "cg_iterations" /* a whole number; of conjugate gradients in one of those, at most */
 #define SKEIN_BACKWARD_EULER_PRECONDITIONER "preconditioner" /* a word; what shortens conjugate gradients: each particle's own block, or a sparse factor of the whole matrix */
 #define SKEIN_BACKWARD_EULER_PRECONDITIONER_BLOCKS "blocks"
 #define SKEIN_BACKWARD_EULER_PRECONDITIONER_CHOLESKY "cholesky"

@@ -7,20 +7,19 @@
  * Conventions
  *   Units     SI: metres, kilograms, seconds, newtons. Angles in degrees where a field says so.
  *   Axes      right handed, y up (nothing but the default gravity and "top" depends on it).
- *   Positions are four `skein_real`: x, y, z, inverse mass (1/kg; 0 means the particle is held).
+ *   Positions are four `skein_real`: x, y, z, inverse mass (1/kg; 0 means the particle is pinned).
  *   Errors    every call that can fail returns a `skein_status`; the words are in skein_world_error(), or in the
  *             `skein_error` that is passed, which may always be NULL. A call that fails changes nothing, unless its
  *             words say so, and what it would have filled in is not to be read. SKEIN_ERROR_VALUE may come from any
  *             call, SKEIN_ERROR_HANDLE from any that takes a handle; which others may is said with each ("fails with").
  *             Where a graphics card steps, calls that look at the state may fail as skein_world_device_set() may.
- *   Pointers  may be NULL where it is said, and an array where its count is 0; `handle` and `settings` of calls that add,
- *             too. Elsewhere NULL is an error like any other: SKEIN_ERROR_VALUE with the argument's name; from calls
- *             that return no status 0, NULL, false or an empty view. What is passed stays the caller's and is only read
- *             during the call, unless it is said.
- *   Threads   a world belongs to one thread at a time; different worlds are independent. After fork() a child has none
- *             of the world's own threads: it may neither step nor destroy a world that may have more than one (both
- *             would wait for ever). Make worlds after the fork, or call exec.
- *   Bits      the same input gives the same bits, for any number of threads.
+ *   Pointers  may be NULL where it is said, and an array where its count is 0; `handle` and `settings` of calls that
+ * add, too. Elsewhere NULL is an error like any other: SKEIN_ERROR_VALUE with the argument's name; from calls that
+ * return no status 0, NULL, false or an empty view. What is passed stays the caller's and is only read during the call,
+ * unless it is said. Threads   a world belongs to one thread at a time; different worlds are independent. After fork()
+ * a child has none of the world's own threads: it may neither step nor destroy a world that may have more than one
+ * (both would wait for ever). Make worlds after the fork, or call exec. Bits      the same input gives the same bits,
+ * for any number of threads.
  */
 #ifndef SKEIN_H
 #define SKEIN_H
@@ -229,7 +228,7 @@ typedef struct skein_world_desc {
     void (*run_tasks)(void *user, void (*task)(void *data, int index), void *data, int task_count);
     void *tasks_user;
     /* The most threads of the world's own pool, the caller included, 1 to 64; 0: as many as there are processors. A
-     * step takes as many of them as have proved faster. Or the tasks to cut a row into where `run_tasks` is given. The
+     * step takes as many of them as have proved faster. Or the tasks to cut an op into where `run_tasks` is given. The
      * result does not depend on it. */
     int thread_count;
     /* Kinds besides the library's own, which the world can make objects of, and which outlive it; NULL: none. */
@@ -316,7 +315,7 @@ typedef struct skein_track {
     double interval; /* s, over 0 */
 } skein_track;
 
-/* Adds a motion ("translate", "turn", "keys", "cache"): in each step it leads held particles, all or some of a body's, as
+/* Adds a motion ("translate", "turn", "keys", "cache"): in each step it leads pinned particles, all or some of a body's, as
  * skein_pins_move() would, to where its fields say for the end of the step. Those places follow from the time, and from
  * where the particles were built; several motions of one pin act one after the other, in the order of their making. What
  * skein_pins_move() says counts instead. Whom it leads is found when a step is made, or skein_world_explain() called: then
@@ -335,13 +334,13 @@ skein_status skein_method_set(skein_world *world, const char *kind, const skein_
  * them. So skein_particle_count() never falls, and a game that adds and removes bodies for hours holds no more
  * than its largest moment needed, with some room between bodies of different sizes. Constraints of the program's own
  * lose those of their elements that one of the particles was in (enclosed_volume and pressure act no more). Rules whose
- * `on` or `minds` names the body move nobody until there is a body of that name again.
+ * `on` or `neighbours` names the body move nobody until there is a body of that name again.
  *
  * A body that is not `enabled` is out of it in the same way, with all that it has: it does not move, is in no contact,
  * statistics, hash, ray, flock or list, costs a step nothing, and constraints of the program's own on its particles
  * rest. Its positions and velocities can be read and written; enabled again it goes on from them. All others move as if
- * there were no such body, to the bit. Taking a body out or back costs about what adding one costs. Graphics cards refuse
- * to step a world in which particles are out of it (SKEIN_ERROR_VALUE, in the step). */
+ * there were no such body, to the bit. Taking a body out or back costs about what adding one costs. Graphics cards
+ * refuse to step a world in which particles are out of it (SKEIN_ERROR_VALUE, in the step). */
 skein_status skein_remove(skein_world *world, skein_handle handle);
 
 /* ---- Fields of living objects ------------------------------------------------------------------ */
@@ -474,7 +473,7 @@ typedef struct skein_sparse_solver {
      * and constraints. What it returns, with `error` filled in, the step or skein_world_explain() returns. */
     skein_status (*analyse)(void *user, const skein_sparse_matrix *pattern, skein_error *error);
     /* Factors a matrix of the last pattern, positive definite but for rounding. False where it cannot: that is counted
-     * (solver_failures), and the solve goes on with the particles' own blocks. Asked for in each turn of Newton's
+     * (solver_failures), and the solve goes on with the particles' own blocks. Asked for in each iteration of Newton's
      * method. */
     bool (*factor)(void *user, const skein_sparse_matrix *matrix);
     /* x = matrix^-1 b, of the last matrix that was factored; `b` and `x` are `size` numbers, x unset. False where it
@@ -521,7 +520,7 @@ size_t skein_particle_count(const skein_world *world);
 bool skein_particle_present(const skein_world *world, size_t particle);
 /* Where the state cannot be fetched from a device, skein_world_error() says so, and a view has what was there before. */
 skein_view skein_position_view(const skein_world *world); /* w is the inverse mass */
-skein_view skein_velocity_view(const skein_world *world); /* w is the mass, kg (held ones too) */
+skein_view skein_velocity_view(const skein_world *world); /* w is the mass, kg (pinned ones too) */
 /* Copies `count` particles from `first` on, in the user's order, into out[count x 3]. These fail with
  * SKEIN_ERROR_VALUE where there are not so many. */
 skein_status skein_positions_copy(const skein_world *world, size_t first, size_t count, double *out);
@@ -536,19 +535,19 @@ skein_status skein_positions_blend(const skein_world *world, double blend, size_
 skein_status skein_positions_set(skein_world *world, size_t first, size_t count, const double *xyz);
 skein_status skein_velocities_set(skein_world *world, size_t first, size_t count, const double *xyz);
 /* Holds a particle where it is, or lets it go with the mass it was built with, and with the velocity that it has. */
-skein_status skein_particle_hold(skein_world *world, size_t particle, bool held);
-/* Says where held particles are to be at the end of the next step: `particles` are `count` indices (NULL: 0 to count -
- * 1), `xyz` are count x 3, in metres. In the step they go there in straight lines at constant velocities, substep by
+skein_status skein_particle_pin(skein_world *world, size_t particle, bool pinned);
+/* Says where pinned particles are to be at the end of the next step: `particles` are `count` indices (NULL: 0 to count
+ * - 1), `xyz` are count x 3, in metres. In the step they go there in straight lines at constant velocities, substep by
  * substep and under every method, so that what hangs on them is led, not torn: damping and tethers see that velocity.
  * Called before each step, it moves pins along any path; `skein_positions_set` puts them there at a blow instead.
  *
  * After the step each stands at its place, to the last bit, and its velocity is 0: there it stays until it is moved
- * again. (A held particle that was given a velocity, and no place, goes on with it instead.) What is let go then begins
- * at rest, unless it is given a velocity. Of several places for one particle the last counts. Places wait until a step
- * is taken; a reset forgets them, and so does a particle that is not held by then. Their work is counted with what was
- * changed by hand (dissipated_energy). On a graphics card each such step brings the state back.
+ * again. (A pinned particle that was given a velocity, and no place, goes on with it instead.) What is let go then
+ * begins at rest, unless it is given a velocity. Of several places for one particle the last counts. Places wait until
+ * a step is taken; a reset forgets them, and so does a particle that is not pinned by then. Their work is counted with
+ * what was changed by hand (dissipated_energy). On a graphics card each such step brings the state back.
  *
- * SKEIN_ERROR_VALUE for a particle that is not there or not held, and for places that are not finite or beyond 1e15;
+ * SKEIN_ERROR_VALUE for a particle that is not there or not pinned, and for places that are not finite or beyond 1e15;
  * nothing has changed then. A step in which a pin would have to be faster than 1e15 m/s fails, and forgets all places.
  */
 skein_status skein_pins_move(skein_world *world, const uint32_t *particles, size_t count, const double *xyz);
@@ -788,8 +787,8 @@ typedef struct skein_statistics {
     double residual;          /* what was left of the balance of momentum, as a share of its start: the worst
                                  substep's */
     size_t unsolved;          /* substeps left with more than the tolerance, and more than rounding explains */
-    size_t solver_turns;      /* of Newton's method */
-    size_t solver_iterations; /* of conjugate gradients */
+    size_t newton_iterations; /* of Newton's method */
+    size_t cg_iterations;     /* of conjugate gradients */
     size_t solver_factors;    /* that a sparse solver was asked for */
     size_t solver_failures;   /* of these, and of its solves: the solve went on with each particle's own block */
     /* of all steps since the beginning or the last skein_world_reset() */
@@ -797,7 +796,7 @@ typedef struct skein_statistics {
     double max_penetration;   /* m, below a collider's thickness */
     size_t contacts;          /* pairs of a particle and a collider that touch */
     size_t crossings;         /* of an edge and a triangle that contact keeps apart (the force "contact"); else 0 */
-    size_t particles, held_particles, constraints;
+    size_t particles, pinned_particles, constraints;
     size_t nonfinite;    /* particles with a position or velocity that is not finite */
     size_t guarded;      /* values of formulas that have none at the present state, where 0 or the nearest was taken:
                             of each collider and force at each free particle (docs/formula.md) */
@@ -808,8 +807,9 @@ typedef struct skein_statistics {
 /* Measures the present state; costs about one step, and scratch memory for the edges. Fails with SKEIN_ERROR_MEMORY. */
 skein_status skein_world_statistics(skein_world *world, skein_statistics *statistics);
 /* Whether anything but the method's own errors may give the world energy, as it stands: wind and steering, a field of
- * force, an energy or a constraint that depends on t, a collider or a held particle that moves, a collider with a mass.
- * Where nothing does, kinetic, potential and elastic energy together never grow. Costs two measurements of energy. */
+ * force, an energy or a constraint that depends on t, a collider or a pinned particle that moves, a collider with a
+ * mass. Where nothing does, kinetic, potential and elastic energy together never grow. Costs two measurements of
+ * energy. */
 bool skein_world_is_driven(skein_world *world);
 /* Only the hash. */
 uint64_t skein_world_hash(const skein_world *world);
@@ -857,27 +857,27 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
  * a method that does not exist. */
 double skein_stable_substep(const char *method, const skein_stability *stability);
 
-/* What the rows of one kind and name took together. */
+/* What the ops of one kind and name took together. */
 typedef struct skein_pass {
     const char *kind; /* "project", "force", ... */
     char label[64];   /* of the rule: "stretch +0 +1"; "" for the arithmetic of whole vectors */
     double seconds;
 } skein_pass;
 
-/* Takes a step, with the same bits as skein_world_step(), but one row of the plan after the other, and measures each.
- * That is slower than a step, whose rows share the cache; the shares tell where the time goes. Copies up to `most`
+/* Takes a step, with the same bits as skein_world_step(), but one op of the plan after the other, and measures each.
+ * That is slower than a step, whose ops share the cache; the shares tell where the time goes. Copies up to `most`
  * passes in the order of the plan; `count` receives how many there are. A step on a device is one pass. Fails as a step
  * does. */
 skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out, size_t most, size_t *count);
 
 /* ---- The plan ---------------------------------------------------------------------------------- */
 
-/* Writes the plan's rows as text, a line each, for a step of `dt`. Lines go to `write` in order; NULL only
+/* Writes the plan's ops as text, a line each, for a step of `dt`. Lines go to `write` in order; NULL only
  * makes the plan, which says whether the method can run the rules. Fails as a step does. */
 skein_status skein_world_explain(skein_world *world, double dt, void (*write)(void *user, const char *line),
                                  void *user);
 
-/* Whether rows of the plan are fused, as they are in a new world: what predicts, saves and corrects is one row then
+/* Whether ops of the plan are fused, as they are in a new world: what predicts, saves and corrects is one op then
  * instead of several, the bits are the same, and steps are quicker. Plans for a card always are. */
 void skein_world_fuse(skein_world *world, bool fuse);
 

@@ -10,7 +10,7 @@
  *
  * and is C and GLSL at the same time. In C this header makes it arithmetic of a part of a block (with SK_ISA), or of one
  * particle; for cards the build cuts it out of the file, and base/arithmetic.glsl stands before it, whose struct of
- * parameters the card makes from the kind's field table (gpu/rows.c). So it may use these words, + - * / and compares
+ * parameters the card makes from the kind's field table (gpu/ops.c). So it may use these words, + - * / and compares
  * of numbers, `if` where the condition is a parameter's or none(...), and its own functions; it has no pointers.
  *
  *     num, vec3, vec4, flag      of one particle: numbers, vectors, whether something is so

@@ -4,7 +4,7 @@
  *
  *     #include "base/kernels.h"
  *     #define SK_UNIT gravity
- *     SK_KERNELS(sk_row_kernel, kernel);      // declares sk_gravity_kernel_sse, sk_gravity_kernel_avx2 ...
+ *     SK_KERNELS(sk_op_kernel, kernel);      // declares sk_gravity_kernel_sse, sk_gravity_kernel_avx2 ...
  *
  *     #ifdef SK_ISA
  *     static sk_wide helper(sk_wide a) { ... }

@@ -44,7 +44,7 @@ skein_status sk_block_add_particles(sk_block *block, double mass, const double v
         status = sk_world_add_particles(block->world, block->count, (const double *)block->position,
                                         (const double *)velocities, masses, block->error);
     for (size_t i = 0; i < block->count && !status; i++)
-        if (block->pinned[i]) sk_particle_hold(&block->world->particles, block->body->first_particle + i, true);
+        if (block->pinned[i]) sk_particle_pin(&block->world->particles, block->body->first_particle + i, true);
     sk_release(allocator, masses);
     sk_release(allocator, velocities);
     return status;

@@ -27,7 +27,7 @@ typedef struct sk_block_springs {
 skein_status sk_block_begin(sk_block *block);
 void sk_block_release(sk_block *block);
 /* Adds the particles: `mass` is of all, shared out equally. Those that `pins` names (in words of the builder's own,
- * besides numbers and shapes) are held; the others begin with the velocity. */
+ * besides numbers and shapes) are pinned; the others begin with the velocity. */
 skein_status sk_block_add_particles(sk_block *block, double mass, const double velocity[3], const char *pins,
                                     skein_status (*choose_words)(void *block, const char *words));
 /* Adds one batch of springs, direction by direction; steps that lead nowhere in this block add none. */

@@ -39,7 +39,8 @@ typedef struct cloth_params {
 enum { BY_SPRINGS, BY_ANGLE, BY_CURVATURE, BY_LINES, BY_SHAPE };
 
 static const skein_field fields[] = {
-    SK_TEXT(cloth_params, mesh, "mesh", "", "file of a mesh, OBJ, OFF, PLY, STL or glTF (in scenes; a program passes the mesh itself)"),
+    SK_TEXT(cloth_params, mesh, "mesh", "",
+            "file of a mesh, OBJ, OFF, PLY, STL or glTF (in scenes; a program passes the mesh itself)"),
     SK_INT2(cloth_params, grid, "grid", "", 0, 0, 0, 65536, "instead of a mesh: rows and columns of particles"),
     SK_REAL2(cloth_params, size, "size", "m", 1, 1, 1e-6, 1e9, "of a grid, along x and z before it is turned"),
     SK_VEC3(cloth_params, position, "position", "m", 0, 0, 0, "where the mesh's origin (a grid's middle) is put"),
@@ -55,7 +56,7 @@ static const skein_field fields[] = {
             "vertices nearer than this become one particle; 0 joins none"),
     SK_TEXT(
         cloth_params, pins, "pins", "",
-        "held particles: \"corners\", \"top corners\", \"top edge\", numbers, \"box x y z x y z\", \"sphere x y z r\""),
+        "pinned particles: \"corners\", \"top corners\", \"top edge\", numbers, \"box x y z x y z\", \"sphere x y z r\""),
     SK_REAL(cloth_params, stretch.stiffness, "stretch.stiffness", "N/m", 2e4, 0, SK_UNBOUNDED,
             "of the sheet along its threads (1e4 is a firm cotton)"),
     SK_REAL(cloth_params, stretch.damping, "stretch.damping", "N s/m", 0, 0, SK_FAR,
@@ -72,9 +73,10 @@ static const skein_field fields[] = {
             "of the sheet against angle or curvature, the same at any resolution (1e-5 is a cotton)"),
     SK_REAL(cloth_params, limit, "stretch.limit", "", SK_UNBOUNDED, 0, SK_UNBOUNDED,
             "strain limit: no edge gets longer than rest times 1 + this; \"infinite\" is none"),
-    SK_REAL(cloth_params, tether, "stretch.tether", "", 0, 0, SK_UNBOUNDED,
-            "no particle gets farther from a pin, or from any 5 or 20 edges away, than along the cloth, times 1 + this; "
-            "\"infinite\" is none"),
+    SK_REAL(
+        cloth_params, tether, "stretch.tether", "", 0, 0, SK_UNBOUNDED,
+        "no particle gets farther from a pin, or from any 5 or 20 edges away, than along the cloth, times 1 + this; "
+        "\"infinite\" is none"),
     SK_LOOK(cloth_params, look, SKEIN_LOOK_CLOTH),
 };
 
@@ -109,7 +111,7 @@ static skein_status make_sheet(tailor *t, const skein_mesh *mesh) {
     return sk_springs_find(&t->springs, &t->sheet, t->error);
 }
 
-/* Masses, pins and velocities; a particle without a mass (of no face) is held. */
+/* Masses, pins and velocities; a particle without a mass (of no face) is pinned. */
 static skein_status add_particles(tailor *t) {
     sk_allocator *allocator = &t->world->allocator;
     size_t count = t->sheet.particle_count;
@@ -127,7 +129,7 @@ static skein_status add_particles(tailor *t) {
         status = sk_world_add_particles(t->world, count, (const double *)t->sheet.position, (const double *)velocity,
                                         t->mass, t->error);
     for (size_t i = 0; i < count && !status; i++)
-        if (t->pinned[i]) sk_particle_hold(&t->world->particles, t->body->first_particle + i, true);
+        if (t->pinned[i]) sk_particle_pin(&t->world->particles, t->body->first_particle + i, true);
     sk_release(allocator, velocity);
     return status;
 }
@@ -219,7 +221,7 @@ static skein_status add_spans(tailor *t) {
 /* Sweeps take batches in the order of their making, and what is swept last is kept best: edges. Measured on
  * a draped grid, 12 substeps: 5.7 % of stretch at most, against 15.8 % with the edges first.
  *
- * Where cells are longer one way, sweeps in that order shiver as a lattice's do (methods/writer.c), from sides of 1.25 to 1
+ * Where cells are longer one way, sweeps in that order shiver as a lattice's do (methods/plan_builder.c), from sides of 1.25 to 1
  * on: 64 x 64 that swings by two corners was stretched by 5.6 % (99 % of its edges) and 17.5 %, once its cells were 1.3 to
  * 1, and by 14 and 43 % at 2 to 1. With half of the shear springs swept on the way back 0.7 and 1.8 %, as in squares.
  * Squares are a little firmer without. */

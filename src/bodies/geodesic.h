@@ -1,4 +1,4 @@
-/* Distances along a sheet, from held particles to all others: the lengths of tethers. */
+/* Distances along a sheet, from pinned particles to all others: the lengths of tethers. */
 #ifndef SK_BODIES_GEODESIC_H
 #define SK_BODIES_GEODESIC_H
 

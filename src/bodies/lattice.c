@@ -40,7 +40,7 @@ static const skein_field fields[] = {
     SK_REAL(lattice_params, mass, "mass", "kg", 10, 1e-9, 1e12, "of all of it, shared out equally to the particles"),
     SK_REAL(lattice_params, density, "density", "kg/m3", 0, 0, 1e9, "instead of the mass, where it is over 0"),
     SK_TEXT(lattice_params, pins, "pins", "",
-            "held particles: \"left face\" (right, bottom, top, back, front), \"corners\", numbers, "
+            "pinned particles: \"left face\" (right, bottom, top, back, front), \"corners\", numbers, "
             "\"box x y z x y z\", \"sphere x y z r\""),
     SK_REAL(lattice_params, structural.stiffness, "structural.stiffness", "N/m", 2000, 0, SK_UNBOUNDED,
             "of each spring along the axes"),

@@ -28,7 +28,7 @@ static const skein_field fields[] = {
     SK_VEC3(rope_params, velocity, "velocity", "m/s", 0, 0, 0, "at the start"),
     SK_REAL(rope_params, density, "density", "kg/m", 0.1, 1e-9, 1e9, "mass of a metre, shared out equally"),
     SK_TEXT(rope_params, pins, "pins", "",
-            "held particles: \"first\", \"last\", numbers, \"box x y z x y z\", \"sphere x y z r\""),
+            "pinned particles: \"first\", \"last\", numbers, \"box x y z x y z\", \"sphere x y z r\""),
     SK_REAL(rope_params, stretch.stiffness, "stretch.stiffness", "N", 1e4, 0, SK_UNBOUNDED,
             "the force that would make it twice as long"),
     SK_REAL(rope_params, stretch.damping, "stretch.damping", "N s", 0, 0, SK_FAR, "of stretching"),

@@ -34,7 +34,7 @@ static const skein_field fields[] = {
     SK_REAL(tetrahedra_params, density, "density", "kg/m3", 1000, 1e-9, 1e9,
             "mass of a cubic metre, shared out to the corners"),
     SK_TEXT(tetrahedra_params, pins, "pins", "",
-            "held particles: \"all\", numbers, \"box x y z x y z\", \"sphere x y z r\""),
+            "pinned particles: \"all\", numbers, \"box x y z x y z\", \"sphere x y z r\""),
     SK_REAL(tetrahedra_params, edges.stiffness, "stiffness", "Pa", 2e4, 0, SK_UNBOUNDED,
             "Young's modulus of the springs along the edges (1e4 is a jelly, 1e6 a rubber)"),
     SK_REAL(tetrahedra_params, edges.damping, "damping", "Pa s", 0, 0, SK_FAR, "of the same"),
@@ -144,7 +144,7 @@ static skein_status weigh(builder *b) {
     size_t lost = 0;
     for (size_t i = 0; i < b->point_count; i++) lost += !(b->mass[i] > 0);
     if (lost)
-        sk_world_log(b->world, SKEIN_LOG_WARNING, "%s: %zu %s in no tetrahedron, and held", b->body->label, lost,
+        sk_world_log(b->world, SKEIN_LOG_WARNING, "%s: %zu %s in no tetrahedron, and pinned", b->body->label, lost,
                      lost == 1 ? "point is" : "points are");
     return SKEIN_OK;
 }
@@ -193,7 +193,7 @@ static skein_status add_particles(builder *b) {
         status = sk_world_add_particles(b->world, b->point_count, (const double *)b->position, (const double *)velocity,
                                         b->mass, b->error);
     for (size_t i = 0; i < b->point_count && !status; i++)
-        if (b->pinned[i]) sk_particle_hold(&b->world->particles, b->body->first_particle + i, true);
+        if (b->pinned[i]) sk_particle_pin(&b->world->particles, b->body->first_particle + i, true);
     sk_release(allocator, velocity);
     return status;
 }

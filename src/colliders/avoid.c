@@ -1,28 +1,27 @@
 /* Steering clear of a collider: what looks ahead along its flight and sees the surface nearer than the clearance there,
  * half way or all the way, is pushed along the surface's normal: by (1 - distance/clearance) strength, twice that at
- * the most. The row's coefficients are the time ahead, the clearance and the strength. */
+ * the most. The op's coefficients are the time ahead, the clearance and the strength. */
 #include "base/kernels.h"
 #include "colliders/collider.h"
 
 #define SK_UNIT avoid
-SK_KERNELS(sk_row_kernel, avoid);
+SK_KERNELS(sk_op_kernel, avoid);
 
 #ifdef SK_ISA
 
-void SK_KERNEL(avoid)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_collider *collider = row->rule;
+void SK_KERNEL(avoid)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_collider *collider = op->rule;
     sk_pose pose = sk_collider_pose_at(collider, run->time);
-    real clearance = (real)(row->coefficient[1] + collider->common->thickness),
-         dv = (real)(row->dt * row->coefficient[2]);
+    real clearance = (real)(op->coefficient[1] + collider->common->thickness), dv = (real)(op->dt * op->coefficient[2]);
     sk_wide one = sk_splat(1), two = sk_splat(2);
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
+        bool packed = slot < op->packed;
         sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
-        sk_wide4 s = sk_load_part(run->vector[row->dst], slot, packed);
-        sk_mask moved = sk_lanes_between(slot, row->group->first_slot, row->group->end_slot);
+        sk_wide4 s = sk_load_part(run->vector[op->dst], slot, packed);
+        sk_mask moved = sk_lanes_between(slot, op->group->first_slot, op->group->end_slot);
         for (int look = 1; look <= 2; look++) {
-            real ahead = (real)(0.5 * look * row->coefficient[0]);
+            real ahead = (real)(0.5 * look * op->coefficient[0]);
             sk_wide3 p = {x.x + ahead * v.x, x.y + ahead * v.y, x.z + ahead * v.z};
             sk_contact contact;
             collider->type->probe[SK_THIS_ISA](collider->params, &pose, &p, &contact);
@@ -34,7 +33,7 @@ void SK_KERNEL(avoid)(sk_run *run, const sk_row *row, size_t begin, size_t end) 
             s.y = sk_plus_where(near, s.y, k * contact.normal.y);
             s.z = sk_plus_where(near, s.z, k * contact.normal.z);
         }
-        sk_store_part(run->vector[row->dst], slot, packed, s);
+        sk_store_part(run->vector[op->dst], slot, packed, s);
     }
 }
 

@@ -1,11 +1,11 @@
 // Steering clear of a collider that is nearer than the clearance half way or all the way ahead; see avoid.c.
-// row@[0]: time ahead, clearance, strength, substep
+// op@[0]: time ahead, clearance, strength, substep
 vec4 avoid@(vec3 x, vec3 v) {
-    float clearance = row@[0].y + pose@[0].w;
+    float clearance = op@[0].y + pose@[0].w;
     vec3 sum = vec3(0);
     for (int look = 1; look <= 2; look++) {
-        vec4 probed = probe@(x + 0.5 * float(look) * row@[0].x * v);
-        if (probed.w < clearance) sum += row@[0].w * row@[0].z * min(1 - probed.w / clearance, 2.0) * probed.xyz;
+        vec4 probed = probe@(x + 0.5 * float(look) * op@[0].x * v);
+        if (probed.w < clearance) sum += op@[0].w * op@[0].z * min(1 - probed.w / clearance, 2.0) * probed.xyz;
     }
     return vec4(sum, 0);
 }

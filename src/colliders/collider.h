@@ -9,7 +9,7 @@
 #include "base/fields.h"
 #include "base/wide_types.h"
 #include "formula/parameters.h"
-#include "plan/row.h"
+#include "plan/op.h"
 #include "plan/shader.h"
 
 /* Where a collider stands at a time, and how it moves there. */
@@ -134,7 +134,7 @@ extern const sk_kernels sk_contact_impulse;
 extern const sk_kernels sk_contact_push;
 /* Position methods, once V has followed X: pushes X out with friction against X0, the second source, and gives V
  * the same move, and the bounce that V0, the third source, had coming. */
-extern const sk_kernels sk_contact_settle;
+extern const sk_kernels sk_contact_update;
 /* Implicit methods: what a collider holds through the substep, as a filter in dst and the second source (xx yy zz and
  * xy xz yz), friction added to the third, and V as it is held. */
 extern const sk_kernels sk_contact_filter;
@@ -158,9 +158,9 @@ sk_swept sk_swept_begin(const sk_collider *collider, double from, double to, boo
 bool sk_swept_stop(const sk_swept *sweep, const double start[3], double x[3]);
 
 /* Once a substep, by one thread: the surface of a collider that changes is where it is at the end. */
-extern sk_row_kernel sk_contact_follow;
+extern sk_op_kernel sk_contact_follow;
 
-/* Rules that look out: adds to S, for the row's group. */
+/* Rules that look out: adds to S, for the op's group. */
 extern const sk_kernels sk_avoid;
 
 /* Whether contact with this collider looks at F after the velocity update: what bounces must know what weighs. */

@@ -27,10 +27,10 @@
 #include "base/kernels.h"
 
 #define SK_UNIT contact
-SK_KERNELS(sk_row_kernel, contact_force);
-SK_KERNELS(sk_row_kernel, contact_impulse);
-SK_KERNELS(sk_row_kernel, contact_push);
-SK_KERNELS(sk_row_kernel, contact_settle);
+SK_KERNELS(sk_op_kernel, contact_force);
+SK_KERNELS(sk_op_kernel, contact_impulse);
+SK_KERNELS(sk_op_kernel, contact_push);
+SK_KERNELS(sk_op_kernel, contact_update);
 SK_KERNELS(sk_probe_sixteen, probe_sixteen);
 
 #ifdef SK_ISA
@@ -38,17 +38,17 @@ SK_KERNELS(sk_probe_sixteen, probe_sixteen);
 #include "colliders/response.h"
 
 /* Probes a part of a block; false where nobody touches. */
-SK_INLINE bool meet(sk_run *run, const sk_row *row, const sk_pose *pose, size_t slot, encounter *e) {
-    probe(row->rule, pose, sk_load_part(run->vector[SK_X], slot, slot < row->packed), (sk_wide){0}, e);
+SK_INLINE bool meet(sk_run *run, const sk_op *op, const sk_pose *pose, size_t slot, encounter *e) {
+    probe(op->rule, pose, sk_load_part(run->vector[SK_X], slot, slot < op->packed), (sk_wide){0}, e);
     if (!sk_any(e->touching)) return false;
-    find_motion(row->rule, pose, e);
+    find_motion(op->rule, pose, e);
     return true;
 }
 
 /* Adds `change` to a part of dst in the lanes of the mask. */
-SK_INLINE void apply(sk_run *run, const sk_row *row, size_t slot, sk_wide4 old, sk_mask mask, sk_wide3 change) {
+SK_INLINE void apply(sk_run *run, const sk_op *op, size_t slot, sk_wide4 old, sk_mask mask, sk_wide3 change) {
     add_where(mask, &old, change);
-    sk_store_part(run->vector[row->dst], slot, slot < row->packed, old);
+    sk_store_part(run->vector[op->dst], slot, slot < op->packed, old);
 }
 
 /* Speed after a bounce over speed before: of a collider with a mass (m - M)/(m + M), but never inwards. */
@@ -59,103 +59,103 @@ SK_INLINE sk_wide restitution_of(const sk_collider *collider, sk_wide mass) {
     return sk_keep(sk_positive(share), share);
 }
 
-void SK_KERNEL(contact_force)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_collider *collider = row->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
+void SK_KERNEL(contact_force)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_collider *collider = op->rule;
+    sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
     bool by_mass = sk_collider_mass(collider) > 0;
     encounter e;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        if (!meet(run, row, &pose, slot, &e)) continue;
-        sk_wide4 f = sk_load_part(run->vector[row->dst], slot, slot < row->packed);
-        sk_wide4 v = sk_load_part(run->vector[SK_V], slot, slot < row->packed);
+        if (!meet(run, op, &pose, slot, &e)) continue;
+        sk_wide4 f = sk_load_part(run->vector[op->dst], slot, slot < op->packed);
+        sk_wide4 v = sk_load_part(run->vector[SK_V], slot, slot < op->packed);
         sk_wide3 force_t, slide;
         sk_wide inward = split(three(f), e.contact.normal, &force_t);
         sk_wide leaving = split(from_surface(three(v), &e), e.contact.normal, &slide);
-        sk_wide mass_per_step = 1 / (e.x.w * (real)row->dt), pressing = inward;
+        sk_wide mass_per_step = 1 / (e.x.w * (real)op->dt), pressing = inward;
         if (!by_mass) pressing += mass_per_step * sk_keep(sk_positive(leaving), leaving);
         // cut to Coulomb's cone
         sk_wide3 stop = stopping(mass_per_step, slide, force_t);
         sk_wide needed = sk_wide_sqrt(sk_dot_wide(stop, stop)), most = (real)collider->common->friction * -pressing;
         sk_wide share = share_of(needed, most);
         sk_wide3 push = times(-pressing, e.contact.normal), rub = times(share, stop);
-        apply(run, row, slot, f, e.touching & sk_negative(pressing),
+        apply(run, op, slot, f, e.touching & sk_negative(pressing),
               (sk_wide3){push.x + rub.x, push.y + rub.y, push.z + rub.z});
     }
 }
 
-void SK_KERNEL(contact_impulse)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_collider *collider = row->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
+void SK_KERNEL(contact_impulse)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_collider *collider = op->rule;
+    sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
     encounter e;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        if (!meet(run, row, &pose, slot, &e)) continue;
-        sk_wide4 v = sk_load_part(run->vector[row->dst], slot, slot < row->packed);
+        if (!meet(run, op, &pose, slot, &e)) continue;
+        sk_wide4 v = sk_load_part(run->vector[op->dst], slot, slot < op->packed);
         sk_wide3 slide;
         sk_wide approach = split(from_surface(three(v), &e), e.contact.normal, &slide);
         sk_wide bounce = (1 + restitution_of(collider, v.w)) * -approach;
         sk_wide speed = sk_wide_sqrt(sk_dot_wide(slide, slide));
         sk_wide share = share_of(speed, (real)collider->common->friction * bounce);
         sk_wide3 change = minus(times(bounce, e.contact.normal), times(share, slide));
-        apply(run, row, slot, v, e.touching & sk_negative(approach), change);
+        apply(run, op, slot, v, e.touching & sk_negative(approach), change);
     }
 }
 
 /* The way out of the solid, up to the thickness; where a vector of old positions is given, less the slide since
  * then that friction takes back, up to mu times the push. */
-SK_INLINE sk_wide3 way_out(const sk_run *run, const sk_row *row, size_t slot, const encounter *e, sk_wide push) {
+SK_INLINE sk_wide3 way_out(const sk_run *run, const sk_op *op, size_t slot, const encounter *e, sk_wide push) {
     sk_wide3 move = times(push, e->contact.normal);
-    if (row->source[1] == SK_NONE) return move;
-    sk_wide4 start = sk_load_part(run->vector[row->source[1]], slot, slot < row->packed);
+    if (op->source[1] == SK_NONE) return move;
+    sk_wide4 start = sk_load_part(run->vector[op->source[1]], slot, slot < op->packed);
     sk_wide3 moved = minus(three(e->x), three(start));
-    if (e->moves) moved = minus(moved, times(sk_splat((real)row->dt), e->surface));
+    if (e->moves) moved = minus(moved, times(sk_splat((real)op->dt), e->surface));
     sk_wide3 slide;
     split(moved, e->contact.normal, &slide);
     sk_wide length = sk_wide_sqrt(sk_dot_wide(slide, slide));
-    const sk_collider *collider = row->rule;
+    const sk_collider *collider = op->rule;
     sk_wide share = share_of(length, (real)collider->common->friction * push);
     return minus(move, times(share, slide));
 }
 
-void SK_KERNEL(contact_push)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_collider *collider = row->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
+void SK_KERNEL(contact_push)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_collider *collider = op->rule;
+    sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
     encounter e;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        if (!meet(run, row, &pose, slot, &e)) continue;
+        if (!meet(run, op, &pose, slot, &e)) continue;
         sk_wide push = (real)collider->common->thickness - e.contact.distance;
-        apply(run, row, slot, e.x, e.touching & sk_positive(push), way_out(run, row, slot, &e, push));
+        apply(run, op, slot, e.x, e.touching & sk_positive(push), way_out(run, op, slot, &e, push));
     }
 }
 
 /* The speed at which particles leave that came at `approach` < 0. */
-SK_INLINE sk_wide bounce_of(const sk_run *run, const sk_row *row, size_t slot, const encounter *e, sk_wide mass,
+SK_INLINE sk_wide bounce_of(const sk_run *run, const sk_op *op, size_t slot, const encounter *e, sk_wide mass,
                             sk_wide approach) {
-    const sk_collider *collider = row->rule;
-    sk_wide resting = resting_speed(e, sk_load_part(run->vector[SK_F], slot, slot < row->packed), (real)row->dt);
+    const sk_collider *collider = op->rule;
+    sk_wide resting = resting_speed(e, sk_load_part(run->vector[SK_F], slot, slot < op->packed), (real)op->dt);
     return sk_keep(sk_more(-approach, resting), restitution_of(collider, mass) * -approach);
 }
 
-void SK_KERNEL(contact_settle)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_collider *collider = row->rule;
+void SK_KERNEL(contact_update)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_collider *collider = op->rule;
     bool bounces = sk_contact_reads_force(collider);
-    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
-    sk_wide per_step = sk_splat((real)(1 / row->dt));
+    sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
+    sk_wide per_step = sk_splat((real)(1 / op->dt));
     encounter e;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        if (!meet(run, row, &pose, slot, &e)) continue;
-        bool packed = slot < row->packed;
+        if (!meet(run, op, &pose, slot, &e)) continue;
+        bool packed = slot < op->packed;
         sk_wide push = (real)collider->common->thickness - e.contact.distance;
         sk_mask pushed = e.touching & sk_positive(push);
-        sk_wide3 move = way_out(run, row, slot, &e, push);
-        apply(run, row, slot, e.x, pushed, move);
+        sk_wide3 move = way_out(run, op, slot, &e, push);
+        apply(run, op, slot, e.x, pushed, move);
 
         // the move is velocity, too; but along the normal what counts is how the particle came
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         add_where(pushed, &v, times(per_step, move));
-        sk_wide3 before = three(sk_load_part(run->vector[row->source[2]], slot, packed));
+        sk_wide3 before = three(sk_load_part(run->vector[op->source[2]], slot, packed));
         sk_wide approach = sk_dot_wide(from_surface(before, &e), e.contact.normal);
         sk_wide change = -sk_dot_wide(from_surface(three(v), &e), e.contact.normal);
-        if (bounces) change += bounce_of(run, row, slot, &e, v.w, approach);
+        if (bounces) change += bounce_of(run, op, slot, &e, v.w, approach);
         add_where(e.touching & sk_negative(approach), &v, times(change, e.contact.normal));
         sk_store_moved(run->vector[SK_V], slot, packed, v);
     }
@@ -182,7 +182,7 @@ sk_probe_sixteen *const sk_probe_sixteen_of[SK_ISA_COUNT] = SK_EACH_ISA(probe_si
 const sk_kernels sk_contact_force = {SK_EACH_ISA(contact_force)};
 const sk_kernels sk_contact_impulse = {SK_EACH_ISA(contact_impulse)};
 const sk_kernels sk_contact_push = {SK_EACH_ISA(contact_push)};
-const sk_kernels sk_contact_settle = {SK_EACH_ISA(contact_settle)};
+const sk_kernels sk_contact_update = {SK_EACH_ISA(contact_update)};
 
 const skein_field sk_collider_fields[] = {
     SK_TEXT(sk_collider_common, name, "name", "", "for paths and messages"),
@@ -200,10 +200,10 @@ const skein_field sk_collider_fields[] = {
 };
 const size_t sk_collider_field_count = sizeof sk_collider_fields / sizeof *sk_collider_fields;
 
-void sk_contact_follow(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_collider *collider = row->rule;
+void sk_contact_follow(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_collider *collider = op->rule;
     (void)begin, (void)end;
-    collider->type->follow(collider->params, run->time - row->before);
+    collider->type->follow(collider->params, run->time - op->before_end);
 }
 
 double sk_collider_mass(const sk_collider *collider) {

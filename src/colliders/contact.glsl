@@ -1,5 +1,5 @@
 // Contact: what happens to a particle that touches a collider, the same for every shape (see contact.c). The shape's
-// probe@ stands before it. row@[0].w is the substep, row@[1].x is 1 where bounces look at the force.
+// probe@ stands before it. op@[0].w is the substep, op@[1].x is 1 where bounces look at the force.
 
 struct encounter@ {
     vec3 normal, surface; // the surface's velocity there
@@ -36,7 +36,7 @@ float restitution@(float mass) {
 void contact_force@(vec4 x, vec4 v, inout vec4 f) {
     encounter@ e = meet@(x);
     vec3 past = v.xyz - e.surface;
-    float inward = dot(f.xyz, e.normal), leaving = dot(past, e.normal), mass_per_step = 1 / (x.w * row@[0].w);
+    float inward = dot(f.xyz, e.normal), leaving = dot(past, e.normal), mass_per_step = 1 / (x.w * op@[0].w);
     float pressing = pose@[3].w > 0 ? inward : inward + mass_per_step * max(leaving, 0.0);
     if (!e.touching || !(pressing < 0)) return;
     vec3 across = f.xyz - inward * e.normal, slide = past - leaving * e.normal;
@@ -64,10 +64,10 @@ void contact_push@(inout vec4 x) {
 }
 
 // Moves out with friction against the start of the substep, and gives V the same move and the bounce.
-void contact_settle@(inout vec4 x, inout vec4 v, vec4 f, vec4 start, vec4 before) {
+void contact_update@(inout vec4 x, inout vec4 v, vec4 f, vec4 start, vec4 before) {
     encounter@ e = meet@(x);
     if (!e.touching) return;
-    float h = row@[0].w, push = pose@[0].w - e.gap;
+    float h = op@[0].w, push = pose@[0].w - e.gap;
     if (push > 0) {
         vec3 moved = x.xyz - start.xyz - h * e.surface, slide = moved - dot(moved, e.normal) * e.normal;
         vec3 way = push * e.normal - share@(length(slide), pose@[1].w * push) * slide;
@@ -80,6 +80,6 @@ void contact_settle@(inout vec4 x, inout vec4 v, vec4 f, vec4 start, vec4 before
     float change = -dot(v.xyz - e.surface, e.normal);
     // what a substep's force alone brings is no impact; bouncing it would make resting things jitter
     float resting = 2 * h * x.w * length(f.xyz);
-    if (row@[1].x > 0 && -approach > resting) change += restitution@(v.w) * -approach;
+    if (op@[1].x > 0 && -approach > resting) change += restitution@(v.w) * -approach;
     v.xyz += change * e.normal;
 }

@@ -14,8 +14,8 @@
 #include "colliders/collider.h"
 
 #define SK_UNIT filter
-SK_KERNELS(sk_row_kernel, contact_filter);
-SK_KERNELS(sk_row_kernel, contact_filter_more);
+SK_KERNELS(sk_op_kernel, contact_filter);
+SK_KERNELS(sk_op_kernel, contact_filter_more);
 
 #ifdef SK_ISA
 #include "colliders/response.h"
@@ -91,17 +91,17 @@ SK_INLINE void hold(const sk_collider *collider, const sk_pose *pose, sk_wide4 x
     add_where(held, &f->friction, times(share, stop));
 }
 
-void SK_KERNEL(contact_filter)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_collider *collider = row->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
-    sk_vec4 *diagonal = run->vector[row->dst], *off = run->vector[row->source[1]], *rub = run->vector[row->source[2]];
+void SK_KERNEL(contact_filter)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_collider *collider = op->rule;
+    sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
+    sk_vec4 *diagonal = run->vector[op->dst], *off = run->vector[op->source[1]], *rub = run->vector[op->source[2]];
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
+        bool packed = slot < op->packed;
         sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
         sk_wide4 force = sk_load_part(run->vector[SK_F], slot, packed);
         filtering f = {sk_load_part(diagonal, slot, packed), sk_load_part(off, slot, packed),
                        sk_load_part(run->vector[SK_V], slot, packed), sk_load_part(rub, slot, packed)};
-        hold(collider, &pose, x, force, (real)row->dt, &f);
+        hold(collider, &pose, x, force, (real)op->dt, &f);
         sk_store_part(diagonal, slot, packed, f.d);
         sk_store_part(off, slot, packed, f.o);
         sk_store_part(run->vector[SK_V], slot, packed, f.v);
@@ -113,10 +113,10 @@ void SK_KERNEL(contact_filter)(sk_run *run, const sk_row *row, size_t begin, siz
  * bounce), and of what lay on the surface only what presses. The rest is inside because its tangent leads there, in
  * a hollow, and the solve may take it off: holding that would glue it on, with more weight and friction for the rest.
  */
-SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_row *row, const sk_pose *start, size_t slot, sk_wide4 v,
+SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_op *op, const sk_pose *start, size_t slot, sk_wide4 v,
                                const encounter *e) {
-    const sk_collider *collider = row->rule;
-    bool packed = slot < row->packed;
+    const sk_collider *collider = op->rule;
+    bool packed = slot < op->packed;
     sk_wide4 v0 = sk_load_part(run->vector[SK_V0], slot, packed);
     sk_wide4 force = sk_load_part(run->vector[SK_F], slot, packed);
     sk_mask inside = sk_negative(e->contact.distance - (real)collider->common->thickness) & sk_positive(e->x.w);
@@ -124,34 +124,34 @@ SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_row *row, const sk_po
     encounter before;
     probe(collider, start, sk_load_part(run->vector[SK_X0], slot, packed), sk_splat((real)1e-3), &before);
     // the balance of momentum along the normal, without what contact does to it
-    sk_wide hw = (real)row->dt * e->x.w;
+    sk_wide hw = (real)op->dt * e->x.w;
     sk_wide3 short_of = minus(times(hw, three(force)), minus(three(v), three(v0)));
     sk_mask lay = touches(collider, &before), presses = sk_negative(sk_dot_wide(short_of, e->contact.normal));
     if (!sk_contact_reads_force(collider)) return inside & (presses | ~lay);
     find_motion(collider, start, &before);
     sk_wide speed = sk_dot_wide(from_surface(three(v0), &before), before.contact.normal);
-    return inside & lay & presses & ~bounces(collider, e, speed, force, (real)row->dt);
+    return inside & lay & presses & ~bounces(collider, e, speed, force, (real)op->dt);
 }
 
 /* Within the solve: what has come inside is held too, and taken back to the surface. What is held already goes on
  * along its tangent. */
-void SK_KERNEL(contact_filter_more)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_collider *collider = row->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time - row->before);
-    sk_pose start = sk_collider_pose_at(collider, run->time - row->dt);
-    sk_vec4 *diagonal = run->vector[row->dst], *off = run->vector[row->source[1]];
+void SK_KERNEL(contact_filter_more)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_collider *collider = op->rule;
+    sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
+    sk_pose start = sk_collider_pose_at(collider, run->time - op->dt);
+    sk_vec4 *diagonal = run->vector[op->dst], *off = run->vector[op->source[1]];
     real thickness = (real)collider->common->thickness;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
+        bool packed = slot < op->packed;
         sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         encounter e;
         probe(collider, &pose, x, (sk_wide){0}, &e);
-        sk_mask inside = comes_inside(run, row, &start, slot, v, &e);
+        sk_mask inside = comes_inside(run, op, &start, slot, v, &e);
         if (!sk_any(inside)) continue;
         sk_wide gap = e.contact.distance - thickness;
         filtering f = {sk_load_part(diagonal, slot, packed), sk_load_part(off, slot, packed), v, {{0}, {0}, {0}, {0}}};
-        hold_normal(&f, inside, e.contact.normal, -gap / (real)row->dt, (real)0.5);
+        hold_normal(&f, inside, e.contact.normal, -gap / (real)op->dt, (real)0.5);
         sk_store_part(diagonal, slot, packed, f.d);
         sk_store_part(off, slot, packed, f.o);
         sk_store_part(run->vector[SK_V], slot, packed, f.v);

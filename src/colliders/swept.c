@@ -12,17 +12,17 @@
 #include "colliders/collider.h"
 
 #define SK_UNIT contact_sweep
-SK_KERNELS(sk_row_kernel, sweep);
+SK_KERNELS(sk_op_kernel, sweep);
 
 #ifdef SK_ISA
 
-void SK_KERNEL(sweep)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_collider *collider = row->rule;
-    sk_swept sweep = sk_swept_begin(collider, run->time - row->dt, run->time - row->before, row->coefficient[0] > 0);
-    real half = (real)(0.5 * collider->common->thickness), per_step = (real)(row->coefficient[0] / row->dt);
+void SK_KERNEL(sweep)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_collider *collider = op->rule;
+    sk_swept sweep = sk_swept_begin(collider, run->time - op->dt, run->time - op->before_end, op->coefficient[0] > 0);
+    real half = (real)(0.5 * collider->common->thickness), per_step = (real)(op->coefficient[0] / op->dt);
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
-        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), x0 = sk_load_part(run->vector[row->source[1]], slot, packed);
+        bool packed = slot < op->packed;
+        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), x0 = sk_load_part(run->vector[op->source[1]], slot, packed);
         const real *r = sweep.turn;
         sk_wide3 from = {x0.x, x0.y, x0.z};
         if (sweep.moves)
@@ -48,7 +48,7 @@ void SK_KERNEL(sweep)(sk_run *run, const sk_row *row, size_t begin, size_t end) 
             x.x[l] = moved[0], x.y[l] = moved[1], x.z[l] = moved[2];
         }
         if (!any) continue;
-        sk_store_part(run->vector[row->dst], slot, packed, x);
+        sk_store_part(run->vector[op->dst], slot, packed, x);
         if (per_step > 0) sk_store_moved(run->vector[SK_V], slot, packed, v);
     }
 }

@@ -140,9 +140,9 @@ double sk_batch_damping_time(const sk_batch *batch) {
     return material->stiffness > 0 ? material->damping / material->stiffness : 0;
 }
 
-void sk_sweep_clear_multipliers(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void sk_sweep_clear_multipliers(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     (void)run;
-    const sk_sweep *sweep = row->rule;
+    const sk_sweep *sweep = op->rule;
     // an element of the row is a strip row, a slab or a group
     if (sweep->slab_start) begin = sweep->slab_start[begin], end = sweep->slab_start[end];
     size_t lanes = (sweep->strips ? sweep->walk.width : 1) * SK_LANES;

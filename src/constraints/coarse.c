@@ -4,7 +4,7 @@
 #include "base/kernels.h"
 
 #define SK_UNIT coarse
-SK_KERNELS(sk_row_kernel, carry);
+SK_KERNELS(sk_op_kernel, carry);
 
 #ifdef SK_ISA
 
@@ -13,11 +13,11 @@ typedef struct moves {
     sk_wide d[3 * SK_PARTS];
 } moves;
 
-SK_INLINE moves moves_of(const sk_run *run, const sk_row *row, size_t slot) {
+SK_INLINE moves moves_of(const sk_run *run, const sk_op *op, size_t slot) {
     const sk_wide *x = (const sk_wide *)(const void *)(run->vector[SK_X] + slot),
                   *x0 = (const sk_wide *)(const void *)(run->vector[SK_X0] + slot),
                   *v = (const sk_wide *)(const void *)(run->vector[SK_V] + slot);
-    real h = (real)row->coefficient[1];
+    real h = (real)op->coefficient[1];
     moves m;
     for (int i = 0; i < 3 * SK_PARTS; i++) m.d[i] = x[i] - (h == 0 ? x0[i] : x0[i] + h * v[i]);
     return m;
@@ -27,7 +27,7 @@ SK_INLINE moves moves_of(const sk_run *run, const sk_row *row, size_t slot) {
 SK_INLINE moves turned(const moves *m, int shift, size_t first, size_t end, const moves *other) {
     moves to;
     for (int i = 0; i < 3 * SK_PARTS; i += SK_PARTS) {
-        sk_turn_row(to.d + i, m->d + i, shift);
+        sk_rotate_lanes(to.d + i, m->d + i, shift);
         for (int p = 0; p < SK_PARTS; p++) {
             sk_mask in = sk_lanes_between((size_t)p * SK_PART, first, end);
             to.d[i + p] = sk_select(in, to.d[i + p], other->d[i + p]);
@@ -75,21 +75,21 @@ SK_INLINE gap find_gap(const sk_coarse *coarse, size_t strip, size_t i, size_t c
 }
 
 /* What both columns of a gap moved in a strip row; where there is no left or right one, the other's. */
-SK_INLINE void find_moves(const sk_run *run, const sk_row *row, size_t first_slot, const gap *g, moves *a, moves *b) {
-    moves left = moves_of(run, row, first_slot + g->left * SK_LANES);
-    moves right = moves_of(run, row, first_slot + g->right * SK_LANES);
+SK_INLINE void find_moves(const sk_run *run, const sk_op *op, size_t first_slot, const gap *g, moves *a, moves *b) {
+    moves left = moves_of(run, op, first_slot + g->left * SK_LANES);
+    moves right = moves_of(run, op, first_slot + g->right * SK_LANES);
     *a = left, *b = right;
     if (g->turn_left) *a = turned(&left, g->turn_left, 1, SK_LANES, &right);
     if (g->turn_right || g->lanes < SK_LANES) *b = turned(&right, g->turn_right, 0, g->lanes, a);
 }
 
 /* Rows from one of the coarse grid to the next one, above the first and below the last to the border. */
-static void carry_band(sk_run *run, const sk_row *row, size_t r) {
-    const sk_coarse *coarse = row->rule;
+static void carry_band(sk_run *run, const sk_op *op, size_t r) {
+    const sk_coarse *coarse = op->rule;
     const sk_coarse_grid *grid = &coarse->grid, *finer = &coarse->finer;
-    size_t strip = row->walk.width, line = strip * SK_LANES, first = row->walk.first_slot;
-    bool last = r + grid->row_step >= row->walk.rows;
-    size_t begin = r == grid->row_first ? finer->row_first : r, end = last ? row->walk.rows : r + grid->row_step;
+    size_t strip = op->walk.width, line = strip * SK_LANES, first = op->walk.first_slot;
+    bool last = r + grid->row_step >= op->walk.rows;
+    size_t begin = r == grid->row_first ? finer->row_first : r, end = last ? op->walk.rows : r + grid->row_step;
     size_t count = sk_coarse_columns(grid, strip);
     for (size_t i = 0; i <= count; i++) {
         gap g = find_gap(coarse, strip, i, count);
@@ -97,9 +97,9 @@ static void carry_band(sk_run *run, const sk_row *row, size_t r) {
         while (from < g.begin) from += finer->step;
         if (from >= g.end) continue;
         moves a, b, next_a, next_b;
-        find_moves(run, row, first + r * line, &g, &a, &b);
+        find_moves(run, op, first + r * line, &g, &a, &b);
         next_a = a, next_b = b;
-        if (!last) find_moves(run, row, first + (r + grid->row_step) * line, &g, &next_a, &next_b);
+        if (!last) find_moves(run, op, first + (r + grid->row_step) * line, &g, &next_a, &next_b);
         for (size_t to = begin; to < end; to += finer->row_step) {
             real f = to < r ? 0 : (real)(to - r) / (real)grid->row_step;
             moves left = between(&a, &next_a, f), right = between(&b, &next_b, f);
@@ -113,10 +113,10 @@ static void carry_band(sk_run *run, const sk_row *row, size_t r) {
 }
 
 /* Element e is the band that begins row_first rows on, so that it reads and writes no row before e. */
-void SK_KERNEL(carry)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_coarse_grid *grid = &((const sk_coarse *)row->rule)->grid;
+void SK_KERNEL(carry)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_coarse_grid *grid = &((const sk_coarse *)op->rule)->grid;
     for (size_t e = begin; e < end; e++)
-        if (e % grid->row_step == 0 && e + grid->row_first < row->walk.rows) carry_band(run, row, e + grid->row_first);
+        if (e % grid->row_step == 0 && e + grid->row_first < op->walk.rows) carry_band(run, op, e + grid->row_first);
 }
 
 #else

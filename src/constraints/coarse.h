@@ -11,7 +11,7 @@
 #ifndef SK_CONSTRAINTS_COARSE_H
 #define SK_CONSTRAINTS_COARSE_H
 
-#include "plan/row.h"
+#include "plan/op.h"
 
 /* Rows row_first, row_first + row_step ... and of each strip the columns `first`, first + step ... */
 typedef struct sk_coarse_grid {

@@ -15,10 +15,10 @@
 #define SK_CONSTRAINTS_CONSTRAINT_H
 
 #include "base/fields.h"
-#include "formula/parameters.h"
 #include "constraints/coarse.h"
+#include "formula/parameters.h"
 #include "particles/particles.h"
-#include "plan/row.h"
+#include "plan/op.h"
 
 typedef struct sk_batch sk_batch;
 typedef struct sk_sweep sk_sweep;
@@ -167,7 +167,7 @@ skein_status sk_batch_operations(const sk_batch *batch, sk_allocator *allocator,
 /* Brings the lanes' rest lengths and stiffness up to date with the parameters, where they are stale. */
 void sk_batch_refresh(sk_batch *batch);
 /* Sets the multipliers of a sweep to zero: the kernel of multiplier rows. */
-sk_row_kernel sk_sweep_clear_multipliers;
+sk_op_kernel sk_sweep_clear_multipliers;
 
 /* The batch's damping over stiffness, in seconds; 0 for a rigid batch. */
 double sk_batch_damping_time(const sk_batch *batch);

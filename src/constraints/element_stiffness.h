@@ -12,11 +12,11 @@ typedef struct stiff_elements {
     sk_wide along, across;
 } stiff_elements;
 
-SK_INLINE void stiffen(stiff_elements *s, const sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_batch *batch = row->rule;
+SK_INLINE void stiffen(stiff_elements *s, const sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_batch *batch = op->rule;
     const sk_material *material = batch->params;
-    real k = (real)material->stiffness, elastic = (real)row->coefficient[0];
-    real both = elastic + (real)(row->coefficient[1] * sk_batch_damping_time(batch));
+    real k = (real)material->stiffness, elastic = (real)op->coefficient[0];
+    real both = elastic + (real)(op->coefficient[1] * sk_batch_damping_time(batch));
     sk_element *e = &s->e;
     s->count = end - begin < SK_PART ? end - begin : SK_PART;
     memset(e->x, 0, sizeof e->x);
@@ -26,7 +26,7 @@ SK_INLINE void stiffen(stiff_elements *s, const sk_run *run, const sk_row *row, 
         size_t element = begin + l;
         SK_EACH_PARTICLE (i) {
             s->slot[i][l] = batch->slot[SK_ARITY * element + (size_t)i];
-            sk_vec4 x = sk_load(run->vector[SK_X], row->packed, s->slot[i][l]);
+            sk_vec4 x = sk_load(run->vector[SK_X], op->packed, s->slot[i][l]);
             e->x[i].x[l] = x.x, e->x[i].y[l] = x.y, e->x[i].z[l] = x.z;
         }
         for (int r = 0; r < SK_RESTS; r++) e->rest[r][l] = batch->rest[(size_t)r * batch->count + element];
@@ -66,13 +66,13 @@ SK_INLINE void add(sk_vec4 *vector, size_t packed, const additions *a, size_t co
 }
 
 /* The blocks' xx yy zz go to dst, xy xz yz to the second source. */
-void SK_KERNEL(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(diagonal)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     stiff_elements s;
     additions diagonal, off;
     for (size_t at = begin; at < end; at += SK_LANES) {
         size_t count = end - at < SK_LANES ? end - at : SK_LANES;
         for (size_t first = 0; first < count; first += SK_PART) {
-            stiffen(&s, run, row, at + first, at + count);
+            stiffen(&s, run, op, at + first, at + count);
             sk_wide push = s.along - s.across;
             SK_EACH_PARTICLE (i) {
                 sk_wide3 n = s.e.gradient[i], sn = {push * n.x, push * n.y, push * n.z};
@@ -81,18 +81,18 @@ void SK_KERNEL(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t en
                 note(&off, &s, first, i, (sk_wide3){sn.x * n.y, sn.x * n.z, sn.y * n.z});
             }
         }
-        add(run->vector[row->dst], row->packed, &diagonal, count);
-        add(run->vector[row->source[1]], row->packed, &off, count);
+        add(run->vector[op->dst], op->packed, &diagonal, count);
+        add(run->vector[op->source[1]], op->packed, &off, count);
     }
 }
 
 /* The element's own rows and columns of the matrix. */
-void SK_KERNEL(blocks)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(blocks)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     enum { PAIRS = SK_ARITY * (SK_ARITY - 1) / 2 };
-    const sk_batch *batch = row->rule;
+    const sk_batch *batch = op->rule;
     stiff_elements s;
     for (size_t at = begin; at < end; at += SK_PART) {
-        stiffen(&s, run, row, at, end);
+        stiffen(&s, run, op, at, end);
         sk_wide push = s.along - s.across;
         for (size_t l = 0; l < s.count; l++) {
             double g[SK_ARITY][3];

@@ -32,11 +32,11 @@ SK_INLINE void set_values(sk_element *e, const sk_sweep *sweep, const sk_element
 #ifdef SK_WITH_STRIPS
 /* Blocks meet over the end of a strip with their lanes turned by `shift`: a copy of `rows` rows, and x, y and z back.
  */
-SK_INLINE void turn(sk_wide *to, const sk_wide *block, int rows, int shift) {
-    for (int r = 0; r < rows * SK_PARTS; r += SK_PARTS) sk_turn_row(to + r, block + r, shift);
+SK_INLINE void rotate(sk_wide *to, const sk_wide *block, int rows, int shift) {
+    for (int r = 0; r < rows * SK_PARTS; r += SK_PARTS) sk_rotate_lanes(to + r, block + r, shift);
 }
 SK_INLINE void turn_back(sk_wide *block, const sk_wide *from, int shift) {
-    turn(block, from, 3, -shift);
+    rotate(block, from, 3, -shift);
 }
 
 /* Where the blocks of an element's particles are, in slots from the block of its place. */
@@ -96,10 +96,10 @@ SK_INLINE void meet_blocks(sk_run *run, const sk_sweep *sweep, const sk_element_
     SK_EACH_PARTICLE (i) {
         size_t block = slot + (size_t)o->slots[i];
         at[i] = x[i] = (sk_wide *)(void *)(run->vector[SK_X] + block);
-        if (turns(o, i, turned)) turn(at[i] = copy[i], x[i], 4, o->shift[i]);
+        if (turns(o, i, turned)) rotate(at[i] = copy[i], x[i], 4, o->shift[i]);
         if (!reads_other) continue;
         other_at[i] = other[i] = (sk_wide *)(void *)(from + block);
-        if (turns(o, i, turned)) turn(other_at[i] = other_copy[i], other[i], 3, o->shift[i]);
+        if (turns(o, i, turned)) rotate(other_at[i] = other_copy[i], other[i], 3, o->shift[i]);
     }
     bool moves = false;
     for (size_t p = 0; p < SK_PARTS; p++) {
@@ -173,13 +173,13 @@ typedef void span_walk(sk_run *run, const sk_sweep *sweep, const sk_element_cons
 
 /* Strip rows [begin, end), one by one unless they go side by side. `turned` walks the spans that lead over a strip's
  * end: a function of its own, since few do and inlining it everywhere would be slow to compile. */
-SK_INLINE void sweep_strips(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_element_mode mode,
+SK_INLINE void sweep_strips(sk_run *run, const sk_op *op, size_t begin, size_t end, sk_element_mode mode,
                             span_walk *turned) {
-    const sk_sweep *sweep = row->rule;
-    sk_element_constants constants = sk_element_prepare(sweep->batch, row);
+    const sk_sweep *sweep = op->rule;
+    sk_element_constants constants = sk_element_prepare(sweep->batch, op);
     offsets o[SK_MOST_ARITY];
     for (size_t i = 0; i < sweep->span_count; i++) o[i] = offsets_of(sweep, &sweep->span[i], sweep->span[i].turned);
-    size_t side_by_side = sweep->walk.reach == 0 ? SK_ROWS_SIDE_BY_SIDE * stride_of(sweep, row->half).row : 1;
+    size_t side_by_side = sweep->walk.reach == 0 ? SK_ROWS_SIDE_BY_SIDE * stride_of(sweep, op->half).row : 1;
     const sk_coarse *coarse = mode == SK_MODE_LIMIT ? sweep->batch->coarse : NULL;
     if (coarse && sweep->walk.reach == 0) side_by_side = SK_ROWS_SIDE_BY_SIDE * coarse->grid.row_step;
     for (size_t r = begin; r < end; r += side_by_side) {
@@ -187,10 +187,10 @@ SK_INLINE void sweep_strips(sk_run *run, const sk_row *row, size_t begin, size_t
         for (size_t i = 0; i < sweep->span_count; i++) {
             const sk_span *at = &sweep->span[i];
             if (coarse && !at->turned) meet_coarse(run, sweep, &constants, r, stop, at, &o[i], false, mode);
-            else if (!at->turned) meet_span(run, sweep, &constants, r, stop, at, &o[i], row->half, false, mode);
+            else if (!at->turned) meet_span(run, sweep, &constants, r, stop, at, &o[i], op->half, false, mode);
             else if (mode == SK_MODE_PROJECT && SK_ARITY == 2)
-                meet_span(run, sweep, &constants, r, stop, at, &o[i], row->half, true, mode);
-            else turned(run, sweep, &constants, r, stop, at, &o[i], row->half);
+                meet_span(run, sweep, &constants, r, stop, at, &o[i], op->half, true, mode);
+            else turned(run, sweep, &constants, r, stop, at, &o[i], op->half);
         }
     }
 }
@@ -198,7 +198,7 @@ SK_INLINE void sweep_strips(sk_run *run, const sk_row *row, size_t begin, size_t
 /* ---- strips: forces, and products with a direction ---- */
 
 /* The blocks of a span in strip row r pull; `gets` says which of their particles lie in the rows that are asked for. */
-SK_INLINE void pull_span(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_element_constants *constants,
+SK_INLINE void pull_span(sk_run *run, const sk_op *op, const sk_sweep *sweep, const sk_element_constants *constants,
                          size_t r, const sk_span *span, bool turned, const bool *gets, sk_element_mode mode) {
     size_t line = sweep->walk.width * SK_LANES;
     offsets o = offsets_of(sweep, span, turned);
@@ -209,12 +209,12 @@ SK_INLINE void pull_span(sk_run *run, const sk_row *row, const sk_sweep *sweep, 
         const sk_wide *x[SK_ARITY], *v[SK_ARITY];
         SK_EACH_PARTICLE (i) {
             x[i] = (const sk_wide *)(const void *)(run->vector[SK_X] + slot + o.slots[i]);
-            v[i] = (const sk_wide *)(const void *)(run->vector[row->source[1]] + slot + o.slots[i]);
-            f[i] = (sk_wide *)(void *)(run->vector[row->dst] + slot + o.slots[i]);
+            v[i] = (const sk_wide *)(const void *)(run->vector[op->source[1]] + slot + o.slots[i]);
+            f[i] = (sk_wide *)(void *)(run->vector[op->dst] + slot + o.slots[i]);
             if (!turned) continue;
-            turn(copy[i][0], x[i], 3, o.shift[i]);
-            turn(copy[i][1], v[i], 3, o.shift[i]);
-            if (gets[i]) turn(sum[i], f[i], 3, o.shift[i]); // the others may be another thread's
+            rotate(copy[i][0], x[i], 3, o.shift[i]);
+            rotate(copy[i][1], v[i], 3, o.shift[i]);
+            if (gets[i]) rotate(sum[i], f[i], 3, o.shift[i]); // the others may be another thread's
             x[i] = copy[i][0], v[i] = copy[i][1];
         }
         for (size_t p = 0; p < SK_PARTS; p++) {
@@ -232,16 +232,16 @@ SK_INLINE void pull_span(sk_run *run, const sk_row *row, const sk_sweep *sweep, 
     }
 }
 
-typedef void pull_walk(sk_run *run, const sk_row *row, const sk_sweep *sweep, const sk_element_constants *constants,
+typedef void pull_walk(sk_run *run, const sk_op *op, const sk_sweep *sweep, const sk_element_constants *constants,
                        size_t r, const sk_span *span, const bool *gets);
 
 /* All directions of a batch at once, for the sums on strip rows [begin, end): what they get from rows before
  * is worked out again rather than waited for, so that every cut of the rows gives the same sums. */
-SK_INLINE void pull_strips(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_element_mode mode,
+SK_INLINE void pull_strips(sk_run *run, const sk_op *op, size_t begin, size_t end, sk_element_mode mode,
                            pull_walk *turned) {
-    const sk_sweep *sweeps = row->rule;
-    sk_element_constants constants = sk_element_prepare(sweeps->batch, row);
-    size_t reach = row->walk.reach;
+    const sk_sweep *sweeps = op->rule;
+    sk_element_constants constants = sk_element_prepare(sweeps->batch, op);
+    size_t reach = op->walk.reach;
     for (size_t r = begin > reach ? begin - reach : 0; r < end; r++)
         for (size_t d = 0; d < sweeps->together; d++) {
             const sk_sweep *sweep = &sweeps[d];
@@ -253,22 +253,22 @@ SK_INLINE void pull_strips(sk_run *run, const sk_row *row, size_t begin, size_t 
             }
             for (size_t i = 0; i < sweep->span_count && any; i++) {
                 const sk_span *at = &sweep->span[i];
-                if (!at->turned) pull_span(run, row, sweep, &constants, r, at, false, gets, mode);
-                else turned(run, row, sweep, &constants, r, at, gets);
+                if (!at->turned) pull_span(run, op, sweep, &constants, r, at, false, gets, mode);
+                else turned(run, op, sweep, &constants, r, at, gets);
             }
         }
 }
 
 /* The walk, and the same over the end of a strip, as a function of its own. */
 #define SK_PULLS(name, mode)                                                                             \
-    static __attribute__((noinline)) void name##_turned(sk_run *run, const sk_row *row,                  \
+    static __attribute__((noinline)) void name##_turned(sk_run *run, const sk_op *op,                  \
                                                         const sk_sweep *sweep,                           \
                                                         const sk_element_constants *constants, size_t r, \
                                                         const sk_span *span, const bool *gets) {         \
-        pull_span(run, row, sweep, constants, r, span, true, gets, mode);                                \
+        pull_span(run, op, sweep, constants, r, span, true, gets, mode);                                \
     }                                                                                                    \
-    void SK_KERNEL(name##_strips)(sk_run * run, const sk_row *row, size_t begin, size_t end) {           \
-        pull_strips(run, row, begin, end, mode, name##_turned);                                          \
+    void SK_KERNEL(name##_strips)(sk_run * run, const sk_op *op, size_t begin, size_t end) {           \
+        pull_strips(run, op, begin, end, mode, name##_turned);                                          \
     }
 SK_PULLS(force, SK_MODE_FORCE)
 SK_PULLS(apply, SK_MODE_APPLY)
@@ -277,28 +277,27 @@ SK_PULLS(apply, SK_MODE_APPLY)
 
 /* ---- groups ---- */
 
-SK_INLINE void sweep_groups(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_element_mode mode) {
-    sk_element_constants constants = sk_element_prepare(((const sk_sweep *)row->rule)->batch, row);
-    const skein_groups groups = sk_groups_of(run, row, begin, end, mode);
+SK_INLINE void sweep_groups(sk_run *run, const sk_op *op, size_t begin, size_t end, sk_element_mode mode) {
+    sk_element_constants constants = sk_element_prepare(((const sk_sweep *)op->rule)->batch, op);
+    const skein_groups groups = sk_groups_of(run, op, begin, end, mode);
     walk_elements(&groups, &constants, mode, NULL);
 }
 
-#define SK_GROUP_WALK(name, mode)                                                              \
-    void SK_KERNEL(name##_groups)(sk_run * run, const sk_row *row, size_t begin, size_t end) { \
-        sweep_groups(run, row, begin, end, mode);                                              \
+#define SK_GROUP_WALK(name, mode)                                                            \
+    void SK_KERNEL(name##_groups)(sk_run * run, const sk_op *op, size_t begin, size_t end) { \
+        sweep_groups(run, op, begin, end, mode);                                             \
     }
 #ifdef SK_WITH_STRIPS
 #define SK_WALKS(name, mode)                                                                                 \
-    static __attribute__((noinline)) void name##_turned(sk_run *run, const sk_sweep *sweep,                  \
-                                                        const sk_element_constants *constants, size_t begin, \
-                                                        size_t end, const sk_span *span, const offsets *o,   \
-                                                        sk_half half) {                                      \
+    static __attribute__((noinline)) void name##_turned(                                                     \
+        sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin, size_t end, \
+        const sk_span *span, const offsets *o, sk_half half) {                                               \
         if (mode == SK_MODE_LIMIT && sweep->batch->coarse)                                                   \
             meet_coarse(run, sweep, constants, begin, end, span, o, true, mode);                             \
         else meet_span(run, sweep, constants, begin, end, span, o, half, true, mode);                        \
     }                                                                                                        \
-    void SK_KERNEL(name##_strips)(sk_run * run, const sk_row *row, size_t begin, size_t end) {               \
-        sweep_strips(run, row, begin, end, mode, name##_turned);                                             \
+    void SK_KERNEL(name##_strips)(sk_run * run, const sk_op *op, size_t begin, size_t end) {                 \
+        sweep_strips(run, op, begin, end, mode, name##_turned);                                              \
     }                                                                                                        \
     SK_GROUP_WALK(name, mode)
 #else

@@ -29,12 +29,12 @@ typedef size_t energy_of(const sk_batch *batch, double time, const sk_vec4 *x, s
 
 #define SK_UNIT formula
 SK_KERNELS(energy_of, energy);
-SK_KERNELS(sk_row_kernel, force_groups);
-SK_KERNELS(sk_row_kernel, project_groups);
-SK_KERNELS(sk_row_kernel, project_damped_groups);
-SK_KERNELS(sk_row_kernel, apply);
-SK_KERNELS(sk_row_kernel, diagonal);
-SK_KERNELS(sk_row_kernel, blocks);
+SK_KERNELS(sk_op_kernel, force_groups);
+SK_KERNELS(sk_op_kernel, project_groups);
+SK_KERNELS(sk_op_kernel, project_damped_groups);
+SK_KERNELS(sk_op_kernel, apply);
+SK_KERNELS(sk_op_kernel, diagonal);
+SK_KERNELS(sk_op_kernel, blocks);
 
 #ifdef SK_ISA
 
@@ -236,34 +236,34 @@ static void run_compiled(skein_groups *g, const sk_element_constants *c, const s
     else compiled->project_damped(g);
 }
 
-SK_INLINE void walk(sk_run *run, const sk_row *row, size_t begin, size_t end, sk_element_mode mode,
+SK_INLINE void walk(sk_run *run, const sk_op *op, size_t begin, size_t end, sk_element_mode mode,
                     group_meeting *meeting) {
-    const sk_batch *batch = ((const sk_sweep *)row->rule)->batch;
+    const sk_batch *batch = ((const sk_sweep *)op->rule)->batch;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
-    const sk_element_constants constants = sk_element_prepare(batch, row);
-    skein_groups groups = sk_groups_of(run, row, begin, end, mode);
+    const sk_element_constants constants = sk_element_prepare(batch, op);
+    skein_groups groups = sk_groups_of(run, op, begin, end, mode);
     if (made->compiled) {
-        run_compiled(&groups, &constants, batch, run->time - row->before, mode);
+        run_compiled(&groups, &constants, batch, run->time - op->before_end, mode);
         return;
     }
     block b;
-    begin_block(&b, batch, &made->tape, NULL, run->time - row->before);
+    begin_block(&b, batch, &made->tape, NULL, run->time - op->before_end);
     walk_groups(&groups, &constants, batch->arity, batch->rest_count, made->tape.wides, mode, meeting, &b);
 }
 
-void SK_KERNEL(force_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    walk(run, row, begin, end, SK_MODE_FORCE, meet_any);
+void SK_KERNEL(force_groups)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    walk(run, op, begin, end, SK_MODE_FORCE, meet_any);
 }
-void SK_KERNEL(project_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    switch (((const sk_sweep *)row->rule)->batch->arity) {
-    case 2: walk(run, row, begin, end, SK_MODE_PROJECT, meet_2); break;
-    case 3: walk(run, row, begin, end, SK_MODE_PROJECT, meet_3); break;
-    case 4: walk(run, row, begin, end, SK_MODE_PROJECT, meet_4); break;
-    default: walk(run, row, begin, end, SK_MODE_PROJECT, meet_any);
+void SK_KERNEL(project_groups)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    switch (((const sk_sweep *)op->rule)->batch->arity) {
+    case 2: walk(run, op, begin, end, SK_MODE_PROJECT, meet_2); break;
+    case 3: walk(run, op, begin, end, SK_MODE_PROJECT, meet_3); break;
+    case 4: walk(run, op, begin, end, SK_MODE_PROJECT, meet_4); break;
+    default: walk(run, op, begin, end, SK_MODE_PROJECT, meet_any);
     }
 }
-void SK_KERNEL(project_damped_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    walk(run, row, begin, end, SK_MODE_PROJECT_DAMPED, meet_any);
+void SK_KERNEL(project_damped_groups)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    walk(run, op, begin, end, SK_MODE_PROJECT_DAMPED, meet_any);
 }
 
 /* ---- implicit solves: elements, not groups ---- */
@@ -335,22 +335,22 @@ static void make_definite(matrix *m, size_t size) {
 /* A walk over a row's elements, part by part, with their matrices: elements [at, at + count) of the batch. */
 typedef struct stiff_walk {
     const sk_run *run;
-    const sk_row *row;
+    const sk_op *op;
     block b; /* of sixteen elements */
     size_t part, next, at, count, end;
     matrix m;
 } stiff_walk;
 
-static void start_walk(stiff_walk *w, const sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_batch *batch = row->rule;
+static void start_walk(stiff_walk *w, const sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_batch *batch = op->rule;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
-    w->run = run, w->row = row, w->next = begin, w->end = end, w->part = 0;
-    begin_block(&w->b, batch, made->is_energy ? &made->hessian : &made->single, made->compiled, run->time - row->before);
+    w->run = run, w->op = op, w->next = begin, w->end = end, w->part = 0;
+    begin_block(&w->b, batch, made->is_energy ? &made->hessian : &made->single, made->compiled, run->time - op->before_end);
 }
 
 /* The stiffness over k of the part that the walk has come to, elastic and both with damping. */
 static void find_stiffness(stiff_walk *w) {
-    const sk_batch *batch = w->row->rule;
+    const sk_batch *batch = w->op->rule;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
     if (made->is_energy) {
         for (size_t k = 0; k < w->b.tape->outputs; k++)
@@ -364,34 +364,34 @@ static void find_stiffness(stiff_walk *w) {
     }
     const sk_material *material = batch->params;
     real both =
-        (real)(material->stiffness * (w->row->coefficient[0] + w->row->coefficient[1] * sk_batch_damping_time(batch)));
+        (real)(material->stiffness * (w->op->coefficient[0] + w->op->coefficient[1] * sk_batch_damping_time(batch)));
     for (size_t k = 0; k < 3 * batch->arity * (3 * batch->arity + 1) / 2; k++) w->m.entry[k] *= both;
 }
 
 /* Goes on to the next part; false at the end. */
 static bool walk_on(stiff_walk *w) {
     if (w->next >= w->end) return false;
-    const sk_batch *batch = w->row->rule;
+    const sk_batch *batch = w->op->rule;
     size_t left = w->end - w->next;
     if (w->part == 0)
-        run_elements(&w->b, batch, w->run->vector[SK_X], w->row->packed, w->next, left < SK_LANES ? left : SK_LANES);
+        run_elements(&w->b, batch, w->run->vector[SK_X], w->op->packed, w->next, left < SK_LANES ? left : SK_LANES);
     find_stiffness(w);
     w->at = w->next, w->count = left < SK_PART ? left : SK_PART;
     w->next += w->count, w->part = (w->part + 1) % SK_PARTS;
     return true;
 }
 
-void SK_KERNEL(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_batch *batch = row->rule;
-    const sk_vec4 *q = run->vector[row->source[1]];
+void SK_KERNEL(apply)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_batch *batch = op->rule;
+    const sk_vec4 *q = run->vector[op->source[1]];
     size_t size = 3 * batch->arity;
     stiff_walk w;
-    start_walk(&w, run, row, begin, end);
+    start_walk(&w, run, op, begin, end);
     while (walk_on(&w)) {
         sk_wide u[3 * SK_MOST_ARITY] = {{0}}, f[3 * SK_MOST_ARITY];
         for (size_t l = 0; l < w.count; l++)
             for (size_t p = 0; p < batch->arity; p++) {
-                sk_vec4 v = sk_load(q, row->packed, batch->slot[(w.at + l) * batch->arity + p]);
+                sk_vec4 v = sk_load(q, op->packed, batch->slot[(w.at + l) * batch->arity + p]);
                 u[3 * p][l] = v.x, u[3 * p + 1][l] = v.y, u[3 * p + 2][l] = v.z;
             }
         for (size_t i = 0; i < size; i++) {
@@ -400,33 +400,33 @@ void SK_KERNEL(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) 
         }
         for (size_t l = 0; l < w.count; l++)
             for (size_t p = 0; p < batch->arity; p++)
-                sk_add_at(run->vector[row->dst], row->packed, batch->slot[(w.at + l) * batch->arity + p],
+                sk_add_at(run->vector[op->dst], op->packed, batch->slot[(w.at + l) * batch->arity + p],
                           sk_v3(f[3 * p][l], f[3 * p + 1][l], f[3 * p + 2][l]));
     }
 }
 
-void SK_KERNEL(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_batch *batch = row->rule;
+void SK_KERNEL(diagonal)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_batch *batch = op->rule;
     stiff_walk w;
-    start_walk(&w, run, row, begin, end);
+    start_walk(&w, run, op, begin, end);
     while (walk_on(&w)) {
         for (size_t l = 0; l < w.count; l++)
             for (size_t p = 0; p < batch->arity; p++) {
                 uint32_t slot = batch->slot[(w.at + l) * batch->arity + p];
                 size_t i = 3 * p;
-                sk_add_at(run->vector[row->dst], row->packed, slot,
+                sk_add_at(run->vector[op->dst], op->packed, slot,
                           sk_v3(ENTRY(&w.m, i, i)[l], ENTRY(&w.m, i + 1, i + 1)[l], ENTRY(&w.m, i + 2, i + 2)[l]));
-                sk_add_at(run->vector[row->source[1]], row->packed, slot,
+                sk_add_at(run->vector[op->source[1]], op->packed, slot,
                           sk_v3(ENTRY(&w.m, i + 1, i)[l], ENTRY(&w.m, i + 2, i)[l], ENTRY(&w.m, i + 2, i + 1)[l]));
             }
     }
 }
 
-void SK_KERNEL(blocks)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_batch *batch = row->rule;
+void SK_KERNEL(blocks)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_batch *batch = op->rule;
     size_t arity = batch->arity, pairs = arity * (arity - 1) / 2;
     stiff_walk w;
-    start_walk(&w, run, row, begin, end);
+    start_walk(&w, run, op, begin, end);
     while (walk_on(&w)) {
         for (size_t l = 0; l < w.count; l++) {
             const uint32_t *particle = batch->particle + arity * (w.at + l);

@@ -122,17 +122,17 @@ static void name_operation(const skein_formula *f, const sk_graph_node *n, char 
     static const char axis[] = "xyz";
     unsigned number = n->arg[0];
     bool named = (int)number < f->parameters;
-    if (n->op == SK_OP_CONSTANT) snprintf(out, size, "%.9g", n->value);
-    else if (n->op == SK_OP_INPUT && number == SK_INPUT_TIME) snprintf(out, size, "t");
-    else if (n->op == SK_OP_INPUT) snprintf(out, size, "p%u.%c", number / 3, axis[number % 3]);
-    else if (n->op == SK_OP_PARAMETER && named) snprintf(out, size, "%s", f->parameter_name[number]);
-    else if (n->op == SK_OP_PARAMETER) snprintf(out, size, "rest %u", number - (unsigned)f->parameters + 1);
+    if (n->op == SK_NODE_CONSTANT) snprintf(out, size, "%.9g", n->value);
+    else if (n->op == SK_NODE_INPUT && number == SK_INPUT_TIME) snprintf(out, size, "t");
+    else if (n->op == SK_NODE_INPUT) snprintf(out, size, "p%u.%c", number / 3, axis[number % 3]);
+    else if (n->op == SK_NODE_PARAMETER && named) snprintf(out, size, "%s", f->parameter_name[number]);
+    else if (n->op == SK_NODE_PARAMETER) snprintf(out, size, "rest %u", number - (unsigned)f->parameters + 1);
     else snprintf(out, size, "%s", n->name);
 }
 
 static void tell_operation(const parts *p, size_t i, skein_operation *out) {
     const sk_graph_node *n = &p->formula->graph.data[p->node[i]];
-    *out = (skein_operation){.name = sk_op_info[n->op].name, .operand_count = sk_op_info[n->op].arity};
+    *out = (skein_operation){.name = sk_node_op_info[n->op].name, .operand_count = sk_node_op_info[n->op].arity};
     name_operation(p->formula, n, out->label, sizeof out->label);
     for (int k = 0; k < out->operand_count; k++) out->operand[k] = p->place[n->arg[k]];
     out->value = p->values[p->node[i]];

@@ -68,11 +68,11 @@ typedef double measurer(sk_enclosure *s, const sk_vec4 *x, size_t packed);
 
 #define SK_UNIT pressure
 SK_KERNELS(measurer, measure);
-SK_KERNELS(sk_row_kernel, force_groups);
-SK_KERNELS(sk_row_kernel, project_groups);
-SK_KERNELS(sk_row_kernel, project_damped_groups);
-SK_KERNELS(sk_row_kernel, apply);
-SK_KERNELS(sk_row_kernel, diagonal);
+SK_KERNELS(sk_op_kernel, force_groups);
+SK_KERNELS(sk_op_kernel, project_groups);
+SK_KERNELS(sk_op_kernel, project_damped_groups);
+SK_KERNELS(sk_op_kernel, apply);
+SK_KERNELS(sk_op_kernel, diagonal);
 
 #ifdef SK_ISA
 
@@ -141,69 +141,69 @@ double SK_KERNEL(measure)(sk_enclosure *s, const sk_vec4 *x, size_t packed) {
     return volume;
 }
 
-void SK_KERNEL(force_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(force_groups)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     (void)begin, (void)end;
-    const sk_batch *batch = ((const sk_sweep *)row->rule)->batch;
+    const sk_batch *batch = ((const sk_sweep *)op->rule)->batch;
     sk_enclosure *s = batch->enclosure;
-    law now = law_of(batch, SK_KERNEL(measure)(s, run->vector[SK_X], row->packed));
+    law now = law_of(batch, SK_KERNEL(measure)(s, run->vector[SK_X], op->packed));
     double damping = ((const sk_material *)batch->params)->damping;
-    double rate = damping > 0 ? along(s, run->vector[SK_V], NULL, row->packed) : 0;
-    push(s, run->vector[row->dst], NULL, row->packed, now.pressure - damping * rate);
+    double rate = damping > 0 ? along(s, run->vector[SK_V], NULL, op->packed) : 0;
+    push(s, run->vector[op->dst], NULL, op->packed, now.pressure - damping * rate);
 }
 
-static void project_whole(sk_run *run, const sk_row *row, bool damped) {
-    const sk_sweep *sweep = row->rule;
+static void project_whole(sk_run *run, const sk_op *op, bool damped) {
+    const sk_sweep *sweep = op->rule;
     const sk_batch *batch = sweep->batch;
     const sk_material *material = batch->params;
     sk_enclosure *s = batch->enclosure;
     real *multiplier = batch->lane_multiplier + sweep->first_lane;
     sk_vec4 *x = run->vector[SK_X];
-    law now = law_of(batch, SK_KERNEL(measure)(s, x, row->packed));
-    double weight = weigh(s, x, row->packed), change = 0;
+    law now = law_of(batch, SK_KERNEL(measure)(s, x, op->packed));
+    double weight = weigh(s, x, op->packed), change = 0;
     if (material->stiffness >= SK_UNBOUNDED) {
         change = weight > 0 ? now.missing / weight : 0;
     } else {
-        double h = row->dt, inertia = row->coefficient[0] / (h * h), drag = damped ? material->damping / h : 0;
-        double moved = damped ? along(s, x, run->vector[row->source[1]], row->packed) : 0;
+        double h = op->dt, inertia = op->coefficient[0] / (h * h), drag = damped ? material->damping / h : 0;
+        double moved = damped ? along(s, x, run->vector[op->source[1]], op->packed) : 0;
         double held = damped ? (double)*multiplier * inertia : 0;
         change = (now.pressure - held - drag * moved) / ((now.stiffness + drag) * weight + inertia);
     }
     if (damped) *multiplier += (real)change;
-    push(s, x, x, row->packed, change);
+    push(s, x, x, op->packed, change);
 }
 
-void SK_KERNEL(project_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(project_groups)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     (void)begin, (void)end;
-    project_whole(run, row, false);
+    project_whole(run, op, false);
 }
-void SK_KERNEL(project_damped_groups)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(project_damped_groups)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     (void)begin, (void)end;
-    project_whole(run, row, true);
+    project_whole(run, op, true);
 }
 
 /* a k + b c at the present volume; the gradient is left in the enclosure. */
-static double stiffen(const sk_run *run, const sk_row *row) {
-    const sk_batch *batch = row->rule;
-    law now = law_of(batch, SK_KERNEL(measure)(batch->enclosure, run->vector[SK_X], row->packed));
-    return row->coefficient[0] * now.stiffness + row->coefficient[1] * ((const sk_material *)batch->params)->damping;
+static double stiffen(const sk_run *run, const sk_op *op) {
+    const sk_batch *batch = op->rule;
+    law now = law_of(batch, SK_KERNEL(measure)(batch->enclosure, run->vector[SK_X], op->packed));
+    return op->coefficient[0] * now.stiffness + op->coefficient[1] * ((const sk_material *)batch->params)->damping;
 }
 
-void SK_KERNEL(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(apply)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     (void)begin, (void)end;
-    sk_enclosure *s = ((const sk_batch *)row->rule)->enclosure;
-    double both = stiffen(run, row);
-    push(s, run->vector[row->dst], NULL, row->packed, both * along(s, run->vector[row->source[1]], NULL, row->packed));
+    sk_enclosure *s = ((const sk_batch *)op->rule)->enclosure;
+    double both = stiffen(run, op);
+    push(s, run->vector[op->dst], NULL, op->packed, both * along(s, run->vector[op->source[1]], NULL, op->packed));
 }
 
-void SK_KERNEL(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(diagonal)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     (void)begin, (void)end;
-    const sk_enclosure *s = ((const sk_batch *)row->rule)->enclosure;
-    real both = (real)stiffen(run, row);
+    const sk_enclosure *s = ((const sk_batch *)op->rule)->enclosure;
+    real both = (real)stiffen(run, op);
     for (size_t v = 0; v < s->vertex_count; v++) {
         const real *g = s->gradient + 3 * v;
-        sk_add_at(run->vector[row->dst], row->packed, s->slot[v],
+        sk_add_at(run->vector[op->dst], op->packed, s->slot[v],
                   sk_v3(both * g[0] * g[0], both * g[1] * g[1], both * g[2] * g[2]));
-        sk_add_at(run->vector[row->source[1]], row->packed, s->slot[v],
+        sk_add_at(run->vector[op->source[1]], op->packed, s->slot[v],
                   sk_v3(both * g[0] * g[1], both * g[0] * g[2], both * g[1] * g[2]));
     }
 }

@@ -26,10 +26,10 @@ static sk_vec3 common_way(const sk_touch *touch) {
 }
 
 /* Loads the places after the substep and what ways lead there; returns whether a vertex is lost on its way. */
-static bool load_ways(sk_touch *touch, const sk_run *run, const sk_row *row, sk_vec3 *common) {
+static bool load_ways(sk_touch *touch, const sk_run *run, const sk_op *op, sk_vec3 *common) {
     size_t count = touch->skin.vertex_count;
     for (size_t v = 0; v < count; v++)
-        touch->q[v] = sk_load(run->vector[SK_X], row->packed, run->slot_of[touch->skin.particle[v]]);
+        touch->q[v] = sk_load(run->vector[SK_X], op->packed, run->slot_of[touch->skin.particle[v]]);
     *common = touch->common = common_way(touch);
     bool any = false;
     for (size_t v = 0; v < count; v++) {
@@ -173,31 +173,31 @@ static bool find_shares(sk_touch *touch, sk_allocator *allocator, real least, sk
     }
 }
 
-/* ---- the row ---- */
+/* ---- the op ---- */
 
-static void store_ways(const sk_touch *touch, const sk_run *run, const sk_row *row, sk_vec3 common) {
-    const real rate = (real)(1 / row->dt);
+static void store_ways(const sk_touch *touch, const sk_run *run, const sk_op *op, sk_vec3 common) {
+    const real rate = (real)(1 / op->dt);
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         if (!(touch->share[v] < 1)) continue;
         sk_vec3 to = sk_add(sk_add(sk_xyz(touch->p[v]), common), sk_scale(touch->share[v], sk_xyz(touch->way[v])));
         size_t slot = run->slot_of[touch->skin.particle[v]];
-        sk_store_at(run->vector[SK_X], row->packed, slot, to);
-        sk_add_at(run->vector[SK_V], row->packed, slot, sk_scale(rate, sk_sub(to, sk_xyz(touch->q[v]))));
+        sk_store_at(run->vector[SK_X], op->packed, slot, to);
+        sk_add_at(run->vector[SK_V], op->packed, slot, sk_scale(rate, sk_sub(to, sk_xyz(touch->q[v]))));
     }
 }
 
-void sk_touch_bound(sk_run *run, const sk_row *row, size_t from, size_t end) {
+void sk_touch_bound(sk_run *run, const sk_op *op, size_t from, size_t end) {
     (void)from, (void)end;
-    const sk_force *force = row->rule;
+    const sk_force *force = op->rule;
     sk_touch *touch = force->state;
     if (!touch || !touch->skin.vertex_count) return;
     real thickness = (real)((const sk_contact_params *)force->params)->thickness, least = SK_LEAST_GAP * thickness;
     sk_vec3 common;
     bool good = true;
-    if (load_ways(touch, run, row, &common)) good = renew(touch, run->allocator);
+    if (load_ways(touch, run, op, &common)) good = renew(touch, run->allocator);
     if (good && touch->kept[SK_CORNERS].count + touch->kept[SK_EDGES].count) {
         good = find_shares(touch, run->allocator, least, common);
-        store_ways(touch, run, row, common);
+        store_ways(touch, run, op, common);
     }
     run->no_memory |= !good;
 }

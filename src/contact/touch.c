@@ -1,4 +1,4 @@
-/* The rule of contact: its fields, and the first two of its rows. */
+/* The rule of contact: its fields, and the first two of its ops. */
 #include "contact/touch.h"
 
 #include <string.h>
@@ -11,12 +11,12 @@ static const skein_field fields[] = {
 
 /* ---- begin ---- */
 
-static const sk_contact_params *params_of(const sk_row *row) {
-    return ((const sk_force *)row->rule)->params;
+static const sk_contact_params *params_of(const sk_op *op) {
+    return ((const sk_force *)op->rule)->params;
 }
 
-static sk_touch *touch_of(const sk_row *row) {
-    return ((const sk_force *)row->rule)->state;
+static sk_touch *touch_of(const sk_op *op) {
+    return ((const sk_force *)op->rule)->state;
 }
 
 /* A vertex goes on as it does now; what is fast is seldom as steady. */
@@ -35,10 +35,10 @@ bool sk_touch_renew(sk_touch *touch, sk_allocator *allocator, sk_touch_search_so
 }
 
 /* The places before the substep; returns whether a vertex is lost. */
-static bool load_places(sk_touch *touch, const sk_run *run, const sk_row *row) {
+static bool load_places(sk_touch *touch, const sk_run *run, const sk_op *op) {
     bool any = false;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        sk_vec4 x = sk_load(run->vector[SK_X], row->packed, run->slot_of[touch->skin.particle[v]]);
+        sk_vec4 x = sk_load(run->vector[SK_X], op->packed, run->slot_of[touch->skin.particle[v]]);
         touch->inverse[v] = x.w;
         touch->p[v] = x;
         any |= touch->lost[v] = touch->astray[v] | sk_is_lost(&touch->course[v], touch->now, sk_xyz(x));
@@ -50,15 +50,15 @@ static bool load_places(sk_touch *touch, const sk_run *run, const sk_row *row) {
 enum { FEW = 50 }; /* one in so many */
 
 /* Courses of lost vertices, or of all: as their velocities are. */
-static void set_courses(sk_touch *touch, const sk_run *run, const sk_row *row, bool all) {
+static void set_courses(sk_touch *touch, const sk_run *run, const sk_op *op, bool all) {
     // where few are lost, these are what shivers: wider reaches for them cost less than a search in each substep
     size_t count = touch->skin.vertex_count, lost = 0;
     for (size_t v = 0; v < count; v++) lost += touch->lost[v];
     bool few = !all && FEW * lost < count;
     for (size_t v = 0; v < count; v++) {
         if (!all && !touch->lost[v]) continue;
-        sk_vec4 velocity = sk_load(run->vector[SK_V], row->packed, run->slot_of[touch->skin.particle[v]]);
-        sk_vec3 step = sk_scale((real)row->dt, sk_xyz(velocity));
+        sk_vec4 velocity = sk_load(run->vector[SK_V], op->packed, run->slot_of[touch->skin.particle[v]]);
+        sk_vec3 step = sk_scale((real)op->dt, sk_xyz(velocity));
         if (!(sk_dot(step, step) < (real)1e12)) step = (sk_vec3){0, 0, 0}; // blown up
         touch->course[v] = course_from(touch, sk_xyz(touch->p[v]), step, all ? 0 : touch->now, few ? 2 * touch->course[v].reach : 0);
     }
@@ -80,18 +80,18 @@ static bool find_near(sk_touch *touch, sk_allocator *allocator, int sort) {
     return true;
 }
 
-static void begin(sk_run *run, const sk_row *row, size_t from, size_t end) {
+static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     (void)from, (void)end;
-    sk_touch *touch = touch_of(row);
-    real thickness = (real)params_of(row)->thickness;
+    sk_touch *touch = touch_of(op);
+    real thickness = (real)params_of(op)->thickness;
     if (!touch || !touch->skin.vertex_count) return;
     touch->now += 1;
     bool all = !touch->found || touch->thickness < thickness || touch->thickness > thickness ||
                touch->now + 1 > touch->until;
     touch->thickness = thickness;
-    bool lost = load_places(touch, run, row), good = true;
+    bool lost = load_places(touch, run, op), good = true;
     if (lost || all) {
-        set_courses(touch, run, row, all);
+        set_courses(touch, run, op, all);
         good = sk_touch_renew(touch, run->allocator, all ? SK_SEARCH_ALL : SK_SEARCH_LOST);
     } else {
         for (int sort = 0; sort < SK_PAIR_SORTS; sort++) sk_closest[sort][touch->isa](touch->p, &touch->kept[sort]);
@@ -131,28 +131,28 @@ static void push_pair(sk_touch *touch, const sk_pairs *near, int sort, size_t k,
     }
 }
 
-static void push(sk_run *run, const sk_row *row, size_t from, size_t end) {
+static void push(sk_run *run, const sk_op *op, size_t from, size_t end) {
     (void)from, (void)end;
-    sk_touch *touch = touch_of(row);
-    const sk_contact_params *params = params_of(row);
+    sk_touch *touch = touch_of(op);
+    const sk_contact_params *params = params_of(op);
     if (!touch || !(touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count)) return;
     const uint32_t *particle = touch->skin.particle;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        touch->q[v] = sk_load(run->vector[SK_X], row->packed, run->slot_of[particle[v]]);
+        touch->q[v] = sk_load(run->vector[SK_X], op->packed, run->slot_of[particle[v]]);
         touch->q[v].w = 0;
     }
-    const real gain = (real)(60 * row->dt * params->thickness); // a thickness in a sixtieth of a second
+    const real gain = (real)(60 * op->dt * params->thickness); // a thickness in a sixtieth of a second
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
         for (size_t k = 0; k < touch->near[sort].count; k++)
             push_pair(touch, &touch->near[sort], sort, k, gain, (real)params->friction);
-    const real rate = (real)(1 / row->dt);
+    const real rate = (real)(1 / op->dt);
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         if (!(touch->q[v].w > 0)) continue;
         size_t slot = run->slot_of[particle[v]];
-        sk_vec3 old = sk_xyz(sk_load(run->vector[SK_X], row->packed, slot)), now = sk_xyz(touch->q[v]);
-        sk_store_at(run->vector[SK_X], row->packed, slot, now);
-        if (row->source[1] != SK_NONE)
-            sk_add_at(run->vector[row->source[1]], row->packed, slot, sk_scale(rate, sk_sub(now, old)));
+        sk_vec3 old = sk_xyz(sk_load(run->vector[SK_X], op->packed, slot)), now = sk_xyz(touch->q[v]);
+        sk_store_at(run->vector[SK_X], op->packed, slot, now);
+        if (op->source[1] != SK_NONE)
+            sk_add_at(run->vector[op->source[1]], op->packed, slot, sk_scale(rate, sk_sub(now, old)));
     }
 }
 
@@ -263,10 +263,10 @@ static const sk_meeting meeting = {
 };
 
 const sk_force_type sk_surface_contact = {
-    .kind = {"contact", "surfaces and ropes neither pass through each other nor through themselves", SKEIN_FORCE, fields,
-             sizeof fields / sizeof *fields, sizeof(sk_contact_params)},
+    .kind = {"contact", "surfaces and ropes neither pass through each other nor through themselves", SKEIN_FORCE,
+             fields, sizeof fields / sizeof *fields, sizeof(sk_contact_params)},
     .domain = SK_OVER_PARTICLES,
-    .deed = SK_MEETS,
+    .phase = SK_MEETS,
     .passive = true,
     .meeting = &meeting,
 };

@@ -1,4 +1,4 @@
-/* Contact of surfaces with themselves and each other: what a rule that meets (forces/force.h) keeps between its rows.
+/* Contact of surfaces with themselves and each other: what a rule that meets (forces/force.h) keeps between its ops.
  *
  *   begin   P = X; pairs of features that may come near are found anew where a vertex has left its way; all that are
  *           kept are looked at: distance, normal, places of contact; those nearer than thickness and a quarter are near
@@ -7,9 +7,9 @@
  *
  * A pair is a vertex and a triangle, or two edges; they have no corner in common. Which pairs are kept is decided by
  * what is expected: each vertex goes on at some velocity, from where it was when it was last looked for, and is never
- * farther from there than its reach. What goes otherwise is looked for anew, with its neighbours, and nobody else. What is
- * done with a pair depends on the state before and after the substep alone. So a search too many changes no bit, and a
- * state that was saved and loaded goes on as it would have.
+ * farther from there than its reach. What goes otherwise is looked for anew, with its neighbours, and nobody else. What
+ * is done with a pair depends on the state before and after the substep alone. So a search too many changes no bit, and
+ * a state that was saved and loaded goes on as it would have.
  *
  * The bound is a division of space by planes for each pair (planar division: arXiv 2604.15513), where it is needed: a
  * vertex goes the least share of its way that any of its pairs allows, and a minimum knows no order. */
@@ -201,7 +201,7 @@ void sk_touch_leaf_box(sk_touch *touch, size_t leaf);
 
 /* ---- bound.c ---- */
 
-sk_row_kernel sk_touch_bound;
+sk_op_kernel sk_touch_bound;
 
 /* ---- crossings.c ---- */
 

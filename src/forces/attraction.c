@@ -19,7 +19,7 @@ SK_INLINE vec4 attraction_steer(attraction_params p, vec3 x, exact dt) {
 // ---- end of arithmetic ----
 
 #define SK_UNIT attraction
-SK_KERNELS(sk_row_kernel, kernel);
+SK_KERNELS(sk_op_kernel, kernel);
 #define PARAMS attraction_params
 #define STEER attraction_steer
 #include "forces/each_particle.h"
@@ -37,7 +37,7 @@ const sk_force_type sk_attraction = {
     .kind = {"attraction", "draws everything to a centre, equally at any distance; flatter in the vertical",
              SKEIN_FORCE, fields, sizeof fields / sizeof *fields, sizeof(attraction_params)},
     .domain = SK_OVER_PARTICLES,
-    .deed = SK_STEERS,
+    .phase = SK_STEERS,
     .kernel = {SK_EACH_ISA(kernel)},
     .shader = {.arithmetic = "forces/attraction"},
 };

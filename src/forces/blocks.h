@@ -60,23 +60,23 @@ SK_INLINE void make_positive(stiffness_block *a) {
 }
 
 /* dst += block direction */
-SK_INLINE void add_product(sk_run *run, const sk_row *row, size_t slot, const stiffness_block *a) {
-    bool packed = slot < row->packed;
-    sk_wide4 p = sk_load_part(run->vector[row->source[1]], slot, packed);
-    sk_wide4 d = sk_load_part(run->vector[row->dst], slot, packed);
+SK_INLINE void add_product(sk_run *run, const sk_op *op, size_t slot, const stiffness_block *a) {
+    bool packed = slot < op->packed;
+    sk_wide4 p = sk_load_part(run->vector[op->source[1]], slot, packed);
+    sk_wide4 d = sk_load_part(run->vector[op->dst], slot, packed);
     d.x += a->xx * p.x + a->xy * p.y + a->xz * p.z;
     d.y += a->xy * p.x + a->yy * p.y + a->yz * p.z;
     d.z += a->xz * p.x + a->yz * p.y + a->zz * p.z;
-    sk_store_part(run->vector[row->dst], slot, packed, d);
+    sk_store_part(run->vector[op->dst], slot, packed, d);
 }
 
 /* dst += the diagonal, second source += the rest */
-SK_INLINE void add_block(sk_run *run, const sk_row *row, size_t slot, const stiffness_block *a) {
-    bool packed = slot < row->packed;
-    sk_wide4 d = sk_load_part(run->vector[row->dst], slot, packed);
-    sk_wide4 o = sk_load_part(run->vector[row->source[1]], slot, packed);
+SK_INLINE void add_block(sk_run *run, const sk_op *op, size_t slot, const stiffness_block *a) {
+    bool packed = slot < op->packed;
+    sk_wide4 d = sk_load_part(run->vector[op->dst], slot, packed);
+    sk_wide4 o = sk_load_part(run->vector[op->source[1]], slot, packed);
     d.x += a->xx, d.y += a->yy, d.z += a->zz;
     o.x += a->xy, o.y += a->xz, o.z += a->yz;
-    sk_store_part(run->vector[row->dst], slot, packed, d);
-    sk_store_part(run->vector[row->source[1]], slot, packed, o);
+    sk_store_part(run->vector[op->dst], slot, packed, d);
+    sk_store_part(run->vector[op->source[1]], slot, packed, o);
 }

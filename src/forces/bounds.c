@@ -57,7 +57,7 @@ SK_INLINE vec3 bounds_shift(bounds_params p, vec3 x) {
 // ---- end of arithmetic ----
 
 #define SK_UNIT bounds
-SK_KERNELS(sk_row_kernel, kernel);
+SK_KERNELS(sk_op_kernel, kernel);
 #define PARAMS bounds_params
 #define BOUND bounds_bound
 #define SHIFT bounds_shift
@@ -90,7 +90,7 @@ const sk_force_type sk_bounds = {
     .kind = {"bounds", "a box or a sphere that is not left", SKEIN_FORCE, fields, sizeof fields / sizeof *fields,
              sizeof(bounds_params)},
     .domain = SK_OVER_PARTICLES,
-    .deed = SK_BOUNDS,
+    .phase = SK_BOUNDS,
     .once = true,
     .kernel = {SK_EACH_ISA(kernel)},
     .check = check,

@@ -20,8 +20,8 @@ SK_INLINE vec3 drag_force(drag_params p, vec3 v, num mass) {
 // ---- end of arithmetic ----
 
 #define SK_UNIT drag
-SK_KERNELS(sk_row_kernel, kernel);
-SK_KERNELS(sk_row_kernel, resistance);
+SK_KERNELS(sk_op_kernel, kernel);
+SK_KERNELS(sk_op_kernel, resistance);
 #define PARAMS drag_params
 #define PUSH drag_force
 #include "forces/each_particle.h"
@@ -30,17 +30,17 @@ SK_KERNELS(sk_row_kernel, resistance);
 
 /* It grows by (linear + rate m) + quadratic |v| across the motion, and by that with twice the speed along it, where
  * the force is a parabola: the larger one keeps a solve steady. */
-void SK_KERNEL(resistance)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const drag_params p = *(const drag_params *)((const sk_force *)row->rule)->params;
-    real a = (real)row->coefficient[0];
+void SK_KERNEL(resistance)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const drag_params p = *(const drag_params *)((const sk_force *)op->rule)->params;
+    real a = (real)op->coefficient[0];
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
-        vec4 v = sk_load_part(run->vector[SK_V], slot, packed), d = sk_load_part(run->vector[row->dst], slot, packed);
+        bool packed = slot < op->packed;
+        vec4 v = sk_load_part(run->vector[SK_V], slot, packed), d = sk_load_part(run->vector[op->dst], slot, packed);
         num growth = a * drag_at_speed(p, 2 * root(dot(xyz(v), xyz(v))), v.w);
         // slots without a particle have no mass, and stay without
         growth = sk_keep(v.w > 0, growth);
         d.x += growth, d.y += growth, d.z += growth;
-        sk_store_part(run->vector[row->dst], slot, packed, d);
+        sk_store_part(run->vector[op->dst], slot, packed, d);
     }
 }
 

@@ -16,78 +16,78 @@
 #endif
 
 #ifdef PUSH_AT
-void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const PARAMS p = *(const PARAMS *)((const sk_force *)row->rule)->params;
+void SK_KERNEL(kernel)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const PARAMS p = *(const PARAMS *)((const sk_force *)op->rule)->params;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
+        bool packed = slot < op->packed;
         vec4 v = sk_load_part(run->vector[SK_V], slot, packed), f = {0};
-        if (!row->sets) f = sk_load_part(run->vector[row->dst], slot, packed);
+        if (!op->sets) f = sk_load_part(run->vector[op->dst], slot, packed);
         vec3 push = PUSH_AT(p, xyz(sk_load_part(run->vector[SK_X], slot, packed)), xyz(v), v.w);
         f.x += push.x, f.y += push.y, f.z += push.z;
-        sk_store_part(run->vector[row->dst], slot, packed, f);
+        sk_store_part(run->vector[op->dst], slot, packed, f);
     }
 }
 #endif
 
 #ifdef STEER
-void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_force *force = row->rule;
+void SK_KERNEL(kernel)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_force *force = op->rule;
     PARAMS p = *(const PARAMS *)force->params;
     size_t own = SIZE_MAX; // the slot that it looks from, checked when the plan was written
 #ifdef LOOKS_FROM
     if (sk_force_particle(force) >= 0) {
         own = run->slot_of[sk_force_particle(force)];
-        sk_vec4 at = sk_load(run->vector[SK_X], row->packed, own);
+        sk_vec4 at = sk_load(run->vector[SK_X], op->packed, own);
         p.LOOKS_FROM[0] = (double)at.x, p.LOOKS_FROM[1] = (double)at.y, p.LOOKS_FROM[2] = (double)at.z;
     }
 #endif
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
+        bool packed = slot < op->packed;
         vec4 x = sk_load_part(run->vector[SK_X], slot, packed);
         flag moved = sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot);
         if (own - slot < SK_PART) moved[own - slot] = 0;
-        vec4 change = STEER(p, xyz(x), row->dt);
+        vec4 change = STEER(p, xyz(x), op->dt);
 #ifdef SELDOM // lane by lane, so that it is the same for all widths
         moved &= (change.x != 0) | (change.y != 0) | (change.z != 0) | (change.w != 0);
         if (none(moved)) continue;
 #endif
-        vec4 s = sk_load_part(run->vector[row->dst], slot, packed);
+        vec4 s = sk_load_part(run->vector[op->dst], slot, packed);
         s.x = sk_plus_where(moved, s.x, change.x), s.y = sk_plus_where(moved, s.y, change.y);
         s.z = sk_plus_where(moved, s.z, change.z), s.w = sk_plus_where(moved, s.w, change.w);
-        sk_store_part(run->vector[row->dst], slot, packed, s);
+        sk_store_part(run->vector[op->dst], slot, packed, s);
     }
 }
 #endif
 
 #ifdef SHIFT
 /* In all vectors that say where a particle is or was. */
-SK_INLINE void shift(sk_run *run, const sk_row *row, size_t slot, flag moved, vec4 x, vec3 by) {
+SK_INLINE void shift(sk_run *run, const sk_op *op, size_t slot, flag moved, vec4 x, vec3 by) {
     moved &= (by.x != 0) | (by.y != 0) | (by.z != 0);
     if (none(moved)) return;
     vec4 before = sk_load_part(run->vector[SK_PREVIOUS], slot, false); // always quads
-    sk_store_part(run->vector[SK_X], slot, slot < row->packed, vec4_of(pick3(moved, plus(xyz(x), by), xyz(x)), x.w));
+    sk_store_part(run->vector[SK_X], slot, slot < op->packed, vec4_of(pick3(moved, plus(xyz(x), by), xyz(x)), x.w));
     before = vec4_of(pick3(moved, plus(xyz(before), by), xyz(before)), before.w);
     sk_store_part(run->vector[SK_PREVIOUS], slot, false, before);
 }
 #endif
 
 #ifdef BOUND
-void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_force *force = row->rule;
+void SK_KERNEL(kernel)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_force *force = op->rule;
     const PARAMS p = *(const PARAMS *)force->params;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
+        bool packed = slot < op->packed;
         vec4 x = sk_load_part(run->vector[SK_X], slot, packed);
         vec4 v = sk_load_part(run->vector[SK_V], slot, packed), steering = {0};
-        if (row->source[2] != SK_NONE) steering = sk_load_part(run->vector[row->source[2]], slot, packed);
+        if (op->source[2] != SK_NONE) steering = sk_load_part(run->vector[op->source[2]], slot, packed);
         flag moved = sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot);
 #ifdef SHIFT
         if (force->type->shader.shifts(&p)) {
-            shift(run, row, slot, moved & (x.w > 0), x, SHIFT(p, xyz(x)));
+            shift(run, op, slot, moved & (x.w > 0), x, SHIFT(p, xyz(x)));
             continue;
         }
 #endif
-        vec3 bound = BOUND(p, x, xyz(v), steering, row->dt);
+        vec3 bound = BOUND(p, x, xyz(v), steering, op->dt);
         moved &= (bound.x != v.x) | (bound.y != v.y) | (bound.z != v.z);
         if (none(moved)) continue; // most are within most of the time, and stores of quads are long
         sk_store_moved(run->vector[SK_V], slot, packed, vec4_of(pick3(moved, bound, xyz(v)), v.w));

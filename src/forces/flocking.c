@@ -17,7 +17,7 @@
 #include "formula/formula.h"
 
 #define SK_UNIT flocking
-SK_KERNELS(sk_row_kernel, kernel);
+SK_KERNELS(sk_op_kernel, kernel);
 
 #ifdef SK_ISA
 
@@ -154,7 +154,7 @@ static void prune(neighbours *near, const sk_flocking_numbers *n) {
 /* A vector of neighbours from k on. */
 typedef struct hits {
     sk_wide3 d;
-    sk_wide per, percent; // 1/distance
+    sk_wide per, relative_distance; // 1/distance
     sk_mask counts;
 } hits;
 
@@ -164,8 +164,8 @@ SK_INLINE hits hits_at(const neighbours *near, size_t k, const sk_flocking_numbe
     sk_wide distance = sk_wide_sqrt(square);
     distance = sk_select(sk_more(distance, least), distance, least);
     h.per = sk_splat(1) / distance;
-    h.percent = distance * sk_splat(n->per_reach);
-    if (n->squared) h.percent *= h.percent;
+    h.relative_distance = distance * sk_splat(n->per_reach);
+    if (n->squared) h.relative_distance *= h.relative_distance;
     h.counts = sk_positive(square);
     if (!n->sees_all) {
         sk_vec3 u = near->heading;
@@ -188,13 +188,13 @@ SK_INLINE void add_hits(const neighbours *near, size_t k, const hits *h, sk_wide
 SK_INLINE void add_near(const neighbours *near, size_t k, const sk_flocking_numbers *n, sk_wide3 *sum) {
     hits h = hits_at(near, k, n);
     sk_wide one = sk_splat(1), half = sk_splat((real)0.5), away_to = sk_splat(n->away), along_to = sk_splat(n->along);
-    sk_wide inverse = sk_splat(n->reach) * h.per; // 1/percent
+    sk_wide inverse = sk_splat(n->reach) * h.per; // 1/relative_distance
     if (n->squared) inverse *= inverse;
-    sk_mask away = sk_more(away_to, h.percent);
-    sk_mask along = sk_more(along_to, h.percent) & ~away;
+    sk_mask away = sk_more(away_to, h.relative_distance);
+    sk_mask along = sk_more(along_to, h.relative_distance) & ~away;
     // from -0.5 to 0.5 through the zone
-    sk_wide a = sk_select(along, (h.percent - away_to) * sk_splat(n->per_along),
-                          (h.percent - along_to) * sk_splat(n->per_towards)) -
+    sk_wide a = sk_select(along, (h.relative_distance - away_to) * sk_splat(n->per_along),
+                          (h.relative_distance - along_to) * sk_splat(n->per_towards)) -
                 half;
     sk_wide s = a * a, cosine = half * SK_FLOCKING_COSINE(s);
     sk_wide towards = sk_select(away, one - away_to * inverse, cosine);
@@ -210,9 +210,9 @@ static void add_by_formula(const neighbours *near, size_t k, size_t count, const
         sk_wide *registers = near->formulas->registers[w];
         if (!pair->formula[w]) continue;
         size_t vectors = pair->tape[w].wides * SK_PARTS;
-        for (size_t i = 0; i < vectors && pair->percent[w] != UINT16_MAX; i++)
-            registers[pair->percent[w] * vectors + i] =
-                hits_at(near, k + (SK_PART * i < count ? SK_PART * i : 0), n).percent;
+        for (size_t i = 0; i < vectors && pair->relative_distance[w] != UINT16_MAX; i++)
+            registers[pair->relative_distance[w] * vectors + i] =
+                hits_at(near, k + (SK_PART * i < count ? SK_PART * i : 0), n).relative_distance;
         sk_tape_kernels_of[SK_THIS_ISA]->run(&pair->tape[w], registers, vectors, vectors, &verdict[w]);
     }
     for (size_t i = 0; SK_PART * i < count; i++) {
@@ -309,13 +309,13 @@ SK_INLINE sk_vec3 heading_of(sk_vec4 v) {
 }
 
 /* Elements are places where particles look at each other, else the user's particles. */
-static void fly(sk_run *run, const sk_row *row, size_t begin, size_t end, weight_formulas *formulas) {
-    const sk_force *force = row->rule;
+static void fly(sk_run *run, const sk_op *op, size_t begin, size_t end, weight_formulas *formulas) {
+    const sk_force *force = op->rule;
     const sk_flocking_params *params = force->params;
     const sk_flocking_numbers numbers = sk_flocking_numbers_of(params);
     const sk_cells *cells = run->cells;
     bool among = force->moved.first == force->seen.first && force->moved.end == force->seen.end;
-    real scale = (real)(row->dt * params->strength);
+    real scale = (real)(op->dt * params->strength);
     nine_lines lines = lines_of(cells);
     neighbours near;
     near.formulas = formulas;
@@ -324,30 +324,30 @@ static void fly(sk_run *run, const sk_row *row, size_t begin, size_t end, weight
     for (size_t i = begin; i < end; i++) {
         uint32_t slot = among ? cells->slot[i] : run->slot_of[i];
         // slots may be anywhere in memory
-        if (among) __builtin_prefetch(&run->vector[row->dst][cells->slot[i + AHEAD < end ? i + AHEAD : i]], 1);
-        sk_vec3 p = among ? sk_v3(cells->x[i], cells->y[i], cells->z[i])
-                          : sk_xyz(sk_load(run->vector[SK_X], row->packed, slot));
+        if (among) __builtin_prefetch(&run->vector[op->dst][cells->slot[i + AHEAD < end ? i + AHEAD : i]], 1);
+        sk_vec3 p =
+            among ? sk_v3(cells->x[i], cells->y[i], cells->z[i]) : sk_xyz(sk_load(run->vector[SK_X], op->packed, slot));
         near.heading = sk_v3(0, 0, 0);
-        if (!numbers.sees_all) near.heading = heading_of(sk_load(run->vector[SK_V], row->packed, slot));
-        sk_add_at(run->vector[row->dst], row->packed, slot, sk_scale(scale, steer(cells, &lines, &numbers, p, &near)));
+        if (!numbers.sees_all) near.heading = heading_of(sk_load(run->vector[SK_V], op->packed, slot));
+        sk_add_at(run->vector[op->dst], op->packed, slot, sk_scale(scale, steer(cells, &lines, &numbers, p, &near)));
     }
 }
 
-static void fly_by_formula(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+static void fly_by_formula(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     weight_formulas formulas;
-    formulas.pair = ((const sk_flocking_params *)((const sk_force *)row->rule)->params)->pair;
+    formulas.pair = ((const sk_flocking_params *)((const sk_force *)op->rule)->params)->pair;
     sk_tape_input input = {.time = (real)run->time};
     for (int w = 0; w < SK_PAIR_WEIGHTS; w++)
         if (formulas.pair->formula[w])
             sk_tape_kernels_of[SK_THIS_ISA]->begin(&formulas.pair->tape[w], &input, formulas.registers[w],
                                                    formulas.pair->tape[w].wides * SK_PARTS);
-    fly(run, row, begin, end, &formulas);
+    fly(run, op, begin, end, &formulas);
 }
 
-void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_flocking_params *params = ((const sk_force *)row->rule)->params;
-    if (params->pair) fly_by_formula(run, row, begin, end);
-    else fly(run, row, begin, end, NULL);
+void SK_KERNEL(kernel)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_flocking_params *params = ((const sk_force *)op->rule)->params;
+    if (params->pair) fly_by_formula(run, op, begin, end);
+    else fly(run, op, begin, end, NULL);
 }
 
 #else
@@ -362,8 +362,8 @@ static const skein_field fields[] = {
     SK_REAL(sk_flocking_params, strength, "strength", "m/s2", 1, 0, SK_FAR, "how strongly each neighbour counts"),
     SK_REAL(sk_flocking_params, view, "view", "degrees", 360, 0, 360, "the angle that each sees, round its direction of flight; 360: all round"),
     SK_INT(sk_flocking_params, nearest, "nearest", "", 0, 0, SK_FLOCKING_MOST_NEAREST, "of the neighbours in reach only so many count, the nearest; 0: all"),
-    SK_TEXT(sk_flocking_params, minds, "minds", "", "the name of the body that it looks at; empty: those that it is `on`"),
-    SK_TEXT(sk_flocking_params, towards, "formula.towards", "", "the weight of a neighbour along the direction to it, as a formula of percent; where there is a formula, the zones only say how far the rule reaches"),
+    SK_TEXT(sk_flocking_params, neighbours, "neighbours", "", "the name of the body that it looks at; empty: those that it is `on`"),
+    SK_TEXT(sk_flocking_params, towards, "formula.towards", "", "the weight of a neighbour along the direction to it, as a formula of `relative_distance` (0 beside it, 1 at the reach); where there is a formula, the zones only say how far the rule reaches"),
     SK_TEXT(sk_flocking_params, along, "formula.along", "", "the weight along its direction of flight, likewise"),
 };
 // clang-format on
@@ -373,8 +373,8 @@ static double radius(const void *data) {
     return params->separation + params->alignment + params->cohesion;
 }
 
-static const char *minds(const void *data) {
-    return ((const sk_flocking_params *)data)->minds;
+static const char *neighbours(const void *data) {
+    return ((const sk_flocking_params *)data)->neighbours;
 }
 
 static skein_status make(void *data, const skein_kind *kind, sk_allocator *allocator, skein_error *error) {
@@ -446,10 +446,10 @@ const sk_force_type sk_flocking = {
     .kind = {"flocking", "neighbours push apart, fly along or draw together, by how far they are", SKEIN_FORCE, fields,
              sizeof fields / sizeof *fields, sizeof(sk_flocking_params)},
     .domain = SK_OVER_NEIGHBOURS,
-    .deed = SK_STEERS,
+    .phase = SK_STEERS,
     .kernel = {SK_EACH_ISA(kernel)},
     .radius = radius,
-    .minds = minds,
+    .neighbours = neighbours,
     .making = &making,
     .shader = {.file = "forces/flocking", .size = 3, .pack = pack, .write = write, .changes = changes},
 };

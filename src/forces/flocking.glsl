@@ -16,15 +16,15 @@ bool sees@(sum@ sum, vec3 apart, float square) {
 void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction) {
     float per_reach = rule@[0].x, away = rule@[0].y, along = rule@[0].z, per_along = rule@[0].w;
     float per_towards = rule@[1].x, least = rule@[1].y;
-    float per = inversesqrt(max(square, least * least)), percent = per_reach / per;
-    if (rule@[1].w != 0) percent *= percent;
+    float per = inversesqrt(max(square, least * least)), relative_distance = per_reach / per;
+    if (rule@[1].w != 0) relative_distance *= relative_distance;
 #ifdef FORMULA@
-    float towards = towards@(percent, row@[1].z), with = along@(percent, row@[1].z);
+    float towards = towards@(relative_distance, op@[1].z), with = along@(relative_distance, op@[1].z);
 #else
-    bool is_away = percent < away, is_along = percent < along && !is_away;
-    float a = is_along ? (percent - away) * per_along : (percent - along) * per_towards;
+    bool is_away = relative_distance < away, is_along = relative_distance < along && !is_away;
+    float a = is_along ? (relative_distance - away) * per_along : (relative_distance - along) * per_towards;
     float cosine = -0.5 * cos(6.28318531 * (a - 0.5)); // where cards know it best
-    float towards = is_away ? 1 - away / percent : is_along ? 0 : cosine;
+    float towards = is_away ? 1 - away / relative_distance : is_along ? 0 : cosine;
     float with = is_along ? 1 - cosine : 0;
 #endif
     vec3 part = with * direction - towards * per * apart;

@@ -1,12 +1,12 @@
 /* Flocking as numbers: what kernels on the processor and on the card compute from.
  *
- * A neighbour at distance d inside the reach r has percent = d/r, or d^2/r^2. Its part of the steering, in units of
- * strength dt:
+ * A neighbour at distance d inside the reach r has the relative distance u = d/r, or d^2/r^2. Its part of the steering,
+ * in units of strength dt:
  *
- *   percent   0 ........ away ........ along ........ 1          away, along: thresholds
+ *           u   0 ........ away ........ along ........ 1          away, along: thresholds
  *   it is     pushed away    | flown with | drawn near
  *
- *   under `away`:   away/percent - 1,            away from the neighbour
+ *   under `away`:   away/u - 1,            away from the neighbour
  *   under `along`:  0.5 - 0.5 cos(2 pi a) + 0.5, along the neighbour's direction of flight
  *   else:           0.5 cos(2 pi a),             towards it; it pushes in the middle of its zone
  *
@@ -25,7 +25,7 @@ typedef struct sk_flocking_params {
     double strength;                        /* m/s2 */
     double view;                            /* degrees: the angle that a particle sees, round its direction of flight */
     int32_t nearest;                        /* only so many neighbours count, the nearest; 0: all in reach */
-    char *minds;                            /* the name of a body */
+    char *neighbours;                       /* the name of a body */
     char *towards, *along;                  /* formulas in place of the zones' weights, or "" */
     struct sk_pair_formula *pair;           /* made from them; NULL where there are none */
 } sk_flocking_params;
@@ -33,7 +33,7 @@ typedef struct sk_flocking_params {
 typedef struct sk_flocking_numbers {
     real reach;       /* r, m; 0: there are no neighbours */
     real per_reach;   /* 1/r */
-    real away, along; /* thresholds of percent */
+    real away, along; /* thresholds of the relative distance */
     real per_along;   /* 1/(along - away), 0 where that zone has no width */
     real per_towards; /* 1/(1 - along), likewise */
     real least;       /* m: nearer neighbours count as so near; it keeps weights finite */

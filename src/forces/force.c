@@ -11,7 +11,7 @@ int32_t sk_force_particle(const sk_force *force) {
 }
 
 /* Whether the force at a velocity is what the sum says, as near as sums of doubles are. */
-static bool agrees(const sk_force *force, const sk_plain_force *sum, const double v[3], double mass) {
+static bool agrees(const sk_force *force, const sk_uniform_force *sum, const double v[3], double mass) {
     double f[3];
     force->type->at_velocity(force->params, v, mass, f);
     for (int k = 0; k < 3; k++) {
@@ -23,13 +23,13 @@ static bool agrees(const sk_force *force, const sk_plain_force *sum, const doubl
 
 /* The sum is read off at rest and at 1 m/s, with and without a mass, which is exact where it is right. Then it is held
  * against the force from creeping to flying, in changing directions and with changing masses. */
-bool sk_force_add_plain(const sk_force *force, sk_plain_force *sum) {
+bool sk_force_add_uniform(const sk_force *force, sk_uniform_force *sum) {
     static const double velocities[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 0, 0}};
     static const double directions[3][3] = {{1, 2, -3}, {-2, 1, 0}, {0.1, -7, 5}}, masses[4] = {1, 1e-3, 30, 0};
     if (!force->type->at_velocity) return false;
     double f[4][3];
     for (int i = 0; i < 4; i++) force->type->at_velocity(force->params, velocities[i], i / 2, f[i]);
-    sk_plain_force own = {.linear = f[0][0] - f[1][0]};
+    sk_uniform_force own = {.linear = f[0][0] - f[1][0]};
     own.rate = f[2][0] - f[3][0] - own.linear;
     for (int k = 0; k < 3; k++) own.force[k] = f[0][k], own.acceleration[k] = f[2][k] - f[0][k];
     int number = 0;

@@ -8,18 +8,18 @@
 #include "base/fields.h"
 #include "formula/parameters.h"
 #include "particles/particles.h"
-#include "plan/row.h"
+#include "plan/op.h"
 #include "plan/shader.h"
 
 typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOURS, SK_OVER_COLLIDERS } sk_domain;
 
 /* What a rule's kernel writes, and when.
  *   pushes   adds newtons to F, in every stage of a method
- *   steers   adds a change of velocity to S, once a substep, with the row's dt: all of these read the same state
+ *   steers   adds a change of velocity to S, once a substep, with the op's dt: all of these read the same state
  *   bounds   puts V right once all have steered, and may add to S what later ones are to know; in the order of making
- *   meets    surfaces meet surfaces: it has rows of its own in every substep (sk_meeting)
+ *   meets    surfaces meet surfaces: it has ops of its own in every substep (sk_meeting)
  */
-typedef enum sk_deed { SK_PUSHES, SK_STEERS, SK_BOUNDS, SK_MEETS } sk_deed;
+typedef enum sk_phase { SK_PUSHES, SK_STEERS, SK_BOUNDS, SK_MEETS } sk_phase;
 
 /* What can meet: triangles, and edges that are in none, of all bodies, by the user's indices of their particles. */
 typedef struct sk_meeting_parts {
@@ -30,14 +30,14 @@ typedef struct sk_meeting_parts {
 
 typedef struct sk_force sk_force;
 
-/* How a rule meets: rows that are run in every substep of any method, with the force as their rule.
+/* How a rule meets: ops that are run in every substep of any method, with the force as their rule.
  *   begin   before all else: X is where the substep starts
  *   push    with the limits: moves X, and V by as much where its second source is V
  *   bound   last of all: no vertex goes where it would have passed a surface; V is told
  * They do not declare what they reach, and one thread runs them. */
 typedef struct sk_meeting {
     sk_kernels begin, push, bound;
-    /* Makes what the rows keep (state of the force), if it is not there or not of these parts. False: no memory. */
+    /* Makes what the ops keep (state of the force), if it is not there or not of these parts. False: no memory. */
     bool (*prepare)(sk_force *force, sk_allocator *allocator, const sk_particles *particles,
                     const sk_meeting_parts *parts, sk_isa isa);
     void (*release)(sk_force *force, sk_allocator *allocator);
@@ -50,10 +50,10 @@ typedef struct sk_meeting {
 typedef struct sk_force_type {
     skein_kind kind;
     sk_domain domain;
-    sk_deed deed;
+    sk_phase phase;
     bool passive;     /* it takes energy, as the drag of still air does, and never gives any */
     bool once;        /* what it bounds is bounded between kick and drift only, and not at the end of a substep */
-    bool sets;        /* its kernel minds the row's `sets`: it can be the first to write F */
+    bool sets;        /* its kernel minds the op's `sets`: it can be the first to write F */
     bool on_velocity; /* it depends on velocities, */
     bool (*uses_velocity)(const void *params); /* or does so with these parameters; NULL: what on_velocity says */
     sk_kernels kernel;
@@ -62,7 +62,7 @@ typedef struct sk_force_type {
     sk_kernels over_patch;
     /* Of a force that is the same everywhere: what it is at a velocity. NULL: it is not. */
     void (*at_velocity)(const void *params, const double v[3], double mass, double force[3]);
-    /* For implicit methods, with the row's coefficient a: dst += a d, where -d is how the force grows with the
+    /* For implicit methods, with the op's coefficient a: dst += a d, where -d is how the force grows with the
      * particle's own velocity; the same in x, y and z. NULL: it does not, or too little to matter. */
     sk_kernels resistance;
     /* Neighbour rules: how far they reach, m; NULL else. */
@@ -86,7 +86,7 @@ typedef struct sk_force_type {
     /* What a rule that steers or bounds says about the parameters together, before a plan is written; NULL: nothing. */
     skein_status (*check)(const void *params, size_t particle_count, skein_error *error);
     /* The name of the body that it looks at; "", or NULL: those that it acts on. */
-    const char *(*minds)(const void *params);
+    const char *(*neighbours)(const void *params);
     /* Of arithmetic (base/arithmetic.h) whose names begin with KIND_: what each_particle.h says for a kind that pushes
      * (KIND_force), steers (KIND_steer) or bounds (KIND_bound), or moves particles (vec3 KIND_shift(params, vec3 x));
      * over neighbours what each adds, vec3 KIND_push(params, vec3 apart, num distance).
@@ -109,7 +109,7 @@ typedef struct sk_force_type {
     void (*look)(const void *params, double look[3]);
 } sk_force_type;
 
-/* A force as methods see it: a type with its parameters. A row's rule is one of these. */
+/* A force as methods see it: a type with its parameters. An op's rule is one of these. */
 struct sk_force {
     const sk_force_type *type;
     const void *params;
@@ -118,13 +118,13 @@ struct sk_force {
     char *const *on;      /* the names of the bodies that it acts on; "": every particle */
     sk_only only;         /* those, found when a plan is written; */
     sk_group moved, seen; /* and of a rule that steers or bounds, whom it moves and looks at */
-    void *state;          /* of a rule that meets: what its rows keep */
+    void *state;          /* of a rule that meets: what its ops keep */
 };
 
 bool sk_force_on_velocity(const sk_force *force);
 /* The particle that it looks at, or -1. */
 int32_t sk_force_particle(const sk_force *force);
 /* Adds the force to the sum if with its parameters it is m g + f - (linear + rate m) v, else returns false. */
-bool sk_force_add_plain(const sk_force *force, sk_plain_force *sum);
+bool sk_force_add_uniform(const sk_force *force, sk_uniform_force *sum);
 
 #endif

@@ -13,9 +13,9 @@ typedef struct force_field_params {
 } force_field_params;
 
 #define SK_UNIT force_field
-SK_KERNELS(sk_row_kernel, kernel);
-SK_KERNELS(sk_row_kernel, apply);
-SK_KERNELS(sk_row_kernel, diagonal);
+SK_KERNELS(sk_op_kernel, kernel);
+SK_KERNELS(sk_op_kernel, apply);
+SK_KERNELS(sk_op_kernel, diagonal);
 
 #ifdef SK_ISA
 
@@ -27,11 +27,11 @@ SK_INLINE sk_wide weight(const force_field_params *params, sk_wide mass) {
     return sk_keep(sk_positive(mass), sk_splat(1));
 }
 
-void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const force_field_params *params = ((const sk_force *)row->rule)->params;
-    double time = run->time - row->before;
+void SK_KERNEL(kernel)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const force_field_params *params = ((const sk_force *)op->rule)->params;
+    double time = run->time - op->before_end;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
+        bool packed = slot < op->packed;
         sk_wide out[SK_POINTWISE_MOST_OUTPUTS];
         sk_mask guarded;
         sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
@@ -39,23 +39,24 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end)
         sk_wide3 p = {x.x, x.y, x.z}, u = {v.x, v.y, v.z};
         sk_pointwise_run_of[SK_THIS_ISA](params->force, params->parameter, time, &p, &u, out, &guarded);
         sk_wide m = weight(params, v.w);
-        if (!row->sets) f = sk_load_part(run->vector[row->dst], slot, packed);
+        if (!op->sets) f = sk_load_part(run->vector[op->dst], slot, packed);
         f.x += m * out[0], f.y += m * out[1], f.z += m * out[2];
-        sk_store_part(run->vector[row->dst], slot, packed, f);
+        sk_store_part(run->vector[op->dst], slot, packed, f);
     }
 }
 
 /* a times the stiffness and b times the damping. */
-SK_INLINE stiffness_block slope(sk_run *run, const sk_row *row, size_t slot) {
-    const force_field_params *params = ((const sk_force *)row->rule)->params;
-    bool packed = slot < row->packed;
-    real a = (real)row->coefficient[0], b = (real)row->coefficient[1];
+SK_INLINE stiffness_block slope(sk_run *run, const sk_op *op, size_t slot) {
+    const force_field_params *params = ((const sk_force *)op->rule)->params;
+    bool packed = slot < op->packed;
+    real a = (real)op->coefficient[0], b = (real)op->coefficient[1];
     sk_wide out[SK_POINTWISE_MOST_OUTPUTS], k[6];
     sk_mask guarded;
     sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
     sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
     sk_wide3 p = {x.x, x.y, x.z}, u = {v.x, v.y, v.z};
-    sk_pointwise_run_of[SK_THIS_ISA](params->slopes, params->parameter, run->time - row->before, &p, &u, out, &guarded);
+    sk_pointwise_run_of[SK_THIS_ISA](params->slopes, params->parameter, run->time - op->before_end, &p, &u, out,
+                                     &guarded);
     sk_wide m = weight(params, v.w);
     for (int i = 0; i < 6; i++) k[i] = m * (a * out[i] + b * out[6 + i]);
     stiffness_block block = {k[0], k[1], k[2], k[3], k[4], k[5]};
@@ -63,17 +64,17 @@ SK_INLINE stiffness_block slope(sk_run *run, const sk_row *row, size_t slot) {
     return block;
 }
 
-void SK_KERNEL(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(apply)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        stiffness_block block = slope(run, row, slot);
-        add_product(run, row, slot, &block);
+        stiffness_block block = slope(run, op, slot);
+        add_product(run, op, slot, &block);
     }
 }
 
-void SK_KERNEL(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(diagonal)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        stiffness_block block = slope(run, row, slot);
-        add_block(run, row, slot, &block);
+        stiffness_block block = slope(run, op, slot);
+        add_block(run, op, slot, &block);
     }
 }
 

@@ -14,7 +14,7 @@ SK_INLINE vec3 gravity_force(gravity_params p, vec3 v, num mass) {
 // ---- end of arithmetic ----
 
 #define SK_UNIT gravity
-SK_KERNELS(sk_row_kernel, kernel);
+SK_KERNELS(sk_op_kernel, kernel);
 #define PARAMS gravity_params
 #define PUSH gravity_force
 #include "forces/each_particle.h"

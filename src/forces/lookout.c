@@ -22,6 +22,6 @@ const sk_force_type sk_lookout = {
     .kind = {"lookout", "looks ahead, and steers clear of every collider", SKEIN_FORCE, fields,
              sizeof fields / sizeof *fields, sizeof(lookout_params)},
     .domain = SK_OVER_COLLIDERS,
-    .deed = SK_STEERS,
+    .phase = SK_STEERS,
     .look = look,
 };

@@ -13,11 +13,11 @@ void sk_pair_formula_release(sk_pair_formula *pair, sk_allocator *allocator) {
     sk_release(allocator, pair);
 }
 
-/* A pair rule knows percent and t alone. */
+/* A pair rule knows the relative distance and t alone. */
 static skein_status judge(const skein_formula *formula, skein_error *error) {
     if (formula->uses & (SK_USES_POSITION | SK_USES_VELOCITY))
         return sk_fail(error, SKEIN_ERROR_VALUE, "",
-                       "it depends on particles; a weight is a function of percent (and t)");
+                       "it depends on particles; a weight is a function of relative_distance (and t)");
     if (formula->rests) return sk_fail(error, SKEIN_ERROR_VALUE, "", "rest(...) has no meaning for neighbours");
     return SKEIN_OK;
 }
@@ -25,7 +25,7 @@ static skein_status judge(const skein_formula *formula, skein_error *error) {
 static skein_status make(sk_pair_formula *pair, int k, const char *text, sk_allocator *allocator, skein_error *error) {
     if (!text[0]) return SKEIN_OK;
     skein_formula_desc desc = {
-        .text = text, .parameters = (const char *const[]){"percent", NULL}, .result = SKEIN_FORMULA_NUMBER};
+        .text = text, .parameters = (const char *const[]){"relative_distance", NULL}, .result = SKEIN_FORMULA_NUMBER};
     skein_formula *formula = sk_formula_create(&desc, allocator, NULL, error);
     if (!formula) return error->status;
     skein_status status = judge(formula, error);
@@ -35,9 +35,10 @@ static skein_status make(sk_pair_formula *pair, int k, const char *text, sk_allo
         return status;
     }
     pair->formula[k] = formula;
-    pair->percent[k] = UINT16_MAX;
+    pair->relative_distance[k] = UINT16_MAX;
     for (size_t i = 0; i < pair->tape[k].loads.count; i++)
-        if (pair->tape[k].loads.data[i].source == SK_TAPE_PARAMETER) pair->percent[k] = pair->tape[k].loads.data[i].to;
+        if (pair->tape[k].loads.data[i].source == SK_TAPE_PARAMETER)
+            pair->relative_distance[k] = pair->tape[k].loads.data[i].to;
     return SKEIN_OK;
 }
 
@@ -60,9 +61,9 @@ skein_status sk_pair_formula_create(sk_pair_formula **made, const char *const te
 }
 
 bool sk_pair_formula_put_glsl(const sk_pair_formula *pair, void (*put)(void *user, const char *text), void *user) {
-    static const char *const heads[SK_PAIR_WEIGHTS] = {"float towards@(float percent, float t) {\n",
-                                                       "float along@(float percent, float t) {\n"};
-    put(user, "#define parameter@(i) percent\n");
+    static const char *const heads[SK_PAIR_WEIGHTS] = {"float towards@(float relative_distance, float t) {\n",
+                                                       "float along@(float relative_distance, float t) {\n"};
+    put(user, "#define parameter@(i) relative_distance\n");
     for (int w = 0; w < SK_PAIR_WEIGHTS; w++) {
         const skein_formula *f = pair->formula[w];
         if (f && !sk_formula_put_glsl(f, heads[w], f->value, 1, put, user)) return false;

@@ -1,5 +1,5 @@
 /* The weights of a pair rule as formulas: what a neighbour counts along the direction to it, and along its direction of
- * flight, as functions of `percent`, how far it is in shares of the reach.
+ * flight, as functions of `relative_distance`, how far it is in shares of the reach.
  *
  * Owned by the rule's parameters, made when their texts change. */
 #ifndef SK_FORCES_PAIR_FORMULA_H
@@ -15,14 +15,15 @@ enum { SK_TOWARDS, SK_ALONG, SK_PAIR_WEIGHTS };
 typedef struct sk_pair_formula {
     skein_formula *formula[SK_PAIR_WEIGHTS]; /* NULL: that weight is 0 */
     sk_tape tape[SK_PAIR_WEIGHTS];
-    uint16_t percent[SK_PAIR_WEIGHTS]; /* the register that percent goes to; UINT16_MAX: it is not asked for */
+    uint16_t relative_distance[SK_PAIR_WEIGHTS]; /* the register that relative_distance goes to; UINT16_MAX: it is not
+                                                    asked for */
 } sk_pair_formula;
 
 /* Makes them from their texts; *made is NULL where both are empty. On failure the error says which field. */
 skein_status sk_pair_formula_create(sk_pair_formula **made, const char *const texts[SK_PAIR_WEIGHTS],
                                     const char *const fields[SK_PAIR_WEIGHTS], sk_allocator *allocator,
                                     skein_error *error);
-/* Writes float towards@(float percent, float t) and along@(...) in GLSL; false when there is no memory. */
+/* Writes float towards@(float relative_distance, float t) and along@(...) in GLSL; false when there is no memory. */
 bool sk_pair_formula_put_glsl(const sk_pair_formula *pair, void (*put)(void *user, const char *text), void *user);
 void sk_pair_formula_release(sk_pair_formula *pair, sk_allocator *allocator); /* NULL is allowed */
 

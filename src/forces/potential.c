@@ -13,9 +13,9 @@ typedef struct potential_params {
 } potential_params;
 
 #define SK_UNIT potential
-SK_KERNELS(sk_row_kernel, kernel);
-SK_KERNELS(sk_row_kernel, apply);
-SK_KERNELS(sk_row_kernel, diagonal);
+SK_KERNELS(sk_op_kernel, kernel);
+SK_KERNELS(sk_op_kernel, apply);
+SK_KERNELS(sk_op_kernel, diagonal);
 
 #ifdef SK_ISA
 
@@ -27,11 +27,11 @@ SK_INLINE sk_wide weight(const potential_params *params, sk_wide mass) {
     return sk_keep(sk_positive(mass), sk_splat(1));
 }
 
-void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const potential_params *params = ((const sk_force *)row->rule)->params;
-    double time = run->time - row->before;
+void SK_KERNEL(kernel)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const potential_params *params = ((const sk_force *)op->rule)->params;
+    double time = run->time - op->before_end;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
+        bool packed = slot < op->packed;
         sk_wide out[SK_POINTWISE_MOST_OUTPUTS];
         sk_mask guarded;
         sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), f = {0};
@@ -39,40 +39,40 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_row *row, size_t begin, size_t end)
         sk_wide3 p = {x.x, x.y, x.z};
         sk_pointwise_run_of[SK_THIS_ISA](params->slope, params->parameter, time, &p, NULL, out, &guarded);
         sk_wide m = weight(params, mass);
-        if (!row->sets) f = sk_load_part(run->vector[row->dst], slot, packed);
+        if (!op->sets) f = sk_load_part(run->vector[op->dst], slot, packed);
         f.x -= m * out[0], f.y -= m * out[1], f.z -= m * out[2];
-        sk_store_part(run->vector[row->dst], slot, packed, f);
+        sk_store_part(run->vector[op->dst], slot, packed, f);
     }
 }
 
 /* a times the stiffness. */
-SK_INLINE stiffness_block curve(sk_run *run, const sk_row *row, size_t slot) {
-    const potential_params *params = ((const sk_force *)row->rule)->params;
-    bool packed = slot < row->packed;
+SK_INLINE stiffness_block curve(sk_run *run, const sk_op *op, size_t slot) {
+    const potential_params *params = ((const sk_force *)op->rule)->params;
+    bool packed = slot < op->packed;
     sk_wide out[SK_POINTWISE_MOST_OUTPUTS];
     sk_mask guarded;
     sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
     sk_wide mass = sk_load_part(run->vector[SK_V], slot, packed).w;
     sk_wide3 p = {x.x, x.y, x.z};
-    sk_pointwise_run_of[SK_THIS_ISA](params->curvature, params->parameter, run->time - row->before, &p, NULL, out,
+    sk_pointwise_run_of[SK_THIS_ISA](params->curvature, params->parameter, run->time - op->before_end, &p, NULL, out,
                                      &guarded);
-    sk_wide m = (real)row->coefficient[0] * weight(params, mass);
+    sk_wide m = (real)op->coefficient[0] * weight(params, mass);
     stiffness_block block = {m * out[0], m * out[1], m * out[2], m * out[3], m * out[4], m * out[5]};
     make_positive(&block);
     return block;
 }
 
-void SK_KERNEL(apply)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(apply)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        stiffness_block block = curve(run, row, slot);
-        add_product(run, row, slot, &block);
+        stiffness_block block = curve(run, op, slot);
+        add_product(run, op, slot, &block);
     }
 }
 
-void SK_KERNEL(diagonal)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(diagonal)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        stiffness_block block = curve(run, row, slot);
-        add_block(run, row, slot, &block);
+        stiffness_block block = curve(run, op, slot);
+        add_block(run, op, slot, &block);
     }
 }
 

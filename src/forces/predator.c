@@ -32,7 +32,7 @@ SK_INLINE vec4 predator_steer(predator_params p, vec3 x, exact dt) {
 // ---- end of arithmetic ----
 
 #define SK_UNIT predator
-SK_KERNELS(sk_row_kernel, kernel);
+SK_KERNELS(sk_op_kernel, kernel);
 #define PARAMS predator_params
 #define STEER predator_steer
 #define LOOKS_FROM position
@@ -69,7 +69,7 @@ const sk_force_type sk_predator = {
     .kind = {"predator", "what is near flees from it: a place, a line of sight or a particle", SKEIN_FORCE, fields,
              sizeof fields / sizeof *fields, sizeof(predator_params)},
     .domain = SK_OVER_PARTICLES,
-    .deed = SK_STEERS,
+    .phase = SK_STEERS,
     .kernel = {SK_EACH_ISA(kernel)},
     .check = check,
     .particle = particle,

@@ -41,14 +41,14 @@ static vec3 push_at(const sk_cells *cells, const sk_only *only, size_t place, co
 }
 
 /* Elements are places. */
-static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_force *force = row->rule;
+static void kernel(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_force *force = op->rule;
     const sk_cells *cells = run->cells;
     if (end > cells->count) end = cells->count;
     for (size_t place = begin; place < end; place++) {
         if (!sk_only_has_slot(&force->only, cells->slot[place])) continue;
         vec3 push = push_at(cells, &force->only, place, force->params);
-        sk_add_at(run->vector[row->dst], row->packed, cells->slot[place], sk_v3(push.x, push.y, push.z));
+        sk_add_at(run->vector[op->dst], op->packed, cells->slot[place], sk_v3(push.x, push.y, push.z));
     }
 }
 

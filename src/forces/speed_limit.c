@@ -1,5 +1,5 @@
 /* A limit on speed: |v| is at most the limit, and what a predator has added to it in this substep. It stands between
- * the kick and the drift of methods that have them (methods/writer_steer.c). */
+ * the kick and the drift of methods that have them (methods/plan_builder_steer.c). */
 #include "base/arithmetic.h"
 #include "forces/force.h"
 
@@ -18,7 +18,7 @@ SK_INLINE vec3 speed_limit_bound(speed_limit_params p, vec4 x, vec3 v, vec4 stee
 // ---- end of arithmetic ----
 
 #define SK_UNIT speed_limit
-SK_KERNELS(sk_row_kernel, kernel);
+SK_KERNELS(sk_op_kernel, kernel);
 #define PARAMS speed_limit_params
 #define BOUND speed_limit_bound
 #include "forces/each_particle.h"
@@ -33,7 +33,7 @@ const sk_force_type sk_speed_limit = {
     .kind = {"speed_limit", "nothing is faster than this", SKEIN_FORCE, fields, sizeof fields / sizeof *fields,
              sizeof(speed_limit_params)},
     .domain = SK_OVER_PARTICLES,
-    .deed = SK_BOUNDS,
+    .phase = SK_BOUNDS,
     .kernel = {SK_EACH_ISA(kernel)},
     .shader = {.arithmetic = "forces/speed_limit"},
 };

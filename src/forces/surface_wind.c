@@ -22,8 +22,8 @@ typedef struct surface_wind_params {
 #define LEAST_SQUARE ((real)1e-30)
 
 #define SK_UNIT surface_wind
-SK_KERNELS(sk_row_kernel, over_patch);
-SK_KERNELS(sk_row_kernel, over_rest);
+SK_KERNELS(sk_op_kernel, over_patch);
+SK_KERNELS(sk_op_kernel, over_rest);
 
 #ifdef SK_ISA
 
@@ -106,20 +106,20 @@ SK_INLINE void blow_on_cells(const blow *air, const corners *at, const uint16_t 
 
 /* x, y and z of a block, each lane that of the next strip: what the last cells of a row have on their right. */
 SK_INLINE void turn3(sk_wide *to, const sk_wide *block, int shift) {
-    for (int r = 0; r < 3 * SK_PARTS; r += SK_PARTS) sk_turn_row(to + r, block + r, shift);
+    for (int r = 0; r < 3 * SK_PARTS; r += SK_PARTS) sk_rotate_lanes(to + r, block + r, shift);
 }
 
 /* Cells of strip rows [begin, end): each row's add to its own particles, and to those of the next row. */
-void SK_KERNEL(over_patch)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const surface_wind_params *params = ((const sk_force *)row->rule)->params;
-    const sk_patch *patch = row->patch;
+void SK_KERNEL(over_patch)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const surface_wind_params *params = ((const sk_force *)op->rule)->params;
+    const sk_patch *patch = op->patch;
     const blow air = blow_of(params);
     size_t width = patch->walk.width, line = width * 4 * SK_PARTS; // vectors a strip row
     for (size_t r = begin; r < end; r++) {
         size_t first = patch->walk.first_slot * 4 / SK_PART + r * line;
         const sk_wide *x = (const sk_wide *)(const void *)run->vector[SK_X] + first;
         const sk_wide *v = (const sk_wide *)(const void *)run->vector[SK_V] + first;
-        sk_wide *f = (sk_wide *)(void *)run->vector[row->dst] + first;
+        sk_wide *f = (sk_wide *)(void *)run->vector[op->dst] + first;
         sk_wide turned[4][3 * SK_PARTS], over[2][3 * SK_PARTS];
         turn3(turned[0], x, 1), turn3(turned[1], x + line, 1);
         turn3(turned[2], v, 1), turn3(turned[3], v + line, 1);
@@ -151,15 +151,15 @@ void SK_KERNEL(over_patch)(sk_run *run, const sk_row *row, size_t begin, size_t 
 
 /* Triangles that lie in no grid: a part of them is worked out at once, for they read nothing that they write, and then
  * their corners get their shares, triangle by triangle. */
-SK_INLINE void blow_on_part(sk_run *run, const sk_row *row, const blow *air, size_t begin, size_t count) {
+SK_INLINE void blow_on_part(sk_run *run, const sk_op *op, const blow *air, size_t begin, size_t count) {
     uint32_t corner[3][SK_PART];
     bool strips = false;
     for (size_t l = 0; l < SK_PART; l++)
         for (int k = 0; k < 3; k++) {
             corner[k][l] = run->surface->rest.corner[begin + (l < count ? l : 0)][k];
-            strips |= corner[k][l] < row->packed;
+            strips |= corner[k][l] < op->packed;
         }
-    size_t packed = strips ? row->packed : 0;
+    size_t packed = strips ? op->packed : 0;
     sk_wide3 x[3], moving = {{0}, {0}, {0}};
     for (int k = 0; k < 3; k++) {
         sk_wide4 at = sk_gather_any(run->vector[SK_X], packed, corner[k]), v = sk_gather_any(run->vector[SK_V], packed, corner[k]);
@@ -172,13 +172,12 @@ SK_INLINE void blow_on_part(sk_run *run, const sk_row *row, const blow *air, siz
     memcpy(lane[2], &share.z, sizeof lane[2]);
     for (size_t l = 0; l < count; l++)
         for (int k = 0; k < 3; k++)
-            sk_add_at(run->vector[row->dst], packed, corner[k][l], sk_v3(lane[0][l], lane[1][l], lane[2][l]));
+            sk_add_at(run->vector[op->dst], packed, corner[k][l], sk_v3(lane[0][l], lane[1][l], lane[2][l]));
 }
 
-void SK_KERNEL(over_rest)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const blow air = blow_of(((const sk_force *)row->rule)->params);
-    for (size_t t = begin; t < end; t += SK_PART)
-        blow_on_part(run, row, &air, t, end - t < SK_PART ? end - t : SK_PART);
+void SK_KERNEL(over_rest)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const blow air = blow_of(((const sk_force *)op->rule)->params);
+    for (size_t t = begin; t < end; t += SK_PART) blow_on_part(run, op, &air, t, end - t < SK_PART ? end - t : SK_PART);
 }
 
 #else

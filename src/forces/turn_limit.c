@@ -53,7 +53,7 @@ SK_INLINE vec3 turn_limit_bound(turn_limit_params p, vec4 x, vec3 v, vec4 steeri
 // ---- end of arithmetic ----
 
 #define SK_UNIT turn_limit
-SK_KERNELS(sk_row_kernel, kernel);
+SK_KERNELS(sk_op_kernel, kernel);
 #define PARAMS turn_limit_params
 #define BOUND turn_limit_bound
 #include "forces/each_particle.h"
@@ -69,7 +69,7 @@ const sk_force_type sk_turn_limit = {
     .kind = {"turn_limit", "nothing turns faster or flies steeper than this", SKEIN_FORCE, fields,
              sizeof fields / sizeof *fields, sizeof(turn_limit_params)},
     .domain = SK_OVER_PARTICLES,
-    .deed = SK_BOUNDS,
+    .phase = SK_BOUNDS,
     .once = true,
     .kernel = {SK_EACH_ISA(kernel)},
     .shader = {.arithmetic = "forces/turn_limit"},

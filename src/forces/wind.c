@@ -14,7 +14,7 @@ SK_INLINE vec3 wind_force(wind_params p, vec3 v, num mass) {
 // ---- end of arithmetic ----
 
 #define SK_UNIT wind
-SK_KERNELS(sk_row_kernel, kernel);
+SK_KERNELS(sk_op_kernel, kernel);
 #define PARAMS wind_params
 #define PUSH wind_force
 #include "forces/each_particle.h"

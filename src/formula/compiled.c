@@ -18,12 +18,12 @@ static uint64_t hash_node(uint64_t hash, const skein_formula *f, sk_node node, c
     uint64_t bits;
     memcpy(&bits, &n->value, sizeof bits);
     hash = sk_hash_word(hash, n->op);
-    if (n->op == SK_OP_CONSTANT) return sk_hash_word(hash, bits);
-    if (n->op == SK_OP_INPUT) return sk_hash_word(hash, n->arg[0]);
-    if (n->op == SK_OP_PARAMETER && n->arg[0] < (uint32_t)f->parameters)
+    if (n->op == SK_NODE_CONSTANT) return sk_hash_word(hash, bits);
+    if (n->op == SK_NODE_INPUT) return sk_hash_word(hash, n->arg[0]);
+    if (n->op == SK_NODE_PARAMETER && n->arg[0] < (uint32_t)f->parameters)
         return hash_text(hash, f->parameter_name[n->arg[0]]);
-    if (n->op == SK_OP_PARAMETER) return sk_hash_word(hash, n->arg[0] - (uint32_t)f->parameters);
-    for (int k = 0; k < sk_op_info[n->op].arity; k++) hash = sk_hash_word(hash, number[n->arg[k]]);
+    if (n->op == SK_NODE_PARAMETER) return sk_hash_word(hash, n->arg[0] - (uint32_t)f->parameters);
+    for (int k = 0; k < sk_node_op_info[n->op].arity; k++) hash = sk_hash_word(hash, number[n->arg[k]]);
     return hash;
 }
 

@@ -13,20 +13,20 @@ static sk_node factor_of(sk_graph *g, sk_node node) {
     const sk_graph_node n = g->data[node];
     const sk_node x = n.arg[0], one = sk_constant(g, 1), zero = sk_constant(g, 0), half = sk_constant(g, 0.5);
     switch (n.op) {
-    case SK_OP_NEGATE: return sk_constant(g, -1);
-    case SK_OP_RECIPROCAL: return sk_negative_of(g, sk_times(g, node, node));
-    case SK_OP_SQRT: return sk_times(g, half, sk_of(g, SK_OP_RECIPROCAL, node));
-    case SK_OP_ABS: return sk_less(g, x, zero, sk_constant(g, -1), one);
-    case SK_OP_EXP: return node;
-    case SK_OP_LOG: return sk_less(g, zero, x, sk_of(g, SK_OP_RECIPROCAL, x), zero);
-    case SK_OP_SIN: return sk_of(g, SK_OP_COS, x);
-    case SK_OP_COS: return sk_negative_of(g, sk_of(g, SK_OP_SIN, x));
-    case SK_OP_TAN: return sk_plus(g, one, sk_times(g, node, node));
-    case SK_OP_ASIN:
-    case SK_OP_ACOS: {
+    case SK_NODE_NEGATE: return sk_constant(g, -1);
+    case SK_NODE_RECIPROCAL: return sk_negative_of(g, sk_times(g, node, node));
+    case SK_NODE_SQRT: return sk_times(g, half, sk_of(g, SK_NODE_RECIPROCAL, node));
+    case SK_NODE_ABS: return sk_less(g, x, zero, sk_constant(g, -1), one);
+    case SK_NODE_EXP: return node;
+    case SK_NODE_LOG: return sk_less(g, zero, x, sk_of(g, SK_NODE_RECIPROCAL, x), zero);
+    case SK_NODE_SIN: return sk_of(g, SK_NODE_COS, x);
+    case SK_NODE_COS: return sk_negative_of(g, sk_of(g, SK_NODE_SIN, x));
+    case SK_NODE_TAN: return sk_plus(g, one, sk_times(g, node, node));
+    case SK_NODE_ASIN:
+    case SK_NODE_ACOS: {
         sk_node below = sk_minus(g, one, x), above = sk_plus(g, one, x), square = sk_times(g, below, above);
-        sk_node slope = sk_of(g, SK_OP_RECIPROCAL, sk_of(g, SK_OP_SQRT, square));
-        return n.op == SK_OP_ASIN ? slope : sk_negative_of(g, slope);
+        sk_node slope = sk_of(g, SK_NODE_RECIPROCAL, sk_of(g, SK_NODE_SQRT, square));
+        return n.op == SK_NODE_ASIN ? slope : sk_negative_of(g, slope);
     }
     default: return zero;
     }
@@ -36,14 +36,14 @@ static sk_node factor_of(sk_graph *g, sk_node node) {
 static sk_node partial(sk_graph *g, sk_node node, int which) {
     const sk_graph_node n = g->data[node];
     const sk_node a = n.arg[0], b = n.arg[1];
-    if (n.op == SK_OP_ATAN2) {
+    if (n.op == SK_NODE_ATAN2) {
         sk_node xx = sk_times(g, b, b), yy = sk_times(g, a, a), square = sk_plus(g, xx, yy);
-        sk_node over = sk_of(g, SK_OP_RECIPROCAL, square);
+        sk_node over = sk_of(g, SK_NODE_RECIPROCAL, square);
         return which == 0 ? sk_times(g, b, over) : sk_negative_of(g, sk_times(g, a, over));
     }
-    if (n.op == SK_OP_POW) {
+    if (n.op == SK_NODE_POW) {
         if (which == 0) return sk_times(g, b, sk_power(g, a, sk_minus(g, b, sk_constant(g, 1))));
-        return sk_times(g, sk_of(g, SK_OP_LOG, a), node);
+        return sk_times(g, sk_of(g, SK_NODE_LOG, a), node);
     }
     return factor_of(g, node);
 }
@@ -66,29 +66,29 @@ static void pass_back(adjoints *a, sk_node node, sk_node d) {
     sk_graph *g = a->graph;
     const sk_graph_node n = g->data[node];
     switch (n.op) {
-    case SK_OP_ADD:
+    case SK_NODE_ADD:
         accumulate(a, n.arg[0], d);
         accumulate(a, n.arg[1], d);
         break;
-    case SK_OP_SUBTRACT:
+    case SK_NODE_SUBTRACT:
         accumulate(a, n.arg[0], d);
         if (a->wanted[n.arg[1]]) accumulate(a, n.arg[1], sk_negative_of(g, d));
         break;
-    case SK_OP_MULTIPLY:
+    case SK_NODE_MULTIPLY:
         if (a->wanted[n.arg[0]]) accumulate(a, n.arg[0], sk_times(g, d, n.arg[1]));
         if (a->wanted[n.arg[1]]) accumulate(a, n.arg[1], sk_times(g, d, n.arg[0]));
         break;
-    case SK_OP_LESS: {
+    case SK_NODE_LESS: {
         sk_node zero = sk_constant(g, 0);
         if (a->wanted[n.arg[2]]) accumulate(a, n.arg[2], sk_less(g, n.arg[0], n.arg[1], d, zero));
         if (a->wanted[n.arg[3]]) accumulate(a, n.arg[3], sk_less(g, n.arg[0], n.arg[1], zero, d));
         break;
     }
-    case SK_OP_RECIPROCAL: // -(d r) r: the product with d keeps the size of what comes between
+    case SK_NODE_RECIPROCAL: // -(d r) r: the product with d keeps the size of what comes between
         if (a->wanted[n.arg[0]]) accumulate(a, n.arg[0], sk_negative_of(g, sk_times(g, sk_times(g, d, node), node)));
         break;
     default:
-        for (int k = 0; k < sk_op_info[n.op].arity; k++)
+        for (int k = 0; k < sk_node_op_info[n.op].arity; k++)
             if (a->wanted[n.arg[k]]) accumulate(a, n.arg[k], sk_times(g, d, partial(g, node, k)));
     }
 }
@@ -99,8 +99,8 @@ static void find_wanted(const sk_graph *graph, const uint32_t *inputs, size_t co
     for (size_t i = 0; i < count; i++) listed[inputs[i]] = true;
     for (size_t i = 0; i < graph->count; i++) {
         const sk_graph_node *n = &graph->data[i];
-        wanted[i] = n->op == SK_OP_INPUT && listed[n->arg[0]];
-        for (int k = 0; k < sk_op_info[n->op].arity; k++) wanted[i] |= wanted[n->arg[k]];
+        wanted[i] = n->op == SK_NODE_INPUT && listed[n->arg[0]];
+        for (int k = 0; k < sk_node_op_info[n->op].arity; k++) wanted[i] |= wanted[n->arg[k]];
     }
 }
 
@@ -149,7 +149,7 @@ bool sk_gradient_by(sk_graph *graph, sk_node output, const sk_node *by, size_t c
         for (size_t i = 0; i < before; i++) {
             const sk_graph_node *n = &graph->data[i];
             wanted[i] = seed[i];
-            for (int k = 0; k < sk_op_info[n->op].arity; k++) wanted[i] |= wanted[n->arg[k]];
+            for (int k = 0; k < sk_node_op_info[n->op].arity; k++) wanted[i] |= wanted[n->arg[k]];
         }
         go_back(&a, output, before, seed);
         for (size_t k = 0; k < count; k++) derivatives[k] = of[by[k]] != NONE ? of[by[k]] : sk_constant(graph, 0);
@@ -167,18 +167,18 @@ static sk_node tangent_of(sk_graph *g, sk_node node, const sk_node *of) {
     const sk_graph_node n = g->data[node];
     sk_node t[4], sum = NONE;
     bool moves = false;
-    for (int k = 0; k < sk_op_info[n.op].arity; k++) moves |= (t[k] = of[n.arg[k]]) != NONE;
+    for (int k = 0; k < sk_node_op_info[n.op].arity; k++) moves |= (t[k] = of[n.arg[k]]) != NONE;
     if (!moves) return NONE;
-    if (n.op == SK_OP_LESS) {
+    if (n.op == SK_NODE_LESS) {
         const sk_node zero = sk_constant(g, 0);
         return sk_less(g, n.arg[0], n.arg[1], t[2] == NONE ? zero : t[2], t[3] == NONE ? zero : t[3]);
     }
-    for (int k = 0; k < sk_op_info[n.op].arity; k++) {
+    for (int k = 0; k < sk_node_op_info[n.op].arity; k++) {
         if (t[k] == NONE) continue;
-        sk_node term = n.op == SK_OP_ADD || (n.op == SK_OP_SUBTRACT && k == 0) ? t[k]
-                       : n.op == SK_OP_SUBTRACT                                ? sk_negative_of(g, t[k])
-                       : n.op == SK_OP_MULTIPLY                                ? sk_times(g, t[k], n.arg[1 - k])
-                                                                               : sk_times(g, t[k], partial(g, node, k));
+        sk_node term = n.op == SK_NODE_ADD || (n.op == SK_NODE_SUBTRACT && k == 0) ? t[k]
+                       : n.op == SK_NODE_SUBTRACT                                  ? sk_negative_of(g, t[k])
+                       : n.op == SK_NODE_MULTIPLY                                  ? sk_times(g, t[k], n.arg[1 - k])
+                                                  : sk_times(g, t[k], partial(g, node, k));
         sum = sum == NONE ? term : sk_plus(g, sum, term);
     }
     return sum;
@@ -197,7 +197,7 @@ bool sk_tangents(sk_graph *graph, const sk_node *outputs, size_t count, uint32_t
         sk_graph_mark(graph, outputs, count, live);
         for (size_t i = 0; i < before; i++) {
             const sk_graph_node *n = &graph->data[i];
-            bool leaf = n->op <= SK_OP_PARAMETER, self = n->op == SK_OP_INPUT && n->arg[0] == input;
+            bool leaf = n->op <= SK_NODE_PARAMETER, self = n->op == SK_NODE_INPUT && n->arg[0] == input;
             of[i] = !live[i] ? NONE : self ? sk_constant(graph, 1) : leaf ? NONE : tangent_of(graph, (sk_node)i, of);
         }
         for (size_t k = 0; k < count; k++)

@@ -52,7 +52,7 @@ void sk_put_parameters(sk_writer *w, const char *line_begin) {
 }
 
 void sk_put_helpers(sk_writer *w, const char *(*text_of)(size_t), size_t count, int (*op_of)(size_t)) {
-    bool used[SK_OP_COUNT] = {[SK_OP_CONSTANT] = true};
+    bool used[SK_NODE_COUNT] = {[SK_NODE_CONSTANT] = true};
     const sk_graph *g = &w->formula->graph;
     for (size_t i = 0; i < g->count; i++)
         if (w->live[i]) used[g->data[i].op] = true;
@@ -65,8 +65,8 @@ void sk_put_helpers(sk_writer *w, const char *(*text_of)(size_t), size_t count, 
 /* How tightly an expression holds together: 1 sums and signs, 2 products, 3 what needs no brackets. */
 static int tightness(const sk_writer *w, sk_node node) {
     uint8_t op = w->formula->graph.data[node].op;
-    if (w->number[node] || w->shared[node] || op <= SK_OP_PARAMETER || w->language->call[op]) return 3;
-    return op == SK_OP_MULTIPLY ? 2 : 1;
+    if (w->number[node] || w->shared[node] || op <= SK_NODE_PARAMETER || w->language->call[op]) return 3;
+    return op == SK_NODE_MULTIPLY ? 2 : 1;
 }
 
 static void put_temporary(sk_writer *w, sk_node node) {
@@ -93,26 +93,26 @@ static void put_expression(sk_writer *w, sk_node node) {
     const char *call = w->language->call[n->op];
     if (w->shared[node]) {
         sk_put(w, "SHARED(%u)", w->shared[node] - 1);
-    } else if (n->op == SK_OP_CONSTANT) {
+    } else if (n->op == SK_NODE_CONSTANT) {
         w->language->constant(w, n->value);
-    } else if (n->op == SK_OP_INPUT) {
+    } else if (n->op == SK_NODE_INPUT) {
         w->language->input(w, n->arg[0]);
-    } else if (n->op == SK_OP_PARAMETER) {
+    } else if (n->op == SK_NODE_PARAMETER) {
         w->language->parameter(w, n->arg[0]);
     } else if (call) {
         sk_put(w, "%s(", call);
-        for (int k = 0; k < sk_op_info[n->op].arity; k++) {
+        for (int k = 0; k < sk_node_op_info[n->op].arity; k++) {
             sk_put(w, "%s", k ? ", " : "");
             sk_put_operand(w, n->arg[k], 0);
         }
         sk_put(w, ")");
-    } else if (n->op == SK_OP_NEGATE) {
+    } else if (n->op == SK_NODE_NEGATE) {
         sk_put(w, "-");
         sk_put_operand(w, n->arg[0], 2);
     } else {
-        bool product = n->op == SK_OP_MULTIPLY;
+        bool product = n->op == SK_NODE_MULTIPLY;
         sk_put_operand(w, n->arg[0], product ? 2 : 1);
-        sk_put(w, product ? " * " : n->op == SK_OP_ADD ? " + " : " - ");
+        sk_put(w, product ? " * " : n->op == SK_NODE_ADD ? " + " : " - ");
         sk_put_operand(w, n->arg[1], product ? 3 : 2);
     }
 }
@@ -140,10 +140,10 @@ static void find_names(sk_writer *w) {
     for (size_t i = 0; i < g->count; i++) {
         const sk_graph_node *n = &g->data[i];
         int height = 1;
-        if (!w->live[i] || n->op <= SK_OP_PARAMETER || w->shared[i]) continue;
-        for (int k = 0; k < sk_op_info[n->op].arity; k++)
+        if (!w->live[i] || n->op <= SK_NODE_PARAMETER || w->shared[i]) continue;
+        for (int k = 0; k < sk_node_op_info[n->op].arity; k++)
             if (w->height[n->arg[k]] >= height) height = w->height[n->arg[k]] + 1;
-        bool named = w->uses[i] > 1 || height > MOST_HEIGHT || n->op == SK_OP_LESS;
+        bool named = w->uses[i] > 1 || height > MOST_HEIGHT || n->op == SK_NODE_LESS;
         if (named) w->number[i] = ++next;
         else w->height[i] = (uint8_t)height;
     }
@@ -154,7 +154,7 @@ void sk_put_temporaries(sk_writer *w, const sk_node *outputs, size_t count) {
     for (size_t i = 0; i < g->count; i++) w->live[i] = false, w->uses[i] = w->number[i] = 0, w->height[i] = 0;
     for (size_t i = 0; i < count; i++) w->live[outputs[i]] = true, w->uses[outputs[i]]++;
     for (size_t i = g->count; i-- > 0;) // what is below something shared was needed for that alone
-        for (int k = 0; w->live[i] && !w->shared[i] && k < sk_op_info[g->data[i].op].arity; k++)
+        for (int k = 0; w->live[i] && !w->shared[i] && k < sk_node_op_info[g->data[i].op].arity; k++)
             w->live[g->data[i].arg[k]] = true, w->uses[g->data[i].arg[k]]++;
     find_names(w);
     w->language->open(w);
@@ -207,9 +207,9 @@ static void put_all(sk_writer *w, const sk_node *outputs, size_t count) {
 
 static void put_leaf(sk_writer *w, const sk_graph_node *n) {
     const skein_formula *f = w->formula;
-    if (n->op == SK_OP_CONSTANT) {
+    if (n->op == SK_NODE_CONSTANT) {
         sk_put_number(w, n->value, 10);
-    } else if (n->op == SK_OP_INPUT) {
+    } else if (n->op == SK_NODE_INPUT) {
         sk_glsl_language.input(w, n->arg[0]);
     } else if ((int)n->arg[0] < f->parameters) {
         sk_put(w, "%s", f->parameter_name[n->arg[0]]);
@@ -228,9 +228,9 @@ static void put_graph(sk_writer *w, const sk_node *outputs, size_t count) {
     for (size_t i = 0; i < g->count; i++) {
         const sk_graph_node *n = &g->data[i];
         if (!w->live[i]) continue;
-        sk_put(w, "#%-4zu %-9s ", i, n->op <= SK_OP_PARAMETER ? "" : sk_op_info[n->op].name);
-        if (n->op <= SK_OP_PARAMETER) put_leaf(w, n);
-        for (int k = 0; k < sk_op_info[n->op].arity; k++) sk_put(w, "%s#%u", k ? " " : "", n->arg[k]);
+        sk_put(w, "#%-4zu %-9s ", i, n->op <= SK_NODE_PARAMETER ? "" : sk_node_op_info[n->op].name);
+        if (n->op <= SK_NODE_PARAMETER) put_leaf(w, n);
+        for (int k = 0; k < sk_node_op_info[n->op].arity; k++) sk_put(w, "%s#%u", k ? " " : "", n->arg[k]);
         sk_put(w, "%s%s\n", n->name[0] ? "    // " : "", n->name);
     }
     for (int k = 0; k < f->size; k++) {

@@ -7,8 +7,8 @@
 typedef struct sk_writer sk_writer;
 
 typedef struct sk_language {
-    const char *call[SK_OP_COUNT]; /* operations that are written as functions */
-    const char *declaration;       /* of a temporary */
+    const char *call[SK_NODE_COUNT]; /* operations that are written as functions */
+    const char *declaration;         /* of a temporary */
     void (*constant)(sk_writer *, double);
     void (*input)(sk_writer *, uint32_t);
     void (*parameter)(sk_writer *, uint32_t);
@@ -57,7 +57,7 @@ void sk_put_number(sk_writer *w, double value, int digits);
 /* The formula's own text, made fit for a comment; and what its parameters are. Each line begins so. */
 void sk_put_source(sk_writer *w, const char *line_begin);
 void sk_put_parameters(sk_writer *w, const char *line_begin);
-/* Of `count` helpers those whose operation the formula has; those of SK_OP_CONSTANT always. */
+/* Of `count` helpers those whose operation the formula has; those of SK_NODE_CONSTANT always. */
 void sk_put_helpers(sk_writer *w, const char *(*text_of)(size_t), size_t count, int (*op_of)(size_t));
 
 #endif

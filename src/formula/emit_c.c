@@ -5,32 +5,32 @@
 
 /* What a program may define otherwise, for another layout, another type, or elementary functions of its own. */
 static const struct {
-    int op; /* where it is needed; SK_OP_CONSTANT: everywhere */
+    int op; /* where it is needed; SK_NODE_CONSTANT: everywhere */
     const char *text;
 } c_macros[] = {
-    {SK_OP_CONSTANT, "#include <math.h>\n"
-                     "#define REAL double\n"
-                     "#define NUMBER(x) (x)\n"
-                     "#define POSITION(particle, axis) position[3 * (particle) + (axis)]\n"
-                     "#define VELOCITY(particle, axis) velocity[3 * (particle) + (axis)]\n"
-                     "#define PARAMETER(index) parameter[index]\n"
-                     "#define TIME time\n"
-                     "#define VALUE(component, x) value[component] = (x)\n"
-                     "#define GRADIENT(component, particle, axis, x) \\\n"
-                     "    gradient[3 * (PARTICLES * (component) + (particle)) + (axis)] = (x)\n"},
-    {SK_OP_RECIPROCAL, "#define RECIPROCAL(x) (fabs(x) >= 2.2250738585072014e-308 ? 1 / (x) : 0)\n"},
-    {SK_OP_SQRT, "#define SQRT(x) sqrt((x) >= 0 ? (x) : 0)\n"},
-    {SK_OP_ABS, "#define ABS(x) fabs(x)\n"},
-    {SK_OP_LESS, "#define LESS(a, b, yes, no) ((a) < (b) ? (yes) : (no))\n"},
-    {SK_OP_EXP, "#define EXP(x) exp((x) <= 709 ? (x) : 709)\n"},
-    {SK_OP_LOG, "#define LOG(x) log((x) >= 2.2250738585072014e-308 ? (x) : 2.2250738585072014e-308)\n"},
-    {SK_OP_SIN, "#define SIN(x) sin(x)\n"},
-    {SK_OP_COS, "#define COS(x) cos(x)\n"},
-    {SK_OP_TAN, "#define TAN(x) tan(x)\n"},
-    {SK_OP_ASIN, "#define ASIN(x) asin((x) > 1 ? 1 : (x) < -1 ? -1 : (x))\n"},
-    {SK_OP_ACOS, "#define ACOS(x) acos((x) > 1 ? 1 : (x) < -1 ? -1 : (x))\n"},
-    {SK_OP_ATAN2, "#define ATAN2(y, x) atan2(y, x)\n"},
-    {SK_OP_POW, "#define POW(x, y) ((y) == 0 ? 1 : (x) > 0 ? pow(x, y) : 0)\n"},
+    {SK_NODE_CONSTANT, "#include <math.h>\n"
+                       "#define REAL double\n"
+                       "#define NUMBER(x) (x)\n"
+                       "#define POSITION(particle, axis) position[3 * (particle) + (axis)]\n"
+                       "#define VELOCITY(particle, axis) velocity[3 * (particle) + (axis)]\n"
+                       "#define PARAMETER(index) parameter[index]\n"
+                       "#define TIME time\n"
+                       "#define VALUE(component, x) value[component] = (x)\n"
+                       "#define GRADIENT(component, particle, axis, x) \\\n"
+                       "    gradient[3 * (PARTICLES * (component) + (particle)) + (axis)] = (x)\n"},
+    {SK_NODE_RECIPROCAL, "#define RECIPROCAL(x) (fabs(x) >= 2.2250738585072014e-308 ? 1 / (x) : 0)\n"},
+    {SK_NODE_SQRT, "#define SQRT(x) sqrt((x) >= 0 ? (x) : 0)\n"},
+    {SK_NODE_ABS, "#define ABS(x) fabs(x)\n"},
+    {SK_NODE_LESS, "#define LESS(a, b, yes, no) ((a) < (b) ? (yes) : (no))\n"},
+    {SK_NODE_EXP, "#define EXP(x) exp((x) <= 709 ? (x) : 709)\n"},
+    {SK_NODE_LOG, "#define LOG(x) log((x) >= 2.2250738585072014e-308 ? (x) : 2.2250738585072014e-308)\n"},
+    {SK_NODE_SIN, "#define SIN(x) sin(x)\n"},
+    {SK_NODE_COS, "#define COS(x) cos(x)\n"},
+    {SK_NODE_TAN, "#define TAN(x) tan(x)\n"},
+    {SK_NODE_ASIN, "#define ASIN(x) asin((x) > 1 ? 1 : (x) < -1 ? -1 : (x))\n"},
+    {SK_NODE_ACOS, "#define ACOS(x) acos((x) > 1 ? 1 : (x) < -1 ? -1 : (x))\n"},
+    {SK_NODE_ATAN2, "#define ATAN2(y, x) atan2(y, x)\n"},
+    {SK_NODE_POW, "#define POW(x, y) ((y) == 0 ? 1 : (x) > 0 ? pow(x, y) : 0)\n"},
 };
 
 static const char *c_text_of(size_t i) {
@@ -91,20 +91,20 @@ static void c_close(sk_writer *w) {
 }
 
 /* How C and kernels spell operations. */
-#define SPELLING                                \
-    .call = {[SK_OP_RECIPROCAL] = "RECIPROCAL", \
-             [SK_OP_SQRT] = "SQRT",             \
-             [SK_OP_ABS] = "ABS",               \
-             [SK_OP_LESS] = "LESS",             \
-             [SK_OP_EXP] = "EXP",               \
-             [SK_OP_LOG] = "LOG",               \
-             [SK_OP_SIN] = "SIN",               \
-             [SK_OP_COS] = "COS",               \
-             [SK_OP_TAN] = "TAN",               \
-             [SK_OP_ASIN] = "ASIN",             \
-             [SK_OP_ACOS] = "ACOS",             \
-             [SK_OP_ATAN2] = "ATAN2",           \
-             [SK_OP_POW] = "POW"},              \
+#define SPELLING                                  \
+    .call = {[SK_NODE_RECIPROCAL] = "RECIPROCAL", \
+             [SK_NODE_SQRT] = "SQRT",             \
+             [SK_NODE_ABS] = "ABS",               \
+             [SK_NODE_LESS] = "LESS",             \
+             [SK_NODE_EXP] = "EXP",               \
+             [SK_NODE_LOG] = "LOG",               \
+             [SK_NODE_SIN] = "SIN",               \
+             [SK_NODE_COS] = "COS",               \
+             [SK_NODE_TAN] = "TAN",               \
+             [SK_NODE_ASIN] = "ASIN",             \
+             [SK_NODE_ACOS] = "ACOS",             \
+             [SK_NODE_ATAN2] = "ATAN2",           \
+             [SK_NODE_POW] = "POW"},              \
     .declaration = "const REAL", .constant = c_constant, .input = c_input, .parameter = c_parameter
 
 const sk_language sk_c_language = {

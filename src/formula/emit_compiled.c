@@ -51,18 +51,19 @@ static size_t find_shared(sk_writer *w, const sk_node *outputs, size_t output_co
     sk_graph_mark(g, outputs, output_count, w->live);
     for (size_t i = 0; i < g->count; i++) {
         const sk_graph_node *n = &g->data[i];
-        varies[i] = n->op == SK_OP_INPUT       ? n->arg[0] != SK_INPUT_TIME
-                    : n->op == SK_OP_PARAMETER ? n->arg[0] >= (uint32_t)f->parameters
-                                               : 0;
-        for (int k = 0; n->op > SK_OP_PARAMETER && k < sk_op_info[n->op].arity; k++) varies[i] |= varies[n->arg[k]];
+        varies[i] = n->op == SK_NODE_INPUT       ? n->arg[0] != SK_INPUT_TIME
+                    : n->op == SK_NODE_PARAMETER ? n->arg[0] >= (uint32_t)f->parameters
+                                                 : 0;
+        for (int k = 0; n->op > SK_NODE_PARAMETER && k < sk_node_op_info[n->op].arity; k++)
+            varies[i] |= varies[n->arg[k]];
         w->uses[i] = 0;
     }
     for (size_t i = 0; i < g->count; i++)
-        for (int k = 0; w->live[i] && varies[i] && k < sk_op_info[g->data[i].op].arity; k++)
+        for (int k = 0; w->live[i] && varies[i] && k < sk_node_op_info[g->data[i].op].arity; k++)
             w->uses[g->data[i].arg[k]] = 1;
     for (size_t i = 0; i < output_count; i++) w->uses[outputs[i]] = 1;
     for (size_t i = 0; i < g->count && count < MOST_SHARED; i++)
-        if (w->live[i] && w->uses[i] && !varies[i] && g->data[i].op > SK_OP_PARAMETER) shared[count++] = (sk_node)i;
+        if (w->live[i] && w->uses[i] && !varies[i] && g->data[i].op > SK_NODE_PARAMETER) shared[count++] = (sk_node)i;
     return count;
 }
 

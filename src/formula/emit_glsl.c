@@ -7,15 +7,15 @@ static const struct {
     int op;
     const char *text;
 } glsl_helpers[] = {
-    {SK_OP_RECIPROCAL,
+    {SK_NODE_RECIPROCAL,
      "float formula_reciprocal(float x) {\n    return abs(x) >= 1.17549435e-38 ? 1.0 / x : 0.0;\n}\n"},
-    {SK_OP_SQRT, "float formula_sqrt(float x) {\n    return x >= 0.0 ? sqrt(x) : 0.0;\n}\n"},
-    {SK_OP_LESS, "float formula_less(float a, float b, float yes, float no) {\n    return a < b ? yes : no;\n}\n"},
-    {SK_OP_EXP, "float formula_exp(float x) {\n    return exp(min(x, 88.0));\n}\n"},
-    {SK_OP_LOG, "float formula_log(float x) {\n    return log(max(x, 1.17549435e-38));\n}\n"},
-    {SK_OP_ASIN, "float formula_asin(float x) {\n    return asin(clamp(x, -1.0, 1.0));\n}\n"},
-    {SK_OP_ACOS, "float formula_acos(float x) {\n    return acos(clamp(x, -1.0, 1.0));\n}\n"},
-    {SK_OP_POW, "float formula_pow(float x, float y) {\n    return y == 0.0 ? 1.0 : x > 0.0 ? pow(x, y) : 0.0;\n}\n"},
+    {SK_NODE_SQRT, "float formula_sqrt(float x) {\n    return x >= 0.0 ? sqrt(x) : 0.0;\n}\n"},
+    {SK_NODE_LESS, "float formula_less(float a, float b, float yes, float no) {\n    return a < b ? yes : no;\n}\n"},
+    {SK_NODE_EXP, "float formula_exp(float x) {\n    return exp(min(x, 88.0));\n}\n"},
+    {SK_NODE_LOG, "float formula_log(float x) {\n    return log(max(x, 1.17549435e-38));\n}\n"},
+    {SK_NODE_ASIN, "float formula_asin(float x) {\n    return asin(clamp(x, -1.0, 1.0));\n}\n"},
+    {SK_NODE_ACOS, "float formula_acos(float x) {\n    return acos(clamp(x, -1.0, 1.0));\n}\n"},
+    {SK_NODE_POW, "float formula_pow(float x, float y) {\n    return y == 0.0 ? 1.0 : x > 0.0 ? pow(x, y) : 0.0;\n}\n"},
 };
 
 static const char *glsl_text_of(size_t i) {
@@ -90,12 +90,12 @@ static void shader_parameter(sk_writer *w, uint32_t parameter) {
 }
 
 /* How operations that are functions are written. */
-#define GLSL_CALLS                                                                                                    \
-    {                                                                                                                 \
-        [SK_OP_RECIPROCAL] = "formula_reciprocal", [SK_OP_SQRT] = "formula_sqrt", [SK_OP_ABS] = "abs",                \
-        [SK_OP_LESS] = "formula_less", [SK_OP_EXP] = "formula_exp", [SK_OP_LOG] = "formula_log", [SK_OP_SIN] = "sin", \
-        [SK_OP_COS] = "cos", [SK_OP_TAN] = "tan", [SK_OP_ASIN] = "formula_asin", [SK_OP_ACOS] = "formula_acos",       \
-        [SK_OP_ATAN2] = "atan", [SK_OP_POW] = "formula_pow"                                                           \
+#define GLSL_CALLS                                                                                            \
+    {                                                                                                         \
+        [SK_NODE_RECIPROCAL] = "formula_reciprocal", [SK_NODE_SQRT] = "formula_sqrt", [SK_NODE_ABS] = "abs",  \
+        [SK_NODE_LESS] = "formula_less", [SK_NODE_EXP] = "formula_exp", [SK_NODE_LOG] = "formula_log",        \
+        [SK_NODE_SIN] = "sin", [SK_NODE_COS] = "cos", [SK_NODE_TAN] = "tan", [SK_NODE_ASIN] = "formula_asin", \
+        [SK_NODE_ACOS] = "formula_acos", [SK_NODE_ATAN2] = "atan", [SK_NODE_POW] = "formula_pow"              \
     }
 
 const sk_language sk_glsl_language = {.call = GLSL_CALLS,

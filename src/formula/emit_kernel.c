@@ -25,14 +25,14 @@ static bool is_zero(const sk_graph *g, sk_node node) {
 }
 
 static component without_sign(const sk_graph *g, sk_node node) {
-    bool negative = g->data[node].op == SK_OP_NEGATE;
+    bool negative = g->data[node].op == SK_NODE_NEGATE;
     return (component){negative ? g->data[node].arg[0] : node, negative};
 }
 
 /* The other factor of a product; false if the node is no product with that factor. */
 static bool divide_by(const sk_graph *g, sk_node product, sk_node factor, sk_node *other) {
     const sk_graph_node *n = &g->data[product];
-    if (n->op != SK_OP_MULTIPLY || (n->arg[0] != factor && n->arg[1] != factor)) return false;
+    if (n->op != SK_NODE_MULTIPLY || (n->arg[0] != factor && n->arg[1] != factor)) return false;
     *other = n->arg[n->arg[0] == factor];
     return true;
 }
@@ -43,12 +43,13 @@ static bool is_square_of(const sk_graph *g, sk_node node, const component y[3]) 
     bool found[3] = {false, false, false};
     for (int count = 1; count > 0;) {
         const sk_graph_node *n = &g->data[todo[--count]];
-        if (n->op == SK_OP_ADD && count + 2 < 8) {
+        if (n->op == SK_NODE_ADD && count + 2 < 8) {
             todo[count++] = n->arg[0], todo[count++] = n->arg[1];
             continue;
         }
         int k = 0;
-        while (k < 3 && (found[k] || n->op != SK_OP_MULTIPLY || n->arg[0] != n->arg[1] || n->arg[0] != y[k].node)) k++;
+        while (k < 3 && (found[k] || n->op != SK_NODE_MULTIPLY || n->arg[0] != n->arg[1] || n->arg[0] != y[k].node))
+            k++;
         if (k == 3) return false;
         found[k] = true;
     }
@@ -63,9 +64,9 @@ static bool find_divisor(const skein_formula *f, component *y, sk_node *divisor)
     for (int side = 0; side < 2; side++) {
         const sk_graph_node *first = &g->data[y[0].node];
         sk_node factor = first->arg[side], bare[SK_INPUT_VELOCITY];
-        if (first->op != SK_OP_MULTIPLY || g->data[factor].op != SK_OP_RECIPROCAL) continue;
+        if (first->op != SK_NODE_MULTIPLY || g->data[factor].op != SK_NODE_RECIPROCAL) continue;
         *divisor = g->data[factor].arg[0];
-        bool all = g->data[*divisor].op == SK_OP_SQRT;
+        bool all = g->data[*divisor].op == SK_NODE_SQRT;
         for (int i = 0; i < count && all; i++) all = divide_by(g, y[i].node, factor, &bare[i]);
         for (int p = 0; p < f->particles && all; p++) {
             component of[3] = {{bare[3 * p], false}, {bare[3 * p + 1], false}, {bare[3 * p + 2], false}};

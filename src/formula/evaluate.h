@@ -6,8 +6,8 @@
 #include "formula/graph.h"
 
 /* One operation; `guarded` is set where a guard acted, and else left alone. */
-double sk_apply_double(sk_op op, const double *arguments, bool *guarded);
-float sk_apply_float(sk_op op, const float *arguments, bool *guarded);
+double sk_apply_double(sk_node_op op, const double *arguments, bool *guarded);
+float sk_apply_float(sk_node_op op, const float *arguments, bool *guarded);
 
 /* Every live node into values[node]. Returns whether a guard acted. `inputs` are SK_INPUT_COUNT numbers. */
 bool sk_evaluate_double(const sk_graph *graph, const bool *live, const double *inputs, const double *parameters,

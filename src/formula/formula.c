@@ -141,7 +141,7 @@ skein_formula_info skein_formula_about(const skein_formula *f) {
     bool *live = sk_allocate(&allocator, f->graph.count * sizeof *live);
     if (live) sk_graph_mark(&f->graph, outputs, outputs_of(f, outputs), live);
     for (size_t i = 0; i < f->graph.count && live; i++)
-        info.operations += live[i] && f->graph.data[i].op > SK_OP_PARAMETER;
+        info.operations += live[i] && f->graph.data[i].op > SK_NODE_PARAMETER;
     sk_release(&allocator, live);
     return info;
 }

@@ -19,34 +19,34 @@
 
 typedef uint32_t sk_node;
 
-typedef enum sk_op {
-    SK_OP_CONSTANT,
-    SK_OP_INPUT,
-    SK_OP_PARAMETER,
-    SK_OP_ADD,
-    SK_OP_SUBTRACT,
-    SK_OP_MULTIPLY,
-    SK_OP_NEGATE,
-    SK_OP_RECIPROCAL,
-    SK_OP_SQRT,
-    SK_OP_ABS,
-    SK_OP_LESS, /* a < b ? c : d; all that is piecewise is made of these */
-    SK_OP_EXP,
-    SK_OP_LOG,
-    SK_OP_SIN,
-    SK_OP_COS,
-    SK_OP_TAN,
-    SK_OP_ASIN,
-    SK_OP_ACOS,
-    SK_OP_ATAN2, /* y, x */
-    SK_OP_POW,
-    SK_OP_COUNT
-} sk_op;
+typedef enum sk_node_op {
+    SK_NODE_CONSTANT,
+    SK_NODE_INPUT,
+    SK_NODE_PARAMETER,
+    SK_NODE_ADD,
+    SK_NODE_SUBTRACT,
+    SK_NODE_MULTIPLY,
+    SK_NODE_NEGATE,
+    SK_NODE_RECIPROCAL,
+    SK_NODE_SQRT,
+    SK_NODE_ABS,
+    SK_NODE_LESS, /* a < b ? c : d; all that is piecewise is made of these */
+    SK_NODE_EXP,
+    SK_NODE_LOG,
+    SK_NODE_SIN,
+    SK_NODE_COS,
+    SK_NODE_TAN,
+    SK_NODE_ASIN,
+    SK_NODE_ACOS,
+    SK_NODE_ATAN2, /* y, x */
+    SK_NODE_POW,
+    SK_NODE_COUNT
+} sk_node_op;
 
-extern const struct sk_op_info {
+extern const struct sk_node_op_info {
     const char *name;
     int arity;
-} sk_op_info[SK_OP_COUNT];
+} sk_node_op_info[SK_NODE_COUNT];
 
 /* Inputs: coordinates of positions, then of velocities, then time. */
 enum {
@@ -95,12 +95,12 @@ sk_node sk_minus(sk_graph *graph, sk_node a, sk_node b);
 sk_node sk_times(sk_graph *graph, sk_node a, sk_node b);
 sk_node sk_over(sk_graph *graph, sk_node a, sk_node b); /* a (1/b) */
 sk_node sk_negative_of(sk_graph *graph, sk_node a);
-sk_node sk_of(sk_graph *graph, sk_op op, sk_node a); /* an operation on one argument */
+sk_node sk_of(sk_graph *graph, sk_node_op op, sk_node a); /* an operation on one argument */
 sk_node sk_less(sk_graph *graph, sk_node a, sk_node b, sk_node yes, sk_node no);
 sk_node sk_arctangent(sk_graph *graph, sk_node y, sk_node x);
 sk_node sk_power(sk_graph *graph, sk_node x, sk_node y);
 /* A sum or a product as it stands: without the rules that draw signs and constants out of it. */
-sk_node sk_plain(sk_graph *graph, sk_op op, sk_node a, sk_node b);
+sk_node sk_plain(sk_graph *graph, sk_node_op op, sk_node a, sk_node b);
 
 bool sk_is_constant(const sk_graph *graph, sk_node node, double *value);
 

@@ -128,7 +128,7 @@ skein_formula *sk_formula_of_field(const char *field, const char *text, skein_fo
 static bool names_parameter(const skein_formula *formula, uint32_t parameter) {
     for (size_t i = 0; i < formula->graph.count; i++) {
         const sk_graph_node *node = &formula->graph.data[i];
-        if (node->op == SK_OP_PARAMETER && node->arg[0] == parameter) return true;
+        if (node->op == SK_NODE_PARAMETER && node->arg[0] == parameter) return true;
     }
     return false;
 }

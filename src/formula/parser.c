@@ -257,7 +257,7 @@ static void read_let(parser *p) {
     memcpy(f->let_name[f->lets], name.name, SK_NAME_SIZE);
     defined.name = f->let_name[f->lets];
     for (int i = 0; i < (defined.value.type == SK_VECTOR3 ? 3 : 1); i++)
-        if (defined.value.node[i] < p->graph->count && p->graph->data[defined.value.node[i]].op > SK_OP_PARAMETER)
+        if (defined.value.node[i] < p->graph->count && p->graph->data[defined.value.node[i]].op > SK_NODE_PARAMETER)
             p->graph->data[defined.value.node[i]].name = defined.name;
     p->lets[f->lets++] = defined;
 }

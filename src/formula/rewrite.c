@@ -35,7 +35,7 @@ sk_term sk_term_product(sk_graph *g, sk_term a, sk_term b) {
     double factor = a.factor * b.factor;
     if (is_one(g, a.node)) return (sk_term){factor, b.node};
     if (is_one(g, b.node)) return (sk_term){factor, a.node};
-    return (sk_term){factor, sk_plain(g, SK_OP_MULTIPLY, a.node, b.node)};
+    return (sk_term){factor, sk_plain(g, SK_NODE_MULTIPLY, a.node, b.node)};
 }
 
 sk_term sk_term_sum(sk_graph *g, sk_term a, sk_term b) {
@@ -57,19 +57,19 @@ static sk_term just(sk_graph *g, sk_node node) {
 /* A node from its arguments' terms. */
 static sk_term rewrite(sk_graph *g, sk_node node, const sk_term *of) {
     const sk_graph_node n = g->data[node];
-    if (n.op <= SK_OP_PARAMETER) return just(g, node);
+    if (n.op <= SK_NODE_PARAMETER) return just(g, node);
     const sk_term a = of[n.arg[0]], b = of[n.arg[1]];
     switch (n.op) {
-    case SK_OP_ADD: return sk_term_sum(g, a, b);
-    case SK_OP_SUBTRACT: return sk_term_sum(g, a, (sk_term){-b.factor, b.node});
-    case SK_OP_MULTIPLY: return sk_term_product(g, a, b);
-    case SK_OP_NEGATE: return (sk_term){-a.factor, a.node};
-    case SK_OP_RECIPROCAL: {
+    case SK_NODE_ADD: return sk_term_sum(g, a, b);
+    case SK_NODE_SUBTRACT: return sk_term_sum(g, a, (sk_term){-b.factor, b.node});
+    case SK_NODE_MULTIPLY: return sk_term_product(g, a, b);
+    case SK_NODE_NEGATE: return (sk_term){-a.factor, a.node};
+    case SK_NODE_RECIPROCAL: {
         sk_term size = sk_term_whole(g, a);
-        sk_term inverse = just(g, sk_of(g, SK_OP_RECIPROCAL, size.node));
+        sk_term inverse = just(g, sk_of(g, SK_NODE_RECIPROCAL, size.node));
         return (sk_term){size.factor * inverse.factor, inverse.node};
     }
-    case SK_OP_LESS: {
+    case SK_NODE_LESS: {
         sk_node left = sk_term_node(g, a), right = sk_term_node(g, b), zero = sk_constant(g, 0);
         const sk_term yes = of[n.arg[2]], no = of[n.arg[3]];
         if (no.factor == 0 && yes.factor != 0) return (sk_term){yes.factor, sk_less(g, left, right, yes.node, zero)};
@@ -77,12 +77,12 @@ static sk_term rewrite(sk_graph *g, sk_node node, const sk_term *of) {
         sk_node first = sk_term_node(g, yes), second = sk_term_node(g, no);
         return just(g, sk_less(g, left, right, first, second));
     }
-    case SK_OP_ATAN2:
-    case SK_OP_POW: {
+    case SK_NODE_ATAN2:
+    case SK_NODE_POW: {
         sk_node first = sk_term_node(g, a), second = sk_term_node(g, b);
-        return just(g, n.op == SK_OP_POW ? sk_power(g, first, second) : sk_arctangent(g, first, second));
+        return just(g, n.op == SK_NODE_POW ? sk_power(g, first, second) : sk_arctangent(g, first, second));
     }
-    default: return just(g, sk_of(g, (sk_op)n.op, sk_term_node(g, a)));
+    default: return just(g, sk_of(g, (sk_node_op)n.op, sk_term_node(g, a)));
     }
 }
 
@@ -113,16 +113,16 @@ static uint64_t constant_modulo(double value) {
 static uint64_t value_modulo(const sk_graph *g, sk_node node, const uint64_t *of) {
     const sk_graph_node *n = &g->data[node];
     uint64_t a, b, hash = sk_hash_word(SK_HASH_START, n->op);
-    if (n->op == SK_OP_CONSTANT) return constant_modulo(n->value);
-    if (n->op <= SK_OP_PARAMETER) return sk_hash_mix(sk_hash_word(hash, n->arg[0])) % PRIME;
+    if (n->op == SK_NODE_CONSTANT) return constant_modulo(n->value);
+    if (n->op <= SK_NODE_PARAMETER) return sk_hash_mix(sk_hash_word(hash, n->arg[0])) % PRIME;
     a = of[n->arg[0]], b = of[n->arg[1]];
     switch (n->op) {
-    case SK_OP_ADD: return (a + b) % PRIME;
-    case SK_OP_SUBTRACT: return (a + PRIME - b) % PRIME;
-    case SK_OP_NEGATE: return (PRIME - a) % PRIME;
-    case SK_OP_MULTIPLY: return times_modulo(a, b);
+    case SK_NODE_ADD: return (a + b) % PRIME;
+    case SK_NODE_SUBTRACT: return (a + PRIME - b) % PRIME;
+    case SK_NODE_NEGATE: return (PRIME - a) % PRIME;
+    case SK_NODE_MULTIPLY: return times_modulo(a, b);
     default:
-        for (int k = 0; k < sk_op_info[n->op].arity; k++) hash = sk_hash_word(hash, of[n->arg[k]]);
+        for (int k = 0; k < sk_node_op_info[n->op].arity; k++) hash = sk_hash_word(hash, of[n->arg[k]]);
         return sk_hash_mix(hash) % PRIME;
     }
 }

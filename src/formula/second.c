@@ -51,16 +51,16 @@ static sk_term sum_of(sk_graph *g, sk_term *terms, size_t count) {
 static double drift_of(const sk_graph *g, sk_node node, uint32_t axis, const double *of) {
     const sk_graph_node *n = &g->data[node];
     if (!(n->uses & SK_USES_POSITION)) return 0;
-    if (n->op == SK_OP_INPUT) return n->arg[0] % 3 == axis;
+    if (n->op == SK_NODE_INPUT) return n->arg[0] % 3 == axis;
     double k, a = of[n->arg[0]], b = of[n->arg[1]];
     switch (n->op) {
-    case SK_OP_ADD: return a + b;
-    case SK_OP_SUBTRACT: return a - b;
-    case SK_OP_NEGATE: return -a;
-    case SK_OP_MULTIPLY: return sk_is_constant(g, n->arg[0], &k) ? k * b : a == 0 && b == 0 ? 0 : NAN;
-    case SK_OP_LESS: return a == b && of[n->arg[2]] == of[n->arg[3]] ? of[n->arg[2]] : NAN;
+    case SK_NODE_ADD: return a + b;
+    case SK_NODE_SUBTRACT: return a - b;
+    case SK_NODE_NEGATE: return -a;
+    case SK_NODE_MULTIPLY: return sk_is_constant(g, n->arg[0], &k) ? k * b : a == 0 && b == 0 ? 0 : NAN;
+    case SK_NODE_LESS: return a == b && of[n->arg[2]] == of[n->arg[3]] ? of[n->arg[2]] : NAN;
     default:
-        for (int i = 0; i < sk_op_info[n->op].arity; i++)
+        for (int i = 0; i < sk_node_op_info[n->op].arity; i++)
             if (of[n->arg[i]] != 0) return NAN;
         return 0;
     }
@@ -82,9 +82,9 @@ static bool stays_where_all_move(sk_graph *g, sk_node output) {
 static size_t find_origin(const sk_graph *g, sk_node output, size_t particles) {
     size_t uses[SK_FORMULA_PARTICLES] = {0}, origin = 0;
     for (size_t i = 0; i <= output; i++)
-        for (int k = 0; k < sk_op_info[g->data[i].op].arity; k++) {
+        for (int k = 0; k < sk_node_op_info[g->data[i].op].arity; k++) {
             const sk_graph_node *n = &g->data[g->data[i].arg[k]];
-            if (n->op == SK_OP_INPUT && n->arg[0] < SK_INPUT_VELOCITY) uses[n->arg[0] / 3]++;
+            if (n->op == SK_NODE_INPUT && n->arg[0] < SK_INPUT_VELOCITY) uses[n->arg[0] / 3]++;
         }
     for (size_t p = 1; p < particles; p++)
         if (uses[p] > uses[origin]) origin = p;
@@ -224,7 +224,7 @@ typedef struct cuts {
 } cuts;
 
 static bool is_linear(const sk_graph *g, const sk_graph_node *n) {
-    if (n->op != SK_OP_MULTIPLY) return n->op == SK_OP_ADD || n->op == SK_OP_SUBTRACT || n->op == SK_OP_NEGATE;
+    if (n->op != SK_NODE_MULTIPLY) return n->op == SK_NODE_ADD || n->op == SK_NODE_SUBTRACT || n->op == SK_NODE_NEGATE;
     return !(g->data[n->arg[0]].uses & g->data[n->arg[1]].uses & SK_USES_POSITION);
 }
 
@@ -236,9 +236,9 @@ static void open_down_to(const maker *m, size_t last, bool *reached, cuts *found
     reached[m->output] = true;
     for (size_t i = (size_t)m->output + 1; i-- > last;) {
         const sk_graph_node *n = &g->data[i];
-        if (!reached[i] || n->op == SK_OP_INPUT) continue;
+        if (!reached[i] || n->op == SK_NODE_INPUT) continue;
         reached[i] = false, size--, bends += !is_linear(g, n);
-        for (int k = n->op == SK_OP_LESS ? 2 : 0; k < sk_op_info[n->op].arity; k++) {
+        for (int k = n->op == SK_NODE_LESS ? 2 : 0; k < sk_node_op_info[n->op].arity; k++) {
             bool counts = (g->data[n->arg[k]].uses & SK_USES_POSITION) && !reached[n->arg[k]];
             if (counts) reached[n->arg[k]] = true, size++;
         }
@@ -252,7 +252,7 @@ static size_t count_operations(const maker *m, const sk_node *hessian, size_t si
     const sk_graph *g = m->graph;
     size_t count = 0;
     sk_graph_mark(g, hessian, size * size, live);
-    for (size_t i = 0; i < g->count; i++) count += live[i] && g->data[i].op > SK_OP_PARAMETER;
+    for (size_t i = 0; i < g->count; i++) count += live[i] && g->data[i].op > SK_NODE_PARAMETER;
     return count;
 }
 
@@ -274,7 +274,7 @@ static sk_node left_over(const maker *m, size_t row, size_t axis, const sk_node 
         sk_node entry = hessian[row * 3 * m->particles + 3 * p + axis];
         double value;
         if (p == m->left_out || (sk_is_constant(g, entry, &value) && value == 0)) continue;
-        sum = any ? sk_plain(g, SK_OP_ADD, sum, entry) : entry;
+        sum = any ? sk_plain(g, SK_NODE_ADD, sum, entry) : entry;
         any = true;
     }
     return sk_negative_of(g, sum);

@@ -41,11 +41,11 @@ typedef struct builder {
     } while (0)
 
 static bool is_sum(const builder *b, sk_node node) {
-    return b->graph->data[node].op == SK_OP_ADD || b->graph->data[node].op == SK_OP_SUBTRACT;
+    return b->graph->data[node].op == SK_NODE_ADD || b->graph->data[node].op == SK_NODE_SUBTRACT;
 }
 
 static bool is_leaf(const builder *b, sk_node node) {
-    return b->graph->data[node].op <= SK_OP_PARAMETER;
+    return b->graph->data[node].op <= SK_NODE_PARAMETER;
 }
 
 /* ---- which nodes are instructions ---- */
@@ -55,7 +55,7 @@ static void count_uses(builder *b, const sk_node *outputs, size_t output_count, 
     for (size_t i = 0; i < b->graph->count; i++) {
         const sk_graph_node *n = &b->graph->data[i];
         b->plan[i].live = live[i];
-        for (int k = 0; live[i] && k < sk_op_info[n->op].arity; k++) {
+        for (int k = 0; live[i] && k < sk_node_op_info[n->op].arity; k++) {
             b->plan[n->arg[k]].uses++;
             b->plan[n->arg[k]].uses_in_sums += is_sum(b, (sk_node)i);
         }
@@ -65,7 +65,7 @@ static void count_uses(builder *b, const sk_node *outputs, size_t output_count, 
 /* A sum's argument that may be its first two terms. What is subtracted may not: a - (b + c) rounds otherwise. */
 static int prefix_of(const builder *b, sk_node node) {
     const sk_graph_node *n = &b->graph->data[node];
-    for (int k = 0; k < (n->op == SK_OP_ADD ? 2 : 1); k++) {
+    for (int k = 0; k < (n->op == SK_NODE_ADD ? 2 : 1); k++) {
         const plan_of_node *argument = &b->plan[n->arg[k]];
         if (is_sum(b, n->arg[k]) && argument->uses == 1 && !argument->is_output && argument->terms == 2) return k;
     }
@@ -76,7 +76,7 @@ static int prefix_of(const builder *b, sk_node node) {
 static bool only_adds(const builder *b, sk_node sum) {
     int prefix = b->plan[sum].terms == 3 ? prefix_of(b, sum) : -1;
     const sk_graph_node *n = &b->graph->data[sum];
-    return n->op == SK_OP_ADD && (prefix < 0 || b->graph->data[n->arg[prefix]].op == SK_OP_ADD);
+    return n->op == SK_NODE_ADD && (prefix < 0 || b->graph->data[n->arg[prefix]].op == SK_NODE_ADD);
 }
 
 /* A product is computed anew in each of the sums that read it where these are two at the most, since a load and a
@@ -86,9 +86,9 @@ static void choose_instructions(builder *b) {
     for (size_t i = 0; i < b->graph->count; i++) {
         plan_of_node *plan = &b->plan[i];
         if (!plan->live) continue;
-        if (b->graph->data[i].op == SK_OP_MULTIPLY)
+        if (b->graph->data[i].op == SK_NODE_MULTIPLY)
             plan->inside = !plan->is_output && plan->uses == plan->uses_in_sums && plan->uses <= MOST_COPIES;
-        if (b->graph->data[i].op == SK_OP_NEGATE) {
+        if (b->graph->data[i].op == SK_NODE_NEGATE) {
             sk_node sum = b->graph->data[i].arg[0];
             const plan_of_node *of = &b->plan[sum];
             if (is_sum(b, sum) && of->uses == 1 && !of->is_output && only_adds(b, sum)) b->plan[sum].inside = true;
@@ -104,7 +104,7 @@ static void choose_instructions(builder *b) {
 
 static unsigned add_term(const builder *b, sk_node node, sk_node operands[6], int *count) {
     const sk_graph_node *n = &b->graph->data[node];
-    bool product = n->op == SK_OP_MULTIPLY && b->plan[node].inside;
+    bool product = n->op == SK_NODE_MULTIPLY && b->plan[node].inside;
     operands[(*count)++] = product ? n->arg[0] : node;
     if (product) operands[(*count)++] = n->arg[1];
     return product;
@@ -116,10 +116,10 @@ static int operands_of_sum(const builder *b, sk_node node, sk_node operands[6], 
     int prefix = b->plan[node].terms == 3 ? prefix_of(b, node) : -1;
     const sk_graph_node *two = prefix < 0 ? n : &b->graph->data[n->arg[prefix]];
     unsigned number = add_term(b, two->arg[0], operands, &count);
-    number = number * 4 + (two->op == SK_OP_SUBTRACT ? 2 : 0) + add_term(b, two->arg[1], operands, &count);
+    number = number * 4 + (two->op == SK_NODE_SUBTRACT ? 2 : 0) + add_term(b, two->arg[1], operands, &count);
     *op = (uint16_t)(SK_TAPE_SUM2 + number);
     if (prefix < 0) return count;
-    number = number * 4 + (n->op == SK_OP_SUBTRACT ? 2 : 0) + add_term(b, n->arg[1 - prefix], operands, &count);
+    number = number * 4 + (n->op == SK_NODE_SUBTRACT ? 2 : 0) + add_term(b, n->arg[1 - prefix], operands, &count);
     *op = (uint16_t)(SK_TAPE_SUM3 + number);
     return count;
 }
@@ -128,7 +128,7 @@ static int operands_of_sum(const builder *b, sk_node node, sk_node operands[6], 
 static int operands_of(const builder *b, sk_node node, sk_node operands[6], uint16_t *op) {
     const sk_graph_node *n = &b->graph->data[node];
     int count = 0;
-    if (n->op == SK_OP_NEGATE && is_sum(b, n->arg[0]) && b->plan[n->arg[0]].inside) {
+    if (n->op == SK_NODE_NEGATE && is_sum(b, n->arg[0]) && b->plan[n->arg[0]].inside) {
         uint16_t sum;
         count = operands_of_sum(b, n->arg[0], operands, &sum);
         // without the signs' bits, which are 0
@@ -139,7 +139,7 @@ static int operands_of(const builder *b, sk_node node, sk_node operands[6], uint
     }
     if (!is_sum(b, node)) {
         *op = n->op;
-        for (; count < sk_op_info[n->op].arity; count++) operands[count] = n->arg[count];
+        for (; count < sk_node_op_info[n->op].arity; count++) operands[count] = n->arg[count];
         return count;
     }
     return operands_of_sum(b, node, operands, op);
@@ -193,14 +193,14 @@ static void load_leaves(builder *b) {
         plan_of_node *plan = &b->plan[i];
         uint8_t index = (uint8_t)n->arg[0];
         if (!plan->live) continue;
-        if (n->op == SK_OP_CONSTANT) {
+        if (n->op == SK_NODE_CONSTANT) {
             plan->place = new_registers(b, 1);
             PUSH(b, &b->tape->constants, (sk_tape_constant){plan->place, (real)n->value});
-        } else if (n->op == SK_OP_PARAMETER || (n->op == SK_OP_INPUT && index == SK_INPUT_TIME)) {
+        } else if (n->op == SK_NODE_PARAMETER || (n->op == SK_NODE_INPUT && index == SK_INPUT_TIME)) {
             plan->place = new_registers(b, 1);
-            uint8_t source = n->op == SK_OP_PARAMETER ? SK_TAPE_PARAMETER : SK_TAPE_TIME;
+            uint8_t source = n->op == SK_NODE_PARAMETER ? SK_TAPE_PARAMETER : SK_TAPE_TIME;
             PUSH(b, &b->tape->loads, (sk_tape_load){source, index, plan->place});
-        } else if (n->op == SK_OP_INPUT) {
+        } else if (n->op == SK_NODE_INPUT) {
             uint16_t *first = &particle[index / 3];
             bool velocity = index >= SK_INPUT_VELOCITY;
             uint8_t number = (uint8_t)(index / 3 - (velocity ? SK_FORMULA_PARTICLES : 0));

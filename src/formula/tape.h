@@ -17,7 +17,7 @@
 /* A sum of two or three terms is an instruction: each term a register (A) or the product of two (P). Its number says
  * which: a bit for each term, and one for each sign. And so is minus the sum of two or three that are added. */
 enum {
-    SK_TAPE_SUM2 = SK_OP_COUNT,         /* + 4 (first is P) + 2 (minus) + (second is P) */
+    SK_TAPE_SUM2 = SK_NODE_COUNT,       /* + 4 (first is P) + 2 (minus) + (second is P) */
     SK_TAPE_SUM3 = SK_TAPE_SUM2 + 8,    /* + 16 (first is P) + 8 (minus) + 4 (second is P) + 2 (minus) + (third is P) */
     SK_TAPE_MINUS2 = SK_TAPE_SUM3 + 32, /* + 2 (first is P) + (second is P) */
     SK_TAPE_MINUS3 = SK_TAPE_MINUS2 + 4, /* + 4 (first is P) + 2 (second is P) + (third is P) */

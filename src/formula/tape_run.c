@@ -140,21 +140,21 @@ SK_INLINE void run_code(const sk_tape *tape, sk_wide *registers, sk_mask *guarde
             SUMS(SUM2)
             SUMS(SUM3_OF)
             MINUS
-        case SK_OP_MULTIPLY: EACH(FROM(0) * FROM(1));
-        case SK_OP_NEGATE: EACH(-FROM(0));
-        case SK_OP_RECIPROCAL: EACH(reciprocal(FROM(0), &guarded[i]));
-        case SK_OP_SQRT: EACH(root(FROM(0), &guarded[i]));
-        case SK_OP_ABS: EACH(sk_wide_abs(FROM(0)));
-        case SK_OP_LESS: EACH(sk_select(sk_more(FROM(1), FROM(0)), FROM(2), FROM(3)));
-        case SK_OP_EXP: CALL(exp);
-        case SK_OP_LOG: CALL(log);
-        case SK_OP_SIN: CALL(sin);
-        case SK_OP_COS: CALL(cos);
-        case SK_OP_TAN: CALL(tan);
-        case SK_OP_ASIN: CALL(asin);
-        case SK_OP_ACOS: CALL(acos);
-        case SK_OP_ATAN2: CALL(atan2);
-        case SK_OP_POW: CALL(pow);
+        case SK_NODE_MULTIPLY: EACH(FROM(0) * FROM(1));
+        case SK_NODE_NEGATE: EACH(-FROM(0));
+        case SK_NODE_RECIPROCAL: EACH(reciprocal(FROM(0), &guarded[i]));
+        case SK_NODE_SQRT: EACH(root(FROM(0), &guarded[i]));
+        case SK_NODE_ABS: EACH(sk_wide_abs(FROM(0)));
+        case SK_NODE_LESS: EACH(sk_select(sk_more(FROM(1), FROM(0)), FROM(2), FROM(3)));
+        case SK_NODE_EXP: CALL(exp);
+        case SK_NODE_LOG: CALL(log);
+        case SK_NODE_SIN: CALL(sin);
+        case SK_NODE_COS: CALL(cos);
+        case SK_NODE_TAN: CALL(tan);
+        case SK_NODE_ASIN: CALL(asin);
+        case SK_NODE_ACOS: CALL(acos);
+        case SK_NODE_ATAN2: CALL(atan2);
+        case SK_NODE_POW: CALL(pow);
         default: break;
         }
     }

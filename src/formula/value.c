@@ -54,7 +54,7 @@ static sk_value minus_of(sk_graph *g, const sk_value *u, const sk_value *v) {
 }
 
 static sk_node length_of(sk_graph *g, const sk_value *v) {
-    return sk_of(g, SK_OP_SQRT, dot_of(g, v, v));
+    return sk_of(g, SK_NODE_SQRT, dot_of(g, v, v));
 }
 
 static sk_value apply_dot(sk_graph *g, const sk_value *a) {
@@ -72,7 +72,7 @@ static sk_value apply_length(sk_graph *g, const sk_value *a) {
 }
 
 static sk_value apply_normalize(sk_graph *g, const sk_value *a) {
-    sk_node over = sk_of(g, SK_OP_RECIPROCAL, length_of(g, &a[0]));
+    sk_node over = sk_of(g, SK_NODE_RECIPROCAL, length_of(g, &a[0]));
     sk_value out = {.type = SK_VECTOR3};
     for (int i = 0; i < 3; i++) out.node[i] = sk_times(g, a->node[i], over);
     return out;
@@ -113,15 +113,15 @@ static sk_value apply_dihedral(sk_graph *g, const sk_value *p) {
     static sk_value apply_##name_(sk_graph *g, const sk_value *a) { \
         return sk_number(sk_of(g, op_, a->node[0]));                \
     }
-UNARY(sqrt, SK_OP_SQRT)
-UNARY(exp, SK_OP_EXP)
-UNARY(log, SK_OP_LOG)
-UNARY(sin, SK_OP_SIN)
-UNARY(cos, SK_OP_COS)
-UNARY(tan, SK_OP_TAN)
-UNARY(asin, SK_OP_ASIN)
-UNARY(acos, SK_OP_ACOS)
-UNARY(abs, SK_OP_ABS)
+UNARY(sqrt, SK_NODE_SQRT)
+UNARY(exp, SK_NODE_EXP)
+UNARY(log, SK_NODE_LOG)
+UNARY(sin, SK_NODE_SIN)
+UNARY(cos, SK_NODE_COS)
+UNARY(tan, SK_NODE_TAN)
+UNARY(asin, SK_NODE_ASIN)
+UNARY(acos, SK_NODE_ACOS)
+UNARY(abs, SK_NODE_ABS)
 #undef UNARY
 
 static sk_value apply_atan2(sk_graph *g, const sk_value *a) {

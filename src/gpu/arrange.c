@@ -5,7 +5,7 @@
 
 #include "base/status.h"
 #include "gpu/device.h"
-#include "gpu/rows.h"
+#include "gpu/ops.h"
 
 enum { GATHER, COPY, GATHER_NUMBERS, COPY_NUMBERS, SCATTER };
 
@@ -13,12 +13,12 @@ enum { GATHER, COPY, GATHER_NUMBERS, COPY_NUMBERS, SCATTER };
  * are built in any order. */
 enum { STEPS_BETWEEN = 64, FIRST_STEPS = 2 };
 
-/* No row is told slots: each is about everybody. */
+/* No op is told slots: each is about everybody. */
 static bool is_possible(const sk_gpu_device *device, const skein_world *world) {
     bool walks = false;
     if (!device->identity) return false;
     for (size_t r = 0; r < world->plan.count; r++)
-        if (!sk_gpu_row_knows_no_slots(&world->plan.data[r], device->particle_count)) return false;
+        if (!sk_gpu_op_knows_no_slots(&world->plan.data[r], device->particle_count)) return false;
     for (size_t i = 0; i < device->passes.count; i++) walks |= device->passes.data[i].kind == SK_GPU_NEIGHBOURS;
     return walks;
 }

@@ -1,10 +1,10 @@
-/* Cutting a plan into passes, and writing a pass as one shader: loads, the rows' texts, stores. */
+/* Cutting a plan into passes, and writing a pass as one shader: loads, the ops' texts, stores. */
 #include "gpu/compose.h"
 
 #include <stdio.h>
 
 #include "constraints/sweep.h"
-#include "gpu/rows.h"
+#include "gpu/ops.h"
 #include "plan/sort.h"
 
 #define BIT(vector) (1u << (vector))
@@ -14,8 +14,8 @@ static const uint32_t state_vectors = BIT(SK_X) | BIT(SK_V) | BIT(SK_PREVIOUS);
 
 /* ---- what cannot run ---- */
 
-/* The name of what a row's rule belongs to, for a sweep of a batch: the body or constraint that has the batch. */
-static const char *owner_of(const skein_world *world, const sk_row *row, const char **label) {
+/* The name of what an op's rule belongs to, for a sweep of a batch: the body or constraint that has the batch. */
+static const char *owner_of(const skein_world *world, const sk_op *op, const char **label) {
     for (size_t i = 0; i < world->objects.count; i++) {
         const sk_object *object = world->objects.data[i];
         const sk_batch *const *batches = NULL;
@@ -25,25 +25,24 @@ static const char *owner_of(const skein_world *world, const sk_row *row, const c
         if (object->category == SKEIN_CONSTRAINT)
             batches = (const sk_batch *const *)(const void *)&object->as.batch, count = 1;
         for (size_t b = 0; b < count; b++)
-            if ((const sk_sweep *)row->rule >= batches[b]->sweeps &&
-                (const sk_sweep *)row->rule < batches[b]->sweeps + batches[b]->sweep_count)
+            if ((const sk_sweep *)op->rule >= batches[b]->sweeps &&
+                (const sk_sweep *)op->rule < batches[b]->sweeps + batches[b]->sweep_count)
                 return *label = batches[b]->label, object->label;
     }
     return NULL;
 }
 
-static skein_status refuse(const skein_world *world, const sk_row *row, const char *why, skein_error *error) {
-    const char *label = row->label ? row->label : sk_row_kind_text(row->kind), *owner = NULL;
+static skein_status refuse(const skein_world *world, const sk_op *op, const char *why, skein_error *error) {
+    const char *label = op->label ? op->label : sk_op_kind_text(op->kind), *owner = NULL;
     if (why)
         return sk_fail(error, SKEIN_ERROR_VALUE, "device",
                        "%s cannot run on the graphics card %s: use the processor, --device cpu", label, why);
-    if (row->kind == SK_ROW_FORCE || row->kind == SK_ROW_PROJECT || row->kind == SK_ROW_LIMIT ||
-        row->kind == SK_ROW_MULTIPLIER)
-        owner = owner_of(world, row, &label);
+    if (op->kind == SK_OP_FORCE || op->kind == SK_OP_PROJECT || op->kind == SK_OP_LIMIT || op->kind == SK_OP_MULTIPLIER)
+        owner = owner_of(world, op, &label);
     return sk_fail(error, SKEIN_ERROR_VALUE, "device",
-                   "%s%s%s cannot run on the graphics card yet (a row '%s'): use the processor, --device cpu",
+                   "%s%s%s cannot run on the graphics card yet (an op '%s'): use the processor, --device cpu",
                    owner ? owner : "", owner && owner != label ? ": its " : "", owner == label ? "" : label,
-                   sk_row_kind_text(row->kind));
+                   sk_op_kind_text(op->kind));
 }
 
 /* ---- cutting ---- */
@@ -52,7 +51,7 @@ typedef struct cutter {
     sk_gpu_passes *passes;
     sk_allocator *allocator;
     const skein_world *world;
-    size_t pending; /* rows of the list from here on are in no pass yet */
+    size_t pending; /* ops of the list from here on are in no pass yet */
     bool no_memory;
 } cutter;
 
@@ -62,50 +61,50 @@ static sk_gpu_pass *add_pass(cutter *c, sk_gpu_pass pass) {
     return &c->passes->data[c->passes->count++];
 }
 
-static uint32_t touched(const sk_row *row) {
-    sk_gpu_use use = sk_gpu_row_use(row);
+static uint32_t touched(const sk_op *op) {
+    sk_gpu_use use = sk_gpu_op_use(op);
     return use.reads | use.writes;
 }
 
-/* Whether the row looks at the neighbours of every particle, of whom all are looked at. */
-static bool is_everyone(const cutter *c, const sk_row *row) {
-    return sk_gpu_row_everyone(row, c->world->particles.count);
+/* Whether the op looks at the neighbours of every particle, of whom all are looked at. */
+static bool is_everyone(const cutter *c, const sk_op *op) {
+    return sk_gpu_op_everyone(op, c->world->particles.count);
 }
 
-/* Fills in a pass that begins with row `at` of the list: as many rows, up to `end`, as can stand in it. */
+/* Fills in a pass that begins with op `at` of the list: as many ops, up to `end`, as can stand in it. */
 static void fill_pass(const cutter *c, sk_gpu_pass *pass, size_t at, size_t end) {
-    const sk_row *const *rows = c->passes->rows.data;
+    const sk_op *const *ops = c->passes->ops.data;
     uint32_t vectors = 0, written = 0;
     *pass = (sk_gpu_pass){.kind = SK_GPU_SLOTS, .first = at, .block = SK_GPU_HEAD};
     for (; at + pass->count < end; pass->count++) {
-        const sk_row *row = rows[at + pass->count];
-        bool looks = sk_gpu_row_looks(row), moves = sk_gpu_row_use(row).writes & BIT(SK_X);
-        bool walks = row->kind == SK_ROW_NEIGHBOUR, alone = walks && !is_everyone(c, row);
+        const sk_op *op = ops[at + pass->count];
+        bool looks = sk_gpu_op_has_target(op), moves = sk_gpu_op_use(op).writes & BIT(SK_X);
+        bool walks = op->kind == SK_OP_NEIGHBOUR, alone = walks && !is_everyone(c, op);
         // a walk along the grid needs three buffers more
-        size_t most = SK_GPU_MOST_VECTORS - (walks || pass->row ? 3 : 0);
+        size_t most = SK_GPU_MOST_VECTORS - (walks || pass->op ? 3 : 0);
         if (pass->count && (alone || ((walks || looks) && written & BIT(SK_X)) || (pass->looks && moves) ||
-                            (size_t)__builtin_popcount(vectors | touched(row)) > most ||
-                            pass->block + sk_gpu_row_size(row) > SK_GPU_MOST_BLOCK))
+                            (size_t)__builtin_popcount(vectors | touched(op)) > most ||
+                            pass->block + sk_gpu_op_size(op) > SK_GPU_MOST_BLOCK))
             return;
-        if (walks) pass->kind = SK_GPU_NEIGHBOURS, pass->row = row;
+        if (walks) pass->kind = SK_GPU_NEIGHBOURS, pass->op = op;
         pass->looks |= looks;
-        vectors |= touched(row);
-        written |= sk_gpu_row_use(row).writes;
-        pass->block += sk_gpu_row_size(row);
+        vectors |= touched(op);
+        written |= sk_gpu_op_use(op).writes;
+        pass->block += sk_gpu_op_size(op);
         if (!alone) continue;
         pass->count++;
         return;
     }
 }
 
-/* Makes passes of the pending rows before `end`. */
+/* Makes passes of the pending ops before `end`. */
 static void flush(cutter *c, size_t end) {
     while (c->pending < end && !c->no_memory) {
         sk_gpu_pass pass;
         fill_pass(c, &pass, c->pending, end);
         if (pass.kind == SK_GPU_NEIGHBOURS) {
-            const sk_force *force = pass.row->rule;
-            bool everyone = is_everyone(c, pass.row);
+            const sk_force *force = pass.op->rule;
+            bool everyone = is_everyone(c, pass.op);
             pass.by_place = everyone || force->moved.first == force->seen.first;
             pass.begin = everyone ? 0 : force->moved.first;
             pass.end = everyone ? c->world->particles.count : force->moved.end;
@@ -116,71 +115,71 @@ static void flush(cutter *c, size_t end) {
 }
 
 /* A kick by a force that has just been cleared. */
-static bool does_nothing(const cutter *c, const sk_row *row) {
+static bool does_nothing(const cutter *c, const sk_op *op) {
     const sk_gpu_passes *passes = c->passes;
-    if (!sk_row_is(row, &sk_combine_kick) || row->dst != row->source[0]) return false;
-    for (size_t i = passes->rows.count; i-- > c->pending;) {
-        const sk_row *before = passes->rows.data[i];
-        if (sk_gpu_row_use(before).writes >> row->source[1] & 1)
-            return sk_row_is(before, &sk_combine_sum) && before->source[0] == SK_NONE;
+    if (!sk_op_is(op, &sk_combine_kick) || op->dst != op->source[0]) return false;
+    for (size_t i = passes->ops.count; i-- > c->pending;) {
+        const sk_op *before = passes->ops.data[i];
+        if (sk_gpu_op_use(before).writes >> op->source[1] & 1)
+            return sk_op_is(before, &sk_combine_sum) && before->source[0] == SK_NONE;
     }
     return false;
 }
 
-static void add_row(cutter *c, const sk_row *row) {
-    if (does_nothing(c, row)) return;
-    if (!SK_RESERVE(c->allocator, &c->passes->rows, c->passes->rows.count + 1)) c->no_memory = true;
-    else c->passes->rows.data[c->passes->rows.count++] = row;
+static void add_op(cutter *c, const sk_op *op) {
+    if (does_nothing(c, op)) return;
+    if (!SK_RESERVE(c->allocator, &c->passes->ops, c->passes->ops.count + 1)) c->no_memory = true;
+    else c->passes->ops.data[c->passes->ops.count++] = op;
 }
 
 /* The parts that the processor's sort is made of are one here: all but the first, which says whom it sorts. */
-static bool is_next_part(const sk_row *row) {
-    for (int i = 1; i < SK_SORT_ROWS; i++)
-        if (sk_row_is(row, &sk_sort_rows[i].kernels)) return true;
+static bool is_next_part(const sk_op *op) {
+    for (int i = 1; i < SK_SORT_OPS; i++)
+        if (sk_op_is(op, &sk_sort_ops[i].kernels)) return true;
     return false;
 }
 
-/* A grid: pending rows that it must see the work of come before it, others wait. Its rows are one pass. */
-static size_t cut_grid(cutter *c, const sk_row *row, size_t most) {
-    size_t end = c->passes->rows.count, count = 1;
-    while (end > c->pending && !(sk_gpu_row_use(c->passes->rows.data[end - 1]).writes & (BIT(SK_X) | BIT(SK_V)))) end--;
+/* A grid: pending ops that it must see the work of come before it, others wait. Its ops are one pass. */
+static size_t cut_grid(cutter *c, const sk_op *op, size_t most) {
+    size_t end = c->passes->ops.count, count = 1;
+    while (end > c->pending && !(sk_gpu_op_use(c->passes->ops.data[end - 1]).writes & (BIT(SK_X) | BIT(SK_V)))) end--;
     flush(c, end);
-    while (count < most && is_next_part(&row[count])) count++;
-    add_pass(c, (sk_gpu_pass){.kind = SK_GPU_GRID, .row = row});
+    while (count < most && is_next_part(&op[count])) count++;
+    add_pass(c, (sk_gpu_pass){.kind = SK_GPU_GRID, .op = op});
     return count;
 }
 
-/* Cuts rows [begin, end) of the plan; repeats lie within each other. */
+/* Cuts ops [begin, end) of the plan; repeats lie within each other. */
 static void cut(cutter *c, const sk_plan *plan, size_t begin, size_t end) {
     for (size_t r = begin; r < end && !c->no_memory;) {
-        const sk_row *row = &plan->data[r];
-        if (row->kind == SK_ROW_GRID) {
-            r += cut_grid(c, row, end - r);
-        } else if (row->kind != SK_ROW_REPEAT) {
-            add_row(c, row);
+        const sk_op *op = &plan->data[r];
+        if (op->kind == SK_OP_GRID) {
+            r += cut_grid(c, op, end - r);
+        } else if (op->kind != SK_OP_REPEAT) {
+            add_op(c, op);
             r++;
         } else {
-            // what comes before a single turn may as well be done in it
-            if (row->end != 1) flush(c, c->passes->rows.count);
+            // what comes before a single iteration may as well be done in it
+            if (op->end != 1) flush(c, c->passes->ops.count);
             size_t repeat = c->passes->count;
-            add_pass(c, (sk_gpu_pass){.kind = SK_GPU_REPEAT, .row = row});
-            cut(c, plan, r + 1, r + 1 + row->length);
+            add_pass(c, (sk_gpu_pass){.kind = SK_GPU_REPEAT, .op = op});
+            cut(c, plan, r + 1, r + 1 + op->length);
             if (c->no_memory) return;
             c->passes->data[repeat].count = c->passes->count - repeat - 1;
-            r += row->length + 1;
+            r += op->length + 1;
         }
     }
-    flush(c, c->passes->rows.count);
+    flush(c, c->passes->ops.count);
 }
 
-/* Repeats of one pass whose rows are the same at all times become loops in its shader. */
+/* Repeats of one pass whose ops are the same at all times become loops in its shader. */
 static void find_loops(sk_gpu_passes *passes) {
     for (size_t i = 0; i + 1 < passes->count; i++) {
         sk_gpu_pass *pass = &passes->data[i + 1];
         if (passes->data[i].kind != SK_GPU_REPEAT || passes->data[i].count != 1 || pass->kind != SK_GPU_SLOTS) continue;
         pass->looped = true;
         for (size_t r = 0; r < pass->count; r++)
-            if (sk_gpu_row_moves(passes->rows.data[pass->first + r])) pass->looped = false;
+            if (sk_gpu_op_moves(passes->ops.data[pass->first + r])) pass->looped = false;
     }
 }
 
@@ -193,7 +192,7 @@ typedef struct traffic {
 static traffic traffic_of(const sk_gpu_passes *passes, const sk_gpu_pass *pass) {
     traffic t = {0, 0, 0};
     for (size_t r = 0; r < pass->count; r++) {
-        sk_gpu_use use = sk_gpu_row_use(passes->rows.data[pass->first + r]);
+        sk_gpu_use use = sk_gpu_op_use(passes->ops.data[pass->first + r]);
         t.loads |= use.reads & ~t.writes;
         t.writes |= use.writes;
         t.uses |= use.reads | use.writes;
@@ -203,12 +202,13 @@ static traffic traffic_of(const sk_gpu_passes *passes, const sk_gpu_pass *pass) 
 
 /* ---- texts ---- */
 
-static void put_head(sk_gpu_text *text, const sk_gpu_pass *pass, const sk_row *const *rows) {
+static void put_head(sk_gpu_text *text, const sk_gpu_pass *pass, const sk_op *const *ops) {
     sk_gpu_put(text, "#version 450 core\nlayout(local_size_x = %d) in;\n\n", SK_GPU_GROUP);
-    sk_gpu_put(text, "layout(std140, binding = 0) uniform rows_block {\n"
-                     "    uvec4 head; // elements; the first one; turns; whether the last turn is the repeat's\n"
-                     "    vec4 room;\n");
-    for (size_t r = 0; r < pass->count; r++) sk_gpu_put_members(text, rows[r], r);
+    sk_gpu_put(text,
+               "layout(std140, binding = 0) uniform rows_block {\n"
+               "    uvec4 head; // elements; the first one; iterations; whether the last iteration is the repeat's\n"
+               "    vec4 room;\n");
+    for (size_t r = 0; r < pass->count; r++) sk_gpu_put_members(text, ops[r], r);
     sk_gpu_put(text, "};\n\n");
 }
 
@@ -225,7 +225,7 @@ static void put_buffers(sk_gpu_text *text, const sk_gpu_pass *pass, uint32_t loa
     sk_gpu_put(text, "\n");
 }
 
-static void put_main(sk_gpu_text *text, const sk_gpu_pass *pass, const sk_row *const *rows, const traffic *t,
+static void put_main(sk_gpu_text *text, const sk_gpu_pass *pass, const sk_op *const *ops, const traffic *t,
                      uint32_t stores, size_t particle_count) {
     sk_gpu_put(text,
                "void main() {\n"
@@ -244,9 +244,11 @@ static void put_main(sk_gpu_text *text, const sk_gpu_pass *pass, const sk_row *c
         else sk_gpu_put(text, "    precise vec4 %s = vec4(0);\n", name);
     }
     if (pass->looped)
-        sk_gpu_put(text, "    for (uint turn = 1u; turn <= head.z; turn++) {\n    bool last_turn = turn == head.z;\n");
-    else sk_gpu_put(text, "    bool last_turn = head.w != 0u;\n");
-    for (size_t r = 0; r < pass->count; r++) sk_gpu_put_statements(text, rows[r], r, particle_count);
+        sk_gpu_put(
+            text,
+            "    for (uint iteration = 1u; iteration <= head.z; iteration++) {\n    bool last_iteration = iteration == head.z;\n");
+    else sk_gpu_put(text, "    bool last_iteration = head.w != 0u;\n");
+    for (size_t r = 0; r < pass->count; r++) sk_gpu_put_statements(text, ops[r], r, particle_count);
     if (pass->looped) sk_gpu_put(text, "    }\n");
     for (int v = SK_X; v < SK_VECTOR_COUNT; v++)
         if (stores >> v & 1)
@@ -258,22 +260,22 @@ static void put_main(sk_gpu_text *text, const sk_gpu_pass *pass, const sk_row *c
 /* Writes and compiles one pass; `wanted` are the vectors that somebody loads. */
 static skein_status make_pass(sk_gpu_passes *passes, sk_gpu_pass *pass, sk_gpu_programs *programs, skein_world *world,
                               bool identity, skein_error *error) {
-    const sk_row *const *rows = passes->rows.data + pass->first;
+    const sk_op *const *ops = passes->ops.data + pass->first;
     traffic t = traffic_of(passes, pass);
     uint32_t stores = t.writes & passes->vectors;
     for (int v = SK_X; v < SK_VECTOR_COUNT; v++)
         if ((t.loads | stores) >> v & 1) pass->vector[pass->vector_count++] = (sk_vector)v;
     sk_gpu_text text = {.allocator = &world->allocator};
-    put_head(&text, pass, rows);
+    put_head(&text, pass, ops);
     put_buffers(&text, pass, t.loads, stores);
     sk_gpu_put_file(&text, "base/arithmetic", 0);
     if (pass->kind == SK_GPU_NEIGHBOURS) {
         sk_gpu_put(&text, "#define IDENTITY %d\n#define BY_PLACE %d\n", identity, pass->by_place);
         sk_gpu_put_file(&text, "gpu/neighbours", 0);
     }
-    for (size_t r = 0; r < pass->count; r++) sk_gpu_put_functions(&text, rows, r);
-    put_main(&text, pass, rows, &t, stores, world->particles.count);
-    const char *what = rows[0]->label ? rows[0]->label : sk_row_kind_text(rows[0]->kind);
+    for (size_t r = 0; r < pass->count; r++) sk_gpu_put_functions(&text, ops, r);
+    put_main(&text, pass, ops, &t, stores, world->particles.count);
+    const char *what = ops[0]->label ? ops[0]->label : sk_op_kind_text(ops[0]->kind);
     skein_status status = sk_gpu_program(programs, &world->allocator, &text, what, &pass->program, error);
     sk_release(&world->allocator, text.data);
     return status;
@@ -282,10 +284,10 @@ static skein_status make_pass(sk_gpu_passes *passes, sk_gpu_pass *pass, sk_gpu_p
 skein_status sk_gpu_compose(sk_gpu_passes *passes, sk_gpu_programs *programs, skein_world *world, bool identity,
                             skein_error *error) {
     const sk_plan *plan = &world->plan;
-    passes->count = passes->rows.count = 0;
+    passes->count = passes->ops.count = 0;
     for (size_t r = 0; r < plan->count; r++) {
         const char *why = NULL;
-        if (!sk_gpu_row_can(&plan->data[r], &why)) return refuse(world, &plan->data[r], why, error);
+        if (!sk_gpu_op_can(&plan->data[r], &why)) return refuse(world, &plan->data[r], why, error);
     }
     cutter c = {.passes = passes, .allocator = &world->allocator, .world = world};
     cut(&c, plan, 0, plan->count);
@@ -305,8 +307,8 @@ skein_status sk_gpu_compose(sk_gpu_passes *passes, sk_gpu_programs *programs, sk
 void sk_gpu_pack(const sk_gpu_passes *passes, const sk_gpu_pass *pass, const sk_run *run, float (*block)[4]) {
     size_t at = SK_GPU_HEAD;
     for (size_t r = 0; r < pass->count; r++) {
-        const sk_row *row = passes->rows.data[pass->first + r];
-        sk_gpu_row_pack(row, run, block + at);
-        at += sk_gpu_row_size(row);
+        const sk_op *op = passes->ops.data[pass->first + r];
+        sk_gpu_op_pack(op, run, block + at);
+        at += sk_gpu_op_size(op);
     }
 }

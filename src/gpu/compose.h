@@ -1,13 +1,13 @@
-/* Rows to shaders: a plan is cut into *passes*, and the rows of a pass become one compute shader.
+/* Ops to shaders: a plan is cut into *passes*, and the ops of a pass become one compute shader.
  *
- *   plan    clear F | gravity | kick | drift           four rows, each of which reads and writes whole vectors
- *   pass    load X, V; the four in registers; store    one shader, written from the rows' own texts
+ *   plan    clear F | gravity | kick | drift           four ops, each of which reads and writes whole vectors
+ *   pass    load X, V; the four in registers; store    one shader, written from the ops' own texts
  *
- * Called by device.c when there is a new plan; run.c dispatches the passes. A free row whose elements are slots can
- * stand in a pass with others of its sort. A row over the neighbours of everybody makes the pass walk in the order of
- * the grid's cells; one over those of some stands alone. Rows that touch neither X nor V move past a grid, into the
- * pass behind it. Where the turns of a repeat are one pass that looks at nothing but its own slot, the shader loops
- * over them too. What is found and used up within a pass is never stored, and needs no buffer. */
+ * Called by device.c when there is a new plan; run.c dispatches the passes. A free op whose elements are slots can
+ * stand in a pass with others of its sort. An op over the neighbours of everybody makes the pass walk in the order of
+ * the grid's cells; one over those of some stands alone. Ops that touch neither X nor V move past a grid, into the
+ * pass behind it. Where the iterations of a repeat are one pass that looks at nothing but its own slot, the shader
+ * loops over them too. What is found and used up within a pass is never stored, and needs no buffer. */
 #ifndef SK_GPU_COMPOSE_H
 #define SK_GPU_COMPOSE_H
 
@@ -17,10 +17,10 @@
 enum {
     SK_GPU_GROUP = 128,      /* invocations of a work group */
     SK_GPU_MOST_VECTORS = 8, /* in a pass; OpenGL promises eight buffers */
-    SK_GPU_MOST_BLOCK = 768, /* vectors of four floats that the rows of a pass say; OpenGL promises 1,024 */
+    SK_GPU_MOST_BLOCK = 768, /* vectors of four floats that the ops of a pass say; OpenGL promises 1,024 */
     SK_GPU_POSE = 7,         /* vectors that say where a collider stands */
-    SK_GPU_ROW = 2,          /* vectors that every row has: coefficients and the substep; flags */
-    SK_GPU_HEAD = 2,         /* vectors before those of the rows */
+    SK_GPU_OP = 2,           /* vectors that every op has: coefficients and the substep; flags */
+    SK_GPU_HEAD = 2,         /* vectors before those of the ops */
 };
 
 typedef enum sk_gpu_pass_kind {
@@ -32,24 +32,24 @@ typedef enum sk_gpu_pass_kind {
 
 typedef struct sk_gpu_pass {
     sk_gpu_pass_kind kind;
-    size_t first, count; /* of the list of rows; a repeat, how many passes after it are repeated */
-    const sk_row *row;   /* of a grid, of a repeat, or the one that looks at neighbours */
-    bool by_place;       /* walks in the order of the grid; else over the particles that the row moves */
+    size_t first, count; /* of the list of ops; a repeat, how many passes after it are repeated */
+    const sk_op *op;     /* of a grid, of a repeat, or the one that looks at neighbours */
+    bool by_place;       /* walks in the order of the grid; else over the particles that the op moves */
     size_t begin, end;   /* elements, where it walks */
     unsigned program;
     sk_vector vector[SK_GPU_MOST_VECTORS]; /* which buffers it binds, in this order */
     size_t vector_count, block;            /* the block's size, in vectors of four floats */
-    bool looped;                           /* its shader takes the turns of the repeat that it is in */
-    bool looks;                            /* there are rows that look at one particle */
+    bool looped;                           /* its shader takes the iterations of the repeat that it is in */
+    bool looks;                            /* there are ops that look at one particle */
 } sk_gpu_pass;
 
 typedef struct sk_gpu_passes {
     sk_gpu_pass *data;
     size_t count, capacity;
     struct {
-        const sk_row **data;
+        const sk_op **data;
         size_t count, capacity;
-    } rows;           /* of all passes, one pass after the other; they belong to the plan */
+    } ops;            /* of all passes, one pass after the other; they belong to the plan */
     uint32_t vectors; /* those that need a buffer (bit v: vector v) */
 } sk_gpu_passes;
 
@@ -57,7 +57,7 @@ typedef struct sk_gpu_passes {
  * i is in slot i. */
 skein_status sk_gpu_compose(sk_gpu_passes *passes, sk_gpu_programs *programs, skein_world *world, bool identity,
                             skein_error *error);
-/* Fills a pass's block but for its head: what its rows say at this time. */
+/* Fills a pass's block but for its head: what its ops say at this time. */
 void sk_gpu_pack(const sk_gpu_passes *passes, const sk_gpu_pass *pass, const sk_run *run, float (*block)[4]);
 
 #endif

@@ -194,7 +194,7 @@ static void release(sk_device *base, skein_world *world) {
     sk_gpu_context_leave(&device->context);
     sk_gpu_context_release(&device->context);
     sk_release(allocator, device->passes.data);
-    sk_release(allocator, device->passes.rows.data);
+    sk_release(allocator, device->passes.ops.data);
     sk_release(allocator, device->stage);
     sk_release(allocator, device->calls);
     sk_release(allocator, device);

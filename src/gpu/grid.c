@@ -112,12 +112,12 @@ skein_status sk_gpu_grid_make(sk_gpu_device *device, skein_world *world, skein_e
     return status;
 }
 
-void sk_gpu_grid_pack(const sk_gpu_grid *grid, const sk_row *row, float (*block)[4]) {
-    const sk_group *group = row->group;
+void sk_gpu_grid_pack(const sk_gpu_grid *grid, const sk_op *op, float (*block)[4]) {
+    const sk_group *group = op->group;
     const uint32_t head[4] = {(uint32_t)(group->end - group->first), (uint32_t)(grid->room - 2), (uint32_t)group->first,
                               0};
     memcpy(block[0], head, sizeof head);
-    block[1][0] = (float)row->coefficient[0];
+    block[1][0] = (float)op->coefficient[0];
 }
 
 static void run_program(const sk_gpu_device *device, int which, size_t groups) {

@@ -36,8 +36,8 @@ typedef struct sk_gpu_grid {
 /* Makes buffers and programs for so many particles. */
 skein_status sk_gpu_grid_make(sk_gpu_device *device, skein_world *world, skein_error *error);
 void sk_gpu_grid_free(sk_gpu_device *device);
-/* What the grid's shaders are told: the particles of the row, and cells of at least its radius. */
-void sk_gpu_grid_pack(const sk_gpu_grid *grid, const sk_row *row, float (*block)[4]);
+/* What the grid's shaders are told: the particles of the op, and cells of at least its radius. */
+void sk_gpu_grid_pack(const sk_gpu_grid *grid, const sk_op *op, float (*block)[4]);
 /* Sorts so many particles, with the block at this place of the device's blocks. */
 void sk_gpu_grid_build(sk_gpu_device *device, size_t begin, size_t count, size_t block);
 /* Binds what a walk along the grid reads. */

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "gpu/device.h"
-#include "gpu/rows.h"
+#include "gpu/ops.h"
 
 void sk_gpu_dispatch(const sk_gpu_device *device, size_t invocations) {
     size_t groups = (invocations + SK_GPU_GROUP - 1) / SK_GPU_GROUP;
@@ -13,18 +13,18 @@ void sk_gpu_dispatch(const sk_gpu_device *device, size_t invocations) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
-/* Brings the particles that rows look at into the block, from where they are now. */
+/* Brings the particles that ops look at into the block, from where they are now. */
 static void look(const sk_gpu_device *device, const sk_gpu_call *call) {
     size_t at = call->block + 16 * SK_GPU_HEAD;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     for (size_t r = 0; r < call->pass->count; r++) {
-        const sk_row *row = device->passes.rows.data[call->pass->first + r];
-        if (sk_gpu_row_looks(row)) {
-            size_t slot = sk_gpu_row_looks_from((const float(*)[4])(const void *)(device->stage + at));
+        const sk_op *op = device->passes.ops.data[call->pass->first + r];
+        if (sk_gpu_op_has_target(op)) {
+            size_t slot = sk_gpu_op_target_from((const float(*)[4])(const void *)(device->stage + at));
             glCopyNamedBufferSubData(device->vector[SK_X], device->blocks, (GLintptr)(16 * slot),
-                                     (GLintptr)(at + 16 * sk_gpu_row_looks_to()), 12);
+                                     (GLintptr)(at + 16 * sk_gpu_op_target_to()), 12);
         }
-        at += 16 * sk_gpu_row_size(row);
+        at += 16 * sk_gpu_op_size(op);
     }
 }
 
@@ -63,15 +63,15 @@ static float (*stage_block(sk_gpu_device *device, size_t vectors, size_t *at))[4
 }
 
 /* A pass, in as many parts as a binding is too small for. */
-static void call_pass(sk_gpu_device *device, const sk_run *run, const sk_gpu_pass *pass, size_t turns) {
+static void call_pass(sk_gpu_device *device, const sk_run *run, const sk_gpu_pass *pass, size_t iterations) {
     bool walks = pass->kind == SK_GPU_NEIGHBOURS;
     size_t all = walks ? pass->end - pass->begin : device->slot_count;
     size_t most = walks ? all : device->most_bytes / 16 / SK_GPU_GROUP * SK_GPU_GROUP;
     for (size_t first = 0; first < all; first += most) {
         sk_gpu_call call = {.pass = pass, .first = first, .count = all - first < most ? all - first : most};
         float(*block)[4] = stage_block(device, pass->block, &call.block);
-        const uint32_t head[4] = {(uint32_t)call.count, (uint32_t)(walks ? pass->begin : first), (uint32_t)turns,
-                                  run->last_turn};
+        const uint32_t head[4] = {(uint32_t)call.count, (uint32_t)(walks ? pass->begin : first), (uint32_t)iterations,
+                                  run->last_iteration};
         memcpy(block[0], head, sizeof head);
         sk_gpu_pack(&device->passes, pass, run, block);
         device->calls[device->call_count++] = call;
@@ -79,9 +79,9 @@ static void call_pass(sk_gpu_device *device, const sk_run *run, const sk_gpu_pas
 }
 
 static void call_grid(sk_gpu_device *device, const sk_gpu_pass *pass) {
-    sk_gpu_call call = {.pass = pass, .first = pass->row->group->first, .count = pass->row->group->end - pass->row->group->first};
+    sk_gpu_call call = {.pass = pass, .first = pass->op->group->first, .count = pass->op->group->end - pass->op->group->first};
     float(*block)[4] = stage_block(device, SK_GPU_GRID_BLOCK, &call.block);
-    sk_gpu_grid_pack(&device->grid, pass->row, block);
+    sk_gpu_grid_pack(&device->grid, pass->op, block);
     device->calls[device->call_count++] = call;
 }
 
@@ -93,17 +93,17 @@ static void run_passes(sk_gpu_device *device, sk_run *run, size_t begin, size_t 
         } else if (pass->kind != SK_GPU_REPEAT) {
             call_pass(device, run, pass, 1);
         } else {
-            const sk_row *repeat = pass->row;
+            const sk_op *repeat = pass->op;
             double start = run->time;
-            bool outer = run->last_turn, looped = pass->count == 1 && pass[1].looped;
+            bool outer = run->last_iteration, looped = pass->count == 1 && pass[1].looped;
             if (looped) call_pass(device, run, &pass[1], repeat->end);
-            for (size_t turn = 0; turn < repeat->end && !looped; turn++) {
-                run->time = start + (double)(turn + 1) * repeat->dt;
-                run->last_turn = turn + 1 == repeat->end;
+            for (size_t iteration = 0; iteration < repeat->end && !looped; iteration++) {
+                run->time = start + (double)(iteration + 1) * repeat->dt;
+                run->last_iteration = iteration + 1 == repeat->end;
                 run_passes(device, run, i + 1, i + 1 + pass->count);
             }
             run->time = start + (double)repeat->end * repeat->dt;
-            run->last_turn = outer;
+            run->last_iteration = outer;
             i += pass->count;
         }
     }

@@ -24,13 +24,13 @@ vec3 walk@(uint place, vec3 p, vec3 v) {
     float speed = dot(v, v);
     sum@ sum = start@(speed > 0 ? v * inversesqrt(speed) : vec3(0));
 #if BY_PLACE
-    if (place >= cell[cell_count]) return finish@(sum, row@[0].w); // it is nowhere
+    if (place >= cell[cell_count]) return finish@(sum, op@[0].w); // it is nowhere
 #else
-    if (!(dot(p, p) <= 1e38)) return finish@(sum, row@[0].w); // it is nowhere
+    if (!(dot(p, p) <= 1e38)) return finish@(sum, op@[0].w); // it is nowhere
     place = 0xffffffffu;                                      // and not among those that it looks at
 #endif
     vec3 origin = vec3(origin_x, origin_y, origin_z);
-    float reach = row@[1].x, square = reach * reach, top = float(cells_x);
+    float reach = op@[1].x, square = reach * reach, top = float(cells_x);
 #ifdef MOST@
     for (int k = 0; k < MOST@; k++) near_square@[k] = square, near_place@[k] = 0xffffffffu;
 #endif
@@ -88,5 +88,5 @@ vec3 walk@(uint place, vec3 p, vec3 v) {
         meet@(sum, apart, dot(apart, apart), unpacked(q.w));
     }
 #endif
-    return finish@(sum, row@[0].w);
+    return finish@(sum, op@[0].w);
 }

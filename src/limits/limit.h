@@ -1,25 +1,25 @@
 /* Tethers: what keeps cloth from stretching like rubber (Kim, Chentanez, Mueller 2012).
  *
- * A particle may not be farther from a held one, its anchor, than its distance along the cloth, times
+ * A particle may not be farther from a pinned one, its anchor, than its distance along the cloth, times
  * 1 + bound. One pass at the end of a substep does for a whole sheet what thousands of spring sweeps
  * would. Each element moves its own particle (free). They are kept by slot, in the order of memory:
  *
  *   block of 16 slots:  lengths to anchor 0 of 16 particles | to anchor 1 | ...     infinite: not tethered
  *
  * Anchors move, and another thread may be storing their blocks, in another substep even. What an anchor does within a
- * step is known when it begins, for nothing acts on what is held: start + velocity x time. That is noted here then
+ * step is known when it begins, for nothing acts on what is pinned: start + velocity x time. That is noted here then
  * (sk_limit_begin), once an anchor, and is all that the kernel looks at. */
 #ifndef SK_LIMITS_LIMIT_H
 #define SK_LIMITS_LIMIT_H
 
 #include "base/fields.h"
 #include "particles/particles.h"
-#include "plan/row.h"
+#include "plan/op.h"
 
 /* A particle that others are tethered to, as the step began. */
 typedef struct sk_anchor {
     sk_vec3 start, velocity;
-    real free;     /* its inverse mass: over 0 where it is not held any more */
+    real free;     /* its inverse mass: over 0 where it is not pinned any more */
     uint32_t slot; /* (in the place of a real, or of half of one) */
 } sk_anchor;
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #define SK_UNIT tether
-SK_KERNELS(sk_row_kernel, keep_tethers);
+SK_KERNELS(sk_op_kernel, keep_tethers);
 
 #ifdef SK_ISA
 
@@ -58,7 +58,7 @@ SK_INLINE sk_wide3 velocity_of(const sk_limit *limit, const part_pins *pins) {
                       of_anchor(limit, pins, NUMBER_OF(velocity.z))};
 }
 
-/* The anchors of a part, `since` seconds after the start of the step. One that is not held any more lets go. */
+/* The anchors of a part, `since` seconds after the start of the step. One that is not pinned any more lets go. */
 SK_INLINE sk_wide3 anchor_of(const sk_limit *limit, const part_pins *pins, real since, sk_wide *most) {
     sk_wide3 from = {of_anchor(limit, pins, NUMBER_OF(start.x)), of_anchor(limit, pins, NUMBER_OF(start.y)),
                      of_anchor(limit, pins, NUMBER_OF(start.z))};
@@ -100,14 +100,14 @@ SK_INLINE sk_wide3 seen_by(const pullers *by, sk_wide4 v) {
 /* Several anchors are taken in turn, once forwards and once backwards, and the mean is kept: the last
  * one to pull would win otherwise, and a cloth between two pins would hang askew. Where velocities are
  * not taken from positions (a second source), the velocity away from an anchor ends here too. */
-void SK_KERNEL(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const sk_limit *limit = row->rule;
-    real factor = (real)(1 + *limit->bound), since = (real)(run->time - row->before - limit->start);
+void SK_KERNEL(keep_tethers)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_limit *limit = op->rule;
+    real factor = (real)(1 + *limit->bound), since = (real)(run->time - op->before_end - limit->start);
     size_t anchors = limit->anchors;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         size_t at = slot - limit->first_slot;
         if (limit->empty[at / SK_LANES]) continue;
-        sk_wide4 x = sk_load_part(run->vector[row->dst], slot, slot < row->packed);
+        sk_wide4 x = sk_load_part(run->vector[op->dst], slot, slot < op->packed);
         sk_wide3 forth = {x.x, x.y, x.z}, back = forth;
         pullers by = {{{0}, {0}, {0}}, {0}};
         for (size_t k = 0; k < anchors; k++) pull_by(limit, at, k, factor, since, &forth, &by);
@@ -123,11 +123,11 @@ void SK_KERNEL(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, size_
         x.x = sk_select(moved, forth.x, x.x);
         x.y = sk_select(moved, forth.y, x.y);
         x.z = sk_select(moved, forth.z, x.z);
-        sk_store_part(run->vector[row->dst], slot, slot < row->packed, x);
-        if (row->source[1] == SK_NONE) continue;
+        sk_store_part(run->vector[op->dst], slot, slot < op->packed, x);
+        if (op->source[1] == SK_NONE) continue;
         // what still goes against the move stops
-        sk_vec4 *velocity = run->vector[row->source[1]];
-        sk_wide4 v = sk_load_part(velocity, slot, slot < row->packed);
+        sk_vec4 *velocity = run->vector[op->source[1]];
+        sk_wide4 v = sk_load_part(velocity, slot, slot < op->packed);
         sk_wide3 u = {v.x, v.y, v.z};
         if (limit->moves) u = seen_by(&by, v);
         sk_wide square = sk_dot_wide(move, move), against = sk_dot_wide(move, u);
@@ -136,7 +136,7 @@ void SK_KERNEL(keep_tethers)(sk_run *run, const sk_row *row, size_t begin, size_
         v.x = sk_plus_where(stops, v.x, s * move.x);
         v.y = sk_plus_where(stops, v.y, s * move.y);
         v.z = sk_plus_where(stops, v.z, s * move.z);
-        sk_store_part(velocity, slot, slot < row->packed, v);
+        sk_store_part(velocity, slot, slot < op->packed, v);
     }
 }
 #undef NUMBER_OF

@@ -15,44 +15,44 @@ static skein_status check(const void *params, const sk_rules *rules, skein_error
     return sk_refuse_rigid(rules, "leapfrog", error);
 }
 
-static void write_force(sk_writer *writer) {
-    sk_write_fields(writer);
-    sk_write_forces(writer);
-    sk_write_contacts(writer, SK_CONTACT_FORCE);
+static void write_force(sk_plan_builder *builder) {
+    sk_write_fields(builder);
+    sk_write_forces(builder);
+    sk_write_contacts(builder, SK_CONTACT_FORCE);
 }
 
-static void write_closing_kick(sk_writer *writer, double h) {
-    write_force(writer);
-    if (!sk_writes_velocity_forces(writer)) {
-        sk_write_kick(writer, SK_V, SK_V, h / 2, SK_F);
+static void write_closing_kick(sk_plan_builder *builder, double h) {
+    write_force(builder);
+    if (!sk_writes_velocity_forces(builder)) {
+        sk_write_kick(builder, SK_V, SK_V, h / 2, SK_F);
         return;
     }
-    sk_write_sum(writer, SK_V0, 1, SK_V, 0, SK_NONE);
-    sk_write_kick(writer, SK_V, SK_V0, h / 2, SK_F);
-    write_force(writer);
-    sk_write_kick(writer, SK_V, SK_V0, h / 2, SK_F);
+    sk_write_sum(builder, SK_V0, 1, SK_V, 0, SK_NONE);
+    sk_write_kick(builder, SK_V, SK_V0, h / 2, SK_F);
+    write_force(builder);
+    sk_write_kick(builder, SK_V, SK_V0, h / 2, SK_F);
 }
 
-static void write(sk_writer *writer, const void *params, double dt) {
+static void write(sk_plan_builder *builder, const void *params, double dt) {
     double h = dt / sk_substeps_of(params);
-    bool force_stays = !sk_writes_velocity_forces(writer) && !sk_writes_corrections(writer);
-    if (force_stays) write_force(writer);
-    size_t repeat = sk_write_repeat(writer, (size_t)sk_substeps_of(params), h);
-    if (!force_stays) write_force(writer);
-    sk_write_kick(writer, SK_V, SK_V, h / 2, SK_F);
-    sk_write_steering(writer);
-    sk_write_sum(writer, SK_X, 1, SK_X, h, SK_V);
-    sk_write_moment(writer, 1);
-    write_closing_kick(writer, h);
-    sk_write_bounds(writer);
-    sk_write_contacts(writer, SK_CONTACT_IMPULSE);
-    sk_write_limits(writer, SK_V);
-    sk_write_contacts(writer, SK_CONTACT_PUSH);
-    sk_write_end(writer, repeat);
+    bool force_stays = !sk_writes_velocity_forces(builder) && !sk_writes_corrections(builder);
+    if (force_stays) write_force(builder);
+    size_t repeat = sk_write_repeat(builder, (size_t)sk_substeps_of(params), h);
+    if (!force_stays) write_force(builder);
+    sk_write_kick(builder, SK_V, SK_V, h / 2, SK_F);
+    sk_write_steering(builder);
+    sk_write_sum(builder, SK_X, 1, SK_X, h, SK_V);
+    sk_write_stage_time(builder, 1);
+    write_closing_kick(builder, h);
+    sk_write_bounds(builder);
+    sk_write_contacts(builder, SK_CONTACT_IMPULSE);
+    sk_write_limits(builder, SK_V);
+    sk_write_contacts(builder, SK_CONTACT_PUSH);
+    sk_write_end(builder, repeat);
 }
 
 static void amplify(double z, double zeta, double matrix[4]) {
-    // half a kick, a drift; the rows of x' and of v* in terms of x and v
+    // half a kick, a drift; the ops of x' and of v* in terms of x and v
     double k[2] = {-z / 2, 1 - z * zeta}, x[2] = {1 + z * k[0], z * k[1]};
     double predicted[2] = {k[0] - z / 2 * x[0] - z * zeta * k[0], k[1] - z / 2 * x[1] - z * zeta * k[1]};
     matrix[0] = x[0], matrix[1] = x[1];

@@ -1,17 +1,17 @@
-/* Methods: how rules become motion. Each type is one file that writes its substep as rows of the plan;
+/* Methods: how rules become motion. Each type is one file that writes its substep as ops of the plan;
  * no method touches a particle itself. */
 #ifndef SK_METHODS_METHOD_H
 #define SK_METHODS_METHOD_H
 
 #include "base/fields.h"
-#include "methods/writer.h"
+#include "methods/plan_builder.h"
 
 typedef struct sk_method_type {
     skein_kind kind;
     /* Whether the method can run the rules at all; NULL: always. */
     skein_status (*check)(const void *params, const sk_rules *rules, skein_error *error);
-    /* Writes the rows of one step of `dt` seconds. */
-    void (*write)(sk_writer *writer, const void *params, double dt);
+    /* Writes the ops of one step of `dt` seconds. */
+    void (*write)(sk_plan_builder *builder, const void *params, double dt);
     int (*substeps)(const void *params);
     /* One substep of the oscillator x'' = -x - 2 zeta x' as a matrix on (x, v), by rows; `z` is the substep
      * (of any oscillator: times its angular frequency). It says which substeps are stable. NULL: all are. */

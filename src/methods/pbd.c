@@ -25,32 +25,32 @@ static const skein_field fields[] = {
 };
 
 /* Projections alone: a solver for constraints. With velocities a spring that is at rest after one solve would fly on.
- * What is held is led all the same, else it could not be. */
-static void write_projections_only(sk_writer *writer, const pbd_params *params, double h) {
-    size_t repeat = sk_write_repeat(writer, (size_t)params->substeps, h);
-    sk_write_moment(writer, 1);
-    if (sk_writes_velocity_forces(writer)) sk_write_sum(writer, SK_X0, 1, SK_X, 0, SK_NONE); // damping looks back
-    sk_write_lead(writer, h);
-    sk_write_shared_projections(writer, params->iterations);
-    sk_write_limits(writer, SK_NONE);
-    sk_write_contacts(writer, SK_CONTACT_PUSH);
-    sk_write_end(writer, repeat);
+ * What is pinned is led all the same, else it could not be. */
+static void write_projections_only(sk_plan_builder *builder, const pbd_params *params, double h) {
+    size_t repeat = sk_write_repeat(builder, (size_t)params->substeps, h);
+    sk_write_stage_time(builder, 1);
+    if (sk_writes_velocity_forces(builder)) sk_write_sum(builder, SK_X0, 1, SK_X, 0, SK_NONE); // damping looks back
+    sk_write_lead(builder, h);
+    sk_write_shared_projections(builder, params->iterations);
+    sk_write_limits(builder, SK_NONE);
+    sk_write_contacts(builder, SK_CONTACT_PUSH);
+    sk_write_end(builder, repeat);
 }
 
-static void write(sk_writer *writer, const void *data, double dt) {
+static void write(sk_plan_builder *builder, const void *data, double dt) {
     const pbd_params *params = data;
     double h = dt / params->substeps;
     if (!params->inertia) {
-        write_projections_only(writer, params, h);
+        write_projections_only(builder, params, h);
         return;
     }
-    size_t repeat = sk_write_repeat(writer, (size_t)params->substeps, h);
-    sk_write_prediction(writer);
-    sk_write_shared_projections(writer, params->iterations);
-    sk_write_limits(writer, SK_NONE);
-    sk_write_correction(writer);
-    sk_write_contacts(writer, SK_CONTACT_SETTLE);
-    sk_write_end(writer, repeat);
+    size_t repeat = sk_write_repeat(builder, (size_t)params->substeps, h);
+    sk_write_prediction(builder);
+    sk_write_shared_projections(builder, params->iterations);
+    sk_write_limits(builder, SK_NONE);
+    sk_write_correction(builder);
+    sk_write_contacts(builder, SK_CONTACT_UPDATE);
+    sk_write_end(builder, repeat);
 }
 
 const sk_method_type sk_pbd = {

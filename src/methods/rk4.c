@@ -17,46 +17,46 @@ static skein_status check(const void *params, const sk_rules *rules, skein_error
 }
 
 /* F at the present stage; adds it and V to the sums, with this weight. */
-static void write_derivative(sk_writer *writer, double weight, bool first) {
-    sk_write_fields(writer);
-    sk_write_forces(writer);
-    sk_write_contacts(writer, SK_CONTACT_FORCE);
+static void write_derivative(sk_plan_builder *builder, double weight, bool first) {
+    sk_write_fields(builder);
+    sk_write_forces(builder);
+    sk_write_contacts(builder, SK_CONTACT_FORCE);
     if (first) {
-        sk_write_sum(writer, velocities, weight, SK_V, 0, SK_NONE);
-        sk_write_sum(writer, forces, weight, SK_F, 0, SK_NONE);
+        sk_write_sum(builder, velocities, weight, SK_V, 0, SK_NONE);
+        sk_write_sum(builder, forces, weight, SK_F, 0, SK_NONE);
     } else {
-        sk_write_sum(writer, velocities, 1, velocities, weight, SK_V);
-        sk_write_sum(writer, forces, 1, forces, weight, SK_F);
+        sk_write_sum(builder, velocities, 1, velocities, weight, SK_V);
+        sk_write_sum(builder, forces, 1, forces, weight, SK_F);
     }
 }
 
 /* X = X0 + a v, V = V0 + a w f. */
-static void write_move(sk_writer *writer, double a, sk_vector v, sk_vector f) {
-    sk_write_sum(writer, SK_X, 1, SK_X0, a, v);
-    sk_write_kick(writer, SK_V, SK_V0, a, f);
+static void write_move(sk_plan_builder *builder, double a, sk_vector v, sk_vector f) {
+    sk_write_sum(builder, SK_X, 1, SK_X0, a, v);
+    sk_write_kick(builder, SK_V, SK_V0, a, f);
 }
 
-static void write(sk_writer *writer, const void *params, double dt) {
+static void write(sk_plan_builder *builder, const void *params, double dt) {
     double h = dt / sk_substeps_of(params);
-    size_t repeat = sk_write_repeat(writer, (size_t)sk_substeps_of(params), h);
-    sk_write_steering(writer);
-    sk_write_sum(writer, SK_X0, 1, SK_X, 0, SK_NONE);
-    sk_write_sum(writer, SK_V0, 1, SK_V, 0, SK_NONE);
-    write_derivative(writer, 1, true);
-    write_move(writer, h / 2, SK_V, SK_F);
-    sk_write_moment(writer, 0.5);
-    write_derivative(writer, 2, false);
-    write_move(writer, h / 2, SK_V, SK_F);
-    write_derivative(writer, 2, false);
-    write_move(writer, h, SK_V, SK_F);
-    sk_write_moment(writer, 1);
-    write_derivative(writer, 1, false);
-    write_move(writer, h / 6, velocities, forces);
-    sk_write_bounds(writer);
-    sk_write_contacts(writer, SK_CONTACT_IMPULSE);
-    sk_write_limits(writer, SK_V);
-    sk_write_contacts(writer, SK_CONTACT_PUSH);
-    sk_write_end(writer, repeat);
+    size_t repeat = sk_write_repeat(builder, (size_t)sk_substeps_of(params), h);
+    sk_write_steering(builder);
+    sk_write_sum(builder, SK_X0, 1, SK_X, 0, SK_NONE);
+    sk_write_sum(builder, SK_V0, 1, SK_V, 0, SK_NONE);
+    write_derivative(builder, 1, true);
+    write_move(builder, h / 2, SK_V, SK_F);
+    sk_write_stage_time(builder, 0.5);
+    write_derivative(builder, 2, false);
+    write_move(builder, h / 2, SK_V, SK_F);
+    write_derivative(builder, 2, false);
+    write_move(builder, h, SK_V, SK_F);
+    sk_write_stage_time(builder, 1);
+    write_derivative(builder, 1, false);
+    write_move(builder, h / 6, velocities, forces);
+    sk_write_bounds(builder);
+    sk_write_contacts(builder, SK_CONTACT_IMPULSE);
+    sk_write_limits(builder, SK_V);
+    sk_write_contacts(builder, SK_CONTACT_PUSH);
+    sk_write_end(builder, repeat);
 }
 
 static void amplify(double z, double zeta, double matrix[4]) {

@@ -9,22 +9,22 @@ static skein_status check(const void *params, const sk_rules *rules, skein_error
     return sk_refuse_rigid(rules, "symplectic_euler", error);
 }
 
-static void write(sk_writer *writer, const void *params, double dt) {
+static void write(sk_plan_builder *builder, const void *params, double dt) {
     double h = dt / sk_substeps_of(params);
-    size_t repeat = sk_write_repeat(writer, (size_t)sk_substeps_of(params), h);
-    if (sk_writes_forces(writer)) {
-        sk_write_fields(writer);
-        sk_write_forces(writer);
-        sk_write_contacts(writer, SK_CONTACT_FORCE);
-        sk_write_kick(writer, SK_V, SK_V, h, SK_F);
+    size_t repeat = sk_write_repeat(builder, (size_t)sk_substeps_of(params), h);
+    if (sk_writes_forces(builder)) {
+        sk_write_fields(builder);
+        sk_write_forces(builder);
+        sk_write_contacts(builder, SK_CONTACT_FORCE);
+        sk_write_kick(builder, SK_V, SK_V, h, SK_F);
     }
-    sk_write_steering(writer);
-    sk_write_sum(writer, SK_X, 1, SK_X, h, SK_V);
-    sk_write_moment(writer, 1);
-    sk_write_contacts(writer, SK_CONTACT_IMPULSE);
-    sk_write_limits(writer, SK_V);
-    sk_write_contacts(writer, SK_CONTACT_PUSH);
-    sk_write_end(writer, repeat);
+    sk_write_steering(builder);
+    sk_write_sum(builder, SK_X, 1, SK_X, h, SK_V);
+    sk_write_stage_time(builder, 1);
+    sk_write_contacts(builder, SK_CONTACT_IMPULSE);
+    sk_write_limits(builder, SK_V);
+    sk_write_contacts(builder, SK_CONTACT_PUSH);
+    sk_write_end(builder, repeat);
 }
 
 static void amplify(double z, double zeta, double matrix[4]) {

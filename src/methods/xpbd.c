@@ -15,19 +15,19 @@ static const skein_field fields[] = {
            "passes over the constraints in a substep; more substeps are better spent"),
 };
 
-static void write(sk_writer *writer, const void *data, double dt) {
+static void write(sk_plan_builder *builder, const void *data, double dt) {
     const xpbd_params *params = data;
     double h = dt / params->substeps;
-    size_t repeat = sk_write_repeat(writer, (size_t)params->substeps, h);
-    sk_write_prediction(writer);
+    size_t repeat = sk_write_repeat(builder, (size_t)params->substeps, h);
+    sk_write_prediction(builder);
     // correct what was predicted
-    sk_write_projections(writer, params->iterations);
-    sk_write_limits(writer, SK_NONE);
+    sk_write_projections(builder, params->iterations);
+    sk_write_limits(builder, SK_NONE);
     // learn the velocity. (X - X0)/h says the same but for the rounding of X, which would stay in V: measured in
     // float at 64 m, 1440 substeps a second fell 20 % too slowly and 2880 not at all
-    sk_write_correction(writer);
-    sk_write_contacts(writer, SK_CONTACT_SETTLE);
-    sk_write_end(writer, repeat);
+    sk_write_correction(builder);
+    sk_write_contacts(builder, SK_CONTACT_UPDATE);
+    sk_write_end(builder, repeat);
 }
 
 const sk_method_type sk_xpbd = {

@@ -44,7 +44,7 @@ struct sk_motion {
     const sk_motion_common *common;
     const char *label;
     sk_track track;
-    /* whom it leads, as far as they are held: found by the world */
+    /* whom it leads, as far as they are pinned: found by the world */
     uint32_t *particle, *column; /* column: their places in the track */
     size_t count;
 };

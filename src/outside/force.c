@@ -2,17 +2,17 @@
 #include "base/layout.h"
 #include "outside/outside.h"
 
-static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    const void *params = ((const sk_force *)row->rule)->params;
+static void kernel(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const void *params = ((const sk_force *)op->rule)->params;
     const skein_force_type *given = sk_outside_of(params)->given;
-    double time = run->time - row->before;
+    double time = run->time - op->before_end;
     for (size_t first = begin; first < end; first += SKEIN_LANES) {
         skein_lanes in = {0};
         skein_real out[3][SKEIN_LANES] = {{0}};
         size_t count = end - first < SKEIN_LANES ? end - first : SKEIN_LANES;
         for (size_t i = 0; i < count; i++) {
-            sk_vec4 x = sk_load(run->vector[SK_X], row->packed, first + i);
-            sk_vec4 v = sk_load(run->vector[SK_V], row->packed, first + i);
+            sk_vec4 x = sk_load(run->vector[SK_X], op->packed, first + i);
+            sk_vec4 v = sk_load(run->vector[SK_V], op->packed, first + i);
             in.x[0][i] = x.x, in.x[1][i] = x.y, in.x[2][i] = x.z;
             in.v[0][i] = v.x, in.v[1][i] = v.y, in.v[2][i] = v.z;
             in.mass[i] = v.w;
@@ -20,7 +20,7 @@ static void kernel(sk_run *run, const sk_row *row, size_t begin, size_t end) {
         given->force(sk_given_params(params), time, &in, out);
         for (size_t i = 0; i < count; i++)
             if (in.mass[i] > 0)
-                sk_add_at(run->vector[row->dst], row->packed, first + i, sk_v3(out[0][i], out[1][i], out[2][i]));
+                sk_add_at(run->vector[op->dst], op->packed, first + i, sk_v3(out[0][i], out[1][i], out[2][i]));
     }
 }
 

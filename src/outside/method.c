@@ -1,13 +1,13 @@
-/* Methods by functions, and what they write with: the library's pen under public names. */
+/* Methods by functions, and what they write with: the library's plan builder under public names. */
 #include <string.h>
 
 #include "outside/outside.h"
 
-static sk_writer *pen(skein_writer *writer) {
-    return (sk_writer *)(void *)writer;
+static sk_plan_builder *inner(skein_plan_builder *builder) {
+    return (sk_plan_builder *)(void *)builder;
 }
 
-static sk_vector vector_of(skein_row_vector vector) {
+static sk_vector vector_of(skein_plan_vector vector) {
     static const sk_vector vectors[] = {
         [SKEIN_NO_VECTOR] = SK_NONE, [SKEIN_X] = SK_X,   [SKEIN_V] = SK_V,   [SKEIN_F] = SK_F,   [SKEIN_SAVED_X] = SK_X0,
         [SKEIN_SAVED_V] = SK_V0,     [SKEIN_T0] = SK_T0, [SKEIN_T1] = SK_T1, [SKEIN_T2] = SK_T2, [SKEIN_T3] = SK_T3,
@@ -15,50 +15,51 @@ static sk_vector vector_of(skein_row_vector vector) {
     return (size_t)vector < sizeof vectors / sizeof *vectors ? vectors[vector] : SK_NONE;
 }
 
-size_t skein_write_repeat(skein_writer *writer, size_t times, double h) {
-    return writer ? sk_write_repeat(pen(writer), times, h) : 0;
+size_t skein_write_repeat(skein_plan_builder *builder, size_t times, double h) {
+    return builder ? sk_write_repeat(inner(builder), times, h) : 0;
 }
 
-void skein_write_end(skein_writer *writer, size_t repeat) {
-    if (writer) sk_write_end(pen(writer), repeat);
+void skein_write_end(skein_plan_builder *builder, size_t repeat) {
+    if (builder) sk_write_end(inner(builder), repeat);
 }
 
-void skein_write_moment(skein_writer *writer, double part) {
-    if (writer) sk_write_moment(pen(writer), part);
+void skein_write_stage_time(skein_plan_builder *builder, double part) {
+    if (builder) sk_write_stage_time(inner(builder), part);
 }
 
-void skein_write_sum(skein_writer *writer, skein_row_vector dst, double a, skein_row_vector p, double b, skein_row_vector q) {
-    if (writer && vector_of(dst)) sk_write_sum(pen(writer), vector_of(dst), a, vector_of(p), b, vector_of(q));
+void skein_write_sum(skein_plan_builder *builder, skein_plan_vector dst, double a, skein_plan_vector p, double b, skein_plan_vector q) {
+    if (builder && vector_of(dst)) sk_write_sum(inner(builder), vector_of(dst), a, vector_of(p), b, vector_of(q));
 }
 
-void skein_write_kick(skein_writer *writer, skein_row_vector dst, skein_row_vector p, double a, skein_row_vector q) {
-    if (writer && vector_of(dst)) sk_write_kick(pen(writer), vector_of(dst), vector_of(p), a, vector_of(q));
+void skein_write_kick(skein_plan_builder *builder, skein_plan_vector dst, skein_plan_vector p, double a,
+                      skein_plan_vector q) {
+    if (builder && vector_of(dst)) sk_write_kick(inner(builder), vector_of(dst), vector_of(p), a, vector_of(q));
 }
 
-void skein_write_forces(skein_writer *writer) {
-    if (!writer) return;
-    sk_write_fields(pen(writer));
-    sk_write_forces(pen(writer));
-    sk_write_contacts(pen(writer), SK_CONTACT_FORCE);
+void skein_write_forces(skein_plan_builder *builder) {
+    if (!builder) return;
+    sk_write_fields(inner(builder));
+    sk_write_forces(inner(builder));
+    sk_write_contacts(inner(builder), SK_CONTACT_FORCE);
 }
 
-void skein_write_steering(skein_writer *writer) {
-    if (writer) sk_write_steering(pen(writer));
+void skein_write_steering(skein_plan_builder *builder) {
+    if (builder) sk_write_steering(inner(builder));
 }
 
-void skein_write_bounds(skein_writer *writer) {
-    if (writer) sk_write_bounds(pen(writer));
+void skein_write_bounds(skein_plan_builder *builder) {
+    if (builder) sk_write_bounds(inner(builder));
 }
 
-void skein_write_projections(skein_writer *writer, int passes) {
-    if (writer) sk_write_projections(pen(writer), passes < 1 ? 1 : passes);
+void skein_write_projections(skein_plan_builder *builder, int passes) {
+    if (builder) sk_write_projections(inner(builder), passes < 1 ? 1 : passes);
 }
 
-void skein_write_contacts(skein_writer *writer) {
-    if (!writer) return;
-    sk_write_contacts(pen(writer), SK_CONTACT_IMPULSE);
-    sk_write_limits(pen(writer), SK_V);
-    sk_write_contacts(pen(writer), SK_CONTACT_PUSH);
+void skein_write_contacts(skein_plan_builder *builder) {
+    if (!builder) return;
+    sk_write_contacts(inner(builder), SK_CONTACT_IMPULSE);
+    sk_write_limits(inner(builder), SK_V);
+    sk_write_contacts(inner(builder), SK_CONTACT_PUSH);
 }
 
 /* ---- the type ---- */
@@ -69,9 +70,9 @@ static skein_status check(const void *params, const sk_rules *rules, skein_error
     return given->takes_rigid ? SKEIN_OK : sk_refuse_rigid(rules, outside->type.kind.name, error);
 }
 
-static void write(sk_writer *writer, const void *params, double dt) {
+static void write(sk_plan_builder *builder, const void *params, double dt) {
     const skein_method_type *given = sk_outside_of(params)->given;
-    given->write((skein_writer *)(void *)writer, sk_given_params(params), dt);
+    given->write((skein_plan_builder *)(void *)builder, sk_given_params(params), dt);
 }
 
 static int substeps(const void *params) {

@@ -63,7 +63,7 @@ static bool reserve(sk_particles *particles, sk_allocator *allocator, size_t par
             !grow(allocator, (void **)&particles->rank, old, room, sizeof(uint32_t)) ||
             !grow(allocator, (void **)&particles->built, old, room, sizeof(sk_vec3)) ||
             !grow(allocator, (void **)&particles->mass, old, room, sizeof(real)) ||
-            !grow(allocator, (void **)&particles->held, old, room, sizeof(bool)) ||
+            !grow(allocator, (void **)&particles->pinned, old, room, sizeof(bool)) ||
             !grow(allocator, (void **)&particles->presence, old, room, sizeof(uint8_t)))
             return false;
         particles->capacity = room;
@@ -85,7 +85,7 @@ bool sk_particles_add(sk_particles *particles, sk_allocator *allocator, size_t c
         particles->rank[i] = (uint32_t)i;
         particles->built[i] = sk_v3_of(p);
         particles->mass[i] = mass;
-        particles->held[i] = !(mass > 0);
+        particles->pinned[i] = !(mass > 0);
         particles->presence[i] = SK_HERE;
         particles->vector[SK_X][s] = (sk_vec4){(real)p[0], (real)p[1], (real)p[2], mass > 0 ? 1 / mass : 0};
         particles->vector[SK_V][s] = (sk_vec4){(real)v[0], (real)v[1], (real)v[2], mass};
@@ -138,7 +138,7 @@ void sk_particles_set_presence(sk_particles *particles, size_t first, size_t cou
         for (int v = SK_X; v < SK_T0; v++) particles->vector[v][slot] = (sk_vec4){0, 0, 0, 0};
         particles->rank[i] = (uint32_t)i;
         particles->mass[i] = 0;
-        particles->held[i] = true;
+        particles->pinned[i] = true;
         particles->built[i] = (sk_vec3){0, 0, 0};
     }
     size_t kept = 0;
@@ -173,7 +173,7 @@ void sk_particles_renumber(sk_particles *particles, size_t first, size_t target)
         particles->rank[i] = particles->rank[old] - (uint32_t)offset;
         particles->built[i] = particles->built[old];
         particles->mass[i] = particles->mass[old];
-        particles->held[i] = particles->held[old];
+        particles->pinned[i] = particles->pinned[old];
         particles->particle_of[particles->slot_of[i]] = (uint32_t)i;
     }
     for (size_t s = 0; s < particles->strips.count; s++)
@@ -297,13 +297,13 @@ void sk_particles_reset(sk_particles *particles) {
     if (particles->vector[SK_F]) memset(particles->vector[SK_F], 0, particles->slot_count * sizeof(sk_vec4));
 }
 
-void sk_particle_hold(sk_particles *particles, size_t particle, bool held) {
+void sk_particle_pin(sk_particles *particles, size_t particle, bool pinned) {
     uint32_t s = particles->slot_of[particle];
     real mass = particles->mass[particle];
     if (particles->presence[particle] == SK_GONE) return;
-    particles->held[particle] = held || !(mass > 0);
-    particles->vector[SK_X][s].w = particles->vector[SK_PREVIOUS][s].w = particles->held[particle] ? 0 : 1 / mass;
-    if (held) particles->vector[SK_V][s] = (sk_vec4){0, 0, 0, particles->vector[SK_V][s].w};
+    particles->pinned[particle] = pinned || !(mass > 0);
+    particles->vector[SK_X][s].w = particles->vector[SK_PREVIOUS][s].w = particles->pinned[particle] ? 0 : 1 / mass;
+    if (pinned) particles->vector[SK_V][s] = (sk_vec4){0, 0, 0, particles->vector[SK_V][s].w};
 }
 
 void sk_particles_release(sk_particles *particles, sk_allocator *allocator) {
@@ -314,7 +314,7 @@ void sk_particles_release(sk_particles *particles, sk_allocator *allocator) {
     sk_release(allocator, particles->rank);
     sk_release(allocator, particles->built);
     sk_release(allocator, particles->mass);
-    sk_release(allocator, particles->held);
+    sk_release(allocator, particles->pinned);
     sk_release(allocator, particles->presence);
     sk_release(allocator, particles->strips.data);
     memset(particles, 0, sizeof *particles);

@@ -15,7 +15,7 @@
 #ifndef SK_PARTICLES_PARTICLES_H
 #define SK_PARTICLES_PARTICLES_H
 
-#include "plan/row.h"
+#include "plan/op.h"
 
 enum {
     SK_SLAB_BLOCKS = 4, /* blocks a slab, where there are no strips */
@@ -52,8 +52,8 @@ typedef struct sk_particles {
     uint32_t *place; /* of particles in strips: row x columns + column in their grid */
     uint32_t *rank;  /* where a particle would like to lie: its own index, unless said otherwise */
     sk_vec3 *built;  /* positions as they were built, user's order */
-    real *mass;      /* kg, user's order; 0 for one that was built as held */
-    bool *held;
+    real *mass;      /* kg, user's order; 0 for one that was built as pinned */
+    bool *pinned;
     uint8_t *presence; /* an sk_presence */
     struct {
         sk_strips *data;
@@ -88,7 +88,7 @@ bool sk_particles_want(sk_particles *particles, sk_allocator *allocator, uint32_
 /* Positions as built, all else zero. */
 void sk_particles_reset(sk_particles *particles);
 /* Holds a particle, or gives it back its mass. */
-void sk_particle_hold(sk_particles *particles, size_t particle, bool held);
+void sk_particle_pin(sk_particles *particles, size_t particle, bool pinned);
 void sk_particles_release(sk_particles *particles, sk_allocator *allocator);
 
 #endif

@@ -1,5 +1,5 @@
 /* Triangles by slots, for forces that act on areas: in patches along strips where they fill the cells of a grid, the
- * rest one by one (plan/row.h). Owned by the world, made anew when slots are. */
+ * rest one by one (plan/op.h). Owned by the world, made anew when slots are. */
 #ifndef SK_PARTICLES_SURFACE_H
 #define SK_PARTICLES_SURFACE_H
 

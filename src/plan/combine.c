@@ -1,21 +1,21 @@
 /* The arithmetic of whole vectors, and turning their blocks from quads to packed and back. */
 #include "base/kernels.h"
-#include "plan/row.h"
+#include "plan/op.h"
 
 #define SK_UNIT combine
-SK_KERNELS(sk_row_kernel, sum);
-SK_KERNELS(sk_row_kernel, correction);
-SK_KERNELS(sk_row_kernel, kick);
-SK_KERNELS(sk_row_kernel, wipe);
-SK_KERNELS(sk_row_kernel, steer);
-SK_KERNELS(sk_row_kernel, lead);
-SK_KERNELS(sk_row_kernel, predict);
-SK_KERNELS(sk_row_kernel, pull);
-SK_KERNELS(sk_row_kernel, fall);
-SK_KERNELS(sk_row_kernel, fall_on);
-SK_KERNELS(sk_row_kernel, rest);
-SK_KERNELS(sk_row_kernel, pack);
-SK_KERNELS(sk_row_kernel, unpack);
+SK_KERNELS(sk_op_kernel, sum);
+SK_KERNELS(sk_op_kernel, correction);
+SK_KERNELS(sk_op_kernel, kick);
+SK_KERNELS(sk_op_kernel, wipe);
+SK_KERNELS(sk_op_kernel, steer);
+SK_KERNELS(sk_op_kernel, lead);
+SK_KERNELS(sk_op_kernel, predict);
+SK_KERNELS(sk_op_kernel, pull);
+SK_KERNELS(sk_op_kernel, predict_uniform);
+SK_KERNELS(sk_op_kernel, correct_and_predict);
+SK_KERNELS(sk_op_kernel, rest);
+SK_KERNELS(sk_op_kernel, pack);
+SK_KERNELS(sk_op_kernel, unpack);
 
 #ifdef SK_ISA
 
@@ -31,114 +31,114 @@ SK_INLINE sk_mask without_w(size_t at) {
 #define FOR_PARTS(VALUE)                                                             \
     for (size_t slot = begin; slot < end; slot += SK_LANES) {                        \
         size_t at = slot * 4 / SK_PART;                                              \
-        if (slot < row->packed)                                                      \
+        if (slot < op->packed)                                                       \
             for (int part = 0; part < 3 * SK_PARTS; part++, at++) dst[at] = (VALUE); \
         else                                                                         \
             for (int part = 0; part < 4 * SK_PARTS; part++, at++)                    \
                 dst[at] = sk_select(without_w(at), (VALUE), dst[at]);                \
     }
 
-void SK_KERNEL(sum)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    sk_wide *dst = (sk_wide *)(void *)run->vector[row->dst];
-    const sk_wide *p = (const sk_wide *)(const void *)run->vector[row->source[0]];
-    const sk_wide *q = (const sk_wide *)(const void *)run->vector[row->source[1]];
-    const sk_wide *r = (const sk_wide *)(const void *)run->vector[row->source[2]];
-    sk_wide a = sk_splat((real)row->coefficient[0]), b = sk_splat((real)row->coefficient[1]);
-    sk_wide c = sk_splat((real)row->coefficient[2]);
-    if (row->source[0] == SK_NONE) FOR_PARTS((sk_wide){0})
-    else if (row->source[1] == SK_NONE) FOR_PARTS(a * p[at])
-    else if (row->source[2] == SK_NONE) FOR_PARTS(a * p[at] + b * q[at])
+void SK_KERNEL(sum)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    sk_wide *dst = (sk_wide *)(void *)run->vector[op->dst];
+    const sk_wide *p = (const sk_wide *)(const void *)run->vector[op->source[0]];
+    const sk_wide *q = (const sk_wide *)(const void *)run->vector[op->source[1]];
+    const sk_wide *r = (const sk_wide *)(const void *)run->vector[op->source[2]];
+    sk_wide a = sk_splat((real)op->coefficient[0]), b = sk_splat((real)op->coefficient[1]);
+    sk_wide c = sk_splat((real)op->coefficient[2]);
+    if (op->source[0] == SK_NONE) FOR_PARTS((sk_wide){0})
+    else if (op->source[1] == SK_NONE) FOR_PARTS(a * p[at])
+    else if (op->source[2] == SK_NONE) FOR_PARTS(a * p[at] + b * q[at])
     else FOR_PARTS(a * p[at] + b * q[at] + c * r[at])
 }
 
-void SK_KERNEL(correction)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    sk_wide *dst = (sk_wide *)(void *)run->vector[row->dst];
-    const sk_wide *p = (const sk_wide *)(const void *)run->vector[row->source[0]];
-    const sk_wide *q = (const sk_wide *)(const void *)run->vector[row->source[1]];
-    real a = (real)row->coefficient[0], b = (real)row->coefficient[1];
+void SK_KERNEL(correction)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    sk_wide *dst = (sk_wide *)(void *)run->vector[op->dst];
+    const sk_wide *p = (const sk_wide *)(const void *)run->vector[op->source[0]];
+    const sk_wide *q = (const sk_wide *)(const void *)run->vector[op->source[1]];
+    real a = (real)op->coefficient[0], b = (real)op->coefficient[1];
     // the same operations as predicted p, so that an untouched p corrects nothing
     if (b == 0) FOR_PARTS(dst[at] + a * (p[at] - q[at]))
     else FOR_PARTS(dst[at] + a * (p[at] - (q[at] + b * dst[at])))
 }
 
-void SK_KERNEL(kick)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    real a = (real)row->coefficient[0];
+void SK_KERNEL(kick)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    real a = (real)op->coefficient[0];
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
-        sk_wide4 p = sk_load_part(run->vector[row->source[0]], slot, packed),
-                 q = sk_load_part(run->vector[row->source[1]], slot, packed);
+        bool packed = slot < op->packed;
+        sk_wide4 p = sk_load_part(run->vector[op->source[0]], slot, packed),
+                 q = sk_load_part(run->vector[op->source[1]], slot, packed);
         sk_wide k = a * sk_load_part(run->vector[SK_X], slot, packed).w;
         p.x += k * q.x, p.y += k * q.y, p.z += k * q.z;
-        if (row->dst != row->source[0]) p.w = sk_load_part(run->vector[row->dst], slot, packed).w;
-        sk_store_part(run->vector[row->dst], slot, packed, p);
+        if (op->dst != op->source[0]) p.w = sk_load_part(run->vector[op->dst], slot, packed).w;
+        sk_store_part(run->vector[op->dst], slot, packed, p);
     }
 }
 
-void SK_KERNEL(wipe)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    memset(run->vector[row->dst] + begin, 0, (end - begin) * sizeof(sk_vec4));
+void SK_KERNEL(wipe)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    memset(run->vector[op->dst] + begin, 0, (end - begin) * sizeof(sk_vec4));
 }
 
-void SK_KERNEL(steer)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(steer)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
-        sk_wide4 v = sk_load_part(run->vector[row->dst], slot, packed),
-                 s = sk_load_part(run->vector[row->source[1]], slot, packed);
+        bool packed = slot < op->packed;
+        sk_wide4 v = sk_load_part(run->vector[op->dst], slot, packed),
+                 s = sk_load_part(run->vector[op->source[1]], slot, packed);
         sk_mask free = sk_positive(sk_load_part(run->vector[SK_X], slot, packed).w);
         v.x += sk_keep(free, s.x), v.y += sk_keep(free, s.y), v.z += sk_keep(free, s.z);
-        sk_store_moved(run->vector[row->dst], slot, packed, v);
+        sk_store_moved(run->vector[op->dst], slot, packed, v);
     }
 }
 
 /* dst += a q, where the inverse mass is 0. */
-void SK_KERNEL(lead)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    real a = (real)row->coefficient[0];
+void SK_KERNEL(lead)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    real a = (real)op->coefficient[0];
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
-        sk_wide4 x = sk_load_part(run->vector[row->dst], slot, packed),
-                 v = sk_load_part(run->vector[row->source[1]], slot, packed);
+        bool packed = slot < op->packed;
+        sk_wide4 x = sk_load_part(run->vector[op->dst], slot, packed),
+                 v = sk_load_part(run->vector[op->source[1]], slot, packed);
         sk_wide k = sk_keep(~sk_positive(x.w), sk_splat(a));
         x.x += k * v.x, x.y += k * v.y, x.z += k * v.z;
-        sk_store_part(run->vector[row->dst], slot, packed, x);
+        sk_store_part(run->vector[op->dst], slot, packed, x);
     }
 }
 
 /* The start of a position method's substep in one go, once the block's v has its new value: V = v, V0 = V,
  * X0 = X, X += h V; or, where only the correction will ask, X0 = X + h V. */
-SK_INLINE void set_out(sk_run *run, const sk_row *row, size_t slot, bool packed, sk_wide4 x, sk_wide4 v) {
-    real h = (real)row->dt;
+SK_INLINE void set_out(sk_run *run, const sk_op *op, size_t slot, bool packed, sk_wide4 x, sk_wide4 v) {
+    real h = (real)op->dt;
     sk_store_moved(run->vector[SK_V], slot, packed, v);
-    if (row->source[2] == SK_V0) sk_store_moved(run->vector[SK_V0], slot, packed, v);
-    if (row->source[2] != SK_X) sk_store_moved(run->vector[SK_X0], slot, packed, x);
+    if (op->source[2] == SK_V0) sk_store_moved(run->vector[SK_V0], slot, packed, v);
+    if (op->source[2] != SK_X) sk_store_moved(run->vector[SK_X0], slot, packed, x);
     x.x += h * v.x, x.y += h * v.y, x.z += h * v.z;
     sk_store_moved(run->vector[SK_X], slot, packed, x);
-    if (row->source[2] == SK_X) sk_store_moved(run->vector[SK_X0], slot, packed, x);
+    if (op->source[2] == SK_X) sk_store_moved(run->vector[SK_X0], slot, packed, x);
 }
 
-void SK_KERNEL(predict)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(predict)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
+        bool packed = slot < op->packed;
         sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), v = sk_load_part(run->vector[SK_V], slot, packed),
                  f = sk_load_part(run->vector[SK_F], slot, packed);
-        sk_wide k = (real)row->dt * x.w;
+        sk_wide k = (real)op->dt * x.w;
         v.x += k * f.x, v.y += k * f.y, v.z += k * f.z;
-        set_out(run, row, slot, packed, x, v);
+        set_out(run, op, slot, packed, x, v);
     }
 }
 
-/* What a plain force does to the velocity of a block within h. */
+/* What a uniform force does to the velocity of a block within h. */
 typedef struct uniform_pull {
     sk_vec3 a, f;
     real linear, rate, h;
     bool by_mass; /* no force of its own weight: the mass does not matter */
 } uniform_pull;
 
-SK_INLINE uniform_pull pull_of(const sk_row *row) {
-    const sk_plain_force *plain = row->rule;
-    uniform_pull p = {sk_v3_of(plain->acceleration),
-                      sk_v3_of(plain->force),
-                      (real)plain->linear,
-                      (real)plain->rate,
-                      (real)row->dt,
+SK_INLINE uniform_pull pull_of(const sk_op *op) {
+    const sk_uniform_force *uniform = op->rule;
+    uniform_pull p = {sk_v3_of(uniform->acceleration),
+                      sk_v3_of(uniform->force),
+                      (real)uniform->linear,
+                      (real)uniform->rate,
+                      (real)op->dt,
                       false};
     p.by_mass = p.linear == 0 && p.f.x == 0 && p.f.y == 0 && p.f.z == 0;
     return p;
@@ -159,20 +159,20 @@ SK_INLINE sk_wide4 pulled(const uniform_pull *p, sk_wide w, sk_wide4 v) {
     return v;
 }
 
-void SK_KERNEL(pull)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    uniform_pull pull = pull_of(row);
+void SK_KERNEL(pull)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    uniform_pull pull = pull_of(op);
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        bool packed = slot < row->packed;
+        bool packed = slot < op->packed;
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         sk_store_moved(run->vector[SK_V], slot, packed, pulled(&pull, sk_load_part(run->vector[SK_X], slot, packed).w, v));
     }
 }
 
 #ifdef SK_WHOLE_QUADS
-/* `fall` and `fall_on` over quads [begin, end), which stay quads: turning them into x, y, z, w and back was most of the
- * work. a (X - X0) comes to the velocity first, unless a is 0; the last turn ends with that. */
-SK_INLINE void fall_in_quads(sk_run *run, const sk_row *row, size_t begin, size_t end, real a, bool last) {
-    const uniform_pull p = pull_of(row);
+/* Both uniform predictions over quads [begin, end), which stay quads: turning them into x, y, z, w and back was most of
+ * the work. a (X - X0) comes to the velocity first, unless a is 0; the last iteration ends with that. */
+SK_INLINE void predict_in_quads(sk_run *run, const sk_op *op, size_t begin, size_t end, real a, bool last) {
+    const uniform_pull p = pull_of(op);
     const sk_mask fourth = sk_fourth_lanes();
     const sk_wide acceleration = sk_each_quad(p.a.x, p.a.y, p.a.z), force = sk_each_quad(p.f.x, p.f.y, p.f.z);
     sk_wide *x_of = (sk_wide *)(void *)run->vector[SK_X], *v_of = (sk_wide *)(void *)run->vector[SK_V],
@@ -188,58 +188,58 @@ SK_INLINE void fall_in_quads(sk_run *run, const sk_row *row, size_t begin, size_
         v_of[i] = v;
         if (last) continue;
         sk_wide gone = sk_select(fourth, x, x + p.h * v);
-        if (row->source[2] == SK_V0) v0_of[i] = v;
-        x0_of[i] = row->source[2] == SK_X ? gone : x;
+        if (op->source[2] == SK_V0) v0_of[i] = v;
+        x0_of[i] = op->source[2] == SK_X ? gone : x;
         x_of[i] = gone;
     }
 }
 #endif
 
 /* How many of the slots from `begin` on are packed, and so go part by part. */
-SK_INLINE size_t end_of_packed(const sk_row *row, size_t begin, size_t end) {
+SK_INLINE size_t end_of_packed(const sk_op *op, size_t begin, size_t end) {
 #ifdef SK_WHOLE_QUADS
-    size_t packed = row->packed < begin ? begin : row->packed;
+    size_t packed = op->packed < begin ? begin : op->packed;
     return packed < end ? packed : end;
 #else
-    (void)row, (void)begin;
+    (void)op, (void)begin;
     return end;
 #endif
 }
 
-void SK_KERNEL(fall)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    uniform_pull pull = pull_of(row);
-    size_t stop = end_of_packed(row, begin, end);
+void SK_KERNEL(predict_uniform)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    uniform_pull pull = pull_of(op);
+    size_t stop = end_of_packed(op, begin, end);
     for (size_t slot = begin; slot < stop; slot += SK_PART) {
-        bool packed = slot < row->packed;
+        bool packed = slot < op->packed;
         sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), v = sk_load_part(run->vector[SK_V], slot, packed);
-        set_out(run, row, slot, packed, x, pulled(&pull, x.w, v));
+        set_out(run, op, slot, packed, x, pulled(&pull, x.w, v));
     }
 #ifdef SK_WHOLE_QUADS
-    fall_in_quads(run, row, stop, end, 0, false);
+    predict_in_quads(run, op, stop, end, 0, false);
 #endif
 }
 
-void SK_KERNEL(fall_on)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    uniform_pull pull = pull_of(row);
-    real a = (real)row->coefficient[0];
-    size_t stop = end_of_packed(row, begin, end);
+void SK_KERNEL(correct_and_predict)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    uniform_pull pull = pull_of(op);
+    real a = (real)op->coefficient[0];
+    size_t stop = end_of_packed(op, begin, end);
     for (size_t slot = begin; slot < stop; slot += SK_PART) {
-        bool packed = slot < row->packed;
+        bool packed = slot < op->packed;
         sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), v = sk_load_part(run->vector[SK_V], slot, packed),
                  x0 = sk_load_part(run->vector[SK_X0], slot, packed);
         v.x += a * (x.x - x0.x), v.y += a * (x.y - x0.y), v.z += a * (x.z - x0.z);
-        if (run->last_turn) sk_store_moved(run->vector[SK_V], slot, packed, v);
-        else set_out(run, row, slot, packed, x, pulled(&pull, x.w, v));
+        if (run->last_iteration) sk_store_moved(run->vector[SK_V], slot, packed, v);
+        else set_out(run, op, slot, packed, x, pulled(&pull, x.w, v));
     }
 #ifdef SK_WHOLE_QUADS
-    fall_in_quads(run, row, stop, end, a, run->last_turn);
+    predict_in_quads(run, op, stop, end, a, run->last_iteration);
 #endif
 }
 
 /* What is slower than anything that can be seen is at rest. NaN is not, and a zero keeps its sign. */
-void SK_KERNEL(rest)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    sk_wide *dst = (sk_wide *)(void *)run->vector[row->dst];
-    const sk_wide least = sk_splat((real)row->coefficient[0]), zero = {0};
+void SK_KERNEL(rest)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    sk_wide *dst = (sk_wide *)(void *)run->vector[op->dst];
+    const sk_wide least = sk_splat((real)op->coefficient[0]), zero = {0};
     FOR_PARTS(sk_select(sk_at_most(sk_wide_abs(dst[at]), least) & sk_differ(dst[at], zero), zero, dst[at]))
 }
 #undef FOR_PARTS
@@ -253,12 +253,12 @@ SK_INLINE void change_layout(sk_vec4 *vector, size_t begin, size_t end, bool pac
     }
 }
 
-void SK_KERNEL(pack)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    change_layout(run->vector[row->dst], begin, end, true);
+void SK_KERNEL(pack)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    change_layout(run->vector[op->dst], begin, end, true);
 }
 
-void SK_KERNEL(unpack)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    change_layout(run->vector[row->dst], begin, end, false);
+void SK_KERNEL(unpack)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    change_layout(run->vector[op->dst], begin, end, false);
 }
 
 #else
@@ -271,8 +271,8 @@ const sk_kernels sk_combine_steer = {SK_EACH_ISA(steer)};
 const sk_kernels sk_combine_lead = {SK_EACH_ISA(lead)};
 const sk_kernels sk_combine_predict = {SK_EACH_ISA(predict)};
 const sk_kernels sk_combine_pull = {SK_EACH_ISA(pull)};
-const sk_kernels sk_combine_fall = {SK_EACH_ISA(fall)};
-const sk_kernels sk_combine_fall_on = {SK_EACH_ISA(fall_on)};
+const sk_kernels sk_combine_predict_uniform = {SK_EACH_ISA(predict_uniform)};
+const sk_kernels sk_combine_correct_and_predict = {SK_EACH_ISA(correct_and_predict)};
 const sk_kernels sk_combine_rest = {SK_EACH_ISA(rest)};
 const sk_kernels sk_pack = {SK_EACH_ISA(pack)};
 const sk_kernels sk_unpack = {SK_EACH_ISA(unpack)};

@@ -49,7 +49,7 @@ static void find_pair(void *data, uint32_t low, uint32_t high, uint32_t *pair) {
 }
 
 /* Each particle's list in order, and each of its neighbours once. */
-static void tidy_lists(sk_matrix *m) {
+static void order_lists(sk_matrix *m) {
     size_t kept = 0;
     for (size_t i = 0; i < m->particles; i++) {
         size_t begin = m->first[i], end = m->first[i + 1], mine = kept;
@@ -92,7 +92,7 @@ bool sk_matrix_shape(sk_matrix *m, sk_allocator *allocator, size_t particles, co
     }
     if (good) {
         visit_pairs(parts, part_count, list_pair, m);
-        tidy_lists(m);
+        order_lists(m);
         size_t entries = 6 * particles + 9 * m->first[particles];
         m->row = sk_allocate(allocator, entries * sizeof *m->row);
         m->value = sk_allocate(allocator, entries * sizeof *m->value);
@@ -119,13 +119,13 @@ skein_sparse_matrix sk_matrix_view(const sk_matrix *m, bool with_values) {
 
 /* ---- its numbers ---- */
 
-void sk_matrix_clear(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void sk_matrix_clear(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     sk_matrix *m = run->matrix;
     (void)begin, (void)end;
     memset(m->value, 0, (size_t)m->start[3 * m->particles] * sizeof *m->value);
     for (size_t i = 0; i < m->particles; i++) {
-        sk_vec4 d = sk_load(run->vector[row->source[0]], row->packed, run->slot_of[i]);
-        sk_vec4 o = sk_load(run->vector[row->source[1]], row->packed, run->slot_of[i]);
+        sk_vec4 d = sk_load(run->vector[op->source[0]], op->packed, run->slot_of[i]);
+        sk_vec4 o = sk_load(run->vector[op->source[1]], op->packed, run->slot_of[i]);
         double xx = (double)d.x, yy = (double)d.y, zz = (double)d.z;
         double xy = (double)o.x, xz = (double)o.y, yz = (double)o.z;
         sk_matrix_add_diagonal(m, (uint32_t)i, (double[3][3]){{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}});
@@ -186,24 +186,24 @@ static bool filter_matrix(const sk_run *run, sk_matrix *m, size_t packed) {
     return sum == 0;
 }
 
-void sk_matrix_factor(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void sk_matrix_factor(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     sk_matrix *m = run->matrix;
     (void)begin, (void)end;
-    bool finite = filter_matrix(run, m, row->packed);
+    bool finite = filter_matrix(run, m, op->packed);
     skein_sparse_matrix matrix = sk_matrix_view(m, true);
     run->solve->factors++;
     run->solve->factored = finite && m->solver.factor(m->solver.user, &matrix);
     run->solve->failures += !run->solve->factored;
 }
 
-void sk_matrix_solve(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void sk_matrix_solve(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     sk_matrix *m = run->matrix;
-    const sk_vec4 *from = run->vector[row->source[0]];
-    sk_vec4 *to = run->vector[row->dst];
+    const sk_vec4 *from = run->vector[op->source[0]];
+    sk_vec4 *to = run->vector[op->dst];
     (void)begin, (void)end;
     if (!run->solve->factored) return;
     for (size_t i = 0; i < m->particles; i++) {
-        sk_vec4 b = sk_load(from, row->packed, run->slot_of[i]);
+        sk_vec4 b = sk_load(from, op->packed, run->slot_of[i]);
         m->given[3 * i] = (double)b.x, m->given[3 * i + 1] = (double)b.y, m->given[3 * i + 2] = (double)b.z;
     }
     double sum = 0;
@@ -217,6 +217,6 @@ void sk_matrix_solve(sk_run *run, const sk_row *row, size_t begin, size_t end) {
     memset(to, 0, run->slot_count * sizeof *to); // slots without a particle, too
     for (size_t i = 0; i < m->particles; i++) {
         const double *x = m->found + 3 * i;
-        sk_store_at(to, row->packed, run->slot_of[i], sk_v3((real)x[0], (real)x[1], (real)x[2]));
+        sk_store_at(to, op->packed, run->slot_of[i], sk_v3((real)x[0], (real)x[1], (real)x[2]));
     }
 }

@@ -4,7 +4,7 @@
  *   A = m + h c + h^2 k    a block row of three rows for each particle, in the user's order
  *
  * Its shape is made when slots are (sk_matrix_shape): a 3 x 3 block for each particle, and one for each two that an
- * element has in common. Each turn of Newton's method fills it: what particles have by
+ * element has in common. Each iteration of Newton's method fills it: what particles have by
  * themselves, then the blocks of every batch, in double: what an element does to both of its ends must cancel to more
  * than float's digits, or a stiff sheet would weigh what the rounding of its springs does. Then S A S + (1 - S), which
  * is definite where contact holds particles, goes to the solver.
@@ -19,7 +19,7 @@
 #ifndef SK_PLAN_MATRIX_H
 #define SK_PLAN_MATRIX_H
 
-#include "plan/row.h"
+#include "plan/op.h"
 
 typedef struct sk_matrix {
     skein_sparse_solver solver; /* `solve` is NULL where there is none */
@@ -51,7 +51,7 @@ skein_sparse_matrix sk_matrix_view(const sk_matrix *matrix, bool with_values);
  *   clear   A = blocks of particles: xx yy zz from source[0], xy xz yz from source[1]; nothing between them
  *   factor  S A S + (1 - S) goes to the solver; the solve's `factored` says whether there is a factor then
  *   solve   dst = that^-1 source[0], where there is a factor */
-extern sk_row_kernel sk_matrix_clear, sk_matrix_factor, sk_matrix_solve;
+extern sk_op_kernel sk_matrix_clear, sk_matrix_factor, sk_matrix_solve;
 
 /* ---- for the kernels of constraints ---- */
 

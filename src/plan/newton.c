@@ -1,4 +1,4 @@
-/* Newton's method in C. Each run_part() has rows of the plan run, cut over threads as all rows are; their sums have one
+/* Newton's method in C. Each run_part() has ops of the plan run, cut over threads as all ops are; their sums have one
  * order (solve.h), so that neither the bits nor what is decided here depend on how many threads there are. */
 #include "plan/newton.h"
 
@@ -12,27 +12,27 @@ typedef struct solver {
     sk_run *run;
     sk_solve *state;
     const sk_newton *params;
-    const sk_row *part[SK_NEWTON_PARTS];
-    int turn;             /* of Newton's method, from 1 */
+    const sk_op *part[SK_NEWTON_PARTS];
+    int iteration;        /* of Newton's method, from 1 */
     double start, square; /* R w R when the substep began, and now; */
     double rounding;      /* what the rounding of positions makes of it */
     double slope;         /* R times the change, before the line search and on the way */
-    double first_rz;      /* R in the preconditioner's norm, in the first turn, */
+    double first_rz;      /* R in the preconditioner's norm, in the first iteration, */
     bool first_factored;  /* and whether that was the factor's */
 } solver;
 
-static solver open_solver(sk_run *run, const sk_row *solve) {
+static solver open_solver(sk_run *run, const sk_op *solve) {
     solver s = {.run = run, .state = run->solve, .params = solve->rule};
-    for (const sk_row *row = solve + 1; row <= solve + solve->length; row++)
-        if (row->kind == SK_ROW_PART) s.part[row->part] = row;
+    for (const sk_op *op = solve + 1; op <= solve + solve->length; op++)
+        if (op->kind == SK_OP_PART) s.part[op->part] = op;
     s.state->factored = false;
     return s;
 }
 
-/* Has a part's rows run, with `scale` as their number; returns the sum that they leave. */
+/* Has a part's ops run, with `scale` as their number; returns the sum that they leave. */
 static double run_part(solver *s, int part, double scale) {
     s->state->scale = scale;
-    if (s->part[part]) s->run->rows(s->run, s->part[part] + 1, s->part[part]->length);
+    if (s->part[part]) s->run->ops(s->run, s->part[part] + 1, s->part[part]->length);
     return sk_solve_sum(s->run, 0);
 }
 
@@ -56,8 +56,8 @@ static bool is_solved(const solver *s) {
 static void conjugate_gradients(solver *s) {
     const double tolerance = cg_share * s->params->tolerance;
     double beta = 0, rz = run_part(s, SK_NEWTON_PRECONDITION, 0);
-    if (s->turn == 1 || s->first_factored != s->state->factored) {
-        s->first_rz = rz; // what later turns have to show is comparable in its own norm alone
+    if (s->iteration == 1 || s->first_factored != s->state->factored) {
+        s->first_rz = rz; // what later iterations have to show is comparable in its own norm alone
         s->first_factored = s->state->factored;
     }
     s->slope = 0;
@@ -103,17 +103,17 @@ static void account(solver *s) {
 }
 
 /* A substep: X and V from X0 and V0. */
-void sk_newton_solve(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void sk_newton_solve(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     (void)begin, (void)end;
-    solver s = open_solver(run, row);
+    solver s = open_solver(run, op);
     find_first_guess(&s);
-    for (s.turn = 1; s.turn <= s.params->turns; s.turn++) {
+    for (s.iteration = 1; s.iteration <= s.params->iterations; s.iteration++) {
         run_part(&s, SK_NEWTON_HOLD, 0);
         find_residual(&s);
-        // one turn is always made, however small the residual: among it may be a weight that moves everything
-        bool solved = is_solved(&s) && (s.turn > 1 || s.square <= 0);
+        // one iteration is always made, however small the residual: among it may be a weight that moves everything
+        bool solved = is_solved(&s) && (s.iteration > 1 || s.square <= 0);
         if (solved || is_lost(s.square)) break;
-        s.state->turns++;
+        s.state->newton_iterations++;
         s.rounding = run_part(&s, SK_NEWTON_LINEARISE, 0);
         conjugate_gradients(&s);
         search_line(&s);

@@ -1,5 +1,5 @@
-/* Newton's method for an implicit substep, with a line search, and conjugate gradients in each turn: what is done when,
- * over parts of the plan (row.h) that an implicit method has written. plan/solve.h has the vectors. */
+/* Newton's method for an implicit substep, with a line search, and conjugate gradients in each iteration: what is done
+ * when, over parts of the plan (op.h) that an implicit method has written. plan/solve.h has the vectors. */
 #ifndef SK_PLAN_NEWTON_H
 #define SK_PLAN_NEWTON_H
 
@@ -8,7 +8,7 @@
 /* Where to stop. */
 typedef struct sk_newton {
     double tolerance; /* a share of the residual that there is to begin with */
-    int32_t turns, cg_iterations;
+    int32_t iterations, cg_iterations;
 } sk_newton;
 
 /* The parts, and what is so when they have run. */
@@ -24,7 +24,7 @@ enum {
     SK_NEWTON_PARTS
 };
 
-/* The kernel of a solve row, whose rule is an sk_newton: takes V from V0 to the end of the substep. */
-extern sk_row_kernel sk_newton_solve;
+/* The kernel of a solve op, whose rule is an sk_newton: takes V from V0 to the end of the substep. */
+extern sk_op_kernel sk_newton_solve;
 
 #endif

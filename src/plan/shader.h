@@ -1,9 +1,9 @@
 /* What a rule is on a graphics card: its arithmetic in GLSL, and its parameters as the shader sees them.
  *
- * A kind that says its arithmetic (base/arithmetic.h) names its file; that arithmetic is GLSL as it is, and gpu/rows.c
+ * A kind that says its arithmetic (base/arithmetic.h) names its file; that arithmetic is GLSL as it is, and gpu/ops.c
  * makes the struct of parameters and the calls from the kind's fields. A kind of which that cannot be said has a .glsl
- * file of its own. gpu/ puts the texts of a row's rule and of its neighbours in the plan together to one compute
- * shader. In a .glsl file '@' stands for the row's number in that shader, so that rules of one kind do not meet:
+ * file of its own. gpu/ puts the texts of an op's rule and of its neighbours in the plan together to one compute
+ * shader. In a .glsl file '@' stands for the op's number in that shader, so that rules of one kind do not meet:
  * `rule@[k]` is the k-th vector of the rule's block. What it must define is in the header of its floor (force.h,
  * collider.h). What of a text depends on parameters, a formula say, the type writes itself; it stands before the file.
  */
@@ -24,7 +24,7 @@ typedef struct sk_shader {
     const char *(*refuse)(const void *params);
     /* The rest may be NULL. Text before the file's, with '@' as there; false when there is no memory. */
     bool (*write)(const void *params, void (*put)(void *user, const char *text), void *user);
-    /* Whether it is another at another time, which is then in row@[1].z; NULL: it never is. */
+    /* Whether it is another at another time, which is then in op@[1].z; NULL: it never is. */
     bool (*changes)(const void *params);
     /* Whether a rule that bounds moves particles, by shift@ (forces/force.h), instead. */
     bool (*shifts)(const void *params);

@@ -3,14 +3,14 @@
  *
  *   A  the system's matrix, 1/h times that of the momenta: m + h drag + h (h k + c) along each spring ...
  *   R  what is missing of the momentum's balance, kg m/s: h F - m (V - V0), without what contact holds
- *   S  the filter: what a held or touching particle can still do, a symmetric projector for each
+ *   S  the filter: what a pinned or touching particle can still do, a symmetric projector for each
  *
  * Sums have the same bits for any number of threads: a kernel leaves a partial sum for every block of sixteen slots,
  * and sk_solve_sum() adds these up in their order. */
 #ifndef SK_PLAN_SOLVE_H
 #define SK_PLAN_SOLVE_H
 
-#include "plan/row.h"
+#include "plan/op.h"
 
 /* Where an implicit method keeps what it needs; symmetric 3 x 3 blocks are two vectors, xx yy zz and xy xz yz. */
 enum {
@@ -29,17 +29,17 @@ enum {
 };
 
 typedef struct sk_solve {
-    double scale;  /* a number that the rows of a part take, set before they run */
+    double scale;  /* a number that the ops of a part take, set before they run */
     bool factored; /* there is a factor of the whole matrix (plan/matrix.h) */
     /* a step's account */
     double residual; /* the largest that was left, as a share of its start */
     size_t unsolved; /* substeps that came neither to the tolerance nor to rounding */
-    size_t turns, iterations; /* of Newton's method, of conjugate gradients */
+    size_t newton_iterations, iterations; /* of Newton's method, of conjugate gradients */
     size_t factors, failures; /* factorisations, and those that failed, or whose solves did */
 } sk_solve;
 
-/* Kernels of rows over slots; `s` is the solve's scale, and those marked leave partial sums.
- *   open          S = 1, or 0 for what is held
+/* Kernels of ops over slots; `s` is the solve's scale, and those marked leave partial sums.
+ *   open          S = 1, or 0 for what is pinned
  *   guess         CHANGE = S V0, V = GUESS = V0 - CHANGE
  *   along         V = GUESS + s CHANGE
  *   imbalance  *  R = S (h F + h friction - m (V - V0));                               R CHANGE
@@ -53,7 +53,7 @@ typedef struct sk_solve {
 extern const sk_kernels sk_solve_open, sk_solve_guess, sk_solve_along, sk_solve_imbalance, sk_solve_norm, sk_solve_mass,
     sk_solve_factor, sk_solve_direction, sk_solve_curvature, sk_solve_step, sk_solve_precondition;
 
-/* Adds up what the last such row has left, as its first sum (0), or what norm has (1). */
+/* Adds up what the last such op has left, as its first sum (0), or what norm has (1). */
 double sk_solve_sum(const sk_run *run, int which);
 
 #endif

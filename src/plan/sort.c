@@ -3,9 +3,9 @@
 #include "base/kernels.h"
 
 #define SK_UNIT sort
-SK_KERNELS(sk_row_kernel, frame);
-SK_KERNELS(sk_row_kernel, find);
-SK_KERNELS(sk_row_kernel, copy);
+SK_KERNELS(sk_op_kernel, frame);
+SK_KERNELS(sk_op_kernel, find);
+SK_KERNELS(sk_op_kernel, copy);
 
 #ifdef SK_ISA
 
@@ -23,13 +23,13 @@ SK_INLINE sk_mask somewhere(sk_wide4 p) {
     return sk_at_most(sk_wide_abs(p.x), most) & sk_at_most(sk_wide_abs(p.y), most) & sk_at_most(sk_wide_abs(p.z), most);
 }
 
-void SK_KERNEL(frame)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(frame)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     SK_VECTOR_ALIGNED real low[3][SK_LANES], high[3][SK_LANES];
     for (int i = 0; i < 3 * SK_LANES; i++) low[i / SK_LANES][i % SK_LANES] = SK_REAL_MAX;
     for (int i = 0; i < 3 * SK_LANES; i++) high[i / SK_LANES][i % SK_LANES] = -SK_REAL_MAX;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        sk_wide4 p = sk_load_part(run->vector[SK_X], slot, slot < row->packed);
-        sk_mask counts = members(run, row->group, slot) & somewhere(p);
+        sk_wide4 p = sk_load_part(run->vector[SK_X], slot, slot < op->packed);
+        sk_mask counts = members(run, op->group, slot) & somewhere(p);
         const sk_wide at[3] = {p.x, p.y, p.z};
         for (int k = 0; k < 3; k++) {
             sk_wide *below = (sk_wide *)(void *)(low[k] + slot % SK_LANES);
@@ -46,7 +46,7 @@ void SK_KERNEL(frame)(sk_run *run, const sk_row *row, size_t begin, size_t end) 
         if (least[k] > most[k]) least[k] = most[k] = 0; // nobody
     }
     if (!sk_cells_frame_box(run->cells, run->allocator, sk_v3(least[0], least[1], least[2]),
-                            sk_v3(most[0], most[1], most[2]), row->group, (real)row->coefficient[0]))
+                            sk_v3(most[0], most[1], most[2]), op->group, (real)op->coefficient[0]))
         run->no_memory = true;
 }
 
@@ -58,31 +58,31 @@ SK_INLINE sk_mask cell_along(sk_wide at, real origin, real per, int32_t count) {
     return cell | (above & ~inside & (sk_lane_int)(count - 1));
 }
 
-void SK_KERNEL(find)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(find)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     sk_cells *cells = run->cells;
     if (run->no_memory) return;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        sk_wide4 p = sk_load_part(run->vector[SK_X], slot, slot < row->packed);
-        sk_mask counts = members(run, row->group, slot) & somewhere(p);
+        sk_wide4 p = sk_load_part(run->vector[SK_X], slot, slot < op->packed);
+        sk_mask counts = members(run, op->group, slot) & somewhere(p);
         sk_mask x = cell_along(p.x, cells->origin.x, cells->per_x, cells->count_x),
                 y = cell_along(p.y, cells->origin.y, cells->per_yz, cells->count_y),
                 z = cell_along(p.z, cells->origin.z, cells->per_yz, cells->count_z);
         sk_mask cell =
             x + cells->count_x * ((y & cells->layer_y) + cells->layer * (z + cells->count_z * (y >> cells->shift_y)));
         cell |= ~counts; // SK_NOWHERE
-        size_t first = row->group->first_slot;
+        size_t first = op->group->first_slot;
         for (size_t l = 0; l < SK_PART; l++)
-            if (slot + l >= first && slot + l < row->group->end_slot) cells->cell[slot + l - first] = (uint32_t)cell[l];
+            if (slot + l >= first && slot + l < op->group->end_slot) cells->cell[slot + l - first] = (uint32_t)cell[l];
     }
 }
 
 /* Elements are places: here those of the cells that begin at them. */
-void SK_KERNEL(copy)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
+void SK_KERNEL(copy)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     sk_cells *cells = run->cells;
-    sk_state state = {run->vector[SK_X], run->vector[SK_V], row->packed, run->particle_of};
+    sk_state state = {run->vector[SK_X], run->vector[SK_V], op->packed, run->particle_of};
     if (run->no_memory) return;
     sk_cells_settle(cells, &state, begin, end, &begin, &end);
-    for (; !row->packed && begin + SK_PART <= end; begin += SK_PART) {
+    for (; !op->packed && begin + SK_PART <= end; begin += SK_PART) {
         sk_wide4 p = sk_gather(run->vector[SK_X], cells->slot + begin),
                  v = sk_gather(run->vector[SK_V], cells->slot + begin);
         sk_wide speed = sk_wide_sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
@@ -97,12 +97,12 @@ void SK_KERNEL(copy)(sk_run *run, const sk_row *row, size_t begin, size_t end) {
 
 #else
 
-static void rank(sk_run *run, const sk_row *row, size_t begin, size_t end) {
-    (void)row, (void)begin, (void)end;
+static void rank(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    (void)op, (void)begin, (void)end;
     if (!run->no_memory) sk_cells_rank(run->cells);
 }
 
-const sk_sort_row sk_sort_rows[SK_SORT_ROWS] = {
+const sk_sort_op sk_sort_ops[SK_SORT_OPS] = {
     {{SK_EACH_ISA(frame)}, SK_ORDERED, false, "frame of cells"},
     {{SK_EACH_ISA(find)}, SK_FREE, false, "cell of each"},
     {{SK_ANY_ISA(rank)}, SK_ORDERED, false, "place of each"},

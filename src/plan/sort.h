@@ -1,25 +1,25 @@
-/* The rows that sort particles into cells, for rules that look at neighbours (space/cells.h), in this order.
+/* The ops that sort particles into cells, for rules that look at neighbours (space/cells.h), in this order.
  *
  *   frame     ordered   the cells' frame, and memory for all of it; coefficient[0] is the radius
  *   find      free      the cell of each slot's particle
  *   rank      ordered   who is at which place: a counting sort
  *   copy      free      cells put in the user's order; positions and directions of flight, by place
  *
- * The elements of the last are places, those of the others the slots of the row's group. */
+ * The elements of the last are places, those of the others the slots of the op's group. */
 #ifndef SK_PLAN_SORT_H
 #define SK_PLAN_SORT_H
 
-#include "plan/row.h"
+#include "plan/op.h"
 
-enum { SK_SORT_ROWS = 4 };
+enum { SK_SORT_OPS = 4 };
 
-typedef struct sk_sort_row {
+typedef struct sk_sort_op {
     sk_kernels kernels;
     sk_order order;
     bool by_place;
     const char *label;
-} sk_sort_row;
+} sk_sort_op;
 
-extern const sk_sort_row sk_sort_rows[SK_SORT_ROWS];
+extern const sk_sort_op sk_sort_ops[SK_SORT_OPS];
 
 #endif

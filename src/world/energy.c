@@ -79,7 +79,7 @@ static bool collider_moves(const sk_collider_common *common, bool deforms) {
     return deforms || v[0] != 0 || v[1] != 0 || v[2] != 0 || common->spin != 0;
 }
 
-static bool held_particle_moves(const skein_world *world) {
+static bool pinned_particle_moves(const skein_world *world) {
     const sk_particles *all = &world->particles;
     for (size_t i = 0; i < all->count; i++) {
         uint32_t slot = all->slot_of[i];
@@ -115,5 +115,5 @@ bool skein_world_is_driven(skein_world *world) {
         if (sk_collider_mass(collider) > 0) return true; // it cancels what pulls back what leaves (contact.c)
     }
     if (sk_world_fetch(world) || sk_world_arrange(world, NULL)) return true; // it cannot be said
-    return held_particle_moves(world) || energy_depends_on_time(world);
+    return pinned_particle_moves(world) || energy_depends_on_time(world);
 }

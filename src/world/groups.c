@@ -145,13 +145,13 @@ static skein_status join(const skein_world *world, const char *label, const sk_o
 
 static skein_status find_force(skein_world *world, sk_force *force, skein_error *error) {
     skein_status status = find_only(world, force->label, *force->on, &force->only, error);
-    if (status || force->type->deed == SK_PUSHES || force->type->deed == SK_MEETS) return status;
+    if (status || force->type->phase == SK_PUSHES || force->type->phase == SK_MEETS) return status;
     status = join(world, force->label, &force->only, &force->moved, error);
-    const char *minds = force->type->minds ? force->type->minds(force->params) : "";
+    const char *neighbours = force->type->neighbours ? force->type->neighbours(force->params) : "";
     force->seen = force->moved;
-    if (!status && minds[0]) {
+    if (!status && neighbours[0]) {
         sk_only seen = {false, NULL, 0, 0};
-        status = find_only(world, force->label, minds, &seen, error);
+        status = find_only(world, force->label, neighbours, &seen, error);
         if (!status) status = join(world, force->label, &seen, &force->seen, error);
         sk_release(&world->allocator, seen.data);
     }

@@ -66,7 +66,7 @@ static skein_status refuse_words(void *data, const char *words) {
     return sk_fail(
         data, SKEIN_ERROR_NAME, "pins",
         "'%s': expected numbers, \"box x y z x y z\" or \"sphere x y z radius\"; without \"pins\" it leads all "
-        "that are held",
+        "that are pinned",
         words);
 }
 
@@ -165,9 +165,9 @@ static skein_status find_particles(skein_world *world, sk_motion *motion, skein_
         status = sk_fail_memory(error, "the pins of a motion");
     sk_release(&world->allocator, chosen);
     size_t held = 0;
-    for (size_t i = 0; i < motion->count && !status; i++) held += world->particles.held[motion->particle[i]];
+    for (size_t i = 0; i < motion->count && !status; i++) held += world->particles.pinned[motion->particle[i]];
     if (!status && !held && count && motion->common->enabled)
-        sk_world_log(world, SKEIN_LOG_WARNING, "%s: none of the particles that it is to lead is held: pin them",
+        sk_world_log(world, SKEIN_LOG_WARNING, "%s: none of the particles that it is to lead is pinned: pin them",
                      motion->label);
     return status;
 }
@@ -196,7 +196,7 @@ static void lead(skein_world *world, const sk_motion *motion, double time) {
     if (since < 0) since = 0;
     for (size_t i = 0; i < motion->count; i++) {
         uint32_t particle = motion->particle[i];
-        if (!world->particles.held[particle]) continue;
+        if (!world->particles.pinned[particle]) continue;
         sk_vec3 built = world->particles.built[particle];
         if (world->led_at[particle] == SK_NOBODY) {
             world->led_at[particle] = (uint32_t)world->led.count;

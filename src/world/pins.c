@@ -1,7 +1,7 @@
-/* Pins that are led: held particles that are somewhere else at the end of a step.
+/* Pins that are led: pinned particles that are somewhere else at the end of a step.
  *
  * Held particles go on with their velocity under every method, and nothing acts on them. So a place for the end of a
- * step is a velocity for its time: all rows see it, and know no pins. Between steps a pin rests, so that positions,
+ * step is a velocity for its time: all ops see it, and know no pins. Between steps a pin rests, so that positions,
  * velocities and what is held are still all of the state.
  *
  * Motions (world/motions.c) say places by the time; what a program says comes after them and counts.
@@ -39,9 +39,9 @@ static skein_status check_pins(skein_world *world, const uint32_t *particles, si
         if (particle >= all->count)
             return sk_fail(error, SKEIN_ERROR_VALUE, "", "there is no particle %zu (the world has %zu)", particle,
                            all->count);
-        if (!all->held[particle])
-            return sk_fail(error, SKEIN_ERROR_VALUE, "",
-                           "particle %zu is not held: pin it, or hold it with skein_particle_hold()", particle);
+        if (!all->pinned[particle])
+            return sk_fail(error, SKEIN_ERROR_VALUE, "", "particle %zu is not pinned: pin it with skein_particle_pin()",
+                           particle);
         for (size_t k = 0; k < 3; k++)
             if (!(fabs(xyz[3 * i + k]) <= SK_FAR))
                 return sk_fail(error, SKEIN_ERROR_VALUE, "", "particle %zu: numbers must be finite, under 1e15",
@@ -80,7 +80,7 @@ static skein_status set_out(skein_world *world, const sk_pin *pin, double dt, sk
 
 /* Whether it is still to be led: it may have been let go since, or its body taken out. */
 static bool is_led(const skein_world *world, const sk_pin *pin) {
-    return world->particles.held[pin->particle] && sk_particle_is_here(&world->particles, pin->particle);
+    return world->particles.pinned[pin->particle] && sk_particle_is_here(&world->particles, pin->particle);
 }
 
 skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error) {

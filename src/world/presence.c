@@ -1,7 +1,7 @@
 /* Bodies that come and go: taken out of it and back, removed for good, and the indices that are used again.
  *
  * A body that is disabled keeps all it has; its particles lie behind those that take part (particles/particles.h), so
- * that no row of a plan meets them. One that is removed leaves its particles' indices: they are gone, and the next body
+ * that no op of a plan meets them. One that is removed leaves its particles' indices: they are gone, and the next body
  * that fits into a run of them gets it. Constraints of the program's own on such particles are left out one by one. */
 #include <string.h>
 
@@ -36,8 +36,8 @@ skein_status sk_world_settle_presence(skein_world *world, skein_error *error) {
 static bool is_named(const skein_world *world, const char *name) {
     for (size_t i = 0; i < world->rules.forces.count; i++) {
         const sk_force *force = world->rules.forces.data[i];
-        const char *minds = force->type->minds ? force->type->minds(force->params) : "";
-        if (sk_names_have(*force->on, name) || sk_names_have(minds, name)) return true;
+        const char *neighbours = force->type->neighbours ? force->type->neighbours(force->params) : "";
+        if (sk_names_have(*force->on, name) || sk_names_have(neighbours, name)) return true;
     }
     for (size_t i = 0; i < world->rules.colliders.count; i++)
         if (sk_names_have(world->rules.colliders.data[i]->common->on, name)) return true;

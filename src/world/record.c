@@ -352,7 +352,7 @@ static skein_status do_field(sk_byte_reader *r, skein_world *world, skein_error 
 static skein_status do_hold(sk_byte_reader *r, skein_world *world, skein_error *error) {
     uint64_t particle = sk_take_u64(r);
     bool held = sk_take_u8(r) != 0;
-    return r->short_ ? fail_damaged(error, r) : skein_particle_hold(world, (size_t)particle, held);
+    return r->short_ ? fail_damaged(error, r) : skein_particle_pin(world, (size_t)particle, held);
 }
 
 static skein_status do_step(sk_byte_reader *r, skein_world *world, skein_difference *d, skein_error *error) {

@@ -1,21 +1,21 @@
-/* The runner: one loop over rows, whatever the rules and the method.
+/* The runner: one loop over ops, whatever the rules and the method.
  *
- * Rows are taken in *segments*. A segment that walks along strips is run in chunks of strip rows: all of
- * its rows over the first chunk, then all over the next, so that what a row has touched is still in the
- * cache for the following one. Each row lags behind the one before it by its reach, and the answer is
- * that of one row after the other, bit for bit:
+ * Ops are taken in *segments*. A segment that walks along strips is run in chunks of strip rows: all of
+ * its ops over the first chunk, then all over the next, so that what an op has touched is still in the
+ * cache for the following one. Each op lags behind the one before it by its reach, and the answer is
+ * that of one op after the other, bit for bit:
  *
- *   strip rows    0 . . . . . . . . . . . .          row g of the segment does, in chunk k, the strip rows
- *   row 0         [ chunk 0 )[ chunk 1 )[ ..         [k B - lag(g), (k + 1) B - lag(g)),
- *   row 1         [ chunk 0)[ chunk 1 )[ ...         with lag(g) = lag(g - 1) + reach(g), and where row g - 1
- *   row 2         [chunk )[ chunk 1 )[ .....         is free and reads around itself, + reach(g - 1)
+ *   strip ops     0 . . . . . . . . . . . .          op g of the segment does, in chunk k, the strip rows
+ *   op 0          [ chunk 0 )[ chunk 1 )[ ..         [k B - lag(g), (k + 1) B - lag(g)),
+ *   op 1          [ chunk 0)[ chunk 1 )[ ...         with lag(g) = lag(g - 1) + reach(g), and where op g - 1
+ *   op 2          [chunk )[ chunk 1 )[ .....         is free and reads around itself, + reach(g - 1)
  *
- * Threads own chunks that follow each other: chunk k does an ordered row when chunk k - 1 has done it, and a
- * free one when chunk k - 1 has done those before it. Where a repeat has turns enough, a thread is a turn
- * behind the one above it, and both walk small chunks; else each has one large chunk, and is a row behind.
- * (Barriers after each row, tiles with seams and cuts by columns were measured slower or less firm.)
- * Free rows that follow each other go over a chunk in small tiles, which stay in the nearest cache.
- * Other free rows are cut over the threads; other ordered rows run on the caller, whole. */
+ * Threads own chunks that follow each other: chunk k does an ordered op when chunk k - 1 has done it, and a
+ * free one when chunk k - 1 has done those before it. Where a repeat has iterations enough, a thread is an iteration
+ * behind the one above it, and both walk small chunks; else each has one large chunk, and is an op behind.
+ * (Barriers after each op, tiles with seams and cuts by columns were measured slower or less firm.)
+ * Free ops that follow each other go over a chunk in small tiles, which stay in the nearest cache.
+ * Other free ops are cut over the threads; other ordered ops run on the caller, whole. */
 #include <stdatomic.h>
 #include <time.h>
 
@@ -23,13 +23,13 @@
 #include "world/world.h"
 
 enum {
-    MOST_SEGMENT = 192, /* rows of a segment */
+    MOST_SEGMENT = 192, /* ops of a segment */
     MOST_CHUNKS = 4096,
-    TILE = 128,             /* slots: the vectors of a few rows stay in the nearest cache; 512 cost a substep 15 % */
+    TILE = 128,             /* slots: the vectors of a few ops stay in the nearest cache; 512 cost a substep 15 % */
     CHUNK_BYTES = 16 << 10, /* of one vector in a chunk: in the first cache with its neighbours */
-    SECOND_CACHE_BYTES = 512 << 10, /* of one vector in the turns that one thread has under way */
-    LEAST_TURNS = 4,                /* a thread: with fewer, threads start together on large chunks */
-    LONG_LAG = 8,                   /* rows, of a whole segment, */
+    SECOND_CACHE_BYTES = 512 << 10, /* of one vector in the iterations that one thread has under way */
+    LEAST_ITERATIONS = 4,           /* a thread: with fewer, threads start together on large chunks */
+    LONG_LAG = 8,                   /* ops, of a whole segment, */
     FAR_LAG = 20,                   /* as a mesh's has; */
     LEAST_CHUNKS = 4,               /* a thread, where they are made longer than the cache asks for */
     LINE = 16,                      /* counts in a cache line */
@@ -38,26 +38,26 @@ enum {
 
 /* ---- segments ---- */
 
-/* Whether the rows behind it are its own. */
-static bool leads(const sk_row *row) {
-    return row->kind == SK_ROW_REPEAT || row->kind == SK_ROW_SOLVE || row->kind == SK_ROW_PART;
+/* Whether the ops behind it are its own. */
+static bool leads(const sk_op *op) {
+    return op->kind == SK_OP_REPEAT || op->kind == SK_OP_SOLVE || op->kind == SK_OP_PART;
 }
 
 static bool same_strips(const sk_walk *a, const sk_walk *b) {
     return a->first_slot == b->first_slot && a->rows == b->rows && a->width == b->width;
 }
 
-/* How many rows from the first on make one segment, and the strips that they walk along (rows = 0: none). */
-static size_t segment_length(const sk_row *rows, size_t count, sk_walk *walk) {
+/* How many ops from the first on make one segment, and the strips that they walk along (rows = 0: none). */
+static size_t segment_length(const sk_op *ops, size_t count, sk_walk *walk) {
     *walk = (sk_walk){0, 0, 0, 0};
     size_t length = 0;
     for (; length < count && length < MOST_SEGMENT; length++) {
-        const sk_row *row = &rows[length];
-        if (leads(row)) break;
-        if (row->walk.rows) {
-            if (walk->rows && !same_strips(walk, &row->walk)) break;
-            *walk = row->walk;
-        } else if (row->order != SK_FREE || row->by_particle || row->alone) {
+        const sk_op *op = &ops[length];
+        if (leads(op)) break;
+        if (op->walk.rows) {
+            if (walk->rows && !same_strips(walk, &op->walk)) break;
+            *walk = op->walk;
+        } else if (op->order != SK_FREE || op->by_particle || op->alone) {
             break;
         }
     }
@@ -68,35 +68,35 @@ static size_t segment_length(const sk_row *rows, size_t count, sk_walk *walk) {
 
 typedef struct segment_job {
     const sk_run *run;
-    const sk_row *rows;
-    size_t count, turns;
-    double start, dt; /* of the first turn; 0 turns' worth of time where the segment is not a whole repeat */
+    const sk_op *ops;
+    size_t count, iterations;
+    double start, dt; /* of the first iteration; 0 iterations' worth of time where the segment is not a whole repeat */
     sk_walk walk;
     size_t lag[MOST_SEGMENT];
     size_t chunk_rows, chunk_count, threads;
-    size_t head; /* rows that the first chunk has more, for those by which its rows lag and which it leaves to others */
+    size_t head; /* ops that the first chunk has more, for those by which its ops lag and which it leaves to others */
     size_t first_chunk[MOST_THREADS + 1]; /* of each thread, where there are several */
-    size_t ahead;               /* chunks whose last turn must be over before a chunk begins the next */
-    size_t turns_abreast;       /* how many turns one thread alone has under way */
-    _Atomic uint32_t *progress; /* rows done, of each chunk, where there are several threads */
+    size_t ahead;               /* chunks whose last iteration must be over before a chunk begins the next */
+    size_t iterations_abreast;       /* how many iterations one thread alone has under way */
+    _Atomic uint32_t *progress; /* ops done, of each chunk, where there are several threads */
 } segment_job;
 
-/* Free rows of slots, one after the other over each tile of [begin, end). */
-static void run_tiled(sk_run *run, const sk_row *rows, size_t count, size_t begin, size_t end) {
+/* Free ops of slots, one after the other over each tile of [begin, end). */
+static void run_tiled(sk_run *run, const sk_op *ops, size_t count, size_t begin, size_t end) {
     for (size_t tile = begin; tile < end; tile += TILE) {
         size_t tile_end = tile + TILE < end ? tile + TILE : end;
         for (size_t g = 0; g < count; g++) {
-            size_t first = tile > rows[g].begin ? tile : rows[g].begin,
-                   last = tile_end < rows[g].end ? tile_end : rows[g].end;
-            if (first < last && sk_row_is_due(run, &rows[g])) rows[g].kernel(run, &rows[g], first, last);
+            size_t first = tile > ops[g].begin ? tile : ops[g].begin,
+                   last = tile_end < ops[g].end ? tile_end : ops[g].end;
+            if (first < last && sk_op_is_due(run, &ops[g])) ops[g].kernel(run, &ops[g], first, last);
         }
     }
 }
 
-/* How many rows from g on are run together: free rows of slots. */
+/* How many ops from g on are run together: free ops of slots. */
 static size_t together(const segment_job *job, size_t g) {
     size_t count = 0;
-    while (g + count < job->count && !job->rows[g + count].walk.rows) count++;
+    while (g + count < job->count && !job->ops[g + count].walk.rows) count++;
     return count ? count : 1;
 }
 
@@ -105,15 +105,15 @@ static size_t start_of(const segment_job *job, size_t chunk) {
     return chunk ? job->head + chunk * job->chunk_rows : 0;
 }
 
-/* The part of rows [g, g + count) that belongs to a chunk: strip rows, or the slots of them. */
+/* The part of ops [g, g + count) that belongs to a chunk: strip rows, or the slots of them. */
 static void run_part(sk_run *run, const segment_job *job, size_t g, size_t count, size_t chunk) {
-    const sk_row *row = &job->rows[g];
+    const sk_op *op = &job->ops[g];
     size_t first = start_of(job, chunk), last = start_of(job, chunk + 1), lag = job->lag[g];
     first = first > lag ? first - lag : 0;
     last = chunk + 1 == job->chunk_count ? job->walk.rows : last > lag ? last - lag : 0;
-    if (row->walk.rows) {
-        if (last > row->end) last = row->end;
-        if (first < last && sk_row_is_due(run, row)) row->kernel(run, row, first, last);
+    if (op->walk.rows) {
+        if (last > op->end) last = op->end;
+        if (first < last && sk_op_is_due(run, op)) op->kernel(run, op, first, last);
         return;
     }
     // slots before and after the strips go with the first and last chunk
@@ -121,25 +121,26 @@ static void run_part(sk_run *run, const segment_job *job, size_t g, size_t count
            end = job->walk.first_slot + last * line;
     if (chunk == 0) begin = 0;
     if (chunk + 1 == job->chunk_count) end = run->slot_count;
-    run_tiled(run, row, count, begin, end);
+    run_tiled(run, op, count, begin, end);
 }
 
-/* The time of a turn's end, and whether it is the last, where the segment is a whole repeat. */
-static void set_turn(sk_run *run, const segment_job *job, size_t turn) {
+/* The time of an iteration's end, and whether it is the last, where the segment is a whole repeat. */
+static void set_iteration(sk_run *run, const segment_job *job, size_t iteration) {
     if (!(job->dt > 0)) return;
-    run->time = job->start + (double)(turn + 1) * job->dt;
-    run->turn = turn;
-    run->last_turn = turn + 1 == job->turns;
+    run->time = job->start + (double)(iteration + 1) * job->dt;
+    run->iteration = iteration;
+    run->last_iteration = iteration + 1 == job->iterations;
 }
 
-/* How many rows of a chunk are done, counted over all turns. Threads' counts lie in different cache lines. */
+/* How many ops of a chunk are done, counted over all iterations. Threads' counts lie in different cache lines. */
 static _Atomic uint32_t *progress_of(const segment_job *job, size_t chunk) {
     size_t thread = 0;
     while (chunk >= job->first_chunk[thread + 1]) thread++;
     return &job->progress[chunk + LINE * thread];
 }
 
-/* Strip rows of all of a turn's rows that are in the first `chunks` chunks: fewer in the first ones, by their lag. */
+/* Strip rows of all of an iteration's ops that are in the first `chunks` chunks: fewer in the first ones, by their lag.
+ */
 static size_t work_before(const segment_job *job, size_t chunks) {
     size_t sum = 0, end = start_of(job, chunks);
     if (chunks == job->chunk_count) return job->count * job->walk.rows;
@@ -165,20 +166,20 @@ static void share_chunks(segment_job *job) {
     job->first_chunk[job->threads] = job->chunk_count;
 }
 
-/* One thread of several: its chunks, turn by turn. */
+/* One thread of several: its chunks, iteration by iteration. */
 static void run_chunks(const segment_job *job, size_t thread) {
     sk_run run = *job->run; // a copy each: threads may be at different times
     size_t first = job->first_chunk[thread], end = job->first_chunk[thread + 1];
-    for (size_t turn = 0; turn < job->turns; turn++) {
-        set_turn(&run, job, turn);
-        uint32_t before = (uint32_t)(turn * job->count);
+    for (size_t iteration = 0; iteration < job->iterations; iteration++) {
+        set_iteration(&run, job, iteration);
+        uint32_t before = (uint32_t)(iteration * job->count);
         for (size_t k = first; k < end; k++) {
             for (size_t next = end; next <= k + job->ahead && next < job->chunk_count; next++)
                 sk_wait_for(progress_of(job, next), before);
             for (size_t g = 0, count; g < job->count; g += count) {
                 count = together(job, g);
                 uint32_t done = before + (uint32_t)g;
-                if (k && k == first) sk_wait_for(progress_of(job, k - 1), done + (job->rows[g].order == SK_ORDERED));
+                if (k && k == first) sk_wait_for(progress_of(job, k - 1), done + (job->ops[g].order == SK_ORDERED));
                 run_part(&run, job, g, count, k);
                 atomic_store_explicit(progress_of(job, k), done + (uint32_t)count, memory_order_release);
             }
@@ -186,16 +187,17 @@ static void run_chunks(const segment_job *job, size_t thread) {
     }
 }
 
-/* One thread alone: several turns follow each other down the chunks, so that the second cache serves them all. */
+/* One thread alone: several iterations follow each other down the chunks, so that the second cache serves them all. */
 static void run_chunks_alone(const segment_job *job) {
     sk_run run = *job->run;
-    for (size_t first = 0; first < job->turns; first += job->turns_abreast) {
-        size_t abreast = first + job->turns_abreast < job->turns ? job->turns_abreast : job->turns - first;
+    for (size_t first = 0; first < job->iterations; first += job->iterations_abreast) {
+        size_t abreast =
+            first + job->iterations_abreast < job->iterations ? job->iterations_abreast : job->iterations - first;
         for (size_t front = 0; front < job->chunk_count + (abreast - 1) * job->ahead; front++)
             for (size_t t = 0; t < abreast && t * job->ahead <= front; t++) {
                 size_t k = front - t * job->ahead;
                 if (k >= job->chunk_count) continue;
-                set_turn(&run, job, first + t);
+                set_iteration(&run, job, first + t);
                 for (size_t g = 0, count; g < job->count; g += count) {
                     count = together(job, g);
                     run_part(&run, job, g, count, k);
@@ -208,14 +210,14 @@ static void run_chunks_alone(const segment_job *job) {
 static void cut_chunks(segment_job *job, int threads) {
     size_t lag = 0, lags = 0, line_bytes = job->walk.width * 16 * sizeof(sk_vec4), rows = job->walk.rows;
     for (size_t g = 0; g < job->count; g++) {
-        lags += job->lag[g] = lag += job->rows[g].walk.reach;
-        if (job->rows[g].order == SK_FREE) lag += job->rows[g].walk.reach;
+        lags += job->lag[g] = lag += job->ops[g].walk.reach;
+        if (job->ops[g].order == SK_FREE) lag += job->ops[g].walk.reach;
     }
     size_t chunk = CHUNK_BYTES / line_bytes / 4 * 4;
     if (chunk < 4) chunk = 4;
     // a lattice's rows lag so far that all of it is under way at once, and what is called for a few rows costs
     if (chunk < LONG_LAG && lag >= LONG_LAG) chunk = LONG_LAG;
-    if (threads > 1 && job->turns < (size_t)threads * LEAST_TURNS) {
+    if (threads > 1 && job->iterations < (size_t)threads * LEAST_ITERATIONS) {
         chunk = (rows / (size_t)threads + 3) / 4 * 4;
         if (chunk < lag + 4) chunk = (lag + 7) / 4 * 4;
         job->head = lags / job->count;
@@ -223,14 +225,14 @@ static void cut_chunks(segment_job *job, int threads) {
     // as much is under way if a chunk is as long as the lag, and slots, rest values and the like are read in longer pieces;
     // packed strips read none
     size_t longer = lag / 4 * 4 + 4;
-    bool packed = job->walk.first_slot < job->rows[0].packed;
+    bool packed = job->walk.first_slot < job->ops[0].packed;
     if (!packed && lag >= FAR_LAG && chunk < longer && rows >= longer * (size_t)threads * LEAST_CHUNKS) chunk = longer;
     if (rows / chunk > MOST_CHUNKS) chunk = rows / MOST_CHUNKS + 1;
     job->chunk_rows = chunk;
     job->chunk_count = rows / chunk ? rows / chunk : 1;
     job->ahead = lag / chunk + 1;
     size_t abreast = SECOND_CACHE_BYTES / (job->ahead * chunk * line_bytes);
-    job->turns_abreast = abreast < 1 ? 1 : abreast;
+    job->iterations_abreast = abreast < 1 ? 1 : abreast;
     job->threads = (size_t)threads < job->chunk_count ? (size_t)threads : job->chunk_count;
     if (job->threads > MOST_THREADS) job->threads = MOST_THREADS;
 }
@@ -243,10 +245,10 @@ static void run_chunks_of_thread(void *data, int thread) {
     sk_float_mode_leave(mode);
 }
 
-static void run_walk(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count, const sk_walk *walk, size_t turns,
-                     double start, double dt) {
+static void run_walk(sk_run *run, sk_tasks *tasks, const sk_op *ops, size_t count, const sk_walk *walk,
+                     size_t iterations, double start, double dt) {
     segment_job job = {
-        .run = run, .rows = rows, .count = count, .turns = turns, .start = start, .dt = dt, .walk = *walk};
+        .run = run, .ops = ops, .count = count, .iterations = iterations, .start = start, .dt = dt, .walk = *walk};
     int threads = sk_tasks_together(tasks) && walk->rows * walk->width * 16 >= 4096 ? sk_tasks_count(tasks) : 1;
     cut_chunks(&job, threads);
     if (job.threads == 1) {
@@ -260,51 +262,51 @@ static void run_walk(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t co
     sk_tasks_run(tasks, run_chunks_of_thread, &job);
 }
 
-/* ---- other segments: free rows of the same range, tile by tile; all else row by row ---- */
+/* ---- other segments: free ops of the same range, tile by tile; all else op by op ---- */
 
 typedef struct free_job {
     sk_run *run;
-    const sk_row *rows;
+    const sk_op *ops;
     size_t count;
 } free_job;
 
 static void run_tiles(void *data, size_t begin, size_t end) {
     const free_job *job = data;
     uint64_t mode = sk_float_mode_enter();
-    if (job->count > 1) run_tiled(job->run, job->rows, job->count, begin, end);
-    else if (sk_row_is_due(job->run, job->rows)) job->rows->kernel(job->run, job->rows, begin, end);
+    if (job->count > 1) run_tiled(job->run, job->ops, job->count, begin, end);
+    else if (sk_op_is_due(job->run, job->ops)) job->ops->kernel(job->run, job->ops, begin, end);
     sk_float_mode_leave(mode);
 }
 
-static void run_free(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count) {
-    size_t begin = rows[0].begin, end = rows[0].end;
+static void run_free(sk_run *run, sk_tasks *tasks, const sk_op *ops, size_t count) {
+    size_t begin = ops[0].begin, end = ops[0].end;
     for (size_t g = 1; g < count; g++) {
-        if (rows[g].begin < begin) begin = rows[g].begin;
-        if (rows[g].end > end) end = rows[g].end;
+        if (ops[g].begin < begin) begin = ops[g].begin;
+        if (ops[g].end > end) end = ops[g].end;
     }
-    free_job job = {run, rows, count};
+    free_job job = {run, ops, count};
     sk_parallel_for(tasks, begin, end, run_tiles, &job);
 }
 
-static void run_segments(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count) {
+static void run_segments(sk_run *run, sk_tasks *tasks, const sk_op *ops, size_t count) {
     for (size_t r = 0; r < count;) {
         sk_walk walk;
-        size_t length = segment_length(rows + r, count - r, &walk);
+        size_t length = segment_length(ops + r, count - r, &walk);
         if (walk.rows) {
-            run_walk(run, tasks, rows + r, length, &walk, 1, run->time, 0);
+            run_walk(run, tasks, ops + r, length, &walk, 1, run->time, 0);
         } else if (length) {
-            run_free(run, tasks, rows + r, length);
-        } else if (rows[r].order == SK_FREE) {
-            run_free(run, tasks, rows + r, length = 1);
+            run_free(run, tasks, ops + r, length);
+        } else if (ops[r].order == SK_FREE) {
+            run_free(run, tasks, ops + r, length = 1);
         } else {
-            if (sk_row_is_due(run, &rows[r])) rows[r].kernel(run, &rows[r], rows[r].begin, rows[r].end);
+            if (sk_op_is_due(run, &ops[r])) ops[r].kernel(run, &ops[r], ops[r].begin, ops[r].end);
             length = 1;
         }
         r += length;
     }
 }
 
-/* ---- rows that lead others: repeats, solves and their parts ---- */
+/* ---- ops that lead others: repeats, solves and their parts ---- */
 
 double sk_seconds(void) {
     struct timespec time;
@@ -312,67 +314,67 @@ double sk_seconds(void) {
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-static void run_rows(sk_run *run, const sk_row *rows, size_t count);
+static void run_ops(sk_run *run, const sk_op *ops, size_t count);
 
-/* The turns of a repeat, one after the other; further repeats may lie within it. */
-static void run_turns(sk_run *run, const sk_row *repeat) {
+/* The iterations of a repeat, one after the other; further repeats may lie within it. */
+static void run_iterations(sk_run *run, const sk_op *repeat) {
     double start = run->time;
-    size_t outer_turn = run->turn;
-    bool outer = run->last_turn;
-    for (size_t turn = 0; turn < repeat->end; turn++) {
-        run->time = start + (double)(turn + 1) * repeat->dt;
-        run->turn = turn;
-        run->last_turn = turn + 1 == repeat->end;
-        run_rows(run, repeat + 1, repeat->length);
+    size_t outer_iteration = run->iteration;
+    bool outer = run->last_iteration;
+    for (size_t iteration = 0; iteration < repeat->end; iteration++) {
+        run->time = start + (double)(iteration + 1) * repeat->dt;
+        run->iteration = iteration;
+        run->last_iteration = iteration + 1 == repeat->end;
+        run_ops(run, repeat + 1, repeat->length);
     }
-    run->turn = outer_turn;
-    run->last_turn = outer;
+    run->iteration = outer_iteration;
+    run->last_iteration = outer;
 }
 
-static void run_repeat(sk_run *run, const sk_row *repeat) {
+static void run_repeat(sk_run *run, const sk_op *repeat) {
     sk_walk walk;
     if (run->seconds || segment_length(repeat + 1, repeat->length, &walk) != repeat->length || !walk.rows) {
-        run_turns(run, repeat);
+        run_iterations(run, repeat);
         return;
     }
-    // the whole repeat is one walk: threads need not meet between turns
+    // the whole repeat is one walk: threads need not meet between iterations
     double start = run->time;
     run_walk(run, run->tasks, repeat + 1, repeat->length, &walk, repeat->end, start, repeat->dt);
     run->time = start + (double)repeat->end * repeat->dt;
 }
 
-/* What the rows behind a row have taken, so far. */
-static double taken_behind(const sk_run *run, const sk_row *row) {
+/* What the ops behind an op have taken, so far. */
+static double taken_behind(const sk_run *run, const sk_op *op) {
     double sum = 0;
-    for (size_t r = 1; run->seconds && r <= row->length; r++) sum += run->seconds[row - run->timed + (ptrdiff_t)r];
+    for (size_t r = 1; run->seconds && r <= op->length; r++) sum += run->seconds[op - run->timed + (ptrdiff_t)r];
     return sum;
 }
 
-/* As many rows as go together, a solve with those that it leads: rows that lead none, up to the next that does; with a
+/* As many ops as go together, a solve with those that it leads: ops that lead none, up to the next that does; with a
  * clock, one. */
-static size_t run_some(sk_run *run, const sk_row *rows, size_t count) {
+static size_t run_some(sk_run *run, const sk_op *ops, size_t count) {
     size_t length = 1;
-    bool solves = rows->kind == SK_ROW_SOLVE;
-    while (!run->seconds && !solves && length < count && !leads(&rows[length])) length++;
-    double begin = run->seconds ? sk_seconds() : 0, behind = taken_behind(run, rows);
-    if (solves) rows->kernel(run, rows, rows->begin, rows->end);
-    else run_segments(run, run->tasks, rows, length);
-    if (run->seconds) run->seconds[rows - run->timed] += sk_seconds() - begin - (taken_behind(run, rows) - behind);
-    return solves ? 1 + rows->length : length;
+    bool solves = ops->kind == SK_OP_SOLVE;
+    while (!run->seconds && !solves && length < count && !leads(&ops[length])) length++;
+    double begin = run->seconds ? sk_seconds() : 0, behind = taken_behind(run, ops);
+    if (solves) ops->kernel(run, ops, ops->begin, ops->end);
+    else run_segments(run, run->tasks, ops, length);
+    if (run->seconds) run->seconds[ops - run->timed] += sk_seconds() - begin - (taken_behind(run, ops) - behind);
+    return solves ? 1 + ops->length : length;
 }
 
-static void run_rows(sk_run *run, const sk_row *rows, size_t count) {
+static void run_ops(sk_run *run, const sk_op *ops, size_t count) {
     for (size_t r = 0; r < count;) {
-        const sk_row *row = &rows[r];
-        bool led = row->kind == SK_ROW_REPEAT || row->kind == SK_ROW_PART; // (a part waits for its solve)
-        if (row->kind == SK_ROW_REPEAT) run_repeat(run, row);
-        r += led ? 1 + row->length : run_some(run, row, count - r);
+        const sk_op *op = &ops[r];
+        bool led = op->kind == SK_OP_REPEAT || op->kind == SK_OP_PART; // (a part waits for its solve)
+        if (op->kind == SK_OP_REPEAT) run_repeat(run, op);
+        r += led ? 1 + op->length : run_some(run, op, count - r);
     }
 }
 
-void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count) {
+void sk_run_ops(sk_run *run, sk_tasks *tasks, const sk_op *ops, size_t count) {
     run->tasks = tasks;
-    run->rows = run_rows;
-    run->timed = rows;
-    run_rows(run, rows, count);
+    run->ops = run_ops;
+    run->timed = ops;
+    run_ops(run, ops, count);
 }

@@ -158,7 +158,8 @@ static void put_clock(sk_byte_writer *w, const skein_world *world) {
     sk_put_u64(w, world->solver_failures);
     sk_put_f64(w, world->first_energy);
     sk_put_f64(w, solve->residual);
-    const uint64_t counts[] = {solve->unsolved, solve->turns, solve->iterations, solve->factors, solve->failures};
+    const uint64_t counts[] = {solve->unsolved, solve->newton_iterations, solve->iterations, solve->factors,
+                               solve->failures};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) sk_put_u64(w, counts[i]);
 }
 
@@ -188,7 +189,7 @@ static void put_all(sk_byte_writer *w, const skein_world *world) {
     }
     sk_put_u64(w, hash_rest(world));
     for (size_t i = 0; i < world->particles.count; i++)
-        sk_put_u8(w, (world->particles.held[i] ? 1u : 0u) | (unsigned)world->particles.presence[i] << 1);
+        sk_put_u8(w, (world->particles.pinned[i] ? 1u : 0u) | (unsigned)world->particles.presence[i] << 1);
     static const sk_vector vectors[] = {SK_X, SK_V, SK_PREVIOUS};
     for (size_t v = 0; v < 3; v++) put_vector(w, world, vectors[v]);
     sk_put_u64(w, world->pins.count);
@@ -380,7 +381,8 @@ static skein_status take_clock(sk_byte_reader *r, skein_world *world, bool apply
     uint64_t unsolved = sk_take_u64(r), failures = sk_take_u64(r);
     double first = sk_take_f64(r);
     sk_solve solve = {.residual = sk_take_f64(r)};
-    size_t *const counts[] = {&solve.unsolved, &solve.turns, &solve.iterations, &solve.factors, &solve.failures};
+    size_t *const counts[] = {&solve.unsolved, &solve.newton_iterations, &solve.iterations, &solve.factors,
+                              &solve.failures};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) *counts[i] = (size_t)sk_take_u64(r);
     if (r->short_ || !(time >= 0 && time <= SK_FAR)) return fail_short(error);
     if (particles != world->particles.count || objects != world->objects.count)
@@ -416,7 +418,7 @@ static skein_status take_particles(sk_byte_reader *r, skein_world *world, bool a
         if (flags[i] >> 1 > SK_GONE || (flags[i] >> 1 == SK_GONE) != (all->presence[i] == SK_GONE))
             return sk_fail(error, SKEIN_ERROR_VALUE, "", "particle %zu: whether its body is there differs" OTHER_WORLD,
                            i);
-        if (apply) sk_particle_hold(all, i, flags[i] & 1);
+        if (apply) sk_particle_pin(all, i, flags[i] & 1);
     }
     for (size_t v = 0; v < 3; v++)
         for (size_t i = 0; i < all->count && !r->short_; i++) {

@@ -5,10 +5,10 @@
  * the most damped one, or one between. A method says what it does to a mode by its amplification matrix. */
 #include <math.h>
 
-#include "methods/writer_solve.h"
+#include "methods/plan_builder_solve.h"
 #include "world/world.h"
 
-enum { MOST_TURNS = 2000, SETTLED_TURNS = 30 };
+enum { MOST_ITERATIONS = 2000, SETTLED_ITERATIONS = 30 };
 
 /* Where power iteration keeps its vectors. */
 static const sk_vector mode_at = (sk_vector)SK_DIRECTION, image = (sk_vector)SK_PRODUCT;
@@ -16,23 +16,23 @@ static const sk_vector zero = (sk_vector)SK_BLOCK0, resistance = (sk_vector)SK_I
 
 typedef struct finder {
     skein_world *world;
-    sk_writer writer;
+    sk_plan_builder builder;
     sk_plan plan;
     sk_run run;
     sk_solve solve;
 } finder;
 
 static void run_plan(finder *f) {
-    sk_run_rows(&f->run, f->world->tasks, f->plan.data, f->plan.count);
+    sk_run_ops(&f->run, f->world->tasks, f->plan.data, f->plan.count);
     f->plan.count = 0;
 }
 
 /* image = (a K + b C) mode, by the product of conjugate gradients with no mass; returns mode image. */
 static double measure(finder *f, double a, double b) {
-    sk_write_clear(&f->writer, resistance);
-    sk_write_resistance(&f->writer, resistance, b);
-    sk_write_sum(&f->writer, image, 1, mode_at, 0, SK_NONE); // with a scale of 0 this is the direction
-    sk_write_multiply(&f->writer, a, b);
+    sk_write_clear(&f->builder, resistance);
+    sk_write_resistance(&f->builder, resistance, b);
+    sk_write_sum(&f->builder, image, 1, mode_at, 0, SK_NONE); // with a scale of 0 this is the direction
+    sk_write_multiply(&f->builder, a, b);
     run_plan(f);
     return sk_solve_sum(&f->run, 0);
 }
@@ -51,15 +51,15 @@ static void fill_mode(finder *f) {
 static bool iterate(finder *f, double a, double b) {
     double value = 0;
     fill_mode(f);
-    for (int turn = 0, settled = 0; turn < MOST_TURNS && settled < SETTLED_TURNS; turn++) {
+    for (int iteration = 0, settled = 0; iteration < MOST_ITERATIONS && settled < SETTLED_ITERATIONS; iteration++) {
         double now = measure(f, a, b);
         settled = fabs(now - value) <= 1e-4 * now ? settled + 1 : 0;
         value = now;
-        sk_write_pass(&f->writer, &sk_solve_norm, sums, image, SK_X, "image w image");
+        sk_write_pass(&f->builder, &sk_solve_norm, sums, image, SK_X, "image w image");
         run_plan(f);
         double square = sk_solve_sum(&f->run, 1);
         if (!(square > 0) || isinf(square)) return false;
-        sk_write_kick(&f->writer, mode_at, zero, 1 / sqrt(square), image);
+        sk_write_kick(&f->builder, mode_at, zero, 1 / sqrt(square), image);
         run_plan(f);
     }
     return true;
@@ -113,25 +113,25 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
     if (!sk_particles_want(&world->particles, &world->allocator, wanted)) return sk_fail_memory(error, "stability");
     finder f = {.world = world, .run = sk_world_run_context(world)};
     f.run.solve = &f.solve;
-    f.writer = (sk_writer){.plan = &f.plan,
-                           .allocator = &world->allocator,
-                           .rules = &world->rules,
-                           .isa = world->isa,
-                           .slot_count = world->particles.slot_count,
-                           .strip_slots = world->particles.strip_slots,
-                           .particle_count = world->particles.count,
-                           .h = 1};
-    sk_write_pack(&f.writer); // products go along strips
-    if (!f.writer.no_memory) {
-        sk_write_pass(&f.writer, &sk_solve_open, (sk_vector)SK_FILTER0, SK_X, (sk_vector)SK_FILTER1, "S");
+    f.builder = (sk_plan_builder){.plan = &f.plan,
+                                  .allocator = &world->allocator,
+                                  .rules = &world->rules,
+                                  .isa = world->isa,
+                                  .slot_count = world->particles.slot_count,
+                                  .strip_slots = world->particles.strip_slots,
+                                  .particle_count = world->particles.count,
+                                  .h = 1};
+    sk_write_pack(&f.builder); // products go along strips
+    if (!f.builder.no_memory) {
+        sk_write_pass(&f.builder, &sk_solve_open, (sk_vector)SK_FILTER0, SK_X, (sk_vector)SK_FILTER1, "S");
         run_plan(&f);
         find_modes(&f, stability);
-        sk_write_unpack(&f.writer); // there is room for as many rows as packing has
+        sk_write_unpack(&f.builder); // there is room for as many ops as packing has
         run_plan(&f);
     }
     sk_release(&world->allocator, f.plan.data);
     sk_release(&world->allocator, f.plan.parts.data);
-    return f.writer.no_memory ? sk_fail_memory(error, "stability") : SKEIN_OK;
+    return f.builder.no_memory ? sk_fail_memory(error, "stability") : SKEIN_OK;
 }
 
 /* ---- what a method makes of a mode ---- */

@@ -140,13 +140,13 @@ skein_status skein_velocities_set(skein_world *world, size_t first, size_t count
     return status;
 }
 
-skein_status skein_particle_hold(skein_world *world, size_t particle, bool held) {
+skein_status skein_particle_pin(skein_world *world, size_t particle, bool pinned) {
     SK_NEED(world, world);
     skein_status status = sk_world_check_range(world, particle, 1);
     if (!status) status = sk_world_touch(world);
     if (status) return status;
-    sk_particle_hold(&world->particles, particle, held);
-    sk_record_hold(world, particle, held);
+    sk_particle_pin(&world->particles, particle, pinned);
+    sk_record_hold(world, particle, pinned);
     return SKEIN_OK;
 }
 

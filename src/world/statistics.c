@@ -47,7 +47,7 @@ static void count_particles(const skein_world *world, skein_statistics *s) {
         sk_vec4 v = all->vector[SK_V][all->slot_of[i]], x = all->vector[SK_X][all->slot_of[i]];
         if (!sk_particle_is_here(all, i)) continue;
         s->nonfinite += !is_finite(v) || !is_finite(x);
-        s->held_particles += !(x.w > 0);
+        s->pinned_particles += !(x.w > 0);
     }
 }
 
@@ -117,8 +117,8 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     statistics->time = world->time;
     statistics->residual = world->solve.residual;
     statistics->unsolved = world->solve.unsolved;
-    statistics->solver_turns = world->solve.turns;
-    statistics->solver_iterations = world->solve.iterations;
+    statistics->newton_iterations = world->solve.newton_iterations;
+    statistics->cg_iterations = world->solve.iterations;
     statistics->solver_factors = world->solve.factors;
     statistics->solver_failures = world->solve.failures;
     statistics->all_unsolved = world->unsolved;

@@ -37,7 +37,7 @@ static void warn_of_light_colliders(skein_world *world) {
         double mass = sk_collider_mass(collider), heaviest = 0;
         if (!(mass > 0) || mass == collider->warned_mass) continue;
         for (size_t p = 0; p < all->count; p++)
-            if (!all->held[p] && sk_particle_is_here(all, p) && (double)all->mass[p] > heaviest) heaviest = (double)all->mass[p];
+            if (!all->pinned[p] && sk_particle_is_here(all, p) && (double)all->mass[p] > heaviest) heaviest = (double)all->mass[p];
         if (!(mass < heaviest)) continue;
         sk_world_log(world, SKEIN_LOG_WARNING,
                      "%s: its mass of %g kg is less than that of a particle, %g kg: such particles stop at it",
@@ -50,9 +50,9 @@ static void warn_of_light_colliders(skein_world *world) {
 static bool make_temporaries(skein_world *world) {
     uint32_t wanted = 0;
     for (size_t r = 0; r < world->plan.count; r++) {
-        const sk_row *row = &world->plan.data[r];
-        wanted |= 1u << row->dst;
-        for (int i = 0; i < 3; i++) wanted |= 1u << row->source[i];
+        const sk_op *op = &world->plan.data[r];
+        wanted |= 1u << op->dst;
+        for (int i = 0; i < 3; i++) wanted |= 1u << op->source[i];
     }
     return sk_particles_want(&world->particles, &world->allocator, wanted);
 }
@@ -61,10 +61,10 @@ static bool make_temporaries(skein_world *world) {
 static bool make_cells(skein_world *world) {
     bool good = true, sorts = false;
     for (size_t r = 0; r < world->plan.count && good; r++) {
-        const sk_row *row = &world->plan.data[r];
-        if (row->kind != SK_ROW_GRID) continue;
+        const sk_op *op = &world->plan.data[r];
+        if (op->kind != SK_OP_GRID) continue;
         sorts = true;
-        good = sk_cells_reserve(&world->cells, &world->allocator, row->group);
+        good = sk_cells_reserve(&world->cells, &world->allocator, op->group);
     }
     world->cells.in_order = sorts;
     for (size_t i = 1; i < world->particles.count && world->cells.in_order; i++)
@@ -72,14 +72,14 @@ static bool make_cells(skein_world *world) {
     return good;
 }
 
-/* Makes the shape of the matrix where a row calls for it, and shows it to the solver. It has the blocks of all batches,
+/* Makes the shape of the matrix where an op calls for it, and shows it to the solver. It has the blocks of all batches,
  * also of those that are not enabled: analysing costs more than some zeros. */
 static skein_status make_matrix(skein_world *world, skein_error *error) {
     sk_allocator *allocator = &world->allocator;
     sk_matrix *matrix = &world->matrix;
     size_t count = world->rules.batches.count, part_count = 0;
     bool wanted = false;
-    for (size_t r = 0; r < world->plan.count; r++) wanted |= world->plan.data[r].kind == SK_ROW_CALL;
+    for (size_t r = 0; r < world->plan.count; r++) wanted |= world->plan.data[r].kind == SK_OP_CALL;
     if (!wanted) sk_matrix_release(matrix, allocator);
     if (!wanted || matrix->shaped) return SKEIN_OK;
     sk_matrix_part *parts = sk_allocate(allocator, (count + 1) * sizeof *parts);
@@ -136,7 +136,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     warn_of_light_colliders(world);
     world->plan_stale = true; // until it is whole
     world->plan.count = 0;
-    sk_writer writer = {
+    sk_plan_builder builder = {
         .plan = &world->plan,
         .allocator = &world->allocator,
         .rules = &world->rules,
@@ -148,16 +148,16 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         .surface = &world->surface,
         .h = dt,
     };
-    sk_write_sum(&writer, SK_PREVIOUS, 1, SK_X, 0, SK_NONE);
-    if (!world->device) sk_write_pack(&writer);
-    method->write(&writer, world->method_params, dt);
+    sk_write_sum(&builder, SK_PREVIOUS, 1, SK_X, 0, SK_NONE);
+    if (!world->device) sk_write_pack(&builder);
+    method->write(&builder, world->method_params, dt);
     if (!world->device) {
-        sk_write_rest(&writer); // a card would have to look at everything once more, and minds thin numbers not at all
-        sk_write_unpack(&writer);
+        sk_write_rest(&builder); // a card would have to look at everything once more, and minds thin numbers not at all
+        sk_write_unpack(&builder);
     }
     if (!world->unfused || world->device)
-        writer.no_memory |= !sk_plan_fuse(&world->plan, &world->allocator, world->isa);
-    if (writer.no_memory || (!world->device && (!make_temporaries(world) || !make_cells(world))))
+        builder.no_memory |= !sk_plan_fuse(&world->plan, &world->allocator, world->isa);
+    if (builder.no_memory || (!world->device && (!make_temporaries(world) || !make_cells(world))))
         return sk_fail_memory(error, "the plan");
     status = make_matrix(world, error);
     if (status) return status;
@@ -184,7 +184,7 @@ sk_run sk_world_run_context(skein_world *world) {
     return run;
 }
 
-/* One step; `seconds` of each row of the plan, or NULL to run them as fast as they go. The plan is up to date. */
+/* One step; `seconds` of each op of the plan, or NULL to run them as fast as they go. The plan is up to date. */
 static skein_status take_step(skein_world *world, double dt, double *seconds, skein_error *error) {
     if (!world->steps) {
         skein_statistics start = {0};
@@ -202,7 +202,7 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
         double start = world->pace.levels > 1 ? sk_seconds() : 0;
         uint64_t mode = sk_float_mode_enter();
         run.seconds = seconds;
-        sk_run_rows(&run, world->tasks, world->plan.data, world->plan.count);
+        sk_run_ops(&run, world->tasks, world->plan.data, world->plan.count);
         sk_float_mode_leave(mode);
         if (world->pace.levels > 1 && !seconds) sk_pace_note(&world->pace, sk_seconds() - start);
         if (run.no_memory) status = sk_fail_memory(error, "the neighbour grid; the step was not finished");
@@ -215,7 +215,7 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
     world->solver_failures += world->solve.failures;
     world->substeps += (uint64_t)world->method->substeps(world->method_params);
     sk_world_tell_of_meetings(world);
-    if (!world->device) sk_world_tidy(world);
+    if (!world->device) sk_world_reorder(world);
     return SKEIN_OK;
 }
 
@@ -229,11 +229,10 @@ skein_status skein_world_step(skein_world *world, double dt) {
 
 /* ---- what its passes take ---- */
 
-/* Adds a row's seconds to the pass of its kind and name; `count` passes are there, the first `most` of them in `out`.
+/* Adds an op's seconds to the pass of its kind and name; `count` passes are there, the first `most` of them in `out`.
  */
-static void add_to_passes(const sk_row *row, double seconds, skein_pass *out, size_t most, size_t *count) {
-    const char *kind = sk_row_kind_text(row->kind),
-               *label = row->kind == SK_ROW_COMBINE || !row->label ? "" : row->label;
+static void add_to_passes(const sk_op *op, double seconds, skein_pass *out, size_t most, size_t *count) {
+    const char *kind = sk_op_kind_text(op->kind), *label = op->kind == SK_OP_COMBINE || !op->label ? "" : op->label;
     for (size_t i = 0; i < *count && i < most; i++)
         if (out[i].kind == kind && !strncmp(out[i].label, label, sizeof out[i].label - 1)) {
             out[i].seconds += seconds;
@@ -256,7 +255,7 @@ skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out,
     skein_status status = sk_world_compile(world, dt, error);
     if (status) return status;
     if (world->recording) sk_record_step(world, dt);
-    if (world->device) { // whose rows run together
+    if (world->device) { // whose ops run together
         double start = sk_seconds();
         status = take_step(world, dt, NULL, error);
         skein_world_wait(world);
@@ -269,7 +268,7 @@ skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out,
     memset(seconds, 0, world->plan.count * sizeof *seconds);
     status = take_step(world, dt, seconds, error);
     for (size_t r = 0; r < world->plan.count && !status; r++)
-        if (world->plan.data[r].kind != SK_ROW_REPEAT && world->plan.data[r].kind != SK_ROW_PART)
+        if (world->plan.data[r].kind != SK_OP_REPEAT && world->plan.data[r].kind != SK_OP_PART)
             add_to_passes(&world->plan.data[r], seconds[r], out, most, count);
     sk_release(&world->allocator, seconds);
     return status;
@@ -316,14 +315,14 @@ skein_status skein_world_explain(skein_world *world, double dt, void (*write)(vo
     if (status) return status;
     if (!write) return SKEIN_OK;
     enum { MOST_DEPTH = 8 };
-    size_t open_until[MOST_DEPTH], depth = 0; // of the rows that lead others, around a row
+    size_t open_until[MOST_DEPTH], depth = 0; // of the ops that lead others, around an op
     for (size_t r = 0; r < world->plan.count; r++) {
-        const sk_row *row = &world->plan.data[r];
+        const sk_op *op = &world->plan.data[r];
         while (depth && r >= open_until[depth - 1]) depth--;
         char line[384] = "                                ";
-        sk_row_describe(row, line + 4 * depth, sizeof line - 4 * depth);
+        sk_op_describe(op, line + 4 * depth, sizeof line - 4 * depth);
         write(user, line);
-        if (row->length && depth < MOST_DEPTH) open_until[depth++] = r + row->length + 1;
+        if (op->length && depth < MOST_DEPTH) open_until[depth++] = r + op->length + 1;
     }
     return SKEIN_OK;
 }

@@ -166,7 +166,7 @@ skein_status sk_world_add_particles(skein_world *world, size_t count, const doub
                            "particle %zu: positions and velocities must be finite, under 1e15", i / 3);
         if (!(masses[i / 3] >= 0) || masses[i / 3] > SK_FAR || (masses[i / 3] > 0 && masses[i / 3] < 1e-15))
             return sk_fail(error, SKEIN_ERROR_VALUE, "",
-                           "particle %zu: a mass of %g kg; expected 0 (held) or 1e-15 to 1e15", i / 3, masses[i / 3]);
+                           "particle %zu: a mass of %g kg; expected 0 (pinned) or 1e-15 to 1e15", i / 3, masses[i / 3]);
     }
     skein_status status = sk_world_touch(world);
     if (status) return status;

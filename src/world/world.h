@@ -2,7 +2,7 @@
  *
  *   objects   what users hold handles of: bodies, constraints, forces, colliders
  *   rules     what methods see: batches, forces, colliders, limits, in the order of their making
- *   plan      the rows that the method wrote for these rules and this step; rewritten when they change
+ *   plan      the ops that the method wrote for these rules and this step; rewritten when they change
  *
  * Nothing in src/world/ knows a kind by name: types come in as pointers from the catalogue above. */
 #ifndef SK_WORLD_WORLD_H
@@ -105,7 +105,7 @@ struct sk_device {
     bool ahead, behind;
 };
 
-/* A held particle and the place that it is to have at the end of the step. */
+/* A pinned particle and the place that it is to have at the end of the step. */
 typedef struct sk_pin {
     uint32_t particle;
     double place[3];
@@ -213,7 +213,7 @@ skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32
                                  uint32_t count, const uint32_t *place, skein_error *error);
 /* Says in which order the body's particles should lie in memory: rank[i] is the place of its i-th one. */
 void sk_world_rank_particles(skein_world *world, const sk_body *body, const uint32_t *rank, size_t count);
-/* Sweeps the body's newest batch by halves, forth and back (methods/writer.h). */
+/* Sweeps the body's newest batch by halves, forth and back (methods/plan_builder.h). */
 void sk_world_sweep_both_ways(sk_body *body);
 /* Makes the body's newest batch a bound and nothing else (constraints/constraint.h). */
 void sk_world_only_bound(sk_body *body, const double *bound);
@@ -315,15 +315,15 @@ skein_status sk_world_arrive(skein_world *world, bool done);
 skein_status sk_world_set_device(skein_world *world, sk_device *device);
 /* The run context of the world's present state. */
 sk_run sk_world_run_context(skein_world *world);
-/* After a step: moves particles to slots near their neighbours', every so often (world/tidy.c). */
-void sk_world_tidy(skein_world *world);
+/* After a step: moves particles to slots near their neighbours', every so often (world/reorder.c). */
+void sk_world_reorder(skein_world *world);
 /* What skein_stable_substep says, of a known type. */
 double sk_stable_substep(const sk_method_type *method, const skein_stability *stability);
 /* Fills in the kinetic, potential and elastic energies, and the momenta. The slots are to be up to date. */
 void sk_world_measure_energy(const skein_world *world, skein_statistics *statistics);
 double sk_seconds(void); /* of a clock that only goes forward */
-/* Runs rows in their order; the plan's are a whole step. Where the run has `seconds`, by the clock and one by one, else
+/* Runs ops in their order; the plan's are a whole step. Where the run has `seconds`, by the clock and one by one, else
  * as fast as it can be. */
-void sk_run_rows(sk_run *run, sk_tasks *tasks, const sk_row *rows, size_t count);
+void sk_run_ops(sk_run *run, sk_tasks *tasks, const sk_op *ops, size_t count);
 
 #endif

@@ -151,7 +151,7 @@ CALLS = {
     "skein_velocities_copy_to": (status, [world, size, size, Buffer]),
     "skein_positions_set": (status, [world, size, size, array]),
     "skein_velocities_set": (status, [world, size, size, array]),
-    "skein_particle_hold": (status, [world, size, c.c_bool]),
+    "skein_particle_pin": (status, [world, size, c.c_bool]),
     "skein_pins_move": (status, [world, array, size, array]),
     "skein_snapshot_size": (size, [world]),
     "skein_snapshot_write": (status, [world, array, size, c.POINTER(size)]),

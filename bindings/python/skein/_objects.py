@@ -255,7 +255,7 @@ class Collider(Object):
 
 
 class Motion(Object):
-    """What leads held particles."""
+    """What leads pinned particles."""
 
     __slots__ = ()
     _category = L.MOTION

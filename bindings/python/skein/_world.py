@@ -363,7 +363,7 @@ class World:
 
     def hold(self, particle, held=True):
         """Holds a particle where it is, or lets it go."""
-        self._call(lib.skein_particle_hold, self._index(particle), bool(held))
+        self._call(lib.skein_particle_pin, self._index(particle), bool(held))
 
     def _index(self, particle):
         if not 0 <= particle < len(self):
@@ -371,7 +371,7 @@ class World:
         return particle
 
     def move_pins(self, particles, places):
-        """Says where held particles are at the end of the next step: they go there in straight lines."""
+        """Says where pinned particles are at the end of the next step: they go there in straight lines."""
         particles = np.ascontiguousarray(np.atleast_1d(particles), np.uint32)
         places = np.ascontiguousarray(np.broadcast_to(np.asarray(places, np.float64), (len(particles), 3)))
         self._call(lib.skein_pins_move, particles.ctypes.data, len(particles), places.ctypes.data)

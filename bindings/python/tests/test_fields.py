@@ -97,7 +97,7 @@ class Setting(unittest.TestCase):
         self.assertIn("stretch.tether=0.5", repr(self.cloth))
         rope = self.world.bodies.rope(from_=(0, 1, 0), to=(0, 0, 0), pins=[0, 3])
         self.assertEqual(rope.from_, (0, 1, 0))
-        self.assertEqual((self.world.statistics().held_particles, rope.pins), (2, "0 3"))
+        self.assertEqual((self.world.statistics().pinned_particles, rope.pins), (2, "0 3"))
 
     def test_lists(self):
         gravity, drag = self.world.forces.gravity(), self.world.forces.add("drag", rate=0.3)

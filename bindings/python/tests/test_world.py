@@ -156,7 +156,7 @@ class Views(unittest.TestCase):
         self.assertEqual(positions.ctypes.data, view.xyzw)  # it is the world's memory itself
         self.assertEqual(slot_of.ctypes.data, view.slot_of)
         self.assertFalse(positions.flags.writeable)
-        self.assertEqual((positions[slot_of][:, 3] == 0).sum(), self.world.statistics().held_particles)
+        self.assertEqual((positions[slot_of][:, 3] == 0).sum(), self.world.statistics().pinned_particles)
         np.testing.assert_allclose(velocities[slot_of][:, 3].sum(), 0.2, rtol=1e-5)  # kg: 0.2 kg/m2, and 1 m2
 
     def test_nothing_takes_their_memory_away(self):

@@ -172,7 +172,7 @@ SK_INLINE sk_wide sk_dot_wide(sk_wide3 a, sk_wide3 b) {
 
 /* A row of sixteen reals, turned: lane l of it is lane (l + shift) mod 16 of what it was. (From whole parts, for loads
  * across what has just been stored would wait.) */
-SK_INLINE void sk_turn_row(sk_wide *to, const sk_wide *row, int shift) {
+SK_INLINE void sk_rotate_lanes(sk_wide *to, const sk_wide *row, int shift) {
     int from = (shift & (SK_LANES - 1)) / SK_PART, first = shift & (SK_PART - 1);
     sk_wide part[SK_PARTS + 1];
     for (int p = 0; p <= SK_PARTS; p++) part[p] = row[(p + from) & (SK_PARTS - 1)];

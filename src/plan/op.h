@@ -1,15 +1,15 @@
-/* The rows of a plan: what a step does, as data.
+/* The ops of a plan: what a step does, as data.
  *
- * A row names vectors, a kernel and a range of elements; the runner (world/run.c) knows nothing else.
- * Methods write rows (methods/writer.h), rules bring the kernels (constraints/, forces/, colliders/).
+ * An op names vectors, a kernel and a range of elements; the runner (world/run.c) knows nothing else.
+ * Methods write ops (methods/plan_builder.h), rules bring the kernels (constraints/, forces/, colliders/).
  *
  *   kind     dst   sources        coefficients   rule                 range
  *   field    F     X V                           gravity              [0, particles)
  *   force    F     X V                           batch of distances   [0, elements)
  *   combine  V     V F            1, h                                [0, slots)
  */
-#ifndef SK_PLAN_ROW_H
-#define SK_PLAN_ROW_H
+#ifndef SK_PLAN_OP_H
+#define SK_PLAN_OP_H
 
 #include "base/isa.h"
 #include "base/layout.h"
@@ -42,31 +42,31 @@ typedef enum sk_vector {
     SK_VECTOR_COUNT
 } sk_vector;
 
-typedef enum sk_row_kind {
-    SK_ROW_PACK,
-    SK_ROW_UNPACK,
-    SK_ROW_COMBINE,
-    SK_ROW_GRID,
-    SK_ROW_FIELD,
-    SK_ROW_NEIGHBOUR,
-    SK_ROW_FORCE,
-    SK_ROW_PROJECT,
-    SK_ROW_MULTIPLIER,
-    SK_ROW_CONTACT_FORCE,
-    SK_ROW_CONTACT_VELOCITY,
-    SK_ROW_CONTACT_POSITION,
-    SK_ROW_CONTACT_SETTLE,
-    SK_ROW_LIMIT,
-    SK_ROW_APPLY,
-    SK_ROW_LINEARISE,
-    SK_ROW_CONTACT_FILTER,
-    SK_ROW_MEET,
-    SK_ROW_CALL, /* what is no loop over elements: a solver from outside */
-    SK_ROW_SOLVE, /* an algorithm in C that has the rows behind it run, part by part, until it is content */
-    SK_ROW_PART,  /* of a solve: heads rows that run when it asks for them, and are passed over else */
-    SK_ROW_REPEAT,
-    SK_ROW_KIND_COUNT
-} sk_row_kind;
+typedef enum sk_op_kind {
+    SK_OP_PACK,
+    SK_OP_UNPACK,
+    SK_OP_COMBINE,
+    SK_OP_GRID,
+    SK_OP_FIELD,
+    SK_OP_NEIGHBOUR,
+    SK_OP_FORCE,
+    SK_OP_PROJECT,
+    SK_OP_MULTIPLIER,
+    SK_OP_CONTACT_FORCE,
+    SK_OP_CONTACT_VELOCITY,
+    SK_OP_CONTACT_POSITION,
+    SK_OP_CONTACT_UPDATE,
+    SK_OP_LIMIT,
+    SK_OP_APPLY,
+    SK_OP_LINEARISE,
+    SK_OP_CONTACT_FILTER,
+    SK_OP_MEET,
+    SK_OP_CALL,  /* what is no loop over elements: a solver from outside */
+    SK_OP_SOLVE, /* an algorithm in C that has the ops behind it run, part by part, until it is content */
+    SK_OP_PART,  /* of a solve: heads ops that run when it asks for them, and are passed over else */
+    SK_OP_REPEAT,
+    SK_OP_KIND_COUNT
+} sk_op_kind;
 
 /* Free: each element writes only its own slot, so any cut over threads gives the same bits.
  * Ordered: the sequential order is the answer. */
@@ -78,13 +78,13 @@ typedef struct sk_triangles {
     size_t count, capacity;
 } sk_triangles;
 
-/* Which elements of a sweep along strips a row projects. Halves are alike: those in strip rows with even numbers and in
+/* Which elements of a sweep along strips an op projects. Halves are alike: those in strip rows with even numbers and in
  * rows with odd ones, or where elements lead from row to row, in such blocks. */
 typedef enum sk_half { SK_WHOLE, SK_EVEN_HALF, SK_ODD_HALF } sk_half;
 
-/* Which strips of particles a row walks along, so that threads can follow each other down the rows of a
- * grid; all zero where it does not. An element of an ordered row's strip row j also writes row j + reach;
- * one of a free row writes row j alone, and reads rows j - reach to j + reach. */
+/* Which strips of particles an op walks along, so that threads can follow each other down the rows of a
+ * grid; all zero where it does not. An element of an ordered op's strip row j also writes row j + reach;
+ * one of a free op writes row j alone, and reads rows j - reach to j + reach. */
 typedef struct sk_walk {
     size_t first_slot;  /* of the strips */
     size_t rows, width; /* strip rows; blocks a row */
@@ -110,7 +110,7 @@ typedef struct sk_surface {
     size_t number_capacity;
 } sk_surface;
 
-typedef struct sk_row sk_row;
+typedef struct sk_op sk_op;
 
 /* What a kernel may touch while a plan runs. */
 typedef struct sk_run sk_run;
@@ -124,107 +124,108 @@ struct sk_run {
     sk_cells *cells;
     sk_allocator *allocator;
     double time;              /* at the end of the present substep, s */
-    struct sk_solve *solve;   /* what a solve and its rows tell each other (plan/solve.h) */
+    struct sk_solve *solve;   /* what a solve and its ops tell each other (plan/solve.h) */
     struct sk_matrix *matrix; /* of a solve with a factor (plan/matrix.h), else NULL */
-    void (*rows)(sk_run *run, const sk_row *rows, size_t count); /* for solves: runs these, of the same plan, */
+    void (*ops)(sk_run *run, const sk_op *ops, size_t count);    /* for solves: runs these, of the same plan, */
     struct sk_tasks *tasks;                                      /* on these threads */
-    double *seconds;          /* of each row from `timed` on what it takes is added to; NULL: nobody asks */
-    const sk_row *timed;
-    size_t turn;              /* of the innermost repeat, from 0 on, */
-    bool last_turn;           /* and whether it is the last */
+    double *seconds;          /* of each op from `timed` on what it takes is added to; NULL: nobody asks */
+    const sk_op *timed;
+    size_t iteration;              /* of the innermost repeat, from 0 on, */
+    bool last_iteration;           /* and whether it is the last */
     bool no_memory;           /* a growing list could not grow: the step fails and says so */
 };
 
-typedef void sk_row_kernel(sk_run *run, const sk_row *row, size_t begin, size_t end);
+typedef void sk_op_kernel(sk_run *run, const sk_op *op, size_t begin, size_t end);
 
 /* A kernel in a version for each instruction set. */
 typedef struct sk_kernels {
-    sk_row_kernel *version[SK_ISA_COUNT];
+    sk_op_kernel *version[SK_ISA_COUNT];
 } sk_kernels;
 
-struct sk_row {
-    sk_row_kind kind;
+struct sk_op {
+    sk_op_kind kind;
     sk_order order;
-    sk_row_kernel *kernel; /* NULL for a repeat or a part; a solve: all of it, on the thread that runs the plan */
+    sk_op_kernel *kernel; /* NULL for a repeat or a part; a solve: all of it, on the thread that runs the plan */
     sk_vector dst, source[3];
     double coefficient[3];
     double dt;             /* of the substep, s */
-    double before;         /* how long before the end of the substep the state is that it looks at, s */
+    double before_end;     /* how long before the end of the substep the state is that it looks at, s */
     const void *rule;      /* a force, a collider, a batch */
     const sk_patch *patch; /* of triangles in strips, else NULL */
     const sk_group *group; /* whom it moves or sorts, where the rule does not say; NULL: everybody */
     const char *label;     /* its name in `skein explain` */
-    sk_row_kernel *inner;  /* of a row over some slots only: `kernel` is sk_run_partly then */
-    size_t first_slot, end_slot; /* of such a row, within [begin, end); else 0 */
-    size_t begin, end;     /* elements; a repeat: the number of turns is `end` */
-    bool sets;             /* a field row: F is written, not added to */
+    sk_op_kernel *inner;  /* of an op over some slots only: `kernel` is sk_run_partly then */
+    size_t first_slot, end_slot; /* of such an op, within [begin, end); else 0 */
+    size_t begin, end;     /* elements; a repeat: the number of iterations is `end` */
+    bool sets;             /* a field op: F is written, not added to */
     bool by_particle;      /* its elements are the user's particles, not slots: not to be run in chunks with others */
     bool alone;            /* it looks at slots that are not its own: nor is that */
     bool from_prediction; /* it looks at X0 only to know X0 + b V, b being its second coefficient, 0 where X0 is that */
-    size_t every;          /* it runs in each so many-th turn of its repeat, and in the last of them; 0: in all */
+    size_t every;          /* it runs in each so many-th iteration of its repeat, and in the last of them; 0: in all */
     size_t packed;         /* slots [0, packed) are in packed blocks when it runs */
-    sk_walk walk;          /* of rows whose elements are strip rows */
+    sk_walk walk;          /* of ops whose elements are strip rows */
     sk_half half;          /* of a sweep along strips */
-    size_t length;         /* a repeat, a solve or a part of one: how many rows after it are its own */
+    size_t length;         /* a repeat, a solve or a part of one: how many ops after it are its own */
     int part;              /* a part: which */
 };
 
-/* m g + f - (linear + rate m) v on every particle: gravity, plain wind and air drag together. Methods that
+/* m g + f - (linear + rate m) v on every particle: gravity, uniform wind and air drag together. Methods that
  * predict take it in at once, so that F need not be written and read. */
-typedef struct sk_plain_force {
+typedef struct sk_uniform_force {
     double acceleration[3], force[3], linear, rate;
     char label[64]; /* of the forces that it stands for */
-} sk_plain_force;
+} sk_uniform_force;
 
 /* Slots that the same rules act on, and what methods that predict do for them. */
 typedef struct sk_plan_part {
     size_t first_slot, end_slot;
-    sk_plain_force plain; /* the rule of its prediction rows that need no F */
-    bool is_plain, steered;
+    sk_uniform_force uniform; /* the rule of its prediction ops that need no F */
+    bool is_uniform, steered;
 } sk_plan_part;
 
 typedef struct sk_plan {
-    sk_row *data;
+    sk_op *data;
     size_t count, capacity;
     struct {
         sk_plan_part *data;
         size_t count, capacity;
-    } parts; /* of all slots; rows point into them */
+    } parts; /* of all slots; ops point into them */
 } sk_plan;
 
-/* Appends a row; false when there is no memory. */
-bool sk_plan_add(sk_plan *plan, sk_allocator *allocator, sk_row row);
-/* Runs the row's inner kernel over whole blocks, and leaves what the slots beside [first_slot, end_slot) have. */
-sk_row_kernel sk_run_partly;
-/* The row for these slots alone. */
-sk_row sk_row_for(sk_row row, size_t first_slot, size_t end_slot);
-/* Whether a row runs in the present turn. */
-static inline bool sk_row_is_due(const sk_run *run, const sk_row *row) {
-    return row->every < 2 || run->turn % row->every == row->every - 1;
+/* Appends an op; false when there is no memory. */
+bool sk_plan_add(sk_plan *plan, sk_allocator *allocator, sk_op op);
+/* Runs the op's inner kernel over whole blocks, and leaves what the slots beside [first_slot, end_slot) have. */
+sk_op_kernel sk_run_partly;
+/* The op for these slots alone. */
+sk_op sk_op_for(sk_op op, size_t first_slot, size_t end_slot);
+/* Whether an op runs in the present iteration. */
+static inline bool sk_op_is_due(const sk_run *run, const sk_op *op) {
+    return op->every < 2 || run->iteration % op->every == op->every - 1;
 }
-/* One line about a row, as `skein explain` shows it. */
-void sk_row_describe(const sk_row *row, char *text, size_t size);
-const char *sk_row_kind_text(sk_row_kind kind);
-/* Whether the row's kernel is one of these. */
-bool sk_row_is(const sk_row *row, const sk_kernels *kernels);
+/* One line about an op, as `skein explain` shows it. */
+void sk_op_describe(const sk_op *op, char *text, size_t size);
+const char *sk_op_kind_text(sk_op_kind kind);
+/* Whether the op's kernel is one of these. */
+bool sk_op_is(const sk_op *op, const sk_kernels *kernels);
 
-/* The arithmetic of vectors: the kernels of combine rows. The w components stay as they are.
+/* The arithmetic of vectors: the kernels of combine ops. The w components stay as they are.
  *   dst = a p + b q + c r        (a source of SK_NONE is left out)
  *   dst += a (p - (q + b dst))   velocity: what moved p away from where dst alone would have taken q
  *   dst = p + a w q              a kick: w is the inverse mass
  *   wipe                         dst = 0, w too
  *   steer                        dst += q, where the inverse mass is not 0
  *   lead                         dst += a q, where the inverse mass is 0; dst is X
- *   pull                         dst += h (the plan's plain force), where the inverse mass is not 0; dst is V
+ *   pull                         dst += h (the plan's uniform force), where the inverse mass is not 0; dst is V
  *   predict                      V += h w F; V0 = V where the third source is V0; X0 = X, or what X is going to
- *                                be where the third source is X; X += h V: one row
+ *                                be where the third source is X; X += h V: one op
  *                                for what would be four (plan/fuse.h)
- *   fall                         the same, with the plan's plain force in place of F
- *   fall_on                      V += a (X - X0), and but for the last turn of its repeat a fall: the end of one
- *                                substep and the start of the next
- *   rest                         dst = 0 where it is at most a: the end of a step, a being SK_REST_SPEED */
+ *   predict_uniform              the same, with the plan's uniform force in place of F
+ *   correct_and_predict          V += a (X - X0), and but for the last iteration of its repeat predict_uniform: the end
+ * of one substep and the start of the next rest                         dst = 0 where it is at most a: the end of a
+ * step, a being SK_REST_SPEED */
 extern const sk_kernels sk_combine_sum, sk_combine_correction, sk_combine_kick, sk_combine_wipe, sk_combine_steer,
-    sk_combine_lead, sk_combine_pull, sk_combine_predict, sk_combine_fall, sk_combine_fall_on, sk_combine_rest;
+    sk_combine_lead, sk_combine_pull, sk_combine_predict, sk_combine_predict_uniform, sk_combine_correct_and_predict,
+    sk_combine_rest;
 /* m/s: what is slower has come to rest (base/float_mode.h). The square of such a number is not
  * thin yet. */
 #define SK_REST_SPEED ((real)(sizeof(real) == sizeof(double) ? 1e-140 : 1e-18))

@@ -20,7 +20,7 @@ static bool may_move(const skein_world *world) {
     if (world->particles.strips.count || world->triangles.count) return false;
     if (rules->batches.count || rules->limits.count) return false;
     for (size_t r = 0; r < world->plan.count; r++)
-        if (world->plan.data[r].kind == SK_ROW_SOLVE) return false;
+        if (world->plan.data[r].kind == SK_OP_SOLVE) return false;
     return true;
 }
 
@@ -62,15 +62,14 @@ static void move_to_list(skein_world *world, const sk_group *group, size_t first
 /* The radius of the first cells that all of a group is sorted into; 0: of none. */
 static double radius_for(const sk_plan *plan, const sk_group *group) {
     for (size_t r = 0; r < plan->count; r++) {
-        const sk_row *row = &plan->data[r];
-        if (sk_row_is(row, &sk_sort_rows[0].kernels) && row->group->first <= group->first &&
-            group->end <= row->group->end)
-            return row->coefficient[0];
+        const sk_op *op = &plan->data[r];
+        if (sk_op_is(op, &sk_sort_ops[0].kernels) && op->group->first <= group->first && group->end <= op->group->end)
+            return op->coefficient[0];
     }
     return 0;
 }
 
-void sk_world_tidy(skein_world *world) {
+void sk_world_reorder(skein_world *world) {
     if (world->steps % EVERY != 1 || !may_move(world)) return;
     for (size_t i = 0; i < world->objects.count; i++) {
         const sk_object *object = world->objects.data[i];

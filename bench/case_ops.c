@@ -1,4 +1,4 @@
-/* Rows alone, beside the student's loop over the same springs: forces, sweeps of XPBD, and sweeps of other shapes. */
+/* Ops alone, beside the student's loop over the same springs: forces, sweeps of XPBD, and sweeps of other shapes. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,10 +17,10 @@ static double norm(const double *x, size_t count) {
 }
 
 /* Both add up the same forces, but for rounding. */
-static void check_forces(bench_rows *rows, plain_system *plain, const char *size) {
+static void check_forces(bench_ops *ops, plain_system *plain, const char *size) {
     size_t count = 3 * plain->particle_count;
     double *ours = bench_allocate(count, sizeof(double)), *gap = bench_allocate(count, sizeof(double));
-    bench_rows_forces(rows, ours);
+    bench_ops_forces(ops, ours);
     plain_force(plain);
     for (size_t i = 0; i < count; i++) gap[i] = ours[i] - (double)plain->particles[i / 3].f[i % 3];
     double off = norm(gap, count) / norm(ours, count);
@@ -36,10 +36,10 @@ static void check_sweep(skein_world *world, const char *size) {
            *after = bench_allocate(count, sizeof(double));
     skein_positions_copy(world, 0, count / 3, before);
     plain_system *plain = bench_plain(world, BENCH_AS_WALKED, false, SUBSTEP);
-    bench_rows *rows = bench_rows_create(world, SK_ROW_PROJECT);
+    bench_ops *ops = bench_ops_create(world, SK_OP_PROJECT);
     plain_project(plain);
-    if (rows) bench_rows_run_once(rows);
-    bench_rows_destroy(rows);
+    if (ops) bench_ops_run_once(ops);
+    bench_ops_destroy(ops);
     skein_positions_copy(world, 0, count / 3, after);
     for (size_t i = 0; i < count; i++) {
         gap[i] = after[i] - (double)plain->particles[i / 3].x[i % 3];
@@ -58,21 +58,21 @@ static void check_sweep(skein_world *world, const char *size) {
 static void compare_forces(skein_world *world, const char *size, double bar) {
     bench_shake(world, 1e-4, 0.1);
     plain_system *plain = bench_plain(world, BENCH_AS_LISTED, false, 1);
-    bench_rows *rows = bench_rows_create(world, SK_ROW_FORCE);
-    if (rows) {
-        check_forces(rows, plain, size);
-        bench_job jobs[] = {{.run = plain_force, .data = plain}, {.run = bench_rows_run, .data = rows}};
+    bench_ops *ops = bench_ops_create(world, SK_OP_FORCE);
+    if (ops) {
+        check_forces(ops, plain, size);
+        bench_job jobs[] = {{.run = plain_force, .data = plain}, {.run = bench_ops_run, .data = ops}};
         double seconds[2], count = (double)plain->spring_count;
         bench_measure(jobs, 2, 0.05, seconds);
         bench_report(&(bench_result){.name = "force",
                                      .size = size,
-                                     .ours = 1e9 * seconds[1] / count / (double)bench_rows_turns(rows),
+                                     .ours = 1e9 * seconds[1] / count / (double)bench_ops_iterations(ops),
                                      .unit = "ns/constraint",
                                      .other = "plain loop",
                                      .theirs = 1e9 * seconds[0] / count,
                                      .faster = bar,
                                      .note = "stiffness 1e4 N/m, damping 1 N s/m, both"});
-        bench_rows_destroy(rows);
+        bench_ops_destroy(ops);
     }
     plain_destroy(plain);
     skein_world_destroy(world);
@@ -110,15 +110,15 @@ typedef struct rival {
     double bar;
 } rival;
 
-static void compare_sweeps(bench_rows *rows, const rival *rivals, size_t rival_count, const char *size) {
-    bench_job jobs[BENCH_MOST_JOBS] = {{.run = bench_rows_run, .data = rows}};
+static void compare_sweeps(bench_ops *ops, const rival *rivals, size_t rival_count, const char *size) {
+    bench_job jobs[BENCH_MOST_JOBS] = {{.run = bench_ops_run, .data = ops}};
     double seconds[BENCH_MOST_JOBS], count = (double)rivals->plain->spring_count;
     for (size_t i = 0; i < rival_count; i++) jobs[i + 1] = (bench_job){.run = plain_project, .data = rivals[i].plain};
     bench_measure(jobs, 1 + rival_count, 0.05, seconds);
     for (size_t i = 0; i < rival_count; i++)
         bench_report(&(bench_result){.name = "sweep",
                                      .size = size,
-                                     .ours = 1e9 * seconds[0] / count / (double)bench_rows_turns(rows),
+                                     .ours = 1e9 * seconds[0] / count / (double)bench_ops_iterations(ops),
                                      .unit = "ns/constraint",
                                      .other = rivals[i].name,
                                      .theirs = 1e9 * seconds[i + 1] / count,
@@ -133,9 +133,9 @@ static void sweep_regular(skein_world *world, const char *size, double bar) {
         {bench_plain(world, BENCH_AS_LISTED, false, SUBSTEP), "plain loop, type order", bar},
         {bench_plain(world, BENCH_AS_WALKED, false, SUBSTEP), "plain loop, as walked", 0},
     };
-    bench_rows *rows = bench_rows_create(world, SK_ROW_PROJECT);
-    if (rows) compare_sweeps(rows, rivals, 2, size);
-    bench_rows_destroy(rows);
+    bench_ops *ops = bench_ops_create(world, SK_OP_PROJECT);
+    if (ops) compare_sweeps(ops, rivals, 2, size);
+    bench_ops_destroy(ops);
     for (int i = 0; i < 2; i++) plain_destroy(rivals[i].plain);
     skein_world_destroy(world);
 }
@@ -155,9 +155,9 @@ static void sweep_mesh(size_t vertices, bool shuffled) {
         {bench_plain(world, BENCH_AS_WALKED, true, SUBSTEP), "plain loop, as walked", 0},
     };
     skein_world_destroy(unpinned);
-    bench_rows *rows = bench_rows_create(world, SK_ROW_PROJECT);
-    if (rows) compare_sweeps(rows, rivals, 3, size);
-    bench_rows_destroy(rows);
+    bench_ops *ops = bench_ops_create(world, SK_OP_PROJECT);
+    if (ops) compare_sweeps(ops, rivals, 3, size);
+    bench_ops_destroy(ops);
     for (int i = 0; i < 3; i++) plain_destroy(rivals[i].plain);
     skein_world_destroy(world);
     bench_mesh_release(&mesh);
@@ -206,13 +206,13 @@ static void run_shapes(void) {
     for (int i = 0; i < SHAPES; i++) {
         worlds[i] = bench_cloth(&shapes[i].scene);
         bench_steps(worlds[i], 20);
-        bench_rows *rows = bench_rows_create(worlds[i], SK_ROW_PROJECT);
-        if (!rows) bench_stop("no sweeps to compare");
-        jobs[i] = (bench_job){.run = bench_rows_run, .data = rows};
+        bench_ops *ops = bench_ops_create(worlds[i], SK_OP_PROJECT);
+        if (!ops) bench_stop("no sweeps to compare");
+        jobs[i] = (bench_job){.run = bench_ops_run, .data = ops};
     }
     bench_measure(jobs, SHAPES, 0.05, seconds);
     for (int i = 0; i < SHAPES; i++)
-        seconds[i] /= (double)bench_spring_count(worlds[i]) * (double)bench_rows_turns(jobs[i].data);
+        seconds[i] /= (double)bench_spring_count(worlds[i]) * (double)bench_ops_iterations(jobs[i].data);
     char other[40];
     snprintf(other, sizeof other, "grid %d x %d", n, n);
     for (int i = 1; i < SHAPES; i++)
@@ -224,7 +224,7 @@ static void run_shapes(void) {
                                      .theirs = 1e9 * seconds[0],
                                      .as_long = 1.3});
     for (int i = 0; i < SHAPES; i++) {
-        bench_rows_destroy(jobs[i].data);
+        bench_ops_destroy(jobs[i].data);
         skein_world_destroy(worlds[i]);
     }
     bench_mesh_release(&quads);

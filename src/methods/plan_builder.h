@@ -1,0 +1,122 @@
+/* What methods build plans with: one call an op, or an op for each enabled rule of a sort. */
+#ifndef SK_METHODS_WRITER_H
+#define SK_METHODS_WRITER_H
+
+#include "colliders/collider.h"
+#include "constraints/constraint.h"
+#include "forces/force.h"
+#include "limits/limit.h"
+
+/* Everything that acts, in the order of its making. Owned by the world. */
+typedef struct sk_rules {
+    struct {
+        sk_batch **data;
+        size_t count, capacity;
+    } batches;
+    struct {
+        sk_force **data;
+        size_t count, capacity;
+    } forces;
+    struct {
+        sk_collider **data;
+        size_t count, capacity;
+    } colliders;
+    struct {
+        sk_limit **data;
+        size_t count, capacity;
+    } limits;
+    const char *sparse_solver; /* the name of the world's; NULL: it has none */
+} sk_rules;
+
+typedef struct sk_plan_builder {
+    sk_plan *plan;
+    sk_allocator *allocator;
+    const sk_rules *rules;
+    sk_isa isa;
+    size_t slot_count, particle_count;
+    const sk_surface *surface;
+    const sk_group *everybody;
+    size_t strip_slots; /* the first slots, which are in strips */
+    size_t packed;      /* the first slots that are in packed blocks now */
+    double h;           /* of the present substep, s, */
+    size_t iterations;  /* and how many of them the repeat has */
+    bool predicted;     /* X began the substep at X0 + h V */
+    double before_end;  /* and how long before its end X is by now, s */
+    size_t substep;     /* the place of its repeat */
+    bool no_memory;     /* the plan is incomplete */
+} sk_plan_builder;
+
+/* Opens a repeat of `times` substeps of `h` seconds; sk_write_end closes it. Returns its place. */
+size_t sk_write_repeat(sk_plan_builder *builder, size_t times, double h);
+void sk_write_end(sk_plan_builder *builder, size_t repeat);
+/* Says where X stands from here on: `part` of the substep, 0 at its start (so a repeat begins), 1 at its end. Rules
+ * that depend on time take it from there. */
+void sk_write_stage_time(sk_plan_builder *builder, double part);
+
+/* X and V of the strips from quads to packed blocks, and back: around all other ops of a step. */
+void sk_write_pack(sk_plan_builder *builder);
+void sk_write_unpack(sk_plan_builder *builder);
+/* The end of every step: what has all but come to rest does. */
+void sk_write_rest(sk_plan_builder *builder);
+
+/* dst = a p + b q (q may be SK_NONE); dst = 0; dst = p + a w q. */
+void sk_write_sum(sk_plan_builder *builder, sk_vector dst, double a, sk_vector p, double b, sk_vector q);
+void sk_write_clear(sk_plan_builder *builder, sk_vector dst);
+void sk_write_kick(sk_plan_builder *builder, sk_vector dst, sk_vector p, double a, sk_vector q);
+/* X += h V of pinned particles alone, for methods that move nothing else by its velocity. */
+void sk_write_lead(sk_plan_builder *builder, double h);
+
+/* How a position method's substep begins: the fields, V += h w F (without F where all forces are plain), what steers,
+ * X0 = X, V0 = V where there are colliders, X += h V. Once a plan. */
+void sk_write_prediction(sk_plan_builder *builder);
+/* V += (X - X0 - h V)/h: V learns what moved X since it was predicted. */
+void sk_write_correction(sk_plan_builder *builder);
+
+/* The ops that sort a group into cells of at least `radius`; the group stays where it is while the plan does. */
+void sk_write_cells(sk_plan_builder *builder, const sk_group *group, double radius);
+/* F = all forces on X moving with V: the cells if a rule wants neighbours, then fields and neighbours. */
+void sk_write_fields(sk_plan_builder *builder);
+/* V += what the rules that steer ask for, then bounds on V: once a substep, see plan_builder_steer.c. */
+void sk_write_steering(sk_plan_builder *builder);
+/* The bounds once more, where forces have acted on V after them. */
+void sk_write_bounds(sk_plan_builder *builder);
+bool sk_writes_steering(const sk_rules *rules);
+/* F += the springs of every batch. */
+void sk_write_forces(sk_plan_builder *builder);
+/* X: `passes` sweeps over every batch; X0 is the state at the start of the substep. */
+void sk_write_projections(sk_plan_builder *builder, int passes);
+
+/* The same without a memory from pass to pass: each has its share, a `passes`-th, of the stiffness and damping. */
+void sk_write_shared_projections(sk_plan_builder *builder, int passes);
+
+/* Whether anything acts on F; where nothing steers either, it is said to, and F is 0. */
+bool sk_writes_forces(const sk_plan_builder *builder);
+/* Whether any force or damped constraint depends on velocities. */
+bool sk_writes_velocity_forces(const sk_plan_builder *builder);
+/* Whether contact or limits may change the state behind a substep's back. */
+bool sk_writes_corrections(const sk_plan_builder *builder);
+
+typedef enum sk_contact_sort {
+    SK_CONTACT_FORCE,
+    SK_CONTACT_IMPULSE,
+    SK_CONTACT_PUSH,
+    SK_CONTACT_UPDATE
+} sk_contact_sort;
+/* An op for each collider. Settling looks at X0 and V0, the state before the substep's corrections. */
+void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort);
+typedef enum sk_meeting_sort { SK_MEETING_BEGIN, SK_MEETING_PUSH, SK_MEETING_BOUND } sk_meeting_sort;
+/* An op for each rule that meets. The other functions here call it: a repeat of substeps begins and ends with such ops,
+ * and they push with the limits. */
+void sk_write_meetings(sk_plan_builder *builder, sk_meeting_sort sort, sk_vector velocity);
+bool sk_writes_meetings(const sk_plan_builder *builder);
+/* Limits move X; `velocity` is SK_V where the method does not take velocities from positions, else SK_NONE. */
+void sk_write_limits(sk_plan_builder *builder, sk_vector velocity);
+
+/* For the builder's own files: adds an op, with the present substep and layout. */
+void sk_add_op(sk_plan_builder *builder, sk_op op);
+/* The same op for all sweeps of a batch: a sum over their elements, of which those along the same strips make one op. */
+void sk_add_sums(sk_plan_builder *builder, const sk_batch *batch, sk_op op, const sk_sweep_kernels *kernels);
+/* The same for an op over slots, on those alone that a rule acts on: an op for each body where it names some. */
+void sk_add_op_on(sk_plan_builder *builder, sk_op op, const sk_only *only);
+
+#endif
