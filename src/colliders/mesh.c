@@ -22,14 +22,17 @@ SK_KERNELS(sk_probe_near, near);
 #ifdef SK_ISA
 #include "colliders/trimesh_near.h"
 
-/* Those of the lanes beyond `reach` that may be inside all the same. */
-static uint32_t deep(const sk_trimesh *m, sk_wide3 p, sk_mask looked, sk_mask found) {
-    sk_mask lost = looked & (found < 0) & (trimesh_box(&m->node[0], p) == (sk_wide){0});
-    if (!sk_any(lost)) return 0;
-    uint32_t bits = trimesh_bits(lost), inside = 0;
-    for (int l = 0; l < SK_PART; l++)
-        if (bits >> l & 1) inside |= (uint32_t)!sk_trimesh_is_out(m, (const real[3]){p.x[l], p.y[l], p.z[l]}) << l;
-    return inside;
+/* Of the lanes in which nothing was found within `reach`: how far to look, squared; -1: no further, it is outside. */
+static sk_wide look_further(const sk_trimesh *m, sk_wide3 p, sk_mask looked, sk_wide reach) {
+    sk_mask lost = looked & (trimesh_box(&m->node[0], p) == (sk_wide){0});
+    sk_wide further = sk_splat(-1);
+    uint32_t bits = trimesh_bits(lost);
+    for (int l = 0; l < SK_PART; l++) {
+        if (!(bits >> l & 1)) continue;
+        sk_trimesh_side side = sk_trimesh_side_of(m, (const real[3]){p.x[l], p.y[l], p.z[l]}, reach[l]);
+        further[l] = side == SK_OUTSIDE ? -1 : side == SK_INSIDE ? (real)1e30 : m->cell_span * m->cell_span;
+    }
+    return further;
 }
 
 SK_INLINE void ask(const void *data, const sk_pose *pose, const sk_wide3 *p, const sk_wide *reach, sk_contact *contact) {
@@ -47,15 +50,13 @@ SK_INLINE void ask(const void *data, const sk_pose *pose, const sk_wide3 *p, con
     }
     sk_mask looked = reach ? ~sk_negative(best) : all;
     trimesh_near(m, own, &best, &found);
-    if (reach && sk_any(looked & (found < 0))) {
-        uint32_t bits = deep(m, own, looked, found);
-        if (bits) {
-            sk_mask more, wanted = {0};
-            for (int l = 0; l < SK_PART; l++) wanted[l] = bits >> l & 1 ? -1 : 0;
-            best = sk_select(wanted, sk_splat((real)1e30), sk_splat(-1));
-            trimesh_near(m, own, &best, &more);
-            found = (wanted & more) | (~wanted & found);
-        }
+    for (int turn = 0; reach && turn < 2 && sk_any(looked & (found < 0)); turn++) {
+        sk_wide within = turn ? sk_splat(m->cell_span) : *reach * per;
+        sk_mask more;
+        best = look_further(m, own, looked & (found < 0), within);
+        if (!sk_any(~sk_negative(best))) break;
+        trimesh_near(m, own, &best, &more);
+        found = ((found < 0) & more) | (~(found < 0) & found);
     }
     contact->normal = (sk_wide3){{0}, sk_splat(1), {0}};
     contact->distance = sk_splat((real)SK_FAR), contact->speed = sk_splat(0);

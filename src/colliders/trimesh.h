@@ -53,7 +53,7 @@ typedef struct sk_trimesh {
     /* Cells over the box of a closed mesh that keeps its shape: what no triangle comes near is inside or outside as a whole. */
     uint8_t *cell;
     int cells[3];
-    real cell_low[3], per_cell[3];
+    real cell_low[3], per_cell[3], cell_span; /* the diagonal of one */
     real slack;        /* squared m: rounding may make a triangle nearer by so much than its box */
     bool closed, turned, moves;
     size_t open_edges, torn_edges, thin; /* edges of one triangle; of more than two, or of two that disagree; faces left out */
@@ -81,8 +81,9 @@ double sk_trimesh_winding(const sk_trimesh *m, const double p[3]);
 
 /* trimesh_cells.c: makes the cells of a mesh; false where there is no memory. */
 bool sk_trimesh_divide(sk_trimesh *m);
-/* Whether p, which is within the mesh's box and far from its triangles, is certainly outside. */
-bool sk_trimesh_is_out(const sk_trimesh *m, const real p[3]);
+/* Where p is, which is within the mesh's box and has no triangle `within` so far. Undecided: those within a cell's span will say. */
+typedef enum sk_trimesh_side { SK_OUTSIDE, SK_INSIDE, SK_UNDECIDED } sk_trimesh_side;
+sk_trimesh_side sk_trimesh_side_of(const sk_trimesh *m, const real p[3], real within);
 
 typedef struct sk_trimesh_spot {
     double normal[3], distance; /* unit, out of the solid; negative inside */

@@ -33,7 +33,13 @@ static void mark_near(sk_trimesh *m, size_t t, real slack) {
     }
     for (at[2] = low[2]; at[2] <= high[2]; at[2]++)
         for (at[1] = low[1]; at[1] <= high[1]; at[1]++)
-            for (at[0] = low[0]; at[0] <= high[0]; at[0]++) m->cell[place_of(m, at)] = NEAR;
+            for (at[0] = low[0]; at[0] <= high[0]; at[0]++) {
+                // off its plane by more than half a cell's diagonal it does not come near
+                real off = 0;
+                for (int k = 0; k < 3; k++)
+                    off += (&m->normal[t].x)[k] * (m->cell_low[k] + ((real)at[k] + (real)0.5) / m->per_cell[k] - m->facet[t].a[k]);
+                if (fabs((double)off) <= 0.5 * (double)m->cell_span + (double)slack) m->cell[place_of(m, at)] = NEAR;
+            }
 }
 
 /* Gives all cells that hang together with one what that one is. */
@@ -75,6 +81,9 @@ bool sk_trimesh_divide(sk_trimesh *m) {
         if (!(along > 0) || !(m->per_cell[k] <= SK_REAL_MAX)) return true; // flat: there is no inside
         count *= (size_t)m->cells[k];
     }
+    double span = 0;
+    for (int k = 0; k < 3; k++) span += 1 / ((double)m->per_cell[k] * (double)m->per_cell[k]);
+    m->cell_span = (real)sqrt(span);
     m->cell = sk_allocate(m->allocator, count);
     uint32_t *stack = sk_allocate(m->allocator, count * sizeof *stack);
     bool good = m->cell && stack;
@@ -89,10 +98,13 @@ bool sk_trimesh_divide(sk_trimesh *m) {
     return good;
 }
 
-bool sk_trimesh_is_out(const sk_trimesh *m, const real p[3]) {
+sk_trimesh_side sk_trimesh_side_of(const sk_trimesh *m, const real p[3], real within) {
     if (m->cell) {
         const int at[3] = {cell_along(m, 0, p[0]), cell_along(m, 1, p[1]), cell_along(m, 2, p[2])};
-        return m->cell[place_of(m, at)] == OUTSIDE;
+        uint8_t what = m->cell[place_of(m, at)];
+        if (what != NEAR) return what == OUTSIDE ? SK_OUTSIDE : SK_INSIDE;
+        if (within < m->cell_span) return SK_UNDECIDED;
     }
-    return sk_trimesh_winding(m, (const double[3]){(double)p[0], (double)p[1], (double)p[2]}) <= 0.5;
+    double winding = sk_trimesh_winding(m, (const double[3]){(double)p[0], (double)p[1], (double)p[2]});
+    return winding > 0.5 ? SK_INSIDE : SK_OUTSIDE;
 }
