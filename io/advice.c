@@ -1,8 +1,10 @@
-/* Warnings before a run: stable steps by the library's own estimate, and rounding by extent and gravity. */
+/* Warnings before a run: stable steps by the library's own estimate, rounding by extent and gravity, and what lies inside
+ * a collider. */
 #include "io/advice.h"
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "io/kinds.h"
@@ -96,7 +98,55 @@ static size_t advise_of_rounding(const skein_world *world, double dt, io_warning
     return 1;
 }
 
+/* ---- what lies inside a collider ---- */
+
+/* The name that an object was given, or its kind's. */
+static const char *name_of(const skein_world *world, skein_handle object) {
+    skein_value name;
+    bool named = !skein_get(world, object, "name", &name) && name.text && name.text[0];
+    return named ? name.text : skein_object_kind(world, object)->name;
+}
+
+/* The body of a particle that is connected with others, NULL for a loose one's: birds fly off by themselves. */
+static const char *connected_body_of(skein_world *world, uint32_t particle) {
+    for (size_t i = 0; i < skein_object_count(world, SKEIN_BODY); i++) {
+        skein_handle body = skein_object_at(world, SKEIN_BODY, i);
+        skein_surface surface;
+        size_t edges = 0;
+        if (skein_body_surface(world, body, &surface) || particle - surface.first_particle >= surface.particle_count)
+            continue;
+        bool connected = !skein_body_elements(world, body, SKEIN_EDGES, NULL, 0, &edges) && edges;
+        return connected ? name_of(world, body) : NULL;
+    }
+    return NULL;
+}
+
+/* A contact takes a particle out in one substep, and where velocities are taken from positions, that is a throw: a cloth that
+ * began 0.2 m deep in a ball had 1 J by 10 substeps and 178 J by 80. Says so of the deepest. */
+static size_t advise_of_overlap(skein_world *world, double dt, io_warnings warnings) {
+    const double fast = 1, deep = 1e-3; // m/s, m
+    double h = dt / substeps_of(world), most = fmax(deep, fast * h);
+    size_t count = 0;
+    if (skein_contacts_copy(world, NULL, 0, &count) || !count) return 0;
+    skein_contact *contacts = malloc(count * sizeof *contacts);
+    if (!contacts || skein_contacts_copy(world, contacts, count, &count)) count = 0;
+    const char *body = NULL, *collider = NULL;
+    for (size_t i = 0; i < count; i++) {
+        const char *whose = -contacts[i].gap > most ? connected_body_of(world, contacts[i].particle) : NULL;
+        if (!whose) continue;
+        most = -contacts[i].gap, body = whose, collider = name_of(world, contacts[i].collider);
+    }
+    free(contacts);
+    if (!body) return 0;
+    io_warn(warnings,
+            "'%s' lies %.3g m deep in '%s', and is thrown out of it within a substep of %.3g ms: move one of them, so that "
+            "nothing begins inside",
+            body, most, collider, 1e3 * h);
+    return 1;
+}
+
 size_t io_advise(skein_world *world, double dt, io_warnings warnings, double *needed) {
     size_t count = advise_of_instability(world, dt, warnings, needed);
-    return count + advise_of_rounding(world, dt, warnings);
+    count += advise_of_rounding(world, dt, warnings);
+    return count + advise_of_overlap(world, dt, warnings);
 }

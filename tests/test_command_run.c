@@ -362,6 +362,19 @@ static void a_log_has_a_line_a_step(void **state) {
 
 /* ---- What is said, and how ------------------------------------------------------------------------- */
 
+/* What begins inside a collider is thrown out of it; loose particles fly off by themselves, and gulls sit on rocks. */
+static void a_start_inside_a_collider_is_told(void **state) {
+    (void)state;
+    outcome o = SKEIN("check", "drape", "--set", "bodies.0.position=[0, 0.6, 0]");
+    assert_status(o, 0);
+    assert_contains(o.err, "'cloth' lies 0.3 m deep in 'ball'");
+    outcome_free(&o);
+    o = SKEIN("check", "gulls");
+    assert_status(o, 0);
+    assert_string_equal(o.err, "");
+    outcome_free(&o);
+}
+
 /* A blow-up may stay finite: limits hold a sheet together, and a spring turns faster and faster. */
 static void an_end_beyond_bounds_is_no_success(void **state) {
     (void)state;
@@ -503,6 +516,7 @@ int main(void) {
         TEST(every_scene_runs),
         TEST(runs_and_threads_give_the_same_bits),
         TEST(sets_reach_what_they_name),
+        TEST(a_start_inside_a_collider_is_told),
         TEST(an_end_beyond_bounds_is_no_success), TEST(energy_from_nowhere_is_no_success),
         TEST(what_was_not_solved_is_told), TEST(a_run_says_as_much_as_it_is_asked_to),
         TEST(files_of_one_run_have_different_names),
