@@ -284,6 +284,13 @@ bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
     return good;
 }
 
+void sk_particles_forget(sk_particles *particles) {
+    if (particles->vector[SK_F]) memset(particles->vector[SK_F], 0, particles->slot_count * sizeof(sk_vec4));
+    for (int v = SK_X; v <= SK_PREVIOUS && particles->arranged; v++)
+        for (size_t s = 0; particles->vector[v] && s < particles->slot_end; s++)
+            if (particles->particle_of[s] == SK_NOBODY) particles->vector[v][s] = (sk_vec4){0, 0, 0, 0};
+}
+
 void sk_particles_reset(sk_particles *particles) {
     for (size_t i = 0; i < particles->count; i++) {
         uint32_t s = particles->slot_of[i];
@@ -293,8 +300,7 @@ void sk_particles_reset(sk_particles *particles) {
         particles->vector[SK_V][s] = (sk_vec4){0, 0, 0, particles->vector[SK_V][s].w};
         particles->vector[SK_PREVIOUS][s] = particles->vector[SK_X][s];
     }
-    // forces are in the layout of a running plan: wipe them whole
-    if (particles->vector[SK_F]) memset(particles->vector[SK_F], 0, particles->slot_count * sizeof(sk_vec4));
+    sk_particles_forget(particles);
 }
 
 void sk_particle_pin(sk_particles *particles, size_t particle, bool pinned) {

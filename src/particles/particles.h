@@ -85,6 +85,9 @@ void sk_particles_truncate(sk_particles *particles, size_t count);
 bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator);
 /* Makes the temporaries that are wanted (bit v: vector v) and lets the others go. False when there is no memory. */
 bool sk_particles_want(sk_particles *particles, sk_allocator *allocator, uint32_t wanted);
+/* Clears what belongs to no particle: forces, which are in the layout of a running plan, and the spare slots that free
+ * lanes read and write. What was lost there in a blow-up would come back. */
+void sk_particles_forget(sk_particles *particles);
 /* Positions as built, all else zero. */
 void sk_particles_reset(sk_particles *particles);
 /* Holds a particle, or gives it back its mass. */

@@ -397,22 +397,13 @@ static skein_status take_clock(sk_byte_reader *r, skein_world *world, bool apply
     return SKEIN_OK;
 }
 
-/* Forces are in the layout of a running plan, and free lanes read and write spare slots: what was lost there would come
- * back. */
-static void forget_what_is_not_finite(sk_particles *all) {
-    if (all->vector[SK_F]) memset(all->vector[SK_F], 0, all->slot_count * sizeof(sk_vec4));
-    for (int v = SK_X; v <= SK_PREVIOUS && all->arranged; v++)
-        for (size_t s = 0; all->vector[v] && s < all->slot_end; s++)
-            if (all->particle_of[s] == SK_NOBODY) all->vector[v][s] = (sk_vec4){0, 0, 0, 0};
-}
-
 static skein_status take_particles(sk_byte_reader *r, skein_world *world, bool apply, skein_error *error) {
     sk_particles *all = &world->particles;
     if (sk_take_u64(r) != hash_rest(world))
         return sk_fail(error, SKEIN_ERROR_VALUE, "",
                        "the particles have other masses or tethers than in the snapshot" OTHER_WORLD);
     const unsigned char *flags = sk_take(r, all->count);
-    if (apply) forget_what_is_not_finite(all);
+    if (apply) sk_particles_forget(all);
     static const sk_vector vectors[] = {SK_X, SK_V, SK_PREVIOUS};
     for (size_t i = 0; flags && i < all->count; i++) {
         if (flags[i] >> 1 > SK_GONE || (flags[i] >> 1 == SK_GONE) != (all->presence[i] == SK_GONE))
