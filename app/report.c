@@ -170,7 +170,7 @@ void app_report_print(const app_report *r) {
     print_limit(r);
     if (s->all_unsolved)
         printf("%" PRIu64 " of %" PRIu64
-               " substeps were left unsolved: more substeps, iterations or cg_iterations help\n",
+               " substeps were left unsolved: more substeps, newton_iterations or cg_iterations help\n",
                s->all_unsolved, s->substeps);
     if (s->all_solver_failures)
         printf("%" PRIu64 " times a factor failed, and each particle's own block took its place\n",

@@ -140,7 +140,7 @@ static skein_status make_call(scenario *s) {
     case 29:
         return skein_force_add(
             s->world, "flocking",
-            SKEIN_SETTINGS(SKEIN_TEXT("on", "birds"), SKEIN_TEXT("formula.towards", "1 - percent^2")), NULL);
+            SKEIN_SETTINGS(SKEIN_TEXT("on", "birds"), SKEIN_TEXT("formula.towards", "1 - relative_distance^2")), NULL);
     case 30: return skein_force_add(s->world, "predator", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL);
     case 31: return skein_force_add(s->world, "speed_limit", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL);
     case 32:
@@ -156,7 +156,7 @@ static skein_status make_call(scenario *s) {
         return skein_sparse_solver_set(s->world, &(skein_sparse_solver){"diagonal", s, analyse, factor, solve, NULL});
     case 37:
         return skein_method_set(s->world, "backward_euler",
-                                SKEIN_SETTINGS(SKEIN_TEXT("preconditioner", "cholesky"), SKEIN_REAL("iterations", 1),
+                                SKEIN_SETTINGS(SKEIN_TEXT("preconditioner", "cholesky"), SKEIN_REAL("newton_iterations", 1),
                                                SKEIN_REAL("cg_iterations", 3)));
     case 38: return skein_world_step(s->world, dt);
     case 39: return skein_world_statistics(s->world, &s->statistics);

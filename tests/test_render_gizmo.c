@@ -159,6 +159,7 @@ static skein_world *world_with(skein_category category, const skein_kind *kind, 
     skein_status status = SKEIN_ERROR_VALUE;
     skein_handle handle;
     if (category == SKEIN_BODY) status = skein_body_add(world, kind->name, mesh, settings, &handle);
+    else if (category == SKEIN_COLLIDER && mesh) status = skein_collider_add_mesh(world, kind->name, mesh, settings, &handle);
     else if (category == SKEIN_COLLIDER) status = skein_collider_add(world, kind->name, settings, &handle);
     else status = skein_force_add(world, kind->name, settings, &handle);
     if (status) fail_msg("%s: %s", kind->name, skein_world_error(world)->message);

@@ -338,7 +338,7 @@ static skein_world *stiff_cloth(int side, int threads, bool cholesky, int turns)
     skein_error error;
     if (cholesky) assert_int_equal(skein_cholmod_attach(world, &error), SKEIN_OK);
     OK(world, skein_method_set(world, "backward_euler",
-                               SKEIN_SETTINGS(SKEIN_REAL("substeps", 1), SKEIN_REAL("iterations", turns),
+                               SKEIN_SETTINGS(SKEIN_REAL("substeps", 1), SKEIN_REAL("newton_iterations", turns),
                                               SKEIN_REAL("cg_iterations", 15),
                                               SKEIN_TEXT("preconditioner", cholesky ? "cholesky" : "blocks"))));
     OK(world, skein_body_add(world, "cloth", NULL,

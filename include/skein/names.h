@@ -362,7 +362,7 @@
 #define SKEIN_BACKWARD_EULER "backward_euler" /* implicit: solves for the velocity whose forces lead to it; stable at any stiffness */
 #define SKEIN_BACKWARD_EULER_SUBSTEPS "substeps" /* a whole number; equal parts that a step is cut into */
 #define SKEIN_BACKWARD_EULER_TOLERANCE "tolerance" /* a number; a substep is solved when its residual is so small a share of its start, or all rounding */
-#define SKEIN_BACKWARD_EULER_ITERATIONS "iterations" /* a whole number; of Newton's method in a substep, at most */
+#define SKEIN_BACKWARD_EULER_NEWTON_ITERATIONS "newton_iterations" /* a whole number; of Newton's method in a substep, at most */
 #define SKEIN_BACKWARD_EULER_CG_ITERATIONS "cg_iterations" /* a whole number; of conjugate gradients in one of those, at most */
 #define SKEIN_BACKWARD_EULER_PRECONDITIONER "preconditioner" /* a word; what shortens conjugate gradients: each particle's own block, or a sparse factor of the whole matrix */
 #define SKEIN_BACKWARD_EULER_PRECONDITIONER_BLOCKS "blocks"

@@ -293,7 +293,7 @@ skein_status skein_constraint_arity(skein_world *world, const char *kind, const 
 skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings, skein_handle *handle);
 skein_status skein_collider_add(skein_world *world, const char *kind, const skein_setting *settings,
                                 skein_handle *handle);
-/* Adds a collider of a kind that is made from a mesh ("mesh", "field"), which is copied; of others with `mesh` NULL, as
+/* Adds a collider of a kind that is made from a mesh ("mesh"), which is copied; of others with `mesh` NULL, as
  * skein_collider_add() does. Vertices at the same place are one, and faces are cut into triangles from their first corner. What
  * is wrong with the mesh and does not matter much (open edges, faces that disagree) is told to the world's log. Fails
  * with SKEIN_ERROR_MESH, too. */

@@ -24,7 +24,7 @@ static const skein_field fields[] = {
     SK_INT(backward_euler_params, substeps, "substeps", "", 2, 1, 100000, "equal parts that a step is cut into"),
     SK_REAL(backward_euler_params, newton.tolerance, "tolerance", "", 1e-5, 1e-12, 0.1,
             "a substep is solved when its residual is so small a share of its start, or all rounding"),
-    SK_INT(backward_euler_params, newton.iterations, "iterations", "", 20, 1, 1000,
+    SK_INT(backward_euler_params, newton.iterations, "newton_iterations", "", 20, 1, 1000,
            "of Newton's method in a substep, at most"),
     SK_INT(backward_euler_params, newton.cg_iterations, "cg_iterations", "", 400, 1, 100000,
            "of conjugate gradients in one of those, at most"),
