@@ -448,7 +448,7 @@ static void what_was_not_solved_is_told(void **state) {
                                "--set",
                                "method.cg_iterations=1",
                                "--set",
-                               "method.iterations=1",
+                               "method.newton_iterations=1",
                                "--json",
                                NULL};
     outcome o = finish_skein(start_skein((surroundings){0}, arguments));

@@ -61,7 +61,7 @@ static const struct {
     {"energy", "energy", "2 * k * (length(p0 - p1) - 1)^2"},
     {"potential", "energy", "2 * k * p.y"},
     {"force_field", "force", "vec3(0, k, 0)"},
-    {"flocking", NULL, "percent"},
+    {"flocking", NULL, "relative_distance"},
     {"keys", "keys", "0 0 0 0, 1 0.5 0 0"},
     {"cache", "file", "./led.pc2"},
     {"scene", "description", "what it shows"},
