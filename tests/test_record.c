@@ -164,9 +164,11 @@ static void where_it_ends(void **state) {
     begin(world, &t);
     steps(world, 3, dt);
     FAILS(world, SKEIN_ERROR_FILE, "could not be written", skein_record_end(world));
-    begin(world, &(tape){0}); // a world that goes ends it
+    tape last = {0};
+    begin(world, &last); // a world that goes ends it
     skein_world_destroy(world);
     free(t.bytes);
+    free(last.bytes);
 }
 
 static void damage(void **state) {

@@ -216,7 +216,8 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
     }
     world->plan_stale = true;
     world->motions_stale = true;
-    sk_record_field(world, object, name, &value);
+    const skein_value now = sk_field_load(field, params); // the text given may have been the one that is gone
+    sk_record_field(world, object, name, &now);
     return SKEIN_OK;
 }
 
