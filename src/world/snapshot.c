@@ -75,8 +75,8 @@ static uint64_t hash_object(const skein_world *world, const sk_object *object) {
     hash = sk_hash_word(sk_hash_word(hash, first), count);
     hash = hash_bytes(hash, all->mass + first, count * sizeof *all->mass);
     hash = hash_bytes(hash, all->built + first, count * sizeof *all->built);
-    hash = hash_bytes(hash, world->triangles.corner + body->first_triangle,
-                      body->triangle_count * sizeof *world->triangles.corner);
+    const void *corners = body->triangle_count ? world->triangles.corner + body->first_triangle : NULL;
+    hash = hash_bytes(hash, corners, body->triangle_count * sizeof *world->triangles.corner);
     for (size_t i = 0; i < body->batch_count; i++) hash = hash_batch(hash, body->batch[i]);
     return hash;
 }
