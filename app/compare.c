@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 
 #include "io/file.h"
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 
 /* ---- what is written ---- */
 

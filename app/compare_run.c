@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "app/compare.h"
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 
 /* Beyond these a run counts as blown up even where its numbers are still finite (limits can hold together what no
  * longer has to do with the scene): m; stretch; times the energy that moves about in the reference. */

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 
 #include "app/list.h"
 

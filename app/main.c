@@ -9,7 +9,7 @@
 
 #include "app/command.h"
 #include "app/terminal.h"
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 
 static const app_command *const commands[] = {
     &app_run_command,       &app_view_command,    &app_render_command,     &app_check_command,   &app_compare_command,

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 
 #include "app/command.h"
 

@@ -3,7 +3,7 @@
 SK_INLINE sk_wide3 minus(sk_wide3 a, sk_wide3 b) {
     return (sk_wide3){a.x - b.x, a.y - b.y, a.z - b.z};
 }
-SK_INLINE sk_wide3 sum(sk_wide s, sk_wide3 a, sk_wide t, sk_wide3 b) {
+SK_INLINE sk_wide3 weighted_sum(sk_wide s, sk_wide3 a, sk_wide t, sk_wide3 b) {
     return (sk_wide3){s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
 }
 SK_INLINE sk_wide3 cross(sk_wide3 a, sk_wide3 b) {

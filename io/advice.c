@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 
 static double substeps_of(const skein_world *world) {
     skein_value substeps = skein_number(1);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 #include "io/pc2.h"
 
 /* A motion's numbers take the place of its kind's default. */

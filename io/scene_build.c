@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "io/cache.h"
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 #include "io/mesh.h"
 #include "io/scene_settings.h"
 #include "solvers/cholmod.h"

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 
 #include "io/scene_settings.h"
 

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 #include "render/world_birds.h"
 
 /* When a key has its meaning. */

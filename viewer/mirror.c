@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "viewer/flock.h"
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 #include "viewer/stage.h"
 
 /* Measures are taken at most so often, and for at most so large a part of the time. */

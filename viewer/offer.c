@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 #include "skein/formula.h"
 #include "viewer/stage.h"
 

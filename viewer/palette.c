@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 #include "viewer/make.h"
 
 static void ask_piece(viewer_panels *panels, int code, const char *text) {

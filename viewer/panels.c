@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 #include "viewer/keys.h"
 #include "viewer/palette.h"
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "viewer/palette.h"
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 #include "viewer/stage.h"
 
 /* A range that is wider than so many steps is no use as a slider: it is then measured by the default. */

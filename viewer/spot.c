@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 #include "render/linear.h"
 
 static const double degree = 0.017453292519943295;

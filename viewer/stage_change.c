@@ -3,7 +3,7 @@
 #include <string.h>
 #include <stdlib.h>
 
-#include "io/kinds.h"
+#include "io/own_kinds.h"
 #include "render/world_follow.h"
 #include "viewer/stage.h"
 

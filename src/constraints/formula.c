@@ -16,7 +16,7 @@
 #define SK_READS(e, i) ((e)->reads[i])
 #define SK_RESTS 0
 #include "constraints/element.h"
-#include "formula/compiled.h"
+#include "formula/compiled_code.h"
 
 enum { NOWHERE = 0xffff };
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/status.h"
-#include "formula/compiled.h"
+#include "formula/compiled_code.h"
 #include "formula/evaluate.h"
 
 /* ---- making ---- */

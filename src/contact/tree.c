@@ -18,7 +18,7 @@ SK_INLINE uint32_t apart_below(const real *high_first, const real *high_last, re
 }
 
 /* Bits of a block's lanes whose boxes may meet this one. */
-SK_INLINE uint32_t meeting(const sk_tree_block *block, const sk_box *box) {
+SK_INLINE uint32_t boxes_met(const sk_tree_block *block, const sk_box *box) {
     uint32_t apart = 0;
     for (int part = 0; part < SK_PARTS; part++) {
         size_t l = (size_t)part * SK_PART;
@@ -36,7 +36,7 @@ size_t SK_KERNEL(hits)(const sk_tree *tree, const sk_box *box, uint32_t *slot) {
     size_t at[SK_TREE_LEVELS], count = 0;
     int level = tree->levels - 1, top = level;
     at[level] = 0;
-    left[level] = meeting(&tree->block[level][0], box);
+    left[level] = boxes_met(&tree->block[level][0], box);
     for (;;) {
         if (!level)
             for (; left[0]; left[0] &= left[0] - 1)
@@ -47,7 +47,7 @@ size_t SK_KERNEL(hits)(const sk_tree *tree, const sk_box *box, uint32_t *slot) {
         left[level] &= left[level] - 1;
         level--;
         at[level] = below;
-        left[level] = meeting(&tree->block[level][below], box);
+        left[level] = boxes_met(&tree->block[level][below], box);
     }
 }
 #else

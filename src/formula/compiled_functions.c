@@ -1,5 +1,5 @@
 /* The elementary functions that compiled formulas call: those of tapes, on arrays. */
-#include "formula/compiled.h"
+#include "formula/compiled_code.h"
 
 #include "base/elementary.h"
 #include "base/isa.h"

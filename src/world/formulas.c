@@ -1,5 +1,5 @@
 /* Objects' formulas, and the compiled code that runs for them. */
-#include "formula/compiled.h"
+#include "formula/compiled_code.h"
 #include "world/world.h"
 
 /* What runs for a formula; NULL: nothing that is compiled. */

@@ -2,8 +2,8 @@
  * SKEIN_KINDS names (skein/kinds.h). Scenes, lists and worlds all ask here.
  *
  * Invariant: loaded once, when the program begins and has one thread; constant from then on. */
-#ifndef SKEIN_IO_KINDS_H
-#define SKEIN_IO_KINDS_H
+#ifndef SKEIN_IO_OWN_KINDS_H
+#define SKEIN_IO_OWN_KINDS_H
 
 #include <skein/kinds.h>
 

@@ -1,7 +1,7 @@
 /* Formulas that a C compiler has compiled (include/skein/compiled.h): what makes two formulas the same, whether code
  * may run here, and the functions that it calls. */
-#ifndef SK_FORMULA_COMPILED_H
-#define SK_FORMULA_COMPILED_H
+#ifndef SK_FORMULA_COMPILED_CODE_H
+#define SK_FORMULA_COMPILED_CODE_H
 
 #include <skein/compiled.h>
 

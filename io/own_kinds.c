@@ -1,5 +1,5 @@
-/* Loading kinds from shared objects; see kinds.h. */
-#include "io/kinds.h"
+/* Loading kinds from shared objects; see own_kinds.h. */
+#include "io/own_kinds.h"
 
 #include <dlfcn.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* The hash that makes two formulas the same, and the check that compiled code is the text's and may run here. */
-#include "formula/compiled.h"
+#include "formula/compiled_code.h"
 
 #include <string.h>
 
