@@ -5,17 +5,25 @@
  * What fails says why by js_faults(): a list of {status, where, message}, in the words that the command has. */
 #include <jansson.h>
 #include <math.h>
+#include <skein/formula.h>
+#include <skein/record.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/list.h"
 #include "bindings/js/files.h"
+#include "io/clip.h"
 #include "io/scene_settings.h"
 #include "render/view.h"
 #include "viewer/grab.h"
 
 #define EXPORT(name_) __attribute__((export_name(#name_), used)) name_
+
+typedef struct js_bytes {
+    char *data;
+    size_t size, capacity;
+} js_bytes;
 
 typedef struct js_scene {
     js_files files;
@@ -26,6 +34,7 @@ typedef struct js_scene {
     int steps_per_frame;
     viewer_grab grab;
     skein_statistics statistics;
+    js_bytes recording;
 } js_scene;
 
 /* ---- memory and faults ---- */
@@ -119,6 +128,7 @@ bool EXPORT(js_open)(js_scene *js, const char *text, size_t size, const char *pa
 void EXPORT(js_close)(js_scene *js) {
     if (!js) return;
     skein_world_destroy(js->world);
+    free(js->recording.data);
     io_scene_free(js->scene);
     json_decref(js->faults);
     for (size_t i = 0; i < js->files.count; i++) {
@@ -334,6 +344,163 @@ bool EXPORT(js_copy)(js_scene *js, bool velocities, float *out) {
 bool EXPORT(js_state_set)(js_scene *js, bool velocities, size_t first, size_t count, const double *xyz) {
     return !failed(js, velocities ? skein_velocities_set(js->world, first, count, xyz)
                                   : skein_positions_set(js->world, first, count, xyz));
+}
+
+/* ---- snapshots and recordings ---- */
+
+size_t EXPORT(js_snapshot_size)(const js_scene *js) {
+    return skein_snapshot_size(js->world);
+}
+
+/* How many bytes it took; 0 after a fault. */
+size_t EXPORT(js_snapshot_write)(js_scene *js, void *out, size_t size) {
+    size_t written = 0;
+    return failed(js, skein_snapshot_write(js->world, out, size, &written)) ? 0 : written;
+}
+
+/* The hand lets go: what it held is as the snapshot has it. */
+bool EXPORT(js_snapshot_read)(js_scene *js, const void *bytes, size_t size) {
+    if (failed(js, skein_snapshot_read(js->world, bytes, size))) return false;
+    js->grab = (viewer_grab){0};
+    return true;
+}
+
+static bool put_recorded(void *user, const void *bytes, size_t size) {
+    js_bytes *to = user;
+    if (!io_grow(&to->data, &to->capacity, to->size + size, 1)) return false;
+    memcpy(to->data + to->size, bytes, size);
+    to->size += size;
+    return true;
+}
+
+bool EXPORT(js_record_begin)(js_scene *js, const char *note) {
+    js->recording.size = 0;
+    skein_recorder to = {put_recorded, &js->recording, note};
+    return !failed(js, skein_record_begin(js->world, &to));
+}
+
+bool EXPORT(js_record_end)(js_scene *js) {
+    return !failed(js, skein_record_end(js->world));
+}
+
+/* What was recorded; it is there until the next recording begins. */
+const char *EXPORT(js_recorded)(const js_scene *js) {
+    return js->recording.data;
+}
+size_t EXPORT(js_recorded_size)(const js_scene *js) {
+    return js->recording.size;
+}
+
+/* Does a recording again; what came of it as JSON to be freed, NULL after a fault. */
+char *EXPORT(js_replay)(js_scene *js, const void *bytes, size_t size) {
+    skein_difference d;
+    if (failed(js, skein_replay(js->world, bytes, size, &d))) return NULL;
+    json_t *json = json_pack("{s:I, s:b, s:i, s:b, s:b, s:b, s:b, s:s}", "steps", (json_int_t)d.steps, "found", d.found,
+                             "particle", (int)d.particle, "exact", d.exact, "position", d.position, "velocity", d.velocity,
+                             "whole", d.is_whole, "stopped", d.stopped);
+    char *text = json_dumps(json, JSON_COMPACT);
+    json_decref(json);
+    return text;
+}
+
+/* ---- files for other programs ---- */
+
+/* Where the vertices of a surface are; to be freed. */
+static double *places_of(const js_scene *js, const skein_surface *s) {
+    skein_view view = skein_position_view(js->world);
+    double *places = malloc((3 * s->vertex_count + 1) * sizeof *places);
+    for (size_t v = 0; places && v < s->vertex_count; v++) {
+        const float *p = view.xyzw + 4 * (size_t)view.slot_of[s->particle_of_vertex[v]];
+        for (size_t k = 0; k < 3; k++) places[3 * v + k] = (double)p[k];
+    }
+    return places;
+}
+
+/* A body as it stands, in a format of one frame ("obj", "ply", "stl"), as the command writes it. `out` receives where the
+ * bytes are, to be freed, and how many. */
+bool EXPORT(js_clip)(js_scene *js, size_t body, const char *name, uint32_t out[2]) {
+    static const io_clip_format *const formats[] = {&io_clip_obj, &io_clip_ply, &io_clip_stl};
+    const io_clip_format *format = NULL;
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        if (!strcmp(formats[i]->kind.name, name)) format = formats[i];
+    skein_handle handle = skein_object_at(js->world, SKEIN_BODY, body);
+    io_faults faults = {note_fault, js, 0};
+    io_place place = {"", name, &faults};
+    skein_error error = {0};
+    skein_surface s;
+    out[0] = out[1] = 0;
+    if (!format) {
+        io_fault(place, "", SKEIN_ERROR_NAME, "is no format of one frame: expected obj, ply or stl");
+        return false;
+    }
+    if (failed(js, skein_body_surface(js->world, handle, &s))) return false;
+    if (format->needs_faces && !s.face_count) {
+        io_fault(place, "", SKEIN_ERROR_VALUE, "the body has no faces");
+        return false;
+    }
+    double *places = places_of(js, &s);
+    io_clip_params params = {.normals = SKEIN_NORMALS_AREA, .scale = 1};
+    io_clip clip = {.name = "body", .mesh = {places, s.vertex_count, s.face_sizes, s.face_count, s.face_vertices,
+                    s.face_vertex_count}, .corner_uv = s.corner_uv, .fps = io_scene_get(js->scene)->fps, .samples = 1,
+                    .read_path = "", .params = &params};
+    io_mesh read = {0};
+    char *path = format->keeps_marks ? io_scene_mesh_path(js->scene, body) : NULL;
+    const js_files *before = js_files_use(&js->files);
+    if (path && !io_mesh_read(path, &read, (io_warnings){NULL, NULL}, NULL) && io_mesh_has_faces_of(&read, &clip.mesh)) {
+        clip.read = &read;
+        clip.read_path = path;
+    }
+    skein_status status = places ? format->write(&clip, name, &error)
+                                 : io_error_set(&error, SKEIN_ERROR_MEMORY, name, "out of memory");
+    js_files_use(before);
+    if (status) note_fault(js, &error);
+    js_file file = js_file_take_written();
+    out[0] = (uint32_t)(uintptr_t)file.bytes;
+    out[1] = (uint32_t)file.size;
+    io_mesh_free(&read);
+    free(path);
+    free(places);
+    return !status;
+}
+
+/* ---- formulas ---- */
+
+static void add_text(void *user, const char *text) {
+    put_recorded(user, text, strlen(text));
+}
+
+/* A formula by itself: {"value": its operations as text with those of its gradient, ...} or {"fault": words, with the
+ * place shown}; to be freed. `particles` of 0: as many as it names; `result` is a skein_formula_result. */
+char *EXPORT(js_formula)(const char *text, int particles, bool velocities, int result) {
+    skein_formula_desc desc = {.text = text, .particles = particles, .velocities = velocities,
+                               .comparison = result == SKEIN_FORMULA_NUMBER, .result = (skein_formula_result)result};
+    skein_formula_mark mark = {0};
+    skein_error error = {0};
+    js_bytes shown = {0};
+    skein_formula *formula = skein_formula_create(&desc, &mark, &error);
+    json_t *json = json_object();
+    if (formula) {
+        skein_formula_info info = skein_formula_about(formula);
+        if (skein_formula_emit(formula, SKEIN_FORMULA_GRAPH, add_text, &shown, &error)) shown.size = 0;
+        json_object_set_new(json, "graph", json_stringn(shown.data, shown.size));
+        json_object_set_new(json, "operations", json_integer((json_int_t)info.operations));
+        json_object_set_new(json, "particles", json_integer(info.particles));
+        if (skein_formula_warning(formula, 0, NULL))
+            json_object_set_new(json, "warning", json_string(skein_formula_warning(formula, 0, NULL)));
+    } else {
+        char lines[1024] = "";
+        skein_formula_show(text, &mark, lines, sizeof lines);
+        json_object_set_new(json, "fault", json_string(error.message));
+        json_object_set_new(json, "shown", json_string(lines));
+        json_object_set_new(json, "line", json_integer((json_int_t)mark.line));
+        json_object_set_new(json, "column", json_integer((json_int_t)mark.column));
+        json_object_set_new(json, "width", json_integer((json_int_t)mark.width));
+    }
+    skein_formula_destroy(formula);
+    free(shown.data);
+    char *words = json_dumps(json, JSON_COMPACT);
+    json_decref(json);
+    return words;
 }
 
 /* ---- the hand ---- */

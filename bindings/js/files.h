@@ -19,4 +19,7 @@ typedef struct js_files {
  * nothing else, so that they must stand outside; a module of WebAssembly has one thread.) */
 const js_files *js_files_use(const js_files *files);
 
+/* What was committed last, which is the caller's to free from now on; {0}: nothing since the last call. */
+js_file js_file_take_written(void);
+
 #endif

@@ -98,6 +98,16 @@ export async function kinds(category) {
     return takeJson(wasm, wasm.js_kinds(CATEGORIES.indexOf(category)));
 }
 
+const RESULTS = ['any', 'number', 'vector']; // in skein_formula_result's order
+
+/* Looks at a formula by itself: its operations with those of its gradient as text, or its fault with the place. */
+export async function formula(text, {particles = 0, velocities = false, result = 'any'} = {}) {
+    const wasm = await load();
+    return withTexts(wasm, [text], (at) => takeJson(wasm, wasm.js_formula(at, particles, velocities, RESULTS.indexOf(result))));
+}
+
+export {PointCache} from './pc2.js';
+
 /* ---- worlds ---- */
 
 const forgotten = new FinalizationRegistry(({wasm, js, scratch}) => {
@@ -108,6 +118,7 @@ const forgotten = new FinalizationRegistry(({wasm, js, scratch}) => {
 export class World {
     #wasm;
     #js;
+    #path;
     #scratch = new Map(); // memory by its use, for what is copied out again and again
 
     static async fromScene(scene, {sets = [], files = {}, path = 'scene.json', wasm: source} = {}) {
@@ -116,6 +127,7 @@ export class World {
 
     constructor(wasm, scene, sets, files, path) {
         this.#wasm = wasm;
+        this.#path = path;
         this.#js = wasm.js_new();
         if (!this.#js) throw new SkeinError([]);
         try {
@@ -257,14 +269,46 @@ export class World {
         this.#wasm.js_give(place.at);
         this.#check(good);
     }
-    /* A copy to come back to: positions, velocities and the time. */
+    /* All that changes, as bytes to come back to; they are of this world or of one that was opened from the same scene. */
     snapshot() {
-        return {time: this.time, positions: this.positions.slice(), velocities: this.velocities.slice()};
+        const wasm = this.#wasm, size = wasm.js_snapshot_size(this.#world), at = wasm.js_take(size);
+        if (!at) throw new SkeinError([]);
+        try {
+            const written = wasm.js_snapshot_write(this.#world, at, size);
+            this.#check(written);
+            return new Uint8Array(wasm.memory.buffer, at, written).slice();
+        } finally {
+            wasm.js_give(at);
+        }
     }
-    restore({time, positions, velocities}) {
-        this.setPositions(positions);
-        this.setVelocities(velocities);
-        this.#check(this.#wasm.js_time_set(this.#world, time));
+    restore(snapshot) {
+        this.#withBytes(snapshot, (at, size) => this.#check(this.#wasm.js_snapshot_read(this.#world, at, size)));
+    }
+    /* Records what is done from now on, until stopRecording() gives it; replay() or `skein verify` do it again and compare. */
+    record() {
+        const version = this.#wasm.js_version(), words = [1e6, 1e3, 1].map((unit) => Math.floor(version / unit) % 1000).join('.');
+        const note = {skein: words, path: this.#path, scene: this.scene()}; // as `skein record` has it
+        withTexts(this.#wasm, [JSON.stringify(note)], (at) => this.#check(this.#wasm.js_record_begin(this.#world, at)));
+    }
+    stopRecording() {
+        this.#check(this.#wasm.js_record_end(this.#world));
+        const size = this.#wasm.js_recorded_size(this.#js);
+        return new Uint8Array(this.#wasm.memory.buffer, this.#wasm.js_recorded(this.#js), size).slice();
+    }
+    replay(recording) {
+        return this.#withBytes(recording, (at, size) => {
+            const text = this.#wasm.js_replay(this.#world, at, size);
+            if (!text) this.#fail();
+            return takeJson(this.#wasm, text);
+        });
+    }
+    #withBytes(bytes, use) {
+        const place = put(this.#wasm, bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes));
+        try {
+            return use(place.at, place.size);
+        } finally {
+            this.#wasm.js_give(place.at);
+        }
     }
 
     /* ---- objects and fields ---- */
@@ -358,6 +402,15 @@ export class World {
         const size = 12 * vertexCount, at = this.#room(`vertices ${body}`, 2 * size);
         this.#check(this.#wasm.js_vertices(this.#world, body, at, at + size));
         return {positions: this.#floats(at, 3 * vertexCount), normals: this.#floats(at + size, 3 * vertexCount)};
+    }
+    /* A body as a file: "obj", "ply" or "stl", the bytes that the command writes. */
+    file(body, format = 'obj') {
+        const room = this.#room('file', 8);
+        const good = withTexts(this.#wasm, [format], (name) => this.#wasm.js_clip(this.#world, body, name, room));
+        const [at, size] = this.#words(room, 2), bytes = new Uint8Array(this.#wasm.memory.buffer, at, size).slice();
+        this.#wasm.js_give(at);
+        this.#check(good);
+        return bytes;
     }
     pose(collider) {
         const room = this.#room('pose', 96);
