@@ -39,7 +39,7 @@ static skein_status check(const void *params, const sk_rules *rules, skein_error
         return sk_fail(error, SKEIN_ERROR_VALUE, "method.preconditioner",
                        "cholesky needs a sparse solver, and this world has none: 'tools/setup build' installs CHOLMOD, "
                        "then build again (programs: skein_cholmod_attach()); or take blocks");
-    return sk_refuse_rigid(rules, "backward_euler", error);
+    return SKEIN_OK;
 }
 
 /* R = S (h F + h friction - m (V - V0)), at X = X0 + h V. */
@@ -125,14 +125,11 @@ static void write(sk_plan_builder *builder, const void *data, double dt) {
     sk_write_fields(builder);
     sk_write_forces(builder);
     sk_write_filters(builder);
-    sk_write_sum(builder, SK_X0, 1, SK_X, 0, SK_NONE);
-    sk_write_sum(builder, SK_V0, 1, SK_V, 0, SK_NONE);
+    sk_write_save(builder);
     sk_write_stage_time(builder, 1);
     write_solve(builder, params, h);
     sk_write_bounds(builder);
-    sk_write_contacts(builder, SK_CONTACT_IMPULSE);
-    sk_write_limits(builder, SK_V);
-    sk_write_contacts(builder, SK_CONTACT_PUSH);
+    sk_write_impulses(builder);
     sk_write_end(builder, repeat);
 }
 

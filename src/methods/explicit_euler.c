@@ -5,25 +5,16 @@
 
 static const skein_field fields[] = {SK_SUBSTEPS_FIELD(100)};
 
-static skein_status check(const void *params, const sk_rules *rules, skein_error *error) {
-    (void)params;
-    return sk_refuse_rigid(rules, "explicit_euler", error);
-}
-
 static void write(sk_plan_builder *builder, const void *params, double dt) {
     double h = dt / sk_substeps_of(params);
     size_t repeat = sk_write_repeat(builder, (size_t)sk_substeps_of(params), h);
     sk_write_steering(builder);
-    sk_write_fields(builder);
-    sk_write_forces(builder);
-    sk_write_contacts(builder, SK_CONTACT_FORCE);
+    sk_write_derivative(builder);
     sk_write_sum(builder, SK_X, 1, SK_X, h, SK_V);
     sk_write_stage_time(builder, 1);
     sk_write_kick(builder, SK_V, SK_V, h, SK_F);
     sk_write_bounds(builder);
-    sk_write_contacts(builder, SK_CONTACT_IMPULSE);
-    sk_write_limits(builder, SK_V);
-    sk_write_contacts(builder, SK_CONTACT_PUSH);
+    sk_write_impulses(builder);
     sk_write_end(builder, repeat);
 }
 
@@ -34,7 +25,6 @@ static void amplify(double z, double zeta, double matrix[4]) {
 const sk_method_type sk_explicit_euler = {
     .kind = {"explicit_euler", "positions and velocities both from the start of the substep: first order, gains energy",
              SKEIN_METHOD, fields, sizeof fields / sizeof *fields, sizeof(sk_substeps)},
-    .check = check,
     .write = write,
     .substeps = sk_substeps_of,
     .amplify = amplify,

@@ -10,44 +10,31 @@
 
 static const skein_field fields[] = {SK_SUBSTEPS_FIELD(20)};
 
-static skein_status check(const void *params, const sk_rules *rules, skein_error *error) {
-    (void)params;
-    return sk_refuse_rigid(rules, "leapfrog", error);
-}
-
-static void write_force(sk_plan_builder *builder) {
-    sk_write_fields(builder);
-    sk_write_forces(builder);
-    sk_write_contacts(builder, SK_CONTACT_FORCE);
-}
-
 static void write_closing_kick(sk_plan_builder *builder, double h) {
-    write_force(builder);
+    sk_write_derivative(builder);
     if (!sk_writes_velocity_forces(builder)) {
         sk_write_kick(builder, SK_V, SK_V, h / 2, SK_F);
         return;
     }
     sk_write_sum(builder, SK_V0, 1, SK_V, 0, SK_NONE);
     sk_write_kick(builder, SK_V, SK_V0, h / 2, SK_F);
-    write_force(builder);
+    sk_write_derivative(builder);
     sk_write_kick(builder, SK_V, SK_V0, h / 2, SK_F);
 }
 
 static void write(sk_plan_builder *builder, const void *params, double dt) {
     double h = dt / sk_substeps_of(params);
     bool force_stays = !sk_writes_velocity_forces(builder) && !sk_writes_corrections(builder);
-    if (force_stays) write_force(builder);
+    if (force_stays) sk_write_derivative(builder);
     size_t repeat = sk_write_repeat(builder, (size_t)sk_substeps_of(params), h);
-    if (!force_stays) write_force(builder);
+    if (!force_stays) sk_write_derivative(builder);
     sk_write_kick(builder, SK_V, SK_V, h / 2, SK_F);
     sk_write_steering(builder);
     sk_write_sum(builder, SK_X, 1, SK_X, h, SK_V);
     sk_write_stage_time(builder, 1);
     write_closing_kick(builder, h);
     sk_write_bounds(builder);
-    sk_write_contacts(builder, SK_CONTACT_IMPULSE);
-    sk_write_limits(builder, SK_V);
-    sk_write_contacts(builder, SK_CONTACT_PUSH);
+    sk_write_impulses(builder);
     sk_write_end(builder, repeat);
 }
 
@@ -64,7 +51,6 @@ const sk_method_type sk_leapfrog = {
     .kind = {"leapfrog",
              "half a kick, a drift, half a kick: second order, keeps energy; the choice for undamped motion",
              SKEIN_METHOD, fields, sizeof fields / sizeof *fields, sizeof(sk_substeps)},
-    .check = check,
     .write = write,
     .substeps = sk_substeps_of,
     .amplify = amplify,

@@ -8,7 +8,8 @@
 
 typedef struct sk_method_type {
     skein_kind kind;
-    /* Whether the method can run the rules at all; NULL: always. */
+    bool takes_rigid; /* constraints without a finite stiffness; a world with such is refused elsewhere */
+    /* Whether the method can run the rules for any other reason; NULL: always. */
     skein_status (*check)(const void *params, const sk_rules *rules, skein_error *error);
     /* Writes the ops of one step of `dt` seconds. */
     void (*write)(sk_plan_builder *builder, const void *params, double dt);
@@ -30,8 +31,9 @@ typedef struct sk_substeps {
 
 int sk_substeps_of(const void *params);
 
-/* For methods that need finite forces: names the first rigid batch. */
-skein_status sk_refuse_rigid(const sk_rules *rules, const char *method, skein_error *error);
+/* Whether a method with these parameters can run the rules. */
+skein_status sk_method_check(const sk_method_type *method, const void *params, const sk_rules *rules,
+                             skein_error *error);
 
 /* The matrix 1 + c1 zA + c2 (zA)^2 + c3 (zA)^3 + c4 (zA)^4 of a Runge-Kutta method, A being the oscillator's. */
 void sk_amplify_polynomial(double z, double zeta, const double c[4], double matrix[4]);

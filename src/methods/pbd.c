@@ -56,6 +56,7 @@ static void write(sk_plan_builder *builder, const void *data, double dt) {
 const sk_method_type sk_pbd = {
     .kind = {"pbd", "positions corrected by a share of each error; passes forget each other and share the stiffness",
              SKEIN_METHOD, fields, sizeof fields / sizeof *fields, sizeof(pbd_params)},
+    .takes_rigid = true,
     .write = write,
     .substeps = sk_substeps_of,
 };

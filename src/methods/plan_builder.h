@@ -1,6 +1,6 @@
 /* What methods build plans with: one call an op, or an op for each enabled rule of a sort. */
-#ifndef SK_METHODS_WRITER_H
-#define SK_METHODS_WRITER_H
+#ifndef SK_METHODS_PLAN_BUILDER_H
+#define SK_METHODS_PLAN_BUILDER_H
 
 #include "colliders/collider.h"
 #include "constraints/constraint.h"
@@ -66,6 +66,15 @@ void sk_write_kick(sk_plan_builder *builder, sk_vector dst, sk_vector p, double 
 /* X += h V of pinned particles alone, for methods that move nothing else by its velocity. */
 void sk_write_lead(sk_plan_builder *builder, double h);
 
+/* What methods with forces are made of. X0 = X, V0 = V. */
+void sk_write_save(sk_plan_builder *builder);
+/* F = all that acts on X moving with V: forces, constraints and contact. */
+void sk_write_derivative(sk_plan_builder *builder);
+/* X = X0 + a v, V = V0 + a w f. */
+void sk_write_stage(sk_plan_builder *builder, double a, sk_vector v, sk_vector f);
+/* How their substep ends: contact answers on V, limits are kept, and what is inside a collider is pushed out. */
+void sk_write_impulses(sk_plan_builder *builder);
+
 /* How a position method's substep begins: the fields, V += h w F (without F where all forces are plain), what steers,
  * X0 = X, V0 = V where there are colliders, X += h V. Once a plan. */
 void sk_write_prediction(sk_plan_builder *builder);
@@ -95,6 +104,9 @@ bool sk_writes_forces(const sk_plan_builder *builder);
 bool sk_writes_velocity_forces(const sk_plan_builder *builder);
 /* Whether contact or limits may change the state behind a substep's back. */
 bool sk_writes_corrections(const sk_plan_builder *builder);
+bool sk_writes_contacts(const sk_rules *rules);
+/* The first batch of no finite stiffness; NULL if there is none. */
+const sk_batch *sk_first_rigid_batch(const sk_rules *rules);
 
 typedef enum sk_contact_sort {
     SK_CONTACT_FORCE,
@@ -114,9 +126,14 @@ void sk_write_limits(sk_plan_builder *builder, sk_vector velocity);
 
 /* For the builder's own files: adds an op, with the present substep and layout. */
 void sk_add_op(sk_plan_builder *builder, sk_op op);
-/* The same op for all sweeps of a batch: a sum over their elements, of which those along the same strips make one op. */
+/* The same op for all sweeps of a batch: a sum over their elements, of which those along the same strips make one op.
+ */
 void sk_add_sums(sk_plan_builder *builder, const sk_batch *batch, sk_op op, const sk_sweep_kernels *kernels);
 /* The same for an op over slots, on those alone that a rule acts on: an op for each body where it names some. */
 void sk_add_op_on(sk_plan_builder *builder, sk_op op, const sk_only *only);
+/* The elements of a sweep's op: strip rows that have a partner `reach` on, slabs or groups. */
+size_t sk_rows_of_sweep(const sk_sweep *sweep, size_t reach);
+/* Whether a force is one that adds to F, and enabled. */
+bool sk_pushes(const sk_force *force);
 
 #endif

@@ -4,12 +4,9 @@
 #include <stddef.h>
 
 size_t sk_write_solve(sk_plan_builder *builder, sk_op_kernel *kernel, const void *params, const char *label) {
-    sk_add_op(builder, (sk_op){.kind = SK_OP_SOLVE,
-                                .order = SK_ORDERED,
-                                .kernel = kernel,
-                                .rule = params,
-                                .label = label,
-                                .end = 1});
+    sk_add_op(
+        builder,
+        (sk_op){.kind = SK_OP_SOLVE, .order = SK_ORDERED, .kernel = kernel, .rule = params, .label = label, .end = 1});
     return builder->plan->count - 1;
 }
 
@@ -47,7 +44,8 @@ static void add_batches(sk_plan_builder *builder, sk_op op, size_t kernel) {
         op.rule = batch;
         op.label = batch->label;
         op.end = batch->count;
-        bool walks = kernel == offsetof(sk_constraint_type, apply) && batch->type->apply_sweep.groups.version[builder->isa];
+        bool walks =
+            kernel == offsetof(sk_constraint_type, apply) && batch->type->apply_sweep.groups.version[builder->isa];
         if (is_elastic(batch) && op.kernel && !walks) sk_add_op(builder, op);
     }
 }
@@ -106,8 +104,10 @@ static void add_call(sk_plan_builder *builder, sk_op_kernel *kernel, sk_vector d
 
 void sk_write_factor(sk_plan_builder *builder, sk_vector diagonal, sk_vector off, double a, double b) {
     add_call(builder, sk_matrix_clear, SK_NONE, diagonal, off, "A: particles");
-    add_batches(builder, (sk_op){.kind = SK_OP_LINEARISE, .source = {SK_X}, .coefficient = {a, b}}, offsetof(sk_constraint_type, blocks));
-    add_call(builder, sk_matrix_factor, SK_NONE, (sk_vector)SK_FILTER0, (sk_vector)SK_FILTER1, "L L^T of S A S + 1 - S");
+    add_batches(builder, (sk_op){.kind = SK_OP_LINEARISE, .source = {SK_X}, .coefficient = {a, b}},
+                offsetof(sk_constraint_type, blocks));
+    add_call(builder, sk_matrix_factor, SK_NONE, (sk_vector)SK_FILTER0, (sk_vector)SK_FILTER1,
+             "L L^T of S A S + 1 - S");
 }
 
 void sk_write_factor_solve(sk_plan_builder *builder, sk_vector dst, sk_vector p) {

@@ -6,8 +6,8 @@
 #include "plan/matrix.h"
 #include "plan/solve.h"
 
-/* Opens a solve: `kernel` is the algorithm, and has the parts run that are opened next, each by its number. sk_write_end
- * closes both. */
+/* Opens a solve: `kernel` is the algorithm, and has the parts run that are opened next, each by its number.
+ * sk_write_end closes both. */
 size_t sk_write_solve(sk_plan_builder *builder, sk_op_kernel *kernel, const void *params, const char *label);
 size_t sk_write_part(sk_plan_builder *builder, int part, const char *label);
 

@@ -33,6 +33,7 @@ static void write(sk_plan_builder *builder, const void *data, double dt) {
 const sk_method_type sk_xpbd = {
     .kind = {"xpbd", "positions corrected constraint by constraint; stable at any stiffness", SKEIN_METHOD, fields,
              sizeof fields / sizeof *fields, sizeof(xpbd_params)},
+    .takes_rigid = true,
     .write = write,
     .substeps = sk_substeps_of,
 };

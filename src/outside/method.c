@@ -9,8 +9,9 @@ static sk_plan_builder *inner(skein_plan_builder *builder) {
 
 static sk_vector vector_of(skein_plan_vector vector) {
     static const sk_vector vectors[] = {
-        [SKEIN_NO_VECTOR] = SK_NONE, [SKEIN_X] = SK_X,   [SKEIN_V] = SK_V,   [SKEIN_F] = SK_F,   [SKEIN_SAVED_X] = SK_X0,
-        [SKEIN_SAVED_V] = SK_V0,     [SKEIN_T0] = SK_T0, [SKEIN_T1] = SK_T1, [SKEIN_T2] = SK_T2, [SKEIN_T3] = SK_T3,
+        [SKEIN_NO_VECTOR] = SK_NONE, [SKEIN_X] = SK_X,        [SKEIN_V] = SK_V,   [SKEIN_F] = SK_F,
+        [SKEIN_SAVED_X] = SK_X0,     [SKEIN_SAVED_V] = SK_V0, [SKEIN_T0] = SK_T0, [SKEIN_T1] = SK_T1,
+        [SKEIN_T2] = SK_T2,          [SKEIN_T3] = SK_T3,
     };
     return (size_t)vector < sizeof vectors / sizeof *vectors ? vectors[vector] : SK_NONE;
 }
@@ -27,7 +28,8 @@ void skein_write_stage_time(skein_plan_builder *builder, double part) {
     if (builder) sk_write_stage_time(inner(builder), part);
 }
 
-void skein_write_sum(skein_plan_builder *builder, skein_plan_vector dst, double a, skein_plan_vector p, double b, skein_plan_vector q) {
+void skein_write_sum(skein_plan_builder *builder, skein_plan_vector dst, double a, skein_plan_vector p, double b,
+                     skein_plan_vector q) {
     if (builder && vector_of(dst)) sk_write_sum(inner(builder), vector_of(dst), a, vector_of(p), b, vector_of(q));
 }
 
@@ -37,10 +39,7 @@ void skein_write_kick(skein_plan_builder *builder, skein_plan_vector dst, skein_
 }
 
 void skein_write_forces(skein_plan_builder *builder) {
-    if (!builder) return;
-    sk_write_fields(inner(builder));
-    sk_write_forces(inner(builder));
-    sk_write_contacts(inner(builder), SK_CONTACT_FORCE);
+    if (builder) sk_write_derivative(inner(builder));
 }
 
 void skein_write_steering(skein_plan_builder *builder) {
@@ -56,19 +55,10 @@ void skein_write_projections(skein_plan_builder *builder, int passes) {
 }
 
 void skein_write_contacts(skein_plan_builder *builder) {
-    if (!builder) return;
-    sk_write_contacts(inner(builder), SK_CONTACT_IMPULSE);
-    sk_write_limits(inner(builder), SK_V);
-    sk_write_contacts(inner(builder), SK_CONTACT_PUSH);
+    if (builder) sk_write_impulses(inner(builder));
 }
 
 /* ---- the type ---- */
-
-static skein_status check(const void *params, const sk_rules *rules, skein_error *error) {
-    const sk_outside *outside = sk_outside_of(params);
-    const skein_method_type *given = outside->given;
-    return given->takes_rigid ? SKEIN_OK : sk_refuse_rigid(rules, outside->type.kind.name, error);
-}
 
 static void write(sk_plan_builder *builder, const void *params, double dt) {
     const skein_method_type *given = sk_outside_of(params)->given;
@@ -88,7 +78,7 @@ void sk_outside_method(sk_outside *outside, const skein_method_type *given) {
     const skein_kind *kind = &outside->type.kind;
     const skein_field *field = sk_field_named(kind->fields, kind->field_count, "substeps");
     outside->substeps = field && field->type == SKEIN_FIELD_INT ? field : NULL;
-    outside->type.method.check = check;
+    outside->type.method.takes_rigid = given->takes_rigid;
     outside->type.method.write = write;
     outside->type.method.substeps = substeps;
     outside->type.method.amplify = given->amplify;

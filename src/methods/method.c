@@ -1,8 +1,20 @@
-/* What methods share: their substeps, and the amplification of Runge-Kutta methods. */
+/* What methods share: their substeps, what they refuse, and the amplification of Runge-Kutta methods. */
 #include "methods/method.h"
+
+#include "base/status.h"
 
 int sk_substeps_of(const void *params) {
     return ((const sk_substeps *)params)->substeps;
+}
+
+skein_status sk_method_check(const sk_method_type *method, const void *params, const sk_rules *rules,
+                             skein_error *error) {
+    skein_status status = method->check ? method->check(params, rules, error) : SKEIN_OK;
+    const sk_batch *rigid = method->takes_rigid ? NULL : sk_first_rigid_batch(rules);
+    if (status || !rigid) return status;
+    return sk_fail(error, SKEIN_ERROR_VALUE, "method.type",
+                   "%s needs finite stiffness, but '%s' is rigid: give it a stiffness or use xpbd", method->kind.name,
+                   rigid->label);
 }
 
 /* matrix = c + zA matrix, with A = (0 1; -1 -2 zeta): one step of Horner's scheme. */
