@@ -1,4 +1,4 @@
-/* Order parameters of flocks: the force that they are measured by is found, and each note is a number in a list. */
+/* Order parameters of flocks: each note is a number in a list. */
 #include "app/flocks.h"
 
 #include <math.h>
@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/order.h"
 #include "io/printable.h"
 
 /* What is noted over time, and where it is in the measure. */
@@ -15,37 +16,6 @@ static const struct {
     const char *name;
     size_t offset;
 } lists[] = {LIST(polarization), LIST(milling), LIST(nearest), LIST(radius), LIST(farthest), LIST(speed)};
-
-/* The first enabled force that has fields of both names: whatever draws to a centre, or keeps to neighbours. */
-static bool find_force(skein_world *world, const char *one, const char *two, skein_handle *force) {
-    for (size_t i = 0; i < skein_object_count(world, SKEIN_FORCE); i++) {
-        skein_value enabled;
-        *force = skein_object_at(world, SKEIN_FORCE, i);
-        const skein_kind *kind = skein_object_kind(world, *force);
-        if (!skein_field_find(kind, one, NULL) || !skein_field_find(kind, two, NULL)) continue;
-        if (!skein_get(world, *force, "enabled", &enabled) && enabled.number[0] != 0) return true;
-    }
-    return false;
-}
-
-static void find_centre(skein_world *world, double centre[3]) {
-    skein_handle force;
-    skein_value value = {3, {0, 0, 0}, NULL};
-    if (find_force(world, "centre", "strength", &force)) skein_get(world, force, "centre", &value);
-    memcpy(centre, value.number, sizeof value.number);
-}
-
-static double find_reach(skein_world *world) {
-    static const char *const zones[] = {"separation", "alignment", "cohesion"};
-    double reach = 0;
-    skein_handle force;
-    if (!find_force(world, zones[0], zones[2], &force)) return 0;
-    for (int i = 0; i < 3; i++) {
-        skein_value value;
-        if (!skein_get(world, force, zones[i], &value)) reach += value.number[0];
-    }
-    return reach;
-}
 
 static json_t *new_flock(skein_world *world, skein_handle body) {
     skein_value name = {0, {0, 0, 0}, NULL};
@@ -63,13 +33,8 @@ static void append(json_t *flock, const char *list, double x) {
 }
 
 static bool note(json_t *flock, skein_world *world, skein_handle body) {
-    skein_surface surface;
     skein_order order;
-    double centre[3];
-    find_centre(world, centre);
-    if (skein_body_surface(world, body, &surface) ||
-        skein_order_measure(world, surface.first_particle, surface.particle_count, centre, find_reach(world), &order))
-        return false;
+    if (io_order_measure(world, body, &order)) return false;
     append(flock, "time", skein_world_time(world));
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
         double x;
@@ -84,8 +49,7 @@ bool app_flocks_note(json_t *flocks, skein_world *world) {
     size_t place = 0;
     for (size_t i = 0; i < skein_object_count(world, SKEIN_BODY); i++) {
         skein_handle body = skein_object_at(world, SKEIN_BODY, i);
-        skein_shape shape;
-        if (skein_shape_of(world, body, &shape) || shape.sort != SKEIN_SHAPE_BIRDS) continue;
+        if (!io_is_flock(world, body)) continue;
         if (place == json_array_size(flocks)) json_array_append_new(flocks, new_flock(world, body));
         if (!note(json_array_get(flocks, place++), world, body)) return false;
     }

@@ -105,7 +105,7 @@ static bool set_frame(skein_world *world, const char *bytes) {
 /* ---- what the report knows by then ---- */
 
 static char *write_note(const app_keep *keep, const app_report *r) {
-    const app_verdict *v = &r->verdict;
+    const io_verdict *v = &r->verdict.numbers;
     const struct {
         const char *name;
         json_t *value;
@@ -138,11 +138,12 @@ static void read_note(const json_t *note, app_report *r) {
     json_t *flocks = json_object_get(note, "flocks");
     r->frames = (int)number_in(note, "frame");
     r->verdict = (app_verdict){.loaded = r->loaded,
-                               .driven = json_is_true(json_object_get(note, "driven")),
-                               .start_stretch = number_in(note, "start_stretch"),
-                               .start_elastic = number_in(note, "start_elastic"),
-                               .most_moving = number_in(note, "most_moving"),
-                               .most_potential = number_in(note, "most_potential")};
+                               .numbers = {.most_stretch = r->loaded->settings.most_stretch,
+                                           .driven = json_is_true(json_object_get(note, "driven")),
+                                           .start_stretch = number_in(note, "start_stretch"),
+                                           .start_elastic = number_in(note, "start_elastic"),
+                                           .most_moving = number_in(note, "most_moving"),
+                                           .most_potential = number_in(note, "most_potential")}};
     r->worst_stretch = number_in(note, "worst_stretch");
     r->seconds = number_in(note, "seconds");
     r->flocks_noted = (int)number_in(note, "flocks_noted");

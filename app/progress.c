@@ -58,19 +58,6 @@ void app_progress_end(app_progress *p) {
 
 /* ---- a frame ---- */
 
-static bool all_finite(const skein_real *xyzw, const skein_view *view) {
-    for (size_t i = 0; i < view->count; i++) {
-        const skein_real *p = xyzw + 4 * (size_t)view->slot_of[i];
-        if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2])) return false;
-    }
-    return true;
-}
-
-static bool is_finite(const skein_world *world) {
-    skein_view x = skein_position_view(world), v = skein_velocity_view(world);
-    return all_finite(x.xyzw, &x) && all_finite(v.xyzw, &v);
-}
-
 enum { FRAMES_BETWEEN_LOOKS = 60 };
 
 bool app_step_frame(const app_scene *loaded, int frame, int steps, double dt, app_progress *p) {
@@ -79,7 +66,7 @@ bool app_step_frame(const app_scene *loaded, int frame, int steps, double dt, ap
     for (int s = 0; s < steps && good; s++) good = !skein_world_step(world, dt);
     // a card would have to send the state each time
     bool looks = skein_world_device(world).device == SKEIN_DEVICE_CPU || frame % FRAMES_BETWEEN_LOOKS == 0;
-    if (good && (!looks || is_finite(world))) return true;
+    if (good && (!looks || io_is_finite(world))) return true;
     // said at once, instead of writing such files to the end
     app_progress_end(p);
     skein_statistics now;

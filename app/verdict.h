@@ -1,19 +1,16 @@
-/* Whether a run ended as one can: a blow-up may stay finite, and its files look like any others.
+/* Whether a run ended as one can, in words (io/verdict.h has the numbers).
  *
  * Noted while the run goes on and judged at its end. Called by run and render. */
 #ifndef SKEIN_APP_VERDICT_H
 #define SKEIN_APP_VERDICT_H
 
 #include "app/command.h"
+#include "io/verdict.h"
 
 typedef struct app_verdict {
     const app_scene *loaded;
-    bool driven;           /* something does work on it: energy may grow */
-    double start_stretch;  /* of the longest edge, as a share */
-    double start_elastic;  /* J */
-    double most_moving;    /* J, kinetic, the most that was noted */
-    double most_potential; /* J, of either sign */
-    char words[400];       /* what is wrong with its end, with the remedy; or "" */
+    io_verdict numbers;
+    char words[400]; /* what is wrong with its end, with the remedy; or "" */
 } app_verdict;
 
 /* Before the first step. */

@@ -21,7 +21,8 @@ enum {
     FRONT = 4096,      /* a page: a write within one is never cut */
     NODE_ENTRIES = 64, /* twice the format's K of 32 for chunks */
     GROUP_K = 16,
-    LEAF_K = 8,            /* of the one group: room for 16 sets */
+    LEAF_K = 8,            /* of the one group: room for 16 sets, */
+    LARGE_LEAF_K = 64,     /* or, in files of more, for 128 */
     CHUNK_BYTES = 1 << 14, /* as many samples as go into that, but one at least */
     MOST_CHUNK_SAMPLES = 1024,
     MOST_LEVELS = 10,
@@ -61,6 +62,7 @@ struct io_hdf5 {
     uint64_t end;              /* of the file, when the last whole sample was in it */
     bool no_room;              /* a chunk or nodes could not be appended: all before that is sound */
     uint64_t root, tree, heap; /* of the group */
+    size_t leaf_k;             /* half of what its leaf has room for */
 };
 
 /* ---- Bytes --------------------------------------------------------------------------------- */
@@ -243,7 +245,7 @@ static void put_front(bytes *b, const io_hdf5 *file, uint64_t headers[MOST_GROWI
     put(b, 1, 8);
     put(b, 1, 8);
     put(b, 1, 0);
-    put(b, 2, LEAF_K);
+    put(b, 2, file->leaf_k);
     put(b, 2, GROUP_K);
     put(b, 4, 0);
     put(b, 8, 0);
@@ -499,7 +501,7 @@ static void write_group(io_hdf5 *file, const io_hdf5_set *sets, const uint64_t *
         put(&b, 8, headers[i]);
         put_zeros(&b, 24);
     }
-    put_zeros(&b, (2 * LEAF_K - count) * 40);
+    put_zeros(&b, (2 * file->leaf_k - count) * 40);
     append(file, &b);
 
     file->tree = io_output_place(file->output);
@@ -602,6 +604,7 @@ io_hdf5 *io_hdf5_begin(const char *path, const io_hdf5_set *sets, size_t count,
         io_error_set(error, SKEIN_ERROR_MEMORY, path, "out of memory");
         return NULL;
     }
+    file->leaf_k = count <= 2 * LEAF_K ? LEAF_K : LARGE_LEAF_K;
     file->output = io_output_open(path, error);
     if (!file->output) {
         release(file);

@@ -32,7 +32,7 @@ typedef enum io_hdf5_type {
     IO_HDF5_TEXT /* UTF-8; `size` bytes each */
 } io_hdf5_type;
 
-enum { IO_HDF5_MOST_SETS = 15, IO_HDF5_MOST_RANK = 3, IO_HDF5_MOST_NOTES = 4 };
+enum { IO_HDF5_MOST_SETS = 127, IO_HDF5_MOST_RANK = 3, IO_HDF5_MOST_NOTES = 4 };
 
 /* A text that is attached to a set or to the whole file: "unit", "m". At most 60,000 bytes. */
 typedef struct io_hdf5_note {

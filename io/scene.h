@@ -109,6 +109,11 @@ int io_scene_steps_per_frame(const io_scene_settings *settings, double *dt);
 /* The scene as it was read, with what was set in it: JSON, with a newline at its end. NULL when there is no memory; free
  * it. */
 char *io_scene_text(const io_scene *scene);
+/* The same with the paths of its files from the root on, for wherever it is kept. */
+char *io_scene_text_anywhere(const io_scene *scene);
+/* A hash of all in the document that may act on the state: not of its view, its outputs, its name and its threads; of
+ * files what is in them. (Numbers count as they are written: 1 is not 1.0.) */
+uint64_t io_scene_hash(const io_scene *scene);
 /* Writes that to a file, from which the same scene can be read: where it lies in another folder than the scene, the
  * paths of files in it become absolute. */
 skein_status io_scene_write(const io_scene *scene, const char *path, skein_error *error);

@@ -57,6 +57,56 @@ static char *folder_of(const char *path) {
     return whole;
 }
 
+char *io_scene_text_anywhere(const io_scene *scene) {
+    json_t *root = json_deep_copy(io_scene_document(scene));
+    char *text = root && place_paths(root, io_scene_path(scene)) ? json_dumps(root, JSON_INDENT(2)) : NULL;
+    size_t length = text ? strlen(text) : 0;
+    char *line = text ? realloc(text, length + 2) : NULL;
+    json_decref(root);
+    if (line) memcpy(line + length, "\n", 2);
+    else free(text);
+    return line;
+}
+
+/* ---- what a scene is, in a number ---- */
+
+static uint64_t add_bytes(uint64_t hash, const void *bytes, size_t size) {
+    for (const unsigned char *at = bytes; size; size--) hash = (hash ^ *at++) * 0x100000001b3u;
+    return hash;
+}
+
+/* The bytes of the files that a value names, however deep. */
+static uint64_t add_files(uint64_t hash, json_t *value, const char *scene) {
+    const char *name;
+    json_t *item;
+    size_t index;
+    json_array_foreach(value, index, item) hash = add_files(hash, item, scene);
+    json_object_foreach(value, name, item) {
+        char *path = json_is_string(item) && is_path(name) ? io_path_beside(scene, json_string_value(item)) : NULL;
+        io_bytes bytes;
+        if (path && !io_file_read(path, SIZE_MAX, &bytes, NULL)) {
+            hash = add_bytes(hash, bytes.data, bytes.size);
+            io_bytes_free(&bytes);
+            json_object_set_new(value, name, json_null()); // wherever it lies
+        }
+        free(path);
+        hash = add_files(hash, item, scene);
+    }
+    return hash;
+}
+
+uint64_t io_scene_hash(const io_scene *scene) {
+    static const char *const passive[] = {"view", "output", "name", "description", "threads"};
+    json_t *root = json_deep_copy(io_scene_document(scene));
+    for (size_t i = 0; i < sizeof passive / sizeof *passive; i++) json_object_del(root, passive[i]);
+    uint64_t hash = add_files(0xcbf29ce484222325u, root, io_scene_path(scene));
+    char *text = json_dumps(root, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
+    if (text) hash = add_bytes(hash, text, strlen(text));
+    free(text);
+    json_decref(root);
+    return hash;
+}
+
 skein_status io_scene_write(const io_scene *scene, const char *path, skein_error *error) {
     char *from = folder_of(io_scene_path(scene)), *to = folder_of(path);
     bool moves = !from || !to || strcmp(from, to) != 0;

@@ -19,6 +19,7 @@ from ._formula import Formula, formula
 from ._objects import Body, Collider, Constraint, Force, Method, Motion, Object, ObjectList
 from ._pictures import Film, Image, film
 from ._scene import scenes
+from ._studies import study
 from ._world import DEFAULT_STEP, State, World
 from ._worlds import Environment, Environments, Worlds
 
@@ -30,5 +31,5 @@ __all__ = [
     "Body", "Collider", "Constraint", "DEFAULT_STEP", "Environment", "Environments", "FileFault", "Film", "Force",
     "Formula", "HandleFault", "Image", "LimitFault", "MemoryFault", "MeshFault", "Method", "Motion", "NameFault", "Object",
     "ObjectList", "SkeinError", "State", "SyntaxFault", "ValueFault", "World", "Worlds", "film", "formula", "functions",
-    "kinds", "precision", "scenes",
+    "kinds", "precision", "scenes", "study",
 ]
