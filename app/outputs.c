@@ -465,7 +465,9 @@ static void keep_film(app_outputs *outputs, notebook *book) {
     outputs->footage = NULL;
     skein_error error = {SKEIN_OK, "", ""};
     skein_status status = SKEIN_OK;
-    if (rename(outputs->film_path, path))
+    if (access(outputs->film_path, F_OK)) { // it was the film that failed, which was told: it has that name, or is gone
+        if (access(path, F_OK)) return;
+    } else if (rename(outputs->film_path, path))
         status = io_error_set(&error, SKEIN_ERROR_FILE, path, "cannot write: %s", strerror(errno));
     note(book, path, status, &error);
 }

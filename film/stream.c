@@ -192,6 +192,17 @@ static skein_status finish(film_stream *s, skein_error *error) {
     return code < 0 ? film_fail_av(error, s->path, "the film cannot be completed", code) : SKEIN_OK;
 }
 
+/* A film that could not be completed: what there is of it plays, but not under the name that was asked for. A GIF of
+ * which the end is missing is none. */
+static void put_aside(const film_stream *s) {
+    const char *ending = strrchr(s->path, '.');
+    size_t size = strlen(s->path) + sizeof ".failed";
+    char *path = ending && strcmp(ending, ".gif") && s->pictures > 0 ? malloc(size) : NULL;
+    if (path) snprintf(path, size, "%.*s.failed%s", (int)(ending - s->path), s->path, ending);
+    if (!path || rename(s->path, path)) unlink(s->path);
+    free(path);
+}
+
 skein_status film_stream_close(film_stream *s, bool complete, skein_error *error) {
     skein_status status = complete && s->header_begun ? finish(s, error) : SKEIN_OK;
     if (s->muxer && s->muxer->pb) {
@@ -205,6 +216,7 @@ skein_status film_stream_close(film_stream *s, bool complete, skein_error *error
     if (s->file >= 0 && close(s->file) && complete && status == SKEIN_OK)
         status = film_fail_file(error, s->path, errno);
     if (s->file >= 0 && s->regular && !complete) unlink(s->path);
+    else if (s->file >= 0 && s->regular && status != SKEIN_OK) put_aside(s);
     free(s->path);
     free(s);
     return status;

@@ -117,6 +117,7 @@ typedef struct surroundings {
     int out;           /* a descriptor for its standard output, 0: caught */
     int err;           /* the same for its standard error */
     const char *in;    /* a file for its standard input, NULL: ours */
+    const char *fail;  /* what failing/interpose.c is to make fail, NULL: it is not there */
 } surroundings;
 
 static inline int caught(const char *name) {
@@ -124,6 +125,10 @@ static inline int caught(const char *name) {
     assert_true(fd >= 0);
     return fd;
 }
+
+#ifndef SKEIN_INTERPOSER
+#define SKEIN_INTERPOSER "" /* only for the test that has one */
+#endif
 
 /* Starts skein with arguments up to NULL. */
 static inline pid_t start_skein(surroundings around, const char *const *arguments) {
@@ -139,8 +144,14 @@ static inline pid_t start_skein(surroundings around, const char *const *argument
     if (child == 0) {
         struct rlimit limit = {around.file_limit, around.file_limit};
         alarm(200);
+        if (around.fail) {
+            setenv("SKEIN_FAIL", around.fail, 1);
+            setenv("SKEIN_FAIL_LOG", in_folder(".calls"), 1);
+            setenv("LD_PRELOAD", SKEIN_INTERPOSER, 1);
+        }
         int in = around.in ? open(around.in, O_RDONLY) : STDIN_FILENO;
-        bool good = dup2(in, 0) == 0 && dup2(out, 1) == 1 && dup2(err, 2) == 2 && (!around.file_limit || !setrlimit(RLIMIT_FSIZE, &limit));
+        bool good = dup2(in, 0) == 0 && dup2(out, 1) == 1 && dup2(err, 2) == 2 &&
+                    (!around.file_limit || !setrlimit(RLIMIT_FSIZE, &limit));
         if (good) execv(SKEIN_COMMAND, list);
         _exit(127);
     }

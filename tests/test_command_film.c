@@ -213,7 +213,8 @@ static void a_full_disk_ends_a_film(void **state) {
     assert_string_equal(o.err, words);
     assert_string_equal(o.out, "");
     outcome_free(&o);
-    film_seen seen = film_see(in_folder("a.mp4"));
+    assert_false(exists(in_folder("a.mp4")));
+    film_seen seen = film_see(in_folder("a.failed.mp4"));
     assert_true(seen.pictures >= 10); // what was there before
     film_seen_free(&seen);
     assert_int_equal(symlink("/dev/full", in_folder("full.webm")), 0);
