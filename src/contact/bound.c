@@ -25,27 +25,24 @@ static sk_vec3 common_way(const sk_touch *touch) {
     return (sk_vec3){(real)(share * sum[0]), (real)(share * sum[1]), (real)(share * sum[2])};
 }
 
-/* Loads the places after the substep and what ways lead there; returns whether a vertex is lost on its way. */
-static bool load_ways(sk_touch *touch, const sk_run *run, const sk_op *op, sk_vec3 *common) {
+/* Loads the places after the substep and what ways lead there. */
+static void load_ways(sk_touch *touch, const sk_run *run, const sk_op *op) {
     size_t count = touch->skin.vertex_count;
-    for (size_t v = 0; v < count; v++)
-        touch->q[v] = sk_load(run->vector[SK_X], op->packed, run->slot_of[touch->skin.particle[v]]);
-    *common = touch->common = common_way(touch);
-    bool any = false;
+    for (size_t v = 0; v < count; v++) touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
+    sk_vec3 common = touch->common = common_way(touch);
     for (size_t v = 0; v < count; v++) {
-        sk_vec3 way = sk_sub(sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v])), *common);
+        sk_vec3 way = sk_sub(sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v])), common);
         real length = sk_length(way);
         if (!(length < (real)1e6)) way = (sk_vec3){0, 0, 0}, length = 0; // blown up: it meets nobody
         touch->way[v] = touch->step[v] = (sk_vec4){way.x, way.y, way.z, length};
         touch->share[v] = touch->next_share[v] = 1;
-        any |= touch->lost[v] = sk_is_lost(&touch->course[v], touch->now + 1, sk_xyz(touch->q[v]));
     }
-    return any;
 }
 
-/* Looks for those that are lost, for this substep alone. */
+/* Looks for those that are lost, on their ways: they are wild from now on. */
 static bool renew(sk_touch *touch, sk_allocator *allocator) {
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->astray[v] |= touch->lost[v];
+    for (size_t v = 0; v < touch->skin.vertex_count; v++)
+        if (touch->lost[v] && !touch->wild[v]) sk_touch_put_course(touch, v, true);
     return sk_touch_renew(touch, allocator, SK_SEARCH_WAYS);
 }
 
@@ -132,7 +129,8 @@ static bool settle_pair(sk_touch *touch, sk_pairs *pairs, int sort, size_t k, re
 }
 
 /* Takes the shares that a round has found; returns whether a vertex is lost where it goes now. */
-static bool take_shares(sk_touch *touch, sk_vec3 common) {
+static bool take_shares(sk_touch *touch) {
+    const sk_vec3 common = touch->common;
     bool any = false;
     memset(touch->lost, 0, touch->skin.vertex_count);
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
@@ -141,14 +139,15 @@ static bool take_shares(sk_touch *touch, sk_vec3 common) {
         real share = touch->share[v] = touch->next_share[v];
         sk_vec3 step = sk_scale(share, sk_xyz(touch->way[v])), to = sk_add(sk_add(sk_xyz(touch->p[v]), common), step);
         touch->step[v] = (sk_vec4){step.x, step.y, step.z, 0};
-        any |= touch->lost[v] = !touch->astray[v] && sk_is_lost(&touch->course[v], touch->now + 1, to);
+        if (touch->wild[v]) continue;
+        sk_vec3 off = sk_sub(sk_sub(to, touch->shift[1]), sk_expected(&touch->course[v], touch->now + 1));
+        any |= touch->lost[v] = sk_dot(off, off) > touch->course[v].reach * touch->course[v].reach;
     }
     return any;
 }
 
 /* The first round looks at all pairs, the others at those with a corner whose share the round before has lowered. */
-static bool settle_pairs(sk_touch *touch, int sort, bool first, real least) {
-    sk_pairs *pairs = &touch->kept[sort];
+static bool settle_pairs(sk_touch *touch, sk_pairs *pairs, int sort, bool first, real least) {
     const uint8_t *lowered = touch->lowered;
     bool any = false;
     if (first) sk_closing[sort][touch->isa](touch->p, touch->step, least, pairs);
@@ -161,26 +160,34 @@ static bool settle_pairs(sk_touch *touch, int sort, bool first, real least) {
     return any;
 }
 
+static void unsettle(sk_pairs *pairs) {
+    if (pairs->count) memset(pairs->settled, 0, pairs->count);
+}
+
 /* Each round looks at shares as the round before left them, so no order counts. */
-static bool find_shares(sk_touch *touch, sk_allocator *allocator, real least, sk_vec3 common) {
+static bool find_shares(sk_touch *touch, sk_allocator *allocator, real least) {
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
-        if (touch->kept[sort].count) memset(touch->kept[sort].settled, 0, touch->kept[sort].count);
+        unsettle(&touch->kept[sort]), unsettle(&touch->late[sort]);
     for (bool first = true;; first = false) {
         bool lowered = false;
-        for (int sort = 0; sort < SK_PAIR_SORTS; sort++) lowered |= settle_pairs(touch, sort, first, least);
+        for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
+            lowered |= settle_pairs(touch, &touch->kept[sort], sort, first, least);
+            lowered |= settle_pairs(touch, &touch->late[sort], sort, first, least);
+        }
         if (!lowered) return true;
-        if (take_shares(touch, common) && !renew(touch, allocator)) return false;
+        if (take_shares(touch) && !renew(touch, allocator)) return false;
     }
 }
 
 /* ---- the op ---- */
 
-static void store_ways(const sk_touch *touch, const sk_run *run, const sk_op *op, sk_vec3 common) {
+static void store_ways(const sk_touch *touch, const sk_run *run, const sk_op *op) {
+    const sk_vec3 common = touch->common;
     const real rate = (real)(1 / op->dt);
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         if (!(touch->share[v] < 1)) continue;
         sk_vec3 to = sk_add(sk_add(sk_xyz(touch->p[v]), common), sk_scale(touch->share[v], sk_xyz(touch->way[v])));
-        size_t slot = run->slot_of[touch->skin.particle[v]];
+        size_t slot = touch->slot[v];
         sk_store_at(run->vector[SK_X], op->packed, slot, to);
         sk_add_at(run->vector[SK_V], op->packed, slot, sk_scale(rate, sk_sub(to, sk_xyz(touch->q[v]))));
     }
@@ -190,14 +197,22 @@ void sk_touch_bound(sk_run *run, const sk_op *op, size_t from, size_t end) {
     (void)from, (void)end;
     const sk_force *force = op->rule;
     sk_touch *touch = force->state;
-    if (!touch || !touch->skin.vertex_count) return;
+    if (!touch || !touch->found) return;
     real thickness = (real)((const sk_contact_params *)force->params)->thickness, least = SK_LEAST_GAP * thickness;
-    sk_vec3 common;
-    bool good = true;
-    if (load_ways(touch, run, op, &common)) good = renew(touch, run->allocator);
-    if (good && touch->kept[SK_CORNERS].count + touch->kept[SK_EDGES].count) {
-        good = find_shares(touch, run->allocator, least, common);
-        store_ways(touch, run, op, common);
+    const sk_vec4 *x = run->vector[SK_X];
+    sk_touch_set_frame(touch, x, op->packed, touch->now + 1, 1);
+    bool lost = sk_touch_mark_lost(touch, x, op->packed, touch->now + 1, 1) || touch->wild_count, good = true;
+    if (lost || sk_pairs_kept(touch)) {
+        sk_touch_load(touch, op->packed);
+        load_ways(touch, run, op);
+        for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->lost[v] |= touch->wild[v];
     }
+    if (lost) good = renew(touch, run->allocator);
+    if (good && sk_pairs_kept(touch)) {
+        good = find_shares(touch, run->allocator, least);
+        store_ways(touch, run, op);
+    }
+    touch->frame_step = sk_sub(touch->shift[1], touch->shift[0]);
+    touch->followed = good;
     run->no_memory |= !good;
 }

@@ -56,8 +56,11 @@ static void put_boxes(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_of
         touch->corner_box[v] = (sk_box){{at, at}, {at, at}};
     }
     memset(touch->anew, 1, touch->skin.leaf_count);
-    for (size_t i = 0; i < touch->skin.leaf_count; i++) sk_touch_leaf_box(touch, i);
-    touch->boxed = false;
+    for (size_t i = 0; i < touch->skin.leaf_count; i++) {
+        sk_touch_leaf_box(touch, i);
+        touch->hot_box[i] = touch->leaf_box[i];
+    }
+    touch->boxed = touch->loaded = false;
     touch->refit = true;
 }
 

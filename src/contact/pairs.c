@@ -16,10 +16,8 @@ bool sk_pairs_reserve(sk_pairs *pairs, sk_allocator *allocator, size_t need) {
         grown = capacity;
         good = sk_reserve(allocator, (void **)&pairs->corner[c], &grown, need, sizeof *pairs->corner[c]);
     }
-    for (int c = 0; c < 2 && good; c++) {
-        grown = capacity;
-        good = sk_reserve(allocator, (void **)&pairs->leaf[c], &grown, need, sizeof *pairs->leaf[c]);
-    }
+    grown = capacity;
+    good = good && sk_reserve(allocator, (void **)&pairs->key, &grown, need, sizeof *pairs->key);
     for (size_t i = 0; i < sizeof reals / sizeof *reals && good; i++) {
         grown = capacity;
         good = sk_reserve(allocator, (void **)reals[i], &grown, need, sizeof **reals[i]);
@@ -43,7 +41,7 @@ void sk_pairs_take(sk_pairs *pairs, const sk_pairs *others, size_t first, size_t
     size_t at = pairs->count, count = end - first;
     if (!count) return;
     for (int c = 0; c < 4; c++) memcpy(pairs->corner[c] + at, others->corner[c] + first, count * sizeof(uint32_t));
-    for (int c = 0; c < 2; c++) memcpy(pairs->leaf[c] + at, others->leaf[c] + first, count * sizeof(uint32_t));
+    memcpy(pairs->key + at, others->key + first, count * sizeof(uint64_t));
     for (int c = 0; c < 3; c++) memcpy(pairs->normal[c] + at, others->normal[c] + first, count * sizeof(real));
     for (int c = 0; c < 2; c++) memcpy(pairs->share[c] + at, others->share[c] + first, count * sizeof(real));
     memcpy(pairs->distance + at, others->distance + first, count * sizeof(real));
@@ -54,7 +52,7 @@ void sk_pairs_take(sk_pairs *pairs, const sk_pairs *others, size_t first, size_t
 
 void sk_pairs_release(sk_pairs *pairs, sk_allocator *allocator) {
     for (int c = 0; c < 4; c++) sk_release(allocator, pairs->corner[c]);
-    for (int c = 0; c < 2; c++) sk_release(allocator, pairs->leaf[c]);
+    sk_release(allocator, pairs->key);
     for (int c = 0; c < 3; c++) sk_release(allocator, pairs->normal[c]);
     for (int c = 0; c < 2; c++) sk_release(allocator, pairs->share[c]);
     sk_release(allocator, pairs->distance);

@@ -117,7 +117,7 @@ static void fit(sk_touch *touch) {
     const sk_box nothing = {{most, most}, {-most, -most}};
     size_t count = touch->skin.leaf_count;
     uint8_t *changed = touch->changed; // slots of the level
-    for (size_t i = 0; i < count; i++) changed[i] = touch->anew[tree->leaf_at[i]] | touch->refit;
+    for (size_t i = 0; i < count; i++) changed[i] = touch->moved[tree->leaf_at[i]] | touch->refit;
     for (int level = 0; level < tree->levels; level++) {
         for (size_t b = 0; b < tree->blocks[level]; b++) {
             sk_tree_block *block = &tree->block[level][b];
@@ -140,13 +140,13 @@ static void fit(sk_touch *touch) {
 
 /* Lists those that leaf a may meet, a itself too; what is looked for, too, is listed by the first of both. */
 static bool list_partners(sk_touch *touch, sk_allocator *allocator, uint32_t a) {
-    size_t count = sk_tree_hits[touch->isa](&touch->tree, &touch->leaf_box[a], touch->hit);
+    size_t count = sk_tree_hits[touch->isa](&touch->tree, &touch->hot_box[a], touch->hit);
     if (!SK_RESERVE(allocator, &touch->first, touch->first.count + count) ||
         !SK_RESERVE(allocator, &touch->second, touch->second.count + count))
         return false;
     for (size_t i = 0; i < count; i++) {
         uint32_t b = touch->tree.leaf_at[touch->hit[i]];
-        if (b < a && touch->anew[b]) continue;
+        if (b < a && touch->anew[b] && sk_boxes_meet(&touch->hot_box[b], &touch->leaf_box[a])) continue;
         touch->first.data[touch->first.count++] = b < a ? b : a;
         touch->second.data[touch->second.count++] = b < a ? a : b;
     }

@@ -53,18 +53,23 @@ static void box_of(const sk_box *corner_box, const uint32_t *vertex, int count, 
     }
 }
 
-/* What is near enough to close in a substep, whatever shares of their ways both go. */
+/* What is near enough to close in a substep, or to be near at its end, whatever shares of their ways both go. */
 static real part_of_way(const sk_touch *touch, size_t v) {
-    // partners that keep to their courses have theirs in the frame of the drift
-    real apart = sk_length(sk_sub(touch->common, touch->drift));
-    return closing_share * (touch->way[v].w + apart) + (SK_LEAST_GAP + rounding) * touch->thickness;
+    // partners that keep to their courses have theirs in the frame of these
+    sk_vec3 frame = sk_sub(touch->shift[1], touch->shift[0]), all = sk_sub(touch->common, frame);
+    real apart = sk_length(all), relative = sk_length(sk_sub(all, touch->drift)), way = touch->way[v].w;
+    real closing = closing_share * (way + relative) + SK_LEAST_GAP * touch->thickness;
+    real near = way + apart + (real)0.5 * SK_NEAR_THICKNESSES * touch->thickness;
+    return sk_max(closing, near) + rounding * touch->thickness;
 }
 
-static void make_vertex_box(sk_touch *touch, size_t v, sk_touch_search_sort sort) {
+static void make_vertex_box(sk_touch *touch, size_t v, bool way) {
     const sk_course *course = &touch->course[v];
-    real part = sort == SK_SEARCH_WAYS ? part_of_way(touch, v) : part_of(touch, course);
+    bool stands = way || touch->wild[v];
+    real part = way ? part_of_way(touch, v) : part_of(touch, course);
+    if (stands && !way) part = ((real)0.5 * SK_NEAR_THICKNESSES + rounding) * touch->thickness; // for those that it meets now
     for (int end = 0; end < 2; end++) {
-        sk_vec3 x = sort == SK_SEARCH_WAYS ? sk_xyz(touch->p[v]) : sk_expected(course, end ? touch->until : 0);
+        sk_vec3 x = stands ? sk_sub(sk_xyz(touch->p[v]), touch->shift[0]) : sk_expected(course, end ? touch->until : 0);
         touch->corner_box[v].low[end] = (sk_quad){x.x, x.y, x.z, 0};
         touch->corner_box[v].high[end] = (sk_quad){x.x, x.y, x.z, part};
     }
@@ -114,44 +119,82 @@ void sk_touch_leaf_box(sk_touch *touch, size_t i) {
     *box = (sk_box){{most, most}, {-most, -most}};
 }
 
+/* The box of those of a leaf's features that are looked for. */
+static void make_hot_box(sk_touch *touch, size_t i) {
+    const sk_leaf *leaf = &touch->skin.leaf[i];
+    const sk_quad most = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX, 0};
+    sk_box box = {{most, most}, {-most, -most}};
+    bool met = touch->leaf_box[i].low[0][0] <= touch->leaf_box[i].high[0][0]; // it has not blown up
+    for (size_t v = leaf->first_vertex; met && v < (size_t)leaf->first_vertex + leaf->vertices; v++)
+        if (touch->lost[v]) widen(&box, &touch->vertex_box[v]);
+    for (size_t e = leaf->first_edge; met && e < (size_t)leaf->first_edge + leaf->edges; e++)
+        if (touch->hot_edge[e]) widen(&box, &touch->edge_box[e]);
+    for (size_t t = leaf->first_triangle; met && t < (size_t)leaf->first_triangle + leaf->triangles; t++)
+        if (touch->hot_triangle[t]) widen(&box, &touch->triangle_box[t]);
+    touch->hot_box[i] = box;
+}
+
+static void mark_leaves_of(const sk_skin *skin, size_t v, uint8_t *leaves) {
+    for (uint32_t k = skin->leaf_start[v]; k < skin->leaf_start[v + 1]; k++) leaves[skin->leaf_of[k]] = 1;
+}
+
 static void make_boxes(sk_touch *touch, sk_touch_search_sort sort) {
     bool all = sort == SK_SEARCH_ALL || !touch->boxed || touch->still;
-    for (size_t v = 0; v < touch->skin.vertex_count; v++)
-        if (all || touch->lost[v]) make_vertex_box(touch, v, touch->lost[v] || touch->still ? sort : SK_SEARCH_LOST);
-    for (size_t i = 0; i < touch->skin.leaf_count; i++)
-        if (all || touch->anew[i]) sk_touch_leaf_box(touch, i);
+    size_t leaves = touch->skin.leaf_count;
+    if (all) memset(touch->moved, 1, leaves);
+    else memcpy(touch->moved, touch->anew, leaves);
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        bool was_wild = touch->wild[v] && sort == SK_SEARCH_LOST; // where it is now is what counts
+        if (!(all | touch->lost[v] | was_wild)) continue;
+        make_vertex_box(touch, v, touch->still || (sort == SK_SEARCH_WAYS && (touch->lost[v] | touch->wild[v])));
+        if (was_wild) mark_leaves_of(&touch->skin, v, touch->moved);
+    }
+    for (size_t i = 0; i < leaves; i++) {
+        if (touch->moved[i]) sk_touch_leaf_box(touch, i);
+        if (touch->anew[i]) make_hot_box(touch, i);
+    }
 }
 
 /* ---- who is looked for ---- */
 
-/* Marks leaves that have a lost vertex. */
-static void mark_leaves(sk_touch *touch, bool all) {
+/* Marks edges and triangles that have a lost vertex, and the leaves that have one. */
+static void mark_hot(sk_touch *touch) {
+    const sk_skin *skin = &touch->skin;
+    const uint8_t *lost = touch->lost;
+    memset(touch->anew, 0, skin->leaf_count);
+    for (size_t v = 0; v < skin->vertex_count; v++)
+        if (lost[v]) mark_leaves_of(skin, v, touch->anew);
+    for (size_t i = 0; i < skin->leaf_count; i++) {
+        const sk_leaf *leaf = &skin->leaf[i];
+        if (!touch->anew[i]) continue;
+        for (size_t e = leaf->first_edge; e < (size_t)leaf->first_edge + leaf->edges; e++)
+            touch->hot_edge[e] = lost[skin->edge[e][0]] | lost[skin->edge[e][1]];
+        for (size_t t = leaf->first_triangle; t < (size_t)leaf->first_triangle + leaf->triangles; t++)
+            touch->hot_triangle[t] = lost[skin->triangle[t][0]] | lost[skin->triangle[t][1]] | lost[skin->triangle[t][2]];
+    }
+}
+
+/* So that none is marked the next time. */
+static void forget_hot(sk_touch *touch) {
     const sk_skin *skin = &touch->skin;
     for (size_t i = 0; i < skin->leaf_count; i++) {
         const sk_leaf *leaf = &skin->leaf[i];
-        bool anew = all;
-        for (size_t k = 0; k < leaf->triangles && !anew; k++)
-            for (int c = 0; c < 3; c++) anew |= touch->lost[skin->triangle[leaf->first_triangle + k][c]];
-        if (!leaf->triangles && !anew)
-            for (int c = 0; c < 2; c++) anew |= touch->lost[skin->edge[leaf->first_edge][c]];
-        touch->anew[i] = anew;
+        if (!touch->anew[i]) continue;
+        memset(touch->hot_edge + leaf->first_edge, 0, leaf->edges);
+        memset(touch->hot_triangle + leaf->first_triangle, 0, leaf->triangles);
     }
 }
 
 /* ---- pairs ---- */
 
-typedef struct place {
-    uint32_t leaf[2];
-} place;
-
-static inline void put(sk_pairs *pairs, const place *at, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+static inline void put(sk_pairs *pairs, uint64_t key, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
     size_t k = pairs->count++;
     pairs->corner[0][k] = a, pairs->corner[1][k] = b, pairs->corner[2][k] = c, pairs->corner[3][k] = d;
-    pairs->leaf[0][k] = at->leaf[0], pairs->leaf[1][k] = at->leaf[1];
+    pairs->key[k] = key;
 }
 
-/* Vertices of leaf a with triangles of leaf b. */
-static void put_corners(const sk_touch *touch, sk_pairs *fresh, const place *at, const sk_leaf *a, uint32_t b_number) {
+/* Vertices of leaf a with triangles of leaf b, of which one is looked for. */
+static void put_corners(const sk_touch *touch, sk_pairs *fresh, uint64_t key, const sk_leaf *a, uint32_t b_number) {
     const sk_skin *skin = &touch->skin;
     const sk_leaf *b = &skin->leaf[b_number];
     for (uint32_t v = a->first_vertex; v < a->first_vertex + a->vertices; v++) {
@@ -159,24 +202,25 @@ static void put_corners(const sk_touch *touch, sk_pairs *fresh, const place *at,
         if (!sk_boxes_meet(&box, &touch->leaf_box[b_number])) continue;
         for (uint32_t t = b->first_triangle; t < b->first_triangle + b->triangles; t++) {
             const uint32_t *corner = skin->triangle[t];
-            if (sk_boxes_meet(&box, &touch->triangle_box[t]) && v != corner[0] && v != corner[1] && v != corner[2])
-                put(fresh, at, v, corner[0], corner[1], corner[2]);
+            if ((touch->lost[v] | touch->hot_triangle[t]) && sk_boxes_meet(&box, &touch->triangle_box[t]) &&
+                v != corner[0] && v != corner[1] && v != corner[2])
+                put(fresh, key + 2 * (v - a->first_vertex) + t - b->first_triangle, v, corner[0], corner[1], corner[2]);
         }
     }
 }
 
-static void put_edges(const sk_touch *touch, sk_pairs *fresh, const place *at) {
+static void put_edges(const sk_touch *touch, sk_pairs *fresh, uint64_t key, uint32_t a_number, uint32_t b_number) {
     const sk_skin *skin = &touch->skin;
-    const sk_leaf *a = &skin->leaf[at->leaf[0]], *b = &skin->leaf[at->leaf[1]];
+    const sk_leaf *a = &skin->leaf[a_number], *b = &skin->leaf[b_number];
     for (uint32_t e = a->first_edge; e < a->first_edge + a->edges; e++) {
         const sk_box box = touch->edge_box[e];
-        if (!sk_boxes_meet(&box, &touch->leaf_box[at->leaf[1]])) continue;
+        if (!sk_boxes_meet(&box, &touch->leaf_box[b_number])) continue;
         const uint32_t *one = skin->edge[e];
         for (uint32_t f = a == b ? e + 1 : b->first_edge; f < b->first_edge + b->edges; f++) {
             const uint32_t *two = skin->edge[f];
-            if (sk_boxes_meet(&box, &touch->edge_box[f]) && one[0] != two[0] && one[0] != two[1] && one[1] != two[0] &&
-                one[1] != two[1])
-                put(fresh, at, one[0], one[1], two[0], two[1]);
+            if ((touch->hot_edge[e] | touch->hot_edge[f]) && sk_boxes_meet(&box, &touch->edge_box[f]) &&
+                one[0] != two[0] && one[0] != two[1] && one[1] != two[0] && one[1] != two[1])
+                put(fresh, key + 5 * (e - a->first_edge) + f - b->first_edge, one[0], one[1], two[0], two[1]);
         }
     }
 }
@@ -190,14 +234,15 @@ static bool list_fresh(sk_touch *touch, sk_allocator *allocator, int sort) {
     bool good = true;
     for (uint32_t a = 0; a < skin->leaf_count && good; a++)
         for (uint32_t i = touch->start[a]; i < touch->start[a + 1] && good; i++) {
-            place at = {{a, touch->partner.data[i]}};
+            uint32_t b = touch->partner.data[i];
+            uint64_t key = (uint64_t)a << 36 | (uint64_t)b << 8;
             if (!(good = sk_pairs_reserve(&fresh, allocator, fresh.count + MOST))) break;
             if (sort == SK_EDGES) {
-                put_edges(touch, &fresh, &at);
+                put_edges(touch, &fresh, key, a, b);
                 continue;
             }
-            put_corners(touch, &fresh, &at, &skin->leaf[a], at.leaf[1]);
-            if (at.leaf[1] != a) put_corners(touch, &fresh, &at, &skin->leaf[at.leaf[1]], a);
+            put_corners(touch, &fresh, key, &skin->leaf[a], b);
+            if (b != a) put_corners(touch, &fresh, key + MOST / 2, &skin->leaf[b], a);
         }
     touch->fresh = fresh;
     sk_pairs_pad(&touch->fresh);
@@ -213,7 +258,8 @@ static void keep_near(sk_touch *touch, int sort, sk_touch_search_sort search) {
                                 .closing = closing_share,
                                 .per = 1 / (touch->until - touch->now)};
     if (ways)
-        values = (sk_nearing_values){.near = (SK_LEAST_GAP + rounding) * touch->thickness, .shares = 1 - 1 / closing_share};
+        values = (sk_nearing_values){.near = (SK_NEAR_THICKNESSES + rounding) * touch->thickness,
+                                     .shares = 1 - 1 / closing_share};
     sk_closest[sort][touch->isa](touch->at, pairs);
     sk_nearing[sort][touch->isa](touch->at, touch->in_the_end, &values, pairs);
     size_t count = pairs->count;
@@ -237,61 +283,16 @@ static void set_thickness(sk_touch *touch, int sort) {
     }
 }
 
-/* ---- fresh pairs go among those that are kept ---- */
-
-static inline uint64_t place_of(const sk_pairs *pairs, size_t k) {
-    return k < pairs->count ? (uint64_t)pairs->leaf[0][k] << 32 | pairs->leaf[1][k] : UINT64_MAX;
-}
-
-/* What a bound has settled stays so, although it was looked for anew. */
-static void stay_settled(sk_pairs *fresh, size_t from, const sk_pairs *kept, size_t old) {
-    uint64_t at = place_of(kept, old);
-    for (size_t k = from; kept->settled[old] && place_of(fresh, k) == at; k++) {
-        bool same = true;
-        for (int c = 0; c < 4; c++) same &= fresh->corner[c][k] == kept->corner[c][old];
-        fresh->settled[k] |= same;
-    }
-}
-
-/* Those of leaves that were looked for go, and fresh ones come. */
-static bool merge(sk_touch *touch, sk_allocator *allocator, int sort) {
-    sk_pairs *fresh = &touch->fresh, *kept = &touch->kept[sort], *merged = &touch->merged;
-    if (!sk_pairs_reserve(merged, allocator, kept->count + fresh->count)) return false;
-    merged->count = 0;
-    const uint8_t *anew = touch->anew;
-    size_t first = 0, k = 0; // of those that have not been taken over yet
-    for (size_t i = 0; i <= kept->count; i++) {
-        uint64_t at = place_of(kept, i);
-        bool goes = i < kept->count && (anew[kept->leaf[0][i]] | anew[kept->leaf[1][i]]);
-        if (!goes && i < kept->count && at <= place_of(fresh, k)) continue;
-        if (at <= place_of(fresh, k) && i < kept->count) {
-            stay_settled(fresh, k, kept, i);
-            sk_pairs_take(merged, kept, first, i);
-            first = i + 1;
-            continue;
-        }
-        sk_pairs_take(merged, kept, first, i);
-        first = i;
-        size_t run = k;
-        while (k < fresh->count && place_of(fresh, k) < at) k++;
-        sk_pairs_take(merged, fresh, run, k);
-        if (i == kept->count) break;
-        i--; // it is looked at once more, after those that come before it
-    }
-    sk_pairs_pad(merged);
-    sk_pairs other = *kept;
-    *kept = *merged, *merged = other;
-    return true;
-}
-
 /* ---- the search ---- */
 
 /* A horizon at which what goes its own way has gone some thicknesses. */
 static void look_ahead(sk_touch *touch) {
-    const real least = 2, most = 10, longest = 640;
-    // where all have kept to their courses, they will for longer
-    real last = touch->now, longer = touch->kept_course ? sk_min(2 * last, longest) : 0;
-    touch->kept_course = true;
+    const real least = 2, longest = 640;
+    // where few have left their courses, they will keep to them for longer
+    real last = touch->now, most = 4 * touch->lost_since < touch->skin.vertex_count ? sk_max(10, 2 * last) : 10;
+    real longer = touch->lost_since ? 0 : 2 * last;
+    touch->lost_since = 0;
+    most = sk_min(most, longest), longer = sk_min(longer, longest);
     size_t count = touch->skin.vertex_count;
     double drift[3] = {0, 0, 0}, sum = 0;
     for (size_t v = 0; v < count; v++) {
@@ -317,6 +318,11 @@ static void expect(sk_touch *touch, sk_touch_search_sort sort) {
             touch->in_the_end[v] = (sk_vec4){end.x, end.y, end.z, 0};
             continue;
         }
+        if (touch->wild[v]) { // its pairs to come are found on its ways
+            sk_vec3 here = sk_sub(sk_xyz(touch->p[v]), touch->shift[0]);
+            touch->at[v] = touch->in_the_end[v] = (sk_vec4){here.x, here.y, here.z, 0};
+            continue;
+        }
         sk_vec3 at = sk_expected(course, touch->now), end = sk_expected(course, touch->until);
         touch->at[v] = (sk_vec4){at.x, at.y, at.z, course->reach};
         touch->in_the_end[v] = (sk_vec4){end.x, end.y, end.z, 0};
@@ -336,30 +342,29 @@ bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_s
     bool all = search == SK_SEARCH_ALL;
     touch->searches++;
     if (all) look_ahead(touch);
-    else touch->kept_course = false;
-    mark_leaves(touch, all);
+    else
+        for (size_t v = 0; v < count; v++) touch->lost_since += touch->lost[v];
+    mark_hot(touch);
     // for a whole substep and many vertices, smaller boxes that stand are worth making all anew
     touch->still = search == SK_SEARCH_WAYS && is_many(touch);
-    make_boxes(touch, search);
     touch->refit |= all || touch->still || !touch->boxed;
+    make_boxes(touch, search);
     touch->boxed = !touch->still;
-    touch->found = touch->gave_up = false;
-    for (int sort = 0; sort < SK_PAIR_SORTS && all; sort++) touch->kept[sort].count = 0;
-    if (!sk_touch_partners(touch, allocator, most)) return false;
-    if (touch->first.count > most) {
-        touch->gave_up = true;
+    touch->found = false;
+    bool good = sk_touch_partners(touch, allocator, most), gives_up = touch->first.count > most;
+    if (gives_up) {
         touch->given_up++;
-        for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->kept[sort].count = 0;
-        return true;
+        for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->kept[sort].count = touch->late[sort].count = 0;
     }
-    expect(touch, search);
-    for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
-        if (!list_fresh(touch, allocator, sort)) return false;
+    if (good && !gives_up) expect(touch, search);
+    for (int sort = 0; sort < SK_PAIR_SORTS && good && !gives_up; sort++) {
+        if (!(good = list_fresh(touch, allocator, sort))) break;
         keep_near(touch, sort, search);
         set_thickness(touch, sort);
         if (search == SK_SEARCH_WAYS) sk_closest[sort][touch->isa](touch->p, &touch->fresh);
-        if (!merge(touch, allocator, sort)) return false;
+        good = sk_touch_keep(touch, allocator, sort, all);
     }
-    touch->found = true;
-    return true;
+    forget_hot(touch);
+    touch->found = good && !gives_up;
+    return good;
 }

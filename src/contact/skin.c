@@ -111,6 +111,38 @@ static void find_pieces(sk_skin *skin) {
     for (uint32_t v = 0; v < skin->vertex_count; v++) skin->piece[v] = root_of(skin->piece, v);
 }
 
+/* Lists v's leaf, once: leaves come one after the other. */
+static void list_leaf(sk_skin *skin, uint32_t *last, uint32_t v, size_t leaf, bool fill) {
+    if (last[v] == leaf) return;
+    last[v] = (uint32_t)leaf;
+    if (fill) skin->leaf_of[skin->leaf_start[v]++] = (uint32_t)leaf;
+    else skin->leaf_start[v + 1]++;
+}
+
+/* The leaves that have each vertex. */
+static bool list_leaves(sk_skin *skin, sk_allocator *allocator) {
+    size_t vertices = skin->vertex_count;
+    uint32_t *last = sk_allocate(allocator, (vertices + 1) * sizeof *last);
+    bool good = last && (skin->leaf_start = sk_allocate(allocator, (vertices + 2) * sizeof *skin->leaf_start));
+    for (int fill = 0; fill < 2 && good; fill++) {
+        memset(last, 0xff, vertices * sizeof *last);
+        for (size_t i = 0; i < skin->leaf_count; i++) {
+            const sk_leaf *leaf = &skin->leaf[i];
+            for (size_t t = leaf->first_triangle; t < leaf->first_triangle + leaf->triangles; t++)
+                for (int c = 0; c < 3; c++) list_leaf(skin, last, skin->triangle[t][c], i, fill);
+            for (size_t e = leaf->first_edge; e < leaf->first_edge + leaf->edges; e++)
+                for (int c = 0; c < 2; c++) list_leaf(skin, last, skin->edge[e][c], i, fill);
+        }
+        if (fill) break;
+        for (size_t v = 0; v < vertices; v++) skin->leaf_start[v + 1] += skin->leaf_start[v];
+        good = (skin->leaf_of = sk_allocate(allocator, (skin->leaf_start[vertices] + 1) * sizeof *skin->leaf_of)) != NULL;
+    }
+    for (size_t v = vertices; good && v > 0; v--) skin->leaf_start[v] = skin->leaf_start[v - 1]; // they were moved on
+    if (good) skin->leaf_start[0] = 0;
+    sk_release(allocator, last);
+    return good;
+}
+
 bool sk_skin_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *particles, const sk_only *only,
                   const sk_meeting_parts *parts) {
     sk_skin_release(skin, allocator);
@@ -132,6 +164,7 @@ bool sk_skin_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *pa
         memset(m.table, 0xff, size * sizeof *m.table);
         add_all(&m, only, parts);
         find_pieces(skin);
+        good = list_leaves(skin, allocator);
     }
     sk_release(allocator, m.vertex_of);
     sk_release(allocator, m.table);
@@ -146,5 +179,7 @@ void sk_skin_release(sk_skin *skin, sk_allocator *allocator) {
     sk_release(allocator, skin->edge);
     sk_release(allocator, skin->triangle);
     sk_release(allocator, skin->leaf);
+    sk_release(allocator, skin->leaf_start);
+    sk_release(allocator, skin->leaf_of);
     *skin = (sk_skin){.vertex_count = 0};
 }

@@ -20,63 +20,137 @@ static sk_touch *touch_of(const sk_op *op) {
 }
 
 /* A vertex goes on as it does now; what is fast is seldom as steady. */
-static sk_course course_from(const sk_touch *touch, sk_vec3 at, sk_vec3 step, real since, real wanted) {
+static sk_course course_from(const sk_touch *touch, sk_vec3 at, sk_vec3 step, real time) {
     const real share = (real)0.25;
     real reach = share * sk_max(touch->thickness, sk_length(sk_sub(step, touch->drift)));
-    reach = sk_max(reach, sk_min(wanted, touch->thickness));
-    return (sk_course){at, step, since, reach};
+    return (sk_course){sk_sub(at, sk_scale(time, step)), step, reach};
+}
+
+static void look_at_all(sk_touch *touch) {
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
+        sk_closest[sort][touch->isa](touch->p, &touch->kept[sort]);
+        sk_closest[sort][touch->isa](touch->p, &touch->late[sort]);
+    }
 }
 
 bool sk_touch_renew(sk_touch *touch, sk_allocator *allocator, sk_touch_search_sort search) {
     if (!sk_touch_search(touch, allocator, search)) return false;
-    for (int sort = 0; sort < SK_PAIR_SORTS && search != SK_SEARCH_WAYS; sort++)
-        sk_closest[sort][touch->isa](touch->p, &touch->kept[sort]);
+    if (search != SK_SEARCH_WAYS) look_at_all(touch);
     return true;
 }
 
-/* The places before the substep; returns whether a vertex is lost. */
-static bool load_places(sk_touch *touch, const sk_run *run, const sk_op *op) {
-    bool any = false;
+void sk_touch_load(sk_touch *touch, size_t packed) {
+    for (size_t v = 0; v < touch->skin.vertex_count && !touch->loaded; v++) {
+        touch->p[v] = sk_load(touch->before, packed, touch->slot[v]);
+        touch->inverse[v] = touch->p[v].w;
+    }
+    touch->loaded = true;
+}
+
+static void release_slots(sk_touch *touch, sk_allocator *allocator) {
+    void **arrays[] = {(void **)&touch->before, (void **)&touch->course_block, (void **)&touch->off,
+                       (void **)&touch->vertex_at};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        sk_release(allocator, *arrays[i]);
+        *arrays[i] = NULL;
+    }
+    touch->slots = touch->slot_capacity = 0;
+}
+
+/* Where the vertices are among the slots; false when there is no memory. */
+static bool find_slots(sk_touch *touch, const sk_run *run) {
+    size_t slots = run->slot_count;
+    bool same = touch->slots == slots;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        sk_vec4 x = sk_load(run->vector[SK_X], op->packed, run->slot_of[touch->skin.particle[v]]);
-        touch->inverse[v] = x.w;
-        touch->p[v] = x;
-        any |= touch->lost[v] = touch->astray[v] | sk_is_lost(&touch->course[v], touch->now, sk_xyz(x));
-        touch->astray[v] = 0;
+        uint32_t slot = run->slot_of[touch->skin.particle[v]];
+        same &= touch->slot[v] == slot;
+        touch->slot[v] = slot;
     }
-    return any;
+    if (same) return true;
+    touch->found = false;
+    touch->slots = 0;
+    if (slots > touch->slot_capacity) {
+        release_slots(touch, run->allocator);
+        touch->before = sk_allocate(run->allocator, slots * sizeof *touch->before);
+        touch->course_block = sk_allocate(run->allocator, slots / 16 * sizeof *touch->course_block);
+        touch->off = sk_allocate(run->allocator, slots / 16 * sizeof *touch->off);
+        touch->vertex_at = sk_allocate(run->allocator, slots * sizeof *touch->vertex_at);
+        if (!touch->before || !touch->course_block || !touch->off || !touch->vertex_at) return false;
+        touch->slot_capacity = slots;
+    }
+    touch->slots = slots;
+    for (size_t b = 0; b < slots / 16; b++) {
+        touch->course_block[b] = (sk_course_block){.square = {0}};
+        for (int l = 0; l < 16; l++) touch->course_block[b].square[l] = SK_REAL_MAX; // who is not there is never lost
+    }
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->vertex_at[touch->slot[v]] = (uint32_t)v;
+    return true;
 }
 
-enum { FEW = 50 }; /* one in so many */
+/* How far a vertex goes in a substep, as it does now. */
+static sk_vec3 step_of(const sk_touch *touch, const sk_run *run, const sk_op *op, size_t v) {
+    sk_vec3 step = sk_scale((real)op->dt, sk_xyz(sk_load(run->vector[SK_V], op->packed, touch->slot[v])));
+    return sk_dot(step, step) < (real)1e12 ? step : (sk_vec3){0, 0, 0}; // blown up
+}
 
-/* Courses of lost vertices, or of all: as their velocities are. */
-static void set_courses(sk_touch *touch, const sk_run *run, const sk_op *op, bool all) {
-    // where few are lost, these are what shivers: wider reaches for them cost less than a search in each substep
-    size_t count = touch->skin.vertex_count, lost = 0;
-    for (size_t v = 0; v < count; v++) lost += touch->lost[v];
-    bool few = !all && FEW * lost < count;
-    for (size_t v = 0; v < count; v++) {
-        if (!all && !touch->lost[v]) continue;
-        sk_vec4 velocity = sk_load(run->vector[SK_V], op->packed, run->slot_of[touch->skin.particle[v]]);
-        sk_vec3 step = sk_scale((real)op->dt, sk_xyz(velocity));
-        if (!(sk_dot(step, step) < (real)1e12)) step = (sk_vec3){0, 0, 0}; // blown up
-        touch->course[v] = course_from(touch, sk_xyz(touch->p[v]), step, all ? 0 : touch->now, few ? 2 * touch->course[v].reach : 0);
+/* The frame of courses begins here, and goes as all do in the mean, unless some are pinned. */
+static void begin_frame(sk_touch *touch, const sk_run *run, const sk_op *op) {
+    double sum[3] = {0, 0, 0}, share = 1 / (double)touch->skin.vertex_count;
+    touch->held = false;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        sk_vec3 step = step_of(touch, run, op, v);
+        sum[0] += (double)step.x, sum[1] += (double)step.y, sum[2] += (double)step.z;
+        touch->held |= !(touch->inverse[v] > 0);
+    }
+    if (touch->held) share = 0;
+    touch->shift[0] = (sk_vec3){0, 0, 0};
+    touch->frame_step = (sk_vec3){(real)(share * sum[0]), (real)(share * sum[1]), (real)(share * sum[2])};
+}
+
+/* Courses of lost vertices, as their velocities are. */
+static void set_courses(sk_touch *touch, const sk_run *run, const sk_op *op, real time) {
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        if (!touch->lost[v]) continue;
+        sk_vec3 step = sk_sub(step_of(touch, run, op, v), touch->frame_step);
+        touch->course[v] = course_from(touch, sk_sub(sk_xyz(touch->p[v]), touch->shift[0]), step, time);
+        sk_touch_put_course(touch, v, false);
     }
 }
 
-/* Keeps those that are near. */
-static bool find_near(sk_touch *touch, sk_allocator *allocator, int sort) {
-    const sk_pairs *kept = &touch->kept[sort];
-    sk_pairs *near = &touch->near[sort];
-    near->count = 0;
-    if (!sk_pairs_reserve(near, allocator, kept->count)) return false;
-    for (size_t k = 0; k < kept->count; k++) {
-        if (!(kept->distance[k] < SK_NEAR_THICKNESSES * kept->thickness[k])) continue;
-        size_t to = near->count;
-        sk_pairs_copy(near, kept, k);
-        for (int c = 0; c < 3; c++) near->normal[c][to] = kept->normal[c][k];
-        for (int c = 0; c < 2; c++) near->share[c][to] = kept->share[c][k];
+/* Whether so many vertices are lost that looking for all costs less. */
+static bool are_most(const sk_touch *touch) {
+    size_t lost = 0;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) lost += touch->lost[v];
+    return 10 * lost > touch->skin.vertex_count || 2 * (touch->lost_since + lost) > touch->skin.vertex_count;
+}
+
+/* Finds out who is lost before the substep: the wild, too, get courses now and then. */
+static bool mark_lost(sk_touch *touch, const sk_run *run, const sk_op *op) {
+    const size_t often = 10; // substeps
+    bool knows = touch->alone && run->iteration > 0 && touch->followed; // for who has been lost since then?
+    if (!knows) sk_touch_set_frame(touch, run->vector[SK_X], op->packed, touch->now, 0);
+    else touch->shift[0] = touch->shift[1];
+    bool lost = !knows && sk_touch_mark_lost(touch, run->vector[SK_X], op->packed, touch->now, 0);
+    if (knows) memset(touch->lost, 0, touch->skin.vertex_count);
+    if (!touch->wild_count || (knows && run->iteration % often)) return lost;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->lost[v] |= touch->wild[v];
+    return true;
+}
+
+/* Searches where that is needed, and looks at all pairs. */
+static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool all) {
+    bool lost = !all && mark_lost(touch, run, op);
+    if (all || lost || sk_pairs_kept(touch)) sk_touch_load(touch, op->packed);
+    all |= lost && are_most(touch);
+    if (all) {
+        memset(touch->lost, 1, touch->skin.vertex_count);
+        begin_frame(touch, run, op);
     }
+    if (all || lost) {
+        set_courses(touch, run, op, all ? 0 : touch->now);
+        return sk_touch_renew(touch, run->allocator, all ? SK_SEARCH_ALL : SK_SEARCH_LOST);
+    }
+    look_at_all(touch);
     return true;
 }
 
@@ -85,18 +159,17 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     sk_touch *touch = touch_of(op);
     real thickness = (real)params_of(op)->thickness;
     if (!touch || !touch->skin.vertex_count) return;
+    bool good = (run->iteration && touch->alone) || find_slots(touch, run);
     touch->now += 1;
     bool all = !touch->found || touch->thickness < thickness || touch->thickness > thickness ||
                touch->now + 1 > touch->until;
     touch->thickness = thickness;
-    bool lost = load_places(touch, run, op), good = true;
-    if (lost || all) {
-        set_courses(touch, run, op, all);
-        good = sk_touch_renew(touch, run->allocator, all ? SK_SEARCH_ALL : SK_SEARCH_LOST);
-    } else {
-        for (int sort = 0; sort < SK_PAIR_SORTS; sort++) sk_closest[sort][touch->isa](touch->p, &touch->kept[sort]);
-    }
-    for (int sort = 0; sort < SK_PAIR_SORTS && good; sort++) good = find_near(touch, run->allocator, sort);
+    touch->loaded = false;
+    if (good) memcpy(touch->before, run->vector[SK_X], touch->slots * sizeof *touch->before);
+    good = good && find_pairs(touch, run, op, all);
+    touch->followed = false;
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->near[sort].count = 0;
+    for (int sort = 0; sort < SK_PAIR_SORTS && good; sort++) good = sk_touch_find_near(touch, run->allocator, sort);
     run->no_memory |= !good;
 }
 
@@ -136,9 +209,8 @@ static void push(sk_run *run, const sk_op *op, size_t from, size_t end) {
     sk_touch *touch = touch_of(op);
     const sk_contact_params *params = params_of(op);
     if (!touch || !(touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count)) return;
-    const uint32_t *particle = touch->skin.particle;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        touch->q[v] = sk_load(run->vector[SK_X], op->packed, run->slot_of[particle[v]]);
+        touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
         touch->q[v].w = 0;
     }
     const real gain = (real)(60 * op->dt * params->thickness); // a thickness in a sixtieth of a second
@@ -148,7 +220,7 @@ static void push(sk_run *run, const sk_op *op, size_t from, size_t end) {
     const real rate = (real)(1 / op->dt);
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         if (!(touch->q[v].w > 0)) continue;
-        size_t slot = run->slot_of[particle[v]];
+        size_t slot = touch->slot[v];
         sk_vec3 old = sk_xyz(sk_load(run->vector[SK_X], op->packed, slot)), now = sk_xyz(touch->q[v]);
         sk_store_at(run->vector[SK_X], op->packed, slot, now);
         if (op->source[1] != SK_NONE)
@@ -158,62 +230,59 @@ static void push(sk_run *run, const sk_op *op, size_t from, size_t end) {
 
 /* ---- the kind ---- */
 
+enum { VERTEX_ARRAYS = 32 };
+
+/* All arrays by vertex, edge, triangle or leaf, with the sizes of their elements. */
+static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *count) {
+    const sk_skin *skin = &touch->skin;
+    const size_t vertices = skin->vertex_count + 1, edges = skin->edge_count + 1, triangles = skin->triangle_count + 1;
+    const size_t leaves = skin->leaf_count + SK_TREE_WIDTH;
+    int n = 0;
+#define LIST(name, number) \
+    array[n] = (void **)&touch->name, size[n] = sizeof *touch->name, count[n++] = number
+    LIST(slot, vertices), LIST(p, vertices), LIST(q, vertices), LIST(way, vertices), LIST(step, vertices);
+    LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(inverse, vertices);
+    LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(lost, vertices), LIST(wild, vertices);
+    LIST(corner_box, vertices), LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles);
+    LIST(hot_edge, edges), LIST(hot_triangle, triangles), LIST(leaf_box, leaves), LIST(hot_box, leaves);
+    LIST(anew, leaves), LIST(moved, leaves), LIST(changed, leaves), LIST(start, leaves), LIST(hit, leaves);
+#undef LIST
+    return n;
+}
+
 static void release_vertices(sk_touch *touch, sk_allocator *allocator) {
-    void **arrays[] = {(void **)&touch->p,          (void **)&touch->q,          (void **)&touch->way,
-                       (void **)&touch->step,       (void **)&touch->at,         (void **)&touch->in_the_end,
-                       (void **)&touch->course,     (void **)&touch->inverse,    (void **)&touch->share,
-                       (void **)&touch->next_share, (void **)&touch->lost,       (void **)&touch->astray,      (void **)&touch->vertex_box, (void **)&touch->corner_box, (void **)&touch->lowered,
-                       (void **)&touch->edge_box,   (void **)&touch->triangle_box, (void **)&touch->leaf_box,
-                       (void **)&touch->anew,       (void **)&touch->changed,      (void **)&touch->start,      (void **)&touch->hit};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        sk_release(allocator, *arrays[i]);
-        *arrays[i] = NULL;
+    void **array[VERTEX_ARRAYS];
+    size_t size[VERTEX_ARRAYS], count[VERTEX_ARRAYS];
+    for (int i = list_arrays(touch, array, size, count); i-- > 0;) {
+        sk_release(allocator, *array[i]);
+        *array[i] = NULL;
     }
     sk_tree_release(&touch->tree, allocator);
 }
 
 static bool make_vertices(sk_touch *touch, sk_allocator *allocator) {
-    const sk_skin *skin = &touch->skin;
-    size_t count = skin->vertex_count + 1, leaves = skin->leaf_count + SK_TREE_WIDTH;
-    touch->p = sk_allocate(allocator, count * sizeof *touch->p);
-    touch->q = sk_allocate(allocator, count * sizeof *touch->q);
-    touch->way = sk_allocate(allocator, count * sizeof *touch->way);
-    touch->step = sk_allocate(allocator, count * sizeof *touch->step);
-    touch->at = sk_allocate(allocator, count * sizeof *touch->at);
-    touch->in_the_end = sk_allocate(allocator, count * sizeof *touch->in_the_end);
-    touch->course = sk_allocate(allocator, count * sizeof *touch->course);
-    touch->inverse = sk_allocate(allocator, count * sizeof *touch->inverse);
-    touch->share = sk_allocate(allocator, count * sizeof *touch->share);
-    touch->next_share = sk_allocate(allocator, count * sizeof *touch->next_share);
-    touch->lost = sk_allocate(allocator, count * sizeof *touch->lost);
-    touch->astray = sk_allocate(allocator, count * sizeof *touch->astray);
-    touch->lowered = sk_allocate(allocator, count * sizeof *touch->lowered);
-    touch->corner_box = sk_allocate(allocator, count * sizeof *touch->corner_box);
-    touch->vertex_box = sk_allocate(allocator, count * sizeof *touch->vertex_box);
-    touch->edge_box = sk_allocate(allocator, (skin->edge_count + 1) * sizeof *touch->edge_box);
-    touch->triangle_box = sk_allocate(allocator, (skin->triangle_count + 1) * sizeof *touch->triangle_box);
-    touch->leaf_box = sk_allocate(allocator, leaves * sizeof *touch->leaf_box);
-    touch->anew = sk_allocate(allocator, leaves * sizeof *touch->anew);
-    touch->changed = sk_allocate(allocator, leaves * sizeof *touch->changed);
-    touch->start = sk_allocate(allocator, leaves * sizeof *touch->start);
-    touch->hit = sk_allocate(allocator, leaves * sizeof *touch->hit);
-    return touch->p && touch->q && touch->way && touch->step && touch->at && touch->in_the_end && touch->course &&
-           touch->inverse && touch->share && touch->next_share && touch->lost && touch->astray && touch->lowered && touch->corner_box && touch->vertex_box &&
-           touch->edge_box && touch->triangle_box && touch->leaf_box && touch->anew && touch->changed && touch->start && touch->hit &&
-           sk_tree_make(&touch->tree, allocator, skin);
+    void **array[VERTEX_ARRAYS];
+    size_t size[VERTEX_ARRAYS], count[VERTEX_ARRAYS];
+    bool good = true;
+    for (int i = list_arrays(touch, array, size, count); i-- > 0 && good;)
+        good = (*array[i] = sk_allocate(allocator, size[i] * count[i])) != NULL;
+    return good && sk_tree_make(&touch->tree, allocator, &touch->skin);
 }
 
 static void release(sk_force *force, sk_allocator *allocator) {
     sk_touch *touch = force->state;
     if (!touch) return;
     release_vertices(touch, allocator);
+    release_slots(touch, allocator);
     sk_skin_release(&touch->skin, allocator);
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
         sk_pairs_release(&touch->kept[sort], allocator);
+        sk_pairs_release(&touch->late[sort], allocator);
         sk_pairs_release(&touch->near[sort], allocator);
     }
     sk_pairs_release(&touch->fresh, allocator);
-    sk_pairs_release(&touch->merged, allocator);
+    sk_release(allocator, touch->order.data);
+    sk_release(allocator, touch->other_order.data);
     sk_release(allocator, touch->first.data);
     sk_release(allocator, touch->second.data);
     sk_release(allocator, touch->partner.data);
@@ -234,11 +303,13 @@ static bool prepare(sk_force *force, sk_allocator *allocator, const sk_particles
     sk_touch *touch = force->state;
     if (!touch && !(touch = force->state = sk_allocate(allocator, sizeof *touch))) return false;
     touch->isa = isa;
+    touch->alone = parts->rule_count == 1;
     uint64_t shape = shape_of(force, parts->arrangement);
     if (touch->p && touch->shape == shape) return true;
     release_vertices(touch, allocator);
     touch->shape = shape;
-    touch->found = touch->boxed = false;
+    touch->found = touch->boxed = touch->followed = false;
+    touch->slots = touch->wild_count = 0;
     if (sk_skin_make(&touch->skin, allocator, particles, &force->only, parts) && make_vertices(touch, allocator))
         return true;
     release(force, allocator);

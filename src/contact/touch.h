@@ -35,13 +35,15 @@ typedef struct sk_skin {
     sk_vec4 *built;     /* as they were built */
     uint32_t (*edge)[2], (*triangle)[3];
     sk_leaf *leaf;
+    uint32_t *leaf_start, *leaf_of; /* those of vertex v: leaf_of[leaf_start[v]] to leaf_of[leaf_start[v + 1]] */
 } sk_skin;
 
 /* Pairs, one array a number, padded to whole blocks of sixteen. Corners: a vertex and a triangle's three, or an edge's two
  * and another's two. The normal leads from the second feature to the first; `share` says where on them they are nearest:
  * u, v of a triangle's second and third corner, or how far along each edge. */
 typedef struct sk_pairs {
-    uint32_t *corner[4], *leaf[2];
+    uint32_t *corner[4];
+    uint64_t *key; /* the order of pairs: both leaves, and which of their features */
     real *distance, *thickness, *normal[3], *share[2];
     uint8_t *settled; /* of a bound: planes divide it, */
     uint8_t *closes;  /* or have to */
@@ -83,28 +85,54 @@ typedef struct sk_tree {
 /* Lists the slots of the lowest level whose boxes may meet this one at some time. */
 typedef size_t sk_tree_kernel(const sk_tree *tree, const sk_box *box, uint32_t *slot);
 
+/* A pair's key, and where it is. */
+typedef struct sk_pair_place {
+    uint64_t key;
+    uint32_t at;
+} sk_pair_place;
+
 enum { SK_CORNERS, SK_EDGES, SK_PAIR_SORTS }; /* vertex and triangle, edge and edge: the order of pairs */
 
-/* Where a vertex is expected: at `from` at the time `since`, and on by `step` a substep. */
+/* Where a vertex is expected: at `from` at time 0, and on by `step` a substep; in a frame that moves as all do. */
 typedef struct sk_course {
     sk_vec3 from, step;
-    real since, reach; /* substeps; how far from there it may be, m */
+    real reach; /* how far from there it may be, m */
 } sk_course;
+
+/* Courses of sixteen slots; the square of a reach is without end where no vertex has a course. */
+typedef struct sk_course_block {
+    _Alignas(64) real from[3][16], step[3][16], square[16];
+} sk_course_block;
+/* Whether a vertex has left its reach, among `slots` slots of x: bits of the lanes of each sixteen that have. */
+typedef bool sk_course_kernel(const sk_vec4 *x, size_t packed, size_t slots, const sk_course_block *block, real time,
+                              const sk_vec3 *shift, uint16_t *off);
 
 typedef struct sk_touch {
     sk_skin skin;
     uint64_t shape; /* of the world that the skin was made from */
     sk_isa isa;
+    bool alone;      /* no other rule meets */
     bool found;      /* whether the pairs are of this skin */
+    bool followed;   /* the last bound has seen where all went */
+    bool held;       /* a vertex is pinned */
+    bool loaded;     /* p and inverse are of this substep */
     bool boxed;      /* whether boxes are those of the courses; */
     bool still;      /* they are those of a substep's ways, all of them */
-    bool gave_up;    /* the last search did, at a thousand pairs a vertex: nothing meets until one does not */
-    real thickness;  /* and of this thickness, m */
+    real thickness;  /* that pairs were found for, m */
     real now, until; /* substeps since the last search for all, and how long that holds */
-    bool kept_course; /* nobody has been lost since then */
+    size_t lost_since; /* how many have been lost since then, each as often as it was */
     sk_vec3 drift;   /* how far all went in a substep then, in the mean; */
     sk_vec3 common;  /* and in this one */
+    sk_vec3 frame_step; /* how far the frame of courses goes in a substep, as it did last, */
+    sk_vec3 shift[2];   /* and has gone before this one and after it */
+    /* by slot */
+    sk_vec4 *before; /* X before the substep, as it was laid out */
+    sk_course_block *course_block;
+    uint16_t *off;
+    uint32_t *vertex_at;
+    size_t slots, slot_capacity;
     /* by vertex */
+    uint32_t *slot;
     sk_vec4 *p;    /* the place before the substep */
     sk_vec4 *q;    /* after it */
     sk_vec4 *way;  /* from p to q, less what all go together; w: its length */
@@ -114,13 +142,16 @@ typedef struct sk_touch {
     real *inverse; /* mass, 1/kg */
     real *share, *next_share; /* of its way that it may go */
     uint8_t *lowered; /* its share was, in the last round */
-    uint8_t *lost;   /* it has left its reach, */
-    uint8_t *astray; /* or would have in this substep, and needs a new course in the next */
+    uint8_t *lost;    /* it is looked for */
+    uint8_t *wild;    /* it has left its course and has none: it is looked for on its way in each substep */
+    size_t wild_count;
     /* of the search */
     sk_box *corner_box; /* of vertices: where they are, and in its fourth number how much wider a box has to be */
     sk_box *vertex_box, *edge_box, *triangle_box, *leaf_box;
+    sk_box *hot_box; /* of those features of a leaf that are looked for */
+    uint8_t *hot_edge, *hot_triangle;
     sk_tree tree;
-    uint8_t *anew;                /* leaves that are looked for */
+    uint8_t *anew, *moved;        /* leaves that are looked for, and whose boxes are new */
     uint8_t *changed;             /* slots of a level of the tree */
     bool refit;                   /* all of the tree is old */
     uint32_t *start, *hit;        /* of leaves: where their partners start; slots */
@@ -128,7 +159,13 @@ typedef struct sk_touch {
         uint32_t *data;
         size_t count, capacity;
     } first, second, partner;     /* leaves whose boxes meet; those by the first */
-    sk_pairs kept[SK_PAIR_SORTS], near[SK_PAIR_SORTS], fresh, merged;
+    sk_pairs kept[SK_PAIR_SORTS]; /* of the last search for all, in their order; */
+    sk_pairs late[SK_PAIR_SORTS]; /* and of searches since then, one after the other */
+    sk_pairs near[SK_PAIR_SORTS], fresh;
+    struct {
+        sk_pair_place *data;
+        size_t count, capacity;
+    } order, other_order;         /* of late pairs that are near */
     uint64_t searches, given_up; /* how often it searched, and gave up: */
     bool told;                   /* the world was told so */
 } sk_touch;
@@ -156,10 +193,22 @@ void sk_pairs_take(sk_pairs *pairs, const sk_pairs *others, size_t first, size_t
 void sk_pairs_release(sk_pairs *pairs, sk_allocator *allocator);
 static inline void sk_pairs_copy(sk_pairs *to, const sk_pairs *from, size_t k) {
     for (int c = 0; c < 4; c++) to->corner[c][to->count] = from->corner[c][k];
-    for (int c = 0; c < 2; c++) to->leaf[c][to->count] = from->leaf[c][k];
+    to->key[to->count] = from->key[k];
     to->settled[to->count] = from->settled[k];
     to->thickness[to->count] = from->thickness[k];
     to->distance[to->count++] = from->distance[k];
+}
+
+/* ---- kept.c ---- */
+
+/* Takes fresh pairs over: instead of all that are kept, or of those with a vertex that was looked for. */
+bool sk_touch_keep(sk_touch *touch, sk_allocator *allocator, int sort, bool all);
+/* Copies those that are near, in the order of leaves. */
+bool sk_touch_find_near(sk_touch *touch, sk_allocator *allocator, int sort);
+static inline size_t sk_pairs_kept(const sk_touch *touch) {
+    size_t count = 0;
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++) count += touch->kept[sort].count + touch->late[sort].count;
+    return count;
 }
 
 /* ---- closest.c ---- */
@@ -189,10 +238,14 @@ static inline bool sk_boxes_meet(const sk_box *a, const sk_box *b) {
     return !(apart[0] | apart[1] | apart[2]);
 }
 
+/* ---- course.c ---- */
+
+extern sk_course_kernel *const sk_course_off[SK_ISA_COUNT];
+
 /* ---- search.c ---- */
 
 /* What is looked for: pairs of all vertices, or of those that are lost, for as long as all keep to their courses; or of
- * those that are lost for this one substep, on all shares of the ways that all go. */
+ * those that are lost for this one substep, on all shares of the ways that all go, and where these lead. */
 typedef enum sk_touch_search_sort { SK_SEARCH_ALL, SK_SEARCH_LOST, SK_SEARCH_WAYS } sk_touch_search_sort;
 /* False when there is no memory. */
 bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_sort search);
@@ -218,16 +271,19 @@ bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 
 /* What is less than this share of the thickness does not close at all. */
 #define SK_LEAST_GAP ((real)0.0025)
 
-/* Looks for lost vertices, whose courses are new, or for all; then looks at all pairs that are kept, at p. */
+/* Loads the places before the substep, unless they are. */
+void sk_touch_load(sk_touch *touch, size_t packed);
+/* Looks for lost vertices; then, but of ways, looks at all pairs that are kept, at p. */
 bool sk_touch_renew(sk_touch *touch, sk_allocator *allocator, sk_touch_search_sort search);
+/* Where the frame of courses is, of places x of slots at some time: [0] before this substep, [1] after it. */
+void sk_touch_set_frame(sk_touch *touch, const sk_vec4 *x, size_t packed, real time, int after);
+/* Marks vertices that are not where they are expected as lost, and nobody else; returns whether there are any. */
+bool sk_touch_mark_lost(sk_touch *touch, const sk_vec4 *x, size_t packed, real time, int after);
+/* From now on, a vertex has its course, or none. */
+void sk_touch_put_course(sk_touch *touch, size_t v, bool wild);
 /* Where a vertex is expected at a time. */
 static inline sk_vec3 sk_expected(const sk_course *course, real time) {
-    return sk_add(course->from, sk_scale(time - course->since, course->step));
-}
-/* Whether a vertex at x has left its reach; what has blown up has not. */
-static inline bool sk_is_lost(const sk_course *course, real time, sk_vec3 x) {
-    sk_vec3 off = sk_sub(x, sk_expected(course, time));
-    return sk_dot(off, off) > course->reach * course->reach;
+    return sk_add(course->from, sk_scale(time, course->step));
 }
 /* The weights of a pair's corners at its nearest points: those of the second feature are negative. */
 static inline void sk_weights_of(const sk_pairs *pairs, int sort, size_t k, real weight[4]) {

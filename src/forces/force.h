@@ -26,6 +26,7 @@ typedef struct sk_meeting_parts {
     const uint32_t (*triangle)[3], (*edge)[2];
     size_t triangle_count, edge_count;
     uint64_t arrangement; /* another number where any of it, or who takes part, may have changed */
+    size_t rule_count;    /* how many rules are shown them */
 } sk_meeting_parts;
 
 typedef struct sk_force sk_force;

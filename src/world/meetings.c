@@ -23,14 +23,16 @@ static bool list_edges(const skein_world *world, sk_allocator *allocator, uint32
     return true;
 }
 
-static bool any_meets(const skein_world *world) {
+static size_t count_those_that_meet(const skein_world *world) {
+    size_t count = 0;
     for (size_t i = 0; i < world->rules.forces.count; i++)
-        if (*world->rules.forces.data[i]->enabled && world->rules.forces.data[i]->type->meeting) return true;
-    return false;
+        count += *world->rules.forces.data[i]->enabled && world->rules.forces.data[i]->type->meeting;
+    return count;
 }
 
 skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error) {
-    if (!any_meets(world)) return SKEIN_OK;
+    size_t rules = count_those_that_meet(world);
+    if (!rules) return SKEIN_OK;
     sk_allocator *allocator = &world->allocator;
     uint32_t(*edges)[2];
     size_t edge_count;
@@ -39,7 +41,8 @@ skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error) {
                               .triangle_count = world->triangles.count,
                               .edge = (const uint32_t(*)[2])edges,
                               .edge_count = edge_count,
-                              .arrangement = world->arrangement};
+                              .arrangement = world->arrangement,
+                              .rule_count = rules};
     for (size_t i = 0; i < world->rules.forces.count && good; i++) {
         sk_force *force = world->rules.forces.data[i];
         if (*force->enabled && force->type->meeting)

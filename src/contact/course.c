@@ -1,0 +1,89 @@
+/* Where vertices are expected, and who is elsewhere: all that a substep asks for while nothing comes near anything. Courses
+ * lie in a frame that goes as most vertices do, where none is pinned: what falls keeps to its courses. */
+#include <string.h>
+
+#include "base/kernels.h"
+#include "contact/touch.h"
+#define SK_UNIT course
+SK_KERNELS(sk_course_kernel, off);
+
+#ifdef SK_ISA
+
+SK_INLINE sk_wide lanes_of(const real *reals) {
+    return *(const sk_wide *)(const void *)reals;
+}
+
+bool SK_KERNEL(off)(const sk_vec4 *x, size_t packed, size_t slots, const sk_course_block *block, real time,
+                    const sk_vec3 *shift, uint16_t *off) {
+    const sk_wide t = sk_splat(time), sx = sk_splat(shift->x), sy = sk_splat(shift->y), sz = sk_splat(shift->z);
+    uint32_t any = 0;
+    for (size_t b = 0; b < slots / 16; b++) {
+        uint32_t bits = 0;
+        for (size_t part = 0; part < SK_PARTS; part++) {
+            size_t l = part * SK_PART;
+            sk_wide4 at = sk_load_part(x, 16 * b + l, 16 * b < packed);
+            sk_wide3 r = {at.x - sx - lanes_of(block[b].from[0] + l) - t * lanes_of(block[b].step[0] + l),
+                          at.y - sy - lanes_of(block[b].from[1] + l) - t * lanes_of(block[b].step[1] + l),
+                          at.z - sz - lanes_of(block[b].from[2] + l) - t * lanes_of(block[b].step[2] + l)};
+            bits |= sk_more_bits(sk_dot_wide(r, r), lanes_of(block[b].square + l)) << l;
+        }
+        off[b] = (uint16_t)bits;
+        any |= bits;
+    }
+    return any;
+}
+#else
+sk_course_kernel *const sk_course_off[SK_ISA_COUNT] = SK_EACH_ISA(off);
+
+void sk_touch_put_course(sk_touch *touch, size_t v, bool wild) {
+    sk_course_block *block = &touch->course_block[touch->slot[v] / 16];
+    size_t l = touch->slot[v] % 16;
+    const sk_course *course = &touch->course[v];
+    block->from[0][l] = course->from.x, block->from[1][l] = course->from.y, block->from[2][l] = course->from.z;
+    block->step[0][l] = course->step.x, block->step[1][l] = course->step.y, block->step[2][l] = course->step.z;
+    block->square[l] = wild ? SK_REAL_MAX : course->reach * course->reach;
+    touch->wild_count += (size_t)wild - touch->wild[v];
+    touch->wild[v] = wild;
+}
+
+bool sk_touch_mark_lost(sk_touch *touch, const sk_vec4 *x, size_t packed, real time, int after) {
+    memset(touch->lost, 0, touch->skin.vertex_count);
+    if (!sk_course_off[touch->isa](x, packed, touch->slots, touch->course_block, time, &touch->shift[after], touch->off))
+        return false;
+    for (size_t b = 0; b < touch->slots / 16; b++)
+        for (uint32_t bits = touch->off[b]; bits; bits &= bits - 1)
+            touch->lost[touch->vertex_at[16 * b + (size_t)__builtin_ctz(bits)]] = 1;
+    return true;
+}
+
+/* ---- the frame ---- */
+
+enum { SAMPLES = 33 };
+
+static real middle_of(real value[SAMPLES], int count) {
+    for (int i = 1; i < count; i++) {
+        real a = value[i];
+        int to = i;
+        for (; to && value[to - 1] > a; to--) value[to] = value[to - 1];
+        value[to] = a;
+    }
+    return value[count / 2];
+}
+
+void sk_touch_set_frame(sk_touch *touch, const sk_vec4 *x, size_t packed, real time, int after) {
+    real off[3][SAMPLES];
+    int count = 0;
+    size_t vertices = touch->skin.vertex_count;
+    touch->shift[after] = (sk_vec3){0, 0, 0};
+    if (touch->held) return;
+    for (size_t i = 0; i < SAMPLES; i++) {
+        size_t v = (2 * i + 1) * vertices / (2 * SAMPLES);
+        if (touch->wild[v]) continue;
+        sk_vec3 r = sk_sub(sk_xyz(sk_load(x, packed, touch->slot[v])), sk_expected(&touch->course[v], time));
+        if (!(sk_dot(r, r) < (real)1e12)) continue; // blown up
+        off[0][count] = r.x, off[1][count] = r.y, off[2][count++] = r.z;
+    }
+    if (!count) touch->shift[after] = touch->shift[0];
+    else touch->shift[after] = (sk_vec3){middle_of(off[0], count), middle_of(off[1], count), middle_of(off[2], count)};
+}
+#endif

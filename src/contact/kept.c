@@ -1,0 +1,122 @@
+/* Pairs that are kept from substep to substep: those of the last search for all, in their order, and those that came
+ * since then, search after search. Those with a vertex that is looked for anew go: of the many they stay where they are,
+ * as pairs of nobody. So a search for a few costs as much as those few. What is near is put in the order of all. */
+#include "contact/touch.h"
+
+/* What a bound has settled stays so, although it was looked for anew. */
+static void stay_settled(sk_pairs *fresh, uint64_t key) {
+    size_t low = 0, high = fresh->count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (fresh->key[middle] < key) low = middle + 1;
+        else high = middle;
+    }
+    if (low < fresh->count && fresh->key[low] == key) fresh->settled[low] = 1;
+}
+
+static inline bool goes(const sk_touch *touch, const sk_pairs *pairs, size_t k) {
+    const uint8_t *lost = touch->lost;
+    return lost[pairs->corner[0][k]] | lost[pairs->corner[1][k]] | lost[pairs->corner[2][k]] | lost[pairs->corner[3][k]];
+}
+
+/* Makes those that go pairs of nobody: never near, nor closing. */
+static void let_go(const sk_touch *touch, sk_pairs *kept, sk_pairs *fresh) {
+    for (size_t k = 0; k < kept->count; k++) {
+        if (!goes(touch, kept, k)) continue;
+        if (kept->settled[k]) stay_settled(fresh, kept->key[k]);
+        for (int c = 0; c < 4; c++) kept->corner[c][k] = 0;
+        kept->thickness[k] = -1;
+        kept->settled[k] = 0;
+    }
+}
+
+static void copy_all(sk_pairs *to, const sk_pairs *from, size_t k) {
+    for (int c = 0; c < 3; c++) to->normal[c][to->count] = from->normal[c][k];
+    for (int c = 0; c < 2; c++) to->share[c][to->count] = from->share[c][k];
+    sk_pairs_copy(to, from, k);
+}
+
+/* Takes those that go out. */
+static void take_out(const sk_touch *touch, sk_pairs *late, sk_pairs *fresh) {
+    size_t count = late->count;
+    late->count = 0;
+    for (size_t k = 0; k < count; k++) {
+        if (!goes(touch, late, k)) copy_all(late, late, k);
+        else if (late->settled[k]) stay_settled(fresh, late->key[k]);
+    }
+}
+
+bool sk_touch_keep(sk_touch *touch, sk_allocator *allocator, int sort, bool all) {
+    sk_pairs *kept = &touch->kept[sort], *late = &touch->late[sort], *fresh = &touch->fresh;
+    if (all) {
+        sk_pairs other = *kept;
+        *kept = *fresh, *fresh = other;
+        late->count = 0;
+        return true;
+    }
+    let_go(touch, kept, fresh);
+    take_out(touch, late, fresh);
+    if (!sk_pairs_reserve(late, allocator, late->count + fresh->count)) return false;
+    sk_pairs_take(late, fresh, 0, fresh->count);
+    sk_pairs_pad(late);
+    return true;
+}
+
+/* ---- those that are near ---- */
+
+static inline bool is_near(const sk_pairs *kept, size_t k) {
+    return kept->distance[k] < SK_NEAR_THICKNESSES * kept->thickness[k];
+}
+
+/* The end of what is in order, from `first` on. */
+static size_t end_of_run(const sk_pair_place *place, size_t first, size_t count) {
+    size_t end = first + (first < count);
+    while (end < count && place[end - 1].key < place[end].key) end++;
+    return end;
+}
+
+/* Merges each two runs of `from`; returns whether there were more than two. */
+static bool merge_runs(const sk_pair_place *from, sk_pair_place *to, size_t count) {
+    bool more = false;
+    for (size_t first = 0; first < count;) {
+        size_t middle = end_of_run(from, first, count), end = end_of_run(from, middle, count);
+        for (size_t i = first, k = middle, at = first; at < end; at++)
+            to[at] = k == end || (i < middle && from[i].key < from[k].key) ? from[i++] : from[k++];
+        first = end;
+        more |= first < count;
+    }
+    return more;
+}
+
+/* Lists late pairs that are near, in order. */
+static const sk_pair_place *list_late(sk_touch *touch, sk_allocator *allocator, const sk_pairs *late, size_t *count) {
+    if (!SK_RESERVE(allocator, &touch->order, late->count + 1) ||
+        !SK_RESERVE(allocator, &touch->other_order, late->count + 1))
+        return NULL;
+    sk_pair_place *place = touch->order.data, *other = touch->other_order.data;
+    *count = 0;
+    for (size_t k = 0; k < late->count; k++)
+        if (is_near(late, k)) place[(*count)++] = (sk_pair_place){late->key[k], (uint32_t)k};
+    for (bool more = end_of_run(place, 0, *count) < *count; more;) {
+        more = merge_runs(place, other, *count);
+        sk_pair_place *swapped = place;
+        place = other, other = swapped;
+    }
+    return place;
+}
+
+bool sk_touch_find_near(sk_touch *touch, sk_allocator *allocator, int sort) {
+    const sk_pairs *kept = &touch->kept[sort], *late = &touch->late[sort];
+    sk_pairs *near = &touch->near[sort];
+    near->count = 0;
+    size_t count, i = 0;
+    const sk_pair_place *place = list_late(touch, allocator, late, &count);
+    if (!place || !sk_pairs_reserve(near, allocator, kept->count + count)) return false;
+    for (size_t k = 0; k < kept->count; k++) {
+        if (!is_near(kept, k)) continue;
+        while (i < count && place[i].key < kept->key[k]) copy_all(near, late, place[i++].at);
+        copy_all(near, kept, k);
+    }
+    while (i < count) copy_all(near, late, place[i++].at);
+    return true;
+}
