@@ -80,10 +80,11 @@ SK_INLINE void fetch_group(const skein_groups *g, size_t group, size_t arity, si
 typedef void group_meeting(const skein_groups *g, const sk_element_constants *c, size_t group, size_t count,
                            size_t packed, sk_element_mode mode, void *data);
 
-/* All groups, up to `most` at a time. Groups with a particle in strips are reached one by one. What is constant is so where
- * this is inlined. */
-SK_INLINE void walk_groups(const skein_groups *g, const sk_element_constants *c, size_t arity, size_t rests,
-                           size_t most, sk_element_mode mode, group_meeting *meeting, void *data) {
+/* All groups, up to `most` at a time. Groups with a particle in strips are reached one by one; where there are no strips,
+ * which is asked once for all groups and not at each, the compiler sees no such way, which would take the registers of the
+ * other. What is constant is so where this is inlined. */
+SK_INLINE void walk_all(const skein_groups *g, const sk_element_constants *c, size_t arity, size_t rests, size_t most,
+                        size_t packed, sk_element_mode mode, group_meeting *meeting, void *data) {
     for (size_t group = 0, count; group < g->count; group += count) {
         count = 1;
         if (most > 1) {
@@ -93,17 +94,23 @@ SK_INLINE void walk_groups(const skein_groups *g, const sk_element_constants *c,
         for (size_t i = 0; i < count; i++) fetch_group(g, group + i + GROUPS_AHEAD, arity, rests);
         const uint32_t *slots = g->slots + group * arity * SK_LANES;
         bool strips = false;
-        for (size_t i = 0; i < count * arity * SK_LANES && g->packed; i++) strips |= slots[i] < g->packed;
-        meeting(g, c, group, count, strips ? g->packed : 0, mode, data);
+        for (size_t i = 0; i < count * arity * SK_LANES && packed; i++) strips |= slots[i] < packed;
+        meeting(g, c, group, count, strips ? packed : 0, mode, data);
     }
+}
+
+SK_INLINE void walk_groups(const skein_groups *g, const sk_element_constants *c, size_t arity, size_t rests,
+                           size_t most, sk_element_mode mode, group_meeting *meeting, void *data) {
+    if (g->packed) walk_all(g, c, arity, rests, most, g->packed, mode, meeting, data);
+    else walk_all(g, c, arity, rests, most, 0, mode, meeting, data);
 }
 
 #ifdef WORK_OUT
 
-enum { PAIR = 2 };
-
-SK_INLINE void take_part(group_part *p, const skein_groups *g, const sk_element_constants *c, size_t group, size_t part,
-                         size_t packed, sk_element_mode mode) {
+/* A part's particles come; what else is read of its elements is read when they are worked out, so that no register keeps it
+ * until then. */
+SK_INLINE void take_part(group_part *p, const skein_groups *g, size_t group, size_t part, size_t packed,
+                         sk_element_mode mode) {
     begin_part(p, g, SK_ARITY, group, part);
     SK_EACH_PARTICLE (i) {
         take_particle(p, i, g, packed);
@@ -111,34 +118,50 @@ SK_INLINE void take_part(group_part *p, const skein_groups *g, const sk_element_
         if (mode != SK_MODE_FORCE || g->other) take_other(p, i, g, packed);
         else p->e.other[i] = (sk_wide3){{0}, {0}, {0}}; // what no damping is multiplied by must be a number
     }
-    take_values(p, g, c, mode);
 }
 
-/* Two groups that share no particle go side by side: one's roots and divisions are worked out while the other waits for
- * its own. */
 SK_INLINE void meet(const skein_groups *g, const sk_element_constants *c, size_t group, size_t count, size_t packed,
                     sk_element_mode mode, void *data) {
     for (size_t part = 0; part < SK_LANES; part += SK_PART) {
-        group_part p, q;
-        if (count == PAIR) {
-            take_part(&p, g, c, group, part, 0, mode);
-            take_part(&q, g, c, group + 1, part, 0, mode);
-            (void)WORK_OUT(&p.e, c, mode, data);
-            (void)WORK_OUT(&q.e, c, mode, data);
-            put_down(&p, g, 0, mode);
-            put_down(&q, g, 0, mode);
-        } else {
-            take_part(&p, g, c, group, part, packed, mode);
-            if (WORK_OUT(&p.e, c, mode, data)) put_down(&p, g, packed, mode);
-        }
+        group_part p;
+        take_part(&p, g, group, part, packed, mode);
+        take_values(&p, g, c, mode);
+        if (WORK_OUT(&p.e, c, mode, data)) put_down(&p, g, packed, mode);
+    }
+    (void)count, (void)data;
+}
+
+/* Groups [first, end), each of which shares no particle with the next one, flow: the next part comes before this one is put
+ * down, while it waits for its root and its division. (A processor looks some hundred operations ahead, which is less than a
+ * part has. A frame of a mesh of 20,164 vertices took 3.1 ms one by one, 2.34 two groups side by side, and takes 2.13 so; with
+ * AVX2 2.9, 2.53 and 2.43.) */
+SK_INLINE void flow(const skein_groups *g, const sk_element_constants *c, size_t first, size_t end, sk_element_mode mode,
+                    void *data) {
+    const size_t last = end * SK_LANES - SK_PART;
+    group_part now, next;
+    take_part(&now, g, first, 0, 0, mode);
+    for (size_t lane = first * SK_LANES; lane <= last; lane += SK_PART, now = next) {
+        size_t following = lane < last ? lane + SK_PART : last; // (nobody needs the last part twice, nor does it harm)
+        if (lane % SK_LANES == 0) fetch_group(g, lane / SK_LANES + GROUPS_AHEAD, SK_ARITY, SK_RESTS);
+        take_values(&now, g, c, mode);
+        bool moves = WORK_OUT(&now.e, c, mode, data);
+        take_part(&next, g, following / SK_LANES, following % SK_LANES, 0, mode);
+        if (moves) put_down(&now, g, 0, mode);
     }
     (void)data;
 }
 
-/* Pairs are worth it where registers are enough for both. */
+/* Groups flow where registers are enough for two parts: of SSE they are not (4.1 ms instead of 3.8). */
 SK_INLINE void walk_elements(const skein_groups *g, const sk_element_constants *c, sk_element_mode mode, void *data) {
-    bool pairs = SK_ARITY == 2 && SK_WIDTH > 16 && mode == SK_MODE_PROJECT && !g->packed;
-    walk_groups(g, c, SK_ARITY, SK_RESTS, pairs ? PAIR : 1, mode, meet, data);
+    bool flows = SK_ARITY == 2 && SK_WIDTH > 16 && mode == SK_MODE_PROJECT;
+    if (!flows || g->packed) {
+        walk_groups(g, c, SK_ARITY, SK_RESTS, 1, mode, meet, data);
+        return;
+    }
+    for (size_t group = 0, end; group < g->count; group = end) {
+        for (end = group + 1; end < g->count && g->ahead[end - 1] > 1;) end++;
+        flow(g, c, group, end, mode, data);
+    }
 }
 
 #endif
