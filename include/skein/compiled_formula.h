@@ -161,7 +161,8 @@ static void skein_project(const skein_groups *g) {
     skein_walk(g, SK_MODE_PROJECT);
 }
 static void skein_project_damped(const skein_groups *g) {
-    skein_walk(g, SK_MODE_PROJECT_DAMPED);
+    if (g->gamma > 0) skein_walk(g, SK_MODE_PROJECT_DAMPED);
+    else skein_walk(g, SK_MODE_PROJECT_KEPT);
 }
 static void skein_force(const skein_groups *g) {
     skein_walk(g, SK_MODE_FORCE);

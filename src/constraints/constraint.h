@@ -49,7 +49,7 @@ typedef struct sk_constraint_type {
     bool in_blocks; /* groups that share no particle are worked out together */
     sk_sweep_kernels force;
     sk_sweep_kernels project;        /* without damping, one pass a substep: no multiplier is kept */
-    sk_sweep_kernels project_damped; /* with damping or several passes */
+    sk_sweep_kernels project_damped; /* with damping or several passes: multipliers are kept */
     sk_sweep_kernels limit;          /* keeps C under the batch's bound; positions. Not every kind has one */
     sk_sweep_kernels limit_moving;   /* the same, and velocities: where they are not taken from positions */
     /* For implicit solves, with the row's coefficients a and b: dst += (a k + b c) p for the direction p, its second

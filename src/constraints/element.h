@@ -32,6 +32,11 @@ static inline sk_element_constants sk_element_prepare(const sk_batch *batch, con
                                   (real)op->coefficient[0] + (real)(op->coefficient[1] * damping_time)};
 }
 
+/* Whether multipliers that are kept are damped, too. */
+static inline bool sk_is_damped(const sk_op *op) {
+    return sk_element_prepare(((const sk_sweep *)op->rule)->batch, op).gamma > 0;
+}
+
 /* Groups [begin, end) of a row, or those of slabs [begin, end). */
 static inline skein_groups sk_groups_of(sk_run *run, const sk_op *op, size_t begin, size_t end, sk_element_mode mode) {
     const sk_sweep *sweep = op->rule;

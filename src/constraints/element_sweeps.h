@@ -71,16 +71,16 @@ SK_INLINE bool meet_part(const sk_sweep *sweep, const sk_element_constants *cons
     SK_EACH_PARTICLE (i) {
         e.x[i] = load3(x[i]);
         e.w[i] = x[i][3 * SK_PARTS];
-        if (mode != SK_MODE_PROJECT && mode != SK_MODE_LIMIT) e.other[i] = load3(other[i]);
+        if (!positions_are_enough(mode)) e.other[i] = load3(other[i]);
     }
-    set_values(&e, sweep, constants, lane, special, mode == SK_MODE_PROJECT_DAMPED);
+    set_values(&e, sweep, constants, lane, special, keeps_multiplier(mode));
     if (!work_out(&e, constants, mode)) return false;
     // from what was loaded: reading again would wait for the stores
     SK_EACH_PARTICLE (i) {
         store3(x[i], put(&e, i, e.x[i], e.scale, mode));
         if (mode == SK_MODE_LIMIT_MOVING) store3(other[i], put(&e, i, e.other[i], e.velocity_scale, mode));
     }
-    if (mode == SK_MODE_PROJECT_DAMPED) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + lane) = e.multiplier;
+    if (keeps_multiplier(mode)) *(sk_wide *)(void *)(sweep->batch->lane_multiplier + lane) = e.multiplier;
     return true;
 }
 
@@ -89,7 +89,7 @@ SK_INLINE bool meet_part(const sk_sweep *sweep, const sk_element_constants *cons
 SK_INLINE void meet_blocks(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t lane,
                            size_t slot, const offsets *o, bool turned, sk_element_mode mode) {
     bool special = turned || sweep->batch->special[lane / SK_LANES];
-    bool reads_other = mode != SK_MODE_PROJECT && mode != SK_MODE_LIMIT;
+    bool reads_other = !positions_are_enough(mode);
     sk_vec4 *from = run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V];
     sk_wide *x[SK_ARITY], *other[SK_ARITY] = {NULL}, *at[SK_ARITY], *other_at[SK_ARITY] = {NULL};
     sk_wide copy[SK_ARITY][4 * SK_PARTS], other_copy[SK_ARITY][3 * SK_PARTS];
@@ -288,14 +288,16 @@ SK_INLINE void sweep_groups(sk_run *run, const sk_op *op, size_t begin, size_t e
         sweep_groups(run, op, begin, end, mode);                                             \
     }
 #ifdef SK_WITH_STRIPS
-#define SK_WALKS(name, mode)                                                                                 \
+#define SK_TURNED(name, mode)                                                                                \
     static __attribute__((noinline)) void name##_turned(                                                     \
         sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin, size_t end, \
         const sk_span *span, const offsets *o, sk_half half) {                                               \
         if (mode == SK_MODE_LIMIT && sweep->batch->coarse)                                                   \
             meet_coarse(run, sweep, constants, begin, end, span, o, true, mode);                             \
         else meet_span(run, sweep, constants, begin, end, span, o, half, true, mode);                        \
-    }                                                                                                        \
+    }
+#define SK_WALKS(name, mode)                                                                                 \
+    SK_TURNED(name, mode)                                                                                    \
     void SK_KERNEL(name##_strips)(sk_run * run, const sk_op *op, size_t begin, size_t end) {                 \
         sweep_strips(run, op, begin, end, mode, name##_turned);                                              \
     }                                                                                                        \
@@ -306,10 +308,22 @@ SK_INLINE void sweep_groups(sk_run *run, const sk_op *op, size_t begin, size_t e
 SK_GROUP_WALK(force, SK_MODE_FORCE)
 SK_GROUP_WALK(apply, SK_MODE_APPLY)
 SK_WALKS(project, SK_MODE_PROJECT)
-SK_WALKS(project_damped, SK_MODE_PROJECT_DAMPED)
+#ifdef SK_WITH_STRIPS
+SK_TURNED(project_kept, SK_MODE_PROJECT_KEPT)
+SK_TURNED(project_damped, SK_MODE_PROJECT_DAMPED)
+void SK_KERNEL(project_damped_strips)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    if (sk_is_damped(op)) sweep_strips(run, op, begin, end, SK_MODE_PROJECT_DAMPED, project_damped_turned);
+    else sweep_strips(run, op, begin, end, SK_MODE_PROJECT_KEPT, project_kept_turned);
+}
+#endif
+void SK_KERNEL(project_damped_groups)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    if (sk_is_damped(op)) sweep_groups(run, op, begin, end, SK_MODE_PROJECT_DAMPED);
+    else sweep_groups(run, op, begin, end, SK_MODE_PROJECT_KEPT);
+}
 #ifdef SK_WITH_LIMITS
 SK_WALKS(limit, SK_MODE_LIMIT)
 SK_WALKS(limit_moving, SK_MODE_LIMIT_MOVING)
 #endif
 #undef SK_WALKS
+#undef SK_TURNED
 #undef SK_GROUP_WALK

@@ -263,7 +263,8 @@ void SK_KERNEL(project_groups)(sk_run *run, const sk_op *op, size_t begin, size_
     }
 }
 void SK_KERNEL(project_damped_groups)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
-    walk(run, op, begin, end, SK_MODE_PROJECT_DAMPED, meet_any);
+    if (sk_is_damped(op)) walk(run, op, begin, end, SK_MODE_PROJECT_DAMPED, meet_any);
+    else walk(run, op, begin, end, SK_MODE_PROJECT_KEPT, meet_any);
 }
 
 /* ---- implicit solves: elements, not groups ---- */

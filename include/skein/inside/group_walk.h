@@ -46,7 +46,7 @@ SK_INLINE void take_values(group_part *p, const skein_groups *g, const sk_elemen
     for (int r = 0; r < SK_RESTS; r++) p->e.rest[r] = lanes_at(g->rest + (size_t)r * g->rest_stride + p->lane);
     p->e.stiffness = lanes_at(g->stiffness + p->lane);
     p->e.soft = lanes_at(g->compliance + p->lane) * c->per_step;
-    if (mode == SK_MODE_PROJECT_DAMPED) p->e.multiplier = lanes_at(g->multiplier + p->lane);
+    if (keeps_multiplier(mode)) p->e.multiplier = lanes_at(g->multiplier + p->lane);
 }
 
 SK_INLINE void put_down(const group_part *p, const skein_groups *g, size_t packed, sk_element_mode mode) {
@@ -63,7 +63,7 @@ SK_INLINE void put_down(const group_part *p, const skein_groups *g, size_t packe
             scatter_to(put(&p->e, i, other_from, p->e.velocity_scale, mode), (sk_vec4 *)(void *)g->other, packed, slot,
                        other_old);
     }
-    if (mode == SK_MODE_PROJECT_DAMPED) memcpy(g->multiplier + p->lane, &p->e.multiplier, sizeof(sk_wide));
+    if (keeps_multiplier(mode)) memcpy(g->multiplier + p->lane, &p->e.multiplier, sizeof(sk_wide));
 }
 
 enum { GROUPS_AHEAD = 12 };
@@ -114,7 +114,7 @@ SK_INLINE void take_part(group_part *p, const skein_groups *g, size_t group, siz
     begin_part(p, g, SK_ARITY, group, part);
     SK_EACH_PARTICLE (i) {
         take_particle(p, i, g, packed);
-        if (mode == SK_MODE_PROJECT || mode == SK_MODE_LIMIT) continue;
+        if (positions_are_enough(mode)) continue;
         if (mode != SK_MODE_FORCE || g->other) take_other(p, i, g, packed);
         else p->e.other[i] = (sk_wide3){{0}, {0}, {0}}; // what no damping is multiplied by must be a number
     }
