@@ -70,6 +70,7 @@ static int check(app_arguments *arguments) {
 
 static const app_option options[] = {
     APP_SET_OPTION,
+    APP_BOUNDS_OPTIONS,
     {"--json", NULL, "print a list of scenes as JSON, each with its faults, warnings and counts", false, APP_TAKES_ANY},
     APP_QUIET_OPTION,
     APP_END_OF_OPTIONS};

@@ -7,6 +7,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "app/bounds.h"
+
 double app_seconds(void) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
@@ -176,7 +178,9 @@ static int parse(app_arguments *arguments, int argc, char **argv) {
 int app_command_run(const app_command *command, int argc, char **argv) {
     app_arguments arguments = {.command = command, .argc = argc, .argv = argv};
     int status = parse(&arguments, argc, argv);
-    if (status < 0) status = command->run(&arguments);
+    app_allow(app_values(&arguments, "--allow-path"));
+    if (status < 0) status = app_bounds_set(&arguments) ? command->run(&arguments) : EXIT_FAULT;
+    status = app_bounds_end(&arguments, status);
     free(arguments.words.values);
     for (int i = 0; i < APP_MOST_OPTIONS; i++) free(arguments.given[i].values);
     return status;

@@ -2,6 +2,7 @@
 #ifndef SKEIN_APP_COMMAND_H
 #define SKEIN_APP_COMMAND_H
 
+#include "io/reach.h"
 #include "io/scene.h"
 
 /* Exit statuses. A run that a signal ended early has 128 and the signal's number, as a shell would say. */
@@ -26,7 +27,7 @@ typedef struct app_option {
     app_takes takes;
 } app_option;
 
-enum { APP_MOST_OPTIONS = 20 };
+enum { APP_MOST_OPTIONS = 26 };
 
 /* What was given: a list of values for each of the command's options, and its words. */
 typedef struct app_list {
@@ -79,6 +80,19 @@ bool app_list_add(app_list *list, const char *value, bool repeats);
     {                                                                                                                \
         "--set", "PATH=VALUE", "change a value of the scene: bodies.0.stretch.stiffness=2e4; may be repeated", true, \
             APP_TAKES_ANY                                                                                            \
+    },                                                                                                               \
+        APP_ALLOW_OPTION
+/* Scenes are read with app_reach(), and so a command that reads any has this. */
+#define APP_ALLOW_OPTION                                                                                              \
+    {                                                                                                                 \
+        "--allow-path", "PATH", "files there may be read, too, if the scene names them; may be repeated", true,       \
+            APP_TAKES_FOLDER                                                                                          \
+    }
+#define APP_BOUNDS_OPTIONS                                                                                        \
+    {"--max-memory", "SIZE", "memory it may take: 500M, 2G; more is a failure that is told", false, APP_TAKES_ANY}, \
+    {                                                                                                             \
+        "--max-time", "SECONDS", "then it ends as by Ctrl-C, with what it has, and exit status 1", false,         \
+            APP_TAKES_ANY                                                                                         \
     }
 #define APP_THREADS_OPTION \
     { "--threads", "N", "threads to run on, 1 to 64; the result is the same", false, APP_TAKES_ANY }
@@ -142,6 +156,11 @@ typedef struct app_scene {
 /* Reads, checks and builds what a word means: a scene's file or name, a mesh, "-" for standard input. Every fault is
  * printed; `loaded` is all zero but for `quiet` and the lists. Returns an exit status. */
 int app_load(const char *word, const char *const *sets, app_scene *loaded);
+/* Which files scenes may have read, from now on: all (of a folder that a run of skein's left), or what --allow-path names. */
+void app_allow_all(void);
+void app_allow(const char *const *paths);
+/* The same as faults have it, with what the user set; NULL for all. `reach` has to last as long. */
+const io_reach *app_reach(const char *const *sets, io_reach *reach);
 /* Only looks whether it can be loaded. */
 int app_try(const char *word, const char *const *sets);
 void app_unload(app_scene *loaded);

@@ -47,7 +47,7 @@ static void take_in(render_world_frame *frame, skein_world *world, const render_
 static render_subject look_ahead(const app_scene *loaded, int frames, bool quiet) {
     render_subject held = render_subject_nothing();
     double most = 0;
-    io_faults faults = {ignore_fault, NULL, 0};
+    io_faults faults = {ignore_fault, NULL, 0, NULL};
     skein_world_desc desc = skein_default_world_desc();
     desc.thread_count = loaded->settings.threads;
     skein_world *world = io_scene_build(loaded->scene, &desc, &faults);

@@ -14,7 +14,7 @@ static bool each_scene(void (*take)(void *user, const char *name, const char *pa
     bool good = true;
     for (size_t i = 0; i < count; i++) {
         char path[IO_PLACE_SIZE];
-        io_faults faults = {app_report_fault, NULL, 0};
+        io_faults faults = {app_report_fault, NULL, 0, NULL};
         if (!io_scene_find(names[i], path)) continue;
         io_scene *scene = io_scene_read(path, NULL, app_exporters(), &faults);
         if (scene) take(user, names[i], path, io_scene_get(scene));

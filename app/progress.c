@@ -12,7 +12,7 @@
 
 /* ---- interrupts ---- */
 
-static volatile sig_atomic_t interrupted;
+static volatile sig_atomic_t interrupted, catching;
 
 static void on_interrupt(int number) {
     interrupted = number;
@@ -20,8 +20,14 @@ static void on_interrupt(int number) {
 
 void app_catch_interrupts(void) {
     struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND | SA_RESTART};
+    catching = 1;
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+}
+
+bool app_interrupt(int number) {
+    if (catching) interrupted = number;
+    return catching;
 }
 
 int app_interrupted(void) {

@@ -20,6 +20,8 @@ void app_progress_end(app_progress *p);             /* before any other words */
 
 /* From here on SIGINT and SIGTERM ask for an early end; a second one ends the process at once. */
 void app_catch_interrupts(void);
+/* Interrupts as that signal would; false where nobody listens. For handlers of signals. */
+bool app_interrupt(int number);
 int app_interrupted(void); /* the signal's number, or 0 */
 
 /* Steps the world to its frame number `frame`, counted from 1; false after a printed fault: the step failed, or

@@ -165,7 +165,8 @@ static io_scene *read_note(const char *note, const char *threads, const char *pa
     char set[64];
     const char *const sets[] = {threads ? set : NULL, NULL};
     io_scene *scene = NULL;
-    io_faults faults = {app_report_fault, NULL, 0};
+    io_reach reach;
+    io_faults faults = {app_report_fault, NULL, 0, app_reach(NULL, &reach)};
     snprintf(set, sizeof set, "threads=%.40s", threads ? threads : "");
     if (!text || !from)
         fprintf(stderr, "skein verify: %s: it has no scene: only `skein record` and the window write one\n", path);
@@ -207,7 +208,8 @@ static int verify_bytes(const io_bytes *bytes, const char *path, const app_argum
         return EXIT_FAULT;
     }
     io_scene *scene = read_note(info.note, app_value(arguments, "--threads"), path);
-    io_faults faults = {app_report_fault, NULL, 0};
+    io_reach reach;
+    io_faults faults = {app_report_fault, NULL, 0, app_reach(NULL, &reach)};
     skein_world_desc desc = skein_default_world_desc();
     if (scene) desc.thread_count = io_scene_get(scene)->threads;
     skein_world *world = scene ? io_scene_build(scene, &desc, &faults) : NULL;
@@ -251,6 +253,7 @@ static int verify(app_arguments *arguments) {
 static const app_option record_options[] = {
     {"-o", "FILE", "where the recording goes", false, APP_TAKES_FILE},
     APP_SET_OPTION,
+    APP_BOUNDS_OPTIONS,
     {"--at", "'STEP PATH=VALUE'",
      "set a field on the way, before that step: '120 colliders.0.radius=0.3'; may be repeated", true, APP_TAKES_ANY},
     {"--frames", "N", "frames to run, instead of the scene's", false, APP_TAKES_ANY},
@@ -279,7 +282,7 @@ const app_command app_record_command = {
     NULL,
 };
 
-static const app_option verify_options[] = {APP_THREADS_OPTION, APP_END_OF_OPTIONS};
+static const app_option verify_options[] = {APP_THREADS_OPTION, APP_ALLOW_OPTION, APP_BOUNDS_OPTIONS, APP_END_OF_OPTIONS};
 
 const app_command app_verify_command = {
     "verify",

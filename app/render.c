@@ -212,6 +212,7 @@ static int render(app_arguments *arguments) {
 
 static const app_option options[] = {
     APP_SET_OPTION,
+    APP_BOUNDS_OPTIONS,
     {"-o", "FILE", "what to write; its ending says what it becomes", false, APP_TAKES_FILE},
     {"--out", "FILE", "the same", false, APP_TAKES_FILE},
     {"--frames", "N", "frames to show, instead of the scene's", false, APP_TAKES_ANY},

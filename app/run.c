@@ -287,6 +287,7 @@ static int resume(app_arguments *arguments, const char *where) {
     int status = app_kept_read(where, &kept);
     if (status) return status;
     int every = snapshots_of(arguments);
+    app_allow_all(); // what the run named is in its folder in full, and was looked at when it began
     if (every > 0) kept.every = every;
     bool good = (!kept.up[0] || app_give(arguments, "--up", kept.up)) &&
                 (!kept.scale[0] || app_give(arguments, "--scale", kept.scale));
@@ -317,6 +318,7 @@ static int run(app_arguments *arguments) {
 
 static const app_option options[] = {
     APP_SET_OPTION,
+    APP_BOUNDS_OPTIONS,
     {"--out", "FOLDER", "write the scene's outputs and report.json there (made if missing); or one FILE", false,
      APP_TAKES_FILE},
     {"--frames", "N", "frames to run, instead of the scene's", false, APP_TAKES_ANY},

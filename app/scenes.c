@@ -4,7 +4,7 @@
 
 #include <jansson.h>
 
-#include "app/command.h"
+#include "app/bounds.h"
 #include "io/advice.h"
 #include "io/exporters.h"
 #include "io/printable.h"
@@ -16,6 +16,7 @@
 
 void app_print_error(const skein_error *error) {
     fprintf(stderr, "skein: %s%s%s\n", error->where, error->where[0] ? ": " : "", error->message);
+    app_bounds_explain(error->status);
 }
 
 void app_keep_error(const skein_error *error, char out[APP_FAILURE_SIZE]) {
@@ -81,9 +82,28 @@ static io_scene *read_scene(const char *word, const char *const *sets, io_faults
     return NULL;
 }
 
+static struct {
+    const char *const *paths;
+    bool all;
+} may; // of this process: it loads scenes for one user
+
+void app_allow_all(void) {
+    may.all = true;
+}
+
+void app_allow(const char *const *paths) {
+    may.paths = paths;
+}
+
+const io_reach *app_reach(const char *const *sets, io_reach *reach) {
+    *reach = (io_reach){may.paths, sets};
+    return may.all ? NULL : reach;
+}
+
 int app_load(const char *word, const char *const *sets, app_scene *loaded) {
     double start = app_seconds();
-    io_faults faults = {app_report_fault, loaded, 0};
+    io_reach reach;
+    io_faults faults = {app_report_fault, loaded, 0, app_reach(sets, &reach)};
     loaded->scene = read_scene(word, sets, &faults, loaded->path);
     if (loaded->scene) {
         loaded->settings = *io_scene_get(loaded->scene);
@@ -121,7 +141,7 @@ void app_advise(app_scene *loaded) {
 }
 
 void app_not_found(const char *word) {
-    io_faults faults = {app_report_fault, NULL, 0};
+    io_faults faults = {app_report_fault, NULL, 0, NULL};
     io_scene_not_found(word, &faults);
 }
 

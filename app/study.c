@@ -167,7 +167,8 @@ static io_study *read_study(const char *word, bool silent) {
     static char built[96]; // of this program, always the same
     char path[IO_PLACE_SIZE];
     find_study(word, path);
-    io_faults faults = {silent ? report_nothing : app_report_fault, NULL, 0};
+    io_reach reach;
+    io_faults faults = {silent ? report_nothing : app_report_fault, NULL, 0, app_reach(NULL, &reach)};
     io_study *study = io_study_read(path, app_exporters(), &faults);
     if (!study && faults.count > 1 && !silent) fprintf(stderr, "skein: %s: %zu faults\n", path, faults.count);
     snprintf(built, sizeof built, "%s (%s)", SKEIN_VERSION, app_commit);
@@ -251,6 +252,7 @@ static void print_measures(void) {
 
 static const app_option options[] = {
     {"--out", "FOLDER", "where tables and rows go; else a folder of the study's name, here", false, APP_TAKES_FOLDER},
+    APP_ALLOW_OPTION,
     {"--jobs", "N", "processes that run rows; one a processor if not given", false, APP_TAKES_ANY},
     {"--threads", "N", "threads of each row, 1 to 64; the result is the same", false, APP_TAKES_ANY},
     {"--part", "K/N", "run the K-th of N parts of the rows, 3/40: for jobs of a batch system", false, APP_TAKES_ANY},

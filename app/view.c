@@ -52,6 +52,7 @@ static void prepare(skein_world *world) {
 static bool read_options(const app_arguments *arguments, viewer_options *o) {
     double samples = o->samples, threads = 0;
     o->sets = app_values(arguments, "--set");
+    o->allowed = app_values(arguments, "--allow-path");
     o->exporters = app_exporters();
     o->paused = app_given(arguments, "--paused");
     o->panels = !app_given(arguments, "--no-panels");

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "io/own_kinds.h"
+#include "io/reach.h"
 #include "io/pc2.h"
 
 /* A motion's numbers take the place of its kind's default. */
@@ -130,7 +131,7 @@ bool io_cache_read(io_cache *cache, skein_world *world, io_place place, const io
     }
     char *path = io_path_beside(place.file, file);
     if (!path) io_fault(place, "file", SKEIN_ERROR_MEMORY, "out of memory");
-    bool good = path && read_file(cache, world, place, settings, path);
+    bool good = path && io_reach_check(place, "file", file, path) && read_file(cache, world, place, settings, path);
     free(path);
     if (!good) io_cache_free(cache);
     return good;

@@ -8,6 +8,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <locale.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -102,6 +103,7 @@ struct io_output {
     char *part_path;  /* where it stands until then; NULL where a device or pipe is written directly */
     uint64_t written; /* bytes that went through, without those in the buffer */
     double looked;    /* seconds: when io_output_is_due() last said yes */
+    locale_t locale; /* the plain one, in which numbers are written whatever the program's is; or 0 */
     size_t used;
     char buffer[1 << 16];
 };
@@ -114,6 +116,7 @@ static void output_free(io_output *output) {
     free(output->part_path);
     free(output->final_path);
     free(output->path);
+    if (output->locale) freelocale(output->locale);
     free(output);
 }
 
@@ -176,10 +179,11 @@ io_output *io_output_open(const char *path, skein_error *error) {
         output->used = 0;
         output->written = 0;
         output->looked = seconds_now();
+        output->locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
         output->path = strdup(path);
         output->final_path = output->part_path = NULL;
     }
-    int fault = output && output->path ? output_start(output) : ENOMEM;
+    int fault = output && output->path && output->locale ? output_start(output) : ENOMEM;
     if (fault == 0) return output;
     if (output) output_free(output);
     io_error_set(error, fault == ENOMEM ? SKEIN_ERROR_MEMORY : SKEIN_ERROR_FILE, path, "cannot write: %s",
@@ -220,6 +224,7 @@ void io_output_write(io_output *output, const void *bytes, size_t size) {
 void io_output_printf(io_output *output, const char *format, ...) {
     char line[1024], *text = line;
     va_list arguments;
+    locale_t before = uselocale(output->locale); // of this thread alone
     va_start(arguments, format);
     int length = vsnprintf(line, sizeof line, format, arguments);
     va_end(arguments);
@@ -228,6 +233,7 @@ void io_output_printf(io_output *output, const char *format, ...) {
         vsnprintf(text, (size_t)length + 1, format, arguments);
         va_end(arguments);
     }
+    uselocale(before);
     if (length >= 0 && text) io_output_write(output, text, (size_t)length);
     else if (output->fault == 0) output->fault = length < 0 ? EINVAL : ENOMEM;
     if (text != line) free(text);

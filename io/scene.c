@@ -1,4 +1,5 @@
 /* The reader of scenes' own part: the document, its view, exporters and paths. Objects are built in scene_build.c. */
+#include "io/reach.h"
 #include "io/scene.h"
 
 #include <errno.h>
@@ -154,7 +155,8 @@ static bool place_paths(io_scene *scene, io_place place) {
         char **text = (char **)(void *)((char *)scene->view + field->offset),
              *path = io_path_beside(scene->path, *text);
         if (!path) return false;
-        if (path[0] && access(path, R_OK))
+        if (!io_reach_check(place, field->name, *text, path)) path[0] = 0;
+        else if (path[0] && access(path, R_OK))
             io_fault(place, field->name, SKEIN_ERROR_FILE, "%s: cannot read: %s", path,
                      errno == ENOENT ? "no such file or directory" : strerror(errno));
         free(*text);

@@ -37,11 +37,14 @@ typedef struct io_scene_section {
 } io_scene_section;
 const io_scene_section *io_scene_section_at(size_t index);
 
+typedef struct io_reach io_reach;
+
 /* Where faults go, one a call; `error` holds place and words, each on one line. */
 typedef struct io_faults {
     void (*report)(void *user, const skein_error *error);
     void *user;
     size_t count; /* so far */
+    const io_reach *reach; /* which files may be read (io/reach.h); NULL: all */
 } io_faults;
 
 /* ---- where scenes come from (io/scene_source.c) ---- */

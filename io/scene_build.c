@@ -6,6 +6,7 @@
 
 #include "io/cache.h"
 #include "io/own_kinds.h"
+#include "io/reach.h"
 #include "io/mesh.h"
 #include "io/scene_settings.h"
 #include "solvers/cholmod.h"
@@ -47,6 +48,10 @@ static bool read_mesh(const builder *b, io_place place, const char *file, io_mes
     skein_error error = {SKEIN_ERROR_MEMORY, "", "out of memory"};
     // the library only reads a world's description, and so does pass_warning
     io_warnings warnings = {b->desc ? pass_warning : NULL, (void *)(uintptr_t)b->desc};
+    if (path && !io_reach_check(place, "mesh", file, path)) {
+        free(path);
+        return false;
+    }
     if (path) status = io_mesh_read(path, mesh, warnings, &error);
     // the folder that tools/fetch-mesh fills
     bool fetched = path && status == SKEIN_ERROR_FILE && strstr(path, "meshes/fetched/") && access(path, F_OK);

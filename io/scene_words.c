@@ -107,6 +107,8 @@ static bool add_number(joiner *j, const json_t *json) {
             snprintf(text, sizeof text, "%.*g", digits, x);
             if (strtod(text, NULL) == x) break;
         }
+        for (char *at = text; *at; at++) // in a program with another locale than the plain one
+            if (!strchr("0123456789+-eE", *at)) *at = '.';
     }
     bool added = add_text(j, !j->length ? "" : j->after_number ? " " : ", ", text);
     j->after_number = true;

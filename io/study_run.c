@@ -146,7 +146,7 @@ json_t *io_study_run(const io_study *study, size_t row, int threads, bool (*go_o
     json_t *result = NULL;
     if (r && sets) {
         r->study = study;
-        io_faults faults = {hear_fault, r, 0};
+        io_faults faults = {hear_fault, r, 0, NULL};
         io_scene *scene = io_scene_read_text(study->scene_text, strlen(study->scene_text), "scene.json",
                                              (const char *const *)sets, study->exporters, &faults);
         skein_world_desc desc = skein_default_world_desc();

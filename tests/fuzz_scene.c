@@ -86,7 +86,7 @@ static void feed(const char *text, size_t size, const char *const *sets) {
     exporters[0] = io_exporter_at(0);
     exporters[1] = io_exporter_at(1);
     size_t reported = 0, used = 0;
-    io_faults faults = {judge_fault, &reported, 0};
+    io_faults faults = {judge_fault, &reported, 0, NULL};
     io_scene *scene = io_scene_read_text(text, size, "tests/corpus/scene/fuzz.json", sets, exporters, &faults);
     require(faults.count == reported && (scene || reported > 0));
     if (!scene) return;

@@ -33,7 +33,7 @@ static track *run_scene(const char *scene, const char *const *sets) {
     static const skein_kind *const none[] = {NULL};
     char path[256];
     snprintf(path, sizeof path, "%s/scenes/%s.json", SKEIN_SOURCE_DIR, scene);
-    io_faults faults = {report, NULL, 0};
+    io_faults faults = {report, NULL, 0, NULL};
     io_scene *read = io_scene_read(path, sets, none, &faults);
     assert_non_null(read);
     skein_world *world = io_scene_build(read, NULL, &faults);
@@ -130,7 +130,7 @@ static double height_of(const skein_world *world) {
 static void a_jelly_wobbles_and_keeps_its_volume(void **state) {
     (void)state;
     static const skein_kind *const none[] = {NULL};
-    io_faults faults = {report, NULL, 0};
+    io_faults faults = {report, NULL, 0, NULL};
     io_scene *read = io_scene_read(SKEIN_SOURCE_DIR "/scenes/cube_plane.json", NULL, none, &faults);
     assert_non_null(read);
     skein_world *world = io_scene_build(read, NULL, &faults);

@@ -10,7 +10,7 @@ static void report(void *user, const skein_error *error) {
 /* scenes/birds.json with these values set. */
 static skein_world *birds(const char *const *sets) {
     static const skein_kind *const none[] = {NULL};
-    io_faults faults = {report, NULL, 0};
+    io_faults faults = {report, NULL, 0, NULL};
     io_scene *scene = io_scene_read(SKEIN_SOURCE_DIR "/scenes/birds.json", sets, none, &faults);
     skein_world *world = io_scene_build(scene, NULL, &faults);
     assert_non_null(world);

@@ -19,7 +19,7 @@ static stage set_stage(const char *name) {
     static const skein_kind *const none[] = {NULL};
     char path[256];
     snprintf(path, sizeof path, "%s/scenes/%s.json", SKEIN_SOURCE_DIR, name);
-    io_faults faults = {report, NULL, 0};
+    io_faults faults = {report, NULL, 0, NULL};
     stage s = {.scene = io_scene_read(path, NULL, none, &faults)};
     assert_non_null(s.scene);
     s.world = io_scene_build(s.scene, NULL, &faults);

@@ -86,7 +86,7 @@ static void a_flipped_bit_is_named(void **state) {
     char *text = read_text(scene_path);
     snprintf(note, sizeof note, "{\"path\": \"%s\", \"scene\": %s}", scene_path, text);
     free(text);
-    io_faults faults = {report, NULL, 0};
+    io_faults faults = {report, NULL, 0, NULL};
     io_scene *scene = io_scene_read(scene_path, NULL, none, &faults);
     skein_world *world = io_scene_build(scene, NULL, &faults);
     FILE *file = fopen(path, "wb");

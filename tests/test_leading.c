@@ -178,7 +178,7 @@ static void tell(void *user, const skein_error *error) {
 
 static skein_world *build(const char *text, told *all) {
     all->words[0] = 0;
-    io_faults faults = {tell, all, 0};
+    io_faults faults = {tell, all, 0, NULL};
     io_scene *scene =
         io_scene_read_text(text, strlen(text), "x.json", NULL, (const skein_kind *const[]){NULL}, &faults);
     skein_world *world = scene ? io_scene_build(scene, NULL, &faults) : NULL;

@@ -133,7 +133,7 @@ static void ignore_fault(void *user, const skein_error *fault) {
 static void check_scene(const char *path, int *low) {
     static const skein_kind *kinds[2];
     char fault[400] = "";
-    io_faults faults = {ignore_fault, fault, 0};
+    io_faults faults = {ignore_fault, fault, 0, NULL};
     kinds[0] = render_view_kind();
     io_scene *scene = io_scene_read(path, NULL, kinds, &faults);
     if (!scene) fail_msg("%s", fault);

@@ -30,7 +30,7 @@ static io_scene *read_text(const char *text, const char *const *sets, io_faults 
 static void a_scene_has_a_view(void **state) {
     (void)state;
     const char *const sets[] = {"view.springs=true", "view.camera.from=[1, 2, 3]", NULL};
-    io_faults faults = {note_fault, NULL, 0};
+    io_faults faults = {note_fault, NULL, 0, NULL};
     io_scene *scene = read_text("{'view': {'wireframe': true, 'colour': 'strain', 'image': 'a.png',"
                                 " 'camera': {'fov': 50}}}",
                                 sets, &faults);
@@ -71,7 +71,7 @@ static void a_scene_has_a_view(void **state) {
 }
 
 static void assert_fault(const char *text, const char *part) {
-    io_faults faults = {note_fault, NULL, 0};
+    io_faults faults = {note_fault, NULL, 0, NULL};
     last_fault[0] = 0;
     io_scene *scene = read_text(text, NULL, &faults);
     io_scene_free(scene);
@@ -137,7 +137,7 @@ static void one_spring_is_two_balls_and_a_line(void **state) {
     static const char *const names[] = {"scenes/one_spring.json", "scenes/one_spring_live.json"};
     (void)state;
     for (size_t i = 0; i < 2; i++) {
-        io_faults faults = {note_fault, NULL, 0};
+        io_faults faults = {note_fault, NULL, 0, NULL};
         kinds[0] = render_view_kind();
         io_scene *scene = io_scene_read(names[i], NULL, kinds, &faults);
         skein_world *world = io_scene_build(scene, NULL, &faults);
@@ -191,7 +191,7 @@ typedef struct stage {
 
 /* False where the scene needs a mesh that was not fetched. */
 static bool set_stage(stage *s, const char *path, int frames) {
-    io_faults faults = {note_fault, NULL, 0};
+    io_faults faults = {note_fault, NULL, 0, NULL};
     skein_error error = {0};
     kinds[0] = render_view_kind();
     io_scene *scene = io_scene_read(path, NULL, kinds, &faults);

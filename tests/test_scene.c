@@ -18,7 +18,7 @@ static const skein_kind *exporters[3];
 
 /* Reads JSON that has ' in the place of ". */
 static io_scene *read_scene(const char *text, const char *const *sets) {
-    io_faults faults = {print_fault, NULL, 0};
+    io_faults faults = {print_fault, NULL, 0, NULL};
     exporters[0] = io_exporter_at(0), exporters[1] = io_exporter_at(1);
     char *copy = strdup(text);
     for (char *at = copy; (at = strchr(at, '\'')) != NULL;) *at = '"';
@@ -31,7 +31,7 @@ static io_scene *read_scene(const char *text, const char *const *sets) {
 }
 
 static skein_world *build_scene(const char *text, const char *const *sets) {
-    io_faults faults = {print_fault, NULL, 0};
+    io_faults faults = {print_fault, NULL, 0, NULL};
     io_scene *scene = read_scene(text, sets);
     skein_world *world = io_scene_build(scene, NULL, &faults);
     assert_non_null(world);
@@ -213,7 +213,7 @@ static void a_method_changes_its_type_alone(void **state) {
         char set[64], log[256] = "", note[128] = "";
         snprintf(set, sizeof set, "method.type=%s", name);
         const char *const sets[] = {set, NULL};
-        io_faults faults = {print_fault, NULL, 0};
+        io_faults faults = {print_fault, NULL, 0, NULL};
         io_scene *read = read_scene(scene, sets);
         skein_world_desc desc = skein_default_world_desc();
         desc.log = collect_log, desc.log_user = log;
@@ -229,7 +229,7 @@ static void a_method_changes_its_type_alone(void **state) {
     }
     // what is asked for after the change is meant for the new type: a fault if it does not know it
     const char *const sets[] = {"method.type=leapfrog", "method.iterations=3", NULL};
-    io_faults quiet = {NULL, NULL, 0};
+    io_faults quiet = {NULL, NULL, 0, NULL};
     io_scene *read = read_scene(scene, sets);
     assert_null(io_scene_build(read, NULL, &quiet));
     assert_int_equal(quiet.count, 1);
@@ -288,7 +288,7 @@ static void sets_take_numbers_as_they_are_listed(void **state) {
                                       "bodies.0.size=(2 3", "bodies.0.density=1 2", "forces.0.acceleration=1 2"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         const char *const sets[] = {bad[i], NULL};
-        io_faults quiet = {NULL, NULL, 0};
+        io_faults quiet = {NULL, NULL, 0, NULL};
         io_scene *read = read_scene(scene, sets);
         assert_null(io_scene_build(read, NULL, &quiet));
         assert_int_equal(quiet.count, 1);

@@ -190,7 +190,7 @@ static void report(void *user, const skein_error *error) {
 
 static skein_world *load(const char *path) {
     static const skein_kind *const none[] = {NULL};
-    io_faults faults = {report, NULL, 0};
+    io_faults faults = {report, NULL, 0, NULL};
     io_scene *scene = io_scene_read(path, NULL, none, &faults);
     assert_non_null(scene);
     skein_world *world = io_scene_build(scene, NULL, &faults);

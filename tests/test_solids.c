@@ -10,7 +10,7 @@ static void complain(void *user, const skein_error *error) {
 
 static skein_world *build(const char *const *sets) {
     static const skein_kind *const no_exporters[] = {NULL};
-    io_faults faults = {complain, NULL, 0};
+    io_faults faults = {complain, NULL, 0, NULL};
     io_scene *scene = io_scene_read(SKEIN_SOURCE_DIR "/scenes/neo_hookean.json", sets, no_exporters, &faults);
     assert_non_null(scene);
     skein_world *world = io_scene_build(scene, NULL, &faults);

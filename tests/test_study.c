@@ -25,7 +25,7 @@ static const skein_kind *const no_kinds[] = {NULL};
 /* A study of a text that has ' in the place of ". */
 static io_study *read_study(const char *text) {
     char copy[4000];
-    io_faults faults = {note, NULL, 0};
+    io_faults faults = {note, NULL, 0, NULL};
     snprintf(copy, sizeof copy, "%s", text);
     for (char *at = copy; (at = strchr(at, '\'')) != NULL;) *at = '"';
     said[0] = 0;
@@ -226,7 +226,7 @@ static void rows_are_alike_whoever_runs_them(void **state) {
 /* What is only looked at does not change a scene's hash; a mesh counts as what is in it, wherever it lies. */
 static uint64_t hash_of(const char *text) {
     char copy[1000];
-    io_faults faults = {note, NULL, 0};
+    io_faults faults = {note, NULL, 0, NULL};
     snprintf(copy, sizeof copy, "%s", text);
     for (char *at = copy; (at = strchr(at, '\'')) != NULL;) *at = '"';
     io_scene *scene = io_scene_read_text(copy, strlen(copy), "s.json", NULL, no_kinds, &faults);

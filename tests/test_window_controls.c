@@ -124,7 +124,7 @@ typedef struct opened {
 
 static opened open_here(const char *path) {
     const skein_kind *const kinds[] = {render_view_kind(), NULL};
-    io_faults faults = {tell_fault, NULL, 0};
+    io_faults faults = {tell_fault, NULL, 0, NULL};
     opened o = {io_scene_read(path, NULL, kinds, &faults), NULL};
     assert_non_null(o.scene);
     o.world = io_scene_build(o.scene, NULL, &faults);

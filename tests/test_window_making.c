@@ -93,7 +93,7 @@ static void tell_fault(void *user, const skein_error *error) {
 
 static skein_world *world_of(const char *path) {
     const skein_kind *const kinds[] = {render_view_kind(), NULL};
-    io_faults faults = {tell_fault, NULL, 0};
+    io_faults faults = {tell_fault, NULL, 0, NULL};
     io_scene *scene = io_scene_read(path, NULL, kinds, &faults);
     assert_non_null(scene);
     skein_world *world = io_scene_build(scene, NULL, &faults);

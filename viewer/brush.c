@@ -208,7 +208,7 @@ bool viewer_pins_lose_meaning(viewer_stage *stage, const char *set, char *out, s
     if (painted && sets) {
         sets[count++] = set, sets[count] = NULL;
         viewer_reading reading = viewer_stage_reading(stage);
-        io_faults quiet = {NULL, NULL, 0};
+        io_faults quiet = {NULL, NULL, 0, NULL};
         io_scene *scene = io_scene_read(stage->sides[0].path, sets, reading.exporters, &quiet);
         skein_world *world = scene ? io_scene_build(scene, NULL, &quiet) : NULL;
         skein_value pins = {0, {0, 0, 0}, NULL};

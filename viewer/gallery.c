@@ -45,7 +45,7 @@ static void keep_fault(void *user, const skein_error *error) {
 /* What the scene's file says of itself. */
 static void read_card(viewer_stage *stage, viewer_card *card) {
     char fault[240] = "";
-    io_faults faults = {keep_fault, fault, 0};
+    io_faults faults = {keep_fault, fault, 0, NULL};
     io_scene *scene = io_scene_read(card->path, NULL, stage->options->exporters, &faults);
     const char *slash = strrchr(card->path, '/');
     snprintf(card->title, sizeof card->title, "%.63s", slash ? slash + 1 : card->path);
@@ -169,7 +169,8 @@ static void paint_card(void *user) {
     struct viewer_gallery *gallery = stage->gallery;
     viewer_card *card = gallery->card;
     viewer_player player = {0};
-    viewer_reading reading = {stage->options->exporters, stage->options->threads, NULL, VIEWER_ON_PROCESSOR};
+    viewer_reading reading = {stage->options->exporters, stage->options->threads, NULL, stage->options->allowed,
+                              VIEWER_ON_PROCESSOR};
     unsigned texture = 0;
     gallery->fault[0] = 0;
     if (viewer_player_open(&player, card->path, NULL, &reading, (viewer_reporter){gallery_hears, gallery})) {

@@ -96,7 +96,7 @@ static void close_present(present *p) {
 static bool open_present(viewer_stage *stage, present *p) {
     viewer_reading reading = viewer_stage_reading(stage);
     *p = (present){viewer_player_scene(&stage->sides[0], &reading), NULL};
-    io_faults faults = {NULL, NULL, 0};
+    io_faults faults = {NULL, NULL, 0, NULL};
     if (p->scene) p->world = io_scene_build(p->scene, NULL, &faults);
     if (p->world) return true;
     viewer_say(stage, SKEIN_LOG_WARNING, "the scene's file has a fault or is gone: nothing is made");

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "io/advice.h"
+#include "io/reach.h"
 #include "viewer/events.h"
 
 /* ---- Opening ---- */
@@ -23,11 +24,26 @@ static void world_says(void *user, skein_log_level level, const char *message) {
     reporter->say(reporter->user, level, message);
 }
 
+/* With what was done in the window, which may name files as it likes: it was the user. */
 static io_scene *read_scene(const viewer_player *player, const viewer_reading *reading, io_faults *faults) {
     const char **sets = viewer_changes_sets(&player->changes);
+    io_reach reach = {reading->allowed, sets};
+    faults->reach = &reach;
     io_scene *scene = io_scene_read(player->path, sets, reading->exporters, faults);
+    faults->reach = NULL;
     free(sets);
     return scene;
+}
+
+static skein_world *build(const viewer_player *player, const viewer_reading *reading, const skein_world_desc *desc,
+                          io_faults *faults) {
+    const char **sets = viewer_changes_sets(&player->changes);
+    io_reach reach = {reading->allowed, sets};
+    faults->reach = &reach;
+    skein_world *world = io_scene_build(player->scene, desc, faults);
+    faults->reach = NULL;
+    free(sets);
+    return world;
 }
 
 static bool is_held(const skein_world *world, size_t particle) {
@@ -105,7 +121,7 @@ static void take_to_card(const viewer_player *player, viewer_device device) {
 
 /* Fills in scene, world and all that belongs to them; `player` has path, changes and reporter. */
 static bool load(viewer_player *player, const viewer_reading *reading) {
-    io_faults faults = {report_fault, &player->reporter, 0};
+    io_faults faults = {report_fault, &player->reporter, 0, NULL};
     player->scene = read_scene(player, reading, &faults);
     if (!player->scene) return false;
     player->settings = *io_scene_get(player->scene);
@@ -113,7 +129,7 @@ static bool load(viewer_player *player, const viewer_reading *reading) {
     desc.log = world_says;
     desc.log_user = &player->reporter;
     desc.thread_count = reading->threads > 0 ? reading->threads : player->settings.threads;
-    player->world = io_scene_build(player->scene, &desc, &faults);
+    player->world = build(player, reading, &desc, &faults);
     if (!player->world) return false;
     if (reading->prepare) reading->prepare(player->world);
     const render_view *view = io_scene_view(player->scene);
@@ -200,7 +216,7 @@ bool viewer_player_reopen(viewer_player *player, viewer_changes *changes, bool s
 
 io_scene *viewer_player_scene(const viewer_player *player, const viewer_reading *reading) {
     viewer_reporter reporter = player->reporter;
-    io_faults faults = {report_fault, &reporter, 0};
+    io_faults faults = {report_fault, &reporter, 0, NULL};
     return read_scene(player, reading, &faults);
 }
 

@@ -46,6 +46,7 @@ typedef struct viewer_reading {
     const skein_kind *const *exporters;
     int threads;                         /* 0: the scene's */
     void (*prepare)(skein_world *world); /* once it is built; or NULL */
+    const char *const *allowed;          /* paths that scenes may have read besides (io/reach.h) */
     viewer_device device;                /* an OpenGL context is current on this thread, if it is to be a card */
 } viewer_reading;
 

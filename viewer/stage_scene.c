@@ -11,7 +11,7 @@ static void player_says(void *user, skein_log_level level, const char *text) {
 }
 
 viewer_reading viewer_stage_reading(const viewer_stage *stage) {
-    return (viewer_reading){stage->options->exporters, stage->options->threads, stage->options->prepare,
+    return (viewer_reading){stage->options->exporters, stage->options->threads, stage->options->prepare, stage->options->allowed,
                             stage->card ? stage->options->device : VIEWER_ON_PROCESSOR};
 }
 

@@ -24,6 +24,7 @@ typedef struct viewer_options {
     const char *path;                   /* a scene or a mesh; NULL: the gallery */
     const char *scenes;                 /* the gallery's folder; NULL: io_scenes_folder's first */
     const char *const *sets;            /* "path=value" for the first scene, NULL-terminated; or NULL */
+    const char *const *allowed;         /* files and folders that scenes may have read besides (io/reach.h), or NULL */
     const skein_kind *const *exporters; /* for the scene reader, the view's kind among them */
     const char *events;                 /* a file that is told what happens, "-" for standard output; NULL: none */
     const char *compare;                /* "path=value" of a second world beside the first; NULL: none */

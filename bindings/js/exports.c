@@ -110,7 +110,7 @@ static const char **without_output(const char *text, size_t size, const char *co
 /* Reads a scene and builds its world. `sets` are "path=value", NULL-terminated, or NULL. False: js_faults() tells. */
 bool EXPORT(js_open)(js_scene *js, const char *text, size_t size, const char *path, const char *const *sets) {
     const skein_kind *const kinds[] = {render_view_kind(), NULL}; // besides the library's; nothing is exported here
-    io_faults faults = {note_fault, js, 0};
+    io_faults faults = {note_fault, js, 0, NULL};
     const js_files *before = js_files_use(&js->files);
     const char **all = without_output(text, size, sets);
     if (all) js->scene = io_scene_read_text(text, size, path, all, kinds, &faults);
@@ -234,7 +234,7 @@ static void note_set(js_scene *js, const char *path, const char *field, const ch
 bool EXPORT(js_set)(js_scene *js, int category, size_t index, const char *path, const char *field, const char *value) {
     skein_handle handle = skein_object_at(js->world, (skein_category)category, index);
     const skein_kind *kind = skein_object_kind(js->world, handle);
-    io_faults faults = {note_fault, js, 0};
+    io_faults faults = {note_fault, js, 0, NULL};
     io_place place = {"", path, &faults};
     json_t *json = json_loads(value, JSON_DECODE_ANY, NULL), *object = json_object();
     io_settings settings = {0};
@@ -424,7 +424,7 @@ bool EXPORT(js_clip)(js_scene *js, size_t body, const char *name, uint32_t out[2
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
         if (!strcmp(formats[i]->kind.name, name)) format = formats[i];
     skein_handle handle = skein_object_at(js->world, SKEIN_BODY, body);
-    io_faults faults = {note_fault, js, 0};
+    io_faults faults = {note_fault, js, 0, NULL};
     io_place place = {"", name, &faults};
     skein_error error = {0};
     skein_surface s;

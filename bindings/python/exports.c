@@ -55,7 +55,7 @@ py_scene *py_scene_open(const char *text, size_t size, const char *path, const c
                         void *user) {
     const skein_kind *const kinds[] = {render_view_kind(), NULL};
     hearer to = {report, user};
-    io_faults faults = {pass_fault, &to, 0};
+    io_faults faults = {pass_fault, &to, 0, NULL};
     py_scene *scene = calloc(1, sizeof *scene);
     if (!scene) return NULL;
     scene->scene = text ? io_scene_read_text(text, size, path, sets, kinds, &faults)
@@ -68,7 +68,7 @@ py_scene *py_scene_open(const char *text, size_t size, const char *path, const c
 /* Builds its world; NULL if there was any fault, in reading too. */
 skein_world *py_scene_build(py_scene *scene, const skein_world_desc *desc, py_report report, void *user) {
     hearer to = {report, user};
-    io_faults faults = {pass_fault, &to, 0};
+    io_faults faults = {pass_fault, &to, 0, NULL};
     skein_world_desc own = *desc;
     if (!own.thread_count) own.thread_count = io_scene_get(scene->scene)->threads;
     return io_scene_build(scene->scene, &own, &faults);
@@ -96,7 +96,7 @@ char *py_scene_text(const py_scene *scene) {
 bool py_scene_note(py_scene *scene, const char *set, py_report report, void *user) {
     const skein_kind *const kinds[] = {render_view_kind(), NULL};
     hearer to = {report, user};
-    io_faults faults = {pass_fault, &to, 0};
+    io_faults faults = {pass_fault, &to, 0, NULL};
     json_t *notes = json_array();
     bool good = notes && io_scene_override(io_scene_document(scene->scene), set, kinds, &faults, notes);
     json_decref(notes);

@@ -47,7 +47,7 @@ static const skein_kind *const *kinds(void) {
 /* Reads a study; NULL after faults. */
 py_study *py_study_open(const char *text, size_t size, const char *path, py_report report, void *user) {
     hearer to = {report, user};
-    io_faults faults = {pass_fault, &to, 0};
+    io_faults faults = {pass_fault, &to, 0, NULL};
     py_study *study = calloc(1, sizeof *study);
     if (study) study->study = io_study_read_text(text, size, path, kinds(), &faults);
     if (study && study->study) return study;

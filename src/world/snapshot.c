@@ -272,6 +272,13 @@ skein_status skein_snapshot_look(const void *bytes, size_t size, skein_snapshot_
     return look(bytes, size, info, error);
 }
 
+/* Whether two texts name one file, seen from different folders: what was in it is compared by the object's hash. */
+static bool is_same_file(const skein_field *field, const skein_value *a, const skein_value *b) {
+    if (field->type != SKEIN_FIELD_TEXT || !a->text || !b->text) return false;
+    const char *end_a = strrchr(a->text, '/'), *end_b = strrchr(b->text, '/');
+    return (end_a || end_b) && !strcmp(end_a ? end_a + 1 : a->text, end_b ? end_b + 1 : b->text);
+}
+
 /* The fields of one object: compares those that are built in, and where `apply` is set sets the others. `failed` is the
  * first that could not be; a second turn may, when those beside it are set. */
 static skein_status take_fields(sk_byte_reader *r, skein_world *world, sk_object *object, skein_handle handle,
@@ -293,6 +300,7 @@ static skein_status take_fields(sk_byte_reader *r, skein_world *world, sk_object
         bool track = object && object->category == SKEIN_MOTION && object->as.motion->type->given &&
                      !strcmp(object->as.motion->type->given, name); // a file: what was in it is compared
         if (track || is_same(&value, &now)) continue;
+        if (is_same_file(field, &value, &now) && !skein_field_is_live(world, handle, name)) continue;
         if (!apply) {
             char there[48], here[48];
             if ((status = skein_field_check(field, &value, error))) return status;

@@ -4,14 +4,16 @@
  * It counts the calls that skein itself makes (its film module, too; not those of drivers and encoders, nor of
  * compilers that skein starts): files opened to be written, read and written, brought to the disk, cut, closed,
  * renamed, folders made, threads started. Each is noted as a line "NUMBER KIND WHAT" in the file $SKEIN_FAIL_LOG.
- * $SKEIN_FAIL has what happens: count        nothing: the log says how many calls there are once N       the N-th call
- * fails, with what it would fail with in earnest full N       from the N-th call on, all that needs room on a disk
- * fails: it is full, and stays so pieces       every write and read moves one byte or half of what was asked for, and
- * every other one is interrupted before */
+ *
+ * $SKEIN_FAIL says what happens. "count": nothing; the log has how many calls there are. "once N": the N-th fails. "full
+ * N": from the N-th on, all that needs room on a disk fails; it is full, and stays so. "pieces": every write and read moves
+ * one byte or half of what was asked for, and every other one is interrupted before. "locale": nothing; but the process has
+ * the locale of its environment, as programs with windows have, which skein itself does not ask for. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <locale.h>
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -40,6 +42,7 @@ __attribute__((constructor)) static void wake(void) {
     if (!what || !log || strcmp(name ? name + 1 : program_invocation_name, "skein")) return;
     fail.number = number ? atol(number) : 0;
     fail.log = (int)syscall(SYS_openat, AT_FDCWD, log, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    if (!strcmp(what, "locale") && !setlocale(LC_ALL, "")) abort();
     fail.mode = !strncmp(what, "once ", 5)   ? ONCE
                 : !strncmp(what, "full ", 5) ? FULL
                 : !strcmp(what, "pieces")    ? PIECES
