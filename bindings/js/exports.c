@@ -107,13 +107,14 @@ static const char **without_output(const char *text, size_t size, const char *co
     return all;
 }
 
-/* Reads a scene and builds its world. `sets` are "path=value", NULL-terminated, or NULL. False: js_faults() tells. */
+/* Reads a scene and builds its world; a path of a mesh without a text becomes a scene about it, as in the command. `sets` are "path=value", NULL-terminated, or NULL. False: js_faults() tells. */
 bool EXPORT(js_open)(js_scene *js, const char *text, size_t size, const char *path, const char *const *sets) {
     const skein_kind *const kinds[] = {render_view_kind(), NULL}; // besides the library's; nothing is exported here
     io_faults faults = {note_fault, js, 0, NULL};
     const js_files *before = js_files_use(&js->files);
     const char **all = without_output(text, size, sets);
-    if (all) js->scene = io_scene_read_text(text, size, path, all, kinds, &faults);
+    if (all && !size && io_path_is_mesh(path)) js->scene = io_scene_of_mesh(path, all, kinds, &faults);
+    else if (all) js->scene = io_scene_read_text(text, size, path, all, kinds, &faults);
     free(all);
     if (js->scene) {
         skein_world_desc desc = skein_default_world_desc();
@@ -583,6 +584,55 @@ bool EXPORT(js_pose)(js_scene *js, size_t collider, double out[12]) {
     memcpy(out, pose.position, sizeof pose.position);
     memcpy(out + 3, pose.rotation, sizeof pose.rotation);
     return true;
+}
+
+/* What a collider or body looks like, whatever its kind is; JSON to be freed. */
+char *EXPORT(js_shape)(js_scene *js, int category, size_t index) {
+    static const char *const sorts[] = {"surface", "plane", "ball", "bowl", "capsule", "box", "chain", "birds"};
+    skein_shape s;
+    skein_handle handle = skein_object_at(js->world, (skein_category)category, index);
+    if (failed(js, skein_shape_of(js->world, handle, &s))) return NULL;
+    json_t *json = json_pack("{s:s, s:f, s:[f,f,f], s:[f,f,f]}", "sort", sorts[s.sort], "radius", s.radius, "axis",
+                             s.axis[0], s.axis[1], s.axis[2], "size", s.size[0], s.size[1], s.size[2]);
+    char *text = json_dumps(json, JSON_COMPACT);
+    json_decref(json);
+    return text;
+}
+
+/* A collider's distances at points, or a field's forces (three numbers each), into `out`. */
+bool EXPORT(js_probe)(js_scene *js, bool force, size_t index, size_t count, const double *points, double *out) {
+    skein_handle handle = skein_object_at(js->world, force ? SKEIN_FORCE : SKEIN_COLLIDER, index);
+    return !failed(js, force ? skein_force_probe(js->world, handle, count, points, out)
+                             : skein_collider_probe(js->world, handle, count, points, out, NULL));
+}
+
+/* Constraint `index` of an object, operation by operation, with their derivatives; JSON to be freed, NULL after a fault. */
+char *EXPORT(js_operations)(js_scene *js, int category, size_t object, size_t index) {
+    enum { MOST = 256, MOST_COORDINATES = 24 };
+    skein_constraint_value value;
+    skein_handle handle = skein_object_at(js->world, (skein_category)category, object);
+    skein_operation *operations = malloc(MOST * sizeof *operations);
+    double *derivatives = malloc(MOST * MOST_COORDINATES * sizeof *derivatives);
+    json_t *list = json_array();
+    size_t count = 0;
+    bool good = operations && derivatives &&
+                !failed(js, skein_constraint_evaluate(js->world, handle, index, &value, NULL, NULL, 0)) &&
+                !failed(js, skein_constraint_operations(js->world, handle, index, operations, derivatives, MOST, &count));
+    size_t wide = good ? 3 * value.particle_count : 0;
+    for (size_t i = 0; good && i < count && i < MOST; i++) {
+        const skein_operation *o = &operations[i];
+        json_t *operands = json_array(), *slopes = json_array();
+        for (int k = 0; k < o->operand_count; k++)
+            json_array_append_new(operands, json_integer((json_int_t)o->operand[k]));
+        for (size_t k = 0; k < wide; k++) json_array_append_new(slopes, json_real(derivatives[i * wide + k]));
+        json_array_append_new(list, json_pack("{s:s, s:s, s:f, s:o, s:o}", "name", o->name, "label", o->label, "value",
+                                              o->value, "operands", operands, "derivatives", slopes));
+    }
+    free(operations);
+    free(derivatives);
+    char *text = good ? json_dumps(list, JSON_COMPACT) : NULL;
+    json_decref(list);
+    return text;
 }
 
 /* Pairs of particles that a rule keeps at a distance: copies up to `most`, two indices each; returns how many. */

@@ -121,6 +121,10 @@ export class World {
     #path;
     #scratch = new Map(); // memory by its use, for what is copied out again and again
 
+    /* A mesh by itself, `files[path]`, as the scene that the command makes of it. */
+    static async fromMesh(path, files, options = {}) {
+        return World.fromScene('', {...options, files, path});
+    }
     static async fromScene(scene, {sets = [], files = {}, path = 'scene.json', wasm: source} = {}) {
         return new World(await load(source), scene, sets, files, path);
     }
@@ -412,6 +416,32 @@ export class World {
         this.#check(good);
         return bytes;
     }
+    /* What a body or collider looks like: its sort ("ball", "box", "surface" ...) and measures. */
+    shape(category, index) {
+        const at = this.#wasm.js_shape(this.#world, CATEGORIES.indexOf(category), index);
+        if (!at) this.#fail();
+        return takeJson(this.#wasm, at);
+    }
+    /* How far points (x, y, z each) are from a collider's surface; negative inside. */
+    distances(collider, points) {
+        return this.#probe(false, collider, points, points.length / 3);
+    }
+    /* What a force field does to a particle at rest at each of the points. */
+    forces(force, points) {
+        return this.#probe(true, force, points, points.length);
+    }
+    #probe(force, index, points, numbers) {
+        const wasm = this.#wasm, at = wasm.js_take(8 * (points.length + numbers));
+        if (!at) throw new SkeinError([]);
+        try {
+            new Float64Array(wasm.memory.buffer, at, points.length).set(points);
+            const out = at + 8 * points.length;
+            this.#check(wasm.js_probe(this.#world, force, index, points.length / 3, at, out));
+            return new Float64Array(wasm.memory.buffer, out, numbers).slice();
+        } finally {
+            wasm.js_give(at);
+        }
+    }
     pose(collider) {
         const room = this.#room('pose', 96);
         this.#check(this.#wasm.js_pose(this.#world, collider, room));
@@ -427,6 +457,12 @@ export class World {
     }
     constraintCount(category, object) {
         return this.#wasm.js_constraint_count(this.#world, CATEGORIES.indexOf(category), object);
+    }
+    /* The same, operation by operation, each with its derivatives by all coordinates of its particles. */
+    operations(category, object, index) {
+        const at = this.#wasm.js_operations(this.#world, CATEGORIES.indexOf(category), object, index);
+        if (!at) this.#fail();
+        return takeJson(this.#wasm, at);
     }
     constraint(category, object, index) {
         const at = this.#wasm.js_constraint(this.#world, CATEGORIES.indexOf(category), object, index);

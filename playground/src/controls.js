@@ -81,6 +81,7 @@ function row(path, field, changed, change) {
     const id = `field-${++last}`, box = element('div', {className: 'field'});
     box.dataset.path = path;
     box.classList.toggle('changed', changed);
+    box.classList.toggle('check', field.type === 'bool');
     const anew = field.live ? '' : 'the scene begins anew';
     box.append(
         element('label', {textContent: field.name, htmlFor: id}),

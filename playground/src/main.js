@@ -1,8 +1,12 @@
-// The page: what is chosen and changed, and who is told. The scene and the changes (as `--set` has them) make the world;
-// the address carries them; a hash says whether it is the world that the command would have.
+// The page: what is chosen and changed, and who is told. The scene, the changes (as `--set` has them) and what was done on
+// the way make the world; the address carries them; a hash says whether it is the world that the command would have.
+import {compare} from './compare.js';
 import {fill, element} from './controls.js';
+import {offerFiles} from './files.js';
 import {formulaEditor} from './formula.js';
-import {read, write} from './link.js';
+import {hands} from './hands.js';
+import {openLesson} from './lesson.js';
+import {MOST, read, write} from './link.js';
 import {Picture} from './picture.js';
 import {Plot} from './plot.js';
 import {filesOf, scenes} from './scenes.js';
@@ -10,20 +14,21 @@ import {Simulation, words} from './simulation.js';
 
 const $ = (id) => document.getElementById(id);
 const notice = (text) => ($('notice').textContent = text);
-const pictures = import.meta.glob('../../docs/images/{drape,flag,hanging,rope,turntable,wave,cube_bowl}.png', {query: '?url', import: 'default', eager: true});
 
 const app = {
-    scene: null, text: '', // its name, or '' for one that came by the address
+    scene: null, text: '', path: '', files: {}, // its name, or null and a text of one's own with its meshes
     changes: new Map(), // path -> value: in this order they are the sets
     added: [], // sets that put a new object in
-    world: null, state: null, touched: false, pulled: null, methods: [],
+    built: [], // the sets that the world was built with
+    world: null, state: null, pulled: null, methods: [], undo: [],
 };
-const plot = new Plot($('plot'));
 let picture = null;
-const simulation = new Simulation({
-    onState: take,
-    onBroken: (faults) => notice(words(faults)),
-});
+const simulation = new Simulation({onState: take, onBroken: (faults) => notice(words(faults))});
+const plots = {
+    ms: new Plot($('plot-ms'), {bars: true, words: (x) => `${x.toFixed(x < 10 ? 1 : 0)} ms`}),
+    energy: new Plot($('plot-energy'), {words: (x) => `${x.toPrecision(2)} J`}),
+    stretch: new Plot($('plot-stretch'), {words: (x) => `${(100 * x).toPrecision(2)} %`}),
+};
 
 let early = null; // the first state of a world may come before the world's description
 
@@ -34,55 +39,73 @@ function take(state) {
     }
     app.state = state;
     picture?.show(state);
-    plot.add(state.spent);
-    $('play').textContent = state.playing ? 'Pause' : 'Play';
+    plots.ms.add(state.spent.map((ms) => [ms]));
+    beside.follow(state);
+    $('play').classList.toggle('playing', state.playing);
+    $('play').setAttribute('aria-label', state.playing ? 'Pause' : 'Play');
     tell();
 }
 
 /* ---- the scene ---- */
 
 const sets = () => [...app.added, ...[...app.changes].map(([path, value]) => `${path}=${JSON.stringify(value)}`)];
-const path = () => (app.scene ? `scenes/${app.scene}.json` : 'scene.json');
+const source = () => [app.text, app.path];
 
-/* Makes the world anew, from the first frame on (and on to `frame`); on a fault all stays as it is. */
-async function build(frame = 0) {
-    const files = await filesOf(app.text);
-    const world = await simulation.call('open', app.text, sets(), files, path(), frame);
+/* Makes the world anew, from the first frame on, and on to `frame` with what was done; on a fault all stays as it is. */
+async function build(frame = 0, events = []) {
+    const built = sets(), files = await filesOf(app.text, app.files);
+    const world = await simulation.call('open', app.text, built, files, app.path, frame, events);
     notice('');
-    app.world = world;
-    app.touched = false;
-    app.pulled = null;
+    Object.assign(app, {world, built, pulled: null});
     $('pin').disabled = true;
-    plot.clear();
+    for (const plot of Object.values(plots)) plot.clear();
     picture?.describe(world);
-    $('about').textContent = world.settings.description;
-    document.title = `${world.settings.name || 'scene'} - Skein`;
-    fillPanel();
     if (early?.serial === world.serial) take(early);
     early = null;
+    $('about').textContent = world.settings.description;
+    document.title = `${world.settings.name || 'scene'} - Skein`;
+    const predator = world.objects.force.findIndex((f) => f.name === 'predator');
+    $('hawk').hidden = predator < 0;
+    $('hawk').setAttribute('aria-pressed', 'false');
+    fillPanel();
+    measure();
+    await beside.restart();
     return world;
 }
 
-async function open(name, {text = null, set = [], frame = 0, camera = null, play = true} = {}) {
-    const before = {scene: app.scene, text: app.text, changes: app.changes, added: app.added};
-    Object.assign(app, {scene: text ? '' : name, text: text ?? scenes.get(name)?.text ?? '', changes: new Map(), added: set});
+const kept = () => ({scene: app.scene, text: app.text, path: app.path, files: app.files, changes: new Map(app.changes), added: [...app.added], built: app.built});
+
+async function open(name, {text = null, path = 'scene.json', files = {}, set = [], events = [], frame = 0, camera = null, play = true} = {}) {
+    const before = kept(), own = text !== null || !name;
+    Object.assign(app, {
+        scene: own ? null : name, text: own ? text ?? '' : scenes.get(name)?.text ?? '', files: own ? files : {},
+        path: own ? path : `scenes/${name}.json`, changes: new Map(), added: [...set]});
     try {
-        if (!app.text) throw new Error(`There is no scene '${name}' here.`);
+        if (!app.text && !Object.keys(files).length) throw new Error(`There is no scene '${name}' here.`);
         await simulation.call('play', false);
-        await build(frame);
+        await build(frame, events);
     } catch (error) {
         Object.assign(app, before);
         notice(error.message);
         return false;
     }
-    $('scenes').value = app.scene;
+    app.undo = [];
+    showScene();
     if (camera && picture) picture.camera = camera;
     if (play && !frame) await simulation.call('play', true);
     return true;
 }
 
+function showScene() {
+    const own = $('scenes').querySelector('[value=""]');
+    own.hidden = Boolean(app.scene);
+    own.textContent = app.path.split('/').pop();
+    $('scenes').value = app.scene ?? '';
+    $('undo').disabled = !app.undo.length;
+}
+
 async function reset() {
-    const playing = app.state?.playing;
+    const {playing} = app.state ?? {};
     try {
         await build();
     } catch (error) {
@@ -92,26 +115,59 @@ async function reset() {
     await simulation.call('play', Boolean(playing));
 }
 
-async function change(place, value, live) {
+/* What undo comes back to: noted before a change or a hand. */
+async function remember() {
+    const state = {...kept(), ...(await simulation.call('where')), playing: app.state.playing};
+    app.undo.push(state);
+    if (app.undo.length > 100) app.undo.shift();
+    $('undo').disabled = false;
+    return state;
+}
+async function undo() {
+    const last = app.undo.pop();
+    if (!last) return;
+    const now = kept(), {frame, events, playing, built, ...rest} = last;
+    Object.assign(app, {...rest, changes: new Map(), added: built}); // as it was built; changes on the way are among the events
+    try {
+        await build(frame, events);
+    } catch (error) {
+        Object.assign(app, now);
+        notice(error.message);
+        return;
+    }
+    Object.assign(app, {changes: rest.changes, added: rest.added});
+    fillPanel();
+    showScene();
+    tell();
+    await simulation.call('play', playing);
+}
+
+let changing = {path: '', at: 0}; // one slider's way is one change to undo
+async function change(path, value, live) {
+    const now = performance.now();
+    if (path !== changing.path || now - changing.at > 1000) await remember();
+    changing = {path, at: now};
     const old = new Map(app.changes);
-    if (place === 'method.type') for (const key of [...app.changes.keys()]) if (key.startsWith('method.')) app.changes.delete(key);
-    app.changes.set(place, value);
+    if (path === 'method.type') for (const key of [...app.changes.keys()]) if (key.startsWith('method.')) app.changes.delete(key);
+    app.changes.set(path, value);
     try {
         if (!live) await reset_with_fault();
         else {
-            await simulation.call('set', place, value);
-            if (app.state?.frame) app.touched = true;
+            const frame = await simulation.call('set', path, value);
+            if (!frame) app.built = sets(); // before the first step it is a part of the beginning
             notice('');
+            beside.change(path, value);
         }
     } catch (error) {
         app.changes = old;
+        app.undo.pop();
         notice(error.message);
         if (!live) fillPanel();
     }
     tell();
 }
 async function reset_with_fault() {
-    const playing = app.state?.playing;
+    const {playing} = app.state ?? {};
     await build();
     await simulation.call('play', Boolean(playing));
 }
@@ -121,123 +177,142 @@ async function reset_with_fault() {
 const editor = formulaEditor({
     async attempt(set) {
         try {
-            await simulation.call('check', app.text, [...sets(), set], await filesOf(app.text), path());
+            const [text, path] = source();
+            await simulation.call('check', text, [...sets(), set], await filesOf(text, app.files), path);
             return '';
         } catch (error) {
             return error.message;
         }
     },
     async add(set) {
+        await remember();
         app.added.push(set);
         try {
             await reset_with_fault();
         } catch (error) {
             app.added.pop();
+            app.undo.pop();
             notice(error.message);
         }
     },
-    count: (list) => app.world?.objects[{constraints: 'constraint', forces: 'force', colliders: 'collider'}[list]].length ?? 0,
+    objects: () => app.world?.objects,
+    call: (...args) => simulation.call(...args),
+    notice,
 });
 
 function fillPanel() {
-    const open = editor.open;
     fill($('panel'), app.world, app.methods, app.changes, change);
-    $('panel').append(editor);
-    editor.open = open;
+    $('panel').append(editor.view);
+    editor.refresh();
 }
 
 /* ---- what is told ---- */
 
 const quoted = (text) => (/^[\w./=,:@%+-]+$/.test(text) ? text : `'${text.replace(/'/g, "'\\''")}'`);
 
-function command() {
-    const file = app.scene ? `scenes/${app.scene}.json` : 'scene.json';
-    return ['skein run', file, ...sets().map((set) => `--set ${quoted(set)}`), `--frames ${app.state.frame}`].join(' ');
+/* The command that gives the same: with changes on the way, `skein record`, which takes them by steps; null where a hand
+ * came in, which no command has. */
+function command(events) {
+    if (events.some((e) => e[1] !== 'set')) return null;
+    const {stepsPerFrame} = app.world.settings, {frame} = app.state, name = app.path.split('/').pop().replace(/[.]\w+$/, '');
+    const given = [app.path, ...app.built.map((set) => `--set ${quoted(set)}`)];
+    if (!events.length) return ['skein run', ...given, `--frames ${frame}`].join(' ');
+    const at = events.map(([f, , path, value]) => `--at ${quoted(`${f * stepsPerFrame} ${path}=${JSON.stringify(value)}`)}`);
+    return ['skein record', ...given, ...at, `--frames ${frame} -o ${name}.skeinrec`].join(' ');
+}
+
+let told = {done: -1, serial: -1, line: ''}, telling = false;
+async function tellCommand() {
+    const {state} = app;
+    if (telling) return;
+    telling = true;
+    if (told.done !== state.done || told.serial !== state.serial || told.branch !== state.branch)
+        told = {done: state.done, serial: state.serial, branch: state.branch, events: state.done ? await simulation.call('events') : []};
+    telling = false;
+    const line = command(told.events);
+    $('hash-note').textContent = line ? 'The same hash:' : 'A hand was at work: the link has it, and gives the same hash.';
+    $('command').textContent = line ?? '';
+    $('command').hidden = $('copy-command').hidden = !line;
 }
 
 function tell() {
     const {state} = app;
     if (!state || !app.world) return;
-    const numbers = {frame: state.frame, time: `${state.time.toFixed(2)} s`, 'ms a frame': Number.isNaN(plot.median) ? '' : plot.median.toFixed(2), particles: app.world.count, hash: state.hash};
+    const numbers = {time: `${state.time.toFixed(2)} s`, particles: app.world.count.toLocaleString('en'), hash: state.hash};
     const list = $('numbers');
-    if (list.children.length !== Object.keys(numbers).length)
-        list.replaceChildren(...Object.keys(numbers).map((name) => element('div', {}, element('dt', {textContent: name}), element('dd', {id: `number-${name.split(' ')[0]}`}))));
-    for (const [name, value] of Object.entries(numbers)) $(`number-${name.split(' ')[0]}`).textContent = value;
-    $('hash-note').textContent = app.touched ? 'A hand or a change came in between; Reset (R) gives the same as' : 'The same hash:';
-    $('command').textContent = command();
+    if (!list.children.length)
+        list.replaceChildren(...Object.keys(numbers).map((name) => element('div', {}, element('dt', {textContent: name}), element('dd', {id: `number-${name}`}))));
+    for (const [name, value] of Object.entries(numbers)) $(`number-${name}`).textContent = value;
+    $('number-ms').textContent = Number.isNaN(plots.ms.median) ? '' : `${plots.ms.median.toFixed(2)} ms`;
+    const line = $('timeline');
+    line.max = state.end;
+    if (!line.matches(':active')) line.value = state.frame;
+    $('frames').textContent = state.frame < state.end ? `${state.frame} of ${state.end}` : `${state.frame}`;
+    const branch = $('branch');
+    branch.hidden = state.branches < 2;
+    if (branch.options.length !== state.branches)
+        branch.replaceChildren(...Array.from({length: state.branches}, (_, i) => element('option', {value: i, textContent: `branch ${i + 1}`})));
+    branch.value = state.branch;
+    tellCommand();
 }
 
 /* Energies now and then: they cost about a step. */
-setInterval(async () => {
+async function measure() {
     if (!app.world || document.hidden) return;
     const s = await simulation.call('measure').catch(() => null);
     if (!s) return;
+    const total = s.kineticEnergy + s.potentialEnergy + s.elasticEnergy;
+    plots.energy.add([[s.kineticEnergy, s.elasticEnergy, s.potentialEnergy]]);
+    plots.stretch.add([[s.maxStretch]]);
+    $('number-energy').textContent = `${total.toPrecision(3)} J`;
+    $('number-stretch').textContent = `${(100 * s.maxStretch).toFixed(2)} %`;
     const joule = (x) => `${x.toPrecision(3)} J`;
-    $('numbers').title = `kinetic ${joule(s.kineticEnergy)}, potential ${joule(s.potentialEnergy)}, elastic ${joule(s.elasticEnergy)}; worst stretch ${(100 * s.maxStretch).toFixed(2)} %; contacts ${s.contacts}; memory ${(s.memoryBytes / 1e6).toFixed(1)} MB`;
-}, 1000);
-
-/* ---- hands ---- */
-
-function hands() {
-    const {canvas} = picture;
-    let held = null;
-    canvas.addEventListener('pointerdown', (event) => {
-        if (event.button !== 0 || event.shiftKey) return;
-        const particle = picture.pick(event);
-        if (particle === null) return;
-        picture.controls.enabled = false;
-        canvas.setPointerCapture(event.pointerId);
-        held = {particle, through: picture.place(particle), pointer: event.pointerId};
-        app.pulled = particle;
-        $('pin').disabled = false;
-    }, {capture: true}); // before the camera's own
-    canvas.addEventListener('pointermove', (event) => {
-        if (held?.pointer !== event.pointerId) return;
-        const place = picture.inPlane(event, held.through);
-        if (!place) return;
-        app.touched = true;
-        simulation.call('pull', held.particle, place);
-    });
-    const release = (event) => {
-        if (held?.pointer !== event.pointerId) return;
-        held = null;
-        picture.controls.enabled = true;
-        simulation.call('letGo');
-    };
-    canvas.addEventListener('pointerup', release);
-    canvas.addEventListener('pointercancel', release);
+    $('plot-energy').title = `kinetic ${joule(s.kineticEnergy)} (red), elastic ${joule(s.elasticEnergy)} (teal), potential ${joule(s.potentialEnergy)} (amber)`;
+    $('numbers').title = `contacts ${s.contacts}; memory ${(s.memoryBytes / 1e6).toFixed(1)} MB`;
 }
+setInterval(() => app.state?.playing && measure(), 250);
 
-async function togglePin() {
-    if (app.pulled === null) return;
-    const held = await simulation.call('togglePin', app.pulled);
-    app.touched = true;
-    $('pin').textContent = held ? 'Free' : 'Pin';
-    tell();
-}
+/* ---- time ---- */
 
 const play = () => simulation.call('play', !app.state?.playing);
-const step = () => simulation.call('run', 1).catch((error) => notice(error.message));
-const keys = {' ': play, ArrowRight: step, r: reset, p: togglePin, f: () => picture?.frame()};
-document.addEventListener('keydown', (event) => {
-    if (event.target.closest('input, textarea, select, button, dialog, summary') || event.ctrlKey || event.metaKey || event.altKey) return;
-    const act = keys[event.key];
-    if (!act) return;
-    event.preventDefault();
-    act();
-});
+const step = () => simulation.call('run', 1).then(measure).catch((error) => notice(error.message));
+const back = () => seek(Math.max(0, app.state.frame - 1));
+let wanted = null;
+async function seek(frame) { // one at a time, and then the last that was wanted
+    const busy = wanted !== null;
+    wanted = frame;
+    if (busy) return;
+    for (let now = null; now !== wanted; ) {
+        now = wanted;
+        await simulation.call('seek', now).catch((error) => notice(error.message));
+    }
+    wanted = null;
+    measure();
+}
+async function switchTo(branch) {
+    app.world.objects = await simulation.call('switchTo', branch);
+    fillPanel();
+}
 
 async function link() {
-    const {scene, text, state} = app;
-    const hash = await write({scene, text, sets: sets(), frame: app.touched ? 0 : state.frame, camera: picture?.camera});
+    const {scene, text, path, files, built} = app, {frame, events} = await simulation.call('where');
+    const hash = await write({scene, text, path, files, sets: built, events, frame, camera: picture?.camera});
     return new URL(hash, location.href).href;
 }
 async function copy(text, button) {
-    history.replaceState(null, '', text.startsWith('http') ? text : location.href);
     await navigator.clipboard?.writeText(text).catch(() => {});
     const was = button.dataset.words ?? (button.dataset.words = button.textContent);
     button.textContent = 'Copied';
     setTimeout(() => (button.textContent = was), 1200);
+}
+async function copyLink() {
+    const text = await link();
+    if (text.length > MOST) {
+        notice(`This state takes a link of ${Math.round(text.length / 1024)} KB, which is too long; save the scene instead (More).`);
+        return;
+    }
+    history.replaceState(null, '', text);
+    await copy(text, $('copy-link'));
 }
 
 /* ---- light and dark, gallery, the page ---- */
@@ -245,14 +320,16 @@ async function copy(text, button) {
 function setTheme(dark) {
     document.documentElement.classList.toggle('dark', dark);
     if (picture) picture.dark = dark;
+    beside.dark(dark);
+    for (const plot of Object.values(plots)) plot.draw();
 }
 
 function fillGallery() {
     const cards = document.querySelector('#gallery .cards');
     if (cards.children.length) return;
-    for (const {name, description} of scenes.values()) {
-        const address = pictures[`../../docs/images/${name}.png`];
-        const card = element('button', {type: 'button'}, ...(address ? [element('img', {src: address, alt: '', loading: 'lazy'})] : []), element('strong', {textContent: name}), element('small', {textContent: description}));
+    for (const {name, description, picture: address} of scenes.values()) {
+        const image = address ? [element('img', {src: address, alt: '', loading: 'lazy', width: 256, height: 144})] : [];
+        const card = element('button', {type: 'button'}, ...image, element('strong', {textContent: name}), element('small', {textContent: description}));
         card.addEventListener('click', () => {
             $('gallery').close();
             open(name);
@@ -260,65 +337,107 @@ function fillGallery() {
         cards.append(card);
     }
 }
+function openGallery() {
+    fillGallery();
+    $('gallery').showModal();
+}
+function togglePanel() {
+    $('panel').hidden = !$('panel').hidden;
+    $('panel-toggle').setAttribute('aria-expanded', String(!$('panel').hidden));
+}
+
+const beside = compare({app, stage: $('other-stage'), choice: $('compare'), mainPicture: () => picture, sets, notice});
 
 async function openAddress() {
     try {
-        const asked = await read(location.hash);
-        const good = asked.text || asked.scene
-            ? await open(asked.scene, {text: asked.text, set: asked.sets, frame: asked.frame, camera: asked.camera})
+        const asked = await read(location.hash), {events, frame, camera} = asked;
+        const own = {text: asked.text, path: asked.path, files: asked.files};
+        const good = asked.text !== null || asked.scene
+            ? await open(asked.scene, {...(asked.text !== null ? own : {}), set: asked.sets, events, frame, camera})
             : await open('flag');
         if (!good && !app.world) {
-            const words = $('notice').textContent;
+            const why = $('notice').textContent;
             await open('flag');
-            notice(words);
+            notice(why);
         }
     } catch (error) {
         if (!app.world) await open('flag');
-        notice(`The address cannot be read: ${error.message}`);
+        notice(`The address could not be read: ${error.message}`);
     }
 }
 
+const keys = {
+    ' ': play, ArrowRight: step, ArrowLeft: back, r: reset, p: () => theHands?.togglePin(), f: () => picture?.frame(), z: undo,
+    g: openGallery, c: togglePanel, '?': () => $('keys').showModal(),
+};
+let theHands = null;
+
 async function begin() {
-    for (const {name} of scenes.values()) $('scenes').append(element('option', {value: name, textContent: name}));
-    $('scenes').addEventListener('change', () => open($('scenes').value));
-    $('gallery-open').addEventListener('click', () => {
-        fillGallery();
-        $('gallery').showModal();
+    const list = [...scenes.keys()].map((name) => element('option', {value: name, textContent: name}));
+    $('scenes').append(element('option', {value: '', hidden: true}), ...list);
+    $('scenes').addEventListener('change', (event) => open(event.target.value));
+    const clicks = {
+        'gallery-open': openGallery, play, step, reset, undo, 'copy-link': copyLink, 'panel-toggle': togglePanel,
+        'copy-command': () => copy($('command').textContent, $('copy-command')),
+        'keys-open': () => $('keys').showModal(), 'lesson-open': () => openLesson($('lesson')),
+        theme: () => setTheme(!document.documentElement.classList.contains('dark')),
+    };
+    for (const [id, act] of Object.entries(clicks)) $(id).addEventListener('click', act);
+    $('compare').addEventListener('change', () => ($('menu').open = false));
+    $('menu').addEventListener('click', (event) => event.target.closest('button') && ($('menu').open = false));
+    addEventListener('pointerdown', (event) => event.target.closest?.('#menu') ?? ($('menu').open = false));
+    $('timeline').addEventListener('input', (event) => seek(Number(event.target.value)));
+    $('branch').addEventListener('change', (event) => switchTo(Number(event.target.value)));
+    document.addEventListener('keydown', (event) => {
+        if (event.target.closest('input, textarea, select, button, dialog, summary') || event.ctrlKey || event.metaKey || event.altKey) return;
+        const act = keys[event.key];
+        if (!act) return;
+        event.preventDefault();
+        act();
     });
-    $('play').addEventListener('click', play);
-    $('step').addEventListener('click', step);
-    $('reset').addEventListener('click', reset);
-    $('pin').addEventListener('click', togglePin);
-    $('copy-link').addEventListener('click', async () => copy(await link(), $('copy-link')));
-    $('copy-command').addEventListener('click', () => copy(command(), $('copy-command')));
     const dark = matchMedia('(prefers-color-scheme: dark)');
     dark.addEventListener('change', () => setTheme(dark.matches));
-    $('theme').addEventListener('click', () => setTheme(!document.documentElement.classList.contains('dark')));
-    $('panel-toggle').addEventListener('click', () => {
-        $('panel').hidden = !$('panel').hidden;
-        $('panel-toggle').setAttribute('aria-expanded', String(!$('panel').hidden));
-    });
-    if (innerWidth < 760) $('panel-toggle').click();
+    if (innerWidth < 760) togglePanel();
     try {
         picture = new Picture($('picture'));
-        hands();
+        theHands = hands({app, picture, simulation, remember, tell, hint: $('hint'), pin: $('pin'), hawk: $('hawk'), beside});
     } catch {
         notice('This browser draws no WebGL2, so that nothing is to be seen; the simulation runs all the same.');
     }
     setTheme(dark.matches);
-    app.methods = await simulation.call('kinds', 'method');
+    offerFiles({app, $, simulation, open, notice, picture: () => picture});
+    app.methods = await simulation.call('kinds', 'method').catch((error) => {
+        throw new Error(`Skein could not be started: ${error.message}. It needs WebAssembly with SIMD (Chrome 91, Firefox 89, Safari 16.4).`);
+    });
+    beside.offer(app.methods);
     addEventListener('hashchange', openAddress);
     await openAddress();
+    if ('serviceWorker' in navigator && import.meta.env.PROD) keepOffline();
+}
+
+/* From the second visit on, and without a network, everything comes from this browser. */
+async function keepOffline() {
+    try {
+        await navigator.serviceWorker.register('./sw.js');
+        const {active} = await navigator.serviceWorker.ready;
+        setTimeout(() => active.postMessage('all'), 8000); // pictures and meshes, when there is time
+    } catch {
+        // a file:// page, say: it works, with a network
+    }
 }
 
 const ready = begin().catch((error) => notice(error.message));
 
 /* For the console, and for tests. */
 globalThis.skein = {
-    app, ready, open, reset, change, link, command, scenes,
+    app, ready, open, reset, change, undo, seek, link, scenes, measure,
+    command: async () => command(await simulation.call('events')),
     run: (frames) => simulation.call('run', frames),
     call: (...args) => simulation.call(...args),
     get picture() {
         return picture;
+    },
+    get beside() {
+        return beside;
     },
 };

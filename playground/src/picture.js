@@ -3,14 +3,8 @@
 import * as THREE from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 
-import {beatWings, birdGeometry, colliderGeometry, triangles} from './shapes.js';
-
-const FRONT = ['#b8432f', '#2f6f8f', '#7a8f3a', '#9a6b3f', '#6b4f8f', '#3f8f7a'];
-const BACK = ['#d8b48c', '#cfdbe2', '#e3dfb8', '#e6d3bd', '#d6cbe3', '#c9e3da'];
-const LOOKS = {
-    light: {sky: '#dfe6ea', ground: '#cfcbc0', grid: '#b4afa2', collider: '#9aa3a8', bird: '#2c3238'},
-    dark: {sky: '#1c2126', ground: '#2b2f33', grid: '#454a50', collider: '#6d767d', bird: '#d9dde0'},
-};
+import {cloth, collider, COLOURS, feathers, jelly, LOOKS, matter} from './materials.js';
+import {arrowGeometry, birdGeometry, colliderGeometry, isLevel, triangles, weave} from './shapes.js';
 
 export class Picture {
     #holder;
@@ -24,26 +18,27 @@ export class Picture {
     #parts = null; // of the world that is drawn
     #state = null;
     #beat = {value: 0};
+    #arrows = {count: 0, mesh: null};
     #wanted = false;
+    #sizes;
 
     constructor(holder) {
         this.#holder = holder;
-        this.#renderer = new THREE.WebGLRenderer({antialias: true}); // throws where there is no WebGL2
+        this.#renderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: true}); // throws where there is no WebGL2
         this.#renderer.shadowMap.enabled = true;
-        this.#renderer.shadowMap.type = THREE.VSMShadowMap;
+        this.#renderer.shadowMap.type = THREE.PCFShadowMap;
         this.#renderer.toneMapping = THREE.ACESFilmicToneMapping;
         this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
         holder.append(this.#renderer.domElement);
         this.controls = new OrbitControls(this.#camera, this.#renderer.domElement);
         this.controls.addEventListener('change', () => this.draw());
-        this.#scene.add(this.#sun, this.#sun.target, new THREE.HemisphereLight('#dfeaf5', '#8c8272', 1.5));
+        this.#scene.add(this.#sun, this.#sun.target, new THREE.HemisphereLight('#e8f0f8', '#9a8f7e', 1.9));
         this.#sun.castShadow = true;
         this.#sun.shadow.mapSize.set(2048, 2048);
-        this.#sun.shadow.radius = 5;
-        this.#sun.shadow.blurSamples = 12;
-        this.#sun.shadow.bias = -0.0005;
-        this.#sun.shadow.normalBias = 0.01;
-        new ResizeObserver(() => this.#resize()).observe(holder);
+        this.#sun.shadow.radius = 3.5;
+        this.#sun.shadow.bias = -0.0004;
+        this.#sizes = new ResizeObserver(() => this.#resize());
+        this.#sizes.observe(holder);
         this.#resize();
     }
 
@@ -82,8 +77,24 @@ export class Picture {
         this.#wanted = true;
         requestAnimationFrame(() => {
             this.#wanted = false;
-            this.#renderer.render(this.#scene, this.#camera);
+            this.drawNow();
         });
+    }
+    drawNow() {
+        this.#renderer.render(this.#scene, this.#camera);
+        this.onDrawn?.();
+    }
+    /* Gives the card's memory back. */
+    end() {
+        this.#sizes.disconnect();
+        this.controls.dispose();
+        this.#scene.traverse((thing) => {
+            thing.geometry?.dispose();
+            thing.material?.dispose?.();
+            thing.dispose?.();
+        });
+        this.#renderer.dispose();
+        this.#renderer.domElement.remove();
     }
 
     /* ---- a world ---- */
@@ -113,45 +124,44 @@ export class Picture {
         shape.setIndex(new THREE.BufferAttribute(triangles(body), 1));
         for (const name of ['position', 'normal'])
             shape.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * body.vertexCount), 3).setUsage(THREE.DynamicDrawUsage));
-        for (const [side, colours] of [[THREE.FrontSide, FRONT], [THREE.BackSide, BACK]]) {
-            const cloth = new THREE.MeshStandardMaterial({color: colours[number % colours.length], side, roughness: 0.85});
-            const mesh = new THREE.Mesh(shape, cloth);
+        const materials = body.look === 'jelly' ? [jelly(number)] : [THREE.FrontSide, THREE.BackSide].map((side) => cloth(number, side, body.look === 'cloth'));
+        for (const material of materials) {
+            const mesh = new THREE.Mesh(shape, material);
             mesh.frustumCulled = false;
             mesh.receiveShadow = true;
-            mesh.castShadow = side === THREE.FrontSide;
-            cloth.shadowSide = THREE.DoubleSide;
+            mesh.castShadow = material.side === THREE.FrontSide;
             all.add(mesh);
         }
         return shape;
     }
 
-    #collider({kind, fields}, all) {
-        const shape = fields.visible ? colliderGeometry(kind, fields) : null;
+    #collider(thing, all) {
+        const shape = thing.visible ? colliderGeometry(thing) : null;
         if (!shape) return null;
-        const material = new THREE.MeshStandardMaterial({
-            roughness: 0.6, side: kind === 'bowl' ? THREE.DoubleSide : THREE.FrontSide,
-            transparent: kind === 'bowl', opacity: kind === 'bowl' ? 0.45 : 1});
-        const mesh = new THREE.Mesh(shape, material);
-        mesh.castShadow = kind !== 'plane' && kind !== 'bowl';
+        const mesh = new THREE.Mesh(shape, collider(thing.sort));
+        mesh.castShadow = thing.sort !== 'plane' && thing.sort !== 'bowl';
         mesh.receiveShadow = true;
-        mesh.userData.kind = kind;
+        mesh.visible = !isLevel(thing); // which is drawn as the ground
+        mesh.userData.sort = thing.sort;
+        mesh.matrixAutoUpdate = false;
         all.add(mesh);
         return mesh;
     }
 
-    /* Particles without a surface: birds of a flock, balls for others, rods along the springs between them. */
+    /* Particles without a surface: birds of a flock, rods along a rope, balls for others with rods along their springs. */
     #loose(world, all) {
-        const birds = [], balls = [], inSurface = new Uint8Array(world.count);
-        for (const body of world.bodies) {
-            const list = body.kind === 'flock' ? birds : body.faceSizes.length ? null : balls;
+        const birds = [], balls = [], rods = [], isBall = new Uint8Array(world.count);
+        for (const body of world.bodies)
             for (let i = 0; i < body.particleCount; i++) {
-                inSurface[body.firstParticle + i] = list !== balls;
-                list?.push(body.firstParticle + i);
+                const p = body.firstParticle + i;
+                if (body.shape === 'birds') birds.push(p);
+                else if (body.shape === 'chain' && i) rods.push(p - 1, p);
+                if (body.shape === 'birds' || body.shape === 'chain' || body.faceSizes.length) continue;
+                balls.push(p);
+                isBall[p] = 1;
             }
-        }
-        const rods = [];
         for (let i = 0; i < world.springs.length; i += 2)
-            if (!inSurface[world.springs[i]] && !inSurface[world.springs[i + 1]]) rods.push(world.springs[i], world.springs[i + 1]);
+            if (isBall[world.springs[i]] && isBall[world.springs[i + 1]]) rods.push(world.springs[i], world.springs[i + 1]);
         const many = (count, shape, material) => {
             const mesh = new THREE.InstancedMesh(shape, material, count);
             mesh.frustumCulled = false;
@@ -160,18 +170,16 @@ export class Picture {
             if (count) all.add(mesh);
             return mesh;
         };
-        const matter = () => new THREE.MeshStandardMaterial({color: FRONT[1], roughness: 0.6});
-        const feathers = beatWings(new THREE.MeshStandardMaterial({roughness: 0.8, side: THREE.DoubleSide}), this.#beat);
         return {
             birds, balls, rods,
-            birdMesh: many(birds.length, birdGeometry(), feathers),
-            ballMesh: many(balls.length, new THREE.SphereGeometry(1, 20, 14), matter()),
-            rodMesh: many(rods.length / 2, new THREE.CylinderGeometry(1, 1, 1, 12, 1, true), matter()),
+            birdMesh: many(birds.length, birdGeometry(), feathers(this.#beat)),
+            ballMesh: many(balls.length, new THREE.SphereGeometry(1, 20, 14), matter(0)),
+            rodMesh: many(rods.length / 2, new THREE.CapsuleGeometry(1, 1, 6, 12).scale(1, 1 / 3, 1), matter(balls.length ? 2 : 0)),
         };
     }
 
     #paint() {
-        for (const mesh of this.#parts.colliders) mesh?.material.color.set(mesh.userData.kind === 'plane' ? this.#look.ground : this.#look.collider);
+        for (const mesh of this.#parts.colliders) mesh?.material.color.set(mesh.userData.sort === 'plane' ? this.#look.ground : this.#look.collider);
         this.#parts.birdMesh.material.color.set(this.#look.bird);
         if (this.#grid) this.#setGrid(this.#grid.userData.size, this.#grid.userData.height);
     }
@@ -186,16 +194,20 @@ export class Picture {
             if (!surface || !shape) return;
             shape.attributes.position.array.set(surface.positions);
             shape.attributes.normal.array.set(surface.normals);
+            if (!shape.attributes.uv) shape.setAttribute('uv', new THREE.BufferAttribute(weave(this.#parts.world.bodies[i], surface.positions), 2));
             shape.attributes.position.needsUpdate = shape.attributes.normal.needsUpdate = true;
         });
+        const side = 1.6 * (this.#parts.size ?? 1);
         state.poses.forEach(({position, rotation: r}, i) => {
             const mesh = this.#parts.colliders[i];
             if (!mesh) return;
-            mesh.matrixAutoUpdate = false;
             mesh.matrix.set(r[0], r[1], r[2], position[0], r[3], r[4], r[5], position[1], r[6], r[7], r[8], position[2], 0, 0, 0, 1);
+            if (mesh.userData.sort === 'plane') mesh.matrix.multiply(new THREE.Matrix4().makeScale(side, side, side));
         });
         this.#beat.value = state.time;
+        this.#lowerGround(state);
         this.#placeLoose(state);
+        this.#placeArrows(state.arrows);
         if (!this.#parts.framed) this.frame();
         this.draw();
     }
@@ -247,41 +259,75 @@ export class Picture {
         for (const mesh of [birdMesh, ballMesh, rodMesh]) mesh.instanceMatrix.needsUpdate = true;
     }
 
+    /* Gradients or forces: from a point along a vector, the longest of them a sixth of the scene. */
+    #placeArrows(arrows) {
+        const count = arrows ? arrows.from.length / 3 : 0;
+        if (this.#arrows.count !== count || !this.#arrows.mesh) {
+            this.#arrows.mesh?.removeFromParent();
+            const material = new THREE.MeshStandardMaterial({color: COLOURS[1], roughness: 0.5, emissive: COLOURS[1], emissiveIntensity: 0.25});
+            this.#arrows = {count, mesh: count ? new THREE.InstancedMesh(arrowGeometry(), material, count) : null};
+            if (!count) return;
+            this.#arrows.mesh.frustumCulled = false;
+            this.#scene.add(this.#arrows.mesh);
+        }
+        const along = new THREE.Vector3(), at = new THREE.Vector3(), up = new THREE.Vector3(0, 1, 0), turn = new THREE.Quaternion(), matrix = new THREE.Matrix4();
+        let most = 1e-12;
+        for (let i = 0; i < count; i++) most = Math.max(most, along.fromArray(arrows.along, 3 * i).length());
+        for (let i = 0; i < count; i++) {
+            along.fromArray(arrows.along, 3 * i);
+            const length = Math.max((along.length() / most) * (this.#parts.size ?? 1) * (count > 12 ? 0.07 : 0.17), 1e-9);
+            turn.setFromUnitVectors(up, along.normalize());
+            this.#arrows.mesh.setMatrixAt(i, matrix.compose(at.fromArray(arrows.from, 3 * i), turn, along.set(length, length, length)));
+        }
+        this.#arrows.mesh.instanceMatrix.needsUpdate = true;
+    }
+
     /* Turns the camera so that all is in the picture, from where the scene's view says; sun and ground follow. */
     frame() {
         const {positions} = this.#state, box = new THREE.Box3(), point = new THREE.Vector3();
         for (let i = 0; i < positions.length; i += 3) box.expandByPoint(point.fromArray(positions, i));
         const {world, colliders} = this.#parts, view = world.settings.view, camera = view.camera ?? {};
         for (const mesh of colliders)
-            if (mesh && mesh.userData.kind !== 'plane') {
+            if (mesh && mesh.userData.sort !== 'plane') {
                 mesh.geometry.computeBoundingBox();
                 box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix));
             }
-        const plane = world.colliders.find((c) => c.kind === 'plane' && c.fields.normal[1] > 0.999);
-        if (plane) box.expandByPoint(box.getCenter(point).setY(plane.fields.offset));
+        const ground = world.colliders.findIndex((c) => isLevel(c) && c.visible), level = ground < 0 ? null : this.#state.poses[ground].position[1];
+        if (level !== null && box.min.y - level < box.getSize(point).length()) box.expandByPoint(box.getCenter(point).setY(level));
         const centre = box.getCenter(new THREE.Vector3()), size = Math.max(box.getSize(point).length(), 1e-3);
         const turn = THREE.MathUtils.degToRad(camera.azimuth ?? 27), height = THREE.MathUtils.degToRad(camera.elevation ?? 14);
-        const wide = Math.min(this.#camera.aspect, 1.3) / 1.3;
-        const far = (0.58 * size) / Math.tan(THREE.MathUtils.degToRad(17)) / (camera.zoom ?? 1) / wide;
+        const half = Math.min(17, THREE.MathUtils.radToDeg(Math.atan(Math.tan(THREE.MathUtils.degToRad(17)) * this.#camera.aspect)));
+        const far = (0.47 * size) / Math.sin(THREE.MathUtils.degToRad(half)) / (camera.zoom ?? 1);
         this.#parts.framed = true;
         this.#parts.size = size;
+        this.#parts.level = level !== null;
         this.#camera.near = far / 200;
         this.#camera.far = far * 60;
         this.#camera.updateProjectionMatrix();
         this.controls.target.copy(centre);
         this.#camera.position.set(Math.sin(turn) * Math.cos(height), Math.sin(height), Math.cos(turn) * Math.cos(height)).multiplyScalar(far).add(centre);
         this.controls.update();
-        this.#lightAndGround(centre, size, box.min.y, plane);
-        this.#placeLoose(this.#state);
+        this.#lightAndGround(centre, size, box.min.y, level);
+        this.show(this.#state);
     }
 
-    #lightAndGround(centre, size, lowest, plane) {
-        const height = plane ? plane.fields.offset : lowest - 0.04 * size;
+    #lightAndGround(centre, size, lowest, level) {
+        const height = level ?? lowest - 0.3 * size; // what hangs and falls has room
+        this.#sun.shadow.normalBias = 0.002 * size;
         this.#sun.position.set(-0.62, 0.86, 0.42).normalize().multiplyScalar(2 * size).add(centre);
         this.#sun.target.position.copy(centre);
         Object.assign(this.#sun.shadow.camera, {left: -size, right: size, top: size, bottom: -size, near: 0.01 * size, far: 5 * size});
         this.#sun.shadow.camera.updateProjectionMatrix();
         this.#setGrid(size, height);
+    }
+
+    /* Where no plane is the ground, it goes out of the way of what sinks. */
+    #lowerGround({positions}) {
+        if (!this.#parts.framed || this.#parts.level || !this.#grid) return;
+        let lowest = Infinity;
+        for (let i = 1; i < positions.length; i += 3) lowest = Math.min(lowest, positions[i]);
+        const {size, height} = this.#grid.userData;
+        if (lowest < height + 0.02 * size && lowest > -1e6) this.#setGrid(size, lowest - 0.15 * size);
     }
 
     #setGrid(size, height) {
@@ -291,23 +337,18 @@ export class Picture {
             old.geometry.dispose();
             old.material.dispose();
         }
-        const cell = 10 ** Math.floor(Math.log10(size / 2));
+        const power = 10 ** Math.floor(Math.log10(size / 9)), cell = power * [5, 2, 1].find((n) => n * power <= size / 9);
         this.#ground = new THREE.Mesh(new THREE.CircleGeometry(30 * size, 64).rotateX(-Math.PI / 2), new THREE.MeshStandardMaterial({color: this.#look.ground, roughness: 1}));
         this.#ground.position.y = height - 0.001 * size;
         this.#ground.receiveShadow = true;
-        this.#grid = new THREE.GridHelper(60 * cell, 60, this.#look.grid, this.#look.grid);
+        this.#grid = new THREE.GridHelper(100 * cell, 100, this.#look.grid, this.#look.grid);
         this.#grid.position.y = height + 0.0006 * size;
         this.#grid.material.transparent = true;
-        this.#grid.material.opacity = 0.5;
+        this.#grid.material.opacity = 0.35;
         this.#grid.userData = {size, height};
         this.#scene.add(this.#ground, this.#grid);
-        this.#scene.fog = new THREE.Fog(this.#look.sky, 5 * size, 26 * size); // the ground has no edge
+        this.#scene.fog = new THREE.Fog(this.#look.sky, 3 * size, 14 * size); // the ground has no edge
         this.#ground.visible = this.#grid.visible = this.#parts.world.settings.view.ground !== false;
-        // a level plane is drawn as the ground
-        this.#parts.world.colliders.forEach(({kind, fields}, i) => {
-            const mesh = this.#parts.colliders[i];
-            if (mesh && kind === 'plane' && fields.normal[1] > 0.999) mesh.visible = false;
-        });
     }
 
     /* ---- the hand ---- */
@@ -325,7 +366,7 @@ export class Picture {
     /* The particle under a pointer: a surface's corner, or a ball or bird within some pixels; null where none is. */
     pick(event) {
         if (!this.#parts || !this.#state) return null;
-        const caster = this.#ray(event), {surfaces, balls, birds, world, colliders} = this.#parts, {positions} = this.#state;
+        const caster = this.#ray(event), {surfaces, balls, birds, rods, world, colliders} = this.#parts, {positions} = this.#state;
         let best = {distance: Infinity, particle: -1};
         surfaces.forEach((shape, i) => {
             if (!shape) return;
@@ -338,7 +379,7 @@ export class Picture {
         });
         const box = this.canvas.getBoundingClientRect(), here = this.#pointer(event), point = new THREE.Vector3();
         let nearest = event.pointerType === 'touch' ? 28 : 14;
-        for (const p of [...balls, ...birds]) {
+        for (const p of [...balls, ...birds, ...rods]) {
             const distance = point.fromArray(positions, 3 * p).distanceTo(this.#camera.position);
             point.project(this.#camera);
             const pixels = Math.hypot((point.x - here.x) * box.width, (point.y - here.y) * box.height) / 2;
@@ -347,9 +388,13 @@ export class Picture {
                 best = {distance, particle: p};
             }
         }
-        const wall = caster.intersectObjects(colliders.filter((c) => c && !['plane', 'bowl'].includes(c.userData.kind)), false)[0];
+        const wall = caster.intersectObjects(colliders.filter((c) => c && !['plane', 'bowl'].includes(c.userData.sort)), false)[0];
         if (best.particle < 0 || (wall && wall.distance < best.distance - 0.02)) return null;
         return best.particle;
+    }
+    ray(event) {
+        const {origin, direction} = this.#ray(event).ray;
+        return {origin: origin.toArray(), direction: direction.toArray()};
     }
     place(particle) {
         return new THREE.Vector3().fromArray(this.#state.positions, 3 * particle);

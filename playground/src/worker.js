@@ -1,23 +1,68 @@
 // The simulation, in a worker: drawing never waits for it. Messages in: {id, call, args}, answered by {id, value} or
 // {id, faults}. Out, besides: {state}, whenever there is something new to draw and the last one was taken ("taken").
-import {kinds, SkeinError, World} from 'skein';
+import {formula, kinds, load, PointCache, SkeinError, World} from 'skein';
 
-let world = null, drawn = null, serial = 0; // what of it is drawn, and which world it is
-let playing = false, owed = 0, before = 0, waits = false, stale = false;
+import {boundSurface, surfaceNet} from './nets.js';
+import {Timeline} from './timeline.js';
+
+let world = null, timeline = null, drawn = null, serial = 0; // what of it is drawn, and which world it is
+let playing = false, owed = 0, before = 0, waits = false, stale = false, looping = 0;
 const spent = []; // ms of each frame since the last state
+let gradient = null; // {category, object, index}: the constraint whose gradient is shown
 
 /* ---- what there is to draw ---- */
 
+function box(margin) {
+    const {positions} = world, least = [Infinity, Infinity, Infinity], most = [-Infinity, -Infinity, -Infinity];
+    positions.forEach((x, i) => {
+        least[i % 3] = Math.min(least[i % 3], x);
+        most[i % 3] = Math.max(most[i % 3], x);
+    });
+    const side = Math.max(...most.map((x, k) => x - least[k]), 1e-3);
+    return {least: least.map((x) => x - margin * side), most: most.map((x) => x + margin * side)};
+}
+
+/* Triangles of a collider that is known by its distances alone, about its pose. */
+function net(index) {
+    const distances = (points) => world.distances(index, points), around = box(1.2);
+    const found = boundSurface(distances, around.least, around.most, 24);
+    const surface = found && surfaceNet(distances, found.least, found.most, 64);
+    if (!surface) return null;
+    const {position, rotation: r} = world.pose(index), {positions} = surface;
+    for (let v = 0; v < positions.length; v += 3) {
+        const d = [0, 1, 2].map((k) => positions[v + k] - position[k]);
+        for (let k = 0; k < 3; k++) positions[v + k] = r[k] * d[0] + r[3 + k] * d[1] + r[6 + k] * d[2];
+    }
+    return surface;
+}
+
+const value = (object, name, otherwise) => object.fields.find((f) => f.name === name)?.value ?? otherwise;
+
 function describe() {
-    const bodies = world.objects('body').map((body, index) => ({kind: body.name, ...world.surface(index)}));
-    const colliders = world.objects('collider').map((c) => ({
-        kind: c.name, fields: Object.fromEntries(c.fields.map((f) => [f.name, f.value]))}));
-    drawn = {bodies, flock: bodies.some((b) => b.kind === 'flock'), colliders: colliders.length};
-    return {
-        serial, settings: world.settings, bodies, colliders, springs: world.springs(), count: world.count,
-        objects: Object.fromEntries(
-            ['method', 'body', 'constraint', 'force', 'collider', 'motion'].map((c) => [c, world.objects(c)])),
-    };
+    const objects = Object.fromEntries(
+        ['method', 'body', 'constraint', 'force', 'collider', 'motion'].map((c) => [c, world.objects(c)]));
+    const bodies = objects.body.map((body, index) => ({
+        kind: body.name, name: value(body, 'name', ''), look: value(body, 'look', 'cloth'), shape: world.shape('body', index).sort,
+        ...world.surface(index)}));
+    const colliders = objects.collider.map((c, index) => {
+        const shape = world.shape('collider', index), visible = value(c, 'visible', true) && value(c, 'enabled', true);
+        return {kind: c.name, visible, ...shape, net: shape.sort === 'surface' && visible ? net(index) : null};
+    });
+    drawn = {bodies, flock: bodies.some((b) => b.shape === 'birds'), colliders: colliders.length};
+    return {serial, settings: world.settings, bodies, colliders, springs: world.springs(), count: world.count, objects};
+}
+
+function arrows() {
+    if (!gradient) return null;
+    const {category, object, index} = gradient;
+    if (category === 'force') {
+        const {positions} = world, every = Math.max(1, Math.ceil(world.count / 400)), at = [];
+        for (let p = 0; p < world.count; p += every) at.push(positions[3 * p], positions[3 * p + 1], positions[3 * p + 2]);
+        return {from: at, along: [...world.forces(object, at)], value: null};
+    }
+    const found = world.constraint(category, object, Math.min(index, Math.max(0, world.constraintCount(category, object) - 1)));
+    const {positions} = world;
+    return {from: found.particles.flatMap((p) => [...positions.slice(3 * p, 3 * p + 3)]), along: found.gradient.flat(), value: found.value, particles: found.particles};
 }
 
 function state() {
@@ -28,8 +73,9 @@ function state() {
     });
     return {
         serial, surfaces, positions: world.positions.slice(), velocities: drawn.flock ? world.velocities.slice() : null,
-        poses: Array.from({length: drawn.colliders}, (_, i) => world.pose(i)),
+        poses: Array.from({length: drawn.colliders}, (_, i) => world.pose(i)), arrows: arrows(),
         frame: world.frame, time: world.time, hash: world.hash(), spent: spent.splice(0), playing,
+        end: timeline.end, branch: timeline.branch, branches: timeline.branches, done: timeline.events.length,
     };
 }
 
@@ -48,27 +94,26 @@ function show() {
 
 /* ---- time ---- */
 
-function advance(frames) {
-    for (let i = 0; i < frames; i++) {
-        const start = performance.now();
-        world.step(1);
-        spent.push(performance.now() - start);
-    }
+function advance() {
+    const start = performance.now();
+    timeline.advance();
+    spent.push(performance.now() - start);
+    if (spent.length > 240) spent.shift();
 }
 
-function tick() {
-    if (!playing || !world) return;
+function tick(mine) {
+    if (!playing || !world || mine !== looping) return;
     const now = performance.now(), {fps} = world.settings;
     owed = Math.min(owed + ((now - before) / 1000) * fps, 4); // a slow machine slows the world down
     before = now;
     try {
         let any = false;
         for (; owed >= 1; owed--, any = true) {
-            advance(1);
+            advance();
             if (performance.now() - now > 50) owed = Math.min(owed, 1);
         }
         if (any) show();
-        setTimeout(tick, 2);
+        setTimeout(tick, 2, mine);
     } catch (error) {
         playing = false;
         postMessage({broken: faultsOf(error)});
@@ -76,19 +121,34 @@ function tick() {
     }
 }
 
+function play(on) {
+    playing = on;
+    before = performance.now();
+    owed = 0;
+    if (on) tick(++looping);
+    show();
+}
+
 /* ---- calls ---- */
 
 const calls = {
+    load: (address) => load(address).then(() => true),
     kinds: (category) => kinds(category),
-    async open(text, sets, files, path, frames = 0) {
-        const next = await World.fromScene(text, {sets, files, path}); // what fails leaves the old world
+    formula: (text, options) => formula(text, options),
+    async open(text, sets, files, path, frame = 0, events = []) {
+        const next = text ? await World.fromScene(text, {sets, files, path}) : await World.fromMesh(path, files, {sets});
+        const line = new Timeline(next); // what fails leaves the old world
+        try {
+            line.replay(events, frame);
+        } catch (error) {
+            next.free();
+            throw error;
+        }
         world?.free();
-        world = next;
+        [world, timeline, gradient] = [next, line, null];
         serial++;
         spent.length = 0;
-        owed = 0;
-        before = performance.now();
-        advance(frames);
+        playing = false;
         const found = describe();
         show();
         return found;
@@ -97,35 +157,74 @@ const calls = {
     async check(text, sets, files, path) {
         (await World.fromScene(text, {sets, files, path})).free();
     },
-    play(on) {
-        playing = on;
-        before = performance.now();
-        owed = 0;
-        if (on) tick();
-        show();
-    },
+    play,
     run(frames) {
         playing = false;
-        advance(frames);
+        for (let i = 0; i < frames; i++) advance();
         show();
         return {frame: world.frame, hash: world.hash()};
     },
-    set(path, value) {
-        world.set(path, value);
+    seek(frame) {
+        playing = false;
+        timeline.seek(Math.min(frame, timeline.end));
         show();
     },
-    pull: (particle, place) => world.pull(particle, place),
-    letGo: () => world.letGo(),
+    /* On to a frame, as far as 100 ms take. */
+    follow(frame) {
+        const start = performance.now();
+        if (frame < world.frame) timeline.seek(frame);
+        while (world.frame < frame && performance.now() - start < 100) advance();
+        show();
+        return world.frame;
+    },
+    switchTo(branch) {
+        playing = false;
+        timeline.switchTo(branch);
+        show();
+        return Object.fromEntries(['method', 'body', 'constraint', 'force', 'collider', 'motion'].map((c) => [c, world.objects(c)]));
+    },
+    events: () => timeline.events,
+    where: () => ({frame: world.frame, events: timeline.events}),
+    set(path, value) {
+        if (world.frame || timeline.end) timeline.act('set', path, value);
+        else {
+            world.set(path, value);
+            timeline.begin();
+        }
+        show();
+        return world.frame;
+    },
+    pull: (particle, place) => timeline.act('pull', particle, ...place),
+    letGo: () => timeline.act('letGo'),
     togglePin(particle) {
         const held = world.isHeld(particle);
-        if (held) world.release(particle);
-        else world.pin(particle);
+        timeline.act(held ? 'release' : 'pin', particle);
+        show();
         return !held;
     },
+    isHeld: (particle) => world.isHeld(particle),
     measure: () => world.statistics(),
+    showGradient(what) {
+        gradient = what;
+        try {
+            arrows();
+        } catch (error) {
+            gradient = null;
+            throw error;
+        }
+        show();
+    },
     constraint: (category, object, index) => world.constraint(category, object, index),
+    constraintCount: (category, object) => world.constraintCount(category, object),
+    operations: (category, object, index) => world.operations(category, object, index),
     scene: () => world.scene(),
-    memory: () => world.statistics().memoryBytes,
+    file: (body, format) => world.file(body, format),
+    /* The whole way up to here as a point cache. */
+    pointCache(body) {
+        const {vertexCount} = drawn.bodies[body], cache = new PointCache(vertexCount), {frame} = world;
+        timeline.runThrough(frame, () => cache.add(world.vertices(body, vertexCount).positions));
+        return cache.bytes();
+    },
 };
 
 const faultsOf = (error) =>

@@ -10,7 +10,7 @@ export async function serve(folder) {
         const path = normalize(decodeURIComponent(new URL(request.url, 'http://localhost').pathname));
         try {
             const body = await readFile(join(folder, path.endsWith('/') ? `${path}index.html` : path));
-            answer.writeHead(200, {'content-type': types[extname(path)] ?? (path.endsWith('/') ? 'text/html' : 'text/plain')}).end(body);
+            answer.writeHead(200, {'access-control-allow-origin': '*', 'content-type': types[extname(path)] ?? (path.endsWith('/') ? 'text/html' : 'text/plain')}).end(body);
         } catch {
             answer.writeHead(404).end();
         }

@@ -248,6 +248,38 @@ test('surfaces, poses, springs and constraints', async () => {
     const c = spring.constraint('constraint', 0, 0);
     assert.ok(Math.abs(c.value - 3) < 1e-6, `${c.value}`);
     [0.6, 0.8, 0].forEach((g, k) => assert.ok(Math.abs(c.gradient[1][k] - g) < 1e-6)); // (p1 - p0)/|p1 - p0|
+    const steps = spring.operations('constraint', 0, 0), last = steps.at(-1);
+    assert.ok(Math.abs(last.value - 3) < 1e-6 && steps.some((o) => o.name === 'sqrt' && Math.abs(o.value - 5) < 1e-6));
+    [...c.gradient[0], ...c.gradient[1]].forEach((g, k) => assert.ok(Math.abs(g - last.derivatives[k]) < 1e-6));
+    steps.forEach((o, i) => assert.ok(o.operands.every((at) => at < i)));
+});
+
+test('what things look like, and probes of colliders and fields', async () => {
+    const world = await World.fromScene({
+        skein: 1, bodies: [{type: 'cloth', grid: [3, 3]}, {type: 'rope', count: 3}],
+        forces: [{type: 'force_field', force: 'vec3(p.x, 2, 0)', per: 'mass'}],
+        colliders: [{type: 'sphere', centre: [1, 2, 3], radius: 0.5}, {type: 'formula', surface: 'length(p) - 2'}]});
+    assert.equal(world.shape('collider', 0).sort, 'ball');
+    assert.ok(Math.abs(world.shape('collider', 0).radius - 0.5) < 1e-6);
+    assert.equal(world.shape('collider', 1).sort, 'surface');
+    assert.equal(world.shape('body', 0).sort, 'surface');
+    assert.equal(world.shape('body', 1).sort, 'chain');
+    const [a, b] = world.distances(0, [1, 2, 4, 1, 2, 3.25]);
+    assert.ok(Math.abs(a - 0.5) < 1e-6 && Math.abs(b + 0.25) < 1e-6, `${a} ${b}`);
+    assert.ok(Math.abs(world.distances(1, [3, 0, 4])[0] - 3) < 1e-5);
+    assert.deepEqual([...world.forces(0, [7, 0, 0])], [7, 2, 0]);
+    assert.throws(() => world.shape('collider', 9), SkeinError);
+});
+
+test('a mesh by itself is the command\'s scene about it', async () => {
+    const world = await World.fromMesh('meshes/knot.obj', {'knot.obj': read('meshes/knot.obj')});
+    world.step(5);
+    const found = JSON.parse(skein('run', 'meshes/knot.obj', '--frames', '5', '--quiet', '--json')).state_hash;
+    assert.equal(world.hash(), found);
+    const again = await World.fromScene(world.scene(), {files: {'knot.obj': read('meshes/knot.obj')}, path: 'meshes/knot.json'});
+    again.step(5);
+    assert.equal(again.hash(), found);
+    await assert.rejects(World.fromMesh('a.obj', {'a.obj': 'f 1 2 3'}), SkeinError);
 });
 
 test('the tables are the command\'s, and the types know every kind, field and call', async () => {
