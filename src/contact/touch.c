@@ -19,10 +19,11 @@ static sk_touch *touch_of(const sk_op *op) {
     return ((const sk_force *)op->rule)->state;
 }
 
-/* A vertex goes on as it does now; what is fast is seldom as steady. */
+/* A vertex goes on as it does now; what is fast is seldom as steady, and what is slow needs little room. */
 static sk_course course_from(const sk_touch *touch, sk_vec3 at, sk_vec3 step, real time) {
-    const real share = (real)0.25;
-    real reach = share * sk_max(touch->thickness, sk_length(sk_sub(step, touch->drift)));
+    const real share = (real)0.25, least = (real)0.0625, substeps = 10;
+    real speed = sk_length(sk_sub(step, touch->drift));
+    real reach = sk_max(sk_min(share, least + substeps * speed / touch->thickness) * touch->thickness, share * speed);
     return (sk_course){sk_sub(at, sk_scale(time, step)), step, reach};
 }
 
