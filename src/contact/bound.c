@@ -4,7 +4,8 @@
  * features along it. Corners move along straight lines, so a gap that is left at the end was there all the way. Where
  * none is left, a plane between the features is what neither may pass, and corners go but a share of their ways. Such
  * planes stand still in the frame of what all go together, and hold for any smaller share, too; other pairs are looked
- * at again with these shares, until no more planes are needed. */
+ * at again with these shares, until no more planes are needed. Where a plane across an axis keeps features far apart,
+ * before and after, it does for any shares, and no other is needed. */
 #include <string.h>
 
 #include "contact/touch.h"
@@ -115,13 +116,34 @@ static bool lower_shares(sk_touch *touch, const line *l, const gap *g, real uppe
     return lowered;
 }
 
+/* Whether its features are apart along an axis before and after, on one side, by what is not near. */
+static bool are_apart(const sk_touch *touch, const line *l) {
+    const real near = SK_NEAR_THICKNESSES * touch->thickness;
+    sk_vec3 low[2][2], high[2][2]; // of each feature, before and after
+    for (int c = 0; c < 4; c++)
+        for (int end = 0; end < 2; end++) {
+            sk_vec3 x = sk_xyz(touch->p[l->v[c]]);
+            if (end) x = sk_add(x, sk_scale(touch->share[l->v[c]], sk_xyz(touch->way[l->v[c]])));
+            int f = c >= l->first;
+            bool new = c == 0 || c == l->first;
+            low[f][end] = new ? x : (sk_vec3){sk_min(low[f][end].x, x.x), sk_min(low[f][end].y, x.y), sk_min(low[f][end].z, x.z)};
+            high[f][end] = new ? x : (sk_vec3){sk_max(high[f][end].x, x.x), sk_max(high[f][end].y, x.y), sk_max(high[f][end].z, x.z)};
+        }
+    bool apart = false;
+    for (int f = 0; f < 2; f++) {
+        sk_vec3 a = sk_sub(low[f][0], high[1 - f][0]), b = sk_sub(low[f][1], high[1 - f][1]);
+        apart |= (a.x >= near && b.x >= near) || (a.y >= near && b.y >= near) || (a.z >= near && b.z >= near);
+    }
+    return apart;
+}
+
 /* Whether a pair would close, and needs planes. */
 static bool settle_pair(sk_touch *touch, sk_pairs *pairs, int sort, size_t k, real least) {
     line l = line_of(touch, pairs, sort, k);
     gap g = gap_of(touch, &l);
     real before = g.low - g.high, after = g.low_after - g.high_after;
     real room = sk_max(0, (1 - SK_LEFT_OVER) * (before - least));
-    if (after >= before || after >= before - room) return false;
+    if (after >= before || after >= before - room || are_apart(touch, &l)) return false;
     pairs->settled[k] = 1;
     real upper, lower;
     divide(&g, room, &upper, &lower);

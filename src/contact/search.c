@@ -16,11 +16,10 @@ static const real rounding = (real)0.002;
 
 /* ---- how near a pair has to be ---- */
 
-/* A vertex' part of it: a pair is near, or may close, below the sum of both features' parts, at places expected. */
-static real part_of(const sk_touch *touch, const sk_course *course) {
-    real relative = sk_length(sk_sub(course->step, touch->drift));
-    real closing = closing_share * (relative + 2 * course->reach);
-    return course->reach + sk_max((real)0.5 * SK_NEAR_THICKNESSES * touch->thickness, closing) + rounding * touch->thickness;
+/* A vertex' part of it: what is no nearer than the sum of both features' parts, along one axis and on one side before a
+ * substep and after it, is neither near nor closes (bound.c). */
+static real part_of(const sk_touch *touch, real reach) {
+    return reach + ((real)0.5 * SK_NEAR_THICKNESSES + rounding) * touch->thickness;
 }
 
 /* ---- boxes ---- */
@@ -53,26 +52,26 @@ static void box_of(const sk_box *corner_box, const uint32_t *vertex, int count, 
     }
 }
 
-/* What is near enough to close in a substep, or to be near at its end, whatever shares of their ways both go. */
-static real part_of_way(const sk_touch *touch, size_t v) {
-    // partners that keep to their courses have theirs in the frame of these
-    sk_vec3 frame = sk_sub(touch->shift[1], touch->shift[0]), all = sk_sub(touch->common, frame);
-    real apart = sk_length(all), relative = sk_length(sk_sub(all, touch->drift)), way = touch->way[v].w;
-    real closing = closing_share * (way + relative) + SK_LEAST_GAP * touch->thickness;
-    real near = way + apart + (real)0.5 * SK_NEAR_THICKNESSES * touch->thickness;
-    return sk_max(closing, near) + rounding * touch->thickness;
+static sk_quad quad_of(sk_vec3 x) {
+    return (sk_quad){x.x, x.y, x.z, 0};
+}
+
+/* The box of a way, whatever share of it is gone, in the frame of courses; of a place, where the way is none. */
+static sk_box box_of_way(const sk_touch *touch, size_t v, bool way) {
+    sk_vec3 from = sk_sub(sk_xyz(touch->p[v]), touch->shift[0]), to = from;
+    if (way) to = sk_sub(sk_add(sk_add(sk_xyz(touch->p[v]), touch->common), sk_xyz(touch->way[v])), touch->shift[1]);
+    sk_quad low = least_of(quad_of(from), quad_of(to)), high = most_of(quad_of(from), quad_of(to));
+    return (sk_box){{low, low}, {high, high}};
 }
 
 static void make_vertex_box(sk_touch *touch, size_t v, bool way) {
     const sk_course *course = &touch->course[v];
     bool stands = way || touch->wild[v];
-    real part = way ? part_of_way(touch, v) : part_of(touch, course);
-    if (stands && !way) part = ((real)0.5 * SK_NEAR_THICKNESSES + rounding) * touch->thickness; // for those that it meets now
-    for (int end = 0; end < 2; end++) {
-        sk_vec3 x = stands ? sk_sub(sk_xyz(touch->p[v]), touch->shift[0]) : sk_expected(course, end ? touch->until : 0);
-        touch->corner_box[v].low[end] = (sk_quad){x.x, x.y, x.z, 0};
-        touch->corner_box[v].high[end] = (sk_quad){x.x, x.y, x.z, part};
-    }
+    sk_quad from = quad_of(course->from), to = quad_of(sk_expected(course, touch->until));
+    sk_box box = {{from, to}, {from, to}};
+    if (stands) box = box_of_way(touch, v, way);
+    for (int end = 0; end < 2; end++) box.high[end][3] = part_of(touch, stands ? 0 : course->reach);
+    touch->corner_box[v] = box;
 }
 
 static real square_between(const sk_vec4 *p, uint32_t a, uint32_t b) {
