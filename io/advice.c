@@ -121,8 +121,7 @@ static const char *connected_body_of(skein_world *world, uint32_t particle) {
     return NULL;
 }
 
-/* A contact takes a particle out in one substep, and where velocities are taken from positions, that is a throw: a cloth that
- * began 0.2 m deep in a ball had 1 J by 10 substeps and 178 J by 80. Says so of the deepest. */
+/* What begins inside comes out at the collider's recovery, which takes its time; says so of the deepest. */
 static size_t advise_of_overlap(skein_world *world, double dt, io_warnings warnings) {
     const double fast = 1, deep = 1e-3; // m/s, m
     double h = dt / substeps_of(world), most = fmax(deep, fast * h);
@@ -131,17 +130,19 @@ static size_t advise_of_overlap(skein_world *world, double dt, io_warnings warni
     skein_contact *contacts = malloc(count * sizeof *contacts);
     if (!contacts || skein_contacts_copy(world, contacts, count, &count)) count = 0;
     const char *body = NULL, *collider = NULL;
+    skein_value recovery = {0};
     for (size_t i = 0; i < count; i++) {
         const char *whose = -contacts[i].gap > most ? connected_body_of(world, contacts[i].particle) : NULL;
         if (!whose) continue;
         most = -contacts[i].gap, body = whose, collider = name_of(world, contacts[i].collider);
+        skein_get(world, contacts[i].collider, "recovery", &recovery);
     }
     free(contacts);
     if (!body) return 0;
     io_warn(warnings,
-            "'%s' lies %.3g m deep in '%s', and is thrown out of it within a substep of %.3g ms: move one of them, so that "
-            "nothing begins inside",
-            body, most, collider, 1e3 * h);
+            "'%s' lies %.3g m deep in '%s', and comes out at its recovery of %g m/s, in %.2g s: move one of them if "
+            "nothing is to begin inside",
+            body, most, collider, recovery.number[0], most / recovery.number[0]);
     return 1;
 }
 

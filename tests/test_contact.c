@@ -162,7 +162,7 @@ static void a_sphere_pushes_out_along_the_unit_normal(void **state) {
         skein_world *world = new_world(method_names[m], 1);
         OK(world, skein_collider_add(world, "sphere",
                                      SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.5, 0), SKEIN_REAL("radius", 1),
-                                                    SKEIN_REAL("thickness", 0)),
+                                                    SKEIN_REAL("thickness", 0), SKEIN_REAL("recovery", 1e6)),
                                      NULL));
         add_particle(world, 1, 0, 1.4, 0);
         add_particle(world, 1, 0.3, 0.5, 0.4);
@@ -189,7 +189,7 @@ static void a_plane_pushes_out_to_its_thickness(void **state) {
         skein_world *world = new_world(method_names[m], 1);
         OK(world, skein_collider_add(world, "plane",
                                      SKEIN_SETTINGS(SKEIN_VEC3("normal", 4, -6, 12), SKEIN_REAL("offset", 0.75),
-                                                    SKEIN_REAL("thickness", 0.125)),
+                                                    SKEIN_REAL("thickness", 0.125), SKEIN_REAL("recovery", 1e6)),
                                      NULL));
         for (size_t i = 0; i < COUNT(heights); i++)
             add_particle(world, 1, 3 + heights[i] * unit[0], 2 + heights[i] * unit[1], heights[i] * unit[2]); // (3, 2, 0) is on the level

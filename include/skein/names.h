@@ -298,6 +298,7 @@
 #define SKEIN_COLLIDER_ON "on" /* a text; the names of the bodies that it meets, commas between them; empty: every particle */
 #define SKEIN_COLLIDER_THICKNESS "thickness" /* a number in m; particles are kept so far off */
 #define SKEIN_COLLIDER_FRICTION "friction" /* a number; Coulomb's coefficient, at rest and sliding */
+#define SKEIN_COLLIDER_RECOVERY "recovery" /* a number in m/s; what begins inside comes out at this speed, and is not thrown: the way out is no velocity */
 #define SKEIN_COLLIDER_RESTITUTION "restitution" /* a number; speed after a bounce over speed before */
 #define SKEIN_COLLIDER_MOTION_VELOCITY "motion.velocity" /* three numbers in m/s; it moves so from motion.start on */
 #define SKEIN_COLLIDER_MOTION_AXIS "motion.axis" /* three numbers; axis of the spin, through its own point */

@@ -71,6 +71,7 @@ const sk_collider_type sk_box = {
     .turn = turn,
     .probe = SK_EACH_ISA(probe),
     .shape = tell_shape,
+    .passing = SK_CONVEX,
     .shader = {.arithmetic = "colliders/box"},
 };
 #endif

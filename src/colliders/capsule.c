@@ -66,6 +66,7 @@ const sk_collider_type sk_capsule = {
     .axis = axis,
     .probe = SK_EACH_ISA(probe),
     .shape = tell_shape,
+    .passing = SK_CONVEX,
     .shader = {.arithmetic = "colliders/capsule"},
 };
 #endif

@@ -44,9 +44,16 @@ typedef struct sk_faults_text {
 typedef struct sk_collider_common {
     char *name, *on;
     bool enabled, visible;
-    double thickness, friction, restitution;
+    double thickness, friction, restitution, recovery;
     double velocity[3], axis[3], spin, start;
 } sk_collider_common;
+
+/* How contact finds out whether a way leads through the solid. */
+typedef enum sk_passing {
+    SK_NEVER_PASSED, /* there is no other side: a half space, the outside of a ball */
+    SK_CONVEX,       /* the solid is behind the plane at its nearest point */
+    SK_ANY_SHAPE,
+} sk_passing;
 
 typedef struct sk_collider_type {
     skein_kind kind;
@@ -77,7 +84,8 @@ typedef struct sk_collider_type {
     void (*begin)(const void *params, double time, double dt);
     bool (*changes)(const void *params);
     void (*follow)(const void *params, double time);
-    /* Of types that fast particles are stopped by, too (swept.c), else NULL: where the way from a to b first crosses the surface, as
+    sk_passing passing;
+    /* Of types that know better than their probes do where they are passed, else NULL: where the way from a to b first crosses the surface, as
      * a part of it, over 1 where it does not, and the unit normal on the side of a; and a ball that the surface is in. */
     double (*cross)(const void *params, const sk_pose *pose, const double a[3], const double b[3], double normal[3]);
     void (*ball)(const void *params, const sk_pose *pose, sk_vec3 *middle, real *radius);
@@ -141,7 +149,7 @@ extern const sk_kernels sk_contact_filter;
 /* The same for what has come inside since, X being where V leads from X0. */
 extern const sk_kernels sk_contact_filter_more;
 
-/* All methods, before those that answer at the end of a substep: stops X where its way from X0, the second source, crosses the
+/* Of types with `cross`, before those that answer at the end of a substep: stops X where its way from X0, the second source, crosses the
  * surface. With a first coefficient of 1 friction takes its share, and V gets the same move. */
 extern const sk_kernels sk_contact_sweep;
 typedef struct sk_swept {
@@ -154,7 +162,7 @@ typedef struct sk_swept {
     real radius;                         /* and the thickness */
 } sk_swept;
 sk_swept sk_swept_begin(const sk_collider *collider, double from, double to, bool rubs);
-/* Whether the way from `start` to x crosses the surface; x is then where it ends. */
+/* Whether the way from `start`, as the collider sees it, to x crosses the surface; x is then where it ends. */
 bool sk_swept_stop(const sk_swept *sweep, const double start[3], double x[3]);
 
 /* Once a substep, by one thread: the surface of a collider that changes is where it is at the end. */
@@ -195,5 +203,9 @@ void sk_collider_visit(const sk_collider *collider, double time, const sk_vec4 *
  * infinity where it does not within `most` metres. */
 double sk_collider_cast(const sk_collider *collider, double time, const double origin[3], const double along[3],
                         double most, double normal[3]);
+/* The same of the way from a to b, as a part of it, over 1 where it does not come in: by `cross`, or by rays. What is at the
+ * surface but for rounding, and goes in, crosses it at once. */
+double sk_collider_cross(const sk_collider *collider, const sk_pose *pose, const double a[3], const double b[3],
+                         double normal[3]);
 
 #endif

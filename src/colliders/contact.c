@@ -35,11 +35,20 @@ SK_KERNELS(sk_probe_sixteen, probe_sixteen);
 
 #ifdef SK_ISA
 
-#include "colliders/response.h"
+#include "colliders/start.h"
 
 /* Probes a part of a block; false where nobody touches. */
 SK_INLINE bool meet(sk_run *run, const sk_op *op, const sk_pose *pose, size_t slot, encounter *e) {
     probe(op->rule, pose, sk_load_part(run->vector[SK_X], slot, slot < op->packed), (sk_wide){0}, e);
+    if (!sk_any(e->touching)) return false;
+    find_motion(op->rule, pose, e);
+    return true;
+}
+
+/* The same at the end of a substep, with a look back to its start. */
+SK_INLINE bool meet_at_end(sk_run *run, const sk_op *op, const sk_pose *pose, const origin *o, size_t slot,
+                          encounter *e) {
+    probe_at_end(run, op, pose, o, slot, e);
     if (!sk_any(e->touching)) return false;
     find_motion(op->rule, pose, e);
     return true;
@@ -86,9 +95,10 @@ void SK_KERNEL(contact_force)(sk_run *run, const sk_op *op, size_t begin, size_t
 void SK_KERNEL(contact_impulse)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const sk_collider *collider = op->rule;
     sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
+    const origin o = find_origin(op, &pose);
     encounter e;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        if (!meet(run, op, &pose, slot, &e)) continue;
+        if (!meet_at_end(run, op, &pose, &o, slot, &e)) continue;
         sk_wide4 v = sk_load_part(run->vector[op->dst], slot, slot < op->packed);
         sk_wide3 slide;
         sk_wide approach = split(from_surface(three(v), &e), e.contact.normal, &slide);
@@ -119,10 +129,11 @@ SK_INLINE sk_wide3 way_out(const sk_run *run, const sk_op *op, size_t slot, cons
 void SK_KERNEL(contact_push)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const sk_collider *collider = op->rule;
     sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
+    const origin o = find_origin(op, &pose);
     encounter e;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        if (!meet(run, op, &pose, slot, &e)) continue;
-        sk_wide push = (real)collider->common->thickness - e.contact.distance;
+        if (!meet_at_end(run, op, &pose, &o, slot, &e)) continue;
+        sk_wide push = e.level - e.contact.distance;
         apply(run, op, slot, e.x, e.touching & sk_positive(push), way_out(run, op, slot, &e, push));
     }
 }
@@ -140,11 +151,12 @@ void SK_KERNEL(contact_update)(sk_run *run, const sk_op *op, size_t begin, size_
     bool bounces = sk_contact_reads_force(collider);
     sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
     sk_wide per_step = sk_splat((real)(1 / op->dt));
+    const origin o = find_origin(op, &pose);
     encounter e;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        if (!meet(run, op, &pose, slot, &e)) continue;
+        if (!meet_at_end(run, op, &pose, &o, slot, &e)) continue;
         bool packed = slot < op->packed;
-        sk_wide push = (real)collider->common->thickness - e.contact.distance;
+        sk_wide push = e.level - e.contact.distance;
         sk_mask pushed = e.touching & sk_positive(push);
         sk_wide3 move = way_out(run, op, slot, &e, push);
         apply(run, op, slot, e.x, pushed, move);
@@ -152,11 +164,14 @@ void SK_KERNEL(contact_update)(sk_run *run, const sk_op *op, size_t begin, size_
         // the move is velocity, too; but along the normal what counts is how the particle came
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         add_where(pushed, &v, times(per_step, move));
+        if (sk_any(pushed & e.leaving)) // but no push that lets out what began inside
+            add_where(pushed & e.leaving, &v, times(-per_step * push, e.contact.normal));
         sk_wide3 before = three(sk_load_part(run->vector[op->source[2]], slot, packed));
         sk_wide approach = sk_dot_wide(from_surface(before, &e), e.contact.normal);
         sk_wide change = -sk_dot_wide(from_surface(three(v), &e), e.contact.normal);
         if (bounces) change += bounce_of(run, op, slot, &e, v.w, approach);
-        add_where(e.touching & sk_negative(approach), &v, times(change, e.contact.normal));
+        add_where(e.touching & (sk_negative(approach) | (e.leaving & sk_positive(change))), &v,
+                  times(change, e.contact.normal));
         sk_store_moved(run->vector[SK_V], slot, packed, v);
     }
 }
@@ -192,6 +207,8 @@ const skein_field sk_collider_fields[] = {
             "the names of the bodies that it meets, commas between them; empty: every particle"),
     SK_REAL(sk_collider_common, thickness, "thickness", "m", 0.002, 0, SK_FAR, "particles are kept so far off"),
     SK_REAL(sk_collider_common, friction, "friction", "", 0.3, 0, SK_FAR, "Coulomb's coefficient, at rest and sliding"),
+    SK_REAL(sk_collider_common, recovery, "recovery", "m/s", 1, 0, SK_FAR,
+            "what begins inside comes out at this speed, and is not thrown: the way out is no velocity"),
     SK_REAL(sk_collider_common, restitution, "restitution", "", 0, 0, 1, "speed after a bounce over speed before"),
     SK_VEC3(sk_collider_common, velocity, "motion.velocity", "m/s", 0, 0, 0, "it moves so from motion.start on"),
     SK_VEC3(sk_collider_common, axis, "motion.axis", "", 0, 1, 0, "axis of the spin, through its own point"),

@@ -114,7 +114,7 @@ void SK_KERNEL(contact_filter)(sk_run *run, const sk_op *op, size_t begin, size_
  * a hollow, and the solve may take it off: holding that would glue it on, with more weight and friction for the rest.
  */
 SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_op *op, const sk_pose *start, size_t slot, sk_wide4 v,
-                               const encounter *e) {
+                               const encounter *e, sk_wide *level) {
     const sk_collider *collider = op->rule;
     bool packed = slot < op->packed;
     sk_wide4 v0 = sk_load_part(run->vector[SK_V0], slot, packed);
@@ -123,6 +123,10 @@ SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_op *op, const sk_pose
     if (!sk_any(inside)) return inside;
     encounter before;
     probe(collider, start, sk_load_part(run->vector[SK_X0], slot, packed), sk_splat((real)1e-3), &before);
+    // what began inside comes out at its own speed
+    sk_wide most = before.contact.distance + (real)(op->dt * collider->common->recovery);
+    *level = sk_select(sk_more(*level, most), most, *level);
+    inside &= sk_more(*level, e->contact.distance);
     // the balance of momentum along the normal, without what contact does to it
     sk_wide hw = (real)op->dt * e->x.w;
     sk_wide3 short_of = minus(times(hw, three(force)), minus(three(v), three(v0)));
@@ -147,9 +151,10 @@ void SK_KERNEL(contact_filter_more)(sk_run *run, const sk_op *op, size_t begin, 
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         encounter e;
         probe(collider, &pose, x, (sk_wide){0}, &e);
-        sk_mask inside = comes_inside(run, op, &start, slot, v, &e);
+        sk_wide level = sk_splat(thickness);
+        sk_mask inside = comes_inside(run, op, &start, slot, v, &e, &level);
         if (!sk_any(inside)) continue;
-        sk_wide gap = e.contact.distance - thickness;
+        sk_wide gap = e.contact.distance - level;
         filtering f = {sk_load_part(diagonal, slot, packed), sk_load_part(off, slot, packed), v, {{0}, {0}, {0}, {0}}};
         hold_normal(&f, inside, e.contact.normal, -gap / (real)op->dt, (real)0.5);
         sk_store_part(diagonal, slot, packed, f.d);

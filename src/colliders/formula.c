@@ -123,6 +123,7 @@ const sk_collider_type sk_formula_surface = {
     .turn = turn,
     .probe = SK_EACH_ISA(probe),
     .deforms = true,
+    .passing = SK_ANY_SHAPE,
     .guarded = is_guarded,
     .making = &making,
     .shader =

@@ -177,6 +177,7 @@ const sk_collider_type sk_solid_mesh = {
     .probe = SK_EACH_ISA(probe),
     .near = SK_EACH_ISA(near),
     .deforms = true,
+    .passing = SK_ANY_SHAPE,
     .making = &making,
     .take = take,
     .is_shaped_by = is_shaped_by,

@@ -1,7 +1,7 @@
 // Where a collider stands at the end of the substep; what the shapes' texts build on.
 //
-// pose@: position, thickness | velocity, friction | spin, restitution | axis, mass | three rows of the rotation, the
-// first with the time
+// pose@: position, thickness | velocity, friction | spin, restitution | axis, mass | three rows of the rotation, with
+// the time, the recovery, and how it is passed (sk_passing) | for how much of the substep it has moved so
 #define position@ pose@[0].xyz
 #define axis@ pose@[3].xyz
 

@@ -8,6 +8,9 @@ typedef struct encounter {
     bool moves;       /* the surface: most stand still, and need no arithmetic */
     sk_wide3 surface; /* its velocity there */
     sk_mask touching; /* free particles within the thickness, and a hair beyond it */
+    sk_wide reach;    /* that far off, all told */
+    sk_wide level;    /* so far off they are pushed: the thickness, or less where they come out slowly (start.h), */
+    sk_mask leaving;  /* as these do */
 } encounter;
 
 SK_INLINE sk_wide3 minus(sk_wide3 a, sk_wide3 b) {
@@ -49,6 +52,7 @@ SK_INLINE void probe(const sk_collider *collider, const sk_pose *pose, sk_wide4 
         collider->type->probe[SK_THIS_ISA](collider->params, pose, &p, &e->contact);
     }
     e->touching = sk_at_most(e->contact.distance, reach) & sk_positive(x.w);
+    e->reach = reach;
 }
 
 /* How the surface moves where it was probed. */

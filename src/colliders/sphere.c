@@ -52,6 +52,7 @@ const sk_collider_type sk_sphere = {
     .mass = mass_of,
     .probe = SK_EACH_ISA(probe),
     .shape = tell_shape,
+    .passing = SK_CONVEX,
     .shader = {.arithmetic = "colliders/sphere"},
 };
 #endif

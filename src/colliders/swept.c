@@ -6,8 +6,9 @@
  *           \                   comes next, then finds the particle in touch.
  *            o x
  *
- * For types that say where a way crosses them (`cross`): ordinary contact keeps particles at the thickness, so that ways up
- * to half of it need no look. Position methods give the velocity the same move. */
+ * The kernel is of types that say where a way crosses them (`cross`): ordinary contact keeps particles at the thickness, so that
+ * ways up to half of it need no look. Of all others contact itself finds out who is asked (start.h). Position methods give the
+ * velocity the same move. */
 #include "base/kernels.h"
 #include "colliders/collider.h"
 
@@ -76,7 +77,7 @@ sk_swept sk_swept_begin(const sk_collider *collider, double from, double to, boo
     for (int i = 0; i < 9; i++) sweep.moves |= a[i] != b[i];
     for (int k = 0; k < 3; k++) sweep.moves |= p[k] != q[k];
     sweep.shift = sk_v3(shift[0], shift[1], shift[2]);
-    collider->type->ball(collider->params, &sweep.pose, &sweep.middle, &sweep.radius);
+    if (collider->type->ball) collider->type->ball(collider->params, &sweep.pose, &sweep.middle, &sweep.radius);
     sweep.radius += (real)collider->common->thickness;
     return sweep;
 }
@@ -87,7 +88,7 @@ bool sk_swept_stop(const sk_swept *sweep, const double start[3], double x[3]) {
     double size = fabs(x[0]) + fabs(x[1]) + fabs(x[2]) + 0.1;
     double off = fmax(0.5 * collider->common->thickness, (sizeof(real) == 4 ? 2e-6 : 1e-9) * size);
     for (int turn = 0; turn < MOST_CROSSINGS; turn++) {
-        double part = collider->type->cross(collider->params, &sweep->pose, from, x, normal);
+        double part = sk_collider_cross(collider, &sweep->pose, from, x, normal);
         if (part > 1) return turn > 0;
         double closing = 0, length = 0, rest[3];
         for (int k = 0; k < 3; k++) closing -= normal[k] * (x[k] - from[k]);
@@ -105,7 +106,7 @@ bool sk_swept_stop(const sk_swept *sweep, const double start[3], double x[3]) {
         for (int k = 0; k < 3; k++) x[k] = from[k] + keep * rest[k];
     }
     // in a corner with walls all round it stays where it came to
-    if (collider->type->cross(collider->params, &sweep->pose, from, x, normal) <= 1)
+    if (sk_collider_cross(collider, &sweep->pose, from, x, normal) <= 1)
         for (int k = 0; k < 3; k++) x[k] = from[k];
     return true;
 }

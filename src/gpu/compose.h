@@ -18,7 +18,7 @@ enum {
     SK_GPU_GROUP = 128,      /* invocations of a work group */
     SK_GPU_MOST_VECTORS = 8, /* in a pass; OpenGL promises eight buffers */
     SK_GPU_MOST_BLOCK = 768, /* vectors of four floats that the ops of a pass say; OpenGL promises 1,024 */
-    SK_GPU_POSE = 7,         /* vectors that say where a collider stands */
+    SK_GPU_POSE = 8,         /* vectors that say where a collider stands */
     SK_GPU_OP = 2,           /* vectors that every op has: coefficients and the substep; flags */
     SK_GPU_HEAD = 2,         /* vectors before those of the ops */
 };

@@ -161,8 +161,8 @@ sk_gpu_use sk_gpu_op_use(const sk_op *op) {
         if (shifts(op)) use = (sk_gpu_use){BIT(SK_X) | BIT(SK_PREVIOUS), BIT(SK_X) | BIT(SK_PREVIOUS)};
         break;
     case SK_OP_CONTACT_FORCE: use = (sk_gpu_use){BIT(SK_X) | BIT(SK_V) | BIT(SK_F), BIT(SK_F)}; break;
-    case SK_OP_CONTACT_VELOCITY: use = (sk_gpu_use){BIT(SK_X) | BIT(SK_V), BIT(SK_V)}; break;
-    case SK_OP_CONTACT_POSITION: use = (sk_gpu_use){BIT(SK_X), BIT(SK_X)}; break;
+    case SK_OP_CONTACT_VELOCITY: use = (sk_gpu_use){BIT(SK_X) | BIT(SK_V) | BIT(op->source[2]), BIT(SK_X) | BIT(SK_V)}; break;
+    case SK_OP_CONTACT_POSITION: use = (sk_gpu_use){BIT(SK_X) | BIT(op->source[2]), BIT(SK_X)}; break;
     case SK_OP_CONTACT_UPDATE:
         use = (sk_gpu_use){BIT(SK_X) | BIT(SK_V) | BIT(op->source[1]) | BIT(op->source[2]), BIT(SK_X) | BIT(SK_V)};
         if (sk_contact_reads_force(op->rule)) use.reads |= BIT(SK_F);
@@ -198,7 +198,7 @@ size_t sk_gpu_op_size(const sk_op *op) {
     return SK_GPU_OP + (has_pose(op) ? (size_t)SK_GPU_POSE : 0) + rule_size(op);
 }
 
-static void pack_pose(const sk_collider *collider, double time, float (*block)[4]) {
+static void pack_pose(const sk_collider *collider, double time, double dt, float (*block)[4]) {
     sk_pose pose = sk_collider_pose_at(collider, time);
     const sk_vec3 three[4] = {pose.position, pose.velocity, pose.spin, pose.axis};
     const double one[4] = {collider->common->thickness, collider->common->friction, collider->common->restitution,
@@ -209,6 +209,10 @@ static void pack_pose(const sk_collider *collider, double time, float (*block)[4
     }
     for (int i = 0; i < 9; i++) block[4 + i / 3][i % 3] = (float)pose.rotation[i];
     block[4][3] = (float)pose.time;
+    block[5][3] = (float)collider->common->recovery;
+    block[6][3] = (float)collider->type->passing;
+    double since = time - collider->common->start;
+    block[7][0] = (float)(collider->travel.moving || since > dt ? dt : since > 0 ? since : 0);
 }
 
 /* A rule's parameters: of arithmetic the fields, number after number. */
@@ -242,7 +246,7 @@ void sk_gpu_op_pack(const sk_op *op, const sk_run *run, float (*block)[4]) {
     const sk_shader *shader = shader_of(op);
     if (has_pose(op)) {
         const sk_collider *collider = op->rule;
-        pack_pose(collider, is_avoid(op) ? time : time - op->before_end, block);
+        pack_pose(collider, is_avoid(op) ? time : time - op->before_end, op->dt, block);
         pack_rule(op, shader, block + SK_GPU_POSE);
     } else if (shader) {
         pack_rule(op, shader, block);
@@ -452,8 +456,12 @@ static void put_statements(sk_gpu_text *text, const sk_op *op, size_t n, size_t 
     case SK_OP_NEIGHBOUR:
     case SK_OP_LIMIT: put_force(text, op, n, particle_count); break;
     case SK_OP_CONTACT_FORCE: sk_gpu_put(text, "    contact_force%zu(X, V, F);\n", n); break;
-    case SK_OP_CONTACT_VELOCITY: sk_gpu_put(text, "    contact_impulse%zu(X, V);\n", n); break;
-    case SK_OP_CONTACT_POSITION: sk_gpu_put(text, "    contact_push%zu(X);\n", n); break;
+    case SK_OP_CONTACT_VELOCITY:
+        sk_gpu_put(text, "    contact_impulse%zu(X, V, %s);\n", n, sk_gpu_vector_name(op->source[2]));
+        break;
+    case SK_OP_CONTACT_POSITION:
+        sk_gpu_put(text, "    contact_push%zu(X, %s);\n", n, sk_gpu_vector_name(op->source[2]));
+        break;
     case SK_OP_CONTACT_UPDATE:
         sk_gpu_put(text, "    contact_update%zu(X, V, %s, %s, %s);\n", n,
                    sk_contact_reads_force(op->rule) ? "F" : "vec4(0)", sk_gpu_vector_name(op->source[1]),

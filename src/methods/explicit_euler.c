@@ -10,6 +10,7 @@ static void write(sk_plan_builder *builder, const void *params, double dt) {
     size_t repeat = sk_write_repeat(builder, (size_t)sk_substeps_of(params), h);
     sk_write_steering(builder);
     sk_write_derivative(builder);
+    sk_write_start(builder);
     sk_write_sum(builder, SK_X, 1, SK_X, h, SK_V);
     sk_write_stage_time(builder, 1);
     sk_write_kick(builder, SK_V, SK_V, h, SK_F);

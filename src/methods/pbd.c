@@ -30,6 +30,7 @@ static void write_projections_only(sk_plan_builder *builder, const pbd_params *p
     size_t repeat = sk_write_repeat(builder, (size_t)params->substeps, h);
     sk_write_stage_time(builder, 1);
     if (sk_writes_velocity_forces(builder)) sk_write_sum(builder, SK_X0, 1, SK_X, 0, SK_NONE); // damping looks back
+    else sk_write_start(builder);
     sk_write_lead(builder, h);
     sk_write_shared_projections(builder, params->iterations);
     sk_write_limits(builder, SK_NONE);

@@ -19,20 +19,12 @@ void sk_add_op_on(sk_plan_builder *builder, sk_op op, const sk_only *only) {
     }
 }
 
-/* Whether contact asks where the substep began. */
-static bool any_sweeps(const sk_rules *rules) {
-    for (size_t i = 0; i < rules->colliders.count; i++)
-        if (rules->colliders.data[i]->common->enabled && rules->colliders.data[i]->type->cross) return true;
-    return false;
-}
-
 size_t sk_write_repeat(sk_plan_builder *builder, size_t times, double h) {
     builder->h = builder->before_end = h;
     builder->iterations = times;
     sk_add_op(builder, (sk_op){.kind = SK_OP_REPEAT, .end = times, .order = SK_ORDERED, .label = "repeat"});
     size_t repeat = builder->substep = builder->plan->count - 1;
     sk_write_meetings(builder, SK_MEETING_BEGIN, SK_NONE);
-    if (any_sweeps(builder->rules)) sk_write_sum(builder, SK_X0, 1, SK_X, 0, SK_NONE); // for methods that do not
     return repeat;
 }
 
@@ -148,12 +140,16 @@ void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort) {
                     .order = SK_FREE,
                     .kernel = sorts[sort].kernels->version[builder->isa],
                     .dst = sorts[sort].dst,
-                    .source = {SK_X, settles ? SK_X0 : SK_NONE, settles ? SK_V0 : SK_NONE},
+                    .source = {SK_X, settles ? SK_X0 : SK_NONE, settles ? SK_V0 : sort == SK_CONTACT_FORCE ? SK_NONE : SK_X0},
                     .rule = collider,
                     .label = collider->label,
                     .end = builder->slot_count};
         sk_add_op_on(builder, op, &collider->only);
     }
+}
+
+void sk_write_start(sk_plan_builder *builder) {
+    if (sk_writes_contacts(builder->rules)) sk_write_sum(builder, SK_X0, 1, SK_X, 0, SK_NONE);
 }
 
 void sk_write_save(sk_plan_builder *builder) {

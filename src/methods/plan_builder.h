@@ -59,6 +59,8 @@ void sk_write_unpack(sk_plan_builder *builder);
 /* The end of every step: what has all but come to rest does. */
 void sk_write_rest(sk_plan_builder *builder);
 
+/* X0 = X where contact will look back to it: for methods that do not keep it themselves, before they move X. */
+void sk_write_start(sk_plan_builder *builder);
 /* dst = a p + b q (q may be SK_NONE); dst = 0; dst = p + a w q. */
 void sk_write_sum(sk_plan_builder *builder, sk_vector dst, double a, sk_vector p, double b, sk_vector q);
 void sk_write_clear(sk_plan_builder *builder, sk_vector dst);

@@ -12,6 +12,7 @@ static void write(sk_plan_builder *builder, const void *params, double dt) {
         sk_write_kick(builder, SK_V, SK_V, h, SK_F);
     }
     sk_write_steering(builder);
+    sk_write_start(builder);
     sk_write_sum(builder, SK_X, 1, SK_X, h, SK_V);
     sk_write_stage_time(builder, 1);
     sk_write_impulses(builder);

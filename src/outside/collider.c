@@ -60,6 +60,7 @@ void sk_outside_collider(sk_outside *outside, const skein_collider_type *given) 
     static sk_probe *const probes[SK_ISA_COUNT] = SK_EACH_ISA(probe);
     sk_collider_type *type = &outside->type.collider;
     type->place = place;
+    type->passing = SK_ANY_SHAPE;
     for (int i = 0; i < SK_ISA_COUNT; i++) type->probe[i] = probes[i];
     if (given->shape) type->shape = tell_shape;
     type->making = &outside->making;

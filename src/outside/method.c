@@ -17,7 +17,10 @@ static sk_vector vector_of(skein_plan_vector vector) {
 }
 
 size_t skein_write_repeat(skein_plan_builder *builder, size_t times, double h) {
-    return builder ? sk_write_repeat(inner(builder), times, h) : 0;
+    if (!builder) return 0;
+    size_t repeat = sk_write_repeat(inner(builder), times, h);
+    sk_write_start(inner(builder)); // whether it keeps X0 itself is not known
+    return repeat;
 }
 
 void skein_write_end(skein_plan_builder *builder, size_t repeat) {

@@ -1,0 +1,171 @@
+/* Where particles were when the substep began, for files of kernels: whether the surface lay in between, and whether they were inside.
+ *
+ *        n  ^                      s is how far off the tangent plane of what is nearest to x, at the end, the start x0 was:
+ *     ------|------ 0              where s is the thickness or more, as it is wherever nothing is fast or deep, the particle
+ *        x  o   ^                  came from outside through the surface that it will be pushed out of, and nothing
+ *          /    | s < 0            more is to be asked. Of a convex solid x0 is at least s away.
+ *     x0  o     v
+ *
+ *   s < 0                    the way may lead through the solid, or x0 was inside: rays say which (cast.c), and what crosses the
+ *                            surface stops there (swept.c), on the side that it came from
+ *   s < thickness            by more than a tenth of recovery h: it may have been inside at x0, so that its distance d0 there is
+ *                            found. It is pushed no further than to d0 + recovery h, and that push is no velocity
+ *
+ * Of solids that are not convex a long way may also lead through a wall and end before another one that faces its start:
+ * ways longer than five thicknesses are asked for all the same, wherever the surface is nearer than they are long. */
+#include "colliders/response.h"
+
+typedef struct origin {
+    bool known, moves, deforms, settles; /* settles: what stops gives the velocity its move */
+    sk_vector vector;
+    sk_passing passing;
+    real h, recovery, long_way; /* s; m in the substep; the square of five thicknesses */
+    real let;                   /* of what is missing of the thickness nothing is said */
+    real least;                 /* s and the reach together are at least this where nothing is to be asked */
+    sk_vec3 shift, turn;        /* of the collider in the substep: m, rad */
+    real bend;                  /* what turning adds to that at an arm of 1 m, at most */
+} origin;
+
+/* Of an op that answers at the end of a substep. */
+SK_INLINE origin find_origin(const sk_op *op, const sk_pose *pose) {
+    const sk_collider *collider = op->rule;
+    real thickness = (real)collider->common->thickness, h = (real)op->dt;
+    origin o = {.settles = op->source[2] == SK_V0, .h = h, .deforms = collider->type->deforms};
+    o.vector = o.settles ? op->source[1] : op->source[2];
+    o.known = o.vector != SK_NONE;
+    o.passing = collider->type->cross ? SK_NEVER_PASSED : collider->type->passing;
+    o.recovery = (real)(op->dt * collider->common->recovery), o.long_way = 25 * thickness * thickness;
+    o.let = (real)0.1 * o.recovery;
+    o.least = thickness + (thickness > o.let ? thickness - o.let : 0);
+    o.shift = sk_scale(h, pose->velocity), o.turn = sk_scale(h, pose->spin);
+    real angle = sk_dot(o.turn, o.turn);
+    o.bend = (real)0.5 * angle;
+    o.moves = angle > 0 || sk_dot(o.shift, o.shift) > 0;
+    return o;
+}
+
+/* How far off the tangent plane they were; where the collider turns, at least. */
+SK_INLINE sk_wide off_plane(const sk_run *run, const sk_op *op, const sk_pose *pose, const origin *o, size_t slot,
+                            const encounter *e, sk_wide3 *way) {
+    *way = minus(three(e->x), three(sk_load_part(run->vector[o->vector], slot, slot < op->packed)));
+    sk_wide bend = {0};
+    if (o->moves) {
+        sk_vec3 t = o->turn, s = o->shift;
+        sk_wide3 arm = {e->x.x - pose->position.x, e->x.y - pose->position.y, e->x.z - pose->position.z};
+        *way = minus(*way, (sk_wide3){s.x + (t.y * arm.z - t.z * arm.y), s.y + (t.z * arm.x - t.x * arm.z),
+                                      s.z + (t.x * arm.y - t.y * arm.x)});
+        bend = o->bend * (sk_wide_abs(arm.x) + sk_wide_abs(arm.y) + sk_wide_abs(arm.z));
+    }
+    sk_wide s = e->contact.distance - sk_dot_wide(*way, e->contact.normal) - bend;
+    return o->deforms ? s + o->h * e->contact.speed : s;
+}
+
+/* Whether a way of a shape that is not convex, longer than its end is far off, needs no look: it ends inside, was so all along
+ * since it came in, and will be pushed out of the surface that it came through. */
+SK_INLINE bool only_enters(const sk_swept *sweep, const double a[3], const double b[3]) {
+    double normal[3], part = sk_collider_cross(sweep->collider, &sweep->pose, a, b, normal);
+    if (part > 1) return true;
+    real p[3][SK_LANES];
+    for (int i = 0; i < SK_LANES; i++)
+        for (int k = 0; k < 3; k++) p[k][i] = (real)(a[k] + (part + (1 - part) * (i + 1) / SK_LANES) * (b[k] - a[k]));
+    sk_sixteen_contacts contacts;
+    sk_probe_sixteen_of[0](sweep->collider, &sweep->pose, p, &contacts);
+    for (int i = 0; i < SK_LANES; i++)
+        if (contacts.distance[i] > 0) return false;
+    return true;
+}
+
+/* What a look back finds. */
+typedef struct past {
+    bool stopped;
+    sk_wide level;   /* where they come out slowly */
+    sk_mask leaving; /* who does */
+} past;
+
+/* Stops those whose way crosses the surface; `behind`: s < 0. Whether any did. */
+SK_INLINE bool stop_at_surface(sk_run *run, const sk_op *op, const origin *o, size_t slot, sk_wide3 from, sk_mask crossing,
+                               sk_mask behind) {
+    bool packed = slot < op->packed, any = false;
+    sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), v = sk_load_part(run->vector[SK_V], slot, packed);
+    real per_step = o->settles ? (real)(1 / op->dt) : 0;
+    sk_swept sweep = sk_swept_begin(op->rule, run->time - op->dt, run->time - op->before_end, o->settles);
+    for (int l = 0; l < SK_PART; l++) {
+        if (!crossing[l]) continue;
+        const double a[3] = {(double)from.x[l], (double)from.y[l], (double)from.z[l]};
+        double to[3] = {(double)x.x[l], (double)x.y[l], (double)x.z[l]};
+        if (!behind[l] && only_enters(&sweep, a, to)) continue;
+        if (!sk_swept_stop(&sweep, a, to)) continue;
+        any = true;
+        real moved[3] = {(real)to[0], (real)to[1], (real)to[2]};
+        v.x[l] += per_step * (moved[0] - x.x[l]), v.y[l] += per_step * (moved[1] - x.y[l]),
+            v.z[l] += per_step * (moved[2] - x.z[l]);
+        x.x[l] = moved[0], x.y[l] = moved[1], x.z[l] = moved[2];
+    }
+    if (!any) return false;
+    sk_store_part(run->vector[SK_X], slot, packed, x);
+    if (per_step > 0) sk_store_moved(run->vector[SK_V], slot, packed, v);
+    return true;
+}
+
+/* Where they began, as the collider sees it where it is now. */
+SK_INLINE sk_wide3 find_start(const sk_run *run, const sk_op *op, const origin *o, size_t slot) {
+    sk_wide3 x = three(sk_load_part(run->vector[o->vector], slot, slot < op->packed));
+    if (!o->moves) return x;
+    sk_swept sweep = sk_swept_begin(op->rule, run->time - op->dt, run->time - op->before_end, false);
+    const real *r = sweep.turn;
+    sk_vec3 s = sweep.shift;
+    return (sk_wide3){r[0] * x.x + r[1] * x.y + r[2] * x.z + s.x, r[3] * x.x + r[4] * x.y + r[5] * x.z + s.y,
+                      r[6] * x.x + r[7] * x.y + r[8] * x.z + s.z};
+}
+
+/* Stops those that come through, and finds how far those may be pushed that were inside when the substep began. */
+static __attribute__((noinline)) void look_back(sk_run *run, const sk_op *op, const sk_pose *pose, origin o, size_t slot,
+                                                past *p) {
+    const sk_collider *collider = op->rule;
+    real thickness = (real)collider->common->thickness;
+    encounter e;
+    probe(collider, pose, sk_load_part(run->vector[SK_X], slot, slot < op->packed), (sk_wide){0}, &e);
+    sk_wide3 from = find_start(run, op, &o, slot);
+    sk_wide own = o.deforms ? o.h * e.contact.speed : (sk_wide){0};
+    sk_wide3 seen = {from.x + own * e.contact.normal.x, from.y + own * e.contact.normal.y, from.z + own * e.contact.normal.z};
+    sk_wide3 way = minus(three(e.x), seen);
+    sk_wide d = e.contact.distance, s = d - sk_dot_wide(way, e.contact.normal), slack = e.reach - thickness;
+    sk_mask is_free = sk_positive(e.x.w), deep = e.touching & sk_more(thickness - slack - o.let, s);
+    sk_mask behind = is_free & sk_more(-slack, s), crossing = (sk_mask){0};
+    if (o.passing != SK_NEVER_PASSED) crossing = behind;
+    if (o.passing == SK_ANY_SHAPE) {
+        sk_wide square = sk_dot_wide(way, way);
+        crossing |= is_free & sk_more(square, sk_splat(o.long_way)) & (sk_negative(d) | sk_more(square, d * d));
+    }
+    p->stopped = sk_any(crossing) && stop_at_surface(run, op, &o, slot, seen, crossing, behind);
+    p->leaving = (sk_mask){0};
+    p->level = sk_splat(thickness);
+    if (!sk_any(deep)) return;
+    sk_contact start;
+    collider->type->probe[SK_THIS_ISA](collider->params, pose, &from, &start);
+    sk_wide level = start.distance + o.recovery;
+    if (o.deforms) level += o.h * start.speed;
+    p->leaving = deep & sk_more(thickness - slack + o.recovery, level);
+    p->level = sk_select(p->leaving & sk_more(p->level, level), level, p->level);
+}
+
+/* Probes those at x at the end of a substep, and looks back to where they began where that matters: what crossed the surface on its
+ * way is where it stops, and probed there. */
+SK_INLINE void probe_at_end(sk_run *run, const sk_op *op, const sk_pose *pose, const origin *o, size_t slot, encounter *e) {
+    const sk_collider *collider = op->rule;
+    bool packed = slot < op->packed;
+    probe(collider, pose, sk_load_part(run->vector[SK_X], slot, packed), (sk_wide){0}, e);
+    e->level = sk_splat((real)collider->common->thickness);
+    e->leaving = (sk_mask){0};
+    if (!o->known || (o->passing == SK_NEVER_PASSED && !sk_any(e->touching))) return;
+    sk_wide3 way;
+    sk_wide s = off_plane(run, op, pose, o, slot, e, &way);
+    sk_mask asked = sk_more(sk_splat(o->least), s + e->reach);
+    if (o->passing == SK_ANY_SHAPE) asked |= sk_more(sk_dot_wide(way, way), sk_splat(o->long_way));
+    if (!sk_any(asked & sk_positive(e->x.w))) return;
+    past p;
+    look_back(run, op, pose, *o, slot, &p);
+    if (p.stopped) probe(collider, pose, sk_load_part(run->vector[SK_X], slot, packed), (sk_wide){0}, e);
+    e->level = p.level;
+    e->leaving = p.leaving;
+}
