@@ -78,7 +78,7 @@ void sk_release(sk_allocator *allocator, void *memory) {
 char *sk_copy_text(sk_allocator *allocator, const char *text) {
     size_t length = text ? strlen(text) : 0;
     char *copy = sk_allocate(allocator, length + 1);
-    if (copy && length) memcpy(copy, text, length);
+    if (copy && text) memcpy(copy, text, length + 1);
     return copy;
 }
 

@@ -52,14 +52,6 @@ void sk_label_copy(char *out, size_t size, const char *name) {
     out[at] = 0;
 }
 
-skein_status sk_fail_memory(skein_error *error, const char *what) {
-    return sk_fail(error, SKEIN_ERROR_MEMORY, "", "no memory for %s", what);
-}
-
-skein_status sk_fail_null(skein_error *error, const char *argument) {
-    return sk_fail(error, SKEIN_ERROR_VALUE, argument, "%s is NULL", argument);
-}
-
 /* The least number of letters to be changed, added, left out or swapped with the next one (optimal string alignment);
  * rows of the table are kept for two letters back. Names are short: longer ones are as far apart as can be. */
 static size_t edit_distance(const char *a, const char *b) {

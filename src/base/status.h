@@ -8,11 +8,17 @@
 skein_status sk_fail(skein_error *error, skein_status status, const char *where, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* The failure of an allocation, said in one way everywhere. */
-skein_status sk_fail_memory(skein_error *error, const char *what);
+/* The failure of an allocation, said in one way everywhere. Here, so that who reads the code knows that it is one. */
+static inline skein_status sk_fail_memory(skein_error *error, const char *what) {
+    sk_fail(error, SKEIN_ERROR_MEMORY, "", "no memory for %s", what);
+    return SKEIN_ERROR_MEMORY;
+}
 
-/* A pointer that must not be NULL is: SKEIN_ERROR_VALUE, for every public call that returns a status. */
-skein_status sk_fail_null(skein_error *error, const char *argument);
+/* A pointer that must not be NULL is, for every public call that returns a status. */
+static inline skein_status sk_fail_null(skein_error *error, const char *argument) {
+    sk_fail(error, SKEIN_ERROR_VALUE, argument, "%s is NULL", argument);
+    return SKEIN_ERROR_VALUE;
+}
 
 /* Copies a name that somebody gave to where it will be printed: what would break a line or steer a terminal (control
  * characters, of UTF-8 too) becomes '?', and what is too long is cut between letters. */

@@ -119,7 +119,7 @@ static skein_status choose_words(void *data, const char *words) {
                                 SIDE_RIGHT, SIDE_TOP, SIDE_BOTTOM, SIDE_LEFT, SIDE_RIGHT};
     enum { FORMS = sizeof forms / sizeof *forms };
     for (int f = 0; f < FORMS; f++) {
-        if (strcmp(words, forms[f])) continue;
+        if (strcmp(words, forms[f]) != 0) continue;
         if (f == 0) {
             memset(s->chosen, 1, s->sheet->particle_count * sizeof *s->chosen);
             return SKEIN_OK;

@@ -38,7 +38,7 @@ SK_INLINE vec3 bounds_in_ball(bounds_params p, vec3 x, vec3 v, scalar h) {
 }
 
 SK_INLINE vec3 bounds_bound(bounds_params p, vec4 x, vec3 v, vec4 steering, exact dt) {
-    vec3 kept = v;
+    vec3 kept;
     if (p.shape != 0) kept = bounds_in_ball(p, xyz(x), v, PARAM(dt));
     else kept = bounds_in_box(p, xyz(x), v, PARAM(dt));
     return pick3(x.w > 0, kept, v);

@@ -41,12 +41,13 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
         p.LOOKS_FROM[0] = (double)at.x, p.LOOKS_FROM[1] = (double)at.y, p.LOOKS_FROM[2] = (double)at.z;
     }
 #endif
+    const exact dt = op->dt; // which what follows would read anew after every store
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < op->packed;
         vec4 x = sk_load_part(run->vector[SK_X], slot, packed);
         flag moved = sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot);
         if (own - slot < SK_PART) moved[own - slot] = 0;
-        vec4 change = STEER(p, xyz(x), op->dt);
+        vec4 change = STEER(p, xyz(x), dt);
 #ifdef SELDOM // lane by lane, so that it is the same for all widths
         moved &= (change.x != 0) | (change.y != 0) | (change.z != 0) | (change.w != 0);
         if (none(moved)) continue;
@@ -75,6 +76,7 @@ SK_INLINE void shift(sk_run *run, const sk_op *op, size_t slot, flag moved, vec4
 void SK_KERNEL(kernel)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const sk_force *force = op->rule;
     const PARAMS p = *(const PARAMS *)force->params;
+    const exact dt = op->dt; // which what follows would read anew after every store
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < op->packed;
         vec4 x = sk_load_part(run->vector[SK_X], slot, packed);
@@ -87,7 +89,7 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
             continue;
         }
 #endif
-        vec3 bound = BOUND(p, x, xyz(v), steering, op->dt);
+        vec3 bound = BOUND(p, x, xyz(v), steering, dt);
         moved &= (bound.x != v.x) | (bound.y != v.y) | (bound.z != v.z);
         if (none(moved)) continue; // most are within most of the time, and stores of quads are long
         sk_store_moved(run->vector[SK_V], slot, packed, vec4_of(pick3(moved, bound, xyz(v)), v.w));

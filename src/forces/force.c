@@ -28,12 +28,12 @@ bool sk_force_add_uniform(const sk_force *force, sk_uniform_force *sum) {
     static const double directions[3][3] = {{1, 2, -3}, {-2, 1, 0}, {0.1, -7, 5}}, masses[4] = {1, 1e-3, 30, 0};
     if (!force->type->at_velocity) return false;
     double f[4][3];
-    for (int i = 0; i < 4; i++) force->type->at_velocity(force->params, velocities[i], i / 2, f[i]);
+    for (int i = 0; i < 4; i++) force->type->at_velocity(force->params, velocities[i], i < 2 ? 0 : 1, f[i]);
     sk_uniform_force own = {.linear = f[0][0] - f[1][0]};
     own.rate = f[2][0] - f[3][0] - own.linear;
     for (int k = 0; k < 3; k++) own.force[k] = f[0][k], own.acceleration[k] = f[2][k] - f[0][k];
-    int number = 0;
-    for (double speed = 1e-6; speed < 1e9; speed *= 4, number++) {
+    double speed = 1e-6;
+    for (int number = 0; number < 25; number++, speed *= 4) { // to 3e8
         const double *d = directions[number % 3], v[3] = {speed * d[0], speed * d[1], speed * d[2]};
         if (!agrees(force, &own, v, masses[number % 4])) return false;
     }

@@ -17,8 +17,8 @@ typedef struct predator_params {
 
 // ---- arithmetic ----
 SK_INLINE vec4 predator_steer(predator_params p, vec3 x, exact dt) {
-    vec3 d = minus(PARAM3(p.position), x), line = PARAM3(p.line), none_at_all = vec3_of(0, 0, 0);
-    if (p.particle >= 0) line = none_at_all;
+    vec3 d = minus(PARAM3(p.position), x), none_at_all = vec3_of(0, 0, 0);
+    vec3 line = times(PARAM(p.particle >= 0 ? 0 : 1), PARAM3(p.line)); // a particle is in one place
     num along = root(dot(line, line));
     line = times(pick(along > 0, 1 / along, 0), line);
     d = minus(d, times(dot(d, line), line));

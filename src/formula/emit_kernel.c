@@ -63,7 +63,7 @@ static bool find_divisor(const skein_formula *f, component *y, sk_node *divisor)
     int count = 3 * f->particles;
     for (int side = 0; side < 2; side++) {
         const sk_graph_node *first = &g->data[y[0].node];
-        sk_node factor = first->arg[side], bare[SK_INPUT_VELOCITY];
+        sk_node factor = first->arg[side], bare[SK_INPUT_VELOCITY] = {0};
         if (first->op != SK_NODE_MULTIPLY || g->data[factor].op != SK_NODE_RECIPROCAL) continue;
         *divisor = g->data[factor].arg[0];
         bool all = g->data[*divisor].op == SK_NODE_SQRT;

@@ -75,7 +75,7 @@ skein_status sk_own_kind_create(sk_allocator *allocator, const skein_kind *kind,
         *next = *row;
         next->offset = row->offset + count * sizeof(double);
         next->help = "named by the formula";
-        strcpy(made->name[count], s->name);
+        snprintf(made->name[count], sizeof made->name[count], "%s", s->name);
         next++->name = made->name[count++];
     }
     made->kind = *kind;

@@ -76,7 +76,7 @@ static skein_status choose_by_number(const selector *s, const char *part) {
         while (isspace((unsigned char)*at)) at++;
         if (!*at) return SKEIN_OK;
         char *end;
-        size_t first, last;
+        size_t first = 0, last = 0;
         skein_status status = read_index(s, at, &end, &first);
         last = first;
         bool span = !status && !strncmp(end, "..", 2);

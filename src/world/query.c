@@ -94,7 +94,7 @@ static void cast_at_body(const skein_world *world, const sk_body *body, const do
 
 static void cast_at_collider(const skein_world *world, const sk_collider *collider, const double origin[3],
                              const double along[3], skein_handle handle, skein_hit *hit) {
-    double normal[3], t = sk_collider_cast(collider, world->time, origin, along, fmin(hit->t, 1e9), normal);
+    double normal[3] = {0, 0, 0}, t = sk_collider_cast(collider, world->time, origin, along, fmin(hit->t, 1e9), normal);
     if (!(t < hit->t)) return;
     hit->t = t;
     hit->object = handle;

@@ -108,7 +108,7 @@ SK_INLINE sk_wide weight_of(const sk_element *e) {
 /* What of a text is not finite gets 0s, and is not active; nor is what is on the free side. Where the sum of w |gradient|^2
  * (if there is `w`) and the value are far from what a number can hold, all are finite, and no sum of all is needed. */
 SK_INLINE void judge(sk_element *e, bool weighed) {
-    e->active = (sk_wide){0} == (sk_wide){0};
+    e->active = ~(sk_mask){0};
     bool small = false;
     if (weighed) {
         sk_wide size = weight_of(e) + sk_wide_abs(e->value) + sk_wide_abs(e->by_time);

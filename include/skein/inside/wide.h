@@ -130,6 +130,7 @@ SK_INLINE sk_wide sk_lane_numbers(void) {
 
 /* The lanes of a part that begins at `slot` whose slots are in [first, end). */
 SK_INLINE sk_mask sk_lanes_between(size_t slot, size_t first, size_t end) {
+    if (first <= slot && slot + SK_PART <= end) return ~(sk_mask){0}; // nearly all parts
     const sk_wide lanes = sk_lane_numbers();
     real low = first > slot ? (real)(first - slot) : 0, high = end > slot ? (real)(end - slot) : 0;
     return sk_at_most(sk_splat(low), lanes) & sk_more(sk_splat(high), lanes);
