@@ -243,7 +243,7 @@ function tell() {
     if (!list.children.length)
         list.replaceChildren(...Object.keys(numbers).map((name) => element('div', {}, element('dt', {textContent: name}), element('dd', {id: `number-${name}`}))));
     for (const [name, value] of Object.entries(numbers)) $(`number-${name}`).textContent = value;
-    $('number-ms').textContent = Number.isNaN(plots.ms.median) ? '' : `${plots.ms.median.toFixed(2)} ms`;
+    $('number-ms').textContent = Number.isNaN(plots.ms.median) ? '-' : `${plots.ms.median.toFixed(2)} ms`;
     const line = $('timeline');
     line.max = state.end;
     if (!line.matches(':active')) line.value = state.frame;

@@ -3,10 +3,10 @@ import * as THREE from 'three';
 
 // as in render/frame.c
 export const COLOURS = ['#c9412a', '#eda333', '#408f8f', '#8f5485', '#789954', '#5c78b3'];
-const CREAM = '#f6e7d0', PAINT = '#2f5f70';
+const CREAM = '#f6e7d0', PAINT = '#3d7688';
 export const LOOKS = {
-    light: {sky: '#e3e8ea', ground: '#d6d1c6', grid: '#a9a294', collider: PAINT, bird: '#2c3238', light: 1},
-    dark: {sky: '#1b1f24', ground: '#34373b', grid: '#5a6067', collider: '#4a7c8d', bird: '#e4e7e8', light: 0.92},
+    light: {sky: '#e3e8ea', ground: '#d6d1c6', grid: '#7d766a', collider: PAINT, bird: '#2c3238', light: 1},
+    dark: {sky: '#1b1f24', ground: '#34373b', grid: '#666d74', collider: '#4a7c8d', bird: '#e4e7e8', light: 0.92},
 };
 
 /* Both dyed, one dyed, none, as gingham is woven; averaged over a pixel, so that it never shimmers. */
@@ -50,7 +50,7 @@ export function jelly(number) {
     const material = new THREE.MeshPhysicalMaterial({color: COLOURS[number % COLOURS.length], roughness: 0.22, clearcoat: 0.7, clearcoatRoughness: 0.2});
     const after = `
         float facing = abs(dot(normalize(vNormal), normalize(vViewPosition)));
-        totalEmissiveRadiance += diffuseColor.rgb * mix(0.42, 0.16, facing);`;
+        totalEmissiveRadiance += diffuseColor.rgb * mix(0.8, 0.38, facing);`;
     return painted(material, '', '', {}, after);
 }
 
@@ -60,6 +60,32 @@ export function collider(sort) {
     const bowl = sort === 'bowl';
     return new THREE.MeshStandardMaterial({
         roughness: 0.45, side: bowl ? THREE.DoubleSide : THREE.FrontSide, transparent: bowl, opacity: bowl ? 0.35 : 1, depthWrite: !bowl});
+}
+
+/* The ground: lines of a grid with cells of `cell` metres and heavier ones of five, averaged over a pixel. */
+export function ground(colour, line, cell) {
+    const material = new THREE.MeshStandardMaterial({color: colour, roughness: 1});
+    material.onBeforeCompile = (shader) => {
+        Object.assign(shader.uniforms, {lineColour: {value: new THREE.Color(line)}, cell: {value: cell}});
+        shader.vertexShader = shader.vertexShader
+            .replace('#include <common>', '#include <common>\nvarying vec2 onGround;')
+            .replace('#include <project_vertex>', '#include <project_vertex>\nonGround = (modelMatrix * vec4(transformed, 1.0)).xz;');
+        shader.fragmentShader = shader.fragmentShader
+            .replace('#include <common>', `#include <common>
+                varying vec2 onGround;
+                uniform vec3 lineColour;
+                uniform float cell;
+                float lines(vec2 x, float half_width) {
+                    vec2 pixel = max(fwidth(x), vec2(1e-6)), off = abs(fract(x - 0.5) - 0.5), wide = max(vec2(half_width), 0.5 * pixel);
+                    vec2 cover = clamp((wide - off) / pixel + 0.5, 0.0, 1.0) * (half_width / wide);
+                    cover = mix(cover, vec2(2.0 * half_width), clamp(pixel * 2.0 - 0.5, 0.0, 1.0));
+                    return max(cover.x, cover.y);
+                }`)
+            .replace('#include <color_fragment>', `#include <color_fragment>
+                float line_ = max(0.5 * lines(onGround / cell, 0.009), 0.75 * lines(onGround / (5.0 * cell), 0.0035));
+                diffuseColor.rgb = mix(diffuseColor.rgb, lineColour, line_);`);
+    };
+    return material;
 }
 
 /* Wings that beat: each bird at its own moment of the beat, by `time`. */

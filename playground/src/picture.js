@@ -3,7 +3,7 @@
 import * as THREE from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 
-import {cloth, collider, COLOURS, feathers, jelly, LOOKS, matter} from './materials.js';
+import {cloth, collider, COLOURS, feathers, ground, jelly, LOOKS, matter} from './materials.js';
 import {arrowGeometry, birdGeometry, colliderGeometry, isLevel, triangles, weave} from './shapes.js';
 
 export class Picture {
@@ -13,7 +13,6 @@ export class Picture {
     #camera = new THREE.PerspectiveCamera(34, 1, 0.01, 2000);
     #sun = new THREE.DirectionalLight('#fff4e2', 2.6);
     #ground;
-    #grid;
     #look = LOOKS.light;
     #parts = null; // of the world that is drawn
     #state = null;
@@ -32,7 +31,7 @@ export class Picture {
         holder.append(this.#renderer.domElement);
         this.controls = new OrbitControls(this.#camera, this.#renderer.domElement);
         this.controls.addEventListener('change', () => this.draw());
-        this.#scene.add(this.#sun, this.#sun.target, new THREE.HemisphereLight('#e8f0f8', '#9a8f7e', 1.9));
+        this.#scene.add(this.#sun, this.#sun.target, new THREE.HemisphereLight('#e8f0f8', '#b5a893', 2.0));
         this.#sun.castShadow = true;
         this.#sun.shadow.mapSize.set(2048, 2048);
         this.#sun.shadow.radius = 3.5;
@@ -181,7 +180,7 @@ export class Picture {
     #paint() {
         for (const mesh of this.#parts.colliders) mesh?.material.color.set(mesh.userData.sort === 'plane' ? this.#look.ground : this.#look.collider);
         this.#parts.birdMesh.material.color.set(this.#look.bird);
-        if (this.#grid) this.#setGrid(this.#grid.userData.size, this.#grid.userData.height);
+        if (this.#ground) this.#setGround(this.#ground.userData.size, this.#ground.userData.height);
     }
 
     /* ---- a state ---- */
@@ -292,7 +291,7 @@ export class Picture {
                 mesh.geometry.computeBoundingBox();
                 box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix));
             }
-        const ground = world.colliders.findIndex((c) => isLevel(c) && c.visible), level = ground < 0 ? null : this.#state.poses[ground].position[1];
+        const under = world.colliders.findIndex((c) => isLevel(c) && c.visible), level = under < 0 ? null : this.#state.poses[under].position[1];
         if (level !== null && box.min.y - level < box.getSize(point).length()) box.expandByPoint(box.getCenter(point).setY(level));
         const centre = box.getCenter(new THREE.Vector3()), size = Math.max(box.getSize(point).length(), 1e-3);
         const turn = THREE.MathUtils.degToRad(camera.azimuth ?? 27), height = THREE.MathUtils.degToRad(camera.elevation ?? 14);
@@ -318,37 +317,32 @@ export class Picture {
         this.#sun.target.position.copy(centre);
         Object.assign(this.#sun.shadow.camera, {left: -size, right: size, top: size, bottom: -size, near: 0.01 * size, far: 5 * size});
         this.#sun.shadow.camera.updateProjectionMatrix();
-        this.#setGrid(size, height);
+        this.#setGround(size, height);
     }
 
     /* Where no plane is the ground, it goes out of the way of what sinks. */
     #lowerGround({positions}) {
-        if (!this.#parts.framed || this.#parts.level || !this.#grid) return;
+        if (!this.#parts.framed || this.#parts.level || !this.#ground) return;
         let lowest = Infinity;
         for (let i = 1; i < positions.length; i += 3) lowest = Math.min(lowest, positions[i]);
-        const {size, height} = this.#grid.userData;
-        if (lowest < height + 0.02 * size && lowest > -1e6) this.#setGrid(size, lowest - 0.15 * size);
+        const {size, height} = this.#ground.userData;
+        if (lowest < height + 0.02 * size && lowest > -1e6) this.#setGround(size, lowest - 0.15 * size);
     }
 
-    #setGrid(size, height) {
-        for (const old of [this.#ground, this.#grid]) {
-            if (!old) continue;
-            this.#scene.remove(old);
-            old.geometry.dispose();
-            old.material.dispose();
+    #setGround(size, height) {
+        if (this.#ground) {
+            this.#scene.remove(this.#ground);
+            this.#ground.geometry.dispose();
+            this.#ground.material.dispose();
         }
         const power = 10 ** Math.floor(Math.log10(size / 9)), cell = power * [5, 2, 1].find((n) => n * power <= size / 9);
-        this.#ground = new THREE.Mesh(new THREE.CircleGeometry(30 * size, 64).rotateX(-Math.PI / 2), new THREE.MeshStandardMaterial({color: this.#look.ground, roughness: 1}));
+        this.#ground = new THREE.Mesh(new THREE.CircleGeometry(30 * size, 64).rotateX(-Math.PI / 2), ground(this.#look.ground, this.#look.grid, cell));
         this.#ground.position.y = height - 0.001 * size;
         this.#ground.receiveShadow = true;
-        this.#grid = new THREE.GridHelper(100 * cell, 100, this.#look.grid, this.#look.grid);
-        this.#grid.position.y = height + 0.0006 * size;
-        this.#grid.material.transparent = true;
-        this.#grid.material.opacity = 0.35;
-        this.#grid.userData = {size, height};
-        this.#scene.add(this.#ground, this.#grid);
+        this.#ground.userData = {size, height};
+        this.#scene.add(this.#ground);
         this.#scene.fog = new THREE.Fog(this.#look.sky, 3 * size, 14 * size); // the ground has no edge
-        this.#ground.visible = this.#grid.visible = this.#parts.world.settings.view.ground !== false;
+        this.#ground.visible = this.#parts.world.settings.view.ground !== false;
     }
 
     /* ---- the hand ---- */

@@ -1,7 +1,7 @@
 // What was done to a world and where it has been, so that one can go back and on again: hands and changes by the frame
 // before whose steps they came, and snapshots now and then. Going to a frame takes the last snapshot before it and does
 // again what followed, which gives the same bits. A hand in the past begins a branch; the old way on is kept beside it.
-const MOST_BYTES = 128e6, MOST_BRANCHES = 6;
+const MOST_BRANCHES = 6;
 
 export class Timeline {
     #ways = [{events: [], end: 0, kept: []}]; // events: [frame, call, ...arguments]; kept: {frame, bytes, events}
@@ -9,9 +9,12 @@ export class Timeline {
     #next = 0; // the first event that is not done to the world as it stands
     #every = 10;
     #holding = false;
+    #most;
 
-    constructor(world) {
+    /* Snapshots take at most so many bytes; where they would take more, every second one goes. */
+    constructor(world, mostBytes = 128e6) {
         this.world = world;
+        this.#most = mostBytes;
         this.#keep();
     }
     get #now() {
@@ -29,6 +32,9 @@ export class Timeline {
     get branches() {
         return this.#ways.length;
     }
+    get bytes() {
+        return this.#ways.reduce((sum, {kept}) => sum + kept.reduce((all, {bytes}) => all + bytes.length, 0), 0);
+    }
     /* What was done up to here. */
     get events() {
         return this.#now.events.slice(0, this.#next);
@@ -38,7 +44,7 @@ export class Timeline {
         const way = this.#now;
         way.kept.push({frame: this.frame, bytes: this.world.snapshot(), events: this.#next});
         const bytes = this.#ways.reduce((sum, {kept}) => sum + kept.length, 0) * way.kept[0].bytes.length;
-        if (bytes <= MOST_BYTES) return;
+        if (bytes <= this.#most) return;
         this.#every *= 2;
         for (const each of this.#ways) each.kept = each.kept.filter(({frame}) => frame % this.#every === 0);
     }

@@ -1,12 +1,12 @@
-// Makes docs/images/playground.jpg anew: node playground/tests/picture.mjs [FILE [WIDTH HEIGHT light|dark [ADDRESS]]], once
+// Makes docs/images/playground.jpg anew: node playground/picture.mjs [FILE [WIDTH HEIGHT light|dark [ADDRESS]]], once
 // tools/playground has built the page.
 import {existsSync} from 'node:fs';
 
 import {chromium} from 'playwright-core';
 
-import {serve} from './server.mjs';
+import {serve} from './tests/server.mjs';
 
-const root = new URL('../../', import.meta.url).pathname;
+const root = new URL('../', import.meta.url).pathname;
 const [, , file = `${root}docs/images/playground.jpg`, width = 1200, height = 720, colorScheme = 'light', address = '#scene=drape&frame=100'] = process.argv;
 const server = await serve(`${root}build/playground`);
 const browser = await chromium.launch({
