@@ -170,26 +170,27 @@ void SK_KERNEL(pull)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
 
 #ifdef SK_WHOLE_QUADS
 /* Both uniform predictions over quads [begin, end), which stay quads: turning them into x, y, z, w and back was most of
- * the work. a (X - X0) comes to the velocity first, unless a is 0; the last iteration ends with that. */
-SK_INLINE void predict_in_quads(sk_run *run, const sk_op *op, size_t begin, size_t end, real a, bool last) {
+ * the work. Where it `corrects`, a (X - X0) comes to the velocity first; the last iteration ends with that. Both are constants where this is
+ * inlined: asked for each vector, they took as long as half its arithmetic. */
+SK_INLINE void predict_in_quads(sk_run *run, const sk_op *op, size_t begin, size_t end, real a, bool corrects, bool last) {
+    const bool saves_v = op->source[2] == SK_V0, saves_end = op->source[2] == SK_X;
     const uniform_pull p = pull_of(op);
-    const sk_mask fourth = sk_fourth_lanes();
     const sk_wide acceleration = sk_each_quad(p.a.x, p.a.y, p.a.z), force = sk_each_quad(p.f.x, p.f.y, p.f.z);
     sk_wide *x_of = (sk_wide *)(void *)run->vector[SK_X], *v_of = (sk_wide *)(void *)run->vector[SK_V],
             *x0_of = (sk_wide *)(void *)run->vector[SK_X0], *v0_of = (sk_wide *)(void *)run->vector[SK_V0];
     for (size_t i = begin * 4 / SK_PART; i < end * 4 / SK_PART; i++) {
         sk_wide x = x_of[i], v = v_of[i];
-        if (a != 0) v = sk_select(fourth, v, v + a * (x - x0_of[i]));
+        if (corrects) v = sk_with_fourth(v + a * (x - x0_of[i]), v);
         if (!last) {
             sk_wide w = sk_fourth_of_each(x), k = sk_keep(sk_positive(w), sk_splat(p.h)), pull = acceleration, drag = sk_splat(p.rate);
             if (!p.by_mass) pull = acceleration + force * w, drag = p.rate + p.linear * w;
-            v = sk_select(fourth, v, v + k * (pull - drag * v));
+            v = sk_with_fourth(v + k * (pull - drag * v), v);
         }
         v_of[i] = v;
         if (last) continue;
-        sk_wide gone = sk_select(fourth, x, x + p.h * v);
-        if (op->source[2] == SK_V0) v0_of[i] = v;
-        x0_of[i] = op->source[2] == SK_X ? gone : x;
+        sk_wide gone = sk_with_fourth(x + p.h * v, x);
+        if (saves_v) v0_of[i] = v;
+        x0_of[i] = saves_end ? gone : x;
         x_of[i] = gone;
     }
 }
@@ -215,7 +216,7 @@ void SK_KERNEL(predict_uniform)(sk_run *run, const sk_op *op, size_t begin, size
         set_out(run, op, slot, packed, x, pulled(&pull, x.w, v));
     }
 #ifdef SK_WHOLE_QUADS
-    predict_in_quads(run, op, stop, end, 0, false);
+    predict_in_quads(run, op, stop, end, 0, false, false);
 #endif
 }
 
@@ -232,7 +233,8 @@ void SK_KERNEL(correct_and_predict)(sk_run *run, const sk_op *op, size_t begin, 
         else set_out(run, op, slot, packed, x, pulled(&pull, x.w, v));
     }
 #ifdef SK_WHOLE_QUADS
-    predict_in_quads(run, op, stop, end, a, run->last_iteration);
+    if (run->last_iteration) predict_in_quads(run, op, stop, end, a, true, true);
+    else predict_in_quads(run, op, stop, end, a, true, false);
 #endif
 }
 

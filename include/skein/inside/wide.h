@@ -306,16 +306,17 @@ SK_INLINE void sk_scatter(sk_vec4 *vector, const uint32_t *slot, sk_wide4 p) {
 
 #endif
 
-/* Whole quads in a vector: each one's fourth lane, and that lane for all four. In two lanes there is no quad. */
+/* Whole quads in a vector: x, y and z of q and the fourth lane of r; the fourth lane for all four. In two lanes there is no
+ * quad. (As shuffles, which are one blend: of a mask that is constant gcc makes three operations.) */
 #if SK_WIDTH > 16 || !defined(SKEIN_DOUBLE)
 #define SK_WHOLE_QUADS
-SK_INLINE sk_mask sk_fourth_lanes(void) {
+SK_INLINE sk_wide sk_with_fourth(sk_wide q, sk_wide r) {
 #if SK_WIDTH == 64 && !defined(SKEIN_DOUBLE)
-    return (sk_mask){0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1};
+    return __builtin_shufflevector(q, r, 0, 1, 2, 19, 4, 5, 6, 23, 8, 9, 10, 27, 12, 13, 14, 31);
 #elif SK_WIDTH == 64 || (SK_WIDTH == 32 && !defined(SKEIN_DOUBLE))
-    return (sk_mask){0, 0, 0, -1, 0, 0, 0, -1};
+    return __builtin_shufflevector(q, r, 0, 1, 2, 11, 4, 5, 6, 15);
 #else
-    return (sk_mask){0, 0, 0, -1};
+    return __builtin_shufflevector(q, r, 0, 1, 2, 7);
 #endif
 }
 SK_INLINE sk_wide sk_fourth_of_each(sk_wide q) {
