@@ -1,7 +1,7 @@
 # The short way in: each line below runs one script of tools/, and the scripts run CMake.
 # CMake alone does as well: cmake --preset release && cmake --build --preset release
 
-.PHONY: all install demo test verify-blender npm wheel playground test-web fuzz setup gallery emit names debug format clean help
+.PHONY: all install demo test verify-blender npm wheel playground test-web fuzz setup gallery site emit names debug format clean help
 
 all: ## (or plain make) build the command: build/skein
 	@tools/build release skein
@@ -54,6 +54,10 @@ gallery: ## build, and draw the documents' pictures and film anew
 emit: ## build, and write the constraints' kernels anew from their formulas (src/constraints/emitted)
 	@tools/build release skein
 	@tools/emit
+
+site: ## make the manual a site with a search: build/site (needs no build of Skein)
+	@tools/setup site
+	@tools/site
 
 names: ## build, and write the header of names anew from the tables of fields (include/skein/names.h)
 	@tools/build release skein_names
