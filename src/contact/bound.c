@@ -8,6 +8,7 @@
  * before and after, it does for any shares, and no other is needed. */
 #include <string.h>
 
+#include "base/tasks.h"
 #include "contact/touch.h"
 
 /* ---- ways ---- */
@@ -168,11 +169,25 @@ static bool take_shares(sk_touch *touch) {
     return any;
 }
 
+typedef struct closing {
+    const sk_touch *touch;
+    const sk_pairs *pairs;
+    int sort;
+    real least;
+} closing;
+
+static void find_closing(void *data, size_t begin, size_t end) {
+    const closing *job = data;
+    sk_pairs some = sk_pairs_between(job->pairs, begin, end);
+    sk_closing[job->sort][job->touch->isa](job->touch->p, job->touch->step, job->least, &some);
+}
+
 /* The first round looks at all pairs, the others at those with a corner whose share the round before has lowered. */
 static bool settle_pairs(sk_touch *touch, sk_pairs *pairs, int sort, bool first, real least) {
     const uint8_t *lowered = touch->lowered;
     bool any = false;
-    if (first) sk_closing[sort][touch->isa](touch->p, touch->step, least, pairs);
+    closing job = {touch, pairs, sort, least};
+    if (first) sk_parallel_for(touch->tasks, 0, pairs->count, find_closing, &job);
     for (size_t k = 0; k < pairs->count; k++) {
         bool looks = first ? pairs->closes[k]
                            : !pairs->settled[k] && (lowered[pairs->corner[0][k]] | lowered[pairs->corner[1][k]] |

@@ -71,7 +71,9 @@ bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 
     if (!touch || !touch->skin.leaf_count) return true;
     tally counting = {touch, 0};
     put_boxes(touch, x, slot_of);
-    if (!sk_touch_partners(touch, allocator, SIZE_MAX / 2)) return false;
+    bool too_many;
+    touch->tasks = NULL;
+    if (!sk_touch_partners(touch, allocator, SIZE_MAX / 2, &too_many)) return false;
     for (size_t a = 0; a < touch->skin.leaf_count; a++)
         for (uint32_t i = touch->start[a]; i < touch->start[a + 1]; i++) {
             size_t b = touch->partner.data[i];

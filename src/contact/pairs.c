@@ -37,6 +37,17 @@ void sk_pairs_pad(sk_pairs *pairs) {
     }
 }
 
+sk_pairs sk_pairs_between(const sk_pairs *pairs, size_t begin, size_t end) {
+    sk_pairs some = *pairs;
+    for (int c = 0; c < 4; c++) some.corner[c] += begin;
+    for (int c = 0; c < 3; c++) some.normal[c] += begin;
+    for (int c = 0; c < 2; c++) some.share[c] += begin;
+    some.key += begin, some.distance += begin, some.thickness += begin;
+    some.settled += begin, some.closes += begin;
+    some.count = end - begin;
+    return some;
+}
+
 void sk_pairs_take(sk_pairs *pairs, const sk_pairs *others, size_t first, size_t end) {
     size_t at = pairs->count, count = end - first;
     if (!count) return;

@@ -2,6 +2,7 @@
  * built (Morton's), and never changes; only boxes do. */
 #include <string.h>
 
+#include "base/tasks.h"
 #include "contact/touch.h"
 
 /* ---- the tree ---- */
@@ -138,19 +139,32 @@ static void fit(sk_touch *touch) {
 
 /* ---- partners ---- */
 
-/* Lists those that leaf a may meet, a itself too; what is looked for, too, is listed by the first of both. */
-static bool list_partners(sk_touch *touch, sk_allocator *allocator, uint32_t a) {
-    size_t count = sk_tree_hits[touch->isa](&touch->tree, &touch->hot_box[a], touch->hit);
-    if (!SK_RESERVE(allocator, &touch->first, touch->first.count + count) ||
-        !SK_RESERVE(allocator, &touch->second, touch->second.count + count))
-        return false;
+/* Lists those that leaf a may meet, a itself too; what is looked for, too, is listed by the first of both. False when
+ * there is no room. */
+static bool list_partners(const sk_touch *touch, sk_search_part *part, uint32_t a) {
+    size_t count = sk_tree_hits[touch->isa](&touch->tree, &touch->hot_box[a], part->hit);
+    if (part->first.count + count > part->first.capacity) return false;
     for (size_t i = 0; i < count; i++) {
-        uint32_t b = touch->tree.leaf_at[touch->hit[i]];
+        uint32_t b = touch->tree.leaf_at[part->hit[i]];
         if (b < a && touch->anew[b] && sk_boxes_meet(&touch->hot_box[b], &touch->leaf_box[a])) continue;
-        touch->first.data[touch->first.count++] = b < a ? b : a;
-        touch->second.data[touch->second.count++] = b < a ? a : b;
+        part->first.data[part->first.count++] = b < a ? b : a;
+        part->second.data[part->second.count++] = b < a ? a : b;
     }
     return true;
+}
+
+static void list_part(const sk_parts_job *job, sk_search_part *part) {
+    for (; part->next < part->end; part->next++) {
+        if (part->first.count > job->most) part->next = part->end - 1; // too many in all
+        else if (job->touch->anew[part->next] && !list_partners(job->touch, part, (uint32_t)part->next)) return;
+    }
+}
+
+static bool grow_lists(sk_search_part *part, sk_allocator *allocator) {
+    const size_t more = 1024;
+    size_t need = 2 * part->first.capacity + part->end + more; // (a leaf has no more partners than there are leaves)
+    part->second.capacity = part->first.capacity;
+    return SK_RESERVE(allocator, &part->first, need) && SK_RESERVE(allocator, &part->second, need);
 }
 
 static void put_in_order(uint32_t *data, size_t count) {
@@ -162,20 +176,38 @@ static void put_in_order(uint32_t *data, size_t count) {
     }
 }
 
-bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most) {
-    size_t leaves = touch->skin.leaf_count;
+/* Room for hits of all leaves that there are, in each part. */
+static bool begin_parts(sk_touch *touch, sk_allocator *allocator) {
+    for (int i = 0; i < SK_MOST_PARTS; i++) {
+        sk_search_part *part = &touch->part[i];
+        part->first.count = part->second.count = 0;
+        bool used = i == 0 || (touch->tasks && i < sk_tasks_count(touch->tasks));
+        if (used && !part->hit &&
+            !(part->hit = sk_allocate(allocator, (touch->skin.leaf_count + SK_TREE_WIDTH) * sizeof *part->hit)))
+            return false;
+    }
+    return true;
+}
+
+bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most, bool *too_many) {
+    const size_t worth = 512;
+    size_t leaves = touch->skin.leaf_count, count = 0;
     uint32_t *start = touch->start;
-    touch->first.count = touch->second.count = 0;
+    sk_parts_job job = {.touch = touch, .most = most, .work = list_part, .grow = grow_lists};
     fit(touch);
-    for (size_t a = 0; a < leaves && touch->first.count <= most; a++)
-        if (touch->anew[a] && !list_partners(touch, allocator, (uint32_t)a)) return false;
-    size_t count = touch->first.count;
-    if (!SK_RESERVE(allocator, &touch->partner, count + 1)) return false;
+    if (!begin_parts(touch, allocator) || !sk_touch_work(&job, allocator, leaves, worth)) return false;
+    for (int i = 0; i < touch->part_count; i++) count += touch->part[i].first.count;
     memset(start, 0, (leaves + 2) * sizeof *start);
-    if (count > most) return true;
-    for (size_t i = 0; i < count; i++) start[touch->first.data[i] + 2]++;
+    *too_many = count > most;
+    if (*too_many) return true;
+    if (!SK_RESERVE(allocator, &touch->partner, count + 1)) return false;
+    touch->partner.count = count;
+    for (int p = 0; p < touch->part_count; p++)
+        for (size_t i = 0; i < touch->part[p].first.count; i++) start[touch->part[p].first.data[i] + 2]++;
     for (size_t i = 2; i < leaves + 2; i++) start[i] += start[i - 1];
-    for (size_t i = 0; i < count; i++) touch->partner.data[start[touch->first.data[i] + 1]++] = touch->second.data[i];
+    for (int p = 0; p < touch->part_count; p++)
+        for (size_t i = 0; i < touch->part[p].first.count; i++)
+            touch->partner.data[start[touch->part[p].first.data[i] + 1]++] = touch->part[p].second.data[i];
     for (size_t a = 0; a < leaves; a++) put_in_order(touch->partner.data + start[a], start[a + 1] - start[a]);
     return true;
 }

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/tasks.h"
 #include "contact/touch.h"
 
 /* What is nearer than this share of its way may close in a substep: a little more than 1 / (1 - SK_LEFT_OVER). */
@@ -137,6 +138,14 @@ static void mark_leaves_of(const sk_skin *skin, size_t v, uint8_t *leaves) {
     for (uint32_t k = skin->leaf_start[v]; k < skin->leaf_start[v + 1]; k++) leaves[skin->leaf_of[k]] = 1;
 }
 
+static void make_leaf_boxes(void *data, size_t begin, size_t end) {
+    sk_touch *touch = data;
+    for (size_t i = begin; i < end; i++) {
+        if (touch->moved[i]) sk_touch_leaf_box(touch, i);
+        if (touch->anew[i]) make_hot_box(touch, i);
+    }
+}
+
 static void make_boxes(sk_touch *touch, sk_touch_search_sort sort) {
     bool all = sort == SK_SEARCH_ALL || !touch->boxed || touch->still;
     size_t leaves = touch->skin.leaf_count;
@@ -148,10 +157,7 @@ static void make_boxes(sk_touch *touch, sk_touch_search_sort sort) {
         make_vertex_box(touch, v, touch->still || (sort == SK_SEARCH_WAYS && (touch->lost[v] | touch->wild[v])));
         if (was_wild) mark_leaves_of(&touch->skin, v, touch->moved);
     }
-    for (size_t i = 0; i < leaves; i++) {
-        if (touch->moved[i]) sk_touch_leaf_box(touch, i);
-        if (touch->anew[i]) make_hot_box(touch, i);
-    }
+    sk_parallel_for(touch->tasks, 0, leaves, make_leaf_boxes, touch);
 }
 
 /* ---- who is looked for ---- */
@@ -224,33 +230,8 @@ static void put_edges(const sk_touch *touch, sk_pairs *fresh, uint64_t key, uint
     }
 }
 
-/* Lists the pairs of features of leaves that may meet. */
-static bool list_fresh(sk_touch *touch, sk_allocator *allocator, int sort) {
-    const sk_skin *skin = &touch->skin;
-    enum { MOST = 64 }; // of two leaves: 2 x 4 x 2 corners, 5 x 5 edges
-    sk_pairs fresh = touch->fresh; // so that its arrays stay in registers
-    fresh.count = 0;
-    bool good = true;
-    for (uint32_t a = 0; a < skin->leaf_count && good; a++)
-        for (uint32_t i = touch->start[a]; i < touch->start[a + 1] && good; i++) {
-            uint32_t b = touch->partner.data[i];
-            uint64_t key = (uint64_t)a << 36 | (uint64_t)b << 8;
-            if (!(good = sk_pairs_reserve(&fresh, allocator, fresh.count + MOST))) break;
-            if (sort == SK_EDGES) {
-                put_edges(touch, &fresh, key, a, b);
-                continue;
-            }
-            put_corners(touch, &fresh, key, &skin->leaf[a], b);
-            if (b != a) put_corners(touch, &fresh, key + MOST / 2, &skin->leaf[b], a);
-        }
-    touch->fresh = fresh;
-    sk_pairs_pad(&touch->fresh);
-    return good;
-}
-
 /* Leaves those that may come near. */
-static void keep_near(sk_touch *touch, int sort, sk_touch_search_sort search) {
-    sk_pairs *pairs = &touch->fresh;
+static void keep_near(const sk_touch *touch, sk_pairs *pairs, int sort, sk_touch_search_sort search) {
     bool ways = search == SK_SEARCH_WAYS;
     sk_nearing_values values = {.near = SK_NEAR_THICKNESSES * touch->thickness,
                                 .rounding = 2 * rounding * touch->thickness,
@@ -271,15 +252,76 @@ static void keep_near(sk_touch *touch, int sort, sk_touch_search_sort search) {
 }
 
 /* A surface as it was built is not pushed apart: features of one piece are as thick as their distance then allows. */
-static void set_thickness(sk_touch *touch, int sort) {
+static void set_thickness(const sk_touch *touch, sk_pairs *pairs, int sort) {
     const real share = (real)0.9;
-    sk_pairs *pairs = &touch->fresh;
     sk_closest[sort][touch->isa](touch->skin.built, pairs);
     const uint32_t *piece = touch->skin.piece;
     for (size_t k = 0; k < pairs->count; k++) {
         bool same = piece[pairs->corner[0][k]] == piece[pairs->corner[2][k]];
         pairs->thickness[k] = same ? sk_min(touch->thickness, share * pairs->distance[k]) : touch->thickness;
     }
+}
+
+/* The leaf whose partners have the i-th of all. */
+static uint32_t leaf_with(const sk_touch *touch, size_t i) {
+    uint32_t low = 0, high = (uint32_t)touch->skin.leaf_count - 1;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (touch->start[middle + 1] > i) high = middle;
+        else low = middle + 1;
+    }
+    return low;
+}
+
+enum { MOST = 64 }; /* pairs of two leaves: 2 x 4 x 2 corners, 5 x 5 edges */
+
+/* Lists the pairs of features of a part's leaves that may meet, and keeps those that may come near. */
+static void find_fresh(const sk_parts_job *job, sk_search_part *part) {
+    const sk_touch *touch = job->touch;
+    sk_pairs fresh = part->fresh; // so that its arrays stay in registers
+    uint32_t a = leaf_with(touch, part->next);
+    for (; part->next < part->end && fresh.count + MOST <= fresh.capacity; part->next++) {
+        while (touch->start[a + 1] <= part->next) a++;
+        uint32_t b = touch->partner.data[part->next];
+        uint64_t key = (uint64_t)a << 36 | (uint64_t)b << 8;
+        if (job->sort == SK_EDGES) {
+            put_edges(touch, &fresh, key, a, b);
+            continue;
+        }
+        put_corners(touch, &fresh, key, &touch->skin.leaf[a], b);
+        if (b != a) put_corners(touch, &fresh, key + MOST / 2, &touch->skin.leaf[b], a);
+    }
+    part->fresh.count = fresh.count;
+    if (part->next < part->end) return;
+    sk_pairs_pad(&part->fresh);
+    keep_near(touch, &part->fresh, job->sort, (sk_touch_search_sort)job->search);
+    set_thickness(touch, &part->fresh, job->sort);
+    if (job->search == SK_SEARCH_WAYS) sk_closest[job->sort][touch->isa](touch->p, &part->fresh);
+}
+
+static bool grow_fresh(sk_search_part *part, sk_allocator *allocator) {
+    return sk_pairs_reserve(&part->fresh, allocator, 2 * part->fresh.capacity + 16 * MOST);
+}
+
+/* Finds the pairs of a sort that may come near, in order. */
+static bool list_fresh(sk_touch *touch, sk_allocator *allocator, int sort, sk_touch_search_sort search) {
+    const size_t worth = 256;
+    sk_parts_job job = {.touch = touch, .sort = sort, .search = (int)search, .work = find_fresh, .grow = grow_fresh};
+    for (int i = 0; i < SK_MOST_PARTS; i++) touch->part[i].fresh.count = 0;
+    if (!sk_touch_work(&job, allocator, touch->partner.count, worth)) return false;
+    size_t count = 0;
+    for (int i = 0; i < touch->part_count; i++) count += touch->part[i].fresh.count;
+    if (touch->part_count == 1) {
+        sk_pairs other = touch->fresh;
+        touch->fresh = touch->part[0].fresh, touch->part[0].fresh = other;
+        return true;
+    }
+    touch->fresh.count = 0;
+    if (!sk_pairs_reserve(&touch->fresh, allocator, count)) return false;
+    for (int i = 0; i < touch->part_count; i++)
+        sk_pairs_take(&touch->fresh, &touch->part[i].fresh, 0, touch->part[i].fresh.count);
+    sk_pairs_pad(&touch->fresh);
+    return true;
 }
 
 /* ---- the search ---- */
@@ -350,18 +392,14 @@ bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_s
     make_boxes(touch, search);
     touch->boxed = !touch->still;
     touch->found = false;
-    bool good = sk_touch_partners(touch, allocator, most), gives_up = touch->first.count > most;
+    bool gives_up = false, good = sk_touch_partners(touch, allocator, most, &gives_up);
     if (gives_up) {
         touch->given_up++;
         for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->kept[sort].count = touch->late[sort].count = 0;
     }
     if (good && !gives_up) expect(touch, search);
     for (int sort = 0; sort < SK_PAIR_SORTS && good && !gives_up; sort++) {
-        if (!(good = list_fresh(touch, allocator, sort))) break;
-        keep_near(touch, sort, search);
-        set_thickness(touch, sort);
-        if (search == SK_SEARCH_WAYS) sk_closest[sort][touch->isa](touch->p, &touch->fresh);
-        good = sk_touch_keep(touch, allocator, sort, all);
+        good = list_fresh(touch, allocator, sort, search) && sk_touch_keep(touch, allocator, sort, all);
     }
     forget_hot(touch);
     touch->found = good && !gives_up;

@@ -1,7 +1,8 @@
 /* The rule of contact: its fields, and the first two of its ops. */
-#include "contact/touch.h"
-
 #include <string.h>
+
+#include "base/tasks.h"
+#include "contact/touch.h"
 
 static const skein_field fields[] = {
     SK_REAL(sk_contact_params, thickness, "thickness", "m", 0.005, 1e-6, 1e3,
@@ -27,10 +28,23 @@ static sk_course course_from(const sk_touch *touch, sk_vec3 at, sk_vec3 step, re
     return (sk_course){sk_sub(at, sk_scale(time, step)), step, reach};
 }
 
+typedef struct looking {
+    const sk_touch *touch;
+    const sk_pairs *pairs;
+    int sort;
+} looking;
+
+static void look_at_some(void *data, size_t begin, size_t end) {
+    const looking *job = data;
+    sk_pairs some = sk_pairs_between(job->pairs, begin, end);
+    sk_closest[job->sort][job->touch->isa](job->touch->p, &some);
+}
+
 static void look_at_all(sk_touch *touch) {
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
-        sk_closest[sort][touch->isa](touch->p, &touch->kept[sort]);
-        sk_closest[sort][touch->isa](touch->p, &touch->late[sort]);
+        looking kept = {touch, &touch->kept[sort], sort}, late = {touch, &touch->late[sort], sort};
+        sk_parallel_for(touch->tasks, 0, kept.pairs->count, look_at_some, &kept);
+        sk_parallel_for(touch->tasks, 0, late.pairs->count, look_at_some, &late);
     }
 }
 
@@ -166,6 +180,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
                touch->now + 1 > touch->until;
     touch->thickness = thickness;
     touch->loaded = false;
+    touch->tasks = run->tasks;
     if (good) memcpy(touch->before, run->vector[SK_X], touch->slots * sizeof *touch->before);
     good = good && find_pairs(touch, run, op, all);
     touch->followed = false;
@@ -246,7 +261,7 @@ static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *cou
     LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(lost, vertices), LIST(wild, vertices);
     LIST(corner_box, vertices), LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles);
     LIST(hot_edge, edges), LIST(hot_triangle, triangles), LIST(leaf_box, leaves), LIST(hot_box, leaves);
-    LIST(anew, leaves), LIST(moved, leaves), LIST(changed, leaves), LIST(start, leaves), LIST(hit, leaves);
+    LIST(anew, leaves), LIST(moved, leaves), LIST(changed, leaves), LIST(start, leaves);
 #undef LIST
     return n;
 }
@@ -258,6 +273,7 @@ static void release_vertices(sk_touch *touch, sk_allocator *allocator) {
         sk_release(allocator, *array[i]);
         *array[i] = NULL;
     }
+    sk_touch_release_parts(touch, allocator);
     sk_tree_release(&touch->tree, allocator);
 }
 
@@ -284,8 +300,6 @@ static void release(sk_force *force, sk_allocator *allocator) {
     sk_pairs_release(&touch->fresh, allocator);
     sk_release(allocator, touch->order.data);
     sk_release(allocator, touch->other_order.data);
-    sk_release(allocator, touch->first.data);
-    sk_release(allocator, touch->second.data);
     sk_release(allocator, touch->partner.data);
     sk_release(allocator, touch);
     force->state = NULL;

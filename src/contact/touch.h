@@ -107,8 +107,21 @@ typedef struct sk_course_block {
 typedef bool sk_course_kernel(const sk_vec4 *x, size_t packed, size_t slots, const sk_course_block *block, real time,
                               const sk_vec3 *shift, uint16_t *off);
 
+/* What one thread finds of a search: all that is kept is put together in their order, so that no bit depends on them. */
+enum { SK_MOST_PARTS = 16 };
+typedef struct sk_search_part {
+    uint32_t *hit; /* slots of the tree */
+    struct {
+        uint32_t *data;
+        size_t count, capacity;
+    } first, second; /* leaves whose boxes meet */
+    sk_pairs fresh;
+    size_t next, end; /* of leaves or leaves' pairs, those still to be looked at */
+} sk_search_part;
+
 typedef struct sk_touch {
     sk_skin skin;
+    struct sk_tasks *tasks; /* of the run */
     uint64_t shape; /* of the world that the skin was made from */
     sk_isa isa;
     bool alone;      /* no other rule meets */
@@ -154,11 +167,13 @@ typedef struct sk_touch {
     uint8_t *anew, *moved;        /* leaves that are looked for, and whose boxes are new */
     uint8_t *changed;             /* slots of a level of the tree */
     bool refit;                   /* all of the tree is old */
-    uint32_t *start, *hit;        /* of leaves: where their partners start; slots */
+    uint32_t *start;              /* of leaves: where their partners start */
     struct {
         uint32_t *data;
         size_t count, capacity;
-    } first, second, partner;     /* leaves whose boxes meet; those by the first */
+    } partner;                    /* leaves whose boxes meet, by the first */
+    sk_search_part part[SK_MOST_PARTS];
+    int part_count;
     sk_pairs kept[SK_PAIR_SORTS]; /* of the last search for all, in their order; */
     sk_pairs late[SK_PAIR_SORTS]; /* and of searches since then, one after the other */
     sk_pairs near[SK_PAIR_SORTS], fresh;
@@ -188,6 +203,8 @@ void sk_skin_release(sk_skin *skin, sk_allocator *allocator);
 bool sk_pairs_reserve(sk_pairs *pairs, sk_allocator *allocator, size_t need);
 /* Fills the last block up with pairs of nobody. */
 void sk_pairs_pad(sk_pairs *pairs);
+/* Pairs [begin, end) as pairs of their own; begin is a multiple of sixteen. */
+sk_pairs sk_pairs_between(const sk_pairs *pairs, size_t begin, size_t end);
 /* Adds all of pairs [first, end) of others; there is room. */
 void sk_pairs_take(sk_pairs *pairs, const sk_pairs *others, size_t first, size_t end);
 void sk_pairs_release(sk_pairs *pairs, sk_allocator *allocator);
@@ -228,8 +245,19 @@ extern sk_tree_kernel *const sk_tree_hits[SK_ISA_COUNT];
 bool sk_tree_make(sk_tree *tree, sk_allocator *allocator, const sk_skin *skin);
 void sk_tree_release(sk_tree *tree, sk_allocator *allocator);
 /* Lists leaves whose boxes may meet, each once, of which one at least is looked for `anew`: those of leaf a with itself
- * and later ones are partner[start[a]] to partner[start[a + 1]], in order. */
-bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most);
+ * and later ones are partner[start[a]] to partner[start[a + 1]], in order; but none where they are more than `most`. */
+bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most, bool *too_many);
+/* Has each part's work done on a thread of its own, one after the other in the order of [0, count): `work` looks at what
+ * is next until there is none or no room, for which `grow` is then asked. False when there is no memory. */
+typedef struct sk_parts_job {
+    sk_touch *touch;
+    int sort, search;
+    size_t most;
+    void (*work)(const struct sk_parts_job *job, sk_search_part *part);
+    bool (*grow)(sk_search_part *part, sk_allocator *allocator);
+} sk_parts_job;
+bool sk_touch_work(const sk_parts_job *job, sk_allocator *allocator, size_t count, size_t least);
+void sk_touch_release_parts(sk_touch *touch, sk_allocator *allocator);
 /* Whether two boxes may meet at some time. */
 static inline bool sk_boxes_meet(const sk_box *a, const sk_box *b) {
     typedef sk_lane_int lanes __attribute__((vector_size(4 * sizeof(real))));
