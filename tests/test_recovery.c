@@ -17,7 +17,21 @@ static const shape shapes[] = {
     {"capsule", {SKEIN_VEC3("from", -1, 0, 0), SKEIN_VEC3("to", 1, 0, 0), SKEIN_REAL("radius", 0.4), SKEIN_END}, {0.2, 0, -0.1}, {0, 0, -1}, 0.3},
     {"bowl", {SKEIN_REAL("radius", 1), SKEIN_END}, {-1.3, 0, 0}, {1, 0, 0}, 0.3},
     {"formula", {SKEIN_TEXT("surface", "length(p) - 0.5"), SKEIN_END}, {0, 0.25, 0}, {0, 1, 0}, 0.25},
+    {"mesh", {SKEIN_REAL("scale", 2), SKEIN_END}, {0.7, 0.1, 0.2}, {1, 0, 0}, 0.3},
 };
+
+static skein_handle add_shape(skein_world *world, const shape *s) {
+    // a cube of 1 m
+    static const double corners[8][3] = {{-.5, -.5, -.5}, {.5, -.5, -.5}, {-.5, .5, -.5}, {.5, .5, -.5},
+                                         {-.5, -.5, .5},  {.5, -.5, .5},  {-.5, .5, .5},  {.5, .5, .5}};
+    static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    static const uint32_t sizes[6] = {4, 4, 4, 4, 4, 4};
+    const skein_mesh mesh = {&corners[0][0], 8, sizes, 6, &quads[0][0], 24};
+    skein_handle handle;
+    if (!strcmp(s->kind, "mesh")) OK(world, skein_collider_add_mesh(world, s->kind, &mesh, s->settings, &handle));
+    else OK(world, skein_collider_add(world, s->kind, s->settings, &handle));
+    return handle;
+}
 
 /* After t it has come out by v t, at rest: without gravity, nothing else moves it. At the thickness it stays, with no more than v. */
 static void it_comes_out_at_its_speed(void **state) {
@@ -30,8 +44,7 @@ static void it_comes_out_at_its_speed(void **state) {
                     const shape *it = &shapes[s];
                     double thickness = 0.01, v = recoveries[r], drift = moving ? 3 : 0, speed = 0;
                     skein_world *world = new_world(all_methods[i], 4);
-                    skein_handle solid;
-                    OK(world, skein_collider_add(world, it->kind, it->settings, &solid));
+                    skein_handle solid = add_shape(world, it);
                     OK(world, skein_set(world, solid, "thickness", skein_number(thickness)));
                     OK(world, skein_set(world, solid, "recovery", skein_number(v)));
                     // the solid and the particle go along together

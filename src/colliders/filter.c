@@ -122,7 +122,9 @@ SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_op *op, const sk_pose
     sk_mask inside = sk_negative(e->contact.distance - (real)collider->common->thickness) & sk_positive(e->x.w);
     if (!sk_any(inside)) return inside;
     encounter before;
-    probe(collider, start, sk_load_part(run->vector[SK_X0], slot, packed), sk_splat((real)1e-3), &before);
+    sk_wide4 x0 = sk_load_part(run->vector[SK_X0], slot, packed);
+    x0.w = e->x.w; // which X0 does not keep, and who weighs nothing meets nothing
+    probe(collider, start, x0, sk_splat((real)1e-3), &before);
     // what began inside comes out at its own speed
     sk_wide most = before.contact.distance + (real)(op->dt * collider->common->recovery);
     *level = sk_select(sk_more(*level, most), most, *level);
