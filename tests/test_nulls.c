@@ -5,6 +5,7 @@
 #include <skein/compiled.h>
 #include <skein/formula.h>
 #include <skein/kinds.h>
+#include <skein/gradient.h>
 #include <skein/record.h>
 
 #include "helpers.h"
@@ -406,6 +407,12 @@ static void kinds_of_its_own(void **state) {
     assert_true(isnan(skein_kinds_stable_substep(kinds, NULL, &stability)));
     assert_true(isnan(skein_kinds_stable_substep(kinds, "rk4", NULL)));
     assert_false(isnan(skein_kinds_stable_substep(NULL, "rk4", &stability)));
+    skein_gradient_desc gradient = {.dt = 0.01, .steps = 1};
+    skein_gradient_result derivatives;
+    REFUSES_ALL(skein_gradient(NULL, &gradient, &derivatives));
+    REFUSES("desc", skein_gradient(s.world, NULL, &derivatives));
+    REFUSES("result", skein_gradient(s.world, &gradient, NULL));
+    REFUSES("desc->measure", skein_gradient(s.world, &gradient, &derivatives));
     REFUSES("shape", skein_shape_of(s.world, s.ball, NULL));
     REFUSES_ALL(skein_shape_of(NULL, s.ball, &shape));
     assert_int_equal(skein_write_repeat(NULL, 1, 1), 0);
@@ -428,7 +435,7 @@ static void every_function_was_called(void **state) {
         "skein_world_create", // whose pointers may both be NULL
     };
     static const char *const headers[] = {"include/skein/skein.h", "include/skein/record.h", "include/skein/formula.h",
-                                          "include/skein/kinds.h"};
+                                          "include/skein/kinds.h", "include/skein/gradient.h"};
     char *own = read_text("tests/test_nulls.c");
     blank_comments(own);
     size_t found = 0, missing = 0;

@@ -1,0 +1,68 @@
+/* Gradients of a run: the derivative of one number, a measure of the final state or of all states, with respect to where
+ * particles begin, how fast, and any fields of the world; by the adjoint method, at the cost of a few runs, however many
+ * numbers are asked for.
+ *
+ *     skein_gradient_desc desc = {.dt = 1 / 60.0, .steps = 120, .measure = distance_to_target, .user = &target,
+ *                                 .fields = (const char *const[]){"bodies.0.stretch.stiffness", NULL}};
+ *     skein_gradient_result result = {.by_field = slope};
+ *     skein_gradient(world, &desc, &result);
+ *
+ * What is differentiated is the run as it is computed, step by step, not the motion that it approximates. docs/gradients.md
+ * has what it can do and how. */
+#ifndef SKEIN_GRADIENT_H
+#define SKEIN_GRADIENT_H
+
+#include <skein/skein.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+#if defined(__GNUC__)
+#pragma GCC visibility push(default)
+#endif
+
+/* A state that is measured. Positions (m) and velocities (m/s) are three numbers a particle, in the user's order. */
+typedef struct skein_gradient_state {
+    size_t step; /* after so many steps; 0: before the first */
+    double time; /* s */
+    size_t particle_count;
+    const double *positions, *velocities;
+    double *by_positions, *by_velocities; /* all 0: the derivatives of what is returned go here */
+} skein_gradient_state;
+
+typedef struct skein_gradient_desc {
+    double dt; /* s, of a step */
+    size_t steps;
+    /* What this state adds to the measure, with its derivatives; asked for each state once, from the last to the first. */
+    double (*measure)(void *user, const skein_gradient_state *state);
+    void *user;
+    const char *const *fields; /* paths as skein_set_path() has them, ended by NULL; or NULL: none */
+    size_t most_bytes; /* what may be kept of the states on the way; 0: 256 MB. With less than all of them need, those of a
+                          square root of the steps are kept, and the others are computed once more */
+} skein_gradient_desc;
+
+typedef struct skein_gradient_result {
+    double value;          /* the measure */
+    double *by_positions;  /* 3 numbers a particle, of the start; or NULL */
+    double *by_velocities; /* likewise */
+    double *by_field;      /* a number for each number of each field, in their order; or NULL */
+} skein_gradient_result;
+
+/* Works it out from the state as it stands, which is also left so. Fields are numbers that the run reads as stiffness or
+ * damping of constraints, or as a uniform force (gravity, drag, wind): what else depends on one, a mass, a rest length, is not
+ * followed, and then it fails. Rest lengths stay as they are where positions are varied.
+ *
+ * Methods: those that only add up vectors and forces: symplectic_euler, explicit_euler, leapfrog, midpoint and rk4.
+ * Fails, and names the op, with SKEIN_ERROR_VALUE for anything else in the plan: projections, solves, colliders, limits, rules
+ * that steer, forces that are not uniform; for a library in single precision, whose rounding is too large for this; and
+ * where the run or a field is not such; with SKEIN_ERROR_NAME for a path that leads nowhere; and with
+ * SKEIN_ERROR_MEMORY. */
+skein_status skein_gradient(skein_world *world, const skein_gradient_desc *desc, skein_gradient_result *result);
+
+#if defined(__GNUC__)
+#pragma GCC visibility pop
+#endif
+#ifdef __cplusplus
+}
+#endif
+#endif
