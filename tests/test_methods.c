@@ -243,6 +243,24 @@ static void pbd_is_as_soft_as_its_springs(void **state) {
             }
 }
 
+/* Under XPBD what hangs on a spring sags by m g/k, whatever the passes: their multipliers are kept, damped or not. */
+static void xpbd_is_as_soft_at_any_number_of_passes(void **state) {
+    (void)state;
+    for (int passes = 1; passes < 9; passes += 3)
+        for (int damped = 0; damped < 2; damped++) {
+            const double stiffness = 400;
+            skein_world *world = new_world("xpbd", 1);
+            OK(world, skein_set_path(world, "method.iterations", skein_number(passes)));
+            add_gravity(world);
+            OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 10)), NULL));
+            uint32_t held = add_particle(world, 0, 0, 0, 0), bob = add_particle(world, 1, 0, -1, 0);
+            add_spring(world, held, bob, stiffness, damped ? 5 : 0);
+            steps(world, 240, 1.0 / 60);
+            assert_near(-position_of(world, bob).y - 1, 9.81 / stiffness, 1e-5);
+            skein_world_destroy(world);
+        }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_step_of_the_oscillator),
@@ -253,6 +271,7 @@ int main(void) {
         cmocka_unit_test(temporaries_are_there_only_while_wanted),
         cmocka_unit_test(force_methods_refuse_what_is_rigid),
         cmocka_unit_test(pbd_is_as_soft_as_its_springs),
+        cmocka_unit_test(xpbd_is_as_soft_at_any_number_of_passes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
