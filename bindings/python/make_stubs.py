@@ -18,7 +18,7 @@ RETURNS = {  # what no signature says; anything else is Any
     "positions": "np.ndarray", "velocities": "np.ndarray", "position_view": "np.ndarray", "velocity_view": "np.ndarray",
     "slot_of": "np.ndarray", "vertices": "np.ndarray", "faces": "list[np.ndarray]", "elements": "np.ndarray", "time": "float",
     "closed": "bool", "hash": "str", "render": "Image", "snapshot": "State", "particles": "range", "kind": "str", "valid": "bool",
-    "remove": "None", "reset": "None", "step": "None", "frame": "None", "close": "None", "restore": "None", "hold": "None",
+    "remove": "None", "reset": "None", "step": "None", "frame": "None", "close": "None", "restore": "None", "pin": "None",
     "move_pins": "None", "add_particles": "range", "explain": "list[str]", "hashes": "list[str]", "method": "Method",
     "set_method": "Method", "save": "None", "contacts": "list[Any]", "set": "None", "fields": "dict[str, Any]",
     "constraint_count": "int", "evaluate": "dict[str, Any]", "teleport": "None", "is_live": "bool", "kinds": "list[str]", "methods": "list[str]", "advice": "list[str]",

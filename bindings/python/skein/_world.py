@@ -361,9 +361,9 @@ class World:
                    ctypes.byref(first))
         return range(first.value, first.value + count)
 
-    def hold(self, particle, held=True):
-        """Holds a particle where it is, or lets it go."""
-        self._call(lib.skein_particle_pin, self._index(particle), bool(held))
+    def pin(self, particle, pinned=True):
+        """Pins a particle where it is, or lets it go."""
+        self._call(lib.skein_particle_pin, self._index(particle), bool(pinned))
 
     def _index(self, particle):
         if not 0 <= particle < len(self):

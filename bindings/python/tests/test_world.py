@@ -259,15 +259,15 @@ class State(unittest.TestCase):
         np.testing.assert_allclose(world.positions[:, 1], 2)
         np.testing.assert_allclose(world.velocities[1:], [[0, 0, 1]] * 4)
         rope.velocities = 0
-        world.hold(4)
+        world.pin(4)
         world.move_pins([0, 4], [[0, 3, 0], [1, 3, 0]])
         world.step()
         np.testing.assert_allclose(world.positions[[0, 4]], [[0, 3, 0], [1, 3, 0]])
         self.assertRaisesRegex(skein.ValueFault, "count of steps", world.step, count=-1)
-        world.hold(4, False)
+        world.pin(4, False)
         world.step(count=20)
         self.assertLess(world.positions[4, 1], 2.9)
-        self.assertRaisesRegex(skein.SkeinError, "0 to 4", world.hold, 5)
+        self.assertRaisesRegex(skein.SkeinError, "0 to 4", world.pin, 5)
         self.assertRaises(skein.ValueFault, setattr, world, "positions", np.nan)
         self.assertRaises(ValueError, setattr, world, "positions", np.zeros((4, 3)))
 
