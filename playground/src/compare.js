@@ -49,8 +49,10 @@ export function compare({app, stage, choice, mainPicture, sets, notice}) {
         picture.dark = document.documentElement.classList.contains('dark');
         const main = mainPicture();
         if (main) main.onDrawn = () => picture && picture.camera.some((x, k) => x !== main.camera[k]) && (picture.camera = main.camera);
+        main?.resize(); // which has half of the room now
+        main?.frame();
         await restart();
-        if (app.state) follow(app.state);
+        if (app.state) follow();
     }
     async function follow() {
         if (!world || busy) return;

@@ -398,6 +398,7 @@ async function begin() {
     const dark = matchMedia('(prefers-color-scheme: dark)');
     dark.addEventListener('change', () => setTheme(dark.matches));
     if (innerWidth < 760) togglePanel();
+    await painted(); // what there is of the page is seen before the card is asked for anything
     try {
         picture = new Picture($('picture'));
         theHands = hands({app, picture, simulation, remember, tell, hint: $('hint'), pin: $('pin'), hawk: $('hawk'), beside});
@@ -414,6 +415,11 @@ async function begin() {
     await openAddress();
     if ('serviceWorker' in navigator && import.meta.env.PROD) keepOffline();
 }
+
+const painted = () => new Promise((resolve) => {
+    requestAnimationFrame(() => setTimeout(resolve));
+    setTimeout(resolve, 200); // where nothing is painted: a page in the background
+});
 
 /* From the second visit on, and without a network, everything comes from this browser. */
 async function keepOffline() {

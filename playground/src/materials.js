@@ -59,7 +59,7 @@ export const matter = (number) => new THREE.MeshStandardMaterial({color: COLOURS
 export function collider(sort) {
     const bowl = sort === 'bowl';
     return new THREE.MeshStandardMaterial({
-        roughness: 0.45, side: bowl ? THREE.DoubleSide : THREE.FrontSide, transparent: bowl, opacity: bowl ? 0.35 : 1, depthWrite: !bowl});
+        roughness: 0.45, side: bowl ? THREE.DoubleSide : THREE.FrontSide, transparent: bowl, opacity: bowl ? 0.24 : 1, depthWrite: !bowl});
 }
 
 /* The ground: lines of a grid with cells of `cell` metres and heavier ones of five, averaged over a pixel. */

@@ -36,9 +36,9 @@ export class Picture {
         this.#sun.shadow.mapSize.set(2048, 2048);
         this.#sun.shadow.radius = 3.5;
         this.#sun.shadow.bias = -0.0004;
-        this.#sizes = new ResizeObserver(() => this.#resize());
+        this.#sizes = new ResizeObserver(() => this.resize());
         this.#sizes.observe(holder);
-        this.#resize();
+        this.resize();
     }
 
     get canvas() {
@@ -61,7 +61,7 @@ export class Picture {
         this.draw();
     }
 
-    #resize() {
+    resize() {
         const {clientWidth: width, clientHeight: height} = this.#holder;
         if (!width || !height) return;
         this.#renderer.setSize(width, height);
