@@ -170,7 +170,8 @@ static size_t find_lowest(const sk_geodesic *g, size_t row, const double step[2]
     for (size_t c = 0; c < columns; c++) {
         uint32_t source = nearest[row * columns + c];
         if (source == UINT32_MAX) continue;
-        double across = step[0] * ((double)row - (double)(source / columns));
+        size_t source_row = source / columns;
+        double across = step[0] * ((double)row - (double)source_row);
         parabola p = {step[1] * (double)c, across * across, -INFINITY, source};
         for (; count; count--) {
             const parabola *last = &g->lowest[count - 1];

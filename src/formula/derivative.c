@@ -165,7 +165,7 @@ bool sk_gradient_by(sk_graph *graph, sk_node output, const sk_node *by, size_t c
 /* The tangent of a node from those of its arguments, each NONE where it does not change. */
 static sk_node tangent_of(sk_graph *g, sk_node node, const sk_node *of) {
     const sk_graph_node n = g->data[node];
-    sk_node t[4], sum = NONE;
+    sk_node t[4] = {NONE, NONE, NONE, NONE}, sum = NONE;
     bool moves = false;
     for (int k = 0; k < sk_node_op_info[n.op].arity; k++) moves |= (t[k] = of[n.arg[k]]) != NONE;
     if (!moves) return NONE;

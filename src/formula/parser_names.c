@@ -110,7 +110,7 @@ sk_value sk_parser_named(parser *p, const sk_token *token) {
 
 static void warn_of_acos(parser *p, const sk_function *function, const sk_value *argument, size_t begin) {
     skein_formula *f = p->formula;
-    if (strcmp(function->name, "acos") || !argument->of_dot || f->warnings == SK_FORMULA_MOST_WARNINGS) return;
+    if (strcmp(function->name, "acos") != 0 || !argument->of_dot || f->warnings == SK_FORMULA_MOST_WARNINGS) return;
     f->warning[f->warnings++] = (sk_formula_warning){
         sk_text_mark(&p->text, begin, p->text.before.end),
         "acos of a dot product is inexact near 0 and 180 degrees, and its gradient is worse: use angle(u, v), or "
@@ -151,7 +151,7 @@ static sk_value rest_of(parser *p, const sk_value *argument, size_t begin) {
 
 sk_value sk_parser_call(parser *p, const sk_token *token) {
     const sk_function *function = sk_function_find(token->name);
-    sk_value arguments[SK_MOST_ARGUMENTS];
+    sk_value arguments[SK_MOST_ARGUMENTS] = {{0}};
     if (!function) {
         sk_parser_named(p, token); // an unknown name is said to be one
         return FAIL(p, token->begin, SYNTAX, "'%s' is no function; to multiply, write %s*(...)", token->name,

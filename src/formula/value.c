@@ -19,7 +19,7 @@ sk_value sk_vector3(sk_node x, sk_node y, sk_node z) {
 }
 
 sk_value sk_compare(sk_graph *g, sk_comparison comparison, sk_node a, sk_node b) {
-    sk_node one = sk_constant(g, 1), zero = sk_constant(g, 0), node = zero;
+    sk_node one = sk_constant(g, 1), zero = sk_constant(g, 0), node;
     switch (comparison) {
     case SK_LESS: node = sk_less(g, a, b, one, zero); break;
     case SK_AT_MOST: node = sk_less(g, b, a, zero, one); break;
