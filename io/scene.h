@@ -114,6 +114,8 @@ int io_scene_steps_per_frame(const io_scene_settings *settings, double *dt);
 char *io_scene_text(const io_scene *scene);
 /* The same with the paths of its files from the root on, for wherever it is kept. */
 char *io_scene_text_anywhere(const io_scene *scene);
+/* Shows the files that a document names by whole paths, as that text does, until `take` returns false, which is handed on. */
+bool io_scene_each_file(const struct json_t *document, bool (*take)(void *user, const char *path), void *user);
 /* A hash of all in the document that may act on the state: not of its view, its outputs, its name and its threads; of
  * files what is in them. (Numbers count as they are written: 1 is not 1.0.) */
 uint64_t io_scene_hash(const io_scene *scene);

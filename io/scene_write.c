@@ -20,7 +20,7 @@ char *io_scene_text(const io_scene *scene) {
 
 /* Whether a member holds the path of a file, relative to the scene's folder. */
 static bool is_path(const char *member) {
-    static const char *const members[] = {"mesh", "image", "cache"};
+    static const char *const members[] = {"mesh", "image", "cache", "file"};
     for (size_t i = 0; i < sizeof members / sizeof *members; i++)
         if (!strcmp(member, members[i])) return true;
     return false;
@@ -66,6 +66,19 @@ char *io_scene_text_anywhere(const io_scene *scene) {
     if (line) memcpy(line + length, "\n", 2);
     else free(text);
     return line;
+}
+
+bool io_scene_each_file(const struct json_t *value, bool (*take)(void *user, const char *path), void *user) {
+    const char *name;
+    json_t *item;
+    size_t index;
+    bool good = true;
+    json_array_foreach((json_t *)(uintptr_t)value, index, item) good = good && io_scene_each_file(item, take, user);
+    json_object_foreach((json_t *)(uintptr_t)value, name, item) {
+        const char *path = is_path(name) ? json_string_value(item) : NULL;
+        good = good && (path && path[0] == '/' ? take(user, path) : io_scene_each_file(item, take, user));
+    }
+    return good;
 }
 
 /* ---- what a scene is, in a number ---- */

@@ -163,10 +163,21 @@ static void put_word(words *w, const char *text) {
     put(w, "'", 1);
 }
 
+/* Scenes may read what lies beside them; whoever does a row again says that its files may be read, too. */
+static bool put_allowed(void *user, const char *path) {
+    words *w = user;
+    put(w, " --allow-path ", 14);
+    put_word(w, path);
+    return !w->failed;
+}
+
 char *io_study_command(const io_study *study, size_t row) {
     words w = {NULL, 0, 0, false};
     char **sets = study_sets(study, row);
+    json_t *scene = json_loads(study->scene_text, 0, NULL);
     put(&w, "skein run scene.json", 20);
+    w.failed |= !scene || !io_scene_each_file(scene, put_allowed, &w);
+    json_decref(scene);
     for (size_t v = 0; sets && sets[v]; v++) {
         put(&w, " --set ", 7);
         put_word(&w, sets[v]);

@@ -312,6 +312,31 @@ static void the_hdf5_table_is_the_csv_table(void **state) {
 }
 #endif
 
+/* A scene's files may lie elsewhere than the table: its commands say that they may be read. */
+static void a_mesh_is_found_again(void **state) {
+    (void)state;
+    char command[1800], text[700], table[700];
+    assert_int_equal(mkdir(in_folder("elsewhere"), 0777), 0);
+    snprintf(command, sizeof command, "cp %s/meshes/ball.obj %s", SKEIN_SOURCE_DIR, in_folder("elsewhere"));
+    assert_int_equal(system(command), 0);
+    write_scene(in_folder("elsewhere/c.json"), "{'frames': 3, 'bodies': [{'type': 'cloth', 'mesh': 'ball.obj'}], 'forces': [{'type': 'gravity'}]}");
+    write_scene(in_folder("mesh.json"), "{'study': 1, 'scene': 'elsewhere/c.json', 'vary': {'bodies.0.density': [0.1, 0.2]}, 'measure': ['lowest']}");
+    snprintf(table, sizeof table, "%s/table.csv", in_folder("mesh"));
+    outcome o = SKEIN("study", in_folder("mesh.json"), "--out", in_folder("mesh"), "--quiet");
+    assert_status(o, 0);
+    outcome_free(&o);
+    char *csv = read_text(table);
+    cell(csv, 1, "command", text);
+    assert_contains(text, "elsewhere/ball.obj");
+    snprintf(command, sizeof command, "cd %s && %s%s --json --quiet >../mesh_again.json", in_folder("mesh"), SKEIN_COMMAND, text + 5);
+    assert_int_equal(system(command), 0);
+    json_t *report = read_report(in_folder("mesh_again.json"));
+    cell(csv, 1, "state_hash", text);
+    assert_string_equal(text_of(report, "state_hash"), text);
+    json_decref(report);
+    free(csv);
+}
+
 /* Those that come along can be run, by their names. */
 static void studies_that_come_along_are_sound(void **state) {
     (void)state;
@@ -385,6 +410,7 @@ int main(void) {
 #ifdef SKEIN_HDF5
         cmocka_unit_test(the_hdf5_table_is_the_csv_table),
 #endif
+        cmocka_unit_test(a_mesh_is_found_again),
         cmocka_unit_test(studies_that_come_along_are_sound),
         cmocka_unit_test(arguments_are_checked),
     };
