@@ -143,6 +143,14 @@ static bool list_leaves(sk_skin *skin, sk_allocator *allocator) {
     return good;
 }
 
+/* About seven tenths of a cell's side: of a mean over sides and diagonals, six. */
+static void measure_spacing(sk_skin *skin) {
+    double sum = 0;
+    for (size_t e = 0; e < skin->edge_count; e++)
+        sum += (double)sk_length(sk_sub(sk_xyz(skin->built[skin->edge[e][0]]), sk_xyz(skin->built[skin->edge[e][1]])));
+    skin->spacing = skin->edge_count ? (real)(0.6 * sum / (double)skin->edge_count) : 0;
+}
+
 bool sk_skin_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *particles, const sk_only *only,
                   const sk_meeting_parts *parts) {
     sk_skin_release(skin, allocator);
@@ -164,6 +172,7 @@ bool sk_skin_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *pa
         memset(m.table, 0xff, size * sizeof *m.table);
         add_all(&m, only, parts);
         find_pieces(skin);
+        measure_spacing(skin);
         good = list_leaves(skin, allocator);
     }
     sk_release(allocator, m.vertex_of);

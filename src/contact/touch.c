@@ -22,7 +22,9 @@ static sk_touch *touch_of(const sk_op *op) {
 
 /* A vertex goes on as it does now; what is fast is seldom as steady, and what is slow needs little room. */
 static sk_course course_from(const sk_touch *touch, sk_vec3 at, sk_vec3 step, real time) {
-    const real share = (real)0.25, least = (real)0.0625, substeps = 10;
+    const real least = (real)0.125, substeps = 10;
+    real share = (real)0.25, room = (real)0.45 * touch->skin.spacing - (real)0.5 * SK_NEAR_THICKNESSES * touch->thickness;
+    if (touch->untouched && room > (real)0.5 * touch->thickness) share = (real)0.5; // its own features stay out of reach
     real speed = sk_length(sk_sub(step, touch->drift));
     real reach = sk_max(sk_min(share, least + substeps * speed / touch->thickness) * touch->thickness, share * speed);
     return (sk_course){sk_sub(at, sk_scale(time, step)), step, reach};
@@ -158,6 +160,7 @@ static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool
     if (all || lost || sk_pairs_kept(touch)) sk_touch_load(touch, op->packed);
     all |= lost && are_most(touch);
     if (all) {
+        touch->untouched = 8 * sk_pairs_kept(touch) < touch->skin.vertex_count;
         memset(touch->lost, 1, touch->skin.vertex_count);
         begin_frame(touch, run, op);
     }

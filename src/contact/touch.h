@@ -35,6 +35,7 @@ typedef struct sk_skin {
     sk_vec4 *built;     /* as they were built */
     uint32_t (*edge)[2], (*triangle)[3];
     sk_leaf *leaf;
+    real spacing; /* m: what lies between features of one surface that have no corner in common, as they were built */
     uint32_t *leaf_start, *leaf_of; /* those of vertex v: leaf_of[leaf_start[v]] to leaf_of[leaf_start[v + 1]] */
 } sk_skin;
 
@@ -128,6 +129,7 @@ typedef struct sk_touch {
     bool found;      /* whether the pairs are of this skin */
     bool followed;   /* the last bound has seen where all went */
     bool held;       /* a vertex is pinned */
+    bool untouched;  /* hardly any pairs are kept: courses may be wide */
     bool loaded;     /* p and inverse are of this substep */
     bool boxed;      /* whether boxes are those of the courses; */
     bool still;      /* they are those of a substep's ways, all of them */
