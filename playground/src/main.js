@@ -212,12 +212,12 @@ const quoted = (text) => (/^[\w./=,:@%+-]+$/.test(text) ? text : `'${text.replac
 
 /* The command that gives the same: with changes on the way, `skein record`, which takes them by steps; null where a hand
  * came in, which no command has. */
-function command(events) {
+function command(events, frame = app.state.frame) {
     if (events.some((e) => e[1] !== 'set')) return null;
-    const {stepsPerFrame} = app.world.settings, {frame} = app.state, name = app.path.split('/').pop().replace(/[.]\w+$/, '');
+    const {stepsPerFrame} = app.world.settings, name = app.path.split('/').pop().replace(/[.]\w+$/, '');
     const given = [app.path, ...app.built.map((set) => `--set ${quoted(set)}`)];
-    if (!events.length) return ['skein run', ...given, `--frames ${frame}`].join(' ');
-    const at = events.map(([f, , path, value]) => `--at ${quoted(`${f * stepsPerFrame} ${path}=${JSON.stringify(value)}`)}`);
+    if (!events.some(([f]) => f < frame)) return ['skein run', ...given, `--frames ${frame}`].join(' ');
+    const at = events.filter(([f]) => f < frame).map(([f, , path, value]) => `--at ${quoted(`${f * stepsPerFrame} ${path}=${JSON.stringify(value)}`)}`);
     return ['skein record', ...given, ...at, `--frames ${frame} -o ${name}.skeinrec`].join(' ');
 }
 
@@ -437,7 +437,10 @@ const ready = begin().catch((error) => notice(error.message));
 /* For the console, and for tests. */
 globalThis.skein = {
     app, ready, open, reset, change, undo, seek, link, scenes, measure,
-    command: async () => command(await simulation.call('events')),
+    command: async () => {
+        const {events, frame} = await simulation.call('where');
+        return command(events, frame);
+    },
     run: (frames) => simulation.call('run', frames),
     call: (...args) => simulation.call(...args),
     get picture() {

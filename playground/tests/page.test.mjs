@@ -313,6 +313,21 @@ test('meshes are opened, and files saved as the command writes them', async () =
     await close();
 });
 
+test('the pointer is a hawk, and the link has its flight', async () => {
+    const {page, errors, close} = await openPage('#scene=birds&frame=5');
+    await page.locator('#hawk').click();
+    await page.waitForFunction(() => globalThis.skein.app.state.done === 1);
+    const box = await page.locator('#picture').boundingBox();
+    await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.5 * box.height, {steps: 3});
+    await page.waitForFunction(() => globalThis.skein.call('where').then(({events}) => events.length >= 3));
+    const found = await page.evaluate(() => globalThis.skein.run(15)), command = await page.evaluate(() => globalThis.skein.command());
+    assert.match(command, /--at '5 forces\.\d\.enabled=true'.*\.line=\[/);
+    assert.notEqual(found.hash, native(['scenes/birds.json', '--frames', '20']));
+    assert.equal(nativeByShell(command), found.hash);
+    assert.deepEqual(errors, []);
+    await close();
+});
+
 test('another method beside it, at the same frame and from the same place', async () => {
     const {page, errors, close} = await openPage('#scene=hanging&frame=4');
     await page.locator('#menu > summary').click();
