@@ -166,7 +166,10 @@ static skein_status finish(maker *m, skein_world *world, const sk_constraint_typ
         good ? sk_world_add_body_batch(world, m->body, type, label, (sk_material){stiffness, 0}, false, made->count,
                                        made->particle, made->rest, made->scale, error)
              : sk_fail_memory(error, label);
-    if (!status && type != &sk_distance) sk_world_take_seldom(m->body, quickness_of(m, world));
+    if (!status && type != &sk_distance) {
+        sk_world_take_seldom(m->body, quickness_of(m, world));
+        sk_world_sweep_both_ways(m->body);
+    }
     sk_release(m->lines->allocator, made->particle);
     sk_release(m->lines->allocator, made->rest);
     sk_release(m->lines->allocator, made->scale);

@@ -169,7 +169,7 @@ static skein_status add_tethers(const sk_block *block, double link) {
         filled++;
     }
     if (!status)
-        status = sk_world_add_tethers(block->world, block->body, filled, anchors, particles, lengths, block->error);
+        status = sk_world_add_tethers(block->world, block->body, SK_LIMIT_LAST, filled, anchors, particles, lengths, block->error);
     sk_release(allocator, nearest);
     sk_release(allocator, particles);
     sk_release(allocator, lengths);

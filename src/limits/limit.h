@@ -23,13 +23,22 @@ typedef struct sk_anchor {
     uint32_t slot; /* (in the place of a real, or of half of one) */
 } sk_anchor;
 
+/* When tethers are kept. A cloth with coarse grids has three sets of them: position methods take the first two, others the
+ * last. */
+typedef enum sk_limit_turn {
+    SK_LIMIT_LAST,           /* after all that pulls */
+    SK_LIMIT_SELDOM,         /* there, by position methods in every second substep only */
+    SK_LIMIT_BEFORE_COARSE,  /* those of the coarsest grid, which hands on what they move */
+    SK_LIMIT_AFTER_COARSE,   /* those of what no grid sees, before all that pulls */
+    SK_LIMIT_WITHOUT_COARSE, /* last, where there are no coarse grids */
+} sk_limit_turn;
+
 typedef struct sk_limit {
     sk_kernels kernel;
     const char *label;
     const bool *enabled;
     const double *bound; /* of the stretch: 0.05 lets it grow by 5 % */
-    bool seldom;         /* position methods may take it in every second substep only */
-    bool early;          /* position methods take it before their projections, for a coarse grid; others leave it out */
+    sk_limit_turn turn;
     size_t count;
     size_t anchors;     /* of each element */
     bool shared;        /* all elements have the same anchors */

@@ -107,21 +107,28 @@ static void write_coarse(sk_plan_builder *builder, const sk_batch *batch) {
                                .end = walk.rows});
 }
 
+/* Tethers that stand beside coarse grids, for methods that have these. */
+static void write_tethers(sk_plan_builder *builder, sk_limit_turn turn) {
+    const sk_rules *rules = builder->rules;
+    for (size_t i = 0; i < rules->limits.count; i++) {
+        const sk_limit *limit = rules->limits.data[i];
+        if (is_kept(limit) && limit->turn == turn && builder->predicted)
+            sk_add_op(builder, limit_op(builder, limit, SK_NONE, 0));
+    }
+}
+
 /* Batches that bound and do nothing else come before those that pull: what is swept last is kept best, which are edges.
  */
 static void write_spans(sk_plan_builder *builder) {
     const sk_rules *rules = builder->rules;
-    for (size_t i = 0; i < rules->limits.count; i++) {
-        const sk_limit *limit = rules->limits.data[i];
-        if (is_kept(limit) && limit->early && builder->predicted)
-            sk_add_op(builder, limit_op(builder, limit, SK_NONE, 0));
-    }
+    write_tethers(builder, SK_LIMIT_BEFORE_COARSE);
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
         if (!batch->only_bounds || !has_bound(batch)) continue;
         if (batch->coarse) write_coarse(builder, batch);
         else add_sweeps(builder, batch, 0, SK_OP_LIMIT, &batch->type->limit, SK_X, SK_NONE);
     }
+    write_tethers(builder, SK_LIMIT_AFTER_COARSE);
 }
 
 /* Whether a batch may be taken in every second substep: its elements' own oscillations are slow against that. Else it
@@ -140,7 +147,9 @@ static void write_batch(sk_plan_builder *builder, const sk_batch *batch, bool ba
     double coefficient = (double)sharing / (every ? (double)every : 1);
     for (size_t i = 0; i < batch->sweep_count; i++) {
         const sk_sweep *sweep = &batch->sweeps[back ? batch->sweep_count - 1 - i : i];
-        sk_half half = !batch->both_ways || !sweep->strips ? SK_WHOLE : back ? SK_ODD_HALF : SK_EVEN_HALF;
+        // what is soft enough to wait gains too little to need both ways
+        bool whole = !batch->both_ways || !sweep->strips || every;
+        sk_half half = whole ? SK_WHOLE : back ? SK_ODD_HALF : SK_EVEN_HALF;
         if (back && half == SK_WHOLE) continue;
         add_sweep(builder, sweep, half, SK_OP_PROJECT, keeps ? &batch->type->project_damped : &batch->type->project,
                   SK_X, keeps ? SK_X0 : SK_NONE, coefficient, every);
@@ -205,8 +214,10 @@ void sk_write_limits(sk_plan_builder *builder, sk_vector velocity) {
     write_strain_limits(builder, velocity, true);
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
-        if (!is_kept(limit) || limit->early) continue;
-        size_t every = velocity == SK_NONE && limit->seldom ? seldom_of(builder) : 0;
+        bool last = limit->turn == SK_LIMIT_LAST || limit->turn == SK_LIMIT_SELDOM ||
+                    (limit->turn == SK_LIMIT_WITHOUT_COARSE && !builder->predicted);
+        if (!is_kept(limit) || !last) continue;
+        size_t every = velocity == SK_NONE && limit->turn == SK_LIMIT_SELDOM ? seldom_of(builder) : 0;
         sk_add_op(builder, limit_op(builder, limit, velocity, every));
     }
     write_strain_limits(builder, velocity, false);

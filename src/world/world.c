@@ -203,13 +203,14 @@ skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk
     return SKEIN_OK;
 }
 
-skein_status sk_world_add_tethers(skein_world *world, sk_body *body, size_t count, size_t anchors,
+skein_status sk_world_add_tethers(skein_world *world, sk_body *body, sk_limit_turn turn, size_t count, size_t anchors,
                                   const uint32_t *particles, const real *lengths, skein_error *error) {
     if (!SK_RESERVE(&world->allocator, &world->rules.limits, world->rules.limits.count + 1))
         return sk_fail_memory(error, "tethers");
     sk_limit *limit = sk_tethers_create(&world->allocator, count, anchors, particles, lengths);
     if (!limit) return sk_fail_memory(error, "tethers");
     limit->label = "tethers";
+    limit->turn = turn;
     limit->bound = &body->tether_bound;
     limit->enabled = &body->enabled;
     world->rules.limits.data[world->rules.limits.count++] = limit;
@@ -223,14 +224,6 @@ void sk_world_sweep_both_ways(sk_body *body) {
 
 void sk_world_take_seldom(sk_body *body, double quickness) {
     body->batch[body->batch_count - 1]->quickness = quickness;
-}
-
-void sk_world_tether_seldom(skein_world *world) {
-    world->rules.limits.data[world->rules.limits.count - 1]->seldom = true;
-}
-
-void sk_world_tether_early(skein_world *world) {
-    world->rules.limits.data[world->rules.limits.count - 1]->early = true;
 }
 
 bool sk_world_bound_coarse(skein_world *world, sk_body *body, const double *bound, const sk_coarse *coarse) {

@@ -205,7 +205,7 @@ skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk
                                      const char *label, sk_material material, bool measured, size_t count,
                                      const uint32_t *particles, const real *rest, const real *scale,
                                      skein_error *error);
-skein_status sk_world_add_tethers(skein_world *world, sk_body *body, size_t count, size_t anchors,
+skein_status sk_world_add_tethers(skein_world *world, sk_body *body, sk_limit_turn turn, size_t count, size_t anchors,
                                   const uint32_t *particles, const real *lengths, skein_error *error);
 /* Says that the body's `count` particles are a grid of rows x columns: particle i has place place[i] (row x columns
  * + column; each its own), or i itself where `place` is NULL. Places may stay empty. */
@@ -222,10 +222,6 @@ bool sk_world_bound_coarse(skein_world *world, sk_body *body, const double *boun
 /* Lets position methods take the body's newest batch in every second substep, where it is soft for that: `quickness` is as
  * in constraints/constraint.h. */
 void sk_world_take_seldom(sk_body *body, double quickness);
-/* The same of the newest tethers. */
-void sk_world_tether_seldom(skein_world *world);
-/* Says that the newest tethers are those of a coarse grid. */
-void sk_world_tether_early(skein_world *world);
 /* Keeps the edges of the body's newest batch under its strain bound. */
 void sk_world_add_strain_limit(sk_body *body);
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error);
