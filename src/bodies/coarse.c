@@ -8,15 +8,18 @@
 #include "base/status.h"
 
 /* Measured on the default cloth of 128 x 128 that is let go from level and swings by two corners with drag, 10 substeps,
- * 99th percentile and largest stretch, the worst of all frames: 0.80 and 2.0 %; spans of 5 and 20 edges on all particles
- * 1.5 and 3.6. On the way there (grids that began at the first row and column, no tethers of their own): 0.75 and 2.6 %;
- * without the fifth neighbours, but with diagonals, 1.1 and 4.7; one sweep a grid, with diagonals, 1.2 and 3.7; two and
- * diagonals 0.7 and 2.6, which is no better and takes a fifth longer. */
+ * 99th percentile and largest stretch, the worst of all frames: 0.68 and 2.2 %; spans of 5 and 20 edges on all particles
+ * 1.5 and 3.6. One sweep of the finest of these grids: 0.77 here, but 0.99 instead of 0.66 at 64 x 64, and 1.8 instead of
+ * 1.2 at 100 x 64; three of the coarser ones 0.62. On the way there: tethers of all particles after everything else 0.80
+ * and 2.0, and without the coarsest grid's own, on grids that began at the first row and column, 0.75 and 2.6; without the
+ * fifth neighbours, but with diagonals, 1.1 and 4.7; one sweep a grid, with diagonals, 1.2 and 3.7; two and diagonals 0.7
+ * and 2.6, which is no better and takes a fifth longer. */
 enum {
     MOST_GRIDS = 8,
     LEAST_ROWS = 3, /* of the coarsest grid */
     LEAST_WIDTH = 4, /* columns a strip: smaller sheets, to 48, are as firm with spans, and faster */
-    LONG = 5        /* neighbours on: the longest distances */
+    LONG = 5,       /* neighbours on: the longest distances */
+    SWEEPS = 2      /* of a grid's own distances, forth and back */
 };
 
 /* A grid under construction, and how much mass goes with each of its particles. */
@@ -197,11 +200,6 @@ static skein_status add_batch(const builder *b, const level *l, size_t n, const 
     return status;
 }
 
-/* How often the distances of the k-th coarse grid are swept: coarser ones, which cost less, oftener. */
-static int times_of(size_t k) {
-    return (int)(2 * pow(1.3, (double)k - 1) + 0.5);
-}
-
 skein_status sk_coarse_add(const sk_lines *lines, const double *mass, skein_world *world, sk_body *body,
                            sk_coarse_grid *coarsest, skein_error *error) {
     builder *b = sk_allocate(lines->allocator, sizeof *b);
@@ -213,7 +211,7 @@ skein_status sk_coarse_add(const sk_lines *lines, const double *mass, skein_worl
         size_t each = sk_coarse_columns(&l->grid, b->width), n = LONG % each ? LONG : LONG + 1; // else it meets itself
         if (k + 1 == b->count) *coarsest = l->grid;
         if (k + 1 == b->count) status = add_batch(b, l, n, &coarse, world, body, error);
-        coarse.carries = true, coarse.times = times_of(k);
+        coarse.carries = true, coarse.times = SWEEPS;
         if (!status) status = add_batch(b, l, 1, &coarse, world, body, error);
     }
     for (size_t k = 0; b && k <= MOST_GRIDS; k++) sk_release(lines->allocator, b->level[k].mass);
