@@ -24,12 +24,12 @@ typedef struct sk_anchor {
 } sk_anchor;
 
 /* When tethers are kept. A cloth with coarse grids has three sets of them: position methods take the first two, others the
- * last. */
+ * last. Where a grid's cells are longer one way all are kept last, beside the coarsest grid's own. */
 typedef enum sk_limit_turn {
     SK_LIMIT_LAST,           /* after all that pulls */
     SK_LIMIT_SELDOM,         /* there, by position methods in every second substep only */
     SK_LIMIT_BEFORE_COARSE,  /* those of the coarsest grid, which hands on what they move */
-    SK_LIMIT_AFTER_COARSE,   /* those of what no grid sees, before all that pulls */
+    SK_LIMIT_AFTER_COARSE,   /* those of what is near an anchor, before all that pulls, in every second substep */
     SK_LIMIT_WITHOUT_COARSE, /* last, where there are no coarse grids */
 } sk_limit_turn;
 

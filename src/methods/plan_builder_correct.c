@@ -108,12 +108,12 @@ static void write_coarse(sk_plan_builder *builder, const sk_batch *batch) {
 }
 
 /* Tethers that stand beside coarse grids, for methods that have these. */
-static void write_tethers(sk_plan_builder *builder, sk_limit_turn turn) {
+static void write_tethers(sk_plan_builder *builder, sk_limit_turn turn, size_t every) {
     const sk_rules *rules = builder->rules;
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
         if (is_kept(limit) && limit->turn == turn && builder->predicted)
-            sk_add_op(builder, limit_op(builder, limit, SK_NONE, 0));
+            sk_add_op(builder, limit_op(builder, limit, SK_NONE, every));
     }
 }
 
@@ -121,14 +121,14 @@ static void write_tethers(sk_plan_builder *builder, sk_limit_turn turn) {
  */
 static void write_spans(sk_plan_builder *builder) {
     const sk_rules *rules = builder->rules;
-    write_tethers(builder, SK_LIMIT_BEFORE_COARSE);
+    write_tethers(builder, SK_LIMIT_BEFORE_COARSE, 0);
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
         if (!batch->only_bounds || !has_bound(batch)) continue;
         if (batch->coarse) write_coarse(builder, batch);
         else add_sweeps(builder, batch, 0, SK_OP_LIMIT, &batch->type->limit, SK_X, SK_NONE);
     }
-    write_tethers(builder, SK_LIMIT_AFTER_COARSE);
+    write_tethers(builder, SK_LIMIT_AFTER_COARSE, seldom_of(builder));
 }
 
 /* Whether a batch may be taken in every second substep: its elements' own oscillations are slow against that. Else it
