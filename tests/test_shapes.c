@@ -131,6 +131,7 @@ static skein_world *world_of(shape s, const double *n) {
                        SKEIN_VEC3("rotation", n[6], n[7], n[8]))};
     static const char *const kinds[] = {"sphere", "bowl", "capsule", "box"};
     OK(world, skein_collider_add(world, kinds[s], settings[s], &handle));
+    OK(world, skein_set(world, handle, "recovery", skein_number(1e6))); // what is put inside is out at once
     return world;
 }
 
