@@ -524,8 +524,8 @@ static int begin(void **state) {
     open_screen();
     write_files();
     write_scene_with(skein_kind_at(SKEIN_BODY, 0), in_folder("first.json"));
-    const char *const arguments[] = {
-        in_folder("first.json"), "--size", "400x2600", "--scale", "1", "--samples", "1", "--paused", NULL};
+    const char *const arguments[] = {in_folder("first.json"), "--size", "400x2600", "--scale", "1", "--samples", "1",
+                                     "--paused", "--allow-path", SKEIN_SOURCE_DIR "/meshes", NULL};
     open_window(arguments);
     screen.seen = 0; // so small a scene may be there before the window
     expect("opened ");
