@@ -1,7 +1,7 @@
 # The short way in: each line below runs one script of tools/, and the scripts run CMake.
 # CMake alone does as well: cmake --preset release && cmake --build --preset release
 
-.PHONY: all install demo test verify-blender npm wheel playground test-web fuzz setup gallery site emit names debug format clean help
+.PHONY: all install demo test test-elsewhere verify-blender npm wheel playground test-web fuzz setup gallery site emit names debug format clean help
 
 all: ## (or plain make) build the command: build/skein
 	@tools/build release skein
@@ -39,6 +39,10 @@ test-web: ## the same, and try the page in Chromium without a screen (not part o
 	@tools/setup web
 	@tools/test-web
 
+test-elsewhere: ## build and test the library for 64-bit ARM (qemu) and Windows (mingw-w64, Wine); not part of `make test`
+	@tools/setup elsewhere
+	@tools/test-elsewhere
+
 fuzz: ## look for crashes with random input: 60 seconds a reader (tools/fuzz --seconds N takes longer)
 	@tools/setup test
 	@tools/fuzz
@@ -71,7 +75,8 @@ format: ## put the C files into the house's style (needs clang-format)
 	@tools/format
 
 clean: ## remove everything that was built
-	rm -rf build build-debug build-asan build-tsan build-clang build-double build-fuzz build-wasm
+	rm -rf build build-debug build-asan build-tsan build-clang build-double build-fuzz build-wasm \
+	    build-aarch64 build-mingw
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | while IFS="$$(printf '\t')" read -r name words; do \

@@ -37,7 +37,12 @@ static char *zeroed(size_t size, size_t *before) {
 
 static void *default_allocate(void *user, size_t size, size_t alignment) {
     (void)user;
+#ifdef _WIN32 // which has none that free() takes; sk_allocate() needs of this function only to know it again
+    (void)alignment;
+    return malloc(size);
+#else
     return aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+#endif
 }
 
 static void default_release(void *user, void *memory, size_t size) {

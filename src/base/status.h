@@ -4,9 +4,11 @@
 
 #include <skein/skein.h>
 
+#include "base/printf.h"
+
 /* Writes `status`, `where` and a formatted message into `error` (which may be NULL); returns `status`. */
 skein_status sk_fail(skein_error *error, skein_status status, const char *where, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+    SK_PRINTF(4, 5);
 
 /* The failure of an allocation, said in one way everywhere. Here, so that who reads the code knows that it is one. */
 static inline skein_status sk_fail_memory(skein_error *error, const char *what) {

@@ -99,7 +99,11 @@ static int count_processors(void) {
     cpu_set_t set;
     if (!sched_getaffinity(0, sizeof set, &set)) return CPU_COUNT(&set);
 #endif
+#ifdef _WIN32
+    long online = pthread_num_processors_np();
+#else
     long online = sysconf(_SC_NPROCESSORS_ONLN);
+#endif
     return online < 1 ? 1 : online > MOST_THREADS ? MOST_THREADS : (int)online;
 }
 

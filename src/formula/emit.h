@@ -2,6 +2,7 @@
 #ifndef SK_FORMULA_EMIT_H
 #define SK_FORMULA_EMIT_H
 
+#include "base/printf.h"
 #include "formula/formula.h"
 
 typedef struct sk_writer sk_writer;
@@ -51,7 +52,7 @@ void sk_put_temporaries(sk_writer *w, const sk_node *outputs, size_t count);
 /* A node's name or expression, in brackets if it holds together less than 1 sums, 2 products, 3 calls do. */
 void sk_put_operand(sk_writer *w, sk_node node, int least);
 
-void sk_put(sk_writer *w, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void sk_put(sk_writer *w, const char *format, ...) SK_PRINTF(2, 3);
 /* A number with a point or an exponent, whatever the locale says. */
 void sk_put_number(sk_writer *w, double value, int digits);
 /* The formula's own text, made fit for a comment; and what its parameters are. Each line begins so. */

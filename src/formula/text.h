@@ -5,6 +5,8 @@
 
 #include <skein/formula.h>
 
+#include "base/printf.h"
+
 /* Single characters stand for themselves. */
 enum {
     SK_TOKEN_END = 256,
@@ -42,7 +44,7 @@ void sk_text_next(sk_text *text);
 bool sk_text_take(sk_text *text, int kind);
 /* Fails at [begin, end) of the text, unless something failed before. Returns false. */
 bool sk_text_fail(sk_text *text, size_t begin, size_t end, skein_status status, const char *format, ...)
-    __attribute__((format(printf, 5, 6)));
+    SK_PRINTF(5, 6);
 /* Fails at the present token: "expected ..., not 'that'". */
 bool sk_text_expected(sk_text *text, const char *what);
 skein_formula_mark sk_text_mark(const sk_text *text, size_t begin, size_t end);

@@ -6,6 +6,7 @@
 #define SK_GPU_PROGRAM_H
 
 #include "base/memory.h"
+#include "base/printf.h"
 
 /* What the build writes: every file by its path without ".glsl", ending with a NULL name. */
 typedef struct sk_gpu_file {
@@ -21,7 +22,7 @@ typedef struct sk_gpu_text {
     bool no_memory;
 } sk_gpu_text;
 
-void sk_gpu_put(sk_gpu_text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void sk_gpu_put(sk_gpu_text *text, const char *format, ...) SK_PRINTF(2, 3);
 /* Adds a text, with `number` for every '@' in it. */
 void sk_gpu_put_text(sk_gpu_text *text, const char *from, size_t number);
 /* Adds a file, with `number` for every '@' in it. A name that the build has not is a fault of ours. */

@@ -9,6 +9,7 @@
 #define SK_WORLD_WORLD_H
 
 #include "base/pace.h"
+#include "base/printf.h"
 #include "base/status.h"
 #include "base/tasks.h"
 #include "formula/parameters.h"
@@ -226,7 +227,7 @@ void sk_world_take_seldom(sk_body *body, double quickness);
 void sk_world_add_strain_limit(sk_body *body);
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error);
 void sk_world_log(skein_world *world, skein_log_level level, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    SK_PRINTF(3, 4);
 
 /* ---- between the world's own files ---- */
 
