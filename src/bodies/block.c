@@ -105,11 +105,21 @@ skein_status sk_block_add_springs(sk_block *block, const char *label, sk_materia
     return status;
 }
 
+/* Rows are layers along y: what lies on the ground is then few blocks of full lanes, and no others are to be answered by it. With
+ * rows along x, a lattice of 20^3 had one such particle in four fifths of its blocks, and contact took a fifth of the time. */
 skein_status sk_block_add_strips(sk_block *block) {
+    const uint32_t *n = block->size;
+    uint32_t rows = n[1], columns = n[0] * n[2], *place = NULL;
     // a row of too few columns would leave lanes empty: then all is one row
-    uint32_t rows = block->size[0], columns = block->size[1] * block->size[2];
     if (columns < LEAST_COLUMNS) columns *= rows, rows = 1;
-    return sk_world_add_strips(block->world, block->body, rows, columns, (uint32_t)block->count, NULL, block->error);
+    else if (!(place = sk_allocate(&block->world->allocator, block->count * sizeof *place)))
+        return sk_fail_memory(block->error, "the order of particles");
+    for (uint32_t i = 0, at = 0; i < n[0] && place; i++)
+        for (uint32_t j = 0; j < n[1]; j++)
+            for (uint32_t k = 0; k < n[2]; k++, at++) place[at] = (j * n[0] + i) * n[2] + k;
+    skein_status status = sk_world_add_strips(block->world, block->body, rows, columns, (uint32_t)block->count, place, block->error);
+    sk_release(&block->world->allocator, place);
+    return status;
 }
 
 /* ---- the surface ---- */
