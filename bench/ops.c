@@ -34,7 +34,7 @@ bench_ops *bench_ops_create(skein_world *world, sk_op_kind kind) {
     }
     ops->ops[0].length = ops->count - 1;
     if (ops->count == 1) {
-        bench_say("the plan has no %s ops", sk_op_kind_text(kind));
+        bench_say("the plan has no %s ops", sk_op_types[kind].name);
         free(ops->ops);
         free(ops);
         return NULL;

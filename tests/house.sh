@@ -5,6 +5,7 @@
 #   2  no method has a loop: src/methods/ writes ops, and only the builder's own files walk over rules
 #   3  src/world/ names no kind: what the catalogue lists is unknown to the step; nor does src/gpu/; and render/,
 #      viewer/ and app/ compare no kind's name
+#      and neither names a kind of op but repeat: what is so of a kind says its row in src/plan/op_types.c
 #   4  each public header compiles alone, as C17 and as C++17
 #   5  each file of C and GLSL opens with a comment: what it owns
 # Prints each fault as FILE:LINE: words, and fails if there is one.
@@ -173,6 +174,21 @@ code 2 "$(find src/world src/gpu -name '*.[ch]' | sort)" | awk -v kinds="$kinds"
             rest = substr(rest, RSTART + RLENGTH)
             for (i = 1; i <= count; i++)
                 if (symbol == "sk_" kind[i] || (!(symbol in known) && index(symbol, "sk_" kind[i] "_") == 1)) fault(kind[i])
+        }
+    }' >>"$faults"
+
+# Nor a kind of op, but the repeat.
+grep -q 'SK_OP_REPEAT,' src/plan/op.h || echo "src/plan/op.h:1: tests/house.sh finds no kind of op in it" >>"$faults"
+code 0 "$(find src/world src/gpu -name '*.[ch]' | sort)" | awk '
+    {
+        place = $1
+        sub(/^[^ ]*/, "")
+        while (match($0, /(^|[^A-Za-z0-9_])(SK_OP_[A-Z_]+|sk_(combine|sort)_[a-z_]+)/)) {
+            symbol = substr($0, RSTART, RLENGTH)
+            sub(/^[^A-Za-z0-9_]/, "", symbol)
+            $0 = substr($0, RSTART + RLENGTH)
+            if (symbol != "SK_OP_REPEAT")
+                print place " names the op " symbol ": what is so of a kind of op says its row in src/plan/op_types.c"
         }
     }' >>"$faults"
 

@@ -11,9 +11,9 @@
 enum { SLOTS = 64 };
 static const double h = 0.01;
 
-static sk_op combine(const sk_kernels *kernels, sk_vector dst, double a, sk_vector p, double b, sk_vector q) {
-    return (sk_op){.kind = SK_OP_COMBINE, .order = SK_FREE, .kernel = kernels->version[0], .dst = dst,
-                    .source = {p, q, SK_NONE}, .coefficient = {a, b, 0}, .dt = h, .end = SLOTS};
+static sk_op combine(sk_op_kind kind, sk_vector dst, double a, sk_vector p, double b, sk_vector q) {
+    return (sk_op){.kind = kind, .order = SK_FREE, .kernel = sk_op_types[kind].kernels->version[0], .dst = dst,
+                   .source = {p, q, SK_NONE}, .coefficient = {a, b, 0}, .dt = h, .end = SLOTS};
 }
 
 static const sk_uniform_force falling = {.acceleration = {0, -9.81, 0}, .label = "gravity"};
@@ -25,16 +25,16 @@ typedef struct substep {
 } substep;
 
 static substep usual(bool pulls, sk_vector looks) {
-    sk_op pull = combine(&sk_combine_pull, SK_V, 0, SK_V, 0, SK_NONE);
+    sk_op pull = combine(SK_OP_PULL, SK_V, 0, SK_V, 0, SK_NONE);
     pull.rule = &falling;
     sk_op project = {.kind = SK_OP_PROJECT, .order = SK_ORDERED, .dst = SK_X, .source = {SK_X, looks}, .dt = h, .end = 3};
     substep s = {{{.kind = SK_OP_REPEAT, .end = 10, .dt = h},
-                  pulls ? pull : combine(&sk_combine_kick, SK_V, h, SK_V, 0, SK_F),
-                  combine(&sk_combine_sum, SK_X0, 1, SK_X, 0, SK_NONE),
-                  combine(&sk_combine_sum, SK_V0, 1, SK_V, 0, SK_NONE),
-                  combine(&sk_combine_sum, SK_X, 1, SK_X, h, SK_V),
+                  pulls ? pull : combine(SK_OP_KICK, SK_V, h, SK_V, 0, SK_F),
+                  combine(SK_OP_SUM, SK_X0, 1, SK_X, 0, SK_NONE),
+                  combine(SK_OP_SUM, SK_V0, 1, SK_V, 0, SK_NONE),
+                  combine(SK_OP_SUM, SK_X, 1, SK_X, h, SK_V),
                   project,
-                  combine(&sk_combine_correction, SK_V, 1 / h, SK_X, h, SK_X0)},
+                  combine(SK_OP_CORRECTION, SK_V, 1 / h, SK_X, h, SK_X0)},
                  7};
     s.ops[0].length = s.count - 1;
     return s;
@@ -42,12 +42,17 @@ static substep usual(bool pulls, sk_vector looks) {
 
 /* The plan's ops after fusing, a word each. */
 static const char *fused(const substep *s) {
-    static const struct {
-        const sk_kernels *kernels;
-        const char *word;
-    } words[] = {{&sk_combine_pull, "pull "},   {&sk_combine_kick, "kick "},       {&sk_combine_sum, "sum "},
-                 {&sk_combine_predict_uniform, "fall "},   {&sk_combine_correct_and_predict, "fall_on "}, {&sk_combine_predict, "predict "},
-                 {&sk_combine_correction, "correct "}};
+    static const char *const words[SK_OP_KIND_COUNT] = {
+        [SK_OP_PULL] = "pull ",
+        [SK_OP_KICK] = "kick ",
+        [SK_OP_SUM] = "sum ",
+        [SK_OP_PREDICT_UNIFORM] = "fall ",
+        [SK_OP_CORRECT_AND_PREDICT] = "fall_on ",
+        [SK_OP_PREDICT] = "predict ",
+        [SK_OP_CORRECTION] = "correct ",
+        [SK_OP_PROJECT] = "project ",
+        [SK_OP_PART] = "part ",
+    };
     static char text[256];
     skein_world *world = new_world("xpbd", 1); // its allocator
     sk_plan plan = {.data = NULL};
@@ -55,11 +60,13 @@ static const char *fused(const substep *s) {
     assert_true(sk_plan_fuse(&plan, &world->allocator, 0));
     text[0] = 0;
     for (size_t r = 0; r < plan.count; r++) {
-        char word[32] = "project ";
-        if (plan.data[r].kind == SK_OP_REPEAT) snprintf(word, sizeof word, "repeat%zu ", plan.data[r].length);
-        for (size_t w = 0; w < COUNT(words); w++)
-            if (plan.data[r].kind == SK_OP_COMBINE && sk_op_is(&plan.data[r], words[w].kernels))
-                snprintf(word, sizeof word, "%s", words[w].word);
+        const sk_op *op = &plan.data[r];
+        char word[32];
+        if (op->kind == SK_OP_REPEAT) snprintf(word, sizeof word, "repeat%zu ", op->length);
+        else snprintf(word, sizeof word, "%s", words[op->kind]);
+        // its kernel is that of its kind
+        const sk_kernels *kernels = sk_op_type_of(op)->kernels;
+        if (kernels) assert_true((op->inner ? op->inner : op->kernel) == kernels->version[0]);
         strcat(text, word);
     }
     sk_release(&world->allocator, plan.data);

@@ -122,7 +122,7 @@ static void explain_prints_a_line_a_row(void **state) {
         assert_true(skein_world_hash(world) == before); // looking is not running
         for (size_t i = 0; i < p.count; i++) {
             const sk_op *op = &world->plan.data[i];
-            assert_non_null(strstr(p.lines[i], sk_op_kind_text(op->kind)));
+            assert_non_null(strstr(p.lines[i], sk_op_type_of(op)->name));
             assert_null(strchr(p.lines[i], '\n'));
             if (op->label && op->kind != SK_OP_REPEAT) assert_non_null(strstr(p.lines[i], op->label));
         }

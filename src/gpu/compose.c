@@ -5,7 +5,6 @@
 
 #include "constraints/sweep.h"
 #include "gpu/ops.h"
-#include "plan/sort.h"
 
 #define BIT(vector) (1u << (vector))
 
@@ -33,16 +32,15 @@ static const char *owner_of(const skein_world *world, const sk_op *op, const cha
 }
 
 static skein_status refuse(const skein_world *world, const sk_op *op, const char *why, skein_error *error) {
-    const char *label = op->label ? op->label : sk_op_kind_text(op->kind), *owner = NULL;
+    const char *label = op->label ? op->label : sk_op_type_of(op)->name, *owner = NULL;
     if (why)
         return sk_fail(error, SKEIN_ERROR_VALUE, "device",
                        "%s cannot run on the graphics card %s: use the processor, --device cpu", label, why);
-    if (op->kind == SK_OP_FORCE || op->kind == SK_OP_PROJECT || op->kind == SK_OP_LIMIT || op->kind == SK_OP_MULTIPLIER)
-        owner = owner_of(world, op, &label);
+    owner = owner_of(world, op, &label);
     return sk_fail(error, SKEIN_ERROR_VALUE, "device",
                    "%s%s%s cannot run on the graphics card yet (an op '%s'): use the processor, --device cpu",
                    owner ? owner : "", owner && owner != label ? ": its " : "", owner == label ? "" : label,
-                   sk_op_kind_text(op->kind));
+                   sk_op_type_of(op)->name);
 }
 
 /* ---- cutting ---- */
@@ -62,8 +60,7 @@ static sk_gpu_pass *add_pass(cutter *c, sk_gpu_pass pass) {
 }
 
 static uint32_t touched(const sk_op *op) {
-    sk_gpu_use use = sk_gpu_op_use(op);
-    return use.reads | use.writes;
+    return sk_op_reads(op) | sk_op_writes(op);
 }
 
 /* Whether the op looks at the neighbours of every particle, of whom all are looked at. */
@@ -78,8 +75,8 @@ static void fill_pass(const cutter *c, sk_gpu_pass *pass, size_t at, size_t end)
     *pass = (sk_gpu_pass){.kind = SK_GPU_SLOTS, .first = at, .block = SK_GPU_HEAD};
     for (; at + pass->count < end; pass->count++) {
         const sk_op *op = ops[at + pass->count];
-        bool looks = sk_gpu_op_has_target(op), moves = sk_gpu_op_use(op).writes & BIT(SK_X);
-        bool walks = op->kind == SK_OP_NEIGHBOUR, alone = walks && !is_everyone(c, op);
+        bool looks = sk_gpu_op_has_target(op), moves = sk_op_writes(op) & BIT(SK_X);
+        bool walks = sk_op_type_of(op)->walks, alone = walks && !is_everyone(c, op);
         // a walk along the grid needs three buffers more
         size_t most = SK_GPU_MOST_VECTORS - (walks || pass->op ? 3 : 0);
         if (pass->count && (alone || ((walks || looks) && written & BIT(SK_X)) || (pass->looks && moves) ||
@@ -89,7 +86,7 @@ static void fill_pass(const cutter *c, sk_gpu_pass *pass, size_t at, size_t end)
         if (walks) pass->kind = SK_GPU_NEIGHBOURS, pass->op = op;
         pass->looks |= looks;
         vectors |= touched(op);
-        written |= sk_gpu_op_use(op).writes;
+        written |= sk_op_writes(op);
         pass->block += sk_gpu_op_size(op);
         if (!alone) continue;
         pass->count++;
@@ -103,11 +100,11 @@ static void flush(cutter *c, size_t end) {
         sk_gpu_pass pass;
         fill_pass(c, &pass, c->pending, end);
         if (pass.kind == SK_GPU_NEIGHBOURS) {
-            const sk_force *force = pass.op->rule;
+            const sk_group *moved = pass.op->group;
             bool everyone = is_everyone(c, pass.op);
-            pass.by_place = everyone || force->moved.first == force->seen.first;
-            pass.begin = everyone ? 0 : force->moved.first;
-            pass.end = everyone ? c->world->particles.count : force->moved.end;
+            pass.by_place = everyone || moved->first == pass.op->seen->first;
+            pass.begin = everyone ? 0 : moved->first;
+            pass.end = everyone ? c->world->particles.count : moved->end;
         }
         c->pending += pass.count;
         add_pass(c, pass);
@@ -117,11 +114,11 @@ static void flush(cutter *c, size_t end) {
 /* A kick by a force that has just been cleared. */
 static bool does_nothing(const cutter *c, const sk_op *op) {
     const sk_gpu_passes *passes = c->passes;
-    if (!sk_op_is(op, &sk_combine_kick) || op->dst != op->source[0]) return false;
+    if (sk_op_type_of(op)->reverse != SK_REVERSE_KICK || op->dst != op->source[0]) return false;
     for (size_t i = passes->ops.count; i-- > c->pending;) {
         const sk_op *before = passes->ops.data[i];
-        if (sk_gpu_op_use(before).writes >> op->source[1] & 1)
-            return sk_op_is(before, &sk_combine_sum) && before->source[0] == SK_NONE;
+        if (sk_op_writes(before) >> op->source[1] & 1)
+            return sk_op_clears(before);
     }
     return false;
 }
@@ -132,19 +129,12 @@ static void add_op(cutter *c, const sk_op *op) {
     else c->passes->ops.data[c->passes->ops.count++] = op;
 }
 
-/* The parts that the processor's sort is made of are one here: all but the first, which says whom it sorts. */
-static bool is_next_part(const sk_op *op) {
-    for (int i = 1; i < SK_SORT_OPS; i++)
-        if (sk_op_is(op, &sk_sort_ops[i].kernels)) return true;
-    return false;
-}
-
 /* A grid: pending ops that it must see the work of come before it, others wait. Its ops are one pass. */
 static size_t cut_grid(cutter *c, const sk_op *op, size_t most) {
     size_t end = c->passes->ops.count, count = 1;
-    while (end > c->pending && !(sk_gpu_op_use(c->passes->ops.data[end - 1]).writes & (BIT(SK_X) | BIT(SK_V)))) end--;
+    while (end > c->pending && !(sk_op_writes(c->passes->ops.data[end - 1]) & (BIT(SK_X) | BIT(SK_V)))) end--;
     flush(c, end);
-    while (count < most && is_next_part(&op[count])) count++;
+    while (count < most && sk_op_type_of(&op[count])->goes_on) count++; // one pass here
     add_pass(c, (sk_gpu_pass){.kind = SK_GPU_GRID, .op = op});
     return count;
 }
@@ -153,7 +143,7 @@ static size_t cut_grid(cutter *c, const sk_op *op, size_t most) {
 static void cut(cutter *c, const sk_plan *plan, size_t begin, size_t end) {
     for (size_t r = begin; r < end && !c->no_memory;) {
         const sk_op *op = &plan->data[r];
-        if (op->kind == SK_OP_GRID) {
+        if (sk_op_type_of(op)->sorts) {
             r += cut_grid(c, op, end - r);
         } else if (op->kind != SK_OP_REPEAT) {
             add_op(c, op);
@@ -192,10 +182,10 @@ typedef struct traffic {
 static traffic traffic_of(const sk_gpu_passes *passes, const sk_gpu_pass *pass) {
     traffic t = {0, 0, 0};
     for (size_t r = 0; r < pass->count; r++) {
-        sk_gpu_use use = sk_gpu_op_use(passes->ops.data[pass->first + r]);
-        t.loads |= use.reads & ~t.writes;
-        t.writes |= use.writes;
-        t.uses |= use.reads | use.writes;
+        const sk_op *op = passes->ops.data[pass->first + r];
+        t.loads |= sk_op_reads(op) & ~t.writes;
+        t.writes |= sk_op_writes(op);
+        t.uses |= touched(op);
     }
     return t;
 }
@@ -275,7 +265,7 @@ static skein_status make_pass(sk_gpu_passes *passes, sk_gpu_pass *pass, sk_gpu_p
     }
     for (size_t r = 0; r < pass->count; r++) sk_gpu_put_functions(&text, ops, r);
     put_main(&text, pass, ops, &t, stores, world->particles.count);
-    const char *what = ops[0]->label ? ops[0]->label : sk_op_kind_text(ops[0]->kind);
+    const char *what = ops[0]->label ? ops[0]->label : sk_op_type_of(ops[0])->name;
     skein_status status = sk_gpu_program(programs, &world->allocator, &text, what, &pass->program, error);
     sk_release(&world->allocator, text.data);
     return status;

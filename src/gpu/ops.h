@@ -1,14 +1,9 @@
-/* What single ops are on a card: which vectors they read and write, their text, their part of the block.
+/* What single ops are on a card: their text, their part of the block.
  * Called by compose.c. */
 #ifndef SK_GPU_OPS_H
 #define SK_GPU_OPS_H
 
 #include "gpu/compose.h"
-
-/* Bit v: vector v. `reads` are those whose value before the op matters. */
-typedef struct sk_gpu_use {
-    uint32_t reads, writes;
-} sk_gpu_use;
 
 /* Whether there is a text for it, and it can run as it is set now; else `why` not, where there is more to say. */
 bool sk_gpu_op_can(const sk_op *op, const char **why);
@@ -16,7 +11,6 @@ bool sk_gpu_op_can(const sk_op *op, const char **why);
 bool sk_gpu_op_everyone(const sk_op *op, size_t particle_count);
 /* Whether it is the same for every slot. */
 bool sk_gpu_op_knows_no_slots(const sk_op *op, size_t particle_count);
-sk_gpu_use sk_gpu_op_use(const sk_op *op);
 /* The size of its part of the block, in vectors. */
 size_t sk_gpu_op_size(const sk_op *op);
 void sk_gpu_op_pack(const sk_op *op, const sk_run *run, float (*block)[4]);

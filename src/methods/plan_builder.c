@@ -37,11 +37,11 @@ void sk_write_stage_time(sk_plan_builder *builder, double part) {
     builder->before_end = (1 - part) * builder->h;
 }
 
-static void add_combine(sk_plan_builder *builder, const sk_kernels *kernels, sk_vector dst, double a, sk_vector p,
+static void add_combine(sk_plan_builder *builder, sk_op_kind kind, sk_vector dst, double a, sk_vector p,
                         double b, sk_vector q) {
-    sk_add_op(builder, (sk_op){.kind = SK_OP_COMBINE,
+    sk_add_op(builder, (sk_op){.kind = kind,
                                .order = SK_FREE,
-                               .kernel = kernels->version[builder->isa],
+                               .kernel = sk_op_types[kind].kernels->version[builder->isa],
                                .dst = dst,
                                .source = {p, q, SK_NONE},
                                .coefficient = {a, b, 0},
@@ -73,27 +73,27 @@ void sk_write_unpack(sk_plan_builder *builder) {
 }
 
 void sk_write_rest(sk_plan_builder *builder) {
-    add_combine(builder, &sk_combine_rest, SK_V, SK_REST_SPEED, SK_V, 0, SK_NONE);
+    add_combine(builder, SK_OP_REST, SK_V, SK_REST_SPEED, SK_V, 0, SK_NONE);
 }
 
 void sk_write_sum(sk_plan_builder *builder, sk_vector dst, double a, sk_vector p, double b, sk_vector q) {
-    add_combine(builder, &sk_combine_sum, dst, a, p, b, q);
+    add_combine(builder, SK_OP_SUM, dst, a, p, b, q);
 }
 
 void sk_write_clear(sk_plan_builder *builder, sk_vector dst) {
-    add_combine(builder, &sk_combine_sum, dst, 0, SK_NONE, 0, SK_NONE);
+    add_combine(builder, SK_OP_SUM, dst, 0, SK_NONE, 0, SK_NONE);
 }
 
 void sk_write_kick(sk_plan_builder *builder, sk_vector dst, sk_vector p, double a, sk_vector q) {
-    add_combine(builder, &sk_combine_kick, dst, a, p, 0, q);
+    add_combine(builder, SK_OP_KICK, dst, a, p, 0, q);
 }
 
 void sk_write_lead(sk_plan_builder *builder, double h) {
-    add_combine(builder, &sk_combine_lead, SK_X, h, SK_X, 0, SK_V);
+    add_combine(builder, SK_OP_LEAD, SK_X, h, SK_X, 0, SK_V);
 }
 
 void sk_write_correction(sk_plan_builder *builder) {
-    add_combine(builder, &sk_combine_correction, SK_V, 1 / builder->h, SK_X, builder->h, SK_X0);
+    add_combine(builder, SK_OP_CORRECTION, SK_V, 1 / builder->h, SK_X, builder->h, SK_X0);
 }
 
 bool sk_writes_contacts(const sk_rules *rules) {
@@ -125,7 +125,7 @@ void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort) {
                                        .label = collider->label,
                                        .end = 1});
         if (sort != SK_CONTACT_FORCE && collider->type->cross) {
-            sk_op sweep = {.kind = SK_OP_CONTACT_POSITION,
+            sk_op sweep = {.kind = SK_OP_CONTACT_SWEEP,
                            .order = SK_FREE,
                            .kernel = sk_contact_sweep.version[builder->isa],
                            .dst = SK_X,
@@ -143,6 +143,7 @@ void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort) {
                     .source = {SK_X, settles ? SK_X0 : SK_NONE, settles ? SK_V0 : sort == SK_CONTACT_FORCE ? SK_NONE : SK_X0},
                     .rule = collider,
                     .label = collider->label,
+                    .also_reads = settles && sk_contact_reads_force(collider) ? 1u << SK_F : 0,
                     .end = builder->slot_count};
         sk_add_op_on(builder, op, &collider->only);
     }

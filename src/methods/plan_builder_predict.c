@@ -91,7 +91,7 @@ static void add_op_of_part(sk_plan_builder *builder, sk_op op, const sk_plan_par
 /* V += h w F, on a part. */
 static void write_kick_of_part(sk_plan_builder *builder, const sk_plan_part *part) {
     add_op_of_part(builder,
-                   (sk_op){.kind = SK_OP_COMBINE,
+                   (sk_op){.kind = SK_OP_KICK,
                            .order = SK_FREE,
                            .kernel = sk_combine_kick.version[builder->isa],
                            .dst = SK_V,
@@ -104,7 +104,7 @@ static void write_kick_of_part(sk_plan_builder *builder, const sk_plan_part *par
 /* V += h (the uniform forces on a part). */
 static void write_pull_of_part(sk_plan_builder *builder, const sk_plan_part *part) {
     add_op_of_part(builder,
-                   (sk_op){.kind = SK_OP_COMBINE,
+                   (sk_op){.kind = SK_OP_PULL,
                            .order = SK_FREE,
                            .kernel = sk_combine_pull.version[builder->isa],
                            .dst = SK_V,

@@ -17,7 +17,7 @@ size_t sk_write_part(sk_plan_builder *builder, int part, const char *label) {
 
 void sk_write_pass(sk_plan_builder *builder, const sk_kernels *kernels, sk_vector dst, sk_vector p, sk_vector q,
                    const char *label) {
-    sk_add_op(builder, (sk_op){.kind = SK_OP_COMBINE,
+    sk_add_op(builder, (sk_op){.kind = SK_OP_PASS,
                                .order = SK_FREE,
                                .kernel = kernels->version[builder->isa],
                                .dst = dst,

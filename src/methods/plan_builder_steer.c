@@ -28,7 +28,7 @@ void sk_write_cells(sk_plan_builder *builder, const sk_group *group, double radi
     for (int i = 0; i < SK_SORT_OPS; i++) {
         const sk_sort_op *part = &sk_sort_ops[i];
         sk_add_op(builder,
-                  (sk_op){.kind = SK_OP_GRID,
+                  (sk_op){.kind = i ? SK_OP_SORT_ON : SK_OP_SORT,
                           .order = part->order,
                           .kernel = part->kernels.version[builder->isa],
                           .source = {SK_X, SK_V},
@@ -48,6 +48,8 @@ static sk_op op_of_slots(const sk_plan_builder *builder, const sk_force *force) 
     return (sk_op){.order = SK_FREE,
                    .kernel = force->type->kernel.version[builder->isa],
                    .rule = force,
+                   .group = &force->moved,
+                   .seen = &force->seen,
                    .label = force->label,
                    .begin = force->moved.first_slot / 16 * 16,
                    .end = (force->moved.end_slot + 15) / 16 * 16};
@@ -64,6 +66,8 @@ static void write_neighbours(sk_plan_builder *builder, const sk_force *force) {
                                .dst = SK_S,
                                .source = {SK_X, SK_V},
                                .rule = force,
+                               .group = &force->moved,
+                               .seen = &force->seen,
                                .label = force->label,
                                .by_particle = true,
                                .begin = among ? 0 : force->moved.first,
@@ -72,7 +76,7 @@ static void write_neighbours(sk_plan_builder *builder, const sk_force *force) {
 
 static void write_fields(sk_plan_builder *builder, const sk_force *force) {
     sk_op op = op_of_slots(builder, force);
-    op.kind = SK_OP_FIELD;
+    op.kind = SK_OP_STEERING;
     op.dst = SK_S;
     op.source[0] = SK_X;
     op.source[1] = SK_V;
@@ -86,13 +90,13 @@ static void write_lookouts(sk_plan_builder *builder, const sk_force *force) {
         const sk_collider *collider = builder->rules->colliders.data[i];
         if (!collider->common->enabled) continue;
         sk_op op = op_of_slots(builder, force);
-        op.kind = SK_OP_FIELD;
+        op.kind = SK_OP_AVOID;
         op.kernel = sk_avoid.version[builder->isa];
         op.dst = SK_S;
         op.source[0] = SK_X;
         op.source[1] = SK_V;
         op.rule = collider;
-        op.group = &force->moved;
+        op.seen = NULL;
         op.label = collider->label;
         force->type->look(force->params, op.coefficient);
         sk_add_op_on(builder, op, &collider->only);
@@ -105,7 +109,8 @@ static void write_bounds(sk_plan_builder *builder, bool again) {
         const sk_force *force = rules->forces.data[i];
         if (!is_on(force, SK_BOUNDS) || (again && force->type->once)) continue;
         sk_op op = op_of_slots(builder, force);
-        op.kind = SK_OP_LIMIT;
+        const sk_shader *shader = &force->type->shader;
+        op.kind = shader->shifts && shader->shifts(force->params) ? SK_OP_SHIFT : SK_OP_BOUND;
         op.dst = SK_V;
         op.source[0] = SK_X;
         op.source[1] = SK_V;
@@ -118,21 +123,19 @@ void sk_write_bounds(sk_plan_builder *builder) {
     write_bounds(builder, true);
 }
 
-static void write_combine(sk_plan_builder *builder, const sk_kernels *kernels, sk_vector dst, sk_vector p, sk_vector q,
-                          const char *label) {
-    sk_add_op(builder, (sk_op){.kind = SK_OP_COMBINE,
+static void write_combine(sk_plan_builder *builder, sk_op_kind kind, sk_vector dst, sk_vector p, sk_vector q) {
+    sk_add_op(builder, (sk_op){.kind = kind,
                                .order = SK_FREE,
-                               .kernel = kernels->version[builder->isa],
+                               .kernel = sk_op_types[kind].kernels->version[builder->isa],
                                .dst = dst,
                                .source = {p, q},
-                               .label = label,
                                .end = builder->slot_count});
 }
 
 void sk_write_steering(sk_plan_builder *builder) {
     const sk_rules *rules = builder->rules;
     if (has(rules, SK_STEERS)) {
-        write_combine(builder, &sk_combine_wipe, SK_S, SK_NONE, SK_NONE, "0");
+        write_combine(builder, SK_OP_WIPE, SK_S, SK_NONE, SK_NONE);
         for (int neighbours = 1; neighbours >= 0; neighbours--)
             for (size_t i = 0; i < rules->forces.count; i++) {
                 const sk_force *force = rules->forces.data[i];
@@ -141,7 +144,7 @@ void sk_write_steering(sk_plan_builder *builder) {
                 else if (force->type->domain == SK_OVER_COLLIDERS) write_lookouts(builder, force);
                 else write_fields(builder, force);
             }
-        write_combine(builder, &sk_combine_steer, SK_V, SK_V, SK_S, "V + S, where free");
+        write_combine(builder, SK_OP_STEER, SK_V, SK_V, SK_S);
     }
     write_bounds(builder, false);
 }

@@ -14,17 +14,17 @@ typedef struct prediction {
 } prediction;
 
 static bool is_sum(const sk_op *op, sk_vector dst, sk_vector p, sk_vector q) {
-    return sk_op_is(op, &sk_combine_sum) && !op->inner && op->dst == dst && op->source[0] == p && op->source[1] == q &&
+    return op->kind == SK_OP_SUM && !op->inner && op->dst == dst && op->source[0] == p && op->source[1] == q &&
            op->source[2] == SK_NONE && op->coefficient[0] == 1;
 }
 
 static bool is_pull(const sk_op *op) {
-    return sk_op_is(op, &sk_combine_pull);
+    return op->kind == SK_OP_PULL;
 }
 
 /* V += h w F, h being the substep. */
 static bool is_kick(const sk_op *op) {
-    return sk_op_is(op, &sk_combine_kick) && op->dst == SK_V && op->source[0] == SK_V && op->source[1] == SK_F &&
+    return op->kind == SK_OP_KICK && op->dst == SK_V && op->source[0] == SK_V && op->source[1] == SK_F &&
            op->coefficient[0] == op->dt;
 }
 
@@ -67,7 +67,7 @@ static bool mentions(const sk_op *op, sk_vector vector) {
 
 /* V += (X - X0 - h V)/h: what moved X away from where V alone would have taken it. */
 static bool is_correction(const sk_op *op) {
-    return sk_op_is(op, &sk_combine_correction) && op->dst == SK_V && op->source[0] == SK_X && op->source[1] == SK_X0 &&
+    return op->kind == SK_OP_CORRECTION && op->dst == SK_V && op->source[0] == SK_X && op->source[1] == SK_X0 &&
            op->coefficient[1] == op->dt;
 }
 
@@ -108,14 +108,19 @@ static sk_op by_goal(sk_op op) {
     return op;
 }
 
+/* Makes an op one of another kind, with the kernel of that. */
+static void become(const fuser *f, sk_op *op, sk_op_kind kind) {
+    op->kind = kind;
+    *(op->inner ? &op->inner : &op->kernel) = sk_op_types[kind].kernels->version[f->isa];
+}
+
 /* The op that does what a kick, the saves and the drift did; `kept` says what is saved besides X0, see op.h. */
 static sk_op predicting(const fuser *f, const sk_op *kick, sk_vector kept) {
     sk_op op = *kick;
-    const sk_kernels *kernels = is_pull(kick) ? &sk_combine_predict_uniform : &sk_combine_predict;
+    become(f, &op, is_pull(kick) ? SK_OP_PREDICT_UNIFORM : SK_OP_PREDICT);
     op.dst = SK_X;
     op.source[0] = SK_V, op.source[1] = is_pull(kick) ? SK_NONE : SK_F, op.source[2] = kept;
     op.coefficient[0] = 0;
-    *(op.inner ? &op.inner : &op.kernel) = kernels->version[f->isa];
     return op;
 }
 
@@ -124,7 +129,7 @@ static sk_op following(const fuser *f, const sk_op *pull, const sk_op *correctio
     sk_op op = predicting(f, pull, SK_X);
     op.coefficient[0] = correction->coefficient[0];
     op.before_end = correction->before_end;
-    *(op.inner ? &op.inner : &op.kernel) = sk_combine_correct_and_predict.version[f->isa];
+    become(f, &op, SK_OP_CORRECT_AND_PREDICT);
     return op;
 }
 

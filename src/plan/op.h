@@ -42,12 +42,27 @@ typedef enum sk_vector {
     SK_VECTOR_COUNT
 } sk_vector;
 
+/* The kinds of ops: what is so of all ops of a kind stands in its row of sk_op_types, and who runs plans looks there. */
 typedef enum sk_op_kind {
     SK_OP_PACK,
     SK_OP_UNPACK,
-    SK_OP_COMBINE,
-    SK_OP_GRID,
-    SK_OP_FIELD,
+    SK_OP_SUM, /* the arithmetic of whole vectors, up to REST: see sk_op_types */
+    SK_OP_CORRECTION,
+    SK_OP_KICK,
+    SK_OP_WIPE,
+    SK_OP_STEER,
+    SK_OP_LEAD,
+    SK_OP_PULL,
+    SK_OP_PREDICT,
+    SK_OP_PREDICT_UNIFORM,
+    SK_OP_CORRECT_AND_PREDICT,
+    SK_OP_REST,
+    SK_OP_PASS, /* other arithmetic, of a solve: its label says which */
+    SK_OP_SORT, /* the first op of a sort, and those that go on with it */
+    SK_OP_SORT_ON,
+    SK_OP_FIELD, /* forces on particles: those that push, */
+    SK_OP_STEERING, /* that steer, */
+    SK_OP_AVOID,    /* and that steer clear of a collider */
     SK_OP_NEIGHBOUR,
     SK_OP_FORCE,
     SK_OP_PROJECT,
@@ -55,8 +70,11 @@ typedef enum sk_op_kind {
     SK_OP_CONTACT_FORCE,
     SK_OP_CONTACT_VELOCITY,
     SK_OP_CONTACT_POSITION,
+    SK_OP_CONTACT_SWEEP, /* of what moved through a collider */
     SK_OP_CONTACT_UPDATE,
-    SK_OP_LIMIT,
+    SK_OP_LIMIT, /* of lengths; */
+    SK_OP_BOUND, /* of velocities, */
+    SK_OP_SHIFT, /* and of places, by a force */
     SK_OP_APPLY,
     SK_OP_LINEARISE,
     SK_OP_CONTACT_FILTER,
@@ -142,6 +160,60 @@ typedef struct sk_kernels {
     sk_op_kernel *version[SK_ISA_COUNT];
 } sk_kernels;
 
+/* What an op's rule is. */
+typedef enum sk_rule_sort { SK_OTHER_RULE, SK_RULE_UNIFORM, SK_RULE_FORCE, SK_RULE_COLLIDER } sk_rule_sort;
+
+/* How a gradient goes through an op in reverse (world/adjoint.h). */
+typedef enum sk_reverse {
+    SK_REVERSE_NOT, /* not yet */
+    SK_REVERSE_NOTHING,
+    SK_REVERSE_SUM, /* dst = a p + b q + c r */
+    SK_REVERSE_KICK, /* dst = p + a w q */
+    SK_REVERSE_FIELD, /* F += a force, if that is uniform */
+    SK_REVERSE_ELASTIC /* F += a sweep of constraints */
+} sk_reverse;
+
+/* Whom an op reads and writes: bits of vectors, and these of its own. */
+enum {
+    SK_USES_DST = 1 << 28,
+    SK_USES_FIRST = 1 << 29, /* its sources */
+    SK_USES_SECOND = 1 << 30,
+};
+#define SK_USES_THIRD (1u << 31)
+#define SK_USES_SOURCES ((uint32_t)SK_USES_FIRST | (uint32_t)SK_USES_SECOND | SK_USES_THIRD)
+
+/* How an op runs on a graphics card: in GLSL, where '@' is its number in a shader, and
+ *   $d $p $q $r   its dst and sources; a $r that is none is 0,
+ *   $s            the weighted sum of its sources,        $b   q, or q + b d where its second coefficient is not 0,
+ *   $f            F, or 0 where it does not read that,    $=   "=" where it sets, else "+=",
+ *   $k            the name of its rule's kind             $x   "x, " where the rule's force depends on place
+ *   $o            what `other` says of it. */
+typedef struct sk_on_card {
+    const char *statement; /* for one slot; NULL: it cannot run there */
+    const char *call;      /* what the statement calls, made of the arithmetic of the rule's kind (plan/shader.h) */
+    const char *file;      /* a text that it needs besides, "gpu/walk" */
+    const char *(*other)(const sk_op *op);
+} sk_on_card;
+
+typedef struct sk_op_type {
+    const char *name;          /* in `skein explain` and in profiles; several kinds may be one to users */
+    const sk_kernels *kernels; /* NULL: rules bring them */
+    const char *formula;       /* what `skein explain` shows of an op without a label, see plan.c; NULL: its sources */
+    sk_rule_sort rule;
+    uint32_t reads, writes; /* besides what one op says itself; only of ops that can run on a card are they all there is */
+    sk_reverse reverse;
+    bool arithmetic; /* of whole vectors: a label is no name, but a formula, too */
+    bool leads;      /* the ops behind it are its own: they run when it says so */
+    bool sorts;      /* its group into cells */
+    bool goes_on;    /* it is a part of what the op before it has begun */
+    bool factors;    /* it needs the matrix of a solve (plan/matrix.h) */
+    bool walks;      /* it looks at neighbours, in the cells */
+    bool at_end;     /* its rule is asked for the end of the substep, not for the time of the state */
+    sk_on_card card;
+} sk_op_type;
+
+extern const sk_op_type sk_op_types[SK_OP_KIND_COUNT];
+
 struct sk_op {
     sk_op_kind kind;
     sk_order order;
@@ -152,7 +224,8 @@ struct sk_op {
     double before_end;     /* how long before the end of the substep the state is that it looks at, s */
     const void *rule;      /* a force, a collider, a batch */
     const sk_patch *patch; /* of triangles in strips, else NULL */
-    const sk_group *group; /* whom it moves or sorts, where the rule does not say; NULL: everybody */
+    const sk_group *group, *seen; /* whom it moves or sorts, and at whom it looks; NULL: everybody */
+    uint32_t also_reads;   /* bits of vectors, besides what its kind says */
     const char *label;     /* its name in `skein explain` */
     sk_op_kernel *inner;  /* of an op over some slots only: `kernel` is sk_run_partly then */
     size_t first_slot, end_slot; /* of such an op, within [begin, end); else 0 */
@@ -204,9 +277,21 @@ static inline bool sk_op_is_due(const sk_run *run, const sk_op *op) {
 }
 /* One line about an op, as `skein explain` shows it. */
 void sk_op_describe(const sk_op *op, char *text, size_t size);
-const char *sk_op_kind_text(sk_op_kind kind);
-/* Whether the op's kernel is one of these. */
-bool sk_op_is(const sk_op *op, const sk_kernels *kernels);
+/* Bits of the vectors whose values before the op matter, and of those that it writes. */
+uint32_t sk_op_reads(const sk_op *op);
+uint32_t sk_op_writes(const sk_op *op);
+
+static inline const sk_op_type *sk_op_type_of(const sk_op *op) {
+    return &sk_op_types[op->kind];
+}
+/* Whether it is an algorithm that runs the ops behind it as it decides. */
+static inline bool sk_op_decides(const sk_op *op) {
+    return op->kernel && sk_op_type_of(op)->leads;
+}
+/* Whether it makes dst 0. */
+static inline bool sk_op_clears(const sk_op *op) {
+    return sk_op_type_of(op)->reverse == SK_REVERSE_SUM && op->source[0] == SK_NONE;
+}
 
 /* The arithmetic of vectors: the kernels of combine ops. The w components stay as they are.
  *   dst = a p + b q + c r        (a source of SK_NONE is left out)

@@ -1,41 +1,16 @@
 /* A plan as a list that grows, ops over some slots alone, and the words that `skein explain` shows of an op. */
 #include "plan/op.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "base/printf.h"
 
 bool sk_plan_add(sk_plan *plan, sk_allocator *allocator, sk_op op) {
     if (!SK_RESERVE(allocator, plan, plan->count + 1)) return false;
     plan->data[plan->count++] = op;
     return true;
-}
-
-const char *sk_op_kind_text(sk_op_kind kind) {
-    static const char *const names[SK_OP_KIND_COUNT] = {
-        [SK_OP_PACK] = "pack",
-        [SK_OP_UNPACK] = "unpack",
-        [SK_OP_COMBINE] = "combine",
-        [SK_OP_GRID] = "grid",
-        [SK_OP_FIELD] = "field",
-        [SK_OP_NEIGHBOUR] = "neighbour",
-        [SK_OP_FORCE] = "force",
-        [SK_OP_PROJECT] = "project",
-        [SK_OP_MULTIPLIER] = "multiplier",
-        [SK_OP_CONTACT_FORCE] = "contact F",
-        [SK_OP_CONTACT_VELOCITY] = "contact V",
-        [SK_OP_CONTACT_POSITION] = "contact X",
-        [SK_OP_CONTACT_UPDATE] = "contact XV",
-        [SK_OP_LIMIT] = "limit",
-        [SK_OP_APPLY] = "apply",
-        [SK_OP_LINEARISE] = "linearise",
-        [SK_OP_CONTACT_FILTER] = "contact S",
-        [SK_OP_MEET] = "meet",
-        [SK_OP_CALL] = "call",
-        [SK_OP_SOLVE] = "solve",
-        [SK_OP_PART] = "part",
-        [SK_OP_REPEAT] = "repeat",
-    };
-    return names[kind];
 }
 
 /* ---- ops over some slots ---- */
@@ -103,92 +78,89 @@ static const char *vector_text(sk_vector vector) {
     return names[vector];
 }
 
-bool sk_op_is(const sk_op *op, const sk_kernels *kernels) {
-    for (int isa = 0; isa < SK_ISA_COUNT; isa++)
-        if ((op->inner ? op->inner : op->kernel) == kernels->version[isa]) return true;
-    return false;
+/* A text of at most `size` bytes that grows. */
+typedef struct line {
+    char *text;
+    size_t length, size;
+} line;
+
+static void put(line *to, const char *format, ...) SK_PRINTF(2, 3);
+static void put(line *to, const char *format, ...) {
+    va_list values;
+    va_start(values, format);
+    int length = vsnprintf(to->text + to->length, to->size - to->length, format, values);
+    va_end(values);
+    if (length > 0) to->length += (size_t)length < to->size - to->length ? (size_t)length : to->size - to->length - 1;
 }
 
-/* A combine op as the formula that it computes. */
-static void describe_combine(const sk_op *op, char *text, size_t size) {
-    const char *p = vector_text(op->source[0]), *q = vector_text(op->source[1]);
-    const char *kept = op->source[2] == SK_X ? "X0 = X" : op->source[2] == SK_V0 ? "X0 = old X; V0 = V" : "X0 = old X";
-    if (sk_op_is(op, &sk_combine_predict)) {
-        snprintf(text, size, "X + h V, V + h w F; %s", kept);
-        return;
-    }
-    if (sk_op_is(op, &sk_combine_pull)) {
-        const char *label = ((const sk_uniform_force *)op->rule)->label;
-        snprintf(text, size, "V + h (%s)", label[0] ? label : "0");
-        return;
-    }
-    if (sk_op_is(op, &sk_combine_predict_uniform)) {
-        const char *label = ((const sk_uniform_force *)op->rule)->label;
-        snprintf(text, size, "X + h V, V + h (%s); %s", label[0] ? label : "0", kept);
-        return;
-    }
-    if (sk_op_is(op, &sk_combine_correct_and_predict)) {
-        const char *label = ((const sk_uniform_force *)op->rule)->label;
-        snprintf(text, size, "V + %g (X - X0); X + h V, V + h (%s); X0 = X, but for the last iteration",
-                 op->coefficient[0], label[0] ? label : "0");
-        return;
-    }
-    if (sk_op_is(op, &sk_combine_correction)) {
-        const char *dst = vector_text(op->dst);
-        if (op->coefficient[1] == 0) snprintf(text, size, "%s + %g (%s - %s)", dst, op->coefficient[0], p, q);
-        else snprintf(text, size, "%s + %g (%s - %s - %g %s)", dst, op->coefficient[0], p, q, op->coefficient[1], dst);
-        return;
-    }
-    if (sk_op_is(op, &sk_combine_kick)) {
-        snprintf(text, size, "%s + %g w %s", p, op->coefficient[0], q);
-        return;
-    }
-    if (sk_op_is(op, &sk_combine_lead)) {
-        snprintf(text, size, "%s + %g %s where pinned", p, op->coefficient[0], q);
-        return;
-    }
-    if (sk_op_is(op, &sk_combine_rest)) {
-        snprintf(text, size, "%s, 0 where at most %g m/s", p, op->coefficient[0]);
-        return;
-    }
-    size_t length = 0;
-    text[0] = 0;
+/* The weighted sum of an op's sources. */
+static void put_sum(line *to, const sk_op *op) {
+    bool any = false;
     for (int i = 0; i < 3; i++) {
         if (op->source[i] == SK_NONE) continue;
-        const char *plus = length ? " + " : "";
-        char factor[32] = "";
-        if (op->coefficient[i] != 1) snprintf(factor, sizeof factor, "%g ", op->coefficient[i]);
-        length += (size_t)snprintf(text + length, size - length, "%s%s%s", plus, factor, vector_text(op->source[i]));
+        if (any) put(to, " + ");
+        if (op->coefficient[i] != 1) put(to, "%g ", op->coefficient[i]);
+        put(to, "%s", vector_text(op->source[i]));
+        any = true;
     }
-    if (!length) snprintf(text, size, "0");
+    if (!any) put(to, "0");
+}
+
+/* What stands for a letter in a kind's formula: $d $p $q the op's dst and sources, $1 its first coefficient, $s the
+ * weighted sum of its sources, $b what a correction takes off besides, $u the uniform force, $o what is saved. */
+static void put_letter(line *to, const sk_op *op, char letter) {
+    switch (letter) {
+    case 'd': put(to, "%s", vector_text(op->dst)); break;
+    case 'p': put(to, "%s", vector_text(op->source[0])); break;
+    case 'q': put(to, "%s", vector_text(op->source[1])); break;
+    case '1': put(to, "%g", op->coefficient[0]); break;
+    case 's': put_sum(to, op); break;
+    case 'b':
+        if (op->coefficient[1] != 0) put(to, " - %g %s", op->coefficient[1], vector_text(op->dst));
+        break;
+    case 'u': {
+        const char *label = ((const sk_uniform_force *)op->rule)->label;
+        put(to, "%s", label[0] ? label : "0");
+        break;
+    }
+    case 'o':
+        put(to, op->source[2] == SK_X    ? "X0 = X"
+                : op->source[2] == SK_V0 ? "X0 = old X; V0 = V"
+                                         : "X0 = old X");
+        break;
+    default: break;
+    }
+}
+
+static void put_formula(line *to, const sk_op *op) {
+    for (const char *at = sk_op_type_of(op)->formula; *at; at++) {
+        if (*at == '$') put_letter(to, op, *++at);
+        else put(to, "%c", *at);
+    }
+}
+
+/* What an op looks at, and by which rule. */
+static void put_rule(line *to, const sk_op *op) {
+    static const char *const halves[] = {[SK_WHOLE] = "", [SK_EVEN_HALF] = " even", [SK_ODD_HALF] = " odd"};
+    put(to, "%s%s,", op->label ? op->label : "", halves[op->half]);
+    for (int i = 0; i < 3; i++)
+        if (op->source[i] != SK_NONE) put(to, " %s", vector_text(op->source[i]));
 }
 
 void sk_op_describe(const sk_op *op, char *text, size_t size) {
-    if (op->kind == SK_OP_SOLVE || op->kind == SK_OP_PART) {
-        snprintf(text, size, "%-10s %s: the next %zu ops", sk_op_kind_text(op->kind), op->label, op->length);
+    const sk_op_type *type = sk_op_type_of(op);
+    if (type->leads) {
+        if (op->kind == SK_OP_REPEAT)
+            snprintf(text, size, "%-10s %zu times the next %zu ops, %g s each", type->name, op->end, op->length, op->dt);
+        else snprintf(text, size, "%-10s %s: the next %zu ops", type->name, op->label, op->length);
         return;
     }
-    if (op->kind == SK_OP_REPEAT) {
-        snprintf(text, size, "%-10s %zu times the next %zu ops, %g s each", "repeat", op->end, op->length, op->dt);
-        return;
-    }
-    char what[160];
-    if (op->label && op->kind == SK_OP_COMBINE) {
-        snprintf(what, sizeof what, "%s", op->label);
-    } else if (op->kind == SK_OP_COMBINE) {
-        describe_combine(op, what, sizeof what);
-    } else {
-        char sources[64] = "";
-        size_t length = 0;
-        for (int i = 0; i < 3; i++)
-            if (op->source[i] != SK_NONE)
-                length +=
-                    (size_t)snprintf(sources + length, sizeof sources - length, " %s", vector_text(op->source[i]));
-        static const char *const halves[] = {[SK_WHOLE] = "", [SK_EVEN_HALF] = " even", [SK_ODD_HALF] = " odd"};
-        snprintf(what, sizeof what, "%s%s,%s", op->label ? op->label : "", halves[op->half], sources);
-    }
-    char iterations[40] = "";
+    char what[160] = "", iterations[40] = "";
+    line words = {what, 0, sizeof what};
+    if (!type->arithmetic) put_rule(&words, op);
+    else if (op->label || !type->formula) put(&words, "%s", op->label ? op->label : "");
+    else put_formula(&words, op);
     if (op->every > 1) snprintf(iterations, sizeof iterations, ", every %zu times", op->every);
-    snprintf(text, size, "%-10s %-3s = %-44s %zu elements, %s%s", sk_op_kind_text(op->kind), vector_text(op->dst), what,
+    snprintf(text, size, "%-10s %-3s = %-44s %zu elements, %s%s", type->name, vector_text(op->dst), what,
              op->end - op->begin, op->order == SK_FREE ? "free" : "ordered", iterations);
 }

@@ -23,24 +23,21 @@
 
 /* ---- looking at the plan ---- */
 
+static sk_reverse reverse_of(const sk_op *op) {
+    return sk_op_type_of(op)->reverse;
+}
+
 static bool is_elementary(const sk_op *op) {
-    static const sk_kernels *const combines[] = {&sk_combine_sum, &sk_combine_kick, &sk_combine_wipe, &sk_combine_rest};
+    sk_uniform_force sum = {.label = ""};
     if (op->inner) return false;
-    switch (op->kind) {
-    case SK_OP_PACK:
-    case SK_OP_UNPACK:
-    case SK_OP_REPEAT: return true;
-    case SK_OP_FORCE: return op->dst == SK_F;
-    case SK_OP_COMBINE:
-        for (size_t i = 0; i < sizeof combines / sizeof *combines; i++)
-            if (sk_op_is(op, combines[i])) return true;
-        return false;
-    case SK_OP_FIELD: {
+    switch (reverse_of(op)) {
+    case SK_REVERSE_NOT: return false;
+    case SK_REVERSE_ELASTIC: return op->dst == SK_F;
+    case SK_REVERSE_FIELD: {
         const sk_force *force = op->rule;
-        sk_uniform_force sum = {.label = ""};
         return op->dst == SK_F && !force->only.some && sk_force_add_uniform(force, &sum);
     }
-    default: return false;
+    default: return true;
     }
 }
 
@@ -148,7 +145,7 @@ static bool keep(sk_adjoint *a, const sk_run *run) {
 }
 
 static bool looks_at_state(const sk_op *op) {
-    return op->kind == SK_OP_FORCE || op->kind == SK_OP_FIELD;
+    return reverse_of(op) == SK_REVERSE_ELASTIC || reverse_of(op) == SK_REVERSE_FIELD;
 }
 
 size_t sk_adjoint_looks(const sk_plan *plan, size_t r) {
@@ -200,11 +197,12 @@ static const real *take(sk_adjoint *a, sk_vector dst) {
 /* ---- combines and uniform forces ---- */
 
 static void reverse_combine(sk_adjoint *a, const sk_op *op) {
-    if (sk_op_is(op, &sk_combine_rest) || op->dst == SK_PREVIOUS) return;
+    sk_reverse reverse = reverse_of(op);
+    if (reverse == SK_REVERSE_NOTHING || op->dst == SK_PREVIOUS) return;
     const real *bar = take(a, op->dst);
-    if (sk_op_is(op, &sk_combine_sum)) {
+    if (reverse == SK_REVERSE_SUM) {
         for (int i = 0; i < 3 && op->source[i] != SK_NONE; i++) add(a, a->of[op->source[i]], op->coefficient[i], bar);
-    } else if (sk_op_is(op, &sk_combine_kick)) {
+    } else {
         add(a, a->of[op->source[0]], 1, bar);
         real *f = a->of[op->source[1]], h = (real)op->coefficient[0];
         for (size_t i = 0; i < a->reals; i++) f[i] += h * a->inverse_mass[i] * bar[i];
@@ -410,12 +408,13 @@ static size_t reverse_group(sk_adjoint *a, const sk_op *body, size_t last, doubl
     const sk_taped *at = &a->tape.data[--a->used];
     a->step = 0;
     for (size_t k = last + 1; k-- > first && !*status;) {
-        if (body[k].kind == SK_OP_FIELD) {
+        if (reverse_of(&body[k]) == SK_REVERSE_FIELD) {
             reverse_field(a, &body[k], at);
             continue;
         }
         size_t from = k;
-        while (from > first && body[from - 1].kind == SK_OP_FORCE && batch_of(&body[from - 1]) == batch_of(&body[k]))
+        while (from > first && reverse_of(&body[from - 1]) == SK_REVERSE_ELASTIC &&
+               batch_of(&body[from - 1]) == batch_of(&body[k]))
             from--;
         *status = reverse_forces(a, &body[from], k - from + 1, at, time, error);
         k = from;
@@ -429,7 +428,7 @@ static skein_status reverse_body(sk_adjoint *a, const sk_op *body, size_t count,
         const sk_op *op = &body[k - 1];
         size_t done = 1;
         if (looks_at_state(op)) done = reverse_group(a, body, k - 1, time, &status, error);
-        else if (op->kind == SK_OP_COMBINE) reverse_combine(a, op);
+        else reverse_combine(a, op);
         k -= done;
     }
     return status;

@@ -6,7 +6,6 @@
  * Of a million birds a step took 1.25 times as long as of ten thousand, a bird; now about as long. */
 #include <string.h>
 
-#include "plan/sort.h"
 #include "world/world.h"
 
 enum {
@@ -20,7 +19,7 @@ static bool may_move(const skein_world *world) {
     if (world->particles.strips.count || world->triangles.count) return false;
     if (rules->batches.count || rules->limits.count) return false;
     for (size_t r = 0; r < world->plan.count; r++)
-        if (world->plan.data[r].kind == SK_OP_SOLVE) return false;
+        if (sk_op_decides(&world->plan.data[r])) return false; // by sums
     return true;
 }
 
@@ -63,7 +62,7 @@ static void move_to_list(skein_world *world, const sk_group *group, size_t first
 static double radius_for(const sk_plan *plan, const sk_group *group) {
     for (size_t r = 0; r < plan->count; r++) {
         const sk_op *op = &plan->data[r];
-        if (sk_op_is(op, &sk_sort_ops[0].kernels) && op->group->first <= group->first && group->end <= op->group->end)
+        if (sk_op_type_of(op)->sorts && op->group->first <= group->first && group->end <= op->group->end)
             return op->coefficient[0];
     }
     return 0;

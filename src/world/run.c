@@ -38,11 +38,6 @@ enum {
 
 /* ---- segments ---- */
 
-/* Whether the ops behind it are its own. */
-static bool leads(const sk_op *op) {
-    return op->kind == SK_OP_REPEAT || op->kind == SK_OP_SOLVE || op->kind == SK_OP_PART;
-}
-
 static bool same_strips(const sk_walk *a, const sk_walk *b) {
     return a->first_slot == b->first_slot && a->rows == b->rows && a->width == b->width;
 }
@@ -53,7 +48,7 @@ static size_t segment_length(const sk_op *ops, size_t count, sk_walk *walk) {
     size_t length = 0;
     for (; length < count && length < MOST_SEGMENT; length++) {
         const sk_op *op = &ops[length];
-        if (leads(op)) break;
+        if (sk_op_type_of(op)->leads) break;
         if (op->walk.rows) {
             if (walk->rows && !same_strips(walk, &op->walk)) break;
             *walk = op->walk;
@@ -354,8 +349,8 @@ static double taken_behind(const sk_run *run, const sk_op *op) {
  * clock, one. */
 static size_t run_some(sk_run *run, const sk_op *ops, size_t count) {
     size_t length = 1;
-    bool solves = ops->kind == SK_OP_SOLVE;
-    while (!run->seconds && !solves && length < count && !leads(&ops[length])) length++;
+    bool solves = sk_op_decides(ops);
+    while (!run->seconds && !solves && length < count && !sk_op_type_of(&ops[length])->leads) length++;
     double begin = run->seconds ? sk_seconds() : 0, behind = taken_behind(run, ops);
     if (solves) ops->kernel(run, ops, ops->begin, ops->end);
     else run_segments(run, run->tasks, ops, length);
@@ -366,9 +361,9 @@ static size_t run_some(sk_run *run, const sk_op *ops, size_t count) {
 static void run_ops(sk_run *run, const sk_op *ops, size_t count) {
     for (size_t r = 0; r < count;) {
         const sk_op *op = &ops[r];
-        bool led = op->kind == SK_OP_REPEAT || op->kind == SK_OP_PART; // (a part waits for its solve)
+        bool waits = sk_op_type_of(op)->leads && !op->kernel; // what is no repeat does so for whoever decides
         if (op->kind == SK_OP_REPEAT) run_repeat(run, op);
-        r += led ? 1 + op->length : run_some(run, op, count - r);
+        r += waits ? 1 + op->length : run_some(run, op, count - r);
     }
 }
 

@@ -62,7 +62,7 @@ static bool make_cells(skein_world *world) {
     bool good = true, sorts = false;
     for (size_t r = 0; r < world->plan.count && good; r++) {
         const sk_op *op = &world->plan.data[r];
-        if (op->kind != SK_OP_GRID) continue;
+        if (!sk_op_type_of(op)->sorts) continue;
         sorts = true;
         good = sk_cells_reserve(&world->cells, &world->allocator, op->group);
     }
@@ -79,7 +79,7 @@ static skein_status make_matrix(skein_world *world, skein_error *error) {
     sk_matrix *matrix = &world->matrix;
     size_t count = world->rules.batches.count, part_count = 0;
     bool wanted = false;
-    for (size_t r = 0; r < world->plan.count; r++) wanted |= world->plan.data[r].kind == SK_OP_CALL;
+    for (size_t r = 0; r < world->plan.count; r++) wanted |= sk_op_type_of(&world->plan.data[r])->factors;
     if (!wanted) sk_matrix_release(matrix, allocator);
     if (!wanted || matrix->shaped) return SKEIN_OK;
     sk_matrix_part *parts = sk_allocate(allocator, (count + 1) * sizeof *parts);
@@ -229,7 +229,8 @@ skein_status skein_world_step(skein_world *world, double dt) {
 /* Adds an op's seconds to the pass of its kind and name; `count` passes are there, the first `most` of them in `out`.
  */
 static void add_to_passes(const sk_op *op, double seconds, skein_pass *out, size_t most, size_t *count) {
-    const char *kind = sk_op_kind_text(op->kind), *label = op->kind == SK_OP_COMBINE || !op->label ? "" : op->label;
+    const sk_op_type *type = sk_op_type_of(op);
+    const char *kind = type->name, *label = type->arithmetic || !op->label ? "" : op->label;
     for (size_t i = 0; i < *count && i < most; i++)
         if (out[i].kind == kind && !strncmp(out[i].label, label, sizeof out[i].label - 1)) {
             out[i].seconds += seconds;
@@ -265,7 +266,7 @@ skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out,
     memset(seconds, 0, world->plan.count * sizeof *seconds);
     status = take_step(world, dt, seconds, error);
     for (size_t r = 0; r < world->plan.count && !status; r++)
-        if (world->plan.data[r].kind != SK_OP_REPEAT && world->plan.data[r].kind != SK_OP_PART)
+        if (world->plan.data[r].kernel)
             add_to_passes(&world->plan.data[r], seconds[r], out, most, count);
     sk_release(&world->allocator, seconds);
     return status;
