@@ -118,6 +118,9 @@ static char *write_note(const app_keep *keep, const app_report *r) {
         {"most_moving", json_real(v->most_moving)},
         {"most_potential", json_real(v->most_potential)},
         {"worst_stretch", json_real(r->worst_stretch)},
+        {"worst_crossings", json_integer((json_int_t)r->worst_crossings)},
+        {"crossed_frames", json_integer(r->crossed_frames)},
+        {"crossed_noted", json_integer((json_int_t)r->crossed_noted)},
         {"seconds", json_real(r->seconds)},
         {"flocks_noted", json_integer(r->flocks_noted)},
         {"flocks", json_incref(r->flocks)},
@@ -145,6 +148,9 @@ static void read_note(const json_t *note, app_report *r) {
                                            .most_moving = number_in(note, "most_moving"),
                                            .most_potential = number_in(note, "most_potential")}};
     r->worst_stretch = number_in(note, "worst_stretch");
+    r->worst_crossings = (size_t)number_in(note, "worst_crossings");
+    r->crossed_frames = (int)number_in(note, "crossed_frames");
+    r->crossed_noted = (uint64_t)number_in(note, "crossed_noted");
     r->seconds = number_in(note, "seconds");
     r->flocks_noted = (int)number_in(note, "flocks_noted");
     if (json_is_array(flocks)) json_array_extend(r->flocks, flocks);

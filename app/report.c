@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "app/flocks.h"
+#include "io/budget.h"
 
 static double ms_per_step(const app_report *r) {
     return r->statistics.steps ? 1e3 * r->seconds / (double)r->statistics.steps : 0;
@@ -35,6 +36,17 @@ static json_t *command_line(const app_arguments *arguments) {
         json_array_append_new(list, word ? word : json_string("(not UTF-8)"));
     }
     return list;
+}
+
+static json_t *trial(const io_trial *t) {
+    return t->substeps ? json_pack("{s:i, s:f, s:o, s:o}", "substeps", t->substeps, "ms_per_frame", t->ms, "max_stretch",
+                                   number(t->max_stretch), "p99_stretch", number(t->p99_stretch))
+                       : json_null();
+}
+
+static json_t *budget(const io_budget *b) {
+    return json_pack("{s:f, s:i, s:b, s:b, s:o, s:o, s:o}", "ms_per_frame", b->ms, "frames", b->frames, "exceeded", b->exceeded, "bounded", b->bounded, "chosen",
+                     trial(&b->chosen), "half", trial(&b->half), "twice", trial(&b->twice));
 }
 
 static json_t *make_document(const app_report *r) {
@@ -78,6 +90,8 @@ static json_t *make_document(const app_report *r) {
         {"constraints", count(s->constraints)},
         {"contacts", count(s->contacts)},
         {"crossings", count(s->crossings)},
+        {"worst_crossings_of_run", count(r->worst_crossings)},
+        {"crossed_frames", count((uint64_t)r->crossed_frames)},
         {"kinetic_energy", number(s->kinetic_energy)},
         {"potential_energy", number(s->potential_energy)},
         {"elastic_energy", number(s->elastic_energy)},
@@ -103,6 +117,8 @@ static json_t *make_document(const app_report *r) {
     bool good = true;
     for (size_t i = 0; i < sizeof members / sizeof *members; i++)
         good &= !json_object_set_new(root, members[i].key, members[i].value);
+    const io_budget *b = io_scene_budget(r->loaded->scene);
+    if (b->ms > 0) good &= !json_object_set_new(root, "budget", budget(b));
     if (json_array_size(r->flocks)) good &= !json_object_set(root, "flocks", r->flocks);
     if (good) return root;
     json_decref(root);
@@ -168,6 +184,10 @@ void app_report_print(const app_report *r) {
         "kinetic energy %.3g J, stretch at most %.2f %% (99 %% of edges under %.2f %%), penetration at most %.2g mm\n",
         s->kinetic_energy, 100 * s->max_stretch, 100 * s->p99_stretch, 1e3 * s->max_penetration);
     print_limit(r);
+    if (r->crossed_frames)
+        printf("%d frame%s had edges that go through faces, up to %zu in one; %zu at the end\n", r->crossed_frames,
+               plural((uint64_t)r->crossed_frames), r->worst_crossings, s->crossings);
+    else if (r->counts_crossings) printf("no edge went through a face in any frame\n");
     if (s->all_unsolved)
         printf("%" PRIu64 " of %" PRIu64
                " substeps were left unsolved: more substeps, newton_iterations or cg_iterations help\n",

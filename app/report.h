@@ -20,6 +20,10 @@ typedef struct app_report {
     skein_statistics statistics; /* of the end */
     double worst_stretch;        /* over the whole run, sampled now and then */
     double worst_over_limit;     /* the same of what edges stretch beyond their limit */
+    bool counts_crossings;       /* in every frame: there is contact */
+    size_t worst_crossings;      /* of one frame */
+    int crossed_frames;          /* that had some */
+    uint64_t crossed_noted;      /* the frame after the one that was last counted */
     char device[256];            /* where it was stepped */
     size_t device_bytes;         /* held there, where that is a graphics card */
     json_t *files;               /* their paths */

@@ -22,6 +22,15 @@ static bool note_flocks(app_report *r) {
     return app_flocks_note(r->flocks, r->loaded->world);
 }
 
+/* Crossings of the state that was measured, and its frame, which counts once. */
+static void note_crossings(app_report *r) {
+    uint64_t steps = (uint64_t)r->steps_per_frame, frame = (r->statistics.steps + steps - 1) / steps + 1;
+    if (!r->statistics.crossings) return;
+    if (r->statistics.crossings > r->worst_crossings) r->worst_crossings = r->statistics.crossings;
+    if (r->crossed_noted != frame) r->crossed_frames++;
+    r->crossed_noted = frame;
+}
+
 /* Measures the world as it stands; false after a printed fault. */
 static bool measure(app_report *r) {
     skein_world *world = r->loaded->world;
@@ -33,7 +42,15 @@ static bool measure(app_report *r) {
     app_verdict_note(&r->verdict, &r->statistics);
     if (r->statistics.max_stretch > r->worst_stretch) r->worst_stretch = r->statistics.max_stretch;
     if (r->statistics.most_over_limit > r->worst_over_limit) r->worst_over_limit = r->statistics.most_over_limit;
+    note_crossings(r);
     return true;
+}
+
+/* Whether there is contact, whose promise is one for every frame. */
+static bool has_contact(skein_world *world) {
+    for (size_t i = 0; i < skein_object_count(world, SKEIN_FORCE); i++)
+        if (!strcmp(skein_object_kind(world, skein_object_at(world, SKEIN_FORCE, i))->name, "contact")) return true;
+    return false;
 }
 
 /* Notes the state in the log, if there is one; false after a printed fault. */
@@ -65,7 +82,8 @@ static bool run_frame(app_report *r, app_progress *p) {
     }
     r->frames++;
     note_device(r);
-    return !here || r->frames % 16 || measure(r); // from a card the state would have to come for it
+    // from a card the state would have to come for it
+    return r->counts_crossings ? measure(r) : !here || r->frames % 16 || measure(r);
 }
 
 /* The first frame, or all those before the snapshot that the run goes on from. */
@@ -270,6 +288,7 @@ static int run_scene(app_arguments *arguments, const char *folder, const app_kep
                              .is_file = format != NULL,
                              .log_path = log && log[0] ? log : NULL};
         report.steps_per_frame = io_scene_steps_per_frame(&loaded.settings, &report.dt);
+        report.counts_crossings = has_contact(loaded.world);
         app_good good = {NULL, 0, 0, 0};
         if (folder) report.good = &good;
         status = simulate(&report, folder, kept, every);

@@ -81,20 +81,24 @@ static double extent_of(const skein_world *world) {
     return most;
 }
 
-static size_t advise_of_rounding(const skein_world *world, double dt, io_warnings warnings) {
+double io_substeps_by_rounding(const skein_world *world, double dt) {
     // measured on a cube in a bowl: at 0.05 it rests 0.1 mm beside where it does in double, at 0.2 15 mm, at 0.8 45 mm
     const double tolerable = 0.1;
     const double epsilon = sizeof(skein_real) == sizeof(double) ? DBL_EPSILON : (double)FLT_EPSILON;
-    double h = dt / substeps_of(world), g = gravity_of(world), extent = extent_of(world);
+    double g = gravity_of(world), extent = extent_of(world);
     const char *method = method_of(world);
     bool moves_positions = !strcmp(method, "xpbd") || !strcmp(method, "pbd");
-    if (!moves_positions || g <= 0 || epsilon / 2 * extent <= tolerable * g * h * h) return 0;
-    double least = sqrt(epsilon / 2 * extent / (tolerable * g));
+    return moves_positions && g > 0 && extent > 0 ? dt / sqrt(epsilon / 2 * extent / (tolerable * g)) : (double)INFINITY;
+}
+
+static size_t advise_of_rounding(const skein_world *world, double dt, io_warnings warnings) {
+    double most = io_substeps_by_rounding(world, dt);
+    if (substeps_of(world) <= most) return 0;
     io_warn(
         warnings,
         "in a substep of %.3g ms gravity moves things by hardly more than positions are rounded to at %.3g m: small "
         "forces get lost; set method.substeps to %.0f or less, or build with SKEIN_DOUBLE",
-        1e3 * h, extent, fmax(1, floor(dt / least)));
+        1e3 * dt / substeps_of(world), extent_of(world), fmax(1, floor(most)));
     return 1;
 }
 

@@ -12,6 +12,10 @@
  * where a method has a limit, else nothing. */
 double io_substeps_needed(skein_world *world, double dt);
 
+/* The most substeps whose moves under gravity are well over what positions are rounded to, INFINITY where the method does
+ * not mind. */
+double io_substeps_by_rounding(const skein_world *world, double dt);
+
 /* Says what it foretells, each warning with its remedy. Returns how many there were. `needed`, if it is not NULL, gets
  * io_substeps_needed(). */
 size_t io_advise(skein_world *world, double dt, io_warnings warnings, double *needed);

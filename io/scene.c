@@ -1,6 +1,6 @@
 /* The reader of scenes' own part: the document, its view, exporters and paths. Objects are built in scene_build.c. */
+#include "io/budget.h"
 #include "io/reach.h"
-#include "io/scene.h"
 
 #include <errno.h>
 #include <math.h>
@@ -23,6 +23,7 @@ struct io_scene {
     size_t export_count;
     const skein_kind *view_kind; /* NULL: this program draws nothing */
     void *view;
+    io_budget *budget;
 };
 
 /* ---- what stands at the top of a scene ---- */
@@ -40,6 +41,8 @@ static const skein_field scene_fields[] = {
           "the longest step; a frame is cut into as many equal steps as it takes"),
     FIELD(most_stretch, "most_stretch", SKEIN_FIELD_REAL, "", 1, 0, (double)INFINITY, NULL,
           "a run that ends with an edge longer than its rest length times 1 + this fails; \"infinite\" is none"),
+    FIELD(budget_ms, "method.budget_ms", SKEIN_FIELD_REAL, "ms", 0, 0, 1e9, NULL,
+          "picks the method's substeps: as many as a frame takes no longer with, here and now; 0: they are as they stand"),
     FIELD(
         threads, "threads", SKEIN_FIELD_INT, "", 0, 0, 64, NULL,
         "the most threads to run on, 0: one a processor; steps take as many as are faster, and the result is the same"),
@@ -292,6 +295,8 @@ static void read_top(io_scene *scene, io_place place) {
     for (size_t i = 0; i < SECTION_COUNT; i++) others[i] = sections[i].name;
     io_settings settings;
     io_settings_read(&settings, place, scene->root, io_scene_kind(), others);
+    io_settings_read_one(&settings, place, "method.budget_ms", json_object_get(json_object_get(scene->root, "method"), "budget_ms"),
+                         io_scene_kind());
     if (!fill_params(io_scene_kind(), &scene->settings, &settings))
         io_fault(place, "", SKEIN_ERROR_MEMORY, "out of memory");
     io_settings_free(&settings);
@@ -348,9 +353,10 @@ io_scene *io_scene_read_text(const char *text, size_t size, const char *path, co
     json_t *root = parse(text, size, path, faults);
     if (!root) return NULL;
     io_scene *scene = calloc(1, sizeof *scene);
-    if (!scene || !(scene->path = strdup(path)) || !(scene->notes = json_array())) {
+    if (!scene || !(scene->path = strdup(path)) || !(scene->notes = json_array()) ||
+        !(scene->budget = calloc(1, sizeof *scene->budget))) {
         json_decref(root);
-        if (scene) free(scene->path);
+        if (scene) free(scene->path), json_decref(scene->notes);
         free(scene);
         io_fault(place, "", SKEIN_ERROR_MEMORY, "out of memory");
         return NULL;
@@ -391,6 +397,7 @@ void io_scene_free(io_scene *scene) {
     clear_params(io_scene_kind(), &scene->settings);
     if (scene->view) clear_params(scene->view_kind, scene->view);
     free(scene->view);
+    free(scene->budget);
     json_decref(scene->root);
     json_decref(scene->notes);
     free(scene->path);
@@ -433,13 +440,42 @@ static bool has_its_bodies(const io_scene *scene, const skein_world *world, io_f
     return true;
 }
 
+const io_budget *io_scene_budget(const io_scene *scene) {
+    return scene->budget;
+}
+
+/* Chooses by the budget, and puts the choice in its place. */
+static bool keep_to_budget(const io_scene *scene, skein_world *world, io_faults *faults) {
+    json_t *method = json_object_get(scene->root, "method");
+    const io_place place = {scene->path, "method", faults};
+    skein_error error = {SKEIN_OK, "", ""};
+    if (!(scene->settings.budget_ms > 0) || !json_object_get(method, "budget_ms")) return true;
+    skein_status status = io_budget_choose(world, &scene->settings, scene->budget, &error);
+    if (!status) {
+        json_object_del(method, "budget_ms");
+        if (!json_object_set_new(method, "substeps", json_integer(scene->budget->chosen.substeps))) return true;
+        status = SKEIN_ERROR_MEMORY;
+        io_error_set(&error, status, "", "out of memory");
+    }
+    io_fault(place, "budget_ms", status, "%s", error.message);
+    return false;
+}
+
 skein_world *io_scene_build(const io_scene *scene, const skein_world_desc *desc, io_faults *faults) {
     double dt;
     io_scene_steps_per_frame(&scene->settings, &dt);
     for (size_t i = 0; desc && desc->log && i < json_array_size(scene->notes); i++)
         desc->log(desc->log_user, SKEIN_LOG_INFO, json_string_value(json_array_get(scene->notes, i)));
     skein_world *world = io_world_from_document(scene->root, scene->path, dt, desc, faults);
-    if (!world || has_its_bodies(scene, world, faults)) return world;
+    bool had = scene->budget->ms > 0;
+    if (!world || (has_its_bodies(scene, world, faults) && keep_to_budget(scene, world, faults))) {
+        char text[400];
+        if (world && !had && scene->budget->ms > 0 && desc && desc->log) {
+            io_budget_text(scene->budget, text, sizeof text);
+            desc->log(desc->log_user, SKEIN_LOG_INFO, text);
+        }
+        return world;
+    }
     skein_world_destroy(world);
     return NULL;
 }

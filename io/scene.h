@@ -23,6 +23,7 @@ typedef struct io_scene_settings {
     int32_t frames, threads;
     double fps, step;
     double most_stretch; /* as a share; INFINITY: any */
+    double budget_ms;    /* a frame; 0: none (io/budget.h) */
     int32_t advance;     /* an io_advance */
 } io_scene_settings;
 
@@ -88,6 +89,9 @@ struct json_t *io_scene_document(const io_scene *scene);
 /* Checks everything, the method's demands too, and builds the world. NULL if there was any fault, here or
  * in reading. `desc` as for skein_world_create. */
 skein_world *io_scene_build(const io_scene *scene, const skein_world_desc *desc, io_faults *faults);
+/* What a budget of the method came to: chosen when the scene is first built, and in the document from then on as a
+ * number of substeps. Freed with the scene; its `ms` is 0 where there is no budget. */
+const struct io_budget *io_scene_budget(const io_scene *scene);
 
 /* The exporters that the scene asks for, in its order, at most one of each kind (one of each there is if it
  * asks for none). Fills up to `most`; the parameter structs are freed with the scene. */

@@ -297,13 +297,16 @@ static bool add_of_kind(const builder *b, io_place place, const json_t *object, 
 }
 
 static void add_object(builder *b, const char *path, const json_t *object, skein_category category) {
-    static const char *const skip[] = {"type", NULL}, *const skip_particles[] = {"type", "particles", NULL};
+    static const char *const skip[] = {"type", NULL}, *const skip_particles[] = {"type", "particles", NULL},
+                      *const skip_budget[] = {"type", "budget_ms", NULL}; // which is the scene's
     io_place place = {b->file, path, b->faults};
     const skein_kind *kind = kind_of(place, object, category);
     io_settings settings = {0};
     bool good =
         kind &&
-        io_settings_read(&settings, place, object, kind, category == SKEIN_CONSTRAINT ? skip_particles : skip) &&
+        io_settings_read(&settings, place, object, kind, category == SKEIN_CONSTRAINT ? skip_particles
+                                                        : category == SKEIN_METHOD   ? skip_budget
+                                                                                     : skip) &&
         add_of_kind(b, place, object, kind, &settings);
     if (!good && category == SKEIN_BODY) b->body_missing = true;
     io_settings_free(&settings);

@@ -87,7 +87,9 @@ static void leave_out_strangers(json_t *method, const char *type, json_t *notes)
     if (!kind || (old && !strcmp(old, type))) return;
     json_object_foreach_safe(method, next, name, value) {
         char note[300];
-        if (!strcmp(name, "type") || skein_field_find(kind, name, NULL)) continue;
+        char whole[200];
+        snprintf(whole, sizeof whole, "method.%.150s", name);
+        if (!strcmp(name, "type") || skein_field_find(kind, name, NULL) || skein_field_find(io_scene_kind(), whole, NULL)) continue;
         snprintf(note, sizeof note, "method.%.100s is left out: %s has no such field", name, type);
         json_array_append_new(notes, json_string(note));
         json_object_del(method, name);
@@ -110,7 +112,8 @@ static const skein_kind *kind_of_item(const json_t *item, skein_category categor
 /* The field that a path leads to; NULL where it leads to an object, or nowhere. */
 static const skein_field *field_at(const json_t *root, const char *path, const skein_kind *const *kinds) {
     const char *dot = strchr(path, '.');
-    if (!dot) return skein_field_find(io_scene_kind(), path, NULL);
+    const skein_field *own = skein_field_find(io_scene_kind(), path, NULL); // method.budget_ms is one
+    if (!dot || own) return own;
     char name[64];
     snprintf(name, sizeof name, "%.*s", (int)(dot - path < 63 ? dot - path : 63), path);
     const io_scene_section *section = NULL;

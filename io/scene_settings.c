@@ -294,3 +294,8 @@ bool io_settings_read(io_settings *settings, io_place place, const json_t *objec
     memset(settings, 0, sizeof *settings);
     return read_members(settings, place, "", object, kind, skip);
 }
+
+bool io_settings_read_one(io_settings *settings, io_place place, const char *name, const json_t *json,
+                          const skein_kind *kind) {
+    return !json || read_member(settings, place, name, json, kind, NULL);
+}

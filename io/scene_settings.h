@@ -37,6 +37,9 @@ const char *io_json_instead(const json_t *json, char out[IO_JSON_WORDS_SIZE]);
  * false when there was one. */
 bool io_settings_read(io_settings *settings, io_place place, const json_t *object, const skein_kind *kind,
                       const char *const *skip);
+/* The same of one value that stands elsewhere, by its field's whole name; NULL is none. */
+bool io_settings_read_one(io_settings *settings, io_place place, const char *name, const json_t *json,
+                          const skein_kind *kind);
 /* The text of a setting, or NULL. */
 const char *io_settings_text(const io_settings *settings, const char *name);
 void io_settings_free(io_settings *settings);

@@ -41,6 +41,8 @@ static void judge_report(const json_t *report, int frames) {
         {"steps", 0, 1e5},
         {"substeps", 0, 1e7},
         {"crossings", 0, 0},
+        {"worst_crossings_of_run", 0, 0},
+        {"crossed_frames", 0, 0},
         {"unsolved", 0, 0},
         {"solver_failures", 0, 0},
         {"nonfinite_particles", 0, 0},

@@ -140,6 +140,11 @@ static void what_does_work_is_known(void **state) {
     assert_true(skein_world_is_driven(world));
     OK(world, skein_set_path(world, "forces.2.enabled", skein_number(0)));
     assert_false(skein_world_is_driven(world));
+    // whose pins may well stand now
+    OK(world, skein_motion_add(world, "keys", NULL, SKEIN_SETTINGS(SKEIN_TEXT("keys", "0 0 0 0, 1 0 1 0")), NULL));
+    assert_true(skein_world_is_driven(world));
+    OK(world, skein_set_path(world, "motions.0.enabled", skein_number(0)));
+    assert_false(skein_world_is_driven(world));
     // one of the constraint's two rest lengths is at another time
     const uint32_t ends[] = {0, 1};
     OK(world, skein_constraint_add(world, "formula", ends, 1,

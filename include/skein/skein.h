@@ -807,8 +807,8 @@ typedef struct skein_statistics {
 /* Measures the present state; costs about one step, and scratch memory for the edges. Fails with SKEIN_ERROR_MEMORY. */
 skein_status skein_world_statistics(skein_world *world, skein_statistics *statistics);
 /* Whether anything but the method's own errors may give the world energy, as it stands: wind and steering, a field of
- * force, an energy or a constraint that depends on t, a collider or a pinned particle that moves, a collider with a
- * mass. Where nothing does, kinetic, potential and elastic energy together never grow. Costs two measurements of
+ * force, an energy or a constraint that depends on t, a collider or a pinned particle that moves, a motion, a collider
+ * with a mass. Where nothing does, kinetic, potential and elastic energy together never grow. Costs two measurements of
  * energy. */
 bool skein_world_is_driven(skein_world *world);
 /* Only the hash. */

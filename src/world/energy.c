@@ -114,6 +114,8 @@ bool skein_world_is_driven(skein_world *world) {
         if (collider_moves(collider->common, collider->type->deforms)) return true;
         if (sk_collider_mass(collider) > 0) return true; // it cancels what pulls back what leaves (contact.c)
     }
+    for (size_t i = 0; i < world->motions.count; i++)
+        if (world->motions.data[i]->common->enabled) return true; // wherever its pins may stand just now
     if (sk_world_fetch(world) || sk_world_arrange(world, NULL)) return true; // it cannot be said
     return pinned_particle_moves(world) || energy_depends_on_time(world);
 }
