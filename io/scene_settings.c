@@ -67,8 +67,9 @@ static bool takes_rows(const skein_kind *kind, const skein_field *field) {
     return field->type == SKEIN_FIELD_TEXT && kind->category == SKEIN_MOTION && is_own(kind, field);
 }
 
-/* A rule's `on`: names of bodies, which are joined by commas. */
+/* A rule's `on`, and a motion's `colliders`: names, which are joined by commas. */
 static bool takes_names(const skein_kind *kind, const skein_field *field) {
+    if (kind->category == SKEIN_MOTION) return !strcmp(field->name, "colliders");
     return (kind->category == SKEIN_FORCE || kind->category == SKEIN_COLLIDER) && !strcmp(field->name, "on");
 }
 
@@ -93,7 +94,7 @@ static char *join_names(const json_t *list) {
 /* The texts of a body's own fields select parts of it, as a motion's "pins" do, and so have short forms. */
 static bool takes_lists(const skein_kind *kind, const skein_field *field) {
     bool selects = kind->category == SKEIN_BODY ? is_own(kind, field)
-                                                : kind->category == SKEIN_MOTION && !strcmp(field->name, "pins");
+                                                : kind->category == SKEIN_MOTION && (!strcmp(field->name, "pins") || !strcmp(field->name, "jump_times"));
     return field->type == SKEIN_FIELD_TEXT && selects;
 }
 

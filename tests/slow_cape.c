@@ -107,7 +107,69 @@ static void a_cape_comes_clean_and_stays_so(void **state) {
     }
 }
 
+/* The keys of the same stands, so that a motion leads cape and body: with a turn to the other side and back besides, and jumps
+ * of 10 m, each with half a turn. */
+static char *write_keys(void) {
+    enum { EACH = 4, LINE = 120 };
+    char *text = calloc(FRAMES / EACH + 20, LINE), *at = text;
+    for (int f = 0; f <= FRAMES + EACH; f += EACH) {
+        stand s = stand_at(f);
+        double side = 180 * (f / 200 % 2), yaw = s.yaw * 180 / PI + side + 150 * sin(f / 90.0) * (f > 60);
+        bool jumps = f % 200 == 0 && f; // just after the key before it
+        at += sprintf(at, "%s%.6f %.6f 0 %.6f 0 %.6f 0", f ? ", " : "", jumps ? (f - EACH) * dt + 1e-4 : f * dt, s.place[0], s.place[2], yaw);
+    }
+    return text;
+}
+
+/* The same where one motion says all, whatever share of it the cape feels. */
+static void a_motion_leads_both(void **state) {
+    (void)state;
+    static const double shares[] = {1, 0.5, 0};
+    char *keys = write_keys();
+    for (size_t i = 0; i < COUNT(shares); i++) {
+        skein_world *world = new_world("xpbd", 20);
+        skein_handle body;
+        add_gravity(world);
+        OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.5)), NULL));
+        OK(world, skein_collider_add(world, "capsule",
+                                     SKEIN_SETTINGS(SKEIN_TEXT("name", "wearer"), SKEIN_VEC3("from", 0, -0.6, 0), SKEIN_VEC3("to", 0, 0.6, 0),
+                                                    SKEIN_REAL("radius", radius), SKEIN_REAL("thickness", thickness)),
+                                     &body));
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "cape"), SKEIN_PAIR("grid", ROWS, COLUMNS), SKEIN_PAIR("size", 1.0, 0.8),
+                                                SKEIN_VEC3("position", 0, 0, 0.13), SKEIN_VEC3("rotation", 90, 0, 0), SKEIN_TEXT("pins", "top corners"),
+                                                SKEIN_REAL("density", 0.2)),
+                                 NULL));
+        OK(world, skein_motion_add(world, "keys", NULL,
+                                   SKEIN_SETTINGS(SKEIN_TEXT("keys", keys), SKEIN_TEXT("on", "cape"), SKEIN_TEXT("colliders", "wearer"),
+                                                  SKEIN_REAL("smooth", 0), SKEIN_REAL("inertia", shares[i]), SKEIN_REAL("jump", 2)),
+                                   NULL));
+        double least = 1, fastest = 0, farthest = 0;
+        for (int f = 0; f < FRAMES; f++) {
+            skein_pose pose;
+            steps(world, 1, dt);
+            OK(world, skein_collider_pose(world, body, &pose));
+            stand s = {{pose.position[0], pose.position[1], pose.position[2]}, 0};
+            double gap = least_gap(world, &s);
+            if (f < 60) continue;
+            if (!(gap > 0)) print_error("inertia %g, frame %d: %g m inside\n", shares[i], f, -gap);
+            assert_true(gap > 0);
+            least = fmin(least, gap);
+            for (uint32_t p = 0; p < ROWS * COLUMNS; p++) {
+                fastest = fmax(fastest, length3(velocity_of(world, p)));
+                farthest = fmax(farthest, length3(minus(position_of(world, p), (vec3){pose.position[0], pose.position[1], pose.position[2]})));
+            }
+        }
+        print_message("inertia %g: least gap %.3g mm of %g, fastest %.3g m/s, at most %.3g m away\n", shares[i], 1e3 * least, 1e3 * thickness,
+                      fastest, farthest);
+        assert_true(fastest < 80);
+        assert_true(farthest < 2); // nobody is left behind
+        skein_world_destroy(world);
+    }
+    free(keys);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_cape_comes_clean_and_stays_so)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_cape_comes_clean_and_stays_so), cmocka_unit_test(a_motion_leads_both)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,6 +30,7 @@ static const struct {
     {NULL, "mesh", "a file that scenes read; a program passes the mesh"},
     {"cache", "file", "a file that scenes read; a program passes the places"},
     {"cache", "fps", "of that file; a program says its interval"},
+    {"translate", "jump_turn", "it never turns"},
 };
 
 static const char *idle_reason(const skein_kind *kind, const skein_field *field) {
@@ -56,6 +57,7 @@ static const char *const texts[] = {
     "",
     "a",
     "b",
+    "wall",
     "0",
     "0 1",
     "box -9 -9 -9 0.1 9 9",
@@ -237,6 +239,8 @@ static skein_status add_motion(skein_world *world, const trial *t, uint32_t firs
     uint64_t seed = 17;
     for (int i = 0; i < SAMPLES * LED * 3; i++) (&places[0][0][0])[i] = random_between(&seed, -1, 1);
     const skein_track track = {led, &places[0][0][0], LED, SAMPLES, 0.0007};
+    OK(world, skein_collider_add(world, "sphere",
+                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "wall"), SKEIN_VEC3("centre", 0.3, 0.3, 0.3), SKEIN_REAL("radius", 0.4)), NULL));
     skein_status status = skein_motion_add(world, t->s->kind->name, NULL, settings, handle);
     return status == SKEIN_ERROR_VALUE ? skein_motion_add(world, t->s->kind->name, &track, settings, handle) : status;
 }

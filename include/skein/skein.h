@@ -660,6 +660,14 @@ skein_status skein_shape_of(const skein_world *world, skein_handle object, skein
  * against the dissipated energy. */
 skein_status skein_collider_teleport(skein_world *world, skein_handle collider);
 
+/* A body is elsewhere at once: each of its particles, pinned ones too, goes from x to turn x + shift, and its velocity turns. It
+ * is not flung, and nothing is met on the way. `turn` has the rows of a rotation, NULL is none; `shift` in metres, NULL is
+ * none. Places that pins were told, and those of motions, stay: a motion says itself what is a jump (`jump`, `jump_times`).
+ * A collider that jumps with it: set its place, then call skein_collider_teleport(). With part of the way that a character
+ * makes in a frame, called before each step, a program carries its clothes along, as a motion's `inertia` does. Fails with
+ * SKEIN_ERROR_VALUE for a turn that is none, and numbers that are not finite. */
+skein_status skein_body_teleport(skein_world *world, skein_handle body, const double turn[9], const double shift[3]);
+
 /* Two particles that a rule keeps at a distance: an edge or diagonal of a cloth, a `distance`. */
 typedef struct skein_spring {
     uint32_t particle[2];

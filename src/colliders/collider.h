@@ -7,6 +7,7 @@
 #define SK_COLLIDERS_COLLIDER_H
 
 #include "base/fields.h"
+#include "base/frame.h"
 #include "base/wide_types.h"
 #include "formula/parameters.h"
 #include "plan/op.h"
@@ -113,6 +114,8 @@ typedef struct sk_collider {
     const char *label;
     double warned_mass; /* that it was too light was said when its mass was this */
     sk_travel travel;
+    bool led;           /* it stands in a frame that moves: */
+    sk_frame frame;     /* where that puts it, after its own fields, at the end of the present step */
     sk_only only;       /* whom it meets, found when a plan is written */
 } sk_collider;
 
@@ -127,6 +130,9 @@ void sk_collider_note(sk_collider *collider, double time);
 bool sk_collider_changed(sk_collider *collider);
 /* A step begins: it sets out for where its fields have put it since the last one, or rests. */
 void sk_collider_begin(sk_collider *collider, double time, double dt);
+/* Before a step begins at `time`, the frame that it is led by: where it is now, what of the step's way is no way, but where
+ * the collider begins (it is carried), and where it is at the end. */
+void sk_collider_lead(sk_collider *collider, double time, const sk_frame *now, const sk_frame *carried, const sk_frame *end);
 /* It is where its fields say, at once. */
 void sk_collider_stop(sk_collider *collider);
 /* Whether it may stand elsewhere in every substep. */

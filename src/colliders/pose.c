@@ -1,7 +1,7 @@
 /* Where a collider stands, and how it moves there.
  *
  * Its own fields say where it is built (`place`, `turn`, `axis` of its type); `motion` moves it on from there as time
- * goes by. And when a field of its own has been set since the last step, it *travels*: through the next step it goes
+ * goes by, and all of that stands in a frame, where one leads it (world/frames.c). And when a field of its own has been set since the last step, it *travels*: through the next step it goes
  * from where it stood to where it is said to be, straight and turning evenly, so that it has a velocity for friction
  * and impacts and meets what is in its way. Where the fields lead is always the end: travel is what is still to go.
  *
@@ -29,6 +29,24 @@ static void turn_first(const sk_collider *collider, real rotation[9]) {
 static sk_vec3 turned(const real r[9], sk_vec3 n) {
     return sk_v3(r[0] * n.x + r[1] * n.y + r[2] * n.z, r[3] * n.x + r[4] * n.y + r[5] * n.z,
                  r[6] * n.x + r[7] * n.y + r[8] * n.z);
+}
+
+/* The same pose in a frame that has moved. */
+static void put_into_frame(const sk_frame *frame, sk_pose *pose, double position[3]) {
+    double place[3];
+    real turn[9], own[9];
+    sk_frame_place(frame, position, place);
+    memcpy(position, place, sizeof place);
+    memcpy(own, pose->rotation, sizeof own);
+    for (int i = 0; i < 9; i++) turn[i] = (real)frame->turn[i];
+    for (int i = 0; i < 9; i++) {
+        int r = i / 3 * 3, c = i % 3;
+        pose->rotation[i] = turn[r] * own[c] + turn[r + 1] * own[3 + c] + turn[r + 2] * own[6 + c];
+    }
+    pose->position = sk_v3_of(position);
+    pose->velocity = turned(turn, pose->velocity);
+    pose->spin = turned(turn, pose->spin);
+    pose->axis = turned(turn, pose->axis);
 }
 
 /* Its position as exact as it is given, too: velocities are differences. */
@@ -60,6 +78,7 @@ static sk_pose stand(const sk_collider *collider, double time, double position[3
         collider->type->axis(collider->params, unit);
         pose.axis = turned(pose.rotation, sk_v3_of(unit));
     }
+    if (collider->led) put_into_frame(&collider->frame, &pose, position);
     return pose;
 }
 
@@ -139,12 +158,32 @@ void sk_collider_begin(sk_collider *collider, double time, double dt) {
     }
     for (int i = 0; i < 9; i++) rotation[i] = (double)pose.rotation[i];
     travel->angle = 0;
-    if (collider->type->turn) travel->angle = sk_rotation_from_to(travel->rotation, rotation, travel->axis);
+    if (collider->type->turn || collider->led) travel->angle = sk_rotation_from_to(travel->rotation, rotation, travel->axis);
     else if (collider->type->axis)
         travel->angle = sk_rotation_of_directions(travel->direction, direction, travel->axis);
     travel->moving |= travel->angle > 0;
     travel->start = time;
     travel->dt = dt;
+}
+
+void sk_collider_lead(sk_collider *collider, double time, const sk_frame *now, const sk_frame *carried, const sk_frame *end) {
+    sk_travel *travel = &collider->travel;
+    collider->led = true;
+    collider->frame = *now;
+    sk_collider_note(collider, time);
+    collider->frame = *end;
+    if (!travel->noted) return; // it is not there
+    double place[3], turned_by[9];
+    sk_frame_place(carried, travel->position, place);
+    memcpy(travel->position, place, sizeof place);
+    sk_frame_turn(carried, travel->direction, place);
+    memcpy(travel->direction, place, sizeof place);
+    for (int i = 0; i < 9; i++) {
+        const double *a = carried->turn + i / 3 * 3, *b = travel->rotation + i % 3;
+        turned_by[i] = a[0] * b[0] + a[1] * b[3] + a[2] * b[6];
+    }
+    memcpy(travel->rotation, turned_by, sizeof turned_by);
+    travel->changed = travel->ever = true;
 }
 
 void sk_collider_stop(sk_collider *collider) {

@@ -1,5 +1,10 @@
-/* The fields that motions of all types have: name, whom they lead, and from when on. */
+/* The fields that motions of all types have: name, whom they lead, from when on, and what they are as moving frames. */
 #include "motions/motion.h"
+
+#include <ctype.h>
+
+#include "base/number.h"
+#include "base/status.h"
 
 const skein_field sk_motion_fields[] = {
     SK_TEXT(sk_motion_common, name, "name", "", "for paths and messages"),
@@ -9,5 +14,41 @@ const skein_field sk_motion_fields[] = {
         sk_motion_common, pins, "pins", "",
         "which of them: numbers, \"box x y z x y z\", \"sphere x y z r\"; if there is nothing, all that are pinned"),
     SK_REAL(sk_motion_common, start, "start", "s", 0, 0, SK_FAR, "when it begins"),
+    SK_TEXT(sk_motion_common, colliders, "colliders", "",
+            "the names of the colliders that it leads as it leads pins, commas between them"),
+    SK_REAL(sk_motion_common, inertia, "inertia", "", 1, 0, 1,
+            "the share of its velocity and acceleration that the body feels: 1 all of it; by the rest it is carried along, "
+            "with colliders; 0: as if it stood still"),
+    SK_REAL(sk_motion_common, jump, "jump", "m", SK_UNBOUNDED, 0, SK_UNBOUNDED,
+            "a step in which it goes farther is a jump: the body and the colliders are carried along, whatever inertia says"),
+    SK_REAL(sk_motion_common, jump_turn, "jump_turn", "deg", 180, 0, 180, "the same where it turns farther in a step"),
+    SK_TEXT(sk_motion_common, jump_times, "jump_times", "",
+            "steps that come to one of these times are jumps, too: seconds after the start, \"1.5 4\""),
 };
 const size_t sk_motion_field_count = sizeof sk_motion_fields / sizeof *sk_motion_fields;
+
+/* The next time of the text; NULL at its end, `*wrong` where there is something else. */
+static const char *next_time(const char *at, double *time, bool *wrong) {
+    while (isspace((unsigned char)*at) || *at == ',') at++;
+    if (!*at) return NULL;
+    size_t size = sk_number_read_signed(at, time);
+    *wrong = !size || !(*time >= 0) || !(*time <= SK_FAR) || (at[size] && at[size] != ',' && !isspace((unsigned char)at[size]));
+    return *wrong ? NULL : at + size;
+}
+
+bool sk_motion_jumps(const sk_motion_common *common, double from, double to) {
+    double time = 0, hair = 1e-6 * (to - from); // times of steps are sums
+    bool wrong = false;
+    for (const char *at = common->jump_times; (at = next_time(at, &time, &wrong));)
+        if (time > from + hair && time <= to + hair) return true;
+    return false;
+}
+
+skein_status sk_motion_check_jumps(const sk_motion_common *common, skein_error *error) {
+    double time = 0;
+    bool wrong = false;
+    for (const char *at = common->jump_times; at;) at = next_time(at, &time, &wrong);
+    if (!wrong) return SKEIN_OK;
+    return sk_fail(error, SKEIN_ERROR_VALUE, "jump_times", "'%.60s': expected times in seconds, 0 or more, such as \"1.5 4\"",
+                   common->jump_times);
+}

@@ -3,7 +3,10 @@
  * A *type* is one file: its fields, and `move`, which takes a place and makes it the one that the motion leads to at a
  * time. A pin's motions act one after the other, in the order of their making, and begin where the particle was built:
  * so its place follows from the time alone, and stepping again from an earlier time leads the same way. The world asks
- * for the places at the end of a step and leads the pins there (world/motions.c, world/pins.c). */
+ * for the places at the end of a step and leads the pins there (world/motions.c, world/pins.c).
+ *
+ * A motion is a moving frame, too: of a step, bodies that live in it are carried along by a share before anything else is
+ * done, and colliders that go with it stand where it puts them (world/frames.c). */
 #ifndef SK_MOTIONS_MOTION_H
 #define SK_MOTIONS_MOTION_H
 
@@ -16,6 +19,9 @@ typedef struct sk_motion_common {
     bool enabled;
     char *on, *pins;
     double start;
+    char *colliders;
+    double inertia, jump, jump_turn; /* see motion.c */
+    char *jump_times;
 } sk_motion_common;
 
 /* Places that were given with it: one of each particle for each sample. */
@@ -47,7 +53,13 @@ struct sk_motion {
     /* whom it leads, as far as they are pinned: found by the world */
     uint32_t *particle, *column; /* column: their places in the track */
     size_t count;
+    double middle[3];     /* the mean of their places as they were built */
+    bool knows_colliders; /* all that it names were there once */
 };
+
+/* Whether a jump is said to come after the time `from`, up to `to` (s after the start); and what is wrong with the text of such times. */
+bool sk_motion_jumps(const sk_motion_common *common, double from, double to);
+skein_status sk_motion_check_jumps(const sk_motion_common *common, skein_error *error);
 
 /* Fields of sk_motion_common. */
 extern const skein_field sk_motion_fields[];

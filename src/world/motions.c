@@ -138,10 +138,34 @@ static skein_status find_body(const skein_world *world, const sk_motion *motion,
     return SKEIN_OK;
 }
 
+/* Whether there are the colliders that a motion names. One that was there once may be removed. */
+static skein_status find_colliders(const skein_world *world, sk_motion *motion, skein_error *error) {
+    const char *names = motion->common->colliders;
+    for (size_t length; !motion->knows_colliders && *names; names += length) {
+        names += strspn(names, ", ");
+        length = strcspn(names, ",");
+        size_t end = length;
+        while (end && names[end - 1] == ' ') end--;
+        bool found = !end;
+        for (size_t i = 0; i < world->rules.colliders.count && !found; i++) {
+            const char *name = world->rules.colliders.data[i]->common->name;
+            found = strlen(name) == end && !strncmp(name, names, end);
+        }
+        if (!found)
+            return sk_fail(error, SKEIN_ERROR_NAME, motion->label, "there is no collider of the name '%.*s'", (int)end, names);
+    }
+    motion->knows_colliders = true;
+    return SKEIN_OK;
+}
+
 skein_status sk_world_check_motion(skein_world *world, const sk_motion *motion, skein_error *error) {
     const sk_body *body;
     const char *on = motion->common->on, *pins = motion->common->pins;
     skein_status status = find_body(world, motion, &body, error);
+    sk_motion asked = *motion;
+    asked.knows_colliders = false;
+    if (!status) status = sk_motion_check_jumps(motion->common, error);
+    if (!status) status = find_colliders(world, &asked, error);
     if (status || !pins[0] || (on[0] && !body)) return status;
     size_t first = body ? body->first_particle : 0, count = body ? body->particle_count : world->particles.count;
     bool *chosen = sk_allocate(&world->allocator, count * sizeof *chosen);
@@ -165,8 +189,15 @@ static skein_status find_particles(skein_world *world, sk_motion *motion, skein_
         status = sk_fail_memory(error, "the pins of a motion");
     sk_release(&world->allocator, chosen);
     size_t held = 0;
-    for (size_t i = 0; i < motion->count && !status; i++) held += world->particles.pinned[motion->particle[i]];
-    if (!status && !held && count && motion->common->enabled)
+    memset(motion->middle, 0, sizeof motion->middle);
+    for (size_t i = 0; i < motion->count && !status; i++) {
+        sk_vec3 built = world->particles.built[motion->particle[i]];
+        const double at[3] = {(double)built.x, (double)built.y, (double)built.z};
+        for (int k = 0; k < 3; k++) motion->middle[k] += at[k] / (double)motion->count;
+        held += world->particles.pinned[motion->particle[i]];
+    }
+    if (!status) status = find_colliders(world, motion, error);
+    if (!status && !held && count && motion->common->enabled && !motion->common->colliders[0])
         sk_world_log(world, SKEIN_LOG_WARNING, "%s: none of the particles that it is to lead is pinned: pin them",
                      motion->label);
     return status;
@@ -185,7 +216,7 @@ skein_status sk_world_find_pins(skein_world *world, skein_error *error) {
     if (!world->led_at) return sk_fail_memory(error, "the pins of motions");
     for (size_t i = 0; i < places; i++) world->led_at[i] = SK_NOBODY;
     world->motions_stale = false;
-    return SKEIN_OK;
+    return sk_world_place_colliders(world) ? SKEIN_OK : sk_fail_memory(error, "frames of motions");
 }
 
 /* ---- a step ---- */

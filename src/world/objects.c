@@ -210,7 +210,9 @@ skein_status sk_world_add_motion(skein_world *world, const sk_motion_type *type,
     skein_status status = sk_world_check_track(world, type, track);
     if (!status) status = make_object(world, &type->kind, type->making, settings, &object, error);
     if (status) return status;
-    if (type->check && (status = type->check(object->params, error))) {
+    status = sk_motion_check_jumps(&object->common.motion, error);
+    if (!status && type->check) status = type->check(object->params, error);
+    if (status) {
         unmake_object(world, object);
         return status;
     }

@@ -6,7 +6,9 @@
  *
  * Motions (world/motions.c) say places by the time; what a program says comes after them and counts.
  *
- *   places wait --set out--> V = (place - X)/dt --the plan--> X --arrive--> X = place, V = 0 */
+ *   places wait --set out--> V = (place - X)/dt --the plan--> X --arrive--> X = place, V = 0
+ *
+ * Of the way that a moving frame makes, pins are carried along with all others first (world/frames.c). */
 #include <math.h>
 #include <string.h>
 
@@ -85,8 +87,10 @@ static bool is_led(const skein_world *world, const sk_pin *pin) {
 
 skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error) {
     const sk_particles *all = &world->particles;
+    skein_status status = sk_world_carry(world, dt, error);
+    if (status) return status;
     if (!sk_world_lead(world, world->time + dt)) return sk_fail_memory(error, "places for pins");
-    skein_status status = world->led.count ? sk_world_touch(world) : SKEIN_OK;
+    status = world->led.count ? sk_world_touch(world) : SKEIN_OK;
     for (size_t i = 0; i < world->led.count && !status; i++)
         if (is_led(world, &world->led.data[i])) status = set_out(world, &world->led.data[i], dt, error);
     if (status) {
@@ -105,6 +109,7 @@ skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error)
 
 skein_status sk_world_arrive(skein_world *world, bool done) {
     const sk_particles *all = &world->particles;
+    if (done && !world->device) sk_world_uncarry_previous(world);
     if (!world->led.count) return SKEIN_OK;
     skein_status status = sk_world_touch(world);
     for (size_t i = 0; i < world->led.count && !status; i++) {

@@ -474,6 +474,7 @@ skein_status sk_snapshot_read(skein_world *world, const void *bytes, size_t size
     struct sk_recording *recording = world->recording; // which hears of it once, as a whole
     world->recording = NULL;
     status = walk(world, bytes, info.size, set, true, error);
+    sk_world_place_colliders(world);
     world->recording = recording;
     sk_record_state(world);
     return status;

@@ -286,6 +286,7 @@ skein_status skein_world_reset(skein_world *world) {
     world->pins.count = 0;
     stop_colliders(world);
     world->time = 0;
+    sk_world_place_colliders(world);
     world->steps = world->substeps = world->unsolved = world->solver_failures = 0;
     sk_record_reset(world);
     return SKEIN_OK;
@@ -302,6 +303,7 @@ skein_status skein_world_time_set(skein_world *world, double seconds) {
                        seconds);
     stop_colliders(world);
     world->time = seconds;
+    sk_world_place_colliders(world);
     sk_record_clock(world, seconds);
     return SKEIN_OK;
 }

@@ -106,6 +106,18 @@ struct sk_device {
     bool ahead, behind;
 };
 
+/* A motion as a frame, in a step: where it puts what was built (world/frames.c). */
+typedef struct sk_leg {
+    sk_frame start, carried, end;
+    bool carries, jumps;
+} sk_leg;
+
+/* Particles that were carried along before a step. */
+typedef struct sk_carried {
+    size_t first, count;
+    sk_frame way;
+} sk_carried;
+
 /* A pinned particle and the place that it is to have at the end of the step. */
 typedef struct sk_pin {
     uint32_t particle;
@@ -157,6 +169,14 @@ struct skein_world {
         sk_motion **data;
         size_t count, capacity;
     } motions;
+    struct {
+        sk_leg *data;
+        size_t count, capacity;
+    } legs; /* of each motion, in the present step */
+    struct {
+        sk_carried *data;
+        size_t count, capacity;
+    } carried; /* in the present step, but by jumps */
     bool motions_stale; /* whom they lead is to be found anew */
     uint32_t *led_at;   /* of each particle its place in `led`, while motions are asked */
     double time;
@@ -301,6 +321,12 @@ void sk_motion_release(sk_motion *motion, sk_allocator *allocator);
 skein_status sk_world_check_motion(skein_world *world, const sk_motion *motion, skein_error *error);
 /* Finds whom motions lead, if anything has changed. */
 skein_status sk_world_find_pins(skein_world *world, skein_error *error);
+/* Before a step: what lives in moving frames is carried along, and colliders that go with them are on their way. */
+skein_status sk_world_carry(skein_world *world, double dt, skein_error *error);
+/* After it: positions before the step are where they were before that. */
+void sk_world_uncarry_previous(skein_world *world);
+/* Where time, fields or motions have changed: colliders stand where their frames put them. False: no memory. */
+bool sk_world_place_colliders(skein_world *world);
 /* Lists what is to be led to its place at `time`. False when there is no memory. */
 bool sk_world_lead(skein_world *world, double time);
 /* Before a step of `dt` runs: all that is led is on its way, and whoever follows what moves is told (world/pins.c). */

@@ -162,6 +162,7 @@ CALLS = {
     "skein_collider_pose": (status, [world, Handle, c.POINTER(Pose)]),
     "skein_collider_probe": (status, [world, Handle, size, array, array, array]),
     "skein_collider_teleport": (status, [world, Handle]),
+    "skein_body_teleport": (status, [world, Handle, array, array]),
     "skein_constraint_count": (status, [world, Handle, c.POINTER(size)]),
     "skein_constraint_evaluate": (status, [world, Handle, size, c.POINTER(ConstraintValue), array, array, size]),
     "skein_contacts_copy": (status, [world, c.POINTER(Contact), size, c.POINTER(size)]),

@@ -170,6 +170,13 @@ class Body(Object):
         corners = np.ctypeslib.as_array(surface.face_vertices, (surface.face_vertex_count,)).copy()
         return np.split(corners, np.cumsum(sizes)[:-1])
 
+    def teleport(self, shift=(0, 0, 0), turn=None):
+        """It is elsewhere at once: particles go from x to turn x + shift, velocities turn, and nothing is flung."""
+        shift = np.ascontiguousarray(shift, np.float64).reshape(3)
+        turn = None if turn is None else np.ascontiguousarray(turn, np.float64).reshape(9)
+        self._world._call(lib.skein_body_teleport, self._handle, turn.ctypes.data if turn is not None else None,
+                          shift.ctypes.data, place=self._place())
+
     def elements(self, what="edges"):
         """Sets of its particles that constraints can be made on: "edges", "triangles", "hinges" or "tetrahedra"."""
         words = {"edges": 2, "triangles": 3, "hinges": 4, "tetrahedra": 4}
