@@ -36,7 +36,7 @@ static void load_ways(sk_touch *touch, const sk_run *run, const sk_op *op) {
         sk_vec3 way = sk_sub(sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v])), common);
         real length = sk_length(way);
         if (!(length < (real)1e6)) way = (sk_vec3){0, 0, 0}, length = 0; // blown up: it meets nobody
-        touch->way[v] = touch->step[v] = (sk_vec4){way.x, way.y, way.z, length};
+        touch->way[v] = (sk_vec4){way.x, way.y, way.z, length};
         touch->share[v] = touch->next_share[v] = 1;
     }
 }
@@ -161,7 +161,6 @@ static bool take_shares(sk_touch *touch) {
         if (!touch->lowered[v]) continue;
         real share = touch->share[v] = touch->next_share[v];
         sk_vec3 step = sk_scale(share, sk_xyz(touch->way[v])), to = sk_add(sk_add(sk_xyz(touch->p[v]), common), step);
-        touch->step[v] = (sk_vec4){step.x, step.y, step.z, 0};
         if (touch->wild[v]) continue;
         sk_vec3 off = sk_sub(sk_sub(to, touch->shift[1]), sk_expected(&touch->course[v], touch->now + 1));
         any |= touch->lost[v] = sk_dot(off, off) > touch->course[v].reach * touch->course[v].reach;
@@ -173,23 +172,55 @@ typedef struct closing {
     const sk_touch *touch;
     const sk_pairs *pairs;
     int sort;
-    real least;
+    sk_closing_values values;
 } closing;
 
 static void find_closing(void *data, size_t begin, size_t end) {
     const closing *job = data;
     sk_pairs some = sk_pairs_between(job->pairs, begin, end);
-    sk_closing[job->sort][job->touch->isa](job->touch->p, job->touch->step, job->least, &some);
+    sk_closing[job->sort][job->touch->isa](job->touch->p, job->touch->way, &job->values, &some);
+}
+
+static void list_those_that_may(sk_pair_list *list, const sk_pairs *pairs, uint32_t late) {
+    uint32_t *entry = list->data;
+    size_t n = list->count;
+    for (size_t k = 0; k < pairs->count; k += sizeof(uint64_t)) { // up to the end of a block
+        uint64_t any;
+        memcpy(&any, pairs->closes + k, sizeof any);
+        for (size_t l = k; any && l < k + sizeof any && l < pairs->count; l++)
+            if (pairs->closes[l] && pairs->thickness[l] > 0) entry[n++] = 2 * (uint32_t)l + late;
+    }
+    list->count = n;
+}
+
+/* Lists the pairs that may close on these ways: none of the others does, whatever shares are left. */
+static bool find_those_that_may(sk_touch *touch, sk_allocator *allocator, real least) {
+    const real known = (real)0.01; // thicknesses: nearest points of edges that are all but parallel
+    real longest = 0;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) longest = sk_max(longest, touch->way[v].w);
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
+        sk_pair_list *list = &touch->may_close[sort];
+        sk_pairs *pairs[] = {&touch->kept[sort], &touch->late[sort]};
+        if (!SK_RESERVE(allocator, list, pairs[0]->count + pairs[1]->count + 1)) return false;
+        list->count = 0;
+        for (uint32_t late = 0; late < 2; late++) {
+            closing job = {touch, pairs[late], sort, {least, known * touch->thickness, longest}};
+            sk_parallel_for(touch->tasks, 0, pairs[late]->count, find_closing, &job);
+            list_those_that_may(list, pairs[late], late);
+        }
+    }
+    return true;
 }
 
 /* The first round looks at all pairs, the others at those with a corner whose share the round before has lowered. */
-static bool settle_pairs(sk_touch *touch, sk_pairs *pairs, int sort, bool first, real least) {
+static bool settle_pairs(sk_touch *touch, int sort, bool first, real least) {
     const uint8_t *lowered = touch->lowered;
+    const sk_pair_list *list = &touch->may_close[sort];
     bool any = false;
-    closing job = {touch, pairs, sort, least};
-    if (first) sk_parallel_for(touch->tasks, 0, pairs->count, find_closing, &job);
-    for (size_t k = 0; k < pairs->count; k++) {
-        bool looks = first ? pairs->closes[k]
+    for (size_t i = 0; i < list->count; i++) {
+        sk_pairs *pairs = list->data[i] & 1 ? &touch->late[sort] : &touch->kept[sort];
+        size_t k = list->data[i] / 2;
+        bool looks = first ? pairs->closes[k] & SK_CLOSES
                            : !pairs->settled[k] && (lowered[pairs->corner[0][k]] | lowered[pairs->corner[1][k]] |
                                                     lowered[pairs->corner[2][k]] | lowered[pairs->corner[3][k]]);
         if (looks) any |= settle_pair(touch, pairs, sort, k, least);
@@ -205,14 +236,12 @@ static void unsettle(sk_pairs *pairs) {
 static bool find_shares(sk_touch *touch, sk_allocator *allocator, real least) {
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
         unsettle(&touch->kept[sort]), unsettle(&touch->late[sort]);
+    if (!find_those_that_may(touch, allocator, least)) return false;
     for (bool first = true;; first = false) {
         bool lowered = false;
-        for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
-            lowered |= settle_pairs(touch, &touch->kept[sort], sort, first, least);
-            lowered |= settle_pairs(touch, &touch->late[sort], sort, first, least);
-        }
+        for (int sort = 0; sort < SK_PAIR_SORTS; sort++) lowered |= settle_pairs(touch, sort, first, least);
         if (!lowered) return true;
-        if (take_shares(touch) && !renew(touch, allocator)) return false;
+        if (take_shares(touch) && !(renew(touch, allocator) && find_those_that_may(touch, allocator, least))) return false;
     }
 }
 

@@ -107,16 +107,18 @@ static const sk_pair_place *list_late(sk_touch *touch, sk_allocator *allocator, 
 
 bool sk_touch_find_near(sk_touch *touch, sk_allocator *allocator, int sort) {
     const sk_pairs *kept = &touch->kept[sort], *late = &touch->late[sort];
-    sk_pairs *near = &touch->near[sort];
+    sk_pair_list *near = &touch->near[sort];
     near->count = 0;
-    size_t count, i = 0;
+    size_t count, i = 0, n = 0;
     const sk_pair_place *place = list_late(touch, allocator, late, &count);
-    if (!place || !sk_pairs_reserve(near, allocator, kept->count + count)) return false;
+    if (!place || !SK_RESERVE(allocator, near, kept->count + count + 1)) return false;
+    uint32_t *entry = near->data;
     for (size_t k = 0; k < kept->count; k++) {
         if (!is_near(kept, k)) continue;
-        while (i < count && place[i].key < kept->key[k]) copy_all(near, late, place[i++].at);
-        copy_all(near, kept, k);
+        while (i < count && place[i].key < kept->key[k]) entry[n++] = 2 * place[i++].at + 1;
+        entry[n++] = 2 * (uint32_t)k;
     }
-    while (i < count) copy_all(near, late, place[i++].at);
+    while (i < count) entry[n++] = 2 * place[i++].at + 1;
+    near->count = n;
     return true;
 }

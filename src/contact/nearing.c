@@ -1,4 +1,6 @@
 /* Which pairs may come near while their vertices go on, and which lose their gap in a substep, a vector of them at a time. */
+#include <string.h>
+
 #include "base/kernels.h"
 #include "contact/touch.h"
 #define SK_UNIT nearing
@@ -33,40 +35,59 @@ SK_INLINE void note_bits(sk_pairs *pairs, size_t k, uint32_t bits) {
     for (size_t l = 0; l < SK_PART; l++) pairs->closes[k + l] = (uint8_t)(bits >> l & 1);
 }
 
-/* Where the corners of a part's pairs are along their normals, and after the step. */
-SK_INLINE void along(const sk_vec4 *x, const sk_vec4 *step, const sk_pairs *pairs, size_t k, sk_wide at[4],
-                     sk_wide after[4]) {
+/* How far both features may go towards each other. */
+SK_INLINE sk_wide ways_of(const sk_wide4 way[4], int first) {
+    sk_wide longest[2] = {sk_splat(0), sk_splat(0)};
+    for (int c = 0; c < 4; c++) longest[c >= first] = most_of(longest[c >= first], way[c].w);
+    return longest[0] + longest[1];
+}
+
+/* What is no nearer than this does not close, whatever shares of their ways its corners go. */
+SK_INLINE sk_wide closing_distance(sk_wide ways, const sk_closing_values *values) {
+    return sk_splat((real)1.13) * ways + sk_splat(values->least + values->rounding);
+}
+
+/* Whether pairs lose their gap along their normals: a little more than those that do, which are looked at one by one. */
+SK_INLINE uint32_t closing_bits(const sk_vec4 *x, const sk_wide4 way[4], const sk_pairs *pairs, size_t k, int first,
+                                real least) {
     sk_wide3 n = {*part_of(pairs->normal[0], k), *part_of(pairs->normal[1], k), *part_of(pairs->normal[2], k)};
     sk_wide4 origin = sk_gather(x, pairs->corner[0] + k);
+    sk_wide low = sk_splat(0), high = low, low_after = low, high_after = low;
     for (int c = 0; c < 4; c++) {
-        sk_wide4 way = sk_gather(step, pairs->corner[c] + k);
-        at[c] = c ? sk_dot_wide(n, between(sk_gather(x, pairs->corner[c] + k), origin)) : sk_splat(0);
-        after[c] = at[c] + sk_dot_wide(n, (sk_wide3){way.x, way.y, way.z});
+        sk_wide at = c ? sk_dot_wide(n, between(sk_gather(x, pairs->corner[c] + k), origin)) : sk_splat(0);
+        sk_wide after = at + sk_dot_wide(n, (sk_wide3){way[c].x, way[c].y, way[c].z});
+        if (c == 0) low = at, low_after = after;
+        else if (c < first) low = least_of(low, at), low_after = least_of(low_after, after);
+        else if (c == first) high = at, high_after = after;
+        else high = most_of(high, at), high_after = most_of(high_after, after);
     }
-}
-
-/* A little more than those that do: they are looked at again, one by one. */
-SK_INLINE void note_closing(sk_pairs *pairs, size_t k, sk_wide before, sk_wide after, real least) {
+    sk_wide before = low - high, after = low_after - high_after;
     sk_wide room = at_least(sk_splat((real)0.99 * (1 - SK_LEFT_OVER)) * (before - sk_splat(least)), 0);
-    note_bits(pairs, k, sk_more_bits(before - room, after));
+    return sk_more_bits(before - room, after);
 }
 
-void SK_KERNEL(corners_closing)(const sk_vec4 *x, const sk_vec4 *step, real least, sk_pairs *pairs) {
+SK_INLINE void closing(const sk_vec4 *x, const sk_vec4 *way, const sk_closing_values *values, sk_pairs *pairs, int first) {
+    const sk_wide far = closing_distance(sk_splat(2 * values->longest), values);
     for (size_t k = 0; k < pairs->count; k += SK_PART) {
-        sk_wide at[4], after[4];
-        along(x, step, pairs, k, at, after);
-        note_closing(pairs, k, at[0] - most_of(at[1], most_of(at[2], at[3])),
-                     after[0] - most_of(after[1], most_of(after[2], after[3])), least);
+        memset(pairs->closes + k, 0, SK_PART);
+        sk_wide distance = *part_of(pairs->distance, k);
+        if (!sk_more_bits(far, distance)) continue;
+        sk_wide4 ways[4];
+        for (int c = 0; c < 4; c++) ways[c] = sk_gather(way, pairs->corner[c] + k);
+        uint32_t may = sk_more_bits(closing_distance(ways_of(ways, first), values), distance);
+        if (!may) continue;
+        uint32_t closes = closing_bits(x, ways, pairs, k, first, values->least);
+        for (size_t l = 0; l < SK_PART; l++)
+            pairs->closes[k + l] = (uint8_t)((may >> l & 1) * (SK_MAY_CLOSE | (closes >> l & 1)));
     }
 }
 
-void SK_KERNEL(edges_closing)(const sk_vec4 *x, const sk_vec4 *step, real least, sk_pairs *pairs) {
-    for (size_t k = 0; k < pairs->count; k += SK_PART) {
-        sk_wide at[4], after[4];
-        along(x, step, pairs, k, at, after);
-        note_closing(pairs, k, least_of(at[0], at[1]) - most_of(at[2], at[3]),
-                     least_of(after[0], after[1]) - most_of(after[2], after[3]), least);
-    }
+void SK_KERNEL(corners_closing)(const sk_vec4 *x, const sk_vec4 *way, const sk_closing_values *values, sk_pairs *pairs) {
+    closing(x, way, values, pairs, 1);
+}
+
+void SK_KERNEL(edges_closing)(const sk_vec4 *x, const sk_vec4 *way, const sk_closing_values *values, sk_pairs *pairs) {
+    closing(x, way, values, pairs, 2);
 }
 
 /* The pair's normal of where it begins keeps it apart while its vertices go on straight, where it does so in the end; or,

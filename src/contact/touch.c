@@ -124,11 +124,23 @@ static void begin_frame(sk_touch *touch, const sk_run *run, const sk_op *op) {
     touch->frame_step = (sk_vec3){(real)(share * sum[0]), (real)(share * sum[1]), (real)(share * sum[2])};
 }
 
+/* Whether a vertex, since a course was last set for it, has rather stayed in the frame than gone as it then did. */
+static bool trembles(const sk_touch *touch, size_t v) {
+    const sk_seen *seen = &touch->seen[v];
+    real time = (real)(touch->clock - seen->clock);
+    if (!touch->remembers || !(time > 0)) return false;
+    sk_vec3 gone = sk_sub(sk_xyz(touch->p[v]), seen->at);
+    sk_vec3 stayed = sk_sub(gone, sk_scale(time, touch->frame_step)), went = sk_sub(gone, sk_scale(time, seen->step));
+    return sk_dot(stayed, stayed) <= sk_dot(went, went);
+}
+
 /* Courses of lost vertices, as their velocities are. */
 static void set_courses(sk_touch *touch, const sk_run *run, const sk_op *op, real time) {
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         if (!touch->lost[v]) continue;
-        sk_vec3 step = sk_sub(step_of(touch, run, op, v), touch->frame_step);
+        sk_vec3 goes = step_of(touch, run, op, v), step = sk_sub(goes, touch->frame_step);
+        if (trembles(touch, v)) step = (sk_vec3){0, 0, 0};
+        touch->seen[v] = (sk_seen){sk_xyz(touch->p[v]), goes, touch->clock};
         touch->course[v] = course_from(touch, sk_sub(sk_xyz(touch->p[v]), touch->shift[0]), step, time);
         sk_touch_put_course(touch, v, false);
     }
@@ -166,6 +178,7 @@ static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool
     }
     if (all || lost) {
         set_courses(touch, run, op, all ? 0 : touch->now);
+        touch->remembers |= all;
         return sk_touch_renew(touch, run->allocator, all ? SK_SEARCH_ALL : SK_SEARCH_LOST);
     }
     look_at_all(touch);
@@ -178,7 +191,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     real thickness = (real)params_of(op)->thickness;
     if (!touch || !touch->skin.vertex_count) return;
     bool good = (run->iteration && touch->alone) || find_slots(touch, run);
-    touch->now += 1;
+    touch->now += 1, touch->clock++;
     bool all = !touch->found || touch->thickness < thickness || touch->thickness > thickness ||
                touch->now + 1 > touch->until;
     touch->thickness = thickness;
@@ -189,6 +202,9 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     touch->followed = false;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->near[sort].count = 0;
     for (int sort = 0; sort < SK_PAIR_SORTS && good; sort++) good = sk_touch_find_near(touch, run->allocator, sort);
+    if (run->near_at < run->time || run->near_at > run->time) run->near = false; // of this substep nobody has said yet
+    run->near_at = run->time;
+    run->near |= touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count > 0;
     run->no_memory |= !good;
 }
 
@@ -234,8 +250,10 @@ static void push(sk_run *run, const sk_op *op, size_t from, size_t end) {
     }
     const real gain = (real)(60 * op->dt * params->thickness); // a thickness in a sixtieth of a second
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
-        for (size_t k = 0; k < touch->near[sort].count; k++)
-            push_pair(touch, &touch->near[sort], sort, k, gain, (real)params->friction);
+        for (size_t i = 0; i < touch->near[sort].count; i++) {
+            uint32_t entry = touch->near[sort].data[i];
+            push_pair(touch, sk_pairs_of(touch, sort, entry), sort, entry / 2, gain, (real)params->friction);
+        }
     const real rate = (real)(1 / op->dt);
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         if (!(touch->q[v].w > 0)) continue;
@@ -259,8 +277,8 @@ static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *cou
     int n = 0;
 #define LIST(name, number) \
     array[n] = (void **)&touch->name, size[n] = sizeof *touch->name, count[n++] = number
-    LIST(slot, vertices), LIST(p, vertices), LIST(q, vertices), LIST(way, vertices), LIST(step, vertices);
-    LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(inverse, vertices);
+    LIST(slot, vertices), LIST(p, vertices), LIST(q, vertices), LIST(way, vertices);
+    LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(seen, vertices), LIST(inverse, vertices);
     LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(lost, vertices), LIST(wild, vertices);
     LIST(corner_box, vertices), LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles);
     LIST(hot_edge, edges), LIST(hot_triangle, triangles), LIST(leaf_box, leaves), LIST(hot_box, leaves);
@@ -298,7 +316,8 @@ static void release(sk_force *force, sk_allocator *allocator) {
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
         sk_pairs_release(&touch->kept[sort], allocator);
         sk_pairs_release(&touch->late[sort], allocator);
-        sk_pairs_release(&touch->near[sort], allocator);
+        sk_release(allocator, touch->near[sort].data);
+        sk_release(allocator, touch->may_close[sort].data);
     }
     sk_pairs_release(&touch->fresh, allocator);
     sk_release(allocator, touch->order.data);
@@ -326,7 +345,7 @@ static bool prepare(sk_force *force, sk_allocator *allocator, const sk_particles
     if (touch->p && touch->shape == shape) return true;
     release_vertices(touch, allocator);
     touch->shape = shape;
-    touch->found = touch->boxed = touch->followed = false;
+    touch->found = touch->boxed = touch->followed = touch->remembers = false;
     touch->slots = touch->wild_count = 0;
     if (sk_skin_make(&touch->skin, allocator, particles, &force->only, parts) && make_vertices(touch, allocator))
         return true;

@@ -47,15 +47,21 @@ typedef struct sk_pairs {
     uint64_t *key; /* the order of pairs: both leaves, and which of their features */
     real *distance, *thickness, *normal[3], *share[2];
     uint8_t *settled; /* of a bound: planes divide it, */
-    uint8_t *closes;  /* or have to */
+    uint8_t *closes;  /* or have to; what kernels find out */
     size_t count, capacity;
 } sk_pairs;
 
 /* Nearest points of all pairs, from the places x of their corners. */
 typedef void sk_closest_kernel(const sk_vec4 *x, sk_pairs *pairs);
 
-/* Finds out which pairs, of places x before a substep, lose their gap by these steps: `closes`. */
-typedef void sk_closing_kernel(const sk_vec4 *x, const sk_vec4 *step, real least, sk_pairs *pairs);
+/* Finds out which pairs, of places x before a substep, might lose their gap by any shares of these ways (w: their length)
+ * and which do by all of them: `closes`. Pairs need their distance and normal. */
+enum { SK_CLOSES = 1, SK_MAY_CLOSE = 2 };
+typedef struct sk_closing_values {
+    real least, rounding; /* m: what is less does not close at all; how well a distance is known */
+    real longest;         /* of all ways, m */
+} sk_closing_values;
+typedef void sk_closing_kernel(const sk_vec4 *x, const sk_vec4 *way, const sk_closing_values *values, sk_pairs *pairs);
 
 /* Finds out which pairs may come near or close on their vertices' ways, from x (w: their reach) to `end`: `closes`. */
 typedef struct sk_nearing_values {
@@ -86,6 +92,12 @@ typedef struct sk_tree {
 /* Lists the slots of the lowest level whose boxes may meet this one at some time. */
 typedef size_t sk_tree_kernel(const sk_tree *tree, const sk_box *box, uint32_t *slot);
 
+/* Some of the pairs that are kept: twice where a pair is, and one more if it is a late one. */
+typedef struct sk_pair_list {
+    uint32_t *data;
+    size_t count, capacity;
+} sk_pair_list;
+
 /* A pair's key, and where it is. */
 typedef struct sk_pair_place {
     uint64_t key;
@@ -99,6 +111,12 @@ typedef struct sk_course {
     sk_vec3 from, step;
     real reach; /* how far from there it may be, m */
 } sk_course;
+
+/* Where a vertex was when it last got a course, how far it then went in a substep, and which substep that was. */
+typedef struct sk_seen {
+    sk_vec3 at, step;
+    uint64_t clock;
+} sk_seen;
 
 /* Courses of sixteen slots; the square of a reach is without end where no vertex has a course. */
 typedef struct sk_course_block {
@@ -128,6 +146,7 @@ typedef struct sk_touch {
     bool alone;      /* no other rule meets */
     bool found;      /* whether the pairs are of this skin */
     bool followed;   /* the last bound has seen where all went */
+    bool remembers;  /* all have been seen */
     bool held;       /* a vertex is pinned */
     bool untouched;  /* hardly any pairs are kept: courses may be wide */
     bool loaded;     /* p and inverse are of this substep */
@@ -135,6 +154,7 @@ typedef struct sk_touch {
     bool still;      /* they are those of a substep's ways, all of them */
     real thickness;  /* that pairs were found for, m */
     real now, until; /* substeps since the last search for all, and how long that holds */
+    uint64_t clock;  /* substeps in all */
     size_t lost_since; /* how many have been lost since then, each as often as it was */
     sk_vec3 drift;   /* how far all went in a substep then, in the mean; */
     sk_vec3 common;  /* and in this one */
@@ -151,9 +171,9 @@ typedef struct sk_touch {
     sk_vec4 *p;    /* the place before the substep */
     sk_vec4 *q;    /* after it */
     sk_vec4 *way;  /* from p to q, less what all go together; w: its length */
-    sk_vec4 *step; /* from p to where it may go */
     sk_vec4 *at, *in_the_end; /* of a search: where it is expected now, and when that ends */
     sk_course *course;
+    sk_seen *seen;
     real *inverse; /* mass, 1/kg */
     real *share, *next_share; /* of its way that it may go */
     uint8_t *lowered; /* its share was, in the last round */
@@ -178,7 +198,9 @@ typedef struct sk_touch {
     int part_count;
     sk_pairs kept[SK_PAIR_SORTS]; /* of the last search for all, in their order; */
     sk_pairs late[SK_PAIR_SORTS]; /* and of searches since then, one after the other */
-    sk_pairs near[SK_PAIR_SORTS], fresh;
+    sk_pairs fresh;
+    sk_pair_list near[SK_PAIR_SORTS];       /* in the order of leaves; */
+    sk_pair_list may_close[SK_PAIR_SORTS];  /* and in none */
     struct {
         sk_pair_place *data;
         size_t count, capacity;
@@ -222,8 +244,12 @@ static inline void sk_pairs_copy(sk_pairs *to, const sk_pairs *from, size_t k) {
 
 /* Takes fresh pairs over: instead of all that are kept, or of those with a vertex that was looked for. */
 bool sk_touch_keep(sk_touch *touch, sk_allocator *allocator, int sort, bool all);
-/* Copies those that are near, in the order of leaves. */
+/* Lists those that are near, in the order of leaves. */
 bool sk_touch_find_near(sk_touch *touch, sk_allocator *allocator, int sort);
+/* The pairs that an entry of a list is about, and where it is there. */
+static inline const sk_pairs *sk_pairs_of(const sk_touch *touch, int sort, uint32_t entry) {
+    return entry & 1 ? &touch->late[sort] : &touch->kept[sort];
+}
 static inline size_t sk_pairs_kept(const sk_touch *touch) {
     size_t count = 0;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) count += touch->kept[sort].count + touch->late[sort].count;

@@ -13,7 +13,7 @@ static bool keeps_multiplier(const sk_batch *batch, int passes) {
 /* A sweep's op, in each `every`-th substep; projections share their stiffness among `coefficient` ops. */
 static void add_sweep(sk_plan_builder *builder, const sk_sweep *sweep, sk_half half, sk_op_kind kind,
                       const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second, double coefficient,
-                      size_t every) {
+                      size_t every, sk_op_while during) {
     const sk_kernels *walk = sweep->strips ? &kernels->strips : &kernels->groups;
     sk_add_op(builder, (sk_op){.kind = kind,
                                .order = SK_ORDERED,
@@ -26,6 +26,7 @@ static void add_sweep(sk_plan_builder *builder, const sk_sweep *sweep, sk_half h
                                .walk = sweep->walk,
                                .half = half,
                                .every = every,
+                               .during = during,
                                .end = sk_rows_of_sweep(sweep, sweep->walk.reach)});
 }
 
@@ -33,7 +34,7 @@ static void add_sweep(sk_plan_builder *builder, const sk_sweep *sweep, sk_half h
 static void add_sweeps(sk_plan_builder *builder, const sk_batch *batch, size_t first, sk_op_kind kind,
                        const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second) {
     for (size_t i = first; i < batch->sweep_count; i++)
-        add_sweep(builder, &batch->sweeps[i], SK_WHOLE, kind, kernels, dst, second, 1, 0);
+        add_sweep(builder, &batch->sweeps[i], SK_WHOLE, kind, kernels, dst, second, 1, 0, SK_ALWAYS);
 }
 
 static bool has_bound(const sk_batch *batch) {
@@ -64,9 +65,20 @@ static void write_multipliers(sk_plan_builder *builder, int passes) {
     }
 }
 
-/* In which substeps what may wait is taken: in every second one, if they come in pairs. */
+/* In which substeps what may wait is taken: in every second one, if they come in pairs. Where surfaces meet, only while
+ * none is near another: a heap, which what it lies on holds where it is, went to and fro between substeps with it and
+ * without it for ever, at 3 cm/s. */
 static size_t seldom_of(const sk_plan_builder *builder) {
     return builder->iterations % 2 == 0 ? 2 : 0;
+}
+
+/* Which variants of what may wait are written. */
+static int variants_of(const sk_plan_builder *builder, size_t every) {
+    return every && sk_writes_meetings(builder) ? 2 : 1;
+}
+
+static sk_op_while during_of(int variants, int variant) {
+    return variants == 1 ? SK_ALWAYS : variant ? SK_WHILE_NEAR : SK_WHILE_APART;
 }
 
 static sk_op limit_op(const sk_plan_builder *builder, const sk_limit *limit, sk_vector velocity, size_t every) {
@@ -82,6 +94,15 @@ static sk_op limit_op(const sk_plan_builder *builder, const sk_limit *limit, sk_
                    .end = limit->first_slot + limit->slot_count};
 }
 
+static void add_limit(sk_plan_builder *builder, const sk_limit *limit, sk_vector velocity, size_t every) {
+    int variants = variants_of(builder, every);
+    for (int i = 0; i < variants; i++) {
+        sk_op op = limit_op(builder, limit, velocity, i ? 0 : every);
+        op.during = during_of(variants, i);
+        sk_add_op(builder, op);
+    }
+}
+
 /* The distances of a coarse grid, forth and back, and what they moved is carried to all between. Only what was
  * predicted says from where they moved. */
 static void write_coarse(sk_plan_builder *builder, const sk_batch *batch) {
@@ -90,7 +111,7 @@ static void write_coarse(sk_plan_builder *builder, const sk_batch *batch) {
     for (int time = 0; time < coarse->times; time++)
         for (size_t i = 0; i < batch->sweep_count; i++)
             add_sweep(builder, &batch->sweeps[time % 2 ? batch->sweep_count - 1 - i : i], SK_WHOLE, SK_OP_LIMIT,
-                      &batch->type->limit, SK_X, SK_NONE, 1, 0);
+                      &batch->type->limit, SK_X, SK_NONE, 1, 0, SK_ALWAYS);
     if (!coarse->carries) return;
     sk_walk walk = batch->sweeps[0].walk;
     walk.reach = sk_coarse_reach(coarse);
@@ -112,8 +133,7 @@ static void write_tethers(sk_plan_builder *builder, sk_limit_turn turn, size_t e
     const sk_rules *rules = builder->rules;
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
-        if (is_kept(limit) && limit->turn == turn && builder->predicted)
-            sk_add_op(builder, limit_op(builder, limit, SK_NONE, every));
+        if (is_kept(limit) && limit->turn == turn && builder->predicted) add_limit(builder, limit, SK_NONE, every);
     }
 }
 
@@ -141,9 +161,8 @@ static bool may_wait(const sk_batch *batch, double h) {
 
 /* A batch's sweeps on the way through all batches, or those halves that are left for the way back. What
  * is taken in every second substep gets twice the stiffness for it, for it stands for both. */
-static void write_batch(sk_plan_builder *builder, const sk_batch *batch, bool back, int passes, int sharing) {
-    bool keeps = keeps_multiplier(batch, passes);
-    size_t every = may_wait(batch, builder->h) && !keeps && passes == 1 ? seldom_of(builder) : 0;
+static void write_batch_every(sk_plan_builder *builder, const sk_batch *batch, bool back, int sharing, bool keeps,
+                              size_t every, sk_op_while during) {
     double coefficient = (double)sharing / (every ? (double)every : 1);
     for (size_t i = 0; i < batch->sweep_count; i++) {
         const sk_sweep *sweep = &batch->sweeps[back ? batch->sweep_count - 1 - i : i];
@@ -152,8 +171,16 @@ static void write_batch(sk_plan_builder *builder, const sk_batch *batch, bool ba
         sk_half half = whole ? SK_WHOLE : back ? SK_ODD_HALF : SK_EVEN_HALF;
         if (back && half == SK_WHOLE) continue;
         add_sweep(builder, sweep, half, SK_OP_PROJECT, keeps ? &batch->type->project_damped : &batch->type->project,
-                  SK_X, keeps ? SK_X0 : SK_NONE, coefficient, every);
+                  SK_X, keeps ? SK_X0 : SK_NONE, coefficient, every, during);
     }
+}
+
+static void write_batch(sk_plan_builder *builder, const sk_batch *batch, bool back, int passes, int sharing) {
+    bool keeps = keeps_multiplier(batch, passes);
+    size_t every = may_wait(batch, builder->h) && !keeps && passes == 1 ? seldom_of(builder) : 0;
+    int variants = variants_of(builder, every);
+    for (int i = 0; i < variants; i++)
+        write_batch_every(builder, batch, back, sharing, keeps, i ? 0 : every, during_of(variants, i));
 }
 
 /* A sweep over every batch, with an n-th of its stiffness and damping for `sharing` n.
@@ -202,7 +229,7 @@ static void write_strain_limits(sk_plan_builder *builder, sk_vector velocity, bo
         for (int iteration = 0; iteration < (first ? 1 : LIMIT_SWEEPS); iteration++)
             for (size_t w = 0; w < batch->sweep_count; w++)
                 if ((batch->only_bounds || batch->sweeps[w].strips) == first)
-                    add_sweep(builder, &batch->sweeps[w], SK_WHOLE, SK_OP_LIMIT, kernels, SK_X, velocity, 1, 0);
+                    add_sweep(builder, &batch->sweeps[w], SK_WHOLE, SK_OP_LIMIT, kernels, SK_X, velocity, 1, 0, SK_ALWAYS);
     }
 }
 
@@ -218,7 +245,7 @@ void sk_write_limits(sk_plan_builder *builder, sk_vector velocity) {
                     (limit->turn == SK_LIMIT_WITHOUT_COARSE && !builder->predicted);
         if (!is_kept(limit) || !last) continue;
         size_t every = velocity == SK_NONE && limit->turn == SK_LIMIT_SELDOM ? seldom_of(builder) : 0;
-        sk_add_op(builder, limit_op(builder, limit, velocity, every));
+        add_limit(builder, limit, velocity, every);
     }
     write_strain_limits(builder, velocity, false);
     sk_write_meetings(builder, SK_MEETING_PUSH, velocity);

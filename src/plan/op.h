@@ -150,6 +150,8 @@ struct sk_run {
     const sk_op *timed;
     size_t iteration;              /* of the innermost repeat, from 0 on, */
     bool last_iteration;           /* and whether it is the last */
+    bool near;                     /* surfaces are near each other in this substep, */
+    double near_at;                /* which ends at this time */
     bool no_memory;           /* a growing list could not grow: the step fails and says so */
 };
 
@@ -214,6 +216,9 @@ typedef struct sk_op_type {
 
 extern const sk_op_type sk_op_types[SK_OP_KIND_COUNT];
 
+/* When an op runs: what is taken in every second substep where nothing is near would shake what lies on something. */
+typedef enum sk_op_while { SK_ALWAYS, SK_WHILE_APART, SK_WHILE_NEAR } sk_op_while;
+
 struct sk_op {
     sk_op_kind kind;
     sk_order order;
@@ -235,6 +240,7 @@ struct sk_op {
     bool alone;            /* it looks at slots that are not its own: nor is that */
     bool from_prediction; /* it looks at X0 only to know X0 + b V, b being its second coefficient, 0 where X0 is that */
     size_t every;          /* it runs in each so many-th iteration of its repeat, and in the last of them; 0: in all */
+    sk_op_while during;    /* and only while surfaces are near each other, or are not */
     size_t packed;         /* slots [0, packed) are in packed blocks when it runs */
     sk_walk walk;          /* of ops whose elements are strip rows */
     sk_half half;          /* of a sweep along strips */
@@ -273,6 +279,7 @@ sk_op_kernel sk_run_partly;
 sk_op sk_op_for(sk_op op, size_t first_slot, size_t end_slot);
 /* Whether an op runs in the present iteration. */
 static inline bool sk_op_is_due(const sk_run *run, const sk_op *op) {
+    if (op->during && (op->during == SK_WHILE_NEAR) != run->near) return false;
     return op->every < 2 || run->iteration % op->every == op->every - 1;
 }
 /* One line about an op, as `skein explain` shows it. */
