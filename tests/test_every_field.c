@@ -58,6 +58,7 @@ static const char *const texts[] = {
     "a",
     "b",
     "wall",
+    "b:c",
     "0",
     "0 1",
     "box -9 -9 -9 0.1 9 9",
@@ -208,7 +209,7 @@ static uint32_t add_company(skein_world *world, uint64_t *seed, bool layers) {
                   NULL));
     if (!layers) return first;
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 2, 2), SKEIN_PAIR("size", 0.5, 0.5),
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", "c"), SKEIN_PAIR("grid", 2, 2), SKEIN_PAIR("size", 0.5, 0.5),
                                             SKEIN_VEC3("rotation", 30, 20, 10), SKEIN_VEC3("position", 0, 0.004, 0)),
                              NULL));
     return first;

@@ -230,6 +230,10 @@ static void reading_and_writing(void **state) {
     REFUSES_ALL(skein_body_vertices_copy(NULL, s.cloth, 1, skein_doubles(xyz, 0), skein_doubles(NULL, 0)));
     REFUSES_ALL(skein_collider_pose(NULL, s.ball, &pose));
     REFUSES_ALL(skein_collider_teleport(NULL, s.ball));
+    size_t touching;
+    REFUSES_ALL(skein_surface_contacts_copy(NULL, NULL, 0, &touching));
+    REFUSES("count", skein_surface_contacts_copy(s.world, NULL, 0, NULL));
+    REFUSES("out", skein_surface_contacts_copy(s.world, NULL, 1, &touching));
     REFUSES_ALL(skein_body_teleport(NULL, s.cloth, NULL, NULL));
     OK(s.world, skein_body_teleport(s.world, s.cloth, NULL, NULL));
     REFUSES_ALL(skein_collider_vertices_set(NULL, s.ball, NULL, 0));

@@ -20,7 +20,7 @@ RETURNS = {  # what no signature says; anything else is Any
     "closed": "bool", "hash": "str", "render": "Image", "snapshot": "State", "particles": "range", "kind": "str", "valid": "bool",
     "remove": "None", "reset": "None", "step": "None", "frame": "None", "close": "None", "restore": "None", "pin": "None",
     "move_pins": "None", "add_particles": "range", "explain": "list[str]", "hashes": "list[str]", "method": "Method",
-    "set_method": "Method", "save": "None", "contacts": "list[Any]", "set": "None", "fields": "dict[str, Any]",
+    "set_method": "Method", "save": "None", "contacts": "list[Any]", "surface_contacts": "list[Any]", "set": "None", "fields": "dict[str, Any]",
     "constraint_count": "int", "evaluate": "dict[str, Any]", "teleport": "None", "is_live": "bool", "kinds": "list[str]", "methods": "list[str]", "advice": "list[str]",
     "substeps_needed": "float",
     "scene": "dict[str, Any] | None", "from_scene": "World", "film": "Film", "formula": "Formula", "scenes": "list[str]",

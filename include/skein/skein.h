@@ -735,6 +735,21 @@ typedef struct skein_contact {
 /* Copies up to `most` of the contacts of enabled colliders; `count` receives how many there are. */
 skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, size_t most, size_t *count);
 
+/* Two features of surfaces that touch, as a rule of contact keeps them: a vertex and a triangle, or two edges. */
+typedef struct skein_surface_contact {
+    skein_handle rule;
+    bool edges;           /* particle[0] and [1] are one edge, [2] and [3] the other; else [0] meets the triangle of the rest */
+    uint32_t particle[4];
+    double weight[4];     /* of the particles: those of the first feature add up to 1, those of the second to -1. The sum of
+                             weights times places is the way from the second feature's nearest point to the first's */
+    double normal[3];     /* unit, from the second feature to the first */
+    double gap, thickness; /* m: how far apart they are, and are to be */
+} skein_surface_contact;
+/* Copies up to `most` of the pairs that are no farther apart than their thickness by more than a thousandth, by the positions as
+ * they are; `count` receives how many there are. They come rule by rule, in an order that follows from the bodies alone.
+ * Costs a search over all surfaces: about what a step does in which everything has moved. */
+skein_status skein_surface_contacts_copy(skein_world *world, skein_surface_contact *out, size_t most, size_t *count);
+
 /* Where `count` points (count x 3) are seen from a collider's surface as it stands now: how far off, as contact takes
  * it (negative inside; far away, formulas may say 1e15), and the unit normals out of the solid. Either may be NULL. */
 skein_status skein_collider_probe(const skein_world *world, skein_handle collider, size_t count, const double *points,

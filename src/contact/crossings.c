@@ -48,11 +48,10 @@ static void count_of(tally *counting, size_t a, size_t b) {
                                        skin->triangle[triangles->first_triangle + t]);
 }
 
-/* Boxes of what is there now, for nothing goes on. */
-static void put_boxes(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_of) {
+void sk_touch_put_boxes(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_of, real part) {
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         sk_vec4 p = touch->p[v] = x[slot_of[touch->skin.particle[v]]];
-        sk_quad at = {p.x, p.y, p.z, 0};
+        sk_quad at = {p.x, p.y, p.z, part};
         touch->corner_box[v] = (sk_box){{at, at}, {at, at}};
     }
     memset(touch->anew, 1, touch->skin.leaf_count);
@@ -70,7 +69,7 @@ bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 
     *count = 0;
     if (!touch || !touch->skin.leaf_count) return true;
     tally counting = {touch, 0};
-    put_boxes(touch, x, slot_of);
+    sk_touch_put_boxes(touch, x, slot_of, 0);
     bool too_many;
     touch->tasks = NULL;
     if (!sk_touch_partners(touch, allocator, SIZE_MAX / 2, &too_many)) return false;

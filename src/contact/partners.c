@@ -146,6 +146,7 @@ static bool list_partners(const sk_touch *touch, sk_search_part *part, uint32_t 
     if (part->first.count + count > part->first.capacity) return false;
     for (size_t i = 0; i < count; i++) {
         uint32_t b = touch->tree.leaf_at[part->hit[i]];
+        if (sk_is_ignored(&touch->ignored, a, b)) continue;
         if (b < a && touch->anew[b] && sk_boxes_meet(&touch->hot_box[b], &touch->leaf_box[a])) continue;
         part->first.data[part->first.count++] = b < a ? b : a;
         part->second.data[part->second.count++] = b < a ? a : b;

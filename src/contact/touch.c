@@ -8,6 +8,8 @@ static const skein_field fields[] = {
     SK_REAL(sk_contact_params, thickness, "thickness", "m", 0.005, 1e-6, 1e3,
             "how near surfaces come to each other; less where a body's own vertices are nearer as it was built"),
     SK_REAL(sk_contact_params, friction, "friction", "", 0.3, 0, 10, "coefficient of friction between them"),
+    SK_TEXT(sk_contact_params, ignore, "ignore", "",
+            "pairs of bodies that do not meet, by their names, commas between them: \"cape:shirt, cape:cape\""),
 };
 
 /* ---- begin ---- */
@@ -296,6 +298,7 @@ static void release_vertices(sk_touch *touch, sk_allocator *allocator) {
     }
     sk_touch_release_parts(touch, allocator);
     sk_tree_release(&touch->tree, allocator);
+    sk_ignored_release(&touch->ignored, allocator);
 }
 
 static bool make_vertices(sk_touch *touch, sk_allocator *allocator) {
@@ -332,6 +335,8 @@ static uint64_t shape_of(const sk_force *force, uint64_t arrangement) {
     uint64_t shape = arrangement * 2 + force->only.some;
     for (size_t i = 0; i < force->only.count; i++)
         shape = (shape ^ force->only.data[i].first) * 0x100000001b3u ^ force->only.data[i].end;
+    const sk_contact_params *params = force->params;
+    for (const char *c = params->ignore; *c; c++) shape = (shape ^ (unsigned char)*c) * 0x100000001b3u;
     return shape;
 }
 
@@ -347,10 +352,16 @@ static bool prepare(sk_force *force, sk_allocator *allocator, const sk_particles
     touch->shape = shape;
     touch->found = touch->boxed = touch->followed = touch->remembers = false;
     touch->slots = touch->wild_count = 0;
-    if (sk_skin_make(&touch->skin, allocator, particles, &force->only, parts) && make_vertices(touch, allocator))
+    const sk_contact_params *params = force->params;
+    if (sk_skin_make(&touch->skin, allocator, particles, &force->only, parts) && make_vertices(touch, allocator) &&
+        sk_ignored_make(&touch->ignored, allocator, &touch->skin, params->ignore, parts))
         return true;
     release(force, allocator);
     return false;
+}
+
+static const char *ignored(const void *params) {
+    return ((const sk_contact_params *)params)->ignore;
 }
 
 static bool gave_up(sk_force *force) {
@@ -367,6 +378,8 @@ static const sk_meeting meeting = {
     .prepare = prepare,
     .release = release,
     .crossings = sk_touch_crossings,
+    .touching = sk_touch_touching,
+    .ignored = ignored,
     .gave_up = gave_up,
 };
 

@@ -5,7 +5,7 @@
  *   push    each of these, in a fixed order, is brought to its thickness, with friction
  *   bound   no vertex goes further than its pairs allow, so that nothing passes
  *
- * A pair is a vertex and a triangle, or two edges; they have no corner in common. Which pairs are kept is decided by
+ * A pair is a vertex and a triangle, or two edges; they have no corner in common, and their bodies are no pair to be ignored. Which pairs are kept is decided by
  * what is expected: each vertex goes on at some velocity, from where it was when it was last looked for, and is never
  * farther from there than its reach. What goes otherwise is looked for anew, with its neighbours, and nobody else. What
  * is done with a pair depends on the state before and after the substep alone. So a search too many changes no bit, and
@@ -38,6 +38,14 @@ typedef struct sk_skin {
     real spacing; /* m: what lies between features of one surface that have no corner in common, as they were built */
     uint32_t *leaf_start, *leaf_of; /* those of vertex v: leaf_of[leaf_start[v]] to leaf_of[leaf_start[v + 1]] */
 } sk_skin;
+
+/* Bodies of which some pairs do not meet (ignored.c). */
+typedef struct sk_ignored {
+    bool any;
+    uint16_t *of_leaf; /* of leaves: the number of their body among those that are named, or 0 */
+    uint8_t *pair;     /* width x width: whether these two do not meet */
+    size_t width;
+} sk_ignored;
 
 /* Pairs, one array a number, padded to whole blocks of sixteen. Corners: a vertex and a triangle's three, or an edge's two
  * and another's two. The normal leads from the second feature to the first; `share` says where on them they are nearest:
@@ -140,6 +148,7 @@ typedef struct sk_search_part {
 
 typedef struct sk_touch {
     sk_skin skin;
+    sk_ignored ignored;
     struct sk_tasks *tasks; /* of the run */
     uint64_t shape; /* of the world that the skin was made from */
     sk_isa isa;
@@ -211,7 +220,23 @@ typedef struct sk_touch {
 
 typedef struct sk_contact_params {
     double thickness, friction;
+    char *ignore;
 } sk_contact_params;
+
+/* ---- ignored.c ---- */
+
+/* Reads the pairs of names, and numbers the leaves of the bodies that have them. False when there is no memory. */
+bool sk_ignored_make(sk_ignored *ignored, sk_allocator *allocator, const sk_skin *skin, const char *text,
+                     const sk_meeting_parts *parts);
+void sk_ignored_release(sk_ignored *ignored, sk_allocator *allocator);
+static inline bool sk_is_ignored(const sk_ignored *ignored, uint32_t a, uint32_t b) {
+    return ignored->any && ignored->pair[ignored->of_leaf[a] * ignored->width + ignored->of_leaf[b]];
+}
+
+/* ---- touching.c ---- */
+
+bool sk_touch_touching(sk_force *force, sk_allocator *allocator, const sk_vec4 *x, const uint32_t *slot_of,
+                       skein_surface_contact *out, size_t most, size_t *count);
 
 /* ---- skin.c ---- */
 
@@ -317,6 +342,8 @@ sk_op_kernel sk_touch_bound;
 /* How many edges go through a triangle, of the places x of slots. False when there is no memory. */
 bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 *x, const uint32_t *slot_of,
                         size_t *count);
+/* Boxes of all leaves and features where they are now, each wider by `part`: for lists of those that may meet there. */
+void sk_touch_put_boxes(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_of, real part);
 
 /* ---- touch.c ---- */
 

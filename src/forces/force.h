@@ -21,10 +21,17 @@ typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOUR
  */
 typedef enum sk_phase { SK_PUSHES, SK_STEERS, SK_BOUNDS, SK_MEETS } sk_phase;
 
+/* A body's particles, and its name. */
+typedef struct sk_meeting_body {
+    size_t first, end;
+    const char *name;
+} sk_meeting_body;
+
 /* What can meet: triangles, and edges that are in none, of all bodies, by the user's indices of their particles. */
 typedef struct sk_meeting_parts {
     const uint32_t (*triangle)[3], (*edge)[2];
-    size_t triangle_count, edge_count;
+    const sk_meeting_body *body;
+    size_t triangle_count, edge_count, body_count;
     uint64_t arrangement; /* another number where any of it, or who takes part, may have changed */
     size_t rule_count;    /* how many rules are shown them */
 } sk_meeting_parts;
@@ -44,6 +51,12 @@ typedef struct sk_meeting {
     void (*release)(sk_force *force, sk_allocator *allocator);
     /* How many edges go through a triangle, of the places x of slots. False: no memory. */
     bool (*crossings)(sk_force *force, sk_allocator *allocator, const sk_vec4 *x, const uint32_t *slot_of, size_t *count);
+    /* The pairs of features that are no farther apart than their thickness: up to `most` go to `out`, whose rules are the
+     * caller's to fill in; `count` is how many there are. False: no memory. */
+    bool (*touching)(sk_force *force, sk_allocator *allocator, const sk_vec4 *x, const uint32_t *slot_of,
+                     skein_surface_contact *out, size_t most, size_t *count);
+    /* Pairs of bodies' names that do not meet, "cape:shirt, cape:cape"; "": none. */
+    const char *(*ignored)(const void *params);
     /* Whether there was so much to meet in some substep that it let all of it be. True once: what the world tells. */
     bool (*gave_up)(sk_force *force);
 } sk_meeting;

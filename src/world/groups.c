@@ -66,6 +66,11 @@ static skein_status check_names(const skein_world *world, const char *label, con
     return SKEIN_OK;
 }
 
+skein_status sk_world_check_body_name(const skein_world *world, const char *label, const char *name, size_t length,
+                                      skein_error *error) {
+    return is_known(world, name, length) ? SKEIN_OK : fail_name(world, label, name, length, error);
+}
+
 /* ---- ranges ---- */
 
 static size_t triangles_before(const skein_world *world, const sk_body *body) {

@@ -1,4 +1,6 @@
 /* What surfaces meet: the parts of bodies that rules of contact are shown. */
+#include <string.h>
+
 #include "world/world.h"
 
 /* The edges of bodies that have no triangles: ropes. */
@@ -30,17 +32,53 @@ static size_t count_those_that_meet(const skein_world *world) {
     return count;
 }
 
+/* Bodies with their names, so that rules can tell them apart. */
+static size_t list_bodies(const skein_world *world, sk_meeting_body *bodies) {
+    size_t count = 0;
+    for (size_t i = 0; i < world->objects.count; i++) {
+        const sk_object *object = world->objects.data[i];
+        if (object->category != SKEIN_BODY) continue;
+        size_t first = object->as.body->first_particle;
+        bodies[count++] = (sk_meeting_body){first, first + object->as.body->particle_count, object->common.plain.name};
+    }
+    return count;
+}
+
+/* Each name in the pairs that rules ignore is a body's, or was. */
+static skein_status check_ignored(const skein_world *world, skein_error *error) {
+    for (size_t i = 0; i < world->rules.forces.count; i++) {
+        const sk_force *force = world->rules.forces.data[i];
+        if (!*force->enabled || !force->type->meeting) continue;
+        const char *text = force->type->meeting->ignored(force->params);
+        for (size_t length; *text; text += length) {
+            text += strspn(text, ",: ");
+            length = strcspn(text, ",:");
+            size_t end = length;
+            while (end && text[end - 1] == ' ') end--;
+            skein_status status = end ? sk_world_check_body_name(world, force->label, text, end, error) : SKEIN_OK;
+            if (status) return status;
+        }
+    }
+    return SKEIN_OK;
+}
+
 skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error) {
     size_t rules = count_those_that_meet(world);
     if (!rules) return SKEIN_OK;
     sk_allocator *allocator = &world->allocator;
     uint32_t(*edges)[2];
     size_t edge_count;
+    skein_status status = check_ignored(world, error);
+    if (status) return status;
     bool good = list_edges(world, allocator, &edges, &edge_count);
+    sk_meeting_body *bodies = sk_allocate(allocator, (world->objects.count + 1) * sizeof *bodies);
+    good = good && bodies;
     sk_meeting_parts parts = {.triangle = (const uint32_t(*)[3])world->triangles.corner,
                               .triangle_count = world->triangles.count,
                               .edge = (const uint32_t(*)[2])edges,
                               .edge_count = edge_count,
+                              .body = bodies,
+                              .body_count = bodies ? list_bodies(world, bodies) : 0,
                               .arrangement = world->arrangement,
                               .rule_count = rules};
     for (size_t i = 0; i < world->rules.forces.count && good; i++) {
@@ -49,6 +87,7 @@ skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error) {
             good = force->type->meeting->prepare(force, allocator, &world->particles, &parts, world->isa);
     }
     sk_release(allocator, edges);
+    sk_release(allocator, bodies);
     return good ? SKEIN_OK : sk_fail_memory(error, "contact");
 }
 
@@ -80,4 +119,28 @@ void sk_world_tell_of_meetings(skein_world *world) {
 
 void sk_world_end_meeting(skein_world *world, sk_force *force) {
     if (force->type->meeting) force->type->meeting->release(force, &world->allocator);
+}
+
+skein_status skein_surface_contacts_copy(skein_world *world, skein_surface_contact *out, size_t most, size_t *count) {
+    SK_NEED(world, world);
+    SK_NEED(world, count);
+    if (most) SK_NEED(world, out);
+    skein_error *error = sk_world_error(world);
+    *count = 0;
+    skein_status status = sk_world_fetch(world);
+    if (!status) status = sk_world_arrange(world, error);
+    if (!status) status = sk_world_find_groups(world, error);
+    if (!status) status = sk_world_prepare_meetings(world, error);
+    for (size_t i = 0; i < world->objects.count && !status; i++) {
+        const sk_object *object = world->objects.data[i];
+        if (object->category != SKEIN_FORCE || !*object->as.force->enabled || !object->as.force->type->meeting) continue;
+        size_t own = 0, room = most > *count ? most - *count : 0;
+        skein_surface_contact *to = room ? out + *count : NULL;
+        if (!object->as.force->type->meeting->touching(object->as.force, &world->allocator, world->particles.vector[SK_X],
+                                                       world->particles.slot_of, to, room, &own))
+            return sk_fail_memory(error, "contact");
+        for (size_t k = 0; k < own && k < room; k++) to[k].rule = sk_handle_at(world, i);
+        *count += own;
+    }
+    return status;
 }

@@ -284,6 +284,9 @@ skein_status sk_world_settle_presence(skein_world *world, skein_error *error);
 /* ---- whom rules act on (world/groups.c) ---- */
 /* Finds the bodies that rules name; an unknown name is an error. The slots are up to date. */
 skein_status sk_world_find_groups(skein_world *world, skein_error *error);
+/* Whether there is a body of that name, or was. */
+skein_status sk_world_check_body_name(const skein_world *world, const char *label, const char *name, size_t length,
+                                      skein_error *error);
 /* Shows what can meet to the rules that meet. The groups are found. */
 skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error);
 /* How many edges go through triangles that they are not to pass. */

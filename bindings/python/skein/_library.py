@@ -87,6 +87,11 @@ class Contact(c.Structure):
     _fields_ = [("particle", c.c_uint32), ("collider", Handle), ("normal", c.c_double * 3), ("gap", c.c_double)]
 
 
+class SurfaceContact(c.Structure):
+    _fields_ = [("rule", Handle), ("edges", c.c_bool), ("particle", c.c_uint32 * 4), ("weight", c.c_double * 4),
+                ("normal", c.c_double * 3), ("gap", c.c_double), ("thickness", c.c_double)]
+
+
 class Hit(c.Structure):
     _fields_ = [("t", c.c_double), ("point", c.c_double * 3), ("normal", c.c_double * 3), ("object", Handle),
                 ("face", c.c_size_t), ("particle", c.c_uint32)]
@@ -165,6 +170,7 @@ CALLS = {
     "skein_body_teleport": (status, [world, Handle, array, array]),
     "skein_constraint_count": (status, [world, Handle, c.POINTER(size)]),
     "skein_constraint_evaluate": (status, [world, Handle, size, c.POINTER(ConstraintValue), array, array, size]),
+    "skein_surface_contacts_copy": (status, [world, c.POINTER(SurfaceContact), size, c.POINTER(size)]),
     "skein_contacts_copy": (status, [world, c.POINTER(Contact), size, c.POINTER(size)]),
     "skein_ray_cast": (status, [world, array, array, c.c_int, c.POINTER(Hit)]),
     "skein_world_statistics": (status, [world, array]),

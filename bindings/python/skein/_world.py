@@ -411,6 +411,19 @@ class World:
         return [types.SimpleNamespace(particle=x.particle, collider=self._object(L.COLLIDER, L.Handle(*x.collider.key())),
                                       normal=np.array(x.normal), gap=x.gap) for x in array[:count.value]]
 
+    def surface_contacts(self):
+        """The pairs of features of surfaces that touch: a list with rule, edges (or a vertex and a triangle), particles, weights,
+        normal, gap and thickness (m)."""
+        count = ctypes.c_size_t()
+        with self._lock:
+            self._call(lib.skein_surface_contacts_copy, None, 0, ctypes.byref(count))
+            array = (L.SurfaceContact * max(count.value, 1))()
+            self._call(lib.skein_surface_contacts_copy, array, count.value, ctypes.byref(count))
+        return [types.SimpleNamespace(rule=self._object(L.FORCE, L.Handle(*x.rule.key())), edges=bool(x.edges),
+                                      particles=np.array(x.particle, np.uint32), weights=np.array(x.weight),
+                                      normal=np.array(x.normal), gap=x.gap, thickness=x.thickness)
+                for x in array[:count.value]]
+
     def ray_cast(self, origin, direction, of="body"):
         """What a ray meets first among "body" or "collider": object, t (m), point, normal; None where it meets nothing."""
         hit, category = L.Hit(), L.CATEGORIES.index(of)
