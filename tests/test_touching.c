@@ -314,6 +314,34 @@ static void it_remembers_nothing(void **state) {
     skein_world_destroy(two);
 }
 
+/* Nor does it in the impact, where pairs of the last substep are taken over as they are: places may have been set since. */
+static void an_impact_remembers_nothing(void **state) {
+    (void)state;
+    enum { FRAMES = 36, FIRST = 12, BEHIND = 5 };
+    if (SANITIZED) skip();
+    skein_world *one = new_heap(24, 3, 1), *two = new_heap(24, 3, 1);
+    add_touching(one, 0.012, 0.3);
+    add_touching(two, 0.012, 0.3);
+    size_t count = skein_particle_count(one);
+    double *x = malloc(FRAMES * 3 * count * sizeof *x), *v = malloc(FRAMES * 3 * count * sizeof *v);
+    for (size_t i = 0; i < FRAMES; i++) {
+        OK(one, skein_positions_copy(one, 0, count, x + 3 * count * i));
+        OK(one, skein_velocities_copy(one, 0, count, v + 3 * count * i));
+        steps(one, 1, step_length);
+        for (size_t turn = 0; turn < 2 && i >= FIRST; turn++) { // a frame of before, and this one
+            size_t from = turn ? i : i - BEHIND;
+            OK(two, skein_positions_set(two, 0, count, x + 3 * count * from));
+            OK(two, skein_velocities_set(two, 0, count, v + 3 * count * from));
+            steps(two, 1, step_length);
+        }
+        if (i >= FIRST) assert_true(skein_world_hash(one) == skein_world_hash(two));
+    }
+    free(x);
+    free(v);
+    skein_world_destroy(one);
+    skein_world_destroy(two);
+}
+
 /* Far from everything a sheet moves to the bit as if there were no contact. */
 static void what_touches_nothing_is_free(void **state) {
     (void)state;
@@ -431,7 +459,8 @@ int main(void) {
         cmocka_unit_test(a_heap_comes_to_rest),         cmocka_unit_test(a_thin_heap_has_no_crossings),
         cmocka_unit_test(layers_stay_in_their_order),   cmocka_unit_test(a_cube_rests_on_a_cube),
         cmocka_unit_test(a_rope_lies_on_a_cloth),       cmocka_unit_test(bits_are_the_same),
-        cmocka_unit_test(it_remembers_nothing),         cmocka_unit_test(what_touches_nothing_is_free),
+        cmocka_unit_test(it_remembers_nothing),         cmocka_unit_test(an_impact_remembers_nothing),
+                cmocka_unit_test(what_touches_nothing_is_free),
         cmocka_unit_test(a_moving_frame_changes_nothing), cmocka_unit_test(fast_things_do_not_pass),
         cmocka_unit_test(it_acts_on_whom_it_names),       cmocka_unit_test(giving_up_is_told),
     };

@@ -271,6 +271,7 @@ void sk_touch_bound(sk_run *run, const sk_op *op, size_t from, size_t end) {
     if (lost || sk_pairs_kept(touch)) {
         sk_touch_load(touch, op->packed);
         load_ways(touch, run, op);
+        if (touch->storm) touch->shift[1] = touch->common;
         for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->lost[v] |= touch->wild[v];
     }
     if (lost) good = renew(touch, run->allocator);

@@ -40,6 +40,12 @@ SK_INLINE void note(sk_pairs *pairs, size_t k, sk_wide3 r, sk_wide u, sk_wide v)
     *part_of(pairs->share[1], k) = v;
 }
 
+SK_INLINE void note_near(sk_pairs *pairs, size_t k) {
+    sk_wide near = sk_splat(SK_NEAR_THICKNESSES) * *part_of(pairs->thickness, k);
+    uint32_t bits = sk_more_bits(near, *part_of(pairs->distance, k));
+    for (size_t l = 0; l < SK_PART; l++) pairs->closes[k + l] = (uint8_t)((bits >> l & 1) * SK_IS_NEAR);
+}
+
 /* Where features are nearest within themselves, some normal n of both is the pair's: r leads from one to the other. */
 SK_INLINE void note_within(sk_pairs *pairs, size_t k, sk_mask within, sk_wide3 n, sk_wide3 r) {
     sk_wide square = sk_dot_wide(n, n), along = sk_dot_wide(n, r);
@@ -75,6 +81,7 @@ void SK_KERNEL(corners)(const sk_vec4 *x, sk_pairs *pairs) {
         note(pairs, k, r, u, v);
         sk_wide3 n = {ab.y * ac.z - ab.z * ac.y, ab.z * ac.x - ab.x * ac.z, ab.x * ac.y - ab.y * ac.x};
         note_within(pairs, k, inside, n, ap);
+        note_near(pairs, k);
     }
 }
 
@@ -97,6 +104,7 @@ void SK_KERNEL(edges)(const sk_vec4 *x, sk_pairs *pairs) {
         sk_mask within = sk_positive(s) & sk_more(sk_splat(1), s) & sk_positive(t) & sk_more(sk_splat(1), t) &
                          sk_more(apart, sk_splat(PARALLEL) * aa * bb);
         note_within(pairs, k, within, n, r);
+        note_near(pairs, k);
     }
 }
 #else

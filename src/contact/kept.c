@@ -1,6 +1,8 @@
 /* Pairs that are kept from substep to substep: those of the last search for all, in their order, and those that came
  * since then, search after search. Those with a vertex that is looked for anew go: of the many they stay where they are,
  * as pairs of nobody. So a search for a few costs as much as those few. What is near is put in the order of all. */
+#include <string.h>
+
 #include "contact/touch.h"
 
 /* What a bound has settled stays so, although it was looked for anew. */
@@ -64,8 +66,11 @@ bool sk_touch_keep(sk_touch *touch, sk_allocator *allocator, int sort, bool all)
 
 /* ---- those that are near ---- */
 
-static inline bool is_near(const sk_pairs *kept, size_t k) {
-    return kept->distance[k] < SK_NEAR_THICKNESSES * kept->thickness[k];
+/* Whether some of the eight pairs from k on are near, up to the end of a block. */
+static inline bool are_near(const sk_pairs *pairs, size_t k) {
+    uint64_t any;
+    memcpy(&any, pairs->closes + k, sizeof any);
+    return any;
 }
 
 /* The end of what is in order, from `first` on. */
@@ -95,8 +100,9 @@ static const sk_pair_place *list_late(sk_touch *touch, sk_allocator *allocator, 
         return NULL;
     sk_pair_place *place = touch->order.data, *other = touch->other_order.data;
     *count = 0;
-    for (size_t k = 0; k < late->count; k++)
-        if (is_near(late, k)) place[(*count)++] = (sk_pair_place){late->key[k], (uint32_t)k};
+    for (size_t b = 0; b < late->count; b += 8)
+        for (size_t k = b; are_near(late, b) && k < b + 8 && k < late->count; k++)
+            if (late->closes[k]) place[(*count)++] = (sk_pair_place){late->key[k], (uint32_t)k};
     for (bool more = end_of_run(place, 0, *count) < *count; more;) {
         more = merge_runs(place, other, *count);
         sk_pair_place *swapped = place;
@@ -113,11 +119,12 @@ bool sk_touch_find_near(sk_touch *touch, sk_allocator *allocator, int sort) {
     const sk_pair_place *place = list_late(touch, allocator, late, &count);
     if (!place || !SK_RESERVE(allocator, near, kept->count + count + 1)) return false;
     uint32_t *entry = near->data;
-    for (size_t k = 0; k < kept->count; k++) {
-        if (!is_near(kept, k)) continue;
-        while (i < count && place[i].key < kept->key[k]) entry[n++] = 2 * place[i++].at + 1;
-        entry[n++] = 2 * (uint32_t)k;
-    }
+    for (size_t b = 0; b < kept->count; b += 8)
+        for (size_t k = b; are_near(kept, b) && k < b + 8 && k < kept->count; k++) {
+            if (!kept->closes[k]) continue;
+            while (i < count && place[i].key < kept->key[k]) entry[n++] = 2 * place[i++].at + 1;
+            entry[n++] = 2 * (uint32_t)k;
+        }
     while (i < count) entry[n++] = 2 * place[i++].at + 1;
     near->count = n;
     return true;

@@ -380,8 +380,9 @@ static bool is_many(const sk_touch *touch) {
 bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_sort search) {
     const size_t most_a_vertex = 1000; // what is everywhere at once: gigabytes of pairs, and minutes a step
     size_t count = touch->skin.vertex_count, most = most_a_vertex * (count + 64) / 13;
-    bool all = search == SK_SEARCH_ALL;
+    bool all = search == SK_SEARCH_ALL, everybody = all || touch->storm;
     touch->searches++;
+    touch->searched_since = all ? 0 : touch->searched_since + 1;
     if (all) look_ahead(touch);
     else
         for (size_t v = 0; v < count; v++) touch->lost_since += touch->lost[v];
@@ -399,7 +400,7 @@ bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_s
     }
     if (good && !gives_up) expect(touch, search);
     for (int sort = 0; sort < SK_PAIR_SORTS && good && !gives_up; sort++) {
-        good = list_fresh(touch, allocator, sort, search) && sk_touch_keep(touch, allocator, sort, all);
+        good = list_fresh(touch, allocator, sort, search) && sk_touch_keep(touch, allocator, sort, everybody);
     }
     forget_hot(touch);
     touch->found = good && !gives_up;

@@ -168,12 +168,51 @@ static bool mark_lost(sk_touch *touch, const sk_run *run, const sk_op *op) {
     return true;
 }
 
+/* Whether a search for all has been used up so soon that searches for one substep each would have cost less: as measured, a
+ * third of one that holds for longer, and those for the lost between cost by how many they are. Where few pairs are kept,
+ * it is the boxes that cost, and a sheet that swings cost twice as much so. */
+static bool is_stormy(const sk_touch *touch) {
+    if (sk_pairs_kept(touch) < 8 * touch->skin.vertex_count) return false;
+    double all = 3, each = 0.15, lost = (double)touch->lost_since / (double)touch->skin.vertex_count;
+    return touch->found && all + each * (double)touch->searched_since + all * lost > 1.3 * (double)touch->now;
+}
+
+static void begin_storm(sk_touch *touch) {
+    const size_t least = 10, most = 80;
+    const real forever = 1000; // substeps
+    touch->storm = touch->next_storm = touch->next_storm ? touch->next_storm : least;
+    if (2 * touch->next_storm <= most) touch->next_storm *= 2;
+    touch->until = touch->now + forever;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) sk_touch_put_course(touch, v, true);
+}
+
+/* In a storm, pairs are those that the last bound has found, on everybody's ways; or of where all are now. */
+static bool find_pairs_in_storm(sk_touch *touch, const sk_run *run, const sk_op *op, bool known) {
+    sk_touch_load(touch, op->packed);
+    touch->shift[0] = (sk_vec3){0, 0, 0};
+    memset(touch->lost, known ? 0 : 1, touch->skin.vertex_count);
+    if (!known) return sk_touch_renew(touch, run->allocator, SK_SEARCH_LOST);
+    look_at_all(touch);
+    return true;
+}
+
 /* Searches where that is needed, and looks at all pairs. */
 static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool all) {
+    bool stormed = touch->storm > 0;
+    if (stormed && !all && --touch->storm)
+        return find_pairs_in_storm(touch, run, op, touch->alone && run->iteration > 0 && touch->followed);
+    touch->storm = 0;
+    all |= stormed;
     bool lost = !all && mark_lost(touch, run, op);
     if (all || lost || sk_pairs_kept(touch)) sk_touch_load(touch, op->packed);
     all |= lost && are_most(touch);
+    bool stormy = all && !stormed && is_stormy(touch);
+    if (stormy) {
+        begin_storm(touch);
+        return find_pairs_in_storm(touch, run, op, false);
+    }
     if (all) {
+        if (!stormed) touch->next_storm = 0;
         touch->untouched = 8 * sk_pairs_kept(touch) < touch->skin.vertex_count;
         memset(touch->lost, 1, touch->skin.vertex_count);
         begin_frame(touch, run, op);
@@ -212,32 +251,50 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
 
 /* ---- push ---- */
 
+static inline sk_quad quad_at(const sk_vec4 *x) {
+    sk_quad q;
+    memcpy(&q, x, sizeof q);
+    return q;
+}
+
+static inline sk_quad times(real a, sk_quad x) {
+    return (sk_quad){a, a, a, a} * x;
+}
+
+/* Of the first three. */
+static inline real dot_of(sk_quad a, sk_quad b) {
+    sk_quad c = a * b;
+    return c[0] + c[1] + c[2];
+}
+
+/* Where the first feature of a pair is seen from the second. */
+static inline sk_quad apart_at(const sk_vec4 *x, const uint32_t v[4], const real weight[4]) {
+    return times(weight[0], quad_at(&x[v[0]])) + times(weight[1], quad_at(&x[v[1]])) +
+           times(weight[2], quad_at(&x[v[2]])) + times(weight[3], quad_at(&x[v[3]]));
+}
+
 /* Pushes a pair apart to the distance that it is to have, and rubs it by what that took. */
 static void push_pair(sk_touch *touch, const sk_pairs *near, int sort, size_t k, real gain, real friction) {
     real weight[4], resist = 0;
-    const real *inverse = touch->inverse;
-    const sk_vec4 *p = touch->p;
+    const uint32_t v[4] = {near->corner[0][k], near->corner[1][k], near->corner[2][k], near->corner[3][k]};
     sk_vec4 *q = touch->q;
     sk_weights_of(near, sort, k, weight);
-    sk_vec3 apart = {0, 0, 0}, before = {0, 0, 0}, n = {near->normal[0][k], near->normal[1][k], near->normal[2][k]};
-    for (int c = 0; c < 4; c++) {
-        uint32_t v = near->corner[c][k];
-        apart = sk_add(apart, sk_scale(weight[c], sk_xyz(q[v])));
-        before = sk_add(before, sk_scale(weight[c], sk_xyz(p[v])));
-        resist += weight[c] * weight[c] * inverse[v];
-    }
+    sk_quad apart = apart_at(q, v, weight), n = {near->normal[0][k], near->normal[1][k], near->normal[2][k], 0};
     // what has come too near in some other way gets its thickness back over some substeps, not as a blow
-    real wanted = sk_min(near->thickness[k], near->distance[k] + gain), missing = wanted - sk_dot(n, apart);
-    if (!(missing > 0) || !(resist > 0)) return;
-    sk_vec3 slip = sk_sub(apart, before);
-    slip = sk_sub(slip, sk_scale(sk_dot(slip, n), n));
-    real length = sk_length(slip), rub = friction * missing;
+    real wanted = sk_min(near->thickness[k], near->distance[k] + gain), missing = wanted - dot_of(n, apart);
+    if (!(missing > 0)) return; // as of most
+    for (int c = 0; c < 4; c++) resist += weight[c] * weight[c] * touch->inverse[v[c]];
+    if (!(resist > 0)) return;
+    sk_quad slip = apart - apart_at(touch->p, v, weight);
+    slip[3] = 0;
+    slip -= times(dot_of(slip, n), n);
+    real length = sk_sqrt(dot_of(slip, slip)), rub = friction * missing;
     real share = length > rub ? rub / length : 1;
-    sk_vec3 move = sk_sub(sk_scale(missing / resist, n), sk_scale(friction > 0 ? share / resist : 0, slip));
+    sk_quad move = times(missing / resist, n) - times(friction > 0 ? share / resist : 0, slip);
     for (int c = 0; c < 4; c++) {
-        uint32_t v = near->corner[c][k];
-        sk_accumulate(&q[v], sk_scale(weight[c] * inverse[v], move));
-        q[v].w = 1; // moved
+        sk_quad to = quad_at(&q[v[c]]) + times(weight[c] * touch->inverse[v[c]], move);
+        to[3] = 1; // moved
+        memcpy(&q[v[c]], &to, sizeof to);
     }
 }
 

@@ -59,12 +59,12 @@ typedef struct sk_pairs {
     size_t count, capacity;
 } sk_pairs;
 
-/* Nearest points of all pairs, from the places x of their corners. */
+/* Nearest points of all pairs, from the places x of their corners; and which are near: `closes`. */
 typedef void sk_closest_kernel(const sk_vec4 *x, sk_pairs *pairs);
 
 /* Finds out which pairs, of places x before a substep, might lose their gap by any shares of these ways (w: their length)
  * and which do by all of them: `closes`. Pairs need their distance and normal. */
-enum { SK_CLOSES = 1, SK_MAY_CLOSE = 2 };
+enum { SK_CLOSES = 1, SK_MAY_CLOSE = 2, SK_IS_NEAR = 4 };
 typedef struct sk_closing_values {
     real least, rounding; /* m: what is less does not close at all; how well a distance is known */
     real longest;         /* of all ways, m */
@@ -164,6 +164,8 @@ typedef struct sk_touch {
     real thickness;  /* that pairs were found for, m */
     real now, until; /* substeps since the last search for all, and how long that holds */
     uint64_t clock;  /* substeps in all */
+    size_t storm, next_storm; /* substeps that are left in which nobody has a course; and of the next such time */
+    size_t searched_since; /* searches since the last one for all */
     size_t lost_since; /* how many have been lost since then, each as often as it was */
     sk_vec3 drift;   /* how far all went in a substep then, in the mean; */
     sk_vec3 common;  /* and in this one */
