@@ -1,5 +1,6 @@
-# Builds for WebAssembly: clang, its own runtime (libclang-rt-*-dev-wasm32) and wasi-libc. SIMD of 128 bits, one thread.
-# Used by the preset `wasm`; what comes out runs in browsers and in node (tests/wasm/run.mjs).
+# Builds for WebAssembly: clang, its own runtime (libclang-rt-*-dev-wasm32) and wasi-libc. SIMD of 128 bits, one thread. Used
+# by the preset `wasm`; what comes out runs in browsers and in node (tests/wasm/run.mjs). The preset `wasm-threads` is the
+# package's other flavour, over shared memory, with workers as threads (bindings/js).
 set(CMAKE_SYSTEM_NAME WASI)
 set(CMAKE_SYSTEM_PROCESSOR wasm32)
 if(NOT CMAKE_C_COMPILER)

@@ -107,8 +107,8 @@ static const char **without_output(const char *text, size_t size, const char *co
     return all;
 }
 
-/* Reads a scene and builds its world; a path of a mesh without a text becomes a scene about it, as in the command. `sets` are "path=value", NULL-terminated, or NULL. False: js_faults() tells. */
-bool EXPORT(js_open)(js_scene *js, const char *text, size_t size, const char *path, const char *const *sets) {
+/* Reads a scene and builds its world; a path of a mesh without a text becomes a scene about it, as in the command. `sets` are "path=value", NULL-terminated, or NULL; `threads` are those that the world may have. False: js_faults() tells. */
+bool EXPORT(js_open)(js_scene *js, const char *text, size_t size, const char *path, const char *const *sets, int threads) {
     const skein_kind *const kinds[] = {render_view_kind(), NULL}; // besides the library's; nothing is exported here
     io_faults faults = {note_fault, js, 0, NULL};
     const js_files *before = js_files_use(&js->files);
@@ -118,7 +118,7 @@ bool EXPORT(js_open)(js_scene *js, const char *text, size_t size, const char *pa
     free(all);
     if (js->scene) {
         skein_world_desc desc = skein_default_world_desc();
-        desc.thread_count = 1;
+        desc.thread_count = threads;
         js->world = io_scene_build(js->scene, &desc, &faults);
         js->steps_per_frame = io_scene_steps_per_frame(io_scene_get(js->scene), &js->dt);
     }

@@ -40,18 +40,99 @@ async function bytesOf(source) {
     return answer.arrayBuffer();
 }
 
-async function start(source) {
+const log = (line) => console.warn(`skein: ${line}`);
+
+async function start(source, environment) {
     let exports = null;
-    const imports = {wasi_snapshot_preview1: wasi(() => exports.memory, (line) => console.warn(`skein: ${line}`))};
+    const imports = {wasi_snapshot_preview1: wasi(() => exports.memory, log, environment)};
     const compiled = source instanceof WebAssembly.Module ? source : await WebAssembly.compile(await bytesOf(source));
     exports = (await WebAssembly.instantiate(compiled, imports)).exports;
     exports._initialize();
-    return exports;
+    return {...exports, threads: 1};
 }
 
-/* Loads skein.wasm once: from beside this file, or from an address, bytes or a compiled module. */
-export function load(source) {
-    loading ??= start(source).catch((error) => {
+/* ---- threads, in workers ---- */
+
+const PAGE = 65536, LEAST_MEMORY = 16777216 / PAGE, MOST_MEMORY = 2147483648 / PAGE; // as bindings/js/CMakeLists.txt has them
+const STACK = 524288, MOST_THREADS = 64, PATIENCE = 20000; // bytes; ms for a worker to come
+
+/* Whether memory can be shared with workers, and be waited for here: a page must be isolated (it is sent with
+ * Cross-Origin-Opener-Policy: same-origin and Cross-Origin-Embedder-Policy: require-corp), and only workers may wait. */
+export function canHaveThreads() {
+    try {
+        const memory = new WebAssembly.Memory({initial: 1, maximum: 1, shared: true});
+        Atomics.wait(new Int32Array(memory.buffer), 0, 1); // which is at once not 1, or not allowed
+        return typeof WorkerGlobalScope === 'undefined' || globalThis.crossOriginIsolated === true;
+    } catch {
+        return false;
+    }
+}
+
+async function beginWorker() {
+    if (typeof Worker !== 'undefined') return new Worker(new URL('./thread.js', import.meta.url), {type: 'module'});
+    const threads = 'node:worker_threads', here = import.meta.url; // (names that bundlers leave alone)
+    const {Worker: NodeWorker} = await import(/* @vite-ignore */ threads), worker = new NodeWorker(new URL('./thread.js', here), {execArgv: []});
+    return {
+        postMessage: (data) => worker.postMessage(data),
+        unref: () => worker.unref(),
+        terminate: () => worker.terminate(),
+        set onmessage(hear) {
+            worker.on('message', (data) => hear({data}));
+        },
+        set onerror(hear) {
+            worker.on('error', hear);
+        },
+    };
+}
+
+function come(worker, data) {
+    return new Promise((resolve, reject) => {
+        const late = setTimeout(() => reject(new Error('a worker did not come')), PATIENCE);
+        worker.onmessage = () => resolve(clearTimeout(late));
+        worker.onerror = (event) => reject((clearTimeout(late), new Error(event.message ?? 'a worker could not be started')));
+        worker.postMessage(data);
+    });
+}
+
+/* The other flavour, with so many threads, the caller included. */
+async function startShared(source, threads, environment) {
+    const memory = new WebAssembly.Memory({initial: LEAST_MEMORY, maximum: MOST_MEMORY, shared: true});
+    const from = source ?? new URL('./skein-threads.wasm', import.meta.url);
+    const module = from instanceof WebAssembly.Module ? from : await WebAssembly.compile(await bytesOf(from));
+    const imports = {env: {memory}, wasi_snapshot_preview1: wasi(() => memory, log, environment)};
+    const {exports} = await WebAssembly.instantiate(module, imports);
+    exports._initialize();
+    const workers = [];
+    try {
+        for (let seat = 0; seat < Math.min(threads, MOST_THREADS) - 1; seat++) {
+            const worker = await beginWorker(), bottom = exports.js_take(STACK);
+            workers.push(worker);
+            await come(worker, {module, memory, seat, stack: (bottom + STACK) & ~15});
+            worker.unref?.(); // in node: it keeps no program alive
+        }
+        while (exports.js_workers() < workers.length) await new Promise((resolve) => setTimeout(resolve, 1)); // to their seats
+    } catch (error) {
+        for (const worker of workers) worker.terminate();
+        throw error;
+    }
+    return {...exports, memory, threads: workers.length + 1};
+}
+
+/* Loads the module once: skein.wasm from beside this file, or from an address, bytes or a compiled module. With `threads`
+ * above 1, and where these can be had, skein-threads.wasm instead (`threadsWasm` is then where), with that many; else one
+ * thread does the same. The answer's `threads` says how many there are. A step takes as many as have proved faster;
+ * all of them with {SKEIN_THREADS: 'always'} as the `environment`, which is for measurements. */
+export function load(source, {threads = 1, threadsWasm, environment} = {}) {
+    const begin = async () => {
+        if (threads > 1 && canHaveThreads())
+            try {
+                return await startShared(threadsWasm, threads, environment);
+            } catch (error) {
+                log(`there are no threads, one does all: ${error.message}`);
+            }
+        return start(source, environment);
+    };
+    loading ??= begin().catch((error) => {
         loading = null; // the next call may have better luck
         throw error;
     });
@@ -72,7 +153,7 @@ function put(wasm, text) {
 
 function words(wasm, at) {
     const memory = new Uint8Array(wasm.memory.buffer);
-    return decoder.decode(memory.subarray(at, memory.indexOf(0, at)));
+    return decoder.decode(memory.slice(at, memory.indexOf(0, at))); // (a copy: no text is read out of shared memory)
 }
 
 function takeJson(wasm, at) {
@@ -154,7 +235,7 @@ export class World {
         const scene = put(wasm, text);
         const good = withTexts(wasm, [path, ...sets], (at, ...places) => {
             const list = put(wasm, new Uint8Array(new Uint32Array([...places, 0]).buffer));
-            const opened = wasm.js_open(this.#js, scene.at, scene.size, at, places.length ? list.at : 0);
+            const opened = wasm.js_open(this.#js, scene.at, scene.size, at, places.length ? list.at : 0, wasm.threads);
             wasm.js_give(list.at);
             return opened;
         });

@@ -1,11 +1,12 @@
 // What skein.wasm asks of its surroundings, as WASI names it: a clock, and a log for what the C library writes. There are
-// no files (a scene's come by js_file_add), no arguments and no environment.
+// no files (a scene's come by js_file_add) and no arguments.
 
 const BAD_HANDLE = 8, NO_ENTRY = 44, NO_SPACE = 28;
 
-// `memory()` gives the module's memory as it is now; `log` gets whole lines.
-export function wasi(memory, log) {
+// `memory()` gives the module's memory as it is now; `log` gets whole lines; `environment` has names and values.
+export function wasi(memory, log, environment = {}) {
     const view = () => new DataView(memory().buffer);
+    const variables = Object.entries(environment).map(([name, value]) => new TextEncoder().encode(`${name}=${value}\0`));
     const decoder = new TextDecoder();
     let line = '';
 
@@ -26,11 +27,18 @@ export function wasi(memory, log) {
 
     return {
         environ_sizes_get(count, size) {
-            view().setUint32(count, 0, true);
-            view().setUint32(size, 0, true);
+            view().setUint32(count, variables.length, true);
+            view().setUint32(size, variables.reduce((sum, {length}) => sum + length, 0), true);
             return 0;
         },
-        environ_get: () => 0,
+        environ_get(list, at) {
+            variables.forEach((bytes, i) => {
+                view().setUint32(list + 4 * i, at, true);
+                new Uint8Array(memory().buffer).set(bytes, at);
+                at += bytes.length;
+            });
+            return 0;
+        },
         clock_time_get(clock, precision, out) {
             const ms = clock === 0 ? Date.now() : performance.now();
             view().setBigUint64(out, BigInt(Math.round(ms * 1e6)), true);
@@ -48,7 +56,7 @@ export function wasi(memory, log) {
         path_open: () => NO_ENTRY,
         random_get(at, size) {
             if (size > 65536) return NO_SPACE;
-            crypto.getRandomValues(new Uint8Array(memory().buffer, at, size));
+            new Uint8Array(memory().buffer, at, size).set(crypto.getRandomValues(new Uint8Array(size))); // (into no shared memory)
             return 0;
         },
         proc_exit(status) {

@@ -22,7 +22,16 @@ addEventListener('message', (event) => {
     };
     event.waitUntil(rest());
 });
+/* What it serves is isolated from other pages, so that the page may share memory with threads, whatever the server sends. */
+function isolated(answer) {
+    if (answer.status === 0 || answer.type === 'opaque') return answer;
+    const headers = new Headers(answer.headers);
+    headers.set('Cross-Origin-Opener-Policy', 'same-origin');
+    headers.set('Cross-Origin-Embedder-Policy', 'require-corp');
+    headers.set('Cross-Origin-Resource-Policy', 'cross-origin'); // <skein-scene> is welcome everywhere
+    return new Response(answer.body, {status: answer.status, statusText: answer.statusText, headers});
+}
 addEventListener('fetch', (event) => {
     if (event.request.method !== 'GET' || new URL(event.request.url).origin !== location.origin) return;
-    event.respondWith(caches.match(event.request, {ignoreSearch: true}).then((kept) => kept ?? fetch(event.request)));
+    event.respondWith(caches.match(event.request, {ignoreSearch: true}).then((kept) => kept ?? fetch(event.request)).then(isolated));
 });

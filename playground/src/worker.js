@@ -10,6 +10,10 @@ let playing = false, owed = 0, before = 0, waits = false, stale = false, looping
 const spent = []; // ms of each frame since the last state
 let gradient = null; // {category, object, index}: the constraint whose gradient is shown
 
+// As many threads as there are processors, up to four, where the page may have them: it has its own, and so have others.
+const loaded = load(undefined, {threads: Math.min(4, navigator.hardwareConcurrency ?? 1)});
+loaded.catch(() => {}); // whoever opens a scene is told
+
 /* ---- what there is to draw ---- */
 
 function box(margin) {
@@ -132,7 +136,7 @@ function play(on) {
 /* ---- calls ---- */
 
 const calls = {
-    load: (address) => load(address).then(() => true),
+    threads: async () => (await loaded).threads,
     kinds: (category) => kinds(category),
     formula: (text, options) => formula(text, options),
     async open(text, sets, files, path, frame = 0, events = []) {

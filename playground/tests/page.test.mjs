@@ -9,7 +9,7 @@ import {after, before, test} from 'node:test';
 
 import {chromium} from 'playwright-core';
 
-import {serve} from './server.mjs';
+import {ISOLATED, serve} from './server.mjs';
 
 const root = new URL('../../', import.meta.url).pathname;
 const browserPath = process.env.CHROMIUM ?? ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find(existsSync);
@@ -41,13 +41,13 @@ after(async () => {
 });
 
 /* A page of its own; `errors` are what its console complained of. */
-async function openPage(hash = '', options = {}) {
+async function openPage(hash = '', {address = server.address, ...options} = {}) {
     const context = await browser.newContext({viewport: {width: 800, height: 520}, ...options});
     const page = await context.newPage(), errors = [];
     page.setDefaultTimeout(120000);
     page.on('console', (message) => message.type() === 'error' && errors.push(message.text()));
     page.on('pageerror', (error) => errors.push(String(error)));
-    await page.goto(server.address + hash);
+    await page.goto(address + hash);
     await page.waitForFunction(() => globalThis.skein?.app.state);
     await page.evaluate(() => globalThis.skein.ready);
     return {page, errors, close: () => context.close()};
@@ -181,6 +181,58 @@ test('wind by its control, the method, the command and the link give one hash', 
     assert.equal(await other.page.evaluate(() => globalThis.skein.app.state.hash), found.hash);
     const [a, b] = [await page.evaluate(() => globalThis.skein.picture.camera), await other.page.evaluate(() => globalThis.skein.picture.camera)];
     a.forEach((x, k) => assert.ok(Math.abs(x - b[k]) < 2e-3));
+    assert.deepEqual([...errors, ...other.errors], []);
+    await other.close();
+    await close();
+});
+
+test('a newcomer\'s script, by the mouse and keys alone: drag, wind, formula, drag, link; elsewhere the same hash', async () => {
+    const {page, errors, close} = await openPage('', {permissions: ['clipboard-read', 'clipboard-write']});
+    await page.waitForFunction(() => globalThis.skein.app.state.playing && globalThis.skein.app.state.frame > 5); // it plays by itself
+    const drag = async () => { // what is under the pointer is seized, and led a way while time goes on
+        await page.evaluate(() => globalThis.skein.call('play', false)); // (a flag in the wind has left the place when a slow machine gets there)
+        await page.waitForFunction(() => !globalThis.skein.app.state.playing);
+        const done = await page.evaluate(() => globalThis.skein.app.state.done);
+        const [x, y] = await page.evaluate(() => globalThis.skein.picture.onPage(Math.floor(0.55 * globalThis.skein.app.world.count)));
+        await page.mouse.move(x, y);
+        await page.mouse.down();
+        await page.waitForFunction(() => globalThis.skein.app.pulled !== null);
+        await page.evaluate(() => globalThis.skein.call('play', true));
+        const box = await page.locator('#picture').boundingBox();
+        await page.mouse.move(box.x + 0.4 * box.width, box.y + 0.6 * box.height, {steps: 5});
+        await page.waitForFunction((before_) => globalThis.skein.app.state.done > before_, done);
+        const frame = await page.evaluate(() => globalThis.skein.app.state.frame);
+        await page.waitForFunction((f) => globalThis.skein.app.state.frame > f + 3, frame); // it is held for a moment
+        await page.mouse.up();
+    };
+    await drag();
+    await page.waitForFunction(() => document.getElementById('command').hidden); // no command has hands
+    const wind = page.locator('.field[data-path="forces.1.velocity"] input[type=text]').first();
+    await wind.fill('-4');
+    await wind.press('Enter');
+    await page.waitForFunction(() => globalThis.skein.app.changes.get('forces.1.velocity')?.[0] === -4);
+    await page.locator('.formula > summary').click();
+    await page.locator('#formula-kind').selectOption('force');
+    await page.locator('#formula-text').fill('vec3(0, 6 * sin(3 * t), 0)');
+    await page.waitForFunction(() => document.getElementById('formula-fault').textContent.startsWith('It is good.'));
+    await page.locator('#formula-add').click();
+    await page.waitForFunction(() => globalThis.skein.app.world.objects.force.some((f) => f.name === 'force_field'));
+    await page.waitForFunction(() => globalThis.skein.app.state.frame > 5);
+    await drag();
+    await page.locator('#copy-link').click();
+    await page.waitForFunction(() => document.getElementById('copy-link').textContent === 'Copied');
+    const link = await page.evaluate(() => navigator.clipboard.readText()), frame = Number(/[#&]frame=(\d+)/.exec(link)[1]);
+    assert.ok(link.startsWith(server.address) && link.length < 4000 && frame > 5, link);
+    const other = await openPage(new URL(link).hash); // another browser as far as this one can tell: nothing is shared
+    await other.page.waitForFunction((f) => globalThis.skein.app.state.frame === f, frame);
+    const found = await other.page.evaluate(() => ({hash: globalThis.skein.app.state.hash, wind: globalThis.skein.app.world.objects.force[1].fields.find((f) => f.name === 'velocity').value}));
+    assert.equal(found.wind[0], -4);
+    await page.evaluate(async (f) => globalThis.skein.seek(f), frame); // where this one was when the link was taken
+    await page.waitForFunction((f) => globalThis.skein.app.state.frame === f, frame);
+    assert.equal(await page.evaluate(() => globalThis.skein.app.state.hash), found.hash);
+    // and it goes on the same there as here
+    assert.equal((await other.page.evaluate(() => globalThis.skein.run(30))).hash, (await page.evaluate(() => globalThis.skein.run(30))).hash);
+    assert.notEqual(found.hash, native(['scenes/flag.json', '--frames', `${frame}`]));
     assert.deepEqual([...errors, ...other.errors], []);
     await other.close();
     await close();
@@ -396,6 +448,36 @@ test('once loaded it works without a network', async () => {
     assert.equal(await page.evaluate(() => globalThis.skein.open('balloon', {play: false})), true); // which has a mesh
     assert.deepEqual(errors, []);
     await close();
+});
+
+test('threads in workers where the page is isolated, with native\'s bits; one where it is not', async () => {
+    const shared = await serve(`${root}build/playground`, ISOLATED);
+    const {page, errors, close} = await openPage('#scene=hanging&frame=1', {address: shared.address});
+    assert.equal(await page.evaluate(() => globalThis.crossOriginIsolated), true);
+    const {threads, processors} = await page.evaluate(async () => ({threads: await globalThis.skein.call('threads'), processors: navigator.hardwareConcurrency}));
+    assert.equal(threads, Math.min(4, processors));
+    const sets = ['bodies.0.grid=[96,96]']; // large enough for a step to be shared
+    const found = await page.evaluate(async (set) => (await globalThis.skein.open('hanging', {play: false, set})) && globalThis.skein.run(60), sets);
+    assert.equal(found.hash, native(['scenes/hanging.json', '--frames', '60', '--set', sets[0]]));
+    // what leaves the shared memory: states, files, statistics, another world beside it
+    assert.ok((await page.evaluate(() => globalThis.skein.call('measure'))).kineticEnergy > 0);
+    assert.ok((await page.evaluate(async () => (await globalThis.skein.call('file', 0, 'obj')).length)) > 1e5);
+    await page.evaluate(() => globalThis.skein.beside.choose('pbd'));
+    await page.waitForFunction(() => globalThis.skein.beside.at === 60);
+    assert.deepEqual(errors, []);
+    await close();
+    shared.close();
+    const alone = await openPage('#scene=flag&frame=1');
+    assert.equal(await alone.page.evaluate(() => globalThis.skein.call('threads')), 1);
+    // once the page is kept for offline use, it is isolated by itself
+    await alone.page.evaluate(() => navigator.serviceWorker.ready);
+    await alone.page.waitForFunction(() => navigator.serviceWorker.controller);
+    await alone.page.reload();
+    await alone.page.waitForFunction(() => globalThis.skein?.app.state);
+    assert.equal(await alone.page.evaluate(() => globalThis.crossOriginIsolated), true);
+    assert.equal(await alone.page.evaluate(() => globalThis.skein.call('threads')), threads);
+    assert.deepEqual(alone.errors, []);
+    await alone.close();
 });
 
 test('dark, on a phone, by touch and by keys', async () => {

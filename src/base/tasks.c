@@ -53,6 +53,8 @@ static inline void pause_briefly(void) {
     __builtin_ia32_pause();
 #elif defined(__aarch64__)
     __asm__ volatile("yield");
+#elif defined(__wasm__)
+    for (volatile int i = 0; i < 16; i++) {} // which has no word for it
 #endif
 }
 

@@ -51,7 +51,8 @@ typedef struct cell_copies {
     const real *x, *y, *z, *ux, *uy, *uz;
 } cell_copies;
 
-#if SK_WIDTH < 64 && defined(__SSSE3__) && !defined(SKEIN_DOUBLE)
+#if SK_WIDTH < 64 && (defined(__SSSE3__) || defined(__wasm_simd128__)) && !defined(SKEIN_DOUBLE)
+#define MOVES_UP
 /* The bytes of those of four floats whose bits are set, moved up close to each other; what follows them is 0. */
 #define FLOAT(l_) 4 * (l_), 4 * (l_) + 1, 4 * (l_) + 2, 4 * (l_) + 3
 #define NONE -1, -1, -1, -1
@@ -76,10 +77,23 @@ static const SK_VECTOR_ALIGNED int8_t moved_up[16][16] = {
 #undef FLOAT
 #undef NONE
 
-SK_INLINE void put_up(float *to, const float *from, __m128i order) {
-    __m128i all = _mm_loadu_si128((const __m128i *)(const void *)from);
-    _mm_storeu_si128((__m128i *)(void *)to, _mm_shuffle_epi8(all, order));
+#ifdef __SSSE3__
+typedef __m128i four_floats;
+SK_INLINE four_floats load_four(const void *from) {
+    return _mm_loadu_si128(from);
 }
+SK_INLINE void put_up(float *to, const float *from, four_floats order) {
+    _mm_storeu_si128((__m128i *)(void *)to, _mm_shuffle_epi8(load_four(from), order));
+}
+#else
+typedef v128_t four_floats;
+SK_INLINE four_floats load_four(const void *from) {
+    return wasm_v128_load(from);
+}
+SK_INLINE void put_up(float *to, const float *from, four_floats order) {
+    wasm_v128_store(to, wasm_i8x16_swizzle(load_four(from), order));
+}
+#endif
 #endif
 
 /* Puts the candidates of bits into the list from k on, and returns where it ends then; d is where they are from the
@@ -99,14 +113,14 @@ SK_INLINE size_t keep_near(neighbours *near, size_t k, const cell_copies *copies
     _mm512_storeu_ps(near->uy + k, _mm512_permutexvar_ps(lanes, _mm512_loadu_ps(copies->uy + place)));
     _mm512_storeu_ps(near->uz + k, _mm512_permutexvar_ps(lanes, _mm512_loadu_ps(copies->uz + place)));
     return k + (size_t)__builtin_popcount(bits);
-#elif SK_WIDTH < 64 && defined(__SSSE3__) && !defined(SKEIN_DOUBLE)
+#elif defined(MOVES_UP)
     uint32_t bits = sk_more_bits(square, squares) & some; // (the former has none over a vector's lanes)
     // no way out where there are none: it is guessed wrong too often
     const float *const from[6] = {(const float *)&d.x, (const float *)&d.y, (const float *)&d.z,
                                   copies->ux + place,  copies->uy + place,  copies->uz + place};
     float *const to[6] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
     for (int first = 0; first < SK_PART; first += 4, bits >>= 4) {
-        const __m128i order = _mm_load_si128((const __m128i *)(const void *)moved_up[bits & 15]);
+        const four_floats order = load_four(moved_up[bits & 15]);
         for (int i = 0; i < 6; i++) put_up(to[i] + k, from[i] + first, order);
         k += (size_t)__builtin_popcount(bits & 15);
     }
