@@ -52,7 +52,8 @@ static render_subject look_ahead(const app_scene *loaded, int frames, bool quiet
     desc.thread_count = loaded->settings.threads;
     skein_world *world = io_scene_build(loaded->scene, &desc, &faults);
     // where a card steps the world, it looks ahead as well
-    if (world && skein_world_device(loaded->world).device != SKEIN_DEVICE_CPU)
+    skein_device device = skein_world_device(loaded->world).device;
+    if (world && (device == SKEIN_DEVICE_GPU || device == SKEIN_DEVICE_CURRENT_GL))
         skein_world_device_set(world, SKEIN_DEVICE_CURRENT_GL);
     render_world_frame *frame = render_world_frame_create(NULL);
     double dt;

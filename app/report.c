@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "app/flocks.h"
+#include "app/ranks.h"
 #include "io/budget.h"
 
 static double ms_per_step(const app_report *r) {
@@ -47,6 +48,14 @@ static json_t *trial(const io_trial *t) {
 static json_t *budget(const io_budget *b) {
     return json_pack("{s:f, s:i, s:b, s:b, s:o, s:o, s:o}", "ms_per_frame", b->ms, "frames", b->frames, "exceeded", b->exceeded, "bounded", b->bounded, "chosen",
                      trial(&b->chosen), "half", trial(&b->half), "twice", trial(&b->twice));
+}
+
+/* What sharing has cost. */
+static json_t *ranks_document(const shared_figures *f) {
+    return json_pack("{s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "count", f->ranks, "exchange_share",
+                     number(f->exchange_share), "imbalance", number(f->imbalance), "bytes_per_step",
+                     number(f->bytes_per_step), "cuts", count(f->cuts), "moved", count(f->moved), "most_own",
+                     count(f->most_birds), "most_seen", count(f->most_seen));
 }
 
 static json_t *make_document(const app_report *r) {
@@ -119,6 +128,7 @@ static json_t *make_document(const app_report *r) {
         good &= !json_object_set_new(root, members[i].key, members[i].value);
     const io_budget *b = io_scene_budget(r->loaded->scene);
     if (b->ms > 0) good &= !json_object_set_new(root, "budget", budget(b));
+    if (r->shared) good &= !json_object_set_new(root, "ranks", ranks_document(&r->shared->figures));
     if (json_array_size(r->flocks)) good &= !json_object_set(root, "flocks", r->flocks);
     if (good) return root;
     json_decref(root);
@@ -195,6 +205,13 @@ void app_report_print(const app_report *r) {
     if (s->all_solver_failures)
         printf("%" PRIu64 " times a factor failed, and each particle's own block took its place\n",
                s->all_solver_failures);
+    if (r->shared) {
+        const shared_figures *f = &r->shared->figures;
+        printf("%d ranks: %.1f %% of the time for exchange, %.1f %% imbalance, %.4g kB a step; space cut %zu time%s, at most "
+               "%zu birds a rank and %zu of others\n",
+               f->ranks, 100 * f->exchange_share, 100 * f->imbalance, 1e-3 * f->bytes_per_step, f->cuts,
+               plural((uint64_t)f->cuts), f->most_birds, f->most_seen);
+    }
     app_flocks_print(r->flocks);
     printf("state hash %016" PRIx64 "\n", s->state_hash);
     size_t index;

@@ -10,6 +10,7 @@
 #include "app/keep.h"
 #include "app/outputs.h"
 #include "app/progress.h"
+#include "app/ranks.h"
 #include "app/report.h"
 
 /* ---- the run ---- */
@@ -165,6 +166,7 @@ static bool log_is_in_the_way(const app_report *r, const char *folder) {
 static int conclude(app_report *r, const char *folder, bool good) {
     int signal_number = app_interrupted(); // a later one interrupts nothing that matters
     r->interrupted = signal_number != 0;
+    if (r->shared) app_shared_measure(r->shared);
     good = app_verdict_end(&r->verdict, &r->statistics) && good;
     if (folder && !r->is_file) good = app_report_write(r, folder) && good;
     if (r->json) good = app_report_print_json(r) && good;
@@ -262,8 +264,8 @@ static bool check_resumed(const app_arguments *arguments) {
     return false;
 }
 
-/* Loads and runs; `kept` is NULL for a run that begins. */
-static int run_scene(app_arguments *arguments, const char *folder, const app_kept *kept) {
+/* Loads and runs, rank 0's world stepped by all; `kept` is NULL for a run that begins. */
+static int run_whole(app_arguments *arguments, const char *folder, const app_kept *kept, app_shared *shared) {
     bool quiet = app_given(arguments, "--quiet"), calm = quiet || app_given(arguments, "--no-progress");
     app_scene loaded = {.quiet = quiet};
     char parent[APP_FOLDER_SIZE], output[64];
@@ -272,9 +274,11 @@ static int run_scene(app_arguments *arguments, const char *folder, const app_kep
     int every = snapshots_of(arguments);
     if (every < 0 || (!kept && !want_file(arguments, format, output))) return EXIT_FAULT;
     if (kept && kept->device[0] && !device) device = kept->device;
-    int status = app_load(kept ? kept->scene : app_word(arguments), app_values(arguments, "--set"), &loaded);
+    const char *scene = kept ? kept->scene : app_word(arguments);
+    int status = app_load(scene, app_values(arguments, "--set"), &loaded);
     if (!status && app_given(arguments, "--compile")) loaded.warnings += app_compile(loaded.world, calm);
     if (!status) status = app_device(&loaded, device);
+    if (!status) status = app_shared_lead(shared, &loaded, scene, app_values(arguments, "--set"));
     if (!status && !set_outputs(arguments, loaded.scene)) status = EXIT_FAULT;
     if (!status) {
         app_advise(&loaded);
@@ -286,7 +290,8 @@ static int run_scene(app_arguments *arguments, const char *folder, const app_kep
                              .files = json_array(),
                              .flocks = json_array(),
                              .is_file = format != NULL,
-                             .log_path = log && log[0] ? log : NULL};
+                             .log_path = log && log[0] ? log : NULL,
+                             .shared = shared->ranks ? shared : NULL};
         report.steps_per_frame = io_scene_steps_per_frame(&loaded.settings, &report.dt);
         report.counts_crossings = has_contact(loaded.world);
         app_good good = {NULL, 0, 0, 0};
@@ -297,6 +302,18 @@ static int run_scene(app_arguments *arguments, const char *folder, const app_kep
         json_decref(report.flocks);
     }
     app_unload(&loaded);
+    return status;
+}
+
+/* The same, by all ranks of an MPI job where this is one of them. */
+static int run_scene(app_arguments *arguments, const char *folder, const app_kept *kept) {
+    app_shared shared = {.rank = 0};
+    int status = app_shared_join(&shared, arguments);
+    if (status) return status;
+    if (shared.rank)
+        return app_shared_serve(&shared, kept ? kept->scene : app_word(arguments), app_values(arguments, "--set"));
+    status = run_whole(arguments, folder, kept, &shared);
+    app_shared_leave(&shared);
     return status;
 }
 

@@ -1,4 +1,5 @@
 /* skein study: its arguments become rows to be run, and rows become tables and a plot. */
+#include "app/ranks.h"
 #include "app/study.h"
 
 #include <stdio.h>
@@ -219,7 +220,7 @@ static int run_study(io_study *study, const wishes *w, int rank) {
 }
 
 static int study(app_arguments *arguments) {
-    bool quiet = app_given(arguments, "--quiet"), many = study_is_rank();
+    bool quiet = app_given(arguments, "--quiet"), many = app_is_rank();
     wishes w = {.folder = app_value(arguments, "--out"),
                 .quiet = quiet,
                 .calm = quiet || app_given(arguments, "--no-progress"),

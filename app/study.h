@@ -36,8 +36,6 @@ json_t *study_run(const study_work *work, size_t row, void (*meanwhile)(void *us
 /* Runs all rows in `jobs` processes. A row whose process dies is noted as crashed. */
 void study_run_jobs(study_work *work, size_t jobs);
 
-/* Whether this process is a rank of a job of several, as mpirun and srun tell it in its environment. */
-bool study_is_rank(void);
 /* Joins the job. Returns the rank, or -1 after a printed fault; `count` receives how many there are. */
 int study_ranks_begin(int *count);
 /* Rank 0 deals out and runs rows, the others only run them. */

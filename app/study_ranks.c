@@ -5,40 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/ranks.h"
 #include "app/study.h"
-#include "io/module.h"
-#include "ranks/ranks.h"
 
 static const ranks_content *ranks;
 static int own_rank, rank_count;
 
-bool study_is_rank(void) {
-    // OpenMPI, MPICH and its kin (Intel's), and srun without either
-    static const char *const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANKS"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        const char *size = getenv(names[i]);
-        if (size && strtol(size, NULL, 10) > 1) return true;
-    }
-    const char *tasks = getenv("SLURM_STEP_NUM_TASKS");
-    return tasks && strtol(tasks, NULL, 10) > 1 && getenv("PMIX_RANK");
-}
-
 int study_ranks_begin(int *count) {
-    skein_error error = {SKEIN_OK, "", ""};
-    ranks = io_module_load("ranks", &error);
-    if (!ranks) {
-        fprintf(stderr,
-                "skein study: this is one of several processes of an MPI job, and this skein was built without MPI: "
-                "'tools/setup build' installs it, then build again; or take --jobs or --part (%s)\n",
-                error.message);
-        return -1;
-    }
-    if (!ranks->begin(&own_rank, &rank_count)) {
-        fprintf(stderr, "skein study: the MPI job could not be joined\n");
-        return -1;
-    }
+    int here;
+    ranks = app_ranks_join("skein study", "take --jobs or --part", &own_rank, &rank_count, &here);
     *count = rank_count;
-    return own_rank;
+    return ranks ? own_rank : -1;
 }
 
 void study_ranks_end(void) {

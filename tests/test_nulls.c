@@ -7,6 +7,7 @@
 #include <skein/kinds.h>
 #include <skein/gradient.h>
 #include <skein/record.h>
+#include <skein/share.h>
 
 #include "helpers.h"
 
@@ -163,6 +164,18 @@ static void stepping(void **state) {
     REFUSES_ALL(skein_sparse_solver_set(NULL, NULL));
     FAILS(s.world, SKEIN_ERROR_VALUE, "needs analyse", skein_sparse_solver_set(s.world, &nothing));
     OK(s.world, skein_sparse_solver_set(s.world, NULL));
+    skein_state shared;
+    const skein_part no_part = {.user = NULL};
+    const skein_runner no_runner = {.name = "nobody"};
+    REFUSES_ALL(skein_world_part_set(NULL, NULL));
+    FAILS(s.world, SKEIN_ERROR_VALUE, "needs number", skein_world_part_set(s.world, &no_part));
+    OK(s.world, skein_world_part_set(s.world, NULL));
+    REFUSES_ALL(skein_world_runner_set(NULL, NULL));
+    FAILS(s.world, SKEIN_ERROR_VALUE, "needs name, step", skein_world_runner_set(s.world, &no_runner));
+    OK(s.world, skein_world_runner_set(s.world, NULL));
+    REFUSES_ALL(skein_world_can_share(NULL, 0.01));
+    REFUSES_ALL(skein_world_state(NULL, &shared));
+    REFUSES("state", skein_world_state(s.world, NULL));
     assert_int_equal(skein_pacer_feed(NULL, 1), 0);
     assert_true(skein_pacer_blend(NULL) == 0);
     skein_world_destroy(s.world);

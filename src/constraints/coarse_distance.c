@@ -7,10 +7,22 @@
 #define SK_WITH_STRIPS
 #define SK_WITH_LIMITS
 #define SK_SHARES
-#define SK_UNIT coarse_distance
-#include "constraints/element_kind.h"
+#include "base/kernels.h"
+#include "constraints/element.h"
 
-#ifndef SK_ISA
+#define SK_UNIT coarse_distance
+SK_ELEMENT_KERNELS
+
+#ifdef SK_ISA
+
+#include "constraints/element_arithmetic.h"
+#include "constraints/element_stiffness.h"
+#include "constraints/element_sweeps.h"
+
+#else
+
+#include "constraints/element_scalar.h"
+
 const struct sk_constraint_type sk_coarse_distance = { // (so written that it is not listed among the kinds)
     .kind = {"coarse distance", "", SKEIN_CONSTRAINT, NULL, 0, sizeof(sk_material)},
     SK_ELEMENT_RULES,

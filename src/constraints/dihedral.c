@@ -8,25 +8,37 @@
 #define SK_RESTS 1
 #define SK_FORMULA "constraints/emitted/dihedral.h"
 #define SK_WITH_STRIPS
-#define SK_UNIT dihedral
+#include "base/kernels.h"
 #include "constraints/element.h"
-#ifdef SK_ISA
-#include "base/wide_elementary.h"
-#endif
-#include "constraints/element_kind.h"
 
-#ifndef SK_ISA
+#define SK_UNIT dihedral
+SK_ELEMENT_KERNELS
+
+#ifdef SK_ISA
+
+#include "base/wide_elementary.h"
+#include "constraints/element_arithmetic.h"
+#include "constraints/element_stiffness.h"
+#include "constraints/element_sweeps.h"
+
+#else
+
+typedef struct dihedral_params {
+    sk_material material;
+} dihedral_params;
 
 static const skein_field fields[] = {
-    SK_REAL(sk_material, stiffness, "stiffness", "N m", 0.01, 0, SK_UNBOUNDED,
+    SK_REAL(dihedral_params, material.stiffness, "stiffness", "N m", 0.01, 0, SK_UNBOUNDED,
             "torque a radian; \"infinite\" is rigid (position methods only)"),
-    SK_REAL(sk_material, damping, "damping", "N m s", 0, 0, SK_FAR, "torque a radian a second"),
+    SK_REAL(dihedral_params, material.damping, "damping", "N m s", 0, 0, SK_FAR, "torque a radian a second"),
 };
+
+#include "constraints/element_scalar.h"
 
 const sk_constraint_type sk_dihedral = {
     .kind = {"dihedral",
              "keeps the angle between two triangles over an edge: the edge's two ends, then the two corners beside it",
-             SKEIN_CONSTRAINT, fields, sizeof fields / sizeof *fields, sizeof(sk_material)},
+             SKEIN_CONSTRAINT, fields, sizeof fields / sizeof *fields, sizeof(dihedral_params)},
     SK_ELEMENT_RULES,
 };
 #endif

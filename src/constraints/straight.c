@@ -7,10 +7,14 @@
 #define SK_FORMULA "constraints/emitted/straight.h"
 #define SK_WITH_STRIPS
 #define SK_LINEAR
-#define SK_UNIT straight
+#include "base/kernels.h"
 #include "constraints/element.h"
 
+#define SK_UNIT straight
+SK_ELEMENT_KERNELS
+
 #ifdef SK_ISA
+
 SK_INLINE void linear(sk_element *e) {
     const sk_wide3 *x = e->x;
     sk_wide a = e->rest[0], b = e->rest[1];
@@ -18,21 +22,28 @@ SK_INLINE void linear(sk_element *e) {
                                 a * (x[0].z - x[1].z) + b * (x[2].z - x[1].z)};
     e->scale[0] = a, e->scale[1] = -(a + b), e->scale[2] = b;
 }
-#endif
 
-#include "constraints/element_kind.h"
+#include "constraints/element_arithmetic.h"
+#include "constraints/element_stiffness.h"
+#include "constraints/element_sweeps.h"
 
-#ifndef SK_ISA
+#else
+
+typedef struct straight_params {
+    sk_material material;
+} straight_params;
 
 static const skein_field fields[] = {
-    SK_REAL(sk_material, stiffness, "stiffness", "N m", 0.01, 0, SK_UNBOUNDED,
+    SK_REAL(straight_params, material.stiffness, "stiffness", "N m", 0.01, 0, SK_UNBOUNDED,
             "torque a radian of a small turn; \"infinite\" is rigid (position methods only)"),
-    SK_REAL(sk_material, damping, "damping", "N m s", 0, 0, SK_FAR, "torque a radian a second"),
+    SK_REAL(straight_params, material.damping, "damping", "N m s", 0, 0, SK_FAR, "torque a radian a second"),
 };
+
+#include "constraints/element_scalar.h"
 
 const sk_constraint_type sk_straight = {
     .kind = {"straight", "keeps three particles in a straight line, the second in the middle", SKEIN_CONSTRAINT, fields,
-             sizeof fields / sizeof *fields, sizeof(sk_material)},
+             sizeof fields / sizeof *fields, sizeof(straight_params)},
     SK_ELEMENT_RULES,
 };
 #endif

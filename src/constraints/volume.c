@@ -3,21 +3,36 @@
 #define SK_ARITY 4
 #define SK_RESTS 1
 #define SK_FORMULA "constraints/emitted/volume.h"
-#define SK_UNIT volume
-#include "constraints/element_kind.h"
+#include "base/kernels.h"
+#include "constraints/element.h"
 
-#ifndef SK_ISA
+#define SK_UNIT volume
+SK_ELEMENT_KERNELS
+
+#ifdef SK_ISA
+
+#include "constraints/element_arithmetic.h"
+#include "constraints/element_stiffness.h"
+#include "constraints/element_sweeps.h"
+
+#else
+
+typedef struct volume_params {
+    sk_material material;
+} volume_params;
 
 static const skein_field fields[] = {
-    SK_REAL(sk_material, stiffness, "stiffness", "Pa/m3", 1e9, 0, SK_UNBOUNDED,
+    SK_REAL(volume_params, material.stiffness, "stiffness", "Pa/m3", 1e9, 0, SK_UNBOUNDED,
             "pressure a cubic metre of change; \"infinite\" is rigid (position methods only)"),
-    SK_REAL(sk_material, damping, "damping", "Pa s/m3", 0, 0, SK_FAR,
+    SK_REAL(volume_params, material.damping, "damping", "Pa s/m3", 0, 0, SK_FAR,
             "the same against the volume's change in time"),
 };
 
+#include "constraints/element_scalar.h"
+
 const sk_constraint_type sk_volume = {
     .kind = {"volume", "keeps the volume of a tetrahedron of particles", SKEIN_CONSTRAINT, fields,
-             sizeof fields / sizeof *fields, sizeof(sk_material)},
+             sizeof fields / sizeof *fields, sizeof(volume_params)},
     SK_ELEMENT_RULES,
 };
 #endif

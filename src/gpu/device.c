@@ -218,7 +218,7 @@ static skein_status create(skein_world *world, bool adopt, sk_device **out, skei
     sk_allocator *allocator = &world->allocator;
     sk_gpu_device *device = sk_allocate(allocator, sizeof *device);
     if (!device) return sk_fail_memory(error, "the device");
-    device->base = (sk_device){prepare, step, read_back, release, wait_for, false, true};
+    device->base = (sk_device){prepare, step, read_back, release, wait_for, false, true, NULL};
     device->stage = sk_allocate(allocator, SK_GPU_STAGE);
     device->calls = sk_allocate(allocator, SK_GPU_STAGE / 256 * sizeof *device->calls);
     skein_status status = device->stage && device->calls ? SKEIN_OK : sk_fail_memory(error, "the device");
@@ -244,6 +244,8 @@ skein_status skein_world_device_set(skein_world *world, skein_device device) {
     skein_error *error = sk_world_error(world);
     sk_device *made = NULL;
     skein_status status = SKEIN_OK;
+    if (device == SKEIN_DEVICE_SHARED)
+        return sk_fail(error, SKEIN_ERROR_VALUE, "device", "a run is shared by skein_world_runner_set()");
     if (device != SKEIN_DEVICE_CPU) status = create(world, device == SKEIN_DEVICE_CURRENT_GL, &made, error);
     if (!status && (status = sk_world_set_device(world, made)) && made) release(made, world);
     return status;
@@ -253,6 +255,7 @@ skein_device_info skein_world_device(const skein_world *world) {
     if (!world) return (skein_device_info){.name = ""};
     const sk_gpu_device *device = (const sk_gpu_device *)(const void *)world->device;
     if (!device) return (skein_device_info){.device = SKEIN_DEVICE_CPU, .name = "processor"};
+    if (device->base.name) return (skein_device_info){.device = SKEIN_DEVICE_SHARED, .name = device->base.name};
     bool newest = !device->base.behind; // else what lies there is of another time
     return (skein_device_info){
         .device = device->context.own ? SKEIN_DEVICE_GPU : SKEIN_DEVICE_CURRENT_GL,

@@ -156,7 +156,9 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         builder.no_memory |= !sk_plan_fuse(&world->plan, &world->allocator, world->isa);
     if (builder.no_memory || (!world->device && (!make_temporaries(world) || !make_cells(world))))
         return sk_fail_memory(error, "the plan");
-    status = make_matrix(world, error);
+    if (world->share) sk_share_plan(&world->plan, world->share);
+    status = world->share ? sk_world_check_share(world, error) : SKEIN_OK;
+    if (!status) status = make_matrix(world, error);
     if (status) return status;
     if (world->device && (status = world->device->prepare(world->device, world, error))) return status;
     world->plan_dt = dt;
@@ -189,6 +191,7 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
         world->first_energy = start.kinetic_energy + start.potential_energy + start.elastic_energy;
     }
     world->solve = (sk_solve){.scale = 0};
+    if (world->share) world->share->failed = false;
     skein_status status = sk_world_set_out(world, dt, error);
     if (status) return status;
     sk_run run = sk_world_run_context(world);
@@ -202,6 +205,8 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
         sk_run_ops(&run, world->tasks, world->plan.data, world->plan.count);
         sk_float_mode_leave(mode);
         if (world->pace.levels > 1 && !seconds) sk_pace_note(&world->pace, sk_seconds() - start);
+        if (world->share && world->share->failed)
+            status = sk_fail(error, SKEIN_ERROR_VALUE, "share", "what lies at the border of this part did not come");
         if (run.no_memory) status = sk_fail_memory(error, "the neighbour grid; the step was not finished");
     }
     skein_status arrived = sk_world_arrive(world, !status);

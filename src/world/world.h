@@ -17,6 +17,7 @@
 #include "motions/motion.h"
 #include "particles/surface.h"
 #include "plan/matrix.h"
+#include "plan/share.h"
 #include "plan/solve.h"
 
 typedef struct sk_body sk_body;
@@ -104,6 +105,7 @@ struct sk_device {
     void (*release)(sk_device *device, skein_world *world);
     void (*wait)(sk_device *device); /* until all that was asked for is done */
     bool ahead, behind;
+    const char *name; /* of one that is no card, else NULL */
 };
 
 /* A motion as a frame, in a step: where it puts what was built (world/frames.c). */
@@ -191,6 +193,7 @@ struct skein_world {
         size_t count, capacity;
     } compiled; /* what was registered; the newest is asked first */
     struct sk_recording *recording; /* NULL: nobody records */
+    sk_share *share;            /* NULL: this is the whole run */
 };
 
 /* ---- for the catalogue: adding objects of a known type ---- */
@@ -339,6 +342,8 @@ skein_status sk_world_arrive(skein_world *world, bool done);
 /* Changes where steps are computed; NULL is the processor. The former device is released. On failure nothing changes,
  * and the caller keeps the new one. */
 skein_status sk_world_set_device(skein_world *world, sk_device *device);
+/* Whether all that the plan does can be done where the world has a part of a run. */
+skein_status sk_world_check_share(const skein_world *world, skein_error *error);
 /* The run context of the world's present state. */
 sk_run sk_world_run_context(skein_world *world);
 /* After a step: moves particles to slots near their neighbours', every so often (world/reorder.c). */

@@ -1,0 +1,66 @@
+/* Recursive bisection of samples. */
+#include "ranks/cuts.h"
+
+#include <stdlib.h>
+
+static int compare(const ranks_sample *a, const ranks_sample *b, int axis) {
+    return (a->place[axis] > b->place[axis]) - (a->place[axis] < b->place[axis]);
+}
+
+static int compare_x(const void *a, const void *b) {
+    return compare(a, b, 0);
+}
+
+static int compare_y(const void *a, const void *b) {
+    return compare(a, b, 1);
+}
+
+static int compare_z(const void *a, const void *b) {
+    return compare(a, b, 2);
+}
+
+/* The one that the last cut was across stays while it is nearly the longest, so that few have to move. */
+static int longest_axis(const ranks_sample *samples, size_t count, int last) {
+    double most = -1;
+    int axis = 0;
+    for (int k = 0; k < 3; k++) {
+        double low = count ? samples[0].place[k] : 0, high = low;
+        for (size_t i = 1; i < count; i++) {
+            if (samples[i].place[k] < low) low = samples[i].place[k];
+            if (samples[i].place[k] > high) high = samples[i].place[k];
+        }
+        double length = (high - low) * (k == last ? 1.5 : 1);
+        if (length > most) most = length, axis = k;
+    }
+    return axis;
+}
+
+void ranks_cut_space(ranks_sample *samples, size_t count, int ranks, ranks_cut *cuts) {
+    static int (*const comparisons[3])(const void *, const void *) = {compare_x, compare_y, compare_z};
+    if (ranks < 2) return;
+    int first = ranks / 2, axis = longest_axis(samples, count, cuts->first_ranks ? cuts->axis : -1);
+    double all = 0, sum = 0;
+    for (size_t i = 0; i < count; i++) all += samples[i].work;
+    if (count) qsort(samples, count, sizeof *samples, comparisons[axis]);
+    size_t part = 0;
+    while (part < count && sum + samples[part].work / 2 < all * first / ranks) sum += samples[part++].work;
+    *cuts = (ranks_cut){part < count ? samples[part].place[axis] : count ? samples[count - 1].place[axis] : 0, axis, first};
+    ranks_cut_space(samples, part, first, cuts + 1);
+    ranks_cut_space(samples + part, count - part, ranks - first, cuts + first);
+}
+
+int ranks_owner(const ranks_cut *cuts, int ranks, const double place[3]) {
+    int rank = 0;
+    while (ranks > 1) {
+        int first = cuts->first_ranks;
+        if (place[cuts->axis] < cuts->at) {
+            cuts++;
+            ranks = first;
+        } else {
+            cuts += first;
+            rank += first;
+            ranks -= first;
+        }
+    }
+    return rank;
+}

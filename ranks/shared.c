@@ -1,0 +1,311 @@
+/* The leader of a shared run, and what it calls for. A call is a message of the leader's to all, with what each rank has to
+ * tell at that time; then all do the same. */
+#include "ranks/shared.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "ranks/shared_inside.h"
+
+enum {
+    EVERY = 16,       /* steps between looks at the balance, */
+    CROSS = 4,        /* and between looks at who has crossed: ranks know where their birds are, beyond cuts or not */
+    SURE = 7          /* eighths of the room: with fewer birds a step cannot need more */
+};
+static const double most_imbalance = 0.1;
+
+typedef enum shared_what { STEP, SPREAD_AND_STEP, READ, TELL, DISMISS } shared_what;
+
+typedef struct shared_call {
+    shared_what what; /* the leader's counts */
+    double time, dt;
+    size_t total;
+    shared_tale tale;
+} shared_call;
+
+double shared_seconds(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+_Noreturn void shared_give_up(const shared_run *run, const char *what) {
+    fprintf(stderr, "skein: rank %d of %d: %s\n", run->rank, run->count, what);
+    fflush(stderr);
+    run->ranks->abandon(1);
+    exit(1);
+}
+
+void *shared_grow(const shared_run *run, shared_bytes *bytes, size_t size) {
+    if (bytes->size + size > bytes->capacity) {
+        size_t capacity = 2 * bytes->capacity + size + 4096;
+        unsigned char *data = realloc(bytes->data, capacity);
+        if (!data) shared_give_up(run, "out of memory");
+        bytes->data = data, bytes->capacity = capacity;
+    }
+    void *at = bytes->data + bytes->size;
+    bytes->size += size;
+    return at;
+}
+
+void shared_trade(shared_run *run) {
+    double begun = shared_seconds();
+    size_t count = (size_t)run->count, own[count];
+    for (size_t r = 0; r < count; r++) own[r] = run->out[r].size;
+    run->ranks->gather(own, count * sizeof *own, run->sizes);
+    for (size_t r = 0; r < count; r++) {
+        if (!own[r] || (int)r == run->rank) continue;
+        run->ranks->send_begin((int)r, run->out[r].data, own[r]);
+        run->tale.bytes += (double)own[r];
+    }
+    run->in.size = 0;
+    for (size_t r = 0; r < count; r++) {
+        size_t size = run->sizes[r * count + (size_t)run->rank];
+        if (!size || (int)r == run->rank) continue;
+        run->ranks->size_from((int)r);
+        run->ranks->receive((int)r, shared_grow(run, &run->in, size), size);
+    }
+    run->ranks->send_end();
+    run->tale.exchange += shared_seconds() - begun;
+}
+
+shared_run *shared_begin(const ranks_content *ranks, int rank, int count, size_t total, shared_source source) {
+    size_t n = (size_t)count;
+    shared_run *run = calloc(1, sizeof *run);
+    if (!run) return NULL;
+    *run = (shared_run){.ranks = ranks, .rank = rank, .count = count, .total = total, .source = source};
+    run->cuts = calloc(n, sizeof *run->cuts);
+    run->out = calloc(n, sizeof *run->out);
+    run->boxes = calloc(n, sizeof *run->boxes);
+    run->sizes = calloc(n * n, sizeof *run->sizes);
+    run->tales = calloc(n, sizeof *run->tales);
+    snprintf(run->name_text, sizeof run->name_text, "%d ranks", count);
+    if (run->cuts && run->out && run->boxes && run->sizes && run->tales) return run;
+    shared_end(run);
+    return NULL;
+}
+
+void shared_end(shared_run *run) {
+    if (!run) return;
+    if (run->world) run->source.unmake(run->source.user, run->world);
+    for (int r = 0; r < run->count && run->out; r++) free(run->out[r].data);
+    free(run->in.data);
+    free(run->before.data);
+    free(run->number);
+    free(run->cuts);
+    free(run->out);
+    free(run->boxes);
+    free(run->sizes);
+    free(run->tales);
+    free(run);
+}
+
+/* ---- what all do at once ---- */
+
+/* What the leader calls for, and what all tell. */
+static shared_call call(shared_run *run, shared_call own) {
+    shared_call all[run->count];
+    run->tale.own = run->own;
+    run->tale.unsure = run->since_cut < 2 || run->seen * 8 >= run->room * SURE;
+    own.tale = run->tale;
+    own.total = run->total;
+    run->ranks->gather(&own, sizeof own, all);
+    for (int r = 0; r < run->count; r++) run->tales[r] = all[r].tale;
+    run->total = all[0].total;
+    return all[0];
+}
+
+static double imbalance_of(const shared_run *run) {
+    double most = 0, sum = 0;
+    for (int r = 0; r < run->count; r++) {
+        if (run->tales[r].work > most) most = run->tales[r].work;
+        sum += run->tales[r].work;
+    }
+    return sum > 0 ? most * run->count / sum - 1 : 0;
+}
+
+/* The leader's birds go where they belong. What one costs is not known yet: each rank gets as many. */
+static void spread(shared_run *run, const skein_state *whole) {
+    run->own = run->seen = 0;
+    run->tale.work = 0;
+    for (int r = 0; r < run->count; r++) run->out[r].size = 0;
+    size_t most = 1 << 16, stride = run->total / most + 1, samples = 0;
+    ranks_sample *sample = whole ? malloc((most + 1) * sizeof *sample) : NULL;
+    if (whole && !sample) shared_give_up(run, "out of memory");
+    for (size_t i = 0; whole && i < whole->count && samples < most; i += stride) {
+        const skein_real *p = whole->position[whole->slot_of[i]];
+        if (p[0] - p[0] == 0 && p[1] - p[1] == 0 && p[2] - p[2] == 0)
+            sample[samples++] = (ranks_sample){{(double)p[0], (double)p[1], (double)p[2]}, 1};
+    }
+    if (whole) ranks_cut_space(sample, samples, run->count, run->cuts);
+    free(sample);
+    size_t bytes = (size_t)run->count * sizeof *run->cuts;
+    ranks_cut *all = malloc(bytes * (size_t)run->count);
+    if (!all) shared_give_up(run, "out of memory");
+    run->ranks->gather(run->cuts, bytes, all);
+    memcpy(run->cuts, all, bytes);
+    free(all);
+    for (size_t i = 0; whole && i < whole->count; i++) {
+        const skein_real *p = whole->position[whole->slot_of[i]];
+        int owner = ranks_owner(run->cuts, run->count, (const double[3]){(double)p[0], (double)p[1], (double)p[2]});
+        shared_bird *bird = shared_grow(run, &run->out[owner], sizeof *bird);
+        bird->number = (uint32_t)i;
+        memcpy(bird->position, p, sizeof bird->position);
+        memcpy(bird->velocity, whole->velocity[whole->slot_of[i]], sizeof bird->velocity);
+    }
+    shared_trade(run);
+    const shared_bytes *mine = whole ? &run->out[0] : &run->in;
+    size_t count = mine->size / sizeof(shared_bird);
+    shared_make_room(run, count);
+    shared_add(run, (const shared_bird *)(const void *)mine->data, count);
+    for (int r = 0; whole && r < run->count; r++) { // it was all of the flock
+        free(run->out[r].data);
+        run->out[r] = (shared_bytes){NULL, 0, 0};
+    }
+    run->cut_count++;
+    run->since_cut = 0;
+    run->guessed = true;
+}
+
+/* The state before a step in which some rank's room may turn out to be too small is kept, so that it can be taken again. */
+static void keep(shared_run *run, bool anew) {
+    run->keeps = anew;
+    for (int r = 0; r < run->count; r++) run->keeps |= run->tales[r].unsure != 0;
+    if (run->keeps) shared_copy_own(run, &run->before);
+}
+
+/* Whether on any rank there came more than there is room for; then each has room, and the state before. */
+static bool takes_back(shared_run *run) {
+    if (!run->keeps && !run->tale.overflow) return false;
+    if (!run->keeps) shared_give_up(run, "far more birds came within reach in one step than in those before");
+    int all[run->count], any = 0;
+    double begun = shared_seconds();
+    run->ranks->gather(&run->tale.overflow, sizeof(int), all);
+    run->tale.exchange += shared_seconds() - begun;
+    run->tale.work -= shared_seconds() - begun;
+    for (int r = 0; r < run->count; r++) any |= all[r];
+    if (!any) return false;
+    bool more = run->tale.overflow != 0;
+    run->tale.overflow = 0;
+    run->own = run->seen = 0;
+    if (more) shared_make_room(run, run->room + run->room / 2);
+    shared_add(run, (const shared_bird *)(const void *)run->before.data, run->before.size / sizeof(shared_bird));
+    return true;
+}
+
+static void step(shared_run *run, double time, double dt) {
+    double begun = shared_seconds(), exchange = run->tale.exchange;
+    bool due = run->since_cut == EVERY && (run->guessed || imbalance_of(run) > most_imbalance);
+    if (run->since_cut == EVERY && !due) run->since_cut = 0, run->tale.work = 0;
+    if (due) shared_balance(run), run->guessed = false;
+    if (due || (run->steps && run->steps % CROSS == 0)) shared_migrate(run);
+    keep(run, due || !run->steps);
+    double work = shared_seconds();
+    do {
+        if (skein_world_time(run->world) != time && skein_world_time_set(run->world, time))
+            shared_give_up(run, skein_world_error(run->world)->message);
+        if (skein_world_step(run->world, dt)) shared_give_up(run, skein_world_error(run->world)->message);
+    } while (takes_back(run));
+    if (run->seen - run->own > run->tale.seen) run->tale.seen = run->seen - run->own;
+    run->tale.work += shared_seconds() - work; // exchanges have taken theirs off
+    run->tale.all_work += shared_seconds() - begun - (run->tale.exchange - exchange);
+    run->steps++;
+    run->since_cut++;
+}
+
+/* Everybody's birds come to the leader, with where they were before the last step. */
+typedef struct shared_told {
+    shared_bird bird;
+    skein_real previous[3];
+} shared_told;
+
+static void read_all(shared_run *run, const skein_state *whole, skein_real (*previous)[4]) {
+    double *before = malloc((run->own ? run->own : 1) * 3 * sizeof *before);
+    if (!before) shared_give_up(run, "out of memory");
+    if (skein_positions_blend(run->world, 0, 0, run->own, before))
+        shared_give_up(run, skein_world_error(run->world)->message);
+    const skein_state state = shared_state(run);
+    for (int r = 0; r < run->count; r++) run->out[r].size = 0;
+    for (size_t i = 0; i < run->own; i++) {
+        size_t slot = state.slot_of[i];
+        shared_told *told = shared_grow(run, &run->out[0], sizeof *told);
+        told->bird.number = run->number[i];
+        memcpy(told->bird.position, state.position[slot], sizeof told->bird.position);
+        memcpy(told->bird.velocity, state.velocity[slot], sizeof told->bird.velocity);
+        for (int k = 0; k < 3; k++) told->previous[k] = (skein_real)before[3 * i + (size_t)k];
+    }
+    free(before);
+    double bytes = run->tale.bytes, exchange = run->tale.exchange;
+    shared_trade(run);
+    run->tale.bytes = bytes, run->tale.exchange = exchange; // it is no part of a step
+    const shared_bytes *from[] = {&run->out[0], &run->in};
+    for (int f = 0; f < 2 && whole; f++)
+        for (size_t k = 0; k < from[f]->size / sizeof(shared_told); k++) {
+            const shared_told *told = (const shared_told *)(const void *)from[f]->data + k;
+            size_t slot = whole->slot_of[told->bird.number];
+            memcpy(whole->position[slot], told->bird.position, sizeof told->bird.position);
+            memcpy(whole->velocity[slot], told->bird.velocity, sizeof told->bird.velocity);
+            memcpy(previous[slot], told->previous, sizeof told->previous);
+        }
+}
+
+/* ---- the leader ---- */
+
+static skein_status lead_step(void *user, double time, double dt, const skein_state *state, skein_error *error) {
+    shared_run *run = user;
+    (void)error;
+    call(run, (shared_call){.what = state ? SPREAD_AND_STEP : STEP, .time = time, .dt = dt});
+    if (state) spread(run, state), run->steps = 0;
+    step(run, time, dt);
+    return SKEIN_OK;
+}
+
+static skein_status lead_read(void *user, const skein_state *state, skein_real (*previous)[4], skein_error *error) {
+    shared_run *run = user;
+    (void)error;
+    call(run, (shared_call){.what = READ});
+    read_all(run, state, previous);
+    return SKEIN_OK;
+}
+
+skein_status shared_lead(shared_run *run, skein_world *whole, double dt, skein_error *error) {
+    const skein_runner runner = {run->name_text, run, lead_step, lead_read, NULL};
+    skein_status status = skein_world_can_share(whole, dt);
+    if (!status) status = skein_world_runner_set(whole, &runner);
+    if (status) *error = *skein_world_error(whole);
+    return status;
+}
+
+void shared_measure(shared_run *run, shared_figures *figures) {
+    call(run, (shared_call){.what = TELL});
+    double exchange = 0, all = 0, bytes = 0;
+    *figures = (shared_figures){.ranks = run->count, .cuts = run->cut_count, .imbalance = imbalance_of(run)};
+    for (int r = 0; r < run->count; r++) {
+        const shared_tale *t = &run->tales[r];
+        exchange += t->exchange, all += t->exchange + t->all_work, bytes += t->bytes;
+        figures->moved += t->moved;
+        if (t->own > figures->most_birds) figures->most_birds = t->own;
+        if (t->seen > figures->most_seen) figures->most_seen = t->seen;
+    }
+    figures->exchange_share = all > 0 ? exchange / all : 0;
+    figures->bytes_per_step = run->steps ? bytes / (double)run->steps : 0;
+}
+
+void shared_dismiss(shared_run *run) {
+    if (!run->dismissed) call(run, (shared_call){.what = DISMISS});
+    run->dismissed = true;
+}
+
+/* ---- the others ---- */
+
+void shared_serve(shared_run *run) {
+    for (;;) {
+        shared_call c = call(run, (shared_call){.what = STEP});
+        if (c.what == DISMISS) return;
+        if (c.what == READ) read_all(run, NULL, NULL);
+        if (c.what == SPREAD_AND_STEP) spread(run, NULL), run->steps = 0;
+        if (c.what == STEP || c.what == SPREAD_AND_STEP) step(run, c.time, c.dt);
+    }
+}

@@ -1,0 +1,217 @@
+/* skein run on the ranks of an MPI job: the hash of one process, whatever the ranks and threads; balanced anew on the way;
+ * broken off, and gone on with by another number of ranks; and what cannot be shared is said. */
+#include "test_command.h"
+
+#ifdef SKEIN_MPIRUN
+
+static int frames = 160;
+
+/* mpirun's words, and the command's: in `said`. Returns the exit status. */
+static int run_ranks(int ranks, const char *arguments, char **said) {
+    char command[2400];
+    snprintf(command, sizeof command,
+             "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout 1500 %s --oversubscribe --mca mpi_yield_when_idle 1 -n %d %s run %s >%s 2>&1",
+             SKEIN_MPIRUN, ranks, SKEIN_COMMAND, arguments, in_folder("said"));
+    int status = system(command);
+    *said = read_text(in_folder("said"));
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/* The report of a run. */
+static json_t *report_of(const char *out) {
+    char path[700];
+    snprintf(path, sizeof path, "%s/report.json", out);
+    json_t *report = json_load_file(path, 0, NULL);
+    if (!report) fail_msg("%s is not there", path);
+    return report;
+}
+
+static void check_same_hash(const char *a, const char *b) {
+    json_t *one = report_of(a), *other = report_of(b);
+    assert_string_equal(json_string_value(json_object_get(one, "state_hash")),
+                        json_string_value(json_object_get(other, "state_hash")));
+    json_decref(one), json_decref(other);
+}
+
+/* A flock that is drawn together and apart, flies round and through cuts, and hits a floor. */
+static const char *flock(void) {
+    static char path[512];
+    char text[1200];
+    snprintf(path, sizeof path, "%s/flock.json", folder);
+    snprintf(text, sizeof text, "{'frames': %d, 'fps': 60, 'method': {'type': 'symplectic_euler', 'substeps': 1}, 'bodies': [{'type': "
+                      "'flock', 'count': 700, 'spread': [60, 14, 40], 'speed': 3, 'swirl': 6}], 'forces': [{'type': "
+                      "'flocking', 'separation': 2, 'alignment': 1.5, 'cohesion': 2}, {'type': 'attraction', 'strength': 4}, "
+                      "{'type': 'speed_limit', 'limit': 9}], 'colliders': [{'type': 'plane', 'offset': -6, 'motion.velocity': [0, 0.3, 0], "
+                      "'restitution': 0.8}], 'output': []}", frames);
+    write_scene(path, text);
+    return path;
+}
+
+/* By one process. */
+static const char *whole(void) {
+    static char path[512];
+    if (path[0]) return path;
+    snprintf(path, sizeof path, "%s/whole", folder);
+    outcome o = SKEIN("run", flock(), "--out", path, "--quiet");
+    assert_status(o, 0);
+    outcome_free(&o);
+    return path;
+}
+
+static void any_ranks_have_the_hash_of_one_process(void **state) {
+    (void)state;
+    static const int counts[] = {2, 3, 4, 8};
+    for (size_t i = 0; i < COUNT(counts); i++) {
+        char arguments[1200], out[512], *said;
+        snprintf(out, sizeof out, "%s/ranks%d", folder, counts[i]);
+        snprintf(arguments, sizeof arguments, "%s --out %s --no-progress --threads %d", flock(), out, i == 1 ? 3 : 1);
+        if (run_ranks(counts[i], arguments, &said)) fail_msg("%s", said);
+        check_same_hash(whole(), out);
+        json_t *report = report_of(out), *ranks = json_object_get(report, "ranks");
+        assert_int_equal(json_integer_value(json_object_get(ranks, "count")), counts[i]);
+        assert_true(json_integer_value(json_object_get(ranks, "cuts")) >= 2); // where costs were known, at the latest
+        assert_true(json_integer_value(json_object_get(ranks, "moved")) > 20);
+        assert_true(json_integer_value(json_object_get(ranks, "most_own")) < 700);
+        assert_true(json_real_value(json_object_get(ranks, "bytes_per_step")) > 0);
+        json_decref(report);
+        assert_contains(said, "ranks: ");
+        assert_null(strstr(strstr(said, "state hash ") + 1, "state hash ")); // one rank speaks
+        free(said);
+    }
+}
+
+static void one_rank_is_one_process(void **state) {
+    (void)state;
+    char arguments[1200], *said;
+    snprintf(arguments, sizeof arguments, "%s --out %s/one --no-progress", flock(), folder);
+    if (run_ranks(1, arguments, &said)) fail_msg("%s", said);
+    check_same_hash(whole(), in_folder("one"));
+    free(said);
+}
+
+/* Other rules: a view, the nearest few, forces between neighbours, and methods that look several times a step. */
+static void rules_and_methods_have_it_too(void **state) {
+    (void)state;
+    static const char *const methods[] = {"{'type': 'rk4', 'substeps': 2}", "{'type': 'xpbd', 'substeps': 3}"};
+    char text[2000], scene[512], arguments[1200], *said;
+    snprintf(scene, sizeof scene, "%s/rules.json", folder);
+    for (size_t i = 0; i < COUNT(methods); i++) {
+        snprintf(text, sizeof text,
+                 "{'frames': 40, 'method': %s, 'bodies': [{'type': 'flock', 'side': 20, 'spread': [12, 6, 9], 'mass': 0.2}], "
+                 "'forces': [{'type': 'flocking', 'separation': 0.6, 'alignment': 0.5, 'cohesion': 0.9, 'view': 270, "
+                 "'nearest': 7}, {'type': 'separation', 'radius': 0.4, 'strength': 3}, {'type': 'turn_limit'}, {'type': "
+                 "'gravity'}, {'type': 'drag'}], 'colliders': [{'type': 'sphere', 'radius': 2}], 'output': ['obj']}",
+                 methods[i]);
+        write_scene(scene, text);
+        outcome o = SKEIN("run", scene, "--out", in_folder("rules"), "--quiet");
+        assert_status(o, 0);
+        outcome_free(&o);
+        snprintf(arguments, sizeof arguments, "%s --out %s --quiet", scene, in_folder("rules_by_ranks"));
+        if (run_ranks(3, arguments, &said)) fail_msg("%s", said);
+        free(said);
+        check_same_hash(in_folder("rules"), in_folder("rules_by_ranks"));
+        char *a = read_text(in_folder("rules/flock.obj")), *b = read_text(in_folder("rules_by_ranks/flock.obj"));
+        assert_string_equal(a, b);
+        free(a), free(b);
+    }
+}
+
+static void what_cannot_be_shared_is_said(void **state) {
+    (void)state;
+    char *said;
+    assert_int_equal(run_ranks(2, "scenes/drape.json --frames 2", &said), 2);
+    assert_contains(said, "cannot share a run with a body of more than single particles");
+    assert_contains(said, "one flock");
+    free(said);
+    assert_int_equal(run_ranks(2, "scenes/birds.json --frames 2 --set method.budget_ms=5", &said), 2);
+    assert_contains(said, "say how many");
+    free(said);
+    assert_int_equal(run_ranks(2, "scenes/birds.json --frames 2 --device gpu", &said), 2);
+    assert_contains(said, "ranks of an MPI job step on processors");
+    free(said);
+}
+
+/* Which process of the job is a rank that serves: it has the command's name and that rank in its environment. */
+static pid_t find_rank(const char *scene, const char *rank) {
+    DIR *processes = opendir("/proc");
+    pid_t found = 0;
+    for (struct dirent *entry; processes && (entry = readdir(processes)) != NULL && !found;) {
+        char path[300], text[1 << 16], wanted[64];
+        pid_t id = (pid_t)strtol(entry->d_name, NULL, 10);
+        if (id <= 0) continue;
+        snprintf(path, sizeof path, "/proc/%d/cmdline", (int)id);
+        FILE *file = fopen(path, "rb");
+        size_t size = file ? fread(text, 1, sizeof text - 1, file) : 0;
+        if (file) fclose(file);
+        bool ours = size && memmem(text, size, scene, strlen(scene)) && !memmem(text, size, "--oversubscribe", 15);
+        if (!ours) continue;
+        snprintf(path, sizeof path, "/proc/%d/environ", (int)id);
+        file = fopen(path, "rb");
+        size = file ? fread(text, 1, sizeof text - 1, file) : 0;
+        if (file) fclose(file);
+        snprintf(wanted, sizeof wanted, "OMPI_COMM_WORLD_RANK=%s", rank);
+        if (size && memmem(text, size, wanted, strlen(wanted) + 1)) found = id;
+    }
+    if (processes) closedir(processes);
+    return found;
+}
+
+static void a_rank_that_dies_ends_the_run_and_another_number_goes_on(void **state) {
+    (void)state;
+    char arguments[1200], *said, scene[512];
+    snprintf(scene, sizeof scene, "%s/killed.json", folder);
+    char *text = read_text(flock());
+    write_text(scene, text);
+    free(text);
+    snprintf(arguments, sizeof arguments, "%s --out %s --no-progress --snapshots 20", scene, in_folder("killed"));
+    pid_t job = fork();
+    assert_true(job >= 0);
+    if (job == 0) _exit(run_ranks(3, arguments, &said) == 0 ? 0 : 9);
+    pid_t victim = 0;
+    struct timespec pause = {0, 20000000};
+    for (int tries = 0; tries < 10000; tries++) {
+        if (exists(in_folder("killed/resume")) && count_entries(in_folder("killed/resume")) > 2 &&
+            (victim = find_rank(scene, "1")) > 0)
+            break;
+        nanosleep(&pause, NULL);
+    }
+    assert_true(victim > 0);
+    assert_int_equal(kill(victim, SIGKILL), 0);
+    int status;
+    assert_int_equal(waitpid(job, &status, 0), job);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 9);
+    said = read_text(in_folder("said"));
+    assert_contains(said, "signal 9");
+    free(said);
+    assert_false(exists(in_folder("killed/report.json")));
+    snprintf(arguments, sizeof arguments, "--resume %s --no-progress", in_folder("killed"));
+    if (run_ranks(2, arguments, &said)) fail_msg("%s", said);
+    free(said);
+    check_same_hash(whole(), in_folder("killed"));
+}
+
+/* FRAMES: of the flock, where a thousand steps are wanted. */
+int main(int argc, char **argv) {
+    if (argc > 1) frames = (int)strtol(argv[1], NULL, 10);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_ranks_have_the_hash_of_one_process),
+        cmocka_unit_test(one_rank_is_one_process),
+        cmocka_unit_test(rules_and_methods_have_it_too),
+        cmocka_unit_test(what_cannot_be_shared_is_said),
+        cmocka_unit_test(a_rank_that_dies_ends_the_run_and_another_number_goes_on),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
+
+#else
+
+static void there_is_no_mpi(void **state) {
+    (void)state;
+    skip();
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(there_is_no_mpi)};
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
+#endif
