@@ -2,7 +2,6 @@
  *
  * The file is a recording of the library's (skein/record.h) whose note is JSON: the scene as it ran, where it was read
  * from (its meshes are found by that), and the command line. */
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,22 +63,6 @@ static bool put(void *user, const void *bytes, size_t size) {
     return io_output_status(user, NULL) == SKEIN_OK;
 }
 
-static char *make_note(const app_scene *loaded, const app_arguments *arguments) {
-    char whole[PATH_MAX];
-    json_t *note = json_object(), *line = json_array();
-    for (int i = 0; i < arguments->argc; i++) {
-        json_t *word = json_string(arguments->argv[i]);
-        json_array_append_new(line, word ? word : json_string("(not UTF-8)"));
-    }
-    json_object_set_new(note, "skein", json_string(SKEIN_VERSION));
-    json_object_set_new(note, "path", json_string(realpath(loaded->path, whole) ? whole : loaded->path));
-    json_object_set_new(note, "command_line", line);
-    json_object_set(note, "scene", io_scene_document(loaded->scene));
-    char *text = json_dumps(note, JSON_COMPACT);
-    json_decref(note);
-    return text;
-}
-
 static bool run_recorded(const app_scene *loaded, const change *changes, size_t count, bool calm) {
     double dt;
     int per_frame = io_scene_steps_per_frame(&loaded->settings, &dt);
@@ -109,7 +92,7 @@ static int record_scene(const app_scene *loaded, const app_arguments *arguments,
         return EXIT_FAULT;
     }
     skein_error error = {SKEIN_OK, "", ""};
-    char *note = make_note(loaded, arguments);
+    char *note = io_scene_note(loaded->scene, loaded->path, arguments->argv, arguments->argc);
     io_output *output = note ? io_output_open(path, &error) : NULL;
     if (!output) {
         if (!note) fprintf(stderr, "skein: out of memory\n");

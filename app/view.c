@@ -57,6 +57,7 @@ static bool read_options(const app_arguments *arguments, viewer_options *o) {
     o->paused = app_given(arguments, "--paused");
     o->panels = !app_given(arguments, "--no-panels");
     o->compare = app_value(arguments, "--compare");
+    o->record = app_value(arguments, "--record");
     o->events = app_value(arguments, "--events");
     const char *theme = app_value(arguments, "--theme");
     o->theme = !theme ? viewer_theme_kept() : strcmp(theme, "light") ? VIEWER_DARK : VIEWER_LIGHT;
@@ -131,6 +132,7 @@ static const app_option options[] = {
     APP_THREADS_OPTION,
     APP_DEVICE_OPTION,
     APP_COMPILE_OPTION,
+    {"--record", "FILE", "record all that is done, for `skein verify`; J ends it", false, APP_TAKES_FILE},
     {"--events", "FILE", "write what happens, a line each, - for the terminal", false, APP_TAKES_FILE},
     APP_END_OF_OPTIONS};
 

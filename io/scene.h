@@ -118,6 +118,9 @@ int io_scene_steps_per_frame(const io_scene_settings *settings, double *dt);
 char *io_scene_text(const io_scene *scene);
 /* The same with the paths of its files from the root on, for wherever it is kept. */
 char *io_scene_text_anywhere(const io_scene *scene);
+/* The note of a recording (skein/record.h) as JSON: the scene, where it was read from, and the words of the command that
+ * ran it. NULL when there is no memory; free it. */
+char *io_scene_note(const io_scene *scene, const char *path, char *const *words, int count);
 /* Shows the files that a document names by whole paths, as that text does, until `take` returns false, which is handed on. */
 bool io_scene_each_file(const struct json_t *document, bool (*take)(void *user, const char *path), void *user);
 /* A hash of all in the document that may act on the state: not of its view, its outputs, its name and its threads; of

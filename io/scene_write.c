@@ -16,6 +16,23 @@ char *io_scene_text(const io_scene *scene) {
     return line;
 }
 
+char *io_scene_note(const io_scene *scene, const char *path, char *const *words, int count) {
+    char *whole = realpath(path, NULL);
+    json_t *note = json_object(), *line = json_array();
+    for (int i = 0; i < count; i++) {
+        json_t *word = json_string(words[i]);
+        json_array_append_new(line, word ? word : json_string("(not UTF-8)"));
+    }
+    json_object_set_new(note, "skein", json_string(SKEIN_VERSION));
+    json_object_set_new(note, "path", json_string(whole ? whole : path));
+    json_object_set_new(note, "command_line", line);
+    json_object_set(note, "scene", io_scene_document(scene));
+    char *text = json_dumps(note, JSON_COMPACT);
+    json_decref(note);
+    free(whole);
+    return text;
+}
+
 /* ---- files that it names ---- */
 
 /* Whether a member holds the path of a file, relative to the scene's folder. */

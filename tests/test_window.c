@@ -546,7 +546,7 @@ static void solves_by_keys(void **state) {
     expect("released 1 ");
     tool("key Return");
     for (int turn = 0; turn < 2; turn++) {
-        if (turn) tool("key j");
+        if (turn) tool("key m");
         expect("log solve ");
         const char *said = strstr(screen.line, "stretch before: C ");
         assert_non_null(said);

@@ -98,6 +98,12 @@ static void record(viewer_stage *stage, const viewer_key *key) {
     viewer_film_toggle(stage);
 }
 
+static void record_all(viewer_stage *stage, const viewer_key *key) {
+    (void)key;
+    if (stage->records) viewer_recorded_end(stage);
+    else viewer_recorded_begin(stage, NULL);
+}
+
 static void save_mesh(viewer_stage *stage, const viewer_key *key) {
     (void)key;
     viewer_save_mesh(stage);
@@ -297,6 +303,7 @@ static const viewer_key keys[] = {
     SCENE(GLFW_KEY_X, "X", save_picture,
           "saves the picture as a PNG in the working directory (with Shift: the window)"),
     SCENE(GLFW_KEY_V, "V", record, "records a film, and ends it"),
+    SCENE(GLFW_KEY_J, "J", record_all, "records all that is done, for `skein verify`, and ends it"),
     SCENE(GLFW_KEY_O, "O", save_mesh, "saves the bodies' meshes as OBJ"),
     SCENE(GLFW_KEY_F5, "F5", reload, "reads the scene's file again; changes made here stay on top of it"),
     PANEL(GLFW_KEY_F1, "F1", VIEWER_PANEL_KEYS, "shows all keys"),

@@ -277,7 +277,7 @@ void viewer_mirror(viewer_stage *stage) {
     shown->paused = stage->paused;
     shown->light = stage->light;
     shown->alarm = stage->alarm && stage->message[0];
-    shown->recording = stage->film != NULL;
+    shown->recording = stage->film != NULL || (stage->records && stage->side_count);
     shown->flying = stage->camera.flying;
     shown->by_key = viewer_stage_by_key(stage);
     shown->play_away = stage->play_away;

@@ -38,6 +38,7 @@ typedef struct viewer_player {
     double *velocities;  /* and what they had then, which the library's reset takes from them; m/s, three each */
     viewer_reporter reporter;
     bool failed; /* a step failed: said once */
+    bool grown; /* an object has come or gone since it was built: `scene` does not have it */
     double needed; /* substeps, where there are too few to be stable; else 0 */
 } viewer_player;
 

@@ -128,11 +128,13 @@ static bool step_all(viewer_stage *stage, bool *new_frame) {
     viewer_lesson_before(stage);
     bool good = profile_is_due(stage) ? profile(stage, new_frame) : viewer_player_step(first, new_frame), ignored;
     viewer_lesson_after(stage);
+    if (good) viewer_recorded_step(stage, 0);
     for (size_t s = 1; s < stage->side_count; s++) {
         viewer_player *other = &stage->sides[s];
         while (good && skein_world_time(other->world) + 0.5 * other->dt <= skein_world_time(first->world)) {
             if (stage->grab.side == s) viewer_grab_lead(&stage->grab, other->world, other->dt);
             good = viewer_player_step(other, &ignored);
+            if (good) viewer_recorded_step(stage, s);
         }
     }
     return good;
@@ -292,6 +294,7 @@ static void *stage_thread(void *data) {
     if (stage->card) glfwMakeContextCurrent(stage->card);
     if (viewer_pictures_open(stage, &error)) {
         stage->last = stage->spoke = viewer_seconds();
+        if (stage->options->record) viewer_recorded_begin(stage, stage->options->record);
         if (stage->options->path) viewer_stage_open(stage, stage->options->path, stage->options->sets);
         if (stage->side_count && stage->options->compare) viewer_stage_compare(stage, stage->options->compare);
         if (!stage->side_count) stage->panel[VIEWER_PANEL_GALLERY] = true;
@@ -300,6 +303,7 @@ static void *stage_thread(void *data) {
         stage->dirty = true;
         while (!stage->closing) turn(stage);
         if (stage->film) viewer_film_toggle(stage);
+        viewer_recorded_end(stage);
         viewer_gallery_close(stage);
         viewer_lesson_release(&stage->lesson);
         viewer_hunt_release(&stage->hunt);

@@ -26,6 +26,7 @@
 #include "viewer/painter.h"
 #include "viewer/player.h"
 #include "viewer/recent.h"
+#include "viewer/recorded.h"
 #include "viewer/viewer.h"
 
 typedef struct GLFWwindow GLFWwindow;
@@ -114,6 +115,9 @@ typedef struct viewer_stage {
     film *film;
     char film_path[64];
     uint64_t film_frames;
+    viewer_recorded recorded[VIEWER_SIDES];
+    bool records;                    /* what is done, into this file and its parts */
+    char record_path[PLAYER_PATH];
     double watched; /* when the scene's file was looked at */
     struct {
         long long seconds, nanoseconds, size;
@@ -203,6 +207,8 @@ void viewer_save_mesh(viewer_stage *stage);
 void viewer_save_scene(viewer_stage *stage);
 void viewer_film_toggle(viewer_stage *stage);
 void viewer_film_frame(viewer_stage *stage);
+/* The scene's name as a file's. */
+const char *viewer_stem_of(const viewer_stage *stage, char stem[48]);
 void viewer_watch(viewer_stage *stage, bool only_note);
 /* "skein-001.png": the first of its kind that is not there yet. */
 void viewer_free_name(const char *stem, const char *ending, char *path, size_t size);

@@ -338,6 +338,7 @@ void viewer_stage_add_or_remove(viewer_stage *stage, const viewer_request *r) {
         else snprintf(set, sizeof set, "%s.%zu=null", viewer_list_of(r->category), place);
         if (status) viewer_say(stage, SKEIN_LOG_WARNING, "%s", skein_world_error(world)->message);
         else keep(stage, s, set, NULL, NULL);
+        if (!status) viewer_recorded_anew(stage, s);
     }
     viewer_event(stage->events, "%s %s", adds ? "added" : "removed", r->text);
     stage->facts = stage->dirty = true;

@@ -15,8 +15,8 @@ void viewer_free_name(const char *stem, const char *ending, char *path, size_t s
     }
 }
 
-/* The scene's name as a file's: letters and digits. */
-static const char *stem_of(const viewer_stage *stage, char stem[48]) {
+/* Letters and digits. */
+const char *viewer_stem_of(const viewer_stage *stage, char stem[48]) {
     const char *name = stage->sides[0].settings.name;
     size_t length = 0;
     for (; name[length] && length < 40; length++)
@@ -33,7 +33,7 @@ void viewer_save_picture(viewer_stage *stage) {
     render_image image = {0};
     skein_error error = {SKEIN_OK, "", ""};
     char path[64], stem[48];
-    viewer_free_name(stem_of(stage, stem), ".png", path, sizeof path);
+    viewer_free_name(viewer_stem_of(stage, stem), ".png", path, sizeof path);
     if (viewer_picture_read(stage, &image)) {
         if (render_image_write_png(&image, path, &error))
             viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", error.where, error.message);
@@ -65,7 +65,7 @@ static void save_body(viewer_stage *stage, size_t body, const char *stem) {
 void viewer_save_mesh(viewer_stage *stage) {
     char stem[48];
     size_t count = skein_object_count(stage->sides[0].world, SKEIN_BODY), faces = 0;
-    stem_of(stage, stem);
+    viewer_stem_of(stage, stem);
     for (size_t b = 0; b < count; b++) {
         skein_surface s;
         if (!skein_body_surface(stage->sides[0].world, skein_object_at(stage->sides[0].world, SKEIN_BODY, b), &s))
@@ -84,7 +84,7 @@ void viewer_save_scene(viewer_stage *stage) {
     skein_error error = {SKEIN_OK, "", ""};
     char path[64], stem[48];
     for (size_t s = stage->side_count; s-- > 0;) {
-        stem_of(stage, stem);
+        viewer_stem_of(stage, stem);
         if (s) snprintf(stem + (strlen(stem) < 30 ? strlen(stem) : 30), 8, "-other");
         viewer_free_name(stem, ".json", path, sizeof path);
         if (viewer_player_write(&stage->sides[s], path, &reading, &error)) {
@@ -107,7 +107,7 @@ static void begin_film(viewer_stage *stage) {
     // the first format that there is an encoder for
     const film_format *format = NULL;
     for (int e = 0; e < 3 && !format; e++) {
-        viewer_free_name(stem_of(stage, stem), endings[e], stage->film_path, sizeof stage->film_path);
+        viewer_free_name(viewer_stem_of(stage, stem), endings[e], stage->film_path, sizeof stage->film_path);
         format = film_format_of(stage->film_path, NULL);
         if (format && !film_format_is_here(format)) format = NULL;
     }

@@ -71,6 +71,7 @@ void viewer_stage_open(viewer_stage *stage, const char *path, const char *const 
     const char *name = stage->sides[0].settings.name;
     viewer_note(stage, "%s: %zu particles", name[0] ? name : path, skein_particle_count(stage->sides[0].world));
     note_opened(stage, "opened");
+    viewer_recorded_follow(stage);
     skein_error error = {SKEIN_OK, "", ""};
     if (!viewer_recent_add(&stage->recent, path, &error))
         viewer_say(stage, SKEIN_LOG_INFO, "%s: %s", error.where, error.message);
@@ -114,6 +115,7 @@ bool viewer_stage_reopen(viewer_stage *stage, viewer_changes *changes, bool stay
     viewer_watch(stage, true);
     restart_clock(stage);
     viewer_handles_anew(stage, false);
+    viewer_recorded_follow(stage);
     return good;
 }
 
@@ -160,6 +162,7 @@ static void compare_with(viewer_stage *stage, const char *set, const viewer_chan
     stage->camera.placed = false;
     restart_clock(stage);
     viewer_handles_anew(stage, false);
+    viewer_recorded_follow(stage);
     viewer_tell_state(stage);
 }
 

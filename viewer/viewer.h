@@ -27,6 +27,7 @@ typedef struct viewer_options {
     const char *const *allowed;         /* files and folders that scenes may have read besides (io/reach.h), or NULL */
     const skein_kind *const *exporters; /* for the scene reader, the view's kind among them */
     const char *events;                 /* a file that is told what happens, "-" for standard output; NULL: none */
+    const char *record;                 /* a file that all that is done is recorded in; NULL: none */
     const char *compare;                /* "path=value" of a second world beside the first; NULL: none */
     int32_t size[2], samples, threads;  /* threads 0: the scene's */
     double scale;                       /* of the letters; 0: as the screen has it */
