@@ -172,6 +172,6 @@ sk_op_kernel sk_sweep_clear_multipliers;
 /* The batch's damping over stiffness, in seconds; 0 for a rigid batch. */
 double sk_batch_damping_time(const sk_batch *batch);
 
-extern const struct sk_constraint_type sk_coarse_distance; /* no user's kind */
+extern const struct sk_constraint_type sk_coarse_distance, sk_extension; /* no users' kinds */
 
 #endif

@@ -34,16 +34,31 @@ SK_INLINE sk_wide reciprocal(sk_wide x) {
 
 #include SK_FORMULA
 
+/* A kind with SK_ONE_SIDED wants its C to be at least 0: elements of which it is not less are slack, and do nothing. */
+#ifdef SK_ONE_SIDED
+#define SK_IS_ONE_SIDED true
+#else
+#define SK_IS_ONE_SIDED false
+#endif
+
+/* How far an element is beyond what is free, and what its stiffness is there. */
+SK_INLINE sk_wide excess_of(const sk_element *e) {
+    return SK_IS_ONE_SIDED ? -e->value : e->value;
+}
+SK_INLINE sk_wide stiffness_at(const sk_element *e, sk_wide stiffness) {
+    return SK_IS_ONE_SIDED ? sk_keep(sk_negative(e->value), stiffness) : stiffness;
+}
+
 /* The matrix a k + b c of an element at its place, times a direction. It is k (grad C)(grad C)^T, which is positive
  * definite whatever C is (Gauss and Newton's). A kind with SK_ACROSS adds what turns the gradient, the tension across
  * it, where that is positive, too. */
 SK_INLINE void apply(sk_element *e, const sk_element_constants *c) {
-    sk_wide push = c->both * e->stiffness, along = sum_along(e, e->other);
+    sk_wide stiffness = stiffness_at(e, e->stiffness), push = c->both * stiffness, along = sum_along(e, e->other);
     e->across = (sk_wide3){{0}, {0}, {0}};
     if (e->divided) {
         sk_wide inverse = inverse_divisor(e);
 #ifdef SK_ACROSS
-        sk_wide across = c->elastic * sk_keep(sk_positive(e->value), e->stiffness * e->value * inverse);
+        sk_wide across = c->elastic * sk_keep(sk_positive(excess_of(e)), stiffness * excess_of(e) * inverse);
         push -= across;
         e->across = (sk_wide3){across * (e->other[0].x - e->other[1].x), across * (e->other[0].y - e->other[1].y),
                                across * (e->other[0].z - e->other[1].z)};
@@ -98,7 +113,7 @@ SK_INLINE bool limit(sk_element *e, const sk_element_constants *c, bool moving) 
 
 /* False where nothing moves. */
 SK_INLINE bool work_out(sk_element *e, const sk_element_constants *c, sk_element_mode mode) {
-    e->divided = e->opposite = e->judged = e->timed = e->is_energy = e->one_sided = false;
+    e->divided = e->opposite = e->timed = e->is_energy = false, e->judged = e->one_sided = SK_IS_ONE_SIDED;
 #ifdef SK_LINEAR
     if (mode == SK_MODE_PROJECT) {
         project_linear(e);
@@ -107,6 +122,7 @@ SK_INLINE bool work_out(sk_element *e, const sk_element_constants *c, sk_element
 #endif
     if (mode == SK_MODE_LIMIT || mode == SK_MODE_LIMIT_MOVING) return limit(e, c, mode == SK_MODE_LIMIT_MOVING);
     formula(e);
+    if (SK_IS_ONE_SIDED) e->active = sk_negative(e->value);
     if (mode == SK_MODE_APPLY) apply(e, c);
     else answer(e, c, mode);
     return true;

@@ -35,6 +35,12 @@ static inline double reciprocal(one_element *e, double x) {
 
 #include SK_FORMULA
 
+#ifdef SK_ONE_SIDED // (element_arithmetic.h)
+#define SK_IS_ONE_SIDED true
+#else
+#define SK_IS_ONE_SIDED false
+#endif
+
 static bool rest_of(const void *params, const double (*x)[3], double *rest) {
     (void)params;
     one_element e = {.divisor = 1};
@@ -65,7 +71,7 @@ static bool evaluate(const sk_batch *batch, double time, const sk_vec4 *x, size_
     one_element e = {.divisor = 1};
     evaluate_one(batch, x, element, &e);
     double over = reciprocal(&e, e.divisor);
-    *answer = (sk_constraint_answer){.value = e.value, .guarded = e.guarded};
+    *answer = (sk_constraint_answer){.value = e.value, .one_sided = SK_IS_ONE_SIDED, .guarded = e.guarded};
     for (size_t i = 0; i < SK_ARITY && i < most; i++)
         for (int k = 0; k < 3; k++) gradient[i][k] = over * e.gradient[i][k];
     return true;
@@ -82,6 +88,7 @@ static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_
     (void)time;
     for (size_t e = begin; e < end; e++) {
         double value = value_of(batch, x, e);
+        if (SK_IS_ONE_SIDED && value >= 0) value = 0;
         out[e - begin] = 0.5 * value * value;
     }
     return 0;

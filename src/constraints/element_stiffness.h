@@ -34,6 +34,7 @@ SK_INLINE void stiffen(stiff_elements *s, const sk_run *run, const sk_op *op, si
     }
     e->divided = e->opposite = false;
     formula(e);
+    stiff = stiffness_at(e, stiff);
     s->along = both * stiff;
     s->across = (sk_wide){0};
     if (!e->divided) return;
@@ -43,7 +44,7 @@ SK_INLINE void stiffen(stiff_elements *s, const sk_run *run, const sk_op *op, si
         *g = (sk_wide3){inverse * g->x, inverse * g->y, inverse * g->z};
     }
 #ifdef SK_ACROSS
-    s->across = elastic * sk_keep(sk_positive(e->value), stiff * e->value * inverse);
+    s->across = elastic * sk_keep(sk_positive(excess_of(e)), stiff * excess_of(e) * inverse);
 #endif
 }
 

@@ -368,7 +368,7 @@ static skein_status reverse_elements(sk_adjoint *a, const sk_batch *batch, const
         if (answer.is_energy || answer.by_time != 0)
             return sk_fail(error, SKEIN_ERROR_VALUE, batch->label,
                            "damping of an energy, or of a constraint that depends on time, has no gradient yet");
-        if (answer.one_sided && answer.value < 0) continue;
+        if (answer.one_sided && answer.value >= 0) continue;
         load(a, batch, element, at->v, v), load(a, batch, element, bar, f);
         double scale = batch->scale ? (double)batch->scale[element] : 1;
         *by_damping -= scale * along(count, g, v) * along(count, g, f);
