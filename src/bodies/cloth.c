@@ -61,7 +61,7 @@ static const skein_field fields[] = {
             "of the sheet along its threads (1e4 is a firm cotton)"),
     SK_REAL(cloth_params, stretch.damping, "stretch.damping", "N s/m", 0, 0, SK_FAR,
             "of stretching; other motion is free"),
-    SK_REAL(cloth_params, shear.stiffness, "shear.stiffness", "N/m", 2e3, 0, SK_UNBOUNDED, "across the threads"),
+    SK_REAL(cloth_params, shear.stiffness, "shear.stiffness", "N/m", 1e3, 0, SK_UNBOUNDED, "across the threads"),
     SK_REAL(cloth_params, shear.damping, "shear.damping", "N s/m", 0, 0, SK_FAR, "of shearing"),
     SK_CHOICE(
         cloth_params, bending, "bend.by", BY_SHAPE, "springs|angle|curvature|lines|shape",

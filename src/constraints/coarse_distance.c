@@ -5,6 +5,7 @@
 #define SK_RESTS 3
 #define SK_FORMULA "constraints/emitted/distance.h"
 #define SK_WITH_STRIPS
+#define SK_WITH_STRAIN
 #define SK_WITH_LIMITS
 #define SK_SHARES
 #include "base/kernels.h"

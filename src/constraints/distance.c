@@ -7,6 +7,7 @@
 #define SK_BEYOND beyond
 #endif
 #define SK_WITH_STRIPS
+#define SK_WITH_STRAIN
 #define SK_WITH_LIMITS
 #define SK_ACROSS
 #include "base/kernels.h"

@@ -41,12 +41,14 @@ SK_INLINE sk_wide reciprocal(sk_wide x) {
 #define SK_IS_ONE_SIDED false
 #endif
 
-/* How far an element is beyond what is free, and what its stiffness is there. */
+/* How far an element is beyond what is free, and what its stiffness is there: in full where it is just taut, so that what is
+ * foretold of a sheet that lies as it was made (world/stability.c) knows its diagonals. */
 SK_INLINE sk_wide excess_of(const sk_element *e) {
     return SK_IS_ONE_SIDED ? -e->value : e->value;
 }
 SK_INLINE sk_wide stiffness_at(const sk_element *e, sk_wide stiffness) {
-    return SK_IS_ONE_SIDED ? sk_keep(sk_negative(e->value), stiffness) : stiffness;
+    if (!SK_IS_ONE_SIDED) return stiffness;
+    return sk_keep(sk_at_most(e->value, (real)1e-4 * e->rest[0]), stiffness);
 }
 
 /* The matrix a k + b c of an element at its place, times a direction. It is k (grad C)(grad C)^T, which is positive

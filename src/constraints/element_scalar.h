@@ -77,10 +77,10 @@ static bool evaluate(const sk_batch *batch, double time, const sk_vec4 *x, size_
     return true;
 }
 
-#ifdef SK_WITH_LIMITS
+#ifdef SK_WITH_STRAIN
 static void strain(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, real *out) {
     for (size_t e = begin; e < end; e++)
-        out[e - begin] = batch->rest[e] > 0 ? (real)(value_of(batch, x, e) / (double)batch->rest[e]) : 0;
+        out[e - begin] = batch->rest[e] > 0 ? (real)((SK_IS_ONE_SIDED ? -1 : 1) * value_of(batch, x, e) / (double)batch->rest[e]) : 0;
 }
 #endif
 

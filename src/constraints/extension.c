@@ -4,6 +4,7 @@
 #define SK_RESTS 1
 #define SK_FORMULA "constraints/emitted/extension.h"
 #define SK_WITH_STRIPS
+#define SK_WITH_STRAIN
 #define SK_ACROSS
 #define SK_ONE_SIDED
 #include "base/kernels.h"
@@ -25,5 +26,6 @@ SK_ELEMENT_KERNELS
 const struct sk_constraint_type sk_extension = { // (so written that it is not listed among the kinds)
     .kind = {"extension", "", SKEIN_CONSTRAINT, NULL, 0, sizeof(sk_material)},
     SK_ELEMENT_RULES,
+    .strain = strain,
 };
 #endif
