@@ -8,22 +8,10 @@
 #define SK_WITH_STRAIN
 #define SK_WITH_LIMITS
 #define SK_SHARES
-#include "base/kernels.h"
-#include "constraints/element.h"
-
 #define SK_UNIT coarse_distance
-SK_ELEMENT_KERNELS
+#include "constraints/element_kind.h"
 
-#ifdef SK_ISA
-
-#include "constraints/element_arithmetic.h"
-#include "constraints/element_stiffness.h"
-#include "constraints/element_sweeps.h"
-
-#else
-
-#include "constraints/element_scalar.h"
-
+#ifndef SK_ISA
 const struct sk_constraint_type sk_coarse_distance = { // (so written that it is not listed among the kinds)
     .kind = {"coarse distance", "", SKEIN_CONSTRAINT, NULL, 0, sizeof(sk_material)},
     SK_ELEMENT_RULES,

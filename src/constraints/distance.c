@@ -10,14 +10,9 @@
 #define SK_WITH_STRAIN
 #define SK_WITH_LIMITS
 #define SK_ACROSS
-#include "base/kernels.h"
 #include "constraints/element.h"
 
-SK_ELEMENT_KERNELS
-
-#ifdef SK_ISA
-
-#ifdef SK_BEYOND
+#if defined SK_ISA && defined SK_BEYOND
 /* By squares, for most spans are slack, and a root takes as long as all else; with a margin for what is rounded. */
 SK_INLINE sk_mask beyond(const sk_element *e, sk_wide most) {
     const real nearly = (real)0.99999;
@@ -27,28 +22,20 @@ SK_INLINE sk_mask beyond(const sk_element *e, sk_wide most) {
 }
 #endif
 
-#include "constraints/element_arithmetic.h"
-#include "constraints/element_stiffness.h"
-#include "constraints/element_sweeps.h"
+#include "constraints/element_kind.h"
 
-#else
-
-typedef struct distance_params {
-    sk_material material;
-} distance_params;
+#ifndef SK_ISA
 
 static const skein_field fields[] = {
-    SK_REAL(distance_params, material.stiffness, "stiffness", "N/m", 1e4, 0, SK_UNBOUNDED,
+    SK_REAL(sk_material, stiffness, "stiffness", "N/m", 1e4, 0, SK_UNBOUNDED,
             "force a metre of stretch; \"infinite\" is rigid (position methods only)"),
-    SK_REAL(distance_params, material.damping, "damping", "N s/m", 0, 0, SK_FAR,
+    SK_REAL(sk_material, damping, "damping", "N s/m", 0, 0, SK_FAR,
             "force a metre a second of stretching; it does not slow other motion"),
 };
 
-#include "constraints/element_scalar.h"
-
 const sk_constraint_type sk_distance = {
     .kind = {"distance", "keeps two particles at their rest distance (a spring and damper)", SKEIN_CONSTRAINT, fields,
-             sizeof fields / sizeof *fields, sizeof(distance_params)},
+             sizeof fields / sizeof *fields, sizeof(sk_material)},
     SK_ELEMENT_RULES,
     .limit = SK_WALKS_OF(limit),
     .limit_moving = SK_WALKS_OF(limit_moving),

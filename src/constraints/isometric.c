@@ -7,14 +7,10 @@
 #define SK_FORMULA "constraints/emitted/isometric.h"
 #define SK_WITH_STRIPS
 #define SK_LINEAR
-#include "base/kernels.h"
+#define SK_UNIT isometric
 #include "constraints/element.h"
 
-#define SK_UNIT isometric
-SK_ELEMENT_KERNELS
-
 #ifdef SK_ISA
-
 SK_INLINE void linear(sk_element *e) {
     const sk_wide3 *x = e->x;
     sk_wide a = e->rest[0], b = e->rest[1], c = e->rest[2];
@@ -23,29 +19,22 @@ SK_INLINE void linear(sk_element *e) {
                                 a * (x[1].z - x[0].z) - b * (x[2].z - x[0].z) - c * (x[3].z - x[0].z)};
     e->scale[0] = b + c - a, e->scale[1] = a, e->scale[2] = -b, e->scale[3] = -c;
 }
+#endif
 
-#include "constraints/element_arithmetic.h"
-#include "constraints/element_stiffness.h"
-#include "constraints/element_sweeps.h"
+#include "constraints/element_kind.h"
 
-#else
-
-typedef struct isometric_params {
-    sk_material material;
-} isometric_params;
+#ifndef SK_ISA
 
 static const skein_field fields[] = {
-    SK_REAL(isometric_params, material.stiffness, "stiffness", "N m", 0.01, 0, SK_UNBOUNDED,
+    SK_REAL(sk_material, stiffness, "stiffness", "N m", 0.01, 0, SK_UNBOUNDED,
             "the bending rigidity of a sheet; \"infinite\" is rigid (position methods only)"),
-    SK_REAL(isometric_params, material.damping, "damping", "N m s", 0, 0, SK_FAR,
+    SK_REAL(sk_material, damping, "damping", "N m s", 0, 0, SK_FAR,
             "the same against bending's change in time"),
 };
 
-#include "constraints/element_scalar.h"
-
 const sk_constraint_type sk_isometric = {
     .kind = {"isometric", "keeps two triangles flat over an edge: the edge's two ends, then the two corners beside it",
-             SKEIN_CONSTRAINT, fields, sizeof fields / sizeof *fields, sizeof(isometric_params)},
+             SKEIN_CONSTRAINT, fields, sizeof fields / sizeof *fields, sizeof(sk_material)},
     SK_ELEMENT_RULES,
 };
 #endif

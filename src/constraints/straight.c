@@ -7,14 +7,10 @@
 #define SK_FORMULA "constraints/emitted/straight.h"
 #define SK_WITH_STRIPS
 #define SK_LINEAR
-#include "base/kernels.h"
+#define SK_UNIT straight
 #include "constraints/element.h"
 
-#define SK_UNIT straight
-SK_ELEMENT_KERNELS
-
 #ifdef SK_ISA
-
 SK_INLINE void linear(sk_element *e) {
     const sk_wide3 *x = e->x;
     sk_wide a = e->rest[0], b = e->rest[1];
@@ -22,28 +18,21 @@ SK_INLINE void linear(sk_element *e) {
                                 a * (x[0].z - x[1].z) + b * (x[2].z - x[1].z)};
     e->scale[0] = a, e->scale[1] = -(a + b), e->scale[2] = b;
 }
+#endif
 
-#include "constraints/element_arithmetic.h"
-#include "constraints/element_stiffness.h"
-#include "constraints/element_sweeps.h"
+#include "constraints/element_kind.h"
 
-#else
-
-typedef struct straight_params {
-    sk_material material;
-} straight_params;
+#ifndef SK_ISA
 
 static const skein_field fields[] = {
-    SK_REAL(straight_params, material.stiffness, "stiffness", "N m", 0.01, 0, SK_UNBOUNDED,
+    SK_REAL(sk_material, stiffness, "stiffness", "N m", 0.01, 0, SK_UNBOUNDED,
             "torque a radian of a small turn; \"infinite\" is rigid (position methods only)"),
-    SK_REAL(straight_params, material.damping, "damping", "N m s", 0, 0, SK_FAR, "torque a radian a second"),
+    SK_REAL(sk_material, damping, "damping", "N m s", 0, 0, SK_FAR, "torque a radian a second"),
 };
-
-#include "constraints/element_scalar.h"
 
 const sk_constraint_type sk_straight = {
     .kind = {"straight", "keeps three particles in a straight line, the second in the middle", SKEIN_CONSTRAINT, fields,
-             sizeof fields / sizeof *fields, sizeof(straight_params)},
+             sizeof fields / sizeof *fields, sizeof(sk_material)},
     SK_ELEMENT_RULES,
 };
 #endif

@@ -6,14 +6,10 @@
 #define SK_FORMULA "constraints/emitted/twist.h"
 #define SK_WITH_STRIPS
 #define SK_LINEAR
-#include "base/kernels.h"
+#define SK_UNIT twist
 #include "constraints/element.h"
 
-#define SK_UNIT twist
-SK_ELEMENT_KERNELS
-
 #ifdef SK_ISA
-
 SK_INLINE void linear(sk_element *e) {
     const sk_wide3 *x = e->x;
     sk_wide a = e->rest[0];
@@ -21,28 +17,21 @@ SK_INLINE void linear(sk_element *e) {
                                 a * ((x[0].z - x[1].z) + (x[2].z - x[3].z))};
     e->scale[0] = e->scale[2] = a, e->scale[1] = e->scale[3] = -a;
 }
+#endif
 
-#include "constraints/element_arithmetic.h"
-#include "constraints/element_stiffness.h"
-#include "constraints/element_sweeps.h"
+#include "constraints/element_kind.h"
 
-#else
-
-typedef struct twist_params {
-    sk_material material;
-} twist_params;
+#ifndef SK_ISA
 
 static const skein_field fields[] = {
-    SK_REAL(twist_params, material.stiffness, "stiffness", "N m", 0.01, 0, SK_UNBOUNDED,
+    SK_REAL(sk_material, stiffness, "stiffness", "N m", 0.01, 0, SK_UNBOUNDED,
             "torque a radian of a small twist; \"infinite\" is rigid (position methods only)"),
-    SK_REAL(twist_params, material.damping, "damping", "N m s", 0, 0, SK_FAR, "torque a radian a second"),
+    SK_REAL(sk_material, damping, "damping", "N m s", 0, 0, SK_FAR, "torque a radian a second"),
 };
-
-#include "constraints/element_scalar.h"
 
 const sk_constraint_type sk_twist = {
     .kind = {"twist", "keeps the four corners around a parallelogram in one plane", SKEIN_CONSTRAINT, fields,
-             sizeof fields / sizeof *fields, sizeof(twist_params)},
+             sizeof fields / sizeof *fields, sizeof(sk_material)},
     SK_ELEMENT_RULES,
 };
 #endif

@@ -3,36 +3,21 @@
 #define SK_ARITY 4
 #define SK_RESTS 1
 #define SK_FORMULA "constraints/emitted/volume.h"
-#include "base/kernels.h"
-#include "constraints/element.h"
-
 #define SK_UNIT volume
-SK_ELEMENT_KERNELS
+#include "constraints/element_kind.h"
 
-#ifdef SK_ISA
-
-#include "constraints/element_arithmetic.h"
-#include "constraints/element_stiffness.h"
-#include "constraints/element_sweeps.h"
-
-#else
-
-typedef struct volume_params {
-    sk_material material;
-} volume_params;
+#ifndef SK_ISA
 
 static const skein_field fields[] = {
-    SK_REAL(volume_params, material.stiffness, "stiffness", "Pa/m3", 1e9, 0, SK_UNBOUNDED,
+    SK_REAL(sk_material, stiffness, "stiffness", "Pa/m3", 1e9, 0, SK_UNBOUNDED,
             "pressure a cubic metre of change; \"infinite\" is rigid (position methods only)"),
-    SK_REAL(volume_params, material.damping, "damping", "Pa s/m3", 0, 0, SK_FAR,
+    SK_REAL(sk_material, damping, "damping", "Pa s/m3", 0, 0, SK_FAR,
             "the same against the volume's change in time"),
 };
 
-#include "constraints/element_scalar.h"
-
 const sk_constraint_type sk_volume = {
     .kind = {"volume", "keeps the volume of a tetrahedron of particles", SKEIN_CONSTRAINT, fields,
-             sizeof fields / sizeof *fields, sizeof(volume_params)},
+             sizeof fields / sizeof *fields, sizeof(sk_material)},
     SK_ELEMENT_RULES,
 };
 #endif

@@ -315,7 +315,7 @@ static skein_status read_parameters(parser *p, skein_error *error) {
             return sk_fail(error, SKEIN_ERROR_NAME, "", "'%s' cannot be a parameter: it has a meaning already", *name);
         if (sk_parser_parameter(p, *name) >= 0)
             return sk_fail(error, SKEIN_ERROR_NAME, "", "the parameter '%s' is given twice", *name);
-        strcpy(f->parameter_name[f->parameters++], *name);
+        memcpy(f->parameter_name[f->parameters++], *name, strlen(*name) + 1);
     }
     return SKEIN_OK;
 }

@@ -113,7 +113,7 @@ void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort) {
         [SK_CONTACT_PUSH] = {SK_OP_CONTACT_POSITION, &sk_contact_push, SK_X},
         [SK_CONTACT_UPDATE] = {SK_OP_CONTACT_UPDATE, &sk_contact_update, SK_X},
     };
-    bool settles = sort == SK_CONTACT_UPDATE;
+    bool updates = sort == SK_CONTACT_UPDATE;
     for (size_t i = 0; i < builder->rules->colliders.count; i++) {
         const sk_collider *collider = builder->rules->colliders.data[i];
         if (!collider->common->enabled) continue;
@@ -129,8 +129,8 @@ void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort) {
                            .order = SK_FREE,
                            .kernel = sk_contact_sweep.version[builder->isa],
                            .dst = SK_X,
-                           .source = {SK_X, SK_X0, settles ? SK_V0 : SK_NONE},
-                           .coefficient = {settles},
+                           .source = {SK_X, SK_X0, updates ? SK_V0 : SK_NONE},
+                           .coefficient = {updates},
                            .rule = collider,
                            .label = collider->label,
                            .end = builder->slot_count};
@@ -140,10 +140,10 @@ void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort) {
                     .order = SK_FREE,
                     .kernel = sorts[sort].kernels->version[builder->isa],
                     .dst = sorts[sort].dst,
-                    .source = {SK_X, settles ? SK_X0 : SK_NONE, settles ? SK_V0 : sort == SK_CONTACT_FORCE ? SK_NONE : SK_X0},
+                    .source = {SK_X, updates ? SK_X0 : SK_NONE, updates ? SK_V0 : sort == SK_CONTACT_FORCE ? SK_NONE : SK_X0},
                     .rule = collider,
                     .label = collider->label,
-                    .also_reads = settles && sk_contact_reads_force(collider) ? 1u << SK_F : 0,
+                    .also_reads = updates && sk_contact_reads_force(collider) ? 1u << SK_F : 0,
                     .end = builder->slot_count};
         sk_add_op_on(builder, op, &collider->only);
     }

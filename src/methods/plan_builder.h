@@ -77,7 +77,7 @@ void sk_write_stage(sk_plan_builder *builder, double a, sk_vector v, sk_vector f
 /* How their substep ends: contact answers on V, limits are kept, and what is inside a collider is pushed out. */
 void sk_write_impulses(sk_plan_builder *builder);
 
-/* How a position method's substep begins: the fields, V += h w F (without F where all forces are plain), what steers,
+/* How a position method's substep begins: the fields, V += h w F (without F where all forces are uniform), what steers,
  * X0 = X, V0 = V where there are colliders, X += h V. Once a plan. */
 void sk_write_prediction(sk_plan_builder *builder);
 /* V += (X - X0 - h V)/h: V learns what moved X since it was predicted. */
@@ -116,7 +116,7 @@ typedef enum sk_contact_sort {
     SK_CONTACT_PUSH,
     SK_CONTACT_UPDATE
 } sk_contact_sort;
-/* An op for each collider. Settling looks at X0 and V0, the state before the substep's corrections. */
+/* An op for each collider. An update looks at X0 and V0, the state before the substep's corrections. */
 void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort);
 typedef enum sk_meeting_sort { SK_MEETING_BEGIN, SK_MEETING_PUSH, SK_MEETING_BOUND } sk_meeting_sort;
 /* An op for each rule that meets. The other functions here call it: a repeat of substeps begins and ends with such ops,

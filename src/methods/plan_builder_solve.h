@@ -1,6 +1,6 @@
-/* The pen's second set of nibs: what rules bring to an implicit solve (plan/solve.h says what the letters mean). */
-#ifndef SK_METHODS_WRITER_SOLVE_H
-#define SK_METHODS_WRITER_SOLVE_H
+/* More of the plan builder: what rules bring to an implicit solve (plan/solve.h says what the letters mean). */
+#ifndef SK_METHODS_PLAN_BUILDER_SOLVE_H
+#define SK_METHODS_PLAN_BUILDER_SOLVE_H
 
 #include "methods/plan_builder.h"
 #include "plan/matrix.h"

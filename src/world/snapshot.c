@@ -241,7 +241,7 @@ static skein_status fail_short(skein_error *error) {
 static skein_status look(const void *bytes, size_t size, skein_snapshot_info *info, skein_error *error) {
     sk_byte_reader r = {bytes, size, 0, false};
     const unsigned char *word = sk_take(&r, sizeof magic);
-    if (!word || memcmp(word, magic, sizeof magic))
+    if (!word || memcmp(word, magic, sizeof magic) != 0)
         return sk_fail(error, SKEIN_ERROR_SYNTAX, "", "it is no snapshot of Skein's");
     *info = (skein_snapshot_info){.version = sk_take_u32(&r), .real_size = sk_take_u32(&r)};
     uint64_t whole = sk_take_u64(&r), sum = sk_take_u64(&r);
@@ -280,7 +280,7 @@ static bool is_same_file(const skein_field *field, const skein_value *a, const s
 }
 
 /* The fields of one object: compares those that are built in, and where `apply` is set sets the others. `failed` is the
- * first that could not be; a second turn may, when those beside it are set. */
+ * first that could not be; a second pass may, when those beside it are set. */
 static skein_status take_fields(sk_byte_reader *r, skein_world *world, sk_object *object, skein_handle handle,
                                 bool apply, skein_error *error) {
     const char *label = object ? object->label : world->method->kind.name, *name;
@@ -326,7 +326,7 @@ static skein_status apply_fields(sk_byte_reader *r, skein_world *world, sk_objec
                                  bool apply, skein_error *error) {
     size_t at = r->at;
     skein_status status = take_fields(r, world, object, handle, apply, error);
-    for (int turn = 0; apply && status && turn < 3; turn++) {
+    for (int pass = 0; apply && status && pass < 3; pass++) {
         r->at = at;
         status = take_fields(r, world, object, handle, true, error);
     }
@@ -461,7 +461,7 @@ static skein_status walk(skein_world *world, const void *bytes, size_t size, sk_
 
 skein_status sk_snapshot_read(skein_world *world, const void *bytes, size_t size, sk_set_method *set) {
     skein_error *error = sk_world_error(world);
-    skein_snapshot_info info;
+    skein_snapshot_info info = {.version = 0};
     skein_status status = look(bytes, size, &info, error);
     if (status) return status;
     if (info.real_size != sizeof(real))
