@@ -7,8 +7,9 @@
  *     skein_gradient_result result = {.by_field = slope};
  *     skein_gradient(world, &desc, &result);
  *
- * What is differentiated is the run as it is computed, step by step, not the motion that it approximates. docs/gradients.md
- * has what it can do and how. */
+ * What is differentiated is the run as it is computed, step by step, not the motion that it approximates. Of backward Euler's
+ * solves it is the equation that they solve: as exactly as the method's tolerance says. docs/gradients.md has what it
+ * can do and how. */
 #ifndef SKEIN_GRADIENT_H
 #define SKEIN_GRADIENT_H
 
@@ -52,10 +53,13 @@ typedef struct skein_gradient_result {
  * damping of constraints, or as a uniform force (gravity, drag, wind): what else depends on one, a mass, a rest length, is not
  * followed, and then it fails. Rest lengths stay as they are where positions are varied.
  *
- * Methods: those that only add up vectors and forces: symplectic_euler, explicit_euler, leapfrog, midpoint and rk4.
- * Fails, and names the op, with SKEIN_ERROR_VALUE for anything else in the plan: projections, solves, colliders, limits, rules
- * that steer, forces that are not uniform; for a library in single precision, whose rounding is too large for this; and
- * where the run or a field is not such; with SKEIN_ERROR_NAME for a path that leads nowhere; and with
+ * Methods: those that only add up vectors and forces, symplectic_euler, explicit_euler, leapfrog, midpoint and rk4; and
+ * backward_euler, whose linear systems keep 46 vectors of four numbers a particle besides. Pins go where motions lead them;
+ * where they begin changes only their way there.
+ * Fails, and names the op, with SKEIN_ERROR_VALUE for anything else in the plan: projections, colliders, limits, rules
+ * that steer, forces that are not uniform; for a library in single precision, whose rounding is too large for this;
+ * where places of skein_pins_move() wait; where a substep is not solved (skein_statistics' `unsolved`), or its linear system
+ * cannot be; and where the run or a field is not such; with SKEIN_ERROR_NAME for a path that leads nowhere; and with
  * SKEIN_ERROR_MEMORY. */
 skein_status skein_gradient(skein_world *world, const skein_gradient_desc *desc, skein_gradient_result *result);
 

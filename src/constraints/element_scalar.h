@@ -126,8 +126,13 @@ static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_
         .groups = { SK_EACH_ISA(mode##_groups) } \
     }
 #endif
+#ifdef SK_LINEAR
+#define SK_IS_LINEAR true
+#else
+#define SK_IS_LINEAR false
+#endif
 #define SK_ELEMENT_RULES                                                                                           \
     .arity = SK_ARITY, .rest_count = SK_RESTS, .rest = rest_of, .force = SK_WALKS_OF(force),                       \
     .project = SK_WALKS_OF(project), .project_damped = SK_WALKS_OF(project_damped), .apply_sweep = SK_WALKS_OF(apply),  \
     .diagonal = {SK_EACH_ISA(diagonal)}, .blocks = {SK_EACH_ISA(blocks)}, .energy = energy, .evaluate = evaluate,     \
-    .text = formula_text
+    .text = formula_text, .linear = SK_IS_LINEAR

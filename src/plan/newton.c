@@ -3,6 +3,7 @@
 #include "plan/newton.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Conjugate gradients go somewhat further than the whole substep has to. */
 static const double cg_share = 0.3;
@@ -119,4 +120,21 @@ void sk_newton_solve(sk_run *run, const sk_op *op, size_t begin, size_t end) {
         search_line(&s);
     }
     account(&s);
+}
+
+void sk_newton_linearise(sk_run *run, const sk_op *op) {
+    solver s = open_solver(run, op);
+    run_part(&s, SK_NEWTON_LINEARISE, 0);
+}
+
+void sk_newton_invert(sk_run *run, const sk_op *op, double share) {
+    bool factored = run->solve->factored; // which opening forgets
+    const sk_newton *own = op->rule;
+    const sk_newton params = {share / cg_share, 1, own->cg_iterations};
+    solver s = open_solver(run, op);
+    run->solve->factored = factored;
+    s.params = &params;
+    s.iteration = 1;
+    memset(run->vector[SK_CHANGE], 0, run->slot_count * sizeof(sk_vec4));
+    conjugate_gradients(&s);
 }

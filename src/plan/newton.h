@@ -27,4 +27,11 @@ enum {
 /* The kernel of a solve op, whose rule is an sk_newton: takes V from V0 to the end of the substep. */
 extern sk_op_kernel sk_newton_solve;
 
+/* ---- for who goes through a solve in reverse (world/adjoint_solve.c); S is the solve's, and ops have run before ---- */
+
+/* The matrix A at the run's X and V, */
+void sk_newton_linearise(sk_run *run, const sk_op *solve);
+/* and CHANGE = A^-1 RESIDUAL, up to that share of it; RESIDUAL is used up. */
+void sk_newton_invert(sk_run *run, const sk_op *solve, double share);
+
 #endif

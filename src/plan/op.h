@@ -172,7 +172,9 @@ typedef enum sk_reverse {
     SK_REVERSE_SUM, /* dst = a p + b q + c r */
     SK_REVERSE_KICK, /* dst = p + a w q */
     SK_REVERSE_FIELD, /* F += a force, if that is uniform */
-    SK_REVERSE_ELASTIC /* F += a sweep of constraints */
+    SK_REVERSE_ELASTIC, /* F += a sweep of constraints */
+    SK_REVERSE_SOLVE, /* an implicit solve, as a whole; */
+    SK_REVERSE_BY_SOLVE /* and the ops that are its alone */
 } sk_reverse;
 
 /* Whom an op reads and writes: bits of vectors, and these of its own. */

@@ -72,7 +72,7 @@ const sk_op_type sk_op_types[SK_OP_KIND_COUNT] = {
                                             .file = "gpu/pull", .other = set_out}},
     [SK_OP_REST] = {"combine", &sk_combine_rest, "$p, 0 where at most $1 m/s", .arithmetic = true,
                     .reverse = SK_REVERSE_NOTHING},
-    [SK_OP_PASS] = {"combine", .arithmetic = true},
+    [SK_OP_PASS] = {"combine", .arithmetic = true, .reverse = SK_REVERSE_BY_SOLVE},
 
     /* ---- forces ---- */
     [SK_OP_SORT] = {"grid", .sorts = true, .reads = X | V},
@@ -119,12 +119,12 @@ const sk_op_type sk_op_types[SK_OP_KIND_COUNT] = {
     [SK_OP_MEET] = {"meet"},
 
     /* ---- implicit solves ---- */
-    [SK_OP_APPLY] = {"apply"},
-    [SK_OP_LINEARISE] = {"linearise"},
+    [SK_OP_APPLY] = {"apply", .reverse = SK_REVERSE_BY_SOLVE},
+    [SK_OP_LINEARISE] = {"linearise", .reverse = SK_REVERSE_BY_SOLVE},
     [SK_OP_CONTACT_FILTER] = {"contact S"},
-    [SK_OP_CALL] = {"call", .factors = true},
-    [SK_OP_SOLVE] = {"solve", .leads = true},
-    [SK_OP_PART] = {"part", .leads = true},
+    [SK_OP_CALL] = {"call", .factors = true, .reverse = SK_REVERSE_BY_SOLVE},
+    [SK_OP_SOLVE] = {"solve", .leads = true, .reverse = SK_REVERSE_SOLVE},
+    [SK_OP_PART] = {"part", .leads = true, .reverse = SK_REVERSE_BY_SOLVE},
     [SK_OP_REPEAT] = {"repeat", .leads = true, .reverse = SK_REVERSE_NOTHING},
 };
 

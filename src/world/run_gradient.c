@@ -246,14 +246,15 @@ static void measure(journey *j, const kept_state *at, size_t step) {
 }
 
 /* Steps [first, end) forward, with a tape and the state after each. */
-static bool tape_segment(journey *j, size_t first, size_t end) {
+static skein_status tape_segment(journey *j, size_t first, size_t end) {
+    skein_status status = SKEIN_OK;
     keep_state(j, &j->ends[0]);
     j->a.used = 0;
-    for (size_t step = first; step < end; step++) {
-        if (!sk_adjoint_run(&j->a, j->desc->dt, true)) return false;
+    for (size_t step = first; step < end && !status; step++) {
+        status = sk_adjoint_run(&j->a, j->desc->dt, true, sk_world_error(j->world));
         keep_state(j, &j->ends[step - first + 1]);
     }
-    return true;
+    return status;
 }
 
 /* And backward. The state at its start is the last of the segment before, which measures it. */
@@ -269,22 +270,28 @@ static skein_status reverse_segment(journey *j, size_t first, size_t end) {
 
 static skein_status travel(journey *j) {
     size_t steps = j->desc->steps, segments = (steps + j->segment - 1) / j->segment;
-    bool good = true;
-    for (size_t s = 0; s < segments && good; s++) {
+    skein_error *error = sk_world_error(j->world);
+    skein_status status = SKEIN_OK;
+    for (size_t s = 0; s < segments && !status; s++) {
         size_t first = s * j->segment, end = s + 1 < segments ? first + j->segment : steps;
         keep_state(j, &j->checkpoints[s]);
-        if (s + 1 == segments) good = tape_segment(j, first, end);
+        if (s + 1 == segments) status = tape_segment(j, first, end);
         else
-            for (size_t step = first; step < end && good; step++) good = sk_adjoint_run(&j->a, j->desc->dt, false);
+            for (size_t step = first; step < end && !status; step++)
+                status = sk_adjoint_run(&j->a, j->desc->dt, false, error);
     }
-    skein_status status = good ? SKEIN_OK : sk_fail_memory(sk_world_error(j->world), "a gradient's states");
+    if (!status && j->world->solve.unsolved)
+        status = sk_fail(error, SKEIN_ERROR_VALUE, "gradient",
+                         "%zu substeps were not solved: their states are none to differentiate; more newton_iterations "
+                         "or substeps solve them",
+                         j->world->solve.unsolved);
     for (size_t s = segments; s > 0 && !status; s--) {
         size_t first = (s - 1) * j->segment, end = s < segments ? first + j->segment : steps;
         if (s < segments) {
             go_back(j, &j->checkpoints[s - 1], first);
-            if (!tape_segment(j, first, end)) return sk_fail_memory(sk_world_error(j->world), "a gradient's states");
+            status = tape_segment(j, first, end);
         }
-        status = reverse_segment(j, first, end);
+        if (!status) status = reverse_segment(j, first, end);
     }
     if (!status) measure(j, &j->checkpoints[0], 0);
     return status;
@@ -315,11 +322,7 @@ static void fill_in(const journey *j, skein_gradient_result *result) {
 static skein_status run_journey(journey *j, skein_gradient_result *result) {
     skein_world *world = j->world;
     skein_error *error = sk_world_error(world);
-    sk_effect *effects = j->a.effects;
-    double *by_effect = j->a.by_effect;
-    size_t effect_count = j->a.effect_count;
     skein_status status = sk_adjoint_begin(&j->a, world, error);
-    j->a.effects = effects, j->a.by_effect = by_effect, j->a.effect_count = effect_count;
     if (status) return status;
     j->segment = choose_segment(j);
     j->checkpoint_count = (j->desc->steps + j->segment - 1) / j->segment;
@@ -329,7 +332,10 @@ static skein_status run_journey(journey *j, skein_gradient_result *result) {
     j->numbers = sk_allocate(&world->allocator, (12 * world->particles.count + 1) * sizeof *j->numbers);
     if (!has_all(j->checkpoints, j->checkpoint_count) || !has_all(j->ends, j->end_count) || !j->numbers)
         return sk_fail_memory(error, "a gradient's states");
+    sk_solve account = world->solve;
+    world->solve = (sk_solve){.scale = 0};
     status = travel(j);
+    world->solve = account;
     if (status) return status;
     fill_in(j, result);
     return isfinite(result->value)
@@ -345,6 +351,17 @@ static skein_status check(skein_world *world, const skein_gradient_desc *desc) {
                        "rounding is too large for them");
     if (world->device)
         return sk_fail(error, SKEIN_ERROR_VALUE, "gradient", "gradients are worked out on the processor");
+    if (world->pins.count)
+        return sk_fail(error, SKEIN_ERROR_VALUE, "gradient",
+                       "%zu places of pins wait for the next step: a gradient leads pins by motions alone",
+                       world->pins.count);
+    for (size_t i = 0; i < world->motions.count; i++) {
+        const sk_motion_common *common = world->motions.data[i]->common;
+        if (common->enabled && (common->inertia < 1 || common->jump < SK_UNBOUNDED || common->jump_turn < 180 ||
+                                common->jump_times[0]))
+            return sk_fail(error, SKEIN_ERROR_VALUE, world->motions.data[i]->label,
+                           "bodies that a motion carries along (inertia under 1, or jumps) have no gradient yet");
+    }
     if (!desc->steps || desc->steps > 100000000)
         return sk_fail(error, SKEIN_ERROR_VALUE, "steps", "%zu steps: expected 1 to 100000000", desc->steps);
     return SKEIN_OK;
