@@ -94,7 +94,7 @@ static char *join_names(const json_t *list) {
 /* The texts of a body's own fields select parts of it, as a motion's "pins" do, and so have short forms. */
 static bool takes_lists(const skein_kind *kind, const skein_field *field) {
     bool selects = kind->category == SKEIN_BODY ? is_own(kind, field)
-                                                : kind->category == SKEIN_MOTION && (!strcmp(field->name, "pins") || !strcmp(field->name, "jump_times"));
+                                                : kind->category == SKEIN_MOTION && (!strcmp(field->name, "pins") || !strcmp(field->name, "jump_times") || !strcmp(field->name, "map"));
     return field->type == SKEIN_FIELD_TEXT && selects;
 }
 

@@ -31,6 +31,7 @@ static const struct {
     {"cache", "file", "a file that scenes read; a program passes the places"},
     {"cache", "fps", "of that file; a program says its interval"},
     {"translate", "jump_turn", "it never turns"},
+    {NULL, "map", "as many numbers as it leads; test_leashes.c has them"},
 };
 
 static const char *idle_reason(const skein_kind *kind, const skein_field *field) {

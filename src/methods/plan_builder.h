@@ -5,6 +5,7 @@
 #include "colliders/collider.h"
 #include "constraints/constraint.h"
 #include "forces/force.h"
+#include "limits/leash.h"
 #include "limits/limit.h"
 
 /* Everything that acts, in the order of its making. Owned by the world. */
@@ -25,6 +26,7 @@ typedef struct sk_rules {
         sk_limit **data;
         size_t count, capacity;
     } limits;
+    const sk_leashes *leashes; /* of the world's motions; NULL: there are none */
     const char *sparse_solver; /* the name of the world's; NULL: it has none */
 } sk_rules;
 

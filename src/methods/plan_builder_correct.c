@@ -248,12 +248,21 @@ void sk_write_limits(sk_plan_builder *builder, sk_vector velocity) {
         add_limit(builder, limit, velocity, every);
     }
     write_strain_limits(builder, velocity, false);
+    if (rules->leashes)
+        sk_add_op(builder, (sk_op){.kind = SK_OP_LIMIT,
+                                   .order = SK_FREE,
+                                   .kernel = sk_leash_hold.version[builder->isa],
+                                   .dst = SK_X,
+                                   .source = {SK_X, velocity},
+                                   .rule = rules->leashes,
+                                   .label = "leashes",
+                                   .end = builder->slot_count});
     sk_write_meetings(builder, SK_MEETING_PUSH, velocity);
 }
 
 bool sk_writes_corrections(const sk_plan_builder *builder) {
     const sk_rules *rules = builder->rules;
-    if (sk_writes_meetings(builder) || sk_writes_contacts(rules)) return true;
+    if (sk_writes_meetings(builder) || sk_writes_contacts(rules) || rules->leashes) return true;
     for (size_t i = 0; i < rules->batches.count; i++)
         if (has_bound(rules->batches.data[i])) return true;
     for (size_t i = 0; i < rules->limits.count; i++)

@@ -24,10 +24,19 @@ const skein_field sk_motion_fields[] = {
     SK_REAL(sk_motion_common, jump_turn, "jump_turn", "deg", 180, 0, 180, "the same where it turns farther in a step"),
     SK_TEXT(sk_motion_common, jump_times, "jump_times", "",
             "steps that come to one of these times are jumps, too: seconds after the start, \"1.5 4\""),
+    SK_REAL(sk_motion_common, pull, "pull", "N/m", 0, 0, SK_FAR,
+            "of those that it names, or of all, what is free is pulled to its place by this: a pin that gives way"),
+    SK_REAL(sk_motion_common, max_distance, "max_distance", "m", SK_UNBOUNDED, 0, SK_UNBOUNDED,
+            "what is free comes no farther from the place where it would be if it were led"),
+    SK_REAL(sk_motion_common, backstop, "backstop", "m", SK_UNBOUNDED, -SK_FAR, SK_UNBOUNDED,
+            "and so far behind the surface of those places, against its normals, at most: a ball is there"),
+    SK_REAL(sk_motion_common, backstop_radius, "backstop_radius", "m", 1, 1e-6, 1e6, "the radius of that ball"),
+    SK_TEXT(sk_motion_common, map, "map", "",
+            "a share of max_distance for each particle, in their order: as many numbers as it leads or could; empty: 1"),
 };
 const size_t sk_motion_field_count = sizeof sk_motion_fields / sizeof *sk_motion_fields;
 
-/* The next time of the text; NULL at its end, `*wrong` where there is something else. */
+/* The next number of a text, 0 or more; NULL at its end, `*wrong` where there is something else. */
 static const char *next_time(const char *at, double *time, bool *wrong) {
     while (isspace((unsigned char)*at) || *at == ',') at++;
     if (!*at) return NULL;
@@ -51,4 +60,13 @@ skein_status sk_motion_check_jumps(const sk_motion_common *common, skein_error *
     if (!wrong) return SKEIN_OK;
     return sk_fail(error, SKEIN_ERROR_VALUE, "jump_times", "'%.60s': expected times in seconds, 0 or more, such as \"1.5 4\"",
                    common->jump_times);
+}
+
+int64_t sk_motion_read_map(const sk_motion_common *common, double *share, size_t most) {
+    int64_t count = 0;
+    double number = 0;
+    bool wrong = false;
+    for (const char *at = common->map; (at = next_time(at, &number, &wrong)); count++)
+        if ((size_t)count < most) share[count] = number;
+    return wrong ? -1 : count;
 }

@@ -22,6 +22,8 @@ typedef struct sk_motion_common {
     char *colliders;
     double inertia, jump, jump_turn; /* see motion.c */
     char *jump_times;
+    double pull, max_distance, backstop, backstop_radius;
+    char *map;
 } sk_motion_common;
 
 /* Places that were given with it: one of each particle for each sample. */
@@ -55,10 +57,13 @@ struct sk_motion {
     size_t count;
     double middle[3];     /* the mean of their places as they were built */
     bool knows_colliders; /* all that it names were there once */
+    double *share;        /* of the largest distance, one for each of them; NULL: 1 */
 };
 
 /* Whether a jump is said to come after the time `from`, up to `to` (s after the start); and what is wrong with the text of such times. */
 bool sk_motion_jumps(const sk_motion_common *common, double from, double to);
+/* Reads up to `most` numbers of the map; how many there are, or -1 where something else is among them. */
+int64_t sk_motion_read_map(const sk_motion_common *common, double *share, size_t most);
 skein_status sk_motion_check_jumps(const sk_motion_common *common, skein_error *error);
 
 /* Fields of sk_motion_common. */

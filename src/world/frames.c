@@ -168,7 +168,7 @@ static bool put_along(skein_world *world, size_t first, size_t count, const jour
     if (!way->carries || !count) return true;
     if (!SK_RESERVE(&world->allocator, &world->carried, world->carried.count + 1)) return false;
     put(&world->particles, first, count, &way->carried, false);
-    if (!way->jumps) world->carried.data[world->carried.count++] = (sk_carried){first, count, way->carried};
+    world->carried.data[world->carried.count++] = (sk_carried){first, count, way->carried, way->jumps};
     return true;
 }
 
@@ -225,7 +225,7 @@ void sk_world_uncarry_previous(skein_world *world) {
     for (size_t i = 0; i < world->carried.count; i++) {
         const sk_carried *run = &world->carried.data[i];
         sk_frame back = sk_frame_back(&run->way);
-        for (size_t p = run->first; p < run->first + run->count; p++)
+        for (size_t p = run->first; p < run->first + run->count && !run->jumps; p++)
             if (world->particles.presence[p] != SK_GONE)
                 place(&back, &world->particles.vector[SK_PREVIOUS][world->particles.slot_of[p]]);
     }

@@ -13,6 +13,7 @@ void sk_motion_release(sk_motion *motion, sk_allocator *allocator) {
     sk_release(allocator, motion->track.particles);
     sk_release(allocator, motion->particle);
     sk_release(allocator, motion->column);
+    sk_release(allocator, motion->share);
     sk_release(allocator, motion);
 }
 
@@ -166,12 +167,29 @@ skein_status sk_world_check_motion(skein_world *world, const sk_motion *motion, 
     asked.knows_colliders = false;
     if (!status) status = sk_motion_check_jumps(motion->common, error);
     if (!status) status = find_colliders(world, &asked, error);
+    if (!status && sk_motion_read_map(motion->common, NULL, 0) < 0)
+        status = sk_fail(error, SKEIN_ERROR_VALUE, "map", "expected numbers, 0 or more");
     if (status || !pins[0] || (on[0] && !body)) return status;
     size_t first = body ? body->first_particle : 0, count = body ? body->particle_count : world->particles.count;
     bool *chosen = sk_allocate(&world->allocator, count * sizeof *chosen);
     status = chosen ? choose(world, body, first, count, pins, chosen, error) : sk_fail_memory(error, "the pins of a motion");
     sk_release(&world->allocator, chosen);
     return status;
+}
+
+/* The shares of a motion's map. */
+static skein_status find_map(skein_world *world, sk_motion *motion, skein_error *error) {
+    sk_release(&world->allocator, motion->share);
+    motion->share = NULL;
+    if (!motion->common->map[0]) return SKEIN_OK;
+    motion->share = sk_allocate(&world->allocator, (motion->count + 1) * sizeof *motion->share);
+    if (!motion->share) return sk_fail_memory(error, "a motion's map");
+    int64_t count = sk_motion_read_map(motion->common, motion->share, motion->count);
+    if (count == (int64_t)motion->count) return SKEIN_OK;
+    sk_release(&world->allocator, motion->share);
+    motion->share = NULL;
+    if (count < 0) return sk_fail(error, SKEIN_ERROR_VALUE, motion->label, "map: expected numbers, 0 or more");
+    return sk_fail(error, SKEIN_ERROR_VALUE, motion->label, "map: %zu numbers, and there are %zu particles", (size_t)count, motion->count);
 }
 
 static skein_status find_particles(skein_world *world, sk_motion *motion, skein_error *error) {
@@ -197,7 +215,8 @@ static skein_status find_particles(skein_world *world, sk_motion *motion, skein_
         held += world->particles.pinned[motion->particle[i]];
     }
     if (!status) status = find_colliders(world, motion, error);
-    if (!status && !held && count && motion->common->enabled && !motion->common->colliders[0])
+    if (!status) status = find_map(world, motion, error);
+    if (!status && !held && count && motion->common->enabled && !motion->common->colliders[0] && !sk_world_has_leashes(world))
         sk_world_log(world, SKEIN_LOG_WARNING, "%s: none of the particles that it is to lead is pinned: pin them",
                      motion->label);
     return status;
@@ -216,6 +235,8 @@ skein_status sk_world_find_pins(skein_world *world, skein_error *error) {
     if (!world->led_at) return sk_fail_memory(error, "the pins of motions");
     for (size_t i = 0; i < places; i++) world->led_at[i] = SK_NOBODY;
     world->motions_stale = false;
+    world->leashes.any = sk_world_has_leashes(world);
+    world->rules.leashes = world->leashes.any ? &world->leashes : NULL;
     return sk_world_place_colliders(world) ? SKEIN_OK : sk_fail_memory(error, "frames of motions");
 }
 
@@ -227,7 +248,7 @@ static void lead(skein_world *world, const sk_motion *motion, double time) {
     if (since < 0) since = 0;
     for (size_t i = 0; i < motion->count; i++) {
         uint32_t particle = motion->particle[i];
-        if (!world->particles.pinned[particle]) continue;
+        if (!world->particles.pinned[particle] && !world->leashes.any) continue;
         sk_vec3 built = world->particles.built[particle];
         if (world->led_at[particle] == SK_NOBODY) {
             world->led_at[particle] = (uint32_t)world->led.count;

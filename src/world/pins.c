@@ -89,6 +89,8 @@ skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error)
     const sk_particles *all = &world->particles;
     skein_status status = sk_world_carry(world, dt, error);
     if (status) return status;
+    status = sk_world_set_leashes(world, dt, error);
+    if (status) return status;
     if (!sk_world_lead(world, world->time + dt)) return sk_fail_memory(error, "places for pins");
     status = world->led.count ? sk_world_touch(world) : SKEIN_OK;
     for (size_t i = 0; i < world->led.count && !status; i++)

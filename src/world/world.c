@@ -116,6 +116,7 @@ void skein_world_destroy(skein_world *world) {
     sk_release(allocator, world->led.data);
     sk_release(allocator, world->legs.data);
     sk_release(allocator, world->carried.data);
+    sk_release(allocator, world->leashes.data);
     sk_release(allocator, world->led_at);
     if (world->method)
         sk_fields_clear(allocator, world->method->kind.fields, world->method->kind.field_count, world->method_params);

@@ -118,6 +118,7 @@ typedef struct sk_leg {
 typedef struct sk_carried {
     size_t first, count;
     sk_frame way;
+    bool jumps;
 } sk_carried;
 
 /* A pinned particle and the place that it is to have at the end of the step. */
@@ -178,7 +179,8 @@ struct skein_world {
     struct {
         sk_carried *data;
         size_t count, capacity;
-    } carried; /* in the present step, but by jumps */
+    } carried; /* in the present step */
+    sk_leashes leashes;
     bool motions_stale; /* whom they lead is to be found anew */
     uint32_t *led_at;   /* of each particle its place in `led`, while motions are asked */
     double time;
@@ -333,6 +335,9 @@ skein_status sk_world_carry(skein_world *world, double dt, skein_error *error);
 void sk_world_uncarry_previous(skein_world *world);
 /* Where time, fields or motions have changed: colliders stand where their frames put them. False: no memory. */
 bool sk_world_place_colliders(skein_world *world);
+/* Whether motions hold what is free near its places; and before a step, where (world/leashes.c). */
+bool sk_world_has_leashes(const skein_world *world);
+skein_status sk_world_set_leashes(skein_world *world, double dt, skein_error *error);
 /* Lists what is to be led to its place at `time`. False when there is no memory. */
 bool sk_world_lead(skein_world *world, double time);
 /* Before a step of `dt` runs: all that is led is on its way, and whoever follows what moves is told (world/pins.c). */
