@@ -274,7 +274,7 @@ static double share_of(const skein_world *world, const char *label, uint32_t a, 
 }
 
 /* Shares are areas over squared lengths: an edge of square cells stands for a cell (on the border half of one), a
- * diagonal for its own, and for that of the other, which is slack in shear; triangles stand whole behind each of their edges, and twice behind a fold. */
+ * diagonal for its own; triangles stand whole behind each of their edges, and twice behind a fold. */
 static void springs_share_the_material_by_area(void **state) {
     (void)state;
     double off = 8 * EPSILON;
@@ -284,8 +284,8 @@ static void springs_share_the_material_by_area(void **state) {
     assert_near(share_of(world, "stretch", 7, 12), 1, off);
     assert_near(share_of(world, "stretch", 1, 2), 0.5, off);
     assert_near(share_of(world, "stretch", 5, 10), 0.5, off);
-    assert_near(share_of(world, "shear", 6, 12), 2, off);
-    assert_near(share_of(world, "shear", 1, 5), 2, off);
+    assert_near(share_of(world, "shear", 6, 12), 1, off);
+    assert_near(share_of(world, "shear", 1, 5), 1, off);
     assert_near(share_of(world, "bend", 6, 8), 1, off);
     assert_near(share_of(world, "bend", 6, 16), 1, off);
     assert_near(share_of(world, "bend", 1, 3), 0.5, off);
@@ -1073,7 +1073,7 @@ static void stretch_bounds_are_kept(void **state) {
             skein_world *world = new_world(method_names[m], 20);
             OK(world, skein_body_add(world, "cloth", NULL,
                                      SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 9, 9), SKEIN_TEXT("pins", "top edge"), SKEIN_VEC3("rotation", 90, 0, 0),
-                                                    SKEIN_REAL("stretch.stiffness", 5), SKEIN_REAL("shear.stiffness", 0.5),
+                                                    SKEIN_REAL("stretch.stiffness", 5), SKEIN_REAL("shear.stiffness", 1),
                                                     SKEIN_REAL("bend.stiffness", 0), SKEIN_REAL("stretch.limit", bound == 1 ? 0.03 : INFINITY),
                                                     SKEIN_REAL("stretch.tether", bound == 2 ? 0.02 : INFINITY)),
                                      NULL));
@@ -1117,15 +1117,16 @@ static skein_world *pulled_cell(const char *method, double out) {
     skein_world *world = new_world(method, 1);
     OK(world, skein_body_add(world, "cloth", NULL,
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 2, 2), SKEIN_REAL("stretch.stiffness", 0), SKEIN_REAL("density", 4),
-                                            SKEIN_REAL("shear.stiffness", 30), SKEIN_REAL("bend.rigidity", 0)), NULL));
+                                            SKEIN_REAL("shear.stiffness", 30), SKEIN_TEXT("shear.diagonals", "ties"),
+                                            SKEIN_REAL("bend.rigidity", 0)), NULL));
     vec3 p = position_of(world, 3);
     place_particle(world, 3, p.x + out / sqrt(2), p.y, p.z + out / sqrt(2));
     return world;
 }
 
-/* Lengthened, a diagonal holds k d^2 / 2 with the stiffness of both, and pulls back by k d; shortened it is slack: nothing
+/* Lengthened, a tied diagonal holds k d^2 / 2 with the stiffness of both, and pulls back by k d; shortened it is slack: nothing
  * moves, under any method. A tenth of a second on, the ends (1 kg each) are where an oscillator of k and half their mass is. */
-static void diagonals_resist_being_lengthened_alone(void **state) {
+static void ties_resist_being_lengthened_alone(void **state) {
     (void)state;
     static const char *const methods[] = {"explicit_euler", "symplectic_euler", "midpoint", "rk4",
                                           "leapfrog",       "backward_euler",   "xpbd",     "pbd"};
@@ -1146,13 +1147,32 @@ static void diagonals_resist_being_lengthened_alone(void **state) {
     }
 }
 
+/* Which diagonals a sheet has by its pins: ties where all are within three edges. */
+static void diagonals_go_by_the_pins(void **state) {
+    (void)state;
+    static const struct {
+        const char *pins, *diagonals;
+        bool ties;
+    } rows[] = {{"", "pins", false},          {"0", "pins", true},        {"0, 3", "pins", true}, {"0, 4", "pins", false},
+                {"top corners", "pins", false}, {"top corners", "ties", true}, {"0", "springs", false}};
+    for (size_t i = 0; i < COUNT(rows); i++) {
+        skein_world *world = new_world("xpbd", 1);
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 9), SKEIN_TEXT("pins", rows[i].pins),
+                                                SKEIN_TEXT("shear.diagonals", rows[i].diagonals)), NULL));
+        assert_near(share_of(world, "shear", 10, 20), rows[i].ties ? 2 : 1, 8 * EPSILON);
+        skein_world_destroy(world);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(triangles_have_edges_and_bending_pairs),
         cmocka_unit_test(a_grid_has_edges_diagonals_and_straight_bending),
         cmocka_unit_test(no_pair_gets_two_springs),
         cmocka_unit_test(springs_share_the_material_by_area),
-        cmocka_unit_test(diagonals_resist_being_lengthened_alone),
+        cmocka_unit_test(ties_resist_being_lengthened_alone),
+        cmocka_unit_test(diagonals_go_by_the_pins),
         cmocka_unit_test(mass_is_density_times_area),
         cmocka_unit_test(a_sheet_is_placed_as_asked),
         cmocka_unit_test(welding_joins_particles_and_keeps_vertices),

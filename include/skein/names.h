@@ -47,6 +47,10 @@
 #define SKEIN_CLOTH_STRETCH_DAMPING "stretch.damping" /* a number in N s/m; of stretching; other motion is free */
 #define SKEIN_CLOTH_SHEAR_STIFFNESS "shear.stiffness" /* a number in N/m; across the threads */
 #define SKEIN_CLOTH_SHEAR_DAMPING "shear.damping" /* a number in N s/m; of shearing */
+#define SKEIN_CLOTH_SHEAR_DIAGONALS "shear.diagonals" /* a word; springs; or ties, slack when shorter, so that folds can run to one point; "pins": ties where all pins are within three edges, else springs */
+#define SKEIN_CLOTH_SHEAR_DIAGONALS_SPRINGS "springs"
+#define SKEIN_CLOTH_SHEAR_DIAGONALS_TIES "ties"
+#define SKEIN_CLOTH_SHEAR_DIAGONALS_PINS "pins"
 #define SKEIN_CLOTH_BEND_BY "bend.by" /* a word; `dihedral` angles at edges, `isometric` curvature there, or `straight` lines and `twist` of a flat grid, which take the rigidity; "shape": lines where it is a flat grid, else angles; or springs over folds */
 #define SKEIN_CLOTH_BEND_BY_SPRINGS "springs"
 #define SKEIN_CLOTH_BEND_BY_ANGLE "angle"

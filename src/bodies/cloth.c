@@ -29,11 +29,14 @@ typedef struct cloth_params {
     double density, weld;
     char *pins;
     sk_material stretch, shear, bend;
-    int32_t bending;
+    int32_t diagonals, bending;
     double rigidity;
     double tether, limit;
     int32_t look;
 } cloth_params;
+
+/* The choices of "shear.diagonals". */
+enum { SPRINGS, TIES, BY_PINS };
 
 /* The choices of "bend.by". */
 enum { BY_SPRINGS, BY_ANGLE, BY_CURVATURE, BY_LINES, BY_SHAPE };
@@ -61,8 +64,11 @@ static const skein_field fields[] = {
             "of the sheet along its threads (1e4 is a firm cotton)"),
     SK_REAL(cloth_params, stretch.damping, "stretch.damping", "N s/m", 0, 0, SK_FAR,
             "of stretching; other motion is free"),
-    SK_REAL(cloth_params, shear.stiffness, "shear.stiffness", "N/m", 1e3, 0, SK_UNBOUNDED, "across the threads"),
+    SK_REAL(cloth_params, shear.stiffness, "shear.stiffness", "N/m", 2e3, 0, SK_UNBOUNDED, "across the threads"),
     SK_REAL(cloth_params, shear.damping, "shear.damping", "N s/m", 0, 0, SK_FAR, "of shearing"),
+    SK_CHOICE(cloth_params, diagonals, "shear.diagonals", BY_PINS, "springs|ties|pins",
+              "springs; or ties, slack when shorter, so that folds can run to one point; \"pins\": ties where all pins are "
+              "within three edges, else springs"),
     SK_CHOICE(
         cloth_params, bending, "bend.by", BY_SHAPE, "springs|angle|curvature|lines|shape",
         "`dihedral` angles at edges, `isometric` curvature there, or `straight` lines and `twist` of a flat grid, which take "
@@ -221,19 +227,44 @@ static skein_status add_spans(tailor *t) {
     return sk_spans_add(&t->sheet, (const double(*)[3])axes, t->rank, t->world, t->body, t->error);
 }
 
+/* Whether a sheet hangs by one point: all of its pins are within a few edges. */
+static bool hangs_by_a_point(const tailor *t) {
+    const sk_sheet *sheet = &t->sheet;
+    double area = 0;
+    for (size_t f = 0; f < sheet->face_count; f++) area += sheet->face_area[f];
+    double reach = 3 * sqrt(area / (double)(sheet->face_count ? sheet->face_count : 1));
+    size_t first = SIZE_MAX;
+    for (size_t i = 0; i < sheet->particle_count; i++) {
+        if (!t->pinned[i] || !(t->mass[i] > 0)) continue;
+        if (first == SIZE_MAX) first = i;
+        const double *p = sheet->position[i], *q = sheet->position[first];
+        if (hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]) > reach) return false;
+    }
+    return first != SIZE_MAX;
+}
+
+/* Springs keep all six distances of four corners: a cell cannot fold but along the rows and columns, and a sheet that hangs by
+ * one point, whose folds run to that point from all sides, jams around it. 64 x 64 that hung by a corner was stretched by 5.9 %
+ * (99 % of its edges) and 32, with ties by 2.2 and 14; by its middle 8.3 and 44, and 4.1 and 20; by opposite corners 4.5
+ * and 18, and 1.1 and 4. In the plane ties lose nothing: in shear one diagonal gets longer, and has the stiffness of both; what
+ * presses on both presses on the edges. But where they begin to pull forces have a kink, which a sheet that lies as it was
+ * made is on: gradients of a run do not exist there, and undamped explicit methods swing themselves up; so springs hold
+ * what does not need ties. */
+static const sk_constraint_type *tie_diagonals(tailor *t) {
+    int32_t by = t->params->diagonals;
+    if (by == SPRINGS || (by == BY_PINS && !hangs_by_a_point(t))) return &sk_distance;
+    struct sk_spring_list *list = &t->springs.list[SK_SHEAR];
+    for (size_t i = 0; i < list->count; i++) list->scale[i] *= 2;
+    return &sk_extension;
+}
+
 /* Sweeps take batches in the order of their making, and what is swept last is kept best: edges. Measured on
  * a draped grid, 12 substeps: 5.7 % of stretch at most, against 15.8 % with the edges first.
  *
  * Where cells are longer one way, sweeps in that order shiver as a lattice's do (methods/plan_builder.c), from sides of 1.25 to 1
  * on: 64 x 64 that swings by two corners was stretched by 5.6 % (99 % of its edges) and 17.5 %, once its cells were 1.3 to
  * 1, and by 14 and 43 % at 2 to 1. With half of the shear springs swept on the way back 0.7 and 1.8 %, as in squares.
- * Squares are a little firmer without.
- *
- * Diagonals resist being lengthened alone. Where both do not get shorter either, four corners keep all six distances: a cell
- * cannot fold but along the rows and columns, and a sheet that hangs by one point, whose folds run to that point from
- * all sides, jams around it. 64 x 64 that hung by a corner was stretched by 5.9 % (99 % of its edges) and 32, and by 2.2 and 18
- * so; by its middle by 8.3 and 44, and 4.1 and 27. In the plane nothing is lost: in shear one diagonal gets longer, with the
- * stiffness of both (springs.c), and what presses on both presses on the edges. */
+ * Squares are a little firmer without. */
 static skein_status add_springs(tailor *t) {
     static const char *const labels[] = {"bend", "shear", "stretch"};
     const sk_material *materials[] = {&t->params->bend, &t->params->shear, &t->params->stretch};
@@ -241,7 +272,7 @@ static skein_status add_springs(tailor *t) {
         struct sk_spring_list *list = &t->springs.list[sort];
         for (size_t i = 0; i < 2 * list->count; i++) list->pairs[i] += t->body->first_particle;
         bool hinges = sort == SK_BEND && t->params->bending != BY_SPRINGS;
-        const sk_constraint_type *type = sort == SK_SHEAR ? &sk_extension : &sk_distance;
+        const sk_constraint_type *type = sort == SK_SHEAR ? tie_diagonals(t) : &sk_distance;
         skein_status status = hinges ? add_bending(t)
                                      : sk_world_add_body_batch(t->world, t->body, type, labels[sort], *materials[sort],
                                                                sort == SK_STRETCH, list->count, list->pairs, list->rest,

@@ -6,7 +6,7 @@
  *
  * KES-F has units of its own: bending of 1 gf cm2/cm is 9.81e-5 N m, shear of 1 gf/(cm degree) is 56.2 N/m, and the
  * extension EMT is that under 500 gf/cm = 490 N/m, so that the sheet's stiffness there, as a secant, is 490 N/m / EMT.
- * A cloth's shear.stiffness is its shear modulus: of two diagonals a cell, one is lengthened, with the area of four cells: the
+ * A cloth's shear.stiffness is its shear modulus: of two diagonals a cell, each with the area of two cells, the
  * energy is shear.stiffness gamma^2 / 2 a square metre. Warp and weft differ in truth; here is their mean.
  *
  *   [W]  Wang, O'Brien, Ramamoorthi: Data-driven elastic models for cloth. ACM Trans. Graph. 30(4), 2011; the numbers that

@@ -115,7 +115,7 @@ static bool collect_shear(pair_table *table, const sk_sheet *sheet) {
         size_t diagonals = size == 4 ? 2 : size > 4 ? size : 0;
         for (size_t k = 0; k < diagonals; k++)
             if (!add(table, sheet->corners[start + k], sheet->corners[start + (k + 2) % size], SK_SHEAR,
-                     16 * sheet->face_area[f] / (double)size)) // in shear, half of them are slack
+                     8 * sheet->face_area[f] / (double)size))
                 return false;
     }
     return true;

@@ -1,7 +1,7 @@
 /* The springs of a sheet: which pairs of particles are joined, and how much material each stands for.
  *
  *   o---o---o     stretch  every edge of the mesh, once
- *   | X | X |     shear    each quad's two diagonals (in larger faces, the corners two apart), slack when shorter
+ *   | X | X |     shear    each quad's two diagonals (in larger faces, the corners two apart)
  *   o---o---o     bend     across every edge between two faces: the off-edge corners of two triangles,
  *   |   |   |              the vertices straight across of two quads
  *

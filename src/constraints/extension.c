@@ -1,5 +1,5 @@
-/* Extension: length(p0 - p1) <= L, a distance that is kept from growing and is slack when shorter. A cloth's diagonals are
- * such (bodies/cloth.c says why); a user has a formula for it, so it is no user's kind. */
+/* Extension: length(p0 - p1) <= L, a distance that is kept from growing and is slack when shorter. A cloth's diagonals can
+ * be such (bodies/cloth.c says when); a user has a formula for it, so it is no user's kind. */
 #define SK_ARITY 2
 #define SK_RESTS 1
 #define SK_FORMULA "constraints/emitted/extension.h"
