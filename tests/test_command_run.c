@@ -120,7 +120,8 @@ static void run_scene(const char *path, bool draws) {
                                : "output=[\"pc2\", \"obj\"]";
     outcome o = SKEIN("run", path, "--out", in_folder("out"), "--frames", "3", "--no-progress", "--set", output, "--set",
                       mesh ? "skein=1" : "bodies.0.grid=[7,9]");
-    assert_string_equal(o.err, "");
+    if (strstr(path, "cape")) assert_contains(o.err, "comes out at its recovery"); // which begins inside on purpose
+    else assert_string_equal(o.err, "");
     assert_status(o, 0);
 
     shape s = mesh ? shape_of_mesh(mesh_path) : shape_of_grid(7, 9);

@@ -118,6 +118,9 @@ static void check_picture(const char *path, const io_scene *scene, skein_world *
     if (sheet) all = measure(world, drawn, &camera, wide, true);
     bool good = all.share[0] >= quarter && all.share[1] >= (sheet && window ? 0.2 : quarter) &&
                 bodies.share[0] >= quarter && bodies.share[1] >= (sheet ? 0.1 : quarter) && bodies.inside >= 0.85;
+    // a band that is several times as long as wide fills the picture along itself
+    double along = fmax(bodies.share[0], bodies.share[1]), across = fmin(bodies.share[0], bodies.share[1]);
+    good |= along >= 0.65 && across >= 0.1 && bodies.inside >= 0.85;
     fprintf(stderr, "%s, frame %d%s: %.0f %% of the width, %.0f %% of the height, %.1f %% of the particles%s\n", path,
             frame, window ? ", window" : "", 100 * bodies.share[0], 100 * bodies.share[1], 100 * bodies.inside,
             good ? "" : ": too small");
