@@ -1,6 +1,7 @@
 /* A PC2 file as a track of places for pins: read, checked against its body, and let go. */
 #include "io/cache.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,20 +33,33 @@ static bool find_body(skein_world *world, io_place place, const char *name, skei
     return false;
 }
 
-/* Which point of the file each pin of the body is: its vertex, its particle, or its place among the pins. Returns how
- * many pins there are; 0 after a fault. */
-static size_t match(const skein_world *world, io_place place, const skein_surface *surface, uint32_t points,
+/* Whether the motion holds what is free, too, so that the places of all are wanted. */
+static bool holds_free(const io_settings *settings) {
+    for (size_t i = 0; i < settings->count; i++) {
+        const char *name = settings->data[i].name;
+        double number = settings->data[i].value.number[0];
+        if (!strcmp(name, "pull") && number > 0) return true;
+        if ((!strcmp(name, "max_distance") || !strcmp(name, "backstop")) && isfinite(number)) return true;
+    }
+    return false;
+}
+
+/* Which point of the file each pin of the body is (or, for `all`, each particle): its vertex, its particle, or its place among
+ * the pins. Returns how many there are; 0 after a fault. */
+static size_t match(const skein_world *world, io_place place, const skein_surface *surface, uint32_t points, bool all,
                     uint32_t *particles, uint32_t *point_of) {
     skein_view view = skein_position_view(world);
     size_t pins = 0;
+    all &= points == surface->vertex_count || points == surface->particle_count;
     for (uint32_t i = 0; i < surface->particle_count; i++) {
         uint32_t particle = surface->first_particle + i;
-        if (view.xyzw[4 * view.slot_of[particle] + 3] > 0) continue;
+        if (!all && view.xyzw[4 * view.slot_of[particle] + 3] > 0) continue;
         particles[pins] = particle;
         point_of[pins++] = i;
     }
     if (!pins) {
-        io_fault(place, "file", SKEIN_ERROR_VALUE, "the body has no pins that a cache could lead: give it \"pins\"");
+        io_fault(place, "file", SKEIN_ERROR_VALUE, "the body has no pins that a cache could lead: give it \"pins\", or the cache a "
+                 "\"max_distance\", \"backstop\" or \"pull\" to hold what is free");
         return 0;
     }
     if (points == surface->vertex_count) {
@@ -111,7 +125,7 @@ static bool read_file(io_cache *cache, skein_world *world, io_place place, const
     if (good && !(good = point_of && cache->particles)) io_error_set(&error, SKEIN_ERROR_MEMORY, "", "out of memory");
     if (good && !header.samples) good = !io_error_set(&error, SKEIN_ERROR_VALUE, path, "there are no samples in it");
     if (good && !(header.rate > 0)) good = !io_error_set(&error, SKEIN_ERROR_VALUE, path, "its rate is not over 0");
-    if (good && (pins = match(world, place, &surface, header.points, cache->particles, point_of)))
+    if (good && (pins = match(world, place, &surface, header.points, holds_free(settings), cache->particles, point_of)))
         good = read_samples(cache, reader, header, point_of, pins, &error);
     if (!good) io_fault(place, "file", error.status, "%s%s%s", error.where, error.where[0] ? ": " : "", error.message);
     else

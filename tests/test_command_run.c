@@ -513,12 +513,60 @@ static void files_of_one_run_have_different_names(void **state) {
                 "--out", "-");
 }
 
+/* The farthest that a point of two caches is apart in their last samples. */
+static double farthest_apart(const char *a, const char *b) {
+    io_pc2_header of[2];
+    io_pc2_reader *reader[2] = {io_pc2_open(a, &of[0], NULL), io_pc2_open(b, &of[1], NULL)};
+    assert_true(reader[0] && reader[1] && of[0].points == of[1].points && of[0].samples == of[1].samples);
+    double *x[2], farthest = 0;
+    for (int i = 0; i < 2; i++) {
+        x[i] = malloc(3 * of[i].points * sizeof *x[i]);
+        assert_int_equal(io_pc2_read(reader[i], of[i].samples - 1, x[i], NULL), SKEIN_OK);
+        io_pc2_close(reader[i]);
+    }
+    for (size_t k = 0; k < 3 * (size_t)of[0].points; k += 3)
+        farthest = fmax(farthest, sqrt(pow(x[0][k] - x[1][k], 2) + pow(x[0][k + 1] - x[1][k + 1], 2) +
+                                       pow(x[0][k + 2] - x[1][k + 2], 2)));
+    free(x[0]), free(x[1]);
+    return farthest;
+}
+
+/* An animated surface holds a cloth that has no pins: no farther off than it says, nor behind it. What only leads pins needs
+ * some. */
+static void a_cache_holds_what_is_free(void **state) {
+    (void)state;
+    char s[512], led[600], free_fall[600];
+    snprintf(s, sizeof s, "%s", in_folder("s.json"));
+    snprintf(led, sizeof led, "%s", in_folder("led/t.pc2"));
+    write_scene(s, "{'frames': 30, 'bodies': [{'type': 'cloth', 'name': 't', 'grid': [9, 9]}], 'output': ['pc2'],"
+                   " 'forces': [{'type': 'gravity', 'acceleration': [0, -0.5, 0]}]}");
+    hash_of(SKEIN("run", s, "--out", in_folder("led")));
+    static const struct {
+        const char *says;
+        double most;
+    } rows[] = {{"\"max_distance\": 0.1", 0.1}, {"\"max_distance\": 0.1, \"backstop\": 0.02, \"backstop_radius\": 20", 0.1}, {"\"pull\": 1000", 0.01}};
+    for (size_t i = 0; i < COUNT(rows); i++) {
+        char motion[300];
+        snprintf(motion, sizeof motion, "motions=[{\"type\": \"cache\", \"file\": \"led/t.pc2\", %s}]", rows[i].says);
+        hash_of(SKEIN("run", s, "--out", in_folder("held"), "--set", motion, "--set", "forces.0.acceleration=[0,-9.81,0]"));
+        snprintf(free_fall, sizeof free_fall, "%s", in_folder("held/t.pc2"));
+        double far = farthest_apart(led, free_fall);
+        if (i == 0) assert_true(fabs(far - rows[i].most) < 1e-4);
+        assert_true(far < rows[i].most + 1e-4);
+    }
+    outcome o = SKEIN("run", s, "--out", in_folder("held"), "--set", "motions=[{\"type\": \"cache\", \"file\": \"led/t.pc2\"}]");
+    assert_status(o, 2);
+    assert_contains(o.err, "the body has no pins that a cache could lead");
+    outcome_free(&o);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
 #define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
         TEST(every_scene_runs),
         TEST(runs_and_threads_give_the_same_bits),
         TEST(sets_reach_what_they_name),
+        TEST(a_cache_holds_what_is_free),
         TEST(a_start_inside_a_collider_is_told),
         TEST(an_end_beyond_bounds_is_no_success), TEST(energy_from_nowhere_is_no_success),
         TEST(what_was_not_solved_is_told), TEST(a_run_says_as_much_as_it_is_asked_to),

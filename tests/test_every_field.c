@@ -31,6 +31,10 @@ static const struct {
     {"cache", "file", "a file that scenes read; a program passes the places"},
     {"cache", "fps", "of that file; a program says its interval"},
     {"translate", "jump_turn", "it never turns"},
+    {"cache", "pull", "the places that are tried are of pins; test_command_run.c has others"},
+    {"cache", "max_distance", "as pull"},
+    {"cache", "backstop", "as pull"},
+    {"cache", "backstop_radius", "as pull"},
     {NULL, "map", "as many numbers as it leads; test_leashes.c has them"},
 };
 

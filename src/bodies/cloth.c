@@ -68,7 +68,7 @@ static const skein_field fields[] = {
     SK_REAL(cloth_params, shear.damping, "shear.damping", "N s/m", 0, 0, SK_FAR, "of shearing"),
     SK_CHOICE(cloth_params, diagonals, "shear.diagonals", BY_PINS, "springs|ties|pins",
               "springs; or ties, slack when shorter, so that folds can run to one point; \"pins\": ties where all pins are "
-              "within three edges, else springs"),
+              "within three edges and an eighth of the sheet, else springs"),
     SK_CHOICE(
         cloth_params, bending, "bend.by", BY_SHAPE, "springs|angle|curvature|lines|shape",
         "`dihedral` angles at edges, `isometric` curvature there, or `straight` lines and `twist` of a flat grid, which take "
@@ -227,12 +227,12 @@ static skein_status add_spans(tailor *t) {
     return sk_spans_add(&t->sheet, (const double(*)[3])axes, t->rank, t->world, t->body, t->error);
 }
 
-/* Whether a sheet hangs by one point: all of its pins are within a few edges. */
+/* Whether a sheet hangs by one point: all of its pins are within a few edges, and an eighth of its extent. */
 static bool hangs_by_a_point(const tailor *t) {
     const sk_sheet *sheet = &t->sheet;
     double area = 0;
     for (size_t f = 0; f < sheet->face_count; f++) area += sheet->face_area[f];
-    double reach = 3 * sqrt(area / (double)(sheet->face_count ? sheet->face_count : 1));
+    double reach = fmin(3 * sqrt(area / (double)(sheet->face_count ? sheet->face_count : 1)), sqrt(area) / 8);
     size_t first = SIZE_MAX;
     for (size_t i = 0; i < sheet->particle_count; i++) {
         if (!t->pinned[i] || !(t->mass[i] > 0)) continue;
