@@ -207,7 +207,8 @@ static skein_world *small_cloth(dense *d) {
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 6), SKEIN_VEC3("position", 0.05, 0.62, 0),
                                             SKEIN_REAL("stretch.stiffness", 2e3), SKEIN_REAL("shear.stiffness", 300),
                                             SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 20),
-                                            SKEIN_TEXT("pins", "0"), SKEIN_REAL("stretch.damping", 5)),
+                                            SKEIN_TEXT("pins", "0"), SKEIN_TEXT("shear.diagonals", "springs"),
+                                            SKEIN_REAL("stretch.damping", 5)),
                              NULL));
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 3)), NULL));
