@@ -47,7 +47,7 @@
 #define SKEIN_CLOTH_STRETCH_DAMPING "stretch.damping" /* a number in N s/m; of stretching; other motion is free */
 #define SKEIN_CLOTH_SHEAR_STIFFNESS "shear.stiffness" /* a number in N/m; across the threads */
 #define SKEIN_CLOTH_SHEAR_DAMPING "shear.damping" /* a number in N s/m; of shearing */
-#define SKEIN_CLOTH_SHEAR_DIAGONALS "shear.diagonals" /* a word; springs; or ties, slack when shorter, so that folds can run to one point; "pins": ties where all pins are within three edges, else springs */
+#define SKEIN_CLOTH_SHEAR_DIAGONALS "shear.diagonals" /* a word; springs; or ties, slack when shorter, so that folds can run to one point; "pins": ties where all pins are within three edges and an eighth of the sheet, else springs */
 #define SKEIN_CLOTH_SHEAR_DIAGONALS_SPRINGS "springs"
 #define SKEIN_CLOTH_SHEAR_DIAGONALS_TIES "ties"
 #define SKEIN_CLOTH_SHEAR_DIAGONALS_PINS "pins"
