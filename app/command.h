@@ -55,7 +55,7 @@ typedef struct app_command {
 extern const app_command app_run_command, app_render_command, app_check_command, app_compare_command,
     app_stability_command, app_explain_command, app_list_command, app_formula_command, app_view_command,
     app_bench_command, app_completion_command, app_man_command, app_record_command, app_verify_command,
-    app_study_command;
+    app_study_command, app_fit_command;
 
 /* What `skein list` takes: its lists and all kinds, each once; NULL past the end. */
 const char *app_list_word(size_t index);

@@ -2,9 +2,11 @@
  * is stepped by all; every rank has a world of the same scene with fewer birds. */
 #include "app/ranks.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "app/progress.h"
@@ -58,24 +60,42 @@ int app_shared_join(app_shared *shared, app_arguments *arguments) {
     return app_set_first(arguments, shared->threads) ? EXIT_OK : EXIT_FAILURE_RUN;
 }
 
-/* The scene once more, with so many birds. */
-static skein_world *make_part(void *user, size_t birds) {
+/* A body that lives on another rank. */
+static skein_status put_aside(skein_world *world, const shared_wanted *body, size_t number) {
+    char path[64];
+    snprintf(path, sizeof path, "bodies.%zu.enabled", number);
+    if (body->loose || body->here) return SKEIN_OK;
+    return body->shadow ? skein_world_part_shadow(world, number) : skein_set_path(world, path, skein_number(0));
+}
+
+/* The scene once more, with so many birds in each flock, and other bodies where they live here. */
+static skein_world *make_part(void *user, const shared_wanted *body, size_t bodies) {
     const app_shared *shared = user;
     size_t count = 0;
     while (shared->sets && shared->sets[count]) count++;
-    const char **sets = calloc(count + 3, sizeof *sets);
+    const char **sets = calloc(count + 2 * bodies + 1, sizeof *sets);
+    char(*text)[2][64] = calloc(bodies + 1, sizeof *text);
     app_scene *loaded = calloc(1, sizeof *loaded);
-    if (!sets || !loaded) return NULL;
-    char text[64];
-    snprintf(text, sizeof text, "bodies.0.count=%zu", birds);
+    if (!sets || !text || !loaded) return NULL;
     if (count) memcpy(sets, shared->sets, count * sizeof *sets);
-    sets[count++] = "bodies.0.side=0";
-    sets[count++] = text;
+    for (size_t b = 0; b < bodies; b++) {
+        if (!body[b].loose) continue;
+        snprintf(text[b][0], sizeof text[b][0], "bodies.%zu.side=0", b);
+        snprintf(text[b][1], sizeof text[b][1], "bodies.%zu.count=%zu", b, body[b].birds);
+        sets[count++] = text[b][0], sets[count++] = text[b][1];
+    }
     loaded->quiet = true;
     skein_world *world = app_load(shared->word, sets, loaded) ? NULL : loaded->world;
     loaded->world = NULL; // it goes on
+    for (size_t b = 0; world && b < bodies; b++) {
+        if (!put_aside(world, &body[b], b)) continue;
+        app_print_error(skein_world_error(world));
+        skein_world_destroy(world);
+        world = NULL;
+    }
     app_unload(loaded);
     free(loaded);
+    free(text);
     free(sets);
     return world;
 }
@@ -85,9 +105,9 @@ static void unmake_part(void *user, skein_world *world) {
     skein_world_destroy(world);
 }
 
-static int begin(app_shared *shared, size_t total, const char *word, const char *const *sets) {
+static int begin(app_shared *shared, const char *word, const char *const *sets) {
     shared->word = word, shared->sets = sets;
-    shared->run = shared_begin(shared->ranks, shared->rank, shared->count, total,
+    shared->run = shared_begin(shared->ranks, shared->rank, shared->count,
                                (shared_source){shared, make_part, unmake_part});
     if (shared->run) return EXIT_OK;
     fprintf(stderr, "skein: out of memory\n");
@@ -102,7 +122,7 @@ int app_shared_lead(app_shared *shared, app_scene *loaded, const char *word, con
         fprintf(stderr, "skein: method.budget_ms: each rank would choose substeps of its own: say how many\n");
         return EXIT_FAULT;
     }
-    int status = begin(shared, skein_particle_count(loaded->world), word, sets);
+    int status = begin(shared, word, sets);
     if (status) return status;
     io_scene_steps_per_frame(&loaded->settings, &dt);
     if (!shared_lead(shared->run, loaded->world, dt, &error)) return EXIT_OK;
@@ -113,12 +133,26 @@ int app_shared_lead(app_shared *shared, app_scene *loaded, const char *word, con
 int app_shared_serve(app_shared *shared, const char *word, const char *const *sets) {
     // a signal that is meant for the job ends it through rank 0, which has what is to be written
     app_catch_interrupts();
-    size_t total = 0;
-    int status = begin(shared, total, word, sets);
+    int status = begin(shared, word, sets);
     if (!status) shared_serve(shared->run);
     shared_end(shared->run);
     shared->ranks->end();
     return status;
+}
+
+bool app_shared_record(app_shared *shared, const char *out, int frame, double time) {
+    if (!shared->run) return true;
+    if (!shared->parts[0]) {
+        int length = snprintf(shared->parts, sizeof shared->parts, "%s/parts", out);
+        if (frame > 1 && length > 0 && (size_t)length < sizeof shared->parts)
+            snprintf(shared->parts + length, sizeof shared->parts - (size_t)length, "-from-%d", frame - 1);
+        if (mkdir(shared->parts, 0777) && errno != EEXIST) {
+            fprintf(stderr, "skein: %s: %s\n", shared->parts, strerror(errno));
+            return false;
+        }
+    }
+    shared_record(shared->run, shared->parts, time);
+    return true;
 }
 
 void app_shared_measure(app_shared *shared) {
@@ -128,7 +162,7 @@ void app_shared_measure(app_shared *shared) {
 void app_shared_leave(app_shared *shared) {
     if (!shared->ranks || shared->rank) return;
     // where the run could not begin, the others wait all the same
-    if (!shared->run && begin(shared, 0, "", NULL)) shared->ranks->abandon(EXIT_FAILURE_RUN);
+    if (!shared->run && begin(shared, "", NULL)) shared->ranks->abandon(EXIT_FAILURE_RUN);
     shared_dismiss(shared->run);
     shared_end(shared->run);
     shared->ranks->end();

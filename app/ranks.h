@@ -19,6 +19,7 @@ typedef struct app_shared {
     const char *word;      /* what scene */
     const char *const *sets;
     shared_run *run;
+    char parts[1100];       /* where ranks write their own; "": nowhere yet */
     shared_figures figures; /* at the end */
 } app_shared;
 
@@ -28,6 +29,9 @@ int app_shared_join(app_shared *shared, app_arguments *arguments);
 int app_shared_serve(app_shared *shared, const char *word, const char *const *sets);
 /* Has the loaded scene stepped by all ranks. Returns an exit status. */
 int app_shared_lead(app_shared *shared, app_scene *loaded, const char *word, const char *const *sets);
+/* Each rank writes what is its own, as frame `frame`, into out/parts, or where the run went on from a later one into
+ * out/parts-from-FRAME. False after a printed fault. */
+bool app_shared_record(app_shared *shared, const char *out, int frame, double time);
 /* Fills in the figures. */
 void app_shared_measure(app_shared *shared);
 /* Lets the others go, at the end of the first rank's run. To be called once the scene is unloaded. */

@@ -31,6 +31,7 @@ typedef struct app_report {
     int flocks_noted;            /* the frame after the one that they were last noted at */
     app_log *log;                /* a line a step, or NULL */
     const char *log_path;
+    const char *parts;              /* the folder where ranks write their own, or NULL */
     struct app_shared *shared;      /* what sharing it with other ranks has cost, or NULL */
     struct app_good *good;          /* what a blow-up is looked into from, or NULL */
     struct app_keep *keep;          /* what --resume goes on from, or NULL */

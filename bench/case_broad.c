@@ -17,6 +17,7 @@ typedef struct chained {
     size_t count, entry_count, room, heads, pairs;
     double cell;
     uint32_t *head, *next, *item;
+    int32_t (*cell_of)[3]; /* of entries: several cells may have one head */
 } chained;
 
 typedef int32_t cell_range[2][3];
@@ -54,12 +55,14 @@ static void find_by_hash(void *data) {
                     uint32_t *head = &c->head[head_of(c, at[0], at[1], at[2])];
                     for (uint32_t e = *head; e != UINT32_MAX; e = c->next[e]) {
                         uint32_t j = c->item[e];
+                        if (memcmp(c->cell_of[e], at, sizeof at) != 0) continue; // of another cell with this head
                         if (j == i || !sk_boxes_meet(&c->box[i], &c->box[j])) continue;
                         cells_of(c, &c->box[j], other);
                         c->pairs += is_first((const int32_t(*)[3])own, (const int32_t(*)[3])other, at);
                     }
                     if (c->entry_count == c->room) bench_stop("the hash has room for %zu entries", c->room);
                     c->item[c->entry_count] = i;
+                    memcpy(c->cell_of[c->entry_count], at, sizeof at);
                     c->next[c->entry_count] = *head;
                     *head = (uint32_t)c->entry_count++;
                 }
@@ -80,11 +83,12 @@ static chained new_hash(const sk_touch *touch, double cells) {
     c.head = bench_allocate(c.heads, sizeof *c.head);
     c.next = bench_allocate(c.room, sizeof *c.next);
     c.item = bench_allocate(c.room, sizeof *c.item);
+    c.cell_of = bench_allocate(c.room, sizeof *c.cell_of);
     return c;
 }
 
 static void free_hash(chained *c) {
-    free(c->head), free(c->next), free(c->item);
+    free(c->head), free(c->next), free(c->item), free(c->cell_of);
 }
 
 /* ---- the tree ---- */

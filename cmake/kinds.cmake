@@ -7,11 +7,11 @@ cmake_minimum_required(VERSION 3.25)
 # In which order they are shown; those that have no place here follow, by their files' names.
 set(order
     cloth lattice rope tetrahedra flock
-    distance dihedral isometric straight twist area volume angle formula_constraint energy enclosed_volume pressure
+    distance dihedral isometric straight twist area volume angle attachment formula_constraint energy enclosed_volume pressure
     gravity wind surface_wind drag separation flocking attraction predator lookout speed_limit turn_limit bounds
     force_field potential surface_contact
     plane sphere bowl capsule box solid_mesh formula_surface
-    translate turn keys cache
+    translate turn keys cache attach
     explicit_euler symplectic_euler lookahead_euler midpoint leapfrog rk4 backward_euler xpbd pbd)
 
 set(text "/* Made by cmake/kinds.cmake; do not edit. */\n#ifndef SK_CATALOGUE_KINDS_H\n#define SK_CATALOGUE_KINDS_H\n")

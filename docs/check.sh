@@ -5,8 +5,9 @@
 #   3  a block ```text skein explain SCENE is what that prints
 #   4  reference.md is what make-reference.sh makes
 #   5  links to files of this repository lead somewhere, and so do the files that CONTRIBUTING.md names
-#   6  methods.md names every method, constraint, force, collider and limit there is, and its formulas are those that the
+#   6  methods.md names every method, body, constraint, force, collider and motion there is, and its formulas are those that the
 #      kernels are made of (a block ```formula NAME)
+#   7  gallery.md, the pages of scenes and performance.md are what their scripts make of scenes and kept benchmarks
 # What the documents tell readers to type is run by run-commands.sh.
 # Prints each fault, and fails if there is one.
 set -u
@@ -81,7 +82,7 @@ for file in src/constraints/emitted/*.h; do
     grep -q "^\`\`\`formula $(basename "$file" .h)\$" docs/methods.md ||
         fault "docs/methods.md: lacks the formula of $file"
 done
-for category in methods constraints forces colliders; do
+for category in methods bodies constraints forces colliders motions; do
     "$skein" list $category | sed -n 's/^  \([a-z_0-9]*\):.*/\1/p' | while read -r kind; do
         grep -q -e "^### $kind\$" -e "\`$kind\`" docs/methods.md || echo "docs/methods.md: nothing about '$kind'"
     done
@@ -92,7 +93,16 @@ SKEIN=$skein docs/make-reference.sh >"$work/reference.md"
 cmp -s "$work/reference.md" docs/reference.md ||
     fault "docs/reference.md is out of date: docs/make-reference.sh >docs/reference.md"
 
-for document in README.md CONTRIBUTING.md docs/*.md; do
+docs/make-gallery.sh "$skein" | cmp -s - docs/gallery.md ||
+    fault "docs/gallery.md is out of date: docs/make-gallery.sh >docs/gallery.md"
+docs/make-performance.sh | cmp -s - docs/performance.md ||
+    fault "docs/performance.md is out of date: docs/make-performance.sh >docs/performance.md"
+docs/make-scene-pages.sh --keep "$work/scenes" "$skein"
+for page in $(ls "$work/scenes" docs/scenes | grep '[.]md$' | sort -u); do
+    cmp -s "$work/scenes/$page" "docs/scenes/$page" || fault "docs/scenes/$page is out of date: docs/make-scene-pages.sh"
+done
+
+for document in README.md CONTRIBUTING.md docs/*.md docs/scenes/*.md; do
     grep -o '](\([^)#]*\)' "$document" | sed 's/](//' | grep -v '^http' | sort -u | while read -r link; do
         [ -z "$link" ] || [ -e "$(dirname "$document")/$link" ] || echo "$document: the link $link leads nowhere"
     done

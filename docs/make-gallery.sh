@@ -15,7 +15,8 @@ cat <<'HEAD'
 # Scenes that come with Skein
 
 Made by `docs/make-gallery.sh >docs/gallery.md` from the scenes' own words; do not edit it by hand. `skein list scenes`
-prints the same list, `skein view NAME` opens a scene in a window, and `skein view` shows all of them there.
+prints the same list, `skein view NAME` opens a scene in a window, and `skein view` shows all of them there. Each has a page
+with what it is made of, and what its first second comes to.
 [One sheet](images/framing.jpg) has the stills of most of them twice: as commit 39fcedf framed them, and as they are today.
 
 | | scene | what it shows |
@@ -32,5 +33,5 @@ for scene in scenes/*.json; do
     fi
     cell=
     [ ! -s "$pictures/$name.png" ] || cell="![$name](images/scenes/$name.png)"
-    printf '| %s | [`%s`](../%s) | %s |\n' "$cell" "$name" "$scene" "$(field "$scene" description | sed 's/|/\\|/g')"
+    printf '| %s | [`%s`](scenes/%s.md) | %s |\n' "$cell" "$name" "$name" "$(field "$scene" description | sed 's/|/\\|/g')"
 done

@@ -12,7 +12,7 @@ root=$(cd "$(dirname "$0")/.." && pwd) || exit 2
 build=$(cd "${1:-$root/build}" && pwd) || exit 2
 [ $# -eq 0 ] || shift
 cd "$root" || exit 2
-[ $# -gt 0 ] || set -- README.md docs/*.md
+[ $# -gt 0 ] || set -- README.md docs/*.md docs/scenes/*.md
 sandbox=$(mktemp -d) || exit 2
 server=''
 trap 'rm -rf "$sandbox"; [ -z "$server" ] || kill "$server" 2>/dev/null' EXIT

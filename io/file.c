@@ -88,6 +88,28 @@ skein_status io_file_read(const char *path, size_t most, io_bytes *out, skein_er
     return io_error_set(error, SKEIN_ERROR_FILE, path, "cannot read: %s", fault_text(fault));
 }
 
+/* Whether `real`, without links, lies in the folder of `path`. */
+static bool lies_in_folder_of(const char *real, const char *path) {
+    const char *slash = strrchr(path, '/');
+    char *name = slash ? strndup(path, (size_t)(slash + 1 - path)) : strdup("."), *whole = name ? realpath(name, NULL) : NULL;
+    size_t length = whole ? strlen(whole) : 0;
+    bool inside = whole && !strncmp(real, whole, length) && (length == 1 || real[length] == '/');
+    free(name), free(whole);
+    return inside;
+}
+
+skein_status io_file_read_beside(const char *first, const char *path, size_t most, io_bytes *out, skein_error *error) {
+    *out = (io_bytes){NULL, 0};
+    char *real = realpath(path, NULL), *origin = realpath(first, NULL);
+    bool away = real && !lies_in_folder_of(real, path) && !(origin && lies_in_folder_of(real, origin));
+    skein_status status = SKEIN_OK;
+    if (away)
+        status = io_error_set(error, SKEIN_ERROR_FILE, path,
+                              "is a link out of its folder, to %s: put the file itself there", real);
+    free(real), free(origin);
+    return status ? status : io_file_read(path, most, out, error);
+}
+
 void io_bytes_free(io_bytes *bytes) {
     free(bytes->data);
     *bytes = (io_bytes){NULL, 0};

@@ -53,6 +53,9 @@ typedef struct io_bytes {
 
 /* Reads a whole file, not a pipe or device, of at most `most` bytes. `out` is overwritten; {NULL, 0} on failure. */
 skein_status io_file_read(const char *path, size_t most, io_bytes *out, skein_error *error);
+/* The same for a file that goes with another one, `first`, and lies in its folder: a link that leads to neither that folder
+ * nor the one where `first` really is, is not followed, for whoever made `first` may have laid it. */
+skein_status io_file_read_beside(const char *first, const char *path, size_t most, io_bytes *out, skein_error *error);
 void io_bytes_free(io_bytes *bytes);
 
 /* ---- Writing ------------------------------------------------------------------------------- */

@@ -99,7 +99,7 @@ static skein_status read_beside(const gltf_reader *r, const char *uri, size_t mo
     bool here = at - folder < 256 && !strchr(path + folder, '/') && !strchr(path + folder, '\\') && path[folder] &&
                 path[folder] != '.' && strlen(path) == at;
     char quote[IO_QUOTE_SIZE];
-    skein_status status = here ? io_file_read(path, most, out, r->error)
+    skein_status status = here ? io_file_read_beside(r->path, path, most, out, r->error)
                                : FAIL(r, "the buffer %s is not read: put it into the folder of the file",
                                       io_quote(uri, uri + strlen(uri), quote));
     free(path);

@@ -40,7 +40,8 @@ const void *io_module_load(const char *name, skein_error *error) {
         return NULL;
     }
     const io_module *module = dlsym(object, "skein_module");
-    if (module && !strcmp(module->version, SKEIN_VERSION) && module->real_size == sizeof(skein_real))
+    if (module && !strcmp(module->version, SKEIN_VERSION) &&
+        (!module->real_size || module->real_size == sizeof(skein_real)))
         return module->content;
     io_error_set(error, SKEIN_ERROR_FILE, path, "is not of this skein, " SKEIN_VERSION "%s: install skein anew",
                  sizeof(skein_real) == sizeof(double) ? " in double precision" : "");

@@ -1,4 +1,5 @@
 /* The second half of the scene reader: from the document to a world, object by object. */
+#include <skein/attach.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -172,15 +173,17 @@ static bool read_indices(index_list *list, io_place place, const json_t *json, s
 }
 
 /* A member that nobody reads would be a misspelt one. */
-static bool only_body_and_over(io_place place, const json_t *json) {
-    static const char *const known[] = {"body", "over"};
+static bool only_known(io_place place, const json_t *json) {
+    static const char *const known[] = {"body", "over", "pins", "to"};
     char hint[IO_HINT_SIZE], member[128];
     const char *key;
     json_t *value;
     json_object_foreach((json_t *)(uintptr_t)json, key, value) {
-        if (!strcmp(key, known[0]) || !strcmp(key, known[1])) continue;
+        size_t k = 0;
+        while (k < 4 && strcmp(key, known[k]) != 0) k++;
+        if (k < 4) continue;
         snprintf(member, sizeof member, "particles.%s", key);
-        io_hint(key, known, 2, hint);
+        io_hint(key, known, 4, hint);
         io_fault(place, member, SKEIN_ERROR_NAME, "there is no '%.100s' here%s", key,
                  hint[0] ? hint : ": expected {\"body\": \"flag\", \"over\": \"edges\"}, say");
         return false;
@@ -188,27 +191,34 @@ static bool only_body_and_over(io_place place, const json_t *json) {
     return true;
 }
 
-/* {"body": "flag", "over": "hinges"}: the body by its name or number. */
-static bool find_elements(const builder *b, io_place place, index_list *list, const json_t *json, size_t arity) {
-    static const char *const words[] = {"edges", "triangles", "hinges", "tetrahedra"};
-    static const size_t arities[] = {2, 3, 4, 4};
+/* The body that a member names, or says the number of. */
+static bool find_body(const builder *b, io_place place, const json_t *json, const char *member, skein_handle *handle) {
     char shown[IO_JSON_WORDS_SIZE], path[128];
-    const json_t *body = json_object_get(json, "body"), *over = json_object_get(json, "over");
-    skein_handle handle = {UINT32_MAX, 0, 0};
+    const json_t *body = json_object_get(json, member);
+    *handle = (skein_handle){UINT32_MAX, 0, 0};
     for (size_t i = 0; i < skein_object_count(b->world, SKEIN_BODY); i++) {
         skein_handle at = skein_object_at(b->world, SKEIN_BODY, i);
         skein_value name;
         snprintf(path, sizeof path, "bodies.%zu.name", i);
         bool named = json_is_string(body) && !skein_get_path(b->world, path, &name) &&
                      !strcmp(name.text, json_string_value(body));
-        if (named || (json_is_integer(body) && json_integer_value(body) == (json_int_t)i)) handle = at;
+        if (named || (json_is_integer(body) && json_integer_value(body) == (json_int_t)i)) *handle = at;
     }
-    if (!skein_handle_valid(b->world, handle)) {
-        if (!b->body_missing)
-            io_fault(place, "particles.body", SKEIN_ERROR_NAME, "expected the name or number of a body%s",
-                     io_json_instead(body, shown));
-        return false;
-    }
+    if (skein_handle_valid(b->world, *handle)) return true;
+    snprintf(path, sizeof path, "particles.%s", member);
+    if (!b->body_missing)
+        io_fault(place, path, SKEIN_ERROR_NAME, "expected the name or number of a body%s", io_json_instead(body, shown));
+    return false;
+}
+
+/* {"body": "flag", "over": "hinges"}: the body by its name or number. */
+static bool find_elements(const builder *b, io_place place, index_list *list, const json_t *json, size_t arity) {
+    static const char *const words[] = {"edges", "triangles", "hinges", "tetrahedra"};
+    static const size_t arities[] = {2, 3, 4, 4};
+    char shown[IO_JSON_WORDS_SIZE];
+    const json_t *over = json_object_get(json, "over");
+    skein_handle handle;
+    if (!find_body(b, place, json, "body", &handle)) return false;
     size_t what = 0, count;
     while (what < 4 && !(json_is_string(over) && !strcmp(json_string_value(over), words[what]))) what++;
     if (what == 4 || arities[what] != arity) {
@@ -229,9 +239,43 @@ static bool find_elements(const builder *b, io_place place, index_list *list, co
     return count > 0;
 }
 
+/* {"body": "flag", "pins": [0, 16], "to": "jelly"}: each of them with the triangle of the other body that is nearest. */
+static bool find_attachments(const builder *b, io_place place, index_list *list, const json_t *json, size_t arity) {
+    skein_handle body, to;
+    size_t count = 0;
+    if (arity != 4 || json_object_get(json, "over")) {
+        io_fault(place, "particles", SKEIN_ERROR_VALUE, "\"to\" is for constraints on a particle and a triangle, such as attachment, and without \"over\"");
+        return false;
+    }
+    if (!find_body(b, place, json, "body", &body) || !find_body(b, place, json, "to", &to)) return false;
+    const json_t *pins = json_object_get(json, "pins");
+    char *joined = json_is_string(pins) ? NULL : io_json_join(pins);
+    const char *text = json_is_string(pins) ? json_string_value(pins) : joined;
+    if (!text || !text[0]) {
+        io_fault(place, "particles.pins", SKEIN_ERROR_VALUE, "expected which particles are tied: [0, 1], {\"box\": [...]} or {\"sphere\": [...]}");
+        free(joined);
+        return false;
+    }
+    skein_status status = skein_body_select(b->world, body, text, NULL, 0, &count);
+    if (!status && !io_grow(&list->data, &list->capacity, 5 * count, sizeof *list->data)) {
+        free(joined);
+        io_fault(place, "particles", SKEIN_ERROR_MEMORY, "out of memory");
+        return false;
+    }
+    uint32_t *chosen = list->data ? list->data + 4 * count : NULL; // behind what is made of them
+    if (!status) status = skein_body_select(b->world, body, text, chosen, count, &count);
+    if (!status) status = skein_attachments_find(b->world, chosen, count, to, list->data);
+    free(joined);
+    list->count = 4 * count;
+    if (status) report_library_fault(b, place, "particles");
+    else if (!count) io_fault(place, "particles.pins", SKEIN_ERROR_VALUE, "there is no such particle in the body");
+    return !status && count > 0;
+}
+
 static bool read_particles(const builder *b, io_place place, index_list *list, const json_t *json, size_t arity) {
     if (!json_is_object(json)) return read_indices(list, place, json, arity);
-    return only_body_and_over(place, json) && find_elements(b, place, list, json, arity);
+    if (!only_known(place, json)) return false;
+    return json_object_get(json, "to") ? find_attachments(b, place, list, json, arity) : find_elements(b, place, list, json, arity);
 }
 
 static void add_constraint(const builder *b, io_place place, const skein_kind *kind, const json_t *object,

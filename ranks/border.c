@@ -17,28 +17,62 @@ static void widen(skein_real low[3], skein_real high[3], const skein_real p[3]) 
     }
 }
 
-bool shared_measure_all(void *user, const skein_state *state, skein_border *border) {
-    shared_run *run = user;
-    shared_box own = {.any = 0};
+/* Whether a body is among [first, end) of this rank's particles. */
+static bool is_in(const shared_body *body, size_t first, size_t end) {
+    return body->room && body->of.enabled && body->first >= first && body->first + body->room <= end;
+}
+
+static bool looks(const shared_run *run, const skein_share_look *look, size_t b) {
+    return is_in(&run->bodies[b], look->first, look->end);
+}
+
+static bool is_seen(const shared_run *run, const skein_share_look *look, size_t b) {
+    return is_in(&run->bodies[b], look->seen_first, look->seen_end);
+}
+
+static shared_box *box_of(const shared_run *run, int rank, size_t b) {
+    return &run->boxes[(size_t)rank * run->body_count + b];
+}
+
+/* The boxes of its own, of each body. */
+static void find_own(shared_run *run, const skein_share_look *look, const skein_state *state, shared_box *own) {
+    memset(own, 0, run->body_count * sizeof *own);
     for (size_t slot = 0; slot < state->slot_count; slot++) {
         const skein_real *p = state->position[slot];
-        if (state->particle_of[slot] >= run->own || !is_somewhere(p)) continue;
-        if (!own.any) memcpy(own.low, p, sizeof own.low), memcpy(own.high, p, sizeof own.high);
-        own.any = 1;
-        widen(own.low, own.high, p);
+        uint32_t i = state->particle_of[slot];
+        if (i >= run->particles || !shared_is_own(run, i) || !is_somewhere(p)) continue;
+        shared_box *box = &own[run->body_of[i]];
+        if (!box->any) memcpy(box->low, p, sizeof box->low), memcpy(box->high, p, sizeof box->high);
+        box->any = 1;
+        widen(box->low, box->high, p);
     }
+    for (size_t b = 0; b < run->body_count; b++)
+        if (!looks(run, look, b) && !is_seen(run, look, b)) own[b].any = 0;
+}
+
+bool shared_measure_all(void *user, const skein_share_look *look, const skein_state *state, skein_border *border) {
+    shared_run *run = user;
+    *border = (skein_border){.alone = true};
+    for (size_t b = 0; b < run->body_count; b++) {
+        if (is_seen(run, look, b)) border->everybody += run->bodies[b].of.count;
+        // where no loose one takes part the library has them all in one part
+        border->alone &= !run->bodies[b].of.loose || (!is_seen(run, look, b) && !looks(run, look, b));
+    }
+    if (border->alone) return true;
+    shared_box *own = box_of(run, run->count, 0);
+    find_own(run, look, state, own);
     double begun = shared_seconds();
-    run->ranks->gather(&own, sizeof own, run->boxes);
+    run->ranks->gather(own, run->body_count * sizeof *own, run->boxes);
     bool any = false;
-    *border = (skein_border){.everybody = run->total};
-    for (int r = 0; r < run->count; r++) {
-        const shared_box *box = &run->boxes[r];
-        if (!box->any) continue;
-        if (!any) memcpy(border->low, box->low, sizeof box->low), memcpy(border->high, box->high, sizeof box->high);
-        any = true;
-        widen(border->low, border->high, box->low);
-        widen(border->low, border->high, box->high);
-    }
+    for (int r = 0; r < run->count; r++)
+        for (size_t b = 0; b < run->body_count; b++) {
+            const shared_box *box = box_of(run, r, b);
+            if (!box->any || !is_seen(run, look, b)) continue;
+            if (!any) memcpy(border->low, box->low, sizeof box->low), memcpy(border->high, box->high, sizeof box->high);
+            any = true;
+            widen(border->low, border->high, box->low);
+            widen(border->low, border->high, box->high);
+        }
     run->tale.exchange += shared_seconds() - begun;
     run->tale.work -= shared_seconds() - begun;
     return true;
@@ -46,18 +80,14 @@ bool shared_measure_all(void *user, const skein_state *state, skein_border *bord
 
 /* ---- cells ---- */
 
-typedef struct cell_box {
-    int32_t low[3], high[3];
-} cell_box;
-
 static int32_t cell_along(const skein_cells *cells, int axis, skein_real at) {
     skein_real place = (at - cells->origin[axis]) * cells->per[axis];
     int32_t count = cells->count[axis];
     return place > 0 ? place < (skein_real)count ? (int32_t)place : count - 1 : 0;
 }
 
-static cell_box cells_of(const skein_cells *cells, const shared_box *box, bool around) {
-    cell_box out;
+static shared_cells cells_of(const skein_cells *cells, const shared_box *box, bool around) {
+    shared_cells out;
     for (int k = 0; k < 3; k++) {
         out.low[k] = cell_along(cells, k, box->low[k]) - (around ? cells->around[k] : 0);
         out.high[k] = cell_along(cells, k, box->high[k]) + (around ? cells->around[k] : 0);
@@ -65,49 +95,84 @@ static cell_box cells_of(const skein_cells *cells, const shared_box *box, bool a
     return out;
 }
 
-static bool meet(const cell_box *a, const cell_box *b) {
+static bool meet(const shared_cells *a, const shared_cells *b) {
     for (int k = 0; k < 3; k++)
         if (a->low[k] > b->high[k] || b->low[k] > a->high[k]) return false;
     return true;
 }
 
-/* Whether two ranks' birds may look at each other: both sides find the same. */
-static bool are_near(const shared_run *run, const skein_cells *cells, int a, int b) {
-    const shared_box *one = &run->boxes[a], *other = &run->boxes[b];
-    if (a == b || !one->any || !other->any) return false;
-    cell_box near = cells_of(cells, one, false), far = cells_of(cells, other, true);
-    return meet(&near, &far);
+/* Whether rank b may look at any of rank a's: both sides find the same. */
+static bool are_near(const shared_run *run, const skein_share_look *look, const skein_cells *cells, int a, int b) {
+    for (size_t seen = 0; seen < run->body_count && a != b; seen++) {
+        const shared_box *one = box_of(run, a, seen);
+        if (!one->any || !is_seen(run, look, seen)) continue;
+        shared_cells near = cells_of(cells, one, false);
+        for (size_t body = 0; body < run->body_count; body++) {
+            const shared_box *other = box_of(run, b, body);
+            if (!other->any || !looks(run, look, body)) continue;
+            shared_cells far = cells_of(cells, other, true);
+            if (meet(&near, &far)) return true;
+        }
+    }
+    return false;
+}
+
+/* Which cells rank r looks into; returns how many boxes of them there are. */
+static size_t wanted_by(const shared_run *run, const skein_share_look *look, const skein_cells *cells, int r,
+                        shared_cells *wanted) {
+    size_t count = 0;
+    for (size_t b = 0; b < run->body_count; b++)
+        if (box_of(run, r, b)->any && looks(run, look, b)) wanted[count++] = cells_of(cells, box_of(run, r, b), true);
+    return count;
+}
+
+static bool is_wanted(const skein_cells *cells, const shared_cells *wanted, size_t count, const skein_real p[4]) {
+    int32_t cell[3];
+    for (int k = 0; k < 3; k++) cell[k] = cell_along(cells, k, p[k]);
+    for (size_t w = 0; w < count; w++) {
+        bool in = true;
+        for (int k = 0; k < 3 && in; k++) in = cell[k] >= wanted[w].low[k] && cell[k] <= wanted[w].high[k];
+        if (in) return true;
+    }
+    return false;
 }
 
 /* Lists those of its own that lie around rank r's. */
-static void list_for(shared_run *run, const skein_cells *cells, const skein_state *state, int r) {
-    cell_box wanted = cells_of(cells, &run->boxes[r], true);
+static void list_for(shared_run *run, const skein_share_look *look, const skein_cells *cells, const skein_state *state,
+                     int r) {
+    size_t count = wanted_by(run, look, cells, r, run->wanted);
     run->out[r].size = 0;
     for (size_t slot = 0; slot < state->slot_count; slot++) {
         const skein_real *p = state->position[slot], *v = state->velocity[slot];
         uint32_t i = state->particle_of[slot];
-        if (i >= run->own || !is_somewhere(p)) continue;
-        bool in = true;
-        for (int k = 0; k < 3 && in; k++) {
-            int32_t cell = cell_along(cells, k, p[k]);
-            in = cell >= wanted.low[k] && cell <= wanted.high[k];
-        }
-        if (!in) continue;
+        if (i < look->seen_first || i >= look->seen_end || !shared_is_own(run, i) || !is_somewhere(p)) continue;
+        if (!is_wanted(cells, run->wanted, count, p)) continue;
         shared_seen *seen = shared_grow(run, &run->out[r], sizeof *seen);
         *seen = (shared_seen){run->number[i], {p[0], p[1], p[2]}, {v[0], v[1], v[2]}};
     }
 }
 
+/* Where what is seen of a body lies: among that one's birds, and of a whole one without a shadow among those of the first
+ * that can. */
+static shared_body *place_for(shared_run *run, const skein_share_look *look, uint32_t number) {
+    size_t b = shared_body_with(run, number);
+    if (run->bodies[b].of.loose || shared_is_shadow(&run->bodies[b])) return &run->bodies[b];
+    for (b = 0; b < run->body_count; b++)
+        if (run->bodies[b].of.loose && is_seen(run, look, b)) return &run->bodies[b];
+    shared_give_up(run, "there is no place for what lies at its border");
+}
+
 /* Puts what has come behind its own. */
-static void take_in(shared_run *run, const skein_state *state) {
+static void take_in(shared_run *run, const skein_share_look *look, const skein_state *state) {
     size_t count = run->in.size / sizeof(shared_seen);
     const shared_seen *come = (const shared_seen *)(const void *)run->in.data;
     for (size_t k = 0; k < count; k++) {
-        if (run->seen == run->room) {
-            run->tale.overflow = 1; // the step is taken again, with more
-            break;
+        shared_body *body = place_for(run, look, come[k].number);
+        if (body->of.loose && body->seen == body->room) {
+            run->tale.overflow = 1, body->full = true; // the step is taken again, with more
+            continue;
         }
-        size_t i = run->seen++, slot = state->slot_of[i];
+        size_t i = body->first + (body->of.loose ? body->seen++ : come[k].number - body->of.first), slot = state->slot_of[i];
         run->number[i] = come[k].number;
         for (int c = 0; c < 3; c++)
             state->position[slot][c] = come[k].position[c], state->velocity[slot][c] = come[k].velocity[c];
@@ -115,31 +180,44 @@ static void take_in(shared_run *run, const skein_state *state) {
     }
 }
 
-bool shared_exchange(void *user, const skein_cells *cells, const skein_state *state) {
-    shared_run *run = user;
-    double begun = shared_seconds();
-    run->seen = run->own;
-    for (int r = 0; r < run->count; r++) {
-        if (!are_near(run, cells, run->rank, r)) continue;
-        list_for(run, cells, state, r);
-        run->ranks->send_begin(r, run->out[r].data, run->out[r].size);
-        run->tale.bytes += (double)run->out[r].size;
-    }
-    for (int r = 0; r < run->count; r++) {
-        if (!are_near(run, cells, r, run->rank)) continue;
-        run->in.size = 0;
-        size_t size = run->ranks->size_from(r);
-        run->ranks->receive(r, shared_grow(run, &run->in, size), size);
-        take_in(run, state);
-    }
-    run->ranks->send_end();
-    for (size_t i = run->seen; i < run->room; i++) {
+/* Those that a loose body has room for, and that are nobody; all of a shadow. */
+static void clear(const shared_body *body, const skein_state *state) {
+    for (size_t i = body->first + (body->of.loose ? body->seen : 0); i < body->first + body->room; i++) {
         size_t slot = state->slot_of[i];
         for (int c = 0; c < 4; c++) {
             state->position[slot][c] = c < 3 ? 2 * SKEIN_SHARE_FARTHEST : 0;
             state->velocity[slot][c] = 0;
         }
     }
+}
+
+bool shared_exchange(void *user, const skein_share_look *look, const skein_cells *cells, const skein_state *state) {
+    shared_run *run = user;
+    double begun = shared_seconds();
+    for (size_t b = 0; b < run->body_count; b++) {
+        if (run->bodies[b].of.loose && is_seen(run, look, b)) run->bodies[b].seen = run->bodies[b].own;
+        if (shared_is_shadow(&run->bodies[b])) clear(&run->bodies[b], state);
+    }
+    for (int r = 0; r < run->count; r++) {
+        if (!are_near(run, look, cells, run->rank, r)) continue;
+        list_for(run, look, cells, state, r);
+        run->ranks->send_begin(r, run->out[r].data, run->out[r].size);
+        run->tale.bytes += (double)run->out[r].size;
+    }
+    for (int r = 0; r < run->count; r++) {
+        if (!are_near(run, look, cells, r, run->rank)) continue;
+        run->in.size = 0;
+        size_t size = run->ranks->size_from(r);
+        run->ranks->receive(r, shared_grow(run, &run->in, size), size);
+        take_in(run, look, state);
+    }
+    run->ranks->send_end();
+    for (size_t b = 0; b < run->body_count; b++)
+        if (run->bodies[b].of.loose && is_seen(run, look, b)) {
+            if (run->bodies[b].seen > run->bodies[b].most) run->bodies[b].most = run->bodies[b].seen;
+            clear(&run->bodies[b], state);
+        }
+    if (shared_others(run) > run->tale.seen) run->tale.seen = shared_others(run);
     run->tale.exchange += shared_seconds() - begun;
     run->tale.work -= shared_seconds() - begun;
     return true;

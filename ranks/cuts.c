@@ -1,6 +1,7 @@
 /* Recursive bisection of samples. */
 #include "ranks/cuts.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 
 static int compare(const ranks_sample *a, const ranks_sample *b, int axis) {
@@ -35,7 +36,29 @@ static int longest_axis(const ranks_sample *samples, size_t count, int last) {
     return axis;
 }
 
-void ranks_cut_space(ranks_sample *samples, size_t count, int ranks, ranks_cut *cuts) {
+/* The work that `ranks` are to have of `all`, beside the burdens that they have: as even as can be. A rank with a larger
+ * burden than its share gets none, and the others share the rest. */
+static double part_of(double all, int first, int ranks, const double *burden) {
+    bool full[ranks];
+    int open = 0;
+    for (int r = 0; r < ranks; r++) full[r] = false;
+    for (bool again = true; again;) {
+        double work = all;
+        open = 0, again = false;
+        for (int r = 0; r < ranks; r++)
+            if (!full[r]) work += burden ? burden[r] : 0, open++;
+        for (int r = 0; r < ranks && burden; r++)
+            if (!full[r] && open > 1 && burden[r] > work / open) full[r] = again = true;
+    }
+    double work = all, part = 0;
+    for (int r = 0; r < ranks; r++)
+        if (!full[r] && burden) work += burden[r];
+    for (int r = 0; r < first; r++)
+        if (!full[r]) part += work / open - (burden ? burden[r] : 0);
+    return part;
+}
+
+void ranks_cut_space(ranks_sample *samples, size_t count, int ranks, const double *burden, ranks_cut *cuts) {
     static int (*const comparisons[3])(const void *, const void *) = {compare_x, compare_y, compare_z};
     if (ranks < 2) return;
     int first = ranks / 2, axis = longest_axis(samples, count, cuts->first_ranks ? cuts->axis : -1);
@@ -43,10 +66,11 @@ void ranks_cut_space(ranks_sample *samples, size_t count, int ranks, ranks_cut *
     for (size_t i = 0; i < count; i++) all += samples[i].work;
     if (count) qsort(samples, count, sizeof *samples, comparisons[axis]);
     size_t part = 0;
-    while (part < count && sum + samples[part].work / 2 < all * first / ranks) sum += samples[part++].work;
+    double wanted = part_of(all, first, ranks, burden);
+    while (part < count && sum + samples[part].work / 2 < wanted) sum += samples[part++].work;
     *cuts = (ranks_cut){part < count ? samples[part].place[axis] : count ? samples[count - 1].place[axis] : 0, axis, first};
-    ranks_cut_space(samples, part, first, cuts + 1);
-    ranks_cut_space(samples + part, count - part, ranks - first, cuts + first);
+    ranks_cut_space(samples, part, first, burden, cuts + 1);
+    ranks_cut_space(samples + part, count - part, ranks - first, burden ? burden + first : NULL, cuts + first);
 }
 
 int ranks_owner(const ranks_cut *cuts, int ranks, const double place[3]) {

@@ -16,9 +16,9 @@ typedef struct ranks_sample {
     double place[3], work;
 } ranks_sample;
 
-/* Makes the `ranks` - 1 cuts; the samples are put in another order. The same samples make the same cuts, from
- * the same ones before: `cuts` holds those, or zeros. */
-void ranks_cut_space(ranks_sample *samples, size_t count, int ranks, ranks_cut *cuts);
+/* Makes the `ranks` - 1 cuts; the samples are put in another order. `burden` is each rank's work besides, NULL: none. The same
+ * samples make the same cuts, from the same ones before: `cuts` holds those, or zeros. */
+void ranks_cut_space(ranks_sample *samples, size_t count, int ranks, const double *burden, ranks_cut *cuts);
 /* Whose a place is. */
 int ranks_owner(const ranks_cut *cuts, int ranks, const double place[3]);
 

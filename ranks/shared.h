@@ -1,5 +1,6 @@
-/* A run of one flock, shared by the ranks of a job: each steps the birds in its part of space, in a world of its own that has
- * room for them and for those of others within reach (skein/share.h).
+/* A run shared by the ranks of a job: each steps the birds in its part of space, in a world of its own that has room for them
+ * and for those of others within reach (skein/share.h), and whole bodies that are no flocks, which are dealt by what they
+ * cost.
  *
  * Rank 0 leads: it has the whole run's world, too, whose runner this is, so that whoever writes, measures or goes on from
  * a snapshot does so there, as on one machine. The others serve: they do what the leader calls. */
@@ -12,11 +13,19 @@
 
 typedef struct shared_run shared_run;
 
+/* What a part has of a body. */
+typedef struct shared_wanted {
+    bool loose;
+    size_t birds; /* of a loose one: so many, wherever they are */
+    bool here;    /* of a whole one; else it is not enabled there, */
+    bool shadow;  /* or a shadow */
+} shared_wanted;
+
 /* Where parts come from. */
 typedef struct shared_source {
     void *user;
-    /* A world like the whole run's, but with so many birds, wherever they are; NULL after a printed fault. */
-    skein_world *(*make)(void *user, size_t birds);
+    /* A world like the whole run's, with these bodies; NULL after a printed fault. */
+    skein_world *(*make)(void *user, const shared_wanted *bodies, size_t count);
     void (*unmake)(void *user, skein_world *world);
 } shared_source;
 
@@ -26,15 +35,20 @@ typedef struct shared_figures {
     double imbalance;       /* of the seconds that ranks worked since the cuts were made: most by mean, less 1 */
     double exchange_share;  /* of the seconds of all steps, those that ranks exchanged birds, or waited for each other */
     double bytes_per_step;  /* that were sent, by all ranks */
+    double start_seconds;   /* to make parts and send all to them, before the first step: in no other figure */
     size_t cuts;            /* how often space was cut */
     size_t moved;           /* birds that went to another rank */
     size_t most_birds, most_seen; /* of a rank: its own, and others' that it sees */
+    size_t whole_bodies;    /* that live on one rank each */
 } shared_figures;
 
-/* `total` birds are in the whole run. NULL where there is no memory. */
-shared_run *shared_begin(const ranks_content *ranks, int rank, int count, size_t total, shared_source source);
+/* NULL where there is no memory. */
+shared_run *shared_begin(const ranks_content *ranks, int rank, int count, shared_source source);
 /* Rank 0: has the whole run's world stepped by all. Says first what of it cannot be shared. */
 skein_status shared_lead(shared_run *run, skein_world *whole, double dt, skein_error *error);
+/* Rank 0: has each rank write what is its own into a file in this folder, which is there, and an index beside it, FOLDER.xdmf;
+ * from the first step on, a frame with each call. What cannot be written ends the job with words. */
+void shared_record(shared_run *run, const char *folder, double time);
 /* Rank 0: all ranks tell. */
 void shared_measure(shared_run *run, shared_figures *figures);
 /* Rank 0: the others may go. */

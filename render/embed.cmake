@@ -18,9 +18,10 @@ foreach(file IN LISTS FILES)
         string(REGEX REPLACE "[.](glsl|c)$" "" name "${name}")
     endif()
     file(READ "${file}" bytes HEX)
-    if(file MATCHES "[.]c$") # of C what stands between two comments
-        file(READ "${file}" text)
-        string(FIND "${text}" "// ---- arithmetic ----" begin)
+    file(READ "${file}" text)
+    string(FIND "${text}" "\n// ---- arithmetic ----\n" begin)
+    if(begin GREATER -1) # of C what stands between two comments
+        string(REGEX REPLACE "[.]h$" "" name "${name}")
         string(FIND "${text}" "// ---- end of arithmetic ----" end)
         math(EXPR length "${end} - ${begin}")
         string(SUBSTRING "${text}" ${begin} ${length} text)

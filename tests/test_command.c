@@ -31,7 +31,7 @@ static void wrong_arguments_are_told(void **state) {
          "skein run: there is no option --frame; did you mean --frames? `skein run --help` shows all\n"},
         {{"run", "-x", "a.json"}, "skein run: there is no option -x; `skein run --help` shows all\n"},
         {{"check", "a.json", "--frames", "3"},
-         "skein check: there is no option --frames here, only for run, render, compare or record; `skein check --help` shows all\n"},
+         "skein check: there is no option --frames here, only for run, render, compare, fit or record; `skein check --help` shows all\n"},
         {{"run", "a.json", "--frmes", "3"},
          "skein run: there is no option --frmes; did you mean --frames? `skein run --help` shows all\n"},
         {{"check", "a.json", "--device=gpu"},

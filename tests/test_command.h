@@ -130,6 +130,10 @@ static inline int caught(const char *name) {
 #define SKEIN_INTERPOSER "" /* only for the test that has one */
 #endif
 
+#ifndef SKEIN_COMMAND_SECONDS
+#define SKEIN_COMMAND_SECONDS 200 /* then a process that hangs is ended */
+#endif
+
 /* Starts skein with arguments up to NULL. */
 static inline pid_t start_skein(surroundings around, const char *const *arguments) {
     int out = around.out ? around.out : caught(".out"), err = around.err ? around.err : caught(".err");
@@ -143,7 +147,7 @@ static inline pid_t start_skein(surroundings around, const char *const *argument
     assert_true(child >= 0);
     if (child == 0) {
         struct rlimit limit = {around.file_limit, around.file_limit};
-        alarm(200);
+        alarm(SKEIN_COMMAND_SECONDS);
         if (around.fail) {
             setenv("SKEIN_FAIL", around.fail, 1);
             setenv("SKEIN_FAIL_LOG", in_folder(".calls"), 1);

@@ -2,6 +2,8 @@
  * broken off, and gone on with by another number of ranks; and what cannot be shared is said. */
 #include "test_command.h"
 
+#include <math.h>
+
 #ifdef SKEIN_MPIRUN
 
 static int frames = 160;
@@ -116,12 +118,70 @@ static void rules_and_methods_have_it_too(void **state) {
     }
 }
 
+/* Runs a scene by one process and by ranks; with so many bodies that live on one rank each. */
+static void check_bodies(const char *name, const char *text, int whole_bodies) {
+    static const int counts[] = {2, 3, 4, 8};
+    char scene[512], one[512], arguments[1400], *said;
+    snprintf(scene, sizeof scene, "%s/%s.json", folder, name);
+    snprintf(one, sizeof one, "%s/%s", folder, name);
+    write_scene(scene, text);
+    outcome o = SKEIN("run", scene, "--out", one, "--quiet");
+    assert_status(o, 0);
+    outcome_free(&o);
+    for (size_t i = 0; i < COUNT(counts); i++) {
+        if (frames <= 500 && i == 2) continue; // on 8 ranks far more of others come at once than anybody has of its own
+        char out[540];
+        snprintf(out, sizeof out, "%s_by_%d", one, counts[i]);
+        snprintf(arguments, sizeof arguments, "%s --out %s --no-progress --threads %d", scene, out, i == 1 ? 2 : 1);
+        if (run_ranks(counts[i], arguments, &said)) fail_msg("%s", said);
+        free(said);
+        check_same_hash(one, out);
+        json_t *report = report_of(out), *ranks = json_object_get(report, "ranks");
+        assert_int_equal(json_integer_value(json_object_get(ranks, "whole_bodies")), whole_bodies);
+        json_decref(report);
+    }
+}
+
+#define CLOTHS                                                                                                            \
+    "{'type': 'cloth', 'name': 'net', 'grid': [14, 17], 'size': [12, 12], 'position': [0, 1, 0], 'pins': 'corners'}, "
+
+static void bodies_that_meet_nobody_are_dealt_to_ranks(void **state) {
+    (void)state;
+    check_bodies("dealt",
+                 "{'frames': 30, 'method': {'type': 'xpbd', 'substeps': 4}, 'bodies': [" CLOTHS
+                 "{'type': 'cloth', 'name': 'sail', 'grid': [9, 21], 'position': [3, 2, 0], 'rotation': [20, 10, 0], 'pins': 'top "
+                 "edge'}, {'type': 'rope', 'pins': 'first'}, {'type': 'cloth', 'grid': [8, 9], 'position': [9, 2, 0], "
+                 "'stretch.limit': 0.05, 'stretch.tether': 0.02, 'pins': 'corners'}], 'motions': [{'type': 'turn', 'on': 'sail', "
+                 "'axis': [0, 1, 0], 'speed': 1, 'centre': [3, 2, 0]}], 'forces': [{'type': 'gravity'}, {'type': 'surface_wind', 'velocity': [3, 0, "
+                 "1]}], 'colliders': [{'type': 'plane', 'offset': -0.2}], 'output': []}",
+                 4);
+}
+
+/* All look at each other: birds of two flocks, and a net and a rope that live on one rank each. */
+static void flocks_and_bodies_meet_across_ranks(void **state) {
+    (void)state;
+    check_bodies("meet",
+                 "{'frames': 20, 'method': {'type': 'xpbd', 'substeps': 4}, 'bodies': [" CLOTHS
+                 "{'type': 'flock', 'name': 'a', 'count': 260, 'spread': [14, 6, 14], 'speed': 3, 'swirl': 6}, {'type': 'rope', "
+                 "'name': 'line', 'from': [-6, 2, 0], 'to': [6, 2, 0], 'pins': 'first'}, {'type': 'flock', 'name': 'b', 'count': "
+                 "150, 'spread': [10, 8, 12], 'speed': 5, 'swirl': -4}], 'forces': [{'type': 'flocking', 'on': 'a', "
+                 "'separation': 2, 'alignment': 1.5, 'cohesion': 2}, {'type': 'flocking', 'on': 'b', 'neighbours': 'a', "
+                 "'separation': 2, 'alignment': 1, 'cohesion': 2}, {'type': 'flocking', 'on': 'a', 'neighbours': 'net', "
+                 "'separation': 2, 'alignment': 0, 'cohesion': 0, 'strength': 3}, {'type': 'flocking', 'on': 'net', "
+                 "'neighbours': 'b', 'separation': 2, 'alignment': 1, 'cohesion': 0}, {'type': 'separation', 'radius': 1.5, "
+                 "'strength': 0.02}, {'type': 'attraction', 'on': 'a', 'strength': 4}, {'type': 'attraction', 'on': 'b', 'strength': 4}, {'type': 'gravity', 'on': 'net, "
+                 "line'}], 'output': []}",
+                 2);
+}
+
 static void what_cannot_be_shared_is_said(void **state) {
     (void)state;
     char *said;
-    assert_int_equal(run_ranks(2, "scenes/drape.json --frames 2", &said), 2);
-    assert_contains(said, "cannot share a run with a body of more than single particles");
-    assert_contains(said, "one flock");
+    assert_int_equal(run_ranks(2, "scenes/heap.json --frames 2", &said), 2);
+    assert_contains(said, "cannot share a run with contact");
+    free(said);
+    assert_int_equal(run_ranks(2, "scenes/drape.json --frames 2 --set method.type=backward_euler", &said), 2);
+    assert_contains(said, "a method that solves nothing");
     free(said);
     assert_int_equal(run_ranks(2, "scenes/birds.json --frames 2 --set method.budget_ms=5", &said), 2);
     assert_contains(said, "say how many");
@@ -129,6 +189,77 @@ static void what_cannot_be_shared_is_said(void **state) {
     assert_int_equal(run_ranks(2, "scenes/birds.json --frames 2 --device gpu", &said), 2);
     assert_contains(said, "ranks of an MPI job step on processors");
     free(said);
+}
+
+/* The bytes of a file. */
+static unsigned char *bytes_of(const char *path, size_t *size) {
+    FILE *file = fopen(path, "rb");
+    if (!file) fail_msg("%s is not there", path);
+    fseek(file, 0, SEEK_END);
+    *size = (size_t)ftell(file);
+    rewind(file);
+    unsigned char *bytes = malloc(*size + 1);
+    assert_int_equal(fread(bytes, 1, *size, file), *size);
+    fclose(file);
+    return bytes;
+}
+
+/* Reads `count` items of an XDMF's data item, as its attributes say. */
+static void read_item(const char *folder_of_index, const char *item, size_t size, size_t count, void *out) {
+    char name[200], path[900];
+    size_t at = 0, all;
+    assert_int_equal(sscanf(strstr(item, "Seek="), "Seek=\"%zu\"", &at), 1);
+    assert_int_equal(sscanf(strchr(item, '>') + 1, "%199[^<]", name), 1);
+    snprintf(path, sizeof path, "%s/%s", folder_of_index, name);
+    unsigned char *bytes = bytes_of(path, &all);
+    assert_true(at + size * count <= all);
+    memcpy(out, bytes + at, size * count);
+    free(bytes);
+}
+
+/* Each rank's file and the index have, frame by frame, what the run has: the last one is that of the mesh that is written. */
+static void ranks_write_their_own(void **state) {
+    (void)state;
+    char arguments[1400], *said;
+    snprintf(arguments, sizeof arguments, "%s --frames 20 --set 'output=[\"obj\"]' --out %s --parts --no-progress", flock(),
+             in_folder("own"));
+    if (run_ranks(3, arguments, &said)) fail_msg("%s", said);
+    free(said);
+    char own_folder[512];
+    snprintf(own_folder, sizeof own_folder, "%s/own", folder);
+    char *index = read_text(in_folder("own/parts.xdmf")), *mesh = read_text(in_folder("own/flock.obj"));
+    static double place[700][3], as_written[700][3];
+    int frames_there = 0, written = 0, seen = 0;
+    for (char *at = index; (at = strstr(at, "<Time ")) != NULL; at++) frames_there++;
+    assert_int_equal(frames_there, 20);
+    assert_contains(index, "</Xdmf>");
+    for (char *line = mesh; line && written < 700; line = strchr(line, '\n'), line = line ? line + 1 : NULL)
+        if (sscanf(line, "v %lf %lf %lf", &as_written[written][0], &as_written[written][1], &as_written[written][2]) == 3) written++;
+    assert_int_equal(written, 700);
+    char *last = index;
+    for (char *at = index; (at = strstr(at, "<Time ")) != NULL; at++) last = at;
+    for (char *grid = last; (grid = strstr(grid, "NumberOfElements=")) != NULL; grid++) {
+        size_t n = 0;
+        assert_int_equal(sscanf(grid, "NumberOfElements=\"%zu\"", &n), 1);
+        char *xyz = strstr(grid, "<DataItem"), *number = strstr(xyz + 1, "<DataItem");
+        skein_real(*p)[3] = calloc(n, sizeof *p);
+        uint32_t *numbers = calloc(n, sizeof *numbers);
+        read_item(own_folder, xyz, sizeof **p, 3 * n, p);
+        read_item(own_folder, number, sizeof *numbers, n, numbers);
+        for (size_t i = 0; i < n; i++, seen++) {
+            assert_true(numbers[i] < 700);
+            for (int k = 0; k < 3; k++) place[numbers[i]][k] = (double)p[i][k];
+        }
+        free(p), free(numbers);
+    }
+    assert_int_equal(seen, 700);
+    for (int i = 0; i < 700; i++)
+        for (int k = 0; k < 3; k++) assert_true(fabs(place[i][k] - as_written[i][k]) < 1e-4);
+    free(index), free(mesh);
+    outcome o = SKEIN("run", flock(), "--out", in_folder("alone"), "--parts");
+    assert_status(o, 2);
+    assert_contains(o.err, "the ranks of an MPI job write them");
+    outcome_free(&o);
 }
 
 /* Which process of the job is a rank that serves: it has the command's name and that rank in its environment. */
@@ -193,10 +324,14 @@ static void a_rank_that_dies_ends_the_run_and_another_number_goes_on(void **stat
 /* FRAMES: of the flock, where a thousand steps are wanted. */
 int main(int argc, char **argv) {
     if (argc > 1) frames = (int)strtol(argv[1], NULL, 10);
+    if (getenv("SKEIN_TEST_ONLY")) cmocka_set_test_filter(getenv("SKEIN_TEST_ONLY"));
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_ranks_have_the_hash_of_one_process),
         cmocka_unit_test(one_rank_is_one_process),
         cmocka_unit_test(rules_and_methods_have_it_too),
+        cmocka_unit_test(bodies_that_meet_nobody_are_dealt_to_ranks),
+        cmocka_unit_test(flocks_and_bodies_meet_across_ranks),
+        cmocka_unit_test(ranks_write_their_own),
         cmocka_unit_test(what_cannot_be_shared_is_said),
         cmocka_unit_test(a_rank_that_dies_ends_the_run_and_another_number_goes_on),
     };

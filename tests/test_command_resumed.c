@@ -8,13 +8,14 @@
 #endif
 
 static int most_kills = SANITIZED ? 8 : 40;
+static bool draws; /* a picture and a film, too, which take most of the time */
 
 /* Every format there is, on a sheet that swings over a ball. */
 static const char *swinging(void) {
-    static char path[512];
+    static char path[512], text[1024];
     snprintf(path, sizeof path, "%s/swing.json", folder);
-    write_scene(
-        path,
+    snprintf(
+        text, sizeof text,
         "{'frames': 30, 'step': 0.016666666666666666, 'bodies': [{'type': 'cloth', 'name': 'c', 'grid': [9, 9], 'pins': 'corners', "
         "'position': [0, 1, 0]}], 'forces': [{'type': 'gravity'}], 'colliders': [{'type': 'sphere', "
         "'radius': 0.3, 'centre': [0, 0.6, 0], 'motion': {'velocity': [0.2, 0, 0]}}], "
@@ -23,7 +24,8 @@ static const char *swinging(void) {
 #ifdef SKEIN_HDF5
         ", 'hdf5'"
 #endif
-        "]}");
+        "%s]}", draws ? ", {'type': 'png', 'size': [64, 36]}, {'type': 'film', 'format': 'gif', 'size': [64, 36]}" : "");
+    write_scene(path, text);
     return path;
 }
 
@@ -308,6 +310,9 @@ int main(int argc, char **argv) {
     };
     if (argc > 1) {
         most_kills = atoi(argv[1]);
+#ifdef SKEIN_FILM
+        draws = true;
+#endif
         return _cmocka_run_group_tests("kills", tests, 1, NULL, NULL);
     }
     return cmocka_run_group_tests(tests, NULL, NULL);

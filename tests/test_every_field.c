@@ -31,6 +31,9 @@ static const struct {
     {"cache", "file", "a file that scenes read; a program passes the places"},
     {"cache", "fps", "of that file; a program says its interval"},
     {"translate", "jump_turn", "it never turns"},
+    {"attach", "colliders", "it is no moving frame, and says so; test_attach.c"},
+    {"attach", "jump_times", "as colliders"},
+    {"attach", "to", "there is but one that it can name, which is the default; test_attach.c has several"},
     {"cache", "pull", "the places that are tried are of pins; test_command_run.c has others"},
     {"cache", "max_distance", "as pull"},
     {"cache", "backstop", "as pull"},
@@ -63,6 +66,7 @@ static const char *const texts[] = {
     "a",
     "b",
     "wall",
+    "solid",
     "b:c",
     "0",
     "0 1",
@@ -170,10 +174,11 @@ static const skein_mesh meshes[] = {{NULL, 0, NULL, 0, NULL, 0},
                                     {&solid_points[0][0], 5, fours, 2, solid_corners, 8}};
 
 /* Of colliders that are made from one. */
+static const uint32_t triangle_corners[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 4, 2, 3, 4, 1, 4, 3}, threes[] = {3, 3, 3, 3, 3, 3};
+static const skein_mesh solid_of_triangles = {&solid_points[0][0], 5, threes, 6, triangle_corners, 18};
+
 static const skein_mesh *mesh_of(const skein_kind *kind) {
-    static const uint32_t corners[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 4, 2, 3, 4, 1, 4, 3}, sizes[] = {3, 3, 3, 3, 3, 3};
-    static const skein_mesh solid = {&solid_points[0][0], 5, sizes, 6, corners, 18};
-    return skein_field_find(kind, "mesh", NULL) ? &solid : NULL;
+    return skein_field_find(kind, "mesh", NULL) ? &solid_of_triangles : NULL;
 }
 
 /* Some kinds of a category, some of their fields at random. */
@@ -247,6 +252,10 @@ static skein_status add_motion(skein_world *world, const trial *t, uint32_t firs
     const skein_track track = {led, &places[0][0][0], LED, SAMPLES, 0.0007};
     OK(world, skein_collider_add(world, "sphere",
                                  SKEIN_SETTINGS(SKEIN_TEXT("name", "wall"), SKEIN_VEC3("centre", 0.3, 0.3, 0.3), SKEIN_REAL("radius", 0.4)), NULL));
+    OK(world, skein_collider_add_mesh(world, "mesh", &solid_of_triangles,
+                                      SKEIN_SETTINGS(SKEIN_TEXT("name", "solid"), SKEIN_TEXT("on", "a"), SKEIN_VEC3("motion.velocity", 0.3, 1, 0),
+                                                     SKEIN_REAL("motion.spin", 5)),
+                                      NULL));
     skein_status status = skein_motion_add(world, t->s->kind->name, NULL, settings, handle);
     return status == SKEIN_ERROR_VALUE ? skein_motion_add(world, t->s->kind->name, &track, settings, handle) : status;
 }

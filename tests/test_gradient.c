@@ -101,6 +101,44 @@ static void a_spring_has_the_gradient_of_its_map(void **state) {
     skein_world_destroy(world);
 }
 
+/* A rope with damping, slack and taut by turns: its map has two branches, and the derivative is that of the one that was taken.
+ * Slack it neither pulls nor damps. */
+static void a_rope_has_the_gradient_of_the_branch_it_takes(void **state) {
+    (void)state;
+    ONLY_IN_DOUBLE();
+    const double k = 40, c = 0.3, g = 1.5, m = 0.5, dt = 0.02, h = dt / 2;
+    size_t steps = 60, taut = 0;
+    double x = 1.2, v = 0.3, dx[5] = {1, 0, 0, 0, 0}, dv[5] = {0, 1, 0, 0, 0}; // by x0, v0, k, c, g
+    for (size_t i = 0; i < 2 * steps; i++) {
+        bool pulls = x > 1;
+        double kk = pulls ? k : 0, cc = pulls ? c : 0;
+        const double own[5] = {0, 0, pulls ? -(x - 1) / m : 0, pulls ? -v / m : 0, 1};
+        double a = -kk / m * (x - 1) - cc / m * v + g;
+        for (int q = 0; q < 5; q++) dv[q] += h * (-kk / m * dx[q] - cc / m * dv[q] + own[q]);
+        v += h * a, x += h * v;
+        for (int q = 0; q < 5; q++) dx[q] += h * dv[q];
+        taut += pulls;
+    }
+    assert_true(taut > 20 && taut < 2 * steps - 20); // both were taken
+    skein_world *world = one_spring("symplectic_euler", k, c, g);
+    OK(world, skein_remove(world, skein_object_at(world, SKEIN_CONSTRAINT, 0)));
+    OK(world, skein_constraint_add(world, "formula", (const uint32_t[]){0, 1}, 1,
+                                   SETTINGS(TEXT("constraint", "1 - length(p0 - p1) >= 0"), NUMBER("stiffness", k),
+                                            NUMBER("damping", c)),
+                                   NULL));
+    double by_x[6], by_v[6], by_field[5];
+    skein_gradient_desc desc = {.dt = dt, .steps = steps, .measure = last_x, .user = &steps,
+                                .fields = (const char *const[]){"constraints.0.stiffness", "constraints.0.damping",
+                                                                "forces.0.acceleration", NULL}};
+    skein_gradient_result result = {0, by_x, by_v, by_field};
+    OK(world, skein_gradient(world, &desc, &result));
+    assert_true(fabs(result.value - x) < 1e-10);
+    const double got[5] = {by_x[3], by_v[3], by_field[0], by_field[1], by_field[2]};
+    for (int q = 0; q < 5; q++)
+        if (fabs(got[q] - dx[q]) > 1e-7 * (1e-3 + fabs(dx[q]))) fail_msg("%d: %.12g, not %.12g", q, got[q], dx[q]);
+    skein_world_destroy(world);
+}
+
 /* ---- a hanging cloth ---- */
 
 enum { SIDE = 20, FRAMES = 120 };
@@ -415,6 +453,7 @@ static void what_has_no_gradient_says_so(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_spring_has_the_gradient_of_its_map),
+        cmocka_unit_test(a_rope_has_the_gradient_of_the_branch_it_takes),
         cmocka_unit_test(a_hanging_cloth_agrees_with_differences),
         cmocka_unit_test(backward_euler_agrees_with_differences),
         cmocka_unit_test(other_methods_and_damping_agree_too),

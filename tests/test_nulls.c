@@ -2,6 +2,7 @@
  * The last test reads the headers: a function that is declared there and not called here is a failure. */
 #include <ctype.h>
 
+#include <skein/attach.h>
 #include <skein/compiled.h>
 #include <skein/formula.h>
 #include <skein/kinds.h>
@@ -174,6 +175,13 @@ static void stepping(void **state) {
     FAILS(s.world, SKEIN_ERROR_VALUE, "needs name, step", skein_world_runner_set(s.world, &no_runner));
     OK(s.world, skein_world_runner_set(s.world, NULL));
     REFUSES_ALL(skein_world_can_share(NULL, 0.01));
+    skein_share_body share_body;
+    size_t share_count;
+    REFUSES_ALL(skein_world_share_bodies(NULL, 0.01, &share_body, 1, &share_count));
+    REFUSES("count", skein_world_share_bodies(s.world, 0.01, &share_body, 1, NULL));
+    REFUSES("out", skein_world_share_bodies(s.world, 0.01, NULL, 1, &share_count));
+    REFUSES_ALL(skein_world_part_shadow(NULL, 0));
+    FAILS(s.world, SKEIN_ERROR_VALUE, "no body 100000", skein_world_part_shadow(s.world, 100000));
     REFUSES_ALL(skein_world_state(NULL, &shared));
     REFUSES("state", skein_world_state(s.world, NULL));
     assert_int_equal(skein_pacer_feed(NULL, 1), 0);
@@ -219,6 +227,13 @@ static void reading_and_writing(void **state) {
     OK(s.world, skein_positions_copy_to(s.world, 0, 0, skein_floats(NULL, 0)));
     REFUSES("surface", skein_body_surface(s.world, s.cloth, NULL));
     REFUSES("count", skein_body_elements(s.world, s.cloth, SKEIN_EDGES, NULL, 0, NULL));
+    REFUSES("text", skein_body_select(s.world, s.cloth, NULL, NULL, 0, &count));
+    REFUSES("count", skein_body_select(s.world, s.cloth, "0", NULL, 0, NULL));
+    REFUSES("out", skein_body_select(s.world, s.cloth, "0", NULL, 1, &count));
+    OK(s.world, skein_body_select(s.world, s.cloth, "0", NULL, 0, &count));
+    REFUSES("particles", skein_attachments_find(s.world, NULL, 1, s.cloth, &(uint32_t){0}));
+    REFUSES("out", skein_attachments_find(s.world, &(uint32_t){0}, 1, s.cloth, NULL));
+    OK(s.world, skein_attachments_find(s.world, NULL, 0, s.cloth, NULL));
     OK(s.world, skein_body_elements(s.world, s.cloth, SKEIN_EDGES, NULL, 0, &count));
     OK(s.world, skein_body_elements(s.world, s.cloth, SKEIN_HINGES, NULL, 100, &count));
     REFUSES("corner_uv", skein_body_uv_set(s.world, s.cloth, NULL, 16));
@@ -239,6 +254,8 @@ static void reading_and_writing(void **state) {
     REFUSES_ALL(skein_pins_move(NULL, &index_of, 1, xyz));
     REFUSES_ALL(skein_body_surface(NULL, s.cloth, &surface));
     REFUSES_ALL(skein_body_elements(NULL, s.cloth, SKEIN_EDGES, NULL, 0, &count));
+    REFUSES_ALL(skein_body_select(NULL, s.cloth, "0", NULL, 0, &count));
+    REFUSES_ALL(skein_attachments_find(NULL, NULL, 0, s.cloth, NULL));
     REFUSES_ALL(skein_body_uv_set(NULL, s.cloth, uv, 1));
     REFUSES_ALL(skein_body_vertices_copy(NULL, s.cloth, 1, skein_doubles(xyz, 0), skein_doubles(NULL, 0)));
     REFUSES_ALL(skein_collider_pose(NULL, s.ball, &pose));

@@ -144,6 +144,7 @@ static void the_matrix_is_what_conjugate_gradients_multiply_by(void **state) {
         {"area", NULL, NULL},
         {"volume", NULL, NULL},
         {"angle", NULL, NULL},
+        {"attachment", NULL, NULL},
         {"formula", "constraint", "length(p0 + p1 - 2*p2) - 0.2"},
         {"formula", "constraint", "length(p0 - p7) + length(p1 - p6) + length(p2 - p5) + length(p3 - p4) - 2"},
         {"formula", "constraint", "p0.y + 0.5 * p0.x - 3"},

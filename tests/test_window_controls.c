@@ -28,6 +28,7 @@ static const struct {
     {"straight", ", 'particles': [[0, 1, 2]]"},
     {"twist", ", 'particles': [[0, 1, 3, 2]]"},
     {"area", ", 'particles': [[0, 1, 2]]"},
+    {"attachment", ", 'particles': [[4, 0, 1, 2]]"},
     {"volume", ", 'particles': [[0, 1, 2, 4]]"},
     {"angle", ", 'particles': [[0, 1, 2]]"},
     {"enclosed_volume", ", 'particles': [[0, 2, 1], [0, 1, 4], [1, 2, 4], [0, 4, 2]]"},
@@ -66,6 +67,10 @@ static const struct {
     {"flocking", NULL, "relative_distance"},
     {"keys", "keys", "0 0 0 0, 1 0.5 0 0"},
     {"cache", "file", "./led.pc2"},
+    {"attach", "to", "floor"},
+    {NULL, "colliders", "floor"},
+    {NULL, "map", "0.5"}, // of the one that "pins" leaves
+    {NULL, "jump_times", "0.5"},
     {"scene", "description", "what it shows"},
     {"view", "image", "picture.png"},
     {"view", "camera.follow", "b"},
@@ -76,6 +81,11 @@ static const struct {
     const char *kind, *field, *words;
 } refusals[] = {
     {"cloth", "mesh", "a cloth has a grid or a mesh, not both"},
+    {"attach", "colliders", "is no moving frame"},
+    {"attach", "inertia", "is no moving frame"},
+    {"attach", "jump", "is no moving frame"},
+    {"attach", "jump_turn", "is no moving frame"},
+    {"attach", "jump_times", "is no moving frame"},
 };
 
 static const char *refusal_of(const skein_kind *kind, const skein_field *field) {
@@ -95,15 +105,17 @@ static const char *text_for(const skein_kind *kind, const skein_field *field) {
 /* A lattice "b" of eight particles, two of them held, that such an object acts on; or the object alone, if it is a body. */
 static void write_scene_with(const skein_kind *kind, const char *path) {
     static const char *const lists[] = {"bodies", "constraints", "forces", "colliders", "motions"};
-    char text[2048], object[600], base[] = "{ 'type': 'lattice', 'name': 'b', 'grid': [2, 2, 2], 'pins': '0 1' }";
+    char text[2048], object[600], floor[300] = "", base[] = "{ 'type': 'lattice', 'name': 'b', 'grid': [2, 2, 2], 'pins': '0 1' }";
     snprintf(object, sizeof object, "{ 'type': '%s'%s }", kind->name, needs_of(kind));
+    if (kind->category == SKEIN_MOTION)
+        snprintf(floor, sizeof floor, "'colliders': [ { 'type': 'mesh', 'name': 'floor', 'mesh': '%s/meshes/ball.obj' } ], ", SKEIN_SOURCE_DIR);
     const char *method = kind->category == SKEIN_METHOD ? kind->name : "xpbd";
     if (kind->category == SKEIN_BODY)
         snprintf(text, sizeof text, "{ 'name': '%s', 'method': { 'type': 'xpbd' }, 'bodies': [ %s ] }", kind->name,
                  object);
     else if (kind->category < SKEIN_METHOD)
-        snprintf(text, sizeof text, "{ 'name': '%s', 'method': { 'type': 'xpbd' }, 'bodies': [ %s ], '%s': [ %s ] }",
-                 kind->name, base, lists[kind->category], object);
+        snprintf(text, sizeof text, "{ 'name': '%s', 'method': { 'type': 'xpbd' }, %s'bodies': [ %s ], '%s': [ %s ] }",
+                 kind->name, floor, base, lists[kind->category], object);
     else
         snprintf(text, sizeof text, "{ 'name': '%s', 'method': { 'type': '%s' }, 'bodies': [ %s ] }", kind->name,
                  method, base);

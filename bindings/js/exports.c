@@ -606,6 +606,66 @@ bool EXPORT(js_probe)(js_scene *js, bool force, size_t index, size_t count, cons
                              : skein_collider_probe(js->world, handle, count, points, out, NULL));
 }
 
+/* ---- contacts ---- */
+
+/* The number of an object within its category. */
+static double place_of(const skein_world *world, skein_category category, skein_handle object) {
+    size_t count = skein_object_count(world, category);
+    for (size_t i = 0; i < count; i++) {
+        skein_handle other = skein_object_at(world, category, i);
+        if (!memcmp(&other, &object, sizeof other)) return (double)i;
+    }
+    return -1;
+}
+
+/* Particles that touch colliders, six numbers each: the particle, the collider's number, the normal, the gap. `out` receives
+ * where they are, to be freed, and how many contacts. */
+bool EXPORT(js_contacts)(js_scene *js, uint32_t out[2]) {
+    size_t count = 0, most = 0;
+    skein_contact *contacts = NULL;
+    double *numbers = NULL;
+    bool good = !failed(js, skein_contacts_copy(js->world, NULL, 0, &most));
+    if (good) contacts = malloc((most + 1) * sizeof *contacts), numbers = malloc((6 * most + 1) * sizeof *numbers);
+    good = good && contacts && numbers && !failed(js, skein_contacts_copy(js->world, contacts, most, &count));
+    for (size_t i = 0; good && i < count && i < most; i++) {
+        const skein_contact *c = &contacts[i];
+        double *to = numbers + 6 * i;
+        to[0] = c->particle, to[1] = place_of(js->world, SKEIN_COLLIDER, c->collider);
+        memcpy(to + 2, c->normal, sizeof c->normal);
+        to[5] = c->gap;
+    }
+    free(contacts);
+    if (!good) free(numbers);
+    out[0] = good ? (uint32_t)(uintptr_t)numbers : 0;
+    out[1] = good ? (uint32_t)count : 0;
+    return good;
+}
+
+/* Features of surfaces that touch, fifteen numbers each: the rule's number, whether they are edges, four particles, their
+ * weights, the normal, the gap and the thickness. */
+bool EXPORT(js_surface_contacts)(js_scene *js, uint32_t out[2]) {
+    size_t count = 0, most = 0;
+    skein_surface_contact *contacts = NULL;
+    double *numbers = NULL;
+    bool good = !failed(js, skein_surface_contacts_copy(js->world, NULL, 0, &most));
+    if (good) contacts = malloc((most + 1) * sizeof *contacts), numbers = malloc((15 * most + 1) * sizeof *numbers);
+    good = good && contacts && numbers && !failed(js, skein_surface_contacts_copy(js->world, contacts, most, &count));
+    for (size_t i = 0; good && i < count && i < most; i++) {
+        const skein_surface_contact *c = &contacts[i];
+        double *to = numbers + 15 * i;
+        to[0] = place_of(js->world, SKEIN_FORCE, c->rule), to[1] = c->edges;
+        for (int k = 0; k < 4; k++) to[2 + k] = c->particle[k];
+        memcpy(to + 6, c->weight, sizeof c->weight);
+        memcpy(to + 10, c->normal, sizeof c->normal);
+        to[13] = c->gap, to[14] = c->thickness;
+    }
+    free(contacts);
+    if (!good) free(numbers);
+    out[0] = good ? (uint32_t)(uintptr_t)numbers : 0;
+    out[1] = good ? (uint32_t)count : 0;
+    return good;
+}
+
 /* Constraint `index` of an object, operation by operation, with their derivatives; JSON to be freed, NULL after a fault. */
 char *EXPORT(js_operations)(js_scene *js, int category, size_t object, size_t index) {
     enum { MOST = 256, MOST_COORDINATES = 24 };

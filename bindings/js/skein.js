@@ -529,6 +529,27 @@ export class World {
         const numbers = [...new Float64Array(this.#wasm.memory.buffer, room, 12)];
         return {position: numbers.slice(0, 3), rotation: numbers.slice(3)};
     }
+    /* Particles that touch a collider now. */
+    contacts() {
+        return this.#list('js_contacts', 6, ([particle, collider, x, y, z, gap]) => ({particle, collider, normal: [x, y, z], gap}));
+    }
+    /* Where surfaces touch each other now, as forces of the kind "contact" keep them apart: a vertex and a triangle, or two
+     * edges. Costs a search over all surfaces. */
+    surfaceContacts() {
+        return this.#list('js_surface_contacts', 15, (n) => ({
+            rule: n[0], edges: Boolean(n[1]), particles: n.slice(2, 6), weights: n.slice(6, 10), normal: n.slice(10, 13),
+            gap: n[13], thickness: n[14],
+        }));
+    }
+    /* What a call lists, `wide` numbers each. */
+    #list(call, wide, read) {
+        const room = this.#room('list', 8), good = this.#wasm[call](this.#world, room), [at, count] = this.#words(room, 2);
+        this.#check(good);
+        const numbers = new Float64Array(this.#wasm.memory.buffer, at, wide * count), found = [];
+        for (let i = 0; i < count; i++) found.push(read([...numbers.subarray(wide * i, wide * (i + 1))]));
+        this.#wasm.js_give(at);
+        return found;
+    }
     springs() {
         const count = this.#wasm.js_springs(this.#world, 0, 0);
         if (!count) return new Uint32Array(0);

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <skein/gradient.h>
 #include "io/advice.h"
 #include "io/mesh.h"
 #include "io/scene_settings.h"
@@ -38,6 +39,7 @@ EXPORT py_scene *py_scene_open(const char *text, size_t size, const char *path, 
 EXPORT skein_world *py_scene_build(py_scene *scene, const skein_world_desc *desc, py_report report, void *user);
 EXPORT char *py_scene_settings(const py_scene *scene);
 EXPORT char *py_scene_text(const py_scene *scene);
+EXPORT char *py_scene_text_anywhere(const py_scene *scene);
 EXPORT bool py_scene_note(py_scene *scene, const char *set, py_report report, void *user);
 EXPORT const void *py_scene_view(const py_scene *scene);
 EXPORT void py_scene_free(py_scene *scene);
@@ -90,6 +92,11 @@ char *py_scene_settings(const py_scene *scene) {
 /* The whole document with what was set in it, to be freed. */
 char *py_scene_text(const py_scene *scene) {
     return io_scene_text(scene->scene);
+}
+
+/* The same with whole paths of its files, to be freed. */
+char *py_scene_text_anywhere(const py_scene *scene) {
+    return io_scene_text_anywhere(scene->scene);
 }
 
 /* Notes "path=value" in the document, so that it can be opened again as its world is now. */
@@ -161,7 +168,8 @@ size_t py_struct_size(const char *name) {
         size_t size;
     } sizes[] = {SIZE_OF(error),   SIZE_OF(field),   SIZE_OF(kind),  SIZE_OF(value),      SIZE_OF(setting), SIZE_OF(handle),
                  SIZE_OF(world_desc), SIZE_OF(mesh), SIZE_OF(track), SIZE_OF(view),       SIZE_OF(buffer),  SIZE_OF(surface),
-                 SIZE_OF(pose),    SIZE_OF(contact), SIZE_OF(hit),   SIZE_OF(statistics), SIZE_OF(order),   SIZE_OF(constraint_value)};
+                 SIZE_OF(pose),    SIZE_OF(contact), SIZE_OF(hit),   SIZE_OF(statistics), SIZE_OF(order),   SIZE_OF(constraint_value),
+                 SIZE_OF(gradient_state), SIZE_OF(gradient_desc), SIZE_OF(gradient_result)};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         if (!strcmp(sizes[i].name, name)) return sizes[i].size;
     return 0;

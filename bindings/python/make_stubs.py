@@ -24,7 +24,7 @@ RETURNS = {  # what no signature says; anything else is Any
     "constraint_count": "int", "evaluate": "dict[str, Any]", "teleport": "None", "is_live": "bool", "kinds": "list[str]", "methods": "list[str]", "advice": "list[str]",
     "substeps_needed": "float",
     "scene": "dict[str, Any] | None", "from_scene": "World", "film": "Film", "formula": "Formula", "scenes": "list[str]",
-    "study": "np.ndarray",
+    "study": "np.ndarray", "fit": "Fit",
 }
 OF_ENVIRONMENTS = {"reset": "tuple[Any, dict[str, Any]]", "step": "tuple[Any, Any, Any, Any, dict[str, Any]]",
                    "build": "World", "start": "None", "act": "None", "reward": "float", "terminated": "bool"}

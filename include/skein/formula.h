@@ -130,11 +130,11 @@ typedef struct skein_compiled skein_compiled;
  * constraints of kind `energy`. Fails in the same way, and with SKEIN_ERROR_NAME for what is no identifier. */
 skein_status skein_formula_emit_compiled(const skein_formula *formula, const char *name,
                                          void (*write)(void *user, const char *text), void *user, skein_error *error);
-/* Of what a formula computes, whatever its names and blanks: formulas with the same hash are run by the same compiled
- * code. */
+/* A hash of what a formula computes, independent of its names and blanks: formulas with the same hash are run by the
+ * same compiled code. */
 uint64_t skein_formula_hash(const skein_formula *formula);
-/* From its next step on the world runs this for every constraint (`formula` or `energy`) with that formula, those that
- * are added later among them, in place of the tape. It is kept by its address until the world is destroyed. Fails with
+/* From its next step on the world runs this in place of the tape for every constraint (`formula` or `energy`) with that
+ * formula, also for those added later. It must exist until the world is destroyed. Fails with
  * SKEIN_ERROR_VALUE for code of another ABI, precision or processor, and for what another version of Skein emitted, whose
  * operations may differ; and with SKEIN_ERROR_MEMORY. Of two with the same hash the later one runs. */
 skein_status skein_formula_register(skein_world *world, const skein_compiled *compiled);

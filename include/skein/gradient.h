@@ -7,9 +7,9 @@
  *     skein_gradient_result result = {.by_field = slope};
  *     skein_gradient(world, &desc, &result);
  *
- * What is differentiated is the run as it is computed, step by step, not the motion that it approximates. Of backward Euler's
- * solves it is the equation that they solve: as exactly as the method's tolerance says. docs/gradients.md has what it
- * can do and how. */
+ * It differentiates the run as computed, step by step, not the motion that it approximates. For backward Euler's solves
+ * it differentiates the equation that they solve, as exactly as the method's tolerance says. docs/gradients.md says
+ * what it can do and how. */
 #ifndef SKEIN_GRADIENT_H
 #define SKEIN_GRADIENT_H
 
@@ -49,9 +49,9 @@ typedef struct skein_gradient_result {
     double *by_field;      /* a number for each number of each field, in their order; or NULL */
 } skein_gradient_result;
 
-/* Works it out from the state as it stands, which is also left so. Fields are numbers that the run reads as stiffness or
- * damping of constraints, or as a uniform force (gravity, drag, wind): what else depends on one, a mass, a rest length, is not
- * followed, and then it fails. Rest lengths stay as they are where positions are varied.
+/* Computes it from the present state, which is restored. Fields are numbers that the run reads as stiffness or damping
+ * of constraints, or as a uniform force (gravity, drag, wind). It fails for a field on which anything else depends,
+ * such as a mass or a rest length. Rest lengths are constant where positions are varied.
  *
  * Methods: those that only add up vectors and forces, symplectic_euler, explicit_euler, leapfrog, midpoint and rk4; and
  * backward_euler, whose linear systems keep 46 vectors of four numbers a particle besides. Pins go where motions lead them;

@@ -8,9 +8,9 @@
  *     skein_world *world = skein_world_create(&desc, &error);
  *     skein_force_add(world, "updraught", SKEIN_SETTINGS(SKEIN_REAL("lift", 9)), NULL);
  *
- * A registry belongs to the program, not to the library, which keeps nothing between calls: worlds are given it, and two
- * parts of a program may have one each. What is registered (types, tables, texts) is not copied; it, and the registry,
- * outlive the worlds. Registering is for one thread at a time, before others use the registry.
+ * A registry belongs to the program, not to the library, which has no global state: worlds are given it, and two parts
+ * of a program may have one each. What is registered (types, tables, texts) is not copied; it, and the registry, must
+ * outlive the worlds. Only one thread may register, before others use the registry.
  *
  * A kind says its arithmetic in one of two ways:
  *   formula   a text (docs/formula.md) in which its fields stand by their names. It is differentiated, runs wide, under
@@ -100,8 +100,8 @@ typedef struct skein_constraint_type {
 
 typedef struct skein_collider_type {
     skein_kind kind; /* of SKEIN_COLLIDER */
-    /* A number of p and t, over 0 where particles may be; such a kind has the fields "centre" and "rotation", too. Or
-     * NULL: the functions below. */
+    /* A number of p and t, positive outside of the solid; such a kind also has the fields "centre" and "rotation".
+     * NULL: the functions below are used. */
     const char *formula;
     /* Where it stands before any motion, m; NULL: at the origin. What a program moves there travels (skein.h). */
     void (*place)(const void *params, double position[3]);
@@ -184,14 +184,14 @@ void skein_write_stage_time(skein_plan_builder *builder, double part);
 /* dst = a p + b q; dst = p + a q/m, q being a force. SKEIN_NO_VECTOR is left out. */
 void skein_write_sum(skein_plan_builder *builder, skein_plan_vector dst, double a, skein_plan_vector p, double b, skein_plan_vector q);
 void skein_write_kick(skein_plan_builder *builder, skein_plan_vector dst, skein_plan_vector p, double a, skein_plan_vector q);
-/* F = all forces, then the springs of every constraint; what contact does not let through. */
+/* F = all forces and those of every constraint, without what contact holds back. */
 void skein_write_forces(skein_plan_builder *builder);
-/* V += what steers, once a substep; then bounds on V, which skein_write_bounds() puts right once more. */
+/* V += steering, once a substep; then bounds on V, which skein_write_bounds() applies once more. */
 void skein_write_steering(skein_plan_builder *builder);
 void skein_write_bounds(skein_plan_builder *builder);
-/* X projected on all constraints, `passes` times; SKEIN_SAVED_X is where the substep began. */
+/* Projects X on all constraints, `passes` times; SKEIN_SAVED_X holds the positions at the start of the substep. */
 void skein_write_projections(skein_plan_builder *builder, int passes);
-/* The end of a substep once X and V stand there: impacts, limits, and out of colliders. */
+/* The end of a substep, once X and V are final: impacts, limits, and moving particles out of colliders. */
 void skein_write_contacts(skein_plan_builder *builder);
 
 /* ---- Modules ---- */

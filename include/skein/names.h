@@ -178,6 +178,10 @@
 #define SKEIN_ANGLE_STIFFNESS "stiffness" /* a number in N m; torque a radian; "infinite" is rigid (position methods only) */
 #define SKEIN_ANGLE_DAMPING "damping" /* a number in N m s; torque a radian a second */
 
+#define SKEIN_ATTACHMENT "attachment" /* ties a particle to its place on a triangle: the particle, then the three corners */
+#define SKEIN_ATTACHMENT_STIFFNESS "stiffness" /* a number in N/m; force a metre from its place; "infinite" is rigid (position methods only) */
+#define SKEIN_ATTACHMENT_DAMPING "damping" /* a number in N s/m; the same against the way's change in time */
+
 #define SKEIN_FORMULA "formula" /* any function of up to eight particles that wants to be 0, or at least 0 */
 #define SKEIN_FORMULA_CONSTRAINT "constraint" /* a text; a formula of p0 to p7 and t that wants to be 0, or `a >= b`; rest(...) is taken when it is made */
 #define SKEIN_FORMULA_STIFFNESS "stiffness" /* a number in J; twice the energy where the formula is 1; "infinite" is rigid (position methods only) */

@@ -4,8 +4,10 @@
  *   a part's world           has room for some of the particles; before neighbours are looked for it asks the program for
  *                            what lies at its border
  *
- *     part's particles:   | own . . . . . . . | others', only looked at . . . | room, nowhere |
- *                         0                   own                             seen            count
+ *     particles of a loose body there:   | own . . . . . | others', only looked at . . | room, nowhere |
+ *
+ * A *loose* body's particles (a flock's) may lie in any part; one whose particles are joined, or led, lives whole in one, and
+ * is not enabled in the others, or a shadow there. What it is to meet comes to it, and it to others, as what lies at the border.
  *
  * Sums over neighbours have the bits of one world that has all particles: cells are laid over the whole run's box, and
  * particles stand in a cell by their numbers in the whole run. `ranks/` shares runs so over the ranks of an MPI job. */
@@ -40,7 +42,13 @@ typedef struct skein_cells {
 typedef struct skein_border {
     skein_real low[3], high[3]; /* the box around all that are somewhere; m */
     size_t everybody;           /* how many there are in the run */
+    bool alone;                 /* they are all in this part: there is nothing at its border, and no exchange */
 } skein_border;
+
+/* Of a rule that looks at neighbours: who looks, and at whom, as ranges of this world's particles. Each is of whole bodies. */
+typedef struct skein_share_look {
+    size_t first, end, seen_first, seen_end;
+} skein_share_look;
 
 /* Who is farther out along an axis is nowhere, and in no cell; nor is a number that is not finite. */
 #define SKEIN_SHARE_FARTHEST ((skein_real)(sizeof(skein_real) == 8 ? 1.7976931348623157e308 / 4 : 3.40282347e38 / 4))
@@ -50,18 +58,36 @@ typedef struct skein_part {
     /* What the whole run calls each particle of this world, `count` numbers; they may change whenever the program is
      * asked. */
     const uint32_t *number;
-    bool (*measure)(void *user, const skein_state *state, skein_border *border);
-    /* Has everybody in the cells around those of its own among the first particles, others' with inverse mass 0, and the
-     * rest of its particles nowhere. False where it cannot: the step fails. Both are asked in each substep, once for each
-     * rule that looks at neighbours, on the thread that steps. */
-    bool (*exchange)(void *user, const skein_cells *cells, const skein_state *state);
+    /* Fills in where all are that are seen. */
+    bool (*measure)(void *user, const skein_share_look *look, const skein_state *state, skein_border *border);
+    /* Has all seen ones in the cells around those that look here among the particles of the loose bodies that are seen, behind
+     * those of its own and with inverse mass 0, or of a shadow, and the rest of those nowhere. False where it cannot: the step fails. Both are
+     * asked in each substep, once for each rule that looks at neighbours, on the thread that steps. */
+    bool (*exchange)(void *user, const skein_share_look *look, const skein_cells *cells, const skein_state *state);
 } skein_part;
 
-/* Makes the world a part of a run (copied), or with NULL a whole one. The world then has single particles of one body, and
- * rules that can be shared: the next step says which cannot (SKEIN_ERROR_VALUE), as skein_world_can_share() does. */
+/* Makes the world a part of a run (copied), or with NULL a whole one. The world then has rules that can be shared: the next
+ * step says which cannot (SKEIN_ERROR_VALUE), as skein_world_can_share() does. */
 skein_status skein_world_part_set(skein_world *world, const skein_part *part);
+/* Makes a body of a part's world a shadow of what lives in another: its particles are there, nothing joins them any more, and
+ * where they are an exchange says. Bodies count in the order of their making; SKEIN_ERROR_VALUE for one that is not there. */
+skein_status skein_world_part_shadow(skein_world *world, size_t body);
 /* Whether a run of this world, in steps of `dt` seconds, can be shared; SKEIN_ERROR_VALUE says what of it cannot. */
 skein_status skein_world_can_share(skein_world *world, double dt);
+/* A body of a run that can be shared. */
+typedef struct skein_share_body {
+    size_t first, count;   /* its particles */
+    bool enabled;
+    bool loose;            /* nothing joins or leads its particles, and its kind has a `count` of them */
+    size_t together;       /* it stays in one part with all bodies of the same number: that of the first of them. Loose ones
+                              are with nobody */
+    bool shown;            /* a rule on it, and not on the loose ones, looks at those or is looked at: where it does not
+                              live it has to be as a shadow */
+    double work;           /* about what a step of it costs: how often a constraint or a particle is dealt with */
+} skein_share_body;
+/* The bodies of a run, in the order of their making, `most` of them at most in `out` (which may be NULL if that is 0);
+ * `count` receives how many there are. SKEIN_ERROR_VALUE where the run cannot be shared. */
+skein_status skein_world_share_bodies(skein_world *world, double dt, skein_share_body *out, size_t most, size_t *count);
 /* The state, to be changed until the next call on the world. */
 skein_status skein_world_state(skein_world *world, skein_state *state);
 

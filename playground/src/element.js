@@ -20,6 +20,7 @@ class SkeinScene extends HTMLElement {
     #world = null;
     #early = null;
     #playing = false;
+    #lasting = '';
 
     connectedCallback() {
         const root = this.shadowRoot ?? this.attachShadow({mode: 'open'});
@@ -30,7 +31,7 @@ class SkeinScene extends HTMLElement {
             this.#picture = new Picture(root.querySelector('.picture'));
             this.#hands(root.querySelector('.picture'));
         } catch {
-            this.#say('This browser draws no WebGL2.');
+            this.#say((this.#lasting = 'This browser draws no WebGL2.'));
         }
         this.#theme();
         this.open();
@@ -50,7 +51,7 @@ class SkeinScene extends HTMLElement {
         if (this.#picture) this.#picture.dark = wanted === 'dark';
     }
     #say(text) {
-        this.shadowRoot.querySelector('p').textContent = text;
+        this.shadowRoot.querySelector('p').textContent = text || this.#lasting;
     }
 
     /* The scene of the attributes, or a scene that is given: as text or as an object. */

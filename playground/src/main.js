@@ -13,7 +13,8 @@ import {filesOf, scenes} from './scenes.js';
 import {Simulation, words} from './simulation.js';
 
 const $ = (id) => document.getElementById(id);
-const notice = (text) => ($('notice').textContent = text);
+let lasting = ''; // what is missing here stays said
+const notice = (text) => ($('notice').textContent = text || lasting);
 
 const app = {
     scene: null, text: '', path: '', files: {}, // its name, or null and a text of one's own with its meshes
@@ -403,7 +404,7 @@ async function begin() {
         picture = new Picture($('picture'));
         theHands = hands({app, picture, simulation, remember, tell, hint: $('hint'), pin: $('pin'), hawk: $('hawk'), beside});
     } catch {
-        notice('This browser draws no WebGL2, so that nothing is to be seen; the simulation runs all the same.');
+        notice((lasting = 'This browser draws no WebGL2, so that nothing is to be seen; the simulation runs all the same.'));
     }
     setTheme(dark.matches);
     offerFiles({app, $, simulation, open, notice, picture: () => picture});

@@ -6,6 +6,7 @@ import {existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync}
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
+import {gzipSync} from 'node:zlib';
 
 import {chromium} from 'playwright-core';
 
@@ -41,8 +42,9 @@ after(async () => {
 });
 
 /* A page of its own; `errors` are what its console complained of. */
-async function openPage(hash = '', {address = server.address, ...options} = {}) {
+async function openPage(hash = '', {address = server.address, prepare = () => {}, ...options} = {}) {
     const context = await browser.newContext({viewport: {width: 800, height: 520}, ...options});
+    await prepare(context);
     const page = await context.newPage(), errors = [];
     page.setDefaultTimeout(120000);
     page.on('console', (message) => message.type() === 'error' && errors.push(message.text()));
@@ -478,6 +480,64 @@ test('threads in workers where the page is isolated, with native\'s bits; one wh
     assert.equal(await alone.page.evaluate(() => globalThis.skein.call('threads')), threads);
     assert.deepEqual(alone.errors, []);
     await alone.close();
+});
+
+test('all that comes until it steps is no more than 1.5 MB; pictures and threads come later', async () => {
+    const came = new Set();
+    const {close} = await openPage('', {prepare: (context) => context.on('response', (answer) => came.add(new URL(answer.url()).pathname))});
+    const files = [...came].map((path) => (path === '/' ? '/index.html' : path)).filter((path) => path !== '/sw.js');
+    const size = files.reduce((sum, path) => sum + gzipSync(readFileSync(`${root}build/playground${path}`), {level: 9}).length, 0);
+    assert.ok(files.length >= 5 && size > 3e5 && size <= 1.5e6, `${size} bytes: ${files}`);
+    await close();
+});
+
+test('where WebGL2 is missing the page says so, and goes on saying it, and computes all the same', async () => {
+    const blind = (context) => context.addInitScript(() => {
+        const {getContext} = HTMLCanvasElement.prototype;
+        HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+            return /webgl/.test(kind) ? null : getContext.call(this, kind, ...more);
+        };
+    });
+    const {page, close} = await openPage('#scene=flag&frame=3', {prepare: blind}); // (three.js itself complains in the console)
+    assert.match(await notice(page), /no WebGL2/);
+    await page.evaluate(() => globalThis.skein.change('forces.1.drag', -5, true));
+    assert.match(await notice(page), /drag/);
+    await page.evaluate(() => globalThis.skein.open('hanging', {play: false}));
+    assert.match(await notice(page), /no WebGL2/);
+    const found = await page.evaluate(() => globalThis.skein.run(10));
+    assert.equal(found.hash, native(['scenes/hanging.json', '--frames', '10']));
+    assert.match(await page.evaluate(() => globalThis.skein.link()), /scene=hanging/);
+    await close();
+});
+
+test('where WebAssembly has no SIMD the page says what is needed', async () => {
+    const context = await browser.newContext(), page = await context.newPage();
+    page.setDefaultTimeout(120000);
+    // a module that no engine compiles stands for one that this engine does not
+    await context.route('**/skein*.wasm', (route) => route.fulfill({contentType: 'application/wasm', body: Buffer.from([0, 0x61, 0x73, 0x6d, 1, 0, 0, 0, 0xff])}));
+    await page.goto(server.address);
+    await page.waitForFunction(() => /could not be started.*SIMD/s.test(document.getElementById('notice').textContent));
+    assert.match(await notice(page), /Chrome 91, Firefox 89, Safari 16\.4/);
+    await context.close();
+});
+
+test('the picture keeps to its window, and hands find what they point at', async () => {
+    const {page, errors, close} = await openPage('#scene=hanging&frame=10');
+    for (const [width, height] of [[1200, 700], [820, 380], [500, 800]]) {
+        await page.setViewportSize({width, height});
+        await page.waitForFunction(() => {
+            const holder = document.getElementById('picture').getBoundingClientRect(), canvas = document.querySelector('#picture canvas');
+            const box = canvas.getBoundingClientRect(), scale = Math.min(devicePixelRatio, 2);
+            return Math.abs(box.width - holder.width) < 1 && Math.abs(box.height - holder.height) < 1 && Math.abs(canvas.width - scale * box.width) < 2;
+        });
+        assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+        const [x, y] = await page.evaluate(() => globalThis.skein.picture.onPage(Math.floor(globalThis.skein.app.world.count / 2)));
+        const picked = await page.evaluate(([clientX, clientY]) => globalThis.skein.picture.pick({clientX, clientY}), [x, y]);
+        const [px, py] = await page.evaluate((p) => globalThis.skein.picture.onPage(p), picked);
+        assert.ok(Math.hypot(px - x, py - y) < 25, `${width} x ${height}: ${px} ${py}, expected ${x} ${y}`);
+    }
+    assert.deepEqual(errors, []);
+    await close();
 });
 
 test('dark, on a phone, by touch and by keys', async () => {

@@ -1,4 +1,4 @@
-// The words of base/arithmetic.h on a card.
+// The vocabulary of base/arithmetic.h in GLSL.
 #define num float
 #define flag bool
 #define scalar float

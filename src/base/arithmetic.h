@@ -1,4 +1,4 @@
-/* The words in which kinds say their arithmetic, once for all that runs it: kernels of every width, plain C, and cards.
+/* The vocabulary in which a kind writes its arithmetic once, for kernels of every width, plain C, and graphics cards.
  *
  * What a kind computes for one particle stands in its file between two comments,
  *
@@ -8,17 +8,17 @@
  *     }
  *     // ---- end of arithmetic ----
  *
- * and is C and GLSL at the same time. In C this header makes it arithmetic of a part of a block (with SK_ISA), or of one
- * particle; for cards the build cuts it out of the file, and base/arithmetic.glsl stands before it, whose struct of
- * parameters the card makes from the kind's field table (gpu/ops.c). So it may use these words, + - * / and compares
- * of numbers, `if` where the condition is a parameter's or none(...), and its own functions; it has no pointers.
+ * and is both C and GLSL. In C this header makes it arithmetic on a part of a block (with SK_ISA) or on one particle.
+ * For cards the build copies it out of the file, and gpu/ops.c puts base/arithmetic.glsl and a struct of parameters,
+ * made from the kind's field table, before it. So it may use the words below, + - * / and comparisons of numbers, `if`
+ * with a condition on parameters or none(...), and its own functions, but no pointers.
  *
- *     num, vec3, vec4, flag      of one particle: numbers, vectors, whether something is so
+ *     num, vec3, vec4, flag      of one particle: a number, vectors, a truth value
  *     scalar                     a number that is the same for all particles
  *     exact                      the same in double: parameters, and steps of time
  *     PARAM(e), PARAM3(v)        a scalar, and a vec3, from an expression of parameters, rounded once
- *     pick(flag, yes, no)        either of two numbers; pick3: of vectors
- *     both, either, none         of flags; none(f): no particle has it
+ *     pick(flag, yes, no)        one of two numbers; pick3: of two vectors
+ *     both, either, none         of flags; none(f): it is set for no particle
  *     vec3_of, vec4_of, xyz; plus, minus, times (a number and a vector), dot, cross; root, absolute
  */
 #ifndef SK_BASE_ARITHMETIC_H
@@ -27,7 +27,7 @@
 #include "base/elementary.h"
 #include "base/kernels.h"
 
-/* What a kind does not depend on, its function has all the same. */
+/* Functions have the same arguments for all kinds, also those that a kind does not use. */
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 
 typedef double exact;
@@ -56,7 +56,7 @@ typedef real scalar;
 
 #else
 
-/* One particle at a time: in reals, or what a file says. */
+/* One particle at a time: in `real`, or in the type that a file defines as SK_ARITHMETIC_OF. */
 #ifndef SK_ARITHMETIC_OF
 #define SK_ARITHMETIC_OF real
 #endif

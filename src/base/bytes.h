@@ -1,8 +1,7 @@
-/* Numbers as bytes, the least one first on every machine: what a snapshot and a journal of inputs are made of.
+/* Numbers as bytes, least significant first on every machine: the format of snapshots and journals of inputs.
  *
- * A writer counts what would be written where it has no memory, so that one function says both how much is needed and
- * what it is. A reader never goes beyond its end: what is not there reads as 0, and `short_` says so once and for all.
- */
+ * A writer without memory only counts, so that one function both finds the size and writes. A reader never goes beyond
+ * its end: what is missing reads as 0, and sets `short_` for good. */
 #ifndef SK_BASE_BYTES_H
 #define SK_BASE_BYTES_H
 
@@ -13,7 +12,7 @@
 
 typedef struct sk_byte_writer {
     unsigned char *out; /* NULL: only counted */
-    size_t size, at;    /* of `out`; `at` may be beyond it, nothing is written there */
+    size_t size, at;    /* the size of `out`, and the place of the next byte; nothing is written beyond `size` */
 } sk_byte_writer;
 
 static inline void sk_put(sk_byte_writer *w, const void *bytes, size_t size) {
@@ -52,7 +51,7 @@ static inline void sk_put_real(sk_byte_writer *w, skein_real x) {
     }
     sk_put_word(w, word, sizeof x);
 }
-/* With its zero byte, so that it can be used where it stands. */
+/* A text with its size and its zero byte, so that a reader can use it in place. */
 static inline void sk_put_text(sk_byte_writer *w, const char *text) {
     size_t size = strlen(text) + 1;
     sk_put_u32(w, (uint32_t)size);
@@ -62,14 +61,14 @@ static inline void sk_put_text(sk_byte_writer *w, const char *text) {
 typedef struct sk_byte_reader {
     const unsigned char *in;
     size_t size, at;
-    bool short_; /* something was read that is not there */
+    bool short_; /* a read went beyond the end, or found a text that is none */
 } sk_byte_reader;
 
 static inline size_t sk_left(const sk_byte_reader *r) {
     return r->size - r->at;
 }
 
-/* So many bytes as they stand, or NULL. */
+/* The next `size` bytes in place, or NULL if there are not as many. */
 static inline const unsigned char *sk_take(sk_byte_reader *r, size_t size) {
     if (r->short_ || size > sk_left(r)) {
         r->short_ = true;
@@ -113,7 +112,7 @@ static inline skein_real sk_take_real(sk_byte_reader *r) {
     }
     return x;
 }
-/* A text as it stands; NULL where there is none that ends where it says. */
+/* A text in place; NULL if there is none, or it does not end where its size says. */
 static inline const char *sk_take_text(sk_byte_reader *r) {
     uint32_t size = sk_take_u32(r);
     const unsigned char *at = sk_take(r, size);
@@ -121,7 +120,7 @@ static inline const char *sk_take_text(sk_byte_reader *r) {
     return at && !r->short_ ? (const char *)at : NULL;
 }
 
-/* A sum over bytes that tells one that was changed. */
+/* A checksum that detects changed bytes. */
 static inline uint64_t sk_byte_sum(const void *bytes, size_t size) {
     uint64_t sum = sk_hash_word(SK_HASH_START, size);
     sk_byte_reader r = {bytes, size, 0, false};

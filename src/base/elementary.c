@@ -1,6 +1,6 @@
-/* Sine, exponential and their kin, as elementary.h promises them.
+/* Elementary functions, with the accuracy that elementary.h promises.
  *
- * Every function goes the same way, without branches: bring the argument into a short interval, evaluate a
+ * Every function works in the same way, without branches: bring the argument into a short interval, evaluate a
  * polynomial there, undo the reduction. What rounding loses on the way is carried as a second, small number:
  *
  *     x = 2^k m, k pi/2 + r, ...      value = big + (what big lost + polynomial of the rest)
@@ -11,8 +11,8 @@
  * value, each coefficient rounded in turn, the lowest first, and the others fitted again. Each names its error.
  * Terms are summed in pairs (Estrin's scheme), which gives the processor more to do at a time than Horner's.
  *
- * The float functions stand in elementary_lanes.h, written on `lane`: with vector types for it and its kin, vector
- * conversions in four small functions, and PICK as a blend of bits, they are wide functions with the same bits
+ * The float functions stand in elementary_lanes.h, written for a type `lane`. If that and its related types are
+ * vectors, with four small conversion functions and PICK as a blend of bits, they are wide functions with the same bits
  * (wide_elementary.h). Only angles beyond 2^25 are then reduced lane by lane. */
 #include "base/elementary.h"
 
@@ -58,7 +58,7 @@ static inline double head_of(double x) {
     return of_bits(bits_of(x) & ~UINT64_C(0x7ffffff));
 }
 
-/* n - q d, of which q = n / d lost the size: exact but for its own last bits (Dekker 1971). */
+/* n - q d, the remainder that rounding left of q = n / d: exact but for its own last bits (Dekker 1971). */
 static inline double residue(double n, double q, double d) {
     double qh = head_of(q), qt = q - qh, dh = head_of(d), dt = d - dh;
     return ((n - qh * dh) - (qh * dt + qt * dh)) - qt * dt;
@@ -147,7 +147,7 @@ static inline quarter reduce(double x) {
     return (quarter){r, ((sum - r) + lo) - k * 0x1.80dc1cd129025p-95, bits_of(t) & 3};
 }
 
-/* What is added to r for its sine, and to 1 - z/2 for its cosine. Relative errors 2^-63.2 and 2^-63.9. */
+/* The terms to add to r for its sine, and to 1 - z/2 for its cosine. Relative errors 2^-63.2 and 2^-63.9. */
 static inline double sine_rest(double r, double z, double lo) {
     double z2 = z * z;
     double p = P4(z, z2, -0.16666666666666666, 0.0083333333333330418, -0.00019841269840962481, 2.7557319073980669e-06) +
@@ -163,7 +163,7 @@ static inline double cosine_rest(double r, double z, double lo) {
     return z2 * p - r * lo;
 }
 
-/* Of r itself: sine and cosine, each with what its last addition lost. */
+/* Sine and cosine of a reduced angle, each with the rounding error of its last addition. */
 typedef struct circle {
     double sine, sine_lo, cosine, cosine_lo;
 } circle;
@@ -245,8 +245,8 @@ static inline double split(double x, double *k) {
     return of_bits(bits - ((uint64_t)e << 52));
 }
 
-/* With s = f / (2 + f), ln(1 + f) = 2 artanh s = f - s f + s R(s^2), and s f = f^2/2 - s f^2/2. What is large is summed
- * with what it loses: k ln 2 + f - h^2/2, where h is the head of f. Relative error 2^-59.5. */
+/* With s = f / (2 + f), ln(1 + f) = 2 artanh s = f - s f + s R(s^2), and s f = f^2/2 - s f^2/2. The large terms are
+ * summed together with their rounding errors: k ln 2 + f - h^2/2, where h is the head of f. Relative error 2^-59.5. */
 double sk_log(double x) {
     double k, m = split(x, &k), f = m - 1, s = f / (2 + f), z = s * s, z2 = z * z;
     double p = P4(z, z2, 0.6666666666666734, 0.3999999999941648, 0.28571428742088462, 0.22222198596784937) +
@@ -363,7 +363,7 @@ double sk_atan2(double y, double x) {
     double top = PICK(fold, minus, n), top_lo = PICK(fold, n - (d + minus), 0);
     double low = PICK(fold, plus, d), low_lo = PICK(fold, (d - plus) + n, 0);
     double t = top / low, lost = ((residue(top, t, low) + top_lo) - t * low_lo) / low;
-    lost = PICK(n < 0x1p-30 * d, 0, lost); // it may have underflown, and matters no more
+    lost = PICK(n < 0x1p-30 * d, 0, lost); // it may have underflowed, and is negligible there
 
     double z = t * t, z2 = z * z, z4 = z2 * z2;
     double p =
@@ -372,7 +372,7 @@ double sk_atan2(double y, double x) {
         P3(z, z2, -0.050379256857804471, 0.038029390532628306, -0.017868543360390846) * (z4 * z4);
     double rest = t * z * p + lost * (1 - z);
 
-    // the eighth's own place: mirrored at the diagonal, then at the y axis
+    // back to the eighth that the point lies in: mirrored at the diagonal, then at the y axis
     double quarters = PICK(fold, 1, 0), side = PICK(steep, -1, 1);
     quarters = PICK(steep, 2 - quarters, quarters);
     int left = (bits_of(x) & SIGN) != 0;

@@ -1,7 +1,7 @@
-/* Sine, exponential and their kin: the same bits on every machine.
+/* Elementary functions (sine, exponential, ...) with the same bits on every machine.
  *
- * The C library picks its code by processor, so its last bit is not ours to promise. These use only + - * /,
- * square roots, compares and bit patterns, so that compiler, instruction set and vector width do not matter.
+ * The C library picks its code by processor, so its last bits differ. These use only + - * /, square roots,
+ * comparisons and bit patterns, so that compiler, instruction set and vector width do not matter.
  * They ask for round-to-nearest and, like everything here, a build without contraction (-ffp-contract=off).
  * Used by whatever computes state: colliders, builders, forces, formulas. Pure functions; nothing is owned.
  *
@@ -23,7 +23,7 @@
  *
  * A NaN in gives a NaN out (but pow, below); outside the domain comes NaN: sin, cos and tan of an infinity, log of
  * x < 0, asin and acos of |x| > 1. A NaN's own sign and payload are not promised. An odd function keeps the sign of
- * zero. errno and the exception flags are nobody's business here. Where denormals are flushed to zero, a subnormal
+ * zero. errno and the exception flags are not specified. Where denormals are flushed to zero, a subnormal
  * argument counts as 0 and a subnormal result is 0. */
 #ifndef SK_BASE_ELEMENTARY_H
 #define SK_BASE_ELEMENTARY_H
@@ -40,7 +40,7 @@ float sk_cosf(float x);
 float sk_tanf(float x);
 void sk_sincosf(float x, float *sine, float *cosine);
 
-/* What is left of an angle of 2^25 or more after whole quarter turns, and their number modulo 4: for wide versions. */
+/* The remainder of an angle of 2^25 or more after whole quarter turns, and their number modulo 4: for wide versions. */
 void sk_reduce_far(double x, double *rest, uint32_t *quarters);
 
 /* e to the x: exp(-inf) = 0, exp(inf) = inf. */

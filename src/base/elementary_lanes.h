@@ -5,7 +5,7 @@
  *     LANE(name)                               a function's name
  *     LANE(widen), LANE(narrow), LANE(number_of), LANE(last_bits)   between those types
  *     PICK(mask, yes, no), LANE_SQRT(x), LANE_INLINE
- *     LANE_REDUCE_FAR(x, wide, r, quarters)    for lanes with x of 2^25 and more: what reduce() in elementary.c says */
+ *     LANE_REDUCE_FAR(x, wide, r, quarters)    reduces lanes with x of 2^25 and more, like reduce() in elementary.c */
 
 #define SIGN_F 0x80000000u
 #define ROUND_F 0x1.8p23f
@@ -51,7 +51,7 @@ typedef struct LANE(quarter) {
     lane_bits k;
 } LANE(quarter);
 
-/* In double, two parts of pi/2 do up to 2^25: no float below is so near a multiple that what they lack would show.
+/* In double, two parts of pi/2 are enough up to 2^25: no float below is so near a multiple that their error would show.
  * In a wide version this costs about as much as the five parts that it would take in float. */
 LANE_INLINE LANE(quarter) LANE(reduce)(lane x) {
     lane_double wide = LANE(widen)(x), t = wide * TWO_BY_PI + ROUND, k = t - ROUND;

@@ -1,4 +1,4 @@
-/* What a table of fields is good for: defaults, ranges, checks with their messages, values to texts and back. */
+/* The functions on tables of fields: defaults, ranges, checks with their messages, conversion of values. */
 #include "base/fields.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 
 #include "base/status.h"
 
-/* How many numbers a type takes; 0 for those that are texts. */
+/* How many numbers a type has; 0 for texts. */
 static int number_count(skein_field_type type) {
     switch (type) {
     case SKEIN_FIELD_BOOL:

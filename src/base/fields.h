@@ -30,7 +30,7 @@
     {name_, SKEIN_FIELD_TEXT, offsetof(s, member), "", {0, 0, 0}, 0, 0, NULL, initial_, help_}
 #define SK_CHOICE(s, member, name_, initial_, choices_, help_)                                                \
     {name_, SKEIN_FIELD_CHOICE, offsetof(s, member), "", {initial_, 0, 0}, 0, 0, choices_, NULL, help_}
-/* The numbers that an object's formulas name, an array of SKEIN_FORMULA_MOST_PARAMETERS doubles: formula/parameters.h. */
+/* The parameters of an object's formulas, an array of SKEIN_FORMULA_MOST_PARAMETERS doubles: formula/parameters.h. */
 #define SK_PARAMETERS(s, member, help_)                                                                       \
     {"parameters.*", SKEIN_FIELD_REAL, offsetof(s, member), "", {0, 0, 0}, -SK_FAR, SK_FAR, NULL, NULL, help_}
 // clang-format on
@@ -40,8 +40,8 @@
 /* "Infinite" where a kind allows it, such as the stiffness of a rigid distance. */
 #define SK_UNBOUNDED __builtin_inf()
 
-/* A choice whose words stand for values of other fields (a fabric, for a density, a stiffness ...). Its first word stands
- * for none. */
+/* A choice whose words stand for values of other fields (a fabric: a density, a stiffness ...). The first stands for
+ * none. */
 typedef struct sk_presets {
     const char *field;         /* the choice */
     const char *const *names;  /* of fields that take one number */
@@ -57,7 +57,7 @@ void sk_fields_clear(sk_allocator *allocator, const skein_field *fields, size_t 
 skein_status sk_field_store(sk_allocator *allocator, const skein_field *field, void *params, const skein_value *value,
                             skein_error *error);
 skein_value sk_field_load(const skein_field *field, const void *params);
-/* Stores what the word that `params` has for the choice stands for. */
+/* Stores the values that the chosen word in `params` stands for. */
 skein_status sk_presets_apply(sk_allocator *allocator, const sk_presets *presets, const skein_field *fields, size_t count,
                               void *params, skein_error *error);
 /* The field of that name, or NULL. */

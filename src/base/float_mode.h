@@ -1,10 +1,10 @@
-/* The floating-point mode of a step: IEEE 754 as it is written, to nearest, with its thin numbers (denormals), no traps.
- * Set around a step on the caller and in every task, and put back after it: a program may have another, such as one
- * that flushes thin numbers to zero.
+/* The floating-point mode of a step: plain IEEE 754, round to nearest, with denormals, without traps. It is set for the
+ * caller and every task during a step, and restored after it: a program may use another, such as one that flushes
+ * denormals to zero.
  *
- * Part of the same bits on every machine: WebAssembly has no other mode, and processors do not flush alike (x86-64 looks
- * at a result after it is rounded, ARM before). Where thin numbers are slow, as on many processors, a cloth that settles
- * would crawl through them; so each step ends by calling what is slower than 1e-18 m/s at rest (sk_combine_rest). */
+ * This is a part of having the same bits on every machine: WebAssembly has no other mode, and processors flush in
+ * different ways (x86-64 tests a result after rounding, ARM before). Many processors are slow with denormals, which a
+ * settling cloth would reach; so each step ends by setting velocities under 1e-18 m/s to 0 (sk_combine_rest). */
 #ifndef SK_BASE_FLOAT_MODE_H
 #define SK_BASE_FLOAT_MODE_H
 

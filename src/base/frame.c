@@ -1,4 +1,4 @@
-/* Rigid maps of space: put together, turned back, shared out, and fitted to places. */
+/* Rigid maps of space: composed, inverted, interpolated, and fitted to points. */
 #include "base/frame.h"
 
 #include <math.h>
@@ -50,9 +50,9 @@ static double sinc(double x) {
     return s / x;
 }
 
-/* A screw about the axis u by the angle a goes straight on by the part of the shift along u; across it, with numbers of the
- * plane as complex ones, the shift is an integral of turns: w a sinc(a/2) exp(i a/2) for a w that all shares have in common.
- * So that of a share s is s sinc(s a/2)/sinc(a/2) exp(i (s - 1) a/2) times the whole one, also where a is 0. */
+/* A screw motion about the axis u by the angle a moves along u by that part of the shift. In the plane across u, with
+ * complex numbers, the shift is an integral over turns: w a sinc(a/2) exp(i a/2), where w is the same for all shares.
+ * So the shift of a share s is s sinc(s a/2)/sinc(a/2) exp(i (s - 1) a/2) times the whole one, also if a is 0. */
 sk_frame sk_frame_share(const sk_frame *frame, double share) {
     const sk_frame none = SK_NO_FRAME;
     if (!(share > 0)) return none;
@@ -71,9 +71,9 @@ sk_frame sk_frame_share(const sk_frame *frame, double share) {
     return part;
 }
 
-/* ---- the nearest frame to places ---- */
+/* ---- fitting a frame to points ---- */
 
-/* Turns rows and columns p and q of a symmetric matrix so that what they have in common is 0 (Jacobi), and the vectors along. */
+/* A Jacobi rotation of a symmetric matrix, after which a[p][q] is 0, and of the eigenvectors. */
 static void clear(double a[4][4], double v[4][4], int p, int q) {
     if (!(fabs(a[p][q]) > 0)) return;
     double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
@@ -92,8 +92,8 @@ static void clear(double a[4][4], double v[4][4], int p, int q) {
     }
 }
 
-/* The quaternion of the best turn: of all that are as good (places on a line, or one) the one that turns least, which is where
- * the quaternion 1 falls among their vectors. */
+/* The quaternion of the best rotation. Of several equally good ones (all points on a line, or in one place) it is the
+ * one with the least angle: the projection of the quaternion 1 onto their eigenvectors. */
 static void best_quaternion(double a[4][4], double q[4]) {
     enum { ROUNDS = 12 };
     double v[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}, most, size = 0, length = 0;
@@ -106,7 +106,7 @@ static void best_quaternion(double a[4][4], double q[4]) {
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < 4 && a[i][i] >= most - 1e-9 * size; k++) q[k] += v[0][i] * v[k][i];
     for (int k = 0; k < 4; k++) length += q[k] * q[k];
-    for (int i = 0; i < 4 && !(length > 1e-12); i++) { // half a turn: none of them is near 1
+    for (int i = 0; i < 4 && !(length > 1e-12); i++) { // half a turn: all are at right angles to 1
         if (a[i][i] < most) continue;
         for (int k = 0; k < 4; k++) q[k] = v[k][i];
         length = 1;
@@ -114,7 +114,7 @@ static void best_quaternion(double a[4][4], double q[4]) {
     for (int k = 0; k < 4; k++) q[k] /= sqrt(length);
 }
 
-/* Horn 1987: the quaternion is the vector of the largest eigenvalue of a matrix of the sums of products. */
+/* Horn 1987: the quaternion is the eigenvector to the largest eigenvalue of a matrix of the sums of products. */
 sk_frame sk_frame_fit(size_t count, const double (*from)[3], const double (*to)[3]) {
     sk_frame frame = SK_NO_FRAME;
     double a[3] = {0, 0, 0}, b[3] = {0, 0, 0}, m[3][3] = {{0}}, q[4];

@@ -1,4 +1,4 @@
-/* Frames: rigid maps of space, x to turn x + shift, with a turn of determinant 1. In double. */
+/* Frames: rigid maps of space, x to turn x + shift, where the matrix `turn` is a rotation. In double. */
 #ifndef SK_BASE_FRAME_H
 #define SK_BASE_FRAME_H
 
@@ -6,25 +6,25 @@
 #include <stddef.h>
 
 typedef struct sk_frame {
-    double turn[9], shift[3]; /* rows */
+    double turn[9], shift[3]; /* the matrix by rows */
 } sk_frame;
 
 #define SK_NO_FRAME ((sk_frame){{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}})
 
 void sk_frame_turn(const sk_frame *frame, const double v[3], double out[3]);
 void sk_frame_place(const sk_frame *frame, const double x[3], double out[3]);
-/* The map that is `first`, then `second`. */
+/* The map that applies `first`, then `second`; and the inverse of a map. */
 sk_frame sk_frame_then(const sk_frame *first, const sk_frame *second);
 sk_frame sk_frame_back(const sk_frame *frame);
-/* A share of a map, along the one screw that makes it: 0 leaves all where it is, 1 is the map itself, and shares that add up
- * to 1, one after the other, are the map. Half a turn has two such ways; one of them is taken. */
+/* A share of a map along its screw motion: 0 is the identity, 1 the map itself, and shares that add up to 1, applied
+ * one after the other, are the map. Half a turn has two such motions; one of them is taken. */
 sk_frame sk_frame_share(const sk_frame *frame, double share);
-/* How far it turns, rad, 0 to pi. */
+/* The angle of its rotation, rad, 0 to pi. */
 double sk_frame_angle(const sk_frame *frame);
-/* The frame that comes nearest to taking each of `count` places `from` to the one `to`, in the sum of squares; the least turn
- * where several do. */
+/* The frame that best maps `count` points `from` to the points `to`, in the sum of squares; of several, the one with
+ * the least rotation. */
 sk_frame sk_frame_fit(size_t count, const double (*from)[3], const double (*to)[3]);
-/* Whether the rows are those of a turn, but for rounding. */
+/* Whether the matrix is a rotation, but for rounding. */
 bool sk_is_turn(const double turn[9]);
 
 #endif

@@ -1,6 +1,6 @@
-/* Files of wide kernels: compiled once as they are, and once more for each instruction set, with that set's flags and
- * SK_ISA, its name, defined by the build (CMakeLists.txt). What stands under #ifdef SK_ISA is the kernels, everything
- * in them as plain C; the rest is compiled once. Only what the rest refers to has the set's name in its own.
+/* How files of wide kernels are written. The build (CMakeLists.txt) compiles them once as they are, and once for each
+ * instruction set, with that set's flags and its name as SK_ISA. The kernels stand under #ifdef SK_ISA, in plain C; the
+ * rest is compiled once. Only names that the rest refers to contain the set's name.
  *
  *     #include "base/kernels.h"
  *     #define SK_UNIT gravity
@@ -23,7 +23,7 @@
 #define SK_KERNEL_NAME(unit, name, isa) SK_KERNEL_JOIN(unit, name, isa)
 #define SK_KERNEL_OF(name, isa) SK_KERNEL_NAME(SK_UNIT, name, isa)
 
-/* Declares what there is in a version for each set, a kernel of some function type or a table, and lists them all. */
+/* Declares the versions, one for each set, of a kernel (a function type) or a table; and SK_EACH_ISA lists them. */
 #ifdef SK_X86_ISAS
 #define SK_KERNELS(type, name) extern type SK_KERNEL_OF(name, sse), SK_KERNEL_OF(name, avx2), SK_KERNEL_OF(name, avx512)
 #define SK_EACH_ISA(name) \
@@ -35,7 +35,7 @@
 #endif
 
 #ifdef SK_ISA
-/* The name of one in the version that is being compiled, and that version's place in tables. */
+/* The name of a kernel in the version that is being compiled, and that version's place in tables. */
 #define SK_KERNEL(name) SK_KERNEL_NAME(SK_UNIT, name, SK_ISA)
 #define SK_THIS_JOIN(isa) SK_ISA_OF_##isa
 #define SK_THIS_NAME(isa) SK_THIS_JOIN(isa)

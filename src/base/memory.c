@@ -1,4 +1,4 @@
-/* Blocks with a hidden head before them; large ones ask for large pages. The default allocator is the C library's. */
+/* Allocating blocks with a hidden header; large ones ask for large pages. The default allocator is the C library's. */
 #include "base/memory.h"
 
 #include <stdint.h>
@@ -26,7 +26,7 @@ static void ask_for_large_pages(char *memory, size_t size) {
 #endif
 }
 
-/* Of calloc, which knows what is zero already. Tells how many bytes before the block are its own. */
+/* Memory from calloc, which knows what is zero already. *before is how many bytes precede the returned address. */
 static char *zeroed(size_t size, size_t *before) {
     char *memory = calloc(1, size + HEADER);
     if (!memory) return NULL;
@@ -37,7 +37,7 @@ static char *zeroed(size_t size, size_t *before) {
 
 static void *default_allocate(void *user, size_t size, size_t alignment) {
     (void)user;
-#ifdef _WIN32 // which has none that free() takes; sk_allocate() needs of this function only to know it again
+#ifdef _WIN32 // free() takes no aligned memory there; sk_allocate() only compares with this function
     (void)alignment;
     return malloc(size);
 #else

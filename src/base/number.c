@@ -1,5 +1,5 @@
-/* Reading numbers without the locale: by a table of exact powers of ten where that is enough, else by strtod from
- * digits. */
+/* Reading numbers independent of the locale: with exact powers of ten where these are enough, else by strtod of the
+ * digits without a point. */
 #include "base/number.h"
 
 #include <ctype.h>
@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { MOST_POWER = 99999, MOST_DIGITS = 780 /* more do not decide a rounding, unless all others are a tie */ };
+enum { MOST_POWER = 99999, MOST_DIGITS = 780 /* further digits matter for rounding only if all others are a tie */ };
 
 static bool is_digit(char c) {
     return c >= '0' && c <= '9';
@@ -51,7 +51,7 @@ size_t sk_number_read(const char *text, double *number) {
         digits++;
         places += fraction;
         if (mantissa < 1000000000000000) mantissa = mantissa * 10 + (uint64_t)(*c - '0');
-        else mantissa = UINT64_MAX; // more than a double holds for sure
+        else mantissa = UINT64_MAX; // certainly more than a double holds
     }
     if (!digits) return 0;
     const char *end = c;

@@ -1,4 +1,4 @@
-/* Trials with more and with fewer threads, and the times that they are judged by. */
+/* Trials with more and fewer threads, and the measured times that decide between them. */
 #include "base/pace.h"
 
 #include <string.h>
@@ -6,12 +6,12 @@
 enum {
     TRIAL = 2,        /* steps */
     FIRST_TRIAL = 4,  /* steps on a level before others are tried */
-    LEAST_PAUSE = 32, /* steps between trials, twice as many after each that failed or did not last, */
-    MOST_PAUSE = 1024 /* up to so many */
+    LEAST_PAUSE = 32, /* steps between trials, doubled after each trial that failed or did not last, */
+    MOST_PAUSE = 1024 /* up to this */
 };
-static const double least_gain = 0.9, /* more threads must be so much faster */
-    least_work = 2e-4,                /* s: a step of less is over before a thread has woken */
-    hopeless = 1.5,                   /* a trial that takes so many times as long is over at once */
+static const double least_gain = 0.9, /* the share of the time that more threads may take at most */
+    least_work = 2e-4,                /* s: a shorter step is over before a thread has woken */
+    hopeless = 1.5,                   /* a trial that takes this many times as long ends at once */
     newest = 0.2;                     /* share of the newest time in the mean */
 
 void sk_pace_start(sk_pace *pace, int most, bool always) {
@@ -29,7 +29,7 @@ int sk_pace_threads(const sk_pace *pace) {
     return threads < pace->most ? threads : pace->most;
 }
 
-/* The first step of all has more to do than others: what comes second replaces what is three times as long. */
+/* Updates a level's mean time. A mean of three times the new time is replaced: the first step has more to do. */
 static void keep(sk_pace *pace, int level, double seconds) {
     double *mean = &pace->mean[level];
     *mean = *mean > 0 && *mean < 3 * seconds ? *mean + newest * (seconds - *mean) : seconds;
@@ -54,7 +54,7 @@ static void begin_trial(sk_pace *pace) {
     if (next > pace->level && pace->mean[pace->level] < least_work) return;
     pace->trying = next;
     pace->left = TRIAL;
-    pace->mean[next] = 0; // what was long ago is no measure
+    pace->mean[next] = 0; // its old mean is out of date
 }
 
 static void end_trial(sk_pace *pace) {
@@ -80,10 +80,10 @@ void sk_pace_note(sk_pace *pace, double seconds) {
         return;
     }
     keep(pace, pace->level, seconds);
-    if (++pace->stayed == 2 * pace->pause) pace->pause = LEAST_PAUSE; // that has lasted
+    if (++pace->stayed == 2 * pace->pause) pace->pause = LEAST_PAUSE; // this level has lasted
     int fewer = pace->level - 1;
     if (fewer >= 0 && pace->mean[fewer] > 0 && pace->mean[pace->level] > pace->mean[fewer]) {
-        // others have come for the processors: back to what was faster before
+        // other processes now use the processors: back to the level that was faster before
         settle(pace, fewer);
         pace->mean[fewer] = 0;
         pace->up = true;

@@ -1,7 +1,7 @@
-/* Ranges of elements cut over tasks, whoever runs these; see tasks.h. */
+/* Dividing a range of elements among tasks, for both task pools; see tasks.h. */
 #include "base/tasks.h"
 
-enum { SMALLEST_SHARE = 4096 }; /* elements below which the caller runs a row alone */
+enum { SMALLEST_SHARE = 4096 }; /* fewer elements run on the caller alone */
 
 typedef struct range_job {
     sk_range_body *body;

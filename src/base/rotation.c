@@ -1,4 +1,4 @@
-/* Rotations as matrices and as degrees, and the way from one to the other; right angles are exact. */
+/* Rotations as degrees, matrices, and angle and axis, and conversions between them; right angles are exact. */
 #include "base/rotation.h"
 
 #include <math.h>
@@ -62,7 +62,7 @@ double sk_rotation_of_directions(const double from[3], const double to[3], doubl
     double cross[3] = {to[1] * from[2] - to[2] * from[1], to[2] * from[0] - to[0] * from[2],
                        to[0] * from[1] - to[1] * from[0]};
     double cosine = from[0] * to[0] + from[1] * to[1] + from[2] * to[2], sine = normalise(cross, unit);
-    if (sine < 1e-6 && cosine < 0) { // back to front: about anything across
+    if (sine < 1e-6 && cosine < 0) { // opposite directions: any axis across them
         int k = fabs(to[0]) < 0.6 ? 0 : 1;
         double across[3] = {-to[k] * to[0], -to[k] * to[1], -to[k] * to[2]};
         across[k] += 1;

@@ -1,4 +1,4 @@
-/* The words of errors, labels cut to size, and the name that is nearest to one that is not there. */
+/* Messages of errors, labels made safe to print, and the known name nearest to an unknown one. */
 #include "base/status.h"
 
 #include <stdarg.h>
@@ -41,7 +41,7 @@ void sk_label_copy(char *out, size_t size, const char *name) {
     const unsigned char *from = (const unsigned char *)name;
     size_t at = 0;
     while (*from) {
-        size_t length = 1; // of a letter with all that continues it
+        size_t length = 1; // of a UTF-8 character with its continuation bytes
         while ((from[length] & 0xc0) == 0x80) length++;
         if (at + length >= size) break;
         bool control = from[0] < 0x20 || from[0] == 0x7f || (from[0] == 0xc2 && from[1] >= 0x80 && from[1] < 0xa0);
@@ -52,8 +52,8 @@ void sk_label_copy(char *out, size_t size, const char *name) {
     out[at] = 0;
 }
 
-/* The least number of letters to be changed, added, left out or swapped with the next one (optimal string alignment);
- * rows of the table are kept for two letters back. Names are short: longer ones are as far apart as can be. */
+/* The least number of letters to change, add, leave out or swap with the next one (optimal string alignment); the table
+ * keeps rows for two letters back. Names longer than MOST count as farthest apart. */
 static size_t edit_distance(const char *a, const char *b) {
     enum { MOST = 64 };
     size_t rows[3][MOST + 1], length = strlen(b), height = strlen(a);
@@ -91,7 +91,7 @@ static bool begin_alike(const char *a, const char *b) {
 
 const char *sk_nearest_name(const char *name, const char *const *names, size_t count) {
     const char *nearest = NULL;
-    size_t length = strlen(name), least = (length < 3 ? 1 : (length + 1) / 3) + 1; // farther than this is no help
+    size_t length = strlen(name), least = (length < 3 ? 1 : (length + 1) / 3) + 1; // a name farther away is no help
     for (size_t i = 0; i < count; i++) {
         size_t distance = edit_distance(name, names[i]);
         if (distance < least && distance < strlen(names[i])) {

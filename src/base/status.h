@@ -1,4 +1,4 @@
-/* Filling in a skein_error: the words of every failure. */
+/* Filling in a skein_error: how every failure is reported. */
 #ifndef SK_BASE_STATUS_H
 #define SK_BASE_STATUS_H
 
@@ -10,20 +10,20 @@
 skein_status sk_fail(skein_error *error, skein_status status, const char *where, const char *format, ...)
     SK_PRINTF(4, 5);
 
-/* The failure of an allocation, said in one way everywhere. Here, so that who reads the code knows that it is one. */
+/* The failure of an allocation, with the same message everywhere. Inline, so that a caller's reader sees its status. */
 static inline skein_status sk_fail_memory(skein_error *error, const char *what) {
     sk_fail(error, SKEIN_ERROR_MEMORY, "", "no memory for %s", what);
     return SKEIN_ERROR_MEMORY;
 }
 
-/* A pointer that must not be NULL is, for every public call that returns a status. */
+/* The error of public calls for a pointer that is NULL and must not be. */
 static inline skein_status sk_fail_null(skein_error *error, const char *argument) {
     sk_fail(error, SKEIN_ERROR_VALUE, argument, "%s is NULL", argument);
     return SKEIN_ERROR_VALUE;
 }
 
-/* Copies a name that somebody gave to where it will be printed: what would break a line or steer a terminal (control
- * characters, of UTF-8 too) becomes '?', and what is too long is cut between letters. */
+/* Copies a user's name for printing: control characters (also those of UTF-8), which could break a line or control a
+ * terminal, become '?', and too long a name is cut between characters. */
 void sk_label_copy(char *out, size_t size, const char *name);
 
 /* Of `count` names, the one nearest to `name` by edit distance, or NULL if none is near. */

@@ -1,13 +1,13 @@
 /* The default pool: workers wait for a new ticket, first spinning, then asleep.
  *
  *   caller                          worker i
- *   new ticket           ------->   sees it, and runs task(data, i) if it is for so many
+ *   new ticket           ------->   sees it, and runs task(data, i) if the ticket asks for more than i threads
  *   runs task(data, 0)              remaining = remaining - 1
  *   waits until remaining == 0 <----
  *
- * `task` and `data` are written before the ticket and read after it: the ticket publishes them. It is a number that
- * counts on, and below it how many threads it is for: both are read at once, for a worker that is not asked may wake
- * long after. Workers are started when they are first asked. */
+ * `task` and `data` are written before the ticket and read after it: the ticket publishes them. It holds a counter, and
+ * in its lowest bits how many threads it is for. Both are read at once, for a worker that is not asked may wake much
+ * later. Workers are started when they are first needed. */
 #define _GNU_SOURCE // sched_getaffinity
 #include "base/tasks.h"
 
@@ -19,7 +19,7 @@
 enum {
     MOST_THREADS = 64,
     SPINS = 4000, /* pauses before a waiter sleeps */
-    TICKET = 256, /* tickets count on by that; the rest is for whom they are */
+    TICKET = 256, /* a ticket's counter grows by this; the remainder is its number of threads */
 
 };
 
@@ -27,15 +27,15 @@ typedef struct worker {
     sk_tasks *tasks;
     int index;
     pthread_t thread;
-    uint32_t seen; /* the newest ticket when it was started, which is not for it */
+    uint32_t seen; /* the newest ticket when it was started, which it ignores */
 } worker;
 
 struct sk_tasks {
     sk_allocator *allocator;
     void (*run_tasks)(void *user, void (*task)(void *data, int index), void *data, int task_count);
     void *user;
-    int most;    /* threads that there may be */
-    int count;   /* of them that are in use: pieces a range is cut into */
+    int most;    /* threads that may be used */
+    int count;   /* threads in use: the pieces that a range is cut into */
     int started; /* workers alive */
     void (*task)(void *data, int index);
     void *data;
@@ -54,7 +54,7 @@ static inline void pause_briefly(void) {
 #elif defined(__aarch64__)
     __asm__ volatile("yield");
 #elif defined(__wasm__)
-    for (volatile int i = 0; i < 16; i++) {} // which has no word for it
+    for (volatile int i = 0; i < 16; i++) {} // WebAssembly has no such instruction
 #endif
 }
 
@@ -95,7 +95,7 @@ static void publish(sk_tasks *tasks) {
     pthread_mutex_unlock(&tasks->mutex);
 }
 
-/* Those that this process may run on, if the system says so. */
+/* The number of processors that this process may run on, if the system tells. */
 static int count_processors(void) {
 #ifdef __linux__
     cpu_set_t set;
@@ -123,7 +123,7 @@ sk_tasks *sk_tasks_create(sk_allocator *allocator, const skein_world_desc *desc)
     return tasks;
 }
 
-/* False when the machine gives no more threads. */
+/* False if the system starts no more threads. */
 static bool start_workers(sk_tasks *tasks) {
     while (tasks->started < tasks->count - 1) {
         int i = tasks->started + 1;
@@ -173,7 +173,7 @@ void sk_tasks_run(sk_tasks *tasks, void (*task)(void *data, int index), void *da
     atomic_store(&tasks->remaining, tasks->count - 1);
     publish(tasks);
     task(data, 0);
-    // on a machine with fewer cores than threads a pure spin would starve the workers
+    // with fewer cores than threads, spinning for ever would starve the workers
     for (int spins = 0; atomic_load_explicit(&tasks->remaining, memory_order_acquire) > 0; spins++) {
         if (spins < SPINS) pause_briefly();
         else sched_yield();

@@ -1,4 +1,4 @@
-/* Tasks: cutting a range of elements over threads. The world owns one; the runner calls it. */
+/* Tasks: dividing ranges of elements among threads. The world owns a pool; the runner calls it. */
 #ifndef SK_BASE_TASKS_H
 #define SK_BASE_TASKS_H
 
@@ -10,10 +10,10 @@ typedef struct sk_tasks sk_tasks;
 sk_tasks *sk_tasks_create(sk_allocator *allocator, const skein_world_desc *desc);
 void sk_tasks_destroy(sk_tasks *tasks); /* NULL is allowed */
 int sk_tasks_count(const sk_tasks *tasks);
-/* How many there may be: as many as were asked for, or as the machine has processors. */
+/* How many threads there may be: as many as were asked for, or as the machine has processors. */
 int sk_tasks_most(const sk_tasks *tasks);
-/* From now on `count` threads, and no more than the description says, share the work: fewer where the machine gives no
- * more. A pool of the description's own keeps its number. */
+/* From now on `count` threads share the work: at most sk_tasks_most(), and fewer if the system starts no more. A pool
+ * given by the description keeps its number. */
 void sk_tasks_use(sk_tasks *tasks, int count);
 
 /* Runs task(data, 0) ... task(data, sk_tasks_count - 1) at once and returns when all are done. */
@@ -24,8 +24,8 @@ bool sk_tasks_together(const sk_tasks *tasks);
 /* Waits until *progress is at least `wanted`: spins a while, then gives the processor away. */
 void sk_wait_for(const _Atomic uint32_t *progress, uint32_t wanted);
 
-/* Runs body over [begin, end) cut into one piece a thread; short ranges run on the caller, for handing
- * them over costs more than they do. Cuts are multiples of 16 elements from `begin`. */
+/* Runs body over [begin, end) in one piece for each thread. Short ranges run on the caller, for handing them over would
+ * take longer. Pieces begin at multiples of 16 elements from `begin`. */
 typedef void sk_range_body(void *data, size_t begin, size_t end);
 void sk_parallel_for(sk_tasks *tasks, size_t begin, size_t end, sk_range_body *body, void *data);
 

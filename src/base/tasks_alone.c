@@ -1,5 +1,5 @@
-/* Tasks where there are no threads (SKEIN_THREADS is off: WebAssembly, small machines): one after the other, on the
- * caller, or by the callback of the world's description, which may have some. Stands in for tasks.c. */
+/* Tasks in builds without threads (SKEIN_THREADS off: WebAssembly, small machines), in place of tasks.c: they run one
+ * after the other on the caller, or by the callback of the world's description, which may use threads. */
 #include "base/tasks.h"
 
 struct sk_tasks {
@@ -45,5 +45,5 @@ bool sk_tasks_together(const sk_tasks *tasks) {
 }
 
 void sk_wait_for(const _Atomic uint32_t *progress, uint32_t wanted) {
-    (void)progress, (void)wanted; // whoever makes it has run
+    (void)progress, (void)wanted; // tasks run in order, so the progress has been made
 }

@@ -1,4 +1,4 @@
-/* What <skein/inside/vector.h> says, and the public header. */
+/* See <skein/inside/vector.h>; also includes the public header. */
 #include <skein/skein.h>
 
 #include <skein/inside/vector.h>

@@ -1,6 +1,6 @@
-/* Wide elementary functions, once for each instruction set (see kernels.h), with the bits of
- * elementary.h. In float they are elementary_lanes.h on as many lanes as the processor works on at once; in double, and
- * powers always, they go lane by lane. */
+/* Wide elementary functions, once for each instruction set (see kernels.h), with the bits of elementary.h. In float
+ * they are elementary_lanes.h on as many lanes as the processor works on at once; in double, and for powers, lane by
+ * lane. */
 #include "base/elementary.h"
 #include "base/polynomial.h"
 
@@ -50,7 +50,7 @@ SK_LANE_BY_LANE_2(atan2)
 #define LANE_INLINE SK_INLINE
 #define LANE_SQRT sk_wide_sqrt
 #define LANE_REDUCE_FAR(x_, wide_, r_, quarters_) LANE(reduce_far)((x_), (wide_), &(r_), &(quarters_))
-/* Less 0 makes vectors of numbers, and changes nothing. */
+/* Subtracting a vector of 0 turns scalars into vectors, and changes no value. */
 #define PICK(mask_, yes_, no_) sk_select((mask_), (yes_) - (lane){0}, (no_) - (lane){0})
 
 typedef uint32_t lane_bits __attribute__((vector_size(SK_VECTOR_BYTES)));
@@ -73,7 +73,7 @@ SK_INLINE lane LANE(number_of)(lane_int i) {
     return __builtin_convertvector(i, lane);
 }
 
-/* Angles so large are rare. */
+/* Lane by lane, since angles this large are rare. */
 SK_INLINE void LANE(reduce_far)(lane x, lane_double wide, lane_double *r, lane_bits *quarters) {
     lane_int far = x >= 0x1p25f;
     if (!sk_any(far)) return;

@@ -52,7 +52,7 @@ skein_status sk_block_add_particles(sk_block *block, double mass, const double v
 
 /* ---- springs ---- */
 
-/* How many places along an axis have a partner `step` away, and the first of them. */
+/* The number of places along an axis that have a partner `step` away, and the first of them. */
 static size_t places_along(uint32_t size, int32_t step, size_t *first) {
     size_t way = (size_t)abs(step);
     *first = step < 0 ? way : 0;
@@ -105,8 +105,8 @@ skein_status sk_block_add_springs(sk_block *block, const char *label, sk_materia
     return status;
 }
 
-/* Rows are layers along y: what lies on the ground is then few blocks of full lanes, and no others are to be answered by it. With
- * rows along x, a lattice of 20^3 had one such particle in four fifths of its blocks, and contact took a fifth of the time. */
+/* Rows are layers along y, so that the particles on the ground fill few blocks, and contact skips all others. With rows
+ * along x, four fifths of the blocks of a lattice of 20^3 had such a particle, and contact took a fifth of the time. */
 skein_status sk_block_add_strips(sk_block *block) {
     const uint32_t *n = block->size;
     uint32_t rows = n[1], columns = n[0] * n[2], *place = NULL;
@@ -128,7 +128,8 @@ static size_t particle_at(const sk_block *block, const uint32_t at[3]) {
     return ((size_t)at[0] * block->size[1] + at[1]) * block->size[2] + at[2];
 }
 
-/* Quads on both ends of an axis; where both ends are the same particles, once. Returns the corner after the last. */
+/* Writes quads on both ends of an axis, or once if both ends are the same particles. Returns the corner after the
+ * last. */
 static uint32_t *lay_faces(const sk_block *block, int axis, uint32_t *corner) {
     int b = (axis + 1) % 3, c = (axis + 2) % 3;
     static const uint32_t turn[2][4][2] = {{{0, 0}, {0, 1}, {1, 1}, {1, 0}}, {{0, 0}, {1, 0}, {1, 1}, {0, 1}}};

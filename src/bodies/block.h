@@ -1,8 +1,7 @@
 /* A block of n x m x l particles, the last index fastest: what lattices and ropes are made of.
  *
- * The builder that owns it fills in the first four members, sk_block_begin makes room for particles; then it
- * sets their positions, and calls the rest in this order. All of it is scratch but the surface, which goes to
- * the body. */
+ * The builder that owns it fills in the first four members, calls sk_block_begin, sets the particles' positions, and
+ * calls the other functions in this order. All of it is scratch except the surface, which goes to the body. */
 #ifndef SK_BODIES_BLOCK_H
 #define SK_BODIES_BLOCK_H
 

@@ -88,7 +88,7 @@ static const skein_field fields[] = {
 
 enum {
     MOST_SINGLE_ANCHORS = 4,
-    NEAR = 20, /* edges from a pin, of what is tethered beside coarse grids */
+    NEAR = 20, /* edges from a pin: nearer particles have tethers besides coarse grids */
 };
 
 /* What one build needs; all of it scratch. */
@@ -150,8 +150,8 @@ static skein_status put_in_strips(tailor *t, const sk_quad_grid *grid) {
                                grid->place, t->error);
 }
 
-/* Lays a long grid of few columns the other way round, so that it gets coarse grids: hanging by its short edge 100 x 20 was
- * stretched by 4.3 % in a swing, and is by 2.1. False when there is no memory. */
+/* Exchanges rows and columns of a long grid of few columns, so that it gets coarse grids: swinging by its short edge,
+ * 100 x 20 was stretched by 4.3 %, and is by 2.1 % so. False when there is no memory. */
 static bool lay_across(tailor *t, sk_quad_grid *grid) {
     sk_allocator *allocator = &t->world->allocator;
     size_t count = t->sheet.particle_count;
@@ -167,7 +167,7 @@ static bool lay_across(tailor *t, sk_quad_grid *grid) {
     return true;
 }
 
-/* Puts springs and particles in order: strips for what is a grid, outward for all else. */
+/* Puts springs and particles in order: strips for grids, outward for other meshes. */
 static skein_status put_in_order(tailor *t) {
     sk_quad_grid grid = {0, 0, NULL};
     if (!sk_order_find_grid(&t->sheet, &t->springs, &grid.rows, &grid.columns) ||
@@ -180,7 +180,7 @@ static skein_status put_in_order(tailor *t) {
         sk_release(&t->world->allocator, grid.place);
         return status;
     }
-    // without pins there is no outward; where a mesh is thin, its axis leaves too few springs independent of each other
+    // without pins there is no outward; in a thin mesh, the order along an axis has too few independent springs
     bool pinned = false;
     for (size_t i = 0; i < t->sheet.particle_count; i++) pinned |= t->pinned[i];
     if (!pinned && !sk_order_is_broad(&t->springs, &t->sheet))
@@ -213,8 +213,8 @@ static skein_status add_bending(tailor *t) {
     return status;
 }
 
-/* Bounds over many edges: by coarse grids where it is a whole grid, else along its rows and columns, those of other meshes along the mesh's own x and z. A mesh
- * without pins hangs on nothing: it may be a balloon, which is to grow. */
+/* Bounds over many edges: by coarse grids if it is a whole grid, else along its rows and columns, or for other meshes
+ * along the mesh's own x and z. A mesh without pins gets none: it may be a balloon, which must be able to grow. */
 static skein_status add_spans(tailor *t) {
     if (t->lines.area && sk_coarse_fits(&t->lines))
         return sk_coarse_add(&t->lines, t->mass, t->world, t->body, &t->coarsest, t->error);
@@ -243,13 +243,13 @@ static bool hangs_by_a_point(const tailor *t) {
     return first != SIZE_MAX;
 }
 
-/* Springs keep all six distances of four corners: a cell cannot fold but along the rows and columns, and a sheet that hangs by
- * one point, whose folds run to that point from all sides, jams around it. 64 x 64 that hung by a corner was stretched by 5.9 %
- * (99 % of its edges) and 32, with ties by 2.2 and 14; by its middle 8.3 and 44, and 4.1 and 20; by opposite corners 4.5
- * and 18, and 1.1 and 4. In the plane ties lose nothing: in shear one diagonal gets longer, and has the stiffness of both; what
- * presses on both presses on the edges. But where they begin to pull forces have a kink, which a sheet that lies as it was
- * made is on: gradients of a run do not exist there, and undamped explicit methods swing themselves up; so springs hold
- * what does not need ties. */
+/* Springs keep all six distances of four corners, so a cell folds only along rows and columns, and a sheet that hangs
+ * by one point, to which folds run from all sides, locks around it. Stretch of 64 x 64 (99th percentile and largest,
+ * %), with springs and with ties: by a corner 5.9 and 32, 2.2 and 14; by its middle 8.3 and 44, 4.1 and 20; by opposite
+ * corners 4.5 and 18, 1.1 and 4. In the plane ties lose nothing: in shear one diagonal gets longer, and has the
+ * stiffness of both; compression of both also compresses the edges. But forces have a kink where ties begin to pull,
+ * which is where a sheet at rest is: gradients of a run do not exist there, and undamped explicit methods gain energy.
+ * So sheets that do not need ties have springs. */
 static const sk_constraint_type *tie_diagonals(tailor *t) {
     int32_t by = t->params->diagonals;
     if (by == SPRINGS || (by == BY_PINS && !hangs_by_a_point(t))) return &sk_distance;
@@ -258,13 +258,13 @@ static const sk_constraint_type *tie_diagonals(tailor *t) {
     return &sk_extension;
 }
 
-/* Sweeps take batches in the order of their making, and what is swept last is kept best: edges. Measured on
- * a draped grid, 12 substeps: 5.7 % of stretch at most, against 15.8 % with the edges first.
+/* Sweeps take batches in the order in which they were made, and satisfy the last best: edges. Measured on a draped
+ * grid, 12 substeps: 5.7 % of stretch at most, against 15.8 % with the edges first.
  *
- * Where cells are longer one way, sweeps in that order shiver as a lattice's do (methods/plan_builder.c), from sides of 1.25 to 1
- * on: 64 x 64 that swings by two corners was stretched by 5.6 % (99 % of its edges) and 17.5 %, once its cells were 1.3 to
- * 1, and by 14 and 43 % at 2 to 1. With half of the shear springs swept on the way back 0.7 and 1.8 %, as in squares.
- * Squares are a little firmer without. */
+ * If cells are longer one way, from sides of 1.25 to 1 on, sweeps in that order oscillate as a lattice's do
+ * (methods/plan_builder_correct.c): the stretch of 64 x 64 that swings by two corners was 5.6 and 17.5 % (99th
+ * percentile and largest) with cells of 1.3 to 1, and 14 and 43 % with 2 to 1. With half of the shear springs swept on
+ * the way back it is 0.7 and 1.8 %, as with squares, which are a little firmer without. */
 static skein_status add_springs(tailor *t) {
     static const char *const labels[] = {"bend", "shear", "stretch"};
     const sk_material *materials[] = {&t->params->bend, &t->params->shear, &t->params->stretch};
@@ -331,19 +331,20 @@ static bool is_near(const tailor *t, const tethers *all, size_t i) {
     return near;
 }
 
-/* Some of the tethers once more: those of the coarsest grid's particles, or of what is near an anchor. `some` has room. */
-static skein_status add_some_tethers(tailor *t, const tethers *all, sk_limit_turn turn, tethers *some) {
+/* Adds some of the tethers again: those of the coarsest grid's particles, or of ones near an anchor. `some` has
+ * room. */
+static skein_status add_some_tethers(tailor *t, const tethers *all, sk_limit_order order, tethers *some) {
     size_t anchors = some->anchors = all->anchors;
     some->count = 0;
     for (size_t i = 0; i < all->count; i++) {
         uint32_t particle = all->particles[i * (1 + anchors)] - t->body->first_particle;
-        bool taken = turn == SK_LIMIT_BEFORE_COARSE ? sk_coarse_has(&t->coarsest, &t->lines, particle) : is_near(t, all, i);
+        bool taken = order == SK_LIMIT_BEFORE_COARSE ? sk_coarse_has(&t->coarsest, &t->lines, particle) : is_near(t, all, i);
         if (!taken) continue;
         memcpy(some->particles + some->count * (1 + anchors), all->particles + i * (1 + anchors),
                (1 + anchors) * sizeof *all->particles);
         memcpy(some->lengths + some->count++ * anchors, all->lengths + i * anchors, anchors * sizeof *all->lengths);
     }
-    return sk_world_add_tethers(t->world, t->body, turn, some->count, anchors, some->particles, some->lengths, t->error);
+    return sk_world_add_tethers(t->world, t->body, order, some->count, anchors, some->particles, some->lengths, t->error);
 }
 
 static bool allocate_tethers(tailor *t, tethers *all, size_t count, size_t anchors) {
@@ -358,25 +359,26 @@ static void release_tethers(tailor *t, tethers *all) {
     sk_release(&t->world->allocator, all->lengths);
 }
 
-/* Where coarse grids carry a cloth, each particle's own tether pulls it out of what they have laid smooth: taken last, in
- * every second substep, a grid of 128 x 128 that swings was stretched by 0.80 % (99 % of its edges) and 1.97, and 0.62 and 1.9
- * without; of 0.2 m 2.99 and 4.7, and 1.45 and 3.3. Only what is near a pin needs them, for there a few edges carry all: without
- * any the first edge beside a pin was stretched by 4.6 % as the fall began; within 6 edges 200 x 200 kept 2.2 % at rest, within 20
- * 1.2, within 40 no less. Where cells are longer one way the hem of 20 x 60 kept 3 % so, and 1.3 with all of them. */
+/* With coarse grids, a tether of its own pulls each particle away from the smooth shape that they give. Stretch of a
+ * swinging grid of 128 x 128 (99th percentile and largest, %) with all tethers last in every second substep, and
+ * without: 0.80 and 1.97, 0.62 and 1.9; of 0.2 m 2.99 and 4.7, 1.45 and 3.3. Only particles near a pin need tethers,
+ * for a few edges carry all load there: without any, the first edge beside a pin was stretched by 4.6 % as the fall
+ * began; with those within 6 edges 200 x 200 kept 2.2 % at rest, within 20 1.2, within 40 no less. If cells are longer
+ * one way, the hem of 20 x 60 kept 3 % so, and 1.3 with all tethers. */
 static skein_status add_tethers_of_coarse(tailor *t, const tethers *all) {
-    static const sk_limit_turn turns[] = {SK_LIMIT_BEFORE_COARSE, SK_LIMIT_AFTER_COARSE};
+    static const sk_limit_order orders[] = {SK_LIMIT_BEFORE_COARSE, SK_LIMIT_AFTER_COARSE};
     tethers some;
     bool square = sk_lines_square(&t->lines);
     skein_status status = allocate_tethers(t, &some, all->count, all->anchors)
                               ? sk_world_add_tethers(t->world, t->body, square ? SK_LIMIT_WITHOUT_COARSE : SK_LIMIT_SELDOM, all->count, all->anchors,
                                                      all->particles, all->lengths, t->error)
                               : sk_fail_memory(t->error, "tethers");
-    for (int i = 0; i < (square ? 2 : 1) && !status; i++) status = add_some_tethers(t, all, turns[i], &some);
+    for (int i = 0; i < (square ? 2 : 1) && !status; i++) status = add_some_tethers(t, all, orders[i], &some);
     release_tethers(t, &some);
     return status;
 }
 
-/* A few pins hold every particle each on its own; many (an edge) hold it by the nearest one. */
+/* Each of a few pins tethers every particle; with many (an edge), only the nearest one does. */
 static skein_status add_tethers(tailor *t) {
     sk_allocator *allocator = &t->world->allocator;
     size_t count = t->sheet.particle_count, pins = 0, tethered = 0;
@@ -399,10 +401,10 @@ static skein_status add_tethers(tailor *t) {
         source[i] = true;
         good = measure_tethers(t, geodesic, source, k++, &all, distance, nearest);
     }
-    sk_limit_turn turn = t->lines.area ? SK_LIMIT_SELDOM : SK_LIMIT_LAST;
+    sk_limit_order order = t->lines.area ? SK_LIMIT_SELDOM : SK_LIMIT_LAST;
     skein_status status = !good                  ? sk_fail_memory(t->error, "tethers")
                           : t->coarsest.row_step ? add_tethers_of_coarse(t, &all)
-                                                 : sk_world_add_tethers(t->world, t->body, turn, tethered, anchors,
+                                                 : sk_world_add_tethers(t->world, t->body, order, tethered, anchors,
                                                                         all.particles, all.lengths, t->error);
     sk_geodesic_release(geodesic);
     sk_release(allocator, distance);
@@ -449,11 +451,11 @@ static void change(sk_body *body, const void *data) {
         bool shear = !strcmp(batch->label, "shear");
         *body->material[i] = batch->measured ? params->stretch : shear ? params->shear : bend;
     }
-    body->tether_bound = fmin(params->tether, params->limit); // what no edge may do, none of their chains may
+    body->tether_bound = fmin(params->tether, params->limit); // a chain of edges may stretch no more than an edge
     body->strain_bound = params->limit;
 }
 
-/* What only springs have is not taken without a word by what is none. */
+/* Refuses settings that only springs have for other kinds of bending. */
 static skein_status check_bending(const cloth_params *p, skein_error *error) {
     if (p->bending == BY_SPRINGS) return SKEIN_OK;
     const char *field = p->bend.stiffness > 0 ? "bend.stiffness" : p->bend.damping > 0 ? "bend.damping" : NULL;

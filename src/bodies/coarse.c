@@ -1,4 +1,4 @@
-/* The making of a cloth's coarse grids, each out of the one before it, down to the coarsest with its tethers. */
+/* Making a cloth's coarse grids, each from the finer one before it, down to the coarsest. */
 #include "bodies/coarse.h"
 
 #include <math.h>
@@ -38,11 +38,12 @@ typedef struct builder {
 } builder;
 
 bool sk_coarse_fits(const sk_lines *lines) {
-    for (size_t place = 0; place < (size_t)lines->rows * lines->columns; place++) {
-        if (lines->particle[place] == UINT32_MAX) return false;
-        bool cell = place / lines->columns + 1 < lines->rows && place % lines->columns + 1 < lines->columns;
-        if (cell && !(lines->area[place] > 0)) return false;
-    }
+    for (size_t row = 0, place = 0; row < lines->rows; row++)
+        for (size_t column = 0; column < lines->columns; column++, place++) {
+            if (lines->particle[place] == UINT32_MAX) return false;
+            bool cell = row + 1 < lines->rows && column + 1 < lines->columns;
+            if (cell && !(lines->area[place] > 0)) return false;
+        }
     return lines->rows >= 2 * LEAST_ROWS && sk_strip_width(lines->columns) >= LEAST_WIDTH;
 }
 
@@ -65,7 +66,7 @@ bool sk_coarse_has(const sk_coarse_grid *grid, const sk_lines *lines, uint32_t p
 
 /* ---- where the grids lie ---- */
 
-/* Of the first two places of `step`, the one that leaves margins at both ends alike, so that masses carried there are. */
+/* The one of the first two places of `step` that leaves more equal margins at both ends, and so more equal masses. */
 static uint32_t middle_first(uint32_t first, uint32_t step, size_t count) {
     uint32_t second = first + step;
     int64_t a = (int64_t)first - (int64_t)((count - 1 - first) % (2 * step));
@@ -88,7 +89,7 @@ static void measure_grid(const builder *b, level *l) {
     while (column_of(b, l, l->columns) < b->lines->columns) l->columns++;
 }
 
-/* Takes on the next coarser grid; false where it would be too coarse: two columns a strip at least. */
+/* Adds the next coarser grid; false if it would be too coarse: strips need at least two columns. */
 static bool halve(builder *b) {
     const sk_coarse_grid *finer = &b->level[b->count - 1].grid;
     if (b->count > MOST_GRIDS || sk_coarse_columns(finer, b->width) < 3) return false;
@@ -102,7 +103,7 @@ static bool halve(builder *b) {
 
 /* ---- masses ---- */
 
-/* Between which of a grid's lines a place is, and how far along; beyond the last ones it goes with the nearest. */
+/* The two lines of a grid that a place is between, and how far along; beyond the last ones, the nearest alone. */
 typedef struct between {
     size_t low, high;
     double share; /* of the high one */
@@ -121,7 +122,7 @@ static between find_between(const builder *b, const level *l, size_t place, bool
     return (between){low, low + 1, (double)(place - at) / (double)(next - at)};
 }
 
-/* What a grid's particles carry: the transposed of what they hand out, so that nothing gains momentum. */
+/* The masses that a grid's particles carry: by the transpose of the interpolation, so that momentum is conserved. */
 static bool sum_up_masses(const builder *b, const level *finer, level *l) {
     l->mass = sk_allocate(b->allocator, l->rows * l->columns * sizeof *l->mass);
     if (!l->mass) return false;

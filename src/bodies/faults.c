@@ -1,4 +1,4 @@
-/* Counting a mesh's faults, each with its first example, and saying them. */
+/* Counting a mesh's faults, and warning of them with the first example of each. */
 #include "bodies/faults.h"
 
 #include <math.h>

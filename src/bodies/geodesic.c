@@ -1,4 +1,4 @@
-/* Dijkstra over the vertices, with a second way to arrive: across a triangle. Where both other corners
+/* Dijkstra's algorithm over the vertices, with updates across triangles too. If both other corners
  * know their distance, the source is unfolded into the triangle's plane and the straight line from it
  * is taken, if it crosses the far edge (after Kimmel and Sethian 1998; exact from one source on a flat
  * convex sheet, where a walk along edges would be up to 8 % too long).
@@ -27,7 +27,7 @@ typedef struct parabola {
     uint32_t source;
 } parabola;
 
-/* All that a search asks of a particle, in one cache line or two: meshes are numbered in any order. */
+/* All data of a particle in a search, in one or two cache lines, since meshes are numbered in any order. */
 typedef struct place {
     double at[3], distance;
     uint32_t nearest;
@@ -57,7 +57,7 @@ void sk_geodesic_release(sk_geodesic *g) {
     sk_release(g->allocator, g);
 }
 
-/* Quads give both ways of cutting them, so that neither diagonal is preferred; larger faces a fan. */
+/* Cuts a face into triangles: a quad in both ways, so that neither diagonal is preferred; larger faces into a fan. */
 static size_t cut_face(const uint32_t *c, size_t size, uint32_t (*out)[3]) {
     if (size < 3) return 0;
     size_t count = 0;
@@ -203,7 +203,7 @@ static void from_on_grid(const sk_geodesic *g, const bool *source, double *dista
 
 /* ---- searches ---- */
 
-/* A particle's distance stands; its neighbours may be nearer by it. False when there is no memory. */
+/* Makes a particle's distance final, and updates its neighbours. False when there is no memory. */
 static bool settle(sk_geodesic *g, uint32_t top) {
     place *u = &g->places[top];
     u->settled = true;

@@ -96,7 +96,7 @@ static skein_status choose_words(void *data, const char *words) {
                                         "back face", "front face", "corners",     "all"};
     enum { FORMS = sizeof forms / sizeof *forms, CORNERS = 6, ALL = 7 };
     int form = 0;
-    while (form < FORMS && strcmp(words, forms[form])) form++;
+    while (form < FORMS && strcmp(words, forms[form]) != 0) form++;
     if (form == FORMS) {
         const char *nearest = sk_nearest_name(words, forms, FORMS);
         return sk_fail(block->error, SKEIN_ERROR_NAME, "pins",

@@ -9,8 +9,8 @@
 
 enum { ALONG_ROW, ALONG_COLUMN, DIRECTIONS };
 
-/* Edges a span is long. A sweep over edges carries a correction over a few of them; spans of a few carry it over some
- * tens, and longer ones over all. Measured on the default cloth of 128 x 128 that is let go from level and swings by two
+/* The lengths of spans in edges. A sweep over edges carries a correction over a few of them; short spans carry it over
+ * some tens, and longer ones over all. Measured on the default cloth of 128 x 128 let go from level, swinging by two
  * corners, 10 substeps, 99th percentile of stretch, the worst of every fifth frame: 15 % without spans, 2.7 % with those of 5, 2.1 %
  * with 10, 7.5 % with 20, 1.1 % with 5 and 20, 1.5 % with 5 and 41, 1.0 % with 3, 9 and 30. */
 static const uint32_t span_edges[] = {5, 20};
@@ -137,10 +137,10 @@ static void add(maker *m, const size_t *places, const double *rest, double scale
     made->scale[made->count++] = (real)scale;
 }
 
-/* How quick the stiffest of the elements is, for a stiffness of 1: the sum of w c^2 times its scale, c being what its
- * particles count in the sum under the root: (a, -a - b, b) where three are straight, a and -a around a cell. Those that
- * overlap with it make it quicker: by up to 16/9 around a cell, at a corner as in the middle, by 32/14 in a line along the
- * border (sums of w c c' over all that share particles). The line's is in may_wait()'s bound, so the cell's counts less. */
+/* The square of the stiffest element's angular frequency, for a stiffness of 1: the sum of w c^2 times its scale, where
+ * c are its particles' weights in the sum under the root: (a, -a - b, b) for three in a line, a and -a around a cell.
+ * Elements that overlap with it raise the frequency: by up to 16/9 around a cell, by 32/14 in a line along the border
+ * (sums of w c c' over all that share particles). may_wait()'s bound includes the latter, so cells count less here. */
 static double quickness_of(const maker *m, const skein_world *world) {
     static const double cell = 16.0 / 9 / (32.0 / 14);
     const sk_elements *made = &m->made;
@@ -201,20 +201,21 @@ static skein_status add_straight(const sk_lines *lines, skein_world *world, sk_b
     bool good = start(&m, lines, body, 3, 2, DIRECTIONS * places);
     for (int direction = 0; direction < DIRECTIONS && good; direction++) {
         size_t step = direction == ALONG_ROW ? 1 : lines->columns;
-        for (size_t place = 0; place < places; place++) {
-            double area = bent_area(lines, place / lines->columns, place % lines->columns, direction);
-            if (!(area > 0)) continue;
-            const double *x = position_at(lines, place);
-            double before = distance(x, position_at(lines, place - step));
-            double after = distance(x, position_at(lines, place + step)), length = (before + after) / 2;
-            add(&m, (const size_t[]){place - step, place, place + step}, (const double[]){1 / before, 1 / after},
-                area / (length * length));
-        }
+        for (size_t row = 0, place = 0; row < lines->rows; row++)
+            for (size_t column = 0; column < lines->columns; column++, place++) {
+                double area = bent_area(lines, row, column, direction);
+                if (!(area > 0)) continue;
+                const double *x = position_at(lines, place);
+                double before = distance(x, position_at(lines, place - step));
+                double after = distance(x, position_at(lines, place + step)), length = (before + after) / 2;
+                add(&m, (const size_t[]){place - step, place, place + step}, (const double[]){1 / before, 1 / after},
+                    area / (length * length));
+            }
     }
     return finish(&m, world, &sk_straight, "bend", rigidity, good, error);
 }
 
-/* A cell of which but one triangle is there is half as stiff. */
+/* A cell that has only one of its triangles is half as stiff. */
 static skein_status add_twist(const sk_lines *lines, skein_world *world, sk_body *body, double rigidity,
                               skein_error *error) {
     maker m;

@@ -1,4 +1,4 @@
-/* Finding whether a mesh is a grid, and else the way outward from its pins, in which springs are sorted. */
+/* Finding whether a mesh is a grid, and sorting springs: by direction, outward from pins, or scattered. */
 #include "bodies/order.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 enum {
     MOST_STEP = 2, /* rows and columns that a grid's spring may lead over */
     BROAD = 128,   /* particles in a layer of a mesh as thick as an edge is long */
-    WINDOW = 4096  /* springs or hinges that are scattered among each other: enough to fill groups, near in memory */
+    WINDOW = 4096  /* springs or hinges scattered together: enough to fill groups, few enough to be near in memory */
 };
 
 /* The commonest difference of edges' numbers besides 1: the length of a row. False when there is no memory. */
@@ -146,7 +146,7 @@ static uint64_t key_of(double distance) {
     return key;
 }
 
-/* First what leads outward, then what goes round; each by distance, and equal ones by their particles. */
+/* First springs that lead outward, then those that go round; each by distance, and equal ones by their particles. */
 static bool sort_outward(sk_allocator *allocator, struct sk_spring_list *list, const double *distance) {
     size_t count = list->count;
     keyed *keys = sk_allocate(allocator, count * sizeof *keys);
@@ -236,8 +236,8 @@ static size_t common_divisor(size_t a, size_t b) {
     return a;
 }
 
-/* Steps through each window by the golden section of its size: what is near in the file is then far apart in the order,
- * wherever the file begins and however it goes on. */
+/* Steps through each window by the golden ratio of its size, so that elements near each other in the file are far apart
+ * in the order. */
 void sk_order_scatter(uint32_t *numbers, size_t count) {
     size_t windows = count / WINDOW + 1;
     for (size_t w = 0; w < windows; w++) {

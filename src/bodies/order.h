@@ -8,8 +8,8 @@
  * threads can follow each other; the particles of any other stay as they are in its file, and its springs and hinges are
  * scattered.
  *
- * Files go from face to face, so that each spring shares a particle with the one before it; sixteen can be worked at
- * once only where none does, and what is left over by one would be carried on by the next (docs/design.md, "Hinges"). */
+ * Springs are scattered because in files each shares a particle with the one before it. Only sixteen that share none
+ * can be computed at once, and errors would be passed from each to the next (docs/design.md, "Hinges"). */
 #ifndef SK_BODIES_ORDER_H
 #define SK_BODIES_ORDER_H
 

@@ -1,8 +1,8 @@
-/* Every quad knows where its corners stand, and tells the quads across its edges:
+/* Every quad with known places of its corners gives those of the quads across its edges:
  *
  *     s---p---x      n = p - s leads out over the edge p q,
  *     | f | g |      so x stands at p + n and w at q + n;
- *     t---q---w      who was told two different things is in no grid
+ *     t---q---w      a particle with two different places is in no grid
  */
 #include "bodies/quads.h"
 

@@ -141,8 +141,8 @@ static void find_nearest(const sk_block *block, uint32_t *nearest) {
     }
 }
 
-/* A few pins hold every particle each on its own; many hold it by the nearest one. The few are listed first: looking for
- * them once a particle made a rope of 100,000 take seconds. */
+/* Each of a few pins tethers every particle; with many, only the nearest one does. The few are listed first: searching
+ * for them for each particle made a rope of 100,000 take seconds. */
 static skein_status add_tethers(const sk_block *block, double link) {
     sk_allocator *allocator = &block->world->allocator;
     size_t count = block->count, pins = 0, filled = 0, few[MOST_SINGLE_ANCHORS];

@@ -179,8 +179,8 @@ static bool go_on(const faces *f, strip *s) {
     return true;
 }
 
-/* The particle that a straight walk over so many edges comes to, and how far it is; UINT32_MAX at a border that comes
- * before. */
+/* The particle that a straight walk over so many edges leads to, and its distance; UINT32_MAX if a border comes
+ * first. */
 static uint32_t walk(const faces *f, uint32_t from, const double direction[3], uint32_t edges, double *length) {
     strip s;
     if (!set_out(f, from, direction, &s)) return UINT32_MAX;

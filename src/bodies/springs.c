@@ -1,4 +1,4 @@
-/* Finding springs: pairs in a table by hashing, each met by faces, edges and the edges' neighbours. */
+/* Finding springs: from faces, edges and the neighbours of edges, as pairs in a hash table. */
 #include "bodies/springs.h"
 
 #include <math.h>
@@ -161,7 +161,7 @@ static bool fill_list(sk_springs *springs, const pair_table *table, const sk_she
         list->pairs[2 * list->count] = s->a;
         list->pairs[2 * list->count + 1] = s->b;
         list->rest[list->count] = (real)sqrt(square);
-        // needles would be stiffer than any step can bear
+        // springs of needle-shaped faces would be too stiff for any step
         double scale = square > 0 ? s->area / square : 0;
         list->scale[list->count++] = (real)(scale > 100 ? 100 : scale);
     }

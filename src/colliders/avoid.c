@@ -1,6 +1,7 @@
 /* Steering clear of a collider: what looks ahead along its flight and sees the surface nearer than the clearance there,
  * half way or all the way, is pushed along the surface's normal: by (1 - distance/clearance) strength, twice that at
  * the most. The op's coefficients are the time ahead, the clearance and the strength. */
+#include "base/arithmetic.h"
 #include "base/kernels.h"
 #include "colliders/collider.h"
 
@@ -9,11 +10,18 @@ SK_KERNELS(sk_op_kernel, avoid);
 
 #ifdef SK_ISA
 
+// ---- arithmetic ----
+/* What its steering gets, where it is nearer than the clearance. */
+SK_INLINE vec3 kept_off(vec3 normal, num distance, scalar clearance, scalar strength) {
+    num k = 1 - distance / clearance;
+    return times(strength * pick(k > 2, 2, k), normal);
+}
+// ---- end of arithmetic ----
+
 void SK_KERNEL(avoid)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const sk_collider *collider = op->rule;
     sk_pose pose = sk_collider_pose_at(collider, run->time);
     real clearance = (real)(op->coefficient[1] + collider->common->thickness), dv = (real)(op->dt * op->coefficient[2]);
-    sk_wide one = sk_splat(1), two = sk_splat(2);
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < op->packed;
         sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
@@ -27,11 +35,7 @@ void SK_KERNEL(avoid)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
             collider->type->probe[SK_THIS_ISA](collider->params, &pose, &p, &contact);
             sk_mask near = moved & sk_more(sk_splat(clearance), contact.distance);
             if (!sk_any(near)) continue;
-            sk_wide k = one - contact.distance / clearance;
-            k = dv * sk_select(sk_more(k, two), two, k);
-            s.x = sk_plus_where(near, s.x, k * contact.normal.x);
-            s.y = sk_plus_where(near, s.y, k * contact.normal.y);
-            s.z = sk_plus_where(near, s.z, k * contact.normal.z);
+            s = vec4_of(pick3(near, plus(xyz(s), kept_off(contact.normal, contact.distance, clearance, dv)), xyz(s)), s.w);
         }
         sk_store_part(run->vector[op->dst], slot, packed, s);
     }

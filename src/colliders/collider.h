@@ -91,7 +91,8 @@ typedef struct sk_collider_type {
     double (*cross)(const void *params, const sk_pose *pose, const double a[3], const double b[3], double normal[3]);
     void (*ball)(const void *params, const sk_pose *pose, sk_vec3 *middle, real *radius);
     bool (*is_shaped_by)(const char *field); /* whether a field counts only then; NULL: none does */
-    struct sk_trimesh *(*surface)(const void *params); /* its triangles, for whoever draws or moves them; NULL: it has none */
+    struct sk_trimesh *(*surface)(const void *params); /* its triangles, for whoever draws, moves or sits on them; NULL: it has none */
+    double (*scale)(const void *params);               /* of types with a surface: the factor on its coordinates */
     /* Of arithmetic: see colliders/shape.h. A file defines vec4 probe@(vec3 p): the unit normal out of the solid, and the distance in w; and, where the surface
      * moves by itself, DEFORMS@ and float speed@, what it has along the normal then. What every collider has is pose@
      * (colliders/pose.glsl). */
@@ -124,6 +125,8 @@ extern const skein_field sk_collider_fields[];
 extern const size_t sk_collider_field_count;
 
 sk_pose sk_collider_pose_at(const sk_collider *collider, double time);
+/* As its fields alone say, by no frame, before they were set since the last step. */
+sk_pose sk_collider_pose_unled(const sk_collider *collider, double time);
 /* Around a change of its fields at `time`: before it and after it. True when from now on it may stand elsewhere in
  * every substep. */
 void sk_collider_note(sk_collider *collider, double time);

@@ -38,141 +38,75 @@ SK_KERNELS(sk_probe_sixteen, probe_sixteen);
 #include "colliders/start.h"
 
 /* Probes a part of a block; false where nobody touches. */
-SK_INLINE bool meet(sk_run *run, const sk_op *op, const sk_pose *pose, size_t slot, encounter *e) {
-    probe(op->rule, pose, sk_load_part(run->vector[SK_X], slot, slot < op->packed), (sk_wide){0}, e);
+SK_INLINE bool meet(sk_run *run, const sk_op *op, const contact_law *law, const sk_pose *pose, size_t slot, encounter *e) {
+    probe(op->rule, law, pose, sk_load_part(run->vector[SK_X], slot, slot < op->packed), (sk_wide){0}, e);
     if (!sk_any(e->touching)) return false;
     find_motion(op->rule, pose, e);
     return true;
 }
 
 /* The same at the end of a substep, with a look back to its start. */
-SK_INLINE bool meet_at_end(sk_run *run, const sk_op *op, const sk_pose *pose, const origin *o, size_t slot,
-                          encounter *e) {
-    probe_at_end(run, op, pose, o, slot, e);
+SK_INLINE bool meet_at_end(sk_run *run, const sk_op *op, const contact_law *law, const sk_pose *pose, const origin *o,
+                           size_t slot, encounter *e) {
+    probe_at_end(run, op, law, pose, o, slot, e);
     if (!sk_any(e->touching)) return false;
     find_motion(op->rule, pose, e);
     return true;
 }
 
-/* Adds `change` to a part of dst in the lanes of the mask. */
-SK_INLINE void apply(sk_run *run, const sk_op *op, size_t slot, sk_wide4 old, sk_mask mask, sk_wide3 change) {
-    add_where(mask, &old, change);
-    sk_store_part(run->vector[op->dst], slot, slot < op->packed, old);
-}
-
-/* Speed after a bounce over speed before: of a collider with a mass (m - M)/(m + M), but never inwards. */
-SK_INLINE sk_wide restitution_of(const sk_collider *collider, sk_wide mass) {
-    real own = (real)sk_collider_mass(collider);
-    if (!(own > 0)) return sk_splat((real)collider->common->restitution);
-    sk_wide share = (own - mass) / (own + mass);
-    return sk_keep(sk_positive(share), share);
-}
-
 void SK_KERNEL(contact_force)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
-    const sk_collider *collider = op->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
-    bool by_mass = sk_collider_mass(collider) > 0;
+    const contact_law law = law_of(op->rule, op->dt);
+    sk_pose pose = sk_collider_pose_at(op->rule, run->time - op->before_end);
     encounter e;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        if (!meet(run, op, &pose, slot, &e)) continue;
-        sk_wide4 f = sk_load_part(run->vector[op->dst], slot, slot < op->packed);
-        sk_wide4 v = sk_load_part(run->vector[SK_V], slot, slot < op->packed);
-        sk_wide3 force_t, slide;
-        sk_wide inward = split(three(f), e.contact.normal, &force_t);
-        sk_wide leaving = split(from_surface(three(v), &e), e.contact.normal, &slide);
-        sk_wide mass_per_step = 1 / (e.x.w * (real)op->dt), pressing = inward;
-        if (!by_mass) pressing += mass_per_step * sk_keep(sk_positive(leaving), leaving);
-        // cut to Coulomb's cone
-        sk_wide3 stop = stopping(mass_per_step, slide, force_t);
-        sk_wide needed = sk_wide_sqrt(sk_dot_wide(stop, stop)), most = (real)collider->common->friction * -pressing;
-        sk_wide share = share_of(needed, most);
-        sk_wide3 push = times(-pressing, e.contact.normal), rub = times(share, stop);
-        apply(run, op, slot, f, e.touching & sk_negative(pressing),
-              (sk_wide3){push.x + rub.x, push.y + rub.y, push.z + rub.z});
+        bool packed = slot < op->packed;
+        if (!meet(run, op, &law, &pose, slot, &e)) continue;
+        sk_wide4 f = sk_load_part(run->vector[op->dst], slot, packed), v = sk_load_part(run->vector[SK_V], slot, packed);
+        sk_store_part(run->vector[op->dst], slot, packed, vec4_of(force_after(law, e, xyz(v), xyz(f)), f.w));
     }
 }
 
 void SK_KERNEL(contact_impulse)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
-    const sk_collider *collider = op->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
+    const contact_law law = law_of(op->rule, op->dt);
+    sk_pose pose = sk_collider_pose_at(op->rule, run->time - op->before_end);
     const origin o = find_origin(op, &pose);
     encounter e;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        if (!meet_at_end(run, op, &pose, &o, slot, &e)) continue;
-        sk_wide4 v = sk_load_part(run->vector[op->dst], slot, slot < op->packed);
-        sk_wide3 slide;
-        sk_wide approach = split(from_surface(three(v), &e), e.contact.normal, &slide);
-        sk_wide bounce = (1 + restitution_of(collider, v.w)) * -approach;
-        sk_wide speed = sk_wide_sqrt(sk_dot_wide(slide, slide));
-        sk_wide share = share_of(speed, (real)collider->common->friction * bounce);
-        sk_wide3 change = minus(times(bounce, e.contact.normal), times(share, slide));
-        apply(run, op, slot, v, e.touching & sk_negative(approach), change);
+        bool packed = slot < op->packed;
+        if (!meet_at_end(run, op, &law, &pose, &o, slot, &e)) continue;
+        sk_wide4 v = sk_load_part(run->vector[op->dst], slot, packed);
+        sk_store_part(run->vector[op->dst], slot, packed, vec4_of(velocity_after(law, e, v), v.w));
     }
-}
-
-/* The way out of the solid, up to the thickness; where a vector of old positions is given, less the slide since
- * then that friction takes back, up to mu times the push. */
-SK_INLINE sk_wide3 way_out(const sk_run *run, const sk_op *op, size_t slot, const encounter *e, sk_wide push) {
-    sk_wide3 move = times(push, e->contact.normal);
-    if (op->source[1] == SK_NONE) return move;
-    sk_wide4 start = sk_load_part(run->vector[op->source[1]], slot, slot < op->packed);
-    sk_wide3 moved = minus(three(e->x), three(start));
-    if (e->moves) moved = minus(moved, times(sk_splat((real)op->dt), e->surface));
-    sk_wide3 slide;
-    split(moved, e->contact.normal, &slide);
-    sk_wide length = sk_wide_sqrt(sk_dot_wide(slide, slide));
-    const sk_collider *collider = op->rule;
-    sk_wide share = share_of(length, (real)collider->common->friction * push);
-    return minus(move, times(share, slide));
 }
 
 void SK_KERNEL(contact_push)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
-    const sk_collider *collider = op->rule;
-    sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
+    const contact_law law = law_of(op->rule, op->dt);
+    sk_pose pose = sk_collider_pose_at(op->rule, run->time - op->before_end);
     const origin o = find_origin(op, &pose);
     encounter e;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        if (!meet_at_end(run, op, &pose, &o, slot, &e)) continue;
-        sk_wide push = e.level - e.contact.distance;
-        apply(run, op, slot, e.x, e.touching & sk_positive(push), way_out(run, op, slot, &e, push));
+        if (!meet_at_end(run, op, &law, &pose, &o, slot, &e)) continue;
+        sk_store_part(run->vector[op->dst], slot, slot < op->packed, vec4_of(pushed_out(e), e.x.w));
     }
 }
 
-/* The speed at which particles leave that came at `approach` < 0. */
-SK_INLINE sk_wide bounce_of(const sk_run *run, const sk_op *op, size_t slot, const encounter *e, sk_wide mass,
-                            sk_wide approach) {
-    const sk_collider *collider = op->rule;
-    sk_wide resting = resting_speed(e, sk_load_part(run->vector[SK_F], slot, slot < op->packed), (real)op->dt);
-    return sk_keep(sk_more(-approach, resting), restitution_of(collider, mass) * -approach);
-}
-
 void SK_KERNEL(contact_update)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
-    const sk_collider *collider = op->rule;
-    bool bounces = sk_contact_reads_force(collider);
-    sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
-    sk_wide per_step = sk_splat((real)(1 / op->dt));
+    const contact_law law = law_of(op->rule, op->dt);
+    sk_pose pose = sk_collider_pose_at(op->rule, run->time - op->before_end);
     const origin o = find_origin(op, &pose);
     encounter e;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
-        if (!meet_at_end(run, op, &pose, &o, slot, &e)) continue;
         bool packed = slot < op->packed;
-        sk_wide push = e.level - e.contact.distance;
-        sk_mask pushed = e.touching & sk_positive(push);
-        sk_wide3 move = way_out(run, op, slot, &e, push);
-        apply(run, op, slot, e.x, pushed, move);
-
-        // the move is velocity, too; but along the normal what counts is how the particle came
+        if (!meet_at_end(run, op, &law, &pose, &o, slot, &e)) continue;
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
-        add_where(pushed, &v, times(per_step, move));
-        if (sk_any(pushed & e.leaving)) // but no push that lets out what began inside
-            add_where(pushed & e.leaving, &v, times(-per_step * push, e.contact.normal));
-        sk_wide3 before = three(sk_load_part(run->vector[op->source[2]], slot, packed));
-        sk_wide approach = sk_dot_wide(from_surface(before, &e), e.contact.normal);
-        sk_wide change = -sk_dot_wide(from_surface(three(v), &e), e.contact.normal);
-        if (bounces) change += bounce_of(run, op, slot, &e, v.w, approach);
-        add_where(e.touching & (sk_negative(approach) | (e.leaving & sk_positive(change))), &v,
-                  times(change, e.contact.normal));
-        sk_store_moved(run->vector[SK_V], slot, packed, v);
+        sk_wide3 start = xyz(sk_load_part(run->vector[op->source[1]], slot, packed));
+        sk_wide3 came = xyz(sk_load_part(run->vector[op->source[2]], slot, packed)), force = came;
+        if (law.bounces) force = xyz(sk_load_part(run->vector[SK_F], slot, packed));
+        sk_wide3 way = way_out(law, e, start);
+        add_where(e.touching & sk_positive(push_of(e)), &e.x, way);
+        sk_store_part(run->vector[op->dst], slot, packed, e.x);
+        sk_wide3 after = velocity_moved(law, e, v, way, came, force, (real)(1 / op->dt));
+        sk_store_moved(run->vector[SK_V], slot, packed, vec4_of(after, v.w));
     }
 }
 

@@ -1,24 +1,23 @@
-// Contact: what happens to a particle that touches a collider, the same for every shape (see contact.c). The shape's
-// probe@ stands before it. op@[0].w is the substep, op@[1].x is 1 where bounces look at the force.
+// Contact of a particle with a collider of any shape, whose probe@ stands before it; what the collider answers is in response.h. Ways
+// through the surface are followed here as cast.c and swept.c do it, of one particle at a time. op@[0].w is the substep, op@[1].x is
+// 1 where bounces look at the force.
 
-struct encounter@ {
-    vec3 normal, surface; // the surface's velocity there
-    float gap;            // from the surface
-    bool touching;
-};
+contact_law law@() {
+    float h = op@[0].w;
+    return contact_law(pose@[0].w, pose@[1].w, pose@[2].w, pose@[3].w, h, h * pose@[5].w, op@[1].x > 0);
+}
 
-encounter@ meet@(vec4 x) {
+encounter meet@(vec4 x) {
     vec4 probed = probe@(x.xyz);
-    // rounding must not break a resting contact: forces and velocities look a little beyond the thickness
-    float size = max(abs(x.x), max(abs(x.y), abs(x.z))), thickness = pose@[0].w;
 #ifdef DEFORMS@
-    vec3 own = speed@ * probed.xyz;
+    float own = speed@;
 #else
-    const vec3 own = vec3(0);
+    const float own = 0;
 #endif
-    float reach = thickness + 1e-3 * thickness + 4e-6 * (size + 0.1);
-    vec3 surface = pose@[1].xyz + cross(pose@[2].xyz, x.xyz - position@) + own;
-    return encounter@(probed.xyz, surface, probed.w, probed.w <= reach && x.w > 0);
+    vec3 surface = motion_of(pose@[1].xyz, pose@[2].xyz, x.xyz - position@) + own * probed.xyz;
+    float reach = reach_of(law@(), x.xyz);
+    bool touching = probed.w <= reach && x.w > 0;
+    return encounter(x, probed.xyz, surface, probed.w, own, reach, pose@[0].w, touching, false, true);
 }
 
 // ---- the start of the substep: see start.h and swept.c ----
@@ -90,109 +89,56 @@ vec3 began@(vec3 start) {
     return position@ + arm;
 }
 
-struct past@ {
-    float level; // so far off it is pushed
-    bool leaving; // slowly
-};
-
 // Meets x at the end of a substep that began at `start`: what came through stops at the surface, and v gets `per_step` of that move.
-encounter@ meet_at_end@(inout vec4 x, inout vec4 v, vec4 start, float per_step, out past@ begun) {
-    encounter@ e = meet@(x);
-    float thickness = pose@[0].w, h = op@[0].w, recovery = h * pose@[5].w;
-    begun = past@(thickness, false);
+encounter meet_at_end@(vec4 x, inout vec4 v, vec4 start, float per_step) {
+    encounter e = meet@(x);
     if (!(x.w > 0)) return e;
-    vec3 from = began@(start.xyz), seen = from;
-#ifdef DEFORMS@
-    seen += h * speed@ * e.normal;
-#endif
-    vec3 way = x.xyz - seen, size = abs(x.xyz);
-    float s = e.gap - dot(way, e.normal), slack = 1e-3 * thickness + 4e-6 * (max(size.x, max(size.y, size.z)) + 0.1);
-    bool deep = e.touching && s < thickness - slack - 0.1 * recovery, crossing = pose@[6].w > 0 && s < -slack;
+    vec3 from = began@(start.xyz), seen = from + op@[0].w * e.speed * e.normal, way = x.xyz - seen;
+    float thickness = pose@[0].w, s = e.distance - dot(way, e.normal), slack = e.reach - thickness;
+    bool deep = began_deep(law@(), e, s), crossing = pose@[6].w > 0 && s < -slack;
     // a long way may end before another wall; one that only comes in is pushed out of the surface that it came through
-    if (!crossing && pose@[6].w == 2 && e.gap > 0 && length(way) > max(5 * thickness, e.gap)) crossing = true;
+    if (!crossing && pose@[6].w == 2 && e.distance > 0 && length(way) > max(5 * thickness, e.distance)) crossing = true;
+    encounter there = e;
     if (crossing) {
         vec3 to = x.xyz;
         if (stop@(seen, to, per_step > 0)) {
             v.xyz += per_step * (to - x.xyz);
-            x.xyz = to;
+            there = meet@(vec4(to, x.w));
         }
-        e = meet@(x);
     }
     if (deep) {
-        float level = probe@(from).w + recovery;
+        float began = probe@(from).w;
 #ifdef DEFORMS@
-        level += h * speed@;
+        began += op@[0].w * speed@;
 #endif
-        begun.leaving = level < thickness - slack + recovery;
-        if (begun.leaving) begun.level = min(level, thickness);
-        e = meet@(x);
+        e = coming_out(law@(), e, deep, began);
+        there.level = e.level;
+        there.leaving = e.leaving;
     }
-    return e;
+    return there;
 }
 
-// The part of a vector of this length that friction takes, at most `most`: 1 where it takes all.
-float share@(float length, float most) {
-    return length > most ? most / length : 1;
-}
-
-// Speed after a bounce over speed before: of a collider with a mass (m - M)/(m + M), but never inwards.
-float restitution@(float mass) {
-    float own = pose@[3].w;
-    return own > 0 ? max((own - mass) / (own + mass), 0.0) : pose@[2].w;
-}
-
-// Cancels the force that would bring the particle inwards, and rubs what slides.
 void contact_force@(vec4 x, vec4 v, inout vec4 f) {
-    encounter@ e = meet@(x);
-    vec3 past = v.xyz - e.surface;
-    float inward = dot(f.xyz, e.normal), leaving = dot(past, e.normal), mass_per_step = 1 / (x.w * op@[0].w);
-    float pressing = pose@[3].w > 0 ? inward : inward + mass_per_step * max(leaving, 0.0);
-    if (!e.touching || !(pressing < 0)) return;
-    vec3 across = f.xyz - inward * e.normal, slide = past - leaving * e.normal;
-    // the friction that would stop the slide within this substep, cut to Coulomb's cone
-    vec3 stop = -mass_per_step * slide - across;
-    f.xyz += -pressing * e.normal + share@(length(stop), pose@[1].w * -pressing) * stop;
+    f.xyz = force_after(law@(), meet@(x), v.xyz, f.xyz);
 }
 
-// Reflects and rubs the inward velocity.
 void contact_impulse@(inout vec4 x, inout vec4 v, vec4 start) {
-    past@ begun;
-    encounter@ e = meet_at_end@(x, v, start, 0.0, begun);
-    vec3 past = v.xyz - e.surface;
-    float approach = dot(past, e.normal);
-    if (!e.touching || !(approach < 0)) return;
-    vec3 slide = past - approach * e.normal;
-    float bounce = (1 + restitution@(v.w)) * -approach;
-    v.xyz += bounce * e.normal - share@(length(slide), pose@[1].w * bounce) * slide;
+    encounter e = meet_at_end@(x, v, start, 0);
+    x = e.x;
+    v.xyz = velocity_after(law@(), e, v);
 }
 
-// Moves out to the thickness.
 void contact_push@(inout vec4 x, vec4 start) {
-    past@ begun;
     vec4 v = vec4(0);
-    encounter@ e = meet_at_end@(x, v, start, 0.0, begun);
-    float push = begun.level - e.gap;
-    if (e.touching && push > 0) x.xyz += push * e.normal;
+    x.xyz = pushed_out(meet_at_end@(x, v, start, 0));
 }
 
-// Moves out with friction against the start of the substep, and gives V the same move and the bounce.
-void contact_update@(inout vec4 x, inout vec4 v, vec4 f, vec4 start, vec4 before) {
-    float h = op@[0].w;
-    past@ begun;
-    encounter@ e = meet_at_end@(x, v, start, 1 / h, begun);
+void contact_update@(inout vec4 x, inout vec4 v, vec4 f, vec4 start, vec4 came) {
+    float per_step = 1 / op@[0].w;
+    encounter e = meet_at_end@(x, v, start, per_step);
+    x = e.x;
     if (!e.touching) return;
-    float push = begun.level - e.gap;
-    if (push > 0) {
-        vec3 moved = x.xyz - start.xyz - h * e.surface, slide = moved - dot(moved, e.normal) * e.normal;
-        vec3 way = push * e.normal - share@(length(slide), pose@[1].w * push) * slide;
-        x.xyz += way;
-        v.xyz += (begun.leaving ? way - push * e.normal : way) / h;
-    }
-    // along the normal what counts is how the particle came
-    float approach = dot(before.xyz - e.surface, e.normal), change = -dot(v.xyz - e.surface, e.normal);
-    if (!(approach < 0) && !(begun.leaving && change > 0)) return;
-    // what a substep's force alone brings is no impact; bouncing it would make resting things jitter
-    float resting = 2 * h * x.w * length(f.xyz);
-    if (op@[1].x > 0 && -approach > resting) change += restitution@(v.w) * -approach;
-    v.xyz += change * e.normal;
+    vec3 way = way_out(law@(), e, start.xyz);
+    if (push_of(e) > 0) x.xyz += way;
+    v.xyz = velocity_moved(law@(), e, v, way, came.xyz, f.xyz, per_step);
 }

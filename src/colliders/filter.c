@@ -44,43 +44,43 @@ SK_INLINE void hold_normal(filtering *f, sk_mask mask, sk_wide3 n, sk_wide chang
 
 /* Touching: by the sum of the coordinates, a hair further than in other contact, which measures by the largest. (Taking
  * that changed what stands on spheres in its last digits.) */
-SK_INLINE sk_mask touches(const sk_collider *collider, const encounter *e) {
+SK_INLINE sk_mask touches(const contact_law *law, const encounter *e) {
     sk_wide size = sk_wide_abs(e->x.x) + sk_wide_abs(e->x.y) + sk_wide_abs(e->x.z);
-    real thickness = (real)collider->common->thickness;
-    return sk_at_most(e->contact.distance - thickness, (real)1e-3 * thickness + (real)4e-6 * (size + (real)0.1));
+    real thickness = law->thickness;
+    return sk_at_most(e->distance - thickness, (real)1e-3 * thickness + (real)4e-6 * (size + (real)0.1));
 }
 
 /* What comes faster than a substep's force alone would bring it is to bounce, if the collider lets it. */
-SK_INLINE sk_mask bounces(const sk_collider *collider, const encounter *e, sk_wide speed, sk_wide4 force, real h) {
-    sk_mask fast = sk_more(-speed, resting_speed(e, force, h));
-    return sk_contact_reads_force(collider) ? fast : fast & ~fast;
+SK_INLINE sk_mask bounces(const contact_law *law, const encounter *e, sk_wide speed, sk_wide4 force) {
+    sk_mask fast = sk_more(-speed, resting_speed(*e, xyz(force), law->h));
+    return law->bounces ? fast : fast & ~fast;
 }
 
-SK_INLINE void hold(const sk_collider *collider, const sk_pose *pose, sk_wide4 x, sk_wide4 force, real h,
+SK_INLINE void hold(const sk_collider *collider, const contact_law *law, const sk_pose *pose, sk_wide4 x, sk_wide4 force,
                     filtering *f) {
+    const real h = law->h;
     encounter e;
     // as far as its velocity, and its force, lead within the substep; and `touches` looks a hair further
-    sk_wide3 v = three(f->v), by_force = three(force);
+    sk_wide3 v = xyz(f->v), by_force = xyz(force);
     sk_wide ahead = h * (sk_wide_sqrt(sk_dot_wide(v, v)) + h * x.w * sk_wide_sqrt(sk_dot_wide(by_force, by_force)));
-    probe(collider, pose, x, ahead + (real)1e-5 * (sk_wide_abs(x.x) + sk_wide_abs(x.y) + sk_wide_abs(x.z) + 1), &e);
+    probe(collider, law, pose, x, ahead + (real)1e-5 * (sk_wide_abs(x.x) + sk_wide_abs(x.y) + sk_wide_abs(x.z) + 1), &e);
     find_motion(collider, pose, &e);
-    sk_wide3 n = e.contact.normal, slide, force_t;
-    sk_wide speed = split(from_surface(three(f->v), &e), n, &slide), hw = h * x.w;
-    sk_wide normal_force = split(three(force), n, &force_t), coming = speed + hw * normal_force;
-
-    sk_wide gap = e.contact.distance - (real)collider->common->thickness;
-    sk_mask is_free = sk_positive(x.w), touching = touches(collider, &e) & is_free;
-    sk_mask held = touching & sk_negative(coming) & ~bounces(collider, &e, speed, force, h);
+    sk_wide3 n = e.normal, past = from_surface(xyz(f->v), e);
+    sk_wide speed = sk_dot_wide(past, n), normal_force = sk_dot_wide(xyz(force), n), hw = h * x.w;
+    sk_wide3 slide = across(past, n, speed), pull = across(xyz(force), n, normal_force);
+    sk_wide coming = speed + hw * normal_force, gap = e.distance - law->thickness;
+    sk_mask is_free = sk_positive(x.w), touching = touches(law, &e) & is_free;
+    sk_mask held = touching & sk_negative(coming) & ~bounces(law, &e, speed, force);
     // by its velocity alone: what a stiff spring would do to it over a whole substep it does not get to do
     sk_mask arriving = is_free & ~touching & sk_negative(gap + h * speed);
-    if (sk_contact_reads_force(collider)) arriving &= ~arriving;
+    if (law->bounces) arriving &= ~arriving;
     if (!sk_any(held | arriving)) return;
 
     // against Coulomb's cone
     sk_wide mass = sk_keep(is_free, 1 / hw);
-    sk_wide3 stop = stopping(mass, slide, force_t);
+    sk_wide3 stop = stopping(mass, slide, pull);
     sk_wide needed = sk_wide_sqrt(sk_dot_wide(stop, stop));
-    sk_wide most = (real)collider->common->friction * -(mass * coming);
+    sk_wide most = law->friction * -(mass * coming);
     sk_mask sticks = held & sk_at_most(needed, most);
     sk_wide share = sk_keep(held & ~sticks & sk_positive(needed), most / needed);
     sk_wide target = sk_keep(arriving, -gap / h);
@@ -93,6 +93,7 @@ SK_INLINE void hold(const sk_collider *collider, const sk_pose *pose, sk_wide4 x
 
 void SK_KERNEL(contact_filter)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const sk_collider *collider = op->rule;
+    const contact_law law = law_of(collider, op->dt);
     sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
     sk_vec4 *diagonal = run->vector[op->dst], *off = run->vector[op->source[1]], *rub = run->vector[op->source[2]];
     for (size_t slot = begin; slot < end; slot += SK_PART) {
@@ -101,7 +102,7 @@ void SK_KERNEL(contact_filter)(sk_run *run, const sk_op *op, size_t begin, size_
         sk_wide4 force = sk_load_part(run->vector[SK_F], slot, packed);
         filtering f = {sk_load_part(diagonal, slot, packed), sk_load_part(off, slot, packed),
                        sk_load_part(run->vector[SK_V], slot, packed), sk_load_part(rub, slot, packed)};
-        hold(collider, &pose, x, force, (real)op->dt, &f);
+        hold(collider, &law, &pose, x, force, &f);
         sk_store_part(diagonal, slot, packed, f.d);
         sk_store_part(off, slot, packed, f.o);
         sk_store_part(run->vector[SK_V], slot, packed, f.v);
@@ -113,30 +114,30 @@ void SK_KERNEL(contact_filter)(sk_run *run, const sk_op *op, size_t begin, size_
  * bounce), and of what lay on the surface only what presses. The rest is inside because its tangent leads there, in
  * a hollow, and the solve may take it off: holding that would glue it on, with more weight and friction for the rest.
  */
-SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_op *op, const sk_pose *start, size_t slot, sk_wide4 v,
-                               const encounter *e, sk_wide *level) {
+SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_op *op, const contact_law *law, const sk_pose *start, size_t slot,
+                               sk_wide4 v, const encounter *e, sk_wide *level) {
     const sk_collider *collider = op->rule;
     bool packed = slot < op->packed;
     sk_wide4 v0 = sk_load_part(run->vector[SK_V0], slot, packed);
     sk_wide4 force = sk_load_part(run->vector[SK_F], slot, packed);
-    sk_mask inside = sk_negative(e->contact.distance - (real)collider->common->thickness) & sk_positive(e->x.w);
+    sk_mask inside = sk_negative(e->distance - law->thickness) & sk_positive(e->x.w);
     if (!sk_any(inside)) return inside;
     encounter before;
     sk_wide4 x0 = sk_load_part(run->vector[SK_X0], slot, packed);
     x0.w = e->x.w; // which X0 does not keep, and who weighs nothing meets nothing
-    probe(collider, start, x0, sk_splat((real)1e-3), &before);
+    probe(collider, law, start, x0, sk_splat((real)1e-3), &before);
     // what began inside comes out at its own speed
-    sk_wide most = before.contact.distance + (real)(op->dt * collider->common->recovery);
+    sk_wide most = before.distance + law->recovery;
     *level = sk_select(sk_more(*level, most), most, *level);
-    inside &= sk_more(*level, e->contact.distance);
+    inside &= sk_more(*level, e->distance);
     // the balance of momentum along the normal, without what contact does to it
-    sk_wide hw = (real)op->dt * e->x.w;
-    sk_wide3 short_of = minus(times(hw, three(force)), minus(three(v), three(v0)));
-    sk_mask lay = touches(collider, &before), presses = sk_negative(sk_dot_wide(short_of, e->contact.normal));
-    if (!sk_contact_reads_force(collider)) return inside & (presses | ~lay);
+    sk_wide hw = law->h * e->x.w;
+    sk_wide3 short_of = minus(times(hw, xyz(force)), minus(xyz(v), xyz(v0)));
+    sk_mask lay = touches(law, &before), presses = sk_negative(sk_dot_wide(short_of, e->normal));
+    if (!law->bounces) return inside & (presses | ~lay);
     find_motion(collider, start, &before);
-    sk_wide speed = sk_dot_wide(from_surface(three(v0), &before), before.contact.normal);
-    return inside & lay & presses & ~bounces(collider, e, speed, force, (real)op->dt);
+    sk_wide speed = sk_dot_wide(from_surface(xyz(v0), before), before.normal);
+    return inside & lay & presses & ~bounces(law, e, speed, force);
 }
 
 /* Within the solve: what has come inside is held too, and taken back to the surface. What is held already goes on
@@ -146,19 +147,19 @@ void SK_KERNEL(contact_filter_more)(sk_run *run, const sk_op *op, size_t begin, 
     sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
     sk_pose start = sk_collider_pose_at(collider, run->time - op->dt);
     sk_vec4 *diagonal = run->vector[op->dst], *off = run->vector[op->source[1]];
-    real thickness = (real)collider->common->thickness;
+    const contact_law law = law_of(collider, op->dt);
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < op->packed;
         sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed);
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         encounter e;
-        probe(collider, &pose, x, (sk_wide){0}, &e);
-        sk_wide level = sk_splat(thickness);
-        sk_mask inside = comes_inside(run, op, &start, slot, v, &e, &level);
+        probe(collider, &law, &pose, x, (sk_wide){0}, &e);
+        sk_wide level = sk_splat(law.thickness);
+        sk_mask inside = comes_inside(run, op, &law, &start, slot, v, &e, &level);
         if (!sk_any(inside)) continue;
-        sk_wide gap = e.contact.distance - level;
+        sk_wide gap = e.distance - level;
         filtering f = {sk_load_part(diagonal, slot, packed), sk_load_part(off, slot, packed), v, {{0}, {0}, {0}, {0}}};
-        hold_normal(&f, inside, e.contact.normal, -gap / (real)op->dt, (real)0.5);
+        hold_normal(&f, inside, e.normal, -gap / law.h, (real)0.5);
         sk_store_part(diagonal, slot, packed, f.d);
         sk_store_part(off, slot, packed, f.o);
         sk_store_part(run->vector[SK_V], slot, packed, f.v);

@@ -127,6 +127,10 @@ static sk_trimesh *surface_of(const void *data) {
     return ((const mesh_params *)data)->made;
 }
 
+static double scale_of(const void *data) {
+    return ((const mesh_params *)data)->scale;
+}
+
 static void begin(const void *data, double time, double dt) {
     sk_trimesh_begin(((const mesh_params *)data)->made, time, dt);
 }
@@ -182,6 +186,7 @@ const sk_collider_type sk_solid_mesh = {
     .take = take,
     .is_shaped_by = is_shaped_by,
     .surface = surface_of,
+    .scale = scale_of,
     .begin = begin,
     .cross = cross,
     .ball = ball,

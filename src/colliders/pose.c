@@ -111,6 +111,18 @@ sk_pose sk_collider_pose_at(const sk_collider *collider, double time) {
     return pose;
 }
 
+sk_pose sk_collider_pose_unled(const sk_collider *collider, double time) {
+    sk_collider alone = *collider;
+    const sk_travel *travel = &collider->travel;
+    double position[3];
+    alone.led = false;
+    sk_pose pose = stand(&alone, time, position);
+    if (!travel->noted || !travel->changed || collider->led) return pose;
+    pose.position = sk_v3_of(travel->position); // it stands there until the next step
+    for (int i = 0; i < 9; i++) pose.rotation[i] = (real)travel->rotation[i];
+    return pose;
+}
+
 /* What its own fields say, without any motion. */
 static void look(const sk_collider *collider, double own[static 15]) {
     memset(own, 0, 15 * sizeof *own);

@@ -19,24 +19,23 @@ typedef struct origin {
     bool known, moves, deforms, settles; /* settles: what stops gives the velocity its move */
     sk_vector vector;
     sk_passing passing;
-    real h, recovery, long_way; /* s; m in the substep; the square of five thicknesses */
-    real let;                   /* of what is missing of the thickness nothing is said */
-    real least;                 /* s and the reach together are at least this where nothing is to be asked */
-    sk_vec3 shift, turn;        /* of the collider in the substep: m, rad */
-    real bend;                  /* what turning adds to that at an arm of 1 m, at most */
+    real long_way; /* the square of five thicknesses */
+    real least;    /* s and the reach together are at least this where nothing is to be asked */
+    sk_vec3 shift, turn; /* of the collider in the substep: m, rad */
+    real bend;     /* what turning adds to that at an arm of 1 m, at most */
 } origin;
 
 /* Of an op that answers at the end of a substep. */
 SK_INLINE origin find_origin(const sk_op *op, const sk_pose *pose) {
     const sk_collider *collider = op->rule;
     real thickness = (real)collider->common->thickness, h = (real)op->dt;
-    origin o = {.settles = op->source[2] == SK_V0, .h = h, .deforms = collider->type->deforms};
+    origin o = {.settles = op->source[2] == SK_V0, .deforms = collider->type->deforms};
     o.vector = o.settles ? op->source[1] : op->source[2];
     o.known = o.vector != SK_NONE;
     o.passing = collider->type->cross ? SK_NEVER_PASSED : collider->type->passing;
-    o.recovery = (real)(op->dt * collider->common->recovery), o.long_way = 25 * thickness * thickness;
-    o.let = (real)0.1 * o.recovery;
-    o.least = thickness + (thickness > o.let ? thickness - o.let : 0);
+    o.long_way = 25 * thickness * thickness;
+    real let = (real)0.1 * (real)(op->dt * collider->common->recovery);
+    o.least = thickness + (thickness > let ? thickness - let : 0);
     o.shift = sk_scale(h, pose->velocity), o.turn = sk_scale(h, pose->spin);
     real angle = sk_dot(o.turn, o.turn);
     o.bend = (real)0.5 * angle;
@@ -47,7 +46,7 @@ SK_INLINE origin find_origin(const sk_op *op, const sk_pose *pose) {
 /* How far off the tangent plane they were; where the collider turns, at least. */
 SK_INLINE sk_wide off_plane(const sk_run *run, const sk_op *op, const sk_pose *pose, const origin *o, size_t slot,
                             const encounter *e, sk_wide3 *way) {
-    *way = minus(three(e->x), three(sk_load_part(run->vector[o->vector], slot, slot < op->packed)));
+    *way = minus(xyz(e->x), xyz(sk_load_part(run->vector[o->vector], slot, slot < op->packed)));
     sk_wide bend = {0};
     if (o->moves) {
         sk_vec3 t = o->turn, s = o->shift;
@@ -56,8 +55,8 @@ SK_INLINE sk_wide off_plane(const sk_run *run, const sk_op *op, const sk_pose *p
                                       s.z + (t.x * arm.y - t.y * arm.x)});
         bend = o->bend * (sk_wide_abs(arm.x) + sk_wide_abs(arm.y) + sk_wide_abs(arm.z));
     }
-    sk_wide s = e->contact.distance - sk_dot_wide(*way, e->contact.normal) - bend;
-    return o->deforms ? s + o->h * e->contact.speed : s;
+    sk_wide s = e->distance - sk_dot_wide(*way, e->normal) - bend;
+    return o->deforms ? s + (real)op->dt * e->speed : s;
 }
 
 /* Whether a way of a shape that is not convex, longer than its end is far off, needs no look: it ends inside, was so all along
@@ -74,13 +73,6 @@ SK_INLINE bool only_enters(const sk_swept *sweep, const double a[3], const doubl
         if (contacts.distance[i] > 0) return false;
     return true;
 }
-
-/* What a look back finds. */
-typedef struct past {
-    bool stopped;
-    sk_wide level;   /* where they come out slowly */
-    sk_mask leaving; /* who does */
-} past;
 
 /* Stops those whose way crosses the surface; `behind`: s < 0. Whether any did. */
 SK_INLINE bool stop_at_surface(sk_run *run, const sk_op *op, const origin *o, size_t slot, sk_wide3 from, sk_mask crossing,
@@ -109,7 +101,7 @@ SK_INLINE bool stop_at_surface(sk_run *run, const sk_op *op, const origin *o, si
 
 /* Where they began, as the collider sees it where it is now. */
 SK_INLINE sk_wide3 find_start(const sk_run *run, const sk_op *op, const origin *o, size_t slot) {
-    sk_wide3 x = three(sk_load_part(run->vector[o->vector], slot, slot < op->packed));
+    sk_wide3 x = xyz(sk_load_part(run->vector[o->vector], slot, slot < op->packed));
     if (!o->moves) return x;
     sk_swept sweep = sk_swept_begin(op->rule, run->time - op->dt, run->time - op->before_end, false);
     const real *r = sweep.turn;
@@ -118,44 +110,36 @@ SK_INLINE sk_wide3 find_start(const sk_run *run, const sk_op *op, const origin *
                       r[6] * x.x + r[7] * x.y + r[8] * x.z + s.z};
 }
 
-/* Stops those that come through, and finds how far those may be pushed that were inside when the substep began. */
-static __attribute__((noinline)) void look_back(sk_run *run, const sk_op *op, const sk_pose *pose, origin o, size_t slot,
-                                                past *p) {
+/* Stops those that come through, and finds how far those may be pushed that were inside when the substep began. Whether any stopped. */
+static __attribute__((noinline)) bool look_back(sk_run *run, const sk_op *op, const contact_law *law, const sk_pose *pose,
+                                                origin o, size_t slot, encounter *e) {
     const sk_collider *collider = op->rule;
-    real thickness = (real)collider->common->thickness;
-    encounter e;
-    probe(collider, pose, sk_load_part(run->vector[SK_X], slot, slot < op->packed), (sk_wide){0}, &e);
-    sk_wide3 from = find_start(run, op, &o, slot);
-    sk_wide own = o.deforms ? o.h * e.contact.speed : (sk_wide){0};
-    sk_wide3 seen = {from.x + own * e.contact.normal.x, from.y + own * e.contact.normal.y, from.z + own * e.contact.normal.z};
-    sk_wide3 way = minus(three(e.x), seen);
-    sk_wide d = e.contact.distance, s = d - sk_dot_wide(way, e.contact.normal), slack = e.reach - thickness;
-    sk_mask is_free = sk_positive(e.x.w), deep = e.touching & sk_more(thickness - slack - o.let, s);
-    sk_mask behind = is_free & sk_more(-slack, s), crossing = (sk_mask){0};
+    sk_wide3 from = find_start(run, op, &o, slot), seen = from;
+    if (o.deforms) seen = plus(from, times(law->h * e->speed, e->normal));
+    sk_wide3 way = minus(xyz(e->x), seen);
+    sk_wide s = e->distance - sk_dot_wide(way, e->normal), slack = e->reach - law->thickness;
+    sk_mask is_free = sk_positive(e->x.w), behind = is_free & sk_more(-slack, s), crossing = (sk_mask){0};
     if (o.passing != SK_NEVER_PASSED) crossing = behind;
     if (o.passing == SK_ANY_SHAPE) {
-        sk_wide square = sk_dot_wide(way, way);
+        sk_wide square = sk_dot_wide(way, way), d = e->distance;
         crossing |= is_free & sk_more(square, sk_splat(o.long_way)) & (sk_negative(d) | sk_more(square, d * d));
     }
-    p->stopped = sk_any(crossing) && stop_at_surface(run, op, &o, slot, seen, crossing, behind);
-    p->leaving = (sk_mask){0};
-    p->level = sk_splat(thickness);
-    if (!sk_any(deep)) return;
+    bool stopped = sk_any(crossing) && stop_at_surface(run, op, &o, slot, seen, crossing, behind);
+    sk_mask deep = began_deep(*law, *e, s);
+    if (!sk_any(deep)) return stopped;
     sk_contact start;
     collider->type->probe[SK_THIS_ISA](collider->params, pose, &from, &start);
-    sk_wide level = start.distance + o.recovery;
-    if (o.deforms) level += o.h * start.speed;
-    p->leaving = deep & sk_more(thickness - slack + o.recovery, level);
-    p->level = sk_select(p->leaving & sk_more(p->level, level), level, p->level);
+    *e = coming_out(*law, *e, deep, o.deforms ? start.distance + law->h * start.speed : start.distance);
+    return stopped;
 }
 
 /* Probes those at x at the end of a substep, and looks back to where they began where that matters: what crossed the surface on its
  * way is where it stops, and probed there. */
-SK_INLINE void probe_at_end(sk_run *run, const sk_op *op, const sk_pose *pose, const origin *o, size_t slot, encounter *e) {
-    const sk_collider *collider = op->rule;
+SK_INLINE void probe_at_end(sk_run *run, const sk_op *op, const contact_law *law, const sk_pose *pose, const origin *o,
+                            size_t slot, encounter *e) {
     bool packed = slot < op->packed;
-    probe(collider, pose, sk_load_part(run->vector[SK_X], slot, packed), (sk_wide){0}, e);
-    e->level = sk_splat((real)collider->common->thickness);
+    probe(op->rule, law, pose, sk_load_part(run->vector[SK_X], slot, packed), (sk_wide){0}, e);
+    e->level = sk_splat(law->thickness);
     e->leaving = (sk_mask){0};
     if (!o->known || (o->passing == SK_NEVER_PASSED && !sk_any(e->touching))) return;
     sk_wide3 way;
@@ -163,9 +147,8 @@ SK_INLINE void probe_at_end(sk_run *run, const sk_op *op, const sk_pose *pose, c
     sk_mask asked = sk_more(sk_splat(o->least), s + e->reach);
     if (o->passing == SK_ANY_SHAPE) asked |= sk_more(sk_dot_wide(way, way), sk_splat(o->long_way));
     if (!sk_any(asked & sk_positive(e->x.w))) return;
-    past p;
-    look_back(run, op, pose, *o, slot, &p);
-    if (p.stopped) probe(collider, pose, sk_load_part(run->vector[SK_X], slot, packed), (sk_wide){0}, e);
-    e->level = p.level;
-    e->leaving = p.leaving;
+    encounter seen = *e;
+    bool stopped = look_back(run, op, law, pose, *o, slot, &seen);
+    if (stopped) probe(op->rule, law, pose, sk_load_part(run->vector[SK_X], slot, packed), (sk_wide){0}, e);
+    e->level = seen.level, e->leaving = seen.leaving;
 }

@@ -250,7 +250,7 @@ skein_status sk_trimesh_create(const skein_mesh *mesh, sk_allocator *allocator, 
 
 void sk_trimesh_destroy(sk_trimesh *m) {
     if (!m) return;
-    void *const parts[] = {m->led, m->from, m->to, m->vertex_of, m->place, m->velocity, m->vertex_normal, m->corner, m->beside,
+    void *const parts[] = {m->led, m->from, m->to, m->vertex_of, m->place, m->velocity, m->made, m->vertex_normal, m->corner, m->beside,
                            m->facet,     m->normal, m->node,    m->dipole,
                            m->cell};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) sk_release(m->allocator, parts[i]);
@@ -282,6 +282,10 @@ bool sk_trimesh_lead(sk_trimesh *m, const double *positions) {
     if (!m->led) m->led = sk_allocate(m->allocator, 3 * m->given_count * sizeof *m->led);
     if (!m->from) m->from = sk_allocate(m->allocator, places);
     if (!m->to) m->to = sk_allocate(m->allocator, places);
+    if (!m->made) {
+        if (!(m->made = sk_allocate(m->allocator, places))) return false;
+        memcpy(m->made, m->place, places);
+    }
     if (!m->led || !m->from || !m->to) return false;
     sk_release(m->allocator, m->cell); // they would have to be made anew all the time
     m->cell = NULL;

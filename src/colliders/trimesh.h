@@ -2,7 +2,7 @@
  *
  *     mesh --fans, welding--> triangles --halves by their middles--> a tree of boxes --> nearest point, side, crossing
  *
- * Owns: sk_trimesh, made by trimesh.c; its tree, trimesh_tree.c. Asked by mesh.c and field.c, many points at a time
+ * Owns: sk_trimesh, made by trimesh.c; its tree, trimesh_tree.c. Asked by mesh.c and seat.c, many points at a time
  * (trimesh_near.h), and one by one here. Everything is in the mesh's own frame, so that a mesh that moves as a whole
  * stays as it is; one that changes its shape is fitted again (sk_trimesh_move).
  *
@@ -43,6 +43,7 @@ typedef struct sk_trimesh {
     size_t given_count, vertex_count, triangle_count, node_count;
     uint32_t *vertex_of;      /* of each vertex that was given: which it is, welded */
     sk_vec3 *place, *velocity; /* of welded vertices; m, m/s */
+    sk_vec3 *made;             /* their places before a program led them anywhere; NULL while none has */
     uint32_t (*corner)[3];    /* in the tree's order */
     uint32_t (*beside)[3];    /* the triangle on the other side of edge k, from corner k on; SK_ALONE: none, or several */
     sk_facet *facet;

@@ -1,4 +1,4 @@
-/* Angle: at p1, between the ways to p0 and to p2, less that at rest. */
+/* Angle: C = the angle at p1 between the directions to p0 and p2, minus that at rest. */
 #include "base/elementary.h"
 #include "base/polynomial.h"
 

@@ -1,4 +1,4 @@
-/* Area: of the triangle p0 p1 p2, less that at rest. */
+/* Area: C = the area of the triangle p0 p1 p2, minus that at rest. */
 #define SK_ARITY 3
 #define SK_RESTS 1
 #define SK_FORMULA "constraints/emitted/area.h"

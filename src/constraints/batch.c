@@ -1,4 +1,4 @@
-/* Batches: their arrays, what is left out while bodies are absent, multipliers, and which batches pull. */
+/* Batches: their arrays, the elements left out while bodies take no part, multipliers, and which batches act. */
 #include <string.h>
 
 #include "constraints/enclosure.h"
@@ -68,7 +68,7 @@ static void release_elements(sk_elements *elements, sk_allocator *allocator) {
     *elements = (sk_elements){0, NULL, NULL, NULL};
 }
 
-/* A copy of those elements whose particles are all that much there; false when there is no memory. */
+/* Copies the elements none of whose particles has a presence beyond `most`; false when there is no memory. */
 static bool copy_elements(const sk_batch *batch, const sk_elements *from, const sk_particles *particles,
                           sk_presence most, sk_allocator *allocator, sk_elements *to) {
     size_t count = count_up_to(batch, from, particles, most), next = 0;
@@ -113,7 +113,7 @@ bool sk_batch_leave_out(sk_batch *batch, sk_allocator *allocator, const sk_parti
         release_elements(&kept, allocator);
         return false;
     }
-    sk_batch_forget_sweeps(batch, allocator); // they know elements by their old numbers
+    sk_batch_forget_sweeps(batch, allocator); // sweeps refer to elements by their old numbers
     release_elements(&batch->whole, allocator);
     release_elements(&present, allocator);
     set_elements(batch, &now);
@@ -143,7 +143,7 @@ double sk_batch_damping_time(const sk_batch *batch) {
 void sk_sweep_clear_multipliers(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     (void)run;
     const sk_sweep *sweep = op->rule;
-    // an element of the row is a strip row, a slab or a group
+    // an element of the op is a strip row, a slab or a group
     if (sweep->slab_start) begin = sweep->slab_start[begin], end = sweep->slab_start[end];
     size_t lanes = (sweep->strips ? sweep->walk.width : 1) * SK_LANES;
     memset(sweep->batch->lane_multiplier + sweep->first_lane + begin * lanes, 0, (end - begin) * lanes * sizeof(real));

@@ -1,4 +1,4 @@
-/* The kernels that hold a coarse grid's distances, and carry what they moved to the particles in between. */
+/* The kernel that carries the movement of a coarse grid's particles to those in between. */
 #include "constraints/coarse.h"
 
 #include "base/kernels.h"
@@ -8,7 +8,7 @@ SK_KERNELS(sk_op_kernel, carry);
 
 #ifdef SK_ISA
 
-/* What a block's particles moved: x, y and z in parts. */
+/* The displacements of a block's particles: x, y and z in parts. */
 typedef struct moves {
     sk_wide d[3 * SK_PARTS];
 } moves;
@@ -23,7 +23,7 @@ SK_INLINE moves moves_of(const sk_run *run, const sk_op *op, size_t slot) {
     return m;
 }
 
-/* Lane l has what lane l + shift of `m` has where l is in [first, end), and what lane l of `other` has elsewhere. */
+/* In lanes l of [first, end) lane l + shift of `m`, elsewhere lane l of `other`. */
 SK_INLINE moves turned(const moves *m, int shift, size_t first, size_t end, const moves *other) {
     moves to;
     for (int i = 0; i < 3 * SK_PARTS; i += SK_PARTS) {
@@ -51,13 +51,13 @@ SK_INLINE void add_moves(sk_run *run, size_t slot, const moves *a, const moves *
     }
 }
 
-/* Two neighbouring columns of the coarse grid in one strip row, and the blocks from one to the other: in one strip, or
- * from the last of the strip before (left of the first block), or to the first of the strip after. */
+/* Two neighbouring columns of the coarse grid in a strip row, and the blocks between them: within a strip, or from the
+ * last column of the strip before (left of the first block), or to the first one of the strip after. */
 typedef struct gap {
-    size_t left, right, width; /* blocks, and from one to the other */
+    size_t left, right, width; /* their blocks, and the distance in blocks */
     size_t begin, end;         /* blocks of the strip between them */
     int turn_left, turn_right;
-    size_t lanes; /* which have a right one: the first ones */
+    size_t lanes; /* how many lanes, the first ones, have a right column */
 } gap;
 
 SK_INLINE gap find_gap(const sk_coarse *coarse, size_t strip, size_t i, size_t count) {
@@ -74,7 +74,7 @@ SK_INLINE gap find_gap(const sk_coarse *coarse, size_t strip, size_t i, size_t c
     return g;
 }
 
-/* What both columns of a gap moved in a strip row; where there is no left or right one, the other's. */
+/* The displacements of both columns of a gap in a strip row; where there is no left or right one, the other's. */
 SK_INLINE void find_moves(const sk_run *run, const sk_op *op, size_t first_slot, const gap *g, moves *a, moves *b) {
     moves left = moves_of(run, op, first_slot + g->left * SK_LANES);
     moves right = moves_of(run, op, first_slot + g->right * SK_LANES);
@@ -83,7 +83,7 @@ SK_INLINE void find_moves(const sk_run *run, const sk_op *op, size_t first_slot,
     if (g->turn_right || g->lanes < SK_LANES) *b = turned(&right, g->turn_right, 0, g->lanes, a);
 }
 
-/* Rows from one of the coarse grid to the next one, above the first and below the last to the border. */
+/* Carries to the rows from one row of the coarse grid to the next; also to those before the first, after the last. */
 static void carry_band(sk_run *run, const sk_op *op, size_t r) {
     const sk_coarse *coarse = op->rule;
     const sk_coarse_grid *grid = &coarse->grid, *finer = &coarse->finer;
@@ -104,7 +104,7 @@ static void carry_band(sk_run *run, const sk_op *op, size_t r) {
             real f = to < r ? 0 : (real)(to - r) / (real)grid->row_step;
             moves left = between(&a, &next_a, f), right = between(&b, &next_b, f);
             for (size_t k = from; k < g.end; k += finer->step) {
-                if (to == r && k == g.left && !g.turn_left) continue; // in the grid itself
+                if (to == r && k == g.left && !g.turn_left) continue; // it is in the coarse grid itself
                 size_t way = g.turn_left ? k + strip - g.left : k - g.left;
                 add_moves(run, first + to * line + k * SK_LANES, &left, &right, (real)way / (real)g.width);
             }
@@ -112,7 +112,7 @@ static void carry_band(sk_run *run, const sk_op *op, size_t r) {
     }
 }
 
-/* Element e is the band that begins row_first rows on, so that it reads and writes no row before e. */
+/* Element e is the band that begins at row e + row_first, so that it reads and writes no row before e. */
 void SK_KERNEL(carry)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const sk_coarse_grid *grid = &((const sk_coarse *)op->rule)->grid;
     for (size_t e = begin; e < end; e++)

@@ -1,6 +1,6 @@
-/* Dihedral: the angle between the triangles p0 p1 p2 and p1 p0 p3 over their edge p0 p1, less that at rest, taken into
- * -pi to pi. Made of atan2, so it is exact near flat. As bending of a sheet of rigidity B (N m) an edge of length l
- * between triangles of areas A and A' has the stiffness B l^2/(A + A') (bodies/hinges.c). */
+/* Dihedral: the angle between the triangles p0 p1 p2 and p1 p0 p3 over their edge p0 p1, minus that at rest, wrapped to
+ * -pi to pi. Computed by atan2, so it is accurate near flat. As bending of a sheet of rigidity B (N m) an edge of
+ * length l between triangles of areas A and A' has the stiffness B l^2/(A + A') (bodies/hinges.c). */
 #include "base/elementary.h"
 #include "base/polynomial.h"
 

@@ -1,7 +1,7 @@
 /* Distance: C = |p0 - p1| - L. As a force it is the classical spring and damper pair. */
 #define SK_ARITY 2
 #define SK_RESTS 1
-#ifndef SK_FORMULA // a test has another one, and a unit of its own
+#ifndef SK_FORMULA // a test defines another formula and unit
 #define SK_FORMULA "constraints/emitted/distance.h"
 #define SK_UNIT distance
 #define SK_BEYOND beyond
@@ -13,7 +13,7 @@
 #include "constraints/element.h"
 
 #if defined SK_ISA && defined SK_BEYOND
-/* By squares, for most spans are slack, and a root takes as long as all else; with a margin for what is rounded. */
+/* By squares, since most spans are slack, and a root takes as long as the rest; with a margin for rounding. */
 SK_INLINE sk_mask beyond(const sk_element *e, sk_wide most) {
     const real nearly = (real)0.99999;
     sk_wide x = e->x[0].x - e->x[1].x, y = e->x[0].y - e->x[1].y, z = e->x[0].z - e->x[1].z;

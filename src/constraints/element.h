@@ -1,9 +1,12 @@
-/* As many constraints of one kind as the processor works on at once, on their way through its arithmetic. A kind that
- * is compiled into the library says how many particles an element has (SK_ARITY), and how many rest values (SK_RESTS),
- * before it includes this. One whose value is the length of a weighted sum of positions defines SK_LINEAR, and, for
- * element_arithmetic.h, linear(). One with limits may define SK_BEYOND(element, most): lanes whose value is over `most`
- * are among those that it gives, cheaply. Texts, whose elements have any number of particles, say SK_ARITY as the most that
- * there may be, and more (projection.h). */
+/* A part of elements of one kind of constraint: what its arithmetic works on, for as many elements at once as the
+ * processor allows. A kind that is compiled into the library defines the numbers of particles (SK_ARITY) and of rest
+ * values (SK_RESTS) of an element before it includes this. A kind whose value is the length of a weighted sum of
+ * positions also defines SK_LINEAR and, for element_arithmetic.h, linear(). A kind whose value is the length of any
+ * other vector L, and 0 at rest, may define SK_VECTOR and spread(), for the matrix of implicit solves: k J^T J with all
+ * of J = dL/dx, since the gradient of the length says nothing about other directions. A kind with limits may define
+ * SK_BEYOND(element, most), a cheap test that includes all lanes whose value is over `most`; one that only bounds
+ * (SK_ONLY_BOUNDS) neither pulls nor projects. Kinds by formula, whose elements have any number of particles, define
+ * SK_ARITY as the largest number, and more (projection.h). */
 #ifndef SK_CONSTRAINTS_ELEMENT_H
 #define SK_CONSTRAINTS_ELEMENT_H
 
@@ -22,7 +25,7 @@ enum { SK_ROWS_SIDE_BY_SIDE = 8 }; /* strip rows whose chains of elements hide e
 
 static inline sk_element_constants sk_element_prepare(const sk_batch *batch, const sk_op *op) {
     double damping_time = sk_batch_damping_time(batch);
-    double dt = op->dt > 0 ? op->dt : (double)INFINITY; // a force knows no step
+    double dt = op->dt > 0 ? op->dt : (double)INFINITY; // an op of forces has no substep
     return (sk_element_constants){(real)damping_time,
                                   (real)(op->coefficient[0] / (dt * dt)),
                                   (real)(damping_time / dt),
@@ -32,12 +35,12 @@ static inline sk_element_constants sk_element_prepare(const sk_batch *batch, con
                                   (real)op->coefficient[0] + (real)(op->coefficient[1] * damping_time)};
 }
 
-/* Whether multipliers that are kept are damped, too. */
+/* Whether a projection with kept multipliers has damping. */
 static inline bool sk_is_damped(const sk_op *op) {
     return sk_element_prepare(((const sk_sweep *)op->rule)->batch, op).gamma > 0;
 }
 
-/* Groups [begin, end) of a row, or those of slabs [begin, end). */
+/* Groups [begin, end) of an op's sweep, or those of slabs [begin, end). */
 static inline skein_groups sk_groups_of(sk_run *run, const sk_op *op, size_t begin, size_t end, sk_element_mode mode) {
     const sk_sweep *sweep = op->rule;
     const sk_batch *batch = sweep->batch;
@@ -76,11 +79,15 @@ static inline skein_groups sk_groups_of(sk_run *run, const sk_op *op, size_t beg
 #else
 #define SK_LIMIT_KERNELS
 #endif
+#ifdef SK_ONLY_BOUNDS
+#define SK_ELEMENT_KERNELS SK_LIMIT_KERNELS
+#else
 #define SK_ELEMENT_KERNELS                                                                                      \
     SK_WALK_KERNELS(force)                                                                                      \
     SK_WALK_KERNELS(apply)                                                                                      \
     SK_WALK_KERNELS(project) SK_WALK_KERNELS(project_damped) SK_LIMIT_KERNELS                                   \
     SK_KERNELS(sk_op_kernel, diagonal);                                                                        \
     SK_KERNELS(sk_op_kernel, blocks);
+#endif
 
 #endif

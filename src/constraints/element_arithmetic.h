@@ -1,6 +1,6 @@
-/* What else the library's own kinds make of value and gradient besides forces and projections (projection.h): the matrix
- * of an implicit solve, and limits; once for each instruction set. The kind that includes this has defined SK_FORMULA as the file of its formula in
- * emitted/, and the macros below say what that file's words mean here. */
+/* What the library's own kinds compute from value and gradient besides forces and projections (projection.h): the
+ * matrix of an implicit solve, and limits; once for each instruction set. The kind that includes this has defined
+ * SK_FORMULA as the file of its formula in emitted/, whose words the macros below define. */
 
 #define TEXT(text)
 #define FORMULA(name) SK_INLINE void name(sk_element *e)
@@ -34,15 +34,15 @@ SK_INLINE sk_wide reciprocal(sk_wide x) {
 
 #include SK_FORMULA
 
-/* A kind with SK_ONE_SIDED wants its C to be at least 0: elements of which it is not less are slack, and do nothing. */
+/* A kind with SK_ONE_SIDED keeps its C at 0 or more: elements with C >= 0 are slack, and do nothing. */
 #ifdef SK_ONE_SIDED
 #define SK_IS_ONE_SIDED true
 #else
 #define SK_IS_ONE_SIDED false
 #endif
 
-/* How far an element is beyond what is free, and what its stiffness is there: in full where it is just taut, so that what is
- * foretold of a sheet that lies as it was made (world/stability.c) knows its diagonals. */
+/* How far an element is beyond slack, and its stiffness there. Elements that are just taut have it in full, so that
+ * stability estimates (world/stability.c) of a sheet at rest include its diagonals. */
 SK_INLINE sk_wide excess_of(const sk_element *e) {
     return SK_IS_ONE_SIDED ? -e->value : e->value;
 }
@@ -51,9 +51,9 @@ SK_INLINE sk_wide stiffness_at(const sk_element *e, sk_wide stiffness) {
     return sk_keep(sk_at_most(e->value, (real)1e-4 * e->rest[0]), stiffness);
 }
 
-/* The matrix a k + b c of an element at its place, times a direction. It is k (grad C)(grad C)^T, which is positive
- * definite whatever C is (Gauss and Newton's). A kind with SK_ACROSS adds what turns the gradient, the tension across
- * it, where that is positive, too. */
+/* The matrix a k + b c of an element at its position, times a direction. The stiffness is k (grad C)(grad C)^T,
+ * positive semidefinite whatever C is (Gauss-Newton). A kind with SK_ACROSS adds the geometric stiffness, tension
+ * across the gradient, if it is positive. */
 SK_INLINE void apply(sk_element *e, const sk_element_constants *c) {
     sk_wide stiffness = stiffness_at(e, e->stiffness), push = c->both * stiffness, along = sum_along(e, e->other);
     e->across = (sk_wide3){{0}, {0}, {0}};
@@ -71,10 +71,33 @@ SK_INLINE void apply(sk_element *e, const sk_element_constants *c) {
     SK_EACH_PARTICLE (i) e->scale[i] = push;
 }
 
+#ifdef SK_VECTOR
+/* The same for a kind whose value is |L|: the stiffness is k J^T J, J = dL/dx, also where L is 0, and the damping
+ * c (grad C)(grad C)^T. The kind's spread(e, v, g) leaves J^T v in g. */
+SK_INLINE sk_wide3 sk_axis_wide(int axis) {
+    return (sk_wide3){sk_splat(axis == 0), sk_splat(axis == 1), sk_splat(axis == 2)};
+}
+
+SK_INLINE void apply_vector(sk_element *e, const sk_element_constants *c) {
+    sk_wide3 sum[SK_ARITY], g[SK_ARITY];
+    sk_wide damped = (c->both - c->elastic) * e->stiffness * sum_along(e, e->other);
+    SK_EACH_PARTICLE (i)
+        sum[i] = (sk_wide3){damped * e->gradient[i].x, damped * e->gradient[i].y, damped * e->gradient[i].z};
+    for (int axis = 0; axis < 3; axis++) {
+        sk_wide along = {0};
+        spread(e, sk_axis_wide(axis), g);
+        SK_EACH_PARTICLE (i) along += sk_dot_wide(g[i], e->other[i]);
+        along = c->elastic * e->stiffness * along;
+        SK_EACH_PARTICLE (i) sum[i].x += along * g[i].x, sum[i].y += along * g[i].y, sum[i].z += along * g[i].z;
+    }
+    SK_EACH_PARTICLE (i) e->gradient[i] = sum[i], e->scale[i] = sk_splat(1);
+}
+#endif
+
 #ifdef SK_LINEAR
-/* Projection for a kind whose value is |L|, with L = sum of c x linear in the positions: its gradient is c L/|L|, so that
- * the moves are -w c L / (sum of w c^2 + soft), without a root, and right where L is 0, too. The kind's linear() leaves
- * c in `scale` and L in the first gradient. */
+/* Projection for a kind whose value is |L|, where L = sum of c x is linear in the positions. Its gradient is c L/|L|,
+ * so the displacements are -w c L / (sum of w c^2 + soft), without a root, and right also if L is 0. The kind's
+ * linear() leaves c in `scale` and L in the first gradient. */
 SK_INLINE void project_linear(sk_element *e) {
     linear(e);
     sk_wide below = e->soft;
@@ -89,8 +112,8 @@ SK_INLINE void project_linear(sk_element *e) {
 }
 #endif
 
-/* Back to the bound, as if rigid there. Lanes without an element have a rest value of 0: for them any is right. False
- * where all are within. */
+/* Moves elements back to the bound, as if rigid there. Lanes without an element, whose rest value is 0, are never over
+ * it. False if all are within. */
 SK_INLINE bool limit(sk_element *e, const sk_element_constants *c, bool moving) {
 #ifdef SK_SHARES
     SK_EACH_PARTICLE (i) e->w[i] *= e->rest[1 + i];
@@ -113,7 +136,7 @@ SK_INLINE bool limit(sk_element *e, const sk_element_constants *c, bool moving) 
     return true;
 }
 
-/* False where nothing moves. */
+/* Computes what a mode needs of a part of elements. False if nothing moves. */
 SK_INLINE bool work_out(sk_element *e, const sk_element_constants *c, sk_element_mode mode) {
     e->divided = e->opposite = e->timed = e->is_energy = false, e->judged = e->one_sided = SK_IS_ONE_SIDED;
 #ifdef SK_LINEAR
@@ -125,6 +148,12 @@ SK_INLINE bool work_out(sk_element *e, const sk_element_constants *c, sk_element
     if (mode == SK_MODE_LIMIT || mode == SK_MODE_LIMIT_MOVING) return limit(e, c, mode == SK_MODE_LIMIT_MOVING);
     formula(e);
     if (SK_IS_ONE_SIDED) e->active = sk_negative(e->value);
+#ifdef SK_VECTOR
+    if (mode == SK_MODE_APPLY) {
+        apply_vector(e, c);
+        return true;
+    }
+#endif
     if (mode == SK_MODE_APPLY) apply(e, c);
     else answer(e, c, mode);
     return true;

@@ -1,10 +1,10 @@
-/* One element of a kind at a time, in double: its rest values, its strain, its energy, and its value with the gradient
- * for those who look in. Once a kind, after element.h, outside of instruction sets. */
+/* One element of a kind at a time, in double: its rest values, strain and energy, and its value and gradient for
+ * inspection. Once in each kind, after element.h, outside of instruction sets. */
 #include "base/elementary.h"
 
 typedef struct one_element {
     double x[SK_ARITY][3], rest[SK_RESTS], value;
-    double gradient[SK_ARITY][3], divisor; /* the gradient is what is there over the divisor */
+    double gradient[SK_ARITY][3], divisor; /* the gradient is `gradient` over the divisor */
     bool guarded;
 } one_element;
 
@@ -112,7 +112,7 @@ static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_
 #undef LESS
 #undef ATAN2
 
-/* What a kind's constant struct says of its walks and measures, besides its name and fields. */
+/* The members of a kind's constant struct for its kernels and measures, besides its name and fields. */
 #ifdef SK_WITH_STRIPS
 #define SK_WALKS_OF(mode)               \
     {                                   \
@@ -131,8 +131,14 @@ static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_
 #else
 #define SK_IS_LINEAR false
 #endif
+#ifdef SK_ONLY_BOUNDS
+#define SK_ELEMENT_RULES                                                                                           \
+    .arity = SK_ARITY, .rest_count = SK_RESTS, .rest = rest_of, .energy = energy, .evaluate = evaluate,            \
+    .text = formula_text
+#else
 #define SK_ELEMENT_RULES                                                                                           \
     .arity = SK_ARITY, .rest_count = SK_RESTS, .rest = rest_of, .force = SK_WALKS_OF(force),                       \
     .project = SK_WALKS_OF(project), .project_damped = SK_WALKS_OF(project_damped), .apply_sweep = SK_WALKS_OF(apply),  \
     .diagonal = {SK_EACH_ISA(diagonal)}, .blocks = {SK_EACH_ISA(blocks)}, .energy = energy, .evaluate = evaluate,     \
     .text = formula_text, .linear = SK_IS_LINEAR
+#endif

@@ -1,9 +1,24 @@
-/* The walks of a kind's elements, once for each instruction set: after element_arithmetic.h, whose
- * work_out() they call. How particles come in and go out is here and in <skein/inside/group_walk.h> alone, so that the arithmetic does not
- * know the layout. SK_WITH_STRIPS asks for walks along strips, SK_WITH_LIMITS for limits. */
+/* The kernels that walk over a kind's elements, once for each instruction set, after element_arithmetic.h, whose
+ * work_out() they call. Loading and storing particles is here and in <skein/inside/group_walk.h> alone, so that the
+ * arithmetic is independent of the layout. SK_WITH_STRIPS asks for walks along strips, SK_WITH_LIMITS for limits. */
 
 #define WORK_OUT(e, c, mode, data) work_out(e, c, mode)
 #include <skein/inside/group_walk.h>
+
+/* A walk that serves two modes. Where bytes are dear (SK_SMALL: a page waits for them) it is there once and is told the
+ * mode, which costs up to a twelfth of its time; elsewhere the mode is a constant where it is inlined. So it is of pairs,
+ * which are short, and most elements are; but not of those that only pull, which few cloths have, nor over the ends of
+ * strips, which few elements cross. */
+#ifdef SK_SMALL
+#define SK_TOLD_AT_ENDS static __attribute__((noinline))
+#else
+#define SK_TOLD_AT_ENDS SK_INLINE
+#endif
+#if defined SK_SMALL && (SK_ARITY > 2 || defined SK_ONE_SIDED)
+#define SK_TOLD SK_TOLD_AT_ENDS
+#else
+#define SK_TOLD SK_INLINE
+#endif
 
 /* A part of a packed block. */
 SK_INLINE sk_wide3 load3(const sk_wide *part) {
@@ -30,8 +45,8 @@ SK_INLINE void set_values(sk_element *e, const sk_sweep *sweep, const sk_element
 }
 
 #ifdef SK_WITH_STRIPS
-/* Blocks meet over the end of a strip with their lanes turned by `shift`: a copy of `rows` rows, and x, y and z back.
- */
+/* Elements that lead over the end of a strip need their blocks' lanes rotated by `shift`: a rotated copy of `rows`
+ * rows, and x, y and z rotated back. */
 SK_INLINE void rotate(sk_wide *to, const sk_wide *block, int rows, int shift) {
     for (int r = 0; r < rows * SK_PARTS; r += SK_PARTS) sk_rotate_lanes(to + r, block + r, shift);
 }
@@ -39,14 +54,14 @@ SK_INLINE void turn_back(sk_wide *block, const sk_wide *from, int shift) {
     rotate(block, from, 3, -shift);
 }
 
-/* Where the blocks of an element's particles are, in slots from the block of its place. */
+/* The offsets of the blocks of an element's particles from the block of its place, in slots. */
 typedef struct offsets {
     ptrdiff_t slots[SK_ARITY];
     int shift[SK_ARITY];
 } offsets;
 
-/* Whether the block of particle i is to be turned. Of a pair the first never is, for its place is the pair's: known
- * while this is compiled. */
+/* Whether the block of particle i must be rotated. The first of a pair never is, for its place is the pair's: the
+ * compiler can use that. */
 SK_INLINE bool turns(const offsets *o, int i, bool turned) {
     return turned && (SK_ARITY == 2 ? i == 1 : o->shift[i] != 0);
 }
@@ -64,7 +79,7 @@ SK_INLINE offsets offsets_of(const sk_sweep *sweep, const sk_span *span, bool tu
 
 /* ---- strips: projections and limits ---- */
 
-/* A part of sixteen elements whose blocks meet: x and other are those of their particles. False where nothing moves. */
+/* Computes a part of sixteen elements; x and other belong to their particles. False if nothing moves. */
 SK_INLINE bool meet_part(const sk_sweep *sweep, const sk_element_constants *constants, size_t lane, bool special,
                          sk_element_mode mode, sk_wide *const *x, sk_wide *const *other) {
     sk_element e;
@@ -75,7 +90,7 @@ SK_INLINE bool meet_part(const sk_sweep *sweep, const sk_element_constants *cons
     }
     set_values(&e, sweep, constants, lane, special, keeps_multiplier(mode));
     if (!work_out(&e, constants, mode)) return false;
-    // from what was loaded: reading again would wait for the stores
+    // from the loaded values: reading them again would wait for the stores
     SK_EACH_PARTICLE (i) {
         store3(x[i], put(&e, i, e.x[i], e.scale, mode));
         if (mode == SK_MODE_LIMIT_MOVING) store3(other[i], put(&e, i, e.other[i], e.velocity_scale, mode));
@@ -84,8 +99,8 @@ SK_INLINE bool meet_part(const sk_sweep *sweep, const sk_element_constants *cons
     return true;
 }
 
-/* The blocks of sixteen elements meet. `mode` is a constant where this is inlined, and so is `turned`: whether some
- * block's lanes are. */
+/* Computes sixteen elements. `mode` is a constant where this is inlined, and so is `turned`, whether lanes of some
+ * block are rotated. */
 SK_INLINE void meet_blocks(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t lane,
                            size_t slot, const offsets *o, bool turned, sk_element_mode mode) {
     bool special = turned || sweep->batch->special[lane / SK_LANES];
@@ -118,8 +133,8 @@ SK_INLINE void meet_blocks(sk_run *run, const sk_sweep *sweep, const sk_element_
     }
 }
 
-/* Every how many rows, and blocks of them, a half has some, and whether it is the odd ones: it keeps chains whole, so that
- * they pull through. */
+/* The rows, or the blocks in rows, of a half: every one or every second, and whether the odd ones. Halves are by rows
+ * for elements along rows, so that chains of elements stay whole. */
 typedef struct stride {
     size_t row, block;
     bool odd;
@@ -129,13 +144,13 @@ SK_INLINE stride stride_of(const sk_sweep *sweep, sk_half half) {
     bool along_rows = sweep->walk.reach == 0 && sweep->walk.rows > 1;
     return (stride){half && along_rows ? 2 : 1, half && !along_rows ? 2 : 1, half == SK_ODD_HALF};
 }
-/* The first one from `from` on. */
+/* The first row or block of the half from `from` on. */
 SK_INLINE size_t first_of(size_t from, size_t every, bool odd) {
     return every == 2 ? from + (from % 2 != odd) : from;
 }
 
-/* The blocks of a span in strip rows [begin, end): along a row each block waits for the one before it, so rows that
- * share no particle go side by side. */
+/* The blocks of a span in strip rows [begin, end). Along a row each block waits for the one before it, so rows that
+ * share no particle are interleaved. */
 SK_INLINE void meet_span(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
                          size_t end, const sk_span *span, const offsets *o, sk_half half, bool turned,
                          sk_element_mode mode) {
@@ -153,7 +168,7 @@ SK_INLINE void meet_span(sk_run *run, const sk_sweep *sweep, const sk_element_co
             meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, o, turned, mode);
 }
 
-/* The same of a coarse grid, which has lanes of its own. */
+/* The same for a coarse grid, which has lanes of its own. */
 SK_INLINE void meet_coarse(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
                            size_t end, const sk_span *span, const offsets *o, bool turned, sk_element_mode mode) {
     const sk_coarse_grid *grid = &sweep->batch->coarse->grid;
@@ -171,8 +186,8 @@ SK_INLINE void meet_coarse(sk_run *run, const sk_sweep *sweep, const sk_element_
 typedef void span_walk(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
                        size_t end, const sk_span *span, const offsets *o, sk_half half);
 
-/* Strip rows [begin, end), one by one unless they go side by side. `turned` walks the spans that lead over a strip's
- * end: a function of its own, since few do and inlining it everywhere would be slow to compile. */
+/* Strip rows [begin, end), one by one unless they are interleaved. `turned` walks the spans that lead over a strip's
+ * end: a function of its own, since these are few and inlining it everywhere would be slow to compile. */
 SK_INLINE void sweep_strips(sk_run *run, const sk_op *op, size_t begin, size_t end, sk_element_mode mode,
                             span_walk *turned) {
     const sk_sweep *sweep = op->rule;
@@ -195,9 +210,11 @@ SK_INLINE void sweep_strips(sk_run *run, const sk_op *op, size_t begin, size_t e
     }
 }
 
+#endif
+#if defined SK_WITH_STRIPS && !defined SK_ONLY_BOUNDS
 /* ---- strips: forces, and products with a direction ---- */
 
-/* The blocks of a span in strip row r pull; `gets` says which of their particles lie in the rows that are asked for. */
+/* Adds the forces of a span in strip row r to those of its particles that lie in the requested rows (`gets`). */
 SK_INLINE void pull_span(sk_run *run, const sk_op *op, const sk_sweep *sweep, const sk_element_constants *constants,
                          size_t r, const sk_span *span, bool turned, const bool *gets, sk_element_mode mode) {
     size_t line = sweep->walk.width * SK_LANES;
@@ -214,7 +231,7 @@ SK_INLINE void pull_span(sk_run *run, const sk_op *op, const sk_sweep *sweep, co
             if (!turned) continue;
             rotate(copy[i][0], x[i], 3, o.shift[i]);
             rotate(copy[i][1], v[i], 3, o.shift[i]);
-            if (gets[i]) rotate(sum[i], f[i], 3, o.shift[i]); // the others may be another thread's
+            if (gets[i]) rotate(sum[i], f[i], 3, o.shift[i]); // others may belong to another thread
             x[i] = copy[i][0], v[i] = copy[i][1];
         }
         for (size_t p = 0; p < SK_PARTS; p++) {
@@ -235,8 +252,8 @@ SK_INLINE void pull_span(sk_run *run, const sk_op *op, const sk_sweep *sweep, co
 typedef void pull_walk(sk_run *run, const sk_op *op, const sk_sweep *sweep, const sk_element_constants *constants,
                        size_t r, const sk_span *span, const bool *gets);
 
-/* All directions of a batch at once, for the sums on strip rows [begin, end): what they get from rows before
- * is worked out again rather than waited for, so that every cut of the rows gives the same sums. */
+/* All directions of a batch at once, for the sums on strip rows [begin, end). The contributions of earlier rows are
+ * computed again rather than waited for, so that every division of the rows gives the same sums. */
 SK_INLINE void pull_strips(sk_run *run, const sk_op *op, size_t begin, size_t end, sk_element_mode mode,
                            pull_walk *turned) {
     const sk_sweep *sweeps = op->rule;
@@ -259,19 +276,30 @@ SK_INLINE void pull_strips(sk_run *run, const sk_op *op, size_t begin, size_t en
         }
 }
 
-/* The walk, and the same over the end of a strip, as a function of its own. */
-#define SK_PULLS(name, mode)                                                                             \
-    static __attribute__((noinline)) void name##_turned(sk_run *run, const sk_op *op,                  \
+SK_INLINE sk_element_mode sum_mode(bool applies) {
+    return applies ? SK_MODE_APPLY : SK_MODE_FORCE;
+}
+SK_TOLD_AT_ENDS void sum_turned(sk_run *run, const sk_op *op, const sk_sweep *sweep, const sk_element_constants *constants,
+                         size_t r, const sk_span *span, const bool *gets, bool applies) {
+    pull_span(run, op, sweep, constants, r, span, true, gets, sum_mode(applies));
+}
+SK_TOLD void sum_strips(sk_run *run, const sk_op *op, size_t begin, size_t end, bool applies, pull_walk *turned) {
+    pull_strips(run, op, begin, end, sum_mode(applies), turned);
+}
+
+/* Defines the kernel, and its function for spans over the end of a strip. */
+#define SK_PULLS(name, applies)                                                                          \
+    static __attribute__((noinline)) void name##_turned(sk_run *run, const sk_op *op,                    \
                                                         const sk_sweep *sweep,                           \
                                                         const sk_element_constants *constants, size_t r, \
                                                         const sk_span *span, const bool *gets) {         \
-        pull_span(run, op, sweep, constants, r, span, true, gets, mode);                                \
+        sum_turned(run, op, sweep, constants, r, span, gets, applies);                                   \
     }                                                                                                    \
-    void SK_KERNEL(name##_strips)(sk_run * run, const sk_op *op, size_t begin, size_t end) {           \
-        pull_strips(run, op, begin, end, mode, name##_turned);                                          \
+    void SK_KERNEL(name##_strips)(sk_run * run, const sk_op *op, size_t begin, size_t end) {             \
+        sum_strips(run, op, begin, end, applies, name##_turned);                                         \
     }
-SK_PULLS(force, SK_MODE_FORCE)
-SK_PULLS(apply, SK_MODE_APPLY)
+SK_PULLS(force, false)
+SK_PULLS(apply, true)
 #undef SK_PULLS
 #endif
 
@@ -288,16 +316,20 @@ SK_INLINE void sweep_groups(sk_run *run, const sk_op *op, size_t begin, size_t e
         sweep_groups(run, op, begin, end, mode);                                             \
     }
 #ifdef SK_WITH_STRIPS
-#define SK_TURNED(name, mode)                                                                                \
+#define SK_TURNED(name, walk)                                                                                \
     static __attribute__((noinline)) void name##_turned(                                                     \
         sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin, size_t end, \
         const sk_span *span, const offsets *o, sk_half half) {                                               \
-        if (mode == SK_MODE_LIMIT && sweep->batch->coarse)                                                   \
-            meet_coarse(run, sweep, constants, begin, end, span, o, true, mode);                             \
-        else meet_span(run, sweep, constants, begin, end, span, o, half, true, mode);                        \
+        walk;                                                                                                \
     }
+SK_INLINE void meet_turned(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
+                           size_t end, const sk_span *span, const offsets *o, sk_half half, sk_element_mode mode) {
+    if (mode == SK_MODE_LIMIT && sweep->batch->coarse)
+        meet_coarse(run, sweep, constants, begin, end, span, o, true, mode);
+    else meet_span(run, sweep, constants, begin, end, span, o, half, true, mode);
+}
 #define SK_WALKS(name, mode)                                                                                 \
-    SK_TURNED(name, mode)                                                                                    \
+    SK_TURNED(name, meet_turned(run, sweep, constants, begin, end, span, o, half, mode))                     \
     void SK_KERNEL(name##_strips)(sk_run * run, const sk_op *op, size_t begin, size_t end) {                 \
         sweep_strips(run, op, begin, end, mode, name##_turned);                                              \
     }                                                                                                        \
@@ -305,21 +337,42 @@ SK_INLINE void sweep_groups(sk_run *run, const sk_op *op, size_t begin, size_t e
 #else
 #define SK_WALKS SK_GROUP_WALK
 #endif
-SK_GROUP_WALK(force, SK_MODE_FORCE)
-SK_GROUP_WALK(apply, SK_MODE_APPLY)
+#ifndef SK_ONLY_BOUNDS
+/* Forces, or products with a direction. */
+SK_TOLD void sum_groups(sk_run *run, const sk_op *op, size_t begin, size_t end, bool applies) {
+    sweep_groups(run, op, begin, end, applies ? SK_MODE_APPLY : SK_MODE_FORCE);
+}
+void SK_KERNEL(force_groups)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    sum_groups(run, op, begin, end, false);
+}
+void SK_KERNEL(apply_groups)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    sum_groups(run, op, begin, end, true);
+}
+
 SK_WALKS(project, SK_MODE_PROJECT)
+
+/* Projections that keep their multipliers, with damping or without. */
 #ifdef SK_WITH_STRIPS
-SK_TURNED(project_kept, SK_MODE_PROJECT_KEPT)
-SK_TURNED(project_damped, SK_MODE_PROJECT_DAMPED)
+SK_TOLD_AT_ENDS void keep_turned(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
+                         size_t end, const sk_span *span, const offsets *o, sk_half half, bool damped) {
+    meet_span(run, sweep, constants, begin, end, span, o, half, true,
+              damped ? SK_MODE_PROJECT_DAMPED : SK_MODE_PROJECT_KEPT);
+}
+SK_TURNED(project_kept, keep_turned(run, sweep, constants, begin, end, span, o, half, false))
+SK_TURNED(project_damped, keep_turned(run, sweep, constants, begin, end, span, o, half, true))
 void SK_KERNEL(project_damped_strips)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     if (sk_is_damped(op)) sweep_strips(run, op, begin, end, SK_MODE_PROJECT_DAMPED, project_damped_turned);
     else sweep_strips(run, op, begin, end, SK_MODE_PROJECT_KEPT, project_kept_turned);
 }
 #endif
-void SK_KERNEL(project_damped_groups)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
-    if (sk_is_damped(op)) sweep_groups(run, op, begin, end, SK_MODE_PROJECT_DAMPED);
-    else sweep_groups(run, op, begin, end, SK_MODE_PROJECT_KEPT);
+SK_TOLD void keep_groups(sk_run *run, const sk_op *op, size_t begin, size_t end, bool damped) {
+    sweep_groups(run, op, begin, end, damped ? SK_MODE_PROJECT_DAMPED : SK_MODE_PROJECT_KEPT);
 }
+void SK_KERNEL(project_damped_groups)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    if (sk_is_damped(op)) keep_groups(run, op, begin, end, true);
+    else keep_groups(run, op, begin, end, false);
+}
+#endif
 #ifdef SK_WITH_LIMITS
 SK_WALKS(limit, SK_MODE_LIMIT)
 SK_WALKS(limit_moving, SK_MODE_LIMIT_MOVING)

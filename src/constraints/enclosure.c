@@ -1,4 +1,4 @@
-/* Closed surfaces: which particles they have, and whether they are closed. */
+/* Building the enclosure of a batch: its vertices, and the check that the surface is closed. */
 #include "constraints/enclosure.h"
 
 #include <stdio.h>

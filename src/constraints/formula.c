@@ -1,13 +1,13 @@
-/* Constraints and energies that are texts: any formula of up to eight particles (docs/formula.md).
+/* Constraints and energies by formula: texts of up to eight particles (docs/formula.md).
  *
- * A constraint C wants to be 0, or, written `a >= b`, at least 0. An energy E is what its forces come from; under
- * position methods it is the constraint C = sqrt(2 E), without ever dividing by the root: where E and its gradient are
- * 0, so is the correction (<skein/inside/projection.h>). Both run on a tape, or by what a C compiler made of the text
- * (include/skein/compiled.h): up to four groups of sixteen elements that share no particle are one block, gathered, run,
- * worked out and put back group by group, in their order. */
+ * A constraint C is to be 0, or, written `a >= b`, at least 0. An energy E has the forces -grad E; position methods
+ * treat it as the constraint C = sqrt(2 E), without ever dividing by the root: where E and its gradient are 0, so is
+ * the correction (<skein/inside/projection.h>). Both run on a tape, or as code that a C compiler made from the text
+ * (include/skein/compiled.h). Up to four groups of sixteen elements that share no particle are one block: they are
+ * loaded and run together, then finished and stored group by group, in order. */
 #include "constraints/formula.h"
 
-#ifndef __clang__ // that all loops over an element's particles have one length, gcc does not see
+#ifndef __clang__ // gcc does not see that all loops over an element's particles have the same length
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 
@@ -20,7 +20,7 @@
 
 enum { NOWHERE = 0xffff };
 
-/* The registers where a tape wants an element's positions and rest values. */
+/* The registers from which a tape reads an element's positions and rest values. */
 typedef struct places {
     uint16_t position[SK_MOST_ARITY], rest[SKEIN_FORMULA_MOST_RESTS];
 } places;
@@ -53,7 +53,7 @@ static places find_places(const sk_batch *batch, const sk_tape *tape) {
 
 /* ---- in and out ---- */
 
-/* Groups of a sweep, or sixteen elements of a batch, on their way. Compiled code has its numbers in the tape's registers,
+/* Groups of a sweep, or sixteen elements of a batch, while they are computed. Compiled code uses the tape's registers
  * too. */
 typedef struct block {
     SK_VECTOR_ALIGNED sk_wide registers[SK_TAPE_MEMORY / sizeof(sk_wide)]; /* positions stay where the tape has them */
@@ -64,8 +64,8 @@ typedef struct block {
     const sk_tape *tape;
     places to;
     size_t arity, rests;
-    const skein_compiled *compiled; /* what runs in place of the tape; NULL: nothing does */
-    skein_element_values elements;        /* and on what: */
+    const skein_compiled *compiled; /* runs in place of the tape; NULL: the tape runs */
+    skein_element_values elements;        /* its arguments, which point to these: */
     const real *position[SK_MOST_ARITY], *rest[SKEIN_FORMULA_MOST_RESTS];
     real *output[3 * SK_MOST_ARITY * (3 * SK_MOST_ARITY + 1) / 2];
     real parameter[SKEIN_FORMULA_MOST_PARAMETERS];
@@ -95,7 +95,7 @@ static void begin_compiled(block *b, const sk_batch *batch, double time) {
                                    .outputs = b->output};
 }
 
-/* Once before the blocks of a row: what is the same for all elements. */
+/* Once before all blocks of an op: sets what is the same for all elements. */
 static void begin_block(block *b, const sk_batch *batch, const sk_tape *tape, const skein_compiled *compiled,
                         double time) {
     const sk_formula_params *params = batch->params;
@@ -112,14 +112,14 @@ static void begin_block(block *b, const sk_batch *batch, const sk_tape *tape, co
     for (int i = 0; i < count; i++) b->parameter[i] = (real)params->parameter[i], parameter[i] = &b->parameter[i];
     sk_tape_input input = {.parameter = parameter, .uniform = ((uint64_t)1 << count) - 1, .time = (real)time};
     sk_tape_kernels_of[SK_THIS_ISA]->begin(tape, &input, b->registers, b->vectors);
-    // a tape runs on more than a block may have: let it be numbers
+    // a tape also runs on vectors that a block does not fill: these must be finite
     for (size_t p = 0; p < batch->arity; p++)
         if (b->to.position[p] != NOWHERE) memset(register_of(b, b->to.position[p]), 0, 3 * b->vectors * sizeof(sk_wide));
     for (size_t r = 0; r < batch->rest_count; r++)
         if (b->to.rest[r] != NOWHERE) memset(register_of(b, b->to.rest[r]), 0, b->vectors * sizeof(sk_wide));
 }
 
-/* The first `count` vectors of each register. */
+/* Runs the first `count` vectors of each register. */
 static void run_block(block *b, size_t count) {
     const sk_tape_kernels *kernels = sk_tape_kernels_of[SK_THIS_ISA];
     if (!b->compiled) {
@@ -132,8 +132,8 @@ static void run_block(block *b, size_t count) {
     if (!b->tape->unjudged) kernels->judge(b->tape, b->registers, b->vectors, count, b->verdict.finite);
 }
 
-/* Puts a part of sixteen elements into the tape's registers, as vector i of each: the particles that it reads, and rest
- * values, which are `stride` reals from one to the next. */
+/* Puts a part of elements into the tape's registers, as vector i of each: the particles that it reads, and the rest
+ * values, which are `stride` reals apart. */
 SK_INLINE void fill(block *b, size_t i, size_t arity, size_t rests, const sk_vec4 *x, size_t packed,
                     const uint32_t *slots, const real *rest, size_t stride) {
     const size_t vectors = b->vectors;
@@ -149,7 +149,7 @@ SK_INLINE void fill(block *b, size_t i, size_t arity, size_t rests, const sk_vec
             memcpy(b->registers + b->to.rest[r] * vectors + i, rest + r * stride, sizeof(sk_wide));
 }
 
-/* What came out for vector i of a block, a part of sixteen elements. */
+/* Takes the results for vector i of a block, a part of elements. */
 SK_INLINE void take_answer(sk_element *e, const block *b, size_t arity, size_t i, bool weighed) {
     const uint16_t *output = b->tape->output;
     const sk_wide *registers = b->registers + i;
@@ -169,7 +169,7 @@ SK_INLINE void take_answer(sk_element *e, const block *b, size_t arity, size_t i
 
 #include <skein/inside/group_walk.h>
 
-/* Vector i of a block that has run. Particles that the formula does not read stay where they are. */
+/* Finishes and stores vector i of a block that has run. Particles that the formula does not read keep their place. */
 SK_INLINE void settle_part(group_part *p, const skein_groups *g, const sk_element_constants *c, const block *b,
                            size_t arity, size_t i, size_t packed, sk_element_mode mode) {
     const size_t vectors = b->vectors;
@@ -178,7 +178,7 @@ SK_INLINE void settle_part(group_part *p, const skein_groups *g, const sk_elemen
     e->arity = (int)arity;
     SK_EACH_PARTICLE_OF (e, q) {
         e->reads[q] = b->to.position[q] != NOWHERE;
-        e->x[q] = e->other[q] = (sk_wide3){{0}, {0}, {0}}; // what no damping is multiplied by must be a number
+        e->x[q] = e->other[q] = (sk_wide3){{0}, {0}, {0}}; // multiplied by zero damping, so it must be finite
         e->w[q] = (sk_wide){0};
         if (!e->reads[q]) continue;
         const sk_wide *x = b->registers + b->to.position[q] * vectors + i;
@@ -192,8 +192,8 @@ SK_INLINE void settle_part(group_part *p, const skein_groups *g, const sk_elemen
     put_down(p, g, packed, mode);
 }
 
-/* `count` groups are a block. `arity` is the batch's, a constant where it pays: then what belongs to an element's
- * particles stays in registers. */
+/* Computes `count` groups as a block. `arity` is the batch's, a constant where that is faster: then values of an
+ * element's particles stay in processor registers. */
 SK_INLINE void meet_block(const skein_groups *g, const sk_element_constants *c, size_t first, size_t count,
                           size_t packed, sk_element_mode mode, block *b, size_t arity) {
     for (size_t i = 0; i < count * SK_PARTS; i++) {
@@ -221,7 +221,7 @@ MEETING(meet_4, 4)
 MEETING(meet_any, b->arity)
 #undef MEETING
 
-/* The same groups as compiled code takes them. */
+/* Runs compiled code on the same groups. */
 static void run_compiled(skein_groups *g, const sk_element_constants *c, const sk_batch *batch, double time,
                          sk_element_mode mode) {
     const sk_formula_params *params = batch->params;
@@ -269,7 +269,7 @@ void SK_KERNEL(project_damped_groups)(sk_run *run, const sk_op *op, size_t begin
 
 /* ---- implicit solves: elements, not groups ---- */
 
-/* Runs a block of sixteen on elements [begin, begin + count), at most so many; lanes past them repeat the last. */
+/* Runs a block on elements [begin, begin + count), at most sixteen; lanes past them repeat the last element. */
 static void run_elements(block *b, const sk_batch *batch, const sk_vec4 *x, size_t packed, size_t begin, size_t count) {
     uint32_t slot[SK_MOST_ARITY][SK_LANES];
     SK_VECTOR_ALIGNED real rest[SKEIN_FORMULA_MOST_RESTS][SK_LANES];
@@ -284,7 +284,7 @@ static void run_elements(block *b, const sk_batch *batch, const sk_vec4 *x, size
     run_block(b, SK_PARTS);
 }
 
-/* The matrix of a part of sixteen elements: a lower triangle of 3 arity rows, positive definite. */
+/* The matrices of a part of elements: lower triangles of 3 arity rows, positive definite. */
 typedef struct matrix {
     sk_wide entry[3 * SK_MOST_ARITY * (3 * SK_MOST_ARITY + 1) / 2];
 } matrix;
@@ -302,8 +302,8 @@ static void square_gradient(matrix *m, const sk_element *a, size_t arity) {
         for (size_t j = 0; j <= i; j++) ENTRY(m, i, j) = g[i] * g[j];
 }
 
-/* The nearest that Gill's and Murray's factorisation comes to a symmetric matrix with one that is positive definite:
- * pivots that are too small for their columns are raised, and what they were raised by is added to the diagonal. */
+/* Makes a symmetric matrix positive definite as in Gill and Murray's factorisation: pivots that are too small for their
+ * columns are raised, and the difference is added to the diagonal. */
 static void make_definite(matrix *m, size_t size) {
     matrix l = *m;
     sk_wide largest = {0}, off = {0}, raised[3 * SK_MOST_ARITY];
@@ -333,7 +333,7 @@ static void make_definite(matrix *m, size_t size) {
     for (size_t j = 0; j < size; j++) ENTRY(m, j, j) += raised[j];
 }
 
-/* A walk over a row's elements, part by part, with their matrices: elements [at, at + count) of the batch. */
+/* A loop over an op's elements, part by part, with their matrices: now at elements [at, at + count) of the batch. */
 typedef struct stiff_walk {
     const sk_run *run;
     const sk_op *op;
@@ -349,7 +349,7 @@ static void start_walk(stiff_walk *w, const sk_run *run, const sk_op *op, size_t
     begin_block(&w->b, batch, made->is_energy ? &made->hessian : &made->single, made->compiled, run->time - op->before_end);
 }
 
-/* The stiffness over k of the part that the walk has come to, elastic and both with damping. */
+/* Finds the matrices of the present part, over k: the stiffness, and that with damping. */
 static void find_stiffness(stiff_walk *w) {
     const sk_batch *batch = w->op->rule;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
@@ -455,7 +455,7 @@ size_t SK_KERNEL(energy)(const sk_batch *batch, double time, const sk_vec4 *x, s
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
     size_t guarded = 0;
     block b;
-    begin_block(&b, batch, &made->single, NULL, time); // a tape counts its guards
+    begin_block(&b, batch, &made->single, NULL, time); // always the tape, which counts guarded values
     for (size_t at = begin; at < end; at += SK_LANES) {
         size_t count = end - at < SK_LANES ? end - at : SK_LANES;
         run_elements(&b, batch, x, 0, at, count);
@@ -492,13 +492,13 @@ static const skein_field energy_fields[] = {
     SK_PARAMETERS(sk_formula_params, parameter, "a number that the formula names: { \"k\": 100 }, say"),
 };
 
-/* Every version gives the same bits; the first is on every machine. */
+/* Every version gives the same bits; the first runs on every machine. */
 static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_t begin, size_t end, double *out) {
     static energy_of *const versions[] = SK_EACH_ISA(energy);
     return versions[0](batch, time, x, begin, end, out);
 }
 
-/* What both kinds have in common. */
+/* The members that both kinds have in common. */
 #define ON_A_TAPE                                                                                                    \
     .arity_of = sk_formula_arity_of, .rest_count_of = sk_formula_rest_count_of, .rest = sk_formula_rest,             \
     .in_blocks = true, .force.groups = {SK_EACH_ISA(force_groups)}, .project.groups = {SK_EACH_ISA(project_groups)}, \

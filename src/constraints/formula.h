@@ -1,4 +1,4 @@
-/* What the two kinds whose formula is a text share: `formula` (C of up to eight particles) and `energy` (E). */
+/* What the two kinds by formula share: `formula` (a constraint C of up to eight particles) and `energy` (E). */
 #ifndef SK_CONSTRAINTS_FORMULA_H
 #define SK_CONSTRAINTS_FORMULA_H
 
@@ -7,19 +7,19 @@
 #include "formula/tape.h"
 #include "plan/matrix.h"
 
-/* Groups that run through a tape together at the most. Eight would share its dispatch better, but few sweeps have eight
- * in a row that share no particle: of a sheet's 5.6 are found, and 3.5 of four. */
+/* The most groups that run through a tape together. Eight would amortise its dispatch better, but few sweeps have eight
+ * in a row that share no particle: in a sheet's the mean is 5.6 of eight, and 3.5 of four. */
 enum { SK_FORMULA_GROUPS = 4 };
 
-/* A formula on its way through the walks; made when its object is, and again when the text changes. */
+/* A compiled formula; made with its object, and again when the text changes. */
 typedef struct sk_constraint_formula {
     skein_formula *formula;
     sk_tape tape;    /* the value, its gradient by particle and axis, and its derivative by t */
-    sk_tape single;  /* the same in blocks of sixteen elements; its arrays are the other's */
+    sk_tape single;  /* the same in blocks of sixteen elements; it shares the arrays of `tape` */
     sk_tape hessian; /* of an energy: the lower triangle of its second derivatives, row by row, for sixteen elements */
     bool is_energy, one_sided;
-    const skein_compiled *compiled;                      /* runs in place of the tapes; NULL: nothing does */
-    uint8_t parameter_of[SKEIN_FORMULA_MOST_PARAMETERS]; /* what its parameters are here */
+    const skein_compiled *compiled;                      /* runs in place of the tapes; NULL: the tapes run */
+    uint8_t parameter_of[SKEIN_FORMULA_MOST_PARAMETERS]; /* the formula's parameter for each of the compiled code's */
 } sk_constraint_formula;
 
 typedef struct sk_formula_params {

@@ -1,4 +1,4 @@
-/* Making what runs a constraint's formula: its tapes and its rest values. */
+/* Compiling a constraint's formula: its tapes, compiled code and rest values. */
 #include "constraints/formula.h"
 
 #include <string.h>
@@ -28,7 +28,7 @@ static skein_status make_tapes(sk_constraint_formula *made, sk_allocator *alloca
     if (made->tape.wides > SK_FORMULA_GROUPS) made->tape.wides = SK_FORMULA_GROUPS;
     made->single = made->tape;
     made->single.wides = 1;
-    made->tape.unjudged = true; // its walk does so
+    made->tape.unjudged = true; // group_walk.h judges the elements itself
     if (status || !made->is_energy) return status;
     count = 0;
     for (size_t i = 0; i < coordinates; i++)
@@ -38,7 +38,7 @@ static skein_status make_tapes(sk_constraint_formula *made, sk_allocator *alloca
     return status;
 }
 
-/* A living constraint keeps its particles and its rest values, so a new text must do with them. */
+/* An existing constraint keeps its particles and its rest values, so a new text must match them. */
 static skein_status check_change(const sk_constraint_formula *now, const skein_formula *f, const char *field,
                                  skein_error *error) {
     if (f->particles == 0)
@@ -95,7 +95,7 @@ static void run_compiled(void *params, const skein_compiled *compiled) {
     sk_constraint_formula *made = ((sk_formula_params *)params)->made;
     const skein_formula *f = made->formula;
     made->compiled = compiled;
-    // its formula names the same parameters, perhaps in another order, and perhaps some that nothing depends on
+    // its formula has the same parameters, perhaps in another order, and perhaps some without effect
     for (size_t i = 0; compiled && compiled->parameters[i]; i++) {
         made->parameter_of[i] = 0;
         for (int k = 0; k < f->parameters; k++)
@@ -114,7 +114,7 @@ static const double *parameters_of(const void *params) {
 const sk_making sk_formula_making = {make_constraint, unmake, formula_of, run_compiled, parameters_of},
                 sk_energy_making = {make_energy, unmake, formula_of, run_compiled, parameters_of};
 
-/* ---- what a constraint asks of its type ---- */
+/* ---- functions of the type ---- */
 
 int sk_formula_arity_of(const void *params) {
     return ((const sk_formula_params *)params)->made->formula->particles;
@@ -143,7 +143,7 @@ bool sk_formula_rest(const void *data, const double (*x)[3], double *rest) {
     return good;
 }
 
-/* By the same nodes that the tape runs. */
+/* Evaluates the same nodes that the tape runs. */
 bool sk_formula_evaluate_one(const sk_batch *batch, double time, const sk_vec4 *x, size_t element, size_t most,
                              sk_constraint_answer *answer, double (*gradient)[3]) {
     const sk_formula_params *params = batch->params;

@@ -1,22 +1,22 @@
-/* Groups of sixteen elements that share no particle, and the walks of such groups.
+/* Dividing elements into groups of sixteen that share no particle, and finding how threads can walk along them.
  *
- * Elements come in their order. Where the order begins anew (outward springs, then those that go round) a new
- * sweep begins, so that the groups of each go through the particles once, and threads can follow each other. */
+ * Elements are taken in order. Where that order starts again from low slots (outward springs, then those that go round)
+ * a new sweep begins, so that the groups of each go through the particles once, and threads can follow each other. */
 #include "constraints/groups.h"
 
 #include <stdio.h>
 #include <string.h>
 
 enum {
-    GROUP_DISTANCE = 4, /* dependent groups stand so far apart where they can, at the most */
-    LEAST_BEHIND = 16,  /* groups that are left open behind the newest one: a sixteenth of all, but so many, */
-    MOST_BEHIND = 32,   /* and no more than that: what lies between goes from thread to thread in each sweep */
+    GROUP_DISTANCE = 4, /* the largest distance that dependent groups are kept apart, if possible */
+    LEAST_BEHIND = 16,  /* groups that stay open behind the newest one: a sixteenth of all, but at least this many */
+    MOST_BEHIND = 32,   /* and at most this many: particles between pass from thread to thread in each sweep */
     MOST_PASSES = 8,    /* sweeps that a batch is cut into */
     LEAST_SLABS = 12,   /* of a walk, */
     LEAST_SHARE = 6     /* and for each slab of its reach */
 };
 
-#define FREE_LANE UINT32_MAX /* a slot, for the time being */
+#define FREE_LANE UINT32_MAX /* in place of a slot until fill_free_lanes() */
 
 typedef struct dealer {
     sk_batch *batch;
@@ -29,7 +29,7 @@ typedef struct dealer {
 typedef struct grouping {
     size_t first, last; /* elements [first, last) */
     uint32_t *latest;   /* a slot's newest group, counted from 1; 0: none */
-    uint32_t *next;     /* the group itself while it has room, else a later one */
+    uint32_t *next;     /* by group: itself while it has room, else a later one */
     uint8_t *filled;    /* elements of a group */
     uint32_t *group;    /* of each element from the first on */
     size_t group_count;
@@ -41,7 +41,7 @@ static bool is_left(const dealer *d, size_t e) {
 
 /* ---- dealing ---- */
 
-/* The first group from `group` on that has room; paths are shortened as they are walked. */
+/* The first group from `group` on that has room (a union-find structure with path compression). */
 static uint32_t first_open(uint32_t *next, uint32_t group) {
     uint32_t open = group;
     while (next[open] != open) open = next[open];
@@ -53,7 +53,7 @@ static uint32_t first_open(uint32_t *next, uint32_t group) {
     return open;
 }
 
-/* Dependent groups stand so far apart where they can: those of kinds that work in blocks by four, all others in twos. */
+/* The distance between dependent groups, if possible: four for kinds that work in blocks, two for others. */
 static uint32_t distance_of(const dealer *d) {
     return d->batch->type->in_blocks ? GROUP_DISTANCE : 2;
 }
@@ -68,7 +68,7 @@ static void deal(const dealer *d, grouping *g) {
         uint32_t after = 0;
         for (size_t i = 0; i < d->arity; i++)
             if (g->latest[slot[i]] > after) after = g->latest[slot[i]];
-        // not far behind the others: what is in one group is near in memory, and the groups go through it once
+        // not far behind the newest: members of a group are then near in memory, and groups go through it once
         uint32_t first = g->group_count > behind ? (uint32_t)(g->group_count - behind) : 0;
         if (after && after - 1 + distance > first) first = after - 1 + distance;
         uint32_t group = first_open(g->next, first);
@@ -79,11 +79,11 @@ static void deal(const dealer *d, grouping *g) {
     }
 }
 
-/* Leaves out groups that stayed empty: a chain has one element a group, and none between. */
+/* Removes groups that stayed empty, as between the single elements of a chain. */
 static void close_up(const dealer *d, grouping *g) {
     size_t count = 0;
     for (size_t i = 0; i < g->group_count; i++) {
-        g->next[i] = (uint32_t)count; // what it will be called
+        g->next[i] = (uint32_t)count; // its new number
         if (g->filled[i]) g->filled[count++] = g->filled[i];
     }
     for (size_t e = g->first; e < g->last; e++)
@@ -93,8 +93,8 @@ static void close_up(const dealer *d, grouping *g) {
 
 /* ---- the sweep ---- */
 
-/* Gives the dealt elements their lanes, in their order within a group, and the groups their slots; free lanes get
- * theirs when it is known where the group walks. */
+/* Gives the elements their lanes, in order within a group, and the groups their slots; free lanes get theirs when the
+ * walk is known (fill_free_lanes). */
 static sk_sweep *add_sweep(const dealer *d, grouping *g, size_t left) {
     sk_batch *batch = d->batch;
     if (!sk_reserve(d->allocator, (void **)&batch->sweeps, &batch->sweep_capacity, batch->sweep_count + 1,
@@ -123,12 +123,12 @@ static sk_sweep *add_sweep(const dealer *d, grouping *g, size_t left) {
     return sweep;
 }
 
-/* Finds how many groups from each one on share no particle. False when there is no memory. */
+/* Finds for each group how many from it on share no particle. False when there is no memory. */
 static bool find_blocks(const dealer *d, sk_sweep *sweep, uint32_t *latest) {
     sweep->ahead = sk_allocate(d->allocator, sweep->group_count);
     if (!sweep->ahead) return false;
     memset(latest, 0, d->particles->slot_count * sizeof *latest);
-    size_t open = 0; // groups before it know how many they have
+    size_t open = 0; // groups before it are done
     for (size_t g = 0; g < sweep->group_count; g++) {
         size_t before = 0; // the newest group that shares a particle, counted from 1
         for (size_t i = 0; i < d->arity * SK_LANES; i++) {
@@ -146,7 +146,7 @@ static bool find_blocks(const dealer *d, sk_sweep *sweep, uint32_t *latest) {
 
 /* ---- its walk ---- */
 
-/* The strips, or all slots behind them, that a slot lies in, as a walk of no reach. */
+/* The strips that a slot lies in, or all slots behind the strips, as a walk without reach. */
 static sk_walk region_of(const sk_particles *particles, uint32_t slot) {
     for (size_t i = 0; i < particles->strips.count; i++) {
         const sk_strips *s = &particles->strips.data[i];
@@ -158,7 +158,7 @@ static sk_walk region_of(const sk_particles *particles, uint32_t slot) {
     return (sk_walk){particles->strip_slots, (slots + slab - 1) / slab, SK_SLAB_BLOCKS, 0};
 }
 
-/* The first and last slab that a group touches; false if it leaves the region. */
+/* Finds the first and last slab that a group touches; false if it leaves the region. */
 static bool find_slabs(const dealer *d, const uint32_t *slots, const sk_walk *walk, size_t slab[2]) {
     slab[0] = SIZE_MAX, slab[1] = 0;
     for (size_t i = 0; i < d->arity * SK_LANES; i++) {
@@ -172,7 +172,7 @@ static bool find_slabs(const dealer *d, const uint32_t *slots, const sk_walk *wa
     return true;
 }
 
-/* Lets the sweep walk if its groups come nearly in the order of slots. False when there is no memory. */
+/* Gives the sweep a walk if its groups are nearly in the order of slots. False when there is no memory. */
 static bool find_walk(const dealer *d, sk_sweep *sweep) {
     sk_walk walk = region_of(d->particles, sweep->slots[0]);
     if (walk.rows < LEAST_SLABS) return true;
@@ -201,8 +201,8 @@ static bool find_walk(const dealer *d, sk_sweep *sweep) {
     return true;
 }
 
-/* Free lanes read and write spare slots, which weigh nothing: their slab's, so that threads keep out of each other's way
- * as they do with particles, and another one from group to group, so that none waits for what the last one wrote. */
+/* Free lanes read and write spare slots, which have no mass: those of their slab, so that threads stay apart as with
+ * particles, and a different one in each group, so that none waits for the stores of the last. */
 static void fill_free_lanes(const dealer *d, sk_sweep *sweep) {
     size_t slab = 0, lanes = d->arity * SK_LANES;
     for (size_t g = 0; g < sweep->group_count; g++) {
@@ -215,7 +215,7 @@ static void fill_free_lanes(const dealer *d, sk_sweep *sweep) {
 
 /* ---- passes ---- */
 
-/* Cuts the elements where their order begins anew: where they fall back by more than half of all slots. */
+/* Cuts the elements where their order starts again: where slots fall back by more than half of all. */
 static size_t find_passes(const dealer *d, size_t first[MOST_PASSES + 1]) {
     size_t count = 0, highest = 0;
     first[count++] = 0;
@@ -235,7 +235,7 @@ static bool add_pass(const dealer *d, size_t first, size_t last) {
     size_t left = 0;
     for (size_t e = first; e < last; e++) left += is_left(d, e);
     if (!left) return true;
-    // in the worst case all elements share a particle: each has a group of its own, all far apart
+    // in the worst case all elements share a particle: each has a group of its own, GROUP_DISTANCE apart
     size_t most = left * GROUP_DISTANCE + GROUP_DISTANCE + 1;
     grouping g = {.first = first, .last = last};
     g.latest = sk_allocate(d->allocator, (d->particles->slot_count + SK_LANES) * sizeof *g.latest);

@@ -1,4 +1,4 @@
-/* Dealing elements into groups: called by sweep.c for all that are in no strips. */
+/* Dividing elements into groups: called by sweep.c for those that are not in strips. */
 #ifndef SK_CONSTRAINTS_GROUPS_H
 #define SK_CONSTRAINTS_GROUPS_H
 

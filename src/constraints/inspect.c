@@ -1,10 +1,10 @@
-/* Looking into constraints: what each is called by number, its formula, and that formula operation by operation.
+/* Inspecting constraints: their number and particles, their formula, and its value operation by operation.
  *
  *     text --parse--> graph --by each coordinate, forwards--> value and derivatives of every operation
  *
- * A kind's own formula stands in constraints/emitted/ as a string beside what was made of it; an object's in its text.
- * Both are read anew here, for steps keep no values of what comes in between. Called by world/inspect.c; slow, and
- * meant for lessons, checks and windows. */
+ * A kind's own formula stands in constraints/emitted/ as a string beside the code made from it; an object's is its
+ * text. Both are parsed again here, since steps keep no intermediate values. Called by world/inspect.c; slow, and meant
+ * for lessons, checks and windows. */
 #include <stdio.h>
 #include <string.h>
 
@@ -37,13 +37,13 @@ const char *sk_batch_text(const sk_batch *batch) {
 
 /* ---- operations ---- */
 
-/* A formula that is taken apart. */
+/* A formula as a list of operations. */
 typedef struct parts {
     skein_formula *formula;
     sk_node *node;    /* of each operation */
     size_t count;     /* of operations */
     size_t *place;    /* of each node that the value depends on, its operation */
-    sk_node *tangent; /* of each operation by each coordinate, one coordinate after the other; NULL: not asked for */
+    sk_node *tangent; /* each operation's derivative by each coordinate, coordinate by coordinate; or NULL */
     bool *live;
     double *values;
 } parts;
@@ -88,7 +88,7 @@ static bool differentiate(parts *p, size_t coordinates, sk_allocator *allocator)
     return good;
 }
 
-/* Every operation's value, and every derivative's. */
+/* Evaluates every operation and every derivative. */
 static bool evaluate(parts *p, const sk_batch *batch, sk_allocator *allocator, double time, const sk_vec4 *x,
                      size_t element, size_t coordinates) {
     const sk_graph *g = &p->formula->graph;
@@ -117,7 +117,7 @@ static bool evaluate(parts *p, const sk_batch *batch, sk_allocator *allocator, d
     return good;
 }
 
-/* What a reader calls it: a leaf by what it is, an operation by the word of the text that it came of. */
+/* A readable name: of a leaf what it is, of an operation the word of the text that it came from. */
 static void name_operation(const skein_formula *f, const sk_graph_node *n, char *out, size_t size) {
     static const char axis[] = "xyz";
     unsigned number = n->arg[0];

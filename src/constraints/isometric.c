@@ -1,7 +1,6 @@
-/* Isometric bending (Bergou and others 2006): the length of the edge p0 p1's share of the sheet's mean curvature, which
- * is linear in the positions as long as the triangles p0 p1 p2 and p1 p0 p3 keep their shape. Its stiffness is the
- * sheet's bending rigidity; it wants to be flat, whatever it was at rest. Cheaper than an angle, and never at a loss
- * for one. */
+/* Isometric bending (Bergou and others 2006): the length of the mean curvature vector at the edge p0 p1, which is
+ * linear in the positions as long as the triangles p0 p1 p2 and p1 p0 p3 keep their shape. Its stiffness is the sheet's
+ * bending rigidity. Its rest state is flat, whatever the sheet was at rest. Cheaper than an angle. */
 #define SK_ARITY 4
 #define SK_RESTS 3
 #define SK_FORMULA "constraints/emitted/isometric.h"

@@ -1,18 +1,17 @@
-/* What is inside a closed surface: a volume that wants to stay (`enclosed_volume`), or gas (`pressure`).
+/* The inside of a closed surface: a volume to be kept (`enclosed_volume`), or gas (`pressure`).
  *
- * Both are an energy of one number, the volume V inside all of the batch's triangles, and pull no particle but by it:
+ * Both are an energy of a single number, the volume V inside all of the batch's triangles:
  *
  *     p(V) = -dE/dV        the pressure, outwards positive
  *     force                (p - c dV/dt) grad V
  *     project              x += w grad V dl,   dl = (p - l n/h^2 - c dV/h) / ((k + c/h) W + n/h^2)
  *                          with k = -dp/dV, W = sum w |grad V|^2, dV = grad V . (x - x0), n passes that share k
- *     implicit solves      k grad V grad V^T (Gauss and Newton's), of all particles with each other
+ *     implicit solves      k grad V grad V^T (Gauss-Newton), which couples all particles
  *
- * which is XPBD's projection where p = -k (V - target), and its linearisation where the law is another. The sums over
- * triangles, and the walk that follows, are in the triangles' and the particles' order on one thread: their bits are
- * the same for any number of threads. */
+ * which is XPBD's projection if p = -k (V - target), and its linearisation for other laws. The sums over triangles and
+ * the loop over particles run in a fixed order on one thread, so their bits do not depend on the number of threads. */
 #define SK_ARITY 3
-#define SK_RESTS 1 // none; an array has one at the least
+#define SK_RESTS 1 // it has none, but an array needs at least one
 #define SK_FORMULA "constraints/emitted/enclosed.h"
 #include "base/elementary.h"
 #include "base/kernels.h"
@@ -29,15 +28,15 @@ typedef struct enclosed_params {
 
 /* ---- the laws ---- */
 
-/* At some volume. */
+/* Pressure and so on at some volume. */
 typedef struct law {
     double pressure, stiffness; /* Pa, Pa/m3 */
-    double missing;             /* m3, of what a volume wants to be */
+    double missing;             /* m3: what a kept volume lacks */
     double energy;              /* J, from the volume at rest on */
     bool guarded;
 } law;
 
-/* Gas that is pressed to less than a thousandth (a surface may even turn inside out) goes on along its tangent. */
+/* Below a thousandth of its volume (a surface may even turn inside out) gas follows the tangent of its law. */
 static const double least_share = 1e-3;
 
 /* p = p0 (V0/V)^n - outside: isothermal for n = 1, adiabatic for 1.4 in air. */
@@ -110,7 +109,7 @@ static void push(const sk_enclosure *s, sk_vec4 *dst, const sk_vec4 *weights, si
     }
 }
 
-/* The volume, m3; the places and the gradient are left in the enclosure. */
+/* Returns the volume, m3; leaves the vertices' places and the gradient in the enclosure. */
 double SK_KERNEL(measure)(sk_enclosure *s, const sk_vec4 *x, size_t packed) {
     sk_vec3 origin = sk_xyz(sk_load(x, packed, s->slot[0]));
     for (size_t v = 0; v < s->vertex_count; v++) {
@@ -181,7 +180,7 @@ void SK_KERNEL(project_damped_groups)(sk_run *run, const sk_op *op, size_t begin
     project_whole(run, op, true);
 }
 
-/* a k + b c at the present volume; the gradient is left in the enclosure. */
+/* Returns a k + b c at the present volume; leaves the gradient in the enclosure. */
 static double stiffen(const sk_run *run, const sk_op *op) {
     const sk_batch *batch = op->rule;
     law now = law_of(batch, SK_KERNEL(measure)(batch->enclosure, run->vector[SK_X], op->packed));
@@ -210,7 +209,7 @@ void SK_KERNEL(diagonal)(sk_run *run, const sk_op *op, size_t begin, size_t end)
 
 #else
 
-/* Every version gives the same bits; the first is on every machine. */
+/* Every version gives the same bits; the first runs on every machine. */
 static double volume_of(sk_enclosure *s, const sk_vec4 *x) {
     static measurer *const versions[] = SK_EACH_ISA(measure);
     return versions[0](s, x, 0);
@@ -223,7 +222,7 @@ static skein_status enclose(sk_batch *batch, sk_allocator *allocator, const sk_p
     sk_enclosure *s = batch->enclosure;
     s->rest_volume = volume_of(s, particles->vector[SK_X]);
     if (s->rest_volume < 0) {
-        sk_enclosure_turn(s); // its triangles look inwards
+        sk_enclosure_turn(s); // its triangles face inwards
         s->rest_volume = volume_of(s, particles->vector[SK_X]);
     }
     if (s->rest_volume > 0 && s->rest_volume <= SK_FAR) return SKEIN_OK;
@@ -237,7 +236,7 @@ static double whole_energy(const sk_batch *batch, const sk_vec4 *x, size_t *guar
     return ((const sk_material *)batch->params)->stiffness >= SK_UNBOUNDED ? 0 : now.energy;
 }
 
-/* A volume's C is what it has too much; gas is an energy. */
+/* A kept volume has the C by which it is too large; gas is an energy. */
 static bool evaluate(const sk_batch *batch, double time, const sk_vec4 *x, size_t element, size_t most,
                      sk_constraint_answer *answer, double (*gradient)[3]) {
     (void)time, (void)element;
@@ -270,7 +269,7 @@ static const skein_field pressure_fields[] = {
             "pressure against the volume's change in time"),
 };
 
-/* What both kinds have in common. */
+/* The members that both kinds have in common. */
 #define AROUND_A_VOLUME                                                                                              \
     .arity = SK_ARITY, .force.groups = {SK_EACH_ISA(force_groups)}, .project.groups = {SK_EACH_ISA(project_groups)}, \
     .project_damped.groups = {SK_EACH_ISA(project_damped_groups)}, .apply = {SK_EACH_ISA(apply)},                    \

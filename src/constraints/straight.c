@@ -1,7 +1,7 @@
-/* Straight: at p1, what the unit vectors to p0 and p2 add up to, with their lengths at rest: 2 sin(half the angle by
- * which the way through the three turns), 0 where it is straight. Linear in the positions under the root, so that it is
- * the cheapest bending there is, and never at a loss for an angle. As bending of a grid of rigidity B (N m) the three have
- * the stiffness B area/l^2 (bodies/lines.c). */
+/* Straight: the length of the sum of the vectors from p1 to p0 and p2, each over its length at rest. That is 2 sin(half
+ * the angle by which the line through the three turns), 0 if it is straight. It is the length of a linear function of
+ * the positions, so that it is the cheapest kind of bending, and always defined. As bending of a grid of rigidity B (N
+ * m) the three have the stiffness B area/l^2 (bodies/lines.c). */
 #define SK_ARITY 3
 #define SK_RESTS 2
 #define SK_FORMULA "constraints/emitted/straight.h"

@@ -1,4 +1,4 @@
-/* Cutting a batch into sweeps. */
+/* Cutting a batch into sweeps: directions along strips, and groups for the rest. */
 #include "constraints/enclosure.h"
 #include "constraints/groups.h"
 
@@ -11,7 +11,7 @@ enum {
     LEAST_SHARE = 5 /* a direction becomes a strip sweep if a fifth of its places have an element */
 };
 
-/* How an element lies in strips: its place, which is the lowest of its particles', and the steps from there. */
+/* How an element lies in strips: its place, which is the lowest of its particles' places, and the steps from there. */
 typedef struct element_place {
     const sk_strips *strips; /* NULL: in none */
     int32_t row_step[SK_MOST_ARITY], column_step[SK_MOST_ARITY];
@@ -21,8 +21,8 @@ typedef struct element_place {
 typedef struct direction {
     element_place like; /* an element of it */
     size_t count;
-    uint8_t number; /* as they were found */
-    size_t sweep;   /* its place among the batch's sweeps, SIZE_MAX: goes in groups */
+    uint8_t number; /* in the order in which directions were found */
+    size_t sweep;   /* its place among the batch's sweeps; SIZE_MAX: it goes in groups */
 } direction;
 
 typedef struct cutter {
@@ -32,8 +32,8 @@ typedef struct cutter {
     int arity;
     direction directions[MOST_DIRECTIONS];
     size_t direction_count;
-    uint8_t *direction_of; /* of each element, the number of its direction; NO_DIRECTION: it goes in groups */
-    size_t *lane_of;       /* of each element, its lane: first from the sweep's first one */
+    uint8_t *direction_of; /* the number of each element's direction; NO_DIRECTION: it goes in groups */
+    size_t *lane_of;       /* each element's lane, at first counted from the sweep's first one */
 } cutter;
 
 enum { NO_DIRECTION = UINT8_MAX };
@@ -46,7 +46,7 @@ static const sk_strips *strips_of(const sk_particles *particles, uint32_t partic
     return NULL;
 }
 
-/* Whether two of the particles lie in one block: it would move a particle twice at once. */
+/* Whether two of the particles lie in one block: sixteen elements would then move a particle twice at once. */
 static bool meets_itself(const element_place *place, int arity) {
     for (int i = 0; i < arity; i++)
         for (int j = 0; j < i; j++)
@@ -56,7 +56,7 @@ static bool meets_itself(const element_place *place, int arity) {
     return false;
 }
 
-/* The places of an element's particles. Which end of a pair comes first does not matter. Returns the lowest. */
+/* Finds the places of an element's particles, for a pair in either order, and returns the lowest. */
 static uint32_t places_of(const cutter *c, const uint32_t *particle, uint32_t *at) {
     uint32_t lowest = UINT32_MAX;
     for (int i = 0; i < c->arity; i++) {
@@ -67,7 +67,7 @@ static uint32_t places_of(const cutter *c, const uint32_t *particle, uint32_t *a
     return lowest;
 }
 
-/* Whether an element lies as another one does, which then tells all of its place but row and column. */
+/* Whether an element has the same steps as `place`; then only sets the row and column. */
 static bool lies_like(const cutter *c, size_t e, element_place *place) {
     const uint32_t *particle = c->batch->particle + e * (size_t)c->arity;
     const sk_strips *strips = place->strips;
@@ -120,13 +120,13 @@ static direction *find_direction(cutter *c, const element_place *place) {
     return &c->directions[c->direction_count++];
 }
 
-/* Strips on from the block k of a row. */
+/* How many strips on particle i of the elements in block k of a row lies. */
 static int shift_from(const sk_sweep *sweep, int64_t k, int i) {
     int64_t width = (int64_t)sweep->walk.width, column = k + sweep->column_step[i];
     return (int)(column >= 0 ? column / width : -((width - 1 - column) / width));
 }
 
-/* Finds the spans of a strip row: each particle's blocks come to the end of their strip once in a row at the most. */
+/* Finds the spans of a strip row. Each particle's blocks cross the end of their strip at most once in a row. */
 static void find_spans(sk_sweep *sweep, int arity) {
     sweep->span_count = 0;
     for (size_t k = 0; k < sweep->walk.width; k++) {
@@ -149,8 +149,7 @@ static void name_sweep(sk_sweep *sweep, int arity) {
                            sweep->column_step[i]);
 }
 
-/* Of a place in strips, its lane among all of its sweep's: a block of sixteen for each column of a strip row; of a coarse
- * grid, of those that are in it. */
+/* The lane of a place within its sweep, which has a block of sixteen for each column of a strip row or coarse grid. */
 static size_t lane_of_place(const sk_batch *batch, size_t width, size_t row, size_t column) {
     size_t block = column % width, strip = column / width;
     if (!batch->coarse) return (row * width + block) * SK_LANES + strip;
@@ -165,7 +164,7 @@ static size_t block_count(const sk_batch *batch, size_t rows, size_t width) {
     return sk_coarse_rows(&batch->coarse->grid, rows) * sk_coarse_columns(&batch->coarse->grid, width);
 }
 
-/* Finds each element's direction, which mostly is that of the element before it, and where it stands in it. */
+/* Finds each element's direction, mostly that of the element before it, and its lane. */
 static void find_directions(cutter *c) {
     direction *d = NULL;
     for (size_t e = 0; e < c->batch->count; e++) {
@@ -218,7 +217,7 @@ static bool add_strip_sweeps(cutter *c) {
     return true;
 }
 
-/* From lanes in a direction to lanes of the batch; SIZE_MAX for an element that goes in groups, or whose lane is taken. */
+/* Turns lanes of a direction into lanes of the batch; SIZE_MAX if an element goes in groups or its lane is taken. */
 static bool find_lanes(cutter *c) {
     size_t first[UINT8_MAX + 1];
     for (size_t d = 0; d <= UINT8_MAX; d++) first[d] = SIZE_MAX;
@@ -236,7 +235,7 @@ static bool find_lanes(cutter *c) {
     return true;
 }
 
-/* ---- the whole cut ---- */
+/* ---- arranging a batch ---- */
 
 void sk_batch_forget_sweeps(sk_batch *batch, sk_allocator *allocator) {
     void **arrays[] = {(void **)&batch->lane,
@@ -283,7 +282,8 @@ static bool cut(sk_batch *batch, sk_allocator *allocator, const sk_particles *pa
                       .direction_of = direction_of,
                       .lane_of = lane_of};
         memset(direction_of, NO_DIRECTION, batch->count);
-        good = (!batch->type->project.strips.version[0] || add_strip_sweeps(c)) && find_lanes(c);
+        bool strips = batch->type->project.strips.version[0] || batch->type->limit.strips.version[0];
+        good = (!strips || add_strip_sweeps(c)) && find_lanes(c);
     }
     good = good && sk_groups_deal(batch, allocator, particles, lane_of) && allocate_lanes(batch, allocator);
     for (size_t e = 0; e < batch->count && good; e++) batch->lane[e] = (uint32_t)lane_of[e];
@@ -296,14 +296,14 @@ static bool cut(sk_batch *batch, sk_allocator *allocator, const sk_particles *pa
 bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles) {
     sk_batch_forget_sweeps(batch, allocator);
     batch->stale = true;
-    // those of a body that takes no part walk nowhere: all of its elements are out, or none (sk_batch_leave_out)
+    // no sweeps for a body that takes no part: either all of its elements are out, or none (sk_batch_leave_out)
     if (batch->count && !sk_particle_is_here(particles, batch->particle[0])) return true;
     for (size_t i = 0; i < batch->arity * batch->count; i++) batch->slot[i] = particles->slot_of[batch->particle[i]];
     if (!batch->enclosure) return cut(batch, allocator, particles);
     return sk_enclosure_arrange(batch, allocator, particles) && allocate_lanes(batch, allocator);
 }
 
-/* The values of a strip sweep's middle element stand for all; blocks that differ are marked. */
+/* Takes a strip sweep's common values from its middle element, and marks the blocks that differ. */
 static void mark_special(sk_batch *batch, sk_sweep *sweep) {
     size_t blocks = block_count(batch, sweep->walk.rows, sweep->walk.width);
     size_t middle = sweep->first_lane + (blocks / 2) * SK_LANES + SK_LANES / 2;

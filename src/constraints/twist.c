@@ -1,6 +1,6 @@
-/* Twist: how far the four corners around a parallelogram are from one, |p0 - p1 + p2 - p3|, over the root of its area at
- * rest: about the angle between opposite edges when it is twisted. Linear in the positions under the root. As bending of a
- * grid of rigidity B each of its cells has twice that stiffness (bodies/lines.c). */
+/* Twist: how far four corners are from a parallelogram, |p0 - p1 + p2 - p3|, over the root of its area at rest: about
+ * the angle between opposite edges when it is twisted. It is the length of a linear function of the positions. As
+ * bending of a grid of rigidity B each of its cells has the stiffness 2 B (bodies/lines.c). */
 #define SK_ARITY 4
 #define SK_RESTS 1
 #define SK_FORMULA "constraints/emitted/twist.h"

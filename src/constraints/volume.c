@@ -1,5 +1,5 @@
-/* Volume: of the tetrahedron p0 p1 p2 p3, less that at rest; positive where p3 lies to the side that
- * cross(p1 - p0, p2 - p0) points to, so that one which is turned inside out finds its way back. */
+/* Volume: C = the volume of the tetrahedron p0 p1 p2 p3, minus that at rest. The volume is positive if p3 lies on the
+ * side that cross(p1 - p0, p2 - p0) points to, so that an inverted tetrahedron turns back. */
 #define SK_ARITY 4
 #define SK_RESTS 1
 #define SK_FORMULA "constraints/emitted/volume.h"

@@ -181,15 +181,16 @@ static void find_closing(void *data, size_t begin, size_t end) {
     sk_closing[job->sort][job->touch->isa](job->touch->p, job->touch->way, &job->values, &some);
 }
 
-static void list_those_that_may(sk_pair_list *list, const sk_pairs *pairs, uint32_t late) {
-    uint32_t *entry = list->data;
+static void list_those_that_may(sk_closing_list *list, const sk_pairs *pairs, uint32_t late) {
+    sk_closing_pair *entry = list->data;
     size_t n = list->count;
-    for (size_t k = 0; k < pairs->count; k += sizeof(uint64_t)) { // up to the end of a block
-        uint64_t any;
-        memcpy(&any, pairs->closes + k, sizeof any);
-        for (size_t l = k; any && l < k + sizeof any && l < pairs->count; l++)
-            if (pairs->closes[l] && pairs->thickness[l] > 0) entry[n++] = 2 * (uint32_t)l + late;
-    }
+    for (size_t b = 0; b < pairs->count; b += 8)
+        for (uint64_t bits = sk_pairs_that(pairs, b, SK_MAY_CLOSE); bits; bits &= bits - 1) {
+            size_t k = b + sk_first_of(bits);
+            if (!(pairs->thickness[k] > 0)) continue;
+            entry[n++] = (sk_closing_pair){2 * (uint32_t)k + late, {pairs->corner[0][k], pairs->corner[1][k],
+                                                                    pairs->corner[2][k], pairs->corner[3][k]}};
+        }
     list->count = n;
 }
 
@@ -199,7 +200,7 @@ static bool find_those_that_may(sk_touch *touch, sk_allocator *allocator, real l
     real longest = 0;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) longest = sk_max(longest, touch->way[v].w);
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
-        sk_pair_list *list = &touch->may_close[sort];
+        sk_closing_list *list = &touch->may_close[sort];
         sk_pairs *pairs[] = {&touch->kept[sort], &touch->late[sort]};
         if (!SK_RESERVE(allocator, list, pairs[0]->count + pairs[1]->count + 1)) return false;
         list->count = 0;
@@ -215,15 +216,14 @@ static bool find_those_that_may(sk_touch *touch, sk_allocator *allocator, real l
 /* The first round looks at all pairs, the others at those with a corner whose share the round before has lowered. */
 static bool settle_pairs(sk_touch *touch, int sort, bool first, real least) {
     const uint8_t *lowered = touch->lowered;
-    const sk_pair_list *list = &touch->may_close[sort];
+    const sk_closing_list *list = &touch->may_close[sort];
     bool any = false;
     for (size_t i = 0; i < list->count; i++) {
-        sk_pairs *pairs = list->data[i] & 1 ? &touch->late[sort] : &touch->kept[sort];
-        size_t k = list->data[i] / 2;
-        bool looks = first ? pairs->closes[k] & SK_CLOSES
-                           : !pairs->settled[k] && (lowered[pairs->corner[0][k]] | lowered[pairs->corner[1][k]] |
-                                                    lowered[pairs->corner[2][k]] | lowered[pairs->corner[3][k]]);
-        if (looks) any |= settle_pair(touch, pairs, sort, k, least);
+        const uint32_t *v = list->data[i].corner, entry = list->data[i].entry;
+        if (!first && !(lowered[v[0]] | lowered[v[1]] | lowered[v[2]] | lowered[v[3]])) continue;
+        sk_pairs *pairs = entry & 1 ? &touch->late[sort] : &touch->kept[sort];
+        size_t k = entry / 2;
+        if (first ? pairs->closes[k] & SK_CLOSES : !pairs->settled[k]) any |= settle_pair(touch, pairs, sort, k, least);
     }
     return any;
 }

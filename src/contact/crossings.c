@@ -55,6 +55,7 @@ void sk_touch_put_boxes(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_
         touch->corner_box[v] = (sk_box){{at, at}, {at, at}};
     }
     memset(touch->anew, 1, touch->skin.leaf_count);
+    touch->everybody = true;
     for (size_t i = 0; i < touch->skin.leaf_count; i++) {
         sk_touch_leaf_box(touch, i);
         touch->hot_box[i] = touch->leaf_box[i];

@@ -32,18 +32,12 @@ static void let_go(const sk_touch *touch, sk_pairs *kept, sk_pairs *fresh) {
     }
 }
 
-static void copy_all(sk_pairs *to, const sk_pairs *from, size_t k) {
-    for (int c = 0; c < 3; c++) to->normal[c][to->count] = from->normal[c][k];
-    for (int c = 0; c < 2; c++) to->share[c][to->count] = from->share[c][k];
-    sk_pairs_copy(to, from, k);
-}
-
 /* Takes those that go out. */
 static void take_out(const sk_touch *touch, sk_pairs *late, sk_pairs *fresh) {
     size_t count = late->count;
     late->count = 0;
     for (size_t k = 0; k < count; k++) {
-        if (!goes(touch, late, k)) copy_all(late, late, k);
+        if (!goes(touch, late, k)) sk_pairs_copy_all(late, late, k);
         else if (late->settled[k]) stay_settled(fresh, late->key[k]);
     }
 }
@@ -65,13 +59,6 @@ bool sk_touch_keep(sk_touch *touch, sk_allocator *allocator, int sort, bool all)
 }
 
 /* ---- those that are near ---- */
-
-/* Whether some of the eight pairs from k on are near, up to the end of a block. */
-static inline bool are_near(const sk_pairs *pairs, size_t k) {
-    uint64_t any;
-    memcpy(&any, pairs->closes + k, sizeof any);
-    return any;
-}
 
 /* The end of what is in order, from `first` on. */
 static size_t end_of_run(const sk_pair_place *place, size_t first, size_t count) {
@@ -101,8 +88,10 @@ static const sk_pair_place *list_late(sk_touch *touch, sk_allocator *allocator, 
     sk_pair_place *place = touch->order.data, *other = touch->other_order.data;
     *count = 0;
     for (size_t b = 0; b < late->count; b += 8)
-        for (size_t k = b; are_near(late, b) && k < b + 8 && k < late->count; k++)
-            if (late->closes[k]) place[(*count)++] = (sk_pair_place){late->key[k], (uint32_t)k};
+        for (uint64_t bits = sk_pairs_that(late, b, SK_IS_NEAR); bits; bits &= bits - 1) {
+            size_t k = b + sk_first_of(bits);
+            place[(*count)++] = (sk_pair_place){late->key[k], (uint32_t)k};
+        }
     for (bool more = end_of_run(place, 0, *count) < *count; more;) {
         more = merge_runs(place, other, *count);
         sk_pair_place *swapped = place;
@@ -120,8 +109,8 @@ bool sk_touch_find_near(sk_touch *touch, sk_allocator *allocator, int sort) {
     if (!place || !SK_RESERVE(allocator, near, kept->count + count + 1)) return false;
     uint32_t *entry = near->data;
     for (size_t b = 0; b < kept->count; b += 8)
-        for (size_t k = b; are_near(kept, b) && k < b + 8 && k < kept->count; k++) {
-            if (!kept->closes[k]) continue;
+        for (uint64_t bits = sk_pairs_that(kept, b, SK_IS_NEAR); bits; bits &= bits - 1) {
+            size_t k = b + sk_first_of(bits);
             while (i < count && place[i].key < kept->key[k]) entry[n++] = 2 * place[i++].at + 1;
             entry[n++] = 2 * (uint32_t)k;
         }

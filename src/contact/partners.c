@@ -139,15 +139,17 @@ static void fit(sk_touch *touch) {
 
 /* ---- partners ---- */
 
-/* Lists those that leaf a may meet, a itself too; what is looked for, too, is listed by the first of both. False when
- * there is no room. */
-static bool list_partners(const sk_touch *touch, sk_search_part *part, uint32_t a) {
-    size_t count = sk_tree_hits[touch->isa](&touch->tree, &touch->hot_box[a], part->hit);
+/* Lists those that the leaf in a slot may meet, itself too. Of two that are both looked for, one lists the other: where
+ * everybody is, the one in the lower slot; else the first of both. False when there is no room. */
+static bool list_partners(const sk_touch *touch, sk_search_part *part, size_t slot) {
+    uint32_t a = touch->tree.leaf_at[slot];
+    size_t first = touch->everybody ? slot : 0;
+    size_t count = sk_tree_hits[touch->isa](&touch->tree, &touch->hot_box[a], first, part->hit);
     if (part->first.count + count > part->first.capacity) return false;
     for (size_t i = 0; i < count; i++) {
         uint32_t b = touch->tree.leaf_at[part->hit[i]];
         if (sk_is_ignored(&touch->ignored, a, b)) continue;
-        if (b < a && touch->anew[b] && sk_boxes_meet(&touch->hot_box[b], &touch->leaf_box[a])) continue;
+        if (!touch->everybody && b < a && touch->anew[b] && sk_boxes_meet(&touch->hot_box[b], &touch->leaf_box[a])) continue;
         part->first.data[part->first.count++] = b < a ? b : a;
         part->second.data[part->second.count++] = b < a ? a : b;
     }
@@ -155,9 +157,10 @@ static bool list_partners(const sk_touch *touch, sk_search_part *part, uint32_t 
 }
 
 static void list_part(const sk_parts_job *job, sk_search_part *part) {
+    const sk_touch *touch = job->touch;
     for (; part->next < part->end; part->next++) {
         if (part->first.count > job->most) part->next = part->end - 1; // too many in all
-        else if (job->touch->anew[part->next] && !list_partners(job->touch, part, (uint32_t)part->next)) return;
+        else if (touch->anew[touch->tree.leaf_at[part->next]] && !list_partners(touch, part, part->next)) return;
     }
 }
 

@@ -36,6 +36,7 @@ void sk_touch_release_parts(sk_touch *touch, sk_allocator *allocator) {
         sk_release(allocator, part->hit);
         sk_release(allocator, part->first.data);
         sk_release(allocator, part->second.data);
+        sk_pairs_release(&part->batch, allocator);
         sk_pairs_release(&part->fresh, allocator);
         *part = (sk_search_part){.hit = NULL};
     }

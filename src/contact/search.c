@@ -9,6 +9,10 @@
 
 #include "base/tasks.h"
 #include "contact/touch.h"
+#if defined(__wasm_simd128__) && !defined(SKEIN_DOUBLE)
+#include <wasm_simd128.h>
+#define SK_QUADS_OF_WASM
+#endif
 
 /* What is nearer than this share of its way may close in a substep: a little more than 1 / (1 - SK_LEFT_OVER). */
 static const real closing_share = (real)1.13;
@@ -25,6 +29,16 @@ static real part_of(const sk_touch *touch, real reach) {
 
 /* ---- boxes ---- */
 
+/* (For WebAssembly clang goes lane by lane, which takes a heap's boxes five times as long.) */
+#ifdef SK_QUADS_OF_WASM
+static inline sk_quad least_of(sk_quad a, sk_quad b) {
+    return (sk_quad)wasm_f32x4_pmin((v128_t)b, (v128_t)a); // a where it is less
+}
+
+static inline sk_quad most_of(sk_quad a, sk_quad b) {
+    return (sk_quad)wasm_f32x4_pmax((v128_t)b, (v128_t)a);
+}
+#else
 static inline sk_quad least_of(sk_quad a, sk_quad b) {
     for (int k = 0; k < 4; k++) a[k] = a[k] < b[k] ? a[k] : b[k];
     return a;
@@ -34,6 +48,7 @@ static inline sk_quad most_of(sk_quad a, sk_quad b) {
     for (int k = 0; k < 4; k++) a[k] = a[k] > b[k] ? a[k] : b[k];
     return a;
 }
+#endif
 
 static inline void widen(sk_box *box, const sk_box *by) {
     for (int end = 0; end < 2; end++) {
@@ -125,12 +140,13 @@ static void make_hot_box(sk_touch *touch, size_t i) {
     const sk_quad most = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX, 0};
     sk_box box = {{most, most}, {-most, -most}};
     bool met = touch->leaf_box[i].low[0][0] <= touch->leaf_box[i].high[0][0]; // it has not blown up
-    for (size_t v = leaf->first_vertex; met && v < (size_t)leaf->first_vertex + leaf->vertices; v++)
-        if (touch->lost[v]) widen(&box, &touch->vertex_box[v]);
-    for (size_t e = leaf->first_edge; met && e < (size_t)leaf->first_edge + leaf->edges; e++)
-        if (touch->hot_edge[e]) widen(&box, &touch->edge_box[e]);
-    for (size_t t = leaf->first_triangle; met && t < (size_t)leaf->first_triangle + leaf->triangles; t++)
-        if (touch->hot_triangle[t]) widen(&box, &touch->triangle_box[t]);
+    sk_hot hot = met ? touch->hot[i] : (sk_hot){0, 0, 0};
+    for (uint32_t v = leaf->first_vertex; hot.vertices; v++, hot.vertices >>= 1)
+        if (hot.vertices & 1) widen(&box, &touch->vertex_box[v]);
+    for (uint32_t e = leaf->first_edge; hot.edges; e++, hot.edges >>= 1)
+        if (hot.edges & 1) widen(&box, &touch->edge_box[e]);
+    for (uint32_t t = leaf->first_triangle; hot.triangles; t++, hot.triangles >>= 1)
+        if (hot.triangles & 1) widen(&box, &touch->triangle_box[t]);
     touch->hot_box[i] = box;
 }
 
@@ -162,73 +178,31 @@ static void make_boxes(sk_touch *touch, sk_touch_search_sort sort) {
 
 /* ---- who is looked for ---- */
 
-/* Marks edges and triangles that have a lost vertex, and the leaves that have one. */
+/* Marks vertices that are lost, edges and triangles that have one, and the leaves of all these. */
 static void mark_hot(sk_touch *touch) {
     const sk_skin *skin = &touch->skin;
     const uint8_t *lost = touch->lost;
+    touch->everybody = !memchr(lost, 0, skin->vertex_count);
     memset(touch->anew, 0, skin->leaf_count);
+    memset(touch->hot, 0, skin->leaf_count * sizeof *touch->hot);
     for (size_t v = 0; v < skin->vertex_count; v++)
         if (lost[v]) mark_leaves_of(skin, v, touch->anew);
     for (size_t i = 0; i < skin->leaf_count; i++) {
-        const sk_leaf *leaf = &skin->leaf[i];
         if (!touch->anew[i]) continue;
-        for (size_t e = leaf->first_edge; e < (size_t)leaf->first_edge + leaf->edges; e++)
-            touch->hot_edge[e] = lost[skin->edge[e][0]] | lost[skin->edge[e][1]];
-        for (size_t t = leaf->first_triangle; t < (size_t)leaf->first_triangle + leaf->triangles; t++)
-            touch->hot_triangle[t] = lost[skin->triangle[t][0]] | lost[skin->triangle[t][1]] | lost[skin->triangle[t][2]];
-    }
-}
-
-/* So that none is marked the next time. */
-static void forget_hot(sk_touch *touch) {
-    const sk_skin *skin = &touch->skin;
-    for (size_t i = 0; i < skin->leaf_count; i++) {
         const sk_leaf *leaf = &skin->leaf[i];
-        if (!touch->anew[i]) continue;
-        memset(touch->hot_edge + leaf->first_edge, 0, leaf->edges);
-        memset(touch->hot_triangle + leaf->first_triangle, 0, leaf->triangles);
+        const uint8_t *vertex = lost + leaf->first_vertex;
+        const uint32_t(*edge)[2] = (const uint32_t(*)[2])skin->edge + leaf->first_edge;
+        const uint32_t(*t)[3] = (const uint32_t(*)[3])skin->triangle + leaf->first_triangle;
+        uint32_t vertices = 0, edges = 0, triangles = 0;
+        for (uint32_t k = 0; k < leaf->vertices; k++) vertices |= (uint32_t)vertex[k] << k;
+        for (uint32_t k = 0; k < leaf->edges; k++) edges |= (uint32_t)(lost[edge[k][0]] | lost[edge[k][1]]) << k;
+        for (uint32_t k = 0; k < leaf->triangles; k++)
+            triangles |= (uint32_t)(lost[t[k][0]] | lost[t[k][1]] | lost[t[k][2]]) << k;
+        touch->hot[i] = (sk_hot){(uint8_t)vertices, (uint8_t)edges, (uint8_t)triangles};
     }
 }
 
 /* ---- pairs ---- */
-
-static inline void put(sk_pairs *pairs, uint64_t key, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
-    size_t k = pairs->count++;
-    pairs->corner[0][k] = a, pairs->corner[1][k] = b, pairs->corner[2][k] = c, pairs->corner[3][k] = d;
-    pairs->key[k] = key;
-}
-
-/* Vertices of leaf a with triangles of leaf b, of which one is looked for. */
-static void put_corners(const sk_touch *touch, sk_pairs *fresh, uint64_t key, const sk_leaf *a, uint32_t b_number) {
-    const sk_skin *skin = &touch->skin;
-    const sk_leaf *b = &skin->leaf[b_number];
-    for (uint32_t v = a->first_vertex; v < a->first_vertex + a->vertices; v++) {
-        const sk_box box = touch->vertex_box[v];
-        if (!sk_boxes_meet(&box, &touch->leaf_box[b_number])) continue;
-        for (uint32_t t = b->first_triangle; t < b->first_triangle + b->triangles; t++) {
-            const uint32_t *corner = skin->triangle[t];
-            if ((touch->lost[v] | touch->hot_triangle[t]) && sk_boxes_meet(&box, &touch->triangle_box[t]) &&
-                v != corner[0] && v != corner[1] && v != corner[2])
-                put(fresh, key + 2 * (v - a->first_vertex) + t - b->first_triangle, v, corner[0], corner[1], corner[2]);
-        }
-    }
-}
-
-static void put_edges(const sk_touch *touch, sk_pairs *fresh, uint64_t key, uint32_t a_number, uint32_t b_number) {
-    const sk_skin *skin = &touch->skin;
-    const sk_leaf *a = &skin->leaf[a_number], *b = &skin->leaf[b_number];
-    for (uint32_t e = a->first_edge; e < a->first_edge + a->edges; e++) {
-        const sk_box box = touch->edge_box[e];
-        if (!sk_boxes_meet(&box, &touch->leaf_box[b_number])) continue;
-        const uint32_t *one = skin->edge[e];
-        for (uint32_t f = a == b ? e + 1 : b->first_edge; f < b->first_edge + b->edges; f++) {
-            const uint32_t *two = skin->edge[f];
-            if ((touch->hot_edge[e] | touch->hot_edge[f]) && sk_boxes_meet(&box, &touch->edge_box[f]) &&
-                one[0] != two[0] && one[0] != two[1] && one[1] != two[0] && one[1] != two[1])
-                put(fresh, key + 5 * (e - a->first_edge) + f - b->first_edge, one[0], one[1], two[0], two[1]);
-        }
-    }
-}
 
 /* Leaves those that may come near. */
 static void keep_near(const sk_touch *touch, sk_pairs *pairs, int sort, sk_touch_search_sort search) {
@@ -242,24 +216,8 @@ static void keep_near(const sk_touch *touch, sk_pairs *pairs, int sort, sk_touch
                                      .shares = 1 - 1 / closing_share};
     sk_closest[sort][touch->isa](touch->at, pairs);
     sk_nearing[sort][touch->isa](touch->at, touch->in_the_end, &values, pairs);
-    size_t count = pairs->count;
-    pairs->count = 0;
-    for (size_t k = 0; k < count; k++) {
-        pairs->settled[k] = 0;
-        if (pairs->closes[k]) sk_pairs_copy(pairs, pairs, k);
-    }
+    sk_pairs_keep_found(pairs, ways); // of ways, normals are those of the places before the substep
     sk_pairs_pad(pairs);
-}
-
-/* A surface as it was built is not pushed apart: features of one piece are as thick as their distance then allows. */
-static void set_thickness(const sk_touch *touch, sk_pairs *pairs, int sort) {
-    const real share = (real)0.9;
-    sk_closest[sort][touch->isa](touch->skin.built, pairs);
-    const uint32_t *piece = touch->skin.piece;
-    for (size_t k = 0; k < pairs->count; k++) {
-        bool same = piece[pairs->corner[0][k]] == piece[pairs->corner[2][k]];
-        pairs->thickness[k] = same ? sk_min(touch->thickness, share * pairs->distance[k]) : touch->thickness;
-    }
 }
 
 /* The leaf whose partners have the i-th of all. */
@@ -273,34 +231,39 @@ static uint32_t leaf_with(const sk_touch *touch, size_t i) {
     return low;
 }
 
-enum { MOST = 64 }; /* pairs of two leaves: 2 x 4 x 2 corners, 5 x 5 edges */
+enum { BATCH = 2048 }; /* pairs: what is done with them is done while they are in the cache */
 
-/* Lists the pairs of features of a part's leaves that may meet, and keeps those that may come near. */
-static void find_fresh(const sk_parts_job *job, sk_search_part *part) {
-    const sk_touch *touch = job->touch;
-    sk_pairs fresh = part->fresh; // so that its arrays stay in registers
-    uint32_t a = leaf_with(touch, part->next);
-    for (; part->next < part->end && fresh.count + MOST <= fresh.capacity; part->next++) {
-        while (touch->start[a + 1] <= part->next) a++;
-        uint32_t b = touch->partner.data[part->next];
-        uint64_t key = (uint64_t)a << 36 | (uint64_t)b << 8;
-        if (job->sort == SK_EDGES) {
-            put_edges(touch, &fresh, key, a, b);
-            continue;
-        }
-        put_corners(touch, &fresh, key, &touch->skin.leaf[a], b);
-        if (b != a) put_corners(touch, &fresh, key + MOST / 2, &touch->skin.leaf[b], a);
+/* Lists pairs of features whose boxes may meet, of a part's next leaves. */
+static void fill_batch(const sk_parts_job *job, sk_search_part *part, uint32_t *a) {
+    const uint32_t *start = job->touch->start;
+    for (part->batch.count = 0; part->next < part->end;) {
+        while (start[*a + 1] <= part->next) ++*a;
+        size_t count = (start[*a + 1] < part->end ? start[*a + 1] : part->end) - part->next;
+        size_t room = (BATCH - part->batch.count) / SK_LEAVES_PAIRS;
+        if (!room) break;
+        if (count > room) count = room;
+        sk_features[job->sort][job->touch->isa](job->touch, &part->batch, *a, job->touch->partner.data + part->next, count);
+        part->next += count;
     }
-    part->fresh.count = fresh.count;
-    if (part->next < part->end) return;
+    sk_pairs_pad(&part->batch);
+}
+
+/* Finds those of a part's leaves that may come near. */
+static void find_fresh(const sk_parts_job *job, sk_search_part *part) {
+    uint32_t a = leaf_with(job->touch, part->next);
+    while (part->next < part->end) {
+        if (part->batch.capacity < BATCH || part->fresh.capacity < part->fresh.count + BATCH) return;
+        fill_batch(job, part, &a);
+        keep_near(job->touch, &part->batch, job->sort, (sk_touch_search_sort)job->search);
+        sk_touch_set_thickness(job->touch, &part->batch, job->sort);
+        sk_pairs_take(&part->fresh, &part->batch, 0, part->batch.count);
+    }
     sk_pairs_pad(&part->fresh);
-    keep_near(touch, &part->fresh, job->sort, (sk_touch_search_sort)job->search);
-    set_thickness(touch, &part->fresh, job->sort);
-    if (job->search == SK_SEARCH_WAYS) sk_closest[job->sort][touch->isa](touch->p, &part->fresh);
 }
 
 static bool grow_fresh(sk_search_part *part, sk_allocator *allocator) {
-    return sk_pairs_reserve(&part->fresh, allocator, 2 * part->fresh.capacity + 16 * MOST);
+    return sk_pairs_reserve(&part->batch, allocator, BATCH) &&
+           sk_pairs_reserve(&part->fresh, allocator, 2 * part->fresh.capacity + 4 * BATCH);
 }
 
 /* Finds the pairs of a sort that may come near, in order. */
@@ -328,7 +291,8 @@ static bool list_fresh(sk_touch *touch, sk_allocator *allocator, int sort, sk_to
 
 /* A horizon at which what goes its own way has gone some thicknesses. */
 static void look_ahead(sk_touch *touch) {
-    const real least = 2, longest = 640;
+    // where little is kept, boxes may be wide, and it is who leaves its course that is looked for
+    const real least = touch->untouched ? 6 : 2, longest = 640;
     // where few have left their courses, they will keep to them for longer
     real last = touch->now, most = 4 * touch->lost_since < touch->skin.vertex_count ? sk_max(10, 2 * last) : 10;
     real longer = touch->lost_since ? 0 : 2 * last;
@@ -402,7 +366,6 @@ bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_s
     for (int sort = 0; sort < SK_PAIR_SORTS && good && !gives_up; sort++) {
         good = list_fresh(touch, allocator, sort, search) && sk_touch_keep(touch, allocator, sort, everybody);
     }
-    forget_hot(touch);
     touch->found = good && !gives_up;
     return good;
 }

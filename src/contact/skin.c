@@ -146,8 +146,11 @@ static bool list_leaves(sk_skin *skin, sk_allocator *allocator) {
 /* About seven tenths of a cell's side: of a mean over sides and diagonals, six. */
 static void measure_spacing(sk_skin *skin) {
     double sum = 0;
-    for (size_t e = 0; e < skin->edge_count; e++)
-        sum += (double)sk_length(sk_sub(sk_xyz(skin->built[skin->edge[e][0]]), sk_xyz(skin->built[skin->edge[e][1]])));
+    for (size_t e = 0; e < skin->edge_count; e++) {
+        real length = sk_length(sk_sub(sk_xyz(skin->built[skin->edge[e][0]]), sk_xyz(skin->built[skin->edge[e][1]])));
+        sum += (double)length;
+        skin->longest = sk_max(skin->longest, length);
+    }
     skin->spacing = skin->edge_count ? (real)(0.6 * sum / (double)skin->edge_count) : 0;
 }
 

@@ -22,12 +22,11 @@ static sk_touch *touch_of(const sk_op *op) {
     return ((const sk_force *)op->rule)->state;
 }
 
-/* A vertex goes on as it does now; what is fast is seldom as steady, and what is slow needs little room. */
-static sk_course course_from(const sk_touch *touch, sk_vec3 at, sk_vec3 step, real time) {
+/* What is fast is seldom as steady, and what is slow needs little room; `speed` is that of a substep, in the frame. */
+static sk_course course_from(const sk_touch *touch, sk_vec3 at, sk_vec3 step, real speed, real time) {
     const real least = (real)0.125, substeps = 10;
     real share = (real)0.25, room = (real)0.45 * touch->skin.spacing - (real)0.5 * SK_NEAR_THICKNESSES * touch->thickness;
     if (touch->untouched && room > (real)0.5 * touch->thickness) share = (real)0.5; // its own features stay out of reach
-    real speed = sk_length(sk_sub(step, touch->drift));
     real reach = sk_max(sk_min(share, least + substeps * speed / touch->thickness) * touch->thickness, share * speed);
     return (sk_course){sk_sub(at, sk_scale(time, step)), step, reach};
 }
@@ -126,24 +125,25 @@ static void begin_frame(sk_touch *touch, const sk_run *run, const sk_op *op) {
     touch->frame_step = (sk_vec3){(real)(share * sum[0]), (real)(share * sum[1]), (real)(share * sum[2])};
 }
 
-/* Whether a vertex, since a course was last set for it, has rather stayed in the frame than gone as it then did. */
-static bool trembles(const sk_touch *touch, size_t v) {
+/* A vertex goes on as it does now; but as it did in the mean where, since a course was last set for it, it has rather stayed
+ * in the frame than gone as it then did: it trembles. */
+static sk_vec3 steady_step(const sk_touch *touch, size_t v, sk_vec3 step) {
     const sk_seen *seen = &touch->seen[v];
     real time = (real)(touch->clock - seen->clock);
-    if (!touch->remembers || !(time > 0)) return false;
+    if (!touch->remembers || !(time > 0)) return step;
     sk_vec3 gone = sk_sub(sk_xyz(touch->p[v]), seen->at);
     sk_vec3 stayed = sk_sub(gone, sk_scale(time, touch->frame_step)), went = sk_sub(gone, sk_scale(time, seen->step));
-    return sk_dot(stayed, stayed) <= sk_dot(went, went);
+    return sk_dot(stayed, stayed) <= sk_dot(went, went) ? sk_scale(1 / time, stayed) : step;
 }
 
 /* Courses of lost vertices, as their velocities are. */
 static void set_courses(sk_touch *touch, const sk_run *run, const sk_op *op, real time) {
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         if (!touch->lost[v]) continue;
-        sk_vec3 goes = step_of(touch, run, op, v), step = sk_sub(goes, touch->frame_step);
-        if (trembles(touch, v)) step = (sk_vec3){0, 0, 0};
+        sk_vec3 goes = step_of(touch, run, op, v), now = sk_sub(goes, touch->frame_step), step = steady_step(touch, v, now);
+        real speed = sk_max(sk_length(sk_sub(now, touch->drift)), sk_length(sk_sub(step, touch->drift)));
         touch->seen[v] = (sk_seen){sk_xyz(touch->p[v]), goes, touch->clock};
-        touch->course[v] = course_from(touch, sk_sub(sk_xyz(touch->p[v]), touch->shift[0]), step, time);
+        touch->course[v] = course_from(touch, sk_sub(sk_xyz(touch->p[v]), touch->shift[0]), step, speed, time);
         sk_touch_put_course(touch, v, false);
     }
 }
@@ -157,7 +157,7 @@ static bool are_most(const sk_touch *touch) {
 
 /* Finds out who is lost before the substep: the wild, too, get courses now and then. */
 static bool mark_lost(sk_touch *touch, const sk_run *run, const sk_op *op) {
-    const size_t often = 10; // substeps
+    const size_t often = 2; // substeps
     bool knows = touch->alone && run->iteration > 0 && touch->followed; // for who has been lost since then?
     if (!knows) sk_touch_set_frame(touch, run->vector[SK_X], op->packed, touch->now, 0);
     else touch->shift[0] = touch->shift[1];
@@ -340,7 +340,7 @@ static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *cou
     LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(seen, vertices), LIST(inverse, vertices);
     LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(lost, vertices), LIST(wild, vertices);
     LIST(corner_box, vertices), LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles);
-    LIST(hot_edge, edges), LIST(hot_triangle, triangles), LIST(leaf_box, leaves), LIST(hot_box, leaves);
+    LIST(hot, leaves), LIST(leaf_box, leaves), LIST(hot_box, leaves);
     LIST(anew, leaves), LIST(moved, leaves), LIST(changed, leaves), LIST(start, leaves);
 #undef LIST
     return n;

@@ -1,7 +1,7 @@
 /* Contact of surfaces with themselves and each other: what a rule that meets (forces/force.h) keeps between its ops.
  *
  *   begin   P = X; pairs of features that may come near are found anew where a vertex has left its way; all that are
- *           kept are looked at: distance, normal, places of contact; those nearer than thickness and a quarter are near
+ *           kept are looked at: distance, normal, places of contact; those nearer than thickness and a twentieth are near
  *   push    each of these, in a fixed order, is brought to its thickness, with friction
  *   bound   no vertex goes further than its pairs allow, so that nothing passes
  *
@@ -15,6 +15,8 @@
  * vertex goes the least share of its way that any of its pairs allows, and a minimum knows no order. */
 #ifndef SK_CONTACT_TOUCH_H
 #define SK_CONTACT_TOUCH_H
+
+#include <string.h>
 
 #include "base/wide_types.h"
 #include "forces/force.h"
@@ -35,6 +37,7 @@ typedef struct sk_skin {
     sk_vec4 *built;     /* as they were built */
     uint32_t (*edge)[2], (*triangle)[3];
     sk_leaf *leaf;
+    real longest; /* m: of edges, as they were built */
     real spacing; /* m: what lies between features of one surface that have no corner in common, as they were built */
     uint32_t *leaf_start, *leaf_of; /* those of vertex v: leaf_of[leaf_start[v]] to leaf_of[leaf_start[v + 1]] */
 } sk_skin;
@@ -87,7 +90,7 @@ typedef struct sk_box {
 
 /* Boxes of leaves, and of sixteen of those below, up to one: by slots, in which leaves that were built near each other
  * are near. Sixteen slots are a block. */
-enum { SK_TREE_LEVELS = 9, SK_TREE_WIDTH = 16 };
+enum { SK_TREE_LEVELS = 9, SK_TREE_SHIFT = 4, SK_TREE_WIDTH = 1 << SK_TREE_SHIFT };
 typedef struct sk_tree_block {
     _Alignas(64) real low[2][3][SK_TREE_WIDTH], high[2][3][SK_TREE_WIDTH];
 } sk_tree_block;
@@ -97,14 +100,23 @@ typedef struct sk_tree {
     int levels;
     uint32_t *leaf_at; /* of slots */
 } sk_tree;
-/* Lists the slots of the lowest level whose boxes may meet this one at some time. */
-typedef size_t sk_tree_kernel(const sk_tree *tree, const sk_box *box, uint32_t *slot);
+/* Lists the slots of the lowest level, from the first one on, whose boxes may meet this one at some time. */
+typedef size_t sk_tree_kernel(const sk_tree *tree, const sk_box *box, size_t first, uint32_t *slot);
 
 /* Some of the pairs that are kept: twice where a pair is, and one more if it is a late one. */
 typedef struct sk_pair_list {
     uint32_t *data;
     size_t count, capacity;
 } sk_pair_list;
+
+/* Those that may close, with their corners. */
+typedef struct sk_closing_pair {
+    uint32_t entry, corner[4];
+} sk_closing_pair;
+typedef struct sk_closing_list {
+    sk_closing_pair *data;
+    size_t count, capacity;
+} sk_closing_list;
 
 /* A pair's key, and where it is. */
 typedef struct sk_pair_place {
@@ -134,6 +146,11 @@ typedef struct sk_course_block {
 typedef bool sk_course_kernel(const sk_vec4 *x, size_t packed, size_t slots, const sk_course_block *block, real time,
                               const sk_vec3 *shift, uint16_t *off);
 
+/* Which features of a leaf are looked for: bits. */
+typedef struct sk_hot {
+    uint8_t vertices, edges, triangles;
+} sk_hot;
+
 /* What one thread finds of a search: all that is kept is put together in their order, so that no bit depends on them. */
 enum { SK_MOST_PARTS = 16 };
 typedef struct sk_search_part {
@@ -142,7 +159,7 @@ typedef struct sk_search_part {
         uint32_t *data;
         size_t count, capacity;
     } first, second; /* leaves whose boxes meet */
-    sk_pairs fresh;
+    sk_pairs batch, fresh; /* pairs whose boxes may meet, and all of them that may come near */
     size_t next, end; /* of leaves or leaves' pairs, those still to be looked at */
 } sk_search_part;
 
@@ -195,9 +212,10 @@ typedef struct sk_touch {
     sk_box *corner_box; /* of vertices: where they are, and in its fourth number how much wider a box has to be */
     sk_box *vertex_box, *edge_box, *triangle_box, *leaf_box;
     sk_box *hot_box; /* of those features of a leaf that are looked for */
-    uint8_t *hot_edge, *hot_triangle;
+    sk_hot *hot;
     sk_tree tree;
     uint8_t *anew, *moved;        /* leaves that are looked for, and whose boxes are new */
+    bool everybody;               /* all features of all leaves are looked for */
     uint8_t *changed;             /* slots of a level of the tree */
     bool refit;                   /* all of the tree is old */
     uint32_t *start;              /* of leaves: where their partners start */
@@ -211,7 +229,7 @@ typedef struct sk_touch {
     sk_pairs late[SK_PAIR_SORTS]; /* and of searches since then, one after the other */
     sk_pairs fresh;
     sk_pair_list near[SK_PAIR_SORTS];       /* in the order of leaves; */
-    sk_pair_list may_close[SK_PAIR_SORTS];  /* and in none */
+    sk_closing_list may_close[SK_PAIR_SORTS]; /* and in none */
     struct {
         sk_pair_place *data;
         size_t count, capacity;
@@ -258,6 +276,8 @@ void sk_pairs_pad(sk_pairs *pairs);
 sk_pairs sk_pairs_between(const sk_pairs *pairs, size_t begin, size_t end);
 /* Adds all of pairs [first, end) of others; there is room. */
 void sk_pairs_take(sk_pairs *pairs, const sk_pairs *others, size_t first, size_t end);
+/* Leaves those that kernels have found (`closes` is 1), with their distances; their normals and shares if asked for. */
+void sk_pairs_keep_found(sk_pairs *pairs, bool normals);
 void sk_pairs_release(sk_pairs *pairs, sk_allocator *allocator);
 static inline void sk_pairs_copy(sk_pairs *to, const sk_pairs *from, size_t k) {
     for (int c = 0; c < 4; c++) to->corner[c][to->count] = from->corner[c][k];
@@ -265,6 +285,27 @@ static inline void sk_pairs_copy(sk_pairs *to, const sk_pairs *from, size_t k) {
     to->settled[to->count] = from->settled[k];
     to->thickness[to->count] = from->thickness[k];
     to->distance[to->count++] = from->distance[k];
+}
+/* With its normal, and where its features are nearest. */
+static inline void sk_pairs_copy_all(sk_pairs *to, const sk_pairs *from, size_t k) {
+    for (int c = 0; c < 3; c++) to->normal[c][to->count] = from->normal[c][k];
+    for (int c = 0; c < 2; c++) to->share[c][to->count] = from->share[c][k];
+    sk_pairs_copy(to, from, k);
+}
+
+/* Of the eight pairs from k on, a multiple of eight, those of which kernels have found `what`: a bit in the byte of each. */
+static inline uint64_t sk_pairs_that(const sk_pairs *pairs, size_t k, uint64_t what) {
+    uint64_t found;
+    memcpy(&found, pairs->closes + k, sizeof found);
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+    found = __builtin_bswap64(found);
+#endif
+    size_t left = pairs->count - k; // the rest of a block is nobody's
+    if (left < sizeof found) found &= ((uint64_t)1 << 8 * left) - 1;
+    return found & what * 0x0101010101010101u;
+}
+static inline size_t sk_first_of(uint64_t found) {
+    return (size_t)__builtin_ctzll(found) / 8;
 }
 
 /* ---- kept.c ---- */
@@ -290,6 +331,19 @@ extern sk_closest_kernel *const sk_closest[SK_PAIR_SORTS][SK_ISA_COUNT];
 /* nearing.c */
 extern sk_closing_kernel *const sk_closing[SK_PAIR_SORTS][SK_ISA_COUNT];
 extern sk_nearing_kernel *const sk_nearing[SK_PAIR_SORTS][SK_ISA_COUNT];
+
+/* ---- features.c ---- */
+
+/* Lists the pairs of features of leaf a and each of its partners whose boxes may meet and of which one is looked for, in
+ * order; there is room for SK_LEAVES_PAIRS a partner. */
+enum { SK_LEAVES_PAIRS = 64 }; /* of two leaves: 2 x 4 x 2 corners, 5 x 5 edges */
+typedef void sk_features_kernel(const struct sk_touch *touch, sk_pairs *fresh, uint32_t a, const uint32_t *partner,
+                                size_t count);
+extern sk_features_kernel *const sk_features[SK_PAIR_SORTS][SK_ISA_COUNT];
+/* The key of their first pair. */
+static inline uint64_t sk_leaves_key(uint32_t a, uint32_t b) {
+    return (uint64_t)a << 36 | (uint64_t)b << 8;
+}
 
 /* ---- tree.c ---- */
 
@@ -335,6 +389,11 @@ bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_s
 /* The boxes of a leaf and of its features, from those of vertices. */
 void sk_touch_leaf_box(sk_touch *touch, size_t leaf);
 
+/* ---- thickness.c ---- */
+
+/* Puts down how thick the features of pairs are. */
+void sk_touch_set_thickness(const sk_touch *touch, sk_pairs *pairs, int sort);
+
 /* ---- bound.c ---- */
 
 sk_op_kernel sk_touch_bound;
@@ -350,7 +409,7 @@ void sk_touch_put_boxes(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_
 /* ---- touch.c ---- */
 
 /* Pairs that are looked at closely are nearer than so many thicknesses. */
-#define SK_NEAR_THICKNESSES ((real)1.25)
+#define SK_NEAR_THICKNESSES ((real)1.05)
 /* Of a gap, so much is left in a substep. */
 #define SK_LEFT_OVER ((real)0.1)
 /* What is less than this share of the thickness does not close at all. */

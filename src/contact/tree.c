@@ -31,12 +31,19 @@ SK_INLINE uint32_t boxes_met(const sk_tree_block *block, const sk_box *box) {
     return ~apart & 0xffff;
 }
 
-size_t SK_KERNEL(hits)(const sk_tree *tree, const sk_box *box, uint32_t *slot) {
+/* Bits of a level's block, without what lies below the first slot. */
+SK_INLINE uint32_t boxes_met_from(const sk_tree *tree, int level, size_t number, const sk_box *box, size_t first) {
+    size_t low = first / ((size_t)1 << SK_TREE_SHIFT * level), begins = number * SK_TREE_WIDTH;
+    uint32_t bits = boxes_met(&tree->block[level][number], box);
+    return begins < low ? bits & ~0u << (low - begins) : bits;
+}
+
+size_t SK_KERNEL(hits)(const sk_tree *tree, const sk_box *box, size_t first, uint32_t *slot) {
     uint32_t left[SK_TREE_LEVELS]; // of each level: lanes that have not been gone down yet
     size_t at[SK_TREE_LEVELS], count = 0;
     int level = tree->levels - 1, top = level;
     at[level] = 0;
-    left[level] = boxes_met(&tree->block[level][0], box);
+    left[level] = boxes_met_from(tree, level, 0, box, first);
     for (;;) {
         if (!level)
             for (; left[0]; left[0] &= left[0] - 1)
@@ -47,7 +54,7 @@ size_t SK_KERNEL(hits)(const sk_tree *tree, const sk_box *box, uint32_t *slot) {
         left[level] &= left[level] - 1;
         level--;
         at[level] = below;
-        left[level] = boxes_met(&tree->block[level][below], box);
+        left[level] = boxes_met_from(tree, level, below, box, first);
     }
 }
 #else

@@ -1,5 +1,5 @@
-/* Attraction: every particle is drawn to a centre with the same acceleration, however far it is. Where it is flatter
- * in the vertical, what flies about the centre gathers in a ring round it: of radius v^2/strength at speed v.
+/* Attraction: every particle is drawn to a centre with the same acceleration at any distance. If `flatness` makes the
+ * vertical part larger, particles gather in a ring round the centre, of radius v^2/strength at speed v.
  *
  *   d = (centre - x), with d.y flatness times as large:   v += strength dt d/|d| */
 #include "base/arithmetic.h"

@@ -1,14 +1,13 @@
-/* Stiffness of forces by place, as 3 x 3 blocks of sixteen particles (for files of kernels).
+/* The stiffness of forces that depend on place, as 3 x 3 blocks of a part of particles (for files of kernels).
  *
- * An implicit solve takes the symmetric part of -dF/dx and -dF/dv, and of that the positive part: conjugate gradients
- * need a positive definite matrix, and where a potential curves downwards the solve is better off without. The answer
- * does not depend on it, only how fast it is found. */
+ * An implicit solve uses the symmetric part of -dF/dx and -dF/dv with negative eigenvalues set to 0, since conjugate
+ * gradients need a positive definite matrix. The solution does not depend on that, only how fast it is found. */
 
 typedef struct stiffness_block {
     sk_wide xx, yy, zz, xy, xz, yz;
 } stiffness_block;
 
-/* One Jacobi rotation: takes a_pq to 0, with r the third axis, and turns the columns p and q of the axes. */
+/* One Jacobi rotation: makes a_pq 0, where r is the third axis, and rotates the columns p and q of the axes. */
 SK_INLINE void rotate(sk_wide *pp, sk_wide *qq, sk_wide *pq, sk_wide *pr, sk_wide *qr, sk_wide3 *p, sk_wide3 *q) {
     sk_wide one = sk_splat(1), none = {0};
     sk_mask off = sk_differ(*pq, none);
@@ -30,7 +29,7 @@ SK_INLINE void add_axis(stiffness_block *sum, sk_wide value, sk_wide3 u) {
     sum->xy += l * u.x * u.y, sum->xz += l * u.x * u.z, sum->yz += l * u.y * u.z;
 }
 
-/* The lanes in which no principal minor is under 0. */
+/* The lanes in which no principal minor is negative. */
 SK_INLINE sk_mask is_positive(const stiffness_block *a) {
     sk_wide xy = a->xx * a->yy - a->xy * a->xy, xz = a->xx * a->zz - a->xz * a->xz, yz = a->yy * a->zz - a->yz * a->yz;
     sk_wide all = a->xx * yz - a->xy * (a->xy * a->zz - a->yz * a->xz) + a->xz * (a->xy * a->yz - a->yy * a->xz);
@@ -38,7 +37,7 @@ SK_INLINE sk_mask is_positive(const stiffness_block *a) {
              sk_negative(yz) | sk_negative(all));
 }
 
-/* What is left of a block with its negative eigenvalues taken as 0. */
+/* Sets the negative eigenvalues of a block to 0. */
 SK_INLINE void make_positive(stiffness_block *a) {
     enum { TURNS = 5 };
     sk_mask good = is_positive(a);
@@ -59,7 +58,7 @@ SK_INLINE void make_positive(stiffness_block *a) {
     a->xz = sk_select(good, a->xz, sum.xz), a->yz = sk_select(good, a->yz, sum.yz);
 }
 
-/* dst += block direction */
+/* dst += block times direction */
 SK_INLINE void add_product(sk_run *run, const sk_op *op, size_t slot, const stiffness_block *a) {
     bool packed = slot < op->packed;
     sk_wide4 p = sk_load_part(run->vector[op->source[1]], slot, packed);
@@ -70,7 +69,7 @@ SK_INLINE void add_product(sk_run *run, const sk_op *op, size_t slot, const stif
     sk_store_part(run->vector[op->dst], slot, packed, d);
 }
 
-/* dst += the diagonal, second source += the rest */
+/* dst += the diagonal (xx yy zz), second source += the rest (xy xz yz) */
 SK_INLINE void add_block(sk_run *run, const sk_op *op, size_t slot, const stiffness_block *a) {
     bool packed = slot < op->packed;
     sk_wide4 d = sk_load_part(run->vector[op->dst], slot, packed);

@@ -1,7 +1,7 @@
-/* Bounds: a box or a ball that is not left by more than a step.
+/* Bounds: a box or a ball that particles leave by no more than a step.
  *
- *   wall       what would be outside after this substep, or is, has its velocity turned inwards, as by a mirror
- *   periodic   what is outside a box comes in again at the other side; the two sides do not see each other */
+ *   wall       a particle that is outside, or would be after this substep, has its velocity mirrored inwards
+ *   periodic   a particle outside a box comes in again at the opposite side; neighbours do not reach across */
 #include "forces/force.h"
 
 #include "base/arithmetic.h"
@@ -16,7 +16,7 @@ enum { BOX, BALL };
 enum { WALL, PERIODIC };
 
 // ---- arithmetic ----
-/* Along one axis: mirrored, where it leaves. */
+/* The speed along one axis, mirrored if the particle leaves. */
 SK_INLINE num bounds_mirrored(num at, num speed, scalar h, scalar low, scalar high) {
     num next = at + h * speed;
     flag leaves = either(both(next > high, speed > 0), both(next < low, speed < 0));
@@ -44,7 +44,7 @@ SK_INLINE vec3 bounds_bound(bounds_params p, vec4 x, vec3 v, vec4 steering, exac
     return pick3(x.w > 0, kept, v);
 }
 
-/* Along one axis: a whole size of the box, where it is outside. */
+/* The shift along one axis: the size of the box, if the particle is outside. */
 SK_INLINE num bounds_back(num at, scalar size, scalar low, scalar high) {
     return pick(at > high, -size, pick(at < low, size, 0));
 }

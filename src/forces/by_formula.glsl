@@ -1,4 +1,4 @@
-// A force by a formula, or a potential energy's: its slope, downwards.
+// A force by a formula: the formula's value, or minus the gradient of a potential energy.
 vec3 force@(vec3 x, vec3 v, float mass) {
     float weight = rule@[0].y * (rule@[0].x != 0 ? mass : 1), o[3];
     formula@(x, v, op@[1].z, o);

@@ -1,12 +1,12 @@
-/* Forces by a formula of one particle, which is a force or a potential energy. The file that includes this says which:
+/* Forces by a formula of one particle, which is a force or a potential energy. The file that includes this defines
  *
- *   SIGN                          1 where the first outputs are the force, -1 where they are a potential's slope
+ *   SIGN                          1 if the first outputs are the force, -1 if they are a potential's gradient
  *   TEXT                          the text field's name
- *   choose_force, choose_slopes   what comes out of the formula: a vector, and what an implicit method wants of it,
- *                                 xx yy zz xy xz yz of the stiffness, and of the damping where it looks at velocities
- *   force_desc, slopes_desc       how the text is read for each
+ *   choose_force, choose_slopes   the outputs of the formula: a vector, and for implicit methods xx yy zz xy xz yz of
+ *                                 the stiffness, and of the damping if it depends on velocities
+ *   force_desc, slopes_desc       how the text is parsed for each
  *
- * and has by_formula_params as its parameters. */
+ * and by_formula_params, its parameters. */
 #include "forces/force.h"
 #include "formula/pointwise.h"
 
@@ -23,8 +23,8 @@ typedef struct by_formula_params {
 
 #include "forces/blocks.h"
 
-/* A formula's outputs at the particles of a part; returns what their values count, in newtons or joules: a particle's
- * mass, or 1; 0 for slots without a particle. */
+/* Evaluates the outputs for the particles of a part; returns the factor that makes newtons or joules of them: the mass
+ * or 1, and 0 for slots without a particle. */
 SK_INLINE sk_wide outputs_of(const sk_pointwise *formula, sk_run *run, const sk_op *op, size_t slot, sk_wide *out) {
     const by_formula_params *params = ((const sk_force *)op->rule)->params;
     bool packed = slot < op->packed;
@@ -134,7 +134,7 @@ static bool at(const void *data, const double x[3], double time, double force[3]
 
 static const sk_making making = {.make = make, .unmake = unmake};
 
-/* What their types have in common. */
+/* The members that both types have in common. */
 #define BY_FORMULA                                                                                             \
     .domain = SK_OVER_PARTICLES, .sets = true, .kernel = {SK_EACH_ISA(kernel)}, .apply = {SK_EACH_ISA(apply)}, \
     .diagonal = {SK_EACH_ISA(diagonal)}, .guarded = is_guarded, .at = at, .making = &making,                   \

@@ -28,8 +28,8 @@ SK_KERNELS(sk_op_kernel, resistance);
 
 #ifdef SK_ISA
 
-/* It grows by (linear + rate m) + quadratic |v| across the motion, and by that with twice the speed along it, where
- * the force is a parabola: the larger one keeps a solve steady. */
+/* The drag's derivative by velocity is (linear + rate m) + quadratic |v| across the motion, and that with twice the
+ * speed along it. The larger one is used in both directions, which keeps a solve stable. */
 void SK_KERNEL(resistance)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const drag_params p = *(const drag_params *)((const sk_force *)op->rule)->params;
     real a = (real)op->coefficient[0];
@@ -37,7 +37,7 @@ void SK_KERNEL(resistance)(sk_run *run, const sk_op *op, size_t begin, size_t en
         bool packed = slot < op->packed;
         vec4 v = sk_load_part(run->vector[SK_V], slot, packed), d = sk_load_part(run->vector[op->dst], slot, packed);
         num growth = a * drag_at_speed(p, 2 * root(dot(xyz(v), xyz(v))), v.w);
-        // slots without a particle have no mass, and stay without
+        // slots without a particle stay without mass
         growth = sk_keep(v.w > 0, growth);
         d.x += growth, d.y += growth, d.z += growth;
         sk_store_part(run->vector[op->dst], slot, packed, d);

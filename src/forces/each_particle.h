@@ -1,14 +1,14 @@
-/* The loops over particles of forces that say their arithmetic (base/arithmetic.h). A kind's file defines PARAMS, its
- * struct, and its function as one of these before it includes this, which makes `kernel` of it:
+/* The loops over particles for forces with marked arithmetic (base/arithmetic.h). A kind's file defines PARAMS, its
+ * struct, and its function as one of these, before it includes this, which makes `kernel` of it:
  *
- *     PUSH    vec3 (PARAMS p, vec3 v, num mass): newtons of a force that is the same everywhere; what of it
- *             is uniform, methods that predict find by `at` (force.h)
+ *     PUSH    vec3 (PARAMS p, vec3 v, num mass): newtons of a force that is the same everywhere; `at`, which is made
+ *             too, lets methods that predict find out whether it is uniform (force.h)
  *     PUSH_AT vec3 (PARAMS p, vec3 x, vec3 v, num mass): newtons that depend on the place
- *     STEER   vec4 (PARAMS p, vec3 x, exact dt): a change of velocity, and of the allowed speed in w. A kind that looks
- *             from one particle says the field that is then its place: LOOKS_FROM; one that most particles get nothing
- *             from says so: SELDOM
+ *     STEER   vec4 (PARAMS p, vec3 x, exact dt): a change of velocity, and of the allowed speed in w. LOOKS_FROM names
+ *             the field that is replaced by a particle's position if the rule is placed at one; SELDOM says that most
+ *             particles get no change
  *     BOUND   vec3 (PARAMS p, vec4 x, vec3 v, vec4 steering, exact dt): the velocity that is allowed; x.w is the inverse
- *             mass. Where it moves particles instead, by its shader's `shifts`: SHIFT, vec3 (PARAMS p, vec3 x), by how much */
+ *             mass. If its shader's `shifts` says that it moves particles instead: SHIFT, vec3 (PARAMS p, vec3 x) */
 #ifdef SK_ISA
 
 #ifdef PUSH
@@ -33,7 +33,7 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
 void SK_KERNEL(kernel)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const sk_force *force = op->rule;
     PARAMS p = *(const PARAMS *)force->params;
-    size_t own = SIZE_MAX; // the slot that it looks from, checked when the plan was written
+    size_t own = SIZE_MAX; // the slot of the particle that it is placed at, checked when the plan was written
 #ifdef LOOKS_FROM
     if (sk_force_particle(force) >= 0) {
         own = run->slot_of[sk_force_particle(force)];
@@ -48,7 +48,7 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
         flag moved = sk_lanes_between(slot, force->moved.first_slot, force->moved.end_slot);
         if (own - slot < SK_PART) moved[own - slot] = 0;
         vec4 change = STEER(p, xyz(x), dt);
-#ifdef SELDOM // lane by lane, so that it is the same for all widths
+#ifdef SELDOM // tested lane by lane, so that results do not depend on the width
         moved &= (change.x != 0) | (change.y != 0) | (change.z != 0) | (change.w != 0);
         if (none(moved)) continue;
 #endif
@@ -61,7 +61,7 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
 #endif
 
 #ifdef SHIFT
-/* In all vectors that say where a particle is or was. */
+/* Moves particles in all vectors that hold present or earlier positions. */
 SK_INLINE void shift(sk_run *run, const sk_op *op, size_t slot, flag moved, vec4 x, vec3 by) {
     moved &= (by.x != 0) | (by.y != 0) | (by.z != 0);
     if (none(moved)) return;
@@ -91,7 +91,7 @@ void SK_KERNEL(kernel)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
 #endif
         vec3 bound = BOUND(p, x, xyz(v), steering, dt);
         moved &= (bound.x != v.x) | (bound.y != v.y) | (bound.z != v.z);
-        if (none(moved)) continue; // most are within most of the time, and stores of quads are long
+        if (none(moved)) continue; // most particles are mostly within bounds, and storing quads takes long
         sk_store_moved(run->vector[SK_V], slot, packed, vec4_of(pick3(moved, bound, xyz(v)), v.w));
     }
 }

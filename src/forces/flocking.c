@@ -1,10 +1,10 @@
-/* Flocking: neighbours push apart when near, fly along when farther, and draw together at the edge of the reach
- * (Reynolds 1987, in three zones). See flocking.h for the weights.
+/* Flocking: a particle steers away from near neighbours, along with farther ones, and towards those at the edge of the
+ * reach (Reynolds 1987, in three zones). See flocking.h for the weights.
  *
  * For each particle the candidates in up to nine ranges of the cells are tested sixteen at a time; those within reach
- * are moved up close to each other, and worked out sixteen at a time. The k-th of them is added to lane k mod 16, and
- * the lanes are added up in a fixed order: the same bits for any width. A particle finds itself among its neighbours,
- * at distance 0, where there is no direction: it adds nothing, nor does another in the same place. */
+ * are packed into a list, and evaluated sixteen at a time. The k-th of them is added to lane k mod 16, and the lanes
+ * are added up in a fixed order: the same bits for any width. A particle finds itself among its neighbours, at distance
+ * 0, where there is no direction: it adds nothing, nor does another in the same place. */
 #include "forces/flocking.h"
 
 #include <stdio.h>
@@ -24,9 +24,9 @@ SK_KERNELS(sk_op_kernel, kernel);
 #include "space/cells_wide.h"
 
 enum { AHEAD = 8 };
-enum { ROOM = 256 }; // neighbours that are kept before they are worked out
+enum { ROOM = 256 }; // the room of the list of neighbours
 
-/* Where the weights are formulas: their tapes, and room for the registers. */
+/* Weights by formulas: their tapes, and room for the registers. */
 typedef struct weight_formulas {
     const sk_pair_formula *pair;
     sk_wide registers[SK_PAIR_WEIGHTS][SK_TAPE_MEMORY / sizeof(sk_wide)];
@@ -36,7 +36,7 @@ typedef struct neighbours {
     real x[ROOM + 2 * SK_LANES], y[ROOM + 2 * SK_LANES], z[ROOM + 2 * SK_LANES];
     real ux[ROOM + 2 * SK_LANES], uy[ROOM + 2 * SK_LANES], uz[ROOM + 2 * SK_LANES];
     size_t count;
-    sk_vec3 heading;           // the particle's own direction; 0 when it stands still: it sees all round then
+    sk_vec3 heading;           // the particle's own direction; 0 if it is at rest, and then sees all round
     weight_formulas *formulas; // NULL: the zones' own weights
 } neighbours;
 
@@ -46,14 +46,14 @@ SK_INLINE sk_wide wide_at(const real *at) {
     return a;
 }
 
-/* The cells' copies, where stores to the list cannot change them. */
+/* Pointers to the cells' copies, in locals, which stores to the list cannot change. */
 typedef struct cell_copies {
     const real *x, *y, *z, *ux, *uy, *uz;
 } cell_copies;
 
 #if SK_WIDTH < 64 && (defined(__SSSE3__) || defined(__wasm_simd128__)) && !defined(SKEIN_DOUBLE)
 #define MOVES_UP
-/* The bytes of those of four floats whose bits are set, moved up close to each other; what follows them is 0. */
+/* For each mask of four bits, the byte shuffle that packs the floats whose bits are set; 0 follows them. */
 #define FLOAT(l_) 4 * (l_), 4 * (l_) + 1, 4 * (l_) + 2, 4 * (l_) + 3
 #define NONE -1, -1, -1, -1
 static const SK_VECTOR_ALIGNED int8_t moved_up[16][16] = {
@@ -96,14 +96,14 @@ SK_INLINE void put_up(float *to, const float *from, four_floats order) {
 #endif
 #endif
 
-/* Puts the candidates of bits into the list from k on, and returns where it ends then; d is where they are from the
- * particle. (In a register: kept in the list itself, where it ends waits for the store before it each time, 40 cycles a
- * bird.) */
+/* Puts the candidates within reach into the list from k on, and returns its new end; d leads to them from the particle.
+ * (The end is kept in a register: in the list itself, each addition would wait for the store before it, 40 cycles a
+ * particle.) */
 SK_INLINE size_t keep_near(neighbours *near, size_t k, const cell_copies *copies, size_t place, sk_wide3 d,
                            sk_wide squares, sk_wide square, uint32_t some) {
 #if SK_WIDTH == 64 && !defined(SKEIN_DOUBLE)
     __mmask16 bits = _mm512_mask_cmp_ps_mask((__mmask16)some, (__m512)square, (__m512)squares, _CMP_GT_OQ);
-    // which lanes, once, for six permutations: half the work of six compressions
+    // one compression of lane numbers for six permutations: half the work of six compressions
     const sk_mask all = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     __m512i lanes = _mm512_maskz_compress_epi32(bits, (__m512i)all);
     _mm512_storeu_ps(near->x + k, _mm512_permutexvar_ps(lanes, (__m512)d.x));
@@ -115,7 +115,7 @@ SK_INLINE size_t keep_near(neighbours *near, size_t k, const cell_copies *copies
     return k + (size_t)__builtin_popcount(bits);
 #elif defined(MOVES_UP)
     uint32_t bits = sk_more_bits(square, squares) & some; // (the former has none over a vector's lanes)
-    // no way out where there are none: it is guessed wrong too often
+    // no early return if there are none: that branch is mispredicted too often
     const float *const from[6] = {(const float *)&d.x, (const float *)&d.y, (const float *)&d.z,
                                   copies->ux + place,  copies->uy + place,  copies->uz + place};
     float *const to[6] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
@@ -138,7 +138,7 @@ SK_INLINE size_t keep_near(neighbours *near, size_t k, const cell_copies *copies
 #endif
 }
 
-/* Leaves the n->count nearest of those in view, in their order; who is in the same place does not count. */
+/* Keeps the n->count nearest of those in view, in their order; those in the same place do not count. */
 static void prune(neighbours *near, const sk_flocking_numbers *n) {
     real square[ROOM + 2 * SK_LANES], best[SK_FLOCKING_MOST_NEAREST];
     int found = 0, ties = 0;
@@ -154,7 +154,7 @@ static void prune(neighbours *near, const sk_flocking_numbers *n) {
         best[at] = s;
     }
     real farthest = found ? best[found - 1] : 0;
-    for (int k = found; k-- > 0 && best[k] == farthest;) ties++; // so many at that distance
+    for (int k = found; k-- > 0 && best[k] == farthest;) ties++; // how many to keep at exactly the largest distance
     size_t kept = 0;
     real *lists[] = {near->x, near->y, near->z, near->ux, near->uy, near->uz};
     for (size_t k = 0; k < near->count; k++) {
@@ -165,7 +165,7 @@ static void prune(neighbours *near, const sk_flocking_numbers *n) {
     near->count = kept;
 }
 
-/* A vector of neighbours from k on. */
+/* A vector of neighbours in the list. */
 typedef struct hits {
     sk_wide3 d;
     sk_wide per, relative_distance; // 1/distance
@@ -184,13 +184,13 @@ SK_INLINE hits hits_at(const neighbours *near, size_t k, const sk_flocking_numbe
     if (!n->sees_all) {
         sk_vec3 u = near->heading;
         sk_wide ahead = h.d.x * sk_splat(u.x) + h.d.y * sk_splat(u.y) + h.d.z * sk_splat(u.z);
-        real all_round = u.x * u.x + u.y * u.y + u.z * u.z > 0 ? 0 : 1; // a particle that stands still
+        real all_round = u.x * u.x + u.y * u.y + u.z * u.z > 0 ? 0 : 1; // a particle at rest sees all round
         h.counts &= sk_at_most(sk_splat(n->view) * distance, ahead + sk_splat(2 * all_round) * distance);
     }
     return h;
 }
 
-/* Adds what the weights make of a vector of neighbours. */
+/* Adds the weighted contributions of a vector of neighbours. */
 SK_INLINE void add_hits(const neighbours *near, size_t k, const hits *h, sk_wide towards, sk_wide with, sk_wide3 *sum) {
     towards = sk_keep(h->counts, towards * h->per);
     with = sk_keep(h->counts, with);
@@ -215,7 +215,7 @@ SK_INLINE void add_near(const neighbours *near, size_t k, const sk_flocking_numb
     add_hits(near, k, &h, sk_keep(~along, towards), sk_keep(along, one - cosine), sum);
 }
 
-/* The same with formulas: of `count` neighbours from k on, a multiple of sixteen that fits the tape's block. */
+/* The same by formulas, for `count` neighbours from k on, a multiple of sixteen that fits the tape's block. */
 static void add_by_formula(const neighbours *near, size_t k, size_t count, const sk_flocking_numbers *n,
                            sk_wide3 sum[SK_PARTS]) {
     const sk_pair_formula *pair = near->formulas->pair;
@@ -256,7 +256,7 @@ SK_INLINE void add_all(const neighbours *near, size_t count, const sk_flocking_n
     for (size_t k = 0; k < count; k += block) add_by_formula(near, k, count - k < block ? count - k : block, n, sum);
 }
 
-/* Works out all whole sixteens, and what is left of them moves to the front. */
+/* Evaluates all whole sixteens of the list, and moves the rest to its front. */
 SK_INLINE void work_out(neighbours *near, const sk_flocking_numbers *n, sk_wide3 sum[SK_PARTS]) {
     if (n->count) {
         prune(near, n);
@@ -301,7 +301,7 @@ SK_INLINE sk_vec3 steer(const sk_cells *cells, const nine_lines *lines, const sk
     sixteens.count = 0;
     sk_wide3 sum[SK_PARTS] = {{{0}, {0}, {0}}};
     near->count = 0;
-    // rows of over 32 are few: twice without asking
+    // ranges of over 32 are few: lists twice before testing
     list(&ranges, &sixteens);
     list(&ranges, &sixteens);
     while (list(&ranges, &sixteens))
@@ -322,7 +322,7 @@ SK_INLINE sk_vec3 heading_of(sk_vec4 v) {
     return speed > 0 && speed <= (real)SK_REAL_MAX ? sk_scale(1 / speed, sk_xyz(v)) : sk_v3(0, 0, 0);
 }
 
-/* Elements are places where particles look at each other, else the user's particles. */
+/* Elements are places if the rule's particles are each other's neighbours, else the user's particles. */
 static void fly(sk_run *run, const sk_op *op, size_t begin, size_t end, weight_formulas *formulas) {
     const sk_force *force = op->rule;
     const sk_flocking_params *params = force->params;
@@ -333,7 +333,7 @@ static void fly(sk_run *run, const sk_op *op, size_t begin, size_t end, weight_f
     nine_lines lines = lines_of(cells);
     neighbours near;
     near.formulas = formulas;
-    if (!cells->count) return; // nobody is near, or there is no memory for the cells
+    if (!cells->count) return; // no neighbours, or no memory for the cells
     if (among && end > cells->count) end = cells->count;
     for (size_t i = begin; i < end; i++) {
         uint32_t slot = among ? cells->slot[i] : run->slot_of[i];

@@ -1,5 +1,5 @@
-// Flocking: neighbours push apart when near, fly along when farther, and draw together at the edge of the reach.
-// See flocking.h. The branches are selections: invocations side by side stay together.
+// Flocking, see flocking.h: away from near neighbours, along with farther ones, towards those at the edge of the reach.
+// Branches are written as selections, so that invocations of a group do not diverge.
 struct sum@ {
     vec3 total, heading;
 };
@@ -8,7 +8,7 @@ sum@ start@(vec3 heading) {
     return sum@(vec3(0), heading);
 }
 
-// Behind it nobody is seen; a particle that stands still looks all round.
+// Whether the neighbour is within the angle of view; a particle at rest sees all round.
 bool sees@(sum@ sum, vec3 apart, float square) {
     return square > 0 && (dot(-apart, sum.heading) >= rule@[2].x * sqrt(square) || sum.heading == vec3(0));
 }
@@ -23,7 +23,7 @@ void meet@(inout sum@ sum, vec3 apart, float square, vec3 direction) {
 #else
     bool is_away = relative_distance < away, is_along = relative_distance < along && !is_away;
     float a = is_along ? (relative_distance - away) * per_along : (relative_distance - along) * per_towards;
-    float cosine = -0.5 * cos(6.28318531 * (a - 0.5)); // where cards know it best
+    float cosine = -0.5 * cos(6.28318531 * (a - 0.5)); // within -pi to pi, where GLSL's cosine is accurate
     float towards = is_away ? 1 - away / relative_distance : is_along ? 0 : cosine;
     float with = is_along ? 1 - cosine : 0;
 #endif

@@ -1,4 +1,4 @@
-/* Flocking as numbers: what kernels on the processor and on the card compute from.
+/* Flocking: its parameters, and the numbers that the kernel and the shader compute with.
  *
  * A neighbour at distance d inside the reach r has the relative distance u = d/r, or d^2/r^2. Its part of the steering,
  * in units of strength dt:
@@ -18,16 +18,16 @@
 
 enum { SK_FLOCKING_MOST_NEAREST = 64 };
 
-/* The fields of the kind. */
+/* The kind's parameters. */
 typedef struct sk_flocking_params {
     double separation, alignment, cohesion; /* m: widths of the zones */
     int32_t measure;                        /* 0: distance, 1: its square */
     double strength;                        /* m/s2 */
-    double view;                            /* degrees: the angle that a particle sees, round its direction of flight */
-    int32_t nearest;                        /* only so many neighbours count, the nearest; 0: all in reach */
+    double view;                            /* degrees: the angle of view around the direction of flight */
+    int32_t nearest;                        /* only this many neighbours count, the nearest; 0: all in reach */
     char *neighbours;                       /* the name of a body */
     char *towards, *along;                  /* formulas in place of the zones' weights, or "" */
-    struct sk_pair_formula *pair;           /* made from them; NULL where there are none */
+    struct sk_pair_formula *pair;           /* made from these formulas; NULL if there are none */
 } sk_flocking_params;
 
 typedef struct sk_flocking_numbers {
@@ -36,7 +36,7 @@ typedef struct sk_flocking_numbers {
     real away, along; /* thresholds of the relative distance */
     real per_along;   /* 1/(along - away), 0 where that zone has no width */
     real per_towards; /* 1/(1 - along), likewise */
-    real least;       /* m: nearer neighbours count as so near; it keeps weights finite */
+    real least;       /* m: nearer neighbours count as this near, which keeps weights finite */
     bool squared;
     bool sees_all;
     real view;     /* cosine of half the angle */
@@ -45,7 +45,7 @@ typedef struct sk_flocking_numbers {
 
 sk_flocking_numbers sk_flocking_numbers_of(const sk_flocking_params *params);
 
-/* -cos(2 pi t) = cos(2 pi (t + 0.5)) for |t| <= 0.5, as a polynomial in t^2: off by 1.2e-8 at most. */
+/* -cos(2 pi t) = cos(2 pi (t + 0.5)) for |t| <= 0.5, as a polynomial in t^2; the error is at most 1.2e-8. */
 #define SK_FLOCKING_COSINE(s_)                                   \
     ((real)-0.99999998894457653 +                                \
      (s_) * ((real)19.739204466576133 +                          \

@@ -1,4 +1,4 @@
-/* What can be said of a force without knowing its kind. */
+/* Functions on forces of any kind: whether one is uniform, and the particle that it is placed at. */
 #include "forces/force.h"
 
 bool sk_force_on_velocity(const sk_force *force) {
@@ -10,7 +10,7 @@ int32_t sk_force_particle(const sk_force *force) {
     return force->type->particle ? force->type->particle(force->params) : -1;
 }
 
-/* Whether the force at a velocity is what the sum says, as near as sums of doubles are. */
+/* Whether the force at a velocity equals that of the sum, but for rounding in double. */
 static bool agrees(const sk_force *force, const sk_uniform_force *sum, const double v[3], double mass) {
     double f[3];
     force->type->at_velocity(force->params, v, mass, f);
@@ -21,8 +21,8 @@ static bool agrees(const sk_force *force, const sk_uniform_force *sum, const dou
     return true;
 }
 
-/* The sum is read off at rest and at 1 m/s, with and without a mass, which is exact where it is right. Then it is held
- * against the force from creeping to flying, in changing directions and with changing masses. */
+/* The coefficients are read from the force at rest and at 1 m/s, with and without a mass, which is exact for a uniform
+ * force. Then both are compared at speeds up to 3e8 m/s, in changing directions and with changing masses. */
 bool sk_force_add_uniform(const sk_force *force, sk_uniform_force *sum) {
     static const double velocities[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 0, 0}};
     static const double directions[3][3] = {{1, 2, -3}, {-2, 1, 0}, {0.1, -7, 5}}, masses[4] = {1, 1e-3, 30, 0};

@@ -1,5 +1,5 @@
-/* A lookout: particles look ahead along their flight, and steer clear of every collider that they see there. Each
- * collider has a row of its own, whose kernel stands with the contacts (colliders/avoid.c). */
+/* A lookout: particles look ahead along their flight, and steer away from every collider that they see there. Each
+ * collider has an op of its own, whose kernel is in colliders/avoid.c. */
 #include "forces/force.h"
 
 typedef struct lookout_params {

@@ -1,4 +1,4 @@
-/* The two texts of a pair rule: parsed and judged, put on tapes, and written as GLSL. */
+/* The two formulas of a pair rule: parsed and checked, compiled to tapes, and written as GLSL. */
 #include "forces/pair_formula.h"
 
 #include "base/status.h"
@@ -13,7 +13,7 @@ void sk_pair_formula_release(sk_pair_formula *pair, sk_allocator *allocator) {
     sk_release(allocator, pair);
 }
 
-/* A pair rule knows the relative distance and t alone. */
+/* Refuses formulas that use anything but the relative distance and t. */
 static skein_status judge(const skein_formula *formula, skein_error *error) {
     if (formula->uses & (SK_USES_POSITION | SK_USES_VELOCITY))
         return sk_fail(error, SKEIN_ERROR_VALUE, "",

@@ -1,7 +1,7 @@
-/* The weights of a pair rule as formulas: what a neighbour counts along the direction to it, and along its direction of
- * flight, as functions of `relative_distance`, how far it is in shares of the reach.
+/* The weights of a pair rule as formulas: a neighbour's weight along the direction to it, and along its direction of
+ * flight, as functions of `relative_distance`, its distance over the reach.
  *
- * Owned by the rule's parameters, made when their texts change. */
+ * Owned by the rule's parameters, made anew when their texts change. */
 #ifndef SK_FORCES_PAIR_FORMULA_H
 #define SK_FORCES_PAIR_FORMULA_H
 
@@ -15,11 +15,10 @@ enum { SK_TOWARDS, SK_ALONG, SK_PAIR_WEIGHTS };
 typedef struct sk_pair_formula {
     skein_formula *formula[SK_PAIR_WEIGHTS]; /* NULL: that weight is 0 */
     sk_tape tape[SK_PAIR_WEIGHTS];
-    uint16_t relative_distance[SK_PAIR_WEIGHTS]; /* the register that relative_distance goes to; UINT16_MAX: it is not
-                                                    asked for */
+    uint16_t relative_distance[SK_PAIR_WEIGHTS]; /* the register for relative_distance; UINT16_MAX: it is not used */
 } sk_pair_formula;
 
-/* Makes them from their texts; *made is NULL where both are empty. On failure the error says which field. */
+/* Makes them from their texts; *made is NULL if both are empty. On failure the error names the field. */
 skein_status sk_pair_formula_create(sk_pair_formula **made, const char *const texts[SK_PAIR_WEIGHTS],
                                     const char *const fields[SK_PAIR_WEIGHTS], sk_allocator *allocator,
                                     skein_error *error);

@@ -3,8 +3,8 @@
  *   d = predator - x, without its part along the line of sight:   v += d/|d| (|d|^2/R^2 - 1) strength dt,
  *   which points away, and their speed limit is `alarm` higher in this substep
  *
- * It is a place seen along a line (as under the mouse: it acts at any depth), or a place in space where there is no
- * line, or one of the particles. */
+ * It is a place seen along a line (for example under the mouse: it acts at any depth), or a point in space if there is
+ * no line, or one of the particles. */
 #include "forces/force.h"
 
 #include "base/arithmetic.h"
@@ -18,14 +18,14 @@ typedef struct predator_params {
 // ---- arithmetic ----
 SK_INLINE vec4 predator_steer(predator_params p, vec3 x, exact dt) {
     vec3 d = minus(PARAM3(p.position), x), none_at_all = vec3_of(0, 0, 0);
-    vec3 line = times(PARAM(p.particle >= 0 ? 0 : 1), PARAM3(p.line)); // a particle is in one place
+    vec3 line = times(PARAM(p.particle >= 0 ? 0 : 1), PARAM3(p.line)); // a predator that is a particle has no line
     num along = root(dot(line, line));
     line = times(pick(along > 0, 1 / along, 0), line);
     d = minus(d, times(dot(d, line), line));
     num square = dot(d, d);
     flag near = square < PARAM(p.radius * p.radius);
     if (none(near)) return vec4_of(none_at_all, 0);
-    // right on it there is no way to flee
+    // at distance 0 there is no direction to flee in
     num k = PARAM(dt * p.strength) * (square / PARAM(p.radius * p.radius) - 1) / root(square);
     return vec4_of(times(pick(both(near, square > 0), k, 0), d), pick(near, PARAM(p.alarm), 0));
 }

@@ -22,7 +22,7 @@ static double radius(const void *params) {
     return ((const separation_params *)params)->radius;
 }
 
-/* The push on the particle at a place. */
+/* The force on the particle at a place. */
 static vec3 push_at(const sk_cells *cells, const sk_only *only, size_t place, const separation_params *params) {
     const vec3 here = {cells->x[place], cells->y[place], cells->z[place]};
     real reach = (real)params->radius;
@@ -40,7 +40,7 @@ static vec3 push_at(const sk_cells *cells, const sk_only *only, size_t place, co
     return push;
 }
 
-/* Elements are places. */
+/* Its elements are places in the order of cells. */
 static void kernel(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const sk_force *force = op->rule;
     const sk_cells *cells = run->cells;

@@ -1,5 +1,5 @@
-/* A limit on speed: |v| is at most the limit, and what a predator has added to it in this substep. It stands between
- * the kick and the drift of methods that have them (methods/plan_builder_steer.c). */
+/* A limit on speed: |v| is at most the limit plus what predators have added to it in this substep. It is applied
+ * between the kick and the drift of methods that have them (methods/plan_builder_steer.c). */
 #include "base/arithmetic.h"
 #include "forces/force.h"
 

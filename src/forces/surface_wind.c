@@ -8,9 +8,9 @@
  *
  *   rho/12 ((drag - lift) |u.N| u + lift (u.N) |u|/|N| N)
  *
- * which takes one division and one root. Triangles of a grid are walked cell by cell along its strips, sixteen cells at
- * once: their corners are blocks, and no index is read. A cell's four corners get one sum each, and what goes to the
- * next cell's first corners waits for that in a register. */
+ * which takes one division and one root. Triangles of a grid are visited cell by cell along its strips, sixteen cells
+ * at once: their corners are blocks, and no index is read. A cell's four corners get one sum each; the sums for corners
+ * that it shares with the next cell wait for that one in registers. */
 #include "base/kernels.h"
 #include "forces/force.h"
 
@@ -18,7 +18,7 @@ typedef struct surface_wind_params {
     double velocity[3], drag, lift, density;
 } surface_wind_params;
 
-/* Squared length of N, m4, under which a triangle is nothing but rounding: |u|/|N| can then be worked out as a root. */
+/* Triangles with a smaller |N|^2, m4, are ignored as rounding errors, so that |u|/|N| can be computed as one root. */
 #define LEAST_SQUARE ((real)1e-30)
 
 #define SK_UNIT surface_wind
@@ -32,7 +32,7 @@ typedef struct blow {
     real along, lifting;
 } blow;
 
-/* The bits of a part's lanes in a word with one for each lane of a block. */
+/* The lanes of a part whose bits are set in a word that has a bit for each lane of a block. */
 SK_INLINE sk_mask lanes_in(uint16_t word, size_t part) {
     static const SK_VECTOR_ALIGNED sk_lane_int bit[SK_LANES] = {1,      1 << 1, 1 << 2,  1 << 3,  1 << 4,  1 << 5,
                                                                 1 << 6, 1 << 7, 1 << 8,  1 << 9,  1 << 10, 1 << 11,
@@ -60,7 +60,7 @@ SK_INLINE blow blow_of(const surface_wind_params *params) {
                   (real)(params->density * params->lift / 12)};
 }
 
-/* A corner's share of the triangle with this edge and tip. `moving`: its corners' velocities, added up. */
+/* A corner's share of the force on the triangle with this edge and tip. `moving`: its corners' velocities, summed. */
 SK_INLINE sk_wide3 share_of(const blow *air, sk_wide3 edge, sk_wide3 to_tip, sk_wide3 moving, sk_mask there) {
     const real third = (real)1 / 3;
     sk_wide3 flow = {air->wind.x - third * moving.x, air->wind.y - third * moving.y, air->wind.z - third * moving.z};
@@ -73,8 +73,8 @@ SK_INLINE sk_wide3 share_of(const blow *air, sk_wide3 edge, sk_wide3 to_tip, sk_
     return (sk_wide3){a * flow.x + b * normal.x, a * flow.y + b * normal.y, a * flow.z + b * normal.z};
 }
 
-/* The two triangles beside the diagonal from `base` to `far`: what they bring to its ends, and to their tips, alone or
- * besides what is there. */
+/* Adds the forces of the two triangles beside the diagonal from `base` to `far` to the sums of the four corners, or
+ * sets these if the two are `alone`. */
 SK_INLINE void add_two(const blow *air, const sk_wide3 *x, const sk_wide3 *v, sk_wide3 *sum, bool alone, int base, int far,
                        int tip, int other, const uint16_t *has, size_t part) {
     sk_wide3 edge = minus3(x[far], x[base]), moving = plus3(v[base], v[far]);
@@ -104,8 +104,8 @@ SK_INLINE void blow_on(const blow *air, const corners *at, const uint16_t *has, 
         for (int i = 0; i < 4; i++) sum[i] = (sk_wide3){{0}, {0}, {0}};
 }
 
-/* Cells whose diagonals do not all fall: rare, and by themselves, for beside the others they would take their registers (AVX2
- * and SSE took 1.1 times as long). */
+/* Cells whose diagonals do not all fall. They are rare, and a function of their own: inlined, they would take registers
+ * from the common case (AVX2 and SSE took 1.1 times as long). */
 static __attribute__((noinline)) void blow_on_others(const blow *air, const corners *at, const uint16_t *has, size_t part,
                                                      sk_wide3 *sum) {
     bool falling = has[1] | has[2], rising = has[0] | has[3];
@@ -113,12 +113,12 @@ static __attribute__((noinline)) void blow_on_others(const blow *air, const corn
     else blow_on(air, at, has, part, false, rising, sum);
 }
 
-/* What a row's cells bring to the corners that they share with the next ones. */
+/* Sums for the corners that the cells visited last share with the next ones of the row. */
 typedef struct waiting {
     sk_wide3 upper, lower;
 } waiting;
 
-/* Sixteen cells: what they bring to their left corners, with what has waited for these, is added to f and to the next row's. */
+/* Sixteen cells: adds the sums of their left corners, with those that have waited, to f and, a row on, to f_below. */
 SK_INLINE void blow_on_cells(const blow *air, const corners *at, const uint16_t *has, size_t part, sk_wide *f,
                              sk_wide *f_below, waiting *to) {
     sk_wide3 sum[4];
@@ -134,12 +134,12 @@ SK_INLINE void blow_on_cells(const blow *air, const corners *at, const uint16_t 
     to->upper = sum[1], to->lower = sum[3];
 }
 
-/* x, y and z of a block, each lane that of the next strip: what the last cells of a row have on their right. */
+/* x, y and z of a block with lanes rotated to the next strip: the right corners of the last cells of a row. */
 SK_INLINE void turn3(sk_wide *to, const sk_wide *block, int shift) {
     for (int r = 0; r < 3 * SK_PARTS; r += SK_PARTS) sk_rotate_lanes(to + r, block + r, shift);
 }
 
-/* Cells of strip rows [begin, end): each row's add to its own particles, and to those of the next row. */
+/* Cells of strip rows [begin, end): those of a row add to its own particles, and to those of the next row. */
 void SK_KERNEL(over_patch)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const surface_wind_params *params = ((const sk_force *)op->rule)->params;
     const sk_patch *patch = op->patch;
@@ -168,14 +168,14 @@ void SK_KERNEL(over_patch)(sk_run *run, const sk_op *op, size_t begin, size_t en
         }
         for (size_t i = 0; i < 2; i++) {
             sk_wide back[3 * SK_PARTS];
-            turn3(back, over[i], -1); // to the lane that is one on
+            turn3(back, over[i], -1); // to the next lane
             for (size_t n = 0; n < 3 * SK_PARTS; n++) f[i * line + n] += back[n];
         }
     }
 }
 
-/* Triangles that lie in no grid: a part of them is worked out at once, for they read nothing that they write, and then
- * their corners get their shares, triangle by triangle. */
+/* Triangles that lie in no grid. A part of them is computed at once, which is safe since none reads F; then their
+ * shares are added to the corners triangle by triangle. */
 SK_INLINE void blow_on_part(sk_run *run, const sk_op *op, const blow *air, size_t begin, size_t count) {
     uint32_t corner[3][SK_PART];
     bool strips = false;

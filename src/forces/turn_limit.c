@@ -1,8 +1,8 @@
-/* A limit on turning and climbing: what steers turns the direction of flight by so many degrees a second at most, and
- * nothing flies steeper than so many degrees. Speeds stay.
+/* A limit on turning and climbing: steering turns the direction of flight by at most so many degrees a second, and no
+ * particle flies steeper than so many degrees. Speeds stay the same.
  *
- *          new   /o        o: the direction before, v - s, where s is what has steered
- *          v ..-'          n: what of v is square to it
+ *          new   /o        o: the direction before, v - s, where s is this substep's steering
+ *          v ..-'          n: the part of v at right angles to it
  *      o ---->             turned by at most t:  |v| (o cos t + n/|n| sin t) */
 #include "base/arithmetic.h"
 #include "forces/force.h"
@@ -12,7 +12,7 @@ typedef struct turn_limit_params {
 } turn_limit_params;
 
 // ---- arithmetic ----
-/* Turns v no farther from the direction of `before` than the angle. Straight back means to the side first. */
+/* Turns v to within the angle from the direction of `before`. A full reversal starts to the side. */
 SK_INLINE vec3 turn_limit_turned(vec3 v, vec3 before, scalar angle_cosine, scalar angle_sine) {
     num square = dot(v, v), old = dot(before, before);
     flag flies = both(square > 0, old > 0);
@@ -22,14 +22,14 @@ SK_INLINE vec3 turn_limit_turned(vec3 v, vec3 before, scalar angle_cosine, scala
     flag over = both(flies, angle_cosine * speed > along);
     if (none(over)) return v;
     vec3 n = minus(v, times(along, o));
-    // to the side in the level; of what flies straight up or down, along x
+    // sideways in the horizontal plane; along x for a particle that flies straight up or down
     flag back = dot(n, n) <= PARAM(1e-12) * square, level = o.x * o.x + o.z * o.z > PARAM(1e-6);
     n = pick3(back, vec3_of(pick(level, o.z, 1), 0, pick(level, -o.x, 0)), n);
     num side = root(dot(n, n)), a = speed * angle_cosine, b = speed * angle_sine / pick(side > 0, side, 1);
     return pick3(over, plus(times(a, o), times(b, n)), v);
 }
 
-/* Flattens what is steeper than the angle. What flies straight up or down goes along x. */
+/* Flattens flight steeper than the angle. A particle that flies straight up or down turns along x. */
 SK_INLINE vec3 turn_limit_flattened(vec3 v, scalar climb_cosine, scalar climb_sine) {
     num level = v.x * v.x + v.z * v.z, square = level + v.y * v.y;
     flag over = v.y * v.y > climb_sine * climb_sine * square;

@@ -1,4 +1,4 @@
-/* Plain wind: one force on every particle, so light particles fly faster. */
+/* Plain wind: the same force on every particle, so light particles are accelerated more. */
 #define SK_ARITHMETIC_OF double
 #include "base/arithmetic.h"
 #include "forces/force.h"

@@ -1,4 +1,4 @@
-/* The hash that makes two formulas the same, and the check that compiled code is the text's and may run here. */
+/* The hash by which two formulas are the same, and the check that compiled code matches its text and may run here. */
 #include "formula/compiled_code.h"
 
 #include <string.h>
@@ -27,7 +27,7 @@ static uint64_t hash_node(uint64_t hash, const skein_formula *f, sk_node node, c
     return hash;
 }
 
-/* All that is computed for an element, one after the other; returns how many. */
+/* Lists all nodes that are computed for an element; returns how many. */
 static size_t outputs_of(const skein_formula *f, sk_node *outputs) {
     size_t count = 0, coordinates = 3 * (size_t)f->particles;
     for (int k = 0; k < f->size; k++) {

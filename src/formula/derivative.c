@@ -1,5 +1,5 @@
-/* Derivatives, as nodes of the graph that they are derivatives of: backwards for gradients, and forwards over those
- * for second derivatives. Reads graph.h's operations only; what they guard is guarded here, too. */
+/* Derivatives as nodes of the same graph: by reverse mode for gradients, and by forward mode over those for second
+ * derivatives. It uses graph.h's operations only, so their guards apply here too. */
 #include <string.h>
 
 #include "formula/graph.h"
@@ -8,7 +8,7 @@ static const sk_node NONE = UINT32_MAX;
 
 /* ---- the local derivatives ---- */
 
-/* Of an operation on one argument, by that: for these it takes the form of a factor. */
+/* The derivative of an operation on one argument, as a factor. */
 static sk_node factor_of(sk_graph *g, sk_node node) {
     const sk_graph_node n = g->data[node];
     const sk_node x = n.arg[0], one = sk_constant(g, 1), zero = sk_constant(g, 0), half = sk_constant(g, 0.5);
@@ -32,7 +32,7 @@ static sk_node factor_of(sk_graph *g, sk_node node) {
     }
 }
 
-/* Of atan2(y, x): x/(x^2 + y^2) by y, and -y/(x^2 + y^2) by x. Of x^y: y x^(y-1) by x, and log(x) x^y by y. */
+/* Partial derivatives. atan2(y, x): x/(x^2 + y^2) by y, -y/(x^2 + y^2) by x. x^y: y x^(y-1) by x, log(x) x^y by y. */
 static sk_node partial(sk_graph *g, sk_node node, int which) {
     const sk_graph_node n = g->data[node];
     const sk_node a = n.arg[0], b = n.arg[1];
@@ -50,7 +50,7 @@ static sk_node partial(sk_graph *g, sk_node node, int which) {
 
 /* ---- backwards ---- */
 
-/* What there is by now for each node: the derivative of the output by it. */
+/* The derivative of the output by each node, as far as it has been found. */
 typedef struct adjoints {
     sk_graph *graph;
     sk_node *of;
@@ -84,7 +84,7 @@ static void pass_back(adjoints *a, sk_node node, sk_node d) {
         if (a->wanted[n.arg[3]]) accumulate(a, n.arg[3], sk_less(g, n.arg[0], n.arg[1], zero, d));
         break;
     }
-    case SK_NODE_RECIPROCAL: // -(d r) r: the product with d keeps the size of what comes between
+    case SK_NODE_RECIPROCAL: // -(d r) r: in this order intermediate values stay in range
         if (a->wanted[n.arg[0]]) accumulate(a, n.arg[0], sk_negative_of(g, sk_times(g, sk_times(g, d, node), node)));
         break;
     default:
@@ -104,7 +104,7 @@ static void find_wanted(const sk_graph *graph, const uint32_t *inputs, size_t co
     }
 }
 
-/* The derivative of the output by each node that is wanted, as far as `seed` (NULL: to the inputs). */
+/* Finds the derivative of the output by each wanted node, down to those in `seed` (NULL: to the inputs). */
 static void go_back(adjoints *a, sk_node output, size_t count, const bool *seed) {
     for (size_t i = 0; i < count; i++) a->of[i] = NONE;
     a->of[output] = sk_constant(a->graph, 1);
@@ -114,7 +114,7 @@ static void go_back(adjoints *a, sk_node output, size_t count, const bool *seed)
 
 bool sk_gradient(sk_graph *graph, sk_node output, const uint32_t *inputs, size_t count, sk_node *derivatives) {
     if (graph->no_memory || graph->too_large) return false;
-    size_t before = graph->count; // what is made below is no part of what is differentiated
+    size_t before = graph->count; // nodes made below are not differentiated
     sk_node *of = sk_allocate(graph->allocator, before * sizeof *of);
     bool *wanted = sk_allocate(graph->allocator, before * sizeof *wanted);
     if (!of || !wanted) graph->no_memory = true;

@@ -62,7 +62,7 @@ void sk_put_helpers(sk_writer *w, const char *(*text_of)(size_t), size_t count, 
 
 /* ---- expressions ---- */
 
-/* How tightly an expression holds together: 1 sums and signs, 2 products, 3 what needs no brackets. */
+/* The precedence of an expression: 1 sums and signs, 2 products, 3 without need of brackets. */
 static int tightness(const sk_writer *w, sk_node node) {
     uint8_t op = w->formula->graph.data[node].op;
     if (w->number[node] || w->shared[node] || op <= SK_NODE_PARAMETER || w->language->call[op]) return 3;
@@ -87,7 +87,7 @@ void sk_put_operand(sk_writer *w, sk_node node, int least) {
     sk_put(w, "%s", brackets ? ")" : "");
 }
 
-/* Recurs as deep as expressions are high. */
+/* Recursive; its depth is the height of the expression. */
 static void put_expression(sk_writer *w, sk_node node) {
     const sk_graph_node *n = &w->formula->graph.data[node];
     const char *call = w->language->call[n->op];
@@ -133,7 +133,7 @@ static size_t outputs_of(const skein_formula *f, sk_node outputs[SK_FORMULA_MOST
     return count;
 }
 
-/* Which nodes get names: those that are read more than once, or stand too high. */
+/* Finds the nodes that get names: those that are read more than once, or whose expressions would be too high. */
 static void find_names(sk_writer *w) {
     const sk_graph *g = &w->formula->graph;
     uint32_t next = 0;
@@ -153,7 +153,7 @@ void sk_put_temporaries(sk_writer *w, const sk_node *outputs, size_t count) {
     const sk_graph *g = &w->formula->graph;
     for (size_t i = 0; i < g->count; i++) w->live[i] = false, w->uses[i] = w->number[i] = 0, w->height[i] = 0;
     for (size_t i = 0; i < count; i++) w->live[outputs[i]] = true, w->uses[outputs[i]]++;
-    for (size_t i = g->count; i-- > 0;) // what is below something shared was needed for that alone
+    for (size_t i = g->count; i-- > 0;) // nodes below a shared one are needed only for that
         for (int k = 0; w->live[i] && !w->shared[i] && k < sk_node_op_info[g->data[i].op].arity; k++)
             w->live[g->data[i].arg[k]] = true, w->uses[g->data[i].arg[k]]++;
     find_names(w);
@@ -243,7 +243,7 @@ static void put_graph(sk_writer *w, const sk_node *outputs, size_t count) {
 
 /* ---- the calls ---- */
 
-/* Room for what is known of each node; false when there is no memory. To be ended in either case. */
+/* Allocates the arrays by node; false when there is no memory. They must be released in either case. */
 static bool begin(sk_writer *w, sk_allocator *allocator) {
     size_t nodes = w->formula->graph.count;
     w->live = sk_allocate(allocator, nodes * sizeof *w->live);

@@ -49,16 +49,16 @@ void sk_put_kernel(sk_writer *w);
 void sk_put_compiled(sk_writer *w, const char *name);
 /* What the language opens with, and a line for each node that has a name. */
 void sk_put_temporaries(sk_writer *w, const sk_node *outputs, size_t count);
-/* A node's name or expression, in brackets if it holds together less than 1 sums, 2 products, 3 calls do. */
+/* A node's name or expression, in brackets if its precedence is below `least`: 1 sums, 2 products, 3 calls. */
 void sk_put_operand(sk_writer *w, sk_node node, int least);
 
 void sk_put(sk_writer *w, const char *format, ...) SK_PRINTF(2, 3);
 /* A number with a point or an exponent, whatever the locale says. */
 void sk_put_number(sk_writer *w, double value, int digits);
-/* The formula's own text, made fit for a comment; and what its parameters are. Each line begins so. */
+/* The formula's own text, made fit for a comment; and its parameters. Each line begins with `line_begin`. */
 void sk_put_source(sk_writer *w, const char *line_begin);
 void sk_put_parameters(sk_writer *w, const char *line_begin);
-/* Of `count` helpers those whose operation the formula has; those of SK_NODE_CONSTANT always. */
+/* Writes those of `count` helpers whose operation the formula has, and those of SK_NODE_CONSTANT always. */
 void sk_put_helpers(sk_writer *w, const char *(*text_of)(size_t), size_t count, int (*op_of)(size_t));
 
 #endif

@@ -3,7 +3,7 @@
 
 #include "formula/emit.h"
 
-/* What a program may define otherwise, for another layout, another type, or elementary functions of its own. */
+/* Macros that a program may redefine, for another layout or type, or for elementary functions of its own. */
 static const struct {
     int op; /* where it is needed; SK_NODE_CONSTANT: everywhere */
     const char *text;

@@ -6,10 +6,10 @@
 
 #include "formula/emit.h"
 
-/* A formula of more operations is compiled once, and called by each walk. */
+/* A formula of more operations than LONG is compiled once, and called by each walk. */
 enum { LONG = 2000, MOST_PIECE = 96, MOST_SHARED = 64 };
 
-/* The text as pieces of strings, since compilers need not take long ones. */
+/* The text as several strings, since compilers need not accept long ones. */
 static void put_text(sk_writer *w) {
     const char *text = w->formula->text;
     sk_put(w, "static const char *const formula_text[] = {");
@@ -41,13 +41,13 @@ static void put_sizes(sk_writer *w, size_t operations, size_t shared) {
     sk_put(w, "#include <skein/compiled_formula.h>\n\n");
 }
 
-/* What is the same for all elements, since it depends on parameters and time alone, and is read by what is not. Returns
- * how many there are. */
+/* Finds the nodes that depend on parameters and time alone, and so are the same for all elements, but are read by nodes
+ * that are not. Returns how many. */
 static size_t find_shared(sk_writer *w, const sk_node *outputs, size_t output_count, sk_node shared[MOST_SHARED]) {
     const skein_formula *f = w->formula;
     const sk_graph *g = &f->graph;
     size_t count = 0;
-    uint8_t *varies = w->height; // which nobody needs yet
+    uint8_t *varies = w->height; // not in use yet
     sk_graph_mark(g, outputs, output_count, w->live);
     for (size_t i = 0; i < g->count; i++) {
         const sk_graph_node *n = &g->data[i];

@@ -71,7 +71,7 @@ static void glsl_close(sk_writer *w) {
     sk_put(w, w->formula->size == 3 ? "    return value;\n}\n" : "}\n");
 }
 
-/* Within a shader: helpers that may be there already, and the includer's own head. */
+/* The opening within a shader: helpers, which may be there already, and the caller's head. */
 static void shader_open(sk_writer *w) {
     const sk_graph *g = &w->formula->graph;
     for (size_t h = 0; h < sizeof glsl_helpers / sizeof *glsl_helpers; h++) {

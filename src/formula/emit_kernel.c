@@ -1,14 +1,14 @@
 /* A constraint as C for the library's own walks (constraints/element_arithmetic.h): its rest values, its value and its
- * gradient, in macros that say nothing of how the numbers lie.
+ * gradient, in macros that are independent of the data's layout.
  *
  *     // length(p0 - p1) - rest(length(p0 - p1))
  *     TEXT("length(p0 - p1) - rest(length(p0 - p1))")
  *     RESTS(rests) { ... REST(0, x); }
  *     FORMULA(formula) { ... GRADIENT(0, particle, axis, g); VALUE(0, c); }
  *
- * Two things that a walk can make use of are found here. Where the gradient is y/s for each particle, s being the
- * length of y, it is written as y and UNIT_DIVISOR(s): so a distance needs one division instead of two, and no square
- * of its gradient. And where the second particle's gradient is minus the first's, OPPOSITE(1, 0) says so. */
+ * Two properties that make walks faster are found here. If the gradient is y/s for each particle, s being the length of
+ * y, it is written as y and UNIT_DIVISOR(s): so a distance needs one division instead of two, and no square of its
+ * gradient. If the second particle's gradient is minus the first's, OPPOSITE(1, 0) says so. */
 #include <string.h>
 
 #include "formula/emit.h"
@@ -56,8 +56,8 @@ static bool is_square_of(const sk_graph *g, sk_node node, const component y[3]) 
     return found[0] && found[1] && found[2];
 }
 
-/* The node s whose reciprocal is a factor of all components, if they are of length 1 with it, for each particle; then
- * they are left without it. */
+/* Finds a node s whose reciprocal is a factor of all components and makes each particle's gradient a unit vector; if
+ * there is one, removes that factor from the components. */
 static bool find_divisor(const skein_formula *f, component *y, sk_node *divisor) {
     const sk_graph *g = &f->graph;
     int count = 3 * f->particles;
@@ -84,7 +84,7 @@ static bool is_opposite(const skein_formula *f, const component *y) {
     return all;
 }
 
-/* The formula as a string, for those who look into a constraint of that kind. */
+/* The formula as a string, for the inspection of constraints of that kind. */
 static void put_text(sk_writer *w) {
     sk_put(w, "TEXT(\"");
     for (const char *c = w->formula->text; *c; c++) {

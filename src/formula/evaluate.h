@@ -1,11 +1,11 @@
-/* One element of a graph at a time, in float or in double, whatever `real` is. The truth that tapes are held against,
- * and what folds constants and answers single questions. Guards are described in graph.h. */
+/* Evaluating a graph for one element at a time, in float or in double, whatever `real` is: the reference for tapes,
+ * also used to fold constants and for single evaluations. Guards are described in graph.h. */
 #ifndef SK_FORMULA_EVALUATE_H
 #define SK_FORMULA_EVALUATE_H
 
 #include "formula/graph.h"
 
-/* One operation; `guarded` is set where a guard acted, and else left alone. */
+/* Computes one operation; sets `guarded` if a guard acted, and does not change it otherwise. */
 double sk_apply_double(sk_node_op op, const double *arguments, bool *guarded);
 float sk_apply_float(sk_node_op op, const float *arguments, bool *guarded);
 

@@ -1,4 +1,4 @@
-/* Making a formula, its derivatives, and answering what one is at one place: the public functions. */
+/* The public functions of formulas: making one with its derivatives, and evaluating it at one place. */
 #include "formula/formula.h"
 
 #include <string.h>
@@ -41,7 +41,7 @@ static void destroy(skein_formula *f) {
     sk_release(allocator, f->hessian);
     sk_release(allocator, f->let_name);
     sk_release(allocator, f->text);
-    if (allocator == &f->own) { // which lies in what is released
+    if (allocator == &f->own) { // it is a member of what is released
         own = f->own;
         allocator = &own;
     }

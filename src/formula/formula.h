@@ -1,7 +1,7 @@
-/* A formula: its text, its graph, and which nodes are what. The lead-in to the rest of the folder: parser.c makes one
- * from text, formula.c its derivatives and answers; whoever runs it on many elements takes tapes from it (tape.h).
- * Parameters are numbered as the caller names them; after those come the values of rest(...), in the order in which
- * they stand in the text. Not changed after it was made. */
+/* A formula: its text, its graph, and the nodes of its value and derivatives. The entry to the rest of the folder:
+ * parser.c makes one from text, formula.c derives and evaluates it; code that runs it on many elements makes tapes from
+ * it (tape.h). Parameters are numbered in the order in which the caller names them; after those come the values of
+ * rest(...), in the order of the text. It is not changed after it was made. */
 #ifndef SK_FORMULA_FORMULA_H
 #define SK_FORMULA_FORMULA_H
 
@@ -46,8 +46,8 @@ struct skein_formula {
 skein_formula *sk_formula_create(const skein_formula_desc *desc, sk_allocator *allocator, skein_formula_mark *mark,
                                  skein_error *error);
 
-/* The value and its derivatives where the particles stand, with the numbers of rest(...) after the parameters. False when
- * there is no memory. */
+/* Evaluates the value and its derivatives at the positions, with the values of rest(...) after the parameters. False
+ * when there is no memory. */
 bool sk_formula_value_at(const skein_formula *formula, const double *positions, const double *parameters, double time,
                          skein_formula_value *value);
 

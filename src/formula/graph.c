@@ -1,6 +1,6 @@
-/* Making nodes: looking for the one that is there, folding constants, and the little algebra that derivatives call
- * for. Rules are kept to those that lose nothing: besides reordering factors that are constant, each gives the bits
- * that it replaces (but for the sign of a zero). */
+/* Making nodes: finding existing ones, folding constants, and the few simplifications that derivatives need. Only rules
+ * that lose nothing are used: besides reordering constant factors, each gives the same bits as what it replaces (but
+ * for the sign of a zero). */
 #include "formula/graph.h"
 
 #include <string.h>
@@ -173,7 +173,7 @@ sk_node sk_negative_of(sk_graph *graph, sk_node a) {
     return make(graph, SK_NODE_NEGATE, a, 0, 0, 0);
 }
 
-/* Constants stand first and are drawn out of products, where they meet others: 0.5 (2 x) is x. */
+/* Constants come first and are moved out of products, where they are combined: 0.5 (2 x) is x. */
 static sk_node scaled(sk_graph *graph, sk_node constant, sk_node b) {
     double x = 1, y;
     sk_is_constant(graph, constant, &x);
@@ -225,7 +225,7 @@ sk_node sk_arctangent(sk_graph *graph, sk_node y, sk_node x) {
     return make(graph, SK_NODE_ATAN2, y, x, 0, 0);
 }
 
-/* Whole powers by squaring, so that negative bases have them, too. */
+/* Whole powers by repeated squaring, so that they exist for negative bases too. */
 static sk_node whole_power(sk_graph *graph, sk_node x, unsigned power) {
     sk_node result = sk_constant(graph, 1);
     for (; power; power >>= 1) {

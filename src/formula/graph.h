@@ -1,11 +1,11 @@
-/* A formula as a graph of scalar operations: each node is made once and shared by all who use it.
+/* A formula as a graph of scalar operations: each node is made once and shared by all nodes that read it.
  *
  * Made by the parser, extended by derivatives (derivative.c), read by everything else: evaluate.c computes it number
  * by number, tape.c sixteen at a time, emit.c writes it as C or GLSL. Nodes come after the nodes that they read, so
  * every pass is a loop over an array; nothing here recurses.
  *
- * Operations are total: each gives a finite number for finite arguments, unless it overflows. Where mathematics has
- * none they say 0 or the nearest value, and count as *guarded*:
+ * Operations are total: each gives a finite number for finite arguments, unless it overflows. Where it is not defined,
+ * it gives 0 or the nearest value, and counts as *guarded*:
  *
  *     reciprocal   1/x, 0 at 0 (and where 1/x would overflow)        log    of x under the least normal number, of that
  *     sqrt         0 under 0                                         exp    of x over what the format holds, of that
@@ -82,11 +82,10 @@ enum { SK_GRAPH_MOST_NODES = 1 << 18 };
 void sk_graph_init(sk_graph *graph, sk_allocator *allocator);
 void sk_graph_free(sk_graph *graph);
 
-/* Each makes a node, or finds the one that there is, or a simpler one of the same value. When there is no memory, or
- * the graph is as large as it may be, the graph's flag says so and node 0 stands for the result: one look at the end
- * is enough.
- * Never two of these as arguments of one call: C leaves open which is made first, and the order of nodes decides the
- * order of sums in derivatives, so the bits. */
+/* Each makes a node, or finds an existing one, or a simpler one of the same value. When there is no memory, or the
+ * graph would be too large, they set the graph's flag and return node 0: checking once at the end is enough.
+ * Never use two of these as arguments of one call: C leaves open which is evaluated first, and the order of nodes
+ * decides the order of sums in derivatives, and so the bits. */
 sk_node sk_constant(sk_graph *graph, double value);
 sk_node sk_input(sk_graph *graph, uint32_t input);
 sk_node sk_parameter(sk_graph *graph, uint32_t parameter);
@@ -99,7 +98,7 @@ sk_node sk_of(sk_graph *graph, sk_node_op op, sk_node a); /* an operation on one
 sk_node sk_less(sk_graph *graph, sk_node a, sk_node b, sk_node yes, sk_node no);
 sk_node sk_arctangent(sk_graph *graph, sk_node y, sk_node x);
 sk_node sk_power(sk_graph *graph, sk_node x, sk_node y);
-/* A sum or a product as it stands: without the rules that draw signs and constants out of it. */
+/* A sum or a product without the rules that move signs and constants out of it. */
 sk_node sk_plain(sk_graph *graph, sk_node_op op, sk_node a, sk_node b);
 
 bool sk_is_constant(const sk_graph *graph, sk_node node, double *value);

@@ -1,10 +1,10 @@
-/* Objects that a formula belongs to: a collider, a force or a constraint whose kind has texts that are formulas.
+/* Parameters of formulas, for objects (colliders, forces, constraints) whose kind has texts that are formulas.
  *
- * What a formula names besides particles and time are its object's parameters, which no table can list beforehand. A
+ * Names in a formula other than particles and time are its object's parameters, which no table can list beforehand. A
  * kind that takes them has the row "parameters.*" (SK_PARAMETERS in base/fields.h), and each of its objects has a kind
- * of its own: the same table, with one row for every setting "parameters.NAME" that it was made with. So setting,
- * reading, paths, scenes, checks and messages find parameters where they find everything else. Made by the world when
- * it makes an object; read by the types' files when they compile their texts. */
+ * of its own: the same table, with a row for every setting "parameters.NAME" that it was made with. So setting,
+ * reading, paths, scenes, checks and messages treat parameters like all other fields. The world makes this kind with
+ * the object; the types' files read it when they compile their texts. */
 #ifndef SK_FORMULA_PARAMETERS_H
 #define SK_FORMULA_PARAMETERS_H
 
@@ -12,7 +12,7 @@
 
 #include "base/memory.h"
 
-/* What a type does whose objects keep something that is made from their parameters: a formula's tape. */
+/* The functions of a type whose objects keep something made from their parameters, such as a formula's tape. */
 typedef struct sk_making {
     /* Makes it, when the object is added and whenever a text has changed; `kind` is the object's own. On failure
      * what was there before stays. */

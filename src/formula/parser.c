@@ -20,7 +20,7 @@ static sk_value sign(parser *p);
 
 /* ---- the grammar ---- */
 
-/* One bracket or sign deeper: what recurs, counts. */
+/* Counts one more level of brackets or signs, which limits the recursion. */
 static bool enter(parser *p) {
     if (++p->depth <= SKEIN_FORMULA_MOST_DEPTH) return true;
     return sk_text_fail(&p->text, p->text.now.begin, p->text.now.end, SKEIN_ERROR_LIMIT,
@@ -195,7 +195,7 @@ static sk_value comparison(parser *p) {
     return out;
 }
 
-/* Truths are 1 and 0: both is their product, either is their larger one. */
+/* Truth values are 1 and 0: "and" is their product, "or" the larger one. */
 static sk_value both(parser *p) {
     size_t begin = p->text.now.begin;
     sk_value left = comparison(p);

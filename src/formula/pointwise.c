@@ -1,4 +1,4 @@
-/* Formulas on one particle. */
+/* Making and running formulas of one particle, on the processor and as GLSL. */
 #include "formula/pointwise.h"
 
 #include <stdio.h>
@@ -34,7 +34,7 @@ void SK_KERNEL(run)(const sk_pointwise *pointwise, const double *parameters, dou
         to[0] = from->x, to[1] = from->y, to[2] = from->z;
     }
     kernels->run(tape, registers, 1, 1, &verdict);
-    // a force that is over what fields take would leave the format with a few substeps
+    // a force beyond the range of fields would overflow within a few substeps
     sk_mask good = verdict.finite[0];
     for (size_t k = 0; k < tape->outputs; k++)
         good &= sk_at_most(sk_wide_abs(registers[tape->output[k]]), sk_splat((real)SK_FAR));
@@ -115,7 +115,7 @@ bool sk_pointwise_put_glsl(const sk_pointwise *pointwise, int first, void (*put)
     put(user, text);
     snprintf(text, sizeof text, "void formula@(vec3 p0, vec3 v0, float t, out float result[%zu]) {\n", count);
     if (!sk_formula_put_glsl(pointwise->formula, text, pointwise->output, count, put, user)) return false;
-    // as on the processor: nothing, where one of them is over what fields take
+    // as on the processor: all outputs are 0 if one is beyond the range of fields
     snprintf(text, sizeof text,
              "    bool good = true;\n    for (int k = 0; k < %zu; k++) good = good && abs(o[k]) <= 1e15;\n"
              "    for (int k = 0; k < %zu; k++) result[k] = good ? o[k] : 0;\n}\n",

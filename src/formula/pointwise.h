@@ -1,5 +1,5 @@
-/* A formula on one particle, as colliders and forces run it: a vector of places at a time, in the middle of whoever
- * asks. Made from a text field (parameters.h) when its object is; not changed by running, so threads share one. */
+/* A formula of one particle, for colliders and forces: their kernels call it on a vector of places at a time. Made from
+ * a text field (parameters.h) with its object; not changed by running, so threads share one. */
 #ifndef SK_FORMULA_POINTWISE_H
 #define SK_FORMULA_POINTWISE_H
 
@@ -22,7 +22,7 @@ typedef struct sk_pointwise {
     double *values;
 } sk_pointwise;
 
-/* What is to come out of the tape; returns how many nodes. The formula's graph may be extended. */
+/* Chooses the outputs of the tape, and may extend the formula's graph for them; returns how many nodes. */
 typedef size_t sk_pointwise_choice(skein_formula *formula, sk_node outputs[static SK_POINTWISE_MOST_OUTPUTS]);
 
 /* Makes one from the text of a field; `first` is said when its object is made, and then every parameter has to be

@@ -1,6 +1,6 @@
-/* Terms: nodes rewritten as a number times a node, so that what differs by a sign or by a factor is computed once, and
- * what is the same polynomial, however it is written, as well. For what is made anew from a graph (second.c): the nodes
- * that are there, and so their bits, stay as they are. */
+/* Terms: nodes rewritten as a number times a node, so that nodes which differ by a sign or a factor, or are the same
+ * polynomial written in different ways, are computed once. For nodes that second.c adds to a graph: existing ones, and
+ * so their bits, stay as they are. */
 #include "formula/rewrite.h"
 
 #include <math.h>
@@ -25,7 +25,7 @@ sk_node sk_term_node(sk_graph *g, sk_term t) {
     return sk_times(g, sk_constant(g, t.factor), t.node);
 }
 
-/* Its size as a node of its own; the sign stays outside. */
+/* A term whose factor is only a sign: the rest of the factor goes into the node. */
 sk_term sk_term_whole(sk_graph *g, sk_term t) {
     return (sk_term){t.factor < 0 ? -1 : 1, sk_term_node(g, (sk_term){fabs(t.factor), t.node})};
 }
@@ -44,7 +44,7 @@ sk_term sk_term_sum(sk_graph *g, sk_term a, sk_term b) {
     if (a.node == b.node) return (sk_term){a.factor + b.factor, a.node};
     if (fabs(a.factor) != fabs(b.factor)) a = sk_term_whole(g, a), b = sk_term_whole(g, b);
     if (a.factor == b.factor) return (sk_term){a.factor, sk_plus(g, a.node, b.node)};
-    // one order for differences, so that each is there once
+    // one order for differences, so that each exists once
     if (a.node > b.node) return (sk_term){b.factor, sk_minus(g, b.node, a.node)};
     return (sk_term){a.factor, sk_minus(g, a.node, b.node)};
 }
@@ -88,9 +88,9 @@ static sk_term rewrite(sk_graph *g, sk_node node, const sk_term *of) {
 
 /* ---- what is the same ---- */
 
-/* A node's value in whole numbers modulo the prime 2^61 - 1, where leaves are any numbers: sums and products that are
- * the same polynomial are the same there, however they are written, and others are not but once in 10^12. Other
- * operations are any number that their arguments' decide. */
+/* A node's value modulo the prime 2^61 - 1, with random numbers for leaves: sums and products that are the same
+ * polynomial have the same value, however they are written, and others differ but for one case in 10^12. Other
+ * operations are hashes of their arguments' values. */
 #define PRIME (((uint64_t)1 << 61) - 1)
 __extension__ typedef unsigned __int128 wide_word;
 
@@ -100,7 +100,7 @@ static uint64_t times_modulo(uint64_t a, uint64_t b) {
     return sum >= PRIME ? sum - PRIME : sum;
 }
 
-/* A double is a whole number times a power of 2, of which the 61st is 1. */
+/* A double is a whole number times a power of 2, and 2^61 is 1 here. */
 static uint64_t constant_modulo(double value) {
     int exponent;
     double fraction = frexp(fabs(value), &exponent);

@@ -1,14 +1,14 @@
-/* Second derivatives of a number by positions, in as few operations as there are ways to look for.
+/* Second derivatives of a number by positions, in the way that takes the fewest operations of several.
  *
- * Where moving all particles alike changes nothing, one particle's rows and columns are minus the sums of the others'.
- * Of the rest, one way is the gradient's derivatives, input by input. Another is a *cut*: a few nodes s on which alone
- * the value E depends, such as the invariants of an energy. By the chain rule twice
+ * If translating all particles changes nothing, one particle's rows and columns are minus the sums of the others'. The
+ * rest can be the gradient's derivatives, input by input; or come from a *cut*: a few nodes s through which alone the
+ * value E depends on the inputs, such as the invariants of an energy. By the chain rule, applied twice,
  *
  *     H = sum E_st (grad s)(grad t)^T + sum E_s hess s
  *
- * so that every entry is a few products of numbers that rows share. Cuts are found from the value downwards; what
- * takes the fewest operations is kept. Terms are rewritten as a number times a node on their way, so that what differs
- * by a sign or by a factor is computed once. The rest of the graph, and so its bits, stays as it is. */
+ * so that every entry is a few products of numbers that rows share. Cuts are found from the value downwards, and the
+ * way with the fewest operations is kept. Terms are rewritten as a number times a node, so that nodes which differ by a
+ * sign or a factor are computed once. The rest of the graph, and so its bits, stays as it is. */
 #include <math.h>
 #include <string.h>
 
@@ -47,7 +47,7 @@ static sk_term sum_of(sk_graph *g, sk_term *terms, size_t count) {
 
 /* ---- what moving all particles does ---- */
 
-/* By how much nodes grow when all particles move by 1 along an axis; NAN: not by the same everywhere. */
+/* How much nodes grow when all particles move by 1 along an axis; NAN: it depends on the positions. */
 static double drift_of(const sk_graph *g, sk_node node, uint32_t axis, const double *of) {
     const sk_graph_node *n = &g->data[node];
     if (!(n->uses & SK_USES_POSITION)) return 0;
@@ -78,7 +78,7 @@ static bool stays_where_all_move(sk_graph *g, sk_node output) {
     return stays;
 }
 
-/* The particle that most is computed from, as the origin of all others. */
+/* The particle that most nodes read, as the origin of all others. */
 static size_t find_origin(const sk_graph *g, sk_node output, size_t particles) {
     size_t uses[SK_FORMULA_PARTICLES] = {0}, origin = 0;
     for (size_t i = 0; i <= output; i++)

@@ -8,7 +8,7 @@
 enum { NO_REGISTER = UINT16_MAX };
 static const uint32_t NEVER = UINT32_MAX; // as the place of a last use
 
-/* What is known of a node while its tape is made. */
+/* A node's properties while a tape is made. */
 typedef struct plan_of_node {
     bool live, is_output;
     bool inside;                       /* a product or sum that is computed within the sums that read it */
@@ -79,8 +79,8 @@ static bool only_adds(const builder *b, sk_node sum) {
     return n->op == SK_NODE_ADD && (prefix < 0 || b->graph->data[n->arg[prefix]].op == SK_NODE_ADD);
 }
 
-/* A product is computed anew in each of the sums that read it where these are two at the most, since a load and a
- * multiplication there cost less than an instruction and a register here. */
+/* A product that at most two sums read is computed within each of them, since a load and a multiplication there cost
+ * less than an instruction and a register of its own. */
 static void choose_instructions(builder *b) {
     enum { MOST_COPIES = 2 };
     for (size_t i = 0; i < b->graph->count; i++) {
@@ -147,7 +147,7 @@ static int operands_of(const builder *b, sk_node node, sk_node operands[6], uint
 
 /* ---- the order ---- */
 
-/* Each output's own nodes just before it, so that little is held at a time. */
+/* Puts each output's own nodes just before it, so that few registers are in use at a time. */
 static void put_in_order(builder *b, sk_node output) {
     PUSH(b, &b->stack, output);
     while (b->stack.count && !b->no_memory) {

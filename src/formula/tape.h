@@ -33,7 +33,7 @@ typedef struct sk_instruction {
     uint16_t op, to, from[6];
 } sk_instruction;
 
-/* What is brought into a register before a tape runs. A particle's x, y and z are in three registers in a row. */
+/* What is loaded into a register before a tape runs. A particle's x, y and z are in three consecutive registers. */
 typedef enum sk_tape_source { SK_TAPE_POSITION, SK_TAPE_VELOCITY, SK_TAPE_PARAMETER, SK_TAPE_TIME } sk_tape_source;
 
 typedef struct sk_tape_load {
@@ -63,7 +63,7 @@ typedef struct sk_tape {
     size_t outputs;
     size_t registers;
     size_t wides;  /* of a block: 8, or fewer where registers are so many that they would leave the cache */
-    bool unjudged; /* whoever runs it looks for himself for what is not finite: there is no verdict on that */
+    bool unjudged; /* its runner checks for values that are not finite itself: the verdict leaves that out */
     sk_allocator *allocator;
 } sk_tape;
 
@@ -72,8 +72,8 @@ skein_status sk_tape_create(sk_tape *tape, const sk_graph *graph, const sk_node 
                             sk_allocator *allocator, skein_error *error);
 void sk_tape_free(sk_tape *tape);
 
-/* What a tape runs on. Positions and velocities are state vectors, aligned as such: slots [0, packed) in packed blocks,
- * else quads. */
+/* The input of a tape. Positions and velocities are state vectors, aligned as such: slots [0, packed) in packed blocks,
+ * others in quads. */
 typedef struct sk_tape_input {
     const sk_vec4 *positions, *velocities;
     size_t packed;
@@ -83,8 +83,8 @@ typedef struct sk_tape_input {
     real time;
 } sk_tape_input;
 
-/* What a run leaves besides its registers: for each lane, whether a guard acted, and whether the sum of all outputs is
- * finite. An element whose sum is not should be left out. */
+/* The result of a run besides its registers: for each lane, whether a guard acted, and whether the sum of all outputs
+ * is finite. Elements whose sum is not should be ignored. */
 typedef struct sk_tape_verdict {
     sk_mask guarded[SK_TAPE_WIDES * SK_PARTS], finite[SK_TAPE_WIDES * SK_PARTS];
 } sk_tape_verdict;

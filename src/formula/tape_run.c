@@ -20,9 +20,16 @@ SK_KERNELS(const sk_tape_kernels, kernels);
 
 #ifdef SK_ISA
 
+#ifdef SK_SMALL
+#define EACH(value_)                                     \
+    _Pragma("clang loop unroll_count(4)")                \
+    for (size_t i = 0; i < count; i++) to[i] = (value_); \
+    break
+#else
 #define EACH(value_)                                     \
     for (size_t i = 0; i < count; i++) to[i] = (value_); \
     break
+#endif
 
 #include "base/wide_elementary.h"
 
@@ -160,8 +167,8 @@ SK_INLINE void run_code(const sk_tape *tape, sk_wide *registers, sk_mask *guarde
     }
 }
 
-/* Infinities and NaN go through sums; what is only so large that the sum overflows is left out, too. Four sums are
- * variables, since compilers keep an array of them in memory. */
+/* Infinities and NaN propagate through sums; elements whose sum overflows are left out too. The four sums are
+ * variables, since compilers would keep an array of them in memory. */
 SK_INLINE void judge(const sk_tape *tape, const sk_wide *registers, sk_mask *finite, const size_t vectors,
                      const size_t count) {
     const sk_wide zero = {0};
@@ -192,8 +199,10 @@ SK_INLINE void run_and_judge(const sk_tape *tape, sk_wide *registers, sk_tape_ve
 static void run(const sk_tape *tape, sk_wide *registers, size_t vectors, size_t count, sk_tape_verdict *verdict) {
     enum { MOST = SK_TAPE_WIDES * SK_PARTS, HALF = MOST / 2 };
     if (vectors == MOST && count > HALF) run_and_judge(tape, registers, verdict, MOST, MOST);
+#ifndef SK_SMALL // where bytes are dear, those three are enough
     else if (vectors == MOST) run_and_judge(tape, registers, verdict, MOST, HALF);
     else if (vectors == HALF) run_and_judge(tape, registers, verdict, HALF, HALF);
+#endif
     else if (vectors == 1) run_and_judge(tape, registers, verdict, 1, 1); // within a kernel: pointwise.h
     else run_and_judge(tape, registers, verdict, vectors, count);
 }
@@ -217,7 +226,7 @@ static void begin_block(const sk_tape *tape, const sk_tape_input *input, sk_wide
     }
 }
 
-/* Elements [element, element + count) into the registers that want them; lanes past them repeat the last. */
+/* Loads elements [element, element + count) into the registers that need them; lanes past them repeat the last. */
 static void load(const sk_tape *tape, const sk_tape_input *input, size_t element, size_t count, sk_wide *registers,
                  size_t vectors) {
     for (size_t l = 0; l < tape->loads.count; l++) {

@@ -1,5 +1,5 @@
-/* A formula's text: its tokens, and faults with their places. Used by the parser alone; nothing is allocated.
- * The first fault stays, and after it there are no more tokens, so that a parser need not look after every step. */
+/* A formula's text: its tokens, and errors with their places. Used by the parser alone; nothing is allocated. The first
+ * error is kept, and after it there are no more tokens, so that the parser need not check after every step. */
 #ifndef SK_FORMULA_TEXT_H
 #define SK_FORMULA_TEXT_H
 

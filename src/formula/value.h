@@ -1,5 +1,5 @@
-/* What an expression is while it is parsed: a number, a vector or a truth, each a few nodes of the graph; and the
- * functions of the language, which make such values from others. A truth is a number that is 1 or 0. */
+/* Values of expressions during parsing: a number, a vector or a truth value, each a few nodes of the graph; and the
+ * functions of the language, which make such values from others. A truth value is 1 or 0. */
 #ifndef SK_FORMULA_VALUE_H
 #define SK_FORMULA_VALUE_H
 

@@ -1,4 +1,4 @@
-/* In a library that was built without OpenGL: there is the processor, and nothing else. */
+/* The graphics card's functions in a library built without OpenGL: they report that there is only the processor. */
 #include "world/world.h"
 
 skein_status skein_world_device_set(skein_world *world, skein_device device) {

@@ -1,4 +1,4 @@
-/* When particles are laid out anew on the card, and the programs that move them there and back. */
+/* Rearranging particles on the card: when it is done, and the programs that move the state there and back. */
 #include "gpu/arrange.h"
 
 #include <epoxy/gl.h>
@@ -13,7 +13,7 @@ enum { GATHER, COPY, GATHER_NUMBERS, COPY_NUMBERS, SCATTER };
  * are built in any order. */
 enum { STEPS_BETWEEN = 64, FIRST_STEPS = 2 };
 
-/* No op is told slots: each is about everybody. */
+/* Whether the order of particles is free: no op depends on slots. */
 static bool is_possible(const sk_gpu_device *device, const skein_world *world) {
     bool walks = false;
     if (!device->identity) return false;
@@ -45,19 +45,19 @@ skein_status sk_gpu_arrange_make(sk_gpu_device *device, skein_world *world, skei
     if (!status) status = sk_gpu_buffer(device, 4 * device->particle_count, &a->home, error);
     if (status) return status;
     a->count = device->particle_count;
-    device->base.behind = true; // the state is to be written anyway, and `home` with it
+    device->base.behind = true; // makes the next step write the state, and then reset `home`
     return SKEIN_OK;
 }
 
 void sk_gpu_arrange_free(sk_gpu_device *device) {
     sk_gpu_arrangement *a = &device->arrangement;
-    if (a->moved) device->base.behind = true; // the world has fetched it, and writes it where it belongs
+    if (a->moved) device->base.behind = true; // the world has fetched the state, and writes it to its own slots
     sk_gpu_buffer_free(device, &a->home, 4 * a->count);
     a->count = 0;
     a->moved = false;
 }
 
-/* Runs one of the programs from a buffer to another. */
+/* Runs one of the programs from one buffer to another. */
 static void move(const sk_gpu_device *device, int which, unsigned from, unsigned to, unsigned list) {
     const sk_gpu_arrangement *a = &device->arrangement;
     const unsigned buffers[] = {from, to, list};
@@ -73,7 +73,7 @@ void sk_gpu_arrange_reset(sk_gpu_device *device) {
     device->arrangement.steps = 0;
 }
 
-/* By the grid's list of what lies where: the slots of the last step in the order of cells. */
+/* Moves the state into the order of the grid's list, the slots of the last step by cells. */
 static void arrange(sk_gpu_device *device) {
     sk_gpu_arrangement *a = &device->arrangement;
     const sk_gpu_grid *grid = &device->grid;

@@ -1,10 +1,9 @@
 /* Where particles lie on the card: in the world's slots, or, after a while, in the order of the grid's cells.
  *
- * Neighbours in space that are neighbours in memory are read together: sorting, and all that a pass in the order of
- * cells loads and stores for its own particle, then walks through memory instead of jumping about in it. So every some
- * steps the state is moved into the order that the grid has found. It can be where all rules are everybody's and
- * particle i is in slot i, for then no rule knows slots; `home` says which particle lies where. What is read back is
- * in the world's slots again.
+ * If neighbours in space are neighbours in memory, sorting and all that a pass in the order of cells loads and stores
+ * for its own particle go through memory in order. So every few steps the state is moved into the order that the grid
+ * has found. That is possible if all rules act on all particles and particle i is in slot i, for then no rule depends
+ * on slots; `home` says which particle lies where. What is read back is in the world's slots again.
  *
  * Called by device.c. Uses the grid's buffers, which hold nothing between steps. */
 #ifndef SK_GPU_ARRANGE_H
@@ -18,17 +17,17 @@ enum { SK_GPU_ARRANGE_PROGRAMS = 5 };
 
 typedef struct sk_gpu_arrangement {
     unsigned program[SK_GPU_ARRANGE_PROGRAMS];
-    unsigned home; /* by slot: the particle there; 0 where none is kept */
-    size_t count;  /* for which it was made */
+    unsigned home; /* a buffer: the particle in each slot; 0 if there is none */
+    size_t count;  /* the number of particles that it was made for */
     size_t steps;  /* since the state was moved */
     bool possible; /* under the present plan */
     bool moved;    /* particles are not in the world's slots */
 } sk_gpu_arrangement;
 
-/* Looks whether the plan allows it, and makes what it needs. A state that lies elsewhere must have been fetched. */
+/* Finds whether the plan allows it, and makes what it needs. A state that has been moved must have been fetched. */
 skein_status sk_gpu_arrange_make(sk_gpu_device *device, skein_world *world, skein_error *error);
 void sk_gpu_arrange_free(sk_gpu_device *device);
-/* The state has been written: all is in the world's slots. */
+/* To be called when the state has been written, and so is in the world's slots. */
 void sk_gpu_arrange_reset(sk_gpu_device *device);
 /* Before a step: moves the state if it is time. */
 void sk_gpu_arrange_step(sk_gpu_device *device);

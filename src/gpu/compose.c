@@ -8,7 +8,7 @@
 
 #define BIT(vector) (1u << (vector))
 
-/* What users see of a state; all other vectors matter only within a step. */
+/* The vectors that are kept between steps; all others matter only within one. */
 static const uint32_t state_vectors = BIT(SK_X) | BIT(SK_V) | BIT(SK_PREVIOUS);
 
 /* ---- what cannot run ---- */
@@ -63,12 +63,12 @@ static uint32_t touched(const sk_op *op) {
     return sk_op_reads(op) | sk_op_writes(op);
 }
 
-/* Whether the op looks at the neighbours of every particle, of whom all are looked at. */
+/* Whether the op reads the neighbours of every particle, among all particles. */
 static bool is_everyone(const cutter *c, const sk_op *op) {
     return sk_gpu_op_everyone(op, c->world->particles.count);
 }
 
-/* Fills in a pass that begins with op `at` of the list: as many ops, up to `end`, as can stand in it. */
+/* Fills in a pass that begins with op `at` of the list, with as many ops, up to `end`, as fit. */
 static void fill_pass(const cutter *c, sk_gpu_pass *pass, size_t at, size_t end) {
     const sk_op *const *ops = c->passes->ops.data;
     uint32_t vectors = 0, written = 0;
@@ -129,7 +129,7 @@ static void add_op(cutter *c, const sk_op *op) {
     else c->passes->ops.data[c->passes->ops.count++] = op;
 }
 
-/* A grid: pending ops that it must see the work of come before it, others wait. Its ops are one pass. */
+/* A grid: pending ops that it depends on get passes before it, others wait. The grid's own ops are one pass. */
 static size_t cut_grid(cutter *c, const sk_op *op, size_t most) {
     size_t end = c->passes->ops.count, count = 1;
     while (end > c->pending && !(sk_op_writes(c->passes->ops.data[end - 1]) & (BIT(SK_X) | BIT(SK_V)))) end--;
@@ -139,7 +139,7 @@ static size_t cut_grid(cutter *c, const sk_op *op, size_t most) {
     return count;
 }
 
-/* Cuts ops [begin, end) of the plan; repeats lie within each other. */
+/* Cuts ops [begin, end) of the plan into passes; repeats may be nested. */
 static void cut(cutter *c, const sk_plan *plan, size_t begin, size_t end) {
     for (size_t r = begin; r < end && !c->no_memory;) {
         const sk_op *op = &plan->data[r];
@@ -149,7 +149,7 @@ static void cut(cutter *c, const sk_plan *plan, size_t begin, size_t end) {
             add_op(c, op);
             r++;
         } else {
-            // what comes before a single iteration may as well be done in it
+            // ops before a single iteration may share its pass
             if (op->end != 1) flush(c, c->passes->ops.count);
             size_t repeat = c->passes->count;
             add_pass(c, (sk_gpu_pass){.kind = SK_GPU_REPEAT, .op = op});
@@ -173,7 +173,7 @@ static void find_loops(sk_gpu_passes *passes) {
     }
 }
 
-/* ---- vectors: what a pass loads, and what of that which it writes somebody will read ---- */
+/* ---- vectors: what a pass loads, and which of those that it writes are read later ---- */
 
 typedef struct traffic {
     uint32_t uses, loads, writes;
@@ -195,7 +195,7 @@ static traffic traffic_of(const sk_gpu_passes *passes, const sk_gpu_pass *pass) 
 static void put_head(sk_gpu_text *text, const sk_gpu_pass *pass, const sk_op *const *ops) {
     sk_gpu_put(text, "#version 450 core\nlayout(local_size_x = %d) in;\n\n", SK_GPU_GROUP);
     sk_gpu_put(text,
-               "layout(std140, binding = 0) uniform rows_block {\n"
+               "layout(std140, binding = 0) uniform ops_block {\n"
                "    uvec4 head; // elements; the first one; iterations; whether the last iteration is the repeat's\n"
                "    vec4 room;\n");
     for (size_t r = 0; r < pass->count; r++) sk_gpu_put_members(text, ops[r], r);
@@ -229,7 +229,7 @@ static void put_main(sk_gpu_text *text, const sk_gpu_pass *pass, const sk_op *co
     for (int v = SK_X; v < SK_VECTOR_COUNT; v++) {
         const char *name = sk_gpu_vector_name((sk_vector)v);
         if (!(t->uses >> v & 1)) continue;
-        // no fused operations: what falls freely must be found just where it was predicted
+        // no fused operations: the correction of a particle in free fall must be exactly 0
         if (t->loads >> v & 1) sk_gpu_put(text, "    precise vec4 %s = at_%s[slot];\n", name, name);
         else sk_gpu_put(text, "    precise vec4 %s = vec4(0);\n", name);
     }
@@ -247,7 +247,7 @@ static void put_main(sk_gpu_text *text, const sk_gpu_pass *pass, const sk_op *co
     sk_gpu_put(text, "}\n");
 }
 
-/* Writes and compiles one pass; `wanted` are the vectors that somebody loads. */
+/* Writes and compiles one pass; `wanted` are the vectors that are loaded later. */
 static skein_status make_pass(sk_gpu_passes *passes, sk_gpu_pass *pass, sk_gpu_programs *programs, skein_world *world,
                               bool identity, skein_error *error) {
     const sk_op *const *ops = passes->ops.data + pass->first;

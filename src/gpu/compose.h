@@ -3,11 +3,11 @@
  *   plan    clear F | gravity | kick | drift           four ops, each of which reads and writes whole vectors
  *   pass    load X, V; the four in registers; store    one shader, written from the ops' own texts
  *
- * Called by device.c when there is a new plan; run.c dispatches the passes. A free op whose elements are slots can
- * stand in a pass with others of its sort. An op over the neighbours of everybody makes the pass walk in the order of
- * the grid's cells; one over those of some stands alone. Ops that touch neither X nor V move past a grid, into the
- * pass behind it. Where the iterations of a repeat are one pass that looks at nothing but its own slot, the shader
- * loops over them too. What is found and used up within a pass is never stored, and needs no buffer. */
+ * Called by device.c when there is a new plan; run.c dispatches the passes. Free ops whose elements are slots can share
+ * a pass. An op over the neighbours of all particles makes the pass run in the order of the grid's cells; one over
+ * those of some is a pass of its own. Ops that write neither X nor V move past a grid, into the pass behind it. If the
+ * iterations of a repeat are one pass that reads nothing but its own slot, the shader loops over them too. Values that
+ * are used only within a pass are never stored, and need no buffer. */
 #ifndef SK_GPU_COMPOSE_H
 #define SK_GPU_COMPOSE_H
 
@@ -17,8 +17,8 @@
 enum {
     SK_GPU_GROUP = 128,      /* invocations of a work group */
     SK_GPU_MOST_VECTORS = 8, /* in a pass; OpenGL promises eight buffers */
-    SK_GPU_MOST_BLOCK = 768, /* vectors of four floats that the ops of a pass say; OpenGL promises 1,024 */
-    SK_GPU_POSE = 8,         /* vectors that say where a collider stands */
+    SK_GPU_MOST_BLOCK = 768, /* vectors of four floats in the blocks of a pass's ops; OpenGL promises 1,024 */
+    SK_GPU_POSE = 8,         /* vectors of a collider's pose */
     SK_GPU_OP = 2,           /* vectors that every op has: coefficients and the substep; flags */
     SK_GPU_HEAD = 2,         /* vectors before those of the ops */
 };
@@ -40,7 +40,7 @@ typedef struct sk_gpu_pass {
     sk_vector vector[SK_GPU_MOST_VECTORS]; /* which buffers it binds, in this order */
     size_t vector_count, block;            /* the block's size, in vectors of four floats */
     bool looped;                           /* its shader takes the iterations of the repeat that it is in */
-    bool looks;                            /* there are ops that look at one particle */
+    bool looks;                            /* some op reads the position of one particle */
 } sk_gpu_pass;
 
 typedef struct sk_gpu_passes {
@@ -53,11 +53,11 @@ typedef struct sk_gpu_passes {
     uint32_t vectors; /* those that need a buffer (bit v: vector v) */
 } sk_gpu_passes;
 
-/* Cuts the plan into passes and compiles them. Names the rule that cannot run on a card. `identity` says that particle
- * i is in slot i. */
+/* Cuts the plan into passes and compiles them; fails with the name of a rule that cannot run on a card. `identity`:
+ * particle i is in slot i. */
 skein_status sk_gpu_compose(sk_gpu_passes *passes, sk_gpu_programs *programs, skein_world *world, bool identity,
                             skein_error *error);
-/* Fills a pass's block but for its head: what its ops say at this time. */
+/* Fills a pass's block, except its head, with its ops' values at this time. */
 void sk_gpu_pack(const sk_gpu_passes *passes, const sk_gpu_pass *pass, const sk_run *run, float (*block)[4]);
 
 #endif

@@ -11,7 +11,7 @@
 
 enum { MOST_DEVICES = 16 };
 
-/* Fills in the names; refuses what is older than OpenGL 4.5. The context is current. */
+/* Fills in the names; refuses OpenGL older than 4.5. The context must be current. */
 static skein_status look_at(sk_gpu_context *context, skein_error *error) {
     const char *renderer = (const char *)glGetString(GL_RENDERER), *version = (const char *)glGetString(GL_VERSION);
     if (!renderer || !version || epoxy_gl_version() < 45 || !epoxy_is_desktop_gl())
@@ -22,7 +22,7 @@ static skein_status look_at(sk_gpu_context *context, skein_error *error) {
     return SKEIN_OK;
 }
 
-/* Makes a 4.5 core context on a display, and looks at it. It is left. */
+/* Makes a 4.5 core context on a display, and checks it. It is not current afterwards. */
 static bool try_display(sk_gpu_context *context, EGLDisplay display, skein_error *error) {
     static const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
     static const EGLint attributes[] = {
@@ -47,7 +47,7 @@ static bool try_display(sk_gpu_context *context, EGLDisplay display, skein_error
     return good;
 }
 
-/* The cards; or, of those devices, the processors that play one. */
+/* Tries the graphics cards; or, if `software`, the devices that render on the processor. */
 static bool try_devices(sk_gpu_context *context, bool software, skein_error *error) {
     EGLDeviceEXT devices[MOST_DEVICES];
     EGLint count = 0;
@@ -82,7 +82,7 @@ skein_status sk_gpu_context_create(sk_gpu_context *context, skein_error *error) 
                    "(Debian: apt-get install libegl1 libgl1-mesa-dri, for software and open drivers)");
 }
 
-/* Whether GLX, where it is in use at all, has a current context: asked without needing X to build. */
+/* Whether GLX has a current context, found without linking to X. */
 static bool glx_is_current(void) {
     void *library = dlopen("libGLX.so.0", RTLD_NOLOAD | RTLD_NOW);
     if (!library) library = dlopen("libGL.so.1", RTLD_NOLOAD | RTLD_NOW);

@@ -1,8 +1,8 @@
 /* The OpenGL context that the device computes in: its own, without a window, or the one that is current.
  *
- * Called by device.c around whatever speaks to OpenGL. An own context is current only between enter and leave, so that
- * a world may go from thread to thread, and another context that was current is so again. A context that was taken
- * over must be current whenever the world is used; nothing looks after that. */
+ * Called by device.c around all calls of OpenGL. A context of its own is current only between enter and leave, so that
+ * a world may move between threads, and restores the one that was current before. A context that was taken over must be
+ * current whenever the world is used, which is not checked. */
 #ifndef SK_GPU_CONTEXT_H
 #define SK_GPU_CONTEXT_H
 
@@ -15,7 +15,7 @@ typedef struct sk_gpu_context {
         void *display, *draw, *read, *context;
     } before;       /* what was current when it was entered */
     char name[256]; /* the renderer and the version */
-    bool software;  /* the processor plays the graphics card */
+    bool software;  /* it renders on the processor */
 } sk_gpu_context;
 
 /* Makes a context of its own: on the first graphics card, else on whatever OpenGL there is. Not entered. */

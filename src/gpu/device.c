@@ -1,4 +1,4 @@
-/* Buffers and passes of a world on a card: made, filled, run for a step, read back, let go. */
+/* A world's buffers and passes on a card: making, filling, running them for a step, reading back, releasing. */
 #include "gpu/device.h"
 
 #include <epoxy/gl.h>
@@ -13,7 +13,7 @@ static size_t vector_bytes(const sk_gpu_device *device) {
 }
 
 skein_status sk_gpu_buffer(sk_gpu_device *device, size_t bytes, unsigned *buffer, skein_error *error) {
-    while (glGetError() != GL_NO_ERROR) {} // older faults are not this one's
+    while (glGetError() != GL_NO_ERROR) {} // clears earlier errors
     glCreateBuffers(1, buffer);
     glNamedBufferStorage(*buffer, (GLsizeiptr)bytes, NULL, GL_DYNAMIC_STORAGE_BIT);
     GLenum fault = glGetError();
@@ -57,7 +57,7 @@ static skein_status make_vectors(sk_gpu_device *device, skein_error *error) {
     return status;
 }
 
-/* A plan that walks along the grid binds whole vectors: they must not be larger than a binding. */
+/* A plan that uses the grid binds whole vectors, which must not be larger than a binding can be. */
 static skein_status check_walks(const sk_gpu_device *device, skein_error *error) {
     for (size_t i = 0; i < device->passes.count; i++) {
         if (device->passes.data[i].kind != SK_GPU_NEIGHBOURS || vector_bytes(device) <= device->most_bytes) continue;
@@ -103,7 +103,7 @@ static skein_status prepare_entered(sk_gpu_device *device, skein_world *world, s
 
 static skein_status prepare(sk_device *base, skein_world *world, skein_error *error) {
     sk_gpu_device *device = (sk_gpu_device *)(void *)base;
-    skein_status status = sk_world_fetch(world); // buffers may go
+    skein_status status = sk_world_fetch(world); // buffers may be released below
     if (status) return status;
     sk_gpu_context_enter(&device->context);
     status = prepare_entered(device, world, error);
@@ -131,7 +131,7 @@ static void copy_vector(sk_gpu_device *device, sk_vec4 *vector, unsigned buffer,
         }
         if (write) glNamedBufferSubData(buffer, (GLintptr)first * 16, (GLsizeiptr)count * 16, part);
         else glGetNamedBufferSubData(buffer, (GLintptr)first * 16, (GLsizeiptr)count * 16, part);
-        // masses stay as exact as they are here
+        // masses keep the precision that they have here
         for (size_t i = 0; i < count && !write; i++)
             vector[first + i] = (sk_vec4){(real)part[i][0], (real)part[i][1], (real)part[i][2], vector[first + i].w};
     }
@@ -150,7 +150,7 @@ static skein_status step(sk_device *base, skein_world *world, sk_run *run, skein
     if (base->behind) {
         copy_vector(device, world->particles.vector[SK_X], device->vector[SK_X], true);
         copy_vector(device, world->particles.vector[SK_V], device->vector[SK_V], true);
-        device->grid.begin = device->grid.end = 0; // nobody knows where they are
+        device->grid.begin = device->grid.end = 0; // the particles' box is not known any more
         sk_gpu_arrange_reset(device);
     }
     sk_gpu_arrange_step(device);
@@ -256,7 +256,7 @@ skein_device_info skein_world_device(const skein_world *world) {
     const sk_gpu_device *device = (const sk_gpu_device *)(const void *)world->device;
     if (!device) return (skein_device_info){.device = SKEIN_DEVICE_CPU, .name = "processor"};
     if (device->base.name) return (skein_device_info){.device = SKEIN_DEVICE_SHARED, .name = device->base.name};
-    bool newest = !device->base.behind; // else what lies there is of another time
+    bool newest = !device->base.behind; // else the card's state is out of date
     return (skein_device_info){
         .device = device->context.own ? SKEIN_DEVICE_GPU : SKEIN_DEVICE_CURRENT_GL,
         .name = device->context.name,

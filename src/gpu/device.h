@@ -12,7 +12,7 @@
 
 enum { SK_GPU_STAGE = 256 << 10 }; /* bytes of blocks that go to the card at once */
 
-/* A dispatch that waits for its blocks to go to the card. */
+/* A dispatch that waits until its block has been sent to the card. */
 typedef struct sk_gpu_call {
     const sk_gpu_pass *pass;
     size_t block;        /* where its block is, in bytes */
@@ -34,18 +34,18 @@ typedef struct sk_gpu_device {
     size_t staged;      /* bytes */
     sk_gpu_call *calls; /* that wait */
     size_t call_count;
-    size_t most_bytes, most_groups, block_alignment; /* of one binding; of an axis; of a block's place: the driver's */
-    size_t bytes;                                    /* on the card */
+    size_t most_bytes, most_groups, block_alignment; /* the driver's: of a binding, of an axis, of a block's place */
+    size_t bytes;                                    /* in use on the card */
 } sk_gpu_device;
 
-/* Makes a buffer of so many bytes, all 0; says what was to be had if the card has not as much. */
+/* Makes a buffer of so many bytes, all 0. Fails with the size if the card has not enough memory. */
 skein_status sk_gpu_buffer(sk_gpu_device *device, size_t bytes, unsigned *buffer, skein_error *error);
 void sk_gpu_buffer_free(sk_gpu_device *device, unsigned *buffer, size_t bytes);
-/* Dispatches the program in use over so many invocations, and makes what it wrote seen by the next. */
+/* Dispatches the program in use over so many invocations, with a barrier after it. */
 void sk_gpu_dispatch(const sk_gpu_device *device, size_t invocations);
-/* Runs the passes, `repeats` and all. */
+/* Runs the passes, with their repeats. */
 void sk_gpu_run(sk_gpu_device *device, sk_run *run);
-/* Sends all that waits. */
+/* Sends the waiting blocks, and dispatches the waiting calls. */
 void sk_gpu_flush(sk_gpu_device *device);
 
 #endif

@@ -4,13 +4,12 @@
  *   count    each particle adds to its cell, and keeps the number that it got there
  *   sum up   cells become places, in three dispatches
  *   scatter  each particle's number goes to its place
- *   settle   within each cell the places are given by the particles' numbers, so that the bits repeat, and what
- *            neighbours look at is copied in that order: the position, and the direction of flight in 32
- *            bits
+ *   settle   within each cell particles are ordered by number, so that results repeat to the bit, and what neighbours
+ *            read is copied in that order: the position, and the direction of flight in 32 bits
  *
- * The box is the one that was found while counting the last time: who has left it since is in a cell at its side,
- * and still no farther in cells from its neighbours. Cells are finer along x, where those beside each other are one
- * range. Particles that are not finite come last, where nobody looks. */
+ * The box is the one found while counting the last time: particles that have left it since are in cells at its sides,
+ * where neighbours are still found. Cells are finer along x, where adjacent ones are one range. Particles that are not
+ * finite come last, and are not searched. */
 #ifndef SK_GPU_GRID_H
 #define SK_GPU_GRID_H
 
@@ -36,11 +35,11 @@ typedef struct sk_gpu_grid {
 /* Makes buffers and programs for so many particles. */
 skein_status sk_gpu_grid_make(sk_gpu_device *device, skein_world *world, skein_error *error);
 void sk_gpu_grid_free(sk_gpu_device *device);
-/* What the grid's shaders are told: the particles of the op, and cells of at least its radius. */
+/* Fills the block of the grid's shaders: the particles of the op, and its radius, the least size of cells. */
 void sk_gpu_grid_pack(const sk_gpu_grid *grid, const sk_op *op, float (*block)[4]);
-/* Sorts so many particles, with the block at this place of the device's blocks. */
+/* Sorts `count` particles from `begin` on, with the block at this place of the device's blocks. */
 void sk_gpu_grid_build(sk_gpu_device *device, size_t begin, size_t count, size_t block);
-/* Binds what a walk along the grid reads. */
+/* Binds the buffers that a search of the grid reads. */
 void sk_gpu_grid_bind(const sk_gpu_grid *grid);
 
 #endif

@@ -1,5 +1,5 @@
-// Within its cell a particle stands behind those with lower numbers, however the scatter went; what its neighbours
-// look at is copied there.
+// Within its cell a particle comes after those with lower numbers, in whatever order they were scattered; what its
+// neighbours read is copied there.
 //
 // A direction is two numbers of 16 bits: the sphere laid out as an octahedron, whose lower half is folded outwards. It is
 // off by 3e-5 at most; three numbers of 11, 11 and 10 bits, in as much room, are off by 5e-4, which shows in the sums.

@@ -1,4 +1,4 @@
-// What walks along the grid: see grid.h. Bindings 5 to 7 are its own.
+// Reading the grid, see grid.h, for passes that search neighbours. Bindings 5 to 7 are its own.
 layout(std430, binding = 5) restrict readonly buffer block_cells {
     uint low[3], high[3];
     uint cell_count;

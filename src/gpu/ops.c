@@ -1,4 +1,4 @@
-/* Each sort of op as the card has it: what it reads, what it writes, its text and numbers, or why it cannot. */
+/* Ops on a card: whether they can run there, their part of the block, and their text. */
 #include "gpu/ops.h"
 
 #include <stdio.h>
@@ -12,7 +12,7 @@ const char *sk_gpu_vector_name(sk_vector vector) {
     return names[vector];
 }
 
-/* It has a collider, with its pose. */
+/* Whether its rule is a collider, which has a pose. */
 static bool has_pose(const sk_op *op) {
     return sk_op_type_of(op)->rule == SK_RULE_COLLIDER;
 }
@@ -60,7 +60,7 @@ size_t sk_gpu_op_target_to(void) {
     return SK_GPU_OP;
 }
 
-/* A slot as two numbers that are exact as floats. */
+/* Reads a slot from two numbers, each exact as a float. */
 size_t sk_gpu_op_target_from(const float (*block)[4]) {
     return (size_t)block[1][1] << 16 | (size_t)block[1][3];
 }
@@ -243,7 +243,7 @@ static void put_sum(sk_gpu_text *text, const sk_op *op, size_t n) {
     if (op->source[0] == SK_NONE) sk_gpu_put(text, "vec3(0)");
 }
 
-/* What stands for a letter in a kind's GLSL (sk_on_card). */
+/* Writes the replacement of a letter in a kind's GLSL (sk_on_card). */
 static void put_letter(sk_gpu_text *text, const sk_op *op, char letter, size_t n) {
     const char *name = "";
     switch (letter) {
@@ -263,6 +263,16 @@ static void put_letter(sk_gpu_text *text, const sk_op *op, char letter, size_t n
     sk_gpu_put(text, "%s", name);
 }
 
+/* Whether an earlier op of the pass has written the text that they share. */
+static bool is_shared_before(const sk_op *const *ops, size_t number) {
+    const char *shared = sk_op_type_of(ops[number])->card.shared;
+    for (size_t i = 0; i < number; i++) {
+        const char *other = sk_op_type_of(ops[i])->card.shared;
+        if (other && !strcmp(other, shared)) return true;
+    }
+    return false;
+}
+
 void sk_gpu_put_functions(sk_gpu_text *text, const sk_op *const *ops, size_t number) {
     const sk_op *op = ops[number];
     const sk_on_card *card = &sk_op_type_of(op)->card;
@@ -271,7 +281,7 @@ void sk_gpu_put_functions(sk_gpu_text *text, const sk_op *const *ops, size_t num
     if (shader) put_written(text, op, number);
     if (shader && shader->file) sk_gpu_put_file(text, shader->file, number);
     if (shader && shader->arithmetic) {
-        bool there = false, shapes = false; // rules of one kind share it, and shapes their words
+        bool there = false, shapes = false; // rules of a kind share their arithmetic, and shapes a vocabulary
         for (size_t i = 0; i < number; i++) {
             there |= shader_of(ops[i]) == shader;
             shapes |= has_pose(ops[i]) && shader_of(ops[i])->arithmetic;
@@ -281,6 +291,7 @@ void sk_gpu_put_functions(sk_gpu_text *text, const sk_op *const *ops, size_t num
         put_params(text, op, shader, number);
         put_template(text, op, card->call, number);
     }
+    if (card->shared && !is_shared_before(ops, number)) sk_gpu_put_file(text, card->shared, 0);
     if (card->file) sk_gpu_put_file(text, card->file, number);
 }
 
@@ -290,7 +301,7 @@ static void put_between(sk_gpu_text *text, size_t first, size_t end) {
 
 void sk_gpu_put_statements(sk_gpu_text *text, const sk_op *op, size_t n, size_t particle_count) {
     const sk_op_type *type = sk_op_type_of(op);
-    // only for the particles that the rule moves, where these are not all, and not for the one that it looks at
+    // only for the particles that the rule moves, if these are not all, and not for the one that it is placed at
     if (op->inner) put_between(text, op->first_slot, op->end_slot);
     if (sk_gpu_op_has_target(op))
         sk_gpu_put(text, "    if (first_slot + slot != uint(op%zu[1].y) * 65536u + uint(op%zu[1].w))\n", n, n);

@@ -1,4 +1,4 @@
-/* Texts put together, compiled, and kept by their text, so that the same one is never compiled twice. */
+/* Joining texts, compiling them, and keeping programs by their text, so that none is compiled twice. */
 #include "gpu/program.h"
 
 #include <epoxy/gl.h>

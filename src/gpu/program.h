@@ -25,7 +25,7 @@ typedef struct sk_gpu_text {
 void sk_gpu_put(sk_gpu_text *text, const char *format, ...) SK_PRINTF(2, 3);
 /* Adds a text, with `number` for every '@' in it. */
 void sk_gpu_put_text(sk_gpu_text *text, const char *from, size_t number);
-/* Adds a file, with `number` for every '@' in it. A name that the build has not is a fault of ours. */
+/* Adds a file, with `number` for every '@' in it. The file must be one that the build has embedded. */
 void sk_gpu_put_file(sk_gpu_text *text, const char *name, size_t number);
 
 typedef struct sk_gpu_programs {

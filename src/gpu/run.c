@@ -13,7 +13,7 @@ void sk_gpu_dispatch(const sk_gpu_device *device, size_t invocations) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
-/* Brings the particles that ops look at into the block, from where they are now. */
+/* Copies the present positions of particles that ops read into the block. */
 static void look(const sk_gpu_device *device, const sk_gpu_call *call) {
     size_t at = call->block + 16 * SK_GPU_HEAD;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -52,7 +52,7 @@ void sk_gpu_flush(sk_gpu_device *device) {
     device->staged = device->call_count = 0;
 }
 
-/* Room for a block, at once or after what waits has gone. */
+/* Room for a block; if there is none, what waits is sent first. */
 static float (*stage_block(sk_gpu_device *device, size_t vectors, size_t *at))[4] {
     size_t bytes = (vectors * 16 + device->block_alignment - 1) / device->block_alignment * device->block_alignment;
     if (device->staged + bytes > SK_GPU_STAGE || device->call_count == SK_GPU_STAGE / 256) sk_gpu_flush(device);
@@ -62,7 +62,7 @@ static float (*stage_block(sk_gpu_device *device, size_t vectors, size_t *at))[4
     return (float(*)[4])(void *)(device->stage + *at);
 }
 
-/* A pass, in as many parts as a binding is too small for. */
+/* Adds the calls of a pass: several if its vectors are larger than a binding can be. */
 static void call_pass(sk_gpu_device *device, const sk_run *run, const sk_gpu_pass *pass, size_t iterations) {
     bool walks = pass->kind == SK_GPU_NEIGHBOURS;
     size_t all = walks ? pass->end - pass->begin : device->slot_count;

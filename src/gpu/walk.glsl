@@ -1,6 +1,6 @@
 // A walk over a particle's neighbours in the grid.
 #ifdef MOST@
-// The nearest so far, nearest first; those that came first of equals.
+// The nearest neighbours so far, nearest first; of equally near ones, those found first.
 float near_square@[MOST@];
 uint near_place@[MOST@];
 
@@ -17,9 +17,9 @@ void keep@(float square, uint other) {
 }
 #endif
 
-// All neighbours of the particle at p, which is at a place of the grid, or the nearest. Two phases for each 32 of a row of
-// cells: distances become a mask of hits, then the hits are met one by one, so that invocations side by side part as
-// little as can be.
+// Visits all neighbours, or the nearest, of the particle at p, which is at `place` in the grid. Two phases for each 32
+// of a row of cells: distances become a mask of hits, then the hits are visited one by one, so that invocations of a
+// group diverge as little as possible.
 vec3 walk@(uint place, vec3 p, vec3 v) {
     float speed = dot(v, v);
     sum@ sum = start@(speed > 0 ? v * inversesqrt(speed) : vec3(0));
@@ -76,7 +76,7 @@ vec3 walk@(uint place, vec3 p, vec3 v) {
                 }
                 at = first + 32u;
 #ifdef MOST@
-                square = near_square@[MOST@ - 1]; // who is farther cannot be among them
+                square = near_square@[MOST@ - 1]; // farther ones cannot be among the nearest
 #endif
             }
         }

@@ -1,11 +1,11 @@
-/* Leashes: the op. */
+/* The op that applies leashes: pull, largest distance and backstop of each slot. */
 #include "limits/leash.h"
 
 static sk_vec3 between(sk_vec3 from, sk_vec3 to, real part) {
     return sk_add(from, sk_scale(part, sk_sub(to, from)));
 }
 
-/* Where a particle at x, of inverse mass w, is to be. */
+/* The new position of a particle at x, of inverse mass w. */
 static sk_vec3 hold_at(const sk_leash *leash, sk_vec3 x, real w, real h, real part) {
     sk_vec3 place = between(leash->from, leash->to, part);
     real pulled = leash->pull * h * h * w;

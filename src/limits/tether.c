@@ -1,4 +1,5 @@
-/* Tethers: each particle is pulled to its anchors, forth and back, and what both ways leave is averaged. */
+/* The kernel of tethers, and their arrays. Each particle is pulled to its anchors in turn, in both orders, and the
+ * results are averaged. */
 #include "base/kernels.h"
 #include "limits/limit.h"
 
@@ -10,7 +11,7 @@ SK_KERNELS(sk_op_kernel, keep_tethers);
 
 #ifdef SK_ISA
 
-/* Takes the lanes of p back onto the spheres around their anchors that they have left; returns which. */
+/* Moves the lanes of p that are outside of the spheres around their anchors back onto them; returns which. */
 SK_INLINE sk_mask pull_in(sk_wide3 *p, sk_wide3 anchor, sk_wide most) {
     sk_wide3 d = {p->x - anchor.x, p->y - anchor.y, p->z - anchor.z};
     sk_wide square = sk_dot_wide(d, d);
@@ -23,12 +24,12 @@ SK_INLINE sk_mask pull_in(sk_wide3 *p, sk_wide3 anchor, sk_wide most) {
     return out;
 }
 
-/* Where what belongs to anchor k is in a list by blocks, for a part that begins `at` slots after the first. */
+/* The index of anchor k's values in an array by blocks, for a part that begins `at` slots after the first. */
 SK_INLINE size_t place_of(const sk_limit *limit, size_t at, size_t k) {
     return (at / SK_LANES * limit->anchors + k) * SK_LANES + at % SK_LANES;
 }
 
-/* The places in `pins` of anchor k of a part's lanes, and whether they are one and the same. */
+/* The places in `pins` of anchor k for the lanes of a part, and whether all are the same. */
 typedef struct part_pins {
     const uint32_t *pin;
     bool same;
@@ -41,7 +42,7 @@ SK_INLINE part_pins pins_of(const sk_limit *limit, size_t at, size_t k) {
     return pins;
 }
 
-/* One number of a part's anchors; `offset` is its place in an sk_anchor. */
+/* One member of the anchors of a part; `offset` is its place in an sk_anchor. */
 SK_INLINE sk_wide of_anchor(const sk_limit *limit, const part_pins *pins, size_t offset) {
     const real *number = (const real *)(const void *)limit->pins + offset;
     enum { STRIDE = sizeof(sk_anchor) / sizeof(real) };
@@ -58,7 +59,8 @@ SK_INLINE sk_wide3 velocity_of(const sk_limit *limit, const part_pins *pins) {
                       of_anchor(limit, pins, NUMBER_OF(velocity.z))};
 }
 
-/* The anchors of a part, `since` seconds after the start of the step. One that is not pinned any more lets go. */
+/* The positions of a part's anchors, `since` seconds after the start of the step. An anchor that is not pinned any more
+ * holds nothing. */
 SK_INLINE sk_wide3 anchor_of(const sk_limit *limit, const part_pins *pins, real since, sk_wide *most) {
     sk_wide3 from = {of_anchor(limit, pins, NUMBER_OF(start.x)), of_anchor(limit, pins, NUMBER_OF(start.y)),
                      of_anchor(limit, pins, NUMBER_OF(start.z))};
@@ -71,13 +73,13 @@ SK_INLINE sk_wide3 anchor_of(const sk_limit *limit, const part_pins *pins, real 
     return (sk_wide3){from.x + since * v.x, from.y + since * v.y, from.z + since * v.z};
 }
 
-/* The anchors that pulled at a lane, added up: how fast the sphere moves that it was taken back to. */
+/* The sum of the velocities of the anchors that pulled at a lane, and their number. */
 typedef struct pullers {
     sk_wide3 velocity;
     sk_wide count;
 } pullers;
 
-/* Pulls the lanes of p in by anchor k. */
+/* Pulls the lanes of p towards anchor k. */
 SK_INLINE void pull_by(const sk_limit *limit, size_t at, size_t k, real factor, real since, sk_wide3 *p, pullers *by) {
     sk_wide most = factor * *(const sk_wide *)(const void *)(limit->slot_length + place_of(limit, at, k));
     part_pins pins = pins_of(limit, at, k);
@@ -91,15 +93,15 @@ SK_INLINE void pull_by(const sk_limit *limit, size_t at, size_t k, real factor, 
     by->count += sk_keep(out, sk_splat(1));
 }
 
-/* A velocity as the anchors that pulled see it. */
+/* A velocity relative to the mean of the anchors that pulled. */
 SK_INLINE sk_wide3 seen_by(const pullers *by, sk_wide4 v) {
     sk_wide share = 1 / sk_select(sk_positive(by->count), by->count, sk_splat(1));
     return (sk_wide3){v.x - share * by->velocity.x, v.y - share * by->velocity.y, v.z - share * by->velocity.z};
 }
 
-/* Several anchors are taken in turn, once forwards and once backwards, and the mean is kept: the last
- * one to pull would win otherwise, and a cloth between two pins would hang askew. Where velocities are
- * not taken from positions (a second source), the velocity away from an anchor ends here too. */
+/* Several anchors are applied in turn, once forward and once backward, and the mean is taken: otherwise the last one
+ * would win, and a cloth between two pins would hang askew. Where velocities are not taken from positions (there is a
+ * second source), the velocity away from an anchor is removed as well. */
 void SK_KERNEL(keep_tethers)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const sk_limit *limit = op->rule;
     real factor = (real)(1 + *limit->bound), since = (real)(run->time - op->before_end - limit->start);
@@ -125,7 +127,7 @@ void SK_KERNEL(keep_tethers)(sk_run *run, const sk_op *op, size_t begin, size_t 
         x.z = sk_select(moved, forth.z, x.z);
         sk_store_part(run->vector[op->dst], slot, slot < op->packed, x);
         if (op->source[1] == SK_NONE) continue;
-        // what still goes against the move stops
+        // remove the velocity against the move
         sk_vec4 *velocity = run->vector[op->source[1]];
         sk_wide4 v = sk_load_part(velocity, slot, slot < op->packed);
         sk_wide3 u = {v.x, v.y, v.z};
@@ -183,7 +185,7 @@ void sk_limit_release(sk_limit *limit, sk_allocator *allocator) {
     sk_release(allocator, limit);
 }
 
-/* Lists the particles that are anchors, each once, and which place of the list is each one's. Place 0 is nobody. False
+/* Lists the particles that are anchors, each once, and the place of each in the list. Place 0 stands for none. False
  * when there is no memory. */
 static bool list_pins(sk_limit *limit, sk_allocator *allocator, const sk_particles *particles, uint32_t *place_of) {
     size_t anchors = limit->anchors, count = 1;
@@ -201,7 +203,8 @@ static bool list_pins(sk_limit *limit, sk_allocator *allocator, const sk_particl
     return true;
 }
 
-/* Lanes that are not tethered get the anchor of one beside them, which they never feel: one number then does for a part. */
+/* Lanes that are not tethered get the anchor of one beside them, without effect, so that parts more often have a single
+ * anchor. */
 static void fill_gaps(sk_limit *limit) {
     for (size_t i = 0; i < limit->slot_count * limit->anchors; i += SK_LANES) {
         uint32_t pin = 0;
@@ -211,7 +214,7 @@ static void fill_gaps(sk_limit *limit) {
     }
 }
 
-/* Everything by slot, from the first to the last one that is tethered. */
+/* Fills the arrays by slot, from the first to the last slot that is tethered. */
 static void fill_blocks(sk_limit *limit, const sk_particles *particles, const uint32_t *place_of) {
     size_t anchors = limit->anchors;
     for (size_t i = 0; i < limit->slot_count * anchors; i++) {

@@ -1,15 +1,14 @@
-/* Backward Euler: the velocity at the end of the substep is the one whose own forces lead there,
+/* Backward Euler: forces are evaluated at the end of the substep,
  *
  *   m (v - v0) = h F(x0 + h v, v),     x = x0 + h v.
  *
- * First order, and stable at any stiffness and substep; what a substep is too long for is damped out. Solved by
+ * First order, and stable at any stiffness and substep; motion too fast for the substep is damped out. Solved by
  * Newton's method; each iteration solves (m + h c + h^2 k) dv = R by conjugate gradients (Baraff, Witkin 1998, with
  * the spring's blocks kept positive definite as in Choi, Ko 2002), preconditioned by the matrix's 3 x 3 blocks or by a
  * sparse factor of it. Contact is a filter inside that solve.
  *
- * This file writes what the solve is made of, in parts: the residual, the product with the matrix and so on
- * (plan/solve.h has the vectors). What is done when, Newton's method and conjugate gradients, stands in plan/newton.c.
- */
+ * This file writes the parts of the solve: the residual, the product with the matrix and so on (plan/solve.h has the
+ * vectors). The algorithm that runs them, Newton's method with conjugate gradients, stands in plan/newton.c. */
 #include "base/status.h"
 #include "methods/method.h"
 #include "methods/plan_builder_solve.h"
@@ -53,8 +52,8 @@ static void write_residual(sk_plan_builder *builder, double h) {
     sk_write_pass(builder, &sk_solve_norm, (sk_vector)SK_SUMS, residual, SK_X, "R w R");
 }
 
-/* The matrix's factor at X and V. (That of an earlier iteration is no substitute: springs that have gone slack or taut
- * since made conjugate gradients as long as the blocks do.) */
+/* Factors the matrix at X and V. (The factor of an earlier iteration is no substitute: with springs that have gone
+ * slack or taut since, conjugate gradients took as many iterations as with the blocks.) */
 static void write_factor(sk_plan_builder *builder, double h) {
     sk_vector block = (sk_vector)SK_BLOCK0, off = (sk_vector)SK_BLOCK1;
     sk_write_sum(builder, block, 1, (sk_vector)SK_INERTIA, 0, SK_NONE);
@@ -63,7 +62,7 @@ static void write_factor(sk_plan_builder *builder, double h) {
     sk_write_factor(builder, block, off, h * h, h);
 }
 
-/* The matrix's diagonal blocks at X and V, and their factors; no change yet, from where V is. */
+/* The matrix's diagonal blocks at X and V, and their factors; CHANGE = 0 and GUESS = V. */
 static void write_linearise(sk_plan_builder *builder, const backward_euler_params *params, double h) {
     sk_vector inertia = (sk_vector)SK_INERTIA, block = (sk_vector)SK_BLOCK0, off = (sk_vector)SK_BLOCK1;
     sk_write_pass(builder, &sk_solve_mass, inertia, SK_V, SK_NONE, "m");
@@ -78,7 +77,7 @@ static void write_linearise(sk_plan_builder *builder, const backward_euler_param
     sk_write_sum(builder, (sk_vector)SK_GUESS, 1, SK_V, 0, SK_NONE);
 }
 
-/* T8 = about A^-1 R. */
+/* T8 = the preconditioner times R, about A^-1 R. */
 static void write_precondition(sk_plan_builder *builder, const backward_euler_params *params) {
     sk_vector residual = (sk_vector)SK_RESIDUAL, product = (sk_vector)SK_PRODUCT;
     if (params->preconditioner == CHOLESKY) sk_write_factor_solve(builder, product, residual);

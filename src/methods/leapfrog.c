@@ -2,10 +2,10 @@
  *
  *   v* = v + h/2 w F(x, v),   x' = x + h v*,   v' = v* + h/2 w F(x', v')
  *
- * Second order, and the energy of undamped motion stays bounded while h is under 2/omega. Where forces
- * depend on velocities, the closing kick stands on both sides: it is predicted with v* and corrected once
- * with what came of that, which keeps the second order. Where nothing does, and no contact or limit
- * interferes, the closing force is the next substep's opening one, and is found once. */
+ * Second order, and the energy of undamped motion stays bounded while h is under 2/omega. Where forces depend on
+ * velocities, the closing kick is implicit: it is predicted with v* and corrected once with the predicted v', which
+ * keeps the second order. Where none does, and no contact or limit interferes, the closing force is also the opening
+ * one of the next substep, and is computed once. */
 #include "methods/method.h"
 
 static const skein_field fields[] = {SK_SUBSTEPS_FIELD(20)};
@@ -40,7 +40,7 @@ static void write(sk_plan_builder *builder, const void *params, double dt) {
 }
 
 static void amplify(double z, double zeta, double matrix[4]) {
-    // half a kick, a drift; the ops of x' and of v* in terms of x and v
+    // half a kick, a drift: rows of v* and x' in terms of x and v
     double k[2] = {-z / 2, 1 - z * zeta}, x[2] = {1 + z * k[0], z * k[1]};
     double predicted[2] = {k[0] - z / 2 * x[0] - z * zeta * k[0], k[1] - z / 2 * x[1] - z * zeta * k[1]};
     matrix[0] = x[0], matrix[1] = x[1];

@@ -1,12 +1,12 @@
-/* PBD, position based dynamics (Mueller and others 2007): predict, correct every constraint by a share of what it is
- * off, and take the velocity from the way that was made. The textbook's share is a number between 0 and 1 that means
+/* PBD, position based dynamics (Mueller and others 2007): predict positions, correct a share of each constraint's
+ * error, and take velocities from the change of position. The textbook's share is a number between 0 and 1 that means
  * another stiffness for every substep and mass; here it follows from the constraint's own stiffness k,
  *
  *   s = K/(n + K),   K = k h^2 sum w |grad C|^2,   n passes,
  *
- * so that a soft spring is soft, and a rigid one (s = 1) is a rod. Passes know nothing of each other, which is what
- * XPBD adds: a constraint by itself is left with 1/(1 + K/n)^n of its error after n of them, 1/(1 + K) after one. So
- * one pass is XPBD's own step, and with several whatever K makes stiff becomes stiffer than it says. */
+ * so that a soft spring is soft, and a rigid one (s = 1) is a rod. Unlike XPBD's, passes keep no multiplier from one to
+ * the next: a single constraint is left with 1/(1 + K/n)^n of its error after n of them, 1/(1 + K) after one. So one
+ * pass is the same as XPBD's, and with several a constraint of large K is stiffer than its k says. */
 #include "methods/method.h"
 
 typedef struct pbd_params {
@@ -24,8 +24,8 @@ static const skein_field fields[] = {
         "false: constraints move positions, and pins go their way; other velocities, and forces, are as if they were not"),
 };
 
-/* Projections alone: a solver for constraints. With velocities a spring that is at rest after one solve would fly on.
- * What is pinned is led all the same, else it could not be. */
+/* Projections alone, as a solver for constraints: with velocities, particles would fly on after a solve. Pinned
+ * particles still move by their velocities, which is how they are led. */
 static void write_projections_only(sk_plan_builder *builder, const pbd_params *params, double h) {
     size_t repeat = sk_write_repeat(builder, (size_t)params->substeps, h);
     sk_write_stage_time(builder, 1);

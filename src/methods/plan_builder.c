@@ -1,5 +1,5 @@
-/* Ops for a method, one call each: substeps, the arithmetic of whole vectors, and contact; what else rules bring stands
- * in the files beside this one. */
+/* The plan builder's functions for substeps, arithmetic on whole vectors, and contact. Ops for other rules are in
+ * plan_builder_*.c. */
 #include "methods/plan_builder.h"
 
 void sk_add_op(sk_plan_builder *builder, sk_op op) {

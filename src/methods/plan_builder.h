@@ -1,4 +1,4 @@
-/* What methods build plans with: one call an op, or an op for each enabled rule of a sort. */
+/* The plan builder, with which methods write plans: a call adds one op, or one for each enabled rule of a kind. */
 #ifndef SK_METHODS_PLAN_BUILDER_H
 #define SK_METHODS_PLAN_BUILDER_H
 
@@ -8,7 +8,7 @@
 #include "limits/leash.h"
 #include "limits/limit.h"
 
-/* Everything that acts, in the order of its making. Owned by the world. */
+/* All rules of a world, in the order in which they were made. Owned by the world. */
 typedef struct sk_rules {
     struct {
         sk_batch **data;
@@ -27,7 +27,7 @@ typedef struct sk_rules {
         size_t count, capacity;
     } limits;
     const sk_leashes *leashes; /* of the world's motions; NULL: there are none */
-    const char *sparse_solver; /* the name of the world's; NULL: it has none */
+    const char *sparse_solver; /* the name of the world's sparse solver; NULL: it has none */
 } sk_rules;
 
 typedef struct sk_plan_builder {
@@ -42,74 +42,74 @@ typedef struct sk_plan_builder {
     size_t packed;      /* the first slots that are in packed blocks now */
     double h;           /* of the present substep, s, */
     size_t iterations;  /* and how many of them the repeat has */
-    bool predicted;     /* X began the substep at X0 + h V */
-    double before_end;  /* and how long before its end X is by now, s */
-    size_t substep;     /* the place of its repeat */
+    bool predicted;     /* the substep began with X = X0 + h V */
+    double before_end;  /* how long before the end of the substep X is now, s */
+    size_t substep;     /* the place of the substep's repeat */
     bool no_memory;     /* the plan is incomplete */
 } sk_plan_builder;
 
 /* Opens a repeat of `times` substeps of `h` seconds; sk_write_end closes it. Returns its place. */
 size_t sk_write_repeat(sk_plan_builder *builder, size_t times, double h);
 void sk_write_end(sk_plan_builder *builder, size_t repeat);
-/* Says where X stands from here on: `part` of the substep, 0 at its start (so a repeat begins), 1 at its end. Rules
- * that depend on time take it from there. */
+/* Sets the time of X for the following ops: `part` of the substep, 0 at its start (as a repeat begins), 1 at its end.
+ * Rules that depend on time use it. */
 void sk_write_stage_time(sk_plan_builder *builder, double part);
 
-/* X and V of the strips from quads to packed blocks, and back: around all other ops of a step. */
+/* Convert X and V of the strips from quads to packed blocks, and back: before and after all other ops of a step. */
 void sk_write_pack(sk_plan_builder *builder);
 void sk_write_unpack(sk_plan_builder *builder);
-/* The end of every step: what has all but come to rest does. */
+/* The end of every step: velocities too small to be seen become 0. */
 void sk_write_rest(sk_plan_builder *builder);
 
-/* X0 = X where contact will look back to it: for methods that do not keep it themselves, before they move X. */
+/* X0 = X if contact reads X0: for methods that do not save it themselves, before they move X. */
 void sk_write_start(sk_plan_builder *builder);
 /* dst = a p + b q (q may be SK_NONE); dst = 0; dst = p + a w q. */
 void sk_write_sum(sk_plan_builder *builder, sk_vector dst, double a, sk_vector p, double b, sk_vector q);
 void sk_write_clear(sk_plan_builder *builder, sk_vector dst);
 void sk_write_kick(sk_plan_builder *builder, sk_vector dst, sk_vector p, double a, sk_vector q);
-/* X += h V of pinned particles alone, for methods that move nothing else by its velocity. */
+/* X += h V for pinned particles alone, for methods that move no others by their velocities. */
 void sk_write_lead(sk_plan_builder *builder, double h);
 
-/* What methods with forces are made of. X0 = X, V0 = V. */
+/* The steps of methods that integrate forces. X0 = X, V0 = V. */
 void sk_write_save(sk_plan_builder *builder);
-/* F = all that acts on X moving with V: forces, constraints and contact. */
+/* F = the total force at X and V: forces, constraints and contact. */
 void sk_write_derivative(sk_plan_builder *builder);
 /* X = X0 + a v, V = V0 + a w f. */
 void sk_write_stage(sk_plan_builder *builder, double a, sk_vector v, sk_vector f);
-/* How their substep ends: contact answers on V, limits are kept, and what is inside a collider is pushed out. */
+/* The end of their substep: contact changes V, limits are applied, and particles are pushed out of colliders. */
 void sk_write_impulses(sk_plan_builder *builder);
 
-/* How a position method's substep begins: the fields, V += h w F (without F where all forces are uniform), what steers,
- * X0 = X, V0 = V where there are colliders, X += h V. Once a plan. */
+/* The start of a position method's substep: forces on particles, V += h w F (without F where all forces are uniform),
+ * steering, X0 = X, V0 = V where there are colliders, X += h V. At most once in a plan. */
 void sk_write_prediction(sk_plan_builder *builder);
-/* V += (X - X0 - h V)/h: V learns what moved X since it was predicted. */
+/* V += (X - X0 - h V)/h: adds to V what moved X since the prediction. */
 void sk_write_correction(sk_plan_builder *builder);
 
-/* The ops that sort a group into cells of at least `radius`; the group stays where it is while the plan does. */
+/* The ops that sort a group into cells of at least `radius`. The plan keeps the pointer to the group. */
 void sk_write_cells(sk_plan_builder *builder, const sk_group *group, double radius);
-/* F = all forces on X moving with V: the cells if a rule wants neighbours, then fields and neighbours. */
+/* F = the forces at X and V that rules exert: cells if a rule needs neighbours, then forces on particles and pairs. */
 void sk_write_fields(sk_plan_builder *builder);
 /* V += what the rules that steer ask for, then bounds on V: once a substep, see plan_builder_steer.c. */
 void sk_write_steering(sk_plan_builder *builder);
-/* The bounds once more, where forces have acted on V after them. */
+/* The bounds once more, where forces have changed V after them. */
 void sk_write_bounds(sk_plan_builder *builder);
 bool sk_writes_steering(const sk_rules *rules);
-/* F += the springs of every batch. */
+/* F += the forces of every batch's constraints. */
 void sk_write_forces(sk_plan_builder *builder);
-/* X: `passes` sweeps over every batch; X0 is the state at the start of the substep. */
+/* Projects X by `passes` sweeps over every batch; X0 holds the positions at the start of the substep. */
 void sk_write_projections(sk_plan_builder *builder, int passes);
 
-/* The same without a memory from pass to pass: each has its share, a `passes`-th, of the stiffness and damping. */
+/* The same without multipliers kept between passes: each pass has a `passes`-th of the stiffness and damping. */
 void sk_write_shared_projections(sk_plan_builder *builder, int passes);
 
-/* Whether anything acts on F; where nothing steers either, it is said to, and F is 0. */
+/* Whether anything acts on F. Where nothing steers either, it returns true, and F is 0. */
 bool sk_writes_forces(const sk_plan_builder *builder);
 /* Whether any force or damped constraint depends on velocities. */
 bool sk_writes_velocity_forces(const sk_plan_builder *builder);
-/* Whether contact or limits may change the state behind a substep's back. */
+/* Whether contact or limits may change the state after a substep's own ops. */
 bool sk_writes_corrections(const sk_plan_builder *builder);
 bool sk_writes_contacts(const sk_rules *rules);
-/* The first batch of no finite stiffness; NULL if there is none. */
+/* The first batch of infinite stiffness; NULL if there is none. */
 const sk_batch *sk_first_rigid_batch(const sk_rules *rules);
 
 typedef enum sk_contact_sort {
@@ -118,26 +118,25 @@ typedef enum sk_contact_sort {
     SK_CONTACT_PUSH,
     SK_CONTACT_UPDATE
 } sk_contact_sort;
-/* An op for each collider. An update looks at X0 and V0, the state before the substep's corrections. */
+/* An op for each collider. An update reads X0 and V0, the state before the substep's corrections. */
 void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort);
 typedef enum sk_meeting_sort { SK_MEETING_BEGIN, SK_MEETING_PUSH, SK_MEETING_BOUND } sk_meeting_sort;
-/* An op for each rule that meets. The other functions here call it: a repeat of substeps begins and ends with such ops,
- * and they push with the limits. */
+/* An op for each rule of contact between surfaces. The other functions here call it: a repeat of substeps begins and
+ * ends with such ops, and the ops that push come with the limits. */
 void sk_write_meetings(sk_plan_builder *builder, sk_meeting_sort sort, sk_vector velocity);
 bool sk_writes_meetings(const sk_plan_builder *builder);
-/* Limits move X; `velocity` is SK_V where the method does not take velocities from positions, else SK_NONE. */
+/* Limits, which move X; `velocity` is SK_V where the method does not take velocities from positions, else SK_NONE. */
 void sk_write_limits(sk_plan_builder *builder, sk_vector velocity);
 
 /* For the builder's own files: adds an op, with the present substep and layout. */
 void sk_add_op(sk_plan_builder *builder, sk_op op);
-/* The same op for all sweeps of a batch: a sum over their elements, of which those along the same strips make one op.
- */
+/* Adds `op` for all sweeps of a batch, as sums over their elements; sweeps along the same strips share one op. */
 void sk_add_sums(sk_plan_builder *builder, const sk_batch *batch, sk_op op, const sk_sweep_kernels *kernels);
-/* The same for an op over slots, on those alone that a rule acts on: an op for each body where it names some. */
+/* Adds an op over slots, only for those that a rule acts on: one for each body if the rule names bodies. */
 void sk_add_op_on(sk_plan_builder *builder, sk_op op, const sk_only *only);
-/* The elements of a sweep's op: strip rows that have a partner `reach` on, slabs or groups. */
+/* The number of elements of a sweep's op: strip rows that have a partner `reach` rows on, slabs or groups. */
 size_t sk_rows_of_sweep(const sk_sweep *sweep, size_t reach);
-/* Whether a force is one that adds to F, and enabled. */
+/* Whether a force adds to F and is enabled. */
 bool sk_pushes(const sk_force *force);
 
 #endif

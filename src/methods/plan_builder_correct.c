@@ -1,16 +1,18 @@
-/* Ops that move positions: projections of constraints, bounds on lengths, and limits, of which methods with forces
- * write the limits alone. */
+/* Ops that correct positions: projections of constraints, bounds on lengths, and limits. Methods that integrate forces
+ * use only the limits. */
+#include <math.h>
+
 #include "constraints/sweep.h"
 #include "methods/plan_builder.h"
 
-/* Without damping the multiplier is zero whenever it is read in the only pass of a substep, and counts for nothing
- * in a rigid batch. */
+/* Undamped batches need no multipliers if there is one pass a substep, where they are zero when they are read, nor if
+ * they are rigid, where they have no effect. */
 static bool keeps_multiplier(const sk_batch *batch, int passes) {
     bool rigid = ((const sk_material *)batch->params)->stiffness >= SK_UNBOUNDED;
     return (passes > 1 && !rigid) || sk_batch_damping_time(batch) > 0;
 }
 
-/* A sweep's op, in each `every`-th substep; projections share their stiffness among `coefficient` ops. */
+/* Adds a sweep's op, run in each `every`-th substep; `coefficient` is the number of ops that share the stiffness. */
 static void add_sweep(sk_plan_builder *builder, const sk_sweep *sweep, sk_half half, sk_op_kind kind,
                       const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second, double coefficient,
                       size_t every, sk_op_while during) {
@@ -30,7 +32,7 @@ static void add_sweep(sk_plan_builder *builder, const sk_sweep *sweep, sk_half h
                                .end = sk_rows_of_sweep(sweep, sweep->walk.reach)});
 }
 
-/* An op for each sweep of a batch from the `first` on. */
+/* Adds an op for each sweep of a batch from the `first` on. */
 static void add_sweeps(sk_plan_builder *builder, const sk_batch *batch, size_t first, sk_op_kind kind,
                        const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second) {
     for (size_t i = first; i < batch->sweep_count; i++)
@@ -65,14 +67,14 @@ static void write_multipliers(sk_plan_builder *builder, int passes) {
     }
 }
 
-/* In which substeps what may wait is taken: in every second one, if they come in pairs. Where surfaces meet, only while
- * none is near another: a heap, which what it lies on holds where it is, went to and fro between substeps with it and
- * without it for ever, at 3 cm/s. */
+/* How often batches that may wait are projected: in every second substep, if the number of substeps is even. Where
+ * surfaces meet, only while none is near another: a resting heap oscillated for ever between substeps with the
+ * projection and without, at 3 cm/s. */
 static size_t seldom_of(const sk_plan_builder *builder) {
     return builder->iterations % 2 == 0 ? 2 : 0;
 }
 
-/* Which variants of what may wait are written. */
+/* How many variants of an op that may wait are written: one for surfaces apart and one for surfaces near, or one. */
 static int variants_of(const sk_plan_builder *builder, size_t every) {
     return every && sk_writes_meetings(builder) ? 2 : 1;
 }
@@ -103,8 +105,8 @@ static void add_limit(sk_plan_builder *builder, const sk_limit *limit, sk_vector
     }
 }
 
-/* The distances of a coarse grid, forth and back, and what they moved is carried to all between. Only what was
- * predicted says from where they moved. */
+/* Sweeps over the distances of a coarse grid, forward and backward; then the grid's movement is interpolated to the
+ * particles between. That movement is known only from a prediction. */
 static void write_coarse(sk_plan_builder *builder, const sk_batch *batch) {
     const sk_coarse *coarse = batch->coarse;
     if (!builder->predicted || !batch->sweep_count || !batch->sweeps[0].strips) return;
@@ -128,17 +130,17 @@ static void write_coarse(sk_plan_builder *builder, const sk_batch *batch) {
                                .end = walk.rows});
 }
 
-/* Tethers that stand beside coarse grids, for methods that have these. */
-static void write_tethers(sk_plan_builder *builder, sk_limit_turn turn, size_t every) {
+/* Tethers that go with coarse grids, for methods that have these (those that predict). */
+static void write_tethers(sk_plan_builder *builder, sk_limit_order order, size_t every) {
     const sk_rules *rules = builder->rules;
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
-        if (is_kept(limit) && limit->turn == turn && builder->predicted) add_limit(builder, limit, SK_NONE, every);
+        if (is_kept(limit) && limit->order == order && builder->predicted) add_limit(builder, limit, SK_NONE, every);
     }
 }
 
-/* Batches that bound and do nothing else come before those that pull: what is swept last is kept best, which are edges.
- */
+/* Batches that only bound lengths come before those that pull: what is swept last is satisfied best, and that should be
+ * the edges. */
 static void write_spans(sk_plan_builder *builder) {
     const sk_rules *rules = builder->rules;
     write_tethers(builder, SK_LIMIT_BEFORE_COARSE, 0);
@@ -151,22 +153,22 @@ static void write_spans(sk_plan_builder *builder) {
     write_tethers(builder, SK_LIMIT_AFTER_COARSE, seldom_of(builder));
 }
 
-/* Whether a batch may be taken in every second substep: its elements' own oscillations are slow against that. Else it
- * would be thrown as far beyond its place as it had been before, and shiver for ever. A multiplier -C/(2 w + 1/(2 k
- * h^2)) would come to rest at any stiffness, but not where it ought to: what is stiff hung 15 % too low by it. */
+/* Whether a batch may be projected in every second substep: if its elements' own oscillations are slow compared with
+ * that. Else it would overshoot by as much as it was off, and oscillate for ever. A multiplier -C/(2 w + 1/(2 k h^2))
+ * would come to rest at any stiffness, but in the wrong place: stiff constraints hung 15 % too low. */
 static bool may_wait(const sk_batch *batch, double h) {
     static const double most = 0.55;
     return batch->quickness > 0 && ((const sk_material *)batch->params)->stiffness * h * h * batch->quickness <= most;
 }
 
-/* A batch's sweeps on the way through all batches, or those halves that are left for the way back. What
- * is taken in every second substep gets twice the stiffness for it, for it stands for both. */
+/* A batch's sweeps on the way forward through all batches, or the halves that are left for the way back. In every
+ * second substep a projection has twice the stiffness, for it stands for two. */
 static void write_batch_every(sk_plan_builder *builder, const sk_batch *batch, bool back, int sharing, bool keeps,
                               size_t every, sk_op_while during) {
     double coefficient = (double)sharing / (every ? (double)every : 1);
     for (size_t i = 0; i < batch->sweep_count; i++) {
         const sk_sweep *sweep = &batch->sweeps[back ? batch->sweep_count - 1 - i : i];
-        // what is soft enough to wait gains too little to need both ways
+        // batches soft enough to wait gain too little from sweeps both ways
         bool whole = !batch->both_ways || !sweep->strips || every;
         sk_half half = whole ? SK_WHOLE : back ? SK_ODD_HALF : SK_EVEN_HALF;
         if (back && half == SK_WHOLE) continue;
@@ -183,13 +185,13 @@ static void write_batch(sk_plan_builder *builder, const sk_batch *batch, bool ba
         write_batch_every(builder, batch, back, sharing, keeps, i ? 0 : every, during_of(variants, i));
 }
 
-/* A sweep over every batch, with an n-th of its stiffness and damping for `sharing` n.
+/* A sweep over every batch, with a `sharing`-th of its stiffness and damping.
  *
- * One projection after the other, P1 P2 ... Pn, is no symmetric matrix: what a displacement calls forth is a force
- * that may do work round a cycle, and does. A grid's few directions bear it; a block of rigid springs, many times as
- * many as it has freedoms, fed on it until it flew apart or shivered for ever. Half of each direction's springs forth,
- * and the other half in the opposite order back, is nearly P1 P2 ... Pn ... P2 P1, which is symmetric, and costs no
- * more than one sweep. */
+ * A sequence of projections P1 P2 ... Pn is not a symmetric matrix: the force that it makes of a displacement is not
+ * conservative, and can do work round a cycle. With the few directions of a grid that does no harm; a block of rigid
+ * springs, with many times as many as degrees of freedom, gained energy until it flew apart or shivered for ever. Half
+ * of each direction's springs forward, and the other half in the opposite order back, is nearly P1 P2 ... Pn ... P2 P1,
+ * which is symmetric, and costs no more than one sweep. */
 static void write_pass(sk_plan_builder *builder, int passes, int sharing) {
     const sk_rules *rules = builder->rules;
     for (size_t i = 0; i < rules->batches.count; i++)
@@ -213,38 +215,44 @@ void sk_write_shared_projections(sk_plan_builder *builder, int passes) {
     }
 }
 
-/* A sweep hands what is too long on by a few edges. Measured on irregular meshes of 64 x 64 that hang, with a limit of
- * 1 %, largest stretch at rest by sweeps: 1.56 (1), 1.13 (2), 1.02 (4), 1.00 (8). Where all is within, one costs next
- * to nothing. */
-enum { LIMIT_SWEEPS = 4 };
+enum { LEAST_LIMIT_SWEEPS = 4, MOST_LIMIT_SWEEPS = 32, EDGES_A_SWEEP = 6 };
 
-/* The limits of edges that go along strips, and bounds that are nothing else; or those of all others. */
+/* A sweep carries a correction over a few edges, so that the number of sweeps has to grow with the edges from side to side. Measured
+ * on irregular meshes that hang by two corners, with a limit of 1 %, the largest stretch at rest in percent, by sweeps:
+ * 64 x 64 1.25 (4), 1.08 (8), 1.02 (12), 1.01 (16); 128 x 128 1.44, 1.15, 1.09, 1.06, and 1.03 (21). Sweeps forth and back
+ * are no better. */
+static int limit_sweeps_of(const sk_batch *batch) {
+    double across = sqrt((double)batch->count / 3); // a sheet of triangles has three edges a vertex
+    return (int)fmin(fmax(across / EDGES_A_SWEEP, LEAST_LIMIT_SWEEPS), MOST_LIMIT_SWEEPS);
+}
+
+/* If `first`, limits of edges along strips and of batches that only bound lengths; else those of all others. */
 static void write_strain_limits(sk_plan_builder *builder, sk_vector velocity, bool first) {
     const sk_rules *rules = builder->rules;
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
         if (!has_bound(batch) || batch->coarse) continue;
-        if (batch->only_bounds && velocity == SK_NONE) continue; // they were with the projections
+        if (batch->only_bounds && velocity == SK_NONE) continue; // write_spans() has written them
         const sk_sweep_kernels *kernels = velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving;
-        for (int iteration = 0; iteration < (first ? 1 : LIMIT_SWEEPS); iteration++)
+        for (int left = first ? 1 : limit_sweeps_of(batch); left > 0; left--)
             for (size_t w = 0; w < batch->sweep_count; w++)
                 if ((batch->only_bounds || batch->sweeps[w].strips) == first)
                     add_sweep(builder, &batch->sweeps[w], SK_WHOLE, SK_OP_LIMIT, kernels, SK_X, velocity, 1, 0, SK_ALWAYS);
     }
 }
 
-/* Tethers pull each particle on its own, and leave its neighbours behind. On a grid, whose ways are straight, nothing
- * comes of that, and its edges come before; a mesh of 64 x 64 with a limit of 1 % kept edges of 3 % beside its pins,
- * however often they were swept before its tethers. */
+/* Tethers pull each particle by itself, not its neighbours. On a grid, where paths are straight, that does no harm, and
+ * its edges come first. The edges of other meshes come after: in one of 64 x 64 with a limit of 1 %, edges beside pins
+ * kept a stretch of 3 %, however often they were swept before the tethers. */
 void sk_write_limits(sk_plan_builder *builder, sk_vector velocity) {
     const sk_rules *rules = builder->rules;
     write_strain_limits(builder, velocity, true);
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
-        bool last = limit->turn == SK_LIMIT_LAST || limit->turn == SK_LIMIT_SELDOM ||
-                    (limit->turn == SK_LIMIT_WITHOUT_COARSE && !builder->predicted);
+        bool last = limit->order == SK_LIMIT_LAST || limit->order == SK_LIMIT_SELDOM ||
+                    (limit->order == SK_LIMIT_WITHOUT_COARSE && !builder->predicted);
         if (!is_kept(limit) || !last) continue;
-        size_t every = velocity == SK_NONE && limit->turn == SK_LIMIT_SELDOM ? seldom_of(builder) : 0;
+        size_t every = velocity == SK_NONE && limit->order == SK_LIMIT_SELDOM ? seldom_of(builder) : 0;
         add_limit(builder, limit, velocity, every);
     }
     write_strain_limits(builder, velocity, false);

@@ -1,4 +1,4 @@
-/* Ops that add up forces: those on particles, triangles and neighbours, and those of constraints. */
+/* Ops that add up forces: those on particles, triangles and pairs of neighbours, and those of constraints. */
 #include "constraints/sweep.h"
 #include "methods/plan_builder.h"
 #include "particles/surface.h"
@@ -7,7 +7,7 @@ bool sk_pushes(const sk_force *force) {
     return *force->enabled && force->type->phase == SK_PUSHES;
 }
 
-/* The widest reach of the enabled neighbour rules; 0 if there is none. */
+/* The largest radius of the enabled neighbour rules that share cells; 0 if there is none. */
 static double widest_radius(const sk_rules *rules) {
     double widest = 0;
     for (size_t i = 0; i < rules->forces.count; i++) {
@@ -19,7 +19,7 @@ static double widest_radius(const sk_rules *rules) {
     return widest;
 }
 
-/* Whether a rule acts on the body whose strips these are; nobody else has slots there. */
+/* Whether a rule acts on the body whose strips these are; no other body has slots there. */
 static bool acts_on_strips(const sk_only *only, const sk_walk *walk) {
     size_t end = walk->first_slot + walk->rows * walk->width * SK_LANES;
     for (size_t i = 0; i < only->count; i++)
@@ -27,8 +27,8 @@ static bool acts_on_strips(const sk_only *only, const sk_walk *walk) {
     return !only->some;
 }
 
-/* An op for the triangles of each patch, and one for the rest, of all bodies or of those that are named. Neighbouring
- * triangles add to the same corners, so the ops are ordered. */
+/* Adds an op for the triangles of each patch, and one for the rest: of all bodies, or of those that the rule names.
+ * Neighbouring triangles add to the same corners, so the ops are ordered. */
 static void add_surface(sk_plan_builder *builder, sk_op op, const sk_force *force) {
     const sk_surface *surface = builder->surface;
     const sk_only *only = &force->only;
@@ -50,13 +50,13 @@ static void add_surface(sk_plan_builder *builder, sk_op op, const sk_force *forc
     }
 }
 
-/* A force's op, or those of the bodies that it names. */
+/* Adds a force's op, or one for each body that it names. */
 static void add_field(sk_plan_builder *builder, sk_op op, const sk_force *force) {
     const sk_only *only = &force->only;
     if (force->type->domain == SK_OVER_TRIANGLES) {
         add_surface(builder, op, force);
     } else if (only->some && force->type->domain == SK_OVER_NEIGHBOURS) {
-        // cells of its own, so that what others add up does not depend on its radius; the kernel passes over strangers
+        // cells of its own, so that other rules' sums do not depend on its radius; the kernel skips other bodies
         if (only->count) sk_write_cells(builder, builder->everybody, force->type->radius(force->params));
         if (only->count) sk_add_op(builder, op);
     } else {
@@ -64,14 +64,14 @@ static void add_field(sk_plan_builder *builder, sk_op op, const sk_force *force)
     }
 }
 
-/* Neighbour rules on some bodies only: they sort cells of their own, once all others have used theirs. */
+/* Whether a force is a neighbour rule on some bodies only. Such rules come last: they sort cells of their own. */
 static bool comes_late(const sk_force *force) {
     return force->only.some && force->type->domain == SK_OVER_NEIGHBOURS;
 }
 
 void sk_write_fields(sk_plan_builder *builder) {
     const sk_rules *rules = builder->rules;
-    bool first = true; // gravity and the like set F when they come first; others add to a cleared one
+    bool first = true; // forces like gravity set F if they come first; others add to F = 0
     double radius = widest_radius(rules);
     if (radius > 0) sk_write_cells(builder, builder->everybody, radius);
     for (size_t n = 0; n < 2 * rules->forces.count; n++) {
@@ -103,8 +103,8 @@ size_t sk_rows_of_sweep(const sk_sweep *sweep, size_t reach) {
     return sweep->strips ? sweep->walk.rows - reach : sweep->slab_start ? sweep->walk.rows : sweep->group_count;
 }
 
-/* An op for all sweeps of a batch along the same strips: each strip row's sum is worked out whole, so the
- * op is free. `first` is left at the first sweep that is not in strips. */
+/* Adds one op for all sweeps of a batch along the same strips: it computes each strip row's sum as a whole, and so is
+ * free. Leaves `first` at the first sweep that is not in strips. */
 static void add_strip_sums(sk_plan_builder *builder, const sk_batch *batch, size_t *first, const sk_op *model,
                            const sk_sweep_kernels *kernels) {
     for (; *first < batch->sweep_count && batch->sweeps[*first].strips; *first += batch->sweeps[*first].together) {

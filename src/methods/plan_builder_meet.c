@@ -1,4 +1,4 @@
-/* Ops of rules that meet: surfaces with each other, whatever the method. */
+/* Ops of contact between surfaces, the same for every method. */
 #include "methods/plan_builder.h"
 
 static bool meets(const sk_force *force) {

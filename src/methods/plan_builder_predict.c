@@ -1,14 +1,14 @@
-/* Ops that predict: how a substep of position methods begins.
+/* Ops that predict: the start of a position method's substep.
  *
- * Slots are cut into parts that the same rules act on. In a part where all forces are uniform, and F is not wanted
- * later on, they change V without it, whatever acts on others: they move to the bit as without it. plan/fuse.c makes
- * one op of a prediction's. */
+ * Slots are divided into parts that the same rules act on. In a part where all forces are uniform and F is not read
+ * later, they change V without F. Which forces act on other parts does not change its bits. plan/fuse.c fuses the ops
+ * of a prediction. */
 #include <stdio.h>
 #include <string.h>
 
 #include "methods/plan_builder.h"
 
-/* Adds up the forces on a part; false where they are not all uniform, or F is wanted later on. */
+/* Adds up the forces on a part; false if they are not all uniform, or F is read later. */
 static bool add_up_uniform_forces(const sk_rules *rules, sk_plan_part *part) {
     size_t length = 0, slot = part->first_slot;
     part->uniform = (sk_uniform_force){.label = ""};
@@ -29,7 +29,7 @@ static bool add_up_uniform_forces(const sk_rules *rules, sk_plan_part *part) {
     return true;
 }
 
-/* Whether a rule that steers, or bounds the velocity, moves particles of a part. */
+/* Whether a rule that steers or bounds velocities acts on particles of a part. */
 static bool is_steered(const sk_rules *rules, const sk_plan_part *part) {
     for (size_t i = 0; i < rules->forces.count; i++) {
         const sk_force *force = rules->forces.data[i];
@@ -40,7 +40,7 @@ static bool is_steered(const sk_rules *rules, const sk_plan_part *part) {
     return false;
 }
 
-/* Cuts the parts at a slot. */
+/* Divides the part that a slot lies within, at that slot. */
 static bool cut_parts(sk_plan_builder *builder, size_t slot) {
     sk_plan *plan = builder->plan;
     if (!SK_RESERVE(builder->allocator, &plan->parts, plan->parts.count + 1)) return false;
@@ -61,7 +61,7 @@ static void cut_at_bodies(sk_plan_builder *builder, const sk_only *only) {
             builder->no_memory = true;
 }
 
-/* Finds the parts; once a plan, for ops point to them. */
+/* Finds the parts; only once in a plan, since ops point to them. */
 static void find_parts(sk_plan_builder *builder) {
     const sk_rules *rules = builder->rules;
     sk_plan *plan = builder->plan;
@@ -82,13 +82,13 @@ static void find_parts(sk_plan_builder *builder) {
     }
 }
 
-/* An op for a part; for all slots where there is but one. */
+/* Adds an op for a part; a plain one where the part is all slots. */
 static void add_op_of_part(sk_plan_builder *builder, sk_op op, const sk_plan_part *part) {
     bool whole = part->first_slot == 0 && part->end_slot == builder->slot_count;
     sk_add_op(builder, whole ? op : sk_op_for(op, part->first_slot, part->end_slot));
 }
 
-/* V += h w F, on a part. */
+/* V += h w F on a part. */
 static void write_kick_of_part(sk_plan_builder *builder, const sk_plan_part *part) {
     add_op_of_part(builder,
                    (sk_op){.kind = SK_OP_KICK,
@@ -114,8 +114,8 @@ static void write_pull_of_part(sk_plan_builder *builder, const sk_plan_part *par
                    part);
 }
 
-/* Where rules steer, or bound the velocity, they come between kick and drift; what is steered has nothing left to be
- * added then. */
+/* Rules that steer or bound velocities come between kick and drift. So forces on steered parts are applied here, and
+ * their prediction has none left to add. */
 static void write_steered_kicks(sk_plan_builder *builder) {
     sk_plan *plan = builder->plan;
     for (size_t i = 0; i < plan->parts.count && sk_writes_forces(builder); i++)

@@ -1,4 +1,4 @@
-/* Ops for an implicit solve: residual, product, diagonal and factor, from the stiffness that each rule brings. */
+/* Ops for an implicit solve: residual, product, diagonal and factor, from the stiffness of each rule. */
 #include "methods/plan_builder_solve.h"
 
 #include <stddef.h>
@@ -30,12 +30,13 @@ static bool is_elastic(const sk_batch *batch) {
     return sk_batch_pulls(batch) && ((const sk_material *)batch->params)->stiffness < SK_UNBOUNDED;
 }
 
-/* The kernel that lies so far behind the start of a type: what a kind has for an implicit solve. */
+/* The kernel of an implicit solve at the byte offset `offset` in a kind's type. */
 static sk_op_kernel *kernel_at(const sk_plan_builder *builder, const void *type, size_t offset) {
     return ((const sk_kernels *)(const void *)((const char *)type + offset))->version[builder->isa];
 }
 
-/* An op for each batch whose kind has such a kernel; those that walk for a product have been written before. */
+/* Adds an op for each batch whose kind has the kernel. Products of kinds that sweep are left out: sk_write_apply() has
+ * written them. */
 static void add_batches(sk_plan_builder *builder, sk_op op, size_t kernel) {
     op.order = SK_ORDERED; // elements that share a particle add to it in their order
     for (size_t i = 0; i < builder->rules->batches.count; i++) {

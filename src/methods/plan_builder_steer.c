@@ -1,12 +1,12 @@
-/* Ops of rules that steer: what adds to velocities once a substep, whatever the method.
+/* Ops of rules that steer: they add to velocities once a substep, the same for every method.
  *
- *   S = 0                       what the rules ask for; in w, how much more speed is allowed
- *   grid (four ops)             who is near whom, for each rule that looks at neighbours: it sorts its own particles
- *   S += neighbours, then all other rules that steer, in the order of their making: all look at the same X and V
+ *   S = 0                       will hold what the rules ask for; in w, how much more speed is allowed
+ *   grid (four ops)             sorts particles into cells, for each rule that looks at neighbours
+ *   S += neighbours, then all other rules that steer, in the order in which they were made; all read the same X and V
  *   V += S
  *   V bounded                   speed limits and the like
  *
- * Methods that kick and then drift call this between the two, others before all else in a substep. */
+ * Methods that kick and then drift call this between the two, others first in a substep. */
 #include "methods/plan_builder.h"
 #include "plan/sort.h"
 
@@ -84,7 +84,7 @@ static void write_fields(sk_plan_builder *builder, const sk_force *force) {
     sk_add_op(builder, op);
 }
 
-/* An op for each collider. */
+/* An op for each collider that the rule avoids. */
 static void write_lookouts(sk_plan_builder *builder, const sk_force *force) {
     for (size_t i = 0; i < builder->rules->colliders.count; i++) {
         const sk_collider *collider = builder->rules->colliders.data[i];

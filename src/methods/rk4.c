@@ -1,17 +1,17 @@
-/* The classical Runge-Kutta method of order 4: four evaluations a substep, weighted 1 2 2 1. Very exact on
- * smooth motion; stable while h is under 2.828/omega of the stiffest spring.
+/* The classical Runge-Kutta method of order 4: four evaluations a substep, weighted 1 2 2 1. Very accurate for smooth
+ * motion; stable while h is under 2.828/omega of the stiffest spring.
  *
  *   k1 at (x, v), k2 and k3 half a substep on, k4 a whole one on:   x' = x + h/6 (k1 + 2 k2 + 2 k3 + k4)
  *
- * The velocities of the stages add up in one temporary, their forces in another. Contact answers on the
- * force of every stage, and on velocities once, at the end. */
+ * The velocities of the stages are summed in one temporary, their forces in another. Contact acts on the force of
+ * every stage, and on velocities once, at the end. */
 #include "methods/method.h"
 
 static const sk_vector velocities = SK_T0, forces = SK_T1;
 
 static const skein_field fields[] = {SK_SUBSTEPS_FIELD(20)};
 
-/* F at the present stage; adds it and V to the sums, with this weight. */
+/* Finds F at the present stage, and adds it and V to the sums with this weight. */
 static void write_derivative(sk_plan_builder *builder, double weight, bool first) {
     sk_write_derivative(builder);
     if (first) {

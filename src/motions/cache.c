@@ -1,4 +1,4 @@
-/* Along places that are given: a point cache, sample by sample, evenly in between. */
+/* A point cache: pins follow given places, sample by sample, interpolated linearly. */
 #include <math.h>
 
 #include "motions/motion.h"

@@ -1,4 +1,4 @@
-/* From key to key: each says by how much pins are shifted, and turned about a centre, at a time. */
+/* Key frames: each gives a shift of the pins and a rotation about a centre at a time. */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +11,7 @@
 
 enum { SHORT_KEY = 4, KEY = 7 };
 
-/* What a text of keys says; rows of KEY numbers: the time, the shift, the turn in degrees. */
+/* A parsed text of keys; rows of KEY numbers: the time, the shift, the rotation in degrees. */
 typedef struct key_table {
     size_t count;
     double key[][KEY];
@@ -33,7 +33,7 @@ static const skein_field fields[] = {
     SK_BOOL(keys_params, repeat, "repeat", 0, "true: from the last key it goes on with the first, again and again"),
 };
 
-/* The numbers of one row; how many, or -1 where there is something else. */
+/* Reads the numbers of one row; returns how many, or -1 if it holds anything else. */
 static int read_row(const char *at, const char *end, double key[static KEY]) {
     int count = 0;
     for (;;) {
@@ -47,7 +47,7 @@ static int read_row(const char *at, const char *end, double key[static KEY]) {
     }
 }
 
-/* Rows are parted by commas. */
+/* Reads all rows, which are separated by commas. */
 static skein_status read_table(const char *text, key_table *table, skein_error *error) {
     for (const char *at = text; at; table->count++) {
         const char *comma = strchr(at, ','), *end = comma ? comma : at + strlen(at);
@@ -87,7 +87,7 @@ static void unmake(void *data, sk_allocator *allocator) {
     sk_release(allocator, ((keys_params *)data)->table);
 }
 
-/* The shift and the turn at a time. */
+/* Interpolates the shift and the rotation at a time. */
 static void find(const keys_params *params, double time, double shift[3], double degrees[3]) {
     const key_table *table = params->table;
     double first = table->key[0][0], period = table->key[table->count - 1][0] - first;

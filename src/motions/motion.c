@@ -1,4 +1,4 @@
-/* The fields that motions of all types have: name, whom they lead, from when on, and what they are as moving frames. */
+/* The fields common to all motions: name, particles, start, and their settings as moving frames and leashes. */
 #include "motions/motion.h"
 
 #include <ctype.h>
@@ -36,7 +36,7 @@ const skein_field sk_motion_fields[] = {
 };
 const size_t sk_motion_field_count = sizeof sk_motion_fields / sizeof *sk_motion_fields;
 
-/* The next number of a text, 0 or more; NULL at its end, `*wrong` where there is something else. */
+/* Reads the next number of a text, 0 or more; NULL at its end, and `*wrong` if there is anything else. */
 static const char *next_time(const char *at, double *time, bool *wrong) {
     while (isspace((unsigned char)*at) || *at == ',') at++;
     if (!*at) return NULL;
@@ -46,7 +46,7 @@ static const char *next_time(const char *at, double *time, bool *wrong) {
 }
 
 bool sk_motion_jumps(const sk_motion_common *common, double from, double to) {
-    double time = 0, hair = 1e-6 * (to - from); // times of steps are sums
+    double time = 0, hair = 1e-6 * (to - from); // tolerance: times of steps are rounded sums
     bool wrong = false;
     for (const char *at = common->jump_times; (at = next_time(at, &time, &wrong));)
         if (time > from + hair && time <= to + hair) return true;

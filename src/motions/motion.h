@@ -1,19 +1,19 @@
-/* Motions: where pins are led as time goes by.
+/* Motions: prescribed paths of pins.
  *
- * A *type* is one file: its fields, and `move`, which takes a place and makes it the one that the motion leads to at a
- * time. A pin's motions act one after the other, in the order of their making, and begin where the particle was built:
- * so its place follows from the time alone, and stepping again from an earlier time leads the same way. The world asks
- * for the places at the end of a step and leads the pins there (world/motions.c, world/pins.c).
+ * A *type* is one file: its fields, and `move`, which replaces a place by the one that the motion leads it to at a
+ * time. A pin's motions act one after the other, in the order in which they were made, beginning where the particle was
+ * built: so its place depends on the time alone, and stepping again from an earlier time gives the same path. The world
+ * asks for the places at the end of a step and leads the pins there (world/motions.c, world/pins.c).
  *
- * A motion is a moving frame, too: of a step, bodies that live in it are carried along by a share before anything else is
- * done, and colliders that go with it stand where it puts them (world/frames.c). */
+ * A motion is also a moving frame: before each step, bodies that live in it are carried along by a share of it, and
+ * colliders attached to it are placed by it (world/frames.c). */
 #ifndef SK_MOTIONS_MOTION_H
 #define SK_MOTIONS_MOTION_H
 
 #include "base/fields.h"
 #include "formula/parameters.h"
 
-/* What every motion has besides its own fields. Begins as the common fields of all rules do. */
+/* The members common to all motions. They begin with the common members of all rules. */
 typedef struct sk_motion_common {
     char *name;
     bool enabled;
@@ -26,7 +26,7 @@ typedef struct sk_motion_common {
     char *map;
 } sk_motion_common;
 
-/* Places that were given with it: one of each particle for each sample. */
+/* Places that were given with a motion: one for each particle in each sample. */
 typedef struct sk_track {
     double (*places)[3]; /* sample_count x particle_count */
     uint32_t *particles;
@@ -34,16 +34,29 @@ typedef struct sk_track {
     double interval; /* s, from sample to sample */
 } sk_track;
 
+/* Where those whom a motion leads sit on a collider's triangles: found once, by the places where all were built. */
+typedef struct sk_seats {
+    /* Where i is at a time (s); NULL: there is no such collider (any more), and nobody is led. */
+    void (*place)(const struct sk_seats *seats, size_t i, double time, double place[3]);
+    const struct sk_collider *collider;
+    struct sk_seat *data; /* of each that is led (colliders/seat.h) */
+    uint32_t *particle;   /* for whom they were found, */
+    size_t count;
+    double start, offset; /* and by which fields */
+} sk_seats;
+
 typedef struct sk_motion sk_motion;
 
 typedef struct sk_motion_type {
     skein_kind kind;
     const char *given; /* the field that stands for a track in a scene; NULL: it takes none */
-    /* NULL if the parameters are good as they are. */
+    /* Checks the parameters together; NULL: there is nothing to check. */
     skein_status (*check)(const void *params, skein_error *error);
     /* The place of the motion's particle `i`, `time` seconds (0 or more) after its start. */
     void (*move)(const sk_motion *motion, size_t i, double time, double place[3]);
     const sk_making *making; /* what is made from its texts; NULL: nothing */
+    /* Of types that follow a collider's triangles, else NULL: its name, and the offset of seats (colliders/seat.h). */
+    const char *(*carrier)(const void *params, double *offset);
 } sk_motion_type;
 
 struct sk_motion {
@@ -52,17 +65,18 @@ struct sk_motion {
     const sk_motion_common *common;
     const char *label;
     sk_track track;
-    /* whom it leads, as far as they are pinned: found by the world */
+    /* the particles that it leads as far as they are pinned: found by the world */
     uint32_t *particle, *column; /* column: their places in the track */
     size_t count;
     double middle[3];     /* the mean of their places as they were built */
-    bool knows_colliders; /* all that it names were there once */
-    double *share;        /* of the largest distance, one for each of them; NULL: 1 */
+    bool knows_colliders; /* all colliders that it names have existed */
+    double *share;        /* each particle's share of the largest distance; NULL: 1 */
+    sk_seats seats;       /* of a type with a carrier */
 };
 
-/* Whether a jump is said to come after the time `from`, up to `to` (s after the start); and what is wrong with the text of such times. */
+/* Whether a jump is set for a time after `from`, up to `to` (s after the start). */
 bool sk_motion_jumps(const sk_motion_common *common, double from, double to);
-/* Reads up to `most` numbers of the map; how many there are, or -1 where something else is among them. */
+/* Reads up to `most` numbers of the map; returns how many there are, or -1 if it holds anything else. */
 int64_t sk_motion_read_map(const sk_motion_common *common, double *share, size_t most);
 skein_status sk_motion_check_jumps(const sk_motion_common *common, skein_error *error);
 

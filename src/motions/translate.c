@@ -1,4 +1,4 @@
-/* Straight on, at one velocity. */
+/* Translation at a constant velocity. */
 #include "motions/motion.h"
 
 typedef struct translate_params {

@@ -1,4 +1,4 @@
-/* Round and round, about an axis. */
+/* Rotation about an axis at a constant rate. */
 #include "base/rotation.h"
 #include "base/status.h"
 #include "motions/motion.h"

@@ -1,4 +1,4 @@
-/* Bodies by functions, and what they build with. */
+/* Registered bodies by functions, and the functions that they build with. */
 #include <string.h>
 
 #include "outside/outside.h"
@@ -108,7 +108,7 @@ static skein_status build(skein_world *world, sk_body *body, const void *params,
 
 static bool live(const void *params, const char *field) {
     (void)params, (void)field;
-    return false; // all of it shapes what is built
+    return false; // every field affects what is built
 }
 
 static void change(sk_body *body, const void *params) {

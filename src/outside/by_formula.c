@@ -1,4 +1,4 @@
-/* A kind by formula: a type of the library's that takes texts, with its text given once and for all. */
+/* Registered kinds by formula: a copy of a library type that takes a text, with the text fixed. */
 #include <stdio.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@ static bool is_hidden(const sk_outside *outside, const skein_field *field, const
     return !strcmp(field->name, text_field) || !strcmp(field->name, "parameters.*") || field == outside->per;
 }
 
-/* The formula has its text and whatever else is fixed; the rest is the copied type's to make. */
+/* Puts the fixed text and choice into the parameters; the copied type makes the rest. */
 static skein_status make(void *params, const skein_kind *kind, sk_allocator *allocator, skein_error *error) {
     const sk_outside *outside = (const void *)kind;
     char *bytes = params, *text = (char *)(uintptr_t)outside->text;
@@ -19,7 +19,8 @@ static skein_status make(void *params, const skein_kind *kind, sk_allocator *all
     return outside->copied->make(params, &outside->inner, allocator, error);
 }
 
-/* One row for each field: the kind's own where the parameters lie, or in the place of the copied type's of that name. */
+/* Makes the field table: the kind's own fields, stored as the formula's parameters or, if the copied type has a field
+ * of that name, in that one's place; then the copied type's other fields. */
 static skein_status lay_fields(sk_outside *outside, sk_allocator *allocator, const skein_kind *kind,
                                const skein_kind *base, const char *text_field, skein_error *error) {
     const skein_field *parameters = sk_field_named(base->fields, base->field_count, "parameters.*");
@@ -72,7 +73,7 @@ skein_status sk_outside_by_formula(sk_outside *outside, sk_allocator *allocator,
     else outside->type.collider.making = &outside->making;
     skein_status status = lay_fields(outside, allocator, kind, from, text_field, error);
     if (status) return status;
-    // once, to hear of what is wrong with the text now
+    // makes one now, so that an error in the text is reported at once
     void *params = sk_allocate(allocator, from->params_size);
     if (!params || !sk_fields_default(allocator, outside->type.kind.fields, outside->type.kind.field_count, params)) {
         sk_release(allocator, params);

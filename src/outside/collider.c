@@ -1,11 +1,11 @@
-/* Colliders by functions: each point is asked for by itself, as seen from where the collider stands. */
+/* Registered colliders by functions: one call for each point, in the collider's own frame. */
 #include "base/kernels.h"
 #include "colliders/collider.h"
 
 #define SK_UNIT outside_collider
 SK_KERNELS(sk_probe, probe);
 
-/* One point's distance and normal, the same for all widths. */
+/* Finds one point's distance and normal; the same function for all widths. */
 typedef void sk_outside_ask(const void *params, const sk_pose *pose, const real p[3], real answer[4]);
 extern sk_outside_ask sk_outside_ask_collider;
 
@@ -37,7 +37,7 @@ void sk_outside_ask_collider(const void *params, const sk_pose *pose, const real
     for (int k = 0; k < 3; k++) own[k] = (double)r[k] * d[0] + (double)r[3 + k] * d[1] + (double)r[6 + k] * d[2];
     double distance = given->distance(sk_given_params(params), pose->time, own, normal);
     double square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
-    if (!(square > 0 && square < SK_FAR)) normal[0] = normal[2] = 0, normal[1] = square = 1; // up is a way out, too
+    if (!(square > 0 && square < SK_FAR)) normal[0] = normal[2] = 0, normal[1] = square = 1; // else up
     double scale = 1 / sqrt(square);
     for (int k = 0; k < 3; k++)
         answer[k] = (real)(scale * ((double)r[3 * k] * normal[0] + (double)r[3 * k + 1] * normal[1] +

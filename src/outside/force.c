@@ -1,4 +1,4 @@
-/* Forces by functions: particles go to them side by side. */
+/* Registered forces by functions, which get many particles in one call. */
 #include "base/layout.h"
 #include "outside/outside.h"
 

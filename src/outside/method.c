@@ -1,4 +1,4 @@
-/* Methods by functions, and what they write with: the library's plan builder under public names. */
+/* Registered methods by functions, and the library's plan builder under public names, with which they write. */
 #include <string.h>
 
 #include "outside/outside.h"
@@ -19,7 +19,7 @@ static sk_vector vector_of(skein_plan_vector vector) {
 size_t skein_write_repeat(skein_plan_builder *builder, size_t times, double h) {
     if (!builder) return 0;
     size_t repeat = sk_write_repeat(inner(builder), times, h);
-    sk_write_start(inner(builder)); // whether it keeps X0 itself is not known
+    sk_write_start(inner(builder)); // the method may not save X0 itself
     return repeat;
 }
 

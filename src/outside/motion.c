@@ -1,4 +1,4 @@
-/* Motions by functions. */
+/* Registered motions by functions. */
 #include "outside/outside.h"
 
 static void move(const sk_motion *motion, size_t i, double time, double place[3]) {

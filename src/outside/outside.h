@@ -1,10 +1,10 @@
-/* Kinds that programs register (skein/kinds.h): each becomes a type as the library's own are, so that the floors below
- * know no difference.
+/* Kinds that programs register (skein/kinds.h): each becomes a type like the library's own, so that other parts of the
+ * library make no difference.
  *
  *   by formula    a copy of the library's type for such texts, with the text fixed, and a table in which the kind's own
  *                 fields lie where that type keeps its parameters (by_formula.c)
- *   by functions  a type whose functions call the program's. Parameters begin with a line that leads to the type, and
- * then the program's own struct (force.c, collider.c, ...)
+ *   by functions  a type whose functions call the program's. Its parameters begin with a cache line that points to the
+ *                 type, followed by the program's own struct (force.c, collider.c, ...)
  *
  * Owns the registries. A kind's address is its type's, and that is its sk_outside's. */
 #ifndef SK_OUTSIDE_OUTSIDE_H
@@ -46,7 +46,7 @@ struct skein_kinds {
     size_t count, capacity;
 };
 
-/* What the parameters of a kind by functions begin with. */
+/* The beginning of the parameters of a kind by functions. */
 typedef struct sk_outside_params {
     _Alignas(64) const sk_outside *outside;
 } sk_outside_params;
@@ -58,13 +58,13 @@ static inline const void *sk_given_params(const void *params) {
     return (const char *)params + sizeof(sk_outside_params);
 }
 
-/* The library's own types of a category, handed down by the catalogue above. */
+/* The library's own types of a category, passed down by the catalogue. */
 typedef struct sk_kind_list {
     const void *const *data;
     size_t count;
 } sk_kind_list;
 
-/* Fill in the type, the given one being known. */
+/* Fill in the type, once `given` is set. */
 skein_status sk_outside_by_formula(sk_outside *outside, sk_allocator *allocator, const void *base, size_t base_size,
                                    const char *text_field, const char *text, skein_error *error);
 skein_status sk_outside_by_functions(sk_outside *outside, sk_allocator *allocator, const skein_kind *kind,
@@ -75,10 +75,10 @@ void sk_outside_motion(sk_outside *outside, const skein_motion_type *given);
 void sk_outside_body(sk_outside *outside, const skein_body_type *given);
 void sk_outside_method(sk_outside *outside, const skein_method_type *given);
 
-/* Registers; `library` are the library's own, a list a category. */
+/* Registers a kind. `library` has the library's own kinds, a list for each category. */
 skein_status sk_outside_register(skein_kinds *kinds, const skein_kind *kind, const sk_kind_list *library,
                                  skein_error *error);
-/* The registered kind at a place of its category, or of a name; NULL: there is none. */
+/* The registered kind at a place in its category, or by its name; NULL: there is none. */
 const skein_kind *sk_outside_at(const skein_kinds *kinds, skein_category category, size_t index);
 
 #endif

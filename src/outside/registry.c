@@ -1,4 +1,4 @@
-/* Registries of kinds, and what they ask of one before it is in. */
+/* Registries of kinds, and the checks that a kind must pass to be registered. */
 #include <string.h>
 
 #include "formula/text.h"
@@ -122,7 +122,7 @@ static const char *formula_of(const skein_kind *kind) {
     }
 }
 
-/* What says how it acts; NULL: nothing does. */
+/* Whether it has the function that says how it acts. */
 static bool acts(const skein_kind *kind) {
     const void *given = kind;
     switch (kind->category) {

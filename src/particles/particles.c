@@ -1,11 +1,11 @@
-/* The state's memory: slots for new particles and strips, vectors made when they are wanted, numbers made anew. */
+/* The state's memory: adding particles and strips, arranging slots, presence, and vectors that are made when needed. */
 #include "particles/particles.h"
 
 #include <string.h>
 
-/* Below this width an element of two columns' step would meet its own block (constraints/sweep.h). */
+/* In narrower strips an element that leads two columns on could meet its own block (constraints/sweep.h). */
 enum { LEAST_WIDTH = 3 };
-/* Where a vector begins in a page: all elsewhere. */
+/* Where a vector begins within a page, different for each (sk_allocate_shifted). */
 static size_t apart(int vector) {
     return (size_t)vector * 11 * 64 % 4096;
 }
@@ -47,7 +47,7 @@ bool sk_particles_want(sk_particles *particles, sk_allocator *allocator, uint32_
 }
 
 static bool reserve(sk_particles *particles, sk_allocator *allocator, size_t particle_need, size_t slot_need) {
-    // each array grows on its own: if one fails, the others are merely larger than they need be
+    // each array grows by itself: if one fails, the others are merely larger than needed
     if (slot_need > particles->slot_capacity) {
         size_t old = particles->slot_capacity, room = room_for(old, slot_need);
         drop_temporaries(particles, allocator);
@@ -123,7 +123,7 @@ void sk_particles_truncate(sk_particles *particles, size_t count) {
     particles->count = count;
 }
 
-/* ---- who takes part ---- */
+/* ---- which particles take part ---- */
 
 void sk_particles_set_presence(sk_particles *particles, size_t first, size_t count, sk_presence presence) {
     for (size_t i = first; i < first + count; i++) {
@@ -133,7 +133,7 @@ void sk_particles_set_presence(sk_particles *particles, size_t first, size_t cou
         particles->presence[i] = (uint8_t)presence;
         particles->out_count += presence != SK_HERE;
         particles->gone_count += presence == SK_GONE;
-        particles->vector[SK_PREVIOUS][slot] = particles->vector[SK_X][slot]; // it does not move between steps
+        particles->vector[SK_PREVIOUS][slot] = particles->vector[SK_X][slot]; // nothing to blend between
         if (presence != SK_GONE) continue;
         for (int v = SK_X; v < SK_T0; v++) particles->vector[v][slot] = (sk_vec4){0, 0, 0, 0};
         particles->rank[i] = (uint32_t)i;
@@ -157,7 +157,7 @@ size_t sk_particles_find_room(const sk_particles *particles, size_t first, size_
         run = particles->presence[i] == SK_GONE ? run + 1 : 0;
         if (run == count && count) return i + 1 - run;
     }
-    return first - run; // it slides down over those before it that are gone
+    return first - run; // moves down over the particles before it that are gone
 }
 
 void sk_particles_renumber(sk_particles *particles, size_t first, size_t target) {
@@ -202,7 +202,7 @@ static bool takes_part(const sk_particles *particles, const sk_strips *strips) {
     return particles->presence[strips->first_particle] == SK_HERE;
 }
 
-/* Writes every particle's slot into `slot_of`: strips first, and those that are out of it from `behind` on. */
+/* Writes every particle's slot into `slot_of`: strips first, and those that take no part from `behind` on. */
 static void number_slots(sk_particles *particles, const uint32_t *by_rank, size_t behind, uint32_t *slot_of) {
     size_t next = 0;
     memset(slot_of, 0xff, particles->count * sizeof *slot_of);
@@ -243,7 +243,7 @@ bool sk_particles_arrange(sk_particles *particles, sk_allocator *allocator) {
     if ((loose + slab - 1) / slab > slabs) slabs = (loose + slab - 1) / slab;
     size_t spares = (slabs * SK_SLAB_SPARES + 15) / 16 * 16, slot_end = slot_count + spares + behind;
     if (slot_end > UINT32_MAX) return false;
-    // everything anew first, so that a failure changes nothing
+    // makes all new arrays first, so that a failure changes nothing
     uint32_t *slot_of = sk_allocate(allocator, particles->capacity * sizeof *slot_of);
     sk_vec4 *vector[SK_VECTOR_COUNT] = {NULL};
     uint32_t *by_rank = sk_allocate(allocator, particles->count * sizeof *by_rank);

@@ -18,7 +18,7 @@ typedef struct selector {
     skein_error *error;
 } selector;
 
-/* Reads up to `most` numbers; returns how many, or -1 where the text is something else. */
+/* Reads up to `most` numbers; returns how many, or -1 if the text holds anything else. */
 static int read_numbers(const char *text, double *numbers, int most) {
     int count = 0;
     for (;;) {

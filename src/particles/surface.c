@@ -1,13 +1,13 @@
-/* The making of a surface's patches: which cells of a grid have which triangles, and what is left over. */
+/* Building a surface: which cells of grids have which triangles, and the triangles that are left over. */
 #include "particles/surface.h"
 
 #include <string.h>
 
-enum { LEAST_SHARE = 5 }; /* a grid becomes a patch if a fifth of its cells' triangles are there */
+enum { LEAST_SHARE = 5 }; /* a grid becomes a patch if it has a fifth of its cells' triangles */
 
 #define NOWHERE UINT32_MAX /* wider than an enumerator may be */
 
-/* Where a triangle lies: in which patch, block and lane, and its tip. */
+/* Where a triangle lies: its patch, block, lane and tip (sk_patch). */
 typedef struct triangle_place {
     uint32_t patch; /* NOWHERE: in none */
     int lane, tip;
@@ -22,15 +22,15 @@ static uint32_t strips_of(const sk_particles *particles, uint32_t particle) {
     return NOWHERE;
 }
 
-/* How a corner lies to the first of its triangle, at `column`: a row on or not, and a column on, none, or one back. False
- * where it is further away. */
+/* A corner's offset from its triangle's first one, at `column`: 0 or 1 rows, -1 to 1 columns. False if farther away. */
 static bool step_to(uint32_t apart, uint32_t column, uint32_t columns, int *row, int *step) {
     *row = apart >= columns || (column && apart == columns - 1);
     *step = (int)(apart - (*row ? columns : 0));
     return *step <= 1 && (uint32_t)((int)column + *step) < columns;
 }
 
-/* Three different corners of one cell. `guess` is the strips that the triangle before it was in. */
+/* The place of a triangle whose corners are three corners of one cell; in no patch otherwise. `guess` is the patch of
+ * the triangle before it. */
 static triangle_place place_of(const sk_particles *particles, const uint32_t corner[3], uint32_t guess) {
     triangle_place place = {.patch = guess}, none = {.patch = NOWHERE};
     const sk_strips *strips = guess == NOWHERE ? NULL : &particles->strips.data[guess];
@@ -63,7 +63,7 @@ static triangle_place place_of(const sk_particles *particles, const uint32_t cor
     return place;
 }
 
-/* A patch for each grid, which of them are filled being seen later. */
+/* Makes a patch for each grid; which ones have enough triangles is found later. */
 static bool make_patches(sk_surface *surface, sk_allocator *allocator, const sk_particles *particles) {
     surface->patch_count = particles->strips.count;
     if (!surface->patch_count) return true;
@@ -79,7 +79,7 @@ static bool make_patches(sk_surface *surface, sk_allocator *allocator, const sk_
     return true;
 }
 
-/* Marks the triangle's place; false where it has none, or another one is there. */
+/* Marks the triangle's place as taken; false if it has none, or the place is taken already. */
 static bool settle(sk_surface *surface, const triangle_place *place) {
     if (place->patch == NOWHERE) return false;
     const sk_patch *patch = &surface->patches[place->patch];
@@ -90,7 +90,7 @@ static bool settle(sk_surface *surface, const triangle_place *place) {
     return true;
 }
 
-/* Deals the triangles to patches and rest, and counts those in each patch. False when there is no memory. */
+/* Divides the triangles into those of patches and the rest, and counts those of each patch. False: no memory. */
 static bool deal(sk_surface *surface, sk_allocator *allocator, const sk_particles *particles,
                  const sk_triangles *triangles, size_t *filled) {
     uint32_t guess = NOWHERE, number = 0;
@@ -116,8 +116,7 @@ static bool deal(sk_surface *surface, sk_allocator *allocator, const sk_particle
     return true;
 }
 
-/* Patches that are nearly empty, those of lattices above all, are no patches. Returns whether there were any; all places
- * are free again then. */
+/* Drops patches that are nearly empty, mostly of lattices. Returns whether there were any; all places are then free. */
 static bool drop_thin_patches(sk_surface *surface, sk_allocator *allocator, const sk_particles *particles,
                               const size_t *filled) {
     bool dropped = false;

@@ -1,4 +1,4 @@
-/* The arithmetic of whole vectors, and turning their blocks from quads to packed and back. */
+/* Kernels: arithmetic on whole state vectors, and converting their blocks between quads and packed layout. */
 #include "base/kernels.h"
 #include "plan/op.h"
 
@@ -19,15 +19,15 @@ SK_KERNELS(sk_op_kernel, unpack);
 
 #ifdef SK_ISA
 
-/* Of part `at` of a row of quads, in which every fourth lane is a w: the lanes that are none. */
+/* The lanes of part `at` of a row of quads that hold no w (every fourth lane is one). */
 SK_INLINE sk_mask without_w(size_t at) {
     static const SK_VECTOR_ALIGNED sk_lane_int xyz[SK_LANES] = {-1, -1, -1, 0, -1, -1, -1, 0,
                                                                 -1, -1, -1, 0, -1, -1, -1, 0};
     return ((const sk_mask *)(const void *)xyz)[at % SK_PARTS];
 }
 
-/* Runs VALUE, an expression of the vectors at place `at` of the state vectors, over the blocks of [begin, end). In
- * packed blocks x, y and z are rows of their own; in quads the w stay. */
+/* Sets dst[at] to VALUE, an expression in the vectors' parts [at], over the blocks of [begin, end). Components w keep
+ * their values: packed blocks have a row for each component, quads are masked. */
 #define FOR_PARTS(VALUE)                                                             \
     for (size_t slot = begin; slot < end; slot += SK_LANES) {                        \
         size_t at = slot * 4 / SK_PART;                                              \
@@ -56,7 +56,7 @@ void SK_KERNEL(correction)(sk_run *run, const sk_op *op, size_t begin, size_t en
     const sk_wide *p = (const sk_wide *)(const void *)run->vector[op->source[0]];
     const sk_wide *q = (const sk_wide *)(const void *)run->vector[op->source[1]];
     real a = (real)op->coefficient[0], b = (real)op->coefficient[1];
-    // the same operations as predicted p, so that an untouched p corrects nothing
+    // the same operations that predicted p, so that a p that nothing has moved since gives exactly 0
     if (b == 0) FOR_PARTS(dst[at] + a * (p[at] - q[at]))
     else FOR_PARTS(dst[at] + a * (p[at] - (q[at] + b * dst[at])))
 }
@@ -102,8 +102,8 @@ void SK_KERNEL(lead)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     }
 }
 
-/* The start of a position method's substep in one go, once the block's v has its new value: V = v, V0 = V,
- * X0 = X, X += h V; or, where only the correction will ask, X0 = X + h V. */
+/* The start of a position method's substep in one pass, given the new velocity v: V = v, V0 = V, X0 = X, X += h V;
+ * or X0 = X + h V where only the correction reads X0. */
 SK_INLINE void set_out(sk_run *run, const sk_op *op, size_t slot, bool packed, sk_wide4 x, sk_wide4 v) {
     real h = (real)op->dt;
     sk_store_moved(run->vector[SK_V], slot, packed, v);
@@ -125,11 +125,11 @@ void SK_KERNEL(predict)(sk_run *run, const sk_op *op, size_t begin, size_t end) 
     }
 }
 
-/* What a uniform force does to the velocity of a block within h. */
+/* A uniform force, rounded to `real`, and the substep h through which it changes velocities. */
 typedef struct uniform_pull {
     sk_vec3 a, f;
     real linear, rate, h;
-    bool by_mass; /* no force of its own weight: the mass does not matter */
+    bool by_mass; /* all of it is proportional to mass, so that the mass cancels */
 } uniform_pull;
 
 SK_INLINE uniform_pull pull_of(const sk_op *op) {
@@ -169,9 +169,9 @@ void SK_KERNEL(pull)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
 }
 
 #ifdef SK_WHOLE_QUADS
-/* Both uniform predictions over quads [begin, end), which stay quads: turning them into x, y, z, w and back was most of
- * the work. Where it `corrects`, a (X - X0) comes to the velocity first; the last iteration ends with that. Both are constants where this is
- * inlined: asked for each vector, they took as long as half its arithmetic. */
+/* Both uniform predictions over quads [begin, end) as they lie: converting them to x, y, z, w and back was most of the
+ * work. If `corrects`, a (X - X0) is added to the velocity first; the `last` iteration does only that. Both flags are
+ * constants where this is inlined: testing them for each vector took as long as half its arithmetic. */
 SK_INLINE void predict_in_quads(sk_run *run, const sk_op *op, size_t begin, size_t end, real a, bool corrects, bool last) {
     const bool saves_v = op->source[2] == SK_V0, saves_end = op->source[2] == SK_X;
     const uniform_pull p = pull_of(op);
@@ -196,7 +196,7 @@ SK_INLINE void predict_in_quads(sk_run *run, const sk_op *op, size_t begin, size
 }
 #endif
 
-/* How many of the slots from `begin` on are packed, and so go part by part. */
+/* Where the slots that are handled part by part end: packed ones, or all where quads are not handled whole. */
 SK_INLINE size_t end_of_packed(const sk_op *op, size_t begin, size_t end) {
 #ifdef SK_WHOLE_QUADS
     size_t packed = op->packed < begin ? begin : op->packed;
@@ -238,7 +238,7 @@ void SK_KERNEL(correct_and_predict)(sk_run *run, const sk_op *op, size_t begin, 
 #endif
 }
 
-/* What is slower than anything that can be seen is at rest. NaN is not, and a zero keeps its sign. */
+/* Components of at most coefficient[0] become 0: too slow to be seen. NaN stays, and a zero keeps its sign. */
 void SK_KERNEL(rest)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     sk_wide *dst = (sk_wide *)(void *)run->vector[op->dst];
     const sk_wide least = sk_splat((real)op->coefficient[0]), zero = {0};
@@ -246,7 +246,7 @@ void SK_KERNEL(rest)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
 }
 #undef FOR_PARTS
 
-/* In place, so that a block is loaded as a whole before any of it is stored. */
+/* In place: each block is loaded whole before any of it is stored. */
 SK_INLINE void change_layout(sk_vec4 *vector, size_t begin, size_t end, bool packed) {
     for (size_t slot = begin; slot < end; slot += SK_LANES) {
         sk_wide4 part[SK_PARTS];

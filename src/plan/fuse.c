@@ -1,9 +1,9 @@
-/* The one pass over a finished plan that fuses: patterns of neighbouring ops, each with what takes their place. */
+/* The pass over a finished plan that fuses ops: patterns of neighbouring ops, and the ops that replace them. */
 #include "plan/fuse.h"
 
 #include <string.h>
 
-/* Ops of a substep that predicts, as a method writes them:
+/* The ops of a substep's prediction, as methods write them:
  *
  *   kicks       V = V + h w F, or V + h (uniform forces): an op for each part of the slots
  *   saves       X0 = X, and perhaps V0 = V
@@ -36,7 +36,7 @@ static size_t end_slot_of(const sk_op *op) {
     return op->inner ? op->end_slot : op->end;
 }
 
-/* Whether kicks [first, end) are of one part each, and of all slots together. */
+/* Whether the kicks [first, end), one for each part of the slots, cover all slots together. */
 static bool covers(const sk_op *ops, size_t first, size_t end, size_t slot_count) {
     size_t slot = 0;
     for (size_t r = first; r < end; slot = end_slot_of(&ops[r++]))
@@ -65,14 +65,14 @@ static bool mentions(const sk_op *op, sk_vector vector) {
     return any;
 }
 
-/* V += (X - X0 - h V)/h: what moved X away from where V alone would have taken it. */
+/* V += (X - X0 - h V)/h: adds the velocity of whatever moved X away from X0 + h V. */
 static bool is_correction(const sk_op *op) {
     return op->kind == SK_OP_CORRECTION && op->dst == SK_V && op->source[0] == SK_X && op->source[1] == SK_X0 &&
            op->coefficient[1] == op->dt;
 }
 
-/* The one op behind the prediction that looks at X0 or V0, if it is a correction; else SIZE_MAX. Ops that only want to
- * know what was predicted do not count: they are as well served where X0 is that. */
+/* The only op after the prediction that reads X0 or V0, if it is a correction; else SIZE_MAX. Ops that read X0 only to
+ * know the predicted position do not count: X0 may hold that position instead (by_goal). */
 static size_t find_only_correction(const sk_op *ops, size_t count, const prediction *found) {
     size_t only = SIZE_MAX;
     for (size_t r = 0; r < count; r++) {
@@ -102,19 +102,19 @@ static void add_ops(fuser *f, const sk_op *ops, size_t begin, size_t end) {
     for (size_t r = begin; r < end; r++) add(f, ops[r]);
 }
 
-/* An op that looks at X0, where that is where X is going. */
+/* An op that reads the predicted position, in a plan where X0 holds that position itself. */
 static sk_op by_goal(sk_op op) {
     if (op.from_prediction) op.coefficient[1] = 0;
     return op;
 }
 
-/* Makes an op one of another kind, with the kernel of that. */
+/* Changes an op's kind, and its kernel to that kind's. */
 static void become(const fuser *f, sk_op *op, sk_op_kind kind) {
     op->kind = kind;
     *(op->inner ? &op->inner : &op->kernel) = sk_op_types[kind].kernels->version[f->isa];
 }
 
-/* The op that does what a kick, the saves and the drift did; `kept` says what is saved besides X0, see op.h. */
+/* One op in place of a kick, the saves and the drift; `kept` becomes the third source of a prediction (see op.h). */
 static sk_op predicting(const fuser *f, const sk_op *kick, sk_vector kept) {
     sk_op op = *kick;
     become(f, &op, is_pull(kick) ? SK_OP_PREDICT_UNIFORM : SK_OP_PREDICT);
@@ -124,7 +124,7 @@ static sk_op predicting(const fuser *f, const sk_op *kick, sk_vector kept) {
     return op;
 }
 
-/* The end of one substep, and the prediction of the next. */
+/* One op for the correction that ends a substep and the prediction that begins the next. */
 static sk_op following(const fuser *f, const sk_op *pull, const sk_op *correction) {
     sk_op op = predicting(f, pull, SK_X);
     op.coefficient[0] = correction->coefficient[0];
@@ -139,9 +139,8 @@ static bool all_pull(const sk_op *ops, const prediction *found) {
     return true;
 }
 
-/* Where a substep begins by predicting and ends by its correction, and nobody else looks at its start: the first
- * prediction comes before the repeat, and each iteration's correction is one op with the next iteration's prediction.
- */
+/* For a substep that begins with its prediction and ends with its correction, while no other op reads its start: moves
+ * the first prediction before the repeat, and makes each correction and the prediction after it one op. */
 static void fuse_across_iterations(fuser *f, const sk_op *repeat, const prediction *found) {
     const sk_op *ops = repeat + 1;
     for (size_t r = 0; r < found->first_save; r++) add(f, predicting(f, &ops[r], SK_X));
@@ -152,10 +151,10 @@ static void fuse_across_iterations(fuser *f, const sk_op *repeat, const predicti
     for (size_t r = 0; r < found->first_save; r++) add(f, following(f, &ops[r], &ops[repeat->length - 1]));
 }
 
-/* Each kick with the saves and the drift; `correction` is the only op that looks back, or SIZE_MAX. */
+/* Fuses each kick with the saves and the drift. `correction` is the only op that reads X0 or V0, or SIZE_MAX. */
 static void fuse_prediction(fuser *f, const sk_op *repeat, const prediction *found, size_t correction) {
     const sk_op *ops = repeat + 1;
-    bool goal = correction != SIZE_MAX; // then X0 may as well be where X is going: the correction has less to do
+    bool goal = correction != SIZE_MAX; // then X0 holds the predicted position, which saves work in the correction
     sk_vector kept = goal ? SK_X : found->saves_velocity ? SK_V0 : SK_NONE;
     sk_op head = *repeat;
     head.length -= found->drift + 1 - found->first_save;

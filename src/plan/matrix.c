@@ -1,5 +1,4 @@
-/* The matrix of a solve: which blocks there are, found once a plan, and their numbers, filled in by the rules'
- * kernels. */
+/* The sparse matrix of a solve: its pattern of blocks, found once a plan, the filter, and the calls of the solver. */
 #include "plan/matrix.h"
 
 #include <stdlib.h>
@@ -7,14 +6,14 @@
 
 #include "plan/solve.h"
 
-/* ---- the shape ---- */
+/* ---- the pattern ---- */
 
 static int compare_indices(const void *a, const void *b) {
     uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
     return (x > y) - (x < y);
 }
 
-/* Calls `visit` for every two particles of every element. */
+/* Calls `visit` for every pair of particles of every element. */
 static void visit_pairs(const sk_matrix_part *parts, size_t part_count,
                         void (*visit)(void *data, uint32_t low, uint32_t high, uint32_t *pair), void *data) {
     for (size_t i = 0; i < part_count; i++) {
@@ -34,7 +33,7 @@ static void count_pair(void *data, uint32_t low, uint32_t high, uint32_t *pair) 
     ((sk_matrix *)data)->first[low + 1]++;
 }
 
-/* `start` still holds where each particle's list has come to. */
+/* `start` still holds where the next entry of each particle's list goes. */
 static void list_pair(void *data, uint32_t low, uint32_t high, uint32_t *pair) {
     (void)pair;
     sk_matrix *m = data;
@@ -48,7 +47,7 @@ static void find_pair(void *data, uint32_t low, uint32_t high, uint32_t *pair) {
     *pair = (uint32_t)(found - m->below);
 }
 
-/* Each particle's list in order, and each of its neighbours once. */
+/* Sorts each particle's list, and keeps each neighbour once. */
 static void order_lists(sk_matrix *m) {
     size_t kept = 0;
     for (size_t i = 0; i < m->particles; i++) {
@@ -61,7 +60,7 @@ static void order_lists(sk_matrix *m) {
     m->first[m->particles] = kept;
 }
 
-/* The rows of entries, column by column. */
+/* Writes the row of every entry, column by column. */
 static void write_rows(sk_matrix *m) {
     int64_t at = 0;
     for (size_t i = 0; i < m->particles; i++)
@@ -117,7 +116,7 @@ skein_sparse_matrix sk_matrix_view(const sk_matrix *m, bool with_values) {
     return (skein_sparse_matrix){3 * m->particles, m->start, m->row, with_values ? m->value : NULL};
 }
 
-/* ---- its numbers ---- */
+/* ---- the values ---- */
 
 void sk_matrix_clear(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     sk_matrix *m = run->matrix;
@@ -132,7 +131,7 @@ void sk_matrix_clear(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     }
 }
 
-/* The filter of a particle; true where it lets everything through. */
+/* Loads a particle's filter; true if it is the identity. */
 static bool load_filter(const sk_run *run, size_t packed, size_t particle, double s[3][3]) {
     size_t slot = run->slot_of[particle];
     sk_vec4 d = sk_load(run->vector[SK_FILTER0], packed, slot), o = sk_load(run->vector[SK_FILTER1], packed, slot);
@@ -146,7 +145,7 @@ static void multiply(double a[3][3], double b[3][3], double c[3][3]) {
         for (int j = 0; j < 3; j++) c[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
 }
 
-/* S D S + size (1 - S): what is held has about the stiffness of what is not. */
+/* S D S + size (1 - S): held directions get about the stiffness of free ones, which keeps the matrix well scaled. */
 static void filter_diagonal(sk_matrix *m, size_t particle, double s[3][3]) {
     size_t n;
     double *x = sk_matrix_column(m, particle, &n), *y = x + 3 + 3 * n, *z = y + 2 + 3 * n;
@@ -172,7 +171,7 @@ static void filter_pair(sk_matrix *m, size_t column, size_t k, double left[3][3]
         for (int r = 0; r < 3; r++) of[c][r] = sbs[r][c];
 }
 
-/* A = S A S + (1 - S). False where a number is not finite. */
+/* A = S A S + (1 - S), the latter scaled. False if a number is not finite. */
 static bool filter_matrix(const sk_run *run, sk_matrix *m, size_t packed) {
     for (size_t i = 0; i < m->particles; i++) {
         double s[3][3], t[3][3];
@@ -214,7 +213,7 @@ void sk_matrix_solve(sk_run *run, const sk_op *op, size_t begin, size_t end) {
         run->solve->failures++;
         return;
     }
-    memset(to, 0, run->slot_count * sizeof *to); // slots without a particle, too
+    memset(to, 0, run->slot_count * sizeof *to); // also slots without a particle
     for (size_t i = 0; i < m->particles; i++) {
         const double *x = m->found + 3 * i;
         sk_store_at(to, op->packed, run->slot_of[i], sk_v3((real)x[0], (real)x[1], (real)x[2]));

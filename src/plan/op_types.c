@@ -1,5 +1,5 @@
-/* The kinds of ops, a row each: all that whoever runs, fuses, explains or reverses a plan, or writes it for a card, knows
- * of an op beside what it says itself. What a statement calls is in the .glsl of the rule's floor, or of src/gpu/. */
+/* The kinds of ops, a row each: with the op's own members this is all that the code that runs, fuses, explains,
+ * reverses or translates a plan knows of an op. Functions that statements call are in .glsl files. */
 #include "plan/op.h"
 
 #define BIT(vector) (1u << (vector))
@@ -9,8 +9,8 @@
 #define X0 BIT(SK_X0)
 #define P BIT(SK_PREVIOUS)
 
-/* The end of a prediction on a card, once V has its new value: V0 = V, X0 = X, X += h V; or, where only the correction
- * will ask, X0 = X + h V. */
+/* The end of a prediction on a card, given the new V: V0 = V, X0 = X, X += h V; or X0 = X + h V where only the
+ * correction reads X0. */
 static const char *set_out(const sk_op *op) {
 #define DRIFT "    X.xyz = X.xyz + op@[0].w * V.xyz;\n"
     if (op->source[2] == SK_X) return DRIFT "    X0.xyz = X.xyz;\n";
@@ -24,6 +24,7 @@ static const char *set_out(const sk_op *op) {
     "    sk_pose where = sk_pose(pose@[0].xyz, pose@[3].xyz, pose@[4].xyz, pose@[5].xyz, pose@[6].xyz);\n"                \
     "    sk_contact contact = $k_probe(params@(), where, x);\n"                                                          \
     "    return vec4(contact.normal, contact.distance);\n}\n"
+#define CONTACT_FILES .shared = "colliders/response", .file = "colliders/contact"
 #define PUSH_CALL                                                                                                        \
     "#define sum@ vec3\n"                                                                                                \
     "vec3 start@(vec3 heading) { return vec3(0); }\n"                                                                    \
@@ -39,7 +40,7 @@ const sk_op_type sk_op_types[SK_OP_KIND_COUNT] = {
     /* ---- whole vectors: plan/combine.c ---- */
     [SK_OP_SUM] = {"combine", &sk_combine_sum, "$s", .arithmetic = true, .reverse = SK_REVERSE_SUM,
                    .reads = SK_USES_SOURCES, .writes = SK_USES_DST, .card = {.statement = "    $d.xyz = $s;\n"}},
-    // of the card the same operations as predicted p, so that an untouched p corrects nothing
+    // on a card too the same operations that predicted p, so that a p that nothing has moved since gives exactly 0
     [SK_OP_CORRECTION] = {"combine", &sk_combine_correction, "$d + $1 ($p - $q$b)", .arithmetic = true,
                           .reads = SK_USES_SOURCES | SK_USES_DST, .writes = SK_USES_DST,
                           .card = {.statement = "    $d.xyz = $d.xyz + op@[0].x * ($p.xyz - $b);\n"}},
@@ -62,7 +63,7 @@ const sk_op_type sk_op_types[SK_OP_KIND_COUNT] = {
     [SK_OP_PREDICT_UNIFORM] = {"combine", &sk_combine_predict_uniform, "X + h V, V + h ($u); $o", SK_RULE_UNIFORM,
                                .arithmetic = true, .reads = X | V, .writes = X | V | X0 | SK_USES_THIRD,
                                .card = {.statement = PULLED "$o", .file = "gpu/pull", .other = set_out}},
-    // in the last iteration X0 stays, so that it is read, too
+    // in the last iteration X0 stays as it is, so that it counts as read
     [SK_OP_CORRECT_AND_PREDICT] = {"combine", &sk_combine_correct_and_predict,
                                    "V + $1 (X - X0); X + h V, V + h ($u); X0 = X, but for the last iteration",
                                    SK_RULE_UNIFORM, .arithmetic = true, .reads = X | V | X0,
@@ -86,8 +87,8 @@ const sk_op_type sk_op_types[SK_OP_KIND_COUNT] = {
                                  .call = "vec4 steer@(vec3 x, float dt) { return $k_steer(params@(), x, dt); }\n"}},
     [SK_OP_AVOID] = {"field", .rule = SK_RULE_COLLIDER, .reads = X | V | SK_USES_DST, .writes = SK_USES_DST,
                      .at_end = true,
-                     .card = {.statement = "    $d += avoid@(X.xyz, V.xyz);\n", .call = CONTACT_CALL, .file = "colliders/avoid"}},
-    // pair rules by formula know the end of the substep
+                     .card = {.statement = "    $d += avoid@(X.xyz, V.xyz);\n", .call = CONTACT_CALL, .shared = "colliders/avoid", .file = "colliders/look_ahead"}},
+    // pair formulas read the time at the end of the substep
     [SK_OP_NEIGHBOUR] = {"neighbour", .rule = SK_RULE_FORCE, .walks = true, .at_end = true,
                          .reads = X | V | SK_USES_DST, .writes = SK_USES_DST,
                          .card = {.statement = "    $d.xyz += walk@(place, X.xyz, V.xyz);\n", .call = PUSH_CALL, .file = "gpu/walk"}},
@@ -107,15 +108,15 @@ const sk_op_type sk_op_types[SK_OP_KIND_COUNT] = {
 
     /* ---- contact ---- */
     [SK_OP_CONTACT_FORCE] = {"contact F", .rule = SK_RULE_COLLIDER, .reads = X | V | F, .writes = F,
-                             .card = {.statement = "    contact_force@(X, V, F);\n", .call = CONTACT_CALL, .file = "colliders/contact"}},
+                             .card = {.statement = "    contact_force@(X, V, F);\n", .call = CONTACT_CALL, CONTACT_FILES}},
     [SK_OP_CONTACT_VELOCITY] = {"contact V", .rule = SK_RULE_COLLIDER, .reads = X | V | SK_USES_THIRD, .writes = X | V,
-                                .card = {.statement = "    contact_impulse@(X, V, $r);\n", .call = CONTACT_CALL, .file = "colliders/contact"}},
+                                .card = {.statement = "    contact_impulse@(X, V, $r);\n", .call = CONTACT_CALL, CONTACT_FILES}},
     [SK_OP_CONTACT_POSITION] = {"contact X", .rule = SK_RULE_COLLIDER, .reads = X | SK_USES_THIRD, .writes = X,
-                                .card = {.statement = "    contact_push@(X, $r);\n", .call = CONTACT_CALL, .file = "colliders/contact"}},
+                                .card = {.statement = "    contact_push@(X, $r);\n", .call = CONTACT_CALL, CONTACT_FILES}},
     [SK_OP_CONTACT_SWEEP] = {"contact X", .rule = SK_RULE_COLLIDER},
     [SK_OP_CONTACT_UPDATE] = {"contact XV", .rule = SK_RULE_COLLIDER,
                               .reads = X | V | SK_USES_SECOND | SK_USES_THIRD, .writes = X | V,
-                              .card = {.statement = "    contact_update@(X, V, $f, $q, $r);\n", .call = CONTACT_CALL, .file = "colliders/contact"}},
+                              .card = {.statement = "    contact_update@(X, V, $f, $q, $r);\n", .call = CONTACT_CALL, CONTACT_FILES}},
     [SK_OP_MEET] = {.name = "meet"},
 
     /* ---- implicit solves ---- */
@@ -128,7 +129,7 @@ const sk_op_type sk_op_types[SK_OP_KIND_COUNT] = {
     [SK_OP_REPEAT] = {"repeat", .leads = true, .reverse = SK_REVERSE_NOTHING},
 };
 
-/* Bits of vectors in place of those that stand for an op's own. */
+/* Replaces the bits that stand for the op's dst and sources by the bits of those vectors. */
 static uint32_t resolved(const sk_op *op, uint32_t uses) {
     const uint32_t own[] = {SK_USES_DST, SK_USES_FIRST, SK_USES_SECOND, SK_USES_THIRD};
     const sk_vector vector[] = {op->dst, op->source[0], op->source[1], op->source[2]};
@@ -144,6 +145,6 @@ uint32_t sk_op_writes(const sk_op *op) {
 uint32_t sk_op_reads(const sk_op *op) {
     uint32_t uses = sk_op_types[op->kind].reads, writes = sk_op_writes(op);
     if (op->sets) uses &= ~(uint32_t)SK_USES_DST;
-    // the w of a state vector stays, whoever writes the rest; and so does what slots beside the op's have
+    // X and V keep their w when x, y and z are written, and slots outside of the op's range keep everything
     return resolved(op, uses | op->also_reads) | (writes & (op->inner ? ~0u : X | V));
 }

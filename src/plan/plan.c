@@ -1,4 +1,4 @@
-/* A plan as a list that grows, ops over some slots alone, and the words that `skein explain` shows of an op. */
+/* A plan as a growing list, ops restricted to a range of slots, and an op's text for `skein explain`. */
 #include "plan/op.h"
 
 #include <stdarg.h>
@@ -13,7 +13,7 @@ bool sk_plan_add(sk_plan *plan, sk_allocator *allocator, sk_op op) {
     return true;
 }
 
-/* ---- ops over some slots ---- */
+/* ---- ops over a range of slots ---- */
 
 sk_op sk_op_for(sk_op op, size_t first_slot, size_t end_slot) {
     enum { BLOCK = 16 };
@@ -25,7 +25,7 @@ sk_op sk_op_for(sk_op op, size_t first_slot, size_t end_slot) {
     return op;
 }
 
-/* A block of the vectors that an op may write. */
+/* A copy of one block of a vector that an op may write. */
 typedef struct kept_block {
     sk_vec4 slots[16];
     sk_vec4 *from;
@@ -38,7 +38,7 @@ static void keep_block(kept_block *kept, const sk_run *run, const sk_op *op, sk_
     if (kept->from) memcpy(kept->slots, kept->from + at, sizeof kept->slots);
 }
 
-/* Puts back what slots beside the op's had. */
+/* Restores the slots outside of the op's range. */
 static void put_back(const kept_block *kept, const sk_op *op, size_t at) {
     for (size_t l = 0; l < 16 && kept->from; l++) {
         if (at + l >= op->first_slot && at + l < op->end_slot) continue;
@@ -106,8 +106,8 @@ static void put_sum(line *to, const sk_op *op) {
     if (!any) put(to, "0");
 }
 
-/* What stands for a letter in a kind's formula: $d $p $q the op's dst and sources, $1 its first coefficient, $s the
- * weighted sum of its sources, $b what a correction takes off besides, $u the uniform force, $o what is saved. */
+/* The text for a letter in a kind's formula: $d $p $q the op's dst and sources, $1 its first coefficient, $s the
+ * weighted sum of its sources, $b a correction's term - b dst, $u the uniform force, $o what is saved. */
 static void put_letter(line *to, const sk_op *op, char letter) {
     switch (letter) {
     case 'd': put(to, "%s", vector_text(op->dst)); break;
@@ -139,7 +139,7 @@ static void put_formula(line *to, const sk_op *op) {
     }
 }
 
-/* What an op looks at, and by which rule. */
+/* What an op reads, and its rule. */
 static void put_rule(line *to, const sk_op *op) {
     static const char *const halves[] = {[SK_WHOLE] = "", [SK_EVEN_HALF] = " even", [SK_ODD_HALF] = " odd"};
     put(to, "%s%s,", op->label ? op->label : "", halves[op->half]);

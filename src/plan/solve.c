@@ -16,7 +16,7 @@ SK_KERNELS(sk_op_kernel, curvature);
 SK_KERNELS(sk_op_kernel, step);
 SK_KERNELS(sk_op_kernel, precondition);
 
-/* Where a block's partial sums lie. */
+/* A block's two partial sums. */
 static inline double *sums_of(const sk_run *run, size_t block) {
     return (double *)(void *)run->vector[SK_SUMS] + 2 * block;
 }
@@ -32,7 +32,7 @@ SK_INLINE sk_wide3 load3(const sk_run *run, const sk_op *op, int vector, size_t 
     return (sk_wide3){a.x, a.y, a.z};
 }
 
-/* Writes x, y and z of a part; w is left as it is. */
+/* Writes x, y and z of a part; w keeps its value. */
 SK_INLINE void store(sk_run *run, const sk_op *op, int vector, size_t slot, sk_wide3 a) {
     bool packed = slot < op->packed;
     sk_wide w = packed ? a.x : load(run, op, vector, slot).w;
@@ -50,7 +50,7 @@ SK_INLINE sk_wide3 filtered(const sk_run *run, const sk_op *op, size_t slot, sk_
                       o.y * p.x + o.z * p.y + d.z * p.z};
 }
 
-/* Adds a part's numbers to four sums, lane by lane, and leaves the sum of all sixteen when its block ends. */
+/* Adds a part's values to four sums, lane by lane, and stores the sum of all sixteen lanes when the block ends. */
 SK_INLINE void leave(sk_run *run, size_t slot, sk_wide value, double sum[4], int which) {
     size_t lane = slot % SK_LANES;
     for (size_t k = 0; k < 4 && !lane; k++) sum[k] = 0;
@@ -124,8 +124,8 @@ SK_INLINE sk_wide inverse(sk_wide a) {
     return sk_keep(sk_positive(a), 1 / a);
 }
 
-/* What rounding alone may make of R w R: a position is rounded to its size times epsilon, and the springs at it turn
- * that into a force. Velocities and forces are rounded themselves. */
+/* The R w R that rounding alone may cause: positions are rounded by their size times epsilon, which springs turn into
+ * forces; velocities and forces are rounded themselves. */
 SK_INLINE sk_wide rounding(const sk_run *run, const sk_op *op, size_t slot, sk_wide springs, sk_wide inertia) {
     const real epsilon = (real)(sizeof(real) == sizeof(double) ? 1e-16 : 5e-8), h = (real)op->dt;
     sk_wide4 x = load(run, op, SK_X, slot);
@@ -135,7 +135,7 @@ SK_INLINE sk_wide rounding(const sk_run *run, const sk_op *op, size_t slot, sk_w
     return epsilon * epsilon * (x.w * square);
 }
 
-/* L D L^T, unit triangular L: 1/D in the first vector, l21 l31 l32 in the second. */
+/* L D L^T with unit lower triangular L: writes 1/D to the first vector, and l21 l31 l32 to the second. */
 void SK_KERNEL(factor)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     double sum[4];
     FOR_PARTS {
@@ -181,7 +181,7 @@ void SK_KERNEL(step)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     }
 }
 
-/* BLOCK^-1 r, by the block's factors. */
+/* BLOCK^-1 r, from the block's factors. */
 SK_INLINE sk_wide3 by_block(const sk_run *run, const sk_op *op, size_t slot, sk_wide3 r) {
     sk_wide3 i = load3(run, op, SK_BLOCK0, slot), l = load3(run, op, SK_BLOCK1, slot);
     sk_wide y2 = r.y - l.x * r.x, y3 = r.z - l.y * r.x - l.z * y2;
@@ -217,7 +217,7 @@ const sk_kernels sk_solve_step = {SK_EACH_ISA(step)};
 const sk_kernels sk_solve_precondition = {SK_EACH_ISA(precondition)};
 
 double sk_solve_sum(const sk_run *run, int which) {
-    enum { RUN = 64 }; /* blocks that are added up on their own */
+    enum { RUN = 64 }; /* blocks that have a partial sum of their own */
     double all = 0;
     size_t count = run->slot_count / SK_LANES;
     for (size_t first = 0; first < count; first += RUN) {

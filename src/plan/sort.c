@@ -1,4 +1,4 @@
-/* The kernels that sort particles into cells: thin ones, around the functions of space/cells.h. */
+/* The kernels that sort particles into cells: thin wrappers of the functions in space/cells.h. */
 #include "plan/sort.h"
 #include "base/kernels.h"
 
@@ -9,7 +9,7 @@ SK_KERNELS(sk_op_kernel, copy);
 
 #ifdef SK_ISA
 
-/* Which of a part's slots from `slot` on have particles of the group. */
+/* Which slots of the part at `slot` hold particles of the group. */
 SK_INLINE sk_mask members(const sk_run *run, const sk_group *group, size_t slot) {
     typedef int32_t numbers __attribute__((vector_size(SK_PART * sizeof(int32_t))));
     numbers particle;
@@ -17,7 +17,7 @@ SK_INLINE sk_mask members(const sk_run *run, const sk_group *group, size_t slot)
     return __builtin_convertvector((particle >= (int32_t)group->first) & (particle < (int32_t)group->end), sk_mask);
 }
 
-/* Those that are somewhere (space/cells.h). */
+/* Which positions are near enough to have a cell: finite, and within SK_CELLS_FARTHEST (space/cells.h). */
 SK_INLINE sk_mask somewhere(sk_wide4 p) {
     sk_wide most = sk_splat(SK_CELLS_FARTHEST);
     return sk_at_most(sk_wide_abs(p.x), most) & sk_at_most(sk_wide_abs(p.y), most) & sk_at_most(sk_wide_abs(p.z), most);
@@ -50,7 +50,7 @@ void SK_KERNEL(frame)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
         run->no_memory = true;
 }
 
-/* sk_cells_place() of a part. */
+/* sk_cells_place() for a whole part. */
 SK_INLINE sk_mask cell_along(sk_wide at, real origin, real per, int32_t count) {
     sk_wide place = (at - origin) * per, top = sk_splat((real)count);
     sk_mask above = sk_positive(place), inside = above & sk_more(top, place);
@@ -76,7 +76,7 @@ void SK_KERNEL(find)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     }
 }
 
-/* Elements are places: here those of the cells that begin at them. */
+/* Its elements are places in the order of cells; it handles the cells that begin within the range. */
 void SK_KERNEL(copy)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     sk_cells *cells = run->cells;
     sk_state state = {run->vector[SK_X], run->vector[SK_V], op->packed, run->particle_of};

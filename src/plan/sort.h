@@ -1,11 +1,11 @@
 /* The ops that sort particles into cells, for rules that look at neighbours (space/cells.h), in this order.
  *
- *   frame     ordered   the cells' frame, and memory for all of it; coefficient[0] is the radius
- *   find      free      the cell of each slot's particle
- *   rank      ordered   who is at which place: a counting sort
- *   copy      free      cells put in the user's order; positions and directions of flight, by place
+ *   frame     ordered   finds the cells' box and sizes, and reserves memory; coefficient[0] is the radius
+ *   find      free      finds the cell of each slot's particle
+ *   rank      ordered   gives each particle a place, by a counting sort over cells
+ *   copy      free      puts members of a cell in the user's order; copies positions and directions of flight by place
  *
- * The elements of the last are places, those of the others the slots of the op's group. */
+ * The elements of `copy` are places, those of the others the slots of the op's group. */
 #ifndef SK_PLAN_SORT_H
 #define SK_PLAN_SORT_H
 

@@ -1,4 +1,4 @@
-/* Cells by counting: bounds and size, each particle's cell, its place in the order, and what is copied by it. */
+/* Sorting into cells by counting: bounds and size, each particle's cell and place in the order, and the copies. */
 #include "space/cells.h"
 
 #include <string.h>
@@ -6,8 +6,8 @@
 enum {
     PADDING = 16, /* places beyond the last that a wide load may read */
     LAYER = 8,    /* lines of a layer */
-    FEW = 16,     /* so many lines are one layer */
-    SMALL = 32,   /* particles of a cell that one is put in order among */
+    FEW = 16,     /* up to this many lines are one layer */
+    SMALL = 32,   /* up to this many members of a cell are sorted by insertion, more by heap sort */
 };
 
 /* Finite, and so far from overflow that the size of a box of such points is finite too. */
@@ -20,7 +20,7 @@ static bool is_in(const sk_group *group, uint32_t particle) {
     return particle != SK_NOBODY && particle >= group->first && particle < group->end;
 }
 
-/* The box around the finite particles; a point where there are none. */
+/* The box around the finite particles; a point if there are none. */
 static void find_bounds(const sk_state *state, const sk_group *group, sk_vec3 *low, sk_vec3 *high) {
     bool any = false;
     *low = *high = (sk_vec3){0, 0, 0};
@@ -39,14 +39,14 @@ static size_t cell_count(const sk_cells *cells) {
     return (size_t)cells->count_x * (size_t)cells->layer * layers * (size_t)cells->count_z;
 }
 
-/* Cells of `size` that cover the box, as a double so that it cannot overflow. */
+/* The number of cells of `size` that cover the box, as a double so that it cannot overflow. */
 static double cells_needed(sk_vec3 extent, double size) {
     double lines = (double)extent.y / size + 1;
     if (lines > FEW) lines += LAYER;
     return (SK_CELLS_ACROSS * (double)extent.x / size + 1) * lines * ((double)extent.z / size + 1);
 }
 
-/* At most so many cells for `count` particles. */
+/* The largest number of cells for `count` particles. */
 static double most_cells(size_t count) {
     return count < 500000000 ? 4.0 * (double)count + 64 : 2e9;
 }
@@ -64,7 +64,7 @@ bool sk_cells_reserve(sk_cells *cells, sk_allocator *allocator, const sk_group *
         sk_reserve(allocator, (void **)&cells->slot, &cells->slot_capacity, count + PADDING, sizeof *cells->slot) &&
         sk_reserve(allocator, (void **)&cells->cell, &cells->cell_capacity, group->end_slot - group->first_slot,
                    sizeof *cells->cell);
-    // whoever was not looked for yet is nowhere
+    // particles whose cell is not known yet are in none (SK_NOWHERE)
     if (good && cells->cell_capacity > had) memset(cells->cell, 0xff, cells->cell_capacity * sizeof *cells->cell);
     return good;
 }
@@ -110,7 +110,7 @@ void sk_cells_find(sk_cells *cells, const sk_state *state, size_t begin, size_t 
     }
 }
 
-/* (Nowhere is more than any cell.) */
+/* SK_NOWHERE is larger than any cell's number. */
 void sk_cells_rank(sk_cells *cells) {
     size_t count = cell_count(cells), slots = cells->group.end_slot - cells->group.first_slot;
     uint32_t *start = cells->start;
@@ -126,7 +126,7 @@ void sk_cells_rank(sk_cells *cells) {
 
 /* ---- the order within a cell ---- */
 
-/* A heap's root sinks to where those below it are smaller. */
+/* Moves a heap's root down to where both below it are smaller. */
 static void sink(uint32_t *slot, size_t root, size_t count, const uint32_t *particle_of) {
     uint32_t moved = slot[root];
     for (size_t child; (child = 2 * root + 1) < count; root = child) {
@@ -137,7 +137,7 @@ static void sink(uint32_t *slot, size_t root, size_t count, const uint32_t *part
     slot[root] = moved;
 }
 
-/* However many are in one place: a heap needs no memory, and no time that grows with their square. */
+/* For many particles in one cell: heap sort needs no memory, and its time does not grow with their square. */
 static void sort_as_heap(uint32_t *slot, size_t count, const uint32_t *particle_of) {
     for (size_t root = count / 2; root-- > 0;) sink(slot, root, count, particle_of);
     for (size_t end = count; end-- > 1;) {
@@ -148,7 +148,7 @@ static void sort_as_heap(uint32_t *slot, size_t count, const uint32_t *particle_
     }
 }
 
-/* Moves the last of `count` members of a cell forwards to its place; those before it are in order. */
+/* Moves the last of `count` members of a cell forward to its place among the others, which are in order. */
 static void move_forwards(uint32_t *slot, size_t count, const uint32_t *particle_of) {
     uint32_t moved = slot[count - 1], particle = particle_of[moved];
     size_t at = count - 1;
@@ -156,7 +156,7 @@ static void move_forwards(uint32_t *slot, size_t count, const uint32_t *particle
     slot[at] = moved;
 }
 
-/* The first place from this one on where a cell begins. (Others may be moving members of a cell about just now.) */
+/* The first place from `place` on where a cell begins. (Other threads may be moving members within cells meanwhile.) */
 static size_t next_beginning(const sk_cells *cells, size_t place) {
     size_t low = 0, high = cell_count(cells);
     while (low < high) {
@@ -167,12 +167,12 @@ static size_t next_beginning(const sk_cells *cells, size_t place) {
     return cells->start[low];
 }
 
-/* (A walk from cell to cell took three times as long: how many are in one, nobody can guess.) */
+/* (Going from cell to cell took three times as long: branches on the number of members cannot be predicted.) */
 void sk_cells_settle(sk_cells *cells, const sk_state *state, size_t begin, size_t end, size_t *first, size_t *last) {
     *first = begin < cells->count ? begin : cells->count, *last = end < cells->count ? end : cells->count;
     if (cells->in_order || *first == *last) return;
     *first = next_beginning(cells, *first), *last = next_beginning(cells, *last);
-    // cells ascend from place to place; cell and particle as one number are to do so, too: one branch, hardly ever taken
+    // cells ascend from place to place; cell and particle as one number must, too: one branch, hardly ever taken
     uint64_t before = 0;
     for (size_t place = *first; place < *last; place++) {
         uint32_t member = cells->slot[place], cell = cells->cell[member - cells->group.first_slot];

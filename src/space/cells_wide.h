@@ -1,13 +1,13 @@
-/* Which places of the cells a particle has to look at, as sixteens of candidates: for kernels, once for
- * each instruction set. */
+/* Finding a particle's candidate neighbours in the cells, in groups of sixteen places: for kernels, once for each
+ * instruction set. */
 #include "space/cells.h"
 
-/* Where the nine lines of cells around a particle are, a line a lane; see sk_cells_ranges(), which this is wide. */
+/* The nine lines of cells around a particle, one in each lane: the wide version of sk_cells_ranges(). */
 enum { LINES = 9, LINE_VECTORS = (LINES + SK_PART - 1) / SK_PART };
 typedef struct nine_lines {
     // the distance to the line, in cells, is wall + share * place in the cell
     sk_wide wall_y[LINE_VECTORS], wall_z[LINE_VECTORS], share_y[LINE_VECTORS], share_z[LINE_VECTORS];
-    sk_mask step_z[LINE_VECTORS];                     // in the array of cells
+    sk_mask step_z[LINE_VECTORS];                     // cells from the particle's line to one at z - 1 or z + 1
     sk_mask below[LINE_VECTORS], above[LINE_VECTORS]; // lines at y - 1, at y + 1
 } nine_lines;
 
@@ -24,7 +24,7 @@ SK_INLINE nine_lines lines_of(const sk_cells *cells) {
     return lines;
 }
 
-/* Which of the nine there are, a bit each. */
+/* Which of the nine lines exist, a bit for each. */
 SK_INLINE uint32_t lines_inside(const sk_cells *cells, int32_t iy, int32_t iz) {
     uint32_t lines = 0x1ff;
     if (iy == 0) lines &= ~0x049u;
@@ -34,7 +34,7 @@ SK_INLINE uint32_t lines_inside(const sk_cells *cells, int32_t iy, int32_t iz) {
     return lines;
 }
 
-/* Sixteens of candidates: where each begins, and which of them are candidates. */
+/* Groups of sixteen places: where each begins, and which of its places are candidates. */
 enum { SIXTEENS = 64 };
 typedef struct sixteen_lists {
     uint32_t place[SIXTEENS + SK_LANES];
@@ -42,17 +42,17 @@ typedef struct sixteen_lists {
     size_t count;
 } sixteen_lists;
 
-/* Ranges of places, a lane each: where what is left of them begins, and how many that is. */
+/* Ranges of places, one in each lane: where the rest of each begins, and how many places are left. */
 typedef struct nine_ranges {
 #if SK_WIDTH == 64
-    __m512i begin, left; // as they are worked on: stores of single lanes would hold up loads of all
+    __m512i begin, left; // vectors: storing single lanes would delay loads of the whole
 #else
     int32_t begin[SK_LANES], left[SK_LANES];
 #endif
 } nine_ranges;
 
-/* Lists the next sixteen of each range that is not used up; false when all are. Ranges take turns, so that rows of
- * fewer than sixteen, the most of them, are listed without a branch each. */
+/* Lists the next sixteen places of each range that has any left; false if none has. Ranges take turns, so that those of
+ * fewer than sixteen, which most are, need no branch each. */
 SK_INLINE bool list(nine_ranges *ranges, sixteen_lists *list) {
     size_t before = list->count;
 #if SK_WIDTH == 64
@@ -76,7 +76,7 @@ SK_INLINE bool list(nine_ranges *ranges, sixteen_lists *list) {
     return list->count != before;
 }
 
-/* The ranges of candidates of a particle at p: where each of nine rows begins, and how many are in it. */
+/* The ranges of candidates for a particle at p: for each of nine lines, where the range begins and its length. */
 SK_INLINE void find_ranges(const sk_cells *cells, const nine_lines *lines, sk_vec3 p, real reach, nine_ranges *ranges) {
     real py = (p.y - cells->origin.y) * cells->per_yz, pz = (p.z - cells->origin.z) * cells->per_yz;
     int32_t iy = sk_cells_place(p.y, cells->origin.y, cells->per_yz, cells->count_y);

@@ -35,13 +35,13 @@ static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Divides by the largest component first: no overflow, and a vector along an axis comes out exact. */
+/* Divides by the largest component first: nothing overflows, and a vector along an axis stays exact. */
 static bool normalise(double v[3]) {
     double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
     if (!(largest > 0) || !isfinite(largest)) return false;
     for (int k = 0; k < 3; k++) v[k] /= largest;
     double length = sqrt(dot(v, v));
-    for (int k = 0; k < 3; k++) v[k] = v[k] / length + 0.0; // and no -0
+    for (int k = 0; k < 3; k++) v[k] = v[k] / length + 0.0; // turns -0 into 0
     return true;
 }
 

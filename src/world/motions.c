@@ -3,7 +3,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "colliders/seat.h"
 #include "particles/selection.h"
+#include "world/choose.h"
 #include "world/world.h"
 
 /* ---- adding and releasing ---- */
@@ -14,6 +16,8 @@ void sk_motion_release(sk_motion *motion, sk_allocator *allocator) {
     sk_release(allocator, motion->particle);
     sk_release(allocator, motion->column);
     sk_release(allocator, motion->share);
+    sk_release(allocator, motion->seats.data);
+    sk_release(allocator, motion->seats.particle);
     sk_release(allocator, motion);
 }
 
@@ -71,8 +75,7 @@ static skein_status refuse_words(void *data, const char *words) {
         words);
 }
 
-/* Marks those of [first, first + count) that the text names. */
-static skein_status choose(skein_world *world, const sk_body *body, size_t first, size_t count, const char *text,
+skein_status sk_world_choose(skein_world *world, const sk_body *body, size_t first, size_t count, const char *text,
                            bool *chosen, skein_error *error) {
     sk_allocator *allocator = &world->allocator;
     bool vertices = body && body->vertex_count;
@@ -159,6 +162,88 @@ static skein_status find_colliders(const skein_world *world, sk_motion *motion, 
     return SKEIN_OK;
 }
 
+/* ---- those that follow a collider's triangles ---- */
+
+/* The collider of that name; without one, that which alone has triangles. */
+static const sk_collider *carrier_named(const skein_world *world, const char *name, size_t *meshes) {
+    const sk_collider *found = NULL;
+    *meshes = 0;
+    for (size_t i = 0; i < world->rules.colliders.count; i++) {
+        const sk_collider *collider = world->rules.colliders.data[i];
+        *meshes += collider->type->surface != NULL;
+        if (name[0] ? !found && !strcmp(collider->common->name, name) : collider->type->surface != NULL) found = collider;
+    }
+    return name[0] || *meshes == 1 ? found : NULL;
+}
+
+/* The collider whose triangles a motion follows. One that was there once may be removed: then nobody is led. */
+static skein_status find_carrier(const skein_world *world, const sk_motion *motion, const sk_collider **collider, double *offset,
+                                 skein_error *error) {
+    size_t meshes;
+    *collider = NULL;
+    if (!motion->type->carrier) return SKEIN_OK;
+    const char *name = motion->type->carrier(motion->params, offset);
+    *collider = carrier_named(world, name, &meshes);
+    if (*collider ? (*collider)->type->surface != NULL : motion->seats.data && !meshes) return SKEIN_OK;
+    if (!name[0])
+        return sk_fail(error, SKEIN_ERROR_NAME, "to", "expected the name of a mesh collider: there are %zu", meshes);
+    if (!*collider)
+        return sk_fail(error, SKEIN_ERROR_NAME, "to", "there is no collider of the name '%s' (to a body leads a constraint \"attachment\")", name);
+    return sk_fail(error, SKEIN_ERROR_VALUE, "to", "the collider '%s' is a %s, which has no triangles: take one of type \"mesh\"", name,
+                   (*collider)->type->kind.name);
+}
+
+static skein_status refuse_frame(const sk_motion *motion, skein_error *error) {
+    const sk_motion_common *common = motion->common;
+    const char *field = common->colliders[0] ? "colliders" : common->inertia < 1 ? "inertia" : common->jump < SK_UNBOUNDED ? "jump"
+                        : common->jump_turn < 180 ? "jump_turn" : common->jump_times[0] ? "jump_times" : NULL;
+    if (!field) return SKEIN_OK;
+    return sk_fail(error, SKEIN_ERROR_VALUE, field, "a motion of type \"%s\" is no moving frame: give this to the one that leads the collider",
+                   motion->type->kind.name);
+}
+
+static void place_seat(const sk_seats *seats, size_t i, double time, double place[3]) {
+    sk_collider_seat_place(seats->collider, &seats->data[i], time, place);
+}
+
+static bool have_seats(const sk_motion *motion, const sk_collider *collider, double offset) {
+    const sk_seats *seats = &motion->seats;
+    return seats->data && seats->collider == collider && seats->count == motion->count && !(seats->offset < offset) &&
+           !(seats->offset > offset) && !(seats->start < motion->common->start) && !(seats->start > motion->common->start) &&
+           !memcmp(seats->particle, motion->particle, motion->count * sizeof *seats->particle);
+}
+
+/* Seats are kept as long as nothing is said anew: a collider that has been moved since by its fields carries them along. */
+static skein_status find_seats(skein_world *world, sk_motion *motion, skein_error *error) {
+    sk_allocator *allocator = &world->allocator;
+    const sk_collider *collider;
+    double offset = 0;
+    skein_status status = find_carrier(world, motion, &collider, &offset, error);
+    if (status || !motion->type->carrier) return status;
+    if (refuse_frame(motion, error)) return error->status;
+    if (have_seats(motion, collider, offset)) return SKEIN_OK;
+    motion->seats.place = NULL;
+    motion->seats.collider = collider;
+    if (!collider) return SKEIN_OK;
+    sk_release(allocator, motion->seats.data);
+    sk_release(allocator, motion->seats.particle);
+    motion->seats = (sk_seats){NULL, collider, sk_allocate(allocator, (motion->count + 1) * sizeof *motion->seats.data),
+                               sk_allocate(allocator, (motion->count + 1) * sizeof *motion->seats.particle), motion->count,
+                               motion->common->start, offset};
+    if (!motion->seats.data || !motion->seats.particle) {
+        motion->seats.count = 0;
+        return sk_fail_memory(error, "the seats of a motion");
+    }
+    for (size_t i = 0; i < motion->count; i++) {
+        sk_vec3 built = world->particles.built[motion->particle[i]];
+        const double at[3] = {(double)built.x, (double)built.y, (double)built.z};
+        motion->seats.particle[i] = motion->particle[i];
+        sk_collider_find_seat(collider, motion->common->start, at, offset, &motion->seats.data[i]);
+    }
+    motion->seats.place = place_seat;
+    return SKEIN_OK;
+}
+
 skein_status sk_world_check_motion(skein_world *world, const sk_motion *motion, skein_error *error) {
     const sk_body *body;
     const char *on = motion->common->on, *pins = motion->common->pins;
@@ -166,13 +251,17 @@ skein_status sk_world_check_motion(skein_world *world, const sk_motion *motion, 
     sk_motion asked = *motion;
     asked.knows_colliders = false;
     if (!status) status = sk_motion_check_jumps(motion->common, error);
+    const sk_collider *carrier;
+    double offset;
+    if (!status) status = find_carrier(world, motion, &carrier, &offset, error);
+    if (!status && motion->type->carrier) status = refuse_frame(motion, error);
     if (!status) status = find_colliders(world, &asked, error);
     if (!status && sk_motion_read_map(motion->common, NULL, 0) < 0)
         status = sk_fail(error, SKEIN_ERROR_VALUE, "map", "expected numbers, 0 or more");
     if (status || !pins[0] || (on[0] && !body)) return status;
     size_t first = body ? body->first_particle : 0, count = body ? body->particle_count : world->particles.count;
     bool *chosen = sk_allocate(&world->allocator, count * sizeof *chosen);
-    status = chosen ? choose(world, body, first, count, pins, chosen, error) : sk_fail_memory(error, "the pins of a motion");
+    status = chosen ? sk_world_choose(world, body, first, count, pins, chosen, error) : sk_fail_memory(error, "the pins of a motion");
     sk_release(&world->allocator, chosen);
     return status;
 }
@@ -202,7 +291,7 @@ static skein_status find_particles(skein_world *world, sk_motion *motion, skein_
     bool *chosen = sk_allocate(&world->allocator, count * sizeof *chosen);
     skein_status status = chosen ? SKEIN_OK : sk_fail_memory(error, "the pins of a motion");
     if (!status) memset(chosen, !pins[0], count * sizeof *chosen);
-    if (!status && pins[0]) status = choose(world, body, first, count, pins, chosen, error);
+    if (!status && pins[0]) status = sk_world_choose(world, body, first, count, pins, chosen, error);
     if (!status && !list_particles(&world->allocator, motion, first, count, chosen))
         status = sk_fail_memory(error, "the pins of a motion");
     sk_release(&world->allocator, chosen);
@@ -216,18 +305,30 @@ static skein_status find_particles(skein_world *world, sk_motion *motion, skein_
     }
     if (!status) status = find_colliders(world, motion, error);
     if (!status) status = find_map(world, motion, error);
+    if (!status) status = find_seats(world, motion, error);
     if (!status && !held && count && motion->common->enabled && !motion->common->colliders[0] && !sk_world_has_leashes(world))
         sk_world_log(world, SKEIN_LOG_WARNING, "%s: none of the particles that it is to lead is pinned: pin them",
                      motion->label);
     return status;
 }
 
+/* Whether it is one of the fields that are looked at here. */
+static bool names_field(const char *where) {
+    static const char *const fields[] = {"pins", "to", "colliders", "inertia", "jump", "jump_turn", "jump_times"};
+    for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
+        if (!strcmp(where, fields[i])) return true;
+    return false;
+}
+
 skein_status sk_world_find_pins(skein_world *world, skein_error *error) {
     if (!world->motions_stale) return SKEIN_OK;
     for (size_t i = 0; i < world->motions.count; i++) {
         skein_status status = find_particles(world, world->motions.data[i], error);
-        if (status && !strcmp(error->where, "pins")) snprintf(error->where, sizeof error->where, "motions.%zu.pins", i);
-        if (status) return status;
+        if (!status) continue;
+        char field[sizeof error->where];
+        snprintf(field, sizeof field, "%s", error->where);
+        if (names_field(field)) snprintf(error->where, sizeof error->where, "motions.%zu.%.40s", i, field);
+        return status;
     }
     sk_release(&world->allocator, world->led_at);
     size_t places = world->motions.count ? world->particles.count : 0;
@@ -246,6 +347,7 @@ skein_status sk_world_find_pins(skein_world *world, skein_error *error) {
 static void lead(skein_world *world, const sk_motion *motion, double time) {
     double since = time - motion->common->start;
     if (since < 0) since = 0;
+    if (motion->type->carrier && !motion->seats.place) return;
     for (size_t i = 0; i < motion->count; i++) {
         uint32_t particle = motion->particle[i];
         if (!world->particles.pinned[particle] && !world->leashes.any) continue;

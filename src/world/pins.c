@@ -89,6 +89,8 @@ skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error)
     const sk_particles *all = &world->particles;
     skein_status status = sk_world_carry(world, dt, error);
     if (status) return status;
+    for (size_t i = 0; i < world->rules.colliders.count; i++) // before pins: some sit on them
+        sk_collider_begin(world->rules.colliders.data[i], world->time, dt);
     status = sk_world_set_leashes(world, dt, error);
     if (status) return status;
     if (!sk_world_lead(world, world->time + dt)) return sk_fail_memory(error, "places for pins");
@@ -100,8 +102,6 @@ skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error)
         world->pins.count = 0;
         return status;
     }
-    for (size_t i = 0; i < world->rules.colliders.count; i++)
-        sk_collider_begin(world->rules.colliders.data[i], world->time, dt);
     if (world->device) return SKEIN_OK; // which runs no limits that look at pins
     for (size_t i = 0; i < world->rules.limits.count; i++)
         if (*world->rules.limits.data[i]->enabled)

@@ -135,6 +135,7 @@ static skein_status accept(skein_world *world, sk_object *object, const skein_fi
     bool own = sk_field_named(object->kind->fields, object->kind->field_count, field->name) == field;
     // of its common texts: a name or pins that are not there would only be missed by the next step
     bool selects = field->type == SKEIN_FIELD_TEXT && !own && strcmp(field->name, "name") != 0;
+    selects |= object->category == SKEIN_MOTION && object->as.motion->type->carrier;
     if (!status && object->category == SKEIN_MOTION && selects)
         status = sk_world_check_motion(world, object->as.motion, error);
     if (!status && object->making && own && field->type == SKEIN_FIELD_TEXT)

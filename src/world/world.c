@@ -207,14 +207,14 @@ skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk
     return SKEIN_OK;
 }
 
-skein_status sk_world_add_tethers(skein_world *world, sk_body *body, sk_limit_turn turn, size_t count, size_t anchors,
+skein_status sk_world_add_tethers(skein_world *world, sk_body *body, sk_limit_order order, size_t count, size_t anchors,
                                   const uint32_t *particles, const real *lengths, skein_error *error) {
     if (!SK_RESERVE(&world->allocator, &world->rules.limits, world->rules.limits.count + 1))
         return sk_fail_memory(error, "tethers");
     sk_limit *limit = sk_tethers_create(&world->allocator, count, anchors, particles, lengths);
     if (!limit) return sk_fail_memory(error, "tethers");
     limit->label = "tethers";
-    limit->turn = turn;
+    limit->order = order;
     limit->bound = &body->tether_bound;
     limit->enabled = &body->enabled;
     world->rules.limits.data[world->rules.limits.count++] = limit;

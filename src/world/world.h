@@ -231,7 +231,7 @@ skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk
                                      const char *label, sk_material material, bool measured, size_t count,
                                      const uint32_t *particles, const real *rest, const real *scale,
                                      skein_error *error);
-skein_status sk_world_add_tethers(skein_world *world, sk_body *body, sk_limit_turn turn, size_t count, size_t anchors,
+skein_status sk_world_add_tethers(skein_world *world, sk_body *body, sk_limit_order order, size_t count, size_t anchors,
                                   const uint32_t *particles, const real *lengths, skein_error *error);
 /* Says that the body's `count` particles are a grid of rows x columns: particle i has place place[i] (row x columns
  * + column; each its own), or i itself where `place` is NULL. Places may stay empty. */
@@ -348,7 +348,7 @@ skein_status sk_world_arrive(skein_world *world, bool done);
  * and the caller keeps the new one. */
 skein_status sk_world_set_device(skein_world *world, sk_device *device);
 /* Whether all that the plan does can be done where the world has a part of a run. */
-skein_status sk_world_check_share(const skein_world *world, skein_error *error);
+skein_status sk_world_check_share(skein_world *world, skein_error *error);
 /* The run context of the world's present state. */
 sk_run sk_world_run_context(skein_world *world);
 /* After a step: moves particles to slots near their neighbours', every so often (world/reorder.c). */

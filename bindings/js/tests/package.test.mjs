@@ -37,6 +37,12 @@ for (const name of ['flag', 'hanging', 'drape', 'birds', 'rope', 'jelly_ball', '
         world.free();
     });
 
+test('a page waits for no more than 500 KB', () => {
+    const size = (name) => execFileSync('gzip', ['-9c', new URL(`build/npm/skein/${name}`, root).pathname], {maxBuffer: 1e8}).length; // as tools/npm says it
+    assert.ok(size('skein.wasm') <= 500e3, `skein.wasm has ${size('skein.wasm')} bytes gzipped: CMakeLists.txt says what is made small`);
+    assert.ok(size('skein-threads.wasm') <= 512e3, `${size('skein-threads.wasm')}`);
+});
+
 test('threads in workers: the same bits, whoever has them', async () => {
     assert.ok(canHaveThreads());
     const program = `
@@ -286,6 +292,36 @@ test('surfaces, poses, springs and constraints', async () => {
     assert.ok(Math.abs(last.value - 3) < 1e-6 && steps.some((o) => o.name === 'sqrt' && Math.abs(o.value - 5) < 1e-6));
     [...c.gradient[0], ...c.gradient[1]].forEach((g, k) => assert.ok(Math.abs(g - last.derivatives[k]) < 1e-6));
     steps.forEach((o, i) => assert.ok(o.operands.every((at) => at < i)));
+});
+
+test('contacts: with colliders, and of surfaces with each other, but for those that are to be ignored', async () => {
+    const sheet = (name, y) => ({type: 'cloth', name, grid: [7, 7], size: [0.6, 0.6], position: [0, y, 0]});
+    const world = await World.fromScene({
+        skein: 1, bodies: [sheet('lower', 0.1), sheet('upper', 0.2)], forces: [{type: 'gravity'}, {type: 'contact', thickness: 0.01}],
+        colliders: [{type: 'sphere', centre: [9, 9, 9], radius: 1}, {type: 'plane'}]});
+    assert.deepEqual([world.contacts(), world.surfaceContacts()], [[], []]);
+    world.step(60);
+    const below = world.contacts(), between = world.surfaceContacts(), {positions} = world;
+    assert.ok(below.length > 20 && between.length > 20, `${below.length} ${between.length}`);
+    for (const {particle, collider, normal, gap} of below) {
+        assert.deepEqual([collider, particle < 49, normal], [1, true, [0, 1, 0]]);
+        assert.ok(Math.abs(gap - positions[3 * particle + 1]) < 1e-6);
+    }
+    for (const {rule, edges, particles, weights, normal, gap, thickness} of between) {
+        const first = edges ? 2 : 1, place = [0, 1, 2].map((k) => particles.reduce((sum, p, i) => sum + weights[i] * world.positions[3 * p + k], 0));
+        assert.equal(rule, 1);
+        assert.ok(Math.abs(thickness - 0.01) < 1e-6 && gap <= 1.001 * thickness, `${gap} ${thickness}`);
+        assert.ok(Math.abs(weights.slice(0, first).reduce((a, b) => a + b) - 1) < 1e-5);
+        assert.ok(Math.abs(Math.hypot(...place) - gap) < 1e-5 && Math.abs(Math.hypot(...normal) - 1) < 1e-5);
+        assert.ok(particles.slice(0, first).some((p) => p < 49) !== particles.slice(first).some((p) => p < 49), `${particles}`); // of the one sheet and the other
+    }
+    world.set('forces.1.ignore', 'lower:upper');
+    assert.equal(world.get('forces.1.ignore'), 'lower:upper');
+    world.step(30);
+    assert.deepEqual(world.surfaceContacts(), []);
+    assert.throws(() => world.set('forces.1.ignore', 7), SkeinError);
+    world.free();
+    assert.throws(() => world.contacts(), /freed/);
 });
 
 test('what things look like, and probes of colliders and fields', async () => {

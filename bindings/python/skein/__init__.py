@@ -15,7 +15,9 @@ docs/python.md walks through all of it.
 from . import _library, functions, kinds
 from ._errors import (FileFault, HandleFault, LimitFault, MemoryFault, MeshFault, NameFault, SkeinError, SyntaxFault,
                       ValueFault)
+from ._fits import Fit, fit
 from ._formula import Formula, formula
+from ._gradient import Gradient
 from ._objects import Body, Collider, Constraint, Force, Method, Motion, Object, ObjectList
 from ._pictures import Film, Image, film
 from ._scene import scenes
@@ -28,8 +30,8 @@ __version__ = f"{_number // 1000000}.{_number // 1000 % 1000}.{_number % 1000}"
 precision = _library.precision
 
 __all__ = [
-    "Body", "Collider", "Constraint", "DEFAULT_STEP", "Environment", "Environments", "FileFault", "Film", "Force",
-    "Formula", "HandleFault", "Image", "LimitFault", "MemoryFault", "MeshFault", "Method", "Motion", "NameFault", "Object",
-    "ObjectList", "SkeinError", "State", "SyntaxFault", "ValueFault", "World", "Worlds", "film", "formula", "functions",
+    "Body", "Collider", "Constraint", "DEFAULT_STEP", "Environment", "Environments", "FileFault", "Film", "Fit", "Force",
+    "Formula", "Gradient", "HandleFault", "Image", "LimitFault", "MemoryFault", "MeshFault", "Method", "Motion", "NameFault", "Object",
+    "ObjectList", "SkeinError", "State", "SyntaxFault", "ValueFault", "World", "Worlds", "film", "fit", "formula", "functions",
     "kinds", "precision", "scenes", "study",
 ]

@@ -1,7 +1,8 @@
 """The library by ctypes: where it is found, its structs and the calls of its header.
 
 Each function has the types of include/skein/skein.h. ctypes lets go of the interpreter's lock during every call. The
-library lies beside this file; SKEIN_LIBRARY names another (a folder or a file), a build in double precision, say.
+library lies beside this file, and in the folder double another of its kind, which SKEIN_PRECISION=double asks for;
+SKEIN_LIBRARY names another place (a folder or a file).
 """
 import ctypes as c
 import os
@@ -108,10 +109,30 @@ class ConstraintValue(c.Structure):
                 ("text", c.c_char_p)]
 
 
+class GradientState(c.Structure):
+    _fields_ = [("step", c.c_size_t), ("time", c.c_double), ("particle_count", c.c_size_t),
+                ("positions", c.POINTER(c.c_double)), ("velocities", c.POINTER(c.c_double)),
+                ("by_positions", c.POINTER(c.c_double)), ("by_velocities", c.POINTER(c.c_double))]
+
+
+MEASURE = c.CFUNCTYPE(c.c_double, c.c_void_p, c.POINTER(GradientState))
+
+
+class GradientDesc(c.Structure):
+    _fields_ = [("dt", c.c_double), ("steps", c.c_size_t), ("measure", MEASURE), ("user", c.c_void_p),
+                ("fields", c.POINTER(c.c_char_p)), ("most_bytes", c.c_size_t)]
+
+
+class GradientResult(c.Structure):
+    _fields_ = [("value", c.c_double), ("by_positions", c.c_void_p), ("by_velocities", c.c_void_p),
+                ("by_field", c.c_void_p)]
+
+
 STRUCTS = {"error": Error, "field": Field, "kind": Kind, "value": Value, "setting": Setting, "handle": Handle,
            "world_desc": WorldDesc, "mesh": Mesh, "track": Track, "view": View, "buffer": Buffer, "surface": Surface,
            "pose": Pose, "contact": Contact, "hit": Hit, "order": Order,
-           "constraint_value": ConstraintValue}
+           "constraint_value": ConstraintValue, "gradient_state": GradientState, "gradient_desc": GradientDesc,
+           "gradient_result": GradientResult}
 
 # ---- calls ----
 
@@ -145,6 +166,8 @@ CALLS = {
     "skein_object_at": (Handle, [world, c.c_int, size]),
     "skein_object_kind": (c.POINTER(Kind), [world, Handle]),
     "skein_handle_valid": (c.c_bool, [world, Handle]),
+    "skein_get_path": (status, [world, text, c.POINTER(Value)]),
+    "skein_gradient": (status, [world, c.POINTER(GradientDesc), c.POINTER(GradientResult)]),
     "skein_world_reset": (status, [world]),
     "skein_world_time": (c.c_double, [world]),
     "skein_world_time_set": (status, [world, c.c_double]),
@@ -183,6 +206,7 @@ CALLS = {
     "py_scene_build": (world, [c.c_void_p, c.POINTER(WorldDesc), REPORT, c.c_void_p]),
     "py_scene_settings": (c.c_void_p, [c.c_void_p]),
     "py_scene_text": (c.c_void_p, [c.c_void_p]),
+    "py_scene_text_anywhere": (c.c_void_p, [c.c_void_p]),
     "py_scene_note": (c.c_bool, [c.c_void_p, text, REPORT, c.c_void_p]),
     "py_scene_view": (c.c_void_p, [c.c_void_p]),
     "py_scene_free": (None, [c.c_void_p]),
@@ -199,6 +223,11 @@ CALLS = {
     "py_study_add": (c.c_bool, [c.c_void_p, text, REPORT, c.c_void_p]),
     "py_study_tables": (c.c_bool, [c.c_void_p, REPORT, c.c_void_p]),
     "py_study_free": (None, [c.c_void_p]),
+    "py_cache_open": (c.c_void_p, [text, c.POINTER(c.c_uint32), c.POINTER(c.c_double), error]),
+    "py_cache_read": (status, [c.c_void_p, c.c_uint32, array, error]),
+    "py_cache_close": (None, [c.c_void_p]),
+    "py_fit_struct_size": (size, [text]),
+    "py_version": (text, []),
     "py_struct_size": (size, [text]),
     "py_statistics_member": (text, [size, c.POINTER(size), c.POINTER(size), c.POINTER(c.c_bool)]),
 }
@@ -207,6 +236,11 @@ CALLS = {
 def _place():
     """Where libskein.so lies, in full, whatever folder the program goes to later."""
     given = os.path.abspath(os.environ.get("SKEIN_LIBRARY") or os.path.dirname(__file__))
+    wanted = os.environ.get("SKEIN_PRECISION") or "float"
+    if wanted not in ("float", "double"):
+        raise ImportError(f"SKEIN_PRECISION={wanted}: expected float or double")
+    if wanted == "double" and os.path.isdir(given) and os.path.exists(os.path.join(given, "double")):
+        given = os.path.join(given, "double")
     return os.path.join(given, "libskein.so") if os.path.isdir(given) else given
 
 
@@ -236,6 +270,8 @@ lib = _load()
 # The one that is there says how wide numbers in views are.
 try:
     world_create, real, precision = lib.skein_world_create_float, np.dtype(np.float32), "float"
+    if os.environ.get("SKEIN_PRECISION") == "double":
+        raise ImportError(f"{path}: it computes in float, and SKEIN_PRECISION asks for double, which was not built here")
 except AttributeError:
     world_create, real, precision = lib.skein_world_create_double, np.dtype(np.float64), "double"
 world_create.restype, world_create.argtypes = world, [c.POINTER(WorldDesc), error]

@@ -247,6 +247,17 @@ class World:
         """Goes on by `count` frames of its scene."""
         self.step(count=count * self.steps_per_frame)
 
+    def gradient(self, steps, measure, fields=(), *, dt=None, most_bytes=0):
+        """The derivatives of a number that a run of so many steps from here would have, by where particles begin, how fast,
+        and by fields (paths: "bodies.0.stretch.stiffness"); the world stays as it is. At the cost of some four runs.
+
+        measure(step, positions, velocities) is asked for each state, from the last (step == steps) to the first (0), and
+        returns None, or what that state adds to the number and its derivatives: value, by_positions[, by_velocities],
+        n x 3. It must not step or change this world. Needs double precision: SKEIN_PRECISION=double before skein is
+        imported; docs/gradients.md has what can be differentiated. most_bytes: for states on the way; 0, 256 MB."""
+        from ._gradient import gradient
+        return gradient(self, steps, measure, fields, self.dt if dt is None else dt, most_bytes)
+
     def reset(self):
         """Positions as they were built; velocities, time and counters zero. Fields stay as they are now."""
         self._call(lib.skein_world_reset)

@@ -27,11 +27,12 @@ class Notebooks(unittest.TestCase):
         return found
 
     def test_first_cloth(self):
-        found = self.run_in_scratch("first_cloth.ipynb", 6)
+        found = self.run_in_scratch("first_cloth.ipynb", 7)
         self.assertLess(found["lowest"][-1], -0.1)
         self.assertLess(found["rest"].max_stretch, 0.01)
         self.assertGreater(found["soft"].max_stretch, 0.1)
         self.assertEqual(found["before"], found["world"].hash())
+        self.assertAlmostEqual(found["fit"].found["bodies.sheet.stretch.stiffness"], 100, delta=1)
 
     def test_nine_methods(self):
         found = self.run_in_scratch("nine_methods.ipynb", 1)

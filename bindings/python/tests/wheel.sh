@@ -25,10 +25,10 @@ PIP_NO_INDEX=1 "$work/env/bin/pip" install -q --no-index --disable-pip-version-c
 cd "$work" || exit 2
 here=$("$work/env/bin/python" -c 'import os, skein; print(os.path.dirname(skein.__file__))') || fault "it cannot be imported"
 case $here in "$work"/env/*) ;; *) fault "another package was imported: $here" ;; esac
-for library in $(ldd "$here/libskein.so" | awk '/=>/ && $3 ~ "^/" { print $3 }'); do
+for library in $(ldd "$here/libskein.so" "$here/skein_fit.so" | awk '/=>/ && $3 ~ "^/" { print $3 }'); do
     case $library in
     "$here"/* | */libc.so* | */libm.so* | */libdl.so* | */libpthread.so*) ;;
-    *) fault "libskein.so asks for $library" ;;
+    *) fault "it asks for $library" ;;
     esac
 done
 cat >use.py <<'PYTHON'
@@ -37,7 +37,7 @@ import skein
 
 assert "drape" in skein.scenes() and "elephant" not in skein.scenes(), skein.scenes()
 folder = os.path.dirname(skein.__file__)
-for name in ("__init__.pyi", "py.typed", "libjansson.so.4"):
+for name in ("__init__.pyi", "py.typed", "libjansson.so.4", "libjansson.copyright", "skein_fit.so", "liblbfgs.copyright"):
     assert os.path.exists(os.path.join(folder, name)), name
 for name in skein.scenes():
     skein.World.from_scene(name).close()
@@ -59,7 +59,7 @@ done
 
 source=$(echo "$wheel" | sed 's/-py3-none.*/.tar.gz/')
 tar -tzf "$source" >list || fault "no source distribution"
-for file in setup.py skein/__init__.py source/CMakeLists.txt source/src/catalogue.c source/bindings/python/exports.c; do
+for file in setup.py skein/__init__.py source/CMakeLists.txt source/src/catalogue.c source/bindings/python/exports.c source/bindings/python/fit.map source/fit/fit.c; do
     grep -q "^skein-[^/]*/$file\$" list || fault "the source distribution lacks $file"
 done
 ! grep '[.]so' list || fault "the source distribution has binaries"

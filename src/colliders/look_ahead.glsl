@@ -5,7 +5,7 @@ vec4 avoid@(vec3 x, vec3 v) {
     vec3 sum = vec3(0);
     for (int look = 1; look <= 2; look++) {
         vec4 probed = probe@(x + 0.5 * float(look) * op@[0].x * v);
-        if (probed.w < clearance) sum += op@[0].w * op@[0].z * min(1 - probed.w / clearance, 2.0) * probed.xyz;
+        if (probed.w < clearance) sum += kept_off(probed.xyz, probed.w, clearance, op@[0].w * op@[0].z);
     }
     return vec4(sum, 0);
 }
