@@ -4,7 +4,7 @@
 .PHONY: all install demo test test-elsewhere verify-blender npm wheel playground test-web fuzz setup gallery site emit names debug format clean help
 
 all: ## (or plain make) build the command: build/skein
-	@tools/build release skein
+	@tools/build release skein_whole
 
 install: ## build and install it all: PREFIX=/usr/local, DESTDIR=
 	@PREFIX='$(PREFIX)' tools/install

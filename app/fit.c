@@ -228,8 +228,8 @@ static int run_fit(fitting *f, const app_arguments *arguments) {
     skein_error error = {SKEIN_ERROR_MEMORY, "", "out of memory"};
     const fit_content *fit = io_module_load("fit", &error);
     if (!fit) {
-        fprintf(stderr, "skein fit: it takes a module that this skein was built without, for liblbfgs was missing: "
-                        "'tools/setup build' installs it, then build again (%s: %s)\n", error.where, error.message);
+        fprintf(stderr, "skein fit: it takes a module that this skein was built without: 'tools/setup build' installs what it takes "
+                        "(liblbfgs), and 'make' builds it (%s: %s)\n", error.where, error.message);
         return EXIT_FAILURE_RUN;
     }
     char *text = text_of(&f->loaded);

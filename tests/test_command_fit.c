@@ -115,7 +115,7 @@ static void without_its_module_it_says_what_to_do(void **state) {
     make_target("small", 4, 3, symplectic);
     outcome o = SKEIN("fit", in_folder("small.json"), "--target", in_folder("small/sheet.pc2"), "--vary", "forces.1.rate");
     assert_status(o, 1);
-    assert_contains(o.err, "liblbfgs was missing: 'tools/setup build' installs it");
+    assert_contains(o.err, "'tools/setup build' installs what it takes (liblbfgs), and 'make' builds it");
     outcome_free(&o);
 }
 

@@ -8,8 +8,15 @@
 
 #include "colliders/trimesh.h"
 
-enum { MOST_CELLS = 48 }; /* along the longest axis */
+enum { LEAST_CELLS = 4, MOST_CELLS = 48, CELLS_A_TRIANGLE = 64 }; /* along the longest axis; and of all of them */
 enum { UNKNOWN, OUTSIDE, INSIDE, NEAR };
+
+/* Cells along the longest axis: a few triangles are asked sooner than many cells are made. */
+static int cells_for(size_t triangles) {
+    int along = LEAST_CELLS;
+    while (along < MOST_CELLS && (size_t)(along * along) * (size_t)along < CELLS_A_TRIANGLE * triangles) along++;
+    return along;
+}
 
 static size_t place_of(const sk_trimesh *m, const int at[3]) {
     return ((size_t)at[2] * (size_t)m->cells[1] + (size_t)at[1]) * (size_t)m->cells[0] + (size_t)at[0];
@@ -74,9 +81,10 @@ bool sk_trimesh_divide(sk_trimesh *m) {
         far = (real)fmax((double)far, fmax(fabs((double)box->low[k]), fabs((double)box->high[k])));
     }
     if (!(size > 0)) return true;
+    const int most = cells_for(m->triangle_count);
     for (int k = 0; k < 3; k++) {
         real along = box->high[k] - box->low[k];
-        m->cells[k] = 1 + (int)((real)(MOST_CELLS - 1) * (along / size));
+        m->cells[k] = 1 + (int)((real)(most - 1) * (along / size));
         m->cell_low[k] = box->low[k], m->per_cell[k] = along > 0 ? (real)m->cells[k] / along : 0;
         if (!(along > 0) || !(m->per_cell[k] <= SK_REAL_MAX)) return true; // flat: there is no inside
         count *= (size_t)m->cells[k];
