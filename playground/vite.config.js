@@ -5,6 +5,8 @@ import {readFileSync} from 'node:fs';
 
 import {defineConfig} from 'vite';
 
+import {glsl} from './glsl.mjs';
+
 const at = (path) => new URL(path, import.meta.url).pathname;
 
 /* The service worker, with the names of all files and a name of its own for each build. */
@@ -22,7 +24,7 @@ export default defineConfig({
     base: './',
     resolve: {alias: {skein: at('../build/npm/skein/skein.js')}},
     server: {fs: {allow: [at('..')]}},
-    worker: {format: 'es'},
+    worker: {format: 'es', plugins: () => [glsl]},
     plugins: [offline],
     build: {
         outDir: at('../build/playground'), emptyOutDir: true, target: 'es2022', chunkSizeWarningLimit: 900, assetsInlineLimit: 0,

@@ -292,6 +292,10 @@ export class World {
     get time() {
         return this.#wasm.js_time(this.#world);
     }
+    /* Sets the clock alone: with positions and velocities from elsewhere it takes a world there. */
+    set time(seconds) {
+        this.#check(this.#wasm.js_time_set(this.#world, seconds));
+    }
     get frame() {
         return Math.round(this.time * this.settings.fps);
     }

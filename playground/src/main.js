@@ -7,6 +7,7 @@ import {formulaEditor} from './formula.js';
 import {hands} from './hands.js';
 import {openLesson} from './lesson.js';
 import {MOST, read, write} from './link.js';
+import {offerCard} from './oncard.js';
 import {Picture} from './picture.js';
 import {Plot} from './plot.js';
 import {filesOf, scenes} from './scenes.js';
@@ -70,6 +71,7 @@ async function build(frame = 0, events = []) {
     $('hawk').setAttribute('aria-pressed', 'false');
     fillPanel();
     measure();
+    await onCard.begun(world, events);
     await beside.restart();
     return world;
 }
@@ -231,7 +233,7 @@ async function tellCommand() {
         told = {done: state.done, serial: state.serial, branch: state.branch, events: state.done ? await simulation.call('events') : []};
     telling = false;
     const line = command(told.events);
-    $('hash-note').textContent = line ? 'The same hash:' : 'A hand was at work: the link has it, and gives the same hash.';
+    $('hash-note').textContent = line ? 'The same hash:' : onCard.words(told.events, state.onCard) ?? 'A hand was at work: the link has it, and gives the same hash.';
     $('command').textContent = line ?? '';
     $('command').hidden = $('copy-command').hidden = !line;
 }
@@ -347,6 +349,7 @@ function togglePanel() {
     $('panel-toggle').setAttribute('aria-expanded', String(!$('panel').hidden));
 }
 
+const onCard = offerCard({button: $('card'), simulation, remember, tell, notice});
 const beside = compare({app, stage: $('other-stage'), choice: $('compare'), mainPicture: () => picture, sets, notice});
 
 async function openAddress() {

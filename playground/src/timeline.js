@@ -1,5 +1,5 @@
 // What was done to a world and where it has been, so that one can go back and on again: hands and changes by the frame
-// before whose steps they came, and snapshots now and then. Going to a frame takes the last snapshot before it and does
+// before whose steps they came, and snapshots now and then. That steps go to the graphics card from now on is such a change. Going to a frame takes the last snapshot before it and does
 // again what followed, which gives the same bits. A hand in the past begins a branch; the old way on is kept beside it.
 const MOST_BRANCHES = 6;
 
@@ -9,7 +9,9 @@ export class Timeline {
     #next = 0; // the first event that is not done to the world as it stands
     #every = 10;
     #holding = false;
+    #onCard = false;
     #most;
+    card = null; // what steps there, see card.js; without one the processor does it
 
     /* Snapshots take at most so many bytes; where they would take more, every second one goes. */
     constructor(world, mostBytes = 128e6) {
@@ -35,6 +37,11 @@ export class Timeline {
     get bytes() {
         return this.#ways.reduce((sum, {kept}) => sum + kept.reduce((all, {bytes}) => all + bytes.length, 0), 0);
     }
+    /* Why the steps that are to be on the card are not, or '' where they are; null: they are not to be. */
+    get onCard() {
+        if (!this.#onCard) return null;
+        return this.card?.why(this.world) ?? 'there is none here';
+    }
     /* What was done up to here. */
     get events() {
         return this.#now.events.slice(0, this.#next);
@@ -42,7 +49,7 @@ export class Timeline {
 
     #keep() {
         const way = this.#now;
-        way.kept.push({frame: this.frame, bytes: this.world.snapshot(), events: this.#next});
+        way.kept.push({frame: this.frame, bytes: this.world.snapshot(), events: this.#next, onCard: this.#onCard});
         const bytes = this.#ways.reduce((sum, {kept}) => sum + kept.length, 0) * way.kept[0].bytes.length;
         if (bytes <= this.#most) return;
         this.#every *= 2;
@@ -71,7 +78,9 @@ export class Timeline {
     }
     #do([, call, ...args]) {
         const {world} = this;
+        this.card?.forget();
         if (call === 'pull') world.pull(args[0], args.slice(1));
+        else if (call === 'card') this.#onCard = args[0];
         else if (['set', 'pin', 'release', 'letGo'].includes(call)) world[call](...args);
         else throw new TypeError(`nothing is called ${call}`);
         this.#holding = call === 'pull' || (this.#holding && call !== 'letGo');
@@ -81,7 +90,8 @@ export class Timeline {
     advance() {
         const {events} = this.#now, {frame} = this;
         for (; this.#next < events.length && events[this.#next][0] <= frame; this.#next++) this.#do(events[this.#next]);
-        this.world.step(1);
+        if (this.onCard === '' && !this.#holding) this.card.step(this.world); // (a hand leads on the processor)
+        else this.world.step(1);
         const now = this.frame;
         if (now <= this.#now.end) return;
         this.#now.end = now;
@@ -99,6 +109,8 @@ export class Timeline {
         this.world.letGo();
         this.world.restore(kept.bytes);
         this.#holding = false;
+        this.#onCard = kept.onCard;
+        this.card?.forget();
         this.#next = kept.events;
     }
     #goOn(frame, each = null) {
@@ -132,6 +144,7 @@ export class Timeline {
     }
     /* What is set before the first step belongs to the beginning. */
     begin() {
+        this.card?.forget();
         this.#now.kept = [];
         this.#keep();
     }

@@ -79,7 +79,7 @@ function state() {
         serial, surfaces, positions: world.positions.slice(), velocities: drawn.flock ? world.velocities.slice() : null,
         poses: Array.from({length: drawn.colliders}, (_, i) => world.pose(i)), arrows: arrows(),
         frame: world.frame, time: world.time, hash: world.hash(), spent: spent.splice(0), playing,
-        end: timeline.end, branch: timeline.branch, branches: timeline.branches, done: timeline.events.length,
+        onCard: timeline.onCard, end: timeline.end, branch: timeline.branch, branches: timeline.branches, done: timeline.events.length,
     };
 }
 
@@ -94,6 +94,34 @@ function show() {
     postMessage({state: sent}, arrays.filter(Boolean).map((a) => a.buffer));
     waits = true;
     stale = false;
+}
+
+/* ---- the graphics card ---- */
+
+let card = null; // asked for by the first who wants it
+async function theCard() {
+    const {Card} = await import('./card.js');
+    return (card ??= new Card());
+}
+
+/* A frame from here by both: what they take, in ms, and how far apart they are then; the world is as it was. */
+function bothWays() {
+    if (timeline.onCard !== '') return null;
+    const before = world.snapshot(), ends = [], ms = [];
+    for (const step of [() => world.step(1), () => card.step(world)]) {
+        const times = [], begun = performance.now();
+        while (times.length < 5 && (times.length < 2 || performance.now() - begun < 500)) {
+            world.restore(before);
+            const start = performance.now();
+            step();
+            times.push(performance.now() - start);
+        }
+        ms.push(Math.min(...times));
+        ends.push([world.positions.slice(), world.velocities.slice()]);
+    }
+    world.restore(before);
+    const [apart, faster] = [0, 1].map((k) => ends[0][k].reduce((most, a, i) => Math.max(most, Math.abs(a - ends[1][k][i])), 0));
+    return {name: card.name, processor: ms[0], card: ms[1], apart, faster, ends};
 }
 
 /* ---- time ---- */
@@ -143,6 +171,7 @@ const calls = {
         const next = text ? await World.fromScene(text, {sets, files, path}) : await World.fromMesh(path, files, {sets});
         const line = new Timeline(next); // what fails leaves the old world
         try {
+            if (events.some((e) => e[1] === 'card')) line.card = await theCard().catch(() => null);
             line.replay(events, frame);
         } catch (error) {
             next.free();
@@ -188,6 +217,26 @@ const calls = {
         return Object.fromEntries(['method', 'body', 'constraint', 'force', 'collider', 'motion'].map((c) => [c, world.objects(c)]));
     },
     events: () => timeline.events,
+    /* Steps from now on are on the card, or not; what came of a frame by both. Throws in words where there is no card, or where it
+     * has not what this scene needs. */
+    async card(on) {
+        const mine = timeline;
+        if (on) {
+            mine.card = await theCard();
+            const why = mine.card.why(mine.world);
+            if (why) throw new Error(why);
+        }
+        mine.act('card', on);
+        show();
+        return on && mine === timeline ? calls.bothWays() : null;
+    },
+    bothWays() {
+        const found = bothWays();
+        delete found?.ends;
+        return found;
+    },
+    /* The same for tests: every bird by both. */
+    bothEnds: () => bothWays()?.ends,
     where: () => ({frame: world.frame, events: timeline.events}),
     set(path, value) {
         if (world.frame || timeline.end) timeline.act('set', path, value);

@@ -13,6 +13,8 @@ layout(std430, binding = 6) restrict readonly buffer block_number { uint number[
 layout(std430, binding = 7) restrict readonly buffer block_slot_of { uint slot_of[]; };
 #endif
 layout(binding = 0) uniform samplerBuffer positions; // in order, with the packed direction
+#define cell_at(k) cell[k]
+#define position_at(k) texelFetch(positions, k)
 
 uint slot_of_particle(uint particle) {
 #if IDENTITY

@@ -1,4 +1,5 @@
-// A walk over a particle's neighbours in the grid.
+// A walk over a particle's neighbours in the grid, which it reads by cell_at() and position_at(): neighbours.glsl has them.
+// Like flocking.glsl it is GLSL ES 3.00, too.
 #ifdef MOST@
 // The nearest neighbours so far, nearest first; of equally near ones, those found first.
 float near_square@[MOST@];
@@ -22,9 +23,9 @@ void keep@(float square, uint other) {
 // group diverge as little as possible.
 vec3 walk@(uint place, vec3 p, vec3 v) {
     float speed = dot(v, v);
-    sum@ sum = start@(speed > 0 ? v * inversesqrt(speed) : vec3(0));
+    sum@ sum = start@(speed > 0.0 ? v * inversesqrt(speed) : vec3(0.0));
 #if BY_PLACE
-    if (place >= cell[cell_count]) return finish@(sum, op@[0].w); // it is nowhere
+    if (place >= cell_at(cell_count)) return finish@(sum, op@[0].w); // it is nowhere
 #else
     if (!(dot(p, p) <= 1e38)) return finish@(sum, op@[0].w); // it is nowhere
     place = 0xffffffffu;                                      // and not among those that it looks at
@@ -38,23 +39,23 @@ vec3 walk@(uint place, vec3 p, vec3 v) {
     int cy = clamped((p.y - origin.y) * per_size, cells_y), cz = clamped((p.z - origin.z) * per_size, cells_z);
     for (int z = max(cz - 1, 0); z <= min(cz + 1, cells_z - 1); z++) {
         // how far the row of cells is off at least
-        float off_z = z == cz ? 0 : z < cz ? p.z - (origin.z + float(cz) * size) : origin.z + float(z) * size - p.z;
+        float off_z = z == cz ? 0.0 : z < cz ? p.z - (origin.z + float(cz) * size) : origin.z + float(z) * size - p.z;
         off_z = max(off_z - slack, 0.0);
         for (int y = max(cy - 1, 0); y <= min(cy + 1, cells_y - 1); y++) {
-            float off_y = y == cy ? 0 : y < cy ? p.y - (origin.y + float(cy) * size) : origin.y + float(y) * size - p.y;
+            float off_y = y == cy ? 0.0 : y < cy ? p.y - (origin.y + float(cy) * size) : origin.y + float(y) * size - p.y;
             off_y = max(off_y - slack, 0.0);
             float rest = square - off_z * off_z - off_y * off_y;
-            if (rest < 0) continue;
+            if (rest < 0.0) continue;
             float half_width = sqrt(rest) + slack;
             int line = (z * cells_y + y) * cells_x;
-            uint at = cell[line + clamped((p.x - half_width - origin.x) * per_size_x, cells_x)];
-            uint end = cell[line + clamped((p.x + half_width - origin.x) * per_size_x, cells_x) + 1];
+            uint at = cell_at(line + clamped((p.x - half_width - origin.x) * per_size_x, cells_x));
+            uint end = cell_at(line + clamped((p.x + half_width - origin.x) * per_size_x, cells_x) + 1);
             while (at < end) {
                 uint first = at & ~3u, hits = 0u; // four at a time; those before and behind are cut off below
                 for (uint four = 0u; four < 32u && first + four < end; four += 4u) {
                     int k = int(first + four);
-                    vec3 a = texelFetch(positions, k).xyz - p, b = texelFetch(positions, k + 1).xyz - p;
-                    vec3 c = texelFetch(positions, k + 2).xyz - p, d = texelFetch(positions, k + 3).xyz - p;
+                    vec3 a = position_at(k).xyz - p, b = position_at(k + 1).xyz - p;
+                    vec3 c = position_at(k + 2).xyz - p, d = position_at(k + 3).xyz - p;
                     uint some = uint(dot(a, a) < square) | uint(dot(b, b) < square) << 1 |
                                 uint(dot(c, c) < square) << 2 | uint(dot(d, d) < square) << 3;
                     hits |= some << four;
@@ -66,7 +67,7 @@ vec3 walk@(uint place, vec3 p, vec3 v) {
                     hits &= hits - 1u;
                     uint other = first + uint(bit);
                     if (other == place) continue;
-                    vec4 q = texelFetch(positions, int(other));
+                    vec4 q = position_at(int(other));
                     vec3 apart = p - q.xyz;
 #ifdef MOST@
                     if (sees@(sum, apart, dot(apart, apart))) keep@(dot(apart, apart), other);
@@ -83,7 +84,7 @@ vec3 walk@(uint place, vec3 p, vec3 v) {
     }
 #ifdef MOST@
     for (int k = 0; k < MOST@ && near_place@[k] != 0xffffffffu; k++) {
-        vec4 q = texelFetch(positions, int(near_place@[k]));
+        vec4 q = position_at(int(near_place@[k]));
         vec3 apart = p - q.xyz;
         meet@(sum, apart, dot(apart, apart), unpacked(q.w));
     }

@@ -140,6 +140,16 @@ test('the state: views, copies, snapshots', async () => {
     assert.equal(measured.stateHash, hash); // the last member: all others lie where layout.js says
     assert.equal(measured.particles, world.count);
     assert.ok(Math.abs(measured.time - world.time) < 1e-12 && measured.kineticEnergy > 0);
+    // by its numbers alone: the clock has no other way there
+    const [now, x, v] = [world.time, world.positions.slice(), world.velocities.slice()];
+    world.restore(kept);
+    world.setPositions(x);
+    world.setVelocities(v);
+    world.time = now;
+    assert.equal(world.time, now);
+    assert.equal(world.frame, 30);
+    assert.equal(world.hash(), hash);
+    assert.throws(() => (world.time = -1), SkeinError);
     world.reset();
     assert.equal(world.time, 0);
 });
