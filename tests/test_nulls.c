@@ -4,6 +4,7 @@
 
 #include <skein/attach.h>
 #include <skein/compiled.h>
+#include <skein/cut.h>
 #include <skein/formula.h>
 #include <skein/kinds.h>
 #include <skein/gradient.h>
@@ -234,6 +235,11 @@ static void reading_and_writing(void **state) {
     REFUSES("particles", skein_attachments_find(s.world, NULL, 1, s.cloth, &(uint32_t){0}));
     REFUSES("out", skein_attachments_find(s.world, &(uint32_t){0}, 1, s.cloth, NULL));
     OK(s.world, skein_attachments_find(s.world, NULL, 0, s.cloth, NULL));
+    REFUSES("blade", skein_cut(s.world, s.cloth, NULL, &count));
+    OK(s.world, skein_cut(s.world, s.cloth, (const double[3][3]){{9, 9, 9}, {9, 9, 8}, {9, 8, 9}}, NULL));
+    REFUSES("faces", skein_cut_faces(s.world, s.cloth, NULL, 1));
+    OK(s.world, skein_cut_faces(s.world, s.cloth, NULL, 0));
+    REFUSES("cuts", skein_body_cuts(s.world, s.cloth, NULL));
     OK(s.world, skein_body_elements(s.world, s.cloth, SKEIN_EDGES, NULL, 0, &count));
     OK(s.world, skein_body_elements(s.world, s.cloth, SKEIN_HINGES, NULL, 100, &count));
     REFUSES("corner_uv", skein_body_uv_set(s.world, s.cloth, NULL, 16));
@@ -256,6 +262,10 @@ static void reading_and_writing(void **state) {
     REFUSES_ALL(skein_body_elements(NULL, s.cloth, SKEIN_EDGES, NULL, 0, &count));
     REFUSES_ALL(skein_body_select(NULL, s.cloth, "0", NULL, 0, &count));
     REFUSES_ALL(skein_attachments_find(NULL, NULL, 0, s.cloth, NULL));
+    REFUSES_ALL(skein_cut(NULL, s.cloth, NULL, NULL));
+    REFUSES_ALL(skein_cut_faces(NULL, s.cloth, NULL, 0));
+    REFUSES_ALL(skein_cut_mend(NULL, s.cloth));
+    REFUSES_ALL(skein_body_cuts(NULL, s.cloth, &(skein_cuts){NULL, 0, 0}));
     REFUSES_ALL(skein_body_uv_set(NULL, s.cloth, uv, 1));
     REFUSES_ALL(skein_body_vertices_copy(NULL, s.cloth, 1, skein_doubles(xyz, 0), skein_doubles(NULL, 0)));
     REFUSES_ALL(skein_collider_pose(NULL, s.ball, &pose));
@@ -471,7 +481,7 @@ static void every_function_was_called(void **state) {
         "skein_world_create", // whose pointers may both be NULL
     };
     static const char *const headers[] = {"include/skein/skein.h", "include/skein/record.h", "include/skein/formula.h",
-                                          "include/skein/kinds.h", "include/skein/gradient.h"};
+                                          "include/skein/kinds.h", "include/skein/gradient.h", "include/skein/cut.h"};
     char *own = read_text("tests/test_nulls.c");
     blank_comments(own);
     size_t found = 0, missing = 0;

@@ -35,14 +35,17 @@ skein_status skein_body_select(skein_world *world, skein_handle handle, const ch
 /* The surface of a body where it is now, as a mesh; and which particle each of its vertices is. */
 static skein_status surface_of(skein_world *world, const sk_body *body, sk_trimesh **made, skein_error *error) {
     sk_allocator *allocator = &world->allocator;
-    size_t triangles = body->triangle_count;
+    size_t triangles = 0;
     double *position = sk_allocate(allocator, 3 * body->particle_count * sizeof *position);
-    uint32_t *corner = sk_allocate(allocator, 3 * triangles * sizeof *corner), *size = sk_allocate(allocator, triangles * sizeof *size);
+    uint32_t *corner = sk_allocate(allocator, 3 * body->triangle_count * sizeof *corner);
+    uint32_t *size = sk_allocate(allocator, body->triangle_count * sizeof *size);
     skein_status status = position && corner && size ? SKEIN_OK : sk_fail_memory(error, "the surface");
     if (!status) status = skein_positions_copy(world, body->first_particle, body->particle_count, position);
-    for (size_t t = 0; t < triangles && !status; t++) {
-        size[t] = 3;
-        for (size_t k = 0; k < 3; k++) corner[3 * t + k] = world->triangles.corner[body->first_triangle + t][k] - body->first_particle;
+    for (size_t t = 0; t < body->triangle_count && !status; t++) {
+        const uint32_t *of = world->triangles.corner[body->first_triangle + t];
+        if (of[0] == of[1] && of[0] == of[2]) continue; // it was cut away
+        for (size_t k = 0; k < 3; k++) corner[3 * triangles + k] = of[k] - body->first_particle;
+        size[triangles++] = 3;
     }
     const skein_mesh mesh = {position, body->particle_count, size, triangles, corner, 3 * triangles};
     if (!status) status = sk_trimesh_create(&mesh, allocator, made, error);

@@ -497,4 +497,5 @@ const sk_body_type sk_cloth = {
     .live = live,
     .change = change,
     .presets = &sk_fabrics,
+    .is_sheet = true,
 };

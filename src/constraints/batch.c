@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "constraints/enclosure.h"
+#include "constraints/severed.h"
 
 int sk_constraint_arity(const sk_constraint_type *type, const void *params) {
     return type->arity_of ? type->arity_of(params) : type->arity;
@@ -46,18 +47,24 @@ bool sk_batch_pulls(const sk_batch *batch) {
 
 /* ---- elements that are left out ---- */
 
-static sk_presence presence_of(const sk_batch *batch, const uint32_t *particle, const sk_particles *particles) {
-    uint8_t worst = SK_HERE;
-    for (size_t i = 0; i < batch->arity; i++)
-        if (particles->presence[particle[i]] > worst) worst = particles->presence[particle[i]];
-    return (sk_presence)worst;
+/* By whom elements are judged. */
+typedef struct judge {
+    const sk_batch *batch;
+    const sk_particles *particles;
+    const sk_severing *severing; /* or NULL */
+} judge;
+
+/* Whether an element's presence is at most that: it is that of the particle which is there least, and aside of one that
+ * is severed. */
+static bool is_up_to(const judge *j, const uint32_t *particle, sk_presence most) {
+    for (size_t i = 0; i < j->batch->arity; i++)
+        if (j->particles->presence[particle[i]] > most) return false;
+    return most != SK_HERE || !j->severing || !j->severing->severs(j->severing->data, j->batch, particle);
 }
 
-static size_t count_up_to(const sk_batch *batch, const sk_elements *all, const sk_particles *particles,
-                          sk_presence most) {
+static size_t count_up_to(const judge *j, const sk_elements *all, sk_presence most) {
     size_t count = 0;
-    for (size_t e = 0; e < all->count; e++)
-        count += presence_of(batch, all->particle + e * batch->arity, particles) <= most;
+    for (size_t e = 0; e < all->count; e++) count += is_up_to(j, all->particle + e * j->batch->arity, most);
     return count;
 }
 
@@ -68,10 +75,11 @@ static void release_elements(sk_elements *elements, sk_allocator *allocator) {
     *elements = (sk_elements){0, NULL, NULL, NULL};
 }
 
-/* Copies the elements none of whose particles has a presence beyond `most`; false when there is no memory. */
-static bool copy_elements(const sk_batch *batch, const sk_elements *from, const sk_particles *particles,
-                          sk_presence most, sk_allocator *allocator, sk_elements *to) {
-    size_t count = count_up_to(batch, from, particles, most), next = 0;
+/* Copies the elements whose presence is not beyond `most`; false when there is no memory. */
+static bool copy_elements(const judge *j, const sk_elements *from, sk_presence most, sk_allocator *allocator,
+                          sk_elements *to) {
+    const sk_batch *batch = j->batch;
+    size_t count = count_up_to(j, from, most), next = 0;
     *to = (sk_elements){count, sk_allocate(allocator, count * batch->arity * sizeof *to->particle),
                         sk_allocate(allocator, count * batch->rest_count * sizeof *to->rest),
                         from->scale ? sk_allocate(allocator, count * sizeof *to->scale) : NULL};
@@ -80,7 +88,7 @@ static bool copy_elements(const sk_batch *batch, const sk_elements *from, const 
         return false;
     }
     for (size_t e = 0; e < from->count; e++) {
-        if (presence_of(batch, from->particle + e * batch->arity, particles) > most) continue;
+        if (!is_up_to(j, from->particle + e * batch->arity, most)) continue;
         memcpy(to->particle + next * batch->arity, from->particle + e * batch->arity,
                batch->arity * sizeof *to->particle);
         for (size_t r = 0; r < batch->rest_count; r++) to->rest[r * count + next] = from->rest[r * from->count + e];
@@ -100,16 +108,23 @@ static void set_elements(sk_batch *batch, const sk_elements *elements) {
 }
 
 bool sk_batch_leave_out(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles) {
+    return sk_batch_leave_out_severed(batch, allocator, particles, NULL);
+}
+
+bool sk_batch_leave_out_severed(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles,
+                                const sk_severing *severing) {
+    const judge j = {batch, particles, severing};
     sk_elements present = elements_of(batch), all = batch->whole.particle ? batch->whole : present, kept, now;
-    size_t not_gone = count_up_to(batch, &all, particles, SK_ASIDE), here = count_up_to(batch, &all, particles, SK_HERE);
+    size_t not_gone = count_up_to(&j, &all, SK_ASIDE), here = count_up_to(&j, &all, SK_HERE);
     if (batch->enclosure) {
         batch->broken |= not_gone < all.count;
         batch->rests = here < all.count;
         return true;
     }
-    if (not_gone == all.count && here == present.count) return true;
-    if (!copy_elements(batch, &all, particles, SK_ASIDE, allocator, &kept)) return false;
-    if (!copy_elements(batch, &kept, particles, SK_HERE, allocator, &now)) {
+    // as many as before are the same ones, but where a cut was mended and another made
+    if (not_gone == all.count && here == present.count && (here == all.count || !severing)) return true;
+    if (!copy_elements(&j, &all, SK_ASIDE, allocator, &kept)) return false;
+    if (!copy_elements(&j, &kept, SK_HERE, allocator, &now)) {
         release_elements(&kept, allocator);
         return false;
     }

@@ -44,6 +44,7 @@ typedef struct sk_limit {
     bool shared;        /* all elements have the same anchors */
     uint32_t *particle; /* the tethered one, then its anchors: count x (1 + anchors), user's indices */
     real *length;       /* count x anchors: along the cloth at rest, m; infinite where no path leads */
+    real *cut_length;   /* the same along what a cut has left; NULL: the cloth is whole, and may have coarse grids */
     /* by slot, from first_slot on (a multiple of 16) */
     size_t first_slot, slot_count;
     real *slot_length; /* slot_count x anchors, in blocks */

@@ -178,6 +178,7 @@ void sk_limit_release(sk_limit *limit, sk_allocator *allocator) {
     if (!limit) return;
     sk_release(allocator, limit->particle);
     sk_release(allocator, limit->length);
+    sk_release(allocator, limit->cut_length);
     sk_release(allocator, limit->slot_length);
     sk_release(allocator, limit->empty);
     sk_release(allocator, limit->pin_of);
@@ -216,6 +217,7 @@ static void fill_gaps(sk_limit *limit) {
 
 /* Fills the arrays by slot, from the first to the last slot that is tethered. */
 static void fill_blocks(sk_limit *limit, const sk_particles *particles, const uint32_t *place_of) {
+    const real *length = limit->cut_length ? limit->cut_length : limit->length;
     size_t anchors = limit->anchors;
     for (size_t i = 0; i < limit->slot_count * anchors; i++) {
         limit->slot_length[i] = (real)SK_FAR;
@@ -228,7 +230,7 @@ static void fill_blocks(sk_limit *limit, const sk_particles *particles, const ui
         limit->empty[block] = false;
         for (size_t k = 0; k < anchors; k++) {
             size_t place = (block * anchors + k) * SK_LANES + lane;
-            limit->slot_length[place] = limit->length[e * anchors + k];
+            limit->slot_length[place] = length[e * anchors + k];
             limit->pin_of[limit->shared ? k : place] = place_of[element[1 + k]];
         }
     }

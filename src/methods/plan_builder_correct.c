@@ -130,12 +130,17 @@ static void write_coarse(sk_plan_builder *builder, const sk_batch *batch) {
                                .end = walk.rows});
 }
 
-/* Tethers that go with coarse grids, for methods that have these (those that predict). */
+/* Whether a cloth has its coarse grids: with methods that predict, and until it is cut. */
+static bool has_coarse(const sk_plan_builder *builder, const sk_limit *limit) {
+    return builder->predicted && !limit->cut_length;
+}
+
+/* Tethers that go with coarse grids, for methods that have these. */
 static void write_tethers(sk_plan_builder *builder, sk_limit_order order, size_t every) {
     const sk_rules *rules = builder->rules;
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
-        if (is_kept(limit) && limit->order == order && builder->predicted) add_limit(builder, limit, SK_NONE, every);
+        if (is_kept(limit) && limit->order == order && has_coarse(builder, limit)) add_limit(builder, limit, SK_NONE, every);
     }
 }
 
@@ -250,7 +255,7 @@ void sk_write_limits(sk_plan_builder *builder, sk_vector velocity) {
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
         bool last = limit->order == SK_LIMIT_LAST || limit->order == SK_LIMIT_SELDOM ||
-                    (limit->order == SK_LIMIT_WITHOUT_COARSE && !builder->predicted);
+                    (limit->order == SK_LIMIT_WITHOUT_COARSE && !has_coarse(builder, limit));
         if (!is_kept(limit) || !last) continue;
         size_t every = velocity == SK_NONE && limit->order == SK_LIMIT_SELDOM ? seldom_of(builder) : 0;
         add_limit(builder, limit, velocity, every);

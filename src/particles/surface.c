@@ -102,6 +102,7 @@ static bool deal(sk_surface *surface, sk_allocator *allocator, const sk_particle
         triangle_place place = place_of(particles, corner, guess);
         guess = place.patch;
         uint32_t at = number++;
+        if (corner[0] == corner[1] && corner[0] == corner[2]) continue; // it was cut away
         if (settle(surface, &place)) {
             filled[place.patch]++;
             continue;

@@ -6,7 +6,7 @@
 #include "particles/particles.h"
 
 /* Builds it from the triangles of all bodies, whose corners are user's indices, without those of particles that take no
- * part. False when there is no memory: the surface is then empty. */
+ * part and without those that a cut took away, which are three times one corner. False when there is no memory: the surface is then empty. */
 bool sk_surface_arrange(sk_surface *surface, sk_allocator *allocator, const sk_particles *particles,
                         const sk_triangles *triangles);
 /* The first place in the rest whose triangle has at least this number among all that take part. */

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "space/normals.h"
-#include "world/world.h"
+#include "world/cut.h"
 
 static size_t number_size(const skein_buffer *to) {
     return to->type == SKEIN_FLOAT32 ? sizeof(float) : sizeof(double);
@@ -70,8 +70,9 @@ static void find_places(const skein_world *world, const sk_body *body, double bl
 }
 
 static void find_normals(const sk_body *body, const shape *s) {
-    for (size_t i = 0; i < body->face_vertex_count; i++)
-        s->corner[i] = body->particle_of_vertex[body->face_vertices[i]] - body->first_particle;
+    for (size_t f = 0, i = 0; f < body->face_count; f++)
+        for (size_t first = i; i < first + body->face_sizes[f]; i++) // what is cut has no area
+            s->corner[i] = body->particle_of_vertex[body->face_vertices[sk_is_cut(body, f) ? first : i]] - body->first_particle;
     const skein_mesh mesh = {s->xyz,           body->particle_count,   body->face_sizes, body->face_count, s->corner,
                              body->face_vertex_count};
     sk_mesh_normals(&mesh, SKEIN_NORMALS_AREA, s->normal);

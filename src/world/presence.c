@@ -1,11 +1,12 @@
-/* Bodies that come and go: taken out of it and back, removed for good, and the indices that are used again.
+/* Bodies that come and go: taken out of it and back, removed for good, and the indices that are used again; and what cuts
+ * leave of constraints.
  *
  * A body that is disabled keeps all it has; its particles lie behind those that take part (particles/particles.h), so
  * that no op of a plan meets them. One that is removed leaves its particles' indices: they are gone, and the next body
  * that fits into a run of them gets it. Constraints of the program's own on such particles are left out one by one. */
 #include <string.h>
 
-#include "world/world.h"
+#include "world/cut.h"
 
 static void mark(skein_world *world) {
     world->plan_stale = world->slots_stale = world->presence_stale = true;
@@ -22,10 +23,36 @@ skein_status sk_world_enable_body(skein_world *world, sk_body *body, bool enable
     return SKEIN_OK;
 }
 
+static bool is_of(const sk_body *body, const sk_batch *batch) {
+    for (size_t i = 0; i < body->batch_count; i++)
+        if (body->batch[i] == batch) return true;
+    return false;
+}
+
+/* The body whose cuts count for a batch: that which it is part of, or which its surface is; NULL: nothing is cut there. */
+static sk_body *cut_body_of(const skein_world *world, const sk_batch *batch) {
+    for (size_t i = 0; i < world->objects.count; i++) {
+        if (world->objects.data[i]->category != SKEIN_BODY) continue;
+        sk_body *body = world->objects.data[i]->as.body;
+        if (!body->cut || !body->cut->count) continue;
+        bool surface = batch->enclosure && batch->particle[0] - body->first_particle < body->particle_count;
+        if (surface || is_of(body, batch)) return body;
+    }
+    return NULL;
+}
+
 skein_status sk_world_settle_presence(skein_world *world, skein_error *error) {
-    for (size_t i = 0; i < world->rules.batches.count && world->presence_stale; i++)
-        if (!sk_batch_leave_out(world->rules.batches.data[i], &world->allocator, &world->particles))
-            return sk_fail_memory(error, "what is left of constraints");
+    bool good = true;
+    for (size_t i = 0; i < world->objects.count && world->presence_stale && good; i++)
+        if (world->objects.data[i]->category == SKEIN_BODY && world->objects.data[i]->as.body->cut)
+            good = sk_cut_tethers(world, world->objects.data[i]->as.body);
+    for (size_t i = 0; i < world->rules.batches.count && world->presence_stale && good; i++) {
+        sk_batch *batch = world->rules.batches.data[i];
+        const sk_body *body = cut_body_of(world, batch);
+        const sk_severing severing = {sk_cut_severs, body ? body->cut : NULL};
+        good = sk_batch_leave_out_severed(batch, &world->allocator, &world->particles, body ? &severing : NULL);
+    }
+    if (!good) return sk_fail_memory(error, "what is left of constraints");
     world->presence_stale = false;
     return SKEIN_OK;
 }
@@ -80,12 +107,6 @@ static void remove_triangles(skein_world *world, const sk_body *body) {
         if (object->category == SKEIN_BODY && object->as.body->first_triangle >= end)
             object->as.body->first_triangle -= body->triangle_count;
     }
-}
-
-static bool is_of(const sk_body *body, const sk_batch *batch) {
-    for (size_t i = 0; i < body->batch_count; i++)
-        if (body->batch[i] == batch) return true;
-    return false;
 }
 
 static void remove_rules(skein_world *world, const sk_body *body) {

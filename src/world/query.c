@@ -3,7 +3,7 @@
  * All look at everything there is, once: some milliseconds for half a million faces. Only read. */
 #include <math.h>
 
-#include "world/world.h"
+#include "world/cut.h"
 
 static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -68,6 +68,7 @@ static void cast_at_body(const skein_world *world, const sk_body *body, const do
                          skein_handle handle, skein_hit *hit) {
     const uint32_t *face = body->face_vertices;
     for (size_t f = 0; f < body->face_count; face += body->face_sizes[f++]) {
+        if (sk_is_cut(body, f)) continue;
         double corner[3][3];
         position_of(world, body->particle_of_vertex[face[0]], corner[0]);
         for (uint32_t c = 2; c < body->face_sizes[f]; c++) {

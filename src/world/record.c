@@ -9,12 +9,13 @@
  * of 24. A recording begins with a snapshot; so replaying needs a world that was built in the same way, and nothing
  * else. */
 #include "world/record.h"
+#include "world/cut.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 
 static const char magic[8] = {'s', 'k', 'e', 'i', 'n', 'r', 'e', 'c'};
-enum { VERSION = 1, LOT = 64, LOT_BITS = 6, SUMS = 2 + LOT_BITS };
+enum { VERSION = 2, LOT = 64, LOT_BITS = 6, SUMS = 2 + LOT_BITS };
 enum {
     AN_END = 1,
     A_STATE,
@@ -27,7 +28,8 @@ enum {
     A_TELEPORT,
     THE_CLOCK,
     A_RESET,
-    A_STOP
+    A_STOP,
+    A_CUT /* from version 2 on */
 };
 
 struct sk_recording {
@@ -173,6 +175,17 @@ void sk_record_teleport(skein_world *world, const sk_object *object) {
     sk_byte_writer w = {r->room, r->size, 0};
     put_object(&w, world, object);
     write_entry(r, A_TELEPORT, r->room, w.at);
+}
+
+void sk_record_cut(skein_world *world, const sk_body *body) {
+    struct sk_recording *r = room_for(world, 16 + 4 * body->cut->count);
+    if (!r) return;
+    sk_byte_writer w = {r->room, r->size, 0};
+    size_t i = 0;
+    while (world->objects.data[i]->category != SKEIN_BODY || world->objects.data[i]->as.body != body) i++;
+    put_object(&w, world, world->objects.data[i]);
+    sk_put_cut(&w, body);
+    write_entry(r, A_CUT, r->room, w.at);
 }
 
 void sk_record_clock(skein_world *world, double seconds) {
@@ -355,6 +368,17 @@ static skein_status do_hold(sk_byte_reader *r, skein_world *world, skein_error *
     return r->short_ ? fail_damaged(error, r) : skein_particle_pin(world, (size_t)particle, held);
 }
 
+static skein_status do_cut(sk_byte_reader *r, skein_world *world, skein_error *error) {
+    sk_object *object = sk_object_find(world, take_object(r, world), SKEIN_BODY);
+    bool memory = true;
+    if (!object) return SKEIN_ERROR_HANDLE;
+    skein_status status = sk_world_touch(world);
+    if (status) return status;
+    if (!sk_take_cut(r, world, object, true, &memory))
+        return memory ? fail_damaged(error, r) : sk_fail_memory(error, "a cut");
+    return SKEIN_OK;
+}
+
 static skein_status do_step(sk_byte_reader *r, skein_world *world, skein_difference *d, skein_error *error) {
     double dt = sk_take_f64(r);
     compare(r, world, d);
@@ -391,6 +415,7 @@ static skein_status do_entry(unsigned what, sk_byte_reader *r, skein_world *worl
     case PINS: return do_numbers(r, world, what, error);
     case A_HOLD: return do_hold(r, world, error);
     case A_TELEPORT: return skein_collider_teleport(world, take_object(r, world));
+    case A_CUT: return do_cut(r, world, error);
     case THE_CLOCK: return skein_world_time_set(world, sk_take_f64(r));
     case A_RESET: return skein_world_reset(world);
     case A_STOP: return do_stop(r, d, error);

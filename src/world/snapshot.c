@@ -6,12 +6,14 @@
  *   objects    each one's kind, fields and what it was built of (a hash); of a collider the way that it is on
  *   particles  held or not, position, velocity, and the position before the last step, in the user's order
  *   pins       places that wait for the next step
+ *   cuts       from version 2 on: how many bodies are cut, and of each its place among the objects and the faces
  *
  * What was built stays the world's: meshes, constraints and masses are compared by their hashes, and a world that is
  * built otherwise refuses the snapshot. A reader looks through all of it before it changes anything, and allocates
  * nothing by what it says. Everything else that a world has is made from these (the plan, slots, sweeps, contact's
  * pairs): no bit of a step depends on how long it has been there. */
 #include "world/record.h"
+#include "world/cut.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -75,8 +77,7 @@ static uint64_t hash_object(const skein_world *world, const sk_object *object) {
     hash = sk_hash_word(sk_hash_word(hash, first), count);
     hash = hash_bytes(hash, all->mass + first, count * sizeof *all->mass);
     hash = hash_bytes(hash, all->built + first, count * sizeof *all->built);
-    const void *corners = body->triangle_count ? world->triangles.corner + body->first_triangle : NULL;
-    hash = hash_bytes(hash, corners, body->triangle_count * sizeof *world->triangles.corner);
+    hash = hash_bytes(hash, sk_built_triangles(world, body), body->triangle_count * sizeof *world->triangles.corner);
     for (size_t i = 0; i < body->batch_count; i++) hash = hash_batch(hash, body->batch[i]);
     return hash;
 }
@@ -171,9 +172,29 @@ static void put_vector(sk_byte_writer *w, const skein_world *world, sk_vector ve
     }
 }
 
+static bool is_cut(const sk_object *object) {
+    return object->category == SKEIN_BODY && object->as.body->cut && object->as.body->cut->count;
+}
+
+static uint32_t count_cut(const skein_world *world) {
+    uint32_t count = 0;
+    for (size_t i = 0; i < world->objects.count; i++) count += is_cut(world->objects.data[i]);
+    return count;
+}
+
+static void put_cuts(sk_byte_writer *w, const skein_world *world) {
+    sk_put_u32(w, count_cut(world));
+    for (size_t i = 0; i < world->objects.count; i++) {
+        if (!is_cut(world->objects.data[i])) continue;
+        sk_put_u32(w, (uint32_t)i);
+        sk_put_cut(w, world->objects.data[i]->as.body);
+    }
+}
+
 static void put_all(sk_byte_writer *w, const skein_world *world) {
+    bool any_cut = count_cut(world) > 0;
     sk_put(w, magic, sizeof magic);
-    sk_put_u32(w, SK_SNAPSHOT_VERSION);
+    sk_put_u32(w, any_cut ? SK_SNAPSHOT_VERSION : 1);
     sk_put_u32(w, sizeof(real));
     sk_put_u64(w, 0), sk_put_u64(w, 0), sk_put_u32(w, 0); // what is not known yet, and room
     put_clock(w, world);
@@ -197,6 +218,7 @@ static void put_all(sk_byte_writer *w, const skein_world *world) {
         sk_put_u32(w, world->pins.data[i].particle);
         for (int k = 0; k < 3; k++) sk_put_f64(w, world->pins.data[i].place[k]);
     }
+    if (any_cut) put_cuts(w, world);
 }
 
 void sk_snapshot_seal(unsigned char *bytes, size_t size) {
@@ -431,7 +453,7 @@ static skein_status take_particles(sk_byte_reader *r, skein_world *world, bool a
 
 static skein_status take_pins(sk_byte_reader *r, skein_world *world, bool apply, skein_error *error) {
     uint64_t count = sk_take_u64(r);
-    if (r->short_ || count > sk_left(r) / 28 || count * 28 != sk_left(r)) return fail_short(error);
+    if (r->short_ || count > sk_left(r) / 28) return fail_short(error);
     if (apply && !SK_RESERVE(&world->allocator, &world->pins, (size_t)count))
         return sk_fail_memory(error, "places for pins");
     if (apply) world->pins.count = (size_t)count;
@@ -448,15 +470,34 @@ static skein_status take_pins(sk_byte_reader *r, skein_world *world, bool apply,
     return SKEIN_OK;
 }
 
+/* What is not cut in the snapshot is whole. */
+static skein_status take_cuts(sk_byte_reader *r, skein_world *world, uint32_t version, bool apply, skein_error *error) {
+    uint32_t count = version > 1 ? sk_take_u32(r) : 0, next = 0;
+    for (size_t i = 0; i < world->objects.count && apply; i++)
+        if (is_cut(world->objects.data[i])) sk_cut_set(world, world->objects.data[i]->as.body, NULL);
+    for (uint32_t i = 0; i < count && !r->short_; i++) {
+        uint32_t index = sk_take_u32(r);
+        bool memory = true;
+        if (r->short_ || index < next || index >= world->objects.count ||
+            world->objects.data[index]->category != SKEIN_BODY)
+            return fail_short(error);
+        if (!sk_take_cut(r, world, world->objects.data[index], apply, &memory))
+            return memory ? fail_short(error) : sk_fail_memory(error, "a cut");
+        next = index + 1;
+    }
+    return r->short_ || sk_left(r) ? fail_short(error) : SKEIN_OK;
+}
+
 /* Once to look whether all of it fits, once to take it. */
-static skein_status walk(skein_world *world, const void *bytes, size_t size, sk_set_method *set, bool apply,
-                         skein_error *error) {
-    sk_byte_reader r = {bytes, size, SK_SNAPSHOT_HEAD, false};
+static skein_status walk(skein_world *world, const void *bytes, const skein_snapshot_info *info, sk_set_method *set,
+                         bool apply, skein_error *error) {
+    sk_byte_reader r = {bytes, info->size, SK_SNAPSHOT_HEAD, false};
     skein_status status = take_clock(&r, world, apply, error);
     if (!status) status = take_method(&r, world, set, apply, error);
     for (size_t i = 0; i < world->objects.count && !status; i++) status = take_object(&r, world, i, apply, error);
     if (!status) status = take_particles(&r, world, apply, error);
-    return status ? status : take_pins(&r, world, apply, error);
+    if (!status) status = take_pins(&r, world, apply, error);
+    return status ? status : take_cuts(&r, world, info->version, apply, error);
 }
 
 skein_status sk_snapshot_read(skein_world *world, const void *bytes, size_t size, sk_set_method *set) {
@@ -468,12 +509,12 @@ skein_status sk_snapshot_read(skein_world *world, const void *bytes, size_t size
         return sk_fail(error, SKEIN_ERROR_VALUE, "",
                        "the snapshot is of a library built in %s, and this one is in %s: take the other build",
                        info.real_size == 8 ? "double" : "float", sizeof(real) == 8 ? "double" : "float");
-    status = walk(world, bytes, info.size, set, false, error);
+    status = walk(world, bytes, &info, set, false, error);
     if (!status) status = sk_world_touch(world);
     if (status) return status;
     struct sk_recording *recording = world->recording; // which hears of it once, as a whole
     world->recording = NULL;
-    status = walk(world, bytes, info.size, set, true, error);
+    status = walk(world, bytes, &info, set, true, error);
     sk_world_place_colliders(world);
     world->recording = recording;
     sk_record_state(world);

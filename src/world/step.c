@@ -5,6 +5,7 @@
 
 #include "base/float_mode.h"
 #include "plan/fuse.h"
+#include "world/cut.h"
 #include "world/record.h"
 #include "world/world.h"
 
@@ -288,6 +289,8 @@ skein_status skein_world_reset(skein_world *world) {
     if (status) return status;
     world->solve = (sk_solve){.scale = 0};
     sk_particles_reset(&world->particles);
+    for (size_t i = 0; i < world->objects.count; i++)
+        if (world->objects.data[i]->category == SKEIN_BODY) sk_cut_set(world, world->objects.data[i]->as.body, NULL);
     world->pins.count = 0;
     stop_colliders(world);
     world->time = 0;

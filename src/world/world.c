@@ -1,4 +1,5 @@
 /* The world's life: made, filled by builders, destroyed. */
+#include "world/cut.h"
 #include "world/record.h"
 #include "world/world.h"
 
@@ -76,6 +77,7 @@ void sk_body_release(skein_world *world, sk_body *body) {
     sk_release(allocator, body->face_sizes);
     sk_release(allocator, body->face_vertices);
     sk_release(allocator, body->corner_uv);
+    sk_cut_release(body->cut, allocator);
     sk_release(allocator, body);
 }
 

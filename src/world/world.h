@@ -21,6 +21,7 @@
 #include "plan/solve.h"
 
 typedef struct sk_body sk_body;
+typedef struct sk_cut sk_cut;
 
 /* A builder: lays down particles and rules through the functions below. */
 typedef struct sk_body_type {
@@ -35,6 +36,7 @@ typedef struct sk_body_type {
     skein_shape_sort shape; /* what it looks like: its faces, if nothing is said */
     const sk_making *making; /* what is made from its parameters; NULL: nothing */
     const sk_presets *presets; /* a choice that stands for other fields; NULL: none does */
+    bool is_sheet; /* its faces, as fans one after the other, are its triangles, and all that it is: it can be cut */
 } sk_body_type;
 
 enum { SK_MOST_BODY_BATCHES = 16 };
@@ -51,6 +53,7 @@ struct sk_body {
     sk_material *material[SK_MOST_BODY_BATCHES]; /* of the batch beside it */
     size_t batch_count;
     double tether_bound, strain_bound; /* of its limits */
+    sk_cut *cut;                       /* NULL: it never was (world/cut.h) */
     bool enabled;
     const char *label; /* its name, else its kind's */
 };

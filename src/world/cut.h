@@ -1,0 +1,50 @@
+/* What is cut of a body: which of its faces were taken away (world/cut.c), and which elements and tethers that severs
+ * (world/severed.c). It is made when a body is first cut. */
+#ifndef SK_WORLD_CUT_H
+#define SK_WORLD_CUT_H
+
+#include "base/bytes.h"
+#include "constraints/severed.h"
+#include "world/world.h"
+
+struct sk_cut {
+    const sk_body *body;
+    uint8_t *face; /* of each face, whether it is cut */
+    size_t count;  /* of faces that are */
+    uint64_t changes;
+    uint32_t (*triangle)[3]; /* the body's triangles as they were built: of cut faces the world has one corner thrice */
+    /* the surface, by the body's particles, numbered from its first one on */
+    size_t *first;    /* of each face its first corner; faces + 1 */
+    uint32_t *corner; /* of all faces */
+    size_t *start;    /* of each particle its first face in `around`; particles + 1 */
+    uint32_t *around; /* faces that have it */
+    bool *near;       /* it is a corner of a face that is cut */
+    /* for searches over particles */
+    uint32_t *queue, *mark, now; /* those that were reached have mark `now` */
+};
+
+static inline bool sk_is_cut(const sk_body *body, size_t face) {
+    return body->cut && body->cut->face[face];
+}
+void sk_cut_release(sk_cut *cut, sk_allocator *allocator);
+/* Takes away (1) or puts back (0) the body's faces as `face` says, or all of them back where it is NULL. False when there
+ * is no memory: nothing has changed then. */
+bool sk_cut_set(skein_world *world, sk_body *body, const uint8_t *face);
+/* The triangles that a body was built with. */
+const uint32_t (*sk_built_triangles(const skein_world *world, const sk_body *body))[3];
+/* Which faces are cut, as bytes. */
+void sk_put_cut(sk_byte_writer *w, const sk_body *body);
+/* Reads that for a body, and where `apply` is set cuts it so. False where the bytes do not fit the body, with *memory set
+ * where there is none. */
+bool sk_take_cut(sk_byte_reader *r, skein_world *world, sk_object *object, bool apply, bool *memory);
+
+/* ---- what is severed (severed.c) ---- */
+
+/* Whether an element of one of the body's batches is: some pair of its particles has no face in common any more, or no
+ * way along edges as short as it was, or one face had three of its particles and is gone. What has coarse grids loses
+ * them, for these would carry movement over a cut. */
+bool sk_cut_severs(const void *cut, const sk_batch *batch, const uint32_t *particle);
+/* Finds the lengths of the body's tethers anew. False when there is no memory. */
+bool sk_cut_tethers(skein_world *world, sk_body *body);
+
+#endif
