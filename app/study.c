@@ -102,10 +102,14 @@ static bool sum_up(const study_work *work, bool quiet) {
 }
 
 static int conclude(study_work *work, const char *folder, bool quiet) {
+    // other parts have gone on since this one began: of those that end at once the last sees the rows of all
+    skein_error error = {SKEIN_OK, "", ""};
+    bool seen = work->whole || !io_study_folder_look(work->folder, &error);
+    if (!seen) app_print_error(&error);
     size_t rows = io_study_rows(work->study), done = io_study_folder_done(work->folder);
     int signal_number = app_interrupted();
     bool drawn = false, tables = work->whole || done == rows;
-    bool good = !work->failed && (!tables || write_tables(work));
+    bool good = seen && !work->failed && (!tables || write_tables(work));
     if (good && tables && done) good = study_plot(work->study, work->folder, folder, &drawn);
     bool ran = sum_up(work, quiet);
     if (!quiet && good && tables)

@@ -69,6 +69,8 @@ typedef struct io_study_folder io_study_folder;
 io_study_folder *io_study_folder_open(const io_study *study, const char *path, size_t part, size_t parts,
                                       skein_error *error);
 void io_study_folder_close(io_study_folder *folder); /* NULL is allowed */
+/* Reads what other parts have written meanwhile. */
+skein_status io_study_folder_look(io_study_folder *folder, skein_error *error);
 /* Whether a row is there, and need not be run again. */
 bool io_study_folder_has(const io_study_folder *folder, size_t row);
 /* Of the rows of this part, those that are to be run. */

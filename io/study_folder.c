@@ -25,6 +25,7 @@ enum { ROW = 1 }; /* the sort of a journal's entry */
 struct io_study_folder {
     const io_study *study;
     char *path;
+    char name[80]; /* of its own journal */
     size_t part, parts, missing, done;
     json_t **rows; /* a result or NULL for each */
     io_journal *journal;
@@ -155,19 +156,18 @@ static skein_status open_journal(io_study_folder *f, const char *name, skein_err
 
 io_study_folder *io_study_folder_open(const io_study *study, const char *path, size_t part, size_t parts,
                                       skein_error *error) {
-    char name[80] = "rows.journal";
     io_study_folder *f = calloc(1, sizeof *f);
-    if (f) *f = (io_study_folder){.study = study, .part = part, .parts = parts, .lock = -1};
+    if (f) *f = (io_study_folder){.study = study, .name = "rows.journal", .part = part, .parts = parts, .lock = -1};
     if (f) f->path = strdup(path), f->rows = calloc(io_study_rows(study) + 1, sizeof *f->rows);
     skein_status status = SKEIN_OK;
     if (!f || !f->path || !f->rows) status = io_error_set(error, SKEIN_ERROR_MEMORY, path, "out of memory");
     else if (!make_folders(path))
         status = io_error_set(error, SKEIN_ERROR_FILE, path, "cannot be made: %s", strerror(errno));
-    if (parts > 1) snprintf(name, sizeof name, "rows.%zu-of-%zu.journal", part, parts);
+    if (f && parts > 1) snprintf(f->name, sizeof f->name, "rows.%zu-of-%zu.journal", part, parts);
     if (!status) status = want_text(path, "scene.json", io_study_scene_text(study), error);
     if (!status) status = want_text(path, "study.json", io_study_text(study), error);
-    if (!status) status = read_others(f, name, error);
-    if (!status) status = open_journal(f, name, error);
+    if (!status) status = read_others(f, f->name, error);
+    if (!status) status = open_journal(f, f->name, error);
     if (status) {
         io_study_folder_close(f);
         return NULL;
@@ -188,6 +188,12 @@ void io_study_folder_close(io_study_folder *f) {
 }
 
 /* ---- looking and adding ---- */
+
+skein_status io_study_folder_look(io_study_folder *f, skein_error *error) {
+    skein_status status = read_others(f, f->name, error);
+    count(f);
+    return status;
+}
 
 bool io_study_folder_has(const io_study_folder *f, size_t row) {
     return f->rows[row] && is_done(f->rows[row]);

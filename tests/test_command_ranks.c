@@ -1,5 +1,6 @@
 /* skein run on the ranks of an MPI job: the hash of one process, whatever the ranks and threads; balanced anew on the way;
  * broken off, and gone on with by another number of ranks; and what cannot be shared is said. */
+#include "ranks.h"
 #include "test_command.h"
 
 #include <math.h>
@@ -260,31 +261,6 @@ static void ranks_write_their_own(void **state) {
     assert_status(o, 2);
     assert_contains(o.err, "the ranks of an MPI job write them");
     outcome_free(&o);
-}
-
-/* Which process of the job is a rank that serves: it has the command's name and that rank in its environment. */
-static pid_t find_rank(const char *scene, const char *rank) {
-    DIR *processes = opendir("/proc");
-    pid_t found = 0;
-    for (struct dirent *entry; processes && (entry = readdir(processes)) != NULL && !found;) {
-        char path[300], text[1 << 16], wanted[64];
-        pid_t id = (pid_t)strtol(entry->d_name, NULL, 10);
-        if (id <= 0) continue;
-        snprintf(path, sizeof path, "/proc/%d/cmdline", (int)id);
-        FILE *file = fopen(path, "rb");
-        size_t size = file ? fread(text, 1, sizeof text - 1, file) : 0;
-        if (file) fclose(file);
-        bool ours = size && memmem(text, size, scene, strlen(scene)) && !memmem(text, size, "--oversubscribe", 15);
-        if (!ours) continue;
-        snprintf(path, sizeof path, "/proc/%d/environ", (int)id);
-        file = fopen(path, "rb");
-        size = file ? fread(text, 1, sizeof text - 1, file) : 0;
-        if (file) fclose(file);
-        snprintf(wanted, sizeof wanted, "OMPI_COMM_WORLD_RANK=%s", rank);
-        if (size && memmem(text, size, wanted, strlen(wanted) + 1)) found = id;
-    }
-    if (processes) closedir(processes);
-    return found;
 }
 
 static void a_rank_that_dies_ends_the_run_and_another_number_goes_on(void **state) {
