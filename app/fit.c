@@ -300,7 +300,7 @@ const app_command app_fit_command = {
     "Begins with the scene's own numbers, and makes the mean squared distance from the cache, over all of its frames, as\n"
     "small as it can, by L-BFGS on the gradient of the run; each run with its gradient costs some four runs. Numbers that\n"
     "cannot be negative vary in their logarithm: a start within a factor of ten is near enough as a rule. Runs are in\n"
-    "double precision. Methods: xpbd and pbd have no gradient yet, nor have collisions, limits and tethers\n"
+    "double precision. Collisions, contact, limits and tethers have no gradient yet\n"
     "(docs/gradients.md): those are refused, with what stands in the way.\n\n"
     "The report (--json) has found, iterations, misfit (m, the root of the mean squared distance) and end: converged,\n"
     "iterations (more would go on), stuck (no step gets nearer: as near as numbers allow) or interrupted.\n\n"

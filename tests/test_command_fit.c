@@ -35,6 +35,16 @@ static void stiffnesses_are_found_again(void **state) {
     outcome_free(&o);
 }
 
+/* Under XPBD, through its projections. */
+static void stiffnesses_are_found_under_xpbd(void **state) {
+    (void)state;
+    make_target("firm", 6, 30, "'type': 'xpbd', 'substeps': 10");
+    json_t *report = fit_from("firm", (const double[]){3, 1 / 3.0, 3}, "40", in_folder("firm_found.json"));
+    assert_found(report, 0.02);
+    assert_string_equal(json_string_value(json_object_get(report, "end")), "converged");
+    json_decref(report);
+}
+
 /* Gravity is no positive number, and has three: found from noughts and a wrong one. And bounds are kept to. */
 static void a_force_is_found_within_bounds(void **state) {
     (void)state;
@@ -70,7 +80,7 @@ static void what_cannot_be_fitted_says_so(void **state) {
         {"bodies.0.stretch.stiffness=5", "fps=60", "expected a field"},
         {"bodies.0.stretch.stiffness=1..50", "fps=60", "it begins at 100: expected a number between its bounds, 1 and 50"},
         {"forces.1.rate,forces.1.rate", "fps=60", "it is named twice"},
-        {"bodies.0.stretch.stiffness", "method.type=xpbd", "has no gradient"},
+        {"bodies.0.stretch.stiffness", "bodies.0.stretch.tether=1.02", "has no gradient"},
         {"bodies.0.stretch.stiffness", "bodies.0.stretch.stiffness=1e7", "the run blew up"},
         {"bodies.0.density", "fps=60", "density shapes what is already built"},
     };
@@ -125,6 +135,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
 #ifdef SKEIN_FIT
         cmocka_unit_test_setup_teardown(stiffnesses_are_found_again, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(stiffnesses_are_found_under_xpbd, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(a_force_is_found_within_bounds, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(what_cannot_be_fitted_says_so, make_folder, remove_folder),
 #else

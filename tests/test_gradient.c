@@ -210,6 +210,16 @@ static double run_moved(skein_world *world, weighing *w, double dt, const double
     return sum;
 }
 
+/* Bends and stretches it a little, so that no multiplier pulls at a fold that is not there. */
+static void disturb(skein_world *world, double most) {
+    size_t count = skein_particle_count(world);
+    double *x = malloc(3 * count * sizeof *x);
+    OK(world, skein_positions_copy(world, 0, count, x));
+    for (size_t i = 0; i < 3 * count; i++) x[i] += most * draw();
+    OK(world, skein_positions_set(world, 0, count, x));
+    free(x);
+}
+
 /* Twenty random directions through positions, velocities and fields, against central differences of whole runs. */
 static double worst_direction(skein_world *world, size_t steps, double dt, bool all, int directions, size_t most_bytes) {
     size_t count = skein_particle_count(world);
@@ -272,6 +282,132 @@ static void backward_euler_agrees_with_differences(void **state) {
         skein_world *world = cloth("backward_euler", WHOLE ? SIDE : 7, 2, "top edge", 2, all ? 0.05 : 0);
         double worst = worst_direction(world, WHOLE ? FRAMES : 15, 1 / 60.0, all, all ? 2 : 20, 0);
         if (!(worst < 1e-6)) fail_msg("off by %g", worst);
+        skein_world_destroy(world);
+    }
+}
+
+/* The measure from a start that is moved along a direction of positions, velocities and numbers of fields. */
+static double run_from(skein_world *world, weighing *w, const char *const *paths, const double *x, const double *f,
+                       const double *along, double e) {
+    size_t count = skein_particle_count(world), fields_from = 6 * count;
+    double *at = malloc(12 * count * sizeof *at), sum = 0;
+    OK(world, skein_world_reset(world));
+    for (size_t i = 0; i < 6 * count; i++) at[i] = x[i] + e * along[i];
+    for (size_t i = 0; paths[i]; i++) OK(world, skein_set_path(world, paths[i], skein_number(f[i] * (1 + e * along[fields_from + i]))));
+    OK(world, skein_positions_set(world, 0, count, at));
+    OK(world, skein_velocities_set(world, 0, count, at + 3 * count));
+    for (size_t step = 0; step <= w->steps; step++) {
+        if (step) OK(world, skein_world_step(world, 0.02));
+        OK(world, skein_positions_copy(world, 0, count, at));
+        OK(world, skein_velocities_copy(world, 0, count, at + 3 * count));
+        skein_gradient_state state = {step, 0, count, at, at + 3 * count, at + 6 * count, at + 9 * count};
+        sum += weigh(w, &state);
+    }
+    for (size_t i = 0; paths[i]; i++) OK(world, skein_set_path(world, paths[i], skein_number(f[i])));
+    free(at);
+    return sum;
+}
+
+/* How far the gradient is from central differences in four directions, at the worst, of the largest. */
+static double worst_of_small(skein_world *world, const char *const *paths, size_t steps) {
+    enum { MOST = 12, MOST_FIELDS = 4 };
+    size_t count = skein_particle_count(world), fields_from = 6 * count, n = 0;
+    double x[6 * MOST], by[6 * MOST + MOST_FIELDS], along[6 * MOST + MOST_FIELDS], weights[3 * MOST], f[MOST_FIELDS], worst = 0, most = 0;
+    assert_true(count <= MOST);
+    for (; paths[n]; n++) {
+        skein_value value;
+        OK(world, skein_get_path(world, paths[n], &value));
+        f[n] = value.number[0];
+    }
+    for (size_t i = 0; i < 3 * count; i++) weights[i] = draw();
+    OK(world, skein_positions_copy(world, 0, count, x));
+    OK(world, skein_velocities_copy(world, 0, count, x + 3 * count));
+    weighing w = {steps, weights, true, 0};
+    skein_gradient_desc desc = {.dt = 0.02, .steps = steps, .measure = weigh, .user = &w, .fields = paths};
+    skein_gradient_result result = {0, by, by + 3 * count, by + fields_from};
+    OK(world, skein_gradient(world, &desc, &result));
+    for (int d = 0; d < 4; d++) {
+        double ought = 0, slope[2];
+        for (size_t i = 0; i < fields_from + n; i++) {
+            along[i] = draw();
+            ought += along[i] * by[i] * (i < fields_from ? 1 : f[i - fields_from]);
+        }
+        for (int k = 0; k < 2; k++) {
+            double e = 2e-5 / (k + 1);
+            slope[k] = (run_from(world, &w, paths, x, f, along, e) - run_from(world, &w, paths, x, f, along, -e)) / (2 * e);
+        }
+        double extrapolated = (4 * slope[1] - slope[0]) / 3;
+        worst = fmax(worst, fabs(extrapolated - ought)), most = fmax(most, fabs(ought));
+        if (getenv("SKEIN_GRADIENT_SAYS")) print_message("direction %d: %.12g, by differences %.12g\n", d, ought, extrapolated);
+    }
+    return worst / most;
+}
+
+/* A few particles, some pinned, with one kind of constraint under XPBD, of which each has an element. */
+static void every_kind_agrees_under_projections(void **state) {
+    (void)state;
+    ONLY_IN_DOUBLE();
+    static const double places[8][3] = {{0, 0, 0}, {1, 0.1, 0}, {0.2, 1, 0.1}, {0.9, 0.8, 0.6},
+                                        {0.4, 0.3, 1.1}, {1.3, 0.2, 1.2}, {0.1, 1.2, 0.9}, {1.1, 1.3, 1.4}};
+    static const struct {
+        const char *kind, *text;
+        size_t arity;
+        double stiffness, damping;
+    } cases[] = {{"distance", NULL, 2, 300, 2},
+                 {"distance", NULL, 2, (double)INFINITY, 0},
+                 {"angle", NULL, 3, 20, 0.1},
+                 {"area", NULL, 3, 200, 1},
+                 {"dihedral", NULL, 4, 20, 0.1},
+                 {"volume", NULL, 4, 3000, 3},
+                 {"straight", NULL, 3, 20, 0.1},
+                 {"isometric", NULL, 4, 20, 0.1},
+                 {"twist", NULL, 4, 20, 0.1},
+                 {"formula", "rest(length(p0 - p1)) >= length(p0 - p1)", 2, 300, 0},
+                 {"formula", "dot(p0 - p1, p2 - p1) - rest(dot(p0 - p1, p2 - p1)) + 0.1 * sin(4 * t)", 3, 100, 0}};
+    for (size_t c = 0; c < 2 * COUNT(cases); c++) {
+        size_t i = c / 2, arity = cases[i].arity;
+        skein_world_desc desc = skein_default_world_desc();
+        desc.thread_count = 1;
+        skein_world *world = skein_world_create(&desc, NULL);
+        OK(world, skein_method_set(world, "xpbd", SETTINGS(NUMBER("substeps", 3), NUMBER("iterations", c % 2 ? 3 : 1))));
+        double masses[8] = {0, 0.5, 0.4, 0.7, 0.3, 0.6, 0.5, 0.8}, x[24];
+        OK(world, skein_particles_add(world, 8, places[0], NULL, masses, NULL));
+        uint32_t of[32];
+        for (size_t e = 0; e + arity <= 8; e++)
+            for (size_t k = 0; k < arity; k++) of[e * arity + k] = (uint32_t)(e + k);
+        const skein_setting settings[] = {NUMBER("stiffness", cases[i].stiffness), NUMBER("damping", c % 2 ? cases[i].damping : 0),
+                                          cases[i].text ? (skein_setting)TEXT("constraint", cases[i].text)
+                                                        : (skein_setting){NULL, {0, {0, 0, 0}, NULL}},
+                                          {NULL, {0, {0, 0, 0}, NULL}}};
+        OK(world, skein_constraint_add(world, cases[i].kind, of, 9 - arity, settings, NULL));
+        OK(world, skein_force_add(world, "gravity", SETTINGS(VECTOR("acceleration", 1, -5, 2)), NULL));
+        OK(world, skein_force_add(world, "drag", SETTINGS(NUMBER("linear", 0.1)), NULL));
+        for (int k = 0; k < 24; k++) x[k] = places[0][k] + 0.05 * draw();
+        OK(world, skein_positions_set(world, 0, 8, x));
+        bool rigid = isinf(cases[i].stiffness), damped = c % 2 && cases[i].damping > 0;
+        const char *const paths[] = {"forces.1.linear", rigid ? NULL : "constraints.0.stiffness",
+                                     damped ? "constraints.0.damping" : NULL, NULL};
+        double worst = worst_of_small(world, paths, 12);
+        if (!(worst < 1e-7)) fail_msg("%s %s, %s, is off by %g", cases[i].kind, cases[i].text ? cases[i].text : "", c % 2 ? "three passes" : "one", worst);
+        skein_world_destroy(world);
+    }
+}
+
+/* Position methods: XPBD at one pass and at several, where multipliers are kept; with damping; PBD, whose passes share. */
+static void projections_agree_with_differences(void **state) {
+    (void)state;
+    ONLY_IN_DOUBLE();
+    static const struct {
+        const char *method;
+        int iterations;
+        double damping;
+    } cases[] = {{"xpbd", 1, 0}, {"xpbd", 1, 0.05}, {"xpbd", 3, 0}, {"xpbd", 3, 0.05}, {"pbd", 1, 0}, {"pbd", 2, 0.05}};
+    for (size_t c = 0; c < COUNT(cases); c++) {
+        skein_world *world = cloth(cases[c].method, 6, 10, "top edge", 2, cases[c].damping);
+        OK(world, skein_set_path(world, "method.iterations", skein_number(cases[c].iterations)));
+        disturb(world, 0.01);
+        double worst = worst_direction(world, 12, 1 / 60.0, c % 2, 4, c % 2);
+        if (!(worst < 1e-6)) fail_msg("%s, %d passes, damping %g: off by %g", cases[c].method, cases[c].iterations, cases[c].damping, worst);
         skein_world_destroy(world);
     }
 }
@@ -442,8 +578,22 @@ static void what_has_no_gradient_says_so(void **state) {
     fails(world, (const char *const[]){"bodies.0.bend.stiffness", NULL}, "shapes what is already built");
     fails(world, (const char *const[]){"bodies.0.stretch.limit", NULL}, "infinite");
     fails(world, (const char *const[]){"method.substeps", NULL}, "expected a whole number");
+    OK(world, skein_method_set(world, "pbd", SETTINGS(NUMBER("inertia", 0))));
+    fails(world, NULL, "has no gradient yet"); // it moves no velocities
     OK(world, skein_method_set(world, "xpbd", NULL));
-    fails(world, NULL, "has no gradient yet");
+    OK(world, skein_set_path(world, "bodies.0.stretch.tether", skein_number(1.02)));
+    fails(world, NULL, "tether");
+    OK(world, skein_set_path(world, "bodies.0.stretch.tether", skein_number((double)INFINITY)));
+    OK(world, skein_constraint_add(world, "attachment", (const uint32_t[]){10, 0, 1, 4}, 1, NULL, NULL));
+    fails(world, NULL, "0 at rest");
+    OK(world, skein_remove(world, skein_object_at(world, SKEIN_CONSTRAINT, 0)));
+    OK(world, skein_constraint_add(world, "energy", (const uint32_t[]){10, 0}, 1, NULL, NULL));
+    fails(world, NULL, "an energy has no gradient");
+    OK(world, skein_remove(world, skein_object_at(world, SKEIN_CONSTRAINT, 0)));
+    OK(world, skein_constraint_add(world, "formula", (const uint32_t[]){10, 9}, 1,
+                                   SETTINGS(TEXT("constraint", "length(p0 - p1 - rest(p0 - p1))")), NULL));
+    fails(world, NULL, "has a kink");
+    OK(world, skein_remove(world, skein_object_at(world, SKEIN_CONSTRAINT, 0)));
     OK(world, skein_method_set(world, "symplectic_euler", NULL));
     OK(world, skein_collider_add(world, "plane", NULL, NULL));
     fails(world, NULL, "has no gradient yet");
@@ -456,6 +606,8 @@ int main(void) {
         cmocka_unit_test(a_rope_has_the_gradient_of_the_branch_it_takes),
         cmocka_unit_test(a_hanging_cloth_agrees_with_differences),
         cmocka_unit_test(backward_euler_agrees_with_differences),
+        cmocka_unit_test(every_kind_agrees_under_projections),
+        cmocka_unit_test(projections_agree_with_differences),
         cmocka_unit_test(other_methods_and_damping_agree_too),
         cmocka_unit_test(a_cloth_is_led),
         cmocka_unit_test(checkpoints_change_nothing),

@@ -53,11 +53,13 @@ typedef struct skein_gradient_result {
  * of constraints, or as a uniform force (gravity, drag, wind). It fails for a field on which anything else depends,
  * such as a mass or a rest length. Rest lengths are constant where positions are varied.
  *
- * Methods: those that only add up vectors and forces, symplectic_euler, explicit_euler, leapfrog, midpoint and rk4; and
- * backward_euler, whose linear systems keep 46 vectors of four numbers a particle besides. Pins go where motions lead them;
+ * Methods: those that only add up vectors and forces, symplectic_euler, explicit_euler, leapfrog, midpoint and rk4;
+ * backward_euler, whose linear systems keep 46 vectors of four numbers a particle besides; and xpbd and pbd, of which it keeps
+ * all projections of one substep: 7 numbers each, and 6 for each of its particles. Pins go where motions lead them;
  * where they begin changes only their way there.
- * Fails, and names the op, with SKEIN_ERROR_VALUE for anything else in the plan: projections, colliders, limits, rules
- * that steer, forces that are not uniform; for a library in single precision, whose rounding is too large for this;
+ * Fails, and names the op, with SKEIN_ERROR_VALUE for anything else in the plan: colliders, contact, limits (tethers, coarse
+ * levels), rules that steer, forces that are not uniform; under projections for energies, attachments and closed surfaces, and
+ * where a constraint's value has a kink; for a library in single precision, whose rounding is too large for this;
  * where places of skein_pins_move() wait; where a substep is not solved (skein_statistics' `unsolved`), or its linear system
  * cannot be; and where the run or a field is not such; with SKEIN_ERROR_NAME for a path that leads nowhere; and with
  * SKEIN_ERROR_MEMORY. */

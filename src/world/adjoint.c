@@ -4,12 +4,15 @@
  *   X = X + h V                 V- += h X-
  *   V = V + h w F               F- += h w V-
  *   F += f(X, V)                X- += (df/dX)^T F-,   V- += (df/dV)^T F-
+ *   V += h (g + w f - d V)      V- -= h d V-, where free
+ *   V += a (X - (X0 + b V))     X- += a V-,   X0- -= a V-,   V- *= 1 - a b
  *
- * Forces are in adjoint_force.c, an implicit solve in adjoint_solve.c. */
+ * Forces are in adjoint_force.c, an implicit solve in adjoint_solve.c, projections in adjoint_project.c. */
 #include <math.h>
 #include <string.h>
 
 #include "base/float_mode.h"
+#include "constraints/sweep.h"
 #include "plan/newton.h"
 #include "world/adjoint.h"
 
@@ -21,7 +24,8 @@ static sk_reverse reverse_of(const sk_op *op) {
 
 static bool is_elementary(const sk_op *op) {
     sk_uniform_force sum = {.label = ""};
-    if (op->inner) return false;
+    if (op->inner && op->kind != SK_OP_PULL) return false;
+    if (sk_adjoint_projects(op) || op->kind == SK_OP_PULL || op->kind == SK_OP_CORRECTION) return true;
     switch (reverse_of(op)) {
     case SK_REVERSE_NOT: return false;
     case SK_REVERSE_SOLVE: return op->kernel == sk_newton_solve;
@@ -35,18 +39,26 @@ static bool is_elementary(const sk_op *op) {
     }
 }
 
+/* Of projections, whether their kind of constraint can be followed. */
+static skein_status check_projections(const sk_op *op, skein_error *error) {
+    const char *why = sk_adjoint_projects(op) ? sk_adjoint_refuses(((const sk_sweep *)op->rule)->batch) : NULL;
+    return why ? sk_fail(error, SKEIN_ERROR_VALUE, op->label, "%s", why) : SKEIN_OK;
+}
+
 static skein_status check_plan(const sk_plan *plan, skein_error *error) {
     size_t solve_end = 0;
     for (size_t r = 0; r < plan->count; r++) {
         char line[200];
         const sk_op *op = &plan->data[r];
+        skein_status status = check_projections(op, error);
+        if (status) return status;
         if (reverse_of(op) == SK_REVERSE_SOLVE) solve_end = r + op->length + 1;
         if (is_elementary(op) || (r < solve_end && reverse_of(op) == SK_REVERSE_BY_SOLVE)) continue;
         sk_op_describe(&plan->data[r], line, sizeof line);
         return sk_fail(error, SKEIN_ERROR_VALUE, "gradient",
                        "a run with this op has no gradient yet: '%.120s'; there are those of methods that add up forces "
-                       "(symplectic_euler, leapfrog, rk4 ...) and of backward_euler, of constraints, gravity, uniform "
-                       "wind and drag",
+                       "(symplectic_euler, leapfrog, rk4 ...), of backward_euler, xpbd and pbd, of constraints, gravity, "
+                       "uniform wind and drag",
                        line);
     }
     return SKEIN_OK;
@@ -88,7 +100,7 @@ static double find_span(const sk_rules *rules) {
 /* Whether anything that is looked at in reverse depends on velocities. */
 static bool keeps_velocities(const sk_adjoint *a) {
     const sk_rules *rules = &a->world->rules;
-    bool keeps = a->krylov.op != NULL;
+    bool keeps = a->krylov.op || a->projections;
     for (size_t i = 0; i < rules->batches.count; i++) {
         keeps |= ((const sk_material *)rules->batches.data[i]->params)->damping > 0;
         for (size_t e = 0; e < a->effect_count; e++) keeps |= a->effects[e].damping[i] != 0;
@@ -124,10 +136,12 @@ skein_status sk_adjoint_begin(sk_adjoint *a, skein_world *world, skein_error *er
                              &a->side[1],     &a->unit,     &a->linear};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) good &= (*others[i] = sk_adjoint_new_numbers(a)) != NULL;
     a->forces = sk_allocate(&world->allocator, (world->rules.forces.count + 1) * sizeof *a->forces);
+    good &= sk_adjoint_begin_projections(a);
     if (!good || !a->forces) return sk_fail_memory(error, "a gradient");
     for (size_t i = 0; i < world->rules.forces.count; i++) sk_force_add_uniform(world->rules.forces.data[i], &a->forces[i]);
     find_masses(a);
     a->keeps_v = keeps_velocities(a);
+    for (size_t e = 0; e < a->effect_count; e++) a->pulled |= a->effects[e].on_forces;
     return SKEIN_OK;
 }
 
@@ -139,6 +153,7 @@ void sk_adjoint_end(sk_adjoint *a) {
                          a->side[1],      a->unit,     a->linear};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) sk_release(allocator, all[i]);
     sk_adjoint_end_solve(a);
+    sk_adjoint_end_projections(a);
     for (int v = 0; v < SK_VECTOR_COUNT; v++) sk_release(allocator, a->of[v]);
     for (size_t i = 0; i < a->tape.count; i++) {
         sk_release(allocator, a->tape.data[i].x);
@@ -150,7 +165,7 @@ void sk_adjoint_end(sk_adjoint *a) {
 
 /* ---- forward ---- */
 
-static bool keep(sk_adjoint *a, const sk_run *run) {
+static bool keep(sk_adjoint *a, const sk_run *run, sk_vector second) {
     sk_allocator *allocator = &a->world->allocator;
     if (a->used == a->tape.count) {
         if (!SK_RESERVE(allocator, &a->tape, a->used + 1)) return false;
@@ -160,9 +175,17 @@ static bool keep(sk_adjoint *a, const sk_run *run) {
     sk_taped *t = &a->tape.data[a->used];
     if (!t->x || (a->keeps_v && !t->v)) return false;
     memcpy(t->x, run->vector[SK_X], a->reals * sizeof(real));
-    if (a->keeps_v) memcpy(t->v, run->vector[SK_V], a->reals * sizeof(real));
+    if (a->keeps_v) memcpy(t->v, run->vector[second], a->reals * sizeof(real));
     a->used++;
     return true;
+}
+
+/* Whether op k of a substep is the first of those that take one state from the tape. */
+static bool begins_group(const sk_op *body, size_t k, bool (*is)(const sk_op *op)) {
+    return is(&body[k]) && (!k || !is(&body[k - 1]));
+}
+static bool pulls(const sk_op *op) {
+    return op->kind == SK_OP_PULL;
 }
 
 size_t sk_adjoint_looks(const sk_plan *plan, size_t r) {
@@ -170,7 +193,9 @@ size_t sk_adjoint_looks(const sk_plan *plan, size_t r) {
     size_t count = 0;
     for (size_t k = 1; op->kind == SK_OP_REPEAT && k <= op->length; k++)
         if (reverse_of(&op[k]) == SK_REVERSE_SOLVE) return op->end;
-    for (size_t k = 1; op->kind == SK_OP_REPEAT && k <= op->length; k++) count += sk_adjoint_looks_at_state(&op[k]) && !sk_adjoint_looks_at_state(&op[k - 1]);
+    for (size_t k = 0; op->kind == SK_OP_REPEAT && k < op->length; k++)
+        count += (size_t)begins_group(op + 1, k, sk_adjoint_looks_at_state) +
+                 (size_t)begins_group(op + 1, k, sk_adjoint_projects) + (size_t)pulls(&op[1 + k]);
     return count * op->end;
 }
 
@@ -179,11 +204,13 @@ static bool run_op(sk_adjoint *a, sk_run *run, const sk_op *body, size_t *k, boo
     const sk_op *op = &body[*k];
     bool solves = reverse_of(op) == SK_REVERSE_SOLVE, looks = sk_adjoint_looks_at_state(op), good = true;
     if (looks && a->krylov.op) return true;
-    if (tape && looks && (!*k || !sk_adjoint_looks_at_state(op - 1))) good = keep(a, run);
+    if (tape && begins_group(body, *k, sk_adjoint_looks_at_state)) good = keep(a, run, SK_V);
+    if (tape && begins_group(body, *k, sk_adjoint_projects)) good = keep(a, run, SK_X0);
+    if (tape && pulls(op) && a->pulled) good = keep(a, run, SK_V);
     sk_run_ops(run, a->world->tasks, op, solves ? 1 + op->length : 1);
     if (!solves) return good;
     *k += op->length;
-    return !tape || keep(a, run);
+    return !tape || keep(a, run, SK_V);
 }
 
 skein_status sk_adjoint_run(sk_adjoint *a, double dt, bool tape, skein_error *error) {
@@ -231,8 +258,47 @@ static const real *take(sk_adjoint *a, sk_vector dst) {
 
 /* ---- combines ---- */
 
+/* X- and X0- of V += a (X - (X0 + b V)). */
+static void reverse_correction(sk_adjoint *a, const sk_op *op) {
+    double by = op->coefficient[0], back = op->coefficient[1];
+    real *v = a->of[op->dst];
+    add(a, a->of[op->source[0]], by, v);
+    add(a, a->of[op->source[1]], -by, v);
+    for (size_t i = 0; i < a->reals; i++) v[i] *= (real)(1 - by * back);
+}
+
+/* What of the effects of V += h (g + w f - (rate + w linear) V) a particle has, of whom V- starts at `bar`. */
+static double pulled_by(const sk_uniform_force *d, double w, const real *bar, const real *v, size_t stride) {
+    double sum = 0;
+    for (size_t k = 0; k < 3; k++)
+        sum += (double)bar[k * stride] *
+               (d->acceleration[k] + w * d->force[k] - (d->rate + w * d->linear) * (double)v[k * stride]);
+    return sum;
+}
+
+static void reverse_pull(sk_adjoint *a, const sk_op *op) {
+    const sk_uniform_force *u = op->rule;
+    const sk_particles *all = &a->world->particles;
+    const sk_rules *rules = &a->world->rules;
+    const real *before = a->pulled ? a->tape.data[--a->used].v : NULL;
+    real *v = a->of[SK_V];
+    for (size_t p = 0; p < all->count; p++) {
+        size_t stride, at = sk_adjoint_place(a, p, &stride), slot = all->slot_of[p];
+        double w = (double)a->inverse_mass[at];
+        if (!(w > 0) || (op->inner && (slot < op->first_slot || slot >= op->end_slot))) continue;
+        for (size_t e = 0; e < a->effect_count && before; e++)
+            for (size_t i = 0; i < rules->forces.count && a->effects[e].on_forces; i++)
+                if (sk_only_has_slot(&rules->forces.data[i]->only, slot))
+                    a->by_effect[e] += op->dt * pulled_by(&a->effects[e].force[i], w, v + at, before + at, stride);
+        for (size_t k = 0; k < 3; k++) v[at + k * stride] *= (real)(1 - op->dt * (u->rate + w * u->linear));
+    }
+}
+
 static void reverse_combine(sk_adjoint *a, const sk_op *op) {
     sk_reverse reverse = reverse_of(op);
+    if (op->kind == SK_OP_CORRECTION) reverse_correction(a, op);
+    if (op->kind == SK_OP_PULL) reverse_pull(a, op);
+    if (op->kind == SK_OP_CORRECTION || op->kind == SK_OP_PULL) return;
     if (reverse == SK_REVERSE_NOTHING || reverse == SK_REVERSE_BY_SOLVE || op->dst == SK_PREVIOUS) return;
     real *dst = a->of[op->dst];
     const real *bar = dst;
@@ -267,13 +333,24 @@ static size_t start_of(const sk_adjoint *a, const sk_op *body, size_t end) {
     return solve && solve >= body && solve + solve->length == &body[end - 1] ? (size_t)(solve - body) : end - 1;
 }
 
-static skein_status reverse_body(sk_adjoint *a, const sk_op *body, size_t count, double time, skein_error *error) {
+/* The projections of a substep, likewise. */
+static skein_status reverse_projections(sk_adjoint *a, const sk_op *body, size_t last, size_t iteration, double time,
+                                        size_t *count, skein_error *error) {
+    size_t first = last;
+    while (first && sk_adjoint_projects(&body[first - 1])) first--;
+    *count = last - first + 1;
+    return sk_adjoint_reverse_projections(a, &body[first], *count, iteration, &a->tape.data[--a->used], time, error);
+}
+
+static skein_status reverse_body(sk_adjoint *a, const sk_op *body, size_t count, size_t iteration, double time,
+                                 skein_error *error) {
     skein_status status = SKEIN_OK;
     for (size_t end = count; end > 0 && !status;) {
         size_t k = start_of(a, body, end), done = end - k;
         const sk_op *op = &body[k];
         if (reverse_of(op) == SK_REVERSE_SOLVE) status = sk_adjoint_reverse_solve(a, &a->tape.data[--a->used], time, error);
         else if (sk_adjoint_looks_at_state(op)) status = reverse_group(a, body, k, time, &done, error);
+        else if (sk_adjoint_projects(op)) status = reverse_projections(a, body, k, iteration, time, &done, error);
         else reverse_combine(a, op);
         end -= done;
     }
@@ -307,9 +384,9 @@ skein_status sk_adjoint_reverse(sk_adjoint *a, double start, double dt, skein_er
         size_t r = 0;
         while (r + plan->data[r].length + 1 < end) r += plan->data[r].length + 1;
         const sk_op *op = &plan->data[r];
-        if (op->kind != SK_OP_REPEAT) status = reverse_body(a, op, 1, start + dt, error);
+        if (op->kind != SK_OP_REPEAT) status = reverse_body(a, op, 1, 0, start + dt, error);
         for (size_t i = op->kind == SK_OP_REPEAT ? op->end : 0; i > 0 && !status; i--)
-            status = reverse_body(a, op + 1, op->length, start + dt * (double)i / (double)op->end, error);
+            status = reverse_body(a, op + 1, op->length, i - 1, start + dt * (double)i / (double)op->end, error);
         end = r;
     }
     sk_float_mode_leave(mode);

@@ -15,7 +15,8 @@ typedef struct sk_effect {
     bool on_forces;              /* on any */
 } sk_effect;
 
-/* X and V, where forces were looked at; of an implicit solve, what it has found. */
+/* X and V, where forces were looked at; of an implicit solve, what it has found; of projections, X before the first of a
+ * substep, and X0 in the place of V. */
 typedef struct sk_taped {
     real *x, *v;
 } sk_taped;
@@ -28,6 +29,8 @@ typedef struct sk_krylov {
     double *by_effect;
     size_t products; /* so far */
 } sk_krylov;
+
+typedef struct sk_projections sk_projections; /* what going through projections takes: see adjoint_project.c */
 
 typedef struct sk_adjoint {
     skein_world *world;
@@ -46,12 +49,14 @@ typedef struct sk_adjoint {
     bool unit_made; /* for the present state; */
     double linear_work; /* and X times them */
     bool keeps_v;  /* the tape has V: forces, or what is asked of them, depend on it */
+    bool pulled;   /* the tape has X and V before each op that pulls: a field changes forces */
     struct {
         sk_taped *data;
         size_t count, capacity;
     } tape;
     size_t used; /* of the tape */
     sk_krylov krylov;
+    sk_projections *projections; /* NULL: the plan has none */
     sk_uniform_force *forces; /* each of the world's as it is */
     sk_effect *effects;
     size_t effect_count;
@@ -83,6 +88,19 @@ bool sk_adjoint_begin_solve(sk_adjoint *a, const sk_op *solve);
 void sk_adjoint_end_solve(sk_adjoint *a);
 /* An implicit solve that found `at`: adjoints of X and V after it become those of X0 and V0. */
 skein_status sk_adjoint_reverse_solve(sk_adjoint *a, const sk_taped *at, double time, skein_error *error);
+/* Whether an op is one of projections: of a sweep, or of its multipliers. */
+static inline bool sk_adjoint_projects(const sk_op *op) {
+    return op->kind == SK_OP_PROJECT || op->kind == SK_OP_MULTIPLIER;
+}
+/* Why a batch cannot be followed through projections; NULL: it can. */
+const char *sk_adjoint_refuses(const sk_batch *batch);
+extern const sk_constraint_type sk_attachment;
+/* Memory for a plan's projections, and its end. */
+bool sk_adjoint_begin_projections(sk_adjoint *a);
+void sk_adjoint_end_projections(sk_adjoint *a);
+/* The projections of a substep: X- after them becomes X- before them, X0- and fields get their part. */
+skein_status sk_adjoint_reverse_projections(sk_adjoint *a, const sk_op *ops, size_t count, size_t iteration,
+                                            const sk_taped *at, double time, skein_error *error);
 /* The number of vectors' numbers, zeroed. */
 real *sk_adjoint_new_numbers(sk_adjoint *a);
 

@@ -130,7 +130,7 @@ class Fits(unittest.TestCase):
                 (skein.ValueFault, "named twice", [STRETCH, STRETCH], {}),
                 (skein.ValueFault, "which fields are to be found", [], {}),
                 (skein.NameFault, "is not one of those that vary", [STRETCH], {"bounds": {SHEAR: (1, 2)}}),
-                (skein.ValueFault, "has no gradient", [STRETCH], {"sets": {"method.type": "xpbd"}}),
+                (skein.ValueFault, "has no gradient", [STRETCH], {"sets": {"bodies.0.stretch.tether": 1.02}}),
                 (skein.ValueFault, "the run blew up", [STRETCH], {"sets": {STRETCH: 1e7}}),
                 (skein.SkeinError, "density shapes what is already built", ["bodies.0.density"], {}),
                 (skein.ValueFault, "iterations: 0: expected a whole number", [STRETCH], {"iterations": 0}),

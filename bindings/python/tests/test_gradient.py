@@ -26,7 +26,13 @@ def weigh(positions, velocities):
 
 class Gradients(unittest.TestCase):
     def test_agrees_with_differences(self):
-        world, steps, rng = skein.World.from_scene(CLOTH), 12, np.random.default_rng(21)
+        for method in "symplectic_euler", "xpbd":
+            with self.subTest(method):
+                self.agrees_with_differences(method)
+
+    def agrees_with_differences(self, method):
+        world = skein.World.from_scene(CLOTH, {"method.type": method})
+        steps, rng = 12, np.random.default_rng(21)
         self.assertEqual(skein.precision, "double")
         asked = []
 
