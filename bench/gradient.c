@@ -73,5 +73,6 @@ int main(int count, char **words) {
     int times = count > 2 ? atoi(words[2]) : 5;
     compare("symplectic_euler", 16, frames ? frames : 1, times);
     compare("backward_euler", 2, frames ? frames : 1, times);
+    compare("xpbd", 16, frames ? frames : 1, times);
     return 0;
 }

@@ -11,9 +11,13 @@
  *   X- += H (dl u - (p/D) (c d + 2 (1 + c) dl W g)) - (p/D) (1 + c) g,    X0- += (p/D) c g,    l- -= (p/D) a
  *   a- = -(p/D) (l + dl),    c- = -(p/D) (g d + dl S)
  *
- * one product with the matrix of second derivatives H. That of a distance, and of kinds whose C is the length of a linear
- * function L = sum of q x, is said here; for all others it is how the gradient changes along the direction, from a little to
- * either side. C = |L| has a kink at L = 0, which has no part in a move without a multiplier, -W q L/D. */
+ * one product with the matrix of second derivatives H. Where C = |L| - R is the length of a linear function L = sum of q x, as of a
+ * distance and of most bending, g = q n with n = L/|L|, and with T = sum of q u and F = sum of q d all of it is
+ *
+ *   X- += q (dl/|L| (T - n n T) - (p/D) (c/|L| (F - n n F) + (1 + c) n))
+ *
+ * for H W g is 0. For all others H z is how the gradient changes along z, from a little to either side. C = |L| has a kink at L = 0,
+ * which has no part in a move without a multiplier, -W q L/D. */
 #include <math.h>
 #include <string.h>
 
@@ -21,12 +25,17 @@
 #include "constraints/sweep.h"
 #include "world/adjoint.h"
 
-typedef enum sort_of_kind { BY_DISTANCE, BY_SUM, BY_DIFFERENCES } sort_of_kind;
+typedef enum sort_of_kind { BY_LENGTH, BY_DIFFERENCES } sort_of_kind;
 
 /* How a projection ended: its particles stayed, or went to C = 0 as far as it is soft, or a one-sided one let go. */
 typedef enum outcome { STAYED, MOVED, LET_GO } outcome;
 
-/* What a projection found. `value` is C, of a linear kind's |L|. */
+/* What a projection of C = |L| - R found. */
+typedef struct found_length {
+    double n[3], length, multiplier, change, below; // 0 below: nothing moved
+} found_length;
+
+/* What any other found. */
 typedef struct found {
     outcome outcome;
     uint32_t element;
@@ -40,7 +49,7 @@ typedef struct projected {
     sort_of_kind sort;
     uint32_t *element;          /* of each lane; or NOBODY */
     double *multiplier, *bar;   /* of each lane, and the adjoints */
-    double *share;              /* of a linear kind, q of each element's particles */
+    double *share;              /* q of each element's particles, but for a distance's, which are 1 and -1 */
 } projected;
 
 struct sk_projections {
@@ -59,8 +68,8 @@ typedef struct pass {
     const sk_sweep *sweep;
     projected *p;
     double time, per_step, gamma;
-    bool keeps;
-    size_t arity, bytes; /* of a record */
+    bool keeps, looks_back; /* at X0: it is damped, or that is asked for */
+    size_t arity, bytes;    /* of a record */
     double by_softness, by_gamma; /* sums of a times a-, and of c- */
     skein_error *error;
 } pass;
@@ -70,7 +79,7 @@ enum { NOBODY = UINT32_MAX };
 /* ---- what there is to go through ---- */
 
 static sort_of_kind sort_of(const sk_batch *batch) {
-    return batch->type == &sk_distance ? BY_DISTANCE : batch->type->linear ? BY_SUM : BY_DIFFERENCES;
+    return batch->type == &sk_distance || batch->type->linear ? BY_LENGTH : BY_DIFFERENCES;
 }
 
 /* The lanes of a sweep. */
@@ -107,11 +116,12 @@ static bool find_projected(sk_adjoint *a, const sk_batch *batch) {
     p->element = sk_allocate(allocator, batch->lane_count * sizeof *p->element);
     p->multiplier = sk_allocate(allocator, batch->lane_count * sizeof *p->multiplier);
     p->bar = sk_allocate(allocator, batch->lane_count * sizeof *p->bar);
-    p->share = sk_allocate(allocator, (p->sort == BY_SUM ? batch->arity * batch->count : 1) * sizeof *p->share);
-    if (!p->element || !p->multiplier || !p->bar || !p->share) return false;
+    bool shares = p->sort == BY_LENGTH && batch->type != &sk_distance;
+    if (shares) p->share = sk_allocate(allocator, batch->arity * batch->count * sizeof *p->share);
+    if (!p->element || !p->multiplier || !p->bar || (shares && !p->share)) return false;
     for (size_t l = 0; l < batch->lane_count; l++) p->element[l] = NOBODY;
     for (size_t e = 0; e < batch->count; e++) p->element[batch->lane[e]] = (uint32_t)e;
-    return p->sort != BY_SUM || find_shares(a, p);
+    return !shares || find_shares(a, p);
 }
 
 bool sk_adjoint_begin_projections(sk_adjoint *a) {
@@ -185,43 +195,21 @@ static double softness_of(const pass *s, size_t lane) {
     return (double)s->p->batch->lane_compliance[lane] * s->per_step;
 }
 
-/* C, g and S, as a projection finds them. `sides` says what the kind is besides. */
+/* C, g and S, as a projection finds them. */
 static bool look(const pass *s, found *f, bool *one_sided, double *by_time) {
     const sk_batch *batch = s->p->batch;
     const uint32_t *slot = slots_of(s, f->element);
     const sk_vec4 *x = s->a->projections->x;
     *one_sided = false, *by_time = 0, f->weight = 0;
     take(x, slot, s->arity, f->x);
-    if (s->p->sort == BY_DISTANCE) {
-        double way[3], length;
-        for (int k = 0; k < 3; k++) way[k] = f->x[0][k] - f->x[1][k];
-        length = sqrt(dot(way, way));
-        f->value = length - (double)batch->rest[f->element];
-        for (int k = 0; k < 3; k++) {
-            f->gradient[0][k] = length > 0 ? way[k] / length : 0;
-            f->gradient[1][k] = -f->gradient[0][k];
-        }
-        if (length > 0) f->weight = (double)x[slot[0]].w + (double)x[slot[1]].w;
-    } else if (s->p->sort == BY_SUM) {
-        const double *q = s->p->share + s->arity * f->element;
-        double sum[3] = {0};
-        for (size_t i = 0; i < s->arity; i++)
-            for (int k = 0; k < 3; k++) sum[k] += q[i] * f->x[i][k];
-        f->value = sqrt(dot(sum, sum));
-        for (size_t i = 0; i < s->arity; i++) {
-            for (int k = 0; k < 3; k++) f->gradient[i][k] = f->value > 0 ? q[i] * sum[k] / f->value : 0;
-            f->weight += (double)x[slot[i]].w * q[i] * q[i];
-        }
-    } else {
-        sk_constraint_answer answer;
-        if (!batch->type->evaluate(batch, s->time, x, f->element, s->arity, &answer, f->gradient))
-            return !sk_fail_memory(s->error, "a gradient");
-        if (answer.is_energy)
-            return !sk_fail(s->error, SKEIN_ERROR_VALUE, batch->label, "an energy has no gradient under projections yet");
-        *one_sided = answer.one_sided, *by_time = answer.by_time, f->value = answer.value;
-        for (size_t i = 0; i < s->arity; i++) f->weight += (double)x[slot[i]].w * dot(f->gradient[i], f->gradient[i]);
-        if (!isfinite(f->weight + f->value)) f->weight = 0, f->value = 0; // what is not finite is left alone
-    }
+    sk_constraint_answer answer;
+    if (!batch->type->evaluate(batch, s->time, x, f->element, s->arity, &answer, f->gradient))
+        return !sk_fail_memory(s->error, "a gradient");
+    if (answer.is_energy)
+        return !sk_fail(s->error, SKEIN_ERROR_VALUE, batch->label, "an energy has no gradient under projections yet");
+    *one_sided = answer.one_sided, *by_time = answer.by_time, f->value = answer.value;
+    for (size_t i = 0; i < s->arity; i++) f->weight += (double)x[slot[i]].w * dot(f->gradient[i], f->gradient[i]);
+    if (!isfinite(f->weight + f->value)) f->weight = 0, f->value = 0; // what is not finite is left alone
     return true;
 }
 
@@ -233,15 +221,6 @@ static double change_since_start(const pass *s, const found *f) {
     for (size_t i = 0; i < s->arity; i++)
         for (int k = 0; k < 3; k++) sum += f->gradient[i][k] * (f->x[i][k] - x0[i][k]);
     return sum;
-}
-
-/* What has a kink where it is: its multiplier from before pulls along the direction of an L that is 0 but for rounding. */
-static bool has_kink(const pass *s, const found *f) {
-    double size = 0;
-    const double *q = s->p->share + s->arity * f->element;
-    if (s->p->sort != BY_SUM) return false;
-    for (size_t i = 0; i < s->arity; i++) size += fabs(q[i]) * sqrt(dot(f->x[i], f->x[i]));
-    return f->multiplier != 0 && f->value <= 1e-13 * size;
 }
 
 /* One projection, as the plan's kernels do it. */
@@ -257,11 +236,6 @@ static bool project(pass *s, size_t lane, found *f) {
                         "damping of a constraint that depends on time has no gradient yet");
     f->below = (1 + s->gamma) * f->weight + soft;
     if (!(f->below > 0) || !(f->weight > 0) || (one_sided && f->value >= 0 && !(f->multiplier > 0))) return true;
-    if (has_kink(s, f))
-        return !sk_fail(s->error, SKEIN_ERROR_VALUE, s->p->batch->label,
-                        "it is straight to the last digit at %.6g s, where its multiplier has no derivative: begin a "
-                        "little bent, or let the method have 1 iteration",
-                        s->time);
     f->outcome = MOVED;
     f->change = (-f->value - soft * f->multiplier - (s->gamma > 0 ? s->gamma * change_since_start(s, f) : 0)) / f->below;
     if (one_sided && s->keeps && f->multiplier + f->change < 0) f->outcome = LET_GO, f->change = -f->multiplier;
@@ -307,42 +281,7 @@ static bool differ(const pass *s, const found *f, double (*z)[3], double (*out)[
                     "element %u has a kink where it is at %.6g s, and no derivative", (unsigned)f->element, s->time);
 }
 
-/* out = H z. */
-static bool curve(const pass *s, const found *f, double (*z)[3], double (*out)[3]) {
-    if (s->p->sort == BY_DIFFERENCES) return differ(s, f, z, out);
-    double t[3] = {0};
-    if (s->p->sort == BY_DISTANCE) {
-        double length = f->value + (double)s->p->batch->rest[f->element];
-        for (int k = 0; k < 3; k++) t[k] = z[0][k] - z[1][k];
-        double along = dot(f->gradient[0], t);
-        for (int k = 0; k < 3; k++) {
-            out[0][k] = (t[k] - along * f->gradient[0][k]) / length;
-            out[1][k] = -out[0][k];
-        }
-        return true;
-    }
-    const double *q = s->p->share + s->arity * f->element;
-    double sum[3] = {0}, n[3];
-    for (size_t i = 0; i < s->arity; i++)
-        for (int k = 0; k < 3; k++) t[k] += q[i] * z[i][k], sum[k] += q[i] * f->x[i][k];
-    for (int k = 0; k < 3; k++) n[k] = sum[k] / f->value;
-    double along = dot(n, t);
-    for (size_t i = 0; i < s->arity; i++)
-        for (int k = 0; k < 3; k++) out[i][k] = q[i] * (t[k] - along * n[k]) / f->value;
-    return true;
-}
-
 /* ---- one projection in reverse ---- */
-
-/* A linear kind where L is 0 to the last bit: x += -W q L/D alone. */
-static void reverse_straight(const pass *s, const found *f, double (*u)[3], double (*bar)[3]) {
-    const double *q = s->p->share + s->arity * f->element;
-    double t[3] = {0};
-    for (size_t i = 0; i < s->arity; i++)
-        for (int k = 0; k < 3; k++) t[k] += q[i] * u[i][k];
-    for (size_t i = 0; i < s->arity; i++)
-        for (int k = 0; k < 3; k++) bar[i][k] -= q[i] * t[k] / f->below;
-}
 
 static bool reverse_moved(pass *s, size_t lane, const found *f, double (*u)[3], double (*bar)[3], double along) {
     sk_projections *all = s->a->projections;
@@ -355,7 +294,7 @@ static bool reverse_moved(pass *s, size_t lane, const found *f, double (*u)[3], 
         for (int k = 0; k < 3; k++)
             z[i][k] = f->change * u[i][k] - share * (s->gamma * (f->x[i][k] - x0[i][k]) +
                                                      2 * stiff * f->change * (double)all->x[slot[i]].w * f->gradient[i][k]);
-    if (!curve(s, f, z, turned)) return false;
+    if (!differ(s, f, z, turned)) return false;
     for (size_t i = 0; i < s->arity; i++) {
         sk_vec4 *start = &all->bar_start[slot[i]];
         double by_start = share * s->gamma;
@@ -381,10 +320,111 @@ static bool reverse(pass *s, size_t lane, const found *f) {
             u[i][k] = (double)all->x[slot[i]].w * bar[i][k];
             along += f->gradient[i][k] * u[i][k];
         }
-    if (s->p->sort == BY_SUM && !(f->value > 0)) reverse_straight(s, f, u, bar);
-    else if (!reverse_moved(s, lane, f, u, bar, along)) return false;
+    if (!reverse_moved(s, lane, f, u, bar, along)) return false;
     for (size_t i = 0; i < s->arity; i++) put(all->bar, slot[i], bar[i]);
     return true;
+}
+
+/* ---- constraints of a length, which are most: with `arity` a constant where this is inlined ---- */
+
+/* q of an element's particles. */
+static inline const double *shares_of(const pass *s, uint32_t element, size_t arity) {
+    static const double of_distance[2] = {1, -1};
+    return s->p->share ? s->p->share + arity * element : of_distance;
+}
+
+static inline void sum_of(const sk_vec4 *vector, const uint32_t *slot, const double *q, size_t arity, double sum[3]) {
+    sum[0] = sum[1] = sum[2] = 0;
+    for (size_t i = 0; i < arity; i++) {
+        const sk_vec4 *x = &vector[slot[i]];
+        sum[0] += q[i] * (double)x->x, sum[1] += q[i] * (double)x->y, sum[2] += q[i] * (double)x->z;
+    }
+}
+
+/* F: how far L has come since the substep's start. */
+static inline void way_of(const pass *s, const uint32_t *slot, const double *q, size_t arity, const found_length *f, double way[3]) {
+    sum_of(s->a->projections->start, slot, q, arity, way);
+    for (int k = 0; k < 3; k++) way[k] = f->length * f->n[k] - way[k];
+}
+
+/* Whether the multiplier from before pulls along an L that is 0 but for rounding: no derivative has that. */
+static bool has_kink(const pass *s, const uint32_t *slot, const double *q, const found_length *f) {
+    double size = 0;
+    if (f->multiplier == 0 || !s->p->share) return false;
+    for (size_t i = 0; i < s->arity; i++) {
+        sk_vec4 x = s->a->projections->x[slot[i]];
+        size += fabs(q[i]) * (fabs((double)x.x) + fabs((double)x.y) + fabs((double)x.z));
+    }
+    return f->length <= 1e-13 * size;
+}
+
+static inline bool project_length(pass *s, size_t lane, uint32_t element, size_t arity, found_length *f) {
+    const sk_batch *batch = s->p->batch;
+    const uint32_t *slot = batch->slot + arity * element;
+    const double *q = shares_of(s, element, arity), rest = s->p->share ? 0 : (double)batch->rest[element];
+    sk_vec4 *x = s->a->projections->x;
+    double soft = softness_of(s, lane), weight = 0, sum[3], since = 0;
+    sum_of(x, slot, q, arity, sum);
+    for (size_t i = 0; i < arity; i++) weight += (double)x[slot[i]].w * q[i] * q[i];
+    f->length = sqrt(dot(sum, sum));
+    double inverse = f->length > 0 ? 1 / f->length : 0;
+    for (int k = 0; k < 3; k++) f->n[k] = sum[k] * inverse;
+    f->multiplier = s->keeps ? s->p->multiplier[lane] : 0;
+    f->change = 0;
+    f->below = weight > 0 && (s->p->share || f->length > 0) && soft < SK_UNBOUNDED ? (1 + s->gamma) * weight + soft : 0;
+    if (!(f->below > 0)) return true;
+    if (has_kink(s, slot, q, f))
+        return !sk_fail(s->error, SKEIN_ERROR_VALUE, batch->label,
+                        "element %u is straight to the last digit at %.6g s, where its multiplier has no derivative: "
+                        "begin a little bent, or let the method have 1 iteration",
+                        (unsigned)element, s->time);
+    if (s->gamma > 0) {
+        double way[3];
+        way_of(s, slot, q, arity, f, way);
+        since = dot(f->n, way);
+    }
+    f->change = (rest - f->length - soft * f->multiplier - s->gamma * since) / f->below;
+    for (size_t i = 0; i < arity; i++) {
+        sk_vec4 *to = &x[slot[i]];
+        double by = (double)to->w * q[i] * f->change;
+        to->x += (real)(by * f->n[0]), to->y += (real)(by * f->n[1]), to->z += (real)(by * f->n[2]);
+    }
+    if (s->keeps) s->p->multiplier[lane] += f->change;
+    return true;
+}
+
+static inline void reverse_length(pass *s, size_t lane, uint32_t element, size_t arity, const found_length *f) {
+    sk_projections *all = s->a->projections;
+    const uint32_t *slot = s->p->batch->slot + arity * element;
+    const double *q = shares_of(s, element, arity);
+    double t[3] = {0}, by[3], way[3], soft = softness_of(s, lane), weight = 0;
+    if (!(f->below > 0)) return;
+    for (size_t i = 0; i < arity; i++) {
+        const sk_vec4 *bar = &all->bar[slot[i]];
+        double w = (double)all->x[slot[i]].w * q[i];
+        t[0] += w * (double)bar->x, t[1] += w * (double)bar->y, t[2] += w * (double)bar->z;
+        weight += w * q[i];
+    }
+    double nt = dot(f->n, t), share = (nt + (s->keeps ? s->p->bar[lane] : 0)) / f->below, stiff = 1 + s->gamma;
+    double turn = f->length > 0 ? f->change / f->length : -1 / f->below; // there n is 0
+    for (int k = 0; k < 3; k++) by[k] = turn * (t[k] - nt * f->n[k]) - share * stiff * f->n[k];
+    if (s->looks_back) {
+        way_of(s, slot, q, arity, f, way);
+        double since = dot(f->n, way), back = f->length > 0 ? share * s->gamma / f->length : 0;
+        for (int k = 0; k < 3; k++) by[k] -= back * (way[k] - since * f->n[k]);
+        for (size_t i = 0; i < arity && s->gamma > 0; i++) {
+            sk_vec4 *start = &all->bar_start[slot[i]];
+            double c = share * s->gamma * q[i];
+            start->x += (real)(c * f->n[0]), start->y += (real)(c * f->n[1]), start->z += (real)(c * f->n[2]);
+        }
+        s->by_gamma -= share * (since + f->change * weight);
+    }
+    for (size_t i = 0; i < arity; i++) {
+        sk_vec4 *bar = &all->bar[slot[i]];
+        bar->x += (real)(q[i] * by[0]), bar->y += (real)(q[i] * by[1]), bar->z += (real)(q[i] * by[2]);
+    }
+    if (s->keeps) s->p->bar[lane] -= share * soft;
+    s->by_softness -= share * soft * (f->multiplier + f->change);
 }
 
 /* ---- ops ---- */
@@ -406,42 +446,82 @@ static pass begin_pass(sk_adjoint *a, const sk_op *op, double time, skein_error 
               .keeps = op->source[1] == SK_X0, .arity = sweep->batch->arity, .error = error};
     s.per_step = op->coefficient[0] / (op->dt * op->dt);
     s.gamma = s.keeps ? sk_batch_damping_time(sweep->batch) / op->dt : 0;
-    s.bytes = offsetof(found, x) + 2 * s.arity * sizeof(double[3]);
+    bool any = s.p->sort == BY_DIFFERENCES;
+    s.bytes = any ? offsetof(found, x) + 2 * s.arity * sizeof(double[3]) : sizeof(found_length);
+    s.looks_back = s.gamma > 0;
+    for (size_t i = 0; i < a->effect_count; i++) s.looks_back |= a->effects[i].damping[number] != 0;
     return s;
 }
 
-/* A record has only as many particles as its element, so that the gradients stand behind those. */
-static bool put_record(pass *s, const found *f) {
+/* Room for a record, at the end of all. */
+static char *new_record(pass *s) {
     sk_projections *all = s->a->projections;
+    char *at = all->records + all->used;
+    all->used += s->bytes;
+    return at;
+}
+static char *last_record(pass *s) {
+    sk_projections *all = s->a->projections;
+    return all->records + (all->used -= s->bytes);
+}
+
+/* One has only as many particles as its element, so that the gradients stand behind those. */
+static void put_record(pass *s, const found *f) {
     size_t head = offsetof(found, x), part = s->arity * sizeof(double[3]);
-    if (!sk_reserve(&s->a->world->allocator, (void **)&all->records, &all->capacity, all->used + s->bytes, 1))
-        return !sk_fail_memory(s->error, "a gradient");
-    char *to = all->records + all->used;
+    char *to = new_record(s);
     memcpy(to, f, head);
     memcpy(to + head, f->x, part);
     memcpy(to + head + part, f->gradient, part);
-    all->used += s->bytes;
-    return true;
 }
 
 static void take_record(pass *s, found *f) {
-    sk_projections *all = s->a->projections;
     size_t head = offsetof(found, x), part = s->arity * sizeof(double[3]);
-    const char *from = all->records + (all->used -= s->bytes);
+    const char *from = last_record(s);
     memcpy(f, from, head);
     memcpy(f->x, from + head, part);
     memcpy(f->gradient, from + head + part, part);
 }
 
+static bool run_element(pass *s, size_t lane, uint32_t element) {
+    if (s->p->sort == BY_LENGTH) {
+        found_length *f = (found_length *)(void *)new_record(s);
+        return s->arity == 2   ? project_length(s, lane, element, 2, f)
+               : s->arity == 3 ? project_length(s, lane, element, 3, f)
+                               : project_length(s, lane, element, s->arity, f);
+    }
+    found f;
+    f.element = element;
+    if (!project(s, lane, &f)) return false;
+    put_record(s, &f);
+    return true;
+}
+
+static bool reverse_element(pass *s, size_t lane, uint32_t element) {
+    if (s->p->sort == BY_LENGTH) {
+        const found_length *f = (const found_length *)(const void *)last_record(s);
+        if (s->arity == 2) reverse_length(s, lane, element, 2, f);
+        else if (s->arity == 3) reverse_length(s, lane, element, 3, f);
+        else reverse_length(s, lane, element, s->arity, f);
+        return true;
+    }
+    found f;
+    take_record(s, &f);
+    return reverse(s, lane, &f);
+}
+
 static bool run_op(sk_adjoint *a, const sk_op *op, double time, skein_error *error) {
     pass s = begin_pass(a, op, time, error);
+    sk_projections *all = a->projections;
     size_t first = s.sweep->first_lane, count = lanes_of(s.sweep);
-    bool good = true;
+    bool good = true, projects = op->kind == SK_OP_PROJECT;
+    size_t most = all->used + (projects ? s.sweep->element_count * s.bytes : 0);
+    if (!sk_reserve(&a->world->allocator, (void **)&all->records, &all->capacity, most, 1))
+        return !sk_fail_memory(error, "a gradient");
     for (size_t l = 0; l < count && good; l++) {
-        found f = {.element = s.p->element[first + l]};
-        if (f.element == NOBODY || !has_lane(op, s.sweep, l)) continue;
-        if (op->kind == SK_OP_MULTIPLIER) s.p->multiplier[first + l] = 0;
-        else good = project(&s, first + l, &f) && put_record(&s, &f);
+        uint32_t element = s.p->element[first + l];
+        if (element == NOBODY || !has_lane(op, s.sweep, l)) continue;
+        if (projects) good = run_element(&s, first + l, element);
+        else s.p->multiplier[first + l] = 0;
     }
     return good;
 }
@@ -462,14 +542,10 @@ static bool reverse_op(sk_adjoint *a, const sk_op *op, double time, skein_error 
     size_t first = s.sweep->first_lane;
     bool good = true;
     for (size_t l = lanes_of(s.sweep); l-- > 0 && good;) {
-        found f = {.element = s.p->element[first + l]};
-        if (f.element == NOBODY || !has_lane(op, s.sweep, l)) continue;
-        if (op->kind == SK_OP_MULTIPLIER) {
-            s.p->bar[first + l] = 0;
-            continue;
-        }
-        take_record(&s, &f);
-        good = reverse(&s, first + l, &f);
+        uint32_t element = s.p->element[first + l];
+        if (element == NOBODY || !has_lane(op, s.sweep, l)) continue;
+        if (op->kind == SK_OP_PROJECT) good = reverse_element(&s, first + l, element);
+        else s.p->bar[first + l] = 0;
     }
     if (op->kind != SK_OP_MULTIPLIER) add_effects(&s);
     return good;
