@@ -585,7 +585,7 @@ static void what_has_no_gradient_says_so(void **state) {
     fails(world, NULL, "tether");
     OK(world, skein_set_path(world, "bodies.0.stretch.tether", skein_number((double)INFINITY)));
     OK(world, skein_constraint_add(world, "attachment", (const uint32_t[]){10, 0, 1, 4}, 1, NULL, NULL));
-    fails(world, NULL, "0 at rest");
+    fails(world, NULL, "a length that is 0");
     OK(world, skein_remove(world, skein_object_at(world, SKEIN_CONSTRAINT, 0)));
     OK(world, skein_constraint_add(world, "energy", (const uint32_t[]){10, 0}, 1, NULL, NULL));
     fails(world, NULL, "an energy has no gradient");

@@ -1,5 +1,6 @@
 /* The kinds of ops, a row each: with the op's own members this is all that the code that runs, fuses, explains,
- * reverses or translates a plan knows of an op. Functions that statements call are in .glsl files. */
+ * reverses or translates a plan knows of an op. Functions that statements call are in .glsl files. In reverse a sum that also
+ * reads dst is a correction, one whose rule is a uniform force a pull, and elastic ops that write X are projections. */
 #include "plan/op.h"
 
 #define BIT(vector) (1u << (vector))
@@ -42,7 +43,7 @@ const sk_op_type sk_op_types[SK_OP_KIND_COUNT] = {
                    .reads = SK_USES_SOURCES, .writes = SK_USES_DST, .card = {.statement = "    $d.xyz = $s;\n"}},
     // on a card too the same operations that predicted p, so that a p that nothing has moved since gives exactly 0
     [SK_OP_CORRECTION] = {"combine", &sk_combine_correction, "$d + $1 ($p - $q$b)", .arithmetic = true,
-                          .reads = SK_USES_SOURCES | SK_USES_DST, .writes = SK_USES_DST,
+                          .reverse = SK_REVERSE_SUM, .reads = SK_USES_SOURCES | SK_USES_DST, .writes = SK_USES_DST,
                           .card = {.statement = "    $d.xyz = $d.xyz + op@[0].x * ($p.xyz - $b);\n"}},
     [SK_OP_KICK] = {"combine", &sk_combine_kick, "$p + $1 w $q", .arithmetic = true, .reverse = SK_REVERSE_KICK,
                     .reads = SK_USES_SOURCES | X, .writes = SK_USES_DST,
@@ -55,8 +56,8 @@ const sk_op_type sk_op_types[SK_OP_KIND_COUNT] = {
     [SK_OP_LEAD] = {"combine", &sk_combine_lead, "$p + $1 $q where pinned", .arithmetic = true,
                     .reads = SK_USES_SOURCES | X, .writes = SK_USES_DST,
                     .card = {.statement = "    if (!(X.w > 0)) $d.xyz += op@[0].x * $q.xyz;\n"}},
-    [SK_OP_PULL] = {"combine", &sk_combine_pull, "V + h ($u)", SK_RULE_UNIFORM, .arithmetic = true, .reads = X | V,
-                    .writes = V},
+    [SK_OP_PULL] = {"combine", &sk_combine_pull, "V + h ($u)", SK_RULE_UNIFORM, .arithmetic = true,
+                    .reverse = SK_REVERSE_SUM, .reads = X | V, .writes = V},
     [SK_OP_PREDICT] = {"combine", &sk_combine_predict, "X + h V, V + h w F; $o", .arithmetic = true,
                        .reads = X | V | F, .writes = X | V | X0 | SK_USES_THIRD,
                        .card = {.statement = "    V.xyz = V.xyz + op@[0].w * X.w * F.xyz;\n$o", .other = set_out}},
@@ -102,8 +103,8 @@ const sk_op_type sk_op_types[SK_OP_KIND_COUNT] = {
 
     /* ---- constraints ---- */
     [SK_OP_FORCE] = {"force", .reverse = SK_REVERSE_ELASTIC},
-    [SK_OP_PROJECT] = {.name = "project"},
-    [SK_OP_MULTIPLIER] = {.name = "multiplier"},
+    [SK_OP_PROJECT] = {"project", .reverse = SK_REVERSE_ELASTIC},
+    [SK_OP_MULTIPLIER] = {"multiplier", .reverse = SK_REVERSE_NOTHING},
     [SK_OP_LIMIT] = {.name = "limit"},
 
     /* ---- contact ---- */

@@ -22,10 +22,18 @@ static sk_reverse reverse_of(const sk_op *op) {
     return sk_op_type_of(op)->reverse;
 }
 
+/* Whether an op is V += h (a uniform force), or V += a (X - (X0 + b V)). */
+static bool pulls(const sk_op *op) {
+    return reverse_of(op) == SK_REVERSE_SUM && sk_op_type_of(op)->rule == SK_RULE_UNIFORM;
+}
+static bool corrects(const sk_op *op) {
+    return reverse_of(op) == SK_REVERSE_SUM && sk_op_type_of(op)->reads & SK_USES_DST;
+}
+
 static bool is_elementary(const sk_op *op) {
     sk_uniform_force sum = {.label = ""};
-    if (op->inner && op->kind != SK_OP_PULL) return false;
-    if (sk_adjoint_projects(op) || op->kind == SK_OP_PULL || op->kind == SK_OP_CORRECTION) return true;
+    if (op->inner && !pulls(op)) return false;
+    if (sk_adjoint_projects(op)) return !((const sk_sweep *)op->rule)->batch->type->enclose;
     switch (reverse_of(op)) {
     case SK_REVERSE_NOT: return false;
     case SK_REVERSE_SOLVE: return op->kernel == sk_newton_solve;
@@ -39,19 +47,11 @@ static bool is_elementary(const sk_op *op) {
     }
 }
 
-/* Of projections, whether their kind of constraint can be followed. */
-static skein_status check_projections(const sk_op *op, skein_error *error) {
-    const char *why = sk_adjoint_projects(op) ? sk_adjoint_refuses(((const sk_sweep *)op->rule)->batch) : NULL;
-    return why ? sk_fail(error, SKEIN_ERROR_VALUE, op->label, "%s", why) : SKEIN_OK;
-}
-
 static skein_status check_plan(const sk_plan *plan, skein_error *error) {
     size_t solve_end = 0;
     for (size_t r = 0; r < plan->count; r++) {
         char line[200];
         const sk_op *op = &plan->data[r];
-        skein_status status = check_projections(op, error);
-        if (status) return status;
         if (reverse_of(op) == SK_REVERSE_SOLVE) solve_end = r + op->length + 1;
         if (is_elementary(op) || (r < solve_end && reverse_of(op) == SK_REVERSE_BY_SOLVE)) continue;
         sk_op_describe(&plan->data[r], line, sizeof line);
@@ -184,9 +184,6 @@ static bool keep(sk_adjoint *a, const sk_run *run, sk_vector second) {
 static bool begins_group(const sk_op *body, size_t k, bool (*is)(const sk_op *op)) {
     return is(&body[k]) && (!k || !is(&body[k - 1]));
 }
-static bool pulls(const sk_op *op) {
-    return op->kind == SK_OP_PULL;
-}
 
 size_t sk_adjoint_looks(const sk_plan *plan, size_t r) {
     const sk_op *op = &plan->data[r];
@@ -296,9 +293,9 @@ static void reverse_pull(sk_adjoint *a, const sk_op *op) {
 
 static void reverse_combine(sk_adjoint *a, const sk_op *op) {
     sk_reverse reverse = reverse_of(op);
-    if (op->kind == SK_OP_CORRECTION) reverse_correction(a, op);
-    if (op->kind == SK_OP_PULL) reverse_pull(a, op);
-    if (op->kind == SK_OP_CORRECTION || op->kind == SK_OP_PULL) return;
+    if (corrects(op)) reverse_correction(a, op);
+    if (pulls(op)) reverse_pull(a, op);
+    if (corrects(op) || pulls(op)) return;
     if (reverse == SK_REVERSE_NOTHING || reverse == SK_REVERSE_BY_SOLVE || op->dst == SK_PREVIOUS) return;
     real *dst = a->of[op->dst];
     const real *bar = dst;

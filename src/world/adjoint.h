@@ -79,7 +79,7 @@ skein_status sk_adjoint_reverse_looks(sk_adjoint *a, const sk_op *ops, size_t co
                                       skein_error *error);
 static inline bool sk_adjoint_looks_at_state(const sk_op *op) {
     sk_reverse reverse = sk_op_type_of(op)->reverse;
-    return reverse == SK_REVERSE_ELASTIC || reverse == SK_REVERSE_FIELD;
+    return (reverse == SK_REVERSE_ELASTIC && op->dst == SK_F) || reverse == SK_REVERSE_FIELD;
 }
 /* Whether an op makes S, which a solve reads. */
 bool sk_adjoint_opens(const sk_op *op);
@@ -89,12 +89,7 @@ void sk_adjoint_end_solve(sk_adjoint *a);
 /* An implicit solve that found `at`: adjoints of X and V after it become those of X0 and V0. */
 skein_status sk_adjoint_reverse_solve(sk_adjoint *a, const sk_taped *at, double time, skein_error *error);
 /* Whether an op is one of projections: of a sweep, or of its multipliers. */
-static inline bool sk_adjoint_projects(const sk_op *op) {
-    return op->kind == SK_OP_PROJECT || op->kind == SK_OP_MULTIPLIER;
-}
-/* Why a batch cannot be followed through projections; NULL: it can. */
-const char *sk_adjoint_refuses(const sk_batch *batch);
-extern const sk_constraint_type sk_attachment;
+bool sk_adjoint_projects(const sk_op *op);
 /* Memory for a plan's projections, and its end. */
 bool sk_adjoint_begin_projections(sk_adjoint *a);
 void sk_adjoint_end_projections(sk_adjoint *a);

@@ -21,7 +21,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "bodies/body.h"
 #include "constraints/sweep.h"
 #include "world/adjoint.h"
 
@@ -78,8 +77,13 @@ enum { NOBODY = UINT32_MAX };
 
 /* ---- what there is to go through ---- */
 
+/* Of two particles; only lengths have a strain. */
+static bool is_distance(const sk_batch *batch) {
+    return batch->type->strain && batch->arity == 2;
+}
+
 static sort_of_kind sort_of(const sk_batch *batch) {
-    return batch->type == &sk_distance || batch->type->linear ? BY_LENGTH : BY_DIFFERENCES;
+    return is_distance(batch) || batch->type->linear ? BY_LENGTH : BY_DIFFERENCES;
 }
 
 /* The lanes of a sweep. */
@@ -116,12 +120,21 @@ static bool find_projected(sk_adjoint *a, const sk_batch *batch) {
     p->element = sk_allocate(allocator, batch->lane_count * sizeof *p->element);
     p->multiplier = sk_allocate(allocator, batch->lane_count * sizeof *p->multiplier);
     p->bar = sk_allocate(allocator, batch->lane_count * sizeof *p->bar);
-    bool shares = p->sort == BY_LENGTH && batch->type != &sk_distance;
+    bool shares = p->sort == BY_LENGTH && !is_distance(batch);
     if (shares) p->share = sk_allocate(allocator, batch->arity * batch->count * sizeof *p->share);
     if (!p->element || !p->multiplier || !p->bar || (shares && !p->share)) return false;
     for (size_t l = 0; l < batch->lane_count; l++) p->element[l] = NOBODY;
     for (size_t e = 0; e < batch->count; e++) p->element[batch->lane[e]] = (uint32_t)e;
     return !shares || find_shares(a, p);
+}
+
+/* Whether an op sets multipliers to 0. */
+static bool clears(const sk_op *op) {
+    return op->kernel == sk_sweep_clear_multipliers;
+}
+
+bool sk_adjoint_projects(const sk_op *op) {
+    return clears(op) || (sk_op_type_of(op)->reverse == SK_REVERSE_ELASTIC && op->dst == SK_X);
 }
 
 bool sk_adjoint_begin_projections(sk_adjoint *a) {
@@ -162,13 +175,6 @@ void sk_adjoint_end_projections(sk_adjoint *a) {
     sk_release(allocator, all);
 }
 
-const char *sk_adjoint_refuses(const sk_batch *batch) {
-    if (batch->type->enclose) return "a constraint on a closed surface has no gradient under projections";
-    if (batch->type == &sk_attachment)
-        return "an attachment has no gradient under projections: its value is the length of a vector that is 0 at rest";
-    return NULL;
-}
-
 /* ---- elements ---- */
 
 static double dot(const double p[3], const double q[3]) {
@@ -195,6 +201,12 @@ static double softness_of(const pass *s, size_t lane) {
     return (double)s->p->batch->lane_compliance[lane] * s->per_step;
 }
 
+static bool fail_at_kink(const pass *s, uint32_t element) {
+    return !sk_fail(s->error, SKEIN_ERROR_VALUE, s->p->batch->label,
+                    "element %u has a kink where it is at %.6g s, and no derivative: a length that is 0, say", (unsigned)element,
+                    s->time);
+}
+
 /* C, g and S, as a projection finds them. */
 static bool look(const pass *s, found *f, bool *one_sided, double *by_time) {
     const sk_batch *batch = s->p->batch;
@@ -207,6 +219,7 @@ static bool look(const pass *s, found *f, bool *one_sided, double *by_time) {
         return !sk_fail_memory(s->error, "a gradient");
     if (answer.is_energy)
         return !sk_fail(s->error, SKEIN_ERROR_VALUE, batch->label, "an energy has no gradient under projections yet");
+    if (answer.guarded) return fail_at_kink(s, f->element);
     *one_sided = answer.one_sided, *by_time = answer.by_time, f->value = answer.value;
     for (size_t i = 0; i < s->arity; i++) f->weight += (double)x[slot[i]].w * dot(f->gradient[i], f->gradient[i]);
     if (!isfinite(f->weight + f->value)) f->weight = 0, f->value = 0; // what is not finite is left alone
@@ -277,8 +290,7 @@ static bool differ(const pass *s, const found *f, double (*z)[3], double (*out)[
             off = fmax(off, fabs(0.5 * (g[0][i][k] + g[1][i][k]) - f->gradient[i][k]));
         }
     if (off <= 1e-3 * size) return true;
-    return !sk_fail(s->error, SKEIN_ERROR_VALUE, batch->label,
-                    "element %u has a kink where it is at %.6g s, and no derivative", (unsigned)f->element, s->time);
+    return fail_at_kink(s, f->element);
 }
 
 /* ---- one projection in reverse ---- */
@@ -513,7 +525,7 @@ static bool run_op(sk_adjoint *a, const sk_op *op, double time, skein_error *err
     pass s = begin_pass(a, op, time, error);
     sk_projections *all = a->projections;
     size_t first = s.sweep->first_lane, count = lanes_of(s.sweep);
-    bool good = true, projects = op->kind == SK_OP_PROJECT;
+    bool good = true, projects = !clears(op);
     size_t most = all->used + (projects ? s.sweep->element_count * s.bytes : 0);
     if (!sk_reserve(&a->world->allocator, (void **)&all->records, &all->capacity, most, 1))
         return !sk_fail_memory(error, "a gradient");
@@ -544,10 +556,10 @@ static bool reverse_op(sk_adjoint *a, const sk_op *op, double time, skein_error 
     for (size_t l = lanes_of(s.sweep); l-- > 0 && good;) {
         uint32_t element = s.p->element[first + l];
         if (element == NOBODY || !has_lane(op, s.sweep, l)) continue;
-        if (op->kind == SK_OP_PROJECT) good = reverse_element(&s, first + l, element);
+        if (!clears(op)) good = reverse_element(&s, first + l, element);
         else s.p->bar[first + l] = 0;
     }
-    if (op->kind != SK_OP_MULTIPLIER) add_effects(&s);
+    if (!clears(op)) add_effects(&s);
     return good;
 }
 
