@@ -59,7 +59,7 @@ typedef struct skein_gradient_result {
  * where they begin changes only their way there.
  * Fails, and names the op, with SKEIN_ERROR_VALUE for anything else in the plan: colliders, contact, limits (tethers, coarse
  * levels), rules that steer, forces that are not uniform; under projections for energies and closed surfaces, and where a
- * constraint's value has a kink, as a length has that is 0 (an attachment's at rest); for a library in single precision, whose rounding is too large for this;
+ * constraint's value has a kink, as a length has that is 0 (an attachment's without load); for a library in single precision, whose rounding is too large for this;
  * where places of skein_pins_move() wait; where a substep is not solved (skein_statistics' `unsolved`), or its linear system
  * cannot be; and where the run or a field is not such; with SKEIN_ERROR_NAME for a path that leads nowhere; and with
  * SKEIN_ERROR_MEMORY. */

@@ -263,33 +263,43 @@ static bool project(pass *s, size_t lane, found *f) {
 
 /* ---- products with second derivatives ---- */
 
-/* The gradient a little to either side, and from that how it changes along z. A value with a kink here is found out. */
-static bool differ(const pass *s, const found *f, double (*z)[3], double (*out)[3]) {
+/* The gradient at `span` to either side along z, whose largest number is `most`, and from that how it changes along z. How far their
+ * mean is from the gradient between them, as a share of it, says how much of third derivatives is in it; below 0: no memory. */
+static double differ_by(const pass *s, const found *f, double (*z)[3], double most, double span, double (*out)[3]) {
     const sk_batch *batch = s->p->batch;
     const uint32_t *slot = slots_of(s, f->element);
-    double most = 0, g[2][SK_MOST_ARITY][3], size = 0, off = 0;
-    for (size_t i = 0; i < s->arity; i++)
-        for (int k = 0; k < 3; k++) most = fmax(most, fabs(z[i][k])), out[i][k] = 0;
-    if (!(most > 0)) return true;
+    double g[2][SK_MOST_ARITY][3], size = 0, off = 0;
     for (int side = 0; side < 2; side++) {
         sk_constraint_answer answer;
         sk_vec4 *x = s->a->projections->side[side];
-        double e = (side ? -1 : 1) * s->a->span / most;
+        double e = (side ? -1 : 1) * span / most;
         for (size_t i = 0; i < s->arity; i++) {
             double to[3];
             for (int k = 0; k < 3; k++) to[k] = f->x[i][k] + e * z[i][k];
             put(x, slot[i], to);
         }
-        if (!batch->type->evaluate(batch, s->time, x, f->element, s->arity, &answer, g[side]))
-            return !sk_fail_memory(s->error, "a gradient");
+        if (!batch->type->evaluate(batch, s->time, x, f->element, s->arity, &answer, g[side])) return -1;
     }
     for (size_t i = 0; i < s->arity; i++)
         for (int k = 0; k < 3; k++) {
-            out[i][k] = 0.5 * most / s->a->span * (g[0][i][k] - g[1][i][k]);
+            out[i][k] = 0.5 * most / span * (g[0][i][k] - g[1][i][k]);
             size = fmax(size, fabs(f->gradient[i][k]));
             off = fmax(off, fabs(0.5 * (g[0][i][k] + g[1][i][k]) - f->gradient[i][k]));
         }
-    if (off <= 1e-3 * size) return true;
+    return off / size;
+}
+
+/* out = H z, by as wide a step as third derivatives let it. None is narrow enough beside a kink. */
+static bool differ(const pass *s, const found *f, double (*z)[3], double (*out)[3]) {
+    double most = 0, span = s->a->span, off = 1;
+    for (size_t i = 0; i < s->arity; i++)
+        for (int k = 0; k < 3; k++) most = fmax(most, fabs(z[i][k])), out[i][k] = 0;
+    if (!(most > 0)) return true;
+    for (int narrower = 0; narrower < 3; narrower++, span /= 32) {
+        off = differ_by(s, f, z, most, span, out);
+        if (off < 0) return !sk_fail_memory(s->error, "a gradient");
+        if (off <= 1e-5) return true;
+    }
     return fail_at_kink(s, f->element);
 }
 
