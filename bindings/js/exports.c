@@ -5,6 +5,7 @@
  * What fails says why by js_faults(): a list of {status, where, message}, in the words that the command has. */
 #include <jansson.h>
 #include <math.h>
+#include <skein/cut.h>
 #include <skein/formula.h>
 #include <skein/record.h>
 #include <stdio.h>
@@ -417,6 +418,30 @@ static double *places_of(const js_scene *js, const skein_surface *s) {
     return places;
 }
 
+/* Leaves out of a surface the faces that are cut. `lists` receives the memory of those that are left, to be freed; false
+ * where there is none. */
+static bool leave_out_cut(const js_scene *js, skein_handle body, skein_surface *s, uint32_t **lists) {
+    skein_cuts cuts;
+    if (skein_body_cuts(js->world, body, &cuts) || !cuts.count) return true;
+    size_t faces = 0, corners = 0;
+    uint32_t *sizes = malloc((s->face_count + 3 * s->face_vertex_count) * sizeof *sizes);
+    if (!(*lists = sizes)) return false;
+    uint32_t *vertices = sizes + s->face_count;
+    float *uv = (float *)(void *)(vertices + s->face_vertex_count);
+    for (size_t f = 0, c = 0; f < s->face_count; c += s->face_sizes[f++]) {
+        if (cuts.face[f]) continue;
+        sizes[faces++] = s->face_sizes[f];
+        for (size_t k = c; k < c + s->face_sizes[f]; k++, corners++) {
+            vertices[corners] = s->face_vertices[k];
+            if (s->corner_uv) memcpy(uv + 2 * corners, s->corner_uv + 2 * k, 2 * sizeof *uv);
+        }
+    }
+    s->face_sizes = sizes, s->face_vertices = vertices;
+    if (s->corner_uv) s->corner_uv = uv;
+    s->face_count = faces, s->face_vertex_count = corners;
+    return true;
+}
+
 /* A body as it stands, in a format of one frame ("obj", "ply", "stl"), as the command writes it. `out` receives where the
  * bytes are, to be freed, and how many. */
 bool EXPORT(js_clip)(js_scene *js, size_t body, const char *name, uint32_t out[2]) {
@@ -439,7 +464,8 @@ bool EXPORT(js_clip)(js_scene *js, size_t body, const char *name, uint32_t out[2
         io_fault(place, "", SKEIN_ERROR_VALUE, "the body has no faces");
         return false;
     }
-    double *places = places_of(js, &s);
+    uint32_t *lists = NULL;
+    double *places = leave_out_cut(js, handle, &s, &lists) ? places_of(js, &s) : NULL;
     io_clip_params params = {.normals = SKEIN_NORMALS_AREA, .scale = 1};
     io_clip clip = {.name = "body", .mesh = {places, s.vertex_count, s.face_sizes, s.face_count, s.face_vertices,
                     s.face_vertex_count}, .corner_uv = s.corner_uv, .fps = io_scene_get(js->scene)->fps, .samples = 1,
@@ -461,6 +487,7 @@ bool EXPORT(js_clip)(js_scene *js, size_t body, const char *name, uint32_t out[2
     io_mesh_free(&read);
     free(path);
     free(places);
+    free(lists);
     return !status;
 }
 
@@ -554,6 +581,25 @@ int EXPORT(js_pick)(const js_scene *js, const double ray[8], double *t) {
     if (picked >= 0 && !skein_ray_cast(js->world, ray, ray + 3, SKEIN_COLLIDER, &hit) && hit.t < *t - 2 * ray[6])
         picked = -1;
     return picked;
+}
+
+/* Cuts a body by a blade, three corners. Returns how many faces that took away; -1 after a fault. */
+int EXPORT(js_cut)(js_scene *js, size_t body, const double (*blade)[3]) {
+    size_t count;
+    skein_handle handle = skein_object_at(js->world, SKEIN_BODY, body);
+    return failed(js, skein_cut(js->world, handle, blade, &count)) ? -1 : (int)count;
+}
+
+bool EXPORT(js_mend)(js_scene *js, size_t body) {
+    return !failed(js, skein_cut_mend(js->world, skein_object_at(js->world, SKEIN_BODY, body)));
+}
+
+/* A byte for each face of a body's surface, whether it is cut, and how often that has changed; false after a fault. */
+bool EXPORT(js_cuts)(js_scene *js, size_t body, uint32_t out[3]) {
+    skein_cuts cuts;
+    if (failed(js, skein_body_cuts(js->world, skein_object_at(js->world, SKEIN_BODY, body), &cuts))) return false;
+    out[0] = (uint32_t)(uintptr_t)cuts.face, out[1] = (uint32_t)cuts.count, out[2] = (uint32_t)cuts.changes;
+    return true;
 }
 
 /* ---- what is drawn ---- */

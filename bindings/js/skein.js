@@ -471,6 +471,29 @@ export class World {
         return particle < 0 ? null : {particle, t: new Float64Array(this.#wasm.memory.buffer, room + 64, 1)[0]};
     }
 
+    /* ---- the knife ---- */
+
+    /* Cuts a cloth where a blade, a triangle with these corners, meets it; how many faces that took away. */
+    cut(body, blade) {
+        const numbers = Float64Array.from(blade.flat()), room = this.#room('blade', 72);
+        if (numbers.length !== 9) throw new SkeinError([{status: 'value', where: 'blade', message: 'expected three corners'}]);
+        new Float64Array(this.#wasm.memory.buffer, room, 9).set(numbers);
+        const count = this.#wasm.js_cut(this.#world, body, room);
+        this.#check(count >= 0);
+        return count;
+    }
+    mend(body) {
+        this.#check(this.#wasm.js_mend(this.#world, body));
+    }
+    /* What is cut of a body: how many faces, of each face whether it is (null where none ever was), and a number that
+     * grows with every change. */
+    cuts(body) {
+        const room = this.#room('cuts', 12);
+        this.#check(this.#wasm.js_cuts(this.#world, body, room));
+        const [at, count, changes] = this.#words(room, 3);
+        return {count, changes, face: at ? new Uint8Array(this.#wasm.memory.buffer, at, this.surface(body).faceSizes.length).slice() : null};
+    }
+
     /* ---- what is drawn ---- */
 
     surface(body) {

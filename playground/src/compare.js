@@ -75,6 +75,7 @@ export function compare({app, stage, choice, mainPicture, sets, notice}) {
         choose, restart, follow,
         pull: (...args) => tell('pull', ...args),
         letGo: () => tell('letGo'),
+        cut: (blade) => tell('cut', blade),
         change: (path, value) => !path.startsWith('method') && tell('set', path, value),
         dark(on) {
             if (picture) picture.dark = on;

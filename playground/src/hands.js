@@ -1,11 +1,18 @@
 // Hands in the picture: a particle is pulled, a pin set or taken, a hawk led.
 const rounded = (xyz) => xyz.map((x) => Number(x.toFixed(4))); // of a tenth of a millimetre, so that links stay short
 
-export function hands({app, picture, simulation, remember, tell, hint, pin, hawk, beside}) {
+export function hands({app, picture, simulation, remember, tell, hint, pin, knife, hawk, beside}) {
     const {canvas} = picture;
-    let held = null;
+    let held = null, stroke = null; // what is pulled; where the knife is, until the pointer goes up
+    const cuts = () => knife.getAttribute('aria-pressed') === 'true';
     canvas.addEventListener('pointerdown', (event) => {
-        if (event.button !== 0 || event.shiftKey || held) return;
+        if (event.button !== 0 || event.shiftKey || held || stroke) return;
+        if (cuts()) {
+            picture.controls.enabled = false;
+            canvas.setPointerCapture(event.pointerId);
+            stroke = {pointer: event.pointerId, clientX: event.clientX, clientY: event.clientY, noted: null};
+            return;
+        }
         const particle = picture.pick(event);
         if (particle === null) return;
         picture.controls.enabled = false;
@@ -16,6 +23,11 @@ export function hands({app, picture, simulation, remember, tell, hint, pin, hawk
         simulation.call('isHeld', particle).then((is) => (pin.textContent = is ? 'Free' : 'Pin'));
     }, {capture: true}); // before the camera's own
     canvas.addEventListener('pointermove', (event) => {
+        if (cuts()) {
+            canvas.style.cursor = 'crosshair';
+            if (stroke?.pointer === event.pointerId) draw(event, 6);
+            return;
+        }
         if (hawk.getAttribute('aria-pressed') === 'true' && !held) leadHawk(event);
         if (!held) canvas.style.cursor = picture.pick(event) === null ? '' : 'grab';
         if (held?.pointer !== event.pointerId) return;
@@ -27,7 +39,28 @@ export function hands({app, picture, simulation, remember, tell, hint, pin, hawk
         simulation.call('pull', held.particle, rounded(place));
         beside.pull(held.particle, rounded(place));
     });
+    /* A stroke is cut by parts of some pixels each. */
+    async function draw({clientX, clientY}, least) {
+        if (Math.hypot(clientX - stroke.clientX, clientY - stroke.clientY) < least) return;
+        const blade = picture.blade(stroke, {clientX, clientY}).map(rounded);
+        Object.assign(stroke, {clientX, clientY});
+        stroke.noted ??= remember();
+        hint.hidden = true;
+        simulation.call('cut', blade).then(tell);
+        beside.cut(blade);
+    }
+    function toggleKnife() {
+        knife.setAttribute('aria-pressed', String(!cuts()));
+        canvas.style.cursor = '';
+    }
+    knife.addEventListener('click', toggleKnife);
     const release = (event) => {
+        if (stroke?.pointer === event.pointerId) {
+            draw(event, 1);
+            stroke = null;
+            picture.controls.enabled = true;
+            tell();
+        }
         if (held?.pointer !== event.pointerId) return;
         if (held.noted) {
             simulation.call('letGo');
@@ -67,5 +100,5 @@ export function hands({app, picture, simulation, remember, tell, hint, pin, hawk
         await simulation.call('set', `forces.${predator()}.enabled`, on);
         tell();
     });
-    return {togglePin};
+    return {togglePin, toggleKnife};
 }

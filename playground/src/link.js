@@ -36,7 +36,7 @@ export async function write({scene, text, path, files, sets, events, frame, came
     return `#${fields}`;
 }
 
-const CALLS = ['pull', 'letGo', 'pin', 'release', 'set', 'card'];
+const CALLS = ['pull', 'letGo', 'pin', 'release', 'set', 'card', 'cut'];
 const isEvent = (e) => Array.isArray(e) && Number.isInteger(e[0]) && e[0] >= 0 && CALLS.includes(e[1]);
 
 /* Nothing that is read here is trusted: what is no number, or too much, is left out. */

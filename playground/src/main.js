@@ -371,7 +371,7 @@ async function openAddress() {
 }
 
 const keys = {
-    ' ': play, ArrowRight: step, ArrowLeft: back, r: reset, p: () => theHands?.togglePin(), f: () => picture?.frame(), z: undo,
+    ' ': play, ArrowRight: step, ArrowLeft: back, r: reset, p: () => theHands?.togglePin(), k: () => theHands?.toggleKnife(), f: () => picture?.frame(), z: undo,
     g: openGallery, c: togglePanel, '?': () => $('keys').showModal(),
 };
 let theHands = null;
@@ -405,7 +405,7 @@ async function begin() {
     await painted(); // what there is of the page is seen before the card is asked for anything
     try {
         picture = new Picture($('picture'));
-        theHands = hands({app, picture, simulation, remember, tell, hint: $('hint'), pin: $('pin'), hawk: $('hawk'), beside});
+        theHands = hands({app, picture, simulation, remember, tell, hint: $('hint'), pin: $('pin'), knife: $('knife'), hawk: $('hawk'), beside});
     } catch {
         notice((lasting = 'This browser draws no WebGL2, so that nothing is to be seen; the simulation runs all the same.'));
     }

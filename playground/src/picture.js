@@ -191,6 +191,7 @@ export class Picture {
         state.surfaces.forEach((surface, i) => {
             const shape = this.#parts.surfaces[i];
             if (!surface || !shape) return;
+            if (surface.cut) shape.setIndex(new THREE.BufferAttribute(triangles(this.#parts.world.bodies[i], surface.cut), 1));
             shape.attributes.position.array.set(surface.positions);
             shape.attributes.normal.array.set(surface.normals);
             if (!shape.attributes.uv) shape.setAttribute('uv', new THREE.BufferAttribute(weave(this.#parts.world.bodies[i], surface.positions), 2));
@@ -390,6 +391,14 @@ export class Picture {
         const {origin, direction} = this.#ray(event).ray;
         return {origin: origin.toArray(), direction: direction.toArray()};
     }
+    /* The triangle that a pointer's stroke on the page sweeps: from the eye through both ends, to beyond all there is. */
+    blade(from, to) {
+        const far = (at) => {
+            const {origin, direction} = this.#ray(at).ray;
+            return origin.clone().addScaledVector(direction, 4 * origin.distanceTo(this.controls.target) + 4 * (this.#parts.size ?? 1));
+        };
+        return [this.#camera.position, far(from), far(to)].map((point) => point.toArray());
+    }
     place(particle) {
         return new THREE.Vector3().fromArray(this.#state.positions, 3 * particle);
     }
@@ -397,6 +406,10 @@ export class Picture {
     inPlane(event, through) {
         const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(this.#camera.getWorldDirection(new THREE.Vector3()), through);
         return this.#ray(event).ray.intersectPlane(plane, new THREE.Vector3())?.toArray() ?? null;
+    }
+    /* How many triangles of bodies are drawn. */
+    get drawnTriangles() {
+        return this.#parts.surfaces.reduce((sum, shape) => sum + (shape ? shape.index.count / 3 : 0), 0);
     }
     /* Where on the page a particle is, for tests and for help. */
     onPage(particle) {

@@ -68,12 +68,12 @@ export function birdGeometry() {
     return shape;
 }
 
-/* A polygon mesh's triangles: each face as a fan from its first corner. */
-export function triangles({faceSizes, faceVertices}) {
+/* A polygon mesh's triangles: each face that is not cut as a fan from its first corner. */
+export function triangles({faceSizes, faceVertices}, cut = null) {
     const index = [];
     let at = 0;
-    for (const size of faceSizes) {
-        for (let k = 2; k < size; k++) index.push(faceVertices[at], faceVertices[at + k - 1], faceVertices[at + k]);
+    for (const [face, size] of faceSizes.entries()) {
+        for (let k = 2; k < size && !cut?.[face]; k++) index.push(faceVertices[at], faceVertices[at + k - 1], faceVertices[at + k]);
         at += size;
     }
     return Uint32Array.from(index);

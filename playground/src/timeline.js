@@ -80,6 +80,7 @@ export class Timeline {
         const {world} = this;
         this.card?.forget();
         if (call === 'pull') world.pull(args[0], args.slice(1));
+        else if (call === 'cut') world.cut(args[0], [0, 3, 6].map((k) => args.slice(k + 1, k + 4)));
         else if (call === 'card') this.#onCard = args[0];
         else if (['set', 'pin', 'release', 'letGo'].includes(call)) world[call](...args);
         else throw new TypeError(`nothing is called ${call}`);

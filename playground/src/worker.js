@@ -8,6 +8,7 @@ import {Timeline} from './timeline.js';
 let world = null, timeline = null, drawn = null, serial = 0; // what of it is drawn, and which world it is
 let playing = false, owed = 0, before = 0, waits = false, stale = false, looping = 0;
 const spent = []; // ms of each frame since the last state
+let shownCuts = []; // of each body, how often what is cut had changed when it was last sent
 let gradient = null; // {category, object, index}: the constraint whose gradient is shown
 
 // As many threads as there are processors, up to four, where the page may have them: it has its own, and so have others.
@@ -52,6 +53,7 @@ function describe() {
         const shape = world.shape('collider', index), visible = value(c, 'visible', true) && value(c, 'enabled', true);
         return {kind: c.name, visible, ...shape, net: shape.sort === 'surface' && visible ? net(index) : null};
     });
+    shownCuts = bodies.map(() => 0);
     drawn = {bodies, flock: bodies.some((b) => b.shape === 'birds'), colliders: colliders.length};
     return {serial, settings: world.settings, bodies, colliders, springs: world.springs(), count: world.count, objects};
 }
@@ -72,8 +74,10 @@ function arrows() {
 function state() {
     const surfaces = drawn.bodies.map((body, index) => {
         if (!body.faceSizes.length) return null;
-        const {positions, normals} = world.vertices(index, body.vertexCount);
-        return {positions: positions.slice(), normals: normals.slice()};
+        const {positions, normals} = world.vertices(index, body.vertexCount), {changes, face} = world.cuts(index);
+        const sent = {positions: positions.slice(), normals: normals.slice(), cut: changes === shownCuts[index] ? null : face};
+        shownCuts[index] = changes;
+        return sent;
     });
     return {
         serial, surfaces, positions: world.positions.slice(), velocities: drawn.flock ? world.velocities.slice() : null,
@@ -254,6 +258,18 @@ const calls = {
         timeline.act(held ? 'release' : 'pin', particle);
         show();
         return !held;
+    },
+    /* A stroke of the knife: a blade from the eye through both of its ends, at every cloth. How many faces it took. */
+    cut(blade) {
+        let count = 0;
+        drawn.bodies.forEach((body, index) => {
+            if (body.kind !== 'cloth') return;
+            const before = world.cuts(index).count;
+            timeline.act('cut', index, ...blade.flat());
+            count += world.cuts(index).count - before;
+        });
+        show();
+        return count;
     },
     isHeld: (particle) => world.isHeld(particle),
     measure: () => world.statistics(),

@@ -382,6 +382,46 @@ test('the pointer is a hawk, and the link has its flight', async () => {
     await close();
 });
 
+test('a knife cuts the cloth by a stroke: it falls, is drawn so, and the link, undo and going back know it', async () => {
+    const {page, errors, close} = await openPage('#scene=hanging&frame=5');
+    const state = () => page.evaluate(async () => {
+        const {app, picture, call} = globalThis.skein, {events} = await call('where');
+        const ys = [...app.state.positions].filter((_, i) => i % 3 === 1);
+        return {hash: app.state.hash, frame: app.state.frame, lowest: Math.min(...ys), cuts: events.filter((e) => e[1] === 'cut').length, drawn: picture.drawnTriangles};
+    });
+    const before_ = await state();
+    const ends = await page.evaluate(() => { // across the middle of the cloth, and a little beyond
+        const {app, picture} = globalThis.skein, {positions} = app.state;
+        const xs = [...positions].filter((_, i) => i % 3 === 0), places = Array.from({length: app.world.count}, (_, p) => picture.onPage(p));
+        const left = Math.min(...places.map(([x]) => x)), right = Math.max(...places.map(([x]) => x));
+        const top = Math.min(...places.map(([, y]) => y)), bottom = Math.max(...places.map(([, y]) => y));
+        return xs.length && [left - 15, right + 15, (top + bottom) / 2];
+    });
+    await page.keyboard.press('k');
+    assert.equal(await page.locator('#knife').getAttribute('aria-pressed'), 'true');
+    await page.mouse.move(ends[0], ends[2]);
+    await page.mouse.down();
+    await page.mouse.move(ends[1], ends[2], {steps: 12});
+    await page.mouse.up();
+    await page.waitForFunction(async () => (await globalThis.skein.call('where')).events.some((e) => e[1] === 'cut'));
+    await page.evaluate(() => globalThis.skein.run(30));
+    await page.waitForFunction(() => globalThis.skein.app.state.frame === 35);
+    const after_ = await state();
+    assert.ok(after_.cuts > 0 && after_.lowest < before_.lowest - 0.5, JSON.stringify([before_, after_]));
+    assert.ok(after_.drawn < before_.drawn && after_.drawn > before_.drawn / 2);
+    const link = await page.evaluate(() => globalThis.skein.link()), other = await openPage(new URL(link).hash);
+    assert.equal(await other.page.evaluate(() => globalThis.skein.app.state.hash), after_.hash);
+    await other.close();
+    await page.evaluate(() => globalThis.skein.seek(2));
+    await page.waitForFunction((drawn) => globalThis.skein.picture.drawnTriangles === drawn, before_.drawn); // it is whole there
+    await page.evaluate(() => globalThis.skein.seek(35));
+    await page.waitForFunction((hash) => globalThis.skein.app.state.hash === hash, after_.hash);
+    await page.evaluate(() => globalThis.skein.undo());
+    await page.waitForFunction((hash) => globalThis.skein.app.state.hash === hash, before_.hash);
+    assert.deepEqual(errors, []);
+    await close();
+});
+
 test('another method beside it, at the same frame and from the same place', async () => {
     const {page, errors, close} = await openPage('#scene=hanging&frame=4');
     await page.locator('#menu > summary').click();

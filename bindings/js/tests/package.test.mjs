@@ -279,6 +279,34 @@ test('the hand: pick, pull, pin, release', async () => {
     assert.equal(world.isHeld(corner), false);
 });
 
+test('the knife: what is cut falls; snapshots, recordings and a reset know it', async () => {
+    const scene = {bodies: [{type: 'cloth', grid: [20, 20], rotation: [90, 0, 0], pins: 'top edge'}], forces: [{type: 'gravity'}]};
+    const world = await World.fromScene(scene), other = await World.fromScene(scene), blade = [[-5, 0.001, -5], [9, 0.001, 0], [-5, 0.001, 5]];
+    assert.deepEqual(world.cuts(0), {count: 0, changes: 0, face: null});
+    world.record();
+    world.step(2);
+    assert.equal(world.cut(0, blade), 19);
+    assert.equal(world.cut(0, blade), 0);
+    world.step(10);
+    assert.equal(new TextDecoder().decode(world.file(0)).match(/^f /gm).length, 361 - 19);
+    const lowest = Math.min(...world.positions.filter((_, i) => i % 3 === 1)), snapshot = world.snapshot(), hash = world.hash();
+    assert.ok(lowest < -0.6, `${lowest}`);
+    assert.equal(world.cuts(0).face.reduce((sum, is) => sum + is, 0), 19);
+    const recording = world.stopRecording();
+    assert.equal(other.replay(recording).steps, 12 * other.settings.stepsPerFrame);
+    assert.equal(other.hash(), hash);
+    other.reset();
+    assert.equal(other.cuts(0).count, 0);
+    other.restore(snapshot);
+    world.step(5), other.step(5);
+    assert.equal(other.hash(), world.hash());
+    other.mend(0);
+    assert.equal(other.cuts(0).count, 0);
+    assert.throws(() => world.cut(1, blade), SkeinError);
+    assert.throws(() => world.cut(0, [[0, 0, 0]]), /three corners/);
+    world.free(), other.free();
+});
+
 test('surfaces, poses, springs and constraints', async () => {
     const world = await open('drape');
     const surface = world.surface(0), {positions, normals} = world.vertices(0, surface.vertexCount);
