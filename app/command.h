@@ -85,7 +85,7 @@ bool app_list_add(app_list *list, const char *value, bool repeats);
 /* Scenes are read with app_reach(), and so a command that reads any has this. */
 #define APP_ALLOW_OPTION                                                                                              \
     {                                                                                                                 \
-        "--allow-path", "PATH", "files there may be read, too, if the scene names them; may be repeated", true,       \
+        "--allow-path", "PATH", "a folder (not /) whose files may be read, too, if the scene names them; may be repeated", true,       \
             APP_TAKES_FOLDER                                                                                          \
     }
 #define APP_BOUNDS_OPTIONS                                                                                        \
