@@ -10,7 +10,7 @@ set(order
     distance dihedral isometric straight twist area volume angle attachment formula_constraint energy enclosed_volume pressure
     gravity wind surface_wind drag separation flocking attraction predator lookout speed_limit turn_limit bounds
     force_field potential surface_contact
-    plane sphere bowl capsule box solid_mesh formula_surface
+    plane sphere bowl capsule box solid_mesh sampled_field formula_surface
     translate turn keys cache attach
     explicit_euler symplectic_euler lookahead_euler midpoint leapfrog rk4 backward_euler xpbd pbd)
 

@@ -28,6 +28,7 @@ static const struct {
     {NULL, "visible", "for drawing"},
     {NULL, "look", "for drawing"},
     {NULL, "mesh", "a file that scenes read; a program passes the mesh"},
+    {"field", "cell", "most that are tried are as large as the solid, or a thousand to its side; test_field_collider.c"},
     {"cache", "file", "a file that scenes read; a program passes the places"},
     {"cache", "fps", "of that file; a program says its interval"},
     {"translate", "jump_turn", "it never turns"},
@@ -140,7 +141,7 @@ static bool same_value(const skein_value *a, const skein_value *b) {
 }
 
 static bool is_kept(const skein_field *field) { // as it is, in every scene
-    static const char *const names[] = {"name", "enabled", "visible", "mesh", "parameters.*"};
+    static const char *const names[] = {"name", "enabled", "visible", "mesh", "cell", "parameters.*"};
     for (size_t i = 0; i < COUNT(names); i++)
         if (!strcmp(field->name, names[i])) return true;
     return false;

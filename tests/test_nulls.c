@@ -123,8 +123,8 @@ static void kinds_and_fields(void **state) {
     value = skein_number(12.5);
     assert_int_equal(skein_value_text(radius, &value, NULL, 8), 4); // only the length is wanted
 
-    REFUSES("field", skein_set(s.world, s.ball, NULL, value));
-    REFUSES("field", skein_get(s.world, s.ball, NULL, &value));
+    REFUSES("name", skein_set(s.world, s.ball, NULL, value));
+    REFUSES("name", skein_get(s.world, s.ball, NULL, &value));
     REFUSES("value", skein_get(s.world, s.ball, "radius", NULL));
     REFUSES("path", skein_set_path(s.world, NULL, value));
     REFUSES("path", skein_get_path(s.world, NULL, &value));

@@ -65,6 +65,7 @@ static const skein_setting *settings_of(const char *kind) {
         {"capsule", {SKEIN_REAL("radius", 0.4)}},
         {"bowl", {SKEIN_REAL("radius", 0.3)}},
         {"formula", {SKEIN_TEXT("surface", "p.y - 0.1")}},
+        {"field", {SKEIN_REAL("cell", 0.05)}},
     };
     for (size_t i = 0; i < COUNT(known); i++)
         if (!strcmp(known[i].kind, kind)) return known[i].settings;

@@ -18,6 +18,9 @@ static const shape shapes[] = {
     {"bowl", {SKEIN_REAL("radius", 1), SKEIN_END}, {-1.3, 0, 0}, {1, 0, 0}, 0.3},
     {"formula", {SKEIN_TEXT("surface", "length(p) - 0.5"), SKEIN_END}, {0, 0.25, 0}, {0, 1, 0}, 0.25},
     {"mesh", {SKEIN_REAL("scale", 2), SKEIN_END}, {0.7, 0.1, 0.2}, {1, 0, 0}, 0.3},
+#ifndef __wasi__ // where bytes are dear it is left out
+    {"field", {SKEIN_REAL("scale", 2), SKEIN_REAL("cell", 0.1), SKEIN_END}, {0.7, 0.1, 0.2}, {1, 0, 0}, 0.3},
+#endif
 };
 
 static skein_handle add_shape(skein_world *world, const shape *s) {
@@ -28,7 +31,7 @@ static skein_handle add_shape(skein_world *world, const shape *s) {
     static const uint32_t sizes[6] = {4, 4, 4, 4, 4, 4};
     const skein_mesh mesh = {&corners[0][0], 8, sizes, 6, &quads[0][0], 24};
     skein_handle handle;
-    if (!strcmp(s->kind, "mesh")) OK(world, skein_collider_add_mesh(world, s->kind, &mesh, s->settings, &handle));
+    if (!strcmp(s->kind, "mesh") || !strcmp(s->kind, "field")) OK(world, skein_collider_add_mesh(world, s->kind, &mesh, s->settings, &handle));
     else OK(world, skein_collider_add(world, s->kind, s->settings, &handle));
     return handle;
 }

@@ -139,7 +139,8 @@ static void sizes_follow_the_pointer(void **state) {
 static skein_world *world_with(skein_category category, const skein_kind *kind, const viewer_spot_change *changes, size_t count) {
     static const double mesh_places[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     static const uint32_t corners[] = {0, 1, 2, 3}, sizes[] = {4};
-    const skein_mesh solid = {mesh_places, 4, sizes, 1, corners, 4}, *mesh = NULL;
+    static const uint32_t faces[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}, threes[] = {3, 3, 3, 3};
+    const skein_mesh solid = {mesh_places, 4, sizes, 1, corners, 4}, closed = {mesh_places, 4, threes, 4, faces, 12}, *mesh = NULL;
     skein_world *world = new_world("xpbd", 1);
     skein_setting settings[16] = {{0}};
     size_t n = 0;
@@ -154,7 +155,7 @@ static skein_world *world_with(skein_category category, const skein_kind *kind, 
     if (grid && grid->type == SKEIN_FIELD_INT2) settings[n++] = (skein_setting){"grid", {2, {3, 4, 0}, NULL}};
     if (grid && grid->type == SKEIN_FIELD_INT3) settings[n++] = (skein_setting){"grid", {3, {3, 4, 2}, NULL}};
     if (flock) settings[n++] = (skein_setting){"count", skein_number(20)};
-    if (!grid && skein_field_find(kind, "mesh", NULL)) mesh = &solid;
+    if (!grid && skein_field_find(kind, "mesh", NULL)) mesh = category == SKEIN_COLLIDER ? &closed : &solid;
     for (size_t c = 0; c < count; c++) settings[n++] = (skein_setting){changes[c].field->name, changes[c].value};
     skein_status status = SKEIN_ERROR_VALUE;
     skein_handle handle;

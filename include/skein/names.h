@@ -344,6 +344,13 @@
 #define SKEIN_MESH_ROTATION "rotation" /* three numbers in deg; turned about x, then y, then z, before any motion */
 #define SKEIN_MESH_SCALE "scale" /* a number; factor on the mesh's coordinates */
 
+#define SKEIN_FIELD "field" /* what a mesh encloses, by distances sampled from it once: cheap to ask, and round at edges by a part of a cell */
+#define SKEIN_FIELD_MESH "mesh" /* a text; file of the mesh, OBJ, OFF, PLY, STL or glTF (in scenes; a program passes the mesh itself) */
+#define SKEIN_FIELD_POSITION "position" /* three numbers in m; where the mesh's origin is put, before any motion */
+#define SKEIN_FIELD_ROTATION "rotation" /* three numbers in deg; turned about x, then y, then z, before any motion */
+#define SKEIN_FIELD_SCALE "scale" /* a number; factor on the mesh's coordinates */
+#define SKEIN_FIELD_CELL "cell" /* a number in m; side of the cubes that distances are sampled in; 0: a 32nd of the mesh's longest side */
+
 #define SKEIN_FORMULA "formula" /* any surface that a formula describes, also one that moves and changes */
 #define SKEIN_FORMULA_SURFACE "surface" /* a text; a formula of p and t: over 0 where particles may be, under 0 in the solid; best a distance */
 #define SKEIN_FORMULA_CENTRE "centre" /* three numbers in m; where the formula's p is 0, before any motion */

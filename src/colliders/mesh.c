@@ -6,14 +6,9 @@
 #include "base/kernels.h"
 #include "base/rotation.h"
 #include "base/status.h"
-#include "colliders/collider.h"
-#include "colliders/trimesh.h"
+#include "colliders/mesh.h"
 
-typedef struct mesh_params {
-    double position[3], rotation[3], scale;
-    char *mesh;
-    sk_trimesh *made;
-} mesh_params;
+typedef sk_mesh_params mesh_params;
 
 #define SK_UNIT mesh
 SK_KERNELS(sk_probe, probe);
@@ -83,52 +78,45 @@ void SK_KERNEL(near)(const void *params, const sk_pose *pose, const sk_wide3 *p,
 
 #else
 
-static const skein_field fields[] = {
-    SK_TEXT(mesh_params, mesh, "mesh", "",
-            "file of the mesh, OBJ, OFF, PLY, STL or glTF (in scenes; a program passes the mesh itself)"),
-    SK_VEC3(mesh_params, position, "position", "m", 0, 0, 0, "where the mesh's origin is put, before any motion"),
-    SK_VEC3(mesh_params, rotation, "rotation", "deg", 0, 0, 0, "turned about x, then y, then z, before any motion"),
-    SK_REAL(mesh_params, scale, "scale", "", 1, 1e-9, 1e9, "factor on the mesh's coordinates"),
-};
+static const skein_field fields[] = {SK_MESH_FIELDS(mesh_params)};
 
-static void place(const void *data, double position[3]) {
+void sk_mesh_place(const void *data, double position[3]) {
     for (int k = 0; k < 3; k++) position[k] = ((const mesh_params *)data)->position[k];
 }
 
-static void turn(const void *data, double rotation[9]) {
+void sk_mesh_turn(const void *data, double rotation[9]) {
     sk_rotation_of_degrees(((const mesh_params *)data)->rotation, rotation);
 }
 
 /* The mesh comes when the collider is added, and by no text. */
-static skein_status make(void *data, const skein_kind *kind, sk_allocator *allocator, skein_error *error) {
+skein_status sk_mesh_make(void *data, const skein_kind *kind, sk_allocator *allocator, skein_error *error) {
     (void)kind, (void)allocator;
     if (!((const mesh_params *)data)->made) return SKEIN_OK;
     return sk_fail(error, SKEIN_ERROR_VALUE, "mesh", "the mesh shapes what is already built: set it when the collider is added");
 }
 
-static void unmake(void *data, sk_allocator *allocator) {
+void sk_mesh_unmake(void *data, sk_allocator *allocator) {
     (void)allocator;
     sk_trimesh_destroy(((mesh_params *)data)->made);
 }
 
-static skein_status take(void *data, const skein_mesh *mesh, sk_allocator *allocator, sk_faults_text *faults,
-                         skein_error *error) {
+skein_status sk_mesh_take(void *data, const skein_mesh *mesh, sk_allocator *allocator, sk_faults_text *faults, skein_error *error) {
     mesh_params *params = data;
     skein_status status = sk_trimesh_create(mesh, allocator, &params->made, error);
     if (!status) sk_trimesh_faults(params->made, params->mesh, faults->text, sizeof faults->text);
     return status;
 }
 
-static bool is_shaped_by(const char *field) {
-    return !__builtin_strcmp(field, "mesh");
-}
-
-static sk_trimesh *surface_of(const void *data) {
+sk_trimesh *sk_mesh_surface(const void *data) {
     return ((const mesh_params *)data)->made;
 }
 
-static double scale_of(const void *data) {
+double sk_mesh_scale(const void *data) {
     return ((const mesh_params *)data)->scale;
+}
+
+static bool is_shaped_by(const char *field) {
+    return !__builtin_strcmp(field, "mesh");
 }
 
 static void begin(const void *data, double time, double dt) {
@@ -172,21 +160,21 @@ static void follow(const void *data, double time) {
     sk_trimesh_follow(((const mesh_params *)data)->made, time);
 }
 
-static const sk_making making = {.make = make, .unmake = unmake};
+static const sk_making making = {.make = sk_mesh_make, .unmake = sk_mesh_unmake};
 const sk_collider_type sk_solid_mesh = {
     .kind = {"mesh", "what a mesh encloses, or an open one from both sides; moved as a whole, or by a program", SKEIN_COLLIDER,
              fields, sizeof fields / sizeof *fields, sizeof(mesh_params)},
-    .place = place,
-    .turn = turn,
+    .place = sk_mesh_place,
+    .turn = sk_mesh_turn,
     .probe = SK_EACH_ISA(probe),
     .near = SK_EACH_ISA(near),
     .deforms = true,
     .passing = SK_ANY_SHAPE,
     .making = &making,
-    .take = take,
+    .take = sk_mesh_take,
     .is_shaped_by = is_shaped_by,
-    .surface = surface_of,
-    .scale = scale_of,
+    .surface = sk_mesh_surface,
+    .scale = sk_mesh_scale,
     .begin = begin,
     .cross = cross,
     .ball = ball,

@@ -195,7 +195,7 @@ bool skein_field_is_live(const skein_world *world, skein_handle handle, const ch
 
 skein_status skein_set(skein_world *world, skein_handle handle, const char *name, skein_value value) {
     SK_NEED(world, world);
-    if (!name) return sk_fail_null(sk_world_error(world), "field");
+    SK_NEED(world, name);
     skein_error *error = sk_world_error(world);
     sk_object *object;
     void *params;
@@ -224,7 +224,7 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
 
 skein_status skein_get(const skein_world *world, skein_handle handle, const char *name, skein_value *value) {
     SK_NEED(world, world);
-    if (!name) return sk_fail_null(sk_world_error(world), "field");
+    SK_NEED(world, name);
     SK_NEED(world, value);
     skein_error *error = sk_world_error(world);
     sk_object *object;
