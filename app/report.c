@@ -52,11 +52,11 @@ static json_t *budget(const io_budget *b) {
 
 /* What sharing has cost. */
 static json_t *ranks_document(const shared_figures *f) {
-    return json_pack("{s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "count", f->ranks, "exchange_share",
+    return json_pack("{s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "count", f->ranks, "exchange_share",
                      number(f->exchange_share), "imbalance", number(f->imbalance), "bytes_per_step",
                      number(f->bytes_per_step), "cuts", count(f->cuts), "moved", count(f->moved), "most_own",
-                     count(f->most_birds), "most_seen", count(f->most_seen), "whole_bodies", count(f->whole_bodies),
-                     "start_seconds", number(f->start_seconds));
+                     count(f->most_birds), "most_seen", count(f->most_seen), "most_memory", count(f->most_memory),
+                     "whole_bodies", count(f->whole_bodies), "start_seconds", number(f->start_seconds));
 }
 
 static json_t *make_document(const app_report *r) {
@@ -213,6 +213,7 @@ void app_report_print(const app_report *r) {
         if (f->cuts)
             printf("; space cut %zu time%s, at most %zu birds a rank and %zu of others", f->cuts,
                    plural((uint64_t)f->cuts), f->most_birds, f->most_seen);
+        printf("; at most %.3g MB a rank but the first", 1e-6 * (double)f->most_memory);
         if (f->whole_bodies)
             printf("; %zu bod%s on one rank each", f->whole_bodies, f->whole_bodies == 1 ? "y" : "ies");
         printf("\n");

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 
 #include "ranks/shared_inside.h"
@@ -132,10 +133,17 @@ static bool is_unsure(const shared_run *run, const shared_body *body) {
     return body->room < FEW || (body->most + elsewhere) * 8 >= body->room * SURE;
 }
 
+static size_t memory_had(void) {
+    struct rusage used;
+    if (getrusage(RUSAGE_SELF, &used)) return 0;
+    return (size_t)used.ru_maxrss * 1024; // Linux counts kB
+}
+
 /* What the leader calls for, and what all tell. */
 static shared_call call(shared_run *run, shared_call own) {
     shared_call all[run->count];
     run->tale.own = shared_own(run);
+    run->tale.memory = memory_had();
     run->tale.unsure = run->since_cut < 2;
     for (size_t b = 0; b < run->body_count; b++) run->tale.unsure |= is_unsure(run, &run->bodies[b]);
     own.tale = run->tale;
@@ -417,6 +425,7 @@ void shared_measure(shared_run *run, shared_figures *figures) {
         figures->moved += t->moved;
         if (t->own > figures->most_birds) figures->most_birds = t->own;
         if (t->seen > figures->most_seen) figures->most_seen = t->seen;
+        if (r && t->memory > figures->most_memory) figures->most_memory = t->memory;
     }
     figures->exchange_share = all > 0 ? exchange / all : 0;
     figures->bytes_per_step = run->steps ? bytes / (double)run->steps : 0;

@@ -39,6 +39,7 @@ typedef struct shared_figures {
     size_t cuts;            /* how often space was cut */
     size_t moved;           /* birds that went to another rank */
     size_t most_birds, most_seen; /* of a rank: its own, and others' that it sees */
+    size_t most_memory;     /* bytes that a rank but the first, which has the whole run once more, has had at once */
     size_t whole_bodies;    /* that live on one rank each */
 } shared_figures;
 

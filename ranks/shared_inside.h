@@ -55,6 +55,7 @@ typedef struct shared_tale {
     double all_work, exchange; /* since the run began */
     double bytes;
     size_t moved, own, seen;
+    size_t memory; /* bytes that its process has had at once, at most */
     int overflow; /* more came than it has room for */
     int unsure;   /* whether that may happen in the next step */
 } shared_tale;

@@ -75,6 +75,7 @@ static void any_ranks_have_the_hash_of_one_process(void **state) {
         assert_true(json_integer_value(json_object_get(ranks, "cuts")) >= 2); // where costs were known, at the latest
         assert_true(json_integer_value(json_object_get(ranks, "moved")) > 20);
         assert_true(json_integer_value(json_object_get(ranks, "most_own")) < 700);
+        assert_true(json_integer_value(json_object_get(ranks, "most_memory")) > 1000000);
         assert_true(json_real_value(json_object_get(ranks, "bytes_per_step")) > 0);
         json_decref(report);
         assert_contains(said, "ranks: ");
@@ -179,9 +180,10 @@ static void what_cannot_be_shared_is_said(void **state) {
     (void)state;
     char *said;
     assert_int_equal(run_ranks(2, "scenes/heap.json --frames 2", &said), 2);
-    assert_contains(said, "cannot share a run with contact");
+    assert_contains(said, "cannot share a run with contact of surfaces: ");
     free(said);
     assert_int_equal(run_ranks(2, "scenes/drape.json --frames 2 --set method.type=backward_euler", &said), 2);
+    assert_contains(said, "cannot share a run with a method that solves for all particles at once (backward Euler): ");
     assert_contains(said, "a method that solves nothing");
     free(said);
     assert_int_equal(run_ranks(2, "scenes/birds.json --frames 2 --set method.budget_ms=5", &said), 2);
@@ -297,8 +299,62 @@ static void a_rank_that_dies_ends_the_run_and_another_number_goes_on(void **stat
     check_same_hash(whole(), in_folder("killed"));
 }
 
-/* FRAMES: of the flock, where a thousand steps are wanted. */
+/* All that come along: each has one hash, or is refused, as these are. */
+static void every_scene_has_one_hash_or_is_refused(void **state) {
+    (void)state;
+    static const char *const refused[] = {"cantilever", "funnel", "heap", "layers", "reef", "ribbons", "twist"};
+    DIR *scenes = opendir("scenes");
+    int shared = 0;
+    size_t said_no = 0;
+    assert_non_null(scenes);
+    for (struct dirent *entry; (entry = readdir(scenes)) != NULL;) {
+        char name[200], arguments[1200], path[400], *said;
+        size_t length = strlen(entry->d_name);
+        if (length < 6 || length > 100 || strcmp(entry->d_name + length - 5, ".json") != 0) continue;
+        snprintf(name, sizeof name, "%.*s", (int)length - 5, entry->d_name), snprintf(path, sizeof path, "scenes/%s", entry->d_name);
+        outcome o = SKEIN("run", path, "--frames", "3", "--set", "output=[]", "--out", in_folder("scene"), "--quiet");
+        bool there = o.status == 0;
+        if (!there) assert_contains(o.err, "tools/fetch-mesh"); // it needs a mesh that does not come along
+        outcome_free(&o);
+        if (!there) continue;
+        snprintf(arguments, sizeof arguments, "%s --frames 3 --set 'output=[]' --threads 1 --quiet --out %s", path, in_folder("by_ranks"));
+        int status = run_ranks(3, arguments, &said);
+        bool no = false;
+        for (size_t i = 0; i < COUNT(refused); i++) no |= !strcmp(name, refused[i]);
+        if (status != (no ? 2 : 0)) fail_msg("%s: exit status %d: %s", name, status, said);
+        if (no) assert_contains(said, "cannot share a run with ");
+        else check_same_hash(in_folder("scene"), in_folder("by_ranks"));
+        said_no += no, shared += !no;
+        free(said);
+    }
+    closedir(scenes);
+    assert_int_equal(said_no, COUNT(refused));
+    assert_true(shared >= 25);
+}
+
+/* What a rank has in memory follows its own birds, not all of them: over eight it is far less than over two. */
+static void memory_follows_own_birds(void **state) {
+    (void)state;
+    static const int counts[] = {2, 8};
+    json_int_t took[2];
+    for (int i = 0; i < 2; i++) {
+        char arguments[1200], *said;
+        snprintf(arguments, sizeof arguments, "scenes/birds.json --set bodies.0.side=0 --set bodies.0.count=400000 --set 'output=[]' "
+                 "--set 'bodies.0.spread=[80,80,1600]' --frames 2 --threads 1 --quiet --out %s", in_folder("memory"));
+        if (run_ranks(counts[i], arguments, &said)) fail_msg("%s", said);
+        free(said);
+        json_t *report = report_of(in_folder("memory"));
+        took[i] = json_integer_value(json_object_get(json_object_get(report, "ranks"), "most_memory"));
+        json_decref(report);
+    }
+    print_message("%lld and %lld bytes a rank\n", (long long)took[0], (long long)took[1]);
+    assert_true(took[1] < took[0] / 2);
+}
+
+/* FRAMES: of the flock, where a thousand steps are wanted; or "scenes": all that come along. */
 int main(int argc, char **argv) {
+    const struct CMUnitTest of_scenes[] = {cmocka_unit_test(every_scene_has_one_hash_or_is_refused)};
+    if (argc > 1 && !strcmp(argv[1], "scenes")) return cmocka_run_group_tests(of_scenes, make_folder, remove_folder);
     if (argc > 1) frames = (int)strtol(argv[1], NULL, 10);
     if (getenv("SKEIN_TEST_ONLY")) cmocka_set_test_filter(getenv("SKEIN_TEST_ONLY"));
     const struct CMUnitTest tests[] = {
@@ -308,6 +364,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(bodies_that_meet_nobody_are_dealt_to_ranks),
         cmocka_unit_test(flocks_and_bodies_meet_across_ranks),
         cmocka_unit_test(ranks_write_their_own),
+        cmocka_unit_test(memory_follows_own_birds),
         cmocka_unit_test(what_cannot_be_shared_is_said),
         cmocka_unit_test(a_rank_that_dies_ends_the_run_and_another_number_goes_on),
     };

@@ -1,6 +1,48 @@
 /* Sorts of a world that has a part of a run: the border, cells of the whole run's box, and the whole run's order in them. */
-#include "plan/share.h"
+#include "plan/share_part.h"
+
+#include <string.h>
+
 #include "plan/sort.h"
+
+/* The lines of cells that this part looks into, from cell low[0] to high[0] each. */
+typedef struct sk_window {
+    int32_t low[3], high[3];
+    uint32_t *line; /* its first cell's number, by these */
+    size_t count, capacity;
+    size_t wide; /* cells of a line */
+    bool whole;  /* all cells: nobody is outside */
+} sk_window;
+
+typedef struct sk_share_part {
+    sk_share share; /* first: the world's pointer is this one's */
+    sk_op_kernel *find; /* of a sort's second op, else */
+    sk_window window;
+} sk_share_part;
+
+sk_share *sk_share_create(sk_allocator *allocator, const skein_part *part) {
+    sk_share_part *made = sk_allocate(allocator, sizeof *made);
+    if (!made) return NULL;
+    *made = (sk_share_part){.share = {.given = *part}};
+    return &made->share;
+}
+
+void sk_share_destroy(sk_share *share, sk_allocator *allocator) {
+    if (share) sk_release(allocator, ((sk_share_part *)share)->window.line);
+    sk_release(allocator, share);
+}
+
+/* That of the share that an op of a sort has for a rule. */
+static sk_window *window_of(const sk_op *op) {
+    return &((sk_share_part *)(uintptr_t)op->rule)->window;
+}
+
+/* ---- the cells ---- */
+
+static size_t cell_count(const sk_cells *cells) {
+    size_t layers = ((size_t)cells->count_y + (size_t)cells->layer - 1) / (size_t)cells->layer;
+    return (size_t)cells->count_x * (size_t)cells->layer * layers * (size_t)cells->count_z;
+}
 
 /* The frame of cells for `everybody`, so many, in the box, with places for the group's particles. False: no memory. */
 static bool frame_of_all(sk_cells *cells, sk_allocator *allocator, const skein_border *border, const sk_group *group, real radius) {
@@ -11,9 +53,70 @@ static bool frame_of_all(sk_cells *cells, sk_allocator *allocator, const skein_b
         return false;
     cells->group = *group;
     cells->in_order = false;
-    size_t layers = ((size_t)cells->count_y + (size_t)cells->layer - 1) / (size_t)cells->layer;
-    size_t count = (size_t)cells->count_x * (size_t)cells->layer * layers * (size_t)cells->count_z;
-    return sk_reserve(allocator, (void **)&cells->start, &cells->start_capacity, count + 2, sizeof *cells->start);
+    // memory for as many cells as there may ever be, at once: growing would copy, and so touch, what is not looked into
+    size_t count = cell_count(cells), most = border->everybody < 500000000 ? 4 * border->everybody + 64 : count;
+    if (count + 2 <= cells->start_capacity) return true;
+    sk_release(allocator, cells->start);
+    cells->start = NULL, cells->start_capacity = 0;
+    return sk_reserve(allocator, (void **)&cells->start, &cells->start_capacity, (count > most ? count : most) + 2,
+                      sizeof *cells->start);
+}
+
+/* ---- the window ---- */
+
+/* Lists the window's lines, in the order of memory (sk_cells_line()). False: no memory. */
+static bool list_lines(sk_window *window, const sk_cells *cells, sk_allocator *allocator) {
+    const int32_t *low = window->low, *high = window->high;
+    window->count = 0, window->wide = 0;
+    if (low[0] > high[0] || low[1] > high[1] || low[2] > high[2]) return true; // nobody looks
+    window->wide = (size_t)(high[0] - low[0]) + 1;
+    size_t lines = ((size_t)(high[1] - low[1]) + 1) * ((size_t)(high[2] - low[2]) + 1);
+    if (!sk_reserve(allocator, (void **)&window->line, &window->capacity, lines, sizeof *window->line)) return false;
+    for (int32_t first = low[1], next; first <= high[1]; first = next) {
+        next = (first >> cells->shift_y) == (high[1] >> cells->shift_y) ? high[1] + 1 : (first | cells->layer_y) + 1;
+        for (int32_t z = low[2]; z <= high[2]; z++)
+            for (int32_t y = first; y < next; y++)
+                window->line[window->count++] = (uint32_t)(sk_cells_line(cells, y, z) + low[0]);
+    }
+    return true;
+}
+
+static void take_all(sk_window *window, const sk_cells *cells) {
+    *window = (sk_window){{0, 0, 0},
+                          {cells->count_x - 1, cells->count_y - 1, cells->count_z - 1},
+                          window->line,
+                          0,
+                          window->capacity,
+                          0,
+                          true};
+}
+
+/* The window around those that look and are this part's own: others' have neither mass nor inverse mass. */
+static void find_window(sk_window *window, const sk_run *run, const sk_cells *cells, const sk_group *group) {
+    const sk_vec4 *x = run->vector[SK_X], *v = run->vector[SK_V];
+    const real most = SK_CELLS_FARTHEST;
+    real low[3] = {most, most, most}, high[3] = {-most, -most, -most};
+    for (size_t slot = group->first_slot; slot < group->end_slot; slot++) {
+        uint32_t i = run->particle_of[slot];
+        const real p[3] = {x[slot].x, x[slot].y, x[slot].z};
+        if ((x[slot].w == 0 && v[slot].w == 0) || i < group->first || i >= group->end) continue;
+        if (!(sk_abs(p[0]) <= most && sk_abs(p[1]) <= most && sk_abs(p[2]) <= most)) continue;
+        for (int k = 0; k < 3; k++) low[k] = sk_min(low[k], p[k]), high[k] = sk_max(high[k], p[k]);
+    }
+    const real origin[3] = {cells->origin.x, cells->origin.y, cells->origin.z},
+               per[3] = {cells->per_x, cells->per_yz, cells->per_yz};
+    const int32_t count[3] = {cells->count_x, cells->count_y, cells->count_z}, around[3] = {SK_CELLS_ACROSS + 1, 1, 1};
+    window->whole = true;
+    for (int k = 0; k < 3; k++) {
+        if (low[k] > high[k]) { // nobody
+            window->low[k] = 0, window->high[k] = -1;
+        } else {
+            int32_t from = sk_cells_place(low[k], origin[k], per[k], count[k]) - around[k],
+                    to = sk_cells_place(high[k], origin[k], per[k], count[k]) + around[k];
+            window->low[k] = from > 0 ? from : 0, window->high[k] = to < count[k] ? to : count[k] - 1;
+        }
+        window->whole &= window->low[k] == 0 && window->high[k] == count[k] - 1;
+    }
 }
 
 /* Has the blocks of strips in quads, as the program knows slots, or packed again. */
@@ -40,7 +143,8 @@ static void exchange(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     if (border.alone) {
         lay(run, op, false);
         share->frame(run, op, begin, end);
-        cells->in_order = false;
+        take_all(window_of(op), cells);
+        run->no_memory = run->no_memory || !list_lines(window_of(op), cells, run->allocator);
         return;
     }
     if (!frame_of_all(cells, run->allocator, &border, op->group, (real)op->coefficient[0])) {
@@ -48,6 +152,8 @@ static void exchange(sk_run *run, const sk_op *op, size_t begin, size_t end) {
         lay(run, op, false);
         return;
     }
+    find_window(window_of(op), run, cells, op->seen);
+    run->no_memory = run->no_memory || !list_lines(window_of(op), cells, run->allocator);
     // candidates lie in whole cells (space/cells_wide.h): one more along y and z, and along x those of the reach
     const skein_cells shown = {{cells->origin.x, cells->origin.y, cells->origin.z},
                                {cells->per_x, cells->per_yz, cells->per_yz},
@@ -55,6 +161,69 @@ static void exchange(sk_run *run, const sk_op *op, size_t begin, size_t end) {
                                {SK_CELLS_ACROSS + 1, 1, 1}};
     share->failed = share->failed || !share->given.exchange(share->given.user, &look, &shown, &state);
     lay(run, op, false);
+}
+
+/* ---- what is sorted ---- */
+
+/* The cells of those in slots [begin, end); who is outside of the window is in none. */
+static void find(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_share_part *part = op->rule;
+    const sk_window *window = &part->window;
+    sk_cells *cells = run->cells;
+    if (run->no_memory) return;
+    part->find(run, op, begin, end);
+    if (window->whole) return;
+    const int32_t count[3] = {cells->count_x, cells->count_y, cells->count_z};
+    size_t first = cells->group.first_slot, last = cells->group.end_slot;
+    for (size_t slot = begin > first ? begin : first; slot < (end < last ? end : last); slot++) {
+        sk_vec4 p = sk_load(run->vector[SK_X], op->packed, slot);
+        int32_t x = sk_cells_place(p.x, cells->origin.x, cells->per_x, count[0]),
+                y = sk_cells_place(p.y, cells->origin.y, cells->per_yz, count[1]),
+                z = sk_cells_place(p.z, cells->origin.z, cells->per_yz, count[2]);
+        bool inside = (x >= window->low[0]) & (x <= window->high[0]) & (y >= window->low[1]) & (y <= window->high[1]) &
+                      (z >= window->low[2]) & (z <= window->high[2]);
+        cells->cell[slot - first] |= inside ? 0 : SK_NOWHERE;
+    }
+}
+
+/* A counting sort, over the window's cells alone. The cell behind a line's last one is told where that ends. */
+static void rank(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_window *window = window_of(op);
+    sk_cells *cells = run->cells;
+    uint32_t *start = cells->start, sum = 0;
+    (void)begin, (void)end;
+    if (run->no_memory) return;
+    size_t slots = cells->group.end_slot - cells->group.first_slot;
+    for (size_t l = 0; l < window->count; l++) memset(start + window->line[l], 0, (window->wide + 1) * sizeof *start);
+    for (size_t k = 0; k < slots; k++)
+        if (cells->cell[k] != SK_NOWHERE) start[cells->cell[k]]++;
+    for (size_t l = 0; l < window->count; l++) {
+        uint32_t *line = start + window->line[l];
+        for (size_t x = 0; x < window->wide; x++) line[x] = sum += line[x];
+        if (l + 1 == window->count || window->line[l] + window->wide != window->line[l + 1]) line[window->wide] = sum;
+    }
+    // from behind, so that each cell ends up with where it begins, and its members in the order of slots
+    for (size_t k = slots; k-- > 0;)
+        if (cells->cell[k] != SK_NOWHERE) cells->slot[--start[cells->cell[k]]] = (uint32_t)(cells->group.first_slot + k);
+    cells->count = sum;
+}
+
+/* The first place from `place` on where a cell begins. (Other threads may be moving members within cells meanwhile.) */
+static size_t next_beginning(const sk_cells *cells, const sk_window *window, size_t place) {
+    size_t low = 0, high = window->count;
+    while (high - low > 1) { // the last line that begins before it
+        size_t middle = (low + high) / 2;
+        if (cells->start[window->line[middle]] < place) low = middle;
+        else high = middle;
+    }
+    const uint32_t *line = cells->start + window->line[low];
+    size_t from = 0, to = window->wide;
+    while (from < to) {
+        size_t middle = (from + to) / 2;
+        if (line[middle] < place) from = middle + 1;
+        else to = middle;
+    }
+    return line[from];
 }
 
 /* Members of a cell, by their numbers in the whole run. They are few, or in order but for few. */
@@ -71,14 +240,37 @@ static void copy(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const sk_share *share = op->rule;
     sk_cells *cells = run->cells;
     sk_state state = {run->vector[SK_X], run->vector[SK_V], op->packed, run->particle_of};
-    if (run->no_memory) return;
-    sk_cells_settle(cells, &state, begin, end, &begin, &end);
+    if (run->no_memory || begin >= cells->count) return;
+    begin = next_beginning(cells, window_of(op), begin);
+    end = end < cells->count ? next_beginning(cells, window_of(op), end) : cells->count;
     for (size_t place = begin, next; place < end; place = next) {
         uint32_t cell = cells->cell[cells->slot[place] - cells->group.first_slot];
         for (next = place + 1; next < end && cells->cell[cells->slot[next] - cells->group.first_slot] == cell;) next++;
         put_in_order(cells->slot + place, next - place, share->given.number, run->particle_of);
     }
     sk_cells_copy(cells, &state, begin, end);
+}
+
+/* ---- who looks ---- */
+
+/* Whether an element of a rule that looks at neighbours is moved by it. What has no inverse mass is not, and no others' have any:
+ * their neighbours are not looked for. */
+static bool is_moved(const sk_run *run, const sk_op *op, bool places, size_t element) {
+    uint32_t slot = places ? run->cells->slot[element] : run->slot_of[element];
+    return sk_load(run->vector[SK_X], op->packed, slot).w != 0;
+}
+
+/* The rule's own kernel, over those that it moves. Its elements are places where those that it moves are those that it sees. */
+static void look(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const sk_group *moved = op->group, *seen = op->seen;
+    bool places = !moved || !seen || (moved->first == seen->first && moved->end == seen->end);
+    if (run->no_memory) return;
+    if (places && end > run->cells->count) end = run->cells->count;
+    for (size_t next; begin < end; begin = next) {
+        for (; begin < end && !is_moved(run, op, places, begin);) begin++;
+        for (next = begin; next < end && is_moved(run, op, places, next);) next++;
+        if (begin < next) op->inner(run, op, begin, next);
+    }
 }
 
 /* Who looks into the cells of the sort at `place`: the group of the rule that steers by them, or where rules push, of which
@@ -95,9 +287,15 @@ void sk_share_plan(sk_plan *plan, sk_share *share, sk_isa isa) {
         sk_op *first = &plan->data[r], *last = first + SK_SORT_OPS - 1;
         if (!sk_op_type_of(first)->sorts) continue;
         first->seen = who_looks(plan, r);
-        share->frame = first->kernel;
+        share->frame = first->kernel, ((sk_share_part *)share)->find = first[1].kernel;
         first->kernel = exchange, first->rule = share, first->label = "border, frame of cells";
+        first[1].kernel = find, first[1].rule = share;
+        first[2].kernel = rank, first[2].rule = share;
         last->kernel = copy, last->rule = share;
+    }
+    for (size_t r = 0; r < plan->count; r++) {
+        sk_op *op = &plan->data[r];
+        if (sk_op_type_of(op)->walks) op->inner = op->kernel, op->kernel = look;
     }
 }
 

@@ -2,7 +2,7 @@
  * takes. */
 #include <string.h>
 
-#include "plan/share.h"
+#include "plan/share_part.h"
 #include "world/world.h"
 
 static skein_state state_of(skein_world *world) {
@@ -36,10 +36,12 @@ skein_status skein_world_part_set(skein_world *world, const skein_part *part) {
     skein_error *error = sk_world_error(world);
     if (part && (!part->number || !part->measure || !part->exchange))
         return sk_fail(error, SKEIN_ERROR_VALUE, "part", "a part of a run needs number, measure and exchange");
-    sk_share *share = part ? sk_allocate(&world->allocator, sizeof *share) : NULL;
+#ifdef SK_SMALL
+    if (part) return sk_fail(error, SKEIN_ERROR_VALUE, "part", "this build has no parts of runs");
+#endif
+    sk_share *share = part ? sk_share_create(&world->allocator, part) : NULL;
     if (part && !share) return sk_fail_memory(error, "a part of a run");
-    if (share) *share = (sk_share){.given = *part};
-    sk_release(&world->allocator, world->share);
+    sk_share_destroy(world->share, &world->allocator);
     world->share = share;
     world->plan_stale = true;
     return SKEIN_OK;
@@ -146,6 +148,11 @@ static void join_by_constraints(const skein_world *world, body_list *list) {
 }
 
 static const char *op_name(const sk_op *op) {
+    // what a solve consists of has formulas for labels
+    if (op->kind == SK_OP_SOLVE || op->kind == SK_OP_PART || op->kind == SK_OP_PASS || op->kind == SK_OP_APPLY ||
+        op->kind == SK_OP_LINEARISE || op->kind == SK_OP_CONTACT_FILTER)
+        return "a method that solves for all particles at once (backward Euler)";
+    if (op->kind == SK_OP_MEET) return "contact of surfaces";
     return op->label ? op->label : sk_op_type_of(op)->name;
 }
 

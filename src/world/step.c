@@ -157,7 +157,9 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
         builder.no_memory |= !sk_plan_fuse(&world->plan, &world->allocator, world->isa);
     if (builder.no_memory || (!world->device && (!make_temporaries(world) || !make_cells(world))))
         return sk_fail_memory(error, "the plan");
+#ifndef SK_SMALL // no page has a part of a run
     if (world->share) sk_share_plan(&world->plan, world->share, world->isa);
+#endif
     status = world->share ? sk_world_check_share(world, error) : SKEIN_OK;
     if (!status) status = make_matrix(world, error);
     if (status) return status;

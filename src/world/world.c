@@ -1,4 +1,5 @@
 /* The world's life: made, filled by builders, destroyed. */
+#include "plan/share_part.h"
 #include "world/cut.h"
 #include "world/record.h"
 #include "world/world.h"
@@ -93,7 +94,7 @@ void skein_world_destroy(skein_world *world) {
     sk_rules *rules = &world->rules;
     if (world->recording) skein_record_end(world);
     if (world->device) world->device->release(world->device, world);
-    sk_release(&world->allocator, world->share);
+    sk_share_destroy(world->share, &world->allocator);
     sk_tasks_destroy(world->tasks);
     for (size_t i = 0; i < rules->batches.count; i++) sk_batch_release(rules->batches.data[i], allocator);
     for (size_t i = 0; i < rules->forces.count; i++) sk_world_end_meeting(world, rules->forces.data[i]);
