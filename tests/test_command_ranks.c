@@ -180,7 +180,7 @@ static void what_cannot_be_shared_is_said(void **state) {
     (void)state;
     char *said;
     assert_int_equal(run_ranks(2, "scenes/heap.json --frames 2", &said), 2);
-    assert_contains(said, "cannot share a run with contact of surfaces: ");
+    assert_contains(said, "cannot share a run with contact: ");
     free(said);
     assert_int_equal(run_ranks(2, "scenes/drape.json --frames 2 --set method.type=backward_euler", &said), 2);
     assert_contains(said, "cannot share a run with a method that solves for all particles at once (backward Euler): ");
@@ -314,7 +314,7 @@ static void every_scene_has_one_hash_or_is_refused(void **state) {
         snprintf(name, sizeof name, "%.*s", (int)length - 5, entry->d_name), snprintf(path, sizeof path, "scenes/%s", entry->d_name);
         outcome o = SKEIN("run", path, "--frames", "3", "--set", "output=[]", "--out", in_folder("scene"), "--quiet");
         bool there = o.status == 0;
-        if (!there) assert_contains(o.err, "tools/fetch-mesh"); // it needs a mesh that does not come along
+        if (!there && !strstr(o.err, "tools/fetch-mesh")) fail_msg("%s: %s", name, o.err); // it needs a mesh that does not come along
         outcome_free(&o);
         if (!there) continue;
         snprintf(arguments, sizeof arguments, "%s --frames 3 --set 'output=[]' --threads 1 --quiet --out %s", path, in_folder("by_ranks"));

@@ -148,12 +148,10 @@ static void join_by_constraints(const skein_world *world, body_list *list) {
 }
 
 static const char *op_name(const sk_op *op) {
-    // what a solve consists of has formulas for labels
-    if (op->kind == SK_OP_SOLVE || op->kind == SK_OP_PART || op->kind == SK_OP_PASS || op->kind == SK_OP_APPLY ||
-        op->kind == SK_OP_LINEARISE || op->kind == SK_OP_CONTACT_FILTER)
-        return "a method that solves for all particles at once (backward Euler)";
-    if (op->kind == SK_OP_MEET) return "contact of surfaces";
-    return op->label ? op->label : sk_op_type_of(op)->name;
+    // what a solve consists of, and arithmetic that only a solve has, have formulas for labels
+    const sk_op_type *type = sk_op_type_of(op);
+    if (type->arithmetic || type->leads) return "a method that solves for all particles at once (backward Euler)";
+    return op->label ? op->label : type->name;
 }
 
 /* Bodies in [first, end) are shown, where none of them is loose: a part where they are not would do without their rule. */
