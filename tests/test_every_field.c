@@ -28,7 +28,6 @@ static const struct {
     {NULL, "visible", "for drawing"},
     {NULL, "look", "for drawing"},
     {NULL, "mesh", "a file that scenes read; a program passes the mesh"},
-    {"field", "cell", "most that are tried are as large as the solid, or a thousand to its side; test_field_collider.c"},
     {"cache", "file", "a file that scenes read; a program passes the places"},
     {"cache", "fps", "of that file; a program says its interval"},
     {"translate", "jump_turn", "it never turns"},
