@@ -73,7 +73,7 @@ typedef struct pass {
     skein_error *error;
 } pass;
 
-enum { NOBODY = UINT32_MAX };
+#define NOBODY UINT32_MAX /* wider than an enumerator may be */
 
 /* ---- what there is to go through ---- */
 
