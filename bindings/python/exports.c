@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <skein/cut.h>
 #include <skein/gradient.h>
 #include "io/advice.h"
 #include "io/mesh.h"
@@ -169,7 +170,7 @@ size_t py_struct_size(const char *name) {
     } sizes[] = {SIZE_OF(error),   SIZE_OF(field),   SIZE_OF(kind),  SIZE_OF(value),      SIZE_OF(setting), SIZE_OF(handle),
                  SIZE_OF(world_desc), SIZE_OF(mesh), SIZE_OF(track), SIZE_OF(view),       SIZE_OF(buffer),  SIZE_OF(surface),
                  SIZE_OF(pose),    SIZE_OF(contact), SIZE_OF(hit),   SIZE_OF(statistics), SIZE_OF(order),   SIZE_OF(constraint_value),
-                 SIZE_OF(gradient_state), SIZE_OF(gradient_desc), SIZE_OF(gradient_result)};
+                 SIZE_OF(gradient_state), SIZE_OF(gradient_desc), SIZE_OF(gradient_result), SIZE_OF(cuts)};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         if (!strcmp(sizes[i].name, name)) return sizes[i].size;
     return 0;

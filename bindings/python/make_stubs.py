@@ -17,6 +17,7 @@ TYPES = {L.BOOL: "bool", L.INT: "int", L.INT2: "tuple[int, int]", L.INT3: "tuple
 RETURNS = {  # what no signature says; anything else is Any
     "positions": "np.ndarray", "velocities": "np.ndarray", "position_view": "np.ndarray", "velocity_view": "np.ndarray",
     "slot_of": "np.ndarray", "vertices": "np.ndarray", "faces": "list[np.ndarray]", "elements": "np.ndarray", "time": "float",
+    "cut": "int", "cut_faces": "None", "mend": "None", "cuts": "np.ndarray",
     "closed": "bool", "hash": "str", "render": "Image", "snapshot": "State", "particles": "range", "kind": "str", "valid": "bool",
     "remove": "None", "reset": "None", "step": "None", "frame": "None", "close": "None", "restore": "None", "pin": "None",
     "move_pins": "None", "add_particles": "range", "explain": "list[str]", "hashes": "list[str]", "method": "Method",

@@ -80,6 +80,10 @@ class Surface(c.Structure):
                 ("grid_rows", c.c_uint32), ("grid_columns", c.c_uint32), ("corner_uv", c.POINTER(c.c_float))]
 
 
+class Cuts(c.Structure):
+    _fields_ = [("face", c.POINTER(c.c_uint8)), ("count", c.c_size_t), ("changes", c.c_uint64)]
+
+
 class Pose(c.Structure):
     _fields_ = [("position", c.c_double * 3), ("rotation", c.c_double * 9)]
 
@@ -129,7 +133,7 @@ class GradientResult(c.Structure):
 
 
 STRUCTS = {"error": Error, "field": Field, "kind": Kind, "value": Value, "setting": Setting, "handle": Handle,
-           "world_desc": WorldDesc, "mesh": Mesh, "track": Track, "view": View, "buffer": Buffer, "surface": Surface,
+           "world_desc": WorldDesc, "mesh": Mesh, "track": Track, "view": View, "buffer": Buffer, "surface": Surface, "cuts": Cuts,
            "pose": Pose, "contact": Contact, "hit": Hit, "order": Order,
            "constraint_value": ConstraintValue, "gradient_state": GradientState, "gradient_desc": GradientDesc,
            "gradient_result": GradientResult}
@@ -186,6 +190,10 @@ CALLS = {
     "skein_snapshot_read": (status, [world, text, size]),
     "skein_body_surface": (status, [world, Handle, c.POINTER(Surface)]),
     "skein_body_vertices_copy": (status, [world, Handle, c.c_double, Buffer, Buffer]),
+    "skein_cut": (status, [world, Handle, array, c.POINTER(size)]),
+    "skein_cut_faces": (status, [world, Handle, array, size]),
+    "skein_cut_mend": (status, [world, Handle]),
+    "skein_body_cuts": (status, [world, Handle, c.POINTER(Cuts)]),
     "skein_body_elements": (status, [world, Handle, c.c_int, array, size, c.POINTER(size)]),
     "skein_collider_pose": (status, [world, Handle, c.POINTER(Pose)]),
     "skein_collider_probe": (status, [world, Handle, size, array, array, array]),

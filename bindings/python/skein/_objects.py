@@ -177,6 +177,29 @@ class Body(Object):
         self._world._call(lib.skein_body_teleport, self._handle, turn.ctypes.data if turn is not None else None,
                           shift.ctypes.data, place=self._place())
 
+    def cut(self, blade):
+        """Takes away the faces of a cloth that a blade meets, a triangle (3 x 3, m), with all that held across them; returns
+        how many there were."""
+        blade, count = np.ascontiguousarray(blade, np.float64).reshape(9), ctypes.c_size_t()
+        self._world._call(lib.skein_cut, self._handle, blade.ctypes.data, ctypes.byref(count), place=self._place())
+        return count.value
+
+    def cut_faces(self, faces):
+        """The same by the numbers that faces have in `faces`."""
+        faces = np.ascontiguousarray(faces, np.uint32).ravel()
+        self._world._call(lib.skein_cut_faces, self._handle, faces.ctypes.data, len(faces), place=self._place())
+
+    def mend(self):
+        """Puts back all faces that were cut."""
+        self._world._call(lib.skein_cut_mend, self._handle, place=self._place())
+
+    @property
+    def cuts(self):
+        """Of each of its faces, whether it is cut."""
+        cuts, count = L.Cuts(), self._surface().face_count
+        self._world._call(lib.skein_body_cuts, self._handle, ctypes.byref(cuts), place=self._place())
+        return np.ctypeslib.as_array(cuts.face, (count,)).astype(bool) if cuts.face else np.zeros(count, bool)
+
     def elements(self, what="edges"):
         """Sets of its particles that constraints can be made on: "edges", "triangles", "hinges" or "tetrahedra"."""
         words = {"edges": 2, "triangles": 3, "hinges": 4, "tetrahedra": 4}

@@ -37,6 +37,35 @@ class ClosedForms(unittest.TestCase):
         np.testing.assert_allclose(world.velocities[0], [1, -9.81, 0], atol=2e-5)
         self.assertAlmostEqual(world.statistics().kinetic_energy, (1 + 9.81**2), delta=1e-3)
 
+    def test_what_is_cut_off_falls(self):
+        """The lower half of a cloth that is cut across goes as a stone does; mended, it hangs again."""
+        world, g = skein.World(threads=1), 9.81
+        world.set_method("xpbd", substeps=4)
+        world.forces.gravity(acceleration=(0, -g, 0))
+        cloth = world.bodies.cloth(grid=(12, 12), size=(1, 1), rotation=(90, 0, 0), pins="top edge")
+        before = cloth.positions
+        height = (before[:, 1].min() + before[:, 1].max()) / 2
+        count = cloth.cut([[-9, height, -9], [9, height, -9], [0, height, 9]])
+        self.assertEqual(count, 11)
+        self.assertEqual((cloth.cuts.sum(), len(cloth.cuts)), (11, 121))
+        loose = before[:, 1] < height
+        self.assertEqual(loose.sum(), 72)
+        world.step(1 / 60, 18)
+        fallen = (before[loose, 1] - cloth.positions[loose, 1]).mean()
+        self.assertAlmostEqual(fallen, g * 0.3 * (0.3 + 1 / 240) / 2, delta=2e-3)  # symplectic, by substeps
+        whole = world.snapshot()
+        cloth.mend()
+        self.assertFalse(cloth.cuts.any())
+        world.restore(whole)
+        self.assertEqual(cloth.cuts.sum(), 11)
+        world.reset()
+        cloth.cut_faces([0, 5])
+        self.assertEqual(np.flatnonzero(cloth.cuts).tolist(), [0, 5])
+        with self.assertRaises(skein.ValueFault):
+            cloth.cut_faces([121])
+        with self.assertRaises(skein.ValueFault):
+            cloth.cut([[math.nan] * 3] * 3)
+
     def test_pendulum(self):
         """The period of a rigid pendulum of 1 m that swings by 30 degrees, by the arithmetic-geometric mean."""
         world, angle, g, dt = skein.World(threads=1), math.radians(30), 9.81, 1 / 240
