@@ -191,9 +191,30 @@ static bool only_known(io_place place, const json_t *json) {
     return true;
 }
 
+enum { BODY_WORDS_SIZE = 256 };
+
+/* What a body that is not there may have been meant to be: the nearest name, or else all that there are. */
+static const char *hint_body(const builder *b, const char *given, char words[BODY_WORDS_SIZE]) {
+    enum { MOST = 64 };
+    const char *names[MOST];
+    char path[64], hint[IO_HINT_SIZE];
+    size_t count = 0, at = 0;
+    for (size_t i = 0; i < skein_object_count(b->world, SKEIN_BODY) && count < MOST; i++) {
+        skein_value name;
+        snprintf(path, sizeof path, "bodies.%zu.name", i);
+        if (!skein_get_path(b->world, path, &name) && name.text[0]) names[count++] = name.text;
+    }
+    snprintf(words, BODY_WORDS_SIZE, "%s", io_hint(given, names, count, hint));
+    if (words[0]) return words;
+    if (!count) snprintf(words, BODY_WORDS_SIZE, ": no body of the scene has a name; a number says which, from 0 on");
+    for (size_t i = 0; i < count && at < BODY_WORDS_SIZE; i++)
+        at += (size_t)snprintf(words + at, BODY_WORDS_SIZE - at, "%s'%s'", i ? ", " : ": the scene has ", names[i]);
+    return words;
+}
+
 /* The body that a member names, or says the number of. */
 static bool find_body(const builder *b, io_place place, const json_t *json, const char *member, skein_handle *handle) {
-    char shown[IO_JSON_WORDS_SIZE], path[128];
+    char shown[IO_JSON_WORDS_SIZE], path[128], words[BODY_WORDS_SIZE];
     const json_t *body = json_object_get(json, member);
     *handle = (skein_handle){UINT32_MAX, 0, 0};
     for (size_t i = 0; i < skein_object_count(b->world, SKEIN_BODY); i++) {
@@ -206,7 +227,14 @@ static bool find_body(const builder *b, io_place place, const json_t *json, cons
     }
     if (skein_handle_valid(b->world, *handle)) return true;
     snprintf(path, sizeof path, "particles.%s", member);
-    if (!b->body_missing)
+    if (b->body_missing) return false;
+    if (json_is_string(body))
+        io_fault(place, path, SKEIN_ERROR_NAME, "there is no body '%s'%s", json_string_value(body),
+                 hint_body(b, json_string_value(body), words));
+    else if (json_is_integer(body))
+        io_fault(place, path, SKEIN_ERROR_NAME, "there is no body %" JSON_INTEGER_FORMAT ": the scene has %zu, counted from 0",
+                 json_integer_value(body), skein_object_count(b->world, SKEIN_BODY));
+    else
         io_fault(place, path, SKEIN_ERROR_NAME, "expected the name or number of a body%s", io_json_instead(body, shown));
     return false;
 }

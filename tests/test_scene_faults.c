@@ -139,6 +139,9 @@ static const struct {
     {"particles_as_empty_object",
      ": constraints.0.particles.body: expected the name or number of a body: it is missing"},
     {"particles_misspelt", ": constraints.0.particles.ovr: there is no 'ovr' here; did you mean 'over'?"},
+    {"particles_of_a_body_misspelt", ": constraints.0.particles.body: there is no body 'clot'; did you mean 'cloth'?"},
+    {"particles_of_a_stranger", ": constraints.0.particles.body: there is no body 'xyz': the scene has 'cloth', 'flag'"},
+    {"particles_of_body_9", ": constraints.0.particles.body: there is no body 9: the scene has 2, counted from 0"},
     {"particles_of_nobody", ": constraints.0.particles.body: expected the name or number of a body, not null"},
     {"particles_with_null_over",
      ": constraints.0.particles.over: expected \"edges\" (of 2 particles), \"triangles\" (3), \"hinges\" or \"tetrahedra\" (4) for a "
