@@ -189,7 +189,7 @@ static void release_ways(ways *w, sk_allocator *allocator) {
 bool sk_cut_tethers(skein_world *world, sk_body *body) {
     sk_allocator *allocator = &world->allocator;
     const sk_cut *cut = body->cut;
-    ways whole = {NULL}, left = {NULL};
+    ways whole = {0}, left = {0};
     bool good = !cut->count || (make_ways(&whole, world, cut, allocator) && make_ways(&left, world, cut, allocator));
     for (size_t i = 0; i < world->rules.limits.count && good; i++) {
         sk_limit *limit = world->rules.limits.data[i];
