@@ -389,7 +389,9 @@ static void every_kind_agrees_under_projections(void **state) {
         const char *const paths[] = {"forces.1.linear", rigid ? NULL : "constraints.0.stiffness",
                                      damped ? "constraints.0.damping" : NULL, NULL};
         double worst = worst_of_small(world, paths, 12);
-        if (!(worst < 1e-6)) fail_msg("%s %s, %s, is off by %g", cases[i].kind, cases[i].text ? cases[i].text : "", c % 2 ? "three passes" : "one", worst);
+        // a loaded attachment is differentiated beside a kink, in narrower steps
+        double most = !strcmp(cases[i].kind, "attachment") ? 1e-6 : 1e-7;
+        if (!(worst < most)) fail_msg("%s %s, %s, is off by %g", cases[i].kind, cases[i].text ? cases[i].text : "", c % 2 ? "three passes" : "one", worst);
         skein_world_destroy(world);
     }
 }
