@@ -198,7 +198,8 @@ static void wait_for_ranks_to_go(void) {
 }
 
 /* The first rank, which has the folder, and the other take turns; at last it is mpirun itself, without which ranks go on until
- * they notice. */
+ * they notice. Whoever is left after a kill is left to itself the first times. It goes on for a second then, until mpirun ends
+ * it, and that is sixty rows; so later on it is killed a little after the first, as a batch system does. */
 static bool break_ranks(const char *out) {
     for (int turn = 0, there = 0; turn < KILLS; turn++) {
         there = count_rows(out);
@@ -207,6 +208,11 @@ static bool break_ranks(const char *out) {
         for (int tries = 0; there < ROWS && victim <= 0 && tries < 2000; tries++, nap(1000000))
             victim = turn == KILLS - 1 ? job : find_rank(ropes(), turn % 2 ? "1" : "0");
         if (victim > 0) kill(victim, SIGKILL);
+        if (victim > 0 && turn >= 2 && victim != job) {
+            nap(5000000);
+            pid_t left = find_rank(ropes(), turn % 2 ? "0" : "1");
+            if (left > 0) kill(left, SIGKILL);
+        }
         int status = end(job);
         wait_for_ranks_to_go();
         if (status == 0) return false;
