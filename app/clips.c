@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "io/clip.h"
+#include "io/uncut.h"
 
 /* One body in one format. */
 typedef struct clip {
@@ -38,9 +39,12 @@ static void name_frame(const app_clips *clips, const clip *c, int frame, char pa
     name_file(clips, c, middle, path);
 }
 
+static skein_handle handle_of(const app_clips *clips, size_t body) {
+    return skein_object_at(clips->plan.loaded->world, SKEIN_BODY, body);
+}
+
 static skein_status surface_of(const app_clips *clips, size_t body, skein_surface *surface) {
-    skein_world *world = clips->plan.loaded->world;
-    return skein_body_surface(world, skein_object_at(world, SKEIN_BODY, body), surface);
+    return skein_body_surface(clips->plan.loaded->world, handle_of(clips, body), surface);
 }
 
 /* Where the vertices are, those that welding has joined too, in the file's axes and units. */
@@ -56,11 +60,15 @@ static skein_status gather(const app_clips *clips, const clip *c, skein_surface 
     return SKEIN_OK;
 }
 
+static skein_mesh mesh_of(const app_clips *clips, const skein_surface *s) {
+    return (skein_mesh){clips->positions, s->vertex_count, s->face_sizes, s->face_count, s->face_vertices,
+                        s->face_vertex_count};
+}
+
 static io_clip describe(const app_clips *clips, const clip *c, const skein_surface *s) {
     const app_scene *loaded = clips->plan.loaded;
     return (io_clip){.name = clips->plan.names[c->body],
-                     .mesh = {clips->positions, s->vertex_count, s->face_sizes, s->face_count, s->face_vertices,
-                              s->face_vertex_count},
+                     .mesh = mesh_of(clips, s),
                      .corner_uv = s->corner_uv,
                      .fps = loaded->settings.fps,
                      .samples = c->params->every ? (uint32_t)(loaded->settings.frames / c->params->every) + 1 : 1,
@@ -76,17 +84,23 @@ static skein_status begin_clip(app_clips *clips, const io_clip_format *format, c
     clip *c = &clips->data[clips->count];
     *c = (clip){.format = format, .params = wanted->params, .body = body};
     skein_surface s;
+    uint32_t *room;
     if (gather(clips, c, &s)) return SKEIN_OK;
+    if (!io_surface_uncut(clips->plan.loaded->world, handle_of(clips, body), &s, &room))
+        return io_error_set(error, SKEIN_ERROR_MEMORY, "", "out of memory");
     if (format->needs_faces && !s.face_count) {
         if (wanted->asked && !clips->plan.loaded->quiet)
             fprintf(stderr, "skein: warning: '%s' has no faces: no %s of it\n", clips->plan.names[body],
                     format->kind.name);
+        free(room);
         return SKEIN_OK;
     }
     char path[APP_PATH_SIZE];
     io_clip described = describe(clips, c, &s);
     name_file(clips, c, "", path);
-    if (format->create && !(c->file = format->create(&described, path, error))) return error->status;
+    if (format->create) c->file = format->create(&described, path, error);
+    free(room);
+    if (format->create && !c->file) return error->status;
     clips->count++;
     return SKEIN_OK;
 }
@@ -119,14 +133,15 @@ app_clips *app_clips_begin(const app_clips_plan *plan, skein_error *error) {
 
 /* ---- frames ---- */
 
-/* What a mesh's file says of its faces, for a format that keeps it: it is read again, since nothing else of a run needs
- * it. To be freed. */
-static void read_again(const app_clips *clips, const clip *c, io_clip *described, io_mesh *read, char **path,
-                       const char *to) {
+/* What a mesh's file says of its faces, those of `whole`, for a format that keeps it: it is read again, since nothing else
+ * of a run needs it. To be freed. */
+static void read_again(const app_clips *clips, const clip *c, const skein_mesh *whole, io_clip *described, io_mesh *read,
+                       char **path, const char *to) {
     *read = (io_mesh){0};
     *path = c->format->keeps_marks ? io_scene_mesh_path(clips->plan.loaded->scene, c->body) : NULL;
     if (!*path) return;
-    if (!io_mesh_read(*path, read, (io_warnings){NULL, NULL}, NULL) && io_mesh_has_faces_of(read, &described->mesh)) {
+    if (!io_mesh_read(*path, read, (io_warnings){NULL, NULL}, NULL) && io_mesh_has_faces_of(read, whole)) {
+        io_mesh_uncut(read, clips->plan.loaded->world, handle_of(clips, c->body));
         described->read = read;
         described->read_path = *path;
     } else if (!read->tetrahedra && c->next == 0)
@@ -140,12 +155,17 @@ static skein_status write_frame(const app_clips *clips, const clip *c, const cha
     skein_surface s;
     io_mesh read;
     char *read_path;
+    uint32_t *room;
     if (gather(clips, c, &s)) return SKEIN_OK;
+    skein_mesh whole = mesh_of(clips, &s);
+    if (!io_surface_uncut(clips->plan.loaded->world, handle_of(clips, c->body), &s, &room))
+        return io_error_set(error, SKEIN_ERROR_MEMORY, path, "out of memory");
     io_clip described = describe(clips, c, &s);
-    read_again(clips, c, &described, &read, &read_path, path);
+    read_again(clips, c, &whole, &described, &read, &read_path, path);
     skein_status status = c->format->write(&described, path, error);
     io_mesh_free(&read);
     free(read_path);
+    free(room);
     return status;
 }
 

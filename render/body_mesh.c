@@ -22,7 +22,7 @@ typedef struct maker {
 typedef struct way {
     uint32_t least, most;       /* the particles at its ends */
     uint32_t at_least, at_most; /* and the corners */
-    uint32_t face;
+    uint32_t face, corner;      /* of the first */
 } way;
 
 /* Where the normals of two faces differ by more, in the body's first shape, there is a crease between them; else they
@@ -131,7 +131,7 @@ static void list_ways(const maker *m, way *ways, double (*normals)[3]) {
         for (uint32_t k = 0; k < s->face_sizes[f]; k++) {
             uint32_t c = first + k, d = first + (k + 1) % s->face_sizes[f];
             uint32_t p = s->particle_of_vertex[s->face_vertices[c]], q = s->particle_of_vertex[s->face_vertices[d]];
-            ways[c] = p < q ? (way){p, q, c, d, f} : (way){q, p, d, c, f};
+            ways[c] = p < q ? (way){p, q, c, d, f, c} : (way){q, p, d, c, f, c};
         }
     }
     qsort(ways, s->face_vertex_count, sizeof *ways, compare_ways);
@@ -159,23 +159,26 @@ static bool make_edges(maker *m) {
     way *ways = malloc(corners * sizeof *ways + 1);
     double(*normals)[3] = malloc(m->surface->face_count * sizeof *normals + 1);
     m->side = malloc(corners * sizeof *m->side + 1);
+    uint32_t *edges = m->mesh->all_edges = malloc(corners * 2 * sizeof *edges + 1);
     m->mesh->edges = malloc(corners * 2 * sizeof *m->mesh->edges + 1);
-    bool good = ways && normals && m->side && m->mesh->edges;
+    m->mesh->edge_of_side = malloc(corners * sizeof *m->mesh->edge_of_side + 1);
+    bool good = ways && normals && m->side && edges && m->mesh->edges && m->mesh->edge_of_side;
     if (good) list_ways(m, ways, normals);
     for (size_t c = 0; c < corners && good; c++) m->side[c] = (uint32_t)c;
     for (size_t i = 0; i < corners && good; i++) {
         const way *now = &ways[i], *before = &ways[i ? i - 1 : 0];
         if (!i || now->least != before->least || now->most != before->most) {
-            m->mesh->edges[2 * kept] = now->least, m->mesh->edges[2 * kept++ + 1] = now->most;
+            edges[2 * kept] = now->least, edges[2 * kept++ + 1] = now->most;
         } else if (m->round || is_smooth(normals[now->face], normals[before->face])) {
             join(m->side, now->at_least, before->at_least);
             join(m->side, now->at_most, before->at_most);
         }
+        m->mesh->edge_of_side[now->corner] = (uint32_t)(kept - 1);
     }
     for (size_t c = 0; c < corners && good; c++) m->side[c] = root_of(m->side, (uint32_t)c);
     free(ways);
     free(normals);
-    m->mesh->edge_count = kept;
+    m->mesh->all_edge_count = kept;
     return good;
 }
 
@@ -222,11 +225,12 @@ static bool make_vertices(maker *m) {
 /* Every polygon as a fan about its first corner. */
 static bool make_triangles(maker *m) {
     const skein_surface *s = m->surface;
-    m->mesh->triangle_count = s->face_vertex_count - 2 * s->face_count;
-    m->mesh->triangles = malloc(m->mesh->triangle_count * 3 * sizeof(uint32_t) + 1);
-    if (!m->mesh->triangles) return false;
+    size_t numbers = 3 * (s->face_vertex_count - 2 * s->face_count);
+    m->mesh->triangles = malloc(numbers * sizeof(uint32_t) + 1);
+    m->mesh->all_triangles = malloc(numbers * sizeof(uint32_t) + 1);
+    if (!m->mesh->triangles || !m->mesh->all_triangles) return false;
     const uint32_t *corner = m->vertex_of;
-    uint32_t *out = m->mesh->triangles;
+    uint32_t *out = m->mesh->all_triangles;
     for (size_t f = 0; f < s->face_count; f++) {
         for (uint32_t k = 2; k < s->face_sizes[f]; k++) {
             *out++ = corner[0], *out++ = corner[k - 1], *out++ = corner[k];
@@ -248,7 +252,8 @@ static uint64_t hash(uint64_t so_far, const void *data, size_t words) {
 bool render_body_mesh_make(render_body_mesh *mesh, const skein_surface *surface, const double *positions,
                            bool round) {
     maker m = {mesh, surface, positions, NULL, NULL, NULL, round};
-    bool good = make_corner_uv(&m) && make_edges(&m) && make_vertices(&m) && make_triangles(&m);
+    bool good = make_corner_uv(&m) && make_edges(&m) && make_vertices(&m) && make_triangles(&m) &&
+                render_body_mesh_leave_out(mesh, surface, NULL);
     free(m.corner_uv);
     free(m.side);
     free(m.vertex_of);
@@ -256,6 +261,28 @@ bool render_body_mesh_make(render_body_mesh *mesh, const skein_surface *surface,
         render_body_mesh_release(mesh);
         return false;
     }
+    return true;
+}
+
+bool render_body_mesh_leave_out(render_body_mesh *mesh, const skein_surface *surface, const uint8_t *cut) {
+    uint8_t *stays = calloc(mesh->all_edge_count + 1, sizeof *stays);
+    if (!stays) return false;
+    const uint32_t *triangle = mesh->all_triangles, *edge = mesh->edge_of_side;
+    uint32_t *out = mesh->triangles;
+    for (size_t f = 0; f < surface->face_count; f++) {
+        size_t size = surface->face_sizes[f], numbers = 3 * (size - 2);
+        if (!cut || !cut[f]) {
+            memcpy(out, triangle, numbers * sizeof *out);
+            out += numbers;
+            for (size_t k = 0; k < size; k++) stays[edge[k]] = true;
+        }
+        triangle += numbers, edge += size;
+    }
+    mesh->triangle_count = (size_t)(out - mesh->triangles) / 3;
+    mesh->edge_count = 0;
+    for (size_t i = 0; i < mesh->all_edge_count; i++)
+        if (stays[i]) memcpy(&mesh->edges[2 * mesh->edge_count++], &mesh->all_edges[2 * i], 2 * sizeof *mesh->edges);
+    free(stays);
     mesh->shape = hash(0xcbf29ce484222325u, mesh->triangles, 3 * mesh->triangle_count);
     mesh->shape = hash(mesh->shape, mesh->weld, mesh->vertex_count);
     mesh->shape = hash(mesh->shape, mesh->uv, 2 * mesh->vertex_count) | 1;
@@ -267,6 +294,9 @@ void render_body_mesh_release(render_body_mesh *mesh) {
     free(mesh->weld);
     free(mesh->triangles);
     free(mesh->edges);
+    free(mesh->all_triangles);
+    free(mesh->all_edges);
+    free(mesh->edge_of_side);
     free(mesh->uv);
     memset(mesh, 0, sizeof *mesh);
 }

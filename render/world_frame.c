@@ -13,6 +13,8 @@
 #include "render/world_solids.h"
 #include "render/world_state.h"
 
+#include <skein/cut.h>
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +27,7 @@ typedef struct body {
     skein_surface source;             /* that it was made from */
     bool made;
     render_body_mesh mesh;
+    skein_cuts cuts;   /* what the mesh is drawn without */
     double *positions; /* by vertex: now */
     float *values;     /* by vertex, where colours tell numbers */
 } body;
@@ -181,6 +184,16 @@ static bool make_body(body *b, const skein_world *world, const skein_surface *su
     return b->made;
 }
 
+/* Its faces without those that are cut. */
+static bool leave_out_cut(body *b, const skein_world *world) {
+    skein_cuts now;
+    if (skein_body_cuts(world, b->handle, &now) != SKEIN_OK) return true;
+    if (now.face == b->cuts.face && now.changes == b->cuts.changes) return true;
+    if (!render_body_mesh_leave_out(&b->mesh, &b->source, now.count ? now.face : NULL)) return false;
+    b->cuts = now;
+    return true;
+}
+
 static void gather(body *b, const render_world_state *state) {
     for (size_t v = 0; v < b->mesh.vertex_count; v++) {
         size_t particle = b->mesh.particles[v];
@@ -245,6 +258,7 @@ static skein_status take_body(render_world_frame *made, const skein_world *world
                 b->source.vertex_count == surface.vertex_count && b->look == look_of(world, handle);
     if (!same && !make_body(b, world, &surface, handle, made->state.positions))
         return render_fail_memory(error, "a body's surface");
+    if (!leave_out_cut(b, world)) return render_fail_memory(error, "a body's surface");
     gather(b, &made->state);
 
     // a body without faces shows its particles; a hidden one shows nothing
@@ -311,10 +325,10 @@ static double mean_edge(const render_world_frame *made) {
     size_t count = 0;
     for (size_t i = 0; i < made->body_count; i++) {
         const render_body_mesh *mesh = &made->bodies[i].mesh;
-        size_t stride = 1 + mesh->edge_count / 512;
-        for (size_t e = 0; e < mesh->edge_count; e += stride, count++) {
-            const double *p = &made->state.positions[3 * (size_t)mesh->edges[2 * e]],
-                         *q = &made->state.positions[3 * (size_t)mesh->edges[2 * e + 1]];
+        size_t stride = 1 + mesh->all_edge_count / 512; // what is cut was as close
+        for (size_t e = 0; e < mesh->all_edge_count; e += stride, count++) {
+            const double *p = &made->state.positions[3 * (size_t)mesh->all_edges[2 * e]],
+                         *q = &made->state.positions[3 * (size_t)mesh->all_edges[2 * e + 1]];
             sum += sqrt((q[0] - p[0]) * (q[0] - p[0]) + (q[1] - p[1]) * (q[1] - p[1]) + (q[2] - p[2]) * (q[2] - p[2]));
         }
     }

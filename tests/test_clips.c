@@ -4,7 +4,10 @@
 
 #include <math.h>
 
+#include <skein/cut.h>
+
 #include "io/clip.h"
+#include "io/uncut.h"
 
 /* ---- Small readers -------------------------------------------------------------------------------------- */
 
@@ -535,6 +538,51 @@ static void a_disk_that_gets_full_keeps_whole_samples(void **state) {
     }
 }
 
+/* ---- What is cut ------------------------------------------------------------------------------------------ */
+
+/* A cut body's mesh has no face that is cut: an OBJ written after it says of each face that is left what the file said. */
+static void a_file_has_no_face_that_is_cut(void **state) {
+    (void)state;
+    static const char text[] = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 0 1\nv 1 0 1\nv 2 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\n"
+                               "g left\nf 1/1 2/2 5/4\nusemtl red\nf 1/1 5/4 4/3\ng right\nf 2/1 3/2 6/4 5/3\n";
+    write_text(in_folder("two.obj"), text);
+    io_mesh read;
+    skein_error error = {SKEIN_OK, "", ""};
+    const io_warnings quiet = {NULL, NULL};
+    assert_int_equal(io_mesh_read(in_folder("two.obj"), &read, quiet, &error), SKEIN_OK);
+    skein_world *world = skein_world_create(NULL, NULL);
+    skein_handle cloth;
+    skein_mesh whole = io_mesh_view(&read);
+    assert_int_equal(skein_body_add(world, "cloth", &whole, NULL, &cloth), SKEIN_OK);
+    for (int cut = 0; cut < 2; cut++) {
+        if (cut) assert_int_equal(skein_cut_faces(world, cloth, (const uint32_t[]){0}, 1), SKEIN_OK);
+        skein_surface s;
+        uint32_t *room;
+        assert_int_equal(skein_body_surface(world, cloth, &s), SKEIN_OK);
+        assert_true(io_surface_uncut(world, cloth, &s, &room));
+        assert_true(!room == !cut);
+        io_mesh_uncut(&read, world, cloth);
+        io_clip clip = {.name = "two",
+                        .mesh = {read.positions, s.vertex_count, s.face_sizes, s.face_count, s.face_vertices, s.face_vertex_count},
+                        .read = &read,
+                        .read_path = "two.obj",
+                        .params = &plain_params};
+        assert_true(io_mesh_has_faces_of(&read, &clip.mesh));
+        assert_int_equal(io_clip_obj.write(&clip, in_folder("out.obj"), &error), SKEIN_OK);
+        char *written = read_text(in_folder("out.obj"));
+        static const char rest[] = "usemtl red\nf 1/1/1 5/4/5 4/3/4\ng right\nf 2/1/2 3/2/3 6/4/6 5/3/5\n";
+        const char *faces = strstr(written, "g left\n");
+        assert_non_null(faces);
+        assert_string_equal(faces + 7 + (cut ? 0 : strcspn(faces + 7, "\n") + 1), rest);
+        assert_true(!strstr(written, "f 1/1/1 2/2/2 5/4/5\n") == (cut == 1));
+        assert_contains(written, cut ? "6 vertices, 2 faces" : "6 vertices, 3 faces");
+        free(written);
+        free(room);
+    }
+    io_mesh_free(&read);
+    skein_world_destroy(world);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
 #define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
@@ -549,6 +597,7 @@ int main(void) {
         TEST(a_clip_that_ends_early_is_whole),
         TEST(a_full_disk_leaves_no_clip),
         TEST(a_disk_that_gets_full_keeps_whole_samples),
+        TEST(a_file_has_no_face_that_is_cut),
     };
     return cmocka_run_group_tests_name("clips", tests, NULL, NULL);
 }

@@ -2,6 +2,8 @@
  * must be seen can be computed. */
 #include "pictures.h"
 
+#include <skein/cut.h>
+
 #include "render/world_lines.h"
 #include "render/world_points.h"
 #include <unistd.h>
@@ -734,6 +736,67 @@ static void a_camera_that_frames_by_itself_can_be_turned_and_zoomed(void **state
 
 /* ---- The driver, last of all ------------------------------------------------------------------ */
 
+/* Faces that are cut are not drawn, nor the lines that only they have; mended they are there again. A cloth of which all
+ * is cut is a cloud of particles. */
+static void what_is_cut_is_gone(void **state) {
+    (void)state;
+    skein_world *world = upright_cloth();
+    skein_handle cloth = skein_object_at(world, SKEIN_BODY, 0);
+    look_from_the_front();
+    view.ground = view.grid = false;
+    view.wireframe = true;
+    skein_surface surface;
+    OK(skein_body_surface(world, cloth, &surface));
+    assert_int_equal(surface.face_count, 128);
+    render_image whole = picture_of(world);
+    const render_frame *frame = update(world);
+    assert_int_equal(frame->surfaces[0].triangle_count, 256);
+    size_t lines = frame->lines[RENDER_WIREFRAME].count;
+    assert_int_equal(lines, 9 * 16 + 8 * 17);
+    // a band of 8 x 4 faces in the middle: all that is seen between x = -0.25 and 0.25
+    uint32_t band[32], count = 0, all[128];
+    for (uint32_t f = 0, c = 0; f < surface.face_count; c += surface.face_sizes[f++]) {
+        double p[3], middle = 0;
+        for (uint32_t k = 0; k < 4; k++) {
+            OK(skein_positions_copy(world, surface.particle_of_vertex[surface.face_vertices[c + k]], 1, p));
+            middle += p[0] / 4;
+        }
+        all[f] = f;
+        if (fabs(middle) < 0.25) band[count++] = f;
+    }
+    assert_int_equal(count, 32);
+    OK(skein_cut_faces(world, cloth, band, count));
+    uint64_t shape = frame->surfaces[0].shape;
+    render_image cut = picture_of(world);
+    frame = update(world);
+    assert_int_equal(frame->surfaces[0].triangle_count, 192);
+    assert_true(frame->surfaces[0].shape != shape);
+    assert_int_equal(frame->lines[RENDER_WIREFRAME].count, lines - 9 * 4 - 8 * 3);
+    // where the band was the sky is, as it is beside the cloth
+    for (int column = -2; column <= 2; column++)
+        for (int row = -3; row <= 3; row++) {
+            const uint8_t *p = pixel_at(&cut, 0.1 * column, 1.2 + 0.13 * row), *q = pixel_at(&whole, 0.1 * column, 1.2 + 0.13 * row);
+            const uint8_t *sky = pixel_at(&whole, 1.2, 1.2 + 0.13 * row);
+            assert_true(abs(p[0] - q[0]) + abs(p[1] - q[1]) + abs(p[2] - q[2]) > 60);
+            for (int k = 0; k < 3; k++) assert_true(abs(p[k] - sky[k]) <= 6);
+        }
+    // beside it all is as it was
+    for (int row = -3; row <= 3; row++)
+        assert_memory_equal(pixel_at(&cut, 0.6, 1.2 + 0.13 * row), pixel_at(&whole, 0.6, 1.2 + 0.13 * row), 3);
+    OK(skein_cut_mend(world, cloth));
+    render_image mended = picture_of(world);
+    assert_memory_equal(mended.pixels, whole.pixels, 3u * width * height);
+    assert_int_equal(update(world)->surfaces[0].shape, shape);
+    OK(skein_cut_faces(world, cloth, all, 128));
+    frame = update(world);
+    assert_int_equal(frame->surface_count, 0);
+    assert_int_equal(frame->points[RENDER_PARTICLES].count, 9 * 17);
+    render_image_release(&whole);
+    render_image_release(&cut);
+    render_image_release(&mended);
+    skein_world_destroy(world);
+}
+
 static void the_driver_had_nothing_to_say(void **state) {
     (void)state;
     const render_messages *messages = render_context_messages(context);
@@ -806,6 +869,7 @@ int main(void) {
         VIEW_TEST(the_camera_stands_where_it_is_told),
         VIEW_TEST(a_camera_that_frames_by_itself_can_be_turned_and_zoomed),
         VIEW_TEST(a_picture_drawn_in_parts_is_the_same),
+        VIEW_TEST(what_is_cut_is_gone),
         cmocka_unit_test(the_driver_had_nothing_to_say),
     };
     if (!mkdtemp(directory)) return 1;

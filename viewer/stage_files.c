@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include "io/mesh.h"
+#include "io/uncut.h"
 #include "viewer/stage.h"
 
 void viewer_free_name(const char *stem, const char *ending, char *path, size_t size) {
@@ -50,7 +51,8 @@ static void save_body(viewer_stage *stage, size_t body, const char *stem) {
     skein_error error = {SKEIN_ERROR_MEMORY, "", "out of memory"};
     if (skein_body_surface(world, skein_object_at(world, SKEIN_BODY, body), &s) || !s.face_count) return;
     double *positions = malloc(3 * s.vertex_count * sizeof *positions);
-    bool good = positions != NULL;
+    uint32_t *room = NULL;
+    bool good = positions && io_surface_uncut(world, skein_object_at(world, SKEIN_BODY, body), &s, &room);
     for (size_t v = 0; v < s.vertex_count && good; v++)
         good = !skein_positions_copy(world, s.particle_of_vertex[v], 1, positions + 3 * v);
     skein_mesh mesh = {positions, s.vertex_count, s.face_sizes, s.face_count, s.face_vertices, s.face_vertex_count};
@@ -60,6 +62,7 @@ static void save_body(viewer_stage *stage, size_t body, const char *stem) {
     if (good) viewer_note(stage, "saved %s: %zu vertices, %zu faces", path, s.vertex_count, s.face_count);
     else viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", path, error.message);
     free(positions);
+    free(room);
 }
 
 void viewer_save_mesh(viewer_stage *stage) {

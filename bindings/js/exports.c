@@ -16,6 +16,7 @@
 #include "bindings/js/files.h"
 #include "io/clip.h"
 #include "io/scene_settings.h"
+#include "io/uncut.h"
 #include "render/view.h"
 #include "viewer/grab.h"
 
@@ -418,30 +419,6 @@ static double *places_of(const js_scene *js, const skein_surface *s) {
     return places;
 }
 
-/* Leaves out of a surface the faces that are cut. `lists` receives the memory of those that are left, to be freed; false
- * where there is none. */
-static bool leave_out_cut(const js_scene *js, skein_handle body, skein_surface *s, uint32_t **lists) {
-    skein_cuts cuts;
-    if (skein_body_cuts(js->world, body, &cuts) || !cuts.count) return true;
-    size_t faces = 0, corners = 0;
-    uint32_t *sizes = malloc((s->face_count + 3 * s->face_vertex_count) * sizeof *sizes);
-    if (!(*lists = sizes)) return false;
-    uint32_t *vertices = sizes + s->face_count;
-    float *uv = (float *)(void *)(vertices + s->face_vertex_count);
-    for (size_t f = 0, c = 0; f < s->face_count; c += s->face_sizes[f++]) {
-        if (cuts.face[f]) continue;
-        sizes[faces++] = s->face_sizes[f];
-        for (size_t k = c; k < c + s->face_sizes[f]; k++, corners++) {
-            vertices[corners] = s->face_vertices[k];
-            if (s->corner_uv) memcpy(uv + 2 * corners, s->corner_uv + 2 * k, 2 * sizeof *uv);
-        }
-    }
-    s->face_sizes = sizes, s->face_vertices = vertices;
-    if (s->corner_uv) s->corner_uv = uv;
-    s->face_count = faces, s->face_vertex_count = corners;
-    return true;
-}
-
 /* A body as it stands, in a format of one frame ("obj", "ply", "stl"), as the command writes it. `out` receives where the
  * bytes are, to be freed, and how many. */
 bool EXPORT(js_clip)(js_scene *js, size_t body, const char *name, uint32_t out[2]) {
@@ -465,7 +442,8 @@ bool EXPORT(js_clip)(js_scene *js, size_t body, const char *name, uint32_t out[2
         return false;
     }
     uint32_t *lists = NULL;
-    double *places = leave_out_cut(js, handle, &s, &lists) ? places_of(js, &s) : NULL;
+    const skein_mesh whole = {NULL, s.vertex_count, s.face_sizes, s.face_count, s.face_vertices, s.face_vertex_count};
+    double *places = io_surface_uncut(js->world, handle, &s, &lists) ? places_of(js, &s) : NULL;
     io_clip_params params = {.normals = SKEIN_NORMALS_AREA, .scale = 1};
     io_clip clip = {.name = "body", .mesh = {places, s.vertex_count, s.face_sizes, s.face_count, s.face_vertices,
                     s.face_vertex_count}, .corner_uv = s.corner_uv, .fps = io_scene_get(js->scene)->fps, .samples = 1,
@@ -473,7 +451,8 @@ bool EXPORT(js_clip)(js_scene *js, size_t body, const char *name, uint32_t out[2
     io_mesh read = {0};
     char *path = format->keeps_marks ? io_scene_mesh_path(js->scene, body) : NULL;
     const js_files *before = js_files_use(&js->files);
-    if (path && !io_mesh_read(path, &read, (io_warnings){NULL, NULL}, NULL) && io_mesh_has_faces_of(&read, &clip.mesh)) {
+    if (path && !io_mesh_read(path, &read, (io_warnings){NULL, NULL}, NULL) && io_mesh_has_faces_of(&read, &whole)) {
+        io_mesh_uncut(&read, js->world, handle);
         clip.read = &read;
         clip.read_path = path;
     }
