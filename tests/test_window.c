@@ -33,7 +33,7 @@ static double distance(const double a[3], const double b[3]) {
 
 /* A key without a meaning changes nothing, and the state is told after every key. */
 static void ask_state(void) {
-    press_key("k");
+    press_key("i");
 }
 
 /* ---- One sitting ------------------------------------------------------------------------------------ */

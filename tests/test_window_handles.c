@@ -499,6 +499,68 @@ static void paints_pins(void **state) {
     close_window();
 }
 
+/* ---- The knife --------------------------------------------------------------------------------------------- */
+
+/* The mesh that is saved now has so many faces. */
+static void saves_faces(int faces) {
+    char words[40];
+    snprintf(words, sizeof words, ": 81 vertices, %d faces", faces);
+    use_key("o", "note saved ");
+    if (!strstr(screen.line, words)) fail_msg("expected%s, not %s", words, screen.line);
+}
+
+/* A stroke across the sheet cuts a row of its faces, which meshes lack then; what hung below falls. A frame back it is still
+ * cut, two frames back, before the stroke, whole. A field that builds it anew where it stands leaves it cut. The recording
+ * holds all of it. Beside the sheet nothing is cut, and looking around is with the right button. */
+static void cuts_a_sheet(void **state) {
+    char hash[32], words[80];
+    (void)state;
+    write_scene(in_folder("sheet.json"), sheet);
+    open_with(in_folder("sheet.json"), NULL);
+    double mid_x = 300 + 350, mid_y = 550;
+    use_key("j", "recording ");
+    press_key("period");
+    press_key("period");
+    use_key("k", "tool knife");
+    stroke(mid_x - 330, mid_y - 330, mid_x + 330, mid_y - 330, "knife 0"); // above it
+    saves_faces(64);
+    stroke(mid_x - 330, mid_y + 30, mid_x + 330, mid_y + 30, "knife 8");
+    stroke(mid_x - 330, mid_y + 30, mid_x + 330, mid_y + 30, "knife 0"); // there is nothing any more
+    saves_faces(56);
+    press_key("period");
+    press_key("period");
+    press_key("comma");
+    saves_faces(56);
+    press_key("comma");
+    assert_true(told("frame") == 2);
+    saves_faces(64);
+    stroke(mid_x, mid_y + 330, mid_x, mid_y + 5, "knife 4"); // upwards, up to the middle
+    for (int i = 0; i < 2; i++) press_key("period");
+    hash_now(hash);
+    use_key("j", "recorded ");
+    double steps = told("steps");
+    assert_true(steps == 6);
+    char name[64];
+    assert_int_equal(sscanf(screen.line, "recorded %63s", name), 1);
+    outcome o = SKEIN("verify", in_folder(name));
+    assert_status(o, 0);
+    snprintf(words, sizeof words, "6 steps, the same to the bit; state hash %s\n", hash);
+    assert_contains(o.out, words);
+    outcome_free(&o);
+    listen_from_here();
+    drag(mid_x, mid_y, mid_x + 40, mid_y, 3);
+    expect("camera ");
+    saves_faces(60);
+    use_key("k", "tool nothing");
+    // pins that are painted build it anew, where it stands
+    use_key("p", "tool pins");
+    stroke(mid_x - 80, mid_y - 100, mid_x + 80, mid_y - 100, "painted ");
+    saves_faces(60);
+    press_key("BackSpace");
+    saves_faces(64);
+    close_window();
+}
+
 /* ---- The hawk ---------------------------------------------------------------------------------------------- */
 
 /* The pointer that leads a predator gives it back: where the scene has it, and whether it hunts. */
@@ -596,6 +658,7 @@ int main(void) {
         SITTING(moves_rules_that_run),   SITTING(moves_planes_and_ropes),
         SITTING(works_beside_other_tools), SITTING(paints_pins),
         SITTING(gives_the_hawk_back),      SITTING(makes_a_parameter),
+        SITTING(cuts_a_sheet),
     };
     if (!can_open_screen()) return 0;
     if (getenv("SKEIN_TEST_ONLY")) cmocka_set_test_filter(getenv("SKEIN_TEST_ONLY"));

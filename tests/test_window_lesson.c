@@ -129,7 +129,7 @@ static void the_formula_is_what_is_told(void **state) {
     open_scene("squares.json", squares, NULL);
     told_look before, after;
     double distance = 1;
-    static const char *const keys[3] = {"Return", "m", "k"}; // any key that means nothing else
+    static const char *const keys[3] = {"Return", "m", "i"}; // any key that means nothing else
     for (int n = 0; n < 3; n++) {
         solve(keys[n], n + 1, "spring", &before, &after);
         assert_true(fabs(before.value - 0.5 * (distance * distance - 0.25)) < 1e-6);

@@ -409,7 +409,7 @@ static void says_what_blew_up_and_what_holds_it(void **state) {
     assert_non_null(strstr(screen.line, "the spring from particle "));
     assert_non_null(strstr(screen.line, " substeps would hold it"));
     frame = strtod(strstr(screen.line, "Back at frame ") + 14, NULL);
-    press_key("k");
+    press_key("i");
     assert_true(told("paused") == 1);
     assert_true(told("frame") == frame);
     press_button("take substeps", "set method 0 substeps=");
@@ -445,7 +445,7 @@ static void saves_both_of_two(void **state) {
     open_window(arguments);
     screen.seen = 0;
     expect("note side by side");
-    press_key("k");
+    press_key("i");
     type_value("other body.0.structural.stiffness", 0, 1, "4321", "set body 0 structural.stiffness=4321");
     type_value("body.0.mass", 0, 1, "7", "set body 0 mass=7");
     use_key("ctrl+s", "note saved pair-other-001.json");

@@ -90,9 +90,9 @@ static void all_that_is_done_is_done_again(void **state) {
     press_key("space");
     take_particle();
     tool("mousemove_relative -- 30 -20 sleep 0.05 mousemove_relative -- 30 -20");
-    press_key("k");
+    press_key("i");
     double begun = told("frame");
-    do press_key("k");
+    do press_key("i");
     while (told("frame") < begun + 8);
     listen_from_here();
     tool("mouseup 1");

@@ -20,6 +20,7 @@ typedef enum viewer_tool {
     VIEWER_TURNS,
     VIEWER_SIZES,
     VIEWER_PINS, /* a brush: brush.h */
+    VIEWER_CUTS, /* a knife: knife.h */
     VIEWER_TOOL_COUNT
 } viewer_tool;
 

@@ -13,7 +13,7 @@
 /* A press that moves less (pixels) changes nothing. */
 static const double least_way = 2, least_brush = 4, most_brush = 400;
 
-static const char *const words_of_tool[VIEWER_TOOL_COUNT] = {"nothing", "move", "turn", "size", "pins"};
+static const char *const words_of_tool[VIEWER_TOOL_COUNT] = {"nothing", "move", "turn", "size", "pins", "knife"};
 
 /* ---- What is chosen ---- */
 
@@ -41,10 +41,11 @@ static void tell(viewer_stage *stage) {
     if (h->chosen) name_object(stage, name, sizeof name);
     bool has = h->chosen && has_spot(stage, h->category, h->index, &spot);
     if (h->tool == VIEWER_PINS) viewer_note(stage, "the brush: drag over a body to pin its particles, with Shift to free them; the wheel makes it wider; P or Esc puts it away");
+    else if (h->tool == VIEWER_CUTS) viewer_note(stage, "the knife: a stroke cuts the cloth whose picture it crosses; Shift and the other buttons look around; K or Esc puts it away");
     else if (h->tool && has && !viewer_spot_can(&spot, h->tool)) viewer_note(stage, "%s: there is no field to %s it by", name, words_of_tool[h->tool]);
     else if (h->tool) viewer_note(stage, "%s: drag a handle to %s it, with Ctrl by whole steps; N is the next object, Esc puts them away", name, words_of_tool[h->tool]);
     else viewer_note(stage, "no handles");
-    viewer_event(stage->events, "tool %s %s", words_of_tool[h->tool], h->tool == VIEWER_PINS ? "" : name);
+    viewer_event(stage->events, "tool %s %s", words_of_tool[h->tool], h->tool >= VIEWER_PINS ? "" : name);
     stage->dirty = true;
 }
 
@@ -100,11 +101,28 @@ static void take_tool(viewer_stage *stage, viewer_tool tool, skein_category cate
     tell(stage);
 }
 
+/* The knife is for no object. */
+static void take_knife(viewer_stage *stage) {
+    viewer_handles *h = &stage->handles;
+    if (h->tool == VIEWER_CUTS) {
+        put_away(stage);
+        return;
+    }
+    h->tool = VIEWER_CUTS;
+    h->hot = GIZMO_NOTHING;
+    viewer_hunt_rest(stage);
+    tell(stage);
+}
+
 void viewer_handles_key(viewer_stage *stage, viewer_tool tool) {
     viewer_handles *h = &stage->handles;
     skein_category category = h->category;
     size_t index = h->index;
-    if (!stage->side_count || h->holds || h->brush.paints) return;
+    if (!stage->side_count || viewer_handles_busy(stage)) return;
+    if (tool == VIEWER_CUTS) {
+        take_knife(stage);
+        return;
+    }
     if (h->brush.radius <= 0) h->brush.radius = 24;
     // with handles on, another tool is for the same object; and the ground, which is behind everything, is not meant
     bool under = stage->over && (!h->tool || h->tool == tool) && find_under_pointer(stage, &category, &index);
@@ -124,7 +142,7 @@ void viewer_handles_key(viewer_stage *stage, viewer_tool tool) {
 void viewer_handles_request(viewer_stage *stage, const viewer_request *r) {
     viewer_handles *h = &stage->handles;
     viewer_spot spot;
-    if (!stage->side_count || h->holds || h->brush.paints || r->code <= 0 || r->code >= VIEWER_TOOL_COUNT) return;
+    if (!stage->side_count || viewer_handles_busy(stage) || r->code <= 0 || r->code >= VIEWER_CUTS) return;
     if (h->brush.radius <= 0) h->brush.radius = 24;
     bool same = h->chosen && h->category == r->category && h->index == r->index;
     if (same && h->tool == (viewer_tool)r->code) put_away(stage);
@@ -136,8 +154,8 @@ void viewer_handles_request(viewer_stage *stage, const viewer_request *r) {
 void viewer_handles_next(viewer_stage *stage) {
     viewer_handles *h = &stage->handles;
     viewer_spot spot;
-    if (!stage->side_count || h->holds || h->brush.paints) return;
-    viewer_tool tool = h->tool && h->tool != VIEWER_PINS ? h->tool : VIEWER_MOVES;
+    if (!stage->side_count || viewer_handles_busy(stage)) return;
+    viewer_tool tool = h->tool && h->tool < VIEWER_PINS ? h->tool : VIEWER_MOVES;
     bool seen = !h->chosen || !h->tool;
     for (int turn = 0; turn < 2; turn++)
         for (int c = 0; c < CATEGORIES; c++)
@@ -165,7 +183,7 @@ static double scale_of(const viewer_stage *stage) {
 /* The gizmo of a side as it is now; false where there is none. While it is held it is where it was, moved along. */
 static bool gizmo_of(const viewer_stage *stage, size_t side, viewer_gizmo *gizmo, viewer_spot *spot) {
     const viewer_handles *h = &stage->handles;
-    if (!h->chosen || h->tool == VIEWER_NO_TOOL || h->tool == VIEWER_PINS || side >= stage->side_count) return false;
+    if (!h->chosen || h->tool == VIEWER_NO_TOOL || h->tool >= VIEWER_PINS || side >= stage->side_count) return false;
     if (h->holds) {
         *spot = h->spot, *gizmo = h->gizmo;
         if (h->moved && h->tool == VIEWER_MOVES)
@@ -234,12 +252,23 @@ static void draw_brush(const viewer_stage *stage, size_t side, viewer_strokes *s
                                          .paint = h->brush.paints ? VIEWER_PAINT_HOT : VIEWER_PAINT_ALL});
 }
 
+/* Where the blade is: a point, and while it cuts a larger one. */
+static void draw_knife(const viewer_stage *stage, size_t side, viewer_strokes *strokes) {
+    const viewer_knife *knife = &stage->handles.knife;
+    double inside;
+    if (!stage->over || viewer_side_at(stage, stage->x, &inside) != side) return;
+    const double at[2] = {stage->x + 0.5, stage->y + 0.5};
+    viewer_stroke_circle(strokes, at, (knife->cuts ? 5 : 3) * scale_of(stage),
+                         (viewer_stroke){.width = 0, .opacity = 0.95f, .paint = VIEWER_PAINT_HOT, .part = GIZMO_NOTHING});
+}
+
 void viewer_handles_draw(const viewer_stage *stage, size_t side, viewer_strokes *strokes) {
     viewer_gizmo gizmo;
     viewer_spot spot;
     strokes->count = 0;
     if (side >= stage->side_count) return;
     if (stage->handles.tool == VIEWER_PINS) draw_brush(stage, side, strokes);
+    if (stage->handles.tool == VIEWER_CUTS) draw_knife(stage, side, strokes);
     if (!gizmo_of(stage, side, &gizmo, &spot)) return;
     viewer_sight sight = sight_of(stage, side);
     draw_outline(stage, side, &gizmo, &spot, strokes);
@@ -278,13 +307,14 @@ void viewer_handles_anew(viewer_stage *stage, bool another_scene) {
     viewer_spot spot;
     drop(h);
     viewer_brush_forget(&h->brush);
+    h->knife.cuts = false;
     if (another_scene) h->tool = VIEWER_NO_TOOL, h->chosen = false;
-    else if (h->chosen && h->tool != VIEWER_PINS && !has_spot(stage, h->category, h->index, &spot)) h->tool = VIEWER_NO_TOOL, h->chosen = false;
+    else if (h->chosen && h->tool < VIEWER_PINS && !has_spot(stage, h->category, h->index, &spot)) h->tool = VIEWER_NO_TOOL, h->chosen = false;
     h->hot = GIZMO_NOTHING;
 }
 
 bool viewer_handles_busy(const viewer_stage *stage) {
-    return stage->handles.holds || stage->handles.brush.paints;
+    return stage->handles.holds || stage->handles.brush.paints || stage->handles.knife.cuts;
 }
 
 bool viewer_handles_wait(const viewer_stage *stage) {
@@ -296,6 +326,11 @@ bool viewer_handles_press(viewer_stage *stage, const viewer_request *r) {
     double inside;
     if (r->code != GLFW_MOUSE_BUTTON_LEFT || h->tool == VIEWER_NO_TOOL || !stage->side_count) return false;
     if (h->tool == VIEWER_PINS) return !stage->camera.flying && viewer_brush_begin(stage, !(r->mods & GLFW_MOD_SHIFT));
+    if (h->tool == VIEWER_CUTS) {
+        if (stage->camera.flying || r->mods & GLFW_MOD_SHIFT) return false;
+        viewer_knife_begin(stage);
+        return true;
+    }
     size_t side = viewer_side_at(stage, r->x, &inside);
     if (!gizmo_of(stage, side, &h->gizmo, &h->spot)) return false;
     viewer_sight sight = sight_of(stage, side);
@@ -398,6 +433,10 @@ void viewer_handles_drag(viewer_stage *stage) {
         viewer_brush_go_on(stage);
         return;
     }
+    if (h->knife.cuts) {
+        viewer_knife_go_on(stage);
+        return;
+    }
     const double to[2] = {stage->x, stage->y};
     double by[3];
     viewer_sight sight = sight_of(stage, h->side);
@@ -428,6 +467,10 @@ void viewer_handles_let_go(viewer_stage *stage) {
         viewer_brush_end(stage);
         return;
     }
+    if (h->knife.cuts) {
+        viewer_knife_end(stage);
+        return;
+    }
     bool moved = h->moved, live = follows_live(h);
     size_t count = moved ? changes_of(stage, changes) : 0;
     char words[sizeof h->words], name[120], done[32];
@@ -450,10 +493,10 @@ bool viewer_handles_escape(viewer_stage *stage) {
         take_back(stage);
         drop(h);
         viewer_note(stage, "it stays as it was");
-    } else if (h->tool && !h->brush.paints) {
+    } else if (h->tool && !viewer_handles_busy(stage)) {
         put_away(stage);
     } else {
-        return h->brush.paints;
+        return viewer_handles_busy(stage);
     }
     stage->dirty = true;
     return true;
@@ -469,7 +512,7 @@ void viewer_handles_hover(viewer_stage *stage, bool over_picture) {
     int before = h->hot;
     size_t side = viewer_side_at(stage, stage->x, &inside), side_before = h->hot_side;
     h->hot = GIZMO_NOTHING, h->hot_side = side;
-    if (h->tool == VIEWER_PINS) stage->news = true; // the circle goes along
+    if (h->tool >= VIEWER_PINS) stage->news = true; // the circle goes along
     if (over_picture && gizmo_of(stage, side, &gizmo, &spot)) {
         viewer_sight sight = sight_of(stage, side);
         h->hot = viewer_gizmo_pick(&gizmo, &sight, stage->x, stage->y);

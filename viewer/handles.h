@@ -9,6 +9,7 @@
 #define SKEIN_VIEWER_HANDLES_H
 
 #include "viewer/brush.h"
+#include "viewer/knife.h"
 #include "viewer/spot.h"
 
 typedef struct viewer_stage viewer_stage;
@@ -41,6 +42,7 @@ typedef struct viewer_handles {
     size_t first, count;
     char words[96]; /* what it does */
     viewer_brush brush;
+    viewer_knife knife;
 } viewer_handles;
 
 /* The handles of a tool, on what is under the pointer or what was chosen before; again the same tool puts them away. */

@@ -1,11 +1,17 @@
 /* The frames that were: to scrub through, and to branch from.
  *
- * Positions, velocities and pins of each frame, as exact as the world has them, as many as fit into the memory that
+ * Positions, velocities, pins and cuts of each frame, as exact as the world has them, as many as fit into the memory that
  * it is given; the oldest are forgotten. Invariant: frames first..last are kept, each in its own place of the ring. */
 #ifndef SKEIN_VIEWER_HISTORY_H
 #define SKEIN_VIEWER_HISTORY_H
 
 #include "skein/skein.h"
+
+/* What is cut, of the faces of all bodies one after another, from a frame on. */
+typedef struct viewer_history_cut {
+    uint64_t frame;
+    unsigned char *face;
+} viewer_history_cut;
 
 typedef struct viewer_history {
     skein_real *state; /* `room` frames of `particles` x 6 */
@@ -15,6 +21,9 @@ typedef struct viewer_history {
     uint64_t first, last;
     bool empty;
     double *scratch; /* particles x 3 */
+    viewer_history_cut *cuts; /* cut_count, by their frames; none: all is whole */
+    size_t cut_count, cut_room, faces;
+    uint64_t cut_changes; /* of the bodies' cuts, when last looked at */
 } viewer_history;
 
 /* Forgets all, and makes room for frames of this world. False where there is no memory. */

@@ -298,6 +298,7 @@ static const viewer_key keys[] = {
     TOOL(GLFW_KEY_H, "H", VIEWER_TURNS, "handles to turn it"),
     TOOL(GLFW_KEY_L, "L", VIEWER_SIZES, "handles to make it larger and smaller"),
     TOOL(GLFW_KEY_P, "P", VIEWER_PINS, "a brush that pins a body's particles, with Shift frees them; the wheel makes it wider"),
+    TOOL(GLFW_KEY_K, "K", VIEWER_CUTS, "a knife: a stroke cuts the cloth whose picture it crosses; going back makes it whole"),
     SCENE(GLFW_KEY_N, "N", next_object, "the handles go to the next object"),
     {.code = GLFW_KEY_ESCAPE, .name = "Esc", .when = WITH_TOOL, .act = escape, .help = "with handles: lets go without a change; puts them away"},
     SCENE(GLFW_KEY_X, "X", save_picture,

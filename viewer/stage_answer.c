@@ -70,7 +70,7 @@ static void press(viewer_stage *stage, const viewer_request *r) {
     stage->pressed_x = r->x, stage->pressed_y = r->y;
     if (viewer_handles_press(stage, r)) return;
     if (r->code != GLFW_MOUSE_BUTTON_LEFT || r->mods & GLFW_MOD_SHIFT || stage->camera.flying) return;
-    if (stage->handles.tool == VIEWER_PINS) return; // beside a body the brush looks around
+    if (stage->handles.tool >= VIEWER_PINS) return; // beside a body the brush looks around
     double inside, distance;
     size_t side = viewer_side_at(stage, r->x, &inside);
     uint32_t particle = pick(stage, side, r->x, r->y, &distance);
