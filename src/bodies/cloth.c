@@ -32,6 +32,7 @@ typedef struct cloth_params {
     int32_t diagonals, bending;
     double rigidity;
     double tether, limit;
+    double thickness, friction;
     int32_t look;
 } cloth_params;
 
@@ -52,7 +53,7 @@ static const skein_field fields[] = {
     SK_REAL(cloth_params, scale, "scale", "", 1, 1e-9, 1e9, "factor on the mesh's coordinates"),
     SK_VEC3(cloth_params, velocity, "velocity", "m/s", 0, 0, 0, "at the start"),
     SK_CHOICE(cloth_params, fabric, SK_FABRIC_FIELD, 0, SK_FABRICS,
-              "a real one's density, stretch, shear and bend.rigidity, where they are not given themselves"),
+              "a real one's density, stretch, shear, bend.rigidity and contact, where they are not given themselves"),
     SK_REAL(cloth_params, density, "density", "kg/m2", 0.2, 1e-9, 1e9,
             "mass of a square metre, shared out to the corners"),
     SK_REAL(cloth_params, weld, "weld", "m", 0, 0, SK_FAR,
@@ -83,6 +84,10 @@ static const skein_field fields[] = {
         cloth_params, tether, "stretch.tether", "", 0, 0, SK_UNBOUNDED,
         "no particle gets farther from a pin, or from any 5 or 20 edges away, than along the cloth, times 1 + this; "
         "\"infinite\" is none"),
+    SK_REAL(cloth_params, thickness, "contact.thickness", "m", 0, 0, 1e3,
+            "its own, in contact: two surfaces come as near as the mean of theirs; 0: what the force `contact` says"),
+    SK_REAL(cloth_params, friction, "contact.friction", "", 0.3, 0, 10,
+            "with a contact.thickness: its coefficient of friction in contact; of two surfaces the mean counts"),
     SK_LOOK(cloth_params, look, SKEIN_LOOK_CLOTH),
 };
 

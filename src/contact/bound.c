@@ -264,7 +264,7 @@ void sk_touch_bound(sk_run *run, const sk_op *op, size_t from, size_t end) {
     const sk_force *force = op->rule;
     sk_touch *touch = force->state;
     if (!touch || !touch->found) return;
-    real thickness = (real)((const sk_contact_params *)force->params)->thickness, least = SK_LEAST_GAP * thickness;
+    real least = SK_LEAST_GAP * touch->thickness;
     const sk_vec4 *x = run->vector[SK_X];
     sk_touch_set_frame(touch, x, op->packed, touch->now + 1, 1);
     bool lost = sk_touch_mark_lost(touch, x, op->packed, touch->now + 1, 1) || touch->wild_count, good = true;

@@ -154,6 +154,25 @@ static void measure_spacing(sk_skin *skin) {
     skin->spacing = skin->edge_count ? (real)(0.6 * sum / (double)skin->edge_count) : 0;
 }
 
+/* What bodies have of their own. Vertices of one body mostly follow each other. */
+static void take_own(sk_skin *skin, const sk_meeting_parts *parts) {
+    size_t body = 0;
+    skin->all_own = true;
+    for (size_t v = 0; v < skin->vertex_count; v++) {
+        const uint32_t particle = skin->particle[v];
+        for (size_t tried = 0; tried < parts->body_count; tried++, body++) {
+            if (body >= parts->body_count) body = 0;
+            if (particle >= parts->body[body].first && particle < parts->body[body].end) break;
+        }
+        if (body >= parts->body_count) body = 0;
+        bool any = parts->body_count && particle >= parts->body[body].first && particle < parts->body[body].end;
+        skin->thickness[v] = any ? (real)parts->body[body].thickness : 0;
+        skin->friction[v] = any ? (real)parts->body[body].friction : 0;
+        skin->thickest = sk_max(skin->thickest, skin->thickness[v]);
+        skin->all_own &= skin->thickness[v] > 0;
+    }
+}
+
 bool sk_skin_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *particles, const sk_only *only,
                   const sk_meeting_parts *parts) {
     sk_skin_release(skin, allocator);
@@ -163,19 +182,22 @@ bool sk_skin_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *pa
     skin->particle = sk_allocate(allocator, (particles->count + 1) * sizeof *skin->particle);
     skin->piece = sk_allocate(allocator, (particles->count + 1) * sizeof *skin->piece);
     skin->built = sk_allocate(allocator, (particles->count + 1) * sizeof *skin->built);
+    skin->thickness = sk_allocate(allocator, (particles->count + 1) * sizeof *skin->thickness);
+    skin->friction = sk_allocate(allocator, (particles->count + 1) * sizeof *skin->friction);
     skin->edge = sk_allocate(allocator, (edges + 1) * sizeof *skin->edge);
     skin->triangle = sk_allocate(allocator, (triangles + 1) * sizeof *skin->triangle);
     skin->leaf = sk_allocate(allocator, (triangles + parts->edge_count + 1) * sizeof *skin->leaf);
     m.vertex_of = sk_allocate(allocator, (particles->count + 1) * sizeof *m.vertex_of);
     m.table = sk_allocate(allocator, size * sizeof *m.table);
     bool good = skin->particle && skin->piece && skin->built && skin->edge && skin->triangle && skin->leaf &&
-                m.vertex_of && m.table;
+                skin->thickness && skin->friction && m.vertex_of && m.table;
     if (good) {
         memset(m.vertex_of, 0xff, particles->count * sizeof *m.vertex_of);
         memset(m.table, 0xff, size * sizeof *m.table);
         add_all(&m, only, parts);
         find_pieces(skin);
         measure_spacing(skin);
+        take_own(skin, parts);
         good = list_leaves(skin, allocator);
     }
     sk_release(allocator, m.vertex_of);
@@ -188,6 +210,8 @@ void sk_skin_release(sk_skin *skin, sk_allocator *allocator) {
     sk_release(allocator, skin->particle);
     sk_release(allocator, skin->piece);
     sk_release(allocator, skin->built);
+    sk_release(allocator, skin->thickness);
+    sk_release(allocator, skin->friction);
     sk_release(allocator, skin->edge);
     sk_release(allocator, skin->triangle);
     sk_release(allocator, skin->leaf);

@@ -1,4 +1,4 @@
-/* How thick the features of a pair are: what a rule says, or less where a body's own are nearer as it was built. That
+/* How thick the features of a pair are: what the rule or their bodies say, or less where a body's own are nearer as it was built. That
  * distance is asked for where it may count, which is of few pairs. */
 #include "contact/touch.h"
 
@@ -25,11 +25,11 @@ static void point_at_own(built_pairs *some) {
 /* A surface as it was built is not pushed apart: features of one piece are as thick as their distance then allows. */
 static void take_built_distances(const sk_touch *touch, sk_pairs *pairs, int sort, built_pairs *some) {
     const real share = (real)0.9;
-    for (size_t i = 0; i < SOME; i++) some->pairs.thickness[i] = touch->thickness;
+    for (size_t i = 0; i < SOME; i++) some->pairs.thickness[i] = touch->thickness; // of whatever is nearest there
     sk_pairs_pad(&some->pairs);
     sk_closest[sort][touch->isa](touch->skin.built, &some->pairs);
     for (size_t i = 0; i < some->pairs.count; i++)
-        pairs->thickness[some->of[i]] = sk_min(touch->thickness, share * some->pairs.distance[i]);
+        pairs->thickness[some->of[i]] = sk_min(pairs->thickness[some->of[i]], share * some->pairs.distance[i]);
     some->pairs.count = 0;
 }
 
@@ -41,7 +41,7 @@ void sk_touch_set_thickness(const sk_touch *touch, sk_pairs *pairs, int sort) {
     point_at_own(&some);
     for (size_t k = 0; k < pairs->count; k++) {
         uint32_t a = pairs->corner[0][k], b = pairs->corner[2][k];
-        pairs->thickness[k] = touch->thickness;
+        pairs->thickness[k] = sk_pair_thickness(touch, a, b);
         sk_vec3 apart = sk_sub(sk_xyz(skin->built[a]), sk_xyz(skin->built[b]));
         if (skin->piece[a] != skin->piece[b] || sk_dot(apart, apart) > far * far) continue;
         size_t i = some.pairs.count++;

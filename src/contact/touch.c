@@ -229,13 +229,14 @@ static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool
 static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     (void)from, (void)end;
     sk_touch *touch = touch_of(op);
-    real thickness = (real)params_of(op)->thickness;
     if (!touch || !touch->skin.vertex_count) return;
+    real thickness = sk_touch_thickest(touch, params_of(op)), usual = (real)params_of(op)->thickness;
     bool good = (run->iteration && touch->alone) || find_slots(touch, run);
     touch->now += 1, touch->clock++;
     bool all = !touch->found || touch->thickness < thickness || touch->thickness > thickness ||
-               touch->now + 1 > touch->until;
+               touch->usual < usual || touch->usual > usual || touch->now + 1 > touch->until;
     touch->thickness = thickness;
+    touch->usual = usual;
     touch->loaded = false;
     touch->tasks = run->tasks;
     if (good) memcpy(touch->before, run->vector[SK_X], touch->slots * sizeof *touch->before);
@@ -307,11 +308,14 @@ static void push(sk_run *run, const sk_op *op, size_t from, size_t end) {
         touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
         touch->q[v].w = 0;
     }
-    const real gain = (real)(60 * op->dt * params->thickness); // a thickness in a sixtieth of a second
+    const real gain = (real)(60 * op->dt * (double)touch->thickness); // a thickness in a sixtieth of a second
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
         for (size_t i = 0; i < touch->near[sort].count; i++) {
             uint32_t entry = touch->near[sort].data[i];
-            push_pair(touch, sk_pairs_of(touch, sort, entry), sort, entry / 2, gain, (real)params->friction);
+            const sk_pairs *pairs = sk_pairs_of(touch, sort, entry);
+            size_t k = entry / 2;
+            real friction = sk_pair_friction(touch, pairs->corner[0][k], pairs->corner[2][k], (real)params->friction);
+            push_pair(touch, pairs, sort, k, gain, friction);
         }
     const real rate = (real)(1 / op->dt);
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {

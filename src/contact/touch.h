@@ -37,6 +37,9 @@ typedef struct sk_skin {
     sk_vec4 *built;     /* as they were built */
     uint32_t (*edge)[2], (*triangle)[3];
     sk_leaf *leaf;
+    real *thickness, *friction; /* of vertices: those of their body; a thickness of 0: the rule's */
+    real thickest; /* m: of these thicknesses; 0: no body has its own, and both arrays mean nothing */
+    bool all_own;  /* and every body has */
     real longest; /* m: of edges, as they were built */
     real spacing; /* m: what lies between features of one surface that have no corner in common, as they were built */
     uint32_t *leaf_start, *leaf_of; /* those of vertex v: leaf_of[leaf_start[v]] to leaf_of[leaf_start[v + 1]] */
@@ -178,7 +181,8 @@ typedef struct sk_touch {
     bool loaded;     /* p and inverse are of this substep */
     bool boxed;      /* whether boxes are those of the courses; */
     bool still;      /* they are those of a substep's ways, all of them */
-    real thickness;  /* that pairs were found for, m */
+    real thickness;  /* that pairs were found for, m: the largest of any pair; */
+    real usual;      /* and the rule's, of bodies that have none of their own */
     real now, until; /* substeps since the last search for all, and how long that holds */
     uint64_t clock;  /* substeps in all */
     size_t storm, next_storm; /* substeps that are left in which nobody has a course; and of the next such time */
@@ -242,6 +246,29 @@ typedef struct sk_contact_params {
     double thickness, friction;
     char *ignore;
 } sk_contact_params;
+
+/* The largest thickness that a pair can have. */
+static inline real sk_touch_thickest(const sk_touch *touch, const sk_contact_params *params) {
+    real rule = (real)params->thickness, own = touch->skin.thickest;
+    return touch->skin.all_own ? own : sk_max(own, rule);
+}
+
+/* Of a pair of features with these vertices: half of each one's. */
+static inline real sk_pair_thickness(const sk_touch *touch, uint32_t a, uint32_t b) {
+    const sk_skin *skin = &touch->skin;
+    if (!(skin->thickest > 0)) return touch->thickness;
+    real first = skin->thickness[a] > 0 ? skin->thickness[a] : touch->usual;
+    real second = skin->thickness[b] > 0 ? skin->thickness[b] : touch->usual;
+    return (real)0.5 * (first + second);
+}
+
+/* Of the same: the mean of both. */
+static inline real sk_pair_friction(const sk_touch *touch, uint32_t a, uint32_t b, real rule) {
+    const sk_skin *skin = &touch->skin;
+    if (!(skin->thickest > 0)) return rule;
+    real first = skin->thickness[a] > 0 ? skin->friction[a] : rule, second = skin->thickness[b] > 0 ? skin->friction[b] : rule;
+    return (real)0.5 * (first + second);
+}
 
 /* ---- ignored.c ---- */
 

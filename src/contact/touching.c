@@ -37,8 +37,9 @@ static void look(listing *list, int sort) {
     sk_pairs_pad(pairs);
     sk_closest[sort][touch->isa](touch->skin.built, pairs);
     for (size_t k = 0; k < pairs->count; k++) {
-        bool same = piece[pairs->corner[0][k]] == piece[pairs->corner[2][k]];
-        pairs->thickness[k] = same ? sk_min(touch->thickness, (real)0.9 * pairs->distance[k]) : touch->thickness;
+        uint32_t a = pairs->corner[0][k], b = pairs->corner[2][k];
+        real thickness = sk_pair_thickness(touch, a, b);
+        pairs->thickness[k] = piece[a] == piece[b] ? sk_min(thickness, (real)0.9 * pairs->distance[k]) : thickness;
     }
     sk_closest[sort][touch->isa](touch->p, pairs);
     for (size_t k = 0; k < pairs->count; k++)
@@ -93,8 +94,9 @@ bool sk_touch_touching(sk_force *force, sk_allocator *allocator, const sk_vec4 *
     if (!touch || !touch->skin.leaf_count) return true;
     listing list = {.touch = touch, .allocator = allocator, .out = out, .most = most};
     const sk_contact_params *params = force->params;
-    real found_for = touch->thickness; // pairs that are kept were
-    touch->thickness = (real)params->thickness;
+    real found_for = touch->thickness, usual = touch->usual; // pairs that are kept were
+    touch->thickness = sk_touch_thickest(touch, params);
+    touch->usual = (real)params->thickness;
     sk_touch_put_boxes(touch, x, slot_of, (real)0.51 * touch->thickness);
     bool too_many, good = true;
     touch->tasks = NULL;
@@ -103,6 +105,7 @@ bool sk_touch_touching(sk_force *force, sk_allocator *allocator, const sk_vec4 *
     if (good) list_all(&list);
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) sk_pairs_release(&list.some[sort], allocator);
     touch->thickness = found_for;
+    touch->usual = usual;
     *count = list.count;
     return good;
 }

@@ -24,6 +24,7 @@ typedef enum sk_phase { SK_PUSHES, SK_STEERS, SK_BOUNDS, SK_MEETS } sk_phase;
 typedef struct sk_meeting_body {
     size_t first, end;
     const char *name;
+    double thickness, friction; /* its own, which count instead of the rule's where the thickness is over 0 */
 } sk_meeting_body;
 
 /* What can be in contact between surfaces: triangles of all bodies, and edges that are in none, by user's indices. */

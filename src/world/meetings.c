@@ -32,6 +32,12 @@ static size_t count_those_that_meet(const skein_world *world) {
     return count;
 }
 
+/* A field of a body's kind; 0 where it has none. */
+static double number_of(const sk_object *object, const char *name) {
+    const skein_field *field = skein_field_find(object->kind, name, NULL);
+    return field ? sk_field_load(field, object->params).number[0] : 0;
+}
+
 /* Bodies with their names, so that rules can tell them apart. */
 static size_t list_bodies(const skein_world *world, sk_meeting_body *bodies) {
     size_t count = 0;
@@ -39,7 +45,8 @@ static size_t list_bodies(const skein_world *world, sk_meeting_body *bodies) {
         const sk_object *object = world->objects.data[i];
         if (object->category != SKEIN_BODY) continue;
         size_t first = object->as.body->first_particle;
-        bodies[count++] = (sk_meeting_body){first, first + object->as.body->particle_count, object->common.plain.name};
+        bodies[count++] = (sk_meeting_body){first, first + object->as.body->particle_count, object->common.plain.name,
+                                            number_of(object, "contact.thickness"), number_of(object, "contact.friction")};
     }
     return count;
 }
