@@ -1,19 +1,19 @@
 /* Others' birds within reach: each rank sends those of its own that lie in the cells around another's. Whole cells, since
  * the order in which neighbours are summed depends on who else stands in a cell. */
+#include <math.h>
 #include <string.h>
 
 #include "ranks/shared_inside.h"
 
-static bool is_somewhere(const skein_real p[4]) {
-    for (int k = 0; k < 3; k++)
-        if (!(p[k] <= SKEIN_SHARE_FARTHEST && p[k] >= -SKEIN_SHARE_FARTHEST)) return false;
-    return true;
+static inline bool is_somewhere(const skein_real p[4]) {
+    const skein_real most = SKEIN_SHARE_FARTHEST;
+    return (p[0] <= most) & (p[0] >= -most) & (p[1] <= most) & (p[1] >= -most) & (p[2] <= most) & (p[2] >= -most);
 }
 
-static void widen(skein_real low[3], skein_real high[3], const skein_real p[3]) {
+static inline void widen(skein_real low[3], skein_real high[3], const skein_real p[3]) {
     for (int k = 0; k < 3; k++) {
-        if (p[k] < low[k]) low[k] = p[k];
-        if (p[k] > high[k]) high[k] = p[k];
+        low[k] = p[k] < low[k] ? p[k] : low[k];
+        high[k] = p[k] > high[k] ? p[k] : high[k];
     }
 }
 
@@ -34,17 +34,31 @@ static shared_box *box_of(const shared_run *run, int rank, size_t b) {
     return &run->boxes[(size_t)rank * run->body_count + b];
 }
 
+/* The box of a body's own from a slot on, up to the next one of another body, which it returns. */
+static size_t find_own_of(const shared_body *body, const skein_state *state, size_t slot, shared_box *box) {
+    const skein_real most = SKEIN_SHARE_FARTHEST;
+    skein_real low[3] = {most, most, most}, high[3] = {-most, -most, -most};
+    size_t begun = slot;
+    for (; slot < state->slot_count; slot++) {
+        const skein_real *p = state->position[slot];
+        if (state->particle_of[slot] - body->first >= body->own) break;
+        if (is_somewhere(p)) widen(low, high, p);
+    }
+    if (begun == slot || low[0] > high[0]) return slot;
+    if (!box->any) memcpy(box->low, low, sizeof low), memcpy(box->high, high, sizeof high);
+    box->any = 1;
+    widen(box->low, box->high, low);
+    widen(box->low, box->high, high);
+    return slot;
+}
+
 /* The boxes of its own, of each body. */
 static void find_own(shared_run *run, const skein_share_look *look, const skein_state *state, shared_box *own) {
     memset(own, 0, run->body_count * sizeof *own);
-    for (size_t slot = 0; slot < state->slot_count; slot++) {
-        const skein_real *p = state->position[slot];
+    for (size_t slot = 0; slot < state->slot_count;) {
         uint32_t i = state->particle_of[slot];
-        if (i >= run->particles || !shared_is_own(run, i) || !is_somewhere(p)) continue;
-        shared_box *box = &own[run->body_of[i]];
-        if (!box->any) memcpy(box->low, p, sizeof box->low), memcpy(box->high, p, sizeof box->high);
-        box->any = 1;
-        widen(box->low, box->high, p);
+        if (i >= run->particles || !shared_is_own(run, i)) slot++;
+        else slot = find_own_of(&run->bodies[run->body_of[i]], state, slot, &own[run->body_of[i]]);
     }
     for (size_t b = 0; b < run->body_count; b++)
         if (!looks(run, look, b) && !is_seen(run, look, b)) own[b].any = 0;
@@ -137,13 +151,32 @@ static bool is_wanted(const skein_cells *cells, const shared_cells *wanted, size
     return false;
 }
 
+/* A box around all cells that are wanted, and a little more: of what is outside no cell has to be found. */
+static void around_wanted(const skein_cells *cells, const shared_cells *wanted, size_t count, skein_real from[3],
+                          skein_real to[3]) {
+    const double few = sizeof(skein_real) == 8 ? 1e-14 : 1e-6; // several roundings
+    for (int k = 0; k < 3; k++) {
+        double low = INFINITY, high = -INFINITY, origin = (double)cells->origin[k];
+        for (size_t w = 0; w < count; w++) low = fmin(low, wanted[w].low[k]), high = fmax(high, wanted[w].high[k]);
+        // a place is in a cell to within the rounding of both; the first cell has all below it, and the last one all above
+        double least = origin + (low - 1 - few * fabs(low)) / (double)cells->per[k],
+               most = origin + (high + 2 + few * fabs(high)) / (double)cells->per[k];
+        from[k] = low > 0 ? (skein_real)(least - few * fabs(least)) : -(skein_real)INFINITY;
+        to[k] = high < cells->count[k] - 1 ? (skein_real)(most + few * fabs(most)) : (skein_real)INFINITY;
+    }
+}
+
 /* Lists those of its own that lie around rank r's. */
 static void list_for(shared_run *run, const skein_share_look *look, const skein_cells *cells, const skein_state *state,
                      int r) {
     size_t count = wanted_by(run, look, cells, r, run->wanted);
+    skein_real from[3], to[3];
+    around_wanted(cells, run->wanted, count, from, to);
     run->out[r].size = 0;
     for (size_t slot = 0; slot < state->slot_count; slot++) {
         const skein_real *p = state->position[slot], *v = state->velocity[slot];
+        bool near = (p[0] >= from[0]) & (p[0] <= to[0]) & (p[1] >= from[1]) & (p[1] <= to[1]) & (p[2] >= from[2]) & (p[2] <= to[2]);
+        if (!near) continue;
         uint32_t i = state->particle_of[slot];
         if (i < look->seen_first || i >= look->seen_end || !shared_is_own(run, i) || !is_somewhere(p)) continue;
         if (!is_wanted(cells, run->wanted, count, p)) continue;

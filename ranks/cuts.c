@@ -1,6 +1,7 @@
 /* Recursive bisection of samples. */
 #include "ranks/cuts.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
@@ -87,4 +88,21 @@ int ranks_owner(const ranks_cut *cuts, int ranks, const double place[3]) {
         }
     }
     return rank;
+}
+
+void ranks_region(const ranks_cut *cuts, int ranks, int rank, double low[3], double high[3]) {
+    for (int k = 0; k < 3; k++) low[k] = -INFINITY, high[k] = INFINITY;
+    while (ranks > 1) {
+        int first = cuts->first_ranks, axis = cuts->axis;
+        if (rank < first) {
+            high[axis] = fmin(high[axis], cuts->at);
+            cuts++;
+            ranks = first;
+        } else {
+            low[axis] = fmax(low[axis], cuts->at);
+            cuts += first;
+            rank -= first;
+            ranks -= first;
+        }
+    }
 }

@@ -21,5 +21,7 @@ typedef struct ranks_sample {
 void ranks_cut_space(ranks_sample *samples, size_t count, int ranks, const double *burden, ranks_cut *cuts);
 /* Whose a place is. */
 int ranks_owner(const ranks_cut *cuts, int ranks, const double place[3]);
+/* The box of what a rank owns: low <= place < high, infinite where no cut bounds it. */
+void ranks_region(const ranks_cut *cuts, int ranks, int rank, double low[3], double high[3]);
 
 #endif

@@ -178,11 +178,16 @@ void shared_migrate(shared_run *run) {
     if (!shared_has_loose(run)) return;
     const skein_state state = shared_state(run);
     shared_bytes gone = {NULL, 0, 0};
+    double low[3], high[3];
+    ranks_region(run->cuts, run->count, run->rank, low, high);
     for (int r = 0; r < run->count; r++) run->out[r].size = 0;
     for (size_t slot = 0; slot < state.slot_count; slot++) {
+        const skein_real *p = state.position[slot];
+        bool stays = true;
+        for (int k = 0; k < 3; k++) stays &= ((double)p[k] >= low[k]) & ((double)p[k] < high[k]);
+        if (stays) continue; // nearly all do
         uint32_t i = state.particle_of[slot];
         if (i >= run->particles || !shared_is_own(run, i) || !run->bodies[run->body_of[i]].of.loose) continue;
-        const skein_real *p = state.position[slot];
         int owner = ranks_owner(run->cuts, run->count, (const double[3]){(double)p[0], (double)p[1], (double)p[2]});
         if (owner == run->rank) continue;
         shared_bird *bird = shared_grow(run, &run->out[owner], sizeof *bird);

@@ -144,7 +144,7 @@ static shared_call call(shared_run *run, shared_call own) {
     shared_call all[run->count];
     run->tale.own = shared_own(run);
     run->tale.memory = memory_had();
-    run->tale.unsure = run->since_cut < 2;
+    run->tale.unsure = 0; // and the step after a cut is kept in any case
     for (size_t b = 0; b < run->body_count; b++) run->tale.unsure |= is_unsure(run, &run->bodies[b]);
     own.tale = run->tale;
     own.body_count = run->body_count;
@@ -240,6 +240,12 @@ static void spread(shared_run *run, const skein_state *whole) {
     shared_make_room(run, birds);
     shared_add(run, bird, count);
     free(birds);
+    // that is the state before the first step, too
+    shared_bytes *taken = whole ? &run->out[0] : &run->in;
+    free(run->before.data);
+    run->before = *taken;
+    *taken = (shared_bytes){NULL, 0, 0};
+    run->kept = true;
     for (int r = 0; whole && r < run->count; r++) { // it was all of the run
         free(run->out[r].data);
         run->out[r] = (shared_bytes){NULL, 0, 0};
@@ -255,7 +261,8 @@ static void spread(shared_run *run, const skein_state *whole) {
 static void keep(shared_run *run, bool anew) {
     run->keeps = anew;
     for (int r = 0; r < run->count; r++) run->keeps |= run->tales[r].unsure != 0;
-    if (run->keeps) shared_copy_own(run, &run->before);
+    if (run->keeps && !run->kept) shared_copy_own(run, &run->before);
+    run->kept = false;
 }
 
 /* Whether on any rank there came more than there is room for; then each has room, and the state before. */

@@ -82,7 +82,8 @@ struct shared_run {
     double start;       /* seconds that spreading took */
     size_t cut_count, steps;
     shared_bytes before; /* own birds as a step began, while it may turn out that the room is too small */
-    bool keeps, dismissed;
+    bool keeps, kept; /* it is, and already was when all were spread */
+    bool dismissed;
     bool guessed; /* space is cut without knowing what birds cost */
     struct {
         char folder[4096];

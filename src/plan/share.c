@@ -11,12 +11,17 @@ typedef struct sk_window {
     uint32_t *line; /* its first cell's number, by these */
     size_t count, capacity;
     size_t wide; /* cells of a line */
-    bool whole;  /* all cells: nobody is outside */
+    bool whole;  /* nobody who is sorted is outside */
+    uint32_t *still; /* slots of those who are sorted and not moved: others' */
+    size_t still_count, still_capacity;
+    uint64_t *mark; /* bits, by place: where one of those may be, in the cells that have any */
+    size_t mark_capacity;
+    bool marked; /* else anybody may be */
 } sk_window;
 
 typedef struct sk_share_part {
     sk_share share; /* first: the world's pointer is this one's */
-    sk_op_kernel *find; /* of a sort's second op, else */
+    sk_op_kernel *find, *copy; /* of a sort's second op and of its last one, else */
     sk_window window;
 } sk_share_part;
 
@@ -28,7 +33,12 @@ sk_share *sk_share_create(sk_allocator *allocator, const skein_part *part) {
 }
 
 void sk_share_destroy(sk_share *share, sk_allocator *allocator) {
-    if (share) sk_release(allocator, ((sk_share_part *)share)->window.line);
+    if (share) {
+        sk_window *window = &((sk_share_part *)share)->window;
+        sk_release(allocator, window->line);
+        sk_release(allocator, window->still);
+        sk_release(allocator, window->mark);
+    }
     sk_release(allocator, share);
 }
 
@@ -82,41 +92,84 @@ static bool list_lines(sk_window *window, const sk_cells *cells, sk_allocator *a
 }
 
 static void take_all(sk_window *window, const sk_cells *cells) {
-    *window = (sk_window){{0, 0, 0},
-                          {cells->count_x - 1, cells->count_y - 1, cells->count_z - 1},
-                          window->line,
-                          0,
-                          window->capacity,
-                          0,
-                          true};
+    const int32_t count[3] = {cells->count_x, cells->count_y, cells->count_z};
+    for (int k = 0; k < 3; k++) window->low[k] = 0, window->high[k] = count[k] - 1;
+    window->count = 0, window->wide = 0, window->still_count = 0;
+    window->whole = true, window->marked = false;
 }
 
-/* The window around those that look and are this part's own: others' have neither mass nor inverse mass. */
-static void find_window(sk_window *window, const sk_run *run, const sk_cells *cells, const sk_group *group) {
-    const sk_vec4 *x = run->vector[SK_X], *v = run->vector[SK_V];
+typedef struct sk_extent {
+    real low[3], high[3];
+} sk_extent;
+
+static const sk_extent nobody = {{SK_CELLS_FARTHEST, SK_CELLS_FARTHEST, SK_CELLS_FARTHEST},
+                                   {-SK_CELLS_FARTHEST, -SK_CELLS_FARTHEST, -SK_CELLS_FARTHEST}};
+
+static inline bool is_somewhere(sk_vec4 p) {
     const real most = SK_CELLS_FARTHEST;
-    real low[3] = {most, most, most}, high[3] = {-most, -most, -most};
+    return (sk_abs(p.x) <= most) & (sk_abs(p.y) <= most) & (sk_abs(p.z) <= most);
+}
+
+static inline void take(sk_extent *box, sk_vec4 p) {
+    box->low[0] = sk_min(box->low[0], p.x), box->high[0] = sk_max(box->high[0], p.x);
+    box->low[1] = sk_min(box->low[1], p.y), box->high[1] = sk_max(box->high[1], p.y);
+    box->low[2] = sk_min(box->low[2], p.z), box->high[2] = sk_max(box->high[2], p.z);
+}
+
+/* The box around those that look and are this part's own: others' have neither mass nor inverse mass. */
+static sk_extent find_lookers(const sk_run *run, const sk_group *group) {
+    const sk_vec4 *x = run->vector[SK_X], *v = run->vector[SK_V];
+    sk_extent box = nobody;
     for (size_t slot = group->first_slot; slot < group->end_slot; slot++) {
         uint32_t i = run->particle_of[slot];
-        const real p[3] = {x[slot].x, x[slot].y, x[slot].z};
-        if ((x[slot].w == 0 && v[slot].w == 0) || i < group->first || i >= group->end) continue;
-        if (!(sk_abs(p[0]) <= most && sk_abs(p[1]) <= most && sk_abs(p[2]) <= most)) continue;
-        for (int k = 0; k < 3; k++) low[k] = sk_min(low[k], p[k]), high[k] = sk_max(high[k], p[k]);
+        sk_vec4 p = x[slot];
+        if (i - group->first >= group->end - group->first || (p.w == 0 && v[slot].w == 0) || !is_somewhere(p)) continue;
+        take(&box, p);
     }
+    return box;
+}
+
+/* The box around all that are sorted; those that are not moved are listed. False: no memory. */
+static bool find_sorted(sk_window *window, const sk_run *run, const sk_group *group, sk_extent *box) {
+    const sk_vec4 *x = run->vector[SK_X];
+    sk_extent all = nobody;
+    size_t count = 0;
+    if (!sk_reserve(run->allocator, (void **)&window->still, &window->still_capacity, group->end_slot - group->first_slot + 1,
+                    sizeof *window->still))
+        return false;
+    for (size_t slot = group->first_slot; slot < group->end_slot; slot++) {
+        uint32_t i = run->particle_of[slot];
+        sk_vec4 p = x[slot];
+        if (i - group->first >= group->end - group->first || !is_somewhere(p)) continue;
+        take(&all, p);
+        if (p.w == 0) window->still[count++] = (uint32_t)slot;
+    }
+    window->still_count = count;
+    *box = all;
+    return true;
+}
+
+/* The window around those that look, and whether all that are sorted are within. False: no memory. */
+static bool find_window(sk_window *window, const sk_run *run, const sk_cells *cells, const sk_op *op) {
+    sk_extent all, box = find_lookers(run, op->seen);
+    if (!find_sorted(window, run, op->group, &all)) return false;
     const real origin[3] = {cells->origin.x, cells->origin.y, cells->origin.z},
                per[3] = {cells->per_x, cells->per_yz, cells->per_yz};
     const int32_t count[3] = {cells->count_x, cells->count_y, cells->count_z}, around[3] = {SK_CELLS_ACROSS + 1, 1, 1};
-    window->whole = true;
+    window->whole = window->marked = true;
     for (int k = 0; k < 3; k++) {
-        if (low[k] > high[k]) { // nobody
+        if (box.low[k] > box.high[k]) { // nobody
             window->low[k] = 0, window->high[k] = -1;
         } else {
-            int32_t from = sk_cells_place(low[k], origin[k], per[k], count[k]) - around[k],
-                    to = sk_cells_place(high[k], origin[k], per[k], count[k]) + around[k];
+            int32_t from = sk_cells_place(box.low[k], origin[k], per[k], count[k]) - around[k],
+                    to = sk_cells_place(box.high[k], origin[k], per[k], count[k]) + around[k];
             window->low[k] = from > 0 ? from : 0, window->high[k] = to < count[k] ? to : count[k] - 1;
         }
-        window->whole &= window->low[k] == 0 && window->high[k] == count[k] - 1;
+        if (all.low[k] > all.high[k]) continue; // there is nobody
+        window->whole &= sk_cells_place(all.low[k], origin[k], per[k], count[k]) >= window->low[k] &&
+                         sk_cells_place(all.high[k], origin[k], per[k], count[k]) <= window->high[k];
     }
+    return true;
 }
 
 /* Has the blocks of strips in quads, as the program knows slots, or packed again. */
@@ -152,14 +205,14 @@ static void exchange(sk_run *run, const sk_op *op, size_t begin, size_t end) {
         lay(run, op, false);
         return;
     }
-    find_window(window_of(op), run, cells, op->seen);
-    run->no_memory = run->no_memory || !list_lines(window_of(op), cells, run->allocator);
     // candidates lie in whole cells (space/cells_wide.h): one more along y and z, and along x those of the reach
     const skein_cells shown = {{cells->origin.x, cells->origin.y, cells->origin.z},
                                {cells->per_x, cells->per_yz, cells->per_yz},
                                {cells->count_x, cells->count_y, cells->count_z},
                                {SK_CELLS_ACROSS + 1, 1, 1}};
     share->failed = share->failed || !share->given.exchange(share->given.user, &look, &shown, &state);
+    run->no_memory = run->no_memory || !find_window(window_of(op), run, cells, op) ||
+                     !list_lines(window_of(op), cells, run->allocator);
     lay(run, op, false);
 }
 
@@ -186,9 +239,24 @@ static void find(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     }
 }
 
+/* Marks the places of cells that have any who is not moved. False: no memory. */
+static bool mark_still(sk_window *window, const sk_cells *cells, sk_allocator *allocator) {
+    size_t words = cells->count / 64 + 1;
+    if (!sk_reserve(allocator, (void **)&window->mark, &window->mark_capacity, words, sizeof *window->mark)) return false;
+    memset(window->mark, 0, words * sizeof *window->mark);
+    for (size_t k = 0; k < window->still_count; k++) {
+        uint32_t cell = cells->cell[window->still[k] - cells->group.first_slot];
+        if (cell == SK_NOWHERE) continue;
+        uint32_t place = cells->start[cell], end = cells->start[cell + 1];
+        if (window->mark[place / 64] >> place % 64 & 1) continue; // another one's, who is there, too
+        for (; place < end; place++) window->mark[place / 64] |= (uint64_t)1 << place % 64;
+    }
+    return true;
+}
+
 /* A counting sort, over the window's cells alone. The cell behind a line's last one is told where that ends. */
 static void rank(sk_run *run, const sk_op *op, size_t begin, size_t end) {
-    const sk_window *window = window_of(op);
+    sk_window *window = window_of(op);
     sk_cells *cells = run->cells;
     uint32_t *start = cells->start, sum = 0;
     (void)begin, (void)end;
@@ -206,6 +274,8 @@ static void rank(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     for (size_t k = slots; k-- > 0;)
         if (cells->cell[k] != SK_NOWHERE) cells->slot[--start[cells->cell[k]]] = (uint32_t)(cells->group.first_slot + k);
     cells->count = sum;
+    cells->in_order = true; // they are put in the whole run's below, and in no other
+    run->no_memory = window->marked && !mark_still(window, cells, run->allocator);
 }
 
 /* The first place from `place` on where a cell begins. (Other threads may be moving members within cells meanwhile.) */
@@ -226,29 +296,37 @@ static size_t next_beginning(const sk_cells *cells, const sk_window *window, siz
     return line[from];
 }
 
-/* Members of a cell, by their numbers in the whole run. They are few, or in order but for few. */
-static void put_in_order(uint32_t *slot, size_t count, const uint32_t *number, const uint32_t *particle_of) {
-    for (size_t k = 1; k < count; k++) {
-        uint32_t moved = slot[k], own = number[particle_of[moved]];
-        size_t at = k;
-        for (; at > 0 && number[particle_of[slot[at - 1]]] > own; at--) slot[at] = slot[at - 1];
-        slot[at] = moved;
+/* Moves the last of `count` members of a cell forward to its place among the others, which are in order. */
+static void move_forwards(uint32_t *slot, size_t count, const uint32_t *number, const uint32_t *particle_of) {
+    uint32_t moved = slot[count - 1], own = number[particle_of[moved]];
+    size_t at = count - 1;
+    for (; at > 0 && number[particle_of[slot[at - 1]]] > own; at--) slot[at] = slot[at - 1];
+    slot[at] = moved;
+}
+
+/* Members of cells, by their numbers in the whole run. They are few, or in order but for few. Who is alone in a cell is not asked
+ * for a number, which lies anywhere in memory. */
+static void put_in_order(sk_cells *cells, size_t begin, size_t end, const uint32_t *number, const uint32_t *particle_of) {
+    const uint32_t *cell = cells->cell - cells->group.first_slot;
+    uint32_t *slot = cells->slot;
+    for (size_t place = begin + 1, first = begin; place < end; place++) {
+        if (cell[slot[place]] != cell[slot[place - 1]]) {
+            first = place;
+        } else if (number[particle_of[slot[place]]] < number[particle_of[slot[place - 1]]]) {
+            move_forwards(slot + first, place - first + 1, number, particle_of);
+        }
     }
 }
 
 static void copy(sk_run *run, const sk_op *op, size_t begin, size_t end) {
-    const sk_share *share = op->rule;
+    const sk_share_part *part = op->rule;
     sk_cells *cells = run->cells;
-    sk_state state = {run->vector[SK_X], run->vector[SK_V], op->packed, run->particle_of};
     if (run->no_memory || begin >= cells->count) return;
     begin = next_beginning(cells, window_of(op), begin);
     end = end < cells->count ? next_beginning(cells, window_of(op), end) : cells->count;
-    for (size_t place = begin, next; place < end; place = next) {
-        uint32_t cell = cells->cell[cells->slot[place] - cells->group.first_slot];
-        for (next = place + 1; next < end && cells->cell[cells->slot[next] - cells->group.first_slot] == cell;) next++;
-        put_in_order(cells->slot + place, next - place, share->given.number, run->particle_of);
-    }
-    sk_cells_copy(cells, &state, begin, end);
+    if (begin >= end) return;
+    put_in_order(cells, begin, end, part->share.given.number, run->particle_of);
+    part->copy(run, op, begin, end);
 }
 
 /* ---- who looks ---- */
@@ -260,15 +338,40 @@ static bool is_moved(const sk_run *run, const sk_op *op, bool places, size_t ele
     return sk_load(run->vector[SK_X], op->packed, slot).w != 0;
 }
 
+/* The first place from `place` on that is marked, or `end`. */
+static size_t next_marked(const uint64_t *mark, size_t place, size_t end) {
+    if (place >= end) return end;
+    uint64_t word = mark[place / 64] >> place % 64;
+    if (word) place += (size_t)__builtin_ctzll(word);
+    else
+        for (place = (place / 64 + 1) * 64; place < end; place += 64)
+            if ((word = mark[place / 64])) {
+                place += (size_t)__builtin_ctzll(word);
+                break;
+            }
+    return place < end ? place : end;
+}
+
+/* The window of the sort that a rule's op looks into the cells of, which is before it in the plan. */
+static const sk_window *window_before(const sk_op *op) {
+    do op--;
+    while (op->kernel != copy);
+    return window_of(op);
+}
+
 /* The rule's own kernel, over those that it moves. Its elements are places where those that it moves are those that it sees. */
 static void look(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const sk_group *moved = op->group, *seen = op->seen;
     bool places = !moved || !seen || (moved->first == seen->first && moved->end == seen->end);
     if (run->no_memory) return;
+    const sk_window *window = window_before(op);
     if (places && end > run->cells->count) end = run->cells->count;
     for (size_t next; begin < end; begin = next) {
         for (; begin < end && !is_moved(run, op, places, begin);) begin++;
-        for (next = begin; next < end && is_moved(run, op, places, next);) next++;
+        for (next = begin; next < end; next++) {
+            if (places && window->marked) next = next_marked(window->mark, next, end);
+            if (next == end || !is_moved(run, op, places, next)) break;
+        }
         if (begin < next) op->inner(run, op, begin, next);
     }
 }
@@ -287,7 +390,8 @@ void sk_share_plan(sk_plan *plan, sk_share *share, sk_isa isa) {
         sk_op *first = &plan->data[r], *last = first + SK_SORT_OPS - 1;
         if (!sk_op_type_of(first)->sorts) continue;
         first->seen = who_looks(plan, r);
-        share->frame = first->kernel, ((sk_share_part *)share)->find = first[1].kernel;
+        sk_share_part *part = (sk_share_part *)share;
+        share->frame = first->kernel, part->find = first[1].kernel, part->copy = last->kernel;
         first->kernel = exchange, first->rule = share, first->label = "border, frame of cells";
         first[1].kernel = find, first[1].rule = share;
         first[2].kernel = rank, first[2].rule = share;
