@@ -307,6 +307,79 @@ static void the_nearest_triangles_are_found(void **state) {
     skein_world_destroy(world);
 }
 
+/* Words name the same of a body that stands as they do in the pins that it is built with: of a grid, a mesh that is welded, a
+ * lattice and a rope. */
+static void words_name_what_pins_do(void **state) {
+    (void)state;
+    // two quads of vertices of their own, which a weld joins along x = 0
+    static const double vertex[8][3] = {{-1, 1, 0}, {0, 1, 0}, {0, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {1, 1, 0.1}, {1, 0, 0.1}, {0, 0, 0}};
+    static const uint32_t sizes[2] = {4, 4}, corners[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const skein_mesh mesh = {&vertex[0][0], 8, sizes, 2, corners, 8};
+    const struct {
+        const char *kind, *words[12];
+        const skein_mesh *mesh;
+        const skein_setting *settings;
+        size_t least[12]; // how many they name
+    } bodies[] = {
+        {"cloth", {"all", "corners", "top corners", "left edge", "bottom edge", "border", "right corners, 4"}, NULL,
+         SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 7), SKEIN_VEC3("rotation", 90, 10, 0)), {35, 4, 2, 5, 7, 20, 3}},
+        {"cloth", {"all", "corners", "top corners", "top edge", "left edge", "border", "bottom edge, 0"}, &mesh,
+         SKEIN_SETTINGS(SKEIN_REAL("weld", 1e-3)), {6, 4, 2, 3, 2, 6, 4}},
+        {"lattice", {"all", "corners", "left face", "top face", "front face, 0"}, NULL,
+         SKEIN_SETTINGS(SKEIN_VEC3("grid", 3, 4, 5)), {60, 8, 20, 15, 13}},
+        {"rope", {"all", "first", "last", "first, last"}, NULL, SKEIN_SETTINGS(SKEIN_REAL("count", 12)), {12, 1, 1, 2}},
+    };
+    for (size_t b = 0; b < COUNT(bodies); b++)
+        for (size_t w = 0; bodies[b].words[w]; w++) {
+            skein_world *world = new_world("xpbd", 2);
+            skein_handle free_one, held_one;
+            skein_setting settings[8] = {SKEIN_TEXT("pins", bodies[b].words[w])};
+            for (size_t i = 0; bodies[b].settings[i].name; i++) settings[i + 1] = bodies[b].settings[i];
+            add_particle(world, 1, 9, 9, 9);
+            OK(world, skein_body_add(world, bodies[b].kind, bodies[b].mesh, bodies[b].settings, &free_one));
+            OK(world, skein_body_add(world, bodies[b].kind, bodies[b].mesh, settings, &held_one));
+            skein_surface of_free, of_held;
+            OK(world, skein_body_surface(world, free_one, &of_free));
+            OK(world, skein_body_surface(world, held_one, &of_held));
+            // it has gone on since it was built
+            add_gravity(world);
+            steps(world, 3, dt);
+            uint32_t chosen[64];
+            size_t count, at = 0;
+            OK(world, skein_body_select(world, free_one, bodies[b].words[w], chosen, COUNT(chosen), &count));
+            assert_int_equal(count, bodies[b].least[w]);
+            skein_view view = skein_position_view(world);
+            for (size_t i = 0; i < of_held.particle_count; i++) {
+                bool held = !(view.xyzw[4 * (size_t)view.slot_of[of_held.first_particle + i] + 3] > 0);
+                bool named = at < count && chosen[at] == of_free.first_particle + i;
+                assert_int_equal(held, named);
+                at += named;
+            }
+            assert_int_equal(at, count);
+            skein_world_destroy(world);
+        }
+}
+
+/* A motion that names a part leads that part: the left of a sheet's top corners goes, the right one stays. */
+static void a_motion_leads_what_words_name(void **state) {
+    (void)state;
+    skein_world *world = new_world("xpbd", 2);
+    skein_handle cloth, leads;
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", "sheet"), SKEIN_PAIR("grid", 5, 5), SKEIN_TEXT("pins", "top corners")), &cloth));
+    OK(world, skein_motion_add(world, "translate", NULL,
+                               SKEIN_SETTINGS(SKEIN_TEXT("on", "sheet"), SKEIN_TEXT("pins", "left edge"), SKEIN_VEC3("velocity", 0, 0.1, 0)), &leads));
+    vec3 left = position_of(world, 0), right = position_of(world, 4);
+    steps(world, 30, dt);
+    assert_near(position_of(world, 0).y - left.y, 30 * dt * 0.1, 1e-5);
+    assert_true(position_of(world, 4).y == right.y && position_of(world, 4).x == right.x);
+    FAILS(world, SKEIN_ERROR_NAME, "did you mean 'left edge'", skein_set(world, leads, "pins", skein_text("left edg")));
+    OK(world, skein_set(world, leads, "pins", skein_text("")));
+    OK(world, skein_set(world, leads, "on", skein_text("")));
+    FAILS(world, SKEIN_ERROR_NAME, "words are about one body", skein_set(world, leads, "pins", skein_text("left edge")));
+    skein_world_destroy(world);
+}
+
 /* One at its place swings there by sqrt(k/m) in each direction, which limits explicit methods. */
 static void its_stiffness_counts_at_its_place(void **state) {
     (void)state;
@@ -387,7 +460,7 @@ int main(void) {
         cmocka_unit_test(offset_and_start),               cmocka_unit_test(a_pull_gives_way),
         cmocka_unit_test(what_cannot_carry_is_refused),   cmocka_unit_test(colliders_come_and_go),
         cmocka_unit_test(on_a_triangle_that_deforms_it_follows), cmocka_unit_test(what_is_tied_flies_as_one),
-        cmocka_unit_test(the_nearest_triangles_are_found), cmocka_unit_test(its_stiffness_counts_at_its_place), cmocka_unit_test(backward_euler_solves_stiff_attachments), cmocka_unit_test(of_several_the_named_one_counts), cmocka_unit_test(bits_do_not_depend_on_threads),
+        cmocka_unit_test(the_nearest_triangles_are_found), cmocka_unit_test(words_name_what_pins_do), cmocka_unit_test(a_motion_leads_what_words_name), cmocka_unit_test(its_stiffness_counts_at_its_place), cmocka_unit_test(backward_euler_solves_stiff_attachments), cmocka_unit_test(of_several_the_named_one_counts), cmocka_unit_test(bits_do_not_depend_on_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -120,8 +120,8 @@ static const struct {
      "or `tools/fetch-mesh` in Skein's source fetches it"},
     {"method_as_text", ": method: expected an object, { \"type\": ... }, not the text 'xpbd'"},
     {"motion_of_unknown_pins",
-     ": motions.1.pins: 'the left': expected numbers, \"box x y z x y z\" or \"sphere x y z radius\"; without \"pins\" it "
-     "leads all that are pinned"},
+     ": motions.1.pins: 'the left': expected numbers, \"box x y z x y z\" or \"sphere x y z radius\"; words are about "
+     "one body: say which it is \"on\"; without \"pins\" it leads all that are pinned"},
     {"neither_mesh_nor_grid", ": bodies.0.mesh: a cloth needs a mesh or a grid"},
     {"nested_too_deep", ":1:2060: maximum parsing depth reached near '['"},
     {"no_bodies", ": bodies: the scene has no particles: add a body"},

@@ -37,4 +37,8 @@ skein_status sk_block_add_strips(sk_block *block);
 /* The outer faces as quads that look outward, for drawing, export and forces on areas. */
 skein_status sk_block_add_surface(sk_block *block);
 
+/* The words of each kind of block: they mark in `pinned`, and need size, count and error besides. */
+skein_status sk_lattice_choose_words(void *block, const char *words);
+skein_status sk_rope_choose_words(void *block, const char *words);
+
 #endif

@@ -90,7 +90,7 @@ static void place_particles(sk_block *block, const lattice_params *params) {
 }
 
 /* Faces go by index, however the lattice is turned; each word is an axis and an end of it. */
-static skein_status choose_words(void *data, const char *words) {
+skein_status sk_lattice_choose_words(void *data, const char *words) {
     sk_block *block = data;
     static const char *const forms[] = {"left face", "right face", "bottom face", "top face",
                                         "back face", "front face", "corners",     "all"};
@@ -212,7 +212,7 @@ static skein_status build(skein_world *world, sk_body *body, const void *data, c
     skein_status status = sk_block_begin(&block);
     if (!status) {
         place_particles(&block, params);
-        status = sk_block_add_particles(&block, mass, params->velocity, params->pins, choose_words);
+        status = sk_block_add_particles(&block, mass, params->velocity, params->pins, sk_lattice_choose_words);
     }
     if (!status) status = sk_block_add_strips(&block);
     if (!status) status = add_springs(&block, params);

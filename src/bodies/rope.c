@@ -110,7 +110,7 @@ static skein_status lay(const sk_block *block, const rope_params *params, double
     return SKEIN_OK;
 }
 
-static skein_status choose_words(void *data, const char *words) {
+skein_status sk_rope_choose_words(void *data, const char *words) {
     sk_block *block = data;
     static const char *const forms[] = {"first", "last", "all"};
     if (!strcmp(words, forms[0])) block->pinned[0] = true;
@@ -205,7 +205,7 @@ static skein_status build(skein_world *world, sk_body *body, const void *data, c
     if (!status) status = lay(&block, params, &length);
     double link = length / (double)(params->count - 1);
     if (!status)
-        status = sk_block_add_particles(&block, params->density * length, params->velocity, params->pins, choose_words);
+        status = sk_block_add_particles(&block, params->density * length, params->velocity, params->pins, sk_rope_choose_words);
     const sk_block_springs bend = {{2, 0, 0}, 2 * link, 0.5 / link}, stretch = {{1, 0, 0}, link, 1 / link};
     if (!status) status = sk_block_add_springs(&block, "bend", params->bend, false, &bend, 1);
     if (!status) status = sk_block_add_springs(&block, "stretch", params->stretch, true, &stretch, 1);

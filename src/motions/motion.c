@@ -12,7 +12,8 @@ const skein_field sk_motion_fields[] = {
     SK_TEXT(sk_motion_common, on, "on", "", "the name of the body whose pins it leads; if it has none, all pins"),
     SK_TEXT(
         sk_motion_common, pins, "pins", "",
-        "which of them: numbers, \"box x y z x y z\", \"sphere x y z r\"; if there is nothing, all that are pinned"),
+        "which of them: as the body's own pins, \"top edge\", numbers, \"box x y z x y z\", \"sphere x y z r\"; if there is nothing, "
+        "all that are pinned"),
     SK_REAL(sk_motion_common, start, "start", "s", 0, 0, SK_FAR, "when it begins"),
     SK_TEXT(sk_motion_common, colliders, "colliders", "",
             "the names of the colliders that it leads as it leads pins, commas between them"),

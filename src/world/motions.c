@@ -67,12 +67,23 @@ sk_motion *sk_motion_create(sk_allocator *allocator, const sk_motion_type *type,
 
 /* ---- whom they lead ---- */
 
-static skein_status refuse_words(void *data, const char *words) {
-    return sk_fail(
-        data, SKEIN_ERROR_NAME, "pins",
-        "'%s': expected numbers, \"box x y z x y z\" or \"sphere x y z radius\"; without \"pins\" it leads all "
-        "that are pinned",
-        words);
+/* Whom words are about. */
+typedef struct wording {
+    skein_world *world;
+    const sk_body *body;
+    double (*position)[3];
+    bool *chosen;
+    skein_error *error;
+} wording;
+
+/* What words name is a matter of one body. */
+static skein_status choose_words(void *data, const char *words) {
+    const wording *w = data;
+    if (w->body) return sk_body_choose_words(w->world, w->body, w->position, words, w->chosen, w->error);
+    return sk_fail(w->error, SKEIN_ERROR_NAME, "pins",
+                   "'%s': expected numbers, \"box x y z x y z\" or \"sphere x y z radius\"; words are about one body: say "
+                   "which it is \"on\"; without \"pins\" it leads all that are pinned",
+                   words);
 }
 
 skein_status sk_world_choose(skein_world *world, const sk_body *body, size_t first, size_t count, const char *text,
@@ -89,6 +100,7 @@ skein_status sk_world_choose(skein_world *world, const sk_body *body, size_t fir
     }
     for (size_t i = 0; i < numbers && !status; i++)
         number[i] = vertices ? body->particle_of_vertex[i] - (uint32_t)first : (uint32_t)i;
+    wording words = {world, body, position, chosen, error};
     sk_selectable of = {allocator,
                         position,
                         count,
@@ -96,8 +108,8 @@ skein_status sk_world_choose(skein_world *world, const sk_body *body, size_t fir
                         numbers,
                         vertices ? "vertex" : "particle",
                         body ? "the body" : "the world",
-                        refuse_words,
-                        error};
+                        choose_words,
+                        &words};
     if (!status) status = sk_selection_apply(text, &of, "pins", chosen, error);
     sk_release(allocator, position);
     sk_release(allocator, number);
