@@ -50,6 +50,7 @@ export function hands({app, picture, simulation, remember, tell, hint, pin, knif
         beside.cut(blade);
     }
     function toggleKnife() {
+        if (knife.hidden) return;
         knife.setAttribute('aria-pressed', String(!cuts()));
         canvas.style.cursor = '';
     }

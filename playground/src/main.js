@@ -69,6 +69,8 @@ async function build(frame = 0, events = []) {
     const predator = world.objects.force.findIndex((f) => f.name === 'predator');
     $('hawk').hidden = predator < 0;
     $('hawk').setAttribute('aria-pressed', 'false');
+    $('knife').hidden = !world.bodies.some((body) => body.faceSizes.length);
+    if ($('knife').hidden) $('knife').setAttribute('aria-pressed', 'false');
     fillPanel();
     measure();
     await onCard.begun(world, events);

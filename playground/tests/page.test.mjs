@@ -583,7 +583,9 @@ test('the picture keeps to its window, and hands find what they point at', async
 test('dark, on a phone, by touch and by keys', async () => {
     const {page, errors, close} = await openPage('#scene=birds&frame=20', {colorScheme: 'dark', viewport: {width: 390, height: 700}, hasTouch: true});
     assert.ok(await page.evaluate(() => document.documentElement.classList.contains('dark')));
-    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+    const fits = () => page.evaluate(() => document.documentElement.scrollWidth <= innerWidth);
+    assert.ok(await fits());
+    assert.ok(await page.locator('#knife').isHidden()); // birds have nothing to cut
     await page.locator('#picture').focus();
     await page.keyboard.press('ArrowRight');
     await page.waitForFunction(() => globalThis.skein.app.state.frame === 21);
@@ -593,6 +595,8 @@ test('dark, on a phone, by touch and by keys', async () => {
     assert.ok((await page.locator('.cards button').count()) >= 26);
     await page.locator('.cards button', {hasText: 'drape'}).first().tap();
     await page.waitForFunction(() => globalThis.skein.app.scene === 'drape');
+    await page.locator('#knife').waitFor();
+    assert.ok(await fits());
     assert.deepEqual(errors, []);
     await close();
 });
