@@ -8,6 +8,7 @@ import {hands} from './hands.js';
 import {openLesson} from './lesson.js';
 import {MOST, read, write} from './link.js';
 import {offerCard} from './oncard.js';
+import {Past} from './past.js';
 import {Picture} from './picture.js';
 import {Plot} from './plot.js';
 import {filesOf, scenes} from './scenes.js';
@@ -22,7 +23,7 @@ const app = {
     changes: new Map(), // path -> value: in this order they are the sets
     added: [], // sets that put a new object in
     built: [], // the sets that the world was built with
-    world: null, state: null, pulled: null, methods: [], undo: [],
+    world: null, state: null, pulled: null, methods: [], undo: new Past(),
 };
 let picture = null;
 const simulation = new Simulation({onState: take, onBroken: (faults) => notice(words(faults))});
@@ -94,7 +95,7 @@ async function open(name, {text = null, path = 'scene.json', files = {}, set = [
         notice(error.message);
         return false;
     }
-    app.undo = [];
+    app.undo.clear();
     showScene();
     if (camera && picture) picture.camera = camera;
     if (play && !frame) await simulation.call('play', true);
@@ -124,7 +125,6 @@ async function reset() {
 async function remember() {
     const state = {...kept(), ...(await simulation.call('where')), playing: app.state.playing};
     app.undo.push(state);
-    if (app.undo.length > 100) app.undo.shift();
     $('undo').disabled = false;
     return state;
 }
