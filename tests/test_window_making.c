@@ -36,6 +36,7 @@ static void press_button(const char *name, const char *said) {
     actions++;
 }
 
+/* Types a number; keys are the window's again once it is laid out. */
 static void type_value(const char *name, int k, int n, const char *number, const char *said) {
     settle();
     for (int turn = 0; turn < 3; turn++) {
@@ -44,6 +45,10 @@ static void type_value(const char *name, int k, int n, const char *number, const
         if (hear(said, 5)) break;
         if (turn == 2) fail_msg("typed into %s: nobody says '%s'", name, said);
     }
+    char line[sizeof screen.line];
+    memcpy(line, screen.line, sizeof line);
+    settle();
+    memcpy(screen.line, line, sizeof line);
     actions++;
 }
 

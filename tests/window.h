@@ -29,11 +29,12 @@ static struct {
     char line[2048];
 } screen;
 
-/* After the first failure nothing is worth waiting for. */
+/* After three failures nothing is worth waiting for. */
 static double patience_seconds = 60;
 
 static inline void lose_patience(void) {
-    patience_seconds = 0.5;
+    static int failures;
+    if (++failures == 3) patience_seconds = 0.5;
     fail();
 }
 
@@ -112,7 +113,7 @@ static inline void hand(const char *format, ...) __attribute__((format(printf, 1
 static inline void hand(const char *format, ...) {
     char line[1024];
     va_list arguments;
-    if (!screen.hands) screen.hands = popen("xdotool - >/dev/null", "w");
+    if (!screen.hands) screen.hands = popen("xdotool - >/dev/null", "we"); // a window must not hold its end
     assert_non_null(screen.hands);
     va_start(arguments, format);
     vsnprintf(line, sizeof line, format, arguments);
@@ -254,6 +255,7 @@ static inline void place_of(const char *name, double *x, double *y) {
 static inline void open_window(const char *const *arguments) {
     const char *list[24];
     size_t count = 0;
+    end_process(&screen.skein, SIGKILL); // of a test that failed
     screen.seen = 0;
     snprintf(screen.events, sizeof screen.events, "%s", in_folder("events"));
     remove(screen.events);
@@ -279,7 +281,7 @@ static inline void open_window(const char *const *arguments) {
     screen.seen = 0; // a scene may be there before the window is
     // the focus, which a window manager would give
     char line[256];
-    FILE *answer = popen("xdotool search --onlyvisible --name '^Skein'", "r");
+    FILE *answer = popen("xdotool search --onlyvisible --name '^Skein'", "re");
     assert_non_null(answer);
     assert_non_null(fgets(screen.window, sizeof screen.window, answer));
     pclose(answer);
