@@ -30,6 +30,7 @@ static sk_vec3 common_way(const sk_touch *touch) {
 /* Loads the places after the substep and what ways lead there. */
 static void load_ways(sk_touch *touch, const sk_run *run, const sk_op *op) {
     size_t count = touch->skin.vertex_count;
+    touch->aimed = false;
     for (size_t v = 0; v < count; v++) touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
     sk_vec3 common = touch->common = common_way(touch);
     for (size_t v = 0; v < count; v++) {
@@ -181,34 +182,39 @@ static void find_closing(void *data, size_t begin, size_t end) {
     sk_closing[job->sort][job->touch->isa](job->touch->p, job->touch->way, &job->values, &some);
 }
 
-static void list_those_that_may(sk_closing_list *list, const sk_pairs *pairs, uint32_t late) {
+/* Of those from a pair on. */
+static void list_those_that_may(sk_closing_list *list, const sk_pairs *pairs, size_t first, uint32_t late) {
     sk_closing_pair *entry = list->data;
     size_t n = list->count;
-    for (size_t b = 0; b < pairs->count; b += 8)
+    for (size_t b = first / 8 * 8; b < pairs->count; b += 8)
         for (uint64_t bits = sk_pairs_that(pairs, b, SK_MAY_CLOSE); bits; bits &= bits - 1) {
             size_t k = b + sk_first_of(bits);
-            if (!(pairs->thickness[k] > 0)) continue;
+            if (k < first || !(pairs->thickness[k] > 0)) continue;
             entry[n++] = (sk_closing_pair){2 * (uint32_t)k + late, {pairs->corner[0][k], pairs->corner[1][k],
                                                                     pairs->corner[2][k], pairs->corner[3][k]}};
         }
     list->count = n;
 }
 
-/* Lists the pairs that may close on these ways: none of the others does, whatever shares are left. */
-static bool find_those_that_may(sk_touch *touch, sk_allocator *allocator, real least) {
+/* Lists the pairs that may close on these ways: none of the others does, whatever shares are left. Of all, or of those
+ * that came since it was last asked; those that went since then are pairs of nobody where they stand. */
+static bool find_those_that_may(sk_touch *touch, sk_allocator *allocator, real least, bool all) {
     const real known = (real)0.01; // thicknesses: nearest points of edges that are all but parallel
     real longest = 0;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) longest = sk_max(longest, touch->way[v].w);
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
         sk_closing_list *list = &touch->may_close[sort];
         sk_pairs *pairs[] = {&touch->kept[sort], &touch->late[sort]};
-        if (!SK_RESERVE(allocator, list, pairs[0]->count + pairs[1]->count + 1)) return false;
-        list->count = 0;
-        for (uint32_t late = 0; late < 2; late++) {
+        size_t first[] = {0, all ? 0 : touch->told_apart[sort]};
+        size_t room = all ? pairs[0]->count + pairs[1]->count : list->count + pairs[1]->count - first[1];
+        if (!SK_RESERVE(allocator, list, room + 1)) return false;
+        if (all) list->count = 0;
+        for (uint32_t late = all ? 0 : 1; late < 2; late++) {
             closing job = {touch, pairs[late], sort, {least, known * touch->thickness, longest}};
-            sk_parallel_for(touch->tasks, 0, pairs[late]->count, find_closing, &job);
-            list_those_that_may(list, pairs[late], late);
+            sk_parallel_for(touch->tasks, first[late] / 16 * 16, pairs[late]->count, find_closing, &job);
+            list_those_that_may(list, pairs[late], first[late], late);
         }
+        touch->told_apart[sort] = pairs[1]->count;
     }
     return true;
 }
@@ -236,12 +242,13 @@ static void unsettle(sk_pairs *pairs) {
 static bool find_shares(sk_touch *touch, sk_allocator *allocator, real least) {
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
         unsettle(&touch->kept[sort]), unsettle(&touch->late[sort]);
-    if (!find_those_that_may(touch, allocator, least)) return false;
+    if (!find_those_that_may(touch, allocator, least, true)) return false;
     for (bool first = true;; first = false) {
         bool lowered = false;
         for (int sort = 0; sort < SK_PAIR_SORTS; sort++) lowered |= settle_pairs(touch, sort, first, least);
         if (!lowered) return true;
-        if (take_shares(touch) && !(renew(touch, allocator) && find_those_that_may(touch, allocator, least))) return false;
+        if (take_shares(touch) && !(renew(touch, allocator) && find_those_that_may(touch, allocator, least, false)))
+            return false;
     }
 }
 

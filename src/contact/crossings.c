@@ -74,12 +74,11 @@ bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 
     bool too_many;
     touch->tasks = NULL;
     if (!sk_touch_partners(touch, allocator, SIZE_MAX / 2, &too_many)) return false;
-    for (size_t a = 0; a < touch->skin.leaf_count; a++)
-        for (uint32_t i = touch->start[a]; i < touch->start[a + 1]; i++) {
-            size_t b = touch->partner.data[i];
-            count_of(&counting, a, b);
-            if (a != b) count_of(&counting, b, a);
-        }
+    for (size_t i = 0; i < touch->partner.count; i++) {
+        size_t a = touch->first.data[i], b = touch->partner.data[i];
+        count_of(&counting, a, b);
+        if (a != b) count_of(&counting, b, a);
+    }
     *count = counting.count;
     return true;
 }

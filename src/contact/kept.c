@@ -42,7 +42,7 @@ static void take_out(const sk_touch *touch, sk_pairs *late, sk_pairs *fresh) {
     }
 }
 
-bool sk_touch_keep(sk_touch *touch, sk_allocator *allocator, int sort, bool all) {
+bool sk_touch_keep(sk_touch *touch, sk_allocator *allocator, int sort, bool all, bool midst) {
     sk_pairs *kept = &touch->kept[sort], *late = &touch->late[sort], *fresh = &touch->fresh;
     if (all) {
         sk_pairs other = *kept;
@@ -51,7 +51,8 @@ bool sk_touch_keep(sk_touch *touch, sk_allocator *allocator, int sort, bool all)
         return true;
     }
     let_go(touch, kept, fresh);
-    take_out(touch, late, fresh);
+    if (midst) let_go(touch, late, fresh);
+    else take_out(touch, late, fresh);
     if (!sk_pairs_reserve(late, allocator, late->count + fresh->count)) return false;
     sk_pairs_take(late, fresh, 0, fresh->count);
     sk_pairs_pad(late);

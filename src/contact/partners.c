@@ -123,6 +123,10 @@ static void fit(sk_touch *touch) {
         for (size_t b = 0; b < tree->blocks[level]; b++) {
             sk_tree_block *block = &tree->block[level][b];
             bool any = touch->refit;
+            if (!any && (b + 1) * SK_TREE_WIDTH <= count && !memchr(changed + b * SK_TREE_WIDTH, 1, SK_TREE_WIDTH)) {
+                changed[b] = 0;
+                continue;
+            }
             for (size_t l = 0, i = b * SK_TREE_WIDTH; l < SK_TREE_WIDTH; l++, i++) {
                 if (i < count && !changed[i]) continue;
                 if (i >= count && !touch->refit) continue;
@@ -193,25 +197,50 @@ static bool begin_parts(sk_touch *touch, sk_allocator *allocator) {
     return true;
 }
 
-bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most, bool *too_many) {
-    const size_t worth = 512;
-    size_t leaves = touch->skin.leaf_count, count = 0;
+/* Few are put where they belong one by one. */
+static void insert_few(sk_touch *touch) {
+    uint32_t *first = touch->first.data, *second = touch->partner.data;
+    size_t count = 0;
+    for (int p = 0; p < touch->part_count; p++)
+        for (size_t i = 0; i < touch->part[p].first.count; i++) {
+            uint32_t a = touch->part[p].first.data[i], b = touch->part[p].second.data[i];
+            size_t to = count++;
+            for (; to && (first[to - 1] > a || (first[to - 1] == a && second[to - 1] > b)); to--)
+                first[to] = first[to - 1], second[to] = second[to - 1];
+            first[to] = a, second[to] = b;
+        }
+}
+
+/* Many are counted by their first leaf, and those of a leaf are sorted. */
+static void deal_many(sk_touch *touch) {
+    size_t leaves = touch->skin.leaf_count;
     uint32_t *start = touch->start;
-    sk_parts_job job = {.touch = touch, .most = most, .work = list_part, .grow = grow_lists};
-    fit(touch);
-    if (!begin_parts(touch, allocator) || !sk_touch_work(&job, allocator, leaves, worth)) return false;
-    for (int i = 0; i < touch->part_count; i++) count += touch->part[i].first.count;
     memset(start, 0, (leaves + 2) * sizeof *start);
-    *too_many = count > most;
-    if (*too_many) return true;
-    if (!SK_RESERVE(allocator, &touch->partner, count + 1)) return false;
-    touch->partner.count = count;
     for (int p = 0; p < touch->part_count; p++)
         for (size_t i = 0; i < touch->part[p].first.count; i++) start[touch->part[p].first.data[i] + 2]++;
     for (size_t i = 2; i < leaves + 2; i++) start[i] += start[i - 1];
     for (int p = 0; p < touch->part_count; p++)
         for (size_t i = 0; i < touch->part[p].first.count; i++)
             touch->partner.data[start[touch->part[p].first.data[i] + 1]++] = touch->part[p].second.data[i];
-    for (size_t a = 0; a < leaves; a++) put_in_order(touch->partner.data + start[a], start[a + 1] - start[a]);
+    for (size_t a = 0; a < leaves; a++) {
+        put_in_order(touch->partner.data + start[a], start[a + 1] - start[a]);
+        for (size_t i = start[a]; i < start[a + 1]; i++) touch->first.data[i] = (uint32_t)a;
+    }
+}
+
+bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most, bool *too_many) {
+    const size_t worth = 512, few = 128;
+    size_t leaves = touch->skin.leaf_count, count = 0;
+    sk_parts_job job = {.touch = touch, .most = most, .work = list_part, .grow = grow_lists};
+    fit(touch);
+    if (!begin_parts(touch, allocator) || !sk_touch_work(&job, allocator, leaves, worth)) return false;
+    for (int i = 0; i < touch->part_count; i++) count += touch->part[i].first.count;
+    touch->partner.count = touch->first.count = 0;
+    *too_many = count > most;
+    if (*too_many) return true;
+    if (!SK_RESERVE(allocator, &touch->partner, count + 1) || !SK_RESERVE(allocator, &touch->first, count + 1)) return false;
+    touch->partner.count = touch->first.count = count;
+    if (count < few) insert_few(touch);
+    else deal_many(touch);
     return true;
 }

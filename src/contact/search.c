@@ -72,10 +72,15 @@ static sk_quad quad_of(sk_vec3 x) {
     return (sk_quad){x.x, x.y, x.z, 0};
 }
 
+/* The way that a vertex may still go. */
+static sk_vec3 way_left(const sk_touch *touch, size_t v) {
+    return sk_scale(touch->share[v], sk_xyz(touch->way[v]));
+}
+
 /* The box of a way, whatever share of it is gone, in the frame of courses; of a place, where the way is none. */
 static sk_box box_of_way(const sk_touch *touch, size_t v, bool way) {
     sk_vec3 from = sk_sub(sk_xyz(touch->p[v]), touch->shift[0]), to = from;
-    if (way) to = sk_sub(sk_add(sk_add(sk_xyz(touch->p[v]), touch->common), sk_xyz(touch->way[v])), touch->shift[1]);
+    if (way) to = sk_sub(sk_add(sk_add(sk_xyz(touch->p[v]), touch->common), way_left(touch, v)), touch->shift[1]);
     sk_quad low = least_of(quad_of(from), quad_of(to)), high = most_of(quad_of(from), quad_of(to));
     return (sk_box){{low, low}, {high, high}};
 }
@@ -220,29 +225,18 @@ static void keep_near(const sk_touch *touch, sk_pairs *pairs, int sort, sk_touch
     sk_pairs_pad(pairs);
 }
 
-/* The leaf whose partners have the i-th of all. */
-static uint32_t leaf_with(const sk_touch *touch, size_t i) {
-    uint32_t low = 0, high = (uint32_t)touch->skin.leaf_count - 1;
-    while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        if (touch->start[middle + 1] > i) high = middle;
-        else low = middle + 1;
-    }
-    return low;
-}
-
 enum { BATCH = 2048 }; /* pairs: what is done with them is done while they are in the cache */
 
 /* Lists pairs of features whose boxes may meet, of a part's next leaves. */
-static void fill_batch(const sk_parts_job *job, sk_search_part *part, uint32_t *a) {
-    const uint32_t *start = job->touch->start;
+static void fill_batch(const sk_parts_job *job, sk_search_part *part) {
+    const uint32_t *first = job->touch->first.data, *partner = job->touch->partner.data;
     for (part->batch.count = 0; part->next < part->end;) {
-        while (start[*a + 1] <= part->next) ++*a;
-        size_t count = (start[*a + 1] < part->end ? start[*a + 1] : part->end) - part->next;
-        size_t room = (BATCH - part->batch.count) / SK_LEAVES_PAIRS;
+        size_t room = (BATCH - part->batch.count) / SK_LEAVES_PAIRS, count = 1;
         if (!room) break;
-        if (count > room) count = room;
-        sk_features[job->sort][job->touch->isa](job->touch, &part->batch, *a, job->touch->partner.data + part->next, count);
+        if (room > part->end - part->next) room = part->end - part->next;
+        const uint32_t a = first[part->next];
+        while (count < room && first[part->next + count] == a) count++;
+        sk_features[job->sort][job->touch->isa](job->touch, &part->batch, a, partner + part->next, count);
         part->next += count;
     }
     sk_pairs_pad(&part->batch);
@@ -250,10 +244,9 @@ static void fill_batch(const sk_parts_job *job, sk_search_part *part, uint32_t *
 
 /* Finds those of a part's leaves that may come near. */
 static void find_fresh(const sk_parts_job *job, sk_search_part *part) {
-    uint32_t a = leaf_with(job->touch, part->next);
     while (part->next < part->end) {
         if (part->batch.capacity < BATCH || part->fresh.capacity < part->fresh.count + BATCH) return;
-        fill_batch(job, part, &a);
+        fill_batch(job, part);
         keep_near(job->touch, &part->batch, job->sort, (sk_touch_search_sort)job->search);
         sk_touch_set_thickness(job->touch, &part->batch, job->sort);
         sk_pairs_take(&part->fresh, &part->batch, 0, part->batch.count);
@@ -313,16 +306,22 @@ static void look_ahead(sk_touch *touch) {
     touch->now = 0;
 }
 
+/* From where to where vertices go in this substep: most are known if somebody has asked before. */
+static void aim(sk_touch *touch) {
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        if (touch->aimed && !touch->lost[v]) continue;
+        sk_vec3 end = sk_add(sk_xyz(touch->p[v]), way_left(touch, v));
+        touch->at[v] = touch->p[v];
+        touch->in_the_end[v] = (sk_vec4){end.x, end.y, end.z, 0};
+    }
+    touch->aimed = true;
+}
+
 /* Where vertices are expected now, with how far off they may be, and in the end. */
-static void expect(sk_touch *touch, sk_touch_search_sort sort) {
+static void expect(sk_touch *touch) {
+    touch->aimed = false;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         const sk_course *course = &touch->course[v];
-        if (sort == SK_SEARCH_WAYS) {
-            sk_vec3 end = sk_add(sk_xyz(touch->p[v]), sk_xyz(touch->way[v]));
-            touch->at[v] = touch->p[v];
-            touch->in_the_end[v] = (sk_vec4){end.x, end.y, end.z, 0};
-            continue;
-        }
         if (touch->wild[v]) { // its pairs to come are found on its ways
             sk_vec3 here = sk_sub(sk_xyz(touch->p[v]), touch->shift[0]);
             touch->at[v] = touch->in_the_end[v] = (sk_vec4){here.x, here.y, here.z, 0};
@@ -362,10 +361,11 @@ bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_s
         touch->given_up++;
         for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->kept[sort].count = touch->late[sort].count = 0;
     }
-    if (good && !gives_up) expect(touch, search);
-    for (int sort = 0; sort < SK_PAIR_SORTS && good && !gives_up; sort++) {
-        good = list_fresh(touch, allocator, sort, search) && sk_touch_keep(touch, allocator, sort, everybody);
-    }
+    if (search == SK_SEARCH_WAYS) aim(touch);
+    else expect(touch);
+    for (int sort = 0; sort < SK_PAIR_SORTS && good && !gives_up; sort++)
+        good = list_fresh(touch, allocator, sort, search) &&
+               sk_touch_keep(touch, allocator, sort, everybody, search == SK_SEARCH_WAYS);
     touch->found = good && !gives_up;
     return good;
 }

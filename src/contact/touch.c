@@ -386,6 +386,7 @@ static void release(sk_force *force, sk_allocator *allocator) {
     sk_pairs_release(&touch->fresh, allocator);
     sk_release(allocator, touch->order.data);
     sk_release(allocator, touch->other_order.data);
+    sk_release(allocator, touch->first.data);
     sk_release(allocator, touch->partner.data);
     sk_release(allocator, touch);
     force->state = NULL;

@@ -181,6 +181,7 @@ typedef struct sk_touch {
     bool loaded;     /* p and inverse are of this substep */
     bool boxed;      /* whether boxes are those of the courses; */
     bool still;      /* they are those of a substep's ways, all of them */
+    bool aimed;      /* `at` and `in_the_end` are those of this substep's ways */
     real thickness;  /* that pairs were found for, m: the largest of any pair; */
     real usual;      /* and the rule's, of bodies that have none of their own */
     real now, until; /* substeps since the last search for all, and how long that holds */
@@ -222,15 +223,16 @@ typedef struct sk_touch {
     bool everybody;               /* all features of all leaves are looked for */
     uint8_t *changed;             /* slots of a level of the tree */
     bool refit;                   /* all of the tree is old */
-    uint32_t *start;              /* of leaves: where their partners start */
+    uint32_t *start;              /* of leaves, while partners are put in order */
     struct {
         uint32_t *data;
         size_t count, capacity;
-    } partner;                    /* leaves whose boxes meet, by the first */
+    } first, partner;             /* leaves whose boxes meet: the first and the second of both, in order */
     sk_search_part part[SK_MOST_PARTS];
     int part_count;
     sk_pairs kept[SK_PAIR_SORTS]; /* of the last search for all, in their order; */
     sk_pairs late[SK_PAIR_SORTS]; /* and of searches since then, one after the other */
+    size_t told_apart[SK_PAIR_SORTS]; /* late pairs of which it is known whether they may close */
     sk_pairs fresh;
     sk_pair_list near[SK_PAIR_SORTS];       /* in the order of leaves; */
     sk_closing_list may_close[SK_PAIR_SORTS]; /* and in none */
@@ -337,8 +339,9 @@ static inline size_t sk_first_of(uint64_t found) {
 
 /* ---- kept.c ---- */
 
-/* Takes fresh pairs over: instead of all that are kept, or of those with a vertex that was looked for. */
-bool sk_touch_keep(sk_touch *touch, sk_allocator *allocator, int sort, bool all);
+/* Takes fresh pairs over: instead of all that are kept, or of those with a vertex that was looked for. In the midst of a
+ * bound no pair changes its place. */
+bool sk_touch_keep(sk_touch *touch, sk_allocator *allocator, int sort, bool all, bool midst);
 /* Lists those that are near, in the order of leaves. */
 bool sk_touch_find_near(sk_touch *touch, sk_allocator *allocator, int sort);
 /* The pairs that an entry of a list is about, and where it is there. */
@@ -380,8 +383,8 @@ extern sk_tree_kernel *const sk_tree_hits[SK_ISA_COUNT];
 
 bool sk_tree_make(sk_tree *tree, sk_allocator *allocator, const sk_skin *skin);
 void sk_tree_release(sk_tree *tree, sk_allocator *allocator);
-/* Lists leaves whose boxes may meet, each once, of which one at least is looked for `anew`: those of leaf a with itself
- * and later ones are partner[start[a]] to partner[start[a + 1]], in order; but none where they are more than `most`. */
+/* Lists leaves whose boxes may meet, each two once, of which one at least is looked for `anew`: `first`, and `partner`, the
+ * same leaf or a later one; in order, but none where they are more than `most`. */
 bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most, bool *too_many);
 /* Has each part's work done on a thread of its own, one after the other in the order of [0, count): `work` looks at what
  * is next until there is none or no room, for which `grow` is then asked. False when there is no memory. */

@@ -77,13 +77,12 @@ static void add_edges(listing *list, const sk_leaf *a, const sk_leaf *b) {
 
 static void list_all(listing *list) {
     const sk_touch *touch = list->touch;
-    for (size_t i = 0; i < touch->skin.leaf_count; i++)
-        for (uint32_t k = touch->start[i]; k < touch->start[i + 1]; k++) {
-            const sk_leaf *a = &touch->skin.leaf[i], *b = &touch->skin.leaf[touch->partner.data[k]];
-            add_corners(list, a, b);
-            if (a != b) add_corners(list, b, a);
-            add_edges(list, a, b);
-        }
+    for (size_t i = 0; i < touch->partner.count; i++) {
+        const sk_leaf *a = &touch->skin.leaf[touch->first.data[i]], *b = &touch->skin.leaf[touch->partner.data[i]];
+        add_corners(list, a, b);
+        if (a != b) add_corners(list, b, a);
+        add_edges(list, a, b);
+    }
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) look(list, sort);
 }
 
