@@ -27,10 +27,11 @@ static sk_vec3 common_way(const sk_touch *touch) {
     return (sk_vec3){(real)(share * sum[0]), (real)(share * sum[1]), (real)(share * sum[2])};
 }
 
-/* Loads the places after the substep and what ways lead there. */
+/* Loads the places before and after the substep, and finds out what ways lead from one to the other. */
 static void load_ways(sk_touch *touch, const sk_run *run, const sk_op *op) {
     size_t count = touch->skin.vertex_count;
     touch->aimed = false;
+    sk_touch_load(touch, op->packed);
     for (size_t v = 0; v < count; v++) touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
     sk_vec3 common = touch->common = common_way(touch);
     for (size_t v = 0; v < count; v++) {
@@ -154,7 +155,8 @@ static bool settle_pair(sk_touch *touch, sk_pairs *pairs, int sort, size_t k, re
 
 /* Takes the shares that a round has found; returns whether a vertex is lost where it goes now. */
 static bool take_shares(sk_touch *touch) {
-    const sk_vec3 common = touch->common;
+    const sk_vec3 common = touch->common, gone = sk_sub(touch->shift[1], touch->shift[0]);
+    const real jump = SK_MOST_JUMP * touch->thickness;
     bool any = false;
     memset(touch->lost, 0, touch->skin.vertex_count);
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
@@ -164,9 +166,19 @@ static bool take_shares(sk_touch *touch) {
         sk_vec3 step = sk_scale(share, sk_xyz(touch->way[v])), to = sk_add(sk_add(sk_xyz(touch->p[v]), common), step);
         if (touch->wild[v]) continue;
         sk_vec3 off = sk_sub(sk_sub(to, touch->shift[1]), sk_expected(&touch->course[v], touch->now + 1));
-        any |= touch->lost[v] = sk_dot(off, off) > touch->course[v].reach * touch->course[v].reach;
+        sk_vec3 other = sk_sub(sk_sub(sk_add(common, step), gone), touch->course[v].step);
+        touch->lost[v] = sk_dot(off, off) > touch->course[v].reach * touch->course[v].reach || sk_dot(other, other) > jump * jump;
+        any |= touch->lost[v];
     }
     return any;
+}
+
+/* Those that are held back may come near their own surface. */
+static bool disturb(sk_touch *touch, sk_allocator *allocator) {
+    bool good = true;
+    for (size_t v = 0; v < touch->skin.vertex_count && !touch->storm && good; v++)
+        if (touch->lowered[v]) good = sk_calm_disturb(touch, allocator, v);
+    return good;
 }
 
 typedef struct closing {
@@ -247,7 +259,9 @@ static bool find_shares(sk_touch *touch, sk_allocator *allocator, real least) {
         bool lowered = false;
         for (int sort = 0; sort < SK_PAIR_SORTS; sort++) lowered |= settle_pairs(touch, sort, first, least);
         if (!lowered) return true;
-        if (take_shares(touch) && !(renew(touch, allocator) && find_those_that_may(touch, allocator, least, false)))
+        bool lost = take_shares(touch);
+        if (!disturb(touch, allocator) || (lost && !renew(touch, allocator)) ||
+            !find_those_that_may(touch, allocator, least, false))
             return false;
     }
 }
@@ -275,13 +289,11 @@ void sk_touch_bound(sk_run *run, const sk_op *op, size_t from, size_t end) {
     const sk_vec4 *x = run->vector[SK_X];
     sk_touch_set_frame(touch, x, op->packed, touch->now + 1, 1);
     bool lost = sk_touch_mark_lost(touch, x, op->packed, touch->now + 1, 1) || touch->wild_count, good = true;
-    if (lost || sk_pairs_kept(touch)) {
-        sk_touch_load(touch, op->packed);
-        load_ways(touch, run, op);
-        if (touch->storm) touch->shift[1] = touch->common;
-        for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->lost[v] |= touch->wild[v];
-    }
-    if (lost) good = renew(touch, run->allocator);
+    load_ways(touch, run, op);
+    if (touch->storm) touch->shift[1] = touch->common;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->lost[v] |= touch->wild[v];
+    good = sk_calm_follow(touch, run->allocator);
+    if (good && lost) good = renew(touch, run->allocator);
     if (good && sk_pairs_kept(touch)) {
         good = find_shares(touch, run->allocator, least);
         store_ways(touch, run, op);

@@ -13,19 +13,27 @@ SK_INLINE sk_wide lanes_of(const real *reals) {
     return *(const sk_wide *)(const void *)reals;
 }
 
-bool SK_KERNEL(off)(const sk_vec4 *x, size_t packed, size_t slots, const sk_course_block *block, real time,
-                    const sk_vec3 *shift, uint16_t *off) {
+bool SK_KERNEL(off)(const sk_vec4 *x, const sk_vec4 *before, size_t packed, size_t slots, const sk_course_block *block, real time,
+                    const sk_vec3 *shift, const sk_vec3 *gone, real jump, uint16_t *off) {
     const sk_wide t = sk_splat(time), sx = sk_splat(shift->x), sy = sk_splat(shift->y), sz = sk_splat(shift->z);
+    const sk_wide gx = sk_splat(gone->x), gy = sk_splat(gone->y), gz = sk_splat(gone->z);
     uint32_t any = 0;
     for (size_t b = 0; b < slots / 16; b++) {
         uint32_t bits = 0;
         for (size_t part = 0; part < SK_PARTS; part++) {
             size_t l = part * SK_PART;
             sk_wide4 at = sk_load_part(x, 16 * b + l, 16 * b < packed);
-            sk_wide3 r = {at.x - sx - lanes_of(block[b].from[0] + l) - t * lanes_of(block[b].step[0] + l),
-                          at.y - sy - lanes_of(block[b].from[1] + l) - t * lanes_of(block[b].step[1] + l),
-                          at.z - sz - lanes_of(block[b].from[2] + l) - t * lanes_of(block[b].step[2] + l)};
-            bits |= sk_more_bits(sk_dot_wide(r, r), lanes_of(block[b].square + l)) << l;
+            const sk_wide3 step = {lanes_of(block[b].step[0] + l), lanes_of(block[b].step[1] + l), lanes_of(block[b].step[2] + l)};
+            const sk_wide square = lanes_of(block[b].square + l);
+            sk_wide3 r = {at.x - sx - lanes_of(block[b].from[0] + l) - t * step.x,
+                          at.y - sy - lanes_of(block[b].from[1] + l) - t * step.y,
+                          at.z - sz - lanes_of(block[b].from[2] + l) - t * step.z};
+            bits |= sk_more_bits(sk_dot_wide(r, r), square) << l;
+            if (!before) continue;
+            sk_wide4 was = sk_load_part(before, 16 * b + l, 16 * b < packed);
+            sk_wide3 j = {at.x - was.x - gx - step.x, at.y - was.y - gy - step.y, at.z - was.z - gz - step.z};
+            const sk_wide far = sk_splat(SK_REAL_MAX / 2); // who has no course never jumps
+            bits |= (sk_more_bits(sk_dot_wide(j, j), sk_splat(jump)) & sk_more_bits(far, square)) << l;
         }
         off[b] = (uint16_t)bits;
         any |= bits;
@@ -48,7 +56,10 @@ void sk_touch_put_course(sk_touch *touch, size_t v, bool wild) {
 
 bool sk_touch_mark_lost(sk_touch *touch, const sk_vec4 *x, size_t packed, real time, int after) {
     memset(touch->lost, 0, touch->skin.vertex_count);
-    if (!sk_course_off[touch->isa](x, packed, touch->slots, touch->course_block, time, &touch->shift[after], touch->off))
+    const real jump = SK_MOST_JUMP * touch->thickness;
+    const sk_vec3 gone = sk_sub(touch->shift[1], touch->shift[0]);
+    if (!sk_course_off[touch->isa](x, after ? touch->before : NULL, packed, touch->slots, touch->course_block, time,
+                                   &touch->shift[after], &gone, jump * jump, touch->off))
         return false;
     for (size_t b = 0; b < touch->slots / 16; b++)
         for (uint32_t bits = touch->off[b]; bits; bits &= bits - 1)

@@ -73,7 +73,7 @@ bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 
     sk_touch_put_boxes(touch, x, slot_of, 0);
     bool too_many;
     touch->tasks = NULL;
-    if (!sk_touch_partners(touch, allocator, SIZE_MAX / 2, &too_many)) return false;
+    if (!sk_touch_partners(touch, allocator, SIZE_MAX / 2, true, &too_many)) return false;
     for (size_t i = 0; i < touch->partner.count; i++) {
         size_t a = touch->first.data[i], b = touch->partner.data[i];
         count_of(&counting, a, b);

@@ -96,7 +96,7 @@ SK_INLINE void note_nearing(sk_pairs *pairs, size_t k, const sk_wide4 x[4], cons
                             const sk_nearing_values *values) {
     sk_wide3 n = {*part_of(pairs->normal[0], k), *part_of(pairs->normal[1], k), *part_of(pairs->normal[2], k)}, way[4];
     sk_wide low = sk_splat(SK_REAL_MAX), high = sk_splat(-SK_REAL_MAX), relative = sk_splat(0);
-    sk_wide reach[2] = {sk_splat(0), sk_splat(0)};
+    sk_wide reach[2] = {sk_splat(0), sk_splat(0)}, jump[2] = {sk_splat(0), sk_splat(0)};
     for (int c = 0; c < 4; c++) {
         sk_wide at = sk_dot_wide(n, between(end[c], values->shares > 0 ? x[0] : end[0]));
         if (c < first) low = least_of(low, at);
@@ -107,6 +107,7 @@ SK_INLINE void note_nearing(sk_pairs *pairs, size_t k, const sk_wide4 x[4], cons
             else high = most_of(high, at);
         }
         reach[c >= first] = most_of(reach[c >= first], x[c].w);
+        jump[c >= first] = most_of(jump[c >= first], end[c].w);
         way[c] = between(end[c], x[c]);
     }
     for (int a = 0; a < first; a++)
@@ -115,7 +116,7 @@ SK_INLINE void note_nearing(sk_pairs *pairs, size_t k, const sk_wide4 x[4], cons
             relative = most_of(relative, sk_dot_wide(apart, apart));
         }
     sk_wide reaches = reach[0] + reach[1], step = sk_splat(values->per) * sk_wide_sqrt(relative);
-    sk_wide closing = sk_splat(values->closing) * (step + reaches + reaches);
+    sk_wide closing = sk_splat(values->closing) * (step + jump[0] + jump[1]);
     sk_wide need = reaches + sk_splat(values->rounding) + most_of(closing, sk_splat(values->near));
     sk_wide distance = *part_of(pairs->distance, k);
     if (values->shares > 0) need = sk_splat(values->shares) * distance + sk_splat(values->near);

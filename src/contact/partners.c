@@ -143,34 +143,86 @@ static void fit(sk_touch *touch) {
 
 /* ---- partners ---- */
 
-/* Lists those that the leaf in a slot may meet, itself too. Of two that are both looked for, one lists the other: where
- * everybody is, the one in the lower slot; else the first of both. False when there is no room. */
-static bool list_partners(const sk_touch *touch, sk_search_part *part, size_t slot) {
-    uint32_t a = touch->tree.leaf_at[slot];
-    size_t first = touch->everybody ? slot : 0;
-    size_t count = sk_tree_hits[touch->isa](&touch->tree, &touch->hot_box[a], first, part->hit);
-    if (part->first.count + count > part->first.capacity) return false;
-    for (size_t i = 0; i < count; i++) {
-        uint32_t b = touch->tree.leaf_at[part->hit[i]];
-        if (sk_is_ignored(&touch->ignored, a, b)) continue;
-        if (!touch->everybody && b < a && touch->anew[b] && sk_boxes_meet(&touch->hot_box[b], &touch->leaf_box[a])) continue;
-        part->first.data[part->first.count++] = b < a ? b : a;
-        part->second.data[part->second.count++] = b < a ? a : b;
+/* The leaves of a block that are looked for, and the box around them. */
+typedef struct looking_block {
+    size_t number;
+    uint32_t lanes;
+    sk_box box;
+} looking_block;
+
+static looking_block block_at(const sk_touch *touch, size_t number) {
+    const sk_quad most = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX, 0};
+    looking_block block = {.number = number, .box = {{most, most}, {-most, -most}}};
+    for (size_t l = 0, slot = number * SK_TREE_WIDTH; l < SK_TREE_WIDTH && slot < touch->skin.leaf_count; l++, slot++) {
+        uint32_t leaf = touch->tree.leaf_at[slot];
+        if (!touch->anew[leaf]) continue;
+        block.lanes |= 1u << l;
+        sk_box_widen(&block.box, &touch->hot_box[leaf]);
+    }
+    return block;
+}
+
+/* Notes which leaves lie around those of a block. */
+static void mark_rings(const sk_touch *touch, sk_ring_mark *mark, const looking_block *block) {
+    const sk_calm *calm = &touch->calm;
+    for (uint32_t lanes = block->lanes; lanes; lanes &= lanes - 1) {
+        uint32_t lane = (uint32_t)__builtin_ctz(lanes), a = touch->tree.leaf_at[block->number * SK_TREE_WIDTH + lane];
+        for (uint32_t i = calm->ring_start[a]; i < calm->ring_start[a + 1]; i++) {
+            sk_ring_mark *m = &mark[calm->ring[i]];
+            if (m->block != block->number + 1) *m = (sk_ring_mark){(uint32_t)block->number + 1, 0};
+            m->lanes |= 1u << lane;
+        }
+    }
+}
+
+/* Whether two leaves are to be listed. Of two that are both looked for, one lists the other: where everybody is, the one in
+ * the lower slot; else the first of both. */
+static bool are_partners(const sk_parts_job *job, const sk_ring_mark *mark, const looking_block *block, uint32_t lane, uint32_t a,
+                         uint32_t b) {
+    const sk_touch *touch = job->touch;
+    bool around = mark[b].block == block->number + 1 && (mark[b].lanes >> lane & 1);
+    if (around && !job->calm_too && touch->calm.patch[touch->calm.of_leaf[b < a ? b : a]].calm) return false;
+    if (sk_is_ignored(&touch->ignored, a, b)) return false;
+    return touch->everybody || b >= a || !touch->anew[b] || !sk_boxes_meet(&touch->hot_box[b], &touch->leaf_box[a]);
+}
+
+/* Lists those that the leaves of a block may meet, themselves too. False when there is no room. */
+static bool list_partners(const sk_parts_job *job, sk_search_part *part, const looking_block *block) {
+    const sk_touch *touch = job->touch;
+    const uint32_t *leaf_at = touch->tree.leaf_at;
+    uint32_t hit[SK_TREE_WIDTH * SK_TREE_WIDTH];
+    size_t a = block->number, before = part->first.count;
+    mark_rings(touch, part->ring, block);
+    size_t blocks = sk_tree_blocks[touch->isa](&touch->tree, &block->box, touch->everybody ? a : 0, part->block);
+    for (size_t k = 0; k < blocks; k++) {
+        size_t b = part->block[k];
+        size_t count = sk_tree_hits[touch->isa](&touch->tree, a, b, block->lanes, touch->hot_box, touch->everybody, hit);
+        if (part->first.count + count > part->first.capacity) {
+            part->first.count = part->second.count = before;
+            return false;
+        }
+        for (size_t i = 0; i < count; i++) {
+            uint32_t lane = hit[i] >> SK_TREE_SHIFT, one = leaf_at[a * SK_TREE_WIDTH + lane];
+            uint32_t two = leaf_at[b * SK_TREE_WIDTH + hit[i] % SK_TREE_WIDTH];
+            if (!are_partners(job, part->ring, block, lane, one, two)) continue;
+            part->first.data[part->first.count++] = two < one ? two : one;
+            part->second.data[part->second.count++] = two < one ? one : two;
+        }
     }
     return true;
 }
 
 static void list_part(const sk_parts_job *job, sk_search_part *part) {
-    const sk_touch *touch = job->touch;
     for (; part->next < part->end; part->next++) {
+        looking_block block = block_at(job->touch, part->next);
         if (part->first.count > job->most) part->next = part->end - 1; // too many in all
-        else if (touch->anew[touch->tree.leaf_at[part->next]] && !list_partners(touch, part, part->next)) return;
+        else if (block.lanes && !list_partners(job, part, &block)) return;
     }
 }
 
 static bool grow_lists(sk_search_part *part, sk_allocator *allocator) {
     const size_t more = 1024;
-    size_t need = 2 * part->first.capacity + part->end + more; // (a leaf has no more partners than there are leaves)
+    size_t need = 2 * part->first.capacity + part->end * SK_TREE_WIDTH + more;
     part->second.capacity = part->first.capacity;
     return SK_RESERVE(allocator, &part->first, need) && SK_RESERVE(allocator, &part->second, need);
 }
@@ -184,14 +236,15 @@ static void put_in_order(uint32_t *data, size_t count) {
     }
 }
 
-/* Room for hits of all leaves that there are, in each part. */
+/* Room for all blocks and leaves that there are, in each part. */
 static bool begin_parts(sk_touch *touch, sk_allocator *allocator) {
     for (int i = 0; i < SK_MOST_PARTS; i++) {
         sk_search_part *part = &touch->part[i];
         part->first.count = part->second.count = 0;
         bool used = i == 0 || (touch->tasks && i < sk_tasks_count(touch->tasks));
-        if (used && !part->hit &&
-            !(part->hit = sk_allocate(allocator, (touch->skin.leaf_count + SK_TREE_WIDTH) * sizeof *part->hit)))
+        if (used && !part->block && !(part->block = sk_allocate(allocator, (touch->tree.blocks[0] + 1) * sizeof *part->block)))
+            return false;
+        if (used && !part->ring && !(part->ring = sk_allocate(allocator, (touch->skin.leaf_count + 1) * sizeof *part->ring)))
             return false;
     }
     return true;
@@ -228,12 +281,12 @@ static void deal_many(sk_touch *touch) {
     }
 }
 
-bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most, bool *too_many) {
-    const size_t worth = 512, few = 128;
-    size_t leaves = touch->skin.leaf_count, count = 0;
-    sk_parts_job job = {.touch = touch, .most = most, .work = list_part, .grow = grow_lists};
+bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most, bool calm_too, bool *too_many) {
+    const size_t worth = 32, few = 128; // blocks; pairs of leaves
+    size_t count = 0;
+    sk_parts_job job = {.touch = touch, .most = most, .calm_too = calm_too, .work = list_part, .grow = grow_lists};
     fit(touch);
-    if (!begin_parts(touch, allocator) || !sk_touch_work(&job, allocator, leaves, worth)) return false;
+    if (!begin_parts(touch, allocator) || !sk_touch_work(&job, allocator, touch->tree.blocks[0], worth)) return false;
     for (int i = 0; i < touch->part_count; i++) count += touch->part[i].first.count;
     touch->partner.count = touch->first.count = 0;
     *too_many = count > most;

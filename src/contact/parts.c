@@ -33,11 +33,12 @@ bool sk_touch_work(const sk_parts_job *job, sk_allocator *allocator, size_t coun
 void sk_touch_release_parts(sk_touch *touch, sk_allocator *allocator) {
     for (int i = 0; i < SK_MOST_PARTS; i++) {
         sk_search_part *part = &touch->part[i];
-        sk_release(allocator, part->hit);
+        sk_release(allocator, part->block);
+        sk_release(allocator, part->ring);
         sk_release(allocator, part->first.data);
         sk_release(allocator, part->second.data);
         sk_pairs_release(&part->batch, allocator);
         sk_pairs_release(&part->fresh, allocator);
-        *part = (sk_search_part){.hit = NULL};
+        *part = (sk_search_part){.block = NULL};
     }
 }

@@ -9,10 +9,6 @@
 
 #include "base/tasks.h"
 #include "contact/touch.h"
-#if defined(__wasm_simd128__) && !defined(SKEIN_DOUBLE)
-#include <wasm_simd128.h>
-#define SK_QUADS_OF_WASM
-#endif
 
 /* What is nearer than this share of its way may close in a substep: a little more than 1 / (1 - SK_LEFT_OVER). */
 static const real closing_share = (real)1.13;
@@ -29,38 +25,10 @@ static real part_of(const sk_touch *touch, real reach) {
 
 /* ---- boxes ---- */
 
-/* (For WebAssembly clang goes lane by lane, which takes a heap's boxes five times as long.) */
-#ifdef SK_QUADS_OF_WASM
-static inline sk_quad least_of(sk_quad a, sk_quad b) {
-    return (sk_quad)wasm_f32x4_pmin((v128_t)b, (v128_t)a); // a where it is less
-}
-
-static inline sk_quad most_of(sk_quad a, sk_quad b) {
-    return (sk_quad)wasm_f32x4_pmax((v128_t)b, (v128_t)a);
-}
-#else
-static inline sk_quad least_of(sk_quad a, sk_quad b) {
-    for (int k = 0; k < 4; k++) a[k] = a[k] < b[k] ? a[k] : b[k];
-    return a;
-}
-
-static inline sk_quad most_of(sk_quad a, sk_quad b) {
-    for (int k = 0; k < 4; k++) a[k] = a[k] > b[k] ? a[k] : b[k];
-    return a;
-}
-#endif
-
-static inline void widen(sk_box *box, const sk_box *by) {
-    for (int end = 0; end < 2; end++) {
-        box->low[end] = least_of(box->low[end], by->low[end]);
-        box->high[end] = most_of(box->high[end], by->high[end]);
-    }
-}
-
 /* A feature's box: around its corners, and wider by the most that one of them asks for, which is its fourth number. */
 static void box_of(const sk_box *corner_box, const uint32_t *vertex, int count, sk_box *box) {
     *box = corner_box[vertex[0]];
-    for (int k = 1; k < count; k++) widen(box, &corner_box[vertex[k]]);
+    for (int k = 1; k < count; k++) sk_box_widen(box, &corner_box[vertex[k]]);
     for (int end = 0; end < 2; end++) {
         real part = box->high[end][3];
         box->low[end] -= (sk_quad){part, part, part, 0};
@@ -81,7 +49,7 @@ static sk_vec3 way_left(const sk_touch *touch, size_t v) {
 static sk_box box_of_way(const sk_touch *touch, size_t v, bool way) {
     sk_vec3 from = sk_sub(sk_xyz(touch->p[v]), touch->shift[0]), to = from;
     if (way) to = sk_sub(sk_add(sk_add(sk_xyz(touch->p[v]), touch->common), way_left(touch, v)), touch->shift[1]);
-    sk_quad low = least_of(quad_of(from), quad_of(to)), high = most_of(quad_of(from), quad_of(to));
+    sk_quad low = sk_least_quad(quad_of(from), quad_of(to)), high = sk_most_quad(quad_of(from), quad_of(to));
     return (sk_box){{low, low}, {high, high}};
 }
 
@@ -133,7 +101,7 @@ void sk_touch_leaf_box(sk_touch *touch, size_t i) {
     for (size_t k = 0, t = leaf->first_triangle; k < leaf->triangles; k++, t++)
         box_of(touch->corner_box, skin->triangle[t], 3, &touch->triangle_box[t]);
     *box = leaf->triangles ? touch->triangle_box[leaf->first_triangle] : touch->edge_box[leaf->first_edge];
-    for (size_t k = 1; k < leaf->triangles; k++) widen(box, &touch->triangle_box[leaf->first_triangle + k]);
+    for (size_t k = 1; k < leaf->triangles; k++) sk_box_widen(box, &touch->triangle_box[leaf->first_triangle + k]);
     if (!has_blown_up(touch, leaf, box)) return;
     const sk_quad most = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX, 0};
     *box = (sk_box){{most, most}, {-most, -most}};
@@ -147,11 +115,11 @@ static void make_hot_box(sk_touch *touch, size_t i) {
     bool met = touch->leaf_box[i].low[0][0] <= touch->leaf_box[i].high[0][0]; // it has not blown up
     sk_hot hot = met ? touch->hot[i] : (sk_hot){0, 0, 0};
     for (uint32_t v = leaf->first_vertex; hot.vertices; v++, hot.vertices >>= 1)
-        if (hot.vertices & 1) widen(&box, &touch->vertex_box[v]);
+        if (hot.vertices & 1) sk_box_widen(&box, &touch->vertex_box[v]);
     for (uint32_t e = leaf->first_edge; hot.edges; e++, hot.edges >>= 1)
-        if (hot.edges & 1) widen(&box, &touch->edge_box[e]);
+        if (hot.edges & 1) sk_box_widen(&box, &touch->edge_box[e]);
     for (uint32_t t = leaf->first_triangle; hot.triangles; t++, hot.triangles >>= 1)
-        if (hot.triangles & 1) widen(&box, &touch->triangle_box[t]);
+        if (hot.triangles & 1) sk_box_widen(&box, &touch->triangle_box[t]);
     touch->hot_box[i] = box;
 }
 
@@ -319,6 +287,7 @@ static void aim(sk_touch *touch) {
 
 /* Where vertices are expected now, with how far off they may be, and in the end. */
 static void expect(sk_touch *touch) {
+    const real jump = SK_MOST_JUMP * touch->thickness;
     touch->aimed = false;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         const sk_course *course = &touch->course[v];
@@ -329,7 +298,8 @@ static void expect(sk_touch *touch) {
         }
         sk_vec3 at = sk_expected(course, touch->now), end = sk_expected(course, touch->until);
         touch->at[v] = (sk_vec4){at.x, at.y, at.z, course->reach};
-        touch->in_the_end[v] = (sk_vec4){end.x, end.y, end.z, 0};
+        // (between two places within its reach it is no farther than across)
+        touch->in_the_end[v] = (sk_vec4){end.x, end.y, end.z, sk_min(2 * course->reach, jump)};
     }
 }
 
@@ -356,7 +326,7 @@ bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_s
     make_boxes(touch, search);
     touch->boxed = !touch->still;
     touch->found = false;
-    bool gives_up = false, good = sk_touch_partners(touch, allocator, most, &gives_up);
+    bool gives_up = false, good = sk_touch_partners(touch, allocator, most, false, &gives_up);
     if (gives_up) {
         touch->given_up++;
         for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->kept[sort].count = touch->late[sort].count = 0;

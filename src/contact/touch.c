@@ -155,10 +155,15 @@ static bool are_most(const sk_touch *touch) {
     return 10 * lost > touch->skin.vertex_count || 2 * (touch->lost_since + lost) > touch->skin.vertex_count;
 }
 
+/* Whether all is as the last bound left it. */
+static bool is_known(const sk_touch *touch, const sk_run *run) {
+    return touch->alone && run->iteration > 0 && touch->followed;
+}
+
 /* Finds out who is lost before the substep: the wild, too, get courses now and then. */
 static bool mark_lost(sk_touch *touch, const sk_run *run, const sk_op *op) {
     const size_t often = 2; // substeps
-    bool knows = touch->alone && run->iteration > 0 && touch->followed; // for who has been lost since then?
+    bool knows = is_known(touch, run); // for who has been lost since then?
     if (!knows) sk_touch_set_frame(touch, run->vector[SK_X], op->packed, touch->now, 0);
     else touch->shift[0] = touch->shift[1];
     bool lost = !knows && sk_touch_mark_lost(touch, run->vector[SK_X], op->packed, touch->now, 0);
@@ -190,6 +195,7 @@ static void begin_storm(sk_touch *touch) {
 static bool find_pairs_in_storm(sk_touch *touch, const sk_run *run, const sk_op *op, bool known) {
     sk_touch_load(touch, op->packed);
     touch->shift[0] = (sk_vec3){0, 0, 0};
+    if (!known && !sk_calm_look(touch, run->allocator, true)) return false;
     memset(touch->lost, known ? 0 : 1, touch->skin.vertex_count);
     if (!known) return sk_touch_renew(touch, run->allocator, SK_SEARCH_LOST);
     look_at_all(touch);
@@ -200,11 +206,12 @@ static bool find_pairs_in_storm(sk_touch *touch, const sk_run *run, const sk_op 
 static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool all) {
     bool stormed = touch->storm > 0;
     if (stormed && !all && --touch->storm)
-        return find_pairs_in_storm(touch, run, op, touch->alone && run->iteration > 0 && touch->followed);
+        return find_pairs_in_storm(touch, run, op, is_known(touch, run));
     touch->storm = 0;
     all |= stormed;
     bool lost = !all && mark_lost(touch, run, op);
-    if (all || lost || sk_pairs_kept(touch)) sk_touch_load(touch, op->packed);
+    if (all || lost || sk_pairs_kept(touch) || !is_known(touch, run)) sk_touch_load(touch, op->packed);
+    if (!all && !is_known(touch, run) && !sk_calm_look(touch, run->allocator, false)) return false;
     all |= lost && are_most(touch);
     bool stormy = all && !stormed && is_stormy(touch);
     if (stormy) {
@@ -214,6 +221,7 @@ static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool
     if (all) {
         if (!stormed) touch->next_storm = 0;
         touch->untouched = 8 * sk_pairs_kept(touch) < touch->skin.vertex_count;
+        if (!sk_calm_look(touch, run->allocator, true)) return false;
         memset(touch->lost, 1, touch->skin.vertex_count);
         begin_frame(touch, run, op);
     }
@@ -235,8 +243,10 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     touch->now += 1, touch->clock++;
     bool all = !touch->found || touch->thickness < thickness || touch->thickness > thickness ||
                touch->usual < usual || touch->usual > usual || touch->now + 1 > touch->until;
+    bool same = !(touch->thickness < thickness || touch->thickness > thickness || touch->usual < usual || touch->usual > usual);
     touch->thickness = thickness;
     touch->usual = usual;
+    if (!same) sk_calm_forget(touch);
     touch->loaded = false;
     touch->tasks = run->tasks;
     if (good) memcpy(touch->before, run->vector[SK_X], touch->slots * sizeof *touch->before);
@@ -358,6 +368,7 @@ static void release_vertices(sk_touch *touch, sk_allocator *allocator) {
         *array[i] = NULL;
     }
     sk_touch_release_parts(touch, allocator);
+    sk_calm_release(&touch->calm, allocator);
     sk_tree_release(&touch->tree, allocator);
     sk_ignored_release(&touch->ignored, allocator);
 }
@@ -416,7 +427,7 @@ static bool prepare(sk_force *force, sk_allocator *allocator, const sk_particles
     touch->slots = touch->wild_count = 0;
     const sk_contact_params *params = force->params;
     if (sk_skin_make(&touch->skin, allocator, particles, &force->only, parts) && make_vertices(touch, allocator) &&
-        sk_ignored_make(&touch->ignored, allocator, &touch->skin, params->ignore, parts))
+        sk_ignored_make(&touch->ignored, allocator, &touch->skin, params->ignore, parts) && sk_calm_make(touch, allocator))
         return true;
     release(force, allocator);
     return false;

@@ -19,8 +19,13 @@
 #include <string.h>
 
 #include "base/wide_types.h"
+#include "contact/calm.h"
 #include "forces/force.h"
 #include "particles/particles.h"
+#if defined(__wasm_simd128__) && !defined(SKEIN_DOUBLE)
+#include <wasm_simd128.h>
+#define SK_QUADS_OF_WASM
+#endif
 
 /* Features that lie together, by their first numbers: up to two triangles with an edge in common, or edges of a rope.
  * Each vertex and edge belongs to one leaf alone. */
@@ -91,6 +96,35 @@ typedef struct sk_box {
     sk_quad low[2], high[2];
 } sk_box;
 
+/* (For WebAssembly clang goes lane by lane, which takes a heap's boxes five times as long.) */
+#ifdef SK_QUADS_OF_WASM
+static inline sk_quad sk_least_quad(sk_quad a, sk_quad b) {
+    return (sk_quad)wasm_f32x4_pmin((v128_t)b, (v128_t)a); // a where it is less
+}
+
+static inline sk_quad sk_most_quad(sk_quad a, sk_quad b) {
+    return (sk_quad)wasm_f32x4_pmax((v128_t)b, (v128_t)a);
+}
+#else
+static inline sk_quad sk_least_quad(sk_quad a, sk_quad b) {
+    for (int k = 0; k < 4; k++) a[k] = a[k] < b[k] ? a[k] : b[k];
+    return a;
+}
+
+static inline sk_quad sk_most_quad(sk_quad a, sk_quad b) {
+    for (int k = 0; k < 4; k++) a[k] = a[k] > b[k] ? a[k] : b[k];
+    return a;
+}
+#endif
+
+/* Makes a box so wide that it has another one inside. */
+static inline void sk_box_widen(sk_box *box, const sk_box *by) {
+    for (int end = 0; end < 2; end++) {
+        box->low[end] = sk_least_quad(box->low[end], by->low[end]);
+        box->high[end] = sk_most_quad(box->high[end], by->high[end]);
+    }
+}
+
 /* Boxes of leaves, and of sixteen of those below, up to one: by slots, in which leaves that were built near each other
  * are near. Sixteen slots are a block. */
 enum { SK_TREE_LEVELS = 9, SK_TREE_SHIFT = 4, SK_TREE_WIDTH = 1 << SK_TREE_SHIFT };
@@ -103,8 +137,12 @@ typedef struct sk_tree {
     int levels;
     uint32_t *leaf_at; /* of slots */
 } sk_tree;
-/* Lists the slots of the lowest level, from the first one on, whose boxes may meet this one at some time. */
-typedef size_t sk_tree_kernel(const sk_tree *tree, const sk_box *box, size_t first, uint32_t *slot);
+/* Lists the blocks of the lowest level, from the first one on, that a box may meet at some time. */
+typedef size_t sk_tree_blocks_kernel(const sk_tree *tree, const sk_box *box, size_t first, uint32_t *block);
+/* Lists who of some lanes of block a may meet whom of block b, or of later lanes than their own if asked for: the lane of a,
+ * and behind it in four bits that of b. Boxes of the former are those of leaves. At most SK_TREE_WIDTH squared. */
+typedef size_t sk_tree_hits_kernel(const sk_tree *tree, size_t a, size_t b, uint32_t lanes, const sk_box *box, bool forward,
+                                   uint32_t *hit);
 
 /* Some of the pairs that are kept: twice where a pair is, and one more if it is a late one. */
 typedef struct sk_pair_list {
@@ -145,19 +183,27 @@ typedef struct sk_seen {
 typedef struct sk_course_block {
     _Alignas(64) real from[3][16], step[3][16], square[16];
 } sk_course_block;
-/* Whether a vertex has left its reach, among `slots` slots of x: bits of the lanes of each sixteen that have. */
-typedef bool sk_course_kernel(const sk_vec4 *x, size_t packed, size_t slots, const sk_course_block *block, real time,
-                              const sk_vec3 *shift, uint16_t *off);
+/* Whether a vertex has left its reach, among `slots` slots of x, or has gone another way in a substep, from `before` on, than
+ * its course by more than a jump, whose square is given; in a frame that went on by `gone` in it. Bits of the lanes of
+ * each sixteen that have. Without `before`, nobody has jumped. */
+typedef bool sk_course_kernel(const sk_vec4 *x, const sk_vec4 *before, size_t packed, size_t slots, const sk_course_block *block,
+                              real time, const sk_vec3 *shift, const sk_vec3 *gone, real jump, uint16_t *off);
 
 /* Which features of a leaf are looked for: bits. */
 typedef struct sk_hot {
     uint8_t vertices, edges, triangles;
 } sk_hot;
 
+/* Around which lanes of a block of the tree, counted from 1, a leaf lies: bits. */
+typedef struct sk_ring_mark {
+    uint32_t block, lanes;
+} sk_ring_mark;
+
 /* What one thread finds of a search: all that is kept is put together in their order, so that no bit depends on them. */
 enum { SK_MOST_PARTS = 16 };
 typedef struct sk_search_part {
-    uint32_t *hit; /* slots of the tree */
+    uint32_t *block; /* of the tree */
+    sk_ring_mark *ring; /* of leaves */
     struct {
         uint32_t *data;
         size_t count, capacity;
@@ -169,6 +215,7 @@ typedef struct sk_search_part {
 typedef struct sk_touch {
     sk_skin skin;
     sk_ignored ignored;
+    sk_calm calm;
     struct sk_tasks *tasks; /* of the run */
     uint64_t shape; /* of the world that the skin was made from */
     sk_isa isa;
@@ -377,21 +424,23 @@ static inline uint64_t sk_leaves_key(uint32_t a, uint32_t b) {
 
 /* ---- tree.c ---- */
 
-extern sk_tree_kernel *const sk_tree_hits[SK_ISA_COUNT];
+extern sk_tree_blocks_kernel *const sk_tree_blocks[SK_ISA_COUNT];
+extern sk_tree_hits_kernel *const sk_tree_hits[SK_ISA_COUNT];
 
 /* ---- partners.c ---- */
 
 bool sk_tree_make(sk_tree *tree, sk_allocator *allocator, const sk_skin *skin);
 void sk_tree_release(sk_tree *tree, sk_allocator *allocator);
 /* Lists leaves whose boxes may meet, each two once, of which one at least is looked for `anew`: `first`, and `partner`, the
- * same leaf or a later one; in order, but none where they are more than `most`. */
-bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most, bool *too_many);
+ * same leaf or a later one; in order, but none where they are more than `most`. Those of calm patches if asked for. */
+bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most, bool calm_too, bool *too_many);
 /* Has each part's work done on a thread of its own, one after the other in the order of [0, count): `work` looks at what
  * is next until there is none or no room, for which `grow` is then asked. False when there is no memory. */
 typedef struct sk_parts_job {
     sk_touch *touch;
     int sort, search;
     size_t most;
+    bool calm_too;
     void (*work)(const struct sk_parts_job *job, sk_search_part *part);
     bool (*grow)(sk_search_part *part, sk_allocator *allocator);
 } sk_parts_job;
@@ -440,6 +489,8 @@ void sk_touch_put_boxes(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_
 
 /* Pairs that are looked at closely are nearer than so many thicknesses. */
 #define SK_NEAR_THICKNESSES ((real)1.05)
+/* Who goes another way in a substep than expected by more thicknesses than this is lost, wherever that leads. */
+#define SK_MOST_JUMP ((real)0.4)
 /* Of a gap, so much is left in a substep. */
 #define SK_LEFT_OVER ((real)0.1)
 /* What is less than this share of the thickness does not close at all. */

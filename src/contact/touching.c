@@ -100,7 +100,7 @@ bool sk_touch_touching(sk_force *force, sk_allocator *allocator, const sk_vec4 *
     bool too_many, good = true;
     touch->tasks = NULL;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) good = good && sk_pairs_reserve(&list.some[sort], allocator, SOME + 16);
-    good = good && sk_touch_partners(touch, allocator, SIZE_MAX / 2, &too_many);
+    good = good && sk_touch_partners(touch, allocator, SIZE_MAX / 2, true, &too_many);
     if (good) list_all(&list);
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) sk_pairs_release(&list.some[sort], allocator);
     touch->thickness = found_for;

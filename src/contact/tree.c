@@ -2,7 +2,8 @@
 #include "base/kernels.h"
 #include "contact/touch.h"
 #define SK_UNIT tree
-SK_KERNELS(sk_tree_kernel, hits);
+SK_KERNELS(sk_tree_blocks_kernel, blocks);
+SK_KERNELS(sk_tree_hits_kernel, hits);
 
 #ifdef SK_ISA
 
@@ -31,32 +32,55 @@ SK_INLINE uint32_t boxes_met(const sk_tree_block *block, const sk_box *box) {
     return ~apart & 0xffff;
 }
 
-/* Bits of a level's block, without what lies below the first slot. */
-SK_INLINE uint32_t boxes_met_from(const sk_tree *tree, int level, size_t number, const sk_box *box, size_t first) {
-    size_t low = first / ((size_t)1 << SK_TREE_SHIFT * level), begins = number * SK_TREE_WIDTH;
-    uint32_t bits = boxes_met(&tree->block[level][number], box);
-    return begins < low ? bits & ~0u << (low - begins) : bits;
+/* The box of a block of the lowest level. */
+SK_INLINE sk_box box_of_block(const sk_tree *tree, size_t number) {
+    const sk_tree_block *block = &tree->block[1][number / SK_TREE_WIDTH];
+    size_t l = number % SK_TREE_WIDTH;
+    sk_box box = {{{0}}, {{0}}};
+    for (int end = 0; end < 2; end++)
+        for (int k = 0; k < 3; k++) box.low[end][k] = block->low[end][k][l], box.high[end][k] = block->high[end][k][l];
+    return box;
 }
 
-size_t SK_KERNEL(hits)(const sk_tree *tree, const sk_box *box, size_t first, uint32_t *slot) {
+size_t SK_KERNEL(blocks)(const sk_tree *tree, const sk_box *box, size_t first, uint32_t *block) {
     uint32_t left[SK_TREE_LEVELS]; // of each level: lanes that have not been gone down yet
     size_t at[SK_TREE_LEVELS], count = 0;
     int level = tree->levels - 1, top = level;
+    if (!top) block[count++] = 0;
+    if (!top) return count;
     at[level] = 0;
-    left[level] = boxes_met_from(tree, level, 0, box, first);
+    left[level] = boxes_met(&tree->block[level][0], box);
     for (;;) {
-        if (!level)
-            for (; left[0]; left[0] &= left[0] - 1)
-                slot[count++] = (uint32_t)(at[0] * SK_TREE_WIDTH) + (uint32_t)__builtin_ctz(left[0]);
+        if (level == 1)
+            for (; left[1]; left[1] &= left[1] - 1) {
+                block[count] = (uint32_t)(at[1] * SK_TREE_WIDTH) + (uint32_t)__builtin_ctz(left[1]);
+                count += block[count] >= first;
+            }
         while (level <= top && !left[level]) level++;
         if (level > top) return count;
         size_t below = at[level] * SK_TREE_WIDTH + (size_t)__builtin_ctz(left[level]);
         left[level] &= left[level] - 1;
         level--;
         at[level] = below;
-        left[level] = boxes_met_from(tree, level, below, box, first);
+        left[level] = boxes_met(&tree->block[level][below], box);
     }
 }
+
+size_t SK_KERNEL(hits)(const sk_tree *tree, size_t a, size_t b, uint32_t lanes, const sk_box *box, bool forward, uint32_t *hit) {
+    size_t count = 0;
+    if (tree->levels > 1 && a != b) {
+        sk_box around = box_of_block(tree, b);
+        lanes &= boxes_met(&tree->block[0][a], &around);
+    }
+    for (; lanes; lanes &= lanes - 1) {
+        uint32_t lane = (uint32_t)__builtin_ctz(lanes);
+        uint32_t bits = boxes_met(&tree->block[0][b], &box[tree->leaf_at[a * SK_TREE_WIDTH + lane]]);
+        if (forward && a == b) bits &= ~0u << lane;
+        for (; bits; bits &= bits - 1) hit[count++] = lane << SK_TREE_SHIFT | (uint32_t)__builtin_ctz(bits);
+    }
+    return count;
+}
 #else
-sk_tree_kernel *const sk_tree_hits[SK_ISA_COUNT] = SK_EACH_ISA(hits);
+sk_tree_blocks_kernel *const sk_tree_blocks[SK_ISA_COUNT] = SK_EACH_ISA(blocks);
+sk_tree_hits_kernel *const sk_tree_hits[SK_ISA_COUNT] = SK_EACH_ISA(hits);
 #endif

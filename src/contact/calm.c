@@ -1,0 +1,299 @@
+/* Which patches are calm: how much their vertices have moved against each other since distances were looked at, sixteen
+ * patches at a time, and the distances themselves, of those that have moved too much. */
+#include <string.h>
+
+#include "base/kernels.h"
+#include "contact/touch.h"
+#define SK_UNIT calm
+
+/* How far vertices of each of sixteen patches have moved against each other, at most; squares. A patch may turn as a whole:
+ * that takes no distance away. */
+typedef struct sk_moves {
+    SK_VECTOR_ALIGNED real whole[SK_PATCH_LANES]; /* since distances were looked at, where all of the ways are gone; */
+    SK_VECTOR_ALIGNED real any[SK_PATCH_LANES];   /* on any shares of them; */
+    SK_VECTOR_ALIGNED real way[SK_PATCH_LANES];   /* in this substep, where it may not turn */
+} sk_moves;
+
+/* To places q, from p, where all go `common`; without p, of q alone. */
+typedef void sk_moves_kernel(const sk_vec4 *p, const sk_vec3 *common, const sk_vec4 *q, const sk_calm *calm, size_t group,
+                             sk_moves *moves);
+SK_KERNELS(sk_moves_kernel, moves);
+
+#ifdef SK_ISA
+
+SK_INLINE const sk_wide *reals_of(const real *reals) {
+    return (const sk_wide *)(const void *)reals;
+}
+
+/* A box around moves. */
+typedef struct moves_box {
+    sk_wide3 low, high;
+} moves_box;
+
+SK_INLINE sk_wide least_of(sk_wide a, sk_wide b) {
+    return sk_select(sk_more(b, a), a, b);
+}
+
+SK_INLINE sk_wide most_of(sk_wide a, sk_wide b) {
+    return sk_select(sk_more(a, b), a, b);
+}
+
+SK_INLINE moves_box around(moves_box box, sk_wide3 move) {
+    box.low = (sk_wide3){least_of(box.low.x, move.x), least_of(box.low.y, move.y), least_of(box.low.z, move.z)};
+    box.high = (sk_wide3){most_of(box.high.x, move.x), most_of(box.high.y, move.y), most_of(box.high.z, move.z)};
+    return box;
+}
+
+SK_INLINE sk_wide square_across(moves_box box) {
+    sk_wide3 r = {box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z};
+    return sk_dot_wide(r, r);
+}
+
+SK_INLINE sk_wide3 minus(sk_wide3 a, sk_wide3 b) {
+    return (sk_wide3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+SK_INLINE sk_wide3 scaled(sk_wide a, sk_wide3 b) {
+    return (sk_wide3){a * b.x, a * b.y, a * b.z};
+}
+
+SK_INLINE sk_wide3 cross(sk_wide3 a, sk_wide3 b) {
+    return (sk_wide3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+SK_INLINE sk_wide3 unit(sk_wide3 a) {
+    const sk_wide least = sk_splat((real)1e-30), square = sk_dot_wide(a, a);
+    return scaled(sk_splat(1) / sk_wide_sqrt(most_of(square, least)), a);
+}
+
+SK_INLINE sk_wide3 place_of(const sk_vec4 *x, const uint32_t *vertex) {
+    sk_wide4 now = sk_gather(x, vertex);
+    return (sk_wide3){now.x, now.y, now.z};
+}
+
+SK_INLINE sk_wide3 began_at(const real *from) {
+    return (sk_wide3){*reals_of(from), *reals_of(from + SK_PATCH_LANES), *reals_of(from + 2 * SK_PATCH_LANES)};
+}
+
+/* Three directions that turn with a patch: of its first three vertices. */
+typedef struct frame {
+    sk_wide3 x, y, z;
+} frame;
+
+SK_INLINE frame frame_of(sk_wide3 a, sk_wide3 b, sk_wide3 c) {
+    frame f = {.x = unit(minus(b, a))};
+    f.z = unit(cross(f.x, minus(c, a)));
+    f.y = cross(f.z, f.x);
+    return f;
+}
+
+/* How far a vertex is from where it would be, had its patch only turned; in directions of the patch. */
+SK_INLINE sk_wide3 off(const frame *now, const frame *then, sk_wide3 at, sk_wide3 began) {
+    return (sk_wide3){sk_dot_wide(now->x, at) - sk_dot_wide(then->x, began), sk_dot_wide(now->y, at) - sk_dot_wide(then->y, began),
+                      sk_dot_wide(now->z, at) - sk_dot_wide(then->z, began)};
+}
+
+void SK_KERNEL(moves)(const sk_vec4 *p, const sk_vec3 *common, const sk_vec4 *q, const sk_calm *calm, size_t group,
+                      sk_moves *moves) {
+    enum { ROW = SK_PATCH_LANES, PLACES = 3 * SK_PATCH_LANES };
+    const size_t first = calm->row_start[group], end = calm->row_start[group + 1];
+    for (size_t l = 0; l < SK_PATCH_LANES && end > first; l += SK_PART) {
+        const uint32_t *vertex = calm->row + first * ROW + l;
+        const real *from = calm->from + first * PLACES + l;
+        const sk_wide far = sk_splat(SK_REAL_MAX);
+        const moves_box nothing = {{far, far, far}, {-far, -far, -far}};
+        moves_box whole = nothing, begin = nothing, way = nothing;
+        sk_wide3 here = place_of(q, vertex), there = began_at(from); // the first vertex, now and then
+        frame now = frame_of(here, place_of(q, vertex + ROW), place_of(q, vertex + 2 * ROW));
+        frame then = frame_of(there, began_at(from + PLACES), began_at(from + 2 * PLACES));
+        if (p) here = minus(here, (sk_wide3){sk_splat(common->x), sk_splat(common->y), sk_splat(common->z)});
+        for (size_t r = first; r < end; r++, vertex += ROW, from += PLACES) {
+            sk_wide3 to = place_of(q, vertex), began = minus(began_at(from), there);
+            if (p) to = minus(to, (sk_wide3){sk_splat(common->x), sk_splat(common->y), sk_splat(common->z)});
+            whole = around(whole, off(&now, &then, minus(to, here), began));
+            if (!p) continue;
+            sk_wide3 at = place_of(p, vertex);
+            begin = around(begin, off(&now, &then, minus(at, here), began));
+            way = around(way, minus(to, at));
+        }
+        *(sk_wide *)(void *)(moves->whole + l) = square_across(whole);
+        *(sk_wide *)(void *)(moves->any + l) = square_across(p ? around(around(whole, begin.low), begin.high) : whole);
+        *(sk_wide *)(void *)(moves->way + l) = square_across(p ? way : whole);
+    }
+}
+#else
+static sk_moves_kernel *const moves_kernel[SK_ISA_COUNT] = SK_EACH_ISA(moves);
+
+/* Gaps are not known better than this share of the thickness, and what is left of them has to be more. */
+static const real rounding = (real)0.004;
+/* Who is to be calm for long has to have more room: pairs of those that cease to be are all kept until then. */
+static const real room = (real)0.2;
+/* A pair that loses less than nine tenths of its gap in a substep does not close. It loses no more than its corners move
+ * against each other in it; its gap before the substep is no less than its distance after it without that. */
+static const real closing_share = (real)0.4;
+
+/* ---- one patch ---- */
+
+/* Its pairs are kept from now on, until all are searched for: as they are before the substep, unless all are looked at anyway. */
+static bool keep_pairs(sk_touch *touch, sk_allocator *allocator, size_t p, bool look) {
+    sk_calm *calm = &touch->calm;
+    calm->patch[p].calm = false;
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
+        sk_pairs *late = &touch->late[sort];
+        size_t first = calm->start[sort][p], end = calm->start[sort][p + 1], before = late->count;
+        if (!sk_pairs_reserve(late, allocator, before + end - first)) return false;
+        for (size_t k = first; k < end && calm->key[sort][k] != UINT64_MAX; k++) {
+            size_t to = late->count++;
+            for (int c = 0; c < 4; c++) late->corner[c][to] = calm->corner[sort][c][k];
+            late->key[to] = calm->key[sort][k];
+            late->thickness[to] = calm->thickness[sort][k];
+            late->settled[to] = 0;
+        }
+        sk_pairs_pad(late);
+        if (!look || late->count == before) continue;
+        sk_pairs fresh = sk_pairs_between(late, before / SK_PATCH_LANES * SK_PATCH_LANES, late->count);
+        sk_closest[sort][touch->isa](touch->p, &fresh);
+    }
+    return true;
+}
+
+/* Moves are counted from x on. */
+static void move_from(sk_calm *calm, size_t p, const sk_vec4 *x) {
+    const size_t group = p / SK_PATCH_LANES, lane = p % SK_PATCH_LANES;
+    for (size_t r = calm->row_start[group]; r < calm->row_start[group + 1]; r++) {
+        sk_vec4 at = x[calm->row[r * SK_PATCH_LANES + lane]];
+        real *from = calm->from + r * 3 * SK_PATCH_LANES + lane;
+        from[0] = at.x, from[SK_PATCH_LANES] = at.y, from[2 * SK_PATCH_LANES] = at.z;
+    }
+}
+
+/* How far apart the moves of two vertices are at most, on any shares of their ways in this substep. */
+static real moved_in_substep(const sk_touch *touch, size_t p) {
+    const sk_calm *calm = &touch->calm;
+    const size_t group = p / SK_PATCH_LANES, lane = p % SK_PATCH_LANES;
+    sk_vec3 low = {0, 0, 0}, high = {0, 0, 0};
+    for (size_t r = calm->row_start[group]; r < calm->row_start[group + 1]; r++) {
+        uint32_t v = calm->row[r * SK_PATCH_LANES + lane];
+        sk_vec3 d = sk_sub(sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v])), touch->common);
+        low = (sk_vec3){sk_min(low.x, d.x), sk_min(low.y, d.y), sk_min(low.z, d.z)};
+        high = (sk_vec3){sk_max(high.x, d.x), sk_max(high.y, d.y), sk_max(high.z, d.z)};
+    }
+    return sk_length(sk_sub(high, low));
+}
+
+/* The patch's pairs as those that kernels look at. */
+static sk_pairs pairs_of(const sk_calm *calm, size_t p, int sort) {
+    sk_pairs pairs = {.count = calm->start[sort][p + 1] - calm->start[sort][p], .closes = calm->found};
+    for (int c = 0; c < 4; c++) pairs.corner[c] = calm->corner[sort][c] + calm->start[sort][p];
+    pairs.thickness = calm->thickness[sort] + calm->start[sort][p];
+    real **out[] = {&pairs.distance, &pairs.normal[0], &pairs.normal[1], &pairs.normal[2], &pairs.share[0], &pairs.share[1]};
+    for (size_t i = 0; i < sizeof out / sizeof *out; i++) *out[i] = calm->scratch + i * calm->most;
+    return pairs;
+}
+
+/* Looks at all distances; they hold from there on, if the patch is calm. */
+static bool look_at(sk_touch *touch, size_t p, const sk_vec4 *x, bool wide) {
+    sk_calm *calm = &touch->calm;
+    sk_calm_patch *patch = &calm->patch[p];
+    real slack = SK_REAL_MAX, nearest = SK_REAL_MAX;
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
+        sk_pairs pairs = pairs_of(calm, p, sort);
+        sk_closest[sort][touch->isa](x, &pairs);
+        for (size_t k = 0; k < pairs.count; k++) {
+            slack = sk_min(slack, pairs.distance[k] - SK_NEAR_THICKNESSES * pairs.thickness[k]);
+            nearest = sk_min(nearest, pairs.distance[k]);
+        }
+    }
+    slack -= rounding * touch->thickness;
+    // (what is no number is not calm)
+    patch->calm = slack > (wide ? room : rounding) * touch->thickness && nearest < SK_REAL_MAX;
+    if (!patch->calm) return false;
+    patch->slack = slack, patch->distance = nearest;
+    move_from(calm, p, x);
+    return true;
+}
+
+/* ---- all patches ---- */
+
+void sk_calm_forget(sk_touch *touch) {
+    sk_calm *calm = &touch->calm;
+    for (size_t p = 0; p < calm->patch_count; p++) calm->patch[p] = (sk_calm_patch){.calm = false};
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++) calm->known[sort] = false;
+}
+
+/* Pairs are as thick as those that are searched for. */
+static void know_thicknesses(sk_touch *touch) {
+    sk_calm *calm = &touch->calm;
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
+        if (calm->known[sort]) continue;
+        sk_pairs all = {.count = calm->start[sort][calm->patch_count], .thickness = calm->thickness[sort]};
+        for (int c = 0; c < 4; c++) all.corner[c] = calm->corner[sort][c];
+        sk_touch_set_thickness(touch, &all, sort);
+        calm->known[sort] = true;
+    }
+}
+
+bool sk_calm_look(sk_touch *touch, sk_allocator *allocator, bool all) {
+    sk_calm *calm = &touch->calm;
+    sk_moves moves;
+    const real wanted = all ? room * touch->thickness : 0;
+    know_thicknesses(touch);
+    for (size_t p = 0; p < calm->patch_count; p += SK_PATCH_LANES) {
+        moves_kernel[touch->isa](NULL, NULL, touch->p, calm, p / SK_PATCH_LANES, &moves);
+        for (size_t i = p; i < p + SK_PATCH_LANES && i < calm->patch_count; i++) {
+            sk_calm_patch *patch = &calm->patch[i];
+            bool was = patch->calm;
+            real slack = patch->slack - wanted;
+            if (was ? slack > 0 && moves.whole[i - p] <= slack * slack : !all) continue;
+            look_at(touch, i, touch->p, all);
+            if (was && !patch->calm && !all && !keep_pairs(touch, allocator, i, false)) return false;
+        }
+    }
+    return true;
+}
+
+/* Whether a patch is calm, whatever shares of their ways vertices go; all squares. */
+static bool is_calm(const sk_calm_patch *patch, real moved, real way) {
+    const real most = closing_share * (patch->distance - patch->slack);
+    return patch->calm && moved <= patch->slack * patch->slack && way <= most * most;
+}
+
+/* In a storm, a patch is calm on any shares, or not. */
+static void follow_in_storm(sk_touch *touch, size_t p, real any, real way) {
+    sk_calm_patch *patch = &touch->calm.patch[p];
+    if (is_calm(patch, any, way) || !look_at(touch, p, touch->p, false)) return;
+    real moved = moved_in_substep(touch, p);
+    patch->calm = is_calm(patch, moved * moved, moved * moved);
+}
+
+/* Whether a patch is still calm; to be asked of those that were. */
+static bool follow_patch(sk_touch *touch, size_t p, real whole, real any, real way) {
+    sk_calm_patch *patch = &touch->calm.patch[p];
+    patch->whole = !is_calm(patch, any, way);
+    return is_calm(patch, whole, way) || (look_at(touch, p, touch->q, false) && is_calm(patch, 0, way));
+}
+
+bool sk_calm_follow(sk_touch *touch, sk_allocator *allocator) {
+    sk_calm *calm = &touch->calm;
+    sk_moves moves;
+    for (size_t p = 0; p < calm->patch_count; p += SK_PATCH_LANES) {
+        moves_kernel[touch->isa](touch->p, &touch->common, touch->q, calm, p / SK_PATCH_LANES, &moves);
+        for (size_t i = p; i < p + SK_PATCH_LANES && i < calm->patch_count; i++) {
+            real whole = moves.whole[i - p], any = moves.any[i - p], way = moves.way[i - p];
+            if (touch->storm) follow_in_storm(touch, i, any, way);
+            else if (calm->patch[i].calm && !follow_patch(touch, i, whole, any, way) && !keep_pairs(touch, allocator, i, true))
+                return false;
+        }
+    }
+    return true;
+}
+
+bool sk_calm_disturb(sk_touch *touch, sk_allocator *allocator, size_t v) {
+    const sk_calm *calm = &touch->calm;
+    for (uint32_t k = calm->of_vertex_start[v]; k < calm->of_vertex_start[v + 1]; k++) {
+        const sk_calm_patch *patch = &calm->patch[calm->of_vertex[k]];
+        if (patch->calm && patch->whole && !keep_pairs(touch, allocator, calm->of_vertex[k], true)) return false;
+    }
+    return true;
+}
+#endif
