@@ -130,7 +130,7 @@ static void mark_leaves_of(const sk_skin *skin, size_t v, uint8_t *leaves) {
 static void make_leaf_boxes(void *data, size_t begin, size_t end) {
     sk_touch *touch = data;
     for (size_t i = begin; i < end; i++) {
-        if (touch->moved[i]) sk_touch_leaf_box(touch, i);
+        if (touch->moved[i]) sk_touch_leaf_box(touch, i), sk_touch_leaf_cells(touch, i);
         if (touch->anew[i]) make_hot_box(touch, i);
     }
 }
@@ -138,6 +138,7 @@ static void make_leaf_boxes(void *data, size_t begin, size_t end) {
 static void make_boxes(sk_touch *touch, sk_touch_search_sort sort) {
     bool all = sort == SK_SEARCH_ALL || !touch->boxed || touch->still;
     size_t leaves = touch->skin.leaf_count;
+    if (all) touch->cells = sk_cells_a_metre(touch);
     if (all) memset(touch->moved, 1, leaves);
     else memcpy(touch->moved, touch->anew, leaves);
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {

@@ -125,6 +125,28 @@ static inline void sk_box_widen(sk_box *box, const sk_box *by) {
     }
 }
 
+/* Boxes of a leaf's features, for many to be compared at once: in cells, features side by side. Of a cell's number the last
+ * sixteen bits are kept: leaves are a quarter of that wide at most, and what two of them that meet are apart is half of it, so
+ * that a difference is right where numbers wrap around. At each end there are six rows: low ones along each axis, and
+ * high ones. Leaves that are wider (`wide`) are compared by their boxes. */
+enum {
+    SK_CELL_ROWS = 12,
+    SK_LEAF_EDGES = 5,
+    SK_LEAF_VERTICES = 4,
+    SK_LEAF_CORNERS = SK_LEAF_VERTICES + 2, /* vertices, and triangles */
+    SK_WIDEST_LEAF = (1 << 14) - 1,         /* cells */
+    /* where a row begins that has so many numbers; after those of the first end, it stands whether the leaf is too wide */
+#define SK_CELL_ROW(row, numbers) ((row) * (numbers) + ((row) >= SK_CELL_ROWS / 2))
+    SK_EDGES_WIDE = SK_CELL_ROWS / 2 * SK_LEAF_EDGES,
+    SK_CORNERS_WIDE = SK_CELL_ROWS / 2 * SK_LEAF_CORNERS
+};
+typedef struct sk_edge_cells {
+    _Alignas(64) int16_t number[64]; /* (eight are read of each row) */
+} sk_edge_cells;
+typedef struct sk_corner_cells {
+    _Alignas(32) int16_t number[80];
+} sk_corner_cells;
+
 /* Boxes of leaves, and of sixteen of those below, up to one: by slots, in which leaves that were built near each other
  * are near. Sixteen slots are a block. */
 enum { SK_TREE_LEVELS = 9, SK_TREE_SHIFT = 4, SK_TREE_WIDTH = 1 << SK_TREE_SHIFT };
@@ -265,6 +287,9 @@ typedef struct sk_touch {
     sk_box *vertex_box, *edge_box, *triangle_box, *leaf_box;
     sk_box *hot_box; /* of those features of a leaf that are looked for */
     sk_hot *hot;
+    sk_edge_cells *edge_cells; /* of leaves */
+    sk_corner_cells *corner_cells;
+    real cells;                /* a metre */
     sk_tree tree;
     uint8_t *anew, *moved;        /* leaves that are looked for, and whose boxes are new */
     bool everybody;               /* all features of all leaves are looked for */
@@ -408,6 +433,12 @@ extern sk_closest_kernel *const sk_closest[SK_PAIR_SORTS][SK_ISA_COUNT];
 /* nearing.c */
 extern sk_closing_kernel *const sk_closing[SK_PAIR_SORTS][SK_ISA_COUNT];
 extern sk_nearing_kernel *const sk_nearing[SK_PAIR_SORTS][SK_ISA_COUNT];
+
+/* ---- cells.c ---- */
+
+real sk_cells_a_metre(const sk_touch *touch);
+/* The cells of a leaf, from its boxes. */
+void sk_touch_leaf_cells(sk_touch *touch, size_t leaf);
 
 /* ---- features.c ---- */
 
