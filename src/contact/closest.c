@@ -1,5 +1,4 @@
-/* Nearest points of pairs, a vector of them at a time: a vertex and a triangle, two edges (Ericson, Real-Time Collision
- * Detection, 5.1). All branches are worked out, and the right one is chosen. Where features touch, the normal is 0. */
+/* Nearest points of pairs that are kept, and which are near (closest.h). */
 #include "base/kernels.h"
 #include "contact/touch.h"
 #define SK_UNIT closest
@@ -7,105 +6,38 @@ SK_KERNELS(sk_closest_kernel, corners);
 SK_KERNELS(sk_closest_kernel, edges);
 
 #ifdef SK_ISA
-#define LEAST_SQUARE ((real)1e-20) /* m2: what is nearer has no direction */
-#define LEAST_AREA ((real)1e-30)
-#define PARALLEL ((real)1e-6)
-
-SK_INLINE sk_wide3 between(sk_wide4 a, sk_wide4 b) {
-    return (sk_wide3){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
-SK_INLINE sk_wide at_least(sk_wide a, real least) {
-    return sk_select(sk_more(sk_splat(least), a), sk_splat(least), a);
-}
-
-/* From 0 to 1. */
-SK_INLINE sk_wide clamped(sk_wide a) {
-    a = at_least(a, 0);
-    return sk_select(sk_more(a, sk_splat(1)), sk_splat(1), a);
-}
+#include "contact/closest.h"
 
 SK_INLINE sk_wide *part_of(real *reals, size_t k) {
     return (sk_wide *)(void *)(reals + k);
 }
 
-SK_INLINE void note(sk_pairs *pairs, size_t k, sk_wide3 r, sk_wide u, sk_wide v) {
-    sk_wide square = sk_dot_wide(r, r), length = sk_wide_sqrt(square);
-    sk_wide scale = sk_keep(sk_more(square, sk_splat(LEAST_SQUARE)), sk_splat(1) / at_least(length, (real)1e-10));
-    *part_of(pairs->distance, k) = length;
-    *part_of(pairs->normal[0], k) = r.x * scale;
-    *part_of(pairs->normal[1], k) = r.y * scale;
-    *part_of(pairs->normal[2], k) = r.z * scale;
-    *part_of(pairs->share[0], k) = u;
-    *part_of(pairs->share[1], k) = v;
-}
-
-SK_INLINE void note_near(sk_pairs *pairs, size_t k) {
+SK_INLINE void note_near(sk_pairs *pairs, size_t k, sk_wide distance) {
     sk_wide near = sk_splat(SK_NEAR_THICKNESSES) * *part_of(pairs->thickness, k);
-    uint32_t bits = sk_more_bits(near, *part_of(pairs->distance, k));
+    uint32_t bits = sk_more_bits(near, distance);
     for (size_t l = 0; l < SK_PART; l++) pairs->closes[k + l] = (uint8_t)((bits >> l & 1) * SK_IS_NEAR);
 }
 
-/* Where features are nearest within themselves, some normal n of both is the pair's: r leads from one to the other. */
-SK_INLINE void note_within(sk_pairs *pairs, size_t k, sk_mask within, sk_wide3 n, sk_wide3 r) {
-    sk_wide square = sk_dot_wide(n, n), along = sk_dot_wide(n, r);
-    within &= sk_more(square, sk_splat(LEAST_AREA));
-    sk_wide scale = sk_splat(1) / sk_wide_sqrt(at_least(square, LEAST_AREA));
-    scale = sk_select(sk_negative(along), -scale, scale);
-    *part_of(pairs->distance, k) = sk_select(within, along * scale, *part_of(pairs->distance, k));
-    *part_of(pairs->normal[0], k) = sk_select(within, n.x * scale, *part_of(pairs->normal[0], k));
-    *part_of(pairs->normal[1], k) = sk_select(within, n.y * scale, *part_of(pairs->normal[1], k));
-    *part_of(pairs->normal[2], k) = sk_select(within, n.z * scale, *part_of(pairs->normal[2], k));
+SK_INLINE void look_at(const sk_vec4 *x, sk_pairs *pairs, int sort) {
+    for (size_t k = 0; k < pairs->count; k += SK_PART) {
+        sk_wide4 corner[4];
+        for (int c = 0; c < 4; c++) corner[c] = sk_gather(x, pairs->corner[c] + k);
+        nearest_points points = nearest_points_of(corner, sort);
+        *part_of(pairs->distance, k) = points.distance;
+        *part_of(pairs->normal[0], k) = points.normal.x;
+        *part_of(pairs->normal[1], k) = points.normal.y;
+        *part_of(pairs->normal[2], k) = points.normal.z;
+        for (int c = 0; c < 2; c++) *part_of(pairs->share[c], k) = points.share[c];
+        note_near(pairs, k, points.distance);
+    }
 }
 
 void SK_KERNEL(corners)(const sk_vec4 *x, sk_pairs *pairs) {
-    const sk_wide one = sk_splat(1);
-    for (size_t k = 0; k < pairs->count; k += SK_PART) {
-        sk_wide4 p = sk_gather(x, pairs->corner[0] + k), a = sk_gather(x, pairs->corner[1] + k);
-        sk_wide3 ab = between(sk_gather(x, pairs->corner[2] + k), a), ac = between(sk_gather(x, pairs->corner[3] + k), a);
-        sk_wide3 ap = between(p, a);
-        sk_wide bb = sk_dot_wide(ab, ab), bc = sk_dot_wide(ab, ac), cc = sk_dot_wide(ac, ac);
-        sk_wide bp = sk_dot_wide(ab, ap), cp = sk_dot_wide(ac, ap), area = bb * cc - bc * bc;
-        sk_wide inverse = one / at_least(area, LEAST_AREA);
-        sk_wide u = (cc * bp - bc * cp) * inverse, v = (bb * cp - bc * bp) * inverse;
-        // on the edges: a b at t1, a c at t2, b c at t3
-        sk_wide t1 = clamped(bp / at_least(bb, LEAST_AREA)), t2 = clamped(cp / at_least(cc, LEAST_AREA));
-        sk_wide t3 = clamped((cp - bp - bc + bb) / at_least(bb - bc - bc + cc, LEAST_AREA)), u3 = one - t3;
-        sk_wide q1 = t1 * (t1 * bb - bp - bp), q2 = t2 * (t2 * cc - cp - cp);
-        sk_wide q3 = u3 * (u3 * bb - bp - bp) + t3 * (t3 * cc - cp - cp) + (u3 + u3) * t3 * bc;
-        sk_mask first = sk_at_most(q1, q2), third = sk_more(sk_select(first, q1, q2), q3);
-        sk_wide edge_u = sk_select(third, u3, sk_keep(first, t1)), edge_v = sk_select(third, t3, sk_keep(~first, t2));
-        sk_mask inside = ~sk_negative(u) & ~sk_negative(v) & sk_at_most(u + v, one) & sk_more(area, sk_splat(LEAST_AREA));
-        u = sk_select(inside, u, edge_u), v = sk_select(inside, v, edge_v);
-        sk_wide3 r = {ap.x - u * ab.x - v * ac.x, ap.y - u * ab.y - v * ac.y, ap.z - u * ab.z - v * ac.z};
-        note(pairs, k, r, u, v);
-        sk_wide3 n = {ab.y * ac.z - ab.z * ac.y, ab.z * ac.x - ab.x * ac.z, ab.x * ac.y - ab.y * ac.x};
-        note_within(pairs, k, inside, n, ap);
-        note_near(pairs, k);
-    }
+    look_at(x, pairs, SK_CORNERS);
 }
 
 void SK_KERNEL(edges)(const sk_vec4 *x, sk_pairs *pairs) {
-    for (size_t k = 0; k < pairs->count; k += SK_PART) {
-        sk_wide4 p = sk_gather(x, pairs->corner[0] + k), q = sk_gather(x, pairs->corner[2] + k);
-        sk_wide3 a = between(sk_gather(x, pairs->corner[1] + k), p), b = between(sk_gather(x, pairs->corner[3] + k), q);
-        sk_wide3 r = between(p, q);
-        sk_wide aa = sk_dot_wide(a, a), bb = sk_dot_wide(b, b), ab = sk_dot_wide(a, b);
-        sk_wide ar = sk_dot_wide(a, r), br = sk_dot_wide(b, r), apart = aa * bb - ab * ab;
-        sk_wide inverse_a = sk_splat(1) / at_least(aa, LEAST_AREA), inverse_b = sk_splat(1) / at_least(bb, LEAST_AREA);
-        sk_wide s = clamped((ab * br - ar * bb) / at_least(apart, LEAST_AREA));
-        s = sk_select(sk_more(apart, sk_splat(PARALLEL) * aa * bb), s, sk_splat((real)0.5));
-        sk_wide free = (ab * s + br) * inverse_b, t = clamped(free);
-        s = sk_select(sk_differ(free, t), clamped((ab * t - ar) * inverse_a), s);
-        sk_wide3 d = {r.x + s * a.x - t * b.x, r.y + s * a.y - t * b.y, r.z + s * a.z - t * b.z};
-        note(pairs, k, d, s, t);
-        // within both edges, they lie across each other: their directions know the normal better than a distance of nothing
-        sk_wide3 n = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-        sk_mask within = sk_positive(s) & sk_more(sk_splat(1), s) & sk_positive(t) & sk_more(sk_splat(1), t) &
-                         sk_more(apart, sk_splat(PARALLEL) * aa * bb);
-        note_within(pairs, k, within, n, r);
-        note_near(pairs, k);
-    }
+    look_at(x, pairs, SK_EDGES);
 }
 #else
 sk_closest_kernel *const sk_closest[SK_PAIR_SORTS][SK_ISA_COUNT] = {SK_EACH_ISA(corners), SK_EACH_ISA(edges)};

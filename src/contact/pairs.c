@@ -61,33 +61,6 @@ void sk_pairs_take(sk_pairs *pairs, const sk_pairs *others, size_t first, size_t
     pairs->count += count;
 }
 
-static void move_reals(real *reals, size_t to, const uint32_t *from, size_t count) {
-    for (size_t i = 0; i < count; i++) reals[to + i] = reals[from[i]];
-}
-
-void sk_pairs_keep_found(sk_pairs *pairs, bool normals) {
-    uint32_t from[64];
-    size_t all = pairs->count, count = 0;
-    memset(pairs->settled, 0, all);
-    for (size_t k = 0; k < all; k += 64) {
-        size_t n = 0;
-        pairs->count = all;
-        for (size_t b = k; b < k + 64 && b < all; b += 8)
-            for (uint64_t bits = sk_pairs_that(pairs, b, 1); bits; bits &= bits - 1)
-                from[n++] = (uint32_t)(b + sk_first_of(bits));
-        for (int c = 0; c < 4; c++) {
-            uint32_t *corner = pairs->corner[c] + count;
-            for (size_t i = 0; i < n; i++) corner[i] = pairs->corner[c][from[i]];
-        }
-        for (size_t i = 0; i < n; i++) pairs->key[count + i] = pairs->key[from[i]];
-        move_reals(pairs->distance, count, from, n);
-        for (int c = 0; c < 3 && normals; c++) move_reals(pairs->normal[c], count, from, n);
-        for (int c = 0; c < 2 && normals; c++) move_reals(pairs->share[c], count, from, n);
-        count += n;
-    }
-    pairs->count = count;
-}
-
 void sk_pairs_release(sk_pairs *pairs, sk_allocator *allocator) {
     for (int c = 0; c < 4; c++) sk_release(allocator, pairs->corner[c]);
     sk_release(allocator, pairs->key);

@@ -178,9 +178,8 @@ static void mark_hot(sk_touch *touch) {
 
 /* ---- pairs ---- */
 
-/* Leaves those that may come near. */
-static void keep_near(const sk_touch *touch, sk_pairs *pairs, int sort, sk_touch_search_sort search) {
-    bool ways = search == SK_SEARCH_WAYS;
+/* Takes those that may come near over. */
+static void keep_near(const sk_touch *touch, const sk_pairs *pairs, sk_pairs *fresh, int sort, bool ways) {
     sk_nearing_values values = {.near = SK_NEAR_THICKNESSES * touch->thickness,
                                 .rounding = 2 * rounding * touch->thickness,
                                 .closing = closing_share,
@@ -188,10 +187,10 @@ static void keep_near(const sk_touch *touch, sk_pairs *pairs, int sort, sk_touch
     if (ways)
         values = (sk_nearing_values){.near = (SK_NEAR_THICKNESSES + rounding) * touch->thickness,
                                      .shares = 1 - 1 / closing_share};
-    sk_closest[sort][touch->isa](touch->at, pairs);
-    sk_nearing[sort][touch->isa](touch->at, touch->in_the_end, &values, pairs);
-    sk_pairs_keep_found(pairs, ways); // of ways, normals are those of the places before the substep
-    sk_pairs_pad(pairs);
+    const size_t first = fresh->count;
+    sk_nearing[sort][touch->isa](touch->at, touch->in_the_end, &values, pairs, fresh);
+    memset(fresh->settled + first, 0, fresh->count - first);
+    sk_touch_set_thickness(touch, fresh, first, sort);
 }
 
 enum { BATCH = 2048 }; /* pairs: what is done with them is done while they are in the cache */
@@ -216,9 +215,7 @@ static void find_fresh(const sk_parts_job *job, sk_search_part *part) {
     while (part->next < part->end) {
         if (part->batch.capacity < BATCH || part->fresh.capacity < part->fresh.count + BATCH) return;
         fill_batch(job, part);
-        keep_near(job->touch, &part->batch, job->sort, (sk_touch_search_sort)job->search);
-        sk_touch_set_thickness(job->touch, &part->batch, job->sort);
-        sk_pairs_take(&part->fresh, &part->batch, 0, part->batch.count);
+        keep_near(job->touch, &part->batch, &part->fresh, job->sort, job->search == SK_SEARCH_WAYS);
     }
     sk_pairs_pad(&part->fresh);
 }

@@ -33,13 +33,13 @@ static void take_built_distances(const sk_touch *touch, sk_pairs *pairs, int sor
     some->pairs.count = 0;
 }
 
-void sk_touch_set_thickness(const sk_touch *touch, sk_pairs *pairs, int sort) {
+void sk_touch_set_thickness(const sk_touch *touch, sk_pairs *pairs, size_t first, int sort) {
     const sk_skin *skin = &touch->skin;
     // first corners that are so far apart belong to features that are not near, as long as an edge may be
     const real far = (real)1.2 * touch->thickness + 2 * skin->longest;
     built_pairs some;
     point_at_own(&some);
-    for (size_t k = 0; k < pairs->count; k++) {
+    for (size_t k = first; k < pairs->count; k++) {
         uint32_t a = pairs->corner[0][k], b = pairs->corner[2][k];
         pairs->thickness[k] = sk_pair_thickness(touch, a, b);
         sk_vec3 apart = sk_sub(sk_xyz(skin->built[a]), sk_xyz(skin->built[b]));

@@ -82,12 +82,14 @@ typedef struct sk_closing_values {
 } sk_closing_values;
 typedef void sk_closing_kernel(const sk_vec4 *x, const sk_vec4 *way, const sk_closing_values *values, sk_pairs *pairs);
 
-/* Finds out which pairs may come near or close on their vertices' ways, from x (w: their reach) to `end`: `closes`. */
+/* Takes over those pairs that may come near or close on their vertices' ways, from x (w: their reach) to `end`, with where they
+ * are nearest at x; there is room for as many, and a block. */
 typedef struct sk_nearing_values {
     real near, rounding, closing, per; /* m; m; share of a step; steps that the way has, inverse */
     real shares; /* of any shares of the way: what is left of a gap that counts as closed; 0: all of the way */
 } sk_nearing_values;
-typedef void sk_nearing_kernel(const sk_vec4 *x, const sk_vec4 *end, const sk_nearing_values *values, sk_pairs *pairs);
+typedef void sk_nearing_kernel(const sk_vec4 *x, const sk_vec4 *end, const sk_nearing_values *values,
+                               const sk_pairs *pairs, sk_pairs *fresh);
 
 /* A box that goes on: where it is when it begins, and when it ends. In between its sides are no farther out than on a
  * straight way. */
@@ -377,8 +379,6 @@ void sk_pairs_pad(sk_pairs *pairs);
 sk_pairs sk_pairs_between(const sk_pairs *pairs, size_t begin, size_t end);
 /* Adds all of pairs [first, end) of others; there is room. */
 void sk_pairs_take(sk_pairs *pairs, const sk_pairs *others, size_t first, size_t end);
-/* Leaves those that kernels have found (`closes` is 1), with their distances; their normals and shares if asked for. */
-void sk_pairs_keep_found(sk_pairs *pairs, bool normals);
 void sk_pairs_release(sk_pairs *pairs, sk_allocator *allocator);
 static inline void sk_pairs_copy(sk_pairs *to, const sk_pairs *from, size_t k) {
     for (int c = 0; c < 4; c++) to->corner[c][to->count] = from->corner[c][k];
@@ -501,8 +501,8 @@ void sk_touch_leaf_box(sk_touch *touch, size_t leaf);
 
 /* ---- thickness.c ---- */
 
-/* Puts down how thick the features of pairs are. */
-void sk_touch_set_thickness(const sk_touch *touch, sk_pairs *pairs, int sort);
+/* Puts down how thick the features of pairs are, from the first that is asked for on. */
+void sk_touch_set_thickness(const sk_touch *touch, sk_pairs *pairs, size_t first, int sort);
 
 /* ---- bound.c ---- */
 
