@@ -30,10 +30,11 @@ static bool is_wide(const sk_box *box, real a_metre) {
 }
 
 /* Puts a box into a place of rows that have so many numbers. */
-static void put(const sk_box *box, real a_metre, int16_t *number, int length) {
-    for (int row = 0; row < SK_CELL_ROWS;) {
+static inline void put(const sk_touch *touch, const sk_box *box, int16_t *number, int length) {
+    const int rows = touch->still ? SK_CELL_ROWS / 2 : SK_CELL_ROWS; // of boxes that stand, one end is asked
+    for (int row = 0; row < rows;) {
         int end = row / (SK_CELL_ROWS / 2);
-        cells_quad c = cells_of(row % (SK_CELL_ROWS / 2) ? box->high[end] : box->low[end], a_metre);
+        cells_quad c = cells_of(row % (SK_CELL_ROWS / 2) ? box->high[end] : box->low[end], touch->cells);
         for (int k = 0; k < 3; k++, row++) number[SK_CELL_ROW(row, length)] = (int16_t)(uint16_t)(uint32_t)c[k];
     }
 }
@@ -44,10 +45,9 @@ void sk_touch_leaf_cells(sk_touch *touch, size_t i) {
     edges[SK_EDGES_WIDE] = corners[SK_CORNERS_WIDE] = is_wide(&touch->leaf_box[i], touch->cells);
     if (edges[SK_EDGES_WIDE]) return;
     for (size_t k = 0; k < leaf->edges; k++)
-        put(&touch->edge_box[leaf->first_edge + k], touch->cells, edges + k, SK_LEAF_EDGES);
+        put(touch, &touch->edge_box[leaf->first_edge + k], edges + k, SK_LEAF_EDGES);
     for (size_t k = 0; k < leaf->vertices; k++)
-        put(&touch->vertex_box[leaf->first_vertex + k], touch->cells, corners + k, SK_LEAF_CORNERS);
+        put(touch, &touch->vertex_box[leaf->first_vertex + k], corners + k, SK_LEAF_CORNERS);
     for (size_t k = 0; k < leaf->triangles; k++)
-        put(&touch->triangle_box[leaf->first_triangle + k], touch->cells, corners + SK_LEAF_VERTICES + k,
-            SK_LEAF_CORNERS);
+        put(touch, &touch->triangle_box[leaf->first_triangle + k], corners + SK_LEAF_VERTICES + k, SK_LEAF_CORNERS);
 }

@@ -319,7 +319,7 @@ bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_s
         for (size_t v = 0; v < count; v++) touch->lost_since += touch->lost[v];
     mark_hot(touch);
     // for a whole substep and many vertices, smaller boxes that stand are worth making all anew
-    touch->still = search == SK_SEARCH_WAYS && is_many(touch);
+    touch->still = touch->tree.still = search == SK_SEARCH_WAYS && is_many(touch);
     touch->refit |= all || touch->still || !touch->boxed;
     make_boxes(touch, search);
     touch->boxed = !touch->still;

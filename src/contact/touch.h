@@ -160,6 +160,7 @@ typedef struct sk_tree {
     size_t blocks[SK_TREE_LEVELS]; /* of each level; the last one has one */
     int levels;
     uint32_t *leaf_at; /* of slots */
+    bool still;        /* boxes end where they begin */
 } sk_tree;
 /* Lists the blocks of the lowest level, from the first one on, that a box may meet at some time. */
 typedef size_t sk_tree_blocks_kernel(const sk_tree *tree, const sk_box *box, size_t first, uint32_t *block);

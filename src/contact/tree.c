@@ -7,29 +7,32 @@ SK_KERNELS(sk_tree_hits_kernel, hits);
 
 #ifdef SK_ISA
 
-/* Of the axis' side where `low` lies above `high` when it begins and when it ends: bits of lanes. */
-SK_INLINE uint32_t apart_above(const real *low_first, const real *low_last, real high_first, real high_last) {
-    uint32_t first = sk_more_bits(*(const sk_wide *)(const void *)low_first, sk_splat(high_first));
-    return first & sk_more_bits(*(const sk_wide *)(const void *)low_last, sk_splat(high_last));
+SK_INLINE sk_wide lanes_of(const real *row) {
+    return *(const sk_wide *)(const void *)row;
 }
 
-SK_INLINE uint32_t apart_below(const real *high_first, const real *high_last, real low_first, real low_last) {
-    uint32_t first = sk_more_bits(sk_splat(low_first), *(const sk_wide *)(const void *)high_first);
-    return first & sk_more_bits(sk_splat(low_last), *(const sk_wide *)(const void *)high_last);
-}
-
-/* Bits of a block's lanes whose boxes may meet this one. */
-SK_INLINE uint32_t boxes_met(const sk_tree_block *block, const sk_box *box) {
+/* Bits of a block's lanes whose boxes may meet this one: along no axis does one lie above the other on one side, when
+ * it begins and when it ends. */
+SK_INLINE uint32_t boxes_met_at(const sk_tree_block *block, const sk_box *box, int ends) {
     uint32_t apart = 0;
     for (int part = 0; part < SK_PARTS; part++) {
         size_t l = (size_t)part * SK_PART;
         uint32_t bits = 0;
-        for (int k = 0; k < 3; k++)
-            bits |= apart_above(&block->low[0][k][l], &block->low[1][k][l], box->high[0][k], box->high[1][k]) |
-                    apart_below(&block->high[0][k][l], &block->high[1][k][l], box->low[0][k], box->low[1][k]);
+        for (int k = 0; k < 3; k++) {
+            uint32_t above = ~0u, below = ~0u;
+            for (int end = 0; end < ends; end++) {
+                above &= sk_more_bits(lanes_of(&block->low[end][k][l]), sk_splat(box->high[end][k]));
+                below &= sk_more_bits(sk_splat(box->low[end][k]), lanes_of(&block->high[end][k][l]));
+            }
+            bits |= above | below;
+        }
         apart |= bits << l;
     }
     return ~apart & 0xffff;
+}
+
+SK_INLINE uint32_t boxes_met(const sk_tree *tree, const sk_tree_block *block, const sk_box *box) {
+    return tree->still ? boxes_met_at(block, box, 1) : boxes_met_at(block, box, 2);
 }
 
 /* The box of a block of the lowest level. */
@@ -49,7 +52,7 @@ size_t SK_KERNEL(blocks)(const sk_tree *tree, const sk_box *box, size_t first, u
     if (!top) block[count++] = 0;
     if (!top) return count;
     at[level] = 0;
-    left[level] = boxes_met(&tree->block[level][0], box);
+    left[level] = boxes_met(tree, &tree->block[level][0], box);
     for (;;) {
         if (level == 1)
             for (; left[1]; left[1] &= left[1] - 1) {
@@ -62,7 +65,7 @@ size_t SK_KERNEL(blocks)(const sk_tree *tree, const sk_box *box, size_t first, u
         left[level] &= left[level] - 1;
         level--;
         at[level] = below;
-        left[level] = boxes_met(&tree->block[level][below], box);
+        left[level] = boxes_met(tree, &tree->block[level][below], box);
     }
 }
 
@@ -70,11 +73,11 @@ size_t SK_KERNEL(hits)(const sk_tree *tree, size_t a, size_t b, uint32_t lanes, 
     size_t count = 0;
     if (tree->levels > 1 && a != b) {
         sk_box around = box_of_block(tree, b);
-        lanes &= boxes_met(&tree->block[0][a], &around);
+        lanes &= boxes_met(tree, &tree->block[0][a], &around);
     }
     for (; lanes; lanes &= lanes - 1) {
         uint32_t lane = (uint32_t)__builtin_ctz(lanes);
-        uint32_t bits = boxes_met(&tree->block[0][b], &box[tree->leaf_at[a * SK_TREE_WIDTH + lane]]);
+        uint32_t bits = boxes_met(tree, &tree->block[0][b], &box[tree->leaf_at[a * SK_TREE_WIDTH + lane]]);
         if (forward && a == b) bits &= ~0u << lane;
         for (; bits; bits &= bits - 1) hit[count++] = lane << SK_TREE_SHIFT | (uint32_t)__builtin_ctz(bits);
     }
