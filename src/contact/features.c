@@ -8,6 +8,8 @@ SK_KERNELS(sk_features_kernel, corners);
 SK_KERNELS(sk_features_kernel, edges);
 
 #ifdef SK_ISA
+#include "contact/bits.h"
+
 enum {
     AHEAD = 6,                   /* leaves: the boxes of so many more are on their way from memory */
     SOME = 32,                   /* partners that are compared before their pairs are put down */
@@ -72,22 +74,9 @@ SK_INLINE void fetch(const int16_t *number, int last) {
 
 /* Bits of the masks of some partners. */
 typedef struct met_list {
-    uint32_t place[SOME * SK_LEAVES_PAIRS];
+    uint32_t place[SOME * SK_LEAVES_PAIRS + SK_BITS_AFTER];
     size_t count;
 } met_list;
-
-/* Lists the bits of a mask, four at a time, as a branch for each would often go wrong: those too many are written over.
- */
-SK_INLINE void list_bits(met_list *list, uint64_t met, uint32_t base) {
-    uint32_t *place = list->place + list->count;
-    int left = __builtin_popcountll(met);
-    list->count += (size_t)left;
-    for (; left > 0; left -= 4, place += 4)
-        for (int j = 0; j < 4; j++) {
-            place[j] = base + (uint32_t)__builtin_ctzll(met | (uint64_t)1 << 63);
-            met &= met - 1;
-        }
-}
 
 /* Where pairs are put down, one after the other. */
 typedef struct places {
@@ -181,7 +170,8 @@ SK_INLINE void list_edges(const sk_touch *touch, met_list *list, const edge_rows
         if (b == a) asked &= later;
         uint64_t met = edges_met(rows, cells_of_b, ends);
         if (wide | cells_of_b[SK_EDGES_WIDE]) met = wide_edges_met(touch, a, b);
-        list_bits(list, met & asked, (uint32_t)i * SK_LEAVES_PAIRS);
+        list->count = sk_list_bits(list->place, list->count, met & asked, rows->groups * ROWS * LANES,
+                                   (uint32_t)i * SK_LEAVES_PAIRS);
     }
 }
 
@@ -296,7 +286,7 @@ SK_INLINE void list_corners(const sk_touch *touch, met_list *list, const corner_
         uint32_t met = all_corners_met(rows, cells_of_b, one.vertices > 2 || two->vertices > 2, ends);
         if (wide | cells_of_b[SK_CORNERS_WIDE])
             met = wide_corners_met(touch, a, b) | wide_corners_met(touch, b, a) << 8;
-        list_bits(list, met & asked, (uint32_t)i * SK_LEAVES_PAIRS);
+        list->count = sk_list_bits(list->place, list->count, met & asked, 2 * LANES, (uint32_t)i * SK_LEAVES_PAIRS);
     }
 }
 

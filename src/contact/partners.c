@@ -227,7 +227,19 @@ static bool grow_lists(sk_search_part *part, sk_allocator *allocator) {
     return SK_RESERVE(allocator, &part->first, need) && SK_RESERVE(allocator, &part->second, need);
 }
 
+/* Some leaves, no two of which are the same. Of few each is put where so many are less, which takes no branch. */
 static void put_in_order(uint32_t *data, size_t count) {
+    enum { FEW = 48 };
+    if (count <= FEW) {
+        uint32_t old[FEW];
+        memcpy(old, data, count * sizeof *old);
+        for (size_t i = 0; i < count; i++) {
+            int32_t less = 0;
+            for (size_t k = 0; k < count; k++) less += (int32_t)old[k] < (int32_t)old[i];
+            data[less] = old[i];
+        }
+        return;
+    }
     for (size_t i = 1; i < count; i++) {
         uint32_t b = data[i];
         size_t to = i;

@@ -67,6 +67,7 @@ size_t SK_KERNEL(blocks)(const sk_tree *tree, const sk_box *box, size_t first, u
         at[level] = below;
         left[level] = boxes_met(tree, &tree->block[level][below], box);
     }
+    return count;
 }
 
 size_t SK_KERNEL(hits)(const sk_tree *tree, size_t a, size_t b, uint32_t lanes, const sk_box *box, bool forward, uint32_t *hit) {
