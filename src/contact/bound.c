@@ -34,11 +34,13 @@ static void load_ways(sk_touch *touch, const sk_run *run, const sk_op *op) {
     sk_touch_load(touch, op->packed);
     for (size_t v = 0; v < count; v++) touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
     sk_vec3 common = touch->common = common_way(touch);
+    touch->longest = 0;
     for (size_t v = 0; v < count; v++) {
         sk_vec3 way = sk_sub(sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v])), common);
         real length = sk_length(way);
         if (!(length < (real)1e6)) way = (sk_vec3){0, 0, 0}, length = 0; // blown up: it meets nobody
         touch->way[v] = (sk_vec4){way.x, way.y, way.z, length};
+        touch->longest = sk_max(touch->longest, length);
         touch->share[v] = touch->next_share[v] = 1;
     }
 }
@@ -212,8 +214,6 @@ static void list_those_that_may(sk_closing_list *list, const sk_pairs *pairs, si
  * that came since it was last asked; those that went since then are pairs of nobody where they stand. */
 static bool find_those_that_may(sk_touch *touch, sk_allocator *allocator, real least, bool all) {
     const real known = (real)0.01; // thicknesses: nearest points of edges that are all but parallel
-    real longest = 0;
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) longest = sk_max(longest, touch->way[v].w);
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
         sk_closing_list *list = &touch->may_close[sort];
         sk_pairs *pairs[] = {&touch->kept[sort], &touch->late[sort]};
@@ -222,7 +222,7 @@ static bool find_those_that_may(sk_touch *touch, sk_allocator *allocator, real l
         if (!SK_RESERVE(allocator, list, room + 1)) return false;
         if (all) list->count = 0;
         for (uint32_t late = all ? 0 : 1; late < 2; late++) {
-            closing job = {touch, pairs[late], sort, {least, known * touch->thickness, longest}};
+            closing job = {touch, pairs[late], sort, {least, known * touch->thickness, touch->longest}};
             sk_parallel_for(touch->tasks, first[late] / 16 * 16, pairs[late]->count, find_closing, &job);
             list_those_that_may(list, pairs[late], first[late], late);
         }

@@ -228,7 +228,7 @@ static void know_thicknesses(sk_touch *touch) {
         if (calm->known[sort]) continue;
         sk_pairs all = {.count = calm->start[sort][calm->patch_count], .thickness = calm->thickness[sort]};
         for (int c = 0; c < 4; c++) all.corner[c] = calm->corner[sort][c];
-        sk_touch_set_thickness(touch, &all, sort);
+        sk_touch_set_thickness(touch, &all, 0, sort);
         calm->known[sort] = true;
     }
 }
@@ -238,6 +238,8 @@ bool sk_calm_look(sk_touch *touch, sk_allocator *allocator, bool all) {
     sk_moves moves;
     const real wanted = all ? room * touch->thickness : 0;
     know_thicknesses(touch);
+    calm->gone = 0;
+    for (size_t i = 0; i < calm->patch_count; i += SK_PATCH_LANES) calm->holds[i / SK_PATCH_LANES] = -1;
     for (size_t p = 0; p < calm->patch_count; p += SK_PATCH_LANES) {
         moves_kernel[touch->isa](NULL, NULL, touch->p, calm, p / SK_PATCH_LANES, &moves);
         for (size_t i = p; i < p + SK_PATCH_LANES && i < calm->patch_count; i++) {
@@ -273,17 +275,28 @@ static bool follow_patch(sk_touch *touch, size_t p, real whole, real any, real w
     return is_calm(patch, whole, way) || (look_at(touch, p, touch->q, false) && is_calm(patch, 0, way));
 }
 
+/* How much more a patch may move without being looked at. */
+static real room_of(const sk_calm_patch *patch, real any) {
+    if (!patch->calm) return SK_REAL_MAX;
+    return sk_min(patch->slack - sk_sqrt(any), closing_share * (patch->distance - patch->slack));
+}
+
 bool sk_calm_follow(sk_touch *touch, sk_allocator *allocator) {
     sk_calm *calm = &touch->calm;
     sk_moves moves;
+    calm->gone += 2 * touch->longest;
     for (size_t p = 0; p < calm->patch_count; p += SK_PATCH_LANES) {
+        real *holds = &calm->holds[p / SK_PATCH_LANES], least = SK_REAL_MAX;
+        if (!touch->storm && calm->gone <= *holds) continue;
         moves_kernel[touch->isa](touch->p, &touch->common, touch->q, calm, p / SK_PATCH_LANES, &moves);
         for (size_t i = p; i < p + SK_PATCH_LANES && i < calm->patch_count; i++) {
             real whole = moves.whole[i - p], any = moves.any[i - p], way = moves.way[i - p];
             if (touch->storm) follow_in_storm(touch, i, any, way);
             else if (calm->patch[i].calm && !follow_patch(touch, i, whole, any, way) && !keep_pairs(touch, allocator, i, true))
                 return false;
+            least = sk_min(least, room_of(&calm->patch[i], any));
         }
+        *holds = touch->storm ? -1 : calm->gone + least;
     }
     return true;
 }

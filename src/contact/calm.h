@@ -47,6 +47,8 @@ typedef struct sk_calm {
      * first three tell how it has turned */
     uint32_t *row_start, *row;
     real *from; /* x, y, z of sixteen lanes for each row: where they were when distances were looked at */
+    real *holds; /* of sixteen patches: all that were calm are while `gone` is no more */
+    real gone;   /* m: how much two vertices may have moved against each other, at most, substep after substep */
     uint32_t *of_vertex_start, *of_vertex; /* of vertices: the patches that list it */
     real *scratch; /* of the patch with most pairs: what is found out of them */
     uint8_t *found;

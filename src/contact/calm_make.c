@@ -239,8 +239,9 @@ static bool make_vertices(sk_calm *calm, sk_allocator *allocator, const sk_skin 
     uint32_t *last = sk_allocate(allocator, (vertices + 1) * sizeof *last);
     uint32_t *vertex = sk_allocate(allocator, (vertices + 1) * sizeof *vertex);
     calm->row_start = sk_allocate(allocator, (sixteens + 1) * sizeof *calm->row_start);
+    calm->holds = sk_allocate(allocator, (sixteens + 1) * sizeof *calm->holds);
     calm->of_vertex_start = sk_allocate(allocator, (vertices + 3) * sizeof *calm->of_vertex_start);
-    bool good = last && vertex && calm->row_start && calm->of_vertex_start;
+    bool good = last && vertex && calm->row_start && calm->holds && calm->of_vertex_start;
     if (good) {
         list_vertices(calm, skin, last, vertex, false);
         size_t rows = calm->row_start[sixteens], listed = calm->of_vertex_start[vertices + 1];
@@ -289,6 +290,7 @@ void sk_calm_release(sk_calm *calm, sk_allocator *allocator) {
     sk_release(allocator, calm->row_start);
     sk_release(allocator, calm->row);
     sk_release(allocator, calm->from);
+    sk_release(allocator, calm->holds);
     sk_release(allocator, calm->of_vertex_start);
     sk_release(allocator, calm->of_vertex);
     sk_release(allocator, calm->scratch);

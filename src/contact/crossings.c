@@ -57,7 +57,7 @@ void sk_touch_put_boxes(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_
     memset(touch->anew, 1, touch->skin.leaf_count);
     touch->everybody = true;
     for (size_t i = 0; i < touch->skin.leaf_count; i++) {
-        sk_touch_leaf_box(touch, i);
+        sk_touch_leaf_box(touch, i), sk_touch_feature_boxes(touch, i);
         touch->hot_box[i] = touch->leaf_box[i];
     }
     touch->boxed = touch->loaded = false;

@@ -93,18 +93,29 @@ static bool has_blown_up(const sk_touch *touch, const sk_leaf *leaf, const sk_bo
 void sk_touch_leaf_box(sk_touch *touch, size_t i) {
     const sk_skin *skin = &touch->skin;
     const sk_leaf *leaf = &skin->leaf[i];
-    sk_box *box = &touch->leaf_box[i];
+    sk_box *box = &touch->leaf_box[i], other;
+    if (leaf->triangles) box_of(touch->corner_box, skin->triangle[leaf->first_triangle], 3, box);
+    else box_of(touch->corner_box, skin->edge[leaf->first_edge], 2, box);
+    for (size_t k = 1; k < leaf->triangles; k++) {
+        box_of(touch->corner_box, skin->triangle[leaf->first_triangle + k], 3, &other);
+        sk_box_widen(box, &other);
+    }
+    touch->featured[i] = 0;
+    if (!has_blown_up(touch, leaf, box)) return;
+    const sk_quad most = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX, 0};
+    *box = (sk_box){{most, most}, {-most, -most}};
+}
+
+void sk_touch_feature_boxes(sk_touch *touch, size_t i) {
+    const sk_skin *skin = &touch->skin;
+    const sk_leaf *leaf = &skin->leaf[i];
+    touch->featured[i] = 1;
     for (uint32_t k = 0, v = leaf->first_vertex; k < leaf->vertices; k++, v++)
         box_of(touch->corner_box, &v, 1, &touch->vertex_box[v]);
     for (size_t k = 0, e = leaf->first_edge; k < leaf->edges; k++, e++)
         box_of(touch->corner_box, skin->edge[e], 2, &touch->edge_box[e]);
     for (size_t k = 0, t = leaf->first_triangle; k < leaf->triangles; k++, t++)
         box_of(touch->corner_box, skin->triangle[t], 3, &touch->triangle_box[t]);
-    *box = leaf->triangles ? touch->triangle_box[leaf->first_triangle] : touch->edge_box[leaf->first_edge];
-    for (size_t k = 1; k < leaf->triangles; k++) sk_box_widen(box, &touch->triangle_box[leaf->first_triangle + k]);
-    if (!has_blown_up(touch, leaf, box)) return;
-    const sk_quad most = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX, 0};
-    *box = (sk_box){{most, most}, {-most, -most}};
 }
 
 /* The box of those of a leaf's features that are looked for. */
@@ -130,9 +141,32 @@ static void mark_leaves_of(const sk_skin *skin, size_t v, uint8_t *leaves) {
 static void make_leaf_boxes(void *data, size_t begin, size_t end) {
     sk_touch *touch = data;
     for (size_t i = begin; i < end; i++) {
-        if (touch->moved[i]) sk_touch_leaf_box(touch, i), sk_touch_leaf_cells(touch, i);
-        if (touch->anew[i]) make_hot_box(touch, i);
+        if (touch->moved[i]) sk_touch_leaf_box(touch, i);
+        if (touch->everybody) {
+            touch->hot_box[i] = touch->leaf_box[i];
+        } else if (touch->anew[i]) {
+            if (!touch->featured[i]) sk_touch_feature_boxes(touch, i), sk_touch_leaf_cells(touch, i);
+            make_hot_box(touch, i);
+        }
     }
+}
+
+static void make_features(void *data, size_t begin, size_t end) {
+    sk_touch *touch = data;
+    for (size_t i = begin; i < end; i++)
+        if (touch->featured[i] == 2) sk_touch_feature_boxes(touch, i), sk_touch_leaf_cells(touch, i);
+}
+
+/* Of features, boxes are made where their leaf meets another: few do, of a surface that touches nothing. */
+static void box_features(sk_touch *touch) {
+    const uint32_t *first = touch->first.data, *partner = touch->partner.data;
+    bool any = false;
+    for (size_t i = 0; i < touch->partner.count; i++)
+        for (int k = 0; k < 2; k++) {
+            uint8_t *featured = &touch->featured[k ? partner[i] : first[i]];
+            if (!*featured) *featured = 2, any = true;
+        }
+    if (any) sk_parallel_for(touch->tasks, 0, touch->skin.leaf_count, make_features, touch);
 }
 
 static void make_boxes(sk_touch *touch, sk_touch_search_sort sort) {
@@ -329,6 +363,7 @@ bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_s
         touch->given_up++;
         for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->kept[sort].count = touch->late[sort].count = 0;
     }
+    box_features(touch);
     if (search == SK_SEARCH_WAYS) aim(touch);
     else expect(touch);
     for (int sort = 0; sort < SK_PAIR_SORTS && good && !gives_up; sort++)

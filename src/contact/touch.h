@@ -263,6 +263,7 @@ typedef struct sk_touch {
     size_t lost_since; /* how many have been lost since then, each as often as it was */
     sk_vec3 drift;   /* how far all went in a substep then, in the mean; */
     sk_vec3 common;  /* and in this one */
+    real longest;    /* m: of the ways in this substep, less what all go together */
     sk_vec3 frame_step; /* how far the frame of courses goes in a substep, as it did last, */
     sk_vec3 shift[2];   /* and has gone before this one and after it */
     /* by slot */
@@ -294,7 +295,8 @@ typedef struct sk_touch {
     sk_corner_cells *corner_cells;
     real cells;                /* a metre */
     sk_tree tree;
-    uint8_t *anew, *moved;        /* leaves that are looked for, and whose boxes are new */
+    uint8_t *anew, *moved;        /* leaves that are looked for, and whose boxes are new; */
+    uint8_t *featured;            /* those whose features have boxes, too (2: are to have them) */
     bool everybody;               /* all features of all leaves are looked for */
     uint8_t *changed;             /* slots of a level of the tree */
     bool refit;                   /* all of the tree is old */
@@ -497,8 +499,9 @@ extern sk_course_kernel *const sk_course_off[SK_ISA_COUNT];
 typedef enum sk_touch_search_sort { SK_SEARCH_ALL, SK_SEARCH_LOST, SK_SEARCH_WAYS } sk_touch_search_sort;
 /* False when there is no memory. */
 bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_sort search);
-/* The boxes of a leaf and of its features, from those of vertices. */
+/* The box of a leaf, and those of its features, from those of vertices. */
 void sk_touch_leaf_box(sk_touch *touch, size_t leaf);
+void sk_touch_feature_boxes(sk_touch *touch, size_t leaf);
 
 /* ---- thickness.c ---- */
 
