@@ -31,7 +31,7 @@ typedef struct cloth_params {
     sk_material stretch, shear, bend;
     int32_t diagonals, bending;
     double rigidity;
-    double tether, limit;
+    double tether, limit, tear;
     double thickness, friction;
     int32_t look;
 } cloth_params;
@@ -84,6 +84,8 @@ static const skein_field fields[] = {
         cloth_params, tether, "stretch.tether", "", 0, 0, SK_UNBOUNDED,
         "no particle gets farther from a pin, or from any 5 or 20 edges away, than along the cloth, times 1 + this; "
         "\"infinite\" is none"),
+    SK_REAL(cloth_params, tear, "stretch.tear", "", 0, 0, SK_UNBOUNDED,
+            "stretch at which an edge gives way, with the faces beside it, when a step is over; 0: never"),
     SK_REAL(cloth_params, thickness, "contact.thickness", "m", 0, 0, 1e3,
             "its own, in contact: two surfaces come as near as the mean of theirs; 0: what the force `contact` says"),
     SK_REAL(cloth_params, friction, "contact.friction", "", 0.3, 0, 10,
@@ -219,9 +221,10 @@ static skein_status add_bending(tailor *t) {
 }
 
 /* Bounds over many edges: by coarse grids if it is a whole grid, else along its rows and columns, or for other meshes
- * along the mesh's own x and z. A mesh without pins gets none: it may be a balloon, which must be able to grow. */
+ * along the mesh's own x and z. What may tear has the latter, too: of coarse grids nothing is left after the first tear, and
+ * what they had held would tear for that. A mesh without pins gets none: it may be a balloon, which must be able to grow. */
 static skein_status add_spans(tailor *t) {
-    if (t->lines.area && sk_coarse_fits(&t->lines))
+    if (t->lines.area && sk_coarse_fits(&t->lines) && !(t->params->tear > 0))
         return sk_coarse_add(&t->lines, t->mass, t->world, t->body, &t->coarsest, t->error);
     if (t->lines.area) return sk_lines_add_spans(&t->lines, t->world, t->body, t->error);
     bool pinned = false;
@@ -441,7 +444,7 @@ static bool live(const void *data, const char *field) {
     if (!strcmp(field, "bend.stiffness") || !strcmp(field, "bend.damping")) return params->bending == BY_SPRINGS;
     if (!strcmp(field, "bend.rigidity")) return params->bending != BY_SPRINGS;
     static const char *const names[] = {"stretch.stiffness", "stretch.damping", "shear.stiffness",
-                                        "shear.damping",     "stretch.limit",   "stretch.tether", "look"};
+                                        "shear.damping",     "stretch.limit",   "stretch.tether", "stretch.tear", "look"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (!strcmp(field, names[i])) return true;
     return false;
@@ -458,6 +461,7 @@ static void change(sk_body *body, const void *data) {
     }
     body->tether_bound = fmin(params->tether, params->limit); // a chain of edges may stretch no more than an edge
     body->strain_bound = params->limit;
+    body->tear_bound = params->tear;
 }
 
 /* Refuses settings that only springs have for other kinds of bending. */

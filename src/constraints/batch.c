@@ -54,17 +54,25 @@ typedef struct judge {
     const sk_severing *severing; /* or NULL */
 } judge;
 
-/* Whether an element's presence is at most that: it is that of the particle which is there least, and aside of one that
- * is severed. */
-static bool is_up_to(const judge *j, const uint32_t *particle, sk_presence most) {
+/* An element's presence: that of the particle which is there least, and aside of one that is severed. */
+static sk_presence presence_of(const judge *j, const uint32_t *particle) {
+    sk_presence least = SK_HERE;
     for (size_t i = 0; i < j->batch->arity; i++)
-        if (j->particles->presence[particle[i]] > most) return false;
-    return most != SK_HERE || !j->severing || !j->severing->severs(j->severing->data, j->batch, particle);
+        if (j->particles->presence[particle[i]] > least) least = j->particles->presence[particle[i]];
+    bool severed = least == SK_HERE && j->severing && j->severing->severs(j->severing->data, j->batch, particle);
+    return severed ? SK_ASIDE : least;
 }
 
-static size_t count_up_to(const judge *j, const sk_elements *all, sk_presence most) {
+/* Looks at each element once, for that may take long; NULL when there is no memory. */
+static sk_presence *look_at_all(const judge *j, const sk_elements *all, sk_allocator *allocator) {
+    sk_presence *of = sk_allocate(allocator, (all->count + 1) * sizeof *of);
+    for (size_t e = 0; of && e < all->count; e++) of[e] = presence_of(j, all->particle + e * j->batch->arity);
+    return of;
+}
+
+static size_t count_up_to(const sk_presence *of, size_t all, sk_presence most) {
     size_t count = 0;
-    for (size_t e = 0; e < all->count; e++) count += is_up_to(j, all->particle + e * j->batch->arity, most);
+    for (size_t e = 0; e < all; e++) count += of[e] <= most;
     return count;
 }
 
@@ -76,10 +84,9 @@ static void release_elements(sk_elements *elements, sk_allocator *allocator) {
 }
 
 /* Copies the elements whose presence is not beyond `most`; false when there is no memory. */
-static bool copy_elements(const judge *j, const sk_elements *from, sk_presence most, sk_allocator *allocator,
-                          sk_elements *to) {
-    const sk_batch *batch = j->batch;
-    size_t count = count_up_to(j, from, most), next = 0;
+static bool copy_elements(const sk_batch *batch, const sk_elements *from, const sk_presence *of, sk_presence most,
+                          sk_allocator *allocator, sk_elements *to) {
+    size_t count = count_up_to(of, from->count, most), next = 0;
     *to = (sk_elements){count, sk_allocate(allocator, count * batch->arity * sizeof *to->particle),
                         sk_allocate(allocator, count * batch->rest_count * sizeof *to->rest),
                         from->scale ? sk_allocate(allocator, count * sizeof *to->scale) : NULL};
@@ -88,7 +95,7 @@ static bool copy_elements(const judge *j, const sk_elements *from, sk_presence m
         return false;
     }
     for (size_t e = 0; e < from->count; e++) {
-        if (!is_up_to(j, from->particle + e * batch->arity, most)) continue;
+        if (of[e] > most) continue;
         memcpy(to->particle + next * batch->arity, from->particle + e * batch->arity,
                batch->arity * sizeof *to->particle);
         for (size_t r = 0; r < batch->rest_count; r++) to->rest[r * count + next] = from->rest[r * from->count + e];
@@ -111,20 +118,11 @@ bool sk_batch_leave_out(sk_batch *batch, sk_allocator *allocator, const sk_parti
     return sk_batch_leave_out_severed(batch, allocator, particles, NULL);
 }
 
-bool sk_batch_leave_out_severed(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles,
-                                const sk_severing *severing) {
-    const judge j = {batch, particles, severing};
-    sk_elements present = elements_of(batch), all = batch->whole.particle ? batch->whole : present, kept, now;
-    size_t not_gone = count_up_to(&j, &all, SK_ASIDE), here = count_up_to(&j, &all, SK_HERE);
-    if (batch->enclosure) {
-        batch->broken |= not_gone < all.count;
-        batch->rests = here < all.count;
-        return true;
-    }
-    // as many as before are the same ones, but where a cut was mended and another made
-    if (not_gone == all.count && here == present.count && (here == all.count || !severing)) return true;
-    if (!copy_elements(&j, &all, SK_ASIDE, allocator, &kept)) return false;
-    if (!copy_elements(&j, &kept, SK_HERE, allocator, &now)) {
+/* Takes those that are here, and keeps all that are not gone. False when there is no memory: nothing has changed then. */
+static bool leave_out(sk_batch *batch, const sk_elements *all, const sk_presence *of, sk_allocator *allocator) {
+    sk_elements present = elements_of(batch), kept, now;
+    if (!copy_elements(batch, all, of, SK_ASIDE, allocator, &kept)) return false;
+    if (!copy_elements(batch, all, of, SK_HERE, allocator, &now)) {
         release_elements(&kept, allocator);
         return false;
     }
@@ -135,6 +133,25 @@ bool sk_batch_leave_out_severed(sk_batch *batch, sk_allocator *allocator, const 
     if (now.count == kept.count) release_elements(&kept, allocator);
     batch->whole = kept;
     return true;
+}
+
+bool sk_batch_leave_out_severed(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles,
+                                const sk_severing *severing) {
+    const judge j = {batch, particles, severing};
+    sk_elements present = elements_of(batch), all = batch->whole.particle ? batch->whole : present;
+    sk_presence *of = look_at_all(&j, &all, allocator);
+    if (!of) return false;
+    size_t not_gone = count_up_to(of, all.count, SK_ASIDE), here = count_up_to(of, all.count, SK_HERE);
+    bool good = true;
+    if (batch->enclosure) {
+        batch->broken |= not_gone < all.count;
+        batch->rests = here < all.count;
+    } else if (not_gone < all.count || here != present.count || (here < all.count && severing)) {
+        // as many as before are the same ones, but where a cut was mended and another made
+        good = leave_out(batch, &all, of, allocator);
+    }
+    sk_release(allocator, of);
+    return good;
 }
 
 void sk_batch_release(sk_batch *batch, sk_allocator *allocator) {

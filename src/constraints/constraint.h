@@ -107,6 +107,8 @@ struct sk_batch {
                             square of its angular frequency. If low for the substep, position methods may project the
                             batch in every second one, with the same stiffness; 0: in every one */
     sk_coarse *coarse;   /* its particles are those of a coarse grid (constraints/coarse.h), only bounded; or NULL */
+    uint32_t most_edges; /* of one that only bounds: so many edges of its body's surface lead from end to end of an element
+                            at most; 0: that was not looked for yet (world/severed.c) */
     bool measured;       /* an edge of a body: it counts in the stretch of the statistics */
     size_t count, arity, rest_count;
     uint32_t *particle; /* count x arity, user's indices */

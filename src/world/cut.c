@@ -13,8 +13,8 @@
 
 void sk_cut_release(sk_cut *cut, sk_allocator *allocator) {
     if (!cut) return;
-    void *arrays[] = {cut->face, cut->triangle, cut->first, cut->corner, cut->start,
-                      cut->around, cut->near, cut->queue, cut->mark};
+    void *arrays[] = {cut->face, cut->triangle, cut->first, cut->corner, cut->start, cut->around,
+                      cut->first_side, cut->side, cut->to_cut, cut->queue, cut->mark};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     sk_release(allocator, cut);
 }
@@ -38,6 +38,30 @@ static void fill_surface(sk_cut *cut) {
     cut->start[body->particle_count] = corners;
 }
 
+/* Notes a neighbour of the particle whose sides end at `end`, once. */
+static size_t add_side(sk_cut *cut, size_t first, size_t end, uint32_t particle) {
+    for (size_t i = first; i < end; i++)
+        if (cut->side[i].particle == particle) return end;
+    cut->side[end] = (sk_side){particle, true};
+    return end + 1;
+}
+
+static void fill_sides(sk_cut *cut) {
+    size_t end = 0;
+    for (uint32_t p = 0; p < cut->body->particle_count; p++) {
+        size_t first = cut->first_side[p] = end;
+        for (size_t i = cut->start[p]; i < cut->start[p + 1]; i++) {
+            size_t corner = cut->first[cut->around[i]], size = cut->first[cut->around[i] + 1] - corner;
+            for (size_t k = 0; k < size; k++) {
+                if (cut->corner[corner + k] != p) continue;
+                end = add_side(cut, first, end, cut->corner[corner + (k + 1) % size]);
+                end = add_side(cut, first, end, cut->corner[corner + (k + size - 1) % size]);
+            }
+        }
+    }
+    cut->first_side[cut->body->particle_count] = end;
+}
+
 static sk_cut *make_cut(skein_world *world, const sk_body *body) {
     sk_allocator *allocator = &world->allocator;
     sk_cut *cut = sk_allocate(allocator, sizeof *cut);
@@ -50,16 +74,19 @@ static sk_cut *make_cut(skein_world *world, const sk_body *body) {
     cut->corner = sk_allocate(allocator, body->face_vertex_count * sizeof *cut->corner);
     cut->start = sk_allocate(allocator, (particles + 1) * sizeof *cut->start);
     cut->around = sk_allocate(allocator, body->face_vertex_count * sizeof *cut->around);
-    cut->near = sk_allocate(allocator, particles * sizeof *cut->near);
+    cut->first_side = sk_allocate(allocator, (particles + 1) * sizeof *cut->first_side);
+    cut->side = sk_allocate(allocator, 2 * body->face_vertex_count * sizeof *cut->side);
+    cut->to_cut = sk_allocate(allocator, particles * sizeof *cut->to_cut);
     cut->queue = sk_allocate(allocator, particles * sizeof *cut->queue);
     cut->mark = sk_allocate(allocator, particles * sizeof *cut->mark);
-    if (!cut->face || !cut->triangle || !cut->first || !cut->corner || !cut->start || !cut->around || !cut->near ||
-        !cut->queue || !cut->mark) {
+    if (!cut->face || !cut->triangle || !cut->first || !cut->corner || !cut->start || !cut->around ||
+        !cut->first_side || !cut->side || !cut->to_cut || !cut->queue || !cut->mark) {
         sk_cut_release(cut, allocator);
         return NULL;
     }
     memcpy(cut->triangle, world->triangles.corner + body->first_triangle, body->triangle_count * sizeof *cut->triangle);
     fill_surface(cut);
+    fill_sides(cut);
     return cut;
 }
 
@@ -77,21 +104,24 @@ static void set_triangles(skein_world *world, const sk_cut *cut) {
             for (int c = 0; c < 3; c++) to[t][c] = cut->triangle[t][cut->face[f] ? 0 : c];
 }
 
+bool sk_cut_begin(skein_world *world, sk_body *body) {
+    return body->cut || (body->cut = make_cut(world, body));
+}
+
 bool sk_cut_set(skein_world *world, sk_body *body, const uint8_t *face) {
     if (!body->cut && !face) return true;
-    if (!body->cut && !(body->cut = make_cut(world, body))) return false;
+    if (!sk_cut_begin(world, body)) return false;
     sk_cut *cut = body->cut;
     size_t changed = 0;
     for (size_t f = 0; f < body->face_count; f++) changed += cut->face[f] != (face && face[f]);
     if (!changed) return true;
-    memset(cut->near, 0, body->particle_count * sizeof *cut->near);
     cut->count = 0;
     for (size_t f = 0; f < body->face_count; f++) {
         cut->face[f] = face && face[f];
         cut->count += cut->face[f];
-        for (size_t i = cut->first[f]; i < cut->first[f + 1] && cut->face[f]; i++) cut->near[cut->corner[i]] = true;
     }
     cut->changes++;
+    sk_cut_find_sides(cut);
     set_triangles(world, cut);
     world->plan_stale = world->slots_stale = world->presence_stale = true;
     return true;

@@ -50,6 +50,7 @@ skein_status sk_world_settle_presence(skein_world *world, skein_error *error) {
         sk_batch *batch = world->rules.batches.data[i];
         const sk_body *body = cut_body_of(world, batch);
         const sk_severing severing = {sk_cut_severs, body ? body->cut : NULL};
+        if (body) sk_cut_look_at(body->cut, batch);
         good = sk_batch_leave_out_severed(batch, &world->allocator, &world->particles, body ? &severing : NULL);
     }
     if (!good) return sk_fail_memory(error, "what is left of constraints");

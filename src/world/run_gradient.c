@@ -13,6 +13,7 @@
 
 #include "base/hash.h"
 #include "world/adjoint.h"
+#include "world/cut.h"
 
 /* ---- what fields change ---- */
 
@@ -351,6 +352,8 @@ static skein_status check(skein_world *world, const skein_gradient_desc *desc) {
                        "rounding is too large for them");
     if (world->device)
         return sk_fail(error, SKEIN_ERROR_VALUE, "gradient", "gradients are worked out on the processor");
+    if (sk_world_tears(world))
+        return sk_fail(error, SKEIN_ERROR_VALUE, "gradient", "a body that tears has no gradient: set its stretch.tear to 0");
     if (world->pins.count)
         return sk_fail(error, SKEIN_ERROR_VALUE, "gradient",
                        "%zu places of pins wait for the next step: a gradient leads pins by motions alone",

@@ -13,7 +13,10 @@ static bool has(const sk_cut *cut, uint32_t face, uint32_t particle) {
 
 /* ---- ways along edges ---- */
 
-/* How many edges of faces (`all`, or those that are left) the shortest way has from a to b, or a number over `most`. */
+static const uint32_t no_way = UINT32_MAX;
+
+/* How many edges of faces (`all`, or those that are left) the shortest way has from a to b, or no_way if it has more than
+ * `most`. */
 static uint32_t edges_between(sk_cut *cut, uint32_t a, uint32_t b, bool all, uint32_t most) {
     size_t count = 1, at = 0, end = 1;
     cut->queue[0] = a;
@@ -21,23 +24,57 @@ static uint32_t edges_between(sk_cut *cut, uint32_t a, uint32_t b, bool all, uin
     for (uint32_t edges = 1; edges <= most && at < count; edges++, end = count)
         for (; at < end; at++) {
             uint32_t p = cut->queue[at];
-            for (size_t i = cut->start[p]; i < cut->start[p + 1]; i++) {
-                uint32_t f = cut->around[i];
-                if (!all && cut->face[f]) continue;
-                size_t first = cut->first[f], size = cut->first[f + 1] - first;
-                for (size_t k = 0; k < size; k++) {
-                    if (cut->corner[first + k] != p) continue;
-                    uint32_t beside[2] = {cut->corner[first + (k + 1) % size], cut->corner[first + (k + size - 1) % size]};
-                    for (int s = 0; s < 2; s++) {
-                        if (beside[s] == b) return edges;
-                        if (cut->mark[beside[s]] == cut->now) continue;
-                        cut->mark[beside[s]] = cut->now;
-                        cut->queue[count++] = beside[s];
-                    }
-                }
+            for (size_t i = cut->first_side[p]; i < cut->first_side[p + 1]; i++) {
+                sk_side side = cut->side[i];
+                if (!all && !side.left) continue;
+                if (side.particle == b) return edges;
+                if (cut->mark[side.particle] == cut->now) continue;
+                cut->mark[side.particle] = cut->now;
+                cut->queue[count++] = side.particle;
             }
         }
-    return UINT32_MAX;
+    return no_way;
+}
+
+/* Whether one of the faces that have both particles is left. */
+static bool is_side_left(const sk_cut *cut, uint32_t a, uint32_t b) {
+    for (size_t i = cut->start[a]; i < cut->start[a + 1]; i++)
+        if (!cut->face[cut->around[i]] && has(cut, cut->around[i], b)) return true;
+    return false;
+}
+
+void sk_cut_find_sides(sk_cut *cut) {
+    size_t particles = cut->body->particle_count, count = 0;
+    for (size_t p = 0; p < particles; p++) {
+        bool at_cut = false;
+        for (size_t i = cut->start[p]; i < cut->start[p + 1]; i++) at_cut |= cut->face[cut->around[i]];
+        cut->to_cut[p] = at_cut ? 0 : no_way;
+        if (at_cut) cut->queue[count++] = (uint32_t)p;
+        for (size_t i = cut->first_side[p]; i < cut->first_side[p + 1]; i++)
+            cut->side[i].left = !at_cut || is_side_left(cut, (uint32_t)p, cut->side[i].particle);
+    }
+    for (size_t at = 0; at < count; at++) {
+        uint32_t p = cut->queue[at];
+        for (size_t i = cut->first_side[p]; i < cut->first_side[p + 1]; i++) {
+            uint32_t q = cut->side[i].particle;
+            if (cut->to_cut[q] != no_way) continue;
+            cut->to_cut[q] = cut->to_cut[p] + 1;
+            cut->queue[count++] = q;
+        }
+    }
+}
+
+void sk_cut_look_at(sk_cut *cut, sk_batch *batch) {
+    if (!batch->only_bounds || batch->coarse || batch->most_edges || batch->arity != 2) return;
+    const uint32_t *particle = batch->whole.particle ? batch->whole.particle : batch->particle;
+    size_t count = batch->whole.particle ? batch->whole.count : batch->count;
+    uint32_t most = 1;
+    for (size_t e = 0; e < count; e++) {
+        uint32_t a = particle[2 * e] - cut->body->first_particle, b = particle[2 * e + 1] - cut->body->first_particle;
+        uint32_t edges = edges_between(cut, a, b, true, no_way);
+        if (edges > most) most = edges;
+    }
+    batch->most_edges = most; // no_way where an element's ends do not hang together: all are looked at then
 }
 
 /* ---- elements ---- */
@@ -51,10 +88,12 @@ static bool is_severed(sk_cut *cut, const sk_batch *batch, uint32_t a, uint32_t 
         joined = true;
     }
     if (joined) return true;
-    // what goes over no more than two edges begins or ends at the cut
-    if (!batch->only_bounds && !cut->near[a] && !cut->near[b]) return false;
-    uint32_t edges = edges_between(cut, a, b, true, UINT32_MAX);
-    return edges != UINT32_MAX && edges_between(cut, a, b, false, edges) > edges;
+    // A shortest way that meets a cut face comes as near to it from both ends as it is long. What does not only bound goes
+    // over two edges at most, and so begins or ends at the cut.
+    uint64_t to_cut = (uint64_t)cut->to_cut[a] + cut->to_cut[b];
+    if (batch->only_bounds ? to_cut > batch->most_edges : cut->to_cut[a] && cut->to_cut[b]) return false;
+    uint32_t edges = edges_between(cut, a, b, true, no_way);
+    return edges != no_way && to_cut <= edges && edges_between(cut, a, b, false, edges) > edges;
 }
 
 /* Whether a cut face had three of an element's particles. */

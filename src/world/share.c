@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "plan/share_part.h"
-#include "world/world.h"
+#include "world/cut.h"
 
 static skein_state state_of(skein_world *world) {
     const sk_particles *all = &world->particles;
@@ -215,6 +215,7 @@ static bool leads_loose(const skein_world *world, const body_list *list) {
 static const char *what_cannot(skein_world *world, body_list *list) {
     const char *what = NULL;
     if (world->device) return "another device";
+    if (sk_world_tears(world)) return "a body that tears";
     if (list->count ? world->particles.count != list->data[list->count - 1].first + list->data[list->count - 1].count : true)
         return "particles of no body";
     join_by_constraints(world, list);

@@ -220,6 +220,7 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
     world->solver_failures += world->solve.failures;
     world->substeps += (uint64_t)world->method->substeps(world->method_params);
     sk_world_tell_of_meetings(world);
+    if (sk_world_tears(world) && (status = sk_world_tear(world, error))) return status;
     if (!world->device) sk_world_reorder(world);
     return SKEIN_OK;
 }

@@ -53,6 +53,7 @@ struct sk_body {
     sk_material *material[SK_MOST_BODY_BATCHES]; /* of the batch beside it */
     size_t batch_count;
     double tether_bound, strain_bound; /* of its limits */
+    double tear_bound;                 /* the stretch at which its edges give way; 0: never */
     sk_cut *cut;                       /* NULL: it never was (world/cut.h) */
     bool enabled;
     const char *label; /* its name, else its kind's */
