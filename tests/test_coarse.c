@@ -5,10 +5,10 @@
 
 enum { SIDE = 64 };
 
-static skein_world *swinging(int substeps, double drag, double limit) {
+static skein_world *swinging(uint32_t side, int substeps, double drag, double limit) {
     skein_world *world = new_world("xpbd", substeps);
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", "top corners"),
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_TEXT("pins", "top corners"),
                                             SKEIN_REAL("stretch.limit", limit)), NULL));
     add_gravity(world);
     if (drag > 0) OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", drag)), NULL));
@@ -24,7 +24,7 @@ static bool has_coarse_grids(const skein_world *world) {
 /* Let go from level. With spans alone the 99th percentile comes to 1.9 %, and single edges to 3.5. */
 static void a_cloth_that_swings_is_firm(void **state) {
     (void)state;
-    skein_world *world = swinging(10, 1, INFINITY);
+    skein_world *world = swinging(SIDE, 10, 1, INFINITY);
     assert_true(has_coarse_grids(world));
     double most = 0, p99 = 0;
     for (int n = 0; n < 90; n++) {
@@ -83,13 +83,13 @@ static void stiff_bending_does_not_shiver(void **state) {
 }
 
 /* When the middle of the cloth swings through below the pins, the second time. */
-static double time_of_swing(int substeps, double limit) {
-    skein_world *world = swinging(substeps, 0, limit);
+static double time_of_swing(uint32_t side, int substeps, double limit) {
+    skein_world *world = swinging(side, substeps, 0, limit);
     double before = 0, when = 0;
     for (int n = 0, crossed = 0; n < 120 && crossed < 2; n++) {
         steps(world, 1, 1.0 / 60);
         double z = 0;
-        for (size_t i = 0; i < SIDE * SIDE; i++) z += (position_of(world, i).z - position_of(world, 0).z) / (SIDE * SIDE);
+        for (size_t i = 0; i < side * side; i++) z += (position_of(world, i).z - position_of(world, 0).z) / (side * side);
         if (n && z * before < 0 && ++crossed == 2) when = (n + before / (before - z)) / 60;
         before = z;
     }
@@ -100,21 +100,56 @@ static double time_of_swing(int substeps, double limit) {
 static void a_swing_keeps_its_time(void **state) {
     (void)state;
     ONLY_IN_PLAIN_BUILDS();
-    double few = time_of_swing(10, INFINITY), many = time_of_swing(60, INFINITY), limited = time_of_swing(10, 0.005);
+    double few = time_of_swing(SIDE, 10, INFINITY), many = time_of_swing(SIDE, 60, INFINITY), limited = time_of_swing(SIDE, 10, 0.005);
     assert_true(many > 1 && many < 2);
     assert_near(few, many, 0.02 * many);
     assert_near(limited, many, 0.02 * many); // a strain limit is one-sided, and takes no time either
+}
+
+static const uint32_t sides[] = {20, 40, 80};
+static const int few_or_many[] = {5, 10, 20}; // substeps
+
+static void a_swing_takes_the_same_time_at_any_size(void **state) {
+    (void)state;
+    ONLY_IN_PLAIN_BUILDS();
+    double middle = time_of_swing(40, 10, INFINITY);
+    for (size_t i = 0; i < COUNT(sides); i++)
+        for (size_t k = 0; k < COUNT(few_or_many); k++)
+            assert_share(time_of_swing(sides[i], few_or_many[k], INFINITY), middle, 0.005);
+}
+
+/* Where its tethers hold a sheet by four corners, its middle is (1 + slack) d from each of them, d being half a diagonal: it sags
+ * by d sqrt((1 + slack)^2 - 1), at any resolution and with any number of substeps. */
+static void a_sag_is_that_of_the_tethers(void **state) {
+    (void)state;
+    ONLY_IN_PLAIN_BUILDS();
+    const double slack = 0.003, ought = sqrt(0.5 * ((1 + slack) * (1 + slack) - 1));
+    for (size_t i = 0; i < COUNT(sides); i++)
+        for (size_t k = 0; k < COUNT(few_or_many); k++) {
+            skein_world *world = new_world("xpbd", few_or_many[k]);
+            OK(world, skein_body_add(world, "cloth", NULL,
+                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", sides[i], sides[i]), SKEIN_TEXT("pins", "corners"),
+                                                    SKEIN_REAL("stretch.stiffness", 200), SKEIN_REAL("shear.stiffness", 20),
+                                                    SKEIN_REAL("stretch.tether", slack)), NULL));
+            add_gravity(world);
+            OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 4)), NULL));
+            steps(world, 300, 1.0 / 60);
+            double lowest = 0;
+            for (size_t p = 0; p < sides[i] * sides[i]; p++) lowest = fmin(lowest, position_of(world, p).y);
+            assert_share(-lowest, ought, 0.05);
+            skein_world_destroy(world);
+        }
 }
 
 /* Free sheets, whose margins beyond the coarse grids differ, are thrown apart. What is symmetric need not be: shares of
  * corrections by anything but the masses carried along gave such a sheet 2 to 9 % of what it had. */
 static void nothing_gains_momentum(void **state) {
     (void)state;
-    static const int sides[][2] = {{53, 100}, {64, 70}};
-    for (size_t i = 0; i < COUNT(sides); i++) {
+    static const int grids[][2] = {{53, 100}, {64, 70}};
+    for (size_t i = 0; i < COUNT(grids); i++) {
         skein_world *world = new_world("xpbd", 10);
         OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", sides[i][0], sides[i][1])), NULL));
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", grids[i][0], grids[i][1])), NULL));
         assert_true(has_coarse_grids(world));
         size_t count = skein_particle_count(world);
         double *v = malloc(3 * count * sizeof *v), all = 0;
@@ -189,6 +224,8 @@ int main(void) {
         cmocka_unit_test(stiff_bending_does_not_shiver),
         cmocka_unit_test(a_cloth_that_hangs_by_a_point_is_firm),
         cmocka_unit_test(a_swing_keeps_its_time),
+        cmocka_unit_test(a_swing_takes_the_same_time_at_any_size),
+        cmocka_unit_test(a_sag_is_that_of_the_tethers),
         cmocka_unit_test(nothing_gains_momentum),
         cmocka_unit_test(seldom_bending_gains_nothing),
     };

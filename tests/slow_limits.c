@@ -1,0 +1,47 @@
+/* A limit of stretch is a contract: 1 % is kept to 1.1 by every edge of what has come to rest, from 16 x 16 to 256 x 256, from
+ * 5,000 to 1,000,000 N/m, by grids and by irregular meshes that hang by two corners. tests/test_limits.c has the smaller ones. */
+#include "helpers.h"
+#include "irregular.h"
+
+static const char corners[] = "sphere -0.5 0 -0.5 0.001, sphere 0.5 0 -0.5 0.001";
+
+static void keeps_its_limit(uint32_t side, double stiffness, bool mesh) {
+    skein_world *world = new_world("xpbd", 10);
+    if (mesh)
+        add_irregular(world, side,
+                      SKEIN_SETTINGS(SKEIN_TEXT("pins", corners), SKEIN_REAL("stretch.limit", 0.01),
+                                     SKEIN_REAL("stretch.stiffness", stiffness)));
+    else
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_REAL("stretch.limit", 0.01),
+                                                SKEIN_TEXT("pins", corners), SKEIN_REAL("stretch.stiffness", stiffness)), NULL));
+    add_gravity(world);
+    OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 2)), NULL));
+    steps(world, 180, 1.0 / 60);
+    skein_statistics s = statistics_of(world);
+    print_message("%s %u x %u, %g N/m: at most %.3f %%, %.2g J\n", mesh ? "mesh" : "grid", side, side, stiffness, 100 * s.max_stretch,
+                  s.kinetic_energy);
+    assert_true(s.limited > side * side);
+    assert_int_equal(s.over_limit, 0);
+    assert_true(s.max_stretch <= 0.011 + 1e-5 && s.kinetic_energy < 0.02);
+    skein_world_destroy(world);
+}
+
+static void grids_keep_their_limit(void **state) {
+    (void)state;
+    static const uint32_t sides[] = {16, 64, 128, 256};
+    for (size_t i = 0; i < COUNT(sides); i++)
+        for (double stiffness = 5e3; stiffness < 2e6; stiffness *= 200) keeps_its_limit(sides[i], stiffness, false);
+}
+
+static void meshes_keep_their_limit(void **state) {
+    (void)state;
+    static const uint32_t sides[] = {16, 64, 128, 200, 256};
+    for (size_t i = 0; i < COUNT(sides); i++)
+        for (double stiffness = 5e3; stiffness < 2e6; stiffness *= 200) keeps_its_limit(sides[i], stiffness, true);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(grids_keep_their_limit), cmocka_unit_test(meshes_keep_their_limit)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
