@@ -62,6 +62,7 @@
 #define SKEIN_CLOTH_BEND_RIGIDITY "bend.rigidity" /* a number in N m; of the sheet against angle or curvature, the same at any resolution (1e-5 is a cotton) */
 #define SKEIN_CLOTH_STRETCH_LIMIT "stretch.limit" /* a number; strain limit: no edge gets longer than rest times 1 + this; "infinite" is none */
 #define SKEIN_CLOTH_STRETCH_TETHER "stretch.tether" /* a number; no particle gets farther from a pin, or from any 5 or 20 edges away, than along the cloth, times 1 + this; "infinite" is none */
+#define SKEIN_CLOTH_STRETCH_TEAR "stretch.tear" /* a number; stretch at which an edge gives way, with the faces beside it, when a step is over; 0: never */
 #define SKEIN_CLOTH_CONTACT_THICKNESS "contact.thickness" /* a number in m; its own, in contact: two surfaces come as near as the mean of theirs; 0: what the force `contact` says */
 #define SKEIN_CLOTH_CONTACT_FRICTION "contact.friction" /* a number; with a contact.thickness: its coefficient of friction in contact; of two surfaces the mean counts */
 #define SKEIN_CLOTH_LOOK "look" /* a word; what its surface is drawn as: woven; smooth and lit through, with round edges; or of one colour */
