@@ -1,6 +1,7 @@
 /* A cape that begins partly inside the body that wears it: clean within a second, and so for 1,000 frames while the body runs, turns and
  * is put elsewhere, by brute force over all particles and the middles of all edges. */
 #include "helpers.h"
+#include "solids.h"
 
 enum { ROWS = 36, COLUMNS = 25, FRAMES = 1000 };
 static const double dt = 1.0 / 60, radius = 0.25, thickness = 0.006;
@@ -169,7 +170,71 @@ static void a_motion_leads_both(void **state) {
     free(keys);
 }
 
+/* ---- on a mesh ---- */
+
+/* The least distance of free particles and of edges' middles from the collider, as it stands. */
+static double least_off(const skein_world *world, skein_handle body) {
+    enum { POINTS = 3 * ROWS * COLUMNS };
+    static double points[POINTS][3], off[POINTS];
+    size_t count = 0;
+    for (size_t i = 0; i < ROWS * COLUMNS; i++) {
+        vec3 p = position_of(world, i);
+        for (int k = 0; k < 3; k++) { // itself, and to the right, and below
+            size_t j = k == 1 ? i + 1 : k == 2 ? i + COLUMNS : i;
+            if (j >= ROWS * COLUMNS || (k == 1 && j % COLUMNS == 0)) continue;
+            vec3 q = position_of(world, j);
+            points[count][0] = (p.x + q.x) / 2, points[count][1] = (p.y + q.y) / 2, points[count++][2] = (p.z + q.z) / 2;
+        }
+    }
+    OK(world, skein_collider_probe(world, body, count, points[0], off, NULL));
+    double least = 1;
+    for (size_t i = 0; i < count; i++) least = fmin(least, off[i]);
+    return least;
+}
+
+/* A body of a mesh, taller than broad, broader than deep, and with bumps; or by distances that are sampled from it. */
+static void a_mesh_wears_it(void **state) {
+    (void)state;
+    static const char *const kinds[] = {"mesh", "field"};
+    char *keys = write_keys();
+    for (size_t i = 0; i < COUNT(kinds); i++) {
+        skein_world *world = new_world("xpbd", 20);
+        skein_handle body;
+        solid *s = make_ball(0.25, 0.015, 16);
+        for (size_t v = 0; v < s->mesh.vertex_count; v++) s->position[v][0] *= 1.1, s->position[v][1] *= 3.4;
+        add_gravity(world);
+        OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.5)), NULL));
+        OK(world, skein_collider_add_mesh(world, kinds[i], &s->mesh,
+                                          SKEIN_SETTINGS(SKEIN_TEXT("name", "wearer"), SKEIN_REAL("thickness", thickness)), &body));
+        free(s);
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "cape"), SKEIN_PAIR("grid", ROWS, COLUMNS), SKEIN_PAIR("size", 1.0, 0.8),
+                                                SKEIN_VEC3("position", 0, 0, 0.13), SKEIN_VEC3("rotation", 90, 0, 0), SKEIN_TEXT("pins", "top corners"),
+                                                SKEIN_REAL("density", 0.2)),
+                                 NULL));
+        OK(world, skein_motion_add(world, "keys", NULL,
+                                   SKEIN_SETTINGS(SKEIN_TEXT("keys", keys), SKEIN_TEXT("on", "cape"), SKEIN_TEXT("colliders", "wearer"),
+                                                  SKEIN_REAL("smooth", 0), SKEIN_REAL("inertia", 0.5), SKEIN_REAL("jump", 2)),
+                                   NULL));
+        double least = 1, deepest = least_off(world, body);
+        assert_true(deepest < -0.1);
+        for (int f = 0; f < FRAMES; f++) {
+            steps(world, 1, dt);
+            if (f < 60) continue;
+            double off = least_off(world, body);
+            if (!(off > 0)) print_error("%s, frame %d: %g m inside\n", kinds[i], f, -off);
+            assert_true(off > 0);
+            least = fmin(least, off);
+        }
+        print_message("%s: from %.3g m inside; least gap %.3g mm of %g\n", kinds[i], -deepest, 1e3 * least, 1e3 * thickness);
+        assert_int_equal(statistics_of(world).nonfinite, 0);
+        skein_world_destroy(world);
+    }
+    free(keys);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_cape_comes_clean_and_stays_so), cmocka_unit_test(a_motion_leads_both)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_cape_comes_clean_and_stays_so), cmocka_unit_test(a_motion_leads_both),
+                                       cmocka_unit_test(a_mesh_wears_it)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
