@@ -9,7 +9,7 @@ all: ## (or plain make) build the command: build/skein
 install: ## build and install it all: PREFIX=/usr/local, DESTDIR=
 	@PREFIX='$(PREFIX)' tools/install
 
-demo: ## set up, build, and drop a real mesh as cloth: files, a picture and a film in out/demo, and a window
+demo: ## set up, build, and drape cloth over a real mesh: files, a picture and a film in out/demo, and a window
 	@tools/setup build
 	@tools/build release skein
 	@tools/demo

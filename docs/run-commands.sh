@@ -90,7 +90,7 @@ try() {
             return
         fi
         ;;
-    *scenes/elephant.json*) # its mesh is fetched by `make demo`
+    *scenes/elephant.json* | *scenes/statue.json*) # meshes that `make demo` fetches
         if [ ! -e "$root/meshes/fetched/elephant.off" ]; then
             left=$((left + 1))
             return

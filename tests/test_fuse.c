@@ -154,7 +154,7 @@ static void every_scene_has_the_same_bits_with_and_without(void **state) {
     DIR *folder = opendir("scenes");
     assert_non_null(folder);
     for (struct dirent *entry; (entry = readdir(folder));) {
-        if (!strstr(entry->d_name, ".json") || strstr(entry->d_name, "elephant")) continue; // its mesh is fetched
+        if (!strstr(entry->d_name, ".json") || strstr(entry->d_name, "elephant") || strstr(entry->d_name, "statue")) continue; // meshes are fetched
         char path[300];
         snprintf(path, sizeof path, "scenes/%s", entry->d_name);
         for (size_t m = 0; m < COUNT(methods); m++) {
