@@ -7,8 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <skein/attach.h>
 #include <skein/cut.h>
 #include <skein/gradient.h>
+#include <skein/record.h>
 #include "io/advice.h"
 #include "io/mesh.h"
 #include "io/scene_settings.h"
@@ -170,7 +172,8 @@ size_t py_struct_size(const char *name) {
     } sizes[] = {SIZE_OF(error),   SIZE_OF(field),   SIZE_OF(kind),  SIZE_OF(value),      SIZE_OF(setting), SIZE_OF(handle),
                  SIZE_OF(world_desc), SIZE_OF(mesh), SIZE_OF(track), SIZE_OF(view),       SIZE_OF(buffer),  SIZE_OF(surface),
                  SIZE_OF(pose),    SIZE_OF(contact), SIZE_OF(hit),   SIZE_OF(statistics), SIZE_OF(order),   SIZE_OF(constraint_value),
-                 SIZE_OF(gradient_state), SIZE_OF(gradient_desc), SIZE_OF(gradient_result), SIZE_OF(cuts)};
+                 SIZE_OF(gradient_state), SIZE_OF(gradient_desc), SIZE_OF(gradient_result), SIZE_OF(cuts),
+                 SIZE_OF(recorder), SIZE_OF(difference), SIZE_OF(pass)};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         if (!strcmp(sizes[i].name, name)) return sizes[i].size;
     return 0;

@@ -6,6 +6,7 @@ Public classes are those of skein.__all__, with their signatures and the first l
 as attributes, with types, units and help. tools/wheel makes them, so that they are the tables' of that day; a test asks whether anything is missing in them.
 """
 import inspect
+import math
 import re
 import sys
 
@@ -15,9 +16,11 @@ from skein import _fields, _formula, _library as L, _objects
 TYPES = {L.BOOL: "bool", L.INT: "int", L.INT2: "tuple[int, int]", L.INT3: "tuple[int, int, int]", L.REAL: "float",
          L.REAL2: "tuple[float, float]", L.VEC3: "tuple[float, float, float]", L.TEXT: "str"}
 RETURNS = {  # what no signature says; anything else is Any
-    "positions": "np.ndarray", "velocities": "np.ndarray", "position_view": "np.ndarray", "velocity_view": "np.ndarray",
-    "slot_of": "np.ndarray", "vertices": "np.ndarray", "faces": "list[np.ndarray]", "elements": "np.ndarray", "time": "float",
-    "cut": "int", "cut_faces": "None", "mend": "None", "cuts": "np.ndarray",
+    "positions": "Array", "velocities": "Array", "position_view": "Array", "velocity_view": "Array",
+    "slot_of": "Array", "vertices": "Array", "faces": "list[Array]", "elements": "Array", "time": "float",
+    "select": "Array", "nearest_triangles": "Array", "probe": "Any", "move_vertices": "None", "profile": "list[Any]",
+    "record": "Recording", "replay": "Any", "data": "bytes",
+    "cut": "int", "cut_faces": "None", "mend": "None", "cuts": "Array",
     "closed": "bool", "hash": "str", "render": "Image", "snapshot": "State", "particles": "range", "kind": "str", "valid": "bool",
     "remove": "None", "reset": "None", "step": "None", "frame": "None", "close": "None", "restore": "None", "pin": "None",
     "move_pins": "None", "add_particles": "range", "explain": "list[str]", "hashes": "list[str]", "method": "Method",
@@ -25,11 +28,13 @@ RETURNS = {  # what no signature says; anything else is Any
     "constraint_count": "int", "evaluate": "dict[str, Any]", "teleport": "None", "is_live": "bool", "kinds": "list[str]", "methods": "list[str]", "advice": "list[str]",
     "substeps_needed": "float",
     "scene": "dict[str, Any] | None", "from_scene": "World", "film": "Film", "formula": "Formula", "scenes": "list[str]",
-    "study": "np.ndarray", "fit": "Fit",
+    "study": "Array", "fit": "Fit",
 }
 OF_ENVIRONMENTS = {"reset": "tuple[Any, dict[str, Any]]", "step": "tuple[Any, Any, Any, Any, dict[str, Any]]",
                    "build": "World", "start": "None", "act": "None", "reward": "float", "terminated": "bool"}
 LISTS = {"bodies": "Bodies", "constraints": "Constraints", "forces": "Forces", "colliders": "Colliders", "motions": "Motions"}
+WRITTEN = {"method": "str", "time": "float"}  # anything else takes Any
+OF_OPERATORS = {"__len__": "int", "__contains__": "bool", "__eq__": "bool", "__exit__": "None"}
 OPERATORS = ["__len__", "__getitem__", "__iter__", "__enter__", "__exit__", "__contains__", "__eq__", "__hash__"]
 
 
@@ -41,12 +46,29 @@ def words(text, indent):
 
 
 def field_type(field, write=False):
+    """Its type as it is read, or as what may be written: lists and arrays for vectors, functions and objects for texts."""
     if field.choices:
         return "Literal[" + ", ".join(f'"{word}"' for word in field.choices) + "]"
     kind = TYPES[field.type]
-    if write and field.type == L.TEXT:
-        return "str | Callable[..., Any] | Sequence[Any]"
-    return kind
+    if not write:
+        return kind
+    if field.type == L.TEXT:
+        return "str | Object | Callable[..., Any] | Sequence[Any] | Array"
+    if field.type == L.REAL and math.isinf(field.most):
+        return 'float | Literal["infinite"]'
+    return f"{kind} | Sequence[float] | Array" if kind.startswith("tuple") else kind
+
+
+def property_of(name, read, write, text, indent=4):
+    """What is read as one type and written as another: checkers take a property's setter for as strict as its getter, so
+    where they differ it is a descriptor."""
+    pad = " " * indent
+    if write is None:
+        return f"{pad}@property\n{pad}def {name}(self) -> {read}:\n{words(text, pad + '    ')}{pad}    ...\n"
+    if read == write:
+        setter = f"{pad}@{name}.setter\n{pad}def {name}(self, value: {write}) -> None: ...\n"
+        return property_of(name, read, None, text, indent) + setter
+    return f"{pad}{name}: _Settable[{read}, {write}]\n{words(text, pad)}"
 
 
 def signature(function, drop_self=False):
@@ -77,9 +99,7 @@ def signature(function, drop_self=False):
 def member(name, value, out, returns):
     if isinstance(value, property):
         kind = LISTS.get(name, returns.get(name, "Any"))
-        out.append(f"    @property\n    def {name}(self) -> {kind}:\n{words(value.__doc__, ' ' * 8)}        ...\n")
-        if value.fset:
-            out.append(f"    @{name}.setter\n    def {name}(self, value: Any) -> None: ...\n")
+        out.append(property_of(name, kind, WRITTEN.get(name, "Any") if value.fset else None, value.__doc__))
     elif isinstance(value, (classmethod, staticmethod)) or inspect.isfunction(value):
         function = value.__func__ if isinstance(value, (classmethod, staticmethod)) else value
         decorator = f"    @{type(value).__name__}\n" if not inspect.isfunction(value) else ""
@@ -91,7 +111,7 @@ def member(name, value, out, returns):
 
 def public_class(cls):
     bases = ", ".join(base.__name__ for base in cls.__bases__ if base is not object and not base.__name__.startswith("_"))
-    bases = bases.replace("ndarray", "np.ndarray").replace("Fields", "")
+    bases = bases.replace("ndarray", "np.ndarray[Any, Any]").replace("Fields", "")
     out = [f"class {cls.__name__}{f'({bases})' if bases else ''}:\n{words(cls.__doc__, '    ')}"]
     slots = [slot for slot in cls.__dict__.get("__slots__", ()) if not slot.startswith("_")]
     for slot in slots:
@@ -104,7 +124,8 @@ def public_class(cls):
         if name == "__hash__":
             out.append("    def __hash__(self) -> int: ...\n")
         elif name in OPERATORS:
-            out.append(f"    def {name}({signature(value)}) -> Any: ...\n")
+            kind = cls.__name__ if name == "__enter__" else OF_OPERATORS.get(name, "Any")
+            out.append(f"    def {name}({signature(value)}) -> {kind}: ...\n")
         else:
             member(name, value, out, {**RETURNS, **OF_ENVIRONMENTS} if "Environment" in cls.__name__ else RETURNS)
     if cls is skein.World:
@@ -113,11 +134,8 @@ def public_class(cls):
 
 
 def attribute(name, field, indent):
-    kind, given = field_type(field), field_type(field, write=True)
-    line = f"{field.help} ({field.words()})".replace("\\", "\\\\").replace('"""', "'''")
-    quote = line + " " if line.endswith('"') else line
-    out = f"{indent}@property\n{indent}def {name}(self) -> {kind}:\n{indent}    \"\"\"{quote}\"\"\"\n{indent}    ...\n"
-    return out + f"{indent}@{name}.setter\n{indent}def {name}(self, value: {given}) -> None: ...\n"
+    text = f"{field.help} ({field.words()})".replace('"""', "'''")
+    return property_of(name, field_type(field), field_type(field, write=True), text, len(indent))
 
 
 def kind_class(cls):
@@ -134,15 +152,14 @@ def kind_class(cls):
     for group, members in groups.items():
         name = f"{_fields.camel(group)}Of{cls.__name__}"
         text += f"class {name}:\n{''.join(members)}\n"
-        own += f"    @property\n    def {group}(self) -> {name}: ...\n    @{group}.setter\n"
-        own += f"    def {group}(self, value: dict[str, Any]) -> None: ...\n"
+        own += f"    {group}: _Settable[{name}, dict[str, Any]]\n"
     return text + f"class {cls.__name__}({cls.__bases__[0].__name__}):\n{words(table.help, '    ')}{own or '    ...'}\n"
 
 
 def adders(category, name, title):
     """The list of a category: a call for each kind, whose keywords are its fields and groups."""
     out = [f"class {name}(ObjectList):\n"]
-    extra = {L.BODY: ["vertices: Any", "faces: Any"], L.CONSTRAINT: ["particles: Any"],
+    extra = {L.BODY: ["vertices: Any", "faces: Any"], L.COLLIDER: ["vertices: Any", "faces: Any"], L.CONSTRAINT: ["particles: Any"],
              L.MOTION: ["places: Any", "particles: Any", "interval: float"]}.get(category, [])
     for (at, kind), cls in _objects.CLASSES.items():
         if at != category:
@@ -163,8 +180,12 @@ def adders(category, name, title):
 
 def main():
     text = ('# Made by bindings/python/make_stubs.py from the package and its tables of fields; do not edit.\n'
-            "from collections.abc import Callable, Iterator, Sequence\nfrom typing import Any, Literal\n\nimport numpy as np\n\n"
-            "from . import functions as functions, kinds as kinds\n\n__version__: str\nprecision: str\nDEFAULT_STEP: float\n\n")
+            "from collections.abc import Callable, Iterator, Sequence\nfrom typing import Any, Generic, Literal, TypeAlias, TypeVar\n\n"
+            "import numpy as np\nfrom numpy.typing import NDArray\n\n"
+            "from . import functions as functions, kinds as kinds\n\nArray: TypeAlias = NDArray[Any]\n"
+            "_Read = TypeVar(\"_Read\")\n_Written = TypeVar(\"_Written\")\n\nclass _Settable(Generic[_Read, _Written]):\n"
+            "    def __get__(self, owner: Any, kind: Any = ...) -> _Read: ...\n"
+            "    def __set__(self, owner: Any, value: _Written) -> None: ...\n\n__version__: str\nprecision: str\nDEFAULT_STEP: float\n\n")
     classes = [getattr(skein, name) for name in skein.__all__ if inspect.isclass(getattr(skein, name))]
     classes.sort(key=lambda cls: len(cls.__mro__))
     for cls in classes:

@@ -20,6 +20,7 @@ from ._formula import Formula, formula
 from ._gradient import Gradient
 from ._objects import Body, Collider, Constraint, Force, Method, Motion, Object, ObjectList
 from ._pictures import Film, Image, film
+from ._recording import Recording
 from ._scene import scenes
 from ._studies import study
 from ._world import DEFAULT_STEP, State, World
@@ -32,6 +33,6 @@ precision = _library.precision
 __all__ = [
     "Body", "Collider", "Constraint", "DEFAULT_STEP", "Environment", "Environments", "FileFault", "Film", "Fit", "Force",
     "Formula", "Gradient", "HandleFault", "Image", "LimitFault", "MemoryFault", "MeshFault", "Method", "Motion", "NameFault", "Object",
-    "ObjectList", "SkeinError", "State", "SyntaxFault", "ValueFault", "World", "Worlds", "film", "fit", "formula", "functions",
+    "ObjectList", "Recording", "SkeinError", "State", "SyntaxFault", "ValueFault", "World", "Worlds", "film", "fit", "formula", "functions",
     "kinds", "precision", "scenes", "study",
 ]

@@ -68,7 +68,8 @@ class Field:
             if callable(given) and not isinstance(given, str):
                 given = formula(given)
             if isinstance(given, (list, tuple)) or hasattr(given, "tolist"):
-                given = join(given)
+                given = join([self._name_of(one, where) for one in given])
+            given = self._name_of(given, where)
             if not isinstance(given, str):
                 raise self._refuse(given, where)
             return L.Value(0, (0, 0, 0), given.encode())
@@ -85,15 +86,25 @@ class Field:
             raise self._refuse(given, where)
         return L.Value(self.count, (ctypes.c_double * 3)(*found), None)
 
+    def _name_of(self, given, where):
+        """Of an object its name, by which fields refer to it: `on=cloth`."""
+        if not hasattr(given, "_handle"):
+            return given
+        if not given.name:
+            raise fault(L.ERROR_VALUE, where or self.name, f"this {given.kind} has no name: make it with name=\"...\" to refer to it")
+        return given.name
+
     def _refuse(self, given, where):
         return fault(L.ERROR_VALUE, where or self.name, f"expected {self.words()}, not {given!r}")
 
 
 def join(rows):
-    """A list as the text that pins and keys take: numbers by blanks, rows by commas."""
+    """A list as the text that pins, keys and names take: numbers by blanks, rows and words by commas."""
     rows = rows.tolist() if hasattr(rows, "tolist") else rows
     if any(isinstance(row, (list, tuple)) for row in rows):
         return ", ".join(" ".join(f"{x:.17g}" for x in row) for row in rows)
+    if any(isinstance(row, str) for row in rows):
+        return ", ".join(map(str, rows))
     return " ".join(f"{x:.17g}" if isinstance(x, numbers.Number) else str(x) for x in rows)
 
 

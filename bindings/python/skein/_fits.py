@@ -291,7 +291,7 @@ def fit(scene, target, vary, bounds=None, iterations=50, *, body=None, frames=No
 
     It begins with the scene's own numbers and makes the mean squared distance from the target as small as it can, by the
     gradient of the run in double precision (docs/gradients.md: not every method and rule has one). Ctrl-C ends it."""
-    from ._scene import _text
+    from ._scene import _text, plain
     from ._world import World
     if isinstance(iterations, bool) or not isinstance(iterations, (int, np.integer)) or not 1 <= iterations <= MOST_ITERATIONS:
         raise ValueFault([("invalid value", "iterations", f"{iterations!r}: expected a whole number, 1 to {MOST_ITERATIONS}")])
@@ -313,7 +313,7 @@ def fit(scene, target, vary, bounds=None, iterations=50, *, body=None, frames=No
             document["threads"] = threads
         hearing = _Hearing(paths, progress)
         go_on = _GO_ON(hearing)
-        request = _Request(json.dumps(document).encode(), path.encode(), world.dt, particles.ctypes.data, len(particles),
+        request = _Request(json.dumps(document, default=plain).encode(), path.encode(), world.dt, particles.ctypes.data, len(particles),
                            steps.ctypes.data, places.ctypes.data, len(steps), fields, len(paths), int(iterations), go_on, None)
         found = _search(content, request, hearing)
         return Fit(**found, scene=_scene_with(world, json.loads(text) if text else None, found["found"]))

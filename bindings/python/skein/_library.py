@@ -45,6 +45,7 @@ class Handle(c.Structure):
 LOG = c.CFUNCTYPE(None, c.c_void_p, c.c_int, c.c_char_p)
 REPORT = c.CFUNCTYPE(None, c.c_void_p, c.c_int, c.c_char_p, c.c_char_p)
 WRITE = c.CFUNCTYPE(None, c.c_void_p, c.c_char_p)
+PUT = c.CFUNCTYPE(c.c_bool, c.c_void_p, c.c_void_p, c.c_size_t)
 
 
 class WorldDesc(c.Structure):
@@ -82,6 +83,20 @@ class Surface(c.Structure):
 
 class Cuts(c.Structure):
     _fields_ = [("face", c.POINTER(c.c_uint8)), ("count", c.c_size_t), ("changes", c.c_uint64)]
+
+
+class Recorder(c.Structure):
+    _fields_ = [("write", PUT), ("user", c.c_void_p), ("note", c.c_char_p)]
+
+
+class Difference(c.Structure):
+    _fields_ = [("steps", c.c_uint64), ("found", c.c_bool), ("exact", c.c_bool), ("position", c.c_bool),
+                ("velocity", c.c_bool), ("particle", c.c_uint32), ("blocks", c.c_uint32), ("body", Handle),
+                ("is_whole", c.c_bool), ("stopped", c.c_char * 160)]
+
+
+class Pass(c.Structure):
+    _fields_ = [("kind", c.c_char_p), ("label", c.c_char * 64), ("seconds", c.c_double)]
 
 
 class Pose(c.Structure):
@@ -134,6 +149,7 @@ class GradientResult(c.Structure):
 
 STRUCTS = {"error": Error, "field": Field, "kind": Kind, "value": Value, "setting": Setting, "handle": Handle,
            "world_desc": WorldDesc, "mesh": Mesh, "track": Track, "view": View, "buffer": Buffer, "surface": Surface, "cuts": Cuts,
+           "recorder": Recorder, "difference": Difference, "pass": Pass,
            "pose": Pose, "contact": Contact, "hit": Hit, "order": Order,
            "constraint_value": ConstraintValue, "gradient_state": GradientState, "gradient_desc": GradientDesc,
            "gradient_result": GradientResult}
@@ -195,6 +211,15 @@ CALLS = {
     "skein_cut_mend": (status, [world, Handle]),
     "skein_body_cuts": (status, [world, Handle, c.POINTER(Cuts)]),
     "skein_body_elements": (status, [world, Handle, c.c_int, array, size, c.POINTER(size)]),
+    "skein_body_select": (status, [world, Handle, text, array, size, c.POINTER(size)]),
+    "skein_attachments_find": (status, [world, array, size, Handle, array]),
+    "skein_collider_add_mesh": (status, [world, text, c.POINTER(Mesh), c.POINTER(Setting), c.POINTER(Handle)]),
+    "skein_collider_vertices_set": (status, [world, Handle, array, size]),
+    "skein_force_probe": (status, [world, Handle, size, array, array]),
+    "skein_world_profile": (status, [world, c.c_double, c.POINTER(Pass), size, c.POINTER(size)]),
+    "skein_record_begin": (status, [world, c.POINTER(Recorder)]),
+    "skein_record_end": (status, [world]),
+    "skein_replay": (status, [world, text, size, c.POINTER(Difference)]),
     "skein_collider_pose": (status, [world, Handle, c.POINTER(Pose)]),
     "skein_collider_probe": (status, [world, Handle, size, array, array, array]),
     "skein_collider_teleport": (status, [world, Handle]),

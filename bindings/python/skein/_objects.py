@@ -8,6 +8,7 @@ import ctypes
 import numpy as np
 
 from . import _fields, _library as L
+from ._adding import indices, numbers_of
 from ._errors import fault
 from ._library import lib
 
@@ -172,21 +173,21 @@ class Body(Object):
 
     def teleport(self, shift=(0, 0, 0), turn=None):
         """It is elsewhere at once: particles go from x to turn x + shift, velocities turn, and nothing is flung."""
-        shift = np.ascontiguousarray(shift, np.float64).reshape(3)
-        turn = None if turn is None else np.ascontiguousarray(turn, np.float64).reshape(9)
+        shift = numbers_of(shift, (3,), self._place() + ".shift")
+        turn = None if turn is None else numbers_of(turn, (3, 3), self._place() + ".turn")
         self._world._call(lib.skein_body_teleport, self._handle, turn.ctypes.data if turn is not None else None,
                           shift.ctypes.data, place=self._place())
 
     def cut(self, blade):
         """Takes away the faces of a cloth that a blade meets, a triangle (3 x 3, m), with all that held across them; returns
         how many there were."""
-        blade, count = np.ascontiguousarray(blade, np.float64).reshape(9), ctypes.c_size_t()
+        blade, count = numbers_of(blade, (3, 3), self._place() + ".blade"), ctypes.c_size_t()
         self._world._call(lib.skein_cut, self._handle, blade.ctypes.data, ctypes.byref(count), place=self._place())
         return count.value
 
     def cut_faces(self, faces):
         """The same by the numbers that faces have in `faces`."""
-        faces = np.ascontiguousarray(faces, np.uint32).ravel()
+        faces = indices(faces, self._place(), "faces").ravel()
         self._world._call(lib.skein_cut_faces, self._handle, faces.ctypes.data, len(faces), place=self._place())
 
     def mend(self):
@@ -199,6 +200,26 @@ class Body(Object):
         cuts, count = L.Cuts(), self._surface().face_count
         self._world._call(lib.skein_body_cuts, self._handle, ctypes.byref(cuts), place=self._place())
         return np.ctypeslib.as_array(cuts.face, (count,)).astype(bool) if cuts.face else np.zeros(count, bool)
+
+    def select(self, text):
+        """The particles that a text names, as pins are named ("top edge", "box x y z x y z", "sphere x y z radius"), by where
+        they were built: an array of indices in the world."""
+        count = ctypes.c_size_t()
+        self._world._call(lib.skein_body_select, self._handle, str(text).encode(), None, 0, ctypes.byref(count),
+                          place=self._place())
+        out = np.empty(count.value, np.uint32)
+        self._world._call(lib.skein_body_select, self._handle, str(text).encode(), out.ctypes.data, count.value,
+                          ctypes.byref(count), place=self._place())
+        return out
+
+    def nearest_triangles(self, particles):
+        """Of other bodies' particles the triangles of this one that are nearest now, as constraints of the kind "attachment"
+        take them: a row of the particle and three corners for each."""
+        particles = indices(particles, self._place(), "particles").ravel()
+        out = np.empty((len(particles), 4), np.uint32)
+        self._world._call(lib.skein_attachments_find, particles.ctypes.data, len(particles), self._handle, out.ctypes.data,
+                          place=self._place())
+        return out
 
     def elements(self, what="edges"):
         """Sets of its particles that constraints can be made on: "edges", "triangles", "hinges" or "tetrahedra"."""
@@ -257,6 +278,15 @@ class Force(Object):
     __slots__ = ()
     _category = L.FORCE
 
+    def probe(self, points):
+        """What a force field or a potential does now to a particle that rests at each of points (n x 3): n x 3, m/s2 where
+        its formula is per mass, else N."""
+        points = np.ascontiguousarray(points, np.float64).reshape(-1, 3)
+        forces = np.empty((len(points), 3))
+        self._world._call(lib.skein_force_probe, self._handle, len(points), points.ctypes.data, forces.ctypes.data,
+                          place=self._place())
+        return forces
+
 
 class Collider(Object):
     """A solid that particles may not enter. One whose place is set travels there through the next step."""
@@ -274,6 +304,13 @@ class Collider(Object):
     def teleport(self):
         """What was set since the last step is no way, but where it stands from now on."""
         self._world._call(lib.skein_collider_teleport, self._handle, place=self._place())
+
+    def move_vertices(self, vertices):
+        """Where the vertices of a "mesh" collider are from the next step on (n x 3, m, in the mesh's own coordinates): set
+        before each step, it deforms in any way, and its surface has a velocity."""
+        vertices = np.ascontiguousarray(vertices, np.float64).reshape(-1, 3)
+        self._world._call(lib.skein_collider_vertices_set, self._handle, vertices.ctypes.data, len(vertices),
+                          place=self._place())
 
     def probe(self, points):
         """How far points (n x 3) are from its surface, negative inside, and the normals there."""
@@ -371,7 +408,7 @@ class ObjectList:
     def add(self, kind, /, **fields):
         """Adds one of a kind, with fields by their names: groups as dicts, stretch={"stiffness": 2e4}.
 
-        A body of a mesh takes `vertices` (n x 3) and `faces` (lists of vertices); a constraint takes `particles`, a row
+        A body or collider of a mesh takes `vertices` (n x 3) and `faces` (lists of vertices); a constraint takes `particles`, a row
         of indices for each; the motion "cache" takes `places` (times x particles x 3), `particles` and `interval`."""
         if (self._category, kind) not in CLASSES:
             raise self._no_kind(kind)

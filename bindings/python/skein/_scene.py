@@ -38,12 +38,21 @@ def scene_path(word):
     return None
 
 
+def plain(value):
+    """Arrays and numbers of NumPy, of which JSON knows nothing, as lists and numbers."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"a scene has numbers, words, lists and dicts, and no {type(value).__name__}: {value!r}")
+
+
 def _text(scene):
     """A scene's JSON and the path that its files lie beside; None for a mesh."""
     if isinstance(scene, dict):
-        return json.dumps(scene).encode(), "scene.json"
+        return json.dumps(scene, default=plain).encode(), "scene.json"
     if isinstance(scene, str) and scene.lstrip().startswith("{"):
         return scene.encode(), "scene.json"
+    if not isinstance(scene, (str, os.PathLike)):
+        raise TypeError(f"a scene is a dict, JSON, a path or a name, not {type(scene).__name__}")
     path = scene_path(scene)
     if path is None:
         raise FileFault([("file", os.fspath(scene), "there is no such file, and no scene of that name; there are: "
@@ -57,7 +66,7 @@ def _text(scene):
 def _sets(sets, text):
     """As --set has them, a C list that ends with NULL. What a scene wants to be written is left out: a film, say."""
     if isinstance(sets, dict):
-        sets = [f"{path}={value if isinstance(value, str) else json.dumps(value)}" for path, value in sets.items()]
+        sets = [f"{path}={value if isinstance(value, str) else json.dumps(value, default=plain)}" for path, value in sets.items()]
     elif isinstance(sets, str):
         sets = [sets]
     all_sets = [s.encode() for s in (["output=[]"] if text and b'"output"' in text else []) + list(sets)]
@@ -109,7 +118,7 @@ def _finite(value):
 
 def open_view(fields):
     """A scene that is nothing but a view, for its view; to be freed."""
-    text, found = json.dumps({"view": fields}).encode(), []
+    text, found = json.dumps({"view": fields}, default=plain).encode(), []
     report = L.REPORT(lambda _, status, where, message: found.append(
         (status, where.decode(errors="replace"), message.decode(errors="replace"))))
     opened = lib.py_scene_open(text, len(text), b"view", _sets((), text), report, None)

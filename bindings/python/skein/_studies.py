@@ -10,7 +10,7 @@ import numpy as np
 from . import _library as L
 from ._errors import FileFault, faults
 from ._library import lib
-from ._scene import scene_path
+from ._scene import plain, scene_path
 
 _WORDS = ("outcome", "state_hash", "scene_hash", "skein", "precision", "command", "said")
 _COUNTS = ("frames", "steps")
@@ -62,7 +62,7 @@ def study(study, out=None, *, jobs=None, threads=1, progress=None):
 
     Ctrl-C ends it after what is under way has heard of it; with `out` what was done is kept."""
     if isinstance(study, dict):
-        text, path = json.dumps(study).encode(), "study.json"
+        text, path = json.dumps(study, default=plain).encode(), "study.json"
     elif isinstance(study, str) and study.lstrip().startswith("{"):
         text, path = study.encode(), "study.json"
     else:

@@ -14,6 +14,7 @@ import types
 import numpy as np
 
 from . import _library as L, _objects
+from ._adding import indices, numbers_of
 from ._errors import fault, of
 from ._fields import settings
 from ._library import lib
@@ -29,10 +30,17 @@ os.register_at_fork(after_in_child=lambda: _after_fork.__setitem__(0, _after_for
 class Owner:
     """The C world, destroyed when nobody holds it."""
 
-    __slots__ = ("pointer", "scene", "log", "forks", "__weakref__")
+    __slots__ = ("pointer", "scene", "log", "forks", "recorder", "__weakref__")
 
     def __init__(self, pointer, scene, log):
         self.pointer, self.scene, self.log, self.forks = pointer, scene, log, _after_fork[0]
+        self.recorder = None  # what C calls while it records, which must live as long
+
+    def check_process(self):
+        """Fails in a child of fork() that this world was made before."""
+        if self.forks != _after_fork[0]:
+            raise RuntimeError("this world was made before fork(): its threads are not in this process. Make worlds after "
+                               "the fork")
 
     def destroy(self):
         pointer, self.pointer = self.pointer, None
@@ -60,6 +68,11 @@ def described(threads, log):
     callback = desc.log = L.LOG(hear)
     desc.thread_count = threads
     return desc, callback
+
+
+def refuse_step(dt, count):
+    """What is wrong with a step of `dt` seconds, or so many of them, that are no such numbers."""
+    return fault(L.ERROR_VALUE, "step", f"expected seconds and a count of steps, not dt={dt!r}, count={count!r}")
 
 
 class State(bytes):
@@ -226,21 +239,23 @@ class World:
         """Goes on by `count` steps of dt seconds (World.dt if it is left out). Other threads of Python run meanwhile."""
         owner = self._owner
         if owner.forks != _after_fork[0]:
-            raise RuntimeError("this world was made before fork(): its threads are not in this process. Make worlds after "
-                               "the fork")
+            owner.check_process()
         with self._lock:
             pointer = owner.pointer
             if pointer is None:
                 raise ValueError("the world is closed")
             dt = self.dt if dt is None else dt
-            if count < 0:
-                raise fault(L.ERROR_VALUE, "step", f"expected a count of steps, not {count}")
-            while count > _AT_ONCE:  # Ctrl-C is heard in between
-                if lib.py_steps(pointer, dt, _AT_ONCE):
+            try:
+                if count < 0:
+                    raise fault(L.ERROR_VALUE, "step", f"expected a count of steps, not {count}")
+                while count > _AT_ONCE:  # Ctrl-C is heard in between
+                    if lib.py_steps(pointer, dt, _AT_ONCE):
+                        raise of(lib.skein_world_error(pointer).contents)
+                    count -= _AT_ONCE
+                if lib.py_steps(pointer, dt, count):
                     raise of(lib.skein_world_error(pointer).contents)
-                count -= _AT_ONCE
-            if lib.py_steps(pointer, dt, count):
-                raise of(lib.skein_world_error(pointer).contents)
+            except (ctypes.ArgumentError, TypeError):
+                raise refuse_step(dt, count) from None
             self._settled = True
 
     def frame(self, count=1):
@@ -308,7 +323,7 @@ class World:
         return out
 
     def _write(self, function, xyz, particles):
-        xyz = np.ascontiguousarray(np.broadcast_to(np.asarray(xyz, np.float64), (len(particles), 3)))
+        xyz = numbers_of(xyz, (len(particles), 3), "", spread=True)
         self._call(function, particles.start, len(particles), xyz.ctypes.data)
 
     @property
@@ -377,14 +392,14 @@ class World:
         self._call(lib.skein_particle_pin, self._index(particle), bool(pinned))
 
     def _index(self, particle):
-        if not 0 <= particle < len(self):
-            raise fault(L.ERROR_VALUE, "particle", f"expected 0 to {len(self) - 1}, not {particle}")
-        return particle
+        if not hasattr(particle, "__index__") or not 0 <= particle < len(self):
+            raise fault(L.ERROR_VALUE, "particle", f"expected 0 to {len(self) - 1}, not {particle!r}")
+        return particle.__index__()
 
     def move_pins(self, particles, places):
         """Says where pinned particles are at the end of the next step: they go there in straight lines."""
-        particles = np.ascontiguousarray(np.atleast_1d(particles), np.uint32)
-        places = np.ascontiguousarray(np.broadcast_to(np.asarray(places, np.float64), (len(particles), 3)))
+        particles = indices(np.atleast_1d(particles), "move_pins", "particles")
+        places = numbers_of(places, (len(particles), 3), "move_pins: places", spread=True)
         self._call(lib.skein_pins_move, particles.ctypes.data, len(particles), places.ctypes.data)
 
     # ---- measures ----
@@ -437,8 +452,10 @@ class World:
 
     def ray_cast(self, origin, direction, of="body"):
         """What a ray meets first among "body" or "collider": object, t (m), point, normal; None where it meets nothing."""
+        if of not in ("body", "collider"):
+            raise fault(L.ERROR_VALUE, "ray_cast", f"expected of=\"body\" or \"collider\", not {of!r}")
         hit, category = L.Hit(), L.CATEGORIES.index(of)
-        origin, direction = np.array(origin, np.float64), np.array(direction, np.float64)
+        origin, direction = numbers_of(origin, (3,), "ray_cast: origin"), numbers_of(direction, (3,), "ray_cast: direction")
         self._call(lib.skein_ray_cast, origin.ctypes.data, direction.ctypes.data, category, ctypes.byref(hit))
         if not np.isfinite(hit.t):
             return None
@@ -466,6 +483,36 @@ class World:
         """How many substeps a step of dt takes to be stable under the method: inf where none is enough."""
         with self._lock:
             return lib.py_advise(self._pointer, self.dt if dt is None else dt, L.WRITE(lambda *_: None), None)
+
+    def profile(self, dt=None):
+        """Takes a step, with the same bits, op after op, and measures each: a list with kind, label and seconds."""
+        self._owner.check_process()
+        dt, most, count = self.dt if dt is None else dt, 4096, ctypes.c_size_t()
+        passes = (L.Pass * most)()
+        self._call(lib.skein_world_profile, dt, passes, most, ctypes.byref(count))
+        self._settled = True
+        return [types.SimpleNamespace(kind=one.kind.decode(), label=one.label.decode(), seconds=one.seconds)
+                for one in passes[:min(count.value, most)]]
+
+    # ---- recordings ----
+
+    def record(self, note=""):
+        """Records all that is done to the world and what comes of it, until the `with` block ends:
+
+            with world.record() as recording:
+                world.step(count=100)
+            twin.replay(recording.data)          # a world that was built by the same calls
+
+        Adding or removing objects or particles ends it, and replay() says so."""
+        from ._recording import Recording
+        return Recording(self, note)
+
+    def replay(self, data):
+        """Does again what was recorded, in a world that was built as that one was, and compares each step, bit for bit.
+        Returns steps (that came out the same), found (whether one did not) and then particle, position, velocity, exact, blocks
+        and body; is_whole and stopped are about the recording."""
+        from ._recording import replay
+        return replay(self, bytes(data))
 
     # ---- scenes and pictures ----
 

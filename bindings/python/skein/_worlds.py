@@ -6,13 +6,14 @@ Environment has reset() and step() as gymnasium has them, without needing it; En
 import concurrent.futures
 import contextlib
 import ctypes
+import operator
 import os
 
 import numpy as np
 
 from ._errors import fault, of
 from ._library import ERROR_VALUE, lib, world as world_pointer
-from ._world import World
+from ._world import World, refuse_step
 
 
 class Worlds:
@@ -55,11 +56,17 @@ class Worlds:
     def step(self, dt=None, count=1):
         """Each goes on by `count` steps of dt seconds (the first one's World.dt). The first fault is raised, once all
         that could be done is done."""
-        if count < 0:
-            raise fault(ERROR_VALUE, "step", f"expected a count of steps, not {count}")
         if not self._worlds:
             return
         dt = self._worlds[0].dt if dt is None else dt
+        for world in self._worlds:
+            world._owner.check_process()  # the pool's threads are not in a child, and would be waited for
+        try:
+            dt, count = float(dt), operator.index(count)
+        except (TypeError, ValueError):
+            raise refuse_step(dt, count) from None
+        if count < 0:
+            raise fault(ERROR_VALUE, "step", f"expected a count of steps, not {count}")
         if not self._pool:
             self._step_some(0, self._worlds, dt, count)
             return
@@ -187,6 +194,8 @@ class Environments:
         return np.stack([member.reset(seed=s)[0] for member, s in zip(self.members, seeds)]), {}
 
     def step(self, actions):
+        if len(actions) != len(self):
+            raise fault(ERROR_VALUE, "step", f"expected an action for each of {len(self)} environments, not {len(actions)}")
         for member, action in zip(self.members, actions):
             member.act(member.world, action)
         self.worlds.step(count=self.members[0].steps)

@@ -6,6 +6,7 @@ import math
 import multiprocessing
 import os
 import pickle
+import re
 import subprocess
 import tempfile
 import threading
@@ -319,7 +320,128 @@ class State(unittest.TestCase):
         self.assertTrue(len(world.explain()) > 3)
 
 
+class Solids(unittest.TestCase):
+    """Meshes as solids, from arrays, which deform; what is fastened to another body; fields that are asked."""
+
+    corners = np.array([[-1, 0, -1], [1, 0, -1], [0, 0, 1], [0, 0.5, 0]], float)
+    faces = [[0, 3, 1], [1, 3, 2], [2, 3, 0], [0, 1, 2]]
+
+    def test_a_mesh_that_deforms_pushes(self):
+        world = skein.World(threads=1)
+        world.add_particles([[0, 0.6, 0]])
+        ground = world.colliders.mesh(vertices=self.corners, faces=self.faces)
+        np.testing.assert_allclose(ground.probe([[0, 1.5, 0]])[0], [1], atol=1e-6)
+        for i in range(60):  # its tip rises by half a metre in a second
+            ground.move_vertices(np.vstack([self.corners[:3], [[0, 0.5 + (i + 1) / 120, 0]]]))
+            world.step(1 / 60)
+        np.testing.assert_allclose(ground.probe([[0, 2, 0]])[0], [1], atol=1e-6)
+        self.assertGreater(world.positions[0, 1], 0.99)
+        self.assertRaisesRegex(skein.ValueFault, "2 places for 4 vertices", ground.move_vertices, self.corners[:2])
+        self.assertRaisesRegex(skein.ValueFault, "no vertices", world.colliders.plane().move_vertices, self.corners)
+        self.assertRaisesRegex(skein.ValueFault, "a mesh has both", world.colliders.mesh, vertices=self.corners)
+        self.assertRaisesRegex(skein.MeshFault, "without a mesh", world.colliders.plane, vertices=self.corners, faces=self.faces)
+        field = world.colliders.field(vertices=self.corners, faces=self.faces)
+        np.testing.assert_allclose(field.probe([[0, 1.5, 0]])[0], [1], atol=0.05)
+
+    def test_what_is_fastened_to_a_body_goes_with_it(self):
+        world = skein.World(threads=1)
+        sheet = world.bodies.cloth(name="sheet", grid=(5, 5), pins="all")
+        patch = world.bodies.cloth(name="patch", grid=(3, 3), size=(0.2, 0.2), position=(0, 0.1, 0))
+        corners = patch.select("corners")
+        self.assertEqual(sorted(corners - patch.particles.start), [0, 2, 6, 8])
+        rows = sheet.nearest_triangles(corners)
+        self.assertEqual(rows.shape, (4, 4))
+        self.assertTrue(set(rows[:, 1:].ravel()) <= set(sheet.particles))
+        world.constraints.attachment(particles=rows, stiffness=2000)
+        world.forces.gravity(on=patch)
+        world.step(1 / 60, count=60)
+        self.assertLess(np.abs(patch.positions[:, 1] - 0.1).max(), 0.02)
+        self.assertRaisesRegex(skein.NameFault, "top edge", sheet.select, "tip edge")
+        self.assertRaisesRegex(skein.ValueFault, "'sheet' itself", sheet.nearest_triangles, [0])
+
+    def test_objects_and_lists_of_names(self):
+        world = skein.World(threads=1)
+        a, b = (world.bodies.cloth(name=name, grid=(3, 3)) for name in "ab")
+        nobody = world.bodies.rope()
+        self.assertEqual(world.forces.drag(on=[a, b], rate=1).on, "a, b")
+        self.assertEqual(world.forces.drag(on=["a", "b"], rate=1).on, "a, b")
+        self.assertEqual(world.forces.drag(on=b, rate=1).on, "b")
+        world.step()  # such bodies are there
+        self.assertRaisesRegex(skein.ValueFault, "this rope has no name", world.forces.drag, on=nobody)
+
+    def test_a_field_is_asked(self):
+        world = skein.World(threads=1)
+        swirl = world.forces.force_field(force=lambda p: (p.z, 0, -p.x))
+        np.testing.assert_allclose(swirl.probe([[1, 2, 3], [0, 0, 1]]), [[3, 0, -1], [1, 0, 0]], atol=1e-6)
+        self.assertRaisesRegex(skein.ValueFault, "no field", world.forces.gravity().probe, [[0, 0, 0]])
+
+
+class Recordings(unittest.TestCase):
+    def build(self, threads=1):
+        world = skein.World(threads=threads)
+        world.bodies.cloth(grid=(9, 9), pins="top corners")
+        world.forces.gravity()
+        return world
+
+    def test_a_run_is_done_again_and_compared(self):
+        world = self.build()
+        with world.record("nine by nine") as recording:
+            world.step(count=10)
+            world.forces[0].acceleration = (0, -5, 0)
+            world.step(count=20)
+        twin = self.build(threads=2)
+        found = twin.replay(recording.data)
+        self.assertEqual((found.steps, found.found, found.is_whole, found.stopped), (30, False, True, ""))
+        self.assertEqual(twin.hash(), world.hash())
+        other = self.build()
+        other.bodies[0].bend.rigidity = 1  # a snapshot takes it back: only what was not recorded differs
+        self.assertFalse(other.replay(recording.data).found)
+        damaged = bytearray(recording.data)
+        damaged[len(damaged) // 2] ^= 4
+        self.assertRaisesRegex(skein.SyntaxFault, "damaged", self.build().replay, damaged)
+        self.assertRaisesRegex(skein.ValueFault, "built in the same way", skein.World().replay, recording.data)
+
+    def test_what_ends_one(self):
+        world = self.build()
+        with world.record() as recording:
+            self.assertRaisesRegex(skein.ValueFault, "being recorded", world.record().__enter__)
+            world.step()
+            world.bodies.rope()
+        self.assertIn("added", self.build().replay(recording.data).stopped)
+        with world.record() as recording:
+            world.step()
+            world.close()
+        self.assertGreater(len(recording.data), 1000)
+
+    def test_a_profile_is_a_step(self):
+        world, twin = self.build(), self.build()
+        passes = world.profile(1 / 60)
+        twin.step(1 / 60)
+        self.assertEqual(world.hash(), twin.hash())
+        self.assertIn("project", {one.kind for one in passes})
+        self.assertTrue(all(one.seconds >= 0 for one in passes))
+
+
 class Words(unittest.TestCase):
+    def test_what_is_no_number_is_named(self):
+        world = skein.World(threads=1)
+        sheet = world.bodies.cloth(grid=(3, 3), pins="corners")
+        for words, call in [("dt='x'", lambda: world.step("x")), ("count=2.5", lambda: world.step(count=2.5)),
+                            ("expected 0 to 8, not 1.5", lambda: world.pin(1.5)), ("from 0 on", lambda: world.move_pins([-3], [0, 0, 0])),
+                            ("1 x 3 numbers", lambda: world.move_pins([0], [0, 0])), ("from 0 on", lambda: sheet.cut_faces([-1])),
+                            ("expected 9 x 3 numbers, not 4 x 3", lambda: setattr(world, "positions", np.zeros((4, 3)))),
+                            ("blade: expected 3 x 3", lambda: sheet.cut([[0, 0, 0], [1, 1, 1]])),
+                            ("shift: expected 3", lambda: sheet.teleport((0, 1))),
+                            ("not 'roof'", lambda: world.ray_cast((0, 0, 0), (0, 0, 1), of="roof")),
+                            ("origin: expected 3", lambda: world.ray_cast((0, 0), (0, 0, 1)))]:
+            with self.subTest(words):
+                self.assertRaisesRegex(skein.ValueFault, re.escape(words), call)
+        self.assertRaisesRegex(TypeError, "not list", skein.World.from_scene, [1])
+        self.assertRaisesRegex(TypeError, "no object", skein.World.from_scene, {"bodies": [object()]})
+        made = skein.World.from_scene({"bodies": [{"type": "cloth", "grid": np.array([4, 4]), "density": np.float32(0.25)}]},
+                                      {"bodies.0.position": np.array([0, 1, 0])})
+        self.assertEqual((len(made), made.bodies[0].density, made.bodies[0].position), (16, 0.25, (0, 1, 0)))
+
     def test_advice(self):
         world = skein.World.from_scene(f"{ROOT}/scenes/hanging.json")
         self.assertEqual(world.advice(), [])

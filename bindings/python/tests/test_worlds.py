@@ -1,5 +1,6 @@
 """Many worlds on threads, and environments: the same bits as one after the other."""
 import os
+import signal
 import unittest
 
 import numpy as np
@@ -49,6 +50,21 @@ class Together(unittest.TestCase):
         self.assertEqual(worlds[7].statistics().steps, 1)  # the others went on
         self.assertRaisesRegex(skein.ValueFault, r"worlds\.", worlds.step, -1)
         self.assertRaisesRegex(skein.ValueFault, "count of steps", worlds.step, count=-1)
+        self.assertRaisesRegex(skein.ValueFault, "dt='x'", worlds.step, "x")
+        self.assertRaisesRegex(skein.ValueFault, "count=2.5", worlds.step, count=2.5)
+
+    def test_a_child_of_fork_is_told_and_does_not_wait_for_threads_that_it_has_not(self):
+        worlds = skein.Worlds(4, cloth, threads=2)
+        worlds.step(1 / 60)  # the threads are there
+        child = os.fork()
+        if not child:
+            signal.alarm(20)
+            try:
+                worlds.step(1 / 60)
+            except RuntimeError as error:
+                os._exit(0 if "fork()" in str(error) else 1)
+            os._exit(2)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
 
 
 class Push(skein.Environment):
