@@ -250,7 +250,9 @@ static void put_panel(const plot *p, size_t panel) {
     size_t shown = p->shown[panel];
     label_of(p, io_study_varied(p->study, (size_t)p->x), "", x);
     label_of(p, io_study_measure(p->study, shown), io_study_measure_unit(p->study, shown), m);
-    io_output_printf(p->o, "reset; set xlabel '%s' noenhanced; set datafile missing 'nan'; set grid lc rgb '#dddddd'\n", x);
+    // a map keeps cells that nothing is known of, and shows them white: without them gnuplot would take it for a smaller one
+    const char *missing = p->is_map ? "" : "set datafile missing 'nan'; ";
+    io_output_printf(p->o, "reset; set xlabel '%s' noenhanced; %sset grid lc rgb '#dddddd'\n", x, missing);
     io_output_printf(p->o, "set palette defined (0 '#30123b', 0.25 '#3a539b', 0.5 '#21908d', 0.75 '#5dc863', 1 '#fde725')\n");
     if (p->y != NONE) {
         label_of(p, io_study_varied(p->study, (size_t)p->y), "", y);

@@ -119,6 +119,26 @@ static void a_plot_shows_the_rows(void **state) {
     free(svg);
 }
 
+/* Cells of a map that have no row that ran stay empty, and all others where they are: gnuplot complains of a grid that is too small
+ * where it is not given the empty ones. */
+static void a_map_keeps_the_cells_of_rows_that_failed(void **state) {
+    (void)state;
+    char path[700];
+    write_scene(in_folder("map.json"), "{'study': 1, 'scene': {'frames': 2, 'bodies': [{'type': 'rope', 'count': 5}]}, 'vary': "
+                                       "{'bodies.0.stretch.stiffness': [100, 1000, -5], 'method.substeps': [5, 0]}, 'measure': ['lowest']}");
+    outcome o = SKEIN("study", in_folder("map.json"), "--out", in_folder("map"), "--quiet");
+    assert_status(o, 1);
+    assert_contains(o.err, "4 rows refused");
+    assert_null(strstr(o.err, "warning"));
+    outcome_free(&o);
+    snprintf(path, sizeof path, "%s/plot.gnuplot", in_folder("map"));
+    char *script = read_text(path);
+    assert_contains(script, "with image");
+    assert_contains(script, "2 1 nan");
+    assert_null(strstr(script, "missing"));
+    free(script);
+}
+
 static void several_processes_make_the_same_table(void **state) {
     (void)state;
     char out[512];
@@ -401,6 +421,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_row_is_done_again_by_its_command),
         cmocka_unit_test(a_plot_shows_the_rows),
+        cmocka_unit_test(a_map_keeps_the_cells_of_rows_that_failed),
         cmocka_unit_test(several_processes_make_the_same_table),
         cmocka_unit_test(killed_studies_go_on),
         cmocka_unit_test(interrupted_studies_keep_their_rows),
