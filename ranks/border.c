@@ -64,6 +64,12 @@ static void find_own(shared_run *run, const skein_share_look *look, const skein_
         if (!looks(run, look, b) && !is_seen(run, look, b)) own[b].any = 0;
 }
 
+/* What was spent on others since, and not on birds. */
+static void count_exchange(shared_run *run, double begun) {
+    run->tale.exchange += shared_seconds() - begun;
+    run->tale.work -= shared_seconds() - begun;
+}
+
 bool shared_measure_all(void *user, const skein_share_look *look, const skein_state *state, skein_border *border) {
     shared_run *run = user;
     *border = (skein_border){.alone = true};
@@ -87,8 +93,7 @@ bool shared_measure_all(void *user, const skein_share_look *look, const skein_st
             widen(border->low, border->high, box->low);
             widen(border->low, border->high, box->high);
         }
-    run->tale.exchange += shared_seconds() - begun;
-    run->tale.work -= shared_seconds() - begun;
+    count_exchange(run, begun);
     return true;
 }
 
@@ -224,18 +229,35 @@ static void clear(const shared_body *body, const skein_state *state) {
     }
 }
 
-bool shared_exchange(void *user, const skein_share_look *look, const skein_cells *cells, const skein_state *state) {
+void shared_clear_room(shared_run *run) {
+    const skein_state state = shared_state(run);
+    for (size_t b = 0; b < run->body_count; b++) {
+        shared_body *body = &run->bodies[b];
+        if (body->of.loose) body->seen = body->own;
+        if (body->of.loose || shared_is_shadow(body)) clear(body, &state);
+    }
+    run->unclean = false;
+}
+
+bool shared_send(void *user, const skein_share_look *look, const skein_cells *cells, const skein_state *state) {
     shared_run *run = user;
     double begun = shared_seconds();
-    for (size_t b = 0; b < run->body_count; b++) {
-        if (run->bodies[b].of.loose && is_seen(run, look, b)) run->bodies[b].seen = run->bodies[b].own;
-        if (shared_is_shadow(&run->bodies[b])) clear(&run->bodies[b], state);
-    }
     for (int r = 0; r < run->count; r++) {
         if (!are_near(run, look, cells, run->rank, r)) continue;
         list_for(run, look, cells, state, r);
         run->ranks->send_begin(r, run->out[r].data, run->out[r].size);
         run->tale.bytes += (double)run->out[r].size;
+    }
+    count_exchange(run, begun);
+    return true;
+}
+
+bool shared_receive(void *user, const skein_share_look *look, const skein_cells *cells, const skein_state *state) {
+    shared_run *run = user;
+    double begun = shared_seconds();
+    for (size_t b = 0; b < run->body_count; b++) {
+        if (run->bodies[b].of.loose && is_seen(run, look, b)) run->bodies[b].seen = run->bodies[b].own;
+        if (shared_is_shadow(&run->bodies[b])) clear(&run->bodies[b], state);
     }
     for (int r = 0; r < run->count; r++) {
         if (!are_near(run, look, cells, r, run->rank)) continue;
@@ -251,7 +273,6 @@ bool shared_exchange(void *user, const skein_share_look *look, const skein_cells
             clear(&run->bodies[b], state);
         }
     if (shared_others(run) > run->tale.seen) run->tale.seen = shared_others(run);
-    run->tale.exchange += shared_seconds() - begun;
-    run->tale.work -= shared_seconds() - begun;
+    count_exchange(run, begun);
     return true;
 }

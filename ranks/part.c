@@ -43,6 +43,7 @@ bool shared_has_loose(const shared_run *run) {
 }
 
 void shared_forget_birds(shared_run *run) {
+    run->unclean = true;
     for (size_t b = 0; b < run->body_count; b++)
         if (run->bodies[b].of.loose) run->bodies[b].own = run->bodies[b].seen = 0;
 }
@@ -65,6 +66,7 @@ void shared_copy_own(shared_run *run, shared_bytes *to) {
 
 void shared_add(shared_run *run, const shared_bird *birds, size_t count) {
     if (!count) return;
+    run->unclean = true;
     const skein_state state = shared_state(run);
     for (size_t k = 0; k < count; k++) {
         shared_body *body = &run->bodies[shared_body_with(run, birds[k].number)];
@@ -131,7 +133,7 @@ void shared_make_room(shared_run *run, const size_t *birds) {
     shared_forget_birds(run);
     lay_out(run);
     make_world(run);
-    skein_part part = {run, run->number, shared_measure_all, shared_exchange};
+    skein_part part = {run, run->number, shared_measure_all, shared_send, shared_receive};
     if (skein_world_part_set(run->world, &part) || skein_world_time_set(run->world, time))
         shared_give_up(run, skein_world_error(run->world)->message);
     shared_add(run, (const shared_bird *)(const void *)kept.data, kept.size / sizeof(shared_bird));
@@ -149,6 +151,7 @@ static void trim(const shared_run *run, shared_body *body) {
 
 /* Fills the places of those that have gone with the last ones of their body. */
 static void close_up(shared_run *run, const skein_state *state, const uint32_t *gone, size_t count) {
+    run->unclean |= count > 0;
     for (size_t k = 0; k < count; k++) {
         shared_body *body = &run->bodies[run->body_of[gone[k]]];
         trim(run, body);

@@ -302,6 +302,7 @@ static void step(shared_run *run, double time, double dt) {
     for (size_t b = 0; b < run->body_count; b++) run->bodies[b].most = run->bodies[b].own;
     double work = shared_seconds();
     do {
+        if (run->unclean) shared_clear_room(run);
         if (skein_world_time(run->world) != time && skein_world_time_set(run->world, time))
             shared_give_up(run, skein_world_error(run->world)->message);
         if (skein_world_step(run->world, dt)) shared_give_up(run, skein_world_error(run->world)->message);

@@ -83,6 +83,7 @@ struct shared_run {
     size_t cut_count, steps;
     shared_bytes before; /* own birds as a step began, while it may turn out that the room is too small */
     bool keeps, kept; /* it is, and already was when all were spread */
+    bool unclean; /* who is its own has changed: there may be somebody left where there is room */
     bool dismissed;
     bool guessed; /* space is cut without knowing what birds cost */
     struct {
@@ -131,8 +132,11 @@ void shared_migrate(shared_run *run);
 void shared_balance(shared_run *run);
 
 /* ---- border.c: what the part's world asks for ---- */
+/* Nobody is where there is room for others: so it is before a step, and what comes from others is put there in its course. */
+void shared_clear_room(shared_run *run);
 bool shared_measure_all(void *user, const skein_share_look *look, const skein_state *state, skein_border *border);
-bool shared_exchange(void *user, const skein_share_look *look, const skein_cells *cells, const skein_state *state);
+bool shared_send(void *user, const skein_share_look *look, const skein_cells *cells, const skein_state *state);
+bool shared_receive(void *user, const skein_share_look *look, const skein_cells *cells, const skein_state *state);
 
 /* ---- record.c: all ranks call these at once ---- */
 /* The leader names the folder. */

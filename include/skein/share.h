@@ -60,10 +60,13 @@ typedef struct skein_part {
     const uint32_t *number;
     /* Fills in where all are that are seen. */
     bool (*measure)(void *user, const skein_share_look *look, const skein_state *state, skein_border *border);
+    /* Sends the other parts what they look at: those of its own that are seen, in the cells around others'. The state is only read. What
+     * is sent may be under way until receive() is asked: meanwhile the world finds the cells of its own. */
+    bool (*send)(void *user, const skein_share_look *look, const skein_cells *cells, const skein_state *state);
     /* Has all seen ones in the cells around those that look here among the particles of the loose bodies that are seen, behind
-     * those of its own and with inverse mass 0, or of a shadow, and the rest of those nowhere. False where it cannot: the step fails. Both are
-     * asked in each substep, once for each rule that looks at neighbours, on the thread that steps. */
-    bool (*exchange)(void *user, const skein_share_look *look, const skein_cells *cells, const skein_state *state);
+     * those of its own and with inverse mass 0, or of a shadow, and the rest of those nowhere. False where it cannot: the step fails. These
+     * are asked in each substep, once for each rule that looks at neighbours, on the thread that steps. */
+    bool (*receive)(void *user, const skein_share_look *look, const skein_cells *cells, const skein_state *state);
 } skein_part;
 
 /* Makes the world a part of a run (copied), or with NULL a whole one. The world then has rules that can be shared: the next

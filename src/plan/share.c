@@ -11,8 +11,9 @@ typedef struct sk_window {
     uint32_t *line; /* its first cell's number, by these */
     size_t count, capacity;
     size_t wide; /* cells of a line */
-    bool whole;  /* nobody who is sorted is outside */
-    uint32_t *still; /* slots of those who are sorted and not moved: others' */
+    bool alone;  /* all are in this part */
+    bool whole;  /* nobody of this part's own who is sorted is outside */
+    uint32_t *still; /* slots of those who are sorted and not moved: others', and the room for them */
     size_t still_count, still_capacity;
     uint64_t *mark; /* bits, by place: where one of those may be, in the cells that have any */
     size_t mark_capacity;
@@ -117,43 +118,38 @@ static inline void take(sk_extent *box, sk_vec4 p) {
     box->low[2] = sk_min(box->low[2], p.z), box->high[2] = sk_max(box->high[2], p.z);
 }
 
-/* The box around those that look and are this part's own: others' have neither mass nor inverse mass. */
-static sk_extent find_lookers(const sk_run *run, const sk_group *group) {
+/* The boxes around this part's own that look, and that are looked at; who is not moved, others' and the room for them among these,
+ * is listed. Others' have neither mass nor inverse mass. False: no memory. */
+static bool find_own(sk_window *window, const sk_run *run, const sk_op *op, sk_extent *look, sk_extent *seen) {
     const sk_vec4 *x = run->vector[SK_X], *v = run->vector[SK_V];
-    sk_extent box = nobody;
+    const sk_group *group = op->group, *lookers = op->seen;
+    const bool both = group->first == lookers->first && group->end == lookers->end;
+    sk_extent all = nobody, own = nobody;
+    size_t count = 0, slots = group->end_slot - group->first_slot;
+    if (!sk_reserve(run->allocator, (void **)&window->still, &window->still_capacity, slots + 1, sizeof *window->still)) return false;
     for (size_t slot = group->first_slot; slot < group->end_slot; slot++) {
         uint32_t i = run->particle_of[slot];
         sk_vec4 p = x[slot];
-        if (i - group->first >= group->end - group->first || (p.w == 0 && v[slot].w == 0) || !is_somewhere(p)) continue;
-        take(&box, p);
-    }
-    return box;
-}
-
-/* The box around all that are sorted; those that are not moved are listed. False: no memory. */
-static bool find_sorted(sk_window *window, const sk_run *run, const sk_group *group, sk_extent *box) {
-    const sk_vec4 *x = run->vector[SK_X];
-    sk_extent all = nobody;
-    size_t count = 0;
-    if (!sk_reserve(run->allocator, (void **)&window->still, &window->still_capacity, group->end_slot - group->first_slot + 1,
-                    sizeof *window->still))
-        return false;
-    for (size_t slot = group->first_slot; slot < group->end_slot; slot++) {
-        uint32_t i = run->particle_of[slot];
-        sk_vec4 p = x[slot];
-        if (i - group->first >= group->end - group->first || !is_somewhere(p)) continue;
-        take(&all, p);
+        if (i - group->first >= group->end - group->first) continue;
         if (p.w == 0) window->still[count++] = (uint32_t)slot;
+        if ((p.w == 0 && v[slot].w == 0) || !is_somewhere(p)) continue;
+        take(&all, p);
+    }
+    for (size_t slot = lookers->first_slot; slot < lookers->end_slot && !both; slot++) {
+        uint32_t i = run->particle_of[slot];
+        sk_vec4 p = x[slot];
+        if (i - lookers->first >= lookers->end - lookers->first || (p.w == 0 && v[slot].w == 0) || !is_somewhere(p)) continue;
+        take(&own, p);
     }
     window->still_count = count;
-    *box = all;
+    *seen = all, *look = both ? all : own;
     return true;
 }
 
-/* The window around those that look, and whether all that are sorted are within. False: no memory. */
+/* The window around those that look, and whether all of this part's own that are looked at are within. False: no memory. */
 static bool find_window(sk_window *window, const sk_run *run, const sk_cells *cells, const sk_op *op) {
-    sk_extent all, box = find_lookers(run, op->seen);
-    if (!find_sorted(window, run, op->group, &all)) return false;
+    sk_extent all, box;
+    if (!find_own(window, run, op, &box, &all)) return false;
     const real origin[3] = {cells->origin.x, cells->origin.y, cells->origin.z},
                per[3] = {cells->per_x, cells->per_yz, cells->per_yz};
     const int32_t count[3] = {cells->count_x, cells->count_y, cells->count_z}, around[3] = {SK_CELLS_ACROSS + 1, 1, 1};
@@ -185,20 +181,40 @@ static void lay(sk_run *run, const sk_op *op, bool quads) {
     }
 }
 
-static void exchange(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+static skein_state state_of(const sk_run *run) {
+    return (skein_state){run->particle_count, run->slot_count, run->slot_of, run->particle_of,
+                         (skein_real(*)[4])(void *)run->vector[SK_X], (skein_real(*)[4])(void *)run->vector[SK_V]};
+}
+
+static skein_share_look look_of(const sk_op *op) {
+    return (skein_share_look){op->seen->first, op->seen->end, op->group->first, op->group->end};
+}
+
+/* Candidates lie in whole cells (space/cells_wide.h): one more along y and z, and along x those of the reach. */
+static skein_cells shown_of(const sk_cells *cells) {
+    return (skein_cells){{cells->origin.x, cells->origin.y, cells->origin.z},
+                         {cells->per_x, cells->per_yz, cells->per_yz},
+                         {cells->count_x, cells->count_y, cells->count_z},
+                         {SK_CELLS_ACROSS + 1, 1, 1}};
+}
+
+/* The first op of a sort: cells of the whole run's box, and what others look at goes to them. While it is under way this
+ * part's own cells are found; what has come from them is taken in by the third op. */
+static void send(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     sk_share *share = (sk_share *)(uintptr_t)op->rule;
+    sk_window *window = window_of(op);
+    sk_cells *cells = run->cells;
     skein_border border = {.everybody = 1};
-    const skein_share_look look = {op->seen->first, op->seen->end, op->group->first, op->group->end};
-    const skein_state state = {run->particle_count, run->slot_count, run->slot_of, run->particle_of,
-                               (skein_real(*)[4])(void *)run->vector[SK_X], (skein_real(*)[4])(void *)run->vector[SK_V]};
+    const skein_share_look look = look_of(op);
+    const skein_state state = state_of(run);
     lay(run, op, true);
     share->failed = share->failed || !share->given.measure(share->given.user, &look, &state, &border);
-    sk_cells *cells = run->cells;
+    window->alone = border.alone;
     if (border.alone) {
         lay(run, op, false);
         share->frame(run, op, begin, end);
-        take_all(window_of(op), cells);
-        run->no_memory = run->no_memory || !list_lines(window_of(op), cells, run->allocator);
+        take_all(window, cells);
+        run->no_memory = run->no_memory || !list_lines(window, cells, run->allocator);
         return;
     }
     if (!frame_of_all(cells, run->allocator, &border, op->group, (real)op->coefficient[0])) {
@@ -206,18 +222,44 @@ static void exchange(sk_run *run, const sk_op *op, size_t begin, size_t end) {
         lay(run, op, false);
         return;
     }
-    // candidates lie in whole cells (space/cells_wide.h): one more along y and z, and along x those of the reach
-    const skein_cells shown = {{cells->origin.x, cells->origin.y, cells->origin.z},
-                               {cells->per_x, cells->per_yz, cells->per_yz},
-                               {cells->count_x, cells->count_y, cells->count_z},
-                               {SK_CELLS_ACROSS + 1, 1, 1}};
-    share->failed = share->failed || !share->given.exchange(share->given.user, &look, &shown, &state);
-    run->no_memory = run->no_memory || !find_window(window_of(op), run, cells, op) ||
-                     !list_lines(window_of(op), cells, run->allocator);
+    const skein_cells shown = shown_of(cells);
+    share->failed = share->failed || !share->given.send(share->given.user, &look, &shown, &state);
+    run->no_memory = run->no_memory || !find_window(window, run, cells, op) || !list_lines(window, cells, run->allocator);
     lay(run, op, false);
 }
 
 /* ---- what is sorted ---- */
+
+static inline bool is_within(const sk_window *window, int32_t x, int32_t y, int32_t z) {
+    return (x >= window->low[0]) & (x <= window->high[0]) & (y >= window->low[1]) & (y <= window->high[1]) &
+           (z >= window->low[2]) & (z <= window->high[2]);
+}
+
+/* The cell of a place, if it is somewhere within the window. */
+static uint32_t cell_of(const sk_window *window, const sk_cells *cells, sk_vec4 p) {
+    if (!is_somewhere(p)) return SK_NOWHERE;
+    int32_t x = sk_cells_place(p.x, cells->origin.x, cells->per_x, cells->count_x),
+            y = sk_cells_place(p.y, cells->origin.y, cells->per_yz, cells->count_y),
+            z = sk_cells_place(p.z, cells->origin.z, cells->per_yz, cells->count_z);
+    return is_within(window, x, y, z) ? (uint32_t)(sk_cells_line(cells, y, z) + x) : SK_NOWHERE;
+}
+
+/* What has come from others lies where this part has room for it, among those that are not moved: their cells are found now. */
+static void receive(sk_run *run, const sk_op *op) {
+    sk_share *share = (sk_share *)(uintptr_t)op->rule;
+    const sk_window *window = window_of(op);
+    sk_cells *cells = run->cells;
+    const skein_share_look look = look_of(op);
+    const skein_state state = state_of(run);
+    const skein_cells shown = shown_of(cells);
+    lay(run, op, true);
+    share->failed = share->failed || !share->given.receive(share->given.user, &look, &shown, &state);
+    for (size_t k = 0; k < window->still_count; k++) {
+        size_t slot = window->still[k];
+        cells->cell[slot - cells->group.first_slot] = cell_of(window, cells, run->vector[SK_X][slot]);
+    }
+    lay(run, op, false);
+}
 
 /* The cells of those in slots [begin, end); who is outside of the window is in none. */
 static void find(sk_run *run, const sk_op *op, size_t begin, size_t end) {
@@ -234,9 +276,7 @@ static void find(sk_run *run, const sk_op *op, size_t begin, size_t end) {
         int32_t x = sk_cells_place(p.x, cells->origin.x, cells->per_x, count[0]),
                 y = sk_cells_place(p.y, cells->origin.y, cells->per_yz, count[1]),
                 z = sk_cells_place(p.z, cells->origin.z, cells->per_yz, count[2]);
-        bool inside = (x >= window->low[0]) & (x <= window->high[0]) & (y >= window->low[1]) & (y <= window->high[1]) &
-                      (z >= window->low[2]) & (z <= window->high[2]);
-        cells->cell[slot - first] |= inside ? 0 : SK_NOWHERE;
+        cells->cell[slot - first] |= is_within(window, x, y, z) ? 0 : SK_NOWHERE;
     }
 }
 
@@ -262,6 +302,7 @@ static void rank(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     uint32_t *start = cells->start, sum = 0;
     (void)begin, (void)end;
     if (run->no_memory) return;
+    if (!window->alone) receive(run, op);
     size_t slots = cells->group.end_slot - cells->group.first_slot;
     for (size_t l = 0; l < window->count; l++) memset(start + window->line[l], 0, (window->wide + 1) * sizeof *start);
     for (size_t k = 0; k < slots; k++)
@@ -390,12 +431,12 @@ void sk_share_plan(sk_plan *plan, sk_share *share, sk_isa isa) {
     for (size_t r = 0; r + SK_SORT_OPS <= plan->count; r++) {
         sk_op *first = &plan->data[r], *last = first + SK_SORT_OPS - 1;
         if (!sk_op_type_of(first)->sorts) continue;
-        first->seen = who_looks(plan, r);
+        first->seen = first[2].seen = who_looks(plan, r);
         sk_share_part *part = (sk_share_part *)share;
         share->frame = first->kernel, part->find = first[1].kernel, part->copy = last->kernel;
-        first->kernel = exchange, first->rule = share, first->label = "border, frame of cells";
+        first->kernel = send, first->rule = share, first->label = "border, frame of cells";
         first[1].kernel = find, first[1].rule = share;
-        first[2].kernel = rank, first[2].rule = share;
+        first[2].kernel = rank, first[2].rule = share, first[2].label = "border's, place of each";
         last->kernel = copy, last->rule = share;
     }
     for (size_t r = 0; r < plan->count; r++) {

@@ -34,8 +34,8 @@ static const sk_object *body_after(const skein_world *world, size_t *at) {
 skein_status skein_world_part_set(skein_world *world, const skein_part *part) {
     SK_NEED(world, world);
     skein_error *error = sk_world_error(world);
-    if (part && (!part->number || !part->measure || !part->exchange))
-        return sk_fail(error, SKEIN_ERROR_VALUE, "part", "a part of a run needs number, measure and exchange");
+    if (part && (!part->number || !part->measure || !part->send || !part->receive))
+        return sk_fail(error, SKEIN_ERROR_VALUE, "part", "a part of a run needs number, measure, send and receive");
 #ifdef SK_SMALL
     if (part) return sk_fail(error, SKEIN_ERROR_VALUE, "part", "this build has no parts of runs");
 #endif
