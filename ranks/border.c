@@ -256,7 +256,8 @@ bool shared_receive(void *user, const skein_share_look *look, const skein_cells 
     shared_run *run = user;
     double begun = shared_seconds();
     for (size_t b = 0; b < run->body_count; b++) {
-        if (run->bodies[b].of.loose && is_seen(run, look, b)) run->bodies[b].seen = run->bodies[b].own;
+        if (!is_seen(run, look, b)) continue; // the world may keep what is not asked about in blocks
+        if (run->bodies[b].of.loose) run->bodies[b].seen = run->bodies[b].own;
         if (shared_is_shadow(&run->bodies[b])) clear(&run->bodies[b], state);
     }
     for (int r = 0; r < run->count; r++) {

@@ -176,6 +176,27 @@ static void flocks_and_bodies_meet_across_ranks(void **state) {
                  2);
 }
 
+/* A flock looks at itself, and then at a cloth that lives elsewhere: what comes for the first look must leave the cloth's places, which the
+ * world has in blocks then, alone. */
+static void one_look_after_another_has_it_too(void **state) {
+    (void)state;
+    static const char *const methods[] = {"method.substeps=3", "method={\"type\":\"symplectic_euler\",\"substeps\":30}"};
+    for (size_t i = 0; i < COUNT(methods); i++) {
+        char arguments[1200], *said;
+        outcome o = SKEIN("run", "scenes/gulls.json", "--frames", "3", "--set", "output=[]", "--set", methods[i], "--out",
+                          in_folder("looks"), "--quiet");
+        assert_status(o, 0);
+        outcome_free(&o);
+        snprintf(arguments, sizeof arguments, "scenes/gulls.json --frames 3 --set 'output=[]' --set '%s' --threads 1 --quiet --out %s",
+                 methods[i], in_folder("looks_by_ranks"));
+        for (int ranks = 2; ranks <= 3; ranks++) {
+            if (run_ranks(ranks, arguments, &said)) fail_msg("%s", said);
+            free(said);
+            check_same_hash(in_folder("looks"), in_folder("looks_by_ranks"));
+        }
+    }
+}
+
 static void what_cannot_be_shared_is_said(void **state) {
     (void)state;
     char *said;
@@ -363,6 +384,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(rules_and_methods_have_it_too),
         cmocka_unit_test(bodies_that_meet_nobody_are_dealt_to_ranks),
         cmocka_unit_test(flocks_and_bodies_meet_across_ranks),
+        cmocka_unit_test(one_look_after_another_has_it_too),
         cmocka_unit_test(ranks_write_their_own),
         cmocka_unit_test(memory_follows_own_birds),
         cmocka_unit_test(what_cannot_be_shared_is_said),
