@@ -23,8 +23,8 @@ function range(field, value) {
     return {least: Math.max(typeof least === 'number' ? least : -10, -10), most: Math.min(typeof most === 'number' ? most : 10, 10), log: false};
 }
 
-function numberControl(field, value, label, send) {
-    const box = element('div', {className: 'values'});
+function numberControl(field, value, label, send, axis = '') {
+    const box = element('div', {className: 'values'}, ...(axis ? [element('span', {className: 'axis', textContent: axis})] : []));
     const text = element('input', {type: 'text', inputMode: 'decimal', value: shown(value), spellcheck: false});
     text.setAttribute('aria-label', label);
     const {least, most, log} = range(field, value), whole = field.type.startsWith('int');
@@ -74,7 +74,7 @@ function control(field, value, label, send) {
         numberControl(field, x, `${field.name} ${'xyz'[k]}`, (one) => {
             parts[k] = one;
             send([...parts]);
-        }));
+        }, parts.length === 3 ? 'xyz'[k] : ''));
 }
 
 function row(path, field, changed, change) {
@@ -100,7 +100,7 @@ const HIDDEN = new Set(['name']);
 function section(title, path, object, changes, change, open) {
     const fields = object.fields.filter((f) => 'value' in f && !HIDDEN.has(f.name));
     const rows = fields.map((f) => row(`${path}.${f.name}`, f, changes.has(`${path}.${f.name}`), change));
-    const summary = element('summary', {title: object.help}, title, ' ', element('small', {textContent: object.name}));
+    const summary = element('summary', {title: object.help}, title, ' ', element('small', {textContent: object.name === title ? '' : object.name}));
     const details = element('details', {open}, summary, ...rows);
     details.dataset.path = path;
     return details;

@@ -26,11 +26,17 @@ const app = {
     world: null, state: null, pulled: null, methods: [], undo: new Past(),
 };
 let picture = null;
+/* In J, with a thousand or a million of them in a word, and 0 where rounding has left a crumb. */
+const joule = (x) => {
+    const [scale, unit] = [[1e6, 'MJ'], [1e3, 'kJ'], [1, 'J'], [1e-3, 'mJ']].find(([least]) => Math.abs(x) >= least) ?? [1, 'J'];
+    return Math.abs(x) < 1e-6 ? '0 J' : `${Number((x / scale).toPrecision(3))} ${unit}`;
+};
+const percent = (x) => (Math.abs(x) < 1e-6 ? '0 %' : `${(100 * x).toPrecision(2)} %`);
 const simulation = new Simulation({onState: take, onBroken: (faults) => notice(words(faults))});
 const plots = {
     ms: new Plot($('plot-ms'), {bars: true, words: (x) => `${x.toFixed(x < 10 ? 1 : 0)} ms`}),
-    energy: new Plot($('plot-energy'), {words: (x) => `${x.toPrecision(2)} J`}),
-    stretch: new Plot($('plot-stretch'), {words: (x) => `${(100 * x).toPrecision(2)} %`}),
+    energy: new Plot($('plot-energy'), {words: joule}),
+    stretch: new Plot($('plot-stretch'), {words: percent}),
 };
 
 let early = null; // the first state of a world may come before the world's description
@@ -269,9 +275,8 @@ async function measure() {
     const total = s.kineticEnergy + s.potentialEnergy + s.elasticEnergy;
     plots.energy.add([[s.kineticEnergy, s.elasticEnergy, s.potentialEnergy]]);
     plots.stretch.add([[s.maxStretch]]);
-    $('number-energy').textContent = `${total.toPrecision(3)} J`;
+    $('number-energy').textContent = joule(total);
     $('number-stretch').textContent = `${(100 * s.maxStretch).toFixed(2)} %`;
-    const joule = (x) => `${x.toPrecision(3)} J`;
     $('plot-energy').title = `kinetic ${joule(s.kineticEnergy)} (red), elastic ${joule(s.elasticEnergy)} (teal), potential ${joule(s.potentialEnergy)} (amber)`;
     $('numbers').title = `contacts ${s.contacts}; memory ${(s.memoryBytes / 1e6).toFixed(1)} MB`;
 }
@@ -306,9 +311,13 @@ async function link() {
 }
 async function copy(text, button) {
     await navigator.clipboard?.writeText(text).catch(() => {});
-    const was = button.dataset.words ?? (button.dataset.words = button.textContent);
-    button.textContent = 'Copied';
-    setTimeout(() => (button.textContent = was), 1200);
+    const label = button.querySelector('span') ?? button, was = button.dataset.words ?? (button.dataset.words = label.textContent);
+    label.textContent = 'Copied';
+    button.classList.add('done');
+    setTimeout(() => {
+        label.textContent = was;
+        button.classList.remove('done');
+    }, 1200);
 }
 async function copyLink() {
     const text = await link();

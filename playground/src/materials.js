@@ -1,12 +1,16 @@
 // What things are painted with: the gallery's colours, gingham, jelly, birds that beat.
 import * as THREE from 'three';
 
+import {THROUGH} from './light.js';
+
 // as in render/frame.c
 export const COLOURS = ['#c9412a', '#eda333', '#408f8f', '#8f5485', '#789954', '#5c78b3'];
-const CREAM = '#f6e7d0', PAINT = '#3d7688';
+const CREAM = '#f6e7d0', PAINT = '#2b5f75';
+export const PIN = '#22262b';
+// sun and around: how bright the sun is, and the light from sky and ground
 export const LOOKS = {
-    light: {sky: '#e3e8ea', ground: '#d6d1c6', grid: '#7d766a', collider: PAINT, bird: '#2c3238', light: 1},
-    dark: {sky: '#1b1f24', ground: '#34373b', grid: '#666d74', collider: '#4a7c8d', bird: '#e4e7e8', light: 0.92},
+    light: {horizon: '#e9ecec', zenith: '#4d8fd1', ground: '#c1b9b0', grid: '#8d857b', collider: PAINT, sun: 1.27, around: 1.15},
+    dark: {horizon: '#2f353c', zenith: '#10151d', ground: '#3c3e41', grid: '#5c6167', collider: '#3f7488', sun: 0.95, around: 13},
 };
 
 /* Both dyed, one dyed, none, as gingham is woven; averaged over a pixel, so that it never shimmers. */
@@ -21,60 +25,84 @@ const GINGHAM = `
     }`;
 
 /* Changes a material before it is compiled: `code` paints diffuseColor. */
-function painted(material, head, code, uniforms, after = '') {
+function painted(material, head, code, uniforms, after = '', through = false) {
     material.onBeforeCompile = (shader) => {
         Object.assign(shader.uniforms, uniforms);
         shader.fragmentShader = shader.fragmentShader
             .replace('#include <common>', `#include <common>\n${head}`)
             .replace('#include <color_fragment>', `#include <color_fragment>\n${code}`)
             .replace('#include <emissivemap_fragment>', `#include <emissivemap_fragment>\n${after}`);
+        if (through) shader.fragmentShader = shader.fragmentShader.replace('#include <lights_physical_pars_fragment>', `#include <lights_physical_pars_fragment>\n${THROUGH}`);
     };
     return material;
 }
 
 export function cloth(number, side, woven) {
-    const material = new THREE.MeshStandardMaterial({color: COLOURS[number % COLOURS.length], side, roughness: 0.82});
+    const material = new THREE.MeshStandardMaterial({color: COLOURS[number % COLOURS.length], side, roughness: 0.9});
     material.shadowSide = THREE.DoubleSide;
-    if (!woven) return material;
+    if (!woven) return painted(material, '', '', {}, '', true);
     material.defines.USE_UV = '';
-    // light that comes through from behind, and fibres that catch it at grazing angles
+    // fibres that stand up catch light at grazing angles
     const after = `
         float grazing = pow(1.0 - abs(dot(normalize(vNormal), normalize(vViewPosition))), 4.0);
-        totalEmissiveRadiance += diffuseColor.rgb * (0.05 + 0.16 * grazing);`;
+        totalEmissiveRadiance += 0.06 * grazing;`;
     return painted(material, `uniform vec3 accent;${GINGHAM}`, 'diffuseColor.rgb = gingham(diffuseColor.rgb, accent, vUv);',
-        {accent: {value: new THREE.Color(CREAM)}}, after);
+        {accent: {value: new THREE.Color(CREAM)}}, after, true);
 }
 
 /* Smooth, and lit through: brighter where it is thin to the eye. */
 export function jelly(number) {
-    const material = new THREE.MeshPhysicalMaterial({color: COLOURS[number % COLOURS.length], roughness: 0.22, clearcoat: 0.7, clearcoatRoughness: 0.2});
+    const material = new THREE.MeshPhysicalMaterial({color: COLOURS[number % COLOURS.length], shadowSide: THREE.FrontSide, roughness: 0.22, clearcoat: 0.7, clearcoatRoughness: 0.2});
     const after = `
         float facing = abs(dot(normalize(vNormal), normalize(vViewPosition)));
         totalEmissiveRadiance += diffuseColor.rgb * mix(0.8, 0.38, facing);`;
     return painted(material, '', '', {}, after);
 }
 
-export const matter = (number) => new THREE.MeshStandardMaterial({color: COLOURS[number % COLOURS.length], roughness: 0.55});
+export const matter = (number) => new THREE.MeshStandardMaterial({color: COLOURS[number % COLOURS.length], roughness: 0.55, shadowSide: THREE.FrontSide});
 
 export function collider(sort) {
     const bowl = sort === 'bowl';
-    return new THREE.MeshStandardMaterial({
-        roughness: 0.45, side: bowl ? THREE.DoubleSide : THREE.FrontSide, transparent: bowl, opacity: bowl ? 0.24 : 1, depthWrite: !bowl});
+    return new THREE.MeshStandardMaterial({roughness: bowl ? 0.15 : 0.45, shadowSide: THREE.FrontSide, transparent: bowl, opacity: bowl ? 0.2 : 1, depthWrite: !bowl});
 }
-
-/* The ground: lines of a grid with cells of `cell` metres and heavier ones of five, averaged over a pixel. */
-export function ground(colour, line, cell) {
-    const material = new THREE.MeshStandardMaterial({color: colour, roughness: 1});
+/* A bowl's far wall: cream, with a rim and meridians that tell a turn. */
+export function bowlInside() {
+    const material = new THREE.MeshStandardMaterial({color: CREAM, roughness: 0.35, side: THREE.BackSide, shadowSide: THREE.DoubleSide});
     material.onBeforeCompile = (shader) => {
-        Object.assign(shader.uniforms, {lineColour: {value: new THREE.Color(line)}, cell: {value: cell}});
+        shader.uniforms.paint = {value: new THREE.Color(PAINT)};
         shader.vertexShader = shader.vertexShader
-            .replace('#include <common>', '#include <common>\nvarying vec2 onGround;')
-            .replace('#include <project_vertex>', '#include <project_vertex>\nonGround = (modelMatrix * vec4(transformed, 1.0)).xz;');
+            .replace('#include <common>', '#include <common>\nvarying vec3 outward;')
+            .replace('#include <begin_vertex>', '#include <begin_vertex>\noutward = position;');
         shader.fragmentShader = shader.fragmentShader
             .replace('#include <common>', `#include <common>
-                varying vec2 onGround;
-                uniform vec3 lineColour;
-                uniform float cell;
+                varying vec3 outward;
+                uniform vec3 paint;
+                float band(float off, float half_width) {
+                    float edge = max(fwidth(off), 1e-5);
+                    return 1.0 - smoothstep(half_width - 0.7 * edge, half_width + 0.7 * edge, abs(off));
+                }`)
+            .replace('#include <color_fragment>', `#include <color_fragment>
+                vec3 away = normalize(outward);
+                float meridian = max(band(dot(vec3(0.924, 0.0, 0.383), away), 0.012), band(dot(vec3(-0.383, 0.0, 0.924), away), 0.012));
+                diffuseColor.rgb = mix(diffuseColor.rgb, paint, max(band(away.y + 0.4226, 0.035), 0.35 * meridian));`); // the rim is 115 degrees from the top
+    };
+    return material;
+}
+
+/* The ground: lines of a grid with cells of `cell` metres and heavier ones of five, averaged over a pixel; it goes over into
+ * the sky's haze some `size`s out. */
+export function ground(look, cell, size) {
+    const material = new THREE.MeshStandardMaterial({color: look.ground, roughness: 1});
+    material.onBeforeCompile = (shader) => {
+        Object.assign(shader.uniforms, {lineColour: {value: new THREE.Color(look.grid)}, horizon: {value: new THREE.Color(look.horizon)}, cell: {value: cell}, size: {value: size}});
+        shader.vertexShader = shader.vertexShader
+            .replace('#include <common>', '#include <common>\nvarying vec2 onGround, fromMiddle;')
+            .replace('#include <project_vertex>', '#include <project_vertex>\nonGround = (modelMatrix * vec4(transformed, 1.0)).xz;\nfromMiddle = transformed.xz;');
+        shader.fragmentShader = shader.fragmentShader
+            .replace('#include <common>', `#include <common>
+                varying vec2 onGround, fromMiddle;
+                uniform vec3 lineColour, horizon;
+                uniform float cell, size;
                 float lines(vec2 x, float half_width) {
                     vec2 pixel = max(fwidth(x), vec2(1e-6)), off = abs(fract(x - 0.5) - 0.5), wide = max(vec2(half_width), 0.5 * pixel);
                     vec2 cover = clamp((wide - off) / pixel + 0.5, 0.0, 1.0) * (half_width / wide);
@@ -82,24 +110,38 @@ export function ground(colour, line, cell) {
                     return max(cover.x, cover.y);
                 }`)
             .replace('#include <color_fragment>', `#include <color_fragment>
-                float line_ = max(0.5 * lines(onGround / cell, 0.009), 0.75 * lines(onGround / (5.0 * cell), 0.0035));
-                diffuseColor.rgb = mix(diffuseColor.rgb, lineColour, line_);`);
+                float line_ = max(0.4 * lines(onGround / cell, 0.008), 0.7 * lines(onGround / (5.0 * cell), 0.003));
+                diffuseColor.rgb = mix(diffuseColor.rgb, lineColour, line_);`)
+            .replace('#include <opaque_fragment>', `
+                float out_ = length(fromMiddle) / (8.0 * size);
+                outgoingLight = mix(outgoingLight, horizon, 1.0 - exp(-out_ * out_));
+                #include <opaque_fragment>`);
     };
     return material;
 }
 
-/* Wings that beat: each bird at its own moment of the beat, by `time`. */
+/* Wings in two parts, of which the outer one follows the inner, as in render/shaders/bird.vert.glsl: each bird at its own
+ * moment of the beat, by `time`. Downwards they glide. */
 export function feathers(time) {
-    const material = new THREE.MeshStandardMaterial({roughness: 0.8, side: THREE.DoubleSide});
+    const material = new THREE.MeshStandardMaterial({roughness: 0.8, side: THREE.DoubleSide, flatShading: true});
     material.onBeforeCompile = (shader) => {
         shader.uniforms.beatTime = time;
         shader.vertexShader = shader.vertexShader
             .replace('#include <common>', '#include <common>\nuniform float beatTime;')
             .replace('#include <begin_vertex>', `#include <begin_vertex>
-                float out_ = max(abs(transformed.x) - 0.05, 0.0);
-                float beat = sin(beatTime * 18.0 + float(gl_InstanceID) * 2.399) * 0.75 + 0.12;
-                transformed.y += out_ * beat;
-                transformed.x *= 1.0 - 0.28 * beat * beat * step(0.06, abs(transformed.x));`);
+                if (abs(transformed.x) > 0.04 && transformed.y > 0.02 && transformed.y < 0.04) {
+                    float climb = normalize((modelMatrix * instanceMatrix)[2].xyz).y, phase = beatTime * 18.0 + float(gl_InstanceID) * 2.399;
+                    float stroke = 0.75 * mix(0.3, 1.0, smoothstep(-0.5, 0.1, climb));
+                    float inner = stroke * sin(phase) + 0.12, outer = inner + 0.8 * stroke * sin(phase - 0.9) - 0.1;
+                    float along = abs(transformed.x), wrist = min(along, 0.5), beyond = along - wrist;
+                    transformed.x = sign(transformed.x) * (wrist * cos(inner) + beyond * cos(outer));
+                    transformed.y += wrist * sin(inner) + beyond * sin(outer);
+                }`);
     };
     return material;
+}
+/* Each bird of a flock has a colour of its own. */
+export function plumage(number) {
+    const own = (k) => (number * k) % 1, hue = [0, 0.33, 0.67].map((k) => 0.5 + 0.42 * Math.cos(2 * Math.PI * (own(0.6180339887) + k)));
+    return new THREE.Color(...hue.map((c) => c * c * (0.7 + 0.6 * own(0.7548776662))));
 }

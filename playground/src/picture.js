@@ -3,15 +3,40 @@
 import * as THREE from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 
-import {cloth, collider, COLOURS, feathers, ground, jelly, LOOKS, matter} from './materials.js';
+import {Light, setUpRenderer} from './light.js';
+import {bowlInside, cloth, collider, COLOURS, feathers, ground, jelly, LOOKS, matter, PIN, plumage} from './materials.js';
 import {arrowGeometry, birdGeometry, colliderGeometry, isLevel, triangles, weave} from './shapes.js';
+
+/* Where a camera that looks along -back stands and what it looks at, for all points to be within `tall` of the middle (a tangent),
+ * and how much of the picture's longer side the particles take then. As in render/camera.c. */
+function hold(positions, corners, centre, back, tall, aspect, size) {
+    const right = new THREE.Vector3(0, 1, 0).cross(back).normalize(), up = back.clone().cross(right), off = new THREE.Vector3(), wide = tall * aspect;
+    const most = [-Infinity, -Infinity], least = [Infinity, Infinity], own = {most: [-Infinity, -Infinity], least: [Infinity, Infinity]};
+    let nearest = -Infinity;
+    const count = positions.length / 3, seen = (i) => (i < count ? off.fromArray(positions, 3 * i) : off.copy(corners[i - count])).sub(centre);
+    for (let i = 0; i < count + corners.length; i++) {
+        const point = seen(i), z = point.dot(back);
+        nearest = Math.max(nearest, z);
+        [[right, wide], [up, tall]].forEach(([axis, tangent], k) => {
+            const x = point.dot(axis);
+            most[k] = Math.max(most[k], x + tangent * z);
+            least[k] = Math.min(least[k], x - tangent * z);
+            if (i >= count) return;
+            own.most[k] = Math.max(own.most[k], x);
+            own.least[k] = Math.min(own.least[k], x);
+        });
+    }
+    const far = Math.max((most[0] - least[0]) / (2 * wide), (most[1] - least[1]) / (2 * tall), nearest + 0.25 * size, 1e-6);
+    const target = centre.clone().addScaledVector(right, (most[0] + least[0]) / 2).addScaledVector(up, (most[1] + least[1]) / 2 + 0.05 * far * tall);
+    return {far, target, large: Math.max(...[wide, tall].map((tangent, k) => (own.most[k] - own.least[k]) / (2 * far * tangent)))};
+}
 
 export class Picture {
     #holder;
     #renderer;
     #scene = new THREE.Scene();
     #camera = new THREE.PerspectiveCamera(34, 1, 0.01, 2000);
-    #sun = new THREE.DirectionalLight('#fff4e2', 2.6);
+    #light = new Light(this.#scene);
     #ground;
     #look = LOOKS.light;
     #parts = null; // of the world that is drawn
@@ -24,18 +49,12 @@ export class Picture {
     constructor(holder) {
         this.#holder = holder;
         this.#renderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: true}); // throws where there is no WebGL2
-        this.#renderer.shadowMap.enabled = true;
-        this.#renderer.shadowMap.type = THREE.PCFShadowMap;
-        this.#renderer.toneMapping = THREE.ACESFilmicToneMapping;
+        setUpRenderer(this.#renderer);
         this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
         holder.append(this.#renderer.domElement);
         this.controls = new OrbitControls(this.#camera, this.#renderer.domElement);
         this.controls.addEventListener('change', () => this.draw());
-        this.#scene.add(this.#sun, this.#sun.target, new THREE.HemisphereLight('#e8f0f8', '#b5a893', 2.0));
-        this.#sun.castShadow = true;
-        this.#sun.shadow.mapSize.set(2048, 2048);
-        this.#sun.shadow.radius = 3.5;
-        this.#sun.shadow.bias = -0.0004;
+        this.#light.look = this.#look;
         this.#sizes = new ResizeObserver(() => this.resize());
         this.#sizes.observe(holder);
         this.resize();
@@ -55,8 +74,7 @@ export class Picture {
     }
     set dark(on) {
         this.#look = on ? LOOKS.dark : LOOKS.light;
-        this.#scene.background = new THREE.Color(this.#look.sky);
-        if (this.#scene.fog) this.#scene.fog.color.set(this.#look.sky);
+        this.#light.look = this.#look;
         if (this.#parts) this.#paint();
         this.draw();
     }
@@ -137,9 +155,14 @@ export class Picture {
     #collider(thing, all) {
         const shape = thing.visible ? colliderGeometry(thing) : null;
         if (!shape) return null;
-        const mesh = new THREE.Mesh(shape, collider(thing.sort));
-        mesh.castShadow = thing.sort !== 'plane' && thing.sort !== 'bowl';
-        mesh.receiveShadow = true;
+        const mesh = new THREE.Mesh(shape, collider(thing.sort)), bowl = thing.sort === 'bowl';
+        mesh.castShadow = thing.sort !== 'plane' && !bowl;
+        mesh.receiveShadow = !bowl;
+        if (bowl) { // the far wall is seen from within, the near one seen through
+            const inside = new THREE.Mesh(shape, bowlInside());
+            inside.castShadow = inside.receiveShadow = true;
+            mesh.add(inside);
+        }
         mesh.visible = !isLevel(thing); // which is drawn as the ground
         mesh.userData.sort = thing.sort;
         mesh.matrixAutoUpdate = false;
@@ -169,9 +192,10 @@ export class Picture {
             if (count) all.add(mesh);
             return mesh;
         };
+        const birdMesh = many(birds.length, birdGeometry(), feathers(this.#beat));
+        birds.forEach((_, i) => birdMesh.setColorAt(i, plumage(i)));
         return {
-            birds, balls, rods,
-            birdMesh: many(birds.length, birdGeometry(), feathers(this.#beat)),
+            birds, balls, rods, birdMesh, pins: null,
             ballMesh: many(balls.length, new THREE.SphereGeometry(1, 20, 14), matter(0)),
             rodMesh: many(rods.length / 2, new THREE.CapsuleGeometry(1, 1, 6, 12).scale(1, 1 / 3, 1), matter(balls.length ? 2 : 0)),
         };
@@ -179,8 +203,7 @@ export class Picture {
 
     #paint() {
         for (const mesh of this.#parts.colliders) mesh?.material.color.set(mesh.userData.sort === 'plane' ? this.#look.ground : this.#look.collider);
-        this.#parts.birdMesh.material.color.set(this.#look.bird);
-        if (this.#ground) this.#setGround(this.#ground.userData.size, this.#ground.userData.height);
+        if (this.#ground) this.#setGround(this.#ground.userData);
     }
 
     /* ---- a state ---- */
@@ -207,6 +230,7 @@ export class Picture {
         this.#beat.value = state.time;
         this.#lowerGround(state);
         this.#placeLoose(state);
+        this.#placePins(state);
         this.#placeArrows(state.arrows);
         if (!this.#parts.framed) this.frame();
         this.draw();
@@ -259,6 +283,25 @@ export class Picture {
         for (const mesh of [birdMesh, ballMesh, rodMesh]) mesh.instanceMatrix.needsUpdate = true;
     }
 
+    /* Small dark balls on what holds a surface. */
+    #placePins({positions, held}) {
+        let {pins} = this.#parts;
+        if (pins?.count !== held.length) {
+            pins?.removeFromParent();
+            pins?.geometry.dispose();
+            pins?.material.dispose();
+            pins = this.#parts.pins = held.length ? new THREE.InstancedMesh(new THREE.SphereGeometry(1, 10, 8), matter(0), held.length) : null;
+            if (!pins) return;
+            pins.material.color.set(PIN);
+            pins.frustumCulled = false;
+            this.#parts.all.add(pins);
+        }
+        const matrix = new THREE.Matrix4(), place = (p) => new THREE.Vector3().fromArray(positions, 3 * p);
+        const apart = held.length > 1 ? place(held[0]).distanceTo(place(held[1])) : Infinity, radius = Math.min(0.0022 * (this.#parts.size ?? 1), 0.25 * apart);
+        held.forEach((p, i) => pins.setMatrixAt(i, matrix.makeScale(radius, radius, radius).setPosition(positions[3 * p], positions[3 * p + 1], positions[3 * p + 2])));
+        if (pins) pins.instanceMatrix.needsUpdate = true;
+    }
+
     /* Gradients or forces: from a point along a vector, the longest of them a sixth of the scene. */
     #placeArrows(arrows) {
         const count = arrows ? arrows.from.length / 3 : 0;
@@ -282,30 +325,39 @@ export class Picture {
         this.#arrows.mesh.instanceMatrix.needsUpdate = true;
     }
 
-    /* Turns the camera so that all is in the picture, from where the scene's view says; sun and ground follow. */
+    /* Turns the camera so that all is in the picture, as near as that goes, from where the scene's view says; sun and ground
+     * follow. What stands around large things is cut off rather than that the bodies become small. */
     frame() {
-        const {positions} = this.#state, box = new THREE.Box3(), point = new THREE.Vector3();
+        const {positions} = this.#state, box = new THREE.Box3(), point = new THREE.Vector3(), corners = [];
         for (let i = 0; i < positions.length; i += 3) box.expandByPoint(point.fromArray(positions, i));
-        const {world, colliders} = this.#parts, view = world.settings.view, camera = view.camera ?? {};
+        const own = box.clone(), {world, colliders} = this.#parts, view = world.settings.view, camera = view.camera ?? {};
         for (const mesh of colliders)
             if (mesh && mesh.userData.sort !== 'plane') {
                 mesh.geometry.computeBoundingBox();
-                box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix));
+                const theirs = mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix);
+                box.union(theirs);
+                for (let k = 0; k < 8; k++) corners.push(new THREE.Vector3(...'xyz'.split('').map((axis, j) => ((k >> j) & 1 ? theirs.max : theirs.min)[axis])));
             }
         const under = world.colliders.findIndex((c) => isLevel(c) && c.visible), level = under < 0 ? null : this.#state.poses[under].position[1];
-        if (level !== null && box.min.y - level < box.getSize(point).length()) box.expandByPoint(box.getCenter(point).setY(level));
+        if (level !== null && box.min.y - level < box.getSize(point).length()) {
+            box.expandByPoint(box.getCenter(point).setY(level));
+            corners.push(point.clone());
+        } else if (view.ground !== false) corners.push(box.getCenter(new THREE.Vector3()).setY(box.min.y - 0.12 * box.getSize(point).length())); // room to sink, and for a shadow
         const centre = box.getCenter(new THREE.Vector3()), size = Math.max(box.getSize(point).length(), 1e-3);
         const turn = THREE.MathUtils.degToRad(camera.azimuth ?? 27), height = THREE.MathUtils.degToRad(camera.elevation ?? 14);
-        const half = Math.min(17, THREE.MathUtils.radToDeg(Math.atan(Math.tan(THREE.MathUtils.degToRad(17)) * this.#camera.aspect)));
-        const far = (0.47 * size) / Math.sin(THREE.MathUtils.degToRad(half)) / (camera.zoom ?? 1);
+        const back = new THREE.Vector3(Math.sin(turn) * Math.cos(height), Math.sin(height), Math.cos(turn) * Math.cos(height));
+        const tall = 0.79 * Math.tan(THREE.MathUtils.degToRad(this.#camera.fov / 2)), {aspect} = this.#camera, zoom = camera.zoom ?? 1;
+        let held = null;
+        for (let share = 1; share > -0.1 && !(held?.large >= 0.31); share -= 0.2)
+            held = hold(positions, corners.map((corner) => own.clampPoint(corner, new THREE.Vector3()).lerp(corner, share)), centre, back, tall * zoom, aspect, size / zoom);
         this.#parts.framed = true;
         this.#parts.size = size;
         this.#parts.level = level !== null;
-        this.#camera.near = far / 200;
-        this.#camera.far = far * 60;
+        this.#camera.near = held.far / 200;
+        this.#camera.far = Math.max(held.far, size) * 60;
         this.#camera.updateProjectionMatrix();
-        this.controls.target.copy(centre);
-        this.#camera.position.set(Math.sin(turn) * Math.cos(height), Math.sin(height), Math.cos(turn) * Math.cos(height)).multiplyScalar(far).add(centre);
+        this.controls.target.copy(held.target);
+        this.#camera.position.copy(back).multiplyScalar(held.far).add(held.target);
         this.controls.update();
         this.#lightAndGround(centre, size, box.min.y, level);
         this.show(this.#state);
@@ -313,12 +365,8 @@ export class Picture {
 
     #lightAndGround(centre, size, lowest, level) {
         const height = level ?? lowest - 0.3 * size; // what hangs and falls has room
-        this.#sun.shadow.normalBias = 0.002 * size;
-        this.#sun.position.set(-0.62, 0.86, 0.42).normalize().multiplyScalar(2 * size).add(centre);
-        this.#sun.target.position.copy(centre);
-        Object.assign(this.#sun.shadow.camera, {left: -size, right: size, top: size, bottom: -size, near: 0.01 * size, far: 5 * size});
-        this.#sun.shadow.camera.updateProjectionMatrix();
-        this.#setGround(size, height);
+        this.#light.aim(centre, size);
+        this.#setGround({size, height, centre});
     }
 
     /* Where no plane is the ground, it goes out of the way of what sinks. */
@@ -326,23 +374,22 @@ export class Picture {
         if (!this.#parts.framed || this.#parts.level || !this.#ground) return;
         let lowest = Infinity;
         for (let i = 1; i < positions.length; i += 3) lowest = Math.min(lowest, positions[i]);
-        const {size, height} = this.#ground.userData;
-        if (lowest < height + 0.02 * size && lowest > -1e6) this.#setGround(size, lowest - 0.15 * size);
+        const {size, height, centre} = this.#ground.userData;
+        if (lowest < height + 0.02 * size && lowest > -1e6) this.#setGround({size, height: lowest - 0.15 * size, centre});
     }
 
-    #setGround(size, height) {
+    #setGround({size, height, centre}) {
         if (this.#ground) {
             this.#scene.remove(this.#ground);
             this.#ground.geometry.dispose();
             this.#ground.material.dispose();
         }
         const power = 10 ** Math.floor(Math.log10(size / 9)), cell = power * [5, 2, 1].find((n) => n * power <= size / 9);
-        this.#ground = new THREE.Mesh(new THREE.CircleGeometry(30 * size, 64).rotateX(-Math.PI / 2), ground(this.#look.ground, this.#look.grid, cell));
-        this.#ground.position.y = height - 0.001 * size;
+        this.#ground = new THREE.Mesh(new THREE.CircleGeometry(30 * size, 64).rotateX(-Math.PI / 2), ground(this.#look, cell, size));
+        this.#ground.position.copy(centre).setY(height - 0.001 * size);
         this.#ground.receiveShadow = true;
-        this.#ground.userData = {size, height};
+        this.#ground.userData = {size, height, centre};
         this.#scene.add(this.#ground);
-        this.#scene.fog = new THREE.Fog(this.#look.sky, 3 * size, 14 * size); // the ground has no edge
         this.#ground.visible = this.#parts.world.settings.view.ground !== false;
     }
 

@@ -71,6 +71,19 @@ function arrows() {
     return {from: found.particles.flatMap((p) => [...positions.slice(3 * p, 3 * p + 3)]), along: found.gradient.flat(), value: found.value, particles: found.particles};
 }
 
+/* The particles of surfaces that are held, as far as what was done says that they may have changed. */
+let holding = {of: '', particles: []};
+function held() {
+    const of = `${serial} ${timeline.branch} ${timeline.events.length} ${timeline.events.at(-1)?.[1] === 'set' ? world.frame : ''}`;
+    if (of === holding.of) return holding.particles;
+    const particles = [];
+    for (const body of drawn.bodies)
+        for (let i = 0; body.faceSizes.length && i < body.particleCount; i++)
+            if (world.isHeld(body.firstParticle + i)) particles.push(body.firstParticle + i);
+    holding = {of, particles};
+    return particles;
+}
+
 function state() {
     const surfaces = drawn.bodies.map((body, index) => {
         if (!body.faceSizes.length) return null;
@@ -80,7 +93,7 @@ function state() {
         return sent;
     });
     return {
-        serial, surfaces, positions: world.positions.slice(), velocities: drawn.flock ? world.velocities.slice() : null,
+        serial, surfaces, held: held(), positions: world.positions.slice(), velocities: drawn.flock ? world.velocities.slice() : null,
         poses: Array.from({length: drawn.colliders}, (_, i) => world.pose(i)), arrows: arrows(),
         frame: world.frame, time: world.time, hash: world.hash(), spent: spent.splice(0), playing,
         onCard: timeline.onCard, end: timeline.end, branch: timeline.branch, branches: timeline.branches, done: timeline.events.length,
