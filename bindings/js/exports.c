@@ -510,6 +510,35 @@ char *EXPORT(js_formula)(const char *text, int particles, bool velocities, int r
     return words;
 }
 
+/* The functions of the language, {usage, help} each; to be freed. */
+char *EXPORT(js_functions)(void) {
+    json_t *list = json_array();
+    const char *usage, *help;
+    for (size_t i = 0; skein_formula_function(i, &usage, &help); i++)
+        json_array_append_new(list, json_pack("{ssss}", "usage", usage, "help", help));
+    char *text = json_dumps(list, JSON_COMPACT);
+    json_decref(list);
+    return text;
+}
+
+/* ---- elsewhere at once ---- */
+
+/* A body's: `way` has a rotation's rows and then a shift. */
+bool EXPORT(js_body_teleport)(js_scene *js, size_t body, const double way[12]) {
+    return !failed(js, skein_body_teleport(js->world, skein_object_at(js->world, SKEIN_BODY, body), way, way + 9));
+}
+
+/* Where a collider was set since the last step is no way, but where it stands. */
+bool EXPORT(js_collider_teleport)(js_scene *js, size_t collider) {
+    return !failed(js, skein_collider_teleport(js->world, skein_object_at(js->world, SKEIN_COLLIDER, collider)));
+}
+
+/* Where a mesh collider's vertices are from now on, `count` of them. */
+bool EXPORT(js_collider_vertices)(js_scene *js, size_t collider, const double *positions, size_t count) {
+    skein_handle handle = skein_object_at(js->world, SKEIN_COLLIDER, collider);
+    return !failed(js, skein_collider_vertices_set(js->world, handle, positions, count));
+}
+
 /* ---- the hand ---- */
 
 bool EXPORT(js_is_held)(const js_scene *js, uint32_t particle) {

@@ -187,6 +187,12 @@ export async function formula(text, {particles = 0, velocities = false, result =
     return withTexts(wasm, [text], (at) => takeJson(wasm, wasm.js_formula(at, particles, velocities, RESULTS.indexOf(result))));
 }
 
+/* The functions that formulas have: {usage, help} each. */
+export async function functions() {
+    const wasm = await load();
+    return takeJson(wasm, wasm.js_functions());
+}
+
 export {PointCache} from './pc2.js';
 
 /* ---- worlds ---- */
@@ -437,6 +443,25 @@ export class World {
     /* The scene with all that was set: opened again, it gives the same world. */
     scene() {
         return takeJson(this.#wasm, this.#wasm.js_document(this.#world));
+    }
+
+    /* ---- elsewhere at once ---- */
+
+    /* A body's particles turn about the origin (`turn`, a rotation's rows) and go by a shift, with nothing flung or met on the way. */
+    teleportBody(body, shift = [0, 0, 0], turn = [1, 0, 0, 0, 1, 0, 0, 0, 1]) {
+        this.#withNumbers([...Array.from(turn), ...Array.from(shift)], 12, (at) => this.#check(this.#wasm.js_body_teleport(this.#world, body, at)));
+    }
+    /* What was set of a collider's place since the last step is no way that it travels. */
+    teleportCollider(collider) {
+        this.#check(this.#wasm.js_collider_teleport(this.#world, collider));
+    }
+    /* Where the vertices of a "mesh" collider are at the end of the next step. */
+    setColliderVertices(collider, xyz) {
+        this.#withNumbers(xyz, xyz.length, (at) => this.#check(this.#wasm.js_collider_vertices(this.#world, collider, at, xyz.length / 3)));
+    }
+    #withNumbers(numbers, count, use) {
+        if (numbers.length !== count || count % 3) throw new SkeinError([{status: 'value', where: '', message: `${numbers.length} numbers: expected ${count === 12 ? '9 of a turn and 3 of a shift' : 'three a vertex'}`}]);
+        return this.#withBytes(new Uint8Array(Float64Array.from(numbers).buffer), use);
     }
 
     /* ---- the hand ---- */

@@ -1,5 +1,6 @@
 // The editor of formulas: what is typed becomes a constraint, a force field, a collider or a rule of pairs in the scene. It
-// is tried while one types: a fault shows its place by a caret, a good one what is computed, its gradient included.
+// is tried while one types: a fault shows its place by a caret, a good one what is computed, its gradient included. editor.js
+// is where one types.
 import {element} from './controls.js';
 
 const onBody = (over, stiffness) => (text, body) => ({type: 'formula', constraint: text, stiffness, particles: {body, over}});
@@ -26,6 +27,12 @@ const KINDS = {
     },
 };
 
+/* Where a fault is in a text, by its line, column and width in bytes, which are letters here: others are a fault themselves. */
+function span(text, {line = 1, column = 1, width = 1, fault}) {
+    const from = text.split('\n').slice(0, line - 1).reduce((sum, row) => sum + row.length + 1, 0) + column - 1;
+    return {from, to: from + Math.max(width, 1), message: fault};
+}
+
 /* `attempt(set)` resolves to words of a fault or ''; `add(set)` puts it into the scene; `objects()` are those there are;
  * `call` asks the worker. */
 export function formulaEditor({attempt, add, objects, call, notice}) {
@@ -33,8 +40,8 @@ export function formulaEditor({attempt, add, objects, call, notice}) {
     kind.setAttribute('aria-label', 'What the formula is');
     const body = element('select', {id: 'formula-body'});
     body.setAttribute('aria-label', 'The body that it is on');
-    const text = element('textarea', {id: 'formula-text', rows: 3, spellcheck: false, value: KINDS.constraint.text});
-    text.setAttribute('aria-label', 'The formula');
+    // what is typed; the editor is there once it was asked for
+    const place = element('div', {className: 'editor'}), typed = {value: KINDS.constraint.text, editor: null};
     const fault = element('pre', {id: 'formula-fault'});
     fault.setAttribute('role', 'status');
     const button = element('button', {type: 'button', id: 'formula-add', textContent: 'Add to the scene'});
@@ -45,14 +52,16 @@ export function formulaEditor({attempt, add, objects, call, notice}) {
 
     const set = () => {
         const {list, category, object} = KINDS[kind.value];
-        return `${list}.${objects()?.[category].length ?? 0}=${JSON.stringify(object(text.value, Number(body.value)))}`;
+        return `${list}.${objects()?.[category].length ?? 0}=${JSON.stringify(object(typed.value, Number(body.value)))}`;
     };
     let waiting = 0, asked = 0;
     const look = async () => {
         const mine = ++asked, {result, velocities = false} = KINDS[kind.value];
-        const words = await attempt(set()), alone = kind.value === 'pair' ? {} : await call('formula', text.value, {result, velocities}).catch(() => ({}));
+        const words = await attempt(set()), alone = kind.value === 'pair' ? {} : await call('formula', typed.value, {result, velocities}).catch(() => ({}));
         if (mine !== asked) return; // somebody types on
-        fault.textContent = words || `It is good.${alone.warning ? ` ${alone.warning}` : ''}`;
+        typed.editor?.mark(words && alone.fault ? span(typed.value, alone) : null);
+        if (words && alone.fault) fault.replaceChildren(element('span', {textContent: `${alone.fault}\n`}), alone.shown);
+        else fault.textContent = words || `It is good.${alone.warning ? ` ${alone.warning}` : ''}`;
         fault.className = words ? '' : 'good';
         button.disabled = Boolean(words);
         inner.hidden = !alone.graph;
@@ -63,13 +72,29 @@ export function formulaEditor({attempt, add, objects, call, notice}) {
         waiting = setTimeout(look, 150);
     };
     const suit = () => (body.hidden = kind.value !== 'constraint' && kind.value !== 'hinge');
+    const write = (text) => {
+        typed.value = text;
+        if (typed.editor) typed.editor.text = text;
+    };
     kind.addEventListener('change', () => {
-        text.value = KINDS[kind.value].text;
+        write(KINDS[kind.value].text);
         suit();
         soon();
     });
     body.addEventListener('change', soon);
-    text.addEventListener('input', soon);
+    let begun = false;
+    async function begin() {
+        if (begun) return;
+        begun = true;
+        const [{edit}, functions] = await Promise.all([import('./editor.js'), call('functions')]);
+        typed.editor = edit({
+            parent: place, text: typed.value, functions, label: 'The formula', id: 'formula-text',
+            changed(text) {
+                typed.value = text;
+                soon();
+            },
+        });
+    }
     button.addEventListener('click', async () => {
         button.disabled = true;
         await add(set());
@@ -108,9 +133,9 @@ export function formulaEditor({attempt, add, objects, call, notice}) {
     });
     number.addEventListener('input', showGradient);
 
-    const view = element('details', {className: 'formula'}, element('summary', {textContent: 'Formula'}), kind, body, text, fault, button, inner,
+    const view = element('details', {className: 'formula'}, element('summary', {textContent: 'Formula'}), kind, body, place, fault, button, inner,
         element('label', {className: 'arrows'}, 'Arrows of ', arrows), number, shown);
-    view.addEventListener('toggle', () => view.open && soon());
+    view.addEventListener('toggle', () => view.open && begin().then(soon, (error) => notice(error.message)));
     suit();
     return {
         view,

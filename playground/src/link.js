@@ -15,8 +15,12 @@ async function pack(text) {
     return btoa(letters).replace(/\+/g, '-').replace(/\//g, '_').replace(/=/g, '');
 }
 async function unpack(text) {
-    const bytes = Uint8Array.from(atob(text.replace(/-/g, '+').replace(/_/g, '/')), (c) => c.charCodeAt(0));
-    return new TextDecoder().decode(await through(new DecompressionStream('deflate-raw'), bytes));
+    try {
+        const bytes = Uint8Array.from(atob(text.replace(/-/g, '+').replace(/_/g, '/')), (c) => c.charCodeAt(0));
+        return new TextDecoder().decode(await through(new DecompressionStream('deflate-raw'), bytes));
+    } catch {
+        throw new Error('a part of it is damaged or cut off'); // browsers say "Failed to fetch"
+    }
 }
 
 export const MOST = 500000; // letters: beyond it browsers and servers shorten addresses

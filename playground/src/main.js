@@ -33,10 +33,16 @@ const joule = (x) => {
 };
 const percent = (x) => (Math.abs(x) < 1e-6 ? '0 %' : `${(100 * x).toPrecision(2)} %`);
 const simulation = new Simulation({onState: take, onBroken: (faults) => notice(words(faults))});
+/* What is under the pointer in a plot stands where the newest number stood. */
+const pointed = (id) => (text) => {
+    $(id).dataset.pointed = text;
+    if (text) $(id).textContent = text;
+};
+const number = (id, text) => $(id).dataset.pointed || ($(id).textContent = text);
 const plots = {
-    ms: new Plot($('plot-ms'), {bars: true, words: (x) => `${x.toFixed(x < 10 ? 1 : 0)} ms`}),
-    energy: new Plot($('plot-energy'), {words: joule}),
-    stretch: new Plot($('plot-stretch'), {words: percent}),
+    ms: new Plot($('plot-ms'), {bars: true, words: (x) => `${x.toFixed(x < 10 ? 1 : 0)} ms`, told: pointed('number-ms')}),
+    energy: new Plot($('plot-energy'), {words: joule, names: ['kinetic', 'elastic', 'potential'], told: pointed('number-energy')}),
+    stretch: new Plot($('plot-stretch'), {words: percent, told: pointed('number-stretch')}),
 };
 
 let early = null; // the first state of a world may come before the world's description
@@ -254,7 +260,7 @@ function tell() {
     if (!list.children.length)
         list.replaceChildren(...Object.keys(numbers).map((name) => element('div', {}, element('dt', {textContent: name}), element('dd', {id: `number-${name}`}))));
     for (const [name, value] of Object.entries(numbers)) $(`number-${name}`).textContent = value;
-    $('number-ms').textContent = Number.isNaN(plots.ms.median) ? '-' : `${plots.ms.median.toFixed(2)} ms`;
+    number('number-ms', Number.isNaN(plots.ms.median) ? '-' : `${plots.ms.median.toFixed(2)} ms`);
     const line = $('timeline');
     line.max = state.end;
     if (!line.matches(':active')) line.value = state.frame;
@@ -275,8 +281,8 @@ async function measure() {
     const total = s.kineticEnergy + s.potentialEnergy + s.elasticEnergy;
     plots.energy.add([[s.kineticEnergy, s.elasticEnergy, s.potentialEnergy]]);
     plots.stretch.add([[s.maxStretch]]);
-    $('number-energy').textContent = joule(total);
-    $('number-stretch').textContent = `${(100 * s.maxStretch).toFixed(2)} %`;
+    number('number-energy', joule(total));
+    number('number-stretch', `${(100 * s.maxStretch).toFixed(2)} %`);
     $('plot-energy').title = `kinetic ${joule(s.kineticEnergy)} (red), elastic ${joule(s.elasticEnergy)} (teal), potential ${joule(s.potentialEnergy)} (amber)`;
     $('numbers').title = `contacts ${s.contacts}; memory ${(s.memoryBytes / 1e6).toFixed(1)} MB`;
 }
@@ -404,7 +410,7 @@ async function begin() {
     $('timeline').addEventListener('input', (event) => seek(Number(event.target.value)));
     $('branch').addEventListener('change', (event) => switchTo(Number(event.target.value)));
     document.addEventListener('keydown', (event) => {
-        if (event.target.closest('input, textarea, select, button, dialog, summary') || event.ctrlKey || event.metaKey || event.altKey) return;
+        if (event.target.closest('input, textarea, select, button, dialog, summary, [contenteditable]') || event.ctrlKey || event.metaKey || event.altKey) return;
         const act = keys[event.key];
         if (!act) return;
         event.preventDefault();

@@ -44,6 +44,8 @@ export class Picture {
     #beat = {value: 0};
     #arrows = {count: 0, mesh: null};
     #wanted = false;
+    #drifting = false;
+    #byHand = false; // somebody has turned the view
     #sizes;
 
     constructor(holder) {
@@ -54,6 +56,7 @@ export class Picture {
         holder.append(this.#renderer.domElement);
         this.controls = new OrbitControls(this.#camera, this.#renderer.domElement);
         this.controls.addEventListener('change', () => this.draw());
+        this.controls.addEventListener('start', () => (this.#byHand = true));
         this.#light.look = this.#look;
         this.#sizes = new ResizeObserver(() => this.resize());
         this.#sizes.observe(holder);
@@ -69,6 +72,8 @@ export class Picture {
     set camera([x, y, z, ...at]) {
         this.#camera.position.set(x, y, z);
         this.controls.target.set(...at);
+        this.#byHand = true;
+        if (this.#parts?.size) this.#light.aim(this.controls.target, this.#parts.size);
         this.controls.update();
         this.draw();
     }
@@ -233,6 +238,7 @@ export class Picture {
         this.#placePins(state);
         this.#placeArrows(state.arrows);
         if (!this.#parts.framed) this.frame();
+        this.#goAfter(state);
         this.draw();
     }
 
@@ -325,9 +331,8 @@ export class Picture {
         this.#arrows.mesh.instanceMatrix.needsUpdate = true;
     }
 
-    /* Turns the camera so that all is in the picture, as near as that goes, from where the scene's view says; sun and ground
-     * follow. What stands around large things is cut off rather than that the bodies become small. */
-    frame() {
+    /* Where a camera has all in the picture, as near as that goes, from where the scene's view says. What stands around large things is cut off rather than that the bodies become small. */
+    #hold() {
         const {positions} = this.#state, box = new THREE.Box3(), point = new THREE.Vector3(), corners = [];
         for (let i = 0; i < positions.length; i += 3) box.expandByPoint(point.fromArray(positions, i));
         const own = box.clone(), {world, colliders} = this.#parts, view = world.settings.view, camera = view.camera ?? {};
@@ -350,6 +355,13 @@ export class Picture {
         let held = null;
         for (let share = 1; share > -0.1 && !(held?.large >= 0.31); share -= 0.2)
             held = hold(positions, corners.map((corner) => own.clampPoint(corner, new THREE.Vector3()).lerp(corner, share)), centre, back, tall * zoom, aspect, size / zoom);
+        return {...held, back, size, level, centre, lowest: box.min.y};
+    }
+    /* Turns the camera there; sun and ground follow. */
+    frame() {
+        const held = this.#hold(), {back, size, level, centre} = held;
+        this.#drifting = false;
+        this.#byHand = false;
         this.#parts.framed = true;
         this.#parts.size = size;
         this.#parts.level = level !== null;
@@ -359,8 +371,26 @@ export class Picture {
         this.controls.target.copy(held.target);
         this.#camera.position.copy(back).multiplyScalar(held.far).add(held.target);
         this.controls.update();
-        this.#lightAndGround(centre, size, box.min.y, level);
+        this.#lightAndGround(centre, size, held.lowest, level);
         this.show(this.#state);
+    }
+
+    /* A flag that the wind turns round, a cloth that is let go: where the bodies leave the picture, and nobody has chosen a
+     * view, the camera goes after them. */
+    #goAfter({positions, playing}) {
+        if (!playing || this.#byHand || !this.controls.enabled || !positions.length) return;
+        const sum = [0, 0, 0];
+        for (let i = 0; i < positions.length; i++) sum[i % 3] += positions[i];
+        const middle = new THREE.Vector3(...sum).multiplyScalar(3 / positions.length);
+        const seen = middle.clone().project(this.#camera), off = Math.max(Math.abs(seen.x), Math.abs(seen.y));
+        this.#drifting = off > (this.#drifting ? 0.15 : 0.75) && off < 30; // (what has blown up is nowhere)
+        if (!this.#drifting) return;
+        const {target} = this.controls, ahead = this.#camera.getWorldDirection(new THREE.Vector3()), way = middle.sub(target).multiplyScalar(0.06);
+        way.addScaledVector(ahead, -way.dot(ahead));
+        target.add(way);
+        this.#camera.position.add(way);
+        this.controls.update();
+        this.#light.aim(target, this.#parts.size);
     }
 
     #lightAndGround(centre, size, lowest, level) {

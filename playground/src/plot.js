@@ -1,23 +1,54 @@
-// Small plots of numbers over time: lines or bars, the newest at the right.
+// Small plots of numbers over frames, by uPlot: lines or bars, the newest at the right. Under a pointer stands what was there.
+import uPlot from 'uplot';
+import 'uplot/dist/uPlot.min.css';
+
 const COLOURS = ['--accent', '--second', '--third'];
 
 export class Plot {
-    #canvas;
-    #rows = []; // arrays of one number a line
+    #rows = []; // [number of the row, a number a line]
+    #next = 0;
+    #chart;
+    #holder;
+    #top;
     #bars;
     #words;
     #room;
 
-    /* `words(most)` labels the top. */
-    constructor(canvas, {bars = false, words = (x) => x.toPrecision(2), room = 120} = {}) {
-        this.#canvas = canvas;
+    /* In a holder; `words(x)` says a number, `names` those of the lines, `told(text)` hears what is under the pointer, or ''. */
+    constructor(holder, {bars = false, words = (x) => x.toPrecision(2), names = [''], room = 120, told = () => {}} = {}) {
+        this.#holder = holder;
         this.#bars = bars;
         this.#words = words;
         this.#room = room;
-        new ResizeObserver(() => this.draw()).observe(canvas);
+        this.#top = document.createElement('small');
+        const colour = (name) => getComputedStyle(holder).getPropertyValue(name), line = (k) => () => colour(COLOURS[k]);
+        this.#chart = new uPlot({
+            width: 168, height: 38, padding: [11, 0, 1, 0], legend: {show: false}, axes: [{show: false}, {show: false}],
+            cursor: {y: false, points: {show: !bars, size: 4}, drag: {x: false, y: false}},
+            scales: {
+                x: {time: false, range: () => [this.#next - room, this.#next]},
+                y: {range: () => this.#range()},
+            },
+            series: [{}, ...names.map((_, k) => ({
+                stroke: line(k), width: bars ? 0 : 1.5, points: {show: false}, ...(bars ? {fill: line(k), paths: uPlot.paths.bars({size: [0.8], align: 1})} : {}),
+            }))],
+            hooks: {
+                setCursor: [({cursor: {idx}}) => told(idx === null || idx === undefined ? '' : this.#rows[idx].slice(1).map((x, k) => `${names[k]} ${words(x)}`.trim()).join(', '))],
+            },
+        }, [[], ...names.map(() => [])], holder);
+        holder.append(this.#top);
+        new ResizeObserver(() => this.#fit()).observe(holder);
+    }
+    #fit() {
+        const {clientWidth: width, clientHeight: height} = this.#holder;
+        if (width && height) this.#chart.setSize({width, height});
+    }
+    #range() {
+        const all = this.#rows.flatMap((row) => row.slice(1));
+        return [Math.min(0, ...all), this.#bars ? Math.max(0.5, (this.median || 0) * 2.5) : Math.max(...all, 1e-12)];
     }
     get median() {
-        const sorted = this.#rows.map((row) => row[0]).sort((a, b) => a - b);
+        const sorted = this.#rows.map((row) => row[1]).sort((a, b) => a - b);
         return sorted.length ? sorted[sorted.length >> 1] : NaN;
     }
     clear() {
@@ -25,38 +56,13 @@ export class Plot {
         this.draw();
     }
     add(rows) {
-        this.#rows.push(...rows);
+        for (const row of rows) if (row.every(Number.isFinite)) this.#rows.push([this.#next++, ...row]);
         this.#rows.splice(0, Math.max(0, this.#rows.length - this.#room));
         this.draw();
     }
     draw() {
-        const ratio = devicePixelRatio || 1, canvas = this.#canvas, wide = canvas.clientWidth, high = canvas.clientHeight;
-        if (!wide) return;
-        if (canvas.width !== Math.round(wide * ratio)) Object.assign(canvas, {width: Math.round(wide * ratio), height: Math.round(high * ratio)});
-        const c = canvas.getContext('2d'), style = getComputedStyle(canvas), rows = this.#rows.filter((row) => row.every(Number.isFinite));
-        c.setTransform(ratio, 0, 0, ratio, 0, 0);
-        c.clearRect(0, 0, wide, high);
-        if (!rows.length) return;
-        const all = rows.flat(), most = this.#bars ? Math.max(0.5, this.median * 2.5) : Math.max(...all, 1e-12), least = Math.min(0, ...all);
-        const y = (x) => high - 1 - ((Math.min(x, most) - least) / (most - least)) * (high - 12), step = wide / this.#room;
-        c.strokeStyle = style.getPropertyValue('--line');
-        c.beginPath();
-        c.moveTo(0, y(0));
-        c.lineTo(wide, y(0));
-        c.stroke();
-        rows[0].forEach((_, k) => {
-            c.fillStyle = c.strokeStyle = style.getPropertyValue(COLOURS[k]);
-            if (this.#bars) rows.forEach(([ms], i) => c.fillRect(i * step, y(ms), Math.max(step - 0.5, 0.5), high - y(ms)));
-            else {
-                c.beginPath();
-                rows.forEach((row, i) => c[i ? 'lineTo' : 'moveTo'](i * step, y(row[k])));
-                c.lineWidth = 1.5;
-                c.stroke();
-            }
-        });
-        c.fillStyle = style.getPropertyValue('--faint');
-        c.font = '10px system-ui, sans-serif';
-        c.textAlign = 'right';
-        c.fillText(this.#words(most), wide - 1, 9);
+        const rows = this.#rows;
+        this.#chart.setData(this.#chart.series.map((_, k) => rows.map((row) => row[k])));
+        this.#top.textContent = rows.length ? this.#words(this.#range()[1]) : '';
     }
 }

@@ -1,6 +1,6 @@
 // The simulation, in a worker: drawing never waits for it. Messages in: {id, call, args}, answered by {id, value} or
 // {id, faults}. Out, besides: {state}, whenever there is something new to draw and the last one was taken ("taken").
-import {formula, kinds, load, PointCache, SkeinError, World} from 'skein';
+import {formula, functions, kinds, load, PointCache, SkeinError, World} from 'skein';
 
 import {boundSurface, surfaceNet} from './nets.js';
 import {Timeline} from './timeline.js';
@@ -184,6 +184,7 @@ const calls = {
     threads: async () => (await loaded).threads,
     kinds: (category) => kinds(category),
     formula: (text, options) => formula(text, options),
+    functions: () => functions(),
     async open(text, sets, files, path, frame = 0, events = []) {
         const next = text ? await World.fromScene(text, {sets, files, path}) : await World.fromMesh(path, files, {sets});
         const line = new Timeline(next); // what fails leaves the old world
