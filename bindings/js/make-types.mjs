@@ -93,9 +93,15 @@ for (const [list, title] of Object.entries(titles)) {
     }
     text += `export type ${title} = ${names.join(' | ')};\n\n`;
 }
+/* The method is a kind; what a scene says of it besides stands beside the kind's own fields. */
+function scene_members(fields) {
+    const tree = group(fields), beside = tree.get('method');
+    tree.delete('method');
+    return `${members_of(tree, '    ')}    method?: Method${beside ? ` & {\n${members_of(beside, '        ')}    }` : ''};\n`;
+}
 const scene = document.scene ? [document.scene].flat()[0] : null;
 const declared = readFileSync(new URL('skein.d.ts.in', here), 'utf8')
     .replace('@STATISTICS@', () => statistics.join(''))
     .replace('@KINDS@', () => text)
-    .replace('@SCENE@', () => (scene ? members_of(group(scene.fields), '    ') : ''));
+    .replace('@SCENE@', () => scene_members(scene ? scene.fields : []));
 writeFileSync(`${folder}/skein.d.ts`, declared);

@@ -90,6 +90,7 @@ export class Picture {
         this.#renderer.setSize(width, height);
         this.#camera.aspect = width / height;
         this.#camera.updateProjectionMatrix();
+        if (this.#parts?.framed && !this.#byHand && this.controls.enabled) this.frame(); // of a narrower picture all is to be seen, too
         this.draw();
     }
 
@@ -383,7 +384,7 @@ export class Picture {
         for (let i = 0; i < positions.length; i++) sum[i % 3] += positions[i];
         const middle = new THREE.Vector3(...sum).multiplyScalar(3 / positions.length);
         const seen = middle.clone().project(this.#camera), off = Math.max(Math.abs(seen.x), Math.abs(seen.y));
-        this.#drifting = off > (this.#drifting ? 0.15 : 0.75) && off < 30; // (what has blown up is nowhere)
+        this.#drifting = off > (this.#drifting ? 0.1 : 0.6) && off < 30; // (what has blown up is nowhere)
         if (!this.#drifting) return;
         const {target} = this.controls, ahead = this.#camera.getWorldDirection(new THREE.Vector3()), way = middle.sub(target).multiplyScalar(0.06);
         way.addScaledVector(ahead, -way.dot(ahead));

@@ -7,7 +7,7 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {test} from 'node:test';
 
-import {canHaveThreads, formula, kinds, load, PointCache, SkeinError, World} from '../../../build/npm/skein/skein.js';
+import {canHaveThreads, formula, functions, kinds, load, PointCache, SkeinError, World} from '../../../build/npm/skein/skein.js';
 
 const root = new URL('../../../', import.meta.url);
 const read = (path) => readFileSync(new URL(path, root));
@@ -379,6 +379,57 @@ test('what things look like, and probes of colliders and fields', async () => {
     assert.throws(() => world.shape('collider', 9), SkeinError);
 });
 
+test('a collider whose distances are sampled from a mesh: native\'s bits', async () => {
+    const scene = {
+        skein: 1, frames: 60, bodies: [{type: 'cloth', grid: [25, 25], size: [1.6, 1.6], position: [0, 1, 0]}], forces: [{type: 'gravity'}],
+        colliders: [{type: 'field', mesh: 'ball.obj', cell: 0.05, thickness: 0.01}]};
+    const world = await World.fromScene(scene, {files: {'ball.obj': read('meshes/ball.obj')}});
+    world.step(60);
+    assert.ok(world.contacts().length > 5);
+    const folder = mkdtempSync(join(tmpdir(), 'skein-'));
+    writeFileSync(join(folder, 'ball.obj'), read('meshes/ball.obj'));
+    writeFileSync(join(folder, 'scene.json'), JSON.stringify(scene));
+    assert.equal(world.hash(), JSON.parse(skein('run', join(folder, 'scene.json'), '--frames', '60', '--quiet', '--json')).state_hash);
+    rmSync(folder, {recursive: true});
+    world.free();
+});
+
+test('elsewhere at once: a body, a collider; and a mesh collider that deforms', async () => {
+    const obj = 'v -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nf 1 4 3 2\n';
+    const world = await World.fromScene({
+        skein: 1, bodies: [{type: 'cloth', grid: [9, 9], size: [0.5, 0.5], position: [0, 0.3, 0]}], forces: [{type: 'gravity'}],
+        colliders: [{type: 'sphere', centre: [0, 5, 0], radius: 0.2}, {type: 'mesh', mesh: 'floor.obj', thickness: 0.01}]}, {files: {'floor.obj': obj}});
+    const before = world.positions.slice(), speed = () => Math.max(...world.velocities.map(Math.abs));
+    world.teleportBody(0, [1, 2, 3], [0, 0, 1, 0, 1, 0, -1, 0, 0]); // a quarter about y, and away
+    world.positions.forEach((x, i) => {
+        const [a, b, c] = [0, 1, 2].map((k) => before[3 * Math.floor(i / 3) + k]);
+        assert.ok(Math.abs(x - [c + 1, b + 2, -a + 3][i % 3]) < 1e-6);
+    });
+    assert.equal(speed(), 0);
+    world.teleportBody(0, [-1, -2, -3]);
+    assert.throws(() => world.teleportBody(0, [0, 0, 0], [1, 2, 3, 4, 5, 6, 7, 8, 9]), SkeinError);
+    assert.throws(() => world.teleportBody(0, [0, 0]), SkeinError);
+    world.set('colliders.0.centre', [0, 0.9, 0]); // right through the cloth, had it gone there
+    world.teleportCollider(0);
+    world.step(30);
+    assert.ok(Math.max(...world.velocities.filter((_, i) => i % 3 === 1)) < 0.1);
+    for (let frame = 1; frame <= 60; frame++) { // the floor rises by half a metre, and takes the cloth along
+        const y = frame / 120;
+        world.setColliderVertices(1, [-2, y, -2, 2, y, -2, 2, y, 2, -2, y, 2]);
+        world.step(1);
+    }
+    assert.ok(Math.min(...world.positions.filter((_, i) => i % 3 === 1)) > 0.49, `${world.positions[1]}`);
+    assert.throws(() => world.setColliderVertices(1, [1, 2, 3]), SkeinError);
+    world.free();
+});
+
+test('the functions of formulas are told', async () => {
+    const found = await functions(), names = found.map(({usage}) => usage.split('(')[0]);
+    assert.ok(['length', 'dihedral', 'rest', 'sin', 'vec3'].every((name) => names.includes(name)) && found.every(({help}) => help.length > 3), names.join(' '));
+    const faults = await Promise.all(names.map((name) => formula(`${name}(`)));
+    for (const [i, {fault}] of faults.entries()) assert.doesNotMatch(fault, /no name/, names[i]); // each is one that formulas know
+});
+
 test('a mesh by itself is the command\'s scene about it', async () => {
     const world = await World.fromMesh('meshes/knot.obj', {'knot.obj': read('meshes/knot.obj')});
     world.step(5);
@@ -395,7 +446,7 @@ test('the tables are the command\'s, and the types know every kind, field and ca
     const lists = {body: 'bodies', constraint: 'constraints', force: 'forces', collider: 'colliders', motion: 'motions', method: 'methods'};
     for (const [category, list] of Object.entries(lists)) {
         const found = await kinds(category);
-        assert.deepEqual(found, tables[list].filter((kind) => kind.name !== 'field')); // that one is left out here
+        assert.deepEqual(found, tables[list]);
         for (const kind of found) {
             assert.ok(types.includes(`type: '${kind.name}';`), kind.name);
             for (const field of kind.fields) assert.ok(types.includes(field.help.replace(/\*\//g, '* /')), field.name);
