@@ -11,7 +11,8 @@ const STYLE = `
     .picture, .picture canvas { position: absolute; inset: 0; display: block; touch-action: none; }
     button { position: absolute; left: 10px; bottom: 10px; width: 38px; height: 38px; border-radius: 50%; border: 0; background: #fffc; color: #222; cursor: pointer; font: 15px system-ui; }
     button:focus-visible { outline: 2px solid #b23a24; }
-    p { position: absolute; left: 12px; right: 12px; top: 8px; margin: 0; font: 13px/1.4 ui-monospace, monospace; color: #a33; white-space: pre-wrap; }`;
+    p { position: absolute; left: 12px; right: 12px; top: 8px; margin: 0; font: 13px/1.4 ui-monospace, monospace; color: #a33; white-space: pre-wrap; }
+    p:not(:empty) { padding: .3rem .5rem; background: #fffe; border-radius: 4px; }`;
 
 class SkeinScene extends HTMLElement {
     static observedAttributes = ['src', 'scene', 'set', 'theme'];
@@ -124,7 +125,14 @@ class SkeinScene extends HTMLElement {
 
 /* The meshes that a scene names, from beside it. */
 async function beside(text, url) {
-    const {bodies = [], colliders = []} = JSON.parse(text), files = {};
+    const files = {};
+    let scene = {};
+    try {
+        scene = JSON.parse(text);
+    } catch {
+        return files; // the reader says what is wrong with it, and where
+    }
+    const {bodies = [], colliders = []} = scene;
     for (const {mesh} of [...bodies, ...colliders])
         for (const name of mesh ? new Set([mesh, mesh.replace(/[.]node$/, '.ele')]) : []) {
             const answer = await fetch(new URL(name, url));

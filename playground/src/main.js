@@ -389,8 +389,9 @@ async function openAddress() {
 
 const keys = {
     ' ': play, ArrowRight: step, ArrowLeft: back, r: reset, p: () => theHands?.togglePin(), k: () => theHands?.toggleKnife(), f: () => picture?.frame(), z: undo,
-    g: openGallery, c: togglePanel, '?': () => $('keys').showModal(),
+    '+': () => picture?.turn(0, 0, 1.15), '-': () => picture?.turn(0, 0, 1 / 1.15), g: openGallery, c: togglePanel, '?': () => $('keys').showModal(),
 };
+const turns = {ArrowRight: [8, 0], ArrowLeft: [-8, 0], ArrowUp: [0, 6], ArrowDown: [0, -6]}; // with the shift key
 let theHands = null;
 
 async function begin() {
@@ -411,7 +412,7 @@ async function begin() {
     $('branch').addEventListener('change', (event) => switchTo(Number(event.target.value)));
     document.addEventListener('keydown', (event) => {
         if (event.target.closest('input, textarea, select, button, dialog, summary, [contenteditable]') || event.ctrlKey || event.metaKey || event.altKey) return;
-        const act = keys[event.key];
+        const turn = event.shiftKey && turns[event.key], act = turn ? () => picture?.turn(...turn) : keys[event.key];
         if (!act) return;
         event.preventDefault();
         act();

@@ -94,6 +94,17 @@ export class Picture {
         this.draw();
     }
 
+    /* Turns the view by so many degrees to the right and up, and goes so many times as near: for keys. */
+    turn(right, up, nearer = 1) {
+        const {target} = this.controls, off = new THREE.Spherical().setFromVector3(this.#camera.position.clone().sub(target));
+        off.theta += THREE.MathUtils.degToRad(right);
+        off.phi -= THREE.MathUtils.degToRad(up);
+        off.radius /= nearer;
+        this.#byHand = true;
+        this.#camera.position.setFromSpherical(off.makeSafe()).add(target);
+        this.controls.update();
+        this.draw();
+    }
     /* Soon, once, however often it is asked for. */
     draw() {
         if (this.#wanted) return;
@@ -348,7 +359,7 @@ export class Picture {
         if (level !== null && box.min.y - level < box.getSize(point).length()) {
             box.expandByPoint(box.getCenter(point).setY(level));
             corners.push(point.clone());
-        } else if (view.ground !== false) corners.push(box.getCenter(new THREE.Vector3()).setY(box.min.y - 0.12 * box.getSize(point).length())); // room to sink, and for a shadow
+        } else if (view.ground !== false) corners.push(box.getCenter(new THREE.Vector3()).setY(box.min.y - 0.2 * box.getSize(point).length())); // room to sink, and for a shadow
         const centre = box.getCenter(new THREE.Vector3()), size = Math.max(box.getSize(point).length(), 1e-3);
         const turn = THREE.MathUtils.degToRad(camera.azimuth ?? 27), height = THREE.MathUtils.degToRad(camera.elevation ?? 14);
         const back = new THREE.Vector3(Math.sin(turn) * Math.cos(height), Math.sin(height), Math.cos(turn) * Math.cos(height));

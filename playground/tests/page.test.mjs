@@ -467,7 +467,8 @@ test('a scene in a page of one\'s own, from another server', async () => {
     const folder = mkdtempSync(join(tmpdir(), 'skein-'));
     writeFileSync(join(folder, 'mine.json'), JSON.stringify({skein: 1, name: 'mine', bodies: [{type: 'cloth', grid: [9, 9], pins: 'top edge'}], forces: [{type: 'gravity'}]}));
     writeFileSync(join(folder, 'index.html'), `<!doctype html><link rel="icon" href="data:,"><script type="module" src="${server.address}skein-scene.js"></script>
-        <skein-scene id="a" src="mine.json" paused></skein-scene><skein-scene id="b" scene="nothing" paused></skein-scene>`);
+        <skein-scene id="a" src="mine.json" paused></skein-scene><skein-scene id="b" scene="nothing" paused></skein-scene><skein-scene id="c" src="broken.json"></skein-scene>`);
+    writeFileSync(join(folder, 'broken.json'), '{"skein": 1,\n "bodies": [}');
     const own = await serve(folder), context = await browser.newContext(), page = await context.newPage(), errors = [];
     page.on('pageerror', (error) => errors.push(String(error)));
     await page.goto(own.address);
@@ -475,6 +476,7 @@ test('a scene in a page of one\'s own, from another server', async () => {
     const found = await page.evaluate(() => document.getElementById('a').call('run', 12));
     assert.equal(found.hash, native([join(folder, 'mine.json'), '--frames', '12']));
     await page.waitForFunction(() => document.getElementById('b').shadowRoot.querySelector('p').textContent.includes("no scene 'nothing'"));
+    await page.waitForFunction(() => /broken\.json:2:\d+/.test(document.getElementById('c').shadowRoot.querySelector('p').textContent));
     assert.deepEqual(errors, []);
     await context.close();
     own.close();
@@ -588,6 +590,32 @@ test('what leaves the picture is gone after, until somebody turns the view', asy
     assert.ok((await middle()) >= 0.4, `${await middle()}`);
     assert.notDeepEqual(await camera(), before_);
     await page.evaluate(() => globalThis.skein.call('play', false));
+    assert.deepEqual(errors, []);
+    await close();
+});
+
+test('by keys alone: the view, time, another scene, the menu', async () => {
+    const {page, errors, close} = await openPage('#scene=drape&frame=3'), camera = () => page.evaluate(() => globalThis.skein.picture.camera);
+    const before_ = await camera(), far = ([x, y, z, a, b, c]) => Math.hypot(x - a, y - b, z - c);
+    await page.keyboard.press('Shift+ArrowRight');
+    await page.keyboard.press('Shift+ArrowUp');
+    const turned = await camera();
+    assert.ok(turned[1] > before_[1] && Math.abs(far(turned) - far(before_)) < 1e-6 * far(before_));
+    await page.keyboard.press('+');
+    assert.ok(Math.abs(1.15 * far(await camera()) - far(turned)) < 1e-6 * far(turned));
+    assert.equal(await page.evaluate(() => globalThis.skein.app.state.frame), 3); // shift and arrows are no steps
+    await page.keyboard.press('ArrowRight');
+    await page.waitForFunction(() => globalThis.skein.app.state.frame === 4);
+    await page.keyboard.press('g');
+    await page.keyboard.press('Tab'); // past the button that closes it
+    for (let i = 0; i < 3 && !(await page.evaluate(() => document.activeElement.closest('.cards'))); i++) await page.keyboard.press('Tab');
+    const name = await page.evaluate(() => document.activeElement.querySelector('strong').textContent);
+    await page.keyboard.press('Enter');
+    await page.waitForFunction((scene) => globalThis.skein.app.scene === scene, name);
+    await page.locator('#menu > summary').focus();
+    await page.keyboard.press('Enter');
+    await page.keyboard.press('Tab');
+    assert.equal(await page.evaluate(() => document.activeElement.id), 'open-file');
     assert.deepEqual(errors, []);
     await close();
 });
