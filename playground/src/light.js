@@ -85,7 +85,7 @@ export class Light {
 
     constructor(scene) {
         const material = new THREE.ShaderMaterial({
-            side: THREE.BackSide, depthWrite: false, depthTest: false, uniforms: {horizon: {value: new THREE.Color()}, zenith: {value: new THREE.Color()}},
+            side: THREE.BackSide, depthWrite: false, uniforms: {horizon: {value: new THREE.Color()}, zenith: {value: new THREE.Color()}},
             vertexShader: `
                 varying vec3 ray;
                 void main() {
@@ -104,7 +104,7 @@ export class Light {
         });
         this.#sky = new THREE.Mesh(new THREE.SphereGeometry(1, 48, 64), material);
         this.#sky.frustumCulled = false;
-        this.#sky.renderOrder = -1;
+        this.#sky.renderOrder = 1; // it lies at the far end, and is worked out where nothing else is
         this.sun.castShadow = true;
         this.sun.shadow.mapSize.set(2048, 2048);
         scene.add(this.#sky, this.sun, this.sun.target, this.#around);

@@ -433,6 +433,7 @@ async function begin() {
         throw new Error(`Skein could not be started: ${error.message}. It needs WebAssembly with SIMD (Chrome 91, Firefox 89, Safari 16.4).`);
     });
     beside.offer(app.methods);
+    setTimeout(() => ($('hint').hidden = true), 25000); // it was read, or is in the way
     addEventListener('hashchange', openAddress);
     await openAddress();
     if ('serviceWorker' in navigator && import.meta.env.PROD) keepOffline();

@@ -358,7 +358,11 @@ export class Picture {
         const under = world.colliders.findIndex((c) => isLevel(c) && c.visible), level = under < 0 ? null : this.#state.poses[under].position[1];
         if (level !== null && box.min.y - level < box.getSize(point).length()) {
             box.expandByPoint(box.getCenter(point).setY(level));
-            corners.push(point.clone());
+            for (const {firstParticle: first, particleCount: count} of world.bodies) { // and where each body comes to lie
+                const sum = [0, 0, 0];
+                for (let i = 3 * first; i < 3 * (first + count); i++) sum[i % 3] += positions[i] / count;
+                if (count) corners.push(new THREE.Vector3(sum[0], level, sum[2]));
+            }
         } else if (view.ground !== false) corners.push(box.getCenter(new THREE.Vector3()).setY(box.min.y - 0.2 * box.getSize(point).length())); // room to sink, and for a shadow
         const centre = box.getCenter(new THREE.Vector3()), size = Math.max(box.getSize(point).length(), 1e-3);
         const turn = THREE.MathUtils.degToRad(camera.azimuth ?? 27), height = THREE.MathUtils.degToRad(camera.elevation ?? 14);
