@@ -1,0 +1,165 @@
+/* What contact takes for near is all that is near, in every substep: courses, reaches, trees, boxes, cells and calm patches
+ * leave nothing out. Held against all pairs of features that there are, one after the other, where vertices were when the last
+ * substep began. (What is done to a pair that is near moves it, so it is counts that are compared: lists have been used.) */
+#include "contact/touch.h"
+#include "helpers.h"
+#include "irregular.h"
+#include "world/world.h"
+
+enum { STEPS = SANITIZED ? 8 : 40, SIDE = 14, MOST = 512 };
+
+static sk_touch *touch_of(skein_world *world) {
+    for (size_t i = 0; i < world->rules.forces.count; i++)
+        if (world->rules.forces.data[i]->type->phase == SK_MEETS) return world->rules.forces.data[i]->state;
+    return NULL;
+}
+
+/* Some pairs, and which of them kernels find near. */
+typedef struct some_pairs {
+    sk_touch *touch;
+    sk_allocator allocator;
+    sk_pairs pairs;
+    size_t near;
+    int sort;
+} some_pairs;
+
+static void look(some_pairs *some) {
+    sk_touch *touch = some->touch;
+    sk_pairs_pad(&some->pairs);
+    sk_touch_set_thickness(touch, &some->pairs, 0, some->sort);
+    sk_closest[some->sort][touch->isa](touch->p, &some->pairs);
+    for (size_t k = 0; k < some->pairs.count; k++) some->near += (some->pairs.closes[k] & SK_IS_NEAR) != 0;
+    some->pairs.count = 0;
+}
+
+static void add(some_pairs *some, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+    const uint32_t v[4] = {a, b, c, d};
+    for (int k = 0; k < 4; k++) some->pairs.corner[k][some->pairs.count] = v[k];
+    some->pairs.key[some->pairs.count++] = 0;
+    if (some->pairs.count == MOST) look(some);
+}
+
+static size_t count_near(sk_touch *touch, int sort) {
+    const sk_skin *skin = &touch->skin;
+    some_pairs some = {.touch = touch, .allocator = sk_default_allocator(), .sort = sort};
+    assert_true(sk_pairs_reserve(&some.pairs, &some.allocator, MOST + 16));
+    for (uint32_t v = 0; v < skin->vertex_count && sort == SK_CORNERS; v++)
+        for (uint32_t t = 0; t < skin->triangle_count; t++) {
+            const uint32_t *c = skin->triangle[t];
+            if (v != c[0] && v != c[1] && v != c[2]) add(&some, v, c[0], c[1], c[2]);
+        }
+    for (uint32_t e = 0; e < skin->edge_count && sort == SK_EDGES; e++)
+        for (uint32_t f = e + 1; f < skin->edge_count; f++) {
+            const uint32_t *a = skin->edge[e], *b = skin->edge[f];
+            if (a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1]) add(&some, a[0], a[1], b[0], b[1]);
+        }
+    look(&some);
+    sk_pairs_release(&some.pairs, &some.allocator);
+    return some.near;
+}
+
+/* How many pairs were near, and how many patches calm, over a run of steps. */
+typedef struct tally {
+    size_t near, calm, not_calm;
+} tally;
+
+static tally run(skein_world *world, int count) {
+    tally all = {0, 0, 0};
+    for (int i = 0; i < count; i++) {
+        steps(world, 1, 1.0 / 60);
+        sk_touch *touch = touch_of(world);
+        assert_non_null(touch);
+        if (!touch->loaded) continue;
+        for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
+            size_t near = count_near(touch, sort);
+            assert_int_equal(touch->near[sort].count, near);
+            all.near += near;
+        }
+        for (size_t p = 0; p < touch->calm.patch_count; p++)
+            all.calm += touch->calm.patch[p].calm, all.not_calm += !touch->calm.patch[p].calm;
+    }
+    assert_int_equal(statistics_of(world).crossings, 0);
+    skein_world_destroy(world);
+    return all;
+}
+
+static skein_world *world_with(const char *method, int substeps, double thickness) {
+    skein_world *world = new_world(method, substeps);
+    add_gravity(world);
+    OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.5)), NULL));
+    OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", thickness)), NULL));
+    return world;
+}
+
+static void add_sheet(skein_world *world, double height, double tilt, const char *pins) {
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", pins), SKEIN_REAL("bend.stiffness", 0),
+                                            SKEIN_VEC3("position", 0, height, 0), SKEIN_VEC3("rotation", 90 - tilt, 10, 0)),
+                             NULL));
+}
+
+static void of_a_heap(void **state) {
+    (void)state;
+    for (int tilt = 3; tilt <= 19; tilt += 8) {
+        skein_world *world = world_with("xpbd", 6, 0.03);
+        add_sheet(world, 0.53, tilt, "");
+        tally all = run(world, STEPS);
+        assert_true(all.near > 100 && all.calm > 100);
+        if (!SANITIZED) assert_true(all.not_calm > 100);
+    }
+}
+
+/* It swings through, and its corners come together. */
+static void of_a_sheet_that_swings(void **state) {
+    (void)state;
+    skein_world *world = world_with("xpbd", 4, 0.03);
+    add_sheet(world, 2, 80, "top corners");
+    tally all = run(world, STEPS);
+    assert_true(all.calm > 100);
+}
+
+static void of_an_irregular_mesh(void **state) {
+    (void)state;
+    skein_world *world = world_with("xpbd", 5, 0.02);
+    add_irregular(world, SIDE, SKEIN_SETTINGS(SKEIN_VEC3("position", 0, 0.5, 0), SKEIN_VEC3("rotation", 84, 10, 0)));
+    tally all = run(world, STEPS);
+    assert_true(all.near > 100 && all.calm > 100);
+}
+
+/* Two sheets, one of them flung at the other, under a method that adds forces up. */
+static void of_two_that_meet_fast(void **state) {
+    (void)state;
+    skein_world *world = world_with("symplectic_euler", 40, 0.02);
+    for (int l = 0; l < 2; l++)
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_VEC3("position", 0, 0.4 + 0.2 * l, 0),
+                                                SKEIN_VEC3("rotation", 5 * l, 20 * l, 0), SKEIN_VEC3("velocity", l, -6 * l, 0),
+                                                SKEIN_REAL("stretch.stiffness", 500)),
+                                 NULL));
+    tally all = run(world, STEPS / 2);
+    assert_true(all.near > 100);
+}
+
+/* What a program changes between steps is seen. */
+static void of_what_is_moved_by_hand(void **state) {
+    (void)state;
+    skein_world *world = world_with("xpbd", 5, 0.03);
+    add_sheet(world, 0.53, 12, "");
+    steps(world, STEPS / 2, 1.0 / 60);
+    double x[3 * SIDE * SIDE];
+    OK(world, skein_positions_copy(world, 0, SIDE * SIDE, x));
+    for (size_t i = 0; i < SIDE * SIDE; i++) { // elsewhere, turned about a quarter, and narrower
+        double y = x[3 * i + 1];
+        x[3 * i + 1] = 0.3 - x[3 * i], x[3 * i] = 1 + y, x[3 * i + 2] *= 0.9;
+    }
+    OK(world, skein_positions_set(world, 0, SIDE * SIDE, x));
+    tally all = run(world, 6);
+    assert_true(all.near > 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(of_a_heap), cmocka_unit_test(of_a_sheet_that_swings),
+                                       cmocka_unit_test(of_an_irregular_mesh), cmocka_unit_test(of_two_that_meet_fast),
+                                       cmocka_unit_test(of_what_is_moved_by_hand)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
