@@ -11,6 +11,7 @@ SK_KERNELS(sk_nearing_kernel, corners_nearing);
 SK_KERNELS(sk_nearing_kernel, edges_nearing);
 
 #ifdef SK_ISA
+#include "contact/bits.h"
 #include "contact/closest.h"
 
 SK_INLINE const sk_wide *part_of(const real *reals, size_t k) {
@@ -83,31 +84,30 @@ void SK_KERNEL(edges_closing)(const sk_vec4 *x, const sk_vec4 *way, const sk_clo
     closing(x, way, values, pairs, 2);
 }
 
-/* The pair's normal of where it begins keeps it apart while its vertices go on straight, where it does so in the end;
- * or, of a substep, whatever shares of their ways they go. Bits of those that it does not. */
+/* What lies on a side, along a normal: the least of the first feature's corners and the most of the second's. */
+typedef struct sides {
+    sk_wide low, high;
+} sides;
+
+SK_INLINE sides with_corner(sides s, bool first, sk_wide3 n, sk_wide3 apart) {
+    sk_wide at = sk_dot_wide(n, apart);
+    if (first) s.low = least_of(s.low, at);
+    else s.high = most_of(s.high, at);
+    return s;
+}
+
+/* The pair's normal of where it begins keeps it apart while its vertices go on straight, where it does so in the end.
+ * Bits of those that it does not. */
 SK_INLINE uint32_t nearing_bits(const nearest_points *points, const sk_wide4 x[4], const sk_wide4 end[4], int first,
                                 const sk_nearing_values *values) {
-    const sk_wide3 n = points->normal;
+    sides s = {sk_splat(SK_REAL_MAX), sk_splat(-SK_REAL_MAX)};
+    sk_wide relative = sk_splat(0), reach[2] = {sk_splat(0), sk_splat(0)}, jump[2] = {sk_splat(0), sk_splat(0)};
     sk_wide3 way[4];
-    sk_wide low = sk_splat(SK_REAL_MAX), high = sk_splat(-SK_REAL_MAX), relative = sk_splat(0);
-    sk_wide reach[2] = {sk_splat(0), sk_splat(0)}, jump[2] = {sk_splat(0), sk_splat(0)};
     for (int c = 0; c < 4; c++) {
-        sk_wide at = sk_dot_wide(n, between(end[c], values->shares > 0 ? x[0] : end[0]));
-        if (c < first) low = least_of(low, at);
-        else high = most_of(high, at);
-        if (values->shares > 0) { // it may stay, too
-            at = sk_dot_wide(n, between(x[c], x[0]));
-            if (c < first) low = least_of(low, at);
-            else high = most_of(high, at);
-            continue;
-        }
+        s = with_corner(s, c < first, points->normal, between(end[c], end[0]));
         reach[c >= first] = most_of(reach[c >= first], x[c].w);
         jump[c >= first] = most_of(jump[c >= first], end[c].w);
         way[c] = between(end[c], x[c]);
-    }
-    if (values->shares > 0) {
-        sk_wide enough = sk_splat(values->shares) * points->distance + sk_splat(values->near);
-        return sk_more_bits(enough, least_of(low - high, points->distance));
     }
     for (int a = 0; a < first; a++)
         for (int b = first; b < 4; b++) {
@@ -117,67 +117,142 @@ SK_INLINE uint32_t nearing_bits(const nearest_points *points, const sk_wide4 x[4
     sk_wide reaches = reach[0] + reach[1], step = sk_splat(values->per) * sk_wide_sqrt(relative);
     sk_wide closing = sk_splat(values->closing) * (step + jump[0] + jump[1]);
     sk_wide need = reaches + sk_splat(values->rounding) + most_of(closing, sk_splat(values->near));
-    return sk_more_bits(need, least_of(low - high, points->distance));
+    return sk_more_bits(need, least_of(s.low - s.high, points->distance));
 }
 
-/* Takes those of a part over whose bits are set, one after the other. */
-SK_INLINE void take_part(const sk_pairs *pairs, size_t k, uint32_t bits, const nearest_points *points,
-                         sk_pairs *fresh) {
-    size_t n = fresh->count;
-#if SK_WIDTH == 64 && !defined(SKEIN_DOUBLE)
-#define TAKE(to, from) _mm512_storeu_ps((to) + n, _mm512_maskz_compress_ps((__mmask16)bits, (__m512)(from)))
-#define TAKE_WHOLE(to, from, mask) \
-    _mm512_storeu_si512((to), _mm512_maskz_compress_epi64((__mmask8)(mask), _mm512_loadu_si512(from)))
-    for (int c = 0; c < 4; c++)
-        _mm512_storeu_si512(fresh->corner[c] + n,
-                            _mm512_maskz_compress_epi32((__mmask16)bits, _mm512_loadu_si512(pairs->corner[c] + k)));
-    TAKE(fresh->distance, points->distance);
-    TAKE(fresh->normal[0], points->normal.x), TAKE(fresh->normal[1], points->normal.y),
-        TAKE(fresh->normal[2], points->normal.z);
-    TAKE(fresh->share[0], points->share[0]), TAKE(fresh->share[1], points->share[1]);
-    TAKE_WHOLE(fresh->key + n, pairs->key + k, bits & 0xff);
-    TAKE_WHOLE(fresh->key + n + __builtin_popcount(bits & 0xff), pairs->key + k + 8, bits >> 8);
-    fresh->count = n + (size_t)__builtin_popcount(bits);
-#undef TAKE
-#undef TAKE_WHOLE
-#else
-    SK_VECTOR_ALIGNED real distance[SK_PART], normal[3][SK_PART], share[2][SK_PART];
-    memcpy(distance, &points->distance, sizeof distance);
-    memcpy(normal, &points->normal, sizeof normal);
-    memcpy(share, points->share, sizeof share);
-    for (; bits; bits &= bits - 1, n++) {
-        size_t l = (size_t)__builtin_ctz(bits);
-        for (int c = 0; c < 4; c++) fresh->corner[c][n] = pairs->corner[c][k + l];
-        fresh->key[n] = pairs->key[k + l];
-        fresh->distance[n] = distance[l];
-        for (int c = 0; c < 3; c++) fresh->normal[c][n] = normal[c][l];
-        for (int c = 0; c < 2; c++) fresh->share[c][n] = share[c][l];
+/* The same of a substep, whatever shares of their ways they go. */
+SK_INLINE uint32_t nearing_on_ways(const nearest_points *points, const sk_wide4 x[4], const sk_wide4 end[4], int first,
+                                   const sk_nearing_values *values) {
+    sides s = {sk_splat(SK_REAL_MAX), sk_splat(-SK_REAL_MAX)};
+    for (int c = 0; c < 4; c++) { // it may stay, too
+        s = with_corner(s, c < first, points->normal, between(end[c], x[0]));
+        s = with_corner(s, c < first, points->normal, between(x[c], x[0]));
     }
-    fresh->count = n;
-#endif
+    sk_wide need = sk_splat(values->shares) * points->distance + sk_splat(values->near);
+    return sk_more_bits(need, least_of(s.low - s.high, points->distance));
 }
+
+/* Some pairs at once: their corners where they begin and end, where they are nearest, and which of them are found. Each
+ * is a loop by itself, whose rounds overlap: what takes long in one would hold up all that follows in the same. */
+enum { AT_ONCE = 64, AT_ONCE_PARTS = AT_ONCE / SK_PART };
+typedef struct looked_at {
+    sk_wide4 from[AT_ONCE_PARTS][4], to[AT_ONCE_PARTS][4];
+    SK_VECTOR_ALIGNED real distance[AT_ONCE], normal[3][AT_ONCE], share[2][AT_ONCE];
+    uint64_t mask;
+} looked_at;
+
+SK_INLINE sk_wide *lanes_of(real *reals, size_t part) {
+    return (sk_wide *)(void *)(reals + part * SK_PART);
+}
+
+SK_INLINE void note_points(looked_at *some, size_t part, const nearest_points *points) {
+    *lanes_of(some->distance, part) = points->distance;
+    *lanes_of(some->normal[0], part) = points->normal.x;
+    *lanes_of(some->normal[1], part) = points->normal.y;
+    *lanes_of(some->normal[2], part) = points->normal.z;
+    for (int c = 0; c < 2; c++) *lanes_of(some->share[c], part) = points->share[c];
+}
+
+SK_INLINE nearest_points points_of(looked_at *some, size_t part) {
+    return (nearest_points){.distance = *lanes_of(some->distance, part),
+                            .normal = {*lanes_of(some->normal[0], part), *lanes_of(some->normal[1], part),
+                                       *lanes_of(some->normal[2], part)}};
+}
+
+SK_INLINE void look_at(const sk_vec4 *x, const sk_vec4 *end, const sk_nearing_values *values, const sk_pairs *pairs,
+                       size_t begin, size_t parts, int sort, bool ways, looked_at *some) {
+    const int first = sort == SK_EDGES ? 2 : 1;
+    for (size_t p = 0; p < parts; p++)
+        for (int c = 0; c < 4; c++) {
+            some->from[p][c] = sk_gather(x, pairs->corner[c] + begin + p * SK_PART);
+            some->to[p][c] = sk_gather(end, pairs->corner[c] + begin + p * SK_PART);
+        }
+    for (size_t p = 0; p < parts; p++) {
+        nearest_points points = nearest_points_of(some->from[p], sort);
+        note_points(some, p, &points);
+    }
+    some->mask = 0;
+    for (size_t p = 0; p < parts; p++) {
+        nearest_points points = points_of(some, p);
+        uint32_t bits = ways ? nearing_on_ways(&points, some->from[p], some->to[p], first, values)
+                             : nearing_bits(&points, some->from[p], some->to[p], first, values);
+        some->mask |= (uint64_t)bits << p * SK_PART;
+    }
+}
+
+#if SK_WIDTH == 64
+
+SK_INLINE void take_numbers(uint32_t *to, const uint32_t *from, uint64_t mask, size_t count) {
+    for (size_t k = 0; k < count; k += 16, mask >>= 16) {
+        _mm512_storeu_si512(to, _mm512_maskz_compress_epi32((__mmask16)mask, _mm512_loadu_si512(from + k)));
+        to += __builtin_popcountll(mask & 0xffff);
+    }
+}
+
+SK_INLINE void take_long_numbers(uint64_t *to, const uint64_t *from, uint64_t mask, size_t count) {
+    for (size_t k = 0; k < count; k += 8, mask >>= 8) {
+        _mm512_storeu_si512(to, _mm512_maskz_compress_epi64((__mmask8)mask, _mm512_loadu_si512(from + k)));
+        to += __builtin_popcountll(mask & 0xff);
+    }
+}
+
+SK_INLINE void take_reals(real *to, const real *from, uint64_t mask, size_t count) {
+    if (sizeof(real) == sizeof(uint32_t))
+        take_numbers((uint32_t *)(void *)to, (const uint32_t *)(const void *)from, mask, count);
+    else take_long_numbers((uint64_t *)(void *)to, (const uint64_t *)(const void *)from, mask, count);
+}
+
+/* Takes those over that are found. */
+SK_INLINE void take_found(const looked_at *some, const sk_pairs *pairs, size_t begin, size_t count, sk_pairs *fresh) {
+    const size_t n = fresh->count;
+    const uint64_t mask = some->mask;
+    for (int c = 0; c < 4; c++) take_numbers(fresh->corner[c] + n, pairs->corner[c] + begin, mask, count);
+    take_long_numbers(fresh->key + n, pairs->key + begin, mask, count);
+    take_reals(fresh->distance + n, some->distance, mask, count);
+    for (int c = 0; c < 3; c++) take_reals(fresh->normal[c] + n, some->normal[c], mask, count);
+    for (int c = 0; c < 2; c++) take_reals(fresh->share[c] + n, some->share[c], mask, count);
+    fresh->count = n + (size_t)__builtin_popcountll(mask);
+}
+
+#else
+
+SK_INLINE void take_found(const looked_at *some, const sk_pairs *pairs, size_t begin, size_t count, sk_pairs *fresh) {
+    uint32_t which[AT_ONCE + SK_BITS_AFTER];
+    count = sk_list_bits(which, 0, some->mask, AT_ONCE, 0);
+    for (size_t i = 0, n = fresh->count; i < count; i++, n++) {
+        const size_t k = which[i];
+        for (int c = 0; c < 4; c++) fresh->corner[c][n] = pairs->corner[c][begin + k];
+        fresh->key[n] = pairs->key[begin + k];
+        fresh->distance[n] = some->distance[k];
+        for (int c = 0; c < 3; c++) fresh->normal[c][n] = some->normal[c][k];
+        for (int c = 0; c < 2; c++) fresh->share[c][n] = some->share[c][k];
+    }
+    fresh->count += count;
+}
+
+#endif
 
 SK_INLINE void nearing(const sk_vec4 *x, const sk_vec4 *end, const sk_nearing_values *values, const sk_pairs *pairs,
-                       sk_pairs *fresh, int sort) {
-    for (size_t k = 0; k < pairs->count; k += SK_PART) {
-        sk_wide4 from[4], to[4];
-        for (int c = 0; c < 4; c++)
-            from[c] = sk_gather(x, pairs->corner[c] + k), to[c] = sk_gather(end, pairs->corner[c] + k);
-        nearest_points points = nearest_points_of(from, sort);
-        uint32_t bits = nearing_bits(&points, from, to, sort == SK_EDGES ? 2 : 1, values);
-        if (pairs->count - k < SK_PART) bits &= (1u << (pairs->count - k)) - 1; // the rest of a block is nobody's
-        take_part(pairs, k, bits, &points, fresh);
+                       sk_pairs *fresh, int sort, bool ways) {
+    looked_at some;
+    for (size_t begin = 0; begin < pairs->count; begin += AT_ONCE) {
+        const size_t left = pairs->count - begin, count = left < AT_ONCE ? left : AT_ONCE;
+        look_at(x, end, values, pairs, begin, (count + SK_PART - 1) / SK_PART, sort, ways, &some);
+        if (left < AT_ONCE) some.mask &= ((uint64_t)1 << left) - 1; // the rest of a block is nobody's
+        take_found(&some, pairs, begin, count, fresh);
     }
 }
 
 void SK_KERNEL(corners_nearing)(const sk_vec4 *x, const sk_vec4 *end, const sk_nearing_values *values,
                                 const sk_pairs *pairs, sk_pairs *fresh) {
-    nearing(x, end, values, pairs, fresh, SK_CORNERS);
+    if (values->shares > 0) nearing(x, end, values, pairs, fresh, SK_CORNERS, true);
+    else nearing(x, end, values, pairs, fresh, SK_CORNERS, false);
 }
 
 void SK_KERNEL(edges_nearing)(const sk_vec4 *x, const sk_vec4 *end, const sk_nearing_values *values,
                               const sk_pairs *pairs, sk_pairs *fresh) {
-    nearing(x, end, values, pairs, fresh, SK_EDGES);
+    if (values->shares > 0) nearing(x, end, values, pairs, fresh, SK_EDGES, true);
+    else nearing(x, end, values, pairs, fresh, SK_EDGES, false);
 }
 #else
 sk_closing_kernel *const sk_closing[SK_PAIR_SORTS][SK_ISA_COUNT] = {SK_EACH_ISA(corners_closing),
