@@ -178,7 +178,7 @@ static bool mark_lost(sk_touch *touch, const sk_run *run, const sk_op *op) {
  * it is the boxes that cost, and a sheet that swings cost twice as much so. */
 static bool is_stormy(const sk_touch *touch) {
     if (sk_pairs_kept(touch) < 8 * touch->skin.vertex_count) return false;
-    double all = 3, each = 0.15, lost = (double)touch->lost_since / (double)touch->skin.vertex_count;
+    double all = 1.2, each = 0.15, lost = (double)touch->lost_since / (double)touch->skin.vertex_count;
     return touch->found && all + each * (double)touch->searched_since + all * lost > 1.3 * (double)touch->now;
 }
 
