@@ -141,7 +141,7 @@ SK_INLINE uint64_t edges_met(const edge_rows *a, const int16_t *b, int ends) {
             }
             apart |= above | below;
         }
-        met |= (uint64_t)(uint32_t)~negative_wide(apart) << g * ROWS * LANES;
+        met |= (negative_wide(apart) ^ (((uint64_t)1 << ROWS * LANES) - 1)) << g * ROWS * LANES;
     }
     return met;
 }
