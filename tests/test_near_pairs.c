@@ -83,6 +83,13 @@ static tally run(skein_world *world, int count) {
     return all;
 }
 
+/* Some patches were calm, and so many were not; where there are patches (calm_absent.c). */
+static void assert_patches(const tally *all, size_t not_calm) {
+    if (!all->calm && !all->not_calm) return;
+    assert_true(all->calm > 100);
+    assert_true(all->not_calm >= not_calm);
+}
+
 static skein_world *world_with(const char *method, int substeps, double thickness) {
     skein_world *world = new_world(method, substeps);
     add_gravity(world);
@@ -104,8 +111,8 @@ static void of_a_heap(void **state) {
         skein_world *world = world_with("xpbd", 6, 0.03);
         add_sheet(world, 0.53, tilt, "");
         tally all = run(world, STEPS);
-        assert_true(all.near > 100 && all.calm > 100);
-        if (!SANITIZED) assert_true(all.not_calm > 100);
+        assert_true(all.near > 100);
+        assert_patches(&all, SANITIZED ? 0 : 100);
     }
 }
 
@@ -115,7 +122,7 @@ static void of_a_sheet_that_swings(void **state) {
     skein_world *world = world_with("xpbd", 4, 0.03);
     add_sheet(world, 2, 80, "top corners");
     tally all = run(world, STEPS);
-    assert_true(all.calm > 100);
+    assert_patches(&all, 0);
 }
 
 static void of_an_irregular_mesh(void **state) {
@@ -123,7 +130,8 @@ static void of_an_irregular_mesh(void **state) {
     skein_world *world = world_with("xpbd", 5, 0.02);
     add_irregular(world, SIDE, SKEIN_SETTINGS(SKEIN_VEC3("position", 0, 0.5, 0), SKEIN_VEC3("rotation", 84, 10, 0)));
     tally all = run(world, STEPS);
-    assert_true(all.near > 100 && all.calm > 100);
+    assert_true(all.near > 100);
+    assert_patches(&all, 0);
 }
 
 /* Two sheets, one of them flung at the other, under a method that adds forces up. */
