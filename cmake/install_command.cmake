@@ -10,10 +10,15 @@ if(TARGET skein_fit_module)
     install(TARGETS skein_fit_module DESTINATION ${CMAKE_INSTALL_LIBDIR}/skein)
 endif()
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/skein/scenes
-    FILES_MATCHING PATTERN "*.json" PATTERN elephant.json EXCLUDE)
+    FILES_MATCHING PATTERN "*.json" PATTERN elephant.json EXCLUDE PATTERN statue.json EXCLUDE)
 install(DIRECTORY meshes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/skein/meshes)
-# This one's mesh is fetched, by `make demo`: it comes along where that was done.
-install(CODE "
-    if(EXISTS \"${PROJECT_SOURCE_DIR}/meshes/fetched/elephant.off\")
-        file(INSTALL \"${PROJECT_SOURCE_DIR}/scenes/elephant.json\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/skein/scenes\")
-    endif()")
+# The meshes of these are fetched, by `make demo`: they come along where that was done.
+foreach(pair elephant:elephant statue:man)
+    string(REPLACE ":" ";" pair ${pair})
+    list(GET pair 0 scene)
+    list(GET pair 1 mesh)
+    install(CODE "
+        if(EXISTS \"${PROJECT_SOURCE_DIR}/meshes/fetched/${mesh}.off\")
+            file(INSTALL \"${PROJECT_SOURCE_DIR}/scenes/${scene}.json\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/skein/scenes\")
+        endif()")
+endforeach()

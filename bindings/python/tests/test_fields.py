@@ -70,7 +70,7 @@ class Tables(unittest.TestCase):
         world = skein.World()
         cloth = world.bodies.cloth(grid=(3, 3))
         self.assertLessEqual({"stretch", "density", "name", "positions", "set"}, set(dir(cloth)))
-        self.assertEqual(dir(cloth.stretch), ["damping", "limit", "stiffness", "tether"])
+        self.assertEqual(dir(cloth.stretch), ["damping", "limit", "stiffness", "tear", "tether"])
         self.assertIn("gravity", dir(world.forces))
         self.assertIn("m/s2", world.forces.gravity.__doc__)
 
