@@ -84,8 +84,32 @@ static void nothing_touches(int side) {
     skein_world_destroy(free);
 }
 
+/* A sheet that is let go level and swings: it touches nothing, and courses do not hold for long. */
+static void swings(int side) {
+    char size[40];
+    snprintf(size, sizeof size, "%d x %d", side, side);
+    const int frames = bench_quick ? 5 : 60;
+    double seconds[2] = {0, 0};
+    for (int touching = 0; touching < 2; touching++) {
+        skein_world *world = sheet(side, touching, 90, "top corners");
+        double start = seconds_now();
+        for (int i = 0; i < frames; i++) bench_step(world);
+        seconds[touching] = (seconds_now() - start) / frames;
+        skein_world_destroy(world);
+    }
+    bench_report(&(bench_result){.name = "swings, touches nothing",
+                                 .size = size,
+                                 .ours = 1e3 * seconds[1],
+                                 .unit = "ms/frame",
+                                 .other = "without contact",
+                                 .theirs = 1e3 * seconds[0],
+                                 .as_long = 1.1,
+                                 .note = "let go level, by two corners; 1 s"});
+}
+
 static void run_contact(void) {
     nothing_touches(bench_quick ? 12 : 100);
+    swings(bench_quick ? 12 : 100);
     static const double tilts[] = {1, 3, 7, 12, 20};
     for (int i = 0; i < (bench_quick ? 1 : 5); i++) heap(bench_quick ? 12 : 100, tilts[i]);
 }
