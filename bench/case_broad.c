@@ -105,7 +105,7 @@ static void find_by_tree(void *data) {
     memset(job->touch->anew, 1, job->touch->skin.leaf_count);
     job->touch->refit = true;
     job->touch->tasks = NULL;
-    if (!sk_touch_partners(job->touch, &job->world->allocator, SIZE_MAX / 2, &too_many)) bench_stop("out of memory");
+    if (!sk_touch_partners(job->touch, &job->world->allocator, SIZE_MAX / 2, true, &too_many)) bench_stop("out of memory");
 }
 
 static sk_touch *touch_of(skein_world *world) {
