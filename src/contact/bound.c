@@ -289,6 +289,11 @@ void sk_touch_bound(sk_run *run, const sk_op *op, size_t from, size_t end) {
     const sk_vec4 *x = run->vector[SK_X];
     sk_touch_set_frame(touch, x, op->packed, touch->now + 1, 1);
     bool lost = sk_touch_mark_lost(touch, x, op->packed, touch->now + 1, 1) || touch->wild_count, good = true;
+    if (!lost && !sk_pairs_kept(touch) && sk_calm_holds(touch, touch->farthest)) {
+        touch->followed = true;
+        touch->frame_step = sk_sub(touch->shift[1], touch->shift[0]);
+        return;
+    }
     load_ways(touch, run, op);
     if (touch->storm) touch->shift[1] = touch->common;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->lost[v] |= touch->wild[v];

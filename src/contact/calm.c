@@ -233,23 +233,32 @@ static void know_thicknesses(sk_touch *touch) {
     }
 }
 
+/* How much more a patch may move without being looked at. */
+static real room_of(const sk_calm_patch *patch, real any) {
+    if (!patch->calm) return SK_REAL_MAX;
+    return sk_min(patch->slack - sk_sqrt(any), closing_share * (patch->distance - patch->slack));
+}
+
 bool sk_calm_look(sk_touch *touch, sk_allocator *allocator, bool all) {
     sk_calm *calm = &touch->calm;
     sk_moves moves;
     const real wanted = all ? room * touch->thickness : 0;
     know_thicknesses(touch);
-    calm->gone = 0;
-    for (size_t i = 0; i < calm->patch_count; i += SK_PATCH_LANES) calm->holds[i / SK_PATCH_LANES] = -1;
+    calm->gone = 0, calm->least = SK_REAL_MAX;
     for (size_t p = 0; p < calm->patch_count; p += SK_PATCH_LANES) {
+        real least = SK_REAL_MAX;
         moves_kernel[touch->isa](NULL, NULL, touch->p, calm, p / SK_PATCH_LANES, &moves);
         for (size_t i = p; i < p + SK_PATCH_LANES && i < calm->patch_count; i++) {
             sk_calm_patch *patch = &calm->patch[i];
             bool was = patch->calm;
             real slack = patch->slack - wanted;
-            if (was ? slack > 0 && moves.whole[i - p] <= slack * slack : !all) continue;
-            look_at(touch, i, touch->p, all);
-            if (was && !patch->calm && !all && !keep_pairs(touch, allocator, i, false)) return false;
+            bool known = was ? slack > 0 && moves.whole[i - p] <= slack * slack : !all;
+            if (!known && look_at(touch, i, touch->p, all)) moves.whole[i - p] = 0;
+            if (!known && was && !patch->calm && !all && !keep_pairs(touch, allocator, i, false)) return false;
+            least = sk_min(least, room_of(patch, moves.whole[i - p]));
         }
+        calm->holds[p / SK_PATCH_LANES] = least;
+        calm->least = sk_min(calm->least, least);
     }
     return true;
 }
@@ -275,19 +284,24 @@ static bool follow_patch(sk_touch *touch, size_t p, real whole, real any, real w
     return is_calm(patch, whole, way) || (look_at(touch, p, touch->q, false) && is_calm(patch, 0, way));
 }
 
-/* How much more a patch may move without being looked at. */
-static real room_of(const sk_calm_patch *patch, real any) {
-    if (!patch->calm) return SK_REAL_MAX;
-    return sk_min(patch->slack - sk_sqrt(any), closing_share * (patch->distance - patch->slack));
+bool sk_calm_holds(sk_touch *touch, real way) {
+    sk_calm *calm = &touch->calm;
+    if (!(calm->gone + 2 * way <= calm->least)) return false;
+    calm->gone += 2 * way;
+    return true;
 }
 
 bool sk_calm_follow(sk_touch *touch, sk_allocator *allocator) {
     sk_calm *calm = &touch->calm;
     sk_moves moves;
     calm->gone += 2 * touch->longest;
+    calm->least = SK_REAL_MAX;
     for (size_t p = 0; p < calm->patch_count; p += SK_PATCH_LANES) {
         real *holds = &calm->holds[p / SK_PATCH_LANES], least = SK_REAL_MAX;
-        if (!touch->storm && calm->gone <= *holds) continue;
+        if (!touch->storm && calm->gone <= *holds) {
+            calm->least = sk_min(calm->least, *holds);
+            continue;
+        }
         moves_kernel[touch->isa](touch->p, &touch->common, touch->q, calm, p / SK_PATCH_LANES, &moves);
         for (size_t i = p; i < p + SK_PATCH_LANES && i < calm->patch_count; i++) {
             real whole = moves.whole[i - p], any = moves.any[i - p], way = moves.way[i - p];
@@ -297,6 +311,7 @@ bool sk_calm_follow(sk_touch *touch, sk_allocator *allocator) {
             least = sk_min(least, room_of(&calm->patch[i], any));
         }
         *holds = touch->storm ? -1 : calm->gone + least;
+        calm->least = sk_min(calm->least, *holds);
     }
     return true;
 }

@@ -48,6 +48,7 @@ typedef struct sk_calm {
     uint32_t *row_start, *row;
     real *from; /* x, y, z of sixteen lanes for each row: where they were when distances were looked at */
     real *holds; /* of sixteen patches: all that were calm are while `gone` is no more */
+    real least;  /* the least of these */
     real gone;   /* m: how much two vertices may have moved against each other, at most, substep after substep */
     uint32_t *of_vertex_start, *of_vertex; /* of vertices: the patches that list it */
     real *scratch; /* of the patch with most pairs: what is found out of them */
@@ -65,6 +66,9 @@ void sk_calm_forget(struct sk_touch *touch);
 /* Looks at patches where vertices are before a substep (`p`). Pairs of those that cease to be calm are kept. Or at all,
  * those that are not calm, too, before all pairs are searched for. False when there is no memory. */
 bool sk_calm_look(struct sk_touch *touch, sk_allocator *allocator, bool all);
+/* Whether all patches that were calm are so on any shares of this substep's ways, which are no longer than that: then none
+ * has to be followed. */
+bool sk_calm_holds(struct sk_touch *touch, real way);
 /* The same of a substep, where vertices go from `p` to `q`; in a storm no pairs are kept, and all are looked at. */
 bool sk_calm_follow(struct sk_touch *touch, sk_allocator *allocator);
 /* A vertex is held back: patches that were known to be calm for whole ways alone are not any more. */

@@ -23,6 +23,11 @@ bool sk_calm_look(sk_touch *touch, sk_allocator *allocator, bool all) {
     return true;
 }
 
+bool sk_calm_holds(sk_touch *touch, real way) {
+    (void)touch, (void)way;
+    return true;
+}
+
 bool sk_calm_follow(sk_touch *touch, sk_allocator *allocator) {
     (void)touch, (void)allocator;
     return true;

@@ -14,9 +14,10 @@ SK_INLINE sk_wide lanes_of(const real *reals) {
 }
 
 bool SK_KERNEL(off)(const sk_vec4 *x, const sk_vec4 *before, size_t packed, size_t slots, const sk_course_block *block, real time,
-                    const sk_vec3 *shift, const sk_vec3 *gone, real jump, uint16_t *off) {
+                    const sk_vec3 *shift, const sk_vec3 *gone, real jump, uint16_t *off, real *way) {
     const sk_wide t = sk_splat(time), sx = sk_splat(shift->x), sy = sk_splat(shift->y), sz = sk_splat(shift->z);
     const sk_wide gx = sk_splat(gone->x), gy = sk_splat(gone->y), gz = sk_splat(gone->z);
+    sk_wide farthest = sk_splat(0);
     uint32_t any = 0;
     for (size_t b = 0; b < slots / 16; b++) {
         uint32_t bits = 0;
@@ -32,12 +33,16 @@ bool SK_KERNEL(off)(const sk_vec4 *x, const sk_vec4 *before, size_t packed, size
             if (!before) continue;
             sk_wide4 was = sk_load_part(before, 16 * b + l, 16 * b < packed);
             sk_wide3 j = {at.x - was.x - gx - step.x, at.y - was.y - gy - step.y, at.z - was.z - gz - step.z};
-            const sk_wide far = sk_splat(SK_REAL_MAX / 2); // who has no course never jumps
-            bits |= (sk_more_bits(sk_dot_wide(j, j), sk_splat(jump)) & sk_more_bits(far, square)) << l;
+            const sk_mask here = sk_more(sk_splat(SK_REAL_MAX / 2), square); // who has no course never jumps
+            bits |= sk_more_bits(sk_keep(here, sk_dot_wide(j, j)), sk_splat(jump)) << l;
+            sk_wide3 w = {at.x - was.x, at.y - was.y, at.z - was.z};
+            sk_wide gone_on = sk_keep(here, sk_dot_wide(w, w));
+            farthest = sk_select(sk_more(gone_on, farthest), gone_on, farthest);
         }
         off[b] = (uint16_t)bits;
         any |= bits;
     }
+    for (size_t l = 0; l < SK_PART && before; l++) *way = sk_max(*way, farthest[l]);
     return any;
 }
 #else
@@ -58,13 +63,23 @@ bool sk_touch_mark_lost(sk_touch *touch, const sk_vec4 *x, size_t packed, real t
     memset(touch->lost, 0, touch->skin.vertex_count);
     const real jump = SK_MOST_JUMP * touch->thickness;
     const sk_vec3 gone = sk_sub(touch->shift[1], touch->shift[0]);
-    if (!sk_course_off[touch->isa](x, after ? touch->before : NULL, packed, touch->slots, touch->course_block, time,
-                                   &touch->shift[after], &gone, jump * jump, touch->off))
-        return false;
+    real way = 0;
+    bool any = sk_course_off[touch->isa](x, after ? touch->before : NULL, packed, touch->slots, touch->course_block, time,
+                                         &touch->shift[after], &gone, jump * jump, touch->off, &way);
+    touch->farthest = sk_sqrt(way);
+    if (!any) return false;
     for (size_t b = 0; b < touch->slots / 16; b++)
         for (uint32_t bits = touch->off[b]; bits; bits &= bits - 1)
             touch->lost[touch->vertex_at[16 * b + (size_t)__builtin_ctz(bits)]] = 1;
     return true;
+}
+
+real sk_touch_farthest(sk_touch *touch, const sk_vec4 *x, size_t packed) {
+    const sk_vec3 none = {0, 0, 0};
+    real way = 0;
+    if (touch->wild_count) return SK_REAL_MAX; // of those nobody knows
+    sk_course_off[touch->isa](x, touch->before, packed, touch->slots, touch->course_block, 0, &none, &none, 0, touch->off, &way);
+    return sk_sqrt(way);
 }
 
 /* ---- the frame ---- */

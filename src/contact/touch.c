@@ -211,8 +211,9 @@ static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool
     touch->storm = 0;
     all |= stormed;
     bool lost = !all && mark_lost(touch, run, op);
-    if (all || lost || sk_pairs_kept(touch) || !is_known(touch, run)) sk_touch_load(touch, op->packed);
-    if (!all && !is_known(touch, run) && !sk_calm_look(touch, run->allocator, false)) return false;
+    bool looks = !all && !touch->holds;
+    if (all || lost || looks || sk_pairs_kept(touch)) sk_touch_load(touch, op->packed);
+    if (looks && !sk_calm_look(touch, run->allocator, false)) return false;
     all |= lost && are_most(touch);
     bool stormy = all && !stormed && is_stormy(touch);
     if (stormy) {
@@ -250,6 +251,8 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     if (!same) sk_calm_forget(touch);
     touch->loaded = false;
     touch->tasks = run->tasks;
+    touch->holds = good && touch->found &&
+                   (is_known(touch, run) || sk_calm_holds(touch, sk_touch_farthest(touch, run->vector[SK_X], op->packed)));
     if (good) memcpy(touch->before, run->vector[SK_X], touch->slots * sizeof *touch->before);
     good = good && find_pairs(touch, run, op, all);
     touch->followed = false;

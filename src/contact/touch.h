@@ -210,9 +210,9 @@ typedef struct sk_course_block {
 } sk_course_block;
 /* Whether a vertex has left its reach, among `slots` slots of x, or has gone another way in a substep, from `before` on, than
  * its course by more than a jump, whose square is given; in a frame that went on by `gone` in it. Bits of the lanes of
- * each sixteen that have. Without `before`, nobody has jumped. */
+ * each sixteen that have. Without `before`, nobody has jumped; else the square of the longest way from there is found, too. */
 typedef bool sk_course_kernel(const sk_vec4 *x, const sk_vec4 *before, size_t packed, size_t slots, const sk_course_block *block,
-                              real time, const sk_vec3 *shift, const sk_vec3 *gone, real jump, uint16_t *off);
+                              real time, const sk_vec3 *shift, const sk_vec3 *gone, real jump, uint16_t *off, real *way);
 
 /* Which features of a leaf are looked for: bits. */
 typedef struct sk_hot {
@@ -251,6 +251,7 @@ typedef struct sk_touch {
     bool held;       /* a vertex is pinned */
     bool untouched;  /* hardly any pairs are kept: courses may be wide */
     bool loaded;     /* p and inverse are of this substep */
+    bool holds;      /* what was known of patches when the last bound ended still is so */
     bool boxed;      /* whether boxes are those of the courses; */
     bool still;      /* they are those of a substep's ways, all of them */
     bool aimed;      /* `at` and `in_the_end` are those of this substep's ways */
@@ -263,7 +264,8 @@ typedef struct sk_touch {
     size_t lost_since; /* how many have been lost since then, each as often as it was */
     sk_vec3 drift;   /* how far all went in a substep then, in the mean; */
     sk_vec3 common;  /* and in this one */
-    real longest;    /* m: of the ways in this substep, less what all go together */
+    real longest;    /* m: of the ways in this substep, less what all go together; */
+    real farthest;   /* and with that, of those that have a course */
     sk_vec3 frame_step; /* how far the frame of courses goes in a substep, as it did last, */
     sk_vec3 shift[2];   /* and has gone before this one and after it */
     /* by slot */
@@ -539,6 +541,8 @@ bool sk_touch_renew(sk_touch *touch, sk_allocator *allocator, sk_touch_search_so
 void sk_touch_set_frame(sk_touch *touch, const sk_vec4 *x, size_t packed, real time, int after);
 /* Marks vertices that are not where they are expected as lost, and nobody else; returns whether there are any. */
 bool sk_touch_mark_lost(sk_touch *touch, const sk_vec4 *x, size_t packed, real time, int after);
+/* How far a vertex has moved at most since the last substep began. */
+real sk_touch_farthest(sk_touch *touch, const sk_vec4 *x, size_t packed);
 /* From now on, a vertex has its course, or none. */
 void sk_touch_put_course(sk_touch *touch, size_t v, bool wild);
 /* Where a vertex is expected at a time. */
