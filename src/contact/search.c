@@ -47,9 +47,13 @@ static sk_vec3 way_left(const sk_touch *touch, size_t v) {
 
 /* The box of a way, whatever share of it is gone, in the frame of courses; of a place, where the way is none. */
 static sk_box box_of_way(const sk_touch *touch, size_t v, bool way) {
-    sk_vec3 from = sk_sub(sk_xyz(touch->p[v]), touch->shift[0]), to = from;
-    if (way) to = sk_sub(sk_add(sk_add(sk_xyz(touch->p[v]), touch->common), way_left(touch, v)), touch->shift[1]);
-    sk_quad low = sk_least_quad(quad_of(from), quad_of(to)), high = sk_most_quad(quad_of(from), quad_of(to));
+    sk_vec3 from = sk_sub(sk_xyz(touch->p[v]), touch->shift[0]), none = from, all = from;
+    if (way) { // of none of its way it goes what all go together, whether the frame does or not
+        none = sk_sub(sk_add(sk_xyz(touch->p[v]), touch->common), touch->shift[1]);
+        all = sk_add(none, way_left(touch, v));
+    }
+    sk_quad low = sk_least_quad(quad_of(from), sk_least_quad(quad_of(none), quad_of(all)));
+    sk_quad high = sk_most_quad(quad_of(from), sk_most_quad(quad_of(none), quad_of(all)));
     return (sk_box){{low, low}, {high, high}};
 }
 
