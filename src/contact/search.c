@@ -289,7 +289,9 @@ static bool list_fresh(sk_touch *touch, sk_allocator *allocator, int sort, sk_to
 /* A horizon at which what goes its own way has gone some thicknesses. */
 static void look_ahead(sk_touch *touch) {
     // where little is kept, boxes may be wide, and it is who leaves its course that is looked for
-    const real least = touch->untouched ? 6 : 2, longest = 40;
+    const real least = touch->untouched ? 6 : 2;
+    // what is kept for longer than some substeps costs more than the next search
+    const real longest = touch->untouched ? 640 : 40;
     // where few have left their courses, they will keep to them for longer
     real last = touch->now, most = 4 * touch->lost_since < touch->skin.vertex_count ? sk_max(10, 2 * last) : 10;
     real longer = touch->lost_since ? 0 : 2 * last;
