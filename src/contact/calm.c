@@ -75,15 +75,21 @@ SK_INLINE sk_wide3 began_at(const real *from) {
     return (sk_wide3){*reals_of(from), *reals_of(from + SK_PATCH_LANES), *reals_of(from + 2 * SK_PATCH_LANES)};
 }
 
-/* Three directions that turn with a patch: of its first three vertices. */
+/* Three directions that turn with a patch: of its first three vertices. They are at right angles where these are not all but
+ * on a line; else nothing is known of moves. */
 typedef struct frame {
     sk_wide3 x, y, z;
+    sk_mask good;
 } frame;
 
 SK_INLINE frame frame_of(sk_wide3 a, sk_wide3 b, sk_wide3 c) {
-    frame f = {.x = unit(minus(b, a))};
-    f.z = unit(cross(f.x, minus(c, a)));
+    const sk_wide least = sk_splat((real)1e-4), some = sk_splat((real)1e-18);
+    sk_wide3 along = minus(b, a), other = minus(c, a);
+    frame f = {.x = unit(along)};
+    sk_wide3 across = cross(f.x, other);
+    f.z = unit(across);
     f.y = cross(f.z, f.x);
+    f.good = sk_more(sk_dot_wide(across, across), least * sk_dot_wide(other, other) + some) & sk_more(sk_dot_wide(along, along), some);
     return f;
 }
 
@@ -116,8 +122,10 @@ void SK_KERNEL(moves)(const sk_vec4 *p, const sk_vec3 *common, const sk_vec4 *q,
             begin = around(begin, off(&now, &then, minus(at, here), began));
             way = around(way, minus(to, at));
         }
-        *(sk_wide *)(void *)(moves->whole + l) = square_across(whole);
-        *(sk_wide *)(void *)(moves->any + l) = square_across(p ? around(around(whole, begin.low), begin.high) : whole);
+        const sk_mask good = now.good & then.good;
+        sk_wide any = square_across(p ? around(around(whole, begin.low), begin.high) : whole);
+        *(sk_wide *)(void *)(moves->whole + l) = sk_select(good, square_across(whole), far);
+        *(sk_wide *)(void *)(moves->any + l) = sk_select(good, any, far);
         *(sk_wide *)(void *)(moves->way + l) = square_across(p ? way : whole);
     }
 }
