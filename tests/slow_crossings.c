@@ -11,8 +11,7 @@ static void report(void *user, const skein_error *error) {
     fprintf(stderr, "%s: %s\n", error->where, error->message);
 }
 
-/* Runs a scene to its frame `frames`, and counts in every one. */
-static skein_world *run_clean(const char *path, int frames) {
+static skein_world *world_of(const char *path, int frames) {
     static const skein_kind *const none[] = {NULL};
     io_faults faults = {report, NULL, 0, NULL};
     assert_int_equal(chdir(SKEIN_SOURCE_DIR), 0);
@@ -22,6 +21,12 @@ static skein_world *run_clean(const char *path, int frames) {
     assert_non_null(world);
     assert_true(frames <= io_scene_get(scene)->frames);
     io_scene_free(scene);
+    return world;
+}
+
+/* Runs a scene to its frame `frames`, and counts in every one. */
+static skein_world *run_clean(const char *path, int frames) {
+    skein_world *world = world_of(path, frames);
     crossing_search all = crossing_begin(world);
     for (int f = 1; f <= frames; f++) {
         steps(world, 1, 1.0 / 60);
@@ -54,6 +59,30 @@ static void four_turns_and_back(void **state) {
     assert_true(thickness_of_rope(world) > 0.1);
     assert_true(statistics_of(world).max_stretch < 0.1);
     skein_world_destroy(world);
+}
+
+/* In so few substeps its pins are driven through what is wound tightly around them, and it comes apart again. */
+static void few_substeps_let_it_through_and_apart(void **state) {
+    (void)state;
+    static const int few[] = {1, 2, 5};
+    for (size_t k = 0; k < COUNT(few); k++) {
+        skein_world *world = world_of("scenes/twist.json", 660);
+        OK(world, skein_set(world, skein_object_at(world, SKEIN_METHOD, 0), "substeps", skein_number(few[k])));
+        crossing_search all = crossing_begin(world);
+        size_t worst = 0, frames = 0;
+        for (int f = 1; f <= 660; f++) {
+            steps(world, 10 / few[k], few[k] / 600.0);
+            size_t now = crossings_now(&all, world);
+            if (now > worst) worst = now;
+            frames += now > 0;
+            if (f > 630) assert_int_equal(now, 0);
+        }
+        print_message("%d substeps a step: at most %zu crossings, in %zu frames\n", few[k], worst, frames);
+        assert_true(frames < 66); // a tenth; without recovery in half of them
+        assert_true(statistics_of(world).max_stretch < 0.1);
+        crossing_free(&all);
+        skein_world_destroy(world);
+    }
 }
 
 /* The bights hold each other: the left lace's lies right of the right one's, as before, and the knot is smaller. */
@@ -93,6 +122,7 @@ static void ribbons_lie_on_each_other(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(four_turns_and_back),
+        cmocka_unit_test(few_substeps_let_it_through_and_apart),
         cmocka_unit_test(a_reef_knot_holds),
         cmocka_unit_test(a_cloth_comes_through_a_funnel),
         cmocka_unit_test(ribbons_lie_on_each_other),

@@ -152,6 +152,7 @@ static bool settle_pair(sk_touch *touch, sk_pairs *pairs, int sort, size_t k, re
     pairs->settled[k] = 1;
     real upper, lower;
     divide(&g, room, &upper, &lower);
+    touch->tangle.forced |= upper + lower > before; // by what is pinned
     return lower_shares(touch, &l, &g, upper, lower);
 }
 
@@ -238,6 +239,7 @@ static bool settle_pairs(sk_touch *touch, int sort, bool first, real least) {
     bool any = false;
     for (size_t i = 0; i < list->count; i++) {
         const uint32_t *v = list->data[i].corner, entry = list->data[i].entry;
+        if (touch->tangle.any && sk_pair_is_tangled(touch, v, sort)) continue;
         if (!first && !(lowered[v[0]] | lowered[v[1]] | lowered[v[2]] | lowered[v[3]])) continue;
         sk_pairs *pairs = entry & 1 ? &touch->late[sort] : &touch->kept[sort];
         size_t k = entry / 2;
@@ -280,30 +282,33 @@ static void store_ways(const sk_touch *touch, const sk_run *run, const sk_op *op
     }
 }
 
-void sk_touch_bound(sk_run *run, const sk_op *op, size_t from, size_t end) {
-    (void)from, (void)end;
-    const sk_force *force = op->rule;
-    sk_touch *touch = force->state;
-    if (!touch || !touch->found) return;
+static bool bound(sk_touch *touch, sk_run *run, const sk_op *op) {
     real least = SK_LEAST_GAP * touch->thickness;
     const sk_vec4 *x = run->vector[SK_X];
     sk_touch_set_frame(touch, x, op->packed, touch->now + 1, 1);
-    bool lost = sk_touch_mark_lost(touch, x, op->packed, touch->now + 1, 1) || touch->wild_count, good = true;
-    if (!lost && !sk_pairs_kept(touch) && sk_calm_holds(touch, touch->farthest)) {
-        touch->followed = true;
-        touch->frame_step = sk_sub(touch->shift[1], touch->shift[0]);
-        return;
-    }
+    bool lost = sk_touch_mark_lost(touch, x, op->packed, touch->now + 1, 1) || touch->wild_count;
+    if (!lost && !sk_pairs_kept(touch) && sk_calm_holds(touch, touch->farthest)) return true;
     load_ways(touch, run, op);
     if (touch->storm) touch->shift[1] = touch->common;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->lost[v] |= touch->wild[v];
-    good = sk_calm_follow(touch, run->allocator);
-    if (good && lost) good = renew(touch, run->allocator);
+    bool good = sk_calm_follow(touch, run->allocator) && (!lost || renew(touch, run->allocator));
     if (good && sk_pairs_kept(touch)) {
         good = find_shares(touch, run->allocator, least);
         store_ways(touch, run, op);
     }
-    touch->frame_step = sk_sub(touch->shift[1], touch->shift[0]);
-    touch->followed = good;
-    run->no_memory |= !good;
+    return good;
+}
+
+void sk_touch_bound(sk_run *run, const sk_op *op, size_t from, size_t end) {
+    (void)from, (void)end;
+    const sk_force *force = op->rule;
+    sk_touch *touch = force->state;
+    if (!touch) return;
+    if (touch->found) {
+        touch->followed = bound(touch, run, op);
+        touch->frame_step = sk_sub(touch->shift[1], touch->shift[0]);
+        run->no_memory |= !touch->followed;
+    }
+    bool keeps = touch->found && touch->followed;
+    run->no_memory |= !sk_tangle_leave(touch, run->allocator, run->vector[SK_X], keeps, run->last_iteration);
 }

@@ -1,13 +1,8 @@
-/* How many edges go through triangles now: what contact is there to prevent, and what a bad start has. */
+/* Which edges go through triangles now: what contact is there to prevent, and what a bad start has. */
 #include <math.h>
 #include <string.h>
 
 #include "contact/touch.h"
-
-typedef struct tally {
-    sk_touch *touch;
-    size_t count;
-} tally;
 
 /* Six times the volume of a tetrahedron, in double: places are differences of reals, so its sign is right but for what
  * is all but flat. */
@@ -39,29 +34,59 @@ static bool crosses(const sk_vec4 *x, const uint32_t edge[2], const uint32_t t[3
     return (ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0);
 }
 
-static void count_of(tally *counting, size_t a, size_t b) {
-    const sk_skin *skin = &counting->touch->skin;
+/* Of leaf a's edges and leaf b's triangles. */
+static bool list_of(sk_touch *touch, sk_allocator *allocator, sk_crossing_list *list, size_t a, size_t b) {
+    const sk_skin *skin = &touch->skin;
     const sk_leaf *edges = &skin->leaf[a], *triangles = &skin->leaf[b];
-    for (uint32_t e = 0; e < edges->edges; e++)
-        for (uint32_t t = 0; t < triangles->triangles; t++)
-            counting->count += crosses(counting->touch->p, skin->edge[edges->first_edge + e],
-                                       skin->triangle[triangles->first_triangle + t]);
+    sk_touch_need_features(touch, a), sk_touch_need_features(touch, b);
+    for (uint32_t e = edges->first_edge; e < edges->first_edge + edges->edges; e++)
+        for (uint32_t t = triangles->first_triangle; t < triangles->first_triangle + triangles->triangles; t++) {
+            if (!sk_boxes_meet(&touch->edge_box[e], &touch->triangle_box[t])) continue;
+            if (!crosses(touch->p, skin->edge[e], skin->triangle[t])) continue;
+            if (!SK_RESERVE(allocator, list, list->count + 1)) return false;
+            list->data[list->count++] = (sk_crossing){e, t};
+        }
+    return true;
 }
 
-void sk_touch_put_boxes(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_of, real part) {
+void sk_touch_put_boxes(sk_touch *touch, real part) {
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        sk_vec4 p = touch->p[v] = x[slot_of[touch->skin.particle[v]]];
+        sk_vec4 p = touch->p[v];
         sk_quad at = {p.x, p.y, p.z, part};
         touch->corner_box[v] = (sk_box){{at, at}, {at, at}};
     }
     memset(touch->anew, 1, touch->skin.leaf_count);
     touch->everybody = true;
     for (size_t i = 0; i < touch->skin.leaf_count; i++) {
-        sk_touch_leaf_box(touch, i), sk_touch_feature_boxes(touch, i);
+        sk_touch_leaf_box(touch, i);
         touch->hot_box[i] = touch->leaf_box[i];
     }
-    touch->boxed = touch->loaded = false;
+    touch->boxed = false;
     touch->refit = true;
+}
+
+void sk_touch_load_from(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_of) {
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->p[v] = x[slot_of[touch->skin.particle[v]]];
+    touch->loaded = false; // not by a step
+    touch->tasks = NULL;
+}
+
+bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uint8_t *of, sk_crossing_list *list) {
+    list->count = 0;
+    sk_touch_put_boxes(touch, 0);
+    if (of) {
+        const sk_skin *skin = &touch->skin;
+        touch->everybody = false;
+        memset(touch->anew, 0, skin->leaf_count);
+        for (size_t v = 0; v < skin->vertex_count; v++)
+            for (uint32_t k = skin->leaf_start[v]; of[v] && k < skin->leaf_start[v + 1]; k++) touch->anew[skin->leaf_of[k]] = 1;
+    }
+    bool too_many, good = sk_touch_partners(touch, allocator, SIZE_MAX / 2, true, &too_many);
+    for (size_t i = 0; i < touch->partner.count && good; i++) {
+        size_t a = touch->first.data[i], b = touch->partner.data[i];
+        good = list_of(touch, allocator, list, a, b) && (a == b || list_of(touch, allocator, list, b, a));
+    }
+    return good;
 }
 
 bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 *x, const uint32_t *slot_of,
@@ -69,16 +94,8 @@ bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 
     sk_touch *touch = force->state;
     *count = 0;
     if (!touch || !touch->skin.leaf_count) return true;
-    tally counting = {touch, 0};
-    sk_touch_put_boxes(touch, x, slot_of, 0);
-    bool too_many;
-    touch->tasks = NULL;
-    if (!sk_touch_partners(touch, allocator, SIZE_MAX / 2, true, &too_many)) return false;
-    for (size_t i = 0; i < touch->partner.count; i++) {
-        size_t a = touch->first.data[i], b = touch->partner.data[i];
-        count_of(&counting, a, b);
-        if (a != b) count_of(&counting, b, a);
-    }
-    *count = counting.count;
-    return true;
+    sk_touch_load_from(touch, x, slot_of);
+    bool good = sk_touch_list_crossings(touch, allocator, NULL, &touch->tangle.crossing);
+    *count = touch->tangle.crossing.count;
+    return good;
 }

@@ -101,6 +101,19 @@ static const sk_pair_place *list_late(sk_touch *touch, sk_allocator *allocator, 
     return place;
 }
 
+/* Takes those out that are around where something is tangled. */
+static void take_tangled_out(const sk_touch *touch, sk_pair_list *near, int sort) {
+    size_t count = near->count;
+    near->count = 0;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t entry = near->data[i];
+        const sk_pairs *pairs = sk_pairs_of(touch, sort, entry);
+        const size_t k = entry / 2;
+        const uint32_t v[4] = {pairs->corner[0][k], pairs->corner[1][k], pairs->corner[2][k], pairs->corner[3][k]};
+        if (!sk_pair_is_tangled(touch, v, sort)) near->data[near->count++] = entry;
+    }
+}
+
 bool sk_touch_find_near(sk_touch *touch, sk_allocator *allocator, int sort) {
     const sk_pairs *kept = &touch->kept[sort], *late = &touch->late[sort];
     sk_pair_list *near = &touch->near[sort];
@@ -117,5 +130,6 @@ bool sk_touch_find_near(sk_touch *touch, sk_allocator *allocator, int sort) {
         }
     while (i < count) entry[n++] = 2 * place[i++].at + 1;
     near->count = n;
+    if (touch->tangle.any) take_tangled_out(touch, near, sort);
     return true;
 }

@@ -108,6 +108,7 @@ void sk_touch_leaf_box(sk_touch *touch, size_t i) {
     if (!has_blown_up(touch, leaf, box)) return;
     const sk_quad most = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX, 0};
     *box = (sk_box){{most, most}, {-most, -most}};
+    __atomic_store_n(&touch->tangle.torn, true, __ATOMIC_RELAXED);
 }
 
 void sk_touch_feature_boxes(sk_touch *touch, size_t i) {
@@ -176,7 +177,7 @@ static void box_features(sk_touch *touch) {
 static void make_boxes(sk_touch *touch, sk_touch_search_sort sort) {
     bool all = sort == SK_SEARCH_ALL || !touch->boxed || touch->still;
     size_t leaves = touch->skin.leaf_count;
-    if (all) touch->cells = sk_cells_a_metre(touch);
+    if (all) touch->cells = sk_cells_a_metre(touch), touch->tangle.torn = false;
     if (all) memset(touch->moved, 1, leaves);
     else memcpy(touch->moved, touch->anew, leaves);
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {

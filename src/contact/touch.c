@@ -8,6 +8,8 @@ static const skein_field fields[] = {
     SK_REAL(sk_contact_params, thickness, "thickness", "m", 0.005, 1e-6, 1e3,
             "how near surfaces come to each other; less where a body's own vertices are nearer as it was built"),
     SK_REAL(sk_contact_params, friction, "friction", "", 0.3, 0, 10, "coefficient of friction between them"),
+    SK_REAL(sk_contact_params, recovery, "recovery", "m/s", 0.4, 0, 1e6,
+            "how fast surfaces that have gone through each other are led apart; 0: they stay so"),
     SK_TEXT(sk_contact_params, ignore, "ignore", "",
             "pairs of bodies that do not meet, by their names, commas between them: \"cape:shirt, cape:cape\""),
 };
@@ -202,6 +204,13 @@ static bool find_pairs_in_storm(sk_touch *touch, const sk_run *run, const sk_op 
     return true;
 }
 
+/* Looks for what is tangled; in a substep it is led apart by a quarter of the thickness, at most. */
+static bool find_tangles(sk_touch *touch, const sk_run *run, const sk_op *op) {
+    const real most = (real)0.25 * touch->thickness, step = (real)(params_of(op)->recovery * op->dt);
+    if (!(step > 0)) return true;
+    return sk_tangle_look(touch, run->allocator, run->vector[SK_X], op->packed, sk_min(step, most), is_known(touch, run));
+}
+
 /* Searches where that is needed, and looks at all pairs. */
 static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool all) {
     bool stormed = touch->storm > 0;
@@ -253,13 +262,13 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     touch->holds = good && touch->found &&
                    (is_known(touch, run) || sk_calm_holds(touch, sk_touch_farthest(touch, run->vector[SK_X], op->packed)));
     if (good) memcpy(touch->before, run->vector[SK_X], touch->slots * sizeof *touch->before);
-    good = good && find_pairs(touch, run, op, all);
+    good = good && find_tangles(touch, run, op) && find_pairs(touch, run, op, all);
     touch->followed = false;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->near[sort].count = 0;
     for (int sort = 0; sort < SK_PAIR_SORTS && good; sort++) good = sk_touch_find_near(touch, run->allocator, sort);
     if (run->near_at < run->time || run->near_at > run->time) run->near = false; // of this substep nobody has said yet
     run->near_at = run->time;
-    run->near |= touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count > 0;
+    run->near |= touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count > 0 || touch->tangle.any;
     run->no_memory |= !good;
 }
 
@@ -312,11 +321,8 @@ static void push_pair(sk_touch *touch, const sk_pairs *near, int sort, size_t k,
     }
 }
 
-static void push(sk_run *run, const sk_op *op, size_t from, size_t end) {
-    (void)from, (void)end;
-    sk_touch *touch = touch_of(op);
+static void push_near(sk_touch *touch, sk_run *run, const sk_op *op) {
     const sk_contact_params *params = params_of(op);
-    if (!touch || !(touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count)) return;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
         touch->q[v].w = 0;
@@ -339,6 +345,15 @@ static void push(sk_run *run, const sk_op *op, size_t from, size_t end) {
         if (op->source[1] != SK_NONE)
             sk_add_at(run->vector[op->source[1]], op->packed, slot, sk_scale(rate, sk_sub(now, old)));
     }
+}
+
+static void push(sk_run *run, const sk_op *op, size_t from, size_t end) {
+    (void)from, (void)end;
+    sk_touch *touch = touch_of(op);
+    if (!touch) return;
+    if (touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count) push_near(touch, run, op);
+    // what is led apart gets no speed of it
+    sk_tangle_lead(touch, run->vector[SK_X], op->source[1] == SK_NONE ? run->vector[SK_X0] : NULL, op->packed);
 }
 
 /* ---- the kind ---- */
@@ -373,6 +388,7 @@ static void release_vertices(sk_touch *touch, sk_allocator *allocator) {
     }
     sk_touch_release_parts(touch, allocator);
     sk_calm_release(&touch->calm, allocator);
+    sk_tangle_release(&touch->tangle, allocator);
     sk_tree_release(&touch->tree, allocator);
     sk_ignored_release(&touch->ignored, allocator);
 }

@@ -10,7 +10,8 @@
  * when it was last looked for, is never farther from there than its reach, and goes hardly any other way in a substep.
  * What goes otherwise is looked for anew, with its neighbours, and nobody else. What lies around a leaf is left out
  * while it is known to keep apart (calm.h). What is done with a pair depends on the state before and after the substep
- * alone. So a search too many changes no bit, and a state that was saved and loaded goes on as it would have.
+ * alone. So a search too many changes no bit, and a state that was saved and loaded goes on as it would have. What has
+ * gone through each other all the same is led apart (tangle.h).
  *
  * The bound is a division of space by planes for each pair (planar division: arXiv 2604.15513), where it is needed: a
  * vertex goes the least share of its way that any of its pairs allows, and a minimum knows no order. */
@@ -21,6 +22,7 @@
 
 #include "base/wide_types.h"
 #include "contact/calm.h"
+#include "contact/tangle.h"
 #include "forces/force.h"
 #include "particles/particles.h"
 #if defined(__wasm_simd128__) && !defined(SKEIN_DOUBLE)
@@ -242,6 +244,7 @@ typedef struct sk_touch {
     sk_skin skin;
     sk_ignored ignored;
     sk_calm calm;
+    sk_tangle tangle;
     struct sk_tasks *tasks; /* of the run */
     uint64_t shape; /* of the world that the skin was made from */
     sk_isa isa;
@@ -325,7 +328,7 @@ typedef struct sk_touch {
 } sk_touch;
 
 typedef struct sk_contact_params {
-    double thickness, friction;
+    double thickness, friction, recovery;
     char *ignore;
 } sk_contact_params;
 
@@ -414,6 +417,11 @@ static inline uint64_t sk_pairs_that(const sk_pairs *pairs, size_t k, uint64_t w
 static inline size_t sk_first_of(uint64_t found) {
     return (size_t)__builtin_ctzll(found) / 8;
 }
+
+/* ---- tangle.c ---- */
+
+/* Whether a pair is of what is around an edge and what is around a triangle that go through each other (tangle.h). */
+bool sk_pair_is_tangled(const sk_touch *touch, const uint32_t corner[4], int sort);
 
 /* ---- kept.c ---- */
 
@@ -520,8 +528,17 @@ sk_op_kernel sk_touch_bound;
 /* How many edges go through a triangle, of the places x of slots. False when there is no memory. */
 bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 *x, const uint32_t *slot_of,
                         size_t *count);
-/* Boxes of all leaves and features where they are now, each wider by `part`: for lists of those that may meet there. */
-void sk_touch_put_boxes(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_of, real part);
+/* Loads the places x of slots, as no step would. */
+void sk_touch_load_from(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_of);
+/* Boxes of all leaves where they are loaded, each wider by `part`, and of a leaf's features: for lists of those that may
+ * meet there. */
+void sk_touch_put_boxes(sk_touch *touch, real part);
+static inline void sk_touch_need_features(sk_touch *touch, size_t leaf) {
+    if (!touch->featured[leaf]) sk_touch_feature_boxes(touch, leaf);
+}
+/* Lists those edges that go through a triangle where they are loaded, in the order of leaves; with `of`, if it is known
+ * that of others none does, those around vertices that have it set. False when there is no memory. */
+bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uint8_t *of, sk_crossing_list *list);
 
 /* ---- touch.c ---- */
 

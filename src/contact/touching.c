@@ -76,9 +76,11 @@ static void add_edges(listing *list, const sk_leaf *a, const sk_leaf *b) {
 }
 
 static void list_all(listing *list) {
-    const sk_touch *touch = list->touch;
+    sk_touch *touch = list->touch;
     for (size_t i = 0; i < touch->partner.count; i++) {
-        const sk_leaf *a = &touch->skin.leaf[touch->first.data[i]], *b = &touch->skin.leaf[touch->partner.data[i]];
+        size_t first = touch->first.data[i], second = touch->partner.data[i];
+        const sk_leaf *a = &touch->skin.leaf[first], *b = &touch->skin.leaf[second];
+        sk_touch_need_features(touch, first), sk_touch_need_features(touch, second);
         add_corners(list, a, b);
         if (a != b) add_corners(list, b, a);
         add_edges(list, a, b);
@@ -96,9 +98,9 @@ bool sk_touch_touching(sk_force *force, sk_allocator *allocator, const sk_vec4 *
     real found_for = touch->thickness, usual = touch->usual; // pairs that are kept were
     touch->thickness = sk_touch_thickest(touch, params);
     touch->usual = (real)params->thickness;
-    sk_touch_put_boxes(touch, x, slot_of, (real)0.51 * touch->thickness);
+    sk_touch_load_from(touch, x, slot_of);
+    sk_touch_put_boxes(touch, (real)0.51 * touch->thickness);
     bool too_many, good = true;
-    touch->tasks = NULL;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) good = good && sk_pairs_reserve(&list.some[sort], allocator, SOME + 16);
     good = good && sk_touch_partners(touch, allocator, SIZE_MAX / 2, true, &too_many);
     if (good) list_all(&list);

@@ -1,0 +1,273 @@
+/* Which surfaces have gone through each other, what contact leaves out of them, and where they are led. */
+#include <string.h>
+
+#include "contact/touch.h"
+
+/* ---- parts ---- */
+
+static uint32_t root_of(uint32_t *part, uint32_t v) {
+    while (part[v] != v) v = part[v] = part[part[v]];
+    return v;
+}
+
+/* What hangs together without the edges that go through something. */
+static void find_parts(sk_touch *touch) {
+    sk_tangle *tangle = &touch->tangle;
+    const sk_skin *skin = &touch->skin;
+    memset(tangle->cut, 0, skin->edge_count);
+    for (size_t i = 0; i < tangle->crossing.count; i++) tangle->cut[tangle->crossing.data[i].edge] = 1;
+    for (uint32_t v = 0; v < skin->vertex_count; v++) tangle->part[v] = v, tangle->size[v] = 0;
+    for (size_t e = 0; e < skin->edge_count; e++) {
+        if (tangle->cut[e]) continue;
+        uint32_t a = root_of(tangle->part, skin->edge[e][0]), b = root_of(tangle->part, skin->edge[e][1]);
+        if (a != b) tangle->part[a > b ? a : b] = a > b ? b : a;
+    }
+    for (uint32_t v = 0; v < skin->vertex_count; v++) tangle->size[tangle->part[v] = root_of(tangle->part, v)]++;
+}
+
+static uint32_t size_at(const sk_tangle *tangle, uint32_t v) {
+    return tangle->size[tangle->part[v]];
+}
+
+/* Which end of an edge that goes through a triangle is to go back through it: that in the smaller part. Or neither: the
+ * triangle's surface, which is divided there, too, has a smaller one; or the edge does not divide anything. */
+typedef enum inner_end { FIRST_END, SECOND_END, THEIRS, UNKNOWN } inner_end;
+
+static inner_end find_inner(const sk_tangle *tangle, const uint32_t edge[2], const uint32_t t[3]) {
+    uint32_t a = tangle->part[edge[0]], b = tangle->part[edge[1]];
+    if (a == b) return UNKNOWN;
+    bool second = tangle->size[b] < tangle->size[a] || (tangle->size[b] == tangle->size[a] && b < a);
+    uint32_t size = tangle->size[second ? b : a];
+    bool divided = tangle->part[t[0]] != tangle->part[t[1]] || tangle->part[t[0]] != tangle->part[t[2]];
+    for (int c = 0; c < 3 && divided; c++)
+        if (size_at(tangle, t[c]) < size) return THEIRS;
+    return second ? SECOND_END : FIRST_END;
+}
+
+/* ---- where a crossing leads ---- */
+
+/* The third corners of up to two triangles that have an edge; their number. */
+static int find_faces(const sk_skin *skin, const uint32_t edge[2], uint32_t third[2]) {
+    int count = 0;
+    for (uint32_t i = skin->leaf_start[edge[0]]; i < skin->leaf_start[edge[0] + 1]; i++) {
+        const sk_leaf *leaf = &skin->leaf[skin->leaf_of[i]];
+        for (uint32_t t = leaf->first_triangle; t < leaf->first_triangle + leaf->triangles; t++) {
+            const uint32_t *v = skin->triangle[t];
+            for (int k = 0; k < 3 && count < 2; k++) {
+                bool there = v[k] == edge[0] && v[(k + 1) % 3] == edge[1];
+                bool back = v[k] == edge[1] && v[(k + 1) % 3] == edge[0];
+                if (there || back) third[count++] = v[(k + 2) % 3];
+            }
+        }
+    }
+    return count;
+}
+
+static sk_vec3 unit(sk_vec3 a) {
+    real length = sk_length(a);
+    return length > (real)1e-18 ? sk_scale(1 / length, a) : (sk_vec3){0, 0, 0};
+}
+
+static sk_vec3 side_of(const sk_vec4 *x, uint32_t from, uint32_t to) {
+    return sk_sub(sk_xyz(x[to]), sk_xyz(x[from]));
+}
+
+static sk_vec3 normal_of(const sk_vec4 *x, const uint32_t t[3]) {
+    return unit(sk_cross(side_of(x, t[0], t[1]), side_of(x, t[0], t[2])));
+}
+
+/* Where an edge that goes through a triangle is to move against it, so that the lines in which the edge's faces cross the
+ * triangle's plane get shorter: each begins at the edge, and goes on into its face along r. When the plane moves along
+ * its normal n, it meets the edge elsewhere, the farther off the flatter the edge lies. */
+static sk_vec3 way_to_shorten(const sk_vec4 *x, const uint32_t edge[2], const uint32_t third[2], int faces,
+                              const uint32_t t[3]) {
+    const real flattest = (real)0.05, small = (real)0.01; // (faces lead apart, and what rounding leaves is no way)
+    const sk_vec3 n = normal_of(x, t), along = unit(side_of(x, edge[0], edge[1]));
+    real steep = sk_dot(along, n);
+    if (sk_abs(steep) < flattest) steep = steep < 0 ? -flattest : flattest;
+    sk_vec3 way = {0, 0, 0};
+    for (int f = 0; f < faces; f++) {
+        const sk_vec3 to = side_of(x, edge[0], third[f]), inward = sk_sub(to, sk_scale(sk_dot(along, to), along));
+        sk_vec3 r = unit(sk_cross(sk_cross(along, to), n));
+        if (sk_dot(r, inward) < 0) r = sk_scale(-1, r);
+        way = sk_add(way, sk_sub(r, sk_scale(2 * sk_dot(along, r) / steep, n)));
+    }
+    return sk_scale(1 / sk_sqrt(sk_dot(way, way) + small), way);
+}
+
+/* Where one of its ends is to move, to be on the other side of the triangle. */
+static sk_vec3 way_through(const sk_vec4 *x, uint32_t end, const uint32_t t[3]) {
+    const sk_vec3 n = normal_of(x, t);
+    return sk_scale(sk_dot(n, side_of(x, t[0], end)) > 0 ? -1 : 1, n);
+}
+
+/* How much farther the edge goes than the triangle: the lighter one goes, of 1 together. */
+static real share_of(const sk_vec4 *x, const uint32_t edge[2], const uint32_t t[3]) {
+    real first = (x[edge[0]].w + x[edge[1]].w) / 2, second = (x[t[0]].w + x[t[1]].w + x[t[2]].w) / 3;
+    return first + second > 0 ? first / (first + second) : 0;
+}
+
+static void lead(sk_tangle *tangle, uint32_t v, sk_vec3 way) {
+    sk_accumulate(&tangle->lead[v], way);
+    tangle->lead[v].w++;
+}
+
+/* Leads both features of a crossing apart by twice a step. */
+static void lead_crossing(sk_touch *touch, const uint32_t edge[2], const uint32_t third[2], int faces, const uint32_t t[3],
+                          real step) {
+    sk_tangle *tangle = &touch->tangle;
+    inner_end inner = find_inner(tangle, edge, t);
+    if (inner == THEIRS) return;
+    sk_vec3 way = inner == UNKNOWN ? way_to_shorten(touch->p, edge, third, faces, t) : way_through(touch->p, edge[inner], t);
+    way = sk_scale(2 * step, way);
+    const real share = share_of(touch->p, edge, t);
+    for (int c = 0; c < 2; c++)
+        if (inner == UNKNOWN || (int)inner == c) lead(tangle, edge[c], sk_scale(share, way));
+    for (int c = 0; c < 3; c++) lead(tangle, t[c], sk_scale(share - 1, way));
+}
+
+/* ---- what contact leaves out ---- */
+
+/* Whether contact of neighbours reaches what goes through each other. Features of no more than some thicknesses do: with
+ * 5 crumpled sheets stayed as they were, and with as many rings around them as make up 3, or where larger ones counted,
+ * what was pressed together fell through itself. */
+static bool are_fine(const sk_touch *touch, const uint32_t edge[2], const uint32_t t[3]) {
+    const sk_vec4 *built = touch->skin.built;
+    real longest = sk_length(side_of(built, edge[0], edge[1]));
+    for (int c = 0; c < 3; c++) longest = sk_max(longest, sk_length(side_of(built, t[c], t[(c + 1) % 3])));
+    return longest < 7 * touch->thickness;
+}
+
+static void mark(sk_crossings_at *at, size_t number, const uint32_t edge[2], const uint32_t t[3]) {
+    const uint64_t bit = (uint64_t)1 << number % 64;
+    for (int c = 0; c < 2; c++) at[edge[c]].edges |= bit;
+    for (int c = 0; c < 3; c++) at[t[c]].triangles |= bit;
+}
+
+bool sk_pair_is_tangled(const sk_touch *touch, const uint32_t corner[4], int sort) {
+    const uint64_t none = 0, all = ~none;
+    sk_crossings_at of[2] = {{all, all}, {all, all}}, around[2] = {{none, none}, {none, none}};
+    for (int c = 0; c < 4; c++) {
+        const int feature = c >= (sort == SK_EDGES ? 2 : 1);
+        const sk_crossings_at *at = &touch->tangle.of[corner[c]], *fine = &touch->tangle.fine[corner[c]];
+        of[feature].edges &= at->edges, of[feature].triangles &= at->triangles;
+        around[feature].edges |= fine->edges, around[feature].triangles |= fine->triangles;
+    }
+    return (of[0].edges & of[1].triangles) | (of[0].triangles & of[1].edges) | (around[0].edges & around[1].triangles) |
+           (around[0].triangles & around[1].edges);
+}
+
+/* ---- before a substep, in it and after it ---- */
+
+static bool reserve(sk_touch *touch, sk_allocator *allocator) {
+    sk_tangle *tangle = &touch->tangle;
+    size_t vertices = touch->skin.vertex_count + 1;
+    if (tangle->cut) return true;
+    tangle->of = sk_allocate(allocator, vertices * sizeof *tangle->of);
+    tangle->fine = sk_allocate(allocator, vertices * sizeof *tangle->fine);
+    tangle->part = sk_allocate(allocator, vertices * sizeof *tangle->part);
+    tangle->size = sk_allocate(allocator, vertices * sizeof *tangle->size);
+    tangle->lead = sk_allocate(allocator, vertices * sizeof *tangle->lead);
+    tangle->marked = sk_allocate(allocator, vertices);
+    if (tangle->of && tangle->fine && tangle->part && tangle->size && tangle->lead && tangle->marked)
+        tangle->cut = sk_allocate(allocator, touch->skin.edge_count + 1);
+    if (!tangle->cut) sk_tangle_release(tangle, allocator);
+    return tangle->cut != NULL;
+}
+
+/* Leads the neighbours of who is led, and theirs, along with them. */
+static void lead_along(sk_touch *touch) {
+    sk_tangle *tangle = &touch->tangle;
+    const sk_skin *skin = &touch->skin;
+    for (uint8_t ring = 1; ring <= 3; ring++) {
+        for (size_t v = 0; v < skin->vertex_count; v++) tangle->marked[v] = tangle->lead[v].w > 0;
+        for (size_t e = 0; e < skin->edge_count; e++)
+            for (int c = 0; c < 2; c++) {
+                uint32_t from = skin->edge[e][c], to = skin->edge[e][1 - c];
+                const sk_vec4 *own = &tangle->lead[from];
+                if (tangle->marked[from] && !tangle->marked[to]) lead(tangle, to, sk_scale(1 / own->w, sk_xyz(*own)));
+            }
+    }
+}
+
+/* Edges without faces are left as they are: they may be sewn in. */
+static void lead_all(sk_touch *touch, real step) {
+    sk_tangle *tangle = &touch->tangle;
+    const sk_skin *skin = &touch->skin;
+    memset(tangle->of, 0, skin->vertex_count * sizeof *tangle->of);
+    memset(tangle->fine, 0, skin->vertex_count * sizeof *tangle->fine);
+    memset(tangle->lead, 0, skin->vertex_count * sizeof *tangle->lead);
+    find_parts(touch);
+    bool coarse = false;
+    for (size_t i = 0; i < tangle->crossing.count; i++) {
+        const uint32_t *edge = skin->edge[tangle->crossing.data[i].edge], *t = skin->triangle[tangle->crossing.data[i].triangle];
+        uint32_t third[2];
+        int faces = find_faces(skin, edge, third);
+        if (!faces) continue;
+        tangle->any = true;
+        mark(tangle->of, i, edge, t);
+        if (are_fine(touch, edge, t)) mark(tangle->fine, i, edge, t);
+        else coarse = true;
+        lead_crossing(touch, edge, third, faces, t, step);
+    }
+    // a corner of a few large cells alone gives way, and springs back: with this, two cubes of 5 and 6 cells a side come apart
+    if (coarse) lead_along(touch);
+}
+
+static bool is_at(sk_vec4 a, sk_vec4 b) {
+    return !memcmp(&a, &b, sizeof a);
+}
+
+/* Who is not where the last bound left it; of others it is known that they go through nothing. */
+static void find_changed(sk_touch *touch, const sk_vec4 *x, size_t packed) {
+    sk_tangle *tangle = &touch->tangle;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++)
+        tangle->marked[v] = !is_at(sk_load(x, packed, touch->slot[v]), sk_load(tangle->left, packed, touch->slot[v]));
+}
+
+bool sk_tangle_look(sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x, size_t packed, real step, bool known) {
+    sk_tangle *tangle = &touch->tangle;
+    tangle->any = tangle->forced = false;
+    bool left = tangle->clean && tangle->left_count == touch->slots;
+    if (tangle->clean && (known || (left && !memcmp(tangle->left, x, touch->slots * sizeof *x)))) return true;
+    if (!reserve(touch, allocator)) return false;
+    if (left) find_changed(touch, x, packed);
+    sk_touch_load(touch, packed);
+    if (!sk_touch_list_crossings(touch, allocator, left ? tangle->marked : NULL, &tangle->crossing)) return false;
+    if (tangle->crossing.count) lead_all(touch, step);
+    return true;
+}
+
+void sk_tangle_lead(const sk_touch *touch, sk_vec4 *x, sk_vec4 *before, size_t packed) {
+    const sk_tangle *tangle = &touch->tangle;
+    for (size_t v = 0; v < touch->skin.vertex_count && tangle->any; v++) {
+        sk_vec4 sum = tangle->lead[v];
+        if (!(sum.w > 0) || !(touch->p[v].w > 0)) continue;
+        sk_vec3 way = sk_scale(1 / sum.w, sk_xyz(sum));
+        sk_add_at(x, packed, touch->slot[v], way);
+        if (before) sk_add_at(before, packed, touch->slot[v], way);
+    }
+}
+
+bool sk_tangle_leave(sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x, bool keeps, bool last) {
+    sk_tangle *tangle = &touch->tangle;
+    tangle->clean = keeps && !tangle->any && !tangle->forced && !__atomic_load_n(&tangle->torn, __ATOMIC_RELAXED);
+    tangle->left_count = 0;
+    if (!tangle->clean || (touch->alone && !last)) return true; // the next begin knows
+    if (touch->slots > tangle->left_capacity) {
+        sk_release(allocator, tangle->left);
+        tangle->left = sk_allocate(allocator, touch->slots * sizeof *x);
+        tangle->left_capacity = tangle->left ? touch->slots : 0;
+        if (!tangle->left) return tangle->clean = false;
+    }
+    memcpy(tangle->left, x, touch->slots * sizeof *x);
+    tangle->left_count = touch->slots;
+    return true;
+}
+
+void sk_tangle_release(sk_tangle *tangle, sk_allocator *allocator) {
+    void *arrays[] = {tangle->left, tangle->of, tangle->fine, tangle->part, tangle->size, tangle->lead, tangle->marked, tangle->cut,
+                      tangle->crossing.data};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
+    *tangle = (sk_tangle){.any = false};
+}

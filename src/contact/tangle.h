@@ -1,0 +1,72 @@
+/* Surfaces that have gone through each other: at the start, or driven by pins, which nothing holds back.
+ *
+ * No history tells on which side each of them ought to be, but what they look like now mostly does. Without the edges that go
+ * through something a surface falls into parts, of which the smaller ones are on the wrong side: these are led back through
+ * the triangles in their way, a little in each substep (after the global intersection analysis of Baraff and others
+ * 2003, doi 10.1145/882262.882357). Where an edge has both ends in one part, it is led where the line along which the
+ * surfaces meet gets shorter (intersection contour minimisation: Volino and Magnenat-Thalmann 2006, doi
+ * 10.1145/1141911.1141982).
+ *
+ *       part 1  |  part 2  |  part 1             a sheet, seen along another one, which has
+ *    -----------+          +-----------          its back above and its face below
+ *    ============\\========/============
+ *                 `------'
+ *
+ * Until then contact, which would hold them where they are, is not between an edge and a triangle that go through each
+ * other, nor between what is around them where surfaces are so fine that contact of neighbours does the same. Between all
+ * others it is, so that what is pressed together does not fall through itself.
+ *
+ * Two sheets that cross along a line which divides neither of them are led apart at its ends alone, and may stay.
+ *
+ * Whoever is known to have come to where it is without going through anything is not looked at. What is done depends on
+ * the places before a substep alone: a state that was saved and loaded goes on as it would have. */
+#ifndef SK_CONTACT_TANGLE_H
+#define SK_CONTACT_TANGLE_H
+
+#include "base/memory.h"
+#include "base/vector.h"
+
+/* An edge that goes through a triangle: numbers of a skin. */
+typedef struct sk_crossing {
+    uint32_t edge, triangle;
+} sk_crossing;
+typedef struct sk_crossing_list {
+    sk_crossing *data;
+    size_t count, capacity;
+} sk_crossing_list;
+
+/* Which crossings have an edge or a triangle with a vertex: bits of their numbers in the list, of which the last six
+ * count. (Where there are more than 64, one may be taken for another, and contact between more features is left out.) */
+typedef struct sk_crossings_at {
+    uint64_t edges, triangles;
+} sk_crossings_at;
+
+typedef struct sk_tangle {
+    bool any;      /* something is led apart in this substep */
+    bool clean;    /* no edge went through a triangle when the last bound ended */
+    bool forced;   /* in this substep, what is pinned may have gone through something */
+    bool torn;     /* something has blown up, and met nobody since the last search for all; written by any thread */
+    sk_vec4 *left; /* by slot: where all were when the last bound ended */
+    size_t left_count, left_capacity;
+    sk_crossing_list crossing;
+    /* by vertex */
+    sk_crossings_at *of, *fine; /* of all crossings, and of those of features that are fine */
+    uint32_t *part, *size;      /* the first vertex of its part, and how many are in the part of a first one */
+    sk_vec4 *lead;              /* the sum of where its crossings lead it, m; w: how many do */
+    uint8_t *marked;            /* it is not where the last bound left it; it is led */
+    uint8_t *cut;               /* of edges: they go through something */
+} sk_tangle;
+
+struct sk_touch;
+
+/* Finds out what is tangled where all are before a substep, unless nothing can be, and where it is led by `step`, m.
+ * `known`: all are where the last bound has left them. False when there is no memory. */
+bool sk_tangle_look(struct sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x, size_t packed, real step, bool known);
+/* Leads vertices by slots apart: x, and `before` with it, if that is what velocities are found from. */
+void sk_tangle_lead(const struct sk_touch *touch, sk_vec4 *x, sk_vec4 *before, size_t packed);
+/* A bound has ended at places x, by slots: `keeps` if only what is pinned may have gone through something. `last`: of its
+ * step. False when there is no memory. */
+bool sk_tangle_leave(struct sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x, bool keeps, bool last);
+void sk_tangle_release(sk_tangle *tangle, sk_allocator *allocator);
+
+#endif
