@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/kernels.h"
+#include "base/tasks.h"
 #include "contact/touch.h"
 #define SK_UNIT calm
 
@@ -189,23 +190,44 @@ static real moved_in_substep(const sk_touch *touch, size_t p) {
     return sk_length(sk_sub(high, low));
 }
 
+enum { SCRATCH_ROWS = 6, LINE = 64 }; /* a cache line between threads */
+
+static size_t scratch_row(const sk_calm *calm) {
+    return (calm->most + 2 * LINE - 1) / LINE * LINE;
+}
+
+/* Room for what each thread finds out. */
+static bool reserve_scratch(const sk_touch *touch, sk_calm *calm, sk_allocator *allocator) {
+    int threads = touch->tasks ? sk_tasks_count(touch->tasks) : 1;
+    if (threads <= calm->threads) return true;
+    sk_release(allocator, calm->scratch);
+    sk_release(allocator, calm->found);
+    calm->threads = 0;
+    calm->scratch = sk_allocate(allocator, (size_t)threads * SCRATCH_ROWS * scratch_row(calm) * sizeof *calm->scratch);
+    calm->found = sk_allocate(allocator, (size_t)threads * scratch_row(calm));
+    if (!calm->scratch || !calm->found) return false;
+    calm->threads = threads;
+    return true;
+}
+
 /* The patch's pairs as those that kernels look at. */
-static sk_pairs pairs_of(const sk_calm *calm, size_t p, int sort) {
-    sk_pairs pairs = {.count = calm->start[sort][p + 1] - calm->start[sort][p], .closes = calm->found};
+static sk_pairs pairs_of(const sk_calm *calm, size_t p, int sort, int thread) {
+    const size_t row = scratch_row(calm), first = (size_t)thread * row;
+    sk_pairs pairs = {.count = calm->start[sort][p + 1] - calm->start[sort][p], .closes = calm->found + first};
     for (int c = 0; c < 4; c++) pairs.corner[c] = calm->corner[sort][c] + calm->start[sort][p];
     pairs.thickness = calm->thickness[sort] + calm->start[sort][p];
     real **out[] = {&pairs.distance, &pairs.normal[0], &pairs.normal[1], &pairs.normal[2], &pairs.share[0], &pairs.share[1]};
-    for (size_t i = 0; i < sizeof out / sizeof *out; i++) *out[i] = calm->scratch + i * calm->most;
+    for (size_t i = 0; i < sizeof out / sizeof *out; i++) *out[i] = calm->scratch + SCRATCH_ROWS * first + i * row;
     return pairs;
 }
 
 /* Looks at all distances; they hold from there on, if the patch is calm. */
-static bool look_at(sk_touch *touch, size_t p, const sk_vec4 *x, bool wide) {
+static bool look_at(sk_touch *touch, size_t p, const sk_vec4 *x, bool wide, int thread) {
     sk_calm *calm = &touch->calm;
     sk_calm_patch *patch = &calm->patch[p];
     real slack = SK_REAL_MAX, nearest = SK_REAL_MAX;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
-        sk_pairs pairs = pairs_of(calm, p, sort);
+        sk_pairs pairs = pairs_of(calm, p, sort, thread);
         sk_closest[sort][touch->isa](x, &pairs);
         for (size_t k = 0; k < pairs.count; k++) {
             slack = sk_min(slack, pairs.distance[k] - SK_NEAR_THICKNESSES * pairs.thickness[k]);
@@ -247,28 +269,55 @@ static real room_of(const sk_calm_patch *patch, real any) {
     return sk_min(patch->slack - sk_sqrt(any), closing_share * (patch->distance - patch->slack));
 }
 
-bool sk_calm_look(sk_touch *touch, sk_allocator *allocator, bool all) {
+/* What is asked of patches, sixteen after sixteen; threads take them as they come. */
+typedef struct asking {
+    sk_touch *touch;
+    bool all;
+} asking;
+
+enum { PATCHES_AT_ONCE = 4 * SK_PATCH_LANES };
+
+/* What has been found out of all, in their order: the pairs of those that ceased to be calm are kept. */
+static bool conclude(sk_touch *touch, sk_allocator *allocator, bool look) {
     sk_calm *calm = &touch->calm;
+    calm->least = SK_REAL_MAX;
+    for (size_t p = 0; p < calm->patch_count; p++) {
+        if (calm->patch[p].ceased && !keep_pairs(touch, allocator, p, look)) return false;
+        if (p % SK_PATCH_LANES == 0) calm->least = sk_min(calm->least, calm->holds[p / SK_PATCH_LANES]);
+    }
+    return true;
+}
+
+static void look_at_some(void *data, int thread, size_t begin, size_t end) {
+    const asking *job = data;
+    sk_touch *touch = job->touch;
+    sk_calm *calm = &touch->calm;
+    const real wanted = job->all ? room * touch->thickness : 0;
     sk_moves moves;
-    const real wanted = all ? room * touch->thickness : 0;
-    know_thicknesses(touch);
-    calm->gone = 0, calm->least = SK_REAL_MAX;
-    for (size_t p = 0; p < calm->patch_count; p += SK_PATCH_LANES) {
+    for (size_t p = begin; p < end; p += SK_PATCH_LANES) {
         real least = SK_REAL_MAX;
         moves_kernel[touch->isa](NULL, NULL, touch->p, calm, p / SK_PATCH_LANES, &moves);
-        for (size_t i = p; i < p + SK_PATCH_LANES && i < calm->patch_count; i++) {
+        for (size_t i = p; i < p + SK_PATCH_LANES && i < end; i++) {
             sk_calm_patch *patch = &calm->patch[i];
             bool was = patch->calm;
             real slack = patch->slack - wanted;
-            bool known = was ? slack > 0 && moves.whole[i - p] <= slack * slack : !all;
-            if (!known && look_at(touch, i, touch->p, all)) moves.whole[i - p] = 0;
-            if (!known && was && !patch->calm && !all && !keep_pairs(touch, allocator, i, false)) return false;
+            bool known = was ? slack > 0 && moves.whole[i - p] <= slack * slack : !job->all;
+            if (!known && look_at(touch, i, touch->p, job->all, thread)) moves.whole[i - p] = 0;
+            patch->ceased = !known && was && !patch->calm && !job->all;
             least = sk_min(least, room_of(patch, moves.whole[i - p]));
         }
         calm->holds[p / SK_PATCH_LANES] = least;
-        calm->least = sk_min(calm->least, least);
     }
-    return true;
+}
+
+bool sk_calm_look(sk_touch *touch, sk_allocator *allocator, bool all) {
+    sk_calm *calm = &touch->calm;
+    asking job = {touch, all};
+    if (!reserve_scratch(touch, calm, allocator)) return false;
+    know_thicknesses(touch);
+    calm->gone = 0;
+    sk_parallel_pieces(touch->tasks, 0, calm->patch_count, PATCHES_AT_ONCE, look_at_some, &job);
+    return conclude(touch, allocator, false);
 }
 
 /* Whether a patch is calm, whatever shares of their ways vertices go; all squares. */
@@ -278,18 +327,18 @@ static bool is_calm(const sk_calm_patch *patch, real moved, real way) {
 }
 
 /* In a storm, a patch is calm on any shares, or not. */
-static void follow_in_storm(sk_touch *touch, size_t p, real any, real way) {
+static void follow_in_storm(sk_touch *touch, size_t p, real any, real way, int thread) {
     sk_calm_patch *patch = &touch->calm.patch[p];
-    if (is_calm(patch, any, way) || !look_at(touch, p, touch->p, false)) return;
+    if (is_calm(patch, any, way) || !look_at(touch, p, touch->p, false, thread)) return;
     real moved = moved_in_substep(touch, p);
     patch->calm = is_calm(patch, moved * moved, moved * moved);
 }
 
 /* Whether a patch is still calm; to be asked of those that were. */
-static bool follow_patch(sk_touch *touch, size_t p, real whole, real any, real way) {
+static bool follow_patch(sk_touch *touch, size_t p, real whole, real any, real way, int thread) {
     sk_calm_patch *patch = &touch->calm.patch[p];
     patch->whole = !is_calm(patch, any, way);
-    return is_calm(patch, whole, way) || (look_at(touch, p, touch->q, false) && is_calm(patch, 0, way));
+    return is_calm(patch, whole, way) || (look_at(touch, p, touch->q, false, thread) && is_calm(patch, 0, way));
 }
 
 bool sk_calm_holds(sk_touch *touch, real way) {
@@ -299,29 +348,36 @@ bool sk_calm_holds(sk_touch *touch, real way) {
     return true;
 }
 
-bool sk_calm_follow(sk_touch *touch, sk_allocator *allocator) {
+static void follow_some(void *data, int thread, size_t begin, size_t end) {
+    const asking *job = data;
+    sk_touch *touch = job->touch;
     sk_calm *calm = &touch->calm;
     sk_moves moves;
-    calm->gone += 2 * touch->longest;
-    calm->least = SK_REAL_MAX;
-    for (size_t p = 0; p < calm->patch_count; p += SK_PATCH_LANES) {
+    for (size_t p = begin; p < end; p += SK_PATCH_LANES) {
         real *holds = &calm->holds[p / SK_PATCH_LANES], least = SK_REAL_MAX;
-        if (!touch->storm && calm->gone <= *holds) {
-            calm->least = sk_min(calm->least, *holds);
-            continue;
-        }
+        bool known = !touch->storm && calm->gone <= *holds;
+        for (size_t i = p; i < p + SK_PATCH_LANES && i < end; i++) calm->patch[i].ceased = false;
+        if (known) continue;
         moves_kernel[touch->isa](touch->p, &touch->common, touch->q, calm, p / SK_PATCH_LANES, &moves);
-        for (size_t i = p; i < p + SK_PATCH_LANES && i < calm->patch_count; i++) {
+        for (size_t i = p; i < p + SK_PATCH_LANES && i < end; i++) {
+            sk_calm_patch *patch = &calm->patch[i];
             real whole = moves.whole[i - p], any = moves.any[i - p], way = moves.way[i - p];
-            if (touch->storm) follow_in_storm(touch, i, any, way);
-            else if (calm->patch[i].calm && !follow_patch(touch, i, whole, any, way) && !keep_pairs(touch, allocator, i, true))
-                return false;
-            least = sk_min(least, room_of(&calm->patch[i], any));
+            if (touch->storm) follow_in_storm(touch, i, any, way, thread);
+            else patch->ceased = patch->calm && !follow_patch(touch, i, whole, any, way, thread);
+            patch->calm &= !patch->ceased;
+            least = sk_min(least, room_of(patch, any));
         }
         *holds = touch->storm ? -1 : calm->gone + least;
-        calm->least = sk_min(calm->least, *holds);
     }
-    return true;
+}
+
+bool sk_calm_follow(sk_touch *touch, sk_allocator *allocator) {
+    sk_calm *calm = &touch->calm;
+    asking job = {touch, false};
+    if (!reserve_scratch(touch, calm, allocator)) return false;
+    calm->gone += 2 * touch->longest;
+    sk_parallel_pieces(touch->tasks, 0, calm->patch_count, PATCHES_AT_ONCE, follow_some, &job);
+    return conclude(touch, allocator, true);
 }
 
 bool sk_calm_disturb(sk_touch *touch, sk_allocator *allocator, size_t v) {

@@ -31,6 +31,7 @@ typedef struct sk_calm_patch {
     real distance; /* and how far apart the nearest of its pairs were, where the moves begin */
     bool calm;
     bool whole;    /* while all its vertices go all of their ways in this substep: not if one is held back */
+    bool ceased;   /* to be calm: its pairs are to be kept */
 } sk_calm_patch;
 
 typedef struct sk_calm {
@@ -51,8 +52,10 @@ typedef struct sk_calm {
     real least;  /* the least of these */
     real gone;   /* m: how much two vertices may have moved against each other, at most, substep after substep */
     uint32_t *of_vertex_start, *of_vertex; /* of vertices: the patches that list it */
-    real *scratch; /* of the patch with most pairs: what is found out of them */
+    /* by thread: what is found out of the pairs of a patch */
+    real *scratch;
     uint8_t *found;
+    int threads;
     size_t most; /* pairs of a patch */
 } sk_calm;
 

@@ -154,8 +154,7 @@ static bool make_pairs(sk_touch *touch, sk_allocator *allocator) {
     }
     list.fill = true;
     if (good) list_pairs(&list, touch);
-    good = good && (calm->scratch = sk_allocate(allocator, (6 * calm->most + SK_PATCH_LANES) * sizeof *calm->scratch));
-    return good && (calm->found = sk_allocate(allocator, calm->most + SK_PATCH_LANES));
+    return good;
 }
 
 /* ---- vertices ---- */
