@@ -104,6 +104,13 @@ static void divide(const gap *g, real room, real *upper, real *lower) {
     if (pinned_up > *lower) *lower = pinned_up, *upper = sk_max(0, room - pinned_up);
 }
 
+/* Threads lower shares of the same vertices: the least one stays, whoever comes first. */
+static void lower_to(real *next, real share) {
+    real now;
+    __atomic_load(next, &now, __ATOMIC_RELAXED);
+    while (share < now && !__atomic_compare_exchange(next, &now, &share, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
+}
+
 /* Lowers the shares of corners that would pass their side of the plane. */
 static bool lower_shares(sk_touch *touch, const line *l, const gap *g, real upper, real lower) {
     bool lowered = false;
@@ -115,7 +122,7 @@ static bool lower_shares(sk_touch *touch, const line *l, const gap *g, real uppe
         real room = is_upper ? l->at[c] - g->low + upper : g->high + lower - l->at[c];
         if (!(way > 0) || !(room < touch->share[v] * way)) continue;
         real share = sk_max(0, room) / way * (real)0.9999;
-        if (share < touch->next_share[v]) touch->next_share[v] = share;
+        lower_to(&touch->next_share[v], share);
         lowered = true;
     }
     return lowered;
@@ -152,17 +159,27 @@ static bool settle_pair(sk_touch *touch, sk_pairs *pairs, int sort, size_t k, re
     pairs->settled[k] = 1;
     real upper, lower;
     divide(&g, room, &upper, &lower);
-    touch->tangle.forced |= upper + lower > before; // by what is pinned
+    if (upper + lower > before) __atomic_store_n(&touch->tangle.forced, true, __ATOMIC_RELAXED); // by what is pinned
     return lower_shares(touch, &l, &g, upper, lower);
 }
 
-/* Takes the shares that a round has found; returns whether a vertex is lost where it goes now. */
-static bool take_shares(sk_touch *touch) {
+/* A round, by several threads: what is looked at, and whether anything has been found. */
+typedef struct bound_round {
+    sk_touch *touch;
+    int sort;
+    bool first, found;
+    real least;
+} bound_round;
+
+static void take_some_shares(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    bound_round *job = data;
+    sk_touch *touch = job->touch;
     const sk_vec3 common = touch->common, gone = sk_sub(touch->shift[1], touch->shift[0]);
     const real jump = SK_MOST_JUMP * touch->thickness;
     bool any = false;
-    memset(touch->lost, 0, touch->skin.vertex_count);
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+    memset(touch->lost + begin, 0, end - begin);
+    for (size_t v = begin; v < end; v++) {
         touch->lowered[v] = touch->next_share[v] < touch->share[v];
         if (!touch->lowered[v]) continue;
         real share = touch->share[v] = touch->next_share[v];
@@ -173,7 +190,15 @@ static bool take_shares(sk_touch *touch) {
         touch->lost[v] = sk_dot(off, off) > touch->course[v].reach * touch->course[v].reach || sk_dot(other, other) > jump * jump;
         any |= touch->lost[v];
     }
-    return any;
+    if (any) __atomic_store_n(&job->found, true, __ATOMIC_RELAXED);
+}
+
+/* Takes the shares that a round has found; returns whether a vertex is lost where it goes now. */
+static bool take_shares(sk_touch *touch) {
+    enum { AT_ONCE = 2048 };
+    bound_round job = {.touch = touch};
+    sk_parallel_pieces(touch->tasks, 0, touch->skin.vertex_count, AT_ONCE, take_some_shares, &job);
+    return job.found;
 }
 
 /* Those that are held back may come near their own surface. */
@@ -232,20 +257,31 @@ static bool find_those_that_may(sk_touch *touch, sk_allocator *allocator, real l
     return true;
 }
 
+static void settle_some(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    bound_round *job = data;
+    sk_touch *touch = job->touch;
+    const uint8_t *lowered = touch->lowered;
+    const sk_closing_pair *list = touch->may_close[job->sort].data;
+    bool any = false;
+    for (size_t i = begin; i < end; i++) {
+        const uint32_t *v = list[i].corner, entry = list[i].entry;
+        if (touch->tangle.any && sk_pair_is_tangled(touch, v, job->sort)) continue;
+        if (!job->first && !(lowered[v[0]] | lowered[v[1]] | lowered[v[2]] | lowered[v[3]])) continue;
+        sk_pairs *pairs = entry & 1 ? &touch->late[job->sort] : &touch->kept[job->sort];
+        size_t k = entry / 2;
+        if (job->first ? pairs->closes[k] & SK_CLOSES : !pairs->settled[k])
+            any |= settle_pair(touch, pairs, job->sort, k, job->least);
+    }
+    if (any) __atomic_store_n(&job->found, true, __ATOMIC_RELAXED);
+}
+
 /* The first round looks at all pairs, the others at those with a corner whose share the round before has lowered. */
 static bool settle_pairs(sk_touch *touch, int sort, bool first, real least) {
-    const uint8_t *lowered = touch->lowered;
-    const sk_closing_list *list = &touch->may_close[sort];
-    bool any = false;
-    for (size_t i = 0; i < list->count; i++) {
-        const uint32_t *v = list->data[i].corner, entry = list->data[i].entry;
-        if (touch->tangle.any && sk_pair_is_tangled(touch, v, sort)) continue;
-        if (!first && !(lowered[v[0]] | lowered[v[1]] | lowered[v[2]] | lowered[v[3]])) continue;
-        sk_pairs *pairs = entry & 1 ? &touch->late[sort] : &touch->kept[sort];
-        size_t k = entry / 2;
-        if (first ? pairs->closes[k] & SK_CLOSES : !pairs->settled[k]) any |= settle_pair(touch, pairs, sort, k, least);
-    }
-    return any;
+    enum { AT_ONCE = 2048 };
+    bound_round job = {.touch = touch, .sort = sort, .first = first, .least = least};
+    sk_parallel_pieces(touch->tasks, 0, touch->may_close[sort].count, AT_ONCE, settle_some, &job);
+    return job.found;
 }
 
 static void unsettle(sk_pairs *pairs) {
