@@ -29,7 +29,7 @@ void sk_wait_for(const _Atomic uint32_t *progress, uint32_t wanted);
 typedef void sk_range_body(void *data, size_t begin, size_t end);
 void sk_parallel_for(sk_tasks *tasks, size_t begin, size_t end, sk_range_body *body, void *data);
 
-/* The same where some elements take much longer than others: in pieces of `grain` elements, a multiple of 16, and who has
+/* The same where some elements take much longer than others: in pieces of `grain` elements, and who has
  * done one takes the next. `thread` is less than sk_tasks_count, and no two that run at once have the same; where there are
  * no tasks, or no more than one piece, it is 0. */
 typedef void sk_piece_body(void *data, int thread, size_t begin, size_t end);

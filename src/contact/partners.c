@@ -258,6 +258,8 @@ static bool begin_parts(sk_touch *touch, sk_allocator *allocator) {
             return false;
         if (used && !part->ring && !(part->ring = sk_allocate(allocator, (touch->skin.leaf_count + 1) * sizeof *part->ring)))
             return false;
+        if (used && !part->start && !(part->start = sk_allocate(allocator, (touch->skin.leaf_count + 1) * sizeof *part->start)))
+            return false;
     }
     return true;
 }
@@ -276,21 +278,54 @@ static void insert_few(sk_touch *touch) {
         }
 }
 
-/* Many are counted by their first leaf, and those of a leaf are sorted. */
-static void deal_many(sk_touch *touch) {
-    size_t leaves = touch->skin.leaf_count;
-    uint32_t *start = touch->start;
-    memset(start, 0, (leaves + 2) * sizeof *start);
-    for (int p = 0; p < touch->part_count; p++)
-        for (size_t i = 0; i < touch->part[p].first.count; i++) start[touch->part[p].first.data[i] + 2]++;
-    for (size_t i = 2; i < leaves + 2; i++) start[i] += start[i - 1];
-    for (int p = 0; p < touch->part_count; p++)
-        for (size_t i = 0; i < touch->part[p].first.count; i++)
-            touch->partner.data[start[touch->part[p].first.data[i] + 1]++] = touch->part[p].second.data[i];
-    for (size_t a = 0; a < leaves; a++) {
+/* Counts those of a part by their first leaf. */
+static void count_of_part(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    const sk_touch *touch = data;
+    for (size_t p = begin; p < end; p++) {
+        const sk_search_part *part = &touch->part[p];
+        memset(part->start, 0, (touch->skin.leaf_count + 1) * sizeof *part->start);
+        for (size_t i = 0; i < part->first.count; i++) part->start[part->first.data[i]]++;
+    }
+}
+
+/* Puts those of a part where those of their first leaf belong, behind those of the parts before it. */
+static void deal_part(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    const sk_touch *touch = data;
+    for (size_t p = begin; p < end; p++) {
+        const sk_search_part *part = &touch->part[p];
+        for (size_t i = 0; i < part->first.count; i++)
+            touch->partner.data[part->start[part->first.data[i]]++] = part->second.data[i];
+    }
+}
+
+static void sort_of_leaves(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    const sk_touch *touch = data;
+    const uint32_t *start = touch->start;
+    for (size_t a = begin; a < end; a++) {
         put_in_order(touch->partner.data + start[a], start[a + 1] - start[a]);
         for (size_t i = start[a]; i < start[a + 1]; i++) touch->first.data[i] = (uint32_t)a;
     }
+}
+
+/* Many are counted by their first leaf, and those of a leaf are sorted. */
+static void deal_many(sk_touch *touch) {
+    enum { LEAVES_AT_ONCE = 512 };
+    size_t leaves = touch->skin.leaf_count, parts = (size_t)touch->part_count;
+    uint32_t count = 0;
+    sk_parallel_pieces(touch->tasks, 0, parts, 1, count_of_part, touch);
+    for (size_t a = 0; a < leaves; a++) {
+        touch->start[a] = count;
+        for (size_t p = 0; p < parts; p++) {
+            uint32_t *start = &touch->part[p].start[a], of_part = *start;
+            *start = count, count += of_part;
+        }
+    }
+    touch->start[leaves] = count;
+    sk_parallel_pieces(touch->tasks, 0, parts, 1, deal_part, touch);
+    sk_parallel_pieces(touch->tasks, 0, leaves, LEAVES_AT_ONCE, sort_of_leaves, touch);
 }
 
 bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most, bool calm_too, bool *too_many) {

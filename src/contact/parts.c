@@ -35,6 +35,7 @@ void sk_touch_release_parts(sk_touch *touch, sk_allocator *allocator) {
         sk_search_part *part = &touch->part[i];
         sk_release(allocator, part->block);
         sk_release(allocator, part->ring);
+        sk_release(allocator, part->start);
         sk_release(allocator, part->first.data);
         sk_release(allocator, part->second.data);
         sk_pairs_release(&part->batch, allocator);

@@ -236,6 +236,7 @@ typedef struct sk_search_part {
         uint32_t *data;
         size_t count, capacity;
     } first, second; /* leaves whose boxes meet */
+    uint32_t *start; /* of leaves, while partners are put in order */
     sk_pairs batch, fresh; /* pairs whose boxes may meet, and all of them that may come near */
     size_t next, end; /* of leaves or leaves' pairs, those still to be looked at */
 } sk_search_part;
@@ -306,7 +307,7 @@ typedef struct sk_touch {
     bool everybody;               /* all features of all leaves are looked for */
     uint8_t *changed;             /* slots of a level of the tree */
     bool refit;                   /* all of the tree is old */
-    uint32_t *start;              /* of leaves, while partners are put in order */
+    uint32_t *start;              /* of leaves, and one more: where their partners begin */
     struct {
         uint32_t *data;
         size_t count, capacity;
