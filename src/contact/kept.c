@@ -3,6 +3,7 @@
  * as pairs of nobody. So a search for a few costs as much as those few. What is near is put in the order of all. */
 #include <string.h>
 
+#include "base/tasks.h"
 #include "contact/touch.h"
 
 /* What a bound has settled stays so, although it was looked for anew. */
@@ -21,15 +22,29 @@ static inline bool goes(const sk_touch *touch, const sk_pairs *pairs, size_t k) 
     return lost[pairs->corner[0][k]] | lost[pairs->corner[1][k]] | lost[pairs->corner[2][k]] | lost[pairs->corner[3][k]];
 }
 
-/* Makes those that go pairs of nobody: never near, nor closing. */
-static void let_go(const sk_touch *touch, sk_pairs *kept, sk_pairs *fresh) {
-    for (size_t k = 0; k < kept->count; k++) {
-        if (!goes(touch, kept, k)) continue;
-        if (kept->settled[k]) stay_settled(fresh, kept->key[k]);
+typedef struct going {
+    const sk_touch *touch;
+    sk_pairs *pairs, *fresh;
+} going;
+
+static void let_some_go(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    const going *job = data;
+    sk_pairs *kept = job->pairs;
+    for (size_t k = begin; k < end; k++) {
+        if (!goes(job->touch, kept, k)) continue;
+        if (kept->settled[k]) stay_settled(job->fresh, kept->key[k]);
         for (int c = 0; c < 4; c++) kept->corner[c][k] = 0;
         kept->thickness[k] = -1;
         kept->settled[k] = 0;
     }
+}
+
+/* Makes those that go pairs of nobody: never near, nor closing. */
+static void let_go(const sk_touch *touch, sk_pairs *kept, sk_pairs *fresh) {
+    enum { AT_ONCE = 8192 };
+    going job = {touch, kept, fresh};
+    sk_parallel_pieces(touch->tasks, 0, kept->count, AT_ONCE, let_some_go, &job);
 }
 
 /* Takes those that go out. */

@@ -48,9 +48,8 @@ sk_pairs sk_pairs_between(const sk_pairs *pairs, size_t begin, size_t end) {
     return some;
 }
 
-void sk_pairs_take(sk_pairs *pairs, const sk_pairs *others, size_t first, size_t end) {
-    size_t at = pairs->count, count = end - first;
-    if (!count) return;
+void sk_pairs_put(sk_pairs *pairs, size_t at, const sk_pairs *others, size_t first, size_t end) {
+    size_t count = end - first;
     for (int c = 0; c < 4; c++) memcpy(pairs->corner[c] + at, others->corner[c] + first, count * sizeof(uint32_t));
     memcpy(pairs->key + at, others->key + first, count * sizeof(uint64_t));
     for (int c = 0; c < 3; c++) memcpy(pairs->normal[c] + at, others->normal[c] + first, count * sizeof(real));
@@ -58,7 +57,10 @@ void sk_pairs_take(sk_pairs *pairs, const sk_pairs *others, size_t first, size_t
     memcpy(pairs->distance + at, others->distance + first, count * sizeof(real));
     memcpy(pairs->thickness + at, others->thickness + first, count * sizeof(real));
     memcpy(pairs->settled + at, others->settled + first, count);
-    pairs->count += count;
+}
+
+void sk_pairs_take(sk_pairs *pairs, const sk_pairs *others, size_t first, size_t end) {
+    if (end > first) sk_pairs_put(pairs, pairs->count, others, first, end), pairs->count += end - first;
 }
 
 void sk_pairs_release(sk_pairs *pairs, sk_allocator *allocator) {

@@ -264,23 +264,37 @@ static bool grow_fresh(sk_search_part *part, sk_allocator *allocator) {
            sk_pairs_reserve(&part->fresh, allocator, 2 * part->fresh.capacity + 4 * BATCH);
 }
 
+/* Puts what the parts have found together, one after the other. */
+static void put_together(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    sk_touch *touch = data;
+    size_t before = 0;
+    for (int i = 0; i < touch->part_count; i++) {
+        const sk_pairs *fresh = &touch->part[i].fresh;
+        size_t first = begin > before ? begin - before : 0, last = end > before ? end - before : 0;
+        if (last > fresh->count) last = fresh->count;
+        if (first < last) sk_pairs_put(&touch->fresh, before + first, fresh, first, last);
+        before += fresh->count;
+    }
+}
+
 /* Finds the pairs of a sort that may come near, in order. */
 static bool list_fresh(sk_touch *touch, sk_allocator *allocator, int sort, sk_touch_search_sort search) {
-    const size_t worth = 256;
+    enum { WORTH = 256, AT_ONCE = 16384 };
     sk_parts_job job = {.touch = touch, .sort = sort, .search = (int)search, .work = find_fresh, .grow = grow_fresh};
     for (int i = 0; i < SK_MOST_PARTS; i++) touch->part[i].fresh.count = 0;
-    if (!sk_touch_work(&job, allocator, touch->partner.count, worth)) return false;
+    if (!sk_touch_work(&job, allocator, touch->partner.count, WORTH)) return false;
     size_t count = 0;
     for (int i = 0; i < touch->part_count; i++) count += touch->part[i].fresh.count;
-    if (touch->part_count == 1) {
-        sk_pairs other = touch->fresh;
-        touch->fresh = touch->part[0].fresh, touch->part[0].fresh = other;
-        return true;
-    }
-    touch->fresh.count = 0;
+    sk_pairs other = touch->fresh;
+    touch->fresh = touch->part[0].fresh, touch->part[0].fresh = other;
+    if (touch->part_count == 1) return true;
+    // of the first part all is in its place
+    size_t first = touch->fresh.count;
+    touch->part[0].fresh.count = first;
     if (!sk_pairs_reserve(&touch->fresh, allocator, count)) return false;
-    for (int i = 0; i < touch->part_count; i++)
-        sk_pairs_take(&touch->fresh, &touch->part[i].fresh, 0, touch->part[i].fresh.count);
+    sk_parallel_pieces(touch->tasks, first, count, AT_ONCE, put_together, touch);
+    touch->fresh.count = count;
     sk_pairs_pad(&touch->fresh);
     return true;
 }

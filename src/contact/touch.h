@@ -387,6 +387,8 @@ bool sk_pairs_reserve(sk_pairs *pairs, sk_allocator *allocator, size_t need);
 void sk_pairs_pad(sk_pairs *pairs);
 /* Pairs [begin, end) as pairs of their own; begin is a multiple of sixteen. */
 sk_pairs sk_pairs_between(const sk_pairs *pairs, size_t begin, size_t end);
+/* Puts pairs [first, end) of others from `at` on. */
+void sk_pairs_put(sk_pairs *pairs, size_t at, const sk_pairs *others, size_t first, size_t end);
 /* Adds all of pairs [first, end) of others; there is room. */
 void sk_pairs_take(sk_pairs *pairs, const sk_pairs *others, size_t first, size_t end);
 void sk_pairs_release(sk_pairs *pairs, sk_allocator *allocator);
