@@ -111,32 +111,56 @@ static sk_box box_around(const sk_tree_block *block) {
     return box;
 }
 
-/* Puts leaves' boxes that are new into the tree, and the boxes of their blocks into the levels above. */
-static void fit(sk_touch *touch) {
-    sk_tree *tree = &touch->tree;
+/* A level of the tree, and of how many slots it is: leaves, or blocks of the level below. */
+typedef struct fitting {
+    sk_touch *touch;
+    int level;
+    size_t count;
+    uint8_t *changed; /* whether slots are new; */
+    uint8_t *above;   /* and those of the next level are */
+} fitting;
+
+/* Puts those of a block's boxes in that are new; whether there are any. */
+static bool fit_block(const fitting *job, size_t b) {
+    const sk_touch *touch = job->touch;
+    const sk_tree *tree = &touch->tree;
     const sk_quad most = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX, 0};
     const sk_box nothing = {{most, most}, {-most, -most}};
-    size_t count = touch->skin.leaf_count;
-    uint8_t *changed = touch->changed; // slots of the level
-    for (size_t i = 0; i < count; i++) changed[i] = touch->moved[tree->leaf_at[i]] | touch->refit;
-    for (int level = 0; level < tree->levels; level++) {
-        for (size_t b = 0; b < tree->blocks[level]; b++) {
-            sk_tree_block *block = &tree->block[level][b];
-            bool any = touch->refit;
-            if (!any && (b + 1) * SK_TREE_WIDTH <= count && !memchr(changed + b * SK_TREE_WIDTH, 1, SK_TREE_WIDTH)) {
-                changed[b] = 0;
-                continue;
-            }
-            for (size_t l = 0, i = b * SK_TREE_WIDTH; l < SK_TREE_WIDTH; l++, i++) {
-                if (i < count && !changed[i]) continue;
-                if (i >= count && !touch->refit) continue;
-                sk_box above = level && i < count ? box_around(&tree->block[level - 1][i]) : nothing;
-                put_box(block, l, level || i >= count ? &above : &touch->leaf_box[tree->leaf_at[i]]);
-                any = true;
-            }
-            changed[b] = any; // what it was has been looked at: b <= i
-        }
-        count = tree->blocks[level];
+    const int level = job->level;
+    size_t first = b * SK_TREE_WIDTH;
+    bool any = touch->refit;
+    if (!any && first + SK_TREE_WIDTH <= job->count && !memchr(job->changed + first, 1, SK_TREE_WIDTH)) return false;
+    for (size_t l = 0, i = first; l < SK_TREE_WIDTH; l++, i++) {
+        if (i < job->count && !job->changed[i]) continue;
+        if (i >= job->count && !touch->refit) continue;
+        sk_box below = level && i < job->count ? box_around(&tree->block[level - 1][i]) : nothing;
+        put_box(&tree->block[level][b], l, level || i >= job->count ? &below : &touch->leaf_box[tree->leaf_at[i]]);
+        any = true;
+    }
+    return any;
+}
+
+static void fit_blocks(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    const fitting *job = data;
+    const sk_touch *touch = job->touch;
+    for (size_t i = begin * SK_TREE_WIDTH; i < end * SK_TREE_WIDTH && i < job->count && !job->level; i++)
+        job->changed[i] = touch->moved[touch->tree.leaf_at[i]] | touch->refit;
+    for (size_t b = begin; b < end; b++) job->above[b] = fit_block(job, b);
+}
+
+/* Puts leaves' boxes that are new into the tree, and the boxes of their blocks into the levels above. */
+static void fit(sk_touch *touch) {
+    enum { BLOCKS_AT_ONCE = 64 };
+    sk_tree *tree = &touch->tree;
+    size_t leaves = touch->skin.leaf_count + 1;
+    fitting job = {.touch = touch, .count = touch->skin.leaf_count, .changed = touch->changed, .above = touch->changed + leaves};
+    for (; job.level < tree->levels; job.level++) {
+        sk_parallel_pieces(touch->tasks, 0, tree->blocks[job.level], BLOCKS_AT_ONCE, fit_blocks, &job);
+        uint8_t *above = job.above;
+        job.count = tree->blocks[job.level];
+        job.above = job.changed;
+        job.changed = above;
     }
     touch->refit = false;
 }
@@ -331,7 +355,7 @@ static void deal_many(sk_touch *touch) {
 bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most, bool calm_too, bool *too_many) {
     const size_t worth = 32, few = 128; // blocks; pairs of leaves
     size_t count = 0;
-    sk_parts_job job = {.touch = touch, .most = most, .calm_too = calm_too, .work = list_part, .grow = grow_lists};
+    sk_parts_job job = {.touch = touch, .most = most, .calm_too = calm_too, .at_once = 8, .work = list_part, .grow = grow_lists};
     fit(touch);
     if (!begin_parts(touch, allocator) || !sk_touch_work(&job, allocator, touch->tree.blocks[0], worth)) return false;
     for (int i = 0; i < touch->part_count; i++) count += touch->part[i].first.count;

@@ -15,6 +15,8 @@ static const real closing_share = (real)1.13;
 /* Thicknesses: nearest points of edges that are all but parallel are no better known. */
 static const real rounding = (real)0.002;
 
+enum { AT_ONCE = 1024 }; /* vertices or leaves that a thread takes at a time */
+
 /* ---- how near a pair has to be ---- */
 
 /* A vertex' part of it: what is no nearer than the sum of both features' parts, along one axis and on one side before a
@@ -143,7 +145,8 @@ static void mark_leaves_of(const sk_skin *skin, size_t v, uint8_t *leaves) {
     for (uint32_t k = skin->leaf_start[v]; k < skin->leaf_start[v + 1]; k++) leaves[skin->leaf_of[k]] = 1;
 }
 
-static void make_leaf_boxes(void *data, size_t begin, size_t end) {
+static void make_leaf_boxes(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
     sk_touch *touch = data;
     for (size_t i = begin; i < end; i++) {
         if (touch->moved[i]) sk_touch_leaf_box(touch, i);
@@ -156,22 +159,48 @@ static void make_leaf_boxes(void *data, size_t begin, size_t end) {
     }
 }
 
-static void make_features(void *data, size_t begin, size_t end) {
+static void make_features(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
     sk_touch *touch = data;
     for (size_t i = begin; i < end; i++)
         if (touch->featured[i] == 2) sk_touch_feature_boxes(touch, i), sk_touch_leaf_cells(touch, i);
 }
 
-/* Of features, boxes are made where their leaf meets another: few do, of a surface that touches nothing. */
-static void box_features(sk_touch *touch) {
+/* Threads may find the same leaf: all say the same of it. */
+static void find_unfeatured(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    sk_touch *touch = data;
     const uint32_t *first = touch->first.data, *partner = touch->partner.data;
-    bool any = false;
-    for (size_t i = 0; i < touch->partner.count; i++)
+    for (size_t i = begin; i < end; i++)
         for (int k = 0; k < 2; k++) {
             uint8_t *featured = &touch->featured[k ? partner[i] : first[i]];
-            if (!*featured) *featured = 2, any = true;
+            if (!__atomic_load_n(featured, __ATOMIC_RELAXED)) __atomic_store_n(featured, 2, __ATOMIC_RELAXED);
         }
-    if (any) sk_parallel_for(touch->tasks, 0, touch->skin.leaf_count, make_features, touch);
+}
+
+/* Of features, boxes are made where their leaf meets another: few do, of a surface that touches nothing. */
+static void box_features(sk_touch *touch) {
+    enum { PARTNERS_AT_ONCE = 4096 };
+    sk_parallel_pieces(touch->tasks, 0, touch->partner.count, PARTNERS_AT_ONCE, find_unfeatured, touch);
+    if (!memchr(touch->featured, 2, touch->skin.leaf_count)) return;
+    sk_parallel_pieces(touch->tasks, 0, touch->skin.leaf_count, AT_ONCE, make_features, touch);
+}
+
+/* Boxes of all vertices, or of those that are lost and, of courses, those that are wild: where these are now is what counts. */
+typedef struct boxing {
+    sk_touch *touch;
+    bool all, ways;
+    bool wild; /* are to have new ones */
+} boxing;
+
+static void box_some_vertices(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    const boxing *job = data;
+    sk_touch *touch = job->touch;
+    for (size_t v = begin; v < end; v++) {
+        bool lost = touch->lost[v], wild = touch->wild[v];
+        if (job->all || lost || (wild && job->wild)) make_vertex_box(touch, v, touch->still || (job->ways && (lost | wild)));
+    }
 }
 
 static void make_boxes(sk_touch *touch, sk_touch_search_sort sort) {
@@ -180,39 +209,46 @@ static void make_boxes(sk_touch *touch, sk_touch_search_sort sort) {
     if (all) touch->cells = sk_cells_a_metre(touch), touch->tangle.torn = false;
     if (all) memset(touch->moved, 1, leaves);
     else memcpy(touch->moved, touch->anew, leaves);
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        bool was_wild = touch->wild[v] && sort == SK_SEARCH_LOST; // where it is now is what counts
-        if (!(all | touch->lost[v] | was_wild)) continue;
-        make_vertex_box(touch, v, touch->still || (sort == SK_SEARCH_WAYS && (touch->lost[v] | touch->wild[v])));
-        if (was_wild) mark_leaves_of(&touch->skin, v, touch->moved);
-    }
-    sk_parallel_for(touch->tasks, 0, leaves, make_leaf_boxes, touch);
+    boxing job = {touch, all, sort == SK_SEARCH_WAYS, sort == SK_SEARCH_LOST};
+    sk_parallel_pieces(touch->tasks, 0, touch->skin.vertex_count, AT_ONCE, box_some_vertices, &job);
+    for (size_t v = 0; v < touch->skin.vertex_count && job.wild && touch->wild_count && !all; v++)
+        if (touch->wild[v]) mark_leaves_of(&touch->skin, v, touch->moved);
+    sk_parallel_pieces(touch->tasks, 0, leaves, AT_ONCE, make_leaf_boxes, touch);
 }
 
 /* ---- who is looked for ---- */
+
+static sk_hot hot_of(const sk_touch *touch, const sk_leaf *leaf) {
+    const sk_skin *skin = &touch->skin;
+    const uint8_t *lost = touch->lost, *vertex = lost + leaf->first_vertex;
+    const uint32_t(*edge)[2] = (const uint32_t(*)[2])skin->edge + leaf->first_edge;
+    const uint32_t(*t)[3] = (const uint32_t(*)[3])skin->triangle + leaf->first_triangle;
+    uint32_t vertices = 0, edges = 0, triangles = 0;
+    for (uint32_t k = 0; k < leaf->vertices; k++) vertices |= (uint32_t)vertex[k] << k;
+    for (uint32_t k = 0; k < leaf->edges; k++) edges |= (uint32_t)(lost[edge[k][0]] | lost[edge[k][1]]) << k;
+    for (uint32_t k = 0; k < leaf->triangles; k++)
+        triangles |= (uint32_t)(lost[t[k][0]] | lost[t[k][1]] | lost[t[k][2]]) << k;
+    return (sk_hot){(uint8_t)vertices, (uint8_t)edges, (uint8_t)triangles};
+}
+
+static void mark_some_hot(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    sk_touch *touch = data;
+    for (size_t i = begin; i < end; i++) {
+        sk_hot hot = touch->anew[i] ? hot_of(touch, &touch->skin.leaf[i]) : (sk_hot){0, 0, 0};
+        touch->hot[i] = hot;
+    }
+}
 
 /* Marks vertices that are lost, edges and triangles that have one, and the leaves of all these. */
 static void mark_hot(sk_touch *touch) {
     const sk_skin *skin = &touch->skin;
     const uint8_t *lost = touch->lost;
     touch->everybody = !memchr(lost, 0, skin->vertex_count);
-    memset(touch->anew, 0, skin->leaf_count);
-    memset(touch->hot, 0, skin->leaf_count * sizeof *touch->hot);
-    for (size_t v = 0; v < skin->vertex_count; v++)
+    memset(touch->anew, touch->everybody, skin->leaf_count);
+    for (size_t v = 0; v < skin->vertex_count && !touch->everybody; v++)
         if (lost[v]) mark_leaves_of(skin, v, touch->anew);
-    for (size_t i = 0; i < skin->leaf_count; i++) {
-        if (!touch->anew[i]) continue;
-        const sk_leaf *leaf = &skin->leaf[i];
-        const uint8_t *vertex = lost + leaf->first_vertex;
-        const uint32_t(*edge)[2] = (const uint32_t(*)[2])skin->edge + leaf->first_edge;
-        const uint32_t(*t)[3] = (const uint32_t(*)[3])skin->triangle + leaf->first_triangle;
-        uint32_t vertices = 0, edges = 0, triangles = 0;
-        for (uint32_t k = 0; k < leaf->vertices; k++) vertices |= (uint32_t)vertex[k] << k;
-        for (uint32_t k = 0; k < leaf->edges; k++) edges |= (uint32_t)(lost[edge[k][0]] | lost[edge[k][1]]) << k;
-        for (uint32_t k = 0; k < leaf->triangles; k++)
-            triangles |= (uint32_t)(lost[t[k][0]] | lost[t[k][1]] | lost[t[k][2]]) << k;
-        touch->hot[i] = (sk_hot){(uint8_t)vertices, (uint8_t)edges, (uint8_t)triangles};
-    }
+    sk_parallel_pieces(touch->tasks, 0, skin->leaf_count, AT_ONCE, mark_some_hot, touch);
 }
 
 /* ---- pairs ---- */
@@ -280,7 +316,7 @@ static void put_together(void *data, int thread, size_t begin, size_t end) {
 
 /* Finds the pairs of a sort that may come near, in order. */
 static bool list_fresh(sk_touch *touch, sk_allocator *allocator, int sort, sk_touch_search_sort search) {
-    enum { WORTH = 256, AT_ONCE = 16384 };
+    enum { WORTH = 256, PAIRS_AT_ONCE = 16384 };
     sk_parts_job job = {.touch = touch, .sort = sort, .search = (int)search, .work = find_fresh, .grow = grow_fresh};
     for (int i = 0; i < SK_MOST_PARTS; i++) touch->part[i].fresh.count = 0;
     if (!sk_touch_work(&job, allocator, touch->partner.count, WORTH)) return false;
@@ -293,7 +329,7 @@ static bool list_fresh(sk_touch *touch, sk_allocator *allocator, int sort, sk_to
     size_t first = touch->fresh.count;
     touch->part[0].fresh.count = first;
     if (!sk_pairs_reserve(&touch->fresh, allocator, count)) return false;
-    sk_parallel_pieces(touch->tasks, first, count, AT_ONCE, put_together, touch);
+    sk_parallel_pieces(touch->tasks, first, count, PAIRS_AT_ONCE, put_together, touch);
     touch->fresh.count = count;
     sk_pairs_pad(&touch->fresh);
     return true;
@@ -328,31 +364,33 @@ static void look_ahead(sk_touch *touch) {
 }
 
 /* From where to where vertices go in this substep: most are known if somebody has asked before. */
-static void aim(sk_touch *touch) {
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+static void aim(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    sk_touch *touch = data;
+    for (size_t v = begin; v < end; v++) {
         if (touch->aimed && !touch->lost[v]) continue;
-        sk_vec3 end = sk_add(sk_xyz(touch->p[v]), way_left(touch, v));
+        sk_vec3 to = sk_add(sk_xyz(touch->p[v]), way_left(touch, v));
         touch->at[v] = touch->p[v];
-        touch->in_the_end[v] = (sk_vec4){end.x, end.y, end.z, 0};
+        touch->in_the_end[v] = (sk_vec4){to.x, to.y, to.z, 0};
     }
-    touch->aimed = true;
 }
 
 /* Where vertices are expected now, with how far off they may be, and in the end. */
-static void expect(sk_touch *touch) {
+static void expect(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    sk_touch *touch = data;
     const real jump = SK_MOST_JUMP * touch->thickness;
-    touch->aimed = false;
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+    for (size_t v = begin; v < end; v++) {
         const sk_course *course = &touch->course[v];
         if (touch->wild[v]) { // its pairs to come are found on its ways
             sk_vec3 here = sk_sub(sk_xyz(touch->p[v]), touch->shift[0]);
             touch->at[v] = touch->in_the_end[v] = (sk_vec4){here.x, here.y, here.z, 0};
             continue;
         }
-        sk_vec3 at = sk_expected(course, touch->now), end = sk_expected(course, touch->until);
+        sk_vec3 at = sk_expected(course, touch->now), to = sk_expected(course, touch->until);
         touch->at[v] = (sk_vec4){at.x, at.y, at.z, course->reach};
         // (between two places within its reach it is no farther than across)
-        touch->in_the_end[v] = (sk_vec4){end.x, end.y, end.z, sk_min(2 * course->reach, jump)};
+        touch->in_the_end[v] = (sk_vec4){to.x, to.y, to.z, sk_min(2 * course->reach, jump)};
     }
 }
 
@@ -385,11 +423,12 @@ bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_s
         for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->kept[sort].count = touch->late[sort].count = 0;
     }
     box_features(touch);
-    if (search == SK_SEARCH_WAYS) aim(touch);
-    else expect(touch);
+    bool ways = search == SK_SEARCH_WAYS;
+    sk_parallel_pieces(touch->tasks, 0, count, AT_ONCE, ways ? aim : expect, touch);
+    touch->aimed = ways;
     for (int sort = 0; sort < SK_PAIR_SORTS && good && !gives_up; sort++)
         good = list_fresh(touch, allocator, sort, search) &&
-               sk_touch_keep(touch, allocator, sort, everybody, search == SK_SEARCH_WAYS);
+               sk_touch_keep(touch, allocator, sort, everybody, ways);
     touch->found = good && !gives_up;
     return good;
 }

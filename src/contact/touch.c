@@ -374,7 +374,7 @@ static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *cou
     LIST(corner_box, vertices), LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles);
     LIST(hot, leaves), LIST(leaf_box, leaves), LIST(hot_box, leaves);
     LIST(edge_cells, leaves), LIST(corner_cells, leaves);
-    LIST(anew, leaves), LIST(moved, leaves), LIST(featured, leaves), LIST(changed, leaves), LIST(start, leaves);
+    LIST(anew, leaves), LIST(moved, leaves), LIST(featured, leaves), LIST(changed, 2 * leaves), LIST(start, leaves);
 #undef LIST
     return n;
 }

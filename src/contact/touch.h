@@ -305,7 +305,7 @@ typedef struct sk_touch {
     uint8_t *anew, *moved;        /* leaves that are looked for, and whose boxes are new; */
     uint8_t *featured;            /* those whose features have boxes, too (2: are to have them) */
     bool everybody;               /* all features of all leaves are looked for */
-    uint8_t *changed;             /* slots of a level of the tree */
+    uint8_t *changed;             /* slots of a level of the tree, and of the next one */
     bool refit;                   /* all of the tree is old */
     uint32_t *start;              /* of leaves, and one more: where their partners begin */
     struct {
@@ -482,13 +482,15 @@ void sk_tree_release(sk_tree *tree, sk_allocator *allocator);
 /* Lists leaves whose boxes may meet, each two once, of which one at least is looked for `anew`: `first`, and `partner`, the
  * same leaf or a later one; in order, but none where they are more than `most`. Those of calm patches if asked for. */
 bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most, bool calm_too, bool *too_many);
-/* Has each part's work done on a thread of its own, one after the other in the order of [0, count): `work` looks at what
- * is next until there is none or no room, for which `grow` is then asked. False when there is no memory. */
+/* Has each part's work done on a thread of its own: `work` looks at what is next in its part of [0, count) until there is
+ * none or no room, for which `grow` is then asked. Parts follow each other in order; or each takes so many at a time, whoever
+ * is done. False when there is no memory. */
 typedef struct sk_parts_job {
     sk_touch *touch;
     int sort, search;
     size_t most;
     bool calm_too;
+    size_t at_once; /* 0: in order */
     void (*work)(const struct sk_parts_job *job, sk_search_part *part);
     bool (*grow)(sk_search_part *part, sk_allocator *allocator);
 } sk_parts_job;
