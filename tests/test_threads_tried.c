@@ -28,6 +28,17 @@ static double four(int threads, uint64_t *seed) {
     return threads == 4 ? 0.4e-3 : threads == 2 ? 0.6e-3 : 1e-3;
 }
 
+/* A cloth that falls into a heap and comes to rest: in sixty steps there is twenty times as much to do, and then less. Two
+ * threads take two thirds of the time. The seed counts. */
+static double heap(int threads, uint64_t *seed) {
+    double step = (double)((*seed)++ - 7), share = step < 60 ? step / 60 : step < 180 ? (180 - step) / 120 : 0;
+    return 5e-3 * pow(20, share) / (threads > 1 ? 1.5 : 1);
+}
+/* The same where somebody else has one of two processors. */
+static double shared_heap(int threads, uint64_t *seed) {
+    return heap(1, seed) * (threads > 1 ? 4.6 : 1);
+}
+
 /* Steps on a machine; returns the seconds that they took, and how many threads the last one had. */
 static double run(sk_pace *pace, machine *takes, int steps, int *threads) {
     uint64_t seed = 7;
@@ -91,6 +102,22 @@ static void it_follows_the_machine(void **state) {
     }
 }
 
+static void it_follows_the_work(void **state) {
+    (void)state;
+    int threads;
+    for (int steps = 40; steps <= 240; steps += 40) {
+        uint64_t seed = 7;
+        double one = 0;
+        for (int i = 0; i < steps; i++) one += heap(1, &seed);
+        sk_pace pace;
+        sk_pace_start(&pace, 2, false);
+        assert_under(run(&pace, heap, steps, &threads), 0.74 * one);
+        sk_pace_start(&pace, 2, false);
+        assert_under(run(&pace, shared_heap, steps, &threads), 1.2 * one);
+        assert_int_equal(threads, 1);
+    }
+}
+
 static void all_threads_can_be_had_always(void **state) {
     (void)state;
     sk_pace pace;
@@ -106,6 +133,7 @@ int main(void) {
         cmocka_unit_test(threads_that_pay_are_taken),
         cmocka_unit_test(threads_that_cost_are_not),
         cmocka_unit_test(it_follows_the_machine),
+        cmocka_unit_test(it_follows_the_work),
         cmocka_unit_test(all_threads_can_be_had_always),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

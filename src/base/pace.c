@@ -7,11 +7,13 @@ enum {
     TRIAL = 2,        /* steps */
     FIRST_TRIAL = 4,  /* steps on a level before others are tried */
     LEAST_PAUSE = 32, /* steps between trials, doubled after each trial that failed or did not last, */
-    MOST_PAUSE = 1024 /* up to this */
+    MOST_PAUSE = 1024, /* up to this */
+    SOON = 4           /* so much sooner where the work has changed */
 };
 static const double least_gain = 0.9, /* the share of the time that more threads may take at most */
     least_work = 2e-4,                /* s: a shorter step is over before a thread has woken */
     hopeless = 1.5,                   /* a trial that takes this many times as long ends at once */
+    another = 2,                      /* a step that takes this many times as long, or as short, has other work to do */
     newest = 0.2;                     /* share of the newest time in the mean */
 
 void sk_pace_start(sk_pace *pace, int most, bool always) {
@@ -45,8 +47,8 @@ static void settle(sk_pace *pace, int level) {
     pace->stayed = 0;
 }
 
-/* Tries a neighbour of the present level, upwards and downwards in turn. */
-static void begin_trial(sk_pace *pace) {
+/* Tries a neighbour of the present level, upwards and downwards in turn; the last step has taken so long. */
+static void begin_trial(sk_pace *pace, double seconds) {
     int next = pace->level + (pace->up ? 1 : -1);
     pace->up = !pace->up;
     if (next < 0 || next >= pace->levels) next = 2 * pace->level - next;
@@ -54,13 +56,20 @@ static void begin_trial(sk_pace *pace) {
     if (next > pace->level && pace->mean[pace->level] < least_work) return;
     pace->trying = next;
     pace->left = TRIAL;
-    pace->mean[next] = 0; // its old mean is out of date
+    pace->tried = 0;
+    pace->trial = 0;
+    pace->before = seconds;
 }
 
-static void end_trial(sk_pace *pace) {
-    double now = pace->mean[pace->level], then = pace->mean[pace->trying];
+/* Holds the trial against what a step with the old number took halfway through it. */
+static void end_trial(sk_pace *pace, double after) {
+    double now = (pace->before + after) / 2, then = pace->trial / pace->tried;
     bool more = pace->trying > pace->level, better = more ? then < least_gain * now : least_gain * then < now;
-    pace->left = 0;
+    pace->judging = false;
+    pace->since = 0;
+    pace->judged = better ? then : now;
+    pace->mean[pace->level] = now;
+    pace->mean[pace->trying] = then;
     if (!better) {
         pause_longer(pace);
         return;
@@ -70,26 +79,45 @@ static void end_trial(sk_pace *pace) {
     pace->wait = FIRST_TRIAL;
 }
 
+/* A step of a trial. */
+static void note_trial(sk_pace *pace, double seconds) {
+    pace->trial += seconds;
+    pace->tried++;
+    pace->left--;
+    if (seconds > hopeless * pace->before) pace->left = 0;
+    pace->judging = !pace->left;
+}
+
+/* Whether steps have other work to do than when it was last decided: two in a row, for one may have been held up. */
+static bool has_changed(const sk_pace *pace, double seconds) {
+    double least = seconds < pace->last ? seconds : pace->last, most = seconds < pace->last ? pace->last : seconds;
+    return pace->judged > 0 && pace->since >= pace->pause / SOON &&
+           (least > another * pace->judged || another * most < pace->judged);
+}
+
 void sk_pace_note(sk_pace *pace, double seconds) {
     if (pace->levels < 2) return;
     if (pace->left) {
-        keep(pace, pace->trying, seconds);
-        pace->left--;
-        if (seconds > hopeless * pace->mean[pace->level]) pace->left = 0;
-        if (!pace->left) end_trial(pace);
+        note_trial(pace, seconds);
+        return;
+    }
+    if (pace->judging) {
+        end_trial(pace, seconds);
+        pace->last = seconds;
         return;
     }
     keep(pace, pace->level, seconds);
+    pace->since++;
     if (++pace->stayed == 2 * pace->pause) pace->pause = LEAST_PAUSE; // this level has lasted
     int fewer = pace->level - 1;
-    if (fewer >= 0 && pace->mean[fewer] > 0 && pace->mean[pace->level] > pace->mean[fewer]) {
-        // other processes now use the processors: back to the level that was faster before
-        settle(pace, fewer);
+    bool slower = fewer >= 0 && pace->mean[fewer] > 0 && pace->mean[pace->level] > pace->mean[fewer];
+    if (slower) { // there is more to do, or other processes now use the processors
         pace->mean[fewer] = 0;
-        pace->up = true;
-        pause_longer(pace);
-    } else if (--pace->wait <= 0) {
-        pace->wait = LEAST_PAUSE;
-        begin_trial(pace);
+        pace->up = false;
     }
+    if (slower || has_changed(pace, seconds) || --pace->wait <= 0) {
+        pace->wait = LEAST_PAUSE;
+        begin_trial(pace, seconds);
+    }
+    pace->last = seconds;
 }

@@ -4,7 +4,11 @@
  * other, and a step took 4.6 times as long as with one. That cannot be known beforehand, but every step can be timed,
  * and its bits do not depend on its threads. So a world begins with one, tries twice as many now and then, and keeps
  * the faster number; a trial that failed is repeated less and less often. The time lost to trials is a few per cent
- * even if every one takes five times as long. */
+ * even if every one takes five times as long.
+ *
+ * What a step has to do changes, too: cloth that falls into a heap has ten times as much in a second. So the steps of a
+ * trial are held against the one before it and the one after it, not against a mean of earlier ones; and when steps
+ * take twice as long as when it was last decided, or half, it is tried again soon. */
 #ifndef SK_BASE_PACE_H
 #define SK_BASE_PACE_H
 
@@ -15,8 +19,12 @@ enum { SK_PACE_LEVELS = 7 }; /* 1, 2, 4 ... 64 threads */
 typedef struct sk_pace {
     int levels, level, most;     /* the number of levels, the present one, and the threads of the highest */
     int trying, left;            /* the level that is being tried, and for how many more steps */
+    bool judging;                /* the step after a trial is under way */
+    int tried;                   /* steps of the trial */
+    double before, trial;        /* s: the step before it, and all of its steps */
+    double last, judged;         /* s: the last step; and one when it was last decided, 0: never */
     int wait, pause;             /* steps until the next trial, and after a trial that failed */
-    int stayed;                  /* steps on the present level */
+    int stayed, since;           /* steps on the present level, and since it was last decided */
     bool up;                     /* the next trial is with more threads */
     double mean[SK_PACE_LEVELS]; /* a step's time, s, the newest weighing most; 0: not known. Not the median: threads
                                     that lose their processor cost time in few steps */
