@@ -116,6 +116,59 @@ static const sk_pair_place *list_late(sk_touch *touch, sk_allocator *allocator, 
     return place;
 }
 
+/* Of kept pairs some blocks of eight, and of late ones, in order, those that belong between them: where they are listed. */
+enum { MOST_CUTS = 64 };
+typedef struct near_cut {
+    size_t block, late, at;
+} near_cut;
+
+typedef struct near_job {
+    const sk_pairs *kept;
+    const sk_pair_place *place;
+    uint32_t *entry;
+    near_cut cut[MOST_CUTS + 1];
+} near_job;
+
+/* How many pairs are near. */
+static void count_near(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    near_job *job = data;
+    for (size_t c = begin; c < end; c++) {
+        size_t count = 0;
+        for (size_t b = job->cut[c].block; b < job->cut[c + 1].block; b++)
+            count += (size_t)__builtin_popcountll(sk_pairs_that(job->kept, 8 * b, SK_IS_NEAR));
+        job->cut[c].at = count;
+    }
+}
+
+static void list_near(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    const near_job *job = data;
+    for (size_t c = begin; c < end; c++) {
+        size_t i = job->cut[c].late, last = job->cut[c + 1].late, n = job->cut[c].at;
+        for (size_t b = 8 * job->cut[c].block; b < 8 * job->cut[c + 1].block; b += 8)
+            for (uint64_t bits = sk_pairs_that(job->kept, b, SK_IS_NEAR); bits; bits &= bits - 1) {
+                size_t k = b + sk_first_of(bits);
+                while (i < last && job->place[i].key < job->kept->key[k]) job->entry[n++] = 2 * job->place[i++].at + 1;
+                job->entry[n++] = 2 * (uint32_t)k;
+            }
+        while (i < last) job->entry[n++] = 2 * job->place[i++].at + 1;
+    }
+}
+
+/* Cuts kept pairs into as many pieces as are worth it. */
+static size_t cut_near(near_job *job, size_t late) {
+    const size_t worth = 512; // blocks
+    size_t blocks = (job->kept->count + 7) / 8, cuts = blocks / worth + 1;
+    if (cuts > MOST_CUTS) cuts = MOST_CUTS;
+    for (size_t c = 0, i = 0; c <= cuts; c++) {
+        size_t block = blocks * c / cuts;
+        while (i < late && c && (c == cuts || job->place[i].key < job->kept->key[8 * block])) i++;
+        job->cut[c] = (near_cut){block, i, 0};
+    }
+    return cuts;
+}
+
 /* Takes those out that are around where something is tangled. */
 static void take_tangled_out(const sk_touch *touch, sk_pair_list *near, int sort) {
     size_t count = near->count;
@@ -133,17 +186,17 @@ bool sk_touch_find_near(sk_touch *touch, sk_allocator *allocator, int sort) {
     const sk_pairs *kept = &touch->kept[sort], *late = &touch->late[sort];
     sk_pair_list *near = &touch->near[sort];
     near->count = 0;
-    size_t count, i = 0, n = 0;
-    const sk_pair_place *place = list_late(touch, allocator, late, &count);
-    if (!place || !SK_RESERVE(allocator, near, kept->count + count + 1)) return false;
-    uint32_t *entry = near->data;
-    for (size_t b = 0; b < kept->count; b += 8)
-        for (uint64_t bits = sk_pairs_that(kept, b, SK_IS_NEAR); bits; bits &= bits - 1) {
-            size_t k = b + sk_first_of(bits);
-            while (i < count && place[i].key < kept->key[k]) entry[n++] = 2 * place[i++].at + 1;
-            entry[n++] = 2 * (uint32_t)k;
-        }
-    while (i < count) entry[n++] = 2 * place[i++].at + 1;
+    size_t late_count, n = 0;
+    const sk_pair_place *place = list_late(touch, allocator, late, &late_count);
+    if (!place || !SK_RESERVE(allocator, near, kept->count + late_count + 1)) return false;
+    near_job job = {.kept = kept, .place = place, .entry = near->data};
+    size_t cuts = cut_near(&job, late_count);
+    sk_parallel_pieces(touch->tasks, 0, cuts, 1, count_near, &job);
+    for (size_t c = 0; c < cuts; c++) {
+        size_t count = job.cut[c].at + job.cut[c + 1].late - job.cut[c].late;
+        job.cut[c].at = n, n += count;
+    }
+    sk_parallel_pieces(touch->tasks, 0, cuts, 1, list_near, &job);
     near->count = n;
     if (touch->tangle.any) take_tangled_out(touch, near, sort);
     return true;
