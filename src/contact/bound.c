@@ -223,22 +223,44 @@ static void find_closing(void *data, size_t begin, size_t end) {
 }
 
 /* Of those from a pair on. */
-static void list_those_that_may(sk_closing_list *list, const sk_pairs *pairs, size_t first, uint32_t late) {
-    sk_closing_pair *entry = list->data;
-    size_t n = list->count;
-    for (size_t b = first / 8 * 8; b < pairs->count; b += 8)
+typedef struct listing {
+    sk_closing_list *list;
+    const sk_pairs *pairs;
+    size_t first;
+    uint32_t late;
+} listing;
+
+/* Threads put what they have found there as they come. */
+static void put_closing(sk_closing_list *list, const sk_closing_pair *found, size_t count) {
+    size_t at = __atomic_fetch_add(&list->count, count, __ATOMIC_RELAXED);
+    memcpy(list->data + at, found, count * sizeof *found);
+}
+
+/* Of blocks of eight. */
+static void list_some_that_may(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    enum { SOME = 128 };
+    const listing *job = data;
+    const sk_pairs *pairs = job->pairs;
+    sk_closing_pair found[SOME];
+    size_t n = 0;
+    for (size_t b = 8 * begin; b < 8 * end; b += 8) {
         for (uint64_t bits = sk_pairs_that(pairs, b, SK_MAY_CLOSE); bits; bits &= bits - 1) {
             size_t k = b + sk_first_of(bits);
-            if (k < first || !(pairs->thickness[k] > 0)) continue;
-            entry[n++] = (sk_closing_pair){2 * (uint32_t)k + late, {pairs->corner[0][k], pairs->corner[1][k],
-                                                                    pairs->corner[2][k], pairs->corner[3][k]}};
+            if (k < job->first || !(pairs->thickness[k] > 0)) continue;
+            found[n++] = (sk_closing_pair){2 * (uint32_t)k + job->late, {pairs->corner[0][k], pairs->corner[1][k],
+                                                                        pairs->corner[2][k], pairs->corner[3][k]}};
         }
-    list->count = n;
+        if (n + 8 <= SOME && b + 8 < 8 * end) continue;
+        if (n) put_closing(job->list, found, n);
+        n = 0;
+    }
 }
 
 /* Lists the pairs that may close on these ways: none of the others does, whatever shares are left. Of all, or of those
  * that came since it was last asked; those that went since then are pairs of nobody where they stand. */
 static bool find_those_that_may(sk_touch *touch, sk_allocator *allocator, real least, bool all) {
+    enum { BLOCKS_AT_ONCE = 1024 };
     const real known = (real)0.01; // thicknesses: nearest points of edges that are all but parallel
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
         sk_closing_list *list = &touch->may_close[sort];
@@ -250,7 +272,8 @@ static bool find_those_that_may(sk_touch *touch, sk_allocator *allocator, real l
         for (uint32_t late = all ? 0 : 1; late < 2; late++) {
             closing job = {touch, pairs[late], sort, {least, known * touch->thickness, touch->longest}};
             sk_parallel_for(touch->tasks, first[late] / 16 * 16, pairs[late]->count, find_closing, &job);
-            list_those_that_may(list, pairs[late], first[late], late);
+            listing found = {list, pairs[late], first[late], late};
+            sk_parallel_pieces(touch->tasks, first[late] / 8, (pairs[late]->count + 7) / 8, BLOCKS_AT_ONCE, list_some_that_may, &found);
         }
         touch->told_apart[sort] = pairs[1]->count;
     }
