@@ -515,6 +515,21 @@ extern sk_course_kernel *const sk_course_off[SK_ISA_COUNT];
 typedef enum sk_touch_search_sort { SK_SEARCH_ALL, SK_SEARCH_LOST, SK_SEARCH_WAYS } sk_touch_search_sort;
 /* False when there is no memory. */
 bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_sort search);
+/* Thicknesses: nearest points of edges that are all but parallel are no better known. */
+#define SK_SEARCH_ROUNDING ((real)0.002)
+/* The way that a vertex may still go. */
+static inline sk_vec3 sk_way_left(const sk_touch *touch, size_t v) {
+    return sk_scale(touch->share[v], sk_xyz(touch->way[v]));
+}
+
+/* ---- boxes.c ---- */
+
+/* Marks vertices that are lost, edges and triangles that have one, and the leaves of all these. */
+void sk_touch_mark_hot(sk_touch *touch);
+/* Boxes of all vertices and leaves, or of those that are new. */
+void sk_touch_make_boxes(sk_touch *touch, sk_touch_search_sort sort);
+/* Of features, boxes are made where their leaf meets another: few do, of a surface that touches nothing. */
+void sk_touch_box_features(sk_touch *touch);
 /* The box of a leaf, and those of its features, from those of vertices. */
 void sk_touch_leaf_box(sk_touch *touch, size_t leaf);
 void sk_touch_feature_boxes(sk_touch *touch, size_t leaf);
