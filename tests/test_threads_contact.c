@@ -2,7 +2,7 @@
  * bits are the same for any number of threads, and for tasks in any order. */
 #include "helpers.h"
 
-enum { SIDE = 26, STEPS = SANITIZED ? 3 : 24 };
+enum { SIDE = SANITIZED ? 26 : 36, STEPS = SANITIZED ? 3 : 24 };
 
 typedef struct tally {
     size_t calls;
