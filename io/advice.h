@@ -1,5 +1,5 @@
 /* What a world will suffer from, foretold before it is run: steps that its method is not stable with, substeps so short
- * that positions round away what forces do, and particles that begin inside a collider.
+ * that positions round away what forces do, particles that begin inside a collider, and surfaces that begin in each other.
  *
  * Called by the command and the window, so that both say the same. */
 #ifndef SKEIN_IO_ADVICE_H

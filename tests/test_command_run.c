@@ -392,6 +392,25 @@ static void a_start_inside_a_collider_is_told(void **state) {
     outcome_free(&o);
 }
 
+/* Surfaces that begin in each other are told of, and so is in how many frames they were. */
+static void a_start_in_each_other_is_told(void **state) {
+    (void)state;
+    const char *path = in_folder("crossed.json");
+    write_text(path, "{\"skein\": 1, \"frames\": 60, \"bodies\": ["
+                     "{\"type\": \"cloth\", \"name\": \"a\", \"grid\": [20, 20], \"size\": [0.3, 0.3]},"
+                     "{\"type\": \"cloth\", \"name\": \"b\", \"grid\": [19, 19], \"size\": [0.3, 0.3],"
+                     " \"position\": [0.21, 0, 0.19], \"rotation\": [20, 10, 30]}], \"forces\": [{\"type\": \"contact\"}]}");
+    outcome o = SKEIN("check", path);
+    assert_status(o, 0);
+    assert_contains(o.err, "edges go through faces at the start: contact leads surfaces apart at its recovery");
+    outcome_free(&o);
+    o = SKEIN("run", path, "--no-progress");
+    assert_status(o, 0);
+    assert_contains(o.out, "frames had edges that go through faces");
+    assert_contains(o.out, "; 0 at the end");
+    outcome_free(&o);
+}
+
 /* A blow-up may stay finite: limits hold a sheet together, and a spring turns faster and faster. */
 static void an_end_beyond_bounds_is_no_success(void **state) {
     (void)state;
@@ -582,6 +601,7 @@ int main(void) {
         TEST(sets_reach_what_they_name),
         TEST(a_cache_holds_what_is_free),
         TEST(a_start_inside_a_collider_is_told),
+        TEST(a_start_in_each_other_is_told),
         TEST(an_end_beyond_bounds_is_no_success), TEST(energy_from_nowhere_is_no_success),
         TEST(what_was_not_solved_is_told), TEST(a_run_says_as_much_as_it_is_asked_to),
         TEST(files_of_one_run_have_different_names),
