@@ -218,11 +218,15 @@ static bool is_at(sk_vec4 a, sk_vec4 b) {
     return !memcmp(&a, &b, sizeof a);
 }
 
-/* Who is not where the last bound left it; of others it is known that they go through nothing. */
-static void find_changed(sk_touch *touch, const sk_vec4 *x, size_t packed) {
+/* Marks who is not where the last bound left it; of others it is known that they go through nothing. Whether there are any. */
+static bool mark_changed(sk_touch *touch, const sk_vec4 *x, size_t packed) {
     sk_tangle *tangle = &touch->tangle;
-    for (size_t v = 0; v < touch->skin.vertex_count; v++)
+    bool any = false;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         tangle->marked[v] = !is_at(sk_load(x, packed, touch->slot[v]), sk_load(tangle->left, packed, touch->slot[v]));
+        any |= tangle->marked[v];
+    }
+    return any;
 }
 
 bool sk_tangle_look(sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x, size_t packed, real step, bool known) {
@@ -231,7 +235,7 @@ bool sk_tangle_look(sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x, 
     bool left = tangle->clean && tangle->left_count == touch->slots;
     if (tangle->clean && (known || (left && !memcmp(tangle->left, x, touch->slots * sizeof *x)))) return true;
     if (!reserve(touch, allocator)) return false;
-    if (left) find_changed(touch, x, packed);
+    if (left && !mark_changed(touch, x, packed)) return true;
     sk_touch_load(touch, packed);
     if (!sk_touch_list_crossings(touch, allocator, left ? tangle->marked : NULL, &tangle->crossing)) return false;
     if (tangle->crossing.count) lead_all(touch, step);
