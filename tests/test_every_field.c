@@ -39,7 +39,6 @@ static const struct {
     {"cache", "backstop", "as pull"},
     {"cache", "backstop_radius", "as pull"},
     {NULL, "map", "as many numbers as it leads; test_leashes.c has them"},
-    {"cloth", "contact.friction", "the surfaces that are tried meet, and do not rub; test_fabrics.c has some that do"},
 };
 
 static const char *idle_reason(const skein_kind *kind, const skein_field *field) {
