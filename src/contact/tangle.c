@@ -214,6 +214,10 @@ static void lead_all(sk_touch *touch, real step) {
     if (coarse) lead_along(touch);
 }
 
+static bool is_torn(const sk_tangle *tangle) {
+    return __atomic_load_n(&tangle->torn, __ATOMIC_RELAXED);
+}
+
 static bool is_at(sk_vec4 a, sk_vec4 b) {
     return !memcmp(&a, &b, sizeof a);
 }
@@ -229,15 +233,27 @@ static bool mark_changed(sk_touch *touch, const sk_vec4 *x, size_t packed) {
     return any;
 }
 
+/* Marks who was around a crossing: no other pair was left out of the bound, so nothing else can go through anything now. */
+static void mark_around(sk_touch *touch) {
+    sk_tangle *tangle = &touch->tangle;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        const sk_crossings_at *of = &tangle->of[v], *fine = &tangle->fine[v];
+        tangle->marked[v] = (of->edges | of->triangles | fine->edges | fine->triangles) != 0;
+    }
+}
+
 bool sk_tangle_look(sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x, size_t packed, real step, bool known) {
     sk_tangle *tangle = &touch->tangle;
-    tangle->any = tangle->forced = false;
+    bool goes_on = known && tangle->any && !tangle->forced && !is_torn(tangle);
     bool left = tangle->clean && tangle->left_count == touch->slots;
+    tangle->any = tangle->forced = false;
     if (tangle->clean && (known || (left && !memcmp(tangle->left, x, touch->slots * sizeof *x)))) return true;
     if (!reserve(touch, allocator)) return false;
     if (left && !mark_changed(touch, x, packed)) return true;
+    if (goes_on) mark_around(touch);
     sk_touch_load(touch, packed);
-    if (!sk_touch_list_crossings(touch, allocator, left ? tangle->marked : NULL, &tangle->crossing)) return false;
+    const uint8_t *of = left || goes_on ? tangle->marked : NULL;
+    if (!sk_touch_list_crossings(touch, allocator, of, &tangle->crossing)) return false;
     if (tangle->crossing.count) lead_all(touch, step);
     return true;
 }
@@ -255,7 +271,7 @@ void sk_tangle_lead(const sk_touch *touch, sk_vec4 *x, sk_vec4 *before, size_t p
 
 bool sk_tangle_leave(sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x, bool keeps, bool last) {
     sk_tangle *tangle = &touch->tangle;
-    tangle->clean = keeps && !tangle->any && !tangle->forced && !__atomic_load_n(&tangle->torn, __ATOMIC_RELAXED);
+    tangle->clean = keeps && !tangle->any && !tangle->forced && !is_torn(tangle);
     tangle->left_count = 0;
     if (!tangle->clean || (touch->alone && !last)) return true; // the next begin knows
     if (touch->slots > tangle->left_capacity) {
