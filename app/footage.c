@@ -11,7 +11,7 @@
 #include "render/world_frame.h"
 
 /* The camera takes in so many frames at most, and nothing that makes the subject so many times wider than the
- * start: what falls out of the world or blows up is let go. */
+ * start and the ways on which pinned particles are led: what falls out of the world or blows up is let go. */
 enum { MOST_AHEAD = 900, MOST_GROWTH = 4 };
 
 struct app_footage {
@@ -31,22 +31,45 @@ static void ignore_fault(void *user, const skein_error *error) {
     (void)user, (void)error; // the same was built before without one
 }
 
-/* Adds what the world holds now, unless that makes it larger than `most` (0: not known yet). */
-static void take_in(render_world_frame *frame, skein_world *world, const render_view *view, render_subject *held,
-                    double *most) {
+/* What the camera is to hold, and what that is measured by: the start, and where pinned particles have been since, for
+ * these neither fall nor blow up. */
+typedef struct subject_ahead {
+    render_subject held;
+    render_hull start, led;
+} subject_ahead;
+
+static void add_pinned(render_hull *hull, const skein_world *world) {
+    skein_view view = skein_position_view(world);
+    for (size_t i = 0; i < view.count; i++) {
+        const skein_real *x = view.xyzw + 4 * (size_t)view.slot_of[i];
+        const double at[3] = {(double)x[0], (double)x[1], (double)x[2]};
+        if (x[3] == 0 && skein_particle_present(world, i)) render_hull_add(hull, at, 0);
+    }
+}
+
+/* Adds what the world holds now, unless that makes it far too large: then only what is led. */
+static void take_in(subject_ahead *taken, render_world_frame *frame, skein_world *world, const render_view *view) {
     if (render_world_frame_update(frame, world, view, NULL)) return;
     render_subject both = render_subject_of(render_world_frame_get(frame));
     if (render_hull_empty(&both.all)) return;
-    render_subject_join(&both, held);
-    render_bounds bounds = render_hull_bounds(&both.all);
-    if (*most == 0) *most = MOST_GROWTH * render_bounds_radius(&bounds);
-    if (render_bounds_radius(&bounds) <= *most) *held = both;
+    render_subject_join(&both, &taken->held);
+    if (render_hull_empty(&taken->start)) taken->start = both.all;
+    double middle[3]; // a camera that follows somebody has him whatever his way is
+    if (!render_world_frame_followed(frame, middle)) add_pinned(&taken->led, world);
+    render_hull meant = taken->start;
+    render_hull_join(&meant, &taken->led);
+    render_bounds bounds = render_hull_bounds(&both.all), least = render_hull_bounds(&meant);
+    if (render_bounds_radius(&bounds) <= MOST_GROWTH * render_bounds_radius(&least)) {
+        taken->held = both;
+        return;
+    }
+    render_hull_join(&taken->held.bodies, &taken->led);
+    render_hull_join(&taken->held.all, &taken->led);
 }
 
 /* All that the first frames hold, from a run of its own. */
 static render_subject look_ahead(const app_scene *loaded, int frames, bool quiet) {
-    render_subject held = render_subject_nothing();
-    double most = 0;
+    subject_ahead taken = {render_subject_nothing(), render_hull_nothing(), render_hull_nothing()};
     io_faults faults = {ignore_fault, NULL, 0, NULL};
     skein_world_desc desc = skein_default_world_desc();
     desc.thread_count = loaded->settings.threads;
@@ -62,7 +85,7 @@ static render_subject look_ahead(const app_scene *loaded, int frames, bool quiet
     app_progress p = app_progress_start("looking ahead: frame", frames, quiet);
     p.quiet |= !p.terminal;
     for (int i = 0; world && frame && i < frames && !app_interrupted(); i++) {
-        take_in(frame, world, io_scene_view(loaded->scene), &held, &most);
+        take_in(&taken, frame, world, io_scene_view(loaded->scene));
         bool good = true;
         for (int s = 0; s < steps && good; s++) good = !skein_world_step(world, dt);
         if (!good) break; // the run itself will tell
@@ -71,7 +94,7 @@ static render_subject look_ahead(const app_scene *loaded, int frames, bool quiet
     if (p.line_open) app_terminal_draw("\r%*s\r", 100, ""); // the run's own bar takes its place
     render_world_frame_destroy(frame);
     skein_world_destroy(world);
-    return held;
+    return taken.held;
 }
 
 /* ---- beginning ---- */

@@ -179,6 +179,29 @@ static void a_rolling_cube_stays_in_the_picture(void **state) {
     outcome_free(&o);
 }
 
+/* A sheet is led 18 m away from a ball that stays: the camera of a film sees all of that. */
+static void what_is_led_stays_in_the_film(void **state) {
+    (void)state;
+    const char *s = in_folder("led.json");
+    write_scene(s, "{ 'name': 'led', 'frames': 48, 'fps': 4, 'method': { 'type': 'xpbd', 'substeps': 20 }, 'view': { 'pattern': 'none' },"
+                   "  'bodies': [ { 'type': 'cloth', 'name': 'sheet', 'grid': [8, 8], 'size': [1, 1], 'rotation': [90, 0, 0],"
+                   "                'position': [0, 1, 0.6], 'pins': 'top edge' } ],"
+                   "  'forces': [ { 'type': 'gravity' } ],"
+                   "  'motions': [ { 'type': 'keys', 'on': 'sheet', 'keys': [[0, 0, 0, 0], [12, 18, 0, 0]] } ],"
+                   "  'colliders': [ { 'type': 'sphere', 'radius': 0.5 } ] }");
+    outcome o = SKEIN("render", s, "-o", in_folder("led-%02d.png"), "--size", "640x360", "--samples", "1", "--no-progress");
+    assert_status(o, 0);
+    outcome_free(&o);
+    double first[2], middle[2];
+    char path[600];
+    for (int k = 0; k < 48; k += 47) {
+        snprintf(path, sizeof path, "%s/led-%02d.png", folder, k);
+        if (!find_red(path, middle)) fail_msg("the sheet is not whole in picture %d", k);
+        if (!k) memcpy(first, middle, sizeof first);
+    }
+    assert_true(middle[0] - first[0] > 0.4);
+}
+
 static void wrong_arguments_are_told(void **state) {
     static const struct {
         const char *arguments[6], *words;
@@ -348,6 +371,7 @@ int main(void) {
         TEST(a_picture_shows_the_frame_that_was_asked_for),
         TEST(sets_reach_the_picture),
         TEST(numbered_pictures_show_frame_by_frame), TEST(a_rolling_cube_stays_in_the_picture),
+        TEST(what_is_led_stays_in_the_film),
         TEST(wrong_arguments_are_told),
         TEST(help_teaches),
         TEST(a_place_that_cannot_be_written_is_told_at_once),
