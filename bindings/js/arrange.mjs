@@ -1,6 +1,7 @@
 // Makes a module of WebAssembly shorter once it is packed: node arrange.mjs MODULE. gzip looks back 32 KB and no further, and
 // the sweeps of one constraint are much like those of another which the linker puts 100 KB away. So functions that are alike
-// are put next to each other. What each does stays, and names (of functions, tools and features) go.
+// are put next to each other. What each does stays, and names (of functions, tools and features) go. A module with
+// instructions that are not known stays as it is.
 import {readFileSync, writeFileSync} from 'node:fs';
 import {putTogether, takeApart} from './wasm.mjs';
 
@@ -51,5 +52,10 @@ function orderOf(bodies) {
 
 const [path] = process.argv.slice(2);
 if (!path) throw new Error('usage: node arrange.mjs MODULE');
-const parts = takeApart(readFileSync(path));
-writeFileSync(path, putTogether(parts, orderOf(parts.bodies)));
+let parts;
+try {
+    parts = takeApart(readFileSync(path));
+} catch ({message}) {
+    console.error(`arrange: ${path} stays as it is, and is longer: ${message}`);
+}
+if (parts) writeFileSync(path, putTogether(parts, orderOf(parts.bodies)));

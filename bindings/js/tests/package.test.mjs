@@ -8,7 +8,6 @@ import {join} from 'node:path';
 import {test} from 'node:test';
 
 import {canHaveThreads, formula, functions, kinds, load, PointCache, SkeinError, World} from '../../../build/npm/skein/skein.js';
-import {putTogether, takeApart} from '../wasm.mjs';
 
 const root = new URL('../../../', import.meta.url);
 const read = (path) => readFileSync(new URL(path, root));
@@ -42,19 +41,6 @@ test('a page waits for no more than 500 KB', () => {
     const size = (name) => execFileSync('gzip', ['-9c', new URL(`build/npm/skein/${name}`, root).pathname], {maxBuffer: 1e8}).length; // as tools/npm says it
     assert.ok(size('skein.wasm') <= 500e3, `skein.wasm has ${size('skein.wasm')} bytes gzipped: CMakeLists.txt says what is made small`);
     assert.ok(size('skein-threads.wasm') <= 512e3, `${size('skein-threads.wasm')}`);
-});
-
-// Both modules run in other tests; that those are the arranged ones, and nothing of them is lost, is seen here.
-test('a module taken apart is the same once it is put together, and what is no module is refused', () => {
-    for (const name of ['skein.wasm', 'skein-threads.wasm']) {
-        const module = read(`build/npm/skein/${name}`), parts = takeApart(module), order = [...parts.bodies.keys()];
-        assert.ok(parts.bodies.length > 1000);
-        assert.ok(putTogether(parts, order).equals(module), name);
-        const turned = putTogether(takeApart(putTogether(parts, [...order].reverse())), [...order].reverse());
-        assert.ok(turned.equals(module), name);
-        assert.ok(WebAssembly.validate(putTogether(parts, [...order].reverse())));
-        assert.throws(() => takeApart(module.subarray(0, module.length - 100)), /ends too early/);
-    }
 });
 
 test('threads in workers: the same bits, whoever has them', async () => {
