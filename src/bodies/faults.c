@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/union_find.h"
+
 static void warn_about_faces(skein_world *world, const char *label, const sk_sheet *sheet, const sk_springs *springs) {
     size_t crowded = 0;
     const sk_edge *example = NULL;
@@ -28,18 +30,13 @@ static void warn_about_faces(skein_world *world, const char *label, const sk_she
                      unused == 1 ? "ex is" : "ices are", first);
 }
 
-static uint32_t root_of(uint32_t *parent, uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
-
 /* Counts the parts that no edge joins (unused vertices are not parts). */
 static bool warn_about_parts(skein_world *world, const char *label, const sk_sheet *sheet, const sk_springs *springs) {
     uint32_t *parent = sk_allocate(&world->allocator, sheet->particle_count * sizeof *parent);
     if (!parent) return false;
     for (size_t i = 0; i < sheet->particle_count; i++) parent[i] = (uint32_t)i;
     for (size_t e = 0; e < springs->edge_count; e++)
-        parent[root_of(parent, springs->edges[e].b)] = root_of(parent, springs->edges[e].a);
+        sk_union_join(parent, springs->edges[e].a, springs->edges[e].b);
     size_t parts = 0, second = 0;
     for (size_t i = 0; i < sheet->particle_count; i++)
         if (parent[i] == i && sheet->particle_area[i] > 0 && ++parts == 2) second = i;

@@ -3,6 +3,7 @@
  * leaf that has it, and they are numbered in the order of the leaves. */
 #include <string.h>
 
+#include "base/union_find.h"
 #include "contact/touch.h"
 
 #define NOBODY UINT32_MAX
@@ -96,19 +97,10 @@ static void add_all(making *m, const sk_only *only, const sk_meeting_parts *part
     }
 }
 
-/* The first of those that hang together with v. */
-static uint32_t root_of(uint32_t *piece, uint32_t v) {
-    while (piece[v] != v) v = piece[v] = piece[piece[v]];
-    return v;
-}
-
 static void find_pieces(sk_skin *skin) {
     for (uint32_t v = 0; v < skin->vertex_count; v++) skin->piece[v] = v;
-    for (size_t e = 0; e < skin->edge_count; e++) {
-        uint32_t a = root_of(skin->piece, skin->edge[e][0]), b = root_of(skin->piece, skin->edge[e][1]);
-        if (a != b) skin->piece[a > b ? a : b] = a > b ? b : a;
-    }
-    for (uint32_t v = 0; v < skin->vertex_count; v++) skin->piece[v] = root_of(skin->piece, v);
+    for (size_t e = 0; e < skin->edge_count; e++) sk_union_join(skin->piece, skin->edge[e][0], skin->edge[e][1]);
+    for (uint32_t v = 0; v < skin->vertex_count; v++) skin->piece[v] = sk_union_root(skin->piece, v);
 }
 
 /* Lists v's leaf, once: leaves come one after the other. */

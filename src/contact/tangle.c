@@ -1,14 +1,10 @@
 /* Which surfaces have gone through each other, what contact leaves out of them, and where they are led. */
 #include <string.h>
 
+#include "base/union_find.h"
 #include "contact/touch.h"
 
 /* ---- parts ---- */
-
-static uint32_t root_of(uint32_t *part, uint32_t v) {
-    while (part[v] != v) v = part[v] = part[part[v]];
-    return v;
-}
 
 /* What hangs together without the edges that go through something. */
 static void find_parts(sk_touch *touch) {
@@ -17,12 +13,9 @@ static void find_parts(sk_touch *touch) {
     memset(tangle->cut, 0, skin->edge_count);
     for (size_t i = 0; i < tangle->crossing.count; i++) tangle->cut[tangle->crossing.data[i].edge] = 1;
     for (uint32_t v = 0; v < skin->vertex_count; v++) tangle->part[v] = v, tangle->size[v] = 0;
-    for (size_t e = 0; e < skin->edge_count; e++) {
-        if (tangle->cut[e]) continue;
-        uint32_t a = root_of(tangle->part, skin->edge[e][0]), b = root_of(tangle->part, skin->edge[e][1]);
-        if (a != b) tangle->part[a > b ? a : b] = a > b ? b : a;
-    }
-    for (uint32_t v = 0; v < skin->vertex_count; v++) tangle->size[tangle->part[v] = root_of(tangle->part, v)]++;
+    for (size_t e = 0; e < skin->edge_count; e++)
+        if (!tangle->cut[e]) sk_union_join(tangle->part, skin->edge[e][0], skin->edge[e][1]);
+    for (uint32_t v = 0; v < skin->vertex_count; v++) tangle->size[tangle->part[v] = sk_union_root(tangle->part, v)]++;
 }
 
 static uint32_t size_at(const sk_tangle *tangle, uint32_t v) {

@@ -18,182 +18,11 @@
 #ifndef SK_CONTACT_TOUCH_H
 #define SK_CONTACT_TOUCH_H
 
-#include <string.h>
-
-#include "base/wide_types.h"
+#include "contact/boxes.h"
 #include "contact/calm.h"
+#include "contact/pairs.h"
+#include "contact/skin.h"
 #include "contact/tangle.h"
-#include "forces/force.h"
-#include "particles/particles.h"
-#if defined(__wasm_simd128__) && !defined(SKEIN_DOUBLE)
-#include <wasm_simd128.h>
-#define SK_QUADS_OF_WASM
-#endif
-
-/* Features that lie together, by their first numbers: up to two triangles with an edge in common, or edges of a rope.
- * Each vertex and edge belongs to one leaf alone. */
-typedef struct sk_leaf {
-    uint32_t first_vertex, first_edge, first_triangle;
-    uint8_t vertices, edges, triangles;
-} sk_leaf;
-
-/* What can touch, in numbers of its own. */
-typedef struct sk_skin {
-    size_t vertex_count, edge_count, triangle_count, leaf_count;
-    uint32_t *particle; /* of vertices: the user's index */
-    uint32_t *piece;    /* of vertices: what hangs together has one number */
-    sk_vec4 *built;     /* as they were built */
-    uint32_t (*edge)[2], (*triangle)[3];
-    sk_leaf *leaf;
-    real *thickness, *friction; /* of vertices: those of their body; a thickness of 0: the rule's */
-    real thickest; /* m: of these thicknesses; 0: no body has its own, and both arrays mean nothing */
-    bool all_own;  /* and every body has */
-    real longest; /* m: of edges, as they were built */
-    real spacing; /* m: what lies between features of one surface that have no corner in common, as they were built */
-    uint32_t *leaf_start, *leaf_of; /* those of vertex v: leaf_of[leaf_start[v]] to leaf_of[leaf_start[v + 1]] */
-} sk_skin;
-
-/* Bodies of which some pairs do not meet (ignored.c). */
-typedef struct sk_ignored {
-    bool any;
-    uint16_t *of_leaf; /* of leaves: the number of their body among those that are named, or 0 */
-    uint8_t *pair;     /* width x width: whether these two do not meet */
-    size_t width;
-} sk_ignored;
-
-/* Pairs, one array a number, padded to whole blocks of sixteen. Corners: a vertex and a triangle's three, or an edge's two
- * and another's two. The normal leads from the second feature to the first; `share` says where on them they are nearest:
- * u, v of a triangle's second and third corner, or how far along each edge. */
-typedef struct sk_pairs {
-    uint32_t *corner[4];
-    uint64_t *key; /* the order of pairs: both leaves, and which of their features */
-    real *distance, *thickness, *normal[3], *share[2];
-    uint8_t *settled; /* of a bound: planes divide it, */
-    uint8_t *closes;  /* or have to; what kernels find out */
-    size_t count, capacity;
-} sk_pairs;
-
-/* Nearest points of all pairs, from the places x of their corners; and which are near: `closes`. */
-typedef void sk_closest_kernel(const sk_vec4 *x, sk_pairs *pairs);
-
-/* Finds out which pairs, of places x before a substep, might lose their gap by any shares of these ways (w: their length)
- * and which do by all of them: `closes`. Pairs need their distance and normal. */
-enum { SK_CLOSES = 1, SK_MAY_CLOSE = 2, SK_IS_NEAR = 4 };
-typedef struct sk_closing_values {
-    real least, rounding; /* m: what is less does not close at all; how well a distance is known */
-    real longest;         /* of all ways, m */
-} sk_closing_values;
-typedef void sk_closing_kernel(const sk_vec4 *x, const sk_vec4 *way, const sk_closing_values *values, sk_pairs *pairs);
-
-/* Takes over those pairs that may come near or close on their vertices' ways, from x (w: their reach) to `end`, with where they
- * are nearest at x; there is room for as many, and a block. */
-typedef struct sk_nearing_values {
-    real near, rounding, closing, per; /* m; m; share of a step; steps that the way has, inverse */
-    real shares; /* of any shares of the way: what is left of a gap that counts as closed; 0: all of the way */
-} sk_nearing_values;
-typedef void sk_nearing_kernel(const sk_vec4 *x, const sk_vec4 *end, const sk_nearing_values *values,
-                               const sk_pairs *pairs, sk_pairs *fresh);
-
-/* A box that goes on: where it is when it begins, and when it ends. In between its sides are no farther out than on a
- * straight way. */
-typedef real sk_quad __attribute__((vector_size(4 * sizeof(real))));
-typedef struct sk_box {
-    sk_quad low[2], high[2];
-} sk_box;
-
-/* (For WebAssembly clang goes lane by lane, which takes a heap's boxes five times as long.) */
-#ifdef SK_QUADS_OF_WASM
-static inline sk_quad sk_least_quad(sk_quad a, sk_quad b) {
-    return (sk_quad)wasm_f32x4_pmin((v128_t)b, (v128_t)a); // a where it is less
-}
-
-static inline sk_quad sk_most_quad(sk_quad a, sk_quad b) {
-    return (sk_quad)wasm_f32x4_pmax((v128_t)b, (v128_t)a);
-}
-#else
-static inline sk_quad sk_least_quad(sk_quad a, sk_quad b) {
-    for (int k = 0; k < 4; k++) a[k] = a[k] < b[k] ? a[k] : b[k];
-    return a;
-}
-
-static inline sk_quad sk_most_quad(sk_quad a, sk_quad b) {
-    for (int k = 0; k < 4; k++) a[k] = a[k] > b[k] ? a[k] : b[k];
-    return a;
-}
-#endif
-
-/* Makes a box so wide that it has another one inside. */
-static inline void sk_box_widen(sk_box *box, const sk_box *by) {
-    for (int end = 0; end < 2; end++) {
-        box->low[end] = sk_least_quad(box->low[end], by->low[end]);
-        box->high[end] = sk_most_quad(box->high[end], by->high[end]);
-    }
-}
-
-/* Boxes of a leaf's features, for many to be compared at once: in cells, features side by side. Of a cell's number the last
- * sixteen bits are kept: leaves are a quarter of that wide at most, and what two of them that meet are apart is half of it, so
- * that a difference is right where numbers wrap around. At each end there are six rows: low ones along each axis, and
- * high ones. Leaves that are wider (`wide`) are compared by their boxes. */
-enum {
-    SK_CELL_ROWS = 12,
-    SK_LEAF_EDGES = 5,
-    SK_LEAF_VERTICES = 4,
-    SK_LEAF_CORNERS = SK_LEAF_VERTICES + 2, /* vertices, and triangles */
-    SK_WIDEST_LEAF = (1 << 14) - 1,         /* cells */
-    /* where a row begins that has so many numbers; after those of the first end, it stands whether the leaf is too wide */
-#define SK_CELL_ROW(row, numbers) ((row) * (numbers) + ((row) >= SK_CELL_ROWS / 2))
-    SK_EDGES_WIDE = SK_CELL_ROWS / 2 * SK_LEAF_EDGES,
-    SK_CORNERS_WIDE = SK_CELL_ROWS / 2 * SK_LEAF_CORNERS
-};
-typedef struct sk_edge_cells {
-    _Alignas(64) int16_t number[64]; /* (eight are read of each row) */
-} sk_edge_cells;
-typedef struct sk_corner_cells {
-    _Alignas(32) int16_t number[80];
-} sk_corner_cells;
-
-/* Boxes of leaves, and of sixteen of those below, up to one: by slots, in which leaves that were built near each other
- * are near. Sixteen slots are a block. */
-enum { SK_TREE_LEVELS = 9, SK_TREE_SHIFT = 4, SK_TREE_WIDTH = 1 << SK_TREE_SHIFT };
-typedef struct sk_tree_block {
-    _Alignas(64) real low[2][3][SK_TREE_WIDTH], high[2][3][SK_TREE_WIDTH];
-} sk_tree_block;
-typedef struct sk_tree {
-    sk_tree_block *block[SK_TREE_LEVELS];
-    size_t blocks[SK_TREE_LEVELS]; /* of each level; the last one has one */
-    int levels;
-    uint32_t *leaf_at; /* of slots */
-    bool still;        /* boxes end where they begin */
-} sk_tree;
-/* Lists the blocks of the lowest level, from the first one on, that a box may meet at some time. */
-typedef size_t sk_tree_blocks_kernel(const sk_tree *tree, const sk_box *box, size_t first, uint32_t *block);
-/* Lists who of some lanes of block a may meet whom of block b, or of later lanes than their own if asked for: the lane of a,
- * and behind it in four bits that of b. Boxes of the former are those of leaves. At most SK_TREE_WIDTH squared. */
-typedef size_t sk_tree_hits_kernel(const sk_tree *tree, size_t a, size_t b, uint32_t lanes, const sk_box *box, bool forward,
-                                   uint32_t *hit);
-
-/* Some of the pairs that are kept: twice where a pair is, and one more if it is a late one. */
-typedef struct sk_pair_list {
-    uint32_t *data;
-    size_t count, capacity;
-} sk_pair_list;
-
-/* Those that may close, with their corners. */
-typedef struct sk_closing_pair {
-    uint32_t entry, corner[4];
-} sk_closing_pair;
-typedef struct sk_closing_list {
-    sk_closing_pair *data;
-    size_t count, capacity;
-} sk_closing_list;
-
-/* A pair's key, and where it is. */
-typedef struct sk_pair_place {
-    uint64_t key;
-    uint32_t at;
-} sk_pair_place;
-
-enum { SK_CORNERS, SK_EDGES, SK_PAIR_SORTS }; /* vertex and triangle, edge and edge: the order of pairs */
 
 /* Where a vertex is expected: at `from` at time 0, and on by `step` a substep; in a frame that moves as all do. */
 typedef struct sk_course {
@@ -356,70 +185,10 @@ static inline real sk_pair_friction(const sk_touch *touch, uint32_t a, uint32_t 
     return (real)0.5 * (first + second);
 }
 
-/* ---- ignored.c ---- */
-
-/* Reads the pairs of names, and numbers the leaves of the bodies that have them. False when there is no memory. */
-bool sk_ignored_make(sk_ignored *ignored, sk_allocator *allocator, const sk_skin *skin, const char *text,
-                     const sk_meeting_parts *parts);
-void sk_ignored_release(sk_ignored *ignored, sk_allocator *allocator);
-static inline bool sk_is_ignored(const sk_ignored *ignored, uint32_t a, uint32_t b) {
-    return ignored->any && ignored->pair[ignored->of_leaf[a] * ignored->width + ignored->of_leaf[b]];
-}
-
 /* ---- touching.c ---- */
 
 bool sk_touch_touching(sk_force *force, sk_allocator *allocator, const sk_vec4 *x, const uint32_t *slot_of,
                        skein_surface_contact *out, size_t most, size_t *count);
-
-/* ---- skin.c ---- */
-
-/* Makes the skin of what a rule acts on: triangles, and edges that are in none, by the user's indices. False when there
- * is no memory: the skin is then empty. */
-bool sk_skin_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *particles, const sk_only *only,
-                  const sk_meeting_parts *parts);
-void sk_skin_release(sk_skin *skin, sk_allocator *allocator);
-
-/* ---- pairs.c ---- */
-
-/* Room for `need` pairs; false when there is no memory. */
-bool sk_pairs_reserve(sk_pairs *pairs, sk_allocator *allocator, size_t need);
-/* Fills the last block up with pairs of nobody. */
-void sk_pairs_pad(sk_pairs *pairs);
-/* Pairs [begin, end) as pairs of their own; begin is a multiple of sixteen. */
-sk_pairs sk_pairs_between(const sk_pairs *pairs, size_t begin, size_t end);
-/* Puts pairs [first, end) of others from `at` on. */
-void sk_pairs_put(sk_pairs *pairs, size_t at, const sk_pairs *others, size_t first, size_t end);
-/* Adds all of pairs [first, end) of others; there is room. */
-void sk_pairs_take(sk_pairs *pairs, const sk_pairs *others, size_t first, size_t end);
-void sk_pairs_release(sk_pairs *pairs, sk_allocator *allocator);
-static inline void sk_pairs_copy(sk_pairs *to, const sk_pairs *from, size_t k) {
-    for (int c = 0; c < 4; c++) to->corner[c][to->count] = from->corner[c][k];
-    to->key[to->count] = from->key[k];
-    to->settled[to->count] = from->settled[k];
-    to->thickness[to->count] = from->thickness[k];
-    to->distance[to->count++] = from->distance[k];
-}
-/* With its normal, and where its features are nearest. */
-static inline void sk_pairs_copy_all(sk_pairs *to, const sk_pairs *from, size_t k) {
-    for (int c = 0; c < 3; c++) to->normal[c][to->count] = from->normal[c][k];
-    for (int c = 0; c < 2; c++) to->share[c][to->count] = from->share[c][k];
-    sk_pairs_copy(to, from, k);
-}
-
-/* Of the eight pairs from k on, a multiple of eight, those of which kernels have found `what`: a bit in the byte of each. */
-static inline uint64_t sk_pairs_that(const sk_pairs *pairs, size_t k, uint64_t what) {
-    uint64_t found;
-    memcpy(&found, pairs->closes + k, sizeof found);
-#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-    found = __builtin_bswap64(found);
-#endif
-    size_t left = pairs->count - k; // the rest of a block is nobody's
-    if (left < sizeof found) found &= ((uint64_t)1 << 8 * left) - 1;
-    return found & what * 0x0101010101010101u;
-}
-static inline size_t sk_first_of(uint64_t found) {
-    return (size_t)__builtin_ctzll(found) / 8;
-}
 
 /* ---- tangle.c ---- */
 
@@ -443,14 +212,6 @@ static inline size_t sk_pairs_kept(const sk_touch *touch) {
     return count;
 }
 
-/* ---- closest.c ---- */
-
-/* By sort of pairs. */
-extern sk_closest_kernel *const sk_closest[SK_PAIR_SORTS][SK_ISA_COUNT];
-/* nearing.c */
-extern sk_closing_kernel *const sk_closing[SK_PAIR_SORTS][SK_ISA_COUNT];
-extern sk_nearing_kernel *const sk_nearing[SK_PAIR_SORTS][SK_ISA_COUNT];
-
 /* ---- cells.c ---- */
 
 real sk_cells_a_metre(const sk_touch *touch);
@@ -470,15 +231,8 @@ static inline uint64_t sk_leaves_key(uint32_t a, uint32_t b) {
     return (uint64_t)a << 36 | (uint64_t)b << 8;
 }
 
-/* ---- tree.c ---- */
-
-extern sk_tree_blocks_kernel *const sk_tree_blocks[SK_ISA_COUNT];
-extern sk_tree_hits_kernel *const sk_tree_hits[SK_ISA_COUNT];
-
 /* ---- partners.c ---- */
 
-bool sk_tree_make(sk_tree *tree, sk_allocator *allocator, const sk_skin *skin);
-void sk_tree_release(sk_tree *tree, sk_allocator *allocator);
 /* Lists leaves whose boxes may meet, each two once, of which one at least is looked for `anew`: `first`, and `partner`, the
  * same leaf or a later one; in order, but none where they are more than `most`. Those of calm patches if asked for. */
 bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most, bool calm_too, bool *too_many);
@@ -496,14 +250,6 @@ typedef struct sk_parts_job {
 } sk_parts_job;
 bool sk_touch_work(const sk_parts_job *job, sk_allocator *allocator, size_t count, size_t least);
 void sk_touch_release_parts(sk_touch *touch, sk_allocator *allocator);
-/* Whether two boxes may meet at some time. */
-static inline bool sk_boxes_meet(const sk_box *a, const sk_box *b) {
-    typedef sk_lane_int lanes __attribute__((vector_size(4 * sizeof(real))));
-    lanes apart = ((lanes)(a->low[0] > b->high[0]) & (lanes)(a->low[1] > b->high[1])) |
-                  ((lanes)(b->low[0] > a->high[0]) & (lanes)(b->low[1] > a->high[1]));
-    return !(apart[0] | apart[1] | apart[2]);
-}
-
 /* ---- course.c ---- */
 
 extern sk_course_kernel *const sk_course_off[SK_ISA_COUNT];

@@ -3,6 +3,7 @@
  * Sums run in the user's order. Neighbours are found with cells of the measure's own, on the caller's thread. */
 #include <string.h>
 
+#include "base/union_find.h"
 #include "space/cells.h"
 #include "world/world.h"
 
@@ -72,11 +73,6 @@ static bool measure_nearest(search *s, sk_allocator *allocator, double extent, s
 
 /* ---- groups ---- */
 
-static uint32_t root_of(uint32_t *parent, uint32_t i) {
-    for (; parent[i] != i; i = parent[i]) parent[i] = parent[parent[i]];
-    return i;
-}
-
 /* Particles nearer than `reach` are in one group, and so are their neighbours. */
 static bool count_groups(search *s, sk_allocator *allocator, double reach, skein_order *order) {
     if (!(reach > 0)) return true;
@@ -90,10 +86,7 @@ static bool count_groups(search *s, sk_allocator *allocator, double reach, skein
         for (int r = 0; r < ranges; r++)
             for (uint32_t k = range[r][0]; k < range[r][1]; k++) {
                 if (k <= i || !(square_between(c, i, k) < reach * reach)) continue;
-                uint32_t a = root_of(s->parent, i), b = root_of(s->parent, k);
-                if (a == b) continue;
-                s->parent[a > b ? a : b] = a > b ? b : a;
-                order->groups--;
+                if (sk_union_join(s->parent, i, k)) order->groups--;
             }
     }
     return true;

@@ -1,0 +1,110 @@
+/* Boxes of what goes on, of features and of leaves, in quads, in cells and in a tree: what a search compares first. */
+#ifndef SK_CONTACT_BOXES_H
+#define SK_CONTACT_BOXES_H
+
+#include "base/isa.h"
+#include "base/wide_types.h"
+#include "contact/skin.h"
+#if defined(__wasm_simd128__) && !defined(SKEIN_DOUBLE)
+#include <wasm_simd128.h>
+#define SK_QUADS_OF_WASM
+#endif
+
+/* A box that goes on: where it is when it begins, and when it ends. In between its sides are no farther out than on a
+ * straight way. */
+typedef real sk_quad __attribute__((vector_size(4 * sizeof(real))));
+typedef struct sk_box {
+    sk_quad low[2], high[2];
+} sk_box;
+
+/* (For WebAssembly clang goes lane by lane, which takes a heap's boxes five times as long.) */
+#ifdef SK_QUADS_OF_WASM
+static inline sk_quad sk_least_quad(sk_quad a, sk_quad b) {
+    return (sk_quad)wasm_f32x4_pmin((v128_t)b, (v128_t)a); // a where it is less
+}
+
+static inline sk_quad sk_most_quad(sk_quad a, sk_quad b) {
+    return (sk_quad)wasm_f32x4_pmax((v128_t)b, (v128_t)a);
+}
+#else
+static inline sk_quad sk_least_quad(sk_quad a, sk_quad b) {
+    for (int k = 0; k < 4; k++) a[k] = a[k] < b[k] ? a[k] : b[k];
+    return a;
+}
+
+static inline sk_quad sk_most_quad(sk_quad a, sk_quad b) {
+    for (int k = 0; k < 4; k++) a[k] = a[k] > b[k] ? a[k] : b[k];
+    return a;
+}
+#endif
+
+/* Makes a box so wide that it has another one inside. */
+static inline void sk_box_widen(sk_box *box, const sk_box *by) {
+    for (int end = 0; end < 2; end++) {
+        box->low[end] = sk_least_quad(box->low[end], by->low[end]);
+        box->high[end] = sk_most_quad(box->high[end], by->high[end]);
+    }
+}
+
+/* Boxes of a leaf's features, for many to be compared at once: in cells, features side by side. Of a cell's number the last
+ * sixteen bits are kept: leaves are a quarter of that wide at most, and what two of them that meet are apart is half of it, so
+ * that a difference is right where numbers wrap around. At each end there are six rows: low ones along each axis, and
+ * high ones. Leaves that are wider (`wide`) are compared by their boxes. */
+enum {
+    SK_CELL_ROWS = 12,
+    SK_LEAF_EDGES = 5,
+    SK_LEAF_VERTICES = 4,
+    SK_LEAF_CORNERS = SK_LEAF_VERTICES + 2, /* vertices, and triangles */
+    SK_WIDEST_LEAF = (1 << 14) - 1,         /* cells */
+    /* where a row begins that has so many numbers; after those of the first end, it stands whether the leaf is too wide */
+#define SK_CELL_ROW(row, numbers) ((row) * (numbers) + ((row) >= SK_CELL_ROWS / 2))
+    SK_EDGES_WIDE = SK_CELL_ROWS / 2 * SK_LEAF_EDGES,
+    SK_CORNERS_WIDE = SK_CELL_ROWS / 2 * SK_LEAF_CORNERS
+};
+typedef struct sk_edge_cells {
+    _Alignas(64) int16_t number[64]; /* (eight are read of each row) */
+} sk_edge_cells;
+typedef struct sk_corner_cells {
+    _Alignas(32) int16_t number[80];
+} sk_corner_cells;
+
+/* Boxes of leaves, and of sixteen of those below, up to one: by slots, in which leaves that were built near each other
+ * are near. Sixteen slots are a block. */
+enum { SK_TREE_LEVELS = 9, SK_TREE_SHIFT = 4, SK_TREE_WIDTH = 1 << SK_TREE_SHIFT };
+typedef struct sk_tree_block {
+    _Alignas(64) real low[2][3][SK_TREE_WIDTH], high[2][3][SK_TREE_WIDTH];
+} sk_tree_block;
+typedef struct sk_tree {
+    sk_tree_block *block[SK_TREE_LEVELS];
+    size_t blocks[SK_TREE_LEVELS]; /* of each level; the last one has one */
+    int levels;
+    uint32_t *leaf_at; /* of slots */
+    bool still;        /* boxes end where they begin */
+} sk_tree;
+/* Lists the blocks of the lowest level, from the first one on, that a box may meet at some time. */
+typedef size_t sk_tree_blocks_kernel(const sk_tree *tree, const sk_box *box, size_t first, uint32_t *block);
+/* Lists who of some lanes of block a may meet whom of block b, or of later lanes than their own if asked for: the lane of a,
+ * and behind it in four bits that of b. Boxes of the former are those of leaves. At most SK_TREE_WIDTH squared. */
+typedef size_t sk_tree_hits_kernel(const sk_tree *tree, size_t a, size_t b, uint32_t lanes, const sk_box *box, bool forward,
+                                   uint32_t *hit);
+
+/* Whether two boxes may meet at some time. */
+static inline bool sk_boxes_meet(const sk_box *a, const sk_box *b) {
+    typedef sk_lane_int lanes __attribute__((vector_size(4 * sizeof(real))));
+    lanes apart = ((lanes)(a->low[0] > b->high[0]) & (lanes)(a->low[1] > b->high[1])) |
+                  ((lanes)(b->low[0] > a->high[0]) & (lanes)(b->low[1] > a->high[1]));
+    return !(apart[0] | apart[1] | apart[2]);
+}
+
+/* ---- tree.c ---- */
+
+extern sk_tree_blocks_kernel *const sk_tree_blocks[SK_ISA_COUNT];
+extern sk_tree_hits_kernel *const sk_tree_hits[SK_ISA_COUNT];
+
+/* ---- tree_make.c ---- */
+
+/* False when there is no memory. */
+bool sk_tree_make(sk_tree *tree, sk_allocator *allocator, const sk_skin *skin);
+void sk_tree_release(sk_tree *tree, sk_allocator *allocator);
+
+#endif
