@@ -451,7 +451,8 @@ export class Picture {
         return caster;
     }
 
-    /* The particle under a pointer: a surface's corner, or a ball or bird within some pixels; null where none is. */
+    /* The particle under a pointer: a surface's corner, or a ball or bird within some pixels; where the pointer is on none,
+     * a surface's corner within some pixels, too, for borders are thin and move; null where none is. */
     pick(event) {
         if (!this.#parts || !this.#state) return null;
         const caster = this.#ray(event), {surfaces, balls, birds, rods, world, colliders} = this.#parts, {positions} = this.#state;
@@ -467,7 +468,7 @@ export class Picture {
         });
         const box = this.canvas.getBoundingClientRect(), here = this.#pointer(event), point = new THREE.Vector3();
         let nearest = event.pointerType === 'touch' ? 28 : 14;
-        for (const p of [...balls, ...birds, ...rods]) {
+        const look = (p) => {
             const distance = point.fromArray(positions, 3 * p).distanceTo(this.#camera.position);
             point.project(this.#camera);
             const pixels = Math.hypot((point.x - here.x) * box.width, (point.y - here.y) * box.height) / 2;
@@ -475,7 +476,9 @@ export class Picture {
                 nearest = pixels;
                 best = {distance, particle: p};
             }
-        }
+        };
+        for (const p of [...balls, ...birds, ...rods]) look(p);
+        if (best.particle < 0) surfaces.forEach((shape, i) => shape && world.bodies[i].particleOfVertex.forEach(look));
         const wall = caster.intersectObjects(colliders.filter((c) => c && !['plane', 'bowl'].includes(c.userData.sort)), false)[0];
         if (best.particle < 0 || (wall && wall.distance < best.distance - 0.02)) return null;
         return best.particle;

@@ -5,7 +5,7 @@ import {execFileSync, spawnSync} from 'node:child_process';
 import {existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
-import {after, before, test} from 'node:test';
+import {after, before, test as testWithin} from 'node:test';
 import {gzipSync} from 'node:zlib';
 
 import {chromium} from 'playwright-core';
@@ -26,6 +26,9 @@ const nativeByShell = (command) => {
     rmSync(folder, {recursive: true});
     return /state hash ([0-9a-f]{16})/.exec(run.stdout)?.[1] ?? JSON.parse(run.stdout).state_hash;
 };
+
+/* A page that never comes to what a test waits for is a failure, with words, and not a run that never ends. */
+const test = (name, run) => testWithin(name, {timeout: 600000}, run);
 
 let browser, server;
 before(async () => {
@@ -54,6 +57,11 @@ async function openPage(hash = '', {address = server.address, prepare = () => {}
     await page.evaluate(() => globalThis.skein.ready);
     return {page, errors, close: () => context.close()};
 }
+/* Until a world other than that of the serial plays: its scene, its description, its state and playing come one after another. */
+const begun = (page, serial) => page.waitForFunction((old) => {
+    const {world, state} = globalThis.skein.app;
+    return world.serial !== old && state.serial === world.serial && state.playing;
+}, serial);
 const notice = (page) => page.locator('#notice').textContent();
 
 test('each scene opens, runs 60 frames and has native\'s hash', async (t) => {
@@ -221,8 +229,10 @@ test('a newcomer\'s script, by the mouse and keys alone: drag, wind, formula, dr
     await page.locator('#formula-kind').selectOption('force');
     await page.locator('#formula-text').fill('vec3(0, 6 * sin(3 * t), 0)');
     await page.waitForFunction(() => document.getElementById('formula-fault').textContent.startsWith('It is good.'));
+    const serial = await page.evaluate(() => globalThis.skein.app.world.serial);
     await page.locator('#formula-add').click();
     await page.waitForFunction(() => globalThis.skein.app.world.objects.force.some((f) => f.name === 'force_field'));
+    await begun(page, serial);
     await page.waitForFunction(() => globalThis.skein.app.state.frame > 5);
     await drag();
     await page.locator('#copy-link').click();
@@ -351,8 +361,10 @@ test('meshes are opened, and files saved as the command writes them', async () =
     assert.deepEqual([...film.bytes.subarray(0, 4)], [0x1a, 0x45, 0xdf, 0xa3]); // EBML
     assert.ok(film.bytes.length > 2000, `${film.bytes.length}`);
     // a mesh of one's own: the scene that the command makes of it; and its link
+    const serial = await page.evaluate(() => globalThis.skein.app.world.serial);
     await page.locator('#file').setInputFiles(`${root}meshes/knot.obj`);
-    await page.waitForFunction(() => globalThis.skein.app.path === 'knot.obj');
+    await begun(page, serial);
+    assert.equal(await page.evaluate(() => globalThis.skein.app.path), 'knot.obj');
     const found = await page.evaluate(async () => {
         await globalThis.skein.call('play', false);
         while (globalThis.skein.app.state.playing) await new Promise((resolve) => setTimeout(resolve, 20));
@@ -678,6 +690,12 @@ test('the picture keeps to its window, and hands find what they point at', async
         const [px, py] = await page.evaluate((p) => globalThis.skein.picture.onPage(p), picked);
         assert.ok(Math.hypot(px - x, py - y) < 25, `${width} x ${height}: ${px} ${py}, expected ${x} ${y}`);
     }
+    const [near, far] = await page.evaluate(() => { // past the lowest corner by some pixels, and by many
+        const {app, picture} = globalThis.skein, places = Array.from({length: app.world.count}, (_, p) => picture.onPage(p));
+        const [x, y] = places.reduce((a, b) => (b[1] > a[1] ? b : a));
+        return [6, 40].map((past) => picture.pick({clientX: x, clientY: y + past}));
+    });
+    assert.ok(near !== null && far === null, `${near} ${far}`);
     assert.deepEqual(errors, []);
     await close();
 });
