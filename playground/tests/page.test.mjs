@@ -62,6 +62,12 @@ const begun = (page, serial) => page.waitForFunction((old) => {
     const {world, state} = globalThis.skein.app;
     return world.serial !== old && state.serial === world.serial && state.playing;
 }, serial);
+/* So many frames, and until the page has the state that they end with, which comes after the answer. */
+async function run(page, frames) {
+    const found = await page.evaluate((n) => globalThis.skein.run(n), frames);
+    await page.waitForFunction(({frame, hash}) => globalThis.skein.app.state.frame === frame && globalThis.skein.app.state.hash === hash, found);
+    return found;
+}
 const notice = (page) => page.locator('#notice').textContent();
 
 test('each scene opens, runs 60 frames and has native\'s hash', async (t) => {
@@ -128,7 +134,7 @@ test('a hand drags a corner, which follows, and is pinned', async () => {
     const pulled = await page.evaluate(() => globalThis.skein.app.pulled);
     assert.ok(pulled !== null);
     await page.mouse.move(inside[0] - 40, inside[1] - 60, {steps: 4});
-    await page.evaluate(() => globalThis.skein.run(60));
+    await run(page, 60);
     const moved = await page.evaluate((p) => globalThis.skein.picture.onPage(p), pulled);
     assert.ok(Math.abs(moved[0] - (inside[0] - 40)) < 25 && Math.abs(moved[1] - (inside[1] - 60)) < 25, `${moved} ${inside}`);
     assert.notDeepEqual(await place(), from);
@@ -139,7 +145,7 @@ test('a hand drags a corner, which follows, and is pinned', async () => {
     await page.locator('#pin').click();
     await page.waitForFunction(() => document.getElementById('pin').textContent === 'Free');
     // the link has what the hand did: elsewhere it gives the same hash
-    const found = await page.evaluate(() => globalThis.skein.run(20)), link = await page.evaluate(() => globalThis.skein.link());
+    const found = await run(page, 20), link = await page.evaluate(() => globalThis.skein.link());
     const other = await openPage(new URL(link).hash);
     await other.page.waitForFunction((frame) => globalThis.skein.app.state.frame === frame, found.frame);
     assert.equal(await other.page.evaluate(() => globalThis.skein.app.state.hash), found.hash);
@@ -172,7 +178,7 @@ test('wind by its control, the method, the command and the link give one hash', 
     await input.press('Enter');
     await page.waitForFunction(() => globalThis.skein.app.state.done === 1);
     // changed on the way: another command, the same hash
-    const halfway = await page.evaluate(() => globalThis.skein.run(15));
+    const halfway = await run(page, 15);
     await page.waitForFunction(() => globalThis.skein.app.state.frame === 20);
     const recorded = await page.evaluate(() => globalThis.skein.command());
     assert.match(recorded, /^skein record scenes\/flag.json --at '\d+ forces\.1\.velocity=\[2\.5,0\.3,1\.8\]' --frames 20/);
@@ -180,7 +186,7 @@ test('wind by its control, the method, the command and the link give one hash', 
     await page.locator('details[data-path=method] > summary').click();
     await page.locator('#method').selectOption('pbd');
     await page.waitForFunction(() => globalThis.skein.app.world.objects.method[0].name === 'pbd');
-    const found = await page.evaluate(() => globalThis.skein.run(40));
+    const found = await run(page, 40);
     await page.waitForFunction(() => globalThis.skein.app.state.frame === 40);
     const {command, link} = await page.evaluate(async () => ({command: await globalThis.skein.command(), link: await globalThis.skein.link()}));
     assert.match(command, /--set 'forces\.1\.velocity=\[2\.5,0\.3,1\.8\]'.*--frames 40/);
@@ -247,7 +253,7 @@ test('a newcomer\'s script, by the mouse and keys alone: drag, wind, formula, dr
     await page.waitForFunction((f) => globalThis.skein.app.state.frame === f, frame);
     assert.equal(await page.evaluate(() => globalThis.skein.app.state.hash), found.hash);
     // and it goes on the same there as here
-    assert.equal((await other.page.evaluate(() => globalThis.skein.run(30))).hash, (await page.evaluate(() => globalThis.skein.run(30))).hash);
+    assert.equal((await run(other.page, 30)).hash, (await run(page, 30)).hash);
     assert.notEqual(found.hash, native(['scenes/flag.json', '--frames', `${frame}`]));
     assert.deepEqual([...errors, ...other.errors], []);
     await other.close();
@@ -276,7 +282,7 @@ test('a formula is typed: a caret under its fault, then it is in the scene, and 
     for (const k of [0, 3]) assert.ok(Math.abs(Math.hypot(...along.slice(k, k + 3)) - 1) < 1e-5);
     assert.match(await page.locator('#gradient-words').textContent(), /number 0 of/);
     await page.locator('#gradient').selectOption('');
-    const found = await page.evaluate(() => globalThis.skein.run(30));
+    const found = await run(page, 30);
     await page.waitForFunction(() => globalThis.skein.app.state.frame === 30);
     assert.equal(nativeByShell(await page.evaluate(() => globalThis.skein.command())), found.hash);
     assert.deepEqual(errors, []);
@@ -341,11 +347,11 @@ test('meshes are opened, and files saved as the command writes them', async () =
         const [download] = await Promise.all([page.waitForEvent('download'), page.locator(id).click()]);
         return {name: download.suggestedFilename(), bytes: readFileSync(await download.path())};
     };
-    const run = (scene, frames, format, ...sets) => {
+    const byCommand = (scene, frames, format, ...sets) => {
         execFileSync(`${root}build/skein`, ['run', scene, '--frames', `${frames}`, '--quiet', '--out', folder, '--set', `output=["${format}"]`], {cwd: root});
     };
-    run('scenes/flag.json', 6, 'obj');
-    run('scenes/flag.json', 6, 'pc2');
+    byCommand('scenes/flag.json', 6, 'obj');
+    byCommand('scenes/flag.json', 6, 'pc2');
     const obj = await saved('#save-obj'), pc2 = await saved('#save-pc2');
     assert.equal(obj.name, 'flag.obj');
     assert.ok(obj.bytes.equals(readFileSync(join(folder, 'flag.obj'))));
@@ -392,7 +398,7 @@ test('the pointer is a hawk, and the link has its flight', async () => {
     const box = await page.locator('#picture').boundingBox();
     await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.5 * box.height, {steps: 3});
     await page.waitForFunction(() => globalThis.skein.call('where').then(({events}) => events.length >= 3));
-    const found = await page.evaluate(() => globalThis.skein.run(15)), command = await page.evaluate(() => globalThis.skein.command());
+    const found = await run(page, 15), command = await page.evaluate(() => globalThis.skein.command());
     assert.match(command, /--at '5 forces\.\d\.enabled=true'.*\.line=\[/);
     assert.notEqual(found.hash, native(['scenes/birds.json', '--frames', '20']));
     assert.equal(nativeByShell(command), found.hash);
@@ -422,7 +428,7 @@ test('a knife cuts the cloth by a stroke: it falls, is drawn so, and the link, u
     await page.mouse.move(ends[1], ends[2], {steps: 12});
     await page.mouse.up();
     await page.waitForFunction(async () => (await globalThis.skein.call('where')).events.some((e) => e[1] === 'cut'));
-    await page.evaluate(() => globalThis.skein.run(30));
+    await run(page, 30);
     await page.waitForFunction(() => globalThis.skein.app.state.frame === 35);
     const after_ = await state();
     assert.ok(after_.cuts > 0 && after_.lowest < before_.lowest - 0.5, JSON.stringify([before_, after_]));
@@ -445,7 +451,7 @@ test('another method beside it, at the same frame and from the same place', asyn
     await page.locator('#menu > summary').click();
     await page.locator('#compare').selectOption('pbd');
     await page.waitForFunction(() => globalThis.skein.beside.at === 4);
-    await page.evaluate(() => globalThis.skein.run(16));
+    await run(page, 16);
     await page.waitForFunction(() => globalThis.skein.beside.at === 20);
     await page.waitForFunction(() => /pbd · frame 20/.test(document.getElementById('other-about').textContent));
     await page.waitForTimeout(500);
@@ -593,7 +599,7 @@ test('what leaves the picture is gone after, until somebody turns the view', asy
         return (xs.reduce((a, b) => a + b) / xs.length - box.left) / box.width;
     });
     await page.evaluate(async () => globalThis.skein.change('forces.1.velocity', [-9, 0, 0], true)); // round to the other side of its pole
-    await page.evaluate(() => globalThis.skein.run(90));
+    await run(page, 90);
     assert.ok((await middle()) < 0.2, `${await middle()}`);
     assert.deepEqual(await camera(), before_); // nothing moves while nobody plays
     await page.evaluate(() => globalThis.skein.call('play', true));
@@ -658,7 +664,7 @@ test('where WebGL2 is missing the page says so, and goes on saying it, and compu
     assert.match(await notice(page), /drag/);
     await page.evaluate(() => globalThis.skein.open('hanging', {play: false}));
     assert.match(await notice(page), /no WebGL2/);
-    const found = await page.evaluate(() => globalThis.skein.run(10));
+    const found = await run(page, 10);
     assert.equal(found.hash, native(['scenes/hanging.json', '--frames', '10']));
     assert.match(await page.evaluate(() => globalThis.skein.link()), /scene=hanging/);
     await close();
