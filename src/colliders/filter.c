@@ -12,6 +12,7 @@
  * where that pulls it off, it is free. */
 #include "base/kernels.h"
 #include "colliders/collider.h"
+#include "plan/solve.h"
 
 #define SK_UNIT filter
 SK_KERNELS(sk_op_kernel, contact_filter);
@@ -140,6 +141,23 @@ SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_op *op, const contact
     return inside & lay & presses & ~bounces(law, e, speed, force);
 }
 
+/* Friction of who slides is a force, from what pressed and pulled when the substep began. A stiff spring does so for a part
+ * of it only: where the solve finds that friction drives what it is to brake, and faster than that was on the way (or a
+ * hundredth of the thickness in the substep), it is so much less. */
+SK_INLINE void ease_friction(const sk_collider *collider, const contact_law *law, const sk_pose *pose, sk_wide4 v, sk_wide4 v0,
+                             encounter *e, sk_wide4 *rub) {
+    sk_wide3 force = xyz(*rub), was = xyz(v0);
+    sk_wide square = sk_dot_wide(force, force);
+    sk_mask rubs = sk_positive(square) & sk_more(sk_splat(2 * law->thickness), e->distance);
+    if (!sk_any(rubs)) return;
+    find_motion(collider, pose, e);
+    sk_wide3 past = from_surface(xyz(v), *e), slide = across(past, e->normal, sk_dot_wide(past, e->normal));
+    sk_wide driven = sk_dot_wide(force, slide) / sk_wide_sqrt(square);
+    sk_wide own = sk_wide_sqrt(sk_dot_wide(was, was)) + sk_splat((real)0.01 * law->thickness / law->h);
+    sk_mask drives = rubs & sk_more(driven, own);
+    add_where(drives, rub, times(2 * own / (own + driven) - 1, force));
+}
+
 /* Within the solve: what has come inside is held too, and taken back to the surface. What is held already goes on
  * along its tangent. */
 void SK_KERNEL(contact_filter_more)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
@@ -154,6 +172,9 @@ void SK_KERNEL(contact_filter_more)(sk_run *run, const sk_op *op, size_t begin, 
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         encounter e;
         probe(collider, &law, &pose, x, (sk_wide){0}, &e);
+        sk_wide4 rub = sk_load_part(run->vector[SK_FRICTION], slot, packed);
+        ease_friction(collider, &law, &pose, v, sk_load_part(run->vector[SK_V0], slot, packed), &e, &rub);
+        sk_store_part(run->vector[SK_FRICTION], slot, packed, rub);
         sk_wide level = sk_splat(law.thickness);
         sk_mask inside = comes_inside(run, op, &law, &start, slot, v, &e, &level);
         if (!sk_any(inside)) continue;

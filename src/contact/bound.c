@@ -10,6 +10,7 @@
 
 #include "base/tasks.h"
 #include "contact/touch.h"
+#include "plan/solve.h"
 
 /* ---- ways ---- */
 
@@ -370,4 +371,19 @@ void sk_touch_bound(sk_run *run, const sk_op *op, size_t from, size_t end) {
     }
     bool keeps = touch->found && touch->followed;
     run->no_memory |= !sk_tangle_leave(touch, run->allocator, run->vector[SK_X], keeps, run->last_iteration);
+}
+
+void sk_touch_hold(sk_run *run, const sk_op *op, size_t from, size_t end) {
+    (void)from, (void)end;
+    sk_touch *touch = ((const sk_force *)op->rule)->state;
+    if (!touch || !touch->found) return;
+    const size_t count = touch->skin.vertex_count;
+    for (size_t v = 0; v < count; v++) touch->share[v] = 1; // of who has no pairs, the bound says nothing
+    run->no_memory |= !bound(touch, run, op) || !sk_touch_look_again(touch, run->allocator);
+    for (size_t v = 0; v < count; v++) {
+        if (!(touch->share[v] < 1) || !(touch->inverse[v] > 0)) continue;
+        sk_store_at(run->vector[SK_FILTER0], op->packed, touch->slot[v], (sk_vec3){0, 0, 0});
+        sk_store_at(run->vector[SK_FILTER1], op->packed, touch->slot[v], (sk_vec3){0, 0, 0});
+        run->solve->held++;
+    }
 }

@@ -53,6 +53,17 @@ static void look_at_all(sk_touch *touch) {
     }
 }
 
+static bool list_near(sk_touch *touch, sk_allocator *allocator) {
+    bool good = true;
+    for (int sort = 0; sort < SK_PAIR_SORTS && good; sort++) good = sk_touch_find_near(touch, allocator, sort);
+    return good;
+}
+
+bool sk_touch_look_again(sk_touch *touch, sk_allocator *allocator) {
+    look_at_all(touch);
+    return list_near(touch, allocator);
+}
+
 bool sk_touch_renew(sk_touch *touch, sk_allocator *allocator, sk_touch_search_sort search) {
     if (!sk_touch_search(touch, allocator, search)) return false;
     if (search != SK_SEARCH_WAYS) look_at_all(touch);
@@ -265,7 +276,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     good = good && find_tangles(touch, run, op) && find_pairs(touch, run, op, all);
     touch->followed = false;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->near[sort].count = 0;
-    for (int sort = 0; sort < SK_PAIR_SORTS && good; sort++) good = sk_touch_find_near(touch, run->allocator, sort);
+    good = good && list_near(touch, run->allocator);
     if (run->near_at < run->time || run->near_at > run->time) run->near = false; // of this substep nobody has said yet
     run->near_at = run->time;
     run->near |= touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count > 0 || touch->tangle.any;
@@ -467,6 +478,7 @@ static bool gave_up(sk_force *force) {
 static const sk_meeting meeting = {
     .begin = {SK_ANY_ISA(begin)},
     .push = {SK_ANY_ISA(push)},
+    .hold = {SK_ANY_ISA(sk_touch_hold)},
     .bound = {SK_ANY_ISA(sk_touch_bound)},
     .prepare = prepare,
     .release = release,

@@ -288,6 +288,8 @@ void sk_touch_set_thickness(const sk_touch *touch, sk_pairs *pairs, size_t first
 /* ---- bound.c ---- */
 
 sk_op_kernel sk_touch_bound;
+/* The same within an implicit solve, which takes those that are held back as they are: their S is 0. */
+sk_op_kernel sk_touch_hold;
 
 /* ---- crossings.c ---- */
 
@@ -321,6 +323,9 @@ bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uin
 void sk_touch_load(sk_touch *touch, size_t packed);
 /* Looks for lost vertices; then, but of ways, looks at all pairs that are kept, at p. */
 bool sk_touch_renew(sk_touch *touch, sk_allocator *allocator, sk_touch_search_sort search);
+/* After a bound that more follows in the same substep: what is near is listed anew, for it has let go of some pairs, and
+ * found others. False when there is no memory. */
+bool sk_touch_look_again(sk_touch *touch, sk_allocator *allocator);
 /* Where the frame of courses is, of places x of slots at some time: [0] before this substep, [1] after it. */
 void sk_touch_set_frame(sk_touch *touch, const sk_vec4 *x, size_t packed, real time, int after);
 /* Marks vertices that are not where they are expected as lost, and nobody else; returns whether there are any. */

@@ -40,11 +40,13 @@ typedef struct sk_force sk_force;
 
 /* Contact between surfaces: ops that run in every substep of any method, with the force as their rule.
  *   begin   first: X is the start of the substep
+ *   hold    where an implicit solve ends, in its parts: stops vertices as the bound does, and takes those out of the
+ *           solve's filter S, so that it goes on with the others
  *   push    with the limits: moves X, and changes V to match if its second source is V
  *   bound   last: stops vertices before they would pass a surface, and changes V to match
  * They do not declare which slots they reach, and run on one thread. */
 typedef struct sk_meeting {
-    sk_kernels begin, push, bound;
+    sk_kernels begin, hold, push, bound;
     /* Makes the force's `state` for the ops, if there is none for these parts. False: no memory. */
     bool (*prepare)(sk_force *force, sk_allocator *allocator, const sk_particles *particles,
                     const sk_meeting_parts *parts, sk_isa isa);

@@ -97,6 +97,11 @@ static void write_solve(sk_plan_builder *builder, const backward_euler_params *p
     sk_write_sum(builder, SK_X, 1, SK_X0, h, SK_V);
     sk_write_more_filters(builder);
     sk_write_end(builder, part);
+    if (sk_writes_meetings(builder)) {
+        part = sk_write_part(builder, SK_NEWTON_MEET, "surfaces at the guess");
+        sk_write_meetings(builder, SK_MEETING_HOLD, SK_V);
+        sk_write_end(builder, part);
+    }
     part = sk_write_part(builder, SK_NEWTON_RESIDUAL, "residual R");
     write_residual(builder, h);
     sk_write_end(builder, part);

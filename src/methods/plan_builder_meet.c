@@ -16,7 +16,7 @@ void sk_write_meetings(sk_plan_builder *builder, sk_meeting_sort sort, sk_vector
         const sk_force *force = builder->rules->forces.data[i];
         if (!meets(force)) continue;
         const sk_meeting *meeting = force->type->meeting;
-        const sk_kernels *kernels[] = {&meeting->begin, &meeting->push, &meeting->bound};
+        const sk_kernels *kernels[] = {&meeting->begin, &meeting->hold, &meeting->push, &meeting->bound};
         sk_add_op(builder, (sk_op){.kind = SK_OP_MEET,
                                    .order = SK_ORDERED,
                                    .kernel = kernels[sort]->version[builder->isa],

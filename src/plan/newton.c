@@ -103,22 +103,39 @@ static void account(solver *s) {
     s->state->unsolved += s->start != 0 && !is_solved(s);
 }
 
-/* One substep: finds X and V from X0 and V0. */
+/* Newton's method, from V and X on. */
+static void iterate(solver *s) {
+    for (s->iteration = 1; s->iteration <= s->params->iterations; s->iteration++) {
+        run_part(s, SK_NEWTON_HOLD, 0);
+        find_residual(s);
+        // always at least one iteration: even a small residual may be a uniform force such as weight, which moves all
+        bool solved = is_solved(s) && (s->iteration > 1 || s->square <= 0);
+        if (solved || is_lost(s->square)) break;
+        s->state->newton_iterations++;
+        s->rounding = run_part(s, SK_NEWTON_LINEARISE, 0);
+        conjugate_gradients(s);
+        search_line(s);
+    }
+}
+
+/* Whether surfaces hold particles back from where the solve has led them. */
+static bool meets(solver *s) {
+    if (!s->part[SK_NEWTON_MEET]) return false;
+    s->state->held = 0;
+    run_part(s, SK_NEWTON_MEET, 0);
+    return s->state->held > 0;
+}
+
+/* One substep: finds X and V from X0 and V0. What surfaces hold back stays where that is, and the others are solved for
+ * again: if a bound after the solve did all of it, what is fastened to those would be stretched, which the next solve
+ * turns into motion. */
 void sk_newton_solve(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     (void)begin, (void)end;
+    enum { TIMES_AGAIN = 2 };
     solver s = open_solver(run, op);
     find_first_guess(&s);
-    for (s.iteration = 1; s.iteration <= s.params->iterations; s.iteration++) {
-        run_part(&s, SK_NEWTON_HOLD, 0);
-        find_residual(&s);
-        // always at least one iteration: even a small residual may be a uniform force such as weight, which moves all
-        bool solved = is_solved(&s) && (s.iteration > 1 || s.square <= 0);
-        if (solved || is_lost(s.square)) break;
-        s.state->newton_iterations++;
-        s.rounding = run_part(&s, SK_NEWTON_LINEARISE, 0);
-        conjugate_gradients(&s);
-        search_line(&s);
-    }
+    iterate(&s);
+    for (int i = 0; i < TIMES_AGAIN && meets(&s); i++) iterate(&s);
     account(&s);
 }
 

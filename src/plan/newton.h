@@ -21,6 +21,7 @@ enum {
     SK_NEWTON_PRECONDITION, /* PRODUCT = about A^-1 RESIDUAL; sum: RESIDUAL PRODUCT */
     SK_NEWTON_MULTIPLY,     /* DIRECTION = PRODUCT + scale DIRECTION, PRODUCT = A DIRECTION; sum: their dot product */
     SK_NEWTON_STEP,         /* CHANGE += scale DIRECTION, RESIDUAL -= scale PRODUCT, then the same as PRECONDITION */
+    SK_NEWTON_MEET,         /* V, X and S include what surfaces hold back at X, and `held` counts it; may be missing */
     SK_NEWTON_PARTS
 };
 

@@ -31,6 +31,7 @@ enum {
 typedef struct sk_solve {
     double scale;  /* a number that the ops of a part read, set before they run */
     bool factored; /* there is a factor of the whole matrix (plan/matrix.h) */
+    size_t held;   /* particles that surfaces have held back, as they were last looked at */
     /* figures of a step */
     double residual; /* the largest final residual, as a share of the first one of its substep */
     size_t unsolved; /* substeps that reached neither the tolerance nor the level of rounding */
