@@ -142,20 +142,22 @@ SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_op *op, const contact
 }
 
 /* Friction of who slides is a force, from what pressed and pulled when the substep began. A stiff spring does so for a part
- * of it only: where the solve finds that friction drives what it is to brake, and faster than that was on the way (or a
- * hundredth of the thickness in the substep), it is so much less. */
-SK_INLINE void ease_friction(const sk_collider *collider, const contact_law *law, const sk_pose *pose, sk_wide4 v, sk_wide4 v0,
+ * of it only: where the solve finds that friction drives what it is to brake, and faster than that came, as the surface sees
+ * it (or a hundredth of the thickness in the substep), it is so much less. Returns whether that is so anywhere. */
+SK_INLINE bool ease_friction(const sk_collider *collider, const contact_law *law, const sk_pose *pose, sk_wide4 v, sk_wide4 v0,
                              encounter *e, sk_wide4 *rub) {
-    sk_wide3 force = xyz(*rub), was = xyz(v0);
+    sk_wide3 force = xyz(*rub);
     sk_wide square = sk_dot_wide(force, force);
     sk_mask rubs = sk_positive(square) & sk_more(sk_splat(2 * law->thickness), e->distance);
-    if (!sk_any(rubs)) return;
+    if (!sk_any(rubs)) return false;
     find_motion(collider, pose, e);
+    sk_wide3 was = from_surface(xyz(v0), *e);
     sk_wide3 past = from_surface(xyz(v), *e), slide = across(past, e->normal, sk_dot_wide(past, e->normal));
     sk_wide driven = sk_dot_wide(force, slide) / sk_wide_sqrt(square);
     sk_wide own = sk_wide_sqrt(sk_dot_wide(was, was)) + sk_splat((real)0.01 * law->thickness / law->h);
     sk_mask drives = rubs & sk_more(driven, own);
     add_where(drives, rub, times(2 * own / (own + driven) - 1, force));
+    return sk_any(drives);
 }
 
 /* Within the solve: what has come inside is held too, and taken back to the surface. What is held already goes on
@@ -164,7 +166,7 @@ void SK_KERNEL(contact_filter_more)(sk_run *run, const sk_op *op, size_t begin, 
     const sk_collider *collider = op->rule;
     sk_pose pose = sk_collider_pose_at(collider, run->time - op->before_end);
     sk_pose start = sk_collider_pose_at(collider, run->time - op->dt);
-    sk_vec4 *diagonal = run->vector[op->dst], *off = run->vector[op->source[1]];
+    sk_vec4 *diagonal = run->vector[op->dst], *off = run->vector[op->source[1]], *friction = run->vector[SK_FRICTION];
     const contact_law law = law_of(collider, op->dt);
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < op->packed;
@@ -172,9 +174,9 @@ void SK_KERNEL(contact_filter_more)(sk_run *run, const sk_op *op, size_t begin, 
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         encounter e;
         probe(collider, &law, &pose, x, (sk_wide){0}, &e);
-        sk_wide4 rub = sk_load_part(run->vector[SK_FRICTION], slot, packed);
-        ease_friction(collider, &law, &pose, v, sk_load_part(run->vector[SK_V0], slot, packed), &e, &rub);
-        sk_store_part(run->vector[SK_FRICTION], slot, packed, rub);
+        sk_wide4 rub = law.friction > 0 ? sk_load_part(friction, slot, packed) : (sk_wide4){{0}, {0}, {0}, {0}};
+        sk_wide4 v0 = sk_load_part(run->vector[SK_V0], slot, packed);
+        if (ease_friction(collider, &law, &pose, v, v0, &e, &rub)) sk_store_part(friction, slot, packed, rub);
         sk_wide level = sk_splat(law.thickness);
         sk_mask inside = comes_inside(run, op, &law, &start, slot, v, &e, &level);
         if (!sk_any(inside)) continue;
