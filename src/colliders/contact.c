@@ -79,6 +79,15 @@ void SK_KERNEL(contact_impulse)(sk_run *run, const sk_op *op, size_t begin, size
     }
 }
 
+/* Puts down for contact between surfaces who is pushed by this collider, and by which normal. */
+SK_INLINE void tell_support(sk_run *run, const sk_op *op, size_t slot, encounter e) {
+    if (!op->also_writes) return;
+    bool packed = slot < op->packed;
+    sk_wide4 support = sk_load_part(run->vector[SK_SUPPORT], slot, packed);
+    sk_wide3 normal = pick3(e.touching & sk_positive(push_of(e)), e.normal, xyz(support));
+    sk_store_part(run->vector[SK_SUPPORT], slot, packed, vec4_of(normal, support.w));
+}
+
 void SK_KERNEL(contact_push)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const contact_law law = law_of(op->rule, op->dt);
     sk_pose pose = sk_collider_pose_at(op->rule, run->time - op->before_end);
@@ -86,6 +95,7 @@ void SK_KERNEL(contact_push)(sk_run *run, const sk_op *op, size_t begin, size_t 
     encounter e;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         if (!meet_at_end(run, op, &law, &pose, &o, slot, &e)) continue;
+        tell_support(run, op, slot, e);
         sk_store_part(run->vector[op->dst], slot, slot < op->packed, vec4_of(pushed_out(e), e.x.w));
     }
 }
@@ -102,6 +112,7 @@ void SK_KERNEL(contact_update)(sk_run *run, const sk_op *op, size_t begin, size_
         sk_wide3 start = xyz(sk_load_part(run->vector[op->source[1]], slot, packed));
         sk_wide3 came = xyz(sk_load_part(run->vector[op->source[2]], slot, packed)), force = came;
         if (law.bounces) force = xyz(sk_load_part(run->vector[SK_F], slot, packed));
+        tell_support(run, op, slot, e);
         sk_wide3 way = way_out(law, e, start);
         add_where(e.touching & sk_positive(push_of(e)), &e.x, way);
         sk_store_part(run->vector[op->dst], slot, packed, e.x);

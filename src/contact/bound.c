@@ -3,9 +3,9 @@
  * For each pair that may close, its nearest points before the substep give a normal; the gap is what lies between its
  * features along it. Corners move along straight lines, so a gap that is left at the end was there all the way. Where
  * none is left, a plane between the features is what neither may pass, and corners go but a share of their ways. Such
- * planes stand still in the frame of what all go together, and hold for any smaller share, too; other pairs are looked
- * at again with these shares, until no more planes are needed. Where a plane across an axis keeps features far apart,
- * before and after, it does for any shares, and no other is needed. */
+ * planes stand still in the frame of what all go together, as far as that leads nobody into a collider, and hold for any
+ * smaller share, too; other pairs are looked at again with these shares, until no more planes are needed. Where a plane
+ * across an axis keeps features far apart, before and after, it does for any shares, and no other is needed. */
 #include <string.h>
 
 #include "base/tasks.h"
@@ -28,13 +28,29 @@ static sk_vec3 common_way(const sk_touch *touch) {
     return (sk_vec3){(real)(share * sum[0]), (real)(share * sum[1]), (real)(share * sum[2])};
 }
 
+/* What of a common way leads no one into the collider that holds them up: planes that go along with what falls would
+ * take what is pressed on the ground into it. Along each normal the way leads as far as who is held up goes; sideways
+ * nothing is changed, so that what slides together is not held back. */
+static sk_vec3 supported_way(const sk_touch *touch, const sk_run *run, const sk_op *op, sk_vec3 way) {
+    const sk_vec4 *support = run->vector[SK_SUPPORT];
+    if (!support) return way;
+    for (int pass = 0; pass < 2; pass++)
+        for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+            sk_vec3 n = sk_xyz(sk_load(support, op->packed, touch->slot[v]));
+            if (!(sk_dot(n, n) > 0)) continue;
+            real missing = sk_dot(n, sk_sub(sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v])), way));
+            if (missing > 0 && missing < (real)1e6) way = sk_add(way, sk_scale(missing, n));
+        }
+    return way;
+}
+
 /* Loads the places before and after the substep, and finds out what ways lead from one to the other. */
 static void load_ways(sk_touch *touch, const sk_run *run, const sk_op *op) {
     size_t count = touch->skin.vertex_count;
     touch->aimed = false;
     sk_touch_load(touch, op->packed);
     for (size_t v = 0; v < count; v++) touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
-    sk_vec3 common = touch->common = common_way(touch);
+    sk_vec3 common = touch->common = supported_way(touch, run, op, common_way(touch));
     touch->longest = 0;
     for (size_t v = 0; v < count; v++) {
         sk_vec3 way = sk_sub(sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v])), common);

@@ -273,6 +273,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     touch->holds = good && touch->found &&
                    (is_known(touch, run) || sk_calm_holds(touch, sk_touch_farthest(touch, run->vector[SK_X], op->packed)));
     if (good) memcpy(touch->before, run->vector[SK_X], touch->slots * sizeof *touch->before);
+    if (run->vector[SK_SUPPORT]) memset(run->vector[SK_SUPPORT], 0, run->slot_count * sizeof *run->vector[SK_SUPPORT]);
     good = good && find_tangles(touch, run, op) && find_pairs(touch, run, op, all);
     touch->followed = false;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->near[sort].count = 0;

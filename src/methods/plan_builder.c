@@ -113,7 +113,7 @@ void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort) {
         [SK_CONTACT_PUSH] = {SK_OP_CONTACT_POSITION, &sk_contact_push, SK_X},
         [SK_CONTACT_UPDATE] = {SK_OP_CONTACT_UPDATE, &sk_contact_update, SK_X},
     };
-    bool updates = sort == SK_CONTACT_UPDATE;
+    bool updates = sort == SK_CONTACT_UPDATE, tells = (updates || sort == SK_CONTACT_PUSH) && sk_writes_meetings(builder);
     for (size_t i = 0; i < builder->rules->colliders.count; i++) {
         const sk_collider *collider = builder->rules->colliders.data[i];
         if (!collider->common->enabled) continue;
@@ -144,6 +144,7 @@ void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort) {
                     .rule = collider,
                     .label = collider->label,
                     .also_reads = updates && sk_contact_reads_force(collider) ? 1u << SK_F : 0,
+                    .also_writes = tells ? 1u << SK_SUPPORT : 0,
                     .end = builder->slot_count};
         sk_add_op_on(builder, op, &collider->only);
     }

@@ -39,6 +39,7 @@ typedef enum sk_vector {
     SK_T10,
     SK_T11,
     SK_S, /* steering: a change of velocity, and in w how much more speed is allowed; also a temporary */
+    SK_SUPPORT, /* where surfaces meet each other and colliders: the unit normal of who pushed last in this substep, or 0 */
     SK_VECTOR_COUNT
 } sk_vector;
 
@@ -234,7 +235,7 @@ struct sk_op {
     const void *rule;      /* a force, a collider, a batch */
     const sk_patch *patch; /* of triangles in strips, else NULL */
     const sk_group *group, *seen; /* particles that it moves or sorts, and those that it reads; NULL: all */
-    uint32_t also_reads;   /* bits of vectors, besides those of its kind */
+    uint32_t also_reads, also_writes; /* bits of vectors, besides those of its kind */
     const char *label;     /* its name in `skein explain` */
     sk_op_kernel *inner;  /* the kernel of an op over some slots only, whose `kernel` is sk_run_partly */
     size_t first_slot, end_slot; /* of such an op, within [begin, end); else 0 */

@@ -140,7 +140,7 @@ static uint32_t resolved(const sk_op *op, uint32_t uses) {
 }
 
 uint32_t sk_op_writes(const sk_op *op) {
-    return resolved(op, sk_op_types[op->kind].writes);
+    return resolved(op, sk_op_types[op->kind].writes | op->also_writes);
 }
 
 uint32_t sk_op_reads(const sk_op *op) {

@@ -74,7 +74,7 @@ void sk_run_partly(sk_run *run, const sk_op *op, size_t begin, size_t end) {
 
 static const char *vector_text(sk_vector vector) {
     static const char *const names[SK_VECTOR_COUNT] = {"",   "X",  "V",  "F",  "X0", "V0", "P",  "T0",  "T1",  "T2",
-                                                       "T3", "T4", "T5", "T6", "T7", "T8", "T9", "T10", "T11", "S"};
+                                                       "T3", "T4", "T5", "T6", "T7", "T8", "T9", "T10", "T11", "S", "SUPPORT"};
     return names[vector];
 }
 

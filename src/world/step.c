@@ -52,7 +52,7 @@ static bool make_temporaries(skein_world *world) {
     uint32_t wanted = 0;
     for (size_t r = 0; r < world->plan.count; r++) {
         const sk_op *op = &world->plan.data[r];
-        wanted |= 1u << op->dst;
+        wanted |= 1u << op->dst | op->also_writes;
         for (int i = 0; i < 3; i++) wanted |= 1u << op->source[i];
     }
     return sk_particles_want(&world->particles, &world->allocator, wanted);
