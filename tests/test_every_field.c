@@ -38,6 +38,7 @@ static const struct {
     {"cache", "max_distance", "as pull"},
     {"cache", "backstop", "as pull"},
     {"cache", "backstop_radius", "as pull"},
+    {NULL, "groups", "a body is in them alone here; test_groups.c has rules that name them"},
     {NULL, "map", "as many numbers as it leads; test_leashes.c has them"},
 };
 
