@@ -186,7 +186,7 @@ static skein_world *build(const char *text, told *all) {
     return world;
 }
 
-#define CLOTH "\"bodies\": [{\"type\": \"cloth\", \"name\": \"flag\", \"grid\": [3, 4], \"pins\": \"left edge\"}]"
+#define CLOTH "\"bodies\": [{\"type\": \"cloth\", \"name\": \"flag\", \"grid\": [3, 4], \"pins\": \"left edge\", \"groups\": \"held\"}]"
 
 static void write_cache(const char *path, uint32_t points) {
     skein_error error;
@@ -255,6 +255,8 @@ static void scenes_say_what_is_wrong(void **state) {
         {"\"type\": \"cache\"", "x.json: motions.0.file: expected the name of a PC2 file"},
         {"\"type\": \"cache\", \"on\": \"flog\", \"file\": \"a\"",
          "x.json: motions.0.on: there is no body of the name 'flog'"},
+        {"\"type\": \"cache\", \"on\": \"held\", \"file\": \"a\"",
+         "x.json: motions.0.on: there is no body of the name 'held'; it is the name of a group, and one body is meant"},
         {"\"type\": \"turn\", \"name\": \"round\", \"on\": \"flog\"", "round: there is no body or group of the name 'flog'"},
     };
     for (size_t i = 0; i < COUNT(faults); i++) {
