@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "io/clip.h"
+#include "io/groups.h"
 #include "io/pc2.h"
 
 static bool fail(const char *where, const char *format, ...) IO_PRINTF(2, 3);
@@ -34,7 +35,7 @@ static bool find_body(skein_world *world, const char *name, skein_surface *surfa
         bool named = name ? !skein_get(world, body, "name", &value) && !strcmp(value.text, name) : count == 1;
         if (named && !skein_body_surface(world, body, surface)) return true;
     }
-    if (name) return fail("--body", "there is no body of the name '%s'", name);
+    if (name) return fail("--body", "there is no body of the name '%s'%s", name, io_group_words(world, name));
     return fail("--body", "the scene has %zu bodies: name the one that the target shows", count);
 }
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/groups.h"
 #include "io/own_kinds.h"
 #include "io/reach.h"
 #include "io/pc2.h"
@@ -28,7 +29,7 @@ static bool find_body(skein_world *world, io_place place, const char *name, skei
         bool named = name[0] ? !skein_get(world, body, "name", &value) && !strcmp(value.text, name) : count == 1;
         if (named) return !skein_body_surface(world, body, surface);
     }
-    if (name[0]) io_fault(place, "on", SKEIN_ERROR_NAME, "there is no body of the name '%s'", name);
+    if (name[0]) io_fault(place, "on", SKEIN_ERROR_NAME, "there is no body of the name '%s'%s", name, io_group_words(world, name));
     else io_fault(place, "on", SKEIN_ERROR_VALUE, "expected the name of the body that the points are of");
     return false;
 }

@@ -1,5 +1,6 @@
 /* The reader of scenes' own part: the document, its view, exporters and paths. Objects are built in scene_build.c. */
 #include "io/budget.h"
+#include "io/groups.h"
 #include "io/reach.h"
 
 #include <errno.h>
@@ -434,7 +435,8 @@ static bool has_its_bodies(const io_scene *scene, const skein_world *world, io_f
         snprintf(path, sizeof path, "bodies.%.250s.name", name);
         if (!name[0] || !strcmp(name, "all") || !skein_get_path(world, path, &value)) continue;
         io_fault(place, field->name, SKEIN_ERROR_NAME,
-                 "there is no body '%.100s': expected a body's name, its number from 0, or \"all\"", name);
+                 "there is no body '%.100s'%s: expected a body's name, its number from 0, or \"all\"", name,
+                 io_group_words(world, name));
         return false;
     }
     return true;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "io/cache.h"
+#include "io/groups.h"
 #include "io/own_kinds.h"
 #include "io/reach.h"
 #include "io/mesh.h"
@@ -204,7 +205,8 @@ static const char *hint_body(const builder *b, const char *given, char words[BOD
         snprintf(path, sizeof path, "bodies.%zu.name", i);
         if (!skein_get_path(b->world, path, &name) && name.text[0]) names[count++] = name.text;
     }
-    snprintf(words, BODY_WORDS_SIZE, "%s", io_hint(given, names, count, hint));
+    snprintf(words, BODY_WORDS_SIZE, "%s", io_group_words(b->world, given));
+    if (!words[0]) snprintf(words, BODY_WORDS_SIZE, "%s", io_hint(given, names, count, hint));
     if (words[0]) return words;
     if (!count) snprintf(words, BODY_WORDS_SIZE, ": no body of the scene has a name; a number says which, from 0 on");
     for (size_t i = 0; i < count && at < BODY_WORDS_SIZE; i++)

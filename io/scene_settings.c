@@ -67,10 +67,10 @@ static bool takes_rows(const skein_kind *kind, const skein_field *field) {
     return field->type == SKEIN_FIELD_TEXT && kind->category == SKEIN_MOTION && is_own(kind, field);
 }
 
-/* A rule's `on`, and a motion's `colliders`: names, which are joined by commas. */
+/* A rule's `on`, a motion's `colliders` and a body's `groups`: names, which are joined by commas. */
 static bool takes_names(const skein_kind *kind, const skein_field *field) {
-    if (kind->category == SKEIN_MOTION) return !strcmp(field->name, "colliders");
-    return (kind->category == SKEIN_FORCE || kind->category == SKEIN_COLLIDER) && !strcmp(field->name, "on");
+    if (is_own(kind, field)) return false;
+    return !strcmp(field->name, "on") || !strcmp(field->name, "colliders") || !strcmp(field->name, "groups");
 }
 
 /* The names of a list; NULL where one is no text, or has a comma, or there is no memory. */
@@ -168,7 +168,8 @@ static void report_type(io_place place, const char *name, const skein_kind *kind
     skein_value nothing = {4, {0, 0, 0}, NULL};
     skein_field_check(field, &nothing, &error);
     io_fault(place, name, SKEIN_ERROR_VALUE, "%s%s, not %s", error.message,
-             takes_lists(kind, field)  ? ", a list of numbers and words, {\"box\": [...]} or {\"sphere\": [...]}"
+             takes_names(kind, field)  ? " or a list of names"
+             : takes_lists(kind, field) ? ", a list of numbers and words, {\"box\": [...]} or {\"sphere\": [...]}"
              : takes_rows(kind, field) ? " or a list of rows, [[0, 0, 0, 0], [1, 0, 0.5, 0]], say"
              : takes_body(field)       ? " or its number"
              : may_be_infinite(field)  ? " or \"infinite\""

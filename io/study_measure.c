@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/groups.h"
 #include "io/order.h"
 #include "io/study_inside.h"
 
@@ -152,9 +153,9 @@ static skein_status measure(skein_world *world, const io_study_wanted *w, looked
         seen->has_statistics = !status;
         *x = status ? NAN : take(&seen->statistics, w->what);
     } else if (!found && (w->body || w->what->source == OF_FLOCK)) {
-        return io_error_set(error, SKEIN_ERROR_NAME, w->name, "%s%s: there is no %s%s", w->name,
+        return io_error_set(error, SKEIN_ERROR_NAME, w->name, "%s%s: there is no %s%s%s", w->name,
                             w->body ? ".body" : "", w->body ? "body of the name " : "flock, and no \"body\" is named",
-                            w->body ? w->body : "");
+                            w->body ? w->body : "", w->body ? io_group_words(world, w->body) : "");
     } else if (w->what->source == OF_FLOCK) {
         const char *name = w->body ? w->body : "";
         if (!seen->order_of || strcmp(seen->order_of, name) != 0) status = io_order_measure(world, body, &seen->order);

@@ -38,6 +38,7 @@ static const struct {
     {"cache", "max_distance", "as pull"},
     {"cache", "backstop", "as pull"},
     {"cache", "backstop_radius", "as pull"},
+    {NULL, "groups", "a body is in them alone here; test_groups.c has rules that name them"},
     {NULL, "map", "as many numbers as it leads; test_leashes.c has them"},
 };
 
@@ -140,7 +141,7 @@ static bool same_value(const skein_value *a, const skein_value *b) {
 }
 
 static bool is_kept(const skein_field *field) { // as it is, in every scene
-    static const char *const names[] = {"name", "enabled", "visible", "mesh", "cell", "parameters.*"};
+    static const char *const names[] = {"name", "enabled", "visible", "groups", "mesh", "cell", "parameters.*"};
     for (size_t i = 0; i < COUNT(names); i++)
         if (!strcmp(field->name, names[i])) return true;
     return false;

@@ -131,7 +131,7 @@ static void tracks_are_followed(void **state) {
           skein_motion_add(world, "turn", NULL, SKEIN_SETTINGS(SKEIN_VEC3("axis", 0, 0, 0)), NULL));
     FAILS(world, SKEIN_ERROR_NAME, "no motion 'trun'", skein_motion_add(world, "trun", NULL, NULL, NULL));
     add_motion(world, "turn", SKEIN_SETTINGS(SKEIN_TEXT("on", "lime")));
-    FAILS(world, SKEIN_ERROR_NAME, "no body of the name 'lime'", skein_world_step(world, dt));
+    FAILS(world, SKEIN_ERROR_NAME, "no body or group of the name 'lime'", skein_world_step(world, dt));
     OK(world, skein_set_path(world, "motions.1.on", skein_text("line")));
     skein_world_destroy(world);
 }
@@ -143,7 +143,7 @@ static void motions_are_given_what_is_there(void **state) {
     skein_value value;
     skein_handle motion =
         add_motion(world, "translate", SKEIN_SETTINGS(SKEIN_TEXT("on", "line"), SKEIN_VEC3("velocity", 0, 2, 0)));
-    FAILS(world, SKEIN_ERROR_NAME, "no body of the name 'lime'", skein_set(world, motion, "on", skein_text("lime")));
+    FAILS(world, SKEIN_ERROR_NAME, "no body or group of the name 'lime'", skein_set(world, motion, "on", skein_text("lime")));
     FAILS(world, SKEIN_ERROR_NAME, "'top edge'", skein_set(world, motion, "pins", skein_text("top edge")));
     FAILS(world, SKEIN_ERROR_VALUE, "out of range", skein_set(world, motion, "pins", skein_text("7")));
     OK(world, skein_get(world, motion, "on", &value));
@@ -186,7 +186,7 @@ static skein_world *build(const char *text, told *all) {
     return world;
 }
 
-#define CLOTH "\"bodies\": [{\"type\": \"cloth\", \"name\": \"flag\", \"grid\": [3, 4], \"pins\": \"left edge\"}]"
+#define CLOTH "\"bodies\": [{\"type\": \"cloth\", \"name\": \"flag\", \"grid\": [3, 4], \"pins\": \"left edge\", \"groups\": \"held\"}]"
 
 static void write_cache(const char *path, uint32_t points) {
     skein_error error;
@@ -255,7 +255,9 @@ static void scenes_say_what_is_wrong(void **state) {
         {"\"type\": \"cache\"", "x.json: motions.0.file: expected the name of a PC2 file"},
         {"\"type\": \"cache\", \"on\": \"flog\", \"file\": \"a\"",
          "x.json: motions.0.on: there is no body of the name 'flog'"},
-        {"\"type\": \"turn\", \"name\": \"round\", \"on\": \"flog\"", "round: there is no body of the name 'flog'"},
+        {"\"type\": \"cache\", \"on\": \"held\", \"file\": \"a\"",
+         "x.json: motions.0.on: there is no body of the name 'held'; it is the name of a group, and one body is meant"},
+        {"\"type\": \"turn\", \"name\": \"round\", \"on\": \"flog\"", "round: there is no body or group of the name 'flog'"},
     };
     for (size_t i = 0; i < COUNT(faults); i++) {
         char text[600];

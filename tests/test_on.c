@@ -11,7 +11,7 @@ typedef struct two {
     size_t first[BODIES], count[BODIES];
 } two;
 
-/* Two bodies beside each other, of which neither is at rest: flocks, or cloths. */
+/* Two bodies beside each other, of which neither is at rest: flocks, or cloths. One is in the groups "chosen" and "few". */
 static two make_two(const char *method, bool cloths, int threads) {
     skein_world_desc desc = skein_default_world_desc();
     desc.thread_count = threads;
@@ -21,17 +21,17 @@ static two make_two(const char *method, bool cloths, int threads) {
     for (int b = 0; b < BODIES; b++) {
         skein_handle body;
         skein_surface surface;
-        const char *name = b == NAMED ? "named" : "other";
+        const char *name = b == NAMED ? "named" : "other", *groups = b == NAMED ? "chosen, few" : "few or none";
         if (cloths)
             OK(t.world, skein_body_add(t.world, "cloth", NULL,
-                                       SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 7), SKEIN_TEXT("name", name),
+                                       SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 7), SKEIN_TEXT("name", name), SKEIN_TEXT("groups", groups),
                                                       SKEIN_REAL("stretch.stiffness", 100),
                                                       SKEIN_REAL("shear.stiffness", 50),
                                                       SKEIN_VEC3("position", 0, 0.3 * b, 0)),
                                        &body));
         else
             OK(t.world, skein_body_add(t.world, "flock", NULL,
-                                       SKEIN_SETTINGS(SKEIN_REAL("count", LOOSE_PARTICLES), SKEIN_TEXT("name", name),
+                                       SKEIN_SETTINGS(SKEIN_REAL("count", LOOSE_PARTICLES), SKEIN_TEXT("name", name), SKEIN_TEXT("groups", groups),
                                                       SKEIN_VEC3("spread", 1, 1, 1), SKEIN_REAL("speed", 0.7)),
                                        &body));
         OK(t.world, skein_body_surface(t.world, body, &surface));
@@ -106,35 +106,37 @@ static size_t differ(const two *a, const two *b, int body, double *worst) {
     return count;
 }
 
-static void try_rule(const char *method, const skein_kind *kind, bool cloths) {
+static void try_rule(const char *method, const skein_kind *kind, bool cloths, const char *on) {
     two with = make_two(method, cloths, 1 + cloths), without = make_two(method, cloths, 1);
     // somebody to be seen, but far from all
     if (!strcmp(kind->name, "lookout"))
         OK(without.world, skein_collider_add(without.world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.01), SKEIN_VEC3("centre", 0, -2, 0)), NULL));
-    add_rule(with.world, kind, "named");
+    add_rule(with.world, kind, on);
     steps(with.world, STEPS, 1.0 / 60), steps(without.world, STEPS, 1.0 / 60);
     double moved, off;
     size_t named = differ(&with, &without, NAMED, &moved), other = differ(&with, &without, OTHER, &off);
     // one solve has one number of iterations for all: there others are the same to its tolerance
     bool same = strcmp(method, "backward_euler") ? other == 0 : off < 1e-3;
     if (!named || !same)
-        fail_msg("%s, %s on %s: %zu numbers of the body named differ, %zu of the other (by %g)", method, kind->name,
-                 cloths ? "cloths" : "flocks", named, other, off);
+        fail_msg("%s, %s on %s, '%s': %zu numbers of the body named differ, %zu of the other (by %g)", method, kind->name,
+                 cloths ? "cloths" : "flocks", on, named, other, off);
     skein_world_destroy(with.world), skein_world_destroy(without.world);
 }
 
 static void each_rule_moves_whom_it_names(void **state) {
     (void)state;
+    static const char *const calls[] = {"named", "chosen", " few, named ,chosen"}; // all of them mean the same body
     for (size_t m = 0; m < COUNT(all_methods); m++)
         for (int cloths = 0; cloths < 2; cloths++) {
+            const char *on = calls[(2 * m + (size_t)cloths) % COUNT(calls)];
             for (size_t k = 0; skein_kind_at(SKEIN_FORCE, k); k++) {
                 const skein_kind *kind = skein_kind_at(SKEIN_FORCE, k);
                 if (!strcmp(kind->name, "surface_wind") && !cloths) continue; // it has nothing to act on
                 if (!strcmp(kind->name, "contact")) continue; // nothing touches here: test_touching.c
-                try_rule(all_methods[m], kind, cloths);
+                try_rule(all_methods[m], kind, cloths, on);
             }
             for (size_t k = 0; skein_kind_at(SKEIN_COLLIDER, k); k++)
-                try_rule(all_methods[m], skein_kind_at(SKEIN_COLLIDER, k), cloths);
+                try_rule(all_methods[m], skein_kind_at(SKEIN_COLLIDER, k), cloths, on);
         }
 }
 
@@ -213,6 +215,8 @@ static void unknown_names_are_told(void **state) {
     OK(t.world, skein_world_step(t.world, 0.01));
     OK(t.world, skein_collider_add(t.world, "plane", SKEIN_SETTINGS(SKEIN_TEXT("on", "nmed")), &plane));
     FAILS(t.world, SKEIN_ERROR_NAME, "did you mean 'named'?", skein_world_step(t.world, 0.01));
+    OK(t.world, skein_set(t.world, plane, "on", skein_text("named, chossen")));
+    FAILS(t.world, SKEIN_ERROR_NAME, "there is no body or group of the name 'chossen'; did you mean 'chosen'?", skein_world_step(t.world, 0.01));
     OK(t.world, skein_remove(t.world, plane));
     // a rule that steers moves bodies that lie beside each other, or says so
     OK(t.world, skein_body_add(t.world, "flock", NULL, SKEIN_SETTINGS(SKEIN_REAL("count", 3), SKEIN_TEXT("name", "third")), NULL));

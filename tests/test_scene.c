@@ -196,6 +196,26 @@ static void sets_change_the_scene(void **state) {
     skein_world_destroy(world);
 }
 
+/* Groups are a text or a list of names, where rules have either, too; and can be set from outside. */
+static void groups_are_texts_or_lists(void **state) {
+    (void)state;
+    static const char scene[] =
+        "{ 'bodies': [ { 'type': 'cloth', 'name': 'a', 'grid': [3, 3], 'groups': ['clothes', 'soft'] },\n"
+        "  { 'type': 'cloth', 'name': 'b', 'grid': [3, 3], 'groups': 'soft', 'pins': 'all' } ],\n"
+        "  'forces': [ { 'type': 'gravity', 'on': ['clothes', 'loose'] }, { 'type': 'contact', 'ignore': 'soft:clothes' } ],\n"
+        "  'motions': [ { 'type': 'translate', 'on': ['loose', 'clothes'] } ] }";
+    skein_world *world = build_scene(scene, (const char *const[]){"bodies.b.groups=[\"loose\"]", NULL});
+    skein_value value;
+    assert_int_equal(skein_get_path(world, "bodies.a.groups", &value), SKEIN_OK);
+    assert_string_equal(value.text, "clothes, soft");
+    assert_int_equal(skein_get_path(world, "bodies.b.groups", &value), SKEIN_OK);
+    assert_string_equal(value.text, "loose");
+    assert_int_equal(skein_get_path(world, "motions.0.on", &value), SKEIN_OK);
+    assert_string_equal(value.text, "loose, clothes");
+    assert_int_equal(skein_world_step(world, 0.01), SKEIN_OK);
+    skein_world_destroy(world);
+}
+
 static void collect_log(void *user, skein_log_level level, const char *message) {
     (void)level;
     char *all = user;
@@ -343,6 +363,7 @@ int main(void) {
         TEST(the_top_has_defaults_and_values), TEST(every_type_of_field_arrives),
         TEST(pins_have_short_forms),           TEST(meshes_are_found_beside_the_scene),
         TEST(sets_change_the_scene),           TEST(constraints_tie_bodies_together),
+        TEST(groups_are_texts_or_lists),
         TEST(a_method_changes_its_type_alone), TEST(sets_take_numbers_as_they_are_listed),
     };
     return cmocka_run_group_tests_name("scene", tests, NULL, NULL);

@@ -146,6 +146,8 @@ static void faults_have_places(void **state) {
         {"{'vary': {'bodies.stones.mass': [-1]}, 'measure': ['lowest'], " FALLING "}", "bodies.0.mass"},
         {"{'vary': {'bodies.stones.mass': [1]}, 'measure': [{'measure': 'lowest', 'body': 'stone'}], " FALLING "}",
          "there is no body of the name stone"},
+        {"{'vary': {'bodies.stones.groups': ['stone']}, 'measure': [{'measure': 'lowest', 'body': 'stone'}], " FALLING "}",
+         "there is no body of the name stone; it is the name of a group, and one body is meant"},
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         io_study *study = read_study(all[i].text);

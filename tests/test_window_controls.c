@@ -55,6 +55,7 @@ static const struct {
 } texts[] = {
     {NULL, "name", "c d"},
     {NULL, "on", "b"},
+    {NULL, "groups", "soft, loose"},
     {NULL, "neighbours", "b"},
     {NULL, "pins", "0"},
     {"cloth", "mesh", SKEIN_SOURCE_DIR "/meshes/ball.obj"},

@@ -3,6 +3,7 @@
 #include <string.h>
 #include <stdlib.h>
 
+#include "io/groups.h"
 #include "io/own_kinds.h"
 #include "render/world_follow.h"
 #include "viewer/stage.h"
@@ -99,7 +100,8 @@ static bool set_followed(viewer_stage *stage, const char *name) {
     size_t body;
     if (name[0] && !render_body_find(stage->sides[0].world, name, &body)) {
         viewer_say(stage, SKEIN_LOG_WARNING,
-                   "camera.follow: there is no body '%.100s': a body's name, its number from 0, or \"all\"", name);
+                   "camera.follow: there is no body '%.100s'%s: a body's name, its number from 0, or \"all\"", name,
+                   io_group_words(stage->sides[0].world, name));
         return false;
     }
     for (size_t s = 0; s < stage->side_count; s++) {

@@ -22,6 +22,7 @@
 #define SKEIN_BODY_NAME "name" /* a text; for paths, messages and the names of files */
 #define SKEIN_BODY_ENABLED "enabled" /* true or false; false: as if it were not there; it stays as it is until it is again */
 #define SKEIN_BODY_VISIBLE "visible" /* true or false; whether it is drawn */
+#define SKEIN_BODY_GROUPS "groups" /* a text; the names of groups that it is in, commas between them: where rules name bodies, a group's name means all in it */
 
 #define SKEIN_CLOTH "cloth" /* a sheet from a triangle or quad mesh, or a grid: springs along and across, bending by angle, tethers to pins */
 #define SKEIN_CLOTH_MESH "mesh" /* a text; file of a mesh, OBJ, OFF, PLY, STL or glTF (in scenes; a program passes the mesh itself) */
@@ -211,7 +212,7 @@
 #define SKEIN_FORCE_NAME "name" /* a text; for paths and messages */
 #define SKEIN_FORCE_ENABLED "enabled" /* true or false; false: as if it were not there */
 #define SKEIN_FORCE_VISIBLE "visible" /* true or false; whether it is drawn */
-#define SKEIN_FORCE_ON "on" /* a text; the names of the bodies that it acts on, commas between them; empty: every particle */
+#define SKEIN_FORCE_ON "on" /* a text; the names of the bodies, or of groups of them, that it acts on, commas between them; empty: every particle */
 
 #define SKEIN_GRAVITY "gravity" /* weight: the same acceleration for every particle */
 #define SKEIN_GRAVITY_ACCELERATION "acceleration" /* three numbers in m/s2; the free fall's acceleration */
@@ -244,7 +245,7 @@
 #define SKEIN_FLOCKING_STRENGTH "strength" /* a number in m/s2; how strongly each neighbour counts */
 #define SKEIN_FLOCKING_VIEW "view" /* a number in degrees; the angle that each sees, round its direction of flight; 360: all round */
 #define SKEIN_FLOCKING_NEAREST "nearest" /* a whole number; of the neighbours in reach only so many count, the nearest; 0: all */
-#define SKEIN_FLOCKING_NEIGHBOURS "neighbours" /* a text; the name of the body that it looks at; empty: those that it is `on` */
+#define SKEIN_FLOCKING_NEIGHBOURS "neighbours" /* a text; the names of the bodies, or of groups of them, that it looks at, commas between them; empty: those that it is `on` */
 #define SKEIN_FLOCKING_FORMULA_TOWARDS "formula.towards" /* a text; the weight of a neighbour along the direction to it, as a formula of `relative_distance` (0 beside it, 1 at the reach); where there is a formula, the zones only say how far the rule reaches */
 #define SKEIN_FLOCKING_FORMULA_ALONG "formula.along" /* a text; the weight along its direction of flight, likewise */
 
@@ -300,7 +301,7 @@
 #define SKEIN_CONTACT_THICKNESS "thickness" /* a number in m; how near surfaces come to each other; less where a body's own vertices are nearer as it was built */
 #define SKEIN_CONTACT_FRICTION "friction" /* a number; coefficient of friction between them */
 #define SKEIN_CONTACT_RECOVERY "recovery" /* a number in m/s; how fast surfaces that have gone through each other are led apart; 0: they stay so */
-#define SKEIN_CONTACT_IGNORE "ignore" /* a text; pairs of bodies that do not meet, by their names, commas between them: "cape:shirt, cape:cape" */
+#define SKEIN_CONTACT_IGNORE "ignore" /* a text; pairs of bodies, or of groups of them, that do not meet, by their names, commas between them: "cape:shirt, cape:cape" */
 
 /* ---- colliders ---- */
 
@@ -308,7 +309,7 @@
 #define SKEIN_COLLIDER_NAME "name" /* a text; for paths and messages */
 #define SKEIN_COLLIDER_ENABLED "enabled" /* true or false; false: as if it were not there */
 #define SKEIN_COLLIDER_VISIBLE "visible" /* true or false; whether it is drawn */
-#define SKEIN_COLLIDER_ON "on" /* a text; the names of the bodies that it meets, commas between them; empty: every particle */
+#define SKEIN_COLLIDER_ON "on" /* a text; the names of the bodies, or of groups of them, that it meets, commas between them; empty: every particle */
 #define SKEIN_COLLIDER_THICKNESS "thickness" /* a number in m; particles are kept so far off */
 #define SKEIN_COLLIDER_FRICTION "friction" /* a number; Coulomb's coefficient, at rest and sliding */
 #define SKEIN_COLLIDER_RECOVERY "recovery" /* a number in m/s; what begins inside comes out at this speed, and is not thrown: the way out is no velocity */

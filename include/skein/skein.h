@@ -319,7 +319,7 @@ typedef struct skein_track {
  * skein_pins_move() would, to where its fields say for the end of the step. Those places follow from the time, and from
  * where the particles were built; several motions of one pin act one after the other, in the order of their making. What
  * skein_pins_move() says counts instead. Whom it leads is found when a step is made, or skein_world_explain() called: then
- * a name of no body fails with SKEIN_ERROR_NAME. `track` is for "cache" and NULL for all others; `settings` and `handle`
+ * a name of no body or group fails with SKEIN_ERROR_NAME. `track` is for "cache" and NULL for all others; `settings` and `handle`
  * may be NULL. Fails with SKEIN_ERROR_VALUE, SKEIN_ERROR_NAME, SKEIN_ERROR_LIMIT and SKEIN_ERROR_MEMORY. */
 skein_status skein_motion_add(skein_world *world, const char *kind, const skein_track *track,
                               const skein_setting *settings, skein_handle *handle);

@@ -149,7 +149,7 @@ const skein_field sk_collider_fields[] = {
     SK_BOOL(sk_collider_common, enabled, "enabled", 1, "false: as if it were not there"),
     SK_BOOL(sk_collider_common, visible, "visible", 1, "whether it is drawn"),
     SK_TEXT(sk_collider_common, on, "on", "",
-            "the names of the bodies that it meets, commas between them; empty: every particle"),
+            "the names of the bodies, or of groups of them, that it meets, commas between them; empty: every particle"),
     SK_REAL(sk_collider_common, thickness, "thickness", "m", 0.002, 0, SK_FAR, "particles are kept so far off"),
     SK_REAL(sk_collider_common, friction, "friction", "", 0.3, 0, SK_FAR, "Coulomb's coefficient, at rest and sliding"),
     SK_REAL(sk_collider_common, recovery, "recovery", "m/s", 1, 0, SK_FAR,

@@ -1,22 +1,21 @@
-/* Pairs of bodies that a rule of contact does not let meet: "cape:shirt, cape:cape", by their names. */
+/* Pairs of bodies that a rule of contact does not let meet: "cape:shirt, cape:cape", by their names or by those of groups that
+ * they are in.
+ *
+ * A body is many of the text's words at once: its name and its groups. So the bodies that are the same words have one number,
+ * and a matrix says which numbers do not meet: those of which one is the left word of a pair, and the other the right one. */
 #include <string.h>
 
+#include "base/names.h"
 #include "contact/touch.h"
 
-/* A name of the text: where it begins, and how long it is. */
-typedef struct word {
-    const char *at;
-    size_t length;
-} word;
-
-static word trimmed(const char *at, const char *end) {
+static sk_word trimmed(const char *at, const char *end) {
     while (at < end && *at == ' ') at++;
     while (end > at && end[-1] == ' ') end--;
-    return (word){at, (size_t)(end - at)};
+    return (sk_word){at, (size_t)(end - at)};
 }
 
-/* The next pair; false at the end. What has no colon is a body that does not meet itself. */
-static bool next_pair(const char **text, word pair[2]) {
+/* The next pair; false at the end. What has no colon is a body or a group that does not meet itself. */
+static bool next_pair(const char **text, sk_word pair[2]) {
     const char *at = *text, *end = at + strcspn(at, ","), *colon = memchr(at, ':', (size_t)(end - at));
     if (!*at) return false;
     pair[0] = trimmed(at, colon ? colon : end);
@@ -25,25 +24,11 @@ static bool next_pair(const char **text, word pair[2]) {
     return true;
 }
 
-static bool is(const word *w, const char *name) {
-    return strlen(name) == w->length && !memcmp(name, w->at, w->length);
-}
-
-/* The number of a body among those that the text names, by the first place of its name there; 0 for any other. */
-static size_t number_of(const char *text, const char *name) {
-    word pair[2];
-    for (size_t number = 1; name[0] && next_pair(&text, pair); number += 2)
-        for (size_t k = 0; k < 2; k++)
-            if (is(&pair[k], name)) return number + k;
-    return 0;
-}
-
-static size_t number_of_word(const char *text, const word *w) {
-    word pair[2];
-    for (size_t number = 1; next_pair(&text, pair); number += 2)
-        for (size_t k = 0; k < 2; k++)
-            if (pair[k].length == w->length && !memcmp(pair[k].at, w->at, w->length)) return number + k;
-    return 0;
+static size_t count_pairs(const char *text) {
+    sk_word pair[2];
+    size_t count = 0;
+    while (next_pair(&text, pair)) count++;
+    return count;
 }
 
 /* The body of a leaf: that of its first corner. */
@@ -54,29 +39,62 @@ static size_t body_of(const sk_skin *skin, const sk_leaf *leaf, const sk_meeting
     return body;
 }
 
+/* Which words of each pair a body is: bit 0 the left one, bit 1 the right one. False where it is none at all. */
+static bool find_words(const char *text, const sk_meeting_body *body, uint8_t *words) {
+    sk_word pair[2];
+    bool any = false;
+    for (; next_pair(&text, pair); words++) {
+        *words = 0;
+        for (int k = 0; k < 2; k++)
+            if (sk_is_called(body->name, body->groups, pair[k])) *words |= (uint8_t)(1 << k);
+        any |= *words != 0;
+    }
+    return any;
+}
+
+static bool do_not_meet(const uint8_t *a, const uint8_t *b, size_t pairs) {
+    for (size_t i = 0; i < pairs; i++)
+        if (((a[i] & 1) && (b[i] & 2)) || ((a[i] & 2) && (b[i] & 1))) return true;
+    return false;
+}
+
+/* Numbers bodies: 0 are those that are no word. `words` has room for a row of `pairs` for each number, and one more. */
+static size_t number_bodies(const char *text, const sk_meeting_parts *parts, size_t pairs, uint8_t *words, uint32_t *number) {
+    size_t numbers = 1;
+    for (size_t i = 0; i < parts->body_count; i++) {
+        uint8_t *own = words + numbers * pairs;
+        size_t same = 1;
+        number[i] = 0;
+        if (!find_words(text, &parts->body[i], own)) continue;
+        while (same < numbers && memcmp(words + same * pairs, own, pairs) != 0) same++;
+        numbers += same == numbers;
+        number[i] = (uint32_t)same;
+    }
+    return numbers;
+}
+
 bool sk_ignored_make(sk_ignored *ignored, sk_allocator *allocator, const sk_skin *skin, const char *text,
                      const sk_meeting_parts *parts) {
     sk_ignored_release(ignored, allocator);
-    word pair[2];
-    size_t width = 1;
-    for (const char *at = text; next_pair(&at, pair);) width += 2;
-    if (width == 1) return true;
-    uint16_t *number = sk_allocate(allocator, (parts->body_count + 1) * sizeof *number);
+    size_t pairs = count_pairs(text), bodies = parts->body_count, room = SIZE_MAX / 2;
+    if (!pairs) return true;
+    if (bodies > UINT32_MAX - 2 || pairs > room / (bodies + 2)) return false;
+    uint8_t *words = sk_allocate(allocator, (bodies + 2) * pairs);
+    uint32_t *number = sk_allocate(allocator, (bodies + 1) * sizeof *number);
     ignored->of_leaf = sk_allocate(allocator, (skin->leaf_count + 1) * sizeof *ignored->of_leaf);
-    ignored->pair = sk_allocate(allocator, width * width);
-    bool good = number && ignored->of_leaf && ignored->pair;
+    bool good = words && number && ignored->of_leaf;
+    size_t width = good ? number_bodies(text, parts, pairs, words, number) : 1;
+    good = good && width <= room / width && (ignored->pair = sk_allocate(allocator, width * width)) != NULL;
     if (good) {
-        memset(ignored->pair, 0, width * width);
-        for (size_t i = 0; i < parts->body_count; i++) number[i] = (uint16_t)number_of(text, parts->body[i].name);
-        number[parts->body_count] = 0;
+        number[bodies] = 0; // of leaves that are of no body
         for (size_t i = 0; i < skin->leaf_count; i++) ignored->of_leaf[i] = number[body_of(skin, &skin->leaf[i], parts)];
-        for (const char *at = text; next_pair(&at, pair);) {
-            size_t a = number_of_word(text, &pair[0]), b = number_of_word(text, &pair[1]);
-            ignored->pair[a * width + b] = ignored->pair[b * width + a] = 1;
-        }
+        for (size_t a = 1; a < width; a++)
+            for (size_t b = 1; b < width; b++)
+                ignored->pair[a * width + b] = do_not_meet(words + a * pairs, words + b * pairs, pairs);
         ignored->width = width;
-        ignored->any = true;
+        ignored->any = width > 1;
     }
+    sk_release(allocator, words);
     sk_release(allocator, number);
     if (!good) sk_ignored_release(ignored, allocator);
     return good;

@@ -31,8 +31,8 @@ typedef struct sk_skin {
 /* Bodies of which some pairs do not meet (ignored.c). */
 typedef struct sk_ignored {
     bool any;
-    uint16_t *of_leaf; /* of leaves: the number of their body among those that are named, or 0 */
-    uint8_t *pair;     /* width x width: whether these two do not meet */
+    uint32_t *of_leaf; /* of leaves: the number that their body has, and whoever is called the same by the text; 0: it is not named */
+    uint8_t *pair;     /* width x width: whether bodies of these numbers do not meet */
     size_t width;
 } sk_ignored;
 
@@ -44,12 +44,13 @@ void sk_skin_release(sk_skin *skin, sk_allocator *allocator);
 
 /* ---- ignored.c ---- */
 
-/* Reads the pairs of names, and numbers the leaves of the bodies that have them. False when there is no memory. */
+/* Reads the pairs of names, of bodies and of groups, and numbers the leaves of the bodies that have them. False when there is
+ * no memory. */
 bool sk_ignored_make(sk_ignored *ignored, sk_allocator *allocator, const sk_skin *skin, const char *text,
                      const sk_meeting_parts *parts);
 void sk_ignored_release(sk_ignored *ignored, sk_allocator *allocator);
 static inline bool sk_is_ignored(const sk_ignored *ignored, uint32_t a, uint32_t b) {
-    return ignored->any && ignored->pair[ignored->of_leaf[a] * ignored->width + ignored->of_leaf[b]];
+    return ignored->any && ignored->pair[(size_t)ignored->of_leaf[a] * ignored->width + ignored->of_leaf[b]];
 }
 
 #endif

@@ -11,7 +11,7 @@ static const skein_field fields[] = {
     SK_REAL(sk_contact_params, recovery, "recovery", "m/s", 0.4, 0, 1e6,
             "how fast surfaces that have gone through each other are led apart; 0: they stay so"),
     SK_TEXT(sk_contact_params, ignore, "ignore", "",
-            "pairs of bodies that do not meet, by their names, commas between them: \"cape:shirt, cape:cape\""),
+            "pairs of bodies, or of groups of them, that do not meet, by their names, commas between them: \"cape:shirt, cape:cape\""),
 };
 
 /* ---- begin ---- */
@@ -435,13 +435,20 @@ static void release(sk_force *force, sk_allocator *allocator) {
     force->state = NULL;
 }
 
+static uint64_t add_text(uint64_t shape, const char *text) {
+    for (; *text; text++) shape = (shape ^ (unsigned char)*text) * 0x100000001b3u;
+    return (shape ^ 0x100) * 0x100000001b3u; // where it ends
+}
+
 /* Another world, or the same with others in it, has another number. */
-static uint64_t shape_of(const sk_force *force, uint64_t arrangement) {
-    uint64_t shape = arrangement * 2 + force->only.some;
+static uint64_t shape_of(const sk_force *force, const sk_meeting_parts *parts) {
+    uint64_t shape = parts->arrangement * 2 + force->only.some;
     for (size_t i = 0; i < force->only.count; i++)
         shape = (shape ^ force->only.data[i].first) * 0x100000001b3u ^ force->only.data[i].end;
     const sk_contact_params *params = force->params;
-    for (const char *c = params->ignore; *c; c++) shape = (shape ^ (unsigned char)*c) * 0x100000001b3u;
+    shape = add_text(shape, params->ignore);
+    for (size_t i = 0; i < parts->body_count && params->ignore[0]; i++) // they say whom that text means
+        shape = add_text(add_text(shape, parts->body[i].name), parts->body[i].groups);
     return shape;
 }
 
@@ -451,7 +458,7 @@ static bool prepare(sk_force *force, sk_allocator *allocator, const sk_particles
     if (!touch && !(touch = force->state = sk_allocate(allocator, sizeof *touch))) return false;
     touch->isa = isa;
     touch->alone = parts->rule_count == 1;
-    uint64_t shape = shape_of(force, parts->arrangement);
+    uint64_t shape = shape_of(force, parts);
     if (touch->p && touch->shape == shape) return true;
     release_vertices(touch, allocator);
     touch->shape = shape;

@@ -376,7 +376,7 @@ static const skein_field fields[] = {
     SK_REAL(sk_flocking_params, strength, "strength", "m/s2", 1, 0, SK_FAR, "how strongly each neighbour counts"),
     SK_REAL(sk_flocking_params, view, "view", "degrees", 360, 0, 360, "the angle that each sees, round its direction of flight; 360: all round"),
     SK_INT(sk_flocking_params, nearest, "nearest", "", 0, 0, SK_FLOCKING_MOST_NEAREST, "of the neighbours in reach only so many count, the nearest; 0: all"),
-    SK_TEXT(sk_flocking_params, neighbours, "neighbours", "", "the name of the body that it looks at; empty: those that it is `on`"),
+    SK_TEXT(sk_flocking_params, neighbours, "neighbours", "", "the names of the bodies, or of groups of them, that it looks at, commas between them; empty: those that it is `on`"),
     SK_TEXT(sk_flocking_params, towards, "formula.towards", "", "the weight of a neighbour along the direction to it, as a formula of `relative_distance` (0 beside it, 1 at the reach); where there is a formula, the zones only say how far the rule reaches"),
     SK_TEXT(sk_flocking_params, along, "formula.along", "", "the weight along its direction of flight, likewise"),
 };

@@ -20,10 +20,10 @@ typedef enum sk_domain { SK_OVER_PARTICLES, SK_OVER_TRIANGLES, SK_OVER_NEIGHBOUR
  *   meets    contact between surfaces: it has ops of its own in every substep (sk_meeting) */
 typedef enum sk_phase { SK_PUSHES, SK_STEERS, SK_BOUNDS, SK_MEETS } sk_phase;
 
-/* A body's particles, and its name. */
+/* A body's particles, and what it is called (base/names.h). */
 typedef struct sk_meeting_body {
     size_t first, end;
-    const char *name;
+    const char *name, *groups;
     double thickness, friction; /* its own, which count instead of the rule's where the thickness is over 0 */
 } sk_meeting_body;
 

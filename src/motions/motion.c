@@ -9,7 +9,7 @@
 const skein_field sk_motion_fields[] = {
     SK_TEXT(sk_motion_common, name, "name", "", "for paths and messages"),
     SK_BOOL(sk_motion_common, enabled, "enabled", 1, "false: as if it were not there"),
-    SK_TEXT(sk_motion_common, on, "on", "", "the name of the body whose pins it leads; if it has none, all pins"),
+    SK_TEXT(sk_motion_common, on, "on", "", "the names of the bodies, or of groups of them, whose pins it leads, commas between them; empty: all pins"),
     SK_TEXT(
         sk_motion_common, pins, "pins", "",
         "which of them: as the body's own pins, \"top edge\", numbers, \"box x y z x y z\", \"sphere x y z r\"; if there is nothing, "

@@ -70,7 +70,7 @@ static void find_middle(const skein_world *world, const sk_motion *motion, doubl
     memcpy(middle, motion->middle, sizeof motion->middle);
     for (size_t i = 0; i < world->rules.colliders.count && !motion->count; i++) {
         const sk_collider *collider = world->rules.colliders.data[i];
-        if (!sk_names_have(motion->common->colliders, collider->common->name)) continue;
+        if (!sk_names_have(motion->common->colliders, sk_word_of(collider->common->name))) continue;
         collider->type->place(collider->params, middle);
         return;
     }
@@ -128,11 +128,12 @@ static void add_leg(journey *all, const sk_leg *leg) {
 }
 
 /* What a body (NULL: particles of none) lives in, or a collider goes with. */
-static journey journey_of(const skein_world *world, const char *body, const char *collider) {
+static journey journey_of(const skein_world *world, const sk_common *body, const char *collider) {
     journey all = {.now = SK_NO_FRAME, .carried = SK_NO_FRAME, .end = SK_NO_FRAME};
     for (size_t i = 0; i < world->legs.count; i++) {
         const sk_motion_common *common = world->motions.data[i]->common;
-        bool its = collider ? sk_names_have(common->colliders, collider) : !common->on[0] || (body && !strcmp(common->on, body));
+        bool its = collider ? sk_names_have(common->colliders, sk_word_of(collider))
+                            : !common->on[0] || (body && sk_names_mean(common->on, body->name, body->groups));
         if (common->enabled && its) add_leg(&all, &world->legs.data[i]);
     }
     sk_frame back = sk_frame_back(&all.now);
@@ -214,7 +215,7 @@ skein_status sk_world_carry(skein_world *world, double dt, skein_error *error) {
     for (size_t i = 0; i < world->objects.count && good; i++) {
         const sk_object *object = world->objects.data[i];
         if (object->category != SKEIN_BODY || !object->as.body->enabled) continue;
-        journey way = journey_of(world, object->common.plain.name, NULL);
+        journey way = journey_of(world, &object->common.plain, NULL);
         good = put_along(world, object->as.body->first_particle, object->as.body->particle_count, &way);
     }
     lead_colliders(world);

@@ -38,7 +38,7 @@ static double number_of(const sk_object *object, const char *name) {
     return field ? sk_field_load(field, object->params).number[0] : 0;
 }
 
-/* Bodies with their names, so that rules can tell them apart. */
+/* Bodies with what they are called, so that rules can tell them apart. */
 static size_t list_bodies(const skein_world *world, sk_meeting_body *bodies) {
     size_t count = 0;
     for (size_t i = 0; i < world->objects.count; i++) {
@@ -46,25 +46,22 @@ static size_t list_bodies(const skein_world *world, sk_meeting_body *bodies) {
         if (object->category != SKEIN_BODY) continue;
         size_t first = object->as.body->first_particle;
         bodies[count++] = (sk_meeting_body){first, first + object->as.body->particle_count, object->common.plain.name,
-                                            number_of(object, "contact.thickness"), number_of(object, "contact.friction")};
+                                            object->common.plain.groups, number_of(object, "contact.thickness"),
+                                            number_of(object, "contact.friction")};
     }
     return count;
 }
 
-/* Each name in the pairs that rules ignore is a body's, or was. */
+/* Each name in the pairs that rules ignore is a body's or a group's, or was. */
 static skein_status check_ignored(const skein_world *world, skein_error *error) {
     for (size_t i = 0; i < world->rules.forces.count; i++) {
         const sk_force *force = world->rules.forces.data[i];
         if (!*force->enabled || !force->type->meeting) continue;
         const char *text = force->type->meeting->ignored(force->params);
-        for (size_t length; *text; text += length) {
-            text += strspn(text, ",: ");
-            length = strcspn(text, ",:");
-            size_t end = length;
-            while (end && text[end - 1] == ' ') end--;
-            skein_status status = end ? sk_world_check_body_name(world, force->label, text, end, error) : SKEIN_OK;
-            if (status) return status;
-        }
+        skein_status status = SKEIN_OK;
+        for (sk_word name; !status && (name = sk_names_next(&text, ",:")).length;)
+            status = sk_world_check_name(world, force->label, name, error);
+        if (status) return status;
     }
     return SKEIN_OK;
 }
@@ -136,7 +133,7 @@ skein_status skein_surface_contacts_copy(skein_world *world, skein_surface_conta
     *count = 0;
     skein_status status = sk_world_fetch(world);
     if (!status) status = sk_world_arrange(world, error);
-    if (!status) status = sk_world_find_groups(world, error);
+    if (!status) status = sk_world_find_whom(world, error);
     if (!status) status = sk_world_prepare_meetings(world, error);
     for (size_t i = 0; i < world->objects.count && !status; i++) {
         const sk_object *object = world->objects.data[i];

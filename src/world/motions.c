@@ -116,13 +116,31 @@ skein_status sk_world_choose(skein_world *world, const sk_body *body, size_t fir
     return status;
 }
 
-static const sk_body *body_named(const skein_world *world, const char *name) {
-    for (size_t i = 0; i < world->objects.count; i++) {
-        const sk_object *object = world->objects.data[i];
-        if (object->generation % 2 && object->category == SKEIN_BODY && !strcmp(object->common.plain.name, name))
-            return object->as.body;
+/* The particles of those bodies that a motion is `on`, and whom lies between them; without it, all. None, where the bodies
+ * that it names were removed. */
+static void find_range(const skein_world *world, const char *on, size_t *first, size_t *count) {
+    size_t cursor = 0, end = 0;
+    *first = on[0] ? SIZE_MAX : 0, *count = on[0] ? 0 : world->particles.count;
+    for (const sk_body *body; on[0] && (body = sk_world_next_named(world, on, &cursor));) {
+        if (body->first_particle < *first) *first = body->first_particle;
+        if ((size_t)body->first_particle + body->particle_count > end) end = (size_t)body->first_particle + body->particle_count;
     }
-    return NULL;
+    if (end > *first) *count = end - *first;
+}
+
+/* Marks those of its particles that a motion leads, from `first` on; with `pins`, those of each body that these name. */
+static skein_status choose_all(skein_world *world, const char *on, const char *pins, size_t first, size_t count, bool *chosen,
+                           skein_error *error) {
+    skein_status status = SKEIN_OK;
+    size_t cursor = 0;
+    if (!on[0] && pins[0]) return sk_world_choose(world, NULL, first, count, pins, chosen, error);
+    if (!on[0]) memset(chosen, 1, count * sizeof *chosen);
+    for (const sk_body *body; on[0] && !status && (body = sk_world_next_named(world, on, &cursor));) {
+        bool *its = chosen + (body->first_particle - first);
+        if (pins[0]) status = sk_world_choose(world, body, body->first_particle, body->particle_count, pins, its, error);
+        else memset(its, 1, body->particle_count * sizeof *its);
+    }
+    return status;
 }
 
 /* Lists those that are chosen, in order; of a motion with a track, those that are in it. */
@@ -144,31 +162,26 @@ static bool list_particles(sk_allocator *allocator, sk_motion *motion, size_t fi
     return true;
 }
 
-/* The body that a motion is `on`; NULL where it is on all. */
-static skein_status find_body(const skein_world *world, const sk_motion *motion, const sk_body **body,
-                              skein_error *error) {
-    const char *on = motion->common->on;
-    *body = on[0] ? body_named(world, on) : NULL;
-    if (on[0] && !*body && !sk_world_knew(world, on))
-        return sk_fail(error, SKEIN_ERROR_NAME, motion->label, "there is no body of the name '%s'", on);
-    return SKEIN_OK;
+/* Whether there are the bodies that a motion is `on`. */
+static skein_status check_bodies(const skein_world *world, const sk_motion *motion, skein_error *error) {
+    return sk_world_check_names(world, motion->label, motion->common->on, error);
+}
+
+/* What is to be said besides of a name that should be a collider's. */
+static const char *group_words(const skein_world *world, sk_word name) {
+    return sk_world_has_group(world, name) ? ": it is that of a group of bodies" : "";
 }
 
 /* Whether there are the colliders that a motion names. One that was there once may be removed. */
 static skein_status find_colliders(const skein_world *world, sk_motion *motion, skein_error *error) {
     const char *names = motion->common->colliders;
-    for (size_t length; !motion->knows_colliders && *names; names += length) {
-        names += strspn(names, ", ");
-        length = strcspn(names, ",");
-        size_t end = length;
-        while (end && names[end - 1] == ' ') end--;
-        bool found = !end;
-        for (size_t i = 0; i < world->rules.colliders.count && !found; i++) {
-            const char *name = world->rules.colliders.data[i]->common->name;
-            found = strlen(name) == end && !strncmp(name, names, end);
-        }
+    for (sk_word name; !motion->knows_colliders && (name = sk_names_next(&names, ",")).length;) {
+        bool found = false;
+        for (size_t i = 0; i < world->rules.colliders.count && !found; i++)
+            found = sk_word_is(name, world->rules.colliders.data[i]->common->name);
         if (!found)
-            return sk_fail(error, SKEIN_ERROR_NAME, motion->label, "there is no collider of the name '%.*s'", (int)end, names);
+            return sk_fail(error, SKEIN_ERROR_NAME, motion->label, "there is no collider of the name '%.*s'%s", (int)name.length,
+                           name.at, group_words(world, name));
     }
     motion->knows_colliders = true;
     return SKEIN_OK;
@@ -199,6 +212,8 @@ static skein_status find_carrier(const skein_world *world, const sk_motion *moti
     if (*collider ? (*collider)->type->surface != NULL : motion->seats.data && !meshes) return SKEIN_OK;
     if (!name[0])
         return sk_fail(error, SKEIN_ERROR_NAME, "to", "expected the name of a mesh collider: there are %zu", meshes);
+    if (!*collider && sk_world_has_group(world, sk_word_of(name)))
+        return sk_fail(error, SKEIN_ERROR_NAME, "to", "'%s' is a group of bodies: expected the name of one mesh collider", name);
     if (!*collider)
         return sk_fail(error, SKEIN_ERROR_NAME, "to", "there is no collider of the name '%s' (to a body leads a constraint \"attachment\")", name);
     return sk_fail(error, SKEIN_ERROR_VALUE, "to", "the collider '%s' is a %s, which has no triangles: take one of type \"mesh\"", name,
@@ -257,9 +272,8 @@ static skein_status find_seats(skein_world *world, sk_motion *motion, skein_erro
 }
 
 skein_status sk_world_check_motion(skein_world *world, const sk_motion *motion, skein_error *error) {
-    const sk_body *body;
     const char *on = motion->common->on, *pins = motion->common->pins;
-    skein_status status = find_body(world, motion, &body, error);
+    skein_status status = check_bodies(world, motion, error);
     sk_motion asked = *motion;
     asked.knows_colliders = false;
     if (!status) status = sk_motion_check_jumps(motion->common, error);
@@ -270,10 +284,11 @@ skein_status sk_world_check_motion(skein_world *world, const sk_motion *motion, 
     if (!status) status = find_colliders(world, &asked, error);
     if (!status && sk_motion_read_map(motion->common, NULL, 0) < 0)
         status = sk_fail(error, SKEIN_ERROR_VALUE, "map", "expected numbers, 0 or more");
-    if (status || !pins[0] || (on[0] && !body)) return status;
-    size_t first = body ? body->first_particle : 0, count = body ? body->particle_count : world->particles.count;
+    if (status || !pins[0]) return status;
+    size_t first, count;
+    find_range(world, on, &first, &count);
     bool *chosen = sk_allocate(&world->allocator, count * sizeof *chosen);
-    status = chosen ? sk_world_choose(world, body, first, count, pins, chosen, error) : sk_fail_memory(error, "the pins of a motion");
+    status = chosen ? choose_all(world, on, pins, first, count, chosen, error) : sk_fail_memory(error, "the pins of a motion");
     sk_release(&world->allocator, chosen);
     return status;
 }
@@ -294,16 +309,13 @@ static skein_status find_map(skein_world *world, sk_motion *motion, skein_error 
 }
 
 static skein_status find_particles(skein_world *world, sk_motion *motion, skein_error *error) {
-    const sk_body *body;
-    const char *on = motion->common->on, *pins = motion->common->pins;
-    if (find_body(world, motion, &body, error)) return error->status;
-    // one whose body was removed leads nobody, until there is another of that name
-    size_t first = body ? body->first_particle : 0, count = body ? body->particle_count : on[0] ? 0 : world->particles.count;
-    if (on[0] && !body) pins = "";
+    if (check_bodies(world, motion, error)) return error->status;
+    // one whose bodies were removed leads nobody, until somebody is called so again
+    size_t first, count;
+    find_range(world, motion->common->on, &first, &count);
     bool *chosen = sk_allocate(&world->allocator, count * sizeof *chosen);
-    skein_status status = chosen ? SKEIN_OK : sk_fail_memory(error, "the pins of a motion");
-    if (!status) memset(chosen, !pins[0], count * sizeof *chosen);
-    if (!status && pins[0]) status = sk_world_choose(world, body, first, count, pins, chosen, error);
+    skein_status status = chosen ? choose_all(world, motion->common->on, motion->common->pins, first, count, chosen, error)
+                                 : sk_fail_memory(error, "the pins of a motion");
     if (!status && !list_particles(&world->allocator, motion, first, count, chosen))
         status = sk_fail_memory(error, "the pins of a motion");
     sk_release(&world->allocator, chosen);

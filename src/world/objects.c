@@ -415,7 +415,8 @@ skein_status skein_remove(skein_world *world, skein_handle handle) {
     sk_rules *rules = &world->rules;
     switch (object->category) {
     case SKEIN_BODY: {
-        skein_status status = sk_world_remove_body(world, object->as.body, object->common.plain.name);
+        const sk_common *common = &object->common.plain;
+        skein_status status = sk_world_remove_body(world, object->as.body, common->name, common->groups);
         if (status) return status;
         break;
     }

@@ -60,35 +60,51 @@ skein_status sk_world_settle_presence(skein_world *world, skein_error *error) {
 
 /* ---- names ---- */
 
-/* Whether a rule names a body. */
-static bool is_named(const skein_world *world, const char *name) {
+/* Whether a text of pairs that do not meet has a name. */
+static bool ignores(const sk_force *force, sk_word name) {
+    const char *text = force->type->meeting ? force->type->meeting->ignored(force->params) : "";
+    for (sk_word word; (word = sk_names_next(&text, ",:")).length;)
+        if (word.length == name.length && !memcmp(word.at, name.at, name.length)) return true;
+    return false;
+}
+
+/* Whether a rule names a body or a group. */
+static bool is_named(const skein_world *world, sk_word name) {
     for (size_t i = 0; i < world->rules.forces.count; i++) {
         const sk_force *force = world->rules.forces.data[i];
         const char *neighbours = force->type->neighbours ? force->type->neighbours(force->params) : "";
-        if (sk_names_have(*force->on, name) || sk_names_have(neighbours, name)) return true;
+        if (sk_names_have(*force->on, name) || sk_names_have(neighbours, name) || ignores(force, name)) return true;
     }
     for (size_t i = 0; i < world->rules.colliders.count; i++)
         if (sk_names_have(world->rules.colliders.data[i]->common->on, name)) return true;
-    for (size_t i = 0; i < world->motions.count && name[0]; i++)
-        if (!strcmp(world->motions.data[i]->common->on, name)) return true;
+    for (size_t i = 0; i < world->motions.count; i++)
+        if (sk_names_have(world->motions.data[i]->common->on, name)) return true;
     return false;
 }
 
-bool sk_world_knew(const skein_world *world, const char *name) {
+static bool is_remembered(const skein_world *world, sk_word name) {
     for (size_t i = 0; i < world->gone_names.count; i++)
-        if (!strcmp(world->gone_names.data[i], name)) return true;
+        if (sk_word_is(name, world->gone_names.data[i])) return true;
     return false;
 }
 
-/* Rules that name a body which is removed move nobody, until there is another of its name. */
-static skein_status remember_name(skein_world *world, const char *name) {
-    if (!is_named(world, name) || sk_world_knew(world, name)) return SKEIN_OK;
+/* Rules that name a body which is removed, or a group that nobody is in any more, move nobody, until somebody is called
+ * so again. */
+static skein_status remember_name(skein_world *world, sk_word name) {
+    if (!is_named(world, name) || is_remembered(world, name)) return SKEIN_OK;
     char *copy = SK_RESERVE(&world->allocator, &world->gone_names, world->gone_names.count + 1)
-                     ? sk_copy_text(&world->allocator, name)
+                     ? sk_allocate(&world->allocator, name.length + 1)
                      : NULL;
     if (!copy) return sk_fail_memory(sk_world_error(world), "the name of a body");
+    memcpy(copy, name.at, name.length); // what is allocated is zero
     world->gone_names.data[world->gone_names.count++] = copy;
     return SKEIN_OK;
+}
+
+skein_status sk_world_remember_names(skein_world *world, const char *names) {
+    skein_status status = SKEIN_OK;
+    for (sk_word name; !status && (name = sk_names_next(&names, ",")).length;) status = remember_name(world, name);
+    return status;
 }
 
 void sk_world_forget_names(skein_world *world) {
@@ -142,9 +158,10 @@ static void remove_pins(skein_world *world, const sk_body *body) {
     world->pins.count = kept;
 }
 
-skein_status sk_world_remove_body(skein_world *world, sk_body *body, const char *name) {
+skein_status sk_world_remove_body(skein_world *world, sk_body *body, const char *name, const char *groups) {
     skein_status status = sk_world_touch(world);
-    if (!status) status = remember_name(world, name);
+    if (!status) status = remember_name(world, sk_word_of(name));
+    if (!status) status = sk_world_remember_names(world, groups);
     if (status) return status;
     remove_rules(world, body);
     remove_triangles(world, body);

@@ -11,6 +11,8 @@ static const skein_field body_fields[] = {
     SK_TEXT(sk_common, name, "name", "", "for paths, messages and the names of files"),
     SK_BOOL(sk_common, enabled, "enabled", 1, "false: as if it were not there; it stays as it is until it is again"),
     SK_BOOL(sk_common, visible, "visible", 1, "whether it is drawn"),
+    SK_TEXT(sk_common, groups, "groups", "",
+            "the names of groups that it is in, commas between them: where rules name bodies, a group's name means all in it"),
 };
 static const skein_field rule_fields[] = {
     SK_TEXT(sk_common, name, "name", "", "for paths and messages"),
@@ -22,7 +24,7 @@ static const skein_field force_fields[] = {
     SK_BOOL(sk_common, enabled, "enabled", 1, "false: as if it were not there"),
     SK_BOOL(sk_common, visible, "visible", 1, "whether it is drawn"),
     SK_TEXT(sk_common, on, "on", "",
-            "the names of the bodies that it acts on, commas between them; empty: every particle"),
+            "the names of the bodies, or of groups of them, that it acts on, commas between them; empty: every particle"),
 };
 
 const skein_field *sk_common_fields(skein_category category, size_t *count) {
@@ -185,6 +187,12 @@ static skein_status change_body(skein_world *world, sk_object *object) {
     return sk_world_enable_body(world, body, object->common.plain.enabled);
 }
 
+/* A body that is given other groups may be the last one in those that it is in: rules that name them go on, on nobody. */
+static skein_status leave_groups(skein_world *world, const sk_object *object, const skein_field *field) {
+    bool leaves = object && object->category == SKEIN_BODY && !strcmp(field->name, "groups");
+    return leaves ? sk_world_remember_names(world, object->common.plain.groups) : SKEIN_OK;
+}
+
 bool skein_field_is_live(const skein_world *world, skein_handle handle, const char *name) {
     if (!world || !name) return false;
     sk_object *object;
@@ -206,7 +214,8 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
                        name, skein_category_text(object->category));
     sk_collider *collider = object && object->category == SKEIN_COLLIDER ? object->as.collider : NULL;
     if (collider) sk_collider_note(collider, world->time);
-    skein_status status = replace(world, object, field, params, value, error);
+    skein_status status = leave_groups(world, object, field);
+    if (!status) status = replace(world, object, field, params, value, error);
     if (status) return status;
     if (collider && sk_collider_changed(collider)) world->plan_stale = true; // a card's passes differ
     if (object && object->category == SKEIN_BODY && (status = change_body(world, object))) return status;

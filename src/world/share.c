@@ -197,12 +197,19 @@ static bool knows_numbers(const skein_world *world, const body_list *list) {
     return false;
 }
 
+/* Whether a motion leads the pins of more bodies than one. */
+static bool leads_several(const skein_world *world, const sk_motion *motion) {
+    size_t cursor = 0;
+    const char *on = motion->common->on;
+    return !on[0] || (sk_world_next_named(world, on, &cursor) && sk_world_next_named(world, on, &cursor));
+}
+
 static bool leads_loose(const skein_world *world, const body_list *list) {
     bool loose = false;
     for (size_t b = 0; b < list->count; b++) loose |= list->data[b].loose;
     for (size_t i = 0; i < world->motions.count; i++) {
         const sk_motion *motion = world->motions.data[i];
-        if ((loose && motion->type->given) || (list->count > 1 && !motion->common->on[0])) return true;
+        if ((loose && motion->type->given) || (list->count > 1 && leads_several(world, motion))) return true;
         for (size_t k = 0; k < motion->count; k++) {
             size_t b = body_with(list, motion->particle[k]);
             if (b < list->count && list->data[b].loose) return true;

@@ -103,7 +103,7 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
     *stability = (skein_stability){.mode_count = 0};
     skein_status status = sk_world_arrange(world, error);
     skein_error ignored; // a name that no body has is a step's to tell
-    if (!status) sk_world_find_groups(world, &ignored);
+    if (!status) sk_world_find_whom(world, &ignored);
     if (!status) status = sk_world_fetch(world);
     if (status) return status;
     for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);

@@ -126,7 +126,7 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     statistics->particles = all->count - all->out_count;
     status = sk_world_arrange(world, error); // the slots of new rules may not be known yet
     skein_error ignored; // a name that no body has is a step's to tell
-    if (!status) sk_world_find_groups(world, &ignored);
+    if (!status) sk_world_find_whom(world, &ignored);
     if (status) return status;
     count_particles(world, statistics);
     sk_world_measure_energy(world, statistics);

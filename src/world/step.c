@@ -127,7 +127,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     if (!world->plan_stale && world->plan_dt == dt) return SKEIN_OK;
     const sk_method_type *method = world->method;
     status = sk_method_check(method, world->method_params, &world->rules, error);
-    if (!status) status = sk_world_find_groups(world, error);
+    if (!status) status = sk_world_find_whom(world, error);
     if (!status) status = sk_world_prepare_meetings(world, error);
     if (status) return status;
     for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);

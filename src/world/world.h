@@ -8,6 +8,7 @@
 #ifndef SK_WORLD_WORLD_H
 #define SK_WORLD_WORLD_H
 
+#include "base/names.h"
 #include "base/pace.h"
 #include "base/printf.h"
 #include "base/status.h"
@@ -63,6 +64,7 @@ struct sk_body {
 typedef struct sk_common {
     char *name, *on; /* on: forces only */
     bool enabled, visible;
+    char *groups; /* bodies only: names, commas between them */
 } sk_common;
 
 typedef struct sk_object {
@@ -154,7 +156,7 @@ struct skein_world {
     struct {
         char **data;
         size_t count, capacity;
-    } gone_names; /* of bodies that were removed, and that rules still name */
+    } gone_names; /* of bodies that were removed, and groups that lost a body, where rules still name them */
     const sk_method_type *method;
     void *method_params;
     sk_plan plan;
@@ -284,19 +286,25 @@ void sk_body_release(skein_world *world, sk_body *body);
 /* Takes a body out, or back in: what it is made of stays. */
 skein_status sk_world_enable_body(skein_world *world, sk_body *body, bool enabled);
 /* Releases all that a body has added, and itself; its particles are gone. */
-skein_status sk_world_remove_body(skein_world *world, sk_body *body, const char *name);
+skein_status sk_world_remove_body(skein_world *world, sk_body *body, const char *name, const char *groups);
 /* Gives the newest body the indices of particles that are gone, if it fits in, before anybody has seen its own: all
  * that it added from these marks on. */
 void sk_world_reuse_indices(skein_world *world, sk_body *body, size_t batches, size_t limits);
 /* Leaves out of constraints what is not there. */
 skein_status sk_world_settle_presence(skein_world *world, skein_error *error);
-/* ---- whom rules act on (world/groups.c) ---- */
+/* ---- whom rules act on (world/whom.c) ---- */
 /* Finds the bodies that rules name; an unknown name is an error. The slots are up to date. */
-skein_status sk_world_find_groups(skein_world *world, skein_error *error);
-/* Whether there is a body of that name, or was. */
-skein_status sk_world_check_body_name(const skein_world *world, const char *label, const char *name, size_t length,
-                                      skein_error *error);
-/* Shows what can meet to the rules that meet. The groups are found. */
+skein_status sk_world_find_whom(skein_world *world, skein_error *error);
+/* Whether a body or a group is called so, or was. */
+bool sk_world_knows(const skein_world *world, sk_word name);
+/* Whether any body is in a group of that name. */
+bool sk_world_has_group(const skein_world *world, sk_word name);
+/* Fails where nobody is called so, or was; and the same of each name of a list. */
+skein_status sk_world_check_name(const skein_world *world, const char *label, sk_word name, skein_error *error);
+skein_status sk_world_check_names(const skein_world *world, const char *label, const char *names, skein_error *error);
+/* The next body, enabled or not, that a list means, by its name or a group's, from *cursor = 0 on; NULL at the end. */
+const sk_body *sk_world_next_named(const skein_world *world, const char *names, size_t *cursor);
+/* Shows what can meet to the rules that meet. Whom they act on is found. */
 skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error);
 /* How many edges go through triangles that they are not to pass. */
 skein_status sk_world_count_crossings(skein_world *world, size_t *count, skein_error *error);
@@ -304,13 +312,11 @@ skein_status sk_world_count_crossings(skein_world *world, size_t *count, skein_e
 void sk_world_tell_of_meetings(skein_world *world);
 /* Before a force is released: what it keeps. */
 void sk_world_end_meeting(skein_world *world, sk_force *force);
-/* Whether a list of names has this one: it is the name, or is in it between commas. */
-bool sk_names_have(const char *names, const char *name);
 /* The next run of particles that take part and that a rule `on` these bodies acts on, from *cursor = 0 on: in the order
  * of particles where it acts on all, else body by body. False at the end. */
 bool sk_world_next_run(const skein_world *world, const char *on, size_t *cursor, size_t *first, size_t *end);
-/* Whether a body of that name was removed, and a rule still names it. */
-bool sk_world_knew(const skein_world *world, const char *name);
+/* Keeps those names of a list that rules name: nobody may be called so from now on. */
+skein_status sk_world_remember_names(skein_world *world, const char *names);
 void sk_world_forget_names(skein_world *world);
 /* Finds the particles' slots and cuts batches into sweeps, if anything was added. */
 skein_status sk_world_arrange(skein_world *world, skein_error *error);

@@ -1,74 +1,81 @@
-/* Whom rules act on: the bodies that they name, as ranges of particles, slots and triangles. */
+/* Whom rules act on: the bodies that they name, by their names or by those of groups, as ranges of particles, slots and
+ * triangles. */
 #include <stdio.h>
 #include <string.h>
 
 #include "world/world.h"
 
-/* ---- names ---- */
-
-/* The next name of a list, without the blanks around it; *length is 0 at its end. */
-static const char *next_name(const char **list, size_t *length) {
-    const char *at = *list + strspn(*list, " ,");
-    *length = strcspn(at, ",");
-    *list = at + *length;
-    while (*length && at[*length - 1] == ' ') --*length;
-    return at;
-}
-
-static bool is_named(const char *name, const char *at, size_t length) {
-    return strlen(name) == length && !strncmp(name, at, length);
-}
-
-bool sk_names_have(const char *names, const char *name) {
-    size_t length;
-    if (!name[0]) return false;
-    if (!strcmp(names, name)) return true;
-    for (const char *at = next_name(&names, &length); length; at = next_name(&names, &length))
-        if (is_named(name, at, length)) return true;
-    return false;
-}
+/* ---- names: of bodies, and of groups that they are in ---- */
 
 static const sk_object *body_at(const skein_world *world, size_t i) {
     const sk_object *object = world->objects.data[i];
     return object->category == SKEIN_BODY ? object : NULL;
 }
 
-/* Whether there is such a body, or was. */
-static bool is_known(const skein_world *world, const char *at, size_t length) {
-    for (size_t i = 0; i < world->objects.count; i++)
-        if (body_at(world, i) && is_named(body_at(world, i)->common.plain.name, at, length)) return true;
+bool sk_world_knows(const skein_world *world, sk_word name) {
+    for (size_t i = 0; i < world->objects.count; i++) {
+        const sk_object *body = body_at(world, i);
+        if (body && sk_is_called(body->common.plain.name, body->common.plain.groups, name)) return true;
+    }
     for (size_t i = 0; i < world->gone_names.count; i++)
-        if (is_named(world->gone_names.data[i], at, length)) return true;
+        if (sk_word_is(name, world->gone_names.data[i])) return true;
     return false;
 }
 
-static skein_status fail_name(const skein_world *world, const char *label, const char *at, size_t length,
-                              skein_error *error) {
-    enum { MOST_NAMES = 256 };
-    const char *names[MOST_NAMES];
-    char name[128];
-    size_t count = 0;
-    snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), at);
-    for (size_t i = 0; i < world->objects.count && count < MOST_NAMES; i++)
-        if (body_at(world, i) && body_at(world, i)->common.plain.name[0])
-            names[count++] = body_at(world, i)->common.plain.name;
-    const char *nearest = sk_nearest_name(name, names, count);
-    return sk_fail(error, SKEIN_ERROR_NAME, label, "there is no body of the name '%s'%s%s%s", name,
-                   nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
+bool sk_world_has_group(const skein_world *world, sk_word name) {
+    for (size_t i = 0; i < world->objects.count; i++)
+        if (body_at(world, i) && sk_names_have(body_at(world, i)->common.plain.groups, name)) return true;
+    return false;
 }
 
-/* Each name of a list is a body's. */
-static skein_status check_names(const skein_world *world, const char *label, const char *names, skein_error *error) {
-    size_t length;
-    if (is_known(world, names, strlen(names))) return SKEIN_OK;
-    for (const char *at = next_name(&names, &length); length; at = next_name(&names, &length))
-        if (!is_known(world, at, length)) return fail_name(world, label, at, length, error);
-    return SKEIN_OK;
+enum { NAME_SIZE = 128 };
+
+static void copy_word(char to[NAME_SIZE], sk_word word) {
+    snprintf(to, NAME_SIZE, "%.*s", (int)(word.length < NAME_SIZE ? word.length : NAME_SIZE - 1), word.at);
 }
 
-skein_status sk_world_check_body_name(const skein_world *world, const char *label, const char *name, size_t length,
-                                      skein_error *error) {
-    return is_known(world, name, length) ? SKEIN_OK : fail_name(world, label, name, length, error);
+/* Puts a candidate in the place of the nearest name so far, where it is nearer. */
+static void take_nearer(char nearest[NAME_SIZE], const char *name, sk_word candidate) {
+    char other[NAME_SIZE];
+    if (!candidate.length || candidate.length >= NAME_SIZE) return;
+    copy_word(other, candidate);
+    const char *const both[] = {nearest, other};
+    const char *best = sk_nearest_name(name, nearest[0] ? both : both + 1, nearest[0] ? 2 : 1);
+    if (best == other) memcpy(nearest, other, NAME_SIZE);
+}
+
+static skein_status fail_name(const skein_world *world, const char *label, sk_word word, skein_error *error) {
+    char name[NAME_SIZE], nearest[NAME_SIZE] = "";
+    copy_word(name, word);
+    for (size_t i = 0; i < world->objects.count; i++) {
+        const sk_object *body = body_at(world, i);
+        if (!body) continue;
+        take_nearer(nearest, name, sk_word_of(body->common.plain.name));
+        const char *groups = body->common.plain.groups;
+        for (sk_word group; (group = sk_names_next(&groups, ",")).length;) take_nearer(nearest, name, group);
+    }
+    return sk_fail(error, SKEIN_ERROR_NAME, label, "there is no body or group of the name '%s'%s%s%s", name,
+                   nearest[0] ? "; did you mean '" : "", nearest, nearest[0] ? "'?" : "");
+}
+
+skein_status sk_world_check_name(const skein_world *world, const char *label, sk_word name, skein_error *error) {
+    return sk_world_knows(world, name) ? SKEIN_OK : fail_name(world, label, name, error);
+}
+
+skein_status sk_world_check_names(const skein_world *world, const char *label, const char *names, skein_error *error) {
+    skein_status status = SKEIN_OK;
+    if (sk_world_knows(world, sk_word_of(names))) return SKEIN_OK; // a body's name may have commas
+    for (sk_word name; !status && (name = sk_names_next(&names, ",")).length;)
+        status = sk_world_check_name(world, label, name, error);
+    return status;
+}
+
+const sk_body *sk_world_next_named(const skein_world *world, const char *names, size_t *cursor) {
+    while (*cursor < world->objects.count) {
+        const sk_object *body = body_at(world, (*cursor)++);
+        if (body && sk_names_mean(names, body->common.plain.name, body->common.plain.groups)) return body->as.body;
+    }
+    return NULL;
 }
 
 /* ---- ranges ---- */
@@ -106,23 +113,21 @@ static skein_status find_only(skein_world *world, const char *label, const char 
     only->some = names && names[0];
     only->count = 0;
     if (!only->some) return SKEIN_OK;
-    skein_status status = check_names(world, label, names, error);
-    for (size_t i = 0; i < world->objects.count && !status; i++) {
-        const sk_object *object = body_at(world, i);
-        if (object && sk_names_have(names, object->common.plain.name) && !add_span(world, object->as.body, only))
-            return sk_fail_memory(error, label);
-    }
+    skein_status status = sk_world_check_names(world, label, names, error);
+    size_t cursor = 0;
+    for (const sk_body *body; !status && (body = sk_world_next_named(world, names, &cursor));)
+        if (!add_span(world, body, only)) return sk_fail_memory(error, label);
     return status;
 }
 
-/* ---- groups: particles that follow each other ---- */
+/* ---- particles that follow each other ---- */
 
 static sk_group everybody(const skein_world *world) {
     const sk_particles *all = &world->particles;
     return (sk_group){0, all->count, 0, all->slot_count, all->out_count};
 }
 
-/* Several bodies as one group, if they lie beside each other; nobody else is in it then. */
+/* Several bodies as one run, if they lie beside each other; nobody else is in it then. */
 static skein_status join(const skein_world *world, const char *label, const sk_only *only, sk_group *group,
                          skein_error *error) {
     *group = only->some ? (sk_group){0, 0, 0, 0, 0} : everybody(world);
@@ -163,7 +168,7 @@ static skein_status find_force(skein_world *world, sk_force *force, skein_error 
     return status;
 }
 
-skein_status sk_world_find_groups(skein_world *world, skein_error *error) {
+skein_status sk_world_find_whom(skein_world *world, skein_error *error) {
     skein_status status = SKEIN_OK;
     world->everybody = everybody(world);
     for (size_t i = 0; i < world->rules.colliders.count && !status; i++) {
@@ -192,12 +197,9 @@ bool sk_world_next_run(const skein_world *world, const char *on, size_t *cursor,
         *cursor = *end;
         return more;
     }
-    for (; *cursor < world->objects.count; ++*cursor) {
-        const sk_object *object = body_at(world, *cursor);
-        if (!object || !object->as.body->enabled || !sk_names_have(on, object->common.plain.name)) continue;
-        *first = object->as.body->first_particle, *end = *first + object->as.body->particle_count;
-        ++*cursor;
-        return true;
-    }
-    return false;
+    const sk_body *body;
+    do body = sk_world_next_named(world, on, cursor);
+    while (body && !body->enabled);
+    if (body) *first = body->first_particle, *end = *first + body->particle_count;
+    return body != NULL;
 }
