@@ -340,11 +340,13 @@ static void push_near(sk_touch *touch, sk_run *run, const sk_op *op) {
         touch->q[v].w = 0;
     }
     const real gain = (real)(60 * op->dt * (double)touch->thickness); // a thickness in a sixtieth of a second
+    const real none = SK_NO_GAP * touch->thickness;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
         for (size_t i = 0; i < touch->near[sort].count; i++) {
             uint32_t entry = touch->near[sort].data[i];
             const sk_pairs *pairs = sk_pairs_of(touch, sort, entry);
             size_t k = entry / 2;
+            if (pairs->distance[k] < none) touch->tangle.forced = true; // rounding chooses its side
             real friction = sk_pair_friction(touch, pairs->corner[0][k], pairs->corner[2][k], (real)params->friction);
             push_pair(touch, pairs, sort, k, gain, friction);
         }

@@ -318,6 +318,8 @@ bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uin
 #define SK_LEFT_OVER ((real)0.1)
 /* What is less than this share of the thickness does not close at all. */
 #define SK_LEAST_GAP ((real)0.0025)
+/* And less than this is none: only what begins so has it. */
+#define SK_NO_GAP ((real)0.00025)
 
 /* Loads the places before the substep, unless they are. */
 void sk_touch_load(sk_touch *touch, size_t packed);
