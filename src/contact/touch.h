@@ -2,7 +2,7 @@
  *
  *   begin   P = X; pairs of features that may come near are found anew where a vertex has left its way; all that are
  *           kept are looked at: distance, normal, places of contact; those nearer than thickness and a twentieth are near
- *   push    each of these, in a fixed order, is brought to its thickness, with friction
+ *   push    each of these, in a fixed order, is brought to its thickness, with friction; or in an implicit solve presses (press.c)
  *   bound   no vertex goes further than its pairs allow, so that nothing passes
  *
  * A pair is a vertex and a triangle, or two edges; they have no corner in common, and their bodies are no pair to be
