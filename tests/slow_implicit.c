@@ -1,5 +1,5 @@
 /* Backward Euler for 10,000 steps of 1/30 s, a hundred times stiffer than explicit steps could be: a cube is thrown on
- * a ball and the ground, and comes to rest. And cloth that lands. */
+ * a ball and the ground, and comes to rest. And cloth that lands, and crumples. */
 #include "helpers.h"
 
 enum { SIDE = 4, CUBE = SIDE * SIDE * SIDE, STEPS = 10000 };
@@ -76,8 +76,70 @@ static void a_sheet_that_folds_on_rough_ground_stays_in_one_piece(void **state) 
     lands(4, true, 6); // 3 J where friction was held against speeds that the ground does not see
 }
 
+/* A closed tube, like a shoelace, of cells hardly wider than it is thick to touch: it falls on an end, crumples and lies. What
+ * is near is pressed apart within the solve. A push after it stretched what springs then pulled back, against the bound: to
+ * 63 %, and 2.8 J of the 0.002 J that it falls with. */
+enum { AROUND = 8, RINGS = 24, SIDES = AROUND * (RINGS - 1) };
+
+static void add_tube(skein_world *world) {
+    double at[3 * AROUND * RINGS];
+    uint32_t size[SIDES + 2], corner[4 * SIDES + 2 * AROUND], *next = corner;
+    for (int i = 0; i < AROUND * RINGS; i++) {
+        double turn = 2 * acos(-1) * (i % AROUND) / AROUND;
+        at[3 * i] = 0.0085 * (i / AROUND - RINGS / 2);
+        at[3 * i + 1] = 0.009 * sin(turn), at[3 * i + 2] = 0.009 * cos(turn);
+    }
+    for (uint32_t f = 0; f < SIDES; f++) {
+        uint32_t other = f / AROUND * AROUND + (f + 1) % AROUND;
+        size[f] = 4;
+        *next++ = f, *next++ = other, *next++ = other + AROUND, *next++ = f + AROUND;
+    }
+    size[SIDES] = size[SIDES + 1] = AROUND;
+    for (uint32_t c = 0; c < AROUND; c++) *next++ = AROUND - 1 - c;
+    for (uint32_t c = 0; c < AROUND; c++) *next++ = SIDES + c;
+    const skein_mesh mesh = {at, AROUND * RINGS, size, SIDES + 2, corner, sizeof corner / sizeof *corner};
+    OK(world, skein_body_add(world, "cloth", &mesh,
+                             SKEIN_SETTINGS(SKEIN_VEC3("position", 0, 0.15, 0), SKEIN_VEC3("rotation", 0, 30, 65)), NULL));
+}
+
+static uint64_t crumples(const char *isa, int threads) {
+    setenv("SKEIN_SIMD", isa, 1);
+    skein_world_desc desc = skein_default_world_desc();
+    desc.thread_count = threads;
+    skein_world *world = skein_world_create(&desc, NULL);
+    unsetenv("SKEIN_SIMD");
+    assert_non_null(world);
+    OK(world, skein_method_set(world, "backward_euler", SKEIN_SETTINGS(SKEIN_REAL("substeps", 5))));
+    add_gravity(world);
+    OK(world, skein_force_add(world, "contact", NULL, NULL));
+    OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.5)), NULL));
+    add_tube(world);
+    double most = 0;
+    for (int frame = 0; frame < 30; frame++) {
+        steps(world, 1, 1.0 / 60);
+        most = fmax(most, statistics_of(world).elastic_energy);
+    }
+    skein_statistics end = statistics_of(world);
+    printf("tube, %s, %d threads: at most %.2g J elastic, in the end %.2g J, %.2g J kinetic, stretch %.2g\n", isa, threads, most,
+           end.elastic_energy, end.kinetic_energy, end.max_stretch);
+    assert_under(most, 0.05);
+    assert_under(end.kinetic_energy, 1e-4);
+    assert_under(end.max_stretch, 0.03);
+    assert_int_equal(end.crossings, 0);
+    uint64_t hash = skein_world_hash(world);
+    skein_world_destroy(world);
+    return hash;
+}
+
+static void a_tube_that_crumples_stays_in_one_piece(void **state) {
+    (void)state;
+    uint64_t ought = crumples("sse", 1);
+    assert_true(crumples("avx512", 2) == ought);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_stiff_cube_stays_for_ten_thousand_steps),
-                                 cmocka_unit_test(a_sheet_that_folds_on_rough_ground_stays_in_one_piece)};
+                                 cmocka_unit_test(a_sheet_that_folds_on_rough_ground_stays_in_one_piece),
+                                 cmocka_unit_test(a_tube_that_crumples_stays_in_one_piece)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

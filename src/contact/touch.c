@@ -361,13 +361,19 @@ static void push_near(sk_touch *touch, sk_run *run, const sk_op *op) {
     }
 }
 
-static void push(sk_run *run, const sk_op *op, size_t from, size_t end) {
+static void lead(sk_run *run, const sk_op *op, size_t from, size_t end) {
     (void)from, (void)end;
     sk_touch *touch = touch_of(op);
     if (!touch) return;
-    if (touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count) push_near(touch, run, op);
     // what is led apart gets no speed of it
     sk_tangle_lead(touch, run->vector[SK_X], op->source[1] == SK_NONE ? run->vector[SK_X0] : NULL, op->packed);
+}
+
+static void push(sk_run *run, const sk_op *op, size_t from, size_t end) {
+    sk_touch *touch = touch_of(op);
+    if (!touch) return;
+    if (touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count) push_near(touch, run, op);
+    lead(run, op, from, end);
 }
 
 /* ---- the kind ---- */
@@ -385,6 +391,7 @@ static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *cou
     LIST(slot, vertices), LIST(p, vertices), LIST(q, vertices), LIST(way, vertices);
     LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(seen, vertices), LIST(inverse, vertices);
     LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(lost, vertices), LIST(wild, vertices);
+    LIST(pressed_at, vertices), LIST(pressed, vertices);
     LIST(corner_box, vertices), LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles);
     LIST(hot, leaves), LIST(leaf_box, leaves), LIST(hot_box, leaves);
     LIST(edge_cells, leaves), LIST(corner_cells, leaves);
@@ -432,6 +439,8 @@ static void release(sk_force *force, sk_allocator *allocator) {
     sk_release(allocator, touch->order.data);
     sk_release(allocator, touch->other_order.data);
     sk_release(allocator, touch->first.data);
+    sk_release(allocator, touch->press.data);
+    sk_release(allocator, touch->pressing.data);
     sk_release(allocator, touch->partner.data);
     sk_release(allocator, touch);
     force->state = NULL;
@@ -490,6 +499,11 @@ static const sk_meeting meeting = {
     .push = {SK_ANY_ISA(push)},
     .hold = {SK_ANY_ISA(sk_touch_hold)},
     .bound = {SK_ANY_ISA(sk_touch_bound)},
+    .near = {SK_ANY_ISA(sk_press_begin)},
+    .press = {SK_ANY_ISA(sk_press_force)},
+    .diagonal = {SK_ANY_ISA(sk_press_diagonal)},
+    .apply = {SK_ANY_ISA(sk_press_apply)},
+    .lead = {SK_ANY_ISA(lead)},
     .prepare = prepare,
     .release = release,
     .crossings = sk_touch_crossings,

@@ -43,10 +43,16 @@ typedef struct sk_force sk_force;
  *   hold    where an implicit solve ends, in its parts: stops vertices as the bound does, and takes those out of the
  *           solve's filter S, so that it goes on with the others
  *   push    with the limits: moves X, and changes V to match if its second source is V
+ *   lead    instead of a push, where a solve has pressed apart what is near: leads apart what is through each other
  *   bound   last: stops vertices before they would pass a surface, and changes V to match
- * They do not declare which slots they reach, and run on one thread. */
+ * They do not declare which slots they reach, and run on one thread. An implicit solve has these besides:
+ *   near             finds what presses each other in it, as X is when the substep begins
+ *   press            adds the forces to F
+ *   diagonal, apply  their part of the matrix, as of forces that depend on place (sk_force_type); the products are those
+ *                    of the matrix whose diagonal was asked for last */
 typedef struct sk_meeting {
-    sk_kernels begin, hold, push, bound;
+    sk_kernels begin, hold, push, lead, bound;
+    sk_kernels near, press, diagonal, apply;
     /* Makes the force's `state` for the ops, if there is none for these parts. False: no memory. */
     bool (*prepare)(sk_force *force, sk_allocator *allocator, const sk_particles *particles,
                     const sk_meeting_parts *parts, sk_isa isa);

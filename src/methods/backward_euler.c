@@ -47,6 +47,7 @@ static void write_residual(sk_plan_builder *builder, double h) {
     sk_write_sum(builder, SK_X, 1, SK_X0, h, SK_V);
     sk_write_fields(builder);
     sk_write_forces(builder);
+    sk_write_pressing(builder);
     sk_write_pass(builder, &sk_solve_imbalance, residual, SK_F, (sk_vector)SK_FRICTION,
                   "S (h F + h T5 + m (V0 - V)); sum R T9");
     sk_write_pass(builder, &sk_solve_norm, (sk_vector)SK_SUMS, residual, SK_X, "R w R");
@@ -126,8 +127,10 @@ static void write(sk_plan_builder *builder, const void *data, double dt) {
     double h = dt / params->substeps;
     size_t repeat = sk_write_repeat(builder, (size_t)params->substeps, h);
     sk_write_steering(builder);
+    sk_write_near(builder);
     sk_write_fields(builder);
     sk_write_forces(builder);
+    sk_write_pressing(builder);
     sk_write_filters(builder);
     sk_write_save(builder);
     sk_write_stage_time(builder, 1);

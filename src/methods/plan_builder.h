@@ -43,6 +43,7 @@ typedef struct sk_plan_builder {
     double h;           /* of the present substep, s, */
     size_t iterations;  /* and how many of them the repeat has */
     bool predicted;     /* the substep began with X = X0 + h V */
+    bool presses;       /* surfaces that are near press each other apart within the solve, and are not pushed */
     double before_end;  /* how long before the end of the substep X is now, s */
     size_t substep;     /* the place of the substep's repeat */
     bool no_memory;     /* the plan is incomplete */
@@ -120,7 +121,7 @@ typedef enum sk_contact_sort {
 } sk_contact_sort;
 /* An op for each collider. An update reads X0 and V0, the state before the substep's corrections. */
 void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort);
-typedef enum sk_meeting_sort { SK_MEETING_BEGIN, SK_MEETING_HOLD, SK_MEETING_PUSH, SK_MEETING_BOUND } sk_meeting_sort;
+typedef enum sk_meeting_sort { SK_MEETING_BEGIN, SK_MEETING_HOLD, SK_MEETING_PUSH, SK_MEETING_LEAD, SK_MEETING_BOUND } sk_meeting_sort;
 /* An op for each rule of contact between surfaces. The other functions here call it: a repeat of substeps begins and
  * ends with such ops, and the ops that push come with the limits. */
 void sk_write_meetings(sk_plan_builder *builder, sk_meeting_sort sort, sk_vector velocity);
@@ -136,7 +137,8 @@ void sk_add_sums(sk_plan_builder *builder, const sk_batch *batch, sk_op op, cons
 void sk_add_op_on(sk_plan_builder *builder, sk_op op, const sk_only *only);
 /* The number of elements of a sweep's op: strip rows that have a partner `reach` rows on, slabs or groups. */
 size_t sk_rows_of_sweep(const sk_sweep *sweep, size_t reach);
-/* Whether a force adds to F and is enabled. */
+/* Whether a force adds to F and is enabled; and whether it is contact between surfaces that is. */
 bool sk_pushes(const sk_force *force);
+bool sk_meets(const sk_force *force);
 
 #endif

@@ -271,7 +271,7 @@ void sk_write_limits(sk_plan_builder *builder, sk_vector velocity) {
                                    .rule = rules->leashes,
                                    .label = "leashes",
                                    .end = builder->slot_count});
-    sk_write_meetings(builder, SK_MEETING_PUSH, velocity);
+    sk_write_meetings(builder, builder->presses ? SK_MEETING_LEAD : SK_MEETING_PUSH, velocity);
 }
 
 bool sk_writes_corrections(const sk_plan_builder *builder) {

@@ -63,6 +63,29 @@ static void add_forces(sk_plan_builder *builder, sk_op op, size_t kernel) {
     }
 }
 
+/* The same for surfaces that meet. */
+static void add_meetings(sk_plan_builder *builder, sk_op op, size_t kernel) {
+    op.order = SK_ORDERED; // pairs that share a corner
+    op.end = builder->slot_count;
+    for (size_t i = 0; i < builder->rules->forces.count; i++) {
+        const sk_force *force = builder->rules->forces.data[i];
+        if (!sk_meets(force)) continue;
+        op.kernel = kernel_at(builder, force->type->meeting, kernel);
+        op.rule = force;
+        op.label = force->label;
+        sk_add_op(builder, op);
+    }
+}
+
+void sk_write_near(sk_plan_builder *builder) {
+    builder->presses = true;
+    add_meetings(builder, (sk_op){.kind = SK_OP_MEET, .source = {SK_X, SK_V}}, offsetof(sk_meeting, near));
+}
+
+void sk_write_pressing(sk_plan_builder *builder) {
+    add_meetings(builder, (sk_op){.kind = SK_OP_MEET, .dst = SK_F, .source = {SK_X, SK_V}}, offsetof(sk_meeting, press));
+}
+
 void sk_write_apply(sk_plan_builder *builder, sk_vector dst, sk_vector p, double a, double b) {
     sk_op op = {.kind = SK_OP_APPLY, .dst = dst, .source = {SK_X, p, SK_NONE}, .coefficient = {a, b}};
     for (size_t i = 0; i < builder->rules->batches.count; i++) {
@@ -72,6 +95,7 @@ void sk_write_apply(sk_plan_builder *builder, sk_vector dst, sk_vector p, double
     }
     add_batches(builder, op, offsetof(sk_constraint_type, apply));
     add_forces(builder, op, offsetof(sk_force_type, apply));
+    if (builder->presses) add_meetings(builder, op, offsetof(sk_meeting, apply));
 }
 
 void sk_write_multiply(sk_plan_builder *builder, double a, double b) {
@@ -90,6 +114,7 @@ void sk_write_diagonal(sk_plan_builder *builder, sk_vector diagonal, sk_vector o
 void sk_write_diagonal_of_forces(sk_plan_builder *builder, sk_vector diagonal, sk_vector off, double a, double b) {
     sk_op op = {.kind = SK_OP_LINEARISE, .dst = diagonal, .source = {SK_X, off}, .coefficient = {a, b}};
     add_forces(builder, op, offsetof(sk_force_type, diagonal));
+    if (builder->presses) add_meetings(builder, op, offsetof(sk_meeting, diagonal));
 }
 
 static void add_call(sk_plan_builder *builder, sk_op_kernel *kernel, sk_vector dst, sk_vector p, sk_vector q,

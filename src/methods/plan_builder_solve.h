@@ -15,6 +15,11 @@ size_t sk_write_part(sk_plan_builder *builder, int part, const char *label);
 void sk_write_pass(sk_plan_builder *builder, const sk_kernels *kernels, sk_vector dst, sk_vector p, sk_vector q,
                    const char *label);
 
+/* Finds pairs of surfaces that are near where the substep begins, which press each other apart in this solve; and F += the
+ * forces by which they do. The matrix's functions below have their part of it. */
+void sk_write_near(sk_plan_builder *builder);
+void sk_write_pressing(sk_plan_builder *builder);
+
 /* dst += (a k + b c) p over every batch, where k is the stiffness and c the damping of its elements at X. */
 void sk_write_apply(sk_plan_builder *builder, sk_vector dst, sk_vector p, double a, double b);
 /* The product of conjugate gradients: DIRECTION = PRODUCT + scale DIRECTION, PRODUCT = S A DIRECTION, and their dot

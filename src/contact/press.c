@@ -1,0 +1,203 @@
+/* What is near within an implicit solve: pairs press their features apart by forces, which the solve balances against all
+ * others. A push of positions after the solve, as other methods take it, knows nothing of springs: the next solve pulls
+ * back what it has stretched, is stopped by the bound, and from substep to substep a crumpled tube is stretched threefold.
+ *
+ * Each pair that is near when the substep begins has, along the normal n that it has there and by the weights w of its corners,
+ *
+ *   k (wanted - n . sum w x)^2 / 2   below `wanted`,   k = 4 (thickness / d)^2 m / h^2,   1/m = sum w^2 / mass
+ *
+ * as its potential, where d is the distance that it has and `wanted` lies a quarter of the way from there to its thickness, and
+ * no farther than half as far again. So it is a spring that is damped as it gives way, and throws nothing; at a thickness it
+ * holds what a substep brings of inertia and weight, and yields to stiff springs, but the less the nearer it is. What comes
+ * nearer all the same is left to the bound. Friction has a potential of the slip's speed: its force is of one size, mu times
+ * the force that presses when the substep begins, but where the slip all but rests. It never speeds anything up.
+ *
+ * All of it follows from the state when the substep begins, in the order of pairs. */
+#include <string.h>
+
+#include "base/memory.h"
+#include "contact/touch.h"
+
+static sk_touch *touch_of(const sk_op *op) {
+    return ((const sk_force *)op->rule)->state;
+}
+
+static inline sk_quad quad_at(const sk_vec4 *x) {
+    sk_quad q;
+    memcpy(&q, x, sizeof q);
+    return q;
+}
+
+static inline sk_quad times(real a, sk_quad x) {
+    return (sk_quad){a, a, a, a} * x;
+}
+
+static inline sk_vec3 sum_of(const sk_press *press, const sk_vec4 *x, size_t packed) {
+    sk_vec3 sum = {0, 0, 0};
+    for (int c = 0; c < 4; c++) sum = sk_add(sum, sk_scale(press->weight[c], sk_xyz(sk_load(x, packed, press->slot[c]))));
+    return sum;
+}
+
+static inline void spread(const sk_press *press, sk_vec3 what, sk_vec4 *to, size_t packed) {
+    for (int c = 0; c < 4; c++) sk_add_at(to, packed, press->slot[c], sk_scale(press->weight[c], what));
+}
+
+/* Takes a pair over as it is when the substep begins; false where all of it is pinned. */
+static bool begin_press(sk_touch *touch, const sk_op *op, int sort, uint32_t entry, sk_press *press) {
+    const sk_contact_params *params = ((const sk_force *)op->rule)->params;
+    const sk_pairs *pairs = sk_pairs_of(touch, sort, entry);
+    const size_t k = entry / 2;
+    const real h = (real)op->dt, distance = pairs->distance[k], thickness = pairs->thickness[k];
+    const uint32_t v[4] = {pairs->corner[0][k], pairs->corner[1][k], pairs->corner[2][k], pairs->corner[3][k]};
+    real resist = 0;
+    if (distance < SK_NO_GAP * touch->thickness) touch->tangle.forced = true; // rounding chooses its side
+    sk_weights_of(pairs, sort, k, press->weight);
+    for (int c = 0; c < 4; c++) {
+        press->slot[c] = touch->slot[v[c]];
+        press->at[c] = v[c];
+        resist += press->weight[c] * press->weight[c] * touch->inverse[v[c]];
+    }
+    if (!(resist > 0)) return false;
+    press->normal = (sk_vec3){pairs->normal[0][k], pairs->normal[1][k], pairs->normal[2][k]};
+    const real stiffness = 4, part = (real)0.25, nearest = (real)0.005; // the last: of the thickness
+    const real near = sk_max(distance, nearest * thickness), missing = sk_max(0, thickness - distance);
+    const real tight = sk_max(1, thickness / near);
+    // what has come too near in some other way gets its thickness back over some substeps, not as a blow
+    const real gain = sk_min(sk_min(part * missing, (real)0.5 * near), 60 * h * touch->thickness);
+    press->wanted = sk_min(thickness, distance + gain);
+    press->stiffness = stiffness * tight * tight / (resist * h * h);
+    press->grip = press->stiffness * gain * sk_pair_friction(touch, v[0], v[2], (real)params->friction);
+    press->rest = (real)0.2 * touch->thickness; // in a second
+    return true;
+}
+
+/* Numbers the vertices that press in the order in which they come, so that a product passes over these alone. */
+static void number_corners(sk_touch *touch) {
+    touch->pressed_count = 0;
+    memset(touch->pressed_at, 0, touch->skin.vertex_count * sizeof *touch->pressed_at);
+    for (size_t i = 0; i < touch->press.count; i++) {
+        sk_press *press = &touch->press.data[i];
+        for (int c = 0; c < 4; c++) {
+            uint32_t *at = &touch->pressed_at[press->at[c]];
+            if (!*at) {
+                touch->pressed[touch->pressed_count++] = press->slot[c];
+                *at = (uint32_t)touch->pressed_count;
+            }
+            press->at[c] = *at - 1;
+        }
+    }
+}
+
+void sk_press_begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
+    (void)from, (void)end;
+    sk_touch *touch = touch_of(op);
+    if (!touch) return;
+    touch->press.count = touch->pressing.count = 0;
+    const size_t most = touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count;
+    if (!most) return;
+    if (!SK_RESERVE(run->allocator, &touch->press, most) || !SK_RESERVE(run->allocator, &touch->pressing, most)) {
+        run->no_memory = true;
+        return;
+    }
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
+        for (size_t i = 0; i < touch->near[sort].count; i++) {
+            sk_press *next = &touch->press.data[touch->press.count];
+            touch->press.count += begin_press(touch, op, sort, touch->near[sort].data[i], next);
+        }
+    number_corners(touch);
+}
+
+/* Its slip across the normal, and how fast that is. */
+static inline sk_vec3 slip_of(const sk_press *press, const sk_run *run, size_t packed, real *speed) {
+    sk_vec3 slip = sum_of(press, run->vector[SK_V], packed), n = press->normal;
+    slip = sk_sub(slip, sk_scale(sk_dot(n, slip), n));
+    *speed = sk_length(slip);
+    return slip;
+}
+
+static inline real missing_of(const sk_press *press, const sk_run *run, size_t packed) {
+    return press->wanted - sk_dot(press->normal, sum_of(press, run->vector[SK_X], packed));
+}
+
+void sk_press_force(sk_run *run, const sk_op *op, size_t from, size_t end) {
+    (void)from, (void)end;
+    const sk_touch *touch = touch_of(op);
+    for (size_t i = 0; touch && i < touch->press.count; i++) {
+        const sk_press *press = &touch->press.data[i];
+        const real missing = missing_of(press, run, op->packed);
+        sk_vec3 sum = {0, 0, 0};
+        if (missing > 0) sum = sk_scale(press->stiffness * missing, press->normal);
+        if (press->grip > 0) {
+            real speed;
+            sk_vec3 slip = slip_of(press, run, op->packed, &speed);
+            sum = sk_sub(sum, sk_scale(press->grip / sk_max(speed, press->rest), slip));
+        } else if (!(missing > 0)) continue;
+        spread(press, sum, run->vector[op->dst], op->packed);
+    }
+}
+
+/* What the matrix has of a pair, times a k + b c: push n n^T + rub (1 - n n^T - t t^T), where t is the slip's direction. Of who
+ * slips, friction does not change along it. */
+static bool linearise(const sk_press *press, const sk_run *run, const sk_op *op, sk_quad column[3]) {
+    const real push = missing_of(press, run, op->packed) > 0 ? (real)op->coefficient[0] * press->stiffness : 0;
+    real speed = 0, rub = 0;
+    sk_vec3 n = press->normal, t = {0, 0, 0};
+    if (press->grip > 0) {
+        sk_vec3 slip = slip_of(press, run, op->packed, &speed);
+        rub = (real)op->coefficient[1] * press->grip / sk_max(speed, press->rest);
+        if (speed > press->rest) t = sk_scale(1 / speed, slip);
+    }
+    if (!(push > 0) && !(rub > 0)) return false;
+    const real more = push - rub;
+    column[0] = (sk_quad){more * n.x * n.x - rub * t.x * t.x + rub, more * n.x * n.y - rub * t.x * t.y, more * n.x * n.z - rub * t.x * t.z, 0};
+    column[1] = (sk_quad){column[0][1], more * n.y * n.y - rub * t.y * t.y + rub, more * n.y * n.z - rub * t.y * t.z, 0};
+    column[2] = (sk_quad){column[0][2], column[1][2], more * n.z * n.z - rub * t.z * t.z + rub, 0};
+    return true;
+}
+
+void sk_press_diagonal(sk_run *run, const sk_op *op, size_t from, size_t end) {
+    (void)from, (void)end;
+    sk_touch *touch = touch_of(op);
+    if (!touch) return;
+    touch->pressing.count = 0;
+    for (size_t i = 0; i < touch->press.count; i++) {
+        const sk_press *press = &touch->press.data[i];
+        sk_pressing *now = &touch->pressing.data[touch->pressing.count];
+        sk_quad column[3];
+        if (!linearise(press, run, op, column)) continue;
+        for (int c = 0; c < 4; c++) {
+            const real square = press->weight[c] * press->weight[c];
+            const sk_vec3 own = {column[0][0], column[1][1], column[2][2]}, off = {column[0][1], column[0][2], column[1][2]};
+            sk_add_at(run->vector[op->dst], op->packed, press->slot[c], sk_scale(square, own));
+            sk_add_at(run->vector[op->source[1]], op->packed, press->slot[c], sk_scale(square, off));
+            now->at[c] = press->at[c];
+            now->weight[c] = press->weight[c];
+        }
+        memcpy(now->column, column, sizeof column);
+        touch->pressing.count++;
+    }
+}
+
+/* Of those pairs alone that press or rub: products are what an iteration of conjugate gradients waits for. */
+void sk_press_apply(sk_run *run, const sk_op *op, size_t from, size_t end) {
+    (void)from, (void)end;
+    sk_touch *touch = touch_of(op);
+    if (!touch || !touch->pressing.count) return;
+    sk_vec4 *p = touch->q, *sum = touch->way; // which a bound loads anew
+    for (size_t v = 0; v < touch->pressed_count; v++) {
+        p[v] = sk_load(run->vector[op->source[1]], op->packed, touch->pressed[v]);
+        sum[v] = (sk_vec4){0, 0, 0, 0};
+    }
+    for (size_t i = 0; i < touch->pressing.count; i++) {
+        const sk_pressing *now = &touch->pressing.data[i];
+        sk_quad apart = times(now->weight[0], quad_at(&p[now->at[0]]));
+        for (int c = 1; c < 4; c++) apart += times(now->weight[c], quad_at(&p[now->at[c]]));
+        sk_quad product = times(apart[0], now->column[0]) + times(apart[1], now->column[1]) + times(apart[2], now->column[2]);
+        for (int c = 0; c < 4; c++) {
+            sk_quad to = quad_at(&sum[now->at[c]]) + times(now->weight[c], product);
+            memcpy(&sum[now->at[c]], &to, sizeof to);
+        }
+    }
+    for (size_t v = 0; v < touch->pressed_count; v++)
+        sk_add_at(run->vector[op->dst], op->packed, touch->pressed[v], sk_xyz(sum[v]));
+}
