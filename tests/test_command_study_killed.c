@@ -197,9 +197,15 @@ static void wait_for_ranks_to_go(void) {
     }
 }
 
+/* Lets a rank whose fellow was killed go on for some rows. It would do so for a second, until mpirun ends it, and on an idle
+ * machine be through with all of them. */
+static void let_go_on(const char *out, int rows, pid_t rank) {
+    for (int tries = 0; tries < 2000 && count_rows(out) < rows && !kill(rank, 0); tries++) nap(1000000);
+}
+
 /* The first rank, which has the folder, and the other take turns; at last it is mpirun itself, without which ranks go on until
- * they notice. Whoever is left after a kill is left to itself the first times. It goes on for a second then, until mpirun ends
- * it, and that is sixty rows; so later on it is killed a little after the first, as a batch system does. */
+ * they notice. Whoever is left after a kill goes on for a while the first times; later on it is killed a little after the first, as
+ * a batch system does. */
 static bool break_ranks(const char *out) {
     for (int turn = 0, there = 0; turn < KILLS; turn++) {
         there = count_rows(out);
@@ -208,9 +214,11 @@ static bool break_ranks(const char *out) {
         for (int tries = 0; there < ROWS && victim <= 0 && tries < 2000; tries++, nap(1000000))
             victim = turn == KILLS - 1 ? job : find_rank(ropes(), turn % 2 ? "1" : "0");
         if (victim > 0) kill(victim, SIGKILL);
-        if (victim > 0 && turn >= 2 && victim != job) {
-            nap(5000000);
+        if (victim > 0 && victim != job) {
             pid_t left = find_rank(ropes(), turn % 2 ? "0" : "1");
+            if (turn < 2 && left > 0) let_go_on(out, there + ROWS / KILLS, left);
+            else nap(5000000);
+            left = find_rank(ropes(), turn % 2 ? "0" : "1");
             if (left > 0) kill(left, SIGKILL);
         }
         int status = end(job);
