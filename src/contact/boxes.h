@@ -4,6 +4,7 @@
 
 #include "base/isa.h"
 #include "base/wide_types.h"
+#include "contact/quad.h"
 #include "contact/skin.h"
 #if defined(__wasm_simd128__) && !defined(SKEIN_DOUBLE)
 #include <wasm_simd128.h>
@@ -12,7 +13,6 @@
 
 /* A box that goes on: where it is when it begins, and when it ends. In between its sides are no farther out than on a
  * straight way. */
-typedef real sk_quad __attribute__((vector_size(4 * sizeof(real))));
 typedef struct sk_box {
     sk_quad low[2], high[2];
 } sk_box;

@@ -22,16 +22,6 @@ static sk_touch *touch_of(const sk_op *op) {
     return ((const sk_force *)op->rule)->state;
 }
 
-static inline sk_quad quad_at(const sk_vec4 *x) {
-    sk_quad q;
-    memcpy(&q, x, sizeof q);
-    return q;
-}
-
-static inline sk_quad times(real a, sk_quad x) {
-    return (sk_quad){a, a, a, a} * x;
-}
-
 static inline sk_vec3 sum_of(const sk_press *press, const sk_vec4 *x, size_t packed) {
     sk_vec3 sum = {0, 0, 0};
     for (int c = 0; c < 4; c++) sum = sk_add(sum, sk_scale(press->weight[c], sk_xyz(sk_load(x, packed, press->slot[c]))));
@@ -73,15 +63,15 @@ static bool begin_press(sk_touch *touch, const sk_op *op, int sort, uint32_t ent
 
 /* Numbers the vertices that press in the order in which they come, so that a product passes over these alone. */
 static void number_corners(sk_touch *touch) {
-    touch->pressed_count = 0;
-    memset(touch->pressed_at, 0, touch->skin.vertex_count * sizeof *touch->pressed_at);
-    for (size_t i = 0; i < touch->press.count; i++) {
-        sk_press *press = &touch->press.data[i];
+    touch->press.slot_count = 0;
+    memset(touch->press.number, 0, touch->skin.vertex_count * sizeof *touch->press.number);
+    for (size_t i = 0; i < touch->press.pair.count; i++) {
+        sk_press *press = &touch->press.pair.data[i];
         for (int c = 0; c < 4; c++) {
-            uint32_t *at = &touch->pressed_at[press->at[c]];
+            uint32_t *at = &touch->press.number[press->at[c]];
             if (!*at) {
-                touch->pressed[touch->pressed_count++] = press->slot[c];
-                *at = (uint32_t)touch->pressed_count;
+                touch->press.slot[touch->press.slot_count++] = press->slot[c];
+                *at = (uint32_t)touch->press.slot_count;
             }
             press->at[c] = *at - 1;
         }
@@ -92,17 +82,17 @@ void sk_press_begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     (void)from, (void)end;
     sk_touch *touch = touch_of(op);
     if (!touch) return;
-    touch->press.count = touch->pressing.count = 0;
+    touch->press.pair.count = touch->press.now.count = 0;
     const size_t most = touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count;
     if (!most) return;
-    if (!SK_RESERVE(run->allocator, &touch->press, most) || !SK_RESERVE(run->allocator, &touch->pressing, most)) {
+    if (!SK_RESERVE(run->allocator, &touch->press.pair, most) || !SK_RESERVE(run->allocator, &touch->press.now, most)) {
         run->no_memory = true;
         return;
     }
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
         for (size_t i = 0; i < touch->near[sort].count; i++) {
-            sk_press *next = &touch->press.data[touch->press.count];
-            touch->press.count += begin_press(touch, op, sort, touch->near[sort].data[i], next);
+            sk_press *next = &touch->press.pair.data[touch->press.pair.count];
+            touch->press.pair.count += begin_press(touch, op, sort, touch->near[sort].data[i], next);
         }
     number_corners(touch);
 }
@@ -122,8 +112,8 @@ static inline real missing_of(const sk_press *press, const sk_run *run, size_t p
 void sk_press_force(sk_run *run, const sk_op *op, size_t from, size_t end) {
     (void)from, (void)end;
     const sk_touch *touch = touch_of(op);
-    for (size_t i = 0; touch && i < touch->press.count; i++) {
-        const sk_press *press = &touch->press.data[i];
+    for (size_t i = 0; touch && i < touch->press.pair.count; i++) {
+        const sk_press *press = &touch->press.pair.data[i];
         const real missing = missing_of(press, run, op->packed);
         sk_vec3 sum = {0, 0, 0};
         if (missing > 0) sum = sk_scale(press->stiffness * missing, press->normal);
@@ -159,10 +149,10 @@ void sk_press_diagonal(sk_run *run, const sk_op *op, size_t from, size_t end) {
     (void)from, (void)end;
     sk_touch *touch = touch_of(op);
     if (!touch) return;
-    touch->pressing.count = 0;
-    for (size_t i = 0; i < touch->press.count; i++) {
-        const sk_press *press = &touch->press.data[i];
-        sk_pressing *now = &touch->pressing.data[touch->pressing.count];
+    touch->press.now.count = 0;
+    for (size_t i = 0; i < touch->press.pair.count; i++) {
+        const sk_press *press = &touch->press.pair.data[i];
+        sk_pressing *now = &touch->press.now.data[touch->press.now.count];
         sk_quad column[3];
         if (!linearise(press, run, op, column)) continue;
         for (int c = 0; c < 4; c++) {
@@ -174,7 +164,7 @@ void sk_press_diagonal(sk_run *run, const sk_op *op, size_t from, size_t end) {
             now->weight[c] = press->weight[c];
         }
         memcpy(now->column, column, sizeof column);
-        touch->pressing.count++;
+        touch->press.now.count++;
     }
 }
 
@@ -182,22 +172,21 @@ void sk_press_diagonal(sk_run *run, const sk_op *op, size_t from, size_t end) {
 void sk_press_apply(sk_run *run, const sk_op *op, size_t from, size_t end) {
     (void)from, (void)end;
     sk_touch *touch = touch_of(op);
-    if (!touch || !touch->pressing.count) return;
+    if (!touch || !touch->press.now.count) return;
     sk_vec4 *p = touch->q, *sum = touch->way; // which a bound loads anew
-    for (size_t v = 0; v < touch->pressed_count; v++) {
-        p[v] = sk_load(run->vector[op->source[1]], op->packed, touch->pressed[v]);
+    for (size_t v = 0; v < touch->press.slot_count; v++) {
+        p[v] = sk_load(run->vector[op->source[1]], op->packed, touch->press.slot[v]);
         sum[v] = (sk_vec4){0, 0, 0, 0};
     }
-    for (size_t i = 0; i < touch->pressing.count; i++) {
-        const sk_pressing *now = &touch->pressing.data[i];
-        sk_quad apart = times(now->weight[0], quad_at(&p[now->at[0]]));
-        for (int c = 1; c < 4; c++) apart += times(now->weight[c], quad_at(&p[now->at[c]]));
-        sk_quad product = times(apart[0], now->column[0]) + times(apart[1], now->column[1]) + times(apart[2], now->column[2]);
+    for (size_t i = 0; i < touch->press.now.count; i++) {
+        const sk_pressing *now = &touch->press.now.data[i];
+        sk_quad apart = sk_quad_sum(p, now->at, now->weight);
+        sk_quad product = sk_quad_times(apart[0], now->column[0]) + sk_quad_times(apart[1], now->column[1]) + sk_quad_times(apart[2], now->column[2]);
         for (int c = 0; c < 4; c++) {
-            sk_quad to = quad_at(&sum[now->at[c]]) + times(now->weight[c], product);
+            sk_quad to = sk_quad_at(&sum[now->at[c]]) + sk_quad_times(now->weight[c], product);
             memcpy(&sum[now->at[c]], &to, sizeof to);
         }
     }
-    for (size_t v = 0; v < touch->pressed_count; v++)
-        sk_add_at(run->vector[op->dst], op->packed, touch->pressed[v], sk_xyz(sum[v]));
+    for (size_t v = 0; v < touch->press.slot_count; v++)
+        sk_add_at(run->vector[op->dst], op->packed, touch->press.slot[v], sk_xyz(sum[v]));
 }

@@ -1,4 +1,4 @@
-/* The rule of contact: its fields, and the first two of its ops. */
+/* The rule of contact: its fields, and the first of its ops. */
 #include <string.h>
 
 #include "base/tasks.h"
@@ -284,98 +284,6 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     run->no_memory |= !good;
 }
 
-/* ---- push ---- */
-
-static inline sk_quad quad_at(const sk_vec4 *x) {
-    sk_quad q;
-    memcpy(&q, x, sizeof q);
-    return q;
-}
-
-static inline sk_quad times(real a, sk_quad x) {
-    return (sk_quad){a, a, a, a} * x;
-}
-
-/* Of the first three. */
-static inline real dot_of(sk_quad a, sk_quad b) {
-    sk_quad c = a * b;
-    return c[0] + c[1] + c[2];
-}
-
-/* Where the first feature of a pair is seen from the second. */
-static inline sk_quad apart_at(const sk_vec4 *x, const uint32_t v[4], const real weight[4]) {
-    return times(weight[0], quad_at(&x[v[0]])) + times(weight[1], quad_at(&x[v[1]])) +
-           times(weight[2], quad_at(&x[v[2]])) + times(weight[3], quad_at(&x[v[3]]));
-}
-
-/* Pushes a pair apart to the distance that it is to have, and rubs it by what that took. */
-static void push_pair(sk_touch *touch, const sk_pairs *near, int sort, size_t k, real gain, real friction) {
-    real weight[4], resist = 0;
-    const uint32_t v[4] = {near->corner[0][k], near->corner[1][k], near->corner[2][k], near->corner[3][k]};
-    sk_vec4 *q = touch->q;
-    sk_weights_of(near, sort, k, weight);
-    sk_quad apart = apart_at(q, v, weight), n = {near->normal[0][k], near->normal[1][k], near->normal[2][k], 0};
-    // what has come too near in some other way gets its thickness back over some substeps, not as a blow
-    real wanted = sk_min(near->thickness[k], near->distance[k] + gain), missing = wanted - dot_of(n, apart);
-    if (!(missing > 0)) return; // as of most
-    for (int c = 0; c < 4; c++) resist += weight[c] * weight[c] * touch->inverse[v[c]];
-    if (!(resist > 0)) return;
-    sk_quad slip = apart - apart_at(touch->p, v, weight);
-    slip[3] = 0;
-    slip -= times(dot_of(slip, n), n);
-    real length = sk_sqrt(dot_of(slip, slip)), rub = friction * missing;
-    real share = length > rub ? rub / length : 1;
-    sk_quad move = times(missing / resist, n) - times(friction > 0 ? share / resist : 0, slip);
-    for (int c = 0; c < 4; c++) {
-        sk_quad to = quad_at(&q[v[c]]) + times(weight[c] * touch->inverse[v[c]], move);
-        to[3] = 1; // moved
-        memcpy(&q[v[c]], &to, sizeof to);
-    }
-}
-
-static void push_near(sk_touch *touch, sk_run *run, const sk_op *op) {
-    const sk_contact_params *params = params_of(op);
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
-        touch->q[v].w = 0;
-    }
-    const real gain = (real)(60 * op->dt * (double)touch->thickness); // a thickness in a sixtieth of a second
-    const real none = SK_NO_GAP * touch->thickness;
-    for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
-        for (size_t i = 0; i < touch->near[sort].count; i++) {
-            uint32_t entry = touch->near[sort].data[i];
-            const sk_pairs *pairs = sk_pairs_of(touch, sort, entry);
-            size_t k = entry / 2;
-            if (pairs->distance[k] < none) touch->tangle.forced = true; // rounding chooses its side
-            real friction = sk_pair_friction(touch, pairs->corner[0][k], pairs->corner[2][k], (real)params->friction);
-            push_pair(touch, pairs, sort, k, gain, friction);
-        }
-    const real rate = (real)(1 / op->dt);
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        if (!(touch->q[v].w > 0)) continue;
-        size_t slot = touch->slot[v];
-        sk_vec3 old = sk_xyz(sk_load(run->vector[SK_X], op->packed, slot)), now = sk_xyz(touch->q[v]);
-        sk_store_at(run->vector[SK_X], op->packed, slot, now);
-        if (op->source[1] != SK_NONE)
-            sk_add_at(run->vector[op->source[1]], op->packed, slot, sk_scale(rate, sk_sub(now, old)));
-    }
-}
-
-static void lead(sk_run *run, const sk_op *op, size_t from, size_t end) {
-    (void)from, (void)end;
-    sk_touch *touch = touch_of(op);
-    if (!touch) return;
-    // what is led apart gets no speed of it
-    sk_tangle_lead(touch, run->vector[SK_X], op->source[1] == SK_NONE ? run->vector[SK_X0] : NULL, op->packed);
-}
-
-static void push(sk_run *run, const sk_op *op, size_t from, size_t end) {
-    sk_touch *touch = touch_of(op);
-    if (!touch) return;
-    if (touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count) push_near(touch, run, op);
-    lead(run, op, from, end);
-}
-
 /* ---- the kind ---- */
 
 enum { VERTEX_ARRAYS = 32 };
@@ -391,7 +299,7 @@ static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *cou
     LIST(slot, vertices), LIST(p, vertices), LIST(q, vertices), LIST(way, vertices);
     LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(seen, vertices), LIST(inverse, vertices);
     LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(lost, vertices), LIST(wild, vertices);
-    LIST(pressed_at, vertices), LIST(pressed, vertices);
+    LIST(press.number, vertices), LIST(press.slot, vertices);
     LIST(corner_box, vertices), LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles);
     LIST(hot, leaves), LIST(leaf_box, leaves), LIST(hot_box, leaves);
     LIST(edge_cells, leaves), LIST(corner_cells, leaves);
@@ -439,8 +347,8 @@ static void release(sk_force *force, sk_allocator *allocator) {
     sk_release(allocator, touch->order.data);
     sk_release(allocator, touch->other_order.data);
     sk_release(allocator, touch->first.data);
-    sk_release(allocator, touch->press.data);
-    sk_release(allocator, touch->pressing.data);
+    sk_release(allocator, touch->press.pair.data);
+    sk_release(allocator, touch->press.now.data);
     sk_release(allocator, touch->partner.data);
     sk_release(allocator, touch);
     force->state = NULL;
@@ -496,14 +404,14 @@ static bool gave_up(sk_force *force) {
 
 static const sk_meeting meeting = {
     .begin = {SK_ANY_ISA(begin)},
-    .push = {SK_ANY_ISA(push)},
+    .push = {SK_ANY_ISA(sk_touch_push)},
     .hold = {SK_ANY_ISA(sk_touch_hold)},
     .bound = {SK_ANY_ISA(sk_touch_bound)},
     .near = {SK_ANY_ISA(sk_press_begin)},
     .press = {SK_ANY_ISA(sk_press_force)},
     .diagonal = {SK_ANY_ISA(sk_press_diagonal)},
     .apply = {SK_ANY_ISA(sk_press_apply)},
-    .lead = {SK_ANY_ISA(lead)},
+    .lead = {SK_ANY_ISA(sk_touch_lead)},
     .prepare = prepare,
     .release = release,
     .crossings = sk_touch_crossings,

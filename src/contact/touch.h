@@ -21,6 +21,7 @@
 #include "contact/boxes.h"
 #include "contact/calm.h"
 #include "contact/pairs.h"
+#include "contact/press.h"
 #include "contact/skin.h"
 #include "contact/tangle.h"
 
@@ -70,21 +71,6 @@ typedef struct sk_search_part {
     size_t next, end; /* of leaves or leaves' pairs, those still to be looked at */
 } sk_search_part;
 
-/* A pair that presses its features apart within an implicit solve (press.c), as it was when the substep began. */
-typedef struct sk_press {
-    uint32_t slot[4], at[4]; /* of corners, and their numbers among all that press */
-    real weight[4];
-    sk_vec3 normal;
-    real wanted, stiffness; /* m, N/m */
-    real grip, rest;        /* the most that friction is, N; m/s: what is slower all but rests */
-} sk_press;
-/* What the solve's matrix has of one that does press: a symmetric block, times the weights of both corners. */
-typedef struct sk_pressing {
-    sk_quad column[3];
-    uint32_t at[4];
-    real weight[4];
-} sk_pressing;
-
 typedef struct sk_touch {
     sk_skin skin;
     sk_ignored ignored;
@@ -133,7 +119,6 @@ typedef struct sk_touch {
     sk_seen *seen;
     real *inverse; /* mass, 1/kg */
     real *share, *next_share; /* of its way that it may go */
-    uint32_t *pressed_at, *pressed; /* the number among those that press, from 1 on; of those, their slots */
     uint8_t *lowered; /* its share was, in the last round */
     uint8_t *lost;    /* it is looked for */
     uint8_t *wild;    /* it has left its course and has none: it is looked for on its way in each substep */
@@ -165,15 +150,7 @@ typedef struct sk_touch {
     sk_pairs fresh;
     sk_pair_list near[SK_PAIR_SORTS];       /* in the order of leaves; */
     sk_closing_list may_close[SK_PAIR_SORTS]; /* and in none */
-    struct {
-        sk_press *data;
-        size_t count, capacity;
-    } press;
-    struct {
-        sk_pressing *data;
-        size_t count, capacity;
-    } pressing;
-    size_t pressed_count;
+    sk_presses press;
     struct {
         sk_pair_place *data;
         size_t count, capacity;
@@ -310,9 +287,11 @@ void sk_touch_feature_boxes(sk_touch *touch, size_t leaf);
 /* Puts down how thick the features of pairs are, from the first that is asked for on. */
 void sk_touch_set_thickness(const sk_touch *touch, sk_pairs *pairs, size_t first, int sort);
 
-/* ---- press.c ---- */
+/* ---- push.c ---- */
 
-sk_op_kernel sk_press_begin, sk_press_force, sk_press_diagonal, sk_press_apply;
+sk_op_kernel sk_touch_push;
+/* Where an implicit solve has pressed apart what is near: leads apart what goes through each other, and no more. */
+sk_op_kernel sk_touch_lead;
 
 /* ---- bound.c ---- */
 

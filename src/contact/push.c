@@ -1,0 +1,78 @@
+/* What is near is moved apart, pair by pair, where a method corrects positions; and what goes through each other is led apart. */
+#include <string.h>
+
+#include "contact/touch.h"
+
+/* Of the first three. */
+static inline real dot_of(sk_quad a, sk_quad b) {
+    sk_quad c = a * b;
+    return c[0] + c[1] + c[2];
+}
+
+/* Pushes a pair apart to the distance that it is to have, and rubs it by what that took. */
+static void push_pair(sk_touch *touch, const sk_pairs *near, int sort, size_t k, real gain, real friction) {
+    real weight[4], resist = 0;
+    const uint32_t v[4] = {near->corner[0][k], near->corner[1][k], near->corner[2][k], near->corner[3][k]};
+    sk_vec4 *q = touch->q;
+    sk_weights_of(near, sort, k, weight);
+    sk_quad apart = sk_quad_sum(q, v, weight), n = {near->normal[0][k], near->normal[1][k], near->normal[2][k], 0};
+    // what has come too near in some other way gets its thickness back over some substeps, not as a blow
+    real wanted = sk_min(near->thickness[k], near->distance[k] + gain), missing = wanted - dot_of(n, apart);
+    if (!(missing > 0)) return; // as of most
+    for (int c = 0; c < 4; c++) resist += weight[c] * weight[c] * touch->inverse[v[c]];
+    if (!(resist > 0)) return;
+    sk_quad slip = apart - sk_quad_sum(touch->p, v, weight);
+    slip[3] = 0;
+    slip -= sk_quad_times(dot_of(slip, n), n);
+    real length = sk_sqrt(dot_of(slip, slip)), rub = friction * missing;
+    real share = length > rub ? rub / length : 1;
+    sk_quad move = sk_quad_times(missing / resist, n) - sk_quad_times(friction > 0 ? share / resist : 0, slip);
+    for (int c = 0; c < 4; c++) {
+        sk_quad to = sk_quad_at(&q[v[c]]) + sk_quad_times(weight[c] * touch->inverse[v[c]], move);
+        to[3] = 1; // moved
+        memcpy(&q[v[c]], &to, sizeof to);
+    }
+}
+
+static void push_near(sk_touch *touch, sk_run *run, const sk_op *op) {
+    const sk_contact_params *params = ((const sk_force *)op->rule)->params;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
+        touch->q[v].w = 0;
+    }
+    const real gain = (real)(60 * op->dt * (double)touch->thickness); // a thickness in a sixtieth of a second
+    const real none = SK_NO_GAP * touch->thickness;
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
+        for (size_t i = 0; i < touch->near[sort].count; i++) {
+            uint32_t entry = touch->near[sort].data[i];
+            const sk_pairs *pairs = sk_pairs_of(touch, sort, entry);
+            size_t k = entry / 2;
+            if (pairs->distance[k] < none) touch->tangle.forced = true; // rounding chooses its side
+            real friction = sk_pair_friction(touch, pairs->corner[0][k], pairs->corner[2][k], (real)params->friction);
+            push_pair(touch, pairs, sort, k, gain, friction);
+        }
+    const real rate = (real)(1 / op->dt);
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        if (!(touch->q[v].w > 0)) continue;
+        size_t slot = touch->slot[v];
+        sk_vec3 old = sk_xyz(sk_load(run->vector[SK_X], op->packed, slot)), now = sk_xyz(touch->q[v]);
+        sk_store_at(run->vector[SK_X], op->packed, slot, now);
+        if (op->source[1] != SK_NONE)
+            sk_add_at(run->vector[op->source[1]], op->packed, slot, sk_scale(rate, sk_sub(now, old)));
+    }
+}
+
+void sk_touch_lead(sk_run *run, const sk_op *op, size_t from, size_t end) {
+    (void)from, (void)end;
+    sk_touch *touch = ((const sk_force *)op->rule)->state;
+    if (!touch) return;
+    // what is led apart gets no speed of it
+    sk_tangle_lead(touch, run->vector[SK_X], op->source[1] == SK_NONE ? run->vector[SK_X0] : NULL, op->packed);
+}
+
+void sk_touch_push(sk_run *run, const sk_op *op, size_t from, size_t end) {
+    sk_touch *touch = ((const sk_force *)op->rule)->state;
+    if (!touch) return;
+    if (touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count) push_near(touch, run, op);
+    sk_touch_lead(run, op, from, end);
+}
