@@ -20,7 +20,11 @@
 #include "render/view.h"
 #include "viewer/grab.h"
 
+#if defined __wasm__
 #define EXPORT(name_) __attribute__((export_name(#name_), used)) name_
+#else // for tests/test_page.c
+#define EXPORT(name_) name_
+#endif
 
 typedef struct js_bytes {
     char *data;
