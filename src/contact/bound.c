@@ -218,11 +218,16 @@ static bool take_shares(sk_touch *touch) {
     return job.found;
 }
 
-/* Those that are held back may come near their own surface. */
-static bool disturb(sk_touch *touch, sk_allocator *allocator) {
+/* Those that are held back may come near their own surface: pairs of patches that were calm are kept, and vertices of panels
+ * that were spread are lost. */
+static bool disturb(sk_touch *touch, sk_allocator *allocator, bool *lost) {
     bool good = true;
-    for (size_t v = 0; v < touch->skin.vertex_count && !touch->storm && good; v++)
-        if (touch->lowered[v]) good = sk_calm_disturb(touch, allocator, v);
+    for (size_t v = 0; v < touch->skin.vertex_count && !touch->storm && good; v++) {
+        if (!touch->lowered[v]) continue;
+        good = sk_calm_disturb(touch, allocator, v);
+        if (touch->spread.count) sk_spread_disturb(touch, v);
+    }
+    *lost |= sk_spread_come_in(touch);
     return good;
 }
 
@@ -338,7 +343,7 @@ static bool find_shares(sk_touch *touch, sk_allocator *allocator, real least) {
         for (int sort = 0; sort < SK_PAIR_SORTS; sort++) lowered |= settle_pairs(touch, sort, first, least);
         if (!lowered) return true;
         bool lost = take_shares(touch);
-        if (!disturb(touch, allocator) || (lost && !renew(touch, allocator)) ||
+        if (!disturb(touch, allocator, &lost) || (lost && !renew(touch, allocator)) ||
             !find_those_that_may(touch, allocator, least, false))
             return false;
     }
@@ -358,14 +363,32 @@ static void store_ways(const sk_touch *touch, const sk_run *run, const sk_op *op
     }
 }
 
+/* Where all panels lie spread out, and no pairs are kept, it is asked whether they still do, and nothing else. */
+static bool stay_all_out(sk_touch *touch, const sk_vec4 *x, const sk_op *op) {
+    const real way = sk_spread_longest_way(touch, x, op->packed);
+    touch->shift[1] = touch->shift[0];
+    if (sk_spread_holds(&touch->spread, way)) return true;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->q[v] = sk_load(x, op->packed, touch->slot[v]);
+    memset(touch->lost, 0, touch->skin.vertex_count);
+    return !sk_spread_follow(touch, way);
+}
+
 static bool bound(sk_touch *touch, sk_run *run, const sk_op *op) {
     real least = SK_LEAST_GAP * touch->thickness;
     const sk_vec4 *x = run->vector[SK_X];
-    sk_touch_set_frame(touch, x, op->packed, touch->now + 1, 1);
-    bool lost = sk_touch_mark_lost(touch, x, op->packed, touch->now + 1, 1) || touch->wild_count;
-    if (!lost && !sk_pairs_kept(touch) && sk_calm_holds(touch, touch->farthest)) return true;
+    const bool all_out = sk_spread_is_all_out(&touch->spread) && !sk_pairs_kept(touch), some_out = touch->spread.out_count > 0;
+    bool lost = all_out;
+    if (all_out && stay_all_out(touch, x, op)) return true;
+    if (!all_out) {
+        sk_touch_set_frame(touch, x, op->packed, touch->now + 1, 1);
+        lost = sk_touch_mark_lost(touch, x, op->packed, touch->now + 1, 1) || touch->wild_count;
+    }
+    if (!lost && !some_out && !sk_pairs_kept(touch) && sk_calm_holds(touch, touch->farthest)) return true;
     load_ways(touch, run, op);
     if (touch->storm) touch->shift[1] = touch->common;
+    if (all_out) sk_spread_follow_held(touch);
+    else if (some_out) lost |= sk_spread_follow(touch, SK_REAL_MAX);
+    if (!lost && some_out && !sk_pairs_kept(touch) && sk_calm_holds(touch, touch->farthest)) return true;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->lost[v] |= touch->wild[v];
     bool good = sk_calm_follow(touch, run->allocator) && (!lost || renew(touch, run->allocator));
     if (good && sk_pairs_kept(touch)) {
@@ -394,6 +417,8 @@ void sk_touch_hold(sk_run *run, const sk_op *op, size_t from, size_t end) {
     sk_touch *touch = ((const sk_force *)op->rule)->state;
     if (!touch || !touch->found) return;
     const size_t count = touch->skin.vertex_count;
+    touch->spread.never = true;
+    sk_spread_end(touch);
     for (size_t v = 0; v < count; v++) touch->share[v] = 1; // of who has no pairs, the bound says nothing
     run->no_memory |= !bound(touch, run, op) || !sk_touch_look_again(touch, run->allocator);
     for (size_t v = 0; v < count; v++) {

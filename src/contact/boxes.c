@@ -16,6 +16,11 @@ static real part_of(const sk_touch *touch, real reach) {
 
 /* ---- boxes ---- */
 
+static sk_box no_box(void) {
+    const sk_quad most = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX, 0};
+    return (sk_box){{most, most}, {-most, -most}};
+}
+
 /* A feature's box: around its corners, and wider by the most that one of them asks for, which is its fourth number. */
 static void box_of(const sk_box *corner_box, const uint32_t *vertex, int count, sk_box *box) {
     *box = corner_box[vertex[0]];
@@ -92,8 +97,7 @@ void sk_touch_leaf_box(sk_touch *touch, size_t i) {
     }
     touch->featured[i] = 0;
     if (!has_blown_up(touch, leaf, box)) return;
-    const sk_quad most = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX, 0};
-    *box = (sk_box){{most, most}, {-most, -most}};
+    *box = no_box();
     __atomic_store_n(&touch->tangle.torn, true, __ATOMIC_RELAXED);
 }
 
@@ -112,8 +116,7 @@ void sk_touch_feature_boxes(sk_touch *touch, size_t i) {
 /* The box of those of a leaf's features that are looked for. */
 static void make_hot_box(sk_touch *touch, size_t i) {
     const sk_leaf *leaf = &touch->skin.leaf[i];
-    const sk_quad most = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX, 0};
-    sk_box box = {{most, most}, {-most, -most}};
+    sk_box box = no_box();
     bool met = touch->leaf_box[i].low[0][0] <= touch->leaf_box[i].high[0][0]; // it has not blown up
     sk_hot hot = met ? touch->hot[i] : (sk_hot){0, 0, 0};
     for (uint32_t v = leaf->first_vertex; hot.vertices; v++, hot.vertices >>= 1)
@@ -133,6 +136,11 @@ static void make_leaf_boxes(void *data, int thread, size_t begin, size_t end) {
     (void)thread;
     sk_touch *touch = data;
     for (size_t i = begin; i < end; i++) {
+        if (sk_spread_has(&touch->spread, i)) { // nobody meets it
+            touch->leaf_box[i] = touch->hot_box[i] = no_box();
+            touch->featured[i] = 0;
+            continue;
+        }
         if (touch->moved[i]) sk_touch_leaf_box(touch, i);
         if (touch->everybody) {
             touch->hot_box[i] = touch->leaf_box[i];
@@ -192,6 +200,8 @@ void sk_touch_make_boxes(sk_touch *touch, sk_touch_search_sort sort) {
     if (all) touch->cells = sk_cells_a_metre(touch), touch->tangle.torn = false;
     if (all) memset(touch->moved, 1, leaves);
     else memcpy(touch->moved, touch->anew, leaves);
+    if (touch->spread.turned) memset(touch->moved, 1, leaves);
+    touch->spread.turned = false;
     boxing job = {touch, all, sort == SK_SEARCH_WAYS, sort == SK_SEARCH_LOST};
     sk_parallel_pieces(touch->tasks, 0, touch->skin.vertex_count, AT_ONCE, box_some_vertices, &job);
     for (size_t v = 0; v < touch->skin.vertex_count && job.wild && touch->wild_count && !all; v++)

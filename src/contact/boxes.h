@@ -103,7 +103,9 @@ extern sk_tree_hits_kernel *const sk_tree_hits[SK_ISA_COUNT];
 
 /* ---- tree_make.c ---- */
 
-/* False when there is no memory. */
+/* Room for a tree of so many, each in its own slot. False when there is no memory. */
+bool sk_tree_reserve(sk_tree *tree, sk_allocator *allocator, size_t count);
+/* That of a skin's leaves. */
 bool sk_tree_make(sk_tree *tree, sk_allocator *allocator, const sk_skin *skin);
 void sk_tree_release(sk_tree *tree, sk_allocator *allocator);
 

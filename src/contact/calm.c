@@ -269,6 +269,15 @@ static real room_of(const sk_calm_patch *patch, real any) {
     return sk_min(patch->slack - sk_sqrt(any), closing_share * (patch->distance - patch->slack));
 }
 
+/* Whether a patch is left out by panels that are spread (spread.h), and so is of no interest. */
+static bool is_out(const sk_touch *touch, size_t p) {
+    return touch->spread.out_count && touch->spread.patch_out[p];
+}
+
+static bool are_all_out(const sk_touch *touch, size_t begin, size_t end) {
+    return touch->spread.out_count && !memchr(touch->spread.patch_out + begin, 0, end - begin);
+}
+
 /* What is asked of patches, sixteen after sixteen; threads take them as they come. */
 typedef struct asking {
     sk_touch *touch;
@@ -282,7 +291,7 @@ static bool conclude(sk_touch *touch, sk_allocator *allocator, bool look) {
     sk_calm *calm = &touch->calm;
     calm->least = SK_REAL_MAX;
     for (size_t p = 0; p < calm->patch_count; p++) {
-        if (calm->patch[p].ceased && !keep_pairs(touch, allocator, p, look)) return false;
+        if (calm->patch[p].ceased && !is_out(touch, p) && !keep_pairs(touch, allocator, p, look)) return false;
         if (p % SK_PATCH_LANES == 0) calm->least = sk_min(calm->least, calm->holds[p / SK_PATCH_LANES]);
     }
     return true;
@@ -296,8 +305,11 @@ static void look_at_some(void *data, int thread, size_t begin, size_t end) {
     sk_moves moves;
     for (size_t p = begin; p < end; p += SK_PATCH_LANES) {
         real least = SK_REAL_MAX;
+        calm->holds[p / SK_PATCH_LANES] = least;
+        if (are_all_out(touch, p, p + SK_PATCH_LANES < end ? p + SK_PATCH_LANES : end)) continue;
         moves_kernel[touch->isa](NULL, NULL, touch->p, calm, p / SK_PATCH_LANES, &moves);
         for (size_t i = p; i < p + SK_PATCH_LANES && i < end; i++) {
+            if (is_out(touch, i)) continue;
             sk_calm_patch *patch = &calm->patch[i];
             bool was = patch->calm;
             real slack = patch->slack - wanted;
@@ -358,8 +370,11 @@ static void follow_some(void *data, int thread, size_t begin, size_t end) {
         bool known = !touch->storm && calm->gone <= *holds;
         for (size_t i = p; i < p + SK_PATCH_LANES && i < end; i++) calm->patch[i].ceased = false;
         if (known) continue;
+        *holds = least;
+        if (are_all_out(touch, p, p + SK_PATCH_LANES < end ? p + SK_PATCH_LANES : end)) continue;
         moves_kernel[touch->isa](touch->p, &touch->common, touch->q, calm, p / SK_PATCH_LANES, &moves);
         for (size_t i = p; i < p + SK_PATCH_LANES && i < end; i++) {
+            if (is_out(touch, i)) continue;
             sk_calm_patch *patch = &calm->patch[i];
             real whole = moves.whole[i - p], any = moves.any[i - p], way = moves.way[i - p];
             if (touch->storm) follow_in_storm(touch, i, any, way, thread);
@@ -367,7 +382,7 @@ static void follow_some(void *data, int thread, size_t begin, size_t end) {
             patch->calm &= !patch->ceased;
             least = sk_min(least, room_of(patch, any));
         }
-        *holds = touch->storm ? -1 : calm->gone + least;
+        *holds = touch->storm ? -1 : sk_min(SK_REAL_MAX, calm->gone + least);
     }
 }
 

@@ -54,7 +54,8 @@ void sk_touch_put_course(sk_touch *touch, size_t v, bool wild) {
     const sk_course *course = &touch->course[v];
     block->from[0][l] = course->from.x, block->from[1][l] = course->from.y, block->from[2][l] = course->from.z;
     block->step[0][l] = course->step.x, block->step[1][l] = course->step.y, block->step[2][l] = course->step.z;
-    block->square[l] = wild ? SK_REAL_MAX : course->reach * course->reach;
+    bool none = wild || sk_vertex_is_out(&touch->spread, v);
+    block->square[l] = none ? SK_REAL_MAX : course->reach * course->reach;
     touch->wild_count += (size_t)wild - touch->wild[v];
     touch->wild[v] = wild;
 }
@@ -104,7 +105,7 @@ void sk_touch_set_frame(sk_touch *touch, const sk_vec4 *x, size_t packed, real t
     if (touch->held) return;
     for (size_t i = 0; i < SAMPLES; i++) {
         size_t v = (2 * i + 1) * vertices / (2 * SAMPLES);
-        if (touch->wild[v]) continue;
+        if (touch->wild[v] || sk_vertex_is_out(&touch->spread, v)) continue;
         sk_vec3 r = sk_sub(sk_xyz(sk_load(x, packed, touch->slot[v])), sk_expected(&touch->course[v], time));
         if (!(sk_dot(r, r) < (real)1e12)) continue; // blown up
         off[0][count] = r.x, off[1][count] = r.y, off[2][count++] = r.z;

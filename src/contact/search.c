@@ -111,18 +111,22 @@ static void look_ahead(sk_touch *touch) {
     real longer = touch->lost_since ? 0 : 2 * last;
     touch->lost_since = 0;
     most = sk_min(most, longest), longer = sk_min(longer, longest);
-    size_t count = touch->skin.vertex_count;
+    size_t count = touch->skin.vertex_count, out = 0;
     double drift[3] = {0, 0, 0}, sum = 0;
     for (size_t v = 0; v < count; v++) {
+        out += sk_vertex_is_out(&touch->spread, v);
+        if (sk_vertex_is_out(&touch->spread, v)) continue;
         sk_vec3 step = touch->course[v].step;
         drift[0] += (double)step.x, drift[1] += (double)step.y, drift[2] += (double)step.z;
     }
-    double share = 1 / (double)count;
+    double share = out < count ? 1 / (double)(count - out) : 0;
     touch->drift = (sk_vec3){(real)(share * drift[0]), (real)(share * drift[1]), (real)(share * drift[2])};
-    for (size_t v = 0; v < count; v++) sum += (double)sk_length(sk_sub(touch->course[v].step, touch->drift));
+    for (size_t v = 0; v < count; v++)
+        if (!sk_vertex_is_out(&touch->spread, v)) sum += (double)sk_length(sk_sub(touch->course[v].step, touch->drift));
     real ahead = touch->thickness / (real)(share * sum + 1e-9);
     touch->until = ahead < least ? least : ahead < most ? ahead : most; // of what is no number, too
     if (longer > touch->until) touch->until = longer;
+    if (out == count) touch->until = longest;
     touch->now = 0;
 }
 

@@ -240,7 +240,8 @@ bool sk_tangle_look(sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x, 
     bool goes_on = known && tangle->any && !tangle->forced && !is_torn(tangle);
     bool left = tangle->clean && tangle->left_count == touch->slots;
     tangle->any = tangle->forced = false;
-    if (tangle->clean && (known || (left && !memcmp(tangle->left, x, touch->slots * sizeof *x)))) return true;
+    tangle->same = tangle->clean && (known || (left && !memcmp(tangle->left, x, touch->slots * sizeof *x)));
+    if (tangle->same) return true;
     if (!reserve(touch, allocator)) return false;
     if (left && !mark_changed(touch, x, packed)) return true;
     if (goes_on) mark_around(touch);

@@ -43,6 +43,7 @@ typedef struct sk_crossings_at {
 
 typedef struct sk_tangle {
     bool any;      /* something is led apart in this substep */
+    bool same;     /* all are where the last bound has left them */
     bool clean;    /* no edge went through a triangle when the last bound ended */
     bool forced;   /* in this substep, what is pinned or had no gap may have gone through something; written by any thread */
     bool torn;     /* something has blown up, and met nobody since the last search for all; the same */

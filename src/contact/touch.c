@@ -152,7 +152,7 @@ static sk_vec3 steady_step(const sk_touch *touch, size_t v, sk_vec3 step) {
 /* Courses of lost vertices, as their velocities are. */
 static void set_courses(sk_touch *touch, const sk_run *run, const sk_op *op, real time) {
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        if (!touch->lost[v]) continue;
+        if (!touch->lost[v] || sk_vertex_is_out(&touch->spread, v)) continue;
         sk_vec3 goes = step_of(touch, run, op, v), now = sk_sub(goes, touch->frame_step), step = steady_step(touch, v, now);
         real speed = sk_max(sk_length(sk_sub(now, touch->drift)), sk_length(sk_sub(step, touch->drift)));
         touch->seen[v] = (sk_seen){sk_xyz(touch->p[v]), goes, touch->clock};
@@ -176,7 +176,7 @@ static bool is_known(const sk_touch *touch, const sk_run *run) {
 /* Finds out who is lost before the substep: the wild, too, get courses now and then. */
 static bool mark_lost(sk_touch *touch, const sk_run *run, const sk_op *op) {
     const size_t often = 2; // substeps
-    bool knows = is_known(touch, run); // for who has been lost since then?
+    bool knows = is_known(touch, run) || sk_spread_is_all_out(&touch->spread); // for who has been lost since then?
     if (!knows) sk_touch_set_frame(touch, run->vector[SK_X], op->packed, touch->now, 0);
     else touch->shift[0] = touch->shift[1];
     bool lost = !knows && sk_touch_mark_lost(touch, run->vector[SK_X], op->packed, touch->now, 0);
@@ -198,6 +198,7 @@ static bool is_stormy(const sk_touch *touch) {
 static void begin_storm(sk_touch *touch) {
     const size_t least = 10, most = 80;
     const real forever = 1000; // substeps
+    sk_spread_end(touch);
     touch->storm = touch->next_storm = touch->next_storm ? touch->next_storm : least;
     if (2 * touch->next_storm <= most) touch->next_storm *= 2;
     touch->until = touch->now + forever;
@@ -218,18 +219,39 @@ static bool find_pairs_in_storm(sk_touch *touch, const sk_run *run, const sk_op 
 /* Looks for what is tangled; in a substep it is led apart by a quarter of the thickness, at most. */
 static bool find_tangles(sk_touch *touch, const sk_run *run, const sk_op *op) {
     const real most = (real)0.25 * touch->thickness, step = (real)(params_of(op)->recovery * op->dt);
+    touch->tangle.same = is_known(touch, run);
     if (!(step > 0)) return true;
     return sk_tangle_look(touch, run->allocator, run->vector[SK_X], op->packed, sk_min(step, most), is_known(touch, run));
+}
+
+static void forget_pairs(sk_touch *touch) {
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->kept[sort].count = touch->late[sort].count = touch->told_apart[sort] = 0;
+}
+
+/* Looks at panels: nobody is out where things go through each other, in a storm, and in an implicit solve, which asks several
+ * times what becomes of a substep; others go out once a frame.
+ * Whether vertices have lost their courses, for they never had any. */
+static bool look_at_panels(sk_touch *touch, const sk_run *run, const sk_op *op) {
+    sk_spread *spread = &touch->spread;
+    if (!spread->count) return false;
+    if (spread->never || touch->tangle.any || touch->storm) return sk_spread_end(touch);
+    bool more = run->iteration == 0 && spread->out_count < spread->count;
+    bool known = touch->tangle.same && !(spread->thickness < touch->thickness || spread->thickness > touch->thickness);
+    if (!more && (known || !spread->out_count)) return false;
+    sk_touch_load(touch, op->packed);
+    return sk_spread_look(touch, more);
 }
 
 /* Searches where that is needed, and looks at all pairs. */
 static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool all) {
     bool stormed = touch->storm > 0;
-    if (stormed && !all && --touch->storm)
+    if (stormed && !all && --touch->storm) // (nobody is out)
         return find_pairs_in_storm(touch, run, op, is_known(touch, run));
     touch->storm = 0;
     all |= stormed;
     bool lost = !all && mark_lost(touch, run, op);
+    lost |= look_at_panels(touch, run, op) && !all;
+    if (sk_spread_is_all_out(&touch->spread)) forget_pairs(touch);
     bool looks = !all && !touch->holds;
     if (all || lost || looks || sk_pairs_kept(touch)) sk_touch_load(touch, op->packed);
     if (looks && !sk_calm_look(touch, run->allocator, false)) return false;
@@ -271,7 +293,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     touch->loaded = false;
     touch->tasks = run->tasks;
     touch->holds = good && touch->found &&
-                   (is_known(touch, run) || sk_calm_holds(touch, sk_touch_farthest(touch, run->vector[SK_X], op->packed)));
+                   (is_known(touch, run) || sk_spread_is_all_out(&touch->spread) || sk_calm_holds(touch, sk_touch_farthest(touch, run->vector[SK_X], op->packed)));
     if (good) memcpy(touch->before, run->vector[SK_X], touch->slots * sizeof *touch->before);
     if (run->vector[SK_SUPPORT]) memset(run->vector[SK_SUPPORT], 0, run->slot_count * sizeof *run->vector[SK_SUPPORT]);
     good = good && find_tangles(touch, run, op) && find_pairs(touch, run, op, all);
@@ -317,6 +339,7 @@ static void release_vertices(sk_touch *touch, sk_allocator *allocator) {
     }
     sk_touch_release_parts(touch, allocator);
     sk_calm_release(&touch->calm, allocator);
+    sk_spread_release(&touch->spread, allocator);
     sk_tangle_release(&touch->tangle, allocator);
     sk_tree_release(&touch->tree, allocator);
     sk_ignored_release(&touch->ignored, allocator);
@@ -385,7 +408,8 @@ static bool prepare(sk_force *force, sk_allocator *allocator, const sk_particles
     touch->slots = touch->wild_count = 0;
     const sk_contact_params *params = force->params;
     if (sk_skin_make(&touch->skin, allocator, particles, &force->only, parts) && make_vertices(touch, allocator) &&
-        sk_ignored_make(&touch->ignored, allocator, &touch->skin, params->ignore, parts) && sk_calm_make(touch, allocator))
+        sk_ignored_make(&touch->ignored, allocator, &touch->skin, params->ignore, parts) && sk_calm_make(touch, allocator) &&
+        sk_spread_make(touch, allocator))
         return true;
     release(force, allocator);
     return false;

@@ -23,6 +23,7 @@
 #include "contact/pairs.h"
 #include "contact/press.h"
 #include "contact/skin.h"
+#include "contact/spread.h"
 #include "contact/tangle.h"
 
 /* Where a vertex is expected: at `from` at time 0, and on by `step` a substep; in a frame that moves as all do. */
@@ -75,6 +76,7 @@ typedef struct sk_touch {
     sk_skin skin;
     sk_ignored ignored;
     sk_calm calm;
+    sk_spread spread;
     sk_tangle tangle;
     struct sk_tasks *tasks; /* of the run */
     uint64_t shape; /* of the world that the skin was made from */

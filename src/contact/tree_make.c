@@ -53,9 +53,8 @@ static void sort_by_place(uint64_t *place, uint32_t *leaf, uint64_t *other_place
     }
 }
 
-bool sk_tree_make(sk_tree *tree, sk_allocator *allocator, const sk_skin *skin) {
+bool sk_tree_reserve(sk_tree *tree, sk_allocator *allocator, size_t count) {
     sk_tree_release(tree, allocator);
-    size_t count = skin->leaf_count;
     bool good = true;
     for (size_t blocks = count; good;) {
         blocks = (blocks + SK_TREE_WIDTH - 1) / SK_TREE_WIDTH;
@@ -64,13 +63,20 @@ bool sk_tree_make(sk_tree *tree, sk_allocator *allocator, const sk_skin *skin) {
         good = (tree->block[tree->levels++] = sk_allocate(allocator, blocks * sizeof **tree->block)) != NULL;
         if (blocks == 1) break;
     }
+    tree->leaf_at = sk_allocate(allocator, (count + 1) * sizeof *tree->leaf_at);
+    for (size_t i = 0; i < count && tree->leaf_at; i++) tree->leaf_at[i] = (uint32_t)i;
+    return good && tree->leaf_at;
+}
+
+bool sk_tree_make(sk_tree *tree, sk_allocator *allocator, const sk_skin *skin) {
+    const size_t count = skin->leaf_count;
+    bool good = sk_tree_reserve(tree, allocator, count);
     uint64_t *place = sk_allocate(allocator, 2 * (count + 1) * sizeof *place);
     uint32_t *other = sk_allocate(allocator, (count + 1) * sizeof *other);
-    tree->leaf_at = sk_allocate(allocator, (count + 1) * sizeof *tree->leaf_at);
-    good = good && place && other && tree->leaf_at;
+    good = good && place && other;
     if (good) {
         curve c = curve_of(skin);
-        for (size_t i = 0; i < count; i++) place[i] = place_on(&c, skin, &skin->leaf[i]), tree->leaf_at[i] = (uint32_t)i;
+        for (size_t i = 0; i < count; i++) place[i] = place_on(&c, skin, &skin->leaf[i]);
         sort_by_place(place, tree->leaf_at, place + count, other, count);
     }
     sk_release(allocator, place);
