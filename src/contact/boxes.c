@@ -189,6 +189,7 @@ static void box_some_vertices(void *data, int thread, size_t begin, size_t end) 
     const boxing *job = data;
     sk_touch *touch = job->touch;
     for (size_t v = begin; v < end; v++) {
+        if (sk_vertex_is_out(&touch->spread, v)) continue;
         bool lost = touch->lost[v], wild = touch->wild[v];
         if (job->all || lost || (wild && job->wild)) make_vertex_box(touch, v, touch->still || (job->ways && (lost | wild)));
     }

@@ -74,6 +74,20 @@ bool sk_touch_keep(sk_touch *touch, sk_allocator *allocator, int sort, bool all,
     return true;
 }
 
+void sk_touch_leave_out(sk_touch *touch) {
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
+        for (int i = 0; i < 2; i++) {
+            sk_pairs *pairs = i ? &touch->late[sort] : &touch->kept[sort];
+            const size_t count = pairs->count;
+            pairs->count = 0;
+            for (size_t k = 0; k < count; k++) {
+                bool out = sk_spread_has(&touch->spread, sk_first_leaf(pairs->key[k])) || sk_spread_has(&touch->spread, sk_second_leaf(pairs->key[k]));
+                if (!out && pairs->thickness[k] > 0) sk_pairs_copy_all(pairs, pairs, k);
+            }
+            sk_pairs_pad(pairs);
+        }
+}
+
 /* ---- those that are near ---- */
 
 /* The end of what is in order, from `first` on. */

@@ -135,7 +135,7 @@ static void aim(void *data, int thread, size_t begin, size_t end) {
     (void)thread;
     sk_touch *touch = data;
     for (size_t v = begin; v < end; v++) {
-        if (touch->aimed && !touch->lost[v]) continue;
+        if ((touch->aimed && !touch->lost[v]) || sk_vertex_is_out(&touch->spread, v)) continue;
         sk_vec3 to = sk_add(sk_xyz(touch->p[v]), sk_way_left(touch, v));
         touch->at[v] = touch->p[v];
         touch->in_the_end[v] = (sk_vec4){to.x, to.y, to.z, 0};
@@ -148,6 +148,7 @@ static void expect(void *data, int thread, size_t begin, size_t end) {
     sk_touch *touch = data;
     const real jump = SK_MOST_JUMP * touch->thickness;
     for (size_t v = begin; v < end; v++) {
+        if (sk_vertex_is_out(&touch->spread, v)) continue;
         const sk_course *course = &touch->course[v];
         if (touch->wild[v]) { // its pairs to come are found on its ways
             sk_vec3 here = sk_sub(sk_xyz(touch->p[v]), touch->shift[0]);

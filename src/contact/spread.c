@@ -128,6 +128,29 @@ static sk_box box_of_way(const sk_touch *touch, const sk_panel *panel, const rea
     return box;
 }
 
+/* How far from where they are expected panels may be. */
+static real off_course_of(const sk_touch *touch) {
+    return touch->thickness;
+}
+
+/* Whether a panel is where it is expected after this substep, on any shares of its way. */
+static bool is_on_course(const sk_touch *touch, size_t p, const real low[3], const real high[3]) {
+    const sk_spread *spread = &touch->spread;
+    const sk_panel *panel = &spread->panel[p];
+    const sk_box *course = &spread->course[p];
+    const bool held = spread->out_count < spread->count;
+    const real common[3] = {touch->common.x, touch->common.y, touch->common.z};
+    const real share = (real)(spread->age + 1) / SK_PANEL_AHEAD, off = off_course_of(touch);
+    bool on = true;
+    for (int k = 0; k < 3; k++) {
+        real least = course->low[0][k] + share * (course->low[1][k] - course->low[0][k]) - off;
+        real most = course->high[0][k] + share * (course->high[1][k] - course->high[0][k]) + off;
+        on &= low[k] >= least && high[k] <= most;
+        on &= !held || (panel->low[k] + common[k] >= least && panel->high[k] + common[k] <= most);
+    }
+    return on;
+}
+
 static void measure_some(void *data, int thread, size_t begin, size_t end) {
     (void)thread;
     const measuring *job = data;
@@ -142,7 +165,10 @@ static void measure_some(void *data, int thread, size_t begin, size_t end) {
             for (int k = 0; k < 6; k++) panel->least[k] = m.least[k][l], panel->least[6 + k] = -m.most[k][l];
             for (int k = 0; k < 3; k++) low[k] = m.low[k][l], high[k] = m.high[k][l];
             panel->change = m.change[l];
+            if (job->ways && spread->age < SK_PANEL_AHEAD && !is_on_course(touch, p, low, high))
+                __atomic_store_n(&spread->off_course, true, __ATOMIC_RELAXED);
             spread->box[p] = box_of_way(touch, panel, low, high, job->ways);
+            for (int k = 0; k < 3; k++) panel->low_step[k] = low[k] - panel->low[k], panel->high_step[k] = high[k] - panel->high[k];
             memcpy(panel->low, low, sizeof low);
             memcpy(panel->high, high, sizeof high);
         }
@@ -234,12 +260,13 @@ static void fit(sk_spread *spread) {
                 sk_tree_block *block = &tree->block[level][b];
                 const sk_tree_block *below = level ? &tree->block[level - 1][i] : NULL;
                 const bool there = i < (level ? tree->blocks[level - 1] : spread->count);
-                for (int k = 0; k < 3; k++) {
+                for (int n = 0; n < 6; n++) {
+                    const int end = n / 3, k = n % 3;
                     real low = SK_REAL_MAX, high = -SK_REAL_MAX;
-                    if (there && !level) low = spread->wide[i].low[0][k], high = spread->wide[i].high[0][k];
+                    if (there && !level) low = spread->wide[i].low[end][k], high = spread->wide[i].high[end][k];
                     for (int m = 0; m < SK_TREE_WIDTH && there && level; m++)
-                        low = sk_min(low, below->low[0][k][m]), high = sk_max(high, below->high[0][k][m]);
-                    block->low[0][k][l] = block->low[1][k][l] = low, block->high[0][k][l] = block->high[1][k][l] = high;
+                        low = sk_min(low, below->low[end][k][m]), high = sk_max(high, below->high[end][k][m]);
+                    block->low[end][k][l] = low, block->high[end][k][l] = high;
                 }
             }
 }
@@ -251,15 +278,15 @@ static bool is_beside(const sk_spread *spread, size_t p, size_t other) {
 }
 
 /* Who is out and may come nearer to another one that is not beside it comes in, and so does that. */
-static void part(sk_touch *touch, real near) {
+static void part(sk_touch *touch, const sk_box *box, real near) {
     sk_spread *spread = &touch->spread;
     const real half = (real)0.5 * near;
     const sk_quad wider = {half, half, half, 0};
     uint32_t hit[SK_TREE_WIDTH * SK_TREE_WIDTH];
     for (size_t p = 0; p < spread->count; p++)
         for (int end = 0; end < 2; end++) {
-            spread->wide[p].low[end] = spread->box[p].low[end] - wider;
-            spread->wide[p].high[end] = spread->box[p].high[end] + wider;
+            spread->wide[p].low[end] = box[p].low[end] - wider;
+            spread->wide[p].high[end] = box[p].high[end] + wider;
         }
     fit(spread);
     for (size_t a = 0; a < spread->tree.blocks[0]; a++) {
@@ -314,11 +341,13 @@ static bool turn(sk_touch *touch) {
     enum { IN = 1, CAME = 2 };
     sk_spread *spread = &touch->spread;
     uint8_t *mark = spread->mark;
+    const bool none_had = spread->out_count == spread->count; // a course
     bool any = false;
     memset(mark, 0, touch->skin.vertex_count);
     spread->out_count = 0;
     for (size_t p = 0; p < spread->count; p++) {
         spread->out_count += spread->out[p];
+        spread->went_out |= spread->out[p] && !spread->was_out[p];
         if (spread->out[p]) continue;
         mark_corners(touch, p, mark, spread->was_out[p] ? IN | CAME : IN);
         for (uint32_t i = spread->beside.start[p]; i < spread->beside.start[p + 1]; i++)
@@ -333,6 +362,7 @@ static bool turn(sk_touch *touch) {
         any |= in;
     }
     memcpy(spread->was_out, spread->out, spread->count);
+    if (any && none_had) touch->until = sk_min(touch->until, touch->now + 10); // or boxes would lead far ahead
     turn_patches(touch);
     spread->turned = true;
     touch->holds = false;
@@ -352,7 +382,9 @@ static bool judge(sk_touch *touch, bool more, bool ways) {
     sk_parallel_pieces(touch->tasks, 0, spread->block_count, BLOCKS_AT_ONCE, judge_some, &job);
     for (size_t p = 0; p < spread->count; p++)
         if (spread->out[p] || more) spread->out[p] = are_spread(spread, p);
-    part(touch, (more ? room : 1) * near_of(touch));
+    if (ways && spread->age < SK_PANEL_AHEAD && !spread->off_course && !(spread->gone > 0)) spread->age++;
+    else part(touch, spread->box, (more ? room : 1) * near_of(touch)), spread->age = SK_PANEL_AHEAD;
+    spread->off_course = false;
     spread->gone = 0;
     if (!memcmp(spread->was_out, spread->out, spread->count)) return false;
     return turn(touch);
@@ -382,9 +414,30 @@ static void look_ahead(sk_touch *touch, real way) {
     real least = (real)0.5 * margin;
     for (size_t b = 0; b < spread->block_count && least > way; b++) least = sk_min(least, room_of(touch, &spread->block[b]));
     if (!(least > way)) return;
-    part(touch, near_of(touch) + margin);
+    part(touch, spread->box, near_of(touch) + margin);
     if (!memchr(spread->out, 0, spread->count)) spread->holds = least;
     memcpy(spread->out, spread->was_out, spread->count);
+}
+
+/* Whether all that are out stay apart from all others as they go on: then boxes need not be compared for a while. */
+static void set_courses(sk_touch *touch) {
+    enum { WAIT = 8 }; // where they do not
+    sk_spread *spread = &touch->spread;
+    if (spread->wait-- > 0) return;
+    for (size_t p = 0; p < spread->count; p++) {
+        const sk_panel *panel = &spread->panel[p];
+        sk_box *course = &spread->course[p];
+        for (int k = 0; k < 3; k++) {
+            course->low[0][k] = panel->low[k], course->high[0][k] = panel->high[k];
+            course->low[1][k] = panel->low[k] + SK_PANEL_AHEAD * panel->low_step[k];
+            course->high[1][k] = panel->high[k] + SK_PANEL_AHEAD * panel->high_step[k];
+        }
+    }
+    part(touch, spread->course, near_of(touch) + 2 * off_course_of(touch));
+    bool good = !memcmp(spread->was_out, spread->out, spread->count);
+    memcpy(spread->out, spread->was_out, spread->count);
+    spread->age = good ? 0 : SK_PANEL_AHEAD;
+    spread->wait = good ? 0 : WAIT;
 }
 
 bool sk_spread_follow(sk_touch *touch, real way) {
@@ -392,7 +445,9 @@ bool sk_spread_follow(sk_touch *touch, real way) {
     if (spread->stale) measure(touch, touch->p, false), spread->gone = 0;
     spread->stale = false;
     measure(touch, touch->q, true);
+    const bool one = !(spread->gone > 0); // substep since it was last looked
     if (judge(touch, false, true)) return true;
+    if (spread->age == SK_PANEL_AHEAD && one) set_courses(touch);
     if (spread->out_count == spread->count) look_ahead(touch, way);
     return false;
 }
@@ -403,7 +458,7 @@ real sk_spread_longest_way(const sk_touch *touch, const sk_vec4 *x, size_t packe
 
 void sk_spread_follow_held(sk_touch *touch) {
     widen_by_common_way(touch);
-    part(touch, near_of(touch));
+    part(touch, touch->spread.box, near_of(touch));
     turn(touch);
 }
 

@@ -18,13 +18,14 @@
 
 #include "contact/boxes.h"
 
-enum { SK_PANEL_LEAVES = 16, SK_PANEL_LANES = 16 };
+enum { SK_PANEL_LEAVES = 16, SK_PANEL_LANES = 16, SK_PANEL_AHEAD = 16 };
 
 /* What is known of a panel where it was looked at last. */
 typedef struct sk_panel {
     real least[16]; /* of J's six numbers, and of these with the other sign; the rest is 0 */
     real change;    /* of J since it was looked at before that: the square of the most, of any triangle */
-    real low[3], high[3]; /* where it is */
+    real low[3], high[3]; /* where it is, */
+    real low_step[3], high_step[3]; /* and how far that has gone in the last substep */
 } sk_panel;
 
 /* Panels that have a corner in common, and what is said of these once. */
@@ -61,13 +62,18 @@ typedef struct sk_spread {
     uint32_t *row_start, (*corner)[4][SK_PANEL_LANES];
     real (*inverse)[2][4][SK_PANEL_LANES], (*gradient)[2][6][SK_PANEL_LANES];
     sk_tree tree;        /* of the boxes of panels on their ways; */
-    sk_box *box, *wide;  /* these, and wider ones, */
+    sk_box *box, *wide;  /* these, and wider ones; */
+    sk_box *course;      /* where panels are expected from some substep on, and SK_PANEL_AHEAD later: then all are apart as they must be, */
+    int age;             /* as long as they are there; substeps since, */
+    int wait;            /* or until that is tried again */
+    bool off_course;     /* somebody is not */
     uint32_t *met;       /* and which of the tree's blocks one may meet */
     uint8_t *was_out;    /* panels that were, when it was last said who is lost */
     uint8_t *mark;       /* of vertices: for a moment */
     real thickness;      /* that panels were looked at for */
     real holds, gone;    /* m: all that are out are while nobody has gone farther since; and how far they have gone at most */
     bool stale;          /* somebody was held back since */
+    bool went_out;       /* panels have, and pairs of theirs may be kept */
     bool came_in;        /* panels have, and it has not been said yet who is lost */
     bool never;          /* nobody goes out: an implicit solve asks several times what becomes of a substep */
     bool turned;         /* somebody has gone out or come in, and boxes of leaves do not know it */

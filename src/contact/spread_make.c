@@ -455,19 +455,34 @@ static real square_off(spot p, spot a, spot b) {
     return x * x + y * y;
 }
 
+/* Corners of a leaf: of the edge that two triangles share, and the third of each; of one triangle this comes twice, and of an
+ * edge its first end. */
+static void corners_in_row(const sk_skin *skin, const sk_leaf *leaf, uint32_t corner[4]) {
+    if (!leaf->triangles) {
+        const uint32_t *edge = skin->edge[leaf->first_edge];
+        corner[0] = edge[0], corner[1] = edge[1], corner[2] = corner[3] = edge[0];
+        return;
+    }
+    const uint32_t *t = skin->triangle[leaf->first_triangle], *s = leaf->triangles > 1 ? skin->triangle[leaf->first_triangle + 1] : t;
+    int third = 0;
+    uint32_t other = t[0];
+    for (int k = 0; k < 3 && s != t; k++) {
+        if (t[k] != s[0] && t[k] != s[1] && t[k] != s[2]) third = k;
+        if (s[k] != t[0] && s[k] != t[1] && s[k] != t[2]) other = s[k];
+    }
+    corner[0] = t[(third + 1) % 3], corner[1] = t[(third + 2) % 3], corner[2] = t[third], corner[3] = s == t ? t[third] : other;
+}
+
 /* The least square of how far a corner of one leaf is from an edge of another that does not have it. On a plane no features are
  * nearer to each other. */
-static real square_between(const making *m, const sk_leaf *a, const sk_leaf *b, real least) {
-    const sk_skin *skin = m->skin;
-    uint32_t corner[6];
-    int count = corners_of_leaf(skin, a, corner);
-    for (uint32_t t = b->first_triangle; t < b->first_triangle + b->triangles; t++)
-        for (int k = 0; k < 3; k++) {
-            uint32_t c = skin->triangle[t][k], d = skin->triangle[t][(k + 1) % 3];
-            for (int i = 0; i < count; i++)
-                if (corner[i] != c && corner[i] != d)
-                    least = sk_min(least, square_off(m->spot[corner[i]], m->spot[c], m->spot[d]));
-        }
+static real square_between(const making *m, const uint32_t a[4], const uint32_t b[4], real least) {
+    static const int ends[5][2] = {{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}};
+    const int edges = b[2] == b[3] ? 3 : 5, corners = a[2] == a[3] ? 3 : 4;
+    for (int e = 0; e < edges; e++) {
+        const uint32_t c = b[ends[e][0]], d = b[ends[e][1]];
+        for (int i = 0; i < corners; i++)
+            if (a[i] != c && a[i] != d) least = sk_min(least, square_off(m->spot[a[i]], m->spot[c], m->spot[d]));
+    }
     return least;
 }
 
@@ -475,26 +490,33 @@ static real gap_along(real low, real high, real other_low, real other_high) {
     return sk_max(0, sk_max(other_low - high, low - other_high));
 }
 
-static void measure_apart(making *m, size_t p, const uint32_t *beside, size_t besides) {
+/* Of leaf a and those of panel q that come later. */
+static void measure_apart_of(making *m, size_t p, uint32_t a, size_t q) {
     const sk_skin *skin = m->skin;
     const sk_lists *leaves = &m->spread->leaves;
-    real least = SK_REAL_MAX;
-    for (uint32_t i = leaves->start[p]; i < leaves->start[p + 1]; i++) { // these first, which the others are held against
-        const sk_leaf *leaf = &skin->leaf[leaves->number[i]];
-        least = square_between(m, leaf, leaf, least);
+    const rectangle *one = &m->of_leaf[a];
+    uint32_t corner[4], other[4];
+    corners_in_row(skin, &skin->leaf[a], corner);
+    for (uint32_t j = leaves->start[q]; j < leaves->start[q + 1]; j++) {
+        const uint32_t b = leaves->number[j];
+        const rectangle *two = &m->of_leaf[b];
+        real u = gap_along(one->low.u, one->high.u, two->low.u, two->high.u);
+        real v = gap_along(one->low.v, one->high.v, two->low.v, two->high.v), least = sk_max(m->apart[p], m->apart[q]);
+        if (b < a || u * u + v * v >= least) continue;
+        corners_in_row(skin, &skin->leaf[b], other);
+        least = square_between(m, corner, other, least);
+        if (a != b) least = square_between(m, other, corner, least);
+        m->apart[p] = sk_min(m->apart[p], least), m->apart[q] = sk_min(m->apart[q], least);
     }
+}
+
+/* Squares, until all have been seen. */
+static void measure_apart(making *m, size_t p, const uint32_t *beside, size_t besides) {
+    const sk_lists *leaves = &m->spread->leaves;
+    for (uint32_t i = leaves->start[p]; i < leaves->start[p + 1]; i++) measure_apart_of(m, p, leaves->number[i], p);
     for (size_t k = 0; k < besides; k++)
-        for (uint32_t i = leaves->start[p]; i < leaves->start[p + 1]; i++)
-            for (uint32_t j = leaves->start[beside[k]]; j < leaves->start[beside[k] + 1]; j++) {
-                const uint32_t a = leaves->number[i], b = leaves->number[j];
-                const rectangle *one = &m->of_leaf[a], *two = &m->of_leaf[b];
-                real u = gap_along(one->low.u, one->high.u, two->low.u, two->high.u);
-                real v = gap_along(one->low.v, one->high.v, two->low.v, two->high.v);
-                if (a == b || u * u + v * v >= least) continue;
-                least = square_between(m, &skin->leaf[a], &skin->leaf[b], least);
-                least = square_between(m, &skin->leaf[b], &skin->leaf[a], least);
-            }
-    m->apart[p] = sk_sqrt(least) - 2 * (real)1e-3 * skin->longest; // borders are known no better
+        for (uint32_t i = leaves->start[p]; i < leaves->start[p + 1] && beside[k] != p; i++)
+            measure_apart_of(m, p, leaves->number[i], beside[k]);
 }
 
 static bool add(making *m, numbers *list, uint32_t number) {
@@ -567,12 +589,14 @@ static bool list_sheet(making *m, size_t first, size_t end) {
     for (size_t p = first; p < end; p++) m->in_bin[start[m->bin[p].v * sheet.across + m->bin[p].u + 1]++] = (uint32_t)p;
     sheet.start = start;
     bool good = true;
+    for (size_t p = first; p < end; p++) m->apart[p] = SK_REAL_MAX;
     for (size_t p = first; p < end && good; p++) {
         const size_t before = m->beside.count, u = m->bin[p].u, v = m->bin[p].v;
         spread->beside.start[p] = (uint32_t)before;
         good = add_bins(m, &sheet, u ? u - 1 : 0, v ? v - 1 : 0, u + 2, v + 2, &m->beside);
         if (good) measure_apart(m, p, m->beside.data + before, m->beside.count - before);
     }
+    for (size_t p = first; p < end; p++) m->apart[p] = sk_sqrt(m->apart[p]) - 2 * (real)1e-3 * m->skin->longest; // (borders)
     for (size_t v = 0; (v == 0 || v + 1 < sheet.along) && good; v++)
         for (size_t u = 0; (u == 0 || u + 1 < sheet.across) && good; u++) good = list_block(m, &sheet, u, v, end - first, widest);
     sk_release(m->allocator, start);
@@ -617,24 +641,6 @@ static bool list_all(making *m) {
 }
 
 /* ---- rows ---- */
-
-/* Corners of a leaf: of the edge that two triangles share, and the third of each; of one triangle this comes twice, and of an
- * edge its first end. */
-static void corners_in_row(const sk_skin *skin, const sk_leaf *leaf, uint32_t corner[4]) {
-    if (!leaf->triangles) {
-        const uint32_t *edge = skin->edge[leaf->first_edge];
-        corner[0] = edge[0], corner[1] = edge[1], corner[2] = corner[3] = edge[0];
-        return;
-    }
-    const uint32_t *t = skin->triangle[leaf->first_triangle], *s = leaf->triangles > 1 ? skin->triangle[leaf->first_triangle + 1] : t;
-    int third = 0;
-    uint32_t other = t[0];
-    for (int k = 0; k < 3 && s != t; k++) {
-        if (t[k] != s[0] && t[k] != s[1] && t[k] != s[2]) third = k;
-        if (s[k] != t[0] && s[k] != t[1] && s[k] != t[2]) other = s[k];
-    }
-    corner[0] = t[(third + 1) % 3], corner[1] = t[(third + 2) % 3], corner[2] = t[third], corner[3] = s == t ? t[third] : other;
-}
 
 /* What makes J of two differences of corners. */
 static void put_inverse(const making *m, const uint32_t corner[3], real (*inverse)[SK_PANEL_LANES], size_t lane) {
@@ -708,6 +714,8 @@ static bool reserve_panels(making *m) {
     spread->was_out = sk_allocate(a, panels);
     spread->box = sk_allocate(a, panels * sizeof *spread->box);
     spread->wide = sk_allocate(a, panels * sizeof *spread->wide);
+    spread->course = sk_allocate(a, panels * sizeof *spread->course);
+    spread->age = SK_PANEL_AHEAD;
     spread->met = sk_allocate(a, panels * sizeof *spread->met);
     spread->beside.start = sk_allocate(a, panels * sizeof *spread->beside.start);
     m->in_bin = sk_allocate(a, panels * sizeof *m->in_bin);
@@ -717,7 +725,8 @@ static bool reserve_panels(making *m) {
     m->longest = sk_allocate(a, panels * sizeof *m->longest);
     m->order = sk_allocate(a, panels * sizeof *m->order);
     bool good = sk_tree_reserve(&spread->tree, a, spread->count);
-    return good && spread->panel && spread->out && spread->was_out && spread->box && spread->wide && spread->met && spread->beside.start && m->in_bin && m->apart && m->steep && m->of_panel && m->longest &&
+    return good && spread->panel && spread->out && spread->was_out && spread->box && spread->wide && spread->course &&
+           spread->met && spread->beside.start && m->in_bin && m->apart && m->steep && m->of_panel && m->longest &&
            m->order;
 }
 
@@ -755,7 +764,7 @@ void sk_spread_release(sk_spread *spread, sk_allocator *allocator) {
         sk_release(allocator, lists[i]->number);
     }
     void *arrays[] = {spread->panel, spread->of_leaf, spread->block, spread->out, spread->was_out, spread->vertex_out, spread->patch_out,
-                      spread->mark, spread->row_start, spread->corner, spread->inverse, spread->gradient, spread->box, spread->wide,
+                      spread->mark, spread->row_start, spread->corner, spread->inverse, spread->gradient, spread->box, spread->wide, spread->course,
                       spread->met};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     sk_tree_release(&spread->tree, allocator);

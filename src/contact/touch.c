@@ -165,6 +165,7 @@ static void set_courses(sk_touch *touch, const sk_run *run, const sk_op *op, rea
 static bool are_most(const sk_touch *touch) {
     size_t lost = 0;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) lost += touch->lost[v];
+    if (2 * touch->spread.out_count > touch->spread.count) return touch->lost_since > 4 * touch->skin.vertex_count;
     return 10 * lost > touch->skin.vertex_count || 2 * (touch->lost_since + lost) > touch->skin.vertex_count;
 }
 
@@ -224,10 +225,6 @@ static bool find_tangles(sk_touch *touch, const sk_run *run, const sk_op *op) {
     return sk_tangle_look(touch, run->allocator, run->vector[SK_X], op->packed, sk_min(step, most), is_known(touch, run));
 }
 
-static void forget_pairs(sk_touch *touch) {
-    for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->kept[sort].count = touch->late[sort].count = touch->told_apart[sort] = 0;
-}
-
 /* Looks at panels: nobody is out where things go through each other, in a storm, and in an implicit solve, which asks several
  * times what becomes of a substep; others go out once a frame.
  * Whether vertices have lost their courses, for they never had any. */
@@ -251,7 +248,8 @@ static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool
     all |= stormed;
     bool lost = !all && mark_lost(touch, run, op);
     lost |= look_at_panels(touch, run, op) && !all;
-    if (sk_spread_is_all_out(&touch->spread)) forget_pairs(touch);
+    if (touch->spread.went_out) sk_touch_leave_out(touch);
+    touch->spread.went_out = false;
     bool looks = !all && !touch->holds;
     if (all || lost || looks || sk_pairs_kept(touch)) sk_touch_load(touch, op->packed);
     if (looks && !sk_calm_look(touch, run->allocator, false)) return false;

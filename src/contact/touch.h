@@ -204,6 +204,8 @@ bool sk_pair_is_tangled(const sk_touch *touch, const uint32_t corner[4], int sor
 /* Takes fresh pairs over: instead of all that are kept, or of those with a vertex that was looked for. In the midst of a
  * bound no pair changes its place. */
 bool sk_touch_keep(sk_touch *touch, sk_allocator *allocator, int sort, bool all, bool midst);
+/* Lets all pairs go of whose leaves one is out (spread.h); before a bound. */
+void sk_touch_leave_out(sk_touch *touch);
 /* Lists those that are near, in the order of leaves. */
 bool sk_touch_find_near(sk_touch *touch, sk_allocator *allocator, int sort);
 /* The pairs that an entry of a list is about, and where it is there. */
@@ -233,6 +235,12 @@ extern sk_features_kernel *const sk_features[SK_PAIR_SORTS][SK_ISA_COUNT];
 /* The key of their first pair. */
 static inline uint64_t sk_leaves_key(uint32_t a, uint32_t b) {
     return (uint64_t)a << 36 | (uint64_t)b << 8;
+}
+static inline size_t sk_first_leaf(uint64_t key) {
+    return (size_t)(key >> 36);
+}
+static inline size_t sk_second_leaf(uint64_t key) {
+    return (size_t)(key >> 8 & 0xfffffff);
 }
 
 /* ---- partners.c ---- */
