@@ -6,13 +6,18 @@
 #include "contact/touch.h"
 #define SK_UNIT spread
 
-/* Of sixteen panels: the least and the most of J's numbers, the square of how much it has changed, and where they are. */
-typedef struct sk_panels_measured {
-    SK_VECTOR_ALIGNED real least[6][SK_PANEL_LANES], most[6][SK_PANEL_LANES], change[SK_PANEL_LANES];
-    SK_VECTOR_ALIGNED real low[3][SK_PANEL_LANES], high[3][SK_PANEL_LANES];
-} sk_panels_measured;
-/* Of places x of vertices; J is noted. */
-typedef void sk_measure_kernel(const sk_vec4 *x, const sk_spread *spread, size_t group, sk_panels_measured *out);
+/* J of sixteen panels: the least and the most of its numbers. */
+typedef struct sk_panel_bounds {
+    SK_VECTOR_ALIGNED real least[6][SK_PANEL_LANES], most[6][SK_PANEL_LANES];
+} sk_panel_bounds;
+/* Whether panels are within some distance of where they are expected at some share of their courses, and were, had they gone a
+ * common way. */
+typedef struct sk_course_values {
+    real share, off;
+    sk_vec3 common;
+} sk_course_values;
+/* Of places x of vertices; J is noted. With `course`, returns whether a panel is off its course. */
+typedef bool sk_measure_kernel(const sk_vec4 *x, const sk_spread *spread, size_t group, const sk_course_values *course, sk_panel_bounds *out);
 SK_KERNELS(sk_measure_kernel, measure);
 /* The square of the longest way of all slots. */
 typedef real sk_longest_kernel(const sk_vec4 *before, const sk_vec4 *x, size_t packed, size_t slots);
@@ -22,6 +27,10 @@ SK_KERNELS(sk_longest_kernel, longest);
 
 SK_INLINE sk_wide *lanes_of(real *reals) {
     return (sk_wide *)(void *)reals;
+}
+
+SK_INLINE const sk_wide *row_of(const real *reals) {
+    return (const sk_wide *)(const void *)reals;
 }
 
 SK_INLINE sk_wide least_of(sk_wide a, sk_wide b) {
@@ -55,8 +64,22 @@ SK_INLINE void add_triangle(bounds *b, sk_wide3 d1, sk_wide3 d2, real (*inverse)
     b->change = most_of(b->change, change);
 }
 
-void SK_KERNEL(measure)(const sk_vec4 *x, const sk_spread *spread, size_t group, sk_panels_measured *out) {
+/* Lanes that are out of bounds along an axis. */
+SK_INLINE uint32_t off_course(const sk_panels *panels, const bounds *b, size_t l, int k, const sk_course_values *course) {
+    const sk_tree_block *c = &panels->course;
+    const real common = k == 0 ? course->common.x : k == 1 ? course->common.y : course->common.z;
+    const sk_wide share = sk_splat(course->share), off = sk_splat(course->off), way = sk_splat(common);
+    const sk_wide low = *row_of(c->low[0][k] + l), high = *row_of(c->high[0][k] + l);
+    const sk_wide least = low + share * (*row_of(c->low[1][k] + l) - low) - off;
+    const sk_wide most = high + share * (*row_of(c->high[1][k] + l) - high) + off;
+    const sk_wide first = least_of(b->low[k], *row_of(panels->low[k] + l) + way), last = most_of(b->high[k], *row_of(panels->high[k] + l) + way);
+    return sk_more_bits(least, first) | sk_more_bits(last, most);
+}
+
+bool SK_KERNEL(measure)(const sk_vec4 *x, const sk_spread *spread, size_t group, const sk_course_values *course, sk_panel_bounds *out) {
     const sk_wide far = sk_splat(SK_REAL_MAX);
+    sk_panels *panels = &spread->sixteen[group];
+    uint32_t off = 0;
     for (size_t l = 0; l < SK_PANEL_LANES; l += SK_PART) {
         bounds b = {.change = sk_splat(0)};
         for (int k = 0; k < 6; k++) b.least[k] = far, b.most[k] = -far;
@@ -77,9 +100,16 @@ void SK_KERNEL(measure)(const sk_vec4 *x, const sk_spread *spread, size_t group,
             }
         }
         for (int k = 0; k < 6; k++) *lanes_of(out->least[k] + l) = b.least[k], *lanes_of(out->most[k] + l) = b.most[k];
-        for (int k = 0; k < 3; k++) *lanes_of(out->low[k] + l) = b.low[k], *lanes_of(out->high[k] + l) = b.high[k];
-        *lanes_of(out->change + l) = b.change;
+        for (int k = 0; k < 3; k++) {
+            if (course) off |= off_course(panels, &b, l, k, course);
+            *lanes_of(panels->low_before[k] + l) = *row_of(panels->low[k] + l);
+            *lanes_of(panels->high_before[k] + l) = *row_of(panels->high[k] + l);
+            *lanes_of(panels->low[k] + l) = b.low[k];
+            *lanes_of(panels->high[k] + l) = b.high[k];
+        }
+        *lanes_of(panels->change + l) = b.change;
     }
+    return off;
 }
 
 real SK_KERNEL(longest)(const sk_vec4 *before, const sk_vec4 *x, size_t packed, size_t slots) {
@@ -110,45 +140,12 @@ static const real room = (real)1.2;
 typedef struct measuring {
     sk_touch *touch;
     const sk_vec4 *x;
-    bool ways; /* from where they were to x */
+    const sk_course_values *course;
 } measuring;
-
-/* The box of a panel's way: of who is held back, too, which goes what all go together. */
-static sk_box box_of_way(const sk_touch *touch, const sk_panel *panel, const real low[3], const real high[3], bool ways) {
-    const real common[3] = {touch->common.x, touch->common.y, touch->common.z};
-    const bool held = touch->spread.out_count < touch->spread.count;
-    const real gone = touch->spread.gone; // since it was there
-    sk_box box = {{{0}}, {{0}}};
-    for (int k = 0; k < 3; k++) {
-        real least = low[k], most = high[k];
-        if (ways) least = sk_min(least, panel->low[k] - gone), most = sk_max(most, panel->high[k] + gone);
-        if (ways && held) least = sk_min(least, panel->low[k] + common[k] - gone), most = sk_max(most, panel->high[k] + common[k] + gone);
-        box.low[0][k] = box.low[1][k] = least, box.high[0][k] = box.high[1][k] = most;
-    }
-    return box;
-}
 
 /* How far from where they are expected panels may be. */
 static real off_course_of(const sk_touch *touch) {
     return touch->thickness;
-}
-
-/* Whether a panel is where it is expected after this substep, on any shares of its way. */
-static bool is_on_course(const sk_touch *touch, size_t p, const real low[3], const real high[3]) {
-    const sk_spread *spread = &touch->spread;
-    const sk_panel *panel = &spread->panel[p];
-    const sk_box *course = &spread->course[p];
-    const bool held = spread->out_count < spread->count;
-    const real common[3] = {touch->common.x, touch->common.y, touch->common.z};
-    const real share = (real)(spread->age + 1) / SK_PANEL_AHEAD, off = off_course_of(touch);
-    bool on = true;
-    for (int k = 0; k < 3; k++) {
-        real least = course->low[0][k] + share * (course->low[1][k] - course->low[0][k]) - off;
-        real most = course->high[0][k] + share * (course->high[1][k] - course->high[0][k]) + off;
-        on &= low[k] >= least && high[k] <= most;
-        on &= !held || (panel->low[k] + common[k] >= least && panel->high[k] + common[k] <= most);
-    }
-    return on;
 }
 
 static void measure_some(void *data, int thread, size_t begin, size_t end) {
@@ -157,48 +154,47 @@ static void measure_some(void *data, int thread, size_t begin, size_t end) {
     sk_touch *touch = job->touch;
     sk_spread *spread = &touch->spread;
     for (size_t g = begin; g < end; g++) {
-        sk_panels_measured m;
-        measure_kernel[touch->isa](job->x, spread, g, &m);
-        for (size_t l = 0, p = g * SK_PANEL_LANES; l < SK_PANEL_LANES && p < spread->count; l++, p++) {
-            sk_panel *panel = &spread->panel[p];
-            real low[3], high[3];
-            for (int k = 0; k < 6; k++) panel->least[k] = m.least[k][l], panel->least[6 + k] = -m.most[k][l];
-            for (int k = 0; k < 3; k++) low[k] = m.low[k][l], high[k] = m.high[k][l];
-            panel->change = m.change[l];
-            if (job->ways && spread->age < SK_PANEL_AHEAD && !is_on_course(touch, p, low, high))
-                __atomic_store_n(&spread->off_course, true, __ATOMIC_RELAXED);
-            spread->box[p] = box_of_way(touch, panel, low, high, job->ways);
-            for (int k = 0; k < 3; k++) panel->low_step[k] = low[k] - panel->low[k], panel->high_step[k] = high[k] - panel->high[k];
-            memcpy(panel->low, low, sizeof low);
-            memcpy(panel->high, high, sizeof high);
-        }
+        sk_panel_bounds m;
+        if (measure_kernel[touch->isa](job->x, spread, g, job->course, &m)) __atomic_store_n(&spread->off_course, true, __ATOMIC_RELAXED);
+        for (size_t l = 0, p = g * SK_PANEL_LANES; l < SK_PANEL_LANES && p < spread->count; l++, p++)
+            for (int k = 0; k < 6; k++) spread->least[p][k] = m.least[k][l], spread->least[p][6 + k] = -m.most[k][l];
     }
 }
 
+/* Where vertices are at x: on their ways, or not. */
 static void measure(sk_touch *touch, const sk_vec4 *x, bool ways) {
-    measuring job = {touch, x, ways};
-    const size_t groups = (touch->spread.count + SK_PANEL_LANES - 1) / SK_PANEL_LANES;
+    const sk_spread *spread = &touch->spread;
+    const bool held = spread->out_count < spread->count; // somebody may be, and goes the common way
+    const sk_course_values course = {(real)(spread->age + 1) / SK_PANEL_AHEAD, off_course_of(touch), held ? touch->common : (sk_vec3){0, 0, 0}};
+    measuring job = {touch, x, ways && spread->age < SK_PANEL_AHEAD ? &course : NULL};
+    const size_t groups = (spread->count + SK_PANEL_LANES - 1) / SK_PANEL_LANES;
     sk_parallel_pieces(touch->tasks, 0, groups, GROUPS_AT_ONCE, measure_some, &job);
 }
 
 /* How well places are known. */
-static real rounding_of(const sk_panel *panel) {
+static real rounding_of(const sk_spread *spread, size_t p) {
     const real share = sizeof(real) == 8 ? (real)4e-15 : (real)2e-6;
+    const sk_panels *panels = &spread->sixteen[p / SK_PANEL_LANES];
+    const size_t l = p % SK_PANEL_LANES;
     real far = 0;
-    for (int k = 0; k < 3; k++) far = sk_max(far, sk_max(sk_abs(panel->low[k]), sk_abs(panel->high[k])));
+    for (int k = 0; k < 3; k++) far = sk_max(far, sk_max(sk_abs(panels->low[k][l]), sk_abs(panels->high[k][l])));
     return share * far;
+}
+
+static real change_of(const sk_spread *spread, size_t p) {
+    return spread->sixteen[p / SK_PANEL_LANES].change[p % SK_PANEL_LANES];
 }
 
 /* c / |A| of a block and those around it, where A is the middle of all J; and the most that J has changed, squared. */
 static real keeps_of(const sk_spread *spread, size_t b, real *change) {
     real least[16];
     const uint32_t first = spread->around.start[b], end = spread->around.start[b + 1];
-    memcpy(least, spread->panel[spread->around.number[first]].least, sizeof least);
-    *change = spread->panel[spread->around.number[first]].change;
+    memcpy(least, spread->least[spread->around.number[first]], sizeof least);
+    *change = change_of(spread, spread->around.number[first]);
     for (uint32_t i = first + 1; i < end; i++) {
-        const sk_panel *other = &spread->panel[spread->around.number[i]];
-        for (int k = 0; k < 16; k++) least[k] = other->least[k] < least[k] ? other->least[k] : least[k];
-        *change = sk_max(*change, other->change);
+        const real *other = spread->least[spread->around.number[i]];
+        for (int k = 0; k < 16; k++) least[k] = other[k] < least[k] ? other[k] : least[k];
+        *change = sk_max(*change, change_of(spread, spread->around.number[i]));
     }
     real a[6], half[6];
     for (int k = 0; k < 6; k++) a[k] = (real)0.5 * (least[k] - least[6 + k]), half[k] = (real)-0.5 * (least[k] + least[6 + k]);
@@ -219,7 +215,7 @@ static bool lies_spread(sk_touch *touch, size_t b, bool ways) {
     if (!block->whole) return false;
     // as pairs are no thicker than nine tenths of what they were apart
     const real thickness = sk_min(touch->thickness, (real)0.9 * block->apart);
-    const real need = (SK_NEAR_THICKNESSES + (real)0.01) * thickness + rounding_of(&spread->panel[spread->members.number[spread->members.start[b]]]);
+    const real need = (SK_NEAR_THICKNESSES + (real)0.01) * thickness + rounding_of(spread, spread->members.number[spread->members.start[b]]);
     real change, keeps = keeps_of(spread, b, &change), kept = block->keeps, off = block->steep * spread->gone;
     block->keeps = keeps;
     if (!(keeps * block->apart > (block->spread ? 1 : room) * need)) return false; // of what is no number, neither
@@ -251,6 +247,28 @@ static bool are_spread(const sk_spread *spread, size_t p) {
 
 /* ---- boxes ---- */
 
+/* Boxes of panels: of their ways, and of who is held back and goes what all go together; or where they are. */
+static void box_panels(sk_touch *touch, bool ways) {
+    sk_spread *spread = &touch->spread;
+    const real common[3] = {touch->common.x, touch->common.y, touch->common.z}, gone = spread->gone; // (since they were before)
+    const bool held = spread->out_count < spread->count;
+    for (size_t p = 0; p < spread->count; p++) {
+        const sk_panels *panels = &spread->sixteen[p / SK_PANEL_LANES];
+        const size_t l = p % SK_PANEL_LANES;
+        sk_box box = {{{0}}, {{0}}};
+        for (int k = 0; k < 3; k++) {
+            real low = panels->low[k][l], high = panels->high[k][l];
+            if (ways) {
+                real from = panels->low_before[k][l] - gone, to = panels->high_before[k][l] + gone;
+                low = sk_min(low, from), high = sk_max(high, to);
+                if (held) low = sk_min(low, from + common[k]), high = sk_max(high, to + common[k]);
+            }
+            box.low[0][k] = box.low[1][k] = low, box.high[0][k] = box.high[1][k] = high;
+        }
+        spread->box[p] = box;
+    }
+}
+
 /* Puts all boxes into the tree. */
 static void fit(sk_spread *spread) {
     sk_tree *tree = &spread->tree;
@@ -278,15 +296,15 @@ static bool is_beside(const sk_spread *spread, size_t p, size_t other) {
 }
 
 /* Who is out and may come nearer to another one that is not beside it comes in, and so does that. */
-static void part(sk_touch *touch, const sk_box *box, real near) {
+static void part(sk_touch *touch, real near) {
     sk_spread *spread = &touch->spread;
     const real half = (real)0.5 * near;
     const sk_quad wider = {half, half, half, 0};
     uint32_t hit[SK_TREE_WIDTH * SK_TREE_WIDTH];
     for (size_t p = 0; p < spread->count; p++)
         for (int end = 0; end < 2; end++) {
-            spread->wide[p].low[end] = box[p].low[end] - wider;
-            spread->wide[p].high[end] = box[p].high[end] + wider;
+            spread->wide[p].low[end] = spread->box[p].low[end] - wider;
+            spread->wide[p].high[end] = spread->box[p].high[end] + wider;
         }
     fit(spread);
     for (size_t a = 0; a < spread->tree.blocks[0]; a++) {
@@ -383,9 +401,12 @@ static bool judge(sk_touch *touch, bool more, bool ways) {
     for (size_t p = 0; p < spread->count; p++)
         if (spread->out[p] || more) spread->out[p] = are_spread(spread, p);
     if (ways && spread->age < SK_PANEL_AHEAD && !spread->off_course && !(spread->gone > 0)) spread->age++;
-    else part(touch, spread->box, (more ? room : 1) * near_of(touch)), spread->age = SK_PANEL_AHEAD;
+    else {
+        box_panels(touch, ways);
+        part(touch, (more ? room : 1) * near_of(touch));
+        spread->age = SK_PANEL_AHEAD;
+    }
     spread->off_course = false;
-    spread->gone = 0;
     if (!memcmp(spread->was_out, spread->out, spread->count)) return false;
     return turn(touch);
 }
@@ -395,15 +416,9 @@ bool sk_spread_look(sk_touch *touch, bool more) {
     spread->thickness = touch->thickness;
     spread->stale = false;
     measure(touch, touch->p, false);
-    return judge(touch, more, false);
-}
-
-/* Boxes of ways for those that are held back, too, where nobody could be. */
-static void widen_by_common_way(sk_touch *touch) {
-    sk_spread *spread = &touch->spread;
-    const sk_quad way = {sk_abs(touch->common.x), sk_abs(touch->common.y), sk_abs(touch->common.z), 0};
-    for (size_t p = 0; p < spread->count; p++)
-        for (int end = 0; end < 2; end++) spread->box[p].low[end] -= way, spread->box[p].high[end] += way;
+    bool lost = judge(touch, more, false);
+    spread->gone = 0;
+    return lost;
 }
 
 /* Where vertices are slow, and all are out: how long that holds. */
@@ -414,7 +429,8 @@ static void look_ahead(sk_touch *touch, real way) {
     real least = (real)0.5 * margin;
     for (size_t b = 0; b < spread->block_count && least > way; b++) least = sk_min(least, room_of(touch, &spread->block[b]));
     if (!(least > way)) return;
-    part(touch, spread->box, near_of(touch) + margin);
+    box_panels(touch, true);
+    part(touch, near_of(touch) + margin);
     if (!memchr(spread->out, 0, spread->count)) spread->holds = least;
     memcpy(spread->out, spread->was_out, spread->count);
 }
@@ -425,15 +441,17 @@ static void set_courses(sk_touch *touch) {
     sk_spread *spread = &touch->spread;
     if (spread->wait-- > 0) return;
     for (size_t p = 0; p < spread->count; p++) {
-        const sk_panel *panel = &spread->panel[p];
-        sk_box *course = &spread->course[p];
+        sk_panels *panels = &spread->sixteen[p / SK_PANEL_LANES];
+        const size_t l = p % SK_PANEL_LANES;
+        sk_box *box = &spread->box[p];
         for (int k = 0; k < 3; k++) {
-            course->low[0][k] = panel->low[k], course->high[0][k] = panel->high[k];
-            course->low[1][k] = panel->low[k] + SK_PANEL_AHEAD * panel->low_step[k];
-            course->high[1][k] = panel->high[k] + SK_PANEL_AHEAD * panel->high_step[k];
+            real low = panels->low[k][l], high = panels->high[k][l];
+            box->low[0][k] = low, box->low[1][k] = low + SK_PANEL_AHEAD * (low - panels->low_before[k][l]);
+            box->high[0][k] = high, box->high[1][k] = high + SK_PANEL_AHEAD * (high - panels->high_before[k][l]);
+            for (int end = 0; end < 2; end++) panels->course.low[end][k][l] = box->low[end][k], panels->course.high[end][k][l] = box->high[end][k];
         }
     }
-    part(touch, spread->course, near_of(touch) + 2 * off_course_of(touch));
+    part(touch, near_of(touch) + 2 * off_course_of(touch));
     bool good = !memcmp(spread->was_out, spread->out, spread->count);
     memcpy(spread->out, spread->was_out, spread->count);
     spread->age = good ? 0 : SK_PANEL_AHEAD;
@@ -442,24 +460,29 @@ static void set_courses(sk_touch *touch) {
 
 bool sk_spread_follow(sk_touch *touch, real way) {
     sk_spread *spread = &touch->spread;
+    const bool all = spread->out_count == spread->count;
     if (spread->stale) measure(touch, touch->p, false), spread->gone = 0;
     spread->stale = false;
     measure(touch, touch->q, true);
-    const bool one = !(spread->gone > 0); // substep since it was last looked
-    if (judge(touch, false, true)) return true;
-    if (spread->age == SK_PANEL_AHEAD && one) set_courses(touch);
-    if (spread->out_count == spread->count) look_ahead(touch, way);
+    if (judge(touch, false, true)) {
+        if (!all) spread->gone = 0; // else this asks on
+        return true;
+    }
+    if (spread->age == SK_PANEL_AHEAD && !(spread->gone > 0)) set_courses(touch);
+    if (all) look_ahead(touch, way);
+    spread->gone = 0;
     return false;
+}
+
+void sk_spread_follow_held(sk_touch *touch) {
+    box_panels(touch, true);
+    part(touch, near_of(touch));
+    turn(touch);
+    touch->spread.gone = 0;
 }
 
 real sk_spread_longest_way(const sk_touch *touch, const sk_vec4 *x, size_t packed) {
     return sk_sqrt(longest_kernel[touch->isa](touch->before, x, packed, touch->slots));
-}
-
-void sk_spread_follow_held(sk_touch *touch) {
-    widen_by_common_way(touch);
-    part(touch, touch->spread.box, near_of(touch));
-    turn(touch);
 }
 
 static void bring_in(sk_spread *spread, size_t p) {

@@ -20,13 +20,13 @@
 
 enum { SK_PANEL_LEAVES = 16, SK_PANEL_LANES = 16, SK_PANEL_AHEAD = 16 };
 
-/* What is known of a panel where it was looked at last. */
-typedef struct sk_panel {
-    real least[16]; /* of J's six numbers, and of these with the other sign; the rest is 0 */
-    real change;    /* of J since it was looked at before that: the square of the most, of any triangle */
-    real low[3], high[3]; /* where it is, */
-    real low_step[3], high_step[3]; /* and how far that has gone in the last substep */
-} sk_panel;
+/* What is known of sixteen panels, a lane each, where they were looked at last: the square of how much J has changed since it was
+ * looked at before that, of any triangle; where they are, and were then; and where they are expected, while that is known. */
+typedef struct sk_panels {
+    _Alignas(64) real change[SK_PANEL_LANES];
+    real low[3][SK_PANEL_LANES], high[3][SK_PANEL_LANES], low_before[3][SK_PANEL_LANES], high_before[3][SK_PANEL_LANES];
+    sk_tree_block course; /* from some substep on, and SK_PANEL_AHEAD later */
+} sk_panels;
 
 /* Panels that have a corner in common, and what is said of these once. */
 typedef struct sk_panel_block {
@@ -45,7 +45,8 @@ typedef struct sk_lists {
 
 typedef struct sk_spread {
     size_t count; /* of panels: also of what is no sheet, but then none is ever out */
-    sk_panel *panel;
+    sk_panels *sixteen;
+    real (*least)[16]; /* of panels: the least of J's six numbers, and of these with the other sign; the rest is 0 */
     uint32_t *of_leaf; /* panels of leaves, */
     sk_lists leaves;   /* and leaves of panels */
     size_t block_count;
@@ -63,8 +64,7 @@ typedef struct sk_spread {
     real (*inverse)[2][4][SK_PANEL_LANES], (*gradient)[2][6][SK_PANEL_LANES];
     sk_tree tree;        /* of the boxes of panels on their ways; */
     sk_box *box, *wide;  /* these, and wider ones; */
-    sk_box *course;      /* where panels are expected from some substep on, and SK_PANEL_AHEAD later: then all are apart as they must be, */
-    int age;             /* as long as they are there; substeps since, */
+    int age;             /* substeps since panels got courses: on these all are apart as they must be, */
     int wait;            /* or until that is tried again */
     bool off_course;     /* somebody is not */
     uint32_t *met;       /* and which of the tree's blocks one may meet */

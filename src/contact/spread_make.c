@@ -709,12 +709,12 @@ static bool reserve_panels(making *m) {
     const size_t panels = m->spread->count + 2;
     sk_spread *spread = m->spread;
     sk_allocator *a = m->allocator;
-    spread->panel = sk_allocate(a, panels * sizeof *spread->panel);
+    spread->sixteen = sk_allocate(a, (panels + SK_PANEL_LANES) / SK_PANEL_LANES * sizeof *spread->sixteen);
+    spread->least = sk_allocate(a, panels * sizeof *spread->least);
     spread->out = sk_allocate(a, panels);
     spread->was_out = sk_allocate(a, panels);
     spread->box = sk_allocate(a, panels * sizeof *spread->box);
     spread->wide = sk_allocate(a, panels * sizeof *spread->wide);
-    spread->course = sk_allocate(a, panels * sizeof *spread->course);
     spread->age = SK_PANEL_AHEAD;
     spread->met = sk_allocate(a, panels * sizeof *spread->met);
     spread->beside.start = sk_allocate(a, panels * sizeof *spread->beside.start);
@@ -725,15 +725,25 @@ static bool reserve_panels(making *m) {
     m->longest = sk_allocate(a, panels * sizeof *m->longest);
     m->order = sk_allocate(a, panels * sizeof *m->order);
     bool good = sk_tree_reserve(&spread->tree, a, spread->count);
-    return good && spread->panel && spread->out && spread->was_out && spread->box && spread->wide && spread->course &&
+    return good && spread->sixteen && spread->least && spread->out && spread->was_out && spread->box && spread->wide &&
            spread->met && spread->beside.start && m->in_bin && m->apart && m->steep && m->of_panel && m->longest &&
            m->order;
+}
+
+/* Lanes of no panel are never off their course. */
+static void free_lanes(sk_spread *spread) {
+    for (size_t p = spread->count; p % SK_PANEL_LANES; p++)
+        for (int n = 0; n < 6; n++) {
+            sk_tree_block *course = &spread->sixteen[p / SK_PANEL_LANES].course;
+            course->low[n / 3][n % 3][p % SK_PANEL_LANES] = -SK_REAL_MAX, course->high[n / 3][n % 3][p % SK_PANEL_LANES] = SK_REAL_MAX;
+        }
 }
 
 static bool make_panels(making *m) {
     if (!reserve(m)) return false;
     measure_leaves(m);
     if (!deal_leaves(m) || !reserve_panels(m)) return false;
+    free_lanes(m->spread);
     measure_panels(m);
     return list_all(m) && make_rows(m);
 }
@@ -763,8 +773,8 @@ void sk_spread_release(sk_spread *spread, sk_allocator *allocator) {
         sk_release(allocator, lists[i]->start);
         sk_release(allocator, lists[i]->number);
     }
-    void *arrays[] = {spread->panel, spread->of_leaf, spread->block, spread->out, spread->was_out, spread->vertex_out, spread->patch_out,
-                      spread->mark, spread->row_start, spread->corner, spread->inverse, spread->gradient, spread->box, spread->wide, spread->course,
+    void *arrays[] = {spread->sixteen, spread->least, spread->of_leaf, spread->block, spread->out, spread->was_out, spread->vertex_out, spread->patch_out,
+                      spread->mark, spread->row_start, spread->corner, spread->inverse, spread->gradient, spread->box, spread->wide,
                       spread->met};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     sk_tree_release(&spread->tree, allocator);
