@@ -132,8 +132,8 @@ enum { GROUPS_AT_ONCE = 4, BLOCKS_AT_ONCE = 64 };
 
 /* A pair that loses less than nine tenths of its gap in a substep does not close. */
 static const real closing_share = (real)0.8;
-/* Who is to go out has to have more room: it is looked for if it comes in. */
-static const real room = (real)1.2;
+/* Who is to go out has to have more room, such a share of what there is at most: it is looked for if it comes in. */
+static const real room = (real)0.2;
 
 /* ---- where panels are, and how they lie ---- */
 
@@ -218,7 +218,8 @@ static bool lies_spread(sk_touch *touch, size_t b, bool ways) {
     const real need = (SK_NEAR_THICKNESSES + (real)0.01) * thickness + rounding_of(spread, spread->members.number[spread->members.start[b]]);
     real change, keeps = keeps_of(spread, b, &change), kept = block->keeps, off = block->steep * spread->gone;
     block->keeps = keeps;
-    if (!(keeps * block->apart > (block->spread ? 1 : room) * need)) return false; // of what is no number, neither
+    const real least = block->spread ? need : need + room * (block->apart - need);
+    if (!(keeps * block->apart > least)) return false; // of what is no number, neither
     return !ways || (sk_sqrt(change) + off) * block->across < closing_share * (kept - off);
 }
 
@@ -247,6 +248,18 @@ static bool are_spread(const sk_spread *spread, size_t p) {
 
 /* ---- boxes ---- */
 
+/* What has blown up is everywhere. */
+static void bound_box(sk_box *box) {
+    const real far = (real)1e15;
+    for (int end = 0; end < 2; end++)
+        for (int k = 0; k < 3; k++) {
+            if (!(box->low[end][k] > -far)) box->low[end][k] = -far;
+            if (!(box->high[end][k] < far)) box->high[end][k] = far;
+            if (!(box->low[end][k] < far)) box->low[end][k] = -far;
+            if (!(box->high[end][k] > -far)) box->high[end][k] = far;
+        }
+}
+
 /* Boxes of panels: of their ways, and of who is held back and goes what all go together; or where they are. */
 static void box_panels(sk_touch *touch, bool ways) {
     sk_spread *spread = &touch->spread;
@@ -266,6 +279,7 @@ static void box_panels(sk_touch *touch, bool ways) {
             box.low[0][k] = box.low[1][k] = low, box.high[0][k] = box.high[1][k] = high;
         }
         spread->box[p] = box;
+        bound_box(&spread->box[p]);
     }
 }
 
@@ -403,7 +417,7 @@ static bool judge(sk_touch *touch, bool more, bool ways) {
     if (ways && spread->age < SK_PANEL_AHEAD && !spread->off_course && !(spread->gone > 0)) spread->age++;
     else {
         box_panels(touch, ways);
-        part(touch, (more ? room : 1) * near_of(touch));
+        part(touch, (more ? 1 + room : 1) * near_of(touch));
         spread->age = SK_PANEL_AHEAD;
     }
     spread->off_course = false;
@@ -450,6 +464,7 @@ static void set_courses(sk_touch *touch) {
             box->high[0][k] = high, box->high[1][k] = high + SK_PANEL_AHEAD * (high - panels->high_before[k][l]);
             for (int end = 0; end < 2; end++) panels->course.low[end][k][l] = box->low[end][k], panels->course.high[end][k][l] = box->high[end][k];
         }
+        bound_box(box);
     }
     part(touch, near_of(touch) + 2 * off_course_of(touch));
     bool good = !memcmp(spread->was_out, spread->out, spread->count);

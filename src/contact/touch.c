@@ -199,17 +199,31 @@ static bool is_stormy(const sk_touch *touch) {
 static void begin_storm(sk_touch *touch) {
     const size_t least = 10, most = 80;
     const real forever = 1000; // substeps
-    sk_spread_end(touch);
     touch->storm = touch->next_storm = touch->next_storm ? touch->next_storm : least;
     if (2 * touch->next_storm <= most) touch->next_storm *= 2;
     touch->until = touch->now + forever;
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) sk_touch_put_course(touch, v, true);
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) sk_touch_put_course(touch, v, !sk_vertex_is_out(&touch->spread, v));
+}
+
+/* Looks at panels: nobody is out where things go through each other, and in an implicit solve, which asks several times what
+ * becomes of a substep; others go out once a frame.
+ * Whether vertices have lost their courses, for they never had any. */
+static bool look_at_panels(sk_touch *touch, const sk_run *run, const sk_op *op) {
+    sk_spread *spread = &touch->spread;
+    if (!spread->count) return false;
+    if (spread->never || touch->tangle.any) return sk_spread_end(touch);
+    bool more = run->iteration == 0 && spread->out_count < spread->count;
+    bool known = touch->tangle.same && !(spread->thickness < touch->thickness || spread->thickness > touch->thickness);
+    if (!more && (known || !spread->out_count)) return false;
+    sk_touch_load(touch, op->packed);
+    return sk_spread_look(touch, more);
 }
 
 /* In a storm, pairs are those that the last bound has found, on everybody's ways; or of where all are now. */
 static bool find_pairs_in_storm(sk_touch *touch, const sk_run *run, const sk_op *op, bool known) {
     sk_touch_load(touch, op->packed);
     touch->shift[0] = (sk_vec3){0, 0, 0};
+    look_at_panels(touch, run, op);
     if (!known && !sk_calm_look(touch, run->allocator, true)) return false;
     memset(touch->lost, known ? 0 : 1, touch->skin.vertex_count);
     if (!known) return sk_touch_renew(touch, run->allocator, SK_SEARCH_LOST);
@@ -225,24 +239,10 @@ static bool find_tangles(sk_touch *touch, const sk_run *run, const sk_op *op) {
     return sk_tangle_look(touch, run->allocator, run->vector[SK_X], op->packed, sk_min(step, most), is_known(touch, run));
 }
 
-/* Looks at panels: nobody is out where things go through each other, in a storm, and in an implicit solve, which asks several
- * times what becomes of a substep; others go out once a frame.
- * Whether vertices have lost their courses, for they never had any. */
-static bool look_at_panels(sk_touch *touch, const sk_run *run, const sk_op *op) {
-    sk_spread *spread = &touch->spread;
-    if (!spread->count) return false;
-    if (spread->never || touch->tangle.any || touch->storm) return sk_spread_end(touch);
-    bool more = run->iteration == 0 && spread->out_count < spread->count;
-    bool known = touch->tangle.same && !(spread->thickness < touch->thickness || spread->thickness > touch->thickness);
-    if (!more && (known || !spread->out_count)) return false;
-    sk_touch_load(touch, op->packed);
-    return sk_spread_look(touch, more);
-}
-
 /* Searches where that is needed, and looks at all pairs. */
 static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool all) {
     bool stormed = touch->storm > 0;
-    if (stormed && !all && --touch->storm) // (nobody is out)
+    if (stormed && !all && --touch->storm)
         return find_pairs_in_storm(touch, run, op, is_known(touch, run));
     touch->storm = 0;
     all |= stormed;

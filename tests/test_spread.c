@@ -1,0 +1,173 @@
+/* Panels of flat sheets that lie spread out are left out of searches: that changes no bit, however sheets swing, fold and meet.
+ * Worlds are run with it and without. (What is left out is held against all pairs in test_near_pairs.c, too.) */
+#include "irregular.h"
+#include "near_pairs.h"
+
+enum { FRAMES = SANITIZED ? 8 : 40, SIDE = SANITIZED ? 30 : 50 };
+
+/* How many panels were out and not, over a run, and how often some came in. */
+typedef struct tally {
+    size_t out, in, came;
+} tally;
+
+typedef void scene(skein_world *world);
+
+static void add_contact(skein_world *world, double thickness) {
+    OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", thickness)), NULL));
+}
+
+/* Moves what it has made as a program would, in the midst of a run: a sheet is narrower, and has waves. */
+static void move_by_hand(skein_world *world) {
+    size_t count = skein_particle_count(world);
+    double *x = malloc(3 * count * sizeof *x);
+    OK(world, skein_positions_copy(world, 0, count, x));
+    for (size_t i = 0; i < count; i++) x[3 * i] *= 0.8, x[3 * i + 1] += 0.03 * sin(20 * x[3 * i]);
+    OK(world, skein_positions_set(world, 0, count, x));
+    free(x);
+}
+
+static uint64_t hash_of(scene *make, int substeps, int threads, bool never, bool moved, tally *all) {
+    skein_world_desc desc = skein_default_world_desc();
+    desc.thread_count = threads;
+    skein_world *world = skein_world_create(&desc, NULL);
+    assert_non_null(world);
+    OK(world, skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", substeps))));
+    add_gravity(world);
+    make(world);
+    assert_int_equal(statistics_of(world).crossings, 0); // which makes ready what contact keeps
+    assert_true(touch_of(world)->spread.count > 4);
+    touch_of(world)->spread.never = never;
+    size_t before = 0;
+    for (int i = 0; i < FRAMES; i++) {
+        if (moved && i == FRAMES / 2) move_by_hand(world);
+        steps(world, 1, 1.0 / 60);
+        const sk_spread *spread = &touch_of(world)->spread;
+        all->out += spread->out_count, all->in += spread->count - spread->out_count;
+        all->came += spread->out_count < before;
+        before = spread->out_count;
+    }
+    assert_int_equal(statistics_of(world).crossings, 0);
+    uint64_t hash = skein_world_hash(world);
+    skein_world_destroy(world);
+    return hash;
+}
+
+/* With it and without, by one thread and two: the same bits. Of all panels, at least such a share was out. */
+static tally check(scene *make, int substeps, bool moved, double share) {
+    tally none = {0, 0, 0}, one = {0, 0, 0}, two = {0, 0, 0};
+    uint64_t hash = hash_of(make, substeps, 1, true, moved, &none);
+    assert_int_equal(none.out, 0);
+    assert_true(hash_of(make, substeps, 1, false, moved, &one) == hash);
+    assert_true(hash_of(make, substeps, 2, false, moved, &two) == hash);
+    assert_int_equal(one.out, two.out);
+    if ((double)one.out < share * (double)(one.out + one.in)) print_message("%zu out, %zu in\n", one.out, one.in);
+    assert_true((double)one.out >= share * (double)(one.out + one.in));
+    return one;
+}
+
+static void add_sheet(skein_world *world, const char *pins, const double at[3], const double turned[3], const double velocity[3]) {
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", pins),
+                                            SKEIN_VEC3("position", at[0], at[1], at[2]),
+                                            SKEIN_VEC3("rotation", turned[0], turned[1], turned[2]),
+                                            SKEIN_VEC3("velocity", velocity[0], velocity[1], velocity[2])),
+                             NULL));
+}
+
+static const double still[3] = {0, 0, 0};
+
+static void hanging(skein_world *world) {
+    add_contact(world, 0.004);
+    add_sheet(world, "top edge", (double[]){0, 2, 0}, (double[]){90, 0, 0}, still);
+}
+
+static void what_hangs_is_out(void **state) {
+    (void)state;
+    tally all = check(hanging, 10, false, 1);
+    assert_int_equal(all.in, 0);
+}
+
+static void swinging(skein_world *world) {
+    add_contact(world, 0.004);
+    add_sheet(world, "top corners", (double[]){0, 2, 0}, (double[]){0, 25, 0}, still);
+}
+
+static void what_swings_is_mostly_out(void **state) {
+    (void)state;
+    check(swinging, 10, false, 0.6);
+    tally moved = check(swinging, 10, true, 0.4);
+    assert_true(moved.came > 0);
+}
+
+static void swinging_irregular(skein_world *world) {
+    add_contact(world, 0.003);
+    add_irregular(world, SANITIZED ? 20 : 40, SKEIN_SETTINGS(SKEIN_TEXT("pins", SANITIZED ? "0 61" : "0 41"), SKEIN_VEC3("position", 0, 2, 0))); // two corners
+}
+
+static void meshes_are_out_too(void **state) {
+    (void)state;
+    check(swinging_irregular, 10, false, 0.2);
+}
+
+/* Two that fly into each other, over a plane, and a third far off. */
+static void meeting(skein_world *world) {
+    add_contact(world, 0.006);
+    OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.4)), NULL));
+    add_sheet(world, "", (double[]){0, 0.5, 0}, (double[]){10, 30, 5}, (double[]){0, 1, 0});
+    add_sheet(world, "", (double[]){0.2, 0.8, 0.1}, (double[]){-5, 60, 12}, (double[]){-1, -3, 0});
+    add_sheet(world, "left edge", (double[]){5, 2, 0}, (double[]){30, 40, 0}, still);
+}
+
+static void what_meets_comes_in(void **state) {
+    (void)state;
+    tally all = check(meeting, 4, false, 0.1);
+    assert_true(all.came > 0 && all.in > all.out / 20);
+}
+
+static void falling(skein_world *world) {
+    add_contact(world, 0.004);
+    OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.4)), NULL));
+    add_sheet(world, "", (double[]){0, 0.55, 0}, (double[]){83, 10, 0}, still);
+}
+
+static void what_folds_comes_in(void **state) {
+    (void)state;
+    tally all = check(falling, 8, false, 0.05);
+    assert_true(SANITIZED || (all.came > 0 && all.in > all.out / 20));
+}
+
+/* A ring, cut through: what lies on both sides of the cut is far apart along the sheet, and near on its plane. */
+static void cut_ring(skein_world *world) {
+    enum { ROUND = 96, ACROSS = 10, COUNT = (ROUND + 1) * ACROSS, FACES = ROUND * (ACROSS - 1) };
+    static double positions[COUNT][3];
+    static uint32_t sizes[FACES], vertices[FACES][4];
+    for (uint32_t i = 0; i <= ROUND; i++)
+        for (uint32_t k = 0; k < ACROSS; k++) {
+            double angle = 0.02 + (6.2832 - 0.04) * i / ROUND, r = 0.2 + 0.02 * k;
+            positions[i * ACROSS + k][0] = r * cos(angle), positions[i * ACROSS + k][2] = -r * sin(angle);
+        }
+    for (uint32_t i = 0; i < ROUND; i++)
+        for (uint32_t k = 0; k + 1 < ACROSS; k++) {
+            uint32_t a = i * ACROSS + k, f = i * (ACROSS - 1) + k;
+            sizes[f] = 4;
+            vertices[f][0] = a, vertices[f][1] = a + 1, vertices[f][2] = a + ACROSS + 1, vertices[f][3] = a + ACROSS;
+        }
+    skein_mesh mesh = {.positions = positions[0], .vertex_count = COUNT, .face_sizes = sizes, .face_count = FACES,
+                       .face_vertices = vertices[0], .face_vertex_count = 4 * FACES};
+    add_contact(world, 0.004);
+    OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.1)), NULL));
+    OK(world, skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(SKEIN_VEC3("position", 0, 0.4, 0), SKEIN_VEC3("rotation", 60, 20, 0)), NULL));
+}
+
+static void beside_a_cut_nobody_is_out(void **state) {
+    (void)state;
+    check(cut_ring, 6, false, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_hangs_is_out),   cmocka_unit_test(what_swings_is_mostly_out), cmocka_unit_test(meshes_are_out_too),
+        cmocka_unit_test(what_meets_comes_in), cmocka_unit_test(what_folds_comes_in),       cmocka_unit_test(beside_a_cut_nobody_is_out),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
