@@ -164,10 +164,109 @@ static void beside_a_cut_nobody_is_out(void **state) {
     check(cut_ring, 6, false, 0);
 }
 
+/* One that stands, and one that falls on its edge from rest: with few substeps, far in each. */
+static void landing(skein_world *world) {
+    add_contact(world, 0.006);
+    add_sheet(world, "top edge", (double[]){0, 1, 0}, (double[]){90, 0, 0}, still);
+    add_sheet(world, "", (double[]){0, 1.56, 0}, (double[]){0, 20, 0}, still);
+}
+
+static void what_is_off_its_course_is_seen(void **state) {
+    (void)state;
+    tally all = check(landing, 4, false, 0.1);
+    assert_true(all.came > 0);
+}
+
+/* ---- what is asked of a substep ---- */
+
+/* A world of sheets that are all out, where vertices are about to go from where they are to the same places. */
+static skein_world *world_about_to_go(scene *make) {
+    skein_world *world = new_world("xpbd", 10);
+    add_gravity(world);
+    make(world);
+    steps(world, 1, 1.0 / 60);
+    sk_touch *touch = touch_of(world);
+    assert_true(sk_spread_is_all_out(&touch->spread));
+    assert_int_equal(statistics_of(world).crossings, 0); // which loads where they are
+    memcpy(touch->q, touch->p, touch->skin.vertex_count * sizeof *touch->q);
+    touch->common = (sk_vec3){0, 0, 0};
+    touch->spread.stale = true; // where they are is looked at first
+    return world;
+}
+
+static void what_stays_is_out(void **state) {
+    (void)state;
+    skein_world *world = world_about_to_go(hanging);
+    sk_touch *touch = touch_of(world);
+    assert_false(sk_spread_follow(touch, SK_REAL_MAX));
+    assert_true(sk_spread_is_all_out(&touch->spread));
+    skein_world_destroy(world);
+}
+
+/* As far apart as it was, but a pair's normal no longer says so: the bound has to look. */
+static void what_turns_far_in_a_substep_comes_in(void **state) {
+    (void)state;
+    skein_world *world = world_about_to_go(hanging);
+    sk_touch *touch = touch_of(world);
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        sk_vec4 p = touch->p[v];
+        touch->q[v] = (sk_vec4){p.x, p.z, -p.y, p.w};
+    }
+    assert_true(sk_spread_follow(touch, SK_REAL_MAX));
+    assert_int_equal(touch->spread.out_count, 0);
+    skein_world_destroy(world);
+}
+
+static void layered(skein_world *world) {
+    add_contact(world, 0.004);
+    for (int l = 0; l < 2; l++) add_sheet(world, "", (double[]){0, 1 + 0.03 * l, 0}, still, still);
+}
+
+/* Who is held back goes what all go together, and that leads those above into those below; but only where somebody is. */
+static void the_common_way_counts_where_somebody_is_held_back(void **state) {
+    (void)state;
+    for (int held = 0; held < 2; held++) {
+        skein_world *world = world_about_to_go(layered);
+        sk_touch *touch = touch_of(world);
+        touch->common = (sk_vec3){0, (real)-0.03, 0};
+        if (held) sk_spread_disturb(touch, 0);
+        if (held) assert_true(sk_spread_come_in(touch));
+        touch->spread.stale = true;
+        assert_int_equal(sk_spread_follow(touch, SK_REAL_MAX), held);
+        assert_int_equal(touch->spread.out_count, held ? 0 : touch->spread.count);
+        skein_world_destroy(world);
+    }
+}
+
+/* Panels that have the vertex, and all in whose blocks ways lead through these; nobody else. */
+static void one_held_back_brings_in_those_around(void **state) {
+    (void)state;
+    skein_world *world = world_about_to_go(hanging);
+    sk_touch *touch = touch_of(world);
+    const sk_spread *spread = &touch->spread;
+    const uint32_t v = (uint32_t)touch->skin.vertex_count / 2, p = spread->of_leaf[touch->skin.leaf_of[touch->skin.leaf_start[v]]];
+    memset(touch->lost, 0, touch->skin.vertex_count);
+    sk_spread_disturb(touch, v);
+    assert_true(spread->came_in && sk_spread_come_in(touch) && !spread->came_in && touch->lost[v] && touch->wild[v]);
+    size_t in = 0;
+    for (size_t i = 0; i < spread->count; i++) in += !spread->out[i];
+    assert_true(in >= 4 && in <= 36 && spread->out_count == spread->count - in);
+    for (uint32_t i = spread->beside.start[p]; i < spread->beside.start[p + 1]; i++) assert_false(spread->out[spread->beside.number[i]]);
+    for (size_t l = 0; l < touch->skin.leaf_count; l++) // all of what came in is looked for
+        for (uint32_t t = touch->skin.leaf[l].first_triangle, k = 0; k < touch->skin.leaf[l].triangles && !sk_spread_has(spread, l); k++, t++)
+            for (int c = 0; c < 3; c++) assert_true(touch->lost[touch->skin.triangle[t][c]]);
+    assert_true(sk_spread_end(touch));
+    assert_int_equal(spread->out_count, 0);
+    skein_world_destroy(world);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_hangs_is_out),   cmocka_unit_test(what_swings_is_mostly_out), cmocka_unit_test(meshes_are_out_too),
         cmocka_unit_test(what_meets_comes_in), cmocka_unit_test(what_folds_comes_in),       cmocka_unit_test(beside_a_cut_nobody_is_out),
+        cmocka_unit_test(what_is_off_its_course_is_seen), cmocka_unit_test(what_stays_is_out),
+        cmocka_unit_test(what_turns_far_in_a_substep_comes_in), cmocka_unit_test(the_common_way_counts_where_somebody_is_held_back),
+        cmocka_unit_test(one_held_back_brings_in_those_around),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -106,15 +106,15 @@ static void look_ahead(sk_touch *touch) {
     const real least = touch->untouched ? 6 : 2;
     // what is kept for longer than some substeps costs more than the next search
     const real longest = touch->untouched ? 640 : 40;
+    size_t count = touch->skin.vertex_count, out = 0;
+    for (size_t v = 0; v < count; v++) out += sk_vertex_is_out(&touch->spread, v);
     // where few have left their courses, they will keep to them for longer
-    real last = touch->now, most = 4 * touch->lost_since < touch->skin.vertex_count ? sk_max(10, 2 * last) : 10;
+    real last = touch->now, most = 4 * touch->lost_since < count - out ? sk_max(10, 2 * last) : 10;
     real longer = touch->lost_since ? 0 : 2 * last;
     touch->lost_since = 0;
     most = sk_min(most, longest), longer = sk_min(longer, longest);
-    size_t count = touch->skin.vertex_count, out = 0;
     double drift[3] = {0, 0, 0}, sum = 0;
     for (size_t v = 0; v < count; v++) {
-        out += sk_vertex_is_out(&touch->spread, v);
         if (sk_vertex_is_out(&touch->spread, v)) continue;
         sk_vec3 step = touch->course[v].step;
         drift[0] += (double)step.x, drift[1] += (double)step.y, drift[2] += (double)step.z;

@@ -394,7 +394,10 @@ static bool turn(sk_touch *touch) {
         any |= in;
     }
     memcpy(spread->was_out, spread->out, spread->count);
-    if (any && none_had) touch->until = sk_min(touch->until, touch->now + 10); // or boxes would lead far ahead
+    if (any && none_had) { // courses begin here, and boxes do not lead far ahead, although for long nobody has left a course
+        touch->now = 0, touch->until = 10;
+        touch->lost_since = touch->skin.vertex_count;
+    }
     turn_patches(touch);
     spread->turned = true;
     touch->holds = false;
