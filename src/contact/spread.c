@@ -352,7 +352,7 @@ static void mark_corners(const sk_touch *touch, size_t p, uint8_t *mark, uint8_t
     }
 }
 
-/* Notes what of a patch's leaves all are out. */
+/* Notes which patches have no leaf that is in. */
 static void turn_patches(sk_touch *touch) {
     sk_spread *spread = &touch->spread;
     sk_calm *calm = &touch->calm;

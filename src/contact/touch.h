@@ -9,9 +9,9 @@
  * ignored. Which pairs are kept is decided by what is expected: each vertex goes on at some velocity, from where it was
  * when it was last looked for, is never farther from there than its reach, and goes hardly any other way in a substep.
  * What goes otherwise is looked for anew, with its neighbours, and nobody else. What lies around a leaf is left out
- * while it is known to keep apart (calm.h). What is done with a pair depends on the state before and after the substep
- * alone. So a search too many changes no bit, and a state that was saved and loaded goes on as it would have. What has
- * gone through each other all the same is led apart (tangle.h).
+ * while it is known to keep apart (calm.h), and so is a sheet that lies spread out (spread.h). What is done with a pair
+ * depends on the state before and after the substep alone. So a search too many changes no bit, and a state that was
+ * saved and loaded goes on as it would have. What has gone through each other all the same is led apart (tangle.h).
  *
  * The bound is a division of space by planes for each pair (planar division: arXiv 2604.15513), where it is needed: a
  * vertex goes the least share of its way that any of its pairs allows, and a minimum knows no order. */
