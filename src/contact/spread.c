@@ -514,7 +514,6 @@ void sk_spread_disturb(sk_touch *touch, size_t v) {
     spread->stale = true;
     for (uint32_t k = skin->leaf_start[v]; k < skin->leaf_start[v + 1] && spread->out_count; k++) {
         const uint32_t p = spread->of_leaf[skin->leaf_of[k]];
-        bring_in(spread, p);
         for (uint32_t i = spread->through.start[p]; i < spread->through.start[p + 1]; i++) {
             const uint32_t b = spread->through.number[i];
             for (uint32_t j = spread->members.start[b]; j < spread->members.start[b + 1]; j++) bring_in(spread, spread->members.number[j]);
