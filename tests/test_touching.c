@@ -133,25 +133,6 @@ static void a_heap_has_no_crossings(void **state) {
 
 /* What falls takes nobody along into what others lie on: while planes between surfaces went along with the mean of all, folds of
  * this sheet were in the ground by 27 to 63 mm for a frame. It is level, leans, moves up, and is a ball. */
-/* What is pinned holds up what falls on it, however far all that falls goes in a substep together. */
-static void what_is_pinned_is_not_passed(void **state) {
-    (void)state;
-    skein_world *world = new_world("xpbd", 4);
-    add_gravity(world);
-    add_touching(world, 0.006, 0.3);
-    for (int sheet = 0; sheet < 2; sheet++)
-        OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 25, 25), SKEIN_TEXT("pins", sheet ? "" : "top edge"),
-                                                SKEIN_VEC3("position", 0, sheet ? 2.5 : 1, 0),
-                                                SKEIN_VEC3("rotation", sheet ? 0 : 90, sheet ? 20 : 0, 0)),
-                                 NULL));
-    for (int step = 0; step < 50; step++) {
-        steps(world, 1, step_length);
-        if (step % 5 == 4) assert_int_equal(statistics_of(world).crossings, 0);
-    }
-    skein_world_destroy(world);
-}
-
 static void nobody_is_pressed_into_the_ground(void **state) {
     (void)state;
     for (int ground = 0; ground < 4; ground++) {
@@ -506,7 +487,6 @@ int main(void) {
         cmocka_unit_test(crossings_are_counted),        cmocka_unit_test(a_heap_has_no_crossings),
         cmocka_unit_test(a_heap_comes_to_rest),         cmocka_unit_test(a_thin_heap_has_no_crossings),
         cmocka_unit_test(nobody_is_pressed_into_the_ground),
-        cmocka_unit_test(what_is_pinned_is_not_passed),
         cmocka_unit_test(layers_stay_in_their_order),   cmocka_unit_test(a_cube_rests_on_a_cube),
         cmocka_unit_test(a_rope_lies_on_a_cloth),       cmocka_unit_test(bits_are_the_same),
         cmocka_unit_test(it_remembers_nothing),         cmocka_unit_test(an_impact_remembers_nothing),

@@ -44,12 +44,15 @@ static sk_vec3 supported_way(const sk_touch *touch, const sk_run *run, const sk_
     return way;
 }
 
-/* What ways lead from the places before the substep to those after it, in a frame that goes so far. */
-static void set_ways(sk_touch *touch, sk_vec3 common) {
-    touch->common = common;
-    touch->aimed = touch->pressed_by_pins = false;
+/* Loads the places before and after the substep, and finds out what ways lead from one to the other. */
+static void load_ways(sk_touch *touch, const sk_run *run, const sk_op *op) {
+    size_t count = touch->skin.vertex_count;
+    touch->aimed = false;
+    sk_touch_load(touch, op->packed);
+    for (size_t v = 0; v < count; v++) touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
+    sk_vec3 common = touch->common = supported_way(touch, run, op, common_way(touch));
     touch->longest = 0;
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+    for (size_t v = 0; v < count; v++) {
         sk_vec3 way = sk_sub(sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v])), common);
         real length = sk_length(way);
         if (!(length < (real)1e6)) way = (sk_vec3){0, 0, 0}, length = 0; // blown up: it meets nobody
@@ -57,13 +60,6 @@ static void set_ways(sk_touch *touch, sk_vec3 common) {
         touch->longest = sk_max(touch->longest, length);
         touch->share[v] = touch->next_share[v] = 1;
     }
-    if (touch->storm) touch->shift[1] = common;
-}
-
-static void load_ways(sk_touch *touch, const sk_run *run, const sk_op *op) {
-    sk_touch_load(touch, op->packed);
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
-    set_ways(touch, supported_way(touch, run, op, common_way(touch)));
 }
 
 /* Looks for those that are lost, on their ways: they are wild from now on. */
@@ -180,7 +176,7 @@ static bool settle_pair(sk_touch *touch, sk_pairs *pairs, int sort, size_t k, re
     pairs->settled[k] = 1;
     real upper, lower;
     divide(&g, room, &upper, &lower);
-    if (upper + lower > before) __atomic_store_n(&touch->pressed_by_pins, true, __ATOMIC_RELAXED);
+    if (upper + lower > before) __atomic_store_n(&touch->tangle.forced, true, __ATOMIC_RELAXED); // by what is pinned
     return lower_shares(touch, &l, &g, upper, lower);
 }
 
@@ -337,27 +333,6 @@ static void unsettle(sk_pairs *pairs) {
     if (pairs->count) memset(pairs->settled, 0, pairs->count);
 }
 
-/* What is pinned goes all of its way, and in a frame that goes as all do that may lead it through what it holds up. So where it
- * takes more room than there is, the frame goes as pins do, as far as it did so before; or stands, where these go each their own
- * way. Who is out, and what is near on whose way, was asked in the other frame. */
-static bool stand_with_pins(sk_touch *touch, sk_allocator *allocator) {
-    const real alike = (real)0.1;
-    sk_vec3 sum = {0, 0, 0};
-    real count = 0, off = 0;
-    for (size_t v = 0; v < touch->skin.vertex_count; v++)
-        if (!(touch->inverse[v] > 0)) sum = sk_add(sum, sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v]))), count++;
-    const sk_vec3 way = sk_scale(count > 0 ? 1 / count : 0, sum);
-    const real square = sk_dot(way, way);
-    for (size_t v = 0; v < touch->skin.vertex_count; v++)
-        if (!(touch->inverse[v] > 0)) off = sk_max(off, sk_length(sk_sub(sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v])), way)));
-    const real share = square > 0 ? sk_max(0, sk_min(1, sk_dot(touch->common, way) / square)) : 0;
-    set_ways(touch, off <= alike * sk_sqrt(square) ? sk_scale(share, way) : (sk_vec3){0, 0, 0});
-    memset(touch->lost, 0, touch->skin.vertex_count);
-    sk_spread_end(touch);
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->lost[v] |= touch->wild[v];
-    return sk_calm_follow(touch, allocator) && (!touch->wild_count || renew(touch, allocator));
-}
-
 /* Each round looks at shares as the round before left them, so no order counts. */
 static bool find_shares(sk_touch *touch, sk_allocator *allocator, real least) {
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
@@ -410,6 +385,7 @@ static bool bound(sk_touch *touch, sk_run *run, const sk_op *op) {
     }
     if (!lost && !some_out && !sk_pairs_kept(touch) && sk_calm_holds(touch, touch->farthest)) return true;
     load_ways(touch, run, op);
+    if (touch->storm) touch->shift[1] = touch->common;
     if (all_out) sk_spread_follow_held(touch);
     else if (some_out) lost |= sk_spread_follow(touch, SK_REAL_MAX);
     if (!lost && some_out && !sk_pairs_kept(touch) && sk_calm_holds(touch, touch->farthest)) return true;
@@ -417,7 +393,6 @@ static bool bound(sk_touch *touch, sk_run *run, const sk_op *op) {
     bool good = sk_calm_follow(touch, run->allocator) && (!lost || renew(touch, run->allocator));
     if (good && sk_pairs_kept(touch)) {
         good = find_shares(touch, run->allocator, least);
-        if (good && touch->pressed_by_pins) good = stand_with_pins(touch, run->allocator) && find_shares(touch, run->allocator, least);
         store_ways(touch, run, op);
     }
     return good;
@@ -433,8 +408,6 @@ void sk_touch_bound(sk_run *run, const sk_op *op, size_t from, size_t end) {
         touch->frame_step = sk_sub(touch->shift[1], touch->shift[0]);
         run->no_memory |= !touch->followed;
     }
-    if (touch->pressed_by_pins) touch->tangle.forced = true;
-    touch->pressed_by_pins = false;
     bool keeps = touch->found && touch->followed;
     run->no_memory |= !sk_tangle_leave(touch, run->allocator, run->vector[SK_X], keeps, run->last_iteration);
 }

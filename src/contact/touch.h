@@ -86,7 +86,6 @@ typedef struct sk_touch {
     bool followed;   /* the last bound has seen where all went */
     bool remembers;  /* all have been seen */
     bool held;       /* a vertex is pinned */
-    bool pressed_by_pins; /* in this substep what is pinned took more room than there was; written by any thread */
     bool untouched;  /* hardly any pairs are kept: courses may be wide */
     bool loaded;     /* p and inverse are of this substep */
     bool holds;      /* what was known of patches when the last bound ended still is so */
