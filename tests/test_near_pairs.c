@@ -17,6 +17,7 @@ static tally run_by(skein_world *world, int count, double dt) {
     tally all = {0, 0, 0};
     (void)statistics_of(world); // makes ready what contact keeps
     touch_of(world)->spread.never = without_panels;
+    touch_of(world)->spread.eager = true;
     for (int i = 0; i < count; i++) {
         steps(world, 1, dt);
         sk_touch *touch = touch_of(world);

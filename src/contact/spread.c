@@ -128,12 +128,16 @@ real SK_KERNEL(longest)(const sk_vec4 *before, const sk_vec4 *x, size_t packed, 
 static sk_longest_kernel *const longest_kernel[SK_ISA_COUNT] = SK_EACH_ISA(longest);
 static sk_measure_kernel *const measure_kernel[SK_ISA_COUNT] = SK_EACH_ISA(measure);
 
-enum { GROUPS_AT_ONCE = 4, BLOCKS_AT_ONCE = 64 };
+enum { GROUPS_AT_ONCE = 4, BLOCKS_AT_ONCE = 64, REST = 4 };
 
 /* A pair that loses less than nine tenths of its gap in a substep does not close. */
 static const real closing_share = (real)0.8;
 /* Who is to go out has to have more room, such a share of what there is at most: it is looked for if it comes in. */
 static const real room = (real)0.2;
+
+/* What is looked for passes over all leaves, and who comes in is looked for at once: so it pays only where that much of all is out,
+ * to begin with, and then. (An irregular disc that swings and folds took 1.1 times as long without these, and 0.75 and 0.5 leave it so.) */
+static const double most_to_begin = 0.9, most_to_stay = 0.7;
 
 /* ---- where panels are, and how they lie ---- */
 
@@ -409,6 +413,13 @@ static real near_of(const sk_touch *touch) {
     return (SK_NEAR_THICKNESSES + (real)0.01) * touch->thickness;
 }
 
+/* Whether so few are out that it does not pay. */
+static bool are_few_out(const sk_spread *spread) {
+    size_t out = 0;
+    for (size_t p = 0; p < spread->count; p++) out += spread->out[p];
+    return !spread->eager && (double)out < (spread->out_count ? most_to_stay : most_to_begin) * (double)spread->count;
+}
+
 /* Judges all where they have been measured; whether vertices are lost. */
 static bool judge(sk_touch *touch, bool more, bool ways) {
     sk_spread *spread = &touch->spread;
@@ -425,6 +436,11 @@ static bool judge(sk_touch *touch, bool more, bool ways) {
     }
     spread->off_course = false;
     if (!memcmp(spread->was_out, spread->out, spread->count)) return false;
+    if (are_few_out(spread)) {
+        memset(spread->out, 0, spread->count);
+        spread->rest = REST;
+        if (!spread->out_count) return false;
+    }
     return turn(touch);
 }
 

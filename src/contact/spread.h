@@ -72,10 +72,12 @@ typedef struct sk_spread {
     uint8_t *mark;       /* of vertices: for a moment */
     real thickness;      /* that panels were looked at for */
     real holds, gone;    /* m: all that are out are while nobody has gone farther since; and how far they have gone at most */
+    int rest;            /* frames until others may go out again */
     bool stale;          /* somebody was held back since */
     bool went_out;       /* panels have, and pairs of theirs may be kept */
     bool came_in;        /* panels have, and it has not been said yet who is lost */
     bool never;          /* nobody goes out: an implicit solve asks several times what becomes of a substep */
+    bool eager;          /* few suffice to be out: tests ask for it */
     bool turned;         /* somebody has gone out or come in, and boxes of leaves do not know it */
 } sk_spread;
 

@@ -212,7 +212,8 @@ static bool look_at_panels(sk_touch *touch, const sk_run *run, const sk_op *op) 
     sk_spread *spread = &touch->spread;
     if (!spread->count) return false;
     if (spread->never || touch->tangle.any) return sk_spread_end(touch);
-    bool more = run->iteration == 0 && spread->out_count < spread->count;
+    bool frame = run->iteration == 0, more = frame && spread->out_count < spread->count && !spread->rest;
+    if (frame && spread->rest) spread->rest--;
     bool known = touch->tangle.same && !(spread->thickness < touch->thickness || spread->thickness > touch->thickness);
     if (!more && (known || !spread->out_count)) return false;
     sk_touch_load(touch, op->packed);
