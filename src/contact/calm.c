@@ -21,27 +21,16 @@ typedef void sk_moves_kernel(const sk_vec4 *p, const sk_vec3 *common, const sk_v
 SK_KERNELS(sk_moves_kernel, moves);
 
 #ifdef SK_ISA
-
-SK_INLINE const sk_wide *reals_of(const real *reals) {
-    return (const sk_wide *)(const void *)reals;
-}
+#include "contact/lanes.h"
 
 /* A box around moves. */
 typedef struct moves_box {
     sk_wide3 low, high;
 } moves_box;
 
-SK_INLINE sk_wide least_of(sk_wide a, sk_wide b) {
-    return sk_select(sk_more(b, a), a, b);
-}
-
-SK_INLINE sk_wide most_of(sk_wide a, sk_wide b) {
-    return sk_select(sk_more(a, b), a, b);
-}
-
 SK_INLINE moves_box around(moves_box box, sk_wide3 move) {
-    box.low = (sk_wide3){least_of(box.low.x, move.x), least_of(box.low.y, move.y), least_of(box.low.z, move.z)};
-    box.high = (sk_wide3){most_of(box.high.x, move.x), most_of(box.high.y, move.y), most_of(box.high.z, move.z)};
+    box.low = (sk_wide3){sk_least_wide(box.low.x, move.x), sk_least_wide(box.low.y, move.y), sk_least_wide(box.low.z, move.z)};
+    box.high = (sk_wide3){sk_most_wide(box.high.x, move.x), sk_most_wide(box.high.y, move.y), sk_most_wide(box.high.z, move.z)};
     return box;
 }
 
@@ -64,7 +53,7 @@ SK_INLINE sk_wide3 cross(sk_wide3 a, sk_wide3 b) {
 
 SK_INLINE sk_wide3 unit(sk_wide3 a) {
     const sk_wide least = sk_splat((real)1e-30), square = sk_dot_wide(a, a);
-    return scaled(sk_splat(1) / sk_wide_sqrt(most_of(square, least)), a);
+    return scaled(sk_splat(1) / sk_wide_sqrt(sk_most_wide(square, least)), a);
 }
 
 SK_INLINE sk_wide3 place_of(const sk_vec4 *x, const uint32_t *vertex) {
@@ -73,7 +62,7 @@ SK_INLINE sk_wide3 place_of(const sk_vec4 *x, const uint32_t *vertex) {
 }
 
 SK_INLINE sk_wide3 began_at(const real *from) {
-    return (sk_wide3){*reals_of(from), *reals_of(from + SK_PATCH_LANES), *reals_of(from + 2 * SK_PATCH_LANES)};
+    return (sk_wide3){*sk_row(from), *sk_row(from + SK_PATCH_LANES), *sk_row(from + 2 * SK_PATCH_LANES)};
 }
 
 /* Three directions that turn with a patch: of its first three vertices. They are at right angles where these are not all but

@@ -8,10 +8,7 @@
 SK_KERNELS(sk_course_kernel, off);
 
 #ifdef SK_ISA
-
-SK_INLINE sk_wide lanes_of(const real *reals) {
-    return *(const sk_wide *)(const void *)reals;
-}
+#include "contact/lanes.h"
 
 bool SK_KERNEL(off)(const sk_vec4 *x, const sk_vec4 *before, size_t packed, size_t slots, const sk_course_block *block, real time,
                     const sk_vec3 *shift, const sk_vec3 *gone, real jump, uint16_t *off, real *way) {
@@ -24,11 +21,11 @@ bool SK_KERNEL(off)(const sk_vec4 *x, const sk_vec4 *before, size_t packed, size
         for (size_t part = 0; part < SK_PARTS; part++) {
             size_t l = part * SK_PART;
             sk_wide4 at = sk_load_part(x, 16 * b + l, 16 * b < packed);
-            const sk_wide3 step = {lanes_of(block[b].step[0] + l), lanes_of(block[b].step[1] + l), lanes_of(block[b].step[2] + l)};
-            const sk_wide square = lanes_of(block[b].square + l);
-            sk_wide3 r = {at.x - sx - lanes_of(block[b].from[0] + l) - t * step.x,
-                          at.y - sy - lanes_of(block[b].from[1] + l) - t * step.y,
-                          at.z - sz - lanes_of(block[b].from[2] + l) - t * step.z};
+            const sk_wide3 step = {*sk_row(block[b].step[0] + l), *sk_row(block[b].step[1] + l), *sk_row(block[b].step[2] + l)};
+            const sk_wide square = *sk_row(block[b].square + l);
+            sk_wide3 r = {at.x - sx - *sk_row(block[b].from[0] + l) - t * step.x,
+                          at.y - sy - *sk_row(block[b].from[1] + l) - t * step.y,
+                          at.z - sz - *sk_row(block[b].from[2] + l) - t * step.z};
             bits |= sk_more_bits(sk_dot_wide(r, r), square) << l;
             if (!before) continue;
             sk_wide4 was = sk_load_part(before, 16 * b + l, 16 * b < packed);

@@ -11,6 +11,7 @@ SK_KERNELS(sk_nearing_kernel, corners_nearing);
 SK_KERNELS(sk_nearing_kernel, edges_nearing);
 
 #ifdef SK_ISA
+#include "contact/lanes.h"
 #include "contact/bits.h"
 #include "contact/closest.h"
 
@@ -18,18 +19,10 @@ SK_INLINE const sk_wide *part_of(const real *reals, size_t k) {
     return (const sk_wide *)(const void *)(reals + k);
 }
 
-SK_INLINE sk_wide least_of(sk_wide a, sk_wide b) {
-    return sk_select(sk_more(b, a), a, b);
-}
-
-SK_INLINE sk_wide most_of(sk_wide a, sk_wide b) {
-    return sk_select(sk_more(a, b), a, b);
-}
-
 /* How far both features may go towards each other. */
 SK_INLINE sk_wide ways_of(const sk_wide4 way[4], int first) {
     sk_wide longest[2] = {sk_splat(0), sk_splat(0)};
-    for (int c = 0; c < 4; c++) longest[c >= first] = most_of(longest[c >= first], way[c].w);
+    for (int c = 0; c < 4; c++) longest[c >= first] = sk_most_wide(longest[c >= first], way[c].w);
     return longest[0] + longest[1];
 }
 
@@ -49,9 +42,9 @@ SK_INLINE uint32_t closing_bits(const sk_vec4 *x, const sk_wide4 way[4], const s
         sk_wide at = c ? sk_dot_wide(n, between(sk_gather(x, pairs->corner[c] + k), origin)) : sk_splat(0);
         sk_wide after = at + sk_dot_wide(n, (sk_wide3){way[c].x, way[c].y, way[c].z});
         if (c == 0) low = at, low_after = after;
-        else if (c < first) low = least_of(low, at), low_after = least_of(low_after, after);
+        else if (c < first) low = sk_least_wide(low, at), low_after = sk_least_wide(low_after, after);
         else if (c == first) high = at, high_after = after;
-        else high = most_of(high, at), high_after = most_of(high_after, after);
+        else high = sk_most_wide(high, at), high_after = sk_most_wide(high_after, after);
     }
     sk_wide before = low - high, after = low_after - high_after;
     sk_wide room = at_least(sk_splat((real)0.99 * (1 - SK_LEFT_OVER)) * (before - sk_splat(least)), 0);
@@ -91,8 +84,8 @@ typedef struct sides {
 
 SK_INLINE sides with_corner(sides s, bool first, sk_wide3 n, sk_wide3 apart) {
     sk_wide at = sk_dot_wide(n, apart);
-    if (first) s.low = least_of(s.low, at);
-    else s.high = most_of(s.high, at);
+    if (first) s.low = sk_least_wide(s.low, at);
+    else s.high = sk_most_wide(s.high, at);
     return s;
 }
 
@@ -105,19 +98,19 @@ SK_INLINE uint32_t nearing_bits(const nearest_points *points, const sk_wide4 x[4
     sk_wide3 way[4];
     for (int c = 0; c < 4; c++) {
         s = with_corner(s, c < first, points->normal, between(end[c], end[0]));
-        reach[c >= first] = most_of(reach[c >= first], x[c].w);
-        jump[c >= first] = most_of(jump[c >= first], end[c].w);
+        reach[c >= first] = sk_most_wide(reach[c >= first], x[c].w);
+        jump[c >= first] = sk_most_wide(jump[c >= first], end[c].w);
         way[c] = between(end[c], x[c]);
     }
     for (int a = 0; a < first; a++)
         for (int b = first; b < 4; b++) {
             sk_wide3 apart = {way[a].x - way[b].x, way[a].y - way[b].y, way[a].z - way[b].z};
-            relative = most_of(relative, sk_dot_wide(apart, apart));
+            relative = sk_most_wide(relative, sk_dot_wide(apart, apart));
         }
     sk_wide reaches = reach[0] + reach[1], step = sk_splat(values->per) * sk_wide_sqrt(relative);
     sk_wide closing = sk_splat(values->closing) * (step + jump[0] + jump[1]);
-    sk_wide need = reaches + sk_splat(values->rounding) + most_of(closing, sk_splat(values->near));
-    return sk_more_bits(need, least_of(s.low - s.high, points->distance));
+    sk_wide need = reaches + sk_splat(values->rounding) + sk_most_wide(closing, sk_splat(values->near));
+    return sk_more_bits(need, sk_least_wide(s.low - s.high, points->distance));
 }
 
 /* The same of a substep, whatever shares of their ways they go. */
@@ -129,7 +122,7 @@ SK_INLINE uint32_t nearing_on_ways(const nearest_points *points, const sk_wide4 
         s = with_corner(s, c < first, points->normal, between(x[c], x[0]));
     }
     sk_wide need = sk_splat(values->shares) * points->distance + sk_splat(values->near);
-    return sk_more_bits(need, least_of(s.low - s.high, points->distance));
+    return sk_more_bits(need, sk_least_wide(s.low - s.high, points->distance));
 }
 
 /* Some pairs at once: their corners where they begin and end, where they are nearest, and which of them are found. Each

@@ -24,22 +24,7 @@ typedef real sk_longest_kernel(const sk_vec4 *before, const sk_vec4 *x, size_t p
 SK_KERNELS(sk_longest_kernel, longest);
 
 #ifdef SK_ISA
-
-SK_INLINE sk_wide *lanes_of(real *reals) {
-    return (sk_wide *)(void *)reals;
-}
-
-SK_INLINE const sk_wide *row_of(const real *reals) {
-    return (const sk_wide *)(const void *)reals;
-}
-
-SK_INLINE sk_wide least_of(sk_wide a, sk_wide b) {
-    return sk_select(sk_more(b, a), a, b);
-}
-
-SK_INLINE sk_wide most_of(sk_wide a, sk_wide b) {
-    return sk_select(sk_more(a, b), a, b);
-}
+#include "contact/lanes.h"
 
 /* Bounds of sixteen panels, while their rows are gone through. */
 typedef struct bounds {
@@ -49,19 +34,19 @@ typedef struct bounds {
 /* J = [d1 d2] / [u1 u2], where d are differences of corners and u those on the plane. */
 SK_INLINE void add_triangle(bounds *b, sk_wide3 d1, sk_wide3 d2, real (*inverse)[SK_PANEL_LANES], real (*gradient)[SK_PANEL_LANES],
                             size_t l) {
-    const sk_wide i0 = *lanes_of(inverse[0] + l), i1 = *lanes_of(inverse[1] + l);
-    const sk_wide i2 = *lanes_of(inverse[2] + l), i3 = *lanes_of(inverse[3] + l);
+    const sk_wide i0 = *sk_row(inverse[0] + l), i1 = *sk_row(inverse[1] + l);
+    const sk_wide i2 = *sk_row(inverse[2] + l), i3 = *sk_row(inverse[3] + l);
     const sk_wide j[6] = {d1.x * i0 + d2.x * i1, d1.y * i0 + d2.y * i1, d1.z * i0 + d2.z * i1,
                           d1.x * i2 + d2.x * i3, d1.y * i2 + d2.y * i3, d1.z * i2 + d2.z * i3};
     sk_wide change = sk_splat(0);
     for (int k = 0; k < 6; k++) {
-        sk_wide *was = lanes_of(gradient[k] + l), off = j[k] - *was;
+        sk_wide *was = sk_row_to(gradient[k] + l), off = j[k] - *was;
         change = change + off * off;
         *was = j[k];
-        b->least[k] = least_of(b->least[k], j[k]);
-        b->most[k] = most_of(b->most[k], j[k]);
+        b->least[k] = sk_least_wide(b->least[k], j[k]);
+        b->most[k] = sk_most_wide(b->most[k], j[k]);
     }
-    b->change = most_of(b->change, change);
+    b->change = sk_most_wide(b->change, change);
 }
 
 /* Lanes that are out of bounds along an axis. */
@@ -69,10 +54,10 @@ SK_INLINE uint32_t off_course(const sk_panels *panels, const bounds *b, size_t l
     const sk_tree_block *c = &panels->course;
     const real common = k == 0 ? course->common.x : k == 1 ? course->common.y : course->common.z;
     const sk_wide share = sk_splat(course->share), off = sk_splat(course->off), way = sk_splat(common);
-    const sk_wide low = *row_of(c->low[0][k] + l), high = *row_of(c->high[0][k] + l);
-    const sk_wide least = low + share * (*row_of(c->low[1][k] + l) - low) - off;
-    const sk_wide most = high + share * (*row_of(c->high[1][k] + l) - high) + off;
-    const sk_wide first = least_of(b->low[k], *row_of(panels->low[k] + l) + way), last = most_of(b->high[k], *row_of(panels->high[k] + l) + way);
+    const sk_wide low = *sk_row(c->low[0][k] + l), high = *sk_row(c->high[0][k] + l);
+    const sk_wide least = low + share * (*sk_row(c->low[1][k] + l) - low) - off;
+    const sk_wide most = high + share * (*sk_row(c->high[1][k] + l) - high) + off;
+    const sk_wide first = sk_least_wide(b->low[k], *sk_row(panels->low[k] + l) + way), last = sk_most_wide(b->high[k], *sk_row(panels->high[k] + l) + way);
     return sk_more_bits(least, first) | sk_more_bits(last, most);
 }
 
@@ -89,9 +74,9 @@ bool SK_KERNEL(measure)(const sk_vec4 *x, const sk_spread *spread, size_t group,
             for (int c = 0; c < 4; c++) {
                 sk_wide4 here = sk_gather(x, spread->corner[r][c] + l);
                 at[c] = (sk_wide3){here.x, here.y, here.z};
-                b.low[0] = least_of(b.low[0], here.x), b.high[0] = most_of(b.high[0], here.x);
-                b.low[1] = least_of(b.low[1], here.y), b.high[1] = most_of(b.high[1], here.y);
-                b.low[2] = least_of(b.low[2], here.z), b.high[2] = most_of(b.high[2], here.z);
+                b.low[0] = sk_least_wide(b.low[0], here.x), b.high[0] = sk_most_wide(b.high[0], here.x);
+                b.low[1] = sk_least_wide(b.low[1], here.y), b.high[1] = sk_most_wide(b.high[1], here.y);
+                b.low[2] = sk_least_wide(b.low[2], here.z), b.high[2] = sk_most_wide(b.high[2], here.z);
             }
             const sk_wide3 along = {at[1].x - at[0].x, at[1].y - at[0].y, at[1].z - at[0].z};
             for (int t = 0; t < 2; t++) {
@@ -99,15 +84,15 @@ bool SK_KERNEL(measure)(const sk_vec4 *x, const sk_spread *spread, size_t group,
                 add_triangle(&b, along, other, spread->inverse[r][t], spread->gradient[r][t], l);
             }
         }
-        for (int k = 0; k < 6; k++) *lanes_of(out->least[k] + l) = b.least[k], *lanes_of(out->most[k] + l) = b.most[k];
+        for (int k = 0; k < 6; k++) *sk_row_to(out->least[k] + l) = b.least[k], *sk_row_to(out->most[k] + l) = b.most[k];
         for (int k = 0; k < 3; k++) {
             if (course) off |= off_course(panels, &b, l, k, course);
-            *lanes_of(panels->low_before[k] + l) = *row_of(panels->low[k] + l);
-            *lanes_of(panels->high_before[k] + l) = *row_of(panels->high[k] + l);
-            *lanes_of(panels->low[k] + l) = b.low[k];
-            *lanes_of(panels->high[k] + l) = b.high[k];
+            *sk_row_to(panels->low_before[k] + l) = *sk_row(panels->low[k] + l);
+            *sk_row_to(panels->high_before[k] + l) = *sk_row(panels->high[k] + l);
+            *sk_row_to(panels->low[k] + l) = b.low[k];
+            *sk_row_to(panels->high[k] + l) = b.high[k];
         }
-        *lanes_of(panels->change + l) = b.change;
+        *sk_row_to(panels->change + l) = b.change;
     }
     return off;
 }
@@ -118,7 +103,7 @@ real SK_KERNEL(longest)(const sk_vec4 *before, const sk_vec4 *x, size_t packed, 
         for (size_t l = b; l < b + 16; l += SK_PART) {
             sk_wide4 from = sk_load_part(before, l, b < packed), to = sk_load_part(x, l, b < packed);
             sk_wide3 way = {to.x - from.x, to.y - from.y, to.z - from.z};
-            most = most_of(most, sk_dot_wide(way, way));
+            most = sk_most_wide(most, sk_dot_wide(way, way));
         }
     real square = 0;
     for (size_t l = 0; l < SK_PART; l++) square = sk_max(square, most[l]);

@@ -6,10 +6,7 @@ SK_KERNELS(sk_tree_blocks_kernel, blocks);
 SK_KERNELS(sk_tree_hits_kernel, hits);
 
 #ifdef SK_ISA
-
-SK_INLINE sk_wide lanes_of(const real *row) {
-    return *(const sk_wide *)(const void *)row;
-}
+#include "contact/lanes.h"
 
 /* Bits of a block's lanes whose boxes may meet this one: along no axis does one lie above the other on one side, when
  * it begins and when it ends. */
@@ -21,8 +18,8 @@ SK_INLINE uint32_t boxes_met_at(const sk_tree_block *block, const sk_box *box, i
         for (int k = 0; k < 3; k++) {
             uint32_t above = ~0u, below = ~0u;
             for (int end = 0; end < ends; end++) {
-                above &= sk_more_bits(lanes_of(&block->low[end][k][l]), sk_splat(box->high[end][k]));
-                below &= sk_more_bits(sk_splat(box->low[end][k]), lanes_of(&block->high[end][k][l]));
+                above &= sk_more_bits(*sk_row(&block->low[end][k][l]), sk_splat(box->high[end][k]));
+                below &= sk_more_bits(sk_splat(box->low[end][k]), *sk_row(&block->high[end][k][l]));
             }
             bits |= above | below;
         }
