@@ -135,6 +135,7 @@ static void run_scene(const char *path, bool draws) {
     outcome o = SKEIN("run", path, "--out", in_folder("out"), "--frames", "3", "--no-progress", "--set", output, "--set",
                       mesh ? "skein=1" : "bodies.0.grid=[7,9]");
     if (strstr(path, "cape")) assert_contains(o.err, "comes out at its recovery"); // which begins inside on purpose
+    else if (strstr(path, "statue")) assert_contains(o.err, "the field may miss what is thinner"); // fingers: make demo fetches it
     else assert_string_equal(o.err, "");
     assert_status(o, 0);
 
