@@ -9,7 +9,9 @@ static void GLAPIENTRY collect(GLenum source, GLenum type, GLuint id, GLenum sev
                                const GLchar *text, const void *user) {
     render_messages *messages = (render_messages *)user;
     (void)source, (void)id, (void)length;
-    if (severity == GL_DEBUG_SEVERITY_NOTIFICATION) return;
+    // NVIDIA's driver tells of each framebuffer's storage so
+    bool told = severity == GL_DEBUG_SEVERITY_LOW && type == GL_DEBUG_TYPE_OTHER;
+    if (told || severity == GL_DEBUG_SEVERITY_NOTIFICATION) return;
 
     if (type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR || severity == GL_DEBUG_SEVERITY_HIGH) {
         messages->errors++;
