@@ -82,6 +82,7 @@ void SK_KERNEL(contact_impulse)(sk_run *run, const sk_op *op, size_t begin, size
 /* Puts down for contact between surfaces who is pushed by this collider, and by which normal. */
 SK_INLINE void tell_support(sk_run *run, const sk_op *op, size_t slot, encounter e) {
     if (!op->also_writes) return;
+    if (!__atomic_load_n(run->supported, __ATOMIC_RELAXED)) __atomic_store_n(run->supported, true, __ATOMIC_RELAXED);
     bool packed = slot < op->packed;
     sk_wide4 support = sk_load_part(run->vector[SK_SUPPORT], slot, packed);
     sk_wide3 normal = pick3(e.touching & sk_positive(push_of(e)), e.normal, xyz(support));

@@ -378,7 +378,12 @@ static bool bound(sk_touch *touch, sk_run *run, const sk_op *op) {
     const sk_vec4 *x = run->vector[SK_X];
     const bool all_out = sk_spread_is_all_out(&touch->spread) && !sk_pairs_kept(touch), some_out = touch->spread.out_count > 0;
     bool lost = all_out;
-    if (all_out && stay_all_out(touch, x, op)) return true;
+    if (touch->before != touch->copied) touch->before = run->vector[op->source[2]];
+    if (all_out && stay_all_out(touch, x, op)) {
+        if (touch->before != touch->copied) touch->before = NULL; // the method keeps it no longer
+        return true;
+    }
+    if (touch->before != touch->copied) sk_touch_copy_start(touch);
     if (!all_out) {
         sk_touch_set_frame(touch, x, op->packed, touch->now + 1, 1);
         lost = sk_touch_mark_lost(touch, x, op->packed, touch->now + 1, 1) || touch->wild_count;
@@ -405,6 +410,7 @@ void sk_touch_bound(sk_run *run, const sk_op *op, size_t from, size_t end) {
     if (!touch) return;
     if (touch->found) {
         touch->followed = bound(touch, run, op);
+        touch->start_is_kept = op->source[2] != SK_NONE;
         touch->frame_step = sk_sub(touch->shift[1], touch->shift[0]);
         run->no_memory |= !touch->followed;
     }

@@ -75,7 +75,7 @@ bool sk_touch_mark_lost(sk_touch *touch, const sk_vec4 *x, size_t packed, real t
 real sk_touch_farthest(sk_touch *touch, const sk_vec4 *x, size_t packed) {
     const sk_vec3 none = {0, 0, 0};
     real way = 0;
-    if (touch->wild_count) return SK_REAL_MAX; // of those nobody knows
+    if (touch->wild_count || !touch->before) return SK_REAL_MAX; // of those nobody knows
     sk_course_off[touch->isa](x, touch->before, packed, touch->slots, touch->course_block, 0, &none, &none, 0, touch->off, &way);
     return sk_sqrt(way);
 }

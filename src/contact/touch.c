@@ -70,6 +70,11 @@ bool sk_touch_renew(sk_touch *touch, sk_allocator *allocator, sk_touch_search_so
     return true;
 }
 
+void sk_touch_copy_start(sk_touch *touch) {
+    memcpy(touch->copied, touch->before, touch->slots * sizeof *touch->copied);
+    touch->before = touch->copied;
+}
+
 void sk_touch_load(sk_touch *touch, size_t packed) {
     for (size_t v = 0; v < touch->skin.vertex_count && !touch->loaded; v++) {
         touch->p[v] = sk_load(touch->before, packed, touch->slot[v]);
@@ -79,7 +84,7 @@ void sk_touch_load(sk_touch *touch, size_t packed) {
 }
 
 static void release_slots(sk_touch *touch, sk_allocator *allocator) {
-    void **arrays[] = {(void **)&touch->before, (void **)&touch->course_block, (void **)&touch->off,
+    void **arrays[] = {(void **)&touch->copied, (void **)&touch->course_block, (void **)&touch->off,
                        (void **)&touch->vertex_at};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         sk_release(allocator, *arrays[i]);
@@ -102,11 +107,11 @@ static bool find_slots(sk_touch *touch, const sk_run *run) {
     touch->slots = 0;
     if (slots > touch->slot_capacity) {
         release_slots(touch, run->allocator);
-        touch->before = sk_allocate(run->allocator, slots * sizeof *touch->before);
+        touch->copied = sk_allocate(run->allocator, slots * sizeof *touch->copied);
         touch->course_block = sk_allocate(run->allocator, slots / 16 * sizeof *touch->course_block);
         touch->off = sk_allocate(run->allocator, slots / 16 * sizeof *touch->off);
         touch->vertex_at = sk_allocate(run->allocator, slots * sizeof *touch->vertex_at);
-        if (!touch->before || !touch->course_block || !touch->off || !touch->vertex_at) return false;
+        if (!touch->copied || !touch->course_block || !touch->off || !touch->vertex_at) return false;
         touch->slot_capacity = slots;
     }
     touch->slots = slots;
@@ -276,6 +281,12 @@ static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool
     return true;
 }
 
+/* Where the substep begins is copied, unless all panels lie spread out and the method keeps it, too: then mostly nobody asks. */
+static void begin_where_all_are(sk_touch *touch, const sk_run *run) {
+    touch->before = run->vector[SK_X];
+    if (!touch->start_is_kept || !sk_spread_is_all_out(&touch->spread)) sk_touch_copy_start(touch);
+}
+
 static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     (void)from, (void)end;
     sk_touch *touch = touch_of(op);
@@ -293,8 +304,11 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     touch->tasks = run->tasks;
     touch->holds = good && touch->found &&
                    (is_known(touch, run) || sk_spread_is_all_out(&touch->spread) || sk_calm_holds(touch, sk_touch_farthest(touch, run->vector[SK_X], op->packed)));
-    if (good) memcpy(touch->before, run->vector[SK_X], touch->slots * sizeof *touch->before);
-    if (run->vector[SK_SUPPORT]) memset(run->vector[SK_SUPPORT], 0, run->slot_count * sizeof *run->vector[SK_SUPPORT]);
+    if (good) begin_where_all_are(touch, run);
+    if (run->vector[SK_SUPPORT] && *run->supported) {
+        memset(run->vector[SK_SUPPORT], 0, run->slot_count * sizeof *run->vector[SK_SUPPORT]);
+        *run->supported = false;
+    }
     good = good && find_tangles(touch, run, op) && find_pairs(touch, run, op, all);
     touch->followed = false;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->near[sort].count = 0;
@@ -399,6 +413,7 @@ static bool prepare(sk_force *force, sk_allocator *allocator, const sk_particles
     if (!touch && !(touch = force->state = sk_allocate(allocator, sizeof *touch))) return false;
     touch->isa = isa;
     touch->alone = parts->rule_count == 1;
+    touch->start_is_kept = false; // until a bound says so
     uint64_t shape = shape_of(force, parts);
     if (touch->p && touch->shape == shape) return true;
     release_vertices(touch, allocator);

@@ -106,7 +106,9 @@ typedef struct sk_touch {
     sk_vec3 frame_step; /* how far the frame of courses goes in a substep, as it did last, */
     sk_vec3 shift[2];   /* and has gone before this one and after it */
     /* by slot */
-    sk_vec4 *before; /* X before the substep, as it was laid out */
+    const sk_vec4 *before; /* X before the substep, as it was laid out: `copied`, or, while nobody asks, what the method keeps; or NULL */
+    sk_vec4 *copied;       /* a copy of it */
+    bool start_is_kept;    /* the method keeps it until the bound */
     sk_course_block *course_block;
     uint16_t *off;
     uint32_t *vertex_at;
@@ -339,6 +341,8 @@ bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uin
 /* And less than this is none: only what begins so has it. */
 #define SK_NO_GAP ((real)0.00025)
 
+/* Makes `before` a copy, which stays. */
+void sk_touch_copy_start(sk_touch *touch);
 /* Loads the places before the substep, unless they are. */
 void sk_touch_load(sk_touch *touch, size_t packed);
 /* Looks for lost vertices; then, but of ways, looks at all pairs that are kept, at p. */

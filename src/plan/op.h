@@ -139,6 +139,7 @@ struct sk_run {
     const uint32_t *slot_of;     /* of the user's particles */
     const uint32_t *particle_of; /* of slots: the user's index, or SK_NOBODY */
     size_t particle_count;
+    bool *supported; /* some of SUPPORT is not 0; threads that run ops share it */
     const sk_surface *surface;
     sk_cells *cells;
     sk_allocator *allocator;

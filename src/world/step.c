@@ -170,7 +170,9 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
 }
 
 sk_run sk_world_run_context(skein_world *world) {
+    world->supported = true; // as far as anybody knows
     sk_run run = {
+        .supported = &world->supported,
         .slot_count = world->particles.slot_count,
         .slot_of = world->particles.slot_of,
         .particle_of = world->particles.particle_of,

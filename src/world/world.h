@@ -142,6 +142,7 @@ struct skein_world {
     sk_tasks *tasks;
     sk_pace pace; /* how many of the threads a step takes */
     sk_particles particles;
+    bool supported; /* their SUPPORT is not all 0 */
     sk_triangles triangles; /* as user's indices */
     sk_surface surface;     /* the same as slots */
     sk_rules rules;
