@@ -48,6 +48,7 @@ static sk_vec3 supported_way(const sk_touch *touch, const sk_run *run, const sk_
 static void load_ways(sk_touch *touch, const sk_run *run, const sk_op *op) {
     size_t count = touch->skin.vertex_count;
     touch->aimed = false;
+    touch->stand = touch->p;
     sk_touch_load(touch, op->packed);
     for (size_t v = 0; v < count; v++) touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
     sk_vec3 common = touch->common = supported_way(touch, run, op, common_way(touch));
@@ -62,8 +63,7 @@ static void load_ways(sk_touch *touch, const sk_run *run, const sk_op *op) {
     }
 }
 
-/* Looks for those that are lost, on their ways: they are wild from now on. */
-static bool renew(sk_touch *touch, sk_allocator *allocator) {
+bool sk_touch_search_ways(sk_touch *touch, sk_allocator *allocator) {
     for (size_t v = 0; v < touch->skin.vertex_count; v++)
         if (touch->lost[v] && !touch->wild[v]) sk_touch_put_course(touch, v, true);
     return sk_touch_renew(touch, allocator, SK_SEARCH_WAYS);
@@ -83,7 +83,7 @@ static line line_of(const sk_touch *touch, const sk_pairs *pairs, int sort, size
     sk_vec3 n = {pairs->normal[0][k], pairs->normal[1][k], pairs->normal[2][k]};
     for (int c = 0; c < 4; c++) {
         uint32_t v = l.v[c] = pairs->corner[c][k];
-        l.at[c] = sk_dot(n, sk_sub(sk_xyz(touch->p[v]), sk_xyz(touch->p[l.v[0]])));
+        l.at[c] = sk_dot(n, sk_sub(sk_xyz(touch->stand[v]), sk_xyz(touch->stand[l.v[0]])));
         l.whole_way[c] = sk_dot(n, sk_xyz(touch->way[v]));
         l.way[c] = touch->share[v] * l.whole_way[c];
     }
@@ -151,7 +151,7 @@ static bool are_apart(const sk_touch *touch, const line *l) {
     sk_vec3 low[2][2], high[2][2]; // of each feature, before and after
     for (int c = 0; c < 4; c++)
         for (int end = 0; end < 2; end++) {
-            sk_vec3 x = sk_xyz(touch->p[l->v[c]]);
+            sk_vec3 x = sk_xyz((end ? touch->stand : touch->p)[l->v[c]]);
             if (end) x = sk_add(x, sk_scale(touch->share[l->v[c]], sk_xyz(touch->way[l->v[c]])));
             int f = c >= l->first;
             bool new = c == 0 || c == l->first;
@@ -173,10 +173,13 @@ static bool settle_pair(sk_touch *touch, sk_pairs *pairs, int sort, size_t k, re
     real before = g.low - g.high, after = g.low_after - g.high_after;
     real room = sk_max(0, (1 - SK_LEFT_OVER) * (before - least));
     if (after >= before || after >= before - room || are_apart(touch, &l)) return false;
-    pairs->settled[k] = 1;
+    pairs->settled[k] = SK_IS_DIVIDED;
     real upper, lower;
     divide(&g, room, &upper, &lower);
-    if (upper + lower > before) __atomic_store_n(&touch->tangle.forced, true, __ATOMIC_RELAXED); // by what is pinned
+    if (upper + lower > before) { // by what is pinned
+        pairs->settled[k] = SK_IS_FORCED;
+        __atomic_store_n(&touch->tangle.forced, true, __ATOMIC_RELAXED);
+    }
     return lower_shares(touch, &l, &g, upper, lower);
 }
 
@@ -200,7 +203,7 @@ static void take_some_shares(void *data, int thread, size_t begin, size_t end) {
         touch->lowered[v] = touch->next_share[v] < touch->share[v];
         if (!touch->lowered[v]) continue;
         real share = touch->share[v] = touch->next_share[v];
-        sk_vec3 step = sk_scale(share, sk_xyz(touch->way[v])), to = sk_add(sk_add(sk_xyz(touch->p[v]), common), step);
+        sk_vec3 step = sk_scale(share, sk_xyz(touch->way[v])), to = sk_add(sk_add(sk_xyz(touch->stand[v]), common), step);
         if (touch->wild[v]) continue;
         sk_vec3 off = sk_sub(sk_sub(to, touch->shift[1]), sk_expected(&touch->course[v], touch->now + 1));
         sk_vec3 other = sk_sub(sk_sub(sk_add(common, step), gone), touch->course[v].step);
@@ -241,7 +244,7 @@ typedef struct closing {
 static void find_closing(void *data, size_t begin, size_t end) {
     const closing *job = data;
     sk_pairs some = sk_pairs_between(job->pairs, begin, end);
-    sk_closing[job->sort][job->touch->isa](job->touch->p, job->touch->way, &job->values, &some);
+    sk_closing[job->sort][job->touch->isa](job->touch->stand, job->touch->way, &job->values, &some);
 }
 
 /* Of those from a pair on. */
@@ -279,9 +282,7 @@ static void list_some_that_may(void *data, int thread, size_t begin, size_t end)
     }
 }
 
-/* Lists the pairs that may close on these ways: none of the others does, whatever shares are left. Of all, or of those
- * that came since it was last asked; those that went since then are pairs of nobody where they stand. */
-static bool find_those_that_may(sk_touch *touch, sk_allocator *allocator, real least, bool all) {
+bool sk_touch_list_closing(sk_touch *touch, sk_allocator *allocator, real least, bool all) {
     enum { BLOCKS_AT_ONCE = 1024 };
     const real known = (real)0.01; // thicknesses: nearest points of edges that are all but parallel
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
@@ -337,14 +338,14 @@ static void unsettle(sk_pairs *pairs) {
 static bool find_shares(sk_touch *touch, sk_allocator *allocator, real least) {
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
         unsettle(&touch->kept[sort]), unsettle(&touch->late[sort]);
-    if (!find_those_that_may(touch, allocator, least, true)) return false;
+    if (!sk_touch_list_closing(touch, allocator, least, true)) return false;
     for (bool first = true;; first = false) {
         bool lowered = false;
         for (int sort = 0; sort < SK_PAIR_SORTS; sort++) lowered |= settle_pairs(touch, sort, first, least);
         if (!lowered) return true;
         bool lost = take_shares(touch);
-        if (!disturb(touch, allocator, &lost) || (lost && !renew(touch, allocator)) ||
-            !find_those_that_may(touch, allocator, least, false))
+        if (!disturb(touch, allocator, &lost) || (lost && !sk_touch_search_ways(touch, allocator)) ||
+            !sk_touch_list_closing(touch, allocator, least, false))
             return false;
     }
 }
@@ -356,7 +357,7 @@ static void store_ways(const sk_touch *touch, const sk_run *run, const sk_op *op
     const real rate = (real)(1 / op->dt);
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         if (!(touch->share[v] < 1)) continue;
-        sk_vec3 to = sk_add(sk_add(sk_xyz(touch->p[v]), common), sk_scale(touch->share[v], sk_xyz(touch->way[v])));
+        sk_vec3 to = sk_add(sk_add(sk_xyz(touch->stand[v]), common), sk_scale(touch->share[v], sk_xyz(touch->way[v])));
         size_t slot = touch->slot[v];
         sk_store_at(run->vector[SK_X], op->packed, slot, to);
         sk_add_at(run->vector[SK_V], op->packed, slot, sk_scale(rate, sk_sub(to, sk_xyz(touch->q[v]))));
@@ -395,9 +396,16 @@ static bool bound(sk_touch *touch, sk_run *run, const sk_op *op) {
     else if (some_out) lost |= sk_spread_follow(touch, SK_REAL_MAX);
     if (!lost && some_out && !sk_pairs_kept(touch) && sk_calm_holds(touch, touch->farthest)) return true;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->lost[v] |= touch->wild[v];
-    bool good = sk_calm_follow(touch, run->allocator) && (!lost || renew(touch, run->allocator));
+    bool good = sk_calm_follow(touch, run->allocator) && (!lost || sk_touch_search_ways(touch, run->allocator));
     if (good && sk_pairs_kept(touch)) {
+        const bool was = touch->tangle.forced;
+        touch->tangle.forced = false;
         good = find_shares(touch, run->allocator, least);
+        if (good && touch->tangle.forced && sk_touch_is_passed(touch)) {
+            touch->tangle.forced = false;
+            good = sk_touch_yield(touch, run->allocator, least) && find_shares(touch, run->allocator, least);
+        }
+        touch->tangle.forced |= was;
         store_ways(touch, run, op);
     }
     return good;

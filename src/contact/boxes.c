@@ -40,7 +40,7 @@ static sk_quad quad_of(sk_vec3 x) {
 static sk_box box_of_way(const sk_touch *touch, size_t v, bool way) {
     sk_vec3 from = sk_sub(sk_xyz(touch->p[v]), touch->shift[0]), none = from, all = from;
     if (way) { // of none of its way it goes what all go together, whether the frame does or not
-        none = sk_sub(sk_add(sk_xyz(touch->p[v]), touch->common), touch->shift[1]);
+        none = sk_sub(sk_add(sk_xyz(touch->stand[v]), touch->common), touch->shift[1]);
         all = sk_add(none, sk_way_left(touch, v));
     }
     sk_quad low = sk_least_quad(quad_of(from), sk_least_quad(quad_of(none), quad_of(all)));
@@ -65,7 +65,7 @@ static real square_between(const sk_vec4 *p, uint32_t a, uint32_t b) {
 
 /* Whether the longest side is four times as long as it was built. */
 static bool is_torn(const sk_touch *touch, const uint32_t *vertex, int count) {
-    const real most = 4 * 4;
+    const real most = 16 * 16;
     real now = 0, built = 0;
     for (int k = 0; k < count; k++) {
         uint32_t a = vertex[k], b = vertex[(k + 1) % count];

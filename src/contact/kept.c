@@ -7,14 +7,14 @@
 #include "contact/touch.h"
 
 /* What a bound has settled stays so, although it was looked for anew. */
-static void stay_settled(sk_pairs *fresh, uint64_t key) {
+static void stay_settled(sk_pairs *fresh, uint64_t key, uint8_t settled) {
     size_t low = 0, high = fresh->count;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
         if (fresh->key[middle] < key) low = middle + 1;
         else high = middle;
     }
-    if (low < fresh->count && fresh->key[low] == key) fresh->settled[low] = 1;
+    if (low < fresh->count && fresh->key[low] == key) fresh->settled[low] = settled;
 }
 
 static inline bool goes(const sk_touch *touch, const sk_pairs *pairs, size_t k) {
@@ -33,7 +33,7 @@ static void let_some_go(void *data, int thread, size_t begin, size_t end) {
     sk_pairs *kept = job->pairs;
     for (size_t k = begin; k < end; k++) {
         if (!goes(job->touch, kept, k)) continue;
-        if (kept->settled[k]) stay_settled(job->fresh, kept->key[k]);
+        if (kept->settled[k]) stay_settled(job->fresh, kept->key[k], kept->settled[k]);
         for (int c = 0; c < 4; c++) kept->corner[c][k] = 0;
         kept->thickness[k] = -1;
         kept->settled[k] = 0;
@@ -53,7 +53,7 @@ static void take_out(const sk_touch *touch, sk_pairs *late, sk_pairs *fresh) {
     late->count = 0;
     for (size_t k = 0; k < count; k++) {
         if (!goes(touch, late, k)) sk_pairs_copy_all(late, late, k);
-        else if (late->settled[k]) stay_settled(fresh, late->key[k]);
+        else if (late->settled[k]) stay_settled(fresh, late->key[k], late->settled[k]);
     }
 }
 

@@ -117,11 +117,13 @@ SK_INLINE uint32_t nearing_bits(const nearest_points *points, const sk_wide4 x[4
 SK_INLINE uint32_t nearing_on_ways(const nearest_points *points, const sk_wide4 x[4], const sk_wide4 end[4], int first,
                                    const sk_nearing_values *values) {
     sides s = {sk_splat(SK_REAL_MAX), sk_splat(-SK_REAL_MAX)};
+    sk_wide reach[2] = {sk_splat(0), sk_splat(0)};
     for (int c = 0; c < 4; c++) { // it may stay, too
         s = with_corner(s, c < first, points->normal, between(end[c], x[0]));
         s = with_corner(s, c < first, points->normal, between(x[c], x[0]));
+        reach[c >= first] = sk_most_wide(reach[c >= first], x[c].w);
     }
-    sk_wide need = sk_splat(values->shares) * points->distance + sk_splat(values->near);
+    sk_wide need = sk_splat(values->shares) * points->distance + sk_splat(values->near) + (reach[0] + reach[1]);
     return sk_more_bits(need, sk_least_wide(s.low - s.high, points->distance));
 }
 

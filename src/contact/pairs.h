@@ -15,7 +15,7 @@ typedef struct sk_pairs {
     uint32_t *corner[4];
     uint64_t *key; /* the order of pairs: both leaves, and which of their features */
     real *distance, *thickness, *normal[3], *share[2];
-    uint8_t *settled; /* of a bound: planes divide it, */
+    uint8_t *settled; /* of a bound: planes divide it, or had to, but what is pinned takes all the room; */
     uint8_t *closes;  /* or have to; what kernels find out */
     size_t count, capacity;
 } sk_pairs;
@@ -25,6 +25,7 @@ typedef void sk_closest_kernel(const sk_vec4 *x, sk_pairs *pairs);
 
 /* Finds out which pairs, of places x before a substep, might lose their gap by any shares of these ways (w: their length)
  * and which do by all of them: `closes`. Pairs need their distance and normal. */
+enum { SK_IS_DIVIDED = 1, SK_IS_FORCED = 2 };
 enum { SK_CLOSES = 1, SK_MAY_CLOSE = 2, SK_IS_NEAR = 4 };
 typedef struct sk_closing_values {
     real least, rounding; /* m: what is less does not close at all; how well a distance is known */
@@ -51,10 +52,23 @@ typedef struct sk_pair_list {
 typedef struct sk_closing_pair {
     uint32_t entry, corner[4];
 } sk_closing_pair;
+/* One that has too little room where its corners stand, by its sort and key. */
+typedef struct sk_yielding {
+    uint64_t key;
+    const sk_closing_pair *pair;
+    int sort;
+} sk_yielding;
+typedef struct sk_yielding_list {
+    sk_yielding *data;
+    size_t count, capacity;
+} sk_yielding_list;
 typedef struct sk_closing_list {
     sk_closing_pair *data;
     size_t count, capacity;
 } sk_closing_list;
+
+/* Whether features whose corners go straight from x[0] to x[1] come nearer than that on the way. */
+typedef bool sk_passes_kernel(const sk_vec3 x[2][4], real near);
 
 /* A pair's key, and where it is. */
 typedef struct sk_pair_place {
@@ -111,6 +125,7 @@ static inline size_t sk_first_of(uint64_t found) {
 /* By sort of pairs. */
 extern sk_closest_kernel *const sk_closest[SK_PAIR_SORTS][SK_ISA_COUNT];
 /* nearing.c */
+extern sk_passes_kernel *const sk_passes[SK_PAIR_SORTS][SK_ISA_COUNT];
 extern sk_closing_kernel *const sk_closing[SK_PAIR_SORTS][SK_ISA_COUNT];
 extern sk_nearing_kernel *const sk_nearing[SK_PAIR_SORTS][SK_ISA_COUNT];
 

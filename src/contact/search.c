@@ -130,14 +130,17 @@ static void look_ahead(sk_touch *touch) {
     touch->now = 0;
 }
 
-/* From where to where vertices go in this substep: most are known if somebody has asked before. */
+/* From where to where vertices go in this substep, and how far off these ways they may stand: most are known if somebody has
+ * asked before. */
 static void aim(void *data, int thread, size_t begin, size_t end) {
     (void)thread;
     sk_touch *touch = data;
     for (size_t v = begin; v < end; v++) {
         if ((touch->aimed && !touch->lost[v]) || sk_vertex_is_out(&touch->spread, v)) continue;
-        sk_vec3 to = sk_add(sk_xyz(touch->p[v]), sk_way_left(touch, v));
-        touch->at[v] = touch->p[v];
+        const sk_vec4 here = touch->p[v], stand = touch->stand[v];
+        const sk_vec3 to = sk_add(sk_xyz(stand), sk_way_left(touch, v));
+        const real off = touch->stand == touch->p ? 0 : sk_length(sk_sub(sk_xyz(stand), sk_xyz(here)));
+        touch->at[v] = (sk_vec4){here.x, here.y, here.z, off};
         touch->in_the_end[v] = (sk_vec4){to.x, to.y, to.z, 0};
     }
 }

@@ -78,7 +78,7 @@ void sk_touch_copy_start(sk_touch *touch) {
 void sk_touch_load(sk_touch *touch, size_t packed) {
     for (size_t v = 0; v < touch->skin.vertex_count && !touch->loaded; v++) {
         touch->p[v] = sk_load(touch->before, packed, touch->slot[v]);
-        touch->inverse[v] = touch->p[v].w;
+        touch->inverse[v] = touch->p[v].w = sk_load(touch->x, packed, touch->slot[v]).w; // a method's own copy has no masses
     }
     touch->loaded = true;
 }
@@ -273,9 +273,15 @@ static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool
         begin_frame(touch, run, op);
     }
     if (all || lost) {
+        const uint64_t given_up = touch->given_up;
         set_courses(touch, run, op, all ? 0 : touch->now);
         touch->remembers |= all;
-        return sk_touch_renew(touch, run->allocator, all ? SK_SEARCH_ALL : SK_SEARCH_LOST);
+        if (!sk_touch_renew(touch, run->allocator, all ? SK_SEARCH_ALL : SK_SEARCH_LOST)) return false;
+        if (touch->found) return true;
+        // courses lead too far through each other: what is fast has been hit; a substep at a time it may be found
+        touch->given_up = given_up;
+        begin_storm(touch);
+        return find_pairs_in_storm(touch, run, op, false);
     }
     look_at_all(touch);
     return true;
@@ -283,7 +289,7 @@ static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool
 
 /* Where the substep begins is copied, unless all panels lie spread out and the method keeps it, too: then mostly nobody asks. */
 static void begin_where_all_are(sk_touch *touch, const sk_run *run) {
-    touch->before = run->vector[SK_X];
+    touch->before = touch->x = run->vector[SK_X];
     if (!touch->start_is_kept || !sk_spread_is_all_out(&touch->spread)) sk_touch_copy_start(touch);
 }
 
@@ -321,7 +327,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
 
 /* ---- the kind ---- */
 
-enum { VERTEX_ARRAYS = 32 };
+enum { VERTEX_ARRAYS = 34 };
 
 /* All arrays by vertex, edge, triangle or leaf, with the sizes of their elements. */
 static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *count) {
@@ -331,7 +337,7 @@ static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *cou
     int n = 0;
 #define LIST(name, number) \
     array[n] = (void **)&touch->name, size[n] = sizeof *touch->name, count[n++] = number
-    LIST(slot, vertices), LIST(p, vertices), LIST(q, vertices), LIST(way, vertices);
+    LIST(slot, vertices), LIST(p, vertices), LIST(q, vertices), LIST(way, vertices), LIST(yielded, vertices), LIST(rank, vertices);
     LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(seen, vertices), LIST(inverse, vertices);
     LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(lost, vertices), LIST(wild, vertices);
     LIST(press.number, vertices), LIST(press.slot, vertices);
@@ -380,6 +386,7 @@ static void release(sk_force *force, sk_allocator *allocator) {
         sk_release(allocator, touch->may_close[sort].data);
     }
     sk_pairs_release(&touch->fresh, allocator);
+    sk_release(allocator, touch->yielding.data);
     sk_release(allocator, touch->order.data);
     sk_release(allocator, touch->other_order.data);
     sk_release(allocator, touch->first.data);

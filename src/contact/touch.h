@@ -106,6 +106,7 @@ typedef struct sk_touch {
     sk_vec3 frame_step; /* how far the frame of courses goes in a substep, as it did last, */
     sk_vec3 shift[2];   /* and has gone before this one and after it */
     /* by slot */
+    const sk_vec4 *x;      /* while a substep is taken */
     const sk_vec4 *before; /* X before the substep, as it was laid out: `copied`, or, while nobody asks, what the method keeps; or NULL */
     sk_vec4 *copied;       /* a copy of it */
     bool start_is_kept;    /* the method keeps it until the bound */
@@ -117,7 +118,10 @@ typedef struct sk_touch {
     uint32_t *slot;
     sk_vec4 *p;    /* the place before the substep */
     sk_vec4 *q;    /* after it */
-    sk_vec4 *way;  /* from p to q, less what all go together; w: its length */
+    sk_vec4 *way;  /* from `stand` to q, less what all go together; w: how far that leads from p, at most */
+    sk_vec4 *stand;   /* where it is after a substep if it goes none of its way, less the same: p, or */
+    sk_vec4 *yielded; /* where who is in the way of pins has room (yield.c) */
+    uint8_t *rank;    /* how far from a pin, in pairs; 255: nobody moves it */
     sk_vec4 *at, *in_the_end; /* of a search: where it is expected now, and when that ends */
     sk_course *course;
     sk_seen *seen;
@@ -153,6 +157,7 @@ typedef struct sk_touch {
     size_t told_apart[SK_PAIR_SORTS]; /* late pairs of which it is known whether they may close */
     sk_pairs fresh;
     sk_pair_list near[SK_PAIR_SORTS];       /* in the order of leaves; */
+    sk_yielding_list yielding;
     sk_closing_list may_close[SK_PAIR_SORTS]; /* and in none */
     sk_presses press;
     struct {
@@ -310,6 +315,19 @@ sk_op_kernel sk_touch_lead;
 sk_op_kernel sk_touch_bound;
 /* The same within an implicit solve, which takes those that are held back as they are: their S is 0. */
 sk_op_kernel sk_touch_hold;
+/* Lists the pairs that may close on these ways: none of the others does, whatever shares are left. Of all, or of those
+ * that came since it was last asked; those that went since then are pairs of nobody where they stand. */
+bool sk_touch_list_closing(sk_touch *touch, sk_allocator *allocator, real least, bool all);
+/* Looks for those that are lost, on their ways: they are wild from now on. */
+bool sk_touch_search_ways(sk_touch *touch, sk_allocator *allocator);
+
+/* ---- yield.c ---- */
+
+/* Whether a pin goes through somebody who has no room: of the pairs whose gap pins take, at the shares that were found. */
+bool sk_touch_is_passed(const sk_touch *touch);
+/* Moves those that pins would pass to where they have room, and begins anew with whole ways from there. Gaps of less than
+ * `least` are none. False when there is no memory. */
+bool sk_touch_yield(sk_touch *touch, sk_allocator *allocator, real least);
 
 /* ---- crossings.c ---- */
 
