@@ -140,7 +140,8 @@ static bool list_partners(const sk_parts_job *job, sk_search_part *part, const l
     for (size_t k = 0; k < blocks; k++) {
         size_t b = part->block[k];
         size_t count = sk_tree_hits[touch->isa](&touch->tree, a, b, block->lanes, touch->hot_box, touch->everybody, hit);
-        if (part->first.count + count > part->first.capacity) {
+        // (a list may have grown when there was no memory for the other)
+        if (part->first.count + count > part->first.capacity || part->first.count + count > part->second.capacity) {
             part->first.count = part->second.count = before;
             return false;
         }
@@ -166,7 +167,6 @@ static void list_part(const sk_parts_job *job, sk_search_part *part) {
 static bool grow_lists(sk_search_part *part, sk_allocator *allocator) {
     const size_t more = 1024;
     size_t need = 2 * part->first.capacity + part->end * SK_TREE_WIDTH + more;
-    part->second.capacity = part->first.capacity;
     return SK_RESERVE(allocator, &part->first, need) && SK_RESERVE(allocator, &part->second, need);
 }
 
