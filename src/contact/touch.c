@@ -298,7 +298,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     sk_touch *touch = touch_of(op);
     if (!touch || !touch->skin.vertex_count) return;
     real thickness = sk_touch_thickest(touch, params_of(op)), usual = (real)params_of(op)->thickness;
-    bool good = (run->iteration && touch->alone) || find_slots(touch, run);
+    bool good = (run->iteration && touch->alone && touch->slots) || find_slots(touch, run);
     touch->now += 1, touch->clock++;
     bool all = !touch->found || touch->thickness < thickness || touch->thickness > thickness ||
                touch->usual < usual || touch->usual > usual || touch->now + 1 > touch->until;
