@@ -3,8 +3,8 @@
  * What is pinned or led goes all of its way in a substep. In the frame of what all go together it may be that it goes by more
  * than there is room for: a sheet falls on the edge of one that hangs, and it is the edge that comes up. Then no share of
  * their ways keeps corners off it, for with none they stand, and are passed. So they stand elsewhere: moved along the pair's
- * normal, until half of the gap is left; and so, in turn, do those in the way of these. Only that is moved which must be:
- * all others stay in the frame, along the normal only, so that what slides over a pinned border goes on.
+ * normal, until there is room; and so, in turn, do those in the way of these. Only that is moved which must be: all others stay
+ * in the frame, so that what slides over a pinned border goes on.
  *
  * Pairs are gone through in the order of their keys, so that no thread counts, and no search that was not needed. */
 #include <stdlib.h>
@@ -204,10 +204,10 @@ bool sk_touch_yield(sk_touch *touch, sk_allocator *allocator, real least) {
     for (int search = 0; search < SEARCHES && changed; search++) {
         if (!sk_touch_list_closing(touch, allocator, least, true)) return false;
         begin(touch);
-        for (int round = 0, moved = true; round < ROUNDS && moved; round++) {
-            bool any = false;
-            if (!yield_round(touch, allocator, 2 * round > ROUNDS, &any)) return false;
-            moved = any;
+        bool moved = true;
+        for (int round = 0; round < ROUNDS && moved; round++) {
+            moved = false;
+            if (!yield_round(touch, allocator, 2 * round > ROUNDS, &moved)) return false;
         }
         changed = find_ways(touch);
         if ((changed || !search) && !sk_touch_search_ways(touch, allocator)) return false;
