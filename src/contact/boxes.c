@@ -63,9 +63,9 @@ static real square_between(const sk_vec4 *p, uint32_t a, uint32_t b) {
     return x * x + y * y + z * z;
 }
 
-/* Whether the longest side is four times as long as it was built. */
+/* Whether the longest side is eight times as long as it was built. */
 static bool is_torn(const sk_touch *touch, const uint32_t *vertex, int count) {
-    const real most = 16 * 16;
+    const real most = 8 * 8;
     real now = 0, built = 0;
     for (int k = 0; k < count; k++) {
         uint32_t a = vertex[k], b = vertex[(k + 1) % count];
