@@ -1,35 +1,8 @@
 /* A failed allocation is an ordinary failure: whichever one fails, the call says so, nothing leaks, and the world
  * goes on as if the call had not been made. */
-#include "helpers.h"
+#include "purse.h"
 
 static const double dt = 1.0 / 90;
-
-/* An allocator that counts, and fails at the n-th call: once, or from then on. */
-typedef struct purse {
-    size_t calls, fail_at, in_use, blocks;
-    bool forever;
-} purse;
-
-static void *take(void *user, size_t size, size_t alignment) {
-    purse *p = user;
-    size_t call = p->calls++;
-    if (p->forever ? call >= p->fail_at : call == p->fail_at) return NULL;
-    assert_true(alignment && (alignment & (alignment - 1)) == 0 && size % alignment == 0);
-    p->in_use += size;
-    p->blocks++;
-    void *memory = aligned_alloc(alignment, size);
-    assert_non_null(memory);
-    memset(memory, 0xa5, size); // whoever counts on zeros must ask for them
-    return memory;
-}
-
-static void give_back(void *user, void *memory, size_t size) {
-    purse *p = user;
-    assert_true(memory && p->in_use >= size && p->blocks);
-    p->in_use -= size; // back to 0 only if the sizes are those that were asked for
-    p->blocks--;
-    free(memory);
-}
 
 /* The calls of the scenario, each to be made again after a failure. */
 typedef struct scenario {
@@ -182,9 +155,7 @@ static void ignore(void *user, skein_log_level level, const char *message) {
 
 /* Plays the scenario through; true if nothing failed. The hash of its end, if it came so far, is in `hash`. */
 static bool play(purse *p, uint64_t *hash) {
-    skein_world_desc desc = skein_default_world_desc();
-    desc.allocate = take, desc.release = give_back, desc.memory_user = p;
-    desc.thread_count = 2;
+    skein_world_desc desc = purse_world(p);
     desc.log = ignore; // so that the faults of meshes are looked for
     bool whole = true;
     skein_error error = {0};
@@ -261,7 +232,7 @@ static void a_long_life_does_not_leak(void **state) {
     (void)state;
     purse p = {.fail_at = SIZE_MAX};
     skein_world_desc desc = skein_default_world_desc();
-    desc.allocate = take, desc.release = give_back, desc.memory_user = &p;
+    desc.allocate = purse_take, desc.release = purse_give_back, desc.memory_user = &p;
     skein_world *world = skein_world_create(&desc, NULL);
     assert_non_null(world);
     add_particle(world, 1, 0, 0, 0), add_particle(world, 1, 1, 0, 0);

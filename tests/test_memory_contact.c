@@ -1,30 +1,6 @@
 /* Contact between surfaces where memory is wanting: whichever allocation fails, the step says so, nothing leaks, and what goes on
  * afterwards is sound. What falls lands on pins, goes on folding on ground, and begins partly in itself, so that every list is in use. */
-#include "helpers.h"
-
-/* An allocator that counts, and fails at the n-th call: once, or from then on. */
-typedef struct purse {
-    size_t calls, fail_at, in_use, blocks;
-    bool forever;
-} purse;
-
-static void *take(void *user, size_t size, size_t alignment) {
-    purse *p = user;
-    const size_t call = p->calls++;
-    if (p->forever ? call >= p->fail_at : call == p->fail_at) return NULL;
-    p->in_use += size, p->blocks++;
-    void *memory = aligned_alloc(alignment, size);
-    assert_non_null(memory);
-    memset(memory, 0xa5, size);
-    return memory;
-}
-
-static void give_back(void *user, void *memory, size_t size) {
-    purse *p = user;
-    assert_true(memory && p->in_use >= size && p->blocks);
-    p->in_use -= size, p->blocks--;
-    free(memory);
-}
+#include "purse.h"
 
 enum { FRAMES = 12 };
 
@@ -38,9 +14,7 @@ static bool add_sheet(skein_world *world, int side, const char *pins, const doub
 
 /* Returns how many steps failed. A world that could not be set up is none. */
 static int play(purse *p, uint64_t *hash) {
-    skein_world_desc desc = skein_default_world_desc();
-    desc.allocate = take, desc.release = give_back, desc.memory_user = p;
-    desc.thread_count = 2;
+    skein_world_desc desc = purse_world(p);
     skein_world *world = skein_world_create(&desc, NULL);
     int failed = -1;
     if (world && !skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 3))) &&

@@ -15,17 +15,18 @@ typedef struct sk_pairs {
     uint32_t *corner[4];
     uint64_t *key; /* the order of pairs: both leaves, and which of their features */
     real *distance, *thickness, *normal[3], *share[2];
-    uint8_t *settled; /* of a bound: planes divide it, or had to, but what is pinned takes all the room; */
-    uint8_t *closes;  /* or have to; what kernels find out */
+    uint8_t *settled; /* of a bound: planes divide it, or what is pinned takes all the room; */
+    uint8_t *closes;  /* or they have to; what kernels find out */
     size_t count, capacity;
 } sk_pairs;
+
+enum { SK_IS_DIVIDED = 1, SK_IS_FORCED = 2 }; /* `settled` */
 
 /* Nearest points of all pairs, from the places x of their corners; and which are near: `closes`. */
 typedef void sk_closest_kernel(const sk_vec4 *x, sk_pairs *pairs);
 
 /* Finds out which pairs, of places x before a substep, might lose their gap by any shares of these ways (w: their length)
  * and which do by all of them: `closes`. Pairs need their distance and normal. */
-enum { SK_IS_DIVIDED = 1, SK_IS_FORCED = 2 };
 enum { SK_CLOSES = 1, SK_MAY_CLOSE = 2, SK_IS_NEAR = 4 };
 typedef struct sk_closing_values {
     real least, rounding; /* m: what is less does not close at all; how well a distance is known */
@@ -124,8 +125,9 @@ static inline size_t sk_first_of(uint64_t found) {
 
 /* By sort of pairs. */
 extern sk_closest_kernel *const sk_closest[SK_PAIR_SORTS][SK_ISA_COUNT];
-/* nearing.c */
+/* passing.c */
 extern sk_passes_kernel *const sk_passes[SK_PAIR_SORTS][SK_ISA_COUNT];
+/* nearing.c */
 extern sk_closing_kernel *const sk_closing[SK_PAIR_SORTS][SK_ISA_COUNT];
 extern sk_nearing_kernel *const sk_nearing[SK_PAIR_SORTS][SK_ISA_COUNT];
 

@@ -80,39 +80,7 @@ static bool yield_pair(sk_touch *touch, const standing *s) {
     return moved;
 }
 
-static sk_vec3 moved_by(const sk_touch *touch, uint32_t v) {
-    return sk_sub(sk_xyz(touch->stand[v]), sk_xyz(touch->p[v]));
-}
-
-/* Where normals contradict each other, all corners go along with one of the feature that is nearer to pins, as it is moved. */
-static bool go_along(sk_touch *touch, const standing *s) {
-    const bool both = s->rank[0] == s->rank[1];
-    int with = -1;
-    real most = -1;
-    for (int c = 0; c < 4; c++) {
-        const sk_vec3 d = moved_by(touch, s->v[c]);
-        const real square = sk_dot(d, d);
-        const int feature = c >= s->first;
-        if (touch->rank[s->v[c]] != s->rank[feature] || (!both && s->rank[feature] > s->rank[!feature]) || !(square > most)) continue;
-        with = c, most = square;
-    }
-    if (with < 0) return false;
-    const sk_vec3 d = moved_by(touch, s->v[with]);
-    bool moved = false;
-    for (int c = 0; c < 4; c++) {
-        const uint32_t v = s->v[c];
-        if (c == with || is_pinned(touch, v)) continue;
-        const sk_vec3 to = sk_add(sk_xyz(touch->p[v]), d);
-        const sk_vec4 stand = {to.x, to.y, to.z, touch->p[v].w};
-        const int rank = touch->rank[s->v[with]] + 1;
-        moved |= memcmp(&stand, &touch->stand[v], sizeof stand) != 0;
-        touch->stand[v] = stand;
-        touch->rank[v] = (uint8_t)(rank < NOBODY ? rank : NOBODY - 1);
-    }
-    return moved;
-}
-
-/* Of two that have too little room, the one with the lower number. */
+/* By sort and key. */
 static int compare(const void *a, const void *b) {
     const sk_yielding *one = a, *other = b;
     if (one->sort != other->sort) return one->sort - other->sort;
@@ -120,7 +88,7 @@ static int compare(const void *a, const void *b) {
 }
 
 /* All pairs that have too little room when the round begins, in the order of their keys. */
-static bool yield_round(sk_touch *touch, sk_allocator *allocator, bool along, bool *moved) {
+static bool yield_round(sk_touch *touch, sk_allocator *allocator, bool *moved) {
     sk_yielding_list *list = &touch->yielding;
     list->count = 0;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
@@ -141,7 +109,7 @@ static bool yield_round(sk_touch *touch, sk_allocator *allocator, bool along, bo
         const int sort = list->data[i].sort;
         const sk_pairs *pairs = one->entry & 1 ? &touch->late[sort] : &touch->kept[sort];
         standing s = standing_of(touch, pairs, sort, one->entry / 2, one->corner);
-        if (has_too_little(touch, &s)) *moved |= along ? go_along(touch, &s) : yield_pair(touch, &s);
+        if (has_too_little(touch, &s)) *moved |= yield_pair(touch, &s);
     }
     return true;
 }
@@ -217,7 +185,7 @@ bool sk_touch_yield(sk_touch *touch, sk_allocator *allocator, real least) {
         bool moved = true;
         for (int round = 0; round < ROUNDS && moved; round++) {
             moved = false;
-            if (!yield_round(touch, allocator, 2 * round > ROUNDS, &moved)) return false;
+            if (!yield_round(touch, allocator, &moved)) return false;
         }
         changed = find_ways(touch);
         if ((changed || !search) && !sk_touch_search_ways(touch, allocator)) return false;
