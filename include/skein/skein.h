@@ -516,6 +516,9 @@ static inline skein_buffer skein_doubles(double *data, size_t stride) {
 
 /* All indices that there are, those of bodies that are disabled or were removed, too. */
 size_t skein_particle_count(const skein_world *world);
+/* Whether a body sleeps: it has come to rest, as its `sleep` says, and steps leave it out until something comes near it, its pins
+ * are led elsewhere, or it or a rule is changed. Setting any of its fields wakes it. False for what is no body. */
+bool skein_body_asleep(const skein_world *world, skein_handle body);
 /* Whether a particle takes part: its body, if it has one, is enabled and was not removed. False beyond the last one. */
 bool skein_particle_present(const skein_world *world, size_t particle);
 /* Where the state cannot be fetched from a device, skein_world_error() says so, and a view has what was there before. */
@@ -820,6 +823,7 @@ typedef struct skein_statistics {
     size_t contacts;          /* pairs of a particle and a collider that touch */
     size_t crossings;         /* of an edge and a triangle that contact keeps apart (the force "contact"); else 0 */
     size_t particles, pinned_particles, constraints;
+    size_t asleep;       /* particles of bodies that sleep (a body's `sleep`) */
     size_t nonfinite;    /* particles with a position or velocity that is not finite */
     size_t guarded;      /* values of formulas that have none at the present state, where 0 or the nearest was taken:
                             of each collider and force at each free particle (docs/formula.md) */

@@ -37,12 +37,20 @@ sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *typ
     return batch;
 }
 
-bool sk_batch_is_on(const sk_batch *batch) {
+static bool is_there(const sk_batch *batch) {
     return *batch->enabled && batch->count && !batch->broken && !batch->rests;
+}
+
+bool sk_batch_is_on(const sk_batch *batch) {
+    return is_there(batch) && !batch->asleep;
 }
 
 bool sk_batch_pulls(const sk_batch *batch) {
     return sk_batch_is_on(batch) && !batch->only_bounds;
+}
+
+bool sk_batch_is_loaded(const sk_batch *batch) {
+    return is_there(batch) && !batch->only_bounds;
 }
 
 /* ---- elements that are left out ---- */
@@ -59,7 +67,7 @@ static sk_presence presence_of(const judge *j, const uint32_t *particle) {
     sk_presence least = SK_HERE;
     for (size_t i = 0; i < j->batch->arity; i++)
         if (j->particles->presence[particle[i]] > least) least = j->particles->presence[particle[i]];
-    bool severed = least == SK_HERE && j->severing && j->severing->severs(j->severing->data, j->batch, particle);
+    bool severed = least <= SK_ASLEEP && j->severing && j->severing->severs(j->severing->data, j->batch, particle);
     return severed ? SK_ASIDE : least;
 }
 
@@ -122,7 +130,7 @@ bool sk_batch_leave_out(sk_batch *batch, sk_allocator *allocator, const sk_parti
 static bool leave_out(sk_batch *batch, const sk_elements *all, const sk_presence *of, sk_allocator *allocator) {
     sk_elements present = elements_of(batch), kept, now;
     if (!copy_elements(batch, all, of, SK_ASIDE, allocator, &kept)) return false;
-    if (!copy_elements(batch, all, of, SK_HERE, allocator, &now)) {
+    if (!copy_elements(batch, all, of, SK_ASLEEP, allocator, &now)) {
         release_elements(&kept, allocator);
         return false;
     }
@@ -141,7 +149,7 @@ bool sk_batch_leave_out_severed(sk_batch *batch, sk_allocator *allocator, const 
     sk_elements present = elements_of(batch), all = batch->whole.particle ? batch->whole : present;
     sk_presence *of = look_at_all(&j, &all, allocator);
     if (!of) return false;
-    size_t not_gone = count_up_to(of, all.count, SK_ASIDE), here = count_up_to(of, all.count, SK_HERE);
+    size_t not_gone = count_up_to(of, all.count, SK_ASIDE), here = count_up_to(of, all.count, SK_ASLEEP);
     bool good = true;
     if (batch->enclosure) {
         batch->broken |= not_gone < all.count;

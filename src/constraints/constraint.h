@@ -117,6 +117,7 @@ struct sk_batch {
     real *scale;        /* NULL: all 1 */
     sk_elements whole;  /* all elements, if some are left out above; else empty */
     bool broken, rests; /* of one constraint on all elements: some of its particles are gone, or take no part */
+    bool asleep;        /* all that it is on sleeps: it is there, and does not act */
     uint32_t *pair;     /* arity (arity - 1)/2 x count: where pairs' blocks lie in the world's matrix; NULL: none */
 
     /* Made from the above when slots change: elements in the order of sweeps, each with a lane. */
@@ -144,6 +145,8 @@ sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *typ
 bool sk_batch_is_on(const sk_batch *batch);
 /* Whether it acts and pulls: exerts forces, or is projected. */
 bool sk_batch_pulls(const sk_batch *batch);
+/* Whether it pulls, or would if it did not sleep: it holds energy. */
+bool sk_batch_is_loaded(const sk_batch *batch);
 /* Leaves out the elements of particles that take no part (for good if they are gone), and restores those whose
  * particles all take part again. False when there is no memory: nothing has changed then. */
 bool sk_batch_leave_out(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles);

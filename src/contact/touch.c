@@ -373,6 +373,12 @@ static bool make_vertices(sk_touch *touch, sk_allocator *allocator) {
     return good && sk_tree_make(&touch->tree, allocator, &touch->skin);
 }
 
+static void forget_pairs(sk_touch *touch) {
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
+        touch->near[sort].count = touch->kept[sort].count = touch->late[sort].count = touch->may_close[sort].count = 0;
+    touch->press.pair.count = touch->press.now.count = touch->press.slot_count = 0;
+}
+
 static void release(sk_force *force, sk_allocator *allocator) {
     sk_touch *touch = force->state;
     if (!touch) return;
@@ -427,6 +433,7 @@ static bool prepare(sk_force *force, sk_allocator *allocator, const sk_particles
     touch->shape = shape;
     touch->found = touch->boxed = touch->followed = touch->remembers = false;
     touch->slots = touch->wild_count = 0;
+    forget_pairs(touch); // of a skin without vertices nobody would
     const sk_contact_params *params = force->params;
     if (sk_skin_make(&touch->skin, allocator, particles, &force->only, parts) && make_vertices(touch, allocator) &&
         sk_ignored_make(&touch->ignored, allocator, &touch->skin, params->ignore, parts) && sk_calm_make(touch, allocator) &&

@@ -37,6 +37,7 @@ typedef struct sk_limit {
     sk_kernels kernel;
     const char *label;
     const bool *enabled;
+    bool asleep;         /* all that it is on sleeps */
     const double *bound; /* of the stretch: 0.05 lets it grow by 5 % */
     sk_limit_order order;
     size_t count;
@@ -64,6 +65,10 @@ sk_limit *sk_tethers_create(sk_allocator *allocator, size_t count, size_t anchor
 void sk_limit_release(sk_limit *limit, sk_allocator *allocator);
 /* Updates what is stored by slot to the particles' slots. False when there is no memory. */
 bool sk_limit_arrange(sk_limit *limit, sk_allocator *allocator, const sk_particles *particles);
+/* Whether it acts. */
+static inline bool sk_limit_is_on(const sk_limit *limit) {
+    return *limit->enabled && !limit->asleep;
+}
 /* A step begins at `time`, with these positions and velocities (quads). */
 void sk_limit_begin(sk_limit *limit, const sk_vec4 *x, const sk_vec4 *v, double time);
 

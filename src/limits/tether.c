@@ -247,6 +247,8 @@ bool sk_limit_arrange(sk_limit *limit, sk_allocator *allocator, const sk_particl
     limit->empty = NULL;
     limit->pin_of = NULL;
     limit->pins = NULL;
+    limit->asleep = limit->count && particles->presence[limit->particle[0]] == SK_ASLEEP;
+    if (limit->asleep) return true;
     for (size_t e = 0; e < limit->count; e++) {
         size_t slot = particles->slot_of[limit->particle[e * (1 + anchors)]];
         if (slot < low) low = slot;

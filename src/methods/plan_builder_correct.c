@@ -44,7 +44,7 @@ static bool has_bound(const sk_batch *batch) {
 }
 
 static bool is_kept(const sk_limit *limit) {
-    return *limit->enabled && limit->count && *limit->bound < SK_UNBOUNDED;
+    return sk_limit_is_on(limit) && limit->count && *limit->bound < SK_UNBOUNDED;
 }
 
 static void write_multipliers(sk_plan_builder *builder, int passes) {

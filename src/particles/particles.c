@@ -130,9 +130,11 @@ void sk_particles_set_presence(sk_particles *particles, size_t first, size_t cou
         uint32_t slot = particles->slot_of[i];
         particles->out_count -= particles->presence[i] != SK_HERE;
         particles->gone_count -= particles->presence[i] == SK_GONE;
+        particles->asleep_count -= particles->presence[i] == SK_ASLEEP;
         particles->presence[i] = (uint8_t)presence;
         particles->out_count += presence != SK_HERE;
         particles->gone_count += presence == SK_GONE;
+        particles->asleep_count += presence == SK_ASLEEP;
         particles->vector[SK_PREVIOUS][slot] = particles->vector[SK_X][slot]; // nothing to blend between
         if (presence != SK_GONE) continue;
         for (int v = SK_X; v < SK_T0; v++) particles->vector[v][slot] = (sk_vec4){0, 0, 0, 0};
@@ -184,9 +186,9 @@ void sk_particles_renumber(sk_particles *particles, size_t first, size_t target)
 }
 
 bool sk_particles_next_run(const sk_particles *particles, size_t *first, size_t *end) {
-    while (*first < particles->count && particles->presence[*first] != SK_HERE) ++*first;
+    while (*first < particles->count && !sk_particle_counts(particles, *first)) ++*first;
     *end = particles->out_count ? *first : particles->count;
-    while (*end < particles->count && particles->presence[*end] == SK_HERE) ++*end;
+    while (*end < particles->count && sk_particle_counts(particles, *end)) ++*end;
     return *first < particles->count;
 }
 
@@ -222,7 +224,7 @@ static void number_slots(sk_particles *particles, const uint32_t *by_rank, size_
         if (slot_of[i] == UINT32_MAX && particles->presence[i] == SK_HERE) slot_of[i] = (uint32_t)next++;
     }
     for (size_t i = 0; i < particles->count; i++)
-        if (particles->presence[i] == SK_ASIDE) slot_of[i] = (uint32_t)behind++;
+        if (particles->presence[i] == SK_ASLEEP || particles->presence[i] == SK_ASIDE) slot_of[i] = (uint32_t)behind++;
     for (size_t i = 0; i < particles->count; i++)
         if (particles->presence[i] == SK_GONE) slot_of[i] = (uint32_t)behind;
 }

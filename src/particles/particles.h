@@ -10,7 +10,7 @@
  * sixteen slots is then one block, at a constant distance. Slots without a particle are zero, mass included;
  * that holds for the sixteen empty ones, and for the spare ones, which free lanes read and write
  * (constraints/groups.c). Each *slab*, a number of blocks (in strips a row), has spare slots of its own. Ops
- * over slots reach neither these nor the particles that are out of it (their body is disabled), which lie
+ * over slots reach neither these nor the particles that are out of it (their body is disabled, or asleep), which lie
  * behind. Particles that are gone (their body was removed) share one slot, which is zero. To all others it is
  * as if these had never been. Owned by the world; only the world adds particles. */
 #ifndef SK_PARTICLES_PARTICLES_H
@@ -33,8 +33,9 @@ typedef struct sk_strips {
 /* Whether a particle takes part. */
 typedef enum sk_presence {
     SK_HERE,
-    SK_ASIDE, /* its state is kept until it takes part again */
-    SK_GONE   /* its index is free for another body's */
+    SK_ASLEEP, /* it rests, and counts (world/sleep.c): no op meets it until it is woken */
+    SK_ASIDE,  /* its state is kept until it takes part again */
+    SK_GONE    /* its index is free for another body's */
 } sk_presence;
 
 typedef struct sk_particles {
@@ -42,6 +43,7 @@ typedef struct sk_particles {
     size_t slot_count, slot_capacity; /* multiples of 16; the slots of particles that take part, and the empty ones */
     size_t slot_end;                  /* all slots in use */
     size_t out_count, gone_count;     /* particles that take no part (with those that are gone), and that are gone */
+    size_t asleep_count;              /* that take no part because they sleep */
     size_t strip_slots;               /* how many of the first slots are in strips */
     size_t empty_slot;                /* the first of the sixteen */
     size_t spare_slot;                /* the first one, and */
@@ -75,10 +77,14 @@ void sk_particles_set_presence(sk_particles *particles, size_t first, size_t cou
 size_t sk_particles_find_room(const sk_particles *particles, size_t first, size_t count);
 /* Gives the particles from `first` to the last one the indices from `target` on, and drops those beyond the end. */
 void sk_particles_renumber(sk_particles *particles, size_t first, size_t target);
-/* Finds the next run [*first, *end) of particles that take part, from *first on; false if there is none. */
+/* Finds the next run [*first, *end) of particles that count, from *first on; false if there is none. */
 bool sk_particles_next_run(const sk_particles *particles, size_t *first, size_t *end);
 static inline bool sk_particle_is_here(const sk_particles *particles, size_t particle) {
     return particles->presence[particle] == SK_HERE;
+}
+/* Whether a particle takes part, or would if it did not sleep. */
+static inline bool sk_particle_counts(const sk_particles *particles, size_t particle) {
+    return particles->presence[particle] <= SK_ASLEEP;
 }
 /* Removes the particles and strips from `count` on, which were added last and are not arranged yet. */
 void sk_particles_truncate(sk_particles *particles, size_t count);

@@ -121,6 +121,7 @@ bool sk_cut_set(skein_world *world, sk_body *body, const uint8_t *face) {
         cut->count += cut->face[f];
     }
     cut->changes++;
+    sk_world_rouse_at(world, body->first_particle, body->particle_count);
     sk_cut_find_sides(cut);
     set_triangles(world, cut);
     world->plan_stale = world->slots_stale = world->presence_stale = true;

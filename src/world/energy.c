@@ -32,7 +32,7 @@ static void measure_particles(const skein_world *world, skein_statistics *s) {
         block_sums sums = {0};
         for (size_t i = first; i < last; i++) {
             sk_vec4 x = all->vector[SK_X][all->slot_of[i]];
-            if (x.w > 0 && sk_particle_is_here(all, i)) add_particle(&world->rules, world->time, i, x, all->vector[SK_V][all->slot_of[i]], &sums);
+            if (x.w > 0 && sk_particle_counts(all, i)) add_particle(&world->rules, world->time, i, x, all->vector[SK_V][all->slot_of[i]], &sums);
         }
         s->kinetic_energy += sums.kinetic;
         s->potential_energy += sums.potential;
@@ -62,7 +62,7 @@ void sk_world_measure_energy(const skein_world *world, skein_statistics *statist
     measure_particles(world, statistics);
     for (size_t i = 0; i < world->rules.batches.count; i++) {
         const sk_batch *batch = world->rules.batches.data[i];
-        if (!sk_batch_pulls(batch)) continue;
+        if (!sk_batch_is_loaded(batch)) continue;
         if (batch->type->whole_energy)
             statistics->elastic_energy +=
                 batch->type->whole_energy(batch, world->particles.vector[SK_X], &statistics->guarded);

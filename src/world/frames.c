@@ -59,6 +59,15 @@ static bool is_frame(const sk_motion *motion) {
                                common->jump_turn < 180 || common->jump_times[0]);
 }
 
+bool sk_world_carries(const skein_world *world, const sk_common *body) {
+    for (size_t i = 0; i < world->motions.count; i++) {
+        const sk_motion *motion = world->motions.data[i];
+        const bool its = !motion->common->on[0] || sk_names_mean(motion->common->on, body->name, body->groups);
+        if (its && (is_frame(motion) || sk_motion_is_leash(motion))) return true;
+    }
+    return false;
+}
+
 static bool any_frame(const skein_world *world) {
     for (size_t i = 0; i < world->motions.count; i++)
         if (is_frame(world->motions.data[i])) return true;

@@ -4,14 +4,14 @@
 
 #include "world/world.h"
 
-static bool has_leash(const sk_motion *motion) {
+bool sk_motion_is_leash(const sk_motion *motion) {
     const sk_motion_common *common = motion->common;
     return common->enabled && (common->pull > 0 || common->max_distance < SK_UNBOUNDED || common->backstop < SK_UNBOUNDED);
 }
 
 bool sk_world_has_leashes(const skein_world *world) {
     for (size_t i = 0; i < world->motions.count; i++)
-        if (has_leash(world->motions.data[i])) return true;
+        if (sk_motion_is_leash(world->motions.data[i])) return true;
     return false;
 }
 
@@ -100,7 +100,7 @@ skein_status sk_world_set_leashes(skein_world *world, double dt, skein_error *er
         world->leashes.count = slots;
         world->leashes.start = world->time, world->leashes.dt = dt;
         for (size_t i = 0; i < world->motions.count; i++)
-            if (has_leash(world->motions.data[i])) add_leashes(world, world->motions.data[i], &at);
+            if (sk_motion_is_leash(world->motions.data[i])) add_leashes(world, world->motions.data[i], &at);
     }
     sk_release(allocator, room);
     return good ? SKEIN_OK : sk_fail_memory(error, "the leashes of motions");

@@ -25,7 +25,7 @@ skein_status skein_springs_copy(skein_world *world, skein_spring *out, size_t mo
     *count = 0;
     for (size_t i = 0; i < world->rules.batches.count && !status; i++) {
         const sk_batch *batch = world->rules.batches.data[i];
-        if (batch->type->arity != 2 || !sk_batch_pulls(batch)) continue;
+        if (batch->type->arity != 2 || !sk_batch_is_loaded(batch)) continue;
         if (*count < most) copy_batch(batch, world->particles.vector[SK_X], out + *count, most - *count);
         *count += batch->count;
     }

@@ -32,9 +32,8 @@ static size_t count_those_that_meet(const skein_world *world) {
     return count;
 }
 
-/* A field of a body's kind; 0 where it has none. */
-static double number_of(const sk_object *object, const char *name) {
-    const skein_field *field = skein_field_find(object->kind, name, NULL);
+double sk_object_number(const sk_object *object, const char *name) {
+    const skein_field *field = sk_field_named(object->kind->fields, object->kind->field_count, name);
     return field ? sk_field_load(field, object->params).number[0] : 0;
 }
 
@@ -46,8 +45,8 @@ static size_t list_bodies(const skein_world *world, sk_meeting_body *bodies) {
         if (object->category != SKEIN_BODY) continue;
         size_t first = object->as.body->first_particle;
         bodies[count++] = (sk_meeting_body){first, first + object->as.body->particle_count, object->common.plain.name,
-                                            object->common.plain.groups, number_of(object, "contact.thickness"),
-                                            number_of(object, "contact.friction")};
+                                            object->common.plain.groups, sk_object_number(object, "contact.thickness"),
+                                            sk_object_number(object, "contact.friction")};
     }
     return count;
 }
@@ -66,33 +65,97 @@ static skein_status check_ignored(const skein_world *world, skein_error *error) 
     return SKEIN_OK;
 }
 
+/* What can be in contact; its lists are its own. False when there is no memory. */
+typedef struct meeting_lists {
+    sk_meeting_parts parts;
+    uint32_t (*edges)[2];
+    sk_meeting_body *bodies;
+} meeting_lists;
+
+static void release_lists(skein_world *world, meeting_lists *l) {
+    sk_release(&world->allocator, l->edges);
+    sk_release(&world->allocator, l->bodies);
+}
+
+static bool list_parts(skein_world *world, size_t rules, meeting_lists *l) {
+    size_t edge_count;
+    *l = (meeting_lists){.edges = NULL};
+    bool good = list_edges(world, &world->allocator, &l->edges, &edge_count);
+    l->bodies = sk_allocate(&world->allocator, (world->objects.count + 1) * sizeof *l->bodies);
+    l->parts = (sk_meeting_parts){.triangle = (const uint32_t(*)[3])world->triangles.corner,
+                                  .triangle_count = world->triangles.count,
+                                  .edge = (const uint32_t(*)[2])l->edges,
+                                  .edge_count = edge_count,
+                                  .body = l->bodies,
+                                  .body_count = l->bodies ? list_bodies(world, l->bodies) : 0,
+                                  .arrangement = world->arrangement,
+                                  .rule_count = rules};
+    if (good && l->bodies) return true;
+    release_lists(world, l);
+    return false;
+}
+
 skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error) {
     size_t rules = count_those_that_meet(world);
     if (!rules) return SKEIN_OK;
-    sk_allocator *allocator = &world->allocator;
-    uint32_t(*edges)[2];
-    size_t edge_count;
+    meeting_lists lists;
     skein_status status = check_ignored(world, error);
     if (status) return status;
-    bool good = list_edges(world, allocator, &edges, &edge_count);
-    sk_meeting_body *bodies = sk_allocate(allocator, (world->objects.count + 1) * sizeof *bodies);
-    good = good && bodies;
-    sk_meeting_parts parts = {.triangle = (const uint32_t(*)[3])world->triangles.corner,
-                              .triangle_count = world->triangles.count,
-                              .edge = (const uint32_t(*)[2])edges,
-                              .edge_count = edge_count,
-                              .body = bodies,
-                              .body_count = bodies ? list_bodies(world, bodies) : 0,
-                              .arrangement = world->arrangement,
-                              .rule_count = rules};
+    bool good = list_parts(world, rules, &lists);
+    if (!good) return sk_fail_memory(error, "contact");
     for (size_t i = 0; i < world->rules.forces.count && good; i++) {
         sk_force *force = world->rules.forces.data[i];
         if (*force->enabled && force->type->meeting)
-            good = force->type->meeting->prepare(force, allocator, &world->particles, &parts, world->isa);
+            good = force->type->meeting->prepare(force, &world->allocator, &world->particles, &lists.parts, world->isa);
     }
-    sk_release(allocator, edges);
-    sk_release(allocator, bodies);
+    release_lists(world, &lists);
     return good ? SKEIN_OK : sk_fail_memory(error, "contact");
+}
+
+/* ---- among those that sleep, whom no rule is shown ---- */
+
+/* Prepares `own`, a rule like another that meets nobody but those, with its lists of whom. False when there is no memory. */
+static bool prepare_for_sleepers(skein_world *world, const sk_force *force, size_t rules, sk_force *own) {
+    sk_allocator *allocator = &world->allocator;
+    sk_particles particles = world->particles;
+    meeting_lists lists;
+    *own = *force;
+    own->state = NULL;
+    own->only = (sk_only){.data = NULL};
+    if (!list_parts(world, rules, &lists)) return false;
+    particles.presence = sk_allocate(allocator, particles.count * sizeof *particles.presence);
+    for (size_t i = 0; particles.presence && i < particles.count; i++)
+        particles.presence[i] = world->particles.presence[i] == SK_ASLEEP ? SK_HERE : SK_ASIDE;
+    const bool good = particles.presence && sk_world_list_sleepers(world, *force->on, &own->only) &&
+                      force->type->meeting->prepare(own, allocator, &particles, &lists.parts, world->isa);
+    sk_release(allocator, particles.presence);
+    release_lists(world, &lists);
+    return good;
+}
+
+static void end_for_sleepers(skein_world *world, sk_force *own) {
+    own->type->meeting->release(own, &world->allocator);
+    sk_release(&world->allocator, own->only.data);
+}
+
+/* They do not move, so that is counted once. */
+static bool count_among_sleepers(skein_world *world, size_t *count) {
+    const size_t rules = count_those_that_meet(world);
+    bool good = true;
+    size_t all = 0;
+    for (size_t i = 0; i < world->rules.forces.count && good && !world->sleepers_known && world->particles.asleep_count; i++) {
+        const sk_force *force = world->rules.forces.data[i];
+        sk_force own;
+        size_t its = 0;
+        if (!*force->enabled || !force->type->meeting) continue;
+        good = prepare_for_sleepers(world, force, rules, &own) &&
+               force->type->meeting->crossings(&own, &world->allocator, world->particles.vector[SK_X], world->particles.slot_of, &its);
+        end_for_sleepers(world, &own);
+        all += its;
+    }
+    if (good && !world->sleepers_known) world->sleepers_known = true, world->crossings_asleep = all;
+    *count += world->crossings_asleep;
+    return good;
 }
 
 skein_status sk_world_count_crossings(skein_world *world, size_t *count, skein_error *error) {
@@ -107,6 +170,7 @@ skein_status sk_world_count_crossings(skein_world *world, size_t *count, skein_e
             return sk_fail_memory(error, "contact");
         *count += own;
     }
+    if (!status && !count_among_sleepers(world, count)) return sk_fail_memory(error, "contact");
     return status;
 }
 
@@ -125,6 +189,16 @@ void sk_world_end_meeting(skein_world *world, sk_force *force) {
     if (force->type->meeting) force->type->meeting->release(force, &world->allocator);
 }
 
+static bool list_contacts(skein_world *world, sk_force *force, size_t object, skein_surface_contact *out, size_t most, size_t *count) {
+    size_t own = 0, room = most > *count ? most - *count : 0;
+    skein_surface_contact *to = room ? out + *count : NULL;
+    if (!force->type->meeting->touching(force, &world->allocator, world->particles.vector[SK_X], world->particles.slot_of, to, room, &own))
+        return false;
+    for (size_t k = 0; k < own && k < room; k++) to[k].rule = sk_handle_at(world, object);
+    *count += own;
+    return true;
+}
+
 skein_status skein_surface_contacts_copy(skein_world *world, skein_surface_contact *out, size_t most, size_t *count) {
     SK_NEED(world, world);
     SK_NEED(world, count);
@@ -138,13 +212,14 @@ skein_status skein_surface_contacts_copy(skein_world *world, skein_surface_conta
     for (size_t i = 0; i < world->objects.count && !status; i++) {
         const sk_object *object = world->objects.data[i];
         if (object->category != SKEIN_FORCE || !*object->as.force->enabled || !object->as.force->type->meeting) continue;
-        size_t own = 0, room = most > *count ? most - *count : 0;
-        skein_surface_contact *to = room ? out + *count : NULL;
-        if (!object->as.force->type->meeting->touching(object->as.force, &world->allocator, world->particles.vector[SK_X],
-                                                       world->particles.slot_of, to, room, &own))
-            return sk_fail_memory(error, "contact");
-        for (size_t k = 0; k < own && k < room; k++) to[k].rule = sk_handle_at(world, i);
-        *count += own;
+        sk_force *force = object->as.force, sleepers;
+        bool good = list_contacts(world, force, i, out, most, count);
+        if (good && world->particles.asleep_count) {
+            good = prepare_for_sleepers(world, force, count_those_that_meet(world), &sleepers) &&
+                   list_contacts(world, &sleepers, i, out, most, count);
+            end_for_sleepers(world, &sleepers);
+        }
+        if (!good) return sk_fail_memory(error, "contact");
     }
     return status;
 }

@@ -137,6 +137,7 @@ static skein_status finish_object(skein_world *world, sk_object *object, skein_h
     object->generation = ++entry->generation;
     sk_record_stop(world, "an object was added, which a recording cannot hold");
     world->plan_stale = world->motions_stale = true;
+    sk_world_rouse(world);
     if (object->category == SKEIN_CONSTRAINT || object->category == SKEIN_BODY) world->slots_stale = true;
     if (handle) *handle = (skein_handle){object->index, object->generation, world->identity};
     return SKEIN_OK;
@@ -382,6 +383,7 @@ skein_status sk_world_set_method(skein_world *world, const sk_method_type *type,
     world->method = type;
     world->method_params = params;
     world->plan_stale = true;
+    sk_world_rouse(world);
     sk_record_state(world);
     return SKEIN_OK;
 }
@@ -406,6 +408,7 @@ static void drop_object(skein_world *world, sk_object *object) {
     drop_pointer((void **)world->objects.data, &world->objects.count, object);
     sk_object_release(&world->allocator, object);
     world->plan_stale = true;
+    sk_world_rouse(world);
 }
 
 skein_status skein_remove(skein_world *world, skein_handle handle) {

@@ -105,7 +105,7 @@ static void measure_directions(const skein_world *world, size_t first, size_t en
         double v[3] = {(double)q.x, (double)q.y, (double)q.z};
         double out = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
         double speed = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-        if (!sk_particle_is_here(all, i)) continue;
+        if (!sk_particle_counts(all, i)) continue;
         if (!(out + speed <= (double)SK_REAL_MAX)) continue; // nowhere: counted in the statistics
         order->count++;
         order->radius += out;

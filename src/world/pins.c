@@ -104,7 +104,7 @@ skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error)
     }
     if (world->device) return SKEIN_OK; // which runs no limits that look at pins
     for (size_t i = 0; i < world->rules.limits.count; i++)
-        if (*world->rules.limits.data[i]->enabled)
+        if (sk_limit_is_on(world->rules.limits.data[i]))
             sk_limit_begin(world->rules.limits.data[i], all->vector[SK_X], all->vector[SK_V], world->time);
     return SKEIN_OK;
 }

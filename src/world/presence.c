@@ -17,6 +17,7 @@ skein_status sk_world_enable_body(skein_world *world, sk_body *body, bool enable
     skein_status status = sk_world_touch(world); // the state goes to new slots
     if (status) return status;
     body->enabled = enabled;
+    sk_body_forget_rest(world, body);
     sk_particles_set_presence(&world->particles, body->first_particle, body->particle_count,
                               enabled ? SK_HERE : SK_ASIDE);
     mark(world);
@@ -196,5 +197,5 @@ void sk_world_reuse_indices(skein_world *world, sk_body *body, size_t batches, s
 }
 
 bool skein_particle_present(const skein_world *world, size_t particle) {
-    return world && particle < world->particles.count && sk_particle_is_here(&world->particles, particle);
+    return world && particle < world->particles.count && sk_particle_counts(&world->particles, particle);
 }

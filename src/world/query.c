@@ -133,7 +133,7 @@ skein_status skein_ray_cast(const skein_world *world, const double origin[3], co
 /* ---- Particles ---- */
 
 static skein_status check_particles(const skein_world *world) {
-    if (world->particles.count == world->particles.out_count)
+    if (world->particles.count == world->particles.out_count - world->particles.asleep_count)
         return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "", "the world has no particles");
     return sk_world_fetch(world);
 }
@@ -149,7 +149,7 @@ skein_status skein_particle_near_point(const skein_world *world, const double po
     *particle = 0;
     for (size_t i = 0; i < world->particles.count; i++) {
         double x[3], off[3];
-        if (!sk_particle_is_here(&world->particles, i)) continue;
+        if (!sk_particle_counts(&world->particles, i)) continue;
         position_of(world, i, x);
         for (int k = 0; k < 3; k++) off[k] = x[k] - point[k];
         if (dot(off, off) < nearest) nearest = dot(off, off), *particle = (uint32_t)i;
@@ -177,7 +177,7 @@ skein_status skein_particle_near_ray(const skein_world *world, const double orig
     if (status) return status;
     for (size_t i = 0; i < world->particles.count; i++) {
         double x[3], off[3];
-        if (!sk_particle_is_here(&world->particles, i)) continue;
+        if (!sk_particle_counts(&world->particles, i)) continue;
         position_of(world, i, x);
         for (int k = 0; k < 3; k++) off[k] = x[k] - origin[k];
         double ahead = dot(off, along);

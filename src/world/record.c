@@ -62,7 +62,7 @@ static size_t lot_count(const skein_world *world) {
 static void sketch_lot(const skein_world *world, size_t lot, uint32_t sums[SUMS]) {
     memset(sums, 0, SUMS * sizeof *sums);
     for (size_t i = 0; i < LOT && lot * LOT + i < world->particles.count; i++) {
-        if (!sk_particle_is_here(&world->particles, lot * LOT + i)) continue;
+        if (!sk_particle_counts(&world->particles, lot * LOT + i)) continue;
         uint32_t x = hash_of(world, SK_X, lot * LOT + i), v = hash_of(world, SK_V, lot * LOT + i);
         sums[0] += x, sums[1] += v;
         for (int b = 0; b < LOT_BITS; b++)

@@ -13,6 +13,9 @@ static const skein_field body_fields[] = {
     SK_BOOL(sk_common, visible, "visible", 1, "whether it is drawn"),
     SK_TEXT(sk_common, groups, "groups", "",
             "the names of groups that it is in, commas between them: where rules name bodies, a group's name means all in it"),
+    SK_REAL(sk_common, sleep, "sleep", "m/s", 0, 0, 1e6,
+            "it falls asleep once it, and all that it may touch, has for half a second not gone farther than that speed would lead: "
+            "it then costs nothing, until something comes near or is changed; 0: never"),
 };
 static const skein_field rule_fields[] = {
     SK_TEXT(sk_common, name, "name", "", "for paths and messages"),
@@ -193,6 +196,14 @@ static skein_status leave_groups(skein_world *world, const sk_object *object, co
     return leaves ? sk_world_remember_names(world, object->common.plain.groups) : SKEIN_OK;
 }
 
+/* A body that sleeps wakes where a field of it is set; and all do where something else is, but for a collider that is only put
+ * elsewhere: that wakes whom it comes near. */
+static void rouse(skein_world *world, const sk_object *object) {
+    const sk_body *body = object && object->category == SKEIN_BODY ? object->as.body : NULL;
+    if (body) sk_world_rouse_at(world, body->first_particle, body->particle_count);
+    else if (!object || object->category != SKEIN_COLLIDER || !object->as.collider->travel.changed) sk_world_rouse(world);
+}
+
 bool skein_field_is_live(const skein_world *world, skein_handle handle, const char *name) {
     if (!world || !name) return false;
     sk_object *object;
@@ -224,6 +235,7 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
         const char *given = sk_field_load(field, params).text;
         sk_label_copy(object->label, sizeof object->label, given[0] ? given : object->kind->name);
     }
+    rouse(world, object);
     world->plan_stale = true;
     world->motions_stale = true;
     const skein_value now = sk_field_load(field, params); // the text given may have been the one that is gone

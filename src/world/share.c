@@ -43,6 +43,7 @@ skein_status skein_world_part_set(skein_world *world, const skein_part *part) {
     if (part && !share) return sk_fail_memory(error, "a part of a run");
     sk_share_destroy(world->share, &world->allocator);
     world->share = share;
+    sk_world_wake_all(world);
     world->plan_stale = true;
     return SKEIN_OK;
 }

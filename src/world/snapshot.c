@@ -7,6 +7,8 @@
  *   particles  held or not, position, velocity, and the position before the last step, in the user's order
  *   pins       places that wait for the next step
  *   cuts       from version 2 on: how many bodies are cut, and of each its place among the objects and the faces
+ *   rests      from version 3 on: of how many bodies it is known that they rest, and of each its place among the objects,
+ *              whether it sleeps or is to wake, for how long it has been still, and from where on
  *
  * What was built stays the world's: meshes, constraints and masses are compared by their hashes, and a world that is
  * built otherwise refuses the snapshot. A reader looks through all of it before it changes anything, and allocates
@@ -191,10 +193,46 @@ static void put_cuts(sk_byte_writer *w, const skein_world *world) {
     }
 }
 
+/* What is known of a body's rest: bits. */
+enum { SLEEPS = 1, IS_ROUSED = 2, HAS_PLACES = 4 };
+
+static unsigned rest_of(const skein_world *world, const sk_object *object) {
+    if (object->category != SKEIN_BODY) return 0;
+    const sk_body *body = object->as.body;
+    const bool roused = body->roused || (world->roused && body->asleep);
+    return (body->asleep ? SLEEPS : 0) | (roused ? IS_ROUSED : 0) | (body->rest_from ? HAS_PLACES : 0);
+}
+
+static uint32_t count_resting(const skein_world *world) {
+    uint32_t count = 0;
+    for (size_t i = 0; i < world->objects.count; i++) count += rest_of(world, world->objects.data[i]) != 0;
+    return count;
+}
+
+static void put_rests(sk_byte_writer *w, const skein_world *world) {
+    sk_put_u32(w, count_resting(world));
+    for (size_t i = 0; i < world->objects.count; i++) {
+        const unsigned rest = rest_of(world, world->objects.data[i]);
+        if (!rest) continue;
+        const sk_body *body = world->objects.data[i]->as.body;
+        sk_put_u32(w, (uint32_t)i);
+        sk_put_u8(w, rest);
+        sk_put_f64(w, body->still);
+        for (size_t k = 0; k < body->particle_count && body->rest_from; k++)
+            sk_put_real(w, body->rest_from[k].x), sk_put_real(w, body->rest_from[k].y), sk_put_real(w, body->rest_from[k].z);
+    }
+}
+
+/* As it is written: 0, here; 1, aside; 2, gone; those asleep are among the rests. */
+static unsigned presence_of(const skein_world *world, size_t particle) {
+    const unsigned presence = world->particles.presence[particle];
+    return presence <= SK_ASLEEP ? 0 : presence == SK_ASIDE ? 1 : 2;
+}
+
 static void put_all(sk_byte_writer *w, const skein_world *world) {
-    bool any_cut = count_cut(world) > 0;
+    const bool any_rests = count_resting(world) > 0, any_cut = any_rests || count_cut(world) > 0;
     sk_put(w, magic, sizeof magic);
-    sk_put_u32(w, any_cut ? SK_SNAPSHOT_VERSION : 1);
+    sk_put_u32(w, any_rests ? SK_SNAPSHOT_VERSION : any_cut ? 2 : 1);
     sk_put_u32(w, sizeof(real));
     sk_put_u64(w, 0), sk_put_u64(w, 0), sk_put_u32(w, 0); // what is not known yet, and room
     put_clock(w, world);
@@ -210,7 +248,7 @@ static void put_all(sk_byte_writer *w, const skein_world *world) {
     }
     sk_put_u64(w, hash_rest(world));
     for (size_t i = 0; i < world->particles.count; i++)
-        sk_put_u8(w, (world->particles.pinned[i] ? 1u : 0u) | (unsigned)world->particles.presence[i] << 1);
+        sk_put_u8(w, (world->particles.pinned[i] ? 1u : 0u) | presence_of(world, i) << 1);
     static const sk_vector vectors[] = {SK_X, SK_V, SK_PREVIOUS};
     for (size_t v = 0; v < 3; v++) put_vector(w, world, vectors[v]);
     sk_put_u64(w, world->pins.count);
@@ -219,6 +257,7 @@ static void put_all(sk_byte_writer *w, const skein_world *world) {
         for (int k = 0; k < 3; k++) sk_put_f64(w, world->pins.data[i].place[k]);
     }
     if (any_cut) put_cuts(w, world);
+    if (any_rests) put_rests(w, world);
 }
 
 void sk_snapshot_seal(unsigned char *bytes, size_t size) {
@@ -436,7 +475,7 @@ static skein_status take_particles(sk_byte_reader *r, skein_world *world, bool a
     if (apply) sk_particles_forget(all);
     static const sk_vector vectors[] = {SK_X, SK_V, SK_PREVIOUS};
     for (size_t i = 0; flags && i < all->count; i++) {
-        if (flags[i] >> 1 > SK_GONE || (flags[i] >> 1 == SK_GONE) != (all->presence[i] == SK_GONE))
+        if (flags[i] >> 1 > 2 || (flags[i] >> 1 == 2) != (all->presence[i] == SK_GONE))
             return sk_fail(error, SKEIN_ERROR_VALUE, "", "particle %zu: whether its body is there differs" OTHER_WORLD,
                            i);
         if (apply) sk_particle_pin(all, i, flags[i] & 1);
@@ -485,6 +524,44 @@ static skein_status take_cuts(sk_byte_reader *r, skein_world *world, uint32_t ve
             return memory ? fail_short(error) : sk_fail_memory(error, "a cut");
         next = index + 1;
     }
+    return r->short_ ? fail_short(error) : SKEIN_OK;
+}
+
+static skein_status take_rest(sk_byte_reader *r, skein_world *world, sk_body *body, bool apply, skein_error *error) {
+    const unsigned rest = sk_take_u8(r);
+    const double still = sk_take_f64(r);
+    sk_vec3 *from = NULL;
+    if (r->short_ || rest > 7 || (rest & SLEEPS && rest & HAS_PLACES) || !(still >= 0 && still <= SK_FAR) ||
+        (rest & HAS_PLACES && sk_left(r) / (3 * sizeof(real)) < body->particle_count))
+        return fail_short(error);
+    if (apply && rest & HAS_PLACES && !(from = sk_allocate(&world->allocator, body->particle_count * sizeof *from)))
+        return sk_fail_memory(error, "places of rest");
+    for (size_t k = 0; k < body->particle_count && rest & HAS_PLACES; k++) {
+        const real x = sk_take_real(r), y = sk_take_real(r), z = sk_take_real(r);
+        if (apply) from[k] = (sk_vec3){x, y, z};
+    }
+    if (!apply) return SKEIN_OK;
+    if (rest & SLEEPS && body->enabled) sk_body_set_asleep(world, body, true);
+    body->roused = rest & IS_ROUSED;
+    body->rest_from = from;
+    body->still = still;
+    return SKEIN_OK;
+}
+
+/* Of whom nothing is said nothing is known. */
+static skein_status take_rests(sk_byte_reader *r, skein_world *world, uint32_t version, bool apply, skein_error *error) {
+    const uint32_t count = version > 2 ? sk_take_u32(r) : 0;
+    uint32_t next = 0;
+    for (size_t i = 0; i < world->objects.count && apply; i++)
+        if (world->objects.data[i]->category == SKEIN_BODY) sk_body_forget_rest(world, world->objects.data[i]->as.body);
+    for (uint32_t i = 0; i < count && !r->short_; i++) {
+        const uint32_t index = sk_take_u32(r);
+        if (r->short_ || index < next || index >= world->objects.count || world->objects.data[index]->category != SKEIN_BODY)
+            return fail_short(error);
+        skein_status status = take_rest(r, world, world->objects.data[index]->as.body, apply, error);
+        if (status) return status;
+        next = index + 1;
+    }
     return r->short_ || sk_left(r) ? fail_short(error) : SKEIN_OK;
 }
 
@@ -497,7 +574,8 @@ static skein_status walk(skein_world *world, const void *bytes, const skein_snap
     for (size_t i = 0; i < world->objects.count && !status; i++) status = take_object(&r, world, i, apply, error);
     if (!status) status = take_particles(&r, world, apply, error);
     if (!status) status = take_pins(&r, world, apply, error);
-    return status ? status : take_cuts(&r, world, info->version, apply, error);
+    if (!status) status = take_cuts(&r, world, info->version, apply, error);
+    return status ? status : take_rests(&r, world, info->version, apply, error);
 }
 
 skein_status sk_snapshot_read(skein_world *world, const void *bytes, size_t size, sk_set_method *set) {
@@ -514,7 +592,9 @@ skein_status sk_snapshot_read(skein_world *world, const void *bytes, size_t size
     if (status) return status;
     struct sk_recording *recording = world->recording; // which hears of it once, as a whole
     world->recording = NULL;
+    sk_world_wake_all(world);
     status = walk(world, bytes, &info, set, true, error);
+    world->roused = false; // who was is marked
     sk_world_place_colliders(world);
     world->recording = recording;
     sk_record_state(world);

@@ -6,7 +6,7 @@
 #include "world/world.h"
 
 /* The newest version, which has cuts at its end. Where nothing is cut, the first one is written. */
-enum { SK_SNAPSHOT_VERSION = 2, SK_SNAPSHOT_HEAD = 36 };
+enum { SK_SNAPSHOT_VERSION = 3, SK_SNAPSHOT_HEAD = 36 };
 
 void sk_put_value(sk_byte_writer *w, const skein_value *value);
 /* A text of it stands in the reader's bytes. */

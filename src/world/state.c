@@ -27,6 +27,7 @@ skein_status sk_world_set_device(skein_world *world, sk_device *device) {
     skein_status status = sk_world_fetch(world);
     if (status) return status;
     if (world->device) world->device->release(world->device, world);
+    sk_world_wake_all(world);
     world->device = device;
     world->plan_stale = true;
     if (device) device->ahead = false, device->behind = true;
@@ -114,6 +115,7 @@ static skein_status copy_in(skein_world *world, sk_vector vector, size_t first, 
                            "particle %zu: numbers must be finite, under 1e15", first + i / 3);
     status = sk_world_touch(world);
     if (status) return status;
+    sk_world_rouse_at(world, first, count);
     for (size_t i = 0; i < count; i++) {
         sk_vec4 *p = &world->particles.vector[vector][world->particles.slot_of[first + i]];
         if (world->particles.presence[first + i] == SK_GONE) continue; // it has no place of its own
@@ -146,6 +148,7 @@ skein_status skein_particle_pin(skein_world *world, size_t particle, bool pinned
     if (!status) status = sk_world_touch(world);
     if (status) return status;
     sk_particle_pin(&world->particles, particle, pinned);
+    sk_world_rouse_at(world, particle, 1);
     sk_record_hold(world, particle, pinned);
     return SKEIN_OK;
 }
@@ -238,6 +241,7 @@ skein_status skein_collider_teleport(skein_world *world, skein_handle handle) {
     sk_object *object = sk_object_find(world, handle, SKEIN_COLLIDER);
     if (!object) return SKEIN_ERROR_HANDLE;
     sk_collider_stop(object->as.collider);
+    sk_world_rouse(world);
     sk_record_teleport(world, object);
     return SKEIN_OK;
 }

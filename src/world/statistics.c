@@ -11,7 +11,7 @@ uint64_t skein_world_hash(const skein_world *world) {
     uint64_t hash = SK_HASH_START;
     for (size_t i = 0; i < world->particles.count; i++) {
         uint32_t slot = world->particles.slot_of[i];
-        if (!sk_particle_is_here(&world->particles, i)) continue;
+        if (!sk_particle_counts(&world->particles, i)) continue;
         for (sk_vector vector = SK_X; vector <= SK_V; vector++) {
             const sk_vec4 *p = &world->particles.vector[vector][slot];
             const real xyz[3] = {p->x, p->y, p->z};
@@ -45,7 +45,7 @@ static void count_particles(const skein_world *world, skein_statistics *s) {
     const sk_particles *all = &world->particles;
     for (size_t i = 0; i < all->count; i++) {
         sk_vec4 v = all->vector[SK_V][all->slot_of[i]], x = all->vector[SK_X][all->slot_of[i]];
-        if (!sk_particle_is_here(all, i)) continue;
+        if (!sk_particle_counts(all, i)) continue;
         s->nonfinite += !is_finite(v) || !is_finite(x);
         s->pinned_particles += !(x.w > 0);
     }
@@ -58,7 +58,7 @@ static int compare_reals(const void *a, const void *b) {
 
 /* Those of a body that is not there do not count. */
 static bool is_there(const skein_world *world, const sk_batch *batch) {
-    return batch->count && !batch->only_bounds && !batch->rests && !batch->broken && sk_particle_is_here(&world->particles, batch->particle[0]);
+    return batch->count && !batch->only_bounds && !batch->rests && !batch->broken && sk_particle_counts(&world->particles, batch->particle[0]);
 }
 
 /* A limit is kept to a tenth of itself, and to rounding. */
@@ -123,7 +123,8 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     statistics->solver_failures = world->solve.failures;
     statistics->all_unsolved = world->unsolved;
     statistics->all_solver_failures = world->solver_failures;
-    statistics->particles = all->count - all->out_count;
+    statistics->particles = all->count - all->out_count + all->asleep_count;
+    statistics->asleep = all->asleep_count;
     status = sk_world_arrange(world, error); // the slots of new rules may not be known yet
     skein_error ignored; // a name that no body has is a step's to tell
     if (!status) sk_world_find_whom(world, &ignored);

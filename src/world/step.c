@@ -87,7 +87,7 @@ static skein_status make_matrix(skein_world *world, skein_error *error) {
     bool good = parts != NULL;
     for (size_t i = 0; i < count && good; i++) {
         sk_batch *batch = world->rules.batches.data[i];
-        if (!batch->type->blocks.version[world->isa] || batch->only_bounds) continue;
+        if (!batch->type->blocks.version[world->isa] || batch->only_bounds || batch->asleep) continue;
         sk_release(allocator, batch->pair);
         batch->pair =
             sk_allocate(allocator, batch->count * batch->arity * (batch->arity - 1) / 2 * sizeof *batch->pair);
@@ -224,13 +224,14 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
     sk_world_tell_of_meetings(world);
     if (sk_world_tears(world) && (status = sk_world_tear(world, error))) return status;
     if (!world->device) sk_world_reorder(world);
-    return SKEIN_OK;
+    return sk_world_let_sleep(world, dt, error);
 }
 
 skein_status skein_world_step(skein_world *world, double dt) {
     SK_NEED(world, world);
     skein_error *error = sk_world_error(world);
-    skein_status status = sk_world_compile(world, dt, error);
+    skein_status status = sk_world_wake(world, dt, error);
+    if (!status) status = sk_world_compile(world, dt, error);
     if (!status && world->recording) sk_record_step(world, dt);
     return status ? status : take_step(world, dt, NULL, error);
 }
@@ -261,7 +262,8 @@ skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out,
     if (most) SK_NEED(world, out);
     skein_error *error = sk_world_error(world);
     *count = 0;
-    skein_status status = sk_world_compile(world, dt, error);
+    skein_status status = sk_world_wake(world, dt, error);
+    if (!status) status = sk_world_compile(world, dt, error);
     if (status) return status;
     if (world->recording) sk_record_step(world, dt);
     if (world->device) { // whose ops run together
@@ -293,6 +295,7 @@ skein_status skein_world_reset(skein_world *world) {
     skein_status status = sk_world_touch(world); // masses may have changed, and where particles are held
     if (status) return status;
     world->solve = (sk_solve){.scale = 0};
+    sk_world_wake_all(world);
     sk_particles_reset(&world->particles);
     for (size_t i = 0; i < world->objects.count; i++)
         if (world->objects.data[i]->category == SKEIN_BODY) sk_cut_set(world, world->objects.data[i]->as.body, NULL);
@@ -315,6 +318,7 @@ skein_status skein_world_time_set(skein_world *world, double seconds) {
         return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "seconds", "a time of %g s: expected 0 to 1e15",
                        seconds);
     stop_colliders(world);
+    sk_world_rouse(world);
     world->time = seconds;
     sk_world_place_colliders(world);
     sk_record_clock(world, seconds);

@@ -78,6 +78,7 @@ void sk_body_release(skein_world *world, sk_body *body) {
     sk_release(allocator, body->face_sizes);
     sk_release(allocator, body->face_vertices);
     sk_release(allocator, body->corner_uv);
+    sk_release(allocator, body->rest_from);
     sk_cut_release(body->cut, allocator);
     sk_release(allocator, body);
 }

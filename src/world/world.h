@@ -57,6 +57,11 @@ struct sk_body {
     double tear_bound;                 /* the stretch at which its edges give way; 0: never */
     sk_cut *cut;                       /* NULL: it never was (world/cut.h) */
     bool enabled;
+    /* Of one that may sleep (world/sleep.c): it does; it is to wake; where it was when it began to be still, particle_count, or
+     * NULL; and for how long it has been. */
+    bool asleep, roused;
+    sk_vec3 *rest_from;
+    double still;      /* s */
     const char *label; /* its name, else its kind's */
 };
 
@@ -65,6 +70,7 @@ typedef struct sk_common {
     char *name, *on; /* on: forces only */
     bool enabled, visible;
     char *groups; /* bodies only: names, commas between them */
+    double sleep; /* bodies only: m/s, 0: never */
 } sk_common;
 
 typedef struct sk_object {
@@ -166,6 +172,9 @@ struct skein_world {
     bool unfused;     /* the plan stays as the method writes it (plan/fuse.h) */
     bool slots_stale; /* particles, batches or limits were added: slots and sweeps are to be found anew */
     uint64_t arrangement; /* how often slots were found */
+    bool roused;         /* rules have changed: all that sleeps is to wake */
+    bool sleepers_known; /* among those that sleep so many edges go through triangles: */
+    size_t crossings_asleep;
     bool presence_stale; /* bodies were taken out or back: constraints on their particles are to be looked through */
     sk_isa isa;
     sk_cells cells;
@@ -271,6 +280,8 @@ sk_object *sk_object_find(const skein_world *world, skein_handle handle, skein_c
 skein_status sk_fail_handle(const skein_world *world, skein_handle handle, const char *what, const char *where);
 /* The handle of the object at a place of the list. */
 skein_handle sk_handle_at(const skein_world *world, size_t index);
+/* A number of its kind's fields; 0 where it has none of that name. */
+double sk_object_number(const sk_object *object, const char *name);
 /* Releases an object's parameters and itself. */
 void sk_object_release(sk_allocator *allocator, sk_object *object);
 /* Fields that objects of a category share, and where they are stored. */
@@ -293,6 +304,20 @@ skein_status sk_world_remove_body(skein_world *world, sk_body *body, const char 
 void sk_world_reuse_indices(skein_world *world, sk_body *body, size_t batches, size_t limits);
 /* Leaves out of constraints what is not there. */
 skein_status sk_world_settle_presence(skein_world *world, skein_error *error);
+/* ---- bodies that sleep (world/sleep.c) ---- */
+/* Wakes whom something comes near in the next step of dt, or what was roused. */
+skein_status sk_world_wake(skein_world *world, double dt, skein_error *error);
+/* After a step: what has been still for long enough falls asleep. */
+skein_status sk_world_let_sleep(skein_world *world, double dt, skein_error *error);
+/* A rule was changed, or particles were, by hand: all that sleeps, or the bodies that have some of these, wake before the next
+ * step. */
+void sk_world_rouse(skein_world *world);
+void sk_world_rouse_at(skein_world *world, size_t first, size_t count);
+void sk_world_wake_all(skein_world *world);
+/* The body sleeps from now on, its velocities 0, or wakes. */
+void sk_body_set_asleep(skein_world *world, sk_body *body, bool asleep);
+/* What is known of its rest is known no longer; where it sleeps, somebody else says where its particles are. */
+void sk_body_forget_rest(skein_world *world, sk_body *body);
 /* ---- whom rules act on (world/whom.c) ---- */
 /* Finds the bodies that rules name; an unknown name is an error. The slots are up to date. */
 skein_status sk_world_find_whom(skein_world *world, skein_error *error);
@@ -305,6 +330,8 @@ skein_status sk_world_check_name(const skein_world *world, const char *label, sk
 skein_status sk_world_check_names(const skein_world *world, const char *label, const char *names, skein_error *error);
 /* The next body, enabled or not, that a list means, by its name or a group's, from *cursor = 0 on; NULL at the end. */
 const sk_body *sk_world_next_named(const skein_world *world, const char *names, size_t *cursor);
+/* Lists those that sleep of the bodies that names mean; false when there is no memory. */
+bool sk_world_list_sleepers(skein_world *world, const char *names, sk_only *only);
 /* Shows what can meet to the rules that meet. Whom they act on is found. */
 skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error);
 /* How many edges go through triangles that they are not to pass. */
@@ -342,10 +369,14 @@ skein_status sk_world_check_motion(skein_world *world, const sk_motion *motion, 
 skein_status sk_world_find_pins(skein_world *world, skein_error *error);
 /* Before a step: what lives in moving frames is carried along, and colliders that go with them are on their way. */
 skein_status sk_world_carry(skein_world *world, double dt, skein_error *error);
+/* Whether a motion carries a body along, or holds it near its places. */
+bool sk_world_carries(const skein_world *world, const sk_common *body);
 /* After it: positions before the step are where they were before that. */
 void sk_world_uncarry_previous(skein_world *world);
 /* Where time, fields or motions have changed: colliders stand where their frames put them. False: no memory. */
 bool sk_world_place_colliders(skein_world *world);
+/* Whether a motion holds what is free near its places. */
+bool sk_motion_is_leash(const sk_motion *motion);
 /* Whether motions hold what is free near its places; and before a step, where (world/leashes.c). */
 bool sk_world_has_leashes(const skein_world *world);
 skein_status sk_world_set_leashes(skein_world *world, double dt, skein_error *error);
