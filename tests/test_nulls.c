@@ -93,6 +93,7 @@ static void building(void **state) {
     REFUSES_ALL(skein_remove(NULL, s.ball));
     REFUSES("kind", skein_motion_add(s.world, NULL, NULL, NULL, NULL));
     assert_false(skein_particle_present(NULL, 0));
+    assert_false(skein_body_asleep(NULL, (skein_handle){0, 0, 0}));
     assert_false(skein_world_is_driven(NULL));
     assert_int_equal(skein_world_error(NULL)->status, SKEIN_ERROR_VALUE);
     assert_true(skein_object_count(s.world, SKEIN_BODY) == 1 && skein_particle_count(s.world) == 9);

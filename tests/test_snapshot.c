@@ -248,7 +248,7 @@ static void heads(void **state) {
     assert_int_equal(info.real_size, sizeof(skein_real));
     assert_int_equal(info.particles, skein_particle_count(world));
     put(s, 8, SK_SNAPSHOT_VERSION + 1, 4);
-    FAILS(world, SKEIN_ERROR_LIMIT, "a snapshot of version 3", skein_snapshot_read(world, s.bytes, s.size));
+    FAILS(world, SKEIN_ERROR_LIMIT, "a snapshot of version 4", skein_snapshot_read(world, s.bytes, s.size));
     put(s, 8, 1, 4);
     put(s, 12, 12 - sizeof(skein_real), 4);
     FAILS(world, SKEIN_ERROR_VALUE, "take the other build", skein_snapshot_read(world, s.bytes, s.size));

@@ -199,7 +199,7 @@ const char *py_statistics_member(size_t index, size_t *offset, size_t *size, boo
         MEMBER(residual), MEMBER(unsolved), MEMBER(newton_iterations), MEMBER(cg_iterations), MEMBER(solver_factors),
         MEMBER(solver_failures), MEMBER(all_unsolved), MEMBER(all_solver_failures), MEMBER(max_penetration),
         MEMBER(contacts), MEMBER(crossings), MEMBER(particles), MEMBER(pinned_particles), MEMBER(constraints),
-        MEMBER(nonfinite), MEMBER(guarded), MEMBER(memory_bytes), MEMBER(state_hash)
+        MEMBER(asleep), MEMBER(nonfinite), MEMBER(guarded), MEMBER(memory_bytes), MEMBER(state_hash)
     };
     if (index >= sizeof members / sizeof *members) return NULL;
     *offset = members[index].offset, *size = members[index].size, *whole = members[index].whole;

@@ -23,6 +23,7 @@
 #define SKEIN_BODY_ENABLED "enabled" /* true or false; false: as if it were not there; it stays as it is until it is again */
 #define SKEIN_BODY_VISIBLE "visible" /* true or false; whether it is drawn */
 #define SKEIN_BODY_GROUPS "groups" /* a text; the names of groups that it is in, commas between them: where rules name bodies, a group's name means all in it */
+#define SKEIN_BODY_SLEEP "sleep" /* a number in m/s; it falls asleep once it, and all that it may touch, has for half a second not gone farther than that speed would lead: it then costs nothing, until something comes near or is changed; 0: never */
 
 #define SKEIN_CLOTH "cloth" /* a sheet from a triangle or quad mesh, or a grid: springs along and across, bending by angle, tethers to pins */
 #define SKEIN_CLOTH_MESH "mesh" /* a text; file of a mesh, OBJ, OFF, PLY, STL or glTF (in scenes; a program passes the mesh itself) */

@@ -299,15 +299,16 @@ static bool is_far(const skein_world *world, const sk_collider *collider, const 
     return (double)contacts.distance[0] > sqrt(half) + clear;
 }
 
-/* Where a frame leads it in the next step is not known yet: as far as in the last one. What is between both poses is met by one
- * of them, with the way from one to the other. */
+/* What is met on the way from one pose to the other is no farther from one of them than half that way. Where a frame leads a
+ * collider in the next step is not known yet: as far as in the last one. */
 static bool is_met_by(const skein_world *world, const sk_collider *collider, const sleeper *s, double dt) {
     sk_pose pose[2] = {sk_collider_pose_unled(collider, world->time), sk_collider_pose_at(collider, world->time + dt)};
     if (collider->led) {
         pose[0] = sk_collider_pose_at(collider, world->time), pose[1] = pose[0];
         pose[1].position = sk_add(pose[0].position, sk_scale((real)dt, pose[0].velocity));
     }
-    const double clear = 2 * (collider->common->thickness + way_between(&pose[0], &pose[1], s) + dt * (double)sk_length(pose[0].spin) * reach_of(&pose[0], s));
+    const double turns = collider->led ? dt * (double)sk_length(pose[0].spin) * reach_of(&pose[0], s) : 0;
+    const double clear = 2 * collider->common->thickness + way_between(&pose[0], &pose[1], s) + turns;
     for (int i = 0; i < 2; i++)
         if (!is_far(world, collider, &pose[i], s, clear) && !(distance_at(world, collider, &pose[i], s) > clear)) return true;
     return false;
@@ -397,8 +398,8 @@ static bool is_driven(const skein_world *world, const sleeper *s) {
         if (object->category == SKEIN_FORCE && object->common.plain.enabled) {
             const sk_force *force = object->as.force;
             const char *on = object->common.plain.on;
-            const bool steers = force->type->phase == SK_STEERS || force->type->phase == SK_BOUNDS || force->type->radius ||
-                                sk_force_particle(force) >= 0;
+            const bool pushes = force->type->phase == SK_PUSHES || force->type->phase == SK_MEETS;
+            const bool steers = !pushes || force->type->radius || sk_force_particle(force) >= 0;
             if ((steers || may_change(object)) && (!on[0] || sk_names_mean(on, s->common->name, s->common->groups))) return true;
         }
         if (object->category == SKEIN_CONSTRAINT && object->common.plain.enabled && may_change(object)) {

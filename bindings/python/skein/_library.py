@@ -193,6 +193,7 @@ CALLS = {
     "skein_world_time_set": (status, [world, c.c_double]),
     "skein_particle_count": (size, [world]),
     "skein_particle_present": (c.c_bool, [world, size]),
+    "skein_body_asleep": (c.c_bool, [world, Handle]),
     "skein_positions_copy": (status, [world, size, size, array]),
     "skein_velocities_copy": (status, [world, size, size, array]),
     "skein_positions_copy_to": (status, [world, size, size, Buffer]),

@@ -1,0 +1,500 @@
+/* Bodies that come to rest fall asleep, with all that they may touch, and wake when something comes near, when they are changed or
+ * a rule is; asleep they count in all that is measured; and none of it depends on threads, or on where a world was saved. */
+#include <skein/cut.h>
+#include <skein/record.h>
+
+#include "all_methods.h"
+#include "crossings.h"
+#include "purse.h"
+
+static const double dt = 1.0 / 60;
+
+static skein_world *ground(const char *method, int threads) {
+    skein_world_desc desc = skein_default_world_desc();
+    desc.thread_count = threads;
+    skein_world *world = skein_world_create(&desc, NULL);
+    OK(world, skein_method_set(world, method, SKEIN_SETTINGS(SKEIN_REAL("substeps", 5))));
+    add_gravity(world);
+    OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 1)), NULL));
+    OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01), SKEIN_TEXT("name", "contact")), NULL));
+    OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.5)), NULL));
+    return world;
+}
+
+/* A sheet of a quarter of a metre that falls from y. */
+static skein_handle sheet(skein_world *world, const char *name, const char *pins, double sleep, double x, double y, double turned) {
+    skein_handle body;
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", name), SKEIN_PAIR("grid", 9, 9), SKEIN_PAIR("size", 0.25, 0.25),
+                                            SKEIN_TEXT("pins", pins), SKEIN_REAL("sleep", sleep), SKEIN_VEC3("position", x, y, 0),
+                                            SKEIN_VEC3("rotation", turned, 15, 0)),
+                             &body));
+    return body;
+}
+
+static void until_asleep(skein_world *world, skein_handle body, int most) {
+    for (int i = 0; i < most && !skein_body_asleep(world, body); i++) steps(world, 1, dt);
+    if (!skein_body_asleep(world, body)) fail_msg("awake after %g s", most * dt);
+}
+
+static uint32_t first_of(const skein_world *world, skein_handle body) {
+    skein_surface surface;
+    OK(world, skein_body_surface(world, body, &surface));
+    return surface.first_particle;
+}
+
+/* ---- what rests ---- */
+
+static void what_rests_sleeps_and_counts(void **state) {
+    (void)state;
+    for (size_t m = 0; m < COUNT(all_methods); m++) {
+        if (!strcmp(all_methods[m], "explicit_euler")) continue; // there nothing rests
+        skein_world *world = ground(all_methods[m], 1);
+        if (strcmp(all_methods[m], "xpbd") != 0 && strcmp(all_methods[m], "pbd") != 0 && strcmp(all_methods[m], "backward_euler") != 0)
+            OK(world, skein_set_path(world, "method.substeps", skein_number(100)));
+        skein_handle a = sheet(world, "a", "", 0.05, 0, 0.1, 3);
+        static const char *const names[] = {"stretch.stiffness", "shear.stiffness"};
+        for (int i = 0; i < 2; i++) OK(world, skein_set(world, a, names[i], skein_number(100)));
+        steps(world, 60, dt);
+        for (int i = 0; i < 400 && !skein_body_asleep(world, a); i++) steps(world, 1, dt);
+        if (!skein_body_asleep(world, a)) fail_msg("%s: awake", all_methods[m]);
+        skein_statistics s = statistics_of(world);
+        assert_int_equal(s.asleep, 81);
+        assert_int_equal(s.particles, 81);
+        assert_true(s.constraints > 200 && s.contacts > 9);
+        assert_true(s.kinetic_energy == 0 && s.elastic_energy >= 0 && isfinite(s.max_stretch));
+        assert_true(skein_particle_present(world, 0));
+        const uint64_t hash = skein_world_hash(world);
+        const vec3 at = position_of(world, 40);
+        steps(world, 10, dt);
+        assert_true(skein_world_hash(world) == hash);
+        assert_true(length3(minus(position_of(world, 40), at)) == 0);
+        // to wake it is as to begin there, at rest
+        double x[3 * 81];
+        OK(world, skein_positions_copy(world, 0, 81, x));
+        skein_statistics now = statistics_of(world);
+        assert_near(now.elastic_energy, s.elastic_energy, 0);
+        assert_near(now.potential_energy, s.potential_energy, 0);
+        assert_near(now.max_stretch, s.max_stretch, 0);
+        OK(world, skein_set(world, a, "visible", skein_number(1)));
+        steps(world, 1, dt);
+        assert_false(skein_body_asleep(world, a));
+        now = statistics_of(world);
+        assert_int_equal(now.asleep, 0);
+        assert_int_equal(now.constraints, s.constraints);
+        assert_near(now.potential_energy, s.potential_energy, 0.01 * s.potential_energy);
+        skein_world_destroy(world);
+    }
+}
+
+/* Elastic energy, stretch, crossings and contacts of what sleeps are those of what is awake in the same places. */
+static void it_is_measured_as_if_awake(void **state) {
+    (void)state;
+    skein_world *world = ground("xpbd", 1);
+    skein_handle a = sheet(world, "a", "", 0.05, 0, 0.3, 80), b = sheet(world, "b", "", 0.05, 0.02, 0.6, 3);
+    OK(world, skein_set_path(world, "forces.contact.recovery", skein_number(0)));
+    until_asleep(world, a, 900);
+    assert_true(skein_body_asleep(world, b));
+    // one is put through the other, by hand, and must sleep so: it is not led apart
+    double x[3 * 81];
+    OK(world, skein_positions_copy(world, first_of(world, b), 81, x));
+    for (int i = 0; i < 81; i++) x[3 * i + 1] -= 0.012;
+    OK(world, skein_positions_set(world, first_of(world, b), 81, x));
+    until_asleep(world, b, 900);
+    skein_statistics asleep = statistics_of(world), again = statistics_of(world);
+    crossing_search all = crossing_begin(world);
+    const size_t ours = crossings_now(&all, world);
+    size_t touching, others;
+    OK(world, skein_surface_contacts_copy(world, NULL, 0, &touching));
+    skein_world *other = ground("xpbd", 1);
+    sheet(other, "a", "", 0, 0, 0.3, 80), sheet(other, "b", "", 0, 0.02, 0.6, 3);
+    for (size_t i = 0; i < 2 * 81; i++) {
+        vec3 p = position_of(world, i);
+        place_particle(other, i, p.x, p.y, p.z);
+    }
+    skein_statistics awake = statistics_of(other);
+    OK(other, skein_surface_contacts_copy(other, NULL, 0, &others));
+    assert_true(ours > 0 && asleep.crossings > 0);
+    assert_int_equal(asleep.crossings, awake.crossings);
+    assert_int_equal(again.crossings, asleep.crossings);
+    assert_int_equal(touching, others);
+    assert_true(touching > 0);
+    assert_int_equal(asleep.contacts, awake.contacts);
+    assert_int_equal(asleep.constraints, awake.constraints);
+    assert_near(asleep.elastic_energy, awake.elastic_energy, 0);
+    assert_near(asleep.max_stretch, awake.max_stretch, 0);
+    assert_true(asleep.state_hash == awake.state_hash);
+    crossing_free(&all);
+    skein_world_destroy(other);
+    skein_world_destroy(world);
+}
+
+/* ---- who sleeps with whom ---- */
+
+static void those_who_touch_sleep_together(void **state) {
+    (void)state;
+    skein_world *world = ground("xpbd", 1);
+    skein_handle far = sheet(world, "far", "", 0.05, 3, 0.1, 3);
+    skein_handle low = sheet(world, "low", "", 0.05, 0, 0.1, 3), high = sheet(world, "high", "", 0.05, 0.05, 1.5, 3);
+    skein_handle restless = sheet(world, "restless", "", 0, 6, 0.1, 3), on_it = sheet(world, "on it", "", 0.05, 6, 0.2, 3);
+    skein_handle held = sheet(world, "held", "all", 0, 9, 0.05, 0), on_held = sheet(world, "on held", "", 0.05, 9, 0.2, 3);
+    bool far_alone = false;
+    for (int i = 0; i < 600 && !(skein_body_asleep(world, high) && skein_body_asleep(world, on_held)); i++) {
+        steps(world, 1, dt);
+        far_alone |= skein_body_asleep(world, far) && !skein_body_asleep(world, low);
+        assert_true(skein_body_asleep(world, low) == skein_body_asleep(world, high) || position_of(world, first_of(world, high)).y > 0.2);
+    }
+    (void)far_alone;
+    assert_true(skein_body_asleep(world, far) && skein_body_asleep(world, low) && skein_body_asleep(world, high));
+    assert_true(skein_body_asleep(world, on_held) && !skein_body_asleep(world, held));   // what is pinned is no hindrance
+    assert_false(skein_body_asleep(world, restless) || skein_body_asleep(world, on_it)); // what may not sleep is
+    // what wakes one of a pile wakes all of it, and nobody else
+    OK(world, skein_velocities_set(world, first_of(world, high), 1, (const double[]){0, 0.1, 0}));
+    steps(world, 1, dt);
+    assert_false(skein_body_asleep(world, low) || skein_body_asleep(world, high));
+    assert_true(skein_body_asleep(world, far) && skein_body_asleep(world, on_held));
+    // what is tied to another is awake with it
+    until_asleep(world, low, 600);
+    skein_handle tie;
+    OK(world, skein_constraint_add(world, "distance", (const uint32_t[]){first_of(world, far), first_of(world, low)}, 1, NULL, &tie));
+    steps(world, 1, dt);
+    assert_false(skein_body_asleep(world, far) || skein_body_asleep(world, on_held)); // a rule was added
+    for (int i = 0; i < 600 && !skein_body_asleep(world, low); i++) steps(world, 1, dt);
+    assert_true(skein_body_asleep(world, low) == skein_body_asleep(world, far));
+    OK(world, skein_velocities_set(world, first_of(world, far), 1, (const double[]){0, 0.1, 0}));
+    steps(world, 1, dt);
+    assert_false(skein_body_asleep(world, low) || skein_body_asleep(world, far));
+    skein_world_destroy(world);
+}
+
+/* ---- what wakes ---- */
+
+static void what_falls_wakes_before_it_lands(void **state) {
+    (void)state;
+    for (int fast = 0; fast < 2; fast++) {
+        skein_world *world = ground("xpbd", 1);
+        skein_handle low = sheet(world, "low", "", 0.05, 0, 0.1, 3), high = sheet(world, "high", "top edge", 0.05, 0, 4, 90);
+        until_asleep(world, low, 600);
+        until_asleep(world, high, 1200);
+        const uint32_t first = first_of(world, high);
+        for (uint32_t i = 0; i < 81; i++) {
+            OK(world, skein_particle_pin(world, first + i, false));
+            throw_particle(world, first + i, 0, fast ? -40 : 0, 0);
+        }
+        steps(world, 1, dt);
+        assert_true(skein_body_asleep(world, low) && !skein_body_asleep(world, high));
+        crossing_search all = crossing_begin(world);
+        bool woken = false;
+        for (int i = 0; i < 90; i++) {
+            steps(world, 1, dt);
+            assert_int_equal(crossings_now(&all, world), 0);
+            woken |= !skein_body_asleep(world, low);
+        }
+        assert_true(woken);
+        until_asleep(world, high, 900);
+        until_asleep(world, low, 900);
+        crossing_free(&all);
+        skein_world_destroy(world);
+    }
+}
+
+static void colliders_wake_whom_they_come_near(void **state) {
+    (void)state;
+    skein_world *world = ground("xpbd", 1);
+    skein_handle ball, a = sheet(world, "a", "", 0.05, 0, 0.1, 3), b = sheet(world, "b", "", 0.05, 2, 0.1, 3);
+    OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.1), SKEIN_VEC3("centre", 0, 1, 0)), &ball));
+    until_asleep(world, a, 600);
+    until_asleep(world, b, 600);
+    for (int i = 1; i < 40; i++) { // a program moves it in every step
+        OK(world, skein_set(world, ball, "centre", skein_vector(0, 1 - 0.01 * i, 0)));
+        steps(world, 1, dt);
+        assert_true(skein_body_asleep(world, a) && skein_body_asleep(world, b));
+    }
+    OK(world, skein_set(world, ball, "centre", skein_vector(0, -1, 0))); // through it, in one step
+    steps(world, 1, dt);
+    assert_true(!skein_body_asleep(world, a) && skein_body_asleep(world, b));
+    until_asleep(world, a, 600);
+    // one that moves by itself, past b and away
+    OK(world, skein_set(world, ball, "centre", skein_vector(4, 0.1, 0)));
+    steps(world, 1, dt);
+    until_asleep(world, b, 600);
+    OK(world, skein_set(world, ball, "motion.velocity", skein_vector(-2, 0, 0))); // from the beginning of time on
+    OK(world, skein_set(world, ball, "centre", skein_vector(10 + 2 * skein_world_time(world), 0.1, 0)));
+    steps(world, 2, dt);
+    until_asleep(world, b, 120);
+    bool woken = false;
+    for (int i = 0; i < 360; i++) {
+        steps(world, 1, dt);
+        woken |= !skein_body_asleep(world, b);
+    }
+    assert_true(woken);
+    // its size, where it is switched off: rules
+    OK(world, skein_set(world, ball, "motion.velocity", skein_vector(0, 0, 0)));
+    steps(world, 1, dt);
+    until_asleep(world, b, 900);
+    until_asleep(world, a, 900);
+    OK(world, skein_set(world, ball, "radius", skein_number(0.2)));
+    steps(world, 1, dt);
+    assert_false(skein_body_asleep(world, a) || skein_body_asleep(world, b));
+    skein_world_destroy(world);
+}
+
+/* Each of these calls wakes everybody, or the body that it is about. */
+static void calls_wake(void **state) {
+    (void)state;
+    enum { GRAVITY, METHOD, FORCE, REMOVE, TIME, BODY, PIN, PLACE, CUT, PINS, RESET, CALLS };
+    skein_world *world = ground("xpbd", 1);
+    skein_handle a = sheet(world, "a", "", 0.05, 0, 0.1, 3), b = sheet(world, "b", "corners", 0.05, 2, 0.1, 3), force = {0, 0, 0};
+    const uint32_t first[] = {first_of(world, a), first_of(world, b)};
+    for (int call = 0; call < CALLS; call++) {
+        until_asleep(world, a, 900);
+        until_asleep(world, b, 900);
+        bool all = true; // else b alone
+        vec3 p = position_of(world, first[1]);
+        switch (call) {
+        case GRAVITY: OK(world, skein_set_path(world, "forces.0.acceleration", skein_vector(0, -9, 0))); break;
+        case METHOD: OK(world, skein_set_path(world, "method.substeps", skein_number(6))); break;
+        case FORCE: OK(world, skein_force_add(world, "wind", SKEIN_SETTINGS(SKEIN_VEC3("force", 0, 0, 0)), &force)); break;
+        case REMOVE: OK(world, skein_remove(world, force)); break;
+        case TIME: OK(world, skein_world_time_set(world, 3)); break;
+        case BODY: OK(world, skein_set(world, b, "visible", skein_number(1))), all = false; break;
+        case PIN: OK(world, skein_particle_pin(world, first[1] + 30, true)), all = false; break;
+        case PLACE: OK(world, skein_positions_set(world, first[1], 1, &p.x)), all = false; break;
+        case CUT: OK(world, skein_cut_faces(world, b, (const uint32_t[]){9}, 1)), all = false; break;
+        case PINS: {
+            OK(world, skein_pins_move(world, &first[1], 1, &p.x)); // where it is
+            steps(world, 1, dt);
+            assert_true(skein_body_asleep(world, b));
+            p.y += 0.01;
+            OK(world, skein_pins_move(world, &first[1], 1, &p.x)), all = false;
+            break;
+        }
+        default: OK(world, skein_world_reset(world)); break;
+        }
+        steps(world, 1, dt);
+        if (skein_body_asleep(world, b) || skein_body_asleep(world, a) == all) fail_msg("call %d", call);
+    }
+    // a pin that is led arrives where it was to be
+    assert_int_equal(statistics_of(world).asleep, 0);
+    skein_world_destroy(world);
+}
+
+/* ---- what does not sleep ---- */
+
+static void what_may_be_moved_does_not_sleep(void **state) {
+    (void)state;
+    static const struct {
+        const char *kind;
+        const skein_setting set[4];
+        bool sleeps;
+    } some[] = {
+        {"force_field", {SKEIN_TEXT("force", "vec3(0, 0, 0.0001*max(t - 50, 0))"), SKEIN_TEXT("on", "a")}, false},
+        {"force_field", {SKEIN_TEXT("force", "vec3(0, 0, 0.0001*sqrt(1 + p.y*p.y))"), SKEIN_TEXT("on", "a")}, true},
+        {"force_field", {SKEIN_TEXT("force", "vec3(0, 0, 0.0001*max(t - 50, 0))"), SKEIN_TEXT("on", "b")}, true},
+        {"speed_limit", {SKEIN_REAL("limit", 100)}, false},
+        {"separation", {SKEIN_REAL("radius", 0.001)}, false},
+    };
+    for (size_t k = 0; k < COUNT(some); k++) {
+        skein_world *world = ground("xpbd", 1);
+        skein_handle a = sheet(world, "a", "", 0.05, 0, 0.1, 3);
+        sheet(world, "b", "", 0, 5, 0.1, 3);
+        OK(world, skein_force_add(world, some[k].kind, some[k].set, NULL));
+        steps(world, 300, dt);
+        if (skein_body_asleep(world, a) != some[k].sleeps) fail_msg("%s, %zu", some[k].kind, k);
+        skein_world_destroy(world);
+    }
+    // nor what a collider that moves is near, or what lives in a frame
+    for (int k = 0; k < 3; k++) {
+        skein_world *world = ground("xpbd", 1);
+        skein_handle a = sheet(world, "a", k == 2 ? "corners" : "", 0.05, 0, 0.1, 3);
+        if (k < 2)
+            OK(world, skein_collider_add(world, "sphere",
+                                         SKEIN_SETTINGS(SKEIN_REAL("radius", 0.1), SKEIN_VEC3("centre", k ? 4 : 0, -0.1, 0),
+                                                        SKEIN_REAL("motion.spin", 0.01), SKEIN_REAL("friction", 0)),
+                                         NULL));
+        else OK(world, skein_motion_add(world, "translate", NULL, SKEIN_SETTINGS(SKEIN_REAL("inertia", 0.5)), NULL));
+        steps(world, 300, dt);
+        assert_true(skein_body_asleep(world, a) == (k == 1));
+        skein_world_destroy(world);
+    }
+}
+
+/* ---- the same bits ---- */
+
+static skein_world *pile(int threads) {
+    skein_world *world = ground("xpbd", threads);
+    sheet(world, "a", "", 0.05, 0, 0.2, 40);
+    sheet(world, "b", "corners", 0.05, 2, 0.3, 0);
+    sheet(world, "c", "", 0.05, 0.03, 4, 10); // it falls on what sleeps
+    OK(world, skein_collider_add(world, "sphere",
+                                 SKEIN_SETTINGS(SKEIN_REAL("radius", 0.1), SKEIN_VEC3("centre", 2, -4, 0), SKEIN_VEC3("motion.velocity", 0, 1, 0)),
+                                 NULL)); // and it wakes b
+    return world;
+}
+
+enum { PILE_STEPS = 330 };
+
+static void nudge(skein_world *world, int i) {
+    if (i == 200) OK(world, skein_velocities_set(world, 3, 1, (const double[]){0, 0.3, 0}));
+    if (i == 260) OK(world, skein_set_path(world, "method.substeps", skein_number(6)));
+}
+
+static void it_goes_on_from_anywhere(void **state) {
+    (void)state;
+    enum { EVERY = 13 };
+    skein_world *world = pile(1);
+    uint64_t hash[PILE_STEPS];
+    size_t asleep[PILE_STEPS], changes = 0;
+    struct {
+        void *bytes;
+        size_t size;
+    } saved[PILE_STEPS / EVERY + 1];
+    for (int i = 0; i < PILE_STEPS; i++) {
+        nudge(world, i);
+        if (i % EVERY == 0) { // after a call that has woken somebody, too: 260
+            size_t size = skein_snapshot_size(world);
+            saved[i / EVERY].bytes = malloc(size);
+            OK(world, skein_snapshot_write(world, saved[i / EVERY].bytes, size, &saved[i / EVERY].size));
+            assert_int_equal(size, saved[i / EVERY].size);
+        }
+        steps(world, 1, dt);
+        hash[i] = skein_world_hash(world);
+        asleep[i] = statistics_of(world).asleep;
+        changes += i && asleep[i] != asleep[i - 1];
+    }
+    assert_true(changes >= 5);
+    skein_world_destroy(world);
+    for (int s = 0; s <= (PILE_STEPS - 1) / EVERY; s++) {
+        skein_world *other = pile(1 + s % 3);
+        if (s % 2) steps(other, 150, dt); // whatever slept there
+        OK(other, skein_snapshot_read(other, saved[s].bytes, saved[s].size));
+        for (int i = s * EVERY; i < PILE_STEPS && i < s * EVERY + 120; i++) {
+            if (i > s * EVERY) nudge(other, i);
+            steps(other, 1, dt);
+            if (skein_world_hash(other) != hash[i] || statistics_of(other).asleep != asleep[i])
+                fail_msg("from step %d: other bits after step %d, %zu asleep for %zu", s * EVERY, i, statistics_of(other).asleep, asleep[i]);
+        }
+        skein_world_destroy(other);
+    }
+    // what is damaged is refused, or at least breaks nothing
+    skein_world *other = pile(1);
+    const int last = (PILE_STEPS - 1) / EVERY;
+    unsigned char *bytes = saved[last].bytes;
+    for (size_t i = 40; i < saved[last].size; i += saved[last].size / 97) {
+        bytes[i] ^= 5;
+        if (!skein_snapshot_read(other, bytes, saved[last].size)) fail_msg("byte %zu", i);
+        bytes[i] ^= 5;
+    }
+    skein_world_destroy(other);
+    for (int s = 0; s <= last; s++) free(saved[s].bytes);
+}
+
+typedef struct tape {
+    unsigned char *bytes;
+    size_t size;
+} tape;
+
+static bool write_tape(void *user, const void *bytes, size_t size) {
+    tape *t = user;
+    t->bytes = realloc(t->bytes, t->size + size);
+    memcpy(t->bytes + t->size, bytes, size);
+    t->size += size;
+    return true;
+}
+
+static void it_is_replayed(void **state) {
+    (void)state;
+    tape t = {NULL, 0};
+    skein_world *world = pile(2), *other = pile(1);
+    const skein_recorder to = {.write = write_tape, .user = &t};
+    OK(world, skein_record_begin(world, &to));
+    for (int i = 0; i < PILE_STEPS; i++) {
+        nudge(world, i);
+        steps(world, 1, dt);
+    }
+    OK(world, skein_record_end(world));
+    skein_difference difference;
+    OK(other, skein_replay(other, t.bytes, t.size, &difference));
+    assert_true(skein_world_hash(world) == skein_world_hash(other));
+    free(t.bytes);
+    skein_world_destroy(world);
+    skein_world_destroy(other);
+}
+
+/* ---- where memory is wanting ---- */
+
+static int play(purse *p) {
+    skein_world_desc desc = purse_world(p);
+    skein_world *world = skein_world_create(&desc, NULL);
+    int failed = -1;
+    if (world && !skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 2))) &&
+        !skein_force_add(world, "gravity", NULL, NULL) && !skein_force_add(world, "contact", NULL, NULL) &&
+        !skein_collider_add(world, "plane", NULL, NULL) &&
+        !skein_body_add(world, "cloth", NULL,
+                        SKEIN_SETTINGS(SKEIN_PAIR("grid", 4, 4), SKEIN_REAL("sleep", 1), SKEIN_VEC3("position", 0, 0.01, 0)), NULL)) {
+        failed = 0;
+        for (int f = 0; f < 20; f++) {
+            skein_statistics s;
+            if (f == 16) failed += skein_velocities_set(world, 0, 1, (const double[]){0, 0.1, 0}) != 0;
+            failed += skein_world_step(world, 1.0 / 30) != 0;
+            if (f % 6 == 5) failed += skein_world_statistics(world, &s) != 0;
+        }
+        if (p->fail_at == SIZE_MAX) assert_int_equal(statistics_of(world).asleep, 0);
+    }
+    skein_world_destroy(world);
+    assert_int_equal(p->blocks, 0);
+    return failed;
+}
+
+static void without_memory_it_says_so(void **state) {
+    (void)state;
+    purse p = {.fail_at = SIZE_MAX};
+    assert_int_equal(play(&p), 0);
+    const size_t calls = p.calls;
+    int told = 0;
+    for (size_t at = 0; at < calls; at += SANITIZED ? 11 : 3) {
+        purse one = {.fail_at = at};
+        told += play(&one) != 0;
+    }
+    assert_true(told > 20);
+}
+
+/* ---- contact of nobody ---- */
+
+static void contact_forgets_who_is_not_there(void **state) {
+    (void)state;
+    static const char *const methods[] = {"xpbd", "backward_euler"};
+    for (size_t m = 0; m < COUNT(methods); m++) {
+        skein_world *world = ground(methods[m], 1);
+        skein_handle a = sheet(world, "a", "", 0, 0, 0.15, 70), b = sheet(world, "b", "", 0, 0.02, 0.3, 5);
+        steps(world, 40, dt);
+        size_t touching;
+        OK(world, skein_surface_contacts_copy(world, NULL, 0, &touching));
+        assert_true(touching > 0);
+        OK(world, skein_set(world, a, "enabled", skein_number(0)));
+        OK(world, skein_set(world, b, "enabled", skein_number(0)));
+        const uint64_t hash = skein_world_hash(world);
+        steps(world, 10, dt);
+        assert_true(skein_world_hash(world) == hash);
+        OK(world, skein_set(world, b, "enabled", skein_number(1)));
+        steps(world, 10, dt);
+        skein_world_destroy(world);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_rests_sleeps_and_counts),
+        cmocka_unit_test(it_is_measured_as_if_awake),
+        cmocka_unit_test(those_who_touch_sleep_together),
+        cmocka_unit_test(what_falls_wakes_before_it_lands),
+        cmocka_unit_test(colliders_wake_whom_they_come_near),
+        cmocka_unit_test(calls_wake),
+        cmocka_unit_test(what_may_be_moved_does_not_sleep),
+        cmocka_unit_test(it_goes_on_from_anywhere),
+        cmocka_unit_test(it_is_replayed),
+        cmocka_unit_test(without_memory_it_says_so),
+        cmocka_unit_test(contact_forgets_who_is_not_there),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
