@@ -97,6 +97,7 @@ static json_t *make_document(const app_report *r) {
         // the state at the end
         {"particles", count(s->particles)},
         {"pinned_particles", count(s->pinned_particles)},
+        {"asleep_particles", count(s->asleep)},
         {"constraints", count(s->constraints)},
         {"contacts", count(s->contacts)},
         {"crossings", count(s->crossings)},
@@ -195,6 +196,8 @@ void app_report_print(const app_report *r) {
         "kinetic energy %.3g J, stretch at most %.2f %% (99 %% of edges under %.2f %%), penetration at most %.2g mm\n",
         s->kinetic_energy, 100 * s->max_stretch, 100 * s->p99_stretch, 1e3 * s->max_penetration);
     print_limit(r);
+    if (s->asleep == s->particles && s->asleep) printf("all sleep\n");
+    else if (s->asleep) printf("%zu of %zu particles sleep\n", s->asleep, s->particles);
     if (r->crossed_frames)
         printf("%d frame%s had edges that go through faces, up to %zu in one; %zu at the end\n", r->crossed_frames,
                plural((uint64_t)r->crossed_frames), r->worst_crossings, s->crossings);

@@ -123,6 +123,11 @@ class Body(Object):
     __slots__ = ()
     _category = L.BODY
 
+    @property
+    def asleep(self):
+        """Whether it has come to rest, and sleeps, as its field `sleep` says. Setting any field wakes it."""
+        return bool(lib.skein_body_asleep(self._world._pointer, self._handle))
+
     def _surface(self):
         surface = L.Surface()
         self._world._call(lib.skein_body_surface, self._handle, ctypes.byref(surface), place=self._place())
