@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "bodies/body.h"
+#include "bodies/aggregate.h"
 #include "bodies/coarse.h"
 #include "bodies/fabrics.h"
 #include "bodies/faults.h"
@@ -107,6 +108,7 @@ typedef struct tailor {
     sk_sheet sheet;
     sk_springs springs;
     sk_lines lines; /* of what lies in strips */
+    sk_held_hubs held; /* of a mesh that has aggregates */
     sk_coarse_grid coarsest; /* of its coarse grids; none where row_step is 0 */
     bool *pinned;
     double *mass;
@@ -221,7 +223,7 @@ static skein_status add_bending(tailor *t) {
 }
 
 /* Bounds over many edges: by coarse grids if it is a whole grid, else along its rows and columns, or for other meshes
- * along the mesh's own x and z. What may tear has the latter, too: of coarse grids nothing is left after the first tear, and
+ * along the mesh's own x and z, and by aggregates where it is large. What may tear has the latter, too: of coarse grids nothing is left after the first tear, and
  * what they had held would tear for that. A mesh without pins gets none: it may be a balloon, which must be able to grow. */
 static skein_status add_spans(tailor *t) {
     if (t->lines.area && sk_coarse_fits(&t->lines) && !(t->params->tear > 0))
@@ -232,6 +234,10 @@ static skein_status add_spans(tailor *t) {
     if (!t->rank || !pinned) return SKEIN_OK;
     double axes[2][3] = {{1, 0, 0}, {0, 0, 1}};
     sk_points_transform(axes, 2, 1, t->params->rotation, (const double[3]){0, 0, 0});
+    if (!(t->params->tear > 0)) {
+        skein_status status = sk_aggregates_add(&t->sheet, t->mass, t->rank, t->world, t->body, &t->held, t->error);
+        if (status) return status;
+    }
     return sk_spans_add(&t->sheet, (const double(*)[3])axes, t->rank, t->world, t->body, t->error);
 }
 
@@ -333,7 +339,7 @@ static bool measure_tethers(tailor *t, sk_geodesic *geodesic, const bool *source
 
 /* Whether a particle is a few edges from one of its anchors: nearer than the coarsest grid's own particles. */
 static bool is_near(const tailor *t, const tethers *all, size_t i) {
-    double edge = fmax(sk_lines_edge(&t->lines, 0, 0, true), sk_lines_edge(&t->lines, 0, 0, false));
+    double edge = t->held.is ? t->held.edge : fmax(sk_lines_edge(&t->lines, 0, 0, true), sk_lines_edge(&t->lines, 0, 0, false));
     bool near = false;
     for (size_t k = 0; k < all->anchors; k++) near |= (double)all->lengths[i * all->anchors + k] < (NEAR + 0.5) * edge;
     return near;
@@ -346,7 +352,9 @@ static skein_status add_some_tethers(tailor *t, const tethers *all, sk_limit_ord
     some->count = 0;
     for (size_t i = 0; i < all->count; i++) {
         uint32_t particle = all->particles[i * (1 + anchors)] - t->body->first_particle;
-        bool taken = order == SK_LIMIT_BEFORE_COARSE ? sk_coarse_has(&t->coarsest, &t->lines, particle) : is_near(t, all, i);
+        bool taken = order != SK_LIMIT_BEFORE_COARSE ? is_near(t, all, i)
+                     : t->held.is                  ? t->held.is[particle]
+                                                   : sk_coarse_has(&t->coarsest, &t->lines, particle);
         if (!taken) continue;
         memcpy(some->particles + some->count * (1 + anchors), all->particles + i * (1 + anchors),
                (1 + anchors) * sizeof *all->particles);
@@ -376,7 +384,7 @@ static void release_tethers(tailor *t, tethers *all) {
 static skein_status add_tethers_of_coarse(tailor *t, const tethers *all) {
     static const sk_limit_order orders[] = {SK_LIMIT_BEFORE_COARSE, SK_LIMIT_AFTER_COARSE};
     tethers some;
-    bool square = sk_lines_square(&t->lines);
+    bool square = t->held.is || sk_lines_square(&t->lines);
     skein_status status = allocate_tethers(t, &some, all->count, all->anchors)
                               ? sk_world_add_tethers(t->world, t->body, square ? SK_LIMIT_WITHOUT_COARSE : SK_LIMIT_SELDOM, all->count, all->anchors,
                                                      all->particles, all->lengths, t->error)
@@ -411,7 +419,7 @@ static skein_status add_tethers(tailor *t) {
     }
     sk_limit_order order = t->lines.area ? SK_LIMIT_SELDOM : SK_LIMIT_LAST;
     skein_status status = !good                  ? sk_fail_memory(t->error, "tethers")
-                          : t->coarsest.row_step ? add_tethers_of_coarse(t, &all)
+                          : t->coarsest.row_step || t->held.is ? add_tethers_of_coarse(t, &all)
                                                  : sk_world_add_tethers(t->world, t->body, order, tethered, anchors,
                                                                         all.particles, all.lengths, t->error);
     sk_geodesic_release(geodesic);
@@ -491,6 +499,7 @@ static skein_status build(skein_world *world, sk_body *body, const void *params,
     sk_release(&world->allocator, t.pinned);
     sk_release(&world->allocator, t.mass);
     sk_release(&world->allocator, t.rank);
+    sk_release(&world->allocator, t.held.is);
     sk_lines_release(&t.lines);
     sk_springs_release(&t.springs);
     sk_sheet_release(&t.sheet);

@@ -45,6 +45,11 @@ struct sk_geodesic {
         heap_entry *data;
         size_t count, capacity;
     } heap;
+    struct {
+        uint32_t *data;
+        size_t count, capacity;
+    } seen; /* by searches that end near where they begin */
+    bool clear; /* no particle has a distance */
 };
 
 void sk_geodesic_release(sk_geodesic *g) {
@@ -54,6 +59,7 @@ void sk_geodesic_release(sk_geodesic *g) {
     sk_release(g->allocator, g->around);
     sk_release(g->allocator, g->places);
     sk_release(g->allocator, g->heap.data);
+    sk_release(g->allocator, g->seen.data);
     sk_release(g->allocator, g);
 }
 
@@ -226,20 +232,31 @@ static bool settle(sk_geodesic *g, uint32_t top) {
     return true;
 }
 
+static void clear(sk_geodesic *g) {
+    g->heap.count = 0;
+    for (size_t i = 0; i < g->sheet->particle_count; i++) {
+        place *p = &g->places[i];
+        memcpy(p->at, g->sheet->position[i], sizeof p->at);
+        p->distance = INFINITY;
+        p->nearest = UINT32_MAX;
+        p->settled = false;
+    }
+    g->clear = true;
+}
+
 bool sk_geodesic_from(sk_geodesic *g, const bool *source, double *distance, uint32_t *nearest) {
     size_t count = g->sheet->particle_count;
     if (g->lowest) {
         from_on_grid(g, source, distance, nearest);
         return true;
     }
-    g->heap.count = 0;
+    clear(g);
+    g->clear = false;
     for (size_t i = 0; i < count; i++) {
-        place *p = &g->places[i];
-        memcpy(p->at, g->sheet->position[i], sizeof p->at);
-        p->distance = source[i] ? 0 : INFINITY;
-        p->nearest = source[i] ? (uint32_t)i : UINT32_MAX;
-        p->settled = false;
-        if (source[i] && !heap_push(g, (heap_entry){0, (uint32_t)i})) return false;
+        if (!source[i]) continue;
+        g->places[i].distance = 0;
+        g->places[i].nearest = (uint32_t)i;
+        if (!heap_push(g, (heap_entry){0, (uint32_t)i})) return false;
     }
     while (g->heap.count) {
         uint32_t top = heap_pop(g).particle;
@@ -247,4 +264,31 @@ bool sk_geodesic_from(sk_geodesic *g, const bool *source, double *distance, uint
     }
     for (size_t i = 0; i < count; i++) distance[i] = g->places[i].distance, nearest[i] = g->places[i].nearest;
     return true;
+}
+
+bool sk_geodesic_near(sk_geodesic *g, uint32_t source, double most, void (*visit)(void *user, uint32_t particle, double distance),
+                      void *user) {
+    if (!g->clear) clear(g);
+    g->seen.count = 0;
+    g->places[source].distance = 0;
+    g->places[source].nearest = source;
+    bool good = heap_push(g, (heap_entry){0, source});
+    while (g->heap.count && good) {
+        const uint32_t top = heap_pop(g).particle;
+        if (g->places[top].settled) continue;
+        if (!(g->places[top].distance < most)) break;
+        visit(user, top, g->places[top].distance);
+        good = SK_RESERVE(g->allocator, &g->seen, g->seen.count + 1) && settle(g, top);
+        if (good) g->seen.data[g->seen.count++] = top;
+    }
+    // who has a distance was settled, or is beside one who was
+    for (size_t i = 0; i < g->seen.count; i++) {
+        const uint32_t one = g->seen.data[i];
+        for (size_t k = g->start[one]; k < g->start[one + 1]; k++)
+            for (int c = 0; c < 2; c++) g->places[g->around[k][c]].distance = INFINITY, g->places[g->around[k][c]].settled = false;
+        g->places[one].distance = INFINITY, g->places[one].settled = false;
+    }
+    g->heap.count = 0;
+    g->clear = good;
+    return good;
 }

@@ -127,6 +127,8 @@ extern const size_t sk_collider_field_count;
 sk_pose sk_collider_pose_at(const sk_collider *collider, double time);
 /* As its fields alone say, by no frame, before they were set since the last step. */
 sk_pose sk_collider_pose_unled(const sk_collider *collider, double time);
+/* Where its own fields put it, without any motion: its point, how it is turned, its direction. */
+void sk_collider_own_place(const sk_collider *collider, double own[static 15]);
 /* Around a change of its fields at `time`: before it and after it. True when from now on it may stand elsewhere in
  * every substep. */
 void sk_collider_note(sk_collider *collider, double time);

@@ -115,7 +115,7 @@ static bool changes(const void *data) {
     return ((const formula_params *)data)->compiled->formula->uses & SK_USES_TIME;
 }
 
-static const sk_making making = {.make = make, .unmake = unmake};
+static const sk_making making = {.make = make, .unmake = unmake, .by_text = true};
 const sk_collider_type sk_formula_surface = {
     .kind = {"formula", "any surface that a formula describes, also one that moves and changes", SKEIN_COLLIDER, fields,
              sizeof fields / sizeof *fields, sizeof(formula_params)},

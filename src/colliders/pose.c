@@ -123,8 +123,7 @@ sk_pose sk_collider_pose_unled(const sk_collider *collider, double time) {
     return pose;
 }
 
-/* What its own fields say, without any motion. */
-static void look(const sk_collider *collider, double own[static 15]) {
+void sk_collider_own_place(const sk_collider *collider, double own[static 15]) {
     memset(own, 0, 15 * sizeof *own);
     collider->type->place(collider->params, own);
     if (collider->type->turn) collider->type->turn(collider->params, own + 3);
@@ -139,7 +138,7 @@ void sk_collider_note(sk_collider *collider, double time) {
     for (int i = 0; i < 9; i++) travel->rotation[i] = (double)pose.rotation[i];
     travel->direction[0] = (double)pose.axis.x, travel->direction[1] = (double)pose.axis.y,
     travel->direction[2] = (double)pose.axis.z;
-    look(collider, travel->own);
+    sk_collider_own_place(collider, travel->own);
     travel->noted = true;
 }
 
@@ -148,7 +147,7 @@ bool sk_collider_changed(sk_collider *collider) {
     double own[15];
     if (!collider->common->enabled) travel->noted = travel->changed = false; // it is not there
     if (!travel->noted) return false;
-    look(collider, own);
+    sk_collider_own_place(collider, own);
     travel->changed |= memcmp(own, travel->own, sizeof own) != 0;
     bool first = travel->changed && !travel->ever;
     travel->ever |= travel->changed;

@@ -294,6 +294,15 @@ bool sk_trimesh_lead(sk_trimesh *m, const double *positions) {
     return true;
 }
 
+double sk_trimesh_way(const sk_trimesh *m) {
+    double most = 0;
+    for (size_t v = 0; v < m->given_count && m->leads; v++) {
+        const sk_vec3 way = sk_sub(sk_v3_of(&m->led[3 * v]), m->place[m->vertex_of[v]]);
+        most = fmax(most, (double)sk_length(way));
+    }
+    return most;
+}
+
 void sk_trimesh_begin(sk_trimesh *m, double time, double dt) {
     if (m->moves) sk_trimesh_follow(m, m->start + m->dt);
     if (m->moves && !m->leads) memset(m->velocity, 0, m->vertex_count * sizeof *m->velocity);

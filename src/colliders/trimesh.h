@@ -71,6 +71,8 @@ void sk_trimesh_faults(const sk_trimesh *m, const char *file, char *text, size_t
 bool sk_trimesh_lead(sk_trimesh *m, const double *positions);
 /* A step begins: the vertices set out for where they were led to, or stand still. */
 void sk_trimesh_begin(sk_trimesh *m, double time, double dt);
+/* How far vertices are led by the next step, at most, in its own coordinates. */
+double sk_trimesh_way(const sk_trimesh *m);
 /* The surface as it is on that way at a time. */
 void sk_trimesh_follow(sk_trimesh *m, double time);
 

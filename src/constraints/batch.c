@@ -166,6 +166,7 @@ void sk_batch_release(sk_batch *batch, sk_allocator *allocator) {
     if (!batch) return;
     sk_batch_forget_sweeps(batch, allocator);
     sk_enclosure_release(batch->enclosure, allocator);
+    sk_aggregate_release(batch->aggregate, allocator);
     release_elements(&batch->whole, allocator);
     void *arrays[] = {batch->coarse,          batch->particle,        batch->slot,           batch->rest,
                       batch->scale,           batch->sweeps,         batch->lane,

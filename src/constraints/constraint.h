@@ -15,6 +15,7 @@
 #define SK_CONSTRAINTS_CONSTRAINT_H
 
 #include "base/fields.h"
+#include "constraints/aggregate.h"
 #include "constraints/coarse.h"
 #include "formula/parameters.h"
 #include "particles/particles.h"
@@ -107,6 +108,7 @@ struct sk_batch {
                             square of its angular frequency. If low for the substep, position methods may project the
                             batch in every second one, with the same stiffness; 0: in every one */
     sk_coarse *coarse;   /* its particles are those of a coarse grid (constraints/coarse.h), only bounded; or NULL */
+    sk_aggregate *aggregate; /* its particles are hubs, which carry others (constraints/aggregate.h), only bounded; or NULL */
     uint32_t most_edges; /* of one that only bounds: so many edges of its body's surface lead from end to end of an element
                             at most; 0: that was not looked for yet (world/severed.c) */
     bool measured;       /* an edge of a body: it counts in the stretch of the statistics */

@@ -111,8 +111,8 @@ static const double *parameters_of(const void *params) {
     return ((const sk_formula_params *)params)->parameter;
 }
 
-const sk_making sk_formula_making = {make_constraint, unmake, formula_of, run_compiled, parameters_of},
-                sk_energy_making = {make_energy, unmake, formula_of, run_compiled, parameters_of};
+const sk_making sk_formula_making = {make_constraint, unmake, formula_of, run_compiled, parameters_of, true},
+                sk_energy_making = {make_energy, unmake, formula_of, run_compiled, parameters_of, true};
 
 /* ---- functions of the type ---- */
 

@@ -297,9 +297,12 @@ bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particl
     sk_batch_forget_sweeps(batch, allocator);
     batch->stale = true;
     // no sweeps for a body that takes no part: either all of its elements are out, or none (sk_batch_leave_out)
-    batch->asleep = batch->count && particles->presence[batch->particle[0]] == SK_ASLEEP;
+    batch->asleep = false; // who does not sleep of it is pinned (world/sleep.c)
+    for (size_t i = 0; i < batch->arity * batch->count && particles->asleep_count && !batch->asleep; i++)
+        batch->asleep = particles->presence[batch->particle[i]] == SK_ASLEEP;
     if (batch->count && !sk_particle_counts(particles, batch->particle[0])) return true;
     for (size_t i = 0; i < batch->arity * batch->count; i++) batch->slot[i] = particles->slot_of[batch->particle[i]];
+    if (batch->aggregate) sk_aggregate_arrange(batch->aggregate, particles);
     // of what sleeps the energy is asked for, and nothing else
     if (!batch->enclosure) return batch->asleep || cut(batch, allocator, particles);
     return sk_enclosure_arrange(batch, allocator, particles) && (batch->asleep || allocate_lanes(batch, allocator));

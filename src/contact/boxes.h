@@ -4,7 +4,7 @@
 
 #include "base/isa.h"
 #include "base/wide_types.h"
-#include "contact/quad.h"
+#include "base/quad.h"
 #include "contact/skin.h"
 #if defined(__wasm_simd128__) && !defined(SKEIN_DOUBLE)
 #include <wasm_simd128.h>

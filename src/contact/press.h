@@ -2,7 +2,7 @@
 #ifndef SK_CONTACT_PRESS_H
 #define SK_CONTACT_PRESS_H
 
-#include "contact/quad.h"
+#include "base/quad.h"
 #include "plan/op.h"
 
 /* A pair that presses its features apart within an implicit solve, as it was when the substep began. */

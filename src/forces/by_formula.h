@@ -132,7 +132,7 @@ static bool at(const void *data, const double x[3], double time, double force[3]
     return true;
 }
 
-static const sk_making making = {.make = make, .unmake = unmake};
+static const sk_making making = {.make = make, .unmake = unmake, .by_text = true};
 
 /* The members that both types have in common. */
 #define BY_FORMULA                                                                                             \

@@ -23,6 +23,7 @@ typedef struct sk_making {
     const skein_formula *(*formula_of)(const void *params);
     void (*run_compiled)(void *params, const skein_compiled *compiled);
     const double *(*parameters_of)(const void *params); /* the numbers that the formula names, where there is one */
+    bool by_text; /* what it does is in its texts: whether it changes as time goes by can be read there */
 } sk_making;
 
 /* Whether objects of the kind name parameters. */

@@ -130,6 +130,26 @@ static void write_coarse(sk_plan_builder *builder, const sk_batch *batch) {
                                .end = walk.rows});
 }
 
+/* The same over the distances of hubs, which then carry the vertices around them. */
+static void write_aggregate(sk_plan_builder *builder, const sk_batch *batch) {
+    const sk_aggregate *aggregate = batch->aggregate;
+    if (!builder->predicted) return;
+    for (int time = 0; time < aggregate->times; time++)
+        for (size_t i = 0; i < batch->sweep_count; i++)
+            add_sweep(builder, &batch->sweeps[time % 2 ? batch->sweep_count - 1 - i : i], SK_WHOLE, SK_OP_LIMIT,
+                      &batch->type->limit, SK_X, SK_NONE, 1, 0, SK_ALWAYS);
+    sk_add_op(builder, (sk_op){.kind = SK_OP_LIMIT,
+                               .order = SK_ORDERED,
+                               .kernel = sk_aggregate_carry.version[builder->isa],
+                               .dst = SK_X,
+                               .source = {SK_X, SK_X0, SK_V},
+                               .coefficient = {0, builder->h},
+                               .from_prediction = true,
+                               .rule = aggregate,
+                               .label = "carried along",
+                               .end = 1});
+}
+
 /* Whether a cloth has its coarse grids: with methods that predict, and until it is cut. */
 static bool has_coarse(const sk_plan_builder *builder, const sk_limit *limit) {
     return builder->predicted && !limit->cut_length;
@@ -153,6 +173,7 @@ static void write_spans(sk_plan_builder *builder) {
         const sk_batch *batch = rules->batches.data[i];
         if (!batch->only_bounds || !has_bound(batch)) continue;
         if (batch->coarse) write_coarse(builder, batch);
+        else if (batch->aggregate) write_aggregate(builder, batch);
         else add_sweeps(builder, batch, 0, SK_OP_LIMIT, &batch->type->limit, SK_X, SK_NONE);
     }
     write_tethers(builder, SK_LIMIT_AFTER_COARSE, seldom_of(builder));
@@ -237,7 +258,7 @@ static void write_strain_limits(sk_plan_builder *builder, sk_vector velocity, bo
     const sk_rules *rules = builder->rules;
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
-        if (!has_bound(batch) || batch->coarse) continue;
+        if (!has_bound(batch) || batch->coarse || batch->aggregate) continue;
         if (batch->only_bounds && velocity == SK_NONE) continue; // write_spans() has written them
         const sk_sweep_kernels *kernels = velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving;
         for (int left = first ? 1 : limit_sweeps_of(batch); left > 0; left--)

@@ -242,6 +242,18 @@ void sk_world_uncarry_previous(skein_world *world) {
     world->carried.count = 0;
 }
 
+/* ---- before a step is begun ---- */
+
+bool sk_world_look_ahead(skein_world *world, double dt) {
+    skein_error ignored;
+    return !any_frame(world) || !find_legs(world, dt, &ignored);
+}
+
+sk_frame sk_world_frame_ahead(const skein_world *world, const char *collider) {
+    journey way = journey_of(world, NULL, collider);
+    return way.end;
+}
+
 /* ---- colliders between steps ---- */
 
 bool sk_world_place_colliders(skein_world *world) {
@@ -278,6 +290,7 @@ skein_status skein_body_teleport(skein_world *world, skein_handle handle, const 
     skein_status status = sk_world_touch(world);
     if (status) return status;
     const sk_body *body = object->as.body;
+    sk_world_rouse_at(world, body->first_particle, body->particle_count);
     put(&world->particles, body->first_particle, body->particle_count, &frame, true);
     sk_record_state(world);
     return SKEIN_OK;

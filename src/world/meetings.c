@@ -112,10 +112,19 @@ skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error) {
     return good ? SKEIN_OK : sk_fail_memory(error, "contact");
 }
 
-/* ---- among those that sleep, whom no rule is shown ---- */
+/* ---- among those that sleep, whom no rule is shown, and with what is pinned ---- */
+
+/* Who is pinned and awake, and who sleeps if they are asked for, as being here, and nobody else. */
+static void mark_sleepers(const skein_world *world, bool asleep, uint8_t *presence) {
+    const sk_particles *all = &world->particles;
+    for (size_t i = 0; i < all->count; i++) presence[i] = asleep && all->presence[i] == SK_ASLEEP ? SK_HERE : SK_ASIDE;
+    for (size_t i = 0; i < world->objects.count; i++)
+        if (world->objects.data[i]->category == SKEIN_BODY && sk_world_stands(world, world->objects.data[i]->as.body))
+            memset(presence + world->objects.data[i]->as.body->first_particle, SK_HERE, world->objects.data[i]->as.body->particle_count);
+}
 
 /* Prepares `own`, a rule like another that meets nobody but those, with its lists of whom. False when there is no memory. */
-static bool prepare_for_sleepers(skein_world *world, const sk_force *force, size_t rules, sk_force *own) {
+static bool prepare_for_sleepers(skein_world *world, const sk_force *force, size_t rules, bool asleep, sk_force *own) {
     sk_allocator *allocator = &world->allocator;
     sk_particles particles = world->particles;
     meeting_lists lists;
@@ -124,8 +133,7 @@ static bool prepare_for_sleepers(skein_world *world, const sk_force *force, size
     own->only = (sk_only){.data = NULL};
     if (!list_parts(world, rules, &lists)) return false;
     particles.presence = sk_allocate(allocator, particles.count * sizeof *particles.presence);
-    for (size_t i = 0; particles.presence && i < particles.count; i++)
-        particles.presence[i] = world->particles.presence[i] == SK_ASLEEP ? SK_HERE : SK_ASIDE;
+    if (particles.presence) mark_sleepers(world, asleep, particles.presence);
     const bool good = particles.presence && sk_world_list_sleepers(world, *force->on, &own->only) &&
                       force->type->meeting->prepare(own, allocator, &particles, &lists.parts, world->isa);
     sk_release(allocator, particles.presence);
@@ -145,13 +153,15 @@ static bool count_among_sleepers(skein_world *world, size_t *count) {
     size_t all = 0;
     for (size_t i = 0; i < world->rules.forces.count && good && !world->sleepers_known && world->particles.asleep_count; i++) {
         const sk_force *force = world->rules.forces.data[i];
-        sk_force own;
-        size_t its = 0;
         if (!*force->enabled || !force->type->meeting) continue;
-        good = prepare_for_sleepers(world, force, rules, &own) &&
-               force->type->meeting->crossings(&own, &world->allocator, world->particles.vector[SK_X], world->particles.slot_of, &its);
-        end_for_sleepers(world, &own);
-        all += its;
+        for (int asleep = 1; asleep >= 0 && good; asleep--) { // what is pinned alone is counted already
+            sk_force own;
+            size_t its = 0;
+            good = prepare_for_sleepers(world, force, rules, asleep, &own) &&
+                   force->type->meeting->crossings(&own, &world->allocator, world->particles.vector[SK_X], world->particles.slot_of, &its);
+            end_for_sleepers(world, &own);
+            all += asleep ? its : (size_t)0 - its;
+        }
     }
     if (good && !world->sleepers_known) world->sleepers_known = true, world->crossings_asleep = all;
     *count += world->crossings_asleep;
@@ -199,6 +209,29 @@ static bool list_contacts(skein_world *world, sk_force *force, size_t object, sk
     return true;
 }
 
+/* Of those that sleep, and none of what is pinned with itself: that is listed already. */
+static bool list_contacts_of_sleepers(skein_world *world, const sk_force *force, size_t object, skein_surface_contact *out, size_t most,
+                                      size_t *count) {
+    const size_t rules = count_those_that_meet(world);
+    sk_force own;
+    size_t found = 0;
+    bool good = prepare_for_sleepers(world, force, rules, true, &own) && list_contacts(world, &own, object, NULL, 0, &found);
+    skein_surface_contact *all = good ? sk_allocate(&world->allocator, (found + 1) * sizeof *all) : NULL;
+    const size_t room = found;
+    found = 0;
+    good = all && list_contacts(world, &own, object, all, room, &found);
+    for (size_t k = 0; good && k < found; k++) {
+        bool asleep = false;
+        for (int c = 0; c < 4; c++) asleep |= world->particles.presence[all[k].particle[c]] == SK_ASLEEP;
+        if (!asleep) continue;
+        if (*count < most) out[*count] = all[k];
+        ++*count;
+    }
+    sk_release(&world->allocator, all);
+    end_for_sleepers(world, &own);
+    return good;
+}
+
 skein_status skein_surface_contacts_copy(skein_world *world, skein_surface_contact *out, size_t most, size_t *count) {
     SK_NEED(world, world);
     SK_NEED(world, count);
@@ -212,14 +245,10 @@ skein_status skein_surface_contacts_copy(skein_world *world, skein_surface_conta
     for (size_t i = 0; i < world->objects.count && !status; i++) {
         const sk_object *object = world->objects.data[i];
         if (object->category != SKEIN_FORCE || !*object->as.force->enabled || !object->as.force->type->meeting) continue;
-        sk_force *force = object->as.force, sleepers;
-        bool good = list_contacts(world, force, i, out, most, count);
-        if (good && world->particles.asleep_count) {
-            good = prepare_for_sleepers(world, force, count_those_that_meet(world), &sleepers) &&
-                   list_contacts(world, &sleepers, i, out, most, count);
-            end_for_sleepers(world, &sleepers);
-        }
-        if (!good) return sk_fail_memory(error, "contact");
+        sk_force *force = object->as.force;
+        if (!list_contacts(world, force, i, out, most, count) ||
+            (world->particles.asleep_count && !list_contacts_of_sleepers(world, force, i, out, most, count)))
+            return sk_fail_memory(error, "contact");
     }
     return status;
 }

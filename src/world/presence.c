@@ -184,8 +184,13 @@ void sk_world_reuse_indices(skein_world *world, sk_body *body, size_t batches, s
     size_t target = sk_particles_find_room(&world->particles, first, body->particle_count), offset = first - target;
     if (!offset) return;
     const sk_rules *rules = &world->rules;
-    for (size_t i = batches; i < rules->batches.count; i++)
-        renumber(rules->batches.data[i]->particle, rules->batches.data[i]->count * rules->batches.data[i]->arity, offset);
+    for (size_t i = batches; i < rules->batches.count; i++) {
+        const sk_batch *batch = rules->batches.data[i];
+        renumber(batch->particle, batch->count * batch->arity, offset);
+        if (!batch->aggregate) continue;
+        renumber(batch->aggregate->hub, batch->aggregate->hub_count, offset);
+        renumber(batch->aggregate->particle, batch->aggregate->count, offset);
+    }
     for (size_t i = limits; i < rules->limits.count; i++)
         renumber(rules->limits.data[i]->particle, rules->limits.data[i]->count * (1 + rules->limits.data[i]->anchors),
                  offset);

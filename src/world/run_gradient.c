@@ -365,6 +365,9 @@ static skein_status check(skein_world *world, const skein_gradient_desc *desc) {
             return sk_fail(error, SKEIN_ERROR_VALUE, world->motions.data[i]->label,
                            "bodies that a motion carries along (inertia under 1, or jumps) have no gradient yet");
     }
+    for (size_t i = 0; i < world->objects.count; i++)
+        if (world->objects.data[i]->category == SKEIN_BODY && world->objects.data[i]->common.plain.sleep > 0)
+            return sk_fail(error, SKEIN_ERROR_VALUE, world->objects.data[i]->label, "what falls asleep has no gradient: set its sleep to 0");
     if (!desc->steps || desc->steps > 100000000)
         return sk_fail(error, SKEIN_ERROR_VALUE, "steps", "%zu steps: expected 1 to 100000000", desc->steps);
     return SKEIN_OK;

@@ -196,12 +196,20 @@ static skein_status leave_groups(skein_world *world, const sk_object *object, co
     return leaves ? sk_world_remember_names(world, object->common.plain.groups) : SKEIN_OK;
 }
 
-/* A body that sleeps wakes where a field of it is set; and all do where something else is, but for a collider that is only put
- * elsewhere: that wakes whom it comes near. */
-static void rouse(skein_world *world, const sk_object *object) {
-    const sk_body *body = object && object->category == SKEIN_BODY ? object->as.body : NULL;
-    if (body) sk_world_rouse_at(world, body->first_particle, body->particle_count);
-    else if (!object || object->category != SKEIN_COLLIDER || !object->as.collider->travel.changed) sk_world_rouse(world);
+/* A body that sleeps wakes where a field of it is set; and all do where something else is, or whether a body is there, but for a
+ * collider that is only put elsewhere: that wakes whom it comes near. */
+static void rouse(skein_world *world, const sk_object *object, const char *name, const double place[15]) {
+    const sk_body *body = object && object->category == SKEIN_BODY && strcmp(name, "enabled") ? object->as.body : NULL;
+    double now[15];
+    if (body) {
+        sk_world_rouse_at(world, body->first_particle, body->particle_count);
+        return;
+    }
+    if (object && object->category == SKEIN_COLLIDER) {
+        sk_collider_own_place(object->as.collider, now);
+        if (memcmp(now, place, sizeof now) != 0) return;
+    }
+    sk_world_rouse(world);
 }
 
 bool skein_field_is_live(const skein_world *world, skein_handle handle, const char *name) {
@@ -224,6 +232,8 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
         return sk_fail(error, SKEIN_ERROR_VALUE, name, "%s shapes what is already built: set it when the %s is added",
                        name, skein_category_text(object->category));
     sk_collider *collider = object && object->category == SKEIN_COLLIDER ? object->as.collider : NULL;
+    double place[15];
+    if (collider) sk_collider_own_place(collider, place);
     if (collider) sk_collider_note(collider, world->time);
     skein_status status = leave_groups(world, object, field);
     if (!status) status = replace(world, object, field, params, value, error);
@@ -235,7 +245,7 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
         const char *given = sk_field_load(field, params).text;
         sk_label_copy(object->label, sizeof object->label, given[0] ? given : object->kind->name);
     }
-    rouse(world, object);
+    rouse(world, object, name, place);
     world->plan_stale = true;
     world->motions_stale = true;
     const skein_value now = sk_field_load(field, params); // the text given may have been the one that is gone

@@ -8,7 +8,8 @@
  *   pins       places that wait for the next step
  *   cuts       from version 2 on: how many bodies are cut, and of each its place among the objects and the faces
  *   rests      from version 3 on: of how many bodies it is known that they rest, and of each its place among the objects,
- *              whether it sleeps or is to wake, for how long it has been still, and from where on
+ *              whether it sleeps or is to wake, for how long it has been still, from where on, and beside whom; before these,
+ *              whether all are to wake
  *
  * What was built stays the world's: meshes, constraints and masses are compared by their hashes, and a world that is
  * built otherwise refuses the snapshot. A reader looks through all of it before it changes anything, and allocates
@@ -196,30 +197,32 @@ static void put_cuts(sk_byte_writer *w, const skein_world *world) {
 /* What is known of a body's rest: bits. */
 enum { SLEEPS = 1, IS_ROUSED = 2, HAS_PLACES = 4 };
 
-static unsigned rest_of(const skein_world *world, const sk_object *object) {
+static unsigned rest_of(const sk_object *object) {
     if (object->category != SKEIN_BODY) return 0;
     const sk_body *body = object->as.body;
-    const bool roused = body->roused || (world->roused && body->asleep);
-    return (body->asleep ? SLEEPS : 0) | (roused ? IS_ROUSED : 0) | (body->rest_from ? HAS_PLACES : 0);
+    return (body->rest.asleep ? SLEEPS : 0) | (body->rest.roused ? IS_ROUSED : 0) | (body->rest.from ? HAS_PLACES : 0);
 }
 
 static uint32_t count_resting(const skein_world *world) {
     uint32_t count = 0;
-    for (size_t i = 0; i < world->objects.count; i++) count += rest_of(world, world->objects.data[i]) != 0;
+    for (size_t i = 0; i < world->objects.count; i++) count += rest_of(world->objects.data[i]) != 0;
     return count;
 }
 
 static void put_rests(sk_byte_writer *w, const skein_world *world) {
+    sk_put_u8(w, world->roused);
     sk_put_u32(w, count_resting(world));
     for (size_t i = 0; i < world->objects.count; i++) {
-        const unsigned rest = rest_of(world, world->objects.data[i]);
+        const unsigned rest = rest_of(world->objects.data[i]);
         if (!rest) continue;
         const sk_body *body = world->objects.data[i]->as.body;
         sk_put_u32(w, (uint32_t)i);
         sk_put_u8(w, rest);
-        sk_put_f64(w, body->still);
-        for (size_t k = 0; k < body->particle_count && body->rest_from; k++)
-            sk_put_real(w, body->rest_from[k].x), sk_put_real(w, body->rest_from[k].y), sk_put_real(w, body->rest_from[k].z);
+        sk_put_f64(w, body->rest.still);
+        sk_put_u64(w, body->rest.near);
+        for (int k = 0; k < 3 && body->rest.roused; k++) sk_put_real(w, body->rest.low[k]), sk_put_real(w, body->rest.high[k]);
+        for (size_t k = 0; k < body->particle_count && body->rest.from; k++)
+            sk_put_real(w, body->rest.from[k].x), sk_put_real(w, body->rest.from[k].y), sk_put_real(w, body->rest.from[k].z);
     }
 }
 
@@ -530,7 +533,10 @@ static skein_status take_cuts(sk_byte_reader *r, skein_world *world, uint32_t ve
 static skein_status take_rest(sk_byte_reader *r, skein_world *world, sk_body *body, bool apply, skein_error *error) {
     const unsigned rest = sk_take_u8(r);
     const double still = sk_take_f64(r);
+    const uint64_t near = sk_take_u64(r);
+    real low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
     sk_vec3 *from = NULL;
+    for (int k = 0; k < 3 && rest & IS_ROUSED; k++) low[k] = sk_take_real(r), high[k] = sk_take_real(r);
     if (r->short_ || rest > 7 || (rest & SLEEPS && rest & HAS_PLACES) || !(still >= 0 && still <= SK_FAR) ||
         (rest & HAS_PLACES && sk_left(r) / (3 * sizeof(real)) < body->particle_count))
         return fail_short(error);
@@ -542,16 +548,21 @@ static skein_status take_rest(sk_byte_reader *r, skein_world *world, sk_body *bo
     }
     if (!apply) return SKEIN_OK;
     if (rest & SLEEPS && body->enabled) sk_body_set_asleep(world, body, true);
-    body->roused = rest & IS_ROUSED;
-    body->rest_from = from;
-    body->still = still;
+    body->rest.roused = rest & IS_ROUSED;
+    memcpy(body->rest.low, low, sizeof low), memcpy(body->rest.high, high, sizeof high);
+    body->rest.from = from;
+    body->rest.still = still;
+    body->rest.near = near;
     return SKEIN_OK;
 }
 
 /* Of whom nothing is said nothing is known. */
 static skein_status take_rests(sk_byte_reader *r, skein_world *world, uint32_t version, bool apply, skein_error *error) {
+    const unsigned roused = version > 2 ? sk_take_u8(r) : 0;
     const uint32_t count = version > 2 ? sk_take_u32(r) : 0;
     uint32_t next = 0;
+    if (roused > 1) return fail_short(error);
+    if (apply) world->roused = roused;
     for (size_t i = 0; i < world->objects.count && apply; i++)
         if (world->objects.data[i]->category == SKEIN_BODY) sk_body_forget_rest(world, world->objects.data[i]->as.body);
     for (uint32_t i = 0; i < count && !r->short_; i++) {
@@ -594,7 +605,6 @@ skein_status sk_snapshot_read(skein_world *world, const void *bytes, size_t size
     world->recording = NULL;
     sk_world_wake_all(world);
     status = walk(world, bytes, &info, set, true, error);
-    world->roused = false; // who was is marked
     sk_world_place_colliders(world);
     world->recording = recording;
     sk_record_state(world);

@@ -84,7 +84,7 @@ static size_t triangles_before(const skein_world *world, const sk_body *body) {
     size_t count = body->first_triangle;
     for (size_t i = 0; i < world->objects.count; i++) {
         const sk_body *other = body_at(world, i) ? body_at(world, i)->as.body : NULL;
-        if (other && (!other->enabled || other->asleep) && other->first_triangle < body->first_triangle) count -= other->triangle_count;
+        if (other && (!other->enabled || other->rest.asleep) && other->first_triangle < body->first_triangle) count -= other->triangle_count;
     }
     return count;
 }
@@ -99,7 +99,7 @@ static void find_slots(const sk_particles *all, sk_span_of_body *span) {
 }
 
 static bool add_span(skein_world *world, const sk_body *body, sk_only *only) {
-    if (!body->enabled || body->asleep || !body->particle_count) return true;
+    if (!body->enabled || body->rest.asleep || !body->particle_count) return true;
     if (!SK_RESERVE(&world->allocator, only, only->count + 1)) return false;
     size_t first = body->first_particle, triangle = triangles_before(world, body);
     sk_span_of_body *span = &only->data[only->count++];
@@ -112,7 +112,7 @@ bool sk_world_list_sleepers(skein_world *world, const char *names, sk_only *only
     size_t cursor = 0;
     only->some = names && names[0];
     for (const sk_body *body; only->some && (body = sk_world_next_named(world, names, &cursor));) {
-        if (!body->asleep) continue;
+        if (!body->rest.asleep && !sk_world_stands(world, body)) continue;
         if (!SK_RESERVE(&world->allocator, only, only->count + 1)) return false;
         only->data[only->count++] = (sk_span_of_body){body->first_particle, body->first_particle + body->particle_count, 0, 0, 0, 0};
     }

@@ -78,7 +78,7 @@ void sk_body_release(skein_world *world, sk_body *body) {
     sk_release(allocator, body->face_sizes);
     sk_release(allocator, body->face_vertices);
     sk_release(allocator, body->corner_uv);
-    sk_release(allocator, body->rest_from);
+    sk_release(allocator, body->rest.from);
     sk_cut_release(body->cut, allocator);
     sk_release(allocator, body);
 }
@@ -240,6 +240,11 @@ bool sk_world_bound_coarse(skein_world *world, sk_body *body, const double *boun
     batch->coarse = sk_allocate(&world->allocator, sizeof *batch->coarse);
     if (batch->coarse) *batch->coarse = *coarse;
     return batch->coarse;
+}
+
+void sk_world_bound_aggregate(sk_body *body, const double *bound, sk_aggregate *aggregate) {
+    sk_world_only_bound(body, bound);
+    body->batch[body->batch_count - 1]->aggregate = aggregate;
 }
 
 void sk_world_only_bound(sk_body *body, const double *bound) {

@@ -42,6 +42,16 @@ typedef struct sk_body_type {
 
 enum { SK_MOST_BODY_BATCHES = 16 };
 
+/* What is known of a body's rest (world/sleep.c). */
+typedef struct sk_rest {
+    bool asleep;
+    bool roused;          /* it was changed by hand since the last step: it is to wake, and who is near where it */
+    real low[3], high[3]; /* was then */
+    sk_vec3 *from;        /* where it was when it began to be still, particle_count; NULL: that is to begin */
+    double still;         /* s: for how long it has been */
+    uint64_t near;        /* whom it might touch meanwhile: a sum over them */
+} sk_rest;
+
 /* What a body added to the world. */
 struct sk_body {
     uint32_t first_particle, particle_count;
@@ -57,11 +67,7 @@ struct sk_body {
     double tear_bound;                 /* the stretch at which its edges give way; 0: never */
     sk_cut *cut;                       /* NULL: it never was (world/cut.h) */
     bool enabled;
-    /* Of one that may sleep (world/sleep.c): it does; it is to wake; where it was when it began to be still, particle_count, or
-     * NULL; and for how long it has been. */
-    bool asleep, roused;
-    sk_vec3 *rest_from;
-    double still;      /* s */
+    sk_rest rest;
     const char *label; /* its name, else its kind's */
 };
 
@@ -172,7 +178,7 @@ struct skein_world {
     bool unfused;     /* the plan stays as the method writes it (plan/fuse.h) */
     bool slots_stale; /* particles, batches or limits were added: slots and sweeps are to be found anew */
     uint64_t arrangement; /* how often slots were found */
-    bool roused;         /* rules have changed: all that sleeps is to wake */
+    bool roused;         /* rules have changed since the last step: all that sleeps is to wake */
     bool sleepers_known; /* among those that sleep so many edges go through triangles: */
     size_t crossings_asleep;
     bool presence_stale; /* bodies were taken out or back: constraints on their particles are to be looked through */
@@ -261,6 +267,8 @@ void sk_world_sweep_both_ways(sk_body *body);
 void sk_world_only_bound(sk_body *body, const double *bound);
 /* Makes it one on the distances of a coarse grid (constraints/coarse.h); false when there is no memory. */
 bool sk_world_bound_coarse(skein_world *world, sk_body *body, const double *bound, const sk_coarse *coarse);
+/* Makes it one on the distances of hubs, whose aggregate it owns from then on (constraints/aggregate.h). */
+void sk_world_bound_aggregate(sk_body *body, const double *bound, sk_aggregate *aggregate);
 /* Lets position methods take the body's newest batch in every second substep, where it is soft for that: `quickness` is as
  * in constraints/constraint.h. */
 void sk_world_take_seldom(sk_body *body, double quickness);
@@ -309,12 +317,12 @@ skein_status sk_world_settle_presence(skein_world *world, skein_error *error);
 skein_status sk_world_wake(skein_world *world, double dt, skein_error *error);
 /* After a step: what has been still for long enough falls asleep. */
 skein_status sk_world_let_sleep(skein_world *world, double dt, skein_error *error);
-/* A rule was changed, or particles were, by hand: all that sleeps, or the bodies that have some of these, wake before the next
- * step. */
+/* A rule was changed, or particles are going to be, by hand: all that sleeps, or the bodies that have some of these, with all that
+ * they may touch where they are and where they will be, wake before the next step, and rest begins anew. */
 void sk_world_rouse(skein_world *world);
 void sk_world_rouse_at(skein_world *world, size_t first, size_t count);
 void sk_world_wake_all(skein_world *world);
-/* The body sleeps from now on, its velocities 0, or wakes. */
+/* The body sleeps from now on, or wakes. */
 void sk_body_set_asleep(skein_world *world, sk_body *body, bool asleep);
 /* What is known of its rest is known no longer; where it sleeps, somebody else says where its particles are. */
 void sk_body_forget_rest(skein_world *world, sk_body *body);
@@ -330,7 +338,9 @@ skein_status sk_world_check_name(const skein_world *world, const char *label, sk
 skein_status sk_world_check_names(const skein_world *world, const char *label, const char *names, skein_error *error);
 /* The next body, enabled or not, that a list means, by its name or a group's, from *cursor = 0 on; NULL at the end. */
 const sk_body *sk_world_next_named(const skein_world *world, const char *names, size_t *cursor);
-/* Lists those that sleep of the bodies that names mean; false when there is no memory. */
+/* Whether a body is there, and all pinned. */
+bool sk_world_stands(const skein_world *world, const sk_body *body);
+/* Lists those that sleep, and what is all pinned, of the bodies that names mean; false when there is no memory. */
 bool sk_world_list_sleepers(skein_world *world, const char *names, sk_only *only);
 /* Shows what can meet to the rules that meet. Whom they act on is found. */
 skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error);
@@ -371,6 +381,10 @@ skein_status sk_world_find_pins(skein_world *world, skein_error *error);
 skein_status sk_world_carry(skein_world *world, double dt, skein_error *error);
 /* Whether a motion carries a body along, or holds it near its places. */
 bool sk_world_carries(const skein_world *world, const sk_common *body);
+/* Where motions will have led what goes with them when a step of dt is over: first for all, then of a collider, by its name. False
+ * when there is no memory. */
+bool sk_world_look_ahead(skein_world *world, double dt);
+sk_frame sk_world_frame_ahead(const skein_world *world, const char *collider);
 /* After it: positions before the step are where they were before that. */
 void sk_world_uncarry_previous(skein_world *world);
 /* Where time, fields or motions have changed: colliders stand where their frames put them. False: no memory. */

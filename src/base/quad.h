@@ -1,6 +1,6 @@
 /* Four reals at once, whatever the instruction set: a place, or a corner of a box. */
-#ifndef SK_CONTACT_QUAD_H
-#define SK_CONTACT_QUAD_H
+#ifndef SK_BASE_QUAD_H
+#define SK_BASE_QUAD_H
 
 #include <string.h>
 
