@@ -41,6 +41,7 @@ static void judge_report(const json_t *report, int frames) {
         {"steps", 0, 1e5},
         {"substeps", 0, 1e7},
         {"crossings", 0, 0},
+        {"asleep_particles", 0, 1e6},
         {"worst_crossings_of_run", 0, 0},
         {"crossed_frames", 0, 0},
         {"unsolved", 0, 0},

@@ -1,6 +1,7 @@
 /* Bodies that come to rest fall asleep, with all that they may touch, and wake when something comes near, when they are changed or
  * a rule is; asleep they count in all that is measured; and none of it depends on threads, or on where a world was saved. */
 #include <skein/cut.h>
+#include <skein/gradient.h>
 #include <skein/record.h>
 
 #include "all_methods.h"
@@ -279,6 +280,162 @@ static void calls_wake(void **state) {
     skein_world_destroy(world);
 }
 
+/* ---- what held it up goes ---- */
+
+/* A sheet lies on a pinned plate, which is taken away: the sheet falls, asleep or about to be, with a plate that sleeps or not. */
+static void what_loses_its_hold_falls(void **state) {
+    (void)state;
+    enum { DISABLED, REMOVED, PLACED, TELEPORTED, UNPINNED, LED, ITSELF, WAYS };
+    for (int way = 0; way < WAYS; way++)
+        for (int when = 0; when < (way == LED ? 2 : 3); when++) {
+            skein_world *world = ground("xpbd", 1);
+            // one whose corners alone are pinned keeps awake what lies on it
+            skein_handle plate = sheet(world, "plate", when == 2 ? "corners" : "all", when == 1 ? 0.05 : 0, 0, 0.5, 0);
+            skein_handle body = sheet(world, "body", "", 0.02, 0.02, 0.52, 0);
+            if (when == 2) steps(world, 200, dt);
+            else until_asleep(world, body, 600);
+            steps(world, 3, dt);
+            const uint32_t first = first_of(world, plate);
+            const double up[3] = {0, 0.5, 0}, aside[3] = {9, 0, 0};
+            assert_true(position_of(world, first_of(world, body) + 40).y > 0.4);
+            double x[3 * 81];
+            uint32_t which[81];
+            OK(world, skein_positions_copy(world, first, 81, x));
+            for (uint32_t i = 0; i < 81; i++) which[i] = first + i, x[3 * i] += 9;
+            switch (way) {
+            case DISABLED: OK(world, skein_set(world, plate, "enabled", skein_number(0))); break;
+            case REMOVED: OK(world, skein_remove(world, plate)); break;
+            case PLACED: OK(world, skein_positions_set(world, first, 81, x)); break;
+            case TELEPORTED: OK(world, skein_body_teleport(world, plate, NULL, aside)); break;
+            case UNPINNED:
+                for (uint32_t i = 0; i < 81; i++) OK(world, skein_particle_pin(world, first + i, false));
+                break;
+            case LED:
+                OK(world, skein_pins_move(world, which, 81, x));
+                break;
+            default: OK(world, skein_body_teleport(world, body, NULL, up)); break;
+            }
+            steps(world, 6, dt); // it has begun to fall
+            assert_false(skein_body_asleep(world, body));
+            const double most = way == ITSELF ? 1.1 : 0.51;
+            steps(world, 60, dt);
+            if (way != ITSELF && !(position_of(world, first_of(world, body) + 40).y < most - 0.2))
+                fail_msg("way %d, %d: it is still at %g m", way, when, position_of(world, first_of(world, body) + 40).y);
+            skein_world_destroy(world);
+        }
+}
+
+/* The same of a collider: whatever is set beside its place, in one frame. */
+static void what_a_collider_held_falls(void **state) {
+    (void)state;
+    enum { MOVED, SMALLER, BOTH, THIN, OFF, REMOVED, WAYS };
+    for (int way = 0; way < WAYS; way++) {
+        skein_world *world = ground("xpbd", 1);
+        skein_handle box, body = sheet(world, "body", "", 0.05, 0, 0.58, 0);
+        OK(world, skein_collider_add(world, "box", SKEIN_SETTINGS(SKEIN_VEC3("size", 1, 0.5, 1), SKEIN_VEC3("centre", 0, 0.3, 0), SKEIN_REAL("thickness", 0.02)), &box));
+        until_asleep(world, body, 600);
+        if (way == MOVED || way == BOTH) OK(world, skein_set(world, box, "centre", skein_vector(0, way == BOTH ? 0.299 : -1, 0)));
+        if (way == SMALLER || way == BOTH) OK(world, skein_set(world, box, "size", skein_vector(1, 0.3, 1)));
+        if (way == THIN) OK(world, skein_set(world, box, "thickness", skein_number(0.001)));
+        if (way == OFF) OK(world, skein_set(world, box, "enabled", skein_number(0)));
+        if (way == REMOVED) OK(world, skein_remove(world, box));
+        steps(world, 60, dt);
+        const double y = position_of(world, 40).y;
+        if (!(y < (way == THIN ? 0.56 : 0.5))) fail_msg("way %d: it is still at %g m", way, y);
+        skein_world_destroy(world);
+    }
+}
+
+/* What falls on a plate that sleeps, all pinned, is held by it. */
+static void what_stands_pinned_wakes(void **state) {
+    (void)state;
+    skein_world *world = ground("xpbd", 1);
+    skein_handle plate = sheet(world, "plate", "all", 0.05, 0, 0.5, 0);
+    until_asleep(world, plate, 60);
+    skein_handle body = sheet(world, "body", "", 0.05, 0.02, 0.62, 0); // which wakes all
+    steps(world, 2, dt);
+    assert_true(skein_body_asleep(world, plate) && !skein_body_asleep(world, body));
+    steps(world, 60, dt);
+    assert_true(position_of(world, first_of(world, body) + 40).y > 0.5);
+    until_asleep(world, body, 600);
+    steps(world, 3, dt);
+    assert_true(skein_body_asleep(world, plate));
+    const size_t crossings = statistics_of(world).crossings;
+    size_t touching, others;
+    OK(world, skein_surface_contacts_copy(world, NULL, 0, &touching));
+    OK(world, skein_set(world, plate, "sleep", skein_number(0))); // what sleeps on what does not
+    steps(world, 1, dt);
+    until_asleep(world, body, 600);
+    assert_false(skein_body_asleep(world, plate));
+    OK(world, skein_surface_contacts_copy(world, NULL, 0, &others));
+    assert_int_equal(touching, others);
+    assert_true(touching > 0);
+    assert_int_equal(statistics_of(world).crossings, crossings);
+    skein_world_destroy(world);
+}
+
+/* A weight of no body hangs from a sheet: it moves, and so nothing sleeps; pinned, it holds the sheet, and is no hindrance. */
+static void loose_ends_count(void **state) {
+    (void)state;
+    static const char *const methods[] = {"xpbd", "backward_euler"};
+    for (size_t m = 0; m < COUNT(methods); m++)
+        for (int order = 0; order < 2; order++)
+            for (int pinned = 0; pinned < 2; pinned++) {
+                skein_world *world = ground(methods[m], 1);
+                skein_handle body = sheet(world, "body", "top edge", 0.05, 0, 1.5, 90);
+                const uint32_t end = first_of(world, body) + 72, weight = add_particle(world, 0.01, 0.125, 1.1, 0);
+                OK(world, skein_constraint_add(world, "distance", order ? (const uint32_t[]){weight, end} : (const uint32_t[]){end, weight}, 1, NULL, NULL));
+                if (pinned) OK(world, skein_particle_pin(world, weight, true));
+                steps(world, 300, dt);
+                assert_true(skein_body_asleep(world, body) == (pinned == 1));
+                assert_true(position_of(world, weight).y > 0.3);
+                OK(world, skein_particle_pin(world, weight, !pinned));
+                throw_particle(world, weight, 0, pinned ? -2 : 0, 0);
+                steps(world, 1, dt);
+                if (pinned) assert_false(skein_body_asleep(world, body));
+                if (pinned) steps(world, 300, dt);
+                else until_asleep(world, body, 1200);
+                assert_true(skein_body_asleep(world, body) == (pinned == 0));
+                skein_world_destroy(world);
+            }
+}
+
+/* A collider that a motion leads, fast and from standing still, pushes what sleeps as it does what is awake. */
+static void what_sets_out_fast_is_seen(void **state) {
+    (void)state;
+    double y[2];
+    for (int sleeps = 0; sleeps < 2; sleeps++) {
+        skein_world *world = ground("xpbd", 1);
+        skein_handle body = sheet(world, "body", "corners", sleeps ? 0.05 : 0, 0, 1.5, 0);
+        OK(world, skein_collider_add(world, "box", SKEIN_SETTINGS(SKEIN_TEXT("name", "box"), SKEIN_VEC3("size", 0.1, 0.02, 0.1), SKEIN_VEC3("centre", 0, 1.57, 0)), NULL));
+        sheet(world, "other", "corners", 0, 5, 1.5, 0);
+        OK(world, skein_motion_add(world, "keys", NULL,
+                                   SKEIN_SETTINGS(SKEIN_TEXT("colliders", "box"), SKEIN_TEXT("on", "other"), SKEIN_TEXT("keys", "0 0 0 0, 3 0 0 0, 3.02 0 -0.2 0")), NULL));
+        steps(world, 178, dt);
+        assert_true(skein_body_asleep(world, body) == (sleeps == 1));
+        steps(world, 6, dt);
+        y[sleeps] = position_of(world, 40).y;
+        skein_world_destroy(world);
+    }
+    assert_near(y[0], y[1], 0.02);
+    assert_true(y[1] < 1.45);
+}
+
+static double no_measure(void *user, const skein_gradient_state *state) {
+    (void)user, (void)state;
+    return 0;
+}
+
+static void gradients_refuse_sleep(void **state) {
+    (void)state;
+    skein_world *world = new_world("symplectic_euler", 1);
+    sheet(world, "body", "", 0.05, 0, 1, 0);
+    skein_gradient_desc desc = {.steps = 3, .dt = dt, .measure = no_measure};
+    skein_gradient_result result = {.value = 0};
+    FAILS(world, SKEIN_ERROR_VALUE, sizeof(skein_real) == sizeof(double) ? "sleep" : "double precision", skein_gradient(world, &desc, &result));
+    skein_world_destroy(world);
+}
+
 /* ---- what does not sleep ---- */
 
 static void what_may_be_moved_does_not_sleep(void **state) {
@@ -389,6 +546,40 @@ static void it_goes_on_from_anywhere(void **state) {
     for (int s = 0; s <= last; s++) free(saved[s].bytes);
 }
 
+/* What was set after the last step is in a snapshot; a reset is a beginning. */
+static void nothing_is_forgotten(void **state) {
+    (void)state;
+    skein_world *world = ground("xpbd", 1), *other = ground("xpbd", 1);
+    skein_handle a = sheet(world, "a", "", 0.05, 0, 0.1, 3);
+    sheet(other, "a", "", 0.05, 0, 0.1, 3);
+    until_asleep(world, a, 600);
+    double v[3 * 81];
+    for (int i = 0; i < 3 * 81; i++) v[i] = i % 3 == 1 ? 3 : 0;
+    OK(world, skein_velocities_set(world, 0, 81, v));
+    size_t size = skein_snapshot_size(world);
+    void *bytes = malloc(size);
+    OK(world, skein_snapshot_write(world, bytes, size, NULL));
+    OK(other, skein_snapshot_read(other, bytes, size));
+    free(bytes);
+    for (int i = 0; i < 60; i++) {
+        steps(world, 1, dt);
+        steps(other, 1, dt);
+        assert_true(skein_world_hash(world) == skein_world_hash(other));
+        if (i == 10) assert_true(position_of(world, 40).y > 0.2);
+    }
+    OK(world, skein_world_reset(world));
+    steps(world, 20, dt);
+    OK(world, skein_world_reset(world));
+    OK(other, skein_world_reset(other));
+    for (int i = 0; i < 60; i++) {
+        steps(world, 1, dt);
+        steps(other, 1, dt);
+        assert_true(skein_world_hash(world) == skein_world_hash(other));
+    }
+    skein_world_destroy(world);
+    skein_world_destroy(other);
+}
+
 typedef struct tape {
     unsigned char *bytes;
     size_t size;
@@ -490,8 +681,15 @@ int main(void) {
         cmocka_unit_test(what_falls_wakes_before_it_lands),
         cmocka_unit_test(colliders_wake_whom_they_come_near),
         cmocka_unit_test(calls_wake),
+        cmocka_unit_test(what_loses_its_hold_falls),
+        cmocka_unit_test(what_a_collider_held_falls),
+        cmocka_unit_test(what_stands_pinned_wakes),
+        cmocka_unit_test(loose_ends_count),
+        cmocka_unit_test(what_sets_out_fast_is_seen),
+        cmocka_unit_test(gradients_refuse_sleep),
         cmocka_unit_test(what_may_be_moved_does_not_sleep),
         cmocka_unit_test(it_goes_on_from_anywhere),
+        cmocka_unit_test(nothing_is_forgotten),
         cmocka_unit_test(it_is_replayed),
         cmocka_unit_test(without_memory_it_says_so),
         cmocka_unit_test(contact_forgets_who_is_not_there),

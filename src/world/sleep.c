@@ -90,7 +90,11 @@ void sk_world_rouse(skein_world *world) {
 
 void sk_world_rouse_at(skein_world *world, size_t first, size_t count) {
     size_t of_bodies = 0;
+    bool any = false;
     world->sleepers_known = false;
+    for (size_t i = 0; i < world->objects.count && !any; i++)
+        any = body_at(world, i) && (body_at(world, i)->rest.asleep || body_at(world, i)->rest.from);
+    if (!any) return; // nobody sleeps, or is about to
     for (size_t i = 0; i < world->objects.count; i++) {
         sk_body *body = body_at(world, i);
         if (!body) continue;
