@@ -49,7 +49,7 @@ static uint32_t first_of(const skein_world *world, skein_handle body) {
 static void what_rests_sleeps_and_counts(void **state) {
     (void)state;
     for (size_t m = 0; m < COUNT(all_methods); m++) {
-        if (!strcmp(all_methods[m], "explicit_euler")) continue; // there nothing rests
+        if (!strcmp(all_methods[m], "explicit_euler") || (SANITIZED && m % 3)) continue; // there nothing rests
         skein_world *world = ground(all_methods[m], 1);
         if (strcmp(all_methods[m], "xpbd") != 0 && strcmp(all_methods[m], "pbd") != 0 && strcmp(all_methods[m], "backward_euler") != 0)
             OK(world, skein_set_path(world, "method.substeps", skein_number(100)));
@@ -287,7 +287,7 @@ static void what_loses_its_hold_falls(void **state) {
     (void)state;
     enum { DISABLED, REMOVED, PLACED, TELEPORTED, UNPINNED, LED, ITSELF, WAYS };
     for (int way = 0; way < WAYS; way++)
-        for (int when = 0; when < (way == LED ? 2 : 3); when++) {
+        for (int when = 0; when < (SANITIZED ? 1 : way == LED ? 2 : 3); when++) {
             skein_world *world = ground("xpbd", 1);
             // one whose corners alone are pinned keeps awake what lies on it
             skein_handle plate = sheet(world, "plate", when == 2 ? "corners" : "all", when == 1 ? 0.05 : 0, 0, 0.5, 0);
@@ -521,7 +521,7 @@ static void it_goes_on_from_anywhere(void **state) {
     }
     assert_true(changes >= 5);
     skein_world_destroy(world);
-    for (int s = 0; s <= (PILE_STEPS - 1) / EVERY; s++) {
+    for (int s = 0; s <= (PILE_STEPS - 1) / EVERY; s += SANITIZED ? 5 : 1) {
         skein_world *other = pile(1 + s % 3);
         if (s % 2) steps(other, 150, dt); // whatever slept there
         OK(other, skein_snapshot_read(other, saved[s].bytes, saved[s].size));
