@@ -241,7 +241,7 @@ void sk_write_shared_projections(sk_plan_builder *builder, int passes) {
     }
 }
 
-enum { LEAST_LIMIT_SWEEPS = 4, MOST_LIMIT_SWEEPS = 64, EDGES_A_SWEEP = 6, SQUARES_A_SWEEP = 1024, EDGES_A_SWEEP_CARRIED = 8 };
+enum { LEAST_LIMIT_SWEEPS = 4, MOST_LIMIT_SWEEPS = 64, EDGES_A_SWEEP = 6, SQUARES_A_SWEEP = 1024 };
 
 /* A sweep carries a correction over a few edges, so that the number of sweeps has to grow with the edges from side to side. Measured
  * on irregular meshes that hang by two corners, with a limit of 1 %, the largest stretch at rest in percent, by sweeps:
@@ -250,7 +250,7 @@ enum { LEAST_LIMIT_SWEEPS = 4, MOST_LIMIT_SWEEPS = 64, EDGES_A_SWEEP = 6, SQUARE
  * 128 1.00 (4), 256 x 256 1.14 (16), 1.03 (32), 1.01 (64); but while it falls, 128 x 128 has 3.1 (4), 2.0 (8), 1.3 (21). */
 static int limit_sweeps_of(const sk_batch *batch) {
     double across = sqrt((double)batch->count / 3); // a sheet of triangles has three edges a vertex
-    double sweeps = batch->carried ? across / EDGES_A_SWEEP_CARRIED : fmax(across / EDGES_A_SWEEP, across * across / SQUARES_A_SWEEP);
+    double sweeps = batch->carried ? across / EDGES_A_SWEEP : fmax(across / EDGES_A_SWEEP, across * across / SQUARES_A_SWEEP);
     return (int)fmin(fmax(sweeps, LEAST_LIMIT_SWEEPS), MOST_LIMIT_SWEEPS);
 }
 
