@@ -206,8 +206,10 @@ static void colliders_wake_whom_they_come_near(void **state) {
     OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.1), SKEIN_VEC3("centre", 0, 1, 0)), &ball));
     until_asleep(world, a, 600);
     until_asleep(world, b, 600);
-    for (int i = 1; i < 40; i++) { // a program moves it in every step
+    for (int i = 1; i < 40; i++) { // a program moves it in every step, and says again what it is
         OK(world, skein_set(world, ball, "centre", skein_vector(0, 1 - 0.01 * i, 0)));
+        OK(world, skein_set(world, ball, "radius", skein_number(0.1)));
+        OK(world, skein_set_path(world, "forces.0.acceleration", skein_vector(0, -9.81, 0)));
         steps(world, 1, dt);
         assert_true(skein_body_asleep(world, a) && skein_body_asleep(world, b));
     }
@@ -260,7 +262,13 @@ static void calls_wake(void **state) {
         case TIME: OK(world, skein_world_time_set(world, 3)); break;
         case BODY: OK(world, skein_set(world, b, "visible", skein_number(1))), all = false; break;
         case PIN: OK(world, skein_particle_pin(world, first[1] + 30, true)), all = false; break;
-        case PLACE: OK(world, skein_positions_set(world, first[1], 1, &p.x)), all = false; break;
+        case PLACE:
+            OK(world, skein_positions_set(world, first[1], 1, &p.x)); // where it is
+            steps(world, 1, dt);
+            assert_true(skein_body_asleep(world, b));
+            p.y += 0.001;
+            OK(world, skein_positions_set(world, first[1], 1, &p.x)), all = false;
+            break;
         case CUT: OK(world, skein_cut_faces(world, b, (const uint32_t[]){9}, 1)), all = false; break;
         case PINS: {
             OK(world, skein_pins_move(world, &first[1], 1, &p.x)); // where it is

@@ -106,6 +106,16 @@ skein_status skein_positions_blend(const skein_world *world, double blend, size_
     return status;
 }
 
+/* Whether these are others than there are: what is put where it is, in each frame, wakes nobody. */
+static bool changes(const skein_world *world, sk_vector vector, size_t first, size_t count, const double *xyz) {
+    bool same = true;
+    for (size_t i = 0; i < count && same; i++) {
+        const sk_vec4 *p = &world->particles.vector[vector][world->particles.slot_of[first + i]];
+        same = (real)xyz[3 * i] == p->x && (real)xyz[3 * i + 1] == p->y && (real)xyz[3 * i + 2] == p->z;
+    }
+    return !same;
+}
+
 static skein_status copy_in(skein_world *world, sk_vector vector, size_t first, size_t count, const double *xyz) {
     skein_status status = sk_world_check_range(world, first, count);
     if (status) return status;
@@ -115,7 +125,7 @@ static skein_status copy_in(skein_world *world, sk_vector vector, size_t first, 
                            "particle %zu: numbers must be finite, under 1e15", first + i / 3);
     status = sk_world_touch(world);
     if (status) return status;
-    sk_world_rouse_at(world, first, count);
+    if (changes(world, vector, first, count, xyz)) sk_world_rouse_at(world, first, count);
     for (size_t i = 0; i < count; i++) {
         sk_vec4 *p = &world->particles.vector[vector][world->particles.slot_of[first + i]];
         if (world->particles.presence[first + i] == SK_GONE) continue; // it has no place of its own
