@@ -2,6 +2,7 @@
  * a rule is; asleep they count in all that is measured; and none of it depends on threads, or on where a world was saved. */
 #include <skein/cut.h>
 #include <skein/gradient.h>
+#include <skein/kinds.h>
 #include <skein/record.h>
 
 #include "all_methods.h"
@@ -363,7 +364,11 @@ static void what_stands_pinned_wakes(void **state) {
     skein_handle body = sheet(world, "body", "", 0.05, 0.02, 0.62, 0); // which wakes all
     steps(world, 2, dt);
     assert_true(skein_body_asleep(world, plate) && !skein_body_asleep(world, body));
-    steps(world, 60, dt);
+    for (int i = 0; i < 60; i++) {
+        steps(world, 1, dt);
+        const double y = position_of(world, first_of(world, body) + 40).y;
+        if (y < 0.52 && !skein_body_asleep(world, body)) assert_false(skein_body_asleep(world, plate));
+    }
     assert_true(position_of(world, first_of(world, body) + 40).y > 0.5);
     until_asleep(world, body, 600);
     steps(world, 3, dt);
@@ -394,7 +399,10 @@ static void loose_ends_count(void **state) {
                 const uint32_t end = first_of(world, body) + 72, weight = add_particle(world, 0.01, 0.125, 1.1, 0);
                 OK(world, skein_constraint_add(world, "distance", order ? (const uint32_t[]){weight, end} : (const uint32_t[]){end, weight}, 1, NULL, NULL));
                 if (pinned) OK(world, skein_particle_pin(world, weight, true));
-                steps(world, 300, dt);
+                for (int i = 0; i < 300; i++) {
+                    steps(world, 1, dt);
+                    assert_false(skein_body_asleep(world, body) && !pinned);
+                }
                 assert_true(skein_body_asleep(world, body) == (pinned == 1));
                 assert_true(position_of(world, weight).y > 0.3);
                 OK(world, skein_particle_pin(world, weight, !pinned));
@@ -427,6 +435,131 @@ static void what_sets_out_fast_is_seen(void **state) {
     }
     assert_near(y[0], y[1], 0.02);
     assert_true(y[1] < 1.45);
+}
+
+/* Vertices of a mesh that are set far, onto what sleeps, or away from under it, in a step. */
+static void vertices_that_are_led_are_seen(void **state) {
+    (void)state;
+    static const uint32_t sizes[6] = {4, 4, 4, 4, 4, 4}, faces[24] = {0, 1, 3, 2, 4, 6, 7, 5, 0, 4, 5, 1, 2, 3, 7, 6, 0, 2, 6, 4, 1, 5, 7, 3};
+    for (int onto = 0; onto < 2; onto++) {
+        double at[8][3], to[8][3];
+        for (int i = 0; i < 8; i++) {
+            const double x = i & 4 ? 0.4 : -0.4, y = i & 2 ? 0.1 : -0.1, z = i & 1 ? 0.4 : -0.4;
+            memcpy(at[i], (const double[]){x, y + (onto ? 5 : 0.4), z}, sizeof at[i]);
+            memcpy(to[i], (const double[]){x, y + (onto ? 1.15 : -3), z}, sizeof to[i]);
+        }
+        skein_world *world = ground("xpbd", 1);
+        skein_mesh mesh = {.positions = &at[0][0], .vertex_count = 8, .face_sizes = sizes, .face_count = 6, .face_vertices = faces, .face_vertex_count = 24};
+        skein_handle box, body = sheet(world, "body", onto ? "corners" : "", 0.05, 0, onto ? 1.2 : 0.56, 0);
+        OK(world, skein_collider_add_mesh(world, "mesh", &mesh, NULL, &box));
+        OK(world, skein_collider_vertices_set(world, box, &at[0][0], 8)); // where they are: it is led, and stands
+        until_asleep(world, body, 600);
+        steps(world, 2, dt);
+        OK(world, skein_collider_vertices_set(world, box, &at[0][0], 8));
+        steps(world, 1, dt);
+        assert_true(skein_body_asleep(world, body));
+        OK(world, skein_collider_vertices_set(world, box, &to[0][0], 8));
+        steps(world, 1, dt);
+        assert_false(skein_body_asleep(world, body));
+        steps(world, 60, dt);
+        if (!onto) assert_true(position_of(world, 40).y < 0.1);
+        skein_world_destroy(world);
+    }
+}
+
+/* What has lain on something that moves, and loses it, falls: a formula that drops after three seconds. And who is led slowly by
+ * his pins never sleeps. */
+static void nobody_falls_asleep_in_the_air(void **state) {
+    (void)state;
+    skein_world *world = ground("xpbd", 1);
+    skein_handle body = sheet(world, "body", "", 0.05, 0, 0.51, 0), led = sheet(world, "led", "corners", 0.05, 4, 1.5, 0);
+    OK(world, skein_collider_add(world, "formula", SKEIN_SETTINGS(SKEIN_TEXT("surface", "p.y - 0.5 + 5*min(max(t - 3, 0)*100, 1)"), SKEIN_TEXT("on", "body")), NULL));
+    OK(world, skein_motion_add(world, "keys", NULL, SKEIN_SETTINGS(SKEIN_TEXT("on", "led"), SKEIN_TEXT("keys", "0 0 0 0, 9 0 0.09 0")), NULL));
+    for (int i = 0; i < 300; i++) {
+        steps(world, 1, dt);
+        const double y = position_of(world, 40).y;
+        if (skein_body_asleep(world, body) && y > 0.1) fail_msg("step %d: asleep at %g m", i, y);
+        if (skein_body_asleep(world, led)) fail_msg("step %d: asleep while it is led", i);
+    }
+    assert_true(position_of(world, 40).y < 0.1);
+    skein_world_destroy(world);
+}
+
+/* Two that lie on one pinned plate do not know of each other; of a crossing that is gone nothing is told. */
+static void who_has_nothing_to_do_with_it_sleeps_on(void **state) {
+    (void)state;
+    skein_world *world = ground("xpbd", 1);
+    skein_handle ends[2];
+    for (int k = 0; k < 2; k++) ends[k] = sheet(world, k ? "b" : "a", "", 0.05, k, 0.52, 0);
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", "plate"), SKEIN_PAIR("grid", 5, 20), SKEIN_PAIR("size", 2, 0.5), SKEIN_TEXT("pins", "all"),
+                                            SKEIN_VEC3("position", 0.5, 0.5, 0)), NULL));
+    until_asleep(world, ends[0], 600);
+    until_asleep(world, ends[1], 600);
+    throw_particle(world, first_of(world, ends[0]) + 40, 0, 0.3, 0);
+    for (int i = 0; i < 10; i++) {
+        steps(world, 1, dt);
+        assert_true(!skein_body_asleep(world, ends[0]) && skein_body_asleep(world, ends[1]));
+    }
+    until_asleep(world, ends[0], 600);
+    // one that is put through the other, and then away again
+    double x[3 * 81];
+    const uint32_t b = first_of(world, ends[1]);
+    OK(world, skein_set_path(world, "forces.contact.recovery", skein_number(0)));
+    OK(world, skein_positions_copy(world, b, 81, x));
+    for (int i = 0; i < 81; i++) x[3 * i] -= 0.93, x[3 * i + 1] += 0.3 * x[3 * i + 2];
+    OK(world, skein_positions_set(world, b, 81, x));
+    until_asleep(world, ends[1], 900);
+    if (!statistics_of(world).crossings) fail_msg("nothing crosses: the test shows nothing");
+    for (int i = 0; i < 81; i++) x[3 * i + 1] += 5;
+    OK(world, skein_positions_set(world, b, 81, x));
+    assert_int_equal(statistics_of(world).crossings, 0);
+    skein_world_destroy(world);
+}
+
+/* Kinds by functions of a program may change as time goes by, and nobody can read it. */
+static double sinking(const void *params, double time, const double x[3], double normal[3]) {
+    (void)params;
+    normal[0] = normal[2] = 0, normal[1] = 1;
+    return x[1] - (time < 3 ? 0.5 : 0.2);
+}
+
+typedef struct lifting_params {
+    char *label;
+} lifting_params;
+
+static void lifting(const void *params, double time, const skein_lanes *in, skein_real force[3][SKEIN_LANES]) {
+    (void)params;
+    for (int i = 0; i < SKEIN_LANES; i++) force[0][i] = force[2][i] = 0, force[1][i] = (skein_real)(time > 3 ? 30 : 0) * in->mass[i];
+}
+
+static void functions_of_a_program_keep_awake(void **state) {
+    (void)state;
+    static const skein_collider_type collider = {.kind = {"sinking", "sinks after 3 s", SKEIN_COLLIDER, NULL, 0, 0}, .distance = sinking};
+    static const skein_field fields[] = {SKEIN_FIELD_OF_TEXT(lifting_params, label, "label", "which", "words")};
+    static const skein_force_type force = {.kind = {"lifting", "lifts after 3 s", SKEIN_FORCE, fields, 1, sizeof(lifting_params)}, .force = lifting};
+    skein_kinds *kinds = skein_kinds_create(NULL);
+    skein_error error;
+    assert_int_equal(skein_kind_register(kinds, &collider.kind, &error), SKEIN_OK);
+    assert_int_equal(skein_kind_register(kinds, &force.kind, &error), SKEIN_OK);
+    for (int k = 0; k < 2; k++) {
+        skein_world_desc desc = skein_default_world_desc();
+        desc.kinds = kinds;
+        skein_world *world = skein_world_create(&desc, NULL);
+        OK(world, skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 5))));
+        add_gravity(world);
+        OK(world, skein_collider_add(world, "plane", NULL, NULL));
+        if (k) OK(world, skein_force_add(world, "lifting", SKEIN_SETTINGS(SKEIN_TEXT("label", "north")), NULL));
+        else OK(world, skein_collider_add(world, "sinking", NULL, NULL));
+        skein_handle body = sheet(world, "body", "", 0.05, 0, k ? 0.05 : 0.55, 0);
+        steps(world, 170, dt);
+        assert_false(skein_body_asleep(world, body));
+        steps(world, 90, dt);
+        const double y = position_of(world, 40).y;
+        assert_true(k ? y > 2 : y < 0.3);
+        skein_world_destroy(world);
+    }
+    skein_kinds_destroy(kinds);
 }
 
 static double no_measure(void *user, const skein_gradient_state *state) {
@@ -694,6 +827,10 @@ int main(void) {
         cmocka_unit_test(what_stands_pinned_wakes),
         cmocka_unit_test(loose_ends_count),
         cmocka_unit_test(what_sets_out_fast_is_seen),
+        cmocka_unit_test(vertices_that_are_led_are_seen),
+        cmocka_unit_test(nobody_falls_asleep_in_the_air),
+        cmocka_unit_test(who_has_nothing_to_do_with_it_sleeps_on),
+        cmocka_unit_test(functions_of_a_program_keep_awake),
         cmocka_unit_test(gradients_refuse_sleep),
         cmocka_unit_test(what_may_be_moved_does_not_sleep),
         cmocka_unit_test(it_goes_on_from_anywhere),
